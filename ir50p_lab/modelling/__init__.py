@@ -1,0 +1,35 @@
+"""From a drawing to the equations of motion: pose, kinematics, symbolic derivation, dynamics, friction, motors.
+
+Names are loaded on first use: importing this package costs nothing.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "actuators": ["Actuators"],
+        "arm": ["Arm", "load_arm"],
+        "chain": ["dh_matrix", "dh_table", "forward_kinematics", "frames", "transform"],
+        "dynamics": [
+            "Energy",
+            "bias",
+            "coriolis_matrix",
+            "energy",
+            "forward_dynamics",
+            "gravity",
+            "inverse_dynamics",
+            "mass_matrix",
+        ],
+        "friction": ["Friction", "friction_torque"],
+        "ik": [
+            "IKSolutions",
+            "IterativeSolution",
+            "inverse_kinematics",
+            "iterative_inverse_kinematics",
+            "reachability",
+        ],
+        "jacobian": ["jacobian", "manipulability", "singularity"],
+        "named_arms": ["IR50P", "THESIS_A", "THESIS_C", "THESIS_RODS", "thesis_theta"],
+    },
+)

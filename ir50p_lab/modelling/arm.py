@@ -1,0 +1,249 @@
+"""The arm: a 3-DOF elbow manipulator by its lengths, masses and inertias, checked when it is made."""
+
+import dataclasses
+import os
+import warnings
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from ir50p_lab.errors import ArmError, SuspiciousArmWarning
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling.actuators import Actuators
+from ir50p_lab.modelling.friction import Friction
+
+_VECTORS = {"l": "m", "m": "kg", "lc": "m", "Ixx": "kg m^2", "Iyy": "kg m^2", "Izz": "kg m^2"}
+_RELATIVE_SLACK = 1e-9  # a slender rod meets Ixx + Iyy = Izz exactly, up to rounding
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arm:
+    """A 3-DOF elbow arm with in-line links: waist (vertical axis), shoulder, elbow.
+
+    Standard DH (Table 1.1 corrected): theta = q; d = (l1, 0, 0); a = (0, l2, l3); alpha = (+90, 0, -90) deg.
+    Zero pose: upper arm and forearm horizontal and stretched along x; q2, q3 > 0 lift them.
+
+    ========= ================================================================== ============
+    field     meaning                                                            unit
+    ========= ================================================================== ============
+    l         column height, upper arm, forearm                                  (3,) m
+    m         masses of the links                                                (3,) kg
+    lc        centre of mass on the link axis, from the joint (link 1: height)   (3,) m
+    Ixx..Izz  moments of inertia about the centre of mass in the link frame      (3,) kg m^2
+    friction  Friction at the joints                                             N m
+    actuators Actuators, or None for an arm driven by torque                     SI
+    q_min/max joint limits                                                       (3,) rad
+    g         gravity                                                            m/s^2
+    ========= ================================================================== ============
+
+    Link frames: link 1 has z along the column; links 2 and 3 have x along the link and z along the joint axis.
+    Only such in-line links are expressed exactly by the 20 parameters theta. `Arm.from_rigid_bodies` takes
+    full centres of mass and inertia tensors and refuses the others; `derive(general=True)` can still derive them.
+
+    Raises ArmError for what no rigid body can have; warns SuspiciousArmWarning for what is hardly meant
+    (the list stays in `suspicions`).
+    """
+
+    name: str = "my arm"
+    l: tuple
+    m: tuple
+    lc: tuple
+    Ixx: tuple = (0.0, 0.0, 0.0)
+    Iyy: tuple = (0.0, 0.0, 0.0)
+    Izz: tuple = (0.0, 0.0, 0.0)
+    friction: Friction = Friction()
+    actuators: Actuators | None = None
+    q_min: tuple = (-np.inf, -np.inf, -np.inf)
+    q_max: tuple = (np.inf, np.inf, np.inf)
+    g: float = 9.81
+
+    def __post_init__(self):
+        for name, unit in _VECTORS.items():
+            object.__setattr__(self, name, _three(name, getattr(self, name), unit))
+        for name in ("q_min", "q_max"):
+            values = np.asarray(getattr(self, name), dtype=float)
+            if values.shape != (3,) or np.isnan(values).any():
+                raise ArmError(f"{name} = {getattr(self, name)!r}: give three angles in rad (inf for no limit)")
+            object.__setattr__(self, name, tuple(values.tolist()))
+        object.__setattr__(self, "g", float(self.g))
+        if not (np.isfinite(self.g) and self.g >= 0):
+            raise ArmError(f"g = {self.g} m/s^2 must be >= 0: the base z axis points up")
+        self._refuse_impossible()
+        for text in self.suspicions:
+            warnings.warn(f"{self.name}: {text}", SuspiciousArmWarning, stacklevel=3)
+
+    def _refuse_impossible(self):
+        for i, length in enumerate(self.l):
+            if length < 0 or (i > 0 and length == 0):
+                raise ArmError(f"l{i + 1} = {length} m: the column may be 0, upper arm and forearm must be > 0")
+        for i in range(3):
+            if self.m[i] < 0:
+                raise ArmError(f"m{i + 1} = {self.m[i]} kg: a mass cannot be negative")
+            refuse_impossible_inertia(f"link {i + 1}", (self.Ixx[i], self.Iyy[i], self.Izz[i]))
+            if abs(self.lc[i]) > 3 * sum(self.l):
+                raise ArmError(
+                    f"lc{i + 1} = {self.lc[i]} m: the centre of mass lies {abs(self.lc[i]) / sum(self.l):.0f} times the "
+                    "whole arm away from its joint; is it in millimetres? Give metres"
+                )
+            if self.q_min[i] >= self.q_max[i]:
+                raise ArmError(f"joint {i + 1}: q_min = {self.q_min[i]} rad is not below q_max = {self.q_max[i]} rad")
+
+    @cached_property
+    def suspicions(self):
+        """What is possible but hardly meant, as a tuple of sentences (empty for a plausible arm)."""
+        found = []
+        for i in range(3):
+            if self.l[i] > 0 and self.lc[i] > self.l[i]:
+                found.append(
+                    f"the centre of mass of link {i + 1} is {self.lc[i] / self.l[i]:.2g} link lengths out "
+                    f"(lc = {self.lc[i]} m, l = {self.l[i]} m)"
+                )
+            if self.lc[i] < 0:
+                found.append(f"the centre of mass of link {i + 1} is behind its joint (lc = {self.lc[i]} m)")
+            if self.l[i] > 10:
+                found.append(f"l{i + 1} = {self.l[i]} m is longer than 10 m: is it in millimetres?")
+            for limit in (self.q_min[i], self.q_max[i]):
+                if np.isfinite(limit) and abs(limit) > 4 * np.pi:
+                    found.append(f"a limit of joint {i + 1} is {limit} rad, over two turns: is it in degrees?")
+        return tuple(found)
+
+    @classmethod
+    def from_rigid_bodies(cls, *, l, m, com, inertia, **options):
+        """An arm from full centres of mass and inertia tensors, refused with the reason if not in-line.
+
+        Args:
+            l, m: as in Arm.
+            com: (3, 3) m, one row per link, in the link frame with origin at the joint.
+            inertia: (3, 3, 3) kg m^2, one tensor per link about its centre of mass in the link frame.
+            options: the other fields of Arm.
+
+        Raises ArmError if a centre of mass is off the link axis or a tensor has products of inertia
+        (1.104 corrected: I = [[Ixx, -Ixy, -Ixz], ...]).
+        """
+        com = vectors3("com", com, unit="m")
+        inertia = np.asarray(inertia, dtype=float)
+        if com.shape != (3, 3) or inertia.shape != (3, 3, 3) or not np.isfinite(inertia).all():
+            raise ArmError(f"com has shape {com.shape}, inertia {inertia.shape}; give (3, 3) and (3, 3, 3), all finite")
+        lc = []
+        for i in range(3):
+            axis = 2 if i == 0 else 0
+            off_axis = np.hypot(*np.delete(com[i], axis))
+            scale = max(np.abs(inertia[i]).max(), 1e-30)
+            if off_axis > 1e-9:
+                raise ArmError(
+                    f"the centre of mass of link {i + 1} is {off_axis:.3g} m off the link axis; the 20 parameters "
+                    "theta hold only links whose centre of mass is on it. derive(general=True) derives the others"
+                )
+            if np.abs(inertia[i] - np.diag(np.diag(inertia[i]))).max() > 1e-9 * scale:
+                raise ArmError(
+                    f"the inertia tensor of link {i + 1} has products of inertia; the 20 parameters theta hold only "
+                    "links that are symmetric about their axis planes. derive(general=True) derives the others"
+                )
+            lc.append(com[i, axis])
+        Ixx, Iyy, Izz = (inertia[:, k, k] for k in range(3))
+        return cls(l=l, m=m, lc=lc, Ixx=Ixx, Iyy=Iyy, Izz=Izz, **options)
+
+    @property
+    def reach(self):
+        """Largest distance of the tip from the shoulder, l2 + l3, m."""
+        return self.l[1] + self.l[2]
+
+    @cached_property
+    def theta(self):
+        """The 20 parameters, (3, 20): three equal rows, torque in N m.
+
+        Order and meaning: the in-line rigid arm with rotors, then fv, fc per joint, Tf, j3 (2.50 corrected).
+        theta 7 and 8 (the thesis' constant products of inertia) are 0: no rigid body has them.
+        The Stribeck part of the friction is not linear in parameters and is not in theta.
+        """
+        (_, m2, m3), (_, l2, _), (_, lc2, lc3) = self.m, self.l, self.lc
+        _, X2, X3 = self.Ixx
+        _, Y2, Y3 = self.Iyy
+        Z1, Z2, Z3 = self.Izz
+        j1, j2, j3 = (0.0, 0.0, 0.0) if self.actuators is None else self.actuators.reflected_inertia
+        f = self.friction
+        inertial = [
+            j1 + Z1 + X2 + X3,
+            m2 * lc2**2 + m3 * l2**2 + Y2 - X2,
+            m2 * lc2 + m3 * l2,
+            m3 * lc3,
+            m3 * lc3**2 + Y3 - X3,
+            m3 * lc3 * l2,
+            0.0,
+            0.0,
+            Z2 - Y2 + X2 + j2,
+            Z3 - Y3 + X3,
+        ]
+        dry = [value for joint in range(3) for value in (f.fv[joint], f.fc[joint])]
+        return read_only(np.tile([*inertial, *dry, *f.Tf, j3], (3, 1)))
+
+    @cached_property
+    def theta_pwm(self):
+        """The 20 parameters of the arm as seen from the PWM counts, (3, 20): row i is divided by the gain K_i.
+
+        u_i = (row i of Phi theta) / K_i, with the back-EMF as viscous friction. The rows differ when the
+        motors do: a fit with one shared theta is then wrong (ERRATA of 2.47). Raises ArmError without actuators.
+        """
+        if self.actuators is None:
+            raise ArmError(f"{self.name} has no actuators: it is driven by torque, use theta (N m)")
+        rows = self.theta.copy()
+        rows[:, [10, 12, 14]] += self.actuators.back_emf_damping
+        return read_only(rows / self.actuators.gain[:, None])
+
+    def without_friction(self):
+        """The same arm with no friction at all (rotor inertia stays)."""
+        return dataclasses.replace(self, friction=Friction())
+
+    def save(self, path):
+        """Write the arm to `path` as TOML, with units in comments. Read it back with Arm.load."""
+        from ir50p_lab.modelling.arm_file import write_arm
+
+        write_arm(self, path)
+
+    @classmethod
+    def load(cls, path):
+        """Read an arm from a TOML file. Raises ArmError naming the file and what is wrong in it."""
+        from ir50p_lab.modelling.arm_file import read_arm
+
+        return read_arm(path)
+
+
+def _three(name, value, unit):
+    array = vectors3(name, value, unit=unit)
+    if array.shape != (3,):
+        raise ArmError(f"{name} has shape {array.shape}; give one number per link, (3,), in {unit}")
+    return tuple(array.tolist())
+
+
+def refuse_impossible_inertia(who, principal):
+    """Raise ArmError if moments of inertia (3,) about one point's axes belong to no rigid body.
+
+    None may be negative and none larger than the sum of the other two: Ixx + Iyy - Izz = 2 int z^2 dm >= 0.
+    """
+    for k, axis in enumerate(("Ixx", "Iyy", "Izz")):
+        others = sum(principal) - principal[k]
+        if principal[k] < 0:
+            raise ArmError(f"{axis} of {who} is {principal[k]} kg m^2: a moment of inertia cannot be negative")
+        if principal[k] > others + _RELATIVE_SLACK * sum(principal):
+            raise ArmError(
+                f"{axis} = {principal[k]:.6g} kg m^2 of {who} exceeds the sum of the other two, {others:.6g}: "
+                "no rigid body has that (triangle inequality). Check the axes: x runs along links 2 and 3"
+            )
+
+
+def read_only(array):
+    """Lock an array that is shared, so that no student's cell changes an arm by accident."""
+    array.setflags(write=False)
+    return array
+
+
+def load_arm(path=None):
+    """The arm of the course: from `path`, else from the file that $IR50P_ARM names, else the IR50P."""
+    path = path or os.environ.get("IR50P_ARM")
+    if path:
+        return Arm.load(Path(path))
+    from ir50p_lab.modelling.named_arms import IR50P
+
+    return IR50P

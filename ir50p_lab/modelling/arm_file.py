@@ -1,0 +1,100 @@
+"""Arms as TOML files: readable, with units in comments."""
+
+import dataclasses
+import tomllib
+from pathlib import Path
+
+import tomlkit
+
+from ir50p_lab.errors import ArmError, LabError
+from ir50p_lab.modelling.actuators import Actuators
+from ir50p_lab.modelling.arm import Arm
+from ir50p_lab.modelling.friction import Friction
+
+_COMMENTS = {
+    "l": "m: column height, upper arm, forearm",
+    "m": "kg",
+    "lc": "m: centre of mass on the link axis, from the joint (link 1: height)",
+    "Ixx": "kg m^2, about the centre of mass; x along links 2 and 3, z along the joint axis",
+    "Iyy": "kg m^2",
+    "Izz": "kg m^2 (link 1: about the column)",
+    "q_min": "rad",
+    "q_max": "rad",
+    "g": "m/s^2",
+    "fv": "N m s/rad, viscous",
+    "fc": "N m, Coulomb",
+    "fs": "N m, breakaway (>= fc)",
+    "qs": "rad/s, Stribeck velocity",
+    "Tf": "N m, offset",
+    "N": "gear ratio",
+    "Jm": "kg m^2, rotor",
+    "kt": "N m/A",
+    "ke": "V s/rad",
+    "Ra": "ohm",
+    "V": "V, supply",
+    "limit_pwm": "counts that give the full supply",
+}
+_PARTS = {"friction": Friction, "actuators": Actuators}
+
+
+def write_arm(arm, path):
+    """Write `arm` to `path` (TOML). Every number is written with all its digits: reading gives the same arm."""
+    document = tomlkit.document()
+    document.add(tomlkit.comment("An arm for the IR50P lab book. SI units; joints and links 1, 2, 3 in order."))
+    _fill(document, arm)
+    for name in _PARTS:
+        part = getattr(arm, name)
+        if part is not None:
+            table = tomlkit.table()
+            _fill(table, part)
+            document.add(name, table)
+    Path(path).write_text(tomlkit.dumps(document), encoding="utf-8")
+
+
+def _fill(table, part):
+    for field in dataclasses.fields(part):
+        if field.name in _PARTS:
+            continue
+        value = getattr(part, field.name)
+        table.add(field.name, tomlkit.item(list(value) if isinstance(value, tuple) else value))
+        if field.name in _COMMENTS:
+            table[field.name].comment(_COMMENTS[field.name])
+
+
+def read_arm(path):
+    """Read an arm from a TOML file.
+
+    Raises ArmError, naming the file, if it is missing, is not TOML, lacks a field, has a field that is not
+    known (with the known ones), or describes an impossible arm.
+    """
+    path = Path(path)
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ArmError(f"cannot read the arm file {path}: {error.strerror}; check the path or IR50P_ARM") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ArmError(f"{path} is not a TOML file: {error}. Write one with Arm.save and edit it") from None
+    try:
+        parts = {name: _make(cls, data.pop(name)) for name, cls in _PARTS.items() if name in data}
+        return _make(Arm, {**data, **parts})
+    except LabError as error:
+        raise ArmError(f"{path}: {error}") from None
+
+
+def _make(cls, data):
+    if not isinstance(data, dict):
+        raise ArmError(f"[{cls.__name__.lower()}] must be a table of values, got {data!r}")
+    known = [field.name for field in dataclasses.fields(cls)]
+    for name in data:
+        if name not in known:
+            raise ArmError(f"unknown entry '{name}' for {cls.__name__}; known: {', '.join(known)}")
+    required = [f.name for f in dataclasses.fields(cls) if f.default is dataclasses.MISSING]
+    missing = [name for name in required if name not in data]
+    if missing:
+        raise ArmError(f"{cls.__name__} lacks {', '.join(missing)}")
+    try:
+        return cls(**data)
+    except (TypeError, ValueError) as error:
+        if isinstance(error, LabError):
+            raise
+        raise ArmError(f"{cls.__name__}: {error}") from None

@@ -1,0 +1,74 @@
+"""Joint friction: viscous, Coulomb, Stribeck and a constant offset (1.115)-(1.117)."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ir50p_lab.errors import ArmError
+from ir50p_lab.inputs import vectors3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Friction:
+    """Friction of the three joints, seen at the joint.
+
+    ===== ============================== ==============
+    field meaning                        shape, unit
+    ===== ============================== ==============
+    fv    viscous coefficient            (3,) N m s/rad
+    fc    Coulomb torque                 (3,) N m
+    fs    breakaway torque, fs >= fc     (3,) N m (default: fc, no Stribeck effect)
+    qs    Stribeck velocity              (3,) rad/s
+    Tf    offset, the same at any speed  (3,) N m
+    ===== ============================== ==============
+
+    Raises ArmError if a coefficient is negative, if fs < fc, or if a Stribeck velocity is not positive.
+    """
+
+    fv: tuple = (0.0, 0.0, 0.0)
+    fc: tuple = (0.0, 0.0, 0.0)
+    fs: tuple | None = None
+    qs: tuple = (0.05, 0.05, 0.05)
+    Tf: tuple = (0.0, 0.0, 0.0)
+
+    def __post_init__(self):
+        if self.fs is None:
+            object.__setattr__(self, "fs", self.fc)
+        for field in fields(self):
+            values = vectors3(f"friction {field.name}", getattr(self, field.name), unit="N m, rad/s")
+            object.__setattr__(self, field.name, tuple(values.tolist()))
+        for joint in range(3):
+            for name in ("fv", "fc"):
+                if getattr(self, name)[joint] < 0:
+                    raise ArmError(
+                        f"friction {name} of joint {joint + 1} is {getattr(self, name)[joint]}; it must be >= 0: "
+                        "friction takes energy out of the arm, a negative coefficient would feed it"
+                    )
+            if self.fs[joint] < self.fc[joint]:
+                raise ArmError(
+                    f"breakaway torque fs = {self.fs[joint]} N m of joint {joint + 1} is below its Coulomb torque "
+                    f"fc = {self.fc[joint]} N m; give fs >= fc"
+                )
+            if self.qs[joint] <= 0:
+                raise ArmError(f"Stribeck velocity qs = {self.qs[joint]} rad/s of joint {joint + 1} must be > 0")
+
+
+def friction_torque(friction, qd):
+    """Friction torque at joint velocity `qd`, with the sign in which it stands in (1.74): it opposes motion.
+
+    F(qd) = fv qd + sgn(qd) [fc + (fs - fc) exp(-(qd/qs)^2)] + Tf    (1.115)-(1.117), Tf from (1.118)
+
+    Args:
+        friction: Friction, or an Arm.
+        qd: (3,) or (n, 3), rad/s.
+
+    Returns: torque of the shape of `qd`, N m. At qd = 0 dry friction has no single value (anything up to fs);
+    sgn(0) = 0 is used here, the simulation treats sticking properly.
+
+    Raises InputError on a wrong shape or a number that is not finite.
+    """
+    friction = getattr(friction, "friction", friction)
+    qd = vectors3("qd", qd, unit="rad/s")
+    fv, fc, fs, qs, Tf = (np.array(getattr(friction, name)) for name in ("fv", "fc", "fs", "qs", "Tf"))
+    stribeck = (fs - fc) * np.exp(-((qd / qs) ** 2))
+    return fv * qd + np.sign(qd) * (fc + stribeck) + Tf

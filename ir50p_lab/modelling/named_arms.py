@@ -1,0 +1,105 @@
+"""The arms of the course: the real one (with its assumptions) and the thesis' models."""
+
+import numpy as np
+
+from ir50p_lab.modelling.actuators import Actuators
+from ir50p_lab.modelling.arm import Arm, read_only
+from ir50p_lab.modelling.friction import Friction
+
+_DEG = np.pi / 180
+_K = np.array([4.0, 7.0, 6.0]) / 255  # N m per PWM count at 12 V: the stall torques below over 255 counts
+
+# The thesis gives neither masses nor motors of the IR50P. What is not sourced is an assumption, chosen so that
+# identification lands near the thesis' Table 4.4; nothing here was measured on an IR50P.
+IR50P = Arm(
+    name="IR50P",
+    # Source: published code of a sister arm (IR52c): shoulder height 285, links 200 and 200 mm, hand 172 mm.
+    l=(0.285, 0.200, 0.372),
+    # Assumed: a 13 kg machine (ROB3i manual) carries most of it in the base; thin-walled aluminium links.
+    m=(3.0, 1.0, 0.8),
+    # Assumed: a little before the middle of each link, the motors sit near the joints.
+    lc=(0.10, 0.09, 0.17),
+    # Assumed: slender links (about m l^2/12 across, much less along); link 1 as a small column.
+    Ixx=(0.03, 0.0006, 0.0006),
+    Iyy=(0.03, 0.0035, 0.0085),
+    Izz=(0.02, 0.0035, 0.0085),
+    friction=Friction(
+        # Assumed: all speed-dependent loss is the motors' back-EMF, so none is left here.
+        fv=(0.0, 0.0, 0.0),
+        # Assumed, given in PWM counts at 12 V: Coulomb 18, 16, 16; breakaway 36, 22, 22; offset 4, -3, 2.
+        fc=tuple(np.array([18.0, 16.0, 16.0]) * _K),
+        fs=tuple(np.array([36.0, 22.0, 22.0]) * _K),
+        qs=(0.05, 0.05, 0.05),
+        Tf=tuple(np.array([4.0, -3.0, 2.0]) * _K),
+    ),
+    actuators=Actuators.from_joint_data(
+        # Assumed: stall torque and no-load speed at the joint for 12 V, the supply of thesis 4.1.2 (the
+        # motors are 24 V ones). A 24 V drive doubles both.
+        stall_torque=(4.0, 7.0, 6.0),
+        no_load_speed=(2.5, 1.1, 1.3),
+        reflected_inertia=(0.15, 0.20, 0.12),
+        # Assumed: only N^2 Jm and N kt matter at the joint; 100 is usual for such an arm.
+        N=(100.0, 100.0, 100.0),
+        V=12.0,
+    ),
+    # Assumed: the ROB3i manual gives 200 deg of travel, not where. Chosen so that the thesis' set points fit.
+    q_min=(-100 * _DEG, -50 * _DEG, -140 * _DEG),
+    q_max=(100 * _DEG, 110 * _DEG, 30 * _DEG),
+)
+
+# Thesis 2.1.1: l = 1 m, m = (3, 1, 1) kg, lc = 0.5 m, no inertias. The thesis puts the centre of mass of the
+# column beside its axis (p_c1), which adds m1 lc1^2 = 0.75 kg m^2 to M11; kept here as inertia of the column.
+THESIS_A = Arm(
+    name="thesis 2.1.1, point masses (model A)",
+    l=(1.0, 1.0, 1.0),
+    m=(3.0, 1.0, 1.0),
+    lc=(0.5, 0.5, 0.5),
+    Ixx=(0.75, 0.0, 0.0),
+    Iyy=(0.75, 0.0, 0.0),
+    Izz=(0.75, 0.0, 0.0),
+)
+
+# The same lengths and masses as slender uniform rods: I = m l^2 / 12 across, 0 along the rod.
+THESIS_RODS = Arm(
+    name="thesis 2.1.1, slender rods (model B)",
+    l=(1.0, 1.0, 1.0),
+    m=(3.0, 1.0, 1.0),
+    lc=(0.5, 0.5, 0.5),
+    Ixx=(3 / 12, 0.0, 0.0),
+    Iyy=(3 / 12, 1 / 12, 1 / 12),
+    Izz=(0.0, 1 / 12, 1 / 12),
+)
+
+
+def thesis_theta(*, m, l, lc, Izz=(0, 0, 0), Iyy=(0, 0, 0), Iyz=(0, 0, 0), j=(0, 0, 0)):
+    """The 20 parameters of the thesis' model with its algebra put right, (3, 20), N m.
+
+    The thesis takes inertias that stay constant in a frame that turns with joint 1 only, and keeps m1 lc1^2.
+    With products of inertia Iyz that is no rigid body, so it exists as theta only, to reproduce its figures.
+
+    Args: m kg, l m, lc m, Izz, Iyy, Iyz, j kg m^2, each (3,).
+    """
+    inertial = [
+        j[0] + m[0] * lc[0] ** 2 + sum(Izz),
+        m[1] * lc[1] ** 2 + m[2] * l[1] ** 2,
+        m[1] * lc[1] + m[2] * l[1],
+        m[2] * lc[2],
+        m[2] * lc[2] ** 2,
+        m[2] * lc[2] * l[1],
+        Iyz[1],
+        Iyz[2],
+        Iyy[1] + j[1],
+        Iyy[2],
+    ]
+    return read_only(np.tile(np.array([*inertial, *[0.0] * 9, j[2]], dtype=float), (3, 1)))
+
+
+# Thesis 2.1.2: l = 0.2 m with lc = 0.5 m (2.5 link lengths out: a misprint it seems), Izz = Iyy = Iyz2 = 0.05.
+THESIS_C = thesis_theta(
+    m=(3, 1, 1),
+    l=(0.2, 0.2, 0.2),
+    lc=(0.5, 0.5, 0.5),
+    Izz=(0.05, 0.05, 0.05),
+    Iyy=(0, 0.05, 0.05),
+    Iyz=(0, 0.05, 0),
+)
