@@ -1,0 +1,100 @@
+"""The kinematic chain: Denavit-Hartenberg matrices, all frames, forward kinematics (1.10)-(1.31)."""
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+
+JOINTS = 3
+ALPHA = (np.pi / 2, 0.0, -np.pi / 2)  # twist of the links, Table 1.1
+_COS_ALPHA = (0.0, 1.0, 0.0)  # exact, where cos(pi/2) in floating point is 6e-17
+_SIN_ALPHA = (1.0, 0.0, -1.0)
+
+
+def dh_matrix(theta, d, a, alpha):
+    """One Denavit-Hartenberg step A = Rot_z(theta) Trans_z(d) Trans_x(a) Rot_x(alpha)    (1.23)-(1.29)
+
+    theta turns about the old z (the thesis' text under (1.21) says x), alpha about the new x.
+
+    Args: theta, alpha rad; d, a m; scalars or arrays of one shape (n,).
+    Returns: (4, 4) or (n, 4, 4), takes coordinates of frame i to frame i-1.
+    """
+    return _step(theta, d, a, np.cos(alpha), np.sin(alpha))
+
+
+def _step(theta, d, a, cos_alpha, sin_alpha):
+    c, s, d, a, ca, sa = np.broadcast_arrays(np.cos(theta), np.sin(theta), d, a, cos_alpha, sin_alpha)
+    zero, one = np.zeros_like(c), np.ones_like(c)
+    # fmt: off
+    rows = [c,    -s * ca, s * sa,  a * c,
+            s,    c * ca,  -c * sa, a * s,
+            zero, sa,      ca,      d,
+            zero, zero,    zero,    one]
+    # fmt: on
+    return np.stack(rows, axis=-1).reshape(*c.shape, 4, 4)
+
+
+def _lengths(arm):
+    try:
+        return arm.l
+    except AttributeError:
+        raise InputError(
+            f"kinematics needs an Arm (its lengths), got {type(arm).__name__}; theta holds no column height"
+        ) from None
+
+
+def dh_table(arm, q):
+    """Table 1.1 (header corrected): one row theta, d, a, alpha per joint.
+
+    Args: arm: Arm; q: (3,) rad. Returns: (3, 4), units rad, m, m, rad.
+    """
+    l1, l2, l3 = _lengths(arm)
+    q = vectors3("q", q)
+    if q.shape != (3,):
+        raise InputError(f"q has shape {q.shape}; a DH table is for one pose, give shape (3,)")
+    return np.column_stack([q, (l1, 0.0, 0.0), (0.0, l2, l3), ALPHA])
+
+
+def frames(arm, q):
+    """All frames of the arm in base coordinates: T^0_0 = I, T^0_1, T^0_2, T^0_3    (1.11 corrected), (1.15)
+
+    Args: arm: Arm; q: (3,) or (n, 3) rad.
+    Returns: (4, 4, 4) or (n, 4, 4, 4); element i takes coordinates of frame i to the base.
+    """
+    l1, l2, l3 = _lengths(arm)
+    q = vectors3("q", q)
+    T = np.empty((*q.shape[:-1], 4, 4, 4))
+    T[..., 0, :, :] = np.eye(4)
+    for i, (d, a) in enumerate(((l1, 0.0), (0.0, l2), (0.0, l3))):
+        T[..., i + 1, :, :] = T[..., i, :, :] @ _step(q[..., i], d, a, _COS_ALPHA[i], _SIN_ALPHA[i])
+    return T
+
+
+def transform(arm, q, i, j):
+    """T^i_j: takes coordinates of frame j to frame i; i and j in 0..3 in any order    (1.11)-(1.13) corrected
+
+    T^i_j = A_{i+1} ... A_j for i < j (the thesis stops one matrix early), I for i = j, and the inverse of
+    T^j_i for i > j (the thesis inverts the matrix into itself).
+
+    Args: arm: Arm; q: (3,) or (n, 3) rad. Returns: (4, 4) or (n, 4, 4).
+    """
+    for name, index in (("i", i), ("j", j)):
+        if index not in range(JOINTS + 1):
+            raise InputError(f"frame {name} = {index}: this arm has frames 0 (base) to {JOINTS} (tip)")
+    T = frames(arm, q)
+    return np.linalg.solve(T[..., i, :, :], T[..., j, :, :])
+
+
+def forward_kinematics(arm, q):
+    """Position of the tip in base coordinates, the last column of (1.31 corrected).
+
+    p = [c1 (l2 c2 + l3 c23), s1 (l2 c2 + l3 c23), l1 + l2 s2 + l3 s23]
+
+    Args: arm: Arm; q: (3,) or (n, 3) rad.
+    Returns: (3,) or (n, 3) m. The orientation is `frames(arm, q)[..., 3, :3, :3]`.
+    """
+    l1, l2, l3 = _lengths(arm)
+    q1, q2, q3 = np.moveaxis(vectors3("q", q), -1, 0)
+    radial = l2 * np.cos(q2) + l3 * np.cos(q2 + q3)
+    height = l1 + l2 * np.sin(q2) + l3 * np.sin(q2 + q3)
+    return np.stack([radial * np.cos(q1), radial * np.sin(q1), height], axis=-1)

@@ -1,0 +1,205 @@
+"""Inverse kinematics: all four branches in closed form, and step by step (1.56)-(1.73 corrected)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import InputError, UnreachableError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling.chain import forward_kinematics
+from ir50p_lab.modelling.jacobian import jacobian
+
+BRANCHES = ("front/up", "front/down", "back/up", "back/down")
+_EDGE = 1e-12  # relative to the reach: rounding may put a stretched arm's own tip this far outside
+
+
+@dataclass(frozen=True)
+class IKSolutions:
+    """All joint angles that reach a point.
+
+    q: (4, 3) or (n, 4, 3) rad, one row per branch in the order of `branches`; within_limits: (4,) or (n, 4);
+    q_min, q_max: the limits they were held against, rad. Front: joint 1 faces the point; back: it faces away
+    and the arm bends over backwards. Up: elbow above the line from shoulder to tip as seen from the front
+    (q3 <= 0); down: q3 >= 0. On the edge of the workspace up and down coincide.
+
+    Iterating, indexing and len() go over the branches of a single point.
+    """
+
+    q: np.ndarray
+    within_limits: np.ndarray
+    q_min: tuple
+    q_max: tuple
+    branches: tuple = BRANCHES
+
+    def __len__(self):
+        return len(self.branches)
+
+    def __iter__(self):
+        return iter(np.moveaxis(self.q, -2, 0))
+
+    def __getitem__(self, branch):
+        """Branch by name or number: (3,) or (n, 3) rad."""
+        index = self.branches.index(branch) if isinstance(branch, str) else branch
+        return self.q[..., index, :]
+
+    def best(self, near=(0.0, 0.0, 0.0)):
+        """The solution within the joint limits that is nearest to the pose `near` (3,) rad.
+
+        Returns: (3,) or (n, 3) rad. Raises UnreachableError if no branch of a point is within the limits, naming
+        for each branch the joint that stands in the way.
+        """
+        near = vectors3("near", near)
+        if not self.within_limits.any(axis=-1).all():
+            raise UnreachableError(self._why_not())
+        distance = np.abs(self.q - near[..., None, :]).max(axis=-1)
+        choice = np.where(self.within_limits, distance, np.inf).argmin(axis=-1)
+        return np.take_along_axis(self.q, choice[..., None, None], axis=-2)[..., 0, :]
+
+    def _why_not(self):
+        blocked = ~self.within_limits.any(axis=-1)
+        point = tuple(np.argwhere(blocked)[0]) if blocked.ndim else ()
+        reasons = []
+        for name, q in zip(self.branches, self.q[point], strict=True):
+            out = [
+                f"q{i + 1} = {np.degrees(q[i]):.1f} deg, limits {np.degrees(lo):.0f}..{np.degrees(hi):.0f}"
+                for i, (lo, hi) in enumerate(zip(self.q_min, self.q_max, strict=True))
+                if not lo <= q[i] <= hi
+            ]
+            reasons.append(f"{name}: {'; '.join(out)}")
+        where = f"point {int(point[0])}" if point else "the point"
+        return f"{where} is within reach but outside the joint limits on every branch ({' | '.join(reasons)})"
+
+
+def reachability(arm, p):
+    """Distance from `p` to the workspace, 0 inside: a thick shell about the shoulder, joint limits not counted.
+
+    The shell is |l2 - l3| <= r <= l2 + l3, r the distance from the shoulder (0, 0, l1).
+
+    Args: arm: Arm; p: (3,) or (n, 3) m. Returns: scalar or (n,) m.
+    """
+    p = vectors3("p", p, unit="m")
+    l1, l2, l3 = arm.l
+    r = np.linalg.norm(p - np.array([0.0, 0.0, l1]), axis=-1)
+    return np.maximum(0.0, np.maximum(r - (l2 + l3), abs(l2 - l3) - r))
+
+
+def _refuse_out_of_reach(arm, p):
+    distance = reachability(arm, p)
+    outside = distance > _EDGE * arm.reach
+    if not outside.any():
+        return
+    l1, l2, l3 = arm.l
+    worst = tuple(np.argwhere(outside)[0]) if outside.ndim else ()
+    shoulder = np.array([0.0, 0.0, l1])
+    offset = p[worst] - shoulder
+    r = np.linalg.norm(offset)
+    limit = l2 + l3 if r > l2 + l3 else abs(l2 - l3)
+    direction = offset / r if r > 0 else np.array([1.0, 0.0, 0.0])
+    nearest = shoulder + limit * direction
+    count = f" (and {int(outside.sum()) - 1} more points)" if outside.sum() > 1 else ""
+    error = UnreachableError(
+        f"p = {np.round(p[worst], 4).tolist()} m is {distance[worst]:.4g} m outside the workspace: it lies "
+        f"{r:.4g} m from the shoulder, the arm reaches {abs(l2 - l3):.4g} to {l2 + l3:.4g} m{count}; "
+        f"nearest point {np.round(nearest, 4).tolist()} m"
+    )
+    error.distance, error.nearest = float(distance[worst]), nearest
+    raise error
+
+
+def inverse_kinematics(arm, p):
+    """All four joint solutions for a tip position, closed form    (1.60)-(1.73) corrected
+
+    q1 = atan2(y, x) or atan2(-y, -x);  Delta = +-hypot(x, y), z1 = z - l1, r^2 = Delta^2 + z1^2
+    q3 = -+2 atan2(sqrt((l2 + l3)^2 - r^2), sqrt(r^2 - (l2 - l3)^2))
+    q2 = atan2(z1, Delta) - atan2(l3 sin q3, l2 + l3 cos q3)
+
+    The half-angle form of q3 keeps all digits near the stretched and folded arm, where acos (1.69) loses half
+    of them. Joint limits are checked last and only marked.
+
+    Args: arm: Arm; p: (3,) or (n, 3) m.
+    Returns: IKSolutions with q of shape (4, 3) or (n, 4, 3), angles in (-pi, pi].
+    Raises: UnreachableError (with .distance in m and .nearest (3,) m) if a point is outside the workspace;
+    InputError on a wrong shape or a number that is not finite.
+    """
+    p = vectors3("p", p, unit="m")
+    _refuse_out_of_reach(arm, p)
+    l1, l2, l3 = arm.l
+    x, y, z = np.moveaxis(p, -1, 0)
+    delta, z1 = np.hypot(x, y), z - l1
+    r = np.hypot(delta, z1)
+    # differences of squares as products: no digits are lost at the edges of the workspace
+    inner = np.sqrt(np.maximum(0.0, (r - abs(l2 - l3)) * (r + abs(l2 - l3))))
+    outer = np.sqrt(np.maximum(0.0, (l2 + l3 - r) * (l2 + l3 + r)))
+    bend = 2 * np.arctan2(outer, inner)
+
+    q = np.empty((*p.shape[:-1], 4, 3))
+    for k, (side, elbow) in enumerate(((1, -1), (1, 1), (-1, -1), (-1, 1))):
+        q3 = elbow * bend
+        q[..., k, 0] = np.arctan2(side * y, side * x)
+        q[..., k, 1] = _wrap(np.arctan2(z1, side * delta) - np.arctan2(l3 * np.sin(q3), l2 + l3 * np.cos(q3)))
+        q[..., k, 2] = q3
+    within = ((q >= np.array(arm.q_min)) & (q <= np.array(arm.q_max))).all(axis=-1)
+    return IKSolutions(q=q, within_limits=within, q_min=arm.q_min, q_max=arm.q_max)
+
+
+def _wrap(angle):
+    """The same angle in (-pi, pi]."""
+    wrapped = np.where(angle > np.pi, angle - 2 * np.pi, angle)
+    return np.where(wrapped <= -np.pi, wrapped + 2 * np.pi, wrapped)
+
+
+@dataclass(frozen=True)
+class IterativeSolution:
+    """Result of a step-by-step search and its history.
+
+    q: (3,) rad, last iterate; converged: error below the tolerance; iterations: steps taken; q_history: (k, 3) rad
+    and error_history: (k,) m with k = iterations + 1, from the start to the last iterate.
+    """
+
+    q: np.ndarray
+    converged: bool
+    iterations: int
+    q_history: np.ndarray
+    error_history: np.ndarray
+
+
+def iterative_inverse_kinematics(arm, p, q0, *, damping=0.05, tolerance=1e-10, max_iterations=200):
+    """Damped least squares: repeat dq = Jv^T (Jv Jv^T + lambda^2 I)^-1 (p - p(q))    (1.56)-(1.59) corrected
+
+    The thesis' (J^T J)^-1 J^T takes the 6x3 Jacobian for a 3-vector and is singular in its own start pose. lambda
+    falls with the error, so that convergence is quadratic away from singular poses; damping = 0 gives the plain
+    Newton step.
+
+    Args:
+        arm: Arm; p: (3,) m, target; q0: (3,) rad, start.
+        damping: lambda relative to the reach, when the error is as large as the reach.
+        tolerance: m. max_iterations: steps after which it gives up and says so in `converged`.
+
+    Returns: IterativeSolution. A target out of reach does not raise: it does not converge, and the error that is
+    left is its distance to the workspace, if the search did not end in a local minimum.
+    """
+    p, q = vectors3("p", p, unit="m"), vectors3("q0", q0)
+    if p.shape != (3,) or q.shape != (3,):
+        raise InputError(f"p {p.shape} and q0 {q.shape} must be single points of shape (3,)")
+    for name, value in (("damping", damping), ("tolerance", tolerance)):
+        if not (np.isfinite(value) and value >= 0):
+            raise InputError(f"{name} = {value}: give a finite number >= 0")
+    path, errors = [q], []
+    while True:
+        offset = p - forward_kinematics(arm, q)
+        errors.append(float(np.linalg.norm(offset)))
+        if errors[-1] <= tolerance or len(errors) > max_iterations:
+            break
+        Jv = jacobian(arm, q)[:3]
+        scale = damping * arm.reach * min(1.0, errors[-1] / arm.reach) if damping else 0.0
+        # the augmented least-squares problem is the damped step without forming Jv Jv^T (twice the digits)
+        dq = np.linalg.lstsq(np.vstack([Jv, scale * np.eye(3)]), np.r_[offset, np.zeros(3)], rcond=None)[0]
+        q = q + dq
+        path.append(q)
+    return IterativeSolution(
+        q=q,
+        converged=errors[-1] <= tolerance,
+        iterations=len(errors) - 1,
+        q_history=np.array(path),
+        error_history=np.array(errors),
+    )

@@ -1,0 +1,280 @@
+"""Position and orientation: rotation matrices, the twelve angle sequences, homogeneous transforms.
+
+A rotation matrix ``R_A_B`` holds the axes of frame B, as columns, in coordinates of frame A; a homogeneous
+transform ``T_A_B`` takes coordinates of a point in B to coordinates in A (thesis 1.1). Angles are in rad.
+Every function is vectorised: leading dimensions ``...`` are kept.
+
+SciPy does the rotations. It takes half a second to import, so it is imported on first use.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+
+EULERIAN = ("XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ")
+"""Sequences that come back to their first axis (thesis 1.1.2 b)."""
+
+CARDANIAN = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
+"""Sequences that use all three axes (thesis 1.1.2 b)."""
+
+SEQUENCES = EULERIAN + CARDANIAN
+"""The twelve angle sequences. Capital letters: each turn is about an axis that has already been moved."""
+
+TOLERANCE = 1e-6
+"""Largest entry of ``R^T R - I`` that still counts as rounding."""
+
+_AXES = {"X": 0, "Y": 1, "Z": 2}
+
+
+def rot_x(angle):
+    """Rotation about x by `angle` (...) rad, (1.4): (...,3,3). Raises InputError for NaN or infinity."""
+    return _elementary("X", angle)
+
+
+def rot_y(angle):
+    """Rotation about y by `angle` (...) rad, (1.5) corrected: (...,3,3). Raises InputError for NaN or infinity.
+
+    The thesis prints the transposed matrix, which turns the other way: +sin belongs in row 1, column 3,
+    so that a quarter turn takes z to x.
+    """
+    return _elementary("Y", angle)
+
+
+def rot_z(angle):
+    """Rotation about z by `angle` (...) rad, (1.6): (...,3,3). Raises InputError for NaN or infinity."""
+    return _elementary("Z", angle)
+
+
+def rotation_from_angles(sequence, angles):
+    """Rotation matrix of three turns about moving axes, (1.7): R = R_1(a_1) R_2(a_2) R_3(a_3).
+
+    sequence: one of `SEQUENCES`; "XYZ" is the R_x R_y R_z of (1.7).
+    angles: (...,3) rad, in the order of the sequence.
+    Returns R (...,3,3). Raises InputError for an unknown sequence, a wrong shape, NaN or infinity.
+    """
+    from scipy.spatial.transform import Rotation
+
+    _check_sequence(sequence)
+    angles = _finite("angles", angles, (3,))
+    R = Rotation.from_euler(sequence, angles.reshape(-1, 3)).as_matrix()
+    return R.reshape(*angles.shape[:-1], 3, 3)
+
+
+def angles_from_rotation(sequence, R):
+    """Angles of a rotation matrix in one of the twelve sequences: the inverse of `rotation_from_angles`.
+
+    sequence: one of `SEQUENCES`; R: (...,3,3).
+    Returns angles (...,3) rad: first and third in [-pi, pi]; the middle one in [0, pi] for an Eulerian and in
+    [-pi/2, pi/2] for a Cardanian sequence. Within 1e-7 rad of a singularity (see `singular_angles`) only the sum
+    or the difference of first and third angle is defined; the third is then 0, and the three angles still
+    give R.
+    Raises InputError for an unknown sequence or if R is not a rotation.
+    """
+    from scipy.spatial.transform import Rotation
+
+    _check_sequence(sequence)
+    R = check_rotation(R)
+    rotation = Rotation.from_matrix(R.reshape(-1, 3, 3))
+    # The gimbal-lock warning of SciPy is replaced by the documented choice above and by `gimbal_lock`.
+    return rotation.as_euler(sequence, suppress_warnings=True).reshape(R.shape[:-1])
+
+
+def singular_angles(sequence):
+    """Return the two middle angles (rad) at which a sequence loses a degree of freedom.
+
+    (0, pi) for an Eulerian sequence, (-pi/2, pi/2) for a Cardanian one: there the third axis lies on the first.
+    Raises InputError for an unknown sequence.
+    """
+    _check_sequence(sequence)
+    return (0.0, np.pi) if sequence in EULERIAN else (-np.pi / 2, np.pi / 2)
+
+
+def rate_matrix(sequence, angles):
+    """Matrix E of omega = E(angles) d(angles)/dt: the three axes of rotation in the first frame, as columns.
+
+    E = [e_1, R_1 e_2, R_1 R_2 e_3], where e_i is the unit vector of the i-th letter of the sequence.
+    angles: (...,3) rad. Returns E (...,3,3), without unit.
+    Raises InputError for an unknown sequence, a wrong shape, NaN or infinity.
+    """
+    _check_sequence(sequence)
+    angles = _finite("angles", angles, (3,))
+    first, second, third = (_AXES[letter] for letter in sequence)
+    R_1 = _elementary(sequence[0], angles[..., 0])
+    R_12 = R_1 @ _elementary(sequence[1], angles[..., 1])
+    e_1 = np.broadcast_to(np.eye(3)[first], angles.shape)
+    return np.stack([e_1, R_1[..., :, second], R_12[..., :, third]], axis=-1)
+
+
+@dataclass(frozen=True)
+class GimbalLock:
+    """How close three angles are to the singularity of their sequence, and what is lost there.
+
+    sine: (...) sine of the angle between first and third axis, |det E|: 1 at best, 0 at the singularity.
+    gain: (...) largest angle rate (norm, rad/s) that a rotation of 1 rad/s can ask for: 1 / smallest
+        singular value of the rate matrix E; inf at the singularity.
+    lost_axis: (...,3) unit vector in the first frame: the turn that asks for it, which no angle rate can
+        make at the singularity. Its sign is of no meaning.
+    """
+
+    sine: np.ndarray
+    gain: np.ndarray
+    lost_axis: np.ndarray
+
+
+def gimbal_lock(sequence, angles):
+    """Closeness to the singularity of a sequence, from the singular values of `rate_matrix`.
+
+    angles: (...,3) rad. Returns a `GimbalLock`.
+    Raises InputError for an unknown sequence, a wrong shape, NaN or infinity.
+    """
+    E = rate_matrix(sequence, angles)
+    left, values, _ = np.linalg.svd(E)
+    smallest = values[..., -1]
+    # Below this, a singular value is rounding: the svd of a singular 3x3 matrix gives about 1e-16.
+    with np.errstate(divide="ignore"):
+        gain = 1 / np.where(smallest < 1e-15, 0.0, smallest)
+    return GimbalLock(sine=np.abs(np.linalg.det(E)), gain=gain, lost_axis=left[..., :, -1])
+
+
+def homogeneous(R=None, t=None):
+    """Homogeneous transform T = [[R, t], [0, 1]], (1.8).
+
+    R: (...,3,3) rotation, default identity; t: (...,3) m, origin of the new frame, default zero. Leading
+    dimensions are broadcast. Returns T (...,4,4). Raises InputError if R is not a rotation or t is not (...,3).
+    """
+    R = np.eye(3) if R is None else check_rotation(R)
+    t = np.zeros(3) if t is None else _finite("t", t, (3,))
+    leading = _broadcast("R and t", R.shape[:-2], t.shape[:-1])
+    T = np.zeros((*leading, 4, 4))
+    T[..., :3, :3] = R
+    T[..., :3, 3] = t
+    T[..., 3, 3] = 1
+    return T
+
+
+def compose(*transforms):
+    """Chain transforms from left to right: compose(T_A_B, T_B_C) is T_A_C = T_A_B T_B_C.
+
+    transforms: one or more (...,4,4), leading dimensions broadcast. Returns T (...,4,4).
+    Raises InputError for none at all or for one that is no homogeneous transform.
+    """
+    if not transforms:
+        raise InputError("compose() needs at least one transform of shape (4, 4), and got none")
+    result = check_transform(transforms[0])
+    for T in transforms[1:]:
+        T = check_transform(T)
+        _broadcast("the transforms", result.shape[:-2], T.shape[:-2])
+        result = result @ T
+    return result
+
+
+def inverse_transform(T):
+    """Inverse of a homogeneous transform in closed form: T_B_A = [[R^T, -R^T t], [0, 1]].
+
+    T: (...,4,4). Returns (...,4,4). Raises InputError if T is no homogeneous transform.
+    """
+    T = check_transform(T)
+    R_transposed = np.swapaxes(T[..., :3, :3], -1, -2)
+    result = np.zeros_like(T)
+    result[..., :3, :3] = R_transposed
+    result[..., :3, 3] = -(R_transposed @ T[..., :3, 3, None])[..., 0]
+    result[..., 3, 3] = 1
+    return result
+
+
+def apply(T, points):
+    """Coordinates of points in the outer frame, (1.9): p_A = R p_B + t.
+
+    T: (...,4,4), T_A_B; points: (...,3) m in frame B; leading dimensions are broadcast, so that one T takes
+    n points and n transforms take one point. Returns (...,3) m in frame A.
+    Raises InputError if T is no homogeneous transform or the points are not (...,3) and finite.
+    """
+    T = check_transform(T)
+    points = _finite("points", points, (3,))
+    _broadcast("T and points", T.shape[:-2], points.shape[:-1])
+    return (T[..., :3, :3] @ points[..., None])[..., 0] + T[..., :3, 3]
+
+
+def check_rotation(R, tolerance=TOLERANCE):
+    """Return R as an array of floats if it is a rotation: R^T R = I and det R = +1.
+
+    R: (...,3,3). tolerance: largest allowed entry of R^T R - I and of det R - 1, without unit.
+    Raises InputError that says by how much R fails.
+    """
+    R = _finite("R", R, (3, 3))
+    defect = np.abs(np.swapaxes(R, -1, -2) @ R - np.eye(3)).max(axis=(-1, -2))
+    determinant = np.linalg.det(R)
+    wrong = (defect > tolerance) | (np.abs(determinant - 1) > tolerance)
+    if np.any(wrong):
+        where = tuple(int(i) for i in np.argwhere(wrong)[0])
+        name = f"R[{', '.join(map(str, where))}]" if where else "R"
+        if defect[where] <= tolerance:
+            advice = "It is a reflection: reverse one axis"
+        else:
+            advice = "Its columns must be orthogonal unit vectors: check the signs and the order of the entries"
+        raise InputError(
+            f"{name} is not a rotation: the largest entry of R^T R - I is {defect[where]:.3g} and det R is "
+            f"{determinant[where]:.6g} (wanted 0 and 1, within {tolerance:g}). {advice}."
+        )
+    return R
+
+
+def check_transform(T, tolerance=TOLERANCE):
+    """Return T as an array of floats if it is a homogeneous transform: a rotation, a translation, a row 0 0 0 1.
+
+    T: (...,4,4). tolerance: as in `check_rotation`. Raises InputError that says what is wrong.
+    """
+    T = _finite("T", T, (4, 4))
+    wrong = np.any(np.abs(T[..., 3, :] - [0, 0, 0, 1]) > tolerance, axis=-1)
+    if np.any(wrong):
+        row = T[..., 3, :][wrong][0]
+        raise InputError(
+            f"the last row of a homogeneous transform is 0 0 0 1, and this one is {row}; a transposed matrix "
+            "has its translation there"
+        )
+    check_rotation(T[..., :3, :3], tolerance)
+    return T
+
+
+def _elementary(letter, angle):
+    from scipy.spatial.transform import Rotation
+
+    angle = _finite("angle", angle, ())
+    return Rotation.from_euler(letter, angle.reshape(-1, 1)).as_matrix().reshape(*angle.shape, 3, 3)
+
+
+def _check_sequence(sequence):
+    if isinstance(sequence, str) and sequence in SEQUENCES:
+        return
+    hint = ""
+    if isinstance(sequence, str) and sequence.upper() in SEQUENCES:
+        hint = (
+            f" Small letters would mean fixed axes: that is the moving sequence '{sequence[::-1].upper()}' "
+            "with the angles in reverse order."
+        )
+    elif isinstance(sequence, str) and len(sequence) == 3 and set(sequence) <= set("XYZ"):
+        hint = " Two turns in a row about the same axis are one turn."
+    raise InputError(f"unknown sequence {sequence!r}: choose one of {', '.join(SEQUENCES)}.{hint}")
+
+
+def _finite(name, value, tail):
+    """Return `value` as floats of shape (..., *tail), or raise InputError."""
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name} must be real numbers, not {value!r}") from error
+    if array.ndim < len(tail) or array.shape[array.ndim - len(tail) :] != tail:
+        wanted = "(" + ", ".join(["...", *map(str, tail)]) + ")"
+        raise InputError(f"{name} has shape {array.shape}, but must have shape {wanted}")
+    if not np.all(np.isfinite(array)):
+        raise InputError(f"{name} holds NaN or infinity; check where it comes from: {array}")
+    return array
+
+
+def _broadcast(names, *shapes):
+    try:
+        return np.broadcast_shapes(*shapes)
+    except ValueError as error:
+        raise InputError(f"{names} do not fit together: leading dimensions {' and '.join(map(str, shapes))}") from error
