@@ -11,6 +11,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "actuators": ["Actuators"],
         "arm": ["Arm", "load_arm"],
         "chain": ["dh_matrix", "dh_table", "forward_kinematics", "frames", "transform"],
+        "differential": ["Singularity", "jacobian", "manipulability", "singularity"],
         "dynamics": [
             "Energy",
             "bias",
@@ -29,7 +30,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "iterative_inverse_kinematics",
             "reachability",
         ],
-        "jacobian": ["jacobian", "manipulability", "singularity"],
         "named_arms": ["IR50P", "THESIS_A", "THESIS_C", "THESIS_RODS", "thesis_theta"],
     },
 )

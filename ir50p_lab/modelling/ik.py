@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.errors import InputError, UnreachableError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import forward_kinematics
-from ir50p_lab.modelling.jacobian import jacobian
+from ir50p_lab.modelling.differential import jacobian
 
 BRANCHES = ("front/up", "front/down", "back/up", "back/down")
 _EDGE = 1e-12  # relative to the reach: rounding may put a stretched arm's own tip this far outside

@@ -1,0 +1,119 @@
+"""The equations of motion as scalar functions of theta, compiled: M, C, g, friction, forward dynamics.
+
+Everything here is written once, in terms of theta (3, 20): row i holds the coefficients of joint i (thesis 2.48-2.51
+corrected). An arm given by masses has three equal rows; an identified arm has its own row per joint, and M is then
+not symmetric. The loops of simulation and identification call these functions; for arrays use `dynamics`.
+
+Index in a row (thesis number minus 1): 0-9 and 19 inertia, 10-15 viscous and Coulomb friction, 16-18 offsets.
+"""
+
+import math
+
+from numba import njit
+
+
+@njit(cache=True)
+def mass_terms(theta, c2, c3, c23):
+    """M(q) as nine scalars by rows, kg m^2 (or PWM s^2/rad): M11 .. M33    (list of 1.5.3a corrected)."""
+    M11 = theta[0, 0] + theta[0, 1] * c2 * c2 + theta[0, 4] * c23 * c23 + 2 * theta[0, 5] * c2 * c23
+    M12 = theta[0, 6] + theta[0, 7]
+    M13 = theta[0, 7]
+    M21 = theta[1, 6] + theta[1, 7]
+    M22 = theta[1, 1] + theta[1, 4] + 2 * theta[1, 5] * c3 + theta[1, 8] + theta[1, 9]
+    M23 = theta[1, 4] + theta[1, 5] * c3 + theta[1, 9]
+    M31 = theta[2, 7]
+    M32 = theta[2, 4] + theta[2, 5] * c3 + theta[2, 9]
+    M33 = theta[2, 4] + theta[2, 9] + theta[2, 19]
+    return M11, M12, M13, M21, M22, M23, M31, M32, M33
+
+
+@njit(cache=True)
+def coriolis_factors(theta, row, c2, s2, s3, c23, s23):
+    """alpha = -dM11/dq2 / 2, beta = -dM11/dq3 / 2, k = -dM23/dq3, from one row of theta    (1.93), (1.96)."""
+    t2, t5, t6 = theta[row, 1], theta[row, 4], theta[row, 5]
+    alpha = t2 * s2 * c2 + t5 * s23 * c23 + t6 * (s23 * c2 + c23 * s2)
+    beta = t5 * s23 * c23 + t6 * s23 * c2
+    return alpha, beta, t6 * s3
+
+
+@njit(cache=True)
+def coriolis_torques(theta, c2, s2, s3, c23, s23, a, b, c):
+    """C(q, qd) qd as three scalars, qd = (a, b, c)    (1.97) corrected: b233 = -k stands in row 2."""
+    alpha1, beta1, _ = coriolis_factors(theta, 0, c2, s2, s3, c23, s23)
+    alpha2, _, k2 = coriolis_factors(theta, 1, c2, s2, s3, c23, s23)
+    _, beta3, k3 = coriolis_factors(theta, 2, c2, s2, s3, c23, s23)
+    h1 = -2 * a * (alpha1 * b + beta1 * c)
+    h2 = alpha2 * a * a - k2 * c * (2 * b + c)
+    h3 = beta3 * a * a + k3 * b * b
+    return h1, h2, h3
+
+
+@njit(cache=True)
+def gravity_torques(theta, gravity, c2, c23):
+    """g(q) of joints 2 and 3 (joint 1 carries none)    (1.114), grouping of 1.5.3c corrected."""
+    g2 = gravity * (theta[1, 2] * c2 + theta[1, 3] * c23)
+    return g2, gravity * theta[2, 3] * c23
+
+
+@njit(cache=True)
+def sign(x):
+    """-1, 0 or 1."""
+    return (x > 0) - (x < 0)
+
+
+@njit(cache=True)
+def friction_torques(theta, a, b, c):
+    """Viscous and Coulomb friction and offset, linear in theta    (1.115), (1.118)."""
+    f1 = theta[0, 10] * a + theta[0, 11] * sign(a) + theta[0, 16]
+    f2 = theta[1, 12] * b + theta[1, 13] * sign(b) + theta[1, 17]
+    f3 = theta[2, 14] * c + theta[2, 15] * sign(c) + theta[2, 18]
+    return f1, f2, f3
+
+
+@njit(cache=True)
+def bias_torques(theta, gravity, q2, q3, a, b, c):
+    """C qd + g + friction, and the cosines that M needs: (n1, n2, n3, c2, c3, c23)."""
+    c2, s2, c3, s3 = math.cos(q2), math.sin(q2), math.cos(q3), math.sin(q3)
+    c23, s23 = c2 * c3 - s2 * s3, s2 * c3 + c2 * s3
+    h1, h2, h3 = coriolis_torques(theta, c2, s2, s3, c23, s23, a, b, c)
+    g2, g3 = gravity_torques(theta, gravity, c2, c23)
+    f1, f2, f3 = friction_torques(theta, a, b, c)
+    return h1 + f1, h2 + g2 + f2, h3 + g3 + f3, c2, c3, c23
+
+
+@njit(cache=True)
+def inverse(theta, gravity, q2, q3, a, b, c, A, B, C):
+    """Torques for accelerations (A, B, C): M qdd + C qd + g + friction    (1.74)."""
+    n1, n2, n3, c2, c3, c23 = bias_torques(theta, gravity, q2, q3, a, b, c)
+    M11, M12, M13, M21, M22, M23, M31, M32, M33 = mass_terms(theta, c2, c3, c23)
+    return (
+        M11 * A + M12 * B + M13 * C + n1,
+        M21 * A + M22 * B + M23 * C + n2,
+        M31 * A + M32 * B + M33 * C + n3,
+    )
+
+
+@njit(cache=True)
+def solve_mass(M, r1, r2, r3):
+    """Solve M x = r for the nine scalars M: x1, x2, x3, and det M (0 or NaN: singular).
+
+    When the waist is decoupled (M12 = M13 = M21 = M31 = 0, every in-line arm) it is 1 + 2, else Cramer's rule,
+    which for 3 x 3 inertia matrices loses no digits that matter (tested against LAPACK).
+    """
+    M11, M12, M13, M21, M22, M23, M31, M32, M33 = M
+    minor = M22 * M33 - M23 * M32
+    if M12 == 0.0 and M13 == 0.0 and M21 == 0.0 and M31 == 0.0:
+        x1, x2, x3 = r1 / M11, (r2 * M33 - M23 * r3) / minor, (M22 * r3 - r2 * M32) / minor
+        return x1, x2, x3, M11 * minor
+    det = M11 * minor - M12 * (M21 * M33 - M23 * M31) + M13 * (M21 * M32 - M22 * M31)
+    x1 = (r1 * minor - M12 * (r2 * M33 - M23 * r3) + M13 * (r2 * M32 - M22 * r3)) / det
+    x2 = (M11 * (r2 * M33 - M23 * r3) - r1 * (M21 * M33 - M23 * M31) + M13 * (M21 * r3 - r2 * M31)) / det
+    x3 = (M11 * (M22 * r3 - r2 * M32) - M12 * (M21 * r3 - r2 * M31) + r1 * (M21 * M32 - M22 * M31)) / det
+    return x1, x2, x3, det
+
+
+@njit(cache=True, error_model="numpy")
+def forward(theta, gravity, q2, q3, a, b, c, u1, u2, u3):
+    """Accelerations for torques u: M^-1 (u - C qd - g - friction), and det M."""
+    n1, n2, n3, c2, c3, c23 = bias_torques(theta, gravity, q2, q3, a, b, c)
+    return solve_mass(mass_terms(theta, c2, c3, c23), u1 - n1, u2 - n2, u3 - n3)
