@@ -15,9 +15,7 @@ def vectors3(name, value, *, unit="rad"):
     except (TypeError, ValueError):
         raise InputError(f"{name} must hold numbers in {unit}; got {value!r}") from None
     if array.ndim == 0 or array.shape[-1] != 3:
-        raise InputError(
-            f"{name} has shape {array.shape}; give shape (3,), or (n, 3) with one row per sample ({unit})"
-        )
+        raise InputError(f"{name} has shape {array.shape}; give shape (3,), or (n, 3) with one row per sample ({unit})")
     if not np.isfinite(array).all():
         raise InputError(
             f"{name} holds {first_not_finite(array)}; every number must be finite ({unit}): remove or repair that sample"

@@ -72,7 +72,15 @@ class Actuators:
             if (values <= 0).any():
                 raise ArmError(f"{name} = {values.tolist()}: every value must be positive")
         k = V / (N * no_load_speed)
-        return cls(N=N, Jm=reflected_inertia / N**2, kt=k, ke=k, Ra=k * N * V / stall_torque, V=V, limit_pwm=limit_pwm)
+        return cls(
+            N=N,
+            Jm=reflected_inertia / N**2,
+            kt=k,
+            ke=k,
+            Ra=k * N * V / stall_torque,
+            V=V,
+            limit_pwm=limit_pwm,
+        )
 
     def _array(self, name):
         return np.array(getattr(self, name))

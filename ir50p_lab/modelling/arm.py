@@ -180,6 +180,11 @@ class Arm:
         return read_only(np.tile([*inertial, *dry, *f.Tf, j3], (3, 1)))
 
     @cached_property
+    def kernel_theta(self):
+        """`theta` for the compiled kernels: writable, so that they compile for one kind of array only."""
+        return self.theta.copy()
+
+    @cached_property
     def theta_pwm(self):
         """The 20 parameters of the arm as seen from the PWM counts, (3, 20): row i is divided by the gain K_i.
 

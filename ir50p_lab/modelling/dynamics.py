@@ -14,6 +14,7 @@ from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.arm import Arm
 
+_FLOAT = np.dtype(float)
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value; an Arm carries its own
 
 
@@ -23,14 +24,14 @@ def as_theta(arm):
     Raises InputError if it is neither, has another shape, or holds a number that is not finite.
     """
     if isinstance(arm, Arm):
-        return arm.theta, arm.g
-    theta = np.ascontiguousarray(arm, dtype=float) if np.ndim(arm) else None
+        return arm.kernel_theta, arm.g
+    theta = np.array(arm, dtype=float, order="C") if np.ndim(arm) else None
     if theta is None or theta.shape not in ((3, 20), (20,)):
         found = type(arm).__name__ if theta is None else f"an array of shape {theta.shape}"
         raise InputError(f"expected an Arm, or theta with shape (3, 20) or (20,), got {found}")
     if not np.isfinite(theta).all():
         raise InputError("theta holds a number that is not finite; identify again or drop that parameter (set it to 0)")
-    return (np.tile(theta, (3, 1)) if theta.ndim == 1 else theta), STANDARD_GRAVITY
+    return np.tile(theta, (3, 1)) if theta.ndim == 1 else theta, STANDARD_GRAVITY
 
 
 def _rows(**vectors):
@@ -151,13 +152,10 @@ def inverse_dynamics(arm, q, qd, qdd):
 
 
 @njit(cache=True)
-def _forward_one(theta, gravity, q, qd, tau):
-    """One state; returns (qdd, det M). det is NaN if a number is not finite."""
-    out = np.empty(3)
-    out[0], out[1], out[2], det = cf.forward(
-        theta, gravity, q[1], q[2], qd[0], qd[1], qd[2], tau[0], tau[1], tau[2]
-    )
-    return out, det + 0.0 * (q[0] + out[0] + out[1] + out[2])
+def _forward_one(theta, gravity, q, qd, tau, out):
+    """One state into out; returns det M, NaN if any number that went in is not finite."""
+    out[0], out[1], out[2], det = cf.forward(theta, gravity, q[1], q[2], qd[0], qd[1], qd[2], tau[0], tau[1], tau[2])
+    return det + 0.0 * (q[0] + out[0] + out[1] + out[2])
 
 
 @njit(cache=True)
@@ -181,10 +179,16 @@ def forward_dynamics(arm, q, qd, tau):
     Returns: shape of q, rad/s^2.
     Raises: InputError on bad input, or if M is singular at a pose (a link without any inertia).
     """
-    if type(arm) is Arm and _plain(q) and _plain(qd) and _plain(tau):
-        # one state, as in a Python simulation loop: checked by its result, so that checking costs nothing
-        qdd, det = _forward_one(arm.theta, arm.g, q, qd, tau)
-        if det > 0.0:
+    # One state, as in a Python simulation loop. It is checked by its result (a bad number makes det NaN), so that
+    # checking costs next to nothing; whatever is not plain goes the long way below.
+    if (
+        type(arm) is Arm
+        and type(q) is type(qd) is type(tau) is np.ndarray
+        and q.shape == (3,) == qd.shape == tau.shape
+        and q.dtype is qd.dtype is tau.dtype is _FLOAT
+    ):
+        qdd = np.empty(3)
+        if _forward_one(arm.kernel_theta, arm.g, q, qd, tau, qdd) > 0.0:
             return qdd
     theta, g = as_theta(arm)
     (q, qd, tau), single = _rows(q=q, qd=qd, tau=tau)
@@ -196,10 +200,6 @@ def forward_dynamics(arm, q, qd, tau):
             "Give the links inertia, or the motors rotor inertia"
         )
     return out[0] if single else out
-
-
-def _plain(x):
-    return type(x) is np.ndarray and x.shape == (3,) and x.dtype == np.float64
 
 
 @dataclass(frozen=True)
