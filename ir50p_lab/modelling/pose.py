@@ -184,7 +184,7 @@ def inverse_transform(T):
     return result
 
 
-def apply(T, points):
+def transform_points(T, points):
     """Coordinates of points in the outer frame, (1.9): p_A = R p_B + t.
 
     T: (...,4,4), T_A_B; points: (...,3) m in frame B; leading dimensions are broadcast, so that one T takes

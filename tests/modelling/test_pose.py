@@ -1,0 +1,271 @@
+"""Pose module against hand-written elementary matrices, NumPy's linear algebra and finite differences."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ir50p_lab.errors import InputError, LabError
+from ir50p_lab.modelling import pose
+
+ANGLE = st.floats(-10.0, 10.0)
+ANGLES = st.tuples(ANGLE, ANGLE, ANGLE)
+COORDINATE = st.floats(-5.0, 5.0)
+VECTOR = st.tuples(COORDINATE, COORDINATE, COORDINATE)
+SEQUENCE = st.sampled_from(pose.SEQUENCES)
+QUARTER = np.pi / 2
+
+REPEATABLE = settings(deadline=None, derandomize=True)  # the first call imports SciPy
+
+
+def by_hand(letter, angle):
+    """The elementary rotation written out: entry by entry, without SciPy."""
+    c, s = np.cos(angle), np.sin(angle)
+    return {
+        "X": np.array([[1, 0, 0], [0, c, -s], [0, s, c]]),
+        "Y": np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]),
+        "Z": np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]),
+    }[letter]
+
+
+def product_by_hand(sequence, angles):
+    first, second, third = (by_hand(letter, angle) for letter, angle in zip(sequence, angles, strict=True))
+    return first @ second @ third
+
+
+@pytest.mark.parametrize(("rot", "letter"), [(pose.rot_x, "X"), (pose.rot_y, "Y"), (pose.rot_z, "Z")])
+@REPEATABLE
+@given(angle=ANGLE)
+def test_elementary_rotations(rot, letter, angle):
+    np.testing.assert_allclose(rot(angle), by_hand(letter, angle), atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("rot", "moved", "to"),
+    [(pose.rot_x, [0, 1, 0], [0, 0, 1]), (pose.rot_y, [0, 0, 1], [1, 0, 0]), (pose.rot_z, [1, 0, 0], [0, 1, 0])],
+)
+def test_a_quarter_turn_follows_the_right_hand(rot, moved, to):
+    np.testing.assert_allclose(rot(QUARTER) @ moved, to, atol=1e-15)
+
+
+def test_there_are_six_sequences_of_each_kind_and_no_others():
+    letters = [a + b + c for a in "XYZ" for b in "XYZ" for c in "XYZ" if a != b and b != c]
+    assert sorted(pose.SEQUENCES) == sorted(letters)
+    assert sorted(pose.EULERIAN) == sorted(s for s in letters if s[0] == s[2])
+    assert sorted(pose.CARDANIAN) == sorted(s for s in letters if len(set(s)) == 3)
+
+
+@REPEATABLE
+@given(sequence=SEQUENCE, angles=ANGLES)
+def test_rotation_is_the_product_about_moving_axes(sequence, angles):
+    R = pose.rotation_from_angles(sequence, angles)
+    np.testing.assert_allclose(R, product_by_hand(sequence, angles), atol=2e-14)
+    np.testing.assert_allclose(R @ R.T, np.eye(3), atol=2e-15)
+    assert np.linalg.det(R) == pytest.approx(1, abs=1e-14)
+
+
+@REPEATABLE
+@given(sequence=SEQUENCE, angles=ANGLES)
+def test_angles_of_a_matrix_give_the_matrix_everywhere(sequence, angles):
+    # Within 1e-7 rad of a singularity the third angle is set to 0, which costs up to that much.
+    R = product_by_hand(sequence, angles)
+    back = pose.angles_from_rotation(sequence, R)
+    np.testing.assert_allclose(product_by_hand(sequence, back), R, atol=3e-7)
+    low, high = pose.singular_angles(sequence)
+    assert low - 1e-12 <= back[1] <= high + 1e-12
+    assert np.all(np.abs(back[[0, 2]]) <= np.pi + 1e-12)
+
+
+@REPEATABLE
+@given(sequence=SEQUENCE, outer=st.tuples(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1)), share=st.floats(0.01, 0.99))
+def test_angles_come_back_away_from_singularities(sequence, outer, share):
+    low, high = pose.singular_angles(sequence)
+    angles = np.array([outer[0], low + share * (high - low), outer[1]])
+    back = pose.angles_from_rotation(sequence, product_by_hand(sequence, angles))
+    np.testing.assert_allclose(back, angles, atol=1e-12)
+
+
+@pytest.mark.parametrize("sequence", pose.SEQUENCES)
+@pytest.mark.parametrize("end", [0, 1])
+def test_at_a_singularity_the_matrix_is_reproduced_with_third_angle_zero(sequence, end):
+    middle = pose.singular_angles(sequence)[end]
+    R = product_by_hand(sequence, (0.7, middle, -1.9))
+    back = pose.angles_from_rotation(sequence, R)
+    np.testing.assert_allclose(product_by_hand(sequence, back), R, atol=1e-12)
+    assert back[2] == 0
+    # Another pair of outer angles gives the same matrix: that is the lost degree of freedom. The angles
+    # trade against each other with the sign with which the third axis lies on the first.
+    E = pose.rate_matrix(sequence, (0.7, middle, -1.9))
+    sign = np.sign(E[:, 0] @ E[:, 2])
+    other = product_by_hand(sequence, (0.7 + 0.4, middle, -1.9 - sign * 0.4))
+    np.testing.assert_allclose(other, R, atol=1e-12)
+
+
+@REPEATABLE
+@given(sequence=SEQUENCE, angles=st.tuples(*[st.floats(-3.0, 3.0)] * 3), rates=VECTOR)
+def test_rate_matrix_is_the_derivative_of_the_rotation(sequence, angles, rates):
+    # Independent route: dR/dt R^T is the skew matrix of omega, by central differences.
+    step = 1e-5
+    angles, rates = np.array(angles), np.array(rates)
+    ahead, behind = (product_by_hand(sequence, angles + sign * step * rates) for sign in (1, -1))
+    S = (ahead - behind) / (2 * step) @ product_by_hand(sequence, angles).T
+    omega = np.array([S[2, 1] - S[1, 2], S[0, 2] - S[2, 0], S[1, 0] - S[0, 1]]) / 2
+    np.testing.assert_allclose(pose.rate_matrix(sequence, angles) @ rates, omega, atol=2e-6)
+
+
+@REPEATABLE
+@given(sequence=SEQUENCE, angles=st.tuples(*[st.floats(-3.0, 3.0)] * 3))
+def test_gimbal_lock_measures_the_middle_angle(sequence, angles):
+    lock = pose.gimbal_lock(sequence, angles)
+    middle = angles[1]
+    cosine_of_axes, sine = (
+        (np.cos(middle), np.sin(middle)) if sequence in pose.EULERIAN else (np.sin(middle), np.cos(middle))
+    )
+    assert lock.sine == pytest.approx(abs(sine), abs=1e-14)
+    # The three axes are two unit vectors at that angle and one normal to both: smallest singular value known.
+    if abs(sine) > 1e-3:
+        assert lock.gain == pytest.approx(1 / np.sqrt(1 - abs(cosine_of_axes)), rel=1e-8)
+
+
+@pytest.mark.parametrize("sequence", pose.SEQUENCES)
+@pytest.mark.parametrize("end", [0, 1])
+def test_at_a_singularity_no_angle_rate_turns_about_the_lost_axis(sequence, end):
+    angles = (0.4, pose.singular_angles(sequence)[end], 1.1)
+    lock = pose.gimbal_lock(sequence, angles)
+    assert lock.sine < 1e-15
+    assert lock.gain > 1e14
+    E = pose.rate_matrix(sequence, angles)
+    np.testing.assert_allclose(lock.lost_axis @ E, 0, atol=1e-7)
+    # It is normal to the axes of the first and of the second turn.
+    normal = np.cross(E[:, 0], E[:, 1])
+    assert abs(lock.lost_axis @ normal) == pytest.approx(1, abs=1e-12)
+
+
+def test_gain_near_the_singularity_is_the_angle_rate_it_predicts():
+    angles = np.array([0.3, np.radians(89.0), -0.2])
+    lock = pose.gimbal_lock("XYZ", angles)
+    turn = 1e-6
+    from scipy.spatial.transform import Rotation
+
+    R = Rotation.from_rotvec(turn * lock.lost_axis).as_matrix() @ product_by_hand("XYZ", angles)
+    change = np.linalg.norm(pose.angles_from_rotation("XYZ", R) - angles)
+    assert change / turn == pytest.approx(lock.gain, rel=1e-3)
+    assert lock.gain > 50
+
+
+@REPEATABLE
+@given(angles=ANGLES, t=VECTOR)
+def test_inverse_is_numpys_inverse(angles, t):
+    T = pose.homogeneous(product_by_hand("ZYX", angles), t)
+    np.testing.assert_allclose(pose.inverse_transform(T), np.linalg.inv(T), atol=1e-13)
+    np.testing.assert_allclose(pose.compose(T, pose.inverse_transform(T)), np.eye(4), atol=1e-13)
+
+
+@REPEATABLE
+@given(angles=ANGLES, t=VECTOR, more=ANGLES, u=VECTOR, p=VECTOR)
+def test_composition_is_applying_one_after_the_other(angles, t, more, u, p):
+    R_A_B, R_B_C = product_by_hand("XYZ", angles), product_by_hand("ZXZ", more)
+    T_A_C = pose.compose(pose.homogeneous(R_A_B, t), pose.homogeneous(R_B_C, u))
+    by_hand_A = R_A_B @ (R_B_C @ np.array(p) + u) + t
+    np.testing.assert_allclose(pose.transform_points(T_A_C, p), by_hand_A, atol=1e-13)
+
+
+def test_defaults_are_the_identity():
+    np.testing.assert_array_equal(pose.homogeneous(), np.eye(4))
+    np.testing.assert_array_equal(pose.homogeneous(t=(1, 2, 3)) @ [0, 0, 0, 1], [1, 2, 3, 1])
+    np.testing.assert_array_equal(pose.compose(np.eye(4)), np.eye(4))
+
+
+@pytest.mark.parametrize("leading", [(), (5,), (2, 3), (0,)])
+def test_every_function_keeps_leading_dimensions(leading):
+    rng = np.random.default_rng(1)
+    angles = rng.uniform(-1, 1, (*leading, 3))
+    t = rng.uniform(-1, 1, (*leading, 3))
+    R = pose.rotation_from_angles("YZX", angles)
+    T = pose.homogeneous(R, t)
+    results = {
+        "rot_z": pose.rot_z(angles[..., 0]),
+        "R": R,
+        "angles": pose.angles_from_rotation("YZX", R),
+        "E": pose.rate_matrix("YZX", angles),
+        "lost_axis": pose.gimbal_lock("YZX", angles).lost_axis,
+        "sine": pose.gimbal_lock("YZX", angles).sine,
+        "inverse": pose.inverse_transform(T),
+        "product": pose.compose(T, T, np.eye(4)),
+        "points": pose.transform_points(T, t),
+    }
+    tails = {"rot_z": (3, 3), "R": (3, 3), "E": (3, 3), "inverse": (4, 4), "product": (4, 4), "sine": ()}
+    for name, result in results.items():
+        assert result.shape == (*leading, *tails.get(name, (3,))), name
+    # Element by element it is the same as one at a time.
+    for place in np.ndindex(*leading):
+        np.testing.assert_array_equal(R[place], pose.rotation_from_angles("YZX", angles[place]))
+        np.testing.assert_array_equal(results["points"][place], pose.transform_points(T[place], t[place]))
+
+
+def test_one_transform_takes_many_points_and_many_transforms_take_one():
+    T = pose.homogeneous(pose.rot_z(QUARTER), (1, 0, 0))
+    np.testing.assert_allclose(pose.transform_points(T, [[1, 0, 0], [0, 1, 0]]), [[1, 1, 0], [0, 0, 0]], atol=1e-15)
+    turned = pose.homogeneous(pose.rot_z([0, QUARTER]))
+    np.testing.assert_allclose(pose.transform_points(turned, [1, 0, 0]), [[1, 0, 0], [0, 1, 0]], atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: pose.rot_x(np.nan), "NaN or infinity"),
+        (lambda: pose.rot_x([0.0, np.inf]), "NaN or infinity"),
+        (lambda: pose.rot_y("quarter"), "real numbers"),
+        (lambda: pose.rot_y(1j), "real numbers"),
+        (lambda: pose.rotation_from_angles("XYZ", (1, 2)), r"shape \(2,\), but must have shape \(\.\.\., 3\)"),
+        (lambda: pose.rotation_from_angles("XYZ", (1, 2, np.nan)), "NaN or infinity"),
+        (lambda: pose.rotation_from_angles("XXY", (1, 2, 3)), "'XXY'.*same axis"),
+        (lambda: pose.rotation_from_angles("xyz", (1, 2, 3)), "fixed axes.*'ZYX'"),
+        (lambda: pose.rotation_from_angles("roll", (1, 2, 3)), "unknown sequence 'roll': choose one of XYX"),
+        (lambda: pose.rotation_from_angles(123, (1, 2, 3)), "unknown sequence 123"),
+        (lambda: pose.singular_angles("XYW"), "unknown sequence"),
+        (lambda: pose.rate_matrix("ABC", (0, 0, 0)), "unknown sequence"),
+        (lambda: pose.angles_from_rotation("ABC", np.eye(3)), "unknown sequence"),
+        (lambda: pose.angles_from_rotation("XYZ", np.eye(4)), r"R has shape \(4, 4\)"),
+        (lambda: pose.check_rotation(np.diag([1, 1, -1])), "det R is -1.*reflection"),
+        (lambda: pose.check_rotation(2 * np.eye(3)), "R\\^T R - I is 3 and det R is 8"),
+        (lambda: pose.check_rotation([np.eye(3), np.zeros((3, 3))]), r"R\[1\] is not a rotation"),
+        (lambda: pose.homogeneous(np.ones((3, 3))), "not a rotation"),
+        (lambda: pose.homogeneous(t=(1, 2)), "t has shape"),
+        (lambda: pose.homogeneous(pose.rot_x([0, 1]), np.zeros((3, 3))), "R and t do not fit"),
+        (lambda: pose.compose(), "at least one"),
+        (lambda: pose.compose(np.eye(4), np.eye(3)), "T has shape"),
+        (lambda: pose.compose(np.tile(np.eye(4), (2, 1, 1)), np.tile(np.eye(4), (3, 1, 1))), "do not fit"),
+        (lambda: pose.transform_points(np.eye(4), np.zeros((3, 2))), "points has shape"),
+        (lambda: pose.transform_points(np.tile(np.eye(4), (2, 1, 1)), np.zeros((3, 3))), "T and points do not fit"),
+        (lambda: pose.check_transform(pose.homogeneous(t=(1, 2, 3)).T), "last row"),
+        (lambda: pose.inverse_transform(np.diag([1, 1, 2, 1])), "not a rotation"),
+    ],
+)
+def test_bad_input_is_refused_with_the_reason(call, message):
+    with pytest.raises(InputError, match=message) as caught:
+        call()
+    assert isinstance(caught.value, LabError) and isinstance(caught.value, ValueError)
+
+
+def test_a_tolerance_can_be_given_for_rounded_matrices():
+    rounded = np.round(pose.rot_x(0.3), 3)
+    with pytest.raises(InputError, match="not a rotation"):
+        pose.check_rotation(rounded)
+    np.testing.assert_array_equal(pose.check_rotation(rounded, tolerance=2e-3), rounded)
+
+
+def test_small_letters_hint_is_true():
+    from scipy.spatial.transform import Rotation
+
+    angles = (0.2, -0.5, 1.1)
+    fixed = Rotation.from_euler("xyz", angles).as_matrix()
+    np.testing.assert_allclose(pose.rotation_from_angles("ZYX", angles[::-1]), fixed, atol=1e-15)
+
+
+def test_importing_the_module_does_not_import_scipy():
+    code = "import sys, ir50p_lab.modelling.pose; assert 'scipy' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True)
