@@ -18,7 +18,8 @@ def vectors3(name, value, *, unit="rad"):
         raise InputError(f"{name} has shape {array.shape}; give shape (3,), or (n, 3) with one row per sample ({unit})")
     if not np.isfinite(array).all():
         raise InputError(
-            f"{name} holds {first_not_finite(array)}; every number must be finite ({unit}): remove or repair that sample"
+            f"{name} holds {first_not_finite(array)}; every number must be finite ({unit}): "
+            "remove or repair that sample"
         )
     return array
 

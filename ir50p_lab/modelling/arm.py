@@ -84,8 +84,8 @@ class Arm:
             refuse_impossible_inertia(f"link {i + 1}", (self.Ixx[i], self.Iyy[i], self.Izz[i]))
             if abs(self.lc[i]) > 3 * sum(self.l):
                 raise ArmError(
-                    f"lc{i + 1} = {self.lc[i]} m: the centre of mass lies {abs(self.lc[i]) / sum(self.l):.0f} times the "
-                    "whole arm away from its joint; is it in millimetres? Give metres"
+                    f"lc{i + 1} = {self.lc[i]} m: the centre of mass lies {abs(self.lc[i]) / sum(self.l):.0f} times "
+                    "the whole arm away from its joint; is it in millimetres? Give metres"
                 )
             if self.q_min[i] >= self.q_max[i]:
                 raise ArmError(f"joint {i + 1}: q_min = {self.q_min[i]} rad is not below q_max = {self.q_max[i]} rad")
@@ -227,13 +227,15 @@ def refuse_impossible_inertia(who, principal):
 
     None may be negative and none larger than the sum of the other two: Ixx + Iyy - Izz = 2 int z^2 dm >= 0.
     """
-    for k, axis in enumerate(("Ixx", "Iyy", "Izz")):
-        others = sum(principal) - principal[k]
-        if principal[k] < 0:
-            raise ArmError(f"{axis} of {who} is {principal[k]} kg m^2: a moment of inertia cannot be negative")
-        if principal[k] > others + _RELATIVE_SLACK * sum(principal):
+    named = dict(zip(("Ixx", "Iyy", "Izz"), principal, strict=True))
+    for axis, value in named.items():
+        if value < 0:
+            raise ArmError(f"{axis} of {who} is {value} kg m^2: a moment of inertia cannot be negative")
+    for axis, value in named.items():
+        others = sum(principal) - value
+        if value > others + _RELATIVE_SLACK * sum(principal):
             raise ArmError(
-                f"{axis} = {principal[k]:.6g} kg m^2 of {who} exceeds the sum of the other two, {others:.6g}: "
+                f"{axis} = {value:.6g} kg m^2 of {who} exceeds the sum of the other two, {others:.6g}: "
                 "no rigid body has that (triangle inequality). Check the axes: x runs along links 2 and 3"
             )
 

@@ -89,7 +89,7 @@ def _refuse_out_of_reach(arm, p):
     if not outside.any():
         return
     l1, l2, l3 = arm.l
-    worst = tuple(np.argwhere(outside)[0]) if outside.ndim else ()
+    worst = np.unravel_index(np.argmax(distance), distance.shape)
     shoulder = np.array([0.0, 0.0, l1])
     offset = p[worst] - shoulder
     r = np.linalg.norm(offset)
@@ -166,17 +166,18 @@ class IterativeSolution:
 def iterative_inverse_kinematics(arm, p, q0, *, damping=0.05, tolerance=1e-10, max_iterations=200):
     """Damped least squares: repeat dq = Jv^T (Jv Jv^T + lambda^2 I)^-1 (p - p(q))    (1.56)-(1.59) corrected
 
-    The thesis' (J^T J)^-1 J^T takes the 6x3 Jacobian for a 3-vector and is singular in its own start pose. lambda
-    falls with the error, so that convergence is quadratic away from singular poses; damping = 0 gives the plain
-    Newton step.
+    The thesis' (J^T J)^-1 J^T takes the 6x3 Jacobian for a 3-vector and is singular in its own start pose. Here lambda
+    falls after a step that helped and grows after one that did not (which is taken back), the Levenberg-Marquardt
+    rule: quadratic convergence away from singular poses, no wild jumps near them.
 
     Args:
         arm: Arm; p: (3,) m, target; q0: (3,) rad, start.
-        damping: lambda relative to the reach, when the error is as large as the reach.
+        damping: first lambda relative to the reach; 0 gives the plain Newton step, always taken.
         tolerance: m. max_iterations: steps after which it gives up and says so in `converged`.
 
     Returns: IterativeSolution. A target out of reach does not raise: it does not converge, and the error that is
-    left is its distance to the workspace, if the search did not end in a local minimum.
+    left is its distance to the workspace, unless the search ended in a pose from which every small step is worse.
+    Raises: InputError on a wrong shape, a number that is not finite or a negative option.
     """
     p, q = vectors3("p", p, unit="m"), vectors3("q0", q0)
     if p.shape != (3,) or q.shape != (3,):
@@ -184,18 +185,20 @@ def iterative_inverse_kinematics(arm, p, q0, *, damping=0.05, tolerance=1e-10, m
     for name, value in (("damping", damping), ("tolerance", tolerance)):
         if not (np.isfinite(value) and value >= 0):
             raise InputError(f"{name} = {value}: give a finite number >= 0")
-    path, errors = [q], []
-    while True:
-        offset = p - forward_kinematics(arm, q)
-        errors.append(float(np.linalg.norm(offset)))
-        if errors[-1] <= tolerance or len(errors) > max_iterations:
-            break
-        Jv = jacobian(arm, q)[:3]
-        scale = damping * arm.reach * min(1.0, errors[-1] / arm.reach) if damping else 0.0
+    lam = damping * arm.reach
+    offset = p - forward_kinematics(arm, q)
+    path, errors = [q], [float(np.linalg.norm(offset))]
+    while errors[-1] > tolerance and len(errors) <= max_iterations:
         # the augmented least-squares problem is the damped step without forming Jv Jv^T (twice the digits)
-        dq = np.linalg.lstsq(np.vstack([Jv, scale * np.eye(3)]), np.r_[offset, np.zeros(3)], rcond=None)[0]
-        q = q + dq
+        A = np.vstack([jacobian(arm, q)[:3], lam * np.eye(3)])
+        trial = q + np.linalg.lstsq(A, np.r_[offset, np.zeros(3)], rcond=None)[0]
+        left = p - forward_kinematics(arm, trial)
+        better = np.linalg.norm(left) < errors[-1]
+        if better or damping == 0:
+            q, offset = trial, left
+        lam = 0.2 * lam if better else min(4 * lam, 1e6 * arm.reach)
         path.append(q)
+        errors.append(float(np.linalg.norm(offset)))
     return IterativeSolution(
         q=q,
         converged=errors[-1] <= tolerance,

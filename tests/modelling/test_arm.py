@@ -1,0 +1,252 @@
+"""Arms: what is refused and why, what is flagged, files, named arms, and what theta means."""
+
+from dataclasses import FrozenInstanceError, fields, replace
+
+import numpy as np
+import pytest
+from arms import random_arm
+
+from ir50p_lab.errors import ArmError, InputError, LabError, SuspiciousArmWarning
+from ir50p_lab.modelling import (
+    IR50P,
+    THESIS_A,
+    THESIS_C,
+    THESIS_RODS,
+    Actuators,
+    Arm,
+    Friction,
+    friction_torque,
+    load_arm,
+    thesis_theta,
+)
+
+GOOD = {"l": (0.3, 0.2, 0.3), "m": (3, 1, 1), "lc": (0.1, 0.1, 0.1)}
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"m": (3, -1, 1)}, ["m2 = -1", "negative"]),
+        ({"m": (3, np.nan, 1)}, ["m", "nan"]),
+        ({"m": (3, 1)}, ["m", "(2,)"]),
+        ({"m": np.ones((2, 3))}, ["m", "(2, 3)"]),
+        ({"l": (0.3, 0, 0.3)}, ["l2 = 0", "> 0"]),
+        ({"l": (-0.3, 0.1, 0.3)}, ["l1 = -0.3"]),
+        ({"Ixx": (0, 0, 0.2), "Iyy": (0, 0, 0.01), "Izz": (0, 0, 0.01)}, ["Ixx = 0.2", "link 3", "triangle"]),
+        ({"Izz": (0, -0.01, 0)}, ["Izz of link 2", "negative"]),
+        ({"lc": (0.1, 90.0, 0.1)}, ["lc2 = 90", "millimetres"]),
+        ({"g": -9.81}, ["g = -9.81"]),
+        ({"g": np.nan}, ["g = nan"]),
+        ({"q_min": (0, 0, 1), "q_max": (1, 1, 0.5)}, ["joint 3", "q_min = 1", "q_max = 0.5"]),
+        ({"q_min": (0, 0)}, ["q_min", "three angles"]),
+        ({"q_max": (0, 0, np.nan)}, ["q_max", "three angles"]),
+    ],
+)
+def test_impossible_arms_are_refused_with_the_reason(change, words):
+    with pytest.raises(LabError) as caught:
+        Arm(**{**GOOD, **change})
+    for word in words:
+        assert word in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"l": (0.2, 0.2, 0.2), "lc": (0.1, 0.5, 0.1)}, "link 2 is 2.5 link lengths out"),
+        ({"lc": (0.1, -0.05, 0.1)}, "behind its joint"),
+        ({"l": (285, 200, 372)}, "millimetres"),
+        ({"q_min": (-100, -50, -140), "q_max": (100, 110, 30)}, "in degrees"),
+    ],
+)
+def test_suspicious_arms_are_flagged_and_made(change, words):
+    with pytest.warns(SuspiciousArmWarning, match=words):
+        arm = Arm(**{**GOOD, **change})
+    assert any(words in text for text in arm.suspicions)
+
+
+def test_slender_rods_and_point_masses_are_allowed():
+    rod = 1 * 0.3**2 / 12
+    assert Arm(**GOOD, Iyy=(0, rod, rod), Izz=(0, rod, rod)).suspicions == ()
+    assert Arm(**GOOD).theta.shape == (3, 20)
+
+
+def test_full_rigid_bodies_are_taken_or_refused():
+    com = np.array([[0, 0, 0.1], [0.1, 0, 0], [0.1, 0, 0]])
+    inertia = np.array([np.diag([0.01, 0.01, 0.01])] * 3)
+    arm = Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=com, inertia=inertia, name="bodies")
+    assert arm == Arm(**GOOD, name="bodies", Ixx=(0.01,) * 3, Iyy=(0.01,) * 3, Izz=(0.01,) * 3)
+    beside = com + np.array([[0, 0, 0], [0, 0.02, 0], [0, 0, 0]])
+    with pytest.raises(ArmError, match=r"link 2 is 0.02 m off the link axis.*derive\(general=True\)"):
+        Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=beside, inertia=inertia)
+    skewed = inertia.copy()
+    skewed[2, 0, 1] = skewed[2, 1, 0] = 0.002
+    with pytest.raises(ArmError, match="link 3 has products of inertia"):
+        Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=com, inertia=skewed)
+    with pytest.raises(ArmError, match=r"\(3, 3, 3\)"):
+        Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=com, inertia=inertia[0])
+
+
+def test_an_arm_cannot_be_changed():
+    with pytest.raises(FrozenInstanceError):
+        IR50P.l = (1, 1, 1)
+    for theta in (IR50P.theta, IR50P.theta_pwm, THESIS_C):
+        with pytest.raises(ValueError, match="read-only"):
+            theta[0, 0] = 1.0
+
+
+def test_theta_has_three_equal_rows_and_no_products_of_inertia():
+    theta = random_arm(np.random.default_rng(1), coulomb=True).theta
+    assert (theta == theta[0]).all() and (theta[:, 6:8] == 0).all()
+    assert THESIS_C[0, 6] == 0.05
+
+
+def test_theta_of_the_thesis_model_equals_the_arm_where_both_exist():
+    ours = thesis_theta(m=(3, 1, 1), l=(1, 1, 1), lc=(0.5, 0.5, 0.5))
+    np.testing.assert_allclose(ours, THESIS_A.theta, atol=1e-15)
+
+
+def test_default_actuators_are_the_plant_that_lands_near_table_4_4():
+    # Source: the table of assumed 12 V values (back-EMF and gravity in PWM counts rounded to whole counts there)
+    np.testing.assert_allclose(IR50P.actuators.gain, [0.0157, 0.0275, 0.0235], atol=5e-5)
+    np.testing.assert_allclose(IR50P.actuators.back_emf_damping / IR50P.actuators.gain, [102, 232, 196], atol=0.5)
+    np.testing.assert_allclose(IR50P.actuators.reflected_inertia, [0.15, 0.20, 0.12])
+    stretched = (IR50P.theta[0, 2:4].sum() * 9.81, IR50P.theta[0, 3] * 9.81)
+    np.testing.assert_allclose(np.array(stretched) / IR50P.actuators.gain[1:], [138, 57], atol=0.5)
+    np.testing.assert_allclose(np.degrees(IR50P.q_min), [-100, -50, -140])
+    np.testing.assert_allclose(np.degrees(IR50P.q_max), [100, 110, 30])
+
+
+def test_an_arm_without_motors_has_no_pwm():
+    with pytest.raises(ArmError, match="no actuators"):
+        _ = THESIS_A.theta_pwm
+
+
+def test_without_friction_keeps_the_rotors():
+    bare = IR50P.without_friction()
+    assert bare.friction == Friction() and bare.actuators == IR50P.actuators
+
+
+@pytest.mark.parametrize("arm", [IR50P, THESIS_A, THESIS_RODS], ids=lambda a: a.name)
+def test_file_round_trip_is_exact(arm, tmp_path):
+    path = tmp_path / "arm with space é.toml"
+    arm.save(path)
+    assert Arm.load(path) == arm
+    text = path.read_text(encoding="utf-8")
+    assert "kg m^2" in text and "upper arm" in text
+
+
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        ("l = [1, 2", ["not a TOML file"]),
+        ("l = [0.3, 0.2, 0.3]\nm = [1, 1, 1]", ["lacks lc"]),
+        ("l = [0.3, 0.2, 0.3]\nm = [1, 1, 1]\nlc = [0.1, 0.1, 0.1]\nmass = 3", ["unknown entry 'mass'", "known: name"]),
+        ("l = [0.3, 0.2, 0.3]\nm = [1, -1, 1]\nlc = [0.1, 0.1, 0.1]", ["m2 = -1"]),
+        ("l = [0.3, 0.2, 0.3]\nm = [1, 1, 1]\nlc = [0.1, 0.1, 0.1]\ng = 'big'", ["big"]),
+        ("l = [0.3, 0.2, 0.3]\nm = [1, 1, 1]\nlc = [0.1, 0.1, 0.1]\n[friction]\nfv = [1, 1, -1]", ["fv of joint 3"]),
+        ("l = [0.3, 0.2, 0.3]\nm = [1, 1, 1]\nlc = [0.1, 0.1, 0.1]\nfriction = 3", ["must be a table"]),
+    ],
+)
+def test_broken_files_are_named(text, words, tmp_path):
+    path = tmp_path / "broken.toml"
+    path.write_text(text)
+    with pytest.raises(ArmError) as caught:
+        Arm.load(path)
+    for word in [str(path), *words]:
+        assert word in str(caught.value)
+
+
+def test_missing_file_is_named(tmp_path):
+    with pytest.raises(ArmError, match=r"nowhere\.toml.*IR50P_ARM"):
+        Arm.load(tmp_path / "nowhere.toml")
+
+
+def test_course_arm_comes_from_the_environment(tmp_path, monkeypatch):
+    monkeypatch.delenv("IR50P_ARM", raising=False)
+    assert load_arm() is IR50P
+    THESIS_RODS.save(tmp_path / "rods.toml")
+    monkeypatch.setenv("IR50P_ARM", str(tmp_path / "rods.toml"))
+    assert load_arm() == THESIS_RODS
+    assert load_arm(tmp_path / "rods.toml") == THESIS_RODS
+
+
+# --- friction ---------------------------------------------------------------------------------------------
+
+
+def test_friction_curve_has_the_limits_of_figure_1_9():
+    f = Friction(fv=(0.5, 0.5, 0.5), fc=(1, 1, 1), fs=(1.6, 1.6, 1.6), qs=(0.05, 0.05, 0.05))
+    np.testing.assert_allclose(friction_torque(f, [1e-9, -1e-9, 0]), [1.6, -1.6, 0], atol=1e-8)
+    np.testing.assert_allclose(friction_torque(f, [5, -5, 5]), [3.5, -3.5, 3.5], rtol=1e-12)
+    qd = np.random.default_rng(0).normal(0, 1, (500, 3))
+    assert (friction_torque(f, qd) * qd >= 0).all()  # friction only takes energy
+    np.testing.assert_allclose(friction_torque(f, -qd), -friction_torque(f, qd))
+
+
+def test_friction_of_an_arm_and_its_offset():
+    assert (friction_torque(IR50P, [0, 0, 0]) == np.array(IR50P.friction.Tf)).all()
+    assert Friction(fc=(1, 2, 3)).fs == (1, 2, 3)
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"fv": (0, -1, 0)}, "fv of joint 2"),
+        ({"fc": (1, 1, 1), "fs": (1, 0.5, 1)}, "fs = 0.5"),
+        ({"qs": (0.05, 0, 0.05)}, "qs = 0.0"),
+        ({"fc": (0, np.nan, 0)}, "nan"),
+    ],
+)
+def test_impossible_friction_is_refused(change, words):
+    with pytest.raises(LabError, match=words):
+        Friction(**change)
+
+
+# --- motors -----------------------------------------------------------------------------------------------
+
+
+def test_a_motor_at_full_supply_stalls_and_runs_free_as_computed():
+    motors = IR50P.actuators
+    np.testing.assert_allclose(motors.voltage(motors.stall_torque, [0, 0, 0]), 12.0)
+    np.testing.assert_allclose(motors.voltage([0, 0, 0], motors.no_load_speed), 12.0)
+    faster = replace(motors, V=24.0)
+    np.testing.assert_allclose(faster.stall_torque, 2 * motors.stall_torque)
+    np.testing.assert_allclose(faster.no_load_speed, 2 * motors.no_load_speed)
+
+
+def test_voltage_follows_from_the_motor_equations():
+    # Independent route: armature u = Ra i + ke N qd, shaft kt i = Jm N qdd + tau / N
+    m = IR50P.actuators
+    tau, qd, qdd = np.random.default_rng(1).normal(0, 2, (3, 3))
+    N, Jm, kt, ke, Ra = (np.array(getattr(m, name)) for name in ("N", "Jm", "kt", "ke", "Ra"))
+    current = (Jm * N * qdd + tau / N) / kt
+    np.testing.assert_allclose(m.voltage(tau, qd, qdd), Ra * current + ke * N * qd, rtol=1e-12)
+
+
+def test_pwm_counts_and_volts_tell_the_same():
+    m = IR50P.actuators
+    tau, qd = np.array([1.0, -2.0, 0.5]), np.array([0.3, -0.2, 0.5])
+    counts = (tau + m.back_emf_damping * qd) / m.gain
+    np.testing.assert_allclose(counts * m.V / m.limit_pwm, m.voltage(tau, qd), rtol=1e-12)
+
+
+@pytest.mark.parametrize("field", [f.name for f in fields(Actuators)])
+def test_impossible_motors_are_refused(field):
+    value = getattr(IR50P.actuators, field)
+    bad = -value if np.ndim(value) == 0 else (value[0], -value[1], value[2])
+    with pytest.raises(ArmError, match=field):
+        replace(IR50P.actuators, **{field: bad})
+
+
+def test_motor_data_from_the_joint_are_checked():
+    good = {
+        "stall_torque": (1, 1, 1),
+        "no_load_speed": (1, 1, 1),
+        "reflected_inertia": (0, 0, 0),
+        "N": (1, 1, 1),
+        "V": 12,
+    }
+    assert (Actuators.from_joint_data(**good).stall_torque == 1).all()
+    with pytest.raises(ArmError, match="no_load_speed"):
+        Actuators.from_joint_data(**{**good, "no_load_speed": (1, 0, 1)})
+    with pytest.raises(InputError, match="nan"):
+        Actuators.from_joint_data(**{**good, "stall_torque": (1, np.nan, 1)})

@@ -1,0 +1,31 @@
+"""What an import costs and brings: nothing but what is used."""
+
+import subprocess
+import sys
+
+import pytest
+
+import ir50p_lab.modelling
+
+
+def modules_after(statement):
+    code = f"{statement}\nimport sys; print(' '.join(sys.modules))"
+    return set(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split())
+
+
+def test_package_itself_brings_nothing():
+    brought = modules_after("import ir50p_lab") - modules_after("pass")
+    assert brought == {"ir50p_lab"}
+
+
+def test_modelling_brings_no_heavy_module_until_used():
+    heavy = {"numpy", "numba", "scipy", "sympy", "matplotlib", "cv2", "control"}
+    assert not modules_after("import ir50p_lab.modelling") & heavy
+    assert not modules_after("from ir50p_lab.modelling import IR50P, inverse_kinematics") & (heavy - {"numpy"})
+
+
+@pytest.mark.parametrize("name", ir50p_lab.modelling.__all__)
+def test_every_public_name_exists_and_is_documented(name):
+    value = getattr(ir50p_lab.modelling, name)
+    if callable(value):
+        assert len(value.__doc__ or "") > 40
