@@ -1,0 +1,329 @@
+"""Live figures: sliders under which a persistent matplotlib figure answers at once.
+
+    figure = new_figure(rows=1)
+    curve, = figure.axes[0].plot(t, t)
+    def update(kp, kd):
+        curve.set_ydata(response(kp, kd))
+    live(figure, update, kp=(0, 300, 1, 100), kd=slider(0, 60, 0.5, 10, label="Kd1", unit="N m s"))
+
+The figure is made once and `update` changes its artists in place; it never calls pyplot. What `update` prints, and
+its errors, appear in a line under the figure (a notebook would swallow them).
+"""
+
+import base64
+import contextlib
+import html
+import io
+import math
+import threading
+import traceback
+import weakref
+from dataclasses import dataclass
+
+import ipywidgets as widgets
+
+from ir50p_lab.course.painter import Painter
+from ir50p_lab.errors import InputError, LabError
+
+# Widget callbacks may run in threads beside the cell's; matplotlib and sys.stdout are shared by all of them.
+_DRAWING = threading.RLock()
+
+
+@dataclass(frozen=True)
+class Slider:
+    """A slider from `min` to `max` in steps of `step`, at `start`; whole numbers throughout stay whole (int)."""
+
+    min: float
+    max: float
+    step: float
+    start: float
+    label: str | None = None
+    unit: str = ""
+
+    def __post_init__(self):
+        numbers = (self.min, self.max, self.step, self.start)
+        if not all(isinstance(v, int | float) and math.isfinite(v) for v in map(_plain, numbers)):
+            raise InputError(f"slider {numbers}: min, max, step and start must be finite numbers")
+        if not self.min < self.max or not 0 < self.step or not self.min <= self.start <= self.max:
+            raise InputError(
+                f"slider min={self.min}, max={self.max}, step={self.step}, start={self.start}: "
+                "need min < max, step > 0 and min <= start <= max"
+            )
+
+
+def slider(min, max, step, start, *, label=None, unit=""):
+    """Describe one slider for `live`: its range, step and start, the text beside it and the unit behind it."""
+    return Slider(min, max, step, start, label, unit)
+
+
+def live(figure, update, **controls):
+    """Show `figure` with sliders; each change calls `update(**values)` and redraws.
+
+    Args:
+        figure: a matplotlib Figure, best from `figures.new_figure`; not one of pyplot.
+        update: changes artists in place (`line.set_data(...)`); gets every control by its name. May print or
+            return a text: it appears in the line under the figure.
+        controls: name=(min, max, step, start) or name=slider(...), name=[choices] or {label: choice} for a
+            menu, name=True/False for a checkbox.
+
+    Returns: LivePanel, shown when it is the last line of a cell.
+    Raises InputError for a control that makes no sense, and whatever the first `update` raises.
+    """
+    return LivePanel(figure, update, controls)
+
+
+class LivePanel(widgets.VBox):
+    """A figure, its sliders with number boxes, a reset button and a status line; see `live`.
+
+    Attributes: figure; image, the ipywidgets.Image that shows it; status, its text line; controls, name -> widget;
+    error, the exception of the last update or None; drawn, the values last drawn; updates, how many were drawn.
+    `LivePanel.panels` holds the panels that are alive.
+    """
+
+    panels = weakref.WeakSet()
+
+    def __init__(self, figure, update, controls):
+        if not controls:
+            raise InputError("live(figure, update, ...) needs at least one control, such as kp=(0, 10, 0.1, 1)")
+        self.figure, self.error, self.drawn, self.updates = figure, None, None, 0
+        self.controls, rows = {}, []
+        width = max(len(label) for label in (_label(name, spec) for name, spec in controls.items())) + 2
+        for name, spec in controls.items():
+            self.controls[name], row = _make_control(name, spec, f"{width}ch")
+            rows.append(row)
+        self._start = self.values
+        self._update = update
+        self._condition = threading.Condition()
+        self._wanted, self._drawer, self._quiet = None, None, 0
+
+        with _DRAWING:
+            update(**self._start)  # directly: an error belongs in the cell
+            self._painter = Painter(figure)
+            pixels = round(figure.bbox.width)
+            self.image = widgets.Image(
+                value=self._painter.png(),
+                format="png",
+                layout=widgets.Layout(width=f"{pixels}px", height="auto", max_width="100%"),
+            )
+        self.drawn, self.updates = self._start, 1
+        self.status = widgets.HTML(layout=widgets.Layout(min_height="1.5em", width=f"{pixels}px"))
+        reset = widgets.Button(description="Reset", layout=widgets.Layout(width="80px"))
+        reset.on_click(lambda _: self.reset())
+        box = widgets.Layout(display="flex", flex_flow="row wrap", max_width=f"{pixels}px", align_items="center")
+        super().__init__([widgets.Box([*rows, reset], layout=box), self.image, self.status])
+        for control in self.controls.values():
+            control.observe(self._changed, "value")
+        _close_panels_of_earlier_runs(self)
+        LivePanel.panels.add(self)
+
+    @property
+    def values(self):
+        """What the controls say now: name -> value."""
+        return {name: control.value for name, control in self.controls.items()}
+
+    def set(self, **values):
+        """Move controls from Python, redraw once, and raise what `update` raises.
+
+        Raises InputError for an unknown name or a value off the scale.
+        """
+        for name, value in values.items():
+            _refuse_bad_value(name, value, self.controls)
+        with self._condition:
+            self._quiet += 1
+        try:
+            for name, value in values.items():
+                self.controls[name].value = value
+        finally:
+            with self._condition:
+                self._quiet -= 1
+        self._changed()
+        with self._condition:
+            if self._drawer != threading.get_ident():
+                self._condition.wait_for(lambda: self._drawer is None)
+        if self.error is not None:
+            raise self.error
+
+    def reset(self):
+        """Put every control back to its start."""
+        with contextlib.suppress(Exception):  # it is in the status line
+            self.set(**self._start)
+
+    def redraw(self):
+        """Draw everything anew, background included."""
+        with _DRAWING:
+            self._painter.forget()
+            self._draw(self.values)
+
+    def _changed(self, _=None):
+        """Draw the latest values. If a drawing is under way, its thread draws them next: there is no queue."""
+        with self._condition:
+            if self._quiet:
+                return
+            self._wanted = self.values
+            if self._drawer is not None:
+                return
+            self._drawer = threading.get_ident()
+        try:
+            while True:
+                with self._condition:
+                    values, self._wanted = self._wanted, None
+                    if values is None:
+                        self._finish()
+                        return
+                self._draw(values)
+        except BaseException:  # an interrupted kernel must find the panel usable
+            with self._condition:
+                self._finish()
+            raise
+
+    def _finish(self):
+        self._drawer = None
+        self._condition.notify_all()
+
+    def _draw(self, values):
+        said = io.StringIO()
+        with _DRAWING:
+            try:
+                with contextlib.redirect_stdout(said):
+                    answer = self._update(**values)
+                    if isinstance(answer, str):
+                        print(answer)
+                self.image.value = self._painter.png()
+                self.error = None
+            except Exception as error:
+                self.error = error
+        self.drawn, self.updates = values, self.updates + 1
+        text = html.escape(said.getvalue().rstrip()).replace("\n", "<br>")
+        if self.error is not None:
+            text += f'<span style="color:#c0392b">{html.escape(_explain(self.error))}</span>'
+        if text != self.status.value:
+            self.status.value = text
+
+    def _repr_mimebundle_(self, **kwargs):
+        """The widget, and the picture of this moment for viewers without widgets (an exported page)."""
+        bundle = super()._repr_mimebundle_(**kwargs)
+        data = bundle[0] if isinstance(bundle, tuple) else bundle
+        if data is not None:
+            data["image/png"] = base64.b64encode(self.image.value).decode("ascii")
+        return bundle
+
+
+def exercise_all_panels():
+    """Push every control of every living panel to its ends, and to all corners together, and put them back.
+
+    For tests: a callback that raises is invisible to a notebook's cells.
+
+    Returns: the number of updates drawn. Raises LabError that names panel, values and error if an update raised.
+    """
+    before = sum(panel.updates for panel in LivePanel.panels)
+    for number, panel in enumerate(sorted(LivePanel.panels, key=lambda panel: panel.model_id)):
+        kept = panel.values
+        ends = {name: _ends(control) for name, control in panel.controls.items()}
+        trials = [{name: value} for name, values in ends.items() for value in values]
+        trials += [{name: values[0] for name, values in ends.items()}]
+        trials += [{name: values[-1] for name, values in ends.items()}]
+        trials += [{name: values[-1 if k % 2 else 0] for k, (name, values) in enumerate(ends.items())}]
+        for trial in trials:
+            try:
+                panel.set(**trial)
+            except Exception as error:
+                raise LabError(
+                    f"panel {number} ({', '.join(panel.controls)}) at {panel.values}: {_explain(error)}"
+                ) from error
+        panel.set(**kept)
+    return sum(panel.updates for panel in LivePanel.panels) - before
+
+
+def _label(name, spec):
+    return spec.label if isinstance(spec, Slider) and spec.label else name
+
+
+def _plain(number):
+    """NumPy scalars as Python numbers."""
+    return number.item() if hasattr(number, "item") and getattr(number, "ndim", 0) == 0 else number
+
+
+def _make_control(name, spec, label_width):
+    """The widget that holds the value, and the row that shows it."""
+    style = {"description_width": label_width}
+    if isinstance(spec, bool):
+        control = widgets.Checkbox(value=spec, description=name, indent=False)
+        return control, control
+    if isinstance(spec, list | dict):
+        if not spec:
+            raise InputError(f"{name}: an empty menu; give at least one choice")
+        control = widgets.Dropdown(options=spec, description=name, style=style)
+        return control, control
+    if isinstance(spec, tuple) and len(spec) == 4:
+        spec = Slider(*spec)
+    if not isinstance(spec, Slider):
+        raise InputError(
+            f"{name}={spec!r}: give (min, max, step, start), slider(...), a list of choices, or True/False"
+        )
+    low, high, step, start = map(_plain, (spec.min, spec.max, spec.step, spec.start))
+    whole = all(isinstance(v, int) for v in (low, high, step, start))
+    kind, box_kind = (
+        (widgets.IntSlider, widgets.BoundedIntText) if whole else (widgets.FloatSlider, widgets.BoundedFloatText)
+    )
+    common = {"min": low, "max": high, "step": step, "value": start}
+    control = kind(
+        **common,
+        description=_label(name, spec),
+        style=style,
+        readout=False,
+        layout=widgets.Layout(width="330px"),
+    )
+    box = box_kind(**common, layout=widgets.Layout(width="85px"))
+    # linked in the browser: the box follows without asking Python
+    link = widgets.jslink((control, "value"), (box, "value"))
+    row = widgets.HBox([control, box, widgets.Label(spec.unit, layout=widgets.Layout(min_width="2em"))])
+    row.link = link  # keep it alive
+    return control, row
+
+
+def _refuse_bad_value(name, value, controls):
+    if name not in controls:
+        raise InputError(f"no control {name!r}; this panel has {', '.join(controls)}")
+    control = controls[name]
+    if hasattr(control, "min") and not control.min <= value <= control.max:
+        raise InputError(f"{name} = {value} is off its slider ({control.min} to {control.max})")
+
+
+def _ends(control):
+    """The values a control can be pushed to: both ends of a slider, every choice of a menu."""
+    if hasattr(control, "min"):
+        return [control.min, control.max]
+    if isinstance(control, widgets.Checkbox):
+        return [False, True]
+    return [value for _, value in control._options_full]
+
+
+def _explain(error):
+    """The error in one line, with the line of `update` it came from."""
+    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename != __file__]
+    where = f" (line {frames[0].lineno} in {frames[0].name})" if frames else ""
+    return f"{type(error).__name__}: {error}{where}"
+
+
+def _close_panels_of_earlier_runs(panel):
+    """A cell that is run again replaces its panels; the old ones would keep their figures for ever."""
+    try:
+        message = get_ipython().get_parent()
+        panel._run = (message["metadata"]["cellId"], message["header"]["msg_id"])
+    except (NameError, AttributeError, KeyError, TypeError):  # not in a notebook, or a front end without cell ids
+        panel._run = None
+        return
+    cell, run = panel._run
+    for old in list(LivePanel.panels):
+        if old._run and old._run[0] == cell and old._run[1] != run:
+            LivePanel.panels.discard(old)
+            _close(old)
+
+
+def _close(widget):
+    for child in getattr(widget, "children", ()):
+        _close(child)
+    for other in (getattr(widget, "link", None), widget.layout):
+        if other is not None:
+            other.close()
+    widget.close()
