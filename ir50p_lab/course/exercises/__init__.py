@@ -1,0 +1,118 @@
+"""Exercises: check(name, answer) says in a sentence what it found; progress() shows what is done.
+
+In a notebook:
+
+    answer = ...                # the stub runs as it is
+    check("start-1", answer)    # "start-1: not answered yet. To find: ..."
+
+For instructors: solution("start-1") returns the right answer, exercises() lists the names. The progress file is
+progress.json in the project root, or the file that the environment variable IR50P_PROGRESS names.
+
+Adding exercises
+----------------
+One module per notebook in this folder, named after the prefix of its exercises: "ik-2" lives in ik.py, which is
+imported only when an "ik-" exercise is asked for. It defines two names:
+
+    NOTEBOOK = "02_jacobian_ik"     # stem of the notebook's file name
+    EXERCISES = (Exercise(...), ...)
+
+    Exercise(
+        "ik-1",
+        "the joint angles q of the branch front/up for p = (0.3, 0.1, 0.4) m",       # the task, one line
+        Number(right, unit="rad", tolerance=1e-3, because="three decimals are what you would type", angle=True),
+        why="All four branches put the tip on the same point; the joint limits choose.",
+        slips=(Slip(down, "That is the elbow-down branch: the sign of sin q3 chooses."), ...),
+    )
+
+Kinds of answer (each documents its options):
+    Number(right, unit=, tolerance=, because=, angle=, any_order=)   number, vector, matrix, or rows as a set
+    Function(right, cases, unit=, ..., angles_in=)                   tried out on the cases, values compared
+    Expression(right, also=)                                         SymPy, any equivalent form, symbols by name
+    Choice(right, options)                                           a key of {key: wording}, or its wording
+
+Rules:
+- Compute `right` with the package and with constants of this module (IR50P, not load_arm()): the student's
+  variables, or another arm, must not move it. Task and figures in the notebook state the same constants.
+- `Slip(wrong, message)`: `wrong` is a wrong answer, or a function of the right one (np.negative); for a Function
+  the wrong function. Every kind brings common slips along: the sign; degrees (unit="rad", angles_in=True);
+  millimetres (unit="m"). Together at least three, with different messages, none equal to another or to the right
+  answer; a Choice needs a slip for every wrong option. A message says what is wrong and where to look, never the
+  answer. The student's answer is repeated in front of it.
+- `why` is read after a right answer: one line on what it is good for.
+- `hint=` is added to the message for an answer that is wrong in no known way; `forms=` lists other right answers
+  that the tests try (lists, columns, SymPy numbers, text and so on are tried anyway).
+- A function stub in a notebook is `def answer(q): ...`; a stub with several parts may be `(..., ...)`.
+- `pytest tests/course/test_exercises.py` tries every exercise of every module; read start.py as the example.
+"""
+
+from __future__ import annotations
+
+from ir50p_lab.course.exercises._answers import Slip
+from ir50p_lab.course.exercises._catalogue import everything, find
+from ir50p_lab.course.exercises._choices import Choice
+from ir50p_lab.course.exercises._display import Note, Table, show
+from ir50p_lab.course.exercises._exercise import Exercise, Verdict, judge
+from ir50p_lab.course.exercises._expressions import Expression
+from ir50p_lab.course.exercises._functions import Function
+from ir50p_lab.course.exercises._numbers import Number
+from ir50p_lab.course.exercises._progress import ProgressError, read_progress, record
+from ir50p_lab.errors import InputError
+
+__all__ = [
+    "Choice",
+    "Exercise",
+    "Expression",
+    "Function",
+    "Number",
+    "Slip",
+    "Verdict",
+    "check",
+    "exercises",
+    "judge",
+    "progress",
+    "solution",
+]
+
+
+def check(name: str, answer=...) -> None:
+    """Say in one or two sentences what was found in an answer; a right one is noted in the progress file.
+
+    name: of the exercise, such as "pose-1". answer: as the question asks; `...` is the stub. Shows a sentence and
+    returns None; raises nothing, whatever the answer.
+    """
+    try:
+        exercise = find(name)
+    except InputError as error:
+        show(Note("unknown", "check", str(error)))
+        return
+    verdict = judge(exercise, answer)
+    text = verdict.text
+    if verdict.state == "right":
+        try:
+            record(exercise.name)
+        except ProgressError as error:
+            text += f" (Not noted: {error})"
+    show(Note(verdict.state, exercise.name, text))
+
+
+def solution(name: str):
+    """Return the right answer of an exercise in usable form: float, array, function, expression or text.
+
+    Raises InputError for an unknown name.
+    """
+    return find(name).kind.solution
+
+
+def exercises() -> list[str]:
+    """Return the names of all exercises, in the order of the notebooks."""
+    return [exercise.name for _, exercise in everything()]
+
+
+def progress() -> None:
+    """Show a table of all exercises by notebook: done (since when) or open."""
+    try:
+        done, note = read_progress(), ""
+    except ProgressError as error:
+        done, note = {}, str(error)
+    rows = tuple((notebook, one.name, one.task, done.get(one.name)) for notebook, one in everything())
+    show(Table(rows, note))

@@ -1,0 +1,183 @@
+"""Answers that are numbers: one, a vector, a matrix, or rows in any order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.course.exercises._answers import NotAnswered, Slip, Unreadable, kind_of, worth_having
+
+
+@dataclass(frozen=True, eq=False)
+class Number:
+    """A number or an array of numbers, compared entry by entry.
+
+    right: number or array, computed by the package.
+    unit: what the numbers are in, "rad", "m", "N m"; "" for none or several.
+    tolerance: largest absolute difference of an entry that still counts as right; because: why that much.
+    angle: the entries are angles in rad, equal modulo 2 pi.
+    any_order: the first axis is a set (the rows may come in any order).
+    """
+
+    right: float | np.ndarray
+    unit: str = ""
+    tolerance: float = 1e-6
+    because: str = "only rounding may differ"
+    angle: bool = False
+    any_order: bool = False
+
+    def __post_init__(self):
+        """Hold the right answer as an array of floats."""
+        object.__setattr__(self, "right", np.array(self.right, dtype=float))
+
+    @property
+    def solution(self):
+        """The right answer in usable form: a float, or an array."""
+        return self.right.item() if self.right.ndim == 0 else self.right.copy()
+
+    @property
+    def wanted(self) -> str:
+        """What is asked for, in words, without the answer."""
+        in_unit = f" in {self.unit}" if self.unit else ""
+        order = ", in any order" if self.any_order else ""
+        return f"{shape_in_words(self.right.shape)}{in_unit}{order}"
+
+    def read(self, answer) -> np.ndarray:
+        """Return the student's answer as finite floats, in the shape of the right one if it can have it.
+
+        Raises Unreadable where it holds anything but numbers.
+        """
+        found = to_floats(answer)
+        if not np.all(np.isfinite(found)):
+            bad = "nan (not a number)" if np.any(np.isnan(found)) else "an infinite value"
+            raise Unreadable(bad if found.ndim == 0 else f"an array that holds {bad}")
+        if np.squeeze(found).shape == np.squeeze(self.right).shape:
+            found = found.reshape(self.right.shape)  # a (3, 1) column is as good as three numbers
+        return found
+
+    def check_form(self, found) -> None:
+        """Raise Unreadable if an answer that was read has another shape than the right one."""
+        if found.shape != self.right.shape:
+            flipped = found.ndim == 2 and found.T.shape == self.right.shape
+            raise Unreadable(shape_in_words(found.shape) + " (rows and columns swapped?)" * flipped)
+
+    def read_wrong(self, wrong) -> np.ndarray:
+        """Return the value of a slip: given as such, or as a function of the right answer."""
+        return self.read(wrong(self.solution) if callable(wrong) else wrong)
+
+    def is_right(self, found) -> bool:
+        """Tell whether an answer that was read agrees with the right one."""
+        return bool(np.all(self._agreement(found, self.right, self.tolerance)))
+
+    def is_slip(self, found, wrong) -> bool:
+        """Tell whether an answer is the wrong value of a slip, with the tolerance grown to its size."""
+        size = np.max(np.abs(wrong), initial=0) / max(np.max(np.abs(self.right), initial=0), 1e-12)
+        return bool(np.all(self._agreement(found, wrong, self.tolerance * max(1.0, size))))
+
+    def show(self, found) -> str:
+        """Print an answer on one line."""
+        return show_number(found)
+
+    def remark(self, found) -> str:
+        """Say how far a wrong answer is right, without giving the answer away."""
+        near = min(20 * self.tolerance, 0.1 * np.max(np.abs(self.right), initial=0))
+        if np.all(self._agreement(found, self.right, near)):
+            limit = f"{self.tolerance:.2g}{' ' * bool(self.unit)}{self.unit}"
+            return f"It is close, but {limit} is the limit ({self.because})."
+        agrees = self._agreement(found, self.right, self.tolerance)
+        if agrees.ndim == 0 or not agrees.any():
+            return ""
+        if self.any_order:
+            return f"{agrees.sum()} of {agrees.size} rows are among the right ones."
+        off = [str(list(map(int, i))) for i in np.argwhere(~agrees)]
+        return f"Not all of it is wrong; look again at {', '.join('answer' + i for i in off[:4])}."
+
+    def common_slips(self) -> tuple[Slip, ...]:
+        """Slips that every exercise of this kind knows: sign, and the unit where it has one."""
+        slips = [Slip(np.negative, "The size is right, the sign is not: which direction counts as positive?")]
+        if self.unit == "rad":
+            slips.append(Slip(np.rad2deg, "That is in degrees; inside the package every angle is in radians."))
+        if self.unit == "m":
+            slips.append(Slip(lambda right: np.multiply(1000, right), "That is in millimetres, not in metres."))
+        return worth_having(slips, self)
+
+    def _agreement(self, found, target, tolerance) -> np.ndarray:
+        """Return which entries (any_order: which rows of found) agree with the target."""
+        if np.shape(found) != np.shape(target):
+            return np.array(False)
+        if not self.any_order:
+            return self._difference(found, target) <= tolerance
+        free = list(range(len(target)))
+        agrees = np.zeros(len(found), dtype=bool)
+        for i, row in enumerate(found):
+            for j in free:
+                if np.all(self._difference(row, target[j]) <= tolerance):
+                    agrees[i] = True
+                    free.remove(j)  # every right row is used once
+                    break
+        return agrees
+
+    def _difference(self, found, target) -> np.ndarray:
+        difference = np.subtract(found, target)
+        if self.angle:
+            difference = (difference + np.pi) % (2 * np.pi) - np.pi
+        return np.abs(difference)
+
+
+def to_floats(answer) -> np.ndarray:
+    """Return numbers in any usual form as a float array; Unreadable says what was found instead.
+
+    Lists, tuples, arrays, sets, dicts (their values), SymPy numbers and matrices, SciPy rotations (their
+    matrix) and objects that can be iterated over are all read.
+    """
+    if callable(getattr(answer, "as_matrix", None)):
+        answer = answer.as_matrix()
+    if isinstance(answer, dict):
+        answer = list(answer.values())
+    elif not isinstance(answer, str | np.ndarray) and isinstance(answer, Iterable):
+        answer = answer.tolist() if hasattr(answer, "tolist") else list(answer)
+    entries = np.array(answer, dtype=object)
+    if entries.size == 0:
+        raise Unreadable("something empty")
+    unfinished = sum(entry is Ellipsis for entry in entries.flat)
+    if unfinished == entries.size:
+        raise NotAnswered
+    if unfinished:
+        raise Unreadable(f"an answer in which {unfinished} of {entries.size} entries are still ...")
+    return np.array([_to_float(entry) for entry in entries.flat], dtype=float).reshape(entries.shape)
+
+
+def _to_float(entry) -> float:
+    """Return one entry as a float; bool and complex are numbers in Python, but never the answer here."""
+    if getattr(entry, "free_symbols", None):
+        names = ", ".join(sorted(map(str, entry.free_symbols)))
+        raise Unreadable(f"an expression that still holds the symbol {names}")
+    if isinstance(entry, bool | np.bool_ | str | list | type(None)) or (
+        callable(entry) and not hasattr(entry, "free_symbols")
+    ):
+        raise Unreadable("rows of different lengths" if isinstance(entry, list) else kind_of(entry))
+    try:
+        return float(entry)
+    except (TypeError, ValueError):
+        raise Unreadable(kind_of(entry)) from None
+
+
+def shape_in_words(shape: tuple[int, ...]) -> str:
+    """Return what an array of this shape is called: 'a number', '3 numbers', 'a 4 x 4 matrix'."""
+    if shape == ():
+        return "a number"
+    if len(shape) == 1:
+        return f"{shape[0]} number{'s' * (shape[0] != 1)}"
+    return f"a {' x '.join(map(str, shape))} {'matrix' if len(shape) == 2 else 'array'}"
+
+
+def show_number(found) -> str:
+    """Return a number or an array as one short line."""
+    found = np.asarray(found)
+    if found.ndim == 0:
+        return f"{found.item():.6g}"
+    if found.size > 20:
+        return shape_in_words(found.shape)
+    return f"[{', '.join(map(show_number, found))}]"
