@@ -31,6 +31,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "reachability",
         ],
         "named_arms": ["IR50P", "THESIS_A", "THESIS_C", "THESIS_RODS", "thesis_theta"],
+        "symbolic": ["SymbolicModel", "derive", "same_function"],
         "pose": [
             "CARDANIAN",
             "EULERIAN",

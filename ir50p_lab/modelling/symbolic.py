@@ -1,0 +1,275 @@
+"""The equations of motion derived as formulas, in milliseconds: frames, Jacobians, M, C, g, energy (1.74)-(1.114)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import sympy
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling import symbolic_steps as steps
+from ir50p_lab.modelling.trig_ring import TrigRing
+
+_PAIRS = ("xx", "yy", "zz", "xy", "xz", "yz")
+_COM_AND_INERTIA = {
+    "in-line": ("lc1 lc2 lc3", "Izz1 Ixx2 Iyy2 Izz2 Ixx3 Iyy3 Izz3"),
+    "general": (
+        " ".join(axis + i for i in "123" for axis in "xyz"),
+        " ".join(f"I{pair}{i}" for i in "123" for pair in _PAIRS),
+    ),
+    "thesis": ("lc1 lc2 lc3", "Izz1 Iyy2 Izz2 Iyz2 Iyy3 Izz3 Iyz3"),
+}
+
+
+@dataclass(frozen=True)
+class SymbolicModel:
+    """The arm as formulas in q1, q2, q3, their rates and the physical parameters (SI units throughout).
+
+    ========== ================================================================== ====================
+    field      meaning                                                            shape
+    ========== ================================================================== ====================
+    q, qd, qdd symbols of the joint angles (rad), velocities and accelerations    (3, 1) each
+    symbols    the physical parameters by name: symbols["m2"]                     dict
+    frames     T^0_0 ... T^0_3 (1.31 corrected)                                   4 of (4, 4)
+    J          geometric Jacobian of the tip, rows v then omega, base frame       (6, 3)
+    com        centres of mass p_c1, p_c2, p_c3 in the base frame                 3 of (3, 1)
+    Jv, Jw     Jacobians of the centres of mass and of the links' rotation        3 of (3, 3) each
+    M          mass matrix (1.90 corrected), rotor inertias j on its diagonal     (3, 3) kg m^2
+    C          Coriolis matrix by Christoffel symbols: dM/dt - 2 C is skew        (3, 3)
+    g          gravity torque (1.114)                                             (3, 1) N m
+    potential  potential energy, zero at the height of the base (1.111)           J
+    ========== ================================================================== ====================
+    """
+
+    links: str
+    q: sympy.Matrix
+    qd: sympy.Matrix
+    qdd: sympy.Matrix
+    symbols: dict
+    frames: tuple
+    J: sympy.Matrix
+    com: tuple
+    Jv: tuple
+    Jw: tuple
+    M: sympy.Matrix
+    C: sympy.Matrix
+    g: sympy.Matrix
+    potential: sympy.Expr
+    _b: tuple
+
+    def b(self, i, j, k):
+        """Christoffel symbol b_ijk = 1/2 (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i), i, j, k = 1, 2, 3 (1.96)."""
+        if not {i, j, k} <= {1, 2, 3}:
+            raise InputError(f"b({i}, {j}, {k}): the indices count the joints, 1 to 3, as in (1.96)")
+        return self._b[i - 1][j - 1][k - 1]
+
+    @property
+    def h(self):
+        """Centrifugal and Coriolis torque C(q, qd) qd, (3, 1) N m, sorted by products of velocities (1.97)."""
+        rows = []
+        for b in self._b:
+            squares = [b[j][j] * self.qd[j] ** 2 for j in range(3)]
+            mixed = [sympy.Mul(2, b[j][k], self.qd[j], self.qd[k]) for j, k in ((0, 1), (0, 2), (1, 2))]
+            rows.append(sympy.Add(*squares, *mixed))
+        return sympy.ImmutableMatrix(rows)
+
+    @property
+    def kinetic(self):
+        """Kinetic energy 1/2 qd^T M qd, J (1.78)."""
+        return (self.qd.T * self.M * self.qd)[0] / 2
+
+    @property
+    def energy(self):
+        """Total energy, kinetic plus potential, J."""
+        return self.kinetic + self.potential
+
+    @property
+    def tau(self):
+        """Joint torque M qdd + C qd + g of the arm without friction, (3, 1) N m (1.74)."""
+        return self.M * self.qdd + self.h + self.g
+
+    def short(self, expression):
+        """`expression` with c_2 for cos(q2), s_{23} for sin(q2 + q3) ...: shorter to read, only for display."""
+        q1, q2, q3 = self.q
+        names = {"1": q1, "2": q2, "3": q3, "23": q2 + q3}
+        table = {f(angle): sympy.Symbol(f"{letter}_{name}") for name, angle in names.items() for f, letter in _CS}
+        return sympy.sympify(expression).xreplace(table)
+
+    def values(self, arm):
+        """Numbers for `symbols`, in their order.
+
+        Args:
+            arm: an Arm, or a mapping of parameter names to numbers in SI units ("l1", "m2", "Izz3", "g", ...;
+                inertias and rotor inertias j1, j2, j3 may be left out and are 0 then).
+
+        Raises InputError for an unknown or missing name, a number that is not finite, or an Arm where `links`
+        is "thesis" (its constant inertias belong to no rigid body: give a mapping).
+        """
+        given = dict(arm) if isinstance(arm, Mapping) else _from_arm(arm, self.links)
+        for name, value in given.items():
+            if name not in self.symbols:
+                raise InputError(f"{name!r} is no parameter of this model; it has {', '.join(self.symbols)}")
+            if not np.isfinite(value):
+                raise InputError(f"{name} = {value}: every parameter must be finite")
+        missing = [name for name in self.symbols if name not in given and name[0] not in "Ij"]
+        if missing:
+            raise InputError(
+                f"no number for {', '.join(missing)}; give them as {{'{missing[0]}': 1.0, ...}} in SI units"
+            )
+        return [float(given.get(name, 0.0)) for name in self.symbols]
+
+    def numeric(self, arm):
+        """The formulas as functions of numbers, for `arm` (see `values`): a NumericModel."""
+        states = {"M": [self.q], "C": [self.q, self.qd], "g": [self.q], "p": [self.q], "J": [self.q]}
+        formulas = {"M": self.M, "C": self.C, "g": self.g, "p": self.frames[3][:3, 3], "J": self.J}
+        states["energy"], formulas["energy"] = [self.q, self.qd], self.energy
+        parameters = list(self.symbols.values())
+        functions = {
+            name: sympy.lambdify([*map(list, states[name]), parameters], formulas[name], "numpy", cse=True)
+            for name in formulas
+        }
+        return NumericModel(self.values(arm), functions)
+
+
+_CS = ((sympy.cos, "c"), (sympy.sin, "s"))
+
+
+@dataclass(frozen=True)
+class NumericModel:
+    """The symbolic model evaluated in numbers: q rad, qd rad/s, both (3,). An independent route, not a fast one."""
+
+    parameters: list
+    functions: dict
+
+    def _call(self, name, *state):
+        state = [vectors3(letter, x) for letter, x in zip(("q", "qd"), state, strict=False)]
+        for x in state:
+            if x.shape != (3,):
+                raise InputError(f"the symbolic model takes one state at a time, (3,); got shape {x.shape}")
+        return np.array(self.functions[name](*state, self.parameters), dtype=float)
+
+    def M(self, q):
+        """Mass matrix, (3, 3) kg m^2."""
+        return self._call("M", q)
+
+    def C(self, q, qd):
+        """Coriolis matrix, (3, 3) N m s/rad."""
+        return self._call("C", q, qd)
+
+    def g(self, q):
+        """Gravity torque, (3,) N m."""
+        return self._call("g", q).ravel()
+
+    def p(self, q):
+        """Tip position in the base frame, (3,) m."""
+        return self._call("p", q).ravel()
+
+    def J(self, q):
+        """Geometric Jacobian of the tip, (6, 3)."""
+        return self._call("J", q)
+
+    def energy(self, q, qd):
+        """Total energy, J."""
+        return float(self._call("energy", q, qd))
+
+
+def derive(*, links="in-line", general=False):
+    """Derive the arm's equations of motion as formulas, from the DH table to M, C, g (1.29)-(1.114, corrected).
+
+    Args:
+        links: which mass distribution.
+            "in-line" (default): what `Arm` describes; centre of mass lc_i on the link axis, moments Ixx, Iyy, Izz
+            about it in the link frame (link 1: z along the column; links 2 and 3: x along the link, z = joint axis).
+            "general": centre of mass (x_i, y_i, z_i) anywhere in the link frame, from the joint, and six components
+            of inertia per link, I = [[Ixx, -Ixy, -Ixz], [-Ixy, Iyy, -Iyz], [-Ixz, -Iyz, Izz]] (1.104 corrected).
+            "thesis": the thesis' model with its algebra put right: inertias that stay constant in the frame that
+            turns with joint 1 only, and m1 lc1^2 in M11. No rigid body has them; kept to reproduce its numbers.
+        general: the same as links="general".
+
+    Returns: SymbolicModel. Takes about 0.1 s.
+
+    Raises InputError for another word.
+    """
+    if general:
+        links = "general"
+    if links not in _COM_AND_INERTIA:
+        raise InputError(f"links = {links!r}: choose one of {', '.join(map(repr, _COM_AND_INERTIA))}")
+    q, qd, qdd = (sympy.ImmutableMatrix(sympy.symbols(f"{name}1:4", real=True)) for name in ("q", "qdot", "qddot"))
+    com_names, inertia_names = _COM_AND_INERTIA[links]
+    names = ["g", *f"l1 l2 l3 m1 m2 m3 {com_names} {inertia_names} j1 j2 j3".split()]
+    ring = TrigRing(q, names)
+    body_like = {name for name in names if name[0] in "mIj"}
+
+    def matrix(rows):
+        return sympy.ImmutableMatrix([[ring.to_sympy(p, by=body_like) for p in row] for row in rows])
+
+    frames, rotations = steps.chain(ring)
+    centres, tensors = steps.bodies(ring, links, frames, rotations)
+    Jv = [steps.jacobian(ring, p) for p in centres]
+    Jw = steps.angular_jacobians(ring, frames)
+    Jv_tip = steps.jacobian(ring, [row[3] for row in frames[3][:3]])
+    M = steps.mass_matrix(ring, Jv, Jw, tensors)
+    U = steps.potential(ring, centres)
+    b = [[[ring.to_sympy(p, by=body_like) for p in row] for row in block] for block in steps.christoffel(ring, M)]
+    C = [[sympy.Add(*[b[i][j][k] * qd[k] for k in range(3)]) for j in range(3)] for i in range(3)]
+    return SymbolicModel(
+        links=links,
+        q=q,
+        qd=qd,
+        qdd=qdd,
+        symbols=ring.symbols,
+        frames=tuple(matrix(T) for T in frames),
+        J=matrix(Jv_tip + Jw[2]),
+        com=tuple(matrix([[x] for x in p]) for p in centres),
+        Jv=tuple(map(matrix, Jv)),
+        Jw=tuple(map(matrix, Jw)),
+        M=matrix(M),
+        C=sympy.ImmutableMatrix(C),
+        g=matrix([[ring.reduce(ring.diff(U, i))] for i in range(3)]),
+        potential=ring.to_sympy(U, by=body_like),
+        _b=b,
+    )
+
+
+def same_function(a, b):
+    """True if two formulas are the same function of the angles, proved exactly (not by trying numbers).
+
+    Sines and cosines of sums are expanded, then s^2 = 1 - c^2 leaves one form only.
+
+    Args:
+        a, b: sympy expressions, or matrices of one shape, polynomial in sines and cosines of sums of symbols.
+    """
+    if isinstance(a, sympy.MatrixBase) or isinstance(b, sympy.MatrixBase):
+        a, b = sympy.Matrix(a), sympy.Matrix(b)
+        return a.shape == b.shape and all(map(same_function, a, b))
+    difference = sympy.expand(sympy.sympify(a) - b, trig=True)
+    angles = {f.args[0] for f in difference.atoms(sympy.sin, sympy.cos)}
+    for angle in angles:
+        s, c = sympy.symbols("s c", cls=sympy.Dummy)
+        polynomial = sympy.Poly(difference.xreplace({sympy.sin(angle): s, sympy.cos(angle): c}), s, c)
+        difference = polynomial.rem(sympy.Poly(s**2 + c**2 - 1, s, c)).as_expr()
+        difference = difference.xreplace({s: sympy.sin(angle), c: sympy.cos(angle)})
+    return sympy.expand(difference) == 0
+
+
+def _from_arm(arm, links):
+    """The numbers of an Arm by parameter name."""
+    if links == "thesis":
+        raise InputError(
+            "the thesis' model holds constant products of inertia, which an Arm cannot: give a mapping of "
+            "parameter names to numbers, or use derive() for this arm"
+        )
+    numbers = {"g": arm.g}
+    rotors = (0.0, 0.0, 0.0) if arm.actuators is None else arm.actuators.reflected_inertia
+    for i in range(3):
+        numbers |= {f"l{i + 1}": arm.l[i], f"m{i + 1}": arm.m[i], f"j{i + 1}": rotors[i]}
+        numbers |= {f"I{axis}{i + 1}": getattr(arm, f"I{axis}")[i] for axis in ("xx", "yy", "zz")}
+        if links == "general":
+            numbers |= {f"{axis}{i + 1}": 0.0 for axis in "xyz"}
+            numbers["z1" if i == 0 else f"x{i + 1}"] = arm.lc[i]
+        else:
+            numbers[f"lc{i + 1}"] = arm.lc[i]
+    if links == "in-line":  # the column only turns about its own axis
+        del numbers["Ixx1"], numbers["Iyy1"]
+    return numbers

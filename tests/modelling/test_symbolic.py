@@ -1,0 +1,359 @@
+"""The symbolic derivation against routes that share nothing with it: SymPy's Lagrange, MuJoCo, numbers of the errata."""
+
+import time
+
+import numpy as np
+import pytest
+import sympy
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.modelling import (
+    IR50P,
+    THESIS_A,
+    THESIS_C,
+    THESIS_RODS,
+    Arm,
+    coriolis_matrix,
+    energy,
+    forward_kinematics,
+    frames,
+    gravity,
+    inverse_dynamics,
+    jacobian,
+    mass_matrix,
+)
+from ir50p_lab.modelling.symbolic import derive, same_function
+
+THESIS_C_NUMBERS = {
+    **{f"l{i}": 0.2 for i in (1, 2, 3)},
+    **{f"lc{i}": 0.5 for i in (1, 2, 3)},
+    **{"m1": 3, "m2": 1, "m3": 1, "g": 9.81, "Izz1": 0.05, "Izz2": 0.05, "Izz3": 0.05},
+    **{"Iyy2": 0.05, "Iyy3": 0.05, "Iyz2": 0.05},
+}
+THESIS_A_NUMBERS = {
+    **{f"l{i}": 1 for i in (1, 2, 3)},
+    **{f"lc{i}": 0.5 for i in (1, 2, 3)},
+    **{"m1": 3, "m2": 1, "m3": 1, "g": 9.81},
+}
+KINDS = ("in-line", "general", "thesis")
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def model(request):
+    return derive(links=request.param)
+
+
+@pytest.fixture(scope="module")
+def inline():
+    return derive()
+
+
+def random_numbers(model, seed):
+    """Random rational parameters, so that SymPy's exact route has no rounding."""
+    rng = np.random.default_rng(seed)
+    return {s: sympy.Rational(int(rng.integers(1, 40)), 16) for s in model.symbols.values()}
+
+
+def random_states(n, seed):
+    rng = np.random.default_rng(seed)
+    return rng.uniform(-np.pi, np.pi, (n, 3)), rng.normal(0, 2, (n, 3)), rng.normal(0, 5, (n, 3))
+
+
+# ---- the direct Lagrange derivation (1.75)-(1.77) by SymPy's diff, nothing simplified ---------------------------------
+
+
+def rot_z(angle):
+    c, s = sympy.cos(angle), sympy.sin(angle)
+    return sympy.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+
+def rot_x_quarter():
+    return sympy.Matrix([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+
+
+def lagrange_torque(model, q, qd, qdd, numbers):
+    """d/dt(dL/dqd) - dL/dq in floats, from positions and angular velocities found by differentiation in time."""
+    x, v = sympy.symbols("x1:4"), sympy.symbols("v1:4")
+    n = {str(s): value for s, value in numbers.items()}
+
+    def rate(expression):
+        """Time derivative of a function of the angles by the chain rule."""
+        return sum((expression.diff(x[k]) * v[k] for k in range(3)), 0 * expression)
+
+    R1 = rot_z(x[0])
+    R2 = R1 * rot_x_quarter() * rot_z(x[1])
+    R3 = R2 * rot_z(x[2])
+    shoulder = sympy.Matrix([0, 0, n["l1"]])
+    elbow = shoulder + R2 * sympy.Matrix([n["l2"], 0, 0])
+    rotations, origins = (R1, R2, R3), (sympy.zeros(3, 1), shoulder, elbow)
+    L = 0
+    for i, (R, origin) in enumerate(zip(rotations, origins, strict=True), start=1):
+        if model.links == "general":
+            r = sympy.Matrix([n[f"{axis}{i}"] for axis in "xyz"])
+        else:
+            column = model.links == "in-line" and i == 1
+            r = sympy.Matrix([0, 0, n["lc1"]]) if column else sympy.Matrix([n[f"lc{i}"], 0, 0])
+        xx, yy, zz, xy, xz, yz = (n.get(f"I{pair}{i}", 0) for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
+        inertia = sympy.Matrix([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]])
+        p = origin + R * r
+        spin = rate(R) * R.T  # skew matrix of the angular velocity, base frame
+        w = (R1 if model.links == "thesis" else R).T * sympy.Matrix([spin[2, 1], spin[0, 2], spin[1, 0]])
+        L += (n[f"m{i}"] * rate(p).dot(rate(p)) + w.dot(inertia * w) + n[f"j{i}"] * v[i - 1] ** 2) / 2
+        L -= n[f"m{i}"] * n["g"] * p[2]
+    tau = []
+    for i in range(3):
+        momentum = L.diff(v[i])
+        ddt = rate(momentum) + sum(momentum.diff(v[k]) * qdd[k] for k in range(3))
+        tau.append(ddt - L.diff(x[i]))
+    return sympy.lambdify([x, v], tau, "math", cse=True)([float(k) for k in q], [float(k) for k in qd])
+
+
+def test_tau_equals_sympys_lagrange_route(model):
+    seed = KINDS.index(model.links)
+    numbers = random_numbers(model, seed)
+    rng = np.random.default_rng(seed + 10)
+    q, qd, qdd = ([sympy.Rational(int(k), 16) for k in rng.integers(-40, 40, 3)] for _ in range(3))
+    state = {**numbers, **dict(zip([*model.q, *model.qd, *model.qdd], [*q, *qd, *qdd], strict=True))}
+    ours = [float(x) for x in model.tau.subs(state).evalf(30)]
+    assert np.allclose(ours, lagrange_torque(model, q, qd, qdd, numbers), rtol=1e-12, atol=1e-12)
+
+
+# ---- properties every mechanical system has -------------------------------------------------------------------------
+
+
+def test_mass_matrix_is_symmetric_and_free_of_q1(model):
+    assert model.M == model.M.T
+    assert model.q[0] not in model.M.free_symbols | model.g.free_symbols | model.C.free_symbols
+
+
+def test_m_dot_minus_2c_is_skew_exactly(model):
+    Mdot = sum((model.M.diff(q) * qd for q, qd in zip(model.q, model.qd, strict=True)), sympy.zeros(3))
+    N = Mdot - 2 * model.C
+    assert same_function(N + N.T, sympy.zeros(3))
+    assert not same_function(N, sympy.zeros(3))
+
+
+def test_energy_changes_by_the_power_of_the_torque(model):
+    E = model.energy
+    dEdt = sum(E.diff(model.q[i]) * model.qd[i] + E.diff(model.qd[i]) * model.qdd[i] for i in range(3))
+    if model.links == "general":  # the exact proof takes seconds here; numbers of 50 digits do
+        numbers = random_numbers(model, 3)
+        numbers |= {s: sympy.Rational(7 * k - 20, 9) for k, s in enumerate([*model.q, *model.qd, *model.qdd])}
+        assert abs((dEdt - model.qd.dot(model.tau)).subs(numbers).evalf(50)) < 1e-40
+    else:
+        assert same_function(dEdt, model.qd.dot(model.tau))
+
+
+def test_c_qd_is_the_sorted_sum_of_christoffel_symbols(model):
+    assert same_function(model.C * model.qd, model.h)
+    assert model.b(1, 1, 2) == model.b(1, 2, 1)
+    assert same_function(2 * model.b(1, 1, 2), model.M[0, 0].diff(model.q[1]))
+
+
+def test_gravity_is_the_gradient_of_the_potential(model):
+    assert same_function(model.g, sympy.Matrix([model.potential.diff(q) for q in model.q]))
+
+
+def test_forms_of_the_errata(inline):
+    """M11, alpha, beta, k and g as ERRATA 1.4 gives them for rigid in-line links."""
+    s = inline.symbols
+    q2, q3 = inline.q[1:]
+    c2, s2, c23, s23 = sympy.cos(q2), sympy.sin(q2), sympy.cos(q2 + q3), sympy.sin(q2 + q3)
+    k = s["m3"] * s["lc3"] * s["l2"] * sympy.sin(q3)
+    reach3 = s["l2"] * c2 + s["lc3"] * c23
+    M11 = s["j1"] + s["Izz1"] + s["m2"] * s["lc2"] ** 2 * c2**2 + s["m3"] * reach3**2
+    M11 += s["Ixx2"] * s2**2 + s["Iyy2"] * c2**2 + s["Ixx3"] * s23**2 + s["Iyy3"] * c23**2
+    assert same_function(inline.M[0, 0], M11)
+    assert same_function(inline.b(2, 3, 3), -k)
+    assert same_function(inline.b(3, 2, 2), k)
+    g2 = s["g"] * (s["m2"] * s["lc2"] * c2 + s["m3"] * reach3)
+    assert same_function(inline.g, sympy.Matrix([0, g2, s["g"] * s["m3"] * s["lc3"] * c23]))
+
+
+# ---- numbers ----------------------------------------------------------------------------------------------------------
+
+STATES = (
+    ((0.3, 0.5, -0.7), (0.4, -0.6, 0.8)),
+    ((-1.1, 1.2, 0.9), (1.5, 0.7, -1.3)),
+    ((2.0, -0.4, -1.6), (-0.9, 1.1, 2.2)),
+    ((0.0, 2.3, -2.0), (0.5, -1.4, 0.3)),
+    ((1.57, 0.9, 1.4), (-2.1, 0.2, -0.5)),
+)
+# Source: computed from the corrected thesis equations (12 decimals): M11 M12 M22 M23 M33 | h1 h2 h3 | g2 g3
+REFERENCE = {
+    "A": """
+    2.812910903623 0 2.264842187284 0.632421093642 0.25 0.386946108779 -0.003074481791 -0.137695449772 17.720853962528 4.807226564311
+    0.7949114243 0 2.121609968271 0.560804984135 0.25 -0.307075309319 0.578191754873 0.298673840577 2.855824214062 -2.476270143062
+    1.470439621813 0 1.470800477699 0.235400238849 0.25 -2.652797274224 4.27783838223 -0.867310725868 11.512212293489 -2.041200233264
+    0.896553827571 0 1.083853163453 0.041926581726 0.25 -0.401455623687 -0.414168005606 -0.898078654433 -5.118326173972 4.685925479161
+    0.929815808503 0 1.6699671429 0.33498357145 0.25 0.156544516099 1.983044137348 0.49403766303 5.878906798725 -3.268083884378
+    """,
+    "B": """
+    2.207134374451 0 2.431508853951 0.715754426976 0.333333333333 0.406371650758 -0.000060797507 -0.140291572054 17.720853962528 4.807226564311
+    0.077092485263 0 2.288276634937 0.644138317469 0.333333333333 -0.431546520548 0.559806199386 0.216963611914 2.855824214062 -2.476270143062
+    0.8055672505 0 1.637467144365 0.318733572183 0.333333333333 -2.524670534135 4.279169698378 -0.841768641651 11.512212293489 -2.041200233264
+    0.259603122904 0 1.25051983012 0.12525991506 0.333333333333 -0.433541485535 -0.418637261129 -0.892196962002 -5.118326173972 4.685925479161
+    0.249009365935 0 1.836633809567 0.418316904783 0.333333333333 0.242797960871 1.979397917604 0.311446941113 5.878906798725 -3.268083884378
+    """,
+    "C": """
+    1.535494326242 0.05 0.792968437457 0.376484218728 0.3 0.091698036687 -0.004152882684 -0.033769783431 10.833586016812 4.807226564311
+    0.965208328415 0.05 0.764321993654 0.362160996827 0.3 -0.246668154481 -0.050070354694 -0.136369780678 0.012040556929 -2.476270143062
+    1.112657696463 0.05 0.63416009554 0.29708004777 0.3 -0.109426073832 0.905247509893 -0.112161143054 4.283725612554 -2.041200233264
+    1.129601276467 0.05 0.556770632691 0.258385316345 0.3 -0.046003800766 -0.073685994305 -0.165499669052 0.110608041033 4.685925479161
+    1.040203867113 0.05 0.67399342858 0.31699671429 0.3 0.172874609876 0.044284455911 -0.339410199996 1.000511767737 -3.268083884378
+    """,
+}
+
+
+@pytest.mark.parametrize("name", ["A", "B", "C"])
+def test_reference_values_of_the_thesis_models(name):
+    if name == "B":
+        numeric = derive().numeric(THESIS_RODS)
+    else:
+        numeric = derive(links="thesis").numeric(THESIS_A_NUMBERS if name == "A" else THESIS_C_NUMBERS)
+    rows = np.array(REFERENCE[name].split(), dtype=float).reshape(5, 10)
+    for (q, qd), row in zip(STATES, rows, strict=True):
+        M, h, g = numeric.M(q), numeric.C(q, qd) @ qd, numeric.g(q)
+        found = [M[0, 0], M[0, 1], M[1, 1], M[1, 2], M[2, 2], *h, *g[1:]]
+        assert np.allclose(found, row, rtol=0, atol=6e-13)
+        assert (M[0, 2], g[0]) == (0, 0)
+
+
+def test_model_a_as_an_arm_has_the_same_dynamics():
+    as_arm, as_thesis = derive().numeric(THESIS_A), derive(links="thesis").numeric(THESIS_A_NUMBERS)
+    for q, qd, _ in zip(*random_states(20, seed=4), strict=True):
+        assert np.allclose(as_arm.M(q), as_thesis.M(q), atol=1e-14)
+        assert np.allclose(as_arm.C(q, qd), as_thesis.C(q, qd), atol=1e-13)
+
+
+def random_arm(seed):
+    """A valid arm with everything in it: unequal lengths, inertias with margin, rotors of the IR50P's motors."""
+    rng = np.random.default_rng(seed)
+    principal = rng.uniform(1.0, 1.9, (3, 3)) * 0.02
+    l = rng.uniform(0.1, 0.6, 3)
+    return Arm(
+        l=l, m=rng.uniform(0.3, 4, 3), lc=l * rng.uniform(0.1, 0.9, 3), Ixx=principal[0], Iyy=principal[1],
+        Izz=principal[2], actuators=IR50P.actuators, g=rng.uniform(1, 12),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("arm", [IR50P, THESIS_A, THESIS_RODS, random_arm(0), random_arm(1)], ids=lambda a: a.name)
+@pytest.mark.parametrize("links", ["in-line", "general"])
+def test_equal_to_the_closed_form(arm, links):
+    numeric = derive(links=links).numeric(arm)
+    bare = arm.without_friction()
+    offsets = []
+    for q, qd, qdd in zip(*random_states(60, seed=5), strict=True):
+        close = {"rtol": 1e-12, "atol": 1e-12}
+        assert np.allclose(numeric.M(q), mass_matrix(arm, q), **close)
+        assert np.allclose(numeric.C(q, qd), coriolis_matrix(arm, q, qd), **close)
+        assert np.allclose(numeric.g(q), gravity(arm, q), **close)
+        tau = numeric.M(q) @ qdd + numeric.C(q, qd) @ qd + numeric.g(q)
+        assert np.allclose(tau, inverse_dynamics(bare, q, qd, qdd), **close)
+        assert np.allclose(numeric.p(q), forward_kinematics(arm, q), **close)
+        assert np.allclose(numeric.J(q), jacobian(arm, q), **close)
+        offsets.append(numeric.energy(q, qd) - energy(arm, q, qd).total)
+    assert np.ptp(offsets) < 1e-11  # the zero of height is free
+
+
+def test_equal_to_the_closed_form_for_theta_of_model_c():
+    numeric = derive(links="thesis").numeric(THESIS_C_NUMBERS)
+    for q, qd, _ in zip(*random_states(30, seed=6), strict=True):
+        assert np.allclose(numeric.M(q), mass_matrix(THESIS_C, q), atol=1e-12)
+        assert np.allclose(numeric.C(q, qd), coriolis_matrix(THESIS_C, q, qd), atol=1e-12)
+        assert np.allclose(numeric.g(q), gravity(THESIS_C, q), atol=1e-12)
+
+
+def test_frames_equal_the_numeric_chain(inline):
+    q = (0.4, -0.9, 1.3)
+    state = dict(zip([*inline.q, *(inline.symbols[n] for n in ("l1", "l2", "l3"))], [*q, *IR50P.l], strict=True))
+    ours = np.array([T.subs(state) for T in inline.frames], dtype=float)
+    assert np.allclose(ours, frames(IR50P, q), atol=1e-15)
+
+
+def test_general_arm_equals_mujoco():
+    """Centres of mass off the links and full inertia tensors: what no theta expresses."""
+    mujoco = pytest.importorskip("mujoco")
+    rng = np.random.default_rng(7)
+    l, m, j, com = (
+        rng.uniform(0.2, 0.5, 3),
+        rng.uniform(0.5, 3, 3),
+        rng.uniform(0.01, 0.1, 3),
+        rng.normal(0, 0.1, (3, 3)),
+    )
+    tensors = []
+    for _ in range(3):
+        points = rng.normal(0, 0.1, (5, 3))  # the tensor of five point masses is a possible one
+        tensors.append(sum((p @ p) * np.eye(3) - np.outer(p, p) for p in points))
+    numbers = {"g": 9.81}
+    for i in range(3):
+        I = tensors[i]
+        numbers |= {f"l{i + 1}": l[i], f"m{i + 1}": m[i], f"j{i + 1}": j[i]}
+        numbers |= {f"{axis}{i + 1}": com[i][k] for k, axis in enumerate("xyz")}
+        numbers |= {f"I{a}{i + 1}": I[k, k] for k, a in enumerate(("xx", "yy", "zz"))}
+        numbers |= {f"I{a}{i + 1}": -I[r, c] for a, r, c in (("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2))}
+
+    def inertial(i):
+        I = tensors[i]
+        full = " ".join(repr(float(x)) for x in (I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]))
+        pos = " ".join(repr(float(x)) for x in com[i])
+        return f'<inertial pos="{pos}" mass="{float(m[i])!r}" fullinertia="{full}"/>'
+
+    def joint(i):
+        return f'<joint name="q{i + 1}" type="hinge" axis="0 0 1" armature="{float(j[i])!r}"/>'
+
+    xml = f"""<mujoco><compiler angle="radian"/><option gravity="0 0 -9.81"/><worldbody>
+      <body>{joint(0)}{inertial(0)}
+        <body pos="0 0 {float(l[0])!r}" quat="0.7071067811865476 0.7071067811865476 0 0">{joint(1)}{inertial(1)}
+          <body pos="{float(l[1])!r} 0 0">{joint(2)}{inertial(2)}</body></body></body></worldbody></mujoco>"""
+    engine = mujoco.MjModel.from_xml_string(xml)
+    data = mujoco.MjData(engine)
+    numeric = derive(general=True).numeric(numbers)
+    for q, qd, qdd in zip(*random_states(50, seed=8), strict=True):
+        data.qpos[:], data.qvel[:], data.qacc[:] = q, qd, qdd
+        mujoco.mj_inverse(engine, data)
+        tau = numeric.M(q) @ qdd + numeric.C(q, qd) @ qd + numeric.g(q)
+        assert np.allclose(tau, data.qfrc_inverse, rtol=1e-9, atol=1e-9)
+
+
+# ---- speed, reading, refusals ----------------------------------------------------------------------------------------
+
+
+def test_derivation_takes_less_than_a_fifth_of_a_second():
+    times = []
+    for _ in range(3):
+        start = time.perf_counter()
+        derive()
+        times.append(time.perf_counter() - start)
+    assert min(times) < 0.2  # measured: 0.05 s
+
+
+def test_short_names_for_reading(inline):
+    text = sympy.latex(inline.short(inline.M))
+    assert "c_{23}" in text and "cos" not in text
+    assert "cos" in sympy.latex(inline.M)
+
+
+def test_same_function_tells_apart():
+    x, y = sympy.symbols("x y")
+    assert same_function(sympy.cos(x + y) + sympy.sin(x) * sympy.sin(y), sympy.cos(x) * sympy.cos(y))
+    assert same_function(sympy.sin(2 * x), 2 * sympy.sin(x) * sympy.cos(x))
+    assert not same_function(sympy.sin(x) ** 2, sympy.sin(x))
+    assert not same_function(sympy.eye(2), sympy.eye(3))
+
+
+def test_refusals_say_what_to_do(inline):
+    with pytest.raises(InputError, match="choose one of 'in-line', 'general', 'thesis'"):
+        derive(links="bent")
+    with pytest.raises(InputError, match="'lc4' is no parameter"):
+        inline.numeric({"lc4": 1})
+    with pytest.raises(InputError, match=r"no number for .*m3"):
+        inline.numeric({"g": 9.81, "l1": 1})
+    with pytest.raises(InputError, match="m1 = nan"):
+        inline.numeric({"m1": float("nan")})
+    with pytest.raises(InputError, match="give a mapping"):
+        derive(links="thesis").numeric(IR50P)
+    with pytest.raises(InputError, match="one state at a time"):
+        inline.numeric(IR50P).M(np.zeros((2, 3)))
+    with pytest.raises(InputError, match="1 to 3"):
+        inline.b(0, 1, 1)
