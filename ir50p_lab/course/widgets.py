@@ -119,7 +119,7 @@ class LivePanel(widgets.VBox):
     @property
     def values(self):
         """What the controls say now: name -> value."""
-        return {name: control.value for name, control in self.controls.items()}
+        return {name: _value(control) for name, control in self.controls.items()}
 
     def set(self, **values):
         """Move controls from Python, redraw once, and raise what `update` raises.
@@ -171,10 +171,18 @@ class LivePanel(widgets.VBox):
                         self._finish()
                         return
                 self._draw(values)
+                self._fill_boxes(values)
         except BaseException:  # an interrupted kernel must find the panel usable
             with self._condition:
                 self._finish()
             raise
+
+    def _fill_boxes(self, values):
+        """The number boxes follow their sliders after the picture, which is what the eye waits for."""
+        for name, control in self.controls.items():
+            box = getattr(control, "box", None)
+            if box is not None and box.value != values[name]:
+                box.value = values[name]
 
     def _finish(self):
         self._drawer = None
@@ -262,23 +270,38 @@ def _make_control(name, spec, label_width):
         )
     low, high, step, start = map(_plain, (spec.min, spec.max, spec.step, spec.start))
     whole = all(isinstance(v, int) for v in (low, high, step, start))
-    kind, box_kind = (
+    slider_kind, box_kind = (
         (widgets.IntSlider, widgets.BoundedIntText) if whole else (widgets.FloatSlider, widgets.BoundedFloatText)
     )
     common = {"min": low, "max": high, "step": step, "value": start}
-    control = kind(
+    control = slider_kind(
         **common,
         description=_label(name, spec),
         style=style,
         readout=False,
         layout=widgets.Layout(width="330px"),
     )
-    box = box_kind(**common, layout=widgets.Layout(width="85px"))
-    # linked in the browser: the box follows without asking Python
-    link = widgets.jslink((control, "value"), (box, "value"))
-    row = widgets.HBox([control, box, widgets.Label(spec.unit, layout=widgets.Layout(min_width="2em"))])
-    row.link = link  # keep it alive
-    return control, row
+    control.box = box_kind(**common, layout=widgets.Layout(width="80px"))
+    control.digits = None if whole else _digits(step, low)
+    control.box.observe(lambda change: setattr(control, "value", change["new"]), "value")
+    return control, widgets.HBox([control, control.box, widgets.Label(spec.unit)])
+
+
+def _digits(*numbers):
+    """Decimals that are enough to write these numbers."""
+    return max((len(f"{abs(v):.10f}".rstrip("0").partition(".")[2]) for v in numbers), default=0)
+
+
+def _value(control):
+    """The value of a control, without the rounding noise of the browser's steps (1.0599999 for 1.06).
+
+    A number typed into the box is kept as it is, however fine.
+    """
+    value, digits = control.value, getattr(control, "digits", None)
+    if digits is None:
+        return value
+    near = round(value, digits)
+    return near if abs(near - value) < 1e-9 * max(1.0, abs(value)) else value
 
 
 def _refuse_bad_value(name, value, controls):
@@ -323,7 +346,5 @@ def _close_panels_of_earlier_runs(panel):
 def _close(widget):
     for child in getattr(widget, "children", ()):
         _close(child)
-    for other in (getattr(widget, "link", None), widget.layout):
-        if other is not None:
-            other.close()
+    widget.layout.close()
     widget.close()
