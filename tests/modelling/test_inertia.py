@@ -1,0 +1,134 @@
+"""Inertia tensors by integration against textbook formulae, random points, MuJoCo and a solid cut in two."""
+
+import numpy as np
+import pytest
+import sympy
+
+from ir50p_lab.errors import ArmError, InputError
+from ir50p_lab.modelling import Arm, Body, ball, box, cone, cylinder, integrate_solid, rod, rot_x, rot_z, tube
+from ir50p_lab.modelling.inertia import second_moment_tensor
+
+m, a, b, c, R, r, L = sympy.symbols("m a b c R r L", positive=True)
+TEXTBOOK = {  # any handbook of mechanics; the axis of the turned solids is x
+    box: (m * (b**2 + c**2) / 12, m * (a**2 + c**2) / 12, m * (a**2 + b**2) / 12),
+    cylinder: (m * R**2 / 2, *[m * (3 * R**2 + L**2) / 12] * 2),
+    tube: (m * (R**2 + r**2) / 2, *[m * (3 * (R**2 + r**2) + L**2) / 12] * 2),
+    cone: (3 * m * R**2 / 10, *[3 * m * (4 * R**2 + L**2) / 80] * 2),
+    ball: [2 * m * R**2 / 5] * 3,
+    rod: (0, m * L**2 / 12, m * L**2 / 12),
+}
+VOLUME = {
+    box: a * b * c, cylinder: sympy.pi * R**2 * L, tube: sympy.pi * (R**2 - r**2) * L,
+    cone: sympy.pi * R**2 * L / 3, ball: 4 * sympy.pi * R**3 / 3, rod: L,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("make", TEXTBOOK, ids=lambda f: f.__name__)
+def test_textbook_formulae(make):
+    solid = make()
+    assert sympy.simplify(solid.inertia - sympy.diag(*TEXTBOOK[make])) == sympy.zeros(3)
+    assert sympy.simplify(solid.volume - VOLUME[make]) == 0
+    assert list(solid.com) == ([L / 4, 0, 0] if make is cone else [0, 0, 0])
+
+
+def test_monte_carlo_over_a_cone():
+    """The one solid with a centre of mass off its origin: random points in it, no integral."""
+    rng = np.random.default_rng(1)
+    points = rng.uniform([0, -0.3, -0.3], [0.5, 0.3, 0.3], (400_000, 3))
+    inside = points[np.hypot(points[:, 1], points[:, 2]) < 0.3 * (1 - points[:, 0] / 0.5)]
+    centre = inside.mean(axis=0)
+    d = inside - centre
+    tensor = 2.0 * ((d**2).sum() * np.eye(3) - d.T @ d) / len(d)
+    body = cone().body(2.0, R=0.3, L=0.5)
+    assert np.allclose(body.com, centre, atol=1e-3)
+    assert np.allclose(body.inertia, tensor, atol=3e-4)
+
+
+@pytest.mark.parametrize(
+    ("solid", "sizes", "geom"),
+    [
+        (box, {"a": 0.3, "b": 0.2, "c": 0.1}, 'type="box" size="0.15 0.1 0.05"'),
+        (cylinder, {"R": 0.1, "L": 0.5}, 'type="cylinder" size="0.1 0.25" euler="0 90 0"'),
+        (ball, {"R": 0.2}, 'type="sphere" size="0.2"'),
+    ],
+    ids=["box", "cylinder", "ball"],
+)
+def test_equal_to_mujocos_geometry(solid, sizes, geom):
+    mujoco = pytest.importorskip("mujoco")
+    xml = f'<mujoco><worldbody><body><freejoint/><geom mass="1.7" {geom}/></body></worldbody></mujoco>'
+    model = mujoco.MjModel.from_xml_string(xml)
+    ours = solid().body(1.7, **sizes)
+    assert np.allclose(sorted(np.diag(ours.inertia)), sorted(model.body_inertia[1]), rtol=1e-12)
+
+
+def test_a_box_cut_in_two_and_joined_is_the_box():
+    whole = box().body(2.0, a=0.6, b=0.2, c=0.1)
+    half = box().body(1.0, a=0.3, b=0.2, c=0.1)
+    joined = half.moved([-0.15, 0, 0]) + half.moved([0.15, 0, 0])
+    assert joined.mass == whole.mass
+    assert np.allclose(joined.com, 0, atol=1e-16) and np.allclose(joined.inertia, whole.inertia, rtol=1e-13)
+
+
+def test_steiner_and_rotation_agree_with_the_kinetic_energy_of_points():
+    rng = np.random.default_rng(2)
+    points, masses = rng.normal(size=(20, 3)), rng.uniform(0.1, 1, 20)
+    body = sum((Body(mass, p) for mass, p in zip(masses, points, strict=True)), start=Body(0.0))
+    turn = rot_z(0.4) @ rot_x(-1.1)
+    pivot, omega = np.array([0.3, -0.2, 0.5]), np.array([0.7, -0.4, 1.2])
+    velocity = np.cross(omega, points @ turn.T - pivot)
+    kinetic = 0.5 * masses @ (velocity**2).sum(axis=1)
+    assert np.isclose(0.5 * omega @ body.rotated(turn).about(pivot) @ omega, kinetic, rtol=1e-13)
+    assert np.isclose(body.mass, masses.sum())
+
+
+def test_integrand_is_minus_p_hat_squared():
+    x, y, z = sympy.symbols("x y z")
+    p_hat = sympy.Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    assert sympy.expand(second_moment_tensor((x, y, z)) + p_hat**2) == sympy.zeros(3)
+
+
+def test_own_solid_with_products_of_inertia():
+    """A plate that is a right triangle: Ixy about the centre of mass is -m a b / 36 (handbook: -a^2 b^2 rho / 72)."""
+    x, y = sympy.symbols("x y")
+    plate = integrate_solid("triangle", (x, y, 0), [(y, 0, b * (1 - x / a)), (x, 0, a)])
+    assert list(plate.com) == [a / 3, b / 3, 0]
+    assert sympy.simplify(plate.inertia[0, 1] - m * a * b / 36) == 0
+    assert plate.sizes == (a, b)
+
+
+def test_link_from_a_drawing_becomes_an_arm():
+    pipe = tube().body(0.4, R=0.02, r=0.018, L=0.3).moved([0.15, 0, 0])
+    motor = cylinder().body(0.6, R=0.03, L=0.06)
+    link = pipe + motor
+    com, inertia = [[0, 0, 0.1], link.com, link.com], [np.eye(3) * 0.01, link.inertia, link.inertia]
+    arm = Arm.from_rigid_bodies(l=(0.2, 0.3, 0.3), m=(2, link.mass, link.mass), com=com, inertia=inertia)
+    assert arm.lc[1] == pytest.approx(0.4 * 0.15 / 1.0)
+    assert arm.Ixx[1] == pytest.approx(0.4 * (0.02**2 + 0.018**2) / 2 + 0.6 * 0.03**2 / 2)
+
+
+def test_refusals_say_what_to_do():
+    with pytest.raises(ArmError, match="triangle inequality"):
+        Body(1.0, inertia=np.diag([1.0, 1.0, 3.0]))
+    with pytest.raises(ArmError, match="triangle inequality"):  # hidden by a rotation of the axes
+        Body(1.0, inertia=rot_x(0.7) @ np.diag([1.0, 1.0, 2.1]) @ rot_x(0.7).T)
+    with pytest.raises(ArmError, match="cannot be negative"):
+        Body(1.0, inertia=np.diag([-0.1, 1.0, 1.0]))
+    with pytest.raises(ArmError, match="mass = -1"):
+        Body(-1.0)
+    with pytest.raises(ArmError, match="not symmetric"):
+        Body(1.0, inertia=[[1, 0.1, 0], [0, 1, 0], [0, 0, 1]])
+    with pytest.raises(InputError, match="give \\(3,\\)"):
+        Body(1.0, com=(0, 0))
+    with pytest.raises(InputError, match="finite"):
+        Body(1.0, com=(0, 0, np.nan))
+    with pytest.raises(InputError, match="sizes L, R"):
+        cylinder().body(1.0, R=0.1)
+    with pytest.raises(InputError, match="must be a positive number"):
+        ball().body(1.0, R=-0.1)
+    with pytest.raises(InputError, match="not below the outer radius"):
+        tube().body(1.0, R=0.1, r=0.2, L=1.0)
+    with pytest.raises(InputError, match="not a rotation"):
+        Body(1.0).rotated(2 * np.eye(3))
+    with pytest.raises(TypeError):
+        Body(1.0) + 1.0
+    assert (Body(0.0) + Body(0.0)).mass == 0
