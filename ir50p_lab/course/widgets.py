@@ -19,6 +19,7 @@ import threading
 import traceback
 import weakref
 from dataclasses import dataclass
+from typing import ClassVar
 
 import ipywidgets as widgets
 
@@ -80,7 +81,7 @@ class LivePanel(widgets.VBox):
     `LivePanel.panels` holds the panels that are alive.
     """
 
-    panels = weakref.WeakSet()
+    panels: ClassVar = weakref.WeakSet()
 
     def __init__(self, figure, update, controls):
         if not controls:
@@ -109,8 +110,9 @@ class LivePanel(widgets.VBox):
         self.status = widgets.HTML(layout=widgets.Layout(min_height="1.5em", width=f"{pixels}px"))
         reset = widgets.Button(description="Reset", layout=widgets.Layout(width="80px"))
         reset.on_click(lambda _: self.reset())
-        box = widgets.Layout(display="flex", flex_flow="row wrap", max_width=f"{pixels}px", align_items="center")
-        super().__init__([widgets.Box([*rows, reset], layout=box), self.image, self.status])
+        columns = 1 if len(rows) <= 3 else 2
+        grid = widgets.Layout(grid_template_columns="max-content " * columns, grid_gap="0 24px")
+        super().__init__([widgets.GridBox([*rows, reset], layout=grid), self.image, self.status])
         for control in self.controls.values():
             control.observe(self._changed, "value")
         _close_panels_of_earlier_runs(self)
@@ -260,7 +262,8 @@ def _make_control(name, spec, label_width):
     if isinstance(spec, list | dict):
         if not spec:
             raise InputError(f"{name}: an empty menu; give at least one choice")
-        control = widgets.Dropdown(options=spec, description=name, style=style)
+        layout = widgets.Layout(width=f"calc({label_width} + 230px)")
+        control = widgets.Dropdown(options=spec, description=name, style=style, layout=layout)
         return control, control
     if isinstance(spec, tuple) and len(spec) == 4:
         spec = Slider(*spec)
@@ -279,7 +282,7 @@ def _make_control(name, spec, label_width):
         description=_label(name, spec),
         style=style,
         readout=False,
-        layout=widgets.Layout(width="330px"),
+        layout=widgets.Layout(width=f"calc({label_width} + 230px)"),
     )
     control.box = box_kind(**common, layout=widgets.Layout(width="80px"))
     control.digits = None if whole else _digits(step, low)

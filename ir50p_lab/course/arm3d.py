@@ -1,0 +1,248 @@
+"""The arm in pictures that move: in 3-D (`ArmView`) and in the vertical plane through it (`SideView`)."""
+
+import numpy as np
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+from ir50p_lab.course.style import COLOURS
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling.chain import frames
+
+_AXIS_COLOURS = (COLOURS["orange"], COLOURS["green"], COLOURS["blue"])  # x, y, z
+_LINK_COLOURS = ("#8C8C8C", COLOURS["blue"], COLOURS["orange"])  # column, upper arm, forearm
+
+
+def arm_points(arm, q):
+    """The corners of the arm: foot of the column, shoulder, elbow, tip.
+
+    Args: arm: Arm; q: (3,) or (n, 3) rad. Returns: (4, 3) or (n, 4, 3) m, base coordinates.
+    """
+    return frames(arm, q)[..., :3, 3]
+
+
+class FrameView:
+    """A coordinate frame in 3-D axes: x orange, y green, z blue. `update(T)` moves it."""
+
+    def __init__(self, ax, T, name="", length=0.1):
+        self._length = length
+        self._name = name
+        self.axes = [
+            ax.plot([0, 0], [0, 0], [0, 0], color=c, linewidth=2.2, solid_capstyle="round", zorder=30)[0]
+            for c in _AXIS_COLOURS
+        ]
+        self.labels = [
+            ax.text(0, 0, 0, letter, color=c, fontsize=9, ha="center", va="center", zorder=31)
+            for letter, c in zip("xyz", _AXIS_COLOURS, strict=True)
+        ]
+        self.title = ax.text(0, 0, 0, name, fontsize=9, fontweight="bold", ha="right", va="top", zorder=31)
+        self.update(T)
+
+    def update(self, T):
+        """Place the frame. T: (4, 4), takes coordinates of this frame to those of the axes."""
+        T = np.asarray(T, dtype=float)
+        if T.shape != (4, 4) or not np.isfinite(T).all():
+            raise InputError(f"a frame is a finite (4, 4) transform, got shape {T.shape}")
+        origin, R = T[:3, 3], T[:3, :3]
+        for k in range(3):
+            self.axes[k].set_data_3d(*np.column_stack([origin, origin + self._length * R[:, k]]))
+            self.labels[k].set_position_3d(origin + 1.22 * self._length * R[:, k])
+        self.title.set_position_3d(origin - 0.2 * self._length * R.sum(axis=1))
+
+    def set_visible(self, visible):
+        """Show or hide the frame."""
+        for artist in (*self.axes, *self.labels, self.title):
+            artist.set_visible(visible)
+
+
+def draw_frame(ax, T=None, name="", length=0.1):
+    """Draw a coordinate frame in 3-D axes.
+
+    Args: ax: 3-D axes; T: (4, 4) transform of the frame, the identity by default; name: text at its origin;
+    length: of its axes, in the unit of the plot. Returns: FrameView, whose `update(T)` moves it.
+    """
+    return FrameView(ax, np.eye(4) if T is None else T, name, length)
+
+
+class ArmView:
+    """The arm in 3-D axes: column, upper arm and forearm, joint axes, tip, shadow; `update(q)` moves it.
+
+    Args:
+        ax: 3-D axes (`new_figure(projection="3d")`). arm: Arm.
+        q: (3,) rad, first pose. frames: also draw frames 0 to 3.
+        colour: one colour for the whole arm instead of one per link; ghost: links only, thin and pale, for a
+        second pose in the same axes (the first view has set limits, ground and labels).
+        thickness: of the links, points.
+    """
+
+    def __init__(self, ax, arm, q=(0.0, 0.0, 0.0), *, frames=False, colour=None, ghost=False, thickness=10.0):
+        self.ax, self.arm, self.q = ax, arm, None
+        self._ghost = ghost
+        if not ghost:
+            _stage(ax, arm)
+        alpha = 0.45 if ghost else 1.0
+        thickness = 0.55 * thickness if ghost else thickness
+        colours = _LINK_COLOURS if colour is None else (_LINK_COLOURS[0], colour, colour)
+
+        def line(width, colour, **more):
+            more = {"solid_capstyle": "round", "alpha": alpha} | more
+            return ax.plot([0, 0], [0, 0], [0, 0], linewidth=width, color=colour, **more)[0]
+
+        # each part is an outline and a fill, both kept; `update` orders the parts by depth
+        self._links = []
+        for colour, width, cap in zip(colours, (1.25, 1.0, 0.8), ("butt", "round", "round"), strict=True):
+            style = {"solid_capstyle": cap}
+            outline = line(width * thickness + 2.0, "#222222", **style)
+            self._links.append((outline, line(width * thickness, colour, **style)))
+        self._hubs, self._shadow, self._frames = [], None, []
+        if not ghost:
+            hub = {"solid_capstyle": "butt"}
+            self._hubs = [
+                (line(1.45 * thickness + 2, "#222222", **hub), line(1.45 * thickness, "#C8C8C8", **hub))
+                for _ in range(4)
+            ]
+            self._shadow = line(0.6 * thickness, "#000000", alpha=0.10, zorder=2, solid_joinstyle="round")
+            if frames:
+                size = 0.28 * arm.reach
+                self._frames = [FrameView(ax, np.eye(4), str(k), size) for k in range(4)]
+        self._tip = ax.plot([0], [0], [0], "o", ms=0.75 * thickness, color=COLOURS["dark"], alpha=alpha)[0]
+        self._trail = ax.plot([], [], [], "-", color=COLOURS["green"], linewidth=1.6, zorder=3)[0]
+        self._target = ax.plot([], [], [], "X", color=COLOURS["purple"], ms=10, mec="white", zorder=25)[0]
+        self.update(q)
+
+    @property
+    def points(self):
+        """What is drawn: foot, shoulder, elbow and tip, (4, 3) m."""
+        ends = [np.column_stack(fill.get_data_3d()) for _, fill in self._links]
+        return np.vstack([ends[0][:1], *(end[1:] for end in ends)])
+
+    def update(self, q):
+        """Move the arm to q (3,) rad."""
+        q = vectors3("q", q)
+        if q.shape != (3,):
+            raise InputError(f"a view shows one pose: q has shape {q.shape}, give (3,)")
+        self.q = q
+        T = frames(self.arm, q)
+        corners = T[:, :3, 3]
+        parts = []
+        for k, pair in enumerate(self._links):
+            parts.append((pair, corners[k : k + 2]))
+        half = 0.08 * self.arm.reach
+        for k, pair in enumerate(self._hubs):  # two halves of the shoulder's and of the elbow's axle
+            middle, axis = corners[1 + k // 2], T[1, :3, 2]
+            parts.append((pair, np.array([middle, middle + half * (-1) ** k * axis])))
+        self._place(parts)
+        self._tip.set_data_3d(*corners[3:].T)
+        if self._shadow is not None:
+            self._shadow.set_data_3d(corners[1:, 0], corners[1:, 1], np.zeros(3))
+        for view, transform in zip(self._frames, T, strict=False):
+            view.update(transform)
+
+    def trail(self, points):
+        """Draw a path of the tip. points: (n, 3) m; an empty list removes it."""
+        points = np.asarray(points, dtype=float).reshape(-1, 3)
+        self._trail.set_data_3d(*points.T)
+
+    def target(self, p=None):
+        """Mark a point p (3,) m; None removes the mark."""
+        points = np.empty((0, 3)) if p is None else vectors3("p", p, unit="m").reshape(1, 3)
+        self._target.set_data_3d(*points.T)
+
+    def _place(self, parts):
+        """Set the ends of each part and draw the far ones first."""
+        azimuth, elevation = np.radians([self.ax.azim, self.ax.elev])
+        to_eye = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
+        order = np.argsort([ends.mean(axis=0) @ to_eye for _, ends in parts])
+        base = 5 if self._ghost else 10
+        for rank, k in enumerate(order):
+            (outline, fill), ends = parts[k]
+            for artist, above in ((outline, 0.0), (fill, 0.5)):
+                artist.set_data_3d(*ends.T)
+                artist.set_zorder(base + rank + above)
+        self._tip.set_zorder(base + len(parts))
+
+
+def _stage(ax, arm):
+    """Ground, limits, labels: what stays still."""
+    R, top = arm.reach, arm.l[0] + arm.reach
+    turn = np.linspace(0, 2 * np.pi, 73)
+    circle = np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])
+    ax.add_collection3d(Poly3DCollection([R * circle], facecolor="#F4F4F4", edgecolor="#D0D0D0", zorder=0))
+    ax.add_collection3d(Poly3DCollection([0.13 * R * circle], facecolor="#9A9A9A", edgecolor="#222222", zorder=1))
+    ax.set(xlim=(-R, R), ylim=(-R, R), zlim=(0, top), xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+    ax.set_box_aspect((2 * R, 2 * R, top), zoom=1.3)
+    ax.locator_params(nbins=5)
+    ax.view_init(elev=22, azim=-60)
+
+
+class SideView:
+    """The arm in the vertical plane through its column and a heading: radius to the right, height upwards.
+
+    `update(q, heading=...)` projects the arm on the plane of that heading (rad; by default joint 1's own), so that
+    front and back solutions of one target share a plane.
+
+    Args: ax: 2-D axes; arm: Arm; colour: of the links; ghost: links only, pale, for a further pose in the same
+    axes; label: for the legend.
+    """
+
+    def __init__(self, ax, arm, q=(0.0, 0.0, 0.0), *, colour=COLOURS["blue"], ghost=False, label=None):
+        self.arm = arm
+        if not ghost:
+            _side_stage(ax, arm)
+        alpha = 0.6 if ghost else 1.0
+        self._line = ax.plot(
+            [],
+            [],
+            "-o",
+            color=colour,
+            alpha=alpha,
+            linewidth=4,
+            ms=8,
+            mfc="white",
+            mew=2,
+            label=label,
+            solid_capstyle="round",
+            solid_joinstyle="round",
+            zorder=4,
+        )[0]
+        self._tip = ax.plot([], [], "o", color=COLOURS["dark"], ms=6, zorder=5)[0]
+        self._target = ax.plot([], [], "X", color=COLOURS["purple"], ms=10, mec="white", zorder=6)[0]
+        self.update(q)
+
+    @property
+    def points(self):
+        """What is drawn: shoulder, elbow, tip as (radius, height), (3, 2) m."""
+        return np.column_stack(self._line.get_data())
+
+    def update(self, q, heading=None):
+        """Move the arm to q (3,) rad."""
+        corners = arm_points(self.arm, q)
+        heading = q[0] if heading is None else heading
+        radius = corners[:, :2] @ np.array([np.cos(heading), np.sin(heading)])
+        self._line.set_data(radius[1:], corners[1:, 2])
+        self._tip.set_data(radius[3:], corners[3:, 2])
+
+    def target(self, radius=None, height=None):
+        """Mark a point of the plane, m; no arguments remove the mark."""
+        self._target.set_data(*(([], []) if radius is None else ([radius], [height])))
+
+    def set_visible(self, visible):
+        """Show or hide this arm."""
+        for artist in (self._line, self._tip):
+            artist.set_visible(visible)
+
+
+def _side_stage(ax, arm):
+    """Reachable shell (shaded), column, ground and limits."""
+    (l1, l2, l3), R = arm.l, arm.reach
+    turn = np.linspace(0, 2 * np.pi, 181)
+    ring = np.column_stack([np.cos(turn), np.sin(turn)])
+    inner = abs(l2 - l3)
+    outline = np.vstack([R * ring, inner * ring[::-1]]) + np.array([0, l1])
+    ax.fill(*outline.T, facecolor="#EDF3F8", edgecolor="none", zorder=0.6)
+    for radius in (R, inner):
+        ax.plot(*(radius * ring + np.array([0, l1])).T, color="#B5CBDD", linewidth=1.0, zorder=0.7)
+    ax.plot([0, 0], [0, l1], color="#8C8C8C", linewidth=8, solid_capstyle="butt", zorder=3)
+    ax.axhline(0, color="#BBBBBB", linewidth=1.5, zorder=1)
+    margin = 1.08 * R
+    ax.set(xlim=(-margin, margin), ylim=(min(l1 - margin, 0), l1 + margin))
+    ax.set(xlabel="radius [m]", ylabel="height [m]", aspect="equal")

@@ -1,0 +1,49 @@
+"""Figures of the book: one import for the style, the coordinate frames and the arm in pictures.
+
+`python -m ir50p_lab.course.figures docs/arm.png` draws the picture of the README.
+"""
+
+import sys
+
+from ir50p_lab.course.arm3d import ArmView, FrameView, SideView, arm_points, draw_frame
+from ir50p_lab.course.style import COLOURS, SETPOINT, LabFigure, figure_style, new_figure, show
+
+__all__ = [
+    "COLOURS",
+    "SETPOINT",
+    "ArmView",
+    "FrameView",
+    "LabFigure",
+    "SideView",
+    "arm_points",
+    "draw_frame",
+    "figure_style",
+    "new_figure",
+    "readme_picture",
+    "show",
+]
+
+
+def readme_picture():
+    """The arm of the book in a working pose, with the frames of its joints: LabFigure."""
+    import numpy as np
+
+    from ir50p_lab.modelling import IR50P, forward_kinematics
+
+    figure = new_figure(8.0, 5.4, projection="3d")
+    ax = figure.axes[0]
+    arm = IR50P
+    view = ArmView(ax, arm, frames=True)
+    s = np.linspace(0.0, 1.0, 200)
+    path = np.column_stack([-1.5 + 1.3 * s, 1.25 + 0.25 * np.sin(9 * s), -1.5 + 0.35 * np.cos(6 * s)])
+    view.trail(forward_kinematics(arm, path))
+    view.update(path[-1])
+    lengths = ", ".join(f"{1000 * length:.0f}" for length in arm.l)
+    ax.set_title(f"The {arm.name} arm: drawing of the model, links {lengths} mm, path of the tip")
+    return figure
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        raise SystemExit("usage: python -m ir50p_lab.course.figures FILE.png")
+    readme_picture().savefig(sys.argv[1], dpi=150)
