@@ -7,12 +7,38 @@ not symmetric. The loops of simulation and identification call these functions; 
 Index in a row (thesis number minus 1): 0-9 and 19 inertia, 10-15 viscous and Coulomb friction, 16-18 offsets.
 """
 
-import math
+import numpy as np
 
-from numba import njit
+from ir50p_lab.jit import jit
 
 
-@njit(cache=True)
+@jit()
+def sincos(x):
+    """sin x and cos x to the last bit or two, |x| up to a million rad: compiled in line, several run at once.
+
+    Cody-Waite reduction to [-pi/4, pi/4], then minimax polynomials (Moshier's Cephes coefficients).
+    """
+    k = np.rint(x * 0.6366197723675814)  # 2/pi
+    y = ((x - k * 1.5707963267341256) - k * 6.077100506303966e-11) - k * 2.0222662487959506e-21
+    z = y * y
+    # fmt: off
+    s = y + y * z * (-1.66666666666666307295e-1 + z * (8.33333333332211858878e-3 + z * (-1.98412698295895385996e-4
+        + z * (2.75573136213857245213e-6 + z * (-2.50507477628578072866e-8 + z * 1.58962301576546568060e-10)))))
+    c = 1.0 - 0.5 * z + z * z * (4.16666666666665929218e-2 + z * (-1.38888888888730564116e-3
+        + z * (2.48015872888517045348e-5 + z * (-2.75573141792967388112e-7
+        + z * (2.08757008419747316778e-9 + z * -1.13585365213876817300e-11)))))
+    # fmt: on
+    quadrant = np.int64(k)
+    if quadrant & 1:
+        s, c = c, s
+    if quadrant & 2:
+        s = -s
+    if (quadrant + 1) & 2:
+        c = -c
+    return s, c
+
+
+@jit()
 def mass_terms(theta, c2, c3, c23):
     """M(q) as nine scalars by rows, kg m^2 (or PWM s^2/rad): M11 .. M33    (list of 1.5.3a corrected)."""
     M11 = theta[0, 0] + theta[0, 1] * c2 * c2 + theta[0, 4] * c23 * c23 + 2 * theta[0, 5] * c2 * c23
@@ -27,7 +53,7 @@ def mass_terms(theta, c2, c3, c23):
     return M11, M12, M13, M21, M22, M23, M31, M32, M33
 
 
-@njit(cache=True)
+@jit()
 def coriolis_factors(theta, row, c2, s2, s3, c23, s23):
     """alpha = -dM11/dq2 / 2, beta = -dM11/dq3 / 2, k = -dM23/dq3, from one row of theta    (1.93), (1.96)."""
     t2, t5, t6 = theta[row, 1], theta[row, 4], theta[row, 5]
@@ -36,7 +62,7 @@ def coriolis_factors(theta, row, c2, s2, s3, c23, s23):
     return alpha, beta, t6 * s3
 
 
-@njit(cache=True)
+@jit()
 def coriolis_torques(theta, c2, s2, s3, c23, s23, a, b, c):
     """C(q, qd) qd as three scalars, qd = (a, b, c)    (1.97) corrected: b233 = -k stands in row 2."""
     alpha1, beta1, _ = coriolis_factors(theta, 0, c2, s2, s3, c23, s23)
@@ -48,20 +74,20 @@ def coriolis_torques(theta, c2, s2, s3, c23, s23, a, b, c):
     return h1, h2, h3
 
 
-@njit(cache=True)
+@jit()
 def gravity_torques(theta, gravity, c2, c23):
     """g(q) of joints 2 and 3 (joint 1 carries none)    (1.114), grouping of 1.5.3c corrected."""
     g2 = gravity * (theta[1, 2] * c2 + theta[1, 3] * c23)
     return g2, gravity * theta[2, 3] * c23
 
 
-@njit(cache=True)
+@jit()
 def sign(x):
     """-1, 0 or 1."""
     return (x > 0) - (x < 0)
 
 
-@njit(cache=True)
+@jit()
 def friction_torques(theta, a, b, c):
     """Viscous and Coulomb friction and offset, linear in theta    (1.115), (1.118)."""
     f1 = theta[0, 10] * a + theta[0, 11] * sign(a) + theta[0, 16]
@@ -70,10 +96,11 @@ def friction_torques(theta, a, b, c):
     return f1, f2, f3
 
 
-@njit(cache=True)
+@jit()
 def bias_torques(theta, gravity, q2, q3, a, b, c):
     """C qd + g + friction, and the cosines that M needs: (n1, n2, n3, c2, c3, c23)."""
-    c2, s2, c3, s3 = math.cos(q2), math.sin(q2), math.cos(q3), math.sin(q3)
+    s2, c2 = sincos(q2)
+    s3, c3 = sincos(q3)
     c23, s23 = c2 * c3 - s2 * s3, s2 * c3 + c2 * s3
     h1, h2, h3 = coriolis_torques(theta, c2, s2, s3, c23, s23, a, b, c)
     g2, g3 = gravity_torques(theta, gravity, c2, c23)
@@ -81,7 +108,7 @@ def bias_torques(theta, gravity, q2, q3, a, b, c):
     return h1 + f1, h2 + g2 + f2, h3 + g3 + f3, c2, c3, c23
 
 
-@njit(cache=True)
+@jit()
 def inverse(theta, gravity, q2, q3, a, b, c, A, B, C):
     """Torques for accelerations (A, B, C): M qdd + C qd + g + friction    (1.74)."""
     n1, n2, n3, c2, c3, c23 = bias_torques(theta, gravity, q2, q3, a, b, c)
@@ -93,7 +120,7 @@ def inverse(theta, gravity, q2, q3, a, b, c, A, B, C):
     )
 
 
-@njit(cache=True)
+@jit()
 def solve_mass(M, r1, r2, r3):
     """Solve M x = r for the nine scalars M: x1, x2, x3, and det M (0 or NaN: singular).
 
@@ -112,7 +139,7 @@ def solve_mass(M, r1, r2, r3):
     return x1, x2, x3, det
 
 
-@njit(cache=True, error_model="numpy")
+@jit()
 def forward(theta, gravity, q2, q3, a, b, c, u1, u2, u3):
     """Accelerations for torques u: M^-1 (u - C qd - g - friction), and det M."""
     n1, n2, n3, c2, c3, c23 = bias_torques(theta, gravity, q2, q3, a, b, c)

@@ -7,10 +7,10 @@ counts the results are in PWM counts too. The kernels are in `closed_form`; here
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
+from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.arm import Arm
 
@@ -50,7 +50,7 @@ def _compatible(arrays):
     return len(lengths) <= 1
 
 
-@njit(cache=True)
+@jit()
 def _mass_loop(theta, q, out):
     for k in range(q.shape[0]):
         q2, q3 = q[k, 1], q[k, 2]
@@ -73,7 +73,7 @@ def mass_matrix(arm, q):
     return out[0] if single else out
 
 
-@njit(cache=True)
+@jit()
 def _coriolis_loop(theta, q, qd, out):
     for k in range(q.shape[0]):
         a, b, c = qd[k]
@@ -100,7 +100,7 @@ def coriolis_matrix(arm, q, qd):
     return out[0] if single else out
 
 
-@njit(cache=True)
+@jit()
 def _gravity_loop(theta, gravity, q, out):
     for k in range(q.shape[0]):
         out[k, 0] = 0.0
@@ -127,7 +127,7 @@ def bias(arm, q, qd):
     return inverse_dynamics(arm, q, qd, np.zeros(3))
 
 
-@njit(cache=True)
+@jit()
 def _inverse_loop(theta, gravity, q, qd, qdd, out):
     for k in range(q.shape[0]):
         out[k, 0], out[k, 1], out[k, 2] = cf.inverse(
@@ -151,14 +151,14 @@ def inverse_dynamics(arm, q, qd, qdd):
     return out[0] if single else out
 
 
-@njit(cache=True)
+@jit()
 def _forward_one(theta, gravity, q, qd, tau, out):
     """One state into out; returns det M, NaN if any number that went in is not finite."""
     out[0], out[1], out[2], det = cf.forward(theta, gravity, q[1], q[2], qd[0], qd[1], qd[2], tau[0], tau[1], tau[2])
     return det + 0.0 * (q[0] + out[0] + out[1] + out[2])
 
 
-@njit(cache=True)
+@jit()
 def _forward_loop(theta, gravity, q, qd, tau, out):
     """Fills out; returns the first row with a singular M, or -1."""
     for k in range(q.shape[0]):

@@ -15,6 +15,7 @@ from ir50p_lab.modelling import (
     THESIS_RODS,
     Arm,
     bias,
+    closed_form,
     coriolis_matrix,
     energy,
     forward_dynamics,
@@ -209,3 +210,9 @@ def test_bad_input_gets_a_sentence(call, words):
 def test_one_row_of_theta_counts_for_all_joints():
     q = np.array([0.1, 0.2, 0.3])
     assert (mass_matrix(IR50P.theta[0], q) == mass_matrix(IR50P, q)).all()
+
+
+def test_our_sine_and_cosine_are_right_to_the_last_bits():
+    x = np.concatenate([np.random.default_rng(0).uniform(-50, 50, 2000), np.arange(-40, 41) * np.pi / 4, [0.0, 1e6]])
+    found = np.array([closed_form.sincos(value) for value in x])
+    np.testing.assert_allclose(found, np.stack([np.sin(x), np.cos(x)], axis=1), rtol=0, atol=3e-16)

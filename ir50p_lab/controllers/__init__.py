@@ -1,0 +1,16 @@
+"""Controllers: one protocol for the notebook, the simulation, the sweep and the bench.
+
+`controller.step(t, measured, reference) -> u`: `measured` is q (3,) rad, `reference` is (q, qd, qdd); state and
+velocity filter live inside the controller. Names are loaded on first use.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "base": ["Controller"],
+        "continuous_pid": ["ContinuousPID"],
+        "pid": ["PID"],
+    },
+)

@@ -1,0 +1,54 @@
+"""What a controller is: numbers in two arrays and one compiled function that all loops share."""
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+
+
+class Controller:
+    """A controller whose law is compiled once and runs in the notebook, the simulation, the sweep and the bench.
+
+    Subclasses set `kind` (its number in `dispatch`), `parameters` (float array), `state` (float array) and `unit` of
+    the command ('N m' or 'PWM'). Python's `step` and the compiled loops call the same function on the same arrays:
+    the numbers are the same to the last bit.
+    """
+
+    kind: int
+    unit = "N m"
+
+    def reset(self):
+        """Forget the past: integrals, filters and the last sample."""
+        self.state[:] = 0.0
+
+    def step(self, t, measured, reference):
+        """The command for one sample.
+
+        Args: t: s; measured: q (3,) rad; reference: (q, qd, qdd), three vectors (3,) or an array (3, 3).
+        Returns: u (3,), in `unit`, after limits. Raises InputError if a number is not finite.
+        """
+        from ir50p_lab.controllers.dispatch import control_step
+
+        u = np.empty(3)
+        control_step(self.kind, self.parameters, self.state, float(t), _plain(measured), _plain_rows(reference), u)
+        if not np.isfinite(u).all():
+            vectors3("measured q", measured)
+            vectors3("reference", reference, unit="rad, rad/s, rad/s^2")
+            raise InputError(f"the command is {u.tolist()} at t = {t} s; the controller's state is spoilt: reset it")
+        return u
+
+
+def _plain(q):
+    if type(q) is np.ndarray and q.shape == (3,) and q.dtype == np.float64:
+        return q
+    q = vectors3("measured q", q)
+    if q.shape != (3,):
+        raise InputError(f"measured q has shape {q.shape}; a controller takes one sample, shape (3,)")
+    return np.ascontiguousarray(q)
+
+
+def _plain_rows(reference):
+    rows = np.asarray(reference, dtype=float)
+    if rows.shape != (3, 3):
+        raise InputError(f"reference has shape {rows.shape}; give (q, qd, qdd), three vectors of shape (3,)")
+    return np.ascontiguousarray(rows)

@@ -1,0 +1,155 @@
+"""The independent-joint PID as it runs on a computer: sampled, filtered, limited, without windup or bumps (2.3)."""
+
+import math
+
+import numpy as np
+
+from ir50p_lab.controllers.base import Controller
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.jit import jit
+
+# places in the parameter vector
+KP, KI, KD, LIMIT, PERIOD, FILTER_RATE, ON_ERROR, ANTI_WINDUP, N_PARAMETERS = 0, 3, 6, 9, 12, 13, 14, 15, 16
+# places in the state vector
+INTEGRAL, VELOCITY, LAST, TIME, STARTED, N_STATES = 0, 3, 6, 9, 10, 11
+
+
+@jit()
+def pid_step(p, s, t, q, r, u):
+    """One sample of the PID: reads parameters p, state s, time t, measured q, reference rows r; writes s and u."""
+    started = s[STARTED] > 0.0
+    dt = p[PERIOD]
+    if started and abs(t - s[TIME] - dt) > 1e-6 * dt:  # a late or early cycle: integrate over its true length
+        dt = min(max(t - s[TIME], 0.0), 10 * p[PERIOD])
+    blend = 1.0 - math.exp(-p[FILTER_RATE] * dt)
+    for i in range(3):
+        e = r[0, i] - q[i]
+        moved = e - s[LAST + i] if p[ON_ERROR] > 0.0 else q[i] - s[LAST + i]
+        if not started:
+            moved = 0.0
+        if dt > 0.0:
+            s[VELOCITY + i] += blend * (moved / dt - s[VELOCITY + i])
+        s[LAST + i] = e if p[ON_ERROR] > 0.0 else q[i]
+        slope = s[VELOCITY + i] if p[ON_ERROR] > 0.0 else r[1, i] - s[VELOCITY + i]
+        without = p[KP + i] * e + p[KD + i] * slope
+        integral = s[INTEGRAL + i] + p[KI + i] * e * dt
+        command = without + integral
+        limit = p[LIMIT + i]
+        if p[ANTI_WINDUP] > 0.0 and abs(command) > limit and command * e > 0.0:
+            integral = s[INTEGRAL + i]  # saturated, and integrating on would only make it worse
+            command = without + integral
+        s[INTEGRAL + i] = integral
+        u[i] = min(max(command, -limit), limit)
+    s[TIME], s[STARTED] = t, 1.0
+
+
+class PID(Controller):
+    """Three independent PIDs, one per joint, sampled every `period` seconds.
+
+        u = kp e + I + kd (qd_ref - v),  e = q_ref - q,  I <- I + ki e T       (2.1)-(2.3), with e = q_ref - q (2.4)
+
+    - derivative on the measurement: v is the difference quotient of q behind a first-order low pass, so that a jump
+      of the set point gives no kick; a moving reference brings its own velocity. derivative_on="error" is the textbook
+      form (2.3), to see the kick;
+    - anti-windup: the integral rests while the command is limited and the error would push it further;
+    - limits: |u| <= limit, and the applied value is what `step` returns;
+    - bumpless: `set_gains` changes gains in the middle of a run without a jump of u;
+    - a late cycle is integrated over its true length.
+
+    Args:
+        kp, ki, kd: (3,), command per rad, per rad s, and per rad/s.
+        limit_pwm: limit of the command in PWM counts (the command is then in PWM), scalar or (3,); or
+        limit: limit in N m, scalar or (3,). Give one; with neither the command is in N m and not limited.
+        period: sampling period, s. filter_hz: cut-off of the velocity filter, Hz (inf: none).
+        derivative_on: "measurement" or "error". anti_windup: False shows what windup does.
+
+    Raises InputError on gains that are negative or not finite, or a period or filter that is not positive.
+    """
+
+    kind = 1
+
+    def __init__(
+        self,
+        kp,
+        ki=(0.0, 0.0, 0.0),
+        kd=(0.0, 0.0, 0.0),
+        *,
+        limit_pwm=None,
+        limit=None,
+        period=0.01,
+        filter_hz=10.0,
+        derivative_on="measurement",
+        anti_windup=True,
+    ):
+        if limit_pwm is not None and limit is not None:
+            raise InputError("give limit_pwm (PWM counts) or limit (N m), not both: the command has one unit")
+        if derivative_on not in ("measurement", "error"):
+            raise InputError(f"derivative_on = {derivative_on!r}: choose 'measurement' or 'error'")
+        self.unit = "N m" if limit_pwm is None else "PWM"
+        bound = limit if limit_pwm is None else limit_pwm
+        self.parameters = np.zeros(N_PARAMETERS)
+        self.state = np.zeros(N_STATES)
+        self.parameters[LIMIT : LIMIT + 3] = np.inf if bound is None else _positive("limit", bound)
+        self.parameters[PERIOD] = _positive("period", period)
+        self.parameters[FILTER_RATE] = 2 * np.pi * _positive("filter_hz", filter_hz)
+        self.parameters[ON_ERROR] = derivative_on == "error"
+        self.parameters[ANTI_WINDUP] = bool(anti_windup)
+        self._write_gains(kp, ki, kd)
+
+    def _write_gains(self, kp, ki, kd):
+        for name, place, value in (("kp", KP, kp), ("ki", KI, ki), ("kd", KD, kd)):
+            self.parameters[place : place + 3] = gains(name, value)
+
+    def set_gains(self, kp=None, ki=None, kd=None):
+        """Change gains in the middle of a run; the integral takes up the difference, so that u does not jump."""
+        old = self.parameters.copy()
+        new = [old[place : place + 3] if g is None else g for place, g in ((KP, kp), (KI, ki), (KD, kd))]
+        self._write_gains(*new)
+        if self.state[STARTED]:
+            change = old - self.parameters
+            self.state[INTEGRAL : INTEGRAL + 3] += (
+                change[KP : KP + 3] * self._last_error + change[KD : KD + 3] * self._last_slope
+            )
+
+    def step(self, t, measured, reference):
+        """The command for one sample, see `Controller.step`."""
+        u = super().step(t, measured, reference)
+        r = np.asarray(reference, dtype=float)
+        on_error = self.parameters[ON_ERROR] > 0
+        velocity = self.state[VELOCITY : VELOCITY + 3]
+        self._last_error = r[0] - np.asarray(measured, dtype=float)
+        self._last_slope = velocity.copy() if on_error else r[1] - velocity
+        return u
+
+    @property
+    def kp(self):
+        """Proportional gains (3,)."""
+        return self.parameters[KP : KP + 3].copy()
+
+    @property
+    def ki(self):
+        """Integral gains (3,)."""
+        return self.parameters[KI : KI + 3].copy()
+
+    @property
+    def kd(self):
+        """Derivative gains (3,)."""
+        return self.parameters[KD : KD + 3].copy()
+
+
+def gains(name, value):
+    """Three gains, finite and not negative, as an array (3,); a scalar counts for all joints."""
+    value = vectors3(name, np.broadcast_to(value, 3) if np.ndim(value) == 0 else value, unit="command per rad")
+    if value.shape != (3,) or (value < 0).any():
+        raise InputError(
+            f"{name} = {value.tolist()}: give three gains >= 0, one per joint; a negative gain pushes away"
+        )
+    return value
+
+
+def _positive(name, value):
+    array = np.asarray(value, dtype=float)
+    if np.isnan(array).any() or (array <= 0).any():
+        raise InputError(f"{name} = {value}: must be positive")
+    return array

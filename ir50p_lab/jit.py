@@ -1,0 +1,31 @@
+"""`jit`: numba's njit with a cache on disk that notices when any compiled file of the package changed.
+
+numba checks only the file of the function itself: machine code that has inlined a function of another, since changed
+file would be used on, silently. Here all cached code is dropped when any of the files changed.
+"""
+
+import contextlib
+import functools
+from pathlib import Path
+
+import numba
+
+_PACKAGE = Path(__file__).parent
+_STAMP = _PACKAGE / "__pycache__" / "compiled_from.txt"
+
+
+def _drop_stale_code():
+    sources = sorted(path for path in _PACKAGE.rglob("*.py") if b"@jit(" in path.read_bytes())
+    state = "\n".join(f"{p.relative_to(_PACKAGE)} {p.stat().st_mtime_ns} {p.stat().st_size}" for p in sources)
+    with contextlib.suppress(OSError):  # a read-only installation: numba then keeps its cache elsewhere
+        if not _STAMP.exists() or _STAMP.read_text() != state:
+            for path in _PACKAGE.rglob("__pycache__/*.nb[ic]"):
+                path.unlink(missing_ok=True)
+            _STAMP.parent.mkdir(exist_ok=True)
+            _STAMP.write_text(state)
+
+
+_drop_stale_code()
+
+# division by zero gives inf or NaN as in NumPy: the caller checks results once, not every operation
+jit = functools.partial(numba.njit, cache=True, error_model="numpy")

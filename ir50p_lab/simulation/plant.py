@@ -1,0 +1,85 @@
+"""The arm as numbers for the compiled steps: rigid body, dry friction, drive, end stops, table."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import ArmError, InputError
+from ir50p_lab.modelling.arm import Arm
+from ir50p_lab.modelling.dynamics import as_theta
+
+_VISCOUS, _COULOMB, _OFFSET = (10, 12, 14), (11, 13, 15), (16, 17, 18)
+
+
+# places in Plant.numbers; three values each unless said
+GRAVITY, TABLE, DRY = 0, 1, 2  # one value each: m/s^2; height of the table, m; 1 if a step must be able to stick
+FV, FC, FS, QS, TF, LIMIT, Q_MIN, Q_MAX, LENGTHS, FORCE_SCALE, N_NUMBERS = 3, 6, 9, 12, 15, 18, 21, 24, 27, 30, 33
+
+
+@dataclass(frozen=True)
+class Plant:
+    """The arm as two flat arrays (structures of many arrays cost the compiled loops a factor of ten).
+
+    theta: (3, 20), its inertial part counts; numbers: (33,), places above, in units of the command u (N m or PWM):
+    friction, limit of |u|, end stops in rad (infinite: none), lengths in m, FORCE_SCALE 1 for N m and 1/K for PWM.
+    """
+
+    theta: np.ndarray
+    numbers: np.ndarray
+
+    @property
+    def limit(self):
+        """Limit of |u|, (3,)."""
+        return self.numbers[LIMIT : LIMIT + 3]
+
+    @property
+    def dry(self):
+        """Whether motion can stick or hit something."""
+        return bool(self.numbers[DRY])
+
+
+def make_plant(arm, *, unit="N m", stops=False, table=None):
+    """The plant of an Arm or a theta.
+
+    Args:
+        arm: Arm, or theta (3, 20) (its Coulomb friction then also is the breakaway: theta holds no Stribeck part).
+        unit: unit of the command. 'PWM' drives an Arm through its actuators: gain, back-EMF, saturation.
+        stops: whether the joint limits are end stops (without rebound).
+        table: height of a table that the tip cannot pass, m; None: no table. The contact is without friction.
+
+    Raises: ArmError (no actuators for PWM), InputError (a table or end stops for a theta, unknown unit).
+    """
+    if unit not in ("N m", "PWM"):
+        raise InputError(f"unit = {unit!r}: the command is in 'N m' or in 'PWM' counts")
+    theta, gravity = as_theta(arm)
+    is_arm = isinstance(arm, Arm)
+    if not is_arm and (stops or table is not None):
+        raise InputError("end stops and a table need an Arm (its limits and lengths); a theta holds neither")
+    scale, limit = np.ones(3), np.full(3, np.inf)
+    if unit == "PWM" and is_arm:
+        theta = arm.theta_pwm  # raises ArmError without actuators
+        scale, limit = 1 / arm.actuators.gain, np.full(3, arm.actuators.limit_pwm)
+    joints = np.arange(3)
+    fv, fc, Tf = (theta[joints, list(columns)] for columns in (_VISCOUS, _COULOMB, _OFFSET))
+    fs = np.array(arm.friction.fs) * scale if is_arm else fc
+    qs = np.array(arm.friction.qs) if is_arm else np.full(3, 0.05)
+    if (fc < 0).any() or (fv < 0).any():
+        raise ArmError(f"friction of theta is negative (fv {fv.tolist()}, fc {fc.tolist()}): it would feed the arm")
+    numbers = np.zeros(N_NUMBERS)
+    numbers[GRAVITY] = gravity
+    numbers[TABLE] = -np.inf if table is None else float(table)
+    numbers[DRY] = (fs > 0).any() or stops or table is not None
+    for place, values in (
+        (FV, fv),
+        (FC, fc),
+        (FS, fs),
+        (QS, qs),
+        (TF, Tf),
+        (LIMIT, limit),
+        (Q_MIN, arm.q_min if stops else np.full(3, -np.inf)),
+        (Q_MAX, arm.q_max if stops else np.full(3, np.inf)),
+        (LENGTHS, arm.l if is_arm else np.zeros(3)),
+        (FORCE_SCALE, scale),
+    ):
+        numbers[place : place + 3] = values
+    return Plant(theta=np.array(theta), numbers=numbers)

@@ -1,0 +1,148 @@
+"""Simulate an arm under a controller: the one entry for notebooks, tests and sweeps."""
+
+import numpy as np
+
+from ir50p_lab.controllers.base import Controller
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.simulation.plant import make_plant
+from ir50p_lab.simulation.result import SimulationResult
+
+
+def simulate(
+    arm,
+    controller=None,
+    reference=None,
+    *,
+    duration=10.0,
+    period=0.01,
+    step=0.001,
+    q0=(0.0, 0.0, 0.0),
+    qd0=(0.0, 0.0, 0.0),
+    unit=None,
+    stops=False,
+    table=None,
+):
+    """Simulate `arm` under `controller` for `duration` seconds.
+
+    Inside, fixed steps: Runge-Kutta (order 4) for motion without dry friction, and a step that can stick (Moreau) with
+    dry friction, end stops or a table. Outside, the controller sees q every `period` and its command is held in
+    between (zero-order hold). A continuous controller (`ContinuousPID`) acts inside the step instead.
+
+    Args:
+        arm: Arm or theta (3, 20).
+        controller: any object with `step(t, measured, reference) -> u`; a compiled one (`PID`) runs compiled
+            throughout and is `reset` first; `ContinuousPID`; None: no drive, u = 0.
+        reference: `target(t) -> (q, qd, qdd)` as in `signals` (its `sample` is used if it has one), an array
+            (3,) of angles to hold, or None: hold q0.
+        duration, period, step: s; period must be a whole number of steps, duration is rounded to whole periods.
+        q0, qd0: (3,) start, rad and rad/s.
+        unit: unit of the command, 'N m' or 'PWM'; default: the controller's own, else 'N m'.
+        stops, table: end stops at the arm's joint limits; height of a table, m (see `make_plant`).
+
+    Returns: SimulationResult, sampled every `period`.
+    Raises: InputError on bad input, or if the run leaves all bounds (an unstable loop: it says when).
+    """
+    steps, t = _times(duration, period, step)
+    q0, qd0 = _single("q0", q0, "rad"), _single("qd0", qd0, "rad/s")
+    unit = unit or getattr(controller, "unit", "N m")
+    plant = make_plant(arm, unit=unit, stops=stops, table=table)
+    target = _target(reference, q0)
+    r = _sample(target, t)
+    x = np.concatenate([q0, qd0])
+    q, qd, u = np.empty((3, len(t), 3))
+    if getattr(controller, "continuous", False):
+        from ir50p_lab.simulation.loops import continuous_loop
+
+        if plant.dry:
+            raise InputError(
+                "a continuous controller needs smooth motion: use arm.without_friction() and no end stops or table, "
+                "or the sampled PID"
+            )
+        fine = _sample(target, np.linspace(0, t[-1], 2 * steps * (len(t) - 1) + 1))
+        x = np.concatenate([x, np.zeros(3)])
+        continuous_loop(plant.theta, plant.numbers, controller.parameters, fine, x, step, steps, q, qd, u)
+    elif controller is None or isinstance(controller, Controller):
+        from ir50p_lab.simulation.loops import sampled_loop
+
+        kind, p, s = 0, np.zeros(1), np.zeros(1)
+        if controller is not None:
+            controller.reset()
+            kind, p, s = controller.kind, controller.parameters, controller.state
+        sampled_loop(plant.theta, plant.numbers, kind, p, s, t, r, x, step, steps, q, qd, u)
+    else:
+        _python_loop(plant, controller, t, r, x, step, steps, q, qd, u)
+    _refuse_runaway(t, q)
+    return SimulationResult(t=t, q=q, qd=qd, u=u, unit=unit, reference=r, arm=arm)
+
+
+def _python_loop(plant, controller, t, r, x, step, steps, q, qd, u):
+    """The same loop for a controller that is not compiled."""
+    from ir50p_lab.simulation.steps import advance
+
+    for k in range(len(t)):
+        q[k], qd[k] = x[:3], x[3:]
+        command = _single(
+            f"the controller's command at t = {t[k]:.6g} s", controller.step(t[k], q[k].copy(), r[k]), "u"
+        )
+        u[k] = np.clip(command, -plant.limit, plant.limit)
+        if k + 1 < len(t):
+            advance(plant.theta, plant.numbers, x, u[k], step, steps)
+
+
+def _times(duration, period, step):
+    for name, value in (("duration", duration), ("period", period), ("step", step)):
+        if not (np.isfinite(value) and value > 0):
+            raise InputError(f"{name} = {value} s: must be positive")
+    steps = round(period / step)
+    if steps < 1 or abs(steps * step - period) > 1e-9 * period:
+        raise InputError(f"period = {period} s is not a whole number of steps of {step} s; change one of them")
+    samples = round(duration / period)
+    if samples < 1:
+        raise InputError(f"duration = {duration} s is shorter than half a period of {period} s")
+    return steps, np.arange(samples + 1) * period
+
+
+def _single(name, value, unit):
+    array = vectors3(name, value, unit=unit)
+    if array.shape != (3,):
+        raise InputError(f"{name} has shape {array.shape}; give shape (3,)")
+    return array
+
+
+class _Hold:
+    """A set point as a reference, for callers that give three angles."""
+
+    def __init__(self, q):
+        self.rows = np.stack([q, np.zeros(3), np.zeros(3)])
+
+    def sample(self, t):
+        return np.broadcast_to(self.rows, (len(t), 3, 3)).copy()
+
+
+def _target(reference, q0):
+    if reference is None:
+        return _Hold(q0)
+    if callable(reference) or hasattr(reference, "sample"):
+        return reference
+    return _Hold(_single("reference", reference, "rad"))
+
+
+def _sample(target, t):
+    if hasattr(target, "sample"):
+        r = target.sample(t)
+    else:
+        r = np.array([np.stack(target(time)) for time in t])
+    r = np.ascontiguousarray(r, dtype=float)
+    if r.shape != (len(t), 3, 3) or not np.isfinite(r).all():
+        raise InputError(f"the reference gives shape {r.shape} or numbers that are not finite; need ({len(t)}, 3, 3)")
+    return r
+
+
+def _refuse_runaway(t, q):
+    lost = ~np.isfinite(q).all(axis=1)
+    if lost.any():
+        raise InputError(
+            f"the run left all bounds at t = {t[np.argmax(lost)]:.4g} s: the loop is unstable with these gains and "
+            "this period, or the step is too long; lower the gains, the period or the step"
+        )
