@@ -26,13 +26,20 @@ class FrameView:
     def __init__(self, ax, T, name="", length=0.1):
         self._length = length
         self._name = name
+        # each axis is one line: origin, end, a gap, and the letter as a marker (a Text costs twice as much to draw)
         self.axes = [
-            ax.plot([0, 0], [0, 0], [0, 0], color=c, linewidth=2.2, solid_capstyle="round", zorder=30)[0]
-            for c in _AXIS_COLOURS
-        ]
-        self.labels = [
-            ax.text(0, 0, 0, letter, color=c, fontsize=9, ha="center", va="center", zorder=31)
-            for letter, c in zip("xyz", _AXIS_COLOURS, strict=True)
+            ax.plot(
+                *np.zeros((3, 4)),
+                color=colour,
+                linewidth=2.2,
+                solid_capstyle="round",
+                marker=f"${letter}$",
+                markevery=[3],
+                markersize=7,
+                markeredgewidth=0.3,
+                zorder=30,
+            )[0]
+            for letter, colour in zip("xyz", _AXIS_COLOURS, strict=True)
         ]
         self.title = ax.text(0, 0, 0, name, fontsize=9, fontweight="bold", ha="right", va="top", zorder=31)
         self.update(T)
@@ -44,13 +51,14 @@ class FrameView:
             raise InputError(f"a frame is a finite (4, 4) transform, got shape {T.shape}")
         origin, R = T[:3, 3], T[:3, :3]
         for k in range(3):
-            self.axes[k].set_data_3d(*np.column_stack([origin, origin + self._length * R[:, k]]))
-            self.labels[k].set_position_3d(origin + 1.22 * self._length * R[:, k])
+            end = origin + self._length * R[:, k]
+            gap = np.full(3, np.nan)
+            self.axes[k].set_data_3d(*np.column_stack([origin, end, gap, end + 0.22 * self._length * R[:, k]]))
         self.title.set_position_3d(origin - 0.2 * self._length * R.sum(axis=1))
 
     def set_visible(self, visible):
         """Show or hide the frame."""
-        for artist in (*self.axes, *self.labels, self.title):
+        for artist in (*self.axes, self.title):
             artist.set_visible(visible)
 
 
@@ -107,6 +115,8 @@ class ArmView:
         self._tip = ax.plot([0], [0], [0], "o", ms=0.75 * thickness, color=COLOURS["dark"], alpha=alpha)[0]
         self._trail = ax.plot([], [], [], "-", color=COLOURS["green"], linewidth=1.6, zorder=3)[0]
         self._target = ax.plot([], [], [], "X", color=COLOURS["purple"], ms=10, mec="white", zorder=25)[0]
+        self.trail([])
+        self.target(None)
         self.update(q)
 
     @property
@@ -141,11 +151,13 @@ class ArmView:
         """Draw a path of the tip. points: (n, 3) m; an empty list removes it."""
         points = np.asarray(points, dtype=float).reshape(-1, 3)
         self._trail.set_data_3d(*points.T)
+        self._trail.set_visible(len(points) > 0)
 
     def target(self, p=None):
         """Mark a point p (3,) m; None removes the mark."""
         points = np.empty((0, 3)) if p is None else vectors3("p", p, unit="m").reshape(1, 3)
         self._target.set_data_3d(*points.T)
+        self._target.set_visible(p is not None)
 
     def _place(self, parts):
         """Set the ends of each part and draw the far ones first."""
