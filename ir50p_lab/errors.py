@@ -17,5 +17,9 @@ class UnreachableError(LabError, ValueError):
     """A point that the arm cannot reach, or only outside its joint limits."""
 
 
+class IdentificationError(LabError, ValueError):
+    """Data from which the parameters asked for cannot be found: the model is wrong for them, or they say too little."""
+
+
 class SuspiciousArmWarning(UserWarning):
     """Arm parameters that are possible but hardly meant (a unit slip, a misprint)."""

@@ -1,0 +1,18 @@
+"""Reference signals: where the joints shall be, how fast they move there, and with what acceleration.
+
+Every reference `target` is frozen and answers `target(t)` -> (q, qd, qdd) and `target.sample(t)` -> (n, 3, 3).
+Names are loaded on first use: importing this package costs nothing.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "quintic": ["quintic", "through"],
+        "reference": ["Reference"],
+        "sinusoid": ["sinusoid"],
+        "steps": ["hold", "steps"],
+        "trapezoid": ["trapezoid"],
+    },
+)

@@ -1,0 +1,86 @@
+"""What every reference signal promises: q, qd and qdd at any time, for one time or for many."""
+
+import math
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import first_not_finite, vectors3
+
+
+class Reference:
+    """A motion of the three joints as a function of time; made by `hold`, `steps`, `quintic`, `trapezoid`...
+
+    ==================== =====================================================================================
+    target(t)            (q, qd, qdd) at one time t in s: three arrays (3,), rad, rad/s, rad/s^2
+    target.sample(t)     the same for times (n,) in s: array (n, 3, 3), indices time, (q, qd, qdd), joint
+    target.duration      s from t = 0 until the motion is over (0 for `hold`, inf for `sinusoid`); q stays after it
+    ==================== =====================================================================================
+
+    qd is the derivative of q, and qdd that of qd, everywhere but at the jumps a class names. Times are seconds, any
+    finite number; before its start a reference rests in its first pose. References are frozen and compare by value.
+    A new kind derives from this class, sets `duration` and writes `_rows(t)`: times (n,) -> array (n, 3, 3).
+    """
+
+    duration = 0.0
+
+    def __call__(self, t):
+        """(q, qd, qdd) at the time `t`, s: three arrays (3,). Raises InputError if t is not one finite number."""
+        if np.ndim(t) or isinstance(t, (str, bytes)):
+            raise InputError(f"t = {t!r}: give one time in s; for an array of times use target.sample(t)")
+        q, qd, qdd = self._rows(np.array([seconds("t", t)]))[0]
+        return q, qd, qdd
+
+    def sample(self, t):
+        """Evaluate at many times.
+
+        Args: t: (n,) s, in any order. Returns: (n, 3, 3), indices time, (q, qd, qdd), joint; rad, rad/s, rad/s^2.
+        Raises InputError if t is not of shape (n,) or a time is not finite.
+        """
+        return self._rows(time_vector("t", t))
+
+    def _rows(self, t):
+        raise NotImplementedError(f"{type(self).__name__} must define _rows(t): times (n,) -> array (n, 3, 3)")
+
+
+def seconds(name, value, *, positive=False):
+    """Return `value` as a float in s; InputError unless it is a finite number (and > 0 if `positive`)."""
+    try:
+        number = math.nan if isinstance(value, (str, bytes)) or np.ndim(value) else float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise InputError(f"{name} = {value!r}: give one finite number of seconds")
+    if positive and number <= 0:
+        raise InputError(f"{name} = {number} s must be > 0: a motion takes time (for a sudden change use steps)")
+    return number
+
+
+def time_vector(name, value):
+    """Return `value` as a float array (n,) in s; InputError on another shape or a number that is not finite."""
+    try:
+        t = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must hold times in s; got {value!r}") from None
+    if t.ndim != 1:
+        raise InputError(f"{name} has shape {t.shape}; give times in s of shape (n,)")
+    if not np.isfinite(t).all():
+        raise InputError(f"{name} holds {first_not_finite(t)}; every time must be finite (s): remove that sample")
+    return t
+
+
+def pose(name, value, *, unit="rad"):
+    """Return `value` as a tuple of three floats; InputError on another shape or a number that is not finite."""
+    array = vectors3(name, value, unit=unit)
+    if array.shape != (3,):
+        raise InputError(f"{name} has shape {array.shape}; give one value per joint, shape (3,) ({unit})")
+    return tuple(array.tolist())
+
+
+def per_joint(name, value, *, unit, positive=False):
+    """Like `pose`, but one number counts for all three joints; each must be > 0 if `positive`."""
+    values = pose(name, (value,) * 3 if np.ndim(value) == 0 else value, unit=unit)
+    if positive and min(values) <= 0:
+        joint = int(np.argmin(values)) + 1
+        raise InputError(f"{name} of joint {joint} is {values[joint - 1]} {unit}; it must be > 0")
+    return values

@@ -1,0 +1,69 @@
+"""References that stand still: one pose, or one after the other."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.signals.reference import Reference, pose, time_vector
+
+
+@dataclass(frozen=True)
+class Steps(Reference):
+    """Piecewise constant reference; made by `hold` and `steps`.
+
+    times: m increasing numbers, s; values: m poses, rad. values[i] holds from times[i] on.
+    """
+
+    times: tuple
+    values: tuple
+    duration: float = field(init=False)
+
+    def __post_init__(self):
+        object.__setattr__(self, "duration", max(0.0, self.times[-1]))
+
+    def _rows(self, t):
+        rows = np.zeros((len(t), 3, 3))
+        piece = np.searchsorted(self.times, t, side="right") - 1
+        rows[:, 0] = np.array(self.values)[np.maximum(piece, 0)]
+        return rows
+
+
+def hold(q):
+    """Stay at the pose `q` for ever: qd = qdd = 0.
+
+    Args: q: (3,) rad. Returns: Reference with duration 0. Raises InputError on a wrong shape or a number that is not
+    finite.
+    """
+    return Steps(times=(0.0,), values=(pose("q", q),))
+
+
+def steps(times, values):
+    """Jump from pose to pose: values[i] holds from times[i] (included) until times[i + 1].
+
+    At a jump q changes at once and qd = qdd = 0 there as everywhere: the impulse that the derivative of a step would
+    be is left out, because no controller can use it. Fit for step responses, not for moving an arm gently.
+
+    Args:
+        times: (m,) s, increasing, the first 0 (or earlier).
+        values: (m, 3) rad.
+
+    Returns: Reference; its duration is the time of the last jump.
+    Raises: InputError on wrong shapes, numbers that are not finite, times that do not increase, or a first time
+    after 0 (the pose before it would be unknown).
+    """
+    times, values = time_vector("times", times), vectors3("values", values)
+    if values.ndim != 2 or len(times) != len(values) or len(times) == 0:
+        raise InputError(
+            f"times {times.shape} and values {values.shape} do not fit: give m times and values of shape (m, 3)"
+        )
+    if (np.diff(times) <= 0).any():
+        i = int(np.argmax(np.diff(times) <= 0)) + 1
+        raise InputError(f"times[{i}] = {times[i]} s does not lie after times[{i - 1}] = {times[i - 1]} s: sort them")
+    if times[0] > 0:
+        raise InputError(
+            f"times[0] = {times[0]} s, but the reference needs a pose from t = 0 on: put the start pose in front, "
+            "with the time 0"
+        )
+    return Steps(times=tuple(times.tolist()), values=tuple(tuple(row) for row in values.tolist()))
