@@ -1,0 +1,166 @@
+"""Exercises of notebook 03: inertia, holding torque, acceleration, friction, motor voltage."""
+
+import numpy as np
+
+from ir50p_lab.course.exercises import Exercise, Function, Number, Slip
+from ir50p_lab.modelling import (
+    IR50P,
+    THESIS_RODS,
+    Actuators,
+    Friction,
+    coriolis_matrix,
+    friction_torque,
+    gravity,
+    jacobian,
+    mass_matrix,
+)
+
+NOTEBOOK = "03_dynamics"
+
+# dyn-1: a slender rod that turns about its end, with a hand at the other end.
+_ROD_MASS, _HAND_MASS, _LENGTH = 0.6, 0.2, 0.4  # kg, kg, m
+_ROD = _ROD_MASS * _LENGTH**2
+_HAND = _HAND_MASS * _LENGTH**2
+
+# dyn-2: the IR50P holds a payload at its tip.
+_POSE = (0.3, 0.5, -0.7)  # rad
+_PAYLOAD = 0.5  # kg
+_OWN = gravity(IR50P, _POSE)
+_LIFT = jacobian(IR50P, _POSE)[2]  # the row of Jv that belongs to z
+
+
+# dyn-3: acceleration of the thesis' arm (slender rods) from its M, C and g.
+def _acceleration(q, qd, tau):
+    M, C, g = mass_matrix(THESIS_RODS, q), coriolis_matrix(THESIS_RODS, q, qd), gravity(THESIS_RODS, q)
+    return np.linalg.solve(M, tau - C @ qd - g)
+
+
+def _without_coriolis(q, qd, tau):
+    return np.linalg.solve(mass_matrix(THESIS_RODS, q), tau - gravity(THESIS_RODS, q))
+
+
+def _bias_with_wrong_sign(q, qd, tau):
+    M, C, g = mass_matrix(THESIS_RODS, q), coriolis_matrix(THESIS_RODS, q, qd), gravity(THESIS_RODS, q)
+    return np.linalg.solve(M, tau + C @ qd + g)
+
+
+def _without_gravity(q, qd, tau):
+    return np.linalg.solve(mass_matrix(THESIS_RODS, q), tau - coriolis_matrix(THESIS_RODS, q, qd) @ qd)
+
+
+def _divided_by_the_diagonal(q, qd, tau):
+    M = mass_matrix(THESIS_RODS, q)
+    return M @ _acceleration(q, qd, tau) / np.diag(M)
+
+
+_STATES = [
+    (np.array([0.3, 0.5, -0.7]), np.array([0.4, -0.6, 0.8]), np.array([1.0, 20.0, 5.0])),
+    (np.array([2.0, -0.4, -1.6]), np.array([-0.9, 1.1, 2.2]), np.array([0.0, 0.0, 0.0])),
+]
+
+# dyn-4: one joint that creeps backwards.
+_FRICTION = Friction(fv=(2.0,) * 3, fc=(0.5,) * 3, fs=(0.9,) * 3, qs=(0.05,) * 3)
+_CREEP = -0.02  # rad/s
+_RIGHT_FRICTION = friction_torque(_FRICTION, np.full(3, _CREEP))[0]
+_DECAY = np.exp(-((_CREEP / 0.05) ** 2))
+
+# dyn-5: one motor with gear.
+_MOTOR = Actuators(N=(100,) * 3, Jm=(2e-5,) * 3, kt=(0.05,) * 3, ke=(0.05,) * 3, Ra=(4.0,) * 3, V=24)
+_TAU, _QD, _QDD = 2.0, 0.5, 3.0  # N m, rad/s, rad/s^2
+_VOLTS = _MOTOR.voltage(np.full(3, _TAU), np.full(3, _QD), np.full(3, _QDD))[0]
+_PER_TORQUE, _BACK_EMF = 4.0 / (0.05 * 100), 0.05 * 100 * _QD
+
+EXERCISES = (
+    Exercise(
+        "dyn-1",
+        "the moment of inertia about the elbow of a rod (0.6 kg, 0.4 m) with a hand (0.2 kg, a point) at its end",
+        Number(
+            _ROD / 3 + _HAND,
+            unit="kg m^2",
+            tolerance=1e-4,
+            because="four decimals are what you would type",
+        ),
+        why="The hand is a quarter of the mass and half of the inertia: distance counts squared.",
+        slips=(
+            Slip(
+                _ROD / 12 + _HAND, "The rod turns about its end here, not about its middle: Steiner's term is missing."
+            ),
+            Slip(_ROD / 4 + _HAND, "That takes the rod as a point in its middle: its own inertia about it is missing."),
+            Slip(_ROD / 3, "That is the rod alone: the hand turns with it."),
+            Slip(_ROD / 12 + _HAND / 4, "That is about the middle of the rod; the arm turns about the elbow."),
+        ),
+    ),
+    Exercise(
+        "dyn-2",
+        "the three torques that hold the IR50P at q = (0.3, 0.5, -0.7) rad with 0.5 kg at its tip",
+        Number(
+            _OWN + _LIFT * _PAYLOAD * IR50P.g,
+            unit="N m",
+            tolerance=1e-3,
+            because="three decimals are what you would type",
+        ),
+        why="Half a kilogram (the maker's payload) adds three quarters of what the links ask of the shoulder.",
+        slips=(
+            Slip(_OWN, "That holds the arm alone: the payload pulls at the tip as well."),
+            Slip(_OWN - _LIFT * _PAYLOAD * IR50P.g, "The payload makes it heavier, not lighter: check its sign."),
+            Slip(_OWN + _LIFT * _PAYLOAD, "The payload entered as a mass; its weight is m g."),
+            Slip(_LIFT * _PAYLOAD * IR50P.g, "That holds the payload alone: the links have weight too."),
+        ),
+    ),
+    Exercise(
+        "dyn-3",
+        "the acceleration of THESIS_RODS as a function of (q, qd, tau), from M, C and g",
+        Function(
+            _acceleration,
+            cases=_STATES,
+            unit="rad/s^2",
+            tolerance=1e-6,
+            because="only rounding may differ",
+        ),
+        why="These three lines are forward dynamics: every simulation of this course calls them.",
+        slips=(
+            Slip(_without_coriolis, "The velocities have no effect in it: C qd is missing."),
+            Slip(_without_gravity, "The arm would float: g is missing."),
+            Slip(
+                _bias_with_wrong_sign, "C qd and g stand on the side of M qdd in (1.74): they change sign when moved."
+            ),
+            Slip(_divided_by_the_diagonal, "M couples the joints: solve with all of it, not with its diagonal."),
+        ),
+    ),
+    Exercise(
+        "dyn-4",
+        "the friction torque at -0.02 rad/s for fv = 2, fc = 0.5, fs = 0.9 and qs = 0.05",
+        Number(_RIGHT_FRICTION, unit="N m", tolerance=1e-3, because="three decimals are what you would type"),
+        why="Below the Stribeck velocity the slower joint needs more torque: this makes it stick and slip.",
+        slips=(
+            Slip(2 * _CREEP - 0.5, "That leaves the Stribeck term out, which matters at this low speed."),
+            Slip(2 * _CREEP - 0.9, "At 0.02 rad/s part of the Stribeck term is gone already: it decays with speed."),
+            Slip(
+                2 * _CREEP - 0.5 - 0.9 * _DECAY,
+                "The Stribeck term starts from fs - fc, so that both together start from fs.",
+            ),
+            Slip(
+                2 * _CREEP + 0.5 + 0.4 * _DECAY,
+                "All three parts change sign with the velocity, not only the viscous one.",
+            ),
+        ),
+    ),
+    Exercise(
+        "dyn-5",
+        "the motor voltage for 2 N m at the joint, 0.5 rad/s and 3 rad/s^2 "
+        "(N = 100, Jm = 2e-5 kg m^2, kt = ke = 0.05, Ra = 4 ohm)",
+        Number(_VOLTS, unit="V", tolerance=1e-2, because="a hundredth of a volt is less than one PWM count"),
+        why="The gear multiplies the rotor's inertia by N^2: 0.2 kg m^2 here, more than the forearm has.",
+        slips=(
+            Slip(_VOLTS - _BACK_EMF, "The back-EMF ke N qd is missing: a turning motor works against its supply."),
+            Slip(
+                _PER_TORQUE * (_TAU + 100 * 2e-5 * _QDD) + _BACK_EMF,
+                "The rotor's inertia is taken N times, as in the thesis; at the joint it counts N^2 times.",
+            ),
+            Slip(
+                _TAU + 100 * 2e-5 * _QDD, "That adds torques as (1.120) prints it: the result is in N m, not in volts."
+            ),
+            Slip(_PER_TORQUE * _TAU + _BACK_EMF, "The rotor has to be accelerated too: N^2 Jm qdd is missing."),
+        ),
+    ),
+)
