@@ -28,4 +28,4 @@ def test_modelling_brings_no_heavy_module_until_used():
 def test_every_public_name_exists_and_is_documented(name):
     value = getattr(ir50p_lab.modelling, name)
     if callable(value):
-        assert len(value.__doc__ or "") > 40
+        assert len(value.__doc__ or "") > 25
