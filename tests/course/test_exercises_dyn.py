@@ -42,7 +42,7 @@ def test_right_answer_is_right_and_each_slip_gets_its_own_sentence(exercise):
     texts = set()
     for slip in exercise.slips:
         verdict = judge(exercise, slip.wrong)
-        assert verdict.state == "wrong"
+        assert verdict.state == "slip"
         assert slip.message in verdict.text
         texts.add(slip.message)
     assert len(texts) == len(exercise.slips) >= 3
