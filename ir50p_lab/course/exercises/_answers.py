@@ -44,7 +44,7 @@ def kind_of(value) -> str:
         return "a complex number"
     if callable(value):
         name = getattr(value, "__name__", type(value).__name__)
-        return f"a function, {name}, not what it returns" if name != "<lambda>" else "a function"
+        return f"the function {name}, not what it returns" if name != "<lambda>" else "a function, not what it returns"
     return f"an object of type {type(value).__name__}"
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from ir50p_lab.course.exercises._answers import NotAnswered, Slip, Unreadable, kind_of, shorten
+from ir50p_lab.course.exercises._answers import NotAnswered, Slip, Unreadable, shorten
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,8 @@ def judge(exercise: Exercise, answer) -> Verdict:
     except Unreadable as problem:
         return Verdict("unreadable", f"found {problem}; expected {kind.wanted}.")
     except Exception as error:
-        what = f"{kind_of(answer)} that cannot be read ({type(error).__name__}: {shorten(error)})"
+        reason = f"{type(error).__name__}: {shorten(error)}"
+        what = f"an object of type {type(answer).__name__} that cannot be read ({reason})"
         return Verdict("unreadable", f"found {what}; expected {kind.wanted}.")
 
 

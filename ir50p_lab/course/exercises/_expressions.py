@@ -67,6 +67,8 @@ class Expression:
     def _values(self, expression) -> np.ndarray:
         import sympy
 
+        if expression.has(sympy.zoo, sympy.nan, sympy.oo):
+            raise Unreadable("an expression that has no finite value (a division by zero?)")
         evaluate = sympy.lambdify([sympy.Symbol(name) for name in self._names], expression, "numpy")
         with np.errstate(all="ignore"):
             values = np.array([np.asarray(evaluate(*point), dtype=complex) for point in self._points])
@@ -100,8 +102,8 @@ class Expression:
         if found.ndim == 1:
             return ""
         agrees = np.all(np.abs(found - right) <= 1e-9 * max(1.0, float(np.max(np.abs(right)))), axis=0)
-        off = [str(list(map(int, i))) for i in np.argwhere(~agrees)]
-        return f"Not all of it is wrong; look again at {', '.join('answer' + i for i in off[:4])}." * agrees.any()
+        off = [str(list(map(int, i))) for i in np.argwhere(~np.atleast_1d(np.squeeze(agrees)))]
+        return f"Not all of it is wrong; look again at {', '.join('answer' + i for i in off[:4])}." * bool(agrees.any())
 
     def common_slips(self) -> tuple[Slip, ...]:
         """Slips that every expression knows: the sign."""
@@ -140,11 +142,16 @@ def _to_sympy(answer, names):
 
 
 def _renamed(expression):
-    """Return the expression with plain symbols, by name: assumptions and q1(t) are forgotten."""
+    """Return the expression with plain symbols, by name: assumptions are forgotten, q1(t) is q1, its rate qdot1."""
     import sympy
     from sympy.core.function import AppliedUndef
 
     expression = expression.doit()
+    functions = {}
+    for rate in expression.atoms(sympy.Derivative):  # the names of modelling.symbolic: q1, qdot1, qddot1
+        name, order = rate.expr.func.__name__, rate.derivative_count
+        functions[rate] = sympy.Symbol(f"{name[:1]}{'d' * order}ot{name[1:]}")
+    expression = expression.subs(functions)
     functions = {f: sympy.Symbol(f.func.__name__) for f in expression.atoms(AppliedUndef)}
     expression = expression.subs(functions)
     return expression.subs({s: sympy.Symbol(s.name) for s in expression.free_symbols}, simultaneous=True)

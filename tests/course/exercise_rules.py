@@ -1,0 +1,236 @@
+"""What must hold for every exercise of every module; `problems(exercise)` lists what does not."""
+
+import re
+import warnings
+
+import numpy as np
+import sympy
+
+from ir50p_lab.course.exercises import Choice, Expression, Function, Number, judge
+
+SEED = 20261121
+
+
+def problems(exercise):
+    """Return what is wrong with an exercise, as a list of sentences (empty: all is well)."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return [*_shape(exercise), *_right(exercise), *_stubs(exercise), *_slips(exercise), *_wrong(exercise)]
+
+
+def _shape(exercise):
+    if not re.fullmatch(r"[a-z]+-[1-9]\d*", exercise.name):
+        yield f"name {exercise.name!r} is not prefix-number"
+    for what, text in (("task", exercise.task), ("why", exercise.why)):
+        if not text.strip() or "\n" in text or len(text) > 220:
+            yield f"{what} is not one line"
+    if exercise.task.endswith((".", "?")):
+        yield "the task ends in a full stop"
+    for slip in exercise.all_slips:
+        if not 15 <= len(slip.message) <= 260 or slip.message[-1] not in ".?:":
+            yield f"message {slip.message!r} is not one or two sentences"
+    for text in (exercise.task, exercise.hint, exercise.kind.wanted, *(slip.message for slip in exercise.all_slips)):
+        for secret in secrets(exercise):
+            if secret in text and secret not in exercise.task:
+                yield f"{text!r} gives the answer away: {secret}"
+
+
+def _right(exercise):
+    for form in right_forms(exercise):
+        verdict = judge(exercise, form)
+        if verdict.state != "right" or exercise.why not in verdict.text:
+            yield f"right answer {form!r} is {verdict.state}: {verdict.text}"
+
+
+def _stubs(exercise):
+    for stub in stubs(exercise):
+        verdict = judge(exercise, stub)
+        if verdict.state != "open" or "not answered yet" not in verdict.text or exercise.task not in verdict.text:
+            yield f"stub {stub!r} is {verdict.state}: {verdict.text}"
+
+
+def _slips(exercise):
+    messages = [slip.message for slip in exercise.all_slips]
+    if len(messages) < 3:
+        yield f"only {len(messages)} slips"
+    if len(set(messages)) < len(messages):
+        yield "two slips share a message"
+    for slip in exercise.all_slips:
+        verdict = judge(exercise, wrong_answer(exercise.kind, slip.wrong))
+        if verdict.state != "slip" or not verdict.text.endswith(slip.message):
+            yield f"slip {slip.message!r} is answered by {verdict.state}: {verdict.text}"
+    if isinstance(exercise.kind, Choice) and len(exercise.slips) != len(exercise.kind.options) - 1:
+        yield "a wrong option has no slip"
+
+
+def _wrong(exercise):
+    verdict = judge(exercise, random_wrong(exercise.kind))
+    generic = "unreadable" if isinstance(exercise.kind, Choice) else "wrong"
+    if verdict.state != generic or exercise.kind.wanted not in verdict.text:
+        yield f"a random wrong answer is {verdict.state}: {verdict.text}"
+    for junk in JUNK:
+        verdict = judge(exercise, junk)
+        if verdict.state not in ("unreadable", "wrong", "slip"):
+            yield f"{junk!r} is {verdict.state}"
+        if not 10 < len(verdict.text) < 700 or "Traceback" in verdict.text:
+            yield f"{junk!r} gets {verdict.text!r}"
+        if any(secret in verdict.text and secret not in exercise.task for secret in secrets(exercise)):
+            yield f"{junk!r} is told the answer: {verdict.text!r}"
+
+
+class Hostile:
+    """An object that raises whatever is done with it."""
+
+    def __getattr__(self, name):
+        raise RuntimeError("no")
+
+    __call__ = __array__ = __iter__ = __float__ = __len__ = __repr__ = __str__ = __eq__ = __getattr__
+    __hash__ = object.__hash__
+
+
+def _raises(*_):
+    raise ZeroDivisionError("my bug")
+
+
+JUNK = (
+    None,
+    "what?",
+    "",
+    [],
+    {},
+    set(),
+    np.nan,
+    np.inf,
+    [np.nan] * 3,
+    [1, [2, 3]],
+    np.full((4, 4), np.nan),
+    np.zeros((2, 3, 5)),
+    1 + 2j,
+    object(),
+    int,
+    print,
+    _raises,
+    lambda: 1,
+    lambda *a: a.clear() if not isinstance(a, tuple) else None,
+    lambda *a: "text",
+    lambda *a: a,
+    sympy.Symbol("bogus"),
+    sympy.Eq(sympy.Symbol("a"), 1),
+    [1, ..., 3],
+    Hostile(),
+)
+
+
+def stubs(exercise):
+    """Return what the student has before answering."""
+
+    def dots(*args): ...
+
+    def described(*args):
+        """Return nothing yet."""
+
+    if isinstance(exercise.kind, Function):
+        return [..., dots, described]
+    return [...] if isinstance(exercise.kind, Choice) else [..., (..., ...), [..., ..., ...]]
+
+
+def right_forms(exercise):
+    """Return the right answer in all the forms that must be accepted."""
+    right, kind = exercise.kind.solution, exercise.kind
+    return [right, *exercise.forms, *_FORMS[type(kind)](kind, right)]
+
+
+def _number_forms(kind, right):
+    array = np.asarray(right)
+    forms = [array, array.tolist(), sympy.sympify(array.tolist()), np.float64(right) if array.ndim == 0 else right]
+    if array.ndim == 1:
+        forms += [tuple(array), array[:, None], array[None, :], sympy.Matrix(array), iter(array.tolist())]
+        forms += [[sympy.Float(entry, 30) for entry in array], dict(enumerate(array))]
+    if array.ndim == 2:
+        forms += [sympy.Matrix(array), [list(row) for row in array], tuple(map(tuple, array)), iter(array)]
+    if array.ndim == 0:
+        forms += [[right], sympy.Float(right, 30)]
+    if np.all(array == np.round(array)):
+        forms.append(array.astype(int))
+    if kind.angle:
+        forms += [array + 2 * np.pi, array - 4 * np.pi]
+    if kind.any_order:
+        forms += [array[::-1], np.roll(array, 1, axis=0), list(array), set(map(tuple, array))]
+    return forms
+
+
+def _function_forms(kind, right):
+    forms = [lambda *args: right(*args), lambda *args: np.asarray(right(*args)).tolist()]
+    forms.append(lambda *args: np.asarray(right(*args))[..., None])
+    if all(np.ndim(arg) == 0 for args in kind._inputs for arg in args):
+        # works on arrays of one entry only, by masks
+        forms.append(lambda *args: np.array([right(*(arg[0] for arg in args))]))
+        forms.append(lambda *args: right(*map(_strictly_float, args)))
+    elif len(kind._inputs[0]) == 1 and np.ndim(kind._inputs[0][0]) == 1:
+        names = ", ".join(f"x{i}" for i in range(len(kind._inputs[0][0])))
+        forms.append(eval(f"lambda {names}: right([{names}])", {"right": lambda x: right(np.array(x))}))
+    return forms
+
+
+def _strictly_float(value):
+    if np.ndim(value):
+        raise TypeError("a scalar is needed")
+    return float(value)
+
+
+def _expression_forms(kind, right):
+    plain = {s: sympy.Symbol(s.name) for s in right.free_symbols}
+    positive = {s: sympy.Symbol(s.name, positive=True) for s in right.free_symbols}
+    forms = [right.subs(plain), right.subs(positive), right.expand(), right + right * 0]
+    if not getattr(right, "shape", ()):
+        forms += [str(right), (right.subs(plain) ** 2 + 1) - (right.subs(plain) - 1) ** 2 - right.subs(plain)]
+    else:
+        forms.append(right.tolist())
+    return forms
+
+
+def _choice_forms(kind, right):
+    return [right.upper(), f" {right}. ", kind.options[right], kind.options[right].capitalize()]
+
+
+_FORMS = {Number: _number_forms, Function: _function_forms, Expression: _expression_forms, Choice: _choice_forms}
+
+
+def wrong_answer(kind, wrong):
+    """Return the student's answer that belongs to a slip."""
+    if isinstance(kind, Function | Choice):
+        return wrong
+    if isinstance(kind, Number):
+        return wrong(kind.solution) if callable(wrong) else wrong
+    return wrong(kind.right) if callable(wrong) and not hasattr(wrong, "free_symbols") else wrong
+
+
+def random_wrong(kind):
+    """Return an answer of the right form that is wrong in no known way."""
+    rng = np.random.default_rng(SEED)
+
+    def moved(value):
+        return np.asarray(value) + rng.uniform(3.3, 3.9, np.shape(value)) * (1 + np.abs(value))
+
+    if isinstance(kind, Number):
+        return moved(kind.solution)
+    if isinstance(kind, Function):
+        return lambda *args: moved(kind.right(*args))
+    if isinstance(kind, Expression):
+        # 1.7 times a symbol is added to every entry
+        extra = sympy.Symbol(kind._names[0]) * sympy.Float("1.7317")
+        return kind.right.applyfunc(lambda e: e + extra) if hasattr(kind.right, "shape") else kind.right + extra
+    return "none of them"
+
+
+def secrets(exercise):
+    """Return texts that no message may contain: the answer, where it is long enough to be recognised."""
+    kind, right = exercise.kind, exercise.kind.solution
+    if isinstance(kind, Number):
+        texts = {f"{abs(x):.{digits}g}" for x in np.ravel(right) for digits in (3, 4, 5)}
+        return {text for text in texts if len(text.replace(".", "").strip("0")) >= 3}
+    if isinstance(kind, Expression):
+        return {str(right)}
+    if isinstance(kind, Choice):
+        return {kind.options[right]} if len(kind.options[right]) > 5 else set()
+    return set()

@@ -1,0 +1,347 @@
+"""The exercises: every one of every module, then the framework itself."""
+
+import importlib
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import exercise_rules
+import numpy as np
+import pytest
+import sympy
+
+from ir50p_lab.course import exercises as package
+from ir50p_lab.course.exercises import (
+    Choice,
+    Exercise,
+    Expression,
+    Function,
+    Number,
+    Slip,
+    check,
+    exercises,
+    judge,
+    progress,
+    solution,
+)
+from ir50p_lab.course.exercises._catalogue import everything, prefixes
+from ir50p_lab.course.exercises._display import Note, Table
+from ir50p_lab.errors import InputError
+
+ALL = [exercise for _, exercise in everything()]
+
+
+@pytest.fixture(autouse=True)
+def own_progress(tmp_path, monkeypatch):
+    """No test touches the progress file of whoever runs it."""
+    path = tmp_path / "progress.json"
+    monkeypatch.setenv("IR50P_PROGRESS", str(path))
+    return path
+
+
+def said(capsys, name, answer=...):
+    """Return what check says."""
+    capsys.readouterr()
+    assert check(name, answer) is None
+    out, err = capsys.readouterr()
+    assert err == "" and out.count("\n") == 1
+    return out.strip()
+
+
+# --- every exercise of every module
+
+
+@pytest.mark.parametrize("exercise", ALL, ids=lambda exercise: exercise.name)
+def test_exercise(exercise):
+    assert exercise_rules.problems(exercise) == []
+
+
+@pytest.mark.parametrize("prefix", prefixes())
+def test_module(prefix):
+    module = importlib.import_module(f"{package.__name__}.{prefix}")
+    names = [exercise.name for exercise in module.EXERCISES]
+    assert names == [f"{prefix}-{i + 1}" for i in range(len(names))]
+    assert 3 <= len(names) <= 5
+    assert module.NOTEBOOK[:2].isdigit()
+
+
+@pytest.mark.parametrize("name", [exercise.name for exercise in ALL])
+def test_check_of_a_solution_is_noted(name, capsys, own_progress):
+    assert said(capsys, name).startswith(f"{name}: not answered yet")
+    assert not own_progress.exists()  # a stub writes nothing
+    assert said(capsys, name, solution(name)).startswith(f"{name}: right. ")
+    assert list(json.loads(own_progress.read_text())["done"]) == [name]
+
+
+def test_the_rules_find_faults():
+    """The rules above are not vacuous: a careless exercise breaks each of them."""
+    good = ALL[0]
+
+    def found(**changes):
+        kept = {f: getattr(good, f) for f in ("name", "task", "kind", "why", "slips", "hint", "forms")}
+        return " ".join(exercise_rules.problems(Exercise(**(kept | changes))))
+
+    right = good.kind.solution
+    assert found() == ""
+    assert "prefix-number" in found(name="Start 1")
+    assert "full stop" in found(task="the angles.")
+    assert "only 2 slips" in found(slips=())
+    assert "two slips share" in found(
+        slips=(Slip(right * 2, "The same message."), Slip(right * 3, "The same message."))
+    )
+    assert "is answered by right" in found(slips=(Slip(right, "This is in fact the right answer."),))
+    assert "gives the answer away" in found(slips=(Slip(right * 2, "It should begin with 1.571 in fact."),))
+    assert "gives the answer away" in found(hint="Try -0.785.")
+    assert "right answer" in found(forms=(right + 1,))
+    assert "is slip" in found(slips=(Slip(exercise_rules.random_wrong(good.kind), "Anything goes in this one."),))
+
+
+# --- the four kinds of answer
+
+VECTOR = Exercise("x-1", "three numbers", Number([1.0, 2.0, 3.5], unit="m"), "because")
+ROWS = Exercise(
+    "x-2", "two angles", Number([[0.1, 0.2], [3.0, -3.0]], unit="rad", angle=True, any_order=True), "because"
+)
+SQUARE = Exercise("x-3", "the square", Function(lambda x: x**2, cases=[1.5, -2.0, np.float64(3)]), "because")
+WHOLE = Exercise(
+    "x-4", "the sum", Function(lambda q: q.sum(), cases=[np.array([1.0, 2, 4]), np.array([0, 0, 1.0])]), "b"
+)
+DOUBLE = Exercise("x-5", "sin 2q", Expression(sympy.sympify("2*sin(q)*cos(q)"), also=("t",)), "because")
+COLUMN = Exercise("x-6", "a column", Expression(sympy.Matrix([sympy.Symbol("a"), 1 - sympy.Symbol("b")])), "because")
+ELBOW = Exercise("x-7", "the branch", Choice("a", {"a": "elbow up", "b": "elbow down", "no": "none"}), "because")
+
+
+@pytest.mark.parametrize(
+    ("exercise", "answer", "words"),
+    [
+        (VECTOR, None, "found None"),
+        (VECTOR, "1 2 3", "found the text '1 2 3'"),
+        (VECTOR, True, "found True"),
+        (VECTOR, [True, True, True], "found True"),
+        (VECTOR, [1, 2], "found 2 numbers; expected 3 numbers in m"),
+        (VECTOR, 4, "found a number; expected 3 numbers"),
+        (VECTOR, np.zeros((3, 3)), "found a 3 x 3 matrix"),
+        (VECTOR, [1, 2, np.nan], "holds nan"),
+        (VECTOR, [1, 2, np.inf], "infinite"),
+        (VECTOR, [1, 2, 3j], "complex"),
+        (VECTOR, [1, [2], [3, 4]], "different lengths"),
+        (VECTOR, [1, 2, ...], "1 of 3 entries are still"),
+        (VECTOR, [1, 2, sympy.Symbol("l3")], "still holds the symbol l3"),
+        (VECTOR, np.sin, "the function sin, not what it returns"),
+        (VECTOR, lambda: 1, "found a function"),
+        (VECTOR, object(), "type object"),
+        (VECTOR, [], "something empty"),
+        (ROWS, np.zeros((3, 2)), "found a 3 x 2 matrix; expected a 2 x 2 matrix in rad, in any order"),
+        (SQUARE, 4, "a value, not a function"),
+        (SQUARE, "x**2", "the text"),
+        (SQUARE, float, "found a class"),
+        (SQUARE, lambda x, y: x, "found a function of (x, y); expected a function of (x)"),
+        (SQUARE, lambda x: 1 / 0, "stops with ZeroDivisionError: division by zero (called with x = 1.5)"),
+        (SQUARE, lambda x: print(end="") or None, "returns None (is there a `return` missing?) (called with x = 1.5)"),
+        (SQUARE, lambda x: [x, x], "returns 2 numbers; expected"),
+        (SQUARE, lambda x: np.sqrt(x), "returns nan"),
+        (DOUBLE, sympy.Symbol("z"), "an expression with z in it"),
+        (DOUBLE, sympy.Eq(sympy.Symbol("q"), 1), "an equation"),
+        (DOUBLE, "2 sin q", "no expression"),
+        (DOUBLE, [1, 2], "2 x 1 matrix"),
+        (DOUBLE, np.sin, "the function sin"),
+        (DOUBLE, object(), "type object"),
+        (DOUBLE, sympy.zoo, "no finite value"),
+        (COLUMN, sympy.Symbol("a"), "found a single expression; expected a 2 x 1 matrix"),
+        (ELBOW, "sideways", "found the text 'sideways'; expected one of 'a', 'b', 'no'"),
+        (ELBOW, 3.0, "type float"),
+        (ELBOW, 3, "found 3"),
+    ],
+)
+def test_a_wrong_form_is_named(exercise, answer, words):
+    verdict = judge(exercise, answer)
+    assert verdict.state == "unreadable"
+    assert words in verdict.text
+
+
+@pytest.mark.parametrize(
+    ("exercise", "answer", "state", "words"),
+    [
+        (VECTOR, [1, 2, 4], "wrong", "look again at answer[2]"),
+        (VECTOR, [1.000004, 2, 3.5], "wrong", "close, but 1e-06 m"),
+        (VECTOR, [-1, -2, -3.5], "slip", "sign"),
+        (VECTOR, [1000, 2000, 3500], "slip", "millimetres"),
+        (ROWS, [[3.0, -3.0], [0.1 + 2 * np.pi, 0.2]], "right", ""),
+        (ROWS, [[0.1, 0.2], [0.1, 0.2]], "wrong", "1 of 2 rows"),
+        (ROWS, np.rad2deg([[0.1, 0.2], [3.0, -3.0]]), "slip", "degrees"),
+        (SQUARE, lambda x: x * x, "right", ""),
+        (SQUARE, lambda x: x * abs(x), "wrong", "right in 2 of 3 cases"),
+        (SQUARE, lambda x: -x * x, "slip", "sign"),
+        (SQUARE, lambda x: np.where(x > 0, x, -x) ** 2, "right", ""),
+        (SQUARE, lambda *x: x[0] ** 2, "right", ""),
+        (WHOLE, lambda q1, q2, q3: q1 + q2 + q3, "right", ""),
+        (WHOLE, sum, "right", ""),
+        (WHOLE, lambda q: q[0], "wrong", "returns 1 for q = [1, 2, 4]"),
+        (WHOLE, lambda q: (q.sort(), q[-1])[1], "wrong", "returns 4 for q = [1, 2, 4]"),
+        (DOUBLE, sympy.sin(2 * sympy.Symbol("q", real=True)), "right", ""),
+        (DOUBLE, sympy.sin(2 * sympy.Function("q")(sympy.Symbol("t"))), "right", ""),
+        (DOUBLE, "sin(2*q)", "right", ""),
+        (DOUBLE, 1, "wrong", "expected an expression in q, t"),
+        (DOUBLE, -sympy.sin(2 * sympy.Symbol("q")), "slip", "sign"),
+        (COLUMN, [[sympy.Symbol("a"), 1 - sympy.Symbol("b")]], "right", ""),
+        (COLUMN, [sympy.Symbol("a"), 1], "wrong", "look again at answer[1]"),
+        (COLUMN, (..., ...), "open", "not answered"),
+        (ELBOW, " Elbow up. ", "right", ""),
+        (ELBOW, False, "wrong", "found 'no'"),
+    ],
+)
+def test_what_is_said(exercise, answer, state, words):
+    verdict = judge(exercise, answer)
+    assert verdict.state == state, verdict.text
+    assert words in verdict.text
+
+
+def test_a_velocity_in_sympys_own_words_is_the_packages():
+    t = sympy.Symbol("t")
+    q1 = sympy.Function("q1")(t)
+    rate = Exercise("x-8", "the rate", Expression(sympy.sympify("q1 * qdot1 + qddot1")), "because")
+    assert judge(rate, q1 * q1.diff(t) + q1.diff(t, 2)).state == "right"
+    assert judge(rate, q1 * q1.diff(t)).state == "wrong"
+
+
+def test_a_student_cannot_change_the_question(capsys):
+    answer = solution("start-1")
+    answer[:] = 0
+    assert not np.allclose(solution("start-1"), 0)
+    assert said(capsys, "start-1", answer).startswith("start-1: not yet")
+
+
+def test_an_interrupt_is_not_swallowed():
+    def stop(x):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        judge(SQUARE, stop)
+
+
+def test_a_choice_needs_its_right_option():
+    with pytest.raises(ValueError, match="none of"):
+        Choice("c", {"a": "one"})
+
+
+# --- names, solutions
+
+
+def test_names():
+    assert exercises()[0] == "start-1"
+    assert len(set(exercises())) == len(exercises())
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("start-11", "Nearest names: start-1"),
+        ("stat-2", "start-2"),
+        ("zzzzzz", "There is no exercise 'zzzzzz'. Nearest names: "),
+        ("", "no exercise"),
+        (3, "name of the exercise comes first"),
+        ([1, 2], "name of the exercise comes first"),
+        ("_numbers-1", "no exercise"),
+    ],
+)
+def test_unknown_name(name, words, capsys):
+    assert words in said(capsys, name, 1)
+    with pytest.raises(InputError, match=r"no exercise|comes first"):
+        solution(name)
+
+
+def test_the_name_is_read_kindly(capsys):
+    assert said(capsys, " Start-1 ").startswith("start-1: not answered yet")
+
+
+def test_only_the_module_asked_for_is_imported():
+    code = (
+        "import sys; from ir50p_lab.course.exercises import check; check('start-1');"
+        f"print([m for m in sys.modules if m.rpartition('.')[2] in {prefixes()} and 'exercises' in m], 'sympy' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=_root())
+    assert done.stdout.splitlines()[1] == "['ir50p_lab.course.exercises.start'] False"
+
+
+def _root():
+    return Path(package.__file__).parents[3]
+
+
+# --- the progress file
+
+
+def test_progress_table(capsys, own_progress):
+    check("start-2", solution("start-2"))
+    capsys.readouterr()
+    assert progress() is None
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "00_start_here"
+    assert [line.split()[:2] for line in lines[1:3]] == [["start-1", "open"], ["start-2", "done"]]
+    assert lines[-1].startswith(f"1 of {len(ALL)} exercises done")
+
+
+def test_first_success_stays(capsys, own_progress):
+    check("start-1", solution("start-1"))
+    before = own_progress.read_text()
+    own_progress.write_text(before.replace(json.loads(before)["done"]["start-1"], "2020-01-01T00:00+00:00"))
+    check("start-2", solution("start-2"))
+    check("start-1", solution("start-1"))
+    check("start-1", "something else")
+    assert json.loads(own_progress.read_text())["done"]["start-1"] == "2020-01-01T00:00+00:00"
+    assert sorted(p.name for p in own_progress.parent.iterdir()) == ["progress.json"]  # no scratch files
+
+
+@pytest.mark.parametrize(
+    "content", ["", "{", "[]", '{"done": 3}', '{"done": {"start-1": 1}}', "{}", b"\xff\xfe".decode("latin1")]
+)
+def test_damaged_file(content, capsys, own_progress):
+    own_progress.write_bytes(content.encode("latin1"))
+    text = said(capsys, "start-1", solution("start-1"))
+    assert text.startswith("start-1: right.") and "is damaged: rename or delete it" in text
+    assert own_progress.read_bytes() == content.encode("latin1")  # nothing is lost
+    progress()
+    assert "is damaged" in capsys.readouterr().out
+
+
+def test_unwritable_place(capsys, tmp_path, monkeypatch):
+    monkeypatch.setenv("IR50P_PROGRESS", str(tmp_path / "no" / "such" / "folder.json"))
+    text = said(capsys, "start-1", solution("start-1"))
+    assert text.startswith("start-1: right.") and "cannot be written (No such file" in text
+
+
+def test_unreadable_file(capsys, own_progress):
+    own_progress.mkdir()
+    assert "cannot be read" in said(capsys, "start-1", solution("start-1"))
+
+
+def test_failed_swap_leaves_the_old_file(capsys, own_progress, monkeypatch):
+    check("start-1", solution("start-1"))
+    before = own_progress.read_text()
+    monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(PermissionError(13, "Permission denied")))
+    assert "Permission denied" in said(capsys, "start-2", solution("start-2"))
+    assert own_progress.read_text() == before
+    assert len(list(own_progress.parent.iterdir())) == 1
+
+
+def test_default_place_is_the_project_root(monkeypatch):
+    from ir50p_lab.course.exercises._progress import progress_path
+
+    monkeypatch.delenv("IR50P_PROGRESS")
+    assert progress_path() == _root() / "progress.json"
+    assert "progress.json" in (_root() / ".gitignore").read_text().split()
+
+
+# --- how it looks
+
+
+def test_note_in_a_notebook():
+    shown = Note("slip", "x-1", "use `R @ v`, not <v>")._repr_html_()
+    assert "<code>R @ v</code>" in shown and "&lt;v&gt;" in shown and shown.count("<div") == 1
+
+
+def test_table_in_a_notebook():
+    shown = Table((("00", "x-1", "a < b", "2026-01-02T03:04"), ("00", "x-2", "c", None)), "A note.")._repr_html_()
+    assert shown.count("<tr>") == 3 and "2026-01-02" in shown and "a &lt; b" in shown
+    assert "1 of 2 exercises done. A note." in shown
