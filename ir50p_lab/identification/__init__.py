@@ -1,0 +1,13 @@
+"""From recordings to numbers: models of the plant, each with the uncertainty of what it found.
+
+Names are loaded on first use: importing this package costs nothing.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "fopdt": ["FOPDT", "fit_fopdt"],
+    },
+)
