@@ -1,0 +1,130 @@
+"""PID gain sweeps at full speed: thousands of gain sets a second, figures of merit only."""
+
+import os
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import first_not_finite
+from ir50p_lab.simulation.batch import LANES, METRICS, pid_batch
+from ir50p_lab.simulation.plant import make_plant
+from ir50p_lab.simulation.simulate import _sample, _single, _target, _times
+
+
+@dataclass(frozen=True)
+class GainSweep:
+    """Figures of merit of N gain sets, (N, 3) per joint; NaN where a run left all bounds (`unstable` (N,)).
+
+    rms_error rad; overshoot rad past the set point; settling_time s (last time outside 2 % of the step about the set
+    point; the duration if never inside to the end); end_error rad (set point - angle); peak_command in the unit of u.
+    """
+
+    kp: np.ndarray
+    ki: np.ndarray
+    kd: np.ndarray
+    rms_error: np.ndarray
+    overshoot: np.ndarray
+    settling_time: np.ndarray
+    end_error: np.ndarray
+    peak_command: np.ndarray
+    unstable: np.ndarray
+
+
+def sweep_gains(
+    arm,
+    reference,
+    *,
+    kp,
+    ki=0.0,
+    kd=0.0,
+    limit=np.inf,
+    limit_pwm=None,
+    duration=10.0,
+    period=0.01,
+    step=0.001,
+    filter_hz=10.0,
+    q0=(0.0, 0.0, 0.0),
+    executor=None,
+    progress=True,
+):
+    """Simulate the sampled `PID` for many gain sets at once; the numbers are those of `simulate` with `PID`.
+
+    Args:
+        arm: Arm without dry friction (`arm.without_friction()`), or such a theta. In-line links.
+        reference: as in `simulate`.
+        kp, ki, kd: (N, 3), or what broadcasts to it (scalars, (3,), (N, 1)).
+        limit / limit_pwm, duration, period, step, filter_hz, q0: as in `simulate` and `PID`.
+        executor: `concurrent.futures` executor for blocks of gain sets (a Dask client's, say); default: threads on all
+            cores (the compiled loop does not hold Python's lock).
+        progress: show a progress bar.
+
+    Returns: GainSweep. Raises InputError on bad input, or an arm with dry friction (use `sweep` with `simulate`).
+    """
+    from tqdm.auto import tqdm
+
+    steps, t = _times(duration, period, step)
+    q0 = _single("q0", q0, "rad")
+    plant = make_plant(arm, unit="N m" if limit_pwm is None else "PWM")
+    if plant.dry:
+        raise InputError(
+            "sweep_gains is for motion without dry friction: use arm.without_friction(), or sweep + simulate"
+        )
+    if plant.theta[:, 6:8].any():
+        raise InputError("sweep_gains needs theta 7 and 8 to be 0 (in-line links); use sweep + simulate for this theta")
+    kp, ki, kd = _gain_sets(kp=kp, ki=ki, kd=kd)
+    bound = np.broadcast_to(np.asarray(limit if limit_pwm is None else limit_pwm, dtype=float), 3).copy()
+    if not (bound > 0).all() or not filter_hz > 0:
+        raise InputError(f"limit {bound.tolist()} and filter_hz {filter_hz} must be positive")
+    rate = 2 * np.pi * filter_hz
+    r = _sample(_target(reference, q0), t)
+    x0 = np.concatenate([q0, np.zeros(3)])
+    jobs = [slice(i, i + LANES) for i in range(0, len(kp), LANES)]
+    pool = executor or ThreadPoolExecutor(os.cpu_count())
+    out = np.empty((len(METRICS), 3, len(kp)))
+    try:
+        with tqdm(total=len(kp), disable=not progress, unit="sim") as bar:
+            waiting = {}
+            for job in jobs:
+                args = (plant.theta, plant.numbers, kp[job], ki[job], kd[job], bound, period, rate, r, x0, step, steps)
+                waiting[pool.submit(run_block, *args)] = job
+            while waiting:
+                ready, _ = wait(waiting, return_when=FIRST_COMPLETED) if executor is None else (list(waiting)[:1], None)
+                for future in ready:
+                    job = waiting.pop(future)
+                    out[:, :, job] = future.result()
+                    bar.update(out[:, :, job].shape[2])
+    finally:
+        if executor is None:
+            pool.shutdown(cancel_futures=True)
+    unstable = ~np.isfinite(out).all(axis=(0, 1))
+    out[:, :, unstable] = np.nan
+    named = {name: out[i].T.copy() for i, name in enumerate(METRICS)}
+    return GainSweep(kp=kp, ki=ki, kd=kd, unstable=unstable, **named)
+
+
+def run_block(theta, n, kp, ki, kd, bound, period, rate, r, x0, step, steps):
+    """One block of gain sets (W, 3), filled up to whole lanes: returns (5, 3, W). Runs on any worker."""
+    W = len(kp)
+    fill = [np.ascontiguousarray(np.vstack([g, np.repeat(g[-1:], LANES - W, axis=0)]).T) for g in (kp, ki, kd)]
+    out = np.empty((len(METRICS), 3, LANES))
+    pid_batch(theta, n, *fill, bound, period, rate, r, x0, step, steps, out)
+    return out[:, :, :W]
+
+
+def _gain_sets(**sets):
+    arrays = {}
+    for name, value in sets.items():
+        array = np.asarray(value, dtype=float)
+        if not np.isfinite(array).all():
+            raise InputError(f"{name} holds {first_not_finite(np.atleast_1d(array))}; every gain must be finite")
+        if (array < 0).any():
+            raise InputError(f"{name} holds {array.min()}; gains must be >= 0")
+        arrays[name] = np.atleast_2d(array)
+    try:
+        shape = np.broadcast_shapes(*(a.shape for a in arrays.values()), (1, 3))
+    except ValueError:
+        shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items())
+        raise InputError(f"gain shapes do not fit: {shapes}; give (N, 3), (3,) or scalars") from None
+    return [np.ascontiguousarray(np.broadcast_to(a, shape)) for a in arrays.values()]
