@@ -1,0 +1,150 @@
+"""Pictures of notebook 01 that move: a brick that turns, and the three axes of an angle sequence."""
+
+import numpy as np
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+from ir50p_lab.course.arm3d import FrameView
+from ir50p_lab.course.style import COLOURS, new_figure
+from ir50p_lab.errors import InputError
+from ir50p_lab.modelling.pose import (
+    check_transform,
+    gimbal_lock,
+    homogeneous,
+    rate_matrix,
+    rotation_from_angles,
+    singular_angles,
+)
+
+_SIDES = ("#BFD9EA", "#E8C5AE", "#B3DCCD")  # the two faces across x, y, z
+_TURN = np.linspace(0, 2 * np.pi, 73)
+_CIRCLE = np.array([np.cos(_TURN), np.sin(_TURN)])
+_TURN_COLOURS = (COLOURS["purple"], COLOURS["amber"], COLOURS["sky"])  # first, second, third turn
+
+
+def space(cols=1, *, low=-1.0, high=1.0, width=None, unit="", width_ratios=None, flat_last=False):
+    """A figure with `cols` equal 3-D axes from `low` to `high` on x, y and z.
+
+    unit: of the axis labels, such as "m"; without one the axes carry no numbers, only the grey axes x, y, z of the
+    frame in which everything is drawn. width: inches; width_ratios: of the columns; flat_last: the last axes are 2-D.
+    Returns: LabFigure. Raises InputError if low is not below high.
+    """
+    if not low < high:
+        raise InputError(f"low = {low} must be below high = {high}")
+    kinds = ["3d"] * (cols - 1) + [None if flat_last else "3d"]
+    figure = new_figure(width or 4.6 * cols, 4.4, cols=cols, projection=kinds, width_ratios=width_ratios)
+    for ax, kind in zip(figure.axes, kinds, strict=True):
+        if kind == "3d":
+            ax.set(xlim=(low, high), ylim=(low, high), zlim=(low, high))
+            ax.set_box_aspect((1, 1, 1), zoom=1.0 if unit else 1.25)
+            ax.locator_params(nbins=4)
+            ax.view_init(elev=22, azim=35)
+            if unit:
+                ax.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]", zlabel=f"z [{unit}]")
+            else:
+                _grey_axes(ax, low, high)
+    return figure
+
+
+def _grey_axes(ax, low, high):
+    ax.set_axis_off()
+    origin = np.clip(0.0, low, high)
+    for k, name in enumerate("xyz"):
+        ends = np.full((2, 3), origin)
+        ends[:, k] = origin, high
+        ax.plot(*ends.T, color=COLOURS["grey"], linewidth=1.0, zorder=1)
+        ax.text(*(ends[1] + (ends[1] - ends[0]) * 0.08), name, color=COLOURS["grey"], fontsize=10, ha="center")
+
+
+class Brick:
+    """A box with three different edges and its frame; `update(T)` moves it.
+
+    edges: (3,) full lengths along x, y, z; length: of the frame's axes, 0 hides them.
+    """
+
+    def __init__(self, ax, T=None, *, edges=(0.9, 0.55, 0.2), length=0.75):
+        half = np.asarray(edges, dtype=float) / 2
+        corner = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+        faces = []
+        for k in range(3):
+            for side in (-1, 1):
+                face = np.empty((4, 3))
+                face[:, k] = side
+                face[:, [(k + 1) % 3, (k + 2) % 3]] = corner
+                faces.append(face * half)
+        self._faces = np.array(faces)
+        colours = [colour for colour in _SIDES for _ in range(2)]
+        self._box = Poly3DCollection(self._faces, facecolors=colours, edgecolors="#555555", linewidths=0.8, zorder=5)
+        ax.add_collection3d(self._box)
+        self._frame = FrameView(ax, np.eye(4), length=length)
+        self._frame.set_visible(length > 0)
+        self.update(np.eye(4) if T is None else T)
+
+    @property
+    def corners(self):
+        """The corners that are drawn, face by face: (6, 4, 3)."""
+        return self._drawn
+
+    def update(self, T):
+        """Move the brick. T: (4, 4), takes coordinates of the brick to those of the axes."""
+        T = check_transform(T)
+        self._drawn = self._faces @ T[:3, :3].T + T[:3, 3]
+        self._box.set_verts(self._drawn)
+        self._frame.update(T)
+
+
+class GimbalView:
+    """Two rings and a brick on three pivots, one for each turn of a sequence, and the price of the next turn.
+
+    The outer ring carries the pivot of the second turn, the inner ring that of the third. At a singularity both
+    rings lie in one plane and the first and third pivot in one line: gimbal lock.
+
+    space_ax: 3-D axes from -1 to 1; price_ax: 2-D axes for the gain over the middle angle.
+    `update(sequence, angles)` moves it.
+    """
+
+    def __init__(self, space_ax, price_ax):
+        self._middle = np.radians(np.arange(-180, 181, 1.0))
+        self._brick = Brick(space_ax, edges=(0.62, 0.38, 0.14), length=0.0)
+        self._pivots, self._rings, self._labels = [], [], []
+        for k, colour in enumerate(_TURN_COLOURS):
+            style = {"color": colour, "solid_capstyle": "round"}
+            self._pivots.append(space_ax.plot([], [], [], linewidth=5.0 - k, zorder=10 + k, **style)[0])
+            self._rings.append(space_ax.plot([], [], [], linewidth=3.0, zorder=6 + k, **style)[0])
+            self._labels.append(space_ax.text(0, 0, 0, "", color=colour, fontsize=10, fontweight="bold", zorder=20))
+        self._lost = space_ax.plot([], [], [], "--", color=COLOURS["dark"], linewidth=1.6, zorder=9)[0]
+        self._lost_label = space_ax.text(0, 0, 0, "", fontsize=9, zorder=20)
+        self._curve = price_ax.plot([], [], color=COLOURS["blue"])[0]
+        self._dot = price_ax.plot([], [], "o", color=COLOURS["orange"], ms=9, zorder=5)[0]
+        price_ax.set(yscale="log", ylim=(0.8, 300), xlim=(-180, 180), xticks=range(-180, 181, 90))
+        price_ax.set(xlabel="middle angle [deg]", ylabel="largest angle change per turn [deg/deg]")
+        self._title = price_ax.set_title("", loc="left")
+        self._sequence = self.gain = None
+
+    def update(self, sequence, angles):
+        """Show a sequence at three angles (3,) rad. Sets `gain`, the largest angle change per turn (rad/rad)."""
+        angles = np.asarray(angles, dtype=float)
+        E, lock = rate_matrix(sequence, angles), gimbal_lock(sequence, angles)
+        self.gain = float(lock.gain)
+        self._brick.update(homogeneous(rotation_from_angles(sequence, angles)))
+        for k, (inner, outer) in enumerate(((0.95, 1.15), (0.72, 0.95), (0.15, 0.72))):
+            reach = np.array([-outer, -inner, np.nan, inner, outer])
+            self._pivots[k].set_data_3d(*np.outer(E[:, k], reach))
+            self._labels[k].set_position_3d((-1, 1, 1)[k] * 1.1 * outer * E[:, k])
+            self._labels[k].set_text(f"{k + 1}: {sequence[k]}")
+        for k, radius in enumerate((0.95, 0.72)):  # a ring holds its own pivot and the next one
+            self._rings[k].set_data_3d(*(radius * E[:, k : k + 2] @ _CIRCLE))
+        near = lock.sine < 0.5
+        self._lost.set_data_3d(*(np.outer(lock.lost_axis, [-1.1, 1.1]) if near else np.empty((3, 0))))
+        self._lost_label.set_position_3d(1.2 * lock.lost_axis * np.sign(lock.lost_axis[2] or 1))
+        self._lost_label.set_text(("lost" if lock.sine < 1e-9 else "hard") if near else "")
+        if sequence != self._sequence:
+            self._draw_price(sequence, angles)
+        self._dot.set_data([np.degrees(angles[1])], [min(self.gain, 280.0)])
+
+    def _draw_price(self, sequence, angles):
+        self._sequence = sequence
+        others = np.tile(angles, (len(self._middle), 1))
+        others[:, 1] = self._middle
+        self._curve.set_data(np.degrees(self._middle), np.minimum(gimbal_lock(sequence, others).gain, 1e4))
+        low, high = np.degrees(singular_angles(sequence))
+        self._title.set_text(f"{sequence} is singular at {low:.0f} and {high:.0f} deg")
