@@ -29,7 +29,13 @@ _B = np.array([3.0, 7.0])
 
 # start-5: step response y(t) = K (1 - exp(-t / T)).
 _T = 0.4  # s
-_K = 2.0
+_K = 2.0  # rad/s
+
+
+def step_response(t):
+    """Return the speed (rad/s) that exercise start-5 shows over the time t (s), number or array."""
+    return _K * (1 - np.exp(-np.asarray(t) / _T))
+
 
 EXERCISES = (
     Exercise(
