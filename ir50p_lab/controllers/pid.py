@@ -8,6 +8,7 @@ from ir50p_lab.controllers.base import Controller
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.jit import jit
+from ir50p_lab.modelling.closed_form import not_denormal
 
 # places in the parameter vector
 KP, KI, KD, LIMIT, PERIOD, FILTER_RATE, ON_ERROR, ANTI_WINDUP, N_PARAMETERS = 0, 3, 6, 9, 12, 13, 14, 15, 16
@@ -29,7 +30,7 @@ def pid_step(p, s, t, q, r, u):
         if not started:
             moved = 0.0
         if dt > 0.0:
-            s[VELOCITY + i] += blend * (moved / dt - s[VELOCITY + i])
+            s[VELOCITY + i] = not_denormal(s[VELOCITY + i] + blend * (moved / dt - s[VELOCITY + i]))
         s[LAST + i] = e if p[ON_ERROR] > 0.0 else q[i]
         slope = s[VELOCITY + i] if p[ON_ERROR] > 0.0 else r[1, i] - s[VELOCITY + i]
         without = p[KP + i] * e + p[KD + i] * slope

@@ -39,6 +39,12 @@ def sincos(x):
 
 
 @jit()
+def not_denormal(x):
+    """x, or 0 if it is too small to matter: numbers below 1e-308 take the processor a hundred times as long."""
+    return x if abs(x) > 1e-100 else 0.0
+
+
+@jit()
 def mass_terms(theta, c2, c3, c23):
     """M(q) as nine scalars by rows, kg m^2 (or PWM s^2/rad): M11 .. M33    (list of 1.5.3a corrected)."""
     M11 = theta[0, 0] + theta[0, 1] * c2 * c2 + theta[0, 4] * c23 * c23 + 2 * theta[0, 5] * c2 * c23

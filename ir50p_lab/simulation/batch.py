@@ -81,7 +81,8 @@ def pid_batch(theta, n, kp, ki, kd, limit, period, filter_rate, r, x0, h, steps,
             time = sample * period
             for w in range(W):
                 e = target - x[i, w]
-                velocity[i, w] += blend * ((x[i, w] - last[i, w]) / period - velocity[i, w])
+                difference = (x[i, w] - last[i, w]) / period - velocity[i, w]
+                velocity[i, w] = cf.not_denormal(velocity[i, w] + blend * difference)
                 last[i, w] = x[i, w]
                 without = kp[i, w] * e + kd[i, w] * (target_velocity - velocity[i, w])
                 wound = integral[i, w] + ki[i, w] * e * period
@@ -108,6 +109,9 @@ def pid_batch(theta, n, kp, ki, kd, limit, period, filter_rate, r, x0, h, steps,
             for i in range(6):
                 for w in range(W):
                     x[i, w] += h / 6.0 * dx[i, w]
+        for i in range(3, 6):
+            for w in range(W):
+                x[i, w] = cf.not_denormal(x[i, w])
     for i in range(3):
         for w in range(W):
             out[0, i, w] = math.sqrt(out[0, i, w] / samples)

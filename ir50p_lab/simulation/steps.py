@@ -128,4 +128,5 @@ def advance(theta, n, x, u, h, steps):
     else:
         for _ in range(steps):
             q1, q2, q3, a, b, c = rk4_step(theta, n, q1, q2, q3, a, b, c, u1, u2, u3, h)
-    x[0], x[1], x[2], x[3], x[4], x[5] = q1, q2, q3, a, b, c
+    x[0], x[1], x[2] = q1, q2, q3
+    x[3], x[4], x[5] = cf.not_denormal(a), cf.not_denormal(b), cf.not_denormal(c)
