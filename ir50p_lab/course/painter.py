@@ -18,8 +18,9 @@ class Painter:
     (lines, collections, patches, texts, titles, legends, spines) is drawn over it each time, so artists may be
     changed, added and removed freely. The layout is computed once and then held, so that nothing jumps.
 
-    What it cannot see is a change made to a single tick label; call `forget()` after that. Overlapping axes
-    (twinx) are drawn background first: a line of the lower axes then lies above the ticks of the upper one.
+    What it cannot see is a change made to a single tick label; call `forget()` after that. Where axes overlap
+    (twinx, labels that outgrow the layout) all backgrounds lie below all data. A title keeps its height while its
+    text changes, but for the number of its lines.
 
     Attributes: backgrounds: how often the background was drawn (for tests and measurements).
     """
@@ -31,8 +32,8 @@ class Painter:
             FigureCanvasAgg(figure)
         figure.canvas.draw()  # runs the layout engine
         figure.set_layout_engine("none")
-        self._seen = None
-        self._region = None
+        self._seen = self._region = None
+        self._title_heights = {}
 
     def forget(self):
         """Draw the background anew next time."""
@@ -52,6 +53,8 @@ class Painter:
         else:
             renderer.restore_region(self._region)
         for ax in axes:
+            for title, y in zip(_titles(ax), self._title_heights[id(ax)], strict=True):
+                title.set_y(y)  # set_title() has dropped it to the frame
             if hasattr(ax, "get_proj"):
                 _project(ax)
             _draw_in_order(_foreground(ax), renderer)
@@ -78,6 +81,7 @@ class Painter:
                 artist.set_visible(True)
         for ax in axes:
             ax._update_title_position(renderer)  # above ticks at the top; Axes.draw does not move hidden titles
+            self._title_heights[id(ax)] = [title.get_position()[1] for title in _titles(ax)]
             for part in _background_parts(ax):
                 part.stale = False  # an invisible axis does not clear it itself
         self._region = renderer.copy_from_bbox(self.figure.bbox)
@@ -90,6 +94,7 @@ class Painter:
         for ax in axes:
             seen += [id(ax), ax.get_zorder(), *ax.get_position().bounds, *ax.get_xlim(), *ax.get_ylim()]
             seen += [axis.get_visible() for axis in _axes_of(ax)] + [ax.axison, *map(id, _foreground_axes(ax))]
+            seen += [t.get_text().count("\n") if t.get_text() else None for t in _titles(ax)]
             if hasattr(ax, "get_proj"):
                 seen += [*ax.get_zlim(), ax.get_proj().tobytes(), ax._axis3don]
         return seen
@@ -119,6 +124,10 @@ def encode_png(rgb):
 def _axes_of(ax):
     """The x, y (and z) axis of an axes."""
     return [getattr(ax, name + "axis") for name in ax._axis_names]
+
+
+def _titles(ax):
+    return [ax.title, ax._left_title, ax._right_title]
 
 
 def _foreground_axes(ax):

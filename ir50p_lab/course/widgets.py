@@ -14,47 +14,22 @@ import base64
 import contextlib
 import html
 import io
-import math
 import threading
 import traceback
 import weakref
-from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import ipywidgets as widgets
 
+from ir50p_lab.course.controls import Slider, ends, label_of, make_control, refuse_bad_value, slider, value_of
 from ir50p_lab.course.painter import Painter
 from ir50p_lab.errors import InputError, LabError
 
+__all__ = ["LivePanel", "Slider", "exercise_all_panels", "live", "slider"]
+
 # Widget callbacks may run in threads beside the cell's; matplotlib and sys.stdout are shared by all of them.
 _DRAWING = threading.RLock()
-
-
-@dataclass(frozen=True)
-class Slider:
-    """A slider from `min` to `max` in steps of `step`, at `start`; whole numbers throughout stay whole (int)."""
-
-    min: float
-    max: float
-    step: float
-    start: float
-    label: str | None = None
-    unit: str = ""
-
-    def __post_init__(self):
-        numbers = (self.min, self.max, self.step, self.start)
-        if not all(isinstance(v, int | float) and math.isfinite(v) for v in map(_plain, numbers)):
-            raise InputError(f"slider {numbers}: min, max, step and start must be finite numbers")
-        if not self.min < self.max or not 0 < self.step or not self.min <= self.start <= self.max:
-            raise InputError(
-                f"slider min={self.min}, max={self.max}, step={self.step}, start={self.start}: "
-                "need min < max, step > 0 and min <= start <= max"
-            )
-
-
-def slider(min, max, step, start, *, label=None, unit=""):
-    """Describe one slider for `live`: its range, step and start, the text beside it and the unit behind it."""
-    return Slider(min, max, step, start, label, unit)
 
 
 def live(figure, update, **controls):
@@ -88,14 +63,14 @@ class LivePanel(widgets.VBox):
             raise InputError("live(figure, update, ...) needs at least one control, such as kp=(0, 10, 0.1, 1)")
         self.figure, self.error, self.drawn, self.updates = figure, None, None, 0
         self.controls, rows = {}, []
-        width = max(len(label) for label in (_label(name, spec) for name, spec in controls.items())) + 2
+        width = max(len(label) for label in (label_of(name, spec) for name, spec in controls.items())) + 2
         for name, spec in controls.items():
-            self.controls[name], row = _make_control(name, spec, f"{width}ch")
+            self.controls[name], row = make_control(name, spec, f"{width}ch")
             rows.append(row)
         self._start = self.values
         self._update = update
         self._condition = threading.Condition()
-        self._wanted, self._drawer, self._quiet = None, None, 0
+        self._wanted, self._drawer, self._filler, self._quiet = None, None, None, 0
 
         with _DRAWING:
             update(**self._start)  # directly: an error belongs in the cell
@@ -115,13 +90,15 @@ class LivePanel(widgets.VBox):
         super().__init__([widgets.GridBox([*rows, reset], layout=grid), self.image, self.status])
         for control in self.controls.values():
             control.observe(self._changed, "value")
+            if hasattr(control, "box"):
+                control.box.observe(partial(self._typed, control), "value")
         _close_panels_of_earlier_runs(self)
         LivePanel.panels.add(self)
 
     @property
     def values(self):
         """What the controls say now: name -> value."""
-        return {name: _value(control) for name, control in self.controls.items()}
+        return {name: value_of(control) for name, control in self.controls.items()}
 
     def set(self, **values):
         """Move controls from Python, redraw once, and raise what `update` raises.
@@ -129,7 +106,7 @@ class LivePanel(widgets.VBox):
         Raises InputError for an unknown name or a value off the scale.
         """
         for name, value in values.items():
-            _refuse_bad_value(name, value, self.controls)
+            refuse_bad_value(name, value, self.controls)
         with self._condition:
             self._quiet += 1
         try:
@@ -181,10 +158,17 @@ class LivePanel(widgets.VBox):
 
     def _fill_boxes(self, values):
         """The number boxes follow their sliders after the picture, which is what the eye waits for."""
+        self._filler = threading.get_ident()
         for name, control in self.controls.items():
             box = getattr(control, "box", None)
             if box is not None and box.value != values[name]:
                 box.value = values[name]
+        self._filler = None
+
+    def _typed(self, control, change):
+        """A number typed into a box moves its slider; one that `_fill_boxes` wrote must not drag it back."""
+        if self._filler != threading.get_ident():
+            control.value = change["new"]
 
     def _finish(self):
         self._drawer = None
@@ -228,11 +212,11 @@ def exercise_all_panels():
     before = sum(panel.updates for panel in LivePanel.panels)
     for number, panel in enumerate(sorted(LivePanel.panels, key=lambda panel: panel.model_id)):
         kept = panel.values
-        ends = {name: _ends(control) for name, control in panel.controls.items()}
-        trials = [{name: value} for name, values in ends.items() for value in values]
-        trials += [{name: values[0] for name, values in ends.items()}]
-        trials += [{name: values[-1] for name, values in ends.items()}]
-        trials += [{name: values[-1 if k % 2 else 0] for k, (name, values) in enumerate(ends.items())}]
+        limits = {name: ends(control) for name, control in panel.controls.items()}
+        trials = [{name: value} for name, values in limits.items() for value in values]
+        trials += [{name: values[0] for name, values in limits.items()}]
+        trials += [{name: values[-1] for name, values in limits.items()}]
+        trials += [{name: values[-1 if k % 2 else 0] for k, (name, values) in enumerate(limits.items())}]
         for trial in trials:
             try:
                 panel.set(**trial)
@@ -242,86 +226,6 @@ def exercise_all_panels():
                 ) from error
         panel.set(**kept)
     return sum(panel.updates for panel in LivePanel.panels) - before
-
-
-def _label(name, spec):
-    return spec.label if isinstance(spec, Slider) and spec.label else name
-
-
-def _plain(number):
-    """NumPy scalars as Python numbers."""
-    return number.item() if hasattr(number, "item") and getattr(number, "ndim", 0) == 0 else number
-
-
-def _make_control(name, spec, label_width):
-    """The widget that holds the value, and the row that shows it."""
-    style = {"description_width": label_width}
-    if isinstance(spec, bool):
-        control = widgets.Checkbox(value=spec, description=name, indent=False)
-        return control, control
-    if isinstance(spec, list | dict):
-        if not spec:
-            raise InputError(f"{name}: an empty menu; give at least one choice")
-        layout = widgets.Layout(width=f"calc({label_width} + 230px)")
-        control = widgets.Dropdown(options=spec, description=name, style=style, layout=layout)
-        return control, control
-    if isinstance(spec, tuple) and len(spec) == 4:
-        spec = Slider(*spec)
-    if not isinstance(spec, Slider):
-        raise InputError(
-            f"{name}={spec!r}: give (min, max, step, start), slider(...), a list of choices, or True/False"
-        )
-    low, high, step, start = map(_plain, (spec.min, spec.max, spec.step, spec.start))
-    whole = all(isinstance(v, int) for v in (low, high, step, start))
-    slider_kind, box_kind = (
-        (widgets.IntSlider, widgets.BoundedIntText) if whole else (widgets.FloatSlider, widgets.BoundedFloatText)
-    )
-    common = {"min": low, "max": high, "step": step, "value": start}
-    control = slider_kind(
-        **common,
-        description=_label(name, spec),
-        style=style,
-        readout=False,
-        layout=widgets.Layout(width=f"calc({label_width} + 230px)"),
-    )
-    control.box = box_kind(**common, layout=widgets.Layout(width="80px"))
-    control.digits = None if whole else _digits(step, low)
-    control.box.observe(lambda change: setattr(control, "value", change["new"]), "value")
-    return control, widgets.HBox([control, control.box, widgets.Label(spec.unit)])
-
-
-def _digits(*numbers):
-    """Decimals that are enough to write these numbers."""
-    return max((len(f"{abs(v):.10f}".rstrip("0").partition(".")[2]) for v in numbers), default=0)
-
-
-def _value(control):
-    """The value of a control, without the rounding noise of the browser's steps (1.0599999 for 1.06).
-
-    A number typed into the box is kept as it is, however fine.
-    """
-    value, digits = control.value, getattr(control, "digits", None)
-    if digits is None:
-        return value
-    near = round(value, digits)
-    return near if abs(near - value) < 1e-9 * max(1.0, abs(value)) else value
-
-
-def _refuse_bad_value(name, value, controls):
-    if name not in controls:
-        raise InputError(f"no control {name!r}; this panel has {', '.join(controls)}")
-    control = controls[name]
-    if hasattr(control, "min") and not control.min <= value <= control.max:
-        raise InputError(f"{name} = {value} is off its slider ({control.min} to {control.max})")
-
-
-def _ends(control):
-    """The values a control can be pushed to: both ends of a slider, every choice of a menu."""
-    if hasattr(control, "min"):
-        return [control.min, control.max]
-    if isinstance(control, widgets.Checkbox):
-        return [False, True]
-    return [value for _, value in control._options_full]
 
 
 def _explain(error):

@@ -1,0 +1,116 @@
+"""The controls of a live figure: sliders with a number box, menus, checkboxes."""
+
+import math
+from dataclasses import dataclass
+
+import ipywidgets as widgets
+
+from ir50p_lab.errors import InputError
+
+
+@dataclass(frozen=True)
+class Slider:
+    """A slider from `min` to `max` in steps of `step`, at `start`; whole numbers throughout stay whole (int)."""
+
+    min: float
+    max: float
+    step: float
+    start: float
+    label: str | None = None
+    unit: str = ""
+
+    def __post_init__(self):
+        numbers = (self.min, self.max, self.step, self.start)
+        if not all(isinstance(v, int | float) and math.isfinite(v) for v in map(_plain, numbers)):
+            raise InputError(f"slider {numbers}: min, max, step and start must be finite numbers")
+        if not self.min < self.max or not 0 < self.step or not self.min <= self.start <= self.max:
+            raise InputError(
+                f"slider min={self.min}, max={self.max}, step={self.step}, start={self.start}: "
+                "need min < max, step > 0 and min <= start <= max"
+            )
+
+
+def slider(min, max, step, start, *, label=None, unit=""):
+    """Describe one slider for `live`: its range, step and start, the text beside it and the unit behind it."""
+    return Slider(min, max, step, start, label, unit)
+
+
+def label_of(name, spec):
+    """The text beside a control."""
+    return spec.label if isinstance(spec, Slider) and spec.label else name
+
+
+def _plain(number):
+    """NumPy scalars as Python numbers."""
+    return number.item() if hasattr(number, "item") and getattr(number, "ndim", 0) == 0 else number
+
+
+def make_control(name, spec, label_width):
+    """The widget that holds the value, and the row that shows it."""
+    style = {"description_width": label_width}
+    if isinstance(spec, bool):
+        control = widgets.Checkbox(value=spec, description=name, indent=False)
+        return control, control
+    if isinstance(spec, list | dict):
+        if not spec:
+            raise InputError(f"{name}: an empty menu; give at least one choice")
+        layout = widgets.Layout(width=f"calc({label_width} + 230px)")
+        control = widgets.Dropdown(options=spec, description=name, style=style, layout=layout)
+        return control, control
+    if isinstance(spec, tuple) and len(spec) == 4:
+        spec = Slider(*spec)
+    if not isinstance(spec, Slider):
+        raise InputError(
+            f"{name}={spec!r}: give (min, max, step, start), slider(...), a list of choices, or True/False"
+        )
+    low, high, step, start = map(_plain, (spec.min, spec.max, spec.step, spec.start))
+    whole = all(isinstance(v, int) for v in (low, high, step, start))
+    slider_kind, box_kind = (
+        (widgets.IntSlider, widgets.BoundedIntText) if whole else (widgets.FloatSlider, widgets.BoundedFloatText)
+    )
+    common = {"min": low, "max": high, "step": step, "value": start}
+    control = slider_kind(
+        **common,
+        description=label_of(name, spec),
+        style=style,
+        readout=False,
+        layout=widgets.Layout(width=f"calc({label_width} + 230px)"),
+    )
+    control.box = box_kind(**common, layout=widgets.Layout(width="80px"))
+    control.digits = None if whole else _digits(step, low)
+    return control, widgets.HBox([control, control.box, widgets.Label(spec.unit)])
+
+
+def _digits(*numbers):
+    """Decimals that are enough to write these numbers."""
+    return max((len(f"{abs(v):.10f}".rstrip("0").partition(".")[2]) for v in numbers), default=0)
+
+
+def value_of(control):
+    """The value of a control, without the rounding noise of the browser's steps (1.0599999 for 1.06).
+
+    A number typed into the box is kept as it is, however fine.
+    """
+    value, digits = control.value, getattr(control, "digits", None)
+    if digits is None:
+        return value
+    near = round(value, digits)
+    return near if abs(near - value) < 1e-9 * max(1.0, abs(value)) else value
+
+
+def refuse_bad_value(name, value, controls):
+    """Raise InputError unless `name` is one of the controls and `value` is on its scale."""
+    if name not in controls:
+        raise InputError(f"no control {name!r}; this panel has {', '.join(controls)}")
+    control = controls[name]
+    if hasattr(control, "min") and not control.min <= value <= control.max:
+        raise InputError(f"{name} = {value} is off its slider ({control.min} to {control.max})")
+
+
+def ends(control):
+    """The values a control can be pushed to: both ends of a slider, every choice of a menu."""
+    if hasattr(control, "min"):
+        return [control.min, control.max]
+    if isinstance(control, widgets.Checkbox):
+        return [False, True]
+    return [value for _, value in control._options_full]
