@@ -108,10 +108,8 @@ class PID(Controller):
         new = [old[place : place + 3] if g is None else g for place, g in ((KP, kp), (KI, ki), (KD, kd))]
         self._write_gains(*new)
         if self.state[STARTED]:
-            change = old - self.parameters
-            self.state[INTEGRAL : INTEGRAL + 3] += (
-                change[KP : KP + 3] * self._last_error + change[KD : KD + 3] * self._last_slope
-            )
+            change = old[:LIMIT] - self.parameters[:LIMIT]
+            self.state[INTEGRAL : INTEGRAL + 3] += change[KP:KI] * self._last_error + change[KD:] * self._last_slope
 
     def step(self, t, measured, reference):
         """The command for one sample, see `Controller.step`."""

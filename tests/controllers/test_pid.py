@@ -1,0 +1,158 @@
+"""The sampled PID, one test per feature, and its place in stability theory."""
+
+import control
+import numpy as np
+import pytest
+
+from ir50p_lab.controllers import PID, ContinuousPID
+from ir50p_lab.errors import InputError
+from ir50p_lab.modelling import THESIS_A, THESIS_RODS, mass_matrix
+
+ZERO = np.zeros(3)
+
+
+def hold(*q):
+    return np.array([q, ZERO, ZERO], dtype=float)
+
+
+def run(pid, angles, target=(0.0, 0.0, 0.0), start=0.0, period=0.01):
+    return np.array([pid.step(start + k * period, q, hold(*target)) for k, q in enumerate(np.atleast_2d(angles))])
+
+
+def test_proportional_part():
+    u = PID(kp=(2, 3, 4)).step(0.0, [0.1, 0.2, 0.3], hold(1, 1, 1))
+    np.testing.assert_allclose(u, [2 * 0.9, 3 * 0.8, 4 * 0.7], rtol=1e-14)
+
+
+def test_integral_part_sums_the_error():
+    pid = PID(kp=(0, 0, 0), ki=(5, 5, 5))
+    u = run(pid, np.zeros((100, 3)), target=(1, -1, 0.5))
+    np.testing.assert_allclose(u[-1], 5 * 100 * 0.01 * np.array([1, -1, 0.5]), rtol=1e-12)
+
+
+def test_derivative_part_of_a_ramp_is_its_slope():
+    pid = PID(kp=(0, 0, 0), kd=(2, 2, 2), filter_hz=5)
+    u = run(pid, 0.3 * 0.01 * np.arange(200)[:, None] * np.ones(3))
+    np.testing.assert_allclose(u[-1], -2 * 0.3, rtol=1e-9)
+
+
+def test_velocity_filter_is_the_first_order_low_pass_it_says():
+    pid = PID(kp=(0, 0, 0), kd=(1, 1, 1), filter_hz=5)
+    u = run(pid, 0.01 * np.arange(30)[:, None] * np.ones(3))  # velocity 1 rad/s from sample 1 on
+    expected = 1 - np.exp(-2 * np.pi * 5 * 0.01 * np.arange(30))
+    np.testing.assert_allclose(-u[:, 0], expected, atol=1e-12)
+    unfiltered = run(PID(kp=(0, 0, 0), kd=(1, 1, 1), filter_hz=np.inf), 0.01 * np.arange(3)[:, None] * np.ones(3))
+    np.testing.assert_allclose(unfiltered[:, 0], [0, -1, -1], atol=1e-12)
+
+
+def test_no_derivative_kick_on_the_measurement_and_one_on_the_error():
+    for on, kick in (("measurement", False), ("error", True)):
+        pid = PID(kp=(1, 1, 1), kd=(1, 1, 1), filter_hz=np.inf, derivative_on=on)
+        run(pid, np.zeros((5, 3)))
+        u = pid.step(0.05, ZERO, hold(1, 1, 1))
+        assert (u > 50).all() if kick else (u == 1).all()
+
+
+def test_a_moving_reference_brings_its_velocity():
+    pid = PID(kp=(0, 0, 0), kd=(2, 2, 2))
+    u = pid.step(0.0, ZERO, [ZERO, [0.5, 0.5, 0.5], ZERO])
+    np.testing.assert_allclose(u, 1.0)
+
+
+@pytest.mark.parametrize("unit", ["limit", "limit_pwm"])
+def test_the_command_is_limited(unit):
+    pid = PID(kp=(100, 100, 100), **{unit: (10, 20, 255)})
+    assert (pid.step(0.0, ZERO, hold(1, -1, 9)) == [10, -20, 255]).all()
+    assert pid.unit == ("PWM" if unit == "limit_pwm" else "N m")
+
+
+def test_anti_windup_lets_go_at_once():
+    def after_saturation(anti_windup):
+        pid = PID(kp=(1, 1, 1), ki=(10, 10, 10), limit=5, anti_windup=anti_windup)
+        run(pid, np.zeros((500, 3)), target=(9, 9, 9))  # 5 s far from the target, limited
+        return pid.step(5.0, [9.5, 9.5, 9.5], hold(9, 9, 9))
+
+    assert (after_saturation(True) < 5).all()
+    assert (after_saturation(False) == 5).all()  # wound up: still full drive, though past the target
+
+
+def test_gains_change_without_a_bump():
+    rng = np.random.default_rng(0)
+    pid = PID(kp=(10, 10, 10), ki=(2, 2, 2), kd=(3, 3, 3), filter_hz=5)
+    q = np.cumsum(rng.normal(0, 0.01, (60, 3)), axis=0)
+    before = run(pid, q, target=(0.5, 0.5, 0.5))[-1]
+    pid.set_gains(kp=(50, 20, 5), kd=(1, 9, 0), ki=(0, 5, 1))
+    after = pid.step(0.60, q[-1] + 0.01 * pid.state[3:6], hold(0.5, 0.5, 0.5))
+    assert (np.abs(after - before) < 0.5).all()
+    assert (pid.kp == (50, 20, 5)).all() and (pid.ki == (0, 5, 1)).all() and (pid.kd == (1, 9, 0)).all()
+    bumpy = PID(kp=(50, 20, 5), ki=(0, 5, 1), kd=(1, 9, 0), filter_hz=5)
+    assert (np.abs(run(bumpy, q, target=(0.5, 0.5, 0.5))[-1] - before) > 2).any()
+
+
+def test_gains_may_change_before_the_first_sample():
+    pid = PID(kp=(1, 1, 1))
+    pid.set_gains(kp=(2, 2, 2))
+    assert (pid.step(0.0, ZERO, hold(1, 1, 1)) == 2).all()
+
+
+def test_reset_forgets():
+    pid = PID(kp=(1, 1, 1), ki=(1, 1, 1), kd=(1, 1, 1))
+    first = run(pid, np.ones((20, 3)))
+    pid.reset()
+    assert (run(pid, np.ones((20, 3))) == first).all()
+
+
+def test_a_late_cycle_is_integrated_over_its_true_length():
+    pid = PID(kp=(0, 0, 0), ki=(1, 1, 1))
+    pid.step(0.0, ZERO, hold(1, 1, 1))
+    np.testing.assert_allclose(pid.step(0.05, ZERO, hold(1, 1, 1)), 0.01 + 0.05)
+
+
+def radius(arm, q, kp, kd, period):
+    """Largest eigenvalue of the loop linearised at pose q, sampled and held: from `control`'s discretisation."""
+    M = mass_matrix(arm, q)
+    Z, I = np.zeros((3, 3)), np.eye(3)
+    plant = control.ss(np.block([[Z, I], [Z, Z]]), np.vstack([Z, np.linalg.solve(M, I)]), np.eye(6), np.zeros((6, 3)))
+    held = control.c2d(plant, period, "zoh")
+    return np.abs(np.linalg.eigvals(held.A - held.B @ np.hstack([np.diag(kp), np.diag(kd)]))).max()
+
+
+@pytest.mark.parametrize(
+    "arm, at_home, at_set_point", [(THESIS_A, 16.8, 2.45), (THESIS_RODS, 5.1, 1.46)], ids=["A", "rods"]
+)
+def test_the_thesis_gains_are_unstable_at_10_ms(arm, at_home, at_set_point):
+    """Source: spectral radius of the frozen-M linearisation with the gains of Tables 2.1-2.3."""
+    kp, kd = (25, 200, 200), (10, 40, 40)
+    assert radius(arm, ZERO, kp, kd, 0.01) == pytest.approx(at_home, rel=8e-3)
+    assert radius(arm, (np.pi / 2, np.pi / 2, -np.pi / 3), kp, kd, 0.01) == pytest.approx(at_set_point, rel=5e-3)
+    assert radius(arm, ZERO, kp, kd, 0.0005) < 1
+
+
+@pytest.mark.parametrize(
+    "make, words",
+    [
+        (lambda: PID(kp=(1, -1, 1)), ["kp", "-1", ">= 0"]),
+        (lambda: PID(kp=(1, np.nan, 1)), ["kp", "nan"]),
+        (lambda: PID(kp=(1, 1)), ["kp", "(2,)"]),
+        (lambda: PID(kp=(1, 1, 1), period=0), ["period = 0"]),
+        (lambda: PID(kp=(1, 1, 1), filter_hz=-1), ["filter_hz = -1"]),
+        (lambda: PID(kp=(1, 1, 1), limit=0), ["limit = 0"]),
+        (lambda: PID(kp=(1, 1, 1), limit=1, limit_pwm=1), ["not both"]),
+        (lambda: PID(kp=(1, 1, 1), derivative_on="nothing"), ["'nothing'", "'error'"]),
+        (lambda: PID(kp=(1, 1, 1)).step(0, [0, np.nan, 0], hold(0, 0, 0)), ["measured q", "nan"]),
+        (lambda: PID(kp=(1, 1, 1)).step(0, np.zeros((2, 3)), hold(0, 0, 0)), ["(2, 3)"]),
+        (lambda: PID(kp=(1, 1, 1)).step(0, np.array([0, np.nan, 0]), hold(0, 0, 0)), ["measured q", "nan"]),
+        (lambda: PID(kp=(1, 1, 1)).step(0, [0, 0, 0], [0, 0, 0]), ["reference", "(3,)"]),
+        (lambda: ContinuousPID(kp=(1, 1, 1), limit=-5), ["limit = -5"]),
+        (lambda: ContinuousPID(kp=(1, 1, -1)), ["kp", "-1"]),
+    ],
+)
+def test_bad_input_gets_a_sentence(make, words):
+    with pytest.raises(InputError) as caught:
+        make()
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_a_scalar_gain_counts_for_all_joints():
+    assert (PID(kp=3).kp == 3).all()

@@ -1,0 +1,262 @@
+"""Simulation: energy, order of convergence, other integrators, sticking, stops, table, drive, bad input."""
+
+import mujoco
+import numpy as np
+import pytest
+from arms import mujoco_model
+from scipy.integrate import solve_ivp
+
+from ir50p_lab.controllers import PID, ContinuousPID
+from ir50p_lab.errors import ArmError, InputError
+from ir50p_lab.modelling import (
+    IR50P,
+    THESIS_A,
+    THESIS_C,
+    THESIS_RODS,
+    Friction,
+    forward_dynamics,
+    forward_kinematics,
+    gravity,
+)
+from ir50p_lab.simulation import simulate
+
+SET_POINT = (np.pi / 2, np.pi / 2, -np.pi / 3)
+SMOOTH = IR50P.without_friction()
+START = {"q0": (0.3, 0.5, -0.7), "qd0": (0.4, -0.6, 0.8)}
+
+
+@pytest.mark.parametrize(
+    "arm, bound", [(SMOOTH, 1e-9), (THESIS_A, 1e-5), (THESIS_RODS, 1e-5)], ids=["IR50P with rotors", "A", "rods"]
+)
+def test_free_motion_keeps_its_energy(arm, bound):
+    run = simulate(arm, q0=START["q0"], qd0=START["qd0"], duration=10, step=0.001)
+    drift = np.abs(run.energy.total - run.energy.total[0]).max() / run.energy.kinetic.max()
+    assert run.energy.kinetic.max() > 1  # it does swing
+    assert drift < bound
+
+
+def test_the_error_falls_with_the_fourth_power_of_the_step():
+    ends = [simulate(THESIS_RODS, duration=2, step=h, period=0.04, **START).q[-1] for h in (0.01, 0.005, 0.0025, 0.00025)]
+    errors = [np.abs(end - ends[-1]).max() for end in ends[:-1]]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.4)
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(4, abs=0.4)
+
+
+def test_equals_scipy_and_mujoco():
+    run = simulate(SMOOTH, duration=2, **START)
+    rate = lambda t, x: np.r_[x[3:], forward_dynamics(SMOOTH, x[:3], x[3:], np.zeros(3))]  # noqa: E731
+    exact = solve_ivp(rate, (0, 2), np.r_[START["q0"], START["qd0"]], rtol=1e-12, atol=1e-12, t_eval=run.t)
+    np.testing.assert_allclose(run.q, exact.y[:3].T, atol=1e-9)
+    model = mujoco_model(SMOOTH)
+    data = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:] = START["q0"], START["qd0"]
+    mujoco.mj_step(model, data, 2000)
+    np.testing.assert_allclose(run.q[-1], data.qpos, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    "arm, rises, settles, errors",
+    [
+        (THESIS_A, (0.06, 0, 0), (0.90, 0.78, 0.83), (0, 0.02350, 0.02177)),
+        (THESIS_RODS, (0, 0, 0), (1.30, 0.75, 0.84), (0, 0.02350, 0.02177)),
+    ],
+    ids=["A", "rods"],
+)
+def test_tables_2_1_to_2_3_in_continuous_time(arm, rises, settles, errors):
+    """Source: the corrected equations with the gains of Tables 2.1-2.3, integrated by LSODA (tolerances as printed)."""
+    run = simulate(arm, ContinuousPID(kp=(25, 200, 200), kd=(10, 40, 40)), SET_POINT)
+    metrics = run.metrics()
+    np.testing.assert_allclose([m.overshoot_percent for m in metrics], rises, atol=0.005)
+    np.testing.assert_allclose([m.settling_time for m in metrics], settles, atol=0.011)
+    np.testing.assert_allclose([m.error for m in metrics], errors, atol=5e-6)
+    np.testing.assert_allclose([m.peak_command for m in metrics], np.abs(SET_POINT) * (25, 200, 200), rtol=1e-12)
+    np.testing.assert_allclose(run.error[-1], gravity(arm, run.q[-1]) / (25, 200, 200), atol=1e-8)
+
+
+def test_integral_action_and_saturation_of_the_thesis_loop():
+    run = simulate(THESIS_A, ContinuousPID(kp=(25, 200, 200), ki=(0, 100, 100), kd=(10, 40, 40)), SET_POINT)
+    assert np.abs(run.error[-1]).max() < 7e-4
+    limited = simulate(THESIS_A, ContinuousPID(kp=(25, 200, 200), kd=(10, 40, 40), limit=50), SET_POINT)
+    assert np.abs(limited.u).max() == 50 and 1.85 < limited.metrics()[0].overshoot_percent < 3.15
+
+
+def test_the_same_gains_held_for_10_ms_are_unstable():
+    with pytest.raises(InputError, match="unstable"):
+        simulate(THESIS_A, PID(kp=(25, 200, 200), kd=(10, 40, 40), filter_hz=1e6), SET_POINT)
+
+
+class PythonPID:
+    """A student's controller: the PID again, in plain Python, without the compiled code."""
+
+    def __init__(self, pid):
+        self.kp, self.kd, self.last, self.v = pid.kp, pid.kd, None, np.zeros(3)
+
+    def step(self, t, q, reference):
+        moved = 0 if self.last is None else (q - self.last) / 0.01
+        self.v = self.v + (1 - np.exp(-2 * np.pi * 10 * 0.01)) * (moved - self.v)
+        self.last = q
+        return self.kp * (reference[0] - q) + self.kd * (reference[1] - self.v)
+
+
+def test_a_python_controller_gives_the_same_run():
+    pid = PID(kp=(50, 50, 50), kd=(5, 5, 5))
+    ours, theirs = simulate(SMOOTH, pid, SET_POINT, duration=3), simulate(SMOOTH, PythonPID(pid), SET_POINT, duration=3)
+    np.testing.assert_allclose(ours.q, theirs.q, atol=1e-10)
+    np.testing.assert_allclose(ours.u, theirs.u, atol=1e-8)
+
+
+def test_the_reference_may_be_a_function_an_object_or_three_angles():
+    pid = PID(kp=(50, 50, 50), kd=(5, 5, 5))
+    by_function = simulate(SMOOTH, pid, lambda t: (np.array(SET_POINT), np.zeros(3), np.zeros(3)), duration=1)
+    assert (by_function.q == simulate(SMOOTH, pid, SET_POINT, duration=1).q).all()
+    assert (simulate(SMOOTH, pid, q0=(0.1, 0.2, 0.3), duration=1).reference[:, 0] == (0.1, 0.2, 0.3)).all()
+
+
+# --- dry friction -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("share", [0.0, 0.9, 0.999])
+def test_below_breakaway_nothing_creeps(share):
+    arm = THESIS_RODS
+    arm = type(arm)(
+        **{n: getattr(arm, n) for n in ("l", "m", "lc", "Ixx", "Iyy", "Izz")},
+        friction=Friction(fc=(1, 2, 3), fs=(2, 3, 4)),
+    )
+    q0 = np.array([0.2, 0.4, -0.3])
+    push = gravity(arm, q0) + share * np.array(arm.friction.fs) * [1, -1, 1]
+    run = simulate(arm, Constant(push), q0=q0, duration=10)
+    assert np.abs(run.q - q0).max() < 1e-9 and (run.qd == 0).all()
+
+
+@pytest.mark.parametrize("joint", range(3))
+def test_above_breakaway_it_moves(joint):
+    q0 = np.array([0.2, 0.4, -0.3])
+    over = np.zeros(3)
+    over[joint] = 1.01 * IR50P.friction.fs[joint]
+    push = gravity(IR50P, q0) + np.array(IR50P.friction.Tf) + over
+    assert simulate(IR50P, Constant(push), q0=q0, duration=1).q[-1, joint] > q0[joint] + 0.01
+
+
+class Constant:
+    """A drive that does not react."""
+
+    def __init__(self, u):
+        self.u = np.asarray(u, dtype=float)
+
+    def step(self, t, q, reference):
+        return self.u
+
+
+def test_sliding_joint_stops_where_the_textbook_says():
+    # joint 1 alone, M11 constant at rest pose: Coulomb friction takes v^2 M / (2 fc) of way and v M / fc of time
+    arm = type(IR50P)(
+        l=(0.3, 0.2, 0.3), m=(1, 0, 0), lc=(0.1, 0, 0), Ixx=(0.3, 0.1, 0.1), Iyy=(0.3, 0.1, 0.1), Izz=(0.3, 0.1, 0.1),
+        friction=Friction(fc=(0.5, 0.5, 0.5)),
+    )  # fmt: skip
+    M11 = arm.theta[0, 0]
+    run = simulate(arm, qd0=(1.0, 0, 0), duration=3, step=1e-4)
+    assert run.q[-1, 0] == pytest.approx(M11 / (2 * 0.5), rel=1e-3)
+    assert run.t[np.argmax(run.qd[:, 0] == 0)] == pytest.approx(M11 / 0.5, abs=0.011)
+
+
+def test_dry_step_converges_with_the_first_power_of_the_step():
+    ends = [simulate(IR50P, **START, duration=0.4, period=0.04, step=h).q[-1] for h in (0.002, 0.001, 0.0005, 1e-5)]
+    errors = [np.abs(end - ends[-1]).max() for end in ends[:-1]]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(1, abs=0.3)
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(1, abs=0.3)
+
+
+def test_friction_only_takes_energy():
+    run = simulate(IR50P, q0=(0, 1.2, 0.3), qd0=(1, 0, 0), duration=5, stops=True)
+    # the constant offset Tf is a force like gravity: its potential belongs to the balance
+    total = run.energy.total + run.q @ np.array(IR50P.friction.Tf)
+    assert (np.diff(total) < 1e-4).all() and total[-1] < total[0] - 1
+
+
+def test_without_drive_the_arm_sinks_onto_its_stop_or_the_table():
+    run = simulate(IR50P, q0=(0, 0.3, 0.2), duration=10, stops=True, table=0.0)
+    heights = forward_kinematics(IR50P, run.q)[:, 2]
+    assert heights.min() > -1e-4 and heights[-1] < 1e-4
+    assert (run.q >= np.array(IR50P.q_min) - 1e-9).all() and (run.q <= np.array(IR50P.q_max) + 1e-9).all()
+    assert np.abs(run.qd[-1]).max() < 1e-6
+    free = simulate(IR50P, q0=(0, 0.3, 0.2), duration=10)
+    assert forward_kinematics(IR50P, free.q)[:, 2].min() < -0.05  # without the table it would go through
+
+
+def test_an_arm_driven_against_its_stop_stays_there():
+    run = simulate(IR50P, PID(kp=(289, 225, 270), limit_pwm=255), (3.0, 0, 0), stops=True)
+    assert run.q[:, 0].max() == pytest.approx(IR50P.q_max[0], abs=1e-9)
+
+
+# --- drive in PWM -----------------------------------------------------------------------------------------
+
+
+def test_pwm_drive_reaches_the_no_load_speed_and_saturates():
+    arm = type(IR50P)(**{**vars_of(IR50P), "g": 0.0, "friction": Friction()})
+    run = simulate(arm, Constant([1000, 0, 0]), q0=(0, np.pi / 2, 0), unit="PWM", duration=3)
+    assert run.unit == "PWM" and (run.u[:, 0] == 255).all()
+    assert run.qd[-1, 0] == pytest.approx(arm.actuators.no_load_speed[0], rel=1e-4)
+
+
+def vars_of(arm):
+    return {n: getattr(arm, n) for n in ("l", "m", "lc", "Ixx", "Iyy", "Izz", "actuators")}
+
+
+def test_theta_in_pwm_and_the_arm_driven_in_pwm_agree():
+    pid = PID(kp=(289, 225, 270), kd=(40, 30, 30), limit_pwm=255)
+    a, b = simulate(SMOOTH, pid, SET_POINT, duration=2), simulate(SMOOTH.theta_pwm, pid, SET_POINT, duration=2)
+    np.testing.assert_allclose(a.q, b.q, atol=1e-12)
+    with pytest.raises(InputError, match=r"own row per joint|equal rows"):
+        _ = b.energy
+
+
+def test_units_of_the_command():
+    assert simulate(SMOOTH, PID(kp=(1, 1, 1)), SET_POINT, duration=0.1).unit == "N m"
+    assert simulate(SMOOTH, PID(kp=(1, 1, 1), limit_pwm=255), SET_POINT, duration=0.1).unit == "PWM"
+    with pytest.raises(ArmError, match="no actuators"):
+        simulate(THESIS_A, PID(kp=(1, 1, 1), limit_pwm=255), SET_POINT)
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"duration": -1}, ["duration = -1"]),
+        ({"duration": 0.001}, ["0.001", "half a period"]),
+        ({"step": 0}, ["step = 0"]),
+        ({"step": 0.003}, ["0.01", "whole number", "0.003"]),
+        ({"period": np.nan}, ["period = nan"]),
+        ({"q0": (0, np.nan, 0)}, ["q0", "nan"]),
+        ({"q0": np.zeros((2, 3))}, ["q0", "(2, 3)"]),
+        ({"unit": "V"}, ["'V'", "'PWM'"]),
+        ({"reference": (0, 0)}, ["reference", "(2,)"]),
+        ({"reference": lambda t: (np.zeros(2), np.zeros(2), np.zeros(2))}, ["(1001, 3, 2)"]),
+    ],
+)
+def test_bad_input_gets_a_sentence(change, words):
+    arguments = {"controller": PID(kp=(1, 1, 1)), "reference": SET_POINT, **change}
+    with pytest.raises(InputError) as caught:
+        simulate(SMOOTH, arguments.pop("controller"), arguments.pop("reference"), **arguments)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_more_refusals():
+    with pytest.raises(InputError, match="need an Arm"):
+        simulate(THESIS_C, stops=True)
+    with pytest.raises(InputError, match="smooth motion"):
+        simulate(IR50P, ContinuousPID(kp=(1, 1, 1)))
+    with pytest.raises(InputError, match=r"command at t = 0 s.*nan"):
+        simulate(SMOOTH, Constant([0, np.nan, 0]))
+    with pytest.raises(InputError, match="shape"):
+        simulate(SMOOTH, Constant([0, 0]))
+    with pytest.raises(ArmError, match="negative"):
+        theta = SMOOTH.theta.copy()
+        theta[:, 10] = -1
+        simulate(theta)
+    moving = simulate(SMOOTH, PID(kp=(9, 9, 9)), lambda t: (np.full(3, t), np.ones(3), np.zeros(3)), duration=0.2)
+    with pytest.raises(InputError, match="still moves"):
+        moving.metrics()
+
+
+def test_a_joint_that_does_not_move_has_no_step_metrics():
+    assert np.isnan(simulate(SMOOTH, PID(kp=(50, 50, 50), kd=(5, 5, 5)), (0, 0.5, 0.3)).metrics()[0].rise_time)
