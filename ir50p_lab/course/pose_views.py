@@ -37,7 +37,7 @@ def space(cols=1, *, low=-1.0, high=1.0, width=None, unit="", width_ratios=None,
             ax.set(xlim=(low, high), ylim=(low, high), zlim=(low, high))
             ax.set_box_aspect((1, 1, 1), zoom=1.0 if unit else 1.25)
             ax.locator_params(nbins=4)
-            ax.view_init(elev=22, azim=35)
+            ax.view_init(elev=22, azim=-40 if unit else 35)
             if unit:
                 ax.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]", zlabel=f"z [{unit}]")
             else:
@@ -109,7 +109,8 @@ class GimbalView:
         for k, colour in enumerate(_TURN_COLOURS):
             style = {"color": colour, "solid_capstyle": "round"}
             self._pivots.append(space_ax.plot([], [], [], linewidth=5.0 - k, zorder=10 + k, **style)[0])
-            self._rings.append(space_ax.plot([], [], [], linewidth=3.0, zorder=6 + k, **style)[0])
+            if k < 2:
+                self._rings.append(space_ax.plot([], [], [], linewidth=3.0, zorder=6 + k, **style)[0])
             self._labels.append(space_ax.text(0, 0, 0, "", color=colour, fontsize=10, fontweight="bold", zorder=20))
         self._lost = space_ax.plot([], [], [], "--", color=COLOURS["dark"], linewidth=1.6, zorder=9)[0]
         self._lost_label = space_ax.text(0, 0, 0, "", fontsize=9, zorder=20)
