@@ -28,6 +28,12 @@ def wrong_entries(printed, right):
     return [(i + 1, j + 1) for i, j in places if not same_function(printed[i, j], right[i, j])]
 
 
+def of_link(n, M):
+    """The share of link n (1, 2, 3) in a mass matrix: masses, inertias of the others and all rotors set to 0."""
+    others = [p for p in M.free_symbols if p.name[0] == "j" or (p.name[0] in "mI" and p.name[-1] != str(n))]
+    return M.subs(dict.fromkeys(others, 0))
+
+
 # ---- 1.5.1.1 inertial torque ----
 
 
@@ -147,6 +153,7 @@ JV_2_IN_G = Matrix([[-s1 * lc2 * c2, -c1 * lc2 * c2, 0],   # wrong: c2 for s2, h
                     [0,              lc2 * c2,       0]])
 J_OMEGA_2 = Matrix([[0, 0, 0], [0, -1, 0], [1, 0, 0]])     # wrong: these are not base-frame axes ...
 J_OMEGA_3 = Matrix([[0, 0, 0], [0, -1, -1], [1, 0, 0]])    # ... but those of the frame that turns with joint 1
+TENSOR_3 = Matrix([[Ixx3, -Ixy3, -Ixz3], [-Ixy3, Iyy3, -Iyz3], [-Ixz3, -Iyz3, Izz3]])  # as I_n1 and I_n2 are printed
 I_N3 = Matrix([[Izz3,  -Ixy3, -Ixz3],                      # wrong: the diagonal is Ixx3, Iyy3, Izz3
                [-Ixy3, Iyy3,  -Iyz3],
                [-Ixz3, -Iyz3, Iyy3 ]])

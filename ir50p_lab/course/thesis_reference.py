@@ -57,6 +57,14 @@ _TABLES = {
     """,
 }
 
+# Model C as numbers for the formulas of derive(links="thesis").
+C_NUMBERS = {
+    **dict.fromkeys(("l1", "l2", "l3"), 0.2),
+    **dict.fromkeys(("lc1", "lc2", "lc3"), 0.5),
+    **dict.fromkeys(("Izz1", "Izz2", "Izz3", "Iyy2", "Iyy3", "Iyz2"), 0.05),
+    **{"m1": 3.0, "m2": 1.0, "m3": 1.0, "g": 9.81},
+}
+
 
 def reference(model):
     """The numbers of model "A", "B" or "C": (5, 10), a row per state, in the order of COLUMNS."""

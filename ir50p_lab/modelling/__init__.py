@@ -30,7 +30,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "iterative_inverse_kinematics",
             "reachability",
         ],
-        "inertia": ["Body", "Solid", "ball", "box", "cone", "cylinder", "integrate_solid", "rod", "tube"],
+        "inertia": ["Body", "Solid", "ball", "box", "cone", "cylinder", "integrate_solid", "rod", "second_moment_tensor", "tube"],
         "named_arms": ["IR50P", "THESIS_A", "THESIS_C", "THESIS_RODS", "thesis_theta"],
         "symbolic": ["SymbolicModel", "derive", "same_function"],
         "pose": [

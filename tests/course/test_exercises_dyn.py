@@ -33,7 +33,7 @@ def test_acceleration_fulfils_the_symbolic_equation_of_motion():
 
 def test_friction_and_voltage_by_hand():
     assert solution("dyn-4") == pytest.approx(-(2 * 0.02 + 0.5 + 0.4 * np.exp(-0.16)))
-    assert solution("dyn-5") == pytest.approx(0.8 * (2 + 0.2 * 3) + 5 * 0.5)
+    assert solution("dyn-5") == pytest.approx(1.6 * (2 + 0.2 * 3) + 2.5 * 0.5)
 
 
 @pytest.mark.parametrize("exercise", EXERCISES, ids=lambda e: e.name)
@@ -55,4 +55,4 @@ def test_prose_of_the_exercises():
     own = find("dyn-2").slips[0].wrong
     assert (solution("dyn-2")[1] - own[1]) / own[1] == pytest.approx(0.75, abs=0.03)
     forearm = IR50P.Izz[2] + IR50P.m[2] * IR50P.lc[2] ** 2
-    assert 100**2 * 2e-5 > forearm
+    assert 50**2 * 8e-5 > forearm
