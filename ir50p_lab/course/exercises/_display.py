@@ -61,7 +61,12 @@ class Table:
             first = notebook if notebook != last else ""
             last = notebook
             state = f'<b style="color: #009E73">done</b> {when[:10]}' if when else "open"
-            cells = (f"<b>{html.escape(first)}</b>", html.escape(name), html.escape(task, quote=False), state)
+            cells = (
+                f"<b>{html.escape(first)}</b>",
+                f"<nobr>{html.escape(name)}</nobr>",
+                html.escape(task, quote=False),
+                state,
+            )
             row = "".join(f'<td style="text-align: left; padding: 3px 12px">{cell}</td>' for cell in cells)
             body.append(f"<tr>{row}</tr>")
         head = "".join(f'<th style="text-align: left">{title}</th>' for title in ("notebook", "", "task", "state"))

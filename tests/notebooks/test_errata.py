@@ -1,0 +1,70 @@
+"""No mistake of thesis chapter 1 is forgotten: each is named in a 'Thesis check' cell, with an assert below."""
+
+import itertools
+import re
+
+import nbformat
+import pytest
+from conftest import NOTEBOOKS
+from errata import ERRATA
+
+WIDEST_RANGE = 10  # "(1.101-1.110)" names ten equations; a wider range names none of them
+
+
+def thesis_checks(path):
+    """Return (text from 'Thesis check' on, code below) of a notebook."""
+    found = []
+    cells = nbformat.read(path, as_version=4).cells
+    for text, code in itertools.pairwise(cells):
+        if text.cell_type == "markdown" and "**Thesis check (" in text.source:
+            found.append((text.source[text.source.index("**Thesis check (") :], code))
+    return found
+
+
+def equations(text):
+    """Return the equation numbers in a text, such as 1.5, with narrow ranges written out."""
+    numbers = set(re.findall(r"(?<![\d.])\d\.\d+(?:\.\d+[a-z]?)?", text))
+    for chapter, first, last in re.findall(r"(\d)\.(\d+)\)?\s*[-\u2013]\s*\(?\1\.(\d+)(?![.\d])", text):
+        if int(first) < int(last) < int(first) + WIDEST_RANGE:
+            numbers |= {f"{chapter}.{i}" for i in range(int(first), int(last) + 1)}
+    return numbers
+
+
+def names(check, place, words=None):
+    text, code = check
+    return re.search(words, f"{text}\n{code.source}") is not None if words else place in equations(text)
+
+
+CASES = [(number, *entry) for number, entries in ERRATA.items() for entry in entries]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]}: {case[1]}")
+def test_is_checked(case):
+    number, place, what, *words = case
+    (path,) = [path for path in NOTEBOOKS if path.name.startswith(number)]
+    found = [check for check in thesis_checks(path) if names(check, place, *words)]
+    assert found, f"no Thesis check of {path.name} names {place} ({what})"
+    assert any(code.cell_type == "code" and "assert" in code.source for _, code in found)
+
+
+def test_thesis_checks_run_and_assert(path):
+    checks = thesis_checks(path)
+    assert checks
+    for text, code in checks:
+        assert code.cell_type == "code" and "assert" in code.source, text.splitlines()[0]
+
+
+def test_the_list_is_complete():
+    """Every number once; the count is the one of the study of chapter 1 that the list comes from."""
+    assert {number: len(entries) for number, entries in ERRATA.items()} == {"01": 13, "02": 19, "03": 33}
+    assert len({(case[0], case[1]) for case in CASES}) == len(CASES)
+
+
+def test_equation_numbers_are_read():
+    assert equations("(1.5)") == {"1.5"}
+    assert equations("(1.101-1.103), (1.7) and (1.11)-(1.13)") == {
+        "1.101", "1.102", "1.103", "1.7", "1.11", "1.12", "1.13"
+    }  # fmt: skip
+    assert "1.80" not in equations("(1.75-1.99)")
+    assert equations("1.5.3c") == {"1.5.3c"}
+    assert "1.1" not in equations("1.11")

@@ -1,0 +1,116 @@
+"""The shape of every notebook: short cells, an opening, exercises, a slider, no stored outputs."""
+
+import re
+from statistics import median
+
+import pytest
+from conftest import FOLDER, NOTEBOOKS
+
+from ir50p_lab.course.exercises import exercises
+from ir50p_lab.course.exercises._catalogue import everything
+
+
+def cells(notebook, kind):
+    return [cell for cell in notebook.cells if cell.cell_type == kind]
+
+
+def lines(cell):
+    return len([line for line in cell.source.splitlines() if line.strip()])
+
+
+def checked(notebook):
+    return re.findall(r"""^check\(\s*["'](.+?)["']""", "\n".join(c.source for c in cells(notebook, "code")), re.M)
+
+
+def test_there_are_notebooks():
+    assert [path.name[:2] for path in NOTEBOOKS] == [f"{i:02d}" for i in range(len(NOTEBOOKS))]
+    assert sorted(FOLDER.glob("*.ipynb")) == NOTEBOOKS
+
+
+def test_cells(notebook):
+    sizes = [lines(cell) for cell in cells(notebook, "code")]
+    assert 12 <= len(sizes) <= 30
+    assert median(sizes) < 8
+    assert max(sizes) <= 25
+    assert all(sizes), "an empty code cell"
+    assert len(cells(notebook, "markdown")) >= len(sizes) - 1, "fewer text cells than code cells"
+
+
+def test_words(notebook, record_property):
+    words = sum(len(cell.source.split()) for cell in cells(notebook, "markdown"))
+    record_property("words", words)
+    # the guide is 800 to 1800; formulas count as words here, hence the margin
+    assert 700 <= words <= 2000, f"{words} words"
+
+
+def test_stored_nothing(notebook):
+    for cell in cells(notebook, "code"):
+        assert cell.outputs == [] and cell.execution_count is None
+    assert notebook.metadata.kernelspec.name == "python3"
+    assert set(notebook.metadata) <= {"kernelspec", "language_info"}
+    assert "widgets" not in notebook.metadata
+
+
+def test_ids(path, notebook):
+    ids = [cell.id for cell in notebook.cells]
+    assert len(set(ids)) == len(ids)
+    assert all(re.fullmatch(r"[a-z]+(-[a-z0-9]+)+", i) for i in ids), "ids are made by hand: pose-07"
+    assert len({i.partition("-")[0] for i in ids}) == 1
+
+
+def test_opening(path, notebook):
+    first = notebook.cells[0]
+    assert first.cell_type == "markdown"
+    assert re.match(rf"# {path.name[:2]} · \S", first.source)
+    for part in (r"\*\*You will\*\*", r"\*\*You need\*\*", r"about \d+ minutes", r"\*\*Runs without the arm:\*\* yes"):
+        assert re.search(part, first.source), f"the opening lacks {part}"
+
+
+def test_closing(notebook):
+    last = notebook.cells[-1]
+    assert last.cell_type == "markdown"
+    assert re.search(r"^## What you know now$", last.source, re.M)
+
+
+def test_arm(notebook):
+    assert any("arm = load_arm()" in cell.source for cell in cells(notebook, "code")[:3])
+
+
+def test_slider(notebook):
+    assert any(re.search(r"\blive\(", cell.source) for cell in cells(notebook, "code"))
+
+
+def test_exercises(path, notebook):
+    names = checked(notebook)
+    assert 3 <= len(names) <= 5
+    assert len(set(names)) == len(names)
+    assert set(names) <= set(exercises())
+    own = [exercise.name for stem, exercise in everything() if stem == path.stem]
+    assert names == own, "the exercises of this notebook, in their order"
+
+
+def test_exercises_are_stubs(notebook):
+    for cell in cells(notebook, "code"):
+        if re.search(r"^check\(", cell.source, re.M):
+            assert re.search(r"^answer = \.\.\.|^answer = \(\.\.\.|^def answer\(.*\):\s*\.\.\.", cell.source, re.M)
+            assert lines(cell) <= 6
+
+
+def test_plain_python(notebook):
+    for cell in cells(notebook, "code"):
+        compile(cell.source, cell.id, "exec")  # no magics, no shell
+        assert "pyplot" not in cell.source  # figures are objects here, see course/widgets
+        assert "linalg.inv" not in cell.source
+        assert not cell.metadata, "tags and other metadata are not used"
+
+
+def test_figures_have_units(notebook):
+    """Every label of an axis that stands in a notebook names its unit in brackets."""
+    for cell in cells(notebook, "code"):
+        for label in re.findall(r"""[xyz]label\(?=?\s*["']([^"']*)["']""", cell.source):
+            assert re.search(r"\[.+\]", label), f"axis label {label!r} has no [unit]"
+
+
+@pytest.mark.parametrize("stem", sorted({stem for stem, _ in everything()}))
+def test_every_exercise_has_its_notebook(stem):
+    assert (FOLDER / f"{stem}.ipynb").is_file()
