@@ -70,6 +70,8 @@ def sweep(run, cases, *, executor=None, progress=True, save_to=None):
         while waiting:
             _collect(waiting, cases, keys, results, failures, file, bar)
     finally:
+        finished = [future for future in waiting if future.done()]  # after an interrupt: keep what is there
+        _take(finished, waiting, cases, keys, results, failures, file, bar)
         for future in waiting:
             future.cancel()
         if own:
@@ -90,6 +92,10 @@ def _all_cores():
 def _collect(waiting, cases, keys, results, failures, file, bar):
     """Take what is ready from `waiting`, at least one result."""
     ready, _ = _wait(waiting)
+    _take(ready, waiting, cases, keys, results, failures, file, bar)
+
+
+def _take(ready, waiting, cases, keys, results, failures, file, bar):
     for future in ready:
         i = waiting.pop(future)
         try:

@@ -69,7 +69,7 @@ def test_forward_from_python(benchmark, engine):
 
 
 def test_ratios_to_mujoco(request):
-    if request.config.getoption("benchmark_disable"):
+    if not request.config.getoption("benchmark_enable"):
         number, loop = 1, 10  # the plain test run only sees that it works
     else:
         number, loop = 20_000, 1_000_000

@@ -36,7 +36,9 @@ def test_free_motion_keeps_its_energy(arm, bound):
 
 
 def test_the_error_falls_with_the_fourth_power_of_the_step():
-    ends = [simulate(THESIS_RODS, duration=2, step=h, period=0.04, **START).q[-1] for h in (0.01, 0.005, 0.0025, 0.00025)]
+    ends = [
+        simulate(THESIS_RODS, duration=2, step=h, period=0.04, **START).q[-1] for h in (0.01, 0.005, 0.0025, 0.00025)
+    ]
     errors = [np.abs(end - ends[-1]).max() for end in ends[:-1]]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.4)
     assert np.log2(errors[1] / errors[2]) == pytest.approx(4, abs=0.4)

@@ -43,6 +43,11 @@ def random_states(rng, n):
 
 def mujoco_model(arm, *, timestep=0.001):
     """The arm as a MuJoCo model: link frames, rotor inertia as armature, viscous friction as damping."""
+    return mujoco.MjModel.from_xml_string(mujoco_xml(arm, timestep=timestep))
+
+
+def mujoco_xml(arm, *, timestep=0.001):
+    """The text of that model; joints are named joint1 .. joint3."""
     armature = np.zeros(3) if arm.actuators is None else arm.actuators.reflected_inertia
     text = ""
     places = ("0 0 0", f"0 0 {arm.l[0]!r}", f"{arm.l[1]!r} 0 0")
@@ -52,11 +57,11 @@ def mujoco_model(arm, *, timestep=0.001):
         inertia = f"{arm.Ixx[i]!r} {arm.Iyy[i]!r} {arm.Izz[i]!r}"
         text += (
             f'<body pos="{places[i]}" quat="{turns[i]}">'
-            f'<joint type="hinge" axis="0 0 1" armature="{float(armature[i])!r}" damping="{arm.friction.fv[i]!r}"/>'
+            f'<joint name="joint{i + 1}" type="hinge" axis="0 0 1" armature="{float(armature[i])!r}" damping="{arm.friction.fv[i]!r}"/>'
             f'<inertial pos="{centres[i]}" mass="{arm.m[i]!r}" diaginertia="{inertia}"/>'
         )
     text += f'<site name="tip" pos="{arm.l[2]!r} 0 0"/>' + "</body>" * 3
-    return mujoco.MjModel.from_xml_string(
+    return (
         f'<mujoco><option gravity="0 0 {-arm.g!r}" timestep="{timestep!r}" integrator="RK4"/>'
         f"<worldbody>{text}</worldbody></mujoco>"
     )

@@ -1,0 +1,206 @@
+"""Sweeps: same numbers on any executor, resumable, failures kept apart; gain sweeps equal single simulations."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from ir50p_lab.controllers import PID
+from ir50p_lab.errors import InputError
+from ir50p_lab.modelling import IR50P, THESIS_A, THESIS_C
+from ir50p_lab.simulation import simulate, sweep, sweep_gains
+
+SMOOTH = IR50P.without_friction()
+TARGET = (1.0, 0.5, -0.7)
+
+
+def stiffness_error(case):
+    """Error at the end of a short run, for a case {'kp': ..., 'payload': ...}."""
+    if case["kp"] < 0:
+        raise ValueError("negative gain on purpose")
+    run = simulate(SMOOTH, PID(kp=(case["kp"],) * 3, kd=(5, 5, 5)), TARGET, duration=0.5)
+    return {"error": run.error[-1], "peak": float(np.abs(run.u).max())}
+
+
+CASES = [{"kp": float(kp), "payload": 0.1} for kp in (20, 30, 40, 50, 60, 70)]
+
+
+@pytest.fixture(scope="module")
+def expected():
+    return [{"error": r["error"].tolist(), "peak": r["peak"]} for r in map(stiffness_error, CASES)]
+
+
+def test_processes_threads_and_dask_give_the_same_numbers(expected):
+    from distributed import Client, LocalCluster
+
+    assert sweep(stiffness_error, CASES, progress=False).results == expected
+    with ThreadPoolExecutor(2) as threads:
+        assert sweep(stiffness_error, CASES, executor=threads, progress=False).results == expected
+    with (
+        LocalCluster(n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None) as cluster,
+        Client(cluster) as client,
+    ):
+        assert sweep(stiffness_error, CASES, executor=client.get_executor(), progress=False).results == expected
+        gains = np.linspace(20, 80, 130)[:, None]
+        options = {"kp": gains, "kd": 5.0, "duration": 0.3, "progress": False}
+        here, there = (sweep_gains(SMOOTH, TARGET, **options, executor=e) for e in (None, client.get_executor()))
+        assert (here.rms_error == there.rms_error).all()
+
+
+def test_functions_defined_in_a_notebook_run_too():
+    offset = 3
+    assert sweep(lambda case: case + offset, [1, 2], progress=False).results == [4, 5]
+
+
+def test_failures_are_kept_apart(expected):
+    with ThreadPoolExecutor(2) as pool:
+        result = sweep(stiffness_error, [CASES[0], {"kp": -1.0, "payload": 0}, CASES[1]], executor=pool, progress=False)
+    assert result.results[0] == expected[0] and result.results[1] is None and result.results[2] == expected[1]
+    (failure,) = result.failures
+    assert failure.index == 1 and failure.case["kp"] == -1 and failure.error == "ValueError: negative gain on purpose"
+
+
+def test_goes_on_where_it_was_interrupted(tmp_path, expected):
+    path, calls = tmp_path / "sweep.jsonl", []
+
+    def interrupted(case):
+        calls.append(case["kp"])
+        if len(calls) == 4:
+            raise KeyboardInterrupt
+        return stiffness_error(case)
+
+    interrupted.__qualname__ = "same"
+    with pytest.raises(KeyboardInterrupt):
+        sweep(interrupted, CASES, executor=Inline(), progress=False, save_to=path)
+    done = len(path.read_text().splitlines())
+    assert 0 < done < len(CASES)
+
+    def again(case):
+        calls.append(case["kp"])
+        return stiffness_error(case)
+
+    again.__qualname__ = "same"
+    calls.clear()
+    result = sweep(again, CASES, executor=Inline(), progress=False, save_to=path)
+    assert result.results == expected and len(calls) == len(CASES) - done
+    calls.clear()
+    assert sweep(again, CASES, executor=Inline(), progress=False, save_to=path).results == expected and not calls
+
+
+class Inline:
+    """An executor that computes at once in this thread, so that an interrupt comes at a known place."""
+
+    def submit(self, function, *args):
+        from concurrent.futures import Future
+
+        future = Future()
+        try:
+            future.set_result(function(*args))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def test_killed_while_writing_it_still_resumes(tmp_path):
+    path = tmp_path / "sweep.jsonl"
+    script = (
+        "import sys, time; from concurrent.futures import ThreadPoolExecutor; from ir50p_lab.simulation import sweep\n"
+        "def f(case):\n    time.sleep(0.01)\n    return case * 2\n"
+        f"print(sweep(f, range(300), executor=ThreadPoolExecutor(1), progress=False, save_to={str(path)!r}).results[-1])"
+    )
+    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+    while not path.exists() or path.stat().st_size < 500:
+        time.sleep(0.01)
+    os.kill(process.pid, signal.SIGKILL)
+    process.communicate()
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-7])  # as if the last line had been cut in the middle
+    left = len(path.read_text().splitlines()) - 1
+    assert left > 5
+    assert subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout == "598\n"
+    assert len(path.read_text().splitlines()) == 300
+    for line in path.read_text().splitlines():
+        json.loads(line)
+
+
+def test_a_file_of_something_else_is_refused(tmp_path):
+    path = tmp_path / "notes.txt"
+    path.write_text("hello\nworld\n")
+    with pytest.raises(InputError, match=r"notes\.txt, line 1"):
+        sweep(stiffness_error, CASES, progress=False, save_to=path, executor=Inline())
+    assert path.read_text() == "hello\nworld\n"
+
+
+def test_cases_and_results_that_cannot_be_saved_are_refused(tmp_path):
+    with pytest.raises(InputError, match="cannot be named"):
+        sweep(len, [object()], executor=Inline(), progress=False)
+    with pytest.raises(InputError, match="cannot be saved"):
+        sweep(lambda case: object(), [1], executor=Inline(), progress=False, save_to=tmp_path / "x.jsonl")
+
+
+def test_progress_is_shown(capsys):
+    sweep(abs, [1, 2, 3], executor=Inline())
+    assert "3/3" in capsys.readouterr().err
+
+
+# --- gain sweeps ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("unit", ["N m", "PWM"])
+def test_equals_single_simulations(unit):
+    rng = np.random.default_rng(0)
+    scale, bound = (1.0, {"limit": 15}) if unit == "N m" else (40.0, {"limit_pwm": 200})
+    kp, ki, kd = (scale * rng.uniform(lo, hi, (70, 3)) for lo, hi in ((20, 80), (0, 20), (3, 8)))
+    found = sweep_gains(SMOOTH, TARGET, kp=kp, ki=ki, kd=kd, duration=2, progress=False, **bound)
+    for k in (0, 33, 69):
+        run = simulate(SMOOTH, PID(kp=kp[k], ki=ki[k], kd=kd[k], **bound), TARGET, duration=2)
+        np.testing.assert_allclose(found.rms_error[k], run.rms_error, rtol=1e-12)
+        np.testing.assert_allclose(found.end_error[k], run.error[-1], atol=1e-13)
+        np.testing.assert_allclose(found.peak_command[k], np.abs(run.u).max(axis=0), rtol=1e-12)
+        side = np.sign(TARGET)
+        np.testing.assert_allclose(found.overshoot[k], np.maximum(0, (-side * run.error).max(axis=0)), atol=1e-13)
+        outside = np.abs(run.error) > 0.02 * np.abs(TARGET)
+        last = np.where(outside.any(axis=0), len(run.t) - np.argmax(outside[::-1], axis=0), 0)
+        np.testing.assert_allclose(found.settling_time[k], last * 0.01, atol=1e-12)
+
+
+def test_runaways_are_marked_not_hidden():
+    found = sweep_gains(
+        THESIS_A,
+        TARGET,
+        kp=[[25, 20, 20], [25, 200, 200]],
+        kd=[[10, 2, 2], [10, 40, 40]],
+        filter_hz=1e4,
+        progress=False,
+    )
+    assert found.unstable.tolist() == [False, True]
+    assert np.isfinite(found.rms_error[0]).all() and np.isnan(found.rms_error[1]).all()
+
+
+def test_progress_bar_counts_gain_sets(capsys):
+    sweep_gains(SMOOTH, TARGET, kp=np.full((65, 1), 50.0), duration=0.05)
+    assert "65/65" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "call, words",
+    [
+        (lambda: sweep_gains(IR50P, TARGET, kp=1), ["dry friction", "without_friction"]),
+        (lambda: sweep_gains(THESIS_C, TARGET, kp=1), ["theta 7 and 8"]),
+        (lambda: sweep_gains(SMOOTH, TARGET, kp=-1), ["kp", "-1"]),
+        (lambda: sweep_gains(SMOOTH, TARGET, kp=1, kd=np.nan), ["kd", "nan"]),
+        (lambda: sweep_gains(SMOOTH, TARGET, kp=np.ones((4, 3)), kd=np.ones((5, 3))), ["kp (4, 3)", "kd (5, 3)"]),
+        (lambda: sweep_gains(SMOOTH, TARGET, kp=1, limit=-1), ["limit"]),
+    ],
+)
+def test_bad_input_gets_a_sentence(call, words):
+    with pytest.raises(InputError) as caught:
+        call()
+    for word in words:
+        assert word in str(caught.value)
