@@ -5,8 +5,8 @@ import re
 
 import nbformat
 import pytest
-from conftest import NOTEBOOKS
 from errata import ERRATA
+from notebook_runner import NOTEBOOKS
 
 WIDEST_RANGE = 10  # "(1.101-1.110)" names ten equations; a wider range names none of them
 

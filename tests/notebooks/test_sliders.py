@@ -4,7 +4,7 @@ import re
 
 import nbformat
 import pytest
-from conftest import run_notebook
+from notebook_runner import run_notebook
 
 
 def code_of(notebook):

@@ -4,7 +4,7 @@ import re
 from statistics import median
 
 import pytest
-from conftest import FOLDER, NOTEBOOKS
+from notebook_runner import FOLDER, NOTEBOOKS
 
 from ir50p_lab.course.exercises import exercises
 from ir50p_lab.course.exercises._catalogue import everything
