@@ -1,5 +1,6 @@
 """The shape of every notebook: short cells, an opening, exercises, a slider, no stored outputs."""
 
+import ast
 import re
 from statistics import median
 
@@ -114,3 +115,69 @@ def test_figures_have_units(notebook):
 @pytest.mark.parametrize("stem", sorted({stem for stem, _ in everything()}))
 def test_every_exercise_has_its_notebook(stem):
     assert (FOLDER / f"{stem}.ipynb").is_file()
+
+
+def top_level_names(source):
+    """Return the names that a cell binds, other than by import: assignments, loops, functions."""
+    found = set()
+
+    def visit(node):
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            found.add(node.name)
+            return
+        if isinstance(node, ast.Lambda | ast.ListComp | ast.SetComp | ast.DictComp | ast.GeneratorExp):
+            return
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            found.add(node.id)
+        for child in ast.iter_child_nodes(node):
+            visit(child)
+
+    visit(ast.parse(source))
+    return found
+
+
+def names_in_functions(source):
+    """Return {function: names it reads} for the functions that a cell defines."""
+    return {
+        node.name: {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
+        - {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+        - {arg.arg for arg in ast.walk(node.args) if isinstance(arg, ast.arg)}
+        for node in ast.parse(source).body
+        if isinstance(node, ast.FunctionDef)
+    }
+
+
+def lost_names(sources):
+    """Return (cell, name, later cell) where a panel's update reads a name that a later cell binds anew.
+
+    Run from top to bottom, all is well; but the panel above then moves the figure below, or nothing.
+    """
+    lost, known = [], {}
+    for i, source in enumerate(sources):
+        functions = names_in_functions(source)
+        known |= functions
+        if not re.search(r"\blive\(", source):
+            continue
+        reads, todo = set(), list(functions)
+        while todo:
+            new = known.get(todo.pop(), set()) - reads
+            reads |= new
+            todo += new
+        for k, later in enumerate(sources[i + 1 :], start=i + 1):
+            lost += [(i, name, k) for name in sorted(reads & top_level_names(later))]
+    return lost
+
+
+def test_panels_keep_their_names(notebook):
+    sources = [cell.source for cell in cells(notebook, "code")]
+    lost = [f"code cell {i}: `{name}` is bound anew in code cell {k}" for i, name, k in lost_names(sources)]
+    assert not lost, "the sliders of an earlier panel stop working:\n" + "\n".join(lost)
+
+
+def test_lost_names_are_found():
+    panel = "a, b = 1, 2\ndef f(x):\n    c = a + x\n    return g(c)\nlive(figure, f, x=(0, 1, 0.1, 0))"
+    helper = "def g(c):\n    return c + d"
+    assert lost_names([helper, panel, "b = 3\nc = 4\nx = 5"]) == []
+    assert lost_names([helper, panel, "for a in range(3):\n    pass"]) == [(1, "a", 2)]
+    assert lost_names([helper, panel, "[a for a in range(3)]", "d = 1"]) == [(1, "d", 3)]
+    assert lost_names([helper, panel, "def g(): ..."]) == [(1, "g", 2)]
