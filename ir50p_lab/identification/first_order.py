@@ -8,7 +8,7 @@ from numba import njit
 from scipy.optimize import least_squares
 
 _NOISE = 1e-7  # residuals below this share of the response are rounding, not noise
-_STARTS = 4  # best points of the grid from which the fit is refined: the sum of squares has kinks and side valleys in L
+_STARTS = 3  # best points of the grid from which the fit is refined: the sum of squares has kinks and side valleys in L
 _SMALL = 1e-4  # below this a dt, series keep the digits that (1 - exp(-a dt))/a loses
 
 
@@ -73,6 +73,7 @@ class Fit:
     L: float
     y0: float
     rss: float
+    shape: float  # part of rss that is not white noise
     correlation: float  # of neighbouring residuals
     inflation: float  # of standard errors, for that correlation
 
@@ -142,7 +143,7 @@ class Record:
             b, y0 = np.linalg.lstsq(np.column_stack([x, np.ones_like(x)]), self.y, rcond=None)[0]
             start = np.clip(np.array([b, a, L, y0])[free], low, high)
             found = least_squares(
-                residuals, start, jacobian, bounds=(low, high), x_scale="jac", ftol=1e-12, xtol=1e-12, gtol=1e-14
+                residuals, start, jacobian, bounds=(low, high), x_scale="jac", ftol=1e-12, xtol=1e-11, gtol=1e-14
             )
             if best is None or found.cost < best.cost:
                 best = found
@@ -165,7 +166,8 @@ class Record:
             correlation = float(r[1:] @ r[:-1] / (r @ r))
             if correlation > 3 / math.sqrt(n):
                 inflation = math.sqrt((1 + correlation) / (1 - correlation))
-        return Fit(*(float(value) for value in p), float(rss), correlation, inflation)
+        white = float(np.sum(np.diff(r, 2) ** 2)) / 6 * n / (n - 2)  # second differences pass only the noise
+        return Fit(*(float(value) for value in p), float(rss), rss - white, correlation, inflation)
 
     def f_value(self, fit, rss, parameters):
         """How much better `fit` is than a model with fewer parameters that leaves `rss`: F statistic."""

@@ -11,7 +11,9 @@ from ir50p_lab.inputs import first_not_finite
 
 _FEWEST = 8  # samples from the first change of u on: twice the number of parameters
 _RESPONSE = 15.0  # least F value for "y follows u": a search over T and L in pure noise stays below it
+_SHAPE = 0.05  # largest share of the variance of y that may be left and not be white: 20-40 % of overshoot
 _BENDS = 9.0  # least F value for "the response bends towards a final value": three standard errors
+_SETTLED = 3.0  # time constants after which a response has visibly bent: no need to compare with a ramp that bends in
 _SLOWEST = 10.0  # a time constant longer than this many records cannot be told from infinity
 
 
@@ -81,13 +83,13 @@ def fit_fopdt(t, u, y, *, dead_time=None, u_before=None):
         u_before: input at rest before t[0]; give it if u has its new value already in the first sample.
 
     Returns: FOPDT. K is negative where y answers a step up by going down. `warnings` tells of a response that is not
-    over when the record ends (T longer than it), of a dead time that cannot be told from zero, of correlated
-    residuals and of a poor fit.
+    over when the record ends (T longer than it), of a dead time that cannot be told from zero, and of correlated
+    residuals.
 
     Raises:
         IdentificationError: u never changes; y does not change or does not follow u; fewer than 8 samples after the
-        change; y runs on like a ramp (an integrating joint: K and T have no value) or ever faster; T or L is below the
-        sampling period. Each says what to do next.
+        change; y swings or drifts; y runs on like a ramp (an integrating joint: K and T have no value) or ever
+        faster; T or L is below the sampling period. Each says what to do next.
         InputError: NaN, shapes or lengths that do not fit, time that does not increase.
     """
     t, u, y = _columns(t=t, u=u, y=y)
@@ -97,7 +99,7 @@ def fit_fopdt(t, u, y, *, dead_time=None, u_before=None):
     _refuse_silent(t, y, times)
     record = Record(t, y, times, jumps, dead_time)
     fit = record.fit_first_order()
-    _refuse_no_answer(record, fit)
+    _refuse_wrong_shape(record, fit)
     _refuse_unsettled(record, fit)
     _refuse_too_fast(record, fit, np.median(np.diff(t)))
     K, T, L = record.K(fit), record.unit / fit.a, record.unit * fit.L
@@ -169,21 +171,32 @@ def _refuse_silent(t, y, times):
         )
 
 
-def _refuse_no_answer(record, fit):
-    F = record.f_value(fit, record.total, 3)
-    if F < _RESPONSE:
+def _refuse_wrong_shape(record, fit):
+    """Refuse where y does not follow u at all, or in a way that no FOPDT model has."""
+    F, explained = record.f_value(fit, record.total, 3), 100 * (1 - fit.rss / record.total)
+    plain_F = F * fit.inflation**2
+    if plain_F >= _RESPONSE and fit.shape > _SHAPE * record.total and fit.correlation > 0.5:
         raise IdentificationError(
-            f"y does not follow u: the model explains {100 * (1 - fit.rss / record.total):.1f} % of its variance, no "
-            f"more than noise can (F = {F:.1f}, needed {_RESPONSE:.0f}); make a larger step, or average several "
-            "recordings"
+            f"the response has not the shape of the model, which explains {explained:.0f} % of the variance of y, and "
+            f"what is left is not white (neighbours correlate by {fit.correlation:.2f}). A response that overshoots or "
+            "swings needs a second-order model (a closed loop does this: open it); or y drifts, or moved before the "
+            "step: start from rest and make a larger step"
+        )
+    if plain_F < _RESPONSE or (F < _RESPONSE and explained < 50):
+        raise IdentificationError(
+            f"y does not follow u: the model explains {explained:.1f} % of its variance, no more than noise or drift "
+            f"can (F = {F:.1f}, needed {_RESPONSE:.0f}); make a larger step, or average several recordings"
         )
 
 
 def _refuse_unsettled(record, fit):
     """Refuse where 1/T cannot be told from zero, or is negative."""
-    joint = record.fit_joint()
+    lived = fit.a * record.watched(fit)  # length of the response in time constants
     bend = record.f_value(fit, record.ramp_rss(), 1)
-    settles = fit.a > 1 / (_SLOWEST * record.watched(fit)) and bend > _BENDS
+    settles = lived > 1 / _SLOWEST and bend > _BENDS
+    if settles and lived > _SETTLED:
+        return
+    joint = record.fit_joint()  # the same number of parameters, so the sums of squares compare
     if settles and fit.rss < joint.rss:
         return
     if fit.a < 0 and bend > _BENDS and fit.rss < joint.rss:
@@ -200,16 +213,16 @@ def _refuse_unsettled(record, fit):
 
 
 def _refuse_too_fast(record, fit, period):
-    T, L = record.unit / fit.a, record.unit * fit.L
-    if T < 0.99 * period:
+    T, L = record.unit / fit.a / period, record.unit * fit.L / period
+    if T < 0.99:
         raise IdentificationError(
-            f"the time constant, about {T:.3g} s, is below the sampling period of {period:.3g} s: T and L cannot be "
-            f"told apart (K = {record.K(fit):.6g} is sound); sample at least five times in one time constant"
+            f"the time constant is about {T:.2f} of the sampling period of {period:.3g} s: the response is over "
+            "between two samples, T and L cannot be told apart; sample at least five times in one time constant"
         )
-    if record.dead_time is None and L < 0.99 * period:
+    if record.dead_time is None and L < 0.99:
         raise IdentificationError(
-            f"the dead time, about {L:.3g} s, is below the sampling period of {period:.3g} s: the record does not show "
-            "it (when within a period was u applied, and y read?). Give it if you know it, dead_time=0 for a plant "
+            f"the dead time is about {L:.2f} of the sampling period of {period:.3g} s: the record does not show it "
+            "(when within a period was u applied, and y read?). Give it if you know it, dead_time=0 for a plant "
             "without: K and T are then fitted; or sample faster. Rules that divide by L (Ziegler-Nichols, AMIGO) "
             "have no meaning here"
         )
@@ -228,10 +241,4 @@ def _warnings(record, fit, T, L, L_stderr):
         yield (
             f"residuals are not white (correlation of neighbours {fit.correlation:.2f}): standard errors were widened "
             f"by {fit.inflation:.1f}; drift, a filter in the sensor, or a plant that is not quite of first order"
-        )
-    unexplained = fit.rss / record.total
-    if unexplained > 0.1 and fit.inflation > 1:
-        yield (
-            f"the model explains only {100 * (1 - unexplained):.0f} % of the variance of y, and the rest has a shape: "
-            "look at the residuals; a response that swings needs a second-order model"
         )
