@@ -72,8 +72,9 @@ class LivePanel(widgets.VBox):
         self._condition = threading.Condition()
         self._wanted, self._drawer, self._filler, self._quiet = None, None, None, 0
 
+        said = io.StringIO()
         with _DRAWING:
-            update(**self._start)  # directly: an error belongs in the cell
+            self._call_update(self._start, said)  # directly: an error belongs in the cell
             self._painter = Painter(figure)
             pixels = round(figure.bbox.width)
             self.image = widgets.Image(
@@ -82,7 +83,7 @@ class LivePanel(widgets.VBox):
                 layout=widgets.Layout(width=f"{pixels}px", height="auto", max_width="100%"),
             )
         self.drawn, self.updates = self._start, 1
-        self.status = widgets.HTML(layout=widgets.Layout(min_height="1.5em", width=f"{pixels}px"))
+        self.status = widgets.HTML(_as_html(said), layout=widgets.Layout(min_height="1.5em", width=f"{pixels}px"))
         reset = widgets.Button(description="Reset", layout=widgets.Layout(width="80px"))
         reset.on_click(lambda _: self.reset())
         columns = 1 if len(rows) <= 3 else 2
@@ -174,20 +175,24 @@ class LivePanel(widgets.VBox):
         self._drawer = None
         self._condition.notify_all()
 
+    def _call_update(self, values, said):
+        """Call `update`; what it prints or returns as text goes into `said`."""
+        with contextlib.redirect_stdout(said):
+            answer = self._update(**values)
+            if isinstance(answer, str):
+                print(answer)
+
     def _draw(self, values):
         said = io.StringIO()
         with _DRAWING:
             try:
-                with contextlib.redirect_stdout(said):
-                    answer = self._update(**values)
-                    if isinstance(answer, str):
-                        print(answer)
+                self._call_update(values, said)
                 self.image.value = self._painter.png()
                 self.error = None
             except Exception as error:
                 self.error = error
         self.drawn, self.updates = values, self.updates + 1
-        text = html.escape(said.getvalue().rstrip()).replace("\n", "<br>")
+        text = _as_html(said)
         if self.error is not None:
             text += f'<span style="color:#c0392b">{html.escape(_explain(self.error))}</span>'
         if text != self.status.value:
@@ -200,6 +205,11 @@ class LivePanel(widgets.VBox):
         if data is not None:
             data["image/png"] = base64.b64encode(self.image.value).decode("ascii")
         return bundle
+
+
+def _as_html(said):
+    """What was said, for the status line."""
+    return html.escape(said.getvalue().rstrip()).replace("\n", "<br>")
 
 
 def exercise_all_panels():

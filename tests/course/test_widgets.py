@@ -181,7 +181,7 @@ def test_set_raises_what_update_raises():
 
 def test_prints_and_texts_of_update_appear_under_the_figure(capsys):
     panel = line_panel(lambda height: print(f"height {height} < 10\nsecond line") or "and a text")
-    capsys.readouterr()
+    assert panel.status.value.startswith("height 0.0 &lt; 10"), "from the start, not only once a slider moves"
     panel.set(height=2)
     assert panel.status.value == "height 2.0 &lt; 10<br>second line<br>and a text"
     assert capsys.readouterr().out == "", "they would end in the log where nobody looks"
