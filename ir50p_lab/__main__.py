@@ -1,0 +1,25 @@
+"""The launcher: ``python3 -m ir50p_lab`` (Windows: ``py -m ir50p_lab``).
+
+This file and ``__init__.py`` keep to a syntax that Pythons too old to run the course still understand (2.7 on), so
+that they answer with a sentence; everything newer is in ``launcher/`` and imported after the gate.
+"""
+
+import os
+import sys
+
+if sys.version_info < (3, 11):
+    sys.stderr.write(
+        "The IR50P lab book needs Python 3.11 or newer; this is Python %d.%d.%d (%s).\n"
+        "Get a newer one from https://www.python.org/downloads/ and start it by its own name, "
+        "for example: python3.13 -m ir50p_lab (Windows: py -3.13 -m ir50p_lab)\n"
+        % (sys.version_info[0], sys.version_info[1], sys.version_info[2], sys.executable)
+    )
+    sys.exit(1)
+
+if not __package__:  # started as a folder, `python3 /path/to/ir50p_lab`: that folder is not where imports begin
+    sys.path[0] = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+from ir50p_lab.launcher.commands import main
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,9 @@
+"""What ``python3 -m ir50p_lab`` does. Standard library only: it runs before anything is installed.
+
+commands     the command line: lab, test, setup, doctor
+environment  the folder .venv: is it ready, build it, repair it
+pip_run      one pip run with a progress line
+inventory    what is installed beside what the lock asks for; serial ports (runs inside .venv)
+doctor       a report on the machine and a verdict
+problems     every error as one line that says what to do next
+"""

@@ -1,0 +1,182 @@
+"""The command line: lab (the default), test, setup, doctor."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+from ir50p_lab.launcher import doctor, inventory
+from ir50p_lab.launcher.environment import LOCK, TEST_LOCK, Environment
+from ir50p_lab.launcher.problems import COMMAND, SetUpError, from_os_error
+
+ROOT = Path(__file__).resolve().parents[2]
+
+HELP = """\
+The IR50P lab book. In the project's folder (on Windows write py instead of python3):
+
+  python3 -m ir50p_lab [...]          set up .venv on first use, then open JupyterLab on notebooks/
+  python3 -m ir50p_lab test [...]     set up with the test tools, then run the tests and every notebook
+  python3 -m ir50p_lab setup          only set up (--rebuild: from nothing; --tests: with the test tools)
+  python3 -m ir50p_lab doctor         what is installed, what is missing, serial ports, verdict
+
+  --here         use the Python that runs this instead of .venv (Binder, JupyterHub); installs nothing
+  --arm FILE     use the arm in this file instead of the IR50P (the same as IR50P_ARM=FILE)
+
+Further arguments go to JupyterLab or to pytest:
+
+  py -m ir50p_lab --no-browser --port 9999
+  py -m ir50p_lab test -k pose
+"""
+COMMANDS = ("lab", "test", "setup", "doctor")
+
+#: Seconds one notebook cell may take.
+CELL_TIMEOUT = 120
+#: pytest options that are followed by a value in the next argument.
+_PYTEST_VALUES = ("-k", "-m", "-p", "-c", "-o", "-W", "-n", "-r")
+
+
+def main(arguments, root=ROOT):
+    """Run the command line; return the exit code."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # paths may have letters that the console does not
+    for name in ("SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), _stop)
+    try:
+        return _run(list(arguments), Path(root))
+    except SetUpError as problem:
+        print(problem, file=sys.stderr)
+        return 1
+    except OSError as error:
+        print(from_os_error(error, root), file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print(f"\nStopped. Run '{COMMAND}' again whenever you like: it takes up what is missing.", file=sys.stderr)
+        return 130
+
+
+def _run(arguments, root):
+    if arguments[:1] in (["-h"], ["--help"], ["help"]):
+        print(HELP, end="")
+        return 0
+    here = _take_flag(arguments, "--here")
+    arm = _take_value(arguments, "--arm")
+    command = arguments.pop(0) if arguments and arguments[0] in COMMANDS else "lab"
+    if command == "lab" and arguments and not arguments[0].startswith("-") and not Path(arguments[0]).exists():
+        raise SetUpError(f"There is neither a command nor a file '{arguments[0]}'. Try '{COMMAND} --help'.")
+    environment = Environment(root)
+    if command == "doctor":
+        return doctor.report(environment, here=here)
+    if command == "setup":
+        return _setup(arguments, environment, here)
+    tests = command == "test"
+    if here:
+        _check_here(environment.root, TEST_LOCK if tests else LOCK)
+        python, variables = sys.executable, dict(os.environ)
+    else:
+        environment.ensure(tests=tests)
+        python, variables = str(environment.python), environment.variables()
+    if arm is not None:
+        if not Path(arm).is_file():
+            raise SetUpError(f"There is no arm file '{arm}'. Write one with Arm.save, or give its path.")
+        variables["IR50P_ARM"] = str(Path(arm).resolve())
+    started = _test_command if tests else _lab_command
+    return _attend([python, *started(environment.root, arguments)], variables, environment.root if tests else None)
+
+
+def _setup(arguments, environment, here):
+    rebuild, tests = _take_flag(arguments, "--rebuild"), _take_flag(arguments, "--tests")
+    if arguments:
+        raise SetUpError(f"setup does not know '{arguments[0]}'. Try '{COMMAND} --help'.")
+    if here:
+        _check_here(environment.root, TEST_LOCK if tests else LOCK)
+    else:
+        environment.ensure(tests=tests, rebuild=rebuild)
+    print("Everything is in place." if here else f"Ready: {environment.folder}")
+    return 0
+
+
+def _lab_command(root, arguments):
+    """JupyterLab on notebooks/, or on the file or folder given as the first argument."""
+    target = [] if arguments and not arguments[0].startswith("-") else [str(root / "notebooks")]
+    if hasattr(os, "geteuid") and os.geteuid() == 0 and "--allow-root" not in arguments:
+        arguments = [*arguments, "--allow-root"]  # containers run as root; JupyterLab would only refuse
+    print("Opening JupyterLab. If no browser opens, copy the address http://... below into one; Ctrl-C here ends it.")
+    return ["-P", "-m", "jupyterlab", *target, *arguments]
+
+
+def _test_command(root, arguments):
+    """Build one pytest run over tests/ and every cell of notebooks/, or over the paths given."""
+    paths = [
+        argument
+        for before, argument in zip(["", *arguments], arguments, strict=False)
+        if before not in _PYTEST_VALUES and not argument.startswith("-") and Path(argument.split("::")[0]).exists()
+    ]
+    absolute = {path: str(Path(path.split("::")[0]).resolve()) + path[len(path.split("::")[0]) :] for path in paths}
+    arguments = [absolute.get(argument, argument) for argument in arguments]
+    targets = [] if paths else [str(root / "tests"), str(root / "notebooks")]
+    return [
+        *("-m", "pytest", "--nbval", "--nbval-current-env", f"--nbval-cell-timeout={CELL_TIMEOUT}"),
+        *targets,
+        *arguments,
+    ]
+
+
+def _attend(command, variables, folder):
+    """Run a program to its end. Ctrl-C is for it to answer: it sits at the same terminal."""
+    sys.stdout.flush()
+    child = subprocess.Popen(command, env=variables, cwd=folder)
+    while True:
+        try:
+            return child.wait()
+        except _Terminated:
+            child.terminate()
+        except KeyboardInterrupt:
+            continue
+
+
+def _check_here(root, lock):
+    """Raise SetUpError unless the running Python has the packages of the lock, in whatever version."""
+    found = inventory.packages(root / lock)
+    missing = [package["name"] for package in found if package["installed"] is None]
+    project = inventory.installed_version("ir50p-lab") is None
+    if not missing and not project:
+        return
+    python = "py" if os.name == "nt" else sys.executable
+    steps = [f"{python} -m pip install -r {root / lock}"] if missing else []
+    if project:
+        missing.append("ir50p-lab")
+        steps.append(f"{python} -m pip install --no-deps --no-build-isolation -e {root}")
+    names = ", ".join(missing[:6]) + (f" and {len(missing) - 6} more" if len(missing) > 6 else "")
+    raise SetUpError(f"This Python ({sys.executable}) lacks {names}. Install with: {' && '.join(steps)}")
+
+
+class _Terminated(KeyboardInterrupt):
+    """The launcher itself was asked to end (SIGTERM, terminal closed)."""
+
+
+def _stop(signum, frame):
+    raise _Terminated
+
+
+def _take_flag(arguments, name):
+    if name not in arguments:
+        return False
+    arguments.remove(name)
+    return True
+
+
+def _take_value(arguments, name):
+    for i, argument in enumerate(arguments):
+        if argument == name:
+            if i + 1 == len(arguments):
+                raise SetUpError(f"{name} needs a file after it. Try '{COMMAND} --help'.")
+            value = arguments[i + 1]
+            del arguments[i : i + 2]
+            return value
+        if argument.startswith(name + "="):
+            del arguments[i]
+            return argument[len(name) + 1 :]
+    return None

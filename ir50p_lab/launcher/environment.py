@@ -1,0 +1,313 @@
+"""The project's own environment, the folder .venv: is it ready for these lock files, and if not, build it.
+
+The set-up writes its stamp last and removes it first. A .venv without a valid stamp is therefore half made, whatever
+interrupted it, and is emptied and built again.
+"""
+
+import hashlib
+import importlib.util
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from ir50p_lab.launcher import pip_run, problems
+from ir50p_lab.launcher.problems import COMMAND, SetUpError
+
+LOCK = "environment.txt"
+TEST_LOCK = "environment-test.txt"
+#: Space that .venv and pip's cache take, GB (measured on Linux: see README.md).
+NEEDED_GB = 2.0
+
+_STAMP = "ir50p_lab-setup.json"
+_LOG = "ir50p_lab-setup.log"
+_BUSY = "ir50p_lab-setup.lock"
+
+
+@dataclass(frozen=True)
+class State:
+    """Whether .venv can be used, why not, and whether it must be built from nothing."""
+
+    ready: bool
+    reason: str
+    rebuild: bool = False
+
+
+class Environment:
+    """The folder .venv of the project in `root`, and everything the launcher does with it."""
+
+    def __init__(self, root):
+        self.root = Path(root).resolve()
+        self.folder = self.root / ".venv"
+        self.scripts = self.folder / ("Scripts" if os.name == "nt" else "bin")
+        self.python = self.scripts / ("python.exe" if os.name == "nt" else "python")
+        self.log = self.folder / _LOG
+
+    def state(self, *, tests=False):
+        """Look, without changing anything."""
+        if not self.folder.exists():
+            return State(False, "not made yet", rebuild=True)
+        stamp = self._read_stamp()
+        if stamp is None:
+            return State(False, "half made (a set-up was interrupted)", rebuild=True)
+        if stamp["root"] != str(self.root):
+            return State(False, f"made for another folder ({stamp['root']})", rebuild=True)
+        if stamp["python"] != _python_version():
+            return State(False, f"made with Python {stamp['python']}, this is {_python_version()}", rebuild=True)
+        if stamp[LOCK] != self._digest(LOCK):
+            return State(False, f"out of date ({LOCK} has changed)", rebuild=True)
+        if not self._python_works():
+            return State(False, "broken (its Python does not start)", rebuild=True)
+        if tests and stamp[TEST_LOCK] != self._digest(TEST_LOCK):
+            return State(False, "without the test tools" if stamp[TEST_LOCK] is None else f"behind {TEST_LOCK}")
+        return State(True, "ready")
+
+    def ensure(self, *, tests=False, rebuild=False, stream=None):
+        """Make .venv ready, building what is not; say on `stream` what happens. Raises SetUpError."""
+        stream = stream or sys.stdout
+        self._check_project()
+        if not rebuild and self.state(tests=tests).ready:
+            return
+        try:
+            with self._only_one(stream) as lock:
+                state = self.state(tests=tests)  # again: another set-up may just have finished
+                if state.ready and not rebuild:
+                    return
+                if rebuild or state.rebuild:
+                    self._build(state, tests, stream, lock)
+                else:
+                    self._add_tests(stream, lock)
+        except OSError as error:
+            raise problems.from_os_error(error, self.root) from error
+
+    def variables(self):
+        """Environment variables for programs that run inside .venv."""
+        variables = _clean_variables()
+        variables["VIRTUAL_ENV"] = str(self.folder)
+        variables["PATH"] = str(self.scripts) + os.pathsep + variables.get("PATH", "")
+        # Kernels and settings of .venv come before those in the home folder: 'python3' is this Python.
+        variables["JUPYTER_PREFER_ENV_PATH"] = "1"
+        return variables
+
+    # -- building ------------------------------------------------------------------------------------------------------
+
+    def _build(self, state, tests, stream, lock):
+        started = time.monotonic()
+        if not state.ready and self._has_content():
+            _say(stream, f"The folder .venv is {state.reason}: building it again.")
+        else:
+            _say(stream, f"Set-up of {self.folder}: takes a few minutes, once. Ctrl-C stops it safely.")
+        free = shutil.disk_usage(self.root).free / 1e9
+        if free < NEEDED_GB:
+            _say(stream, f"Only {free:.1f} GB are free; the set-up may need {NEEDED_GB:.0f} GB.")
+        for module in ("venv", "ensurepip"):
+            if not _has_module(module):
+                raise problems.no_venv_module(module)
+        self._empty()
+        _say(stream, f"[1/4] Python {_python_version()} environment")
+        self._run_venv()
+        _say(stream, f"[2/4] packages of {TEST_LOCK if tests else LOCK}")
+        self._install(TEST_LOCK if tests else LOCK, stream, lock)
+        _say(stream, "[3/4] the lab book itself")
+        self._install_project(lock)
+        _say(stream, "[4/4] check")
+        self._check()
+        self._quieten_jupyter()
+        self._write_stamp(tests)
+        _say(stream, f"Set-up finished in {time.monotonic() - started:.0f} s.")
+
+    def _add_tests(self, stream, lock):
+        started = time.monotonic()
+        (self.folder / _STAMP).unlink()
+        _say(stream, f"[1/1] test tools of {TEST_LOCK}")
+        self._install(TEST_LOCK, stream, lock)
+        self._write_stamp(tests=True)
+        _say(stream, f"Set-up finished in {time.monotonic() - started:.0f} s.")
+
+    def _empty(self):
+        """Remove what is in .venv, stamp first; the folder itself (it may be a link to another disk) stays."""
+        (self.folder / _STAMP).unlink(missing_ok=True)
+        try:
+            for entry in self.folder.iterdir():
+                if entry.name == _BUSY:
+                    continue
+                if entry.is_dir() and not entry.is_symlink():
+                    shutil.rmtree(entry)
+                else:
+                    entry.unlink()
+        except PermissionError as error:
+            raise (problems.in_use if os.name == "nt" else problems.no_permission)(self.folder) from error
+
+    def _run_venv(self):
+        # Not sys.executable: when that is the .venv being rebuilt, it is gone by now.
+        base = getattr(sys, "_base_executable", None) or sys.executable
+        done = subprocess.run(
+            [base, "-m", "venv", str(self.folder)],
+            env=_clean_variables(),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            encoding="utf-8",
+            errors="replace",
+        )
+        if done.returncode:
+            self.log.write_text(done.stdout, encoding="utf-8")
+            raise problems.from_output(done.stdout, done.returncode, self.root, self.log)
+
+    def _install(self, lock_file, stream, lock):
+        path = self.root / lock_file
+        requirements = sum(1 for line in path.read_text("utf-8").splitlines() if line and line[0] not in "#-")
+        self._pip(
+            # Ready-made packages only: nobody should need a compiler.
+            ["install", "--only-binary", ":all:", "--requirement", str(path)],
+            lock,
+            stream=stream,
+            requirements=requirements,
+            count_installed=self._count_installed,
+        )
+
+    def _install_project(self, lock):
+        # Editable, so that notebooks anywhere import the package as it is here; the build tool is in the lock.
+        self._pip(["install", "--no-deps", "--no-index", "--no-build-isolation", "--editable", str(self.root)], lock)
+
+    def _pip(self, arguments, lock, **progress):
+        command = [str(self.python), "-P", "-m", "pip", *arguments]
+        options = ["--no-input", "--disable-pip-version-check", "--no-color"]
+        variables = self.variables() | {"PIP_USER": "0", "PYTHONIOENCODING": "utf-8", "PYTHONUNBUFFERED": "1"}
+        # pip inherits the lock: after a 'kill -9' of the launcher the next set-up waits until this pip has ended.
+        pass_fds = () if lock is None or os.name == "nt" else (lock,)
+        code, output = pip_run.run(command + options, env=variables, log=self.log, pass_fds=pass_fds, **progress)
+        if code:
+            raise problems.from_output(output, code, self.root, self.log)
+
+    def _check(self):
+        """The package must be importable from anywhere."""
+        command = [str(self.python), "-P", "-c", "import ir50p_lab"]
+        done = subprocess.run(command, env=self.variables(), capture_output=True, cwd=self.folder)
+        if done.returncode:
+            raise SetUpError(
+                f"The path {self.root} has letters that this Python cannot read when it starts. Move the project to a "
+                f"folder whose path has plain letters only (or use Python 3.13 or newer), then run '{COMMAND}' again."
+            )
+
+    def _quieten_jupyter(self):
+        """Spare the student JupyterLab's question about news from the web at its first start."""
+        settings = self.folder / "etc" / "jupyter" / "labconfig" / "page_config.json"
+        settings.parent.mkdir(parents=True, exist_ok=True)
+        disabled = {"@jupyterlab/apputils-extension:announcements": True}
+        settings.write_text(json.dumps({"disabledExtensions": disabled}), encoding="utf-8")
+
+    # -- the stamp -----------------------------------------------------------------------------------------------------
+
+    def _write_stamp(self, tests):
+        stamp = {
+            "root": str(self.root),
+            "python": _python_version(),
+            LOCK: self._digest(LOCK),
+            TEST_LOCK: self._digest(TEST_LOCK) if tests else None,
+        }
+        path = self.folder / _STAMP
+        part = path.with_suffix(".part")
+        part.write_text(json.dumps(stamp, indent=1), encoding="utf-8")
+        os.replace(part, path)  # all of it or nothing
+
+    def _read_stamp(self):
+        try:
+            stamp = json.loads((self.folder / _STAMP).read_text("utf-8"))
+            return stamp if {"root", "python", LOCK, TEST_LOCK} <= stamp.keys() else None
+        except (OSError, ValueError, AttributeError):
+            return None
+
+    def _digest(self, lock_file):
+        text = (self.root / lock_file).read_text("utf-8")  # as text: line ends may differ between checkouts
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    # -- looking -------------------------------------------------------------------------------------------------------
+
+    def _check_project(self):
+        for name in (LOCK, TEST_LOCK, "pyproject.toml"):
+            if not (self.root / name).is_file():
+                raise SetUpError(
+                    f"{self.root} is not the project's folder: it has no {name}. Run '{COMMAND}' in the folder that "
+                    "was cloned or unpacked."
+                )
+        if (self.folder.is_symlink() and not self.folder.exists()) or self.folder.is_file():
+            raise SetUpError(f"{self.folder} is not a folder: remove it, then run '{COMMAND}' again.")
+
+    def _has_content(self):
+        return any(entry.name != _BUSY for entry in self.folder.iterdir())
+
+    def _python_works(self):
+        try:
+            command = [str(self.python), "-c", ""]
+            return subprocess.run(command, env=_clean_variables(), capture_output=True).returncode == 0
+        except OSError:
+            return False
+
+    def _count_installed(self):
+        return sum(1 for _ in self.folder.glob("[Ll]ib/**/site-packages/*.dist-info"))
+
+    @contextmanager
+    def _only_one(self, stream):
+        """Hold a lock while .venv is being built; yields its file descriptor (None where locks are not to be had)."""
+        self.folder.mkdir(exist_ok=True)
+        with open(self.folder / _BUSY, "a") as file:
+            try:
+                if not _lock(file, wait=False):
+                    _say(stream, "Another set-up is at work in this folder: waiting for it to end (Ctrl-C to give up).")
+                    _lock(file, wait=True)
+            except OSError:  # some network drives have no locks: go on without
+                yield None
+                return
+            yield file.fileno()
+
+
+def _lock(file, *, wait):
+    """Take the lock; it falls by itself when every process that holds the file open has ended."""
+    if os.name == "nt":
+        import msvcrt
+
+        while True:
+            try:
+                msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+                return True
+            except OSError:
+                if not wait:
+                    return False
+                time.sleep(1)
+    import fcntl
+
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+        return True
+    except BlockingIOError:
+        return False
+
+
+def _has_module(name):
+    try:
+        return importlib.util.find_spec(name) is not None
+    except (ImportError, ValueError):
+        return False
+
+
+def _python_version():
+    return f"{sys.version_info.major}.{sys.version_info.minor}"
+
+
+def _clean_variables():
+    """Environment variables without those that would lead another Python's packages into .venv."""
+    return {
+        name: value
+        for name, value in os.environ.items()
+        if name not in ("PYTHONHOME", "PYTHONPATH", "PYTHONSTARTUP", "__PYVENV_LAUNCHER__")
+    }
+
+
+def _say(stream, text):
+    print(text, file=stream, flush=True)
