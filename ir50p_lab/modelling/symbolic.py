@@ -9,6 +9,7 @@ import sympy
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling import symbolic_steps as steps
+from ir50p_lab.modelling.symbolic_display import Formulas, short_names
 from ir50p_lab.modelling.trig_ring import TrigRing
 
 _PAIRS = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -90,11 +91,25 @@ class SymbolicModel:
         return self.M * self.qdd + self.h + self.g
 
     def short(self, expression):
-        """`expression` with c_2 for cos(q2), s_{23} for sin(q2 + q3) ...: shorter to read, only for display."""
-        q1, q2, q3 = self.q
-        names = {"1": q1, "2": q2, "3": q3, "23": q2 + q3}
-        table = {f(angle): sympy.Symbol(f"{letter}_{name}") for name, angle in names.items() for f, letter in _CS}
-        return sympy.sympify(expression).xreplace(table)
+        """`expression` with c_{2} for cos(q2), s_{23} for sin(q2 + q3) ...: shorter to read, only for display."""
+        return sympy.sympify(expression).xreplace(short_names(self.q))
+
+    def read(self, name):
+        """The entries of "M", "C", "g", "h" or "tau" as equations to read, without zeros: Formulas.
+
+        Of M only the upper triangle. In a notebook they appear in the thesis' notation, c_23 = cos(q2 + q3).
+        Raises InputError for another name.
+        """
+        if name not in ("M", "C", "g", "h", "tau"):
+            raise InputError(f"read({name!r}): choose 'M', 'C', 'g', 'h' or 'tau'")
+        matrix, letter = self.short(getattr(self, name)), {"tau": r"\tau"}.get(name, name)
+        rows = []
+        for i in range(3):
+            for j in range(matrix.shape[1]):
+                if matrix[i, j] != 0 and not (name == "M" and j < i):
+                    place = f"{i + 1}{j + 1}" if matrix.shape[1] > 1 else f"{i + 1}"
+                    rows.append((f"{letter}_{{{place}}}", matrix[i, j]))
+        return Formulas(rows)
 
     def values(self, arm):
         """Numbers for `symbols`, in their order.
@@ -130,9 +145,6 @@ class SymbolicModel:
             for name in formulas
         }
         return NumericModel(self.values(arm), functions)
-
-
-_CS = ((sympy.cos, "c"), (sympy.sin, "s"))
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ from ir50p_lab.modelling import (
     mass_matrix,
 )
 from ir50p_lab.modelling.symbolic import derive, same_function
+from ir50p_lab.modelling.symbolic_display import short_names
 
 THESIS_C_NUMBERS = {
     **{f"l{i}": 0.2 for i in (1, 2, 3)},
@@ -301,6 +302,20 @@ def test_short_names_for_reading(inline):
     assert "cos" in sympy.latex(inline.M)
 
 
+def test_formulas_to_read(inline):
+    read = inline.read("M")
+    assert [name for name, _ in read] == ["M_{11}", "M_{22}", "M_{23}", "M_{33}"] and len(read) == 4
+    assert r"M_{33} &= I_{zz3} + j_{3} + m_{3} l_{c3}^{2}" in read._repr_latex_()
+    assert "M_33 = Izz3 + j3 + lc3**2*m3" in str(read)
+    h = inline.read("h")
+    assert r"h_{2} &= - 2 m_{3} l_{2} l_{c3} s_{3} \dot{q}_{2} \dot{q}_{3}" in h._repr_latex_()
+    assert r"\quad - m_{3} l_{2} l_{c3} s_{3} \dot{q}_{3}^{2}" in h._repr_latex_()  # too long for one line
+    assert [name for name, _ in inline.read("tau")] == [r"\tau_{1}", r"\tau_{2}", r"\tau_{3}"]
+    assert r"\ddot{q}_{1}" in inline.read("tau")._repr_latex_()
+    back = {v: k for k, v in short_names(inline.q).items()}
+    assert [e.xreplace(back) for _, e in inline.read("g")] == list(inline.g[1:])
+
+
 def test_same_function_tells_apart():
     x, y = sympy.symbols("x y")
     assert same_function(sympy.cos(x + y) + sympy.sin(x) * sympy.sin(y), sympy.cos(x) * sympy.cos(y))
@@ -322,5 +337,7 @@ def test_refusals_say_what_to_do(inline):
         derive(links="thesis").numeric(IR50P)
     with pytest.raises(InputError, match="one state at a time"):
         inline.numeric(IR50P).M(np.zeros((2, 3)))
+    with pytest.raises(InputError, match="choose 'M'"):
+        inline.read("K")
     with pytest.raises(InputError, match="1 to 3"):
         inline.b(0, 1, 1)
