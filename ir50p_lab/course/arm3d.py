@@ -159,6 +159,12 @@ class ArmView:
         self._target.set_data_3d(*points.T)
         self._target.set_visible(p is not None)
 
+    def set_visible(self, visible):
+        """Show or hide the arm (not its target, trail and frames)."""
+        pairs = [artist for pair in (*self._links, *self._hubs) for artist in pair]
+        for artist in (*pairs, self._tip, *filter(None, [self._shadow])):
+            artist.set_visible(visible)
+
     def _place(self, parts):
         """Set the ends of each part and draw the far ones first."""
         azimuth, elevation = np.radians([self.ax.azim, self.ax.elev])
@@ -241,6 +247,10 @@ class SideView:
         """Show or hide this arm."""
         for artist in (self._line, self._tip):
             artist.set_visible(visible)
+
+    def set_alpha(self, alpha):
+        """Make this arm pale (towards 0) or full (1)."""
+        self._line.set_alpha(alpha)
 
 
 def _side_stage(ax, arm):
