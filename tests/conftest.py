@@ -3,6 +3,11 @@
 import os
 
 import pytest
+from hypothesis import settings
+
+# no deadline: a first call may compile; the same examples in every run: a failure can be repeated
+settings.register_profile("lab", deadline=None, derandomize=True)
+settings.load_profile("lab")
 
 
 @pytest.hookimpl(trylast=True)

@@ -90,7 +90,7 @@ def gravity_torques(theta, gravity, c2, c23):
 @jit()
 def sign(x):
     """-1, 0 or 1."""
-    return (x > 0) - (x < 0)
+    return 1.0 if x > 0 else (-1.0 if x < 0 else 0.0)
 
 
 @jit()

@@ -105,12 +105,11 @@ def sweep_gains(
 
 
 def run_block(theta, n, kp, ki, kd, bound, period, rate, r, x0, step, steps):
-    """One block of gain sets (W, 3), filled up to whole lanes: returns (5, 3, W). Runs on any worker."""
-    W = len(kp)
-    fill = [np.ascontiguousarray(np.vstack([g, np.repeat(g[-1:], LANES - W, axis=0)]).T) for g in (kp, ki, kd)]
-    out = np.empty((len(METRICS), 3, LANES))
-    pid_batch(theta, n, *fill, bound, period, rate, r, x0, step, steps, out)
-    return out[:, :, :W]
+    """One block of gain sets, each (W, 3): returns (5, 3, W). Runs on any worker."""
+    lanes = [np.ascontiguousarray(gains.T) for gains in (kp, ki, kd)]
+    out = np.empty((len(METRICS), 3, len(kp)))
+    pid_batch(theta, n, *lanes, bound, period, rate, r, x0, step, steps, out)
+    return out
 
 
 def _gain_sets(**sets):
