@@ -262,3 +262,27 @@ def test_more_refusals():
 
 def test_a_joint_that_does_not_move_has_no_step_metrics():
     assert np.isnan(simulate(SMOOTH, PID(kp=(50, 50, 50), kd=(5, 5, 5)), (0, 0.5, 0.3)).metrics()[0].rise_time)
+
+
+class Stepped:
+    """A compiled controller behind Python's protocol, so that the loop runs in Python."""
+
+    def __init__(self, controller):
+        self.controller, self.unit = controller, controller.unit
+        controller.reset()
+
+    def step(self, t, q, reference):
+        return self.controller.step(t, q, reference)
+
+
+@pytest.mark.parametrize(
+    "options", [{"limit_pwm": 255}, {"limit_pwm": 60, "derivative_on": "error"}, {"limit": 5, "filter_hz": 3}]
+)
+def test_the_compiled_twin_gives_the_same_numbers(options):
+    def pid():
+        return PID(kp=(50, 60, 70), ki=(20, 10, 30), kd=(4, 5, 3), **options)
+
+    compiled = simulate(IR50P, pid(), SET_POINT, duration=2, stops=True)
+    stepped = simulate(IR50P, Stepped(pid()), SET_POINT, duration=2, stops=True)
+    for name in ("q", "qd", "u"):
+        assert (getattr(compiled, name) == getattr(stepped, name)).all()
