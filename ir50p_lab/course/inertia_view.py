@@ -34,7 +34,7 @@ class InertiaView:
         M = mass_matrix(arm, q)
         fastest = 1.05 * np.sqrt(2 / np.linalg.eigvalsh(M[:, 1:, 1:])[:, 0].min())
         waist.set(xlim=(-90, 90), ylim=(0, 1.08 * M[:, 0, 0].max()), xticks=range(-90, 91, 45))
-        waist.set(xlabel="q2 [deg]", ylabel="M11 [kg m²]", title="Folded in, joint 1 turns less")
+        waist.set(xlabel="q2 [deg]", ylabel="M11 [kg m²]", title="What joint 1 has to turn")
         waist.set_box_aspect(1)
         joints.set(xlim=(-fastest, fastest), ylim=(-fastest, fastest), aspect="equal")
         joints.set(xlabel="shoulder [rad/s]", ylabel="elbow [rad/s]", title="These speeds cost 1 J")
