@@ -160,10 +160,12 @@ class ArmView:
         self._target.set_visible(p is not None)
 
     def set_visible(self, visible):
-        """Show or hide the arm (not its target, trail and frames)."""
+        """Show or hide the arm and its frames (not its target and trail)."""
         pairs = [artist for pair in (*self._links, *self._hubs) for artist in pair]
         for artist in (*pairs, self._tip, *filter(None, [self._shadow])):
             artist.set_visible(visible)
+        for view in self._frames:
+            view.set_visible(visible)
 
     def _place(self, parts):
         """Set the ends of each part and draw the far ones first."""

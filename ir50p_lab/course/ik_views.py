@@ -9,7 +9,6 @@ from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.modelling.ik import BRANCHES, inverse_kinematics
 
 JOINT_COLOURS = tuple(COLOURS[name] for name in ("purple", "sky", "amber"))
-BRANCH_COLOURS = dict(zip(BRANCHES, (COLOURS[n] for n in ("blue", "sky", "orange", "amber")), strict=True))
 
 
 class ColumnsView:
@@ -66,7 +65,9 @@ class EllipseView:
 
 
 class BranchesView:
-    """All four poses that reach a target, in 3-D and in the vertical plane through it; pale: outside the limits.
+    """One branch of the solutions for a target, with its frames; pale behind it the arm with the other elbow.
+
+    The four branches are four sets of angles but two shapes: in the plane on the right both are drawn.
 
     Args: figure: with a 3-D and a 2-D axes; arm: Arm.
     """
@@ -74,36 +75,38 @@ class BranchesView:
     def __init__(self, figure, arm):
         space, plane = figure.axes
         self.arm = arm
-        self.view = ArmView(space, arm)  # the branch nearest to the zero pose, or the last one reached
-        self.ghosts, self.sides = {}, {}
-        for name, colour in BRANCH_COLOURS.items():
-            self.ghosts[name] = ArmView(space, arm, ghost=True, colour=colour)
-            self.sides[name] = SideView(plane, arm, colour=colour, ghost=bool(self.sides), label=name)
-        plane.legend(loc="upper center", ncols=2, fontsize=8, frameon=False, bbox_to_anchor=(0.5, 1.16))
+        self.view = ArmView(space, arm, frames=True)
+        self.ghost = ArmView(space, arm, ghost=True, colour=COLOURS["grey"])
+        self.shapes = [
+            SideView(plane, arm, colour=COLOURS["blue"], label="front/up, back/down"),
+            SideView(plane, arm, colour=COLOURS["orange"], ghost=True, label="front/down, back/up"),
+        ]
+        plane.legend(loc="lower center", ncols=2, fontsize=8, frameon=False, bbox_to_anchor=(0.5, 1.0))
 
-    def update(self, p):
-        """Show the poses for the target p (3,) m.
+    def update(self, p, branch):
+        """Show the poses for the target p (3,) m, with the named branch in full.
 
-        Returns: a sentence: which branches the joint limits allow, or how far out of reach the target is.
+        Returns: a sentence: the joint angles and whether the limits allow them, or how far out of reach the target is.
         """
         self.view.target(p)
-        self.sides["front/up"].target(np.hypot(p[0], p[1]), p[2])
+        self.shapes[0].target(np.hypot(p[0], p[1]), p[2])
         try:
             solutions = inverse_kinematics(self.arm, p)
         except UnreachableError as error:
-            self._show(())
+            self._show(False)
             return f"out of reach by {error.distance:.3f} m"
+        self._show(True)
+        chosen = BRANCHES.index(branch)
+        self.view.update(solutions[chosen])
+        self.ghost.update(solutions[chosen ^ 1])
         heading = np.arctan2(p[1], p[0])
-        for name, q, allowed in zip(solutions.branches, solutions.q, solutions.within_limits, strict=True):
-            self.ghosts[name].update(q)
-            self.sides[name].update(q, heading)
-            self.sides[name].set_alpha(1.0 if allowed else 0.35)
-        self._show(solutions.branches)
-        allowed = [n for n, inside in zip(solutions.branches, solutions.within_limits, strict=True) if inside]
-        self.view.update(solutions[allowed[0] if allowed else 0])
-        return f"within the joint limits: {', '.join(allowed) or 'none of the four'}"
+        for k, shape in enumerate(self.shapes):
+            shape.update(solutions[k], heading)
+            shape.set_alpha(1.0 if chosen in (k, 3 - k) else 0.3)
+        angles = ", ".join(f"{angle:.1f}" for angle in np.degrees(solutions[chosen]))
+        verdict = "within the limits" if solutions.within_limits[chosen] else "beyond a joint limit"
+        return f"{branch}: q = ({angles}) deg, {verdict}"
 
-    def _show(self, names):
-        for name in BRANCHES:
-            self.ghosts[name].set_visible(name in names)
-            self.sides[name].set_visible(name in names)
+    def _show(self, visible):
+        for part in (self.view, self.ghost, *self.shapes):
+            part.set_visible(visible)
