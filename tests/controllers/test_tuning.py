@@ -1,0 +1,213 @@
+"""Tuning rules: numbers worked out by hand, and the margins that each rule is known for."""
+
+import math
+
+import control
+import numpy as np
+import pytest
+
+from ir50p_lab.controllers.tuning import (
+    UltimatePoint,
+    amigo,
+    simc,
+    simc_integrating,
+    ultimate_point,
+    ziegler_nichols,
+    ziegler_nichols_ultimate,
+)
+from ir50p_lab.errors import InputError
+from ir50p_lab.identification import FOPDT
+
+RATIOS = (0.1, 0.2, 0.5, 1.0, 2.0)  # L/T
+# fmt: off
+RULES = {
+    "ZN PI": lambda m: ziegler_nichols(m, kind="PI"),
+    "ZN PID": ziegler_nichols,
+    "ZN ultimate PI": lambda m: ziegler_nichols_ultimate(ultimate_point(m), kind="PI"),
+    "ZN ultimate PID": lambda m: ziegler_nichols_ultimate(ultimate_point(m)),
+    "SIMC PI": simc,
+    "SIMC PID": lambda m: simc(m, kind="PID"),
+    "AMIGO PI": lambda m: amigo(m, kind="PI"),
+    "AMIGO PID": amigo,
+}
+# least gain margin, least phase margin in degrees, largest sensitivity, for L/T from 0.1 to 2; source: the rules' own
+# claims (SIMC 3.14/61.4 deg/1.59 at best, 2.96/46.9 at worst; AMIGO sensitivity 1.4), Ziegler-Nichols measured here
+PROMISES = {
+    "ZN PI": (1.5, 24, 3.5),
+    "ZN PID": (1.4, 36, 3.5),
+    "ZN ultimate PI": (1.85, 30, 2.65),
+    "ZN ultimate PID": (1.5, 36, 2.9),
+    "SIMC PI": (2.95, 46, 1.71),
+    "SIMC PID": (2.95, 46, 1.71),
+    "AMIGO PI": (3.0, 60, 1.45),
+    "AMIGO PID": (3.0, 55, 1.45),
+}
+# fmt: on
+
+
+def frequency_response(model, gains, integrating=False):
+    """w, loop gain C G with the exact dead time."""
+    w = np.geomspace(1e-2, 60, 20000) / model.L
+    s = 1j * w
+    plant = model.K * np.exp(-s * model.L) / (model.T * s + 1) / (s if integrating else 1)
+    return w, (gains.kp + gains.ki / s + gains.kd * s) * plant
+
+
+def margins(model, gains, integrating=False):
+    """Gain margin, phase margin in degrees, largest sensitivity."""
+    _, loop = frequency_response(model, gains, integrating)
+    size, phase = np.abs(loop), np.unwrap(np.angle(loop))
+    across_one = np.flatnonzero((size[:-1] - 1) * (size[1:] - 1) < 0)
+    turns = np.floor((phase + np.pi) / (2 * np.pi))
+    across_180 = np.flatnonzero(np.diff(turns) != 0)
+    phase_margin = np.degrees((phase[across_one] + np.pi).min())
+    return 1 / size[across_180].max(), phase_margin, (1 / np.abs(1 + loop)).max()
+
+
+def rational(model, gains, order=8):
+    """The same loop as a transfer function, dead time by Pade."""
+    num, den = control.pade(model.L, order)
+    plant = control.tf([model.K], [model.T, 1]) * control.tf(num, den)
+    return control.tf([gains.kd, gains.kp, gains.ki], [1, 0]) * plant
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+@pytest.mark.parametrize("name", RULES)
+@pytest.mark.parametrize("K, T", [(2.0, 1.0), (-1e-3, 30.0)])
+def test_closed_loop_is_stable_with_the_margins_of_the_rule(name, ratio, K, T):
+    model = FOPDT(K=K, T=T, L=ratio * T)
+    gains = RULES[name](model)
+    assert np.sign(gains.kp) == np.sign(K) and all(math.isfinite(g) for g in (gains.kp, gains.ki, gains.kd))
+    poles = control.feedback(rational(model, gains), 1).poles()
+    assert poles.real.max() < 0
+    gain_margin, phase_margin, sensitivity = margins(model, gains)
+    least_gain, least_phase, most_sensitive = PROMISES[name]
+    assert gain_margin > least_gain and phase_margin > least_phase and sensitivity < most_sensitive
+
+
+@pytest.mark.parametrize("ratio", [0.125, 0.3, 1, 5])
+def test_simc_pi_has_its_known_margins_by_control(ratio):
+    model = FOPDT(K=3.0, T=2.0, L=2.0 * ratio)
+    gain_margin, phase_margin, *_ = control.margin(rational(model, simc(model)))
+    assert gain_margin == pytest.approx(math.pi, rel=1e-3)
+    assert phase_margin == pytest.approx(90 - np.degrees(0.5), abs=0.05)
+    assert margins(model, simc(model))[2] == pytest.approx(1.59, abs=0.005)
+
+
+def test_simc_for_an_integrating_plant_has_its_known_margins():
+    """Skogestad's values: 2.96 and 46.9 degrees with integral action; without it, those of the ideal loop."""
+    for T, L in ((1.0, 0.1), (0.5, 0.5), (0.1, 2.0)):
+        model = FOPDT(K=4.0, T=T, L=L)
+        assert margins(model, simc_integrating(model), True) == pytest.approx((2.96, 46.9, 1.70), rel=3e-3)
+        assert margins(model, simc_integrating(model, kind="PD"), True) == pytest.approx((3.14, 61.4, 1.59), rel=3e-3)
+    slow = FOPDT(K=1.0, T=1000.0, L=1.0)  # an ordinary FOPDT so slow that it integrates
+    assert margins(slow, simc(slow)) == pytest.approx((2.96, 46.9, 1.70), rel=5e-3)
+
+
+def test_improved_simc_pid_at_half_tau_c_is_as_sensitive_as_the_pi():
+    model = FOPDT(K=1.0, T=1.0, L=0.5)
+    assert margins(model, simc(model, kind="PID", tau_c=0.25))[2] == pytest.approx(1.66, abs=0.01)
+
+
+@pytest.mark.parametrize("ratio", [0.02, 0.1, 1, 10])
+def test_amigo_pid_keeps_its_sensitivity(ratio):
+    model = FOPDT(K=-7.0, T=3.0, L=3.0 * ratio)
+    assert margins(model, amigo(model))[2] == pytest.approx(1.4, abs=0.04)
+
+
+@pytest.mark.parametrize("ratio", [0.01, 0.1, 0.5, 2, 10])
+@pytest.mark.parametrize("K", [0.5, -20.0])
+def test_ultimate_point_against_control_margin(ratio, K):
+    model = FOPDT(K=K, T=0.7, L=0.7 * ratio)
+    ultimate = ultimate_point(model)
+    delay = control.tf(*control.pade(model.L, 8))
+    half = control.tf([0.5], [model.T, 1]) * delay  # the loop with kp = 1/(2 K): stable, the margin is above 1
+    gain_margin, _, w180, _ = control.margin(half)
+    assert ultimate.Ku == pytest.approx(gain_margin / (2 * K), rel=1e-5)
+    assert ultimate.Tu == pytest.approx(2 * math.pi / w180, rel=1e-5)
+
+
+# Worked out by hand from the printed tables, not by this code.
+HAND = [
+    # a = K L/T = 2 * 0.5/4 = 0.25
+    (ziegler_nichols(FOPDT(K=2, T=4, L=0.5), kind="P"), 4.0, math.inf, 0.0),
+    (ziegler_nichols(FOPDT(K=2, T=4, L=0.5), kind="PI"), 3.6, 1.6666667, 0.0),
+    (ziegler_nichols(FOPDT(K=2, T=4, L=0.5), kind="PID"), 4.8, 1.0, 0.25),
+    # 1/(s + 1)^3 swings at sqrt(3) rad/s with gain 8, the textbook example
+    (ziegler_nichols_ultimate(UltimatePoint(8, 3.627599), kind="P"), 4.0, math.inf, 0.0),
+    (ziegler_nichols_ultimate(UltimatePoint(8, 3.627599), kind="PI"), 3.6, 3.022999, 0.0),
+    (ziegler_nichols_ultimate(UltimatePoint(8, 3.627599), kind="PID"), 4.8, 1.8137995, 0.4534499),
+    # kp = 4/(2 * (0.5 + 0.5)); 4 (0.5 + 0.5) = 4 = T
+    (simc(FOPDT(K=2, T=4, L=0.5)), 2.0, 4.0, 0.0),
+    (simc(FOPDT(K=2, T=4, L=0.5), tau_c=0.1), 3.3333333, 2.4, 0.0),
+    (simc(FOPDT(K=2, T=4, L=0), tau_c=0.8), 2.5, 3.2, 0.0),
+    # series 2, 4, 1/6: kp = 2 (1 + 1/24), Ti = 4 + 1/6, Td = 4/25
+    (simc(FOPDT(K=2, T=4, L=0.5), kind="PID"), 2.0833333, 4.1666667, 0.16),
+    # 1/(0.1 s + 1)/s without dead time, tau_c = 0.25: series 4, 1, 0.1
+    (simc_integrating(FOPDT(K=1, T=0.1, L=0), tau_c=0.25), 4.4, 1.1, 0.0909091),
+    (simc_integrating(FOPDT(K=1, T=0.1, L=0), tau_c=0.25, kind="PD"), 4.0, math.inf, 0.1),
+    # T = 2.9, L = 1.42, the usual approximation of 1/(s + 1)^4
+    (amigo(FOPDT(K=1, T=2.9, L=1.42), kind="PI"), 0.414, 2.66, 0.0),
+    (amigo(FOPDT(K=1, T=2.9, L=1.42), kind="PID"), 1.12, 2.40, 0.619),
+    # T = L = 1: 0.15 + 0.35 - 0.25; 0.35 + 13/20; 0.65; 1.2/1.1; 0.5/1.3
+    (amigo(FOPDT(K=1, T=1, L=1), kind="PI"), 0.25, 1.0, 0.0),
+    (amigo(FOPDT(K=1, T=1, L=1), kind="PID"), 0.65, 1.0909091, 0.3846154),
+]
+
+
+@pytest.mark.parametrize("gains, kp, Ti, Td", HAND, ids=[gains.rule for gains, *_ in HAND])
+def test_table_values(gains, kp, Ti, Td):
+    digits = 3e-3 if kp in (0.414, 1.12) else 1e-6
+    assert (gains.kp, gains.Ti, gains.Td) == pytest.approx((kp, Ti, Td), rel=digits)
+    assert gains.ki == pytest.approx(0 if Ti == math.inf else kp / Ti, rel=2 * digits)
+    assert gains.kd == pytest.approx(kp * Td, rel=2 * digits)
+
+
+@pytest.mark.parametrize("name", RULES)
+def test_gains_scale_with_units(name):
+    """Output in other units and time in other units: kp by 1/K, ki also by 1/time, kd by time."""
+    one, other = RULES[name](FOPDT(K=2, T=1, L=0.3)), RULES[name](FOPDT(K=0.5, T=1000, L=300))
+    assert (other.kp, other.ki, other.kd) == pytest.approx((4 * one.kp, 4e-3 * one.ki, 4e3 * one.kd))
+
+
+@pytest.mark.parametrize("rule", [ziegler_nichols, amigo, ultimate_point])
+def test_no_dead_time_no_rule(rule):
+    with pytest.raises(InputError, match="infinite gain"):
+        rule(FOPDT(K=1, T=1, L=0))
+
+
+@pytest.mark.parametrize(
+    "make, words",
+    [
+        (lambda: simc(FOPDT(K=1, T=1, L=0)), "tau_c= in s"),
+        (lambda: simc(FOPDT(K=1, T=1, L=1), tau_c=0), "finite number > 0"),
+        (lambda: simc(FOPDT(K=1, T=1, L=1), tau_c=-1), "finite number > 0"),
+        (lambda: simc(FOPDT(K=1, T=1, L=1), tau_c=math.nan), "finite number > 0"),
+        (lambda: simc(FOPDT(K=1, T=1, L=1), kind="PD"), "PI, PID"),
+        (lambda: simc_integrating(FOPDT(K=1, T=1, L=0)), "tau_c= in s"),
+        (lambda: simc_integrating(FOPDT(K=1, T=1, L=1), kind="PI"), "PD, PID"),
+        (lambda: amigo(FOPDT(K=1, T=1, L=1), kind="P"), "PI, PID"),
+        (lambda: ziegler_nichols(FOPDT(K=1, T=1, L=1), kind="pid"), "'pid'"),
+        (lambda: ziegler_nichols((1, 1, 1)), "FOPDT"),
+        (lambda: ziegler_nichols(None), "FOPDT"),
+        (lambda: ziegler_nichols_ultimate(UltimatePoint(0, 1)), "Ku = 0"),
+        (lambda: ziegler_nichols_ultimate(UltimatePoint(1, -1)), "Tu = -1"),
+        (lambda: ziegler_nichols_ultimate(UltimatePoint(math.nan, 1)), "Ku = nan"),
+        (lambda: ziegler_nichols_ultimate(FOPDT(K=1, T=1, L=1)), "UltimatePoint"),
+    ],
+)
+def test_bad_input_gets_a_sentence(make, words):
+    with pytest.raises(InputError) as caught:
+        make()
+    assert words in str(caught.value)
+
+
+def test_warnings_where_a_rule_leaves_its_range():
+    assert ziegler_nichols(FOPDT(K=1, T=1, L=0.5)).warnings == ()
+    assert "outside 0.1 to 1" in ziegler_nichols(FOPDT(K=1, T=1, L=0.05)).warnings[0]
+    assert "outside 0.1 to 1" in ziegler_nichols(FOPDT(K=1, T=1, L=2)).warnings[0]
+    assert "below 0.3" in amigo(FOPDT(K=1, T=1, L=0.1)).warnings[0]
+    vague = FOPDT(K=1, T=1, L=0.5, L_stderr=0.2)
+    for rule in (ziegler_nichols, simc, amigo):
+        assert any("standard error" in text for text in rule(vague).warnings)
+    assert simc(vague, tau_c=10).warnings == ()
