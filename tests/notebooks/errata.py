@@ -24,6 +24,7 @@ ERRATA = {
         ("1.34", "joint i turns about z_(i-1)"),
         ("1.37", "the same, for the columns of the angular part"),
         ("1.50", "the same, for this arm: columns 1 and 3 come out wrong"),
+        ("J_omega", "called the derivative of the angular velocity", r"called the derivative of the angular velocity"),
         ("1.49", "rows 2 and 3 of Jv garbled"),
         ("1.51", "R_x(pi/2) rows: third row [0 s c]"),
         ("1.52", "entry (2,3) is -c1"),
