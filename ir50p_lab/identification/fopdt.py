@@ -67,15 +67,16 @@ class FOPDT:
 def fit_fopdt(t, u, y, *, dead_time=None, u_before=None):
     """Fit K, T and L of a first-order plus dead time model to a recording    (2.21)
 
-    T dy/dt + y = y0 + K u(t - L), solved exactly for an input held between samples (zero-order hold), with any number
-    of steps, sampled evenly or not; y starts at rest. After one step of height h this is
-    y = y0 + K h (1 - exp(-(t - t_step - L)/T)). Least squares over all samples, from the best point of a grid.
+    T dy/dt + y = y0 + K [u(t - L) - u_before], solved exactly for an input held between samples (zero-order hold), with
+    any number of steps, sampled evenly or not; y starts at rest. After one step of height h this is
+    y = y0 + K h (1 - exp(-(t - t_step - L)/T)). Least squares over all samples, from the best points of a grid.
 
     Standard errors come from the Jacobian at the solution and the spread of the residuals. They are right for white
     noise. Neighbouring residuals that are alike (drift, a filter, a model that does not quite fit) carry less
     information than their number: where the lag-one correlation r is significant, the errors are widened by
-    sqrt((1 + r)/(1 - r)), exact for slow parameters in first-order noise, and a warning says so. They know nothing of
-    errors of the model itself, nor of a plant that was not at rest at first.
+    sqrt((1 + r)/(1 - r)), and a warning says so. Measured over 200 seeds, 500 samples: two standard errors held the
+    truth 92-97 times in 100 in white noise and up to r = 0.9, 84 times at r = 0.97: slow drift is still worse than it
+    says. They know nothing of errors of the model itself, nor of a plant that was not at rest at first.
 
     Args:
         t: (n,) s, increasing. u: (n,), input; u[k] acts from t[k] to t[k + 1]. y: (n,), output, any unit.
@@ -93,7 +94,7 @@ def fit_fopdt(t, u, y, *, dead_time=None, u_before=None):
         InputError: NaN, shapes or lengths that do not fit, time that does not increase.
     """
     t, u, y = _columns(t=t, u=u, y=y)
-    if dead_time is not None and not (np.ndim(dead_time) == 0 and math.isfinite(dead_time) and dead_time >= 0):
+    if dead_time is not None and not (_is_number(dead_time) and dead_time >= 0):
         raise InputError(f"dead_time = {dead_time!r}: give finite seconds >= 0, or None to fit it")
     times, jumps = _jumps(t, u, u_before)
     _refuse_silent(t, y, times)
@@ -144,9 +145,13 @@ def _columns(**columns):
     return arrays.values()
 
 
+def _is_number(value):
+    return np.ndim(value) == 0 and not isinstance(value, (str, bytes)) and math.isfinite(value)
+
+
 def _jumps(t, u, u_before):
     """Times (m,) and heights (m,) of the changes of u."""
-    if u_before is not None and not (np.ndim(u_before) == 0 and math.isfinite(u_before)):
+    if u_before is not None and not _is_number(u_before):
         raise InputError(f"u_before = {u_before!r}: give the input at rest before t[0], one finite number")
     heights = np.diff(u, prepend=u[0] if u_before is None else float(u_before))
     return t[heights != 0], heights[heights != 0]

@@ -282,7 +282,7 @@ def test_bad_columns_get_a_sentence(n):
         fit_fopdt(t[:, None], u, y)
     with pytest.raises(InputError, match="numbers"):
         fit_fopdt(t, u, ["a"] * n)
-    for options in ({"dead_time": -1.0}, {"dead_time": math.nan}, {"u_before": math.inf}):
+    for options in ({"dead_time": -1.0}, {"dead_time": math.nan}, {"u_before": math.inf}, {"u_before": "0"}):
         with pytest.raises(InputError):
             fit_fopdt(t, u, y, **options)
 
