@@ -1,0 +1,89 @@
+"""The answers of notebook 02, worked out by hand: no function of the package on this side."""
+
+import numpy as np
+import pytest
+
+from ir50p_lab.course.exercises import judge, solution
+from ir50p_lab.course.exercises.ik import _BRANCH_SLIPS, EXERCISES
+
+BY_NAME = {exercise.name: exercise for exercise in EXERCISES}
+
+
+def velocity_by_hand(row_2_from="sin"):
+    """Chain rule for a 0.285, 0.200, 0.372 m arm at (30, 45, -60) degrees and (0.5, -0.2, 0.4) rad/s."""
+    q1, q2, q23 = np.radians([30, 45, -15])
+    radius = 0.2 * np.cos(q2) + 0.372 * np.cos(q23)
+    radius_rate = -0.2 * np.sin(q2) * -0.2 - 0.372 * np.sin(q23) * (-0.2 + 0.4)
+    height_rate = 0.2 * np.cos(q2) * -0.2 + 0.372 * np.cos(q23) * (-0.2 + 0.4)
+    x_rate = radius_rate * np.cos(q1) - radius * np.sin(q1) * 0.5
+    y_rate = radius_rate * np.sin(q1) + radius * np.cos(q1) * 0.5
+    return [x_rate, x_rate if row_2_from == "cos" else y_rate, height_rate]
+
+
+def elbow_by_hand(r):
+    return -np.arccos((r**2 - 0.2**2 - 0.372**2) / (2 * 0.2 * 0.372))
+
+
+R_HOLE = np.sqrt(0.05**2 + 0.03**2 + (0.25 - 0.285) ** 2)
+BY_HAND = {
+    "ik-1": velocity_by_hand(),
+    "ik-2": 0.2 / 0.04,
+    "ik-3": (0.372 - 0.2) - R_HOLE,
+    "ik-4": elbow_by_hand,
+    "ik-5": "front/up",
+}
+
+
+def test_every_exercise_is_worked_out_here():
+    assert list(BY_HAND) == list(BY_NAME)
+
+
+@pytest.mark.parametrize("name", BY_HAND)
+def test_the_answer_by_hand_is_right(name):
+    assert judge(BY_NAME[name], BY_HAND[name]).state == "right"
+    if name in ("ik-1", "ik-2", "ik-3"):
+        np.testing.assert_allclose(solution(name), BY_HAND[name], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "answer", "hint"),
+    [
+        ("ik-1", velocity_by_hand("cos"), "printed"),
+        ("ik-1", np.negative(velocity_by_hand()), "sign"),
+        ("ik-1", np.pi / 180 * np.array(velocity_by_hand()), "converted once too often"),
+        ("ik-1", [0.1, -0.1 * np.sqrt(3), 0.5], "turns"),
+        ("ik-2", 0.008, "v d"),
+        ("ik-2", 286.48, "degrees per second"),
+        ("ik-2", 0.2 / 0.572, "stretched"),
+        ("ik-2", 0.2, "time"),
+        ("ik-3", 0, "Near is not"),
+        ("ik-3", R_HOLE, "from the shoulder"),
+        ("ik-3", 0.572 - R_HOLE, "outer edge"),
+        ("ik-3", 104.0, "millimetres"),
+        ("ik-4", lambda r: -elbow_by_hand(r), "elbow down"),
+        ("ik-4", lambda r: np.pi + elbow_by_hand(r), "inside the triangle"),
+        ("ik-4", lambda r: np.degrees(elbow_by_hand(r)), "degrees"),
+        ("ik-4", lambda r: -2 * np.arccos(r / 0.572), "equal length"),
+        ("ik-5", "front/down", "upper limit"),
+        ("ik-5", "back/up", "face away"),
+        ("ik-5", "back/down", "bend backwards"),
+    ],
+)
+def test_a_typical_slip_gets_its_own_message(name, answer, hint):
+    verdict = judge(BY_NAME[name], answer)
+    assert verdict.state == "slip"
+    assert hint in verdict.text
+
+
+def test_what_the_messages_of_ik_5_say_about_the_limits_is_true():
+    """Angles of the other three branches from the triangle, in degrees, against -100..100, -50..110, -140..30."""
+    delta, z1 = np.hypot(0.40, 0.15), 0.35 - 0.285
+    heading = np.degrees(np.arctan2(0.15, 0.40))
+    q3 = -np.degrees(elbow_by_hand(np.hypot(delta, z1)))
+    assert q3 > 30, "front/down and back/down bend past the upper limit of the elbow"
+    assert heading - 180 < -100 and heading + 180 > 100, "back: joint 1 cannot face away on either side"
+    lean = np.degrees(
+        np.arctan2(z1, delta) - np.arctan2(0.372 * np.sin(np.radians(-q3)), 0.2 + 0.372 * np.cos(np.radians(q3)))
+    )
+    assert -50 < lean < 110 and -140 < -q3 < 30 and -100 < heading < 100, "front/up is allowed"
+    assert set(_BRANCH_SLIPS) == {"front/down", "back/up", "back/down"}
