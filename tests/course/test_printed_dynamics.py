@@ -111,3 +111,30 @@ def test_inertia_view_shows_the_pose():
     for ax in view.figure.axes:  # nothing runs out of its axes
         assert ax.get_xlabel() and ax.get_ylabel()
     assert np.abs(loop.get_xydata()).max() < joints.get_xlim()[1] and M[0, 0] < waist.get_ylim()[1]
+
+
+def test_general_formulas_differ_from_the_derivation(thesis):
+    qdd = thesis.qdd
+    inertial = thesis.M * qdd + thesis.h
+    assert wrong(printed.inertial_torque_1_81(thesis.M, qdd), inertial) == [(2, 1), (3, 1)]
+    assert wrong(printed.h_1_95(thesis.M), thesis.h) == [(1, 1), (2, 1), (3, 1)]
+    assert wrong(printed.h_1_98_and_1_99(thesis.b), thesis.h) == [(1, 1), (2, 1), (3, 1)]
+
+
+def test_centrifugal_half_of_1_98_is_right(thesis):
+    """With one joint moving at a time only squares are left, and there (1.98) and (1.99) agree with h."""
+    for moving in thesis.qd:
+        rest = {v: 0 for v in thesis.qd if v != moving}
+        assert wrong(printed.h_1_98_and_1_99(thesis.b).xreplace(rest), thesis.h.xreplace(rest)) == []
+
+
+def test_angular_jacobian_and_energy_as_printed():
+    model = derive()
+    axes = [T[:3, 2] for T in model.frames[:3]]
+    places = [wrong(printed.J_omega_1_88(axes), Jw) for Jw in model.Jw]
+    assert places == [[(1, 2), (1, 3), (2, 2), (2, 3)], [(1, 3), (2, 3)], []]
+    tensor = sympy.diag(0, 0, printed.Izz1)
+    column = printed.kinetic_1_89([sympy.zeros(3)], [model.Jw[0]], [0], [tensor])
+    assert sympy.expand(column.subs({printed.b: 0, printed.c: 0}) - printed.Izz1 * printed.a**4 / 2) == 0  # not a^2
+    moving = printed.kinetic_1_89([sympy.eye(3)], [sympy.zeros(3)], [printed.m1], [tensor])
+    assert sympy.expand(moving - printed.m1 * sum(v**2 for v in printed.qd) / 2) == 0  # that half is right
