@@ -12,5 +12,15 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "base": ["Controller"],
         "continuous_pid": ["ContinuousPID"],
         "pid": ["PID"],
+        "tuning": [
+            "PIDGains",
+            "UltimatePoint",
+            "amigo",
+            "simc",
+            "simc_integrating",
+            "ultimate_point",
+            "ziegler_nichols",
+            "ziegler_nichols_ultimate",
+        ],
     },
 )
