@@ -5,7 +5,11 @@ import sys
 
 import pytest
 
+import ir50p_lab.controllers
+import ir50p_lab.identification
 import ir50p_lab.modelling
+import ir50p_lab.signals
+import ir50p_lab.simulation
 
 
 def modules_after(statement):
@@ -24,8 +28,17 @@ def test_modelling_brings_no_heavy_module_until_used():
     assert not modules_after("from ir50p_lab.modelling import IR50P, inverse_kinematics") & (heavy - {"numpy"})
 
 
-@pytest.mark.parametrize("name", ir50p_lab.modelling.__all__)
-def test_every_public_name_exists_and_is_documented(name):
-    value = getattr(ir50p_lab.modelling, name)
+PACKAGES = [
+    ir50p_lab.controllers,
+    ir50p_lab.identification,
+    ir50p_lab.modelling,
+    ir50p_lab.signals,
+    ir50p_lab.simulation,
+]
+
+
+@pytest.mark.parametrize(("package", "name"), [(package, name) for package in PACKAGES for name in package.__all__])
+def test_every_public_name_exists_and_is_documented(package, name):
+    value = getattr(package, name)
     if callable(value):
         assert len(value.__doc__ or "") > 25
