@@ -290,9 +290,9 @@ def test_general_arm_equals_mujoco():
 def test_derivation_takes_less_than_a_fifth_of_a_second():
     times = []
     for _ in range(3):
-        start = time.perf_counter()
+        start = time.process_time()  # not wall time: other tests may share the processor
         derive()
-        times.append(time.perf_counter() - start)
+        times.append(time.process_time() - start)
     assert min(times) < 0.2  # measured: 0.05 s
 
 
