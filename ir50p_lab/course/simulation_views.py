@@ -1,0 +1,148 @@
+"""Figures of simulated runs for notebook 04; each says that nothing in it was measured."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.course.arm3d import SideView
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+
+STAMP = "simulated, not measured"
+
+
+def simulation_figure(width=9.0, height=None, **layout):
+    """A `new_figure` with a note in its lower right corner: simulated, not measured.
+
+    Args: as `new_figure`. Returns: LabFigure.
+    """
+    figure = new_figure(width, height, **layout)
+    x, y = 1.0 - 0.04 / figure.get_figwidth(), 0.03 / figure.get_figheight()
+    figure.text(x, y, STAMP, ha="right", va="bottom", fontsize=7.5, color=COLOURS["grey"], style="italic")
+    return figure
+
+
+@dataclass(frozen=True)
+class Row:
+    """One of the axes of `Traces`.
+
+    ylabel: with unit; ylim: (low, high); curves: their names (no legend for one curve without a name);
+    levels: heights of dashed lines; style: of matplotlib's plot, for all its curves.
+    """
+
+    ylabel: str
+    ylim: tuple
+    curves: tuple = ("",)
+    levels: tuple = ()
+    style: str = "-"
+
+
+class Traces:
+    """Curves over one common axis with fixed limits, so that moving a slider moves the curves only.
+
+    Args: xlabel: with unit; xlim: (low, high); rows: Row, from top to bottom; title: above the first.
+    Attributes: figure; axes, one per row; lines, all curves in order, row by row.
+    """
+
+    def __init__(self, xlabel, xlim, *rows, title=""):
+        self.figure = simulation_figure(
+            9.0, 1.4 + (2.0 if len(rows) == 1 else 1.5 * len(rows)), rows=len(rows), sharex=True
+        )
+        self.axes, self.lines = self.figure.axes, []
+        for ax, row in zip(self.axes, rows, strict=True):
+            self.lines += [ax.plot([], [], row.style, markersize=3, label=name)[0] for name in row.curves]
+            for level in row.levels:
+                ax.axhline(level, **SETPOINT)
+            ax.set(xlim=xlim, ylim=row.ylim, ylabel=row.ylabel)
+            if any(row.curves):
+                ax.legend(loc="upper right", ncols=len(row.curves), fontsize=9)
+        self.axes[-1].set_xlabel(xlabel)
+        self.title(title)
+
+    def update(self, x, *ys):
+        """Give all curves new points: x (n,), and one y (n,) per curve, in their order."""
+        for line, y in zip(self.lines, ys, strict=True):
+            line.set_data(x, y)
+
+    def clear(self):
+        """Empty all curves."""
+        for line in self.lines:
+            line.set_data([], [])
+
+    def title(self, text):
+        """What is seen, above the first row."""
+        self.axes[0].set_title(text)
+
+
+def order_figure(steps, errors):
+    """Errors against the step on logarithmic axes, with the slope of each line: the order of the method.
+
+    Args: steps (n,) s; errors: {method: errors (n,) rad}. Returns: LabFigure, {method: slope}.
+    """
+    figure = simulation_figure(8.0, 3.4)
+    ax, slopes = figure.axes[0], {}
+    for name, error in errors.items():
+        slopes[name] = float(np.polyfit(np.log(steps), np.log(error), 1)[0])
+        ax.loglog(1000 * np.asarray(steps), error, "o-", label=f"{name}: slope {slopes[name]:.2f}")
+    ax.set(
+        xlabel="step h [ms]",
+        ylabel="error of q at the end [rad]",
+        title="Half the step: half the error, or a sixteenth",
+    )
+    ax.legend()
+    return figure, slopes
+
+
+def friction_figure(law, breakaway, speeds, torques):
+    """Friction found by dragging joint 1 (dots) on the curve of a law: Figure 1.9.
+
+    Args: law: function of qd (n, 3) rad/s that returns torques (n, 3) N m; breakaway: N m; speeds, torques (n,):
+    what was found, rad/s, N m. Returns: LabFigure.
+    """
+    figure = simulation_figure(8.0, 3.2)
+    ax = figure.axes[0]
+    v = np.linspace(1e-6, 1.1 * max(speeds), 300)
+    ax.plot(v, law(np.outer(v, [1, 0, 0]))[:, 0], label="(1.115)-(1.117)")
+    ax.plot(speeds, torques, "o", color=COLOURS["orange"], label="torque that drags the joint")
+    ax.plot([0, 0], [0, breakaway], color=COLOURS["green"], linewidth=5, label="at rest: any torque up to fs")
+    ax.set(ylim=(0, None), xlabel="joint velocity [rad/s]", ylabel="friction torque [N m]")
+    ax.set_title("Figure 1.9, found by dragging a joint")
+    ax.legend()
+    return figure
+
+
+def sinking_figure(arm, q, tips):
+    """The arm before and after a run, from the side, and the path of its tip.
+
+    Args: arm: Arm; q (n, 3) rad, a run in one vertical plane; tips (n, 3) m. Returns: LabFigure.
+    """
+    figure = simulation_figure(5.5, 4.2)
+    ax = figure.axes[0]
+    for pose, colour, label in ((q[0], "blue", "let go"), (q[-1], "orange", "in the end")):
+        SideView(ax, arm, colour=COLOURS[colour], label=label).update(pose, heading=q[0, 0])
+    radius = tips[:, :2] @ np.array([np.cos(q[0, 0]), np.sin(q[0, 0])])
+    ax.plot(radius, tips[:, 2], color=COLOURS["grey"], linewidth=1)
+    ax.set_title(f"Without drive the tip ends {100 * abs(tips[-1, 2]):.1f} cm above the table")
+    ax.legend(loc="upper left", fontsize=8, frameon=False)
+    return figure
+
+
+def chatter_figure(naive, stuck):
+    """Creep and chatter of the shoulder where sgn() stands for dry friction, beside a step that sticks.
+
+    Args: naive, stuck: (t (n,) s, change of angle (n,) rad, velocity (n,) rad/s). Returns: LabFigure.
+    """
+    figure = simulation_figure(9.0, 3.0, cols=2)
+    for k, (ax, label) in enumerate(zip(figure.axes, ("angle, change [rad]", "velocity [rad/s]"), strict=True)):
+        ax.plot(naive[0], naive[1 + k], color=COLOURS["orange"], label="sgn() in Runge-Kutta")
+        ax.plot(stuck[0], stuck[1 + k], color=COLOURS["blue"], linewidth=2.5, label="a step that sticks")
+        ax.set(xlabel="t [s]", ylabel=f"shoulder {label}")
+    figure.axes[0].set(xlim=(0, naive[0][-1]), title="sgn() creeps...")
+    figure.axes[1].set(xlim=(0, 0.04), title="...because it chatters")
+    figure.axes[0].legend()
+    return figure
+
+
+def turning_points(angle, velocity):
+    """Distances |angle| (m,) at which a swing turned or came to rest: where the velocity (n,) changes sign."""
+    turned = (velocity[:-1] * velocity[1:] <= 0) & (velocity[:-1] != 0)
+    return np.abs(angle[1:][turned])

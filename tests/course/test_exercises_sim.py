@@ -1,0 +1,79 @@
+"""Exercises of notebook 04: each right answer by another route, most of them by simulating the case."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from ir50p_lab.controllers import PID
+from ir50p_lab.course.exercises import judge, solution
+from ir50p_lab.course.exercises.sim import EXERCISES
+from ir50p_lab.modelling import IR50P, THESIS_RODS, Friction, forward_dynamics, mass_matrix
+from ir50p_lab.signals import quintic
+from ir50p_lab.simulation import simulate
+
+BRAKE = 1e4  # N m: holds the other joints
+
+
+def only_joint_1(coulomb, **more):
+    return replace(IR50P, friction=Friction(fc=(coulomb, BRAKE, BRAKE)), **more)
+
+
+def test_midpoint_step_is_of_second_order():
+    step = solution("sim-1")
+    q, qd = np.array([0.3, 0.5, -0.7]), np.array([0.4, -0.6, 0.8])
+
+    def rate(t, x):
+        return np.r_[x[3:], forward_dynamics(THESIS_RODS, x[:3], x[3:], np.zeros(3))]
+
+    errors = []
+    for h in (0.02, 0.01, 0.005):
+        exact = solve_ivp(rate, (0, h), np.r_[q, qd], rtol=1e-12, atol=1e-12).y[:, -1]
+        errors.append(np.abs(np.ravel(step(q, qd, h)) - exact).max())
+    orders = np.log2(np.divide(errors[:-1], errors[1:]))
+    np.testing.assert_allclose(orders, 3, atol=0.2)  # of one step: one more than of the method
+
+
+def test_joint_with_coulomb_friction_stops_there():
+    pid = PID(kp=(2, 0, 0), period=1e-4)
+    run = simulate(only_joint_1(0.1), pid, (0, 0, 0), q0=(0.37, 0, 0), duration=20, period=1e-4, step=1e-4)
+    assert (run.qd[-1] == 0).all()
+    assert run.q[-1, 0] == pytest.approx(solution("sim-2"), abs=5e-4)
+
+
+def test_steady_speed_at_full_supply():
+    arm = only_joint_1(0.5, actuators=replace(IR50P.actuators, V=24.0))
+    run = simulate(arm, PID(kp=(1e5, 0, 0), limit_pwm=255), (100, 0, 0), duration=5)
+    assert (run.u[:, 0] == 255).all()
+    assert run.qd[-1, 0] == pytest.approx(solution("sim-3"), rel=1e-6)
+
+
+def test_shortest_quintic_needs_just_that_torque():
+    t = np.linspace(0, solution("sim-4"), 20001)
+    rows = quintic((0, 0, 0), (1.2, 0, 0), duration=solution("sim-4")).sample(t)
+    assert 0.8 * np.abs(rows[:, 2, 0]).max() == pytest.approx(3.0, rel=1e-6)
+
+
+def test_the_joint_of_sim_2_would_move_any_mass_to_the_same_place():
+    """The question gives no inertia: the rest must not depend on it."""
+    ends = []
+    for inertia in (0.02, 0.4):
+        arm = only_joint_1(0.1, Ixx=(1, 0, 0), Iyy=(1, 0.01, 0.01), Izz=(inertia, 0.01, 0.01))
+        pid = PID(kp=(2, 0, 0), period=1e-4)
+        run = simulate(arm, pid, (0, 0, 0), q0=(0.37, 0, 0), duration=20, period=1e-4, step=1e-4)
+        ends.append((mass_matrix(arm, [0, 0, 0])[0, 0], run.q[-1, 0]))
+    assert ends[1][0] > 1.5 * ends[0][0]
+    assert ends[1][1] == pytest.approx(ends[0][1], abs=5e-4)
+
+
+@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda e: e.name)
+def test_right_answer_is_right_and_each_slip_gets_its_own_sentence(exercise):
+    assert judge(exercise, solution(exercise.name)).state == "right"
+    texts = set()
+    for slip in exercise.slips:
+        verdict = judge(exercise, slip.wrong)
+        assert verdict.state == "slip"
+        assert slip.message in verdict.text
+        texts.add(slip.message)
+    assert len(texts) == len(exercise.slips) >= 3
