@@ -20,19 +20,22 @@ class ColumnsView:
     def __init__(self, ax, arm, scale=0.5):
         self.arm, self._scale = arm, scale
         self.view = ArmView(ax, arm)
+        # one line each: tail, head, a gap, and the number of the joint as a marker (a legend takes long to draw)
         self.arrows = [
-            ax.plot([], [], [], color=colour, linewidth=3.5, marker="o", markevery=[1], ms=7, zorder=40,
-                    label=f"joint {k + 1}")[0]
+            ax.plot(
+                *np.zeros((3, 4)), color=colour, linewidth=3.5, marker=f"${k + 1}$", markevery=[3], ms=9, zorder=40
+            )[0]
             for k, colour in enumerate(JOINT_COLOURS)
-        ]  # fmt: skip
-        ax.legend(loc="upper left", title="1 rad/s of", frameon=False)
+        ]
 
     def update(self, q):
         """Move the arm to q (3,) rad. Returns: Jv (3, 3) m/rad."""
         self.view.update(q)
         tip, Jv = self.view.points[3], jacobian(self.arm, q)[:3]
         for k, arrow in enumerate(self.arrows):
-            arrow.set_data_3d(*np.column_stack([tip, tip + self._scale * Jv[:, k]]))
+            head = tip + self._scale * Jv[:, k]
+            beyond = head + 0.07 * self.arm.reach * Jv[:, k] / max(np.linalg.norm(Jv[:, k]), 1e-9)
+            arrow.set_data_3d(*np.column_stack([tip, head, np.full(3, np.nan), beyond]))
         return Jv
 
 

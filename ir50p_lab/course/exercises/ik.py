@@ -111,7 +111,7 @@ EXERCISES = (
             cases=[0.2, 0.3, 0.4, 0.5, 0.55],
             unit="rad",
             tolerance=1e-4,
-            because="an acos loses some digits near the edge of the workspace",
+            because="four decimals show that the formula is right",
         ),
         why="The distance alone decides the elbow; turning joints 1 and 2 then points the arm.",
         slips=(
