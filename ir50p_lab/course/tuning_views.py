@@ -1,0 +1,130 @@
+"""Pictures for tuning: angles and commands of the joints, a map of gains with a response beside it, root loci."""
+
+import numpy as np
+
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+
+_RUNS = ({"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linewidth": 1.2}, {"color": COLOURS["green"]})
+
+
+class JointPlots:
+    """Angles above, commands below, one column per joint. `update(run, ...)` draws simulation results.
+
+    Args: target: (3,) rad, drawn dashed; duration: s; unit: of the command; u_max: the command axis ends there;
+    labels: one for each run that will be drawn (a legend if there are several); start: (3,) rad where runs begin;
+    band: how far beyond start and target the angle axes reach, in parts of the way between them (at least 0.2 rad).
+
+    Attributes: figure (LabFigure), to be shown itself or with `live`.
+    """
+
+    def __init__(self, target, *, duration, unit, u_max, labels=("",), start=(0.0, 0.0, 0.0), band=0.25, height=4.2):
+        self.figure = new_figure(9.6, height, rows=2, cols=3, sharex=True)
+        above, below = self.figure.axes[:3], self.figure.axes[3:]
+        self._q, self._u = [], []
+        for joint in range(3):
+            low, high = sorted((start[joint], target[joint]))
+            room = max(band * (high - low), 0.2)
+            above[joint].axhline(target[joint], **SETPOINT)
+            above[joint].set(xlim=(0, duration), ylim=(low - room, high + room))
+            below[joint].set(ylim=(-1.08 * u_max, 1.08 * u_max), xlabel="time [s]")
+            styles = _RUNS[: len(labels)]
+            self._q += [
+                [above[joint].plot([], [], label=label, **s)[0] for label, s in zip(labels, styles, strict=True)]
+            ]
+            self._u += [[below[joint].plot([], [], drawstyle="steps-post", **s)[0] for s in styles]]
+        above[0].set_ylabel("angle [rad]")
+        below[0].set_ylabel(f"command [{unit}]")
+        if len(labels) > 1:
+            above[0].legend(fontsize=8, loc="lower right")
+        self._titles = [ax.set_title(f"joint {joint + 1}", fontsize=10) for joint, ax in enumerate(above)]
+
+    def update(self, *runs, titles=None):
+        """Draw one SimulationResult per label; titles: three texts, else the metrics of the first run."""
+        titles = titles or [finding(m) for m in runs[0].metrics()]
+        for joint, title in enumerate(titles):
+            self._titles[joint].set_text(f"joint {joint + 1}: {title}")
+            for run, q, u in zip(runs, self._q[joint], self._u[joint], strict=True):
+                q.set_data(run.t, run.q[:, joint])
+                u.set_data(run.t, run.u[:, joint])
+        return self.figure
+
+
+def finding(metrics):
+    """Overshoot, settling time and remaining error of a joint in a few words."""
+    error = 0.0 if abs(metrics.error) < 5e-5 else metrics.error  # no "-0.0000"
+    if np.isnan(metrics.settling_time):
+        return f"does not move, e = {error:.4f} rad"
+    return f"{metrics.overshoot_percent:.1f} %, {metrics.settling_time:.2f} s, e = {error:.4f} rad"
+
+
+class GainMap:
+    """A figure of merit over (kp, kd) as colours, and beside it the responses of one gain set.
+
+    Args: kp (n,), kd (m,): evenly spaced grid; values (m, n); title, label of the colours; duration s, target rad and
+    labels of the responses.
+
+    Attributes: figure; map, its left axes, where clicks make sense.
+    """
+
+    def __init__(self, kp, kd, values, *, title, label, target, duration, labels):
+        self.figure = new_figure(9.6, 4.0, cols=2, width_ratios=(1.25, 1))
+        self.map, self._side = self.figure.axes
+        half_kp, half_kd = (kp[1] - kp[0]) / 2, (kd[1] - kd[0]) / 2
+        extent = (kp[0] - half_kp, kp[-1] + half_kp, kd[0] - half_kd, kd[-1] + half_kd)
+        colours = self.map.imshow(values, origin="lower", extent=extent, aspect="auto", cmap="cividis_r")
+        self.figure.colorbar(colours, ax=self.map, label=label)
+        self.map.grid(False)
+        self.map.set(xlabel="Kp [PWM/rad]", ylabel="Kd [PWM s/rad]", title=title)
+        (self._mark,) = self.map.plot([], [], "o", ms=9, mfc="none", mec=COLOURS["orange"], mew=2.5)
+        self._side.axhline(target, **SETPOINT)
+        self._side.set(xlim=(0, duration), ylim=sorted((-0.1 * target, 1.3 * target)))
+        self._side.set(xlabel="time [s]", ylabel="angle [rad]")
+        self._lines = [self._side.plot([], [], label=name, **s)[0] for name, s in zip(labels, _RUNS, strict=False)]
+        self._side.legend(fontsize=8, loc="lower right")
+
+    def curve(self, kp, kd, label):
+        """Draw a curve of theory into the map."""
+        limits = self.map.get_xlim(), self.map.get_ylim()
+        self.map.plot(kp, kd, color=COLOURS["orange"], linestyle=":", label=label)
+        self.map.set(xlim=limits[0], ylim=limits[1])
+        self.map.legend(fontsize=8, loc="upper left")
+
+    def update(self, kp, kd, *responses):
+        """Mark the gain set and draw its responses, pairs (t, angle)."""
+        self._mark.set_data([kp], [kd])
+        for line, (t, angle) in zip(self._lines, responses, strict=True):
+            line.set_data(t, angle)
+        self._side.set_title(f"Kp = {kp:g}, Kd = {kd:g}", fontsize=10)
+
+
+class LocusView:
+    """Root loci of the same loop in continuous time (s plane) and sampled (z plane, with the unit circle).
+
+    Args: gains (n,), increasing; continuous, sampled: poles (n, k) for each gain (rad/s, and 1).
+
+    Attributes: figure. `update(gain)` marks the poles of the nearest gain.
+    """
+
+    def __init__(self, gains, continuous, sampled):
+        self.figure = new_figure(9.6, 4.2, cols=2)
+        self._gains, self._loci = np.asarray(gains), (np.asarray(continuous), np.asarray(sampled))
+        left, right = self.figure.axes
+        turn = np.linspace(0, 2 * np.pi, 181)
+        right.plot(np.cos(turn), np.sin(turn), **SETPOINT)
+        right.set(xlim=(-1.6, 1.4), ylim=(-1.5, 1.5), aspect="equal", title="Sampled: beyond the circle it grows")
+        right.set(xlabel="Re z [1]", ylabel="Im z [1]")
+        left.axvline(0, **SETPOINT)
+        left.set(title="Continuous: the poles never cross to the right", xlabel="Re s [1/s]", ylabel="Im s [1/s]")
+        self._marks = []
+        for ax, loci in zip((left, right), self._loci, strict=True):
+            ax.plot(loci.real, loci.imag, ".", ms=2, color=COLOURS["grey"])
+            ax.plot(loci[0].real, loci[0].imag, "x", color=COLOURS["dark"])
+            self._marks += ax.plot([], [], "o", color=COLOURS["orange"], ms=7)
+        size = 1.1 * np.percentile(np.abs(self._loci[0]), 90)
+        left.set(xlim=(-size, 0.25 * size), ylim=(-0.625 * size, 0.625 * size))
+
+    def update(self, gain):
+        """Mark the closed-loop poles of the gain nearest to `gain`."""
+        k = int(np.argmin(np.abs(self._gains - gain)))
+        for mark, loci in zip(self._marks, self._loci, strict=True):
+            mark.set_data(loci[k].real, loci[k].imag)

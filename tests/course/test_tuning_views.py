@@ -1,0 +1,69 @@
+"""Pictures for tuning: what is drawn is what was simulated; the same picture for the same numbers."""
+
+import numpy as np
+import pytest
+
+from ir50p_lab.controllers import PID
+from ir50p_lab.course.painter import Painter
+from ir50p_lab.course.tuning_views import GainMap, JointPlots, LocusView, finding
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.simulation import simulate
+from ir50p_lab.simulation.result import StepMetrics
+
+TARGET = np.array([0.8, 0.5, -0.7])
+
+
+@pytest.fixture(scope="module")
+def run():
+    return simulate(IR50P, PID((289, 225, 270), kd=(40, 30, 30), limit_pwm=255), TARGET, duration=2)
+
+
+def test_joint_plots_show_the_run(run):
+    view = JointPlots(TARGET, duration=2, unit="PWM", u_max=255)
+    assert view.update(run) is view.figure
+    for joint in range(3):
+        angle, command = view.figure.axes[joint], view.figure.axes[3 + joint]
+        assert any(np.array_equal(line.get_ydata(), run.q[:, joint]) for line in angle.lines)
+        assert any(np.array_equal(line.get_ydata(), run.u[:, joint]) for line in command.lines)
+        assert angle.get_ylim()[0] < min(0, TARGET[joint]) and angle.get_ylim()[1] > max(0, TARGET[joint])
+        assert angle.get_title().startswith(f"joint {joint + 1}: ") and "rad" in angle.get_title()
+    assert "[PWM]" in view.figure.axes[3].get_ylabel()
+
+
+def test_several_runs_need_as_many_labels(run):
+    view = JointPlots(TARGET, duration=2, unit="PWM", u_max=255, labels=("one", "two"))
+    view.update(run, run, titles=("a", "b", "c"))
+    assert view.figure.axes[1].get_title() == "joint 2: b"
+    with pytest.raises(ValueError, match="longer|shorter"):
+        view.update(run)
+
+
+def test_titles_say_what_was_found():
+    numbers = {"joint": 1, "rise_time": 0.5, "peak": 1.0, "final": 1.0, "peak_command": 9.0}
+    shown = finding(StepMetrics(overshoot_percent=3.21, settling_time=1.234, error=-1e-6, **numbers))
+    assert shown == "3.2 %, 1.23 s, e = 0.0000 rad"
+    still = StepMetrics(overshoot_percent=np.nan, settling_time=np.nan, error=0.1, **numbers)
+    assert finding(still) == "does not move, e = 0.1000 rad"
+
+
+def test_gain_map_places_its_cells_at_the_gains(run):
+    kp, kd, values = np.linspace(10, 100, 10), np.linspace(0, 8, 5), np.arange(50.0).reshape(5, 10)
+    view = GainMap(kp, kd, values, title="t", label="s [s]", target=0.8, duration=2, labels=("one",))
+    left, right, bottom, top = view.map.images[0].get_extent()
+    assert (left, right) == (5, 105) and (bottom, top) == (-1, 9)  # the centres of the cells are the gains
+    view.curve(kp, 100 * kd.max() + kp, "outside")
+    assert view.map.get_xlim() == (5, 105) and view.map.get_ylim() == (-1, 9)
+    painter = Painter(view.figure)
+    before = painter.png()
+    view.update(50, 4, (run.t, run.q[:, 0]))
+    assert painter.png() != before and "Kp = 50" in view.figure.axes[1].get_title()
+
+
+def test_locus_marks_the_poles_of_the_nearest_gain():
+    gains = np.array([1.0, 2.0, 4.0])
+    continuous = np.array([[-1 + 0j, -2], [-1 + 1j, -1 - 1j], [-1 + 2j, -1 - 2j]])
+    view = LocusView(gains, continuous, np.exp(0.1 * continuous))
+    view.update(2.2)
+    left, right = view.figure.axes
+    np.testing.assert_array_equal(left.lines[-1].get_ydata(), [1, -1])
+    np.testing.assert_allclose(right.lines[-1].get_xdata(), np.exp(0.1 * continuous[1]).real)
