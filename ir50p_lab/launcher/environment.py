@@ -144,10 +144,10 @@ class Environment:
             raise (problems.in_use if os.name == "nt" else problems.no_permission)(self.folder) from error
 
     def _run_venv(self):
-        # Not sys.executable: when that is the .venv being rebuilt, it is gone by now.
+        # Not sys.executable: when that is the .venv being rebuilt, it is gone by now. The module venv refuses links.
         base = getattr(sys, "_base_executable", None) or sys.executable
         done = subprocess.run(
-            [base, "-m", "venv", str(self.folder)],
+            [base, "-m", "venv", str(self.folder.resolve())],
             env=_clean_variables(),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
@@ -177,13 +177,23 @@ class Environment:
 
     def _pip(self, arguments, lock, **progress):
         command = [str(self.python), "-P", "-m", "pip", *arguments]
-        options = ["--no-input", "--disable-pip-version-check", "--no-color"]
+        options = ["--no-input", "--disable-pip-version-check", "--no-color", "--log", str(self.log)]
         variables = self.variables() | {"PIP_USER": "0", "PYTHONIOENCODING": "utf-8", "PYTHONUNBUFFERED": "1"}
         # pip inherits the lock: after a 'kill -9' of the launcher the next set-up waits until this pip has ended.
         pass_fds = () if lock is None or os.name == "nt" else (lock,)
-        code, output = pip_run.run(command + options, env=variables, log=self.log, pass_fds=pass_fds, **progress)
+        begin = len(self.log.read_text("utf-8", errors="replace")) if self.log.exists() else 0
+        code, output = pip_run.run(command + options, env=variables, pass_fds=pass_fds, **progress)
         if code:
-            raise problems.from_output(output, code, self.root, self.log)
+            raise problems.from_output(self._logged_errors(begin) + output, code, self.root, self.log)
+
+    def _logged_errors(self, begin):
+        """Read what pip only writes to its log: addresses without an answer, errors of the programs it runs."""
+        try:
+            lines = self.log.read_text("utf-8", errors="replace")[begin:].splitlines()
+        except OSError:
+            return ""
+        told = [line for line in lines if "Could not fetch URL" in line or "Error: [" in line]
+        return "".join(f"{line}\n" for line in told if "404 Client Error" not in line)
 
     def _check(self):
         """The package must be importable from anywhere."""

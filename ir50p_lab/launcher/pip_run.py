@@ -1,4 +1,4 @@
-"""One pip run: its output read line by line, shown as a single progress line, kept in a log."""
+"""One pip run: its output read line by line and shown as a single progress line."""
 
 import queue
 import re
@@ -56,8 +56,9 @@ class PipProgress:
         """Take in one line of pip's output."""
         if line.startswith("Ignoring ") and "markers" in line:  # a line of the lock for other systems
             self.total = max(self.total - 1, 1)
-        elif match := re.match(r"\s*(?:Collecting|Requirement already satisfied:) ([^\s;]+)", line):
-            self.name = match[1].replace("==", " ")
+        elif match := re.match(r"\s*(?:Collecting|Requirement already satisfied:|Processing) (\S.*)", line):
+            asked = match[1].split(" (from ")[0].replace("\\", "/").split("/")[-1]  # a name, or a file of a folder
+            self.name = " ".join(asked.removesuffix(".whl").replace("==", "-").split("-")[:2])
             self.done += 1
             self.troubled = False
         elif match := re.match(r"\s*(Downloading|Using cached) (\S+\.whl) \(([\d.]+) (kB|MB|bytes)\)", line):
@@ -83,11 +84,11 @@ class PipProgress:
         return f"{self.name}, {self.megabytes:.0f} MB fetched" if self.megabytes else self.name
 
 
-def run(command, *, env, log, stream=None, requirements=0, count_installed=lambda: 0, pass_fds=()):
+def run(command, *, env, stream=None, requirements=0, count_installed=lambda: 0, pass_fds=()):
     """Run a pip command; return (exit code, output).
 
     With a `stream` the progress is shown there, against `requirements` lines asked for; `count_installed` tells how
-    many packages are in place, for pip says nothing while it unpacks them. All output is appended to the file `log`.
+    many packages are in place, for pip says nothing while it unpacks them.
     """
     begin = time.monotonic()
     progress = PipProgress(requirements)
@@ -105,21 +106,19 @@ def run(command, *, env, log, stream=None, requirements=0, count_installed=lambd
         pass_fds=pass_fds,
     )
     try:
-        with open(log, "a", encoding="utf-8") as log_file:
-            for line in _lines(child.stdout):
-                if line is None:  # a tick without output
-                    if progress.stage == "installing":
-                        progress.done = min(max(count_installed() - before, 0), progress.total)
-                else:
-                    output.append(line)
-                    log_file.write(line)
-                    was = progress.stage
-                    progress.read(line)
-                    if progress.stage == "installing" != was:
-                        before = count_installed()
-                if line_shown:
-                    elapsed = f"{progress.detail}, {time.monotonic() - begin:.0f} s"
-                    line_shown.show(progress.stage, min(progress.done, progress.total), progress.total, elapsed)
+        for line in _lines(child.stdout):
+            if line is None:  # a tick without output
+                if progress.stage == "installing":
+                    progress.done = min(max(count_installed() - before, 0), progress.total)
+            else:
+                output.append(line)
+                was = progress.stage
+                progress.read(line)
+                if progress.stage == "installing" != was:
+                    before = count_installed()
+            if line_shown:
+                elapsed = f"{progress.detail}, {time.monotonic() - begin:.0f} s"
+                line_shown.show(progress.stage, min(progress.done, progress.total), progress.total, elapsed)
         return child.wait(), "".join(output)
     finally:
         if line_shown:
@@ -137,8 +136,9 @@ def _lines(pipe):
     finished = object()
 
     def read():
-        for line in pipe:
-            lines.put(line)
+        with pipe:
+            for line in pipe:
+                lines.put(line)
         lines.put(finished)
 
     threading.Thread(target=read, daemon=True).start()

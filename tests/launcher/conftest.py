@@ -1,0 +1,36 @@
+"""Miniature projects for the tests of the launcher."""
+
+import importlib.metadata
+import zipfile
+
+import pytest
+from mini_project import MiniProject, write_wheel
+
+
+@pytest.fixture(scope="session")
+def wheels(tmp_path_factory):
+    """A wheel folder: the build tool as installed here and two packages of one line each."""
+    folder = tmp_path_factory.mktemp("wheels")
+    flit = importlib.metadata.distribution("flit-core")
+    with zipfile.ZipFile(folder / f"flit_core-{flit.version}-py3-none-any.whl", "w") as wheel:
+        for file in flit.files:
+            if ".." not in file.parts and file.suffix != ".pyc" and file.name not in ("INSTALLER", "REQUESTED"):
+                wheel.write(file.locate(), str(file))
+    for name in ("pebble", "pebble_test"):
+        write_wheel(folder, name, {f"{name}.py": "weight = 3\n"})
+    return folder
+
+
+@pytest.fixture
+def project(tmp_path, wheels):
+    """A fresh miniature whose path has a space and letters beyond ASCII."""
+    return MiniProject(tmp_path / "robot räume δ", wheels)
+
+
+@pytest.fixture(scope="session")
+def made(tmp_path_factory, wheels):
+    """A miniature that is set up once; tests must leave it ready."""
+    project = MiniProject(tmp_path_factory.mktemp("made"), wheels)
+    done = project.run("setup")
+    assert done.returncode == 0, done.stdout + done.stderr
+    return project

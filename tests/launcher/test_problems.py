@@ -1,0 +1,268 @@
+"""Every failure is one line that says what to do next: each provoked for real where that is possible."""
+
+import ast
+import ctypes
+import errno
+import glob
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from mini_project import PROJECT, PYPROJECT, one_line
+
+from ir50p_lab.launcher import environment as environment_module
+from ir50p_lab.launcher import problems
+from ir50p_lab.launcher.environment import Environment
+from ir50p_lab.launcher.problems import SetUpError
+
+NOTHING_SET = {"PIP_NO_INDEX": None, "PIP_FIND_LINKS": None, "PIP_RETRIES": "0", "PIP_DEFAULT_TIMEOUT": "5"}
+
+# -- Python too old --------------------------------------------------------------------------------------------------------
+
+
+def old_pythons():
+    """Pythons before 3.11 on this machine: on the path, and those that pyenv keeps."""
+    found = [shutil.which(f"python{version}") for version in ("2.7", "3.6", "3.8", "3.9", "3.10")]
+    found += glob.glob(str(Path.home() / ".pyenv/versions/*/bin/python"))
+    code = "import sys; sys.exit(sys.version_info >= (3, 11))"
+    return [
+        python
+        for python in found
+        if python and subprocess.run([python, "-c", code], capture_output=True).returncode == 0
+    ]
+
+
+def test_too_old_python_says_so_and_where_to_get_a_newer_one():
+    # Where no old Python is installed: this one, calling itself 3.6 before the launcher starts.
+    pretend = "import runpy, sys; sys.version_info = (3, 6, 15); runpy.run_module('ir50p_lab', run_name='__main__')"
+    commands = [[sys.executable, "-c", pretend]] + [[python, "-m", "ir50p_lab"] for python in old_pythons()]
+    for command in commands:
+        done = subprocess.run(command, cwd=PROJECT, capture_output=True, encoding="utf-8")
+        assert done.returncode == 1, command
+        first, second = done.stderr.splitlines()
+        assert first.startswith("The IR50P lab book needs Python 3.11 or newer; this is Python ")
+        assert "https://www.python.org/downloads/" in second
+        assert done.stdout == ""
+
+
+def test_the_files_before_the_gate_parse_on_old_pythons():
+    for name in ("__init__.py", "__main__.py"):
+        text = (PROJECT / "ir50p_lab" / name).read_bytes()
+        text.decode("ascii")  # Python 2 would ask for a coding line
+        tree = ast.parse(text, feature_version=(3, 4))
+        assert not [node for node in ast.walk(tree) if isinstance(node, ast.JoinedStr | ast.AnnAssign)]
+
+
+# -- a Python without venv or ensurepip ------------------------------------------------------------------------------------
+
+WITHOUT = """
+import sys
+class Without:
+    def find_spec(self, name, path=None, target=None):
+        if name == {module!r}:
+            raise ModuleNotFoundError(name)
+sys.meta_path.insert(0, Without())
+"""
+
+
+@pytest.mark.parametrize("module", ["venv", "ensurepip"])
+def test_missing_module_names_the_debian_package(project, tmp_path, module):
+    (tmp_path / "sitecustomize.py").write_text(WITHOUT.format(module=module))  # imported by Python as it starts
+    line = one_line(project.run("setup", variables={"PYTHONPATH": str(tmp_path)}))
+    assert f"came without its module '{module}'" in line
+    assert f"apt install python{sys.version_info.major}.{sys.version_info.minor}-venv" in line
+    assert not (project.venv / "pyvenv.cfg").exists()
+
+
+def test_what_debians_venv_prints_is_understood(project, monkeypatch):
+    # Debian's own module venv is there without the package, and answers this (python3.11-minimal 3.11.2).
+    text = (
+        "The virtual environment was not created successfully because ensurepip is not\n"
+        "available.  On Debian/Ubuntu systems, you need to install the python3-venv\n"
+        "package using the following command.\n\n    apt install python3.11-venv\n"
+    )
+    fake = project.root / "python"
+    fake.write_text(f"#!/bin/sh\ncat <<'END'\n{text}END\nexit 1\n")
+    fake.chmod(0o755)
+    monkeypatch.setattr(sys, "_base_executable", str(fake))
+    with pytest.raises(SetUpError, match="apt install python3"):
+        Environment(project.root).ensure(stream=sys.stdout)
+
+
+# -- no network, a proxy that refuses, an incomplete wheel folder ----------------------------------------------------------
+
+
+def test_no_network(project):
+    closed = NOTHING_SET | {"PIP_INDEX_URL": "http://127.0.0.1:9/simple"}  # nobody listens on port 9
+    line = one_line(project.run("setup", variables=closed))
+    assert line.startswith("Download failed: no connection to the download server.")
+    assert "HTTPS_PROXY=http" in line
+    assert "section 'Offline'" in line
+    assert project.run("setup").returncode == 0  # with the network back, the next run repairs
+
+
+def test_proxy_that_does_not_answer(project):
+    refused = NOTHING_SET | {"PIP_INDEX_URL": "https://127.0.0.1:9/simple", "PIP_PROXY": "http://127.0.0.1:9"}
+    line = one_line(project.run("setup", variables=refused))
+    assert "the proxy refused the connection. Check the address in HTTPS_PROXY" in line
+
+
+def test_wheel_folder_without_a_package(project):
+    lock = project.root / "environment.txt"
+    lock.write_text(lock.read_text() + "granite==2.0\n")
+    line = one_line(project.run("setup"))
+    assert f"The wheel folder ({project.wheels}) has no granite==2.0 for Python" in line
+    assert "section 'Offline'" in line
+
+
+# -- no permission, disk full ----------------------------------------------------------------------------------------------
+
+
+def obey_permissions():
+    """In the child: even root (in a container) must respect the permission bits: Linux capability CAP_DAC_OVERRIDE off."""
+    if os.geteuid() == 0:
+        assert ctypes.CDLL(None, use_errno=True).prctl(24, 1, 0, 0, 0) == 0  # PR_CAPBSET_DROP
+
+
+@pytest.mark.skipif(os.name == "nt", reason="permission bits of POSIX")
+def test_no_write_permission(project):
+    project.root.chmod(0o555)
+    try:
+        line = one_line(project.run("setup", preexec_fn=obey_permissions))
+    finally:
+        project.root.chmod(0o755)
+    assert line.startswith(f"No permission to write in {project.root}.")
+    assert "Move the project into your home folder" in line
+
+
+@pytest.mark.skipif(os.name == "nt", reason="permission bits of POSIX")
+def test_ready_environment_needs_no_write_permission(made):
+    made.root.chmod(0o555)
+    try:
+        done = made.run("setup", preexec_fn=obey_permissions)
+    finally:
+        made.root.chmod(0o755)
+    assert done.returncode == 0, done.stderr
+
+
+BACKEND = """
+def prepare_metadata_for_build_editable(*arguments):
+    with open("/dev/full", "w") as file:  # this device answers every write with: no space left
+        file.write("x")
+build_editable = build_wheel = prepare_metadata_for_build_editable
+"""
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="the device /dev/full of Linux")
+def test_disk_full_in_the_middle_of_pip(project):
+    # A real 'no space left on device' inside pip: the project's build step writes to the device that is always full.
+    (project.root / "backend.py").write_text(BACKEND)
+    pyproject = PYPROJECT.replace('"flit_core.buildapi"', '"backend"\nbackend-path = ["."]')
+    (project.root / "pyproject.toml").write_text(pyproject)
+    line = one_line(project.run("setup"))
+    assert line.startswith(f"The disk is full: {project.root} could not be written. Free about 2 GB")
+    (project.root / "pyproject.toml").write_text(PYPROJECT)
+    assert "half made" in project.run("setup").stdout  # with space again, the next run repairs
+
+
+def test_disk_full_while_the_launcher_writes(project, monkeypatch):
+    def full(self):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Environment, "_run_venv", full)
+    with pytest.raises(SetUpError, match="The disk is full"):
+        Environment(project.root).ensure()
+
+
+def test_little_space_is_said_before_the_download(project, monkeypatch, capsys):
+    monkeypatch.setattr(environment_module.shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(9, 8, 5e8))
+    monkeypatch.setattr(Environment, "_run_venv", lambda self: (_ for _ in ()).throw(SetUpError("enough seen")))
+    with pytest.raises(SetUpError, match="enough seen"):
+        Environment(project.root).ensure()
+    assert "Only 0.5 GB are free; the set-up may need 2 GB." in capsys.readouterr().out
+
+
+# -- the wrong folder ------------------------------------------------------------------------------------------------------
+
+
+def test_project_without_its_lock_file(project):
+    (project.root / "environment.txt").unlink()
+    assert "is not the project's folder: it has no environment.txt" in one_line(project.run("setup"))
+
+
+def test_a_file_in_the_place_of_the_environment(project):
+    project.venv.write_text("")
+    assert f"{project.venv} is not a folder: remove it" in one_line(project.run("setup"))
+
+
+# -- what the programs print -----------------------------------------------------------------------------------------------
+
+PRINTED = [
+    # pip 23 to 26, one or two lines each of what it prints
+    ("ERROR: Could not install packages due to an OSError: [Errno 28] No space left on device", "The disk is full"),
+    ("OSError: [Errno 122] Disk quota exceeded: '/home/s/lab/.venv/lib'", "The disk is full"),
+    ("OSError: [WinError 112] There is not enough space on the disk", "The disk is full"),
+    ("ERROR: Could not install packages due to an OSError: [Errno 13] Permission denied: '/lab'", "No permission"),
+    ("ERROR: [WinError 5] Access is denied: 'C:\\\\lab\\\\.venv\\\\Scripts\\\\python.exe'", "No permission"),
+    ("OSError: [Errno 30] Read-only file system: '/media/usb/.venv'", "No permission"),
+    ("HINT: This error might have occurred since this system does not have Windows Long Path support", "too long"),
+    (
+        "WARNING: Retrying (Retry(total=4)) after connection broken by 'NewConnectionError(...: "
+        "[Errno -3] Temporary failure in name resolution')\n"
+        "ERROR: No matching distribution found for numpy==2.4.6",
+        "no connection to the download server",
+    ),
+    ("ProxyError('Cannot connect to proxy.', OSError('Tunnel connection failed: 407'))", "the proxy refused"),
+    ("ReadTimeoutError(\"HTTPSConnectionPool(host='h', port=443): Read timed out.\")", "no connection"),
+    ("SSLError(SSLCertVerificationError(1, '[SSL: CERTIFICATE_VERIFY_FAILED] unable to get'))", "certificate"),
+    ("ERROR: No matching distribution found for llvmlite==0.50.0", "Use a 64-bit Python 3.11 to 3.14"),
+    ("ERROR: six has an invalid wheel, .dist-info directory not found", "A downloaded package is damaged"),
+    ("Error: Command '[...]' returned: No module named ensurepip", "came without its module 'ensurepip'"),
+    ("Collecting six\nERROR: Something nobody has thought of.\n", "Something nobody has thought of. All of"),
+    ("", "no output"),
+]
+
+
+@pytest.mark.parametrize(("output", "expected"), PRINTED)
+def test_what_pip_prints_becomes_one_line(monkeypatch, output, expected):
+    monkeypatch.delenv("PIP_NO_INDEX", raising=False)
+    text = str(problems.from_output(output, 1, Path("lab"), Path("lab/log")))
+    assert expected in text
+    assert "\n" not in text
+    assert problems.COMMAND in text or "https://" in text  # what to do next
+
+
+def test_installer_ended_by_a_signal():
+    assert "signal 9 (often: out of memory)" in str(problems.from_output("", -9, Path("lab"), Path("log")))
+
+
+@pytest.mark.parametrize(
+    ("number", "expected"),
+    [
+        (errno.ENOSPC, "The disk is full"),
+        (errno.EACCES, "No permission"),
+        (errno.EROFS, "No permission"),
+        (errno.EIO, "refused"),
+    ],
+)
+def test_errors_of_the_system(number, expected):
+    assert expected in str(problems.from_os_error(OSError(number, os.strerror(number)), Path("lab")))
+
+
+def test_environment_that_cannot_be_emptied(project, monkeypatch):
+    (project.venv / "lib").mkdir(parents=True)
+    monkeypatch.setattr(shutil, "rmtree", lambda path: (_ for _ in ()).throw(PermissionError(13, "no")))
+    with pytest.raises(SetUpError, match="No permission"):
+        Environment(project.root).ensure()
+    assert "close JupyterLab" in str(problems.in_use(project.venv))
+
+
+def test_path_that_python_cannot_read(project, monkeypatch):
+    environment = Environment(project.root)
+    monkeypatch.setattr(environment, "python", shutil.which("false"))
+    (project.venv).mkdir()
+    with pytest.raises(SetUpError, match="plain letters"):
+        environment._check()
