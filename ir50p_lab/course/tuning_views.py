@@ -36,25 +36,42 @@ class JointPlots:
         below[0].set_ylabel(f"command [{unit}]")
         if len(labels) > 1:
             above[0].legend(fontsize=8, loc="lower right")
-        self._titles = [ax.set_title(f"joint {joint + 1}", fontsize=10) for joint, ax in enumerate(above)]
+        self._titles = [ax.set_title("", fontsize=10) for ax in above]
 
-    def update(self, *runs, titles=None):
-        """Draw one SimulationResult per label; titles: three texts, else the metrics of the first run."""
-        titles = titles or [finding(m) for m in runs[0].metrics()]
+    def update(self, *runs, titles=("joint 1", "joint 2", "joint 3")):
+        """Draw one SimulationResult per label. Returns the figure.
+
+        Long titles cost a slider more time than all curves together: there, `findings` belong in the status line.
+        """
         for joint, title in enumerate(titles):
-            self._titles[joint].set_text(f"joint {joint + 1}: {title}")
+            self._titles[joint].set_text(title)
             for run, q, u in zip(runs, self._q[joint], self._u[joint], strict=True):
                 q.set_data(run.t, run.q[:, joint])
                 u.set_data(run.t, run.u[:, joint])
         return self.figure
 
 
-def finding(metrics):
-    """Overshoot, settling time and remaining error of a joint in a few words."""
+def findings(run):
+    """Overshoot, settling time (2 %, both about the value reached) and remaining error: three lines of text."""
+    return [_finding(metrics) for metrics in run.metrics()]
+
+
+def _finding(metrics):
     error = 0.0 if abs(metrics.error) < 5e-5 else metrics.error  # no "-0.0000"
     if np.isnan(metrics.settling_time):
-        return f"does not move, e = {error:.4f} rad"
-    return f"{metrics.overshoot_percent:.1f} %, {metrics.settling_time:.2f} s, e = {error:.4f} rad"
+        return f"joint {metrics.joint}: does not move, e = {error:.4f} rad"
+    steps = f"{metrics.overshoot_percent:.1f} %, {metrics.settling_time:.2f} s"
+    return f"joint {metrics.joint}: {steps}, e = {error:.4f} rad"
+
+
+def three_columns(panel):
+    """Arrange the sliders of a panel of `live` in three columns, one per joint. Returns the panel."""
+    grid = panel.children[0]
+    grid.layout.grid_template_columns = "max-content " * 3
+    for control in panel.controls.values():
+        control.layout.width = "190px"
+        control.box.layout.width = "64px"
+    return panel
 
 
 class GainMap:
@@ -85,7 +102,7 @@ class GainMap:
     def curve(self, kp, kd, label):
         """Draw a curve of theory into the map."""
         limits = self.map.get_xlim(), self.map.get_ylim()
-        self.map.plot(kp, kd, color=COLOURS["orange"], linestyle=":", label=label)
+        self.map.plot(kp, kd, color=COLOURS["dark"], linestyle=":", linewidth=2, label=label)
         self.map.set(xlim=limits[0], ylim=limits[1])
         self.map.legend(fontsize=8, loc="upper left")
 
