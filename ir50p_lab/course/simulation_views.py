@@ -25,15 +25,16 @@ def simulation_figure(width=9.0, height=None, **layout):
 class Row:
     """One of the axes of `Traces`.
 
-    ylabel: with unit; ylim: (low, high); curves: their names (no legend for one curve without a name);
-    levels: heights of dashed lines; style: of matplotlib's plot, for all its curves.
+    ylabel: with unit; ylim: (low, high); curves: their names for the legend ("": not in it);
+    levels: heights of dashed lines, in the colours of the curves if there is one for each of several curves;
+    style: matplotlib's format string, one for all curves or one for each.
     """
 
     ylabel: str
     ylim: tuple
     curves: tuple = ("",)
     levels: tuple = ()
-    style: str = "-"
+    style: str | tuple = "-"
 
 
 class Traces:
@@ -49,12 +50,18 @@ class Traces:
         )
         self.axes, self.lines = self.figure.axes, []
         for ax, row in zip(self.axes, rows, strict=True):
-            self.lines += [ax.plot([], [], row.style, markersize=3, label=name)[0] for name in row.curves]
-            for level in row.levels:
-                ax.axhline(level, **SETPOINT)
+            styles = (row.style,) * len(row.curves) if isinstance(row.style, str) else row.style
+            lines = [
+                ax.plot([], [], style, markersize=3, label=name)[0]
+                for name, style in zip(row.curves, styles, strict=True)
+            ]
+            self.lines += lines
+            for k, level in enumerate(row.levels):
+                own = {"color": lines[k].get_color()} if len(row.levels) == len(lines) > 1 else {}
+                ax.axhline(level, **{**SETPOINT, **own})
             ax.set(xlim=xlim, ylim=row.ylim, ylabel=row.ylabel)
             if any(row.curves):
-                ax.legend(loc="upper right", ncols=len(row.curves), fontsize=9)
+                ax.legend(loc="upper right", ncols=sum(map(bool, row.curves)), fontsize=9)
         self.axes[-1].set_xlabel(xlabel)
         self.title(title)
 
@@ -83,11 +90,10 @@ def order_figure(steps, errors):
     for name, error in errors.items():
         slopes[name] = float(np.polyfit(np.log(steps), np.log(error), 1)[0])
         ax.loglog(1000 * np.asarray(steps), error, "o-", label=f"{name}: slope {slopes[name]:.2f}")
-    ax.set(
-        xlabel="step h [ms]",
-        ylabel="error of q at the end [rad]",
-        title="Half the step: half the error, or a sixteenth",
-    )
+    ax.set(xlabel="step h [ms]", ylabel="error of q at the end [rad]")
+    ax.set_title("Half the step: half the error, or a sixteenth of it")
+    ax.set_xticks(1000 * np.asarray(steps), [f"{1000 * h:.3g}" for h in steps])
+    ax.minorticks_off()
     ax.legend()
     return figure, slopes
 
@@ -121,7 +127,11 @@ def sinking_figure(arm, q, tips):
         SideView(ax, arm, colour=COLOURS[colour], label=label).update(pose, heading=q[0, 0])
     radius = tips[:, :2] @ np.array([np.cos(q[0, 0]), np.sin(q[0, 0])])
     ax.plot(radius, tips[:, 2], color=COLOURS["grey"], linewidth=1)
-    ax.set_title(f"Without drive the tip ends {100 * abs(tips[-1, 2]):.1f} cm above the table")
+    height = tips[-1, 2]
+    found = (
+        "the tip comes to lie on the table" if height < 1e-3 else f"the tip ends {100 * height:.1f} cm above the table"
+    )
+    ax.set_title(f"Without drive {found}", fontsize=11)
     ax.legend(loc="upper left", fontsize=8, frameon=False)
     return figure
 
