@@ -87,8 +87,8 @@ def new_figure(width=9.0, height=None, *, rows=1, cols=1, projection=None, share
     with matplotlib.rc_context(_STYLE):
         figure = LabFigure(figsize=(width, height), layout="constrained")
         FigureCanvasAgg(figure)
-        if "3d" in kinds and cols > 1:
-            figure.get_layout_engine().set(wspace=0.08)  # the layout does not see the labels of 3-D axes
+        if "3d" in kinds and None in kinds:
+            figure.get_layout_engine().set(wspace=0.14)  # the layout does not see the labels of 3-D axes
         grid = figure.add_gridspec(rows, cols, width_ratios=width_ratios)
         for k, kind in enumerate(kinds):
             above = figure.axes[k % cols] if sharex and k >= cols else None
