@@ -76,7 +76,7 @@ class ArmView:
 
     Args:
         ax: 3-D axes (`new_figure(projection="3d")`). arm: Arm.
-        q: (3,) rad, first pose. frames: also draw frames 0 to 3.
+        q: (3,) rad, first pose. frames: also draw frames 0 to 3 (True), or those listed, such as (0, 3).
         colour: one colour for the whole arm instead of one per link; ghost: links only, thin and pale, for a
         second pose in the same axes (the first view has set limits, ground and labels).
         thickness: of the links, points.
@@ -101,7 +101,7 @@ class ArmView:
             style = {"solid_capstyle": cap}
             outline = line(width * thickness + 2.0, "#222222", **style)
             self._links.append((outline, line(width * thickness, colour, **style)))
-        self._hubs, self._shadow, self._frames = [], None, []
+        self._hubs, self._shadow, self._frames = [], None, {}
         if not ghost:
             hub = {"solid_capstyle": "butt"}
             self._hubs = [
@@ -111,7 +111,8 @@ class ArmView:
             self._shadow = line(0.6 * thickness, "#000000", alpha=0.10, zorder=2, solid_joinstyle="round")
             if frames:
                 size = 0.28 * arm.reach
-                self._frames = [FrameView(ax, np.eye(4), str(k), size) for k in range(4)]
+                numbers = range(4) if frames is True else frames
+                self._frames = {k: FrameView(ax, np.eye(4), str(k), size) for k in numbers}
         self._tip = ax.plot([0], [0], [0], "o", ms=0.75 * thickness, color=COLOURS["dark"], alpha=alpha)[0]
         self._trail = ax.plot([], [], [], "-", color=COLOURS["green"], linewidth=1.6, zorder=3)[0]
         self._target = ax.plot([], [], [], "X", color=COLOURS["purple"], ms=10, mec="white", zorder=25)[0]
@@ -144,8 +145,8 @@ class ArmView:
         self._tip.set_data_3d(*corners[3:].T)
         if self._shadow is not None:
             self._shadow.set_data_3d(corners[1:, 0], corners[1:, 1], np.zeros(3))
-        for view, transform in zip(self._frames, T, strict=False):
-            view.update(transform)
+        for k, view in self._frames.items():
+            view.update(T[k])
 
     def trail(self, points):
         """Draw a path of the tip. points: (n, 3) m; an empty list removes it."""
@@ -164,7 +165,7 @@ class ArmView:
         pairs = [artist for pair in (*self._links, *self._hubs) for artist in pair]
         for artist in (*pairs, self._tip, *filter(None, [self._shadow])):
             artist.set_visible(visible)
-        for view in self._frames:
+        for view in self._frames.values():
             view.set_visible(visible)
 
     def _place(self, parts):

@@ -78,7 +78,7 @@ class BranchesView:
     def __init__(self, figure, arm):
         space, plane = figure.axes
         self.arm = arm
-        self.view = ArmView(space, arm, frames=True)
+        self.view = ArmView(space, arm, frames=(3,))
         self.ghost = ArmView(space, arm, ghost=True, colour=COLOURS["grey"])
         self.shapes = [
             SideView(plane, arm, colour=COLOURS["blue"]),

@@ -122,11 +122,18 @@ def test_frames_of_the_view_are_those_of_the_arm():
     view = ArmView(new_figure(projection="3d").axes[0], IR50P, frames=True)
     q = (0.4, 0.9, -1.3)
     view.update(q)
-    for shown, T in zip(view._frames, frames(IR50P, q), strict=True):
+    for shown, T in zip(view._frames.values(), frames(IR50P, q), strict=True):
         for k, axis in enumerate(shown.axes):
             origin, end = np.column_stack(axis.get_data_3d())[:2]
             np.testing.assert_allclose(origin, T[:3, 3], atol=1e-12)
             np.testing.assert_allclose((end - origin) / np.linalg.norm(end - origin), T[:3, k], atol=1e-12)
+
+
+def test_some_frames_alone():
+    view = ArmView(new_figure(projection="3d").axes[0], IR50P, (0.4, 0.9, -1.3), frames=(1, 3))
+    assert list(view._frames) == [1, 3]
+    tip = np.column_stack(view._frames[3].axes[0].get_data_3d())[0]
+    np.testing.assert_allclose(tip, forward_kinematics(IR50P, view.q), atol=1e-12)
 
 
 def test_a_metre_is_as_long_on_every_axis_and_the_whole_arm_is_in_the_box():
