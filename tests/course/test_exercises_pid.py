@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.controllers import PID, ContinuousPID
-from ir50p_lab.controllers.tuning import simc
+from ir50p_lab.controllers import PID, ContinuousPID, simc
 from ir50p_lab.course.exercises import judge, solution
 from ir50p_lab.course.exercises._catalogue import find
 from ir50p_lab.course.exercises.pid import EXERCISES
