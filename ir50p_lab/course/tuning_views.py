@@ -80,13 +80,13 @@ def three_columns(panel):
 class GainMap:
     """A figure of merit over (kp, kd) as colours, and beside it the responses of one gain set.
 
-    Args: kp (n,), kd (m,): evenly spaced grid; values (m, n); title, label of the colours; duration s, target rad and
-    labels of the responses.
+    Args: kp (n,), kd (m,): evenly spaced grid; values (m, n); title, label of the colours; duration s and target rad
+    of the responses. Which response is which belongs in the status line: text in a picture is slow to draw.
 
     Attributes: figure; map, its left axes, where clicks make sense.
     """
 
-    def __init__(self, kp, kd, values, *, title, label, target, duration, labels):
+    def __init__(self, kp, kd, values, *, title, label, target, duration):
         self.figure = new_figure(9.6, 4.0, cols=2, width_ratios=(1.25, 1))
         self.map, self._side = self.figure.axes
         half_kp, half_kd = (kp[1] - kp[0]) / 2, (kd[1] - kd[0]) / 2
@@ -104,11 +104,7 @@ class GainMap:
         self._side.axhline(target, **SETPOINT)
         self._side.set(xlim=(0, duration), ylim=sorted((-0.1 * target, 1.3 * target)))
         self._side.set(xlabel="time [s]", ylabel="angle [rad]")
-        self._lines = []
-        for k, (name, style) in enumerate(zip(labels, _RUNS, strict=False)):
-            self._lines += self._side.plot([], [], **style)
-            place = {"transform": self._side.transAxes, "ha": "right", "fontsize": 9}  # a legend takes longer to draw
-            self._side.text(0.98, 0.05 + 0.07 * k, name, color=style["color"], **place)
+        self._lines = [self._side.plot([], [], **style)[0] for style in _RUNS[:2]]
 
     def curve(self, kp, kd, label):
         """Draw a curve of theory into the map, with its label at its right end."""
@@ -120,9 +116,9 @@ class GainMap:
         self.map.set(xlim=limits[0], ylim=limits[1])
 
     def update(self, kp, kd, *responses):
-        """Mark the gain set and draw its responses, pairs (t, angle)."""
+        """Mark the gain set and draw its responses, pairs (t, angle): the first blue, the second orange."""
         self._mark.set_data([kp], [kd])
-        for line, (t, angle) in zip(self._lines, responses, strict=True):
+        for line, (t, angle) in zip(self._lines, responses, strict=False):
             line.set_data(t, angle)
 
 

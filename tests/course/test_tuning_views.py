@@ -58,7 +58,7 @@ def test_sliders_in_three_columns(run):
 
 def test_gain_map_places_its_cells_at_the_gains(run):
     kp, kd, values = np.linspace(10, 100, 10), np.linspace(0, 8, 5), np.arange(50.0).reshape(5, 10)
-    view = GainMap(kp, kd, values, title="t", label="s [s]", target=0.8, duration=2, labels=("one",))
+    view = GainMap(kp, kd, values, title="t", label="s [s]", target=0.8, duration=2)
     left, right, bottom, top = view.map.images[0].get_extent()
     assert (left, right) == (5, 105) and (bottom, top) == (-1, 9)  # the centres of the cells are the gains
     view.curve(kp, 100 * kd.max() + kp, "outside")
