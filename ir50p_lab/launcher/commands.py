@@ -82,8 +82,10 @@ def _run(arguments, root):
         if not Path(arm).is_file():
             raise SetUpError(f"There is no arm file '{arm}'. Write one with Arm.save, or give its path.")
         variables["IR50P_ARM"] = str(Path(arm).resolve())
-    started = _test_command if tests else _lab_command
-    return _attend([python, *started(environment.root, arguments)], variables, environment.root if tests else None)
+    if tests:
+        return _attend([python, *_test_command(environment.root, arguments)], variables, environment.root)
+    code = _attend([python, *_lab_command(environment.root, arguments)], variables)
+    return 0 if code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
 
 
 def _setup(arguments, environment, here):
@@ -124,14 +126,15 @@ def _test_command(root, arguments):
     ]
 
 
-def _attend(command, variables, folder):
+def _attend(command, variables, folder=None):
     """Run a program to its end. Ctrl-C is for it to answer: it sits at the same terminal."""
     sys.stdout.flush()
     child = subprocess.Popen(command, env=variables, cwd=folder)
     while True:
         try:
-            return child.wait()
-        except _Terminated:
+            code = child.wait()
+            return code if code >= 0 else 128 - code  # ended by a signal: as a shell counts it
+        except _TerminatedError:
             child.terminate()
         except KeyboardInterrupt:
             continue
@@ -153,12 +156,12 @@ def _check_here(root, lock):
     raise SetUpError(f"This Python ({sys.executable}) lacks {names}. Install with: {' && '.join(steps)}")
 
 
-class _Terminated(KeyboardInterrupt):
+class _TerminatedError(KeyboardInterrupt):
     """The launcher itself was asked to end (SIGTERM, terminal closed)."""
 
 
 def _stop(signum, frame):
-    raise _Terminated
+    raise _TerminatedError
 
 
 def _take_flag(arguments, name):

@@ -6,6 +6,18 @@ import zipfile
 import pytest
 from mini_project import MiniProject, write_wheel
 
+#: In the place of JupyterLab and pytest: says how it was started and ends as the test wants it to.
+STAND_IN = """
+import json, os, signal, sys, time
+told = ("IR50P_ARM", "VIRTUAL_ENV", "JUPYTER_PREFER_ENV_PATH")
+print(json.dumps({"argv": sys.argv[1:], "cwd": os.getcwd(), "prefix": sys.prefix} | {n: os.environ.get(n) for n in told}))
+sys.stdout.flush()
+if "--stay" in sys.argv:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.pause()
+sys.exit(int(os.environ.get("STAND_IN_CODE", "0")))
+"""
+
 
 @pytest.fixture(scope="session")
 def wheels(tmp_path_factory):
@@ -16,8 +28,8 @@ def wheels(tmp_path_factory):
         for file in flit.files:
             if ".." not in file.parts and file.suffix != ".pyc" and file.name not in ("INSTALLER", "REQUESTED"):
                 wheel.write(file.locate(), str(file))
-    for name in ("pebble", "pebble_test"):
-        write_wheel(folder, name, {f"{name}.py": "weight = 3\n"})
+    write_wheel(folder, "pebble", {"pebble.py": "weight = 3\n", "jupyterlab/__main__.py": STAND_IN})
+    write_wheel(folder, "pebble_test", {"pebble_test.py": "weight = 3\n", "pytest/__main__.py": STAND_IN})
     return folder
 
 

@@ -46,6 +46,11 @@ class MiniProject:
         (root / "notebooks").mkdir()
         (root / "tests").mkdir()
 
+    @property
+    def interpreter(self):
+        """The Python of .venv."""
+        return self.venv / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+
     def variables(self, **changes):
         """Return an environment in which pip knows nothing but the wheel folder; None takes a variable away."""
         variables = {name: value for name, value in os.environ.items() if not name.startswith(("PIP_", "COV_"))}
@@ -87,8 +92,7 @@ class MiniProject:
 
     def python(self, code):
         """Run code with the Python of .venv."""
-        python = self.venv / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-        command = [str(python), "-P", "-c", code]
+        command = [str(self.interpreter), "-P", "-c", code]
         return subprocess.run(command, capture_output=True, encoding="utf-8", cwd=self.root / "notebooks")
 
 

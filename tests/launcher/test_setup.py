@@ -82,14 +82,20 @@ def test_environment_behind_a_link_keeps_the_link(project, tmp_path):
 def test_states_that_need_a_rebuild(made, monkeypatch):
     made_here = Environment(made.root)
     assert made_here.state().ready
-    assert made_here.state(tests=True).reason == "without the test tools"
-    assert not made_here.state(tests=True).rebuild
-
     stamp = made.stamp.read_text()
+    without_tests = json.loads(stamp) | {"environment-test.txt": None}
     try:
+        made.stamp.write_text(json.dumps(without_tests))
+        assert made_here.state().ready
+        assert made_here.state(tests=True).reason == "without the test tools"
+        assert not made_here.state(tests=True).rebuild
         for damage in ("", "[]", "{}", stamp[: len(stamp) // 2]):
             made.stamp.write_text(damage)
             assert made_here.state().reason.startswith("half made"), damage
+        made.stamp.write_text(json.dumps(json.loads(stamp) | {"root": "/elsewhere"}))
+        assert made_here.state().reason == "made for another folder (/elsewhere)"
+        made.stamp.write_text(json.dumps(json.loads(stamp) | {"environment.txt": "old"}))
+        assert made_here.state().reason == "out of date (environment.txt has changed)"
         made.stamp.write_text(json.dumps(json.loads(stamp) | {"python": "3.10"}))
         assert made_here.state().reason.startswith("made with Python 3.10")
         made.stamp.write_text(json.dumps(json.loads(stamp) | {"environment-test.txt": "old"}))

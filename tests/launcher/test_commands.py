@@ -1,0 +1,178 @@
+"""The command line: what is started, where, with which arguments. Stand-ins take the place of JupyterLab and pytest."""
+
+import json
+import os
+import signal
+import sys
+
+import pytest
+from mini_project import PROJECT, one_line
+
+from ir50p_lab.launcher import commands, inventory
+
+AS_ROOT = ["--allow-root"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []
+
+
+@pytest.fixture(scope="module")
+def tested(made):
+    """The miniature with the test tools."""
+    assert made.run("setup", "--tests").returncode == 0
+    return made
+
+
+def told(done):
+    """What the stand-in said about how it was started."""
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def test_lab_opens_the_notebooks_with_the_python_of_the_environment(made):
+    done = made.run(variables={"IR50P_ARM": None})
+    assert done.returncode == 0
+    assert "If no browser opens, copy the address" in done.stdout
+    start = told(done)
+    assert start["argv"] == [str(made.root / "notebooks"), *AS_ROOT]
+    assert start["prefix"] == start["VIRTUAL_ENV"] == str(made.venv)
+    assert start["JUPYTER_PREFER_ENV_PATH"] == "1"
+    assert start["IR50P_ARM"] is None
+
+
+def test_further_arguments_go_to_jupyter(made):
+    start = told(made.run("--no-browser", "--port", "9999"))
+    assert start["argv"] == [str(made.root / "notebooks"), "--no-browser", "--port", "9999", *AS_ROOT]
+    start = told(made.run("lab", "notebooks", "--no-browser"))
+    assert start["argv"] == ["notebooks", "--no-browser", *AS_ROOT]
+
+
+def test_started_as_a_folder_from_elsewhere(made, tmp_path):
+    (tmp_path / "errors.py").write_text("raise RuntimeError('a file of the student was imported')")
+    package = made.root / "ir50p_lab"
+    made_command = made.command
+    made.command = lambda *arguments: [sys.executable, str(package), *arguments]
+    try:
+        start = told(made.run(cwd=tmp_path))
+    finally:
+        made.command = made_command
+    assert start["argv"][0] == str(made.root / "notebooks")
+
+
+def test_test_runs_pytest_and_nbval_over_everything(tested):
+    start = told(tested.run("test"))
+    assert start["argv"] == [
+        *("--nbval", "--nbval-current-env", f"--nbval-cell-timeout={commands.CELL_TIMEOUT}"),
+        *(str(tested.root / "tests"), str(tested.root / "notebooks")),
+    ]
+    assert start["cwd"] == str(tested.root)
+
+
+def test_further_arguments_go_to_pytest_and_paths_replace_the_defaults(tested):
+    (tested.root / "tests" / "test_pose.py").write_text("")
+    start = told(tested.run("test", "-k", "tests", "-x"))  # a word that is also a folder, but the value of -k
+    assert start["argv"][3:] == [str(tested.root / "tests"), str(tested.root / "notebooks"), "-k", "tests", "-x"]
+    start = told(tested.run("test", "tests/test_pose.py::test_it[a/b]", "-x"))
+    assert start["argv"][3:] == [str(tested.root / "tests" / "test_pose.py") + "::test_it[a/b]", "-x"]
+
+
+@pytest.mark.parametrize("code", [0, 1, 5])
+def test_exit_code_is_that_of_pytest(tested, code):
+    assert tested.run("test", variables={"STAND_IN_CODE": str(code)}).returncode == code
+
+
+def test_another_arm(tested, tmp_path):
+    arm = tmp_path / "arm.toml"
+    arm.write_text("")
+    assert told(tested.run("test", "--arm", str(arm)))["IR50P_ARM"] == str(arm)
+    assert told(tested.run(f"--arm={arm}"))["IR50P_ARM"] == str(arm)
+    assert told(tested.run(variables={"IR50P_ARM": str(arm)}))["IR50P_ARM"] == str(arm)  # inherited
+    assert "no arm file 'nowhere.toml'. Write one with Arm.save" in one_line(tested.run("--arm", "nowhere.toml"))
+    assert "--arm needs a file after it" in one_line(tested.run("test", "--arm"))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="process groups and signals of POSIX")
+@pytest.mark.parametrize(("signal_sent", "code"), [(signal.SIGINT, 0), (signal.SIGTERM, 128 + signal.SIGTERM)])
+def test_ending_jupyterlab(made, signal_sent, code):
+    process = made.start("--stay")
+    assert process.stdout.readline().startswith("Opening JupyterLab")
+    assert json.loads(process.stdout.readline())["argv"]
+    if signal_sent == signal.SIGINT:
+        os.killpg(process.pid, signal_sent)  # as a terminal does: both get it
+    else:
+        process.terminate()  # the launcher alone: passes it on
+    _, errors = process.communicate(timeout=300)
+    assert process.returncode == code
+    assert errors == ""
+
+
+def test_help_names_both_systems_and_needs_no_environment(project):
+    for argument in ("--help", "-h", "help"):
+        done = project.run(argument)
+        assert done.returncode == 0
+        for command in ("python3 -m ir50p_lab", "py -m ir50p_lab", "test", "setup", "doctor", "--here", "--arm FILE"):
+            assert command in done.stdout
+    assert not project.venv.exists()
+
+
+def test_words_that_are_no_command(project):
+    assert "neither a command nor a file 'tset'" in one_line(project.run("tset"))
+    assert "setup does not know '--fast'" in one_line(project.run("setup", "--fast"))
+    assert not project.venv.exists()
+
+
+def test_rebuild_starts_from_nothing(tested):
+    (tested.venv / "debris.txt").write_text("")
+    done = tested.run("setup", "--rebuild", "--tests")
+    assert done.returncode == 0, done.stderr
+    assert "[2/4] packages of environment-test.txt" in done.stdout
+    assert not (tested.venv / "debris.txt").exists()
+    assert tested.python("import pebble, pebble_test").returncode == 0
+
+
+# -- --here ----------------------------------------------------------------------------------------------------------------
+
+
+def test_here_says_what_is_missing_and_how_to_install_it(project):
+    line = one_line(project.run("--here"))
+    assert "lacks pebble" in line
+    assert f"-m pip install -r {project.root / 'environment.txt'}" in line
+    assert not project.venv.exists()
+    assert "pebble-test" in one_line(project.run("--here", "test"))
+
+
+def test_here_uses_the_running_python(tested):
+    own = tested.command
+    tested.command = lambda *arguments: [str(tested.interpreter), "-m", "ir50p_lab", *arguments]
+    try:
+        assert told(tested.run("--here", "--no-browser"))["prefix"] == str(tested.venv)
+        assert told(tested.run("test", "--here"))["argv"][0] == "--nbval"
+        assert tested.run("setup", "--here", "--tests").stdout == "Everything is in place.\n"
+    finally:
+        tested.command = own
+
+
+def test_here_without_the_lab_book_itself(tested, monkeypatch, capsys):
+    versions = inventory.installed_version
+    monkeypatch.setattr(inventory, "packages", lambda lock: [])
+    monkeypatch.setattr(inventory, "installed_version", lambda name: None if name == "ir50p-lab" else versions(name))
+    assert commands.main(["setup", "--here"], root=tested.root) == 1
+    error = capsys.readouterr().err
+    assert "lacks ir50p-lab" in error
+    assert "pip install --no-deps --no-build-isolation -e" in error
+
+
+# -- the command line within this process ----------------------------------------------------------------------------------
+
+
+def test_errors_of_the_system_and_ctrl_c_end_in_one_line(made, monkeypatch, capsys):
+    for error, code, text in [
+        (OSError(28, "No space left on device"), 1, "The disk is full"),
+        (KeyboardInterrupt(), 130, "Stopped. Run"),
+    ]:
+        monkeypatch.setattr(commands, "Environment", lambda root, error=error: (_ for _ in ()).throw(error))
+        assert commands.main(["setup"], root=made.root) == code
+        assert capsys.readouterr().err.strip().startswith(text)
+
+
+def test_the_launcher_imports_the_standard_library_only():
+    # -S leaves site-packages out, -I what a variable or the folder could add
+    code = "import sys; sys.path.insert(0, sys.argv[1]); import ir50p_lab.launcher.commands"
+    done = commands.subprocess.run([sys.executable, "-I", "-S", "-c", code, str(PROJECT)], capture_output=True)
+    assert done.returncode == 0, done.stderr
