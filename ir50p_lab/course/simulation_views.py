@@ -40,14 +40,15 @@ class Row:
 class Traces:
     """Curves over one common axis with fixed limits, so that moving a slider moves the curves only.
 
+    Titles and legends are drawn at every move, about 0.15 ms a letter: keep them short.
+
     Args: xlabel: with unit; xlim: (low, high); rows: Row, from top to bottom; title: above the first.
     Attributes: figure; axes, one per row; lines, all curves in order, row by row.
     """
 
     def __init__(self, xlabel, xlim, *rows, title=""):
-        self.figure = simulation_figure(
-            9.0, 1.4 + (2.0 if len(rows) == 1 else 1.5 * len(rows)), rows=len(rows), sharex=True
-        )
+        height = 1.4 + (2.0 if len(rows) == 1 else 1.5 * len(rows))
+        self.figure = new_figure(9.0, height, rows=len(rows), sharex=True)
         self.axes, self.lines = self.figure.axes, []
         for ax, row in zip(self.axes, rows, strict=True):
             styles = (row.style,) * len(row.curves) if isinstance(row.style, str) else row.style
@@ -62,7 +63,8 @@ class Traces:
             ax.set(xlim=xlim, ylim=row.ylim, ylabel=row.ylabel)
             if any(row.curves):
                 ax.legend(loc="upper right", ncols=sum(map(bool, row.curves)), fontsize=9)
-        self.axes[-1].set_xlabel(xlabel)
+        # as part of the axis label the note costs a panel nothing; a text of its own is drawn anew each time
+        self.axes[-1].set_xlabel(f"{xlabel}  -  {STAMP}")
         self.title(title)
 
     def update(self, x, *ys):
