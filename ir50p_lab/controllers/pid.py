@@ -13,7 +13,7 @@ from ir50p_lab.modelling.closed_form import not_denormal
 # places in the parameter vector
 KP, KI, KD, LIMIT, PERIOD, FILTER_RATE, ON_ERROR, ANTI_WINDUP, N_PARAMETERS = 0, 3, 6, 9, 12, 13, 14, 15, 16
 # places in the state vector
-INTEGRAL, VELOCITY, LAST, TIME, STARTED, N_STATES = 0, 3, 6, 9, 10, 11
+INTEGRAL, VELOCITY, LAST, ERROR, SLOPE, TIME, STARTED, N_STATES = 0, 3, 6, 9, 12, 15, 16, 17
 
 
 @jit()
@@ -33,6 +33,7 @@ def pid_step(p, s, t, q, r, u):
             s[VELOCITY + i] = not_denormal(s[VELOCITY + i] + blend * (moved / dt - s[VELOCITY + i]))
         s[LAST + i] = e if p[ON_ERROR] > 0.0 else q[i]
         slope = s[VELOCITY + i] if p[ON_ERROR] > 0.0 else r[1, i] - s[VELOCITY + i]
+        s[ERROR + i], s[SLOPE + i] = e, slope  # for a change of gains without a bump
         without = p[KP + i] * e + p[KD + i] * slope
         integral = s[INTEGRAL + i] + p[KI + i] * e * dt
         command = without + integral
@@ -109,17 +110,9 @@ class PID(Controller):
         self._write_gains(*new)
         if self.state[STARTED]:
             change = old[:LIMIT] - self.parameters[:LIMIT]
-            self.state[INTEGRAL : INTEGRAL + 3] += change[KP:KI] * self._last_error + change[KD:] * self._last_slope
-
-    def step(self, t, measured, reference):
-        """The command for one sample, see `Controller.step`."""
-        u = super().step(t, measured, reference)
-        r = np.asarray(reference, dtype=float)
-        on_error = self.parameters[ON_ERROR] > 0
-        velocity = self.state[VELOCITY : VELOCITY + 3]
-        self._last_error = r[0] - np.asarray(measured, dtype=float)
-        self._last_slope = velocity.copy() if on_error else r[1] - velocity
-        return u
+            self.state[INTEGRAL : INTEGRAL + 3] += (
+                change[KP:KI] * self.state[ERROR : ERROR + 3] + change[KD:] * self.state[SLOPE : SLOPE + 3]
+            )
 
     @property
     def kp(self):

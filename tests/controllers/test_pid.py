@@ -95,6 +95,17 @@ def test_gains_may_change_before_the_first_sample():
     assert (pid.step(0.0, ZERO, hold(1, 1, 1)) == 2).all()
 
 
+def test_gains_may_change_after_a_compiled_run():
+    from ir50p_lab.modelling import IR50P
+    from ir50p_lab.simulation import simulate
+
+    pid = PID(kp=(50, 50, 50), kd=(5, 5, 5))
+    run = simulate(IR50P.without_friction(), pid, (1, 0.5, -0.7), duration=0.5)
+    pid.set_gains(kp=(90, 20, 50), kd=(5, 9, 1))
+    u = pid.step(0.51, run.q[-1] + 0.01 * pid.state[3:6], hold(1, 0.5, -0.7))
+    np.testing.assert_allclose(u, run.u[-1], atol=1.0)  # 40 x the error of 0.3 rad would be far more
+
+
 def test_reset_forgets():
     pid = PID(kp=(1, 1, 1), ki=(1, 1, 1), kd=(1, 1, 1))
     first = run(pid, np.ones((20, 3)))
