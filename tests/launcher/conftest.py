@@ -9,11 +9,12 @@ from mini_project import MiniProject, write_wheel
 #: In the place of JupyterLab and pytest: says how it was started and ends as the test wants it to.
 STAND_IN = """
 import json, os, signal, sys, time
+if "--stay" in sys.argv:  # before anything is said: who reads it may end this at once
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 told = ("IR50P_ARM", "VIRTUAL_ENV", "JUPYTER_PREFER_ENV_PATH")
 print(json.dumps({"argv": sys.argv[1:], "cwd": os.getcwd(), "prefix": sys.prefix} | {n: os.environ.get(n) for n in told}))
 sys.stdout.flush()
 if "--stay" in sys.argv:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
     signal.pause()
 sys.exit(int(os.environ.get("STAND_IN_CODE", "0")))
 """
