@@ -6,8 +6,12 @@ import zlib
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import Collection
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from mpl_toolkits.mplot3d.art3d import Line3D
 from PIL import Image
+
+from ir50p_lab.course.text_cache import TextCache
 
 
 class Painter:
@@ -34,6 +38,7 @@ class Painter:
         figure.set_layout_engine("none")
         self._seen = self._region = None
         self._title_heights = {}
+        self._texts = TextCache()
 
     def forget(self):
         """Draw the background anew next time."""
@@ -57,8 +62,10 @@ class Painter:
                 title.set_y(y)  # set_title() has dropped it to the frame
             if hasattr(ax, "get_proj"):
                 _project(ax)
-            _draw_in_order(_foreground(ax), renderer)
-        _draw_in_order(_figure_artists(figure), renderer)
+        with self._texts.on(renderer):
+            for ax in axes:
+                _draw_in_order(_foreground(ax), renderer)
+            _draw_in_order(_figure_artists(figure), renderer)
         return np.asarray(renderer.buffer_rgba())
 
     def png(self):
@@ -158,7 +165,28 @@ def _figure_artists(figure):
 
 def _draw_in_order(artists, renderer):
     for artist in sorted(artists, key=lambda artist: artist.get_zorder()):
-        artist.draw(renderer)
+        if type(artist) is Line3D and _is_plain(artist.axes) and not artist._axlim_clip:
+            _draw_line3d(artist, renderer)
+        else:
+            artist.draw(renderer)
+
+
+def _is_plain(ax):
+    """Linear scales, parallel or perspective projection: no point needs masking for its scale."""
+    return all(axis.get_scale() == "linear" for axis in _axes_of(ax))
+
+
+def _draw_line3d(line, renderer):
+    """Line3D.draw without its masked arrays, which cost as much as the drawing itself."""
+    x, y, z = (np.asarray(values, dtype=float) for values in line.get_data_3d())
+    shown = line.axes.M @ np.array([x, y, z, np.ones_like(x)])
+    x, y, z = shown[:3] / shown[3]
+    if np.isfinite(line.axes._focal_length):  # matplotlib drops what lies outside the perspective view
+        outside = ~((-1 <= x) & (x <= 1) & (-1 <= y) & (y <= 1) & (z <= 0))
+        x, y = np.where(outside, np.nan, x), np.where(outside, np.nan, y)
+    line.set_data(x, y)
+    Line2D.draw(line, renderer)
+    line.stale = False
 
 
 def _project(ax):

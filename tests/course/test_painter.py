@@ -189,3 +189,43 @@ def test_png_of_a_figure_is_its_drawing():
     painter = Painter(plane_figure())
     image = np.asarray(Image.open(io.BytesIO(painter.png())))
     np.testing.assert_array_equal(image, full_drawing(painter.figure)[..., :3])
+
+
+def test_unchanged_texts_come_from_memory():
+    figure = plane_figure()
+    figure.axes[1].set_title(r"$\frac{q_2}{2}$ and $\sqrt{x}$")
+    figure.axes[2].text(2, 1, "turned\ntwo lines", rotation=30, bbox={"facecolor": "white"})
+    painter = Painter(figure)
+    painter.rgba()
+    painter.rgba()
+    assert painter._texts.hits >= 6  # two titles, two of the legend, three notes
+    assert_same_pixels(painter)
+    note = figure.axes[3].texts[0]
+    for change in (
+        lambda: note.set_color("r"),
+        lambda: note.set_alpha(0.4),
+        lambda: note.set_fontsize(14),
+        lambda: note.set_fontweight("bold"),
+        lambda: note.set_text("$n$ote"),
+        lambda: note.set_parse_math(False),
+        lambda: note.set_rotation(17),
+        lambda: note.set_position((1.5, 0.3)),
+        lambda: note.set_antialiased(False),
+        lambda: note.set(clip_on=True, x=5.9),
+        lambda: note.set_clip_box(figure.axes[0].bbox),
+        lambda: note.set_clip_path(Circle((60, 60), 50, transform=None)),
+        lambda: figure.axes[0].legend_.texts[0].set_text("other"),
+    ):
+        change()
+        assert_same_pixels(painter)
+
+
+def test_perspective_lines_keep_their_clipping():
+    figure = new_figure(4, 3, projection="3d")
+    ax = figure.axes[0]
+    ax.set_proj_type("persp", focal_length=0.5)
+    ax.plot([-3, 0, 1, 9], [0, 0.5, 1, -7], [0, np.nan, 1, 8], "o-")
+    ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
+    painter = Painter(figure)
+    ax.lines[0].set_data_3d([-3, 0, 0.5, 9], [0, 0.5, 1, -7], [0, 0.2, 0.4, 8])
+    assert_same_pixels(painter)
