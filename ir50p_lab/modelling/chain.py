@@ -23,15 +23,13 @@ def dh_matrix(theta, d, a, alpha):
 
 
 def _step(theta, d, a, cos_alpha, sin_alpha):
-    c, s, d, a, ca, sa = np.broadcast_arrays(np.cos(theta), np.sin(theta), d, a, cos_alpha, sin_alpha)
-    zero, one = np.zeros_like(c), np.ones_like(c)
-    # fmt: off
-    rows = [c,    -s * ca, s * sa,  a * c,
-            s,    c * ca,  -c * sa, a * s,
-            zero, sa,      ca,      d,
-            zero, zero,    zero,    one]
-    # fmt: on
-    return np.stack(rows, axis=-1).reshape(*c.shape, 4, 4)
+    c, s = np.cos(theta), np.sin(theta)
+    A = np.zeros((*np.broadcast_shapes(*map(np.shape, (c, d, a, cos_alpha))), 4, 4))
+    A[..., 0, 0], A[..., 0, 1], A[..., 0, 2], A[..., 0, 3] = c, -s * cos_alpha, s * sin_alpha, a * c
+    A[..., 1, 0], A[..., 1, 1], A[..., 1, 2], A[..., 1, 3] = s, c * cos_alpha, -c * sin_alpha, a * s
+    A[..., 2, 1], A[..., 2, 2], A[..., 2, 3] = sin_alpha, cos_alpha, d
+    A[..., 3, 3] = 1.0
+    return A
 
 
 def _lengths(arm):

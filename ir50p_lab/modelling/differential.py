@@ -20,7 +20,11 @@ def jacobian(arm, q):
     T = frames(arm, q)
     z = T[..., :JOINTS, :3, 2]
     arms = T[..., JOINTS, None, :3, 3] - T[..., :JOINTS, :3, 3]
-    return np.swapaxes(np.concatenate([np.cross(z, arms), z], axis=-1), -1, -2)
+    J = np.empty((*T.shape[:-3], 6, JOINTS))
+    for row, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):  # z x arms; np.cross takes as long as all the rest
+        J[..., row, :] = z[..., i] * arms[..., j] - z[..., j] * arms[..., i]
+        J[..., 3 + row, :] = z[..., row]
+    return J
 
 
 def manipulability(arm, q):
