@@ -23,3 +23,23 @@ class IdentificationError(LabError, ValueError):
 
 class SuspiciousArmWarning(UserWarning):
     """Arm parameters that are possible but hardly meant (a unit slip, a misprint)."""
+
+
+class BenchError(LabError):
+    """Something between the computer and the arm; the drive is off when it is raised."""
+
+
+class PortError(BenchError):
+    """The serial port cannot be opened: missing, busy or not permitted."""
+
+
+class BoardError(BenchError):
+    """What answers on the port is not our board, or runs another firmware."""
+
+
+class BoardLostError(BenchError):
+    """The board answered before and does no longer (cable pulled), or has reset in the middle of a run."""
+
+
+class RecordingError(LabError, ValueError):
+    """A recording that cannot be written on, or a file that is none (the message names the line)."""
