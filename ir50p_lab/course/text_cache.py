@@ -9,8 +9,8 @@ _KEPT = 600  # texts; a figure has some tens, and those that move leave old plac
 class TextCache:
     """Keeps, for every text drawn at one place, the calls that put its glyphs on the canvas, and repeats them.
 
-    The pixels are those of matplotlib's own drawing, to the bit. Use as `with cache.on(renderer): artist.draw(renderer)`
-    with a `RendererAgg`.
+    The pixels are those of matplotlib's own drawing, to the bit. For a `RendererAgg`:
+    `with cache.on(renderer): artist.draw(renderer)`.
 
     Attributes: hits: texts drawn from memory so far (for tests and measurements).
     """
