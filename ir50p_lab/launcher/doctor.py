@@ -10,6 +10,7 @@ import tomllib
 from pathlib import Path
 
 from ir50p_lab.launcher import inventory
+from ir50p_lab.launcher.boards import board_name, permission_remedy
 from ir50p_lab.launcher.environment import LOCK, NEEDED_GB
 from ir50p_lab.launcher.problems import COMMAND
 
@@ -117,8 +118,10 @@ def _ports(found, line):
         line("Serial ports", "no USB board" + (f" ({others} ports without USB id)" if others else ""))
     for port in usb:
         allowed = os.name == "nt" or os.access(port["device"], os.R_OK | os.W_OK)
-        advice = "" if allowed else ", no permission: 'sudo usermod -aG dialout $USER', then log in again"
-        line("Serial ports", f"{port['device']} {port['usb']} {port['description']}{advice}")
+        advice = "" if allowed else f", no permission: {permission_remedy(port['device'])}"
+        board = board_name(*(int(part, 16) for part in port["usb"].split(":")))
+        known = f" ({board})" if board else ""
+        line("Serial ports", f"{port['device']} {port['usb']} {port['description']}{known}{advice}")
 
 
 def _verdict(stream, faults, cure):

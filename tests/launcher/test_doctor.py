@@ -88,15 +88,17 @@ def test_here_reports_on_the_running_python(project, monkeypatch):
 def test_serial_ports(made, monkeypatch):
     ports = [
         {"device": "/dev/null", "usb": "2341:0043", "description": "Arduino Uno"},
+        {"device": "/dev/null", "usb": "2A03:0042", "description": "Arduino (www.arduino.org)"},
         {"device": "/dev/not-there", "usb": "1A86:7523", "description": "USB serial"},
         {"device": "/dev/ttyS0", "usb": None, "description": "ttyS0"},
     ]
     monkeypatch.setattr(doctor, "_look_inside", lambda environment: FOUND | {"ports": ports})
     _, text, _ = report(made)
     assert "/dev/null 2341:0043 Arduino Uno\n" in text
-    assert "/dev/not-there 1A86:7523 USB serial, no permission: 'sudo usermod -aG dialout $USER'" in text
+    assert "/dev/null 2A03:0042 Arduino (www.arduino.org) (Arduino Mega 2560)\n" in text
+    assert "/dev/not-there 1A86:7523 USB serial (CH340 chip, as on clones of the Mega), no permission: " in text
     assert "ttyS0" not in text
-    monkeypatch.setattr(doctor, "_look_inside", lambda environment: FOUND | {"ports": ports[2:]})
+    monkeypatch.setattr(doctor, "_look_inside", lambda environment: FOUND | {"ports": ports[3:]})
     assert "no USB board (1 ports without USB id)" in report(made)[1]
 
 
