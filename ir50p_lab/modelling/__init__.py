@@ -42,7 +42,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "second_moment_tensor",
             "tube",
         ],
-        "named_arms": ["IR50P", "THESIS_A", "THESIS_C", "THESIS_RODS", "thesis_theta"],
+        "named_arms": ["IR50P", "IR50P_WEAK_SHOULDER", "THESIS_A", "THESIS_C", "THESIS_RODS", "thesis_theta"],
         "symbolic": ["SymbolicModel", "derive", "same_function"],
         "pose": [
             "CARDANIAN",

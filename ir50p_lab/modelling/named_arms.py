@@ -1,5 +1,7 @@
 """The arms of the course: the real one (with its assumptions) and the thesis' models."""
 
+import dataclasses
+
 import numpy as np
 
 from ir50p_lab.modelling.actuators import Actuators
@@ -45,6 +47,28 @@ IR50P = Arm(
     # Assumed: the ROB3i manual gives 200 deg of travel, not where. Chosen so that the thesis' set points fit.
     q_min=(-100 * _DEG, -50 * _DEG, -140 * _DEG),
     q_max=(100 * _DEG, 110 * _DEG, 30 * _DEG),
+)
+
+_K_WEAK = np.array([2.5, 9.0, 9.0]) / 255  # N m per PWM count at 12 V
+
+# The same arm with a weaker, faster motor in joint 1: the unit whose shoulder oscillates about its set point as in
+# Figure 4.8. Assumed and chosen for that; friction is the same in PWM counts, so in N m it follows its own K.
+IR50P_WEAK_SHOULDER = dataclasses.replace(
+    IR50P,
+    name="IR50P weak shoulder",
+    friction=Friction(
+        fc=tuple(np.array([18.0, 16.0, 16.0]) * _K_WEAK),
+        fs=tuple(np.array([36.0, 22.0, 22.0]) * _K_WEAK),
+        qs=(0.05, 0.05, 0.05),
+        Tf=tuple(np.array([4.0, -3.0, 2.0]) * _K_WEAK),
+    ),
+    actuators=Actuators.from_joint_data(
+        stall_torque=(2.5, 9.0, 9.0),
+        no_load_speed=(3.0, 1.1, 1.3),
+        reflected_inertia=(0.15, 0.20, 0.12),
+        N=(100.0, 100.0, 100.0),
+        V=12.0,
+    ),
 )
 
 # Thesis 2.1.1: l = 1 m, m = (3, 1, 1) kg, lc = 0.5 m, no inertias. The thesis puts the centre of mass of the
