@@ -25,6 +25,10 @@ class SuspiciousArmWarning(UserWarning):
     """Arm parameters that are possible but hardly meant (a unit slip, a misprint)."""
 
 
+class UnstableLoopWarning(UserWarning):
+    """A simulated loop that looks unstable although its numbers stay finite: a drive at its limits hides it."""
+
+
 class BenchError(LabError):
     """Something between the computer and the arm; the drive is off when it is raised."""
 

@@ -129,6 +129,11 @@ class PID(Controller):
         """Derivative gains (3,)."""
         return self.parameters[KD : KD + 3].copy()
 
+    @property
+    def limit(self):
+        """Limits of the command (3,), in its unit; infinite where there is none."""
+        return self.parameters[LIMIT : LIMIT + 3].copy()
+
 
 def gains(name, value):
     """Three gains, finite and not negative, as an array (3,); a scalar counts for all joints."""

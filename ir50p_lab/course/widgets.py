@@ -6,8 +6,9 @@
         curve.set_ydata(response(kp, kd))
     live(figure, update, kp=(0, 300, 1, 100), kd=slider(0, 60, 0.5, 10, label="Kd1", unit="N m s"))
 
-The figure is made once and `update` changes its artists in place; it never calls pyplot. What `update` prints, and
-its errors, appear in a line under the figure (a notebook would swallow them).
+The figure is made once and `update` changes its artists in place; it never calls pyplot. What `update` prints, its
+errors, and the warning of a loop that looks unstable appear in a line under the figure (a notebook would swallow
+them, or heap them up).
 """
 
 import base64
@@ -16,6 +17,7 @@ import html
 import io
 import threading
 import traceback
+import warnings
 import weakref
 from functools import partial
 from typing import ClassVar
@@ -24,7 +26,7 @@ import ipywidgets as widgets
 
 from ir50p_lab.course.controls import Slider, ends, label_of, make_control, refuse_bad_value, slider, value_of
 from ir50p_lab.course.painter import Painter
-from ir50p_lab.errors import InputError, LabError
+from ir50p_lab.errors import InputError, LabError, UnstableLoopWarning
 
 __all__ = ["LivePanel", "Slider", "exercise_all_panels", "live", "slider"]
 
@@ -68,7 +70,7 @@ class LivePanel(widgets.VBox):
             self.controls[name], row = make_control(name, spec, f"{width}ch")
             rows.append(row)
         self._start = self.values
-        self._update = update
+        self._update, self._warned = update, set()
         self._condition = threading.Condition()
         self._wanted, self._drawer, self._filler, self._quiet = None, None, None, 0
 
@@ -176,11 +178,19 @@ class LivePanel(widgets.VBox):
         self._condition.notify_all()
 
     def _call_update(self, values, said):
-        """Call `update`; what it prints or returns as text goes into `said`."""
-        with contextlib.redirect_stdout(said):
+        """Call `update`; what it prints or returns as text, and a warning of an unstable loop, go into `said`."""
+        with contextlib.redirect_stdout(said), warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", UnstableLoopWarning)
             answer = self._update(**values)
             if isinstance(answer, str):
                 print(answer)
+        for text in dict.fromkeys(str(w.message) for w in caught if issubclass(w.category, UnstableLoopWarning)):
+            print(text, file=said)
+        for w in caught:  # the others go where warnings go, each once
+            place = (str(w.message), w.category, w.filename, w.lineno)
+            if not issubclass(w.category, UnstableLoopWarning) and place not in self._warned:
+                self._warned.add(place)
+                warnings.warn_explicit(w.message, w.category, w.filename, w.lineno)
 
     def _draw(self, values):
         said = io.StringIO()

@@ -1,7 +1,8 @@
 """The equations of motion for poses and whole trajectories: M, C, g, inverse and forward dynamics, energy.
 
 Every function takes an Arm or a theta (3, 20) first (a single row (20,) counts for all joints). With a theta in PWM
-counts the results are in PWM counts too. The kernels are in `closed_form`; here arrays are checked and looped over.
+counts the results are in PWM counts too. An Arm carries its gravity; a theta does not and takes 9.81 m/s^2 or the
+option `g`. The kernels are in `closed_form`; here arrays are checked and looped over.
 """
 
 from dataclasses import dataclass
@@ -18,20 +19,28 @@ _FLOAT = np.dtype(float)
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value; an Arm carries its own
 
 
-def as_theta(arm):
-    """(theta (3, 20), gravity) of an Arm or of a theta given as array.
+def as_theta(arm, g=None):
+    """(theta (3, 20), gravity) of an Arm, or of a theta given as array and its gravity `g` (m/s^2, default 9.81).
 
-    Raises InputError if it is neither, has another shape, or holds a number that is not finite.
+    Raises InputError if `arm` is neither, has another shape, or holds a number that is not finite; if `g` is given for
+    an Arm, which carries its own, or is negative or not finite.
     """
     if isinstance(arm, Arm):
+        if g is not None:
+            raise InputError(
+                f"g = {g}: an Arm carries its own gravity ({arm.g} m/s^2); use dataclasses.replace(arm, g=...)"
+            )
         return arm.kernel_theta, arm.g
+    g = STANDARD_GRAVITY if g is None else float(g)
+    if not (np.isfinite(g) and g >= 0):
+        raise InputError(f"g = {g} m/s^2 must be >= 0: the base z axis points up")
     theta = np.array(arm, dtype=float, order="C") if np.ndim(arm) else None
     if theta is None or theta.shape not in ((3, 20), (20,)):
         found = type(arm).__name__ if theta is None else f"an array of shape {theta.shape}"
         raise InputError(f"expected an Arm, or theta with shape (3, 20) or (20,), got {found}")
     if not np.isfinite(theta).all():
         raise InputError("theta holds a number that is not finite; identify again or drop that parameter (set it to 0)")
-    return np.tile(theta, (3, 1)) if theta.ndim == 1 else theta, STANDARD_GRAVITY
+    return np.tile(theta, (3, 1)) if theta.ndim == 1 else theta, g
 
 
 def _rows(**vectors):
@@ -107,24 +116,24 @@ def _gravity_loop(theta, gravity, q, out):
         out[k, 1], out[k, 2] = cf.gravity_torques(theta, gravity, np.cos(q[k, 1]), np.cos(q[k, 1] + q[k, 2]))
 
 
-def gravity(arm, q):
+def gravity(arm, q, *, g=None):
     """Gravity torques g(q) = dU/dq: what holds the arm still    (1.114), 1.5.3c corrected.
 
-    Args: arm: Arm or theta; q: (3,) or (n, 3) rad. Returns: shape of q, N m.
+    Args: arm: Arm or theta; q: (3,) or (n, 3) rad; g: of a theta, m/s^2, default 9.81. Returns: shape of q, N m.
     """
-    theta, g = as_theta(arm)
+    theta, g = as_theta(arm, g)
     (q,), single = _rows(q=q)
     out = np.empty_like(q)
     _gravity_loop(theta, g, q, out)
     return out[0] if single else out
 
 
-def bias(arm, q, qd):
+def bias(arm, q, qd, *, g=None):
     """All torques but those of acceleration: C(q, qd) qd + g(q) + friction of theta.
 
-    Args: arm: Arm or theta; q, qd: (3,) or (n, 3). Returns: shape of q, N m.
+    Args: arm: Arm or theta; q, qd: (3,) or (n, 3); g: of a theta, m/s^2, default 9.81. Returns: shape of q, N m.
     """
-    return inverse_dynamics(arm, q, qd, np.zeros(3))
+    return inverse_dynamics(arm, q, qd, np.zeros(3), g=g)
 
 
 @jit()
@@ -135,16 +144,16 @@ def _inverse_loop(theta, gravity, q, qd, qdd, out):
         )
 
 
-def inverse_dynamics(arm, q, qd, qdd):
+def inverse_dynamics(arm, q, qd, qdd, *, g=None):
     """Torques that make the motion: tau = M qdd + C qd + g + F    (1.74), all linear in theta.
 
     F is the friction in theta: fv qd + fc sgn(qd) + Tf. The Stribeck part of an Arm's friction is not linear and
     is left to `friction_torque` and the simulation; use `arm.without_friction()` for the rigid body alone.
 
-    Args: arm: Arm or theta; q, qd, qdd: (3,) or (n, 3), rad, rad/s, rad/s^2.
+    Args: arm: Arm or theta; q, qd, qdd: (3,) or (n, 3), rad, rad/s, rad/s^2; g: of a theta, m/s^2, default 9.81.
     Returns: shape of q, N m (PWM counts for a theta in PWM). Raises InputError.
     """
-    theta, g = as_theta(arm)
+    theta, g = as_theta(arm, g)
     (q, qd, qdd), single = _rows(q=q, qd=qd, qdd=qdd)
     out = np.empty_like(q)
     _inverse_loop(theta, g, q, qd, qdd, out)
@@ -170,12 +179,13 @@ def _forward_loop(theta, gravity, q, qd, tau, out):
     return -1
 
 
-def forward_dynamics(arm, q, qd, tau):
+def forward_dynamics(arm, q, qd, tau, *, g=None):
     """Accelerations that torques make: solve M qdd = tau - C qd - g - F    (1.74).
 
     F as in `inverse_dynamics`, with sgn(0) = 0: a joint at rest is not held by dry friction here.
 
-    Args: arm: Arm or theta; q, qd, tau: (3,) or (n, 3), rad, rad/s, N m (PWM counts for a theta in PWM).
+    Args: arm: Arm or theta; q, qd, tau: (3,) or (n, 3), rad, rad/s, N m (PWM counts for a theta in PWM); g: of a
+        theta, m/s^2, default 9.81.
     Returns: shape of q, rad/s^2.
     Raises: InputError on bad input, or if M is singular at a pose (a link without any inertia).
     """
@@ -183,6 +193,7 @@ def forward_dynamics(arm, q, qd, tau):
     # checking costs next to nothing; whatever is not plain goes the long way below.
     if (
         type(arm) is Arm
+        and g is None
         and type(q) is type(qd) is type(tau) is np.ndarray
         and q.shape == (3,) == qd.shape == tau.shape
         and q.dtype is qd.dtype is tau.dtype is _FLOAT
@@ -190,7 +201,7 @@ def forward_dynamics(arm, q, qd, tau):
         qdd = np.empty(3)
         if _forward_one(arm.kernel_theta, arm.g, q, qd, tau, qdd) > 0.0:
             return qdd
-    theta, g = as_theta(arm)
+    theta, g = as_theta(arm, g)
     (q, qd, tau), single = _rows(q=q, qd=qd, tau=tau)
     out = np.empty_like(q)
     row = _forward_loop(theta, g, q, qd, tau, out)
@@ -215,16 +226,16 @@ class Energy:
         return self.kinetic + self.potential
 
 
-def energy(arm, q, qd):
+def energy(arm, q, qd, *, g=None):
     """Energy of the moving arm: K = qd' M qd / 2 (rotors included), U with zero at shoulder height    (1.78), (1.111).
 
     U = g (theta_3 sin q2 + theta_4 sin(q2 + q3)); the column's own constant is left out.
 
-    Args: arm: Arm or theta with equal inertial rows; q, qd: (3,) or (n, 3).
+    Args: arm: Arm or theta with equal inertial rows; q, qd: (3,) or (n, 3); g: of a theta, m/s^2, default 9.81.
     Returns: Energy. Raises InputError for a theta with unequal rows: motors of unequal gain scale each row by
     another factor, so that no common energy exists.
     """
-    theta, g = as_theta(arm)
+    theta, g = as_theta(arm, g)
     inertial = theta[:, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 19]]
     if not (inertial == inertial[0]).all():
         raise InputError("energy needs a theta with three equal rows (N m); this one has its own row per joint")

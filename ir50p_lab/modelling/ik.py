@@ -19,8 +19,9 @@ class IKSolutions:
 
     q: (4, 3) or (n, 4, 3) rad, one row per branch in the order of `branches`; within_limits: (4,) or (n, 4);
     q_min, q_max: the limits they were held against, rad. Front: joint 1 faces the point; back: it faces away
-    and the arm bends over backwards. Up: elbow above the line from shoulder to tip as seen from the front
-    (q3 <= 0); down: q3 >= 0. On the edge of the workspace up and down coincide.
+    and the arm bends over backwards. Up and down are the sign of q3: up is q3 <= 0, down is q3 >= 0. For the front
+    branches up puts the elbow above the line from shoulder to tip, down below it; bent over backwards it is the
+    other way round. On the edge of the workspace up and down coincide.
 
     Iterating, indexing and len() go over the branches of a single point.
     """
@@ -113,8 +114,10 @@ def inverse_kinematics(arm, p):
     q3 = -+2 atan2(sqrt((l2 + l3)^2 - r^2), sqrt(r^2 - (l2 - l3)^2))
     q2 = atan2(z1, Delta) - atan2(l3 sin q3, l2 + l3 cos q3)
 
-    The half-angle form of q3 keeps all digits near the stretched and folded arm, where acos (1.69) loses half
-    of them. Joint limits are checked last and only marked.
+    Near the folded arm with equal links the half-angle form of q3 keeps all digits of the tip, where acos (1.69)
+    misses it by up to 1e-8 of the reach. Near the stretched arm the two are alike: there the tip hardly depends on
+    q3, so that rounding of p alone leaves q3 uncertain by some 3e-8 rad, and the tip right to the last digits.
+    Joint limits are checked last and only marked.
 
     Args: arm: Arm; p: (3,) or (n, 3) m.
     Returns: IKSolutions with q of shape (4, 3) or (n, 4, 3), angles in (-pi, pi].
@@ -127,7 +130,7 @@ def inverse_kinematics(arm, p):
     x, y, z = np.moveaxis(p, -1, 0)
     delta, z1 = np.hypot(x, y), z - l1
     r = np.hypot(delta, z1)
-    # differences of squares as products: no digits are lost at the edges of the workspace
+    # differences of squares as products: rounding adds nothing to that of p at the edges of the workspace
     inner = np.sqrt(np.maximum(0.0, (r - abs(l2 - l3)) * (r + abs(l2 - l3))))
     outer = np.sqrt(np.maximum(0.0, (l2 + l3 - r) * (l2 + l3 + r)))
     bend = 2 * np.arctan2(outer, inner)

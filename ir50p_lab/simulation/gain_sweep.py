@@ -46,6 +46,7 @@ def sweep_gains(
     step=0.001,
     filter_hz=10.0,
     q0=(0.0, 0.0, 0.0),
+    g=None,
     executor=None,
     progress=True,
 ):
@@ -55,7 +56,7 @@ def sweep_gains(
         arm: Arm without dry friction (`arm.without_friction()`), or such a theta. In-line links.
         reference: as in `simulate`.
         kp, ki, kd: (N, 3), or what broadcasts to it (scalars, (3,), (N, 1)).
-        limit / limit_pwm, duration, period, step, filter_hz, q0: as in `simulate` and `PID`.
+        limit / limit_pwm, duration, period, step, filter_hz, q0, g: as in `simulate` and `PID`.
         executor: `concurrent.futures` executor for blocks of gain sets (a Dask client's, say); default: threads on all
             cores (the compiled loop does not hold Python's lock).
         progress: show a progress bar.
@@ -66,7 +67,7 @@ def sweep_gains(
 
     steps, t = _times(duration, period, step)
     q0 = _single("q0", q0, "rad")
-    plant = make_plant(arm, unit="N m" if limit_pwm is None else "PWM")
+    plant = make_plant(arm, unit="N m" if limit_pwm is None else "PWM", g=g)
     if plant.dry:
         raise InputError(
             "sweep_gains is for motion without dry friction: use arm.without_friction(), or sweep + simulate"

@@ -38,20 +38,22 @@ class Plant:
         return bool(self.numbers[DRY])
 
 
-def make_plant(arm, *, unit="N m", stops=False, table=None):
+def make_plant(arm, *, unit="N m", stops=False, table=None, g=None):
     """The plant of an Arm or a theta.
 
     Args:
         arm: Arm, or theta (3, 20) (its Coulomb friction then also is the breakaway: theta holds no Stribeck part).
         unit: unit of the command. 'PWM' drives an Arm through its actuators: gain, back-EMF, saturation.
         stops: whether the joint limits are end stops (without rebound).
-        table: height of a table that the tip cannot pass, m; None: no table. The contact is without friction.
+        table: height of a table that the tip cannot pass, m; None: no table. The contact is that of the tip alone
+            (an elbow passes through) and without friction.
+        g: gravity for a theta, m/s^2, default 9.81 (a theta holds none; an Arm carries its own and refuses this).
 
-    Raises: ArmError (no actuators for PWM), InputError (a table or end stops for a theta, unknown unit).
+    Raises: ArmError (no actuators for PWM), InputError (a table or end stops for a theta, g for an Arm, unknown unit).
     """
     if unit not in ("N m", "PWM"):
         raise InputError(f"unit = {unit!r}: the command is in 'N m' or in 'PWM' counts")
-    theta, gravity = as_theta(arm)
+    theta, gravity = as_theta(arm, g)
     is_arm = isinstance(arm, Arm)
     if not is_arm and (stops or table is not None):
         raise InputError("end stops and a table need an Arm (its limits and lengths); a theta holds neither")

@@ -32,7 +32,8 @@ class SimulationResult:
 
     t (n,) s; q, qd (n, 3) rad, rad/s; u (n, 3) applied command in `unit`, held from each sample to the next;
     reference (n, 3, 3): q, qd, qdd of the reference. energy: kinetic and potential energy (n,) J, where the arm has
-    one (a theta with unequal rows has none).
+    one (a theta with unequal rows has none). g: gravity given for a theta, m/s^2 (None: 9.81, or the Arm's own).
+    unstable: what looked unstable in the run, "" if nothing did.
     """
 
     t: np.ndarray
@@ -42,11 +43,13 @@ class SimulationResult:
     unit: str
     reference: np.ndarray
     arm: object = field(repr=False)
+    g: float | None = None
+    unstable: str = ""
 
     @cached_property
     def energy(self):
         """Energy of the run, (n,) J each; raises InputError for a theta with a row of its own per joint."""
-        return energy(self.arm, self.q, self.qd)
+        return energy(self.arm, self.q, self.qd, g=self.g)
 
     @property
     def error(self):

@@ -1,12 +1,15 @@
 """Simulate an arm under a controller: the one entry for notebooks, tests and sweeps."""
 
+import warnings
+
 import numpy as np
 
 from ir50p_lab.controllers.base import Controller
-from ir50p_lab.errors import InputError
+from ir50p_lab.errors import InputError, UnstableLoopWarning
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.simulation.plant import make_plant
 from ir50p_lab.simulation.result import SimulationResult
+from ir50p_lab.simulation.verdict import looks_unstable
 
 
 def simulate(
@@ -22,6 +25,7 @@ def simulate(
     unit=None,
     stops=False,
     table=None,
+    g=None,
 ):
     """Simulate `arm` under `controller` for `duration` seconds.
 
@@ -31,22 +35,25 @@ def simulate(
 
     Args:
         arm: Arm or theta (3, 20).
-        controller: any object with `step(t, measured, reference) -> u`; a compiled one (`PID`) runs compiled
-            throughout and is `reset` first; `ContinuousPID`; None: no drive, u = 0.
+        controller: any object with `step(t, measured, reference) -> u`; its `reset()` is called first if it has one.
+            A compiled one (`PID`) runs compiled throughout; or `ContinuousPID`; or None: no drive, u = 0.
         reference: `target(t) -> (q, qd, qdd)` as in `signals` (its `sample` is used if it has one), an array
             (3,) of angles to hold, or None: hold q0.
         duration, period, step: s; period must be a whole number of steps, duration is rounded to whole periods.
         q0, qd0: (3,) start, rad and rad/s.
         unit: unit of the command, 'N m' or 'PWM'; default: the controller's own, else 'N m'.
-        stops, table: end stops at the arm's joint limits; height of a table, m (see `make_plant`).
+        stops, table: end stops at the arm's joint limits; height of a table for the tip, m (see `make_plant`).
+        g: gravity for a theta, m/s^2, default 9.81; an Arm carries its own and refuses this.
 
     Returns: SimulationResult, sampled every `period`.
     Raises: InputError on bad input, or if the run leaves all bounds (an unstable loop: it says when).
+    Warns: UnstableLoopWarning if the run stays finite but looks unstable (`looks_unstable` says how it looks; the
+    result keeps the sentence as `unstable`). Without a controller nothing is judged.
     """
     steps, t = _times(duration, period, step)
     q0, qd0 = _single("q0", q0, "rad"), _single("qd0", qd0, "rad/s")
     unit = unit or getattr(controller, "unit", "N m")
-    plant = make_plant(arm, unit=unit, stops=stops, table=table)
+    plant = make_plant(arm, unit=unit, stops=stops, table=table, g=g)
     target = _target(reference, q0)
     r = _sample(target, t)
     x = np.concatenate([q0, qd0])
@@ -71,9 +78,24 @@ def simulate(
             kind, p, s = controller.kind, controller.parameters, controller.state
         sampled_loop(plant.theta, plant.numbers, kind, p, s, t, r, x, step, steps, q, qd, u)
     else:
+        if hasattr(controller, "reset"):
+            controller.reset()
         _python_loop(plant, controller, t, r, x, step, steps, q, qd, u)
     _refuse_runaway(t, q)
-    return SimulationResult(t=t, q=q, qd=qd, u=u, unit=unit, reference=r, arm=arm)
+    unstable = ""
+    if controller is not None:
+        limit = np.fmin(plant.limit, _own_limit(controller))
+        unstable = looks_unstable(t, r, q, u, limit, follows=reference is not None)
+    if unstable:
+        message = f"the loop looks unstable with these gains and this period: {unstable}"
+        warnings.warn(message, UnstableLoopWarning, stacklevel=2)
+    return SimulationResult(t=t, q=q, qd=qd, u=u, unit=unit, reference=r, arm=arm, g=g, unstable=unstable)
+
+
+def _own_limit(controller):
+    """Limit of the command inside the package's controllers; of others nothing is known."""
+    ours = isinstance(controller, Controller) or getattr(controller, "continuous", False)
+    return getattr(controller, "limit", np.inf) if ours else np.inf
 
 
 def _python_loop(plant, controller, t, r, x, step, steps, q, qd, u):

@@ -4,6 +4,7 @@ import gc
 import io
 import threading
 import time
+import warnings
 from types import SimpleNamespace
 
 import ipywidgets
@@ -14,7 +15,7 @@ from PIL import Image
 from ir50p_lab.course import widgets
 from ir50p_lab.course.style import new_figure
 from ir50p_lab.course.widgets import LivePanel, exercise_all_panels, live, slider
-from ir50p_lab.errors import InputError, LabError
+from ir50p_lab.errors import InputError, LabError, UnstableLoopWarning
 
 
 @pytest.fixture(autouse=True)
@@ -185,6 +186,33 @@ def test_prints_and_texts_of_update_appear_under_the_figure(capsys):
     panel.set(height=2)
     assert panel.status.value == "height 2.0 &lt; 10<br>second line<br>and a text"
     assert capsys.readouterr().out == "", "they would end in the log where nobody looks"
+
+
+def test_the_warning_of_an_unstable_loop_appears_under_the_figure_once():
+    def update(gain):
+        for _ in range(3):
+            if gain > 1:
+                warnings.warn("joint 1 <swings>", UnstableLoopWarning, stacklevel=1)
+        return f"gain {gain}"
+
+    panel = live(new_figure(), update, gain=(0, 3, 1, 0))
+    assert "swings" not in panel.status.value
+    panel.set(gain=2)  # warnings are errors in these tests
+    assert panel.status.value == "gain 2<br>joint 1 &lt;swings&gt;"
+
+
+def test_other_warnings_of_update_stay_warnings():
+    def update(gain):
+        if gain > 1:
+            warnings.warn("something else", RuntimeWarning, stacklevel=1)
+
+    panel = live(new_figure(), update, gain=(0, 3, 1, 0))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("default")
+        for gain in (2, 3):
+            panel.set(gain=gain)
+    assert [str(w.message) for w in caught] == ["something else"]  # once for its place, as everywhere
+    assert "something else" not in panel.status.value
 
 
 def test_a_hundred_changes_from_threads_end_with_the_last_value_drawn():

@@ -167,6 +167,25 @@ def test_moon_gravity_counts():
     np.testing.assert_allclose(gravity(moon, [0, 0.3, 0.2]) * 9.81, gravity(THESIS_RODS, [0, 0.3, 0.2]) * 1.62)
 
 
+def test_a_theta_takes_the_gravity_it_is_given():
+    moon = Arm(**{**vars_of(THESIS_RODS), "g": 1.62})
+    q, qd, x = (a[:20] for a in random_states(np.random.default_rng(4), 20))
+    for function, vectors in (
+        (gravity, (q,)), (bias, (q, qd)), (inverse_dynamics, (q, qd, x)), (forward_dynamics, (q, qd, x)),
+    ):  # fmt: skip
+        given = function(moon.theta, *vectors, g=1.62)
+        np.testing.assert_allclose(given, function(moon, *vectors), rtol=1e-12, atol=1e-12)
+        assert np.abs(given - function(moon.theta, *vectors)).max() > 1  # 9.81 unless told
+        with pytest.raises(InputError, match=r"carries its own gravity \(1\.62 m/s"):
+            function(moon, *vectors, g=1.62)
+    np.testing.assert_allclose(energy(moon.theta, q, qd, g=1.62).total, energy(moon, q, qd).total, rtol=1e-12)
+    with pytest.raises(InputError, match="carries its own"):
+        energy(moon, q, qd, g=9.81)
+    one = np.zeros(3)  # the short way for one state of an Arm
+    with pytest.raises(InputError, match="carries its own"):
+        forward_dynamics(moon, one, one, one, g=9.81)
+
+
 def vars_of(arm):
     return {name: getattr(arm, name) for name in ("l", "m", "lc", "Ixx", "Iyy", "Izz")}
 
@@ -196,6 +215,8 @@ def test_one_state_and_many_states_agree():
         (lambda: mass_matrix(np.full((3, 20), np.nan), np.zeros(3)), ["theta", "not finite"]),
         (lambda: mass_matrix(3.0, np.zeros(3)), ["float", "(3, 20)"]),
         (lambda: mass_matrix(IR50P, ["a", "b", "c"]), ["q", "numbers"]),
+        (lambda: gravity(THESIS_C, np.zeros(3), g=-9.81), ["g = -9.81", ">= 0"]),
+        (lambda: gravity(THESIS_C, np.zeros(3), g=np.nan), ["g = nan"]),
         (lambda: energy(IR50P.theta_pwm, np.zeros(3), np.zeros(3)), ["equal rows"]),
         (lambda: forward_dynamics(np.zeros((3, 20)), np.zeros(3), np.zeros(3), np.ones(3)), ["singular"]),
     ],

@@ -1,5 +1,7 @@
 """Simulation: energy, order of convergence, other integrators, sticking, stops, table, drive, bad input."""
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
@@ -105,6 +107,33 @@ def test_a_python_controller_gives_the_same_run():
     ours, theirs = simulate(SMOOTH, pid, SET_POINT, duration=3), simulate(SMOOTH, PythonPID(pid), SET_POINT, duration=3)
     np.testing.assert_allclose(ours.q, theirs.q, atol=1e-10)
     np.testing.assert_allclose(ours.u, theirs.u, atol=1e-8)
+
+
+def test_python_controllers_are_reset_too():
+    class Counting(PythonPID):
+        resets = 0
+
+        def reset(self):
+            self.last, self.v, self.resets = None, np.zeros(3), self.resets + 1
+
+    controller = Counting(PID(kp=(50, 50, 50), kd=(5, 5, 5)))
+    first, second = (simulate(SMOOTH, controller, SET_POINT, duration=0.5) for _ in range(2))
+    assert controller.resets == 2
+    assert (first.q == second.q).all() and np.abs(first.q[-1]).max() > 0.01
+
+
+def test_a_theta_takes_the_gravity_it_is_given():
+    moon = replace(SMOOTH, g=1.62)
+    here, by_theta = simulate(moon, duration=1, **START), simulate(moon.theta, g=1.62, duration=1, **START)
+    np.testing.assert_allclose(by_theta.q, here.q, atol=1e-12)
+    np.testing.assert_allclose(by_theta.energy.total, here.energy.total, atol=1e-12)
+    floating = simulate(moon.theta_pwm, g=0, duration=1)
+    assert (floating.q == 0).all()
+    falling = simulate(moon.theta_pwm, duration=1)  # 9.81 unless told
+    np.testing.assert_allclose(falling.q, simulate(SMOOTH, unit="PWM", duration=1).q, atol=1e-12)
+    assert np.abs(falling.q).max() > 0.1
+    with pytest.raises(InputError, match=r"g = 0: an Arm carries its own gravity \(1\.62"):
+        simulate(moon, g=0)
 
 
 def test_the_reference_may_be_a_function_an_object_or_three_angles():
