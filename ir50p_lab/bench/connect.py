@@ -1,0 +1,89 @@
+"""`connect()`: the board if one answers, else the simulated arm; one line says which, why, and how to get the other."""
+
+import os
+
+from ir50p_lab.bench.ports import list_ports
+from ir50p_lab.errors import BoardError, InputError, PortError
+
+VARIABLE = "IR50P_BENCH"
+_TO_BOARD = f"for a board: connect('PORT') or {VARIABLE}=PORT"
+_TO_SIMULATED = f"for the simulated arm: connect('simulated') or {VARIABLE}=simulated"
+
+
+def connect(port=None, *, arm=None, calibration=None, period=0.01, record_to=None, **simulated):
+    """Find the bench, open it and say in one line which it is, why, and how to get the other.
+
+    The first of these that says something: the argument `port`, the environment variable IR50P_BENCH, a board that is
+    plugged in (known by its USB id) and answers, the simulated arm.
+
+    Args:
+        port: 'simulated', 'replay:FILE', or a serial port ('COM3', '/dev/ttyACM0'); None looks for a board.
+        arm: Arm, default `load_arm()`; calibration: counts to rad, default that of the arm; period: s;
+        record_to: folder of the recordings, False for none on disk. simulated: further options of SimulatedBench, as
+        `seed`, `unit` and `realtime`; the other benches take no notice of them, so that a cell runs on any bench.
+
+    Returns: an open bench, for `with connect() as bench:`.
+    Raises: PortError or BoardError if the port asked for does not open or no board of ours answers there, with the
+    remedy; RecordingError for a file that is no recording; InputError for a `port` that is none of the above. A
+    board that was only looked for never raises: the line says why it was not taken.
+    """
+    common = {"arm": arm, "calibration": calibration, "period": period, "record_to": record_to}
+    variable = os.environ.get(VARIABLE, "").strip()
+    if port is not None:
+        return _asked_for(port, f"connect({port!r})", common, simulated)
+    if variable:
+        return _asked_for(variable, f"{VARIABLE}={variable}", common, simulated)
+    return _look_for_a_board(common, simulated)
+
+
+def _asked_for(wish, reason, common, simulated):
+    if not isinstance(wish, str | os.PathLike) or not str(wish):
+        raise InputError(f"port = {wish!r}: give 'simulated', 'replay:FILE' or the name of a serial port")
+    wish = os.fspath(wish)
+    if wish.lower() == "simulated":
+        return _say(_simulated(common, simulated), f"asked for by {reason}", _TO_BOARD)
+    if wish.lower().startswith("replay:"):
+        from ir50p_lab.bench.replay import ReplayBench
+
+        bench = ReplayBench(wish[len("replay:") :], record_to=common["record_to"])
+        return _say(bench.open(), f"asked for by {reason}", _TO_BOARD)
+    return _say(_serial(wish, common), f"asked for by {reason}", _TO_SIMULATED)
+
+
+def _look_for_a_board(common, simulated):
+    ports = list_ports()
+    candidates = [port for port in ports if port.board]
+    refused = []
+    for port in candidates:
+        try:
+            bench = _serial(port.device, common)
+        except (PortError, BoardError) as error:
+            refused.append(f"{port.board} was not taken: {error}")
+        else:
+            others = "".join(f"; {other.device} not tried" for other in candidates[candidates.index(port) + 1 :])
+            return _say(bench, f"{port.board} found and its firmware answers{others}", _TO_SIMULATED)
+    bench = _simulated(common, simulated)
+    if not refused:
+        others = f" among {len(ports)} serial ports" if len(ports) > 1 else " on the one serial port" if ports else ""
+        refused = [f"no Arduino Mega found{others}"]
+    return _say(bench, "; ".join(refused), _TO_BOARD)
+
+
+def _simulated(common, simulated):
+    from ir50p_lab.bench.simulated import SimulatedBench
+
+    known = {name: common[name] for name in ("arm", "period", "record_to")}
+    return SimulatedBench(**known, **simulated).open()
+
+
+def _serial(device, common):
+    from ir50p_lab.bench.serial_bench import SerialBench
+
+    # the line about the boot loader gives way to the one that says what was chosen
+    return SerialBench(device, **common, announce=lambda line: print(line, end="\r", flush=True)).open()
+
+
+def _say(bench, reason, other):
+    """The one line, padded to wipe out what was announced before it."""
+    print(f"Bench: {bench.name} ({reason}; {other})".ljust(100))
+    return bench

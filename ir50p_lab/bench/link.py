@@ -1,0 +1,138 @@
+"""Question and answer with the board: sequence numbers, repeats when nothing comes, no answer taken for another's."""
+
+import time
+from collections import deque
+from typing import NamedTuple
+
+import numpy as np
+
+from ir50p_lab.bench import protocol
+from ir50p_lab.errors import BoardLostError
+
+try:
+    from termios import error as _termios_error  # what pyserial lets through when a cable is pulled, no OSError
+except ImportError:  # Windows
+    _termios_error = OSError
+
+PORT_ERRORS = (OSError, _termios_error)
+REPEAT = 0.004  # s without an answer until the question is asked again
+HEARD = 80  # bytes kept to tell what it is that does not answer
+
+
+class Clock:
+    """The computer's clock, s from an arbitrary start, and its sleep: what a virtual clock stands in for in tests."""
+
+    time = staticmethod(time.perf_counter)
+    sleep = staticmethod(time.sleep)
+
+
+class LinkStatistics(NamedTuple):
+    """What happened on the wire since the bench was opened.
+
+    commands: sent; repeats: of which again, because no answer came; stale: answers that came too late to count;
+    bad_replies, bad_commands: damaged frames, dropped by the computer and by the board (its counter, which begins at
+    its start and wraps at 65536); watchdog_trips: times the board cut the drive because no command came for 100 ms;
+    limits: (3,) bool, joint is at an end of its potentiometer; round_trip: median of the last 1000, s (nan: none yet).
+    """
+
+    commands: int
+    repeats: int
+    stale: int
+    bad_replies: int
+    bad_commands: int
+    watchdog_trips: int
+    limits: tuple
+    round_trip: float
+
+
+class Link:
+    """The wire to the board, over an open serial port.
+
+    transport: what serial.Serial offers: read(n) that waits a few ms at most, write(bytes), in_waiting,
+    reset_input_buffer(), close(). clock: time() and sleep(s).
+    """
+
+    def __init__(self, transport, clock):
+        self._transport, self._clock = transport, clock
+        self._parser = protocol.FrameParser("replies")
+        self._seq, self._told = 0, None
+        self._commands = self._repeats = self._stale = self._trips = 0
+        self._last = None  # the last State
+        self._round_trips = deque(maxlen=1000)
+        self.heard = deque(maxlen=HEARD)
+
+    def ask(self, kind, pwm=(0, 0, 0), gripper=False, *, patience, repeat=REPEAT):
+        """Send a command and wait for its answer; ask again every `repeat` s without one, `patience` s in all.
+
+        An answer to any of the repeats counts: all of them were sent by this call.
+        Returns: (State or Identity, when the command was sent that it answers).
+        Raises: BoardLostError if no answer came; PORT_ERRORS as they come from the port.
+        """
+        wanted = protocol.Identity if kind == protocol.HELLO else protocol.State
+        sent = {}
+        start = now = self._clock.time()
+        while now < start + patience:
+            self._repeats += bool(sent)
+            seq = self._send(kind, pwm, gripper)
+            sent[seq] = now
+            size, next_try = protocol.REPLY_SIZE, now + repeat
+            while now < next_try:
+                data = self._transport.read(size)
+                now = self._clock.time()
+                self.heard.extend(data)
+                replies = self._parser.feed(data)
+                for reply in replies:
+                    self._note(reply)
+                    if isinstance(reply, wanted) and reply.seq in sent:
+                        self._round_trips.append(now - sent[reply.seq])
+                        return reply, sent[reply.seq]
+                    self._stale += reply.seq != self._told
+                if not (replies and len(data) == protocol.REPLY_SIZE):  # part of a frame, or of noise, has come
+                    size = max(1, self._transport.in_waiting)
+        raise BoardLostError(f"no answer for {patience * 1000:.0f} ms")
+
+    def tell(self, kind, pwm, gripper):
+        """Send a command and do not wait; its answer is passed over by the next `ask`."""
+        self._told = self._send(kind, pwm, gripper)
+
+    def stop(self, gripper=False):
+        """Send STOP, three times at once in case one is damaged, until the board says so; within 50 ms."""
+        for _ in range(3):
+            self._send(protocol.STOP, (0, 0, 0), gripper)
+        self.ask(protocol.STOP, (0, 0, 0), gripper, patience=0.05)
+
+    def forget(self):
+        """Drop all that has come so far and was not read."""
+        self._transport.reset_input_buffer()
+        self._parser.reset()
+        self.heard.clear()
+
+    def close(self):
+        """Give the port free."""
+        self._transport.close()
+
+    @property
+    def statistics(self):
+        """LinkStatistics up to now."""
+        status, bad = (self._last.status, self._last.bad_frames) if self._last else (0, 0)
+        return LinkStatistics(
+            commands=self._commands,
+            repeats=self._repeats,
+            stale=self._stale,
+            bad_replies=self._parser.bad,
+            bad_commands=bad,
+            watchdog_trips=self._trips,
+            limits=tuple(bool(status & bit) for bit in protocol.LIMIT_ACTIVE),
+            round_trip=float(np.median(self._round_trips)) if self._round_trips else float("nan"),
+        )
+
+    def _send(self, kind, pwm, gripper):
+        self._seq = (self._seq + 1) % 256
+        self._commands += 1
+        self._transport.write(protocol.encode(protocol.Command(self._seq, kind, pwm, gripper)))
+        return self._seq
+
+    def _note(self, reply):
+        if isinstance(reply, protocol.State):
+            self._last = reply
+            self._trips += bool(reply.status & protocol.WATCHDOG_TRIPPED)

@@ -1,0 +1,81 @@
+"""Serial ports: which may be our board, opening one, and what to do when that fails."""
+
+import errno
+import sys
+from typing import NamedTuple
+
+from ir50p_lab.errors import PortError
+from ir50p_lab.launcher.boards import BOARDS, board_name, permission_remedy
+
+READ_TIMEOUT = 0.004  # s; a reply takes 1 ms on the wire and up to 3 ms more through USB
+
+
+class Port(NamedTuple):
+    """A serial port: device name, and the board its USB id stands for (None: none that fits the bench)."""
+
+    device: str
+    board: str | None
+
+
+def list_ports():
+    """All serial ports of this computer, those of a Mega 2560 first, then chips of its clones, then the others."""
+    from serial.tools import list_ports
+
+    found = sorted(list_ports.comports())
+    rank = {port.device: 0 if (port.vid, port.pid) in BOARDS else 1 for port in found}
+    ports = [Port(port.device, board_name(port.vid, port.pid)) for port in found]
+    return sorted(ports, key=lambda port: (port.board is None, rank[port.device]))
+
+
+def open_port(device, baud):
+    """Open a serial port for us alone.
+
+    Args: device: name of the port ('COM3', '/dev/ttyACM0'); baud: bit/s.
+    Returns: an open serial.Serial whose read() waits READ_TIMEOUT at most.
+    Raises: PortError, with the remedy, if the port is missing, busy or not permitted.
+    """
+    import serial
+
+    try:
+        port = serial.Serial(device, baud, timeout=READ_TIMEOUT, write_timeout=0.1, exclusive=True)
+    except (OSError, ValueError) as error:  # SerialException is an OSError; ValueError: a baud rate it cannot do
+        raise port_error(device, error) from error
+    try:
+        port.set_low_latency_mode(True)  # FTDI chips else wait 16 ms before they pass bytes on; Linux only
+    except (AttributeError, NotImplementedError, OSError, ValueError):
+        pass  # other systems and other chips: nothing to set
+    return port
+
+
+def port_error(device, error):
+    """The PortError for what pyserial raised when opening `device`: what is wrong and what to do."""
+    text = str(error)
+    number = getattr(error, "errno", None)
+    if number in (errno.EBUSY, errno.EAGAIN) or "lock port" in text:
+        return PortError(f"{device} is busy: another program holds it. {_busy_remedy(device)}")
+    if number in (errno.EACCES, errno.EPERM) or "PermissionError" in text:
+        if sys.platform == "win32":  # which reports a port in use as 'access denied'
+            return PortError(f"{device} is busy: another program holds it. {_busy_remedy(device)}")
+        return PortError(f"no permission to open {device}: {permission_remedy(device)}")
+    if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV) or "FileNotFoundError" in text:
+        return PortError(f"{device} does not exist: {_missing_remedy()}")
+    return PortError(f"{device} does not open ({text}): is it a serial port? {_missing_remedy()}")
+
+
+def _busy_remedy(device):
+    if sys.platform.startswith("linux"):
+        return (
+            "Close the Arduino IDE's monitor and other notebooks' kernels ('fuser -v "
+            f"{device}' names the program; ModemManager lets go after half a minute)"
+        )
+    return "Close the Arduino IDE's monitor and shut down other notebooks' kernels, then try again"
+
+
+def _missing_remedy():
+    here = ", ".join(port.device for port in list_ports()) or "none at all"
+    ways = {"win32": "the Device Manager shows it under 'Ports'", "darwin": "'ls /dev/cu.*' shows it"}
+    look = ways.get(sys.platform, "'dmesg | tail' shows it")
+    return (
+        f"ports on this computer: {here}. Plug the board in with a cable that carries data ({look}); clones may need "
+        "the driver of their chip (CH340)"
+    )

@@ -1,0 +1,200 @@
+"""The bench with the real arm: a Mega 2560 with our firmware on a serial port."""
+
+import contextlib
+import os
+
+import numpy as np
+
+from ir50p_lab.bench import protocol
+from ir50p_lab.bench.base import JOINTS, Bench
+from ir50p_lab.bench.calibration import nominal_calibration
+from ir50p_lab.bench.link import PORT_ERRORS, Clock, Link
+from ir50p_lab.bench.ports import open_port
+from ir50p_lab.errors import BoardError, BoardLostError, InputError
+
+BOOT_LOADER = 2.0  # s; the Mega's own lasts 1 to 2 s, and 8 s if it hears anything meanwhile: so we keep silent
+HANDSHAKE = 1.0  # s; then nobody is there
+LOST_AFTER = 0.2  # s without answer; the board has cut the drive after 0.1 s
+LATE = 0.2  # of a period; a cycle that begins later than this is counted
+FIRMWARE = "ir50p_lab/bench/firmware"
+
+
+class SerialBench(Bench):
+    """The arm on the bench, through an Arduino Mega 2560 that runs `firmware/ir50p_board`.
+
+    Args:
+        port: name of the serial port ('COM3', '/dev/ttyACM0'), or an open pyserial-like object.
+        arm: Arm, default `load_arm()`; calibration: default the one saved for the arm, else the nominal one.
+        clock: object with time() and sleep(s); default the computer's. period: s. record_to: folder, or False.
+        announce: takes the line that says why opening lasts 2 s; default print.
+
+    Time is the true time of a measurement. A cycle that begins late is counted in `Sample.missed`, never raised; one
+    that would begin a whole period late is left out, so that the loop never runs to catch up.
+
+    Raises, when opened: PortError (missing, busy, not permitted), BoardError (not our board or another firmware).
+    In a run: BoardLostError if the cable is pulled or the board resets; it brakes 0.1 s after the last command.
+    """
+
+    kind = "board"
+
+    def __init__(self, port, *, arm=None, calibration=None, clock=None, period=0.01, record_to=None, announce=print):
+        from ir50p_lab.modelling.arm import load_arm
+
+        named = isinstance(port, str | os.PathLike) and str(port)
+        if not (named or hasattr(port, "write")):
+            raise InputError(f"port = {port!r}: give the name of a serial port, or an open port")
+        arm = load_arm() if arm is None else arm
+        self.port = os.fspath(port) if named else getattr(port, "name", None) or "a given port"
+        super().__init__(
+            arm,
+            nominal_calibration(arm) if calibration is None else calibration,
+            period=period,
+            record_to=record_to,
+            name=f"board on {self.port} for {arm.name}",
+        )
+        self._given = None if named else port
+        self._clock, self._announce = clock or Clock, announce
+        self._link = self.identity = None
+        self._start = self._skipped = self._missed = 0
+
+    # ---- the hooks of Bench
+
+    def _open(self):
+        transport = self._given or open_port(self.port, protocol.BAUD)
+        self._link = Link(transport, self._clock)
+        try:
+            if self._given is None and _opening_resets(transport):
+                self._announce(f"{self.port}: opening it restarts the board, its boot loader takes {BOOT_LOADER:.0f} s")
+                self._clock.sleep(BOOT_LOADER)
+            self.identity = self._shake_hands(HANDSHAKE)
+        except BaseException:
+            self._close()
+            raise
+
+    def _begin(self):
+        try:
+            self.identity = self._shake_hands(LOST_AFTER)  # the board may have been reset between two runs
+        except BoardError:
+            raise self._lost("does not answer") from None
+        self._start, self._skipped, self._missed = self._clock.time(), 0, 0
+
+    def _measure(self, k):
+        due = self._start + (k + self._skipped) * self.period
+        late = self._clock.time() - due
+        if late >= self.period:
+            skipped = int(late / self.period)
+            self._skipped, self._missed = self._skipped + skipped, self._missed + skipped
+            due += skipped * self.period
+        self._wait_for(due)
+        if self._clock.time() - due > LATE * self.period:
+            self._missed += 1
+        try:
+            state, sent = self._link.ask(protocol.DRIVE, self._command(), self._gripper, patience=LOST_AFTER)
+        except BoardLostError:
+            raise self._lost(f"has not answered for {LOST_AFTER:g} s") from None
+        except PORT_ERRORS as error:
+            raise self._lost(f"is gone ({error})") from error
+        if state.status & protocol.HELLO_NEEDED:
+            raise self._reset(state)
+        return sent - self._start, np.array(state.counts) / protocol.SUBCOUNTS, self._missed
+
+    def _send(self, pwm, gripper):
+        try:
+            self._link.tell(protocol.DRIVE, tuple(int(u) for u in pwm), gripper)
+        except PORT_ERRORS as error:
+            self.cut()
+            raise self._lost(f"is gone ({error})") from error
+        return pwm
+
+    def _cut(self):
+        if self._link is not None:
+            # whatever happens: the board cuts by itself 0.1 s after the last command. BaseException: a second Ctrl-C
+            with contextlib.suppress(BaseException):
+                self._link.stop(self._gripper)
+
+    def _close(self):
+        link, self._link = self._link, None
+        if link is not None:
+            with contextlib.suppress(*PORT_ERRORS):
+                link.close()
+
+    def _header(self):
+        major, minor = self.identity.firmware
+        return {"port": self.port, "firmware": f"{major}.{minor}", "protocol": str(self.identity.protocol)}
+
+    # ---- more than the contract asks for
+
+    @property
+    def statistics(self):
+        """What happened on the wire since the bench was opened: LinkStatistics."""
+        if self._link is None:
+            raise BoardError("the bench is closed: its statistics are gone")
+        return self._link.statistics
+
+    # ---- the rest
+
+    def _command(self):
+        return tuple(int(u) for u in self._pwm)
+
+    def _wait_for(self, moment):
+        wait = moment - self._clock.time()
+        if wait > 0:
+            self._clock.sleep(wait)
+
+    def _shake_hands(self, patience):
+        """Say hello until the board says who it is. Raises BoardError, with the remedy, if it is not ours."""
+        link = self._link
+        try:
+            link.forget()
+            identity, _ = link.ask(protocol.HELLO, patience=patience, repeat=min(0.05, patience / 4))
+        except BoardLostError:
+            raise BoardError(f"{self.port}: {_who_is_it(bytes(link.heard))}") from None
+        except PORT_ERRORS as error:
+            raise BoardError(f"{self.port} went away while we said hello ({error}): is the cable firm?") from error
+        if identity.protocol != protocol.VERSION:
+            raise BoardError(
+                f"{self.port}: the board's firmware speaks protocol {identity.protocol}, this lab book "
+                f"{protocol.VERSION}: put the sketch of {FIRMWARE} on the board (its README shows how)"
+            )
+        if identity.joints != JOINTS or identity.adc_bits != protocol.ADC_BITS:
+            raise BoardError(
+                f"{self.port}: the board drives {identity.joints} joints with a converter of {identity.adc_bits} bits; "
+                f"this lab book needs {JOINTS} and {protocol.ADC_BITS}: put the sketch of {FIRMWARE} on the board"
+            )
+        return identity
+
+    def _lost(self, what):
+        return BoardLostError(
+            f"the board on {self.port} {what}: it brakes by itself 0.1 s after the last command, then gravity has the "
+            "arm. Look at the USB cable and the board's lamp, then open the bench again with connect()"
+        )
+
+    def _reset(self, state):
+        cause = (
+            "its program hung and the hardware watchdog restarted it"
+            if state.status & protocol.HARDWARE_RESET
+            else "somebody pressed its button or opened its port, or its supply broke down when the motors started"
+        )
+        return BoardLostError(
+            f"the board on {self.port} has restarted in the middle of the run ({cause}): its drive is off. Power the "
+            "motors from their own supply, not from USB; then run again"
+        )
+
+
+def _opening_resets(transport):
+    """Whether opening this port pulls the board's reset line: it does on a board, not on a pseudo-terminal."""
+    try:
+        transport.dtr = True  # as it is since it was opened
+    except (*PORT_ERRORS, ValueError):
+        return False
+    return True
+
+
+def _who_is_it(heard):
+    """What to say about a device that does not answer our hello, from the bytes it sent."""
+    remedy = f"put the sketch of {FIRMWARE} on the board (its README shows how)"
+    if not heard:
+        return f"nothing answers. Is it a Mega 2560? Then {remedy}, or press its reset button if that is done"
+    text = heard[:24].decode("ascii", "replace")
+    shown = repr(text) if all(c.isprintable() or c in "\r\n\t" for c in text) else heard[:12].hex(" ")
+    return f"what answers is not our firmware (it sent {shown}). If it is the bench's board, {remedy}"
