@@ -1,0 +1,123 @@
+"""Writes a run to disk sample by sample: whatever happens to the program, what was recorded is there."""
+
+import math
+import os
+from array import array
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+
+from ir50p_lab.bench.recording import Recording
+from ir50p_lab.bench.recording_file import COLUMNS, ROW, ROW_WITHOUT_REFERENCE, head_text, rows_text
+from ir50p_lab.errors import InputError, RecordingError
+
+_FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINARY", 0)
+_NAN3 = (math.nan,) * 3
+
+
+class Recorder:
+    """One run into one new file; every sample is handed to the operating system before `write` returns.
+
+    Args:
+        head: dict of str for the head of the file; "kind" and "simulated" also go into its name.
+        folder: where to; None: the folder of the environment variable IR50P_RECORDINGS, else ./recordings;
+        False: in memory only. A folder that is missing is made.
+
+    Attributes: recording: a Recording that grows with every sample; path: the file or None.
+    Raises RecordingError if the file cannot be made.
+    """
+
+    def __init__(self, head, folder=None):
+        self._rows, self._file, self._size = array("d"), None, 0
+        head = {"date": datetime.now().astimezone().isoformat(timespec="seconds"), **head}
+        self.path = None if folder is False else self._create(head, folder)
+        self.recording = Recording(self._rows, head, path=self.path)
+
+    def _create(self, head, folder):
+        folder = Path(folder or os.environ.get("IR50P_RECORDINGS") or "recordings")
+        kind = head.get("kind", "arm")
+        if head.get("simulated") == "true" and "simulated" not in kind:
+            kind += "_simulated"
+        begun = datetime.fromisoformat(head["date"]).strftime("%Y-%m-%d_%H%M%S")
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            run = 1
+            while True:  # several runs in one second get numbers
+                path = folder / f"{begun}_{kind}_{run}.csv"
+                try:
+                    self._file = os.open(path, _FLAGS, 0o666)
+                    break
+                except FileExistsError:
+                    run += 1
+        except OSError as error:
+            raise RecordingError(
+                f"cannot record in {folder.absolute()}: {error.strerror}; {_ELSEWHERE}, or record=False for none"
+            ) from None
+        self.path = path
+        self._put(head_text(head).encode("ascii"))
+        return path
+
+    def write(self, sample, pwm, reference, gripper):
+        """Record one cycle: the Sample, the command (3,) PWM counts, reference (3,) rad or None, gripper bool.
+
+        Raises RecordingError if the disk takes no more (memory and file keep what was recorded before), InputError
+        for a reference that is not three numbers.
+        """
+        t, q, counts, missed = sample
+        r = _NAN3 if reference is None else _three(reference)
+        row = (t, *q.tolist(), *counts.tolist(), *pwm.tolist(), *r, gripper, missed)
+        self._rows.extend(row)
+        if self._file is not None:
+            if reference is None:
+                self._put((ROW_WITHOUT_REFERENCE % (row[:10] + row[13:])).encode())
+            else:
+                self._put((ROW % row).encode())
+
+    def write_block(self, t, q, counts, u, r=None, gripper=False, missed=0):
+        """Record many cycles at once, for compiled runs: arrays (n,), (n, 3)... as in Recording; r may be None."""
+        table = np.empty((len(t), len(COLUMNS)))
+        table[:, 0], table[:, 1:4], table[:, 4:7], table[:, 7:10] = t, q, counts, u
+        table[:, 10:13] = math.nan if r is None else r
+        table[:, 13], table[:, 14] = gripper, missed
+        self._rows.frombytes(table.tobytes())
+        if self._file is not None:
+            self._put(rows_text(table).encode())
+
+    def _put(self, data):
+        try:
+            written = os.write(self._file, data)
+            while written < len(data):  # the disk is nearly full, or a signal came
+                written += os.write(self._file, data[written:])
+        except OSError as error:
+            self._give_up(error)
+        self._size += len(data)
+
+    def _give_up(self, error):
+        """Leave a file of whole lines and say what happened."""
+        try:
+            os.ftruncate(self._file, self._size)
+        except OSError:
+            pass  # then its last line is cut off; loading leaves that out
+        self.close()
+        raise RecordingError(
+            f"the recording {self.path} cannot be written on: {error.strerror}. Its first {self._size} bytes are safe, "
+            f"the run ends here. Make room, or {_ELSEWHERE}"
+        ) from None
+
+    def close(self):
+        """End the recording. May be called twice."""
+        file, self._file = self._file, None
+        if file is not None:
+            os.close(file)
+
+
+_ELSEWHERE = "choose another folder with record_to=... or the environment variable IR50P_RECORDINGS"
+
+
+def _three(reference):
+    try:
+        r1, r2, r3 = reference
+        return float(r1), float(r2), float(r3)
+    except (TypeError, ValueError):
+        raise InputError(f"reference = {reference!r}: give the three joint angles, rad (target(t)[0])") from None

@@ -1,0 +1,119 @@
+"""A recording in numbers and in a picture."""
+
+import io
+import math
+
+import numpy as np
+
+from ir50p_lab.errors import RecordingError
+
+_COLOURS = ("#0072B2", "#D55E00", "#009E73")  # joints 1, 2, 3 as in all figures of the book
+_DARK, _GREY = "#333333", "#666666"
+_STYLE = {
+    "axes.axisbelow": True,
+    "axes.edgecolor": _GREY,
+    "axes.grid": True,
+    "axes.labelcolor": _DARK,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.xmargin": 0.02,
+    "grid.color": "#E6E6E6",
+    "xtick.color": _GREY,
+    "xtick.labelsize": 9,
+    "ytick.color": _GREY,
+    "ytick.labelsize": 9,
+}
+
+
+def summarise(recording):
+    """List of three JointSummary of a Recording; RecordingError if it has no sample."""
+    from ir50p_lab.bench.recording import JointSummary
+
+    if not len(recording):
+        raise RecordingError("the recording has no sample: run the bench first")
+    t, q, u, r = recording.t, recording.q, recording.u, recording.reference
+    last = t > t[-1] - min(1.0, 0.5 * (t[-1] - t[0])) - 1e-9
+    late = t > t[-1] - min(5.0, 0.5 * (t[-1] - t[0])) - 1e-9
+    found = []
+    for j in range(3):
+        y, target = q[:, j], _last_known(r[:, j])
+        final = float(y[last].mean())
+        way = target - y[0]
+        error = r[:, j] - y
+        known = np.isfinite(error)
+        found.append(
+            JointSummary(
+                joint=j + 1,
+                start=float(y[0]),
+                final=final,
+                target=target,
+                error=target - final,
+                overshoot=max(0.0, float(((y - target) * np.sign(way)).max())) if way else math.nan,
+                swing=float(np.ptp(y[late])),
+                rms_error=float(np.sqrt(np.mean(error[known] ** 2))) if known.any() else math.nan,
+                saturated=float(np.mean(np.abs(u[:, j]) >= 255)) if np.isfinite(u[:, j]).any() else math.nan,
+                u_std=float(np.nanstd(u[:, j])) if np.isfinite(u[:, j]).any() else math.nan,
+            )
+        )
+    return found
+
+
+def _last_known(values):
+    known = values[np.isfinite(values)]
+    return float(known[-1]) if len(known) else math.nan
+
+
+def plot(recording):
+    """Angles and PWM of a Recording, one column per joint; RecordingError if it has no sample."""
+    import matplotlib
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    joints = recording.metrics()
+    with matplotlib.rc_context(_STYLE):
+        figure = _figure_class()(figsize=(9.0, 4.8), layout="constrained", facecolor="white", dpi=100)
+        FigureCanvasAgg(figure)
+        axes = figure.subplots(2, 3, sharex=True, sharey="row", height_ratios=(3, 2))
+    t, known = recording.t, np.isfinite(recording.reference).any()
+    for j, (above, below) in enumerate(axes.T):
+        above.plot(t, recording.q[:, j], color=_COLOURS[j], linewidth=1.4, label="measured")
+        if known:
+            above.step(t, recording.reference[:, j], where="post", color=_DARK, ls="--", lw=1.2, label="set point")
+        below.step(t, recording.u[:, j], where="post", color=_COLOURS[j], linewidth=0.8)
+        above.set_title(_finding(joints[j]), fontsize=10.5, color=_DARK)
+        below.set(ylim=(-275, 275), yticks=(-255, 0, 255), xlabel="t [s]")
+    axes[0, 0].set_ylabel("angle [rad]")
+    axes[1, 0].set_ylabel("command [PWM counts]")
+    if known:
+        axes[0, 0].legend(fontsize=9)
+    figure.suptitle(_origin(recording), fontsize=10, color=_GREY)
+    return figure
+
+
+def _finding(joint):
+    if math.isnan(joint.error):
+        return f"joint {joint.joint}"
+    return f"joint {joint.joint}: ends {1000 * abs(joint.error):.0f} mrad from its set point"
+
+
+def _origin(recording):
+    head = recording.header
+    parts = [head.get("bench", "recording of unknown origin")]
+    if recording.simulated:
+        parts.append("simulated, not measured")
+    parts += [head["date"][:16].replace("T", " ")] if "date" in head else []
+    return "   |   ".join(parts)
+
+
+def _figure_class():
+    from matplotlib.figure import Figure
+
+    class RecordingFigure(Figure):
+        """A Figure that a notebook displays at the end of a cell, with no pyplot behind it."""
+
+        def _repr_png_(self):
+            stream = io.BytesIO()
+            self.savefig(stream, format="png", dpi=2 * self.dpi)
+            width, height = self.bbox.size
+            return stream.getvalue(), {"width": round(width), "height": round(height)}
+
+    return RecordingFigure
