@@ -1,0 +1,210 @@
+"""The simulated bench: the same contract as the board, without one; as fast as the machine or at the arm's pace."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Sample
+from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, convert, read_pots
+from ir50p_lab.bench.unit import UNIT
+from ir50p_lab.controllers.base import Controller
+from ir50p_lab.controllers.dispatch import control_step
+from ir50p_lab.errors import InputError
+from ir50p_lab.jit import jit
+from ir50p_lab.modelling.arm import load_arm
+
+_BLOCK = 1000  # samples between two looks at the disk and at Ctrl-C in a compiled run
+_SINK = 3.0  # s without drive after which an arm that was let go lies still
+
+
+@jit()
+def _compiled_cycles(theta, n, w, x, joint, slope, zero, low, high, queue, pwm, kind, p, s, t, r, noise, steps, out):
+    """The loop of `run`, `step` and `drive`, many cycles at once; out (cycles, 15): counts, q, u, truth q and qd.
+
+    Returns the number of cycles done; fewer than asked for if the command of the last was not finite.
+    """
+    counts, q, command = np.empty(3), np.empty(3), np.empty(3)
+    delay = queue.shape[0]
+    for k in range(t.size):
+        if t[k] > 0.0:  # the first cycle of a run measures at once
+            for i in range(3):
+                acting = pwm[i]
+                if delay > 0:
+                    acting = queue[0, i]
+                    for j in range(delay - 1):
+                        queue[j, i] = queue[j + 1, i]
+                    queue[delay - 1, i] = pwm[i]
+                command[i] = acting
+            advance_unit(theta, n, w, x, joint, command, steps)
+        read_pots(w, joint, noise[k], counts)
+        convert(counts)
+        for i in range(3):
+            q[i] = (counts[i] - zero[i]) / slope[i]
+        control_step(kind, p, s, t[k], q, r[k], command)
+        for i in range(3):
+            out[k, i], out[k, 3 + i] = counts[i], q[i]
+            out[k, 9 + i], out[k, 12 + i] = joint[i], x[3 + i]
+        if not np.isfinite(command[0] + command[1] + command[2]):
+            return k
+        for i in range(3):
+            u = min(max(np.rint(command[i]), -LIMIT_PWM), LIMIT_PWM)
+            if (q[i] <= low[i] and u < 0.0) or (q[i] >= high[i] and u > 0.0):
+                u = 0.0
+            pwm[i] = out[k, 6 + i] = u
+    return t.size
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What the simulation knows and no student can: t (n,) s; q (n, 3) rad of the links, qd (n, 3) rad/s."""
+
+    t: np.ndarray
+    q: np.ndarray
+    qd: np.ndarray
+
+
+class SimulatedBench(Bench):
+    """A simulated arm on the bench; its time is a counter of periods, and nothing passes between two runs.
+
+    Args:
+        arm: Arm with actuators; default `load_arm()`. unit: table of what is not ideal; seed: which copy of it, and
+        the noise. q0: (3,) rad, where the arm stands when first opened (default zero).
+        realtime: pace the cycles by the clock, for demonstrations. period: s, whole milliseconds.
+        calibration: default the nominal one, from which the unit differs a little, as a real one does.
+        record_to: folder for recordings, or False for none on disk.
+
+    Attributes: plant: the SimulatedArm; truth: Truth of the last run, for tests and for plots that say so.
+    Raises: ArmError without actuators, InputError for a period or q0 that is not possible.
+    """
+
+    kind = "simulated"
+    simulated = True
+
+    def __init__(
+        self,
+        arm=None,
+        *,
+        unit=UNIT,
+        seed=0,
+        q0=None,
+        realtime=False,
+        period=0.01,
+        calibration=None,
+        record_to=None,
+        name=None,
+    ):
+        arm = load_arm() if arm is None else arm
+        self.plant = SimulatedArm(arm, unit, seed, q0=q0)
+        name = name or f"simulated {arm.name}, unit {seed}"
+        super().__init__(arm, calibration or self.plant.nominal, period=period, record_to=record_to, name=name)
+        self._steps = round(self.period / STEP)
+        if abs(self._steps * STEP - self.period) > 1e-9:
+            raise InputError(f"period = {period} s: the simulated bench needs whole milliseconds")
+        self.realtime = realtime
+        self._queue = np.zeros((int(self.plant.unit.delay), JOINTS))
+        self._truth, self._started, self._missed = [], 0.0, 0
+
+    # ---- what Bench asks for
+
+    def _open(self):
+        pass
+
+    def _begin(self):
+        self._queue[:] = 0.0
+        self._truth, self._missed = [], 0
+        self._started = time.perf_counter()
+
+    def _measure(self, k):
+        if k > 0:
+            self.plant.advance(self._acting(), self.period)
+        if self.realtime:
+            self._wait(k)
+        t = k * self.period
+        self._truth.append((t, self.plant.q_true, self.plant.qd_true))
+        return t, self.plant.counts(), self._missed
+
+    def _acting(self):
+        """The command that acts now: the one of `delay` periods ago."""
+        if not len(self._queue):
+            return self._pwm
+        acting = self._queue[0].copy()
+        self._queue[:-1] = self._queue[1:]
+        self._queue[-1] = self._pwm
+        return acting
+
+    def _wait(self, k):
+        """Wait for the moment of cycle k, counted from the start of the run, so that no error adds up."""
+        early = self._started + k * self.period - time.perf_counter()
+        if early > 0:
+            time.sleep(early)
+        elif early < -self.period:
+            self._missed += 1
+
+    def _send(self, pwm, gripper):
+        return pwm
+
+    def _cut(self):
+        self._queue[:] = 0.0
+
+    def _close(self):
+        self.plant.advance(np.zeros(JOINTS), _SINK)
+
+    def _header(self):
+        return {"seed": str(self.plant.seed), "delay_periods": str(len(self._queue))}
+
+    # ---- and what only a simulation can
+
+    def follow(self, controller, reference, seconds, *, record=True, **header):
+        """Run `controller` on `reference` for `seconds`; compiled as a whole when the controller is.
+
+        The numbers are those of the loop in Python, to the last bit. Returns the Recording (None with record=False).
+        """
+        if self.realtime or not isinstance(controller, Controller):
+            return super().follow(controller, reference, seconds, record=record, **header)
+        controller.reset()
+        cycles = self._number_of_cycles(seconds)
+        self._end_run()  # of a loop that was left by break
+        self._recorder = recorder = self._start_recorder(header) if record else None
+        self._pwm = np.zeros(JOINTS)
+        try:
+            self._begin()
+            for first in range(0, cycles, _BLOCK):
+                self._block(controller, reference, np.arange(first, min(first + _BLOCK, cycles)), recorder)
+        except BaseException:
+            self.cut()
+            raise
+        finally:
+            self._end_run()
+        return self.recording if record else None
+
+    def _block(self, controller, reference, k, recorder):
+        t = k * self.period
+        if hasattr(reference, "sample"):
+            r = np.ascontiguousarray(reference.sample(t))
+        else:
+            r = np.array([np.stack(reference(time)) for time in t], dtype=float)
+        plant, out = self.plant, np.empty((len(t), 15))
+        fixed = (np.array(self.calibration.slope), np.array(self.calibration.zero), self._q_low, self._q_high)
+        law = (controller.kind, controller.parameters, controller.state)
+        arrays = (plant._theta, plant._numbers, plant._w, plant._x, plant._joint)
+        noise = plant._next_noise(len(t))
+        done = _compiled_cycles(*arrays, *fixed, self._queue, self._pwm, *law, t, r, noise, self._steps, out)
+        rows = out[:done]
+        if recorder is not None and done:
+            recorder.write_block(t[:done], rows[:, 3:6], rows[:, :3], rows[:, 6:9], r[:done, 0], self._gripper, 0)
+        self._truth.append((t[:done], rows[:, 9:12], rows[:, 12:15]))
+        if done < len(t):
+            raise InputError(
+                f"the command of the controller at t = {t[done]:.6g} s is not finite; the drive has been cut. Check "
+                "the reference, and reset the controller"
+            )
+        self._last = Sample(float(t[-1]), rows[-1, 3:6].copy(), rows[-1, :3].copy(), 0)
+
+    @property
+    def truth(self):
+        """Truth of the last run."""
+        if not self._truth:
+            return Truth(np.empty(0), np.empty((0, 3)), np.empty((0, 3)))
+        t, q, qd = zip(*self._truth, strict=True)
+        return Truth(np.hstack(t), np.vstack(q), np.vstack(qd))

@@ -1,0 +1,202 @@
+"""The arm behind the wires, simulated: PWM counts go in, counts of the converter come out."""
+
+import math
+
+import numpy as np
+
+from ir50p_lab.bench.calibration import nominal_calibration
+from ir50p_lab.bench.unit import UNIT
+from ir50p_lab.errors import ArmError, InputError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.jit import jit
+from ir50p_lab.modelling import closed_form as cf
+from ir50p_lab.modelling.arm import Arm
+from ir50p_lab.modelling.chain import forward_kinematics
+from ir50p_lab.simulation.plant import FC, FS, FV, GRAVITY, LIMIT, TF, make_plant
+from ir50p_lab.simulation.steps import dry_step
+
+STEP = 0.001  # s; Moreau's step is of first order, and 1 ms is far below the time constants of the drives
+HIGHEST_COUNT = 1023.0
+_SETTLE = 2e-4  # rad a link sinks within the play per step: 2 mrad take 10 ms
+
+# places in the array of the unit's numbers: three values each, then one
+GAIN, DEAD, PLAY, SLOPE, ZERO, BOW, LOW, SPAN, DRAG, N_UNIT = 0, 3, 6, 9, 12, 15, 18, 21, 24, 25
+
+
+@jit()
+def _at_motor(n, w, i, pwm):
+    """What the motor of joint i sees of a command: supply saturation, dead zone, its own gain."""
+    top = n[LIMIT + i] / w[GAIN + i]
+    pwm = min(max(pwm, -top), top)
+    return w[GAIN + i] * pwm if abs(pwm) >= w[DEAD + i] else 0.0
+
+
+@jit()
+def _in_play(joint, drive, half, side):
+    """Angle of the link behind a gear with play: dragged along, or (side 1, -1) resting on a flank."""
+    if side != 0.0:
+        joint += min(max(drive + side * half - joint, -_SETTLE), _SETTLE)
+    return min(max(joint, drive - half), drive + half)
+
+
+@jit()
+def advance_unit(theta, n, w, x, joint, pwm, steps):
+    """Advance drive side x = (q, qd) (6,) and links joint (3,) by `steps` steps with pwm (3,) held."""
+    q1, q2, q3, a, b, c = x[0], x[1], x[2], x[3], x[4], x[5]
+    u1, u2, u3 = _at_motor(n, w, 0, pwm[0]), _at_motor(n, w, 1, pwm[1]), _at_motor(n, w, 2, pwm[2])
+    # gravity presses the teeth of joints 2 and 3 together; only where it is small do they have play
+    g2, g3 = cf.gravity_torques(theta, n[GRAVITY], math.cos(q2), math.cos(q2 + q3))
+    side2 = -cf.sign(g2) if abs(g2) > w[DRAG] else 0.0
+    side3 = -cf.sign(g3) if abs(g3) > w[DRAG] else 0.0
+    j1, j2, j3 = joint[0], joint[1], joint[2]
+    p1, p2, p3 = w[PLAY], w[PLAY + 1], w[PLAY + 2]
+    for _ in range(steps):
+        q1, q2, q3, a, b, c = dry_step(theta, n, q1, q2, q3, a, b, c, u1, u2, u3, STEP)
+        j1, j2, j3 = _in_play(j1, q1, p1, 0.0), _in_play(j2, q2, p2, side2), _in_play(j3, q3, p3, side3)
+    x[0], x[1], x[2] = q1, q2, q3
+    x[3], x[4], x[5] = cf.not_denormal(a), cf.not_denormal(b), cf.not_denormal(c)
+    joint[0], joint[1], joint[2] = j1, j2, j3
+
+
+@jit()
+def read_pots(w, joint, noise, counts):
+    """What a converter without steps would read at the links (3,) rad: a bowed line and noise (3,) counts."""
+    for i in range(3):
+        along = (joint[i] - w[LOW + i]) / w[SPAN + i]
+        counts[i] = w[ZERO + i] + w[SLOPE + i] * joint[i] + 4 * w[BOW + i] * along * (1 - along) + noise[i]
+
+
+@jit()
+def convert(counts):
+    """10-bit conversion in place: whole counts, 0..1023."""
+    for i in range(3):
+        counts[i] = min(max(np.rint(counts[i]), 0.0), HIGHEST_COUNT)
+
+
+class SimulatedArm:
+    """One unit of an arm: PWM counts -> motion -> converter counts, reproducible from its seed.
+
+    The drive side (motor and gear, which carry the inertia) moves with dry friction, back-EMF, end stops at the joint
+    limits and a table under the tip; the links, and the potentiometers on them, follow within the play of the gear.
+
+    Args:
+        arm: Arm with actuators. unit: Unit; its copy number `seed` is drawn. seed: of the unit and of the noise.
+        q0: (3,) rad, where it stands; default the zero pose, or the rest pose where zero is not possible.
+
+    Attributes: arm; unit: the drawn Unit; nominal: Calibration a maker would state (the unit differs from it).
+    `q_true`, `qd_true`, `tip_true` are for tests and for plots that say 'truth of the simulation'.
+    Raises: ArmError if the arm has no actuators, InputError if q0 is not possible.
+    """
+
+    def __init__(self, arm, unit=UNIT, seed=0, *, q0=None):
+        if not isinstance(arm, Arm):
+            raise ArmError(f"a simulated arm needs an Arm (masses, limits, motors), not {type(arm).__name__}")
+        if arm.actuators is None:
+            raise ArmError(
+                f"{arm.name} has no actuators, so nobody knows what a PWM count does to it: add [actuators] to its "
+                "file, or Actuators.from_joint_data(...) to the Arm"
+            )
+        self.arm, self.unit, self.seed = arm, unit.drawn(seed), seed
+        self.nominal = nominal_calibration(arm)
+        plant = make_plant(arm, unit="PWM", stops=True, table=self.unit.table)
+        self._theta, self._numbers = plant.theta, plant.numbers
+        for place in (FC, FS):
+            self._numbers[place : place + 3] *= self.unit.friction
+        self._numbers[LIMIT : LIMIT + 3] *= self.unit.motor_gain
+        self._coasting = self._numbers.copy()  # bridges open: no current, so no back-EMF brakes
+        self._coasting[FV : FV + 3] = np.array(arm.friction.fv) / arm.actuators.gain
+        self._w = self._unit_numbers()
+        self._rng = np.random.default_rng([int(seed), 1])
+        self._noise, self._used = np.empty((0, 3)), 0
+        self._x, self._joint, self._late = np.zeros(6), np.zeros(3), 0.0
+        self.place(self._start() if q0 is None else q0)
+
+    def _unit_numbers(self):
+        unit, w = self.unit, np.zeros(N_UNIT)
+        low, high = (np.clip(limit, -np.pi, np.pi) for limit in (self.arm.q_min, self.arm.q_max))
+        middle = 0.5 * (low + high)
+        slope = np.array(self.nominal.slope) * unit.pot_slope
+        for place, values in (
+            (GAIN, unit.motor_gain),
+            (DEAD, unit.dead_zone),
+            (PLAY, 0.5 * np.array(unit.backlash)),
+            (SLOPE, slope),
+            (ZERO, self.nominal.counts(middle) - slope * middle + unit.pot_shift),
+            (BOW, unit.pot_bow),
+            (LOW, low),
+            (SPAN, high - low),
+        ):
+            w[place : place + 3] = values
+        w[DRAG] = unit.link_drag
+        return w
+
+    def _start(self):
+        from ir50p_lab.bench.rest import rest_pose
+
+        return np.zeros(3) if self._why_not(np.zeros(3)) is None else rest_pose(self.arm)
+
+    def _why_not(self, q):
+        for i in range(3):
+            if not self.arm.q_min[i] <= q[i] <= self.arm.q_max[i]:
+                return f"joint {i + 1} = {q[i]:.4g} rad is outside {self.arm.q_min[i]:.4g}..{self.arm.q_max[i]:.4g} rad"
+        height = forward_kinematics(self.arm, q)[2]
+        if height < self.unit.table - 1e-9:
+            return f"the tip would be at height {height:.4g} m, below the table at {self.unit.table:g} m"
+        return None
+
+    def place(self, q):
+        """Put the arm at rest at q (3,) rad, as by hand. Raises InputError if it cannot be there."""
+        q = vectors3("q0", q)
+        if q.shape != (3,):
+            raise InputError(f"q0 has shape {q.shape}: give three angles, rad")
+        if why := self._why_not(q):
+            raise InputError(f"the arm cannot stand at q0 = {q.tolist()} rad: {why}")
+        self._x[:3], self._x[3:], self._joint[:] = q, 0.0, q
+
+    def advance(self, pwm, seconds, *, enabled=True):
+        """Let `seconds` pass with pwm (3,) counts at the bridges; remainders of the 1 ms steps are kept for later.
+
+        enabled: False leaves the motors open (a board without power): they coast instead of braking.
+        """
+        self._late += seconds
+        steps = int(self._late / STEP + 1e-6)
+        self._late -= steps * STEP
+        numbers = self._numbers if enabled else self._coasting
+        command = np.asarray(pwm, dtype=float) if enabled else np.zeros(3)
+        advance_unit(self._theta, numbers, self._w, self._x, self._joint, command, steps)
+
+    def voltage_counts(self):
+        """The potentiometers now, with noise but before conversion: (3,) in counts, for a converter of one's own."""
+        counts = np.empty(3)
+        read_pots(self._w, self._joint, self._next_noise(1)[0], counts)
+        return counts
+
+    def counts(self):
+        """What the 10-bit converter reads now: (3,) whole counts. Each call takes the next noise of the seed."""
+        counts = np.empty(3)
+        read_pots(self._w, self._joint, self._next_noise(1)[0], counts)
+        convert(counts)
+        return counts
+
+    def _next_noise(self, n):
+        """The next n rows of noise, (n, 3) counts: the same sequence, however it is taken."""
+        while len(self._noise) - self._used < n:
+            fresh = self._rng.normal(0.0, self.unit.noise, (1024, 3))
+            self._noise, self._used = np.concatenate([self._noise[self._used :], fresh]), 0
+        self._used += n
+        return self._noise[self._used - n : self._used]
+
+    @property
+    def q_true(self):
+        """Angles of the links (3,) rad, behind the play."""
+        return self._joint.copy()
+
+    @property
+    def qd_true(self):
+        """Velocities of the drive side (3,) rad/s."""
+        return self._x[3:].copy()
+
+    @property
+    def tip_true(self):
+        """Position of the tip (3,) m."""
+        return forward_kinematics(self.arm, self._joint)

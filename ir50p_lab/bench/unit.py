@@ -1,0 +1,88 @@
+"""What is not ideal about an arm on the bench: one table, each number with its reason. Nothing here was measured."""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unit:
+    """One copy of an arm, with what its drawing does not say.
+
+    Friction, breakaway, motor gains, back-EMF and the limit of the supply are the Arm's (`arm.friction`,
+    `arm.actuators`); this table holds what comes on top. `drawn(seed)` gives one copy of a series; spread=0 gives the
+    nominal one.
+    """
+
+    # --- drive
+    # Torque per count and dry friction, relative to the arm's own values; a drawn unit has its own.
+    motor_gain: tuple = (1.0, 1.0, 1.0)
+    friction: tuple = (1.0, 1.0, 1.0)
+    # PWM counts. Assumed: pulses shorter than the 0.6 us in which a bridge turns on are swallowed whole; one count is
+    # 0.2 us at 20 kHz. Longer pulses are shifted, not shortened, so the counts above act in full.
+    dead_zone: tuple = (3.0, 3.0, 3.0)
+    # rad between the flanks of the gear. Assumed: the +-0.5 mm repeatability of the ROB3i manual is play at 0.5 m.
+    backlash: tuple = (0.002, 0.002, 0.002)
+    # PWM counts. Assumed: pot and bearings behind the gear hold the link within the play against this much gravity.
+    link_drag: float = 2.0
+    # Periods from a sample to the moment its command acts. Assumed: serial line and computer as in thesis 4.1.2.
+    delay: int = 2
+
+    # --- potentiometers and converter, in counts of the 10-bit converter
+    # Gain relative to the nominal calibration, and shift; a drawn unit has its own.
+    pot_slope: tuple = (1.0, 1.0, 1.0)
+    pot_shift: tuple = (0.0, 0.0, 0.0)
+    # Largest deviation from a straight line, in the middle of the travel. Assumed: a good wire-wound one, 0.2 %.
+    pot_bow: tuple = (1.5, -1.5, 1.5)
+    # rms before rounding. Assumed: the thesis calls its signals very noisy; 1 count is 5 to 8 mrad here.
+    noise: float = 1.0
+
+    # --- surroundings
+    # Height of the table, m. Assumed: the base stands on it.
+    table: float = 0.0
+
+    # --- how much copies differ: 1 as below, 0 not at all
+    spread: float = 1.0
+    # Half widths. Assumed: usual tolerances of small DC motors, greased gears and hand-mounted potentiometers.
+    gain_spread: float = 0.03
+    friction_spread: float = 0.05
+    slope_spread: float = 0.01
+    shift_spread: float = 3.0
+    bow_spread: float = 0.5
+
+    def __post_init__(self):
+        for field in fields(self):
+            value, size = getattr(self, field.name), np.size(field.default)
+            value = vectors3(f"unit {field.name}", value) if size == 3 else np.asarray(value, dtype=float)
+            if value.size != size or not np.isfinite(value).all():
+                raise InputError(f"unit {field.name} = {value.tolist()}: give {size} finite number(s)")
+            signed = field.name in ("pot_shift", "pot_bow", "table")
+            if not signed and (value < 0).any():
+                raise InputError(f"unit {field.name} = {value.tolist()}: must not be negative")
+            if field.name in ("motor_gain", "pot_slope") and (value == 0).any():
+                raise InputError(f"unit {field.name} = {value.tolist()}: must be positive")
+            if size == 3:
+                object.__setattr__(self, field.name, tuple(value.tolist()))
+        if self.delay != int(self.delay) or self.delay > 100:
+            raise InputError(f"unit delay = {self.delay}: give whole periods, 0 to 100")
+
+    def drawn(self, seed):
+        """The copy number `seed` of the series: a Unit with spread 0 that holds its own values (even distribution)."""
+        if self.spread == 0:
+            return self
+        even = np.random.default_rng([int(seed), 0]).uniform(-self.spread, self.spread, (5, 3))
+        return replace(
+            self,
+            motor_gain=self.motor_gain * (1 + self.gain_spread * even[0]),
+            friction=self.friction * (1 + self.friction_spread * even[1]),
+            pot_slope=self.pot_slope * (1 + self.slope_spread * even[2]),
+            pot_shift=self.pot_shift + self.shift_spread * even[3],
+            pot_bow=self.pot_bow + self.bow_spread * even[4],
+            spread=0.0,
+        )
+
+
+UNIT = Unit()
