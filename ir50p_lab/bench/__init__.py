@@ -6,7 +6,8 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
         "base": ["Bench", "Sample"],
-        "calibration": ["Calibration", "fit_calibration", "nominal_calibration"],
+        "calibration": ["Calibration", "nominal_calibration", "saved_calibration"],
+        "calibration_fit": ["fit_calibration"],
         "connect": ["connect"],
         "recording": ["Recording"],
         "replay": ["ReplayBench"],

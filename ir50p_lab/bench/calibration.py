@@ -1,16 +1,36 @@
 """From counts of the converter to joint angles: a straight line per joint, from an experiment (4.1.2)."""
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
+
+from ir50p_lab.errors import InputError, SuspiciousArmWarning
+from ir50p_lab.inputs import vectors3
+
+_PLAUSIBLE = (20.0, 1023 / np.radians(60))  # counts/rad: a potentiometer of many turns; of 60 deg over the full range
 
 
 @dataclass(frozen=True)
 class Calibration:
     """counts = zero + slope q, for each joint.
 
-    slope: (3,) counts/rad; zero: (3,) counts at q = 0; stderr_slope, stderr_zero: (3,) or None; source: where it is
-    from. Counts are those of a 10-bit converter, 0..1023.
+    ============ ================================================================ =====================
+    slope        how many counts a radian makes; > 0 by the wiring rule           (3,) counts/rad
+    zero         reading at q = 0                                                 (3,) counts
+    stderr_slope standard errors, or None if nobody has measured                  (3,) counts/rad
+    stderr_zero                                                                   (3,) counts
+    source       where it is from
+    arm          name of the arm it belongs to ('' for any)
+    points       what was measured: for each joint (angles, counts), or ()        rad, counts
+    remarks      what the fit found suspicious, sentences
+    ============ ================================================================ =====================
+
+    Counts are those of a 10-bit converter, 0..1023. Make one with `fit_calibration`, keep it with `save`; the bench
+    takes the one of its arm by itself (`saved_calibration`).
+
+    Raises InputError if a number is not finite, a slope is 0 or a standard error negative. Warns SuspiciousArmWarning
+    for a negative slope (then the joint runs away from its set point) and for one that no potentiometer has.
     """
 
     slope: tuple
@@ -18,18 +38,76 @@ class Calibration:
     stderr_slope: tuple | None = None
     stderr_zero: tuple | None = None
     source: str = "assumed"
+    arm: str = ""
+    points: tuple = ()
+    remarks: tuple = ()
 
     def __post_init__(self):
-        object.__setattr__(self, "_slope", np.array(self.slope, dtype=float))
-        object.__setattr__(self, "_zero", np.array(self.zero, dtype=float))
+        for name, unit in (
+            ("slope", "counts/rad"),
+            ("zero", "counts"),
+            ("stderr_slope", "counts/rad"),
+            ("stderr_zero", "counts"),
+        ):
+            value = getattr(self, name)
+            if value is None and name.startswith("stderr"):
+                continue
+            array = vectors3(name, value, unit=unit)
+            if array.shape != (3,):
+                raise InputError(f"{name} has shape {array.shape}; give one value per joint, shape (3,) ({unit})")
+            if name.startswith("stderr") and (array < 0).any():
+                raise InputError(f"{name} = {array.tolist()}: a standard error cannot be negative")
+            object.__setattr__(self, name, tuple(array.tolist()))
+        if 0.0 in self.slope:
+            raise InputError(
+                f"slope of joint {self.slope.index(0.0) + 1} is 0 counts/rad: counts would say nothing about the "
+                "angle; is the potentiometer connected and turning with the joint?"
+            )
+        object.__setattr__(self, "_slope", np.array(self.slope))
+        object.__setattr__(self, "_zero", np.array(self.zero))
+        for text in self._suspicions():
+            warnings.warn(text, SuspiciousArmWarning, stacklevel=3)
+
+    def _suspicions(self):
+        for joint, slope in enumerate(self.slope, 1):
+            if slope < 0:
+                yield (
+                    f"joint {joint}: slope = {slope:.4g} counts/rad is negative. The controllers and the board want "
+                    "counts that rise with q: swap the two outer wires of the potentiometer and calibrate again; "
+                    "driven as it is, the joint would run away"
+                )
+            elif not _PLAUSIBLE[0] <= slope <= _PLAUSIBLE[1]:
+                yield (
+                    f"joint {joint}: slope = {slope:.4g} counts/rad; {_PLAUSIBLE[0]:.0f} to {_PLAUSIBLE[1]:.0f} is "
+                    "usual (the sister arm has 122 to 192). Were the angles in degrees? Give rad"
+                )
 
     def radians(self, counts):
         """Angles of counts; both (3,) or (n, 3)."""
-        return (counts - self._zero) / self._slope
+        return (np.asarray(counts, dtype=float) - self._zero) / self._slope
 
     def counts(self, q):
         """Counts at angles; both (3,) or (n, 3), not rounded."""
         return self._zero + self._slope * np.asarray(q, dtype=float)
+
+    def stderr_radians(self, counts):
+        """Standard error of `radians(counts)` that the calibration brings, joint by joint; None if not measured.
+
+        The line is known best in the middle of the points it was fitted to and worse towards and past their ends.
+        """
+        if self.stderr_slope is None or not self.points:
+            return None
+        from ir50p_lab.bench.calibration_fit import stderr_at
+
+        return stderr_at(self, np.asarray(counts, dtype=float))
+
+    @property
+    def residuals(self):
+        """For each joint with points, measured angle minus angle of the counts, (m,) rad; a list of three arrays."""
+        return [
+            np.array(q) - (np.array(counts) - zero) / slope
+            for (q, counts), slope, zero in zip(self.points, self.slope, self.zero, strict=True)
+        ]
 
     def header(self):
         """Lines for the head of a recording."""
@@ -38,6 +116,61 @@ class Calibration:
             "counts_at_zero": " ".join(f"{x:.6g}" for x in self.zero),
             "calibration": self.source,
         }
+
+    def save(self, path=None):
+        """Write it as a readable file (TOML); without a path to where `saved_calibration` looks. Returns the Path.
+
+        Raises InputError if it belongs to no arm by name and no path is given, or the file cannot be written.
+        """
+        from ir50p_lab.bench.calibration_file import write_calibration
+
+        return write_calibration(self, path)
+
+    @classmethod
+    def load(cls, path):
+        """Read a file that `save` wrote (or a person). Raises InputError that names the file and what is wrong."""
+        from ir50p_lab.bench.calibration_file import read_calibration
+
+        return read_calibration(path)
+
+    def table(self):
+        """Slopes, zeros, standard errors and residuals as text, then the remarks."""
+        head = f"{'joint':>5} {'counts/rad':>17} {'counts at q = 0':>17} {'rms residual':>13} {'points':>6}"
+        lines = [head, *(" ".join(f"{cell:>{w}}" for cell, w in zip(row, (5, 17, 17, 13, 6))) for row in self._cells())]
+        return "\n".join([*lines, f"source: {self.source}", *self.remarks])
+
+    def _repr_html_(self):
+        """The table, as a notebook shows it."""
+        from html import escape
+
+        heads = ("joint", "counts/rad", "counts at q = 0", "rms residual", "points")
+        rows = ["".join(f"<th>{cell}</th>" for cell in heads)]
+        rows += ["".join(f"<td>{cell}</td>" for cell in row) for row in self._cells()]
+        remarks = "".join(f"<li>{escape(text)}</li>" for text in self.remarks)
+        body = "".join(f"<tr>{row}</tr>" for row in rows)
+        return f"<table>{body}</table><p>source: {escape(self.source)}</p>" + (f"<ul>{remarks}</ul>" if remarks else "")
+
+    def _cells(self):
+        for i in range(3):
+            cells = [str(i + 1)]
+            for values, errors in ((self.slope, self.stderr_slope), (self.zero, self.stderr_zero)):
+                measured = errors is not None and (errors[i] > 0)
+                cells.append(f"{values[i]:.2f}" + (f" ± {errors[i]:.2f}" if measured else ""))
+            residual = self.residuals[i] if self.points else np.empty(0)
+            rms = f"{np.degrees(np.sqrt(np.mean(residual**2))):.2f} deg" if residual.size else "not measured"
+            yield [*cells, rms, str(residual.size)]
+
+
+def saved_calibration(arm):
+    """The calibration that was saved for `arm`, or None if there is none.
+
+    Looks for the file named by the environment variable IR50P_CALIBRATION, else for calibration_<arm>.toml in the
+    working folder. Raises InputError if the variable names a file that is not there, if the file is broken, or if it
+    belongs to another arm.
+    """
+    from ir50p_lab.bench.calibration_file import find_calibration
+
+    return find_calibration(arm)
 
 
 # Bench data of an older ROB3 (public repository eurobtec/rob3): counts of a 10-bit converter per rad of axes 1-3.

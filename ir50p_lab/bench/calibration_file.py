@@ -1,0 +1,122 @@
+"""Calibrations as TOML files: readable, with units in comments, one per arm."""
+
+import os
+import re
+import tomllib
+from pathlib import Path
+
+import tomlkit
+
+from ir50p_lab.bench.calibration import Calibration
+from ir50p_lab.errors import InputError
+
+VARIABLE = "IR50P_CALIBRATION"
+_COMMENTS = {
+    "slope": "counts/rad, joints 1 to 3",
+    "zero": "counts at q = 0",
+    "stderr_slope": "counts/rad, standard error",
+    "stderr_zero": "counts, standard error",
+}
+_TEXTS = ("arm", "source")
+
+
+def default_path(name):
+    """Where the calibration of the arm `name` is kept: IR50P_CALIBRATION, else calibration_<name>.toml here."""
+    if os.environ.get(VARIABLE):
+        return Path(os.environ[VARIABLE])
+    return Path(f"calibration_{re.sub(r'[^A-Za-z0-9.-]+', '_', name).strip('_.') or 'arm'}.toml")
+
+
+def write_calibration(calibration, path=None):
+    """Write `calibration`; every number with all its digits. Returns the Path; see `Calibration.save`."""
+    if path is None:
+        if not calibration.arm:
+            raise InputError("this calibration belongs to no arm by name: give save(path), or fit it with arm=...")
+        path = default_path(calibration.arm)
+    document = tomlkit.document()
+    document.add(
+        tomlkit.comment("Calibration of the potentiometers: counts = zero + slope q (10-bit counts, q in rad).")
+    )
+    for name in _TEXTS:
+        document.add(name, getattr(calibration, name))
+    for name, comment in _COMMENTS.items():
+        value = getattr(calibration, name)
+        if value is not None:
+            document.add(name, list(value))
+            document[name].comment(comment)
+    if calibration.remarks:
+        document.add("remarks", list(calibration.remarks))
+    for joint, (q, counts) in enumerate(calibration.points, 1):
+        table = tomlkit.table()
+        table.add("q", list(q))
+        table["q"].comment("rad, as measured")
+        table.add("counts", list(counts))
+        document.add(f"joint{joint}", table)
+    path = Path(path)
+    try:
+        path.write_text(tomlkit.dumps(document), encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"cannot write the calibration to {path}: {error.strerror}; give another path") from None
+    return path
+
+
+def read_calibration(path):
+    """Read a calibration file; see `Calibration.load`."""
+    path = Path(path)
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(
+            f"cannot read the calibration file {path}: {error.strerror}; check the path or {VARIABLE}, or calibrate "
+            "(notebook 06)"
+        ) from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{path} is not a TOML file: {error}. Write one with Calibration.save") from None
+    try:
+        return _build(data)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def _build(data):
+    joints = [f"joint{i}" for i in (1, 2, 3)]
+    known = (*_TEXTS, *_COMMENTS, "remarks", *joints)
+    for name in data:
+        if name not in known:
+            raise InputError(f"unknown entry '{name}'; known: {', '.join(known)}")
+    missing = [name for name in ("slope", "zero") if name not in data]
+    if missing:
+        raise InputError(f"it lacks {' and '.join(missing)}")
+    points = ()
+    if any(name in data for name in joints):
+        points = tuple(_points(name, data.get(name, {"q": [], "counts": []})) for name in joints)
+    texts = {name: data[name] for name in _TEXTS if name in data}
+    remarks = data.get("remarks", [])
+    if not all(isinstance(text, str) for text in (*texts.values(), *remarks)):
+        raise InputError("arm, source and remarks must be text in quotes")
+    numbers = {name: data[name] for name in _COMMENTS if name in data}
+    return Calibration(**numbers, **texts, remarks=tuple(remarks), points=points)
+
+
+def _points(name, table):
+    try:
+        q, counts = (tuple(float(x) for x in table[key]) for key in ("q", "counts"))
+    except (KeyError, TypeError, ValueError):
+        raise InputError(f"[{name}] must hold two lists of numbers, q (rad) and counts") from None
+    if len(q) != len(counts):
+        raise InputError(f"[{name}] holds {len(q)} angles but {len(counts)} counts: they belong together in pairs")
+    return q, counts
+
+
+def find_calibration(arm):
+    """The saved calibration of `arm`, or None; see `saved_calibration`."""
+    path = default_path(arm.name)
+    if not path.exists() and not os.environ.get(VARIABLE):
+        return None
+    calibration = read_calibration(path)
+    if calibration.arm and calibration.arm != arm.name:
+        raise InputError(
+            f"{path} holds the calibration of '{calibration.arm}', but the arm is '{arm.name}': its angles would be "
+            f"wrong; calibrate this arm, or clear {VARIABLE}"
+        )
+    return calibration

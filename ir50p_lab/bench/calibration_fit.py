@@ -1,0 +1,269 @@
+"""The line through measured angles and counts: least squares, its standard errors, and what looks wrong in the data."""
+
+import numpy as np
+
+from ir50p_lab.bench.calibration import Calibration
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import first_not_finite
+
+_FULL = 1023.0
+_WRAP = 300.0  # counts: no two neighbouring points of a sound potentiometer jump back by so much
+
+
+def fit_calibration(q, counts, *, joint=None, others=None, angles="read", arm="", source="measured"):
+    """Fit counts = zero + slope q to an experiment: the joint stands at angles q, the converter shows counts (4.1.2).
+
+    Which of the two carries the error decides how to fit. A protractor is read to about half a degree, which is one or
+    two counts; counts are averaged to a fraction of one. So the angle is the uncertain number:
+
+    - angles="read": the joint stood somewhere and its angle was read. Then q is regressed on counts,
+      q = a + b counts, and slope = 1/b, zero = -a/b. The usual way round (counts on q) would take the errors of q for
+      a wider spread of angles and make the slope too small, by the factor var(q)/(var(q) + var(error));
+    - angles="set": the joint was moved to marks of the protractor. Then the error lies between mark and joint, no
+      longer in the list of marks, and counts are regressed on q.
+
+    With ten points over a wide range the two differ by less than their standard errors; with a narrow one they do not.
+
+    Args:
+        q, counts: (m, 3), m poses of the whole arm; or three lists of different lengths, one experiment per joint; or
+            (m,) for one joint only: then give `joint` and `others`. Angles in rad, counts of the 10-bit converter.
+        joint: 1, 2 or 3. others: Calibration that keeps the other two joints (`nominal_calibration(arm)`, say).
+        arm: Arm or its name, saved with it. source: kept with it (who measured, when).
+
+    Returns: Calibration with standard errors (0 for a joint that was not measured), points and residuals; its
+    `remarks` name what looks wrong: a bow that a line cannot follow (F test against a cubic), a point that lies far
+    off, a negative slope, few points, a narrow range, a reading at the end of the track.
+    Raises: InputError for what no line fits: fewer than 3 points, angles in degrees, counts outside 0..1023, a reading
+    that does not change or does not follow its angle, a potentiometer that wraps, cables of two joints swapped.
+    """
+    if angles not in ("read", "set"):
+        raise InputError(f"angles = {angles!r}: choose 'read' (joint stood, angle read) or 'set' (moved to marks)")
+    name = getattr(arm, "name", arm)
+    if joint is not None:
+        return _one_joint(q, counts, joint, others, angles, name, source)
+    q, counts = _three("q", q), _three("counts", counts)
+    if all(len(x) == len(q[0]) for x in (*q, *counts)):
+        _refuse_swapped(np.array(q), np.array(counts))
+    fits = [_line(i + 1, *_pair(i + 1, q[i], counts[i]), angles) for i in range(3)]
+    return _calibration(fits, name, source)
+
+
+def _one_joint(q, counts, joint, others, angles, name, source):
+    if joint not in (1, 2, 3):
+        raise InputError(f"joint = {joint!r}: give 1, 2 or 3")
+    if not isinstance(others, Calibration):
+        raise InputError("one joint alone makes no calibration: give others=, for example nominal_calibration(arm)")
+    fits = []
+    for i in range(3):
+        if i + 1 == joint:
+            fits.append(_line(joint, *_pair(joint, q, counts), angles))
+            continue
+        points = others.points[i] if others.points else ((), ())
+        errors = [0.0 if e is None else e[i] for e in (others.stderr_slope, others.stderr_zero)]
+        remarks = [text for text in others.remarks if text.startswith(f"joint {i + 1}:")]
+        fits.append((others.slope[i], others.zero[i], *errors, points, remarks))
+    return _calibration(fits, name or others.arm, source)
+
+
+def _calibration(fits, name, source):
+    slope, zero, stderr_slope, stderr_zero, points, remarks = zip(*fits, strict=True)
+    return Calibration(
+        slope=slope,
+        zero=zero,
+        stderr_slope=stderr_slope,
+        stderr_zero=stderr_zero,
+        source=source,
+        arm=name,
+        points=points,
+        remarks=tuple(text for texts in remarks for text in texts),
+    )
+
+
+def _three(name, value):
+    """Three arrays, from (m, 3) or from three lists."""
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        array = None
+    if array is not None and array.ndim == 2 and array.shape[1] == 3:
+        return list(array.T)
+    if array is not None and array.ndim == 1:
+        raise InputError(f"{name} has shape {array.shape}: one joint only? Then give joint= and others=")
+    if not hasattr(value, "__len__") or len(value) != 3 or (array is not None and array.ndim > 2):
+        shape = "" if array is None else f" has shape {array.shape}"
+        raise InputError(f"{name}{shape}: give (m, 3), one row per pose, or three lists, one per joint")
+    return list(value)
+
+
+def _pair(joint, q, counts):
+    """Two arrays (m,) of one joint; InputError if they are none, not finite or out of range."""
+    pair = []
+    for name, value in (("q", q), ("counts", counts)):
+        try:
+            array = np.asarray(value, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError(f"joint {joint}: {name} must hold numbers; got {value!r}") from None
+        if array.ndim != 1:
+            raise InputError(f"joint {joint}: {name} has shape {array.shape}; give (m,)")
+        if not np.isfinite(array).all():
+            raise InputError(f"joint {joint}: {name} holds {first_not_finite(array)}: leave that point out")
+        pair.append(array)
+    q, counts = pair
+    if len(q) != len(counts):
+        raise InputError(f"joint {joint}: {len(q)} angles but {len(counts)} counts; they belong together in pairs")
+    if len(q) < 3:
+        raise InputError(f"joint {joint}: {len(q)} points; two make a line, a third shows its error: measure 10 or so")
+    if np.abs(q).max() > 2 * np.pi:
+        raise InputError(
+            f"joint {joint}: q holds {q[np.abs(q).argmax()]:g} rad, more than a turn: in degrees? Use np.radians"
+        )
+    if counts.min() < 0 or counts.max() > _FULL:
+        bad = counts.min() if counts.min() < 0 else counts.max()
+        raise InputError(f"joint {joint}: counts holds {bad:g}; the 10-bit converter gives 0 to {_FULL:.0f}")
+    return q, counts
+
+
+def _refuse_swapped(q, counts):
+    """The readings of one joint follow the angle of another and not its own."""
+    if q.shape[1] < 3 or (np.ptp(q, axis=1) == 0).any() or (np.ptp(counts, axis=1) == 0).any():
+        return
+    r2 = np.corrcoef(q, counts)[:3, 3:] ** 2  # [angle, reading]
+    for j in range(3):
+        i = int(r2[:, j].argmax())
+        if i != j and r2[i, j] > 0.9 and r2[j, j] < 0.5:
+            raise InputError(
+                f"the counts of joint {j + 1} follow the angle of joint {i + 1} (correlation squared {r2[i, j]:.2f}) "
+                f"and not their own ({r2[j, j]:.2f}): the cables of joints {j + 1} and {i + 1} are swapped"
+            )
+
+
+def _line(joint, q, counts, angles):
+    """(slope, zero, stderr_slope, stderr_zero, points, remarks) of one joint."""
+    for name, values, unit in (("q", q, "rad"), ("counts", counts, "counts")):
+        if np.ptp(values) == 0:
+            raise InputError(
+                f"joint {joint}: every {name} is {values[0]:g} {unit}: nothing moved. Is this the potentiometer of "
+                "that joint, and is it connected?"
+            )
+    _refuse_wrap(joint, q, counts)
+    x, y = (counts, q) if angles == "read" else (q, counts)
+    a, b, cov = _regress(x, y)
+    r2 = np.corrcoef(q, counts)[0, 1] ** 2
+    if r2 < 0.8:
+        raise InputError(
+            f"joint {joint}: the counts do not follow the angle (correlation squared {r2:.2f}): check that angles and "
+            "counts are of the same poses and the same joint, and the potentiometer's coupling"
+        )
+    if angles == "read":  # errors carried over to first order
+        slope, zero = 1 / b, -a / b
+        variances = cov[1, 1] / b**4, (cov[0, 0] + zero**2 * cov[1, 1] + 2 * zero * cov[0, 1]) / b**2
+    else:
+        slope, zero, variances = b, a, (cov[1, 1], cov[0, 0])
+    errors = [float(np.sqrt(max(0.0, v))) for v in variances]
+    remarks = [f"joint {joint}: {text}" for text in _remarks(q, counts, slope, zero, errors[0])]
+    return float(slope), float(zero), *errors, (tuple(q.tolist()), tuple(counts.tolist())), remarks
+
+
+def _regress(x, y):
+    """y = a + b x: a, b and their covariance (2, 2). The mean of x is taken out first: no digits are lost."""
+    shift, scale = x.mean(), x.std()
+    A = np.column_stack([np.ones_like(x), (x - shift) / scale])
+    (level, rise), *_ = np.linalg.lstsq(A, y)
+    residual = y - A @ (level, rise)
+    s2 = residual @ residual / (len(x) - 2)
+    b = rise / scale
+    var_b = s2 / (len(x) * scale**2)
+    cov = np.array([[s2 / len(x) + shift**2 * var_b, -shift * var_b], [-shift * var_b, var_b]])
+    return level - b * shift, b, cov
+
+
+def _refuse_wrap(joint, q, counts):
+    order = np.argsort(q, kind="stable")
+    steps = np.diff(counts[order])
+    against = -np.sign(np.median(np.sign(steps))) * steps
+    i = int(against.argmax())
+    if against[i] > _WRAP:
+        left, right = np.degrees(q[order[i : i + 2]])
+        raise InputError(
+            f"joint {joint}: the counts jump from {counts[order[i]]:.0f} to {counts[order[i + 1]]:.0f} between "
+            f"{left:.0f} and {right:.0f} deg: the potentiometer passes the gap of its track there. Loosen its "
+            "coupling, turn it so that the gap lies outside the travel, and calibrate again"
+        )
+
+
+def _remarks(q, counts, slope, zero, stderr_slope):
+    residual = q - (counts - zero) / slope
+    if slope < 0:
+        yield (
+            "the counts fall where the angle rises: swap the two outer wires of the potentiometer and calibrate again "
+            "(driven as it is, the joint would run away)"
+        )
+    if len(q) < 6:
+        yield f"only {len(q)} points: a bow or a misread point would not show; measure 10"
+    if np.ptp(q) < 0.5:
+        yield (
+            f"the angles span {np.degrees(np.ptp(q)):.0f} deg only: outside them the line is a guess; use the whole "
+            "travel"
+        )
+    if stderr_slope > 0.02 * abs(slope):
+        yield (
+            f"the slope is known to {100 * stderr_slope / abs(slope):.0f} % only: over 1 rad that is "
+            f"{57.3 * stderr_slope / abs(slope):.1f} deg"
+        )
+    if counts.min() <= 2 or counts.max() >= _FULL - 2:
+        yield "a reading lies at the end of the converter's range: the potentiometer may turn on without it"
+    far = _far_off(counts, residual)
+    if far is not None:
+        yield (
+            f"point {far + 1} (q = {np.degrees(q[far]):.1f} deg, {counts[far]:.1f} counts) lies "
+            f"{np.degrees(abs(residual[far])):.1f} deg off the line, far more than the others: misread?"
+        )
+    elif (bow := _bow(counts, q)) is not None:
+        yield (
+            f"the line leaves a bow of {np.degrees(bow):.1f} deg that is no noise: the potentiometer is not quite "
+            "linear there; angles are that much off"
+        )
+
+
+def _far_off(x, residual):
+    """Number of the point that does not belong to the others (studentised, 1 in 1000), or None."""
+    from scipy.special import stdtr
+
+    m = len(x)
+    rss = residual @ residual
+    if m < 6 or np.sqrt(rss / m) < 1e-6:
+        return None
+    leverage = 1 / m + (x - x.mean()) ** 2 / ((x - x.mean()) ** 2).sum()
+    i = int((np.abs(residual) / np.sqrt(1 - leverage)).argmax())
+    rest = max((rss - residual[i] ** 2 / (1 - leverage[i])) / (m - 3), 1e-30)
+    t = abs(residual[i]) / np.sqrt(rest * (1 - leverage[i]))
+    return i if m * 2 * stdtr(m - 3, -t) < 1e-3 else None
+
+
+def _bow(x, y):
+    """Largest distance of the best cubic from the best line, if the F test calls it real (1 in 100), else None."""
+    from scipy.special import fdtrc
+
+    m = len(x)
+    if m < 6:
+        return None
+    z = (x - x.mean()) / np.ptp(x)
+    line, cubic = (np.vander(z, n) @ np.linalg.lstsq(np.vander(z, n), y)[0] for n in (2, 4))
+    rss, left = ((y - line) ** 2).sum(), ((y - cubic) ** 2).sum()
+    if np.sqrt(rss / m) < 1e-6:
+        return None  # rounding
+    F = (rss - left) / 2 / max(left / (m - 4), 1e-30)
+    return float(np.abs(cubic - line).max()) if fdtrc(2, m - 4, F) < 0.01 else None
+
+
+def stderr_at(calibration, counts):
+    """Standard error of the angle at counts (..., 3), rad; see `Calibration.stderr_radians`."""
+    found = np.full(np.shape(counts), np.nan)
+    for i, ((_, at), residual) in enumerate(zip(calibration.points, calibration.residuals, strict=True)):
+        m = len(at)
+        if m < 3:
+            continue
+        at = np.array(at)
+        s2 = residual @ residual / (m - 2)
+        found[..., i] = np.sqrt(s2 * (1 / m + (counts[..., i] - at.mean()) ** 2 / ((at - at.mean()) ** 2).sum()))
+    return found
