@@ -9,6 +9,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "calibration": ["Calibration", "nominal_calibration", "saved_calibration"],
         "calibration_fit": ["fit_calibration"],
         "connect": ["connect"],
+        "driving": ["StopCriterion", "bridge_inputs", "mean_voltage", "sign_and_magnitude", "thesis_map"],
         "recording": ["Recording"],
         "replay": ["ReplayBench"],
         "serial_bench": ["SerialBench"],

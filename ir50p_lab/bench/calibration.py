@@ -9,6 +9,7 @@ from ir50p_lab.errors import InputError, SuspiciousArmWarning
 from ir50p_lab.inputs import vectors3
 
 _PLAUSIBLE = (20.0, 1023 / np.radians(60))  # counts/rad: a potentiometer of many turns; of 60 deg over the full range
+_HEADS = ("joint", "counts/rad", "counts at q = 0", "rms residual", "points")
 
 
 @dataclass(frozen=True)
@@ -135,16 +136,15 @@ class Calibration:
 
     def table(self):
         """Slopes, zeros, standard errors and residuals as text, then the remarks."""
-        head = f"{'joint':>5} {'counts/rad':>17} {'counts at q = 0':>17} {'rms residual':>13} {'points':>6}"
-        lines = [head, *(" ".join(f"{cell:>{w}}" for cell, w in zip(row, (5, 17, 17, 13, 6))) for row in self._cells())]
+        line = "{:>5} {:>17} {:>17} {:>13} {:>6}".format
+        lines = [line(*_HEADS), *(line(*row) for row in self._cells())]
         return "\n".join([*lines, f"source: {self.source}", *self.remarks])
 
     def _repr_html_(self):
         """The table, as a notebook shows it."""
         from html import escape
 
-        heads = ("joint", "counts/rad", "counts at q = 0", "rms residual", "points")
-        rows = ["".join(f"<th>{cell}</th>" for cell in heads)]
+        rows = ["".join(f"<th>{cell}</th>" for cell in _HEADS)]
         rows += ["".join(f"<td>{cell}</td>" for cell in row) for row in self._cells()]
         remarks = "".join(f"<li>{escape(text)}</li>" for text in self.remarks)
         body = "".join(f"<tr>{row}</tr>" for row in rows)
