@@ -193,9 +193,9 @@ def _c_type(value):
 def header():
     """The text of protocol.h: the same description for the sketch."""
     names = (
-        "VERSION BAUD JOINTS LIMIT_PWM COMMAND_SYNC REPLY_SYNC HELLO DRIVE STOP STATE IDENTITY GRIPPER WATCHDOG_TRIPPED "
-        "HELLO_NEEDED HARDWARE_RESET HAS_GRIPPER WATCHDOG_MS ADC_BITS SUBCOUNTS MAX_COUNTS LOW_COUNTS HIGH_COUNTS "
-        "BROKEN_COUNTS COMMAND_SIZE REPLY_SIZE"
+        "VERSION BAUD JOINTS LIMIT_PWM COMMAND_SYNC REPLY_SYNC HELLO DRIVE STOP STATE IDENTITY GRIPPER "
+        "WATCHDOG_TRIPPED HELLO_NEEDED HARDWARE_RESET HAS_GRIPPER WATCHDOG_MS ADC_BITS SUBCOUNTS MAX_COUNTS "
+        "LOW_COUNTS HIGH_COUNTS BROKEN_COUNTS COMMAND_SIZE REPLY_SIZE"
     ).split()
     values = {name: globals()[name] for name in names}
     constants = "\n".join(f"const {_c_type(value)} {name} = {value};" for name, value in values.items())

@@ -44,6 +44,7 @@ const uint8_t START_CONVERSION =  // 250 kHz clock: 52 us a conversion, a joint'
     _BV(ADEN) | _BV(ADSC) | _BV(ADIE) | _BV(ADPS2) | _BV(ADPS1);
 
 volatile uint16_t sum[JOINTS];
+volatile bool measured = false;  // every joint has 16 new conversions
 
 ISR(ADC_vect) {
   static uint16_t history[JOINTS][CONVERSIONS];
@@ -54,6 +55,7 @@ ISR(ADC_vect) {
   if (++joint == JOINTS) {
     joint = 0;
     place = (place + 1) % CONVERSIONS;
+    if (place == 0) measured = true;
   }
   ADMUX = _BV(REFS0) | POT_CHANNEL[joint];  // reference: the 5 V that feed the potentiometers
   ADCSRA = START_CONVERSION;
@@ -69,7 +71,7 @@ uint16_t counts(uint8_t joint) {
 void start_potentiometers() {
   ADMUX = _BV(REFS0) | POT_CHANNEL[0];
   ADCSRA = START_CONVERSION;
-  delay(5);  // until every joint has its 16
+  while (!measured) {}  // before that the means are too low
 }
 
 // ---- bridges
@@ -260,8 +262,10 @@ void setup() {
 }
 
 void loop() {
-  wdt_reset();
   receive();
+  if (!measured) return;
+  measured = false;
+  wdt_reset();  // here, so that a converter that has stopped also counts as a hang
   watch_computer();
   drive();  // again and again: a joint may reach its limit between two commands
 }
