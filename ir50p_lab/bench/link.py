@@ -15,14 +15,15 @@ except ImportError:  # Windows
     _termios_error = OSError
 
 PORT_ERRORS = (OSError, _termios_error)
+READ_TIMEOUT = 0.004  # s; an answer takes 1 ms on the wire and up to 3 ms more through USB
 REPEAT = 0.004  # s without an answer until the question is asked again
-HEARD = 80  # bytes kept to tell what it is that does not answer
+HEARD = 80  # first bytes kept to tell what it is that does not answer
 
 
 class Clock:
     """The computer's clock, s from an arbitrary start, and its sleep: what a virtual clock stands in for in tests."""
 
-    time = staticmethod(time.perf_counter)
+    now = staticmethod(time.perf_counter)
     sleep = staticmethod(time.sleep)
 
 
@@ -48,18 +49,19 @@ class LinkStatistics(NamedTuple):
 class Link:
     """The wire to the board, over an open serial port.
 
-    transport: what serial.Serial offers: read(n) that waits a few ms at most, write(bytes), in_waiting,
-    reset_input_buffer(), close(). clock: time() and sleep(s).
+    transport: what serial.Serial offers: timeout, read(n), write(bytes), in_waiting, reset_input_buffer(), close(). clock: now() and sleep(s).
     """
 
     def __init__(self, transport, clock):
         self._transport, self._clock = transport, clock
+        if transport.timeout != READ_TIMEOUT:
+            transport.timeout = READ_TIMEOUT
         self._parser = protocol.FrameParser("replies")
         self._seq, self._told = 0, None
         self._commands = self._repeats = self._stale = self._trips = 0
         self._last = None  # the last State
         self._round_trips = deque(maxlen=1000)
-        self.heard = deque(maxlen=HEARD)
+        self.heard = bytearray()
 
     def ask(self, kind, pwm=(0, 0, 0), gripper=False, *, patience, repeat=REPEAT):
         """Send a command and wait for its answer; ask again every `repeat` s without one, `patience` s in all.
@@ -70,7 +72,7 @@ class Link:
         """
         wanted = protocol.Identity if kind == protocol.HELLO else protocol.State
         sent = {}
-        start = now = self._clock.time()
+        start = now = self._clock.now()
         while now < start + patience:
             self._repeats += bool(sent)
             seq = self._send(kind, pwm, gripper)
@@ -78,8 +80,8 @@ class Link:
             size, next_try = protocol.REPLY_SIZE, now + repeat
             while now < next_try:
                 data = self._transport.read(size)
-                now = self._clock.time()
-                self.heard.extend(data)
+                now = self._clock.now()
+                self.heard += data[: HEARD - len(self.heard)]
                 replies = self._parser.feed(data)
                 for reply in replies:
                     self._note(reply)

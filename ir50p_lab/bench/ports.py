@@ -7,8 +7,6 @@ from typing import NamedTuple
 from ir50p_lab.errors import PortError
 from ir50p_lab.launcher.boards import BOARDS, board_name, permission_remedy
 
-READ_TIMEOUT = 0.004  # s; a reply takes 1 ms on the wire and up to 3 ms more through USB
-
 
 class Port(NamedTuple):
     """A serial port: device name, and the board its USB id stands for (None: none that fits the bench)."""
@@ -31,13 +29,13 @@ def open_port(device, baud):
     """Open a serial port for us alone.
 
     Args: device: name of the port ('COM3', '/dev/ttyACM0'); baud: bit/s.
-    Returns: an open serial.Serial whose read() waits READ_TIMEOUT at most.
+    Returns: an open serial.Serial.
     Raises: PortError, with the remedy, if the port is missing, busy or not permitted.
     """
     import serial
 
     try:
-        port = serial.Serial(device, baud, timeout=READ_TIMEOUT, write_timeout=0.1, exclusive=True)
+        port = serial.Serial(device, baud, timeout=0.1, write_timeout=0.1, exclusive=True)
     except (OSError, ValueError) as error:  # SerialException is an OSError; ValueError: a baud rate it cannot do
         raise port_error(device, error) from error
     try:

@@ -25,7 +25,7 @@ class SerialBench(Bench):
     Args:
         port: name of the serial port ('COM3', '/dev/ttyACM0'), or an open pyserial-like object.
         arm: Arm, default `load_arm()`; calibration: default the one saved for the arm, else the nominal one.
-        clock: object with time() and sleep(s); default the computer's. period: s. record_to: folder, or False.
+        clock: object with now() and sleep(s); default the computer's. period: s. record_to: folder, or False.
         announce: takes the line that says why opening lasts 2 s; default print.
 
     Time is the true time of a measurement. A cycle that begins late is counted in `Sample.missed`, never raised; one
@@ -76,17 +76,17 @@ class SerialBench(Bench):
             self.identity = self._shake_hands(LOST_AFTER)  # the board may have been reset between two runs
         except BoardError:
             raise self._lost("does not answer") from None
-        self._start, self._skipped, self._missed = self._clock.time(), 0, 0
+        self._start, self._skipped, self._missed = self._clock.now(), 0, 0
 
     def _measure(self, k):
         due = self._start + (k + self._skipped) * self.period
-        late = self._clock.time() - due
+        late = self._clock.now() - due
         if late >= self.period:
             skipped = int(late / self.period)
             self._skipped, self._missed = self._skipped + skipped, self._missed + skipped
             due += skipped * self.period
         self._wait_for(due)
-        if self._clock.time() - due > LATE * self.period:
+        if self._clock.now() - due > LATE * self.period:
             self._missed += 1
         try:
             state, sent = self._link.ask(protocol.DRIVE, self._command(), self._gripper, patience=LOST_AFTER)
@@ -122,6 +122,20 @@ class SerialBench(Bench):
         major, minor = self.identity.firmware
         return {"port": self.port, "firmware": f"{major}.{minor}", "protocol": str(self.identity.protocol)}
 
+    @property
+    def own_process(self):
+        """A loop in the background runs in a process of its own, unless the port was given open."""
+        return self._given is None
+
+    def _arguments(self):
+        return {
+            "port": self.port,
+            "arm": self.arm,
+            "calibration": self.calibration,
+            "period": self.period,
+            "record_to": self._record_to,
+        }
+
     # ---- more than the contract asks for
 
     @property
@@ -137,7 +151,7 @@ class SerialBench(Bench):
         return tuple(int(u) for u in self._pwm)
 
     def _wait_for(self, moment):
-        wait = moment - self._clock.time()
+        wait = moment - self._clock.now()
         if wait > 0:
             self._clock.sleep(wait)
 
@@ -195,6 +209,6 @@ def _who_is_it(heard):
     remedy = f"put the sketch of {FIRMWARE} on the board (its README shows how)"
     if not heard:
         return f"nothing answers. Is it a Mega 2560? Then {remedy}, or press its reset button if that is done"
-    text = heard[:24].decode("ascii", "replace")
-    shown = repr(text) if all(c.isprintable() or c in "\r\n\t" for c in text) else heard[:12].hex(" ")
+    text = all(32 <= byte < 127 or byte in b"\r\n\t" for byte in heard)
+    shown = repr(heard[:24].decode("ascii")) if text else heard[:12].hex(" ")
     return f"what answers is not our firmware (it sent {shown}). If it is the bench's board, {remedy}"

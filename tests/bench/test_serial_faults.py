@@ -1,0 +1,444 @@
+"""Everything that goes wrong between the computer and the board, one fault a test."""
+
+import errno
+import itertools
+import os
+
+import numpy as np
+import pytest
+from fake_board import FakeBoard
+
+from ir50p_lab.bench import SerialBench, nominal_calibration, ports, protocol, serial_bench
+from ir50p_lab.errors import BoardError, BoardLostError, InputError, PortError
+from ir50p_lab.modelling import IR50P
+
+CALIBRATION = nominal_calibration(IR50P)
+
+
+@pytest.fixture
+def board():
+    return FakeBoard(CALIBRATION)
+
+
+def bench_of(board, **options):
+    return SerialBench(board, arm=IR50P, clock=board, record_to=False, **options)
+
+
+def run(board, seconds=0.5, pwm=(20, -10, 5), **options):
+    """Samples of a run and the bench, closed by force: no way to the rest pose."""
+    bench = bench_of(board, **options).open()
+    samples = []
+    for sample in bench.run(seconds):
+        samples.append(sample)
+        bench.drive(pwm)
+    return samples, bench
+
+
+# ---- the port does not open
+
+
+def failing_port(monkeypatch, error, platform):
+    import serial
+
+    def fail(*args, **options):
+        raise error
+
+    monkeypatch.setattr(serial, "Serial", fail)
+    monkeypatch.setattr(ports.sys, "platform", platform)
+    monkeypatch.setattr(ports, "list_ports", lambda: [ports.Port("COM7", None)])
+
+
+@pytest.mark.parametrize(
+    ("platform", "number", "text", "expected"),
+    [
+        ("linux", errno.EACCES, "Permission denied", ("no permission", "sudo usermod -aG dialout $USER")),
+        ("darwin", errno.EACCES, "Permission denied", ("no permission", "ls -l")),
+        ("win32", None, "PermissionError(13, 'Access is denied.', None, 5)", ("busy", "Arduino IDE")),
+        ("linux", errno.EBUSY, "Device or resource busy", ("busy", "fuser -v", "ModemManager")),
+        ("linux", errno.EAGAIN, "Could not exclusively lock port", ("busy", "other notebooks' kernels")),
+        ("darwin", errno.EBUSY, "Resource busy", ("busy", "Arduino IDE")),
+        ("linux", errno.ENOENT, "No such file or directory", ("does not exist", "COM7", "dmesg")),
+        ("win32", None, "FileNotFoundError(2, 'cannot find the file', None, 2)", ("does not exist", "Device Manager")),
+        ("linux", errno.ENOTTY, "Inappropriate ioctl for device", ("does not open", "is it a serial port")),
+    ],
+)
+def test_port_that_does_not_open(monkeypatch, platform, number, text, expected):
+    import serial
+
+    arguments = (text,) if number is None else (number, text)
+    failing_port(monkeypatch, serial.SerialException(*arguments), platform)
+    with pytest.raises(PortError, match="PORT") as error:
+        SerialBench("PORT", arm=IR50P).open()
+    for part in expected:
+        assert part in str(error.value)
+
+
+def test_port_that_is_not_there():
+    with pytest.raises(PortError, match=r"/dev/tty-not-there does not exist: ports on this computer"):
+        SerialBench("/dev/tty-not-there", arm=IR50P).open()
+
+
+def test_file_that_is_no_port(tmp_path):
+    (tmp_path / "file").write_text("text")
+    with pytest.raises(PortError, match="is it a serial port"):
+        SerialBench(tmp_path / "file", arm=IR50P).open()
+
+
+@pytest.fixture
+def pty():
+    """A pseudo-terminal: the board's end, and the name of the computer's end."""
+    openpty = pytest.importorskip("pty").openpty
+    ours, theirs = openpty()
+    yield ours, os.ttyname(theirs)
+    os.close(ours)
+    os.close(theirs)
+
+
+def test_port_that_another_program_holds(pty):
+    first = ports.open_port(pty[1], protocol.BAUD)
+    with pytest.raises(PortError, match="is busy: another program holds it"):
+        SerialBench(pty[1], arm=IR50P).open()
+    first.close()
+
+
+def test_a_pseudo_terminal_has_no_reset_line_and_the_port_is_given_free(pty, monkeypatch):
+    monkeypatch.setattr(serial_bench, "HANDSHAKE", 0.1)
+    announced = []
+    for _ in range(2):  # the second time, too, nothing answers: the port was not left open
+        with pytest.raises(BoardError, match="nothing answers"):
+            SerialBench(pty[1], arm=IR50P, announce=announced.append).open()
+    assert not announced  # no boot loader to wait for
+    assert os.read(pty[0], 1000)[2] == protocol.HELLO
+
+
+@pytest.mark.parametrize("port", [None, "", 3])
+def test_no_port(port):
+    with pytest.raises(InputError, match="give the name of a serial port"):
+        SerialBench(port, arm=IR50P)
+
+
+# ---- what answers is not our board
+
+
+def test_silence(board):
+    board.dead = True
+    begun = board.t
+    with pytest.raises(BoardError, match=r"fake: nothing answers. Is it a Mega 2560\?.*bench/firmware"):
+        bench_of(board).open()
+    assert board.t - begun < 1.1 * serial_bench.HANDSHAKE
+    assert board.closed
+
+
+@pytest.mark.parametrize(
+    ("bytes_sent", "shown"),
+    [
+        (b"$GPGGA,123519,4807.038,N", "GPGGA,123519"),
+        (b"start\r\necho:Marlin 1.1.9\r\n", "Marlin"),
+        (bytes(range(130, 160)), "82 83 84"),
+        (bytes([protocol.REPLY_SYNC]) * 500, "Z"),
+    ],
+)
+def test_another_device(board, bytes_sent, shown):
+    """It talks, whatever we say; to each of our frames the same."""
+    board.on_command = lambda n, data: board.say(bytes_sent) or b""
+    with pytest.raises(BoardError, match="what answers is not our firmware") as error:
+        bench_of(board).open()
+    assert shown in str(error.value)
+    assert board.closed
+
+
+def test_device_that_floods_the_wire(board):
+    noise = np.random.default_rng(1).bytes(1_000_000)
+    board.on_command = lambda n, data: board.say(noise[5000 * n :][:5000]) or b""
+    begun = board.t
+    with pytest.raises(BoardError, match="not our firmware"):
+        bench_of(board).open()
+    assert board.t - begun < 1.5 * serial_bench.HANDSHAKE
+
+
+@pytest.mark.parametrize(
+    ("identity", "expected"),
+    [
+        ({"protocol": protocol.VERSION + 1}, f"protocol {protocol.VERSION + 1}, this lab book {protocol.VERSION}"),
+        ({"joints": 2}, "drives 2 joints"),
+        ({"adc_bits": 12}, "converter of 12 bits"),
+    ],
+)
+def test_another_firmware(board, identity, expected):
+    board.identity = identity
+    with pytest.raises(BoardError, match="put the sketch of ir50p_lab/bench/firmware on the board") as error:
+        bench_of(board).open()
+    assert expected in str(error.value)
+    assert board.closed
+    assert not any(command.type == protocol.DRIVE for _, command in board.commands)
+
+
+# ---- opening restarts the board
+
+
+class Booting(FakeBoard):
+    """A board behind a real port: raising DTR starts a boot loader, which takes longer if it hears anything."""
+
+    ready = 0.0
+
+    def __init__(self, boot=1.7):
+        super().__init__(CALIBRATION)
+        self.boot_time = boot
+
+    @property
+    def dtr(self):
+        return True
+
+    @dtr.setter
+    def dtr(self, value):
+        self.restart()
+        self.ready = self.t + self.boot_time
+
+    def write(self, data):
+        if self.t < self.ready:
+            self.ready = self.t + 8.0
+        return super().write(data if self.t >= self.ready else b"")
+
+
+def test_boot_loader_is_waited_out_in_silence(monkeypatch):
+    board, said = Booting(), []
+    monkeypatch.setattr(serial_bench, "open_port", lambda name, baud: board)
+    with SerialBench("COM3", arm=IR50P, clock=board, record_to=False, announce=said.append) as bench:
+        assert bench.identity.protocol == protocol.VERSION
+    assert said == ["COM3: opening it restarts the board, its boot loader takes 2 s"]
+    assert 2.0 <= board.commands[0][0] - 100.0 < 2.1
+
+
+# ---- noise on the wire
+
+
+def flip(data, k):
+    return data[:k] + bytes([data[k] ^ 0x10]) + data[k + 1 :]
+
+
+@pytest.mark.parametrize("where", ["command", "answer"])
+@pytest.mark.parametrize("fault", ["lost", "damaged", "cut short", "noise before"])
+def test_one_frame_in_five_is_hit_and_the_run_goes_on(board, where, fault):
+    hurt = {
+        "lost": lambda data: b"",
+        "damaged": lambda data: flip(data, 4),
+        "cut short": lambda data: data[:7],
+        "noise before": lambda data: b"\x5a\xa5\x00" + data,
+    }[fault]
+    change = lambda n, data: hurt(data) if n % 5 == 3 else data  # noqa: E731
+    setattr(board, f"on_{where}", change)
+    samples, bench = run(board)
+    assert len(samples) == 50
+    np.testing.assert_allclose(np.diff([s.t for s in samples]), 0.01, atol=0.006)  # a repeat comes 4 ms later
+    statistics = bench.statistics
+    if fault != "noise before":
+        assert statistics.repeats > 5
+        assert statistics.commands > 100
+    if fault in ("damaged", "noise before"):
+        assert (statistics.bad_commands if where == "command" else statistics.bad_replies) > 5
+    assert board.trips == statistics.watchdog_trips == 0
+
+
+def test_noise_never_becomes_a_sample(board):
+    """Replies are damaged at random; what is taken is what the potentiometers read."""
+    rng = np.random.default_rng(4)
+
+    def noise(n, data):
+        data = bytearray(data)
+        for k in rng.integers(0, len(data), rng.integers(0, 3)):
+            data[k] = rng.integers(0, 256)
+        return rng.bytes(rng.integers(0, 4)) + bytes(data)
+
+    bench = bench_of(board).open()
+    board.on_answer = noise
+    taken = 0
+    with pytest.raises(BoardLostError) if not taken else pytest.raises(ZeroDivisionError):
+        for sample in bench.run(60):
+            bench.drive((3, 2, -3))
+            taken += 1
+            assert np.abs(sample.q - board.q).max() < 0.01
+            if taken == 2000:
+                raise BoardLostError("enough")
+    assert taken == 2000
+
+
+# ---- answers that come late
+
+
+@pytest.mark.parametrize("after", [0.003, 0.006, 0.0095, 0.016])
+def test_slow_answers_are_those_of_the_present_cycle(board, after):
+    """A naive host stays one reply behind for ever; here the age of a sample never passes the way of its answer."""
+    bench = bench_of(board).open()
+    board.answer_after = after
+    truth = []
+    for sample in bench.run(0.5):
+        bench.drive((250, -250, 250))
+        truth.append((sample.t, sample.q))
+    assert len(truth) == 50
+    begun = board.t - truth[-1][0]
+    speed = 250 * 0.004
+    t, q1 = np.array([t for t, _ in truth]), np.array([q[0] for _, q in truth])
+    moving = q1 < IR50P.q_max[0]
+    error = np.diff(q1[moving]) - speed * np.diff(t[moving])
+    assert np.abs(error[1:]).max() < 2.0 / CALIBRATION.slope[0]  # each angle belongs to its time
+    assert begun > 0
+
+
+def test_a_single_late_answer_is_dropped(board):
+    normal = board.answer_after
+
+    def late(n, data):
+        board.answer_after = 0.02 if n == 21 else normal
+        return data
+
+    board.on_answer = late
+    samples, bench = run(board, pwm=(100, 0, 0))
+    assert bench.statistics.stale >= 1
+    assert np.abs(np.diff([s.q[0] for s in samples])[2:] - 0.004).max() < 2.5 / CALIBRATION.slope[0]
+
+
+# ---- late cycles
+
+
+def test_late_cycles_are_counted_never_raised(board):
+    bench = bench_of(board).open()
+    samples = []
+    for k, sample in enumerate(bench.run(0.4)):
+        samples.append(sample)
+        board.sleep(0.035 if k == 10 else 0.004 if k == 20 else 0.0)
+        bench.drive((0, 0, 0))
+    t = np.array([s.t for s in samples])
+    assert samples[10].missed == 0
+    assert samples[11].missed in (3, 4)  # three periods are left out, and the cycle itself comes late
+    assert samples[-1].missed == samples[11].missed
+    assert t[11] - t[10] > 0.035
+    assert np.diff(t).min() > 0.003  # never in a rush to catch up
+    np.testing.assert_allclose(np.diff(t[12:]), 0.01, atol=1e-3)
+
+
+def test_a_pause_beyond_the_watchdog_cuts_and_is_counted(board):
+    bench = bench_of(board).open()
+    for k, _ in enumerate(bench.run(0.3)):
+        bench.drive((50, 0, 0))
+        if k == 10:
+            before = board.q[0]
+            board.sleep(1.0)
+            assert (board.pwm == 0).all()
+            assert board.q[0] - before < 50 * 0.004 * 0.11
+    assert board.trips == bench.statistics.watchdog_trips == 1
+    assert board.pwm[0] == 50  # the next command drives again
+
+
+# ---- the board is lost
+
+
+def loses(board, happen, at=30, seconds=1.0):
+    """Run until `happen` at a sample; returns the error and the time from the fault to it."""
+    bench = bench_of(board)
+    with pytest.raises(BoardLostError) as caught, bench:
+        for k, _ in enumerate(bench.run(seconds)):
+            bench.drive((50, -50, 50))
+            if k == at:
+                when = board.t
+                happen()
+    assert board.closed
+    return str(caught.value), board.t - when, bench
+
+
+def test_cable_pulled(board):
+    text, after, bench = loses(board, lambda: setattr(board, "unplugged", True))
+    assert "is gone" in text and "brakes by itself" in text and "USB cable" in text
+    assert after < 0.02
+    assert len(bench.recording.t) == 31  # everything up to the fault is there
+    board._advance(board.t + 0.15)
+    assert (board.pwm == 0).all()
+
+
+def test_cable_pulled_between_two_commands(board):
+    """The port raises in drive()."""
+    bench = bench_of(board)
+    with pytest.raises(BoardLostError, match="is gone"), bench:
+        for k, _ in enumerate(bench.run(1.0)):
+            board.unplugged = k == 30
+            bench.drive((50, -50, 50))
+
+
+def test_termios_error_of_a_pulled_cable_is_no_stranger(board, monkeypatch):
+    termios = pytest.importorskip("termios")
+
+    def pulled(n=1):
+        raise termios.error(5, "Input/output error")
+
+    text, _, _ = loses(board, lambda: monkeypatch.setattr(board, "read", pulled))
+    assert "is gone" in text
+
+
+def test_board_falls_silent(board):
+    text, after, _ = loses(board, lambda: setattr(board, "dead", True))
+    assert "has not answered for 0.2 s" in text
+    assert after < 0.3 + 3 * 0.06
+
+
+@pytest.mark.parametrize(("hung", "cause"), [(False, "supply broke down"), (True, "hardware watchdog")])
+def test_board_restarts_in_the_run(board, hung, cause):
+    text, after, _ = loses(board, lambda: board.restart(hung=hung))
+    assert "has restarted in the middle of the run" in text and cause in text
+    assert after < 0.02
+    assert (board.pwm == 0).all()
+
+
+def test_board_that_restarted_between_two_runs_runs_again(board):
+    samples, bench = run(board)
+    board.restart()
+    again = [bench.drive((10, 0, 0)) for _ in bench.run(0.2)]
+    assert len(again) == 20
+    assert board.pwm[0] == 10
+
+
+def test_board_lost_between_two_runs(board):
+    _, bench = run(board)
+    board.dead = True
+    with pytest.raises(BoardLostError, match="does not answer"):
+        next(bench.run(0.2))
+    bench.abort()
+    assert board.closed
+
+
+# ---- cutting
+
+
+@pytest.mark.parametrize("state", ["well", "dead", "unplugged", "noisy", "closed"])
+def test_cut_never_raises_and_never_hangs(board, state):
+    _, bench = run(board)
+    if state == "noisy":
+        lost = itertools.count()
+        board.on_command = lambda n, data: data if next(lost) % 3 == 2 else flip(data, 5)
+    elif state == "closed":
+        bench.abort()
+    elif state != "well":
+        setattr(board, state, True)
+    begun = board.t
+    bench.cut()
+    assert board.t - begun < 0.06
+    if state in ("well", "noisy", "closed"):
+        assert (board.pwm == 0).all()
+
+
+def test_a_second_interrupt_while_cutting_changes_nothing(board, monkeypatch):
+    _, bench = run(board)
+    read = board.read
+
+    def interrupted(n=1):
+        monkeypatch.setattr(board, "read", read)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(board, "read", interrupted)
+    bench.cut()
+    assert (board.pwm == 0).all()
+
+
+def test_statistics_after_closing(board):
+    _, bench = run(board)
+    bench.abort()
+    with pytest.raises(BoardError, match="is closed"):
+        bench.statistics  # noqa: B018
