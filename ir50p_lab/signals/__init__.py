@@ -1,5 +1,6 @@
-"""Reference signals: where the joints shall be, how fast they move there, and with what acceleration.
+"""Reference signals, and filters for measured ones.
 
+A reference says where the joints shall be, how fast they move there, and with what acceleration.
 Every reference `target` is frozen and answers `target(t)` -> (q, qd, qdd) and `target.sample(t)` -> (n, 3, 3).
 Names are loaded on first use: importing this package costs nothing.
 """
@@ -9,10 +10,16 @@ import lazy_loader
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
+        "cartesian": ["CartesianPath", "cartesian_circle", "cartesian_line"],
+        "lag": ["measured_lag"],
+        "low_pass": ["LowPass", "alias", "low_pass", "low_pass_lag", "low_pass_response"],
+        "noise_and_lag": ["NoiseAndLag", "noise_and_lag", "velocity_estimators"],
+        "path_error": ["PathError", "path_error"],
         "quintic": ["quintic", "through"],
         "reference": ["Reference"],
         "sinusoid": ["sinusoid"],
         "steps": ["hold", "steps"],
         "trapezoid": ["trapezoid"],
+        "velocity": ["DifferenceVelocity", "VelocityKalman", "difference_velocity"],
     },
 )
