@@ -11,9 +11,10 @@ from ir50p_lab.jit import jit
 from ir50p_lab.modelling.closed_form import not_denormal
 
 # places in the parameter vector
-KP, KI, KD, LIMIT, PERIOD, FILTER_RATE, ON_ERROR, ANTI_WINDUP, N_PARAMETERS = 0, 3, 6, 9, 12, 13, 14, 15, 16
+KP, KI, KD, LIMIT, PERIOD, FILTER_RATE, ON_ERROR, ANTI_WINDUP, POSITION_RATE = 0, 3, 6, 9, 12, 13, 14, 15, 16
+N_PARAMETERS = 17
 # places in the state vector
-INTEGRAL, VELOCITY, LAST, ERROR, SLOPE, TIME, STARTED, N_STATES = 0, 3, 6, 9, 12, 15, 16, 17
+INTEGRAL, VELOCITY, LAST, ERROR, SLOPE, TIME, STARTED, FILTERED, N_STATES = 0, 3, 6, 9, 12, 15, 16, 17, 20
 
 
 @jit()
@@ -24,14 +25,20 @@ def pid_step(p, s, t, q, r, u):
     if started and abs(t - s[TIME] - dt) > 1e-6 * dt:  # a late or early cycle: integrate over its true length
         dt = min(max(t - s[TIME], 0.0), 10 * p[PERIOD])
     blend = 1.0 - math.exp(-p[FILTER_RATE] * dt)
+    position_blend = 1.0 - math.exp(-p[POSITION_RATE] * dt)
     for i in range(3):
-        e = r[0, i] - q[i]
-        moved = e - s[LAST + i] if p[ON_ERROR] > 0.0 else q[i] - s[LAST + i]
+        y = q[i]
+        if p[POSITION_RATE] > 0.0:
+            if started:
+                y = s[FILTERED + i] + position_blend * (q[i] - s[FILTERED + i])
+            s[FILTERED + i] = y
+        e = r[0, i] - y
+        moved = e - s[LAST + i] if p[ON_ERROR] > 0.0 else y - s[LAST + i]
         if not started:
             moved = 0.0
         if dt > 0.0:
             s[VELOCITY + i] = not_denormal(s[VELOCITY + i] + blend * (moved / dt - s[VELOCITY + i]))
-        s[LAST + i] = e if p[ON_ERROR] > 0.0 else q[i]
+        s[LAST + i] = e if p[ON_ERROR] > 0.0 else y
         slope = s[VELOCITY + i] if p[ON_ERROR] > 0.0 else r[1, i] - s[VELOCITY + i]
         s[ERROR + i], s[SLOPE + i] = e, slope  # for a change of gains without a bump
         without = p[KP + i] * e + p[KD + i] * slope
@@ -57,13 +64,16 @@ class PID(Controller):
     - anti-windup: the integral rests while the command is limited and the error would push it further;
     - limits: |u| <= limit, and the applied value is what `step` returns;
     - bumpless: `set_gains` changes gains in the middle of a run without a jump of u;
-    - a late cycle is integrated over its true length.
+    - a late cycle is integrated over its true length;
+    - position_filter_hz filters the measured q itself, before everything else, as the thesis does (4.1.3): less noise
+      in u, and a lag of 1/(2 pi position_filter_hz) s that makes the loop swing. Off unless asked for.
 
     Args:
         kp, ki, kd: (3,), command per rad, per rad s, and per rad/s.
         limit_pwm: limit of the command in PWM counts (the command is then in PWM), scalar or (3,); or
         limit: limit in N m, scalar or (3,). Give one; with neither the command is in N m and not limited.
         period: sampling period, s. filter_hz: cut-off of the velocity filter, Hz (inf: none).
+        position_filter_hz: cut-off of a first-order low pass on q, Hz (None: q as it is measured).
         derivative_on: "measurement" or "error". anti_windup: False shows what windup does.
 
     Raises InputError on gains that are negative or not finite, or a period or filter that is not positive.
@@ -81,6 +91,7 @@ class PID(Controller):
         limit=None,
         period=0.01,
         filter_hz=10.0,
+        position_filter_hz=None,
         derivative_on="measurement",
         anti_windup=True,
     ):
@@ -95,6 +106,9 @@ class PID(Controller):
         self.parameters[LIMIT : LIMIT + 3] = np.inf if bound is None else _positive("limit", bound)
         self.parameters[PERIOD] = _positive("period", period)
         self.parameters[FILTER_RATE] = 2 * np.pi * _positive("filter_hz", filter_hz)
+        if position_filter_hz is not None:
+            rate = 2 * np.pi * _positive("position_filter_hz", position_filter_hz)
+            self.parameters[POSITION_RATE] = 0.0 if np.isinf(rate) else rate  # 0 and inf: no filter
         self.parameters[ON_ERROR] = derivative_on == "error"
         self.parameters[ANTI_WINDUP] = bool(anti_windup)
         self._write_gains(kp, ki, kd)

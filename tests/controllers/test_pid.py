@@ -45,6 +45,31 @@ def test_velocity_filter_is_the_first_order_low_pass_it_says():
     np.testing.assert_allclose(unfiltered[:, 0], [0, -1, -1], atol=1e-12)
 
 
+def test_position_filter_is_a_low_pass_before_everything_else():
+    rng = np.random.default_rng(1)
+    q = np.cumsum(rng.normal(0, 0.02, (60, 3)), axis=0)
+    blend = 1 - np.exp(-2 * np.pi * 3 * 0.01)
+    filtered = q.copy()
+    for k in range(1, len(q)):
+        filtered[k] = filtered[k - 1] + blend * (q[k] - filtered[k - 1])
+    gains = {"kp": (3, 4, 5), "ki": (1, 2, 3), "kd": (0.5, 0.2, 0.1)}
+    for on in ("measurement", "error"):
+        inside = run(PID(**gains, position_filter_hz=3, derivative_on=on), q, target=(0.3, -0.2, 0.1))
+        before = run(PID(**gains, derivative_on=on), filtered, target=(0.3, -0.2, 0.1))
+        np.testing.assert_allclose(inside, before, rtol=1e-12, atol=1e-12)
+
+
+def test_no_position_filter_is_the_default_to_the_last_bit():
+    q = np.random.default_rng(2).normal(size=(50, 3))
+    gains = {"kp": (3, 4, 5), "ki": (1, 2, 3), "kd": (0.5, 0.2, 0.1)}
+    plain = run(PID(**gains), q)
+    np.testing.assert_array_equal(run(PID(**gains, position_filter_hz=np.inf), q), plain)
+    np.testing.assert_array_equal(run(PID(**gains, position_filter_hz=None), q), plain)
+    for bad in (0, -1, np.nan):
+        with pytest.raises(InputError, match="position_filter_hz"):
+            PID(kp=(1, 1, 1), position_filter_hz=bad)
+
+
 def test_no_derivative_kick_on_the_measurement_and_one_on_the_error():
     for on, kick in (("measurement", False), ("error", True)):
         pid = PID(kp=(1, 1, 1), kd=(1, 1, 1), filter_hz=np.inf, derivative_on=on)
