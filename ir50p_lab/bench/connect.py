@@ -47,7 +47,7 @@ def _asked_for(wish, reason, common, simulated):
 
         bench = ReplayBench(wish[len("replay:") :], record_to=common["record_to"])
         return _say(bench.open(), f"asked for by {reason}", _TO_BOARD)
-    return _say(_serial(wish, common), f"asked for by {reason}", _TO_SIMULATED)
+    return _say_board(_serial(wish, common), f"asked for by {reason}")
 
 
 def _look_for_a_board(common, simulated):
@@ -61,7 +61,7 @@ def _look_for_a_board(common, simulated):
             refused.append(f"{port.board} was not taken: {error}")
         else:
             others = "".join(f"; {other.device} not tried" for other in candidates[candidates.index(port) + 1 :])
-            return _say(bench, f"{port.board} found and its firmware answers{others}", _TO_SIMULATED)
+            return _say_board(bench, f"{port.board} found and its firmware answers{others}")
     bench = _simulated(common, simulated)
     if not refused:
         others = f" among {len(ports)} serial ports" if len(ports) > 1 else " on the one serial port" if ports else ""
@@ -81,6 +81,10 @@ def _serial(device, common):
 
     # the line about the boot loader gives way to the one that says what was chosen
     return SerialBench(device, **common, announce=lambda line: print(line, end="\r", flush=True)).open()
+
+
+def _say_board(bench, reason):
+    return _say(bench, f"{reason}; calibration: {bench.calibration.source}", _TO_SIMULATED)
 
 
 def _say(bench, reason, other):

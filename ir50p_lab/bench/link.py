@@ -49,7 +49,8 @@ class LinkStatistics(NamedTuple):
 class Link:
     """The wire to the board, over an open serial port.
 
-    transport: what serial.Serial offers: timeout, read(n), write(bytes), in_waiting, reset_input_buffer(), close(). clock: now() and sleep(s).
+    transport: what serial.Serial offers: timeout, read(n), write(bytes), in_waiting, reset_input_buffer(), close().
+    clock: now() and sleep(s).
     """
 
     def __init__(self, transport, clock):

@@ -7,7 +7,7 @@ import numpy as np
 
 from ir50p_lab.bench import protocol
 from ir50p_lab.bench.base import JOINTS, Bench
-from ir50p_lab.bench.calibration import nominal_calibration
+from ir50p_lab.bench.calibration import nominal_calibration, saved_calibration
 from ir50p_lab.bench.link import PORT_ERRORS, Clock, Link
 from ir50p_lab.bench.ports import open_port
 from ir50p_lab.errors import BoardError, BoardLostError, InputError
@@ -47,12 +47,12 @@ class SerialBench(Bench):
         self.port = os.fspath(port) if named else getattr(port, "name", None) or "a given port"
         super().__init__(
             arm,
-            nominal_calibration(arm) if calibration is None else calibration,
+            calibration or saved_calibration(arm) or nominal_calibration(arm),
             period=period,
             record_to=record_to,
             name=f"board on {self.port} for {arm.name}",
         )
-        self._given = None if named else port
+        self._given, self.own_process = (None, True) if named else (port, False)
         self._clock, self._announce = clock or Clock, announce
         self._link = self.identity = None
         self._start = self._skipped = self._missed = 0
@@ -135,6 +135,10 @@ class SerialBench(Bench):
             "period": self.period,
             "record_to": self._record_to,
         }
+
+    def _arguments(self):
+        options = {"arm": self.arm, "calibration": self.calibration, "period": self.period}
+        return {"port": self.port, **options, "record_to": self._record_to}
 
     # ---- more than the contract asks for
 

@@ -252,14 +252,12 @@ def test_noise_never_becomes_a_sample(board):
     bench = bench_of(board).open()
     board.on_answer = noise
     taken = 0
-    with pytest.raises(BoardLostError) if not taken else pytest.raises(ZeroDivisionError):
-        for sample in bench.run(60):
-            bench.drive((3, 2, -3))
-            taken += 1
-            assert np.abs(sample.q - board.q).max() < 0.01
-            if taken == 2000:
-                raise BoardLostError("enough")
+    for sample in bench.run(20):
+        bench.drive((3, 2, -3))
+        assert np.abs(sample.q - board.q).max() < 0.01
+        taken += 1
     assert taken == 2000
+    assert bench.statistics.bad_replies > 1000
 
 
 # ---- answers that come late
@@ -388,7 +386,7 @@ def test_board_restarts_in_the_run(board, hung, cause):
 
 
 def test_board_that_restarted_between_two_runs_runs_again(board):
-    samples, bench = run(board)
+    _, bench = run(board)
     board.restart()
     again = [bench.drive((10, 0, 0)) for _ in bench.run(0.2)]
     assert len(again) == 20
