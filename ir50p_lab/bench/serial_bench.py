@@ -52,7 +52,7 @@ class SerialBench(Bench):
             record_to=record_to,
             name=f"board on {self.port} for {arm.name}",
         )
-        self._given, self.own_process = (None, True) if named else (port, False)
+        self._given = None if named else port
         self._clock, self._announce = clock or Clock, announce
         self._link = self.identity = None
         self._start = self._skipped = self._missed = 0
@@ -135,10 +135,6 @@ class SerialBench(Bench):
             "period": self.period,
             "record_to": self._record_to,
         }
-
-    def _arguments(self):
-        options = {"arm": self.arm, "calibration": self.calibration, "period": self.period}
-        return {"port": self.port, **options, "record_to": self._record_to}
 
     # ---- more than the contract asks for
 
