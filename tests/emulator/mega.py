@@ -14,6 +14,7 @@ _F = 16_000_000
 _p, _u8, _u16, _u32, _u64 = c.c_void_p, c.c_uint8, c.c_uint16, c.c_uint32, c.c_uint64
 _NOTIFY = c.CFUNCTYPE(None, _p, _u32, _p)
 _SLEEP = c.CFUNCTYPE(None, _p, _u64)
+_RESET = c.CFUNCTYPE(None, _p)
 _LOG = c.CFUNCTYPE(None, _p, c.c_int, _p, _p)
 _RUNNING, _SLEEPING = 2, 3
 
@@ -94,11 +95,14 @@ def _library():
 class Mega:
     """The processor with a sketch in it, at the moment of power-on.
 
-    sent: bytearray, what it has sent; received: bytearray, what is on its way to it (fed in at the line's pace).
+    sent: bytearray, what it has sent; received: bytearray, what is on its way to it (fed in at the line's pace);
+    resets: how often it has been reset.
     """
 
     def __init__(self, elf):
         library = self._library = _library()
+        self._patched = None  # place in the program that hang() has overwritten, and what stood there
+        self.resets = 0
         self._silent = _LOG(lambda *_: None)
         library.avr_global_logger_set(self._silent)
         self._avr = library.avr_make_mcu_by_name(b"atmega2560")
@@ -112,12 +116,14 @@ class Mega:
         head.frequency, head.vcc, head.avcc, head.aref = _F, 5000, 5000, 5000  # Hz, mV
         self._sleep = _SLEEP(lambda *_: None)
         head.sleep = c.cast(self._sleep, _p).value
+        self._reset_core = _RESET(head.reset)
+        self._on_reset = _RESET(self._after_reset)
+        head.reset = c.cast(self._on_reset, _p).value
         self._make_timers_cheap()
         self._connect_serial()
         self._adc = [library.avr_io_getirq(self._avr, _ioctl("adc "), channel) for channel in range(3)]
         self._data = (_u8 * 0x200).from_address(c.addressof(head.data.contents))
-        self._before = 0  # cycles before the last reset
-        self._after_reset()
+        self._prepare()
 
     def _check(self):
         h = self._head
@@ -157,44 +163,53 @@ class Mega:
     def _on_full(self, irq, value, _):
         self._ready = self._ready and not value
 
-    def _after_reset(self):
+    def _prepare(self):
         for interrupt in range(8):
             self._library.avr_extint_set_strict_lvl_trig(self._avr, interrupt, 0)
-        self._last = self._head.cycle
+
+    def _after_reset(self, avr):
+        self._reset_core(avr)
+        self.resets += 1
+        self._ready = False
+        if self._patched:
+            place, word = self._patched
+            place[0], self._patched = word, None
 
     @property
     def seconds(self):
         """Virtual time since power-on."""
-        return (self._before + self._head.cycle) / _F
+        return self._head.cycle / _F
 
     def reset(self):
         """Press the reset button (or open a real board's port: the DTR line does the same)."""
-        self._before += self._head.cycle
-        self._head.cycle = 0
         self.received.clear()
-        self._ready = False
         self._library.avr_reset(self._avr)
-        self._after_reset()
+        self._prepare()
+
+    def hang(self, interrupts=True):
+        """From now on the sketch jumps on the spot, until a reset; interrupts: whether it is still interrupted."""
+        head = self._head
+        while not head.sreg[7]:  # not inside an interrupt: there it would hold the others up
+            self.run(1e-6)
+        head.sreg[7] = interrupts
+        place = c.cast(head.flash + head.pc, c.POINTER(_u16))
+        self._patched = place, place[0]
+        place[0] = 0xCFFF  # rjmp to itself
 
     def run(self, seconds):
         """Let the processor work for that long, or a few instructions longer."""
         head, step, avr = self._head, self._library.avr_run, self._avr
-        left = round(seconds * _F)
-        end, cycle = head.cycle + left, head.cycle
-        while cycle < end:
+        end, resets = head.cycle + round(seconds * _F), self.resets
+        while (cycle := head.cycle) < end:
             while self._ready and self.received:
                 self._library.avr_raise_irq(self._rx, self.received.pop(0))
             head.run_cycle_limit = end - cycle
             state = step(avr)
             if state not in (_RUNNING, _SLEEPING):
                 raise RuntimeError(f"the sketch has crashed: state {state}, program counter {head.pc:#x}")
-            now = head.cycle
-            if now < cycle:  # reset by the hardware watchdog
-                self._before += cycle
-                end -= cycle
-                self._ready = False
-                self._after_reset()
-            cycle = now
+            if self.resets != resets:  # by the hardware watchdog
+                self._prepare()
+                resets = self.resets
 
     def set_counts(self, channel, counts):
         """Voltage at A0.. such that the 10-bit converter reads `counts` (rounded to whole ones)."""

@@ -5,7 +5,7 @@
 //   1. no drive before the computer has said hello (a board that has restarted waits);
 //   2. no valid drive command for 100 ms: brake;
 //   3. a joint at an end of its potentiometer is not driven further out; a broken wire stops its joint altogether;
-//   4. the sketch hangs: the processor's own watchdog brakes after 60 ms and restarts the board after 120 ms.
+//   4. the sketch hangs: the processor's own watchdog brakes after 30 ms and restarts the board after 60 ms.
 // The wire is described in protocol.py, wiring and first power-on in README.md.
 
 #include <avr/eeprom.h>
@@ -145,14 +145,15 @@ void watch_computer() {
 const uint16_t HUNG = 0xDEAD;
 uint16_t mark __attribute__((section(".noinit")));
 
-// The loop has not come round for 60 ms. The same time again and the processor is reset.
+// The loop has not come round for 30 ms. The same time again and the processor is reset; also if this interrupt could
+// not run, because the sketch hangs with interrupts off.
 ISR(WDT_vect) {
   cut();
   mark = HUNG;
 }
 
 void start_hardware_watchdog() {
-  wdt_enable(WDTO_60MS);
+  wdt_enable(WDTO_30MS);
   WDTCSR |= _BV(WDIE);  // first the interrupt above, then the reset
 }
 
@@ -224,14 +225,14 @@ void receive() {
   static Command frame;
   static uint8_t length = 0;
   uint8_t *bytes = (uint8_t *)&frame;
-  while (Serial.available()) {
+  for (uint8_t n = 0; n < COMMAND_SIZE && Serial.available(); n++) {  // not more: the loop must come round
     bytes[length++] = Serial.read();
     if (frame.sync != COMMAND_SYNC) length = 0;
     if (length < COMMAND_SIZE) continue;
     if (valid(frame)) {
       obey(frame);
       length = 0;
-      return;  // watch and drive before the next one
+      return;
     }
     bad_frames++;
     uint8_t next = 1;
