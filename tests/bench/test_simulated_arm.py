@@ -1,0 +1,232 @@
+"""The simulated arm: each thing that hurts on a real one, by itself, against a value known from elsewhere."""
+
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import Unit
+from ir50p_lab.bench.rest import rest_pose
+from ir50p_lab.bench.simulated_arm import SimulatedArm
+from ir50p_lab.errors import ArmError, InputError
+from ir50p_lab.modelling import IR50P, IR50P_WEAK_SHOULDER, THESIS_A, Arm, forward_kinematics, gravity
+from ir50p_lab.simulation import simulate
+
+NO_PLAY = {"backlash": (0, 0, 0), "spread": 0}
+IDEAL = Unit(**NO_PLAY, dead_zone=(0, 0, 0), noise=0, pot_bow=(0, 0, 0))
+OTHER = Arm.load("data/arm_example.toml")
+STRAIGHT_UP = (0.0, np.pi / 2, 0.0)  # no gravity on any joint
+
+
+class Fixed:
+    """A controller that sends the same PWM counts for ever."""
+
+    def __init__(self, pwm):
+        self.pwm = np.array(pwm, dtype=float)
+
+    def step(self, t, measured, reference):
+        return self.pwm
+
+
+@pytest.mark.parametrize("arm", [IR50P, IR50P_WEAK_SHOULDER, OTHER], ids=lambda arm: arm.name)
+def test_an_ideal_unit_moves_as_the_simulation_does(arm):
+    simulated = SimulatedArm(arm, IDEAL)
+    q = [simulated.q_true]
+    for _ in range(100):
+        simulated.advance((120, 100, -60), 0.01)
+        q.append(simulated.q_true)
+    expected = simulate(arm, Fixed((120, 100, -60)), duration=1.0, unit="PWM", stops=True, table=0.0)
+    np.testing.assert_allclose(q, expected.q, atol=1e-12)
+
+
+def test_breakaway_sticks_below_and_moves_above():
+    arm = SimulatedArm(IR50P, IDEAL, q0=STRAIGHT_UP)
+    # breakaway of joint 1 is 36 counts, its offset 4 counts against positive drive
+    arm.advance((39, 0, 0), 2.0)
+    assert arm.q_true[0] == 0.0
+    arm.advance((41, 0, 0), 2.0)
+    assert arm.q_true[0] > 0.1
+
+
+def test_stribeck_once_it_moves_less_drive_keeps_it_moving():
+    arm = SimulatedArm(IR50P, IDEAL, q0=STRAIGHT_UP)
+    arm.advance((60, 0, 0), 1.0)
+    arm.advance((39, 0, 0), 2.0)  # would not break away from rest, see above
+    assert arm.qd_true[0] == pytest.approx((39 - 4 - 18) / 102, rel=0.03)  # Coulomb 18, back-EMF 102 counts s/rad
+
+
+def test_velocity_limit_is_the_no_load_speed_less_friction():
+    arm = SimulatedArm(IR50P, IDEAL, q0=(-1.6, np.pi / 2, 0.0))
+    arm.advance((255, 0, 0), 1.0)
+    top = 2.5 * (255 - 18 - 4) / 255  # rad/s at 12 V
+    assert arm.qd_true[0] == pytest.approx(top, rel=0.02)
+
+
+def test_supply_saturates():
+    full, beyond = (SimulatedArm(IR50P, IDEAL, q0=STRAIGHT_UP) for _ in range(2))
+    full.advance((255, -255, 255), 0.3)
+    beyond.advance((900, -900, 900), 0.3)
+    np.testing.assert_array_equal(full.q_true, beyond.q_true)
+
+
+def test_dead_zone_swallows_short_pulses_only():
+    slick = IR50P.without_friction()
+    arm = SimulatedArm(slick, Unit(**NO_PLAY, dead_zone=(3, 3, 3)), q0=STRAIGHT_UP)
+    arm.advance((2.9, 0, 0), 1.0)
+    assert arm.q_true[0] == 0.0
+    free = SimulatedArm(slick, IDEAL, q0=STRAIGHT_UP)
+    for one in (arm, free):
+        one.advance((10, 0, 0), 1.0)
+    assert arm.q_true[0] == free.q_true[0] > 0.01  # a longer pulse counts in full
+
+
+def test_motor_gain_is_torque_per_count():
+    weak = SimulatedArm(IR50P, Unit(**NO_PLAY, noise=0, motor_gain=(0.5, 1, 1)), q0=STRAIGHT_UP)
+    weak.advance((79, 0, 0), 1.0)
+    assert weak.q_true[0] == 0.0  # 79 halves to 39.5 < 40
+    weak.advance((81, 0, 0), 1.0)
+    assert weak.q_true[0] > 0
+
+
+def test_friction_of_the_unit():
+    rough = SimulatedArm(IR50P, Unit(**NO_PLAY, noise=0, friction=(2, 1, 1)), q0=STRAIGHT_UP)
+    rough.advance((75, 0, 0), 1.0)
+    assert rough.q_true[0] == 0.0  # 2 x 36 + 4
+    rough.advance((77, 0, 0), 1.0)
+    assert rough.q_true[0] > 0
+
+
+def test_backlash_loses_the_play_when_the_motion_turns_and_no_more():
+    play = 0.02
+    arm = SimulatedArm(IR50P, Unit(spread=0, backlash=(play,) * 3, noise=0), q0=STRAIGHT_UP)
+    gap = []
+    for pwm in (100, -100, 100):
+        arm.advance((pwm, 0, 0), 0.6)
+        gap.append(arm._x[0] - arm.q_true[0])
+    np.testing.assert_allclose(gap, [play / 2, -play / 2, play / 2], atol=1e-12)
+
+
+def test_gravity_presses_the_teeth_of_joints_2_and_3_together():
+    arm = SimulatedArm(IR50P, Unit(spread=0, backlash=(0.02,) * 3, noise=0))  # stretched out, horizontal
+    for pwm in (200, 100):  # up, then down: the link hangs on the lower flank both times
+        arm.advance((0, pwm, 57), 0.5)
+        assert arm._x[1] - arm.q_true[1] == pytest.approx(0.01)
+    assert arm._x[0] == arm.q_true[0] == 0.0  # no gravity on joint 1: it stays where it is
+
+
+def test_end_stops_hold():
+    arm = SimulatedArm(IR50P, Unit(**NO_PLAY), q0=STRAIGHT_UP)
+    arm.advance((255, 0, 255), 3.0)
+    np.testing.assert_allclose(arm.q_true[[0, 2]], np.array(IR50P.q_max)[[0, 2]], atol=1e-9)
+    np.testing.assert_allclose(arm.qd_true[[0, 2]], 0, atol=1e-9)
+
+
+def test_table_holds_the_tip():
+    arm = SimulatedArm(IR50P, Unit(**NO_PLAY))
+    heights = []
+    for _ in range(300):
+        arm.advance((0, -60, -40), 0.01)
+        heights.append(arm.tip_true[2])
+    assert heights[0] > 0.2
+    assert min(heights) > -2e-3
+    assert heights[-1] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_without_drive_the_stretched_arm_sinks_and_stays_in_its_rest_pose():
+    arm = SimulatedArm(IR50P, seed=1)
+    assert np.abs(gravity(IR50P, arm.q_true))[1] > 3 * IR50P.friction.fs[1]
+    arm.advance((0, 0, 0), 1.0)
+    assert arm.q_true[1] < -0.2
+    arm.place(rest_pose(IR50P))
+    arm.advance((0, 0, 0), 5.0)
+    np.testing.assert_allclose(arm.q_true, rest_pose(IR50P), atol=0.035)  # the way to the end stop beside it
+
+
+def test_open_bridges_coast_shorted_motors_brake():
+    braking, coasting = (SimulatedArm(IR50P, IDEAL) for _ in range(2))
+    braking.advance((0, 0, 0), 0.3)
+    coasting.advance((200, 200, 200), 0.3, enabled=False)
+    assert coasting.q_true[1] < 2 * braking.q_true[1] < 0  # the back-EMF no longer holds the fall up
+
+
+def test_time_left_over_is_kept():
+    whole, pieces = (SimulatedArm(IR50P, IDEAL) for _ in range(2))
+    whole.advance((50, 50, 50), 0.1)
+    for _ in range(250):
+        pieces.advance((50, 50, 50), 0.0004)
+    np.testing.assert_array_equal(whole.q_true, pieces.q_true)
+
+
+def test_counts_are_whole_and_as_the_nominal_line_says():
+    arm = SimulatedArm(IR50P, IDEAL, q0=(0.3, 0.4, -0.5))
+    counts = arm.counts()
+    np.testing.assert_array_equal(counts, np.rint(arm.nominal.counts((0.3, 0.4, -0.5))))
+
+
+def test_noise_is_one_count_rms_before_rounding():
+    arm = SimulatedArm(IR50P, Unit(spread=0, pot_bow=(0, 0, 0)))
+    before = np.array([arm.voltage_counts() for _ in range(4000)]) - arm.nominal.counts(arm.q_true)
+    np.testing.assert_allclose(before.std(axis=0), 1.0, rtol=0.04)
+    np.testing.assert_allclose(before.mean(axis=0), 0.0, atol=0.06)
+    after = np.array([arm.counts() for _ in range(4000)])
+    np.testing.assert_array_equal(after, np.rint(after))
+    np.testing.assert_allclose(after.std(axis=0), np.sqrt(1 + 1 / 12), rtol=0.04)  # rounding adds 1/12
+
+
+def test_bow_is_its_number_in_the_middle_and_nothing_at_the_ends():
+    unit = Unit(spread=0, noise=0, pot_bow=(2.0, -1.0, 0.5), table=-1.0)
+    low, high = np.array(IR50P.q_min), np.array(IR50P.q_max)
+    for q, share in ((low, 0), (high, 0), ((low + high) / 2, 1), (low + (high - low) / 4, 0.75)):
+        arm = SimulatedArm(IR50P, unit, q0=q)
+        np.testing.assert_allclose(arm.voltage_counts() - arm.nominal.counts(q), share * np.array(unit.pot_bow))
+
+
+def test_the_converter_ends_at_0_and_1023():
+    arm = SimulatedArm(IR50P, Unit(spread=0, pot_shift=(900, -900, 0)))
+    assert arm.counts()[:2].tolist() == [1023, 0]
+
+
+def test_a_seed_gives_the_same_unit_and_noise():
+    def run(seed):
+        arm = SimulatedArm(IR50P, seed=seed)
+        rows = []
+        for _ in range(50):
+            arm.advance((100, 150, 30), 0.01)
+            rows.append(arm.counts())
+        return np.array(rows)
+
+    np.testing.assert_array_equal(run(5), run(5))
+    assert (run(5) != run(6)).any()
+
+
+def test_noise_is_the_same_however_it_is_taken():
+    one, many = SimulatedArm(IR50P, seed=2), SimulatedArm(IR50P, seed=2)
+    np.testing.assert_array_equal(
+        np.vstack([one._next_noise(1) for _ in range(2500)]), np.vstack([many._next_noise(n) for n in (3, 1500, 997)])
+    )
+
+
+def test_where_it_cannot_stand():
+    with pytest.raises(InputError, match="joint 1 = 3 rad is outside"):
+        SimulatedArm(IR50P, q0=(3, 0, 0))
+    with pytest.raises(InputError, match="table"):
+        SimulatedArm(IR50P, q0=(0, -0.8, -1.0))
+    with pytest.raises(InputError, match="shape"):
+        SimulatedArm(IR50P, q0=(0, 0))
+
+
+def test_an_arm_that_cannot_stand_at_zero_starts_at_rest():
+    import dataclasses
+
+    arm = dataclasses.replace(IR50P, q_min=(-1, 0.2, -2), q_max=(1, 1.5, -0.1))
+    np.testing.assert_array_equal(SimulatedArm(arm).q_true, rest_pose(arm))
+
+
+def test_arms_without_motors_are_refused_with_a_way_out():
+    with pytest.raises(ArmError, match=r"no actuators.*from_joint_data"):
+        SimulatedArm(THESIS_A)
+    with pytest.raises(ArmError, match="needs an Arm"):
+        SimulatedArm(IR50P.theta)
+
+
+def test_tip_is_that_of_the_links():
+    arm = SimulatedArm(IR50P, q0=(0.2, 0.3, -0.4))
+    np.testing.assert_allclose(arm.tip_true, forward_kinematics(IR50P, (0.2, 0.3, -0.4)))
