@@ -118,7 +118,7 @@ class GimbalView:
         self._dot = price_ax.plot([], [], "o", color=COLOURS["orange"], ms=9, zorder=5)[0]
         price_ax.set(yscale="log", ylim=(0.8, 300), xlim=(-180, 180), xticks=range(-180, 181, 90))
         price_ax.set(xlabel="middle angle [deg]", ylabel="largest angle change per turn [deg/deg]")
-        self._title = price_ax.set_title("", loc="left")
+        self._title = price_ax.set_title("")
         self._sequence = self.gain = None
 
     def update(self, sequence, angles):

@@ -22,7 +22,7 @@ COLOURS = {
 }
 SETPOINT = {"color": COLOURS["dark"], "linestyle": "--", "linewidth": 1.2}
 
-# Only what matplotlib reads when axes are made: what comes later (plot, legend, titles) keeps its defaults.
+# Only what matplotlib reads when axes are made: what comes later keeps its defaults (titles are centred everywhere).
 _STYLE = {
     "axes.prop_cycle": matplotlib.cycler(
         color=[COLOURS[n] for n in ("blue", "orange", "green", "purple", "amber", "sky")]

@@ -1,4 +1,4 @@
-"""The mistakes of thesis chapter 1, as data: where a student meets them a 'Thesis check' cell must run.
+"""The mistakes of the thesis that notebooks meet so far, as data: where a student meets them a 'Thesis check' cell must run.
 
 Each entry: (equation or place, what is wrong in one line, words that name it if it has no number of its own).
 The words are a regular expression; it may match the text of the Thesis check or the code below it.
@@ -81,5 +81,33 @@ ERRATA = {
         ("2 b112", "halves misprinted in the derivation", r"2 ?b_?\{?112"),
         ("24 V", "24 V motors, driven with 12 V", r"24 V"),
         ("1.5.3c", "G2 multiplies two terms, and has lc2 for l2"),
+    ],
+    "04": [
+        (
+            "1.115",
+            "right for a moving joint; sgn(0) is one value, but a joint at rest holds against any torque up to fs",
+        ),
+        ("1.116", "the same"),
+        ("1.117", "the same"),
+        ("1.119", "C q for C qd, G(qd) for G(q): energy comes from nowhere"),
+        ("1.120", "the same"),
+        ("2.2", "C q for C qd"),
+        ("4.1.2", "motors for 24 V, driven with 12 V: half the torque and half the speed"),
+    ],
+    "05": [
+        ("2.1", "P is explained twice; the one of past values is I", r'"past values", is I'),
+        ("2.4", "right, and contradicts (2.7)", r"\(2\.4\)"),
+        ("2.5", "drops the velocity of the set point: right for a constant one only"),
+        ("2.7", "e = qd + q: a perfectly tracking arm would have an error"),
+        (
+            "Tables 2.1-2.3, gravity",
+            "Ki = 0 and no gravity term: g/Kp stays as an error",
+            r"Figure 2\.5, Tables 2\.1-2\.3",
+        ),
+        (
+            "Tables 2.1-2.3, sampling",
+            "unstable when held for the 0.01 s that the thesis names",
+            r"\(Tables 2\.1-2\.3\).*0\.01 s",
+        ),
     ],
 }
