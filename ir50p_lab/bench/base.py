@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ir50p_lab.bench.recording import Recorder
+from ir50p_lab.bench.recorder import Recorder
 from ir50p_lab.bench.rest import rest_pose, way_to_rest
 from ir50p_lab.errors import BenchError, InputError
 
@@ -51,6 +51,7 @@ class Bench(abc.ABC):
 
     kind = "bench"
     simulated = False
+    own_process = False  # whether a loop in the background gets a process of its own
 
     def __init__(self, arm, calibration, *, period=0.01, record_to=None, name=None):
         """record_to: folder for recordings (default: ./recordings), or False for none on disk."""
@@ -63,7 +64,8 @@ class Bench(abc.ABC):
         self._is_open = self._running = False
         self._pwm, self._gripper = np.zeros(JOINTS), False
         self._last, self._recorder = None, None
-        self._q_low, self._q_high = np.array(arm.q_min), np.array(arm.q_max)
+        self._live = None  # the LiveRun that has the arm, or had it last
+        self._travel = tuple(zip(arm.q_min, arm.q_max, strict=True))
 
     # ---- what a subclass supplies
 
@@ -91,9 +93,17 @@ class Bench(abc.ABC):
     def _close(self):
         """Give everything free; must work in any state."""
 
+    def _radians(self, counts):
+        """Angles of the counts just measured; only a recording knows better."""
+        return self.calibration.radians(counts)
+
     def _header(self):
         """More lines for the head of a recording: dict of str."""
         return {}
+
+    def _arguments(self):
+        """Keyword arguments that make the same bench in another process; needed if `own_process`."""
+        raise NotImplementedError(f"{type(self).__name__} has own_process, so it must define _arguments()")
 
     # ---- the contract
 
@@ -118,6 +128,8 @@ class Bench(abc.ABC):
         if not self._is_open:
             return
         try:
+            if self._live is not None:
+                self._live.stop()  # brings the arm to its rest pose
             self._end_run()
             if self._last is not None:  # never moved: nothing to bring back
                 self.go_to_rest()
@@ -134,7 +146,9 @@ class Bench(abc.ABC):
         self._close()
 
     def cut(self):
-        """Drive off at once; the run, if any, goes on without drive until the next `drive`."""
+        """Drive off at once; a run in a cell goes on without it until the next `drive`, one in the background ends."""
+        if self._live is not None and not self._live.is_here():
+            self._live.cut()
         self._pwm = np.zeros(JOINTS)
         self._cut()
 
@@ -145,11 +159,21 @@ class Bench(abc.ABC):
         Raises InputError for a bad duration, BenchError if the bench is not open or already runs, BoardLostError if
         the board stops answering. On any error the drive is cut first.
         """
+        return self._cycles(self._number_of_cycles(seconds), record, header)
+
+    def _number_of_cycles(self, seconds):
         if not (isinstance(seconds, int | float | np.number) and math.isfinite(seconds) and seconds > 0):
             raise InputError(f"seconds = {seconds!r}: give how long to run, in seconds, > 0")
+        self._take_back()
         if not self._is_open:
             raise BenchError("the bench is closed: open it with `with connect() as bench:` and run inside the block")
-        return self._cycles(max(1, round(seconds / self.period)), record, header)
+        return max(1, round(seconds / self.period))
+
+    def _take_back(self):
+        """Have the arm back from a loop in the background that is over; BenchError if it is not."""
+        if self._live is not None and not self._live.is_here():
+            self._live.give_back()
+            self._live = None
 
     def _cycles(self, cycles, record, header):
         self._end_run()  # of a loop that was left by break
@@ -160,7 +184,7 @@ class Bench(abc.ABC):
             self._begin()
             for k in range(cycles):
                 t, counts, missed = self._measure(k)
-                sample = Sample(t, self.calibration.radians(counts), counts, missed)
+                sample = Sample(t, self._radians(counts), counts, missed)
                 self._last = sample
                 self._reference = None
                 yield sample
@@ -179,6 +203,7 @@ class Bench(abc.ABC):
     def _start_recorder(self, header):
         head = {
             "arm": self.arm.name,
+            "kind": self.kind,
             "bench": self.name,
             "simulated": str(self.simulated).lower(),
             "period_s": f"{self.period:g}",
@@ -213,22 +238,27 @@ class Bench(abc.ABC):
         if command.shape != (JOINTS,) or not math.isfinite(command[0] + command[1] + command[2]):
             self.cut()
             raise InputError(f"pwm = {pwm!r}: give three finite numbers of PWM counts; the drive has been cut")
-        command = np.clip(np.rint(command), -LIMIT_PWM, LIMIT_PWM)
-        q = self._last.q
-        command[((q <= self._q_low) & (command < 0)) | ((q >= self._q_high) & (command > 0))] = 0.0
+        limited = []  # scalars: for three numbers arrays take longer than the arm
+        for u, q, (low, high) in zip(command.tolist(), self._last.q.tolist(), self._travel, strict=True):
+            out = (q <= low and u < 0) or (q >= high and u > 0)
+            limited.append(0.0 if out else min(max(float(round(u)), -LIMIT_PWM), LIMIT_PWM))
+        command = np.array(limited, dtype=float)
         if gripper is not None:
             self._gripper = bool(gripper)
         self._reference = reference
         self._pwm = self._send(command, self._gripper)
         return self._pwm
 
-    def follow(self, controller, reference, seconds, **header):
-        """Run `controller` on `reference` for `seconds`; the loop of the lesson in one call. Returns the Recording."""
+    def follow(self, controller, reference, seconds, *, record=True, **header):
+        """Run `controller` on `reference` for `seconds`; the loop of the lesson in one call.
+
+        Returns the Recording (None with record=False).
+        """
         controller.reset() if hasattr(controller, "reset") else None
-        for sample in self.run(seconds, **header):
+        for sample in self.run(seconds, record=record, **header):
             target = reference(sample.t)
             self.drive(controller.step(sample.t, sample.q, target), reference=target[0])
-        return self.recording
+        return self.recording if record else None
 
     def start(self, controller, reference, **options):
         """Run `controller` on `reference` in the background; see `bench.background`. Returns its handle."""

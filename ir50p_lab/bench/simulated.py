@@ -185,7 +185,8 @@ class SimulatedBench(Bench):
         else:
             r = np.array([np.stack(reference(time)) for time in t], dtype=float)
         plant, out = self.plant, np.empty((len(t), 15))
-        fixed = (np.array(self.calibration.slope), np.array(self.calibration.zero), self._q_low, self._q_high)
+        line, travel = self.calibration, np.array(self._travel)
+        fixed = (np.array(line.slope), np.array(line.zero), travel[:, 0].copy(), travel[:, 1].copy())
         law = (controller.kind, controller.parameters, controller.state)
         arrays = (plant._theta, plant._numbers, plant._w, plant._x, plant._joint)
         noise = plant._next_noise(len(t))

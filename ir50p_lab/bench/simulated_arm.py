@@ -12,7 +12,7 @@ from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.chain import forward_kinematics
-from ir50p_lab.simulation.plant import FC, FS, FV, GRAVITY, LIMIT, TF, make_plant
+from ir50p_lab.simulation.plant import FC, FS, FV, GRAVITY, LIMIT, make_plant
 from ir50p_lab.simulation.steps import dry_step
 
 STEP = 0.001  # s; Moreau's step is of first order, and 1 ms is far below the time constants of the drives
