@@ -20,7 +20,8 @@ def connect(port=None, *, arm=None, calibration=None, period=0.01, record_to=Non
         port: 'simulated', 'replay:FILE', or a serial port ('COM3', '/dev/ttyACM0'); None looks for a board.
         arm: Arm, default `load_arm()`; calibration: counts to rad, default that of the arm; period: s;
         record_to: folder of the recordings, False for none on disk. simulated: further options of SimulatedBench, as
-        `seed`, `unit` and `realtime`; the other benches take no notice of them, so that a cell runs on any bench.
+        `seed` and `unit`; the other benches take no notice of them, so that a cell runs on any bench (a replay keeps
+        to `realtime`).
 
     Returns: an open bench, for `with connect() as bench:`.
     Raises: PortError or BoardError if the port asked for does not open or no board of ours answers there, with the
@@ -45,7 +46,8 @@ def _asked_for(wish, reason, common, simulated):
     if wish.lower().startswith("replay:"):
         from ir50p_lab.bench.replay import ReplayBench
 
-        bench = ReplayBench(wish[len("replay:") :], record_to=common["record_to"])
+        options = {name: common[name] for name in ("arm", "record_to")} | {"realtime": simulated.get("realtime", False)}
+        bench = ReplayBench(wish[len("replay:") :], **options)
         return _say(bench.open(), f"asked for by {reason}", _TO_BOARD)
     return _say_board(_serial(wish, common), f"asked for by {reason}")
 
@@ -89,5 +91,5 @@ def _say_board(bench, reason):
 
 def _say(bench, reason, other):
     """The one line, padded to wipe out what was announced before it."""
-    print(f"Bench: {bench.name} ({reason}; {other})".ljust(100))
+    print(f"Bench: {bench.name} ({reason}; {other})".ljust(80))
     return bench

@@ -113,7 +113,7 @@ class TestContract:
             assert sample.q.shape == sample.counts.shape == (3,)
             assert sample.q.dtype == sample.counts.dtype == float
             assert ((sample.counts >= 0) & (sample.counts <= 1023)).all()
-            np.testing.assert_allclose(sample.q, bench.calibration.radians(sample.counts), atol=1e-12)
+            np.testing.assert_allclose(sample.q, bench.calibration.radians(sample.counts), atol=1e-5)
             np.testing.assert_allclose(sample.q, REST, atol=0.2)  # the unit is not as its calibration says
 
     @pytest.mark.parametrize("seconds", [0, -1, math.nan, math.inf, "ten", None])
@@ -260,7 +260,7 @@ class TestContract:
 
     def test_an_error_leaves_the_arm_where_it_is(self, rig_at):
         """No way to the rest pose after a fault: the drive is off, and stays off."""
-        rig = rig_at(REST + [0.3, 0.0, 0.1])
+        rig = rig_at(REST + np.array([0.3, 0.0, 0.1]))
         bench = rig.bench()
         with pytest.raises(RuntimeError), bench:
             for _ in bench.run(1):
@@ -273,7 +273,7 @@ class TestContract:
     # ---- leaving in order
 
     def test_leaving_moves_to_the_rest_pose_then_lets_go(self, rig_at):
-        rig = rig_at(REST + [0.6, -0.6, 0.6])
+        rig = rig_at(REST + np.array([0.6, -0.6, 0.6]))
         bench = rig.bench()
         with bench:
             for _ in bench.run(0.05):
@@ -282,13 +282,13 @@ class TestContract:
         assert is_off(rig)
         assert bench.recording is seen  # the way back is not what the student wants to see
         if rig.moves:
-            np.testing.assert_allclose(rig.q(), REST, atol=0.25)  # as near as these gains and friction let it come
+            np.testing.assert_allclose(rig.q(), REST, atol=0.15)
             left = rig.q()
-            rig.wait(1.0)
+            rig.wait(2.0)
             np.testing.assert_allclose(rig.q(), left, atol=0.02)  # it does not sink
 
     def test_leaving_without_having_run_moves_nothing(self, rig_at):
-        rig = rig_at(REST + [0.3, 0.0, 0.0])
+        rig = rig_at(REST + np.array([0.3, 0.0, 0.0]))
         with rig.bench():
             pass
         assert is_off(rig)

@@ -3,7 +3,7 @@
 import numpy as np
 from fake_board import FakeBoard
 
-from ir50p_lab.bench import SerialBench, SimulatedBench, nominal_calibration
+from ir50p_lab.bench import ReplayBench, SerialBench, SimulatedBench, nominal_calibration
 from ir50p_lab.bench.simulated_arm import SimulatedArm
 from ir50p_lab.controllers import PID
 from ir50p_lab.modelling import IR50P
@@ -64,14 +64,11 @@ class Simulated(Rig):
 
 class Replay(Rig):
     moves = False
-    exact = True
 
     def set_up(self):
         self.path = None
 
     def make(self, calibration=None, **options):
-        from ir50p_lab.bench import ReplayBench
-
         return ReplayBench(self.recorded(calibration=calibration), **options)
 
     def recorded(self, seconds=3.0, **options):

@@ -1,0 +1,278 @@
+"""Which bench `connect()` opens, in which order, and the one line it says."""
+
+import inspect
+from importlib import import_module
+
+import numpy as np
+import pytest
+from fake_board import FakeBoard
+
+from ir50p_lab.bench import Calibration, ReplayBench, SerialBench, SimulatedBench, connect, nominal_calibration
+from ir50p_lab.bench import ports as port_list
+from ir50p_lab.bench.ports import Port
+from ir50p_lab.errors import BoardError, InputError, PortError, RecordingError
+from ir50p_lab.launcher.boards import MEGA
+from ir50p_lab.modelling import IR50P
+
+CLONE = "CH340 chip, as on clones of the Mega"
+
+
+@pytest.fixture(autouse=True)
+def computer(monkeypatch, tmp_path):
+    """A computer without any port, unless a test plugs something in: computer({name: (board, what is there)})."""
+    monkeypatch.chdir(tmp_path)
+    for variable in ("IR50P_BENCH", "IR50P_ARM", "IR50P_CALIBRATION", "IR50P_RECORDINGS"):
+        monkeypatch.delenv(variable, raising=False)
+    opened = []
+
+    def plug_in(things):
+        def open_port(name, baud):
+            opened.append(name)
+            there = things.get(name, (None, PortError(f"{name} does not exist")))[1]
+            if isinstance(there, Exception):
+                raise there
+            return there
+
+        finder, serial_bench = (import_module(f"ir50p_lab.bench.{name}") for name in ("connect", "serial_bench"))
+        monkeypatch.setattr(finder, "list_ports", lambda: [Port(name, board) for name, (board, _) in things.items()])
+        monkeypatch.setattr(serial_bench, "open_port", open_port)
+        clocks = [there for _, there in things.values() if hasattr(there, "now")]
+        if clocks:
+            monkeypatch.setattr(serial_bench, "Clock", CommonClock(clocks))
+        return opened
+
+    plug_in({})
+    return plug_in
+
+
+class CommonClock:
+    """One clock for several boards on virtual time."""
+
+    def __init__(self, boards):
+        self.boards = boards
+
+    def now(self):
+        return max(board.now() for board in self.boards)
+
+    def sleep(self, seconds):
+        until = self.now() + seconds
+        for board in self.boards:
+            board.sleep(until - board.now())
+
+
+def board(**faults):
+    made = FakeBoard(nominal_calibration(IR50P))
+    for name, value in faults.items():
+        setattr(made, name, value)
+    return made
+
+
+@pytest.fixture
+def said(capsys):
+    """The one line, without what was wiped out before it."""
+
+    def read():
+        out = capsys.readouterr().out
+        assert out.count("\n") == 1 and out.endswith("\n")
+        return out.rstrip("\n").split("\r")[-1].rstrip()
+
+    return read
+
+
+# ---- nothing is asked for
+
+
+def test_no_board_gives_the_simulated_arm(said):
+    with connect() as bench:
+        assert isinstance(bench, SimulatedBench)
+        assert len(list(bench.run(0.1))) == 10
+    assert said() == (
+        "Bench: simulated IR50P, unit 0 (no Arduino Mega found; for a board: connect('PORT') or IR50P_BENCH=PORT)"
+    )
+
+
+@pytest.mark.parametrize(
+    ("others", "words"), [(1, "no Arduino Mega found on the one serial port"), (3, "among 3 serial ports")]
+)
+def test_ports_of_other_devices_are_left_alone(computer, said, others, words):
+    opened = computer({f"COM{k}": (None, board()) for k in range(others)})
+    assert isinstance(connect(), SimulatedBench)
+    assert words in said()
+    assert not opened
+
+
+@pytest.mark.parametrize("name", [MEGA, CLONE])
+def test_a_board_that_answers_is_taken(computer, said, name):
+    there = board()
+    computer({"COM1": (None, board()), "COM7": (name, there)})
+    with connect() as bench:
+        assert isinstance(bench, SerialBench) and bench.port == "COM7"
+        for _ in bench.run(0.1):
+            bench.drive([20, 0, 0])
+        assert there.q[0] > 0
+    line = said()
+    assert line.startswith(f"Bench: board on COM7 for IR50P ({name} found and its firmware answers; ")
+    assert "calibration: nominal, not measured" in line
+    assert line.endswith("; for the simulated arm: connect('simulated') or IR50P_BENCH=simulated)")
+
+
+def test_the_line_about_the_boot_loader_is_wiped_out(computer, capsys):
+    computer({"/dev/ttyACM0": (MEGA, board())})
+    connect().abort()
+    waiting, line = capsys.readouterr().out.split("\r")
+    assert waiting == "/dev/ttyACM0: opening it restarts the board, its boot loader takes 2 s"
+    assert len(line) > len(waiting)
+
+
+def test_of_two_boards_the_first_is_taken_and_the_other_named(computer, said):
+    opened = computer({"COM3": (MEGA, board()), "COM4": (MEGA, board())})
+    assert connect().port == "COM3"
+    assert "; COM4 not tried" in said()
+    assert opened == ["COM3"]
+
+
+@pytest.mark.parametrize(
+    ("first", "words"),
+    [
+        (PortError("COM3 is busy: another program holds it"), "COM3 is busy"),
+        (PortError("no permission to open COM3: 'sudo usermod"), "no permission"),
+        (board(dead=True), "nothing answers"),
+        (board(identity={"protocol": 9}), "speaks protocol 9"),
+    ],
+    ids=["busy", "permission", "silent", "version"],
+)
+def test_a_board_that_cannot_be_used_is_named_and_the_next_tried(computer, said, first, words):
+    opened = computer({"COM3": (MEGA, first), "COM4": (CLONE, board())})
+    assert connect().port == "COM4"
+    assert opened == ["COM3", "COM4"]
+    said()
+    computer({"COM3": (MEGA, first)})
+    assert isinstance(connect(), SimulatedBench)
+    line = said()
+    assert f"({MEGA} was not taken: " in line and words in line
+    assert line.endswith("; for a board: connect('PORT') or IR50P_BENCH=PORT)")
+
+
+# ---- something is asked for
+
+
+@pytest.mark.parametrize("how", ["argument", "variable"])
+@pytest.mark.parametrize("wish", ["simulated", "Simulated"])
+def test_the_simulated_arm_although_a_board_is_there(computer, said, monkeypatch, how, wish):
+    opened = computer({"COM3": (MEGA, board())})
+    if how == "variable":
+        monkeypatch.setenv("IR50P_BENCH", wish)
+    assert isinstance(connect(wish) if how == "argument" else connect(), SimulatedBench)
+    assert not opened
+    reason = f"connect('{wish}')" if how == "argument" else f"IR50P_BENCH={wish}"
+    assert f"(asked for by {reason}; for a board: " in said()
+
+
+@pytest.mark.parametrize("how", ["argument", "variable"])
+def test_a_port(computer, said, monkeypatch, how):
+    """Also one whose USB id nobody knows."""
+    computer({"COM1": (MEGA, board()), "COM5": (None, board())})
+    if how == "variable":
+        monkeypatch.setenv("IR50P_BENCH", "COM5")
+    assert (connect("COM5") if how == "argument" else connect()).port == "COM5"
+    assert "(asked for by " in said()
+
+
+def test_the_argument_wins_over_the_variable(computer, said, monkeypatch):
+    monkeypatch.setenv("IR50P_BENCH", "COM5")
+    assert isinstance(connect("simulated"), SimulatedBench)
+    assert "connect('simulated')" in said()
+
+
+def test_an_empty_variable_says_nothing(said, monkeypatch):
+    monkeypatch.setenv("IR50P_BENCH", " ")
+    connect()
+    assert "no Arduino Mega found" in said()
+
+
+def test_a_replay(said, monkeypatch, tmp_path):
+    with SimulatedBench(record_to=tmp_path) as bench:
+        list(bench.run(0.2))
+    path = bench.recording.path
+    monkeypatch.setenv("IR50P_BENCH", f"replay:{path}")
+    with connect() as again:
+        assert isinstance(again, ReplayBench)
+        q = [sample.q for sample in again.run(0.2)]
+    np.testing.assert_allclose(q, bench.recording.q, atol=1e-6)
+    assert f"IR50P_BENCH=replay:{path}" in said()
+
+
+def test_what_is_asked_for_and_fails_raises(computer, capsys):
+    computer({"COM3": (MEGA, board(dead=True))})
+    with pytest.raises(BoardError, match="nothing answers"):
+        connect("COM3")
+    with pytest.raises(PortError, match="COM9 does not exist"):
+        connect("COM9")
+    with pytest.raises(RecordingError, match=r"nowhere\.csv"):
+        connect("replay:nowhere.csv")
+    assert "Bench:" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("port", ["", 7, b"COM3"])
+def test_a_port_that_is_none(port):
+    with pytest.raises(InputError, match="give 'simulated', 'replay:FILE' or the name of a serial port"):
+        connect(port)
+
+
+# ---- what is handed on
+
+
+def test_options_go_to_the_bench(computer, said, tmp_path):
+    bench = connect("simulated", arm=IR50P, period=0.02, record_to=tmp_path, seed=3)
+    assert bench.plant.seed == 3 and bench.period == 0.02
+    assert len(list(bench.run(0.1))) == 5
+    assert bench.recording.path.parent == tmp_path
+    said()
+    computer({"COM3": (MEGA, board())})
+    bench = connect(period=0.02, record_to=False, seed=3, realtime=True)  # which a board cannot help
+    assert bench.period == 0.02
+    said()
+
+
+def test_a_wrong_option_is_an_error():
+    with pytest.raises(TypeError, match="sed"):
+        connect(sed=3)
+
+
+def test_the_saved_calibration_is_taken(computer, said, tmp_path):
+    nominal = nominal_calibration(IR50P)
+    zero = tuple(z + 5 for z in nominal.zero)
+    Calibration(nominal.slope, zero, source="measured on Monday", arm=IR50P.name).save()
+    computer({"COM3": (MEGA, board())})
+    bench = connect()
+    assert bench.calibration.zero == zero
+    assert "calibration: measured on Monday" in said()
+    bench.abort()
+
+
+def test_nothing_but_connect_prints(computer, capsys):
+    with SimulatedBench(record_to=False) as bench:
+        list(bench.run(0.05))
+    assert capsys.readouterr().out == ""
+
+
+# ---- ports
+
+
+def test_list_of_ports(monkeypatch):
+    from serial.tools import list_ports
+    from serial.tools.list_ports_common import ListPortInfo
+
+    def info(device, vid, pid):
+        port = ListPortInfo(device, skip_link_detection=True)
+        port.vid, port.pid = vid, pid
+        return port
+
+    found = [info("COM1", None, None), info("COM9", 0x1A86, 0x7523), info("COM11", 0x2341, 0x0042)]
+    monkeypatch.setattr(list_ports, "comports", lambda: found)
+    assert port_list.list_ports() == [Port("COM11", MEGA), Port("COM9", CLONE), Port("COM1", None)]
+
+
+def test_docstring_names_every_parameter():
+    for name in inspect.signature(connect).parameters:
+        assert f"{name}:" in connect.__doc__
