@@ -1,0 +1,106 @@
+"""The replay bench: a recording plays the arm; what your controller would have sent is kept beside what was sent."""
+
+import math
+import os
+import time
+
+import numpy as np
+
+from ir50p_lab.bench.base import Bench
+from ir50p_lab.bench.calibration import Calibration, nominal_calibration
+from ir50p_lab.bench.recording import Recording
+from ir50p_lab.errors import RecordingError
+from ir50p_lab.modelling.arm import load_arm
+
+
+class ReplayBench(Bench):
+    """A bench whose samples are those of a recording, from its beginning in each run.
+
+    `drive` limits and records your command as on every bench, but nothing moves by it: the samples show what the
+    recorded command did. Compare `bench.recording.u` (yours) with `bench.original.u` (what was sent then). A run that
+    asks for more than was recorded ends with the recording and says so.
+
+    Args:
+        recording: Recording, or the path of one.
+        arm: Arm of the limits, default `load_arm()`. realtime: samples come at the recorded pace.
+        record_to: folder for recordings of your commands; default: in memory only.
+
+    Attributes: original: the Recording that is played.
+    Raises RecordingError if the file is none, or has no sample.
+    """
+
+    kind = "replay"
+
+    def __init__(self, recording, *, arm=None, realtime=False, record_to=None, name=None):
+        if isinstance(recording, str | os.PathLike):
+            recording = Recording.load(recording)
+        if not len(recording):
+            raise RecordingError(f"{recording!r} has no sample to replay: choose another recording")
+        arm = load_arm() if arm is None else arm
+        self.original, self.simulated, self.realtime = recording, recording.simulated, realtime
+        period = recording.period
+        super().__init__(
+            arm,
+            _calibration(recording, arm),
+            period=period if math.isfinite(period) else 0.01,  # one sample of unknown origin
+            record_to=False if record_to is None else record_to,
+            name=name
+            or f"replay of {recording.path.name if recording.path else recording.header.get('bench', 'data')}",
+        )
+        counts, known = recording.counts, np.isfinite(recording.counts)
+        self._counts = np.where(known, counts, self.calibration.counts(recording.q))
+        self._missed = np.nan_to_num(recording.missed).astype(int)
+        self._k, self._started = 0, 0.0
+
+    def _open(self):
+        pass
+
+    def _begin(self):
+        self._started = time.perf_counter()
+
+    def _cycles(self, cycles, record, header):
+        there = min(cycles, len(self.original))
+        yield from super()._cycles(there, record, header)
+        if there < cycles:
+            print(f"The recording ends at t = {self.original.t[-1]:.2f} s, and with it this run.")
+
+    def _measure(self, k):
+        self._k, t = k, self.original.t
+        if self.realtime:
+            time.sleep(max(0.0, self._started + t[k] - t[0] - time.perf_counter()))
+        return float(t[k]), self._counts[k], int(self._missed[k])
+
+    def _radians(self, counts):
+        return self.original.q[self._k]
+
+    def _send(self, pwm, gripper):
+        return pwm
+
+    def _cut(self):
+        pass
+
+    def _close(self):
+        pass
+
+    def _header(self):
+        return {f"original_{key}": value for key, value in self.original.header.items() if key in _TOLD} | {
+            "original": str(self.original.path or "in memory")
+        }
+
+    def go_to_rest(self):
+        """Nothing: a recording cannot move."""
+
+
+_TOLD = ("bench", "date", "seed", "firmware", "controller", "note")
+
+
+def _calibration(recording, arm):
+    """The calibration in the head of the recording, else the nominal one of the arm."""
+    head = recording.header
+    try:
+        slope, zero = (tuple(float(x) for x in head[key].split()) for key in ("counts_per_rad", "counts_at_zero"))
+    except (KeyError, ValueError):
+        return nominal_calibration(arm)
+    if len(slope) != 3 or len(zero) != 3:
+        return nominal_calibration(arm)
+    return Calibration(slope=slope, zero=zero, source=head.get("calibration", "of the recording"))
