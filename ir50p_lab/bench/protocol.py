@@ -52,6 +52,7 @@ MAX_COUNTS = SUBCOUNTS * 1023
 LOW_COUNTS, HIGH_COUNTS = SUBCOUNTS * 10, SUBCOUNTS * 1013  # beyond: no outward drive
 BROKEN_COUNTS = SUBCOUNTS * 3  # so near to 0 or to MAX_COUNTS only a broken or shorted wire reads: no drive at all
 
+CRC_POLYNOMIAL = 0xEDB88320  # of zlib.crc32, for the sketch
 _CRC = struct.Struct("<I")
 _COMMAND = struct.Struct("<BBB3hB")
 _STATE = struct.Struct("<BBB3HBHH")
@@ -175,16 +176,6 @@ class FrameParser:
         self._buffer = b""
 
 
-def _crc_table():
-    """CRC-32 of the sixteen half bytes: small enough for the board, twice as fast as bit by bit."""
-    table = []
-    for value in range(16):
-        for _ in range(4):
-            value = value >> 1 ^ (0xEDB88320 if value & 1 else 0)
-        table.append(value)
-    return table
-
-
 def _c_type(value):
     """Signed from two bytes on, so that `-LIMIT` and comparisons with signed numbers mean what they say."""
     return "uint8_t" if value <= 0xFF else "int16_t" if value <= 0x7FFF else "uint32_t"
@@ -199,8 +190,6 @@ def header():
     ).split()
     values = {name: globals()[name] for name in names}
     constants = "\n".join(f"const {_c_type(value)} {name} = {value};" for name, value in values.items())
-    table = [f"0x{value:08X}" for value in _crc_table()]
-    rows = ",\n  ".join(", ".join(table[i : i + 4]) for i in range(0, 16, 4))
     return f"""\
 // Written by `python -m ir50p_lab.bench.protocol`: change protocol.py, not this file.
 // The wire: what each name means is explained in ir50p_lab/bench/protocol.py. All numbers are little endian.
@@ -241,9 +230,7 @@ static_assert(sizeof(Command) == COMMAND_SIZE, "Command differs from protocol.py
 static_assert(sizeof(State) == REPLY_SIZE, "State differs from protocol.py");
 static_assert(sizeof(Identity) == REPLY_SIZE, "Identity differs from protocol.py");
 
-// CRC-32 of the sixteen half bytes.
-const uint32_t CRC_TABLE[16] = {{
-  {rows}}};
+const uint32_t CRC_POLYNOMIAL = 0x{CRC_POLYNOMIAL:08X};  // CRC-32 of zlib, lowest bit first
 
 }}  // namespace protocol
 """

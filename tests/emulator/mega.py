@@ -221,6 +221,10 @@ class Mega:
         data = self._data
         return bytes(data[0x21:0x29] + data[0xA0:0xA2] + data[0xA6:0xAE] + data[0x101:0x103])
 
+    def register(self, address):
+        """The register at this place in the data space, e.g. 0x60 for WDTCSR."""
+        return self._data[address]
+
     def pins(self):
         """The present Pins."""
         data = self._data

@@ -10,7 +10,7 @@ As a clock: now() -> s since power-on, sleep(seconds), sleep_until(t). Same call
 The arm: any object with advance(pwm (3,), seconds) and counts() -> (3,) converter counts; called every `tick` (1 ms)
 with the mean voltage that the bridges give, in PWM counts.
 To look inside: pins() -> Pins(duty, direction, enable, gripper, hertz), .pwm; changes: list of (t, Pins) at each change.
-To make trouble: reset() (button, DTR), unplug() (reads and writes raise SerialException from then on),
+To make trouble: reset() (button, DTR), hang() (the sketch, until the next reset), unplug() (reads and writes raise SerialException from then on),
 to_board / to_host: functions bytes -> bytes that every piece passes through (noise, loss).
 """
 
@@ -113,6 +113,21 @@ class VirtualBoard:
     def reset(self):
         self._mega.reset()
         self._look()
+
+    def hang(self, interrupts=True):
+        self._mega.hang(interrupts)
+
+    @property
+    def resets(self):
+        return self._mega.resets
+
+    @property
+    def on_the_way(self):
+        """Number of bytes written that the board has not got yet."""
+        return len(self._mega.received)
+
+    def register(self, address):
+        return self._mega.register(address)
 
     def unplug(self):
         self._unplugged = True

@@ -40,11 +40,11 @@ bool was_hung;               // the last start was by the hardware watchdog
 // ---- potentiometers: conversions run on their own, joint after joint; each joint keeps the sum of its last 16
 
 const uint8_t CONVERSIONS = 16;
-const uint8_t START_CONVERSION =  // 250 kHz clock: 52 us a conversion, a joint's 16 take 2.5 ms
-    _BV(ADEN) | _BV(ADSC) | _BV(ADIE) | _BV(ADPS2) | _BV(ADPS1);
+const uint8_t START_CONVERSION =  // 125 kHz clock, for full accuracy: 0.1 ms a conversion, 5 ms for all joints' 16
+    _BV(ADEN) | _BV(ADSC) | _BV(ADIE) | _BV(ADPS2) | _BV(ADPS1) | _BV(ADPS0);
 
 volatile uint16_t sum[JOINTS];
-volatile bool measured = false;  // every joint has 16 new conversions
+volatile uint8_t rounds = 0;  // of conversions, one of each joint
 
 ISR(ADC_vect) {
   static uint16_t history[JOINTS][CONVERSIONS];
@@ -55,7 +55,7 @@ ISR(ADC_vect) {
   if (++joint == JOINTS) {
     joint = 0;
     place = (place + 1) % CONVERSIONS;
-    if (place == 0) measured = true;
+    rounds++;
   }
   ADMUX = _BV(REFS0) | POT_CHANNEL[joint];  // reference: the 5 V that feed the potentiometers
   ADCSRA = START_CONVERSION;
@@ -71,7 +71,7 @@ uint16_t counts(uint8_t joint) {
 void start_potentiometers() {
   ADMUX = _BV(REFS0) | POT_CHANNEL[0];
   ADCSRA = START_CONVERSION;
-  while (!measured) {}  // before that the means are too low
+  while (rounds < CONVERSIONS) {}  // before that the means are too low
 }
 
 // ---- bridges
@@ -85,10 +85,12 @@ void set_high_time(uint8_t joint, uint16_t ticks) {
   *match[joint] = TOP - ticks;
 }
 
+static_assert((LIMIT_PWM * 803L >> 8) == TOP, "full drive must be the whole period");
+
 // Sign and magnitude. Forward: IN2 low, IN1 high for that share of the time. Backward: IN2 high, IN1 *low* for that
 // share. In the rest of the time both are equal, and the bridge shorts the motor: it brakes, as it does at pwm = 0.
 void drive_joint(uint8_t joint, int16_t pwm) {
-  uint16_t ticks = (uint32_t)abs(pwm) * TOP / LIMIT_PWM;
+  uint16_t ticks = (uint32_t)abs(pwm) * 803 >> 8;  // 803/256 is TOP/LIMIT_PWM: this processor divides slowly
   set_high_time(joint, pwm < 0 ? TOP + 1 - ticks : ticks);
   digitalWrite(DIRECTION_PIN[joint], pwm < 0);
 }
@@ -159,21 +161,34 @@ void start_hardware_watchdog() {
 
 // ---- frames
 
+uint32_t crc_table[256];  // what a byte does to the check: five times as fast as bit by bit
+
+void make_crc_table() {
+  for (uint16_t i = 0; i < 256; i++) {
+    uint32_t crc = i;
+    for (uint8_t bit = 0; bit < 8; bit++) crc = crc & 1 ? crc >> 1 ^ CRC_POLYNOMIAL : crc >> 1;
+    crc_table[i] = crc;
+  }
+}
+
 uint32_t crc32(const void *data, uint8_t length) {
   uint32_t crc = 0xFFFFFFFF;
-  for (const uint8_t *byte = (const uint8_t *)data; length--; byte++) {
-    crc ^= *byte;
-    crc = crc >> 4 ^ CRC_TABLE[crc & 15];
-    crc = crc >> 4 ^ CRC_TABLE[crc & 15];
-  }
+  for (const uint8_t *byte = (const uint8_t *)data; length--; byte++)
+    crc = crc >> 8 ^ crc_table[(uint8_t)crc ^ *byte];
   return ~crc;
 }
 
 bool valid(const Command &frame) {
-  if (frame.type != HELLO && frame.type != DRIVE && frame.type != STOP) return false;
   for (uint8_t j = 0; j < JOINTS; j++)
     if (frame.pwm[j] < -LIMIT_PWM || frame.pwm[j] > LIMIT_PWM) return false;
   return frame.flags <= GRIPPER && frame.crc == crc32(&frame, sizeof frame - sizeof frame.crc);
+}
+
+// Whether these first `length` bytes are, or may become, a valid command. (Said early: a flood of noise costs no time.)
+bool promising(const Command &frame, uint8_t length) {
+  if (frame.sync != COMMAND_SYNC) return false;
+  if (length > 2 && frame.type != HELLO && frame.type != DRIVE && frame.type != STOP) return false;
+  return length < COMMAND_SIZE || valid(frame);
 }
 
 template <typename Frame>
@@ -220,25 +235,26 @@ void obey(const Command &frame) {
   send_state(frame.seq);
 }
 
-// Take what has come. After a bad frame go on at the next sync byte inside it: no good frame is lost to noise before it.
+// Drops what is no frame, up to the next sync byte: no good frame is lost to the noise before it. Returns what is left.
+uint8_t resynchronise(uint8_t *bytes, uint8_t length) {
+  if (bytes[0] == COMMAND_SYNC) bad_frames++;
+  uint8_t next = 1;
+  while (next < length && bytes[next] != COMMAND_SYNC) next++;
+  memmove(bytes, bytes + next, length - next);
+  return length - next;
+}
+
 void receive() {
   static Command frame;
   static uint8_t length = 0;
   uint8_t *bytes = (uint8_t *)&frame;
   for (uint8_t n = 0; n < COMMAND_SIZE && Serial.available(); n++) {  // not more: the loop must come round
     bytes[length++] = Serial.read();
-    if (frame.sync != COMMAND_SYNC) length = 0;
-    if (length < COMMAND_SIZE) continue;
-    if (valid(frame)) {
+    while (length && !promising(frame, length)) length = resynchronise(bytes, length);
+    if (length == COMMAND_SIZE) {
       obey(frame);
       length = 0;
-      return;
     }
-    bad_frames++;
-    uint8_t next = 1;
-    while (next < COMMAND_SIZE && bytes[next] != COMMAND_SYNC) next++;
-    length = COMMAND_SIZE - next;
-    memmove(bytes, bytes + next, length);
   }
 }
 
@@ -257,15 +273,17 @@ void setup() {
   wdt_disable();
   start_bridges();
   count_start();
+  make_crc_table();
   start_potentiometers();
   Serial.begin(BAUD);
   start_hardware_watchdog();
 }
 
 void loop() {
+  static uint8_t last_rounds;
   receive();
-  if (!measured) return;
-  measured = false;
+  if ((uint8_t)(rounds - last_rounds) < 4) return;  // the rest every 1.25 ms
+  last_rounds = rounds;
   wdt_reset();  // here, so that a converter that has stopped also counts as a hang
   watch_computer();
   drive();  // again and again: a joint may reach its limit between two commands

@@ -61,11 +61,6 @@ static_assert(sizeof(Command) == COMMAND_SIZE, "Command differs from protocol.py
 static_assert(sizeof(State) == REPLY_SIZE, "State differs from protocol.py");
 static_assert(sizeof(Identity) == REPLY_SIZE, "Identity differs from protocol.py");
 
-// CRC-32 of the sixteen half bytes.
-const uint32_t CRC_TABLE[16] = {
-  0x00000000, 0x1DB71064, 0x3B6E20C8, 0x26D930AC,
-  0x76DC4190, 0x6B6B51F4, 0x4DB26158, 0x5005713C,
-  0xEDB88320, 0xF00F9344, 0xD6D6A3E8, 0xCB61B38C,
-  0x9B64C2B0, 0x86D3D2D4, 0xA00AE278, 0xBDBDF21C};
+const uint32_t CRC_POLYNOMIAL = 0xEDB88320;  // CRC-32 of zlib, lowest bit first
 
 }  // namespace protocol
