@@ -143,7 +143,7 @@ def test_by_an_error_it_sinks_from_where_it_was():
                 height = bench.plant.tip_true[2]
                 raise ZeroDivisionError
     assert abs(bench.plant.tip_true[2]) < 0.002 < 0.1 < height  # it lies on the table
-    np.testing.assert_array_equal(bench.plant.qd_true, 0)
+    np.testing.assert_allclose(bench.plant.qd_true, 0, atol=0.02)  # the table has no friction
     with bench:  # opened again, it is found where it lies
         sample = next(iter(bench.run(0.1)))
     assert abs(sample.q[1] - bench.truth.q[0, 1]) < 0.06
