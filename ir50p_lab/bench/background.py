@@ -1,0 +1,304 @@
+"""`bench.start(controller, reference)`: the loop of the lesson in the background, and the handle that tunes it."""
+
+import contextlib
+import copy
+import math
+import threading
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.bench import shared_loop
+from ir50p_lab.bench.live_loop import live_loop
+from ir50p_lab.bench.set_point import checked_set_point
+from ir50p_lab.bench.shared_loop import SharedLoop
+from ir50p_lab.controllers.base import Controller
+from ir50p_lab.controllers.pid import gains
+from ir50p_lab.errors import BenchError, InputError
+
+_TO_REST = 60.0  # s: a way to the rest pose that takes longer has failed
+_OBEYED = 0.25  # s: a loop that has not taken the order to cut by then hangs
+
+
+def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest=True):
+    """Run `controller` on `reference` in the background, in real time; the notebook stays free.
+
+    The same cycles as `for sample in bench.run(...)`. On a simulated or replayed arm they run in a thread, on
+    hardware in a process of their own, which cuts the drive when this one dies; both get copies of controller and
+    reference, which must therefore be sendable (a controller that holds an open file is not).
+
+    Args:
+        bench: open Bench. controller: step(t, measured, reference) -> u.
+        reference: target(t) -> (q, qd, qdd); None: hold the pose measured at the start.
+        seconds: of the reference, None: until stopped. lead_in: if the reference begins elsewhere than the arm
+        stands, first move there smoothly. rest: afterwards move to the rest pose before letting go.
+
+    Returns: LiveRun. Raises BenchError if the bench is closed or busy, InputError for bad arguments, and what opening
+    the port raises.
+    """
+    if seconds is not None and not (math.isfinite(seconds) and seconds > 0):
+        raise InputError(f"seconds = {seconds!r}: give how long to run, in seconds, > 0, or None: until stopped")
+    for name, thing in (("controller", controller), ("reference", reference)):
+        if (
+            not callable(getattr(thing, "step", None))
+            if name == "controller"
+            else not (thing is None or callable(thing))
+        ):
+            raise InputError(f"{name} = {thing!r}: give a {_NEEDED[name]}")
+    bench._take_back()
+    if not bench._is_open:
+        raise BenchError("the bench is closed: open it with connect() and start before it is closed")
+    cargo = _packed(controller, reference)
+    options = {"seconds": seconds, "lead_in": lead_in, "rest": rest}
+    if bench.own_process:
+        from ir50p_lab.bench.loop_process import ProcessWorker
+
+        worker = ProcessWorker(bench, cargo, options)
+    else:
+        worker = ThreadWorker(bench, cargo, options)
+    run = LiveRun(bench, controller, worker)
+    bench._live = run
+    worker.start()
+    return run
+
+
+_NEEDED = {
+    "controller": "controller with step(t, measured, reference), such as PID(...)",
+    "reference": "function of time, target(t) -> (q, qd, qdd), such as hold([...]), or None to hold the pose",
+}
+
+
+def _packed(controller, reference):
+    """Controller and reference as bytes, whoever defined them."""
+    import cloudpickle
+
+    try:
+        return cloudpickle.dumps((controller, reference))
+    except Exception as error:
+        raise InputError(
+            f"controller or reference cannot be sent to the loop in the background ({error}): let them hold numbers "
+            "and functions only, no files, widgets or benches"
+        ) from None
+
+
+def warmed(controller):
+    """Let a compiled controller load its machine code before the first cycle, whose time is short."""
+    if isinstance(controller, Controller):
+        with contextlib.suppress(Exception):  # the loop will meet it again and say so
+            copy.deepcopy(controller).step(0.0, np.zeros(3), np.zeros((3, 3)))
+
+
+@dataclass(frozen=True)
+class LoopStatistics:
+    """How well the loop keeps time.
+
+    cycles, missed: counts since the start; period_p50, period_p99, period_max: s between samples; busy_p50, busy_max:
+    s from a sample until its command was sent. The times are of the last 80 s at most; NaN before there are any.
+    """
+
+    cycles: int
+    missed: int
+    period_p50: float = math.nan
+    period_p99: float = math.nan
+    period_max: float = math.nan
+    busy_p50: float = math.nan
+    busy_max: float = math.nan
+
+    def __str__(self):
+        if not self.cycles:
+            return "no cycle yet"
+        p50, p99, largest = (1e3 * x for x in (self.period_p50, self.period_p99, self.period_max))
+        return (
+            f"{self.cycles} cycles, {self.missed} late; period {p50:.2f} ms median, {p99:.2f} ms 99 %, "
+            f"{largest:.2f} ms longest; {1e3 * self.busy_p50:.2f} ms from sample to command"
+        )
+
+
+@dataclass(frozen=True)
+class LiveSamples:
+    """The last samples: t (n,) s, q (n, 3) rad, u (n, 3) PWM counts as sent, reference (n, 3) rad."""
+
+    t: np.ndarray
+    q: np.ndarray
+    u: np.ndarray
+    reference: np.ndarray
+
+
+class LiveRun:
+    """A loop in the background: made by `bench.start`.
+
+    ================================ ==========================================================================
+    stop()                           end it in order: to the rest pose, then let go
+    cut()                            drive off within a cycle, and the loop ends; the arm sinks
+    set_gains(kp=, ki=, kd=)         from the next cycle on, without a bump; what is left out stays
+    set_point([q1, q2, q3])          go there from where the reference is, at limited speed; rad, None: leave it
+    recent(10)                       the last 10 s: .t .q .u .reference
+    statistics()                     cycles, late ones, periods
+    join(timeout)                    wait for the end; raises what ended it early
+    alive, phase, error, recording   whether it runs; what it does; what went wrong or None; the file
+    ================================ ==========================================================================
+    """
+
+    def __init__(self, bench, controller, worker):
+        self._bench, self._worker, self._memory = bench, worker, worker.memory
+        self._tunable = callable(getattr(controller, "set_gains", None))
+        self._gains = {name: np.array(getattr(controller, name)) for name in _GAINS} if self._tunable else {}
+        self._lock = threading.Lock()  # orders may come from several widgets' threads
+
+    @property
+    def alive(self):
+        """Whether the loop still runs, on its way to the rest pose included."""
+        return self._worker.alive
+
+    @property
+    def phase(self):
+        """What it does: 'starting', 'leading in', 'running', 'moving to the rest pose' or 'ended'."""
+        return shared_loop.PHASES[self._memory.phase] if self.alive else shared_loop.PHASES[-1]
+
+    @property
+    def error(self):
+        """The exception that ended the loop, or None."""
+        return self._worker.error
+
+    @property
+    def recording(self):
+        """The Recording, as far as it is written; None if there is none on disk."""
+        return self._worker.recording
+
+    @property
+    def gains(self):
+        """{'kp': (3,), 'ki': (3,), 'kd': (3,)} as ordered last; empty if the controller has none to set."""
+        return {name: values.copy() for name, values in self._gains.items()}
+
+    def set_gains(self, kp=None, ki=None, kd=None):
+        """Change gains from the next cycle on; the command does not jump. Raises InputError for bad gains."""
+        if not self._tunable:
+            raise InputError("this controller has no set_gains(kp=, ki=, kd=): its gains cannot be changed live")
+        wanted = {
+            name: gains(name, value) for name, value in zip(_GAINS, (kp, ki, kd), strict=True) if value is not None
+        }
+        with self._lock:
+            self._gains.update(wanted)
+            self._memory.order(gains=tuple(np.concatenate([self._gains[name] for name in _GAINS]).tolist()))
+
+    def set_point(self, q):
+        """Go to q (3,) rad at limited speed; None (or NaN) leaves a joint where its reference is.
+
+        Raises InputError if q is outside the joint limits or below the table.
+        """
+        goal = checked_set_point(self._bench.arm, q)
+        with self._lock:
+            self._memory.order(set_point=tuple(goal.tolist()))
+
+    def is_here(self):
+        """Whether the caller is the loop itself."""
+        return self._worker.is_here()
+
+    def give_back(self):
+        """The bench is wanted in this process again. Raises BenchError while the loop runs."""
+        if self.alive:
+            raise BenchError(f"a loop in the background has the arm ({self.phase}): stop() or cut() it first")
+        self._worker.give_back()
+
+    def stop(self, *, wait=True):
+        """End in order: the arm moves to its rest pose and is let go. wait: until that is over."""
+        with self._lock:
+            self._memory.order(stop=True)
+        if wait and not self._worker.wait(_TO_REST):
+            self.cut()
+
+    def cut(self):
+        """Drive off within one cycle, and the loop ends. The arm sinks. Never raises; may be called at any time."""
+        with self._lock:
+            self._memory.order(cut=True, stop=True)
+        if not self._worker.wait(_OBEYED):
+            self._worker.give_up()
+
+    def join(self, timeout=None):
+        """Wait until the loop has ended; at most `timeout` s.
+
+        Returns: whether it has. Raises what ended it early: an error of the controller, a lost board...
+        """
+        ended = self._worker.wait(timeout)
+        if self.error is not None:
+            raise self.error
+        return ended
+
+    def recent(self, seconds):
+        """The samples of the last `seconds`, at most 80 s: LiveSamples."""
+        rows = self._memory.latest(1 + math.ceil(seconds / self._bench.period))
+        if len(rows):
+            rows = rows[rows[:, 0] >= rows[-1, 0] - seconds]
+        return LiveSamples(rows[:, 0], rows[:, 1:4], rows[:, 4:7], rows[:, 7:10])
+
+    def statistics(self):
+        """How well the loop keeps time: LoopStatistics."""
+        memory = self._memory
+        rows = memory.latest(shared_loop.CAPACITY)
+        if len(rows) < 2:
+            return LoopStatistics(memory.samples, memory.missed)
+        in_a_row = np.diff(rows[:, -1]) == 1
+        periods, busy = np.diff(rows[:, 10])[in_a_row], rows[:, 11]
+        p50, p99 = np.percentile(periods, (50, 99))
+        return LoopStatistics(
+            memory.samples, memory.missed, p50, p99, periods.max(), float(np.median(busy)), float(busy.max())
+        )
+
+    def __repr__(self):
+        return f"<LiveRun: {self.phase}; {self.statistics()}>"
+
+
+_GAINS = ("kp", "ki", "kd")
+
+
+class ThreadWorker:
+    """The loop as a thread of this process: good enough for an arm that is simulated or replayed."""
+
+    def __init__(self, bench, cargo, options):
+        self._bench, self._cargo, self._options = bench, cargo, options
+        self.memory, self.error = SharedLoop(), None
+        self._thread = threading.Thread(target=self._run, name="bench loop", daemon=True)
+
+    def start(self):
+        """Start; the first cycle follows at once."""
+        self._thread.start()
+
+    def _run(self):
+        import cloudpickle
+
+        try:
+            controller, reference = cloudpickle.loads(self._cargo)
+            warmed(controller)
+            live_loop(self._bench, controller, reference, self.memory, **self._options)
+        except BaseException as error:
+            self.error = error
+        finally:
+            self.memory.enter(shared_loop.ENDED)
+
+    @property
+    def alive(self):
+        """Whether the loop still runs."""
+        return self._thread.is_alive()
+
+    @property
+    def recording(self):
+        """The recording of the run: it grows while it goes on."""
+        return self._bench.recording
+
+    def is_here(self):
+        """Whether the caller is the loop itself."""
+        return threading.current_thread() is self._thread
+
+    def wait(self, timeout):
+        """Wait for the end. Returns whether it came."""
+        if not self.is_here():
+            self._thread.join(timeout)
+        return not self._thread.is_alive()
+
+    def give_back(self):
+        """Nothing to do: the bench never left this process."""
+
+    def give_up(self):
+        """The loop hangs in its controller and gives no more commands; cut from here."""
+        with contextlib.suppress(Exception):
+            self._bench._cut()

@@ -1,0 +1,135 @@
+"""References for live work: a set point that a hand moves, and the way from where the arm stands to a reference."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling.chain import frames
+from ir50p_lab.signals.quintic import quintic
+from ir50p_lab.signals.reference import Reference, per_joint, pose
+
+SPEED = 0.8  # rad/s: with the arm stretched the tip moves at 0.7 m/s
+ACCELERATION = 3.0  # rad/s^2: full speed after a quarter of a second
+_THERE = math.radians(0.25)  # nearer than this a lead-in would only waste time: about the noise of the potentiometers
+
+
+class SetPoint:
+    """A pose to hold that may be changed at any time; the reference runs after it at limited speed, without overshoot.
+
+    Each joint accelerates with at most `acceleration`, moves with at most `speed` and brakes in time: the steps of
+    a slider become a motion that the arm can follow. Call it once per cycle with increasing times, as a loop does: it
+    remembers where it is.
+
+    Args: q, qd: (3,) rad and rad/s, where it starts, moving; speed: rad/s, acceleration: rad/s^2, one number or (3,).
+    Attributes: goal: (3,) rad, where it is going; set it with `move_to`.
+    Raises InputError on wrong shapes, numbers that are not finite or limits that are not positive.
+    """
+
+    duration = math.inf
+
+    def __init__(self, q, *, qd=(0.0, 0.0, 0.0), speed=SPEED, acceleration=ACCELERATION):
+        self._q, self._qd = list(pose("q", q)), list(pose("qd", qd, unit="rad/s"))
+        self.goal = tuple(self._q)
+        self.speed = per_joint("speed", speed, unit="rad/s", positive=True)
+        self.acceleration = per_joint("acceleration", acceleration, unit="rad/s^2", positive=True)
+        self._t = None
+
+    def move_to(self, q):
+        """From now on go to q (3,) rad; NaN leaves a joint's goal as it is. Raises InputError on anything else."""
+        q = np.asarray(q, dtype=float)
+        if q.shape != (3,) or np.isinf(q).any():
+            raise InputError(f"set point {q.tolist()}: give one angle per joint, (3,) rad")
+        self.goal = tuple(float(new) if new == new else old for new, old in zip(q, self.goal, strict=True))
+
+    def __call__(self, t):
+        """(q, qd, qdd) at the time t, s: three arrays (3,)."""
+        dt = 0.0 if self._t is None else min(max(t - self._t, 0.0), 0.25)  # after a pause: go on, do not jump
+        self._t = t
+        qdd = [0.0, 0.0, 0.0]
+        if dt > 0.0:
+            for i in range(3):
+                qdd[i] = self._advance(i, dt)
+        return np.array(self._q), np.array(self._qd), np.array(qdd)
+
+    def _advance(self, i, dt):
+        """One step of joint i; returns its acceleration."""
+        way, v, a = self.goal[i] - self._q[i], self._qd[i], self.acceleration[i]
+        if way == 0.0 and v == 0.0:
+            return 0.0
+        # the speed from which n steps, each slower by a dt than the one before, end exactly at the goal
+        at = a * dt
+        steps = abs(way) / (at * dt)
+        n = max(1, math.ceil(0.5 * (math.sqrt(1 + 8 * steps) - 1) - 1e-9))
+        braking = at * (steps / n + 0.5 * (n - 1))
+        wanted = math.copysign(min(braking, self.speed[i]), way)
+        new = min(max(wanted, v - at), v + at)
+        there = abs(way - new * dt) < 1e-12  # but for rounding; the next step takes the rest of the speed
+        self._q[i] = self.goal[i] if there else self._q[i] + new * dt
+        self._qd[i] = new
+        return (new - v) / dt
+
+
+@dataclass(frozen=True)
+class LeadIn(Reference):
+    """First a quintic from q0 to where `reference` begins, then the reference itself; made by `led_in`.
+
+    q0: (3,) rad; reference: called with its own time, from 0; lead: s, how long the way there takes.
+    """
+
+    q0: tuple
+    reference: object
+    lead: float
+    duration: float = field(init=False)
+
+    def __post_init__(self):
+        object.__setattr__(self, "duration", self.lead + getattr(self.reference, "duration", math.inf))
+        way = quintic(self.q0, np.asarray(self.reference(0.0)[0]), duration=self.lead)
+        object.__setattr__(self, "_way", way)
+
+    def __call__(self, t):
+        """(q, qd, qdd) at the time t, s."""
+        return self._way(t) if t < self.lead else self.reference(t - self.lead)
+
+    def _rows(self, t):
+        return np.array([self(float(moment)) for moment in t]).reshape(-1, 3, 3)
+
+
+def led_in(q, reference, *, speed=SPEED):
+    """`reference` with a way in front that starts at the pose q, at rest: the target starts where the arm stands.
+
+    Args: q: (3,) rad, measured; reference: target(t) -> (q, qd, qdd); speed: rad/s, of the fastest joint, at most.
+    Returns: LeadIn; or `reference` itself if it starts within a quarter of a degree of q.
+    """
+    q = pose("q", q)
+    distance = float(np.abs(np.asarray(reference(0.0)[0]) - q).max())
+    if distance <= _THERE:
+        return reference
+    return LeadIn(q, reference, max(0.3, 1.875 * distance / speed))  # a quintic's peak is 15/8 of its mean
+
+
+def checked_set_point(arm, q):
+    """A set point (3,) rad as an array, NaN for 'leave this joint'; InputError if the arm must not go there.
+
+    The limits of the joints are checked always, the table (elbow and tip must stay above it) when no joint is NaN.
+    """
+    q = np.array([np.nan if value is None else value for value in q] if np.ndim(q) == 1 else q, dtype=float)
+    if q.shape != (3,) or np.isinf(q).any():
+        raise InputError(f"set point {q.tolist()}: give one angle per joint, (3,) rad")
+    for i in range(3):
+        if not (np.isnan(q[i]) or arm.q_min[i] <= q[i] <= arm.q_max[i]):
+            low, high = math.degrees(arm.q_min[i]), math.degrees(arm.q_max[i])
+            raise InputError(
+                f"set point of joint {i + 1} is {q[i]:.3f} rad = {math.degrees(q[i]):.1f} deg; the arm's travel is "
+                f"{low:.0f} to {high:.0f} deg"
+            )
+    if not np.isnan(q).any():
+        height = float(frames(arm, vectors3("set point", q))[2:, 2, 3].min())
+        if height < 0.0:
+            raise InputError(
+                f"the set point ({', '.join(f'{x:.0f}' for x in np.degrees(q))}) deg lies {-100 * height:.0f} cm below "
+                "the table: raise joint 2 or joint 3"
+            )
+    return q

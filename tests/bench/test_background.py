@@ -1,0 +1,335 @@
+"""The loop in the background: gains, set points and stops reach it; nothing that dies leaves the drive on."""
+
+import math
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+
+import numpy as np
+import pytest
+from file_bench import FileBench, lines
+
+from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.controllers import PID
+from ir50p_lab.errors import BenchError, InputError, PortError
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.signals import hold, quintic
+
+GAINS = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30)}
+
+
+def pid(**changes):
+    return PID(**{**GAINS, **changes}, limit_pwm=255)
+
+
+def until(condition, timeout=10.0):
+    deadline = time.monotonic() + timeout
+    while not condition():
+        assert time.monotonic() < deadline, "nothing happened in time"
+        time.sleep(0.002)
+
+
+class Failing:
+    """A controller that fails in its fifth step."""
+
+    def __init__(self, error):
+        self.error, self.steps = error, 0
+
+    def step(self, t, measured, reference):
+        self.steps += 1
+        if self.steps == 5:
+            raise self.error
+        return np.array([10.0, 20.0, 30.0])
+
+
+@pytest.fixture(params=["thread", "process"])
+def bench(request, tmp_path):
+    if request.param == "thread":
+        made = SimulatedBench(IR50P, seed=3, record_to=tmp_path, q0=(0.1, 0.2, -0.3))
+    else:
+        made = FileBench(str(tmp_path / "commands.txt"), record_to=str(tmp_path))
+    with made:
+        yield made
+        if made._live is not None:
+            made._live.cut()
+
+
+# ---- the contract, the same in a thread and in a process
+
+
+def test_it_holds_the_measured_pose_and_leaves_the_caller_free(bench):
+    run = bench.start(pid(), None, rest=False)
+    until(lambda: run.statistics().cycles > 10)
+    samples = run.recent(10)
+    assert run.alive and run.phase == "running" and run.error is None
+    assert samples.q.shape == samples.u.shape == samples.reference.shape == (len(samples.t), 3)
+    np.testing.assert_allclose(np.diff(samples.t), 0.01, atol=0.009)
+    assert (samples.reference == samples.reference[0]).all()  # the pose of the first sample
+    assert np.abs(samples.reference[0] - (0.1, 0.2, -0.3)).max() < 0.05
+    run.cut()
+    assert not run.alive and run.phase == "ended" and run.join()
+
+
+def test_the_reference_is_led_in_from_where_the_arm_stands(bench):
+    goal = np.array([0.3, 0.3, -0.2])
+    run = bench.start(pid(), hold(goal), seconds=0.2, rest=False)
+    until(lambda: run.statistics().cycles > 3)
+    assert run.phase == "leading in"
+    assert run.join(10)
+    r = run.recent(80).reference
+    np.testing.assert_allclose(r[0], (0.1, 0.2, -0.3), atol=0.05)
+    np.testing.assert_allclose(r[-1], goal)
+    assert np.abs(np.diff(r, axis=0)).max() < 0.8 * 0.025  # never faster than 0.8 rad/s (a late cycle: 25 ms)
+    way = 1.875 * np.abs(goal - r[0]).max() / 0.8
+    assert run.recent(80).t[-1] == pytest.approx(way + 0.2, abs=0.03)
+
+
+def test_without_lead_in_the_reference_starts_at_once(bench):
+    run = bench.start(pid(), hold([0.3, 0.3, -0.2]), seconds=0.05, lead_in=False, rest=False)
+    assert run.join(10)
+    np.testing.assert_array_equal(run.recent(80).reference[0], [0.3, 0.3, -0.2])
+    assert len(run.recent(80).t) == 5
+
+
+def test_a_set_point_moves_the_reference_smoothly(bench):
+    run = bench.start(pid(), None, rest=False)
+    until(lambda: run.statistics().cycles > 3)
+    start = run.recent(10).reference[-1]
+    run.set_point([None, 0.35, math.nan])
+    until(lambda: run.recent(0.01).reference[-1][1] == 0.35)
+    r = run.recent(80).reference
+    np.testing.assert_array_equal(r[-1, [0, 2]], start[[0, 2]])
+    assert 0 < np.diff(r[:, 1]).max() < 0.8 * 0.05 and np.diff(r[:, 1]).min() >= -1e-3
+    for bad, said in (((0, 3.0, 0), "travel is -50 to 110 deg"), ((0, -0.8, -1.0), "below the table")):
+        with pytest.raises(InputError, match=said):
+            run.set_point(bad)
+    run.cut()
+
+
+def test_gains_change_without_a_bump(bench):
+    run = bench.start(pid(), None, rest=False)
+    until(lambda: run.statistics().cycles > 20)
+    run.set_gains(kp=(100, 225, 270), kd=20)
+    np.testing.assert_array_equal(run.gains["kd"], (20, 20, 20))
+    count = run.statistics().cycles
+    until(lambda: run.statistics().cycles > count + 10)
+    with pytest.raises(InputError, match="gains >= 0"):
+        run.set_gains(ki=-1)
+    run.cut()
+    assert run.error is None
+
+
+def test_an_error_of_the_controller_cuts_and_is_raised_by_join(bench):
+    run = bench.start(Failing(ZeroDivisionError("by nothing")), None)
+    with pytest.raises(ZeroDivisionError, match="by nothing"):
+        run.join(10)
+    assert isinstance(run.error, ZeroDivisionError) and not run.alive
+    assert len(run.recent(10).t) == 4
+
+
+def test_an_error_of_the_reference_or_nonsense_from_the_controller_cuts_too(bench):
+    run = bench.start(pid(), lambda t: (np.full(3, np.nan), np.zeros(3), np.zeros(3)), lead_in=False)
+    with pytest.raises(InputError):
+        run.join(10)
+    run = bench.start(Failing(None), lambda t: 1 / 0, lead_in=False)
+    with pytest.raises(ZeroDivisionError):
+        run.join(10)
+
+
+def test_the_bench_is_busy_until_the_loop_is_over(bench):
+    run = bench.start(pid(), None, rest=False)
+    with pytest.raises(BenchError, match=r"stop\(\) or cut\(\)"):
+        bench.run(1)
+    with pytest.raises(BenchError, match=r"stop\(\) or cut\(\)"):
+        bench.start(pid(), None)
+    bench.cut()
+    assert not run.alive
+    applied = [bench.drive([0, 0, 0]) for _ in bench.run(0.05)]  # and then it is here again
+    assert len(applied) == 5
+    bench.abort()
+
+
+def test_leaving_the_block_by_an_error_cuts_the_loop(bench):
+    with pytest.raises(RuntimeError), bench:
+        run = bench.start(pid(), None)
+        raise RuntimeError("a cell fails")
+    assert not run.alive and run.phase == "ended"
+
+
+def test_the_copy_in_the_loop_leaves_the_controller_alone(bench):
+    mine = pid()
+    run = bench.start(mine, None, seconds=0.1, rest=False)
+    run.set_gains(kp=10)
+    assert run.join(10)
+    np.testing.assert_array_equal(mine.kp, GAINS["kp"])
+    assert not mine.state.any()
+
+
+def test_the_recording_is_on_disk_with_gains_and_reference(bench):
+    run = bench.start(pid(), quintic((0.1, 0.2, -0.3), (0.2, 0.3, -0.2), duration=0.3), seconds=0.3, rest=False)
+    assert run.join(10)
+    recording = run.recording
+    assert recording.header["controller"] == "PID" and recording.header["kp"] == "289 225 270"
+    assert len(recording.t) == len(run.recent(80).t) + 1  # the last cycle found the time over
+    np.testing.assert_allclose(recording.reference[:-1], run.recent(80).reference, atol=1e-5)
+    np.testing.assert_array_equal(recording.u[:-1], run.recent(80).u)
+
+
+def test_bad_arguments(bench):
+    with pytest.raises(InputError, match="seconds"):
+        bench.start(pid(), None, seconds=-1)
+    with pytest.raises(InputError, match="controller"):
+        bench.start(None, None)
+    with pytest.raises(InputError, match="reference"):
+        bench.start(pid(), [1, 2, 3])
+    lock = threading.Lock()
+
+    def with_a_lock(t):
+        return lock
+
+    with pytest.raises(InputError, match="cannot be sent"):
+        bench.start(pid(), with_a_lock)
+    closed = SimulatedBench(IR50P)
+    with pytest.raises(BenchError, match="closed"):
+        closed.start(pid(), None)
+
+
+# ---- in a thread: a simulated arm
+
+
+def test_stop_goes_to_the_rest_pose_first():
+    bench = SimulatedBench(IR50P, seed=0, record_to=False)
+    bench.plant = SimulatedBench(IR50P, seed=0, q0=bench.rest_pose + np.array([0.02, -0.05, 0.05])).plant
+    with bench:
+        run = bench.start(pid(), None)
+        until(lambda: run.statistics().cycles > 5)
+        run.stop(wait=False)
+        until(lambda: run.phase == "moving to the rest pose")
+        run.stop()
+        assert not run.alive and run.error is None
+        assert np.abs(run.recent(0.1).q[-1] - bench.rest_pose).max() < 0.1
+
+
+def test_gains_reach_the_loop_and_u_does_not_jump():
+    with SimulatedBench(IR50P, seed=0, record_to=False) as bench:
+        run = bench.start(pid(kp=(40, 225, 270), ki=0, kd=0), hold([0.6, 0.0, 0.0]), lead_in=False, rest=False)
+        until(lambda: run.statistics().cycles > 60)
+        run.set_gains(kp=(20, 225, 270))  # without care u1 would jump by 20 PWM/rad times the error
+        before = run.statistics().cycles
+        until(lambda: run.statistics().cycles > before + 30)
+        samples = run.recent(80)
+        run.cut()
+    error = samples.reference[:, 0] - samples.q[:, 0]
+    assert abs(error[before - 5]) > 0.3  # else nothing would be seen
+    assert np.abs(np.diff(samples.u[before - 5 : before + 25, 0])).max() <= 3  # noise
+
+
+def test_time_is_kept_without_drift():
+    with SimulatedBench(IR50P, record_to=False) as bench:
+        run = bench.start(pid(), None, rest=False)
+        until(lambda: run.statistics().cycles > 10)
+        t0, wall = run.recent(0.05).t[-1], time.perf_counter()
+        until(lambda: run.statistics().cycles > 210)
+        assert run.recent(0.05).t[-1] - t0 == pytest.approx(time.perf_counter() - wall, abs=0.05)
+        assert run.statistics().period_p50 == pytest.approx(0.01, abs=0.0005)
+        run.cut()
+
+
+# ---- in a process of its own
+
+
+@pytest.fixture
+def commands(tmp_path):
+    return str(tmp_path / "commands.txt")
+
+
+def test_the_loop_is_another_process_and_takes_the_port_with_it(commands):
+    with FileBench(commands) as bench:
+        run = bench.start(pid(), None, rest=False)
+        assert bench._file is None
+        until(lambda: run.statistics().cycles > 3)
+        run.cut()
+        child = [pid for _, pid, words in lines(commands) if words[0] == "drive"]
+        assert set(child) == {run._worker.pid} != {os.getpid()}
+        assert lines(commands)[-1][2] == ["cut"]
+
+
+def test_what_is_defined_in_a_notebook_is_sent(commands):
+    gain = 7.0
+
+    class Mine:
+        def step(self, t, measured, reference):
+            print("what a controller prints harms nobody")
+            return gain * np.ones(3)
+
+    with FileBench(commands) as bench:
+        run = bench.start(Mine(), lambda t: (np.zeros(3),) * 3, seconds=0.05, lead_in=False, rest=False)
+        assert run.join(10)
+        assert (run.recent(10).u == 7).all()
+        with pytest.raises(InputError, match="no set_gains"):
+            run.set_gains(kp=1)
+
+
+def test_a_port_that_the_child_cannot_open_is_raised_by_start(commands):
+    with FileBench(commands, busy=True) as bench:
+        with pytest.raises(PortError, match="busy"):
+            bench.start(pid(), None)
+        bench.abort()
+
+
+def test_a_killed_loop_is_noticed(commands):
+    with FileBench(commands) as bench:
+        run = bench.start(pid(), None)
+        until(lambda: run.statistics().cycles > 3)
+        os.kill(run._worker.pid, signal.SIGKILL)
+        with pytest.raises(BenchError, match="has died"):
+            run.join(10)
+        assert not run.alive
+
+
+def test_a_controller_that_hangs_is_killed_by_cut(commands):
+    class Hanging:
+        def step(self, t, measured, reference):
+            time.sleep(3600 if t > 0.02 else 0)
+            return np.ones(3)
+
+    with FileBench(commands) as bench:
+        run = bench.start(Hanging(), None)
+        until(lambda: run.statistics().cycles >= 2)
+        time.sleep(0.05)
+        begun = time.monotonic()
+        run.cut()
+        assert not run.alive and time.monotonic() - begun < 2.0
+
+
+@pytest.mark.parametrize("how", ["SIGKILL", "exit"])
+def test_the_drive_is_cut_when_the_notebook_dies(commands, how):
+    if not hasattr(signal, "SIGKILL"):
+        pytest.skip("no SIGKILL on this system")
+    notebook = textwrap.dedent(f"""
+        import os, sys, time
+        from file_bench import FileBench
+        from ir50p_lab.controllers import PID
+        bench = FileBench({commands!r}).open()
+        run = bench.start(PID(kp=100, limit_pwm=255), None)
+        while run.statistics().cycles < 20:
+            time.sleep(0.01)
+        print("running", flush=True)
+        if {how!r} == "exit":
+            os._exit(0)
+        time.sleep(60)
+    """)
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    with subprocess.Popen([sys.executable, "-c", notebook], stdout=subprocess.PIPE, env=environment) as parent:
+        assert parent.stdout.readline().strip() == b"running"
+        killed = time.monotonic()
+        parent.kill() if how == "SIGKILL" else None
+        parent.wait()
+    until(lambda: lines(commands)[-1][2] == ["cut"])
+    cut = next(t for t, _, words in lines(commands) if words == ["cut"] and t > killed)
+    driven = max(t for t, _, words in lines(commands) if words[0] == "drive")
+    assert driven < cut and cut - killed < 0.1

@@ -1,0 +1,85 @@
+"""A set point that a hand moves: limited speed and acceleration, no overshoot, whatever the hand does."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ir50p_lab.bench.set_point import LeadIn, SetPoint, checked_set_point, led_in
+from ir50p_lab.errors import InputError
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.signals import hold, sinusoid
+
+ANGLES = st.floats(-2.0, 2.0)
+
+
+def motion(target, times, orders=()):
+    orders = dict(orders)
+    rows = []
+    for k, t in enumerate(times):
+        if k in orders:
+            target.move_to(orders[k])
+        rows.append(np.array(target(t)))
+    return np.array(rows)
+
+
+def test_it_rests_until_told():
+    rows = motion(SetPoint([0.1, 0.2, 0.3]), np.arange(5) * 0.01)
+    assert (rows[:, 0] == [0.1, 0.2, 0.3]).all() and not rows[:, 1:].any()
+
+
+def test_it_arrives_exactly_and_as_fast_as_the_limits_allow():
+    target = SetPoint([0, 0, 0], speed=0.8, acceleration=3.0)
+    rows = motion(target, np.arange(400) * 0.01, {0: [1.0, -0.2, 0.01]})
+    assert (rows[-1, 0] == [1.0, -0.2, 0.01]).all() and not rows[-1, 1:].any()
+    arrived = np.argmax(rows[:, 0, 0] == 1.0) * 0.01
+    assert arrived == pytest.approx(1.0 / 0.8 + 0.8 / 3.0, abs=0.03)  # the trapezoid's time
+
+
+@given(st.dictionaries(st.integers(0, 200), st.tuples(ANGLES, ANGLES, ANGLES), min_size=1, max_size=8))
+def test_never_too_fast_never_beyond(orders):
+    rows = motion(SetPoint([0, 0, 0], speed=0.8, acceleration=3.0), np.arange(1200) * 0.01, orders)
+    q, qd, qdd = rows[:, 0], rows[:, 1], rows[:, 2]
+    assert np.abs(qd).max() <= 0.8 + 1e-9 and np.abs(qdd).max() <= 3.0 + 1e-9
+    np.testing.assert_allclose(np.diff(q, axis=0) / 0.01, qd[1:], atol=1e-9)
+    np.testing.assert_array_equal(q[-1], orders[max(orders)])
+    after = q[max(orders) + 56 :]  # a joint that was moving away, or too fast to stop in time, has come back by then
+    way = np.sign(q[-1] - after[0])
+    assert (np.diff(after, axis=0) * way >= -1e-12).all()  # straight to the goal: no overshoot
+
+
+def test_late_cycles_do_not_make_it_jump():
+    target = SetPoint([0, 0, 0], speed=0.8)
+    target.move_to([2, 0, 0])
+    motion(target, np.arange(100) * 0.01)
+    before = target(1.0)[0][0]
+    assert 0 < target(60.0)[0][0] - before <= 0.25 * 0.8 + 1e-9
+
+
+def test_it_takes_over_a_motion():
+    target = SetPoint([0.5, 0, 0], qd=[0.6, 0, 0])
+    rows = motion(target, np.arange(200) * 0.01)
+    assert rows[:, 0, 0].max() > 0.5 and rows[-1, 0, 0] == 0.5  # brakes, comes back
+    with pytest.raises(InputError):
+        target.move_to([1, 2])
+    with pytest.raises(InputError):
+        target.move_to([np.inf, 0, 0])
+
+
+def test_led_in_starts_at_the_pose_and_ends_on_the_reference():
+    swing = sinusoid(0.3, 2.0, offset=0.5, phase=np.pi / 2)
+    target = led_in([0.0, 0.1, 0.2], swing)
+    assert isinstance(target, LeadIn)
+    np.testing.assert_allclose(target(0.0)[0], [0.0, 0.1, 0.2])
+    for t in (0.0, 0.7):
+        np.testing.assert_allclose(target(target.lead + t), swing(t), atol=1e-12)
+    rows = target.sample(np.linspace(0, target.lead, 500))
+    assert np.abs(rows[:, 1]).max() == pytest.approx(0.8, rel=0.01)
+    assert led_in([0.5, 0.5, 0.5], hold([0.5, 0.5, 0.503])).values == ((0.5, 0.5, 0.503),)
+
+
+def test_set_points_are_checked_against_travel_and_table():
+    np.testing.assert_array_equal(checked_set_point(IR50P, [0.1, None, 0.2]), [0.1, np.nan, 0.2])
+    for bad in ([0, 0], [0, 0, np.inf], 3.0):
+        with pytest.raises(InputError):
+            checked_set_point(IR50P, bad)
