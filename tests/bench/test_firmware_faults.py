@@ -1,0 +1,128 @@
+"""The gravest faults once more, with the compiled firmware in the emulator: what the pins of the board do.
+
+Times are virtual: read from the emulated processor, the same in every run.
+"""
+
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import SerialBench, protocol
+from ir50p_lab.bench.rest import rest_pose
+from ir50p_lab.bench.simulated_arm import SimulatedArm
+from ir50p_lab.errors import BoardLostError
+from ir50p_lab.modelling import IR50P
+from tests.emulator.virtual import VirtualBoard
+
+REST = rest_pose(IR50P)
+DRIVE = (60, -40, 20)
+WATCHDOG = 0.001 * protocol.WATCHDOG_MS
+
+
+@pytest.fixture
+def board():
+    return VirtualBoard(SimulatedArm(IR50P, q0=REST))
+
+
+def bench_of(board):
+    return SerialBench(board, arm=IR50P, clock=board, record_to=False)
+
+
+def run_until(board, happen, at=20, seconds=2.0):
+    """Drive until `happen` at a sample; returns the error and when the fault was."""
+    with pytest.raises(BoardLostError) as caught, bench_of(board) as bench:
+        for k, _ in enumerate(bench.run(seconds)):
+            bench.drive(DRIVE)
+            if k == at:
+                board.sleep(0.002)
+                assert_driving(board)
+                when = board.now()
+                happen()
+    return str(caught.value), when
+
+
+def assert_driving(board):
+    np.testing.assert_allclose(board.pins().pwm, DRIVE, atol=0.6)
+
+
+def off_since(board):
+    """When the drive went off, s; it must be off now."""
+    assert board.pins().pwm == (0, 0, 0)
+    last = max(k for k, (_, pins) in enumerate(board.changes) if pins.pwm != (0, 0, 0))
+    return board.changes[last + 1][0]
+
+
+def test_cable_pulled(board):
+    text, when = run_until(board, board.unplug)
+    assert "is gone" in text
+    assert board.now() - when < 0.02  # the student is told at once
+    board.sleep(0.2)
+    assert 0.9 * WATCHDOG < off_since(board) - when < 1.1 * WATCHDOG
+    assert board.pins().enable == (1, 1, 1)  # the bridges brake
+
+
+def test_board_reset_in_the_run(board):
+    text, when = run_until(board, board.reset)
+    assert "has restarted in the middle of the run" in text
+    assert board.now() - when < 0.05
+    assert off_since(board) - when < 1e-3
+    board.sleep(0.3)
+    assert board.pins().pwm == (0, 0, 0)
+
+
+def test_error_in_the_body(board):
+    with pytest.raises(ZeroDivisionError), bench_of(board) as bench:
+        for k, _ in enumerate(bench.run(1.0)):
+            bench.drive(DRIVE)
+            if k == 20:
+                board.sleep(0.002)
+                assert_driving(board)
+                when = board.now()
+                raise ZeroDivisionError
+    assert off_since(board) - when < 0.003  # three frames and their check, not a watchdog
+
+
+def test_a_host_that_hangs(board):
+    bench = bench_of(board).open()
+    for k, _ in enumerate(bench.run(0.5)):
+        bench.drive(DRIVE)
+        if k == 20:
+            when = board.now()
+            board.sleep(0.5)
+            assert 0.9 * WATCHDOG < off_since(board) - when < 1.1 * WATCHDOG
+    assert bench.statistics.watchdog_trips == 1
+    assert_driving(board)  # the cell went on: its next command drives again
+
+
+@pytest.mark.parametrize("way", ["to_board", "to_host"])
+def test_noise_on_the_wire(board, way):
+    """One byte in 200 is hit: commands and answers are lost, none is taken for another, the run goes on."""
+    rng = np.random.default_rng(7)
+
+    def noise(data):
+        hit = rng.random(len(data)) < 0.005
+        return bytes(np.where(hit, rng.integers(0, 256, len(data)), np.frombuffer(data, np.uint8)).astype(np.uint8))
+
+    bench = bench_of(board).open()
+    setattr(board, way, noise)
+    samples, missed = [], 0
+    for sample in bench.run(2.0):
+        samples.append(sample)
+        bench.drive((0, 0, 0) if len(samples) % 2 else (12, 0, 0))
+        missed = sample.missed
+    statistics = bench.statistics
+    assert len(samples) == 200
+    assert statistics.repeats > 5
+    assert (statistics.bad_commands if way == "to_board" else statistics.bad_replies) > 5
+    assert statistics.watchdog_trips == 0
+    assert missed < 10
+    q = np.array([sample.q for sample in samples])
+    assert np.ptp(q, axis=0).max() < 0.1  # the arm stands: whatever came through was measured
+    assert {pins.pwm[1:] for _, pins in board.changes} == {(0, 0)}
+
+
+def test_the_age_of_a_sample(board):
+    """Exchange and sampling at 500 kbaud, in the processor's own time."""
+    bench = bench_of(board).open()
+    t = [sample.t for sample in bench.run(1.0)]
+    np.testing.assert_allclose(np.diff(t), 0.01, atol=1e-4)
+    assert bench.statistics.round_trip < 0.0015
