@@ -224,12 +224,10 @@ def _refuse_fast_joints(arm, q, p, tangent, speed, bound):
     if excess[i] <= 1:
         return
     joint = int((rates[i] / bound).argmax())
-    low = smallest[i] < 0.1 * np.median(smallest) or near[i]
-    why = (
-        f"it passes near a singular pose ({_which_singularity(arm, q[i])}): lead the path further away"
-        if low
-        else f"give a speed of at most {speed / excess[i]:.2g} m/s"
-    )
+    why = "" if near[i] else f"give a speed of at most {speed / excess[i]:.2g} m/s"
+    if near[i] or smallest[i] < 0.3 * smallest.max():
+        away = f"it passes near a singular pose ({_which_singularity(arm, q[i])}): lead the path further away"
+        why = f"{away}, or {why}" if why else away
     error = _unreachable(
         f"joint {joint + 1} would have to turn at {rates[i, joint]:.3g} rad/s at {_percent(i, p)} of the way "
         f"({_text(p[i])}), its bound is {bound[joint]:.3g} rad/s; {why}",

@@ -1,0 +1,193 @@
+"""Filters: gain and lag by two routes, the loop's numbers equal to the record's, impossible cut-offs refused."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.signals import LowPass, alias, low_pass, low_pass_lag, low_pass_response, measured_lag
+
+RATE = 100.0
+T = np.arange(4000) / RATE
+SLOW = np.sin(2 * np.pi * 0.3 * T) + 0.5 * np.sin(2 * np.pi * 0.17 * T + 1)
+FILTERS = [(order, cutoff) for order in (1, 2, 4, 8) for cutoff in (0.5, 2.0, 10.0, 45.0)]
+
+
+@pytest.mark.parametrize(("order", "cutoff"), FILTERS)
+def test_gain_is_that_of_butterworth(order, cutoff):
+    found = low_pass_response(cutoff, RATE, order=order, f=[0, cutoff, 49.9])
+    np.testing.assert_allclose(found.gain[:2], (1, math.sqrt(0.5)), rtol=1e-9)
+    analogue = np.tan(np.pi * np.array([1.0, 20.0, 40.0]) / RATE) / np.tan(np.pi * cutoff / RATE)
+    np.testing.assert_allclose(  # Butterworth by its definition, frequencies bent by the bilinear transform
+        low_pass_response(cutoff, RATE, order=order, f=[1, 20, 40]).gain,
+        1 / np.sqrt(1 + analogue ** (2 * order)),
+        rtol=1e-6,
+    )
+
+
+@pytest.mark.parametrize(("order", "f"), [(1, 1.0), (1, 8.0), (2, 3.0), (4, 3.0)])
+def test_gain_and_lag_of_a_sine_in_the_record(order, f):
+    y = low_pass(np.sin(2 * np.pi * f * T), 5.0, RATE, order=order)[2000:]
+    basis = np.exp(2j * np.pi * f * T[2000:])
+    H = 2j * np.mean(y * basis.conj())  # 2000 samples hold whole periods
+    found = low_pass_response(5.0, RATE, order=order, f=[f])
+    assert abs(H) == pytest.approx(found.gain[0], rel=1e-9)
+    assert math.remainder(np.angle(H) - found.phase[0], 2 * math.pi) == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("order", "cutoff"), [f for f in FILTERS if f[1] >= 2 and f[0] < 8])
+def test_lag_by_group_delay_and_from_the_data(order, cutoff):
+    y = low_pass(SLOW, cutoff, RATE, order=order)
+    assert measured_lag(SLOW, y, RATE) == pytest.approx(
+        low_pass_lag(cutoff, RATE, order=order, at_hz=0.25), rel=0.02, abs=3e-4
+    )
+
+
+@pytest.mark.parametrize(("order", "cutoff"), FILTERS)
+def test_group_delay_is_the_slope_of_the_phase(order, cutoff):
+    f, h = np.array([0.01, 0.3, cutoff, 30.0]), 1e-4
+    phase = low_pass_response(cutoff, RATE, order=order, f=np.r_[f - h, f + h]).phase.reshape(2, -1)
+    slope = np.remainder(phase[0] - phase[1], 2 * np.pi) / (4 * np.pi * h)
+    np.testing.assert_allclose(low_pass_lag(cutoff, RATE, order=order, at_hz=f), slope, rtol=1e-5, atol=1e-7)
+
+
+def test_lag_of_first_order_is_one_over_the_cut_off():
+    assert low_pass_lag(3.0, RATE) == pytest.approx(1 / (2 * math.pi * 3), rel=5e-3)
+    assert low_pass_lag(3.0, RATE) == pytest.approx(1 / (2 * RATE * math.tan(math.pi * 3 / RATE)), rel=1e-12)
+
+
+@pytest.mark.parametrize(("order", "cutoff"), FILTERS)
+def test_sample_by_sample_gives_the_same_numbers(order, cutoff):
+    rng = np.random.default_rng(1)
+    x = rng.normal(3, 1, (200, 3))
+    whole, loop = low_pass(x, cutoff, RATE, order=order), LowPass(cutoff, RATE, order=order)
+    np.testing.assert_allclose([loop.step(row) for row in x], whole, rtol=1e-11, atol=1e-12)
+    single = LowPass(cutoff, RATE, order=order)
+    np.testing.assert_allclose([single.step(v) for v in x[:, 1]], whole[:, 1], rtol=1e-11, atol=1e-12)
+    loop.reset()
+    np.testing.assert_allclose(loop.step(x[5]), x[5], rtol=1e-12)
+
+
+def test_zero_phase_has_no_lag_and_half_the_power_gain():
+    assert measured_lag(SLOW, low_pass(SLOW, 2.0, RATE, kind="zero-phase"), RATE) == pytest.approx(0, abs=1e-5)
+    y = low_pass(np.sin(2 * np.pi * 5 * T), 5.0, RATE, order=2, kind="zero-phase")[1000:-1000]
+    assert np.abs(y).max() == pytest.approx(0.5, rel=1e-3)
+
+
+@given(st.floats(-1e3, 1e3), st.integers(1, 8), st.floats(0.1, 49.9))
+def test_a_constant_passes_from_the_first_sample_on(level, order, cutoff):
+    for kind in ("causal", "zero-phase"):
+        y = low_pass(np.full(1100, level), cutoff, RATE, order=order, kind=kind)
+        np.testing.assert_allclose(y, level, rtol=1e-4, atol=1e-9)
+
+
+@given(st.integers(0, 10**6))
+def test_it_is_linear_and_shift_invariant(seed):
+    rng = np.random.default_rng(seed)
+    x, y = rng.normal(size=(2, 300))
+    x[0] = y[0] = 0
+    a, b = rng.normal(size=2)
+    np.testing.assert_allclose(
+        low_pass(a * x + b * y, 5, RATE, order=2),
+        a * low_pass(x, 5, RATE, order=2) + b * low_pass(y, 5, RATE, order=2),
+        atol=1e-10,
+    )
+    np.testing.assert_allclose(low_pass(np.r_[np.zeros(7), x], 5, RATE)[7:], low_pass(x, 5, RATE), atol=1e-12)
+
+
+# ---- the thesis' cut-off
+
+
+def test_300_hz_at_100_hz_is_refused_with_the_reason():
+    with pytest.raises(InputError, match=r"300 Hz, but samples at 100 Hz hold nothing above half their rate, 50 Hz"):
+        low_pass(SLOW, 300, 100)
+
+
+def test_why_noise_above_half_the_rate_cannot_be_filtered_any_more():
+    f = np.array([300.0, 290, 60, 49, 110, 997])
+    np.testing.assert_allclose(alias(f, RATE), [0, 10, 40, 49, 10, 3], atol=1e-9)
+    for high in f[1:]:  # the samples of both frequencies are the same
+        low = alias(high, RATE)
+        np.testing.assert_allclose(np.cos(2 * np.pi * high * T), np.cos(2 * np.pi * low * T), atol=1e-8)
+
+
+@pytest.mark.parametrize("excess", [0.0, 1e-9, 0.1, 1.0, 50.0, 250.0, 1e6])
+@pytest.mark.parametrize(
+    "make", [lambda f: low_pass(SLOW, f, RATE), lambda f: LowPass(f, RATE), lambda f: low_pass_lag(f, RATE)]
+)
+def test_cut_off_at_or_above_half_the_rate(make, excess):
+    with pytest.raises(InputError, match="hold nothing above half their rate, 50 Hz"):
+        make(50 + excess)
+    make(49.9)
+
+
+@pytest.mark.parametrize("cutoff", [0, -1e-9, -3, math.nan, None, "5", (3, 4)])
+def test_cut_offs_that_are_none(cutoff):
+    with pytest.raises(InputError, match="cutoff_hz"):
+        low_pass(SLOW, cutoff, RATE)
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("place", [0, 17, -1])
+def test_numbers_that_are_not_finite(bad, place):
+    x = SLOW.copy()
+    x[place] = bad
+    with pytest.raises(InputError, match="x holds"):
+        low_pass(x, 3, RATE)
+    loop = LowPass(3, RATE)
+    loop.step(0.0)
+    with pytest.raises(InputError, match="finite"):
+        loop.step(bad)
+    assert loop.step(0.0) == 0.0  # the refused sample has left no trace
+
+
+def test_other_bad_input():
+    with pytest.raises(InputError, match="rate_hz"):
+        low_pass(SLOW, 3, 0)
+    with pytest.raises(InputError, match="order"):
+        low_pass(SLOW, 3, RATE, order=0)
+    with pytest.raises(InputError, match="kind"):
+        low_pass(SLOW, 3, RATE, kind="fast")
+    with pytest.raises(InputError, match="shape"):
+        low_pass(np.zeros((2, 2, 2)), 3, RATE)
+    with pytest.raises(InputError, match="numbers"):
+        low_pass("noise", 3, RATE)
+    with pytest.raises(InputError, match="backward"):
+        low_pass(SLOW[:5], 3, RATE, kind="zero-phase")
+    with pytest.raises(InputError, match="half the rate"):
+        low_pass_lag(3, RATE, at_hz=60)
+    loop = LowPass(3, RATE)
+    loop.step(np.zeros(3))
+    with pytest.raises(InputError, match="reset first"):
+        loop.step(0.0)
+
+
+# ---- lag from data
+
+
+@given(st.floats(-0.4, 0.4), st.integers(0, 10**6))
+def test_a_shift_is_found_to_a_part_of_a_sample(shift, seed):
+    rng = np.random.default_rng(seed)
+    phase = rng.uniform(0, 6, 3)
+
+    def signal(t):
+        return np.sin(3 * t + phase[0]) + np.sin(5.3 * t + phase[1]) + 0.3 * np.sin(9 * t + phase[2])
+
+    noise = rng.normal(0, 0.01, len(T))
+    assert measured_lag(signal(T), 2 + 0.5 * signal(T - shift) + noise, RATE) == pytest.approx(shift, abs=1e-3)
+
+
+def test_lags_that_cannot_be_found():
+    with pytest.raises(InputError, match="does not move"):
+        measured_lag(SLOW, np.ones_like(SLOW), RATE)
+    with pytest.raises(InputError, match="raise max_lag"):
+        measured_lag(SLOW, np.roll(SLOW, 30), RATE, max_lag=0.2)
+    with pytest.raises(InputError, match="same shape"):
+        measured_lag(SLOW, SLOW[1:], RATE)
+    with pytest.raises(InputError, match="holds nan"):
+        measured_lag(SLOW, SLOW * np.nan, RATE)
+    with pytest.raises(InputError, match="rate_hz"):
+        measured_lag(SLOW, SLOW, 0)
