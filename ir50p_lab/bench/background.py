@@ -81,7 +81,7 @@ def _packed(controller, reference):
         ) from None
 
 
-def warmed(controller):
+def warm_up(controller):
     """Let a compiled controller load its machine code before the first cycle, whose time is short."""
     if isinstance(controller, Controller):
         with contextlib.suppress(Exception):  # the loop will meet it again and say so
@@ -261,15 +261,15 @@ class ThreadWorker:
 
     def start(self):
         """Start; the first cycle follows at once."""
+        import cloudpickle
+
+        self._cargo = cloudpickle.loads(self._cargo)
+        warm_up(self._cargo[0])
         self._thread.start()
 
     def _run(self):
-        import cloudpickle
-
         try:
-            controller, reference = cloudpickle.loads(self._cargo)
-            warmed(controller)
-            live_loop(self._bench, controller, reference, self.memory, **self._options)
+            live_loop(self._bench, *self._cargo, self.memory, **self._options)
         except BaseException as error:
             self.error = error
         finally:

@@ -206,12 +206,12 @@ def main():
 def _serve(orders, answers, memory, parent):
     import cloudpickle
 
-    from ir50p_lab.bench.background import warmed
+    from ir50p_lab.bench.background import warm_up
     from ir50p_lab.bench.live_loop import live_loop
 
     bench, cargo, options = _receive(orders)
     (kind, arguments), (controller, reference) = cloudpickle.loads(bench), cloudpickle.loads(cargo)
-    warmed(controller)
+    warm_up(controller)
     _send(answers, ("ready", None))
     if orders.read(1) != _GO:
         return
