@@ -161,3 +161,18 @@ class Recording:
             f"<Recording: {self.header.get('bench', 'of unknown origin')}, {seconds}{n} samples"
             f"{', simulated' if self.simulated else ''}{f', {self.path}' if self.path else ''}>"
         )
+
+    def _repr_html_(self):
+        """The same with a line per joint, as a notebook shows it."""
+        from html import escape
+
+        head = f"<p>{escape(repr(self)[1:-1])}</p>" + "".join(f"<p>{escape(note)}</p>" for note in self.notes)
+        if not len(self):
+            return head
+        names = ("joint", "start [rad]", "final [rad]", "error [rad]", "overshoot [rad]", "swing [rad]", "std(u) [PWM]")
+        rows = ["".join(f"<th>{name}</th>" for name in names)]
+        for one in self.metrics():
+            angles = (one.start, one.final, one.error, one.overshoot, one.swing)
+            cells = [str(one.joint), *(f"{x:.3f}" for x in angles), f"{one.u_std:.0f}"]
+            rows.append("".join(f"<td>{'-' if cell == 'nan' else cell}</td>" for cell in cells))
+        return head + "<table>" + "".join(f"<tr>{row}</tr>" for row in rows) + "</table>"

@@ -75,14 +75,14 @@ def plot(recording):
         axes = figure.subplots(2, 3, sharex=True, sharey="row", height_ratios=(3, 2))
     t, known = recording.t, np.isfinite(recording.reference).any()
     for j, (above, below) in enumerate(axes.T):
-        above.plot(t, recording.q[:, j], color=_COLOURS[j], linewidth=1.4, label="measured")
+        above.plot(t, recording.q[:, j], color=_COLOURS[j], linewidth=1.4, label="angle")
         if known:
             above.step(t, recording.reference[:, j], where="post", color=_DARK, ls="--", lw=1.2, label="set point")
         below.step(t, recording.u[:, j], where="post", color=_COLOURS[j], linewidth=0.8)
         above.set_title(_finding(joints[j]), fontsize=10.5, color=_DARK)
         below.set(ylim=(-275, 275), yticks=(-255, 0, 255), xlabel="t [s]")
     axes[0, 0].set_ylabel("angle [rad]")
-    axes[1, 0].set_ylabel("command [PWM counts]")
+    axes[1, 0].set_ylabel("u [PWM counts]")
     if known:
         axes[0, 0].legend(fontsize=9)
     figure.suptitle(_origin(recording), fontsize=10, color=_GREY)
@@ -92,7 +92,7 @@ def plot(recording):
 def _finding(joint):
     if math.isnan(joint.error):
         return f"joint {joint.joint}"
-    return f"joint {joint.joint}: ends {1000 * abs(joint.error):.0f} mrad from its set point"
+    return f"joint {joint.joint} ends {1000 * abs(joint.error):.0f} mrad off"
 
 
 def _origin(recording):

@@ -1,0 +1,329 @@
+"""The file of a recording: what goes in comes out, and what is wrong in a file is named."""
+
+import errno
+import io
+import os
+import threading
+
+import matplotlib.image
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import recorder as recorder_module
+from ir50p_lab.bench.base import Sample
+from ir50p_lab.bench.recorder import Recorder
+from ir50p_lab.bench.recording import Recording, RecordingWarning
+from ir50p_lab.bench.recording_file import COLUMNS
+from ir50p_lab.errors import InputError, RecordingError
+
+HEAD = {"kind": "simulated", "bench": "simulated IR50P", "simulated": "true", "period_s": "0.01"}
+
+
+def fill(recorder, n, *, first=0, reference=(1.57, 1.5, -1.05)):
+    rng = np.random.default_rng(1)
+    for k in range(first, first + n):
+        q = np.array([0.5, 0.2, -0.3]) + 0.001 * rng.standard_normal(3)
+        counts = np.array([512.0, 600.25, 234.75])
+        recorder.write(Sample(0.01 * k, q, counts, k // 50), np.array([-255.0, 0.0, 12.0]), reference, k % 2 == 1)
+    return recorder.recording
+
+
+def same(a, b, tolerance=1e-6):
+    for name in ("t", "q", "counts", "u", "reference", "gripper", "missed"):
+        np.testing.assert_allclose(getattr(a, name), getattr(b, name), rtol=0, atol=tolerance, err_msg=name)
+
+
+def file_of(tmp_path, text):
+    path = tmp_path / "other.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return path
+
+
+# ---- what goes in comes out
+
+
+@pytest.mark.parametrize("reference", [(1.57, 1.5, -1.05), None, np.array([0.1, 0.2, 0.3])])
+def test_file_and_memory_agree(tmp_path, reference):
+    recorder = Recorder(HEAD, tmp_path)
+    live = fill(recorder, 120, reference=reference)
+    recorder.close()
+    loaded = Recording.load(live.path)
+    assert len(loaded) == len(live) == 120 and loaded.header == live.header
+    same(loaded, live)
+    assert loaded.simulated and loaded.period == 0.01 and loaded.notes == ()
+    assert np.isnan(loaded.reference).all() == (reference is None)
+    assert live.q.shape == live.counts.shape == live.u.shape == live.reference.shape == (120, 3)
+    assert not live.q.flags.writeable
+
+
+def test_a_recording_grows_with_the_run_and_is_on_disk_at_once(tmp_path):
+    recorder = Recorder(HEAD, tmp_path)
+    live = recorder.recording
+    assert len(live) == 0 and len(Recording.load(live.path)) == 0
+    for n in (1, 2, 3):
+        fill(recorder, 1, first=n)
+        assert len(live) == len(live.t) == n == len(Recording.load(live.path))  # not closed, not flushed
+    recorder.close()
+    recorder.close()
+
+
+def test_the_same_rows_come_from_write_and_from_write_block(tmp_path):
+    one, block = Recorder(HEAD, tmp_path), Recorder(HEAD, tmp_path)
+    live = fill(one, 50)
+    block.write_block(live.t, live.q, live.counts, live.u, live.reference, live.gripper, live.missed)
+    without = Recorder(HEAD, tmp_path)
+    without.write_block(live.t, live.q, live.counts, live.u)
+    for recorder in (one, block, without):
+        recorder.close()
+    texts = [recorder.path.read_text().splitlines()[-50:] for recorder in (one, block)]
+    assert texts[0] == texts[1]
+    assert np.isnan(Recording.load(without.path).reference).all()
+
+
+def test_saving_what_was_loaded_changes_nothing(tmp_path):
+    recorder = Recorder({**HEAD, "note": "Größe, \\x41; α = 40°\nzweite Zeile C:\\users\\x"}, tmp_path)
+    fill(recorder, 5)
+    recorder.close()
+    loaded = Recording.load(recorder.path)
+    assert loaded.header["note"] == "Größe, \\x41; α = 40° zweite Zeile C:\\users\\x"
+    assert recorder.path.read_bytes().isascii()
+    again = loaded.save(tmp_path / "again.csv")
+    assert again.read_text() == recorder.path.read_text()
+    with pytest.raises(RecordingError, match="cannot write"):
+        loaded.save(tmp_path / "nowhere" / "x.csv")
+
+
+def test_in_memory_nothing_is_written(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    live = fill(Recorder(HEAD, False), 10)
+    assert len(live) == 10 and live.path is None and not list(tmp_path.iterdir())
+
+
+def test_a_view_may_be_taken_while_another_thread_records():
+    recorder = Recorder(HEAD, False)
+    thread = threading.Thread(target=fill, args=(recorder, 3000))
+    thread.start()
+    seen = [0]
+    while thread.is_alive():
+        table = recorder.recording.q
+        assert np.isfinite(table).all()
+        seen.append(len(table))
+    thread.join()
+    assert len(recorder.recording) == 3000 and seen == sorted(seen)
+
+
+# ---- where it goes
+
+
+def test_names_tell_when_and_what_and_never_collide(tmp_path):
+    paths = [Recorder({**HEAD, "date": "2026-11-21T10:00:00+01:00"}, tmp_path / "new" / "folder").path for _ in "123"]
+    assert [path.name for path in paths] == [f"2026-11-21_100000_simulated_{k}.csv" for k in (1, 2, 3)]
+    replayed = Recorder({"kind": "replay", "simulated": "true"}, tmp_path).path
+    assert "replay_simulated" in replayed.name
+
+
+def test_default_folder_and_the_environment_variable(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("IR50P_RECORDINGS", raising=False)
+    assert Recorder(HEAD).path.parent.name == "recordings"
+    monkeypatch.setenv("IR50P_RECORDINGS", str(tmp_path / "other"))
+    assert Recorder(HEAD).path.parent == tmp_path / "other"
+
+
+def test_a_folder_that_cannot_be_is_said_with_the_remedy(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(RecordingError, match=r"cannot record in .*file.*record_to=.*IR50P_RECORDINGS"):
+        Recorder(HEAD, tmp_path / "file" / "below")
+
+    def forbidden(*args):
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr(recorder_module.os, "open", forbidden)  # the tests may run as root, whom no folder refuses
+    with pytest.raises(RecordingError, match="Permission denied"):
+        Recorder(HEAD, tmp_path)
+
+
+# ---- a full disk
+
+
+def full_after(monkeypatch, room):
+    """A disk with `room` bytes left: os.write takes what fits, then refuses."""
+    left, real = [room], os.write
+
+    def write(file, data):
+        if left[0] <= 0:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        taken = real(file, data[: left[0]])
+        left[0] -= taken
+        return taken
+
+    monkeypatch.setattr(recorder_module.os, "write", write)
+
+
+@pytest.mark.parametrize("room", [600, 601, 620, 650, 680])
+def test_a_full_disk_loses_nothing_that_was_recorded(tmp_path, monkeypatch, room):
+    recorder = Recorder(HEAD, tmp_path)
+    fill(recorder, 3)
+    full_after(monkeypatch, room)
+    with pytest.raises(RecordingError, match=r"No space left.*safe.*Make room"):
+        fill(recorder, 100, first=3)
+    loaded = Recording.load(recorder.path)  # no warning: the file ends with a whole line
+    n = len(loaded)
+    assert n == len(recorder.recording) - 1 and n > 3
+    np.testing.assert_allclose(loaded.t, 0.01 * np.arange(n), atol=1e-9)
+
+
+def test_no_room_even_for_the_head(tmp_path, monkeypatch):
+    full_after(monkeypatch, 10)
+    with pytest.raises(RecordingError, match="No space left"):
+        Recorder(HEAD, tmp_path)
+
+
+def test_a_reference_that_is_none_is_refused():
+    recorder = Recorder(HEAD, False)
+    for wrong in (np.zeros((3, 3)), [1.0, 2.0], 5.0, "abc"):
+        with pytest.raises(InputError, match="three joint angles"):
+            fill(recorder, 1, reference=wrong)
+    assert len(recorder.recording) == 0
+
+
+# ---- files that are cut off, of other programs, or wrong
+
+ROW = "0.5,0.2,-0.3,512,600,234,-255,0,12,1,1,1,0,0"
+
+
+def ours(*rows):
+    head = "# ir50p_lab recording: 1\n# period_s: 0.01\n" + ",".join(COLUMNS) + "\n"
+    return head + "".join(f"{row}\n" for row in rows)
+
+
+@pytest.mark.parametrize("cut", range(1, 30))
+def test_a_cut_off_last_line_is_left_out_with_a_warning(tmp_path, cut):
+    text = ours(f"0.00,{ROW}", f"0.01,{ROW}", f"0.02,{ROW}")[:-cut]
+    with pytest.warns(RecordingWarning, match="last line"):
+        loaded = Recording.load(file_of(tmp_path, text))
+    assert loaded.t.tolist() == [0.0, 0.01] and "left out" in loaded.notes[0]
+
+
+def test_zeros_at_the_end_after_a_power_cut(tmp_path):
+    with pytest.warns(RecordingWarning, match="last line"):
+        loaded = Recording.load(file_of(tmp_path, ours(f"0.00,{ROW}", f"0.01,{ROW}").encode()[:-5] + bytes(5)))
+    assert len(loaded) == 1
+
+
+FOREIGN = [
+    "t,q1,q2,q3,u1,u2,u3\n0,0.1,0.2,0.3,10,20,30\n0.02,0.1,0.2,0.3,10,20,30",
+    "t;q1;q2;q3;u1;u2;u3\r\n0;0,1;0,2;0,3;10;20;30\r\n0,02;0,1;0,2;0,3;10;20;30\r\n",
+    "\ufeffT\tQ1\tQ2\tQ3\tu1\tu2\tu3\ttemperature\n0\t0.1\t0.2\t0.3\t10\t20\t30\tx\n2e-2\t0.1\t0.2\t0.3\t10\t20\t30\tx\n",
+    '"# note: a, b",,,,,,\nu1,u2,u3,q1,q2,q3,t\n10,20,30,.1,.2,.3,0\n,,,,,,\n10,20,30,.1,.2,.3,.02\n,,,,,,\n',
+]
+
+
+@pytest.mark.parametrize("text", FOREIGN)
+def test_files_of_other_programs(tmp_path, text):
+    loaded = Recording.load(file_of(tmp_path, text))
+    assert loaded.t.tolist() == [0.0, 0.02] and loaded.period == pytest.approx(0.02)
+    np.testing.assert_allclose(loaded.q, [[0.1, 0.2, 0.3]] * 2)
+    np.testing.assert_allclose(loaded.u, [[10, 20, 30]] * 2)
+    assert np.isnan(loaded.counts).all() and np.isnan(loaded.missed).all() and not loaded.simulated
+    assert "unknown origin" in repr(loaded)
+
+
+def test_angles_alone_are_enough(tmp_path):
+    loaded = Recording.load(file_of(tmp_path, "t,q1,q2,q3\n0,1,1,1\n1,1,1,1\n"))
+    assert np.isnan(loaded.u).all() and len(loaded.metrics()) == 3
+
+
+WRONG = [
+    (ours(f"0.00,{ROW}", "0.01,0.5,0.2", f"0.02,{ROW}"), r"line 5: 3 values for 15 columns .*delete that line"),
+    (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "6o0"), f"0.02,{ROW}"), r"line 5: '6o0' is no number"),
+    (ours(f"0.00,{ROW}", f"0.02,{ROW}", f"0.01,{ROW}"), r"line 6: t = 0.01 s is not later"),
+    (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("0.2", "nan")), r"line 5: t or an angle is missing"),
+    (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("0.2", "")), r"line 5: t or an angle is missing"),
+    (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "inf")), r"line 5: a value is infinite"),
+    (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("-255", "-256")), r"line 5: u = -256; PWM counts are -255..255"),
+    (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "1024")), r"line 5: 1024 counts"),
+    ("t,q1,q2,q3\n0,10,20,30\n0.01,10,20,30\n", r"line 2: an angle of 20 rad; .* degrees"),
+    ("t,q1,q2,q3\n0,1,1,1\n10,1,1,1\n20,1,1,1\n", r"steps of 10 s; .* ms"),
+    ("t,q1,q2,q3\n0,1,1,1\n0,01,0,1,0,1,0,1\n0,02,0,1,0,1,0,1\n", r"line 3: 8 values for 4 columns \(decimal commas"),
+    ("0,1,1,1\n0.01,1,1,1\n", r"line 1: no column t, q1, q2, q3"),
+    ("t,q1,q2\n0,1,1\n", r"line 1: no column q3"),
+    ("t,q1,q2,q3,u1,u2\n0,1,1,1,5,5\n", r"of u1, u2, u3 only u1, u2"),
+    ("t,q1,q2,q3,q3\n0,1,1,1,1\n", r"column q3 stands there twice"),
+    ("", r"ends before its first sample"),
+    ("# ir50p_lab recording: 1\n# period", r"ends before its first sample"),
+    ("t,q1,q2,q3\n0,1,1,1\n".encode("utf-16"), r"UTF-16"),
+    (b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR", r"no text file"),
+]
+
+
+@pytest.mark.parametrize(("text", "message"), WRONG)
+def test_what_is_wrong_is_named_with_file_and_line(tmp_path, text, message):
+    with pytest.raises(RecordingError, match=message) as caught:
+        Recording.load(file_of(tmp_path, text))
+    assert "other.csv" in str(caught.value)
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(RecordingError, match=r"nothing.csv.*check the path"):
+        Recording.load(tmp_path / "nothing.csv")
+
+
+# ---- what it says
+
+
+def step_answer():
+    t = 0.01 * np.arange(1000)
+    q = np.outer(1 - np.exp(-3 * t) * np.cos(8 * t), [1.0, 0.5, -1.0])
+    u = np.outer(255 * np.exp(-t), [1, 1, -1])
+    return Recording.from_arrays(t, q, u=u, reference=np.tile([1.0, 0.6, -1.0], (1000, 1)), header=HEAD)
+
+
+def test_metrics_of_an_answer_known_in_closed_form():
+    first, second, third = step_answer().metrics()
+    t = np.arctan2(-3, 8) / 8 + np.pi / 8  # where the derivative of the answer is zero first
+    peak = -np.exp(-3 * t) * np.cos(8 * t)
+    assert first.overshoot == pytest.approx(peak, abs=1e-3) == third.overshoot
+    assert (second.overshoot, second.error) == pytest.approx((max(0.0, 0.5 * (1 + peak) - 0.6), 0.1), abs=1e-3)
+    assert (first.start, first.final, first.error, first.swing) == pytest.approx((0, 1, 0, 0), abs=1e-4)
+    assert first.saturated == 0.001 and first.u_std == pytest.approx(np.std(255 * np.exp(-step_answer().t)))
+
+
+def test_between_keeps_times_and_says_that_it_is_a_part():
+    part = step_answer().between(2.0, 3.0)
+    assert (part.t[0], part.t[-1], len(part)) == (pytest.approx(2.0), pytest.approx(3.0), 101)
+    assert part.header["cut"] == "2 to 3 s" and part.simulated
+    assert len(step_answer().between(50, 60)) == 0
+
+
+def test_plot_shows_itself_and_says_simulated():
+    figure = step_answer().plot()
+    assert "simulated" in figure.get_suptitle()
+    upper, lower = figure.axes[:3], figure.axes[3:]
+    assert [ax.get_xlabel() for ax in lower] == ["t [s]"] * 3
+    assert upper[0].get_ylabel() == "angle [rad]" and "PWM" in lower[0].get_ylabel()
+    angle, target = upper[1].get_lines()
+    assert (angle.get_linestyle(), target.get_linestyle()) == ("-", "--")
+    assert target.get_ydata()[0] == 0.6 and "100 mrad" in upper[1].get_title()
+    png, size = figure._repr_png_()
+    image = matplotlib.image.imread(io.BytesIO(png))
+    assert image.shape[:2] == (2 * size["height"], 2 * size["width"])
+
+
+def test_plot_without_reference_without_u_without_samples():
+    figure = Recording.from_arrays([0.0, 0.01], np.zeros((2, 3))).plot()
+    assert figure.axes[0].get_title() == "joint 1" and "unknown origin" in figure.get_suptitle()
+    assert len(figure.axes[0].get_lines()) == 1
+    Recording.from_arrays([0.0], np.zeros((1, 3))).plot()
+    for what in (Recording.plot, Recording.metrics):
+        with pytest.raises(RecordingError, match="no sample"):
+            what(Recording.from_arrays([], np.zeros((0, 3))))
+    with pytest.raises(InputError, match="shape"):
+        Recording.from_arrays([0.0, 0.1], np.zeros((3, 3)))
+
+
+def test_representations():
+    recording = step_answer()
+    assert repr(recording) == "<Recording: simulated IR50P, 9.99 s, 1000 samples, simulated>"
+    html = recording._repr_html_()
+    assert "simulated IR50P" in html and html.count("<tr>") == 4
