@@ -255,7 +255,7 @@ class Bench(abc.ABC):
         Returns the Recording (None with record=False).
         """
         controller.reset() if hasattr(controller, "reset") else None
-        for sample in self.run(seconds, record=record, **header):
+        for sample in self.run(seconds, record=record, **{**header_of(controller), **header}):
             target = reference(sample.t)
             self.drive(controller.step(sample.t, sample.q, target), reference=target[0])
         return self.recording if record else None
@@ -277,3 +277,8 @@ class Bench(abc.ABC):
     def rest_pose(self):
         """The pose (3,) rad where the arm is let go."""
         return rest_pose(self.arm)
+
+
+def header_of(controller):
+    """The gains of a controller for the head of a recording, if it tells them."""
+    return controller.header() if hasattr(controller, "header") else {}

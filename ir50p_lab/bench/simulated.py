@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Sample
+from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Sample, header_of
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, convert, read_pots
 from ir50p_lab.bench.unit import UNIT
 from ir50p_lab.controllers.base import Controller
@@ -165,7 +165,7 @@ class SimulatedBench(Bench):
         controller.reset()
         cycles = self._number_of_cycles(seconds)
         self._end_run()  # of a loop that was left by break
-        self._recorder = recorder = self._start_recorder(header) if record else None
+        self._recorder = recorder = self._start_recorder({**header_of(controller), **header}) if record else None
         self._pwm = np.zeros(JOINTS)
         try:
             self._begin()

@@ -23,6 +23,10 @@ class Controller:
         """Forget the past: integrals, filters and the last sample."""
         self.state[:] = 0.0
 
+    def header(self):
+        """Lines for the head of a recording: dict of str; subclasses add their gains."""
+        return {"controller": type(self).__name__}
+
     def step(self, t, measured, reference):
         """The command for one sample.
 

@@ -128,6 +128,13 @@ class PID(Controller):
                 change[KP:KI] * self.state[ERROR : ERROR + 3] + change[KD:] * self.state[SLOPE : SLOPE + 3]
             )
 
+    def header(self):
+        """Lines for the head of a recording: the gains, joints 1 to 3, and the filters."""
+        lines = {name: " ".join(f"{x:g}" for x in getattr(self, name)) for name in ("kp", "ki", "kd")}
+        filters = {"filter_hz": FILTER_RATE, "position_filter_hz": POSITION_RATE}
+        rates = {name: self.parameters[place] / (2 * np.pi) for name, place in filters.items()}
+        return {**super().header(), **lines, **{name: f"{hz or np.inf:g}" for name, hz in rates.items()}}
+
     @property
     def kp(self):
         """Proportional gains (3,)."""

@@ -144,6 +144,13 @@ def test_a_late_cycle_is_integrated_over_its_true_length():
     np.testing.assert_allclose(pid.step(0.05, ZERO, hold(1, 1, 1)), 0.01 + 0.05)
 
 
+def test_after_a_long_pause_the_integral_takes_ten_periods_at_most_and_time_never_runs_back():
+    pid = PID(kp=(0, 0, 0), ki=(1, 1, 1))
+    pid.step(0.0, ZERO, hold(1, 1, 1))
+    np.testing.assert_allclose(pid.step(60.0, ZERO, hold(1, 1, 1)), 0.01 + 0.10)
+    np.testing.assert_allclose(pid.step(59.0, ZERO, hold(1, 1, 1)), 0.01 + 0.10)
+
+
 def radius(arm, q, kp, kd, period):
     """Largest eigenvalue of the loop linearised at pose q, sampled and held: from `control`'s discretisation."""
     M = mass_matrix(arm, q)
@@ -192,3 +199,16 @@ def test_bad_input_gets_a_sentence(make, words):
 
 def test_a_scalar_gain_counts_for_all_joints():
     assert (PID(kp=3).kp == 3).all()
+
+
+def test_header_says_gains_and_filters():
+    header = PID(kp=(289, 225.5, 270), ki=1, kd=(40, 30, 30), position_filter_hz=3).header()
+    assert header == {
+        "controller": "PID",
+        "kp": "289 225.5 270",
+        "ki": "1 1 1",
+        "kd": "40 30 30",
+        "filter_hz": "10",
+        "position_filter_hz": "3",
+    }
+    assert PID(kp=1, filter_hz=np.inf).header()["filter_hz"] == PID(kp=1).header()["position_filter_hz"] == "inf"
