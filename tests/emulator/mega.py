@@ -197,9 +197,9 @@ class Mega:
         place[0] = 0xCFFF  # rjmp to itself
 
     def run(self, seconds):
-        """Let the processor work for that long, or a few instructions longer."""
+        """Let the processor work for that long, at least one instruction."""
         head, step, avr = self._head, self._library.avr_run, self._avr
-        end, resets = head.cycle + round(seconds * _F), self.resets
+        end, resets = head.cycle + max(1, round(seconds * _F)), self.resets
         while (cycle := head.cycle) < end:
             while self._ready and self.received:
                 self._library.avr_raise_irq(self._rx, self.received.pop(0))

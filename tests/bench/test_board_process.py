@@ -1,0 +1,87 @@
+"""In real time, with pyserial, on a pseudo-terminal: round trip, and a computer that is killed while it drives."""
+
+import signal
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import serial
+
+from ir50p_lab.bench.protocol import BAUD, HELLO_NEEDED, WATCHDOG_MS
+from tests.emulator.board_process import BoardProcess
+from tests.emulator.talk import Talk
+
+ROOT = Path(__file__).parents[2]
+
+DRIVER = """
+import sys, time, serial
+from ir50p_lab.bench.protocol import BAUD
+from tests.emulator.talk import Talk
+talk = Talk(serial.Serial(sys.argv[1], BAUD, timeout=0.1))
+talk.hello()
+print("driving", flush=True)
+while True:
+    talk.drive(150, -150, 150)
+    time.sleep(0.008)
+"""
+
+
+@pytest.fixture
+def board(tmp_path):
+    with BoardProcess(tmp_path) as board:
+        yield board
+
+
+def greet(port):
+    """The board resets when its port is opened: the first hello may come too early."""
+    talk = Talk(port)
+    for _ in range(20):
+        if talk.hello():
+            return talk
+    raise AssertionError("no answer to hello")
+
+
+def test_round_trip_in_real_time(board, record_property):
+    with serial.Serial(board.port, BAUD, timeout=0.2) as port:
+        talk, times = greet(port), []
+        for k in range(1000):
+            begin = time.perf_counter()
+            assert talk.drive(k % 200, 0, -k % 200) is not None
+            times.append(time.perf_counter() - begin)
+    median = 1e3 * statistics.median(times)
+    record_property("median_ms", median)
+    print(f"exchange: median {median:.2f} ms, 99 % {1e3 * sorted(times)[990]:.2f} ms")
+    assert median < 5  # 1.5 ms on a machine with nothing else to do; here only: no wait hides in it
+
+
+def test_opening_the_port_resets_the_board(board):
+    with serial.Serial(board.port, BAUD, timeout=0.2) as port:
+        greet(port).drive(10, 10, 10)
+    with serial.Serial(board.port, BAUD, timeout=0.2) as port:
+        talk = Talk(port)
+        reply = next(reply for reply in (talk.drive(1, 1, 1) for _ in range(20)) if reply)
+        assert reply.status & HELLO_NEEDED
+
+
+def test_a_killed_computer_lets_the_arm_brake_within_110_ms(board):
+    driver = subprocess.Popen([sys.executable, "-c", DRIVER, board.port], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    try:
+        assert driver.stdout.readline() == "driving\n"
+        time.sleep(0.3)
+    finally:
+        killed = time.monotonic()
+        driver.send_signal(signal.SIGKILL)
+        driver.wait()
+        driver.stdout.close()
+    deadline = time.monotonic() + 5
+    while any(board.changes()[-1].pins.pwm) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    changes = board.changes()
+    assert any(any(change.pins.pwm) for change in changes)
+    braked = min(c.monotonic for c in changes if c.monotonic > killed and not any(c.pins.pwm))
+    print(f"braked {1e3 * (braked - killed):.1f} ms after SIGKILL")
+    assert all(changes[-1].pins.enable)
+    assert braked - killed < (WATCHDOG_MS + 10) / 1000
