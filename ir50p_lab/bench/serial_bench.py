@@ -16,6 +16,7 @@ BOOT_LOADER = 2.0  # s; the Mega's own lasts 1 to 2 s, and 8 s if it hears anyth
 HANDSHAKE = 1.0  # s; then nobody is there
 LOST_AFTER = 0.2  # s without answer; the board has cut the drive after 0.1 s
 LATE = 0.2  # of a period; a cycle that begins later than this is counted
+_BROKEN = protocol.BROKEN_COUNTS
 FIRMWARE = "ir50p_lab/bench/firmware"
 
 
@@ -33,6 +34,7 @@ class SerialBench(Bench):
 
     Raises, when opened: PortError (missing, busy, not permitted), BoardError (not our board or another firmware).
     In a run: BoardLostError if the cable is pulled or the board resets; it brakes 0.1 s after the last command.
+    BoardError if a potentiometer has lost its wire.
     """
 
     kind = "board"
@@ -96,6 +98,12 @@ class SerialBench(Bench):
             raise self._lost(f"is gone ({error})") from error
         if state.status & protocol.HELLO_NEEDED:
             raise self._reset(state)
+        for joint, counts in enumerate(state.counts):
+            if not _BROKEN <= counts <= protocol.MAX_COUNTS - _BROKEN:
+                raise BoardError(
+                    f"the potentiometer of joint {joint + 1} reads {counts / protocol.SUBCOUNTS:g} of 0..1023 counts, "
+                    "as it does only with a broken or shorted wire: the drive is off. Look at its plug and its 5 V"
+                )
         return sent - self._start, np.array(state.counts) / protocol.SUBCOUNTS, self._missed
 
     def _send(self, pwm, gripper):

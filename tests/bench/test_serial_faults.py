@@ -402,6 +402,21 @@ def test_board_lost_between_two_runs(board):
     assert board.closed
 
 
+@pytest.mark.parametrize(("joint", "reads"), [(0, 0), (1, 1023), (2, 1021)])
+def test_broken_wire_of_a_potentiometer(board, joint, reads):
+    with pytest.raises(BoardError, match=f"potentiometer of joint {joint + 1} reads") as caught:
+        with bench_of(board) as bench:
+            for k, _ in enumerate(bench.run(1.0)):
+                bench.drive((50, -50, 50))
+                if k == 20:
+                    q = board.q.copy()
+                    q[joint] = (reads - CALIBRATION.zero[joint]) / CALIBRATION.slope[joint]
+                    board.q = q
+    assert "the drive is off" in str(caught.value)
+    assert (board.pwm == 0).all()
+    assert len(bench.recording) == 21
+
+
 # ---- cutting
 
 
