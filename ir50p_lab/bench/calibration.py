@@ -105,6 +105,8 @@ class Calibration:
     @property
     def residuals(self):
         """For each joint with points, measured angle minus angle of the counts, (m,) rad; a list of three arrays."""
+        if not self.points:
+            return []
         return [
             np.array(q) - (np.array(counts) - zero) / slope
             for (q, counts), slope, zero in zip(self.points, self.slope, self.zero, strict=True)
