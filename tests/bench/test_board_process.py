@@ -60,6 +60,7 @@ def test_round_trip_in_real_time(board, record_property):
 def test_opening_the_port_resets_the_board(board):
     with serial.Serial(board.port, BAUD, timeout=0.2) as port:
         greet(port).drive(10, 10, 10)
+    time.sleep(0.3)  # until the other side has surely seen it closed
     with serial.Serial(board.port, BAUD, timeout=0.2) as port:
         talk = Talk(port)
         reply = next(reply for reply in (talk.drive(1, 1, 1) for _ in range(20)) if reply)
