@@ -14,6 +14,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "replay": ["ReplayBench"],
         "serial_bench": ["SerialBench"],
         "simulated": ["SimulatedBench"],
+        "simulated_arm": ["SimulatedArm"],
         "unit": ["UNIT", "Unit"],
     },
 )

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ir50p_lab.bench.calibration import nominal_calibration
+from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.bench.unit import UNIT
 from ir50p_lab.errors import ArmError, InputError
 from ir50p_lab.inputs import vectors3
@@ -131,8 +132,6 @@ class SimulatedArm:
         return w
 
     def _start(self):
-        from ir50p_lab.bench.rest import rest_pose
-
         return np.zeros(3) if self._why_not(np.zeros(3)) is None else rest_pose(self.arm)
 
     def _why_not(self, q):

@@ -37,6 +37,19 @@ def test_an_ideal_unit_moves_as_the_simulation_does(arm):
     np.testing.assert_allclose(q, expected.q, atol=1e-12)
 
 
+def test_the_weak_shoulder_is_the_same_arm_with_other_motors():
+    """Friction is the same in PWM counts; torque per count, back-EMF and so gravity in counts are not."""
+    weak, theta = IR50P_WEAK_SHOULDER, IR50P_WEAK_SHOULDER.theta_pwm
+    assert (weak.l, weak.m, weak.lc, weak.q_min) == (IR50P.l, IR50P.m, IR50P.lc, IR50P.q_min)
+    np.testing.assert_allclose(weak.actuators.gain, [0.0098, 0.0353, 0.0353], rtol=1e-3)  # N m per count
+    np.testing.assert_allclose(theta[[0, 1, 2], [10, 12, 14]], [85, 232, 196], rtol=1e-3)  # back-EMF, counts s/rad
+    for part, counts in (("fc", (18, 16, 16)), ("fs", (36, 22, 22)), ("Tf", (4, -3, 2))):
+        for arm in (IR50P, weak):
+            np.testing.assert_allclose(np.array(getattr(arm.friction, part)) / arm.actuators.gain, counts)
+    for arm, most in ((IR50P, (138, 57)), (weak, (107, 38))):  # gravity stretched out, counts
+        np.testing.assert_allclose((gravity(arm, np.zeros(3)) / arm.actuators.gain)[1:], most, rtol=0.01)
+
+
 def test_breakaway_sticks_below_and_moves_above():
     arm = SimulatedArm(IR50P, IDEAL, q0=STRAIGHT_UP)
     # breakaway of joint 1 is 36 counts, its offset 4 counts against positive drive
