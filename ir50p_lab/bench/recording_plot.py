@@ -48,7 +48,7 @@ def summarise(recording):
                 final=final,
                 target=target,
                 error=target - final,
-                overshoot=max(0.0, float(((y - target) * np.sign(way)).max())) if way else math.nan,
+                overshoot=max(0.0, float(((y - target) * np.sign(way)).max())) if abs(way) > 0 else math.nan,
                 swing=float(np.ptp(y[late])),
                 rms_error=float(np.sqrt(np.mean(error[known] ** 2))) if known.any() else math.nan,
                 saturated=float(np.mean(np.abs(u[:, j]) >= 255)) if np.isfinite(u[:, j]).any() else math.nan,
