@@ -68,9 +68,10 @@ class StopCriterion:
     point counts as arrived, however far away it is (signed=True shows it).
 
     What stopping does is physics: with hold="latch" the joint keeps its present command (smoothed), which still
-    carries its weight, and friction holds it there (a joint that still creeps may creep on to `outer`). With hold="off" the command is 0, as in the thesis: joint 1 stays
-    (gravity does not turn it), joint 2 drops, because its weight is several times its stiction, until |e| > outer
-    catches it again; then it is lifted and dropped for ever.
+    carries its weight, and friction holds it there (a joint that still creeps may creep on to `outer`). With
+    hold="off" the command is 0, as in the thesis: joint 1 stays (gravity does not turn it), joint 2 drops, because
+    its weight is several times its stiction, until |e| > outer catches it again; then it is lifted and dropped for
+    ever.
 
     While a joint is stopped the controller inside sees it on its set point, at rest: its integral waits.
 

@@ -33,7 +33,10 @@ def difference_velocity(q, rate_hz, *, cutoff_hz=None, order=1, kind="causal"):
 
 
 class DifferenceVelocity:
-    """`difference_velocity` sample by sample: the same numbers. step(q) -> qd, q a number or (k,)."""
+    """`difference_velocity` sample by sample: the same numbers, in rad/s. step(q) -> qd, q a number or (k,) rad.
+
+    rate_hz, cutoff_hz, order: as in `low_pass`. Raises InputError as `LowPass` does.
+    """
 
     def __init__(self, rate_hz, *, cutoff_hz, order=1):
         self.filter = LowPass(cutoff_hz, rate_hz, order=order)
