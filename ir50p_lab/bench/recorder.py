@@ -100,9 +100,11 @@ class Recorder:
         except OSError:
             pass  # then its last line is cut off; loading leaves that out
         self.close()
+        if not self._size:  # not even the head
+            self.path.unlink(missing_ok=True)
         raise RecordingError(
-            f"the recording {self.path} cannot be written on: {error.strerror}. Its first {self._size} bytes are safe, "
-            f"the run ends here. Make room, or {_ELSEWHERE}"
+            f"the recording {self.path} cannot be written on: {error.strerror}. What was recorded before "
+            f"is safe in it; the run ends here. Make room, or {_ELSEWHERE}"
         ) from None
 
     def close(self):
