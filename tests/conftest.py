@@ -1,4 +1,4 @@
-"""In CI a skipped test is a failure: a run must not pass by leaving things out."""
+"""In CI a skipped test is a failure: a run must not pass by leaving things out. Marker `compiled`."""
 
 import os
 
@@ -8,6 +8,26 @@ from hypothesis import settings
 # no deadline: a first call may compile; the same examples in every run: a failure can be repeated
 settings.register_profile("lab", deadline=None, derandomize=True)
 settings.load_profile("lab")
+
+
+def pytest_collection_modifyitems(config, items):
+    """Without the compiler, tests marked `compiled(keep=n)` stay out, but for the first n cases of each.
+
+    The coverage run goes without it, so that jitted lines count, a hundred times slower. What is left out there runs
+    compiled in the main run, and the cases kept reach the same lines.
+    """
+    if os.environ.get("NUMBA_DISABLE_JIT") != "1":
+        return
+    seen, out = {}, []
+    for item in items:
+        marker = item.get_closest_marker("compiled")
+        if marker is not None:
+            name = item.nodeid.partition("[")[0]
+            seen[name] = seen.get(name, 0) + 1
+            if seen[name] > marker.kwargs.get("keep", 0):
+                out.append(item)
+    config.hook.pytest_deselected(items=out)
+    items[:] = [item for item in items if item not in set(out)]
 
 
 @pytest.hookimpl(trylast=True)

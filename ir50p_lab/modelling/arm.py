@@ -189,7 +189,7 @@ class Arm:
         """The 20 parameters of the arm as seen from the PWM counts, (3, 20): row i is divided by the gain K_i.
 
         u_i = (row i of Phi theta) / K_i, with the back-EMF as viscous friction. The rows differ when the
-        motors do: a fit with one shared theta is then wrong (ERRATA of 2.47). Raises ArmError without actuators.
+        motors do: a fit with one shared theta is then wrong (2.47 corrected). Raises ArmError without actuators.
         """
         if self.actuators is None:
             raise ArmError(f"{self.name} has no actuators: it is driven by torque, use theta (N m)")

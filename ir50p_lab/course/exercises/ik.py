@@ -136,10 +136,10 @@ EXERCISES = (
         Choice(
             "front/up",
             {
-                "front/up": "joint 1 faces the target, elbow up",
-                "front/down": "joint 1 faces the target, elbow down",
-                "back/up": "joint 1 faces away, elbow up",
-                "back/down": "joint 1 faces away, elbow down",
+                "front/up": "joint 1 faces the target, q3 <= 0",
+                "front/down": "joint 1 faces the target, q3 >= 0",
+                "back/up": "joint 1 faces away, q3 <= 0",
+                "back/down": "joint 1 faces away, q3 >= 0",
             },
         ),
         why="Reach first, then branches, then limits: in this order a 'no' always has a reason.",
