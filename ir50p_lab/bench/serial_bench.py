@@ -13,8 +13,8 @@ from ir50p_lab.bench.ports import open_port
 from ir50p_lab.errors import BoardError, BoardLostError, InputError
 
 BOOT_LOADER = 2.0  # s; the Mega's own lasts 1 to 2 s, and 8 s if it hears anything meanwhile: so we keep silent
-HANDSHAKE = 1.0  # s; then nobody is there
-LOST_AFTER = 0.2  # s without answer; the board has cut the drive after 0.1 s
+HANDSHAKE = 2.0  # s; then nobody is there
+LOST_AFTER = 0.5  # s without answer; the board has cut the drive after 0.1 s, a busy computer may come back
 LATE = 0.2  # of a period; a cycle that begins later than this is counted
 _BROKEN = protocol.BROKEN_COUNTS
 FIRMWARE = "ir50p_lab/bench/firmware"

@@ -84,6 +84,7 @@ def serve(board, link, log, boot=0.0):
     poller = select.poll()
     poller.register(master, select.POLLIN)
     board.timeout = 0
+    board.sleep(0.01)  # the arm's compiled code is loaded now, not while somebody waits for an answer
     begin, logged, is_open, listens, came = time.monotonic() - board.now(), 0, False, 0.0, 0.0
     print("ready", link, flush=True)
     while True:

@@ -1,0 +1,140 @@
+"""A smoke run in real time: SerialBench and pyserial on a pseudo-terminal, the emulated board in a process of its own.
+
+What takes its time here is the clock itself; everything that can be tried on virtual time is in test_contract.py.
+"""
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import SerialBench, connect
+from ir50p_lab.bench.rest import rest_pose
+from ir50p_lab.controllers import PID
+from ir50p_lab.errors import BoardLostError, PortError
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.signals import hold
+from tests.emulator.board_process import BoardProcess
+
+ROOT = Path(__file__).parents[2]
+WATCHDOG = 0.11  # s
+BUSY = 0.1  # s that a busy machine may add to everything
+
+KERNEL = """
+import sys, time
+from ir50p_lab.bench import SerialBench
+from ir50p_lab.controllers import PID
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.signals import hold
+bench = SerialBench(sys.argv[1], arm=IR50P, record_to=False).open()
+run = bench.start(PID(kp=(100, 100, 100), limit_pwm=255), hold([0.5, 1.0, -1.0]), lead_in=False)
+while run.statistics().cycles < 50:
+    time.sleep(0.01)
+print("driving", flush=True)
+time.sleep(60)
+"""
+
+
+@pytest.fixture
+def board(tmp_path):
+    with BoardProcess(tmp_path) as board:  # its arm is held: 512 counts, whatever it is told
+        yield board
+
+
+def bench_of(board, **options):
+    return SerialBench(board.port, arm=IR50P, record_to=False, **options)
+
+
+def braked_after(board, moment):
+    """Seconds from `moment` (time.monotonic) until the pins said brake; waits for it."""
+    until = time.monotonic() + 2
+    while any(board.changes()[-1].pins.pwm) and time.monotonic() < until:
+        time.sleep(0.01)
+    changes = board.changes()
+    assert not any(changes[-1].pins.pwm)
+    last = max(k for k, change in enumerate(changes) if any(change.pins.pwm))
+    return changes[last + 1].monotonic - moment
+
+
+def test_the_loop_of_the_lesson_and_the_way_to_the_rest_pose(tmp_path, monkeypatch, capsys):
+    monkeypatch.delenv("IR50P_ARM", raising=False)
+    with BoardProcess(tmp_path, plant="simulated") as board:
+        monkeypatch.setenv("IR50P_BENCH", board.port)
+        pid = PID(kp=(289, 225, 270), ki=(50, 10, 50), kd=(40, 30, 30), limit_pwm=255)
+        target = hold([0.8, 1.57, -1.05])
+        with connect(record_to=tmp_path) as bench:
+            for sample in bench.run(seconds=3):
+                bench.drive(pid.step(sample.t, sample.q, target(sample.t)))
+            statistics = bench.statistics
+        assert f"asked for by IR50P_BENCH={board.port}" in capsys.readouterr().out
+        recording = bench.recording
+        assert len(recording) == 300
+        assert 2.99 <= recording.t[-1] < 6  # a busy machine leaves cycles out
+        assert statistics.bad_replies == 0
+        np.testing.assert_allclose(recording.q[-1], [0.8, 1.2, -1.05], atol=0.5)
+        assert not any(board.changes()[-1].pins.pwm)
+        again = bench_of(board).open()  # opening restarts the board; the arm stays where it was left
+        sample = next(again.run(0.1))
+        again.abort()
+        np.testing.assert_allclose(sample.q, rest_pose(IR50P), atol=0.3)
+
+
+def test_an_error_in_the_body_cuts_at_once(board):
+    with pytest.raises(ZeroDivisionError), bench_of(board) as bench:
+        for k, _ in enumerate(bench.run(2)):
+            bench.drive([60, -60, 60])
+            if k == 20:
+                when = time.monotonic()
+                raise ZeroDivisionError
+    assert any(any(change.pins.pwm) for change in board.changes())
+    assert braked_after(board, when) < 0.05 + BUSY
+
+
+def test_cable_pulled(board):
+    with pytest.raises(BoardLostError, match=r"is gone|has not answered"), bench_of(board) as bench:
+        for k, _ in enumerate(bench.run(2)):
+            bench.drive([60, -60, 60])
+            if k == 20:
+                when = time.monotonic()
+                board.process.kill()
+    assert time.monotonic() - when < 0.5
+
+
+def test_two_benches_on_one_port(board):
+    bench = bench_of(board).open()
+    with pytest.raises(PortError, match="is busy"):
+        bench_of(board).open()
+    assert len(list(bench.run(0.1))) == 10
+    bench.abort()
+    bench_of(board).open().abort()  # given free
+
+
+def test_a_loop_in_its_own_process(board):
+    """The port goes to the loop's process and comes back."""
+    bench = bench_of(board).open()
+    run = bench.start(PID(kp=(100, 100, 100), limit_pwm=255), hold([0.5, 1.0, -1.0]), seconds=2.0, rest=False)
+    assert run.join(60)
+    assert run.statistics().cycles >= 200
+    assert len(list(bench.run(0.1))) == 10
+    bench.abort()
+    assert not any(board.changes()[-1].pins.pwm)
+
+
+def test_a_killed_kernel_cuts_the_drive(board):
+    """As when Jupyter dies: the loop in its own process notices, and the watchdog of the board would."""
+    kernel = subprocess.Popen([sys.executable, "-c", KERNEL, board.port], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    try:
+        assert kernel.stdout.readline() == "driving\n"
+        assert any(board.changes()[-1].pins.pwm)
+    finally:
+        killed = time.monotonic()
+        kernel.send_signal(signal.SIGKILL)
+        kernel.wait()
+        kernel.stdout.close()
+    after = braked_after(board, killed)
+    print(f"braked {1000 * after:.0f} ms after SIGKILL of the kernel")
+    assert after < WATCHDOG + BUSY

@@ -1,0 +1,69 @@
+"""Speed of SerialBench on a pseudo-terminal: `pytest tests/benchmarks/test_serial_speed.py --benchmark-enable -s`.
+
+The board is the compiled firmware in an emulator, in real time, in a process of its own: it takes about one processor.
+Targets on two quiet processors: an exchange 1.5 ms (median), the period at 100 Hz 11 ms (99 %). Without
+--benchmark-enable the runs are short and the limits are only a guard: machines of CI are shared.
+"""
+
+import os
+import time
+
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import SerialBench, protocol
+from ir50p_lab.bench.link import Clock, Link
+from ir50p_lab.bench.ports import open_port
+from ir50p_lab.controllers import PID
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.signals import hold
+from tests.emulator.board_process import BoardProcess
+
+
+@pytest.fixture
+def board(tmp_path):
+    with BoardProcess(tmp_path) as board:
+        yield board
+
+
+def tell(what, seconds):
+    """Median, 99 % and largest, ms; and whether the machine was quiet."""
+    p50, p99, largest = 1e3 * np.quantile(seconds, (0.5, 0.99, 1.0))
+    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
+    print(
+        f"\n{what}: median {p50:.2f} ms, 99 % {p99:.2f} ms, longest {largest:.2f} ms "
+        f"(load {load:.1f} on {os.cpu_count()} processors)"
+    )
+    return p50, p99
+
+
+def test_exchange(board, request):
+    full = request.config.getoption("benchmark_enable")
+    link, times = Link(open_port(board.port, protocol.BAUD), Clock), []
+    link.ask(protocol.HELLO, patience=2.0, repeat=0.05)
+    for k in range(3000 if full else 500):
+        begun = time.perf_counter()
+        link.ask(protocol.DRIVE, (k % 200, 0, -(k % 200)), patience=0.5)
+        times.append(time.perf_counter() - begun)
+    link.close()
+    median, _ = tell("exchange at 500 kbaud", times)
+    assert median < (1.5 if full else 5)
+
+
+@pytest.mark.parametrize("hertz", [100, 200])
+def test_loop(board, request, hertz):
+    """The loop of the lesson with the PID in Python and a recording on disk."""
+    full = request.config.getoption("benchmark_enable")
+    pid = PID(kp=(1, 1, 1), limit_pwm=255, period=1 / hertz)
+    target = hold([0.0, 0.0, 0.0])
+    bench = SerialBench(board.port, arm=IR50P, period=1 / hertz, record_to=os.path.dirname(board.port)).open()
+    begun = []
+    for sample in bench.run(20 if full else 2):
+        begun.append(time.perf_counter())
+        bench.drive(pid.step(sample.t, sample.q, target(sample.t)))
+    statistics, missed = bench.statistics, sample.missed
+    bench.abort()
+    _, p99 = tell(f"period at {hertz} Hz, {missed} late of {len(begun)}", np.diff(begun))
+    tell("  between measurements", np.diff(bench.recording.t))
+    print(f"  {statistics}")
+    assert p99 < 1e3 / hertz + (1 if full and hertz == 100 else 25)
