@@ -68,6 +68,7 @@ def test_slender_rods_and_point_masses_are_allowed():
     rod = 1 * 0.3**2 / 12
     assert Arm(**GOOD, Iyy=(0, rod, rod), Izz=(0, rod, rod)).suspicions == ()
     assert Arm(**GOOD).theta.shape == (3, 20)
+    assert Arm(**{**GOOD, "lc": GOOD["l"]}).suspicions == ()  # all of the mass at the end of a link: a hand
 
 
 def test_full_rigid_bodies_are_taken_or_refused():

@@ -87,6 +87,25 @@ def test_integral_action_and_saturation_of_the_thesis_loop():
     assert np.abs(limited.u).max() == 50 and 1.85 < limited.metrics()[0].overshoot_percent < 3.15
 
 
+def test_the_continuous_pid_knows_the_velocity_of_its_reference():
+    """Joint 1 alone, M11 constant: with e = 0 and the right velocity at the start, only D = 0 could lag behind."""
+    upright = {"q0": (0, np.pi / 2, 0), "qd0": (0.5, 0, 0)}
+    weightless = replace(THESIS_A, g=0.0)
+    ramp = lambda t: (np.array([0.5 * t, np.pi / 2, 0]), np.array([0.5, 0, 0]), np.zeros(3))  # noqa: E731
+    run = simulate(weightless, ContinuousPID(kp=25, kd=10), ramp, duration=0.5, **upright)
+    assert np.abs(run.error).max() < 1e-9 and np.abs(run.u).max() < 1e-6
+
+
+def test_the_continuous_integral_rests_while_the_command_is_limited():
+    """Held back at its limit for 2 s by a heavy load, the command must leave the limit once the error changes sign."""
+    heavy = replace(THESIS_A, g=0.0, Ixx=(200.0, 0, 0), Iyy=(200.0, 0, 0), Izz=(200.0, 0, 0))
+    pid = ContinuousPID(kp=(50, 0, 0), ki=(200, 0, 0), kd=(0, 0, 0), limit=20)
+    run = simulate(heavy, pid, (0.2, 0, 0), q0=(0, np.pi / 2, 0), duration=6)
+    past = run.error[:, 0] < -0.02
+    assert past.any() and (run.u[np.argmax(past) : np.argmax(past) + 50, 0] < 20).all()
+    assert (run.u[: np.argmax(run.error[:, 0] < 0.1), 0] == 20).mean() > 0.5
+
+
 def test_the_same_gains_held_for_10_ms_are_unstable():
     with pytest.raises(InputError, match="unstable"):
         simulate(THESIS_A, PID(kp=(25, 200, 200), kd=(10, 40, 40), filter_hz=1e6), SET_POINT)
@@ -278,6 +297,8 @@ def test_bad_input_gets_a_sentence(change, words):
 def test_more_refusals():
     with pytest.raises(InputError, match="need an Arm"):
         simulate(THESIS_C, stops=True)
+    with pytest.raises(InputError, match="limit = 0: must be positive"):
+        ContinuousPID(kp=(1, 1, 1), limit=0)
     with pytest.raises(InputError, match="smooth motion"):
         simulate(IR50P, ContinuousPID(kp=(1, 1, 1)))
     with pytest.raises(InputError, match=r"command at t = 0 s.*nan"):
