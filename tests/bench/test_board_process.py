@@ -11,8 +11,10 @@ import pytest
 import serial
 
 from ir50p_lab.bench.protocol import BAUD, HELLO_NEEDED, WATCHDOG_MS
-from tests.emulator.board_process import BoardProcess
 from tests.emulator.talk import Talk
+
+pytest.importorskip("termios", reason="Windows has no pseudo-terminals")
+from tests.emulator.board_process import BoardProcess  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
 
