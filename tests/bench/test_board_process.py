@@ -14,7 +14,7 @@ from ir50p_lab.bench.protocol import BAUD, HELLO_NEEDED, WATCHDOG_MS
 from tests.emulator.talk import Talk
 
 pytest.importorskip("termios", reason="Windows has no pseudo-terminals")
-from tests.emulator.board_process import BoardProcess  # noqa: E402
+from tests.emulator.board_process import BoardProcess
 
 ROOT = Path(__file__).parents[2]
 

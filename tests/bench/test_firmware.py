@@ -5,6 +5,7 @@ import pytest
 from ir50p_lab.bench import protocol
 from ir50p_lab.bench.protocol import DRIVE, Command, Identity, encode
 from tests.emulator.build import firmware
+from tests.emulator.mega import Mega
 from tests.emulator.talk import Talk
 from tests.emulator.virtual import HeldArm, VirtualBoard
 
@@ -62,6 +63,15 @@ def test_enable_comes_last(board):
     for _, pins in board.changes:
         if any(pins.enable):
             assert pins.hertz == pytest.approx(20_000)
+
+
+def test_the_period_is_set_after_the_mode():
+    """ICR4 can only be written in a mode that uses it (data sheet, 'Input Capture Register'); the emulator is lenient."""
+    mega = Mega(firmware())
+    while not mega.register(0xA6):
+        mega.run(0.3e-6)
+        assert mega.seconds < 0.01
+    assert (mega.register(0xA0) & 3, mega.register(0xA1) & 0x18) == (2, 0x18)
 
 
 def test_hello_says_what_the_board_is(board):

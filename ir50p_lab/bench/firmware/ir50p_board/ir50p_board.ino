@@ -96,10 +96,12 @@ void drive_joint(uint8_t joint, int16_t pwm) {
 }
 
 void start_bridges() {
-  ICR4 = TOP;
-  for (uint8_t j = 0; j < JOINTS; j++) drive_joint(j, 0);
   TCCR4A = _BV(WGM41) | _BV(COM4A1) | _BV(COM4A0) | _BV(COM4B1) | _BV(COM4B0) | _BV(COM4C1) | _BV(COM4C0);
   TCCR4B = _BV(WGM43) | _BV(WGM42) | _BV(CS40);  // fast PWM up to ICR4, no prescaler
+  ICR4 = TOP;                                    // after the mode: in others the processor ignores it
+  TCNT4 = 0;
+  for (uint8_t j = 0; j < JOINTS; j++) drive_joint(j, 0);
+  delayMicroseconds(100);  // two periods: the timer takes new times over at the end of one
   for (uint8_t j = 0; j < JOINTS; j++) {
     pinMode(PWM_PIN[j], OUTPUT);
     pinMode(DIRECTION_PIN[j], OUTPUT);
@@ -191,18 +193,19 @@ bool promising(const Command &frame, uint8_t length) {
   return length < COMMAND_SIZE || valid(frame);
 }
 
-template <typename Frame>
-void send(Frame &frame) {
+// All replies are REPLY_SIZE long; the last four bytes are the check.
+void send(void *reply) {
   // Never wait for the line: a loop that waits does not watch. The computer asks again.
-  if (Serial.availableForWrite() < (int)sizeof frame) return;
-  frame.crc = crc32(&frame, sizeof frame - sizeof frame.crc);
-  Serial.write((const uint8_t *)&frame, sizeof frame);
+  if (Serial.availableForWrite() < REPLY_SIZE) return;
+  uint32_t crc = crc32(reply, REPLY_SIZE - sizeof crc);
+  memcpy((uint8_t *)reply + REPLY_SIZE - sizeof crc, &crc, sizeof crc);
+  Serial.write((const uint8_t *)reply, REPLY_SIZE);
 }
 
 void send_identity(uint8_t seq) {
   Identity reply = {REPLY_SYNC, seq, IDENTITY, {MAGIC[0], MAGIC[1]}, VERSION, {FIRMWARE[0], FIRMWARE[1]},
                     JOINTS, ADC_BITS, HAS_GRIPPER, boot, reset_cause, 0};
-  send(reply);
+  send(&reply);
 }
 
 void send_state(uint8_t seq) {
@@ -213,7 +216,7 @@ void send_state(uint8_t seq) {
   for (uint8_t j = 0; j < JOINTS; j++)
     if (limited(j)) reply.status |= LIMIT_ACTIVE[j];
   tripped = false;
-  send(reply);
+  send(&reply);
 }
 
 void obey(const Command &frame) {
