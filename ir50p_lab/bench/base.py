@@ -190,11 +190,16 @@ class Bench(abc.ABC):
                 yield sample
                 if recorder is not None:
                     recorder.write(sample, self._pwm, self._reference, self._gripper)
-        except BaseException as error:
-            if not isinstance(error, GeneratorExit):
-                self.cut()
-            elif recorder is not None and self._recorder is recorder:
-                recorder.write(sample, self._pwm, self._reference, self._gripper)  # the loop was left by break
+        except GeneratorExit:  # the loop was left by break
+            if recorder is not None and self._recorder is recorder:
+                try:
+                    recorder.write(sample, self._pwm, self._reference, self._gripper)
+                except BaseException:  # a full disk; nobody may hear of it while a generator is closed
+                    self.cut()
+                    raise
+            raise
+        except BaseException:
+            self.cut()
             raise
         finally:
             if self._recorder is recorder:
