@@ -110,4 +110,10 @@ ERRATA = {
             r"\(Tables 2\.1-2\.3\).*0\.01 s",
         ),
     ],
+    "06": [
+        ("4.1.2", "24 V in the introduction, 12 V here: half the volts per count, half the speed", r"\(4\.1\.2\)"),
+        ("4.1.3", "Shannon printed the wrong way round; a cut-off of 300 Hz at 100 Hz is impossible"),
+        ("4.2.1, map", "[-255, 255] to [0, 255]: the command 0 becomes half the supply", r"4\.2\.1, the map"),
+        ("4.2.1, stop", "e < 0.01 holds for every negative error; letting go drops a joint", r"4\.2\.1, Figure 4\.7"),
+    ],
 }

@@ -1,0 +1,248 @@
+"""Figures of notebook 06: what a bench measured, and what a simulation says where it is asked; each says which."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ir50p_lab.bench import UNIT, SimulatedArm
+from ir50p_lab.course.arm3d import ArmView, SideView
+from ir50p_lab.course.simulation_views import Row, Traces
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.modelling.chain import forward_kinematics
+from ir50p_lab.signals import (
+    alias,
+    difference_velocity,
+    low_pass_lag,
+    low_pass_response,
+    noise_and_lag,
+    velocity_estimators,
+)
+
+_JOINTS = (COLOURS["blue"], COLOURS["orange"], COLOURS["green"])
+
+
+def origin(recording):
+    """Where a recording is from, in two words: 'simulated arm', 'the real arm' or 'origin unknown'."""
+    if "simulated" not in recording.header:
+        return "origin unknown"
+    return "simulated arm" if recording.simulated else "the real arm"
+
+
+def _stamped(text, *figure_size, **layout):
+    """A `new_figure` with a small note at its lower right: where the data are from."""
+    figure = new_figure(*figure_size, **layout)
+    x, y = 1.0 - 0.04 / figure.get_figwidth(), 0.03 / figure.get_figheight()
+    figure.text(x, y, text, ha="right", va="bottom", fontsize=7.5, color=COLOURS["grey"], style="italic")
+    return figure
+
+
+def let_go_figure(arm, recording):
+    """The arm from the side at the first and last sample of a run, and its angles over time. Returns: LabFigure.
+
+    Args: arm: Arm; recording: Recording of a run without drive.
+    """
+    figure = _stamped(origin(recording), 9.0, 3.8, cols=2, width_ratios=(1, 1.15))
+    side, angles = figure.axes
+    heading = recording.q[0, 0]
+    for sample, colour, label in ((0, "blue", "first sample"), (-1, "orange", "last sample")):
+        view = SideView(side, arm, colour=COLOURS[colour], label=label)
+        view.update(recording.q[sample], heading=heading)
+    side.legend(loc="upper left", fontsize=8, frameon=False)
+    fallen = forward_kinematics(arm, recording.q[0])[2] - forward_kinematics(arm, recording.q[-1])[2]
+    side.set_title(f"Nobody drives: the tip falls {100 * fallen:.0f} cm" if fallen > 0.02 else "It stays")
+    for joint in range(3):
+        angles.plot(recording.t, recording.q[:, joint], color=_JOINTS[joint], label=f"joint {joint + 1}")
+    angles.set(xlabel="t [s]", ylabel="angle [rad]", title="What the potentiometers say")
+    angles.legend(fontsize=8)
+    return figure
+
+
+def breakaway_figure(recording, joint, moved_at):
+    """A ramp of PWM counts and the angle that answers, with the moment it moves. Returns: LabFigure.
+
+    Args: recording: Recording; joint: 0, 1 or 2; moved_at: s.
+    """
+    figure = _stamped(origin(recording), 9.0, 3.6, rows=2, sharex=True)
+    above, below = figure.axes
+    above.plot(recording.t, recording.u[:, joint], color=COLOURS["orange"], drawstyle="steps-post")
+    below.plot(recording.t, recording.q[:, joint], ".", ms=3, color=COLOURS["grey"])
+    for ax in figure.axes:
+        ax.axvline(moved_at, **SETPOINT)
+    pwm = recording.u[np.searchsorted(recording.t, moved_at - 1e-9), joint]
+    above.set(ylabel="command [PWM counts]", title=f"Joint {joint + 1} stays put until about {pwm:.0f} counts")
+    below.set(ylabel="angle [rad]", xlabel="t [s]")
+    return figure
+
+
+def residual_figure(calibration):
+    """What the calibration line leaves, in counts, over the angle, joint by joint. Returns: LabFigure.
+
+    Args: calibration: Calibration with points.
+    """
+    figure = new_figure(9.6, 3.0, cols=3)
+    for joint, (ax, residual) in enumerate(zip(figure.axes, calibration.residuals, strict=True)):
+        q = np.array(calibration.points[joint][0])
+        counts = residual * calibration.slope[joint]
+        bow = np.polynomial.Polynomial.fit(q, counts, 2)
+        x = np.linspace(q.min(), q.max(), 100)
+        ax.axhline(0, **SETPOINT)
+        ax.plot(x, bow(x), color=COLOURS["orange"], linewidth=1.5)
+        ax.plot(q, counts, "o", ms=4, color=COLOURS["grey"])
+        ax.set(xlabel="angle [rad]", ylim=(-2.2, 2.2), title=f"joint {joint + 1}: bowed by {np.ptp(bow(x)):.1f} counts")
+    figure.axes[0].set_ylabel("angle read - line [counts]")
+    return figure
+
+
+def shannon_figure(rate_hz, cutoffs_hz, f_hz):
+    """Low-pass responses up to half the rate (Figure 4.3), and a fast sine that its samples make slow.
+
+    Args: rate_hz: samples per s; cutoffs_hz: legal ones, Hz; f_hz: of the sine, Hz. Returns: LabFigure.
+    """
+    figure = new_figure(9.6, 3.4, cols=2)
+    gain, sine = figure.axes
+    for cutoff in cutoffs_hz:
+        response = low_pass_response(cutoff, rate_hz)
+        gain.semilogx(response.f, response.gain, label=f"{cutoff:g} Hz")
+    gain.axvspan(rate_hz / 2, 400, color=COLOURS["light"])
+    gain.text(rate_hz / 2 * 1.08, 0.06, "not in\nthe samples", fontsize=8)
+    gain.plot([300], [np.sqrt(0.5)], "X", ms=9, color=COLOURS["orange"], label="printed: 300 Hz")
+    gain.set(xlim=(0.2, 400), ylim=(0, 1.05), xlabel="frequency [Hz]", ylabel="gain [1]")
+    gain.set_title(f"Samples end at {rate_hz / 2:g} Hz")
+    gain.legend(fontsize=8, loc="lower left")
+    seen = float(alias(f_hz, rate_hz))
+    t, k = np.linspace(0, 0.2, 4001), np.arange(0, 0.2 + 1e-9, 1 / rate_hz)
+    sine.plot(t, np.sin(2 * np.pi * f_hz * t), color=COLOURS["light"], linewidth=0.8)
+    sine.plot(k, np.sin(2 * np.pi * f_hz * k), "o-", ms=4, color=COLOURS["blue"], linewidth=1)
+    sine.set(
+        xlabel="t [s]",
+        ylabel="signal [counts]",
+        title=f"{f_hz:g} Hz, sampled at {rate_hz:g} Hz: looks like {seen:g} Hz",
+    )
+    return figure
+
+
+class FilterView:
+    """Raw and filtered angle of joint 1 (Figure 4.4); beside it the velocity filters, noise against lag.
+
+    Args:
+        recording: Recording, sampled evenly; rest, moving: (s, s) where the joint stands, and where it goes and comes.
+        changes: rad/s^2, of the Kalman filters (see `VelocityKalman`).
+
+    Attributes: figure, for `live`; curve: list of NoiseAndLag, low passes from 0.8 to 30 Hz; kalman: one a change.
+    """
+
+    def __init__(self, recording, *, rest, moving, changes=(3, 10, 30)):
+        t, self._q, self._rate = recording.t, recording.q[:, 0], round(1 / recording.period, 6)
+        self._where = {"rest": (t > rest[0]) & (t < rest[1]), "motion": (t > moving[0]) & (t < moving[1])}
+        options = {"noise": max(float(self._q[self._where["rest"]].std()), 1e-4)}
+        kalman = velocity_estimators(self._rate, cutoffs_hz=(), changes=changes, **options)
+        del kalman["difference"]
+        self.kalman = noise_and_lag(self._q, self._rate, estimators=kalman, **self._where)
+        self.curve = [self._low_pass(cutoff) for cutoff in np.geomspace(0.8, 30, 12)]
+        self.figure = new_figure(9.6, 3.8, cols=2, width_ratios=(1.3, 1))
+        angle, plane = self.figure.axes
+        self._t = t
+        span = (moving[0] + 0.5, moving[0] + 2.5)  # the way there, and the turn
+        q = self._q[(t >= span[0]) & (t <= span[1])]
+        angle.plot(t, self._q, ".", ms=4, color=COLOURS["grey"])
+        (self._line,) = angle.plot([], [], color=COLOURS["blue"])
+        room = 0.08 * np.ptp(q)
+        angle.set(xlim=span, ylim=(q.min() - room, q.max() + room), ylabel="angle of joint 1 [rad]")
+        angle.set(xlabel=f"t [s]  -  {origin(recording)}", title="Dots: measured, line: filtered")
+        for found, style, label in ((self.curve, "-", "low pass"), (self.kalman, "s", "Kalman")):
+            colour = COLOURS["blue" if label == "low pass" else "orange"]
+            x, y = [1e3 * one.lag for one in found], [one.noise for one in found]
+            plane.loglog(x, y, style, color=colour, label=label)
+        (self._ring,) = plane.plot([], [], "o", ms=10, mfc="none", mec=COLOURS["blue"], mew=2.5)
+        plane.set(xlabel="lag [ms]", ylabel="noise of the velocity [rad/s]", title="Less noise costs lag")
+        plane.set_xticks([5, 10, 20, 50, 100, 200], ["5", "10", "20", "50", "100", "200"])
+        plane.minorticks_off()
+        plane.legend(fontsize=8)
+
+    def _low_pass(self, cutoff):
+        def estimate(q):
+            return difference_velocity(q, self._rate, cutoff_hz=cutoff)
+
+        return noise_and_lag(self._q, self._rate, estimators={"low pass": estimate}, **self._where)[0]
+
+    def update(self, filtered, cutoff):
+        """Draw the filtered angle (n,) rad, mark the velocity filter of this cut-off (Hz). Returns it in words."""
+        found = self._low_pass(cutoff)
+        self._line.set_data(self._t, filtered)
+        self._ring.set_data([1e3 * found.lag], [found.noise])
+        late = 1e3 * low_pass_lag(cutoff, self._rate)
+        return (
+            f"angle: {late:.0f} ms late; velocity: {1e3 * found.lag:.0f} ms late, {found.noise:.3f} rad/s rms at rest"
+        )
+
+
+def one_joint(seconds, *, target, title):
+    """Angle and command of joint 1 of a simulated run: Traces; `update(t, q, u)` draws (n,) s, rad, PWM counts."""
+    angle = Row("angle of joint 1 [rad]", tuple(sorted((-0.05 * target, 1.25 * target))), levels=(target,))
+    return Traces("time [s]", (0, seconds), angle, Row("command [PWM]", (-275, 275)), title=title)
+
+
+def path_figure(arm, path, errors):
+    """The arm on a path in 3-D, wanted and done, and the tracking error over time (Figures 4.5, 4.9).
+
+    Args: arm: Arm; path: CartesianPath; errors: {name: PathError}, at most three; the last one's tip is drawn in 3-D.
+    Returns: LabFigure.
+    """
+    figure = new_figure(9.6, 4.4, projection=["3d", None], cols=2, width_ratios=(1.2, 1))
+    space, error_axes = figure.axes
+    last = list(errors.values())[-1]
+    view = ArmView(space, arm, thickness=7)
+    view.update(path.sample(np.array([path.duration]))[0, 0])
+    view.trail(last.tip)
+    space.plot(*last.wanted.T, color=COLOURS["dark"], linestyle="--", linewidth=1.2, zorder=28)
+    space.set_title("Dashed: wanted; green: done")
+    for (name, error), colour in zip(
+        errors.items(), (COLOURS["orange"], COLOURS["blue"], COLOURS["green"]), strict=False
+    ):
+        error_axes.semilogy(
+            error.t, np.maximum(error.tracking_mm, 0.1), color=colour, label=f"{name}: {error.rms_mm:.0f} mm rms"
+        )
+    error_axes.set(xlabel="t [s]", ylabel="distance of the tip from where it should be [mm]", ylim=(1, 1000))
+    error_axes.set_title("The same path with two sets of gains")
+    error_axes.legend(fontsize=8, loc="lower right")
+    return figure
+
+
+def replay_figure(recording, replayed, joint=0):
+    """What was sent then, and what other gains would send for the same angles. Returns: LabFigure.
+
+    Args: recording: Recording, with u; replayed: Recording of a ReplayBench; joint: 0, 1 or 2.
+    """
+    figure = _stamped(f"recorded: {origin(recording)}", 9.0, 3.8, rows=2, sharex=True)
+    above, below = figure.axes
+    above.plot(recording.t, recording.q[:, joint], color=COLOURS["dark"])
+    above.set(ylabel="angle [rad]", title=f"Joint {joint + 1}: the angles are past, the commands are new")
+    below.plot(recording.t, recording.u[:, joint], color=COLOURS["blue"], drawstyle="steps-post", label="sent then")
+    below.plot(
+        replayed.t,
+        replayed.u[:, joint],
+        color=COLOURS["orange"],
+        drawstyle="steps-post",
+        lw=1,
+        label="would be sent now",
+    )
+    below.set(xlabel="t [s]", ylabel="command [PWM counts]", ylim=(-275, 275))
+    below.legend(fontsize=8)
+    return figure
+
+
+def calibrate_by_hand(arm, *, points=21, seed=0):
+    """The calibration experiment on a simulated arm: a hand moves it through its travel, a protractor gives the angle.
+
+    The protractor is read to half a degree, the counts are means of 16; the table is taken away, so that the whole
+    travel is free. Args: arm: Arm; points: how many; seed: of the unit.
+    Returns: angles read (points, 3) rad, counts (points, 3), true slopes of this unit (3,) counts/rad.
+    """
+    held = SimulatedArm(arm, replace(UNIT, table=-9.0), seed=seed)
+    low, high = np.clip([arm.q_min, arm.q_max], -np.pi, np.pi)
+    angles, counts = [], []
+    for pose in np.linspace(0.97 * low, 0.97 * high, points):
+        held.place(pose)
+        counts.append(np.mean([held.counts() for _ in range(16)], axis=0))
+        angles.append(np.radians(np.rint(2 * np.degrees(pose)) / 2))
+    return np.array(angles), np.array(counts), held.nominal.slope * np.array(held.unit.pot_slope)

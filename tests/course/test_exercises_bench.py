@@ -1,0 +1,55 @@
+"""Exercises of notebook 06: right answers by another route; the message of each wrong one."""
+
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import SimulatedBench, fit_calibration, nominal_calibration
+from ir50p_lab.bench.driving import bridge_inputs
+from ir50p_lab.controllers import PID
+from ir50p_lab.course.exercises import judge, solution
+from ir50p_lab.course.exercises._catalogue import find
+from ir50p_lab.course.exercises.bench import EXERCISES
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.signals import alias, hold, low_pass
+
+
+def test_volts_are_the_difference_of_the_two_pins():
+    in1, in2 = bridge_inputs(36)
+    assert solution("bench-1") == pytest.approx(12 * (in1 - in2))
+
+
+def test_slope_is_that_of_a_fit_through_a_third_point():
+    q, counts = np.array([-0.5, 0.3, 1.1]), np.array([412.5, (412.5 + 715.1) / 2, 715.1])
+    fit = fit_calibration(q, counts, joint=1, others=nominal_calibration(IR50P))
+    assert solution("bench-2") == pytest.approx(fit.slope[0])
+
+
+def test_beyond_the_bound_a_signal_is_taken_for_another():
+    bound = solution("bench-3")
+    assert alias(0.99 * bound, 250) == pytest.approx(0.99 * bound)
+    assert alias(1.01 * bound, 250) < bound
+
+
+def test_the_filtered_ramp_is_behind_by_that_much():
+    ramp = 0.5 * np.arange(500) * 0.01
+    assert ramp[-1] - low_pass(ramp, 2.0, 100)[-1] == pytest.approx(solution("bench-4"), abs=1e-6)
+
+
+@pytest.mark.parametrize(("share", "moves"), [(0.8, False), (1.3, True)])
+def test_friction_holds_up_to_that_error(share, moves):
+    """From a set point that is nearer joint 1 does not start; from one farther away it does (units differ by 5 %)."""
+    bench = SimulatedBench(IR50P, record_to=False).open()
+    goal = share * solution("bench-5")
+    bench.follow(PID((289, 0, 0), limit_pwm=255), hold([goal, 0, 0]), 3)
+    assert (np.ptp(bench.truth.q[:, 0]) > 0.01) == moves
+
+
+@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.name)
+def test_each_wrong_answer_is_told_apart(exercise):
+    kind, messages = find(exercise.name).kind, set()
+    assert judge(exercise, kind.solution).state == "right"
+    for slip in exercise.slips:
+        text = judge(exercise, slip.wrong).text
+        assert slip.message in text
+        messages.add(slip.message)
+    assert len(messages) >= 3
