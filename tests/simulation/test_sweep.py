@@ -170,6 +170,15 @@ def test_equals_single_simulations(unit):
         np.testing.assert_allclose(found.settling_time[k], last * 0.01, atol=1e-12)
 
 
+def test_a_theta_takes_the_gravity_it_is_given():
+    options = {"duration": 0.2, "g": 0.0}
+    found = sweep_gains(SMOOTH.theta, TARGET, kp=50, kd=5, progress=False, **options)
+    run = simulate(SMOOTH.theta, PID(kp=(50, 50, 50), kd=(5, 5, 5)), TARGET, **options)
+    np.testing.assert_allclose(found.rms_error[0], run.rms_error, rtol=1e-12)
+    with pytest.raises(InputError, match="carries its own gravity"):
+        sweep_gains(SMOOTH, TARGET, kp=50, g=0.0)
+
+
 def test_runaways_are_marked_not_hidden():
     found = sweep_gains(
         THESIS_A,
