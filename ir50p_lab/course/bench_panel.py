@@ -1,0 +1,376 @@
+"""The live panel: the arm in the background under sliders, with a scope; the notebook stays free.
+
+    panel = live_panel(bench, PID(kp=(289, 225, 270), ki=(50, 10, 50), kd=(40, 30, 30), limit_pwm=255))
+    panel
+
+The panel only gives orders to `bench.start(...)`'s loop and looks at its samples. Nothing of safety hangs on it: a
+closed browser changes nothing, a dead kernel cuts the drive.
+"""
+
+import html
+import math
+import threading
+import time
+import weakref
+from typing import ClassVar
+
+import ipywidgets as widgets
+import numpy as np
+
+from ir50p_lab.course.controls import make_control, slider
+from ir50p_lab.course.scope import Scope
+from ir50p_lab.errors import InputError, LabError
+
+__all__ = ["BenchPanel", "live_panel"]
+
+_GAINS = ("kp", "ki", "kd")
+_UNITS = {"kp": "PWM/rad", "ki": "PWM/(rad s)", "kd": "PWM s/rad"}
+_LEAST = {"kp": 400, "ki": 100, "kd": 100}  # a slider goes at least that far
+_RED = "#c0392b"
+
+
+def live_panel(bench, controller, reference=None, *, window=10.0, frames=25):
+    """A panel to start, stop and tune `controller` on `bench`.
+
+    Args:
+        bench: an open bench, whichever. controller: PID, or any controller; only one with set_gains gets gain sliders.
+        reference: target(t), until a set point slider is moved; None: hold the pose where the arm stands.
+        window: s that the scope shows. frames: a second.
+
+    Returns: BenchPanel, shown when it is the last line of a cell. A cell that is run again takes over a running loop.
+    """
+    if not (math.isfinite(window) and 1 <= window <= 60 and 1 <= frames <= 60):
+        raise InputError(f"window = {window} s, frames = {frames}: give 1 to 60 s and 1 to 60 frames a second")
+    return BenchPanel(bench, controller, reference, window=window, frames=frames)
+
+
+class BenchPanel(widgets.VBox):
+    """Buttons, sliders, scope, a line of statistics and one of status; see `live_panel`.
+
+    start(), stop(), cut() do what the buttons do; set(kp1=300, q2=20) moves sliders (q in deg); close() ends it all.
+
+    Attributes: run, the LiveRun or None; controls, name -> slider: q1..q3 in deg, kp1..kd3; scope; status; statistics;
+    error, the last thing that went wrong, or None.
+    """
+
+    panels: ClassVar = weakref.WeakSet()
+
+    def __init__(self, bench, controller, reference, *, window, frames):
+        self.bench, self.error, self.run = bench, None, None
+        self._controller, self._reference, self._window, self._pause = controller, reference, float(window), 1 / frames
+        self._quiet, self._busy, self._cut_wanted = threading.local(), threading.Lock(), False
+        self._closed = threading.Event()
+        self.controls = {}
+        self.scope = Scope(window=window, badge="simulated" if bench.simulated else bench.kind)
+        self.statistics = widgets.HTML(layout=widgets.Layout(min_height="1.4em"))
+        self.status = widgets.HTML(layout=widgets.Layout(min_height="1.4em"))
+        self._make_buttons()
+        super().__init__(
+            [self._heading(), self._sliders(), self.scope, self.statistics, self.status],
+            layout=widgets.Layout(width="100%", max_width="1060px"),
+        )
+        self._take_over()
+        BenchPanel.panels.add(self)
+        threading.Thread(target=_pump, args=(weakref.ref(self), self._closed, self._pause), daemon=True).start()
+
+    # ---- what it looks like
+
+    def _make_buttons(self):
+        wide, tall = widgets.Layout(width="110px", height="44px"), widgets.Layout(width="190px", height="44px")
+        self._start_button = widgets.Button(description="Start", button_style="success", icon="play", layout=wide)
+        self._stop_button = widgets.Button(
+            description="Stop", icon="stop", layout=wide, tooltip="To the rest pose, then let go"
+        )
+        self._cut_button = widgets.Button(
+            description="CUT THE DRIVE",
+            button_style="danger",
+            icon="bolt",
+            layout=tall,
+            style={"font_weight": "bold"},
+            tooltip="Drive off at once; the arm sinks",
+        )
+        self._start_button.on_click(lambda _: self._guarded(self.start, wait=False))
+        self._stop_button.on_click(lambda _: self._guarded(self.stop, wait=False))
+        self._cut_button.on_click(lambda _: self._guarded(self.cut))
+
+    def _heading(self):
+        kind = "simulated arm, no motor moves" if self.bench.simulated else "motors will move"
+        self.title = widgets.HTML(f"<b>{html.escape(self.bench.name)}</b><br>{kind}")
+        row = [self._start_button, self._stop_button, self._cut_button, self.title]
+        return widgets.HBox(row, layout=widgets.Layout(align_items="center", grid_gap="8px", margin="4px 0"))
+
+    def _sliders(self):
+        """Set points left, gains right: a row per joint."""
+        arm = self.bench.arm
+        blocks = [self._column("Set point [deg]", [self._set_point_slider(arm, i) for i in range(3)])]
+        if callable(getattr(self._controller, "set_gains", None)):
+            for name in _GAINS:
+                values = getattr(self._controller, name)
+                rows = [self._gain_slider(name, i, float(values[i])) for i in range(3)]
+                blocks.append(self._column(f"{name.capitalize()} [{_UNITS[name]}]", rows))
+        return widgets.HBox(blocks, layout=widgets.Layout(grid_gap="14px", flex_flow="row wrap"))
+
+    @staticmethod
+    def _column(title, rows):
+        return widgets.VBox([widgets.HTML(f"<b>{title}</b>"), *rows])
+
+    def _set_point_slider(self, arm, i):
+        low, high = math.ceil(math.degrees(arm.q_min[i])), math.floor(math.degrees(arm.q_max[i]))
+        # whole degrees: the browser sends back a fraction that it was told with rounding noise, and that late echo
+        # would undo a set() which follows start() at once
+        return self._slider(f"q{i + 1}", (low, high, 1, min(max(0, low), high)), self._set_point_moved, 150)
+
+    def _gain_slider(self, name, i, value):
+        high = max(_LEAST[name], 50 * math.ceil(2 * value / 50))
+        return self._slider(f"{name}{i + 1}", (0.0, float(high), 0.5, value), self._gain_moved, 110)
+
+    def _slider(self, name, numbers, moved, width):
+        label = name if name[0] == "q" else name.capitalize()
+        spec = slider(*numbers, label=label)
+        control, row = make_control(name, spec, "34px")
+        control.layout.width = f"{34 + width}px"
+        control.box.layout.width = "66px"
+        row.children = (control, control.box)
+        control.observe(lambda change: self._slid(control, moved, name, change["new"]), "value")
+        control.box.observe(lambda change: self._typed(control, change["new"]), "value")
+        self.controls[name] = control
+        return row
+
+    # ---- what it does
+
+    def start(self, *, wait=True):
+        """Start the loop. wait: until it runs (a board that restarts takes 3 s)."""
+        if wait:
+            self._start()
+        else:
+            threading.Thread(target=self._guarded, args=(self._start,), daemon=True).start()
+
+    def _start(self):
+        with self._busy:
+            if self.run is not None and self.run.alive:
+                raise LabError(f"the loop runs already ({self.run.phase})")
+            self._cut_wanted, self.error = False, None
+            self._say("starting ...")
+            controller = self._tuned_controller()
+            run = self.bench.start(controller, self._reference)
+            self.run = run
+            if self._cut_wanted:
+                run.cut()
+            self._say("")
+            self._sliders_follow(run)
+
+    def _tuned_controller(self):
+        """The controller with the gains that the sliders show."""
+        if "kp1" in self.controls:
+            self._controller.set_gains(**self._gains())
+        return self._controller
+
+    def _gains(self):
+        return {name: [self.controls[f"{name}{i}"].value for i in (1, 2, 3)] for name in _GAINS}
+
+    def _sliders_follow(self, run):
+        """Put the set point sliders where the reference is."""
+        deadline = time.monotonic() + 2.0
+        while not (samples := run.recent(0.1)).t.size and run.alive and time.monotonic() < deadline:
+            time.sleep(0.01)
+        if samples.t.size:
+            self._put({f"q{i + 1}": math.degrees(samples.reference[-1, i]) for i in range(3)})
+
+    def stop(self, *, wait=True):
+        """End in order: to the rest pose, then let go."""
+        if self.run is not None:
+            self.run.stop(wait=wait)
+
+    def cut(self):
+        """Drive off at once, and the loop ends."""
+        self._cut_wanted = True
+        if self.run is not None:
+            self.run.cut()
+        else:
+            self.bench.cut()
+
+    def set(self, **values):
+        """Move sliders from Python, as the hand does: q1..q3 in deg, kp1..kd3. Raises what this leads to."""
+        for name, value in values.items():
+            if name not in self.controls:
+                raise InputError(f"no slider {name!r}; this panel has {', '.join(self.controls)}")
+            self.error = None
+            self.controls[name].value = value
+            if self.error is not None:
+                raise self.error
+
+    def close(self):
+        """End loop, scope and panel. Nothing of the bench is closed."""
+        self._closed.set()
+        if self.run is not None and self.run.alive and self.bench._live is self.run:
+            self.run.stop()
+        self._detach()
+
+    def __del__(self):
+        """Not the close() of other widgets: garbage collection must not move an arm."""
+
+    def exercise(self, seconds=2.0):
+        """Start, move every slider there and back, stop: for tests, where no hand moves anything.
+
+        Returns: the LoopStatistics. Raises LabError if anything failed or the scope did not move, and what ended the
+        loop early.
+        """
+        frames = self.scope.frames
+        self.start()
+        self._keep_on(seconds / 2)
+        for name, control in self.controls.items():
+            kept = control.value
+            self.set(**{name: max(control.min, min(control.max, kept + 3 * control.step))})
+            self.set(**{name: kept})
+        self._keep_on(seconds / 2)
+        self.run.cut() if not self.bench.simulated else self.run.stop(wait=False)
+        statistics = self.run.statistics()
+        if self.run.phase != "ended" and self.bench.simulated:
+            self.run.cut()
+        self.run.join(10)
+        if self.scope.frames - frames < 0.25 * seconds / self._pause:
+            raise LabError(f"the scope drew only {self.scope.frames - frames} frames in {seconds} s")
+        return statistics
+
+    def _keep_on(self, seconds):
+        deadline = time.monotonic() + seconds
+        while time.monotonic() < deadline:
+            if not self.run.alive:
+                self.run.join(0)
+                raise LabError("the loop has ended although nobody stopped it")
+            time.sleep(0.02)
+
+    # ---- callbacks
+
+    def _slid(self, control, moved, name, value):
+        """First the order, then the number beside the slider, which must not drag it back."""
+        self._guarded(moved, name, value)
+        if control.box.value != value:
+            self._quiet.filling = True
+            try:
+                control.box.value = (
+                    round(value, 6) if isinstance(value, float) else value
+                )  # without the noise of the browser's steps
+            finally:
+                self._quiet.filling = False
+
+    def _typed(self, control, value):
+        if not getattr(self._quiet, "filling", False):
+            control.value = value
+
+    def _gain_moved(self, name, value):
+        if self.run is not None and self.run.alive:
+            self.run.set_gains(**{name[:2]: self._gains()[name[:2]]})
+
+    def _set_point_moved(self, name, value):
+        if self.run is None or not self.run.alive:
+            return
+        goal = [math.radians(self.controls[f"q{i}"].value) for i in (1, 2, 3)]
+        arm = self.bench.arm  # the sliders' ends are whole degrees
+        self.run.set_point(np.clip(goal, arm.q_min, arm.q_max))
+
+    def _put(self, values):
+        """Move sliders without giving orders."""
+        self._quiet.on = True
+        try:
+            for name, value in values.items():
+                control = self.controls[name]
+                steps = round((value - control.min) / control.step)
+                control.value = min(max(control.min + steps * control.step, control.min), control.max)
+        finally:
+            self._quiet.on = False
+
+    def _guarded(self, what, *args, **options):
+        """What goes wrong in a callback is invisible in Lab: it goes into the status line."""
+        if getattr(self._quiet, "on", False):
+            return
+        try:
+            what(*args, **options)
+            if self.error is not None and what in (self._gain_moved, self._set_point_moved):
+                self.error = None
+                self._say("")
+        except Exception as error:
+            self._complain(error)
+
+    def _say(self, text):
+        if self.status.value != text:
+            self.status.value = text
+
+    def _complain(self, error):
+        self.error = error
+        self._say(f'<span style="color:{_RED}">{html.escape(f"{type(error).__name__}: {error}")}</span>')
+
+    # ---- the scope's thread
+
+    def _frame(self, count):
+        """One frame of the scope; twice a second the texts."""
+        run = self.run
+        alive = run is not None and run.alive
+        phase = run.phase if run is not None else "not started"
+        if run is not None and (alive or self._shown != (run, run.statistics().cycles)):
+            samples = run.recent(self._window)
+            if samples.t.size:
+                self.scope.show(samples.t, samples.q, samples.reference, samples.u)
+            self._shown = (run, run.statistics().cycles) if not alive else None
+        if count % 10 == 0 or phase != self._phase:
+            self._phase = phase
+            self._texts(run, phase, alive)
+
+    _shown, _phase = None, None
+
+    def _texts(self, run, phase, alive):
+        self._start_button.disabled = alive
+        self._stop_button.disabled = not alive or phase == "moving to the rest pose"
+        text = f"<b>{phase}</b>"
+        if run is not None:
+            text += f": {html.escape(str(run.statistics()))}"
+            if run.error is not None and self.error is not run.error:
+                self._complain(run.error)
+        if self.statistics.value != text:
+            self.statistics.value = text
+
+    # ---- one panel after the other
+
+    def _take_over(self):
+        """Run a cell again: the new panel has the loop that still runs, the old one lets go of it."""
+        for old in list(BenchPanel.panels):
+            if old.bench is self.bench and not old._closed.is_set():
+                old._closed.set()
+                old._detach()
+        live = self.bench._live
+        if live is not None and live.alive:
+            self.run = live
+            self._put({f"{name}{i + 1}": value for name in live.gains for i, value in enumerate(live.gains[name])})
+            self._sliders_follow(live)
+
+    def _detach(self):
+        """End the widgets, not the loop."""
+        BenchPanel.panels.discard(self)
+        for widget in _all_below(self):
+            for part in (widget.layout, widget if widget is not self else super()):
+                part.close()
+
+
+def _all_below(widget):
+    for child in getattr(widget, "children", ()):
+        yield from _all_below(child)
+    yield widget
+
+
+def _pump(reference, closed, pause):
+    """Draw frames until the panel is closed or forgotten: absolute deadlines, and no frame twice."""
+    due, count = time.monotonic(), 0
+    while not closed.is_set():
+        panel = reference()
+        if panel is None:
+            return
+        try:
+            panel._frame(count)
+        except Exception as error:
+            if not closed.is_set():
+                panel._complain(error)
+        del panel
+        count += 1
+        now = time.monotonic()
+        due = due + pause if due + pause > now - 4 * pause else now
+        closed.wait(max(0.0, due - now))

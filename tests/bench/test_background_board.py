@@ -1,0 +1,69 @@
+"""The loop in the background on the emulated board: killing the notebook or the loop cuts the drive at the pins."""
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+
+import pytest
+
+from tests.emulator.board_process import BoardProcess
+
+PAUSE = 0.002
+
+
+def until(condition, timeout=20.0):
+    deadline = time.monotonic() + timeout
+    while not condition():
+        assert time.monotonic() < deadline, "nothing happened in time"
+        time.sleep(PAUSE)
+
+
+@pytest.fixture
+def board(tmp_path):
+    with BoardProcess(tmp_path) as board:
+        yield board
+
+
+def driven(pins):
+    """Whether a bridge drives: a cut brakes, with both inputs low."""
+    return any(pins.pwm)
+
+
+NOTEBOOK = """
+    import time
+    import numpy as np
+    from ir50p_lab.bench import SerialBench
+    from ir50p_lab.modelling import IR50P
+
+    class Push:
+        def step(self, t, measured, reference):
+            return np.array([60.0, -70.0, 80.0])
+
+    bench = SerialBench({port!r}, arm=IR50P, record_to=False, announce=lambda line: None).open()
+    run = bench.start(Push(), None)
+    while run.statistics().cycles < 30:
+        time.sleep(0.01)
+    print(run._worker.pid, flush=True)
+    time.sleep(600)
+"""
+
+
+@pytest.mark.parametrize("victim", ["notebook", "loop"])
+def test_a_kill_cuts_the_drive_within_110_ms(board, victim):
+    code = textwrap.dedent(NOTEBOOK.format(port=board.port))
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, env=environment) as notebook:
+        try:
+            loop = int(notebook.stdout.readline())
+            until(lambda: driven(board.changes()[-1].pins))
+            killed = time.monotonic()
+            os.kill(notebook.pid if victim == "notebook" else loop, signal.SIGKILL)
+            until(lambda: not driven(board.changes()[-1].pins), timeout=5)
+        finally:
+            notebook.kill()
+    cut = next(change.monotonic for change in board.changes() if change.monotonic > killed and not driven(change.pins))
+    print(f"{victim} killed: pins off after {1e3 * (cut - killed):.1f} ms")
+    assert cut - killed < 0.110
