@@ -6,7 +6,7 @@ import os
 import numpy as np
 
 from ir50p_lab.bench import protocol
-from ir50p_lab.bench.base import JOINTS, Bench
+from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench
 from ir50p_lab.bench.calibration import nominal_calibration, saved_calibration
 from ir50p_lab.bench.link import PORT_ERRORS, Clock, Link
 from ir50p_lab.bench.ports import open_port
@@ -65,9 +65,12 @@ class SerialBench(Bench):
         transport = self._given or open_port(self.port, protocol.BAUD)
         self._link = Link(transport, self._clock)
         try:
+            ready = self._clock.now()
             if self._given is None and _opening_resets(transport):
                 self._announce(f"{self.port}: opening it restarts the board, its boot loader takes {BOOT_LOADER:.0f} s")
-                self._clock.sleep(BOOT_LOADER)
+                ready += BOOT_LOADER
+            _load_controllers()
+            self._wait_for(ready)
             self.identity = self._shake_hands(HANDSHAKE)
         except BaseException:
             self._close()
@@ -201,6 +204,13 @@ class SerialBench(Bench):
             f"the board on {self.port} has restarted in the middle of the run ({cause}): its drive is off. Power the "
             "motors from their own supply, not from USB; then run again"
         )
+
+
+def _load_controllers():
+    """Have the compiled controllers loaded, 0.5 s and more: else the first `step` of the first run does it."""
+    from ir50p_lab.controllers import PID
+
+    PID(kp=(0, 0, 0), limit_pwm=LIMIT_PWM).step(0.0, np.zeros(JOINTS), np.zeros((3, JOINTS)))
 
 
 def _opening_resets(transport):
