@@ -48,6 +48,8 @@ def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest
     bench._take_back()
     if not bench._is_open:
         raise BenchError("the bench is closed: open it with connect() and start before it is closed")
+    if bench._running:
+        raise BenchError("a run in a cell has the arm: end its loop first")
     cargo = _packed(controller, reference)
     options = {"seconds": seconds, "lead_in": lead_in, "rest": rest}
     if bench.own_process:

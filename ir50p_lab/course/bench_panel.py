@@ -210,7 +210,9 @@ class BenchPanel(widgets.VBox):
         """Not the close() of other widgets: garbage collection must not move an arm."""
 
     def exercise(self, seconds=2.0):
-        """Start, move every slider there and back, stop: for tests, where no hand moves anything.
+        """Start, move every slider there and back, end: for tests, where no hand moves anything.
+
+        On hardware the arm then goes to its rest pose; a simulated one is cut, which saves the way there.
 
         Returns: the LoopStatistics. Raises LabError if anything failed or the scope did not move, and what ended the
         loop early.
@@ -220,16 +222,14 @@ class BenchPanel(widgets.VBox):
         self._keep_on(seconds / 2)
         for name, control in self.controls.items():
             kept = control.value
-            self.set(**{name: max(control.min, min(control.max, kept + 3 * control.step))})
+            self.set(**{name: min(control.max, kept + 3 * control.step)})
             self.set(**{name: kept})
         self._keep_on(seconds / 2)
-        self.run.cut() if not self.bench.simulated else self.run.stop(wait=False)
-        statistics = self.run.statistics()
-        if self.run.phase != "ended" and self.bench.simulated:
-            self.run.cut()
+        statistics, drawn = self.run.statistics(), self.scope.frames - frames
+        self.cut() if self.bench.simulated else self.stop()
         self.run.join(10)
-        if self.scope.frames - frames < 0.25 * seconds / self._pause:
-            raise LabError(f"the scope drew only {self.scope.frames - frames} frames in {seconds} s")
+        if drawn < 0.25 * seconds / self._pause:
+            raise LabError(f"the scope drew only {drawn} frames in {seconds} s")
         return statistics
 
     def _keep_on(self, seconds):

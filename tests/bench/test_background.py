@@ -150,6 +150,9 @@ def test_the_bench_is_busy_until_the_loop_is_over(bench):
     assert not run.alive
     applied = [bench.drive([0, 0, 0]) for _ in bench.run(0.05)]  # and then it is here again
     assert len(applied) == 5
+    for _ in bench.run(0.05):
+        with pytest.raises(BenchError, match="in a cell"):
+            bench.start(pid(), None)
     bench.abort()
 
 
