@@ -198,6 +198,11 @@ def test_what_is_said(exercise, answer, state, words):
     assert words in verdict.text
 
 
+@pytest.mark.parametrize("answer", [[1.0001, 2, 3.5], [1.2, 2.2, 3.3]])
+def test_what_is_far_off_is_not_called_close(answer):
+    assert "close" not in judge(VECTOR, answer).text
+
+
 def test_a_velocity_in_sympys_own_words_is_the_packages():
     t = sympy.Symbol("t")
     q1 = sympy.Function("q1")(t)

@@ -9,6 +9,7 @@ from PIL import Image
 
 from ir50p_lab.course.painter import Painter, encode_png
 from ir50p_lab.course.style import new_figure
+from ir50p_lab.course.text_cache import TextCache
 
 
 def full_drawing(figure):
@@ -218,6 +219,20 @@ def test_unchanged_texts_come_from_memory():
     ):
         change()
         assert_same_pixels(painter)
+
+
+def test_only_so_many_texts_are_kept():
+    figure = new_figure(3, 2)
+    note = figure.axes[0].text(0.5, 0.5, "")
+    cache, renderer = TextCache(), figure.canvas.get_renderer()
+    for number in range(700):
+        note.set_text(str(number))
+        with cache.on(renderer):
+            note.draw(renderer)
+    assert len(cache._calls) == 600 and cache.hits == 0
+    with cache.on(renderer):
+        note.draw(renderer)  # the last one is still there
+    assert cache.hits == 1
 
 
 def test_perspective_lines_keep_their_clipping():
