@@ -11,6 +11,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
         "cartesian": ["CartesianPath", "cartesian_circle", "cartesian_line"],
+        "fourier": ["Fourier", "at_rest", "fourier"],
         "lag": ["measured_lag"],
         "low_pass": ["LowPass", "alias", "low_pass", "low_pass_lag", "low_pass_response"],
         "noise_and_lag": ["NoiseAndLag", "noise_and_lag", "velocity_estimators"],
