@@ -32,8 +32,9 @@ class LinkStatistics(NamedTuple):
 
     commands: sent; repeats: of which again, because no answer came; stale: answers that came too late to count;
     bad_replies, bad_commands: damaged frames, dropped by the computer and by the board (its counter, which begins at
-    its start and wraps at 65536); watchdog_trips: times the board cut the drive because no command came for 100 ms;
-    limits: (3,) bool, joint is at an end of its potentiometer; round_trip: median of the last 1000, s (nan: none yet).
+    its start and wraps at 65536); watchdog_trips: times in a run that the board cut the drive because no
+    command came for 100 ms; limits: (3,) bool, joint is at an end of its potentiometer; round_trip: median of the last
+    1000, s (nan: none yet).
     """
 
     commands: int

@@ -23,7 +23,7 @@ from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold
 
 REST = rest_pose(IR50P)
-# The experiment as the README and notebook 06 print it
+# The loop of the lesson, as a student types it
 EXPERIMENT = """
 from ir50p_lab.bench import connect
 from ir50p_lab.controllers import PID

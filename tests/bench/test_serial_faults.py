@@ -393,6 +393,14 @@ def test_board_that_restarted_between_two_runs_runs_again(board):
     assert board.pwm[0] == 10
 
 
+def test_the_watchdog_between_two_runs_is_not_counted(board):
+    _, bench = run(board)
+    board.sleep(1.0)
+    assert board.trips == 1
+    assert len(list(bench.run(0.2))) == 20
+    assert bench.statistics.watchdog_trips == 0
+
+
 def test_board_lost_between_two_runs(board):
     _, bench = run(board)
     board.dead = True

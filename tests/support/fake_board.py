@@ -104,7 +104,7 @@ class FakeBoard:
 
     def _answer(self, command: Command):
         if command.type == protocol.HELLO:
-            self._greeted, self.pwm, self._watched = True, np.zeros(3), False
+            self._greeted, self._tripped, self.pwm, self._watched = True, False, np.zeros(3), False
             self.hellos += 1
             fields = {"protocol": protocol.VERSION, "firmware": (1, 0), "joints": 3, "adc_bits": 10, "features": 1}
             fields |= {"boot": self.boot, "reset_cause": self.reset_cause} | self.identity
@@ -112,7 +112,7 @@ class FakeBoard:
             return
         drive = command.type == protocol.DRIVE and self._greeted
         self.pwm = np.array(command.pwm, dtype=float) if drive else np.zeros(3)
-        self.gripper = command.gripper
+        self.gripper = command.gripper if drive else self.gripper
         self._fed, self._watched = self.t, drive
         counts = np.clip(np.rint(protocol.SUBCOUNTS * self.calibration.counts(self.q)), 0, protocol.MAX_COUNTS)
         status = protocol.WATCHDOG_TRIPPED * self._tripped | protocol.HELLO_NEEDED * (not self._greeted)
