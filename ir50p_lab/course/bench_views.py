@@ -69,7 +69,7 @@ def breakaway_figure(recording, joint, moved_at):
     for ax in figure.axes:
         ax.axvline(moved_at, **SETPOINT)
     pwm = recording.u[np.searchsorted(recording.t, moved_at - 1e-9), joint]
-    above.set(ylabel="command [PWM counts]", title=f"Joint {joint + 1} stays put until about {pwm:.0f} counts")
+    above.set(ylabel="command [PWM]", title=f"Joint {joint + 1} stays put until about {pwm:.0f} counts")
     below.set(ylabel="angle [rad]", xlabel="t [s]")
     return figure
 
@@ -156,6 +156,7 @@ class FilterView:
         (self._ring,) = plane.plot([], [], "o", ms=10, mfc="none", mec=COLOURS["blue"], mew=2.5)
         plane.set(xlabel="lag [ms]", ylabel="noise of the velocity [rad/s]", title="Less noise costs lag")
         plane.set_xticks([5, 10, 20, 50, 100, 200], ["5", "10", "20", "50", "100", "200"])
+        plane.set_yticks([0.02, 0.05, 0.1, 0.2, 0.5, 1], ["0.02", "0.05", "0.1", "0.2", "0.5", "1"])
         plane.minorticks_off()
         plane.legend(fontsize=8)
 
@@ -182,6 +183,32 @@ def one_joint(seconds, *, target, title):
     return Traces("time [s]", (0, seconds), angle, Row("command [PWM]", (-275, 275)), title=title)
 
 
+def stop_figure(goal, as_printed, let_go, held):
+    """What three rules to stop do: joint 1 on the left, the last seconds of joint 2 on the right (Figure 4.7).
+
+    Args: goal: (3,) rad; as_printed, let_go, held: Recordings of the same motion. Returns: LabFigure.
+    """
+    figure = _stamped(origin(held), 9.6, 4.4, rows=2, cols=2, sharex=True)
+    runs = (
+        ((held, "blue", "|e|, command held"), (as_printed, "orange", "e < 0.01, as printed")),
+        ((let_go, "orange", "|e|, let go"), (held, "blue", "|e|, command held")),
+    )
+    titles = "Joint 1: as printed it never starts", "Joint 2: let go, it drops and is caught"
+    for joint, title in enumerate(titles):
+        above, below = figure.axes[joint], figure.axes[2 + joint]
+        above.axhline(goal[joint], **SETPOINT)
+        for run, colour, label in runs[joint]:
+            above.plot(run.t, run.q[:, joint], color=COLOURS[colour], lw=1.4, label=label)
+            below.plot(run.t, run.u[:, joint], color=COLOURS[colour], lw=1, drawstyle="steps-post")
+        above.set_title(title)
+        above.legend(fontsize=8)
+        below.set(xlabel="t [s]", ylim=(-275, 275))
+    figure.axes[1].set(ylim=(goal[1] - 0.12, goal[1] + 0.12), xlim=(held.t[-1] - 5, held.t[-1]))
+    figure.axes[0].set_ylabel("angle [rad]")
+    figure.axes[2].set_ylabel("command [PWM]")
+    return figure
+
+
 def path_figure(arm, path, errors):
     """The arm on a path in 3-D, wanted and done, and the tracking error over time (Figures 4.5, 4.9).
 
@@ -202,7 +229,7 @@ def path_figure(arm, path, errors):
         error_axes.semilogy(
             error.t, np.maximum(error.tracking_mm, 0.1), color=colour, label=f"{name}: {error.rms_mm:.0f} mm rms"
         )
-    error_axes.set(xlabel="t [s]", ylabel="distance of the tip from where it should be [mm]", ylim=(1, 1000))
+    error_axes.set(xlabel="t [s]", ylabel="distance of the tip from its place [mm]", ylim=(1, 1000))
     error_axes.set_title("The same path with two sets of gains")
     error_axes.legend(fontsize=8, loc="lower right")
     return figure
@@ -217,15 +244,8 @@ def replay_figure(recording, replayed, joint=0):
     above, below = figure.axes
     above.plot(recording.t, recording.q[:, joint], color=COLOURS["dark"])
     above.set(ylabel="angle [rad]", title=f"Joint {joint + 1}: the angles are past, the commands are new")
-    below.plot(recording.t, recording.u[:, joint], color=COLOURS["blue"], drawstyle="steps-post", label="sent then")
-    below.plot(
-        replayed.t,
-        replayed.u[:, joint],
-        color=COLOURS["orange"],
-        drawstyle="steps-post",
-        lw=1,
-        label="would be sent now",
-    )
+    for run, colour, label in ((replayed, "orange", "would be sent now"), (recording, "blue", "sent then")):
+        below.plot(run.t, run.u[:, joint], color=COLOURS[colour], drawstyle="steps-post", lw=1, label=label)
     below.set(xlabel="t [s]", ylabel="command [PWM counts]", ylim=(-275, 275))
     below.legend(fontsize=8)
     return figure

@@ -91,6 +91,14 @@ def test_one_joint_draws_what_it_gets(motion):
     assert "simulated, not measured" in view.axes[-1].get_xlabel()
 
 
+def test_stop_figure_tells_the_rules_apart(motion):
+    figure = views.stop_figure((0.8, 0, 0), motion, motion, motion)
+    assert len(figure.axes) == 4 and "simulated arm" in texts(figure)
+    labels = [[text.get_text() for text in ax.get_legend().get_texts()] for ax in figure.axes[:2]]
+    assert "as printed" in labels[0][1] and "let go" in labels[1][0]
+    assert figure.axes[3].get_xlim() == (motion.t[-1] - 5, motion.t[-1])
+
+
 def test_path_figure_has_the_errors_in_its_legend():
     path = cartesian_circle(IR50P, (0.45, 0, 0.38), 0.05, normal=(1, 0, 0))
     t = np.linspace(0, path.duration, 200)
