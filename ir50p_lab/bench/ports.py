@@ -35,7 +35,8 @@ def open_port(device, baud):
     import serial
 
     try:
-        port = serial.Serial(device, baud, timeout=0.1, write_timeout=0.1, exclusive=True)
+        # pyserial also calls a write timed out that went well in a process that was held up meanwhile: hence 1 s
+        port = serial.Serial(device, baud, timeout=0.1, write_timeout=1.0, exclusive=True)
     except (OSError, ValueError) as error:  # SerialException is an OSError; ValueError: a baud rate it cannot do
         raise port_error(device, error) from error
     try:
