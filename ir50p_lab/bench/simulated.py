@@ -1,6 +1,7 @@
 """The simulated bench: the same contract as the board, without one; as fast as the machine or at the arm's pace."""
 
 import time
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,7 @@ from ir50p_lab.jit import jit
 from ir50p_lab.modelling.arm import load_arm
 
 _BLOCK = 1000  # samples between two looks at the disk and at Ctrl-C in a compiled run
+_KEPT = 100_000  # cycles of truth: a live run may last for hours
 _SINK = 3.0  # s without drive after which an arm that was let go lies still
 
 
@@ -103,7 +105,7 @@ class SimulatedBench(Bench):
             raise InputError(f"period = {period} s: the simulated bench needs whole milliseconds")
         self.realtime = realtime
         self._queue = np.zeros((int(self.plant.unit.delay), JOINTS))
-        self._truth, self._started, self._missed = [], 0.0, 0
+        self._truth, self._started, self._missed = deque(maxlen=_KEPT), 0.0, 0
 
     # ---- what Bench asks for
 
@@ -112,7 +114,8 @@ class SimulatedBench(Bench):
 
     def _begin(self):
         self._queue[:] = 0.0
-        self._truth, self._missed = [], 0
+        self._missed = 0
+        self._truth.clear()
         self._started = time.perf_counter()
 
     def _measure(self, k):
@@ -204,7 +207,7 @@ class SimulatedBench(Bench):
 
     @property
     def truth(self):
-        """Truth of the last run."""
+        """Truth of the last run (of its last 1000 s if it was longer)."""
         if not self._truth:
             return Truth(np.empty(0), np.empty((0, 3)), np.empty((0, 3)))
         t, q, qd = zip(*self._truth, strict=True)
