@@ -209,29 +209,25 @@ def stop_figure(goal, as_printed, let_go, held):
     return figure
 
 
-def path_figure(arm, path, errors):
-    """The arm on a path in 3-D, wanted and done, and the tracking error over time (Figures 4.5, 4.9).
+def path_figure(arm, path, done, before):
+    """The arm on a path in 3-D, wanted and done, and the tip over time (Figures 4.5, 4.9).
 
-    Args: arm: Arm; path: CartesianPath; errors: {name: PathError}, at most three; the last one's tip is drawn in 3-D.
-    Returns: LabFigure.
+    Args: arm: Arm; path: CartesianPath; done, before: PathError; the second in thin lines only. Returns: LabFigure.
     """
     figure = new_figure(9.6, 4.4, projection=["3d", None], cols=2, width_ratios=(1.2, 1))
-    space, error_axes = figure.axes
-    last = list(errors.values())[-1]
+    space, over_time = figure.axes
     view = ArmView(space, arm, thickness=7)
     view.update(path.sample(np.array([path.duration]))[0, 0])
-    view.trail(last.tip)
-    space.plot(*last.wanted.T, color=COLOURS["dark"], linestyle="--", linewidth=1.2, zorder=28)
-    space.set_title("Dashed: wanted; green: done")
-    for (name, error), colour in zip(
-        errors.items(), (COLOURS["orange"], COLOURS["blue"], COLOURS["green"]), strict=False
-    ):
-        error_axes.semilogy(
-            error.t, np.maximum(error.tracking_mm, 0.1), color=colour, label=f"{name}: {error.rms_mm:.0f} mm rms"
-        )
-    error_axes.set(xlabel="t [s]", ylabel="distance of the tip from its place [mm]", ylim=(1, 1000))
-    error_axes.set_title("The same path with two sets of gains")
-    error_axes.legend(fontsize=8, loc="lower right")
+    view.trail(done.tip)
+    space.plot(*done.wanted.T, color=COLOURS["dark"], linestyle="--", linewidth=1.2, zorder=28)
+    space.set_title(f"Dashed: wanted; green: done, {done.rms_mm:.0f} mm rms")
+    for axis, name in enumerate("xyz"):
+        over_time.plot(before.t, before.tip[:, axis], color=_JOINTS[axis], lw=0.8, alpha=0.7)
+        over_time.plot(done.t, done.tip[:, axis], color=_JOINTS[axis], lw=2, label=name)
+        over_time.plot(done.t, done.wanted[:, axis], **SETPOINT)
+    over_time.set(xlabel="t [s]", ylabel="position of the tip [m]")
+    over_time.set_title(f"Thin: Tables 4.1-4.3, {before.rms_mm:.0f} mm rms")
+    over_time.legend(fontsize=8, loc="center right")
     return figure
 
 

@@ -99,14 +99,15 @@ def test_stop_figure_tells_the_rules_apart(motion):
     assert figure.axes[3].get_xlim() == (motion.t[-1] - 5, motion.t[-1])
 
 
-def test_path_figure_has_the_errors_in_its_legend():
+def test_path_figure_tells_both_errors():
     path = cartesian_circle(IR50P, (0.45, 0, 0.38), 0.05, normal=(1, 0, 0))
     t = np.linspace(0, path.duration, 200)
     exact = path_error(IR50P, path.sample(t)[:, 0], path, t=t)
     off = path_error(IR50P, path.sample(t)[:, 0] + 0.05, path, t=t)
-    figure = views.path_figure(IR50P, path, {"off": off, "exact": exact})
-    labels = [text.get_text() for text in figure.axes[1].get_legend().get_texts()]
-    assert labels == [f"off: {off.rms_mm:.0f} mm rms", "exact: 0 mm rms"]
+    figure = views.path_figure(IR50P, path, exact, off)
+    assert "done, 0 mm rms" in texts(figure) and f"{off.rms_mm:.0f} mm rms" in texts(figure)
+    curves = [line.get_ydata() for line in figure.axes[1].lines]
+    assert np.array_equal(curves[1], exact.tip[:, 0]) and np.array_equal(curves[6], off.tip[:, 2])
 
 
 def test_replay_shows_both_commands(motion):
