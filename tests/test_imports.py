@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+import ir50p_lab.bench
 import ir50p_lab.controllers
 import ir50p_lab.identification
 import ir50p_lab.modelling
@@ -29,6 +30,7 @@ def test_modelling_brings_no_heavy_module_until_used():
 
 
 PACKAGES = [
+    ir50p_lab.bench,
     ir50p_lab.controllers,
     ir50p_lab.identification,
     ir50p_lab.modelling,
