@@ -340,3 +340,19 @@ def test_the_compiled_twin_gives_the_same_numbers(options):
     stepped = simulate(IR50P, Stepped(pid()), SET_POINT, duration=2, stops=True)
     for name in ("q", "qd", "u"):
         assert (getattr(compiled, name) == getattr(stepped, name)).all()
+
+
+def test_a_joint_breaks_loose_by_its_own_friction_while_another_turns():
+    """Joint 1 turning fast must not take the breakaway of joint 2 down to its Coulomb torque."""
+    arm = replace(IR50P, g=0.0, friction=Friction(fc=(0, 0.1, 0.1), fs=(0, 2.0, 2.0), qs=(0.05, 0.05, 0.05)))
+    run = simulate(arm, Constant((0, 1.0, 0)), q0=(0, np.pi / 2, 0), qd0=(1.0, 0, 0), duration=0.3)
+    assert np.abs(run.qd[:, 0]).min() > 0.1 and (run.qd[:, 1] == 0).all()
+
+
+def test_pwm_drive_with_the_friction_of_the_arm_equals_the_torque_drive():
+    """Breakaway in PWM counts: a push of 0.9 fs holds still, 1.1 fs moves, whatever the unit of the command."""
+    for share, moves in ((0.9, False), (1.1, True)):
+        q0 = np.array([0.0, 0.4, -0.3])
+        push = gravity(IR50P, q0) + np.array(IR50P.friction.Tf) + share * np.array(IR50P.friction.fs)
+        run = simulate(IR50P, Constant(push / IR50P.actuators.gain), q0=q0, unit="PWM", duration=0.5)
+        assert (np.abs(run.q[-1] - q0) > 1e-3).all() if moves else (run.q == q0).all()
