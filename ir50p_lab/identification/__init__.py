@@ -8,6 +8,11 @@ import lazy_loader
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
+        "arm_regressor": ["regressor"],
+        "estimate": ["Estimate"],
+        "fitting": ["fit"],
         "fopdt": ["FOPDT", "fit_fopdt"],
+        "processing": ["Motion", "causal_derivatives", "central_derivatives", "process"],
+        "single_joint": ["JointFit", "fit_joint"],
     },
 )

@@ -1,0 +1,110 @@
+"""The regressor: torque = Phi theta, linear in the 20 parameters    (2.50), (2.51) corrected."""
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.jit import jit
+from ir50p_lab.modelling import closed_form as cf
+from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
+
+
+@jit()
+def regressor_block(gravity, q2, q3, a, b, c, A, B, C, s1, s2, s3, out):
+    """One state into out (3, 20), which must hold zeros: only entries that can differ from zero are written.
+
+    (a, b, c) velocities, (A, B, C) accelerations, (s1, s2, s3) what stands for sgn(qd).
+    """
+    sin2, c2 = cf.sincos(q2)
+    sin3, c3 = cf.sincos(q3)
+    c23, sin23 = c2 * c3 - sin2 * sin3, sin2 * c3 + c2 * sin3
+    one, two, three = out[0], out[1], out[2]
+    # inertia of the upper arm (theta2) and of the forearm (theta5, theta6) about the waist: it changes with the pose
+    one[0] = A
+    one[1] = c2 * c2 * A - 2 * sin2 * c2 * a * b
+    two[1] = B + sin2 * c2 * a * a
+    one[4] = c23 * c23 * A - 2 * sin23 * c23 * a * (b + c)
+    two[4] = three[4] = B + C + sin23 * c23 * a * a
+    mixed = sin23 * c2 + c23 * sin2
+    one[5] = 2 * c2 * c23 * A - 2 * mixed * a * b - 2 * sin23 * c2 * a * c
+    two[5] = 2 * c3 * B + c3 * C + mixed * a * a - sin3 * c * c - 2 * sin3 * b * c
+    three[5] = c3 * B + sin23 * c2 * a * a + sin3 * b * b
+    # gravity
+    two[2] = gravity * c2
+    two[3] = three[3] = gravity * c23
+    # the thesis' constant products of inertia
+    one[6] = B
+    one[7] = B + C
+    two[6] = two[7] = three[7] = A
+    # inertia about the joints' own axes, rotors
+    two[8] = B
+    two[9] = three[9] = B + C
+    three[19] = C
+    # friction and offset
+    one[10], two[12], three[14] = a, b, c
+    one[11], two[13], three[15] = s1, s2, s3
+    one[16] = two[17] = three[18] = 1.0
+
+
+@jit()
+def _regressor_loop(gravity, q, qd, qdd, direction, out):
+    for k in range(q.shape[0]):
+        regressor_block(
+            gravity,
+            q[k, 1],
+            q[k, 2],
+            qd[k, 0],
+            qd[k, 1],
+            qd[k, 2],
+            qdd[k, 0],
+            qdd[k, 1],
+            qdd[k, 2],
+            direction[k, 0],
+            direction[k, 1],
+            direction[k, 2],
+            out[k],
+        )
+
+
+def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
+    """Phi(q, qd, qdd): torque tau = Phi theta with theta as in `Arm.theta`    (2.50), (2.51) corrected.
+
+    The same holds in PWM counts with `Arm.theta_pwm`.
+
+    For a theta with a row per joint (3, 20) it is tau_i = Phi_i theta_i, `np.einsum("nij,ij->ni", Phi, theta)`.
+
+    Args:
+        q, qd, qdd: (3,) or (n, 3), rad, rad/s, rad/s^2.
+        g: gravity, m/s^2, >= 0.
+        sign: what stands for sgn(qd) in the Coulomb columns. None: sgn(qd), 0 at rest. A speed v > 0 in rad/s:
+            tanh(qd/v), which does not jump. An array in [-1, 1] of the shape of q: a direction known better than from
+            the noisy velocity, for example sgn of the reference.
+
+    Returns: (3, 20) or (n, 3, 20). Raises InputError on wrong shapes, numbers that are not finite, a bad g or sign.
+    """
+    arrays = {name: vectors3(name, value, unit="SI") for name, value in (("q", q), ("qd", qd), ("qdd", qdd))}
+    if isinstance(sign, (np.ndarray, list, tuple)):
+        arrays["sign"] = vectors3("sign", sign, unit="-1 to 1")
+    shape = arrays["q"].shape
+    if len(shape) > 2 or any(x.shape != shape for x in arrays.values()):
+        shapes = ", ".join(f"{name} {x.shape}" for name, x in arrays.items())
+        raise InputError(f"shapes do not fit: {shapes}; give all (3,), or all (n, 3) with the same n")
+    if not (np.isfinite(g) and g >= 0):
+        raise InputError(f"g = {g} m/s^2 must be finite and >= 0: the base z axis points up")
+    rows = {name: np.ascontiguousarray(x).reshape(-1, 3) for name, x in arrays.items()}
+    out = np.zeros((len(rows["q"]), 3, 20))
+    _regressor_loop(float(g), rows["q"], rows["qd"], rows["qdd"], _direction(sign, rows), out)
+    return out[0] if len(shape) == 1 else out
+
+
+def _direction(sign, rows):
+    if sign is None:
+        return np.sign(rows["qd"])
+    if "sign" in rows:
+        largest = np.abs(rows["sign"]).max(initial=0.0)
+        if largest > 1:
+            raise InputError(f"sign holds {largest:g}: a direction lies in -1 to 1; for a velocity give np.sign(qd)")
+        return rows["sign"]
+    if isinstance(sign, (bool, str)) or not np.isscalar(sign) or not (np.isfinite(sign) and sign > 0):
+        raise InputError(f"sign = {sign!r}: give None, a speed > 0 in rad/s for tanh(qd/speed), or an array")
+    return np.tanh(rows["qd"] / sign)

@@ -1,0 +1,120 @@
+"""What a fit found: the 20 parameters per joint, how sure they are, and what the data cannot say."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.identification.parameters import NAMES, OFFSETS, ONLY_THESIS
+from ir50p_lab.modelling.dynamics import mass_matrix
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Estimate:
+    """Parameters of the model y = Phi theta, one row per joint; usable wherever a theta (3, 20) is.
+
+    ============== ================================================================================ ==============
+    field          meaning                                                                          shape
+    ============== ================================================================================ ==============
+    theta          the parameters; 0 where a column was not fitted                                  (3, 20) unit
+    stderr         standard errors; inf: the data cannot carry it; nan: not part of the fit         (3, 20) unit
+    covariance     of each joint's parameters; 0 where not fitted                                   (3, 20, 20)
+    condition      of the joint's columns, each scaled to length 1                                  (3,)
+    residuals      y - Phi theta                                                                    (n, 3) unit
+    sigma          root mean square of the residuals, for the degrees of freedom left               (3,) unit
+    correlation    of neighbouring residuals: 0 for white noise                                     (3,)
+    columns        names of the parameters that were fitted, one tuple per joint                    3 tuples
+    unidentifiable what the data cannot carry, as "joint 2: theta8"                                 tuple of str
+    warnings       what to mind about this fit, as sentences                                        tuple of str
+    unit           of y: "PWM" or "N m"
+    method, rows   how it was fitted; rows: "joint" or "shared"
+    ============== ================================================================================ ==============
+    """
+
+    theta: np.ndarray
+    stderr: np.ndarray
+    covariance: np.ndarray
+    condition: np.ndarray
+    residuals: np.ndarray
+    sigma: np.ndarray
+    correlation: np.ndarray
+    columns: tuple
+    unidentifiable: tuple
+    warnings: tuple
+    unit: str = "PWM"
+    method: str = "ls"
+    rows: str = "joint"
+
+    def predict(self, Phi):
+        """Torque or PWM counts Phi theta, (n, 3), of a regressor (n, 3, 20). Raises InputError on another shape."""
+        Phi = np.asarray(Phi, dtype=float)
+        if Phi.ndim != 3 or Phi.shape[1:] != (3, 20):
+            raise InputError(f"Phi has shape {Phi.shape}; give (n, 3, 20) as regressor(q, qd, qdd) returns")
+        return np.einsum("nij,ij->ni", Phi, self.theta)
+
+    @property
+    def verdict(self):
+        """What the data say and what they do not, as a tuple of sentences: the warnings last."""
+        sentences = []
+        for row in range(1 if self.rows == "shared" else 3):
+            who = "all joints" if self.rows == "shared" else f"joint {row + 1}"
+            number = len(self.columns[row])
+            rms = ", ".join(f"{x:.3g}" for x in (self.sigma if self.rows == "shared" else self.sigma[[row]]))
+            sentences.append(
+                f"{who}: {number} parameters from {len(self.residuals)} samples, residual {rms} {self.unit} rms, "
+                f"condition {self.condition[row]:.3g}"
+            )
+            unsure = [
+                f"{name} = {self.theta[row, k]:.3g} +- {self.stderr[row, k]:.2g}"
+                for k, name in enumerate(NAMES)
+                if name in self.columns[row] and abs(self.theta[row, k]) < 2 * self.stderr[row, k]
+            ]
+            if unsure:
+                sentences.append(f"{who}: cannot be told from zero: {', '.join(unsure)}")
+        return (*sentences, *self.warnings)
+
+    def __str__(self):
+        who = ("all", "", "") if self.rows == "shared" else (1, 2, 3)
+        lines = [f"parameters in {self.unit} and SI units, method {self.method}, rows {self.rows}"]
+        for row in range(1 if self.rows == "shared" else 3):
+            lines += [
+                f"  {who[row]}  {name:8}{self.theta[row, k]:12.4g} +- {self.stderr[row, k]:.2g}"
+                for k, name in enumerate(NAMES)
+                if name in self.columns[row]
+            ]
+        return "\n".join([*lines, *self.verdict])
+
+
+def impossible_values(theta, stderr, rows):
+    """Sentences about inertial and friction parameters below zero by more than two standard errors."""
+    found = []
+    for row in range(1 if rows == "shared" else 3):
+        who = "" if rows == "shared" else f"joint {row + 1}: "
+        for k, name in enumerate(NAMES):
+            if name not in OFFSETS and name not in ONLY_THESIS and theta[row, k] < -2 * stderr[row, k]:
+                found.append(
+                    f"{who}{name} = {theta[row, k]:.3g} +- {stderr[row, k]:.2g} is negative, which is hardly possible: "
+                    "the signals are biased (noise, delay) or the model lacks something; or use method='bounded'"
+                )
+    return found
+
+
+def indefinite_mass(theta):
+    """A sentence if the mass matrix of theta is not positive definite somewhere, else nothing: a list of str.
+
+    Its leading minors keep their signs when each row is divided by its motor's gain, so that this holds for
+    parameters in PWM counts too. The poses are a grid of q2 and q3 over the whole circle.
+    """
+    angles = np.linspace(-np.pi, np.pi, 25)
+    q2, q3 = (x.ravel() for x in np.meshgrid(angles, angles))
+    M = mass_matrix(theta, np.column_stack([0 * q2, q2, q3]))
+    if not M[:, range(3), range(3)].any(axis=0).all():
+        return []  # a joint was fitted without its inertia: nothing to say
+    worst = np.min([np.linalg.det(M[:, :k, :k]) / np.abs(M[:, :k, :k]).max((1, 2)) ** k for k in (1, 2, 3)], axis=0)
+    k = int(np.argmin(worst))
+    if not worst[k] <= 0:
+        return []
+    return [
+        f"the mass matrix of these parameters is not positive definite at q2 = {q2[k]:.2f}, q3 = {q3[k]:.2f} rad: "
+        "a computed-torque controller would push the wrong way there. Use method='bounded' or richer data"
+    ]

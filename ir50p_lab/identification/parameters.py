@@ -1,0 +1,60 @@
+"""The 20 parameters by name, and which of them act on which joint (thesis 2.50, 2.51 corrected)."""
+
+from ir50p_lab.errors import InputError
+
+# name: what it is for an in-line arm (Arm.theta). Masses and inertias in kg, m; times 1/K_i in PWM counts.
+MEANING = {
+    "theta1": "j1 + Izz1 + Ixx2 + Ixx3",
+    "theta2": "m2 lc2^2 + m3 l2^2 + Iyy2 - Ixx2",
+    "theta3": "m2 lc2 + m3 l2",
+    "theta4": "m3 lc3",
+    "theta5": "m3 lc3^2 + Iyy3 - Ixx3",
+    "theta6": "m3 lc3 l2 = l2 theta4",
+    "theta7": "Iyz2, 0 for every rigid body",
+    "theta8": "Iyz3, 0 for every rigid body",
+    "theta9": "Izz2 - Iyy2 + Ixx2 + j2",
+    "theta10": "Izz3 - Iyy3 + Ixx3",
+    "fv1": "viscous friction of joint 1",
+    "fc1": "Coulomb friction of joint 1",
+    "fv2": "viscous friction of joint 2",
+    "fc2": "Coulomb friction of joint 2",
+    "fv3": "viscous friction of joint 3",
+    "fc3": "Coulomb friction of joint 3",
+    "Tf1": "offset of joint 1",
+    "Tf2": "offset of joint 2",
+    "Tf3": "offset of joint 3",
+    "j3": "rotor inertia of joint 3 (theta20)",
+}
+NAMES = tuple(MEANING)
+OFFSETS = ("Tf1", "Tf2", "Tf3")
+ONLY_THESIS = ("theta7", "theta8")  # constant products of inertia: left out of a fit unless asked for
+
+# columns that can differ from zero in each joint's row: 9, 12 and 9 of the 20
+ACTS_ON = (
+    (0, 1, 4, 5, 6, 7, 10, 11, 16),
+    (1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 13, 17),
+    (3, 4, 5, 7, 9, 14, 15, 18, 19),
+)
+
+
+def chosen_columns(columns):
+    """Indices of the columns to fit, increasing.
+
+    Args: columns: "rigid" (all but theta7, theta8), "thesis" (all 20), or a list of names or indices 0-19.
+    Raises InputError for anything else, or nothing chosen.
+    """
+    if isinstance(columns, str):
+        if columns not in ("rigid", "thesis"):
+            raise InputError(f"columns = {columns!r}: choose 'rigid', 'thesis', or give a list of names")
+        return [k for k, name in enumerate(NAMES) if columns == "thesis" or name not in ONLY_THESIS]
+    found = set()
+    for item in columns:
+        if isinstance(item, str) and item in NAMES:
+            found.add(NAMES.index(item))
+        elif not isinstance(item, (str, bool)) and item in range(20):
+            found.add(int(item))
+        else:
+            raise InputError(f"{item!r} is no column: give indices 0 to 19, or names of {', '.join(NAMES)}")
+    if not found:
+        raise InputError("columns is empty: name at least one parameter to fit")
+    return sorted(found)
