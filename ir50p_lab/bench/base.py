@@ -254,6 +254,11 @@ class Bench(abc.ABC):
         self._pwm = self._send(command, self._gripper)
         return self._pwm
 
+    def note(self, text):
+        """Write into the recording what has just been changed (gains, a payload): it stands between the samples."""
+        if self._recorder is not None and self._last is not None:
+            self._recorder.event(self._last.t, text)
+
     def follow(self, controller, reference, seconds, *, record=True, **header):
         """Run `controller` on `reference` for `seconds`; the loop of the lesson in one call.
 

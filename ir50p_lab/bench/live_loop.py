@@ -78,7 +78,9 @@ class _Loop:
                     memory.enter(shared_loop.LEADING if t - target.begins < lead else shared_loop.RUNNING)
                     if orders.gains_number != gains_number:
                         gains_number = orders.gains_number
-                        controller.set_gains(orders.gains[:3], orders.gains[3:6], orders.gains[6:])
+                        gains = {"kp": orders.gains[:3], "ki": orders.gains[3:6], "kd": orders.gains[6:]}
+                        controller.set_gains(**gains)
+                        self.bench.note("; ".join(f"{k} = {' '.join(f'{x:g}' for x in v)}" for k, v in gains.items()))
                     if orders.set_point_number != set_point_number:
                         set_point_number = orders.set_point_number
                         target.move_to(t, orders.set_point)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.recording_file import COLUMNS, ROW, ROW_WITHOUT_REFERENCE, head_text, rows_text
+from ir50p_lab.bench.recording_file import COLUMNS, ROW, ROW_WITHOUT_REFERENCE, event_text, head_text, rows_text
 from ir50p_lab.errors import InputError, RecordingError
 
 _FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINARY", 0)
@@ -83,6 +83,12 @@ class Recorder:
         self._rows.frombytes(table.tobytes())
         if self._file is not None:
             self._put(rows_text(table).encode())
+
+    def event(self, t, text):
+        """Record that something was changed at t, s: a line between the samples, which spreadsheets show as text."""
+        self.recording.events.append((t, text))
+        if self._file is not None:
+            self._put(event_text(t, text).encode("ascii"))
 
     def _put(self, data):
         try:

@@ -53,13 +53,15 @@ class Recording:
     ============ ======= =========================================================================
 
     NaN where something is not known. Arrays are read-only. Attributes: header, dict of str (arm, bench, date,
-    calibration, gains...); path: its file or None; notes: what loading left out.
+    calibration, gains...); path: its file or None; notes: what loading left out; events: what was changed in the
+    middle of the run, [(t in s, text), ...].
     """
 
-    def __init__(self, table, header=None, *, path=None, notes=()):
+    def __init__(self, table, header=None, *, path=None, notes=(), events=()):
         """table: (n, 15) array as `recording_file.COLUMNS`, or the growing array('d') of a Recorder."""
         self._rows, self._cache = table, None
         self.header, self.path, self.notes = dict(header or {}), path, tuple(notes)
+        self.events = list(events)
 
     @classmethod
     def from_arrays(cls, t, q, *, counts=None, u=None, reference=None, gripper=None, missed=None, header=None):
@@ -83,17 +85,16 @@ class Recording:
         Raises RecordingError naming file, line, what is wrong and the remedy. Warns (RecordingWarning) if the last
         line was cut off and left out.
         """
-        header, table, notes = recording_file.read(path)
+        header, table, notes, events = recording_file.read(path)
         for note in notes:
             warnings.warn(f"{path}: {note}", RecordingWarning, stacklevel=2)
-        return cls(table, header, path=Path(path), notes=notes)
+        return cls(table, header, path=Path(path), notes=notes, events=events)
 
     def save(self, path):
         """Write the recording to `path` (CSV, as a bench writes it). Returns the path."""
         try:
-            Path(path).write_bytes(
-                (recording_file.head_text(self.header) + recording_file.rows_text(self._table)).encode("ascii")
-            )
+            text = recording_file.head_text(self.header) + recording_file.rows_text(self._table, self.events)
+            Path(path).write_bytes(text.encode("ascii"))
         except OSError as error:
             raise RecordingError(f"cannot write {path}: {error.strerror}; choose another place") from None
         return Path(path)
@@ -137,7 +138,8 @@ class Recording:
         """The samples with t0 <= t <= t1 (s), as a Recording of its own; times stay as they are."""
         table = self._table
         header = {**self.header, "cut": f"{t0:g} to {t1:g} s"}
-        return Recording(table[(table[:, T] >= t0) & (table[:, T] <= t1)], header, notes=self.notes)
+        events = [event for event in self.events if t0 <= event[0] <= t1]
+        return Recording(table[(table[:, T] >= t0) & (table[:, T] <= t1)], header, notes=self.notes, events=events)
 
     def metrics(self):
         """How each joint did: list of three JointSummary. Raises RecordingError if there is no sample."""

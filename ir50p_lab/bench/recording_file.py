@@ -30,8 +30,15 @@ def head_text(header):
     return "\n".join(lines) + "\n" + ",".join(COLUMNS) + "\n"
 
 
-def rows_text(table):
-    """The lines of samples. table: (n, 15), columns as COLUMNS, NaN where not known."""
+def rows_text(table, events=()):
+    """The lines of samples. table: (n, 15), columns as COLUMNS, NaN where not known; events: [(t, text), ...]."""
+    if events:
+        places = np.searchsorted(table[:, T], [t for t, _ in events], side="left")
+        parts, begin = [], 0
+        for (t, text), end in zip(events, places, strict=True):
+            parts += [rows_text(table[begin:end]), event_text(t, text)]
+            begin = end
+        return "".join([*parts, rows_text(table[begin:])])
     if not np.isnan(table).any():
         return "".join([ROW % tuple(row) for row in table.tolist()])
     cells = [cell.split("%")[1] for cell in ROW.strip().split(",")]
@@ -53,7 +60,8 @@ def _as_written(text):
 def read(path):
     """Read a recording.
 
-    Returns: header (dict of str), table (n, 15) as COLUMNS with NaN where nothing is known, notes (tuple of str).
+    Returns: header (dict of str), table (n, 15) as COLUMNS with NaN where nothing is known, notes (tuple of str),
+    events (tuple of (t, text)).
     Raises RecordingError that names the file, the line, what is wrong there, and the remedy.
     """
     try:
@@ -87,7 +95,19 @@ def parse(data, name):
         body = body[:-1]
     table = _read_rows(body, first + 2, name, delimiter, places, width)
     header.pop(FORMAT, None), header.pop("units", None)
-    return header, table, tuple(notes)
+    return header, table, tuple(notes), tuple(_events(body))
+
+
+def event_text(t, text):
+    """The line that says what was changed at t (s) in the middle of a run."""
+    return f"# event: {t:.3f} s: {_one_line(text)}\n"
+
+
+def _events(lines):
+    for line in lines:
+        found = re.match(r"\W*event: (-?[\d.]+) s: (.*)", line) if line.lstrip(' "').startswith("#") else None
+        if found:
+            yield float(found[1]), _as_written(found[2].rstrip(';,\t" '))
 
 
 def _read_header(lines):
@@ -128,8 +148,8 @@ def _read_rows(lines, number, name, delimiter, places, width):
     decimal_comma = delimiter != ","
     n, numbers = 0, []
     for k, line in enumerate(lines):
-        if not line.strip(" ;,\t"):
-            continue  # an empty line of a spreadsheet
+        if not line.strip(" ;,\t") or line.lstrip(' "').startswith("#"):
+            continue  # an empty line of a spreadsheet; an event
         cells = line.replace(",", ".").split(delimiter) if decimal_comma else line.split(",")
         if len(cells) != width:
             hint = "decimal commas need ';' between the columns" if len(cells) > width else "the line is cut off"

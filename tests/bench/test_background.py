@@ -121,6 +121,8 @@ def test_gains_change_without_a_bump(bench):
         run.set_gains(ki=-1)
     run.cut()
     assert run.error is None
+    ((_, text),) = run.recording.events  # what was tuned is in the recording
+    assert text == "kp = 100 225 270; ki = 50 10 50; kd = 20 20 20"
 
 
 def test_an_error_of_the_controller_cuts_and_is_raised_by_join(bench):

@@ -14,7 +14,9 @@ from ir50p_lab.bench.base import Sample
 from ir50p_lab.bench.recorder import Recorder
 from ir50p_lab.bench.recording import Recording, RecordingWarning
 from ir50p_lab.bench.recording_file import COLUMNS
+from ir50p_lab.bench.simulated import SimulatedBench
 from ir50p_lab.errors import InputError, RecordingError
+from ir50p_lab.modelling import IR50P
 
 HEAD = {"kind": "simulated", "bench": "simulated IR50P", "simulated": "true", "period_s": "0.01"}
 
@@ -328,3 +330,24 @@ def test_representations():
     assert repr(recording) == "<Recording: simulated IR50P, 9.99 s, 1000 samples, simulated>"
     html = recording._repr_html_()
     assert "simulated IR50P" in html and html.count("<tr>") == 4
+
+
+def test_events_in_the_middle_of_a_run_survive(tmp_path):
+    with SimulatedBench(IR50P, record_to=tmp_path) as bench:
+        for k, sample in enumerate(bench.run(0.05)):
+            bench.drive((0, 0, 0), reference=sample.q)
+            if k in (0, 3):
+                bench.note(f"kp = {k} 2 3; läuft")
+        path = bench.recording.path
+    assert bench.recording.events == [(0.0, "kp = 0 2 3; läuft"), (0.03, "kp = 3 2 3; läuft")]
+    text = path.read_text("ascii")
+    assert text.index("# event: 0.030 s: kp = 3") < text.index("\n0.030000")  # beside the sample it was noted at
+    for copy in (Recording.load(path), Recording.load(Recording.load(path).save(tmp_path / "copy.csv"))):
+        assert copy.events == bench.recording.events
+        assert np.allclose(copy.q, bench.recording.q, atol=1e-6)
+        assert copy.between(0.02, 1.0).events == [(0.03, "kp = 3 2 3; läuft")]
+    broken = path.read_text("ascii").replace("\n0.040000,", "\nx,")
+    path.write_text(broken)
+    line = 1 + broken.splitlines().index(next(row for row in broken.splitlines() if row.startswith("x,")))
+    with pytest.raises(RecordingError, match=f"line {line}:"):
+        Recording.load(path)
