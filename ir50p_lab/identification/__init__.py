@@ -13,6 +13,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "fitting": ["fit"],
         "fopdt": ["FOPDT", "fit_fopdt"],
         "processing": ["Motion", "causal_derivatives", "central_derivatives", "process"],
+        "rls": ["RLS"],
         "single_joint": ["JointFit", "fit_joint"],
     },
 )

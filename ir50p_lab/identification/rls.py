@@ -1,0 +1,179 @@
+"""Recursive least squares with forgetting, P = U D U^T in its factors    (2.36)-(2.46) corrected.
+
+With P(t)^-1 = forgetting P(t-1)^-1 + phi phi^T (2.36), the matrix inversion lemma gives, for a block of three rows
+phi^T = Phi (3, 20):
+
+    S = forgetting I + phi^T P(t-1) phi             (2.43) corrected: P, not its inverse, between phi^T and phi
+    K = P(t-1) phi S^-1                             (2.44) corrected
+    theta(t) = theta(t-1) + K (y - phi^T theta)     (2.40) corrected: both signs +
+    P(t) = (I - K phi^T) P(t-1) / forgetting        (2.45)
+
+Subtracting in (2.45) is what loses digits: with P0 = 1e8 P soon has negative eigenvalues, and the estimate runs away.
+Here P = U D U^T is updated in its factors, row by row (Bierman 1976): D stays positive whatever the rounding.
+"""
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.identification.fit_input import blocks, checked_data
+from ir50p_lab.identification.parameters import ACTS_ON, chosen_columns
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.jit import jit
+
+_fast = jit(fastmath={"reassoc", "contract", "nsz", "arcp"})  # sums in any order: several products at once
+
+
+@_fast
+def ud_row(theta, V, D, h, y, K):
+    """One equation y = h theta into theta (p,), V = U^T (p, p) and D (p,); K (p,) is work space.
+
+    Bierman's update of P = U D U^T to P - P h^T h P / (1 + h P h^T), without any difference of large numbers.
+    """
+    p = theta.shape[0]
+    error = y
+    for i in range(p):
+        error -= h[i] * theta[i]
+    alpha, inverse = 1.0, 1.0
+    for j in range(p):
+        row = V[j]
+        f = h[j]
+        for i in range(j):
+            f += row[i] * h[i]
+        v = D[j] * f
+        new_alpha = alpha + f * v
+        new_inverse = 1.0 / new_alpha
+        D[j] *= alpha * new_inverse
+        scale = -f * inverse
+        for i in range(j):
+            old = row[i]
+            row[i] = old + K[i] * scale
+            K[i] += old * v
+        K[j] = v
+        alpha, inverse = new_alpha, new_inverse
+    error *= inverse
+    for i in range(p):
+        theta[i] += K[i] * error
+
+
+@jit()
+def rls_step(theta, V, D, columns, counts, forgetting, largest, Phi, y, work):
+    """One sample, Phi (3, 20) and y (3,), into the state of one shared filter or of three, one per joint.
+
+    theta (k, p), V (k, p, p), D (k, p): k = 1 or 3 filters, of which the first counts[k] entries are in use for the
+    columns[k] of Phi; work (2, p). Forgetting divides D, but never beyond `largest`.
+    """
+    filters = theta.shape[0]
+    h, K = work[0], work[1]
+    for i in range(3):
+        part = i if filters == 3 else 0
+        p = counts[part]
+        if forgetting < 1.0 and (filters == 3 or i == 0):
+            for j in range(p):
+                D[part, j] = min(D[part, j] / forgetting, largest)
+        for j in range(p):
+            h[j] = Phi[i, columns[part, j]]
+        ud_row(theta[part, :p], V[part], D[part], h, y[i], K)
+
+
+@jit()
+def _run(theta, V, D, columns, counts, forgetting, largest, Phi, y, work, history):
+    for k in range(len(y)):
+        rls_step(theta, V, D, columns, counts, forgetting, largest, Phi[k], y[k], work)
+        if len(history):
+            history[k] = theta
+
+
+class RLS:
+    """Parameters that follow the data, sample by sample    (2.46) corrected.
+
+    After n samples theta minimises sum over k of forgetting^(n - k) |y_k - Phi_k theta|^2, plus
+    forgetting^n |theta - theta0|^2/P0: with forgetting 1 and a large P0 it is the least-squares estimate. A step
+    costs the same at any n.
+
+    Args:
+        rows: "joint": a filter and parameters for each joint; "shared": one theta for all, Phi a 3 x 20 block.
+        columns: which parameters, as for `fit`.
+        P0: P starts as P0 I: large says 'I know nothing'. In 1/unit^2 of the regressor; > 0.
+        theta0: (3, 20) or (20,) to start from, default 0. With rows="shared" the first row counts.
+        forgetting: 0.9 to 1, say. Memory is 1/(1 - forgetting) samples: 0.999 at 100 Hz is 10 s. P never grows beyond
+            P0, so that directions without excitation do not blow up.
+
+    Attributes: theta (3, 20), 0 for columns left out; P (3, 20, 20), or (20, 20) if shared: with forgetting 1 and
+    white residuals of variance s^2 the covariance of theta is s^2 P; samples: how many steps it has seen.
+
+    Raises InputError on bad arguments.
+    """
+
+    def __init__(self, *, rows="joint", columns="rigid", P0=1e8, theta0=None, forgetting=1.0):
+        if rows not in ("joint", "shared"):
+            raise InputError(f"rows = {rows!r}: choose 'joint' or 'shared'")
+        if not (np.isfinite(P0) and P0 > 0):
+            raise InputError(f"P0 = {P0} must be finite and > 0: 1e8 says that nothing is known")
+        if not 0 < forgetting <= 1:
+            raise InputError(
+                f"forgetting = {forgetting} must be in (0, 1]: 1 forgets nothing, 0.999 recalls 1000 samples"
+            )
+        start = np.zeros((3, 20)) if theta0 is None else np.array(theta0, dtype=float)
+        if start.shape not in ((20,), (3, 20)) or not np.isfinite(start).all():
+            raise InputError(f"theta0 has shape {start.shape}: give (3, 20) or (20,), all finite")
+        start = np.broadcast_to(start, (3, 20))
+        chosen = chosen_columns(columns)
+        self.rows, self.P0, self.forgetting, self.samples = rows, float(P0), float(forgetting), 0
+        self._members = [chosen] if rows == "shared" else [sorted(set(chosen) & set(acts)) for acts in ACTS_ON]
+        p = max(map(len, self._members))
+        k = len(self._members)
+        self._columns = np.zeros((k, p), dtype=np.int64)
+        self._theta, self._V = np.zeros((k, p)), np.tile(np.eye(p), (k, 1, 1))
+        self._D, self._work = np.full((k, p), self.P0), np.zeros((2, p))
+        self._counts = np.array([len(members) for members in self._members])
+        for part, members in enumerate(self._members):
+            self._columns[part, : len(members)] = members
+            self._theta[part, : len(members)] = start[part, members]
+
+    def step(self, Phi, y):
+        """Take one sample, Phi (3, 20) and y (3,); returns theta (3, 20). Raises InputError, state unchanged."""
+        Phi = blocks("Phi", np.asarray(Phi)[None])
+        y = vectors3("y", y, unit="PWM or N m")
+        if y.shape != (3,):
+            raise InputError(f"y has shape {y.shape}; a step takes one sample, (3,); for many use run(Phi, y)")
+        rls_step(*self._state(), Phi[0], y, self._work)
+        self.samples += 1
+        return self.theta
+
+    def run(self, Phi, y, *, history=True):
+        """Take n samples, Phi (n, 3, 20) and y (n, 3); returns theta after each, (n, 3, 20).
+
+        history=False returns only the last theta, (3, 20): for very long data. Raises InputError, state unchanged.
+        """
+        Phi, y = checked_data(Phi, y, 1)
+        states = np.empty((len(y) if history else 0, *self._theta.shape))
+        _run(*self._state(), np.ascontiguousarray(Phi), np.ascontiguousarray(y), self._work, states)
+        self.samples += len(y)
+        return self._spread(states) if history else self.theta
+
+    @property
+    def theta(self):
+        """The parameters now, (3, 20)."""
+        return self._spread(self._theta[None])[0]
+
+    @property
+    def P(self):
+        """U D U^T now: (3, 20, 20), or (20, 20) if shared; 0 for columns left out."""
+        P = np.zeros((len(self._members), 20, 20))
+        for part, members in enumerate(self._members):
+            p = len(members)
+            U = self._V[part, :p, :p].T
+            P[part][np.ix_(members, members)] = U * self._D[part, :p] @ U.T
+        return P[0] if self.rows == "shared" else P
+
+    def _state(self):
+        return self._theta, self._V, self._D, self._columns, self._counts, self.forgetting, self.P0
+
+    def _spread(self, states):
+        """(n, k, p) as (n, 3, 20)."""
+        theta = np.zeros((len(states), 3, 20))
+        for part, members in enumerate(self._members):
+            where = slice(None) if self.rows == "shared" else part
+            values = states[:, part, : len(members)]
+            theta[:, where, members] = values[:, None, :] if self.rows == "shared" else values
+        return theta
