@@ -9,9 +9,11 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
         "arm_regressor": ["regressor"],
+        "base": ["BaseParameters", "base_parameters"],
         "estimate": ["Estimate"],
         "fitting": ["fit"],
         "fopdt": ["FOPDT", "fit_fopdt"],
+        "general_arm": ["general_parameters", "general_regressor"],
         "processing": ["Motion", "causal_derivatives", "central_derivatives", "process"],
         "rls": ["RLS"],
         "single_joint": ["JointFit", "fit_joint"],

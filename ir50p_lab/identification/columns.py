@@ -1,0 +1,69 @@
+"""Columns t, q, u of a recording, checked: what identification takes from a file, whoever wrote it."""
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import first_not_finite
+
+
+def columns_of(recording, q=None, u=None):
+    """Return t (n,), q (n, k) and u (n, k) as float arrays.
+
+    recording: anything with t, q and u, then q and u must be left out; or the times themselves.
+    Raises InputError on shapes that do not fit, NaN, or times that do not increase, naming the first such sample.
+    """
+    if hasattr(recording, "q") and hasattr(recording, "t"):
+        if q is not None or u is not None:
+            raise InputError("give a recording, or t, q and u as arrays: not both")
+        t, q, u = recording.t, recording.q, recording.u
+    else:
+        t = recording
+        if q is None or u is None:
+            raise InputError("q and u are missing: give a recording, or t, q and u as arrays")
+    t = _numbers("t", t, "s")
+    if t.ndim != 1 or len(t) < 2:
+        raise InputError(f"t has shape {t.shape}; give at least two times in s, shape (n,)")
+    q, u = _numbers("q", q, "rad"), _numbers("u", u, "its own unit")
+    for name, array in (("q", q), ("u", u)):
+        if array.ndim not in (1, 2) or len(array) != len(t):
+            raise InputError(f"{name} has shape {array.shape} beside {len(t)} times: give (n,) or (n, k), time first")
+    if q.shape != u.shape:
+        raise InputError(f"q {q.shape} and u {u.shape}: give one u per joint")
+    back = np.flatnonzero(np.diff(t) <= 0)
+    if len(back):
+        i = int(back[0]) + 1
+        raise InputError(
+            f"time runs backwards or stands still: t[{i}] = {t[i]:.9g} s after t[{i - 1}] = {t[i - 1]:.9g} s "
+            f"({len(back)} such step(s)): sort the samples by time and remove doubled ones"
+        )
+    n = len(t)
+    return t, np.ascontiguousarray(q.reshape(n, -1)), np.ascontiguousarray(u.reshape(n, -1))
+
+
+def sampling_period(t):
+    """Sampling period of times (n,) with gaps and jitter, s: near the median step, the one that counts whole steps."""
+    dt = np.diff(t)
+    median = float(np.median(dt))
+    steps = np.rint(dt / median)
+    near = steps <= 3
+    return float(dt[near].sum() / max(steps[near].sum(), 1.0))
+
+
+def runs(t, max_gap):
+    """[(first, last + 1), ...]: the stretches of t (n,) whose steps are at most max_gap s."""
+    edges = np.flatnonzero(np.diff(t) > max_gap) + 1
+    return list(zip(np.r_[0, edges].tolist(), np.r_[edges, len(t)].tolist(), strict=True))
+
+
+def _numbers(name, value, unit):
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must hold numbers in {unit}; got {value!r:.60}") from None
+    bad = ~np.isfinite(array)
+    if bad.any():
+        raise InputError(
+            f"{name} holds {first_not_finite(array)} ({int(bad.sum())} such value(s)): remove these samples from t, q "
+            "and u; a gap in time is understood"
+        )
+    return array

@@ -1,0 +1,217 @@
+"""From a recording (t, q, u) to (q, qd, qdd, u) for a regression: every step is an argument, an ablation is a loop."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification.columns import columns_of, runs, sampling_period
+from ir50p_lab.signals.low_pass import low_pass
+
+_KINDS = ("zero-phase", "causal")
+_LATE = 2.0  # a filter of this many time constants (1/(2 pi cutoff)) on either side is cut off by default
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A recording made ready for a regression; k joints (a single joint: k = 1 and arrays (m, 1)).
+
+    ============= ======== ============================================================================
+    t             (m,)     s
+    q, qd, qdd    (m, k)   rad, rad/s, rad/s^2
+    u             (m, k)   command or torque that belongs to these instants, in its own unit
+    use           (m, k)   bool: whether the sample of that joint is to be used (False: too near to zero speed)
+    segment       (m,)     int: which run without a gap
+    rate_hz       float    samples per s of what is left (after decimation)
+    notes         tuple    of str: what was done, and what was left out
+    ============= ======== ============================================================================
+    """
+
+    t: np.ndarray
+    q: np.ndarray
+    qd: np.ndarray
+    qdd: np.ndarray
+    u: np.ndarray
+    use: np.ndarray
+    segment: np.ndarray
+    rate_hz: float
+    notes: tuple
+
+    def __len__(self):
+        return len(self.t)
+
+
+def causal_derivatives(q, rate_hz, *, cutoff_hz=3.0):
+    """What the thesis does, as a loop can: a first-order low pass, then the backward difference twice.
+
+        q_f[k] = filter of q,    qd[k] = (q_f[k] - q_f[k-1]) rate,    qdd[k] = (qd[k] - qd[k-1]) rate
+
+    The angle comes 1/(2 pi cutoff) late (53 ms at 3 Hz), the velocity half a period more, the acceleration a whole
+    one; beside a u that is not late they belong to another instant. The filter starts settled on the first sample.
+
+    Args: q: (n,) or (n, k) rad, evenly sampled; rate_hz: samples per s; cutoff_hz: Hz, below rate_hz/2.
+    Returns: q, qd, qdd like q; the first qd and the first two qdd are 0. Raises InputError as `low_pass` does.
+    """
+    q = low_pass(q, cutoff_hz, rate_hz)
+    qd = np.diff(q, axis=0, prepend=q[:1]) * rate_hz
+    return q, qd, np.diff(qd, axis=0, prepend=qd[:1]) * rate_hz
+
+
+def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=4):
+    """Without lag, for finished records: a Butterworth filter forward and backward, then central differences.
+
+        qd[k] = (q[k+1] - q[k-1]) rate/2,    qdd[k] = (q[k+1] - 2 q[k] + q[k-1]) rate^2
+
+    Args: q: (n,) or (n, k) rad, evenly sampled; rate_hz: samples per s; cutoff_hz: Hz, below rate_hz/2, or None for
+    no filter; order: 1..8 (it counts twice). Returns: q, qd, qdd like q; at the two ends the neighbour's derivatives.
+    Raises InputError as `low_pass` does.
+    """
+    q = (
+        np.array(q, dtype=float)
+        if cutoff_hz is None
+        else low_pass(q, cutoff_hz, rate_hz, order=order, kind="zero-phase")
+    )
+    if len(q) < 3:
+        raise InputError(f"q has {len(q)} samples: central differences need three or more")
+    qd, qdd = np.empty_like(q), np.empty_like(q)
+    qd[1:-1] = (q[2:] - q[:-2]) * (rate_hz / 2)
+    qdd[1:-1] = (q[2:] - 2 * q[1:-1] + q[:-2]) * rate_hz**2
+    for x in (qd, qdd):
+        x[0], x[-1] = x[1], x[-2]
+    return q, qd, qdd
+
+
+def process(
+    recording,
+    q=None,
+    u=None,
+    *,
+    derivatives="zero-phase",
+    cutoff_hz=1.5,
+    order=4,
+    filter_u=False,
+    delay=0.0,
+    held=True,
+    decimate=1,
+    slow=0.0,
+    trim=None,
+    max_gap=None,
+):
+    """Make a recording ready for a regression.
+
+        for name, options in {"thesis": {"derivatives": "causal", "cutoff_hz": 3}, "zero-phase": {}}.items():
+            motion = process(recording, **options)
+
+    What happens, in this order: the record is split where time has gaps; uneven samples are put on an even grid of the
+    median period (cubic spline for q); q is filtered and differentiated; u is taken at the instant it acted; the ends,
+    where a filter has only one side, are cut off; samples are thinned out; samples near zero speed are marked.
+
+    Args:
+        recording: anything with t (n,), q (n, k) and u (n, k), as `Recording`; or t itself, then q and u as arrays,
+            (n,) or (n, k).
+        derivatives: "zero-phase" (`central_derivatives`) or "causal" (`causal_derivatives`).
+        cutoff_hz, order: of the low pass; order for "zero-phase" only, "causal" is of first order.
+        filter_u: pass u through the same filter as q.
+        delay: s from a sample to the moment its u acts (`estimate_delay`).
+        held: True: u is held from its sample to the next, as a bench does; what then acts around the instant t_k is the
+            mean of u_k-1 and u_k. False: u is a measurement at t_k. "causal" takes u as it stands, as the thesis does,
+            shifted by the delay only.
+        decimate: keep every n-th sample: neighbours of a filtered signal say the same twice.
+        slow: rad/s, one number or one per joint; below it sgn(qd) is noise and a joint may stick: `use` is False there.
+        trim: s cut off at both ends of each run without a gap; default 2/(2 pi cutoff_hz).
+        max_gap: s, larger steps of time split the record; default 3.5 times the median step.
+
+    Returns: Motion. Raises: InputError on bad arguments, NaN, or times that do not increase; IdentificationError if
+    nothing is left.
+    """
+    t, q, u = columns_of(recording, q, u)
+    period = sampling_period(t)
+    rate = 1 / period
+    _check_options(derivatives, delay, held, decimate, trim, max_gap)
+    slow = _thresholds(slow, q.shape[1])
+    if cutoff_hz is None and derivatives == "causal":
+        raise InputError("cutoff_hz = None: the causal way needs its filter; give 1.5 to 10 Hz")
+    if trim is None:
+        trim = 0.0 if cutoff_hz is None else _LATE / (2 * math.pi * cutoff_hz)
+    notes, pieces = [], []
+    parts = runs(t, 3.5 * period if max_gap is None else max_gap)
+    if len(parts) > 1:
+        notes.append(f"{len(parts) - 1} gap(s) in time: {len(parts)} runs, each filtered by itself")
+    shortest = max(8, math.ceil(2 * trim * rate) + 4)
+    uneven = False
+    for number, (first, last) in enumerate(parts):
+        if last - first < shortest:
+            notes.append(f"{last - first} samples from {t[first]:.4g} s on left out: too short a run")
+            continue
+        piece, spread = _piece(
+            t[first:last], q[first:last], u[first:last], period, derivatives, cutoff_hz, order, filter_u, delay, held
+        )
+        uneven |= spread
+        grid = piece[0]
+        keep = np.flatnonzero((grid >= grid[0] + max(trim, delay) - 1e-9) & (grid <= grid[-1] - trim + 1e-9))
+        keep = keep[(keep > 0) & (keep < len(grid) - 1)][:: int(decimate)]
+        pieces.append([x[keep] for x in piece] + [np.full(len(keep), number)])
+    if sum(len(piece[0]) for piece in pieces) < 2:
+        raise IdentificationError(
+            f"nothing is left of {len(t)} samples: every run without a gap is shorter than {shortest} samples (filter "
+            f"{cutoff_hz} Hz, {trim:.3g} s cut off at both ends): record longer, or give a higher cut-off or less trim"
+        )
+    if uneven:
+        notes.append(f"times are uneven: interpolated onto steps of {period:.4g} s")
+    t, q, qd, qdd, u, segment = (np.concatenate(x) for x in zip(*pieces, strict=True))
+    use = np.abs(qd) >= slow
+    if not use.all():
+        notes.append(f"{100 * (1 - use.mean()):.0f} % of the samples are slower than asked for and not to be used")
+    return Motion(t, q, qd, qdd, u, use, segment, rate / int(decimate), tuple(notes))
+
+
+def _piece(t, q, u, period, derivatives, cutoff_hz, order, filter_u, delay, held):
+    """One run without gaps: [t, q, qd, qdd, u] on an even grid, and whether it had to be interpolated."""
+    grid = t[0] + period * np.arange(math.floor((t[-1] - t[0]) / period + 1e-6) + 1)
+    uneven = len(grid) != len(t) or np.abs(t - grid).max() > 0.02 * period
+    if uneven:
+        from scipy.interpolate import make_interp_spline
+
+        q = make_interp_spline(t, q, k=3, axis=0)(np.minimum(grid, t[-1]))
+    else:
+        grid = t
+    acts = t + delay
+    if held and derivatives == "zero-phase":
+        acts = acts + 0.5 * np.diff(t, append=t[-1] + period)
+    if uneven or not np.array_equal(acts, grid):
+        u = np.column_stack([np.interp(grid, acts, column) for column in u.T])
+    rate = 1 / period
+    if derivatives == "causal":
+        states = causal_derivatives(q, rate, cutoff_hz=cutoff_hz)
+        u = low_pass(u, cutoff_hz, rate) if filter_u else u
+    else:
+        states = central_derivatives(q, rate, cutoff_hz=cutoff_hz, order=order)
+        if filter_u and cutoff_hz is not None:
+            u = low_pass(u, cutoff_hz, rate, order=order, kind="zero-phase")
+    return [grid, *states, u], uneven
+
+
+def _check_options(derivatives, delay, held, decimate, trim, max_gap):
+    if derivatives not in _KINDS:
+        raise InputError(f"derivatives = {derivatives!r}: choose one of {', '.join(map(repr, _KINDS))}")
+    if not isinstance(held, (bool, np.bool_)):
+        raise InputError(f"held = {held!r}: give True (u held between samples) or False (measured at the instant)")
+    if isinstance(decimate, bool) or not (np.isscalar(decimate) and decimate in range(1, 10**6)):
+        raise InputError(f"decimate = {decimate!r}: give a whole number >= 1, every how many samples to keep")
+    for name, value, low in (("delay", delay, 0.0), ("trim", trim, 0.0), ("max_gap", max_gap, 1e-300)):
+        if value is None and name != "delay":
+            continue
+        number = np.isscalar(value) and not isinstance(value, (str, bytes)) and math.isfinite(value)
+        if not (number and value >= low):
+            raise InputError(f"{name} = {value!r}: give finite seconds {'>= 0' if low == 0 else '> 0'}")
+
+
+def _thresholds(slow, joints):
+    try:
+        array = np.broadcast_to(np.asarray(slow, dtype=float), joints)
+    except (TypeError, ValueError):
+        array = np.array([np.nan])
+    if not (np.isfinite(array).all() and (array >= 0).all()):
+        raise InputError(f"slow = {slow!r} rad/s: give one number >= 0, or one for each of {joints} joint(s)")
+    return array

@@ -1,0 +1,189 @@
+"""Processing: against motions whose derivatives are known, the thesis' way step by step, gaps, uneven times, delay."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification import causal_derivatives, central_derivatives, process
+from ir50p_lab.signals import LowPass, at_rest, fourier
+
+A, B = at_rest(*np.random.default_rng(1).normal(0, 0.1, (2, 3, 5)))
+TARGET = fourier(A, B, period=10.0, q0=(0, 0.6, -1), periods=3)
+
+
+def recorded(rate=100.0, seconds=30.0, *, keep=None, jitter=0.0, seed=0):
+    t = np.arange(round(seconds * rate)) / rate
+    t = t + jitter / rate * np.random.default_rng(seed).uniform(-1, 1, len(t))
+    if keep is not None:
+        t = t[keep(t)]
+    rows = TARGET.sample(t)
+    u = 3 * rows[:, 2] + 2 * rows[:, 1] + rows[:, 0]
+    return SimpleNamespace(t=t, q=rows[:, 0], u=u)
+
+
+def test_causal_is_the_thesis_way_sample_by_sample():
+    """Second route: the filter and the differences as a loop has them."""
+    q = recorded().q
+    smooth, last, last_v, rows = LowPass(3.0, 100.0), None, np.zeros(3), []
+    for sample in q:
+        x = smooth.step(sample)
+        v = np.zeros(3) if last is None else (x - last) * 100
+        rows.append([x, v, (v - last_v) * 100])
+        last, last_v = x, v
+    for found, expected in zip(causal_derivatives(q, 100.0, cutoff_hz=3.0), np.swapaxes(rows, 0, 1), strict=True):
+        np.testing.assert_allclose(found, expected, atol=1e-9)
+
+
+def test_causal_comes_as_late_as_it_says():
+    t = np.arange(3000) / 100
+    for cutoff in (2.0, 3.0, 8.0):
+        q, qd, qdd = causal_derivatives(np.sin(0.6 * t), 100.0, cutoff_hz=cutoff)
+        w, late = 0.6, 1 / (2 * np.pi * cutoff)
+        for x, amplitude, phase, extra in ((q, 1, 0, 0), (qd, w, 1, 0.005), (qdd, w * w, 2, 0.01)):
+            expected = amplitude * np.sin(w * (t - late - extra) + phase * np.pi / 2)
+            assert np.abs(x - expected)[1000:].max() < 0.01 * amplitude
+
+
+@pytest.mark.parametrize("rate", [50.0, 100.0, 1000.0])
+@pytest.mark.parametrize("cutoff", [None, 3.0])
+def test_central_differences_find_the_motion(rate, cutoff):
+    t = np.arange(int(30 * rate)) / rate
+    rows = TARGET.sample(t)
+    middle = slice(int(2 * rate), int(-2 * rate))
+    for found, expected in zip(
+        central_derivatives(rows[:, 0], rate, cutoff_hz=cutoff), np.swapaxes(rows, 0, 1), strict=True
+    ):
+        error = np.abs(found - expected)[middle].max(axis=0) / np.abs(expected).max(axis=0)
+        assert error.max() < (2e-3 if rate > 60 else 5e-3)
+
+
+@settings(max_examples=30)
+@given(st.sampled_from([40.0, 100.0, 500.0]), st.sampled_from([None, 4.0]), st.booleans(), st.integers(1, 5))
+def test_a_linear_law_survives_processing(rate, cutoff, filter_u, decimate):
+    """u = 3 qdd + 2 qd + q holds before, so it holds after: at any rate, with filtered u, thinned out."""
+    motion = process(recorded(rate), cutoff_hz=cutoff, filter_u=filter_u, decimate=decimate, held=False)
+    predicted = 3 * motion.qdd + 2 * motion.qd + motion.q
+    assert np.abs(motion.u - predicted).max() < 0.01 * np.ptp(motion.u) * (100 / rate if rate < 100 else 1)
+    assert motion.rate_hz == pytest.approx(rate / decimate) and motion.use.all()
+    np.testing.assert_allclose(np.diff(motion.t), decimate / rate, rtol=1e-6)
+
+
+@pytest.mark.parametrize("size", [0.005, 0.1, 0.4])
+def test_uneven_times_are_interpolated(size):
+    motion = process(recorded(jitter=size), cutoff_hz=3.0, held=False)
+    rows = TARGET.sample(motion.t)
+    assert np.abs(motion.qd - rows[:, 1]).max() < 0.01 * np.ptp(rows[:, 1])
+    assert np.abs(motion.qdd - rows[:, 2]).max() < 0.01 * np.ptp(rows[:, 2])
+    assert any("uneven" in note for note in motion.notes) == (size > 0.01)
+
+
+@pytest.mark.parametrize("gap", [0.1, 1.0, 10.0])
+def test_gaps_split_the_record(gap):
+    record = recorded(keep=lambda t: (t < 9) | (t > 9 + gap))
+    motion = process(record, cutoff_hz=3.0, held=False)
+    assert set(motion.segment) == {0, 1} and "1 gap(s)" in motion.notes[0]
+    rows = TARGET.sample(motion.t)
+    assert np.abs(motion.qd - rows[:, 1]).max() < 0.02 * np.ptp(rows[:, 1])
+    assert not ((motion.t > 8.9) & (motion.t < 9 + gap + 0.1)).any()
+    both = process(record, cutoff_hz=3.0, max_gap=20, held=False)
+    assert set(both.segment) == {0}
+
+
+def test_short_runs_are_left_out_and_named():
+    record = recorded(keep=lambda t: (t < 9) | (t > 10) & (t < 10.05) | (t > 11))
+    motion = process(record, cutoff_hz=3.0)
+    assert any("too short a run" in note for note in motion.notes) and set(motion.segment) == {0, 2}
+    for seconds in (0.02, 0.1, 0.3):
+        with pytest.raises(IdentificationError, match="nothing is left"):
+            process(recorded(seconds=seconds), cutoff_hz=1.5)
+
+
+@pytest.mark.parametrize("delay", [0, 2, 7])
+@pytest.mark.parametrize("held", [False, True])
+def test_u_is_taken_when_it_acts(delay, held):
+    """A mass under a held force, exactly: second differences see the mean of two commands, `delay` samples ago."""
+    n, T = 400, 0.01
+    u = np.random.default_rng(0).normal(size=n + 10).cumsum()
+    acting, q, v = u[10 - delay : n + 10 - delay], np.zeros(n), 0.0
+    for k in range(n - 1):
+        q[k + 1] = q[k] + v * T + acting[k] * T * T / 2
+        v += acting[k] * T
+    t = np.arange(n) * T
+    motion = process(t, q, u[10:], cutoff_hz=None, delay=delay * T, held=held)
+    error = np.abs(motion.u - motion.qdd)[delay + 1 :].max()
+    assert error < 1e-6 if held else error > 0.1
+
+
+def test_slow_samples_are_marked_per_joint():
+    motion = process(recorded(), slow=(0.01, 0.0, 0.2), cutoff_hz=3.0)
+    np.testing.assert_array_equal(motion.use, np.abs(motion.qd) >= [0.01, 0, 0.2])
+    assert "slower than asked for" in motion.notes[-1]
+
+
+def test_arrays_of_one_joint():
+    record = recorded()
+    one, all_ = process(record.t, record.q[:, 1], record.u[:, 1]), process(record)
+    assert one.q.shape == (len(one), 1)
+    for name in ("q", "qd", "qdd", "u"):
+        np.testing.assert_allclose(getattr(one, name)[:, 0], getattr(all_, name)[:, 1], atol=1e-9)
+    with pytest.raises(InputError, match="not both"):
+        process(record, record.q, record.u)
+    with pytest.raises(InputError, match="q and u are missing"):
+        process(record.t)
+
+
+@pytest.mark.parametrize("place", [0, 500, 2999])
+@pytest.mark.parametrize("column", ["t", "q", "u"])
+def test_nan_is_refused_with_its_place(column, place):
+    record = recorded()
+    getattr(record, column)[place] = np.nan
+    with pytest.raises(
+        InputError, match=f"{column} holds nan at index {place}" if column == "t" else f"{column} holds nan"
+    ):
+        process(record)
+
+
+@pytest.mark.parametrize("back", [0.0, 0.01, 5.0])
+def test_time_that_does_not_increase_is_refused(back):
+    record = recorded()
+    record.t[1000:] -= 0.01 + back
+    with pytest.raises(InputError, match="time runs backwards or stands still"):
+        process(record)
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        ({"derivatives": "both"}, "choose one of"),
+        ({"derivatives": "causal", "cutoff_hz": None}, "needs its filter"),
+        ({"cutoff_hz": 60}, "cutoff_hz = 60"),
+        ({"order": 0}, "order = 0"),
+        ({"delay": -0.01}, "delay = -0.01"),
+        ({"delay": None}, "delay = None"),
+        ({"held": "yes"}, "held = 'yes'"),
+        ({"decimate": 0}, "decimate = 0"),
+        ({"decimate": 1.5}, "decimate = 1.5"),
+        ({"slow": -1}, "slow = -1"),
+        ({"slow": (0, 1)}, "slow = "),
+        ({"trim": np.nan}, "trim = nan"),
+        ({"max_gap": 0}, "max_gap = 0"),
+    ],
+)
+def test_bad_arguments(options, words):
+    with pytest.raises(InputError, match=words.replace(".", r"\.")):
+        process(recorded(seconds=5), **options)
+
+
+def test_shapes_are_checked():
+    record = recorded(seconds=5)
+    for t, q, u in ((record.t[1:], record.q, record.u), (record.t, record.q[:, 0], record.u), (record.t[:1], [0], [0])):
+        with pytest.raises(InputError, match=r"shape|one u per joint"):
+            process(t, q, u)
+    with pytest.raises(InputError, match="must hold numbers"):
+        process(record.t, "q", record.u)
+    with pytest.raises(InputError, match="three or more"):
+        central_derivatives(np.zeros((2, 3)), 100.0, cutoff_hz=None)
