@@ -1,0 +1,140 @@
+"""Base parameters: what can be told apart at all, and which groups of parameters act as one."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification.parameters import NAMES
+from ir50p_lab.identification.qr import independent_columns, r_factor
+from ir50p_lab.inputs import first_not_finite
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BaseParameters:
+    """Phi theta = Phi[..., columns] (matrix theta): as many base parameters as the rank, each a group.
+
+    =============== ============================================================================== =========
+    field           meaning                                                                        shape
+    =============== ============================================================================== =========
+    rank            how many combinations of parameters the motion can tell                        int
+    columns         indices of the columns kept: independent                                       (rank,)
+    matrix          base = matrix theta: the groups                                                (rank, p)
+    names           of all columns                                                                 p
+    unseen          names of columns that are zero: without any effect                             tuple
+    groups          the base parameters in symbols, one string each                                rank
+    singular_values of Phi with columns scaled to length 1, largest first: the drop after `rank`   (p,)
+                    shows how clear the rank is
+    condition       of the kept columns, scaled to length 1
+    =============== ============================================================================== =========
+    """
+
+    rank: int
+    columns: np.ndarray
+    matrix: np.ndarray
+    names: tuple
+    unseen: tuple
+    groups: tuple
+    singular_values: np.ndarray
+    condition: float
+
+    def __str__(self):
+        head = f"{self.rank} base parameters of {len(self.names)}, condition {self.condition:.3g}"
+        unseen = [f"without effect: {', '.join(self.unseen)}"] if self.unseen else []
+        return "\n".join([head, *(f"  {k + 1:2}  {group}" for k, group in enumerate(self.groups)), *unseen])
+
+
+def base_parameters(Phi, *, names=None, known=None, tolerance=1e-8):
+    """Which combinations of parameters the regressor Phi can tell apart, by QR and by SVD.
+
+    Columns are scaled to length 1 and taken in order: one that is a combination of kept columns before it (less than
+    `tolerance` sticks out) joins their groups. The singular values must give the same rank.
+
+    Args:
+        Phi: (n, 3, p), (n, k, p) or (m, p), from exact motion rich enough to excite everything (random states do);
+            not from noisy data, where nothing is exactly dependent.
+        names: of the p columns; default the 20 parameters, or p1, p2, ...
+        known: numbers that may appear in the groups, {"l2": 0.2}: 0.04 is then written l2^2.
+
+    Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if QR and SVD disagree on the
+        rank: the motion lies between excited and not excited.
+    """
+    A, names = _checked(Phi, names, tolerance)
+    length = np.linalg.norm(A, axis=0)
+    seen = np.flatnonzero(length > 1e-14 * length.max())
+    scaled = A[:, seen] / length[seen]
+    R = r_factor(scaled)
+    kept = independent_columns(R, tolerance)
+    s = np.linalg.svd(R, compute_uv=False)
+    by_svd = int(np.sum(s > tolerance * s[0]))
+    if by_svd != len(kept):
+        near = ", ".join(f"{x:.1e}" for x in s[max(min(by_svd, len(kept)) - 1, 0) :][:4])
+        raise IdentificationError(
+            f"the rank is not clear: {len(kept)} columns stick out of the others by more than {tolerance:g}, but "
+            f"{by_svd} singular values are above it, of {near}: use richer or exact motion, or another tolerance"
+        )
+    weights = np.linalg.lstsq(R[:, kept], R, rcond=None)[0]  # column k = kept columns @ weights[:, k]
+    weights[np.abs(weights) < tolerance] = 0.0
+    columns = seen[kept]
+    matrix = np.zeros((len(kept), len(names)))
+    matrix[:, seen] = weights * length[seen] / length[columns][:, None]
+    matrix[np.arange(len(kept))[:, None], columns] = np.eye(len(kept))
+    return BaseParameters(
+        rank=len(kept),
+        columns=columns,
+        matrix=matrix,
+        names=names,
+        unseen=tuple(name for k, name in enumerate(names) if k not in seen),
+        groups=tuple(_in_symbols(row, names, known or {}) for row in matrix),
+        singular_values=s,
+        condition=float(np.linalg.cond(R[:, kept])),
+    )
+
+
+def _checked(Phi, names, tolerance):
+    try:
+        A = np.asarray(Phi, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError("Phi must hold numbers, (n, 3, p) or (m, p)") from None
+    if A.ndim not in (2, 3) or not A.size:
+        raise InputError(f"Phi has shape {A.shape}; give (n, 3, p) or (m, p)")
+    if not np.isfinite(A).all():
+        raise InputError(f"Phi holds {first_not_finite(A)}: remove or repair that sample")
+    if not 0 < tolerance < 0.1:
+        raise InputError(
+            f"tolerance = {tolerance} must lie between 0 and 0.1: the part of a column that must stick out"
+        )
+    A = A.reshape(-1, A.shape[-1])
+    p = A.shape[1]
+    if names is None:
+        names = NAMES if p == len(NAMES) else tuple(f"p{k + 1}" for k in range(p))
+    if len(names) != p:
+        raise InputError(f"{len(names)} names for {p} columns: give one for each")
+    if len(A) < 2 * p:
+        raise InputError(f"Phi has {len(A)} rows for {p} columns: give at least {2 * p}, from random states")
+    if not A.any():
+        raise IdentificationError("Phi is zero throughout: there is no motion in it")
+    return A, tuple(names)
+
+
+def _in_symbols(row, names, known):
+    """A sum like 'XX2 - YY2 - l2^2 m3' from its coefficients, that of the kept column 1 and first."""
+    first = next(k for k in range(len(row)) if row[k] == 1.0)
+    text = names[first]
+    for k in [k for k in np.flatnonzero(row) if k != first]:
+        size = _symbol(abs(row[k]), known)
+        text += (" - " if row[k] < 0 else " + ") + (f"{size} " if size else "") + names[k]
+    return text
+
+
+def _symbol(size, known):
+    """A positive coefficient as a whole number, a power of a known one, or a product of two; else its digits."""
+    candidates = {"": 1.0}
+    powers = {name: value for name, value in known.items()} | {f"{n}^2": v**2 for n, v in known.items()}
+    candidates |= powers | {f"1/{name}": 1 / value for name, value in powers.items()}
+    candidates |= {f"{a} {b}": powers[a] * powers[b] for a in known for b in known if a < b}
+    candidates |= {f"{k} {name}".strip(): k * value for k in (2, 3, 4) for name, value in list(candidates.items())}
+    for text, value in candidates.items():
+        if abs(size - value) < 1e-6 * abs(value):
+            return text
+    return f"{size:.4g}"

@@ -1,0 +1,105 @@
+"""The regressor of an arm of the same joints whose links may have any shape: 42 parameters, of which 25 are base.
+
+Each link by its mass, first moments (mass times centre of mass, from the joint, in the link frame) and inertia about
+the joint's origin: in these, and only in these, the torques are linear. The columns come from the symbolic derivation
+(`derive(general=True)`), so that this is another route to the equations of motion than the closed form.
+"""
+
+import functools
+
+import numpy as np
+import sympy
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
+from ir50p_lab.modelling.symbolic import derive
+
+_FRICTION = tuple(name for j in "123" for name in (f"fv{j}", f"fc{j}", f"Tf{j}"))
+# Those that stay come first: base_parameters() keeps the earlier column and adds the later one to its group. The
+# order follows Khalil and Dombre's rule: of each link YY, m and mz go over to the links before it.
+_KEPT = (
+    "ZZ1 XX2 XY2 XZ2 YZ2 ZZ2 mx2 my2 XX3 XY3 XZ3 YZ3 ZZ3 mx3 my3 j3 YY2 YY3 m3 mz3 j1 j2 "
+    "m2 mz2 m1 mx1 my1 mz1 XX1 YY1 XY1 XZ1 YZ1"
+).split()
+GENERAL_NAMES = (*_KEPT, *_FRICTION)
+
+
+def general_parameters(links, *, rotors=(0.0, 0.0, 0.0)):
+    """The 33 inertial parameters, in the order of GENERAL_NAMES, of three links.
+
+    Args:
+        links: three of (m, com (3,), inertia (3, 3)): kg, m from the joint, kg m^2 about the centre of mass, both in
+            the link frame; inertia as a matrix, [[Ixx, -Ixy, -Ixz], ...] (1.104 corrected).
+        rotors: j1, j2, j3, kg m^2.
+
+    Returns: (33,). XY, XZ, YZ are products of inertia with the sign of (1.104): the matrix holds -XY.
+    Raises InputError on shapes.
+    """
+    found = {f"j{i + 1}": float(x) for i, x in enumerate(vectors3("rotors", rotors, unit="kg m^2"))}
+    if len(links) != 3:
+        raise InputError(f"{len(links)} links: give three")
+    for i, (m, com, inertia) in enumerate(links, start=1):
+        com, inertia = vectors3(f"com of link {i}", com, unit="m"), vectors3(f"inertia of link {i}", inertia, unit="SI")
+        if com.shape != (3,) or inertia.shape != (3, 3) or not np.allclose(inertia, inertia.T, rtol=1e-9, atol=0):
+            raise InputError(
+                f"link {i}: give com (3,) and a symmetric inertia (3, 3); got {com.shape}, {inertia.shape}"
+            )
+        about_joint = inertia + m * (com @ com * np.eye(3) - np.outer(com, com))
+        found |= {f"m{i}": float(m)} | {f"m{axis}{i}": float(m * x) for axis, x in zip("xyz", com, strict=True)}
+        for a, letter in enumerate("XYZ"):
+            found[f"{letter}{letter}{i}"] = float(about_joint[a, a])
+            for b in range(a + 1, 3):
+                found[f"{letter}{'XYZ'[b]}{i}"] = float(-about_joint[a, b])
+    return np.array([found[name] for name in _KEPT])
+
+
+def general_regressor(q, qd, qdd, *, l2, g=STANDARD_GRAVITY):
+    """Phi of the general arm: tau = Phi pi, pi = (33 inertial, 9 friction parameters) as GENERAL_NAMES.
+
+    Args: q, qd, qdd: (n, 3), rad, rad/s, rad/s^2; l2: upper arm, m; g: m/s^2.
+    Returns: (n, 3, 42). Raises InputError on shapes, numbers that are not finite, l2 <= 0 or g < 0.
+    """
+    q, qd, qdd = (vectors3(name, x, unit="SI") for name, x in (("q", q), ("qd", qd), ("qdd", qdd)))
+    if q.ndim != 2 or q.shape != qd.shape or q.shape != qdd.shape:
+        raise InputError(f"q {q.shape}, qd {qd.shape}, qdd {qdd.shape}: give all (n, 3)")
+    if not (np.isfinite(l2) and l2 > 0):
+        raise InputError(f"l2 = {l2} m must be finite and > 0")
+    if not (np.isfinite(g) and g >= 0):
+        raise InputError(f"g = {g} m/s^2 must be finite and >= 0")
+    model, torque = _torque()
+    out = np.zeros((len(q), 3, len(GENERAL_NAMES)))
+    for k, name in enumerate(_KEPT):
+        for sign, numbers in unit_parameters(name):
+            numbers = {"l2": l2, "g": g, **numbers}
+            values = [numbers.get(parameter, 0.0) for parameter in model.symbols]
+            for joint, tau in enumerate(torque(q.T, qd.T, qdd.T, values)):
+                out[:, joint, k] += sign * tau
+    for joint in range(3):
+        first = len(_KEPT) + 3 * joint
+        out[:, joint, first : first + 3] = np.column_stack([qd[:, joint], np.sign(qd[:, joint]), np.ones(len(q))])
+    return out
+
+
+def unit_parameters(name):
+    """Masses, centres of mass and inertias whose torque is the column of parameter `name`: [(sign, {symbol: number})].
+
+    The derivation is in centres of mass. A point mass 1 at distance 1 on an axis has first moment 1; its inertia
+    about the joint is made 0 by inertias of -1 about the two other axes, and its mass by taking the bare mass off.
+    """
+    i = name[-1]
+    if name[0] == "j" or name[:-1] == "m":
+        return [(1.0, {name: 1.0})]
+    if name[0] in "XYZ":
+        return [(1.0, {f"I{name[:2].lower()}{i}": 1.0})]
+    axis = name[1]
+    outside = {f"I{other}{other}{i}": -1.0 for other in "xyz" if other != axis}
+    return [(1.0, {f"m{i}": 1.0, f"{axis}{i}": 1.0, **outside}), (-1.0, {f"m{i}": 1.0})]
+
+
+@functools.cache
+def _torque():
+    """The SymbolicModel of the general arm, and its torque as a function of q, qd, qdd and the parameters."""
+    model = derive(general=True)
+    arguments = [list(model.q), list(model.qd), list(model.qdd), list(model.symbols.values())]
+    return model, sympy.lambdify(arguments, list(model.tau), "numpy", cse=True)
