@@ -14,6 +14,7 @@ def runs(tmp_path_factory):
         if path not in done:
             with pytest.MonkeyPatch.context() as patch:
                 patch.setenv("IR50P_PROGRESS", str(tmp_path_factory.mktemp("progress") / "progress.json"))
+                patch.setenv("IR50P_RECORDINGS", str(tmp_path_factory.mktemp("recordings")))
                 patch.setenv("PYDEVD_DISABLE_FILE_VALIDATION", "1")  # a debugger's notice on stderr
                 done[path] = run_notebook(nbformat.read(path, as_version=4))
         return done[path]
