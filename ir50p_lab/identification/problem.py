@@ -37,7 +37,7 @@ class Problem:
     @cached_property
     def Q(self):
         """Orthonormal columns that span those of A: A R^-1."""
-        return solve_triangular(self.R, self.A.T, trans="T").T
+        return self.A @ solve_triangular(self.R, np.eye(len(self.R)))
 
     @cached_property
     def condition(self):

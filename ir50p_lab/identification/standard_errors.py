@@ -42,7 +42,7 @@ def long_run_sum(scores, residuals):
     half = np.searchsorted(power, power[-1] / 2)
     B = int(np.clip(half // 2, 4, max(4, 0.4 * n ** (2 / 3))))
     coefficients = fft.dct(scores, axis=0)[1 : B + 1]
-    wider = special.stdtrit(B, 0.9772) / 2.0  # two standard errors then hold the truth 95 times in 100
+    wider = special.stdtrit(B, 0.99865) / 3.0  # three standard errors then hold the truth 997 times in 1000
     return wider**2 * coefficients.T @ coefficients / (2 * B)
 
 

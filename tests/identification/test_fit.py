@@ -1,0 +1,426 @@
+"""`fit` finds what made the data, says how sure it is, and says what it cannot know."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from arms import random_arm, random_states
+from scipy.signal import butter, sosfiltfilt
+
+from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification import Estimate, fit, regressor
+from ir50p_lab.identification.parameters import ACTS_ON, NAMES, chosen_columns
+from ir50p_lab.identification.qr import r_factor
+from ir50p_lab.modelling import IR50P, THESIS_C, inverse_dynamics, mass_matrix
+
+METHODS = ("ls", "weighted", "huber", "ridge", "bounded", "iv")
+RIGID = [sorted(set(acts) & set(chosen_columns("rigid"))) for acts in ACTS_ON]
+
+
+def motion(seed, n=2000, period=0.05):
+    """A smooth rich motion: eleven sines per joint, q, qd, qdd (n, 3)."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(n)[:, None] * period
+    q, qd, qdd = np.zeros((3, n, 3))
+    for w in rng.uniform(0.3, 5.0, 11):
+        a, phase = rng.normal(0, 0.5, 3), rng.uniform(0, 6, 3)
+        q += a * np.sin(w * t + phase)
+        qd += a * w * np.cos(w * t + phase)
+        qdd -= a * w**2 * np.sin(w * t + phase)
+    return q, qd, qdd
+
+
+def torque(Phi, theta):
+    return np.einsum("nij,ij->ni", Phi, theta)
+
+
+def options(method, Phi, y):
+    return {
+        "iv": {"instruments": Phi},
+        "weighted": {"weights": np.ones(3)},
+        "ridge": {"strength": 1e-12},
+        "bounded": {"bounds": dict.fromkeys(NAMES, (-np.inf, np.inf))},
+    }.get(method, {})
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("seed", range(5))
+def test_without_noise_every_method_finds_theta(method, seed):
+    rng = np.random.default_rng(seed)
+    arm = random_arm(rng, coulomb=True)
+    Phi = regressor(*motion(seed), g=arm.g)
+    for rows, theta in (("shared", arm.theta), ("joint", arm.theta_pwm)):
+        y = torque(Phi, theta)
+        found = fit(Phi, y, method=method, rows=rows, **options(method, Phi, y))
+        for joint in range(3):
+            here = list(range(20)) if rows == "shared" else RIGID[joint]
+            scale = np.abs(theta[joint]).max()
+            np.testing.assert_allclose(found.theta[joint, here], theta[joint, here], rtol=1e-5, atol=1e-7 * scale)
+        np.testing.assert_allclose(found.predict(Phi), y, atol=1e-5 * np.abs(y).max())
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_equals_the_normal_equations_and_lstsq(seed):
+    Phi = regressor(*motion(seed))
+    y = torque(Phi, IR50P.theta_pwm) + np.random.default_rng(seed).normal(0, 5, (len(Phi), 3))
+    found = fit(Phi, y)
+    for joint, here in enumerate(RIGID):
+        A = Phi[:, joint, here]
+        expected = np.linalg.lstsq(A, y[:, joint], rcond=None)[0]
+        np.testing.assert_allclose(found.theta[joint, here], expected, rtol=1e-8)
+        np.testing.assert_allclose(
+            found.theta[joint, here], np.linalg.solve(A.T @ A, A.T @ y[:, joint]), rtol=1e-6
+        )  # (2.35)
+        assert found.condition[joint] == pytest.approx(np.linalg.cond(A / np.linalg.norm(A, axis=0)), rel=1e-8)
+        left = y[:, joint] - A @ expected
+        assert found.sigma[joint] == pytest.approx(np.sqrt(left @ left / (len(A) - len(here))))
+    shared = fit(Phi, y, rows="shared", columns="thesis")
+    expected = np.linalg.lstsq(Phi.reshape(-1, 20), y.ravel(), rcond=None)[0]
+    for row in shared.theta:
+        np.testing.assert_allclose(row, expected, rtol=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_classical_standard_errors_are_those_of_the_textbook(seed):
+    Phi = regressor(*motion(seed))
+    y = torque(Phi, IR50P.theta_pwm) + np.random.default_rng(seed).normal(0, 5, (len(Phi), 3))
+    found = fit(Phi, y, errors="classical")
+    for joint, here in enumerate(RIGID):
+        A = Phi[:, joint, here]
+        covariance = found.sigma[joint] ** 2 * np.linalg.inv(A.T @ A)
+        np.testing.assert_allclose(found.covariance[joint][np.ix_(here, here)], covariance, rtol=1e-6)
+        np.testing.assert_allclose(found.stderr[joint, here], np.sqrt(np.diag(covariance)), rtol=1e-6)
+
+
+def deviations(noise, *, seeds=range(100), n=1500, **how):
+    """(theta found - true) / stderr of all parameters, one row per seed."""
+    Phi = regressor(*motion(0, n))
+    clean, theta = torque(Phi, IR50P.theta_pwm), IR50P.theta_pwm
+    rows = []
+    for seed in seeds:
+        found = fit(Phi, clean + noise(np.random.default_rng(seed), n), **how)
+        used = np.isfinite(found.stderr)
+        rows.append(((found.theta - theta) / found.stderr)[used])
+    return np.array(rows)
+
+
+def white(rng, n):
+    return rng.normal(0, 5, (n, 3))
+
+
+def low_passed(rng, n):
+    return 20 * sosfiltfilt(butter(4, 1.5, fs=20, output="sos"), rng.normal(size=(n, 3)), axis=0)
+
+
+def autoregressive(rng, n):
+    e = np.zeros((n, 3))
+    for k in range(1, n):
+        e[k] = 0.9 * e[k - 1] + rng.normal(size=3)
+    return e
+
+
+def test_classical_errors_are_right_for_white_noise_and_wrong_for_coloured():
+    z = deviations(white, errors="classical")
+    assert 0.94 < z.std() < 1.06
+    assert deviations(autoregressive, errors="classical").std() > 2
+
+
+@pytest.mark.parametrize("method", ["ls", "huber", "iv", "weighted"])
+@pytest.mark.parametrize("noise", [white, low_passed, autoregressive])
+def test_hac_errors_are_honest_for_any(noise, method):
+    extra = {"weights": np.ones(3)} if method == "weighted" else {}
+    if method == "iv":
+        extra["instruments"] = regressor(*motion(0, 1500))
+    z = deviations(noise, method=method, seeds=range(40 if method != "ls" else 100), **extra)
+    assert 0.8 < z.std() < 1.15
+    assert np.mean(np.abs(z) < 3) >= 0.99
+    assert np.mean((np.abs(z) < 3).all(axis=1)) >= 0.85
+
+
+def test_decimation_makes_classical_errors_honest_too():
+    z = deviations(autoregressive, n=30_000, seeds=range(20), errors="classical", every=40)
+    assert 0.85 < z.std() < 1.15
+
+
+def test_shared_standard_errors():
+    # torque with one theta, joints of unequal noise
+    Phi = regressor(*motion(1))
+    clean = torque(Phi, IR50P.theta)
+    for method, errors in (("ls", "classical"), ("ls", "hac"), ("weighted", "hac"), ("huber", "hac")):
+        z = []
+        for seed in range(25):
+            noise = np.random.default_rng(seed).normal(size=Phi.shape[:2]) * [0.1, 1.0, 0.3]
+            found = fit(Phi, clean + noise, rows="shared", method=method, errors=errors, unit="N m")
+            z.append(((found.theta - IR50P.theta) / found.stderr)[0, np.isfinite(found.stderr[0])])
+        assert 0.85 < np.std(z) < 1.15, (method, errors)
+
+
+def test_weights_make_unequal_noise_harmless():
+    Phi = regressor(*motion(2))
+    clean = torque(Phi, IR50P.theta)
+    errors = {"ls": [], "weighted": []}
+    for seed in range(10):
+        y = clean + np.random.default_rng(seed).normal(size=clean.shape) * [0.05, 5.0, 0.05]
+        for method, found in errors.items():
+            found.append((fit(Phi, y, method=method, rows="shared").theta - IR50P.theta)[0, [0, 4, 5]])
+    assert np.std(errors["weighted"]) < 0.5 * np.std(errors["ls"])
+
+
+def test_outliers_pull_huber_little():
+    Phi = regressor(*motion(3))
+    rng = np.random.default_rng(0)
+    y = torque(Phi, IR50P.theta_pwm) + rng.normal(0, 1, (len(Phi), 3))
+    spoiled = y.copy()
+    spoiled[rng.random(y.shape) < 0.05] = 255.0  # a drive at its limit, or a lost byte
+    good = fit(Phi, y)
+    used = np.isfinite(good.stderr)
+    off = {m: np.abs(fit(Phi, spoiled, method=m).theta - good.theta)[used] / good.stderr[used] for m in ("ls", "huber")}
+    assert np.median(off["huber"]) < 2
+    assert np.median(off["ls"]) > 10 * np.median(off["huber"])
+
+
+def test_noise_in_the_regressor_biases_least_squares_and_not_iv():
+    theta, state = IR50P.theta_pwm, motion(4, n=4000)
+    rng = np.random.default_rng(1)
+    y = torque(regressor(*state), theta) + rng.normal(0, 1, (4000, 3))
+    q, qd, qdd = state
+    noisy = [
+        regressor(q, qd + rng.normal(0, 0.2, q.shape), qdd + rng.normal(0, 5.0, q.shape), sign=np.sign(qd))
+        for _ in "ab"
+    ]
+    off = {}
+    for method in ("ls", "iv"):
+        found = fit(noisy[0], y, method=method, instruments=noisy[1])  # the instruments' noise is another
+        off[method] = found.theta[2, 19] / theta[2, 19] - 1
+        if method == "iv":
+            assert np.abs((found.theta - theta) / found.stderr)[np.isfinite(found.stderr)].max() < 4
+    assert off["ls"] < -0.2  # towards zero
+    assert abs(off["iv"]) < 0.05
+
+
+def test_unequal_gains_need_a_row_per_joint():
+    # ERRATA: K = (.03, .05, .02) N m per count, noise-free: 87/61/77 % shared, 100 % row-wise
+    arm = random_arm(np.random.default_rng(5))
+    Phi = regressor(*random_states(np.random.default_rng(6), 3000))
+    y = inverse_dynamics(arm, *random_states(np.random.default_rng(6), 3000)) / [0.03, 0.05, 0.02]
+    percent = {}
+    for rows in ("shared", "joint"):
+        e = fit(Phi, y, rows=rows).residuals
+        percent[rows] = 100 * (1 - np.linalg.norm(e, axis=0) / np.linalg.norm(y - y.mean(axis=0), axis=0))
+    assert (percent["joint"] > 99.999).all()
+    assert (percent["shared"] < 95).all()
+
+
+def test_ridge_calms_and_shrinks():
+    Phi = regressor(*motion(6))
+    y = torque(Phi, IR50P.theta_pwm) + np.random.default_rng(0).normal(0, 20, (len(Phi), 3))
+    norms, spreads = [], []
+    for strength in (1e-9, 1e-5, 1e-4, 1e-3):
+        found = fit(Phi, y, method="ridge", strength=strength, errors="classical")
+        norms.append(np.linalg.norm(found.predict(Phi)))
+        spreads.append(np.nansum(found.stderr))
+    assert np.all(np.diff(norms) < 0)
+    assert np.all(np.diff(spreads) < 0)
+    assert any("ridge" in text for text in found.warnings)
+
+
+# what the data cannot say ------------------------------------------------------------------------------------------
+
+
+def test_theta7_and_theta8_cannot_be_told_apart_by_joint_2():
+    Phi = regressor(*motion(7))
+    found = fit(Phi, torque(Phi, THESIS_C), columns="thesis", unit="N m")
+    assert found.unidentifiable == ("joint 2: theta8",)
+    assert found.theta[1, 6] == pytest.approx(THESIS_C[1, 6] + THESIS_C[1, 7])
+    assert (found.theta[1, 7], found.stderr[1, 7]) == (0.0, np.inf)
+    assert "theta8" not in found.columns[1]
+    assert any(
+        "theta8 cannot be told apart from theta7: theta7 stands for theta7 +1 theta8" in w for w in found.warnings
+    )
+
+
+def test_a_joint_that_stands_still_says_so():
+    q, qd, qdd = motion(8)
+    for x in (q, qd, qdd):
+        x[:, 0] = 0.0
+    Phi = regressor(q, qd, qdd)
+    found = fit(Phi, torque(Phi, IR50P.theta_pwm))
+    for name in ("theta1", "theta2", "theta5", "theta6", "fv1", "fc1"):
+        assert f"joint 1: {name}" in found.unidentifiable
+        assert found.stderr[0, NAMES.index(name)] == np.inf
+    assert found.columns[0] == ("Tf1",)
+    assert any("nothing in the data excites it" in text for text in found.warnings)
+    # without centrifugal torque the inertias about the joint axes act as one
+    assert {"joint 2: theta9", "joint 2: theta10"} < set(found.unidentifiable)
+    true = IR50P.theta_pwm[1]
+    np.testing.assert_allclose(found.theta[1, [1, 4]], [true[1] + true[8], true[4] + true[9]], rtol=1e-6)
+    np.testing.assert_allclose(found.predict(Phi), torque(Phi, IR50P.theta_pwm), atol=1e-6)
+
+
+def test_a_joint_that_never_turns_back_cannot_tell_offset_from_coulomb():
+    q, qd, qdd = motion(9)
+    qd[:, 1] = np.abs(qd[:, 1]) + 0.1
+    Phi = regressor(q, qd, qdd)
+    found = fit(Phi, torque(Phi, IR50P.theta_pwm))
+    assert found.unidentifiable == ("joint 2: Tf2",)
+    assert found.theta[1, 13] == pytest.approx(IR50P.theta_pwm[1, 13] + IR50P.theta_pwm[1, 17])
+
+
+def test_poor_excitation_names_what_is_hardly_told_apart():
+    q, qd, qdd = motion(10)
+    q[:, 2] *= 0.01
+    qd[:, 2] *= 0.01
+    qdd[:, 2] *= 0.01
+    Phi = regressor(q, qd, qdd)
+    y = torque(Phi, IR50P.theta_pwm) + np.random.default_rng(0).normal(0, 1, (len(Phi), 3))
+    found = fit(Phi, y)
+    assert found.condition[1] > 30
+    assert any(text.startswith("joint 2: ") and "hardly told apart" in text for text in found.warnings)
+    assert any("cannot be told from zero" in text for text in found.verdict)
+    good = regressor(*motion(10))
+    rich = fit(good, torque(good, IR50P.theta_pwm) + np.random.default_rng(0).normal(0, 1, (len(Phi), 3)))
+    assert rich.condition.max() < 30
+    assert not any("hardly" in text for text in rich.warnings)
+
+
+def test_l2_ties_theta6_to_theta4():
+    Phi = regressor(*motion(11))
+    y = torque(Phi, IR50P.theta_pwm) + np.random.default_rng(0).normal(0, 5, (len(Phi), 3))
+    for rows in ("joint", "shared"):
+        free, tied = fit(Phi, y, rows=rows), fit(Phi, y, rows=rows, l2=IR50P.l[1])
+        np.testing.assert_allclose(tied.theta[1:, 5], IR50P.l[1] * tied.theta[1:, 3], rtol=1e-12)
+        np.testing.assert_allclose(tied.stderr[1:, 5], IR50P.l[1] * tied.stderr[1:, 3], rtol=1e-9)
+        assert (tied.stderr[1:, 5] < free.stderr[1:, 5]).all()
+    assert fit(Phi, y, l2=0.2).theta[0, 5] == pytest.approx(fit(Phi, y).theta[0, 5])  # joint 1 carries theta6 alone
+
+
+def test_biased_data_are_called_impossible():
+    Phi = regressor(*motion(12))
+    theta = IR50P.theta_pwm.copy()
+    theta[0, 10], theta[2, 19], theta[1, 8] = -5.0, -20.0, -20.0
+    found = fit(Phi, torque(Phi, theta) + np.random.default_rng(0).normal(0, 1, (len(Phi), 3)))
+    assert any("joint 1: fv1 = -5" in text and "hardly possible" in text for text in found.warnings)
+    assert any("mass matrix of these parameters is not positive definite" in text for text in found.warnings)
+    q = np.column_stack([np.zeros(2000), *np.random.default_rng(0).uniform(-np.pi, np.pi, (2, 2000))])
+    M = mass_matrix(found.theta, q)
+    assert np.min([np.linalg.det(M[:, :k, :k]).min() for k in (1, 2, 3)]) < 0
+    sound = fit(Phi, torque(Phi, IR50P.theta_pwm))
+    assert not [text for text in sound.warnings if "hardly told" not in text]
+
+
+def test_correlated_residuals_are_called_out_for_classical_errors():
+    Phi = regressor(*motion(13))
+    y = torque(Phi, IR50P.theta_pwm)
+    rng = np.random.default_rng(0)
+    assert any("correlated" in t for t in fit(Phi, y + autoregressive(rng, len(y)), errors="classical").warnings)
+    assert not any("correlated" in t for t in fit(Phi, y + white(rng, len(y)), errors="classical").warnings)
+    assert fit(Phi, y + autoregressive(rng, len(y))).correlation == pytest.approx([0.9, 0.9, 0.9], abs=0.05)
+
+
+def test_verdict_and_text():
+    Phi = regressor(*motion(14))
+    y = torque(Phi, IR50P.theta_pwm) + np.random.default_rng(0).normal(0, 5, (len(Phi), 3))
+    found = fit(Phi, y)
+    assert isinstance(found, Estimate)
+    assert found.verdict[0].startswith("joint 1: 7 parameters from 2000 samples, residual ")
+    text = str(found)
+    assert "parameters in PWM" in text
+    assert "theta1" in text
+    assert str(fit(Phi, y, rows="shared")).count("all joints: 18 parameters") == 1
+    np.testing.assert_allclose(found.predict(Phi) + found.residuals, y, atol=1e-10)
+    with pytest.raises(InputError, match="Phi has shape"):
+        found.predict(Phi[0])
+    assert dataclasses.replace(found, unit="N m").unit == "N m"
+
+
+# refusals ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_units_do_not_matter(size):
+    Phi = regressor(*motion(15))
+    y = torque(Phi, IR50P.theta_pwm) + np.random.default_rng(0).normal(0, 5, (len(Phi), 3))
+    for method in METHODS:
+        extra = options(method, Phi, y)
+        a, b = fit(Phi, y, method=method, **extra), fit(Phi, size * y, method=method, **extra)
+        np.testing.assert_allclose(b.theta, size * a.theta, rtol=1e-6, atol=1e-9 * size)
+        np.testing.assert_allclose(b.stderr, size * a.stderr, rtol=1e-5)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_bad_data_are_refused(size):
+    Phi = regressor(*motion(16, n=200)) * size
+    y = torque(Phi, IR50P.theta_pwm)
+    bad = y.copy()
+    bad[17, 2] = np.nan
+    with pytest.raises(InputError, match=r"y holds nan at index \(17, 2\)"):
+        fit(Phi, bad)
+    bad = Phi.copy()
+    bad[5, 1, 3] = np.inf
+    with pytest.raises(InputError, match=r"Phi holds inf at index \(5, 1, 3\)"):
+        fit(bad, y)
+    with pytest.raises(InputError, match="y has shape"):
+        fit(Phi, y[:-1])
+    with pytest.raises(InputError, match="Phi has shape"):
+        fit(Phi[:, :2], y)
+    with pytest.raises(IdentificationError, match="equations for 7 parameters"):
+        fit(Phi[:10], y[:10])
+    with pytest.raises(IdentificationError, match="no motion"):
+        fit(np.zeros_like(Phi), y)
+    with pytest.raises(InputError, match="instruments have 199 samples"):
+        fit(Phi, y, method="iv", instruments=Phi[1:])
+    with pytest.raises(IdentificationError, match=r"instrument of .* is zero"):
+        fit(Phi, y, method="iv", instruments=0 * Phi)
+    with pytest.raises(InputError, match=r"weights have shape \(200, 3\) and least value -"):
+        fit(Phi, y, method="weighted", weights=-np.ones_like(y))
+
+
+@pytest.mark.parametrize(
+    ("how", "message"),
+    [
+        ({"method": "LS"}, "method = 'LS'"),
+        ({"rows": "both"}, "rows = 'both'"),
+        ({"errors": "white"}, "errors = 'white'"),
+        ({"l2": 0.0}, "l2 = 0.0"),
+        ({"l2": 200.0}, "in millimetres"),
+        ({"threshold": -1.0}, "threshold = -1.0"),
+        ({"strength": np.nan}, "strength = nan"),
+        ({"every": 0}, "every = 0"),
+        ({"every": 1.5}, "every = 1.5"),
+        ({"columns": "all"}, "columns = 'all'"),
+        ({"columns": ["fv1"]}, "no column chosen acts on joint 2"),
+        ({"method": "iv"}, "needs instruments"),
+        ({"method": "weighted"}, "needs weights"),
+        ({"method": "bounded", "bounds": {"theta21": (0, 1)}}, "no such parameter"),
+        ({"method": "bounded", "bounds": {"theta1": (1, 0)}}, "low must be below high"),
+    ],
+)
+def test_bad_options(how, message):
+    Phi = regressor(*motion(17, n=100))
+    with pytest.raises(InputError, match=message):
+        fit(Phi, torque(Phi, IR50P.theta_pwm), **how)
+
+
+def test_instruments_of_another_motion_are_weak():
+    Phi = regressor(*motion(18))
+    y = torque(Phi, IR50P.theta_pwm)
+    other = regressor(*motion(19))
+    found = fit(Phi, y, method="iv", instruments=other)
+    assert any("weak instruments" in text for text in found.warnings)
+    # an instrument that says nothing: made orthogonal to every column of joint 3
+    blind, A = Phi.copy(), Phi[:, 2, RIGID[2]]
+    blind[:, 2, 19] = other[:, 2, 19] - A @ np.linalg.lstsq(A, other[:, 2, 19], rcond=None)[0]
+    with pytest.raises(IdentificationError, match="joint 3: instruments and regressors have a correlation of"):
+        fit(Phi, y, method="iv", instruments=blind)
+    twice = Phi.copy()
+    twice[:, 0, 0] = twice[:, 0, 10]
+    with pytest.raises(IdentificationError, match="joint 1: the instruments depend on each other"):
+        fit(Phi, y, method="iv", instruments=twice)
+
+
+@pytest.mark.parametrize("m", [40, 241, 479, 480, 5000, 33_000])
+def test_blocked_qr(m):
+    A = np.random.default_rng(m).normal(size=(m, 20))
+    R = r_factor(A)
+    expected = np.linalg.qr(A, mode="r")
+    np.testing.assert_allclose(np.abs(R), np.abs(expected), rtol=1e-9, atol=1e-9 * np.sqrt(m))
