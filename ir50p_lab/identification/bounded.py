@@ -19,7 +19,10 @@ def checked_bounds(bounds):
     for name, pair in (bounds or {}).items():
         if name not in limits:
             raise InputError(f"bounds for {name!r}: no such parameter; choose among {', '.join(NAMES)}")
-        low, high = (float(x) for x in pair)
+        try:
+            low, high = map(float, pair)
+        except (TypeError, ValueError):
+            raise InputError(f"bounds of {name} are {pair!r}: give (low, high), -inf or inf for none") from None
         if not low < high:
             raise InputError(f"bounds of {name} are ({low}, {high}): low must be below high")
         limits[name] = low, high

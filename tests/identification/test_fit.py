@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from arms import random_arm, random_states
-from scipy.signal import butter, sosfiltfilt
+from scipy.signal import butter, lfilter, sosfiltfilt
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import Estimate, fit, regressor
@@ -113,10 +113,7 @@ def low_passed(rng, n):
 
 
 def autoregressive(rng, n):
-    e = np.zeros((n, 3))
-    for k in range(1, n):
-        e[k] = 0.9 * e[k - 1] + rng.normal(size=3)
-    return e
+    return lfilter([1.0], [1.0, -0.9], rng.normal(size=(n, 3)), axis=0)
 
 
 def test_classical_errors_are_right_for_white_noise_and_wrong_for_coloured():

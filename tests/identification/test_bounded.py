@@ -1,0 +1,142 @@
+"""Bounded estimates: within their limits, optimal by two other routes, and no worse than they must be."""
+
+import numpy as np
+import pytest
+from arms import random_arm, random_states
+from scipy.optimize import minimize, nnls
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.identification import fit, regressor
+from ir50p_lab.identification.parameters import ACTS_ON, NAMES, OFFSETS, ONLY_THESIS, chosen_columns
+from ir50p_lab.modelling import IR50P, mass_matrix
+
+RIGID = [sorted(set(acts) & set(chosen_columns("rigid"))) for acts in ACTS_ON]
+BOUNDED = [k for k, name in enumerate(NAMES) if name not in (*OFFSETS, *ONLY_THESIS)]
+
+
+def poor_data(seed, noise=30.0, n=300, theta=None):
+    """Short, noisy data: plain least squares finds negative masses in it."""
+    rng = np.random.default_rng(seed)
+    q, qd, qdd = random_states(rng, n)
+    Phi = regressor(q, 0.3 * qd, 0.1 * qdd)
+    theta = IR50P.theta_pwm if theta is None else theta
+    return Phi, np.einsum("nij,ij->ni", Phi, theta) + rng.normal(0, noise, (n, 3))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_physically_consistent_where_least_squares_is_not(seed):
+    Phi, y = poor_data(seed)
+    plain, found = fit(Phi, y), fit(Phi, y, method="bounded", l2=IR50P.l[1])
+    assert (plain.theta[:, BOUNDED] < 0).any()
+    assert (found.theta[:, BOUNDED] >= 0).all()
+    np.testing.assert_allclose(found.theta[1:, 5], IR50P.l[1] * found.theta[1:, 3], rtol=1e-12)
+    assert not any("hardly possible" in text for text in found.warnings)
+    assert (found.sigma < 1.05 * plain.sigma).all()  # at next to no loss of fit
+    at = [(j, k) for j in range(3) for k in BOUNDED if NAMES[k] in found.columns[j] and found.theta[j, k] == 0]
+    told = " ".join(text for text in found.warnings if "at a bound" in text)
+    assert all(f"{NAMES[k]} = 0" in told for j, k in at if k != 5)
+
+
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("rows", ["joint", "shared"])
+def test_equals_nonnegative_least_squares_of_lawson_and_hanson(seed, rows):
+    # another algorithm: offsets as differences of two non-negative numbers
+    Phi, y = poor_data(seed)
+    found = fit(Phi, y, method="bounded", rows=rows)
+    for joints, here in (
+        [([0, 1, 2], chosen_columns("rigid"))] if rows == "shared" else [([j], RIGID[j]) for j in range(3)]
+    ):
+        A, b = Phi[:, joints][:, :, here].reshape(-1, len(here)), y[:, joints].ravel()
+        offsets = [here.index(NAMES.index(name)) for name in OFFSETS if NAMES.index(name) in here]
+        x, _ = nnls(np.hstack([A, -A[:, offsets]]), b)
+        expected = x[: len(here)]
+        expected[offsets] -= x[len(here) :]
+        scale = np.abs(expected).max()
+        np.testing.assert_allclose(found.theta[joints[0], here], expected, rtol=1e-6, atol=1e-8 * scale)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_nothing_in_the_box_fits_better(seed):
+    # a general optimiser, from the estimate and from elsewhere, with the tie and other bounds
+    Phi, y = poor_data(seed, n=60)
+    limits = {"theta3": (5.0, 9.0), "fv2": (0.0, 150.0), "Tf2": (-1.0, 1.0)}
+    found = fit(Phi, y, method="bounded", l2=0.2, bounds=limits)
+    here = [k for k in RIGID[1] if k != 5]
+    A = Phi[:, 1, here].copy()
+    A[:, here.index(3)] += 0.2 * Phi[:, 1, 5]
+    scale = np.linalg.norm(A, axis=0)
+    box = [limits.get(NAMES[k], (None, None) if NAMES[k] in OFFSETS else (0, None)) for k in here]
+    box = [tuple(x if x is None else x * s for x in pair) for pair, s in zip(box, scale, strict=True)]
+    A, b = A / scale, y[:, 1]
+
+    def cost(x):
+        e = A @ x - b
+        return e @ e, 2 * A.T @ e
+
+    x = found.theta[1, here] * scale
+    for start in (x, np.full(len(x), 1.0)):
+        best = minimize(cost, start, jac=True, bounds=box, method="L-BFGS-B", options={"ftol": 1e-15, "gtol": 1e-9})
+        assert cost(x)[0] <= best.fun * (1 + 1e-9)
+    for k, (low, high) in limits.items():
+        assert low - 1e-9 <= found.theta[1, NAMES.index(k)] <= high + 1e-9
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_good_data_are_left_alone(seed):
+    arm = random_arm(np.random.default_rng(seed), coulomb=True)
+    Phi = regressor(*random_states(np.random.default_rng(seed), 2000))
+    y = np.einsum("nij,ij->ni", Phi, arm.theta_pwm)
+    y += np.random.default_rng(seed).normal(0, 1e-4, y.shape) * np.abs(y).max()
+    if (arm.theta_pwm[:, BOUNDED] < 0).any():
+        pytest.fail("this arm has a negative parameter: take another seed")
+    plain, found = fit(Phi, y), fit(Phi, y, method="bounded")
+    inside = all((plain.theta[j, [k for k in RIGID[j] if k in BOUNDED]] >= 0).all() for j in range(3))
+    assert inside
+    np.testing.assert_allclose(found.theta, plain.theta, rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(found.stderr, plain.stderr, rtol=1e-7)
+    assert not any("at a bound" in text for text in found.warnings)
+
+
+def test_bounds_bring_it_nearer_to_the_truth():
+    # a convex set that holds the truth: every projection on it (in the norm of the data) comes nearer
+    theta = IR50P.theta_pwm
+    for seed in range(20):
+        Phi, y = poor_data(seed, theta=theta)
+        plain, found = fit(Phi, y), fit(Phi, y, method="bounded")
+        true = np.einsum("nij,ij->ni", Phi, theta)
+        assert np.linalg.norm(found.predict(Phi) - true) <= np.linalg.norm(plain.predict(Phi) - true) + 1e-9
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_its_mass_matrix_is_positive_definite(seed):
+    Phi, y = poor_data(seed, noise=60.0)
+    found = fit(Phi, y, method="bounded", rows="shared", l2=IR50P.l[1], columns="rigid")
+    indefinite = any("not positive definite" in text for text in found.warnings)
+    q = np.column_stack([np.zeros(4000), *np.random.default_rng(0).uniform(-np.pi, np.pi, (2, 4000))])
+    M = mass_matrix(found.theta, q)
+    eigenvalues = np.linalg.eigvalsh(M)
+    assert indefinite == (eigenvalues.min() <= 0), "what the fit says about M must be true"
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+def test_units_do_not_matter(size):
+    Phi, y = poor_data(0)
+    a, b = (fit(Phi, k * y, method="bounded") for k in (1.0, size))
+    np.testing.assert_allclose(b.theta, size * a.theta, rtol=1e-9, atol=1e-12 * size)
+
+
+@pytest.mark.parametrize(
+    "bounds",
+    [
+        {"theta1": (2.0, 1.0)},
+        {"theta1": (0.0, 0.0)},
+        {"theta1": (np.nan, 1.0)},
+        {"mass": (0, 1)},
+        {"fv1": (1,)},
+        {"fv1": 3},
+    ],
+)
+def test_bad_bounds(bounds):
+    Phi, y = poor_data(1)
+    with pytest.raises(InputError, match="bounds"):
+        fit(Phi, y, method="bounded", bounds=bounds)
