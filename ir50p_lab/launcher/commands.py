@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 from ir50p_lab.launcher import doctor, inventory
@@ -83,7 +84,9 @@ def _run(arguments, root):
             raise SetUpError(f"There is no arm file '{arm}'. Write one with Arm.save, or give its path.")
         variables["IR50P_ARM"] = str(Path(arm).resolve())
     if tests:
-        return _attend([python, *_test_command(environment.root, arguments)], variables, environment.root)
+        with tempfile.TemporaryDirectory() as recordings:  # notebooks record: tests leave nothing behind
+            variables.setdefault("IR50P_RECORDINGS", recordings)
+            return _attend([python, *_test_command(environment.root, arguments)], variables, environment.root)
     code = _attend([python, *_lab_command(environment.root, arguments)], variables)
     return 0 if code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
 

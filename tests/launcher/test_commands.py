@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import sys
+from pathlib import Path
 
 import pytest
 from mini_project import PROJECT, one_line
@@ -62,6 +63,7 @@ def test_test_runs_pytest_and_nbval_over_everything(tested):
         *(str(tested.root / "tests"), str(tested.root / "notebooks")),
     ]
     assert start["cwd"] == str(tested.root)
+    assert start["IR50P_RECORDINGS"] and not Path(start["IR50P_RECORDINGS"]).exists()  # kept out of notebooks/, gone
 
 
 def test_further_arguments_go_to_pytest_and_paths_replace_the_defaults(tested):
