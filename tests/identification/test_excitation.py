@@ -1,0 +1,151 @@
+"""Optimised excitation: the kernel against the plain regressor, limits kept, better than chance, the same every time."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification import excitation as module
+from ir50p_lab.identification import optimise_excitation, regressor, regressor_condition
+from ir50p_lab.identification.excitation_kernel import _TURN, slopes
+from ir50p_lab.modelling import IR50P, Arm, forward_kinematics
+from ir50p_lab.signals import fourier, hold, quintic
+from ir50p_lab.signals.fourier import limits_of
+
+OTHER = Arm(name="other", l=(0.5, 0.3, 0.2), m=(1, 1, 1), lc=(0.1, 0.1, 0.1), q_min=(-1, 0, -2), q_max=(2, 1.5, 1))
+QUICK = {"starts": 1, "iterations": 25, "progress": False}
+compiled = pytest.mark.compiled
+
+
+def problem(arm=IR50P, rows="joint", table=0.0, columns="rigid"):
+    return module._Problem(arm, 10.0, 4, limits_of(arm, table=table), rows, module._columns(columns))
+
+
+@pytest.mark.parametrize("rows", ["joint", "shared"])
+@pytest.mark.parametrize("seed", range(4))
+def test_kernel_equals_the_regressor_and_numpy(rows, seed):
+    """Second route: Fourier motion sampled, regressor called, columns scaled, numpy.linalg.cond."""
+    p = problem(rows=rows)
+    x = p.start(np.random.default_rng(seed))
+    a, b, q0 = p.split(x)
+    n = module._PER_HARMONIC * 4
+    q, qd, qdd = np.swapaxes(
+        fourier(a, b, period=10.0, q0=q0, ends="adjust").sample((np.arange(n) + 0.5) * 10 / n), 0, 1
+    )
+    Phi = regressor(q, qd, qdd, sign=_TURN)
+    sets = [[0, 1, 4, 5, 10, 11, 16], [1, 2, 3, 4, 5, 8, 9, 12, 13, 17], [3, 4, 5, 9, 14, 15, 18, 19]]
+    if rows == "shared":
+        parts = [Phi[:, :, sorted({k for s in sets for k in s})].reshape(3 * n, -1)]
+    else:
+        parts = [Phi[:, i, s] for i, s in enumerate(sets)]
+    logs = [np.log(np.linalg.cond(A / np.linalg.norm(A, axis=0))) for A in parts]
+    found = p.both(x)
+    assert found[0] == pytest.approx(np.mean(logs), abs=1e-6)
+    low, high, speed, _ = limits_of(IR50P)
+    assert (found[1:10:3] <= high - q.max(axis=0)).all() and (found[1:10:3] > high - q.max(axis=0) - 0.02).all()
+    assert (found[2:10:3] <= q.min(axis=0) - low).all()
+    assert found[3:10:3] == pytest.approx(speed - np.abs(qd).max(axis=0), abs=0.01)
+    heights = forward_kinematics(IR50P, q)[:, 2]
+    assert heights.min() - 0.01 < found[11] <= heights.min()
+
+
+def test_slopes_follow_the_value():
+    p = problem()
+    x = p.start(np.random.default_rng(0))
+    out = np.empty((12, p.size))
+    slopes(x, *p.fixed, out)
+    rng = np.random.default_rng(1)
+    for _ in range(5):
+        step = 1e-5 * rng.normal(size=p.size)
+        ahead, behind = p.both(x + step), p.both(x - step)
+        assert (ahead - behind)[0] / 2 == pytest.approx(out[0] @ step, rel=0.05, abs=1e-6)
+
+
+@compiled
+@pytest.mark.parametrize("arm", [IR50P, OTHER], ids=["IR50P", "another arm"])
+def test_better_than_chance_and_inside_the_limits(arm):
+    found = optimise_excitation(arm, seed=3, periods=2, **{**QUICK, "iterations": 40})
+    assert (found.condition_after < found.condition_before).all()
+    assert np.prod(found.condition_before / found.condition_after) > 30
+    low, high, speed, _ = limits_of(arm, margin=0.05)
+    for target in (found.reference, found.before):
+        rows = target.sample(np.linspace(0, target.duration, 20001))
+        assert (rows[:, 0] >= low - 1e-9).all() and (rows[:, 0] <= high + 1e-9).all()
+        assert (np.abs(rows[:, 1]) <= speed + 1e-9).all()
+        assert forward_kinematics(arm, rows[:, 0])[:, 2].min() >= 0
+        np.testing.assert_allclose(rows[[0, -1], 1:], 0, atol=1e-9)
+    assert found.reference.duration == 20.0
+    again = regressor_condition(found.reference, samples=3000)
+    np.testing.assert_allclose(again, found.condition_after, rtol=0.02)
+    assert "->" in str(found) and len(found.starts) == 1
+
+
+@compiled
+def test_the_same_seed_gives_the_same_motion():
+    first, second = (optimise_excitation(IR50P, seed=5, **{**QUICK, "iterations": 6}) for _ in range(2))
+    assert first.reference == second.reference and first.starts == second.starts
+    assert optimise_excitation(IR50P, seed=6, **{**QUICK, "iterations": 6}).reference != first.reference
+
+
+@compiled
+def test_estimates_are_surer_with_the_better_motion():
+    """What it is for: the same noise on u, a smaller spread of theta relative to each column's part in u."""
+    found = optimise_excitation(IR50P, seed=1, **{**QUICK, "iterations": 40})
+    spread = []
+    for target in (found.before, found.reference):
+        rows = target.sample(np.arange(1000) * 0.01)
+        Phi = regressor(*np.swapaxes(rows, 0, 1))[:, 1][:, [1, 2, 3, 4, 5, 8, 9, 12, 13, 17]]
+        A = Phi / np.sqrt((Phi**2).mean(axis=0))
+        spread.append(np.sqrt(np.trace(np.linalg.inv(A.T @ A))))
+    assert spread[1] < 0.5 * spread[0]
+
+
+@compiled
+def test_shared_rows_and_chosen_columns(capsys):
+    found = optimise_excitation(
+        IR50P, rows="shared", columns=["theta3", "theta4", "fv1", "fc3"], starts=1, iterations=5
+    )
+    assert np.shape(found.condition_after) == () and found.condition_after <= found.condition_before
+    assert "excitation" in capsys.readouterr().err
+
+
+def test_condition_of_motions_that_say_nothing():
+    still = quintic([0, 0.5, -1], [0, 0.5, -1], duration=2.0)
+    assert np.isinf(regressor_condition(still)).all()
+    assert regressor_condition(quintic([0, 0, -1], [1, 1, 0], duration=2.0), rows="shared") > 5
+    with pytest.raises(InputError, match="finite length > 0"):
+        regressor_condition(hold([0, 0, 0]))
+    with pytest.raises(InputError, match="rows = 'all'"):
+        regressor_condition(still, rows="all")
+
+
+def test_impossible_limits():
+    low = dataclasses.replace(IR50P, q_min=(-1, -1.1, -0.2), q_max=(1, -0.8, 0.2))
+    with pytest.raises(IdentificationError, match="no motion was found inside the limits in 1 starts"):
+        optimise_excitation(low, **QUICK)
+    for table in (0.7, 1.0, 10.0):
+        with pytest.raises(IdentificationError, match="lower the table"):
+            optimise_excitation(IR50P, table=table, **QUICK)
+
+
+@pytest.mark.parametrize(
+    "arm, options, words",
+    [
+        ("IR50P", {}, "arm is a str"),
+        (Arm(l=(1, 1, 1), m=(1, 1, 1), lc=(0, 0, 0)), {}, "has no joint limits"),
+        (IR50P, {"period": 0}, "period = 0"),
+        (IR50P, {"harmonics": 1}, "harmonics = 1"),
+        (IR50P, {"harmonics": 2.0}, "harmonics"),
+        (IR50P, {"starts": 0}, "starts = 0"),
+        (IR50P, {"iterations": True}, "iterations = True"),
+        (IR50P, {"seed": -1}, "seed = -1"),
+        (IR50P, {"rows": "each"}, "rows = 'each'"),
+        (IR50P, {"columns": ["fv1"]}, "acts on one of the joints"),
+        (IR50P, {"max_joint_speed": -1}, "max_joint_speed"),
+        (IR50P, {"margin": -1}, "margin = -1"),
+    ],
+)
+def test_bad_arguments(arm, options, words):
+    with pytest.raises(InputError, match=words):
+        optimise_excitation(arm, **{"progress": False, **options})

@@ -1,0 +1,210 @@
+"""Validation: the fit of Table 4.4 by hand, a model that is right scores 100 %, one that is wrong less, raw u is kept."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ir50p_lab.controllers import PID
+from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification import (
+    nrmse_fit,
+    regressor,
+    validate,
+    validate_ahead,
+    validate_closed_loop,
+    whiteness,
+)
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.signals import at_rest, fourier
+from ir50p_lab.simulation import simulate
+
+THETA = np.array(IR50P.theta_pwm)
+A, B = at_rest(*np.random.default_rng(2).normal(0, 0.15, (2, 3, 4)))
+TARGET = fourier(A, B, period=10.0, q0=(0, 0.6, -1), periods=2)
+GAINS = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30)}
+
+
+def analytic(rate=200.0, delay=0.0):
+    """u = Phi theta of an analytic motion, at the samples; with a delay it acts later than it stands there."""
+    t = np.arange(int(20 * rate)) / rate
+    q = TARGET.sample(t)[:, 0]
+    rows = TARGET.sample(t + delay)
+    u = np.einsum("nij,ij->ni", regressor(rows[:, 0], rows[:, 1], rows[:, 2]), THETA)
+    return SimpleNamespace(t=t, q=q, u=u)
+
+
+def loop(theta=THETA, period=0.01, seconds=20.0):
+    """A closed loop in the simulation engine; the command is limited to 255 counts."""
+    pid = PID(**GAINS, limit_pwm=255)
+    run = simulate(theta, pid, TARGET, duration=seconds, period=period, q0=TARGET.q_start, unit="PWM")
+    return SimpleNamespace(t=run.t, q=run.q, u=run.u), pid
+
+
+# --- numbers
+
+
+@given(st.integers(0, 1000), st.floats(-2, 1))
+def test_fit_by_hand(seed, level):
+    y = np.random.default_rng(seed).normal(3, 2, (50, 3))
+    p = y.mean(axis=0) + (1 - level) * (y - y.mean(axis=0))
+    rms, fit = nrmse_fit(y, p)
+    np.testing.assert_allclose(rms, abs(level) * y.std(axis=0), atol=1e-12)
+    np.testing.assert_allclose(fit, 100 * (1 - abs(level)), atol=1e-9)
+    np.testing.assert_allclose(nrmse_fit(y[:, 0], p[:, 0]), (rms[0], fit[0]), atol=1e-12)
+
+
+def test_table_4_4_is_of_this_kind():
+    """RMS/(1 - fit) is the same spread of u, about 125 counts, on all three joints of the thesis' table."""
+    spread = np.array([47, 37, 32]) / (1 - np.array([0.63, 0.70, 0.74]))
+    assert np.ptp(spread) < 5 and abs(spread.mean() - 125) < 2
+
+
+def test_the_right_model_scores_and_a_wrong_one_does_not():
+    record = analytic()
+    found = validate(THETA, record, cutoff_hz=8.0, held=False)
+    assert (found.fit > 98).all() and found.of == "u" and "fit" in str(found)
+    np.testing.assert_allclose(found.spread, found.rms / (1 - found.fit / 100))
+    np.testing.assert_array_equal(found.measured, record.u[np.searchsorted(record.t, found.t)])  # raw, all of them
+    np.testing.assert_array_equal(found.residuals, found.measured - found.predicted)
+    np.testing.assert_array_equal(
+        validate(SimpleNamespace(theta=THETA), record, cutoff_hz=8.0, held=False).rms, found.rms
+    )
+    for joint, column in ((0, 0), (1, 2), (2, 15)):
+        wrong = THETA.copy()
+        wrong[joint, column] *= 1.5
+        fit = validate(wrong, record, cutoff_hz=8.0, held=False).fit
+        assert fit[joint] < found.fit[joint] - 3
+        np.testing.assert_allclose(np.delete(fit, joint), np.delete(found.fit, joint))
+
+
+@pytest.mark.parametrize("delay", [0.02, 0.05, 0.1])
+def test_delay_is_taken_into_account(delay):
+    record = analytic(delay=delay)
+    assert (validate(THETA, record, cutoff_hz=8.0, delay=delay, held=False).fit > 98).all()
+    assert (validate(THETA, record, cutoff_hz=8.0, held=False).fit < 97).all()
+
+
+def test_the_thesis_way_is_worse_with_the_true_theta():
+    """Its lag is seen even if theta is exact: the same model, the same record."""
+    record = analytic()
+    causal = validate(THETA, record, derivatives="causal", cutoff_hz=3.0)
+    assert (causal.fit < validate(THETA, record, cutoff_hz=3.0, held=False).fit - 5).all()
+
+
+def test_gaps_leave_raw_samples_out():
+    record = analytic()
+    kept = (record.t < 8) | (record.t > 9)
+    part = SimpleNamespace(t=record.t[kept], q=record.q[kept], u=record.u[kept])
+    found = validate(THETA, part, cutoff_hz=8.0, held=False)
+    assert not ((found.t > 7.99) & (found.t < 9.01)).any() and (found.fit > 98).all()
+
+
+# --- simulated
+
+
+@pytest.mark.compiled
+def test_closed_loop_with_the_model_itself_is_exact():
+    record, pid = loop()
+    for found in validate_closed_loop(THETA, record, pid, TARGET):
+        assert (found.fit > 99.999).all()
+    light = THETA.copy()
+    light[1, 2:4] *= 0.7
+    q, u = validate_closed_loop(light, record, pid, TARGET)
+    assert q.fit[1] < 98 and u.fit[1] < 90 and q.of == "q" and u.of == "u"
+    q, u = validate_closed_loop(THETA, record, pid, TARGET, delay=0.02)
+    assert (q.fit > 95).all() and (q.fit < 99.99).all()
+
+
+@pytest.mark.compiled
+def test_ahead_with_the_model_itself_stays_near():
+    record, _ = loop()
+    found = validate_ahead(THETA, record, horizon=0.5, cutoff_hz=10.0)
+    assert (found.fit > 97).all() and found.of == "q"
+    heavy = THETA.copy()
+    heavy[1, 2:4] *= 1.5
+    assert validate_ahead(heavy, record, horizon=0.5, cutoff_hz=10.0).fit[1] < found.fit[1] - 2
+    longer = validate_ahead(heavy, record, horizon=1.5, cutoff_hz=10.0)
+    assert longer.rms[1] > 1.5 * validate_ahead(heavy, record, horizon=0.5, cutoff_hz=10.0).rms[1]
+
+
+# --- whiteness
+
+
+def test_white_noise_is_white_and_nothing_else_is():
+    p = [whiteness(np.random.default_rng(seed).normal(size=500)).p[0] for seed in range(300)]
+    assert 0.002 < np.mean(np.array(p) < 0.05) < 0.11 and np.mean(np.array(p) < 0.5) == pytest.approx(0.5, abs=0.1)
+    for phi in (0.3, 0.6, 0.95):
+        e = np.random.default_rng(1).normal(size=(2000, 2))
+        for k in range(1, 2000):
+            e[k, 1] += phi * e[k - 1, 1]
+        found = whiteness(e)
+        assert found.white.tolist() == [True, False]
+        assert found.correlation[0, 1] == pytest.approx(phi, abs=0.06)
+        assert found.independent[1] == pytest.approx(2000 * (1 - phi) / (1 + phi), rel=0.4)
+        assert found.inside[0] > 0.9 and found.independent[0] > 1500
+
+
+def test_ljung_box_by_hand():
+    e = np.random.default_rng(0).normal(size=100)
+    found = whiteness(e, lags=3)
+    x = e - e.mean()
+    r = [x[k:] @ x[:-k] / (x @ x) for k in (1, 2, 3)]
+    np.testing.assert_allclose(found.correlation[:, 0], r)
+    Q = 100 * 102 * sum(r[k - 1] ** 2 / (100 - k) for k in (1, 2, 3))
+    draws = np.random.default_rng(1).chisquare(3, 200000)  # second route to the tail of chi-squared
+    assert found.p[0] == pytest.approx((draws > Q).mean(), abs=0.005)
+
+
+# --- refusals
+
+
+def test_bad_input():
+    record = analytic(rate=50.0)
+    with pytest.raises(InputError, match="decimate is no step of a validation"):
+        validate(THETA, record, decimate=2)
+    with pytest.raises(InputError, match="three joints"):
+        validate(THETA, record.t, record.q[:, :2], record.u[:, :2])
+    with pytest.raises(InputError, match="theta with shape"):
+        validate(THETA[:2], record)
+    for delay in (-1, np.nan, None):
+        with pytest.raises(InputError, match="delay"):
+            validate(THETA, record, delay=delay)
+    with pytest.raises(InputError, match="two samples"):
+        validate_ahead(THETA, record, horizon=0.01)
+    with pytest.raises(IdentificationError, match="shorter horizon"):
+        validate_ahead(THETA, record, horizon=100.0)
+    record.t[100:] += 0.1
+    with pytest.raises(InputError, match="uneven or have gaps"):
+        validate_closed_loop(THETA, record, PID(**GAINS), TARGET)
+
+
+@pytest.mark.parametrize(
+    "y, p, words",
+    [
+        (np.zeros(5), np.zeros(4), "one shape"),
+        (np.zeros(1), np.zeros(1), "one shape"),
+        (np.arange(5.0), np.full(5, np.nan), "predicted holds"),
+        (np.ones((5, 2)), np.zeros((5, 2)), "never changes"),
+    ],
+)
+def test_bad_columns(y, p, words):
+    with pytest.raises(InputError, match=words):
+        nrmse_fit(y, p)
+
+
+@pytest.mark.parametrize(
+    "e, lags, words",
+    [
+        (np.zeros(5), None, "20 or more"),
+        (np.full(50, np.inf), None, "not finite"),
+        (np.ones(50), None, "constant"),
+        (np.random.default_rng(0).normal(size=50), 40, "lags = 40"),
+        (np.random.default_rng(0).normal(size=50), True, "lags = True"),
+    ],
+)
+def test_bad_residuals(e, lags, words):
+    with pytest.raises(InputError, match=words):
+        whiteness(e, lags=lags)
