@@ -1,0 +1,138 @@
+"""The delay between a command and its effect, from a recording; and how well a recording can tell it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification.arm_regressor import regressor
+from ir50p_lab.identification.columns import columns_of, sampling_period
+from ir50p_lab.identification.parameters import ACTS_ON, NAMES, ONLY_THESIS
+from ir50p_lab.identification.processing import process
+
+_FLAT = 1.01  # a residual this near to the smallest does not speak against a delay
+_FEWEST = 200  # samples in motion, of each joint
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DelayEstimate:
+    """What `estimate_delay` found.
+
+    delay: s, median of the joints; stderr: s, the larger of what the joints and what stretches of the record differ by.
+    per_joint (k,) s. delays (m,) s: those tried; rms (m, k): residual of the best model with each. flat (k, 2) s: from
+    where to where the residual is within 1 % of the smallest. warnings: tuple of str.
+    """
+
+    delay: float
+    stderr: float
+    per_joint: np.ndarray
+    delays: np.ndarray
+    rms: np.ndarray
+    flat: np.ndarray
+    warnings: tuple
+
+
+def estimate_delay(
+    recording, q=None, u=None, *, longest=0.15, step=None, cutoff_hz=3.0, order=4, slow=0.1, blocks=6, g=9.81
+):
+    """Delay from a sample to the moment its u acts: the one with which the best model leaves the smallest residual.
+
+    For each delay that is tried, u is shifted, the model is fitted anew (three joints: the rigid arm with friction; one
+    joint: inertia, friction, offset), and what is left is compared; u, q and all columns pass the same filter.
+
+    How well this can be done (simulated bench, delays of 0, 2 and 5 periods of 10 ms): from steps of the set point
+    within one or two periods, for there u jumps and the joint answers; from a Fourier excitation it is off by up to ten
+    periods, for there a delay looks like a little more inertia and friction. Backlash and a dead zone look like delay.
+
+    Args: recording, or t, q, u: as in `process`. longest: s, largest delay tried; step: s, default one period.
+    cutoff_hz, order, slow: as in `process`; slow leaves out where a joint may stick. blocks: stretches of the record
+    that are compared for the standard error. g: m/s^2.
+
+    Returns: DelayEstimate. Raises: InputError on bad arguments; IdentificationError if too little motion is left.
+    """
+    t, q, u = columns_of(recording, q, u)
+    joints = q.shape[1]
+    if joints not in (1, 3):
+        raise InputError(f"q has {joints} columns: give one joint, or all three")
+    period = sampling_period(t)
+    step = period if step is None else step
+    for name, value in (("longest", longest), ("step", step)):
+        if not (np.isscalar(value) and not isinstance(value, str) and np.isfinite(value) and value > 0):
+            raise InputError(f"{name} = {value!r}: give finite seconds > 0")
+    if isinstance(blocks, bool) or not isinstance(blocks, (int, np.integer)) or not 2 <= blocks <= 100:
+        raise InputError(f"blocks = {blocks!r}: give a whole number from 2 to 100")
+    delays = step * np.arange(int(longest / step + 1e-9) + 1)
+    if len(delays) < 4:
+        raise InputError(f"longest = {longest} s holds {len(delays)} delays of {step:g} s: give 4 or more to compare")
+    options = {"cutoff_hz": cutoff_hz, "order": order, "slow": slow, "filter_u": True, "trim": max(longest, 0.5)}
+    motion = process(t, q, u, **options)
+    fewest = int(motion.use.sum(axis=0).min())
+    if fewest < _FEWEST:
+        raise IdentificationError(
+            f"{fewest} samples of a joint are faster than slow = {slow} rad/s; {_FEWEST} are needed: record steps of "
+            "the set point for a minute, or give a smaller slow"
+        )
+    spaces = [_space(motion, joint, g) for joint in range(joints)]
+    left = np.empty((len(delays), len(motion), joints))
+    for m, delay in enumerate(delays):
+        shifted = process(t, q, u, delay=float(delay), **options)
+        for joint, Q in enumerate(spaces):
+            y = np.where(motion.use[:, joint], shifted.u[:, joint], 0.0)
+            left[m, :, joint] = y - Q @ (Q.T @ y)
+    power = (left**2).sum(axis=1)
+    rms = np.sqrt(power / motion.use.sum(axis=0))
+    per_joint = np.array([_least(delays, power[:, j]) for j in range(joints)])
+    parts = np.array_split(left**2, blocks, axis=1)
+    by_block = [np.median([_least(delays, part[:, :, j].sum(axis=1)) for j in range(joints)]) for part in parts]
+    stderr = max(np.std(by_block, ddof=1) / np.sqrt(blocks), np.std(per_joint) / np.sqrt(joints), 0.3 * step)
+    flat = np.array([delays[np.flatnonzero(rms[:, j] <= _FLAT * rms[:, j].min())[[0, -1]]] for j in range(joints)])
+    found = float(np.median(per_joint))
+    return DelayEstimate(
+        delay=found,
+        stderr=float(stderr),
+        per_joint=per_joint,
+        delays=delays,
+        rms=rms,
+        flat=flat,
+        warnings=tuple(_doubts(found, per_joint, flat, delays, step)),
+    )
+
+
+def _space(motion, joint, g):
+    """Orthonormal basis (n, p) of what the model of one joint can express, 0 where it is not to be used."""
+    if motion.q.shape[1] == 3:
+        columns = [k for k in ACTS_ON[joint] if NAMES[k] not in ONLY_THESIS]
+        A = regressor(motion.q, motion.qd, motion.qdd, g=g)[:, joint][:, columns]
+    else:
+        v = motion.qd[:, 0]
+        A = np.column_stack([motion.qdd[:, 0], v, np.sign(v), np.ones_like(v)])
+    A = np.where(motion.use[:, joint, None], A, 0.0)
+    U, s, _ = np.linalg.svd(A / np.maximum(np.linalg.norm(A, axis=0), 1e-300), full_matrices=False)
+    return U[:, s > 1e-9 * s[0]]
+
+
+def _least(delays, power):
+    """Delay of the smallest power, between the points by a parabola."""
+    m = int(power.argmin())
+    if m in (0, len(power) - 1):
+        return float(delays[m])
+    before, here, after = power[m - 1 : m + 2]
+    bend = before - 2 * here + after
+    return float(delays[m] + (0.5 * (before - after) / bend if bend > 0 else 0.0) * (delays[1] - delays[0]))
+
+
+def _doubts(found, per_joint, flat, delays, step):
+    if (per_joint >= delays[-1]).any():
+        yield f"the best delay is the largest tried, {delays[-1]:.3g} s: this record does not show it, or raise longest"
+    if np.ptp(per_joint) > 2.5 * step:
+        each = ", ".join(f"{x:.3g}" for x in per_joint)
+        yield (
+            f"the joints disagree ({each} s): backlash, dead zone and stiction look like delay too; record steps of "
+            "the set point, and trust the smallest"
+        )
+    wide = np.diff(flat, axis=1).ravel()
+    if (wide > 3.5 * step).any():
+        yield (
+            f"the residual is flat within 1 % over {wide.max():.2g} s: the record hardly depends on the delay; record "
+            "steps of the set point, where u jumps"
+        )

@@ -1,0 +1,77 @@
+"""The delay: found in exact data, within a period or two on the bench from steps, and Fourier motion cannot tell it."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import SimulatedBench, Unit
+from ir50p_lab.controllers import PID
+from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification import estimate_delay
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.signals import at_rest, fourier, steps
+
+rng = np.random.default_rng(0)
+POSES = np.column_stack([rng.uniform(-0.6, 0.6, 40), rng.uniform(0.2, 1, 40), rng.uniform(-1.3, -0.5, 40)])
+STEPS = steps(np.arange(40) * 1.5, POSES)
+A, B = at_rest(*rng.normal(0, 0.2, (2, 3, 5)) / np.arange(1, 6))
+FOURIER = fourier(A, B, period=10.0, q0=(0, 0.6, -0.9), periods=6)
+
+
+def bench(reference, delay, seed=1):
+    pid = PID(kp=(289, 225, 270), ki=(50, 10, 50), kd=(40, 30, 30), limit_pwm=255)
+    unit = Unit(delay=delay)
+    with SimulatedBench(IR50P, seed=seed, unit=unit, q0=reference(0.0)[0], record_to=False) as arm:
+        return arm.follow(pid, reference, 60)
+
+
+@pytest.mark.parametrize("samples", [0, 1, 4, 9])
+def test_exact_data_of_one_joint(samples):
+    """A mass with viscous friction under a held random command, exactly integrated, then shifted."""
+    n, T = 4000, 0.01
+    u = np.repeat(np.random.default_rng(3).normal(size=n // 20), 20)
+    acting = np.r_[np.zeros(samples), u[: n - samples]]
+    q, v, decay = np.zeros(n), 0.0, np.exp(-2 * T)
+    for k in range(n - 1):
+        q[k + 1] = q[k] + acting[k] / 2 * T + (v - acting[k] / 2) * (1 - decay) / 2
+        v = acting[k] / 2 + (v - acting[k] / 2) * decay
+    found = estimate_delay(np.arange(n) * T, q, u, slow=0.0, cutoff_hz=8.0)
+    assert found.delay == pytest.approx(samples * T, abs=0.001)
+    assert found.warnings == () and found.rms.shape == (16, 1)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("delay", [0, 2, 5, 8])
+def test_steps_on_the_bench_tell_it_within_two_periods(delay):
+    for seed in (1, 2):
+        found = estimate_delay(bench(STEPS, delay, seed))
+        assert abs(found.delay - 0.01 * delay) < 0.021
+        assert abs(found.delay - 0.01 * delay) < 3 * found.stderr
+
+
+@pytest.mark.compiled
+def test_fourier_motion_cannot_tell_it():
+    """The claim of the docstring: the estimate is off by far more, and it says so."""
+    found = estimate_delay(bench(FOURIER, 2))
+    assert np.abs(found.per_joint - 0.02).max() > 0.04 and found.warnings
+
+
+def test_bad_input():
+    t = np.arange(3000) * 0.01
+    q = np.sin(t)[:, None] * [1.0, 1.0, 1.0]
+    good = SimpleNamespace(t=t, q=q, u=q)
+    for options, words in (
+        ({"longest": 0}, "longest = 0"),
+        ({"longest": 0.02}, "give 4 or more"),
+        ({"step": -1}, "step = -1"),
+        ({"blocks": 1}, "blocks = 1"),
+        ({"blocks": 2.5}, r"blocks = 2\.5"),
+    ):
+        with pytest.raises(InputError, match=words):
+            estimate_delay(good, **options)
+    with pytest.raises(InputError, match="one joint, or all three"):
+        estimate_delay(t, q[:, :2], q[:, :2])
+    for slow in (2.0, 10.0):
+        with pytest.raises(IdentificationError, match="record steps"):
+            estimate_delay(good, slow=slow)
