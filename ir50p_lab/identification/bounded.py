@@ -47,4 +47,4 @@ def bounded(problem, limits):
         if active
     ]
     notes = [f"{problem.who}at a bound: {', '.join(at)}; the data alone would go beyond"] if at else []
-    return Solution(beta, np.eye(len(beta)), problem.Q, problem.y - problem.A @ beta, notes)
+    return Solution(beta, np.eye(len(beta)), problem.Q, problem.residuals(beta), notes)

@@ -6,9 +6,9 @@ Each returns a Solution in the coordinates of Q (A = Q R), where numbers are wel
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from ir50p_lab.errors import IdentificationError
+from ir50p_lab.identification.qr import gram, inverse_upper, product, r_factor
 
 _WEAK = 0.1  # smallest canonical correlation of instruments and regressors below which they are weak
 
@@ -27,7 +27,7 @@ class Solution:
 def least_squares(problem):
     """min |y - A beta|^2 by QR    (2.35), without the squared condition number of A^T A."""
     beta = problem.beta(problem.Qty)
-    return Solution(beta, np.eye(len(beta)), problem.Q, problem.y - problem.A @ beta)
+    return Solution(beta, np.eye(len(beta)), problem.Q, problem.residuals(beta))
 
 
 def ridge(problem, strength):
@@ -35,10 +35,9 @@ def ridge(problem, strength):
     p = len(problem.names)
     augmented = np.vstack([problem.R, np.sqrt(strength) * np.eye(p)])
     beta = np.linalg.lstsq(augmented, np.concatenate([problem.Qty, np.zeros(p)]), rcond=None)[0]
-    R_inverse = problem.beta(np.eye(p))
-    bread = np.eye(p) + strength * R_inverse.T @ R_inverse
+    bread = np.eye(p) + strength * problem.R_inverse.T @ problem.R_inverse
     note = f"{problem.who}ridge {strength:g} pulls parameters towards 0; standard errors do not hold that bias"
-    return Solution(beta, bread, problem.Q, problem.y - problem.A @ beta, [note])
+    return Solution(beta, bread, problem.Q, problem.residuals(beta), [note])
 
 
 def instrumental_variables(problem, Z):
@@ -50,24 +49,24 @@ def instrumental_variables(problem, Z):
     if not length.all():
         name = problem.names[int(np.argmin(length))]
         raise IdentificationError(f"{problem.who}the instrument of {name} is zero throughout: fit without that column")
-    Qz, R = np.linalg.qr(Z / length)
+    R = r_factor(Z / length)
     if np.abs(np.diag(R)).min() < 1e-8:
         raise IdentificationError(f"{problem.who}the instruments depend on each other: they excite fewer columns")
-    bread = Qz.T @ problem.Q
+    Qz = product(Z / length, inverse_upper(R))
+    bread = gram(Qz, problem.Q)
     smallest = np.linalg.svd(bread, compute_uv=False)[-1]
     if smallest < 1e-3:
         raise IdentificationError(
             f"{problem.who}instruments and regressors have a correlation of {smallest:.1g} only in some direction: "
             "take instruments that follow the same motion, such as the regressor of the reference or of a simulation"
         )
-    beta = problem.beta(np.linalg.solve(bread, Qz.T @ problem.y))
+    beta = problem.beta(np.linalg.solve(bread, gram(Qz, problem.y)))
     notes = []
     if smallest < _WEAK:
         notes = [f"{problem.who}weak instruments (smallest correlation {smallest:.2g}): large, optimistic errors"]
-    return Solution(beta, bread, Qz, problem.y - problem.A @ beta, notes)
+    return Solution(beta, bread, Qz, problem.residuals(beta), notes)
 
 
 def covariance_of_beta(problem, in_q):
     """R^-1 C R^-T: covariance of beta from that in the coordinates of Q."""
-    half = solve_triangular(problem.R, in_q)
-    return solve_triangular(problem.R, half.T)
+    return problem.R_inverse @ in_q @ problem.R_inverse.T

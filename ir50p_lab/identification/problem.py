@@ -4,10 +4,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from ir50p_lab.errors import IdentificationError
-from ir50p_lab.identification.qr import independent_columns, r_factor
+from ir50p_lab.identification.qr import independent_columns, inverse_upper, product, r_factor
 
 DEPENDENT = 1e-8  # a column of which less than this sticks out of the others carries nothing but rounding
 _CLOSE = 30.0  # condition index from which columns are hardly told apart (Belsley, Kuh and Welsch 1980)
@@ -37,7 +36,12 @@ class Problem:
     @cached_property
     def Q(self):
         """Orthonormal columns that span those of A: A R^-1."""
-        return self.A @ solve_triangular(self.R, np.eye(len(self.R)))
+        return product(self.A, self.R_inverse)
+
+    @cached_property
+    def R_inverse(self):
+        """R^-1: triangular, so that back substitution gives it without loss of digits."""
+        return inverse_upper(self.R)
 
     @cached_property
     def condition(self):
@@ -46,7 +50,11 @@ class Problem:
 
     def beta(self, in_q):
         """Parameters from coordinates in Q: R^-1 x."""
-        return solve_triangular(self.R, in_q)
+        return self.R_inverse @ in_q
+
+    def residuals(self, beta):
+        """y - A beta, (N,)."""
+        return self.y - product(self.A, beta)
 
     def hardly_told_apart(self):
         """Sentences about columns that are nearly dependent: variance decomposition proportions (Belsley 1980)."""
@@ -85,16 +93,21 @@ def prepare(who, names, A, y, n):
             f"{who}no column is excited: the data hold no motion. Move the joint and record again"
         )
     A, length = A[:, seen] / length[seen], length[seen]
-    R = r_factor(np.column_stack([A, y]))
-    R, Qty = R[: len(names), : len(names)], R[: len(names), -1]
+    R, Qty = _factors(A, y)
     kept = independent_columns(R, DEPENDENT)
     if len(kept) < len(names):
         notes += groups_in_words(who, names, R / length, kept)
         lost += [names[k] for k in range(len(names)) if k not in kept]
         names, A, length = [names[k] for k in kept], A[:, kept], length[kept]
-        R = r_factor(np.column_stack([A, y]))
-        R, Qty = R[: len(names), : len(names)], R[: len(names), -1]
+        R, Qty = _factors(A, y)
     return Problem(who, tuple(names), A, y, length, n, R, Qty, tuple(lost), tuple(notes))
+
+
+def _factors(A, y):
+    """R (p, p) and Q^T y (p,) of A = Q R."""
+    R = r_factor(np.column_stack([A, y]))
+    p = A.shape[1]
+    return np.ascontiguousarray(R[:p, :p]), R[:p, -1]
 
 
 def groups_in_words(who, names, R, kept):

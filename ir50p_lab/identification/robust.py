@@ -4,6 +4,7 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification.least_squares import Solution
+from ir50p_lab.identification.qr import gram, product
 
 _MOST_STEPS = 200
 _NORMAL = 0.6744897501960817  # median of |x| of a standard normal
@@ -19,12 +20,12 @@ def huber(problem, threshold):
     joints = len(y) // problem.n
     x = problem.Qty
     for _ in range(_MOST_STEPS):
-        e = (y - Q @ x).reshape(-1, joints)
+        e = (y - product(Q, x)).reshape(-1, joints)
         limit = (threshold * np.median(np.abs(e), axis=0) / _NORMAL * np.ones_like(e)).ravel()
         e = e.ravel()
         limit = np.maximum(limit, 1e-12 * np.abs(y).max(initial=0.0))  # a perfect fit has no scale
         weights = limit / np.maximum(np.abs(e), np.where(limit > 0, limit, 1.0))
-        new = np.linalg.solve(Q.T @ (weights[:, None] * Q), Q.T @ (weights * y))
+        new = np.linalg.solve(gram(Q, weights[:, None] * Q), gram(Q, weights * y))
         moved = np.linalg.norm(new - x)
         x = new
         if moved <= 1e-10 * max(np.linalg.norm(x), 1e-300):
@@ -33,9 +34,9 @@ def huber(problem, threshold):
         raise IdentificationError(
             f"{problem.who}the robust fit has not settled after {_MOST_STEPS} steps: too few good samples; use 'ls'"
         )
-    e = y - Q @ x
+    e = y - product(Q, x)
     inside = np.abs(e) <= limit
-    bread = Q.T @ (inside[:, None] * Q)
+    bread = gram(Q, inside[:, None] * Q)
     cut = 1 - inside.mean()
     notes = [f"{problem.who}{cut:.0%} of the samples lie beyond the threshold"] if cut > 0.3 else []
     return Solution(problem.beta(x), bread, Q, np.clip(e, -limit, limit), notes)

@@ -3,6 +3,8 @@
 import numpy as np
 from scipy import fft, special
 
+from ir50p_lab.identification.qr import gram
+
 
 def sandwich(bread, rows, residuals, n, errors):
     """Covariance B^-1 S B^-T of an estimate that solves sum of rows^T residuals = 0.
@@ -21,7 +23,7 @@ def sandwich(bread, rows, residuals, n, errors):
         S = 0.0
         for joint in range(N // n):
             block = rows[joint :: N // n]
-            S = S + np.mean(residuals[joint :: N // n] ** 2) * freedom * (block.T @ block)
+            S = S + np.mean(residuals[joint :: N // n] ** 2) * freedom * gram(block, block)
     else:
         scores = (rows * residuals[:, None]).reshape(n, N // n, p).sum(axis=1)
         S = freedom * long_run_sum(scores, residuals.reshape(n, -1))

@@ -1,0 +1,151 @@
+"""Speed of identification beside Pinocchio, or NumPy, in the same run: `pytest tests/benchmarks --benchmark-enable -s`.
+
+Ratios, not times, are what counts: the machine is the same for both. The targets are printed with the result.
+Pinocchio (`pip install pin`) is the peer if it is installed; it is not needed to run the tests.
+"""
+
+import importlib.util
+import time
+
+import numpy as np
+import pytest
+
+from ir50p_lab.identification import RLS, fit, regressor
+from ir50p_lab.identification.parameters import NAMES
+from ir50p_lab.identification.qr import r_factor
+from ir50p_lab.modelling import IR50P
+
+N = 11_000  # 110 s at 100 Hz, as the thesis
+HAVE_PINOCCHIO = importlib.util.find_spec("pinocchio") is not None
+
+
+def measured(n=N):
+    """q, qd, qdd and PWM of n random states, with noise."""
+    rng = np.random.default_rng(0)
+    q, qd, qdd = rng.uniform(-2, 2, (n, 3)), rng.normal(0, 1, (n, 3)), rng.normal(0, 3, (n, 3))
+    y = np.einsum("nij,ij->ni", regressor(q, qd, qdd), IR50P.theta_pwm) + rng.normal(0, 3, (n, 3))
+    return q, qd, qdd, y
+
+
+def pinocchio_fit(q, qd, qdd, y):
+    """Pinocchio's regressor in a Python loop, friction columns, lstsq of the 15 + 10 columns that are independent."""
+    import pinocchio as pin
+
+    model, parent = pin.Model(), 0
+    turn = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # +90 degrees about x: z1 on the shoulder's axis
+    places = [(np.eye(3), [0, 0, 0]), (turn, [0, 0, IR50P.l[0]]), (np.eye(3), [IR50P.l[1], 0, 0])]
+    for k, (R, p) in enumerate(places):
+        place = pin.SE3(R, np.array(p, dtype=float))
+        parent = model.addJoint(parent, pin.JointModelRZ(), place, f"joint{k + 1}")
+        model.appendBodyToJoint(parent, pin.Inertia(1.0, np.array([0.1, 0, 0]), 0.01 * np.eye(3)), pin.SE3.Identity())
+    data = model.createData()
+    base = [9, 11, 12, 14, 15, 17, 18, 19, 21, 22, 24, 25, 27, 28, 29]  # the 15 of base_parameters
+
+    def run():
+        n = len(q)
+        Phi = np.zeros((n, 3, 25))
+        for k in range(n):
+            Phi[k, :, :15] = pin.computeJointTorqueRegressor(model, data, q[k], qd[k], qdd[k])[:, base]
+        for j in range(3):
+            Phi[:, j, 15 + 3 * j : 18 + 3 * j] = np.column_stack([qd[:, j], np.sign(qd[:, j]), np.ones(n)])
+        Phi[:, 2, 24] = qdd[:, 2]
+        return Phi.reshape(-1, 25) @ np.linalg.lstsq(Phi.reshape(-1, 25), y.ravel(), rcond=None)[0]
+
+    return run
+
+
+def numpy_fit(q, qd, qdd, y):
+    """The same by the book: a NumPy block per sample in a Python loop, then lstsq."""
+
+    def run():
+        Phi = np.zeros((len(q), 3, 20))
+        for k in range(len(q)):
+            (a, b, c), (A, B, C) = qd[k], qdd[k]
+            c2, s2, c3, s3 = np.cos(q[k, 1]), np.sin(q[k, 1]), np.cos(q[k, 2]), np.sin(q[k, 2])
+            c23, s23 = np.cos(q[k, 1] + q[k, 2]), np.sin(q[k, 1] + q[k, 2])
+            mixed = s23 * c2 + c23 * s2
+            Phi[k] = np.array(
+                [
+                    [A, c2**2 * A - 2 * s2 * c2 * a * b, 0, 0, c23**2 * A - 2 * s23 * c23 * a * (b + c),
+                     2 * c2 * c23 * A - 2 * mixed * a * b - 2 * s23 * c2 * a * c, B, B + C, 0, 0,
+                     a, np.sign(a), 0, 0, 0, 0, 1, 0, 0, 0],
+                    [0, B + s2 * c2 * a**2, 9.81 * c2, 9.81 * c23, B + C + s23 * c23 * a**2,
+                     2 * c3 * B + c3 * C + mixed * a**2 - s3 * c**2 - 2 * s3 * b * c, A, A, B, B + C,
+                     0, 0, b, np.sign(b), 0, 0, 0, 1, 0, 0],
+                    [0, 0, 0, 9.81 * c23, B + C + s23 * c23 * a**2, c3 * B + s23 * c2 * a**2 + s3 * b**2, 0, A, 0, B + C,
+                     0, 0, 0, 0, c, np.sign(c), 0, 0, 1, C],
+                ]
+            )  # fmt: skip
+        return Phi.reshape(-1, 20) @ np.linalg.lstsq(Phi.reshape(-1, 20), y.ravel(), rcond=None)[0]
+
+    return run
+
+
+def our_fit(q, qd, qdd, y):
+    """Regressor, then theta by QR alone: what the peers do."""
+
+    def run():
+        Phi = regressor(q, qd, qdd).reshape(-1, 20)
+        R = r_factor(np.column_stack([Phi, y.ravel()]))
+        return np.linalg.solve(R[:20, :20], R[:20, 20])
+
+    return run
+
+
+def whole_fit(q, qd, qdd, y, rows):
+    """Regressor and `fit`, with standard errors, diagnostics and verdict."""
+    return lambda: fit(regressor(q, qd, qdd), y, rows=rows, columns="thesis")
+
+
+def best_of(call, repeats):
+    """Shortest time of `repeats` calls, s."""
+    call()
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        call()
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def test_both_compute_the_same():
+    data = measured(400)
+    theta = our_fit(*data)()
+    np.testing.assert_allclose(theta, whole_fit(*data, "shared")().theta[0], rtol=1e-9)
+    predicted = regressor(*data[:3]).reshape(-1, 20) @ theta
+    np.testing.assert_allclose(predicted, numpy_fit(*data)(), atol=1e-8 * np.abs(predicted).max())
+    if HAVE_PINOCCHIO:  # its 25 columns hold ours but theta7 and theta8, and more: no worse a fit
+        y = data[3].ravel()
+        without = [name for name in NAMES if name not in ("theta7", "theta8")]
+        ours = fit(regressor(*data[:3]), data[3], rows="shared", columns=without).residuals
+        assert np.linalg.norm(y - pinocchio_fit(*data)()) <= np.linalg.norm(ours) * (1 + 1e-9)
+
+
+def test_ratio_to_the_peer(request):
+    enabled = request.config.getoption("benchmark_enable")
+    data, repeats = measured(N if enabled else 500), 7 if enabled else 1
+    name, peer = ("Pinocchio", pinocchio_fit) if HAVE_PINOCCHIO else ("NumPy (Pinocchio is not installed)", numpy_fit)
+    theirs, ours = best_of(peer(*data), repeats), best_of(our_fit(*data), 3 * repeats)
+    shared, joint = (best_of(whole_fit(*data, rows), 3 * repeats) for rows in ("shared", "joint"))
+    print(
+        f"\nregressor and fit of {len(data[0])} x 3 x 20: {name} in a loop and lstsq {theirs * 1e3:.0f} ms; "
+        f"ours {ours * 1e3:.1f} ms: {theirs / ours:.0f}x (target 4x); with standard errors and verdict, "
+        f"shared {shared * 1e3:.0f} ms: {theirs / shared:.1f}x, row-wise {joint * 1e3:.0f} ms: {theirs / joint:.1f}x"
+    )
+    if enabled:
+        assert theirs > 2 * ours, "half the target: something is broken, not just a busy machine"
+
+
+@pytest.mark.parametrize("rows", ["shared", "joint"])
+def test_rls_speed(request, rows):
+    n = 100_000 if request.config.getoption("benchmark_enable") else 200
+    q, qd, qdd, y = measured(n)
+    Phi = regressor(q, qd, qdd)
+    columns = "thesis" if rows == "shared" else "rigid"
+
+    def run():
+        return RLS(rows=rows, columns=columns).run(Phi, y, history=False)
+
+    seconds = best_of(run, 7) / n
+    print(f"\nRLS, {rows}, 3 x 20 block: {seconds * 1e6:.2f} us a sample (target 1 us)")
+    assert np.isfinite(run()).all()
