@@ -8,8 +8,9 @@ phi^T = Phi (3, 20):
     theta(t) = theta(t-1) + K (y - phi^T theta)     (2.40) corrected: both signs +
     P(t) = (I - K phi^T) P(t-1) / forgetting        (2.45)
 
-Subtracting in (2.45) is what loses digits: with P0 = 1e8 P soon has negative eigenvalues, and the estimate runs away.
-Here P = U D U^T is updated in its factors, row by row (Bierman 1976): D stays positive whatever the rounding.
+The subtraction in (2.45) loses digits: with P0 = 1e8 P is no longer symmetric, with 1e12 it has
+negative eigenvalues, and where P phi and (phi^T P)^T are taken for the same the estimate runs away (all tested). Here
+P = U D U^T is updated in its factors, row by row (Bierman 1976): D stays positive whatever the rounding.
 """
 
 import numpy as np

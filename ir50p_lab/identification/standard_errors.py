@@ -18,20 +18,19 @@ def sandwich(bread, rows, residuals, n, errors):
         errors: "classical" or "hac".
     """
     N, p = rows.shape
-    freedom = N / (N - p)
+    joints = N // n
     if errors == "classical":
-        S = 0.0
-        for joint in range(N // n):
-            block = rows[joint :: N // n]
-            S = S + np.mean(residuals[joint :: N // n] ** 2) * freedom * gram(block, block)
+        blocks = [(rows[j::joints], residuals[j::joints]) for j in range(joints)]
+        S = N / (N - p) * sum(np.mean(r**2) * gram(block, block) for block, r in blocks)
     else:
-        scores = (rows * residuals[:, None]).reshape(n, N // n, p).sum(axis=1)
-        S = freedom * long_run_sum(scores, residuals.reshape(n, -1))
+        scores = (rows * residuals[:, None]).reshape(n, joints, p).sum(axis=1)
+        S, independent = long_run_sum(scores, residuals.reshape(n, joints))
+        S *= 1 / max(1 - p / (independent * joints), 0.5)  # p of them were spent on the fit
     return np.linalg.solve(bread, np.linalg.solve(bread, S).T)
 
 
 def long_run_sum(scores, residuals):
-    """Covariance (p, p) of the sum over time of correlated `scores` (n, p), seen in `residuals` (n, k).
+    """Covariance (p, p) of the sum over time of correlated `scores` (n, p); independent samples in `residuals` (n, k).
 
     Mean of the first B squared cosine coefficients ('equal-weighted cosine', Lazarus, Lewis, Stock and Watson 2018):
     what matters for an estimate is the noise at the frequencies next to zero. B = 0.4 n^(2/3), but no more than where
@@ -45,7 +44,7 @@ def long_run_sum(scores, residuals):
     B = int(np.clip(half // 2, 4, max(4, 0.4 * n ** (2 / 3))))
     coefficients = fft.dct(scores, axis=0)[1 : B + 1]
     wider = special.stdtrit(B, 0.99865) / 3.0  # three standard errors then hold the truth 997 times in 1000
-    return wider**2 * coefficients.T @ coefficients / (2 * B)
+    return wider**2 * coefficients.T @ coefficients / (2 * B), max(2 * half, 1)
 
 
 def lag_one(residuals):

@@ -84,6 +84,47 @@ def test_as_printed_the_gain_is_wrong():
     assert np.linalg.matrix_rank(Phi[0].T @ Phi[0]) == 3  # no inverse to speak of: line 2 cannot be meant
 
 
+def slow_motion(seed, n=3000):
+    """Regressor of a smooth motion: what makes P badly conditioned at first."""
+    rng, t = np.random.default_rng(seed), np.arange(n)[:, None] * 0.01
+    q, qd, qdd = np.zeros((3, n, 3))
+    for w in rng.uniform(0.3, 5, 9):
+        a, phase = rng.normal(0, 0.3, 3), rng.uniform(0, 6, 3)
+        q += a * np.sin(w * t + phase)
+        qd += a * w * np.cos(w * t + phase)
+        qdd -= a * w * w * np.sin(w * t + phase)
+    return regressor(q, qd, qdd)
+
+
+def plain(Phi, y, P0, gain):
+    """(2.46) corrected in plain double precision; returns theta, asymmetry of P, its smallest relative eigenvalue."""
+    theta, P, smallest = np.zeros(20), P0 * np.eye(20), np.inf
+    for phi_T, sample in zip(Phi, y, strict=True):
+        S = np.eye(3) + phi_T @ P @ phi_T.T
+        left = P @ phi_T.T if gain == "P phi" else (phi_T @ P).T
+        K = np.linalg.lstsq(S.T, left.T, rcond=None)[0].T
+        theta, P = theta + K @ (sample - phi_T @ theta), (np.eye(20) - K @ phi_T) @ P
+        if np.abs(theta).max() > 1e6:
+            break
+        smallest = min(smallest, np.linalg.eigvalsh((P + P.T) / 2).min() / np.abs(P).max())
+    return theta, np.abs(P - P.T).max() / np.abs(P).max(), smallest
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_the_factored_form_holds_where_the_plain_one_breaks(seed):
+    Phi, true = slow_motion(seed), IR50P.theta[0]
+    y = np.einsum("nij,j->ni", Phi, true)
+    assert plain(Phi, y, 1e8, "P phi")[1] > 1e-6  # P is no longer symmetric
+    assert plain(Phi, y, 1e12, "P phi")[2] < -0.1  # nor positive
+    assert np.abs(plain(Phi, y, 1e8, "(phi^T P)^T")[0]).max() > 1e6  # and then theta runs away
+    for P0 in (1e8, 1e12):
+        rls = RLS(rows="shared", columns="thesis", P0=P0)
+        rls.run(Phi, y)
+        assert np.abs(rls.theta[0] - true).max() < 1e-9
+        np.testing.assert_allclose(rls.P, rls.P.T, rtol=1e-10, atol=1e-14 * np.abs(rls.P).max())
+        assert (rls._D > 0).all()
+
+
 @pytest.mark.compiled(keep=0)
 @pytest.mark.parametrize("forgetting", [1.0, 0.9999, 0.99])
 def test_stable_over_a_million_samples(forgetting):
