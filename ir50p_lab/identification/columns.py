@@ -49,6 +49,14 @@ def sampling_period(t):
     return float(dt[near].sum() / max(steps[near].sum(), 1.0))
 
 
+def quantum_of(x):
+    """Step of a coarse sensor or converter: the least difference between values of x (n,); 0 if most are different."""
+    values = np.unique(x)
+    steps = np.diff(values)
+    steps = steps[steps > 1e-9 * np.ptp(x)]  # rounding of what was meant to be the same
+    return float(steps.min()) if len(steps) and len(values) < len(x) / 2 else 0.0
+
+
 def runs(t, max_gap):
     """[(first, last + 1), ...]: the stretches of t (n,) whose steps are at most max_gap s."""
     edges = np.flatnonzero(np.diff(t) > max_gap) + 1

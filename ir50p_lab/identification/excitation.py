@@ -23,7 +23,8 @@ class Excitation:
 
     reference: Fourier, ready for a bench (`q_start` first); before: the plain motion to compare with, random
     coefficients as large as the limits allow. condition_before, condition_after: (3,), one per joint (rows="shared":
-    one number), of the columns scaled to length 1. starts: condition (geometric mean) that each start ended with.
+    one number), of the columns scaled to length 1. starts: what each start ended with, geometric mean of
+    the condition numbers times the price of standing.
     """
 
     reference: Fourier
@@ -69,6 +70,7 @@ def optimise_excitation(
     margin=0.05,
     rows="joint",
     columns="rigid",
+    standing=0.0,
     starts=4,
     iterations=80,
     seed=0,
@@ -83,6 +85,9 @@ def optimise_excitation(
     Args:
         arm: Arm with finite joint limits. period: s; harmonics: 2..12; periods: whole number, length of the record.
         max_joint_speed, table, margin: as in `fourier`. rows, columns: as in `fit`: what is to be estimated.
+        standing: price of time spent near standstill, where a joint may stick and no theta says what u does: with 4, a
+            share of 10 % (of 1/(1 + (qd/0.1 rad/s)^2)) counts as much as a condition number half as large again. On
+            the simulated bench 4 raised, with 3 harmonics, the fit that any theta reaches from 89/61/96 to 94/91/96 %.
         starts, iterations: more take longer (default: some ten seconds) and find a little better.
         seed: the same seed gives the same motion. progress: show a bar.
 
@@ -90,10 +95,12 @@ def optimise_excitation(
     """
     _check(arm, harmonics, starts, iterations, seed)
     _check_rows(rows)
+    if not (np.isscalar(standing) and not isinstance(standing, (str, bool)) and 0 <= standing < math.inf):
+        raise InputError(f"standing = {standing!r}: give a finite number >= 0, the price of time near standstill")
     period = seconds("period", period, positive=True)
     picked = _columns(columns)
     limits = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
-    problem = _Problem(arm, period, harmonics, limits, rows, picked)
+    problem = _Problem(arm, period, harmonics, limits, rows, picked, float(standing))
     generator = np.random.default_rng(seed)
     best, plain, ends = None, None, []
     from tqdm.auto import tqdm
@@ -130,7 +137,7 @@ def optimise_excitation(
 class _Problem:
     """The optimisation in coordinates that end at rest: x = (q0, then the free coefficients of a and b per joint)."""
 
-    def __init__(self, arm, period, harmonics, limits, rows, picked):
+    def __init__(self, arm, period, harmonics, limits, rows, picked, standing=0.0):
         low, high, speed, table = limits
         self.low, self.high, self.N = low, high, harmonics
         k = np.arange(1.0, harmonics + 1)
@@ -150,7 +157,7 @@ class _Problem:
         )
         self.picked = picked.astype(np.int64)
         self.shared = rows == "shared"
-        bounds = np.r_[low, high, speed, -np.inf if table is None else table, arm.l, _HIDDEN]
+        bounds = np.r_[low, high, speed, -np.inf if table is None else table, arm.l, _HIDDEN, standing]
         self.fixed = (self.basis, self.picked, self.shared, bounds)
         self.size = 3 + 6 * (harmonics - 1)
         self._last = None

@@ -10,16 +10,18 @@ from ir50p_lab.jit import jit
 BOUNDS = 11  # per joint: above, below, speed; then elbow and tip over the table
 _GRAVITY = 9.81  # m/s^2; scales whole columns only, which does not matter here
 _TURN = 0.03  # rad/s: sgn(qd) as tanh(qd/_TURN), for a jump has no slope to follow
+_SLOW = 0.1  # rad/s: about where a dry joint may stick
 _WORST = 1e8  # condition number that counts as endless
 _STEP = 1e-6  # rad, of the differences
 
 
 @jit()
 def evaluate(x, basis, picked, shared, bounds, out):
-    """Fill out (1 + BOUNDS): mean log condition number, then room at each bound (>= 0 inside).
+    """Fill out (1 + BOUNDS): mean log condition number (plus the price of standing), then room at each bound.
 
     x: q0 (3), then free coefficients (3, p); basis (3, n, p): from these to q, qd, qdd; picked (3, 20): columns of each
-    joint; bounds: q low (3), q high (3), speed (3), table, l (3), share of half the range that may hide.
+    joint; bounds: q low (3), q high (3), speed (3), table, l (3), share of half the range that may hide,
+    price of standing.
     """
     n, p = basis.shape[1], basis.shape[2]
     motion = np.empty((3, n, 3))
@@ -52,9 +54,14 @@ def evaluate(x, basis, picked, shared, bounds, out):
                     b = place[i, j]
                     gram[i, a, b] += block[i, a] * block[i, b]
     if shared:
-        out[0] = _log_condition(gram[0] + gram[1] + gram[2], picked[0] | picked[1] | picked[2])
+        cost = _log_condition(gram[0] + gram[1] + gram[2], picked[0] | picked[1] | picked[2])
     else:
-        out[0] = sum([_log_condition(gram[i], picked[i]) for i in range(3)]) / 3.0
+        cost = sum([_log_condition(gram[i], picked[i]) for i in range(3)]) / 3.0
+    still = 0.0
+    for k in range(n):
+        for i in range(3):
+            still += 1.0 / (1.0 + (motion[1, k, i] / _SLOW) ** 2)
+    out[0] = cost + bounds[14] * still / (3 * n)
 
 
 @jit()

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError
-from ir50p_lab.identification.columns import runs
+from ir50p_lab.identification.columns import quantum_of, runs
 from ir50p_lab.identification.regression import solve
 
 FEWEST = 40  # samples, ten for each parameter
@@ -49,16 +49,16 @@ def refuse_whole_turns(t, q):
             )
 
 
-def refuse_clipped_angle(q):
+def refuse_clipped_angle(t, q):
     """Refuse a q that runs into its largest or smallest value and stays there: clipped sensor, or an end stop.
 
     A joint that comes to rest there slows down first: over the last m samples it is no faster than it lost over the m
     before. One that is cut off loses its speed at once.
     """
-    values = np.unique(q)
-    if len(values) < 3:
-        raise IdentificationError(f"q takes only {len(values)} values: no motion can be seen; use a finer sensor")
-    quantum = float(np.diff(values).min()) if len(values) < len(q) / 2 else 0.0
+    values = len(np.unique(q))
+    if values < 3:
+        raise IdentificationError(f"q takes only {values} values: no motion can be seen; use a finer sensor")
+    quantum = quantum_of(q)
     noise = float(np.median(np.abs(np.diff(q, 2)))) / 0.6745 / math.sqrt(6)
     for sign, name in ((1, "largest"), (-1, "smallest")):
         x = sign * q
@@ -69,10 +69,14 @@ def refuse_clipped_angle(q):
             m = max(3, (end - begin) // 8)
             if last - first < _STAYS or begin < 2 * m or end + 2 * m > len(q):
                 continue
-            near = _rise(x[begin - m : begin]) + _rise(x[end : end + m][::-1])
-            far = _rise(x[begin - 2 * m : begin - m]) + _rise(x[end + m : end + 2 * m][::-1])
-            hidden = near / 2 / m * (end - begin) / 4
-            unsure = 2 * quantum + 8 * noise / math.sqrt(m)
+            before, after = slice(begin - m, begin), slice(end, end + m)
+            near = _slope(t[before], x[before]) - _slope(t[after], x[after])
+            before, after = slice(begin - 2 * m, begin - m), slice(end + m, end + 2 * m)
+            far = _slope(t[before], x[before]) - _slope(t[after], x[after])
+            hidden = near / 2 * (t[end - 1] - t[begin]) / 4
+            unsure = (2 * quantum + 8 * noise / math.sqrt(m)) / min(
+                t[begin] - t[begin - m], t[end - 1 + m] - t[end - 1]
+            )
             if near > 3 * max(far - near, 0.0) + unsure and hidden > 2 * quantum:
                 lost, height = lost + last - first, max(height, hidden)
         if lost:
@@ -83,10 +87,10 @@ def refuse_clipped_angle(q):
             )
 
 
-def _rise(x):
-    """Rise of a straight line through x (m,) over its m samples."""
-    k = np.arange(len(x)) - (len(x) - 1) / 2
-    return float(k @ x / (k @ k)) * len(x)
+def _slope(t, x):
+    """Slope of a straight line through x (m,) at the times t."""
+    t = t - t.mean()
+    return float(t @ x / (t @ t))
 
 
 def refuse_noise_only(band, q):

@@ -101,7 +101,7 @@ def fit_joint(t, q=None, u=None, *, cutoff_hz=None, delay=0.0, held=None):
     period = sampling_period(t)
     checks.refuse_short_or_constant(t, q[:, 0], u[:, 0])
     checks.refuse_whole_turns(t, q[:, 0])
-    checks.refuse_clipped_angle(q[:, 0])
+    checks.refuse_clipped_angle(t, q[:, 0])
     band = _bandwidth(t, q[:, 0], period, cutoff_hz)
     checks.refuse_noise_only(band, q[:, 0])
     best = None

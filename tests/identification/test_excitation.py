@@ -102,6 +102,17 @@ def test_estimates_are_surer_with_the_better_motion():
 
 
 @compiled
+def test_a_price_on_standing_buys_motion():
+    """Second route: the share of time below 0.05 rad/s, from the sampled motion."""
+    share = []
+    for standing in (0.0, 8.0):
+        found = optimise_excitation(IR50P, seed=2, standing=standing, starts=1, iterations=60, progress=False)
+        qd = found.reference.sample(np.linspace(0, 10, 5001))[:, 1]
+        share.append((np.abs(qd) < 0.05).mean())
+    assert share[1] < 0.75 * share[0]
+
+
+@compiled
 def test_shared_rows_and_chosen_columns(capsys):
     found = optimise_excitation(
         IR50P, rows="shared", columns=["theta3", "theta4", "fv1", "fc3"], starts=1, iterations=5
@@ -144,6 +155,8 @@ def test_impossible_limits():
         (IR50P, {"columns": ["fv1"]}, "acts on one of the joints"),
         (IR50P, {"max_joint_speed": -1}, "max_joint_speed"),
         (IR50P, {"margin": -1}, "margin = -1"),
+        (IR50P, {"standing": -1}, "standing = -1"),
+        (IR50P, {"standing": np.nan}, "standing = nan"),
     ],
 )
 def test_bad_arguments(arm, options, words):

@@ -10,6 +10,7 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import JointFit, fit_joint
 from ir50p_lab.identification.regression import solve
 from ir50p_lab.jit import jit
+from ir50p_lab.signals import trapezoid
 
 NAMES = ("inertia", "viscous", "coulomb", "offset")
 # inertia, viscous, Coulomb, offset; period s, length s, size of u, noise of q rad
@@ -138,6 +139,29 @@ def test_friction_sweep_at_crawling_speed():
     assert only_slow.coulomb == pytest.approx(3, rel=0.05)
 
 
+@pytest.mark.parametrize("rate, step, noise", [(1000, 1e-4, 0), (1000, 2e-3, 0), (250, 0, 1e-5), (100, 0, 2e-3)])
+def test_moves_from_point_to_point(rate, step, noise):
+    """Trapezoids with rests between, torque measured with noise; encoders and potentiometers."""
+    rng, x0, parts, end = np.random.default_rng(1), 0.0, [], 0.0
+    for x1 in rng.uniform(-1, 1, 12):
+        move = trapezoid((x0,) * 3, (x1,) * 3, v_max=1.5, a_max=6)
+        t = np.arange(0, move.duration + 0.5, 1 / rate)
+        parts.append(np.column_stack([end + t, move.sample(t)[:, :, 0]]))
+        x0, end = x1, parts[-1][-1, 0] + 1 / rate
+    t, q, v, a = np.concatenate(parts).T
+    u = 1.2 * a + 5 * v + 4 * np.sign(v) + 0.3 + rng.normal(0, 0.2, len(t))
+    q = np.round(q / step) * step if step else q + rng.normal(0, noise, len(t))
+    check(fit_joint(t, q, u), ((1.2, 5, 4, 0.3),), 0.06)
+
+
+def test_irregular_times_are_not_refused():
+    rng = np.random.default_rng(0)
+    t, w = np.sort(rng.uniform(0, 60, 1800)) + 1e-6 * np.arange(1800), 2 * np.pi * 0.4
+    v, a = 0.8 * w * np.cos(w * t), -0.8 * w * w * np.sin(w * t)
+    q = np.round(0.8 * np.sin(w * t) / 0.005) * 0.005
+    check(fit_joint(t, q, 0.02 * a + 0.1 * v + 0.05 * np.sign(v) + 0.01), ((0.02, 0.1, 0.05, 0.01),), 0.25)
+
+
 # --- what the data do not hold is said
 
 
@@ -145,8 +169,10 @@ def test_one_direction_or_one_speed():
     found = fit_joint(*sweep([0.02, 0.05, 0.1, 0.03]))
     assert found.unidentifiable == ("coulomb",) and found.coulomb == 0 and found.coulomb_stderr == np.inf
     assert found.offset == pytest.approx(3.2, rel=0.02) and "one side only" in " ".join(found.warnings)
-    with pytest.raises(IdentificationError, match="not exciting"):
-        fit_joint(*sweep([0.1, 0.1]))
+    for speed in (0.01, 0.1, 1.0):
+        steady = [x[1000:-1000] for x in sweep([speed, speed])]
+        with pytest.raises(IdentificationError, match=r"not exciting|does not belong"):
+            fit_joint(*steady)
 
 
 @pytest.mark.parametrize("strength", [1.0, 2.0, 4.0])
