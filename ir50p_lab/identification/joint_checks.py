@@ -18,6 +18,7 @@ _BROKEN = 3.5  # samples: noise breaks a stay into pieces this near to each othe
 # Measured on three machines, 3 seeds, limits at 30 to 90 %: clipped 0.02 of the range or more and 1.0 or more; a drive
 # that saturates, 0.67 at most. `reach`: how far these samples lie outside the ones the model was fitted to.
 _EXCESS, _BEYOND = 0.01, 0.85
+_TIMING = 1.5  # sampling periods by which u and q may be apart
 _EXPLAINED = 0.02  # least share of the variance of u that the motion explains
 
 
@@ -132,12 +133,17 @@ def refuse_unexplained(solution, table):
         )
 
 
-def refuse_negative_inertia(solution):
-    """Refuse an inertia that is negative beyond three standard errors."""
-    if solution.x[0] < -3 * solution.stderr[0]:
+def refuse_negative_inertia(solution, band, period):
+    """Refuse an inertia that is negative beyond three standard errors and beyond what wrong timing makes of friction.
+
+    Where u and q are apart by a sample, friction at a reversal looks like an inertia of (viscous + Coulomb/speed) times
+    that. In a sweep of steady speeds that is all the inertia there is to see: it is flagged, not refused.
+    """
+    J, b, c, _ = solution.x
+    if J < -3 * solution.stderr[0] - _TIMING * period * (abs(b) + abs(c) / band.speed):
         raise IdentificationError(
-            f"the inertia comes out as {solution.x[0]:.4g} +- {solution.stderr[0]:.2g}, which no body has: is the sign "
-            "of u or q turned round, does u come late (give delay=), or was it recorded before its limit?"
+            f"the inertia comes out as {J:.4g} +- {solution.stderr[0]:.2g}, which no body has: is the sign of u or q "
+            "turned round, does u come late (give delay=), or was it recorded before its limit?"
         )
 
 
@@ -153,7 +159,9 @@ def refuse_clipped_drive(u, table):
     if plain.sum() < FEWEST // 2:
         return
     Q, R = np.linalg.qr(table.A[plain])
-    if np.linalg.cond(R / np.linalg.norm(R, axis=0)) > 1e6:  # too little of the motion is left to tell
+    if (
+        np.linalg.cond(R / np.maximum(np.linalg.norm(R, axis=0), 1e-300)) > 1e6
+    ):  # too little of the motion is left to tell
         return
     left = table.y - table.A @ np.linalg.solve(R, Q.T @ table.y[plain])
     rms = math.sqrt(np.mean(left[plain] ** 2))
@@ -185,6 +193,11 @@ def doubts(q, u, solution, table, band, period):
         yield (
             "inertia: the acceleration is noise or nothing here, so no inertia is given; record faster reversals, or "
             "a finer angle"
+        )
+    elif J < 0:
+        yield (
+            f"inertia {J:.3g} +- {sJ:.2g} is negative, as a sample of wrong timing makes it: do not use it; record "
+            "faster reversals, and check when u and q are read"
         )
     elif sJ > 0.5 * abs(J):
         yield f"inertia {J:.3g} +- {sJ:.2g}: this motion hardly shows it; record faster reversals"

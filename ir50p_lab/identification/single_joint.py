@@ -112,7 +112,7 @@ def fit_joint(t, q=None, u=None, *, cutoff_hz=None, delay=0.0, held=None):
     solution, table = best
     checks.refuse_unexplained(solution, table)
     checks.refuse_clipped_drive(u[:, 0], table)
-    checks.refuse_negative_inertia(solution)
+    checks.refuse_negative_inertia(solution, band, period)
     y = table.y
     spread = math.sqrt(np.mean((y - y.mean()) ** 2))
     values = dict(zip(NAMES, solution.x.tolist(), strict=True))

@@ -162,7 +162,48 @@ def test_irregular_times_are_not_refused():
     check(fit_joint(t, q, 0.02 * a + 0.1 * v + 0.05 * np.sign(v) + 0.01), ((0.02, 0.1, 0.05, 0.01),), 0.25)
 
 
+@pytest.mark.parametrize("late", [0.0, 0.005, 0.01])
+def test_sweep_with_sudden_reversals_is_not_refused(late):
+    """+-0.1 and +-0.04 rad/s in turn: at each reversal a sample of wrong timing looks like a (negative) inertia."""
+    t = np.arange(0, 80, 0.01)
+    speed = np.where(t < 40, 0.1, 0.04)
+    v, at_u = speed * np.sign(np.sin(0.5 * t)), speed * np.sign(np.sin(0.5 * (t + late)))
+    u = 4 * at_u + 3 * np.sign(at_u) + 0.2 + np.random.default_rng(0).normal(0, 0.05, len(t))
+    found = fit_joint(t, v.cumsum() * 0.01, u)
+    assert found.coulomb == pytest.approx(3, rel=0.03) and found.viscous == pytest.approx(4, rel=0.2)
+    assert found.inertia > 0 or "timing" in " ".join(found.warnings)
+
+
+@pytest.mark.parametrize("noise", [1e-3, 1e-2, 0.05])
+def test_a_noisy_angle_is_smoothed_not_refused(noise):
+    t = np.arange(0, 60, 0.01)
+    v, a = 0.3 * np.cos(0.5 * t) + 0.2 * np.cos(0.9 * t), -0.15 * np.sin(0.5 * t) - 0.18 * np.sin(0.9 * t)
+    q = 0.6 * np.sin(0.5 * t) + 2 / 9 * np.sin(0.9 * t) + np.random.default_rng(0).normal(0, noise, len(t))
+    found = fit_joint(t, q, 0.2 * a + 2 * v + 0.5 * np.sign(v) + 0.2)
+    assert (found.viscous, found.coulomb, found.offset) == pytest.approx((2, 0.5, 0.2), rel=0.04)
+    assert abs(found.inertia - 0.2) < 3 * found.inertia_stderr + 0.03
+
+
 # --- what the data do not hold is said
+
+
+@pytest.mark.parametrize("size", [0.1, 0.5, 2.0])
+def test_negative_coulomb_friction_is_flagged(size):
+    t = np.arange(0, 60, 0.01)
+    v, a = 0.3 * np.cos(0.5 * t) + 0.2 * np.cos(0.9 * t), -0.15 * np.sin(0.5 * t) - 0.18 * np.sin(0.9 * t)
+    q = 0.6 * np.sin(0.5 * t) + 2 / 9 * np.sin(0.9 * t)
+    assert "Coulomb friction is negative" in " ".join(fit_joint(t, q, a + 5 * v - size * np.sign(v)).warnings)
+
+
+@pytest.mark.compiled
+def test_a_drive_clipped_nearly_all_the_time_is_flagged_at_least():
+    for machine in MACHINES.values():
+        t, q, u = recorded(machine)
+        top = 0.15 * np.abs(u).max()
+        try:
+            assert "was it clipped" in " ".join(fit_joint(t, q, np.clip(u, -top, top)).warnings)
+        except IdentificationError as error:
+            assert "u was clipped" in str(error)
 
 
 def test_one_direction_or_one_speed():
