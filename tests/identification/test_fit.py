@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from arms import random_arm, random_states
+from scipy.optimize import least_squares
 from scipy.signal import butter, lfilter, sosfiltfilt
 
 from ir50p_lab.errors import IdentificationError, InputError
@@ -134,6 +135,13 @@ def test_hac_errors_are_honest_for_any(noise, method):
     assert np.mean((np.abs(z) < 3).all(axis=1)) >= 0.85
 
 
+def test_hac_errors_hold_for_noise_as_slow_as_the_motion():
+    slow = lambda rng, n: lfilter([1.0], [1.0, -0.985], rng.normal(size=(n, 3)), axis=0)  # noqa: E731
+    z = deviations(slow, n=4000, seeds=range(60))
+    assert 0.65 < z.std() < 1.15
+    assert np.mean(np.abs(z) < 3) >= 0.98
+
+
 def test_decimation_makes_classical_errors_honest_too():
     z = deviations(autoregressive, n=30_000, seeds=range(20), errors="classical", every=40)
     assert 0.85 < z.std() < 1.15
@@ -174,6 +182,22 @@ def test_outliers_pull_huber_little():
     off = {m: np.abs(fit(Phi, spoiled, method=m).theta - good.theta)[used] / good.stderr[used] for m in ("ls", "huber")}
     assert np.median(off["huber"]) < 2
     assert np.median(off["ls"]) > 10 * np.median(off["huber"])
+
+
+@pytest.mark.parametrize("threshold", [0.7, 1.345, 2.5])
+def test_huber_is_that_of_scipy(threshold):
+    Phi = regressor(*motion(20, n=400))
+    y = torque(Phi, IR50P.theta_pwm) + np.random.default_rng(0).standard_t(2, (400, 3))
+    found = fit(Phi, y, method="huber", threshold=threshold)
+    for joint, here in enumerate(RIGID):
+        A = Phi[:, joint, here] / np.linalg.norm(Phi[:, joint, here], axis=0)
+        e = found.residuals[:, joint]
+        scale = threshold * 1.4826022185056018 * np.median(np.abs(e))
+        best = least_squares(
+            lambda x, A=A, b=y[:, joint]: A @ x - b, np.zeros(len(here)), jac=lambda x, A=A: A, loss="huber",
+            f_scale=scale, xtol=1e-15, ftol=1e-15, gtol=1e-12, max_nfev=2000,
+        )  # fmt: skip
+        np.testing.assert_allclose(y[:, joint] - A @ best.x, e, atol=1e-3 * scale)
 
 
 def test_noise_in_the_regressor_biases_least_squares_and_not_iv():
@@ -278,6 +302,32 @@ def test_poor_excitation_names_what_is_hardly_told_apart():
     rich = fit(good, torque(good, IR50P.theta_pwm) + np.random.default_rng(0).normal(0, 1, (len(Phi), 3)))
     assert rich.condition.max() < 30
     assert not any("hardly" in text for text in rich.warnings)
+
+
+@pytest.mark.parametrize("share", [1e-3, 1e-2, 1.0])
+def test_little_motion_is_enough_without_noise(share):
+    q, qd, qdd = motion(10)
+    for x in (q, qd, qdd):
+        x[:, 2] *= share
+    Phi = regressor(q, qd, qdd)
+    found = fit(Phi, torque(Phi, IR50P.theta_pwm))
+    assert found.unidentifiable == ()
+    for joint, here in enumerate(RIGID):
+        np.testing.assert_allclose(found.theta[joint, here], IR50P.theta_pwm[joint, here], rtol=1e-4, atol=1e-4)
+    told = any("hardly told apart" in text for text in found.warnings)
+    assert told == (found.condition.max() > 30) == (share < 0.1)
+
+
+def test_a_negative_value_must_be_significant_to_be_called_impossible():
+    Phi = regressor(*motion(12))
+    theta = IR50P.theta_pwm.copy()
+    told = {}
+    for value in (-0.5, -5.0):
+        theta[0, 10] = value
+        found = fit(Phi, torque(Phi, theta) + np.random.default_rng(0).normal(0, 30, (len(Phi), 3)))
+        told[value] = any("joint 1: fv1 =" in text for text in found.warnings)
+        assert -20 < value / found.stderr[0, 10] < (-2 if value == -5.0 else 0)
+    assert told == {-0.5: False, -5.0: True}
 
 
 def test_l2_ties_theta6_to_theta4():

@@ -57,7 +57,7 @@ def test_started_as_a_folder_from_elsewhere(made, tmp_path):
 
 
 def test_test_runs_pytest_and_nbval_over_everything(tested):
-    start = told(tested.run("test"))
+    start = told(tested.run("test", variables={"IR50P_RECORDINGS": None}))
     assert start["argv"] == [
         *("--nbval", "--nbval-current-env", f"--nbval-cell-timeout={commands.CELL_TIMEOUT}"),
         *(str(tested.root / "tests"), str(tested.root / "notebooks")),
