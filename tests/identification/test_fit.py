@@ -12,6 +12,7 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import Estimate, fit, regressor
 from ir50p_lab.identification.parameters import ACTS_ON, NAMES, chosen_columns
 from ir50p_lab.identification.qr import r_factor
+from ir50p_lab.identification.standard_errors import long_run_sum
 from ir50p_lab.modelling import IR50P, THESIS_C, inverse_dynamics, mass_matrix
 
 METHODS = ("ls", "weighted", "huber", "ridge", "bounded", "iv")
@@ -140,6 +141,16 @@ def test_hac_errors_hold_for_noise_as_slow_as_the_motion():
     z = deviations(slow, n=4000, seeds=range(60))
     assert 0.65 < z.std() < 1.15
     assert np.mean(np.abs(z) < 3) >= 0.98
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.9, 0.985])
+def test_long_run_variance_of_an_autoregression(rho):
+    # known: sigma^2 / (1 - rho)^2 a sample
+    n = 100_000
+    scores = lfilter([1.0], [1.0, -rho], np.random.default_rng(0).normal(size=(n, 8)), axis=0)
+    S, independent = long_run_sum(scores, scores)
+    assert np.mean(np.diag(S)) * (1 - rho) ** 2 / n == pytest.approx(1.0, abs=0.1)
+    assert independent / n == pytest.approx(1 if rho == 0 else 2 * (1 - rho) / np.pi, rel=0.1)
 
 
 def test_decimation_makes_classical_errors_honest_too():
@@ -304,7 +315,7 @@ def test_poor_excitation_names_what_is_hardly_told_apart():
     assert not any("hardly" in text for text in rich.warnings)
 
 
-@pytest.mark.parametrize("share", [1e-3, 1e-2, 1.0])
+@pytest.mark.parametrize("share", [1e-3, 1e-2, 0.1, 1.0])
 def test_little_motion_is_enough_without_noise(share):
     q, qd, qdd = motion(10)
     for x in (q, qd, qdd):
@@ -315,7 +326,7 @@ def test_little_motion_is_enough_without_noise(share):
     for joint, here in enumerate(RIGID):
         np.testing.assert_allclose(found.theta[joint, here], IR50P.theta_pwm[joint, here], rtol=1e-4, atol=1e-4)
     told = any("hardly told apart" in text for text in found.warnings)
-    assert told == (found.condition.max() > 30) == (share < 0.1)
+    assert told == (found.condition.max() > 30) == (share < 1)
 
 
 def test_a_negative_value_must_be_significant_to_be_called_impossible():
