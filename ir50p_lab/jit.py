@@ -6,9 +6,20 @@ file would be used on, silently. Here all cached code is dropped when any of the
 
 import contextlib
 import functools
+import gc
 from pathlib import Path
 
-import numba
+_collects = gc.isenabled()
+gc.disable()  # what an import builds stays: looking through it for garbage is a tenth of its time
+try:
+    import numba
+    from numba.core.registry import cpu_target
+
+    cpu_target.target_context.refresh()  # what numba loads at the first call
+finally:
+    gc.freeze()  # nor is it looked through later
+    if _collects:
+        gc.enable()
 
 _PACKAGE = Path(__file__).parent
 _STAMP = _PACKAGE / "__pycache__" / "compiled_from.txt"
