@@ -138,6 +138,8 @@ class FilterView:
         kalman = velocity_estimators(self._rate, cutoffs_hz=(), changes=changes, **options)
         del kalman["difference"]
         self.kalman = noise_and_lag(self._q, self._rate, estimators=kalman, **self._where)
+        # found once: a slider asks for the lag behind it at every step
+        self._truth = difference_velocity(self._q, self._rate, cutoff_hz=3.0, order=2, kind="zero-phase")
         self.curve = [self._low_pass(cutoff) for cutoff in np.geomspace(0.8, 30, 12)]
         self.figure = new_figure(9.6, 3.8, cols=2, width_ratios=(1.3, 1))
         angle, plane = self.figure.axes
@@ -152,19 +154,23 @@ class FilterView:
         for found, style, label in ((self.curve, "-", "low pass"), (self.kalman, "s", "Kalman")):
             colour = COLOURS["blue" if label == "low pass" else "orange"]
             x, y = [1e3 * one.lag for one in found], [one.noise for one in found]
-            plane.loglog(x, y, style, color=colour, label=label)
+            plane.loglog(x, y, style, color=colour)
+            # a legend would be drawn anew at every step of the slider
+            side, shift = ("left", 1.12) if label == "low pass" else ("right", 0.88)
+            plane.text(shift * x[-1], y[-1], label, color=colour, va="center", ha=side)
         (self._ring,) = plane.plot([], [], "o", ms=10, mfc="none", mec=COLOURS["blue"], mew=2.5)
         plane.set(xlabel="lag [ms]", ylabel="noise of the velocity [rad/s]", title="Less noise costs lag")
         plane.set_xticks([5, 10, 20, 50, 100, 200], ["5", "10", "20", "50", "100", "200"])
         plane.set_yticks([0.02, 0.05, 0.1, 0.2, 0.5, 1], ["0.02", "0.05", "0.1", "0.2", "0.5", "1"])
         plane.minorticks_off()
-        plane.legend(fontsize=8)
 
     def _low_pass(self, cutoff):
         def estimate(q):
             return difference_velocity(q, self._rate, cutoff_hz=cutoff)
 
-        return noise_and_lag(self._q, self._rate, estimators={"low pass": estimate}, **self._where)[0]
+        return noise_and_lag(self._q, self._rate, estimators={"low pass": estimate}, truth=self._truth, **self._where)[
+            0
+        ]
 
     def update(self, filtered, cutoff):
         """Draw the filtered angle (n,) rad, mark the velocity filter of this cut-off (Hz). Returns it in words."""

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -126,6 +127,11 @@ def _sections(cutoff_hz, rate_hz, order):
             f"{rate_hz / 2:g} Hz: what was faster has become slow noise already and passes ({cutoff_hz:g} Hz looks "
             f"like {alias(cutoff_hz, rate_hz):g} Hz). Give 0 < cutoff_hz < {rate_hz / 2:g}; for this arm 2 to 10 Hz"
         )
+    return _butterworth(order, float(cutoff_hz), rate_hz).copy()
+
+
+@lru_cache(maxsize=64)  # a slider asks for the same few again and again
+def _butterworth(order, cutoff_hz, rate_hz):
     from scipy.signal import butter
 
     return butter(order, cutoff_hz, fs=rate_hz, output="sos")
