@@ -1,0 +1,220 @@
+"""From a pixel to a place on the table, or at a height above it (4.5.3 corrected), with its standard error."""
+
+import numpy as np
+
+from ir50p_lab.errors import InputError, VisionError
+from ir50p_lab.vision.board_pose import (
+    board_pose,
+    camera_numbers,
+    checked_transform,
+    inverse_transform,
+    pixels,
+    rvec_tvec,
+    transform,
+    undistorted,
+)
+
+_STEPS = 4  # of the outline's correction: each gains a factor (radius / distance)^2, some 500
+_SLANT = 0.02  # rad above the plane; a ray flatter than this meets it anywhere
+
+
+class TablePlane:
+    """Planes parallel to the table, as a calibrated camera sees them.
+
+    With x_n = (x_n, y_n, 1) the pixel after removing the distortion and K, and T_cam_table = [r1 r2 r3 t],
+
+        s x_n = H (X, Y, 1),  H = [r1  r2  t + h r3]                                       (4.5.3 corrected)
+
+    for the plane at height h. The thesis inverts [R; t] K, which is 4x3 and has no inverse: the third row of [R; t]
+    must go, and with it Z, which is known, not found. In its row notation H^T = [r1; r2; t + h r3].
+
+    Args:
+        camera: Pinhole or Calibration. T_cam_table: (4, 4), takes coordinates of the table (z up, 0 on its surface) to
+        those of the camera (z forward, y down).
+        pose_covariance: (6, 6) of (rvec, tvec) of T_cam_table, rad and m; default 0: exactly known.
+        camera_covariance: (9, 9) of (fx, fy, cx, cy, k1, k2, p1, p2, k3); default that of the Calibration, or 0.
+        pose_by_camera: (6, 9), how the pose follows errors of the camera's numbers; `from_board` knows.
+
+    Attributes: camera; T_cam_table; rms: px, of the board it was made from, or None; centre: (3,) m, of the lens.
+    Raises InputError if T_cam_table is no rigid transform, a shape is wrong, or the camera lies below the table.
+    """
+
+    def __init__(
+        self, camera, T_cam_table, *, pose_covariance=None, camera_covariance=None, pose_by_camera=None, rms=None
+    ):
+        self.camera, self.rms = camera, rms
+        self.T_cam_table = checked_transform("T_cam_table", T_cam_table).copy()
+        self._K, self._distortion = camera_numbers(camera)
+        self.centre = inverse_transform(self.T_cam_table)[:3, 3]
+        if self.centre[2] <= 0:
+            raise InputError(
+                f"the camera would be {-self.centre[2]:.3g} m below the table: T_cam_table takes table to camera "
+                "coordinates (is it inverted?), and z of the table points up (is the board's first corner right?)"
+            )
+        if camera_covariance is None:
+            camera_covariance = covariance_of(camera)
+        self._pose_covariance = _square("pose_covariance", pose_covariance, 6)
+        self._camera_covariance = _square("camera_covariance", camera_covariance, 9)
+        self._by_camera = np.zeros((6, 9)) if pose_by_camera is None else np.asarray(pose_by_camera, dtype=float)
+        if self._by_camera.shape != (6, 9):
+            raise InputError(f"pose_by_camera has shape {self._by_camera.shape}; give (6, 9)")
+
+    @classmethod
+    def from_board(cls, camera, corners, points, *, camera_covariance=None):
+        """The plane from a board that lies at a known place on the table.
+
+        Args: camera: Pinhole or Calibration; corners: (n, 2) px, as found; points: (n, 3) m, the same corners in table
+        coordinates (`board_points`); camera_covariance: as above.
+        The standard errors then hold the scatter of the corners, and that an error of the camera's own numbers
+        shifts this pose with it: most of it cancels near the board.
+        Raises as `board_pose`.
+        """
+        pose = board_pose(camera, corners, points)
+        return cls(
+            camera,
+            pose.T_cam_board,
+            pose_covariance=pose.covariance,
+            camera_covariance=camera_covariance,
+            pose_by_camera=pose.by_camera,
+            rms=pose.rms,
+        )
+
+    def homography(self, height=0.0):
+        """H (3, 3) of the plane at `height` m: s (x_n, y_n, 1) = H (X, Y, 1)."""
+        R, t = self.T_cam_table[:3, :3], self.T_cam_table[:3, 3]
+        return np.column_stack([R[:, 0], R[:, 1], t + _height(height) * R[:, 2]])
+
+    def to_table(self, xy, height=0.0, *, radius=None, route="homography"):
+        """Places (n, 2) m on the plane at `height` m for pixels (n, 2); a single pixel (2,) gives (2,).
+
+        Args:
+            xy: px, centre of the top-left pixel (0, 0); distorted, as in the picture.
+            height: m above the table; a ball of radius r on the table has its centre at height r. Read at height 0
+            it seems farther away, by r times the tangent of the camera's angle from the vertical.
+            radius: m; then xy is the centre of the outline of a ball with this radius, which lies a little farther
+            from the middle of the picture than the image of its centre, and that is put right.
+            route: 'homography', or 'ray' (the line of sight cut with the plane): the same, another way.
+
+        Raises InputError on bad pixels; VisionError for a pixel whose line of sight does not meet the plane.
+        """
+        points = pixels("xy", xy)
+        if route not in ("homography", "ray"):
+            raise InputError(f"route = {route!r}: choose 'homography' or 'ray'")
+        if radius is not None and not (np.isscalar(radius) and np.isfinite(radius) and radius > 0):
+            raise InputError(f"radius = {radius!r} m: give the radius of the ball, > 0")
+        x_n = undistorted(self._K, self._distortion, points)
+        found = self._place(self.T_cam_table, x_n, _height(height), radius, route, points)
+        return found[0] if np.ndim(xy) == 1 else found
+
+    def to_points(self, xy, height=0.0, *, radius=None):
+        """The same with the height as third coordinate: (n, 3) or (3,) m, table coordinates."""
+        place = self.to_table(xy, height, radius=radius)
+        return np.concatenate([place, np.full((*place.shape[:-1], 1), float(height))], axis=-1)
+
+    def to_image(self, points):
+        """Where points (n, 3) or (3,) m of the table appear: (n, 2) or (2,) px."""
+        import cv2
+
+        points = np.asarray(points, dtype=float)
+        rvec, tvec = rvec_tvec(self.T_cam_table)
+        found = cv2.projectPoints(points.reshape(-1, 1, 3), rvec, tvec, self._K, self._distortion)[0][:, 0]
+        return found[0] if points.ndim == 1 else found
+
+    def covariance(self, xy, height=0.0, *, sigma_px=0.3, sigma_height=0.0, parts=False):
+        """Covariance of the places, (n, 2, 2) m^2, to first order.
+
+            J_px J_px^T sigma_px^2 + J_h J_h^T sigma_h^2 + J_pose P_pose J_pose^T + J_cam P_cam J_cam^T,
+            J_cam = dX/dcamera + J_pose dpose/dcamera
+
+        Args: sigma_px: standard error of each pixel coordinate; sigma_height: m, of the height.
+        parts: True for a dict with 'pixel', 'height', 'pose' and 'camera', each (n, 2, 2).
+        """
+        points, height = pixels("xy", xy), _height(height)
+        K, distortion = self._K, self._distortion
+        pose = np.concatenate(rvec_tvec(self.T_cam_table))
+        own = np.concatenate([[K[0, 0], K[1, 1], K[0, 2], K[1, 2]], distortion])
+
+        def place(px=0.0, py=0.0, dh=0.0, dpose=0.0, down=0.0):
+            numbers = own + down
+            K_ = np.array([[numbers[0], 0, numbers[2]], [0, numbers[1], numbers[3]], [0, 0, 1]])
+            x_n = undistorted(K_, numbers[4:], points + np.array([px, py]))
+            vector = pose + dpose
+            T = transform(vector[:3], vector[3:])
+            return self._place(T, x_n, height + dh, None, "homography", points)
+
+        def slope(step, **at):
+            forth = place(**{name: step * np.asarray(value) for name, value in at.items()})
+            back = place(**{name: -step * np.asarray(value) for name, value in at.items()})
+            return (forth - back) / (2 * step)
+
+        J_px = np.stack([slope(1e-2, px=1.0), slope(1e-2, py=1.0)], axis=-1)
+        J_h = slope(1e-5, dh=1.0)[..., None]
+        J_pose = np.stack([slope(1e-6, dpose=unit) for unit in np.eye(6)], axis=-1)
+        scale = np.where(np.arange(own.size) < 4, 1e-2, 1e-5)  # px, or of a coefficient
+        J_cam = np.stack([slope(s, down=unit) for s, unit in zip(scale, np.eye(own.size), strict=True)], axis=-1)
+        J_cam = J_cam + J_pose @ self._by_camera
+        found = {
+            "pixel": sigma_px**2 * J_px @ J_px.transpose(0, 2, 1),
+            "height": sigma_height**2 * J_h @ J_h.transpose(0, 2, 1),
+            "pose": J_pose @ self._pose_covariance @ J_pose.transpose(0, 2, 1),
+            "camera": J_cam @ self._camera_covariance @ J_cam.transpose(0, 2, 1),
+        }
+        return found if parts else sum(found.values())
+
+    def standard_error(self, xy, height=0.0, *, sigma_px=0.3, sigma_height=0.0):
+        """Standard errors of x and y, (n, 2) m ((2,) for one pixel); see `covariance`."""
+        both = self.covariance(xy, height, sigma_px=sigma_px, sigma_height=sigma_height)
+        found = np.sqrt(np.diagonal(both, axis1=1, axis2=2))
+        return found[0] if np.ndim(xy) == 1 else found
+
+    def _place(self, T, x_n, height, radius, route, points):
+        found = self._cut(T, x_n, height, route, points)
+        if radius is None:
+            return found
+        x_c = x_n
+        for _ in range(_STEPS):  # outline's centre = sphere's centre / (1 - (r/z)^2) on the plane one unit ahead
+            z = np.column_stack([found, np.full(len(found), height)]) @ T[2, :3] + T[2, 3]
+            x_c = x_n * (1.0 - (radius / z) ** 2)[:, None]
+            found = self._cut(T, x_c, height, route, points)
+        return found
+
+    def _cut(self, T, x_n, height, route, points):
+        R, t = T[:3, :3], T[:3, 3]
+        sight = np.column_stack([x_n, np.ones(len(x_n))])
+        down = -(sight @ R)[:, 2] / np.linalg.norm(sight, axis=1)  # of the line of sight, towards the table
+        above = -R[:, 2] @ t - height  # of the lens, over the plane
+        lost = (down * np.sign(above) < _SLANT) | (above == 0)
+        if lost.any():
+            raise VisionError(
+                f"the pixel {np.round(points[lost][0], 1).tolist()} looks past the plane at height {height:g} m: it "
+                "lies at or above the horizon, so no place on the table belongs to it"
+            )
+        if route == "ray":
+            centre, rays = -R.T @ t, sight @ R
+            return (centre + rays * ((height - centre[2]) / rays[:, 2])[:, None])[:, :2]
+        H = np.column_stack([R[:, 0], R[:, 1], t + height * R[:, 2]])
+        X = np.linalg.solve(H, sight.T)
+        return (X[:2] / X[2]).T
+
+
+def covariance_of(camera):
+    """Covariance (9, 9) of (fx, fy, cx, cy, k1, k2, p1, p2, k3) that a Calibration holds; zeros where it has none."""
+    covariance = np.zeros((9, 9))
+    known = getattr(camera, "covariance", None)
+    if known is not None:
+        n = min(9, len(known))
+        covariance[:n, :n] = np.asarray(known, dtype=float)[:n, :n]
+    return covariance
+
+
+def _square(name, value, n):
+    array = np.zeros((n, n)) if value is None else np.asarray(value, dtype=float)
+    if array.shape != (n, n) or not np.isfinite(array).all():
+        raise InputError(f"{name} has shape {array.shape}; give {(n, n)} finite numbers")
+    return array
+
+
+def _height(value):
+    if not (np.isscalar(value) and not isinstance(value, str) and np.isfinite(value)):
+        raise InputError(f"height = {value!r} m: give one finite number, the height above the table")
+    return float(value)

@@ -1,0 +1,247 @@
+"""From pixel to table: two routes, exact on exact input, errors as predicted, bad input refused by name."""
+
+from types import SimpleNamespace
+
+import cv2
+import numpy as np
+import pytest
+
+from ir50p_lab.errors import CalibrationError, InputError, VisionError
+from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transform, rvec_tvec, transform
+from ir50p_lab.vision.pinhole import Pinhole
+from ir50p_lab.vision.table_plane import TablePlane
+
+cv2.setNumThreads(1)
+CAMERA = Pinhole([[705, 0, 322.5], [0, 702, 238.1], [0, 0, 1]], (-0.28, 0.11, 6e-4, -4e-4, -0.02))
+
+
+def looking_at(target, eye, up=(0, 0, 1)):
+    z = np.subtract(target, eye) / np.linalg.norm(np.subtract(target, eye))
+    x = np.cross(z, up) / np.linalg.norm(np.cross(z, up))
+    T = np.eye(4)
+    T[:3, :3] = np.vstack([x, np.cross(z, x), z])
+    T[:3, 3] = -T[:3, :3] @ eye
+    return T
+
+
+POSE = looking_at((0.38, 0.0, 0.0), (0.95, 0.25, 0.75))
+PLACES = np.array([[x, y] for x in (0.25, 0.35, 0.45) for y in (-0.2, 0.0, 0.2)])
+LYING = np.array([[1, 0, 0, 0.28], [0, -1, 0, 0.06], [0, 0, -1, 0], [0, 0, 0, 1.0]])
+
+
+def lifted(height):
+    return np.column_stack([PLACES, np.full(len(PLACES), height)])
+
+
+@pytest.mark.parametrize("height", [0.0, 0.03, -0.01])
+@pytest.mark.parametrize("route", ["homography", "ray"])
+def test_a_projected_point_comes_back(height, route):
+    xy = CAMERA.project(POSE, lifted(height))
+    plane = TablePlane(CAMERA, POSE)
+    assert np.allclose(plane.to_table(xy, height, route=route), PLACES, atol=1e-12)
+    assert np.allclose(plane.to_image(lifted(height)), xy, atol=1e-9)
+    assert plane.to_table(xy[0], height).shape == (2,)
+    assert np.allclose(plane.to_points(xy, height), lifted(height), atol=1e-12)
+
+
+def test_a_random_camera_gives_the_same_on_both_routes():
+    rng = np.random.default_rng(1)
+    for _ in range(50):
+        eye = [rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0.3, 1.5)]
+        plane = TablePlane(CAMERA, looking_at((*rng.uniform(-0.1, 0.1, 2), 0), eye))
+        height, xy = rng.uniform(0, 0.05), rng.uniform((200, 150), (440, 330), (20, 2))
+        assert np.allclose(plane.to_table(xy, height), plane.to_table(xy, height, route="ray"), atol=1e-12)
+
+
+def test_the_homography_is_the_thesis_formula_with_the_third_row_dropped():
+    T, K = POSE, CAMERA.K
+    R_t = np.vstack([T[:3, :3].T, T[:3, 3]])  # [R; t] in the row notation of (3.7)
+    assert np.linalg.matrix_rank(R_t @ K.T) == 3
+    assert (R_t @ K.T).shape == (4, 3)  # no inverse
+    H = TablePlane(Pinhole(K), T).homography()
+    assert np.allclose((K @ H).T, np.delete(R_t, 2, axis=0) @ K.T)
+
+
+def test_a_ball_read_on_the_table_lies_twenty_millimetres_off():
+    xy = CAMERA.project(POSE, lifted(0.03))
+    plane = TablePlane(CAMERA, POSE)
+    off = np.linalg.norm(plane.to_table(xy) - PLACES, axis=1)
+    away = np.linalg.norm(PLACES - plane.centre[:2], axis=1)
+    assert np.allclose(off, 0.03 * away / (plane.centre[2] - 0.03))
+    assert 0.015 < off.min() < off.max() < 0.035
+
+
+def test_leaving_the_distortion_in_costs_millimetres():
+    xy = CAMERA.project(POSE, lifted(0.0))
+    without = TablePlane(Pinhole(CAMERA.K), POSE)
+    assert np.linalg.norm(without.to_table(xy) - PLACES, axis=1).max() > 0.003
+
+
+def outline_centre(T, centre, radius, n=20000):
+    """Centre of the outline of a sphere without distortion, from its rim points: no formula of the module."""
+    c = T[:3, :3] @ centre + T[:3, 3]
+    d = np.linalg.norm(c)
+    u = np.cross(c, [1, 0, 0]) / np.linalg.norm(np.cross(c, [1, 0, 0]))
+    v = np.cross(c, u) / d
+    t = np.linspace(0, 2 * np.pi, n, endpoint=False)[:, None]
+    rim = c * (1 - radius**2 / d**2) + radius * np.sqrt(1 - radius**2 / d**2) * (np.cos(t) * u + np.sin(t) * v)
+    xy = (rim[:, :2] / rim[:, 2:]) @ CAMERA.K[:2, :2].T + CAMERA.K[:2, 2]
+    return np.array(cv2.fitEllipse(xy.astype(np.float32))[0])
+
+
+def test_the_outline_of_a_ball_is_not_centred_on_the_image_of_its_centre():
+    bare = Pinhole(CAMERA.K)
+    plane = TablePlane(bare, POSE)
+    seen = np.array([outline_centre(POSE, p, 0.03) for p in lifted(0.03)])
+    centre = bare.project(POSE, lifted(0.03))
+    shift = np.linalg.norm(seen - centre, axis=1)
+    assert 0.1 < shift.max() < 1.0  # px
+    corrected = np.linalg.norm(plane.to_table(seen, 0.03, radius=0.03) - PLACES, axis=1)
+    plain = np.linalg.norm(plane.to_table(seen, 0.03) - PLACES, axis=1)
+    assert corrected.max() < 5e-5  # fitEllipse works in single precision
+    assert plain.max() > 5 * corrected.max()
+
+
+# ---- standard errors
+
+
+def test_standard_errors_are_those_of_random_trials():
+    rng = np.random.default_rng(2)
+    points = board_points(T_table_board=LYING)
+    corners = CAMERA.project(POSE, points)
+    spread = np.array([1.5, 1.5, 2.0, 2.0, 4e-3, 1e-2, 3e-4, 3e-4, 0.0])
+    at = CAMERA.project(POSE, lifted(0.03))
+    own = np.array([CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy, *CAMERA.distortion])
+    found = []
+    for _ in range(400):
+        fx, fy, cx, cy, *distortion = own + spread * rng.normal(size=9)
+        wrong = Pinhole([[fx, 0, cx], [0, fy, cy], [0, 0, 1]], distortion)
+        plane = TablePlane.from_board(wrong, corners + rng.normal(0, 0.2, corners.shape), points)
+        found.append(plane.to_table(at + rng.normal(0, 0.4, at.shape), 0.03 + rng.normal(0, 0.001)))
+    noisy = corners + rng.normal(0, 0.2, corners.shape)
+    plane = TablePlane.from_board(CAMERA, noisy, points, camera_covariance=np.diag(spread**2))
+    predicted = plane.standard_error(at, 0.03, sigma_px=0.4, sigma_height=0.001)
+    assert np.allclose(np.std(found, axis=0) / predicted, 1.0, atol=0.2)
+    parts = plane.covariance(at, 0.03, sigma_px=0.4, sigma_height=0.001, parts=True)
+    assert np.allclose(sum(parts.values())[:, 0, 0], predicted[:, 0] ** 2)
+
+
+def test_an_error_of_the_camera_mostly_cancels_when_the_pose_comes_from_the_board():
+    points = board_points(T_table_board=LYING)
+    corners = CAMERA.project(POSE, points)
+    spread = np.diag(np.array([3, 3, 3, 3, 0, 0, 0, 0, 0.0]) ** 2)
+    board = TablePlane.from_board(CAMERA, corners, points, camera_covariance=spread)
+    apart = TablePlane(CAMERA, POSE, camera_covariance=spread)
+    middle = CAMERA.project(POSE, points.mean(axis=0))
+    assert board.standard_error(middle, sigma_px=0).max() < 0.1 * apart.standard_error(middle, sigma_px=0).max()
+
+
+def test_a_calibration_brings_its_own_covariance():
+    spread = np.diag([4.0, 4, 1, 1, 0, 0, 0, 0, 0])
+    calibration = SimpleNamespace(K=CAMERA.K, distortion=CAMERA.distortion, covariance=spread)
+    xy = CAMERA.project(POSE, lifted(0.0))
+    with_it, without = TablePlane(calibration, POSE), TablePlane(CAMERA, POSE)
+    assert (with_it.standard_error(xy) > without.standard_error(xy)).all()
+    given = TablePlane(CAMERA, POSE, camera_covariance=spread)
+    assert np.allclose(with_it.standard_error(xy), given.standard_error(xy))
+
+
+# ---- the pose of a board
+
+
+def test_the_board_gives_the_pose_back_and_its_scatter_is_as_predicted():
+    rng = np.random.default_rng(3)
+    points = board_points(T_table_board=LYING)
+    corners = CAMERA.project(POSE, points)
+    exact = board_pose(CAMERA, corners, points)
+    assert np.allclose(exact.T_cam_board, POSE, atol=1e-7)
+    assert exact.rms < 1e-5
+    found = []
+    for _ in range(300):
+        pose = board_pose(CAMERA, corners + rng.normal(0, 0.3, corners.shape), points)
+        found.append(np.concatenate(rvec_tvec(pose.T_cam_board)))
+    assert np.allclose(np.std(found, axis=0) / pose.stderr, 1.0, atol=0.25)
+
+
+def test_the_other_pose_of_a_flat_board_is_reported():
+    board = board_points(T_table_board=np.eye(4))
+    facing = np.eye(4)
+    facing[:3, 3] = (-0.1, -0.06, 3.0)  # far and almost frontal: hardly any perspective
+    facing[:3, :3] = cv2.Rodrigues(np.array([0.25, 0.0, 0.0]))[0]
+    noisy = CAMERA.project(facing, board) + np.random.default_rng(4).normal(0, 0.2, (54, 2))
+    far = board_pose(CAMERA, noisy, board)
+    near = board_pose(
+        CAMERA, CAMERA.project(POSE, board_points(T_table_board=LYING)), board_points(T_table_board=LYING)
+    )
+    assert far.other_rms < 2 * far.rms
+    assert near.other_rms > 100 * near.rms
+
+
+def test_transforms_invert():
+    T = transform([0.3, -0.2, 0.5], [1, 2, 3])
+    assert np.allclose(inverse_transform(T) @ T, np.eye(4))
+    assert np.allclose(np.concatenate(rvec_tvec(T)), [0.3, -0.2, 0.5, 1, 2, 3])
+
+
+# ---- bad input
+
+
+def test_corners_of_another_board_are_refused():
+    points = board_points(T_table_board=LYING)
+    corners = CAMERA.project(POSE, points)
+    with pytest.raises(CalibrationError, match="pattern and square size"):
+        TablePlane.from_board(CAMERA, corners, board_points((6, 9), T_table_board=LYING))
+    with pytest.raises(InputError, match="below the table"):  # next rows towards +y: a mirror image
+        TablePlane.from_board(CAMERA, corners, points * [1, -1, 1])
+    with pytest.raises(InputError, match="same number"):
+        TablePlane.from_board(CAMERA, corners[:-1], points)
+    with pytest.raises(InputError, match="one line"):
+        TablePlane.from_board(CAMERA, corners[:9], points[:9])
+
+
+def test_pixels_that_look_past_the_table_are_refused():
+    plane = TablePlane(CAMERA, looking_at((5.0, 0, 0.4), (-0.5, 0, 0.5)))
+    with pytest.raises(VisionError, match="horizon"):
+        plane.to_table((320, 100))
+    with pytest.raises(VisionError, match="no ray"):
+        plane.to_table((1e4, 300))
+
+
+@pytest.mark.parametrize(
+    ("change", "match"),
+    [
+        ({"T_cam_table": np.eye(3)}, "rigid"),
+        ({"T_cam_table": np.diag([1, 1, 2, 1])}, "rigid"),
+        ({"T_cam_table": POSE @ np.diag([1.0, -1, -1, 1])}, "below the table"),
+        ({"camera": SimpleNamespace(K=None)}, "Pinhole"),
+        ({"camera": SimpleNamespace(K=CAMERA.K, distortion=np.zeros(8))}, "k1, k2"),
+        ({"pose_covariance": np.eye(5)}, "pose_covariance"),
+        ({"camera_covariance": np.full((9, 9), np.nan)}, "camera_covariance"),
+        ({"pose_by_camera": np.eye(6)}, "pose_by_camera"),
+    ],
+)
+def test_a_plane_of_bad_numbers_is_refused(change, match):
+    good = {"camera": CAMERA, "T_cam_table": POSE}
+    with pytest.raises(InputError, match=match):
+        TablePlane(**(good | change))
+
+
+@pytest.mark.parametrize(
+    ("xy", "options", "match"),
+    [
+        ([np.nan, 1], {}, "finite"),
+        ([1, 2, 3], {}, "shape"),
+        ("red", {}, "pixel"),
+        ([1, 2], {"height": np.nan}, "height"),
+        ([1, 2], {"route": "guess"}, "route"),
+        ([1, 2], {"radius": -1.0}, "radius"),
+    ],
+)
+def test_bad_pixels_are_refused(xy, options, match):
+    with pytest.raises(InputError, match=match):
+        TablePlane(CAMERA, POSE).to_table(xy, **options)
+
+
+def test_an_impossible_board_is_refused():
+    with pytest.raises(InputError, match="pattern"):
+        board_points((1, 6))
