@@ -47,3 +47,19 @@ class BoardLostError(BenchError):
 
 class RecordingError(LabError, ValueError):
     """A recording that cannot be written on, or a file that is none (the message names the line)."""
+
+
+class VisionError(LabError):
+    """Something about a picture, a camera or its calibration; base of the three below."""
+
+
+class ImageError(VisionError, ValueError):
+    """A picture that is missing, empty, corrupt or of the wrong kind (one channel, wrong type)."""
+
+
+class CameraError(VisionError):
+    """No camera where one was asked for, or it stopped answering while streaming."""
+
+
+class CalibrationError(VisionError, ValueError):
+    """Pictures from which the camera cannot be calibrated, or a calibration that belongs to another camera or size."""

@@ -1,0 +1,252 @@
+"""The pinhole camera with lens distortion: from points in space to pixels, and from pixels back to rays."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import first_not_finite
+
+_NEWTON_STEPS = 30
+
+
+@dataclass(frozen=True, eq=False)
+class Pinhole:
+    """A camera: intrinsic matrix, distortion coefficients, size of the picture    (3.8), in column form
+
+    A point X_cam = (X, Y, Z) m in camera coordinates (x right, y down, z forward) has the normalised coordinates
+    x = X/Z, y = Y/Z. The lens moves them to
+
+        x_d = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2),    r^2 = x^2 + y^2
+        y_d = y (1 + k1 r^2 + k2 r^4 + k3 r^6) + p1 (r^2 + 2 y^2) + 2 p2 x y
+
+    (the thesis names both kinds of distortion in 3.2.2.1 and gives no formula), and the pixel is K (x_d, y_d, 1).
+    The centre of the top left pixel is (0, 0).
+
+    Args:
+        K: (3, 3), [[fx, skew, cx], [0, fy, cy], [0, 0, 1]], pixels: column form; MATLAB prints its transpose.
+        distortion: k1, k2, p1, p2, k3 in the order of OpenCV; 0, 2, 4 or 5 numbers, the rest is zero.
+        size: (width, height) of the picture, pixels.
+
+    Raises InputError for a K that is no intrinsic matrix, a wrong number of coefficients, or a size below 1.
+    """
+
+    K: np.ndarray
+    distortion: np.ndarray = ()
+    size: tuple = (640, 480)
+
+    def __post_init__(self):
+        object.__setattr__(self, "K", _frozen(_check_K(self.K)))
+        object.__setattr__(self, "distortion", _frozen(_check_distortion(self.distortion)))
+        object.__setattr__(self, "size", _check_size(self.size))
+
+    @classmethod
+    def simple(cls, f, size=(640, 480), distortion=()):
+        """Square pixels and the axis through the middle of the picture: f focal length, pixels."""
+        width, height = _check_size(size)
+        K = [[f, 0, (width - 1) / 2], [0, f, (height - 1) / 2], [0, 0, 1]]
+        return cls(K, distortion, (width, height))
+
+    @property
+    def fx(self):
+        """Focal length over the width of a pixel."""
+        return float(self.K[0, 0])
+
+    @property
+    def fy(self):
+        """Focal length over the height of a pixel."""
+        return float(self.K[1, 1])
+
+    @property
+    def cx(self):
+        """Column of the optical axis, pixels."""
+        return float(self.K[0, 2])
+
+    @property
+    def cy(self):
+        """Row of the optical axis, pixels."""
+        return float(self.K[1, 2])
+
+    def project(self, T_cam_world, X):
+        """Pixels (n, 2) of the points X (n, 3) m in world coordinates; one point (3,) gives (2,).
+
+        T_cam_world: (4, 4), takes world to camera coordinates.
+        Raises InputError for a wrong shape, NaN, or a point that is not in front of the camera.
+        """
+        T = _check_transform(T_cam_world)
+        X = _points("X", X, 3, "m")
+        X_cam = X @ T[:3, :3].T + T[:3, 3]
+        depth = X_cam[..., 2]
+        if (depth <= 0).any():
+            raise InputError(
+                f"a point lies {-np.min(depth):.3g} m behind the camera: it has no picture. Check that T_cam_world "
+                "takes world to camera coordinates (its inverse is the camera's place in the world)"
+            )
+        return self.to_pixels(self.distort(X_cam[..., :2] / depth[..., None]))
+
+    def distort(self, xy):
+        """Distorted normalised coordinates (..., 2) of undistorted ones (..., 2)."""
+        xy = _points("xy", xy, 2, "normalised coordinates")
+        return np.stack(distort_xy(self.distortion, xy[..., 0], xy[..., 1]), axis=-1)
+
+    def to_pixels(self, xy):
+        """Pixels K (x, y, 1) of normalised coordinates (..., 2), without distortion."""
+        xy = _points("xy", xy, 2, "normalised coordinates")
+        return xy @ self.K[:2, :2].T + self.K[:2, 2]
+
+    def to_normalised(self, xy):
+        """Normalised coordinates (..., 2) of pixels (..., 2); the distortion stays in."""
+        xy = _points("xy", xy, 2, "pixels")
+        y = (xy[..., 1] - self.K[1, 2]) / self.K[1, 1]
+        x = (xy[..., 0] - self.K[0, 2] - self.K[0, 1] * y) / self.K[0, 0]
+        return np.stack([x, y], axis=-1)
+
+    def undistort_points(self, xy):
+        """Normalised coordinates (..., 2) without distortion of pixels (..., 2), by Newton's method.
+
+        Raises InputError where no point within the picture angle is distorted to that pixel.
+        """
+        distorted = self.to_normalised(xy)
+        x, y = undistort_xy(self.distortion, distorted[..., 0], distorted[..., 1])
+        lost = ~(np.isfinite(x) & np.isfinite(y))
+        if lost.any():
+            first = np.reshape(np.asarray(xy, dtype=float), (-1, 2))[np.argmax(lost.ravel())]
+            raise InputError(
+                f"the lens with distortion {self.distortion.tolist()} sends no ray to pixel {first.tolist()}: the "
+                f"pixel is too far outside the picture of {self.size[0]}x{self.size[1]}, or the coefficients are wrong"
+            )
+        return np.stack([x, y], axis=-1)
+
+    def rays(self, xy):
+        """Directions (..., 3), of length 1 in camera coordinates, that the pixels (..., 2) look along."""
+        xy = self.undistort_points(xy)
+        d = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1)
+        return d / np.linalg.norm(d, axis=-1, keepdims=True)
+
+    def scaled(self, size):
+        """The same lens with a picture of another size (width, height): the field of view in x is kept.
+
+        Pixel edges, not centres, scale: c' = (c + 1/2) s - 1/2. The height follows from the new size by cropping
+        or adding rows alike at top and bottom.
+        """
+        width, height = _check_size(size)
+        s = width / self.size[0]
+        K = np.array(self.K)
+        K[:2, :2] *= s
+        K[0, 2] = (self.cx + 0.5) * s - 0.5
+        K[1, 2] = (self.cy + 0.5 - self.size[1] / 2) * s + height / 2 - 0.5
+        return Pinhole(K, self.distortion, (width, height))
+
+
+def distort_xy(k, x, y):
+    """Distorted (x, y) of normalised (x, y), arrays of any shape; k = k1, k2, p1, p2, k3."""
+    k1, k2, p1, p2, k3 = k
+    r2 = x * x + y * y
+    radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
+    return (
+        x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+        y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y,
+    )
+
+
+def undistort_xy(k, xd, yd):
+    """Solve distort_xy(k, x, y) = (xd, yd) for x, y by Newton's method; NaN where there is no solution near."""
+    k1, k2, p1, p2, k3 = k
+    x, y = np.array(xd, dtype=float), np.array(yd, dtype=float)
+    if not np.any(k):
+        return x, y
+    with np.errstate(all="ignore"):
+        for _ in range(_NEWTON_STEPS):
+            r2 = x * x + y * y
+            radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
+            slope = 2 * (k1 + r2 * (2 * k2 + r2 * 3 * k3))  # d radial / d x = slope x
+            fx = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x) - xd
+            fy = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y - yd
+            a = radial + slope * x * x + 2 * p1 * y + 6 * p2 * x
+            b = slope * x * y + 2 * p1 * x + 2 * p2 * y
+            d = radial + slope * y * y + 6 * p1 * y + 2 * p2 * x
+            det = a * d - b * b
+            dx, dy = (d * fx - b * fy) / det, (a * fy - b * fx) / det
+            x, y = x - dx, y - dy
+            if max(np.max(np.abs(dx), initial=0), np.max(np.abs(dy), initial=0)) < 1e-13:
+                break
+        ex, ey = distort_xy(k, x, y)
+        # beyond the fold of the polynomial (det <= 0) a solution is a mirage: the lens never sends a ray there
+        good = (np.abs(ex - xd) + np.abs(ey - yd) < 1e-9) & (det > 0) & (a + d > 0)
+    return np.where(good, x, np.nan), np.where(good, y, np.nan)
+
+
+def _frozen(array):
+    array.setflags(write=False)
+    return array
+
+
+def _check_K(K):
+    try:
+        K = np.array(K, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"K must be a 3x3 matrix of numbers, got {K!r}") from None
+    if K.shape != (3, 3):
+        raise InputError(f"K has shape {K.shape}: give the 3x3 matrix [[fx, skew, cx], [0, fy, cy], [0, 0, 1]]")
+    if not np.isfinite(K).all():
+        raise InputError(f"K holds {first_not_finite(K)}: every entry must be finite")
+    if K[0, 0] > 0 and K[1, 1] > 0 and (K[2, 0] or K[2, 1]) and not (K[0, 2] or K[1, 2]):
+        raise InputError(f"K has cx, cy = {K[2, 0]:g}, {K[2, 1]:g} in its last row, as MATLAB prints it: give K.T")
+    if K[1, 0] or K[2, 0] or K[2, 1] or K[2, 2] != 1 or K[0, 0] <= 0 or K[1, 1] <= 0:
+        raise InputError(
+            f"K = {K.tolist()} is no intrinsic matrix: [[fx, skew, cx], [0, fy, cy], [0, 0, 1]], fx, fy > 0"
+        )
+    return K
+
+
+def _check_distortion(distortion):
+    try:
+        k = np.array(() if distortion is None else distortion, dtype=float).ravel()
+    except (TypeError, ValueError):
+        raise InputError(f"distortion must hold numbers k1, k2, p1, p2, k3; got {distortion!r}") from None
+    if len(k) not in (0, 2, 4, 5):
+        raise InputError(f"distortion has {len(k)} numbers: give k1, k2, p1, p2, k3 (or the first 0, 2 or 4 of them)")
+    if not np.isfinite(k).all():
+        raise InputError(f"distortion holds {first_not_finite(k)}: every coefficient must be finite")
+    return np.concatenate([k, np.zeros(5 - len(k))])
+
+
+def _check_size(size):
+    try:
+        width, height = (int(n) for n in size)
+        whole = (width, height) == tuple(size)
+    except (TypeError, ValueError):
+        raise InputError(f"size = {size!r}: give (width, height) of the picture, pixels") from None
+    if not whole or width < 1 or height < 1:
+        raise InputError(f"size = {size!r}: give (width, height) of the picture as whole pixels, at least 1")
+    return width, height
+
+
+def _check_transform(T):
+    try:
+        T = np.asarray(T, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"T_cam_world must be a 4x4 matrix, got {T!r}") from None
+    if T.shape != (4, 4):
+        raise InputError(f"T_cam_world has shape {T.shape}: give the 4x4 transform that takes world to camera")
+    if not np.isfinite(T).all():
+        raise InputError(f"T_cam_world holds {first_not_finite(T)}: every entry must be finite")
+    R = T[:3, :3]
+    if np.abs(R.T @ R - np.eye(3)).max() > 1e-6 or np.linalg.det(R) < 0 or (T[3] != (0, 0, 0, 1)).any():
+        raise InputError(
+            "T_cam_world is no rigid transform: its upper left 3x3 must be a rotation, its last row 0 0 0 1 "
+            "(for points in rows, as MATLAB has them, give the transpose)"
+        )
+    return T
+
+
+def _points(name, value, n, unit):
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must hold numbers ({unit}); got {value!r}") from None
+    if array.ndim == 0 or array.shape[-1] != n:
+        raise InputError(f"{name} has shape {array.shape}; give shape ({n},) or (..., {n}) ({unit})")
+    if not np.isfinite(array).all():
+        raise InputError(f"{name} holds {first_not_finite(array)}; every number must be finite ({unit})")
+    return array

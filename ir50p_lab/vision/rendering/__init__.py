@@ -1,0 +1,26 @@
+"""Rendered pictures of the bench, honest down to lens, light and sensor, with the truth beside each."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "scene": [
+            "Ball",
+            "Board",
+            "Box",
+            "Lamp",
+            "Lens",
+            "Patch",
+            "Scene",
+            "Sensor",
+            "Sky",
+            "Stick",
+            "Sun",
+            "Table",
+        ],
+        "places": ["bench_camera", "bench_scene", "look_at", "pose"],
+        "render": ["render_scene"],
+        "truth": ["BallTruth", "BoardTruth", "Truth"],
+    },
+)

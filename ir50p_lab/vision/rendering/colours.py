@@ -1,0 +1,51 @@
+"""Between the numbers of the screen (sRGB, 0..255) and amounts of light (0..1)."""
+
+import functools
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.vision.rendering.scene import COLOURS
+
+_STEPS = 4096
+
+
+def light_of(colour):
+    """Linear (3,) of a colour name or (r, g, b) 0..255."""
+    if isinstance(colour, str):
+        if colour not in COLOURS:
+            raise InputError(f"colour {colour!r} is not known: give (r, g, b) or one of {', '.join(COLOURS)}")
+        colour = COLOURS[colour]
+    try:
+        rgb = np.asarray(colour, dtype=float)
+    except (TypeError, ValueError):
+        rgb = np.empty(0)
+    if rgb.shape != (3,) or not ((rgb >= 0) & (rgb <= 255)).all():
+        raise InputError(f"colour {colour!r}: give (r, g, b), three numbers 0..255, or one of {', '.join(COLOURS)}")
+    return to_linear(rgb / 255)
+
+
+def to_linear(s):
+    """Light 0..1 of sRGB values 0..1."""
+    s = np.asarray(s, dtype=float)
+    return np.where(s <= 0.04045, s / 12.92, ((s + 0.055) / 1.055) ** 2.4)
+
+
+def to_srgb(light):
+    """sRGB values 0..1 of light 0..1."""
+    light = np.asarray(light, dtype=float)
+    return np.where(light <= 0.0031308, light * 12.92, 1.055 * np.maximum(light, 0) ** (1 / 2.4) - 0.055)
+
+
+def to_bytes(light, gamma=True):
+    """uint8 of light (...), clipped at 0 and 1."""
+    if not gamma:
+        return np.rint(np.clip(light, 0, 1) * 255).astype(np.uint8)
+    # square root first: equal steps of the table are then about equal steps of the result, also in the dark
+    index = np.sqrt(np.clip(light, 0, 1)) * np.float32(_STEPS - 1) + np.float32(0.5)
+    return _root_table()[index.astype(np.uint16)]
+
+
+@functools.lru_cache(maxsize=1)
+def _root_table():
+    return np.rint(255 * to_srgb(np.linspace(0, 1, _STEPS) ** 2)).astype(np.uint8)

@@ -1,0 +1,67 @@
+"""Light on surfaces: from everywhere, from the sun, from lamps; shadows on the table, soft as the source is wide."""
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.vision.rendering.scene import Lamp, Sky, Sun
+
+_BOUNCE = 0.55  # the share of the light that a table sends up to what stands on it, times its colour
+
+
+def irradiance(scene, C, X, N, table_colour):
+    """Light (n, 3) on points X (3, n) in world coordinates with normals N (3, n), and highlights' directions.
+
+    C: (3,) the camera. Returns light (n, 3) and a list of (colour (3,), strength (n,), towards (3, n)) per lamp.
+    """
+    light = np.zeros((X.shape[1], 3), dtype=np.float32)
+    direct = []
+    for source in scene.lights:
+        colour = np.asarray(source.colour, dtype=np.float32)
+        if isinstance(source, Sky):
+            up = 0.5 * (1 + N[2])
+            light += source.strength * (up[:, None] * colour + (1 - up)[:, None] * colour * _BOUNCE * table_colour)
+            continue
+        towards, strength, _ = direction(source, X)
+        light += (np.maximum(np.sum(N * towards, axis=0), 0) * strength)[:, None] * colour
+        direct.append((colour, strength, towards))
+    return light, direct
+
+
+def direction(source, X):
+    """Direction (3, n) or (3, 1) to a Sun or Lamp from X (3, n), its strength there, and its half width in rad."""
+    if isinstance(source, Sun):
+        L = np.asarray(source.towards, dtype=float)
+        if L.shape != (3,) or L[2] <= 0:
+            raise InputError(f"a sun must stand above the table: towards = {source.towards}, its z must be > 0")
+        return (L / np.linalg.norm(L)).astype(X.dtype)[:, None], source.strength * _lit(source, X), source.softness
+    if isinstance(source, Lamp):
+        v = np.asarray(source.position, dtype=X.dtype)[:, None] - X
+        r = np.sqrt(np.sum(v * v, axis=0))
+        return v / r, source.strength / r**2, source.size / max(source.position[2], 1e-3)
+    raise InputError(f"{type(source).__name__} is no light: give Sky, Sun or Lamp")
+
+
+def _lit(sun, X):
+    if sun.edge is None:
+        return 1.0
+    angle, offset, width = sun.edge
+    along = (np.cos(angle) * X[0] + np.sin(angle) * X[1] - offset) / width
+    return smooth(along + 0.5)
+
+
+def smooth(x):
+    """0 for x <= 0, 1 for x >= 1, with a smooth step between."""
+    x = np.clip(x, 0, 1)
+    return x * x * (3 - 2 * x)
+
+
+def highlight(ball, N, V, direct):
+    """Light (n, 3) of the mirror image of the sources on a glossy ball (Blinn): normals N, view directions V (3, n)."""
+    shine = np.zeros((N.shape[1], 3), dtype=np.float32)
+    for colour, strength, towards in direct:
+        H = towards + V
+        H = H / np.sqrt(np.sum(H * H, axis=0))
+        spot = np.maximum(np.sum(N * H, axis=0), 0) ** ball.shininess
+        lit = np.sum(N * towards, axis=0) > 0
+        shine += (ball.gloss * spot * lit * strength)[:, None] * colour
+    return shine

@@ -1,0 +1,78 @@
+"""The rays of a picture: one through the middle of every pixel, or many through some of them."""
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.vision.pinhole import undistort_xy
+
+
+@dataclass(frozen=True, eq=False)
+class Rays:
+    """Directions (x, y, 1) in camera coordinates: x, y arrays of one shape, with the pixels px, py they go through.
+
+    length2 = x^2 + y^2 + 1. On a grid (`grid` true) the shape is that of the picture.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    length2: np.ndarray
+    px: np.ndarray
+    py: np.ndarray
+    grid: bool
+
+    def near(self, box):
+        """Index of the rays whose pixel is in the box (x0, y0, x1, y1); None is everywhere."""
+        if box is None:
+            return (Ellipsis,)
+        x0, y0, x1, y1 = box
+        if self.grid:
+            h, w = self.x.shape
+            return slice(_clip(np.floor(y0), h), _clip(np.ceil(y1) + 1, h)), slice(
+                _clip(np.floor(x0), w), _clip(np.ceil(x1) + 1, w)
+            )
+        return (np.flatnonzero((self.px >= x0) & (self.px <= x1) & (self.py >= y0) & (self.py <= y1)),)
+
+    def at(self, index):
+        """The rays of an index."""
+        return Rays(self.x[index], self.y[index], self.length2[index], self.px[index], self.py[index], self.grid)
+
+
+def grid_rays(pinhole):
+    """Rays through the middle of every pixel of the picture (kept for the next picture of the same camera)."""
+    return _grid(pinhole.K.tobytes(), pinhole.distortion.tobytes(), pinhole.size)
+
+
+def rays_through(pinhole, px, py):
+    """Rays through pixels px, py: arrays of one shape, in parts of a pixel."""
+    x, y = _normalised(pinhole.K, pinhole.distortion, px, py)
+    return Rays(x, y, x * x + y * y + 1, px, py, False)
+
+
+@functools.lru_cache(maxsize=8)
+def _grid(K, distortion, size):
+    K, distortion = np.frombuffer(K).reshape(3, 3), np.frombuffer(distortion)
+    px, py = np.meshgrid(np.arange(size[0], dtype=float), np.arange(size[1], dtype=float))
+    x, y = (a.astype(np.float32) for a in _normalised(K, distortion, px, py))
+    rays = Rays(x, y, x * x + y * y + 1, px.astype(np.float32), py.astype(np.float32), True)
+    for array in (rays.x, rays.y, rays.length2, rays.px, rays.py):
+        array.setflags(write=False)
+    return rays
+
+
+def _normalised(K, distortion, px, py):
+    y = (py - K[1, 2]) / K[1, 1]
+    x = (px - K[0, 2] - K[0, 1] * y) / K[0, 0]
+    x, y = undistort_xy(distortion, x, y)
+    if not np.isfinite(x).all():
+        raise InputError(
+            f"the distortion {distortion.tolist()} folds over within the picture: some pixels get no ray, so there is "
+            "no picture. Use smaller coefficients or a narrower picture"
+        )
+    return x, y
+
+
+def _clip(value, top):
+    return int(min(max(value, 0), top))

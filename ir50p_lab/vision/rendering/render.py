@@ -1,0 +1,195 @@
+"""`render_scene`: a Scene to a picture, by following a ray through every pixel, and the truth beside it."""
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.vision.pinhole import distort_xy
+from ir50p_lab.vision.rendering.board_print import black, print_range
+from ir50p_lab.vision.rendering.colours import light_of
+from ir50p_lab.vision.rendering.light import highlight, irradiance
+from ir50p_lab.vision.rendering.rays import grid_rays, rays_through
+from ir50p_lab.vision.rendering.scene import Ball, Board, Box, Scene, Stick
+from ir50p_lab.vision.rendering.sensor import blur, expose
+from ir50p_lab.vision.rendering.shadow import table_light
+from ir50p_lab.vision.rendering.shapes import BoxShape, SheetShape, SphereShape, StickShape
+from ir50p_lab.vision.rendering.surface import room_light, table_albedo
+from ir50p_lab.vision.rendering.truth import Truth, ball_truth, board_truth
+
+ROOM, TABLE = 0, 1  # owners of pixels; things follow
+_DETAILS = 64  # codes per owner: faces, squares, patches
+_ON_TOP = 1.0001  # what lies in the plane of the table is above it: 0.1 mm at 1 m
+_SUB = 5  # rays along each side of a pixel that an edge runs through
+
+
+def render_scene(scene, seed=0):
+    """The picture of a scene and the truth beside it: the same bytes for the same scene and seed.
+
+    Every pixel is the mean light over its square: one ray where nothing changes, 25 where an edge runs through it. The
+    lens blurs light, not bytes; then come noise, tone curve and JPEG.
+
+    Args: scene: Scene; seed: of the noise. Returns: image (h, w, 3) uint8, red green blue; Truth.
+    Raises InputError for things that cannot be drawn.
+    """
+    if not isinstance(scene, Scene):
+        raise InputError(f"render_scene draws a Scene, not {type(scene).__name__}: build one, or take bench_scene()")
+    picture = _Picture(scene)
+    light = blur(picture.light(), scene.lens)
+    image = expose(light, scene.sensor, np.random.default_rng([int(seed), 0]))
+    return image, picture.truth(int(seed))
+
+
+class _Picture:
+    """The scene in camera coordinates."""
+
+    def __init__(self, scene):
+        self.scene, self.T = scene, np.asarray(scene.T_cam_world, dtype=float)
+        self.R, self.t = self.T[:3, :3], self.T[:3, 3]
+        self.C = -self.R.T @ self.t
+        self.things = (*scene.objects, *scene.arm)
+        self.shapes = [self._shape(thing) for thing in self.things]
+        self.boxes = [self._pixel_box(shape.bounds()) for shape in self.shapes]
+        table = scene.table
+        self.table_colour = light_of(table.colour if table else "grey").astype(np.float32)
+
+    def _shape(self, thing):
+        if isinstance(thing, Ball):
+            return SphereShape(self.R @ np.asarray(thing.position, dtype=float) + self.t, thing.radius)
+        if isinstance(thing, Stick):
+            ends = (self.R @ np.asarray(p, dtype=float) + self.t for p in (thing.start, thing.end))
+            return StickShape(*ends, thing.radius)
+        if isinstance(thing, Box):
+            return BoxShape(self.T @ thing.T_world_box, thing.size)
+        if isinstance(thing, Board):
+            return SheetShape(self.T @ thing.T_world_board, *print_range(thing), thing.bend)
+        raise InputError(f"{type(thing).__name__} is nothing that can be drawn: give Ball, Board, Stick or Box")
+
+    def _pixel_box(self, corners):
+        """Pixels (x0, y0, x1, y1) around points (n, 3); None where some are beside or behind the camera."""
+        if (corners[:, 2] <= 0.05 * np.abs(corners).max()).any():
+            return None
+        pinhole = self.scene.pinhole
+        x, y = distort_xy(pinhole.distortion, corners[:, 0] / corners[:, 2], corners[:, 1] / corners[:, 2])
+        xy = np.stack([x, y], axis=-1) @ pinhole.K[:2, :2].T + pinhole.K[:2, 2]
+        low, high = xy.min(axis=0), xy.max(axis=0)
+        w, h = pinhole.size
+        if (np.abs(xy) > 2 * max(w, h)).any():  # far outside the polynomial of the lens means nothing
+            return None
+        pad = 3 + 0.05 * (high - low)
+        return (*(low - pad), *(high + pad))
+
+    def light(self):
+        """Light (h, w, 3) float32 of the sharp picture."""
+        rays = grid_rays(self.scene.pinhole)
+        light, code = self.trace(rays)
+        w, h = self.scene.pinhole.size
+        light, code = light.reshape(h, w, 3), code.reshape(h, w)
+        edge = np.zeros((h, w), dtype=bool)
+        across, down = code[:, 1:] != code[:, :-1], code[1:] != code[:-1]
+        edge[:, 1:] |= across
+        edge[:, :-1] |= across
+        edge[1:] |= down
+        edge[:-1] |= down
+        y, x = np.nonzero(edge)
+        sub = (np.arange(_SUB) + 0.5) / _SUB - 0.5
+        dy, dx = (a.ravel() for a in np.meshgrid(sub, sub, indexing="ij"))
+        for part in np.array_split(np.arange(len(x)), max(1, len(x) // 20000)):
+            px, py = (x[part, None] + dx).ravel(), (y[part, None] + dy).ravel()
+            fine, _ = self.trace(rays_through(self.scene.pinhole, px, py))
+            light[y[part], x[part]] = fine.reshape(-1, _SUB * _SUB, 3).mean(axis=1)
+        return light
+
+    def first_hits(self, rays):
+        """Depth (inf: nothing) and owner of the first thing on each ray."""
+        owner = np.zeros(rays.x.shape, dtype=np.int16)
+        depth = np.full(rays.x.shape, np.inf, dtype=rays.x.dtype)
+        table = self.scene.table
+        if table is not None:
+            down = rays.x * self.R[0, 2] + rays.y * self.R[1, 2] + self.R[2, 2]
+            with np.errstate(divide="ignore"):
+                t = (-self.C[2] / down).astype(rays.x.dtype)
+            X, Y = self._table_xy(rays.x, rays.y, t)
+            with np.errstate(invalid="ignore"):
+                hit = (t > 0) & (X > table.x[0]) & (X < table.x[1]) & (Y > table.y[0]) & (Y < table.y[1])
+            owner[hit], depth[hit] = TABLE, t[hit]
+        for number, (shape, box) in enumerate(zip(self.shapes, self.boxes, strict=True)):
+            index = rays.near(box)
+            t = shape.depth(rays.at(index))
+            nearer = t < depth[index] * _ON_TOP
+            depth[index] = np.where(nearer, t, depth[index])
+            owner[index] = np.where(nearer, number + 2, owner[index])
+        return depth, owner
+
+    def _table_xy(self, x, y, t):
+        with np.errstate(invalid="ignore"):
+            return (
+                self.C[0] + t * (self.R[0, 0] * x + self.R[1, 0] * y + self.R[2, 0]),
+                self.C[1] + t * (self.R[0, 1] * x + self.R[1, 1] * y + self.R[2, 1]),
+            )
+
+    def trace(self, rays):
+        """Light (n, 3) float32 along the rays, and a code (n,) that changes where an edge is."""
+        depth, owner = (a.ravel() for a in self.first_hits(rays))
+        x, y = rays.x.ravel(), rays.y.ravel()
+        light = np.empty((len(x), 3), dtype=np.float32)
+        code = owner.astype(np.int32) * _DETAILS
+        scene = self.scene
+        for who in np.unique(owner):
+            at = np.flatnonzero(owner == who)
+            if who == ROOM:
+                light[at] = room_light(scene.table, x[at], y[at], scene.texture_seed)
+            elif who == TABLE:
+                X, Y = self._table_xy(x[at], y[at], depth[at])
+                albedo, detail = table_albedo(scene.table, scene.patches, X, Y, scene.texture_seed)
+                light[at] = albedo * table_light(scene, X, Y)
+                code[at] += detail
+            else:
+                light[at], detail = self._thing_light(who - 2, x[at], y[at], depth[at])
+                code[at] += detail
+        return light, code
+
+    def _thing_light(self, number, x, y, depth):
+        thing, shape = self.things[number], self.shapes[number]
+        X = np.stack([depth * x, depth * y, depth])
+        N = self.R.T @ shape.normal(X)
+        world = self.R.T @ (X - self.t[:, None])
+        light, direct = irradiance(self.scene, self.C, world, N, self.table_colour)
+        detail = 0
+        if isinstance(thing, Board):
+            u, v, front = shape.print_coordinates(X)
+            dark, detail = black(thing, u, v)
+            detail = np.where(front, detail, 2)
+            albedo = np.where((dark & front)[:, None], light_of(thing.black), light_of(thing.white))
+        else:
+            albedo = light_of(thing.colour)
+        if isinstance(thing, Box):
+            detail = shape.faces(X)
+        light = light * albedo
+        if getattr(thing, "gloss", 0) > 0:
+            V = self.C[:, None] - world
+            light = light + highlight(thing, N, V / np.sqrt(np.sum(V * V, axis=0)), direct)
+        return light, detail
+
+    def truth(self, seed):
+        """The Truth of this picture."""
+        scene, w, h = self.scene, *self.scene.pinhole.size
+
+        def seen(number):
+            def look(px, py):
+                inside = (px >= -0.5) & (px <= w - 0.5) & (py >= -0.5) & (py <= h - 0.5)
+                rays = rays_through(scene.pinhole, px[inside], py[inside])
+                inside[inside] = self.first_hits(rays)[1] == number + 2
+                return inside
+
+            return look
+
+        balls = tuple(
+            ball_truth(scene.pinhole, self.T, thing, seen(i))
+            for i, thing in enumerate(self.things)
+            if isinstance(thing, Ball)
+        )
+        boards = tuple(
+            board_truth(scene.pinhole, self.T, thing, self.shapes[i], seen(i))
+            for i, thing in enumerate(self.things)
+            if isinstance(thing, Board)
+        )
+        return Truth(balls=balls, boards=boards, pinhole=scene.pinhole, T_cam_world=self.T, scene=scene, seed=seed)

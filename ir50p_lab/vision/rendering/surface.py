@@ -1,0 +1,114 @@
+"""What surfaces look like in even white light: the table's texture, patches on it, the room behind."""
+
+import functools
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.vision.rendering.colours import light_of
+
+_TILE = 512
+
+
+def table_albedo(table, patches, X, Y, seed):
+    """Linear colours (n, 3) of the table at X, Y (n,) m and a code (n,) of what lies there (for edges)."""
+    shade = 1 + np.float32(0.9 * table.contrast) * _texture(table, X, Y, seed)
+    colour = light_of(table.colour).astype(np.float32)
+    albedo = np.clip(shade[:, None], 0.1, 1.9) * colour
+    code = np.zeros(X.shape, dtype=np.int16)
+    if table.texture == "tiles":
+        c, s = np.cos(table.angle), np.sin(table.angle)
+        side = 4 * table.grain
+        u, v = np.mod((c * X + s * Y) / side, 1), np.mod((c * Y - s * X) / side, 1)
+        joint = (u < 0.03) | (v < 0.03)
+        albedo[joint] *= 1 - 0.6 * table.contrast
+        code[joint] = 1
+    for number, patch in enumerate(patches):
+        where = _inside(patch, X, Y)
+        albedo[where] = light_of(patch.colour) * np.clip(1 + 0.15 * (shade[where, None] - 1), 0.5, 1.5)
+        code[where] = number + 2
+    return np.minimum(albedo, 0.95), code
+
+
+def patch_bounds(patch):
+    """Corners (4, 3) m around a patch."""
+    half = np.array(patch.size) / 2
+    half = half * 1.4 if patch.outline == "blob" else half
+    c, s = np.cos(patch.angle), np.sin(patch.angle)
+    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half @ np.array([[c, s], [-s, c]])
+    return np.column_stack([corners + patch.position, np.zeros(4)])
+
+
+def _inside(patch, X, Y):
+    c, s = np.cos(patch.angle), np.sin(patch.angle)
+    x, y = X - np.float32(patch.position[0]), Y - np.float32(patch.position[1])
+    u, v = (c * x + s * y) / (patch.size[0] / 2), (c * y - s * x) / (patch.size[1] / 2)
+    if patch.outline == "rectangle":
+        return (np.abs(u) <= 1) & (np.abs(v) <= 1)
+    if patch.outline == "ellipse":
+        return u * u + v * v <= 1
+    if patch.outline == "blob":
+        near = np.flatnonzero(u * u + v * v <= 1.96)
+        rng = np.random.default_rng([int(patch.seed), 7])
+        angle, rim = np.arctan2(v[near], u[near]), np.ones(len(near))
+        for k in range(2, 6):
+            rim += rng.uniform(-0.3, 0.3) / k * np.cos(k * angle + rng.uniform(0, 2 * np.pi))
+        inside = np.zeros(X.shape, dtype=bool)
+        inside[near] = np.hypot(u[near], v[near]) <= rim
+        return inside
+    raise InputError(f"outline {patch.outline!r} of a patch: give 'rectangle', 'ellipse' or 'blob'")
+
+
+def _texture(table, X, Y, seed):
+    """Brightness (n,) around 0, standard deviation about 1, of the table's texture."""
+    c, s = np.cos(table.angle), np.sin(table.angle)
+    u, v = (c * X + s * Y) / table.grain, (c * Y - s * X) / table.grain
+    if table.texture == "plain":
+        return 0.25 * _lookup("soft", seed, 10 * u, 10 * v)
+    if table.texture == "wood":
+        return 0.6 * _lookup("soft", seed, 2 * u, 24 * v) + 0.4 * _lookup("rough", seed, 3 * u, 60 * v)
+    if table.texture == "cloth":
+        return 0.5 * _lookup("rough", seed, 40 * u, 40 * v) + 0.5 * _lookup("soft", seed, 12 * u, 12 * v)
+    if table.texture == "speckle":
+        return _lookup("rough", seed, 30 * u, 30 * v)
+    if table.texture == "tiles":
+        return 0.3 * _lookup("rough", seed, 20 * u, 20 * v)
+    raise InputError(f"texture {table.texture!r} of the table: give 'plain', 'wood', 'cloth', 'speckle' or 'tiles'")
+
+
+def room_light(table, rays_x, rays_y, seed):
+    """Linear colours (n, 3) of the room behind the table: broad blurred areas, by direction x, y of the rays."""
+    colour = light_of(table.room if table is not None else (120, 118, 115)).astype(np.float32)
+    areas = [1 + 0.45 * _lookup("broad", seed + 11 * i, 220 * rays_x + 60 * i, 220 * rays_y) for i in range(2)]
+    tint = np.stack([areas[0], 0.5 * (areas[0] + areas[1]), areas[1]], axis=-1)
+    return np.clip(tint, 0.1, 2.2) * colour
+
+
+_SPECTRA = {"broad": 2.2, "soft": 1.4, "rough": 0.6}  # amplitude falls with frequency to this power
+
+
+@functools.lru_cache(maxsize=24)
+def _tile(kind, seed):
+    """A square of noise (512, 512) that repeats without a seam, mean 0, standard deviation 1."""
+    rng = np.random.default_rng([int(seed), sorted(_SPECTRA).index(kind)])
+    spectrum = np.fft.rfft2(rng.standard_normal((_TILE, _TILE)))
+    frequency = np.hypot(np.fft.fftfreq(_TILE)[:, None], np.fft.rfftfreq(_TILE)[None, :]) * _TILE
+    gain = np.where(frequency > 0, 1 / np.maximum(frequency, 1 if kind == "rough" else 2) ** _SPECTRA[kind], 0)
+    gain *= np.exp(-((frequency / (_TILE / 5)) ** 2))  # nothing finer than the interpolation can show
+    noise = np.fft.irfft2(spectrum * gain, s=(_TILE, _TILE))
+    return (noise / noise.std()).astype(np.float32)
+
+
+def _lookup(kind, seed, u, v):
+    """The noise at u, v (n,), in its own pixels, interpolated."""
+    import cv2
+
+    n = len(u)
+    wide = 4096
+    rows = -(-n // wide)
+    where = np.zeros((2, rows * wide), dtype=np.float32)
+    where[0, :n], where[1, :n] = np.mod(u, _TILE), np.mod(v, _TILE)
+    where = where.reshape(2, rows, wide)
+    return cv2.remap(_tile(kind, int(seed)), where[0], where[1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_WRAP).ravel()[
+        :n
+    ]

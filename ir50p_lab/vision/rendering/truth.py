@@ -1,0 +1,138 @@
+"""What is really there: the truth beside each rendered picture."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.vision.pinhole import Pinhole, distort_xy
+from ir50p_lab.vision.rendering.board_print import inner_corners
+
+_RIM = 256
+_RINGS = 24
+
+
+@dataclass(frozen=True, kw_only=True)
+class BallTruth:
+    """One ball of the picture.
+
+    x, y: projected centre of the sphere, pixels. radius: of the circle with the area of its image, pixels.
+    outline_x, outline_y: centre of area of its image; a sphere's image is an ellipse whose middle is not where the
+    sphere's centre is seen. long, short: semi-axes of that ellipse, pixels. visible: part 0..1 of its image that is in
+    the picture and not hidden. position (3,) m and ball_radius m in world coordinates; colour: name or (r, g, b).
+    """
+
+    x: float
+    y: float
+    radius: float
+    outline_x: float
+    outline_y: float
+    long: float
+    short: float
+    visible: float
+    position: tuple
+    ball_radius: float
+    colour: str | tuple
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BoardTruth:
+    """One board: corners (n, 2) pixels (NaN behind the camera), inside (n,) whether they are in the picture and seen.
+
+    object_points (n, 3) m, as of a flat board; T_cam_board (4, 4); pattern, square, bend as in Board.
+    """
+
+    corners: np.ndarray
+    inside: np.ndarray
+    object_points: np.ndarray
+    T_cam_board: np.ndarray
+    pattern: tuple
+    square: float
+    bend: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Truth:
+    """Of one rendered picture: balls and boards in the order of the scene, camera, scene, seed. Always `simulated`."""
+
+    balls: tuple
+    boards: tuple
+    pinhole: Pinhole
+    T_cam_world: np.ndarray
+    scene: object
+    seed: int
+    simulated: bool = True
+
+    def of_colour(self, colour):
+        """The balls of one colour name, largest visible area first."""
+        found = [ball for ball in self.balls if ball.colour == colour]
+        return tuple(sorted(found, key=lambda ball: -ball.visible * ball.radius**2))
+
+
+def ball_truth(pinhole, T_cam_world, ball, seen):
+    """BallTruth of a Ball; `seen(px, py)` tells which pixels (n,) really show it."""
+    centre = T_cam_world[:3, :3] @ np.asarray(ball.position, dtype=float) + T_cam_world[:3, 3]
+    x, y = pinhole.project(np.eye(4), centre)
+    rim = sphere_rim(pinhole, centre, ball.radius)
+    area, ox, oy, long, short = _area_moments(rim)
+    # points of equal area: rings towards the middle of area
+    s = np.sqrt((np.arange(_RINGS) + 0.5) / _RINGS)[:, None, None]
+    inside = (np.array([ox, oy]) + s * (rim - (ox, oy))).reshape(-1, 2)
+    weight = np.abs(_cross(rim - (ox, oy), np.roll(rim, -1, axis=0) - (ox, oy)))
+    weight = np.broadcast_to(0.5 * (weight + np.roll(weight, 1)), (_RINGS, _RIM)).ravel()
+    visible = float(np.sum(weight * seen(inside[:, 0], inside[:, 1])) / np.sum(weight))
+    return BallTruth(
+        x=float(x), y=float(y), radius=float(np.sqrt(area / np.pi)), outline_x=ox, outline_y=oy, long=long,
+        short=short, visible=visible, position=tuple(map(float, ball.position)), ball_radius=float(ball.radius),
+        colour=ball.colour,
+    )  # fmt: skip
+
+
+def sphere_rim(pinhole, centre, radius, n=_RIM):
+    """Outline (n, 2) pixels of a sphere: the circle where rays from the camera touch it, projected."""
+    D = np.linalg.norm(centre)
+    axis = centre / D
+    side = np.cross(axis, (1.0, 0.0, 0.0) if abs(axis[0]) < 0.6 else (0.0, 1.0, 0.0))
+    side /= np.linalg.norm(side)
+    up = np.cross(axis, side)
+    a = np.arange(n)[:, None] * (2 * np.pi / n)
+    rim = centre - radius**2 / D * axis + radius * np.sqrt(1 - (radius / D) ** 2) * (np.cos(a) * side + np.sin(a) * up)
+    return pinhole.project(np.eye(4), rim)
+
+
+def board_truth(pinhole, T_cam_world, board, shape, seen):
+    """BoardTruth of a Board; shape: its SheetShape; `seen(px, py)` tells which pixels (n,) really show it."""
+    flat = inner_corners(board)
+    X = shape.place(flat[:, 0], flat[:, 1]) @ shape.R.T + shape.t
+    front = X[:, 2] > 1e-6
+    corners = np.full((len(X), 2), np.nan)
+    x, y = X[front, 0] / X[front, 2], X[front, 1] / X[front, 2]
+    corners[front] = pinhole.to_pixels(np.stack(distort_xy(pinhole.distortion, x, y), axis=-1))
+    w, h = pinhole.size
+    inside = front & np.all((corners >= -0.5) & (corners <= (w - 0.5, h - 0.5)), axis=1)
+    inside[inside] = seen(corners[inside, 0], corners[inside, 1])
+    return BoardTruth(
+        corners=corners, inside=inside, object_points=flat, T_cam_board=T_cam_world @ board.T_world_board,
+        pattern=tuple(board.pattern), square=float(board.square), bend=float(board.bend),
+    )  # fmt: skip
+
+
+def _cross(a, b):
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+
+
+def _area_moments(rim):
+    """Area, centre of area and semi-axes of the ellipse with the same second moments, of a polygon (n, 2)."""
+    middle = rim.mean(axis=0)
+    a = rim - middle
+    b = np.roll(a, -1, axis=0)
+    c = _cross(a, b)
+    area = c.sum() / 2
+    centre = ((a + b) * c[:, None]).sum(axis=0) / (6 * area)
+    second = (
+        np.einsum("n,ni,nj->ij", c, a, a)
+        + np.einsum("n,ni,nj->ij", c, b, b)
+        + np.einsum("n,ni,nj->ij", c, a + b, a + b)
+    )
+    second = second / (24 * area) - np.outer(centre, centre)
+    short, long = 2 * np.sqrt(np.linalg.eigvalsh(second))
+    return abs(area), float(centre[0] + middle[0]), float(centre[1] + middle[1]), float(long), float(short)
