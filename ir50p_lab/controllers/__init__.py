@@ -10,6 +10,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
         "base": ["Controller"],
+        "computed_torque": ["ComputedTorque", "FeedForward", "GravityPD"],
         "continuous_pid": ["ContinuousPID"],
         "pid": ["PID"],
         "tuning": [

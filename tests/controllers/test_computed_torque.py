@@ -1,0 +1,430 @@
+"""Computed torque and its relatives: the law term by term, the promised error dynamics, and what each option does."""
+
+import control
+import numpy as np
+import pytest
+from arms import random_arm, random_states
+
+from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.controllers import ComputedTorque, FeedForward, GravityPD
+from ir50p_lab.errors import ArmError, InputError
+from ir50p_lab.identification import Estimate, regressor
+from ir50p_lab.modelling import IR50P, THESIS_C, THESIS_RODS, gravity, inverse_dynamics
+from ir50p_lab.signals import hold, quintic, sinusoid
+from ir50p_lab.simulation import simulate
+
+ZERO = np.zeros(3)
+LAWS = [ComputedTorque, FeedForward, GravityPD]
+TABLES_2_4 = {"kp": (20**2, 50**2, 50**2), "kd": (40, 100, 100)}  # Tables 2.4-2.6
+TABLES_4_5 = {"kp": (25, 9, 49), "kd": (10, 6, 14)}  # Tables 4.5-4.7
+SWING = sinusoid((0.8, 0.4, 0.3), (0.5, 0.8, 1.0), offset=(0.0, 0.8, -0.8))
+
+
+def estimate(theta, unit="PWM"):
+    """A fit that found `theta` exactly."""
+    nothing = {"stderr": theta, "covariance": theta, "condition": ZERO, "residuals": ZERO, "sigma": ZERO}
+    return Estimate(
+        theta=theta, correlation=ZERO, columns=((),) * 3, unidentifiable=(), warnings=(), unit=unit, **nothing
+    )
+
+
+def step(controller, q=ZERO, reference=(ZERO, ZERO, ZERO), t=0.0):
+    return controller.step(t, np.array(q, dtype=float), np.array(reference, dtype=float))
+
+
+# ---- the law
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_law_is_inverse_dynamics_of_what_the_error_asks_for(seed):
+    rng = np.random.default_rng(seed)
+    arm = random_arm(rng)
+    (q,), _, _ = random_states(rng, 1)
+    (r,), (rd,), (rdd,) = random_states(rng, 1)
+    kp, kd = rng.uniform(1, 100, 3), rng.uniform(1, 20, 3)
+    before, e = q - rng.normal(0, 0.01, 3), q - r
+    # two samples of a resting reference make the rate of the error
+    for velocity, filter_hz in (("error", np.inf), ("angle", np.inf), ("error", 4.0), ("angle", 4.0)):
+        law = ComputedTorque(arm, kp, kd, velocity=velocity, filter_hz=filter_hz, period=0.01)
+        step(law, before, (r, ZERO, ZERO))
+        u = step(law, q, (r, ZERO, rdd), t=0.01)
+        rate = (q - before) / 0.01 * (1 - np.exp(-2 * np.pi * filter_hz * 0.01))
+        v = rdd - kd * rate - kp * e
+        np.testing.assert_allclose(u, inverse_dynamics(arm, q, rate, v), rtol=1e-9)
+    # the first sample knows no velocity: that of the reference stands in, and the arm is taken to stand still for "angle"
+    u = step(ComputedTorque(arm, kp, kd), q, (r, rd, rdd))
+    np.testing.assert_allclose(u, inverse_dynamics(arm, q, rd, rdd - kp * e), rtol=1e-9)
+    u = step(ComputedTorque(arm, kp, kd, velocity="angle"), q, (r, rd, rdd))
+    np.testing.assert_allclose(u, inverse_dynamics(arm, q, ZERO, rdd + kd * rd - kp * e), rtol=1e-9)
+
+
+def test_identified_form_is_the_regressor_times_theta():
+    """(4.6) corrected: e = q - q_ref, sgn of the reference."""
+    rng = np.random.default_rng(1)
+    theta = rng.normal(0, 20, (3, 20))
+    q, r, rd, rdd = rng.normal(0, 1, (4, 3))
+    law = ComputedTorque(estimate(theta), **TABLES_4_5, limit_pwm=1e9, smooth=0.0)
+    v = rdd - law.kp * (q - r)
+    Phi = regressor(q, rd, v)
+    assert law.unit == "PWM"
+    np.testing.assert_allclose(step(law, q, (r, rd, rdd)), np.einsum("ij,ij->i", np.squeeze(Phi), theta), rtol=1e-9)
+
+
+def test_feed_forward_and_gravity_compensation():
+    arm, rng = IR50P, np.random.default_rng(2)
+    q, r, rd, rdd = rng.normal(0, 0.3, (4, 3))
+    u = step(FeedForward(arm, (3, 4, 5), (1, 1, 1), smooth=0.0), q, (r, rd, rdd))
+    np.testing.assert_allclose(u, inverse_dynamics(arm, r, rd, rdd) - (3, 4, 5) * (q - r), rtol=1e-9)
+    u = step(GravityPD(arm, (3, 4, 5), (1, 1, 1)), q, (r, rd, rdd))
+    np.testing.assert_allclose(u, gravity(arm, q) + arm.friction.Tf - (3, 4, 5) * (q - r), rtol=1e-9)
+
+
+def test_gravity_compensation_rests_on_the_set_point_where_a_pd_sags():
+    arm, goal = THESIS_RODS, np.array([np.pi / 2, np.pi / 2, -np.pi / 3])
+    gains = {"kp": (25, 200, 200), "kd": (10, 40, 40), "period": 0.001, "filter_hz": 100}
+    right = simulate(arm, GravityPD(arm, **gains), goal, duration=8, period=0.001)
+    assert np.abs(right.error[-1]).max() < 1e-6
+    without = simulate(arm, GravityPD(np.zeros((3, 20)), **gains), goal, duration=8, period=0.001)
+    expected = gravity(arm, without.q[-1]) / (25, 200, 200)  # e_ss = g/kp
+    np.testing.assert_allclose(without.error[-1], expected, atol=1e-5)
+    assert np.abs(without.error[-1, 1:]).min() > 0.02
+
+
+# ---- the error dynamics (2.20)
+
+
+def predicted(kp, kd, e0, period, n):
+    """Error of joint i for a double integrator under the sampled law: from `control`'s own discretisation."""
+    plant = control.c2d(control.ss([[0, 1], [0, 0]], [[0], [1]], np.eye(2), 0), period, "zoh")
+    A, B = np.zeros((3, 3)), np.zeros(3)  # e, its rate, the last e
+    A[:2, :2], A[2, 0], B[:2] = plant.A, 1, plant.B[:, 0]
+    closed = A - np.outer(B, [kp + kd / period, 0, -kd / period])
+    x, found = np.array([e0, 0.0, e0]), []
+    for _ in range(n):
+        found.append(x[0])
+        x = closed @ x
+    return np.array(found)
+
+
+def test_error_dynamics_are_those_predicted():
+    start = np.array([0.2, -0.15, 0.1])
+    ends = hold([0.5, 0.4, -0.3])
+    law = ComputedTorque(THESIS_RODS, **TABLES_4_5, filter_hz=np.inf, period=0.001)
+    q0 = np.array([0.5, 0.4, -0.3]) + start
+    run = simulate(THESIS_RODS, law, ends, q0=q0, duration=4, period=0.001, step=0.0005)
+    for i in range(3):
+        e = predicted(law.kp[i], law.kd[i], start[i], 0.001, len(run.t))
+        # what is left: the model is held for a period while the arm moves on
+        assert np.abs(-run.error[:, i] - e).max() < 3e-3 * abs(start[i])
+        # and in the limit of fast sampling e'' + kd e' + kp e = 0, critically damped
+        w = np.sqrt(law.kp[i])
+        assert np.abs(e - start[i] * (1 + w * run.t) * np.exp(-w * run.t)).max() < 0.02 * abs(start[i])
+
+
+def test_the_error_dynamics_do_not_depend_on_the_pose_as_those_of_a_pid_do():
+    answers = []
+    for centre in ((0.0, 0.0, 0.0), (1.0, 1.4, -1.0), (-0.7, 0.3, 0.9)):
+        law = ComputedTorque(THESIS_RODS, 25, 10, filter_hz=np.inf, period=0.001)
+        q0 = np.array(centre) + 0.2
+        answers.append(simulate(THESIS_RODS, law, hold(centre), q0=q0, duration=2, period=0.001).error)
+    assert np.ptp(np.stack(answers), axis=0).max() < 2e-3
+
+
+class WrongSign:
+    """(2.19) with the error of (2.4), e = q_ref - q: unstable."""
+
+    unit = "N m"
+
+    def __init__(self, theta, kp, kd):
+        self.theta, self.kp, self.kd, self.last = theta, np.array(kp), np.array(kd), None
+
+    def step(self, t, measured, reference):
+        q, qd, qdd = reference
+        e = q - measured
+        rate = ZERO if self.last is None else (e - self.last) / 0.001
+        self.last = e
+        return inverse_dynamics(self.theta, measured, qd - rate, qdd - self.kd * rate - self.kp * e)
+
+
+def test_the_printed_sign_runs_away():
+    near = quintic(ZERO, (0.5, 0.5, -0.5), duration=2)
+    right = ComputedTorque(THESIS_RODS, 25, 10, filter_hz=np.inf, period=0.001)
+    options = {"q0": (1e-3, 0, 0), "period": 0.001}
+    assert np.abs(simulate(THESIS_RODS, right, near, duration=2, **options).error[-1]).max() < 1e-4
+    lost = simulate(THESIS_RODS, WrongSign(THESIS_RODS, 25, 10), near, duration=0.6, **options)
+    growth = np.diff(np.log(np.abs(lost.error[[400, 500], 0])))[0] / 0.1
+    assert growth == pytest.approx(5 * (1 + np.sqrt(2)), rel=0.05)
+    with pytest.raises(InputError), np.errstate(all="ignore"):
+        simulate(THESIS_RODS, WrongSign(THESIS_RODS, 25, 10), near, duration=2, **options)
+    assert np.roots([1, -10, -25]).max() == pytest.approx(5 * (1 + np.sqrt(2)))  # e'' - kd e' - kp e = 0
+
+
+# ---- Tables 2.4-2.6, Figure 2.8. Numbers: checked numerically with a second program (true velocities, 10 ms, RK4 1 ms)
+
+QUINTIC = quintic(ZERO, (np.pi / 2, np.pi / 2, -np.pi / 3), duration=5)
+SINUS = sinusoid((0.8, 0.6, 0.6), (1, 1.5, 2))
+
+
+def rms(model, target, q0=None, period=0.01, **options):
+    """mrad, (3,), 15 s of the arm of 2.1.2 under Tables 2.4-2.6."""
+    law = ComputedTorque(model, **TABLES_2_4, filter_hz=np.inf, period=period, **options)
+    q, qd, _ = target(0.0)
+    run = simulate(THESIS_C, law, target, q0=q if q0 is None else q0, qd0=qd, duration=15, period=period)
+    return 1e3 * run.rms_error
+
+
+@pytest.mark.parametrize(
+    "scale, target, expected",
+    [
+        (1.0, QUINTIC, (0.0022, 0.0056, 0.0064)),
+        (1.0, SINUS, (0.0089, 0.0070, 0.0195)),
+        (1.2, QUINTIC, (0.095, 0.479, 0.982)),
+        (1.2, SINUS, (0.367, 1.08, 0.598)),
+        (0.8, QUINTIC, (0.140, 0.713, 1.48)),
+        (0.8, SINUS, (0.551, 1.62, 0.899)),
+    ],
+)
+def test_figure_2_8_and_wrong_masses(scale, target, expected):
+    found = rms(scale * THESIS_C, target)
+    if scale == 1.0:  # no tighter than what the velocity makes: here a difference quotient, there the true one
+        assert (found < 0.03).all() and (found < 4 * np.array(expected)).all()
+    else:
+        np.testing.assert_allclose(found, expected, rtol=0.03)
+
+
+def test_at_a_fast_sampling_the_exact_model_leaves_nothing():
+    assert (rms(THESIS_C, QUINTIC, period=0.001) < 1e-3).all()
+    assert (rms(THESIS_C, SINUS, period=0.001) < 3e-3).all()
+
+
+def test_high_gains_hide_model_errors():
+    """A wrong model shows the less, the higher the gains: error of a constant disturbance d is d/(M kp)."""
+    low = simulate(
+        THESIS_C, ComputedTorque(0.8 * THESIS_C, **TABLES_4_5, filter_hz=np.inf), QUINTIC, duration=15
+    ).rms_error
+    assert (low > 20 * 1e-3 * rms(0.8 * THESIS_C, QUINTIC)).all()
+
+
+# ---- options, one by one
+
+
+def test_rate_of_the_error_does_not_lag_where_the_filtered_velocity_does():
+    def run(velocity):
+        law = ComputedTorque(THESIS_RODS, **TABLES_4_5, velocity=velocity, filter_hz=3)
+        q, qd, _ = SINUS(0.0)
+        return simulate(THESIS_RODS, law, SINUS, q0=q, qd0=qd, duration=15).rms_error
+
+    assert (10 * run("error") < run("angle")).all()
+
+
+def test_friction_is_compensated_without_chatter():
+    """On measured angles: the measured sign changes with the noise, the reference's only where the motion turns."""
+    t = 0.01 * np.arange(1000)
+    reference = SWING.sample(t)
+    q = reference[:, 0] + np.random.default_rng(1).normal(0, 0.006, (len(t), 3))
+
+    def turns(**options):
+        laws = [
+            ComputedTorque(IR50P, **TABLES_4_5, limit_pwm=1e9, friction=f, **options) for f in ("coulomb", "viscous")
+        ]
+        with_it, without = ([c.step(*row) for row in zip(t, q, reference, strict=True)] for c in laws)
+        return np.abs(np.diff(np.sign(np.array(with_it) - without), axis=0) != 0).sum(axis=0)
+
+    reversals = (np.diff(np.sign(reference[:, 1]), axis=0) != 0).sum(axis=0)
+    assert (turns() == reversals).all() and (reversals <= 4).all()
+    assert (turns(friction_sign="measured", smooth=0.0) > 100).all()
+
+
+def test_smoothed_sign():
+    theta = np.zeros((3, 20))
+    theta[range(3), (11, 13, 15)] = 1.0
+
+    def command(speed, **options):
+        return step(ComputedTorque(theta, 1, 1, **options), ZERO, (ZERO, [speed] * 3, ZERO))
+
+    np.testing.assert_allclose(command(0.05, smooth=0.05), np.tanh(1.0))
+    np.testing.assert_allclose(command(-0.001, smooth=0.0), -1.0)
+    assert (command(0.0) == 0).all() and (command(1.0, friction="viscous") == 0).all()
+    rise = command(0.02, friction="stribeck", breakaway=(2, 2, 3), qs=0.05, smooth=0.0)
+    np.testing.assert_allclose(rise, 1 + np.array([1, 1, 2]) * np.exp(-0.16))
+    arm = step(
+        ComputedTorque(IR50P, 0, 0, friction="stribeck", limit_pwm=255, smooth=0.0), ZERO, (ZERO, [1e-9] * 3, ZERO)
+    )
+    still = step(ComputedTorque(IR50P, 0, 0, limit_pwm=255), ZERO)
+    np.testing.assert_allclose(arm - still, (36, 22, 22), rtol=1e-6)  # breakaway in counts, as the arm is made
+
+
+def test_integral_takes_a_constant_disturbance_away():
+    wrong = THESIS_RODS.theta.copy()
+    wrong[:, 2:4] *= 0.8  # gravity
+    goal = hold([0.3, 0.4, -0.2])
+
+    def end(ki):
+        law = ComputedTorque(wrong, (25, 25, 25), (10, 10, 10), ki, period=0.005)
+        return np.abs(simulate(THESIS_RODS, law, goal, q0=[0.3, 0.4, -0.2], duration=12, period=0.005).error[-1])
+
+    assert (end(0.0)[1:] > 0.02).all() and (end(40.0) < 1e-4).all()
+
+
+def test_anti_windup_lets_go_at_once():
+    def back(anti_windup):
+        theta = np.zeros((3, 20))
+        theta[0, 0] = theta[1, 8] = theta[2, 19] = 1.0
+        law = ComputedTorque(theta, 10, 0, 20, limit=5, anti_windup=anti_windup)
+        for k in range(500):
+            step(law, ZERO, ([3, 3, 3], ZERO, ZERO), t=0.01 * k)
+        return step(law, [3.5] * 3, ([3, 3, 3], ZERO, ZERO), t=5.0)
+
+    assert (back(True) < 5).all() and (back(False) == 5).all()
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_gains_change_without_a_bump_and_the_change_fades_in(law):
+    theta = np.zeros((3, 20))
+    theta[0, 0] = theta[1, 8] = theta[2, 19] = 1.0
+    made = law(theta, 10, 2, filter_hz=np.inf)
+    for k in range(5):
+        before = step(made, [0.1 + 0.001 * k] * 3, t=0.01 * k)
+    made.set_gains(kp=(100, 50, 10), kd=(1, 9, 2))
+    held = [step(made, [0.104 + 0.001] * 3, t=0.05)]
+    assert (np.abs(held[0] - before)[2] < 0.05).all() and (np.abs(held[0] - before) < 1.2).all()
+    held += [step(made, [0.105] * 3, t=0.01 * k) for k in range(6, 300)]
+    np.testing.assert_allclose(held[-1], -0.105 * np.array([100, 50, 10]), rtol=1e-3)
+    fresh = law(theta, (100, 50, 10), (1, 9, 2))
+    assert np.abs(step(fresh, [0.104] * 3) - before)[0] > 8  # what the bump would have been
+    assert (made.kp == (100, 50, 10)).all() and (made.kd == (1, 9, 2)).all() and (made.ki == 0).all()
+
+
+def test_bad_new_gains_change_nothing():
+    law = ComputedTorque(IR50P, 25, 10)
+    with pytest.raises(InputError, match="kd"):
+        law.set_gains(kp=30, kd=-1)
+    assert (law.kp == 25).all() and (law.kd == 10).all()
+
+
+def test_delay_leads_error_and_reference_ahead():
+    e, speed = 0.1, 0.3
+    theta = np.zeros((3, 20))
+    theta[0, 0] = theta[1, 8] = theta[2, 19] = 1.0
+    law = ComputedTorque(theta, 10, 2, delay=0.02, filter_hz=np.inf)
+    step(law, [e - 0.01 * speed] * 3)
+    np.testing.assert_allclose(step(law, [e] * 3, t=0.01), -10 * (e + 0.02 * speed) - 2 * speed)
+    # gravity is that of the pose where the command acts
+    law = ComputedTorque(IR50P.theta, 0, 0, friction="none", delay=0.05, model_velocity="reference")
+    r, rd, rdd = SWING(1.0)
+    later = [r + 0.05 * rd + 0.5 * 0.05**2 * rdd, rd + 0.05 * rdd, rdd]
+    ahead = ComputedTorque(IR50P.theta, 0, 0, friction="none")
+    np.testing.assert_allclose(step(law, r, (r, rd, rdd)), step(ahead, later[0], later), rtol=1e-9)
+
+
+def test_position_filter_lags_as_in_the_thesis():
+    late = ComputedTorque(THESIS_RODS, **TABLES_4_5, position_filter_hz=3, velocity="angle")
+    sharp = ComputedTorque(THESIS_RODS, **TABLES_4_5)
+    runs = [simulate(THESIS_RODS, law, QUINTIC, duration=10).rms_error for law in (late, sharp)]
+    assert (runs[0] > 10 * runs[1]).all()
+
+
+# ---- one controller for every loop
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("options", [{}, {"velocity": "angle", "delay": 0.02, "friction": "stribeck", "ki": 3.0}])
+def test_python_step_and_compiled_loops_agree_to_the_bit(law, options):
+    def made():
+        return law(IR50P, **TABLES_4_5, limit_pwm=255, **options)
+
+    class InPython:
+        unit = "PWM"
+
+        def __init__(self):
+            self.inside = made()
+
+        def step(self, t, measured, reference):
+            return self.inside.step(t, measured, reference)
+
+    runs = [simulate(IR50P, c, SWING, q0=SWING(0.0)[0], duration=2) for c in (made(), InPython())]
+    np.testing.assert_array_equal(runs[0].u, runs[1].u)
+    np.testing.assert_array_equal(runs[0].q, runs[1].q)
+    with SimulatedBench(IR50P, seed=4, q0=SWING(0.0)[0], record_to=False) as bench:
+        compiled = bench.follow(made(), SWING, 2).u
+    with SimulatedBench(IR50P, seed=4, q0=SWING(0.0)[0], record_to=False) as bench:
+        np.testing.assert_array_equal(compiled, bench.follow(InPython(), SWING, 2).u)
+
+
+def test_gains_change_live_on_the_bench():
+    with SimulatedBench(IR50P, seed=2, q0=SWING(0.0)[0], record_to=False) as bench:
+        run = bench.start(ComputedTorque(IR50P, **TABLES_4_5, limit_pwm=255), SWING, seconds=0.6, rest=False)
+        assert (run.gains["kp"] == (25, 9, 49)).all()
+        run.set_gains(kp=(30, 20, 40), kd=(11, 9, 13))
+        assert run.join(10)
+        assert run.error is None and (run.gains["kd"] == (11, 9, 13)).all()
+
+
+def test_header_tells_gains_and_model():
+    head = ComputedTorque(IR50P, **TABLES_4_5, limit_pwm=255, delay=0.02, friction="stribeck").header()
+    assert head["controller"] == "ComputedTorque" and head["kp"] == "25 9 49" and head["delay_s"] == "0.02"
+    assert head["model_unit"] == "PWM" and head["dry_friction"] == "stribeck" and head["position_filter_hz"] == "inf"
+    rows = [[float(x) for x in head[f"model_theta_{i}"].split()] for i in (1, 2, 3)]
+    np.testing.assert_allclose(rows, IR50P.theta_pwm, rtol=1e-5)
+    assert all("\n" not in line for line in head.values())
+
+
+def test_unit_comes_from_the_model():
+    assert ComputedTorque(IR50P, 1, 1).unit == "N m" and (ComputedTorque(IR50P, 1, 1).limit == np.inf).all()
+    assert ComputedTorque(IR50P, 1, 1, limit_pwm=200).unit == "PWM"
+    np.testing.assert_array_equal(ComputedTorque(IR50P, 1, 1, limit_pwm=200).theta, IR50P.theta_pwm)
+    found = ComputedTorque(estimate(IR50P.theta_pwm), 1, 1)
+    assert found.unit == "PWM" and (found.limit == 255).all()
+    assert ComputedTorque(estimate(IR50P.theta, "N m"), 1, 1, limit=5).unit == "N m"
+
+
+def test_reset_forgets():
+    law = ComputedTorque(IR50P, 25, 10, 5)
+    first = [step(law, [0.01 * k] * 3, t=0.01 * k) for k in range(20)]
+    law.reset()
+    np.testing.assert_array_equal(first, [step(law, [0.01 * k] * 3, t=0.01 * k) for k in range(20)])
+
+
+@pytest.mark.parametrize(
+    "make, error, words",
+    [
+        (lambda: ComputedTorque(IR50P, (1, -1, 1), 1), InputError, ["kp", "-1"]),
+        (lambda: ComputedTorque(IR50P, 1, (1, 1)), InputError, ["kd", "(2,)"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, np.nan), InputError, ["ki", "nan"]),
+        (lambda: ComputedTorque("arm", 1, 1), InputError, ["expected an Arm", "str"]),
+        (lambda: ComputedTorque(np.ones((2, 20)), 1, 1), InputError, ["(2, 20)"]),
+        (lambda: ComputedTorque(np.full((3, 20), np.nan), 1, 1), InputError, ["not finite"]),
+        (lambda: ComputedTorque(THESIS_RODS, 1, 1, limit_pwm=255), ArmError, ["no actuators"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, limit=1, limit_pwm=1), InputError, ["not both"]),
+        (lambda: ComputedTorque(estimate(IR50P.theta_pwm), 1, 1, limit=5), InputError, ["fitted in PWM", "limit = 5"]),
+        (lambda: ComputedTorque(estimate(IR50P.theta, "N m"), 1, 1, limit_pwm=5), InputError, ["fitted in N m"]),
+        (lambda: ComputedTorque(estimate(IR50P.theta, "volt"), 1, 1), InputError, ["volt"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, limit=0), InputError, ["limit = 0"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, limit=(1, 2)), InputError, ["limit = (1, 2)"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, period=0), InputError, ["period = 0"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, period=np.inf), InputError, ["period = inf"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, filter_hz=-3), InputError, ["filter_hz = -3"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, filter_hz="high"), InputError, ["filter_hz = 'high'"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, position_filter_hz=0), InputError, ["position_filter_hz = 0"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, delay=-0.01), InputError, ["delay = -0.01"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, delay=np.nan), InputError, ["delay = nan"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, smooth=-1), InputError, ["smooth", "-1"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, friction="wet"), InputError, ["'wet'", "'coulomb'"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, friction_sign="noise"), InputError, ["'noise'", "'reference'"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, velocity="x"), InputError, ["'x'", "'angle'"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, model_velocity="x"), InputError, ["'x'", "'measured'"]),
+        (lambda: ComputedTorque(IR50P.theta, 1, 1, friction="stribeck"), InputError, ["breakaway"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, breakaway=(1, 1, 1)), InputError, ["'stribeck' only"]),
+        (lambda: ComputedTorque(IR50P.theta, 1, 1, friction="stribeck", breakaway=0.0), InputError, ["fs >= fc"]),
+        (lambda: ComputedTorque(IR50P.theta, 1, 1, friction="stribeck", breakaway=9, qs=0), InputError, ["qs"]),
+        (lambda: ComputedTorque(IR50P, 1, 1, g=3.0), InputError, ["g = 3.0"]),
+        (lambda: step(ComputedTorque(IR50P, 1, 1), [0, np.nan, 0]), InputError, ["measured q", "nan"]),
+        (lambda: ComputedTorque(IR50P, 1, 1).step(0, np.zeros(2), np.zeros((3, 3))), InputError, ["(2,)"]),
+        (lambda: ComputedTorque(IR50P, 1, 1).step(0, ZERO, ZERO), InputError, ["reference", "(3,)"]),
+    ],
+)
+def test_bad_input_gets_a_sentence(make, error, words):
+    with pytest.raises(error) as caught:
+        make()
+    for word in words:
+        assert word in str(caught.value)
