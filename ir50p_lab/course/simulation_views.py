@@ -27,7 +27,7 @@ class Row:
 
     ylabel: with unit; ylim: (low, high); curves: their names for the legend ("": not in it);
     levels: heights of dashed lines, in the colours of the curves if there is one for each of several curves;
-    style: matplotlib's format string, one for all curves or one for each.
+    style: matplotlib's format string, one for all curves or one for each; legend: its place.
     """
 
     ylabel: str
@@ -35,6 +35,7 @@ class Row:
     curves: tuple = ("",)
     levels: tuple = ()
     style: str | tuple = "-"
+    legend: str = "upper right"
 
 
 class Traces:
@@ -42,11 +43,12 @@ class Traces:
 
     Titles and legends are drawn at every move, about 0.15 ms a letter: keep them short.
 
-    Args: xlabel: with unit; xlim: (low, high); rows: Row, from top to bottom; title: above the first.
+    Args: xlabel: with unit; xlim: (low, high); rows: Row, from top to bottom; title: above the first; note: after the
+    xlabel, "" for curves of a law, which no simulation had a part in.
     Attributes: figure; axes, one per row; lines, all curves in order, row by row.
     """
 
-    def __init__(self, xlabel, xlim, *rows, title=""):
+    def __init__(self, xlabel, xlim, *rows, title="", note=STAMP):
         height = 1.4 + (2.0 if len(rows) == 1 else 1.5 * len(rows))
         self.figure = new_figure(9.0, height, rows=len(rows), sharex=True)
         self.axes, self.lines = self.figure.axes, []
@@ -62,15 +64,19 @@ class Traces:
                 ax.axhline(level, **{**SETPOINT, **own})
             ax.set(xlim=xlim, ylim=row.ylim, ylabel=row.ylabel)
             if any(row.curves):
-                ax.legend(loc="upper right", ncols=sum(map(bool, row.curves)), fontsize=9)
+                ax.legend(loc=row.legend, ncols=sum(map(bool, row.curves)), fontsize=9)
         # as part of the axis label the note costs a panel nothing; a text of its own is drawn anew each time
-        self.axes[-1].set_xlabel(f"{xlabel}  -  {STAMP}")
+        self.axes[-1].set_xlabel(f"{xlabel}  -  {note}" if note else xlabel)
         self.title(title)
 
     def update(self, x, *ys):
-        """Give all curves new points: x (n,), and one y (n,) per curve, in their order."""
+        """Give all curves new points: x (n,), and one y (n,) per curve, in their order.
+
+        Of more than two points a pixel every second, third... is drawn: noisy curves cost time by the point.
+        """
+        every = max(1, len(x) // 1500)
         for line, y in zip(self.lines, ys, strict=True):
-            line.set_data(x, y)
+            line.set_data(x[::every], y[::every])
 
     def clear(self):
         """Empty all curves."""

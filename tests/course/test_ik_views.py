@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.course.figures import new_figure
-from ir50p_lab.course.ik_views import BranchesView, ColumnsView, EllipseView
+from ir50p_lab.course.ik_views import BranchesView, ColumnsView, EllipseView, StepsView, WayOutView, workspace_figure
 from ir50p_lab.modelling import IR50P, THESIS_RODS, forward_kinematics, inverse_kinematics
 
 Q = np.array([0.4, 0.9, -1.3])
@@ -49,14 +49,9 @@ def test_the_ellipse_of_a_stretched_arm_is_a_line():
     assert ellipse.update(0.4, 0.0)[1] < 1e-12
 
 
-def branches_view():
-    figure = new_figure(cols=2, projection=["3d", None])
-    return BranchesView(figure, IR50P)
-
-
 @pytest.mark.parametrize("branch", ["front/up", "front/down", "back/up", "back/down"])
 def test_the_chosen_branch_is_drawn_and_the_other_elbow_behind_it(branch):
-    view, p = branches_view(), np.array([0.30, 0.20, 0.40])
+    view, p = BranchesView(IR50P), np.array([0.30, 0.20, 0.40])
     said = view.update(p, branch)
     solutions = inverse_kinematics(IR50P, p)
     np.testing.assert_allclose(view.view.q, solutions[branch])
@@ -75,10 +70,48 @@ def test_the_chosen_branch_is_drawn_and_the_other_elbow_behind_it(branch):
 
 
 def test_a_target_out_of_reach_hides_the_arm_and_says_how_far():
-    view = branches_view()
+    view = BranchesView(IR50P)
     assert view.update(np.array([0.672, 0.0, 0.285]), "front/up") == "out of reach by 0.100 m"
     assert not any(fill.get_visible() for _, fill in view.view._links)
     assert not view.shapes[0]._line.get_visible() and view.view._target.get_visible()
     view.update(np.array([0.4, 0.0, 0.285]), "front/up")
     assert all(fill.get_visible() for _, fill in view.view._links)
     assert all(axis.get_visible() for axis in view.view._frames[3].axes)
+
+
+def test_a_target_given_by_heading_distance_and_height():
+    view = BranchesView(IR50P)
+    assert view.aim("front/up", 90, 0.3, 0.4) == view.update(np.array([0.0, 0.3, 0.4]), "front/up")
+    np.testing.assert_allclose(view.view.points[3], [0, 0.3, 0.4], atol=1e-12)
+
+
+def test_way_out_shows_arm_and_rates_of_one_place():
+    q = np.array([[0, 0.5, -1.0], [0, 0.3, -0.6], [0, 0.1, -0.2]])
+    reach = forward_kinematics(IR50P, q)[:, 0]
+    rates = np.array([[0, 1.0, -2.0], [0, 2.0, -4.0], [0, 4.0, -8.0]])
+    view = WayOutView(IR50P, reach, q, rates)
+    for share, k in ((0, 0), (50, 1), (100, 2)):
+        said = view.update(share)
+        assert f"{1000 * (IR50P.reach - reach[k]):.2f} mm" in said and f"at {-rates[k, 2]:.2f} rad/s" in said
+        np.testing.assert_allclose(view.side.points[2, 0], reach[k])
+        np.testing.assert_allclose(view.dots.get_data(), [[reach[k]] * 2, np.abs(rates[k, 1:])])
+    drawn = [line.get_ydata() for line in view.figure.axes[1].lines[:2]]
+    np.testing.assert_allclose(drawn, np.abs(rates[:, 1:]).T)
+
+
+def test_workspace_shows_every_tip():
+    q = np.array([[0.4, 0.9, -1.3], [0.4, 0.2, 0.3]])
+    tips = forward_kinematics(IR50P, q)
+    outwards = np.hypot(*tips[:, :2].T)
+    ax = workspace_figure(IR50P, q[0], outwards, tips[:, 2]).axes[0]
+    (dots,) = [line for line in ax.lines if line.get_marker() == "."]
+    np.testing.assert_allclose(np.column_stack(dots.get_data()), np.column_stack([outwards, tips[:, 2]]))
+    arm = next(line for line in ax.lines if line.get_marker() == "o" and len(line.get_xdata()) == 3)
+    np.testing.assert_allclose(np.column_stack(arm.get_data())[2], [outwards[0], tips[0, 2]])  # ends in its dot
+
+
+def test_steps_stay_on_the_axis():
+    view = StepsView(3)
+    view.update([1.0, 1e-3, 0.0], [1.0, 0.1, 0.01])
+    plain, damped = (curve.get_ydata() for curve in view.curves)
+    assert plain.tolist() == [1.0, 1e-3, 1e-16] and damped.tolist() == [1.0, 0.1, 0.01]

@@ -66,6 +66,12 @@ def test_levels_take_the_colours_of_their_curves():
     assert single.axes[0].lines[1].get_color() == COLOURS["dark"]
 
 
+def test_a_law_is_not_called_a_simulation():
+    view = Traces("q2 [deg]", (0, 1), Row("torque [N m]", (0, 2), ("a", "b"), legend="lower left"), note="")
+    assert view.axes[0].get_xlabel() == "q2 [deg]"
+    assert view.axes[0].get_legend()._loc == 3  # matplotlib's number of "lower left"
+
+
 def test_order_is_the_slope():
     h = np.array([0.1, 0.05, 0.025])
     _, slopes = order_figure(h, {"first": 3 * h, "fourth": 7 * h**4})
