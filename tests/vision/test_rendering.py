@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.vision.rendering import Ball, Board, Table, bench_scene, pose, render_scene
+from ir50p_lab.vision.rendering import Ball, Board, Table, bench_scene, pose, random_scene, render_scene, scene_truth
 
 PLAIN = Table(texture="plain", contrast=0.0)
 ON_TABLE = np.diag([1.0, -1.0, -1.0, 1.0])
@@ -34,3 +34,15 @@ def test_corners_agree_with_opencv():
 def test_refuses_what_is_no_scene():
     with pytest.raises(InputError, match="bench_scene"):
         render_scene(Ball())
+
+
+@pytest.mark.parametrize("kind", ["ball", "no_ball", "several", "hidden"])
+def test_scenes_keep_what_their_kind_promises(kind):
+    for seed in range(12):
+        truth = scene_truth(random_scene(seed, kind))
+        red = truth.red_balls
+        if kind == "no_ball":
+            assert not red and (truth.scene.objects or truth.scene.patches)
+            continue
+        low, high = (0.2, 0.6) if kind == "hidden" else (0.6, 1.01)
+        assert red and all(low <= ball.visible < high and 8 <= ball.radius <= 80 for ball in red)

@@ -20,7 +20,8 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "Table",
         ],
         "places": ["bench_camera", "bench_scene", "look_at", "pose"],
-        "render": ["render_scene"],
+        "render": ["render_scene", "scene_truth"],
+        "scene_distribution": ["random_scene"],
         "truth": ["BallTruth", "BoardTruth", "Truth"],
     },
 )

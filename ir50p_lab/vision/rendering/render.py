@@ -38,6 +38,11 @@ def render_scene(scene, seed=0):
     return image, picture.truth(int(seed))
 
 
+def scene_truth(scene, seed=0):
+    """The Truth of a scene without drawing it."""
+    return _Picture(scene).truth(int(seed))
+
+
 class _Picture:
     """The scene in camera coordinates."""
 

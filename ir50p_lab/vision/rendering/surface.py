@@ -79,8 +79,9 @@ def _texture(table, X, Y, seed):
 def room_light(table, rays_x, rays_y, seed):
     """Linear colours (n, 3) of the room behind the table: broad blurred areas, by direction x, y of the rays."""
     colour = light_of(table.room if table is not None else (120, 118, 115)).astype(np.float32)
-    areas = [1 + 0.45 * _lookup("broad", seed + 11 * i, 220 * rays_x + 60 * i, 220 * rays_y) for i in range(2)]
-    tint = np.stack([areas[0], 0.5 * (areas[0] + areas[1]), areas[1]], axis=-1)
+    areas = [_lookup("broad", seed + 11 * i, 220 * rays_x + 60 * i, 220 * rays_y) for i in range(3)]
+    # mostly light and dark, a little colour
+    tint = np.exp(np.stack([0.4 * areas[0] + 0.12 * a for a in (areas[1], 0.3 * areas[2], -areas[1])], axis=-1))
     return np.clip(tint, 0.1, 2.2) * colour
 
 

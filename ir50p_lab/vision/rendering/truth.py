@@ -6,6 +6,7 @@ import numpy as np
 
 from ir50p_lab.vision.pinhole import Pinhole, distort_xy
 from ir50p_lab.vision.rendering.board_print import inner_corners
+from ir50p_lab.vision.rendering.random_things import is_red
 
 _RIM = 256
 _RINGS = 24
@@ -32,6 +33,11 @@ class BallTruth:
     position: tuple
     ball_radius: float
     colour: str | tuple
+
+    @property
+    def is_red(self):
+        """Whether its paint is what the detector of red balls has to find."""
+        return is_red(self.colour)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,9 +68,10 @@ class Truth:
     seed: int
     simulated: bool = True
 
-    def of_colour(self, colour):
-        """The balls of one colour name, largest visible area first."""
-        found = [ball for ball in self.balls if ball.colour == colour]
+    @property
+    def red_balls(self):
+        """The red balls, largest visible area first."""
+        found = [ball for ball in self.balls if ball.is_red]
         return tuple(sorted(found, key=lambda ball: -ball.visible * ball.radius**2))
 
 
