@@ -67,6 +67,17 @@ class Pinhole:
         """Row of the optical axis, pixels."""
         return float(self.K[1, 2])
 
+    @property
+    def widest(self):
+        """Tangent of the largest angle to the axis at which the distortion still grows with it; inf if it always does.
+
+        Beyond it the polynomial runs backwards and would show what is outside the picture a second time.
+        """
+        k1, k2, _, _, k3 = self.distortion
+        roots = np.roots([7 * k3, 5 * k2, 3 * k1, 1])  # d/dr of r (1 + k1 r^2 + k2 r^4 + k3 r^6), in r^2
+        roots = roots[np.abs(roots.imag) < 1e-9 * np.abs(roots)].real
+        return float(np.sqrt(min(roots[roots > 0], default=np.inf)))
+
     def project(self, T_cam_world, X):
         """Pixels (n, 2) of the points X (n, 3) m in world coordinates; one point (3,) gives (2,).
 

@@ -111,8 +111,8 @@ def distractor(rng, camera, ball, *, near, what=None):
     if what in ("red stick", "red cable"):
         across = np.arctan2(camera[1] - y, camera[0] - x) + np.pi / 2 + rng.uniform(-0.7, 0.7)
         if what == "red stick":
-            r = 0.35 * size
-            half = r * rng.uniform(5, 12) * np.array([np.cos(across), np.sin(across)])
+            r = rng.uniform(0.003, 0.009)  # pens and markers; a thick round end seen past a box would be half a ball
+            half = r * rng.uniform(5, 14) * np.array([np.cos(across), np.sin(across)])
             low, high = np.array((x, y)) - half, np.array((x, y)) + half
             return [
                 Stick(start=(*low, r), end=(*high, r), radius=r, colour=red_thing(rng), gloss=rng.uniform(0, 0.6))

@@ -73,12 +73,11 @@ class _Picture:
         if (corners[:, 2] <= 0.05 * np.abs(corners).max()).any():
             return None
         pinhole = self.scene.pinhole
+        if (np.hypot(corners[:, 0], corners[:, 1]) >= pinhole.widest * corners[:, 2]).any():
+            return None
         x, y = distort_xy(pinhole.distortion, corners[:, 0] / corners[:, 2], corners[:, 1] / corners[:, 2])
         xy = np.stack([x, y], axis=-1) @ pinhole.K[:2, :2].T + pinhole.K[:2, 2]
         low, high = xy.min(axis=0), xy.max(axis=0)
-        w, h = pinhole.size
-        if (np.abs(xy) > 2 * max(w, h)).any():  # far outside the polynomial of the lens means nothing
-            return None
         pad = 3 + 0.05 * (high - low)
         return (*(low - pad), *(high + pad))
 

@@ -19,7 +19,7 @@ class BallTruth:
     x, y: projected centre of the sphere, pixels. radius: of the circle with the area of its image, pixels.
     outline_x, outline_y: centre of area of its image; a sphere's image is an ellipse whose middle is not where the
     sphere's centre is seen. long, short: semi-axes of that ellipse, pixels. visible: part 0..1 of its image that is in
-    the picture and not hidden. position (3,) m and ball_radius m in world coordinates; colour: name or (r, g, b).
+    the picture and not hidden; 0, with NaN for the rest, for a ball beside or behind the camera. position (3,) m and ball_radius m in world coordinates; colour: name or (r, g, b).
     """
 
     x: float
@@ -42,7 +42,7 @@ class BallTruth:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BoardTruth:
-    """One board: corners (n, 2) pixels (NaN behind the camera), inside (n,) whether they are in the picture and seen.
+    """One board: corners (n, 2) pixels (NaN beside or behind the camera), inside (n,) whether they are in the picture and seen.
 
     object_points (n, 3) m, as of a flat board; T_cam_board (4, 4); pattern, square, bend as in Board.
     """
@@ -78,6 +78,11 @@ class Truth:
 def ball_truth(pinhole, T_cam_world, ball, seen):
     """BallTruth of a Ball; `seen(px, py)` tells which pixels (n,) really show it."""
     centre = T_cam_world[:3, :3] @ np.asarray(ball.position, dtype=float) + T_cam_world[:3, 3]
+    known = {"position": tuple(map(float, ball.position)), "ball_radius": float(ball.radius), "colour": ball.colour}
+    reach = np.hypot(*centre[:2]) + ball.radius
+    if centre[2] - ball.radius <= 1e-3 or reach / (centre[2] - ball.radius) >= pinhole.widest:
+        lost = dict.fromkeys(("x", "y", "radius", "outline_x", "outline_y", "long", "short"), float("nan"))
+        return BallTruth(**lost, visible=0.0, **known)
     x, y = pinhole.project(np.eye(4), centre)
     rim = sphere_rim(pinhole, centre, ball.radius)
     area, ox, oy, long, short = _area_moments(rim)
@@ -88,10 +93,16 @@ def ball_truth(pinhole, T_cam_world, ball, seen):
     weight = np.broadcast_to(0.5 * (weight + np.roll(weight, 1)), (_RINGS, _RIM)).ravel()
     visible = float(np.sum(weight * seen(inside[:, 0], inside[:, 1])) / np.sum(weight))
     return BallTruth(
-        x=float(x), y=float(y), radius=float(np.sqrt(area / np.pi)), outline_x=ox, outline_y=oy, long=long,
-        short=short, visible=visible, position=tuple(map(float, ball.position)), ball_radius=float(ball.radius),
-        colour=ball.colour,
-    )  # fmt: skip
+        x=float(x),
+        y=float(y),
+        radius=float(np.sqrt(area / np.pi)),
+        outline_x=ox,
+        outline_y=oy,
+        long=long,
+        short=short,
+        visible=visible,
+        **known,
+    )
 
 
 def sphere_rim(pinhole, centre, radius, n=_RIM):
@@ -110,7 +121,7 @@ def board_truth(pinhole, T_cam_world, board, shape, seen):
     """BoardTruth of a Board; shape: its SheetShape; `seen(px, py)` tells which pixels (n,) really show it."""
     flat = inner_corners(board)
     X = shape.place(flat[:, 0], flat[:, 1]) @ shape.R.T + shape.t
-    front = X[:, 2] > 1e-6
+    front = (X[:, 2] > 1e-6) & (np.hypot(X[:, 0], X[:, 1]) < pinhole.widest * X[:, 2])
     corners = np.full((len(X), 2), np.nan)
     x, y = X[front, 0] / X[front, 2], X[front, 1] / X[front, 2]
     corners[front] = pinhole.to_pixels(np.stack(distort_xy(pinhole.distortion, x, y), axis=-1))
