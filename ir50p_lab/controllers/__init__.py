@@ -9,9 +9,20 @@ import lazy_loader
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
+        "adaptive": ["AdaptiveControl"],
         "base": ["Controller"],
         "computed_torque": ["ComputedTorque", "FeedForward", "GravityPD"],
         "continuous_pid": ["ContinuousPID"],
+        "feedback_linearisation": [
+            "FeedbackLinearisation",
+            "feedback_linearise",
+            "gains_for_poles",
+            "hurwitz",
+            "lie_derivative",
+            "pendulum_with_motor_lag",
+            "routh_table",
+        ],
+        "forecast": ["SaturationForecast", "saturation_forecast"],
         "pid": ["PID"],
         "tuning": [
             "PIDGains",

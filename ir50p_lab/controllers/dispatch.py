@@ -1,10 +1,11 @@
 """Which compiled law a controller's number stands for: one function for every loop, so that loops stay cached."""
 
+from ir50p_lab.controllers.adaptive_law import adaptive_step
 from ir50p_lab.controllers.model_law import model_step
 from ir50p_lab.controllers.pid import pid_step
 from ir50p_lab.jit import jit
 
-NONE, PID_KIND, MODEL_KIND = 0, 1, 2
+NONE, PID_KIND, MODEL_KIND, ADAPTIVE_KIND = 0, 1, 2, 3
 
 
 @jit()
@@ -14,5 +15,7 @@ def control_step(kind, p, s, t, q, r, u):
         pid_step(p, s, t, q, r, u)
     elif kind == MODEL_KIND:
         model_step(p, s, t, q, r, u)
+    elif kind == ADAPTIVE_KIND:
+        adaptive_step(p, s, t, q, r, u)
     else:
         u[0], u[1], u[2] = 0.0, 0.0, 0.0

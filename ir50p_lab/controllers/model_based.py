@@ -55,11 +55,11 @@ class ModelController(Controller):
         p = self.parameters = np.zeros(law.N_PARAMETERS)
         self.state = np.zeros(law.N_STATES)
         bound = limit if self.unit == "N m" else limit_pwm
-        p[law.LIMIT : law.LIMIT + 3] = np.inf if bound is None else _positive("limit", bound, joints=True)
-        p[law.PERIOD] = _positive("period", period)
-        p[law.FILTER_RATE] = 2 * np.pi * _positive("filter_hz", filter_hz, infinite=True)
+        p[law.LIMIT : law.LIMIT + 3] = np.inf if bound is None else positive("limit", bound, joints=True)
+        p[law.PERIOD] = positive("period", period)
+        p[law.FILTER_RATE] = 2 * np.pi * positive("filter_hz", filter_hz, infinite=True)
         if position_filter_hz is not None:
-            rate = 2 * np.pi * _positive("position_filter_hz", position_filter_hz, infinite=True)
+            rate = 2 * np.pi * positive("position_filter_hz", position_filter_hz, infinite=True)
             p[law.POSITION_RATE] = 0.0 if math.isinf(rate) else rate
         if not (np.isscalar(delay) and 0 <= delay <= 1):
             raise InputError(f"delay = {delay!r} s: give 0 to 1 s, from a sample to the moment its command acts")
@@ -186,7 +186,8 @@ def model_in_unit(model, limit_pwm=None, limit=None, g=None):
     return (np.array(model.theta_pwm) if isinstance(model, Arm) else theta), gravity, "PWM"
 
 
-def _positive(name, value, *, infinite=False, joints=False):
+def positive(name, value, *, infinite=False, joints=False):
+    """One positive number (or one per joint) as an array; infinite only where allowed. Raises InputError."""
     try:
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError):
