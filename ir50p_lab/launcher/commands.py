@@ -1,4 +1,4 @@
-"""The command line: lab (the default), test, setup, doctor."""
+"""The command line: lab (the default), test, targets, setup, doctor."""
 
 import os
 import signal
@@ -18,18 +18,20 @@ The IR50P lab book. In the project's folder (on Windows write py instead of pyth
 
   python3 -m ir50p_lab [...]          set up .venv on first use, then open JupyterLab on notebooks/
   python3 -m ir50p_lab test [...]     set up with the test tools, then run the tests and every notebook
+  python3 -m ir50p_lab targets [...]  measure what the project set out to reach, as tables beside the thesis
   python3 -m ir50p_lab setup          only set up (--rebuild: from nothing; --tests: with the test tools)
   python3 -m ir50p_lab doctor         what is installed, what is missing, serial ports, verdict
 
   --here         use the Python that runs this instead of .venv (Binder, JupyterHub); installs nothing
   --arm FILE     use the arm in this file instead of the IR50P (the same as IR50P_ARM=FILE)
 
-Further arguments go to JupyterLab or to pytest:
+Further arguments go to JupyterLab, to pytest or to the targets:
 
   py -m ir50p_lab --no-browser --port 9999
   py -m ir50p_lab test -k pose
+  py -m ir50p_lab targets vision --quick    (or identification, computed_torque; without a name all of them)
 """
-COMMANDS = ("lab", "test", "setup", "doctor")
+COMMANDS = ("lab", "test", "targets", "setup", "doctor")
 
 #: Seconds one notebook cell may take.
 CELL_TIMEOUT = 120
@@ -72,7 +74,7 @@ def _run(arguments, root):
         return doctor.report(environment, here=here)
     if command == "setup":
         return _setup(arguments, environment, here)
-    tests = command == "test"
+    tests = command in ("test", "targets")  # both need the test tools
     if here:
         _check_here(environment.root, TEST_LOCK if tests else LOCK)
         python, variables = sys.executable, dict(os.environ)
@@ -86,7 +88,8 @@ def _run(arguments, root):
     if tests:
         with tempfile.TemporaryDirectory() as recordings:  # notebooks record: tests leave nothing behind
             variables.setdefault("IR50P_RECORDINGS", recordings)
-            return _attend([python, *_test_command(environment.root, arguments)], variables, environment.root)
+            run = _test_command(environment.root, arguments) if command == "test" else _targets_command(arguments)
+            return _attend([python, *run], variables, environment.root)
     code = _attend([python, *_lab_command(environment.root, arguments)], variables)
     return 0 if code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
 
@@ -127,6 +130,11 @@ def _test_command(root, arguments):
         *targets,
         *arguments,
     ]
+
+
+def _targets_command(arguments):
+    """Build the run of tests/targets, which the project's folder must be the current one for."""
+    return ["-m", "tests.targets", *arguments]
 
 
 def _attend(command, variables, folder=None):

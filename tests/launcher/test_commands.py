@@ -79,6 +79,28 @@ def test_exit_code_is_that_of_pytest(tested, code):
     assert tested.run("test", variables={"STAND_IN_CODE": str(code)}).returncode == code
 
 
+def test_targets_run_in_the_project_with_the_test_tools(tested, tmp_path):
+    folder = tested.root / "tests" / "targets"
+    folder.mkdir(parents=True)
+    (folder / "__init__.py").write_text("")
+    (folder / "__main__.py").write_text(TARGETS)
+    done = tested.run("targets", "vision", "--quick", variables={"IR50P_RECORDINGS": None})
+    assert done.returncode == 7, done.stderr
+    start = json.loads(done.stdout.splitlines()[-1])
+    assert start["argv"] == ["vision", "--quick"] and start["cwd"] == str(tested.root)
+    assert start["prefix"] == str(tested.venv)
+    assert start["recordings"] and not Path(start["recordings"]).exists()
+
+
+TARGETS = """
+import json, os, sys
+import pebble_test
+told = {"argv": sys.argv[1:], "cwd": os.getcwd(), "prefix": sys.prefix, "recordings": os.environ["IR50P_RECORDINGS"]}
+print(json.dumps(told))
+sys.exit(7)
+"""
+
+
 def test_another_arm(tested, tmp_path):
     arm = tmp_path / "arm.toml"
     arm.write_text("")
@@ -108,7 +130,16 @@ def test_help_names_both_systems_and_needs_no_environment(project):
     for argument in ("--help", "-h", "help"):
         done = project.run(argument)
         assert done.returncode == 0
-        for command in ("python3 -m ir50p_lab", "py -m ir50p_lab", "test", "setup", "doctor", "--here", "--arm FILE"):
+        for command in (
+            "python3 -m ir50p_lab",
+            "py -m ir50p_lab",
+            "test",
+            "targets",
+            "setup",
+            "doctor",
+            "--here",
+            "--arm FILE",
+        ):
             assert command in done.stdout
     assert not project.venv.exists()
 
@@ -137,6 +168,7 @@ def test_here_says_what_is_missing_and_how_to_install_it(project):
     assert f"-m pip install -r {project.root / 'environment.txt'}" in line
     assert not project.venv.exists()
     assert "pebble-test" in one_line(project.run("--here", "test"))
+    assert "pebble-test" in one_line(project.run("--here", "targets"))
 
 
 def test_here_uses_the_running_python(tested):

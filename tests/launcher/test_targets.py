@@ -1,0 +1,78 @@
+"""`python -m tests.targets`: which tables are run, with which options, and what comes of it."""
+
+import sys
+from types import ModuleType
+
+import pytest
+
+from tests.targets import __main__ as targets
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """Stand-ins for the modules; returns what they were asked for. `--missed NAME` misses, `--broken NAME` raises."""
+    calls = []
+
+    def stand_in(name):
+        def main(arguments):
+            calls.append((name, *arguments))
+            print(f"table of {name}")
+            if arguments == ["--broken", name]:
+                raise ValueError("no camera")
+            if arguments == ["--unknown"]:
+                raise SystemExit(2)
+            return int(arguments == ["--missed", name])
+
+        module = ModuleType(f"tests.targets.{name}")
+        module.main = main
+        return module
+
+    for name in targets.NAMES:
+        monkeypatch.setitem(sys.modules, f"tests.targets.{name}", stand_in(name))
+    return calls
+
+
+def test_all_without_a_name(asked, capsys):
+    assert targets.main([]) == 0
+    assert asked == [("identification",), ("computed_torque",), ("vision",)]
+    assert capsys.readouterr().out.split("\n\n") == [
+        "table of identification", "table of computed_torque", "table of vision\n"
+    ]  # fmt: skip
+
+
+def test_names_come_first_and_options_go_to_each(asked):
+    assert targets.main(["vision", "--only", "ball"]) == 0
+    assert targets.main(["vision", "identification", "--quick"]) == 0
+    assert targets.main(["--quick"]) == 0
+    assert asked[:3] == [("vision", "--only", "ball"), ("vision", "--quick"), ("identification", "--quick")]
+    assert asked[3:] == [(name, "--quick") for name in targets.NAMES]
+
+
+def test_unknown_names_run_nothing(asked, capsys):
+    assert targets.main(["vision", "vison"]) == 2
+    assert asked == []
+    assert (
+        capsys.readouterr().err == "There are no targets 'vison'. There are: identification, computed_torque, vision.\n"
+    )
+
+
+def test_one_missed_target_is_enough(asked):
+    assert targets.main(["--missed", "identification"]) == 1
+    assert len(asked) == 3
+
+
+def test_what_cannot_be_measured_is_not_met_and_does_not_stop_the_rest(asked, capsys):
+    assert targets.main(["--broken", "identification"]) == 1
+    assert len(asked) == 3
+    said = capsys.readouterr()
+    assert "no camera" in said.err and "identification: could not be measured" in said.err
+    assert "table of vision" in said.out
+
+
+def test_an_option_that_there_is_not(asked):
+    assert targets.main(["vision", "--unknown"]) == 2
+
+
+def test_help_needs_nothing(asked, capsys):
+    assert targets.main(["--help"]) == 0
+    assert asked == [] and "python -m tests.targets" in capsys.readouterr().out
