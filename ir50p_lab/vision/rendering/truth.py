@@ -19,7 +19,8 @@ class BallTruth:
     x, y: projected centre of the sphere, pixels. radius: of the circle with the area of its image, pixels.
     outline_x, outline_y: centre of area of its image; a sphere's image is an ellipse whose middle is not where the
     sphere's centre is seen. long, short: semi-axes of that ellipse, pixels. visible: part 0..1 of its image that is in
-    the picture and not hidden; 0, with NaN for the rest, for a ball beside or behind the camera. position (3,) m and ball_radius m in world coordinates; colour: name or (r, g, b).
+    the picture and not hidden; 0, with NaN for the rest, for a ball beside or behind the camera. position
+    (3,) m and ball_radius m in world coordinates; colour: name or (r, g, b).
     """
 
     x: float
@@ -42,8 +43,9 @@ class BallTruth:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BoardTruth:
-    """One board: corners (n, 2) pixels (NaN beside or behind the camera), inside (n,) whether they are in the picture and seen.
+    """One board of the picture.
 
+    corners (n, 2) pixels, NaN beside or behind the camera; inside (n,): in the picture and not hidden;
     object_points (n, 3) m, as of a flat board; T_cam_board (4, 4); pattern, square, bend as in Board.
     """
 

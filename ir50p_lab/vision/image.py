@@ -1,0 +1,168 @@
+"""Pictures as arrays: read, check, write. Always uint8, (height, width, 3), in the order red, green, blue."""
+
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from ir50p_lab.errors import ImageError
+
+MARK = "rendered by ir50p_lab: not a photograph"
+"""What a rendered picture carries in its file (PNG: a tEXt chunk, JPEG: a comment)."""
+
+SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp")
+_PNG = b"\x89PNG\r\n\x1a\n"
+
+
+def check_image(image, name="image"):
+    """Return `image` if it is a colour picture: uint8, (height, width, 3), red green blue.
+
+    Raises ImageError, naming what it is instead and what to do, for None, an empty array, one channel, four channels,
+    or numbers that are not bytes.
+    """
+    if image is None:
+        raise ImageError(f"{name} is None: the picture was not read (a wrong path?); load_image(path) says why")
+    if not isinstance(image, np.ndarray):
+        raise ImageError(
+            f"{name} is a {type(image).__name__}: give an array (height, width, 3); load_image reads files"
+        )
+    if image.size == 0:
+        raise ImageError(f"{name} is empty (shape {image.shape}): the camera or the file gave no picture")
+    if image.ndim == 2 or (image.ndim == 3 and image.shape[2] == 1):
+        raise ImageError(
+            f"{name} has one channel (shape {image.shape}): a grey picture holds no colour to look for. Give the "
+            "colour picture (height, width, 3)"
+        )
+    if image.ndim != 3 or image.shape[2] != 3:
+        hint = ": drop the fourth channel, image[..., :3]" if image.ndim == 3 and image.shape[2] == 4 else ""
+        raise ImageError(f"{name} has shape {image.shape}: give (height, width, 3), red green blue{hint}")
+    if image.dtype != np.uint8:
+        hint = ": scale it, (255 * image).astype('uint8')" if image.dtype.kind == "f" else ""
+        raise ImageError(f"{name} holds {image.dtype} numbers: give bytes 0..255 (uint8){hint}")
+    return image
+
+
+def to_grey(image):
+    """Grey picture (h, w) uint8 of a colour one (h, w, 3): 0.299 R + 0.587 G + 0.114 B, rounded (thesis 3.1.1)."""
+    import cv2
+
+    return cv2.cvtColor(check_image(image), cv2.COLOR_RGB2GRAY)
+
+
+def load_image(path, *, allow_grey=False):
+    """Read a picture: (h, w, 3) uint8, red green blue; the right way up if its EXIF says so, without transparency.
+
+    allow_grey: a picture of one channel is taken too, its value three times (a checkerboard needs no colour).
+    Raises ImageError for a path that is missing or a folder, an empty file, one that is no picture or cut off, and one
+    of one channel or more than 8 bits.
+    """
+    import cv2
+
+    path = Path(path)
+    if path.is_dir():
+        raise ImageError(f"{path} is a folder: give one of its files, or open_camera('folder:{path}') for all of them")
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        beside = "" if path.parent.is_dir() else f", nor the folder {path.parent}"
+        raise ImageError(f"there is no file {path}{beside}: check the name (here is {Path.cwd()})") from None
+    except OSError as error:
+        raise ImageError(f"{path} cannot be read ({error.strerror}): check the rights of the file") from None
+    if not data:
+        raise ImageError(f"{path} is empty (0 bytes): copy or take the picture again")
+    if why := _cut_off(data):
+        raise ImageError(f"{path} is cut off ({why}): copy or take the picture again")
+    raw = _decode(data, cv2.IMREAD_UNCHANGED)
+    if raw is None:
+        raise ImageError(
+            f"{path} is no picture that can be read (starts with {data[:8]!r}): give {', '.join(SUFFIXES)}"
+        )
+    if raw.dtype != np.uint8:
+        raise ImageError(f"{path} has {8 * raw.itemsize} bits per colour: save it with 8")
+    if raw.ndim == 2 and not allow_grey:
+        raise ImageError(f"{path} has one channel: a grey picture holds no colour to look for; give the colour picture")
+    image = _decode(data, cv2.IMREAD_COLOR)
+    return np.ascontiguousarray(image[..., ::-1])
+
+
+def save_image(path, image, *, rendered=False, quality=95):
+    """Write a picture (h, w, 3) uint8, red green blue, as the suffix of `path` says (.png, .jpg, ...).
+
+    rendered: put the mark into the file (PNG and JPEG) that `is_rendered` finds. quality: of JPEG.
+    Raises ImageError for what is no picture, another suffix, or a place that cannot be written.
+    """
+    import cv2
+
+    path, image = Path(path), check_image(image)
+    if path.suffix.lower() not in SUFFIXES:
+        raise ImageError(f"{path.name} does not end in one of {', '.join(SUFFIXES)}: choose one, .png loses nothing")
+    options = [cv2.IMWRITE_JPEG_QUALITY, int(quality)] if path.suffix.lower() in (".jpg", ".jpeg") else []
+    _, data = cv2.imencode(path.suffix.lower(), np.ascontiguousarray(image[..., ::-1]), options)
+    data = data.tobytes()
+    try:
+        path.write_bytes(_marked(data) if rendered else data)
+    except OSError as error:
+        raise ImageError(f"{path} cannot be written ({error.strerror}): choose another folder") from None
+
+
+def is_rendered(path):
+    """Whether the picture file carries the mark of a rendered one."""
+    with open(path, "rb") as file:
+        return MARK.encode() in file.read(4096)
+
+
+def list_images(folder):
+    """Paths of the pictures in a folder, in the order of their names, numbers in them by value (view2 before view10).
+
+    Raises ImageError for a missing folder or one without pictures.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        what = "is a file, not a folder" if folder.exists() else "does not exist"
+        raise ImageError(f"{folder} {what}: give the folder of the pictures (here is {Path.cwd()})")
+    paths = [p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES and not p.name.startswith(".")]
+    if not paths:
+        others = len(list(folder.iterdir()))
+        raise ImageError(f"{folder} holds no picture ({others} other files): pictures end in {', '.join(SUFFIXES)}")
+    return sorted(paths, key=_by_number)
+
+
+def _by_number(path):
+    parts = "".join(c if c.isdigit() else " " for c in path.name).split()
+    words = "".join(" " if c.isdigit() else c for c in path.name.lower()).split()
+    return words[:1], [int(part) for part in parts if part.isdecimal()], path.name
+
+
+def _decode(data, flags):
+    import cv2
+
+    try:
+        return cv2.imdecode(np.frombuffer(data, dtype=np.uint8), flags)
+    except cv2.error:  # sizes beyond what OpenCV takes
+        return None
+
+
+def _cut_off(data):
+    """Why the data of a picture end too early, or None: OpenCV would fill the rest with grey and say nothing."""
+    if data.startswith(b"\xff\xd8"):
+        # the picture proper starts at the last 'start of scan'; an earlier 'end of image' is that of a thumbnail
+        scan = data.rfind(b"\xff\xda")
+        return None if scan > 0 and data.find(b"\xff\xd9", scan) > 0 else "JPEG without its end"
+    if data.startswith(_PNG):
+        return None if b"IEND" in data[-4096:] else "PNG without its end"
+    if data.startswith(b"BM") and len(data) >= 6:
+        size = int.from_bytes(data[2:6], "little")
+        return f"BMP of {size} bytes, {len(data)} here" if size > len(data) else None
+    return None
+
+
+def _marked(data):
+    mark = MARK.encode()
+    if data.startswith(_PNG):
+        body = b"tEXtComment\x00" + mark
+        chunk = len(body[4:]).to_bytes(4, "big") + body + zlib.crc32(body).to_bytes(4, "big")
+        header = len(_PNG) + 25  # the first chunk, IHDR, is always 25 bytes
+        return data[:header] + chunk + data[header:]
+    if data.startswith(b"\xff\xd8"):
+        return data[:2] + b"\xff\xfe" + (len(mark) + 2).to_bytes(2, "big") + mark + data[2:]
+    raise ImageError("only PNG and JPEG files can say that they are rendered: choose .png or .jpg")

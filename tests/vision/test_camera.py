@@ -1,0 +1,216 @@
+"""One interface, three cameras; the webcam is played by a fake below the driver's edge."""
+
+import numpy as np
+import pytest
+
+from ir50p_lab.errors import CameraError, ImageError, InputError
+from ir50p_lab.vision import Frame, PictureFolder, RenderedCamera, Webcam, camera, open_camera, save_image, webcam
+from ir50p_lab.vision.rendering import Ball, Scene, bench_scene
+
+
+class FakeCapture:
+    """A cv2.VideoCapture without hardware: blue pictures (in its order: blue first) until unplugged."""
+
+    def __init__(self, opened=True, pictures=100, channels=3):
+        self.opened, self.left, self.channels, self.asked, self.released = opened, pictures, channels, {}, False
+
+    def isOpened(self):
+        return self.opened
+
+    def set(self, what, value):
+        self.asked[what] = value
+
+    def grab(self):
+        return self.left > 0
+
+    def read(self):
+        if self.left <= 0:
+            self.opened = False
+            return False, None
+        self.left -= 1
+        image = np.zeros((480, 640, self.channels), np.uint8)
+        image[..., 0] = 250
+        return True, image
+
+    def release(self):
+        self.released = True
+
+
+@pytest.fixture(autouse=True)
+def _no_webcam(monkeypatch):
+    monkeypatch.setattr(webcam, "_capture", lambda index: FakeCapture(opened=False))
+    monkeypatch.setattr(webcam, "webcam_present", lambda: False)
+    monkeypatch.delenv(camera.VARIABLE, raising=False)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for i in (2, 10, 1):
+        save_image(tmp_path / f"view{i}.png", np.full((6, 8, 3), i, np.uint8))
+    return tmp_path
+
+
+def test_without_a_webcam_the_bench_is_rendered_and_says_so(capsys):
+    with open_camera() as found:
+        frame = found.read()
+    line = capsys.readouterr().out
+    assert line.count("\n") == 1 and "rendered" in line and "no webcam" in line and "open_camera(0)" in line
+    assert isinstance(frame, Frame) and frame.simulated and frame.image.shape == (480, 640, 3)
+    assert not any("truth" in name for name in vars(frame))
+
+
+def test_a_webcam_that_answers_is_taken(monkeypatch, capsys):
+    monkeypatch.setattr(webcam, "webcam_present", lambda: True)
+    monkeypatch.setattr(webcam, "_capture", lambda index: FakeCapture())
+    with open_camera() as found:
+        frame = found.read()
+    assert isinstance(found, Webcam) and not frame.simulated and frame.source == "webcam 0"
+    assert (frame.image[0, 0] == (0, 0, 250)).all()  # red, green, blue here
+    line = capsys.readouterr().out
+    assert "open_camera('rendered')" in line and "webcam 0, 640x480, photographs" in line
+
+
+def test_a_webcam_that_does_not_answer_gives_way(monkeypatch, capsys):
+    monkeypatch.setattr(webcam, "webcam_present", lambda: True)
+    with open_camera() as found:
+        assert isinstance(found, RenderedCamera)
+    assert "no webcam 0" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("wish", ["rendered", "RENDERED"])
+def test_environment_variable(monkeypatch, capsys, wish, folder):
+    monkeypatch.setenv(camera.VARIABLE, wish)
+    assert isinstance(open_camera(), RenderedCamera)
+    assert f"IR50P_CAMERA={wish}" in capsys.readouterr().out
+    monkeypatch.setenv(camera.VARIABLE, f"folder:{folder}")
+    assert isinstance(open_camera(), PictureFolder)
+    assert isinstance(open_camera("rendered"), RenderedCamera)  # the argument wins
+    monkeypatch.setenv(camera.VARIABLE, "0")
+    with pytest.raises(CameraError, match="no webcam 0"):
+        open_camera()
+
+
+def test_folder(folder, capsys):
+    found = open_camera(folder)
+    assert [frame.source for frame in found] == ["view1.png", "view2.png", "view10.png"]
+    with pytest.raises(CameraError, match="no more than 3 pictures"):
+        found.read()
+    assert "photographs" in capsys.readouterr().out and len(found) == 3 and found.size == (8, 6)
+    looped = open_camera(f"folder:{folder}", loop=True)
+    assert [looped.read().source for _ in range(4)][-1] == "view1.png"
+    one = open_camera(str(folder / "view2.png"))
+    assert (one.read().image == 2).all()
+    one.close()
+    with pytest.raises(CameraError, match="is closed"):
+        one.read()
+
+
+def test_folder_of_rendered_pictures_says_so(tmp_path, capsys):
+    save_image(tmp_path / "a.png", np.zeros((6, 8, 3), np.uint8), rendered=True)
+    found = open_camera(tmp_path)
+    assert found.simulated and found.read().simulated and ", rendered" in capsys.readouterr().out
+
+
+def test_bad_folders_and_files(tmp_path, folder):
+    with pytest.raises(ImageError, match="does not exist"):
+        open_camera("folder:nowhere")
+    (tmp_path / "sub").mkdir()
+    with pytest.raises(ImageError, match="no picture"):
+        open_camera(tmp_path / "sub")
+    (folder / "view2.png").write_bytes(b"\x89PNG\r\n\x1a\nbroken")
+    found = open_camera(folder)
+    assert found.read().source == "view1.png"
+    with pytest.raises(ImageError, match="cut off"):
+        found.read()
+    assert found.read().source == "view10.png"
+
+
+def test_unplugged_while_streaming(monkeypatch):
+    capture = FakeCapture(pictures=3)
+    found = Webcam(0, capture=capture)
+    found.read()
+    found.read()
+    with pytest.raises(CameraError, match=r"unplugged.*open_camera\('rendered'\)"):
+        found.read()
+    found.close()
+    assert capture.released
+    with pytest.raises(CameraError, match="closed"):
+        found.read()
+    found.close()
+
+
+def test_a_driver_that_only_goes_silent_is_given_up_after_a_while(monkeypatch):
+    class Silent(FakeCapture):
+        def read(self):
+            return (True, np.zeros((4, 4, 3), np.uint8)) if self.left == 100 else (False, None)
+
+        def grab(self):
+            self.left -= 1
+            return False
+
+    monkeypatch.setattr(Webcam, "_patience", 0.05)
+    found = Webcam(0, capture=Silent())
+    with pytest.raises(CameraError, match="unplugged"):
+        found.read()
+
+
+def test_a_webcam_without_pictures_or_colour():
+    with pytest.raises(CameraError, match="shutter"):
+        Webcam(0, capture=FakeCapture(pictures=0))
+    with pytest.raises(ImageError, match="one channel"):
+        Webcam(0, capture=FakeCapture(channels=1))
+
+
+def test_rendered_ball_moves_and_arm_poses():
+    found = RenderedCamera(bench_scene(), seed=5)
+    first = found.read()
+    assert first.t == 0 and found.truth.balls[0].position == pytest.approx((0.4, 0, 0.03))
+    found.move_ball((0.45, -0.1))
+    second = found.read()
+    assert second.t == pytest.approx(1 / 30) and (second.image != first.image).any()
+    assert found.truth.balls[0].position == pytest.approx((0.45, -0.1, 0.03))
+    found.pose_arm((0.2, 0.3, -1.2))
+    assert (found.read().image != second.image).mean() > 0.05
+    found.pose_arm(None)
+    assert found.scene.arm == ()
+    other = RenderedCamera(bench_scene(), seed=5)
+    assert (other.read().image == first.image).all()  # reproducible
+    found.close()
+    with pytest.raises(CameraError, match="closed"):
+        found.read()
+
+
+def test_scene_as_a_function_of_time():
+    found = open_camera(lambda t: bench_scene(Ball(position=(0.4 + t, 0, 0.03))), period=0.1)
+    found.read()
+    assert found.read().t == pytest.approx(0.1)
+    assert found.truth.balls[0].position[0] == pytest.approx(0.5)
+    with pytest.raises(InputError, match="function of time"):
+        found.move_ball((0.4, 0))
+    assert isinstance(open_camera(bench_scene()).scene, Scene)
+
+
+def test_refusals():
+    for source in (True, -1, 1.5, "", []):
+        with pytest.raises(InputError, match="source"):
+            open_camera(source)
+    with pytest.raises(InputError, match="no option colour"):
+        open_camera("rendered", colour="red")
+    with pytest.raises(InputError, match="period"):
+        RenderedCamera(period=0)
+    with pytest.raises(InputError, match="Scene"):
+        RenderedCamera("bench")
+    found = RenderedCamera()
+    with pytest.raises(CameraError, match="no picture was read"):
+        _ = found.truth
+    with pytest.raises(InputError, match="1 balls"):
+        found.move_ball((0.4, 0), index=1)
+    with pytest.raises(InputError, match="position"):
+        found.move_ball((0.4, np.nan, 0.03))
+
+
+def test_looking_for_a_webcam_prints_nothing(capfd, monkeypatch):
+    monkeypatch.undo()
+    with pytest.raises(CameraError, match="webcam 97"):
+        Webcam(97)
+    assert capfd.readouterr() == ("", "")
