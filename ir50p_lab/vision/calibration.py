@@ -1,0 +1,291 @@
+"""Calibrate a camera with pictures of a board: focal lengths, centre, lens distortion, and how sure they are."""
+
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ir50p_lab.errors import CalibrationError, InputError
+from ir50p_lab.inputs import first_not_finite
+from ir50p_lab.vision.calibration_board import Charuco, Checkerboard
+from ir50p_lab.vision.calibration_charuco import find_charuco
+from ir50p_lab.vision.calibration_checks import (
+    about_camera,
+    about_lens,
+    about_views,
+    bent_board,
+    free_aspect,
+    outlier_view,
+    sag_size,
+)
+from ir50p_lab.vision.calibration_corners import Corners as FoundCorners
+from ir50p_lab.vision.calibration_corners import find_checkerboard
+from ir50p_lab.vision.calibration_fit import NAMES, Corners, Model, fit, start
+from ir50p_lab.vision.calibration_models import choose, total_covariance
+from ir50p_lab.vision.calibration_pictures import common_size, pictures_of, with_bar
+from ir50p_lab.vision.calibration_reasons import NotUsable, Reason, Rejected
+from ir50p_lab.vision.calibration_result import Calibration, View
+
+_FEWEST = 3
+_SAME = 1.0 / 800  # of the diagonal: a board that moved less is taken for the same view
+
+
+def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, aspect=None, progress=None):
+    """Calibrate a camera from pictures of a checkerboard or ChArUco board.
+
+    Corners are found by both of OpenCV's finders and refined to sub-pixel; pictures that are of no use are left out,
+    each with a Reason; the lens model is the simplest that the corners do not object to (k1, k2, p1, p2, k3, see
+    `calibration_models`); standard errors are the larger of two kinds. A bent board is recognised, and then estimated
+    with the camera.
+
+    Args:
+        images: list of pictures (h, w, 3) uint8 RGB, grey ones (h, w), Frames or paths, mixed; or a folder.
+        pattern: (columns, rows) of inner corners; square: side of a square, m. A wrong square scales the distances of
+        the board, nothing else: K and distortion come out the same.
+        board: Checkerboard or Charuco in place of pattern and square.
+        lens: None to let the data choose, or coefficients to estimate, such as ("k1", "k2"); () for none.
+        aspect: None estimates fx and fy; a number prescribes fx/fy (1 for square pixels), and is checked.
+        progress: True or False to show a bar; None: from 8 pictures on.
+
+    Returns: Calibration.
+    Raises CalibrationError if fewer than 3 pictures are of use (the message says why), or they determine no camera;
+    InputError for arguments that make no sense; ImageError if `images` is an empty or missing folder.
+    """
+    board = board if board is not None else Checkerboard(pattern, square)
+    if not isinstance(board, Checkerboard):
+        raise InputError(f"board = {board!r}: give a Checkerboard or a Charuco")
+    pictures = pictures_of(images)
+    found, rejected, seen = {}, [], Counter()
+    size = common_size(pictures)
+    for picture in with_bar(pictures, progress):
+        try:
+            found[picture.index] = picture, _corners_in(picture, board, size)
+        except NotUsable as why:
+            rejected.append((Rejected(picture.name, picture.index, why.reason, why.detail), why.seen))
+            seen[why.seen] += why.seen is not None
+    rejected = [_covered_or_other(one, parts, board, bool(found)) for one, parts in rejected]
+    rejected += _drop_duplicates(found, size)
+    if len(found) < _FEWEST:
+        raise CalibrationError(_why_too_few(len(found), rejected, seen, board))
+    names = {i: (picture.name, i) for i, (picture, _) in found.items()}
+    return _calibrate(names, {i: corners for i, (_, corners) in found.items()}, size, board, lens, aspect, rejected)
+
+
+def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=None):
+    """Calibrate from corners that were found elsewhere.
+
+    Args:
+        object_points: for each view the points on the board (n, 3) m, z = 0; or one array for all of them.
+        image_points: for each view the pixels (n, 2); also (n, 1, 2) as OpenCV has them.
+        size: (width, height) of the picture, px. lens, aspect: as for `calibrate`.
+
+    Returns: Calibration. Raises CalibrationError as `calibrate`, InputError for shapes that do not fit, or NaN.
+    """
+    pixels = [_array("image_points", xy, 2) for xy in image_points]
+    shared = np.ndim(object_points) == 2
+    points = [_array("object_points", p, 3) for p in ([object_points] * len(pixels) if shared else object_points)]
+    if len(points) != len(pixels) or any(len(p) != len(xy) for p, xy in zip(points, pixels, strict=True)):
+        raise InputError("object_points and image_points must hold as many views, and each view as many points")
+    if len(pixels) < _FEWEST:
+        raise CalibrationError(f"{len(pixels)} views: at least {_FEWEST} are needed, 10 to 20 are good")
+    if any(np.ptp(p[:, 2]) > 0 for p in points):
+        raise InputError("object_points must lie in the plane z = 0 of the board")
+    everything, inverse = np.unique(np.concatenate(points), axis=0, return_inverse=True)
+    board = _board_like(everything)
+    places = np.split(inverse.ravel(), np.cumsum([len(p) for p in points])[:-1])
+    corners = {
+        i: FoundCorners(xy, place, np.nan, np.nan, "given")
+        for i, (xy, place) in enumerate(zip(pixels, places, strict=True))
+    }
+    names = {i: (f"view {i + 1}", i) for i in corners}
+    width, height = (int(n) for n in size)
+    return _calibrate(names, corners, (width, height), board, lens, aspect, [], everything)
+
+
+def _calibrate(names, found, size, board, lens, aspect, rejected, points=None):
+    """From corners by picture to a Calibration: outlier views out, lens chosen, bend of the board tested."""
+    points = board.points if points is None else points
+    keys = list(found)
+    corners = Corners([points[found[i].index] for i in keys], [found[i].xy for i in keys], size)
+    guess, rejected = start(corners), list(rejected)
+    model, wanted = Model(("k1", "k2"), aspect), _terms(lens)
+    rough = fit(corners, model, guess)
+    for _ in range(max(1, len(keys) // 4)):
+        worst = outlier_view(rough)
+        if worst is None:
+            break
+        rms, usual = rough.view_rms[worst], float(np.median(rough.view_rms))
+        name, index = names[keys[worst]]
+        detail = f"its corners are {rms:.2g} px off the model, those of the other views {usual:.2g} px"
+        rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
+        corners, keys = corners.without(worst), [k for n, k in enumerate(keys) if n != worst]
+        rough = fit(corners, model, start(corners))
+    best, evidence, tried, said = _best(corners, rough, wanted, aspect)
+    views = tuple(
+        View(
+            name=names[key][0],
+            index=names[key][1],
+            points=points[found[key].index],
+            corners=found[key].xy,
+            residuals=best.residuals[n],
+            T_cam_board=_transform(best.poses[n]),
+            rise=found[key].rise,
+            finder=found[key].finder,
+        )
+        for n, key in enumerate(keys)
+    )
+    total = total_covariance(best, tried)
+    result = Calibration(
+        K=np.array([[best.camera[0], 0, best.camera[2]], [0, best.camera[1], best.camera[3]], [0, 0, 1.0]]),
+        distortion=best.camera[4:9].copy(),
+        rms=best.rms,
+        stderr=_named(total, best),
+        covariance=total,
+        views=views,
+        rejected=tuple(sorted(rejected, key=lambda one: one.index)),
+        size=size,
+        board=board,
+        model=best.model.lens,
+        evidence=evidence,
+        sigma=best.sigma,
+        sag=best.camera[9:].copy() if best.model.bent else None,
+        stderr_corners=_named(best.by_corners, best),
+        stderr_views=_named(best.by_views if len(views) > 3 else best.by_corners, best),
+    )
+    lost = len(rejected) / (len(rejected) + len(views))
+    if lost > 0.5:
+        said.append(f"{len(rejected)} of {len(rejected) + len(views)} pictures were of no use: see `rejected`")
+    return replace(result, warnings=(*said, *about_lens(result), *about_camera(result), *about_views(result)))
+
+
+def _best(corners, rough, wanted, aspect):
+    """(Fit, evidence, fits tried, warnings): lens as the data say or as asked for, board flat or bent, aspect."""
+    guess, said = (rough.camera, rough.poses), []
+
+    def estimate(bent):
+        if wanted is None:
+            return choose(corners, guess, aspect, bent)
+        one = fit(corners, Model(wanted, aspect, bent), guess)
+        return one, (), (one,)
+
+    best, evidence, tried = estimate(False)
+    bend = bent_board(corners, best)
+    if bend is not None and bend.kept:
+        best, evidence, tried = estimate(True)
+        size = 1000 * sag_size(corners, best.camera[9:])
+        error = 1000 * sag_size(corners, best.stderr[9:]) / np.sqrt(3)
+        said.append(
+            f"the board is bent by {size:.2g} +- {error:.1g} mm: its shape was estimated with the camera. Glue it to "
+            "glass or a plate and repeat"
+        )
+    evidence = (*evidence, bend) if bend is not None else evidence
+    if aspect:
+        question, free = free_aspect(corners, best)
+        evidence = (*evidence, question)
+        if question.kept:
+            ratio = free.camera[0] / free.camera[1]
+            said.append(
+                f"aspect = {aspect:g} was prescribed, but the corners say fx/fy = {ratio:.4f} (chance "
+                f"{question.p_value:.1g}): leave aspect=None"
+            )
+    return best, evidence, tried, said
+
+
+def _named(covariance, fitted):
+    used = fitted.model.columns.any(axis=1)
+    return {name: float(np.sqrt(covariance[i, i])) if used[i] else float("nan") for i, name in enumerate(NAMES)}
+
+
+def _terms(lens):
+    """Terms of the ladder for coefficient names, None for None. Raises InputError for unknown names."""
+    if lens is None:
+        return None
+    names = [lens] if isinstance(lens, str) else list(lens)
+    unknown = [name for name in names if name not in NAMES[4:]]
+    if unknown:
+        raise InputError(f"lens = {lens!r}: give coefficients out of {NAMES[4:]}, or None to let the data choose")
+    return tuple(dict.fromkeys("p" if name in ("p1", "p2") else name for name in names))
+
+
+def _transform(pose):
+    import cv2
+
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = cv2.Rodrigues(pose[:3])[0], pose[3:]
+    return T
+
+
+def _array(name, value, n):
+    array = np.asarray(value, dtype=float)
+    array = array.reshape(-1, n) if array.ndim == 3 and array.shape[-1] == n else array
+    if array.ndim != 2 or array.shape[1] != n or len(array) < 4:
+        raise InputError(f"{name} holds a view of shape {array.shape}: give (n, {n}) with at least 4 points")
+    if not np.isfinite(array).all():
+        raise InputError(f"{name} holds {first_not_finite(array)}: every number must be finite")
+    return array
+
+
+def _board_like(points):
+    """The checkerboard that points (n, 3) seem to be of, for coverage and advice."""
+    columns, rows = (len(np.unique(points[:, k].round(9))) for k in (0, 1))
+    width = float(np.ptp(points[:, 0]))
+    return Checkerboard((max(columns, 3), max(rows, 2)), width / max(columns - 1, 1) if width else 0.025)
+
+
+def _corners_in(picture, board, size):
+    if picture.problem is not None:
+        raise NotUsable(Reason.UNREADABLE, picture.problem)
+    if picture.size != size:
+        raise NotUsable(
+            Reason.OTHER_SIZE,
+            f"{picture.size[0]}x{picture.size[1]}, most are {size[0]}x{size[1]}: another size is another camera",
+        )
+    grey = picture.grey()
+    return find_charuco(grey, board) if isinstance(board, Charuco) else find_checkerboard(grey, board.pattern)
+
+
+def _covered_or_other(one, seen, board, others_fit):
+    """A part of the pattern, where other pictures show all of it, is the same board half covered: CROPPED."""
+    if one.reason is not Reason.WRONG_BOARD or seen is None or not others_fit:
+        return one
+    if all(a <= b for a, b in zip(sorted(seen), sorted(board.pattern), strict=True)):
+        return replace(
+            one,
+            reason=Reason.CROPPED,
+            detail=f"only {seen[0]}x{seen[1]} of its corners show: is part of it covered, or in glare?",
+        )
+    return one
+
+
+def _drop_duplicates(found, size):
+    """Take out of `found` the views in which the board is where it was before; a list of Rejected."""
+    dropped, kept = [], []
+    limit = _SAME * float(np.hypot(*size)) if size else 0.0
+    for key in list(found):
+        picture, corners = found[key]
+        for earlier in kept:
+            name, old = found[earlier][0].name, found[earlier][1]
+            if np.array_equal(old.index, corners.index):
+                moved = float(np.sqrt(((old.xy - corners.xy) ** 2).sum(axis=1).mean()))
+                if moved < limit:
+                    detail = f"the board is where it was in {name}, {moved:.2f} px away: move it between pictures"
+                    dropped.append(Rejected(picture.name, picture.index, Reason.DUPLICATE, detail))
+                    del found[key]
+                    break
+        else:
+            kept.append(key)
+    return dropped
+
+
+def _why_too_few(count, rejected, seen, board):
+    reasons = Counter(str(one.reason) for one in rejected)
+    text = ", ".join(f"{n} {reason}" for reason, n in reasons.most_common()) or "no picture was given"
+    message = f"{count} usable pictures of a {board}, at least {_FEWEST} are needed; the others: {text}"
+    del seen[None]
+    likely = [parts for parts, n in seen.most_common(1) if n >= 1]
+    if likely and reasons.get(Reason.WRONG_BOARD):
+        message += f". They seem to show a board with {likely[0][0]}x{likely[0][1]} inner corners: pattern={likely[0]}"
+    elif rejected:
+        message += f". The first: {Path(rejected[0].name).name}: {rejected[0].detail}"
+    return message

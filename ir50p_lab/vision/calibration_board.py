@@ -1,0 +1,108 @@
+"""The boards a camera is calibrated with: what is printed on them, in metres."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import CalibrationError
+
+
+@dataclass(frozen=True)
+class Checkerboard:
+    """A checkerboard of pattern = (columns, rows) inner corners, squares of `square` m.
+
+    The board's frame: origin in the first inner corner, x along the columns, y along the rows, z into the board (away
+    from a camera that sees it upright). Where columns + rows is odd the first corner is the one whose outer
+    square is dark, as in a 9x6 board, so that the frame is the same in every picture; otherwise a board looks the same
+    turned by half a turn, and the frame is that nearer to the top left of the picture.
+
+    A wrong square size changes nothing but the scale of the distances: K and the distortion stay the same.
+    Raises CalibrationError for a pattern below 3x2 or a size that is not positive.
+    """
+
+    pattern: tuple = (9, 6)
+    square: float = 0.025
+
+    def __post_init__(self):
+        object.__setattr__(self, "pattern", check_pattern(self.pattern))
+        object.__setattr__(self, "square", check_length("square", self.square))
+
+    @property
+    def points(self):
+        """Inner corners (columns * rows, 3) m, row by row."""
+        columns, rows = self.pattern
+        grid = np.mgrid[0:columns, 0:rows].T.reshape(-1, 2) * self.square
+        return np.column_stack([grid, np.zeros(len(grid))])
+
+    def __str__(self):
+        return f"checkerboard with {self.pattern[0]}x{self.pattern[1]} inner corners, {1000 * self.square:g} mm squares"
+
+
+@dataclass(frozen=True)
+class Charuco(Checkerboard):
+    """A checkerboard with markers in its white squares: every corner has a number, so part of the board is enough.
+
+    pattern: (columns, rows) of *inner corners*, as for a checkerboard (OpenCV counts squares: one more each way).
+    marker: side of a marker, m; dictionary: name in cv2.aruco, such as "DICT_5X5_100"; legacy: boards printed with
+    OpenCV before 4.6 whose number of rows is even begin with a white square.
+    The frame is OpenCV's for such boards, moved to the first inner corner.
+    """
+
+    marker: float = 0.018
+    dictionary: str = "DICT_5X5_100"
+    legacy: bool = False
+
+    def __post_init__(self):
+        super().__post_init__()
+        object.__setattr__(self, "marker", check_length("marker", self.marker))
+        if self.marker >= self.square:
+            raise CalibrationError(f"marker = {self.marker} m must be smaller than a square, {self.square} m")
+        import cv2
+
+        if not self.dictionary.startswith("DICT_") or not hasattr(cv2.aruco, self.dictionary):
+            raise CalibrationError(f"cv2.aruco has no dictionary {self.dictionary!r}; one is 'DICT_5X5_100'")
+
+    def opencv(self):
+        """The same board as OpenCV knows it, which also draws it (`generateImage`)."""
+        import cv2
+
+        columns, rows = self.pattern
+        dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, self.dictionary))
+        try:
+            board = cv2.aruco.CharucoBoard((columns + 1, rows + 1), self.square, self.marker, dictionary)
+        except cv2.error:
+            raise CalibrationError(
+                f"{self.dictionary} has too few markers for a board of {columns + 1}x{rows + 1} squares: "
+                "name a larger dictionary"
+            ) from None
+        board.setLegacyPattern(self.legacy)
+        return board
+
+    def __str__(self):
+        return f"ChArUco {super().__str__()}, {1000 * self.marker:g} mm markers of {self.dictionary}"
+
+
+def check_pattern(pattern):
+    """(columns, rows) as ints. Raises CalibrationError for what cannot be a board."""
+    try:
+        columns, rows = (int(n) for n in pattern)
+        whole = (columns, rows) == tuple(pattern)
+    except (TypeError, ValueError):
+        whole, columns, rows = False, 0, 0
+    if not whole or min(columns, rows) < 2 or max(columns, rows) < 3:
+        raise CalibrationError(
+            f"pattern = {pattern!r}: give (columns, rows) of inner corners (where four squares meet), at least 3x2; a "
+            "board of 10x7 squares has (9, 6)"
+        )
+    return columns, rows
+
+
+def check_length(name, value):
+    """A length in metres as float. Raises CalibrationError if it is not a positive number."""
+    try:
+        length = float(value)
+    except (TypeError, ValueError):
+        length = np.nan
+    if not (np.isfinite(length) and length > 0):
+        raise CalibrationError(f"{name} = {value!r}: give a positive length in metres, such as 0.025")
+    return length

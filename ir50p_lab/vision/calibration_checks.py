@@ -1,0 +1,127 @@
+"""What may be wrong with a calibration although it fits: each question with its answer as a sentence, or none."""
+
+import numpy as np
+
+from ir50p_lab.vision.calibration_fit import Model, fit
+from ir50p_lab.vision.calibration_models import Evidence, compare
+
+_TILTED = np.deg2rad(15)
+
+
+def outlier_view(fitted):
+    """The view that fits worst if it does not belong to the others, else None.
+
+    It must be three times worse than the median view, and eight times the usual scatter of views above it.
+    """
+    rms = fitted.view_rms
+    if len(rms) < 5:
+        return None
+    worst = int(np.argmax(rms))
+    others = np.delete(rms, worst)
+    scatter = 1.4826 * np.median(np.abs(others - np.median(others)))
+    limit = np.median(others) + max(2 * np.median(others), 8 * scatter)
+    return worst if rms[worst] > max(limit, 0.02) else None
+
+
+def bent_board(corners, flat):
+    """Evidence whether the same bend of the board shows in all the views; None if they are too few to say.
+
+    A bend moves the same corners of the board in every view, as far as it is tilted; three numbers describe it to
+    second order. Three views cannot tell it from the lens: five are needed.
+    """
+    if len(corners) < 5:
+        return None
+    bent = fit(corners, Model(flat.model.terms, flat.model.aspect, True), (flat.camera, flat.poses))
+    p_value, gain = compare(flat, bent, np.eye(12)[9:])
+    size = sag_size(corners, bent.camera[9:])
+    seen = p_value < 1e-3 and gain > 15 and size > 4 * sag_size(corners, bent.stderr[9:]) / np.sqrt(3)
+    return Evidence("bent board", p_value, gain, bool(seen))
+
+
+def sag_size(corners, b):
+    """Largest height of the board over the plane nearest to it, m, for the shape b (3,)."""
+    points, index = np.unique(np.concatenate(corners.points)[:, :2].round(9), axis=0, return_index=True)
+    z = np.concatenate(corners.shapes)[index] @ np.asarray(b)
+    plane = np.column_stack([points, np.ones(len(points))])
+    z = z - plane @ np.linalg.lstsq(plane, z, rcond=None)[0]
+    return float(np.ptp(z))
+
+
+def free_aspect(corners, held):
+    """(Evidence, Fit with fx and fy free): whether the ratio fx/fy that was prescribed contradicts the corners."""
+    free = fit(corners, Model(held.model.terms, None, held.model.bent), (held.camera, held.poses))
+    contrast = np.zeros(12)
+    contrast[:2] = 1, -held.model.aspect
+    p_value, gain = compare(held, free, contrast)
+    return Evidence("fx/fy free", p_value, gain, bool(p_value < 1e-3)), free
+
+
+def about_lens(calibration):
+    """Sentences about coefficients that mean nothing, and about a lens that folds back."""
+    found = []
+    for name in calibration.model:
+        value, error = calibration.values[name], calibration.stderr[name]
+        if abs(value) < 2 * error:
+            found.append(f"{name} = {value:.2g} +- {error:.2g} cannot be told from zero: it means nothing by itself")
+    w, h = calibration.size
+    K, (k1, k2, _, _, k3) = calibration.K, calibration.distortion
+    ends = (np.array([[0, 0], [w, 0], [0, h], [w, h]]) - K[:2, 2]) / (K[0, 0], K[1, 1])
+    r2 = np.linspace(0, 1.2 * np.linalg.norm(ends, axis=1).max(), 200) ** 2
+    falling = 1 + 3 * k1 * r2 + 5 * k2 * r2**2 + 7 * k3 * r2**3 <= 0
+    if falling.any():
+        radius = K[0, 0] * np.sqrt(r2[falling][0])
+        distorted = radius * (1 + k1 * r2[falling][0] + k2 * r2[falling][0] ** 2 + k3 * r2[falling][0] ** 3)
+        if distorted < np.linalg.norm(ends * (K[0, 0], K[1, 1]), axis=1).max():
+            found.append(
+                f"the lens model folds back {distorted:.0f} px from the centre: no ray reaches the picture beyond; "
+                "take views with the board in the corners"
+            )
+    return found
+
+
+def about_camera(calibration):
+    """Sentences about focal lengths and centre that a camera hardly has."""
+    found, (w, h), K = [], calibration.size, calibration.K
+    ratio = K[0, 0] / K[1, 1]
+    error = ratio * np.hypot(calibration.stderr["fx"] / K[0, 0], calibration.stderr["fy"] / K[1, 1])
+    if abs(ratio - 1) > max(0.02, 3 * error):
+        found.append(
+            f"fx/fy = {ratio:.3f}: pixels are not square. Rare in a webcam: was the picture stretched (4:3 to 16:9)?"
+        )
+    off = np.abs(K[:2, 2] - [(w - 1) / 2, (h - 1) / 2]) / (w, h)
+    if off.max() > 0.15:
+        found.append(f"the centre ({K[0, 2]:.0f}, {K[1, 2]:.0f}) is far from the middle: were the pictures cropped?")
+    relative = max(calibration.stderr["fx"] / K[0, 0], calibration.stderr["fy"] / K[1, 1])
+    if relative > 0.01:
+        found.append(f"the focal length is known to {100 * relative:.1f} % only: tilt the board more, take more views")
+    return found
+
+
+def about_views(calibration):
+    """Sentences about views that are too few, too much alike, or leave part of the picture empty."""
+    found, views = [], calibration.views
+    if len(views) < 8:
+        found.append(f"{len(views)} views are few: 10 to 20 make the standard errors themselves trustworthy")
+    normals = np.array([v.T_cam_board[:2, 2] for v in views])
+    tilted = normals[np.linalg.norm(normals, axis=1) > np.sin(_TILTED)]
+    if len(tilted) < 3:
+        found.append(
+            f"too few tilts: {len(tilted)} of {len(views)} views are tilted by more than 15 degrees. A board that "
+            "faces the camera cannot tell focal length from distance"
+        )
+    elif (s := np.linalg.svd(tilted / np.linalg.norm(tilted, axis=1, keepdims=True), compute_uv=False))[1] < 0.3 * s[0]:
+        found.append("all tilts are about one axis: tilt the board up or down as well as left or right")
+    distance = float(np.median([np.linalg.norm(v.T_cam_board[:3, 3]) for v in views]))
+    if not 0.04 < distance < 15:
+        found.append(
+            f"squares of {calibration.board.square:g} m put the board {distance:.3g} m away: is square in metres? (It "
+            "scales the distances; K and the distortion do not depend on it)"
+        )
+    cover = calibration.coverage
+    if cover.share < 0.5:
+        found.append(f"corners fill {100 * cover.share:.0f} % of the picture only: {calibration.next_view().text}")
+    elif cover.reach < 0.7:
+        found.append(
+            f"no corner beyond {100 * cover.reach:.0f} % of the way to the picture's corners: the lens there is a guess"
+        )
+    return found

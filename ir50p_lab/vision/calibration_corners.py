@@ -1,0 +1,228 @@
+"""Corners of a checkerboard in a picture, to a few hundredths of a pixel, or the reason why there are none to use."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.vision.calibration_grid import grow, in_order, is_checkerboard, roughness, spacing
+from ir50p_lab.vision.calibration_reasons import NotUsable, Reason
+
+_SEARCHED = 1280  # px; corners are searched in a picture reduced to this, and refined in the picture itself
+_WINDOW = 0.36  # half the refinement window, in squares: larger is more precise until the next edges come in
+_WINDOW_PX = (2, 20)
+_SOFT = 0.55  # rise of an edge from dark to light, in squares, at which neighbouring edges run together
+_ROUGH = 0.08  # scatter about a smooth grid, in squares, that no board shows
+
+
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """Corners found in one picture.
+
+    xy: (n, 2) pixels; index: (n,) places in `board.points`; noise: px rms about a smooth grid, NaN if unknown;
+    rise: width of an edge from dark to light, px; finder: which of OpenCV's finders found them.
+    """
+
+    xy: np.ndarray
+    index: np.ndarray
+    noise: float
+    rise: float
+    finder: str
+
+
+def find_checkerboard(grey, pattern):
+    """All inner corners of a checkerboard: both of OpenCV's finders, refined, the smoother result.
+
+    `findChessboardCornersSB` finds blurred and uneven boards, `findChessboardCorners` small and skewed ones. Where both
+    succeed they agree; of the refined corners (`cornerSubPix`, window from the size of the squares) and SB's own
+    those are taken that lie better on a smooth grid. A board that goes on beyond the pattern is another board, although
+    a finder is content with a part of it.
+
+    Args: grey: (h, w) uint8; pattern: (columns, rows). Returns: Corners, all of them, in the order of `Checkerboard`.
+    Raises NotUsable with the Reason.
+    """
+    small, factor = reduced(grey, _SEARCHED)
+    best, finder = None, ""
+    for name, grid in _search(small, pattern):
+        found = _examine(grey, enlarged(grid, factor), pattern)
+        if found is None:
+            continue
+        own = enlarged(grid, factor)
+        if name == "SB" and factor == 1 and roughness(own) < 0.8 * roughness(found):
+            found, name = own, "SB, its own corners"
+        if best is None or roughness(found) < 0.98 * roughness(best):
+            best, finder = found, name
+    if best is None:
+        best, finder = _piece_together(grey, small, factor, pattern), "pieced together"
+    best = in_order(best, grey, pattern)
+    rise = refuse_soft(grey, best)
+    columns, rows = pattern
+    return Corners(best.reshape(-1, 2).astype(float), np.arange(columns * rows), roughness(best), rise, finder)
+
+
+def reduced(grey, longest):
+    """(picture at most `longest` px wide and high, factor by which it is smaller)."""
+    import cv2
+
+    factor = max(grey.shape) / longest
+    if factor <= 1:
+        return grey, 1.0
+    h, w = grey.shape
+    return cv2.resize(grey, (round(w / factor), round(h / factor)), interpolation=cv2.INTER_AREA), factor
+
+
+def enlarged(xy, factor):
+    """Pixels of a reduced picture in the full one: edges of pixels scale, not their centres."""
+    return (xy + 0.5) * factor - 0.5
+
+
+def _search(grey, pattern):
+    """(name, grid (rows, columns, 2)) of each finder that finds the pattern."""
+    import cv2
+
+    columns, rows = pattern
+    for flags in (0, cv2.CALIB_CB_EXHAUSTIVE):
+        flags |= cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_ACCURACY
+        found, corners = cv2.findChessboardCornersSB(grey, pattern, flags=flags)
+        if found:
+            yield "SB", corners.reshape(rows, columns, 2)
+            break
+    flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_FAST_CHECK
+    found, corners = cv2.findChessboardCorners(grey, pattern, None, flags)
+    if found:
+        yield "classic", corners.reshape(rows, columns, 2)
+
+
+def _examine(grey, grid, pattern):
+    """Refined corners of a grid; None if it is no checkerboard. Raises NotUsable if the board goes on beyond it."""
+    grid = refine(grey, grid)
+    if roughness(grid) > _ROUGH * np.median(spacing(grid)) or not is_checkerboard(grid, grey):
+        return None
+    larger, _ = grow(grid, grey)
+    if larger.shape != grid.shape:
+        raise wrong_board(larger, pattern)
+    return grid
+
+
+def wrong_board(grid, pattern, edge=""):
+    """NotUsable for a board that has other corners than the pattern says."""
+    seen = _named_like(grid, pattern)
+    return NotUsable(
+        Reason.WRONG_BOARD,
+        f"it seems to have {edge}{seen[0]}x{seen[1]} inner corners, not {pattern[0]}x{pattern[1]}: "
+        f"give pattern=({seen[0]}, {seen[1]}) if this is the board",
+        seen=seen,
+    )
+
+
+def _named_like(grid, pattern):
+    """(columns, rows) of a grid, the longer side where the pattern has it."""
+    short, long = sorted(grid.shape[:2])
+    return (long, short) if pattern[0] >= pattern[1] else (short, long)
+
+
+def refine(grey, grid):
+    """Corners (rows, columns, 2) to sub-pixel: `cornerSubPix` with a window for each corner from its squares."""
+    import cv2
+
+    half = np.clip(np.round(_WINDOW * spacing(grid)), *_WINDOW_PX).astype(int).ravel()
+    xy = grid.reshape(-1, 1, 2).astype(np.float32)
+    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-4)
+    for size in np.unique(half):
+        which = half == size
+        xy[which] = cv2.cornerSubPix(grey, xy[which].copy(), (int(size), int(size)), (-1, -1), stop)
+    return xy.reshape(grid.shape).astype(float)
+
+
+def edge_rise(grey, grid):
+    """Mean width of an edge from 10 % to 90 % of its step, px: of the softer of the two directions."""
+    import cv2
+
+    rows, columns = grid.shape[:2]
+    xy = grid.reshape(-1, 1, 2).astype(np.float32)
+    rises = [
+        cv2.estimateChessboardSharpness(grey, (columns, rows), xy, vertical=vertical)[0][0]
+        for vertical in (False, True)
+    ]
+    return float(max(rises))
+
+
+def refuse_soft(grey, grid):
+    """Width of the edges, px. Raises NotUsable if they run into each other."""
+    rise, nearest = edge_rise(grey, grid), float(np.median(spacing(grid)))
+    if rise > _SOFT * nearest:
+        wide = f"edges are {rise:.0f} px wide, " if rise < 100 else ""
+        raise NotUsable(
+            Reason.BLURRED, f"{wide}squares only {nearest:.0f} px: focus, hold board and camera still, or come nearer"
+        )
+    return rise
+
+
+def _piece_together(grey, small, factor, pattern):
+    """The grid from a part that was found and grown, if it becomes the whole board; else NotUsable says why not."""
+    grid = None
+    for part in ((4, 3), (3, 3), (3, 4)):
+        grid = largest_grid(small, part)
+        if grid is not None:
+            break
+    if grid is None:
+        raise _nothing(small, pattern)
+    grid = refine(grey, enlarged(grid, factor))
+    grid, outside = grow(grid, grey)
+    seen, wanted = sorted(grid.shape[:2]), sorted(pattern)
+    if seen == wanted:
+        grid = grid if grid.shape[:2] == (pattern[1], pattern[0]) else np.rot90(grid)
+        return refine(grey, grid)
+    refuse_soft(grey, grid)
+    if any(a > b for a, b in zip(seen, wanted, strict=True)):
+        raise wrong_board(grid, pattern, "at least " if outside else "")
+    columns, rows = _named_like(grid, pattern)
+    if outside:
+        raise NotUsable(
+            Reason.CROPPED,
+            f"{columns}x{rows} of {pattern[0]}x{pattern[1]} corners, then the picture ends at its "
+            f"{_sides(grid, grey)}: move the board into view, or use a ChArUco board",
+            seen=(columns, rows),
+        )
+    raise wrong_board(grid, pattern)
+
+
+def _sides(grid, grey):
+    """Which sides of the picture a grid comes near."""
+    h, w = grey.shape
+    reach = 2 * float(np.max(spacing(grid)))
+    xy = grid.reshape(-1, 2)
+    near = {
+        "left": xy[:, 0].min() < reach,
+        "right": xy[:, 0].max() > w - reach,
+        "top": xy[:, 1].min() < reach,
+        "bottom": xy[:, 1].max() > h - reach,
+    }
+    return " and ".join(side for side, is_near in near.items() if is_near) or "edge"
+
+
+def largest_grid(grey, part):
+    """The largest grid (rows, columns, 2) around a part (columns, rows) of a checkerboard, or None."""
+    import cv2
+
+    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_LARGER
+    found, corners, meta = cv2.findChessboardCornersSBWithMeta(grey, part, flags)
+    if not found:
+        return None
+    grid = corners.reshape(*meta.shape, 2).astype(float)
+    return grid if is_checkerboard(grid, grey) else None
+
+
+def _nothing(grey, pattern):
+    """NotUsable for a picture without any grid: blurred if a board appears when the picture is reduced."""
+    import cv2
+
+    for factor in (2, 4):
+        h, w = grey.shape
+        less = cv2.resize(grey, (w // factor, h // factor), interpolation=cv2.INTER_AREA)
+        flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_FAST_CHECK
+        sought = (pattern, (min(pattern[0], 4), min(pattern[1], 3)))
+        if cv2.findChessboardCorners(less, pattern, None, flags)[0] or largest_grid(less, sought[1]) is not None:
+            return NotUsable(
+                Reason.BLURRED, f"a board shows only when the picture is reduced {factor} times: focus, hold still"
+            )
+    return NotUsable(Reason.NO_BOARD, "nothing like a checkerboard: more light, less glare, the whole board in view")

@@ -1,0 +1,175 @@
+"""Where in the picture the board was seen, and where to hold it next so that the camera becomes surer."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import CalibrationError
+from ir50p_lab.vision.calibration_fit import Corners, Model, _project, _reduce, _solve
+
+_CELLS = (6, 8)  # rows, columns of the coverage map
+_TILT = np.deg2rad(35)
+
+
+@dataclass(frozen=True, eq=False)
+class Coverage:
+    """Corners per cell of the picture.
+
+    counts: (6, 8) corners in each cell, rows from the top; share: part of the cells with any; reach: distance of the
+    outermost corner from the optical axis over that of the picture's own corner: beyond it the lens model is a guess.
+    """
+
+    counts: np.ndarray
+    share: float
+    reach: float
+
+
+@dataclass(frozen=True, eq=False)
+class NextView:
+    """The picture that would help most.
+
+    outline: (4, 2) px, corners of the board as it should appear; text: what to do; before, after: uncertainty of a
+    pixel's direction, mean over the picture, px, now and with that picture.
+    """
+
+    outline: np.ndarray
+    text: str
+    before: float
+    after: float
+
+    def __str__(self):
+        return self.text
+
+
+def coverage(calibration):
+    """Coverage of a Calibration. Raises CalibrationError if it holds no views (a file of another program)."""
+    _need_views(calibration)
+    w, h = calibration.size
+    xy = np.concatenate([view.corners for view in calibration.views])
+    rows, columns = _CELLS
+    i = np.clip((xy[:, 1] + 0.5) / h * rows, 0, rows - 1).astype(int)
+    j = np.clip((xy[:, 0] + 0.5) / w * columns, 0, columns - 1).astype(int)
+    counts = np.zeros(_CELLS, dtype=int)
+    np.add.at(counts, (i, j), 1)
+    centre = calibration.K[:2, 2]
+    ends = np.array([[0, 0], [w - 1, 0], [0, h - 1], [w - 1, h - 1]])
+    reach = np.linalg.norm(xy - centre, axis=1).max() / np.linalg.norm(ends - centre, axis=1).max()
+    return Coverage(counts, float(np.mean(counts > 0)), float(min(reach, 1.0)))
+
+
+def direction_stderr(calibration, xy, covariance=None):
+    """How uncertain the ray of each pixel (n, 2) is, (n,) px: standard error of where its fixed ray falls."""
+    V = calibration.covariance if covariance is None else covariance
+    J = _ray_jacobian(calibration, np.asarray(xy, dtype=float))
+    return np.sqrt(np.einsum("nij,jk,nik->n", J, V, J))
+
+
+def _ray_jacobian(calibration, xy):
+    """d pixel / d (fx, fy, cx, cy, k1, k2, p1, p2, k3) for the fixed rays of pixels (n, 2): (n, 2, 9)."""
+    import cv2
+
+    rays = cv2.undistortPointsIter(
+        xy[:, None], calibration.K, calibration.distortion, None, None, (cv2.TERM_CRITERIA_COUNT, 20, 0)
+    )[:, 0]
+    points = np.column_stack([rays, np.ones(len(rays))])
+    _, J = cv2.projectPoints(points, np.zeros(3), np.zeros(3), calibration.K, calibration.distortion)
+    return J[:, 6:15].reshape(-1, 2, 9)
+
+
+def next_view(calibration):
+    """The board's pose, among 9 places in the picture and 5 tilts, after which the camera would be surest: NextView.
+
+    Corners are taken to be as noisy as those so far. The measure is the standard error of a pixel's direction, mean
+    over the picture. Raises CalibrationError if the calibration holds no views.
+    """
+    _need_views(calibration)
+    B = _columns_of(calibration)
+    camera = np.array([*calibration.values.values(), 0, 0, 0])
+    seen = Corners([v.points for v in calibration.views], [v.corners for v in calibration.views], calibration.size)
+    S = sum(_information(seen, i, camera, _pose(v.T_cam_board), B) for i, v in enumerate(calibration.views))
+    w, h = calibration.size
+    grid = np.stack(np.meshgrid((np.arange(8) + 0.5) * w / 8, (np.arange(6) + 0.5) * h / 6), axis=-1).reshape(-1, 2)
+    sigma2 = calibration.sigma**2
+    J = _ray_jacobian(calibration, grid) @ B[:9]
+
+    def doubt(information):
+        V = sigma2 * _solve(information, np.eye(len(information)))
+        return float(np.sqrt(np.einsum("nij,jk,nik->n", J, V, J).mean()))
+
+    points = calibration.board.points
+    trial = Corners([points], [points[:, :2]], calibration.size)
+    best = None
+    for place, tilt, T in _candidates(calibration, points):
+        pose = _pose(T)
+        xy = -_project(trial, 0, camera, pose)[0] + points[:, :2]
+        if (xy < 2).any() or (xy > np.array([w, h]) - 3).any():
+            continue
+        after = doubt(S + _information(trial, 0, camera, pose, B))
+        if best is None or after < best[0]:
+            columns, rows = calibration.board.pattern
+            outline = xy[[0, columns - 1, columns * rows - 1, columns * (rows - 1)]]
+            best = after, place, tilt, outline
+    if best is None:
+        raise CalibrationError("no pose of the board was found that would fit into the picture")
+    after, place, tilt, outline = best
+    before = doubt(S)
+    text = (
+        f"take one with the board {place}, {tilt}: the direction of a pixel would then be known to "
+        f"{after:.2f} px in place of {before:.2f} px"
+    )
+    return NextView(outline, text, before, after)
+
+
+def _need_views(calibration):
+    if not calibration.views:
+        raise CalibrationError("this calibration holds no views: it was read from a file of another program")
+
+
+def _columns_of(calibration):
+    terms = tuple(t for t in ("k1", "k2", "k3") if t in calibration.model)
+    model = Model((*terms, "p") if "p1" in calibration.model else terms)
+    return model.columns
+
+
+def _information(corners, i, camera, pose, B):
+    return _reduce(*_project(corners, i, camera, pose, B))[0]
+
+
+def _pose(T):
+    import cv2
+
+    return np.concatenate([cv2.Rodrigues(T[:3, :3])[0].ravel(), T[:3, 3]])
+
+
+def _candidates(calibration, points):
+    """(words for the place, words for the tilt, T_cam_board) of boards that fill about a third of the picture."""
+    import cv2
+
+    w, h = calibration.size
+    size = np.ptp(points[:, :2], axis=0)
+    Z = float(max(calibration.K[0, 0] * size[0] / (0.42 * w), calibration.K[1, 1] * size[1] / (0.42 * h)))
+    tilts = {
+        "facing the camera": (0, 0),
+        "its right side tilted away": (0, -1),
+        "its left side tilted away": (0, 1),
+        "its upper side tilted away": (-1, 0),
+        "its lower side tilted away": (1, 0),
+    }
+    for row, y in zip(("top", "middle", "bottom"), (0.27, 0.5, 0.73), strict=True):
+        for column, x in zip(("left", "centre", "right"), (0.27, 0.5, 0.73), strict=True):
+            place = {"middle centre": "in the middle"}.get(f"{row} {column}", f"at the {row} {column}")
+            for words, axis in tilts.items():
+                R = cv2.Rodrigues(np.array([*axis, 0.0]) * _TILT)[0]
+                aim = (
+                    np.array(
+                        [
+                            (x * w - calibration.K[0, 2]) / calibration.K[0, 0],
+                            (y * h - calibration.K[1, 2]) / calibration.K[1, 1],
+                            1.0,
+                        ]
+                    )
+                    * Z
+                )
+                T = np.eye(4)
+                T[:3, :3], T[:3, 3] = R, aim - R @ ((points.min(axis=0) + points.max(axis=0)) / 2)
+                yield place, words, T

@@ -1,0 +1,269 @@
+"""Least squares for camera and board poses together, with the covariance of what it finds, by two routes.
+
+`cv2.calibrateCamera` does the first half; it starts the iteration here. It knows no bent board and its standard errors
+take every corner for independent, which corners of one picture are not.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ir50p_lab.errors import CalibrationError
+
+NAMES = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
+_LENS = {"k1": (4,), "k2": (5,), "p": (6, 7), "k3": (8,)}
+LADDER = tuple(_LENS)  # terms of the lens model: p stands for the pair p1, p2
+
+
+@dataclass(frozen=True)
+class Model:
+    """What is estimated: terms of the lens (of LADDER), aspect (None: fx and fy free, or fx/fy), bent board or flat."""
+
+    terms: tuple = LADDER
+    aspect: float | None = None
+    bent: bool = False
+
+    @property
+    def columns(self):
+        """B (12, free): the nine numbers of the camera and three of the board's shape from the free parameters."""
+        keep = [0, 2, 3] if self.aspect else [0, 1, 2, 3]
+        keep += [i for term in LADDER if term in self.terms for i in _LENS[term]]
+        keep += [9, 10, 11] if self.bent else []
+        B = np.eye(12)[:, keep]
+        if self.aspect:
+            B[1, 0] = 1 / self.aspect
+        return B
+
+    @property
+    def lens(self):
+        """Names of the distortion coefficients, such as ("k1", "k2")."""
+        return tuple(NAMES[i] for term in LADDER if term in self.terms for i in _LENS[term])
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A camera that fits corners.
+
+    ============== ================================================================================== ============
+    camera         fx, fy, cx, cy, k1, k2, p1, p2, k3, and b of the board's shape (see `Corners`)     (12,) px, m
+    poses          rvec, tvec of the board in each view                                               (v, 6) rad, m
+    residuals      seen minus model, one array per view                                               (n, 2) px
+    by_corners     covariance of `camera` if every corner errs on its own                             (12, 12)
+    by_views       covariance from leaving out one view after the other (jackknife); 0: under 4 views (12, 12)
+    model          Model
+    ============== ================================================================================== ============
+    """
+
+    camera: np.ndarray
+    poses: np.ndarray
+    residuals: tuple
+    by_corners: np.ndarray
+    by_views: np.ndarray
+    model: Model
+
+    @property
+    def points(self):
+        """Number of corners."""
+        return sum(len(e) for e in self.residuals)
+
+    @property
+    def parameters(self):
+        """Number of parameters, six of every pose included."""
+        return self.model.columns.shape[1] + self.poses.size
+
+    @property
+    def cost(self):
+        """Sum of the squared residuals, px^2."""
+        return float(sum((e**2).sum() for e in self.residuals))
+
+    @property
+    def sigma(self):
+        """Standard deviation of a corner in x or y, px: cost over degrees of freedom."""
+        return float(np.sqrt(self.cost / (2 * self.points - self.parameters)))
+
+    @property
+    def rms(self):
+        """Root mean square distance between corners and model, px, as OpenCV reports it."""
+        return float(np.sqrt(self.cost / self.points))
+
+    @property
+    def view_rms(self):
+        """The same for each view, (v,)."""
+        return np.array([np.sqrt((e**2).sum(axis=1).mean()) for e in self.residuals])
+
+    @property
+    def stderr(self):
+        """Standard errors (12,): the larger of the two routes; 0 for what was not estimated."""
+        return np.sqrt(np.maximum(np.diag(self.by_corners), np.diag(self.by_views)))
+
+
+class Corners:
+    """What was seen: points (n, 3) m on the board and pixels (n, 2), one array of each per view; the picture's size.
+
+    shapes: three ways (n, 3) in which the board can bend (along x, as a saddle, along y), each 1 at half the board's
+    size from its middle. Its height is z = shapes @ b, with b in metres, positive into the board.
+    """
+
+    def __init__(self, points, pixels, size):
+        self.points = [np.ascontiguousarray(p, dtype=float) for p in points]
+        self.pixels = [np.ascontiguousarray(p, dtype=float) for p in pixels]
+        self.size = size
+        full = np.concatenate(self.points)
+        middle, half = (full.min(axis=0) + full.max(axis=0)) / 2, np.ptp(full[:, :2], axis=0).max() / 2
+        self.shapes = []
+        for p in self.points:
+            x, y = ((p - middle) / half)[:, :2].T
+            self.shapes.append(np.column_stack([x * x, x * y, y * y]))
+
+    def __len__(self):
+        return len(self.points)
+
+    def without(self, view):
+        """The same without one view."""
+        keep = [i for i in range(len(self)) if i != view]
+        return Corners([self.points[i] for i in keep], [self.pixels[i] for i in keep], self.size)
+
+
+def start(corners):
+    """First guess (camera (12,), poses (v, 6)) by OpenCV, with two radial terms.
+
+    Raises CalibrationError if the views do not determine a camera at all.
+    """
+    import cv2
+
+    flags = cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST
+    try:
+        _, K, d, rvecs, tvecs = cv2.calibrateCamera(
+            [p.astype(np.float32) for p in corners.points],
+            [p.astype(np.float32) for p in corners.pixels],
+            corners.size,
+            None,
+            None,
+            flags=flags,
+        )
+    except cv2.error as error:
+        raise CalibrationError(
+            f"OpenCV finds no camera for these {len(corners)} views ({error.err}): tilt the board in different "
+            "directions by 20 to 45 degrees, and fill the picture"
+        ) from None
+    poses = np.hstack([np.array(rvecs).reshape(-1, 3), np.array(tvecs).reshape(-1, 3)])
+    camera = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *d.ravel()[:5], 0, 0, 0])
+    if not np.isfinite(camera).all() or not np.isfinite(poses).all():
+        raise CalibrationError("OpenCV finds no camera for these views: tilt the board in different directions")
+    return camera, poses
+
+
+def residuals(corners, camera, poses):
+    """Seen minus model, a list of (n, 2) px, for a camera (12,) and poses (v, 6)."""
+    return [_project(corners, i, camera, poses[i])[0] for i in range(len(corners))]
+
+
+def _project(corners, i, camera, pose, B=None):
+    """Residual (n, 2) of view i; with B also Jacobians by the free parameters (2n, free) and by the pose (2n, 6)."""
+    import cv2
+
+    points = corners.points[i]
+    if camera[9:].any():
+        points = points + np.outer(corners.shapes[i] @ camera[9:], [0.0, 0.0, 1.0])
+    K = np.array([[camera[0], 0, camera[2]], [0, camera[1], camera[3]], [0, 0, 1]])
+    xy, J = cv2.projectPoints(points, pose[:3], pose[3:], K, camera[4:9])
+    error = corners.pixels[i] - xy[:, 0]
+    if B is None:
+        return (error,)
+    by_height = J[:, 3:6] @ cv2.Rodrigues(pose[:3])[0][:, 2]
+    by_camera = np.hstack([J[:, 6:15], by_height[:, None] * np.repeat(corners.shapes[i], 2, axis=0)])
+    return error, by_camera @ B, J[:, :6]
+
+
+def fit(corners, model, guess, steps=50):
+    """The camera and poses with the least sum of squares (Levenberg-Marquardt), and their covariance.
+
+    Poses are eliminated view by view (Schur complement), so that a step costs one small system however many views.
+
+    Args: corners: Corners; model: Model; guess: (camera (12,), poses (v, 6)). Returns: Fit.
+    Raises CalibrationError if it does not converge, or the views leave a parameter undetermined.
+    """
+    B = model.columns
+    camera, poses = _within(model, guess[0]), np.array(guess[1], dtype=float)
+    cost = sum((e**2).sum() for e in residuals(corners, camera, poses))
+    damping = 1e-6
+    for _ in range(steps):
+        views = [_reduce(*_project(corners, i, camera, poses[i], B)) for i in range(len(corners))]
+        S, g = sum(v[0] for v in views), sum(v[1] for v in views)
+        while True:
+            step = _solve(S, g, damping)
+            new_camera = camera + B @ step
+            new_poses = poses + np.array([v[2] - v[3] @ step for v in views])
+            new_cost = _cost(corners, new_camera, new_poses)
+            if new_cost <= cost * (1 + 1e-12) or damping > 1e6:
+                break
+            damping = max(10 * damping, 1e-6)
+        gain = cost - new_cost
+        if damping > 1e6:
+            raise CalibrationError("the fit does not converge: a view has corners in a wrong order, or is no board")
+        camera, poses, cost, damping = new_camera, new_poses, min(cost, new_cost), damping / 10
+        if abs(gain) <= 1e-11 * cost + 1e-18:
+            break
+    return _with_covariance(corners, model, camera, poses)
+
+
+def _within(model, camera):
+    """A camera (12,) with zeros where the model has nothing to estimate, and its aspect."""
+    B = model.columns
+    used = np.flatnonzero(B.any(axis=1))
+    inside = np.zeros(12)
+    inside[used] = camera[used]
+    if model.aspect:
+        f = np.sqrt(camera[0] * camera[1] * model.aspect)
+        inside[:2] = f, f / model.aspect
+    return inside
+
+
+def _cost(corners, camera, poses):
+    if camera[0] <= 0 or camera[1] <= 0:
+        return np.inf
+    with np.errstate(all="ignore"):
+        cost = sum((e**2).sum() for e in residuals(corners, camera, poses))
+    return cost if np.isfinite(cost) else np.inf
+
+
+def _reduce(error, U, V):
+    """Of one view: S = U'U and g = U'e with the pose eliminated, its own step, and how the step follows the camera."""
+    e = error.ravel()
+    VV = V.T @ V
+    VU, Ve = V.T @ U, V.T @ e
+    X = np.linalg.solve(VV, np.column_stack([VU, Ve]))
+    return U.T @ U - VU.T @ X[:, :-1], U.T @ e - VU.T @ X[:, -1], X[:, -1], X[:, :-1]
+
+
+def _solve(S, g, damping=0.0):
+    """Solve S x = g (g a vector or a matrix) with the scales of the parameters taken out. Raises CalibrationError."""
+    scale = np.sqrt(np.maximum(np.diag(S), 1e-300))
+    A = S / np.outer(scale, scale)
+    try:
+        x = np.linalg.solve(A + damping * np.eye(len(A)), (g.T / scale).T)
+    except np.linalg.LinAlgError:
+        x = np.full_like(g, np.inf)
+    if not np.isfinite(x).all():
+        raise CalibrationError("the views leave the camera undetermined: tilt the board in different directions")
+    return (x.T / scale).T
+
+
+def _with_covariance(corners, model, camera, poses):
+    B, count = model.columns, len(corners)
+    views = [_project(corners, i, camera, poses[i], B) for i in range(count)]
+    reduced = [_reduce(*v) for v in views]
+    S = sum(r[0] for r in reduced)
+    fit = Fit(camera, poses, tuple(v[0] for v in views), np.zeros((12, 12)), np.zeros((12, 12)), model)
+    if 2 * fit.points <= fit.parameters:
+        raise CalibrationError(
+            f"{fit.points} corners in {count} views give {2 * fit.points} numbers for {fit.parameters} parameters: "
+            "more views, or a board with more corners"
+        )
+    by_corners = fit.sigma**2 * _solve(S, np.eye(len(S)))
+    by_views = np.zeros((12, 12))
+    if count > 3:
+        moves = np.array([_solve(S - r[0], r[1]) for r in reduced])  # what leaving out a view does, to first order
+        moves -= moves.mean(axis=0)
+        by_views = B @ ((count - 1) / count * moves.T @ moves) @ B.T
+    return replace(fit, by_corners=B @ by_corners @ B.T, by_views=by_views)

@@ -1,0 +1,103 @@
+"""Which lens model the corners support: terms are dropped that the data do not need, each with its evidence."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.vision.calibration_fit import LADDER, NAMES, Model, fit
+
+_DOUBT = {"k3": 0.01, "p": 0.05, "k2": 0.05, "k1": 0.05}  # p-value below which a term stays
+_NAMED = {"p": ("p1", "p2")}
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """One question put to the data: does the term help more than chance would?
+
+    term: "k1", "k2", "p" (p1 and p2), "k3", "bent board" or "fx = fy"; p_value: chance of such an improvement if it
+    were not needed, the larger of an F test of the sums of squares (corners independent) and of a Wald test with the
+    covariance by views; gain: of the corrected Akaike criterion, positive if the term is worth it; kept: bool.
+    """
+
+    term: str
+    p_value: float
+    gain: float
+    kept: bool
+
+    def __str__(self):
+        verdict = "kept" if self.kept else "not needed"
+        return f"{self.term}: {verdict} (chance {self.p_value:.2g}, AICc gain {self.gain:.1f})"
+
+
+def aicc(fitted):
+    """Akaike's criterion with the correction for small samples: smaller is better."""
+    n, p = 2 * fitted.points, fitted.parameters + 1
+    return n * np.log(max(fitted.cost, 1e-300) / n) + 2 * p * n / max(n - p - 1, 1)
+
+
+def compare(small, large, contrast):
+    """(p-value, AICc gain) of what `large` leaves free and `small` does not: contrast (q, 12) @ camera = 0."""
+    from scipy.special import fdtrc  # chance that an F-distributed number is larger
+
+    C = np.atleast_2d(contrast)
+    q, free, views = len(C), 2 * large.points - large.parameters, len(large.poses)
+    F = max(small.cost - large.cost, 0.0) / q / max(large.cost / free, 1e-300)
+    by_chance = fdtrc(q, free, F)
+    V, theta = C @ large.by_views @ C.T, C @ large.camera
+    scale = np.sqrt(np.diag(V))
+    if views > q + 1 and (scale > 0).all() and np.linalg.cond(V / np.outer(scale, scale)) < 1e12:
+        W = theta @ np.linalg.solve(V, theta) / q * (views - q) / (views - 1)
+        by_chance = max(by_chance, fdtrc(q, views - q, W))
+    return float(by_chance), float(aicc(small) - aicc(large))
+
+
+def contrast_of(term):
+    """Rows (q, 12) that pick the coefficients of a term of the lens out of `Fit.camera`."""
+    return np.eye(12)[[NAMES.index(name) for name in _NAMED.get(term, (term,))]]
+
+
+def choose(corners, guess, aspect=None, bent=False):
+    """The simplest lens that the corners do not object to: (Fit, evidence, all fits that were tried).
+
+    From the full model k1, k2, p1, p2, k3 the terms are dropped one after the other, k3 first, as long as the data can
+    do without: backwards, because a lens bends light more than it is regular. k2 stays if k3 does, k1 if k2 does.
+
+    Args: corners: Corners; guess: as for `fit`; aspect: fx/fy if it is known; bent: estimate the board's shape, too.
+    """
+    terms, evidence = LADDER, []
+    best = fit(corners, Model(terms, aspect, bent), guess)
+    tried = [best]
+    for term in ("k3", "p", "k2", "k1"):
+        if (term == "k2" and "k3" in terms) or (term == "k1" and "k2" in terms):
+            continue
+        fewer = tuple(t for t in terms if t != term)
+        smaller = fit(corners, Model(fewer, aspect, bent), (best.camera, best.poses))
+        tried.append(smaller)
+        p_value, gain = compare(smaller, best, contrast_of(term))
+        keep = p_value < _DOUBT[term]
+        evidence.append(Evidence(term, p_value, gain, keep))
+        if not keep:
+            best, terms = smaller, fewer
+    return best, tuple(evidence), tuple(tried)
+
+
+def total_covariance(best, tried):
+    """Covariance (9, 9) of the camera's numbers: of the fit itself, and of the choice of the model.
+
+    Of each parameter the larger standard error of the two routes counts; the correlations are those by corners. The
+    choice adds the spread of the models that were tried about the chosen one, each with its Akaike weight: where two
+    models are about as likely, the difference between them is uncertainty, too (Burnham and Anderson's unconditional
+    variance).
+    """
+    by_corners, by_views = best.by_corners[:9, :9], best.by_views[:9, :9]
+    own = np.sqrt(np.diag(by_corners))
+    factor = np.ones(9)
+    np.divide(np.sqrt(np.diag(by_views)), own, out=factor, where=own > 0)
+    factor = np.maximum(factor, 1.0)
+    total = by_corners * np.outer(factor, factor)
+    scores = np.array([aicc(other) for other in tried])
+    weights = np.exp(-0.5 * (scores - scores.min()))
+    for other, weight in zip(tried, weights / weights.sum(), strict=True):
+        move = np.where(own > 0, other.camera[:9] - best.camera[:9], 0.0)
+        total = total + weight * np.outer(move, move)
+    return total

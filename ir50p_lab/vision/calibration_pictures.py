@@ -1,0 +1,92 @@
+"""What `calibrate` may be given: arrays, Frames, paths, or a folder of pictures."""
+
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ir50p_lab.errors import ImageError, InputError
+
+_ENDINGS = {".jpg", ".jpeg", ".png", ".bmp", ".tif", ".tiff", ".webp", ".ppm", ".pgm"}
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """One picture, not decoded twice: name; index; image (h, w, 3) or (h, w) uint8, or None and the problem with it."""
+
+    name: str
+    index: int
+    image: np.ndarray | None
+    problem: str | None = None
+
+    @property
+    def size(self):
+        """(width, height), or None if there is no picture."""
+        return None if self.image is None else (self.image.shape[1], self.image.shape[0])
+
+    def grey(self):
+        """Grey levels (h, w) uint8."""
+        if self.image.ndim == 2:
+            return np.ascontiguousarray(self.image)
+        import cv2
+
+        return cv2.cvtColor(np.ascontiguousarray(self.image[..., :3]), cv2.COLOR_RGB2GRAY)
+
+
+def pictures_of(images):
+    """A list of Picture. Raises InputError for what cannot hold pictures, ImageError for a missing or empty folder."""
+    if isinstance(images, str | Path):
+        images = _in_folder(Path(images))
+    elif (isinstance(images, np.ndarray) and images.ndim < 4) or hasattr(images, "image"):
+        raise InputError("one picture is not enough: give a list of pictures, or a folder")
+    try:
+        images = list(images)
+    except TypeError:
+        raise InputError(f"images = {images!r}: give a list of pictures or paths, or a folder") from None
+    if not images:
+        raise InputError("no pictures were given: take 10 to 20 of the board, in different places and tilts")
+    return [_picture(k, one) for k, one in enumerate(images)]
+
+
+def _in_folder(folder):
+    if not folder.is_dir():
+        raise ImageError(f"{folder} is no folder: give the folder with the pictures, or a list of files")
+    files = sorted(f for f in folder.iterdir() if f.suffix.lower() in _ENDINGS)
+    if not files:
+        raise ImageError(f"no pictures ({', '.join(sorted(_ENDINGS))}) in {folder}")
+    return files
+
+
+def _picture(index, one):
+    if isinstance(one, str | Path):
+        from ir50p_lab.vision.image import load_image
+
+        try:
+            return Picture(Path(one).name, index, load_image(one, allow_grey=True))
+        except ImageError as error:
+            return Picture(Path(one).name, index, None, str(error))
+    name = getattr(one, "name", None) or f"picture {index + 1}"
+    array = np.asarray(getattr(one, "image", one))
+    good = (
+        array.dtype == np.uint8 and array.size and (array.ndim == 2 or (array.ndim == 3 and array.shape[2] in (3, 4)))
+    )
+    if not good:
+        what = f"{array.dtype} array of shape {array.shape}: give uint8 of shape (h, w, 3), or (h, w)"
+        return Picture(str(name), index, None, what)
+    return Picture(str(name), index, array)
+
+
+def with_bar(pictures, progress):
+    """The pictures, with a progress bar if asked for (None: if they are many)."""
+    if progress is False or (progress is None and len(pictures) < 8):
+        return pictures
+    from tqdm.auto import tqdm
+
+    return tqdm(pictures, desc="finding corners", leave=False)
+
+
+def common_size(pictures):
+    """(width, height) that most pictures have; of equally many, that which came first."""
+    sizes = Counter(picture.size for picture in pictures if picture.size is not None)
+    return sizes.most_common(1)[0][0] if sizes else None

@@ -1,0 +1,154 @@
+"""What a calibration found: the camera, how sure it is, what each picture said, and which were not used."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ir50p_lab.errors import CalibrationError
+from ir50p_lab.vision.calibration_board import Checkerboard
+from ir50p_lab.vision.calibration_fit import NAMES
+from ir50p_lab.vision.pinhole import Pinhole
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class View:
+    """One picture of the board that was used.
+
+    name, index: as in `Rejected`; points (n, 3) m on the board; corners (n, 2) px as found; residuals (n, 2) px, found
+    minus model; rms: of their lengths, px; T_cam_board (4, 4) takes board to camera coordinates; rise: width of an
+    edge, px; finder: who found the corners.
+    """
+
+    name: str
+    index: int
+    points: np.ndarray = field(repr=False)
+    corners: np.ndarray = field(repr=False)
+    residuals: np.ndarray = field(repr=False)
+    T_cam_board: np.ndarray = field(repr=False)
+    rise: float = np.nan
+    finder: str = ""
+
+    @property
+    def rms(self):
+        """Root mean square distance between found and model corners, px."""
+        return float(np.sqrt((self.residuals**2).sum(axis=1).mean()))
+
+    @property
+    def tilt(self):
+        """Angle between the board and the plane of the picture, rad."""
+        return float(np.arccos(np.clip(abs(self.T_cam_board[2, 2]), 0, 1)))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Calibration:
+    """A calibrated camera; usable wherever a Pinhole is (`K`, `distortion`, `size`).
+
+    ============== ======================================================================================== =========
+    field          meaning                                                                                  shape
+    ============== ======================================================================================== =========
+    K              [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]: column form (OpenCV); pixel (0, 0) is the centre  (3, 3) px
+                   of the top left one
+    distortion     k1, k2, p1, p2, k3 as in `Pinhole`; 0 where the data need no such term                   (5,)
+    rms            root mean square distance between corners and model: sqrt(sum |e|^2 / N)                 px
+    stderr         standard error of "fx", "fy", "cx", "cy", "k1"...: the larger of two routes, and the     dict
+                   doubt about the model; nan where not estimated
+    covariance     of fx, fy, cx, cy, k1, k2, p1, p2, k3 with those standard errors; 0 where not estimated  (9, 9)
+    views          View of each picture used                                                                tuple
+    rejected       Rejected: each picture not used, with a reason                                           tuple
+    warnings       what to mind, as sentences                                                               tuple
+    size           (width, height) of the pictures                                                          px
+    board          Checkerboard or Charuco
+    model          lens coefficients that were estimated, such as ("k1", "k2")                              tuple
+    evidence       Evidence for each term asked about                                                       tuple
+    sigma          standard deviation of a corner in x or y, from the residuals                             px
+    sag            height of the bent board's edge over its middle along x, as saddle, along y; None: flat  (3,) m
+    stderr_corners standard errors if each corner errs on its own, as OpenCV reports them                   dict
+    stderr_views   standard errors by leaving out one view after the other                                  dict
+    ============== ======================================================================================== =========
+    """
+
+    K: np.ndarray
+    distortion: np.ndarray
+    rms: float
+    stderr: dict
+    views: tuple = ()
+    rejected: tuple = ()
+    warnings: tuple = ()
+    size: tuple = (640, 480)
+    covariance: np.ndarray = field(default_factory=lambda: np.zeros((9, 9)), repr=False)
+    board: Checkerboard = field(default_factory=Checkerboard)
+    model: tuple = ()
+    evidence: tuple = ()
+    sigma: float = np.nan
+    sag: np.ndarray | None = None
+    stderr_corners: dict = field(default_factory=dict, repr=False)
+    stderr_views: dict = field(default_factory=dict, repr=False)
+
+    @property
+    def pinhole(self):
+        """The camera as a Pinhole: project, undistort_points, rays."""
+        return Pinhole(self.K, self.distortion, self.size)
+
+    @property
+    def values(self):
+        """All nine numbers by name: fx, fy, cx, cy in px, k1, k2, p1, p2, k3."""
+        K = self.K
+        return dict(zip(NAMES, map(float, (K[0, 0], K[1, 1], K[0, 2], K[1, 2], *self.distortion)), strict=True))
+
+    def __getattr__(self, name):
+        if name in NAMES:
+            return self.values[name]
+        raise AttributeError(f"Calibration has no {name!r}")
+
+    @property
+    def coverage(self):
+        """Where in the picture corners were seen: Coverage."""
+        from ir50p_lab.vision.calibration_coverage import coverage
+
+        return coverage(self)
+
+    def next_view(self):
+        """Where a further picture of the board would help most: NextView with a sentence."""
+        from ir50p_lab.vision.calibration_coverage import next_view
+
+        return next_view(self)
+
+    def check_size(self, size):
+        """Refuse pictures (width, height) of another size than those of the calibration, with CalibrationError."""
+        if tuple(size) != tuple(self.size):
+            raise CalibrationError(
+                f"this calibration is of a camera with pictures of {self.size[0]}x{self.size[1]}, not "
+                f"{size[0]}x{size[1]}: set the camera to that size, or calibrate it at the new one"
+            )
+
+    def save(self, path):
+        """Write a YAML file that cv2.FileStorage (and OpenCV's samples) read. Returns the path."""
+        from ir50p_lab.vision.calibration_file import save
+
+        return save(self, path)
+
+    @staticmethod
+    def load(path, size=None):
+        """Read such a file, or one that OpenCV's calibration sample wrote.
+
+        size: (width, height) of the pictures it is for. Raises CalibrationError for a file that is missing or no
+        calibration, and for one of another picture size.
+        """
+        from ir50p_lab.vision.calibration_file import load
+
+        return load(path, size)
+
+    def __str__(self):
+        lines = [
+            f"{self.size[0]}x{self.size[1]} camera from {len(self.views)} pictures of a {self.board}, "
+            f"rms {self.rms:.3f} px"
+        ]
+        for name, value in self.values.items():
+            if name in NAMES[:4] or name in self.model:
+                lines.append(f"  {name}  {value:12.5g} +- {self.stderr.get(name, np.nan):.2g}")
+        lines += [f"not used: {one}" for one in self.rejected]
+        return "\n".join([*lines, *self.warnings])
+
+    def with_warnings(self, *sentences):
+        """A copy with further warnings."""
+        return replace(self, warnings=(*self.warnings, *sentences))
