@@ -1,0 +1,204 @@
+"""Figures of notebook 07, second part: what processing, delay, memory and a model bring, on recordings."""
+
+import numpy as np
+
+from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.course.bench_views import origin
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.identification import RLS, fit, process, regressor, validate
+from ir50p_lab.signals import LowPass
+
+JOINTS = (COLOURS["blue"], COLOURS["orange"], COLOURS["green"])
+
+
+def learn(recording, *, rows="joint", columns="rigid", method="weighted", l2=None, **steps):
+    """An Estimate from a recording: `process` with these steps, then `fit` on the samples that are to be used."""
+    motion = process(recording, **steps)
+    use = motion.use.astype(float)
+    Phi = regressor(motion.q, motion.qd, motion.qdd) * use[:, :, None]
+    weights = {"weights": use} if method == "weighted" else {}
+    return fit(Phi, motion.u * use, rows=rows, columns=columns, method=method, l2=l2, **weights)
+
+
+def as_the_thesis(arm, unit, motions, controller, seconds=(110, 60)):
+    """Fit of the thesis' way on a simulated arm, (3,) %: trained on the first motion, validated on the second."""
+    way, runs = {"derivatives": "causal", "cutoff_hz": 3.0}, []
+    for motion, length in zip(motions, seconds, strict=True):
+        bench = SimulatedBench(arm, unit=unit, q0=motion.q_start, record_to=False).open()
+        runs.append(bench.follow(controller, motion, length))
+    return validate(learn(runs[0], rows="shared", columns="thesis", **way), runs[1], **way).fit
+
+
+class OnlineSignals:
+    """Regressor and command in step with each other, sample by sample, for a recursive estimate at the bench.
+
+    Angles and commands pass the same causal low pass of second order, so that both are late by the same; velocity and
+    acceleration are central differences, one sample later. The nonlinear columns see filtered angles, which is exact
+    only for slow motion.
+
+    Args: rate_hz; cutoff_hz; delay: whole samples from a measurement to the moment its command acts; slow: rad/s,
+    below which a joint may stand: its row is then 0 = 0.
+    """
+
+    def __init__(self, rate_hz, *, cutoff_hz=2.0, delay=2, slow=0.05):
+        self._filter = LowPass(cutoff_hz, rate_hz, order=2)
+        self._rate, self._slow, self._sent, self._past = rate_hz, slow, [np.zeros(3)] * (delay + 1), []
+
+    def step(self, q, u):
+        """q (3,) rad of this sample, and u (3,) that is sent now. Returns Phi (3, 20) and y (3,), first zeros."""
+        self._sent = [*self._sent[1:], np.array(u, dtype=float)]
+        held = 0.5 * (self._sent[0] + self._sent[1])  # acts around this sample: held from one to the next
+        self._past = [*self._past[-2:], self._filter.step(np.concatenate([q, held]))]
+        if len(self._past) < 3:
+            return np.zeros((3, 20)), np.zeros(3)
+        before, here, after = self._past
+        qd, qdd = (after - before)[:3] * self._rate / 2, (after - 2 * here + before)[:3] * self._rate**2
+        use = (np.abs(qd) > self._slow).astype(float)
+        return regressor(here[:3], qd, qdd) * use[:, None], here[3:] * use
+
+
+def ablation_figure(names, fits, best=None):
+    """Fits of the three joints, line by line of a table. Returns: LabFigure.
+
+    Args: names: n texts; fits: (n, 3) %; best: (3,) %, what no theta passes, drawn dashed.
+    """
+    figure = new_figure(9.6, 1.3 + 0.36 * len(names))
+    ax, y = figure.axes[0], np.arange(len(names))[::-1]
+    for joint, marker in enumerate("os^"):
+        values = np.asarray(fits)[:, joint]
+        ax.plot(values, y, marker, ms=7, ls="-", lw=0.8, color=JOINTS[joint], label=f"joint {joint + 1}")
+        if best is not None:
+            ax.axvline(best[joint], color=JOINTS[joint], ls=":", lw=1.2)
+    ax.set_yticks(y, names)
+    ax.set(xlabel="fit on raw PWM of the validation run [%]", xlim=(min(50, np.min(fits) - 3), 101))
+    ax.set_title("Most is won by better signals; dotted: true parameters")
+    ax.legend(fontsize=8, loc="lower left")
+    return figure
+
+
+class CutoffView:
+    """Acceleration of joint 1 by two filters, and the fit of the model over their cut-off. Attributes: figure, fits.
+
+    Args: train, valid: Recordings; cutoffs_hz: of the curves; delay: s; span: (s, s) of valid that is drawn; truth:
+    (t, qdd) of joint 1 if it is known. fits: {"causal" or "zero-phase": (m, 3) %}.
+    """
+
+    def __init__(self, train, valid, cutoffs_hz, *, delay, span, truth=None):
+        self._valid, self._f, self._span = valid.between(span[0] - 3, span[1] + 3), np.asarray(cutoffs_hz), span
+        late = {"causal": 0.0, "zero-phase": delay}
+        self.fits = {kind: np.array([self._fit(train, valid, kind, f, late[kind]) for f in self._f]) for kind in late}
+        self.figure = new_figure(9.6, 3.8, cols=2)
+        left, right = self.figure.axes
+        if truth is not None:
+            left.plot(*truth, color=COLOURS["dark"], ls="--", lw=1, label="truth of the simulation")
+            here = (truth[0] > span[0]) & (truth[0] < span[1])
+            room = 2.2 * np.abs(truth[1][here]).max()
+        else:
+            room = 5.0
+        self._lines = {
+            "causal": left.plot([], [], color=COLOURS["orange"], lw=1, label="causal")[0],
+            "zero-phase": left.plot([], [], color=COLOURS["blue"], lw=1.8, label="zero-phase")[0],
+        }
+        left.set(xlim=span, ylim=(-room, room), xlabel=f"t [s]  -  {origin(valid)}")
+        left.set(ylabel="acceleration of joint 1 [rad/s²]", title="Late and noisy, or neither")
+        left.legend(fontsize=8, loc="upper right")
+        for kind, style in (("causal", "--"), ("zero-phase", "-")):
+            for joint in range(3):
+                name = f"joint {joint + 1}" if kind == "zero-phase" else None
+                right.semilogx(self._f, self.fits[kind][:, joint], style, color=JOINTS[joint], label=name)
+        self._mark = right.axvline(self._f[0], color=COLOURS["dark"], lw=1)
+        right.set(xlabel="cut-off [Hz]", ylabel="fit [%]", ylim=(0, 100), title="Dashed: causal, line: zero-phase")
+        right.set_xticks([0.5, 1, 2, 5, 10, 20], ["0.5", "1", "2", "5", "10", "20"])
+        right.minorticks_off()
+        right.legend(fontsize=8, loc="lower left")
+
+    @staticmethod
+    def _fit(train, valid, kind, cutoff, delay):
+        steps = {"derivatives": kind, "cutoff_hz": cutoff, "trim": 1.0}
+        return validate(learn(train, delay=delay, slow=0.05, **steps), valid, delay=delay, **steps).fit
+
+    def update(self, cutoff):
+        """Draw both accelerations for this cut-off, Hz. Returns the fits in words."""
+        said = []
+        for kind, line in self._lines.items():
+            motion = process(self._valid, derivatives=kind, cutoff_hz=cutoff, trim=1.0)
+            line.set_data(motion.t, motion.qdd[:, 0])
+            values = [np.interp(np.log(cutoff), np.log(self._f), column) for column in self.fits[kind].T]
+            said.append(f"{kind}: fit " + " / ".join(f"{x:.0f}" for x in values) + " %")
+        self._mark.set_xdata([cutoff, cutoff])
+        return "; ".join(said)
+
+
+def delay_figure(found, true=None):
+    """What is left of u over the delay that was assumed, for each joint, one picture per recording.
+
+    Args: found: {name: DelayEstimate}; true: s, drawn dashed. Returns: LabFigure.
+    """
+    figure = new_figure(9.6, 3.2, cols=len(found))
+    for ax, (name, estimate) in zip(figure.axes, found.items(), strict=True):
+        for joint in range(3):
+            share = estimate.rms[:, joint] / estimate.rms[:, joint].min()
+            ax.plot(1000 * estimate.delays, share, color=JOINTS[joint], label=f"joint {joint + 1}")
+        if true is not None:
+            ax.axvline(1000 * true, **SETPOINT)
+        ax.set(xlabel="delay assumed [ms]", ylim=(0.99, 1.2))
+        ax.set_title(f"{name}: {1000 * estimate.delay:.0f} ± {1000 * estimate.stderr:.0f} ms")
+    figure.axes[0].set_ylabel("what is left of u, over its least [1]")
+    figure.axes[0].legend(fontsize=8)
+    return figure
+
+
+def validation_figure(naive, best, span):
+    """Measured and predicted commands of the three joints (Figure 4.11), two models. Returns: LabFigure.
+
+    Args: naive, best: Validation; span: (s, s) that is drawn.
+    """
+    figure = new_figure(9.6, 5.4, rows=3, sharex=True)
+    for joint, ax in enumerate(figure.axes):
+        ax.plot(best.t, best.measured[:, joint], ".", ms=2.5, color=COLOURS["grey"], label="measured")
+        ax.plot(naive.t, naive.predicted[:, joint], color=COLOURS["orange"], lw=0.9, label="as the thesis")
+        ax.plot(best.t, best.predicted[:, joint], color=COLOURS["blue"], lw=1.8, label="this notebook")
+        ax.set(xlim=span, ylim=(-275, 275), ylabel="u [PWM]")
+        ax.set_title(f"joint {joint + 1}: fit {naive.fit[joint]:.0f} % and {best.fit[joint]:.0f} %", fontsize=10)
+    figure.axes[0].legend(fontsize=8, ncols=3, loc="upper right")
+    figure.axes[2].set_xlabel("t [s]")
+    return figure
+
+
+class ForgettingView:
+    """A parameter followed by RLS while the arm gets a payload half way, for any memory. Attributes: figure.
+
+    Args: parts: two Motions, without and with the payload; joint: 0, 1, 2; column: which parameter; levels: its value
+    by least squares on each part; every: how many samples make one step.
+    """
+
+    def __init__(self, parts, *, joint, column, levels, name, every=5):
+        self._Phi, self._y = [], []
+        for part in parts:
+            keep = slice(None, None, every)
+            use = part.use[keep].astype(float)
+            self._Phi.append(regressor(part.q[keep], part.qd[keep], part.qdd[keep]) * use[:, :, None])
+            self._y.append(part.u[keep] * use)
+        self._rate, self._joint, self._column = parts[0].rate_hz / every, joint, column
+        first, second = (len(y) / self._rate for y in self._y)
+        self._t = (np.arange(sum(map(len, self._y))) + 1) / self._rate
+        self.figure = new_figure(9.0, 3.4)
+        ax = self.figure.axes[0]
+        ax.hlines(levels, [0, first], [first, first + second], color=COLOURS["dark"], ls="--", lw=1.2)
+        (self._line,) = ax.plot([], [], color=JOINTS[joint])
+        low, high = min(levels), max(levels)
+        ax.set(xlim=(0, first + second), ylim=(low - 0.6 * (high - low), high + 0.6 * (high - low)))
+        ax.set(xlabel="time of motion [s]", ylabel=f"{name} of joint {joint + 1} [PWM, SI]")
+        ax.set_title("Dashed: least squares before and after the payload")
+
+    def run(self, memory):
+        """The parameter after each step, (n,), with a memory of so many seconds (inf: nothing is forgotten)."""
+        filtered = RLS(forgetting=1 - 1 / (memory * self._rate))
+        states = [filtered.run(Phi, y)[:, self._joint, self._column] for Phi, y in zip(self._Phi, self._y, strict=True)]
+        return np.concatenate(states)
+
+    def update(self, memory):
+        """Draw for this memory, s. Returns the forgetting factor in words."""
+        followed = self.run(memory)
+        self._line.set_data(self._t, followed)
+        return f"forgetting factor {1 - 1 / (memory * self._rate):.4f} at {self._rate:.0f} samples a second"

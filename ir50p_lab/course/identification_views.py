@@ -1,0 +1,219 @@
+"""Figures of notebook 07, first part: why feedback biases, and what a motion lets one see."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.identification import regressor
+from ir50p_lab.identification.parameters import ACTS_ON, NAMES, ONLY_THESIS
+from ir50p_lab.signals.fourier import series
+
+JOINTS = (COLOURS["blue"], COLOURS["orange"], COLOURS["green"])
+NOISE_PWM, INDEPENDENT = 8.0, 1100  # assumed: what is left of u, and how many independent samples 110 s hold
+_WATCHED = ((0, "theta1"), (1, "theta9"), (2, "j3"), (1, "theta3"))  # joint, parameter: inertias, and one of gravity
+
+
+def two_copies(arm, controller, reference, seconds=8):
+    """A run of one simulated copy of the arm; its commands sent blindly to another copy; the other copy controlled.
+
+    Returns: three Recordings.
+    """
+    q0, runs = reference(0.0)[0], []
+    for seed in (0, 1):
+        with SimulatedBench(arm, seed=seed, q0=q0, record_to=False) as bench:
+            runs.append(bench.follow(controller, reference, seconds))
+    with SimulatedBench(arm, seed=1, q0=q0, record_to=False) as bench:
+        for k, _ in enumerate(bench.run(seconds)):
+            bench.drive(runs[0].u[k])  # nobody looks at the angles
+        return runs[0], bench.recording, runs[1]
+
+
+def open_loop_figure(closed, again):
+    """A run in closed loop, and the same commands sent blindly to another copy of the arm. Returns: LabFigure.
+
+    Args: closed, again: Recordings of the same length.
+    """
+    figure = new_figure(9.6, 3.0, cols=3)
+    for joint, ax in enumerate(figure.axes):
+        ax.plot(closed.t, closed.q[:, joint], color=COLOURS["blue"], label="with feedback")
+        ax.plot(again.t, again.q[:, joint], color=COLOURS["orange"], label="the same counts, blindly")
+        off = abs(again.q[-1, joint] - closed.q[-1, joint])
+        ax.set(xlabel="time [s]  -  simulated", title=f"joint {joint + 1}: {off:.2f} rad apart at the end")
+    figure.axes[0].set_ylabel("angle [rad]")
+    figure.axes[0].legend(fontsize=8)
+    return figure
+
+
+def with_payload(arm, mass):
+    """The arm with a point mass (kg) at its tip: link 3 has another mass, centre of mass and inertia. Returns: Arm."""
+    m3, lc3, l3 = arm.m[2], arm.lc[2], arm.l[2]
+    total = m3 + mass
+    centre = (m3 * lc3 + mass * l3) / total
+    more = m3 * lc3**2 + mass * l3**2 - total * centre**2
+    return replace(
+        arm,
+        m=(*arm.m[:2], total),
+        lc=(*arm.lc[:2], centre),
+        Iyy=(*arm.Iyy[:2], arm.Iyy[2] + more),
+        Izz=(*arm.Izz[:2], arm.Izz[2] + more),
+    )
+
+
+def twice_as_strong(arm):
+    """The arm with all masses, inertias, friction, rotors and motor torques doubled: the same in PWM counts."""
+    double = {name: tuple(2 * np.array(getattr(arm, name))) for name in ("m", "Ixx", "Iyy", "Izz")}
+    friction = {name: tuple(2 * np.array(getattr(arm.friction, name))) for name in ("fv", "fc", "fs", "Tf")}
+    motors = {name: tuple(2 * np.array(getattr(arm.actuators, name))) for name in ("kt", "Jm")}
+    return replace(
+        arm, **double, friction=replace(arm.friction, **friction), actuators=replace(arm.actuators, **motors)
+    )
+
+
+def spoilt(recording, joint=0, n=6000):
+    """t, q and u of one joint as a careless file holds them: halves swapped, numbers missing, degrees."""
+    t, q, u = recording.t[:n], np.degrees(recording.q[:n, joint]), recording.u[:n, joint]
+    q[n // 3 : n // 3 + 80] = np.nan
+    order = np.r_[n // 2 : n, : n // 2]
+    return t[order], q[order], u[order]
+
+
+class FeedbackLoop:
+    """The steady speed of a joint under a P controller and a load that nobody measures.
+
+        y = b u + v,    u = K (r - y)    so    u = K (r - v)/(1 + b K)
+
+    Every load v comes back through the controller: u and v are correlated. Least squares of y on u finds
+
+        (b sigma_r^2 - sigma_v^2/K)/(sigma_r^2 + sigma_v^2),
+
+    which is b where the set point r moves much, and -1/K, the controller's own slope, where it rests.
+
+    Args: b: rad/s per PWM count; K: PWM counts per rad/s; load: rms of v, rad/s; n samples; seed.
+    """
+
+    def __init__(self, b, K, *, load=0.1, n=400, seed=0):
+        self.b, self.K, self.load = float(b), float(K), float(load)
+        shapes = np.random.default_rng(seed).normal(size=(2, n))
+        shapes -= shapes.mean(axis=1, keepdims=True)
+        shapes[1] -= shapes[0] * (shapes[0] @ shapes[1]) / (shapes[0] @ shapes[0])  # r and v: exactly uncorrelated
+        self._r, self._v = shapes / shapes.std(axis=1, keepdims=True)
+
+    def run(self, excitation, *, closed=True):
+        """r, u, y, (n,) each, with a set point of this rms (rad/s). Open loop: the u that r alone would cause."""
+        r, v = excitation * self._r, self.load * self._v
+        u = self.K * (r - closed * v) / (1 + self.b * self.K)
+        return r, u, self.b * u + v
+
+    def expected(self, excitation):
+        """What least squares of y on u finds in closed loop, rad/s per count."""
+        r, v = excitation**2, self.load**2
+        return (self.b * r - v / self.K) / (r + v)
+
+
+class FeedbackView:
+    """The cloud (u, y) of a FeedbackLoop with the line of least squares. Attributes: figure."""
+
+    def __init__(self, loop, largest):
+        self.loop, self.figure = loop, new_figure(7.2, 4.0)
+        ax = self.figure.axes[0]
+        _, u, y = loop.run(largest)
+        self._ends = 1.05 * np.abs(u).max() * np.array([-1, 1])
+        (self._cloud,) = ax.plot([], [], ".", ms=4, color=COLOURS["grey"])
+        ax.plot(self._ends, loop.b * self._ends, **SETPOINT, label="the plant, slope b")
+        ax.plot(self._ends, -self._ends / loop.K, ":", color=COLOURS["green"], label="the controller, slope -1/K")
+        (self._line,) = ax.plot([], [], color=COLOURS["orange"], lw=2.5, label="least squares")
+        ax.set(xlim=self._ends, ylim=1.1 * np.abs(y).max() * np.array([-1, 1]))
+        ax.set(xlabel="command u [PWM]", ylabel="speed y [rad/s]", title="Little excitation: it finds the controller")
+        ax.legend(fontsize=9, loc="upper left")
+
+    def update(self, excitation):
+        """Draw for a set point of this rms (rad/s). Returns the slopes in words."""
+        r, u, y = self.loop.run(excitation)
+        slope = (u @ y) / (u @ u)
+        self._cloud.set_data(u, y)
+        self._line.set_data(self._ends, slope * self._ends)
+        by_instrument = f"; with r as instrument {(r @ y) / (r @ u):.4f}" if excitation > 0 else ""
+        return f"least squares {slope:.4f}, true b = {self.loop.b:.4f} rad/s per count{by_instrument}"
+
+
+def excitation_figure(excitation):
+    """One period of a motion before and after optimisation, with the condition numbers. Returns: LabFigure."""
+    figure = new_figure(9.6, 3.4, cols=2)
+    found = (excitation.before, excitation.condition_before), (excitation.reference, excitation.condition_after)
+    for ax, (motion, condition), name in zip(figure.axes, found, ("Random", "Optimised"), strict=True):
+        t = np.linspace(0, motion.period, 400)
+        rows = motion.sample(motion.start + t)
+        for joint in range(3):
+            ax.plot(t, rows[:, 0, joint], color=JOINTS[joint], label=f"joint {joint + 1}")
+        numbers = ", ".join(f"{x:.3g}" for x in condition)
+        ax.set(xlabel="time [s]", title=f"{name}: condition numbers {numbers}")
+    figure.axes[0].set_ylabel("angle [rad]")
+    figure.axes[0].legend(fontsize=8)
+    return figure
+
+
+def relative_errors(arm, motion, frequency_hz, samples=300):
+    """Standard errors to be expected, in % of the value, and the commands, when a motion is run at another speed.
+
+    Assumed: 8 PWM counts of noise and 1100 independent samples. Args: arm: Arm with motors; motion: Fourier;
+    frequency_hz: of its first harmonic. Returns: (4,) % for the parameters of `_WATCHED`; u (samples, 3) PWM counts.
+    """
+    period = 1 / frequency_hz
+    t = period * (np.arange(samples) + 0.5) / samples
+    rows = series(motion.a, motion.b, motion.q0, period, t)
+    Phi, theta = regressor(rows[:, 0], rows[:, 1], rows[:, 2]), arm.theta_pwm
+    percent = []
+    for joint, name in _WATCHED:
+        columns = [k for k in ACTS_ON[joint] if NAMES[k] not in ONLY_THESIS]
+        A = Phi[:, joint, columns]
+        size = np.linalg.norm(A, axis=0)
+        R = np.linalg.qr(A / size, mode="r")
+        spread = np.linalg.norm(np.linalg.solve(R, np.eye(len(R))), axis=1) / size  # sqrt of the diagonal of (A^T A)^-1
+        k = columns.index(NAMES.index(name))
+        error = NOISE_PWM * spread[k] * np.sqrt(samples / INDEPENDENT)
+        percent.append(100 * error / abs(theta[joint, NAMES.index(name)]))
+    return np.array(percent), np.einsum("nij,ij->ni", Phi, theta)
+
+
+class FrequencyView:
+    """Commands that a motion needs, and how sure it makes the parameters, over its frequency. Attributes: figure.
+
+    Args: arm: Arm with motors; motion: Fourier; lowest, highest: Hz.
+    """
+
+    def __init__(self, arm, motion, lowest, highest):
+        self._arm, self._motion = arm, motion
+        self.figure = new_figure(9.6, 3.8, cols=2)
+        left, right = self.figure.axes
+        for level in (-255, 255):
+            left.axhline(level, **SETPOINT)
+        self._x = (np.arange(300) + 0.5) / 300
+        self._u = [left.plot([], [], color=colour, lw=1.3)[0] for colour in JOINTS]
+        left.set(xlim=(0, 1), ylim=(-450, 450), xlabel="part of the period [1]", ylabel="command needed [PWM]")
+        left.set_title("Dashed: all the motors have")
+        f = np.geomspace(lowest, highest, 40)
+        errors = np.array([relative_errors(arm, motion, x)[0] for x in f])
+        for k, (joint, name) in enumerate(_WATCHED):
+            style = {"color": COLOURS["grey"], "ls": "--"} if k == 3 else {"color": JOINTS[joint]}
+            what = "gravity" if k == 3 else "inertia"
+            right.loglog(f, errors[:, k], label=f"{what} of joint {joint + 1}: {name}", **style)
+        self._mark = right.axvline(f[0], color=COLOURS["dark"], lw=1)
+        right.set(xlabel="lowest frequency of the motion [Hz]", ylabel="standard error [% of the value]")
+        ticks = [x for x in (0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0) if lowest <= x <= highest]
+        right.set_xticks(ticks, [f"{x:g}" for x in ticks])
+        right.minorticks_off()
+        right.set_title("Twice as fast: inertia four times as sure")
+        right.legend(fontsize=8, loc="lower left")
+
+    def update(self, frequency):
+        """Draw for this frequency, Hz. Returns what to mind, in words."""
+        percent, u = relative_errors(self._arm, self._motion, frequency)
+        for joint, line in enumerate(self._u):
+            line.set_data(self._x, u[:, joint])
+        self._mark.set_xdata([frequency, frequency])
+        inertia = ", ".join(f"{x:.1f}" for x in percent[:3])
+        most = np.abs(u).max()
+        end = "within reach" if most <= 255 else "out of reach: it would be cut off"
+        return f"inertia known to {inertia} %; gravity to {percent[3]:.1f} %; largest command {most:.0f}: {end}"
