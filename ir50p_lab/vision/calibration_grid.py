@@ -104,7 +104,7 @@ def grow(grid, grey):
             if np.mean(np.isnan(found)) >= 0.2:
                 outside.add(side)
                 break
-            if np.nanmean(found) < 0.7:
+            if np.nanmean(np.abs(found)) < 0.7:
                 break
             turned = np.concatenate([turned, following[:, None]], axis=1)
         grid = _turn(turned, -quarter_turns)
@@ -136,23 +136,22 @@ def is_checkerboard(grid, grey):
     if swing < 8:
         return False
     out, along = np.gradient(grid, axis=1), np.gradient(grid, axis=0)
-    for reach in (0.3, 0.7):
-        found = _crossings(*(a.reshape(-1, 2) for a in (grid, out, along)), grey, swing, reach)
-        known = found[np.isfinite(found)]
-        if len(known) < 0.7 * len(found) or known.mean() < 0.85:
-            return False
-    return True
+    places = [a.reshape(-1, 2) for a in (grid, out, along)]
+    near, far = (_crossings(*places, grey, swing, reach) for reach in (0.3, 0.7))
+    known = np.isfinite(near) & np.isfinite(far)
+    return bool(known.mean() > 0.7 and np.mean((near == far)[known] & (near != 0)[known]) > 0.85)
 
 
 def _crossings(places, out, along, grey, swing, reach=0.3):
-    """For each place (n, 2) whether four squares meet there, (n,): 1, 0 or NaN (outside the picture).
+    """For each place (n, 2) whether four squares meet there, (n,): 1 or -1 (by which are dark), 0, NaN (outside).
 
     out, along: (n, 2) px, one square in each direction; swing: between light and dark squares, grey levels;
     reach: how far out to look, in squares.
     """
     a, d, b, c = (sample(grey, places + reach * (i * out + j * along)) for i, j in ((1, 1), (-1, -1), (1, -1), (-1, 1)))
-    cross = np.abs(a + d - b - c) / 2
+    signed = (a + d - b - c) / 2
+    cross = np.abs(signed)
     uneven = np.maximum(np.abs(a - d), np.abs(b - c))
-    found = ((cross > 0.4 * swing) & (uneven < 0.6 * cross)).astype(float)
+    found = ((cross > 0.4 * swing) & (uneven < 0.6 * cross)) * np.sign(signed)
     found[~np.isfinite(a + b + c + d)] = np.nan
     return found
