@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
-from ir50p_lab.vision.rendering.scene import Lamp, Sky, Sun
+from ir50p_lab.vision.rendering.scene import Sky, Sun
 
-_BOUNCE = 0.55  # the share of the light that a table sends up to what stands on it, times its colour
+_BOUNCE = 0.55  # what a table sends up of the light from everywhere, times its colour; things shade it
+_BOUNCE_DIRECT = 0.35  # of direct light: their own shadow lies around them
 
 
 def irradiance(scene, C, X, N, table_colour):
@@ -14,15 +14,16 @@ def irradiance(scene, C, X, N, table_colour):
     C: (3,) the camera. Returns light (n, 3) and a list of (colour (3,), strength (n,), towards (3, n)) per lamp.
     """
     light = np.zeros((X.shape[1], 3), dtype=np.float32)
-    direct = []
+    up, direct = 0.5 * (1 + N[2]), []
     for source in scene.lights:
         colour = np.asarray(source.colour, dtype=np.float32)
         if isinstance(source, Sky):
-            up = 0.5 * (1 + N[2])
             light += source.strength * (up[:, None] * colour + (1 - up)[:, None] * colour * _BOUNCE * table_colour)
             continue
         towards, strength, _ = direction(source, X)
         light += (np.maximum(np.sum(N * towards, axis=0), 0) * strength)[:, None] * colour
+        ground = (1 - up) * np.maximum(towards[2], 0) * strength * _BOUNCE_DIRECT
+        light += ground[:, None] * colour * table_colour
         direct.append((colour, strength, towards))
     return light, direct
 
@@ -31,14 +32,10 @@ def direction(source, X):
     """Direction (3, n) or (3, 1) to a Sun or Lamp from X (3, n), its strength there, and its half width in rad."""
     if isinstance(source, Sun):
         L = np.asarray(source.towards, dtype=float)
-        if L.shape != (3,) or L[2] <= 0:
-            raise InputError(f"a sun must stand above the table: towards = {source.towards}, its z must be > 0")
         return (L / np.linalg.norm(L)).astype(X.dtype)[:, None], source.strength * _lit(source, X), source.softness
-    if isinstance(source, Lamp):
-        v = np.asarray(source.position, dtype=X.dtype)[:, None] - X
-        r = np.sqrt(np.sum(v * v, axis=0))
-        return v / r, source.strength / r**2, source.size / max(source.position[2], 1e-3)
-    raise InputError(f"{type(source).__name__} is no light: give Sky, Sun or Lamp")
+    v = np.asarray(source.position, dtype=X.dtype)[:, None] - X
+    r = np.sqrt(np.sum(v * v, axis=0))
+    return v / r, source.strength / r**2, source.size / max(source.position[2], 1e-3)
 
 
 def _lit(sun, X):

@@ -8,7 +8,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ir50p_lab.errors import InputError
 from ir50p_lab.vision.pinhole import Pinhole
+from ir50p_lab.vision.rendering.scene_checks import check_numbers, check_pose
 
 COLOURS = {  # paints, not light: measured from nothing, chosen to look like toy balls and tape
     "red": (200, 30, 40),
@@ -39,6 +41,11 @@ class Ball:
     gloss: float = 0.3
     shininess: float = 40.0
 
+    def __post_init__(self):
+        check_numbers(self, position=3)
+        check_numbers(self, above=0, radius=1, shininess=1)
+        check_numbers(self, at_least=0, gloss=1)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Board:
@@ -64,6 +71,17 @@ class Board:
     white: tuple = (238, 238, 236)
     black: tuple = (28, 28, 30)
 
+    def __post_init__(self):
+        check_pose(self, "T_world_board")
+        check_numbers(self, above=1, pattern=2)
+        check_numbers(self, above=0, square=1, marker=1)
+        check_numbers(self, at_least=0, border=1)
+        check_numbers(self, bend=1)
+        if tuple(self.pattern) != tuple(int(n) for n in self.pattern):
+            raise InputError(f"pattern = {self.pattern}: give whole numbers of inner corners (columns, rows)")
+        if self.kind not in ("checkerboard", "charuco"):
+            raise InputError(f"kind = {self.kind!r} of a board: give 'checkerboard' or 'charuco'")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Patch:
@@ -79,6 +97,10 @@ class Patch:
     outline: str = "rectangle"
     seed: int = 0
 
+    def __post_init__(self):
+        check_numbers(self, position=2, angle=1)
+        check_numbers(self, above=0, size=2)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Stick:
@@ -91,6 +113,10 @@ class Stick:
     gloss: float = 0.0
     shininess: float = 30.0
 
+    def __post_init__(self):
+        check_numbers(self, start=3, end=3)
+        check_numbers(self, above=0, radius=1)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Box:
@@ -99,6 +125,10 @@ class Box:
     T_world_box: np.ndarray
     size: tuple = (0.06, 0.04, 0.03)
     colour: str | tuple = "brown"
+
+    def __post_init__(self):
+        check_pose(self, "T_world_box")
+        check_numbers(self, above=0, size=3)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,6 +147,11 @@ class Table:
     y: tuple = (-0.8, 0.8)
     room: str | tuple = (120, 118, 115)
 
+    def __post_init__(self):
+        check_numbers(self, above=0, grain=1)
+        check_numbers(self, x=2, y=2, angle=1)
+        check_numbers(self, at_least=0, contrast=1)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Sky:
@@ -124,6 +159,9 @@ class Sky:
 
     colour: tuple = (1.0, 1.0, 1.0)
     strength: float = 0.45
+
+    def __post_init__(self):
+        check_numbers(self, at_least=0, colour=3, strength=1)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,6 +177,12 @@ class Sun:
     softness: float = 0.02
     edge: tuple | None = None
 
+    def __post_init__(self):
+        check_numbers(self, towards=3)
+        check_numbers(self, at_least=0, colour=3, strength=1, softness=1)
+        if self.towards[2] <= 0:
+            raise InputError(f"a sun must stand above the table: towards = {self.towards}, its z must be more than 0")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Lamp:
@@ -149,6 +193,12 @@ class Lamp:
     strength: float = 0.6
     size: float = 0.05
 
+    def __post_init__(self):
+        check_numbers(self, position=3)
+        check_numbers(self, at_least=0, colour=3, strength=1, size=1)
+        if self.position[2] <= 0:
+            raise InputError(f"a lamp must hang above the table: position = {self.position}, its z must be more than 0")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Lens:
@@ -158,6 +208,10 @@ class Lens:
     motion: tuple = (0.0, 0.0)
     sigma: float = 0.5
     vignetting: float = 0.15
+
+    def __post_init__(self):
+        check_numbers(self, motion=2)
+        check_numbers(self, at_least=0, defocus=1, sigma=1, vignetting=1)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,6 +232,12 @@ class Sensor:
     saturation: float = 1.0
     jpeg: int | None = 92
     gamma: bool = True
+
+    def __post_init__(self):
+        check_numbers(self, above=0, exposure=1, balance=3)
+        check_numbers(self, at_least=0, read_noise=1, shot_noise=1, sharpen=1, saturation=1)
+        if self.jpeg is not None and not 1 <= self.jpeg <= 100:
+            raise InputError(f"jpeg = {self.jpeg}: give a quality 1..100, or None for no compression")
 
 
 NO_LENS = Lens(sigma=0.0, vignetting=0.0)
@@ -204,6 +264,16 @@ class Scene:
     sensor: Sensor = Sensor()
     texture_seed: int = 0
 
+    def __post_init__(self):
+        if not isinstance(self.pinhole, Pinhole):
+            raise InputError(f"pinhole is a {type(self.pinhole).__name__}: give a Pinhole(K, distortion, size)")
+        check_pose(self, "T_cam_world")
+        for field_name, kinds in _PARTS.items():
+            for part in getattr(self, field_name):
+                if not isinstance(part, kinds):
+                    names = ", ".join(kind.__name__ for kind in kinds)
+                    raise InputError(f"{part!r:.60} is none of the {field_name} of a Scene: give {names}")
+
     @property
     def balls(self):
         """The balls among the objects, in their order."""
@@ -217,3 +287,6 @@ class Scene:
     def clean(self):
         """The same scene through a perfect lens and sensor: sharp, no noise, no JPEG, bytes proportional to light."""
         return replace(self, lens=NO_LENS, sensor=replace(NO_SENSOR, exposure=self.sensor.exposure, gamma=False))
+
+
+_PARTS = {"objects": (Ball, Board, Stick, Box), "patches": (Patch,), "arm": (Stick,), "lights": (Sky, Sun, Lamp)}

@@ -2,22 +2,29 @@
 
 import numpy as np
 
+from ir50p_lab.vision.rendering.board_print import print_range
 from ir50p_lab.vision.rendering.light import direction, smooth
-from ir50p_lab.vision.rendering.scene import Ball, Lamp, Sky, Stick
+from ir50p_lab.vision.rendering.scene import Ball, Board, Box, Lamp, Sky, Stick
+from ir50p_lab.vision.rendering.shapes import BoxShape, SheetShape
 
 
 def table_light(scene, X, Y):
-    """Light (n, 3) on the table at X, Y (n,) m: every light, less what balls and sticks keep from it."""
+    """Light (n, 3) on the table at X, Y (n,) m: every light, less what the things keep from it."""
     light = np.zeros((len(X), 3), dtype=np.float32)
     P = np.stack([X, Y, np.zeros_like(X)])
     balls = [thing for thing in scene.objects if isinstance(thing, Ball)]
     sticks = [thing for thing in (*scene.objects, *scene.arm) if isinstance(thing, Stick)]
+    hulls = [_corners(thing) for thing in scene.objects if isinstance(thing, Box | Board)]
     for source in scene.lights:
         colour = np.asarray(source.colour, dtype=np.float32)
         if isinstance(source, Sky):
             open_sky = np.ones(len(X), dtype=np.float32)
             for ball in balls:
                 _under_ball(open_sky, ball, X, Y)
+            for stick in sticks:
+                _under_stick(open_sky, stick, X, Y)
+            for corners in hulls:
+                _beside_wall(open_sky, corners, X, Y)
             light += (source.strength * open_sky)[:, None] * colour
             continue
         towards, strength, softness = direction(source, P)
@@ -26,6 +33,8 @@ def table_light(scene, X, Y):
             _ball_shadow(part, ball, source, softness, X, Y)
         for stick in sticks:
             _stick_shadow(part, stick, source, softness, X, Y)
+        for corners in hulls:
+            _hull_shadow(part, corners, source, softness, X, Y)
         light += part[:, None] * colour
     return light
 
@@ -36,6 +45,75 @@ def _under_ball(open_sky, ball, X, Y):
     near = np.flatnonzero((np.abs(X - x) < 6 * ball.radius) & (np.abs(Y - y) < 6 * ball.radius))
     D2 = (X[near] - x) ** 2 + (Y[near] - y) ** 2 + h * h
     open_sky[near] *= 1 - np.minimum(max(h, 0) * ball.radius**2 / D2**1.5, 1)
+
+
+def _under_stick(open_sky, stick, X, Y):
+    """The part of the sky that a long cylinder hides: h r / D^2, D the distance to its axis."""
+    a, b = np.asarray(stick.start, dtype=float), np.asarray(stick.end, dtype=float)
+    if min(a[2], b[2]) > 8 * stick.radius:
+        return
+    far = 6 * stick.radius
+    low, high = np.minimum(a, b) - far, np.maximum(a, b) + far
+    near = np.flatnonzero((X > low[0]) & (X < high[0]) & (Y > low[1]) & (Y < high[1]))
+    P = np.stack([X[near], Y[near], np.zeros(len(near), dtype=X.dtype)])
+    axis = b - a
+    w = np.clip(axis @ (P - a[:, None]) / max(axis @ axis, 1e-12), 0, 1)
+    nearest = a[:, None] + axis[:, None] * w
+    D2 = np.maximum(np.sum((nearest - P) ** 2, axis=0), stick.radius**2)
+    open_sky[near] *= 1 - np.clip(nearest[2] * stick.radius / D2, 0, 1)
+
+
+def _beside_wall(open_sky, corners, X, Y):
+    """The part of the sky that a wall of height H hides at distance d: (1 - d / sqrt(d^2 + H^2)) / 2."""
+    height, bottom = corners[:, 2].max(), corners[:, 2].min()
+    if height < 1e-3 or bottom > 0.5 * height:
+        return
+    near, distance = _outside(corners[:, :2], 4 * height, X, Y)
+    d = np.maximum(distance, 0)
+    open_sky[near] *= 1 - 0.5 * (1 - d / np.hypot(d, height))
+
+
+def _hull_shadow(part, corners, source, softness, X, Y):
+    """Shadow of the corners (n, 3) m of something without hollows: the hull of their shadows, rim by its height."""
+    if corners[:, 2].max() < 1e-3:
+        return
+    above = np.maximum(corners, (-np.inf, -np.inf, 0.0))
+    if isinstance(source, Lamp):
+        towards = np.asarray(source.position, dtype=float) - above
+    else:
+        towards = np.broadcast_to(np.asarray(source.towards, dtype=float), above.shape)
+    if (towards[:, 2] <= 1e-3).any():  # a lamp lower than the thing: a shadow without end, left out
+        return
+    foot = above[:, :2] - towards[:, :2] * (above[:, 2] / towards[:, 2])[:, None]
+    half = max(softness * above[:, 2].mean(), 2e-4)
+    near, distance = _outside(foot, half, X, Y)
+    part[near] *= smooth(0.5 + distance / (2 * half))
+
+
+def _outside(points, margin, X, Y):
+    """Index of the X, Y (n,) near the hull of points (m, 2), and their distance outside it (negative inside)."""
+    import cv2
+
+    hull = cv2.convexHull(points.astype(np.float32))[:, 0].astype(float)
+    low, high = hull.min(axis=0) - margin, hull.max(axis=0) + margin
+    near = np.flatnonzero((X > low[0]) & (X < high[0]) & (Y > low[1]) & (Y < high[1]))
+    x, y = X[near], Y[near]
+    distance = np.full(len(near), -np.inf)
+    edges = np.roll(hull, -1, axis=0) - hull
+    turn = np.sign(np.sum(hull[:, 0] * np.roll(hull[:, 1], -1) - hull[:, 1] * np.roll(hull[:, 0], -1)))
+    for start, edge in zip(hull, edges, strict=True):
+        length = np.hypot(*edge)
+        if length > 1e-9:
+            outward = turn * np.array([edge[1], -edge[0]]) / length
+            distance = np.maximum(distance, (x - start[0]) * outward[0] + (y - start[1]) * outward[1])
+    return near, distance
+
+
+def _corners(thing):
+    """Points (n, 3) m around a Box or Board in world coordinates."""
+    if isinstance(thing, Box):
+        return BoxShape(np.asarray(thing.T_world_box, dtype=float), thing.size).bounds()
+    return SheetShape(np.asarray(thing.T_world_board, dtype=float), *print_range(thing), thing.bend).bounds()
 
 
 def _ball_shadow(part, ball, source, softness, X, Y):

@@ -108,7 +108,8 @@ def _lookup(kind, seed, u, v):
     wide = 4096
     rows = -(-n // wide)
     where = np.zeros((2, rows * wide), dtype=np.float32)
-    where[0, :n], where[1, :n] = np.mod(u, _TILE), np.mod(v, _TILE)
+    for row, value in zip(where, (u, v), strict=True):
+        row[:n] = value - np.float32(_TILE) * np.floor(value / np.float32(_TILE))  # np.mod takes five times as long
     where = where.reshape(2, rows, wide)
     return cv2.remap(_tile(kind, int(seed)), where[0], where[1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_WRAP).ravel()[
         :n
