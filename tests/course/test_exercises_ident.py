@@ -1,0 +1,53 @@
+"""Exercises of notebook 07: right answers by another route; the message of each wrong one."""
+
+import numpy as np
+import pytest
+
+from ir50p_lab.course.exercises import judge, solution
+from ir50p_lab.course.exercises._catalogue import find
+from ir50p_lab.course.exercises.ident import EXERCISES
+from ir50p_lab.identification import nrmse_fit
+from ir50p_lab.modelling import IR50P, inverse_dynamics
+
+
+def test_the_step_is_least_squares_with_a_first_guess():
+    """theta = 2 with P = 0.5 is a measurement of theta itself, of variance 0.5, beside y = 3 theta of variance 1."""
+    A, y = np.array([[np.sqrt(2)], [3.0]]), np.array([2 * np.sqrt(2), 9.0])
+    assert solution("ident-1") == pytest.approx(np.linalg.lstsq(A, y)[0][0])
+
+
+def test_what_a_clamped_joint_hides():
+    """Another route: how many directions of theta change any torque, by differences of the inverse dynamics."""
+    q, qd, qdd = np.random.default_rng(3).uniform(-2, 2, (3, 60, 3))
+    qd[:, 0] = qdd[:, 0] = 0.0
+    columns = []
+    for k in range(20):
+        theta = np.zeros((3, 20))
+        theta[:, k] = 1.0
+        columns.append(inverse_dynamics(theta, q, qd, qdd).ravel())
+    kept = [column for k, column in enumerate(columns) if k not in (6, 7)]
+    assert solution("ident-2") == np.linalg.matrix_rank(np.array(kept))
+
+
+def test_the_spread_gives_the_fit_back():
+    y = np.random.default_rng(0).normal(size=4000)
+    y = (y - y.mean()) / y.std() * solution("ident-3")
+    error = np.random.default_rng(1).normal(size=4000)
+    rms, fit = nrmse_fit(y, y - 47 * error / np.sqrt(np.mean(error**2)))
+    assert (rms, fit) == (pytest.approx(47), pytest.approx(63, abs=0.01))
+
+
+def test_the_payload_is_that_of_the_course_arm():
+    """The numbers of the question are those of the IR50P, rounded: its gain is nearly the answer."""
+    assert solution("ident-4") == pytest.approx(IR50P.actuators.gain[2], rel=0.02)
+
+
+@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.name)
+def test_each_wrong_answer_is_told_apart(exercise):
+    kind, messages = find(exercise.name).kind, set()
+    assert judge(exercise, kind.solution).state == "right"
+    for slip in exercise.slips:
+        text = judge(exercise, slip.wrong).text
+        assert slip.message in text
+        messages.add(slip.message)
+    assert len(messages) >= 3
