@@ -60,7 +60,7 @@ def about_lens(calibration):
     """Sentences about coefficients that mean nothing, and about a lens that folds back."""
     found = []
     for name in calibration.model:
-        value, error = calibration.values[name], calibration.stderr[name]
+        value, error = calibration.values[name], max(calibration.stderr_corners[name], calibration.stderr_views[name])
         if abs(value) < 2 * error:
             found.append(f"{name} = {value:.2g} +- {error:.2g} cannot be told from zero: it means nothing by itself")
     w, h = calibration.size

@@ -81,7 +81,7 @@ def _search(grey, pattern):
 
     columns, rows = pattern
     for flags in (0, cv2.CALIB_CB_EXHAUSTIVE):
-        flags |= cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_ACCURACY
+        flags |= cv2.CALIB_CB_NORMALIZE_IMAGE  # not ACCURACY: slower, and no better than what refines them here
         found, corners = cv2.findChessboardCornersSB(grey, pattern, flags=flags)
         if found:
             yield "SB", corners.reshape(rows, columns, 2)
@@ -159,31 +159,50 @@ def refuse_soft(grey, grid):
 
 def _piece_together(grey, small, factor, pattern):
     """The grid from a part that was found and grown, if it becomes the whole board; else NotUsable says why not."""
-    grid = None
+    for less in (1, 2, 4):
+        grid = _part(small, less)
+        if grid is not None:
+            break
+    else:
+        raise NotUsable(Reason.NO_BOARD, "nothing like a checkerboard: more light, less glare, the whole board in view")
+    grid = refine(grey, enlarged(grid, factor * less))
+    refuse_soft(grey, grid)
+    grid, outside = grow(grid, grey)
+    if sorted(grid.shape[:2]) == sorted(pattern):
+        return refine(grey, grid if grid.shape[:2] == (pattern[1], pattern[0]) else np.rot90(grid))
+    if not _part_of_it(grid.shape[:2], outside, pattern):
+        raise wrong_board(grid, pattern, "at least " if outside else "")
+    columns, rows = _named_like(grid, pattern)
+    raise NotUsable(
+        Reason.CROPPED,
+        f"{columns}x{rows} of {pattern[0]}x{pattern[1]} corners, then the picture ends at its {_sides(grid, grey)}: "
+        "move the board into view, or use a ChArUco board",
+        seen=(columns, rows),
+    )
+
+
+def _part(grey, less):
+    """A grid found anywhere in a picture reduced `less` times, or None."""
+    h, w = grey.shape
+    if min(h, w) < 60 * less:
+        return None
+    import cv2
+
+    small = grey if less == 1 else cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
     for part in ((4, 3), (3, 3), (3, 4)):
         grid = largest_grid(small, part)
         if grid is not None:
-            break
-    if grid is None:
-        raise _nothing(small, pattern)
-    grid = refine(grey, enlarged(grid, factor))
-    grid, outside = grow(grid, grey)
-    seen, wanted = sorted(grid.shape[:2]), sorted(pattern)
-    if seen == wanted:
-        grid = grid if grid.shape[:2] == (pattern[1], pattern[0]) else np.rot90(grid)
-        return refine(grey, grid)
-    refuse_soft(grey, grid)
-    if any(a > b for a, b in zip(seen, wanted, strict=True)):
-        raise wrong_board(grid, pattern, "at least " if outside else "")
-    columns, rows = _named_like(grid, pattern)
-    if outside:
-        raise NotUsable(
-            Reason.CROPPED,
-            f"{columns}x{rows} of {pattern[0]}x{pattern[1]} corners, then the picture ends at its "
-            f"{_sides(grid, grey)}: move the board into view, or use a ChArUco board",
-            seen=(columns, rows),
-        )
-    raise wrong_board(grid, pattern)
+            return grid
+    return None
+
+
+def _part_of_it(shape, outside, pattern):
+    """Whether a grid (rows, columns) can be part of the pattern: whole each way, or cut off by the picture."""
+    cut = bool(outside & {"top", "bottom"}), bool(outside & {"left", "right"})
+    return any(
+        all(n == m or (n < m and is_cut) for n, m, is_cut in zip(shape, turned, cut, strict=True))
+        for turned in (pattern, pattern[::-1])
+    )
 
 
 def _sides(grid, grey):
@@ -210,19 +229,3 @@ def largest_grid(grey, part):
         return None
     grid = corners.reshape(*meta.shape, 2).astype(float)
     return grid if is_checkerboard(grid, grey) else None
-
-
-def _nothing(grey, pattern):
-    """NotUsable for a picture without any grid: blurred if a board appears when the picture is reduced."""
-    import cv2
-
-    for factor in (2, 4):
-        h, w = grey.shape
-        less = cv2.resize(grey, (w // factor, h // factor), interpolation=cv2.INTER_AREA)
-        flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_FAST_CHECK
-        sought = (pattern, (min(pattern[0], 4), min(pattern[1], 3)))
-        if cv2.findChessboardCorners(less, pattern, None, flags)[0] or largest_grid(less, sought[1]) is not None:
-            return NotUsable(
-                Reason.BLURRED, f"a board shows only when the picture is reduced {factor} times: focus, hold still"
-            )
-    return NotUsable(Reason.NO_BOARD, "nothing like a checkerboard: more light, less glare, the whole board in view")
