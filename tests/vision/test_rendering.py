@@ -203,7 +203,9 @@ def test_tone_curve_and_its_inverse():
     assert (to_bytes(np.float32([-1, 2])) == (0, 255)).all()
 
 
-@pytest.mark.parametrize("kernel", [disc(0.5), disc(3.0), disc(7.3), streak(4, 0), streak(-3, 5.5), streak(0.1, 0.1)])
+@pytest.mark.parametrize(
+    "kernel", [disc(0.001), disc(0.5), disc(3.0), disc(7.3), streak(4, 0), streak(-3, 5.5), streak(0.1, 0.1)]
+)
 def test_blur_moves_nothing(kernel):
     n = kernel.shape[0] // 2
     y, x = np.mgrid[-n : n + 1, -n : n + 1]

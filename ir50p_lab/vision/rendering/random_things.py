@@ -77,8 +77,8 @@ def random_table(rng, position):
 
 # how often: half are red things, as tape, books and pens are what a desk really has
 DISTRACTORS = {
-    "tape": 0.16, "red blob": 0.08, "red box": 0.10, "red stick": 0.10, "red cable": 0.06, "ball": 0.22, "skin": 0.14,
-    "paper": 0.07, "box": 0.07,
+    "tape": 0.15, "red blob": 0.08, "red box": 0.10, "red stick": 0.09, "red cable": 0.06, "ball": 0.21, "skin": 0.12,
+    "paper": 0.03, "box": 0.05, "magazine": 0.07, "bottle": 0.04,
 }  # fmt: skip
 
 
@@ -118,6 +118,12 @@ def distractor(rng, camera, ball, *, near, what=None):
                 Stick(start=(*low, r), end=(*high, r), radius=r, colour=red_thing(rng), gloss=rng.uniform(0, 0.6))
             ], []
         return _cable(rng, (x, y), across), []
+    if what == "magazine":
+        return [], _magazine(rng, (x, y), turn)
+    if what == "bottle":  # never red: a red one seen from above is a red disc
+        r, paint = rng.uniform(0.02, 0.04), other_colour(rng)
+        height = rng.uniform(0.06, 0.22)
+        return [Stick(start=(x, y, 0), end=(x, y, height), radius=r, colour=paint, gloss=rng.uniform(0, 0.7))], []
     if what == "skin":
         return _hand(rng, (x, y), turn, size=rng.uniform(0.8, 1.2)), []
     if what in ("ball", "red ball"):
@@ -165,6 +171,27 @@ def _hand(rng, place, turn, size):
             Stick(start=(*(place - 0.06 * forward), 0.03), end=(*arm, 0.04), radius=0.03 * size, colour=colour)
         )
     return parts
+
+
+def _magazine(rng, place, turn):
+    """A printed page: lines of text, a picture or two of any colour, a headline that is often red."""
+    c, s = np.cos(turn), np.sin(turn)
+
+    def rectangle(x, y, width, height, colour):
+        middle = (place[0] + c * x - s * y, place[1] + s * x + c * y)
+        return Patch(position=middle, size=(width, height), angle=turn, colour=colour)
+
+    page = [rectangle(0, 0, 0.20, 0.28, rgb(rng.uniform(30, 60), rng.uniform(0, 0.1), rng.uniform(0.75, 0.95)))]
+    headline = red_thing(rng) if rng.random() < 0.5 else other_colour(rng)
+    page.append(rectangle(rng.uniform(-0.02, 0.02), 0.115, rng.uniform(0.08, 0.17), rng.uniform(0.012, 0.03), headline))
+    for _ in range(rng.integers(0, 3)):
+        colour = red_thing(rng) if rng.random() < 0.3 else other_colour(rng)
+        width, height = rng.uniform(0.03, 0.09, 2)
+        page.append(rectangle(*rng.uniform((-0.05, -0.09), (0.05, 0.05)), width, height, colour))
+    for line in range(rng.integers(4, 12)):
+        width = rng.uniform(0.05, 0.08)
+        page.append(rectangle(-0.09 + width / 2, 0.08 - 0.013 * line, width, 0.004, (60, 60, 62)))
+    return page
 
 
 def _cable(rng, place, across):

@@ -33,7 +33,7 @@ _TRIES = 200
 
 
 def random_scene(seed, kind="ball"):
-    """Scene number `seed` of one of the KINDS: the same for the same seed, on any machine.
+    """Scene number `seed` of one of the KINDS: the same for the same seed (and the same version of NumPy).
 
     Returns a Scene; its red balls have colours of their own (`random_red`): `is_red` of a BallTruth tells them.
     Raises InputError for an unknown kind.

@@ -29,7 +29,8 @@ def disc(diameter):
     """Kernel of a disc of this diameter, pixels, sum 1: a point out of focus."""
     n = int(np.ceil(diameter / 2 + 0.5))
     sub = (np.arange((2 * n + 1) * _SPAN) + 0.5) / _SPAN - n - 0.5
-    inside = (sub[:, None] ** 2 + sub[None, :] ** 2 <= (diameter / 2) ** 2).astype(float)
+    radius = max(diameter / 2, 1 / _SPAN)  # at least the four places around the middle
+    inside = (sub[:, None] ** 2 + sub[None, :] ** 2 <= radius**2).astype(float)
     kernel = inside.reshape(2 * n + 1, _SPAN, 2 * n + 1, _SPAN).sum(axis=(1, 3))
     return (kernel / kernel.sum()).astype(np.float32)
 

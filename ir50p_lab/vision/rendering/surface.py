@@ -24,38 +24,29 @@ def table_albedo(table, patches, X, Y, seed):
         albedo[joint] *= 1 - 0.6 * table.contrast
         code[joint] = 1
     for number, patch in enumerate(patches):
-        where = _inside(patch, X, Y)
+        reach = 0.75 * np.float32(np.hypot(*patch.size))
+        x, y = X - np.float32(patch.position[0]), Y - np.float32(patch.position[1])
+        near = np.flatnonzero((np.abs(x) < reach) & (np.abs(y) < reach))
+        where = near[_inside(patch, x[near], y[near])]
         albedo[where] = light_of(patch.colour) * np.clip(1 + 0.15 * (shade[where, None] - 1), 0.5, 1.5)
-        code[where] = number + 2
+        code[where] = (number + 2) % 60
     return np.minimum(albedo, 0.95), code
 
 
-def patch_bounds(patch):
-    """Corners (4, 3) m around a patch."""
-    half = np.array(patch.size) / 2
-    half = half * 1.4 if patch.outline == "blob" else half
+def _inside(patch, x, y):
+    """Whether the points x, y (n,) m from its middle are on the patch."""
     c, s = np.cos(patch.angle), np.sin(patch.angle)
-    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half @ np.array([[c, s], [-s, c]])
-    return np.column_stack([corners + patch.position, np.zeros(4)])
-
-
-def _inside(patch, X, Y):
-    c, s = np.cos(patch.angle), np.sin(patch.angle)
-    x, y = X - np.float32(patch.position[0]), Y - np.float32(patch.position[1])
     u, v = (c * x + s * y) / (patch.size[0] / 2), (c * y - s * x) / (patch.size[1] / 2)
     if patch.outline == "rectangle":
         return (np.abs(u) <= 1) & (np.abs(v) <= 1)
     if patch.outline == "ellipse":
         return u * u + v * v <= 1
     if patch.outline == "blob":
-        near = np.flatnonzero(u * u + v * v <= 1.96)
         rng = np.random.default_rng([int(patch.seed), 7])
-        angle, rim = np.arctan2(v[near], u[near]), np.ones(len(near))
+        angle, rim = np.arctan2(v, u), np.ones(len(u))
         for k in range(2, 6):
             rim += rng.uniform(-0.3, 0.3) / k * np.cos(k * angle + rng.uniform(0, 2 * np.pi))
-        inside = np.zeros(X.shape, dtype=bool)
-        inside[near] = np.hypot(u[near], v[near]) <= rim
-        return inside
+        return np.hypot(u, v) <= np.minimum(rim, 1.4)
     raise InputError(f"outline {patch.outline!r} of a patch: give 'rectangle', 'ellipse' or 'blob'")
 
 
