@@ -13,6 +13,7 @@ from ir50p_lab.vision.board_pose import (
     transform,
     undistorted,
 )
+from ir50p_lab.vision.pinhole import Pinhole
 
 _STEPS = 4  # of the outline's correction: each gains a factor (radius / distance)^2, some 500
 _SLANT = 0.02  # rad above the plane; a ray flatter than this meets it anywhere
@@ -166,6 +167,30 @@ class TablePlane:
         both = self.covariance(xy, height, sigma_px=sigma_px, sigma_height=sigma_height)
         found = np.sqrt(np.diagonal(both, axis1=1, axis2=2))
         return found[0] if np.ndim(xy) == 1 else found
+
+    def variations(self):
+        """Planes that are wrong by one standard deviation, in each independent direction of camera and pose errors.
+
+        Whatever is computed from the plane spreads by the root of the summed squares of its changes: a list of
+        TablePlane, empty if everything is exactly known.
+        """
+        cross = self._by_camera @ self._camera_covariance
+        P = np.block([
+            [self._camera_covariance, cross.T],
+            [cross, self._pose_covariance + cross @ self._by_camera.T],
+        ])  # fmt: skip
+        scale = np.sqrt(np.where(np.diag(P) > 0, np.diag(P), 1.0))  # px, 1, rad and m: alike before the eigenvectors
+        sizes, directions = np.linalg.eigh(P / np.outer(scale, scale))
+        found = []
+        for size, direction in zip(sizes, directions.T, strict=True):
+            if size < 1e-12:
+                continue
+            d = np.sqrt(size) * scale * direction
+            K, distortion = self._K.copy(), self._distortion + d[4:9]
+            K[[0, 1, 0, 1], [0, 1, 2, 2]] += d[:4]
+            pose = np.concatenate(rvec_tvec(self.T_cam_table)) + d[9:]
+            found.append(TablePlane(Pinhole(K, distortion), transform(pose[:3], pose[3:])))
+        return found
 
     def _place(self, T, x_n, height, radius, route, points):
         found = self._cut(T, x_n, height, route, points)

@@ -126,6 +126,18 @@ def test_standard_errors_are_those_of_random_trials():
     assert np.allclose(sum(parts.values())[:, 0, 0], predicted[:, 0] ** 2)
 
 
+def test_variations_spread_as_the_covariance_says():
+    points = board_points(T_table_board=LYING)
+    corners = CAMERA.project(POSE, points) + np.random.default_rng(6).normal(0, 0.2, (54, 2))
+    spread = np.diag(np.array([2, 2, 3, 3, 4e-3, 1e-2, 3e-4, 3e-4, 0.0]) ** 2)
+    plane = TablePlane.from_board(CAMERA, corners, points, camera_covariance=spread)
+    at = CAMERA.project(POSE, lifted(0.03))
+    off = np.array([one.to_table(at, 0.03) - plane.to_table(at, 0.03) for one in plane.variations()])
+    assert len(off) == 14  # k3 is taken as known
+    assert np.allclose(np.sqrt((off**2).sum(axis=0)), plane.standard_error(at, 0.03, sigma_px=0), rtol=0.05)
+    assert TablePlane(CAMERA, POSE).variations() == []
+
+
 def test_an_error_of_the_camera_mostly_cancels_when_the_pose_comes_from_the_board():
     points = board_points(T_table_board=LYING)
     corners = CAMERA.project(POSE, points)

@@ -1,0 +1,98 @@
+"""Where the millimetres go: the error of a reach, cause by cause, after one look and after two."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.modelling.chain import forward_kinematics
+from ir50p_lab.modelling.differential import jacobian
+from ir50p_lab.vision.board_pose import inverse_transform, moved
+from ir50p_lab.vision.reaching import SETTLED
+
+_READINGS = 100  # counts averaged at rest
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One cause of error: its name, and rms distance at the tip after one look and after two, m."""
+
+    name: str
+    first: float
+    second: float
+
+
+@dataclass(frozen=True)
+class Budget:
+    """Causes of error of a reach; independent, so squares add."""
+
+    causes: tuple
+
+    @property
+    def total(self):
+        """(first, second): rms distance of the true tip to where it should be, m."""
+        return tuple(float(np.sqrt(sum(getattr(c, look) ** 2 for c in self.causes))) for look in ("first", "second"))
+
+    def table(self):
+        """As text, mm."""
+        rows = [*self.causes, Cause("all together", *self.total)]
+        lines = [f"{'cause':<38} {'one look':>9} {'two looks':>10}"]
+        lines += [f"{c.name:<38} {1e3 * c.first:>6.2f} mm {1e3 * c.second:>7.2f} mm" for c in rows]
+        return "\n".join(lines)
+
+
+def error_budget(arm, sight, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_marker_px=0.15, noise=1.0):
+    """Predict the rms error of a reach that ends in the pose q, to first order.
+
+    With J = dp/dq of the tip, H = dpixel/dq of the marker, and the gain G of the camera's correction
+    (`Sight.joint_errors`), potentiometers that are off by e leave J e after the first look and J (I - G H) e after the
+    second. What is wrong with the camera, or where it stands, shifts ball and hand alike: after the second look only
+    the difference counts.
+
+    Args: arm: Arm; sight: Sight, its plane with covariances; q: (3,) rad, pose over the ball; sigma_q: (3,) rad, of
+    the potentiometers' smooth errors; slope: (3,) counts/rad; sigma_ball_px, sigma_marker_px: px, of found centres;
+    noise: counts rms of a reading before rounding.
+    Returns: Budget.
+    """
+    J, P = jacobian(arm, q)[:3], np.diag(np.square(sigma_q))
+    hand, tip = sight.marker_place(arm, q), forward_kinematics(arm, q)
+    H = np.column_stack([_slope(lambda d, u=u: sight.to_image(sight.marker_place(arm, q + d * u))) for u in np.eye(3)])
+    G = np.linalg.solve(H @ P @ H.T + sight.sigma_px**2 * np.eye(2), H @ P).T
+    left = np.eye(3) - G @ H
+
+    to_table = inverse_transform(sight.T_base_table)
+    ball = moved(to_table, np.array([*tip[:2], sight.radius]))
+    xy = sight.plane.to_image(ball)
+    in_picture = sight.plane.covariance(xy, ball[2], sigma_px=sigma_ball_px, parts=True)["pixel"][0]
+    pixel = float(np.sqrt(np.trace(in_picture)))
+    shifts = [  # one standard deviation in each direction of what is wrong with the camera: ball m, hand px
+        (one.to_table(xy, ball[2]) - ball[:2], one.to_image(moved(to_table, hand)) - sight.to_image(hand))
+        for one in sight.plane.variations()
+    ]
+    ball_off = np.array([[*b, 0.0] for b, _ in shifts]).reshape(-1, 3).T
+    both_off = ball_off + J @ G @ np.array([h for _, h in shifts]).reshape(-1, 2).T
+    reading = np.diag(np.sqrt(noise**2 + 1 / 12) / np.sqrt(_READINGS) / np.abs(slope))
+    rest = SETTLED * np.sqrt(0.6)  # evenly spread over a ball of that radius
+    return Budget(
+        (
+            Cause("ball in the picture", pixel, pixel / np.sqrt(2)),
+            Cause("camera: its numbers, where it stands", _rms(ball_off), _rms(both_off)),
+            Cause("marker in the picture", 0.0, _rms(sigma_marker_px * J @ G)),
+            Cause("potentiometers: bent, off, mis-scaled", _rms(J * sigma_q), _rms(J @ left * sigma_q)),
+            Cause(
+                "potentiometers: noise, rounding",
+                _rms(J @ reading),
+                np.hypot(_rms(J @ reading), _rms(J @ G @ H @ reading)),
+            ),
+            Cause("standing still: friction, play of gears", rest, rest),
+        )
+    )
+
+
+def _slope(function, step=1e-5):
+    """Derivative at 0 by differences."""
+    return (function(step) - function(-step)) / (2 * step)
+
+
+def _rms(matrix):
+    """rms length of matrix @ n for independent unit n."""
+    return float(np.sqrt(np.sum(np.square(matrix))))

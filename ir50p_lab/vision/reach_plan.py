@@ -1,0 +1,220 @@
+"""Can the arm reach it, in which pose, and on which way: smooth, and clear of the table and of the ball."""
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from ir50p_lab.errors import InputError, UnreachableError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling.chain import forward_kinematics, frames
+from ir50p_lab.modelling.ik import inverse_kinematics, reachability
+from ir50p_lab.signals.cartesian import cartesian_line
+from ir50p_lab.signals.quintic import quintic, through
+from ir50p_lab.signals.reference import Reference
+
+MARGIN = 0.03  # rad kept from the joint limits: at a limit the drive is cut
+CLEAR = 0.08  # m that the tip keeps above the table on its way: over a ball of 60 mm
+_LIFT = 0.08  # m above the goal from which the last piece leads straight down
+_SPEED = 0.5  # rad/s of the fastest joint: joint 2 follows that against gravity
+_PEAK = 1.875  # a quintic's largest speed over its mean
+
+
+@dataclass(frozen=True)
+class WorkArea:
+    """Where balls may lie for this arm: a part of a ring on the table, r_min..r_max m, -angle..angle rad about x.
+
+    It reaches 30 mm farther out than the arm does: who lays a ball there gets a refusal with the distance.
+    """
+
+    r_min: float
+    r_max: float
+    angle: float
+
+    def draw(self, rng, n, height=0.03):
+        """n places, evenly spread over the area, (n, 3) m at `height`."""
+        r = np.sqrt(rng.uniform(self.r_min**2, self.r_max**2, n))
+        a = rng.uniform(-self.angle, self.angle, n)
+        return np.column_stack([r * np.cos(a), r * np.sin(a), np.full(n, float(height))])
+
+    @property
+    def outline(self):
+        """Its rim, (n, 2) m, for a drawing."""
+        a = np.linspace(-self.angle, self.angle, 41)
+        arc = np.column_stack([np.cos(a), np.sin(a)])
+        return np.vstack([self.r_max * arc, self.r_min * arc[::-1], self.r_max * arc[:1]])
+
+
+def work_area(arm, height=0.09, *, angle=0.52):
+    """The area of this arm for goals at `height` m: from its inner to 30 mm past its outer edge.
+
+    Raises UnreachableError if the arm reaches no point of that height.
+    """
+    radii = np.arange(0.02, sum(arm.l) + 0.01, 0.005)
+    near = [r for r in radii if not _refusal(arm, np.array([r, 0.0, height]))]
+    if not near:
+        raise UnreachableError(f"no point at height {height:g} m is within reach of {arm.name}")
+    return WorkArea(float(near[0]), float(near[-1] + 0.03), float(min(angle, arm.q_max[0], -arm.q_min[0])))
+
+
+def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
+    """Joint angles that put the tip on p, of those within the limits (less 0.03 rad) the nearest to `near`.
+
+    Args: arm: Arm; p: (3,) m; near: (3,) rad. Returns: (3,) rad.
+    Raises: UnreachableError, with .distance (m) and .nearest (3,) m, the nearest point that the arm does reach, if p
+    is outside the workspace, outside the joint limits, or if the elbow would be under the table.
+    """
+    p = vectors3("p", p, unit="m")
+    if p.shape != (3,):
+        raise InputError(f"p has shape {p.shape}; give one point, (3,) m")
+    if why := _refusal(arm, p):
+        nearest = nearest_reachable(arm, p)
+        distance = float(np.linalg.norm(nearest - p))
+        error = UnreachableError(
+            f"the arm cannot go to {np.round(p, 3).tolist()} m: {why}. It misses it by {1e3 * distance:.0f} mm; the "
+            f"nearest point is {np.round(nearest, 3).tolist()} m"
+        )
+        error.distance, error.nearest = distance, nearest
+        raise error
+    solutions = inverse_kinematics(arm, p)
+    distance = np.abs(solutions.q - near).max(axis=-1)
+    return solutions.q[np.where(_allowed(arm, solutions.q), distance, np.inf).argmin()]
+
+
+def nearest_reachable(arm, p):
+    """The point nearest to p (3,) m that the arm reaches within its limits and with its elbow above the table.
+
+    Bounded least squares over the joints, from several starts.
+    """
+    from scipy.optimize import least_squares
+
+    low, high = np.array(arm.q_min) + MARGIN, np.array(arm.q_max) - MARGIN
+    p = np.array([p[0], p[1], max(p[2], 0.0)])  # from under the table the way leads up first
+    heading = np.clip(np.arctan2(p[1], p[0]), low[0], high[0])
+    best, best_miss = None, np.inf
+    for share2 in (0.1, 0.5, 0.9):
+        for share3 in (0.1, 0.5, 0.9):
+            start = [heading, *(low[1:] + np.array([share2, share3]) * (high - low)[1:])]
+            found = least_squares(lambda q: forward_kinematics(arm, q) - p, start, bounds=(low, high), xtol=1e-10)
+            miss = np.linalg.norm(found.fun)
+            if miss < best_miss - 1e-9 and _elbow(arm, found.x) > 0:
+                best, best_miss = found.x, miss
+    return forward_kinematics(arm, low if best is None else best)
+
+
+def plan(arm, q, p, *, speed=_SPEED, lift=_LIFT, clear=CLEAR):
+    """The way of the tip from the pose q to the point p: up and over in joint space, then straight down.
+
+    Args: arm: Arm; q: (3,) rad, where it stands; p: (3,) m. speed: rad/s of the fastest joint. lift: m above p where
+    the last piece begins; 0 goes there directly. clear: m that tip and elbow keep above the table (less where the way
+    begins or ends lower).
+    Returns: Plan, a Reference. Raises UnreachableError as `reach_pose`.
+    """
+    q = vectors3("q", q)
+    goal = reach_pose(arm, p, q)
+    above = None
+    for share in (1.0, 0.5, 0.25) if lift > 0 else ():
+        try:
+            above = reach_pose(arm, p + np.array([0.0, 0.0, share * lift]), goal)
+        except UnreachableError:
+            continue
+        break
+    pieces = []
+    if above is not None:
+        pieces += [_over(arm, q, above, speed, clear), _down(arm, above, goal, p, speed)]
+    else:
+        pieces.append(_over(arm, q, goal, speed, min(clear, p[2])))
+    return Plan(arm=arm, pieces=tuple(pieces), goal=goal, target=p)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan(Reference):
+    """References one after the other, as one; made by `plan`. goal: (3,) rad, last pose; target: (3,) m."""
+
+    arm: object
+    pieces: tuple
+    goal: np.ndarray
+    target: np.ndarray
+    duration: float = field(init=False)
+
+    def __post_init__(self):
+        object.__setattr__(self, "duration", sum(piece.duration for piece in self.pieces))
+
+    def _rows(self, t):
+        rows = np.empty((len(t), 3, 3))
+        start = 0.0
+        for k, piece in enumerate(self.pieces):
+            now = t >= start if k else np.ones(len(t), dtype=bool)
+            rows[now] = piece.sample(t[now] - start) if now.any() else 0.0
+            start += piece.duration
+        return rows
+
+    @property
+    def points(self):
+        """The way of the tip for a drawing, (n, 3) m."""
+        return forward_kinematics(self.arm, self.sample(np.linspace(0, self.duration, 200))[:, 0])
+
+    @property
+    def lowest(self):
+        """Lowest height of tip and elbow on the way, m."""
+        q = self.sample(np.linspace(0, self.duration, 200))[:, 0]
+        return float(frames(self.arm, q)[:, 2:, 2, 3].min())
+
+
+def _over(arm, q, goal, speed, clear):
+    """From pose to pose: directly if that stays clear, else first up, then round, then down."""
+    from ir50p_lab.bench.rest import rest_pose
+
+    ends = min(_lowest(arm, q[None]), _lowest(arm, goal[None]))
+    direct = quintic(q, goal, duration=_time(q, goal, speed))
+    way = direct.sample(np.linspace(0, direct.duration, 60))[:, 0]
+    if _lowest(arm, way) >= min(clear, ends) - 1e-3:
+        return direct
+    high = rest_pose(arm)
+    corners = [q, np.array([q[0], high[1], q[2]]), np.array([goal[0], high[1], goal[2]]), goal]
+    return through(corners, durations=[_time(a, b, speed) for a, b in pairwise(corners)])
+
+
+def _down(arm, above, goal, p, speed):
+    """The last piece: straight for the tip where the joints can follow, else straight for the joints."""
+    start = forward_kinematics(arm, above)
+    try:
+        line = cartesian_line(arm, start, p, near=above, margin=0.0)
+        if np.abs(line.q_grid[-1] - goal).max() < 1e-6:
+            return line
+    except UnreachableError:
+        pass
+    return quintic(above, goal, duration=_time(above, goal, speed))
+
+
+def _time(a, b, speed):
+    return max(0.3, _PEAK * float(np.abs(b - a).max()) / speed)
+
+
+def _lowest(arm, q):
+    return float(frames(arm, q)[:, 2:, 2, 3].min())
+
+
+def _elbow(arm, q):
+    return arm.l[0] + arm.l[1] * np.sin(q[..., 1])
+
+
+def _allowed(arm, q):
+    low, high = np.array(arm.q_min) + MARGIN, np.array(arm.q_max) - MARGIN
+    return ((q >= low) & (q <= high)).all(axis=-1) & (_elbow(arm, q) > 0)
+
+
+def _refusal(arm, p):
+    """Why the arm cannot go there, or ''."""
+    if p[2] < 0:
+        return f"it lies {-1e3 * p[2]:.0f} mm under the table"
+    outside = float(reachability(arm, p))
+    if outside > 0:
+        return f"it is {1e3 * outside:.0f} mm out of reach"
+    solutions = inverse_kinematics(arm, p)
+    if _allowed(arm, solutions.q).any():
+        return ""
+    joints = solutions.q[solutions.within_limits.argmax()]
+    low, high = np.degrees(arm.q_min), np.degrees(arm.q_max)
+    out = [f"q{i + 1} = {np.degrees(a):.0f} deg, allowed {low[i]:.0f} to {high[i]:.0f}" for i, a in enumerate(joints)]
+    return f"every pose is past a joint limit (or within 2 deg of it), {solutions.branches[0]}: {'; '.join(out)}"

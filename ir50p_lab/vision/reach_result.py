@@ -1,0 +1,82 @@
+"""What a reach leaves behind: its looks, how it ended, where a followed ball was."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """One look of a reach: where the ball is, where the hand is by potentiometers and (if seen) by the camera, m."""
+
+    ball: np.ndarray
+    goal: np.ndarray
+    tip: np.ndarray
+    marker: np.ndarray | None
+    joint_errors: np.ndarray
+    note: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Reached:
+    """How a reach ended.
+
+    ========== ==================================================================================== ============
+    ball       its centre, as seen                                                                  (3,) m
+    goal       where the tip was to go: over the ball                                               (3,) m
+    tip        where it is: potentiometers, averaged, with the camera's correction                  (3,) m
+    q          the joint angles of that                                                             (3,) rad
+    looks      the looks, a tuple of Look; the way of the first: `.plan`
+    seconds    how long it took                                                                     s
+    tip_true   where the tip really is: of a simulated arm only, else None. Nothing here uses it.   (3,) m
+    ========== ==================================================================================== ============
+    """
+
+    ball: np.ndarray
+    goal: np.ndarray
+    tip: np.ndarray
+    q: np.ndarray
+    looks: tuple
+    plan: object = field(repr=False)
+    seconds: float
+    tip_true: np.ndarray | None
+
+    @property
+    def miss(self):
+        """Distance between goal and tip as measured, m."""
+        return float(np.linalg.norm(self.goal - self.tip))
+
+
+@dataclass(frozen=True, eq=False)
+class FollowLog:
+    """t (n,) s; tip (n, 3) m by potentiometers; ball (n, 2) m as tracked, NaN before the first look."""
+
+    t: np.ndarray
+    tip: np.ndarray
+    ball: np.ndarray
+
+
+class BallTracker:
+    """Position and velocity of a rolling ball from looks at irregular times: an alpha-beta filter.
+
+    alpha, beta: share of the surprise that goes into position and velocity.
+    """
+
+    def __init__(self, alpha=0.7, beta=0.25):
+        self.alpha, self.beta = alpha, beta
+        self.position, self.velocity, self._t = None, np.zeros(2), 0.0
+
+    def update(self, t, xy):
+        """A look at time t s found the ball at xy (2,) m."""
+        if self.position is None:
+            self.position, self._t = np.array(xy, dtype=float), t
+            return
+        dt = max(t - self._t, 1e-3)
+        surprise = xy - (self.position + self.velocity * dt)
+        self.position = self.position + self.velocity * dt + self.alpha * surprise
+        self.velocity = self.velocity + self.beta / dt * surprise
+        self._t = t
+
+    def at(self, t):
+        """Where it will be at time t, (2,) m; NaN before the first look."""
+        return np.full(2, np.nan) if self.position is None else self.position + self.velocity * (t - self._t)

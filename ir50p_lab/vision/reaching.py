@@ -1,0 +1,341 @@
+"""Reaching for what the camera sees: look, plan, move, look again and correct; pick and place; follow."""
+
+import contextlib
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from ir50p_lab.errors import InputError, VisionError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling.chain import forward_kinematics
+from ir50p_lab.modelling.dynamics import gravity
+from ir50p_lab.vision.hand_eye_refined import JointCorrection
+from ir50p_lab.vision.reach_plan import CLEAR, plan, reach_pose
+from ir50p_lab.vision.reach_result import BallTracker, FollowLog, Look, Reached
+
+HEIGHT = 0.06  # m of the tip over the ball's centre: 30 mm over its top
+_LONGEST = 3600.0  # s, of one session
+_SETTLE, _WINDOW, _WINDOWS = 0.6, 0.4, 15  # s until the arm stands, s of counts to average, how often
+SETTLED, _RESTING = 1e-3, 2e-3  # m at the tip, by averaged counts: near enough; no longer moving
+_COUNTS, _COUNTS_NOMINAL = 0.7, 2.5  # what potentiometers are off by, counts (assumed: a good wire-wound one)
+_MOVED = 0.008  # m between two looks: then the ball has moved, and only the second counts
+
+
+def reaching_controller(arm, period=0.01):
+    """The controller that reaching uses: computed torque with a slow integral; without motor data the PIDs of 4.1-4.3.
+
+    Gains tried out on simulated arms: stiff (12 rad/s), so that a joint that breaks loose does not jump far, and with
+    the two periods of delay led ahead; those of Tables 4.5-4.7 (5, 3, 7 rad/s) leave centimetres at the tip.
+    """
+    from ir50p_lab.controllers import PID, ComputedTorque
+
+    if arm.actuators is None:
+        return PID(kp=(289, 225, 270), ki=(50, 150, 50), kd=(40, 30, 30), limit_pwm=255, period=period)
+    return ComputedTorque(arm, kp=150, kd=24, ki=30, limit_pwm=255, period=period, delay=2 * period)
+
+
+class Reacher:
+    """The arm on an open bench, driven by what a Sight sees; every phase runs in one loop without a pause.
+
+        with connect() as bench, Reacher(bench, sight) as reacher:
+            found = reacher.reach()
+
+    The drive goes on from the first command to the end of the `with` block, where the arm moves to its rest pose:
+    between two runs a board would cut it, and the arm would sink onto the ball. While a real camera takes its picture
+    and the picture is worked on, the loop goes on in this thread and the eye works in another.
+
+    Args:
+        bench: an open bench. sight: Sight, or None for moving only. controller: default `reaching_controller(arm)`.
+        correction: JointCorrection of the potentiometers, from `refine_hand_eye`; default none.
+        sigma_q: (3,) rad, how far the potentiometers may be off after that; default 0.7 counts if the calibration of
+        the bench was measured (what a straight line leaves of a bent characteristic), 2.5 if it is a nominal one.
+        rest: go to the rest pose at the end.
+
+    Methods: reach, pick_and_place, follow_ball, move_to, move_along, hold. Attributes: q: (3,) rad, best estimate.
+    """
+
+    def __init__(self, bench, sight=None, *, controller=None, correction=None, sigma_q=None, rest=True):
+        self.bench, self.sight, self.arm, self.rest = bench, sight, bench.arm, rest
+        self.controller = reaching_controller(bench.arm, bench.period) if controller is None else controller
+        self.correction = JointCorrection.of(bench.arm) if correction is None else correction
+        if sigma_q is None:
+            measured = bench.calibration.stderr_slope is not None
+            sigma_q = (_COUNTS if measured else _COUNTS_NOMINAL) / np.abs(bench.calibration.slope)
+        self.sigma_q = vectors3("sigma_q", sigma_q)
+        self.errors = np.zeros(3)  # of the potentiometers here, by the camera; rad
+        self._samples = self._pool = self._last = None
+        self._gripper = self._frozen = None
+        self._u = self._mean_u = np.zeros(3)
+
+    # ---- the loop
+
+    def __enter__(self):
+        if hasattr(self.controller, "reset"):
+            self.controller.reset()
+        self._samples = self.bench.run(_LONGEST)
+        self._pool = ThreadPoolExecutor(1)
+        self._last = next(self._samples)
+        self._set = np.array(self._last.q)  # where the potentiometers shall be
+        self._drive((self._set, np.zeros(3), np.zeros(3)))
+        self.hold(0.3)
+        return self
+
+    def __exit__(self, kind, error, traceback):
+        if kind is not None:
+            self.bench.cut()
+        self._pool.shutdown(wait=kind is None)
+        self._samples.close()
+        if kind is None and self.rest:
+            self.bench.go_to_rest()
+
+    def _drive(self, rows):
+        u = self.controller.step(self._last.t, self._last.q, rows)
+        u = u if self._frozen is None else self._frozen
+        self._u = self.bench.drive(u, reference=rows[0], gripper=self._gripper)
+
+    def _cycle(self, rows):
+        self._last = next(self._samples, None)
+        if self._last is None:
+            raise InputError(f"the session has lasted {_LONGEST:g} s: begin a new Reacher")
+        self._drive(rows)
+        return self._last
+
+    # ---- angles: of the potentiometers, and of the arm
+
+    def true(self, shown):
+        """Best estimate of the arm's angles for those of the potentiometers, (3,) rad."""
+        return self.correction(shown + self.errors)
+
+    def shown(self, q):
+        """What the potentiometers shall show for angles (3,) or (n, 3) of the arm, rad."""
+        return self.correction.back(q) - self.errors
+
+    @property
+    def q(self):
+        """Best estimate of where the arm's set point is, (3,) rad."""
+        return self.true(self._set)
+
+    # ---- motions
+
+    def hold(self, seconds):
+        """Stay for a while. Returns the mean of the measured angles, (3,) rad as the potentiometers show them."""
+        rows = (self._set, np.zeros(3), np.zeros(3))
+        shown, u = np.zeros(3), np.zeros(3)
+        cycles = max(1, round(seconds / self.bench.period))
+        for _ in range(cycles):
+            shown += self._cycle(rows).q
+            u += self._u
+        self._mean_u = u / cycles
+        return shown / cycles
+
+    def move_along(self, reference):
+        """Follow a reference of the arm's angles from its start to its end."""
+        start, self._frozen = self._last.t, None
+        # it begins where the arm's set point is only up to trims: fade the difference out
+        first = self.shown(np.asarray(reference(0.0)[0]))
+        gap = self._set - first
+        while True:
+            t = self._last.t + self.bench.period - start
+            q, qd, qdd = reference(t)
+            fade = max(0.0, 1.0 - t / max(0.3, 0.5 * reference.duration))
+            self._set = self.shown(q) + fade * gap
+            self._cycle((self._set, qd, qdd))
+            if t >= reference.duration and fade == 0.0:
+                return
+
+    def move_to(self, p, *, lift=0.08, speed=0.5, clear=CLEAR):
+        """Move the tip to p (3,) m on a way clear of the table, and settle. Returns the Plan."""
+        way = plan(self.arm, self.q, p, lift=lift, speed=speed, clear=clear)
+        self.move_along(way)
+        self.settle(way.goal)
+        return way
+
+    def settle(self, goal):
+        """Stand at the joint angles `goal` (3,) rad: averaged counts say what is missing, and the set point gives way.
+
+        A joint that sticks waits until the integral has built up; pushing the set point by what is missing shortens
+        that. Once there, the command is frozen: friction holds the arm, nothing hunts, and a second of counts can be
+        averaged, which takes noise and rounding of one reading down to a tenth.
+        Returns: the measured angles (3,) rad, averaged, corrected.
+        """
+        wanted = self.shown(goal)
+        self._set, self._frozen = wanted.copy(), None
+        last = self.hold(_SETTLE)
+        for _ in range(_WINDOWS):
+            shown = self.hold(_WINDOW)
+            resting, last = self._tip_size(goal, shown - last) < _RESTING, shown
+            if not resting:
+                continue
+            if self._tip_size(goal, wanted - shown) > SETTLED:
+                self._set = self._set + 0.7 * (wanted - shown)
+                continue
+            self._frozen = self._holding(goal)
+            self.hold(0.1)
+            last = self.hold(1.0)
+            if self._tip_size(goal, wanted - last) < 1.5 * SETTLED:
+                break
+            self._frozen = None  # it slid on, or the window had flattered it
+        return self.true(last)
+
+    def _holding(self, q):
+        """A command under which a resting arm stays at rest, (3,): what it was lately, near what the weight needs.
+
+        A joint in motion would slide on under a command that Coulomb friction does not hold; so at most half of that
+        friction is left beside the weight.
+        """
+        if self.arm.actuators is None or self.controller.unit != "PWM":
+            return self._mean_u
+        weight = gravity(self.arm.theta_pwm, q) + np.array(self.arm.friction.Tf) / self.arm.actuators.gain
+        room = 0.5 * np.array(self.arm.friction.fc) / self.arm.actuators.gain
+        return np.clip(self._mean_u, weight - room, weight + room)
+
+    def _tip_size(self, q, dq):
+        return float(np.linalg.norm(forward_kinematics(self.arm, q + dq) - forward_kinematics(self.arm, q)))
+
+    # ---- looking
+
+    def look(self):
+        """Let the eye look while the loop goes on. Returns Seen."""
+        if self.sight is None:
+            raise InputError("this Reacher has no sight: give Reacher(bench, sight)")
+        if self.bench.simulated and not getattr(self.bench, "realtime", False):
+            return self.sight.look()
+        job = self._pool.submit(self.sight.look)
+        while not job.done():
+            self.hold(self.bench.period)
+        return job.result()
+
+    # ---- tasks
+
+    def reach(self, *, height=HEIGHT, looks=2):
+        """Put the tip over the ball, `height` m above its centre; look again from there and correct.
+
+        looks: 1: one look, then potentiometers alone; 2: after arriving the camera sees where ball and hand really
+        are, and the hand is moved by the difference.
+        Returns: Reached. Raises UnreachableError (.distance, .nearest) before anything moves; VisionError if no ball
+        is seen, with the reason.
+        """
+        if looks not in (1, 2, 3):
+            raise InputError(f"looks = {looks!r}: give 1, 2 or 3")
+        begin = self._last.t
+        seen = self._sure(self.look())
+        ball, records, first = seen.position, [], None
+        for number in range(looks):
+            goal = ball + np.array([0.0, 0.0, height])
+            pose = reach_pose(self.arm, goal, self.q)
+            if number == 0:
+                first = plan(self.arm, self.q, goal)
+                self.move_along(first)
+            q = self.settle(pose)
+            tip, marker, note = forward_kinematics(self.arm, q), None, ""
+            if number + 1 < looks:
+                ball, marker, q, note = self._look_again(ball, q)
+                tip = forward_kinematics(self.arm, q)
+            records.append(Look(ball, goal, tip, marker, self.errors.copy(), note))
+        return Reached(
+            ball=ball,
+            goal=ball + np.array([0.0, 0.0, height]),
+            tip=tip,
+            q=q,
+            looks=tuple(records),
+            plan=first,
+            seconds=self._last.t - begin,
+            tip_true=self.bench.plant.tip_true if self.bench.simulated and hasattr(self.bench, "plant") else None,
+        )
+
+    def _sure(self, seen):
+        if not seen:
+            raise VisionError(f"no ball to reach for: {seen.reason}")
+        return seen
+
+    def _look_again(self, ball, q):
+        """Ball and hand once more: (ball, marker or None, corrected q, note)."""
+        seen, notes = self.look(), []
+        if not seen:
+            notes.append(f"the ball is not seen from here ({seen.reason}): its first place counts")
+        elif np.linalg.norm(seen.position - ball) > _MOVED:
+            notes.append(f"the ball has moved by {1e3 * np.linalg.norm(seen.position - ball):.0f} mm")
+            ball = seen.position
+        else:
+            ball = 0.5 * (ball + seen.position)
+        marker = self.sight.find_marker(seen.image, self.arm, q)
+        if marker is None:
+            notes.append("the marker on the hand is not seen: potentiometers alone")
+        else:
+            try:
+                e, _ = self.sight.joint_errors(self.arm, q, marker, self.sigma_q)
+                self.errors, q = self.errors + e, q + e
+            except VisionError as error:
+                notes.append(str(error))
+        return ball, marker, q, "; ".join(notes)
+
+    def grip(self, closed=True, seconds=0.6):
+        """Close or open the gripper, and wait."""
+        self._gripper = bool(closed)
+        self.hold(seconds)
+
+    def pick_and_place(self, place, *, contact=0.0, looks=2):
+        """Reach, go down, close the gripper, carry the ball to `place` (2,) m on the table, open, go up.
+
+        contact: m of the tip over the ball's centre when gripping; 0: the fingers close about its middle. The place
+        is tested before anything moves.
+        Returns: Reached, of the reach. Raises as `reach`, for the place, too.
+        """
+        place = np.asarray(place, dtype=float)
+        if place.shape != (2,) or not np.isfinite(place).all():
+            raise InputError(f"place = {place.tolist()}: give x, y on the table, m")
+        put = np.array([*place, self.sight.radius + contact])
+        up = np.array([0.0, 0.0, HEIGHT])
+        reach_pose(self.arm, put + up), reach_pose(self.arm, put)
+        self.grip(False, 0.1)
+        found = self.reach(looks=looks)
+        self.move_to(found.ball + np.array([0.0, 0.0, contact]), lift=0.0)
+        self.grip(True)
+        self.move_to(found.ball + up + [0, 0, contact], lift=0.0)
+        self.move_to(put, lift=HEIGHT)
+        self.grip(False)
+        self.move_to(put + up, lift=0.0)
+        return found
+
+    def follow_ball(self, seconds, *, height=0.10, every=0.1, lead=0.25):
+        """Keep the tip over a moving ball: a look every `every` s, position and velocity filtered, aimed ahead.
+
+        lead: s that the aim lies ahead, for what camera and arm lag behind. Where the ball cannot be followed (out of
+        reach, or not seen) the arm waits at the last place.
+        Returns: FollowLog.
+        """
+        from ir50p_lab.bench.set_point import SetPoint
+
+        reach = None
+        tracker, log, point = BallTracker(), [], SetPoint(self._set, speed=0.6, acceleration=3.0)
+        begin, next_look, job, self._frozen = self._last.t, self._last.t, None, None
+        live = not self.bench.simulated or getattr(self.bench, "realtime", False)
+        while self._last.t - begin < seconds:
+            t = self._last.t
+            if job is None and t >= next_look:
+                next_look = t + every
+                job = (t, self._pool.submit(self.sight.look)) if live else (t, self.sight.look())
+            if job is not None and (not live or job[1].done()):
+                taken, seen = job[0], job[1].result() if live else job[1]
+                job = None
+                if seen:
+                    tracker.update(taken, seen.position[:2])
+            if tracker.position is not None:
+                aim = np.array([*tracker.at(t + lead), self.sight.radius + height])
+                with contextlib.suppress(ValueError):  # UnreachableError: wait
+                    reach = reach_pose(self.arm, aim, self.q)
+                    point.move_to(self.shown(reach))
+            rows = point(t)
+            self._set = rows[0]
+            self._cycle(rows)
+            log.append((t - begin, forward_kinematics(self.arm, self.true(self._last.q)), tracker.at(t)))
+        self.hold(0.3)
+        t, tip, ball = zip(*log, strict=True)
+        return FollowLog(np.array(t), np.array(tip), np.array(ball))
+
+
+def reach(bench, sight, **options):
+    """One reach on an open bench, and back to rest: `Reacher` in one call; options of Reacher and of `reach`."""
+    how = {name: options.pop(name) for name in ("height", "looks") if name in options}
+    with Reacher(bench, sight, **options) as reacher:
+        return reacher.reach(**how)

@@ -1,0 +1,110 @@
+"""The simulated bench with a table, balls and a rendered camera that sees them: for trying out what a webcam does."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling.chain import frames
+from ir50p_lab.vision.board_pose import moved
+from ir50p_lab.vision.camera import Camera, Frame
+from ir50p_lab.vision.rendering import Ball, bench_scene, render_scene
+from ir50p_lab.vision.rendering.arm_shape import arm_sticks
+from ir50p_lab.vision.sight import MARKER_AT
+
+MARKER = 0.012  # m, radius of the green ball on the wrist: 10 px in the default camera (assumed)
+_GRIP = 0.012  # m that the tip may miss the ball's centre by when the fingers close, and they hold it (assumed)
+
+
+class RenderedBench(Camera):
+    """A camera that sees the simulated arm of a bench, and balls that lie, roll, or are carried by its gripper.
+
+    Args:
+        bench: a SimulatedBench. balls: (n, 3) or (3,) m, where they lie; or a function of time, t s -> (3,) m, for one
+        that rolls. seed: of the noise of the pictures. scene: Scene to start from (default `bench_scene`): camera,
+        table, light, distractors; its red balls are replaced. marker: whether the wrist carries a green ball.
+
+    `read()` gives a Frame of this moment. Its time is that of the simulation: it counts the periods in which the bench
+    was driven. `balls_true`, `T_cam_world`, `pinhole` are the truth, for tests and for drawings that say so. The
+    fingers hold a ball when they close with the tip within 12 mm of its centre.
+    """
+
+    name, simulated = "rendered camera over the simulated arm", True
+
+    def __init__(self, bench, balls=(0.40, 0.0, 0.03), *, seed=0, scene=None, marker=True, radius=0.03):
+        if not hasattr(bench, "plant"):
+            raise InputError("a rendered camera sees a simulated arm only: for a real one use open_camera()")
+        self.bench, self.radius, self.seed, self.marker = bench, radius, int(seed), marker
+        self.scene = bench_scene() if scene is None else scene
+        self.size = self.scene.pinhole.size
+        self._rolling = balls if callable(balls) else None
+        self._lying = None if callable(balls) else np.atleast_2d(vectors3("balls", balls, unit="m")).copy()
+        self.t, self.pictures = 0.0, 0
+        self._held, self._closed = None, False
+        self._send, bench._send = bench._send, self._watched
+
+    def _watched(self, pwm, gripper):
+        """What the bench sends passes here: time goes on, and the gripper takes or leaves a ball."""
+        self.t += self.bench.period
+        if gripper != self._closed:
+            self._closed = gripper
+            self._take() if gripper else self._leave()
+        return self._send(pwm, gripper)
+
+    def _take(self):
+        tip, balls = self.bench.plant.tip_true, self.balls_true
+        near = np.linalg.norm(tip - balls, axis=1) < _GRIP
+        if near.any() and self._rolling is None:
+            self._held = (int(np.argmax(near)), balls[np.argmax(near)] - tip)
+
+    def _leave(self):
+        if self._held is not None:
+            number, _ = self._held
+            self._lying[number] = [*self.balls_true[number, :2], self.radius]  # it drops, and stays
+            self._held = None
+
+    @property
+    def balls_true(self):
+        """Centres of the balls now, (n, 3) m."""
+        if self._rolling is not None:
+            return np.atleast_2d(np.asarray(self._rolling(self.t), dtype=float))
+        balls = self._lying.copy()
+        if self._held is not None:
+            number, offset = self._held
+            balls[number] = self.bench.plant.tip_true + offset
+        return balls
+
+    @property
+    def held(self):
+        """Whether the gripper holds a ball."""
+        return self._held is not None
+
+    @property
+    def pinhole(self):
+        """The true camera (what a calibration should find)."""
+        return self.scene.pinhole
+
+    @property
+    def T_cam_world(self):
+        """Where it truly stands (world is the base frame of the arm)."""
+        return np.asarray(self.scene.T_cam_world)
+
+    def read(self):
+        """A picture of this moment: Frame."""
+        balls = tuple(Ball(position=tuple(p), radius=self.radius) for p in self.balls_true)
+        others = tuple(thing for thing in self.scene.objects if not isinstance(thing, Ball) or thing.colour != "red")
+        hand = ()
+        arm, q = self.bench.arm, self.bench.plant.q_true
+        if self.marker:
+            place = moved(frames(arm, q)[3], np.array(MARKER_AT))
+            hand = (Ball(position=tuple(place), radius=MARKER, colour=(25, 150, 60), gloss=0.1),)
+        opening = 0.06 if self._closed else 0.07
+        scene = replace(self.scene, objects=(*balls, *hand, *others), arm=arm_sticks(q, arm, opening=opening))
+        self.pictures += 1
+        image, _ = render_scene(scene, seed=1000 * self.seed + self.pictures)
+        return Frame(image=image, t=self.t, simulated=True, source=self.name)
+
+    def close(self):
+        """Give the bench its own voice back."""
+        self.bench._send = self._send

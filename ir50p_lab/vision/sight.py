@@ -1,0 +1,140 @@
+"""From the camera to the base frame of the arm: where the ball is, and what the camera says of the hand."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ir50p_lab.errors import InputError, VisionError
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling.chain import frames
+from ir50p_lab.vision.ball import find_balls
+from ir50p_lab.vision.board_pose import checked_transform, inverse_transform, moved
+from ir50p_lab.vision.colour import RED, Colour
+
+GREEN = Colour(hue=135.0, tolerance=35.0, name="green")  # of the marker on the hand
+MARKER_AT = (-0.042, 0.0, 0.0)  # m, tool coordinates: between the fingers, before the end of the forearm
+_MARKER_NEAR = 80.0  # px between where the hand is seen and where the potentiometers say; about 90 mm
+_SPIKE = 5.0  # sigma
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What one look found.
+
+    position: (3,) m, ball's centre in the base frame, None if there was no ball (then `reason` says why); stderr: (2,)
+    m along x and y; ball: Ball in pixels; image: RGB; simulated: whether the picture was rendered.
+    """
+
+    position: np.ndarray | None
+    stderr: np.ndarray | None
+    ball: object
+    image: np.ndarray = field(repr=False)
+    simulated: bool
+    reason: str = ""
+
+    def __bool__(self):
+        return self.position is not None
+
+
+class Sight:
+    """A camera that knows where it stands: ball and hand in the base frame of the arm.
+
+    Args:
+        camera: what `open_camera()` gives, or anything with read() -> frame with .image (RGB) and .simulated.
+        plane: TablePlane of that camera. T_base_table: (4, 4), table coordinates to those of the base; default the
+        identity: the board was laid out in base coordinates. (The thesis calls the table's frame 'world', and never
+        writes this transform down.)
+        radius: m, of the ball. colour: Colour of the ball; marker: Colour of the small ball on the hand, or None if
+        there is none; marker_at: (3,) m, its centre in tool coordinates (frame 3: origin at the tip, x along the
+        forearm). sigma_px: px, standard error of a centre.
+    """
+
+    def __init__(
+        self,
+        camera,
+        plane,
+        *,
+        T_base_table=None,
+        radius=0.03,
+        colour=RED,
+        marker=GREEN,
+        marker_at=MARKER_AT,
+        sigma_px=0.3,
+    ):
+        self.marker_at = vectors3("marker_at", marker_at, unit="m")
+        self.camera, self.plane, self.colour, self.marker = camera, plane, colour, marker
+        self.T_base_table = np.eye(4) if T_base_table is None else checked_transform("T_base_table", T_base_table)
+        for name, value in (("radius", radius), ("sigma_px", sigma_px)):
+            if not (np.isscalar(value) and np.isfinite(value) and value > 0):
+                raise InputError(f"{name} = {value!r}: give a number > 0")
+        self.radius, self.sigma_px = float(radius), float(sigma_px)
+        self.T_cam_base = plane.T_cam_table @ inverse_transform(self.T_base_table)
+
+    def look(self):
+        """Take a picture; where is the best ball? Returns Seen, false if none is seen."""
+        frame = self.camera.read()
+        return self.seen_in(frame.image, bool(getattr(frame, "simulated", False)))
+
+    def seen_in(self, image, simulated=False):
+        """The same for a picture that is there already (RGB)."""
+        balls = find_balls(image, self.colour, camera=self._model())
+        if not balls:
+            return Seen(None, None, None, image, simulated, balls.reason)
+        xy = [balls[0].x, balls[0].y]
+        try:
+            place = self.plane.to_points(xy, self.radius)
+        except VisionError as error:
+            return Seen(None, None, balls[0], image, simulated, str(error))
+        stderr = self.plane.standard_error(xy, self.radius, sigma_px=self.sigma_px)
+        return Seen(moved(self.T_base_table, place), stderr, balls[0], image, simulated)
+
+    def _model(self):
+        camera = self.plane.camera
+        return camera if hasattr(camera, "undistort_points") else getattr(camera, "pinhole", None)
+
+    def to_image(self, p):
+        """Pixel (2,) of a point p (3,) m of the base frame."""
+        return self.plane.to_image(moved(inverse_transform(self.T_base_table), np.asarray(p, dtype=float)))
+
+    def marker_place(self, arm, q):
+        """Where the marker is with the arm at q (3,) rad: (3,) m, base frame."""
+        return moved(frames(arm, q)[3], self.marker_at)
+
+    def find_marker(self, image, arm, q):
+        """Pixel (2,) of the marker on the hand, searched near where q (3,) rad puts it; None if it is not seen."""
+        if self.marker is None:
+            return None
+        expected = self.to_image(self.marker_place(arm, q))
+        for one in find_balls(image, self.marker, camera=self._model(), least_radius=4.0):
+            if np.hypot(one.x - expected[0], one.y - expected[1]) < _MARKER_NEAR:
+                return np.array([one.x, one.y])
+        return None
+
+    def joint_errors(self, arm, q, xy, sigma_q):
+        """What the picture says of the potentiometers' errors: marker seen at xy, though q puts it elsewhere.
+
+            minimise |xy - project(p(q + e))|^2 / sigma_px^2 + sum (e_i / sigma_q_i)^2
+
+        One pixel is two equations for three joints; the third comes from how far each potentiometer is believed to be
+        off. The hand's distance to the camera stays as uncertain as they leave it.
+        Args: arm: Arm; q: (3,) rad; xy: (2,) px; sigma_q: (3,) rad.
+        Returns: e (3,) rad, its covariance (3, 3). If the picture contradicts q by more than 5 sigma: VisionError.
+        """
+        q, sigma_q = vectors3("q", q), vectors3("sigma_q", sigma_q)
+
+        def seen(e):
+            return self.to_image(self.marker_place(arm, q + e))
+
+        e, h = np.zeros(3), 1e-5
+        for _ in range(4):  # Gauss-Newton; errors of 20 mrad are almost linear
+            J = np.column_stack([(seen(e + h * u) - seen(e - h * u)) / (2 * h) for u in np.eye(3)])
+            A = np.vstack([J / self.sigma_px, np.diag(1 / sigma_q)])
+            e = e + np.linalg.lstsq(A, np.concatenate([(xy - seen(e)) / self.sigma_px, -e / sigma_q]), rcond=None)[0]
+        if (np.abs(e) > _SPIKE * sigma_q).any():
+            raise VisionError(
+                f"the hand is seen {np.linalg.norm(xy - seen(np.zeros(3))):.0f} px from where the potentiometers put "
+                "it, more than they can be off: was something else taken for the marker, did the camera move, or is "
+                "the arm's calibration wrong?"
+            )
+        half = np.linalg.solve(np.linalg.qr(A)[1], np.eye(3))
+        return e, half @ half.T

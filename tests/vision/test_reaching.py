@@ -1,0 +1,275 @@
+"""Reaching: plans that are clear and reachable, refusals as an oracle has them, looks that correct, balls carried."""
+
+from functools import cache
+
+import cv2
+import numpy as np
+import pytest
+from quick_sight import QuickSight
+
+from ir50p_lab.bench import SimulatedBench, fit_calibration
+from ir50p_lab.bench.rest import rest_pose
+from ir50p_lab.errors import InputError, UnreachableError, VisionError
+from ir50p_lab.modelling import IR50P, forward_kinematics, frames
+from ir50p_lab.vision import Reacher, RenderedBench, Sight, TablePlane, plan, reach, reach_pose, work_area
+from ir50p_lab.vision.reach_budget import error_budget
+from ir50p_lab.vision.reach_plan import MARGIN, nearest_reachable
+from ir50p_lab.vision.reach_result import BallTracker
+
+cv2.setNumThreads(1)
+OVER = np.array([0.0, 0.0, 0.06])
+
+
+@cache
+def calibrated(seed):
+    """What a student finds with a protractor: a line through seven angles of each joint."""
+    plant, points = SimulatedBench(IR50P, seed=seed, record_to=False).plant, []
+    for joint in range(3):
+        angles = np.linspace(IR50P.q_min[joint] + 0.05, IR50P.q_max[joint] - 0.05, 7)
+        counts = []
+        for angle in angles:
+            plant._joint[:] = 0.0
+            plant._joint[joint] = angle
+            counts.append(np.mean([plant.counts()[joint] for _ in range(50)]))
+        points.append((angles, counts))
+    q, counts = zip(*points, strict=True)
+    return fit_calibration(q, counts, angles="set", arm=IR50P)
+
+
+def rig(ball=(0.40, 0.10, 0.03), seed=0, **options):
+    bench = SimulatedBench(IR50P, seed=seed, q0=rest_pose(IR50P), record_to=False, calibration=calibrated(seed))
+    world = RenderedBench(bench, ball, seed=seed)
+    return bench, world, QuickSight(world, TablePlane(world.pinhole, world.T_cam_world), seed=seed, **options)
+
+
+# ---- where the arm can go
+
+
+def oracle_distance(p, n=60):
+    """Distance from p to the nearest tip by brute force: a grid over joints 2 and 3 within the limits, then finer."""
+    low, high = np.array(IR50P.q_min) + MARGIN, np.array(IR50P.q_max) - MARGIN
+    q1 = np.clip(np.arctan2(p[1], p[0]), low[0], high[0])
+    best, (lo, hi) = np.inf, (low[1:].copy(), high[1:].copy())
+    for _ in range(12):
+        grid = np.stack(np.meshgrid(np.linspace(lo[0], hi[0], n), np.linspace(lo[1], hi[1], n)), -1).reshape(-1, 2)
+        q = np.column_stack([np.full(len(grid), q1), grid])
+        distance = np.linalg.norm(forward_kinematics(IR50P, q) - p, axis=1)
+        k = distance.argmin()
+        best = min(best, distance[k])
+        half = 0.25 * (hi - lo)
+        lo, hi = np.maximum(low[1:], grid[k] - half), np.minimum(high[1:], grid[k] + half)
+    return best
+
+
+def test_refusals_and_distances_are_those_of_an_independent_search():
+    balls = work_area(IR50P).draw(np.random.default_rng(1), 60) + OVER
+    refused = 0
+    for p in balls:
+        distance = oracle_distance(p)
+        try:
+            q = reach_pose(IR50P, p)
+        except UnreachableError as error:
+            refused += 1
+            assert distance > 1e-4
+            assert error.distance == pytest.approx(distance, abs=3e-4)
+            assert np.linalg.norm(error.nearest - p) == pytest.approx(error.distance)
+        else:
+            assert distance < 5e-3  # the grid's resolution
+            assert np.allclose(forward_kinematics(IR50P, q), p)
+    assert 3 <= refused <= 20
+
+
+@pytest.mark.parametrize(
+    ("p", "why"),
+    [
+        ((0.70, 0.0, 0.09), "mm out of reach"),
+        ((0.40, 0.0, -0.02), "under the table"),
+        ((-0.40, 0.0, 0.09), "joint limit"),
+        ((0.10, 0.0, 0.09), "joint limit"),
+    ],
+)
+def test_a_refusal_says_why_and_how_far(p, why):
+    with pytest.raises(UnreachableError, match=why) as refused:
+        reach_pose(IR50P, p)
+    assert refused.value.distance > 0.01
+    assert "misses it by" in str(refused.value)
+    assert np.allclose(refused.value.nearest, nearest_reachable(IR50P, np.array(p)))
+
+
+def test_plans_arrive_are_smooth_and_stay_clear():
+    rng = np.random.default_rng(2)
+    q = rest_pose(IR50P)
+    for p in work_area(IR50P).draw(rng, 25) + OVER:
+        try:
+            way = plan(IR50P, q, p)
+        except UnreachableError:
+            continue
+        t = np.linspace(0, way.duration, 400)
+        rows = way.sample(t)
+        assert np.allclose(forward_kinematics(IR50P, rows[-1, 0]), p, atol=1e-9)
+        assert np.allclose(rows[0, 0], q)
+        heights = frames(IR50P, rows[:, 0])[:, 2:, 2, 3]
+        assert heights.min() > p[2] - 1e-6
+        assert way.lowest == pytest.approx(heights.min(), abs=1e-3)
+        assert np.abs(np.diff(rows[:, 0], axis=0)).max() < 0.7 * (t[1] - t[0])  # no jump: 0.5 rad/s, and the line
+        q = way.goal  # the next one from there, low over the table: it must go up first
+
+
+def test_the_work_area_of_another_arm_follows_its_reach():
+    area = work_area(IR50P)
+    assert 0.1 < area.r_min < 0.25
+    assert 0.5 < area.r_max < 0.6
+    places = area.draw(np.random.default_rng(0), 500)
+    r = np.hypot(*places[:, :2].T)
+    assert area.r_min <= r.min() < r.max() <= area.r_max
+    assert np.abs(np.arctan2(places[:, 1], places[:, 0])).max() <= area.angle
+    assert area.outline.shape[1] == 2
+
+
+# ---- reaching
+
+
+@cache
+def misses(looks):
+    found = []
+    for seed in range(6):
+        ball = work_area(IR50P).draw(np.random.default_rng([seed, 3]), 40)
+        ball = next(p for p in ball if oracle_distance(p + OVER, 30) < 3e-3 and np.hypot(*p[:2]) < 0.5)
+        bench, world, sight = rig(ball, seed)
+        with bench:
+            done = reach(bench, sight, looks=looks, rest=False)
+        found.append(np.linalg.norm(done.tip_true - world.balls_true[0] - OVER))
+        assert done.plan.lowest > 0.05
+    return np.array(found)
+
+
+def test_two_looks_put_the_true_tip_over_the_true_ball():
+    two = misses(2)
+    assert np.median(two) < 3e-3
+    assert two.max() < 6e-3
+    assert np.sqrt(np.mean(two**2)) < np.sqrt(np.mean(misses(1) ** 2))
+
+
+def test_without_marker_or_ball_in_sight_the_reach_says_so_and_goes_on():
+    bench, _, sight = rig()
+    sight.blind = True
+    with bench:
+        done = reach(bench, sight, rest=False)
+    assert "marker" in done.looks[0].note
+    assert np.linalg.norm(done.tip_true - done.goal) < 0.012
+
+
+def test_no_ball_or_one_out_of_reach_moves_nothing():
+    bench, _, sight = rig()
+    sight.no_ball = "nothing in the picture is red"
+    with bench:
+        with pytest.raises(VisionError, match="nothing in the picture is red"):
+            reach(bench, sight, rest=False)
+    bench, _, sight = rig((0.60, 0.1, 0.03))
+    with bench:
+        before = bench.plant.q_true
+        with pytest.raises(UnreachableError, match="misses it by") as refused:
+            reach(bench, sight, rest=False)
+        assert np.abs(bench.plant.q_true - before).max() < 0.05
+    assert 0.05 < refused.value.distance < 0.12
+
+
+def test_the_budget_is_what_reaching_measures():
+    _, world, sight = rig()
+    budget = error_budget(
+        IR50P,
+        sight,
+        reach_pose(IR50P, [0.4, 0.1, 0.09]),
+        sigma_q=0.7 / np.array([189, 122, 192.0]),
+        slope=(189, 122, 192),
+    )
+    first, second = budget.total
+    assert second < first
+    measured = np.sqrt(np.mean(misses(2) ** 2))
+    assert 0.5 < measured / second < 1.6
+    assert "all together" in budget.table()
+    assert world.simulated
+
+
+def test_a_ball_is_picked_and_placed():
+    bench, world, sight = rig((0.42, -0.12, 0.03), 3)
+    with bench, Reacher(bench, sight) as reacher:
+        reacher.pick_and_place((0.36, 0.15))
+        assert not world.held
+        assert np.linalg.norm(world.balls_true[0, :2] - (0.36, 0.15)) < 0.015
+    assert np.abs(bench.plant.q_true - rest_pose(IR50P)).max() < 0.1
+
+
+def test_a_place_out_of_reach_is_refused_before_anything_moves():
+    bench, _, sight = rig()
+    with bench, Reacher(bench, sight, rest=False) as reacher:
+        with pytest.raises(UnreachableError):
+            reacher.pick_and_place((0.9, 0.0))
+        with pytest.raises(InputError, match="place"):
+            reacher.pick_and_place((0.3, 0.0, 0.1))
+
+
+def test_a_rolling_ball_is_followed():
+    def rolling(t):
+        return np.array([0.40 + 0.05 * np.cos(0.6 * t), 0.12 * np.sin(0.4 * t), 0.03])
+
+    bench, world, sight = rig(rolling)
+    with bench, Reacher(bench, sight, rest=False) as reacher:
+        log = reacher.follow_ball(8.0)
+        off = np.linalg.norm(bench.plant.tip_true[:2] - world.balls_true[0, :2])
+    assert off < 0.03
+    late = log.t > 4
+    assert np.nanmax(np.linalg.norm(log.tip[late, :2] - log.ball[late], axis=1)) < 0.05
+
+
+def test_the_tracker_knows_where_a_ball_will_be():
+    tracker, rng = BallTracker(), np.random.default_rng(0)
+    assert np.isnan(tracker.at(1.0)).all()
+    for t in np.arange(0, 4, 0.1):
+        tracker.update(t, np.array([0.3 + 0.05 * t, 0.02 * t]) + rng.normal(0, 2e-4, 2))
+    assert np.allclose(tracker.at(4.5), [0.3 + 0.05 * 4.5, 0.02 * 4.5], atol=3e-3)
+
+
+# ---- pictures: detection in the loop, once
+
+
+def test_the_rendered_camera_sees_ball_and_marker_where_they_are():
+    bench, world, _ = rig((0.42, 0.08, 0.03))
+    sight = Sight(world, TablePlane(world.pinhole, world.T_cam_world))
+    seen = sight.look()
+    assert seen.simulated
+    assert np.linalg.norm(seen.position - world.balls_true[0]) < 1.5e-3
+    q = reach_pose(IR50P, [0.42, 0.08, 0.09])
+    bench.plant.place(q)
+    again = sight.look()
+    marker = sight.find_marker(again.image, IR50P, q + 0.005)
+    expected = world.pinhole.project(world.T_cam_world, sight.marker_place(IR50P, q))
+    assert np.linalg.norm(marker - expected) < 1.0
+    e, covariance = sight.joint_errors(IR50P, q - [0.004, -0.003, 0.0], marker, [0.006, 0.006, 0.004])
+    after = forward_kinematics(IR50P, q - [0.004, -0.003, 0.0] + e) - forward_kinematics(IR50P, q)
+    assert np.linalg.norm(after) < 2.5e-3
+    assert (np.diag(covariance) < np.square([0.006, 0.006, 0.004])).all()
+    with pytest.raises(VisionError, match="potentiometers put it"):
+        sight.joint_errors(IR50P, q + np.array([0.08, 0, 0]), marker, [0.006, 0.006, 0.004])
+
+
+@pytest.mark.parametrize(
+    "change", [{"radius": 0}, {"sigma_px": -1}, {"T_base_table": np.eye(3)}, {"marker_at": (1, 2)}]
+)
+def test_a_sight_of_bad_numbers_is_refused(change):
+    _, world, _ = rig()
+    with pytest.raises(InputError):
+        Sight(world, TablePlane(world.pinhole, world.T_cam_world), **change)
+
+
+def test_bad_arguments_of_reaching_are_refused():
+    bench, _, sight = rig()
+    with pytest.raises(InputError, match="one point"):
+        reach_pose(IR50P, np.zeros((2, 3)))
+    with pytest.raises(InputError, match="simulated arm"):
+        RenderedBench(object())
+    with bench, Reacher(bench, rest=False) as reacher:
+        with pytest.raises(InputError, match="no sight"):
+            reacher.look()
+    with bench, Reacher(bench, sight, rest=False) as reacher, pytest.raises(InputError, match="looks"):
+        reacher.reach(looks=0)
