@@ -1,0 +1,154 @@
+"""Find balls of one colour in a picture: where, how large, how sure; or why there is none."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.vision.ball_evidence import score_of
+from ir50p_lab.vision.ball_fit import view_of
+from ir50p_lab.vision.ball_measure import measure
+from ir50p_lab.vision.ball_regions import guess_circles
+from ir50p_lab.vision.colour import RED, Colour
+from ir50p_lab.vision.image import check_image
+from ir50p_lab.vision.pinhole import Pinhole
+
+_TRIED = 14  # first guesses measured
+
+LEAST_SCORE = 0.5
+# Whatever else speaks for it, a ball shows an edge on this much of the circle, this much of its disc has the colour,
+# and its outline leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and a part of a pixel.
+_LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.35, 0.75, (0.010, 0.32)
+
+
+@dataclass(frozen=True)
+class Ball:
+    """A ball in a picture.
+
+    x, y: where the centre of the sphere is seen, pixels; radius: pixels; score: 0..1, how sure; support: share of
+    the outline that shows an edge, 1 if nothing hides it.
+    """
+
+    x: float
+    y: float
+    radius: float
+    score: float
+    support: float = 1.0
+
+
+class Balls(list):
+    """The balls found, best first: a list of Ball.
+
+    reason: why there is none ("" if there is one); rejected: ((x, y, radius), why) of what had the colour and was no
+    ball.
+    """
+
+    def __init__(self, balls=(), *, reason="", rejected=()):
+        super().__init__(balls)
+        self.reason, self.rejected = reason, tuple(rejected)
+
+
+def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
+    """Find the balls of a colour, best first; a false alarm is worse than a miss.
+
+    Regions of the colour give arcs of circles; around each the edge is measured along rays to sub-pixel, and an
+    outline is fitted that is an ellipse, as perspective wants it. What has no edge around it, is hollow, angular or
+    goes on beyond the circle is no ball.
+
+    Args:
+        image: RGB, uint8, (height, width, 3).
+        colour: Colour, or a patch (RGB picture of nothing but the ball) to learn it from.
+        camera: Pinhole, if known: then the projected centre is exact, and distortion is allowed for. Without it a
+            usual webcam is assumed, with its axis in the middle of the picture.
+        least_radius: of the balls sought, pixels; smaller things are left out.
+
+    Returns: Balls, a list of Ball with `.reason`.
+    Raises ImageError for a bad picture, InputError for a bad colour or radius.
+    """
+    image = check_image(image)
+    colour = _as_colour(colour)
+    least_radius = _check_radius(least_radius)
+    if camera is not None and not isinstance(camera, Pinhole):
+        raise InputError(f"camera = {camera!r}: give a Pinhole, or None if the camera is not known")
+    view = view_of(image.shape, camera)
+    guesses, regions = guess_circles(image, colour, least_radius)
+    if not regions:
+        return Balls(reason=f"nothing in the picture is {colour.name}, or it is smaller than {least_radius:g} pixels")
+    if not len(guesses):
+        return Balls(reason=f"what is {colour.name} has no round outline")
+    measured, rejected = [], []
+    for x, y, r, _ in guesses[:_TRIED]:
+        if any(np.hypot(x - m.outline.x, y - m.outline.y) + abs(r - m.outline.r) < 0.3 * r for m in measured):
+            continue  # an earlier guess led to the same outline
+        found = measure(image, (x, y, r), view, colour)
+        if isinstance(found, str):
+            rejected.append(((float(x), float(y), float(r)), found))
+        elif why := _blunt(found, least_radius):
+            rejected.append((_place(found), why))
+        else:
+            measured.append(found)
+    balls, objections = _judge(measured)
+    rejected = (*objections, *rejected)
+    if balls or not rejected:
+        return Balls(balls, rejected=rejected)
+    (x, y, r), why = rejected[0]
+    return Balls(reason=f"the likeliest thing, at ({x:.0f}, {y:.0f}) with radius {r:.0f}: {why}", rejected=rejected)
+
+
+def _judge(measured):
+    """Balls best first, and what was rejected as ((x, y, r), why), best first; balls that touch excuse each other."""
+    scored = sorted(((*score_of(m), m) for m in measured), key=lambda s: -s[0])
+    for _ in range(2):
+        balls, objections = [], []
+        for score, why, found in scored:
+            o = found.outline
+            if any(np.hypot(o.x - b.x, o.y - b.y) < 0.8 * max(o.r, b.radius) for b in balls):
+                continue  # the same ball, or a part of it
+            if score >= LEAST_SCORE:
+                balls.append(Ball(o.x, o.y, o.r, score, found.support))
+            else:
+                objections.append((_place(found), why))
+        if not balls or not objections:
+            break
+        scored = sorted(((*score_of(m, _but(balls, m)), m) for m in measured), key=lambda s: -s[0])
+    return balls, objections
+
+
+def _but(balls, found):
+    """The balls other than the one found."""
+    return [b for b in balls if np.hypot(b.x - found.outline.x, b.y - found.outline.y) > 0.8 * b.radius]
+
+
+def _place(found):
+    return found.outline.x, found.outline.y, found.outline.r
+
+
+def _blunt(found, least_radius):
+    """Why a measured outline is no ball, whatever else speaks for it; "" if nothing of the kind."""
+    r = found.outline.r
+    if r < least_radius:
+        return f"too small, radius {r:.1f} pixels"
+    if found.support < _LEAST_SUPPORT:
+        return f"an edge on {found.support:.0%} of the circle only"
+    if found.fill < _LEAST_FILL:
+        return f"hollow, or another colour: {found.fill:.0%} of the disc have the colour"
+    rough = float(np.hypot(found.bumps, found.ragged))
+    if rough * r > _MOST_BUMPS[0] * r + _MOST_BUMPS[1]:
+        return f"not round: its outline leaves a circle by {rough:.1%} of the radius"
+    return ""
+
+
+def _as_colour(colour):
+    if isinstance(colour, Colour):
+        return colour
+    if isinstance(colour, np.ndarray):
+        from ir50p_lab.vision.colour import learn_from_patch
+
+        return learn_from_patch(colour)
+    raise InputError(f"colour = {colour!r}: give RED, a Colour (learn_colour makes one from a click), or a patch")
+
+
+def _check_radius(radius):
+    if not isinstance(radius, int | float | np.number) or not 2 <= radius < np.inf:
+        raise InputError(f"least_radius = {radius!r}: give pixels, at least 2")
+    return float(radius)

@@ -1,0 +1,72 @@
+"""What speaks for a ball and what against: a sum of terms, and the strongest objection in words.
+
+Each term is a weight times something measured; score = 1 / (1 + exp(-sum)). The weights are a logistic regression on
+what the search proposes in rendered scenes (kinds 'ball' and 'no_ball' of `scene_distribution`, seeds 100 to 299); they
+are held out of every evaluation. A ball is reported from a score of one half on.
+"""
+
+from math import exp, log
+
+import numpy as np
+
+START = 1.4
+# what is measured, its weight, and what to say if it is the strongest objection
+TERMS = (
+    ("missing", -1.1, "{0:.0%} of the circle show no edge"),
+    ("unseen", -3.5, "{0:.0%} of the circle lie outside the picture"),
+    ("beyond", -3.6, "the colour goes on beyond {0:.0%} of the circle"),
+    ("hollow", -4.8, "{0:.0%} of the disc have another colour"),
+    ("bumps", -3.0, "the outline is not round: waves of {1:.2f} pixels on a radius of {2:.0f}"),
+    ("oval", -0.8, "the outline is oval"),
+    ("alike", -2.6, "it hardly stands out from its surroundings"),
+    ("through", -0.8, "{0:.0%} of the part that is missing look like the background: nothing hides it"),
+    ("broken", -0.7, "the outline is broken in {0:.0f} places more than one thing in front could do"),
+    ("texture", -0.65, "the edges around it are those of a texture"),
+    ("small", -2.7, "it is small, radius {2:.1f} pixels, and what is seen of it is not enough"),
+    ("ragged", -1.15, "its edges scatter about a circle"),
+)
+_WELL_APART = 5.5  # standard deviations between ball and surroundings, usual for a ball
+
+
+def evidence(found, others=()):
+    """Name -> (amount, weighed) of each term for a Measured; others: Balls that may touch it."""
+    o = found.outline
+    pixels = 0.3 + 0.01 * o.r
+    amounts = {
+        "missing": max(found.seen - found.support, 0.0),
+        "unseen": 1 - found.seen,
+        "beyond": beyond(found, others),
+        "hollow": 1 - found.fill,
+        "bumps": found.bumps * o.r / pixels,
+        "oval": found.oval * o.r / (0.4 + 0.06 * o.r),
+        "alike": -log(max(found.apart, 0.2)),
+        "through": found.through,
+        "broken": max(found.gaps - 1, 0),
+        "texture": max(found.step - 0.9, 0.0),
+        "small": max(min(-log(o.r / 20), 2.0), 0.0),
+        "ragged": found.ragged * o.r / pixels,
+    }
+    return {name: (amounts[name], weight * amounts[name]) for name, weight, _ in TERMS}
+
+
+def score_of(found, others=()):
+    """Score 0..1 of a Measured, and the strongest objection as a text."""
+    terms = evidence(found, others)
+    total = START + sum(weighed for _, weighed in terms.values())
+    usual = {"alike": -2.6 * -log(_WELL_APART)}
+    worst = min(terms, key=lambda name: terms[name][1] - usual.get(name, 0.0))
+    text = next(text for name, _, text in TERMS if name == worst)
+    o = found.outline
+    return 1 / (1 + exp(-total)), text.format(terms[worst][0], found.bumps * o.r, o.r)
+
+
+def beyond(found, others=()):
+    """Share of the circle beyond which the colour goes on, and no other ball explains it."""
+    here = found.beyond
+    if others and here.any():
+        angle = np.arange(len(here)) * (2 * np.pi / len(here))
+        o = found.outline
+        x, y = o.x + 1.1 * o.r * np.cos(angle), o.y + 1.1 * o.r * np.sin(angle)
+        for other in others:
+            here = here & (np.hypot(x - other.x, y - other.y) > 1.1 * other.radius + 1)
+    return float(here.mean())

@@ -1,0 +1,177 @@
+"""From a first guess to a measured ball, or the reason why there is none: edges, fit, and what speaks for a ball."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.vision.ball_edge import cast, contrast_axis, directions, find_edges
+from ir50p_lab.vision.ball_fit import Outline, fit_outline
+
+
+def _smooth(r):
+    """Pixels: of the derivative along a ray; large balls have soft edges, in focus or not."""
+    return max(1.2, 0.025 * r)
+
+
+_AREA = np.append(np.linspace(0.1, 0.85, 11), 0.93)  # of the rings that the samples stand for
+_AREA /= _AREA.sum()
+_EDGE = 0.30  # least height of an edge, in units of the contrast between ball and surroundings
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A fitted outline and the evidence for it, shares of the full circle or disc 0..1.
+
+    outline. support: shows an edge on the outline; seen: lies in the picture; beyond (n,) bool: rays without an edge on
+    which the ball's colour goes on outside. fill: of the disc towards the edges found that has the colour (or is a
+    highlight). bumps: what the outline has of waves around a circle, three to eight of them, rms over the radius; oval:
+    two waves (motion makes some).
+    gaps: into how many pieces what is missing falls. ragged: rms distance of the edge points from the smooth outline,
+    over the radius. step: median height of the edges, over the contrast of the disc and its surroundings.
+    apart: of the colours in and out, in standard deviations. through: how much of the missing part looks like what
+    surrounds the ball.
+    """
+
+    outline: Outline
+    support: float
+    seen: float
+    beyond: np.ndarray
+    fill: float
+    bumps: float
+    oval: float
+    apart: float
+    through: float
+    gaps: int
+    ragged: float
+    step: float
+
+
+def measure(image, guess, view, colour):
+    """Measure the ball at a guess (x, y, r). Returns: Measured, or a text that says why not."""
+    x, y, r = guess
+    unit = directions(int(np.clip(8 * round(r / 4), 48, 96)))
+    for turn in range(2):
+        steps = int(np.clip(r, 8, 18))
+        pace = 0.7 * r / steps  # pixels
+        relative = 1 + np.linspace(-0.7, 0.7, 2 * steps + 1, dtype=np.float32)
+        rays = cast(image, x, y, np.float32([r]), relative, unit)
+        weights, _, apart = contrast_axis(rays, round(0.8 * steps), round(1.3 * steps))
+        if apart == 0:
+            return "it looks like its surroundings"
+        edge = find_edges(
+            rays, weights, steps, (0.4 if turn == 0 else 0.25) * steps, max(0.9, round(_smooth(r) / pace, 1))
+        )
+        strong = edge.height > _EDGE
+        if strong.sum() < 8:
+            return "no edge around it"
+        fit = fit_outline(
+            x + edge.rho[strong] * unit[0][strong], y + edge.rho[strong] * unit[1][strong], view, (x, y, r)
+        )
+        if fit is None:
+            return "its edges lie on no circle"
+        found = fit
+        moved = np.hypot(found.x - x, found.y - y) + abs(found.r - r)
+        x, y, r = found.x, found.y, found.r
+        if moved < 0.06 * r:
+            break
+    return _fine(image, found, view, colour, unit)
+
+
+def _fine(image, outline, view, colour, unit):
+    """Look again, finely, along the outline found: the last digits, and the evidence."""
+    x, y, r = outline.x, outline.y, outline.r
+    if r < 3:
+        return "too small"
+    half = max(4.5, 0.16 * r)  # pixels searched on either side
+    pace = max(0.5, half / 14)
+    steps = int(np.ceil(half / pace))
+    radii = outline.radii(*unit)
+    relative = 1 + np.arange(-steps, steps + 1, dtype=np.float32) * np.float32(pace / r)
+    rays = cast(image, x, y, radii, relative, unit)
+    clear = max(2, steps // 3)
+    weights, middle, apart = contrast_axis(rays, steps - clear + 1, steps + clear)
+    if apart == 0:
+        return "it looks like its surroundings"
+    edge = find_edges(rays, weights, steps, 0.6 * steps, max(1.2, round(_smooth(r) / pace, 1)))
+    strong = edge.height > _EDGE
+    if strong.sum() < 8:
+        return "no edge around it"
+    ex, ey = x + edge.rho * unit[0], y + edge.rho * unit[1]
+    fit = fit_outline(ex[strong], ey[strong], view, (x, y, r), noise=0.2)
+    if fit is None:
+        return "its edges lie on no circle"
+    outline = fit
+    off = outline.distances(ex, ey)
+    on = strong & (np.abs(off) < max(1.2, 0.05 * outline.r))
+    if on.sum() < 8:
+        return "its edges lie on no circle"
+    seen = rays.within[:, steps]
+    inside, outside, rgb = _colours(image, outline, colour, unit)
+    missing = ~on & seen
+    outside &= rgb[:, 12:] @ weights > middle + 0.05
+    beyond = missing & inside[:, -1] & outside[:, 0] & outside[:, 1]
+    return Measured(
+        outline=outline,
+        support=float(on.mean()),
+        seen=float(seen.mean()),
+        beyond=beyond,
+        fill=float((inside[on] @ _AREA).mean()),
+        apart=apart,
+        through=_shown_through(rgb, on, missing & ~beyond, inside),
+        gaps=_gaps(missing),
+        step=float(np.median(edge.height[on])),
+        **dict(zip(("bumps", "oval", "ragged"), _waves(off[on], unit[0][on], unit[1][on], outline.r), strict=True)),
+    )
+
+
+def _waves(off, cos, sin, r):
+    """rms of the waves 3 to 8 in the distances (n,) around the circle, noise taken off, and of wave 2; over r."""
+    turn = cos + 1j * sin
+    power = turn[:, None] ** np.arange(2, 9)
+    A = np.concatenate([power.real, power.imag], axis=1)
+    n = len(off)
+    gram = A.T @ A
+    gram.flat[:: len(gram) + 1] += 0.04 * n  # an arc cannot tell all waves apart
+    size = np.linalg.solve(gram, A.T @ off)
+    waves = A * size
+    oval = waves[:, 0] + waves[:, 7]
+    bumps = waves.sum(axis=1) - oval
+    left = float(np.mean((off - oval - bumps) ** 2))
+    waving = max(np.mean(bumps**2) - left * 12 / n, 0.0)
+    return float(np.sqrt(waving)) / r, float(np.sqrt(np.mean(oval**2))) / r, float(np.sqrt(left)) / r
+
+
+def _gaps(missing):
+    """Number of runs of at least two rays in a circular array of bool (n,)."""
+    here = missing & np.roll(missing, 1)
+    return int(np.count_nonzero(here & ~np.roll(here, 1)))
+
+
+def _shown_through(rgb, on, missing, inside):
+    """Share of the missing part of the disc that looks as what surrounds the rest of it: nothing hides it there."""
+    if missing.sum() < 4:
+        return 0.0
+    around = rgb[on, 12:].reshape(-1, 3).astype(np.float32)
+    middle = np.median(around, axis=0)
+    if np.abs(around - middle).mean() > 12:  # of surroundings that vary nothing can be said
+        return 0.0
+    gone = rgb[missing, :12][~inside[missing]].astype(np.float32)
+    return float((np.abs(gone - middle) < 16).all(axis=1).mean()) if len(gone) >= 8 else 0.0
+
+
+def _colours(image, outline, colour, unit):
+    """Which samples have the ball's colour: inside (n, 12), highlights included, and just outside (n, 4); their rgb."""
+    import cv2
+
+    r = outline.r
+    rim = 1.5 / r
+    inner = np.append(np.linspace(0.1, 0.85, 11), max(0.5, 0.97 - rim))
+    relative = np.concatenate([inner, 1.03 + rim + np.array([0.0, 0.04, 0.12, 0.22])]).astype(np.float32)
+    rays = cast(image, outline.x, outline.y, outline.radii(*unit), relative, unit)
+    hsv = colour.hsv_of(rays.rgb)
+    alike = (cv2.inRange(hsv, *colour.bounds()) > 0) & rays.within
+    bright = (hsv[:, :12, 2] > 200) & (hsv[:, :12, 1] < 255 * colour.saturation)
+    inside = alike[:, :12]
+    if (bright @ inner).mean() < 0.35 * inner.sum():  # a highlight is a part of the disc
+        inside = inside | bright
+    return inside, alike[:, 12:], rays.rgb

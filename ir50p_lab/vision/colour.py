@@ -1,0 +1,132 @@
+"""The colour of a thing as ranges of hue, saturation and value: the default red, or learnt from a picture."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import ImageError, InputError
+from ir50p_lab.vision.image import check_image
+
+HALF_CIRCLE = 90  # OpenCV's hue is degrees/2: 0..179
+
+
+@dataclass(frozen=True)
+class Colour:
+    """A range of hues, and how strong the colour must be; light and shade change value, hardly hue.
+
+    Args:
+        hue: middle of the range, degrees 0..360; it may lie at the seam.
+        tolerance: half width of the range, degrees, 1..60.
+        saturation: least saturation, 0..1: below it lie grey, white, and highlights. There is no upper bound: the
+            most saturated pixels are the surest (4.5.1 throws away those above 0.8).
+        value: least value, 0..1: in darker pixels the hue is noise.
+        name: how messages call it.
+
+    Raises InputError for a number out of range.
+    """
+
+    hue: float
+    tolerance: float = 20.0
+    saturation: float = 0.30
+    value: float = 0.14
+    name: str = "this colour"
+
+    def __post_init__(self):
+        for name, low, high in (("hue", 0, 360), ("tolerance", 1, 60), ("saturation", 0, 1), ("value", 0, 1)):
+            number = getattr(self, name)
+            if not isinstance(number, int | float | np.number) or not low <= number <= high:
+                raise InputError(f"Colour: {name} = {number!r}; give a number from {low} to {high}")
+
+    @property
+    def swaps(self):
+        """True if red and blue are exchanged before the hue is taken: then the range does not cross the seam."""
+        return min(self.hue, 360 - self.hue) < self.tolerance + 1
+
+    def bounds(self, saturation=None):
+        """Lower and upper bound for cv2.inRange, in OpenCV's scale (0..179, 0..255, 0..255), of `hsv_of(image)`.
+
+        saturation: a stricter least saturation, 0..1.
+        """
+        hue = (240.0 - self.hue) % 360.0 if self.swaps else self.hue
+        s = max(self.saturation, saturation or 0.0)
+        low = (max(0, round((hue - self.tolerance) / 2)), round(255 * s), round(255 * self.value))
+        return low, (min(179, round((hue + self.tolerance) / 2)), 255, 255)
+
+    def hsv_of(self, image):
+        """HSV of an RGB picture, in OpenCV's scale; with red and blue exchanged for a colour at the seam."""
+        import cv2
+
+        return cv2.cvtColor(image, cv2.COLOR_BGR2HSV if self.swaps else cv2.COLOR_RGB2HSV)
+
+    def mask(self, image, saturation=None):
+        """255 where the picture (RGB uint8, (h, w, 3)) has this colour, else 0: (h, w) uint8."""
+        import cv2
+
+        return cv2.inRange(self.hsv_of(check_image(image)), *self.bounds(saturation))
+
+
+RED = Colour(hue=355.0, tolerance=20.0, name="red")  # 335 to 15 degrees: both ends of the scale
+
+
+def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
+    """Learn a Colour from a click: the pixels around it that are like it.
+
+    A small disc around the pixel gives a first hue; then every pixel within `radius` whose hue is near counts, so
+    that shade and light of the same thing are in.
+
+    Args: image: RGB uint8 (h, w, 3); xy: (x, y) pixel of the click; radius: of the neighbourhood, pixels, by default
+        a twelfth of the picture's height; name: for messages.
+    Returns: Colour. Raises InputError for a place outside the picture, ImageError where the thing is grey, white or
+    black: then its colour tells nothing.
+    """
+    image = check_image(image)
+    height, width = image.shape[:2]
+    try:
+        x, y = (float(v) for v in xy)
+    except (TypeError, ValueError):
+        raise InputError(f"xy = {xy!r}: give the pixel (x, y) of a click") from None
+    if not (-0.5 <= x < width - 0.5 and -0.5 <= y < height - 0.5):
+        raise InputError(f"({x:g}, {y:g}) lies outside the picture of {width}x{height} pixels")
+    radius = height / 12 if radius is None else float(radius)
+    rows, cols = np.mgrid[:height, :width]
+    far = np.hypot(cols - x, rows - y)
+    seed = _colour_of(image[far <= max(1.5, radius / 8)], name)
+    near = image[far <= max(3.0, radius)]
+    hsv = seed.hsv_of(near[None])[0].astype(float)
+    low, high = seed.bounds()
+    alike = ((hsv >= low) & (hsv <= high)).all(axis=1)
+    return _colour_of(near[alike], name) if alike.sum() >= 8 else seed
+
+
+def learn_from_patch(patch, *, name="the colour learnt"):
+    """Learn a Colour from a sample: a picture that shows nothing but the thing.
+
+    patch: RGB uint8 (h, w, 3). Returns: Colour. Raises ImageError for a bad picture, or one without a colour.
+    """
+    return _colour_of(check_image(patch).reshape(-1, 3), name)
+
+
+def _colour_of(pixels, name):
+    """Colour of pixels (n, 3): circular mean of the hue, weighted by chroma; ranges from their spread."""
+    import cv2
+
+    bgr = np.ascontiguousarray(pixels[None, :, ::-1])
+    hue, saturation, value = cv2.cvtColor(bgr, cv2.COLOR_BGR2HSV)[0].astype(float).T
+    chroma = saturation * value
+    if np.median(saturation) < 40 or np.median(value) < 25:
+        raise ImageError(
+            f"the place is nearly grey, white or black (median saturation {np.median(saturation) / 255:.2f}, value "
+            f"{np.median(value) / 255:.2f}): its colour tells it from nothing. Click a coloured place"
+        )
+    turn = np.sum(chroma * np.exp(1j * np.pi * hue / HALF_CIRCLE))
+    mean = float(np.degrees(np.angle(turn)) % 360.0)
+    off = (2 * hue - mean + 180.0) % 360.0 - 180.0
+    keep = np.abs(off) < 45
+    spread = float(np.percentile(np.abs(off[keep]), 90))
+    least = float(np.percentile(saturation[keep], 10)) / 255
+    return Colour(
+        hue=mean % 360.0,
+        tolerance=min(max(1.6 * spread, 14.0), 30.0),
+        saturation=min(max(0.55 * least, 0.18), 0.40),
+        name=name,
+    )

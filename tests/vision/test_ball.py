@@ -1,0 +1,183 @@
+"""Balls drawn by another route than the renderer: found, measured, and not seen where there are none."""
+
+import cv2
+import numpy as np
+import pytest
+from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
+
+from ir50p_lab.errors import ImageError, InputError
+from ir50p_lab.vision import RED, Ball, Colour, Pinhole, find_balls, learn_colour
+
+F = 700.0
+
+
+def drawn(centre=(300, 200), radius=30, **options):
+    return photograph(add_ball(empty(grain=0.05), F, centre, radius), **options)
+
+
+def offset(balls, centre):
+    assert len(balls) >= 1, balls.reason
+    return np.hypot(balls[0].x - centre[0], balls[0].y - centre[1])
+
+
+@pytest.mark.parametrize("radius", [9, 15, 30, 60, 80])
+@pytest.mark.parametrize("centre", [(318.3, 240.7), (150.2, 330.6), (500.8, 120.1)])
+def test_centre_to_a_fraction_of_a_pixel(radius, centre):
+    picture = drawn(centre, radius, jpeg=90)
+    balls = find_balls(picture, camera=Pinhole.simple(F))
+    assert len(balls) == 1
+    assert isinstance(balls[0], Ball)
+    assert offset(balls, centre) < 0.5
+    assert balls[0].radius == pytest.approx(radius, rel=0.12)
+    assert balls[0].score > 0.5
+    assert offset(find_balls(picture), centre) < 1.0  # without a camera one is assumed
+
+
+def test_centre_of_the_sphere_is_not_the_centre_of_its_outline():
+    centre, radius = np.array([560.0, 410.0]), 60.0
+    picture = drawn(centre, radius, noise=0.5)
+    axis = np.array([319.5, 239.5])
+    far = np.linalg.norm(centre - axis)
+    mask = (RED.mask(picture) > 0).astype(np.uint8)
+    y, x = np.nonzero(mask)
+    middle = np.array([x.mean(), y.mean()])
+    predicted = far * (radius / F) ** 2  # of the ellipse, outwards: to first order
+    shift = (middle - centre) @ (centre - axis) / far
+    assert shift == pytest.approx(predicted, rel=0.35)
+    assert offset(find_balls(picture, camera=Pinhole.simple(F)), centre) < 0.4 < shift
+
+
+def test_lists_are_ranked_and_say_why_they_are_empty():
+    light = empty()
+    for centre, radius in (((150, 150), 35), ((420, 260), 25), ((560, 90), 12)):
+        add_ball(light, F, centre, radius)
+    balls = find_balls(photograph(light))
+    assert len(balls) == 3 and balls.reason == ""
+    assert [b.score for b in balls] == sorted((b.score for b in balls), reverse=True)
+    nothing = find_balls(photograph(empty()))
+    assert nothing == [] and "red" in nothing.reason
+
+
+def test_balls_that_touch():
+    light = empty()
+    for x in (200, 260, 320):
+        add_ball(light, F, (x, 240), 30)
+    found = sorted(ball.x for ball in find_balls(photograph(light)))
+    np.testing.assert_allclose(found, [200, 260, 320], atol=1.5)
+
+
+@pytest.mark.parametrize("hidden", ["left", "below", "middle"])
+def test_partly_hidden(hidden):
+    light = add_ball(empty(), F, (300, 200), 40)
+    box = {"left": (250, 130, 285, 280), "below": (240, 218, 360, 300), "middle": (293, 130, 310, 280)}[hidden]
+    light[box[1] : box[3], box[0] : box[2]] = (0.02, 0.05, 0.03)
+    assert offset(find_balls(photograph(light)), (300, 200)) < 1.0
+
+
+@pytest.mark.parametrize("centre", [(5, 240), (637, 100), (300, 472), (22, 460)])
+def test_touching_the_border(centre):
+    assert offset(find_balls(drawn(centre, 40)), centre) < 1.5
+
+
+def no_ball(name):
+    light, red = empty(grain=0.05), (0.6, 0.02, 0.03)
+    middle = (300.0, 200.0)
+    if name == "ring":
+        add_polygon(light, circle_corners(middle, 60))
+        add_polygon(light, circle_corners(middle, 38), (0.2, 0.22, 0.25))
+    elif name in ("octagon", "hexagon", "square", "triangle"):
+        corners = {"octagon": 8, "hexagon": 6, "square": 4, "triangle": 3}[name]
+        add_polygon(light, circle_corners(middle, 60, corners, 0.3))
+    elif name == "book":
+        add_polygon(light, [(200, 150), (420, 180), (400, 320), (180, 290)], red)
+    elif name == "tape":
+        add_polygon(light, [(100, 100), (500, 300), (495, 312), (95, 112)], red)
+    elif name == "ellipse":
+        add_polygon(light, circle_corners((0, 0), 60) * (1, 0.6) + middle)
+    elif name == "shirt":
+        light[:, 250:] = red
+    elif name == "orange ball":
+        add_ball(light, F, middle, 40, colour=(0.85, 0.25, 0.02))
+    elif name == "skin":
+        add_polygon(light, circle_corners(middle, 50), (0.6, 0.33, 0.22))
+    return photograph(light)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["ring", "octagon", "hexagon", "square", "triangle", "book", "tape", "ellipse", "shirt", "orange ball", "skin"],
+)
+def test_no_ball(name):
+    balls = find_balls(no_ball(name))
+    assert balls == []
+    assert len(balls.reason) > 20
+
+
+@pytest.mark.parametrize("size", [(224, 224), (320, 240), (1280, 720), (1920, 1080)])
+def test_sizes(size):
+    centre, radius = (0.4 * size[0], 0.6 * size[1]), max(10, size[1] / 14)
+    picture = photograph(add_ball(empty(size), 1.1 * size[0], centre, radius))
+    assert offset(find_balls(picture), centre) < 0.8
+
+
+def test_a_colour_learnt_from_a_click_finds_that_ball():
+    light = add_ball(empty(), F, (200, 200), 30)
+    add_ball(light, F, (420, 250), 35, colour=(0.03, 0.12, 0.5))
+    picture = photograph(light)
+    blue = learn_colour(picture, (425, 245), name="blue")
+    assert offset(find_balls(picture, blue), (420, 250)) < 0.5
+    assert len(find_balls(picture, blue)) == len(find_balls(picture)) == 1
+    patch = picture[240:262, 405:430]
+    assert offset(find_balls(picture, patch), (420, 250)) < 0.5
+
+
+def test_pixels_alone_decide():
+    picture = drawn()
+    kept = picture.copy()
+    assert find_balls(picture) == find_balls(picture)
+    assert (picture == kept).all()
+
+
+@pytest.mark.parametrize(
+    ("picture", "error"),
+    [
+        (None, ImageError),
+        (np.zeros((0, 0, 3), np.uint8), ImageError),
+        (np.zeros((48, 64), np.uint8), ImageError),
+        (np.zeros((48, 64, 1), np.uint8), ImageError),
+        (np.zeros((48, 64, 4), np.uint8), ImageError),
+        (np.zeros((48, 64, 3)), ImageError),
+    ],
+)
+def test_bad_pictures(picture, error):
+    with pytest.raises(error):
+        find_balls(picture)
+
+
+def test_bad_arguments():
+    picture = drawn()
+    for colour in ("red", 12, None):
+        with pytest.raises(InputError, match="Colour"):
+            find_balls(picture, colour)
+    for radius in (0, -3, np.nan, np.inf, "8"):
+        with pytest.raises(InputError, match="least_radius"):
+            find_balls(picture, least_radius=radius)
+    with pytest.raises(InputError, match="Pinhole"):
+        find_balls(picture, camera=700)
+
+
+def test_tiny_and_plain_pictures():
+    for shape in ((1, 1, 3), (2, 5, 3), (9, 9, 3)):
+        for value in (0, 255):
+            assert find_balls(np.full(shape, value, np.uint8)) == []
+    red = np.zeros((60, 80, 3), np.uint8)
+    red[..., 0] = 200
+    assert find_balls(red) == []
+    assert find_balls(red, Colour(hue=120)) == []
+
+
+def test_compressed_copies_agree():
+    picture = drawn((250.4, 260.3), 26)
+    data = cv2.imencode(".jpg", picture[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 60])[1]
+    again = np.ascontiguousarray(cv2.imdecode(data, cv2.IMREAD_COLOR)[..., ::-1])
+    assert offset(find_balls(again), (find_balls(picture)[0].x, find_balls(picture)[0].y)) < 0.4
