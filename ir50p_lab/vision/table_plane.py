@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from ir50p_lab.errors import InputError, VisionError
+from ir50p_lab.errors import CalibrationError, InputError, VisionError
 from ir50p_lab.vision.board_pose import (
+    board_points,
     board_pose,
     camera_numbers,
     checked_transform,
@@ -79,6 +80,22 @@ class TablePlane:
             pose_by_camera=pose.by_camera,
             rms=pose.rms,
         )
+
+    @classmethod
+    def from_picture(cls, camera, image, pattern=(9, 6), square=0.025, T_table_board=None):
+        """The plane from a picture (RGB) of a checkerboard that lies at T_table_board; see `board_points`.
+
+        Raises CalibrationError if the board is not found, with the reason; else as `from_board`.
+        """
+        from ir50p_lab.vision.calibration_corners import find_checkerboard
+        from ir50p_lab.vision.calibration_reasons import NotUsable
+        from ir50p_lab.vision.image import to_grey
+
+        try:
+            corners = find_checkerboard(to_grey(image), pattern).xy
+        except NotUsable as why:
+            raise CalibrationError(f"the board on the table is not found: {why}") from None
+        return cls.from_board(camera, corners, board_points(pattern, square, T_table_board))
 
     def homography(self, height=0.0):
         """H (3, 3) of the plane at `height` m: s (x_n, y_n, 1) = H (X, Y, 1)."""

@@ -1,0 +1,30 @@
+"""What the rendered targets share: the bench camera calibrated by us from rendered boards, and the plane it sees."""
+
+from functools import cache
+
+import numpy as np
+
+from ir50p_lab.vision import TablePlane, calibrate, render_scene
+from ir50p_lab.vision.calibration_rendered import board_pictures
+from ir50p_lab.vision.rendering import Board, bench_camera, bench_scene
+
+T_BASE_BOARD = np.array([[1, 0, 0, 0.28], [0, -1, 0, 0.065], [0, 0, -1, 0.0], [0, 0, 0, 1.0]])  # middle of the area
+
+
+@cache
+def own_calibration(count=15, seed=1):
+    """Calibration of the bench camera from `count` rendered pictures of the board."""
+    pinhole, _ = bench_camera()
+    images, _ = board_pictures(pinhole, count, seed)
+    return calibrate(images, progress=False)
+
+
+def picture_of_the_board(seed=0):
+    """The bench with the board lying at its known place, rendered (RGB)."""
+    return render_scene(bench_scene(Board(T_world_board=T_BASE_BOARD)), seed=seed)[0]
+
+
+@cache
+def own_plane(seed=1):
+    """TablePlane of our own calibration and one picture of the lying board."""
+    return TablePlane.from_picture(own_calibration(seed=seed), picture_of_the_board(seed), T_table_board=T_BASE_BOARD)

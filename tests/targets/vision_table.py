@@ -1,0 +1,51 @@
+"""Targets of the table plane: rendered balls all over the work area, our own calibration, Table 4.8 beside it."""
+
+import numpy as np
+
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.vision import Sight, render_scene, work_area
+from ir50p_lab.vision.rendering import Ball, bench_scene
+from tests.targets.rows import Row
+from tests.targets.vision_setup import own_calibration, own_plane
+
+# Table 4.8: where the ball was laid and where the thesis' camera put it, mm
+TABLE_4_8 = (((400, -100), (406, -101)), ((300, 300), (300, 302)), ((500, 0), (492, -6)), ((400, 200), (402, 199)))
+
+
+def sight():
+    """Our own plane with the detector before it; no camera."""
+    return Sight(None, own_plane())
+
+
+def found(place, seed):
+    """Position (2,) m of a rendered ball that lies at `place`, NaN if it is not found."""
+    image, _ = render_scene(bench_scene(Ball(position=(*place, 0.03)), texture_seed=seed), seed=seed)
+    seen = sight().seen_in(image, simulated=True)
+    return seen.position[:2] if seen else np.full(2, np.nan)
+
+
+def over_the_table(n, seed=2):
+    """Errors (n, 2) m of n balls drawn over the work area."""
+    places = work_area(IR50P).draw(np.random.default_rng(seed), n)[:, :2]
+    return np.array([found(place, k) - place for k, place in enumerate(places)])
+
+
+def rows(*, quick=False):
+    """The table of targets."""
+    n = 25 if quick else 300
+    error = np.linalg.norm(over_the_table(n), axis=1)
+    missed = int(np.isnan(error).sum())
+    median, p95 = np.nanmedian(error), np.nanpercentile(error, 95)
+    ours = np.array([1e3 * (found(np.array(real) / 1e3, 1000 + k)) for k, (real, _) in enumerate(TABLE_4_8)])
+    rms = own_calibration().rms
+    result = [
+        Row("own calibration, rms of the corners", "-", f"{rms:.3f} px", "0.15 px"),
+        Row(f"position on the table, median of {n}", "< 1 mm", f"{1e3 * median:.2f} mm", "mean 5.1 mm", median < 1e-3),
+        Row("position on the table, p95", "< 3 mm", f"{1e3 * p95:.2f} mm", "max 10.0 mm", p95 < 3e-3),
+        Row("balls not found", "-", f"{missed} of {n}"),
+    ]
+    for (real, thesis), place in zip(TABLE_4_8, ours, strict=True):
+        off, theirs = np.linalg.norm(place - real), np.linalg.norm(np.subtract(thesis, real))
+        text = f"({place[0]:.1f}, {place[1]:.1f}): {off:.1f} mm"
+        result.append(Row(f"Table 4.8, ball at {real} mm", "-", text, f"{thesis}: {theirs:.1f} mm"))
+    return result
