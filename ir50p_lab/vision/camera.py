@@ -24,6 +24,17 @@ class Frame:
     simulated: bool
     source: str
 
+    @property
+    def caption(self):
+        """A line for the title of a figure: where the picture comes from, and whether it is a photograph."""
+        return f"{self.source}, t = {self.t:.2f} s ({'rendered' if self.simulated else 'photograph'})"
+
+    def save(self, path):
+        """Write the picture to a file; a rendered one carries a mark (PNG and JPEG). Raises ImageError."""
+        from ir50p_lab.vision.image import save_image
+
+        save_image(path, self.image, rendered=self.simulated)
+
 
 class Camera:
     """A source of pictures: `with open_camera() as camera: frame = camera.read()`; also `for frame in camera:`.

@@ -180,6 +180,18 @@ def test_rendered_ball_moves_and_arm_poses():
         found.read()
 
 
+def test_frames_say_and_keep_what_they_are(tmp_path):
+    frame = RenderedCamera().read()
+    assert "rendered" in frame.caption and "t = 0.00 s" in frame.caption
+    frame.save(tmp_path / "a.png")
+    again = open_camera(tmp_path / "a.png").read()
+    assert again.simulated and (again.image == frame.image).all()
+    photo = Webcam(0, capture=FakeCapture()).read()
+    assert "photograph" in photo.caption
+    photo.save(tmp_path / "b.png")
+    assert not open_camera(tmp_path / "b.png").read().simulated
+
+
 def test_scene_as_a_function_of_time():
     found = open_camera(lambda t: bench_scene(Ball(position=(0.4 + t, 0, 0.03))), period=0.1)
     found.read()

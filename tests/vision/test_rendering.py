@@ -28,6 +28,7 @@ from ir50p_lab.vision.rendering import (
 )
 from ir50p_lab.vision.rendering.board_print import charuco_board
 from ir50p_lab.vision.rendering.colours import to_bytes, to_linear, to_srgb
+from ir50p_lab.vision.rendering.scene_distribution import SIZES
 from ir50p_lab.vision.rendering.sensor import disc, expose, mosaic, streak
 from ir50p_lab.vision.rendering.shadow import table_light
 from ir50p_lab.vision.rendering.shapes import SheetShape
@@ -299,3 +300,33 @@ def test_scenes_keep_what_their_kind_promises(kind):
             continue
         low, high = (0.2, 0.6) if kind == "hidden" else (0.6, 1.01)
         assert red and all(low <= ball.visible < high and 8 <= ball.radius <= 80 for ball in red)
+
+
+def test_random_scenes_are_as_wide_as_meant():
+    scenes = [random_scene(seed, "ball") for seed in range(60)]
+    balls = [scene_truth(scene).red_balls[0] for scene in scenes]
+    assert {scene.pinhole.size for scene in scenes} == set(SIZES)
+    assert {scene.table.texture for scene in scenes} == {"plain", "wood", "cloth", "speckle", "tiles"}
+    radius = np.array([ball.radius for ball in balls])
+    assert radius.min() < 10 and radius.max() > 65 and 15 < np.median(radius) < 40
+    assert 0.1 < np.mean([ball.visible < 0.99 for ball in balls]) < 0.5
+    hues = np.array([ball.colour[2] > ball.colour[1] for ball in balls])
+    assert 0.3 < hues.mean() < 0.8  # both sides of the seam of the hue circle
+
+
+@pytest.mark.parametrize("kind", ["ball", "no_ball"])
+def test_random_scenes_can_be_drawn_and_red_is_where_the_ball_is(kind):
+    drawn = 0
+    for seed in range(15):
+        scene = random_scene(seed, kind)
+        width, height = scene.pinhole.size
+        if width > 640:
+            continue
+        image, truth = render_scene(scene, seed)
+        assert image.shape == (height, width, 3) and 3 < image.mean() < 254
+        for ball in truth.red_balls:
+            y, x = np.mgrid[:height, :width]
+            inside = np.hypot(x - ball.outline_x, y - ball.outline_y) < 0.9 * ball.short
+            r, g, b = np.median(image[inside], axis=0)
+            drawn += r > 1.2 * max(g, b)
+    assert drawn >= 6 or kind == "no_ball"

@@ -140,7 +140,7 @@ class Table:
 
     texture: str = "wood"
     colour: str | tuple = (176, 148, 112)
-    contrast: float = 0.3
+    contrast: float = 0.18
     grain: float = 0.03
     angle: float = 0.0
     x: tuple = (-0.6, 1.1)
