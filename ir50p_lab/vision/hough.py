@@ -1,0 +1,39 @@
+"""The circle Hough transform (3.3), shown: each edge point votes for all centres that it could belong to."""
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+
+
+def circle_votes(points, shape, radius, *, width=1.0):
+    """Votes (h, w) for centres of circles of one radius: every point draws a circle around itself (Figure 3.7).
+
+    Args: points (n, 2): x, y of edge pixels; shape: (h, w); radius > 0 and width of the drawn line, pixels.
+    """
+    points = np.asarray(points, dtype=float)
+    if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
+        raise InputError(f"points has shape {points.shape}: give (n, 2), x and y of edge pixels")
+    if not 0 < radius < np.inf:
+        raise InputError(f"radius = {radius!r}: give a positive number of pixels")
+    height, width_px = shape[:2]
+    votes = np.zeros((height, width_px), int)
+    reach = int(np.ceil(radius + width))
+    dy, dx = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+    on = np.abs(np.hypot(dx, dy) - radius) < width / 2
+    dx, dy = dx[on], dy[on]
+    for x, y in np.rint(points).astype(int):
+        a, b = x + dx, y + dy
+        inside = (a >= 0) & (a < width_px) & (b >= 0) & (b < height)
+        votes[b[inside], a[inside]] += 1
+    return votes
+
+
+def circle_hough(points, shape, radii, *, width=1.0):
+    """The accumulator (n_radii, h, w), as shares of a full circle: votes over 2 pi r. Memory: n_radii pictures."""
+    return np.stack([circle_votes(points, shape, r, width=width) / (2 * np.pi * r * width) for r in radii])
+
+
+def strongest(accumulator, radii):
+    """The circle with most votes: x, y, radius, share of the circle."""
+    k, y, x = np.unravel_index(np.argmax(accumulator), accumulator.shape)
+    return int(x), int(y), float(radii[k]), float(accumulator[k, y, x])

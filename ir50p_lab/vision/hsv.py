@@ -1,0 +1,45 @@
+"""Hue, saturation, value: by the definition, and in the scales of the thesis, OpenCV and MATLAB (3.1.3)."""
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+
+HUE_SCALES = {"degrees": 360.0, "OpenCV": 180.0, "8 bit": 255.0, "MATLAB": 1.0}
+"""What a full turn of hue is called: OpenCV halves degrees to fit a byte, MATLAB has 0..1, 3.1.3 'scaled to 8 bit'."""
+
+
+def rgb_to_hsv(rgb):
+    """Hue (degrees, 0 <= h < 360), saturation and value (0..1) of colours (..., 3) of bytes: (..., 3) float.
+
+    V is the largest of r, g, b; S = (V - smallest)/V; the hue is the angle on the colour circle, red 0, green 120,
+    blue 240, in between by the middle one. Grey has no hue: 0 by convention. Raises InputError for another shape.
+    """
+    rgb = np.asarray(rgb, dtype=float) / 255
+    if rgb.ndim == 0 or rgb.shape[-1] != 3:
+        raise InputError(f"rgb has shape {rgb.shape}: give red, green, blue, 0..255, in the last axis")
+    if not ((rgb >= 0) & (rgb <= 1)).all():
+        raise InputError("rgb holds a number outside 0..255")
+    r, g, b = np.moveaxis(rgb, -1, 0)
+    value = rgb.max(axis=-1)
+    chroma = value - rgb.min(axis=-1)
+    safe = np.where(chroma > 0, chroma, 1)
+    hue = np.select([value == r, value == g], [(g - b) / safe % 6, (b - r) / safe + 2], (r - g) / safe + 4)
+    saturation = chroma / np.where(value > 0, value, 1)
+    return np.stack([np.where(chroma > 0, 60 * hue, 0.0), saturation, value], axis=-1)
+
+
+def hue_in(scale, hue_deg):
+    """A hue in another scale: one of HUE_SCALES. Raises InputError for an unknown one."""
+    if scale not in HUE_SCALES:
+        raise InputError(f"scale {scale!r}: give one of {', '.join(HUE_SCALES)}")
+    return np.asarray(hue_deg, dtype=float) / 360.0 * HUE_SCALES[scale]
+
+
+def hue_distance(a_deg, b_deg):
+    """How far two hues are apart on the circle, degrees 0..180: 350 and 10 are 20 apart, not 340."""
+    return np.abs((np.asarray(a_deg, dtype=float) - b_deg + 180) % 360 - 180)
+
+
+def threshold(values, T):
+    """1 where values >= T, else 0, as (3.1) has it: uint8 of the same shape."""
+    return (np.asarray(values) >= T).astype(np.uint8)

@@ -1,0 +1,124 @@
+"""Hue, saturation, value against colorsys and OpenCV; ranges across the seam; colours learnt from a click."""
+
+import colorsys
+
+import cv2
+import numpy as np
+import pytest
+from drawn_balls import add_ball, empty, photograph
+
+from ir50p_lab.errors import ImageError, InputError
+from ir50p_lab.vision import RED, Colour, hue_distance, hue_in, learn_colour, learn_from_patch, rgb_to_hsv, threshold
+
+RNG = np.random.default_rng(0)
+SAMPLE = RNG.integers(0, 256, (60, 80, 3), dtype=np.uint8)
+SAMPLE[0, :6] = [(0, 0, 0), (255, 255, 255), (9, 9, 9), (255, 0, 0), (0, 255, 0), (0, 0, 255)]
+
+
+def test_hsv_against_the_standard_library():
+    ours = rgb_to_hsv(SAMPLE).reshape(-1, 3)
+    theirs = np.array([colorsys.rgb_to_hsv(*(c / 255 for c in map(float, rgb))) for rgb in SAMPLE.reshape(-1, 3)])
+    np.testing.assert_allclose(ours, theirs * (360, 1, 1), atol=1e-9)
+
+
+def test_hsv_against_opencv():
+    ours, theirs = rgb_to_hsv(SAMPLE), cv2.cvtColor(SAMPLE, cv2.COLOR_RGB2HSV).astype(float)
+    assert hue_distance(ours[..., 0], 2 * theirs[..., 0]).max() < 1.2
+    assert np.abs(ours[..., 1:] * 255 - theirs[..., 1:]).max() < 0.53
+
+
+def test_scales_of_hue():
+    assert hue_in("8 bit", 120) == 85 and hue_in("8 bit", 240) == 170
+    assert hue_in("8 bit", 300) == 212.5 and round(float(hue_in("8 bit", 30))) == 21
+    assert hue_in("OpenCV", 300) == 150 and hue_in("MATLAB", 90) == 0.25
+    with pytest.raises(InputError, match="scale"):
+        hue_in("radians", 10)
+
+
+def test_hue_wraps():
+    assert hue_distance(350, 10) == 20
+    np.testing.assert_allclose(hue_distance([0, 90, 359.5], [180, 80, 0.5]), [180, 10, 1])
+
+
+def test_threshold_3_1():
+    assert threshold([1, 2, 3], 2).tolist() == [0, 1, 1]
+
+
+def every_colour():
+    steps = np.arange(0, 256, 5, dtype=np.uint8)
+    return np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, steps.size, 3)
+
+
+@pytest.mark.parametrize("hue", [0, 5, 20, 40, 120, 200, 300, 340, 355, 360])
+def test_mask_is_the_range_on_the_circle(hue):
+    colour = Colour(hue=hue, tolerance=20, saturation=0.4, value=0.2)
+    picture = every_colour()
+    h, s, v = np.moveaxis(rgb_to_hsv(picture), -1, 0)
+    off = hue_distance(h, hue)
+    mask = colour.mask(picture) > 0
+    assert mask[(off < 17) & (s > 0.42) & (v > 0.22)].all()
+    assert not mask[(off > 23) | (s < 0.38) | (v < 0.18)].any()
+
+
+def test_red_takes_both_ends_and_saturated_pixels():
+    reds = np.array([[(200, 30, 40), (200, 45, 30), (255, 0, 0), (180, 20, 60)]], np.uint8)
+    assert (RED.mask(reds) == 255).all()
+    others = np.array([[(235, 110, 25), (215, 160, 130), (120, 120, 120), (40, 140, 60), (230, 200, 40)]], np.uint8)
+    assert (RED.mask(others) == 0).all()
+
+
+def picture(colour=(0.03, 0.12, 0.5)):
+    return photograph(add_ball(empty(), 700, (200, 200), 40, colour=colour))
+
+
+@pytest.mark.parametrize("colour", [(0.6, 0.02, 0.03), (0.03, 0.12, 0.5), (0.05, 0.4, 0.08), (0.8, 0.5, 0.02)])
+def test_learnt_colour_covers_the_ball_and_little_else(colour):
+    shown = picture(colour)
+    mask = learn_colour(shown, (205, 195)).mask(shown) > 0
+    y, x = np.mgrid[: mask.shape[0], : mask.shape[1]]
+    far = np.hypot(x - 200, y - 200)
+    assert mask[far < 36].mean() > 0.97
+    assert mask[far > 44].mean() < 0.02
+
+
+def test_patch_and_click_agree():
+    shown = picture()
+    a, b = learn_colour(shown, (200, 200)), learn_from_patch(shown[185:215, 185:215])
+    assert hue_distance(a.hue, b.hue) < 3
+
+
+def test_no_colour_there():
+    with pytest.raises(ImageError, match="grey"):
+        learn_colour(picture(), (600, 400))
+    with pytest.raises(ImageError, match="one channel"):
+        learn_from_patch(np.zeros((5, 5), np.uint8))
+
+
+@pytest.mark.parametrize("xy", [(-3, 5), (640, 5), (5, 480), "here", (1,), None])
+def test_click_outside(xy):
+    with pytest.raises(InputError):
+        learn_colour(picture(), xy)
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        {"hue": -1},
+        {"hue": 361},
+        {"hue": np.nan},
+        {"tolerance": 0},
+        {"tolerance": 90},
+        {"saturation": 2},
+        {"value": "x"},
+    ],
+)
+def test_bad_ranges(bad):
+    with pytest.raises(InputError, match=next(iter(bad))):
+        Colour(**{"hue": 10.0, **bad})
+
+
+def test_bad_arrays():
+    with pytest.raises(InputError, match="shape"):
+        rgb_to_hsv([1, 2])
+    with pytest.raises(InputError, match="outside"):
+        rgb_to_hsv([1, 2, 300])
