@@ -9,6 +9,7 @@ import numpy as np
 from sympy import Matrix
 
 from ir50p_lab.course import printed_dynamics as printed
+from ir50p_lab.modelling import coriolis_matrix
 
 # 2.1.2: kg, m, kg m^2. Wrong: centres of mass 2.5 link lengths out; Iyy2 = Izz2 = Iyz2 is the tensor of a thin rod at
 # 45 degrees; "L" is L2.
@@ -39,6 +40,12 @@ def error_2_4(q_ref, q):
 def error_2_19(q_ref, q):
     """Below (2.19), e = x - x_d. Right."""
     return q - q_ref
+
+
+def coriolis_as_in_2_6(arm, q, qd):
+    """C(q, qd) q as (2.6) prints it, and C(q, qd) qd as it must be: two (3,) N m."""
+    C = coriolis_matrix(arm, q, qd)
+    return C @ q, C @ qd
 
 
 class LawWithError:

@@ -14,7 +14,7 @@ import numpy as np
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID, AdaptiveControl, ComputedTorque, FeedForward, GravityPD, saturation_forecast
 from ir50p_lab.course.printed_control import PARAMETERS_2_1_2, LawWithError, error_2_19, inverse_dynamics_as_printed
-from ir50p_lab.identification import fit, process, regressor
+from ir50p_lab.identification import fit, identify, load_excitations, process, regressor
 from ir50p_lab.modelling import IR50P, THESIS_C
 from ir50p_lab.modelling.named_arms import thesis_theta
 from ir50p_lab.signals import quintic, sinusoid
@@ -31,8 +31,6 @@ MOVE = quintic((0, 0, 0), GOAL, duration=6)
 
 def excitation():
     """The motion of the recordings that models are identified from."""
-    from ir50p_lab.identification.excitation_file import load_excitations
-
     return load_excitations()["training"]
 
 
@@ -46,14 +44,6 @@ def record(seed, motion):
     """110 s of the unit `seed` on the excitation, as a student records it."""
     with SimulatedBench(IR50P, seed=seed, q0=motion(0.0)[0], record_to=False) as bench:
         return bench.follow(thesis_pid(), motion, min(110.0, motion.duration))
-
-
-def identified(recording):
-    """The full method: zero-phase signals, delay, slow samples left out, physical bounds."""
-    motion = process(recording, delay=0.02, slow=0.05)
-    use = motion.use.astype(float)
-    Phi = regressor(motion.q, motion.qd, motion.qdd) * use[:, :, None]
-    return fit(Phi, motion.u * use, method="bounded", l2=IR50P.l[1])
 
 
 def naive(recording):
@@ -127,7 +117,7 @@ def rows_bench(seeds):
     motion, found, models = excitation(), {}, []
     for seed in seeds:
         recording = record(seed, motion)
-        model, poor = identified(recording), naive(recording)
+        model, poor = identify(recording, l2=IR50P.l[1]), naive(recording)
         models.append(model)
         laws = {
             "PID, Tables 4.1-4.3": thesis_pid(),

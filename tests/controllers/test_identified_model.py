@@ -1,0 +1,76 @@
+"""The whole way on the simulated bench: record, identify, track. Full table: python -m tests.targets.computed_torque."""
+
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.controllers import ComputedTorque, FeedForward, saturation_forecast
+from ir50p_lab.course.torque_views import follow, naive_model, rms, thesis_pid, training_run
+from ir50p_lab.identification import identify
+from ir50p_lab.modelling import IR50P, mass_matrix
+from ir50p_lab.signals import quintic, sinusoid
+
+TABLES_4_5 = {"kp": (25, 9, 49), "kd": (10, 6, 14)}
+SWING = sinusoid((0.8, 0.4, 0.3), (0.5, 0.8, 1.0), offset=(0.0, 0.8, -0.8))
+
+
+@pytest.fixture(scope="module", params=[3, 11, 42])
+def unit(request):
+    """(seed, recording, model) of one copy of the arm."""
+    recording = training_run(IR50P, seed=request.param)
+    return request.param, recording, identify(recording, l2=IR50P.l[1])
+
+
+@pytest.mark.compiled
+def test_the_identified_model_tracks_where_the_pid_does_not(unit):
+    seed, _, model = unit
+    law = ComputedTorque(model, **TABLES_4_5, model_velocity="reference")
+    ours, pid = (rms(follow(IR50P, c, SWING, 15, seed=seed), SWING) for c in (law, thesis_pid()))
+    assert (ours <= (20, 50, 20)).all()
+    np.testing.assert_allclose(pid, (144, 408, 165), rtol=0.1)  # Tables 4.1-4.3; checked with a second program
+    forward = FeedForward(model, (289, 225, 270), (40, 30, 30))
+    assert (rms(follow(IR50P, forward, SWING, 15, seed=seed), SWING) <= (25, 50, 20)).all()
+    as_thesis = ComputedTorque(model, **TABLES_4_5)  # (2.19): measured velocity in C and F
+    assert (rms(follow(IR50P, as_thesis, SWING, 15, seed=seed), SWING) <= (20, 65, 20)).all()
+
+
+@pytest.mark.compiled
+def test_the_naive_model_fails_because_its_inertia_is_negative(unit):
+    seed, recording, model = unit
+    naive = naive_model(recording)
+    error = rms(follow(IR50P, ComputedTorque(naive, **TABLES_4_5), SWING, 15, seed=seed), SWING)
+    assert error.max() > 400
+    poses = SWING.sample(np.linspace(0, 15, 100))[:, 0]
+    smallest = [np.linalg.eigvals(mass_matrix(m.theta, poses)).real.min() for m in (naive, model)]
+    assert smallest[0] < 0 < 3 < smallest[1]
+    assert any("positive definite" in line for line in naive.warnings)
+    # given the inertia of the other one, the rest of the naive model is good enough
+    mended = naive.theta.copy()
+    inertial = [0, 1, 4, 5, 6, 7, 8, 9, 19]
+    mended[:, inertial] = model.theta[:, inertial]
+    law = ComputedTorque(mended, **TABLES_4_5, limit_pwm=255)
+    assert rms(follow(IR50P, law, SWING, 15, seed=seed), SWING).max() < 0.5 * error.max()
+
+
+@pytest.mark.compiled
+def test_saturation_is_forecast_from_the_identified_model(unit):
+    seed, _, model = unit
+    goal = (np.pi / 2, np.pi / 2, -np.pi / 3)
+    limit = saturation_forecast(model, quintic((0, 0, 0), goal, duration=1.0)).stretch
+    law = ComputedTorque(model, **TABLES_4_5, model_velocity="reference")
+    for share, fits in ((1.4, True), (0.6, False)):
+        motion = quintic((0, 0, 0), goal, duration=share * limit)
+        assert saturation_forecast(model, motion).saturates != fits
+        run = follow(IR50P, law, motion, share * limit, seed=seed)
+        assert (rms(run, motion).max() < 100) == fits
+        assert (run.u.max() == 255) or fits
+
+
+@pytest.mark.compiled
+def test_gains_and_model_stand_in_the_recording(unit, tmp_path):
+    seed, _, model = unit
+    with SimulatedBench(IR50P, seed=seed, q0=SWING(0.0)[0], record_to=tmp_path) as bench:
+        head = bench.follow(ComputedTorque(model, **TABLES_4_5), SWING, 0.2).header
+    assert head["controller"] == "ComputedTorque" and head["kp"] == "25 9 49" and head["model_unit"] == "PWM"
+    row = [float(x) for x in head["model_theta_2"].split()]
+    np.testing.assert_allclose(row, model.theta[1], rtol=1e-5, atol=1e-12)

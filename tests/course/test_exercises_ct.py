@@ -1,0 +1,44 @@
+"""Exercises of notebook 08: right answers by another route; the message of each wrong one."""
+
+import numpy as np
+import pytest
+
+from ir50p_lab.controllers import gains_for_poles
+from ir50p_lab.course.exercises import judge, solution
+from ir50p_lab.course.exercises.ct import EXERCISES
+from ir50p_lab.modelling import IR50P, inverse_dynamics
+
+
+def test_the_border_by_the_roots():
+    border = solution("ct-1")
+    for K0, stable in ((0.999 * border, True), (1.001 * border, False)):
+        assert (np.roots([1, 4, 6, K0]).real.max() < 0) == stable
+
+
+def test_two_poles():
+    np.testing.assert_allclose(gains_for_poles((-8, -8)), solution("ct-2"))
+
+
+def test_the_error_that_stays_by_simulation():
+    e, rate = 0.0, 0.0
+    for _ in range(20000):
+        qdd = ((0.6 * (-49 * e - 14 * rate) + 4.0) - 5.5) / 0.6
+        rate += 1e-3 * qdd
+        e += 1e-3 * rate
+    assert solution("ct-3") == pytest.approx(e, abs=1e-6)
+
+
+def test_top_speed_needs_full_drive():
+    needed = inverse_dynamics(IR50P.theta_pwm, [0, 0, 0], [solution("ct-4"), 0, 0], [0, 0, 0])
+    assert needed[0] == pytest.approx(255)
+
+
+@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda e: e.name)
+def test_right_answer_is_right_and_each_slip_gets_its_own_sentence(exercise):
+    assert judge(exercise, solution(exercise.name)).state == "right"
+    texts = set()
+    for slip in exercise.slips:
+        verdict = judge(exercise, slip.wrong)
+        assert verdict.state == "slip" and slip.message in verdict.text
+        texts.add(slip.message)
+    assert len(texts) == len(exercise.slips) >= 3
