@@ -31,7 +31,7 @@ _FEWEST = 3
 _SAME = 1.0 / 800  # of the diagonal: a board that moved less is taken for the same view
 
 
-def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, aspect=None, progress=None):
+def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, aspect=None, bend=None, progress=None):
     """Calibrate a camera from pictures of a checkerboard or ChArUco board.
 
     Corners are found by both of OpenCV's finders and refined to sub-pixel; pictures that are of no use are left out,
@@ -46,6 +46,7 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, as
         board: Checkerboard or Charuco in place of pattern and square.
         lens: None to let the data choose, or coefficients to estimate, such as ("k1", "k2"); () for none.
         aspect: None estimates fx and fy; a number prescribes fx/fy (1 for square pixels), and is checked.
+        bend: None tests whether the board is bent, and estimates its shape if so; False takes it for flat all the same.
         progress: True or False to show a bar; None: from 8 pictures on.
 
     Returns: Calibration.
@@ -62,23 +63,27 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, as
         try:
             found[picture.index] = picture, _corners_in(picture, board, size)
         except NotUsable as why:
-            rejected.append((Rejected(picture.name, picture.index, why.reason, why.detail), why.seen))
+            rejected.append(
+                (Rejected(picture.name, picture.index, why.reason, why.detail), None if why.whole else why.seen)
+            )
             seen[why.seen] += why.seen is not None
     rejected = [_covered_or_other(one, parts, board, bool(found)) for one, parts in rejected]
     rejected += _drop_duplicates(found, size)
     if len(found) < _FEWEST:
         raise CalibrationError(_why_too_few(len(found), rejected, seen, board))
     names = {i: (picture.name, i) for i, (picture, _) in found.items()}
-    return _calibrate(names, {i: corners for i, (_, corners) in found.items()}, size, board, lens, aspect, rejected)
+    return _calibrate(
+        names, {i: corners for i, (_, corners) in found.items()}, size, board, (lens, aspect, bend), rejected
+    )
 
 
-def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=None):
+def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=None, bend=None):
     """Calibrate from corners that were found elsewhere.
 
     Args:
         object_points: for each view the points on the board (n, 3) m, z = 0; or one array for all of them.
         image_points: for each view the pixels (n, 2); also (n, 1, 2) as OpenCV has them.
-        size: (width, height) of the picture, px. lens, aspect: as for `calibrate`.
+        size: (width, height) of the picture, px. lens, aspect, bend: as for `calibrate`.
 
     Returns: Calibration. Raises CalibrationError as `calibrate`, InputError for shapes that do not fit, or NaN.
     """
@@ -100,12 +105,13 @@ def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=No
     }
     names = {i: (f"view {i + 1}", i) for i in corners}
     width, height = (int(n) for n in size)
-    return _calibrate(names, corners, (width, height), board, lens, aspect, [], everything)
+    return _calibrate(names, corners, (width, height), board, (lens, aspect, bend), [], everything)
 
 
-def _calibrate(names, found, size, board, lens, aspect, rejected, points=None):
+def _calibrate(names, found, size, board, options, rejected, points=None):
     """From corners by picture to a Calibration: outlier views out, lens chosen, bend of the board tested."""
     points = board.points if points is None else points
+    lens, aspect, bend = options
     keys = list(found)
     corners = Corners([points[found[i].index] for i in keys], [found[i].xy for i in keys], size)
     guess, rejected = start(corners), list(rejected)
@@ -121,7 +127,7 @@ def _calibrate(names, found, size, board, lens, aspect, rejected, points=None):
         rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
         corners, keys = corners.without(worst), [k for n, k in enumerate(keys) if n != worst]
         rough = fit(corners, model, start(corners))
-    best, evidence, tried, said = _best(corners, rough, wanted, aspect)
+    best, evidence, tried, said = _best(corners, rough, wanted, aspect, bend)
     views = tuple(
         View(
             name=names[key][0],
@@ -159,7 +165,7 @@ def _calibrate(names, found, size, board, lens, aspect, rejected, points=None):
     return replace(result, warnings=(*said, *about_lens(result), *about_camera(result), *about_views(result)))
 
 
-def _best(corners, rough, wanted, aspect):
+def _best(corners, rough, wanted, aspect, bend):
     """(Fit, evidence, fits tried, warnings): lens as the data say or as asked for, board flat or bent, aspect."""
     guess, said = (rough.camera, rough.poses), []
 
@@ -170,8 +176,10 @@ def _best(corners, rough, wanted, aspect):
         return one, (), (one,)
 
     best, evidence, tried = estimate(False)
-    bend = bent_board(corners, best)
-    if bend is not None and bend.kept:
+    shape = bent_board(corners, best)
+    if shape is not None and shape.kept and bend is False:
+        said.append("bend=False was prescribed, but the corners say that the board is bent: leave bend=None")
+    elif shape is not None and shape.kept:
         best, evidence, tried = estimate(True)
         size = 1000 * sag_size(corners, best.camera[9:])
         error = 1000 * sag_size(corners, best.stderr[9:]) / np.sqrt(3)
@@ -179,7 +187,7 @@ def _best(corners, rough, wanted, aspect):
             f"the board is bent by {size:.2g} +- {error:.1g} mm: its shape was estimated with the camera. Glue it to "
             "glass or a plate and repeat"
         )
-    evidence = (*evidence, bend) if bend is not None else evidence
+    evidence = (*evidence, shape) if shape is not None else evidence
     if aspect:
         question, free = free_aspect(corners, best)
         evidence = (*evidence, question)

@@ -120,7 +120,7 @@ def about_views(calibration):
     cover = calibration.coverage
     if cover.share < 0.5:
         found.append(f"corners fill {100 * cover.share:.0f} % of the picture only: {calibration.next_view().text}")
-    elif cover.reach < 0.7:
+    elif cover.reach < 0.6:
         found.append(
             f"no corner beyond {100 * cover.reach:.0f} % of the way to the picture's corners: the lens there is a guess"
         )

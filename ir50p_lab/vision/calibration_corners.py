@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.vision.calibration_grid import grow, in_order, is_checkerboard, roughness, spacing
+from ir50p_lab.vision.calibration_grid import grow, in_order, is_checkerboard, is_whole, roughness, spacing
 from ir50p_lab.vision.calibration_reasons import NotUsable, Reason
 
 _SEARCHED = 1280  # px; corners are searched in a picture reduced to this, and refined in the picture itself
@@ -103,14 +103,15 @@ def _examine(grey, grid, pattern):
     return grid
 
 
-def wrong_board(grid, pattern, edge=""):
-    """NotUsable for a board that has other corners than the pattern says."""
+def wrong_board(grid, pattern, edge="", whole=False):
+    """NotUsable for a board that has other corners than the pattern says; whole: it is seen to end all round."""
     seen = _named_like(grid, pattern)
     return NotUsable(
         Reason.WRONG_BOARD,
         f"it seems to have {edge}{seen[0]}x{seen[1]} inner corners, not {pattern[0]}x{pattern[1]}: "
         f"give pattern=({seen[0]}, {seen[1]}) if this is the board",
         seen=seen,
+        whole=whole,
     )
 
 
@@ -171,7 +172,7 @@ def _piece_together(grey, small, factor, pattern):
     if sorted(grid.shape[:2]) == sorted(pattern):
         return refine(grey, grid if grid.shape[:2] == (pattern[1], pattern[0]) else np.rot90(grid))
     if not _part_of_it(grid.shape[:2], outside, pattern):
-        raise wrong_board(grid, pattern, "at least " if outside else "")
+        raise wrong_board(grid, pattern, "at least " if outside else "", is_whole(grid, grey))
     columns, rows = _named_like(grid, pattern)
     raise NotUsable(
         Reason.CROPPED,

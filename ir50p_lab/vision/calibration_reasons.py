@@ -38,8 +38,11 @@ class Rejected:
 
 
 class NotUsable(Exception):  # noqa: N818 - inside the package: becomes a Rejected
-    """Raised where a picture turns out not to be usable, with Reason and detail; seen: (columns, rows) or None."""
+    """Raised where a picture turns out not to be usable, with Reason and detail.
 
-    def __init__(self, reason, detail, seen=None):
+    seen: (columns, rows) of a board in it; whole: that one is no part of a larger board.
+    """
+
+    def __init__(self, reason, detail, seen=None, whole=False):
         super().__init__(f"{reason}: {detail}")
-        self.reason, self.detail, self.seen = reason, detail, seen
+        self.reason, self.detail, self.seen, self.whole = reason, detail, seen, whole

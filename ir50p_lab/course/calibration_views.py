@@ -1,0 +1,202 @@
+"""Figures of notebook 10: what a lens bends, which pictures a calibration used, where its residuals point."""
+
+import numpy as np
+from matplotlib.collections import LineCollection
+
+from ir50p_lab.course.style import COLOURS, new_figure
+from ir50p_lab.vision import Pinhole
+
+RENDERED = "rendered, not photographed"
+
+
+def rendered_figure(*size, **layout):
+    """A `new_figure` with a note in its lower right corner: rendered, not photographed."""
+    figure = new_figure(*size, **layout)
+    x, y = 1.0 - 0.04 / figure.get_figwidth(), 0.03 / figure.get_figheight()
+    figure.text(x, y, RENDERED, ha="right", va="bottom", fontsize=7.5, color=COLOURS["grey"], style="italic")
+    return figure
+
+
+def show_picture(ax, image, title=""):
+    """A picture without ticks, pixel (0, 0) centred on the origin."""
+    ax.imshow(image, interpolation="antialiased")
+    ax.set(xticks=[], yticks=[])
+    ax.grid(False)
+    ax.spines[:].set_visible(False)
+    ax.set_title(title, fontsize=9)
+
+
+class LensView:
+    """A square grid as a lens shows it: straight lines in grey, what becomes of them in blue; `update` moves them.
+
+    Args: pinhole: Pinhole, whose K and size are used. Attribute: figure.
+    """
+
+    def __init__(self, pinhole):
+        self.pinhole = pinhole
+        w, h = pinhole.size
+        x, y = np.linspace(0, w - 1, 41), np.linspace(0, h - 1, 31)
+        across = [np.column_stack([x, np.full_like(x, v)]) for v in np.linspace(0, h - 1, 9)]
+        down = [np.column_stack([np.full_like(y, v), y]) for v in np.linspace(0, w - 1, 12)]
+        self._counts = np.cumsum([len(line) for line in across + down])[:-1]
+        straight = across + down
+        self._rays = pinhole.to_normalised(np.concatenate(straight))
+        self.figure = new_figure(6.4, 5.0)
+        ax = self.figure.axes[0]
+        ax.add_collection(LineCollection(straight, colors=COLOURS["light"], linewidths=1))
+        self._lines = LineCollection(straight, colors=COLOURS["blue"], linewidths=1.5)
+        ax.add_collection(self._lines)
+        ax.plot(*pinhole.K[:2, 2], "+", color=COLOURS["orange"], markersize=12)
+        ax.set(xlim=(-60, w + 60), ylim=(h + 60, -60), aspect="equal", xlabel="x [px]", ylabel="y [px]")
+        ax.set_title("A square grid through the lens")
+
+    def update(self, k1=0.0, k2=0.0, p1=0.0, p2=0.0):
+        """Draw the grid for these coefficients; returns how far the outermost point moves, in words."""
+        lens = Pinhole(self.pinhole.K, (k1, k2, p1, p2), self.pinhole.size)
+        xy = lens.to_pixels(lens.distort(self._rays))
+        self._lines.set_segments(np.split(xy, self._counts))
+        moved = np.linalg.norm(xy - lens.to_pixels(self._rays), axis=1).max()
+        return f"the outermost point moves by {moved:.1f} px"
+
+
+def contact_sheet(images, calibration, columns=5):
+    """All pictures, small: corners on those that were used, the reason on the others. Returns: LabFigure.
+
+    images: list of (h, w, 3), in the order given to `calibrate`; calibration: Calibration.
+    """
+    rows = -(-len(images) // columns)
+    figure = rendered_figure(9.0, 1.62 * rows + 0.2, rows=rows, cols=columns)
+    used = {view.index: view for view in calibration.views}
+    refused = {one.index: one for one in calibration.rejected}
+    for k, ax in enumerate(figure.axes):
+        if k >= len(images):
+            ax.set_visible(False)
+            continue
+        show_picture(ax, images[k][::2, ::2] if k not in refused else images[k])
+        if k in used:
+            ax.plot(*(used[k].corners.T / 2), ".", color=COLOURS["green"], markersize=2.5)
+            ax.plot(*(used[k].corners[0] / 2), "o", color=COLOURS["amber"], markersize=4)
+        elif k in refused:
+            ax.set_title(str(refused[k].reason), fontsize=9, color=COLOURS["orange"], fontweight="bold")
+    return figure
+
+
+def estimate_figure(calibration, truth):
+    """Estimate minus truth, in standard errors, for each number that was estimated. Returns: LabFigure.
+
+    truth: Pinhole that rendered the pictures.
+    """
+    right = dict(zip(calibration.values, (truth.fx, truth.fy, truth.cx, truth.cy, *truth.distortion), strict=True))
+    names = [name for name, error in calibration.stderr.items() if np.isfinite(error)]
+    off = [(calibration.values[n] - right[n]) / calibration.stderr[n] for n in names]
+    figure = rendered_figure(8.0, 2.8)
+    ax = figure.axes[0]
+    ax.axhspan(-3, 3, color=COLOURS["light"], alpha=0.4)
+    ax.axhline(0, color=COLOURS["dark"], linewidth=1)
+    ax.errorbar(range(len(names)), off, yerr=1, fmt="o", capsize=4, color=COLOURS["blue"])
+    ax.set(ylim=(-4, 4), ylabel="error [standard errors]", xlabel=" ", xlim=(-0.5, len(names) - 0.5))
+    ax.set_xticks(range(len(names)), names)
+    ax.set_title(f"The truth is within {max(np.abs(off)):.1f} standard errors of every number")
+    return figure
+
+
+def residual_figure(images, calibration, view, gain=500):
+    """A picture with its residuals as arrows, `gain` times longer, beside those of all views. Returns: LabFigure."""
+    one = calibration.views[view]
+    figure = rendered_figure(9.0, 3.8, cols=2, width_ratios=(1.5, 1))
+    left, right = figure.axes
+    show_picture(left, images[one.index], f"{one.name}: residuals, {gain} times longer, rms {one.rms:.3f} px")
+    arrows = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.006}
+    left.quiver(*one.corners.T, *(gain * one.residuals).T, color=COLOURS["orange"], **arrows)
+    for k, other in enumerate(calibration.views):
+        style = (
+            {"color": COLOURS["orange"], "markersize": 5} if k == view else {"color": COLOURS["grey"], "markersize": 2}
+        )
+        right.plot(*other.residuals.T, ".", **style)
+    circle = calibration.rms * np.exp(1j * np.linspace(0, 2 * np.pi, 80))
+    right.plot(circle.real, circle.imag, color=COLOURS["dark"], linewidth=1)
+    reach = 4 * calibration.rms
+    right.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xlabel="x [px]", ylabel="y [px]")
+    right.set_title(f"All views: rms {calibration.rms:.3f} px (circle)", fontsize=10)
+    return figure
+
+
+def coverage_figure(calibration):
+    """Corners per cell of the picture, the uncertainty over it, and where to hold it next. Returns: LabFigure."""
+    from ir50p_lab.vision import direction_stderr
+
+    w, h = calibration.size
+    figure = rendered_figure(9.0, 3.6, cols=2)
+    left, right = figure.axes
+    cover, following = calibration.coverage, calibration.next_view()
+    left.imshow(cover.counts, extent=(0, w, h, 0), cmap="Greens", vmin=0)
+    for view in calibration.views:
+        left.plot(*view.corners.T, ".", color=COLOURS["dark"], markersize=1)
+    left.set_title(f"Corners in {100 * cover.share:.0f} % of the cells")
+    x, y = np.meshgrid(np.linspace(0, w - 1, 33), np.linspace(0, h - 1, 25))
+    doubt = direction_stderr(calibration, np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
+    filled = right.contourf(x, y, doubt, 8, cmap="Blues")
+    figure.colorbar(filled, ax=right, label="standard error [px]")
+    right.set_title(f"Best next view: from {following.before:.2f} to {following.after:.2f} px")
+    loop = np.vstack([following.outline, following.outline[:1]])
+    for ax in (left, right):
+        ax.plot(*loop.T, color=COLOURS["orange"], linewidth=2)
+        ax.set(xlim=(0, w), ylim=(h, 0), aspect="equal", xlabel="x [px]", ylabel="y [px]")
+        ax.grid(False)
+    return figure
+
+
+def board_residual_figure(flat, bent, gain=300):
+    """Residuals by place on the board, mean over the views, turned into the board: flat model beside bent.
+
+    Args: flat, bent: Calibration of the same pictures without and with the shape of the board. Returns: LabFigure.
+    """
+    figure = rendered_figure(9.0, 3.4, cols=2)
+    for ax, one, name in zip(figure.axes, (flat, bent), ("Board taken for flat", "Bend estimated"), strict=True):
+        towards = [_height_direction(one, view) for view in one.views]
+        lift = np.mean(
+            [(v.residuals * d).sum(axis=1) / (d**2).sum(axis=1) for v, d in zip(one.views, towards, strict=True)],
+            axis=0,
+        )
+        columns, rows = one.board.pattern
+        size = 1000 * one.board.square
+        height = 1000 * lift.reshape(rows, columns)
+        reach = 1.0
+        drawn = ax.imshow(
+            height,
+            cmap="PuOr",
+            vmin=-reach,
+            vmax=reach,
+            extent=(-0.5 * size, (columns - 0.5) * size, (rows - 0.5) * size, -0.5 * size),
+        )
+        figure.colorbar(drawn, ax=ax, label="lies deeper by [mm]", shrink=0.8)
+        ax.set(xlabel="along the board [mm]", ylabel="down the board [mm]")
+        ax.set_title(f"{name}: rms {one.rms:.3f} px", fontsize=11)
+        ax.grid(False)
+    return figure
+
+
+def _height_direction(calibration, view):
+    """d pixel / d height (n, 2) px/m at the corners of a view: where a corner goes if the board is deeper there."""
+    step = 1e-4 * np.array([0, 0, 1.0])
+    there = calibration.pinhole.project(view.T_cam_board, view.points + step)
+    back = calibration.pinhole.project(view.T_cam_board, view.points - step)
+    return (there - back) / 2e-4
+
+
+def table_figure(image, pixels, errors):
+    """The picture with the balls that were found, beside the errors of their places. Returns: LabFigure.
+
+    Args: image (h, w, 3); pixels (n, 2) of the balls; errors: {name: estimate minus truth (n, 2) m}.
+    """
+    figure = rendered_figure(9.0, 3.7, cols=2, width_ratios=(1.3, 1))
+    left, right = figure.axes
+    show_picture(left, image, "Balls at the places of Table 4.8")
+    left.plot(*np.transpose(pixels), "+", color="white", markersize=12, markeredgewidth=2)
+    for (name, error), marker in zip(errors.items(), "xo^", strict=False):
+        right.plot(*(1000 * error).T, marker, fillstyle="none", label=name)
+    right.plot(0, 0, "+", color=COLOURS["dark"], markersize=14)
+    right.set(xlabel="error in x [mm]", ylabel="error in y [mm]", aspect="equal", title="Where the estimates fall")
+    right.margins(0.12)
+    right.legend(fontsize=8)
+    return figure
