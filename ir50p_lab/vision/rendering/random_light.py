@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.vision.rendering.colours import light_of
+from ir50p_lab.vision.rendering.render import sparse_light
 from ir50p_lab.vision.rendering.scene import Lamp, Lens, Sensor, Sky, Sun
 from ir50p_lab.vision.rendering.shadow import table_light
 
@@ -69,15 +69,15 @@ def random_lens(rng, radius, size):
 def random_sensor(rng, scene, position):
     """Exposure, white balance, noise, JPEG: an automatic that is nearly right.
 
-    The light at the ball on a grey card (0.18) is brought to what a camera makes of it, up to 0.9 stops off either way;
-    the colour of the light is taken out to between 40 and 100 %.
+    The light of the picture is brought to a middle grey, up to 0.9 stops off either way; the colour of the light around
+    the ball is taken out to between 40 and 100 %.
     """
-    light = table_light(scene, np.array([position[0] + 0.08]), np.array([position[1] + 0.08]))[0]
-    brightness = light.mean()
-    table = light_of(scene.table.colour).mean()
-    meter = 0.5 * 0.18 + 0.5 * table  # half-way to a camera that makes every table grey
-    exposure = 0.18 / meter / brightness * 2.0 ** rng.uniform(-0.9, 0.9) * 1.6
-    balance = (brightness / light) ** rng.uniform(0.4, 1.0)
+    angle = np.arange(12) * 2.4
+    ring = 0.03 + 0.02 * np.arange(12)
+    lit = table_light(scene, position[0] + ring * np.cos(angle), position[1] + ring * np.sin(angle)).mean(axis=0)
+    balance = (lit.mean() / lit) ** rng.uniform(0.4, 1.0)
+    # square roots, as the tone curve about does: a window in the corner does not darken everything
+    exposure = 0.2 / np.sqrt(sparse_light(scene)).mean() ** 2 * 2.0 ** rng.uniform(-0.9, 0.9)
     return Sensor(
         exposure=float(exposure),
         balance=tuple(map(float, balance * 1.05 ** rng.normal(0, 1, 3))),

@@ -43,6 +43,13 @@ def scene_truth(scene, seed=0):
     return _Picture(scene).truth(int(seed))
 
 
+def sparse_light(scene, across=16, down=12):
+    """Light (n, 3) along a few rays spread over the picture: what an exposure meter sees."""
+    w, h = scene.pinhole.size
+    x, y = np.meshgrid((np.arange(across) + 0.5) / across * w - 0.5, (np.arange(down) + 0.5) / down * h - 0.5)
+    return _Picture(scene).trace(rays_through(scene.pinhole, x.ravel(), y.ravel()))[0]
+
+
 class _Picture:
     """The scene in camera coordinates."""
 

@@ -42,9 +42,9 @@ def random_scene(seed, kind="ball"):
         raise InputError(f"kind = {kind!r}: give one of {', '.join(KINDS)}")
     rng = np.random.default_rng([int(seed), sorted(KINDS).index(kind)])
     for _ in range(_TRIES):
-        scene = _draw(rng, kind)
+        scene, ball = _draw(rng, kind)
         if scene is not None and _as_promised(scene, kind):
-            return scene
+            return _through_camera(rng, scene, ball)
     raise InputError(f"no scene of kind {kind!r} came out of seed {seed} in {_TRIES} tries: take another seed")
 
 
@@ -64,7 +64,7 @@ def _draw(rng, kind):
     ball = replace(ball, position=(*ball.position[:2], height))
     T_cam_world = _see(rng, pinhole, ball)
     if T_cam_world is None:
-        return None
+        return None, None
     lights = random_lights(rng, ball.position)
     scene = Scene(
         pinhole=pinhole,
@@ -73,9 +73,13 @@ def _draw(rng, kind):
         lights=lights,
         texture_seed=int(rng.integers(1 << 30)),
     )
-    scene = _furnish(rng, kind, scene, ball)
-    radius = pinhole.fx * ball.radius / np.linalg.norm(ball.position - _place(T_cam_world))
-    return replace(scene, lens=random_lens(rng, radius, size), sensor=random_sensor(rng, scene, ball.position))
+    return _furnish(rng, kind, scene, ball), ball
+
+
+def _through_camera(rng, scene, ball):
+    radius = scene.pinhole.fx * ball.radius / np.linalg.norm(ball.position - _place(scene.T_cam_world))
+    scene = replace(scene, lens=random_lens(rng, radius, scene.pinhole.size))
+    return replace(scene, sensor=random_sensor(rng, scene, ball.position))
 
 
 def random_pinhole(rng, size):
