@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
+from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.inputs import first_not_finite, vectors3
 
 METHODS = ("ls", "weighted", "huber", "ridge", "bounded", "iv")
@@ -59,6 +59,20 @@ def checked_weights(weights, n, every):
             "give (3,) or (n, 3), all >= 0: 1/variance of each measurement"
         )
     return np.broadcast_to(weights, (n, 3))
+
+
+def checked_use(use, n, every):
+    """Which samples count, (n, 3) bool, after decimation. Raises InputError."""
+    use = np.asarray(use)
+    if use.dtype != bool or use.ndim != 2 or use.shape[1] != 3 or len(use[:: int(every)]) != n:
+        raise InputError(f"use has shape {use.shape}, type {use.dtype}: give (n, 3) of True and False, as Motion.use")
+    use = use[:: int(every)]
+    if use.sum(axis=0).min() < 40:
+        raise IdentificationError(
+            f"only {use.sum(axis=0).tolist()} samples of the joints are to be used; give 40 or more of each: record "
+            "longer or faster motion, or leave out fewer near standstill"
+        )
+    return use
 
 
 def checked_instruments(instruments, shape, every):

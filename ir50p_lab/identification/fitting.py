@@ -26,6 +26,7 @@ def fit(
     columns="rigid",
     l2=None,
     weights=None,
+    use=None,
     threshold=1.345,
     strength=1e-3,
     bounds=None,
@@ -57,6 +58,7 @@ def fit(
         l2: length of the upper arm, m: ties theta6 = l2 theta4, as for every in-line arm.
         errors: standard errors: "hac" also for residuals that are correlated in time (after a filter they are), or
             "classical" for white ones. Both assume that Phi is free of noise; noise in it biases all methods but "iv".
+        use: (n, 3) bool: samples of a joint that count, as `Motion.use`; default all.
         every: fit each `every`-th sample only (decimation).
 
     Returns: Estimate. Columns that depend on others within the data are left out: 0 with stderr inf, and named.
@@ -65,11 +67,12 @@ def fit(
     """
     fit_input.checked_options(method, rows, errors, l2, threshold, strength)
     Phi, y = fit_input.checked_data(Phi, y, every)
+    use = None if use is None else fit_input.checked_use(use, len(y), every)
     chosen = chosen_columns(columns)
     limits = checked_bounds(bounds) if method == "bounded" else None
     Z = fit_input.checked_instruments(instruments, Phi.shape, every) if method == "iv" else None
     if method == "weighted":
-        weights = _weights(weights, Phi, y, rows, chosen, l2, every)
+        weights = _weights(weights, Phi, y, use, rows, chosen, l2, every)
     estimators = {
         "ls": lambda part, problem: ls.least_squares(problem),
         "weighted": lambda part, problem: ls.least_squares(problem),
@@ -80,8 +83,10 @@ def fit(
     }
     parts = [_Part.of(joints, chosen, l2) for joints in ([[0, 1, 2]] if rows == "shared" else [[0], [1], [2]])]
     root_weights = np.sqrt(weights) if method == "weighted" else None
+    if use is not None:  # rows of zeros say nothing, and leave the others at their place in time
+        root_weights = use.astype(float) if root_weights is None else root_weights * use
     solved = [_solve(part, Phi, y, root_weights, estimators[method], errors) for part in parts]
-    return _gather(parts, solved, Phi, y, method, rows, errors, unit)
+    return _gather(parts, solved, Phi, y, use, method, rows, errors, unit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,10 +140,11 @@ def _solve(part, Phi, y, root_weights, estimator, errors):
     return problem, back, back @ solution.beta, covariance, notes
 
 
-def _gather(parts, solved, Phi, y, method, rows, errors, unit):
+def _gather(parts, solved, Phi, y, use, method, rows, errors, unit):
     """One Estimate from the solutions of all parts."""
     theta, stderr, covariance = np.zeros((3, 20)), np.full((3, 20), np.nan), np.zeros((3, 20, 20))
     condition, freedom, names, lost, notes = np.zeros(3), np.zeros(3), [(), (), ()], [], []
+    used = np.ones(y.shape) if use is None else use.astype(float)
     for part, (problem, back, values, spread, sentences) in zip(parts, solved, strict=True):
         found = back.any(axis=1)
         for j in part.joints:
@@ -146,12 +152,13 @@ def _gather(parts, solved, Phi, y, method, rows, errors, unit):
             stderr[j, part.here] = np.where(found, np.sqrt(np.maximum(np.diag(spread), 0.0)), np.inf)
             covariance[j][np.ix_(part.here, part.here)] = spread
             condition[j] = problem.condition
-            freedom[j] = len(problem.y) / (len(problem.y) - len(problem.names))
+            count = used[:, part.joints].sum()
+            freedom[j] = count / max(count - len(problem.names), 1.0)
             names[j] = tuple(NAMES[k] for k, here in zip(part.here, found, strict=True) if here)
         lost += [part.who + NAMES[k] for k, here in zip(part.here, found, strict=True) if not here]
         notes += sentences
     residuals = y - np.einsum("nij,ij->ni", Phi, theta)
-    correlation = lag_one(residuals)
+    correlation = lag_one(residuals * used)
     notes += impossible_values(theta, stderr, rows) + indefinite_mass(theta)
     strongest = np.abs(correlation).max()
     if errors == "classical" and strongest > max(0.1, 4 / np.sqrt(len(y))):
@@ -165,7 +172,7 @@ def _gather(parts, solved, Phi, y, method, rows, errors, unit):
         covariance=covariance,
         condition=condition,
         residuals=residuals,
-        sigma=np.sqrt(np.mean(residuals**2, axis=0) * freedom),
+        sigma=np.sqrt(np.sum(used * residuals**2, axis=0) / used.sum(axis=0) * freedom),
         correlation=correlation,
         columns=tuple(names),
         unidentifiable=tuple(lost),
@@ -176,12 +183,12 @@ def _gather(parts, solved, Phi, y, method, rows, errors, unit):
     )
 
 
-def _weights(weights, Phi, y, rows, chosen, l2, every):
+def _weights(weights, Phi, y, use, rows, chosen, l2, every):
     """Given weights, or one per joint from a first fit of one theta for all."""
     if weights is not None:
         return fit_input.checked_weights(weights, len(y), every)
     if rows == "joint":
         raise InputError("method='weighted' with rows='joint' needs weights (n, 3): 1/variance of each measurement")
-    first = fit(Phi, y, rows="shared", columns=[NAMES[k] for k in chosen], l2=l2)
+    first = fit(Phi, y, rows="shared", columns=[NAMES[k] for k in chosen], l2=l2, use=use)
     floor = 1e-9 * np.sqrt(np.mean(y**2)) or 1.0
     return np.broadcast_to(1 / np.maximum(first.sigma, floor) ** 2, y.shape)

@@ -19,9 +19,12 @@ def huber(problem, threshold):
     Q, y = problem.Q, problem.y
     joints = len(y) // problem.n
     x = problem.Qty
+    counts = (Q.any(axis=1) | (y != 0)).reshape(-1, joints)  # rows of zeros are samples left out
     for _ in range(_MOST_STEPS):
         e = (y - product(Q, x)).reshape(-1, joints)
-        limit = (threshold * np.median(np.abs(e), axis=0) / _NORMAL * np.ones_like(e)).ravel()
+        limit = (
+            threshold * np.nanmedian(np.where(counts, np.abs(e), np.nan), axis=0) / _NORMAL * np.ones_like(e)
+        ).ravel()
         e = e.ravel()
         limit = np.maximum(limit, 1e-12 * np.abs(y).max(initial=0.0))  # a perfect fit has no scale
         weights = limit / np.maximum(np.abs(e), np.where(limit > 0, limit, 1.0))
@@ -37,6 +40,6 @@ def huber(problem, threshold):
     e = y - product(Q, x)
     inside = np.abs(e) <= limit
     bread = gram(Q, inside[:, None] * Q)
-    cut = 1 - inside.mean()
+    cut = 1 - inside[counts.ravel()].mean()
     notes = [f"{problem.who}{cut:.0%} of the samples lie beyond the threshold"] if cut > 0.3 else []
     return Solution(problem.beta(x), bread, Q, np.clip(e, -limit, limit), notes)

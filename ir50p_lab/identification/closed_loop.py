@@ -1,0 +1,124 @@
+"""The closed loop of a run, simulated with a model in place of the arm: what output-error fits compare with."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ir50p_lab.controllers.base import Controller
+from ir50p_lab.controllers.dispatch import control_step
+from ir50p_lab.errors import InputError
+from ir50p_lab.identification.columns import columns_of, sampling_period
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.jit import jit
+from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
+from ir50p_lab.simulation.plant import DRY, FS, QS, make_plant
+from ir50p_lab.simulation.steps import advance
+
+_STILL = 5  # first samples, of which the mean is the start: the arm has hardly moved by then
+
+
+@jit(nogil=True)
+def delayed_loop(theta, n, kind, p, s, t, r, x, limit, late, h, steps, q, u):
+    """Measure, compute, send; each command acts `late` periods after its sample, before the first nothing is driven.
+
+    theta, n: plant; kind, p, s: controller; t (m,) s; r (m, 3, 3); x (6,) state, changed; limit: of |u|; fills q, u
+    (m, 3).
+    """
+    measured, command, acting = np.empty(3), np.empty(3), np.zeros(3)
+    for k in range(t.size):
+        for i in range(3):
+            measured[i] = q[k, i] = x[i]
+        control_step(kind, p, s, t[k], measured, r[k], command)
+        for i in range(3):
+            u[k, i] = min(max(command[i], -limit), limit)
+            acting[i] = u[k - late, i] if k >= late else 0.0
+        if k + 1 < t.size:
+            advance(theta, n, x, acting, h, steps)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A recording with what is needed to repeat it in simulation: t (m,), q, u (m, 3), rows r (m, 3, 3), start (3,)."""
+
+    t: np.ndarray
+    q: np.ndarray
+    u: np.ndarray
+    r: np.ndarray
+    start: np.ndarray
+    period: float
+    controller: Controller
+    late: int
+    limit: float
+    unit: str
+    g: float
+
+    @classmethod
+    def of(cls, recording, controller, reference=None, *, delay=0.0, limit=None, unit="PWM", g=STANDARD_GRAVITY):
+        """Checked, from a recording, its controller and its reference; see `output_error` for the arguments."""
+        t, q, u = columns_of(recording)
+        if q.shape[1] != 3 or len(t) < 50:
+            raise InputError(f"{len(t)} samples of {q.shape[1]} joint(s): give 50 or more of all three joints")
+        period = sampling_period(t)
+        if np.abs(np.diff(t) - period).max() > 0.1 * period:
+            raise InputError("the times are uneven or have gaps: a loop is compared without; cut with between(t0, t1)")
+        if not isinstance(controller, Controller):
+            raise InputError(f"controller is a {type(controller).__name__}: give the PID (or other) of the run")
+        if not (np.isscalar(delay) and np.isfinite(delay) and 0 <= delay < 1):
+            raise InputError(f"delay = {delay!r} s: give 0 to below 1 s")
+        limit = (255.0 if unit == "PWM" else np.inf) if limit is None else float(limit)
+        if not limit > 0:
+            raise InputError(f"limit = {limit}: must be positive, in the unit of u")
+        rows = _rows(recording, reference, t, period)
+        start, late = q[:_STILL].mean(axis=0), round(delay / period)
+        return cls(t, q, u, rows, start, period, controller, late, limit, unit, float(g))
+
+    def simulate(self, theta, fs=None, qs=None, *, step=0.001):
+        """q and u, (m, 3) each, of the loop with this model; fs, qs (3,): breakaway and Stribeck speed."""
+        plant = make_plant(theta, unit=self.unit, g=self.g)
+        numbers = plant.numbers.copy()
+        if fs is not None:
+            numbers[FS : FS + 3], numbers[QS : QS + 3] = fs, qs
+            numbers[DRY] = 1.0
+        state = np.zeros_like(self.controller.state)
+        x, q, u = np.r_[self.start, 0.0, 0.0, 0.0], np.empty_like(self.q), np.empty_like(self.u)
+        steps = max(1, round(self.period / step))
+        law = (self.controller.kind, self.controller.parameters, state)
+        h = self.period / steps
+        delayed_loop(plant.theta, numbers, *law, self.t, self.r, x, self.limit, self.late, h, steps, q, u)
+        return q, u
+
+
+def _rows(recording, reference, t, period):
+    if reference is None:
+        angles = getattr(recording, "reference", None)
+        if angles is None:
+            raise InputError("the recording holds no reference: give reference=, the motion that was asked for")
+        angles = vectors3("reference of the recording", angles, unit="rad")
+        qd = np.gradient(angles, period, axis=0)
+        return np.ascontiguousarray(np.stack([angles, qd, np.gradient(qd, period, axis=0)], axis=1))
+    if hasattr(reference, "sample"):
+        rows = np.ascontiguousarray(reference.sample(t), dtype=float)
+    elif callable(reference):
+        rows = np.array([np.stack(reference(time)) for time in t], dtype=float)
+    else:
+        raise InputError(f"reference is a {type(reference).__name__}: give a motion, or None for the recorded one")
+    if rows.shape != (len(t), 3, 3) or not np.isfinite(rows).all():
+        raise InputError(f"the reference gives {rows.shape} or numbers that are not finite; need ({len(t)}, 3, 3)")
+    return rows
+
+
+def runs_of(recordings, controller, references=None, *, seconds=None, **options):
+    """A list of Run, cut to the first `seconds` (None: whole): from a recording or a list, and a motion for each."""
+    if seconds is not None and not (np.isscalar(seconds) and not isinstance(seconds, str) and seconds >= 2):
+        raise InputError(f"seconds = {seconds!r}: give 2 s or more of each recording")
+    several = isinstance(recordings, (list, tuple))
+    recordings = list(recordings) if several else [recordings]
+    references = list(references) if several and references is not None else [references] * len(recordings)
+    if not recordings or len(references) != len(recordings):
+        raise InputError(f"{len(recordings)} recordings and {len(references)} references: give one for each")
+    runs = []
+    for recording, reference in zip(recordings, references, strict=True):
+        run = Run.of(recording, controller, reference, **options)
+        m = len(run.t) if seconds is None else int(min(len(run.t), round(seconds / run.period)))
+        runs.append(replace(run, t=run.t[:m], q=run.q[:m], u=run.u[:m], r=run.r[:m]))
+    return runs

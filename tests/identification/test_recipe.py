@@ -1,0 +1,163 @@
+"""The recipe in one call, motions kept in a file, and the rehearsal that chose them."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification import (
+    fit,
+    identify,
+    load_excitations,
+    process,
+    regressor,
+    regressor_condition,
+    rehearse,
+    save_excitations,
+    validate,
+)
+from ir50p_lab.identification.make_excitations import make_excitations, thesis_pid
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.signals import hold
+
+MOTIONS = load_excitations()
+
+
+def run(name, seed=5, seconds=40, **options):
+    motion = MOTIONS[name]
+    with SimulatedBench(IR50P, seed=seed, q0=motion.q_start, record_to=False, **options) as bench:
+        return bench.follow(thesis_pid(), motion, seconds)
+
+
+@pytest.fixture(scope="module")
+def records():
+    return run("training"), run("validation 1", seed=6)
+
+
+@pytest.mark.compiled
+def test_the_recipe_is_its_steps(records):
+    train, valid = records
+    found = identify(train, l2=0.2)
+    motion = process(train, cutoff_hz=1.2, delay=0.02, slow=0.05)
+    Phi = regressor(motion.q, motion.qd, motion.qdd, sign=0.05)
+    again = fit(Phi, motion.u, method="bounded", l2=0.2, use=motion.use)
+    np.testing.assert_array_equal(found.theta, again.theta)
+    np.testing.assert_array_equal(found.stderr, again.stderr)
+    np.testing.assert_allclose(found.theta[1:, 5], 0.2 * found.theta[1:, 3])
+    score = found.score(valid)
+    same = validate(found, valid, cutoff_hz=1.2, delay=0.02, sign=0.05)
+    np.testing.assert_array_equal(score.fit, same.fit)
+    assert (score.fit > [88, 85, 88]).all()  # on everything that is not ideal, 40 s
+
+
+@pytest.mark.compiled
+def test_two_recordings_are_better_than_one(records):
+    train, valid = records
+    one, two = identify(train, l2=0.2), identify([train, valid], l2=0.2)
+    seen = np.isfinite(one.stderr) & (one.stderr > 0)
+    assert np.median(two.stderr[seen] / one.stderr[seen]) < 0.9
+    assert len(two.residuals) > 1.9 * len(one.residuals)
+
+
+@pytest.mark.compiled
+def test_samples_that_do_not_count_do_not_matter(records):
+    motion = process(records[0], delay=0.02, slow=0.05)
+    Phi = regressor(motion.q, motion.qd, motion.qdd)
+    spoilt = np.where(motion.use, motion.u, 1e4)
+    for method in ("ls", "bounded", "ridge", "huber"):
+        clean, other = (fit(Phi, u, method=method, use=motion.use) for u in (motion.u, spoilt))
+        np.testing.assert_allclose(clean.theta, other.theta, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(clean.sigma, other.sigma, rtol=1e-9)
+    kept = [fit(Phi[use], motion.u[use]).theta[j] for j, use in enumerate(motion.use.T)]
+    np.testing.assert_allclose(fit(Phi, motion.u, use=motion.use).theta, kept, rtol=1e-7, atol=1e-7)
+
+
+def test_the_motions_in_the_file():
+    assert [*MOTIONS] == ["plain", "training", *(f"validation {k}" for k in range(1, 21))]
+    assert len({motion.a for motion in MOTIONS.values()}) == 22
+    conditions = {name: regressor_condition(motion) for name, motion in MOTIONS.items()}
+    assert all((conditions[name] < 20).all() for name in MOTIONS if name != "plain")
+    assert (conditions["plain"] > 1.5 * conditions["training"]).all()
+    assert all(motion.duration == 110 for motion in MOTIONS.values())
+
+
+def test_motions_come_back_as_they_were(tmp_path):
+    path = save_excitations(tmp_path / "some.json", {"x": MOTIONS["training"]}, made_by="here")
+    assert load_excitations(path) == {"x": MOTIONS["training"]}
+    (tmp_path / "bad.json").write_text("{}")
+    with pytest.raises(InputError, match="no file of excitations"):
+        load_excitations(tmp_path / "bad.json")
+    with pytest.raises(InputError, match="cannot read"):
+        load_excitations(tmp_path / "none.json")
+    with pytest.raises(InputError, match="cannot write"):
+        save_excitations(tmp_path / "no" / "x.json", {"x": MOTIONS["training"]}, made_by="here")
+    with pytest.raises(InputError, match="made by `fourier`"):
+        save_excitations(tmp_path / "x.json", {"x": hold([0, 0, 0])}, made_by="here")
+
+
+def test_loading_motions_starts_no_numba():
+    code = "import sys, ir50p_lab.identification as i; i.load_excitations; print('numba' in sys.modules)"
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert out.strip() == "False"
+
+
+@pytest.mark.compiled
+def test_a_rehearsal_tells_what_the_run_will_be(records):
+    told = rehearse(MOTIONS["training"], IR50P, thesis_pid())
+    assert told.worth() > 0 and told.worth() == (told.fit - [90, 92, 93]).min()
+    np.testing.assert_allclose(told.spread, records[0].u.std(axis=0), rtol=0.2)
+    assert np.sqrt(np.mean((told.q[:2000] - records[0].q[:2000]) ** 2)) < 0.05
+    assert told.worth(room=1.0) == -np.inf and told.worth(height=1.0) == -np.inf
+    noisy = rehearse(MOTIONS["training"], IR50P, thesis_pid(), noise=20)
+    assert (noisy.fit < told.fit - 5).all()
+    as_theta = rehearse(MOTIONS["training"], IR50P, thesis_pid(), model=IR50P.theta_pwm)
+    np.testing.assert_allclose(as_theta.spread, told.spread, rtol=0.2)
+
+
+@pytest.mark.compiled
+def test_the_same_seed_makes_the_same_motions():
+    options = {"candidates": 4, "kept": 1, "progress": False, "iterations": 10, "starts": 1, "harmonics": 3}
+    one, two = (make_excitations(seed=3, **options) for _ in range(2))
+    assert one == two and [*one] == ["plain", "training"]
+    with pytest.raises(IdentificationError, match="keep clear"):
+        make_excitations(seed=3, **options, margin=0.0, table=-1.0, max_joint_speed=2.5)
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        ({"recordings": []}, "no recording"),
+        ({"decimate": 2}, "decimate is fixed"),
+        ({"delay": -1}, "delay"),
+        ({"method": "best"}, "method"),
+    ],
+)
+def test_bad_arguments(options, words):
+    record = run("training", seconds=5)
+    with pytest.raises(InputError, match=words):
+        identify(**{"recordings": record, **options})
+
+
+@pytest.mark.parametrize("seconds", [0.25, 0.5, 1.0])
+def test_too_little(seconds):
+    with pytest.raises(IdentificationError, match=r"nothing is left|to be used"):
+        identify(run("training", seconds=seconds))
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        ({"reference": 3}, "give a motion"),
+        ({"arm": IR50P.theta}, "give an Arm"),
+        ({"noise": -1}, "noise"),
+        ({"seconds": 0.1}, "2 s or more"),
+        ({"table": np.nan}, "table"),
+    ],
+)
+def test_bad_rehearsals(arguments, words):
+    given = {"reference": MOTIONS["training"], "arm": IR50P, "controller": thesis_pid(), **arguments}
+    with pytest.raises(InputError, match=words):
+        rehearse(**given)

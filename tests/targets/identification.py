@@ -1,0 +1,132 @@
+"""Identification beside the thesis: `python -m tests.targets.identification [--seeds 20] [--first 100] [--quick]`.
+
+Each seed is another copy of the arm with other noise, trains on one motion and is judged on another (in all, as many
+as there are seeds, at most 20). Nothing of the bench but its recordings reaches the identification.
+"""
+
+import argparse
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: more threads only wait
+
+import dataclasses
+
+import numpy as np
+from tqdm.auto import tqdm
+
+from ir50p_lab.bench import SimulatedBench, Unit
+from ir50p_lab.identification import (
+    fit,
+    fit_with_instruments,
+    identify,
+    load_excitations,
+    output_error,
+    process,
+    regressor,
+    validate,
+)
+from ir50p_lab.identification.make_excitations import thesis_pid
+from ir50p_lab.modelling import IR50P
+from tests.targets.rows import Row, table
+
+THESIS = (63, 70, 74)
+TRIAL = np.array([65, 70, 77])
+PLAIN = {"dead_zone": (0, 0, 0), "backlash": (0, 0, 0), "pot_bow": (0, 0, 0), "bow_spread": 0.0}
+NAIVE = {"derivatives": "causal", "cutoff_hz": 3.0}
+MOTIONS = load_excitations()
+
+
+def record(motion, seed, run, *, unit, arm=IR50P, seconds=None):
+    """One run of the simulated bench; `run` numbers the runs of a seed, so that each has noise of its own."""
+    with SimulatedBench(arm, seed=seed, unit=unit, q0=motion.q_start, record_to=False) as bench:
+        for _ in range(20_000 * run):
+            bench.plant.counts()  # noise that the runs before took
+        return bench.follow(thesis_pid(), motion, seconds or motion.duration)
+
+
+def naive_model(recording):
+    """As in the thesis: causal filter, two backward differences, one theta of 20 parameters for all joints."""
+    motion = process(recording, **NAIVE)
+    return fit(regressor(motion.q, motion.qd, motion.qdd), motion.u, rows="shared", columns="thesis")
+
+
+def fits(seeds, unit, *, refine):
+    """Fit in % of naive method, full method and simulated closed loop (q, u), each (seeds, 3)."""
+    naive, full, angle, command = [], [], [], []
+    for k, seed in enumerate(tqdm(seeds, unit="seed", desc="fits")):
+        train, valid = MOTIONS[f"validation {(k + 7) % 20 + 1}"], MOTIONS[f"validation {k % 20 + 1}"]
+        known, unseen = record(train, seed, 0, unit=unit), record(valid, seed, 1, unit=unit)
+        naive.append(validate(naive_model(known), unseen, **NAIVE).fit)
+        model = identify(known, l2=IR50P.l[1])
+        full.append(model.score(unseen).fit)
+        if refine:
+            better = output_error(model, known, thesis_pid(), train, l2=IR50P.l[1], progress=False)
+            q, u = better.score(unseen, thesis_pid(), valid)
+            angle.append(q.fit)
+            command.append(u.fit)
+    return [np.array(x) for x in (naive, full, angle, command)]
+
+
+def honesty(seeds):
+    """Share of seeds with all parameters within three standard errors, and share of parameters, on noisy angles."""
+    friction = dataclasses.replace(IR50P.friction, fs=IR50P.friction.fc)  # a model that holds: only noise is left
+    arm = dataclasses.replace(IR50P, friction=friction)
+    unit, motion = Unit(**PLAIN, spread=0.0), MOTIONS["training"]
+    z = []
+    for seed in tqdm(seeds, unit="seed", desc="standard errors"):
+        known = record(motion, seed, 0, unit=unit, arm=arm)
+        found = fit_with_instruments(identify(known), known, thesis_pid(), motion)
+        fitted = np.isfinite(found.stderr) & (found.stderr > 0)
+        z.append(((found.theta - arm.theta_pwm) / found.stderr)[fitted])
+    inside = np.abs(z) < 3
+    return inside.all(axis=1).mean(), inside.mean(), np.std(z)
+
+
+def rows(seeds=20, *, first=100, quick=False):
+    """The table's rows."""
+    seeds = range(first, first + seeds)
+    out = []
+    for name, unit, floor in (
+        ("1 count of noise, no backlash, dead zone, bow", Unit(**PLAIN), (90, 92, 93)),
+        ("everything on", Unit(), (85, 85, 85)),
+    ):
+        naive, full, angle, command = fits(seeds, unit, refine=not quick)
+        if floor[0] == 90:
+            near = np.abs(np.median(naive, axis=0) - TRIAL)
+            out.append(_row(f"naive fit %, {name}", "65/70/77 +- 5", naive, bool((near <= 5).all())))
+        else:
+            out.append(_row(f"naive fit %, {name}", "-", naive, None))
+        aim = ">= " + "/".join(map(str, floor))
+        out.append(_row(f"full fit %, {name}", aim, full, bool((np.median(full, axis=0) >= floor).all())))
+        if not quick:
+            for what, x in (("angles", angle), ("commands", command)):
+                ok = bool((np.median(x, axis=0) >= 95).all()) if what == "angles" else None
+                aim = ">= 95" if what == "angles" else "-"
+                out.append(_row(f"output error, simulated loop, {what}, {name}", aim, x, ok, thesis="-"))
+    number = 10 if quick else 100
+    joint, pooled, spread = honesty(range(first, first + number))
+    what = f"parameters within 3 standard errors, {number} seeds"
+    out.append(Row(f"{what}: all at once", ">= 90 %", f"{100 * joint:.0f} %", "none given", bool(joint >= 0.9)))
+    measured = f"{100 * pooled:.2f} % (std of z {spread:.2f})"
+    out.append(Row(f"{what}: pooled", ">= 99 %", measured, "none given", bool(pooled >= 0.99)))
+    return out
+
+
+def _row(what, target, x, ok, thesis="63/70/74"):
+    middle, worst = ("/".join(f"{v:.1f}" for v in f(x, axis=0)) for f in (np.median, np.min))
+    return Row(what, target, f"{middle} (worst {worst})", thesis, ok)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--first", type=int, default=100, help="first seed")
+    parser.add_argument("--quick", action="store_true", help="no output error, 10 seeds for the standard errors")
+    given = parser.parse_args()
+    found = rows(given.seeds, first=given.first, quick=given.quick)
+    print(table(found, f"Identification, medians over {given.seeds} seeds from {given.first} on"))
+    return 1 if any(row.ok is False for row in found) else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
