@@ -34,7 +34,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "rendering": ["render_scene"],
         "reach_plan": ["Plan", "WorkArea", "plan", "reach_pose", "work_area"],
         "reaching": ["Reacher", "reach", "reaching_controller"],
-        "rendered_bench": ["RenderedBench"],
+        "rendered_bench": ["RenderedBench", "camera_over"],
         "sight": ["GREEN", "Seen", "Sight"],
         "smoothing": ["KERNEL_3_2", "convolve", "gaussian_kernel"],
         "table_plane": ["TablePlane"],

@@ -53,6 +53,8 @@ class JointCorrection:
         return shown
 
     def _shift(self, q):
+        if not self.terms:
+            return np.zeros(np.shape(q))
         v = (np.asarray(q, dtype=float) - self.middle) / self.half
         shapes = np.stack([np.ones_like(v), v, 1 - v * v])
         return np.einsum("kj,k...j->...j", self._table, shapes)

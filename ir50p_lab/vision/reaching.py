@@ -131,17 +131,17 @@ class Reacher:
     def move_along(self, reference):
         """Follow a reference of the arm's angles from its start to its end."""
         start, self._frozen = self._last.t, None
-        # it begins where the arm's set point is only up to trims: fade the difference out
-        first = self.shown(np.asarray(reference(0.0)[0]))
-        gap = self._set - first
-        while True:
-            t = self._last.t + self.bench.period - start
-            q, qd, qdd = reference(t)
-            fade = max(0.0, 1.0 - t / max(0.3, 0.5 * reference.duration))
-            self._set = self.shown(q) + fade * gap
-            self._cycle((self._set, qd, qdd))
-            if t >= reference.duration and fade == 0.0:
-                return
+        period, seconds = self.bench.period, max(reference.duration, 0.3)
+        t = np.arange(0.0, seconds + period, period)
+        rows = reference.sample(t)
+        shown = self.shown(rows[:, 0])
+        # the set point may be off the start by trims of the last stand: fade them out
+        shown += np.maximum(0.0, 1.0 - t / max(0.3, 0.5 * seconds))[:, None] * (self._set - shown[0])
+        k = 0
+        while k < len(t) - 1:
+            k = min(round((self._last.t - start) / period) + 1, len(t) - 1)  # by the clock: a late cycle skips ahead
+            self._set = shown[k]
+            self._cycle((self._set, rows[k, 1], rows[k, 2]))
 
     def move_to(self, p, *, lift=0.08, speed=0.5, clear=CLEAR):
         """Move the tip to p (3,) m on a way clear of the table, and settle. Returns the Plan."""

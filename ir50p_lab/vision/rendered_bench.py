@@ -108,3 +108,22 @@ class RenderedBench(Camera):
     def close(self):
         """Give the bench its own voice back."""
         self.bench._send = self._send
+
+
+def camera_over(bench, balls=(0.40, 0.0, 0.03), *, source=None, small=False, **options):
+    """The camera for a bench: rendered over a simulated arm, else `open_camera(source)`; one line says which.
+
+    balls: where balls lie in a rendered picture (a real camera sees yours); small: pictures of half the width and
+    height, for what must be quick; options: of RenderedBench.
+    """
+    from ir50p_lab.vision.camera import open_camera
+
+    if not hasattr(bench, "plant"):
+        return open_camera(source, **({"size": (320, 240)} if small else {}))
+    if small:
+        scene = options.get("scene") or bench_scene()
+        width, height = scene.pinhole.size
+        options["scene"] = replace(scene, pinhole=scene.pinhole.scaled((width // 2, height // 2)))
+    camera = RenderedBench(bench, balls, **options)
+    print(f"Camera: {camera.name}, {camera.size[0]}x{camera.size[1]}, rendered (a simulated arm is seen by no webcam)")
+    return camera

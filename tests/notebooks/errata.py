@@ -152,4 +152,8 @@ ERRATA = {
         ("Figure 4.13", "lag of the filter: the arm runs ahead, the picture lags", r"Figure 4\.13"),
         ("4.4.2", "too fast a trajectory: said, here forecast"),
     ],
+    "11": [
+        ("4.5", "from the board's frame into the base's: said, no equation does it"),
+        ("Table 4.8", "balls at 412 to 500 mm: out of reach of an arm with links of 0.2 m", r"Table 4\.8"),
+    ],
 }

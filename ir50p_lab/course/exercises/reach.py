@@ -1,0 +1,141 @@
+"""Exercises of notebook 11: from the camera's frame to the arm's, heights, reach, what looks can tell."""
+
+import numpy as np
+
+from ir50p_lab.course.exercises import Choice, Exercise, Function, Number, Slip
+from ir50p_lab.modelling import IR50P, frames
+
+NOTEBOOK = "11_vision_guided_reaching"
+
+# reach-1: a ball seen by a camera 0.60 m above the table.
+_HIGH, _FAR, _CENTRE = 0.60, 0.50, 0.03
+_OFF = _CENTRE * _FAR / (_HIGH - _CENTRE)
+
+# reach-2: where the camera stands, and a ball in camera coordinates.
+_T_BASE_CAM = np.array([[0.0, 0.6, -0.8, 0.9], [1.0, 0.0, 0.0, 0.1], [0.0, -0.8, -0.6, 0.7], [0.0, 0.0, 0.0, 1.0]])
+_P_CAM = np.array([0.05, 0.10, 0.80])
+_P_BASE = _T_BASE_CAM[:3, :3] @ _P_CAM + _T_BASE_CAM[:3, 3]
+
+# reach-3: a goal too far out for the IR50P.
+_GOAL = np.array([0.56, 0.12, 0.09])
+_SHOULDER = np.array([0.0, 0.0, IR50P.l[0]])
+_MISSING = float(np.linalg.norm(_GOAL - _SHOULDER) - IR50P.l[1] - IR50P.l[2])
+
+
+def _marker(q):
+    """Marker 42 mm before the tip, base coordinates."""
+    return frames(IR50P, q)[3][:3] @ np.array([-0.042, 0.0, 0.0, 1.0])
+
+
+def _tip(q):
+    return frames(IR50P, q)[3][:3, 3]
+
+
+def _beyond(q):
+    return frames(IR50P, q)[3][:3] @ np.array([0.042, 0.0, 0.0, 1.0])
+
+
+def _base_axes(q):
+    """Shifted along the base's x instead of the hand's."""
+    return _tip(q) - np.array([0.042, 0.0, 0.0])
+
+
+def _elbow(q):
+    return frames(IR50P, q)[2][:3] @ np.array([-0.042, 0.0, 0.0, 1.0])
+
+
+EXERCISES = (
+    Exercise(
+        "reach-1",
+        "how far off a ball is read whose centre is 30 mm high, if it is read on the table (camera 0.60 m high, its "
+        "foot 0.50 m away from the ball)",
+        Number(_OFF, unit="m", tolerance=5e-4, because="half a millimetre is what the camera can tell"),
+        why="Similar triangles: h d / (H - h). Lower cameras pay more.",
+        slips=(
+            Slip(_CENTRE * _FAR / _HIGH, "Almost: the triangle's height is not the camera's, but from ball to camera."),
+            Slip(_CENTRE * _HIGH / _FAR, "That is upside down: a camera right above the ball reads it without error."),
+            Slip(_CENTRE, "That is the height itself; the line of sight is not at 45 degrees."),
+            Slip(
+                0.06 * _FAR / (_HIGH - 0.06), "The centre is half as high as the top of the ball: its radius is 30 mm."
+            ),
+        ),
+        hint="Draw the line of sight from the side, through the centre of the ball and on to the table.",
+    ),
+    Exercise(
+        "reach-2",
+        "the ball's position in base coordinates: T_base_cam has the rows (0, 0.6, -0.8, 0.9), (1, 0, 0, 0.1), "
+        "(0, -0.8, -0.6, 0.7), (0, 0, 0, 1), and the camera sees it at (0.05, 0.10, 0.80) m",
+        Number(_P_BASE, unit="m", tolerance=1e-3, because="a millimetre is less than the arm can do"),
+        why="T_base_cam takes camera coordinates to base coordinates: read it from right to left.",
+        slips=(
+            Slip(_T_BASE_CAM[:3, :3] @ _P_CAM, "Turned, not shifted: the camera does not stand in the base."),
+            Slip(_P_CAM + _T_BASE_CAM[:3, 3], "Shifted, not turned: the camera's axes do not point as the base's do."),
+            Slip(
+                _T_BASE_CAM[:3, :3].T @ (_P_CAM - _T_BASE_CAM[:3, 3]),
+                "That is the inverse, T_cam_base: it takes base coordinates to the camera.",
+            ),
+            Slip(
+                _T_BASE_CAM[:3, :3].T @ _P_CAM + _T_BASE_CAM[:3, 3],
+                "The rotation is transposed: the row form of the thesis beside a matrix in column form.",
+            ),
+        ),
+    ),
+    Exercise(
+        "reach-3",
+        "by how many metres the IR50P misses the goal (0.56, 0.12, 0.09) m",
+        Number(_MISSING, unit="m", tolerance=5e-4, because="half a millimetre shows the right triangle"),
+        why="From the shoulder, at height l1, the arm reaches l2 + l3: the rest is missing.",
+        slips=(
+            Slip(
+                float(np.hypot(*_GOAL[:2]) - IR50P.l[1] - IR50P.l[2]),
+                "Measured along the table: but the shoulder stands 285 mm above it.",
+            ),
+            Slip(
+                float(np.linalg.norm(_GOAL) - IR50P.l[1] - IR50P.l[2]),
+                "Measured from the foot of the column; the arm begins at the shoulder.",
+            ),
+            Slip(float(np.linalg.norm(_GOAL - _SHOULDER)), "That is the whole way from the shoulder to the goal."),
+            Slip(0.0, "reach_pose refuses this goal, so something is missing."),
+        ),
+        hint="Nothing but lengths: the distance from the shoulder to the goal, and what the two links make together.",
+    ),
+    Exercise(
+        "reach-4",
+        "a function that returns where a marker is (base coordinates, m) that sits 42 mm before the tip of the IR50P, "
+        "on the axis of the forearm, for joint angles q",
+        Function(
+            _marker,
+            cases=[[0.0, 0.0, 0.0], [0.4, 0.5, -1.2], [-0.7, 0.9, -1.6], [1.0, 0.2, -0.5]],
+            unit="m",
+            tolerance=5e-4,
+            because="half a millimetre is half a pixel here",
+        ),
+        why="A point of the hand is constant in the hand's frame: T_base_tool does the rest.",
+        slips=(
+            Slip(_tip, "That is the tip itself."),
+            Slip(_beyond, "That lies 42 mm beyond the tip: before it means towards the elbow, x is negative."),
+            Slip(_base_axes, "The 42 mm were taken along the base's x axis; they turn with the forearm."),
+            Slip(_elbow, "That is counted from the elbow: frame 2 instead of frame 3."),
+        ),
+        hint="frames(IR50P, q)[3] is T_base_tool; its x axis points along the forearm.",
+    ),
+    Exercise(
+        "reach-5",
+        "what a camera beside the arm cannot tell, however often it sees the board in the hand",
+        Choice(
+            "offset1",
+            {
+                "offset1": "a constant error of joint 1",
+                "offset2": "a constant error of joint 2",
+                "slope3": "an error of scale of joint 3",
+                "noise": "how much the readings scatter",
+            },
+        ),
+        why="Turn arm and camera about the column together: every picture stays the same.",
+        slips=(
+            Slip("offset2", "Joint 2 carries the elbow, whose way through space the camera sees."),
+            Slip("slope3", "A scale shows as soon as joint 3 moves: the hand turns more or less than it should."),
+            Slip("noise", "The scatter of the readings is what is left over, pose by pose."),
+        ),
+    ),
+)
