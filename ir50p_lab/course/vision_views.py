@@ -9,7 +9,7 @@ from ir50p_lab.course.clickable import ClickableImage
 from ir50p_lab.course.painter import encode_png
 from ir50p_lab.course.style import COLOURS, new_figure
 from ir50p_lab.errors import LabError
-from ir50p_lab.vision import RED, blur_diameter, find_balls, hue_distance, learn_colour, rgb_to_hsv
+from ir50p_lab.vision import RED, blur_diameter, find_balls, learn_colour, rgb_to_hsv
 
 STAMP = "rendered, not photographed"
 _GREY = {"cmap": "gray", "vmin": 0, "vmax": 255, "interpolation": "nearest"}
@@ -101,31 +101,33 @@ def ball_hues_figure(image, ball):
 
 
 class MaskView:
-    """A picture beside its mask, for sliders: `update(mask)`. Attribute figure, for `live`."""
+    """A picture beside its mask, for sliders: `update(mask)`. Attribute figure, for `live`.
 
-    def __init__(self, image, *, width=8.4):
-        self._shape = image.shape[:2]
-        self.figure = new_figure(width, 3.6, cols=2)
-        left, right = self.figure.axes
-        step = max(1, image.shape[1] // 320)  # as many pixels as the figure shows
-        self._step = step
-        show_picture(left, image[::step, ::step], "picture")
-        self._mask = show_picture(right, np.zeros_like(image[::step, ::step, 0]), "white: in the ranges")
-        for ax in self.figure.axes:
-            ax.set(xticks=[], yticks=[])
-        left.set_xlabel(STAMP, fontsize=8)
+    One artist, pixel for pixel, holds both: that is what keeps a slider step short.
+    """
+
+    def __init__(self, image):
+        height, width = image.shape[:2]
+        self._both = np.concatenate([image, np.zeros_like(image)], axis=1)
+        self.figure = new_figure(2 * width / 100, (height + 26) / 100)
+        self.figure.set_layout_engine("none")
+        ax = self.figure.axes[0]
+        ax.set_position([0, 0, 1, height / (height + 26)])
+        ax.set_axis_off()
+        self._shown = ax.imshow(self._both, interpolation="nearest", aspect="auto")
+        ax.set_title(f"The picture ({STAMP}), and white what lies in the ranges", fontsize=10)
 
     def update(self, mask):
         """Show a mask (h, w) uint8 of 0 and 255, and say how much of the picture it is."""
-        self._mask.set_data(mask[:: self._step, :: self._step])
+        self._both[:, mask.shape[1] :] = mask[:, :, None]
+        self._shown.set_data(self._both)
         return f"{np.count_nonzero(mask) / mask.size:.2%} of the picture"
 
 
 def mask_between(hsv, hue_low, hue_high, s_low, s_high, v_low):
     """255 where a picture in HSV (degrees, 0..1, 0..1; (h, w, 3)) lies in the ranges; hue_low > hue_high wraps."""
-    hue, saturation, value = np.moveaxis(hsv, -1, 0)
-    middle = (hue_low + (hue_high - hue_low) % 360 / 2) % 360
-    near = hue_distance(hue, middle) <= (hue_high - hue_low) % 360 / 2
+    hue, saturation, value = hsv[..., 0], hsv[..., 1], hsv[..., 2]
+    near = (hue - hue_low) % 360 <= (hue_high - hue_low) % 360
     return 255 * (near & (saturation >= s_low) & (saturation <= s_high) & (value >= v_low)).astype(np.uint8)
 
 

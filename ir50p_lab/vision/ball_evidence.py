@@ -1,7 +1,7 @@
 """What speaks for a ball and what against: a sum of terms, and the strongest objection in words.
 
 Each term is a weight times something measured; score = 1 / (1 + exp(-sum)). The weights are a logistic regression on
-what the search proposes in rendered scenes (kinds 'ball' and 'no_ball' of `scene_distribution`, seeds 100 to 299); they
+what the search proposes in rendered scenes (kinds 'ball' and 'no_ball' of `scene_distribution`, seeds 100 to 499); they
 are held out of every evaluation. A ball is reported from a score of one half on.
 """
 
@@ -9,21 +9,21 @@ from math import exp, log
 
 import numpy as np
 
-START = 1.4
+START = 3.0
 # what is measured, its weight, and what to say if it is the strongest objection
 TERMS = (
-    ("missing", -1.1, "{0:.0%} of the circle show no edge"),
-    ("unseen", -3.5, "{0:.0%} of the circle lie outside the picture"),
-    ("beyond", -3.6, "the colour goes on beyond {0:.0%} of the circle"),
-    ("hollow", -4.8, "{0:.0%} of the disc have another colour"),
-    ("bumps", -3.0, "the outline is not round: waves of {1:.2f} pixels on a radius of {2:.0f}"),
-    ("oval", -0.8, "the outline is oval"),
-    ("alike", -2.6, "it hardly stands out from its surroundings"),
-    ("through", -0.8, "{0:.0%} of the part that is missing look like the background: nothing hides it"),
-    ("broken", -0.7, "the outline is broken in {0:.0f} places more than one thing in front could do"),
-    ("texture", -0.65, "the edges around it are those of a texture"),
-    ("small", -2.7, "it is small, radius {2:.1f} pixels, and what is seen of it is not enough"),
-    ("ragged", -1.15, "its edges scatter about a circle"),
+    ("missing", -1.8, "{0:.0%} of the circle show no edge"),
+    ("unseen", -4.3, "{0:.0%} of the circle lie outside the picture"),
+    ("beyond", -5.6, "the colour goes on beyond {0:.0%} of the circle"),
+    ("hollow", -5.5, "{0:.0%} of the disc have another colour"),
+    ("bumps", -3.7, "the outline is not round: waves of {1:.2f} pixels on a radius of {2:.0f}"),
+    ("oval", -1.0, "the outline is oval"),
+    ("alike", -2.35, "it hardly stands out from its surroundings"),
+    ("through", -1.4, "{0:.0%} of the part that is missing look like the background: nothing hides it"),
+    ("broken", -0.4, "the outline is broken in {0:.0f} places more than one thing in front could do"),
+    ("texture", -0.2, "the edges around it are those of a texture"),
+    ("small", -2.9, "it is small, radius {2:.1f} pixels, and what is seen of it is not enough"),
+    ("ragged", -1.95, "its edges scatter about a circle"),
 )
 _WELL_APART = 5.5  # standard deviations between ball and surroundings, usual for a ball
 
@@ -53,7 +53,7 @@ def score_of(found, others=()):
     """Score 0..1 of a Measured, and the strongest objection as a text."""
     terms = evidence(found, others)
     total = START + sum(weighed for _, weighed in terms.values())
-    usual = {"alike": -2.6 * -log(_WELL_APART)}
+    usual = {"alike": -2.35 * -log(_WELL_APART)}
     worst = min(terms, key=lambda name: terms[name][1] - usual.get(name, 0.0))
     text = next(text for name, _, text in TERMS if name == worst)
     o = found.outline

@@ -1,0 +1,77 @@
+"""The ball detector against its targets, on the frozen scenes: `python -m tests.targets.vision --only ball`.
+
+Seeds from 10000 on: the weights of the evidence come from seeds 100 to 499. A scene of kind 'ball' counts as found if
+a ball is reported within a third of the radius of the true centre; whatever else is reported there is a false alarm.
+"""
+
+import time
+
+import numpy as np
+
+from ir50p_lab.vision import find_balls, render_scene
+from ir50p_lab.vision.rendering import random_scene
+from tests.targets.rows import Row
+
+FIRST_SEED = 10_000
+THESIS = "(290, 181), r = 18 px, no error given"
+
+
+def measure(n, first=FIRST_SEED):
+    """Errors (n,) px of the centre, NaN for a miss, and the number of reports that belong to no ball."""
+    errors, wrong = np.full(n, np.nan), 0
+    for k in range(n):
+        image, truth = render_scene(random_scene(first + k, "ball"), seed=first + k)
+        found = find_balls(image)
+        for true in truth.red_balls:
+            near = [b for b in found if np.hypot(b.x - true.x, b.y - true.y) < true.radius / 3]
+            if near and true.visible >= 0.6:
+                errors[k] = np.hypot(near[0].x - true.x, near[0].y - true.y)
+            found = [b for b in found if b not in near]
+        wrong += len(found)
+    return errors, wrong
+
+
+def false_alarms(n, first=FIRST_SEED):
+    """How many of n scenes without a ball have one reported."""
+    count = 0
+    for seed in range(first, first + n):
+        image, _ = render_scene(random_scene(seed, "no_ball"), seed=seed)
+        count += bool(find_balls(image))
+    return count
+
+
+def milliseconds(n=60):
+    """Median time of one 640x480 picture of the bench, ms."""
+    from ir50p_lab.vision.rendering import bench_scene
+
+    image, _ = render_scene(bench_scene(), seed=0)
+    find_balls(image)
+    took = []
+    for _ in range(n):
+        start = time.perf_counter()
+        find_balls(image)
+        took.append(time.perf_counter() - start)
+    return 1000 * float(np.median(took))
+
+
+def rows(quick=False):
+    """The targets of the ball detector as Rows; quick: 20 and 20 scenes."""
+    n, m = (20, 20) if quick else (1000, 2000)
+    errors, wrong = measure(n)
+    found = np.isfinite(errors)
+    alarms, ms = false_alarms(m), milliseconds()
+    median, p95 = np.percentile(errors[found], [50, 95]) if found.any() else (np.inf, np.inf)
+    return [
+        Row(
+            f"ball found, >= 60 % visible ({n} scenes)",
+            ">= 99 %",
+            f"{found.mean():.1%}",
+            "-",
+            bool(found.mean() >= 0.99),
+        ),
+        Row("centre of the sphere, median", "<= 0.5 px", f"{median:.2f} px", THESIS, bool(median <= 0.5)),
+        Row("centre of the sphere, 95th percentile", "<= 1.5 px", f"{p95:.2f} px", THESIS, bool(p95 <= 1.5)),
+        Row("reports beside the ball, same scenes", "-", f"{wrong / n:.1%}"),
+        Row(f"false alarms, no ball ({m} scenes)", "<= 0.5 %", f"{alarms / m:.2%}", "-", bool(alarms / m <= 0.005)),
+        Row("pictures a second, 640x480", "> 200", f"{1000 / ms:.0f}", "-", bool(ms < 5)),
+    ]
