@@ -108,12 +108,12 @@ def _rows(recording, reference, t, period):
 
 
 def runs_of(recordings, controller, references=None, *, seconds=None, **options):
-    """A list of Run, cut to the first `seconds` (None: whole): from a recording or a list, and a motion for each."""
+    """A list of Run, cut to the first `seconds` (None: whole): a recording or a list; a motion for all, or for each."""
     if seconds is not None and not (np.isscalar(seconds) and not isinstance(seconds, str) and seconds >= 2):
         raise InputError(f"seconds = {seconds!r}: give 2 s or more of each recording")
-    several = isinstance(recordings, (list, tuple))
-    recordings = list(recordings) if several else [recordings]
-    references = list(references) if several and references is not None else [references] * len(recordings)
+    recordings = list(recordings) if isinstance(recordings, (list, tuple)) else [recordings]
+    if not isinstance(references, (list, tuple)):
+        references = [references] * len(recordings)
     if not recordings or len(references) != len(recordings):
         raise InputError(f"{len(recordings)} recordings and {len(references)} references: give one for each")
     runs = []

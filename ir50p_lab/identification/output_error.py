@@ -94,7 +94,8 @@ def output_error(
 
     Args:
         estimate: Estimate or theta (3, 20) to start from: `identify`. Parameters not in it stay as they are.
-        recordings: a Recording or a list; references: the motion of each (None: as recorded, differentiated);
+        recordings: a Recording or a list; references: the motion of all or of each (None: as recorded,
+        differentiated);
         controller: of the runs, a compiled one such as PID, with its gains. delay: s, whole periods.
         stribeck: fit fs and qs too. l2: m, keeps theta6 = l2 theta4. seconds: s of each recording that are used.
         limit: of |u| (default 255 PWM). iterations: at most. unit, g: of u; m/s^2. step: s, of the simulation.

@@ -1,0 +1,158 @@
+"""Output error and instruments: both know only recordings, and find the truth of a loop made by the engine."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import SimulatedBench, Unit
+from ir50p_lab.controllers import PID
+from ir50p_lab.errors import InputError
+from ir50p_lab.identification import (
+    fit_with_instruments,
+    identify,
+    load_excitations,
+    output_error,
+    validate_closed_loop,
+)
+from ir50p_lab.identification.closed_loop import Run
+from ir50p_lab.identification.make_excitations import thesis_pid
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.simulation import simulate
+
+TRUE = np.array(IR50P.theta_pwm)
+FS = np.array([36.0, 22.0, 22.0])
+MOTION = load_excitations()["training"]
+IDEAL = Unit(dead_zone=(0, 0, 0), backlash=(0, 0, 0), pot_bow=(0, 0, 0), spread=0.0)
+
+
+def recorded(seed=0, seconds=30.0, noise=1.0):
+    unit = Unit(**{**vars(IDEAL), "noise": noise})
+    with SimulatedBench(IR50P, seed=seed, unit=unit, q0=MOTION.q_start, record_to=False) as bench:
+        return bench.follow(thesis_pid(), MOTION, seconds)
+
+
+@pytest.fixture(scope="module")
+def record():
+    return recorded()
+
+
+@pytest.fixture(scope="module")
+def refined(record):
+    return output_error(identify(record, l2=0.2), record, thesis_pid(), MOTION, l2=0.2, progress=False)
+
+
+@pytest.mark.compiled
+def test_the_loop_is_that_of_simulate_and_of_the_bench(record):
+    pid = PID(kp=(289, 225, 270), ki=(50, 10, 50), kd=(40, 30, 30), limit_pwm=255)
+    again = simulate(TRUE, pid, MOTION, duration=5.0, q0=MOTION.q_start, unit="PWM")
+    run = Run.of(type("R", (), {"t": again.t, "q": again.q, "u": again.u}), pid, MOTION)
+    run.start[:] = MOTION.q_start
+    q, u = run.simulate(TRUE)
+    np.testing.assert_allclose(q, again.q, atol=1e-12)
+    np.testing.assert_allclose(u, again.u, atol=1e-9)
+    # the bench, with its delay, rounding and friction, but for the noise of its sensors
+    quiet = recorded(noise=0.0, seconds=10.0)
+    run = Run.of(quiet, thesis_pid(), MOTION, delay=0.02)
+    q, u = run.simulate(TRUE, FS, np.full(3, 0.05))
+    assert np.abs(q - quiet.q).max() < 0.02 and np.sqrt(np.mean((q - quiet.q) ** 2)) < 0.006
+
+
+@pytest.mark.compiled
+def test_finds_the_truth_and_breakaway_friction(refined):
+    found = refined
+    for joint, column in ((0, 0), (0, 10), (0, 11), (1, 2), (1, 3), (1, 12), (2, 3), (2, 14), (2, 15)):
+        off = abs(found.theta[joint, column] - TRUE[joint, column])
+        assert off < 0.1 * TRUE[joint, column] + 4 * found.stderr[joint, column]
+    assert found.fs[0] == pytest.approx(36, abs=4) and found.qs[0] == pytest.approx(0.05, abs=0.03)
+    assert (np.abs(found.fs - FS) < 5 * found.fs_stderr + 2).all()
+    np.testing.assert_allclose(found.theta[1:, 5], 0.2 * found.theta[1:, 3])
+    assert found.theta[0, 5] > 0  # the waist's own
+    inertial_and_friction = np.delete(found.theta, [16, 17, 18], axis=1)
+    assert (inertial_and_friction >= 0).all() and (found.fs >= found.theta[range(3), [11, 13, 15]]).all()
+    for before, after in zip(found.before, found.after, strict=True):
+        assert (after.fit > before.fit - 0.3).all()
+    assert "fs" in str(found) and found.evaluations > 50
+
+
+@pytest.mark.compiled
+def test_predicts_another_run_better_than_the_regression(refined, record):
+    motion = load_excitations()["validation 2"]
+    with SimulatedBench(IR50P, seed=9, unit=IDEAL, q0=motion.q_start, record_to=False) as bench:
+        other = bench.follow(thesis_pid(), motion, 30)
+    q, u = refined.score(other, thesis_pid(), motion)
+    assert (q.fit > 95).all() and (u.fit > 92).all()
+    before, _ = validate_closed_loop(identify(record, l2=0.2), other, thesis_pid(), motion, delay=0.02)
+    assert q.rms.sum() < before.rms.sum()
+
+
+@pytest.mark.compiled
+def test_the_recorded_reference_does_as_well(record):
+    first = identify(record, l2=0.2)
+    given, as_recorded = (
+        output_error(
+            first, record, thesis_pid(), motion, stribeck=False, seconds=10, iterations=4, step=0.005, progress=False
+        )
+        for motion in (MOTION, None)
+    )
+    np.testing.assert_allclose(given.after[0].rms, as_recorded.after[0].rms, rtol=0.1)
+    assert np.isnan(given.fs_stderr).all()
+
+
+@pytest.mark.compiled
+def test_instruments_take_the_bias_of_noise_away():
+    """Least squares on noisy angles is off by many standard errors; instruments from the simulated loop are not."""
+    arm = dataclasses.replace(IR50P, friction=dataclasses.replace(IR50P.friction, fs=IR50P.friction.fc))
+    inside, biased = [], []
+    for seed in range(4):
+        with SimulatedBench(arm, seed=seed, unit=IDEAL, q0=MOTION.q_start, record_to=False) as bench:
+            known = bench.follow(thesis_pid(), MOTION, 60)
+        first = identify(known, method="ls")
+        found = fit_with_instruments(first, known, thesis_pid(), MOTION)
+        for estimate, into in ((found, inside), (first, biased)):
+            seen = np.isfinite(estimate.stderr) & (estimate.stderr > 0)
+            into.append(np.abs((estimate.theta - arm.theta_pwm) / estimate.stderr)[seen] < 3)
+        assert found.method == "iv"
+    assert np.mean(inside) >= 0.97 and np.mean(biased) < 0.85
+
+
+BAD = [
+    ({"recordings": []}, "0 recordings"),
+    ({"references": [MOTION, MOTION]}, "references"),
+    ({"references": 3.0}, "reference is a"),
+    ({"controller": None}, "controller is a"),
+    ({"delay": np.nan}, "delay"),
+    ({"delay": -0.01}, "delay"),
+    ({"estimate": TRUE[:2]}, "theta with shape"),
+]
+
+
+@pytest.mark.parametrize("options, words", [*BAD, ({"seconds": 0.1}, "2 s or more"), ({"l2": -1}, "l2")])
+@pytest.mark.compiled
+def test_bad_arguments(record, options, words):
+    given = {"estimate": TRUE, "recordings": record, "controller": thesis_pid(), "references": MOTION, **options}
+    if isinstance(given["references"], list):
+        given["recordings"] = [given["recordings"]]
+    with pytest.raises(InputError, match=words):
+        output_error(given.pop("estimate"), given.pop("recordings"), given.pop("controller"), progress=False, **given)
+
+
+@pytest.mark.parametrize("options, words", [*BAD, ({"cutoff_hz": 40.0}, "too high"), ({"slow": 0}, "slow")])
+@pytest.mark.compiled
+def test_bad_arguments_of_instruments(record, options, words):
+    given = {"estimate": TRUE, "recordings": record, "controller": thesis_pid(), "references": MOTION, **options}
+    if isinstance(given["references"], list):
+        given["recordings"] = [given["recordings"]]
+    with pytest.raises(InputError, match=words):
+        fit_with_instruments(given.pop("estimate"), given.pop("recordings"), given.pop("controller"), **given)
+
+
+@pytest.mark.compiled
+def test_a_record_with_a_gap_is_refused(record):
+    kept = (record.t < 8) | (record.t > 9)
+    part = type("R", (), {"t": record.t[kept], "q": record.q[kept], "u": record.u[kept]})
+    with pytest.raises(InputError, match="gaps"):
+        output_error(TRUE, part, thesis_pid(), MOTION, progress=False)
+    with pytest.raises(InputError, match="holds no reference"):
+        whole = type("R", (), {"t": record.t, "q": record.q, "u": record.u})
+        output_error(TRUE, whole, thesis_pid(), progress=False)
