@@ -29,8 +29,11 @@ def thesis_pid():
 
 def follow(arm, controller, reference, seconds, *, seed=3):
     """One run on the simulated bench from the start of the reference, nothing kept on disk: Recording."""
-    with SimulatedBench(arm, seed=seed, q0=reference(0.0)[0], record_to=False) as bench:
+    bench = SimulatedBench(arm, seed=seed, q0=reference(0.0)[0], record_to=False).open()
+    try:
         return bench.follow(controller, reference, seconds)
+    finally:
+        bench.abort()  # no way back to the rest pose: it takes longer than the run
 
 
 def training_run(arm, *, seed=3):
@@ -96,8 +99,7 @@ def pendulum_figure(t, angles, labels):
 class ErrorView:
     """Errors of three joints after a start beside the reference: predicted (dots) and simulated (lines).
 
-    Args: size: rad, of the largest start error; duration: s. `update(run, predicted)`: SimulationResult and (n, 3) rad.
-    Attributes: figure.
+    Args: size: rad, of the largest start error; duration: s. Attributes: figure.
     """
 
     def __init__(self, size, duration):
@@ -112,12 +114,11 @@ class ErrorView:
         ax.set_title("Lines: the arm. Circles: (2.20), solved beforehand")
         ax.legend(fontsize=9, loc="upper right")
 
-    def update(self, run, predicted):
-        """Draw the errors. Returns the figure."""
-        every = max(1, len(run.t) // 25)
+    def update(self, run, t, predicted):
+        """Draw the errors of a run, and those predicted (m, 3) rad for the times t (m,) s. Returns the figure."""
         for j in range(3):
             self._lines[j].set_data(run.t, -run.error[:, j])
-            self._dots[j].set_data(run.t[::every], predicted[::every, j])
+            self._dots[j].set_data(t, predicted[:, j])
         return self.figure
 
 

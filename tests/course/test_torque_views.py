@@ -37,7 +37,7 @@ def test_tracking_view_draws_angles_and_errors(run):
 
 def test_error_view_and_robustness_view(run):
     view = views.ErrorView(0.2, 1)
-    view.update(run, -run.error)
+    view.update(run, run.t, -run.error)
     np.testing.assert_allclose(view._lines[0].get_ydata(), -run.error[:, 0])
 
     def of(scale, speed):
