@@ -152,6 +152,16 @@ ERRATA = {
         ("Figure 4.13", "lag of the filter: the arm runs ahead, the picture lags", r"Figure 4\.13"),
         ("4.4.2", "too fast a trajectory: said, here forecast"),
     ],
+    "09": [
+        ("3.1.3", "hues squeezed into a byte: magenta is 212.5, not 200; orange 21, not 17"),
+        ("3.1", "right: a threshold"),
+        ("3.2", "right: sums to 159, sigma 1.4"),
+        ("3.1.5", "Canny without non-maximum suppression and hysteresis"),
+        ("3.3", "right: the circle, and its cone"),
+        ("3.4", "right; its figure is called 2.1, it is 3.8"),
+        ("4.5.1, hue", "340 to 360 and S below 0.8: loses the cleanest red, and red over the seam", r"4\.5\.1, hue"),
+        ("4.5.1, radius", "radii 35 to 65 cannot give 18: these are diameters", r"4\.5\.1, radius"),
+    ],
     "11": [
         ("4.5", "from the board's frame into the base's: said, no equation does it"),
         ("Table 4.8", "balls at 412 to 500 mm: out of reach of an arm with links of 0.2 m", r"Table 4\.8"),
