@@ -48,9 +48,9 @@ def identify(recordings, *, l2=None, delay=0.02, slow=0.05, method="bounded", ro
         method: "bounded", or another of `fit`; rows, g: as in `fit`, `regressor`; steps: cutoff_hz=, order=, held=,
         trim=, max_gap= of `process`.
 
-    Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by a few per cent,
-    which at this length of record is more than the standard errors, and those do not know it: where the parameters
-    themselves matter, go on with `fit_with_instruments`; where Stribeck friction does, with `output_error`.
+    Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by some per
+    cent, at this length of record more than the standard errors, which do not know it: where the parameters themselves
+    matter, go on with `fit_with_instruments`; where Stribeck friction does, with `output_error`.
 
     Returns: Identified, an Estimate that can `score` other recordings.
     Raises: InputError, IdentificationError as `process` and `fit` do.
