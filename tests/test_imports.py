@@ -11,6 +11,8 @@ import ir50p_lab.identification
 import ir50p_lab.modelling
 import ir50p_lab.signals
 import ir50p_lab.simulation
+import ir50p_lab.vision
+import ir50p_lab.vision.rendering
 
 
 def modules_after(statement):
@@ -36,6 +38,8 @@ PACKAGES = [
     ir50p_lab.modelling,
     ir50p_lab.signals,
     ir50p_lab.simulation,
+    ir50p_lab.vision,
+    ir50p_lab.vision.rendering,
 ]
 
 
