@@ -33,9 +33,11 @@ def find_charuco(grey, board):
     index, xy = index.ravel(), corners.reshape(-1, 2).astype(float)
     points = board.points[index, :2]
     side = _spacing(points, xy, board.square)
-    half = int(np.clip(round(0.3 * side), 2, 20))
+    gap = (board.square - board.marker) / 2 / board.square  # the markers' own corners must stay out of the window
+    half = int(np.clip(min(0.3, gap) * side - 1, 2, 20))
     stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-4)
-    xy = cv2.cornerSubPix(grey, xy.astype(np.float32)[:, None], (half, half), (-1, -1), stop)[:, 0].astype(float)
+    start = np.ascontiguousarray(xy.reshape(-1, 1, 2), dtype=np.float32)
+    xy = cv2.cornerSubPix(grey, start, (half, half), (-1, -1), stop)[:, 0].astype(float)
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     if spread[1] < 1.2 * board.square:
         raise NotUsable(Reason.CROPPED, f"the {count} corners seen lie on a line: show more of the board")

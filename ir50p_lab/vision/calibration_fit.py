@@ -261,6 +261,8 @@ def _with_covariance(corners, model, camera, poses):
             "more views, or a board with more corners"
         )
     by_corners = fit.sigma**2 * _solve(S, np.eye(len(S)))
+    if not (np.diag(by_corners) > 0).all():
+        raise CalibrationError("the views leave the camera undetermined: tilt the board in different directions")
     by_views = np.zeros((12, 12))
     if count > 3:
         moves = np.array([_solve(S - r[0], r[1]) for r in reduced])  # what leaving out a view does, to first order

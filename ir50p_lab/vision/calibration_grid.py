@@ -100,7 +100,7 @@ def grow(grid, grey):
         while max(turned.shape[:2]) < 60:
             following = _next_column(turned)
             out, along = following - turned[:, -1], np.gradient(turned[:, -1], axis=0)
-            found = _crossings(following, out, along, grey, swing)
+            found = _crossings(following, 0.3 * out, 0.3 * along, grey, swing)
             if np.mean(np.isnan(found)) >= 0.2:
                 outside.add(side)
                 break
@@ -158,19 +158,21 @@ def is_checkerboard(grid, grey):
     if swing < 8:
         return False
     out, along = np.gradient(grid, axis=1), np.gradient(grid, axis=0)
-    places = [a.reshape(-1, 2) for a in (grid, out, along)]
-    near, far = (_crossings(*places, grey, swing, reach) for reach in (0.3, 0.7))
-    known = np.isfinite(near) & np.isfinite(far)
-    return bool(known.mean() > 0.7 and np.mean((near == far)[known] & (near != 0)[known]) > 0.85)
+    places, out, along = (a.reshape(-1, 2) for a in (grid, out, along))
+    near = _crossings(places, 0.3 * out, 0.3 * along, grey, swing)
+    same = near != 0
+    for i, j in ((0.7, 0.3), (0.3, 0.7)):
+        same &= _crossings(places, i * out, j * along, grey, swing) == near
+    known = np.isfinite(near)
+    return bool(known.mean() > 0.7 and same[known].mean() > 0.8)
 
 
-def _crossings(places, out, along, grey, swing, reach=0.3):
+def _crossings(places, out, along, grey, swing):
     """For each place (n, 2) whether four squares meet there, (n,): 1 or -1 (by which are dark), 0, NaN (outside).
 
-    out, along: (n, 2) px, one square in each direction; swing: between light and dark squares, grey levels;
-    reach: how far out to look, in squares.
+    out, along: (n, 2) px, where to look in each direction; swing: between light and dark squares, grey levels.
     """
-    a, d, b, c = (sample(grey, places + reach * (i * out + j * along)) for i, j in ((1, 1), (-1, -1), (1, -1), (-1, 1)))
+    a, d, b, c = (sample(grey, places + i * out + j * along) for i, j in ((1, 1), (-1, -1), (1, -1), (-1, 1)))
     signed = (a + d - b - c) / 2
     cross = np.abs(signed)
     uneven = np.maximum(np.abs(a - d), np.abs(b - c))

@@ -97,7 +97,7 @@ EXERCISES = (
                 "everything": "everything, the board must be measured before the camera",
             },
         ),
-        why="Pixels know angles, not metres. The table plane will be wrong by 4 %, though: measure the board with care.",
+        why="Pixels know angles, not metres. The table plane will be 4 % wrong, though: measure the board with care.",
         slips=(
             Slip("focal length", "A board twice as large, twice as far away, gives the same picture, and fx."),
             Slip("distortion", "Distortion acts on x = X/Z: the unit of X and Z has cancelled."),

@@ -1,0 +1,256 @@
+"""Calibration from corners with known noise: against OpenCV, against the truth, and what it must see and refuse."""
+
+import cv2
+import numpy as np
+import pytest
+from board_pictures import LENS, SIZE, K, corner_sets, look, project
+
+from ir50p_lab.errors import CalibrationError, ImageError, InputError
+from ir50p_lab.vision import Checkerboard, Reason, calibrate, calibrate_corners
+from ir50p_lab.vision.calibration_fit import NAMES
+
+POINTS = Checkerboard().points
+TRUTH = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2]])
+FULL = ("k1", "k2", "p1", "p2")
+
+
+@pytest.fixture(scope="module")
+def views():
+    return corner_sets(POINTS, 15, seed=1)
+
+
+@pytest.fixture(scope="module")
+def calibration(views):
+    return calibrate_corners(POINTS, views, SIZE)
+
+
+def values(calibration):
+    return np.array([calibration.fx, calibration.fy, calibration.cx, calibration.cy])
+
+
+def test_same_as_opencv(views):
+    """Numbers, rms and the standard errors by corners; another program, another minimiser."""
+    ours = calibrate_corners(POINTS, views, SIZE, lens=FULL)
+    rms, K_, d, _, _, deviations, _, _ = cv2.calibrateCameraExtended(
+        [POINTS.astype(np.float32)] * len(views),
+        [xy.astype(np.float32) for xy in views],
+        SIZE,
+        None,
+        None,
+        flags=cv2.CALIB_FIX_K3,
+        criteria=(cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 100, 1e-12),
+    )
+    assert abs(ours.rms - rms) < 1e-6
+    assert np.allclose(ours.K, K_, atol=2e-3) and np.allclose(ours.distortion, d.ravel(), atol=1e-4)
+    errors = [ours.stderr_corners[name] for name in NAMES[:8]]
+    assert np.allclose(errors, deviations.ravel()[:8], rtol=1e-3)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_truth_within_three_standard_errors_and_rms_as_the_noise_says(seed):
+    count = 20
+    found = calibrate_corners(POINTS, corner_sets(POINTS, count, seed=seed), SIZE)
+    error = values(found) - TRUTH
+    assert (np.abs(error) < 3 * np.array([found.stderr[n] for n in NAMES[:4]])).all()
+    assert error @ np.linalg.solve(found.covariance[:4, :4], error) < 16.3
+    parameters, corners = 4 + len(found.model) + 6 * count, 54 * count
+    assert abs(found.rms / (0.1 * np.sqrt(2) * np.sqrt(1 - parameters / (2 * corners))) - 1) < 0.05
+    assert abs(found.sigma / 0.1 - 1) < 0.05
+
+
+def test_covariance_belongs_to_the_standard_errors(calibration):
+    deviations = np.sqrt(np.diag(calibration.covariance))
+    for name, deviation in zip(NAMES, deviations, strict=True):
+        assert deviation == (0 if np.isnan(calibration.stderr[name]) else calibration.stderr[name])
+        if deviation:
+            assert deviation >= max(calibration.stderr_corners[name], calibration.stderr_views[name])
+    assert np.linalg.eigvalsh(calibration.covariance).min() > -1e-12
+
+
+def test_correlated_errors_of_a_view_make_the_larger_standard_error():
+    """Each view's corners shifted by a smooth error of its own: errors by corners are then too small by far."""
+    rng, points = np.random.default_rng(2), POINTS[:, :2] / POINTS[:, :2].max()
+    views = corner_sets(POINTS, 15, noise=0.05, seed=3)
+    terms = np.column_stack([points[:, 0] ** 2, points[:, 1] ** 2, points[:, 0] * points[:, 1]])
+    bent = [xy + terms @ rng.normal(0, 0.4, (3, 2)) for xy in views]
+    found = calibrate_corners(POINTS, bent, SIZE, bend=False)
+    assert found.stderr_views["fx"] > 1.5 * found.stderr_corners["fx"]
+    assert found.stderr["fx"] >= found.stderr_views["fx"]
+
+
+LENSES = {
+    (): np.zeros(5),
+    ("k1",): np.array([-0.2, 0, 0, 0, 0]),
+    ("k1", "k2"): np.array([-0.3, 0.25, 0, 0, 0]),
+    FULL: np.array([-0.3, 0.25, 0.004, -0.003, 0]),
+    (*FULL, "k3"): np.array([-0.3, 0.4, 0.004, -0.003, -1.5]),
+}
+
+
+@pytest.mark.parametrize("model", LENSES, ids=str)
+def test_lens_by_evidence(model):
+    found = calibrate_corners(POINTS, corner_sets(POINTS, 25, noise=0.03, seed=4, lens=LENSES[model]), SIZE)
+    assert found.model == model
+    assert all(np.isnan(found.stderr[name]) == (name not in model) for name in NAMES[4:])
+    kept = {question.term for question in found.evidence if question.kept}
+    assert ("k3" in kept) == ("k3" in model)
+    assert all(str(question) for question in found.evidence)
+
+
+def test_a_coefficient_that_means_nothing_is_named(views):
+    found = calibrate_corners(POINTS, views, SIZE, lens=(*FULL, "k3"))
+    assert any(text.startswith("k3 =") and "cannot be told from zero" in text for text in found.warnings)
+
+
+def test_square_is_only_a_scale(views, calibration):
+    scaled = calibrate_corners(1.3 * POINTS, views, SIZE)
+    assert np.allclose(scaled.K, calibration.K, atol=1e-3) and np.isclose(scaled.rms, calibration.rms)
+    for ours, theirs in zip(scaled.views, calibration.views, strict=True):
+        assert np.allclose(ours.T_cam_board[:3, 3], 1.3 * theirs.T_cam_board[:3, 3], rtol=1e-5)
+
+
+def test_millimetres_for_metres_are_noticed(views):
+    assert any("square in metres" in text for text in calibrate_corners(1000 * POINTS, views, SIZE).warnings)
+
+
+def test_prescribed_aspect_is_checked(views):
+    wrong = calibrate_corners(POINTS, views, SIZE, aspect=1.02)
+    assert np.isclose(wrong.fx / wrong.fy, 1.02) and any("aspect = 1.02" in text for text in wrong.warnings)
+    right = calibrate_corners(POINTS, views, SIZE, aspect=700 / 702)
+    assert not any("aspect" in text for text in right.warnings)
+    assert right.stderr["fx"] / right.fx == pytest.approx(right.stderr["fy"] / right.fy)
+
+
+@pytest.mark.parametrize("bend", ["along x", "saddle"])
+def test_bent_board_is_recognised_and_measured(bend):
+    x, y = (POINTS[:, :2] - POINTS[:, :2].mean(axis=0)).T / 0.1
+    bent = POINTS.copy()
+    bent[:, 2] = 0.001 * (x * x if bend == "along x" else x * y)  # 1 mm at 100 mm from the middle
+    views = corner_sets(bent, 12, noise=0.05, seed=5)
+    found, flat = (calibrate_corners(POINTS, views, SIZE, bend=choice) for choice in (None, False))
+    assert np.allclose(found.sag, [0.001, 0, 0] if bend == "along x" else [0, 0.001, 0], atol=1e-4)
+    assert found.warnings[0].startswith("the board is bent") and "bent" in flat.warnings[0]
+    assert (np.abs(values(found) - TRUTH) < 3 * np.array([found.stderr[n] for n in NAMES[:4]])).all()
+    assert found.rms < 0.8 * flat.rms
+    shape = cv2.calibrateCameraRO(  # another route: OpenCV frees every point of the board
+        [bent.astype(np.float32) * [1, 1, 0]] * len(views) and [(POINTS).astype(np.float32)] * len(views),
+        [xy.astype(np.float32) for xy in views], SIZE, 8, None, None, flags=cv2.CALIB_FIX_K3,
+    )[5].reshape(-1, 3)  # fmt: skip
+    plane = np.column_stack([POINTS[:, :2], np.ones(54)])
+    heights = [z - plane @ np.linalg.lstsq(plane, z, rcond=None)[0] for z in (shape[:, 2], bent[:, 2])]
+    assert np.corrcoef(heights)[0, 1] > 0.9
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_flat_board_is_flat(seed):
+    assert calibrate_corners(POINTS, corner_sets(POINTS, 12, seed=10 + seed), SIZE).sag is None
+
+
+def test_view_that_does_not_belong_is_left_out(views):
+    spoilt = [xy.copy() for xy in views]
+    spoilt[6] += np.random.default_rng(0).normal(0, 1.5, spoilt[6].shape)
+    found = calibrate_corners(POINTS, spoilt, SIZE)
+    assert [(one.index, one.reason) for one in found.rejected] == [(6, Reason.OUTLIER)]
+    assert len(found.views) == 14 and abs(found.fx - TRUTH[0]) < 3 * found.stderr["fx"]
+
+
+def test_honest_noise_is_no_outlier():
+    for seed in range(5):
+        assert not calibrate_corners(POINTS, corner_sets(POINTS, 12, seed=30 + seed), SIZE).rejected
+
+
+def test_too_few_tilts():
+    rng = np.random.default_rng(0)
+    poses = [
+        look(d, 0.03 * (-1) ** k, k, at=at)
+        for k, (d, at) in enumerate([(0.4, (0, 0)), (0.5, (0.1, 0)), (0.6, (0, 0.1)), (0.7, (-0.1, 0))])
+    ]
+    views = [project(T, POINTS) + rng.normal(0, 0.1, (54, 2)) for T in poses]
+    found = calibrate_corners(POINTS, views, SIZE, lens=("k1",))
+    assert any("too few tilts: 0 of 4" in text for text in found.warnings)
+    assert found.stderr["fx"] > 5  # and the standard error says so, too
+
+
+def test_tilts_about_one_axis():
+    rng = np.random.default_rng(0)
+    views = [
+        project(look(0.5, tilt, 0.0, at=(0.03 * k, 0)), POINTS) + rng.normal(0, 0.1, (54, 2))
+        for k, tilt in enumerate((-0.6, -0.4, 0.3, 0.5, 0.6))
+    ]
+    assert any("one axis" in text for text in calibrate_corners(POINTS, views, SIZE, lens=("k1",)).warnings)
+
+
+def test_stretched_pictures_are_noticed(views):
+    wide = [xy * [4 / 3, 1] for xy in views]
+    assert any("not square" in text for text in calibrate_corners(POINTS, wide, (853, 480)).warnings)
+
+
+def test_a_lens_that_folds_back_is_noticed():
+    from dataclasses import replace
+
+    from ir50p_lab.vision.calibration_checks import about_lens
+
+    found = calibrate_corners(POINTS, corner_sets(POINTS, 8, seed=2), SIZE, lens=("k1",))
+    folded = replace(found, distortion=np.array([-1.5, 0, 0, 0, 0]))
+    assert any("folds back" in text for text in about_lens(folded))
+
+
+def test_views_know_their_poses(calibration, views):
+    for view, xy in zip(calibration.views, views, strict=True):
+        model = calibration.pinhole.project(view.T_cam_board, view.points)
+        assert np.allclose(xy - model, view.residuals, atol=1e-8)
+        assert np.isclose(view.rms, np.sqrt((view.residuals**2).sum(axis=1).mean()))
+    assert np.isclose(calibration.rms, np.sqrt(np.mean([view.rms**2 for view in calibration.views])))
+    assert 0 < min(v.tilt for v in calibration.views) and max(v.tilt for v in calibration.views) < 0.9
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "match"),
+    [
+        ((POINTS, [], SIZE), CalibrationError, "0 views"),
+        ((POINTS, [np.zeros((54, 2))] * 2, SIZE), CalibrationError, "2 views"),
+        ((POINTS, [np.zeros((53, 2))] * 4, SIZE), InputError, "as many points"),
+        ((POINTS, [np.full((54, 2), np.nan)] * 4, SIZE), InputError, "finite"),
+        ((POINTS[:, :2], [np.zeros((54, 2))] * 4, SIZE), InputError, "object_points"),
+        ((POINTS + [0, 0, 1] * POINTS[:, :1], [np.zeros((54, 2))] * 4, SIZE), InputError, "plane"),
+    ],
+)
+def test_corners_that_are_refused(arguments, error, match):
+    with pytest.raises(error, match=match):
+        calibrate_corners(*arguments)
+
+
+def test_one_pose_again_and_again_is_refused_or_uncertain(views):
+    try:
+        found = calibrate_corners(POINTS, [views[0]] * 4, SIZE, lens=())
+    except CalibrationError as error:
+        assert "tilt" in str(error)
+    else:
+        assert found.warnings
+
+
+@pytest.mark.parametrize(
+    ("images", "options", "error", "match"),
+    [
+        ([], {}, InputError, "no pictures"),
+        (3, {}, InputError, "list of pictures"),
+        (np.zeros((480, 640, 3), np.uint8), {}, InputError, "one picture"),
+        ("nowhere/at/all", {}, ImageError, "no folder"),
+        ([np.zeros((480, 640, 3), np.uint8)] * 3, {"board": 9}, InputError, "Checkerboard"),
+        (["a.jpg", "b.jpg"], {}, CalibrationError, "2 unreadable"),
+    ],
+)
+def test_pictures_that_are_refused(images, options, error, match):
+    with pytest.raises(error, match=match):
+        calibrate(images, **options)
+
+
+def test_empty_folder(tmp_path):
+    with pytest.raises(ImageError, match="no pictures"):
+        calibrate(tmp_path)
+
+
+def test_unknown_coefficient(views):
+    with pytest.raises(InputError, match="k4"):
+        calibrate_corners(POINTS, views, SIZE, lens=("k4",))
+    assert LENS[4] == 0

@@ -1,0 +1,170 @@
+"""Corners against the projection they were painted by; each reason for refusing a picture, provoked."""
+
+from types import SimpleNamespace
+
+import cv2
+import numpy as np
+import pytest
+from board_pictures import SIZE, look, paint, project
+
+from ir50p_lab.errors import CalibrationError
+from ir50p_lab.vision import Charuco, Checkerboard, Reason, calibrate
+from ir50p_lab.vision.calibration_charuco import find_charuco
+from ir50p_lab.vision.calibration_corners import find_checkerboard
+from ir50p_lab.vision.calibration_reasons import NotUsable
+
+BOARD = Checkerboard()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def one_thread():
+    before = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    yield
+    cv2.setNumThreads(before)
+
+
+def found(T, **changes):
+    picture = paint(T, **changes)
+    return find_checkerboard(cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY), changes.get("pattern", (9, 6))).xy
+
+
+@pytest.mark.parametrize("spin", [0.0, 1.4, 3.0, -1.8])
+@pytest.mark.parametrize("blur", [0.5, 1.5])
+def test_corners_where_they_were_painted(spin, blur):
+    """To 0.1 px rms, and in the order of the board however it is turned: the colours tell."""
+    T = look(0.55, 0.5, about=1.0 + spin, spin=spin)
+    off = found(T, blur=blur, over=4) - project(T, BOARD.points)
+    assert np.sqrt((off**2).sum(axis=1).mean()) < 0.1
+    assert np.abs(off.mean(axis=0)).max() < 0.03
+
+
+def test_order_of_a_board_that_looks_alike_upside_down():
+    xy = found(look(0.6, 0.3, 0.5, spin=3.1), pattern=(9, 7))
+    assert xy[0].sum() < xy[-1].sum()
+
+
+def test_a_large_picture_is_searched_small_and_measured_large():
+    T = look(0.55, 0.4, 1.0)
+    small = cv2.cvtColor(paint(T, noise=0, over=4), cv2.COLOR_RGB2GRAY)
+    large = cv2.resize(small, None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC)
+    xy = (find_checkerboard(large, (9, 6)).xy + 0.5) / 4 - 0.5
+    assert np.abs(xy - project(T, BOARD.points)).max() < 0.2
+
+
+def covered():
+    picture = paint(look(0.5, 0.3, 1.0))
+    picture[200:280, 250:330] = 100
+    return picture
+
+
+def torn(picture):
+    """The right half 4 px lower, as a rolling shutter or a folded board might show it."""
+    picture[:, 330:] = np.roll(picture[:, 330:], 4, axis=0)
+    return picture
+
+
+CASES = {
+    Reason.OTHER_SIZE: lambda: paint(look(0.5, 0.3, 1.0))[:400],
+    Reason.NO_BOARD: lambda: np.random.default_rng(0).integers(0, 255, (480, 640, 3), dtype=np.uint8),
+    Reason.WRONG_BOARD: lambda: paint(look(0.5, 0.3, 1.0, centre=(0.075, 0.05)), pattern=(7, 5)),
+    Reason.CROPPED: lambda: paint(look(0.45, 0.3, 1.0, at=(0.25, 0.0))),
+    Reason.BLURRED: lambda: paint(look(0.5, 0.3, 1.0), blur=10),
+    Reason.DUPLICATE: lambda: paint(look(0.5, 0.4, 2.0), seed=9),
+    Reason.UNREADABLE: lambda: np.zeros((480, 640, 3)),
+    Reason.OUTLIER: lambda: torn(paint(look(0.5, 0.4, 3.0))),
+}
+
+
+@pytest.fixture(scope="module")
+def good():
+    return [paint(look(0.5, 0.4, about), seed=about) for about in (0, 2, 4, 5)]
+
+
+def test_every_reason_is_provoked():
+    assert set(CASES) == set(Reason)
+
+
+@pytest.mark.parametrize("reason", CASES, ids=str)
+def test_reason(good, reason):
+    calibration = calibrate([*good, CASES[reason]()])
+    assert [one.reason for one in calibration.rejected] == [reason]
+    (one,) = calibration.rejected
+    assert one.index == 4 and one.name == "picture 5" and len(one.detail) > 15
+    assert str(one) == f"picture 5: {reason} ({one.detail})"
+    assert len(calibration.views) == 4
+
+
+def test_part_of_the_board_covered_is_cropped_not_another_board(good):
+    (one,) = calibrate([*good, covered()]).rejected
+    assert one.reason is Reason.CROPPED
+
+
+def test_a_larger_board_is_another_board():
+    """A finder is content with a part of it; the calibration must not be."""
+    grey = cv2.cvtColor(paint(look(0.7, 0.3, 1.0), pattern=(13, 9)), cv2.COLOR_RGB2GRAY)
+    for pattern in ((9, 6), (8, 6), (7, 5)):
+        with pytest.raises(NotUsable, match="13x9"):
+            find_checkerboard(grey, pattern)
+
+
+def test_wrong_pattern_says_which_seems_right(good):
+    with pytest.raises(CalibrationError, match=r"9x6 inner corners: pattern=\(9, 6\)"):
+        calibrate(good, pattern=(8, 6))
+
+
+def test_frames_and_grey_pictures_are_taken(good):
+    frames = [SimpleNamespace(image=picture) for picture in good]
+    assert np.array_equal(calibrate(frames).K, calibrate([picture[..., 0].copy() for picture in good]).K)
+
+
+def charuco_picture(board, warp):
+    columns, rows = board.pattern
+    flat = board.opencv().generateImage(((columns + 1) * 60, (rows + 1) * 60))
+    return cv2.warpPerspective(flat, warp, SIZE, borderValue=255, flags=cv2.INTER_AREA)
+
+
+WARP = np.array([[0.9, 0.05, 40], [0.02, 0.85, 30], [1e-4, 1e-4, 1.0]])
+
+
+@pytest.mark.parametrize("shift", [(0, 0), (250, 0), (0, -180)])
+def test_charuco_corners_by_number_also_where_part_is_out_of_view(shift):
+    board = Charuco((9, 6))
+    warp = np.array([[1, 0, shift[0]], [0, 1, shift[1]], [0, 0, 1]]) @ WARP
+    corners = find_charuco(charuco_picture(board, warp), board)
+    places = board.points[corners.index, :2] / board.square * 60 + 59.5
+    expected = cv2.perspectiveTransform(places[:, None], warp)[:, 0]
+    assert np.abs(corners.xy - expected).max() < 0.3
+    assert len(corners.xy) == 54 if shift == (0, 0) else 8 <= len(corners.xy) < 54
+
+
+@pytest.mark.parametrize(
+    ("board", "image", "reason"),
+    [
+        (Charuco((9, 6)), np.full((480, 640), 128, np.uint8), Reason.NO_BOARD),
+        (Charuco((9, 6)), charuco_picture(Charuco((9, 6)), np.array([[1, 0, 470.0], [0, 1, 0], [0, 0, 1]])), Reason.CROPPED),
+        (Charuco((4, 8)), charuco_picture(Charuco((9, 6)), WARP), Reason.WRONG_BOARD),
+    ],
+    ids=str,
+)  # fmt: skip
+def test_charuco_reasons(board, image, reason):
+    with pytest.raises(NotUsable) as caught:
+        find_charuco(image, board)
+    assert caught.value.reason is reason
+
+
+@pytest.mark.parametrize(
+    ("make", "match"),
+    [
+        (lambda: Checkerboard((9,)), "columns, rows"),
+        (lambda: Checkerboard((1, 6)), "at least 3x2"),
+        (lambda: Checkerboard((9.5, 6)), "inner corners"),
+        (lambda: Checkerboard((9, 6), 0), "positive length"),
+        (lambda: Charuco((9, 6), 0.02, 0.025), "smaller than a square"),
+        (lambda: Charuco((9, 6), dictionary="DICT_9X9"), "no dictionary"),
+        (lambda: Charuco((30, 30), dictionary="DICT_4X4_50").opencv(), "too few markers"),
+    ],
+)
+def test_boards_that_cannot_be(make, match):
+    with pytest.raises(CalibrationError, match=match):
+        make()

@@ -1,0 +1,178 @@
+"""A calibration as a file, in numbers of its own, over the picture, and in the two notations."""
+
+import cv2
+import numpy as np
+import pytest
+from board_pictures import SIZE, corner_sets, look
+
+from ir50p_lab.errors import CalibrationError
+from ir50p_lab.vision import (
+    Calibration,
+    Charuco,
+    Checkerboard,
+    Pinhole,
+    calibrate,
+    calibrate_corners,
+    column_camera_matrix,
+    direction_stderr,
+    from_matlab,
+    row_camera_matrix,
+    to_rows,
+)
+from ir50p_lab.vision.calibration_rendered import board_pictures, board_poses
+from ir50p_lab.vision.rendering import bench_camera
+
+POINTS = Checkerboard().points
+
+
+@pytest.fixture(scope="module")
+def calibration():
+    return calibrate_corners(POINTS, corner_sets(POINTS, 8, seed=1), SIZE).with_warnings('a "quoted" warning: 100 %')
+
+
+def test_saved_and_loaded_is_the_same(calibration, tmp_path):
+    path = calibration.save(tmp_path / "kamera_ä.yml")
+    again = Calibration.load(path, size=SIZE)
+    assert str(again) == str(calibration) and again.model == calibration.model
+    for name in ("K", "distortion", "covariance"):
+        assert np.array_equal(getattr(again, name), getattr(calibration, name))
+    assert again.warnings == calibration.warnings and again.board == calibration.board
+    for ours, theirs in zip(again.views, calibration.views, strict=True):
+        assert np.array_equal(ours.residuals, theirs.residuals) and ours.name == theirs.name
+    assert np.array_equal(again.coverage.counts, calibration.coverage.counts)
+
+
+def test_opencv_reads_it(calibration, tmp_path):
+    path = calibration.save(tmp_path / "camera.yml")
+    file = cv2.FileStorage(str(path), cv2.FileStorage_READ)
+    assert np.array_equal(file.getNode("camera_matrix").mat(), calibration.K)
+    assert np.array_equal(file.getNode("distortion_coefficients").mat().ravel(), calibration.distortion)
+    assert (file.getNode("image_width").real(), file.getNode("image_height").real()) == SIZE
+
+
+def test_what_opencv_writes_is_read(tmp_path):
+    path = tmp_path / "out_camera_data.yml"
+    file = cv2.FileStorage(str(path), cv2.FileStorage_WRITE)
+    file.write("image_width", 640)
+    file.write("image_height", 480)
+    file.write("camera_matrix", np.array([[535.0, 0, 342], [0, 535, 235], [0, 0, 1]]))
+    file.write("distortion_coefficients", np.array([-0.27, -0.04, 0.002, 0.0, 0.24])[:, None])
+    file.release()
+    found = Calibration.load(path)
+    assert found.fx == 535 and found.distortion[4] == 0.24 and found.size == SIZE and np.isnan(found.stderr["fx"])
+    with pytest.raises(CalibrationError, match="no views"):
+        found.next_view()
+
+
+def test_another_size_is_refused(calibration, tmp_path):
+    path = calibration.save(tmp_path / "camera.yml")
+    with pytest.raises(CalibrationError, match="640x480, not 1280x720"):
+        Calibration.load(path, size=(1280, 720))
+    with pytest.raises(CalibrationError, match="calibrate it at the new one"):
+        calibration.check_size((320, 240))
+
+
+@pytest.mark.parametrize(
+    "text", ["", "hello", "%YAML:1.0\n---\na: 1\n", "%YAML:1.0\n---\nimage_width: 640\n", "{", "\x00\x01"]
+)
+def test_what_is_no_calibration(text, tmp_path):
+    path = tmp_path / "camera.yml"
+    path.write_text(text)
+    with pytest.raises(CalibrationError):
+        Calibration.load(path)
+
+
+def test_files_that_cannot_be(calibration, tmp_path):
+    with pytest.raises(CalibrationError, match="no file"):
+        Calibration.load(tmp_path / "none.yml")
+    with pytest.raises(CalibrationError, match="cannot be written"):
+        calibration.save(tmp_path / "no" / "folder.yml")
+
+
+def test_damaged_numbers_are_refused(calibration, tmp_path):
+    path = calibration.save(tmp_path / "camera.yml")
+    path.write_text(path.read_text().replace("image_width: 640", "image_width: -640"))
+    with pytest.raises(CalibrationError, match="damaged"):
+        Calibration.load(path)
+
+
+def test_coverage_counts_every_corner(calibration):
+    cover = calibration.coverage
+    assert cover.counts.sum() == 8 * 54 and cover.share == np.mean(cover.counts > 0) and 0.3 < cover.reach <= 1
+
+
+def test_next_view_keeps_its_promise(calibration):
+    """The advised picture, taken, makes the camera as sure as foretold; a copy of an old view helps less."""
+    following = calibration.next_view()
+    assert following.after < following.before and "take one with the board" in str(following)
+    flat = POINTS.reshape(6, 9, 3)[[0, 0, -1, -1], [0, -1, -1, 0]]
+    ok, rvec, tvec = cv2.solvePnP(
+        flat, following.outline, calibration.K, calibration.distortion, flags=cv2.SOLVEPNP_IPPE
+    )
+    assert ok
+    advised = cv2.projectPoints(POINTS, rvec, tvec, calibration.K, calibration.distortion)[0][:, 0]
+    old = [view.corners for view in calibration.views]
+    grid = np.stack(np.meshgrid((np.arange(8) + 0.5) * 80, (np.arange(6) + 0.5) * 80), axis=-1).reshape(-1, 2)
+
+    def doubt(extra):
+        noisy = extra + np.random.default_rng(1).normal(0, calibration.sigma, (54, 2))
+        more = calibrate_corners(POINTS, [*old, noisy], SIZE, lens=calibration.model, bend=False)
+        V = np.zeros((9, 9))
+        scale = np.array(
+            [more.stderr_corners[n] / more.stderr[n] if more.stderr[n] == more.stderr[n] else 0 for n in more.stderr]
+        )
+        V = more.covariance * np.outer(scale, scale) if scale.any() else V
+        return np.sqrt((direction_stderr(more, grid, V) ** 2).mean())
+
+    assert abs(doubt(advised) / following.after - 1) < 0.25
+    assert doubt(advised) < doubt(old[0])
+
+
+def test_rows_and_columns_are_transposes():
+    camera, T = bench_camera()
+    rows, columns = row_camera_matrix(*to_rows(camera.K, T)), column_camera_matrix(camera.K, T)
+    assert rows.shape == (4, 3) and np.allclose(rows, columns.T)
+    X = np.array([0.4, -0.1, 0.03])
+    w = np.append(X, 1) @ rows
+    assert np.allclose(w[:2] / w[2], Pinhole(camera.K).project(T, X))
+
+
+def test_matlab_counts_from_one():
+    camera, T = bench_camera()
+    K_row, R_row, t_row = to_rows(camera.K, T)
+    K_row[2, :2] += 1
+    K, T_again = from_matlab(K_row, R_row, t_row)
+    assert np.allclose(K, camera.K) and np.allclose(T_again, T)
+
+
+def test_rendered_set_gives_its_camera_back():
+    """Another renderer than the painter of these tests, another lens, JPEG."""
+    camera, _ = bench_camera()
+    images, truth = board_pictures(camera, 7, seed=6)
+    found = calibrate(images, progress=False)
+    assert len(found.views) == 7
+    for view in found.views:
+        assert np.sqrt(((view.corners - truth[view.index].boards[0].corners) ** 2).sum(axis=1).mean()) < 0.12
+    error = np.array([found.fx - camera.fx, found.fy - camera.fy, found.cx - camera.cx, found.cy - camera.cy])
+    assert (np.abs(error) < 3 * np.array([found.stderr[n] for n in ("fx", "fy", "cx", "cy")])).all()
+
+
+def test_charuco_set_gives_its_camera_back():
+    from ir50p_lab.vision.rendering import Board
+
+    camera, _ = bench_camera()
+    printed = Board(kind="charuco")
+    images, _ = board_pictures(camera, 6, seed=7, board=printed)
+    found = calibrate(images, board=Charuco(printed.pattern, printed.square, printed.marker, printed.dictionary))
+    assert len(found.views) == 6 and found.rms < 0.15
+    assert abs(found.fx - camera.fx) < 3 * found.stderr["fx"] + 0.5
+
+
+def test_poses_are_in_view_and_tilted():
+    camera, _ = bench_camera()
+    poses = board_poses(camera, 5, seed=3)
+    assert len(poses) == 5
+    for T in poses:
+        xy = camera.project(T, POINTS)
+        assert (xy > 0).all() and (xy < SIZE).all()
+    assert np.allclose(look()[:3, :3], np.eye(3))
