@@ -76,3 +76,10 @@ def test_an_option_that_there_is_not(asked):
 def test_help_needs_nothing(asked, capsys):
     assert targets.main(["--help"]) == 0
     assert asked == [] and "python -m tests.targets" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", targets.NAMES)
+def test_every_table_is_there_and_has_a_quick_form(name, capsys):
+    assert targets.main([name, "--help"]) == 0
+    said = capsys.readouterr().out
+    assert f"python -m tests.targets.{name}" in said and "--quick" in said

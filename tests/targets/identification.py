@@ -117,12 +117,17 @@ def _row(what, target, x, ok, thesis="63/70/74"):
     return Row(what, target, f"{middle} (worst {worst})", thesis, ok)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def main(arguments=None):
+    """Print the table; returns 1 if a target is missed."""
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.targets.identification",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--first", type=int, default=100, help="first seed")
     parser.add_argument("--quick", action="store_true", help="no output error, 10 seeds for the standard errors")
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     found = rows(given.seeds, first=given.first, quick=given.quick)
     print(table(found, f"Identification, medians over {given.seeds} seeds from {given.first} on"))
     return 1 if any(row.ok is False for row in found) else 0
