@@ -155,10 +155,12 @@ def is_checkerboard(grid, grey):
     Near the corner, and far out in the same squares: a grid that skips every other column passes only the first.
     """
     swing = abs(contrast(grid, grey))
-    if swing < 8:
-        return False
     out, along = np.gradient(grid, axis=1), np.gradient(grid, axis=0)
     places, out, along = (a.reshape(-1, 2) for a in (grid, out, along))
+    levels = sample(grey, places + 0.3 * (out + along))
+    dark, light = np.nanpercentile(levels, (5, 95)) if np.isfinite(levels).any() else (0, 0)
+    if swing < max(8, 0.4 * (light - dark)):
+        return False
     near = _crossings(places, 0.3 * out, 0.3 * along, grey, swing)
     same = near != 0
     for i, j in ((0.7, 0.3), (0.3, 0.7)):
@@ -168,7 +170,7 @@ def is_checkerboard(grid, grey):
 
 
 def _crossings(places, out, along, grey, swing):
-    """For each place (n, 2) whether four squares meet there, (n,): 1 or -1 (by which are dark), 0, NaN (outside).
+    """For each place (n, 2) whether four squares meet there, (n,): 1 or -1 (by which are dark), 0, or NaN if outside.
 
     out, along: (n, 2) px, where to look in each direction; swing: between light and dark squares, grey levels.
     """

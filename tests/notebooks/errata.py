@@ -162,6 +162,16 @@ ERRATA = {
         ("4.5.1, hue", "340 to 360 and S below 0.8: loses the cleanest red, and red over the seam", r"4\.5\.1, hue"),
         ("4.5.1, radius", "radii 35 to 65 cannot give 18: these are diameters", r"4\.5\.1, radius"),
     ],
+    "10": [
+        ("3.5", "lost in the scan: right in row form"),
+        ("3.6", "the same"),
+        ("3.7", "column form, which does not go with the row form of (3.8)"),
+        ("3.8", "right, as a row form: the transpose of what OpenCV calls K"),
+        ("3.2.2.1", "names radial and tangential distortion, gives no formula"),
+        ("4.5.2", "a mean error of 0.15 px says nothing of how well the camera is known"),
+        ("4.5.3", "[R; t] K is 4x3 and has no inverse; the height of the ball's centre is forgotten"),
+        ("Table 4.8", "its arithmetic is right: mean 5.08, largest 10 mm", r"Table 4\.8"),
+    ],
     "11": [
         ("4.5", "from the board's frame into the base's: said, no equation does it"),
         ("Table 4.8", "balls at 412 to 500 mm: out of reach of an arm with links of 0.2 m", r"Table 4\.8"),
