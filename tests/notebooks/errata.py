@@ -167,7 +167,7 @@ ERRATA = {
         ("3.6", "the same"),
         ("3.7", "column form, which does not go with the row form of (3.8)"),
         ("3.8", "right, as a row form: the transpose of what OpenCV calls K"),
-        ("3.2.2.1", "names radial and tangential distortion, gives no formula"),
+        ("3.2.2.1", "names radial and tangential distortion, gives no formula", r"\(3\.2\.2\.1\)"),
         ("4.5.2", "a mean error of 0.15 px says nothing of how well the camera is known"),
         ("4.5.3", "[R; t] K is 4x3 and has no inverse; the height of the ball's centre is forgotten"),
         ("Table 4.8", "its arithmetic is right: mean 5.08, largest 10 mm", r"Table 4\.8"),

@@ -87,7 +87,7 @@ EXERCISES = (
     ),
     Exercise(
         "calib-3",
-        "the squares of a board are 24 mm, but square=0.025 was given: what of the calibration is wrong?",
+        "what of a calibration is wrong if square=0.025 was given for squares of 24 mm",
         Choice(
             "distances",
             {
