@@ -80,7 +80,7 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     for x, y, r, _ in guesses[:_TRIED]:
         if any(np.hypot(x - m.outline.x, y - m.outline.y) + abs(r - m.outline.r) < 0.3 * r for m in measured):
             continue  # an earlier guess led to the same outline
-        found = measure(image, (x, y, r), view, colour)
+        found = measure(image, (x, y, r), view, colour, camera)
         if isinstance(found, str):
             rejected.append(((float(x), float(y), float(r)), found))
         elif why := _blunt(found, least_radius):
@@ -105,7 +105,7 @@ def _judge(measured):
             if any(np.hypot(o.x - b.x, o.y - b.y) < 0.8 * max(o.r, b.radius) for b in balls):
                 continue  # the same ball, or a part of it
             if score >= LEAST_SCORE:
-                balls.append(Ball(o.x, o.y, o.r, score, found.support))
+                balls.append(Ball(*found.centre, o.r, score, found.support))
             else:
                 objections.append((_place(found), why))
         if not balls or not objections:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ir50p_lab.errors import InputError
 from ir50p_lab.vision.ball_edge import cast, contrast_axis, directions, find_edges
 from ir50p_lab.vision.ball_fit import Outline, fit_outline
 
@@ -22,10 +23,10 @@ _EDGE = 0.30  # least height of an edge, in units of the contrast between ball a
 class Measured:
     """A fitted outline and the evidence for it, shares of the full circle or disc 0..1.
 
-    outline. support: shows an edge on the outline; seen: lies in the picture; beyond (n,) bool: rays without an edge on
-    which the ball's colour goes on outside. fill: of the disc towards the edges found that has the colour (or is a
-    highlight). bumps: what the outline has of waves around a circle, three to eight of them, rms over the radius; oval:
-    two waves (motion makes some).
+    outline; centre (x, y) of the sphere, pixels. support: shows an edge on the outline; seen: lies in the picture;
+    beyond (n,) bool: rays without an edge on which the ball's colour goes on outside. fill: of the disc towards the
+    edges found that has the colour (or is a highlight). bumps: what the outline has of waves around a circle, three to eight
+    of them, rms over the radius; oval: two waves (motion makes some).
     gaps: into how many pieces what is missing falls. ragged: rms distance of the edge points from the smooth outline,
     over the radius. step: median height of the edges, over the contrast of the disc and its surroundings.
     apart: of the colours in and out, in standard deviations. through: how much of the missing part looks like what
@@ -33,6 +34,7 @@ class Measured:
     """
 
     outline: Outline
+    centre: tuple
     support: float
     seen: float
     beyond: np.ndarray
@@ -46,8 +48,8 @@ class Measured:
     step: float
 
 
-def measure(image, guess, view, colour):
-    """Measure the ball at a guess (x, y, r). Returns: Measured, or a text that says why not."""
+def measure(image, guess, view, colour, camera=None):
+    """Measure the ball at a guess (x, y, r); camera: Pinhole, whose lens may distort. Returns: Measured, or why not."""
     x, y, r = guess
     unit = directions(int(np.clip(8 * round(r / 4), 48, 96)))
     for turn in range(2):
@@ -74,10 +76,10 @@ def measure(image, guess, view, colour):
         x, y, r = found.x, found.y, found.r
         if moved < 0.06 * r:
             break
-    return _fine(image, found, view, colour, unit)
+    return _fine(image, found, view, colour, unit, camera)
 
 
-def _fine(image, outline, view, colour, unit):
+def _fine(image, outline, view, colour, unit, camera):
     """Look again, finely, along the outline found: the last digits, and the evidence."""
     x, y, r = outline.x, outline.y, outline.r
     if r < 3:
@@ -112,6 +114,7 @@ def _fine(image, outline, view, colour, unit):
     beyond = missing & inside[:, -1] & outside[:, 0] & outside[:, 1]
     return Measured(
         outline=outline,
+        centre=_through_the_lens(ex[on], ey[on], outline, view, camera),
         support=float(on.mean()),
         seen=float(seen.mean()),
         beyond=beyond,
@@ -122,6 +125,21 @@ def _fine(image, outline, view, colour, unit):
         step=float(np.median(edge.height[on])),
         **dict(zip(("bumps", "oval", "ragged"), _waves(off[on], unit[0][on], unit[1][on], outline.r), strict=True)),
     )
+
+
+def _through_the_lens(x, y, outline, view, camera):
+    """The projected centre (x, y): fitted to the outline as it would be without distortion, and distorted again."""
+    if camera is None or not np.any(camera.distortion):
+        return outline.x, outline.y
+    try:
+        straight = camera.to_pixels(camera.undistort_points(np.column_stack([x, y])))
+        middle = camera.to_pixels(camera.undistort_points(np.array([outline.x, outline.y])))
+    except InputError:  # a ball beyond what the lens can show
+        return outline.x, outline.y
+    fit = fit_outline(*straight.T, view, (*middle, outline.r), noise=0.2)
+    if fit is None:
+        return outline.x, outline.y
+    return tuple(map(float, camera.to_pixels(camera.distort(camera.to_normalised(np.array([fit.x, fit.y]))))))
 
 
 def _waves(off, cos, sin, r):

@@ -6,7 +6,9 @@ import pytest
 from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 
 from ir50p_lab.errors import ImageError, InputError
-from ir50p_lab.vision import RED, Ball, Colour, Pinhole, find_balls, learn_colour
+from ir50p_lab.vision import RED, Ball, Colour, Pinhole, find_balls, learn_colour, render_scene
+from ir50p_lab.vision.rendering import Ball as SceneBall
+from ir50p_lab.vision.rendering import bench_scene, random_scene
 
 F = 700.0
 
@@ -45,6 +47,17 @@ def test_centre_of_the_sphere_is_not_the_centre_of_its_outline():
     shift = (middle - centre) @ (centre - axis) / far
     assert shift == pytest.approx(predicted, rel=0.35)
     assert offset(find_balls(picture, camera=Pinhole.simple(F)), centre) < 0.4 < shift
+
+
+def test_the_lens_is_allowed_for():
+    errors = []
+    for position in ((0.68, -0.2, 0.03), (0.7, 0.28, 0.03), (0.72, -0.12, 0.03)):
+        picture, truth = render_scene(bench_scene(SceneBall(position=position)), seed=4)
+        where = truth.balls[0].x, truth.balls[0].y
+        assert truth.pinhole.distortion.any()
+        errors.append((offset(find_balls(picture, camera=truth.pinhole), where), offset(find_balls(picture), where)))
+    known, assumed = np.array(errors).T
+    assert (known < 0.25).all() and (known < assumed).all() and (assumed < 0.8).all()
 
 
 def test_lists_are_ranked_and_say_why_they_are_empty():
@@ -181,3 +194,15 @@ def test_compressed_copies_agree():
     data = cv2.imencode(".jpg", picture[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 60])[1]
     again = np.ascontiguousarray(cv2.imdecode(data, cv2.IMREAD_COLOR)[..., ::-1])
     assert offset(find_balls(again), (find_balls(picture)[0].x, find_balls(picture)[0].y)) < 0.4
+
+
+def test_random_scenes():
+    """A small sample of what tests/targets/vision_ball.py measures."""
+    found = 0
+    for seed in range(10_000, 10_006):
+        picture, truth = render_scene(random_scene(seed, "ball"), seed=seed)
+        balls, true = find_balls(picture), truth.red_balls[0]
+        found += any(np.hypot(ball.x - true.x, ball.y - true.y) < 1.5 for ball in balls)
+        picture, _ = render_scene(random_scene(seed, "no_ball"), seed=seed)
+        assert find_balls(picture) == []
+    assert found >= 4
