@@ -23,10 +23,11 @@ _EDGE = 0.30  # least height of an edge, in units of the contrast between ball a
 class Measured:
     """A fitted outline and the evidence for it, shares of the full circle or disc 0..1.
 
-    outline; centre (x, y) of the sphere, pixels. support: shows an edge on the outline; seen: lies in the picture;
+    outline; centre (x, y) of the sphere, pixels. support: shows an edge on the outline; seen: lies in the picture.
     beyond (n,) bool: rays without an edge on which the ball's colour goes on outside. fill: of the disc towards the
-    edges found that has the colour (or is a highlight). bumps: what the outline has of waves around a circle, three to eight
-    of them, rms over the radius; oval: two waves (motion makes some).
+    edges found that has the colour (or is a highlight).
+    bumps: what the outline has of waves around a circle, three to eight of them, rms over the radius; oval: two waves
+    (motion makes some).
     gaps: into how many pieces what is missing falls. ragged: rms distance of the edge points from the smooth outline,
     over the radius. step: median height of the edges, over the contrast of the disc and its surroundings.
     apart: of the colours in and out, in standard deviations. through: how much of the missing part looks like what
