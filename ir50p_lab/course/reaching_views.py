@@ -19,28 +19,27 @@ def origin(simulated):
 
 def loop_figure():
     """What passes from picture to motor, box by box (Figure 4.14). Returns: LabFigure."""
-    figure = new_figure(9.0, 2.5)
+    figure = new_figure(9.0, 2.2)
     (ax,) = figure.axes
-    ax.set(xlim=(0, 6), ylim=(0, 2), title="From the picture to the motors, and round again")
+    ax.set(xlim=(0, 6), ylim=(-0.35, 1.6), title="From the picture to the motors, and round again")
     ax.axis("off")
     boxes = (
         ("camera", "picture"),
         ("find_balls", "x, y [px]"),
-        ("TablePlane", "X, Y [m], table"),
-        ("T_base_table", "p [m], base"),
+        ("TablePlane", "X, Y [m]\non the table"),
+        ("T_base_table", "p [m]\nin the base"),
         ("IK, plan", "q(t) [rad]"),
         ("controller", "u [PWM]"),
     )
     for k, (name, out) in enumerate(boxes):
-        ax.add_patch(FancyBboxPatch((k + 0.12, 1.0), 0.76, 0.5, boxstyle="round,pad=0.04", fc="#EDF3F8", ec="#0072B2"))
-        ax.text(k + 0.5, 1.25, name, ha="center", va="center", fontsize=9.5)
-        ax.text(k + 1.0 if k < 5 else k + 0.5, 0.72, out, ha="center", va="center", fontsize=8, color=COLOURS["dark"])
+        ax.add_patch(FancyBboxPatch((k + 0.12, 1.0), 0.76, 0.45, boxstyle="round,pad=0.04", fc="#EDF3F8", ec="#0072B2"))
+        ax.text(k + 0.5, 1.22, name, ha="center", va="center", fontsize=9.5)
+        ax.text(k + 0.5, 0.88, out, ha="center", va="top", fontsize=8, color=COLOURS["dark"])
         if k < 5:
-            ax.add_patch(FancyArrowPatch((k + 0.9, 1.25), (k + 1.1, 1.25), arrowstyle="-|>", mutation_scale=10))
-    ax.add_patch(
-        FancyArrowPatch((5.5, 0.55), (0.5, 0.55), connectionstyle="arc3,rad=-0.16", arrowstyle="-|>", mutation_scale=10)
-    )
-    ax.text(3.0, 0.02, "the camera sees ball and hand: look again", ha="center", fontsize=9, color=COLOURS["dark"])
+            ax.add_patch(FancyArrowPatch((k + 0.9, 1.22), (k + 1.1, 1.22), arrowstyle="-|>", mutation_scale=10))
+    style = {"arrowstyle": "-|>", "mutation_scale": 10, "connectionstyle": "arc,angleA=-90,angleB=-90,armA=40,armB=40"}
+    ax.add_patch(FancyArrowPatch((5.5, 0.6), (0.5, 0.6), **style))
+    ax.text(3.0, -0.3, "the camera sees ball and hand: look again", ha="center", fontsize=9, color=COLOURS["dark"])
     return figure
 
 
@@ -120,29 +119,26 @@ def height_figure(plane, arm, ball, xy):
     plane: TablePlane; ball: (3,) m, where it is believed to be; xy: (2,) px.
     `update(height)` (m) moves the reading and returns a sentence.
     """
-    figure = new_figure(9.0, 3.4)
+    figure = new_figure(7.5, 3.4)
     (ax,) = figure.axes
     eye = plane.centre
     away = (ball[:2] - eye[:2]) / np.linalg.norm(ball[:2] - eye[:2])
-    far = float((ball[:2] - eye[:2]) @ away)
+    slope = (eye[2] - ball[2]) / float((ball[:2] - eye[:2]) @ away)
+    sight = np.array([-0.25, 0.06])
     ax.axhline(0, color=COLOURS["grey"], linewidth=2)
     ax.add_patch(Circle((0, 1e3 * ball[2]), 1e3 * ball[2], fc="#C8202D", ec="none", alpha=0.8))
-    ax.plot([-1e3 * far, 1e3 * 0.05], 1e3 * np.array([eye[2], eye[2] * (-0.05) / far + ball[2]]), alpha=0)
-    slope = (eye[2] - ball[2]) / far
-    sight = np.array([-0.25, 0.06])
-    ax.plot(1e3 * sight, 1e3 * (ball[2] - slope * sight), color=COLOURS["grey"], linestyle=":", label="line of sight")
-    (mark,) = ax.plot([], [], "X", color=COLOURS["purple"], ms=11, mec="white", label="read here")
-    (level,) = ax.plot([-260, 80], [0, 0], **SETPOINT)
+    ax.plot(1e3 * sight, 1e3 * (ball[2] - slope * sight), color=COLOURS["dark"], linestyle=":")
+    (level,) = ax.plot([-160, 80], [0, 0], **SETPOINT)
+    (mark,) = ax.plot([], [], "X", color=COLOURS["purple"], ms=11, mec="white")
     ax.set(
         xlim=(-160, 80), ylim=(-12, 110), aspect="equal", xlabel="along the line of sight [mm]", ylabel="height [mm]"
     )
-    ax.legend(loc="upper right", fontsize=8)
 
     def update(height_mm):
         place = plane.to_table(xy, height_mm / 1e3)
         off = 1e3 * float((place - ball[:2]) @ away)
         mark.set_data([off], [height_mm])
-        level.set_data([-260, 80], [height_mm, height_mm])
+        level.set_ydata([height_mm, height_mm])
         ax.set_title(f"Read at height {height_mm:.0f} mm, the ball is {off:+.1f} mm off")
         return f"to_table(xy, height={height_mm / 1e3:.3f}) = ({1e3 * place[0]:.1f}, {1e3 * place[1]:.1f}) mm"
 

@@ -300,13 +300,14 @@ class Reacher:
     def follow_ball(self, seconds, *, height=0.10, every=0.1, lead=0.25):
         """Keep the tip over a moving ball: a look every `every` s, position and velocity filtered, aimed ahead.
 
+        First a planned way to where the ball is seen, clear of the table; `seconds` count from there.
         lead: s that the aim lies ahead, for what camera and arm lag behind. Where the ball cannot be followed (out of
         reach, or not seen) the arm waits at the last place.
         Returns: FollowLog.
         """
         from ir50p_lab.bench.set_point import SetPoint
 
-        reach = None
+        self.move_along(plan(self.arm, self.q, self._sure(self.look()).position + np.array([0.0, 0.0, height])))
         tracker, log, point = BallTracker(), [], SetPoint(self._set, speed=0.6, acceleration=3.0)
         begin, next_look, job, self._frozen = self._last.t, self._last.t, None, None
         live = not self.bench.simulated or getattr(self.bench, "realtime", False)
@@ -323,8 +324,7 @@ class Reacher:
             if tracker.position is not None:
                 aim = np.array([*tracker.at(t + lead), self.sight.radius + height])
                 with contextlib.suppress(ValueError):  # UnreachableError: wait
-                    reach = reach_pose(self.arm, aim, self.q)
-                    point.move_to(self.shown(reach))
+                    point.move_to(self.shown(reach_pose(self.arm, aim, self.q)))
             rows = point(t)
             self._set = rows[0]
             self._cycle(rows)

@@ -1,25 +1,26 @@
-"""Exercises of notebook 11: from the camera's frame to the arm's, heights, reach, what looks can tell."""
+"""Exercises of notebook 11: from the camera's frame to the arm's, reach, counts at the tip, what looks can tell."""
 
 import numpy as np
 
 from ir50p_lab.course.exercises import Choice, Exercise, Function, Number, Slip
-from ir50p_lab.modelling import IR50P, frames
+from ir50p_lab.modelling import IR50P, frames, jacobian
 
 NOTEBOOK = "11_vision_guided_reaching"
 
-# reach-1: a ball seen by a camera 0.60 m above the table.
-_HIGH, _FAR, _CENTRE = 0.60, 0.50, 0.03
-_OFF = _CENTRE * _FAR / (_HIGH - _CENTRE)
-
-# reach-2: where the camera stands, and a ball in camera coordinates.
+# reach-1: where the camera stands, and a ball in camera coordinates.
 _T_BASE_CAM = np.array([[0.0, 0.6, -0.8, 0.9], [1.0, 0.0, 0.0, 0.1], [0.0, -0.8, -0.6, 0.7], [0.0, 0.0, 0.0, 1.0]])
 _P_CAM = np.array([0.05, 0.10, 0.80])
 _P_BASE = _T_BASE_CAM[:3, :3] @ _P_CAM + _T_BASE_CAM[:3, 3]
 
-# reach-3: a goal too far out for the IR50P.
+# reach-2: a goal too far out for the IR50P.
 _GOAL = np.array([0.56, 0.12, 0.09])
 _SHOULDER = np.array([0.0, 0.0, IR50P.l[0]])
 _MISSING = float(np.linalg.norm(_GOAL - _SHOULDER) - IR50P.l[1] - IR50P.l[2])
+
+
+# reach-3: one count of joint 2 in a pose over a ball.
+_Q, _SLOPE = np.array([0.0, 0.5, -1.4]), 122.0
+_LEVER = float(np.linalg.norm(jacobian(IR50P, _Q)[:3, 1]))
 
 
 def _marker(q):
@@ -47,22 +48,6 @@ def _elbow(q):
 EXERCISES = (
     Exercise(
         "reach-1",
-        "how far off a ball is read whose centre is 30 mm high, if it is read on the table (camera 0.60 m high, its "
-        "foot 0.50 m away from the ball)",
-        Number(_OFF, unit="m", tolerance=5e-4, because="half a millimetre is what the camera can tell"),
-        why="Similar triangles: h d / (H - h). Lower cameras pay more.",
-        slips=(
-            Slip(_CENTRE * _FAR / _HIGH, "Almost: the triangle's height is not the camera's, but from ball to camera."),
-            Slip(_CENTRE * _HIGH / _FAR, "That is upside down: a camera right above the ball reads it without error."),
-            Slip(_CENTRE, "That is the height itself; the line of sight is not at 45 degrees."),
-            Slip(
-                0.06 * _FAR / (_HIGH - 0.06), "The centre is half as high as the top of the ball: its radius is 30 mm."
-            ),
-        ),
-        hint="Draw the line of sight from the side, through the centre of the ball and on to the table.",
-    ),
-    Exercise(
-        "reach-2",
         "the ball's position in base coordinates: T_base_cam has the rows (0, 0.6, -0.8, 0.9), (1, 0, 0, 0.1), "
         "(0, -0.8, -0.6, 0.7), (0, 0, 0, 1), and the camera sees it at (0.05, 0.10, 0.80) m",
         Number(_P_BASE, unit="m", tolerance=1e-3, because="a millimetre is less than the arm can do"),
@@ -81,7 +66,7 @@ EXERCISES = (
         ),
     ),
     Exercise(
-        "reach-3",
+        "reach-2",
         "by how many metres the IR50P misses the goal (0.56, 0.12, 0.09) m",
         Number(_MISSING, unit="m", tolerance=5e-4, because="half a millimetre shows the right triangle"),
         why="From the shoulder, at height l1, the arm reaches l2 + l3: the rest is missing.",
@@ -98,6 +83,29 @@ EXERCISES = (
             Slip(0.0, "reach_pose refuses this goal, so something is missing."),
         ),
         hint="Nothing but lengths: the distance from the shoulder to the goal, and what the two links make together.",
+    ),
+    Exercise(
+        "reach-3",
+        "by how many millimetres the tip of the IR50P moves when its potentiometer 2 (122 counts per rad) changes by "
+        "one count, in the pose q = (0, 0.5, -1.4) rad",
+        Number(
+            1e3 * _LEVER / _SLOPE, unit="mm", tolerance=0.1, because="a tenth of a millimetre shows the right lever"
+        ),
+        why="Lever over slope: one count costs millimetres, so single readings are not good enough.",
+        slips=(
+            Slip(1e3 * _LEVER, "That is how far it moves per radian; one count is a small part of one."),
+            Slip(1e3 / _SLOPE, "That is the angle of one count, in mrad: the lever is missing."),
+            Slip(
+                1e3 * (IR50P.l[1] + IR50P.l[2]) / _SLOPE,
+                "That is the lever of the stretched arm; here the elbow is bent.",
+            ),
+            Slip(
+                1e3 * float(np.linalg.norm(jacobian(IR50P, _Q)[:3, 2])) / _SLOPE,
+                "That is the lever of joint 3: columns of the Jacobian count joints.",
+            ),
+            Slip(_LEVER / _SLOPE, "That is in metres; asked for are millimetres."),
+        ),
+        hint="The column of joint 2 in jacobian(IR50P, q), its first three rows, and its length.",
     ),
     Exercise(
         "reach-4",
