@@ -38,7 +38,7 @@ def general_parameters(links, *, rotors=(0.0, 0.0, 0.0)):
     """
     found = {f"j{i + 1}": float(x) for i, x in enumerate(vectors3("rotors", rotors, unit="kg m^2"))}
     if len(links) != 3:
-        raise InputError(f"{len(links)} links: give three")
+        raise InputError(f"{len(links)} links: give three of (m, com, inertia)")
     for i, (m, com, inertia) in enumerate(links, start=1):
         com, inertia = vectors3(f"com of link {i}", com, unit="m"), vectors3(f"inertia of link {i}", inertia, unit="SI")
         if com.shape != (3,) or inertia.shape != (3, 3) or not np.allclose(inertia, inertia.T, rtol=1e-9, atol=0):

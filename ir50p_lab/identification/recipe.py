@@ -4,8 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
+from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification import joint_checks as checks
 from ir50p_lab.identification.arm_regressor import regressor
+from ir50p_lab.identification.columns import columns_of
 from ir50p_lab.identification.estimate import Estimate
 from ir50p_lab.identification.fitting import fit
 from ir50p_lab.identification.processing import process
@@ -15,6 +17,7 @@ from ir50p_lab.identification.validation import validate
 # potentiometers is 5 to 8 mrad; a joint turns over within +-0.05 rad/s, where sgn(qd) would jump at the wrong moment.
 STEPS = {"cutoff_hz": 1.2, "order": 4}
 TURN = 0.05  # rad/s
+_TURN_OF_A_JOINT = 2.5 * np.pi  # rad: a joint that goes further is rare, one in degrees is not
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -30,7 +33,9 @@ class Identified(Estimate):
         return validate(self, recording, q, u, delay=self.delay, sign=TURN, g=self.g, **self.steps)
 
 
-def identify(recordings, *, l2=None, delay=0.02, slow=0.05, method="bounded", rows="joint", g=9.81, **steps):
+def identify(
+    recordings, *, l2=None, delay=0.02, slow=0.05, method="bounded", rows="joint", g=9.81, unit="PWM", **steps
+):
     """Identify the arm from one or several recordings: the recipe of the course in one call.
 
         motion = optimise_excitation(arm, margin=0.2, table=0.1, standing=6).reference     # and drive it for a minute
@@ -45,15 +50,16 @@ def identify(recordings, *, l2=None, delay=0.02, slow=0.05, method="bounded", ro
     Args:
         recordings: a Recording (t, q, u), or a list of them: other motions, or another load of work for the same arm.
         l2: upper arm, m, or None. delay: s from a sample to the moment its u acts. slow: rad/s.
-        method: "bounded", or another of `fit`; rows, g: as in `fit`, `regressor`; steps: cutoff_hz=, order=, held=,
-        trim=, max_gap= of `process`.
+        method: "bounded", or another of `fit`; rows, g, unit (of u): as in `fit`, `regressor`; steps: cutoff_hz= (Hz,
+        above what the joints move at), order=, held=, trim=, max_gap= of `process`.
 
     Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by some per
     cent, at this length of record more than the standard errors, which do not know it: where the parameters themselves
     matter, go on with `fit_with_instruments`; where Stribeck friction does, with `output_error`.
 
     Returns: Identified, an Estimate that can `score` other recordings.
-    Raises: InputError, IdentificationError as `process` and `fit` do.
+    Raises: InputError, IdentificationError as `process` and `fit` do, and if a joint is constant, its angle wrapped or
+    clipped. Angles that look like degrees, and a u that is often at its limit, are in `warnings`.
     """
     for name in ("derivatives", "decimate", "filter_u"):
         if name in steps:
@@ -62,8 +68,9 @@ def identify(recordings, *, l2=None, delay=0.02, slow=0.05, method="bounded", ro
     several = isinstance(recordings, (list, tuple))
     if several and not recordings:
         raise InputError("no recording given: give one, or a list of them")
-    Phi, y, use = [], [], []
+    Phi, y, use, notes = [], [], [], []
     for recording in recordings if several else [recordings]:
+        notes += _looked_at(recording)
         motion = process(recording, delay=delay, slow=slow, **steps)
         if motion.q.shape[1] != 3:
             raise InputError(f"q has {motion.q.shape[1]} columns: give all three joints, or take fit_joint for one")
@@ -71,6 +78,33 @@ def identify(recordings, *, l2=None, delay=0.02, slow=0.05, method="bounded", ro
         y.append(motion.u)
         use.append(motion.use)
     Phi, y, use = map(np.concatenate, (Phi, y, use))
-    found = fit(Phi, y, method=method, rows=rows, l2=l2, use=use)
+    found = fit(Phi, y, method=method, rows=rows, l2=l2, use=use, unit=unit)
     values = {name: getattr(found, name) for name in Estimate.__dataclass_fields__}
+    values["warnings"] = (*notes, *found.warnings)
     return Identified(**values, delay=float(delay), steps=steps, g=float(g))
+
+
+def _looked_at(recording):
+    """Doubts about a recording as sentences; what cannot be right is refused, joint by joint."""
+    t, q, u = columns_of(recording)
+    notes = []
+    for joint in range(q.shape[1]):
+        try:
+            checks.refuse_short_or_constant(t, q[:, joint], u[:, joint])
+            checks.refuse_whole_turns(t, q[:, joint])
+            checks.refuse_clipped_angle(t, q[:, joint])
+        except IdentificationError as error:
+            raise IdentificationError(f"joint {joint + 1}: {error}") from None
+        span = np.ptp(q[:, joint])
+        if span > _TURN_OF_A_JOINT:
+            notes.append(
+                f"joint {joint + 1} spans {span:.4g} rad, {span / (2 * np.pi):.2g} turns: "
+                "is it in degrees? Use np.radians(q)"
+            )
+        extreme = np.isin(u[:, joint], (u[:, joint].min(), u[:, joint].max())).mean()
+        if extreme > 0.05:
+            notes.append(
+                f"joint {joint + 1}: u is at its largest or smallest value in {100 * extreme:.0f} % of the record: if "
+                "it was clipped after the drive, or the drive saturates, these samples are not what acted"
+            )
+    return notes

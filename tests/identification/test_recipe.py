@@ -1,5 +1,6 @@
 """The recipe in one call, motions kept in a file, and the rehearsal that chose them."""
 
+import os
 import subprocess
 import sys
 
@@ -143,7 +144,7 @@ def test_bad_arguments(options, words):
 
 @pytest.mark.parametrize("seconds", [0.25, 0.5, 1.0])
 def test_too_little(seconds):
-    with pytest.raises(IdentificationError, match=r"nothing is left|to be used"):
+    with pytest.raises(IdentificationError, match=r"nothing is left|to be used|too short"):
         identify(run("training", seconds=seconds))
 
 
@@ -161,3 +162,12 @@ def test_bad_rehearsals(arguments, words):
     given = {"reference": MOTIONS["training"], "arm": IR50P, "controller": thesis_pid(), **arguments}
     with pytest.raises(InputError, match=words):
         rehearse(**given)
+
+
+if os.environ.get("IR50P_SLOW"):  # some minutes: the whole file made again
+
+    def test_the_file_is_what_its_command_makes():
+        made = make_excitations(progress=False)
+        assert [*made] == [*MOTIONS]
+        for name, motion in made.items():
+            np.testing.assert_allclose(motion.a, MOTIONS[name].a, rtol=1e-3, atol=1e-4)
