@@ -15,7 +15,7 @@ from ir50p_lab.vision.pinhole import Pinhole
 
 _TRIED = 14  # first guesses measured
 
-LEAST_SCORE = 0.5
+LEAST_SCORE = 0.65  # more than a half: a false alarm is worse than a miss
 # Whatever else speaks for it, a ball shows an edge on this much of the circle, this much of its disc has the colour,
 # and its outline leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and a part of a pixel.
 _LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.35, 0.75, (0.010, 0.32)
