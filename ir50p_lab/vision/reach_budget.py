@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.vision.board_pose import inverse_transform, moved
-from ir50p_lab.vision.reaching import SETTLED
+from ir50p_lab.vision.reaching import ACCEPTED
 
 _READINGS = 100  # counts averaged at rest
 
@@ -71,7 +71,7 @@ def error_budget(arm, sight, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_mar
     ball_off = np.array([[*b, 0.0] for b, _ in shifts]).reshape(-1, 3).T
     both_off = ball_off + J @ G @ np.array([h for _, h in shifts]).reshape(-1, 2).T
     reading = np.diag(np.sqrt(noise**2 + 1 / 12) / np.sqrt(_READINGS) / np.abs(slope))
-    rest = SETTLED * np.sqrt(0.6)  # evenly spread over a ball of that radius
+    rest = ACCEPTED * np.sqrt(0.6)  # evenly spread over a ball of that radius
     return Budget(
         (
             Cause("ball in the picture", pixel, pixel / np.sqrt(2)),

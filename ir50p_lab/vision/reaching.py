@@ -17,6 +17,7 @@ HEIGHT = 0.06  # m of the tip over the ball's centre: 30 mm over its top
 _LONGEST = 3600.0  # s, of one session
 _SETTLE, _WINDOW, _WINDOWS = 0.6, 0.4, 15  # s until the arm stands, s of counts to average, how often
 SETTLED, _RESTING = 1e-3, 2e-3  # m at the tip, by averaged counts: near enough; no longer moving
+ACCEPTED = 1.5e-3  # m at the tip, by a second of counts with the command frozen: there it stays
 _COUNTS, _COUNTS_NOMINAL = 0.7, 2.5  # what potentiometers are off by, counts (assumed: a good wire-wound one)
 _MOVED = 0.008  # m between two looks: then the ball has moved, and only the second counts
 
@@ -172,7 +173,7 @@ class Reacher:
             self._frozen = self._holding(goal)
             self.hold(0.1)
             last = self.hold(1.0)
-            if self._tip_size(goal, wanted - last) < 1.5 * SETTLED:
+            if self._tip_size(goal, wanted - last) < ACCEPTED:
                 break
             self._frozen = None  # it slid on, or the window had flattered it
         return self.true(last)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ir50p_lab.errors import InputError, VisionError
+from ir50p_lab.errors import CalibrationError, InputError, VisionError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.ball import find_balls
@@ -76,7 +76,16 @@ class Sight:
         return self.seen_in(frame.image, bool(getattr(frame, "simulated", False)))
 
     def seen_in(self, image, simulated=False):
-        """The same for a picture that is there already (RGB)."""
+        """The same for a picture that is there already (RGB).
+
+        Raises CalibrationError if the picture is of another size than the calibration.
+        """
+        size = getattr(self.plane.camera, "size", None)
+        if size is not None and tuple(size) != (image.shape[1], image.shape[0]):
+            raise CalibrationError(
+                f"the camera sends {image.shape[1]}x{image.shape[0]}, its calibration is of {size[0]}x{size[1]}: "
+                "set the camera to that size, or calibrate it at this one"
+            )
         balls = find_balls(image, self.colour, camera=self._model())
         if not balls:
             return Seen(None, None, None, image, simulated, balls.reason)
