@@ -4,7 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.vision.calibration_grid import grow, in_order, is_checkerboard, is_whole, roughness, spacing
+from ir50p_lab.vision.calibration_grid import (
+    grow,
+    in_order,
+    is_checkerboard,
+    is_whole,
+    next_to_margin,
+    roughness,
+    spacing,
+)
 from ir50p_lab.vision.calibration_reasons import NotUsable, Reason
 
 _SEARCHED = 1280  # px; corners are searched in a picture reduced to this, and refined in the picture itself
@@ -125,7 +133,8 @@ def refine(grey, grid):
     """Corners (rows, columns, 2) to sub-pixel: `cornerSubPix` with a window for each corner from its squares."""
     import cv2
 
-    half = np.clip(np.round(_WINDOW * spacing(grid)), *_WINDOW_PX).astype(int).ravel()
+    part = np.where(next_to_margin(grid, grey), _WINDOW / 2, _WINDOW)
+    half = np.clip(np.round(part * spacing(grid)), *_WINDOW_PX).astype(int).ravel()
     xy = grid.reshape(-1, 1, 2).astype(np.float32)
     stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-4)
     for size in np.unique(half):

@@ -162,11 +162,24 @@ def is_checkerboard(grid, grey):
     if swing < max(8, 0.4 * (light - dark)):
         return False
     near = _crossings(places, 0.3 * out, 0.3 * along, grey, swing)
-    same = near != 0
-    for i, j in ((0.7, 0.3), (0.3, 0.7)):
-        same &= _crossings(places, i * out, j * along, grey, swing) == near
     known = np.isfinite(near)
-    return bool(known.mean() > 0.7 and same[known].mean() > 0.8)
+    if known.mean() < 0.7 or (near[known] != 0).mean() < 0.85:
+        return False
+    inner = np.zeros(grid.shape[:2], dtype=bool)
+    inner[1:-1, 1:-1] = True  # the outermost squares of a board may be cut narrow
+    inner = inner.ravel() & known
+    far = [_crossings(places, i * out, j * along, grey, swing)[inner] for i, j in ((0.7, 0.3), (0.3, 0.7))]
+    return bool(inner.any() and np.mean([each == near[inner] for each in far]) > 0.8)
+
+
+def next_to_margin(grid, grey):
+    """Corners (rows, columns), bool, beside squares that are cut narrow: something else begins within 0.7 squares."""
+    swing = abs(contrast(grid, grey))
+    out, along = np.gradient(grid, axis=1), np.gradient(grid, axis=0)
+    places, out, along = (a.reshape(-1, 2) for a in (grid, out, along))
+    near = _crossings(places, 0.3 * out, 0.3 * along, grey, swing)
+    far = [_crossings(places, i * out, j * along, grey, swing) for i, j in ((0.7, 0.3), (0.3, 0.7))]
+    return ((near != 0) & ((far[0] != near) | (far[1] != near))).reshape(grid.shape[:2])
 
 
 def _crossings(places, out, along, grey, swing):

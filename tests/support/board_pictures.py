@@ -19,7 +19,18 @@ def look(distance=0.6, tilt=0.0, about=0.0, spin=0.0, at=(0.0, 0.0), centre=(0.1
 
 
 def paint(
-    T, pattern=(9, 6), square=0.025, *, size=SIZE, blur=0.7, noise=2.0, seed=0, over=2, levels=(40, 210), lens=LENS
+    T,
+    pattern=(9, 6),
+    square=0.025,
+    *,
+    size=SIZE,
+    blur=0.7,
+    noise=2.0,
+    seed=0,
+    over=2,
+    levels=(40, 210),
+    lens=LENS,
+    rim=1.0,
 ):
     """Picture (h, w, 3): every pixel the mean of over x over rays, undistorted and cut with the board's plane."""
     w, h = size
@@ -31,7 +42,7 @@ def paint(
     u, v = X[0] / X[2] / square, X[1] / X[2] / square
     columns, rows = pattern
     dark = (np.floor(u) + np.floor(v)) % 2 == 0
-    board = (u > -1) & (u < columns) & (v > -1) & (v < rows)
+    board = (u > -rim) & (u < columns - 1 + rim) & (v > -rim) & (v < rows - 1 + rim)
     paper = (u > -1.6) & (u < columns + 0.6) & (v > -1.6) & (v < rows + 0.6)
     light = np.where(paper, np.where(board & dark, *map(float, levels)), 120.0).reshape(h * over, w * over)
     light = cv2.GaussianBlur(light, (0, 0), blur * over).reshape(h, over, w, over).mean((1, 3))

@@ -14,11 +14,11 @@ JOINT = 16.25  # chi-square of 4 numbers that 99.73 % stay below: what 3 standar
 
 def random_camera(rng):
     """A webcam: focal length, nearly square pixels, centre near the middle, lens with or without each term."""
-    f = rng.uniform(560, 900)
+    f = rng.uniform(600, 900)
     K = np.array(
         [[f, 0, 319.5 + rng.normal(0, 12)], [0, f * rng.normal(1, 0.004), 239.5 + rng.normal(0, 9)], [0, 0, 1]]
     )
-    k1 = rng.uniform(-0.35, 0.1)
+    k1 = rng.uniform(-0.22, 0.1)
     k2 = rng.choice([0, -0.4 * k1 * rng.uniform(0.3, 1.2)])
     p = rng.choice([0, 1]) * rng.normal(0, 8e-4, 2)
     return Pinhole(K, (k1, k2, *p, 0), (640, 480))

@@ -39,6 +39,12 @@ def test_corners_where_they_were_painted(spin, blur):
     assert np.abs(off.mean(axis=0)).max() < 0.03
 
 
+def test_a_board_with_narrow_outer_squares():
+    """The board of OpenCV's own sample pictures has them."""
+    T = look(0.55, 0.4, 1.0)
+    assert np.abs(found(T, rim=0.45) - project(T, BOARD.points)).max() < 0.5
+
+
 def test_order_of_a_board_that_looks_alike_upside_down():
     xy = found(look(0.6, 0.3, 0.5, spin=3.1), pattern=(9, 7))
     assert xy[0].sum() < xy[-1].sum()
