@@ -2,6 +2,12 @@
 
 Each seed is another copy of the arm with other noise, trains on one motion and is judged on another (in all, as many
 as there are seeds, at most 20). Nothing of the bench but its recordings reaches the identification.
+
+What the numbers hold for: motions that were chosen. `make_excitations` keeps the 21 of 200 on which a rigid-body model
+can explain most of u when the nominal arm (with its assumed friction) rehearses them; their length and harmonics were
+picked among some ten settings on other seeds, by the full fit and by how near the naive one comes to the trial. On
+optimised motions without that choice the same steps reached 89 to 91 % on joint 2, on random ones about 83 %: there
+the joint stands for long, and u may be anything up to the breakaway friction. The delay (two periods) is given.
 """
 
 import argparse
