@@ -1,0 +1,178 @@
+"""The arm driven in one loop without a pause: along references, to points, and standing still where it should."""
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.modelling.chain import forward_kinematics
+from ir50p_lab.modelling.dynamics import gravity
+from ir50p_lab.vision.hand_eye_refined import JointCorrection
+from ir50p_lab.vision.reach_plan import CLEAR, plan
+
+_LONGEST = 3600.0  # s, of one session
+_SETTLE, _WINDOW, _WINDOWS = 0.6, 0.4, 15  # s until the arm stands, s of counts to average, how often
+SETTLED, _RESTING = 1e-3, 2e-3  # m at the tip, by averaged counts: near enough; no longer moving
+ACCEPTED = 1.5e-3  # m at the tip, by a second of counts with the command frozen: there it stays
+
+
+def reaching_controller(arm, period=0.01):
+    """The controller that reaching uses: computed torque with a slow integral; without motor data the PIDs of 4.1-4.3.
+
+    Gains tried out on simulated arms: stiff (12 rad/s), so that a joint that breaks loose does not jump far, and with
+    the two periods of delay led ahead; those of Tables 4.5-4.7 (5, 3, 7 rad/s) leave centimetres at the tip.
+    """
+    from ir50p_lab.controllers import PID, ComputedTorque
+
+    if arm.actuators is None:
+        return PID(kp=(289, 225, 270), ki=(50, 150, 50), kd=(40, 30, 30), limit_pwm=255, period=period)
+    return ComputedTorque(arm, kp=150, kd=24, ki=30, limit_pwm=255, period=period, delay=2 * period)
+
+
+class Mover:
+    """The arm on an open bench as one run: `with Mover(bench) as mover: mover.move_to(p)`.
+
+    The drive goes on from the first command to the end of the `with` block, where the arm moves to its rest pose:
+    between two runs a board would cut it, and the arm would sink.
+
+    Args:
+        bench: an open bench. controller: default `reaching_controller(arm)`.
+        correction: JointCorrection of the potentiometers, from `refine_hand_eye`; default none.
+        rest: go to the rest pose at the end.
+
+    Attributes: q: (3,) rad, best estimate of its set point; errors: (3,) rad, what the potentiometers are off by here.
+    """
+
+    def __init__(self, bench, *, controller=None, correction=None, rest=True):
+        self.bench, self.arm, self.rest = bench, bench.arm, rest
+        self.controller = reaching_controller(bench.arm, bench.period) if controller is None else controller
+        self.correction = JointCorrection.of(bench.arm) if correction is None else correction
+        self.errors = np.zeros(3)
+        self._samples = self._last = self._gripper = self._frozen = None
+        self._u = self._mean_u = np.zeros(3)
+
+    # ---- the loop
+
+    def __enter__(self):
+        if hasattr(self.controller, "reset"):
+            self.controller.reset()
+        self._samples = self.bench.run(_LONGEST)
+        self._last = next(self._samples)
+        self._set = np.array(self._last.q)  # where the potentiometers shall be
+        self._drive((self._set, np.zeros(3), np.zeros(3)))
+        self.hold(0.3)
+        return self
+
+    def __exit__(self, kind, error, traceback):
+        if kind is not None:
+            self.bench.cut()
+        self._samples.close()
+        if kind is None and self.rest:
+            self.bench.go_to_rest()
+
+    def _drive(self, rows):
+        u = self.controller.step(self._last.t, self._last.q, rows)
+        u = u if self._frozen is None else self._frozen
+        self._u = self.bench.drive(u, reference=rows[0], gripper=self._gripper)
+
+    def _cycle(self, rows):
+        self._last = next(self._samples, None)
+        if self._last is None:
+            raise InputError(f"the session has lasted {_LONGEST:g} s: begin a new one")
+        self._drive(rows)
+        return self._last
+
+    # ---- angles: of the potentiometers, and of the arm
+
+    def true(self, shown):
+        """Best estimate of the arm's angles for those of the potentiometers, (3,) rad."""
+        return self.correction(shown + self.errors)
+
+    def shown(self, q):
+        """What the potentiometers shall show for angles (3,) or (n, 3) of the arm, rad."""
+        return self.correction.back(q) - self.errors
+
+    @property
+    def q(self):
+        """Best estimate of where the arm's set point is, (3,) rad."""
+        return self.true(self._set)
+
+    # ---- motions
+
+    def hold(self, seconds):
+        """Stay for a while. Returns the mean of the measured angles, (3,) rad as the potentiometers show them."""
+        rows = (self._set, np.zeros(3), np.zeros(3))
+        shown, u = np.zeros(3), np.zeros(3)
+        cycles = max(1, round(seconds / self.bench.period))
+        for _ in range(cycles):
+            shown += self._cycle(rows).q
+            u += self._u
+        self._mean_u = u / cycles
+        return shown / cycles
+
+    def move_along(self, reference):
+        """Follow a reference of the arm's angles from its start to its end."""
+        start, self._frozen = self._last.t, None
+        period, seconds = self.bench.period, max(reference.duration, 0.3)
+        t = np.arange(0.0, seconds + period, period)
+        rows = reference.sample(t)
+        shown = self.shown(rows[:, 0])
+        # the set point may be off the start by trims of the last stand: fade them out
+        shown += np.maximum(0.0, 1.0 - t / max(0.3, 0.5 * seconds))[:, None] * (self._set - shown[0])
+        k = 0
+        while k < len(t) - 1:
+            k = min(round((self._last.t - start) / period) + 1, len(t) - 1)  # by the clock: a late cycle skips ahead
+            self._set = shown[k]
+            self._cycle((self._set, rows[k, 1], rows[k, 2]))
+
+    def move_to(self, p, *, lift=0.08, speed=0.5, clear=CLEAR):
+        """Move the tip to p (3,) m on a way clear of the table, and settle. Returns the Plan."""
+        way = plan(self.arm, self.q, p, lift=lift, speed=speed, clear=clear)
+        self.move_along(way)
+        self.settle(way.goal)
+        return way
+
+    def settle(self, goal):
+        """Stand at the joint angles `goal` (3,) rad: averaged counts say what is missing, and the set point gives way.
+
+        A joint that sticks waits until the integral has built up; pushing the set point by what is missing shortens
+        that. Once there, the command is frozen: friction holds the arm, nothing hunts, and a second of counts can be
+        averaged, which takes noise and rounding of one reading down to a tenth.
+        Returns: the measured angles (3,) rad, averaged, corrected.
+        """
+        wanted = self.shown(goal)
+        self._set, self._frozen = wanted.copy(), None
+        last = self.hold(_SETTLE)
+        for _ in range(_WINDOWS):
+            shown = self.hold(_WINDOW)
+            resting, last = self._tip_size(goal, shown - last) < _RESTING, shown
+            if not resting:
+                continue
+            if self._tip_size(goal, wanted - shown) > SETTLED:
+                self._set = self._set + 0.7 * (wanted - shown)
+                continue
+            self._frozen = self._holding(goal)
+            self.hold(0.1)
+            last = self.hold(1.0)
+            if self._tip_size(goal, wanted - last) < ACCEPTED:
+                break
+            self._frozen = None  # it slid on, or the window had flattered it
+        return self.true(last)
+
+    def _holding(self, q):
+        """A command under which a resting arm stays at rest, (3,): what it was lately, near what the weight needs.
+
+        A joint in motion would slide on under a command that Coulomb friction does not hold; so at most half of that
+        friction is left beside the weight.
+        """
+        if self.arm.actuators is None or self.controller.unit != "PWM":
+            return self._mean_u
+        weight = gravity(self.arm.theta_pwm, q) + np.array(self.arm.friction.Tf) / self.arm.actuators.gain
+        room = 0.5 * np.array(self.arm.friction.fc) / self.arm.actuators.gain
+        return np.clip(self._mean_u, weight - room, weight + room)
+
+    def _tip_size(self, q, dq):
+        return float(np.linalg.norm(forward_kinematics(self.arm, q + dq) - forward_kinematics(self.arm, q)))
+
+    def grip(self, closed=True, seconds=0.6):
+        """Close or open the gripper, and wait."""
+        self._gripper = bool(closed)
+        self.hold(seconds)
