@@ -1,31 +1,33 @@
 """In CI a skipped test is a failure: a run must not pass by leaving things out. Marker `compiled`."""
 
 import os
+from collections import Counter
 
 import pytest
 from hypothesis import settings
 
+UNCOMPILED = os.environ.get("NUMBA_DISABLE_JIT") == "1"  # the run that counts jitted lines, a hundred times slower
+
 # no deadline: a first call may compile; the same examples in every run: a failure can be repeated
 settings.register_profile("lab", deadline=None, derandomize=True)
-settings.load_profile("lab")
+settings.register_profile("uncompiled", settings.get_profile("lab"), max_examples=3)
+settings.load_profile("uncompiled" if UNCOMPILED else "lab")
 
 
 def pytest_collection_modifyitems(config, items):
-    """Without the compiler, tests marked `compiled(keep=n)` stay out, but for the first n cases of each.
+    """Without the compiler, only the first two cases of a test run; the first n of one marked `compiled(keep=n)`.
 
-    The coverage run goes without it, so that jitted lines count, a hundred times slower. What is left out there runs
-    compiled in the main run, and the cases kept reach the same lines.
+    All cases run compiled in the main run; the few here are to reach the same lines.
     """
-    if os.environ.get("NUMBA_DISABLE_JIT") != "1":
+    if not UNCOMPILED:
         return
-    seen, out = {}, []
+    seen, out = Counter(), []
     for item in items:
         marker = item.get_closest_marker("compiled")
-        if marker is not None:
-            name = item.nodeid.partition("[")[0]
-            seen[name] = seen.get(name, 0) + 1
-            if seen[name] > marker.kwargs.get("keep", 0):
-                out.append(item)
+        name = item.nodeid.partition("[")[0]
+        seen[name] += 1
+        if seen[name] > (2 if marker is None else marker.kwargs.get("keep", 0)):
+            out.append(item)
     config.hook.pytest_deselected(items=out)
     items[:] = [item for item in items if item not in set(out)]
 

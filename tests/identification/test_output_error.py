@@ -42,7 +42,7 @@ def refined(record):
     return output_error(identify(record, l2=0.2), record, thesis_pid(), MOTION, l2=0.2, progress=False)
 
 
-@pytest.mark.compiled
+@pytest.mark.compiled(keep=1)
 def test_the_loop_is_that_of_simulate_and_of_the_bench(record):
     pid = PID(kp=(289, 225, 270), ki=(50, 10, 50), kd=(40, 30, 30), limit_pwm=255)
     again = simulate(TRUE, pid, MOTION, duration=5.0, q0=MOTION.q_start, unit="PWM")
