@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.bench import Recording, SimulatedBench
 from ir50p_lab.course.bench_views import origin
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
 from ir50p_lab.identification import RLS, fit, process, regressor, validate
@@ -11,13 +11,11 @@ from ir50p_lab.signals import LowPass
 JOINTS = (COLOURS["blue"], COLOURS["orange"], COLOURS["green"])
 
 
-def learn(recording, *, rows="joint", columns="rigid", method="weighted", l2=None, **steps):
+def learn(recording, *, rows="joint", columns="rigid", method="ls", l2=None, **steps):
     """An Estimate from a recording: `process` with these steps, then `fit` on the samples that are to be used."""
     motion = process(recording, **steps)
-    use = motion.use.astype(float)
-    Phi = regressor(motion.q, motion.qd, motion.qdd) * use[:, :, None]
-    weights = {"weights": use} if method == "weighted" else {}
-    return fit(Phi, motion.u * use, rows=rows, columns=columns, method=method, l2=l2, **weights)
+    Phi = regressor(motion.q, motion.qd, motion.qdd)
+    return fit(Phi, motion.u, rows=rows, columns=columns, method=method, l2=l2, use=motion.use)
 
 
 def as_the_thesis(arm, unit, motions, controller, seconds=(110, 60)):
@@ -27,6 +25,23 @@ def as_the_thesis(arm, unit, motions, controller, seconds=(110, 60)):
         bench = SimulatedBench(arm, unit=unit, q0=motion.q_start, record_to=False).open()
         runs.append(bench.follow(controller, motion, length))
     return validate(learn(runs[0], rows="shared", columns="thesis", **way), runs[1], **way).fit
+
+
+def curved(recording, exponent):
+    """A Recording as if counts were not proportional to volts: |u|/255 to the power of `exponent`, the sign kept."""
+    u = 255 * np.sign(recording.u) * (np.abs(recording.u) / 255) ** exponent
+    return Recording.from_arrays(recording.t, recording.q, u=u)
+
+
+def bend(validation):
+    """What u |u|/255 explains of the residuals beside a line, (3,) counts at 255: large for a curved driver."""
+    found = []
+    for u, residual in zip(validation.predicted.T, validation.residuals.T, strict=True):
+        straight = np.column_stack([np.ones_like(u), u])
+        curve = u * np.abs(u) / 255
+        curve -= straight @ np.linalg.lstsq(straight, curve)[0]
+        found.append(255 * (curve @ residual) / (curve @ curve))
+    return np.array(found)
 
 
 class OnlineSignals:
@@ -80,7 +95,7 @@ class CutoffView:
     """Acceleration of joint 1 by two filters, and the fit of the model over their cut-off. Attributes: figure, fits.
 
     Args: train, valid: Recordings; cutoffs_hz: of the curves; delay: s; span: (s, s) of valid that is drawn; truth:
-    (t, qdd) of joint 1 if it is known. fits: {"causal" or "zero-phase": (m, 3) %}.
+    (t, qdd) of joint 1 within the span, if it is known. fits: {"causal" or "zero-phase": (m, 3) %}.
     """
 
     def __init__(self, train, valid, cutoffs_hz, *, delay, span, truth=None):
@@ -89,28 +104,25 @@ class CutoffView:
         self.fits = {kind: np.array([self._fit(train, valid, kind, f, late[kind]) for f in self._f]) for kind in late}
         self.figure = new_figure(9.6, 3.8, cols=2)
         left, right = self.figure.axes
+        self._room = 5.0 if truth is None else 2.2 * np.abs(truth[1]).max()
         if truth is not None:
-            left.plot(*truth, color=COLOURS["dark"], ls="--", lw=1, label="truth of the simulation")
-            here = (truth[0] > span[0]) & (truth[0] < span[1])
-            room = 2.2 * np.abs(truth[1][here]).max()
-        else:
-            room = 5.0
+            left.plot(*truth, color=COLOURS["dark"], ls="--", lw=1)
         self._lines = {
-            "causal": left.plot([], [], color=COLOURS["orange"], lw=1, label="causal")[0],
-            "zero-phase": left.plot([], [], color=COLOURS["blue"], lw=1.8, label="zero-phase")[0],
+            "causal": left.plot([], [], color=COLOURS["orange"], lw=0.8)[0],
+            "zero-phase": left.plot([], [], color=COLOURS["blue"], lw=1.8)[0],
         }
-        left.set(xlim=span, ylim=(-room, room), xlabel=f"t [s]  -  {origin(valid)}")
-        left.set(ylabel="acceleration of joint 1 [rad/s²]", title="Late and noisy, or neither")
-        left.legend(fontsize=8, loc="upper right")
-        for kind, style in (("causal", "--"), ("zero-phase", "-")):
-            for joint in range(3):
-                name = f"joint {joint + 1}" if kind == "zero-phase" else None
-                right.semilogx(self._f, self.fits[kind][:, joint], style, color=JOINTS[joint], label=name)
+        left.set(xlim=span, ylim=(-self._room, self._room), xlabel=f"t [s]  -  {origin(valid)}")
+        left.set(ylabel="acceleration of joint 1 [rad/s²]", title="Orange: causal; blue: zero-phase")
+        # a legend would be drawn anew at every step of the slider
+        for joint in range(3):
+            for kind, style in (("causal", "--"), ("zero-phase", "-")):
+                right.semilogx(self._f, self.fits[kind][:, joint], style, color=JOINTS[joint])
+            label = {"color": JOINTS[joint], "fontsize": 9, "transform": right.transAxes}
+            right.text(0.03, 0.18 - 0.07 * joint, f"joint {joint + 1}", **label)
         self._mark = right.axvline(self._f[0], color=COLOURS["dark"], lw=1)
         right.set(xlabel="cut-off [Hz]", ylabel="fit [%]", ylim=(0, 100), title="Dashed: causal, line: zero-phase")
         right.set_xticks([0.5, 1, 2, 5, 10, 20], ["0.5", "1", "2", "5", "10", "20"])
         right.minorticks_off()
-        right.legend(fontsize=8, loc="lower left")
 
     @staticmethod
     def _fit(train, valid, kind, cutoff, delay):
@@ -122,7 +134,8 @@ class CutoffView:
         said = []
         for kind, line in self._lines.items():
             motion = process(self._valid, derivatives=kind, cutoff_hz=cutoff, trim=1.0)
-            line.set_data(motion.t, motion.qdd[:, 0])
+            shown = (motion.t >= self._span[0]) & (motion.t <= self._span[1])
+            line.set_data(motion.t[shown], motion.qdd[shown, 0].clip(-1.1 * self._room, 1.1 * self._room))
             values = [np.interp(np.log(cutoff), np.log(self._f), column) for column in self.fits[kind].T]
             said.append(f"{kind}: fit " + " / ".join(f"{x:.0f}" for x in values) + " %")
         self._mark.set_xdata([cutoff, cutoff])
@@ -160,7 +173,7 @@ def validation_figure(naive, best, span):
         ax.plot(best.t, best.predicted[:, joint], color=COLOURS["blue"], lw=1.8, label="this notebook")
         ax.set(xlim=span, ylim=(-275, 275), ylabel="u [PWM]")
         ax.set_title(f"joint {joint + 1}: fit {naive.fit[joint]:.0f} % and {best.fit[joint]:.0f} %", fontsize=10)
-    figure.axes[0].legend(fontsize=8, ncols=3, loc="upper right")
+    figure.axes[0].legend(fontsize=8, ncols=3, loc="lower left")
     figure.axes[2].set_xlabel("t [s]")
     return figure
 

@@ -93,7 +93,7 @@ class FeedbackLoop:
     Args: b: rad/s per PWM count; K: PWM counts per rad/s; load: rms of v, rad/s; n samples; seed.
     """
 
-    def __init__(self, b, K, *, load=0.1, n=400, seed=0):
+    def __init__(self, b, K, *, load=0.1, n=250, seed=0):
         self.b, self.K, self.load = float(b), float(K), float(load)
         shapes = np.random.default_rng(seed).normal(size=(2, n))
         shapes -= shapes.mean(axis=1, keepdims=True)
@@ -121,12 +121,16 @@ class FeedbackView:
         _, u, y = loop.run(largest)
         self._ends = 1.05 * np.abs(u).max() * np.array([-1, 1])
         (self._cloud,) = ax.plot([], [], ".", ms=4, color=COLOURS["grey"])
-        ax.plot(self._ends, loop.b * self._ends, **SETPOINT, label="the plant, slope b")
-        ax.plot(self._ends, -self._ends / loop.K, ":", color=COLOURS["green"], label="the controller, slope -1/K")
-        (self._line,) = ax.plot([], [], color=COLOURS["orange"], lw=2.5, label="least squares")
-        ax.set(xlim=self._ends, ylim=1.1 * np.abs(y).max() * np.array([-1, 1]))
-        ax.set(xlabel="command u [PWM]", ylabel="speed y [rad/s]", title="Little excitation: it finds the controller")
-        ax.legend(fontsize=9, loc="upper left")
+        ax.plot(self._ends, loop.b * self._ends, **SETPOINT)
+        ax.plot(self._ends, -self._ends / loop.K, ":", color=COLOURS["green"])
+        (self._line,) = ax.plot([], [], color=COLOURS["orange"], lw=2.5)
+        height = 1.1 * np.abs(y).max()
+        ax.set(xlim=self._ends, ylim=(-height, height), xlabel="command u [PWM]", ylabel="speed y [rad/s]")
+        ax.set_title("Orange: least squares; little excitation: it finds the controller", fontsize=11)
+        # texts, for a legend would be drawn anew at every step of the slider
+        left = 0.97 * self._ends[0]
+        ax.text(left, 0.85 * height, "dashed: the plant, slope b", color=COLOURS["dark"], fontsize=9)
+        ax.text(left, 0.70 * height, "dotted: the controller, slope -1/K", color=COLOURS["green"], fontsize=9)
 
     def update(self, excitation):
         """Draw for a set point of this rms (rad/s). Returns the slopes in words."""
@@ -198,14 +202,17 @@ class FrequencyView:
         for k, (joint, name) in enumerate(_WATCHED):
             style = {"color": COLOURS["grey"], "ls": "--"} if k == 3 else {"color": JOINTS[joint]}
             what = "gravity" if k == 3 else "inertia"
-            right.loglog(f, errors[:, k], label=f"{what} of joint {joint + 1}: {name}", **style)
+            right.loglog(f, errors[:, k], **style)
+            label = f"{what} of joint {joint + 1}: {name}"
+            right.text(
+                0.97, 0.94 - 0.07 * k, label, color=style["color"], fontsize=8, ha="right", transform=right.transAxes
+            )
         self._mark = right.axvline(f[0], color=COLOURS["dark"], lw=1)
         right.set(xlabel="lowest frequency of the motion [Hz]", ylabel="standard error [% of the value]")
         ticks = [x for x in (0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0) if lowest <= x <= highest]
         right.set_xticks(ticks, [f"{x:g}" for x in ticks])
         right.minorticks_off()
         right.set_title("Twice as fast: inertia four times as sure")
-        right.legend(fontsize=8, loc="lower left")
 
     def update(self, frequency):
         """Draw for this frequency, Hz. Returns what to mind, in words."""

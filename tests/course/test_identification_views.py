@@ -1,6 +1,7 @@
 """Pictures of notebook 07: their numbers against other routes; what is drawn is what was computed."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from ir50p_lab.course import identification_results as results
 from ir50p_lab.course import identification_views as views
 from ir50p_lab.course.painter import Painter
 from ir50p_lab.errors import InputError
-from ir50p_lab.identification import RLS, fit_joint, optimise_excitation, process, regressor
+from ir50p_lab.identification import RLS, fit_joint, optimise_excitation, process, regressor, validate
 from ir50p_lab.modelling import IR50P, gravity, mass_matrix
 from ir50p_lab.signals import quintic
 
@@ -173,11 +174,21 @@ def test_spoilt_data_can_be_repaired(records):
     assert found.inertia == pytest.approx(whole.inertia, rel=0.1)
 
 
+def test_a_curved_driver_is_seen(records):
+    steps = {"delay": 0.02, "slow": 0.05}
+    bends = []
+    for exponent in (1.0, 1.3):
+        train, valid = (results.curved(run, exponent) for run in records)
+        bends.append(results.bend(validate(results.learn(train, **steps), valid, delay=0.02)))
+    assert (np.abs(bends[0]) < 40).all() and (bends[1] > bends[0] + 25).all()
+    u = np.linspace(-200, 200, 401)[:, None] * [1, 1, 1]
+    exact = SimpleNamespace(predicted=u, residuals=0.1 * u + 30 * (u / 255) * np.abs(u / 255))
+    np.testing.assert_allclose(results.bend(exact), 30)
+
+
 def test_figures_show_what_they_are_given(records):
     figure = results.ablation_figure(["a", "b"], np.array([[60, 70, 80], [90, 91, 92.0]]), np.array([95, 96, 97.0]))
     assert [t.get_text() for t in figure.axes[0].get_yticklabels()] == ["a", "b"]
-    from ir50p_lab.identification import validate
-
     best = validate(results.learn(records[0], delay=0.02, slow=0.05), records[1], delay=0.02)
     figure = results.validation_figure(best, replace(best), (10, 20))
     assert f"{best.fit[2]:.0f} %" in figure.axes[2].get_title()
