@@ -87,8 +87,8 @@ class TablePlane:
 
         Raises CalibrationError if the board is not found, with the reason; else as `from_board`.
         """
-        from ir50p_lab.vision.calibration_corners import find_checkerboard
-        from ir50p_lab.vision.calibration_reasons import NotUsable
+        from ir50p_lab.vision.calibration.corners import find_checkerboard
+        from ir50p_lab.vision.calibration.reasons import NotUsable
         from ir50p_lab.vision.image import to_grey
 
         try:

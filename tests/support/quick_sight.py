@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.vision.board_pose import moved
-from ir50p_lab.vision.sight import Seen, Sight
+from ir50p_lab.vision.reaching.sight import Seen, Sight
 
 
 class QuickSight(Sight):

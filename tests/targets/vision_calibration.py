@@ -5,7 +5,7 @@ import time
 import numpy as np
 
 from ir50p_lab.vision import Checkerboard, Pinhole, calibrate, calibrate_corners
-from ir50p_lab.vision.calibration_rendered import board_pictures, board_poses
+from ir50p_lab.vision.calibration.rendered import board_pictures, board_poses
 from ir50p_lab.vision.rendering import Board, Lens, Sensor
 from tests.targets.rows import Row
 

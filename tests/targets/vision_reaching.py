@@ -9,9 +9,9 @@ from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import UnreachableError, VisionError
 from ir50p_lab.modelling import IR50P, forward_kinematics
 from ir50p_lab.vision import RenderedBench, Sight, reach, reach_pose, work_area
-from ir50p_lab.vision.reach_budget import error_budget
-from ir50p_lab.vision.reach_plan import MARGIN
-from ir50p_lab.vision.reaching import HEIGHT
+from ir50p_lab.vision.reaching.budget import error_budget
+from ir50p_lab.vision.reaching.plan import MARGIN
+from ir50p_lab.vision.reaching.reach import HEIGHT
 from tests.targets.rows import Row
 from tests.targets.vision_setup import own_plane
 

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from ir50p_lab.vision import TablePlane, calibrate, render_scene
-from ir50p_lab.vision.calibration_rendered import board_pictures
+from ir50p_lab.vision.calibration.rendered import board_pictures
 from ir50p_lab.vision.rendering import Board, bench_camera, bench_scene
 
 T_BASE_BOARD = np.array([[1, 0, 0, 0.28], [0, -1, 0, 0.065], [0, 0, -1, 0.0], [0, 0, 0, 1.0]])  # middle of the area

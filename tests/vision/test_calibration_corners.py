@@ -9,9 +9,9 @@ from board_pictures import SIZE, look, paint, project
 
 from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision import Charuco, Checkerboard, Reason, calibrate
-from ir50p_lab.vision.calibration_charuco import find_charuco
-from ir50p_lab.vision.calibration_corners import find_checkerboard
-from ir50p_lab.vision.calibration_reasons import NotUsable
+from ir50p_lab.vision.calibration.charuco import find_charuco
+from ir50p_lab.vision.calibration.corners import find_checkerboard
+from ir50p_lab.vision.calibration.reasons import NotUsable
 
 BOARD = Checkerboard()
 

@@ -19,7 +19,7 @@ from ir50p_lab.vision import (
     row_camera_matrix,
     to_rows,
 )
-from ir50p_lab.vision.calibration_rendered import board_pictures, board_poses
+from ir50p_lab.vision.calibration.rendered import board_pictures, board_poses
 from ir50p_lab.vision.rendering import bench_camera
 
 POINTS = Checkerboard().points

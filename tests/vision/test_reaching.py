@@ -13,9 +13,9 @@ from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import CalibrationError, CameraError, InputError, UnreachableError, VisionError
 from ir50p_lab.modelling import IR50P, forward_kinematics, frames
 from ir50p_lab.vision import Reacher, RenderedBench, Sight, TablePlane, plan, reach, reach_pose, work_area
-from ir50p_lab.vision.reach_budget import error_budget
-from ir50p_lab.vision.reach_plan import MARGIN, nearest_reachable
-from ir50p_lab.vision.reach_result import BallTracker
+from ir50p_lab.vision.reaching.budget import error_budget
+from ir50p_lab.vision.reaching.plan import MARGIN, nearest_reachable
+from ir50p_lab.vision.reaching.result import BallTracker
 
 cv2.setNumThreads(1)
 OVER = np.array([0.0, 0.0, 0.06])

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.vision.calibration_grid import (
+from ir50p_lab.vision.calibration.grid import (
     grow,
     in_order,
     is_checkerboard,
@@ -13,7 +13,7 @@ from ir50p_lab.vision.calibration_grid import (
     roughness,
     spacing,
 )
-from ir50p_lab.vision.calibration_reasons import NotUsable, Reason
+from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 
 _SEARCHED = 1280  # px; corners are searched in a picture reduced to this, and refined in the picture itself
 _WINDOW = 0.36  # half the refinement window, in squares: larger is more precise until the next edges come in

@@ -5,7 +5,7 @@ import time
 from pathlib import Path
 
 from ir50p_lab.errors import CameraError, ImageError
-from ir50p_lab.vision.camera import Camera, Frame
+from ir50p_lab.vision.camera.interface import Camera, Frame
 from ir50p_lab.vision.image import is_rendered, list_images, load_image
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.errors import CameraError, InputError
-from ir50p_lab.vision.camera import Camera, Frame
+from ir50p_lab.vision.camera.interface import Camera, Frame
 from ir50p_lab.vision.rendering.arm_shape import arm_sticks
 from ir50p_lab.vision.rendering.places import bench_scene
 from ir50p_lab.vision.rendering.render import render_scene

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.vision.smoothing import convolve
+from ir50p_lab.vision.processing.smoothing import convolve
 
 SOBEL = np.array([[-1, 0, 1], [-2, 0, 2], [-1, 0, 1]])  # weighs differences along x; transposed: along y
 

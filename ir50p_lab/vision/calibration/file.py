@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration_board import Charuco, Checkerboard
-from ir50p_lab.vision.calibration_fit import NAMES
-from ir50p_lab.vision.calibration_reasons import Reason, Rejected
-from ir50p_lab.vision.calibration_result import Calibration, View
+from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
+from ir50p_lab.vision.calibration.fit import NAMES
+from ir50p_lab.vision.calibration.reasons import Reason, Rejected
+from ir50p_lab.vision.calibration.result import Calibration, View
 
 
 def save(calibration, path):

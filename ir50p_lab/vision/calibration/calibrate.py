@@ -8,9 +8,9 @@ import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.inputs import first_not_finite
-from ir50p_lab.vision.calibration_board import Charuco, Checkerboard
-from ir50p_lab.vision.calibration_charuco import find_charuco
-from ir50p_lab.vision.calibration_checks import (
+from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
+from ir50p_lab.vision.calibration.charuco import find_charuco
+from ir50p_lab.vision.calibration.checks import (
     about_camera,
     about_lens,
     about_views,
@@ -19,13 +19,13 @@ from ir50p_lab.vision.calibration_checks import (
     outlier_view,
     sag_size,
 )
-from ir50p_lab.vision.calibration_corners import Corners as FoundCorners
-from ir50p_lab.vision.calibration_corners import find_checkerboard
-from ir50p_lab.vision.calibration_fit import NAMES, Corners, Model, fit, start
-from ir50p_lab.vision.calibration_models import choose, total_covariance
-from ir50p_lab.vision.calibration_pictures import common_size, pictures_of, with_bar
-from ir50p_lab.vision.calibration_reasons import NotUsable, Reason, Rejected
-from ir50p_lab.vision.calibration_result import Calibration, View
+from ir50p_lab.vision.calibration.corners import Corners as FoundCorners
+from ir50p_lab.vision.calibration.corners import find_checkerboard
+from ir50p_lab.vision.calibration.fit import NAMES, Corners, Model, fit, start
+from ir50p_lab.vision.calibration.models import choose, total_covariance
+from ir50p_lab.vision.calibration.pictures import common_size, pictures_of, with_bar
+from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
+from ir50p_lab.vision.calibration.result import Calibration, View
 
 _FEWEST = 3
 _SAME = 1.0 / 800  # of the diagonal: a board that moved less is taken for the same view

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration_fit import Corners, Model, _project, _reduce, _solve
+from ir50p_lab.vision.calibration.fit import Corners, Model, _project, _reduce, _solve
 
 _CELLS = (6, 8)  # rows, columns of the coverage map
 _TILT = np.deg2rad(35)

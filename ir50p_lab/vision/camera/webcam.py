@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import CameraError, ImageError
-from ir50p_lab.vision.camera import TO_RENDERED, Camera, Frame
+from ir50p_lab.vision.camera.interface import TO_RENDERED, Camera, Frame
 
 LOST_AFTER = 3  # s without a picture: the webcam is unplugged
 

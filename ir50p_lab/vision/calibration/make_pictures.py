@@ -1,15 +1,15 @@
-"""Make the rendered pictures of data/calibration: `python -m ir50p_lab.vision.make_calibration_pictures [folder]`."""
+"""Make the rendered pictures of data/calibration: `python -m ir50p_lab.vision.calibration.make_pictures [folder]`."""
 
 import sys
 from pathlib import Path
 
 import numpy as np
 
-from ir50p_lab.vision.calibration_rendered import board_pictures, board_poses, board_scene
+from ir50p_lab.vision.calibration.rendered import board_pictures, board_poses, board_scene
 from ir50p_lab.vision.image import save_image
 from ir50p_lab.vision.rendering import Ball, Board, Lens, Sensor, bench_camera, bench_scene, pose, render_scene
 
-FOLDER = Path(__file__).parents[2] / "data" / "calibration"
+FOLDER = Path(__file__).parents[3] / "data" / "calibration"
 TABLE_4_8 = ((0.4, -0.1), (0.3, 0.3), (0.5, 0.0), (0.4, 0.2))  # real places of the ball in the thesis, m
 BOARD_AT = (0.32, 0.08)  # first corner of the board on the table, m in the base frame
 _SENSOR = Sensor(jpeg=None)  # the file is the JPEG

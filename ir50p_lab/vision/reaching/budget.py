@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.vision.board_pose import inverse_transform, moved
-from ir50p_lab.vision.moving import ACCEPTED
+from ir50p_lab.vision.reaching.moving import ACCEPTED
 
 _READINGS = 100  # counts averaged at rest
 

@@ -78,8 +78,8 @@ def open_camera(source=None, **options):
     Raises: CameraError if the webcam asked for is not there, ImageError for a missing or empty folder, InputError for
     a `source` that is none of the above or an unknown option. A webcam that was only looked for never raises.
     """
-    from ir50p_lab.vision.rendered_camera import RenderedCamera
-    from ir50p_lab.vision.webcam import Webcam, webcam_present
+    from ir50p_lab.vision.camera.rendered_camera import RenderedCamera
+    from ir50p_lab.vision.camera.webcam import Webcam, webcam_present
 
     unknown = set(options) - {"scene", "seed", "period", "loop", "size"}
     if unknown:
@@ -101,10 +101,10 @@ def open_camera(source=None, **options):
 
 
 def _asked_for(source, reason, options):
-    from ir50p_lab.vision.picture_folder import PictureFolder
-    from ir50p_lab.vision.rendered_camera import RenderedCamera
+    from ir50p_lab.vision.camera.picture_folder import PictureFolder
+    from ir50p_lab.vision.camera.rendered_camera import RenderedCamera
+    from ir50p_lab.vision.camera.webcam import Webcam
     from ir50p_lab.vision.rendering.scene import Scene
-    from ir50p_lab.vision.webcam import Webcam
 
     reason = f"asked for by {reason}"
     if isinstance(source, Scene) or callable(source):

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration_board import Checkerboard
-from ir50p_lab.vision.calibration_fit import NAMES
+from ir50p_lab.vision.calibration.board import Checkerboard
+from ir50p_lab.vision.calibration.fit import NAMES
 from ir50p_lab.vision.pinhole import Pinhole
 
 
@@ -103,13 +103,13 @@ class Calibration:
     @property
     def coverage(self):
         """Where in the picture corners were seen: Coverage."""
-        from ir50p_lab.vision.calibration_coverage import coverage
+        from ir50p_lab.vision.calibration.coverage import coverage
 
         return coverage(self)
 
     def next_view(self):
         """Where a further picture of the board would help most: NextView with a sentence."""
-        from ir50p_lab.vision.calibration_coverage import next_view
+        from ir50p_lab.vision.calibration.coverage import next_view
 
         return next_view(self)
 
@@ -123,7 +123,7 @@ class Calibration:
 
     def save(self, path):
         """Write a YAML file that cv2.FileStorage (and OpenCV's samples) read. Returns the path."""
-        from ir50p_lab.vision.calibration_file import save
+        from ir50p_lab.vision.calibration.file import save
 
         return save(self, path)
 
@@ -134,7 +134,7 @@ class Calibration:
         size: (width, height) of the pictures it is for. Raises CalibrationError for a file that is missing or no
         calibration, and for one of another picture size.
         """
-        from ir50p_lab.vision.calibration_file import load
+        from ir50p_lab.vision.calibration.file import load
 
         return load(path, size)
 

@@ -7,7 +7,7 @@ from board_pictures import LENS, SIZE, K, corner_sets, look, project
 
 from ir50p_lab.errors import CalibrationError, ImageError, InputError
 from ir50p_lab.vision import Checkerboard, Reason, calibrate, calibrate_corners
-from ir50p_lab.vision.calibration_fit import NAMES
+from ir50p_lab.vision.calibration.fit import NAMES
 
 POINTS = Checkerboard().points
 TRUTH = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2]])
@@ -188,7 +188,7 @@ def test_stretched_pictures_are_noticed(views):
 def test_a_lens_that_folds_back_is_noticed():
     from dataclasses import replace
 
-    from ir50p_lab.vision.calibration_checks import about_lens
+    from ir50p_lab.vision.calibration.checks import about_lens
 
     found = calibrate_corners(POINTS, corner_sets(POINTS, 8, seed=2), SIZE, lens=("k1",))
     folded = replace(found, distortion=np.array([-1.5, 0, 0, 0, 0]))

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ir50p_lab.vision.calibration_fit import Model, fit
-from ir50p_lab.vision.calibration_models import Evidence, compare
+from ir50p_lab.vision.calibration.fit import Model, fit
+from ir50p_lab.vision.calibration.models import Evidence, compare
 
 _TILTED = np.deg2rad(15)
 

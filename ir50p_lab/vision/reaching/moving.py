@@ -6,7 +6,7 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.dynamics import gravity
 from ir50p_lab.vision.hand_eye_refined import JointCorrection
-from ir50p_lab.vision.reach_plan import CLEAR, plan
+from ir50p_lab.vision.reaching.plan import CLEAR, plan
 
 _LONGEST = 3600.0  # s, of one session
 _SETTLE, _WINDOW, _WINDOWS = 0.6, 0.4, 15  # s until the arm stands, s of counts to average, how often

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.vision.calibration_fit import LADDER, NAMES, Model, fit
+from ir50p_lab.vision.calibration.fit import LADDER, NAMES, Model, fit
 
 _DOUBT = {"k3": 0.01, "p": 0.05, "k2": 0.05, "k1": 0.05}  # p-value below which a term stays
 _NAMED = {"p": ("p1", "p2")}

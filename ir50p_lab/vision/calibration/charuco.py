@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ir50p_lab.vision.calibration_corners import _SOFT, Corners
-from ir50p_lab.vision.calibration_grid import apply, homography
-from ir50p_lab.vision.calibration_reasons import NotUsable, Reason
+from ir50p_lab.vision.calibration.corners import _SOFT, Corners
+from ir50p_lab.vision.calibration.grid import apply, homography
+from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 
 _FEWEST = 8  # corners that a view needs; six of them are spent on the pose
 

@@ -8,9 +8,9 @@ import numpy as np
 from ir50p_lab.errors import InputError, VisionError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import forward_kinematics
-from ir50p_lab.vision.moving import Mover
-from ir50p_lab.vision.reach_plan import plan, reach_pose
-from ir50p_lab.vision.reach_result import BallTracker, FollowLog, Look, Reached
+from ir50p_lab.vision.reaching.moving import Mover
+from ir50p_lab.vision.reaching.plan import plan, reach_pose
+from ir50p_lab.vision.reaching.result import BallTracker, FollowLog, Look, Reached
 
 HEIGHT = 0.06  # m of the tip over the ball's centre: 30 mm over its top
 _COUNTS, _COUNTS_NOMINAL = 0.7, 2.5  # what potentiometers are off by, counts (assumed: a good wire-wound one)

@@ -8,10 +8,10 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.board_pose import moved
-from ir50p_lab.vision.camera import Camera, Frame
+from ir50p_lab.vision.camera.interface import Camera, Frame
+from ir50p_lab.vision.reaching.sight import MARKER_AT
 from ir50p_lab.vision.rendering import Ball, bench_scene, render_scene
 from ir50p_lab.vision.rendering.arm_shape import arm_sticks
-from ir50p_lab.vision.sight import MARKER_AT
 
 MARKER = 0.012  # m, radius of the green ball on the wrist: 10 px in the default camera (assumed)
 _GRIP = 0.012  # m that the tip may miss the ball's centre by when the fingers close, and they hold it (assumed)
@@ -116,7 +116,7 @@ def camera_over(bench, balls=(0.40, 0.0, 0.03), *, source=None, small=False, **o
     balls: where balls lie in a rendered picture (a real camera sees yours); small: pictures of half the width and
     height, for what must be quick; options: of RenderedBench.
     """
-    from ir50p_lab.vision.camera import open_camera
+    from ir50p_lab.vision.camera.interface import open_camera
 
     if not hasattr(bench, "plant"):
         return open_camera(source, **({"size": (320, 240)} if small else {}))

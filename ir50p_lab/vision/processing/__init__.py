@@ -1,0 +1,1 @@
+"""Textbook image processing, step by step: hue, smoothing, edges, votes for circles."""
