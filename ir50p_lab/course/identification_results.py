@@ -99,7 +99,7 @@ class CutoffView:
     """
 
     def __init__(self, train, valid, cutoffs_hz, *, delay, span, truth=None):
-        self._valid, self._f, self._span = valid.between(span[0] - 3, span[1] + 3), np.asarray(cutoffs_hz), span
+        self._valid, self._f, self._span = valid.between(span[0] - 2, span[1] + 2), np.asarray(cutoffs_hz), span
         late = {"causal": 0.0, "zero-phase": delay}
         self.fits = {kind: np.array([self._fit(train, valid, kind, f, late[kind]) for f in self._f]) for kind in late}
         self.figure = new_figure(9.6, 3.8, cols=2)

@@ -1,12 +1,13 @@
 """Figures of notebook 08: error dynamics, robustness, tracking beside the reference; and the runs behind them."""
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure
 from ir50p_lab.identification import fit, load_excitations, optimise_excitation, process, regressor
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
@@ -106,13 +107,12 @@ class ErrorView:
         self.figure = new_figure(9.0, 3.2)
         ax = self.figure.axes[0]
         ax.axhline(0, **SETPOINT)
-        names = [f"joint {j + 1}" for j in range(3)]
-        self._lines = [ax.plot([], [], color=c, label=n)[0] for c, n in zip(JOINTS, names, strict=True)]
+        self._lines = [ax.plot([], [], color=c)[0] for c in JOINTS]
         self._dots = [ax.plot([], [], "o", ms=4, color=c, mfc="none")[0] for c in JOINTS]
         ax.set(xlim=(0, duration), ylim=(-1.15 * size, 1.15 * size))
         ax.set(xlabel="time [s]  -  simulated", ylabel="error e = q - q_ref [rad]")
-        ax.set_title("Lines: the arm. Circles: (2.20), solved beforehand")
-        ax.legend(fontsize=9, loc="upper right")
+        # a legend would be drawn anew at every step of a slider
+        ax.set_title("Joints 1, 2, 3: blue, orange, green. Circles: (2.20), solved beforehand")
 
     def update(self, run, t, predicted):
         """Draw the errors of a run, and those predicted (m, 3) rad for the times t (m,) s. Returns the figure."""
@@ -138,7 +138,8 @@ class RobustnessView:
         extent = (speeds[0] - dw, speeds[-1] + dw, scales[0] - ds, scales[-1] + ds)
         colours = ScalarMappable(LogNorm(max(self.rms.min(), 1e-3 * self.rms.max()), self.rms.max()), "cividis_r")
         left.imshow(colours.to_rgba(self.rms, bytes=True), origin="lower", extent=extent, aspect="auto", zorder=0.6)
-        bar = self.figure.colorbar(colours, ax=left, label="largest RMS error [mrad]")
+        with rc_context(figure_style()):  # its axis goes below the colours: drawn once, not at every step of a slider
+            bar = self.figure.colorbar(colours, ax=left, label="largest RMS error [mrad]")
         bar.solids.set_zorder(0.6)
         left.grid(False)
         left.set(xlabel="speed of the loop, sqrt(Kp) [rad/s]", ylabel="model / arm [1]")
