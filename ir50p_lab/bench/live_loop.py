@@ -4,6 +4,7 @@ import contextlib
 import time
 
 from ir50p_lab.bench import shared_loop
+from ir50p_lab.bench.base import header_of
 from ir50p_lab.bench.rest import way_to_rest
 from ir50p_lab.bench.set_point import LeadIn, SetPoint, led_in
 from ir50p_lab.errors import BenchError
@@ -144,7 +145,4 @@ class _Pace:
 
 def _header(controller):
     lines = {"controller": type(controller).__name__, "loop": "in the background; gains and set point may change"}
-    for name in ("kp", "ki", "kd"):
-        if hasattr(controller, name):
-            lines[name] = " ".join(f"{gain:g}" for gain in getattr(controller, name))
-    return lines
+    return lines | header_of(controller)

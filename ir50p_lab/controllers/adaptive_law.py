@@ -2,7 +2,8 @@
 
 import math
 
-from ir50p_lab.controllers.model_law import elapsed, soft_sign
+from ir50p_lab.controllers.model_law import soft_sign
+from ir50p_lab.controllers.sampling import elapsed
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 

@@ -5,6 +5,7 @@ Everything they share stands here once: error and its rate, prediction, integral
 
 import math
 
+from ir50p_lab.controllers.sampling import elapsed
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 
@@ -16,15 +17,6 @@ DRY, SIGN_OF_MEASURED, SMOOTH, BREAKAWAY, QS = 22, 23, 24, 27, 30
 THETA, N_PARAMETERS = 33, 93
 # places in the state vector
 INTEGRAL, RATE, LAST, ERROR, SLOPE, TIME, STARTED, FILTERED, BUMP, N_STATES = 0, 3, 6, 9, 12, 15, 16, 17, 20, 23
-
-
-@jit()
-def elapsed(s, time, started, period, t):
-    """s since the last sample: the period, unless the cycle was late or early (then its true length, within limits)."""
-    dt = period
-    if s[started] > 0.0 and abs(t - s[time] - dt) > 1e-6 * dt:
-        dt = min(max(t - s[time], 0.0), 10 * period)
-    return dt
 
 
 @jit()

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ir50p_lab.controllers.base import Controller
+from ir50p_lab.controllers.sampling import elapsed
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.jit import jit
@@ -21,9 +22,7 @@ INTEGRAL, VELOCITY, LAST, ERROR, SLOPE, TIME, STARTED, FILTERED, N_STATES = 0, 3
 def pid_step(p, s, t, q, r, u):
     """One sample of the PID: reads parameters p, state s, time t, measured q, reference rows r; writes s and u."""
     started = s[STARTED] > 0.0
-    dt = p[PERIOD]
-    if started and abs(t - s[TIME] - dt) > 1e-6 * dt:  # a late or early cycle: integrate over its true length
-        dt = min(max(t - s[TIME], 0.0), 10 * p[PERIOD])
+    dt = elapsed(s, TIME, STARTED, p[PERIOD], t)
     blend = 1.0 - math.exp(-p[FILTER_RATE] * dt)
     position_blend = 1.0 - math.exp(-p[POSITION_RATE] * dt)
     for i in range(3):

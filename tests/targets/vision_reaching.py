@@ -1,10 +1,8 @@
 """Targets of reaching: balls in the declared work area, looked at twice, and the true tip of the simulated arm."""
 
-from functools import cache
-
 import numpy as np
 
-from ir50p_lab.bench import SimulatedBench, fit_calibration
+from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import UnreachableError, VisionError
 from ir50p_lab.modelling import IR50P, forward_kinematics
@@ -13,27 +11,11 @@ from ir50p_lab.vision.reaching.budget import error_budget
 from ir50p_lab.vision.reaching.plan import MARGIN
 from ir50p_lab.vision.reaching.reach import HEIGHT
 from tests.targets.rows import Row
-from tests.targets.vision_setup import own_plane
+from tests.targets.vision_setup import calibrated, own_plane
 
 OVER = np.array([0.0, 0.0, HEIGHT])
 BENT = 0.5  # counts rms: what a straight line leaves of a parabola 1.5 counts high is 0.45, and its zero is fitted, too
 UNITS = 10  # copies of the arm, each calibrated by a protractor experiment of its own
-
-
-@cache
-def calibrated(seed):
-    """The line through nine angles of each joint, as the experiment of notebook 06 finds it."""
-    plant, points = SimulatedBench(IR50P, seed=seed, record_to=False).plant, []
-    for joint in range(3):
-        angles = np.linspace(IR50P.q_min[joint] + 0.05, IR50P.q_max[joint] - 0.05, 9)
-        counts = []
-        for angle in angles:
-            plant._joint[:] = 0.0
-            plant._joint[joint] = angle
-            counts.append(np.mean([plant.counts()[joint] for _ in range(50)]))
-        points.append((angles, counts))
-    q, counts = zip(*points, strict=True)
-    return fit_calibration(q, counts, angles="set", arm=IR50P)
 
 
 def oracle_reaches(p, n=400):

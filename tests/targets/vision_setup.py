@@ -1,9 +1,11 @@
-"""What the rendered targets share: the bench camera calibrated by us from rendered boards, and the plane it sees."""
+"""What the rendered targets share: camera and potentiometers calibrated by us, and the plane that the camera sees."""
 
 from functools import cache
 
 import numpy as np
 
+from ir50p_lab.bench import SimulatedBench, fit_calibration
+from ir50p_lab.modelling import IR50P
 from ir50p_lab.vision import TablePlane, calibrate, render_scene
 from ir50p_lab.vision.calibration.rendered import board_pictures
 from ir50p_lab.vision.rendering import Board, bench_camera, bench_scene
@@ -28,3 +30,19 @@ def picture_of_the_board(seed=0):
 def own_plane(seed=1):
     """TablePlane of our own calibration and one picture of the lying board."""
     return TablePlane.from_picture(own_calibration(seed=seed), picture_of_the_board(seed), T_table_board=T_BASE_BOARD)
+
+
+@cache
+def calibrated(seed):
+    """The line through nine angles of each joint, as the experiment of notebook 06 finds it."""
+    plant, points = SimulatedBench(IR50P, seed=seed, record_to=False).plant, []
+    for joint in range(3):
+        angles = np.linspace(IR50P.q_min[joint] + 0.05, IR50P.q_max[joint] - 0.05, 9)
+        counts = []
+        for angle in angles:
+            plant._joint[:] = 0.0
+            plant._joint[joint] = angle
+            counts.append(np.mean([plant.counts()[joint] for _ in range(50)]))
+        points.append((angles, counts))
+    q, counts = zip(*points, strict=True)
+    return fit_calibration(q, counts, angles="set", arm=IR50P)

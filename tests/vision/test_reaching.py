@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from quick_sight import QuickSight
 
-from ir50p_lab.bench import SimulatedBench, fit_calibration
+from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import CalibrationError, CameraError, InputError, UnreachableError, VisionError
 from ir50p_lab.modelling import IR50P, forward_kinematics, frames
@@ -16,25 +16,10 @@ from ir50p_lab.vision import Reacher, RenderedBench, Sight, TablePlane, plan, re
 from ir50p_lab.vision.reaching.budget import error_budget
 from ir50p_lab.vision.reaching.plan import MARGIN, nearest_reachable
 from ir50p_lab.vision.reaching.result import BallTracker
+from tests.targets.vision_setup import calibrated
 
 cv2.setNumThreads(1)
 OVER = np.array([0.0, 0.0, 0.06])
-
-
-@cache
-def calibrated(seed):
-    """What a student finds with a protractor: a line through seven angles of each joint."""
-    plant, points = SimulatedBench(IR50P, seed=seed, record_to=False).plant, []
-    for joint in range(3):
-        angles = np.linspace(IR50P.q_min[joint] + 0.05, IR50P.q_max[joint] - 0.05, 7)
-        counts = []
-        for angle in angles:
-            plant._joint[:] = 0.0
-            plant._joint[joint] = angle
-            counts.append(np.mean([plant.counts()[joint] for _ in range(50)]))
-        points.append((angles, counts))
-    q, counts = zip(*points, strict=True)
-    return fit_calibration(q, counts, angles="set", arm=IR50P)
 
 
 def rig(ball=(0.40, 0.10, 0.03), seed=0, **options):
