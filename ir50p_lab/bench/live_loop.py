@@ -88,7 +88,8 @@ class _Loop:
                 aim = target(t)
                 u = drive(controller.step(t, sample.q, aim), reference=aim[0])
                 busy = time.perf_counter() - woke
-                memory.put(self.t0 + t, sample.q, u, aim[0], woke, busy, self.missed0 + max(sample.missed, late))
+                measured = woke if self.paced else self.t0 + t  # paced, t is a number of periods; else it is true time
+                memory.put(self.t0 + t, sample.q, u, aim[0], measured, busy, self.missed0 + max(sample.missed, late))
             if memory.orders().cut:
                 self.bench.cut()  # before the run is closed, whose recording takes a moment
         if sample is None:

@@ -19,8 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-# woke: when the sample was there, s of the loop's clock; busy: s from then until its command was sent
-COLUMNS = ("t", "q1", "q2", "q3", "u1", "u2", "u3", "r1", "r2", "r3", "woke", "busy", "number")
+# measured: when the measurement was taken, s of a true clock; busy: s from having the sample to its command
+COLUMNS = ("t", "q1", "q2", "q3", "u1", "u2", "u3", "r1", "r2", "r3", "measured", "busy", "number")
 CAPACITY = 8192  # samples: 82 s at 100 Hz
 STARTING, LEADING, RUNNING, RETURNING, ENDED = range(5)
 PHASES = ("starting", "leading in", "running", "moving to the rest pose", "ended")
@@ -140,12 +140,12 @@ class SharedLoop:
         """The loop says where it is."""
         self._status[_PHASE] = phase
 
-    def put(self, t, q, u, r, woke, busy, missed):
-        """The loop adds one sample: t s; q, u, r (3,) rad, PWM counts, rad; woke, busy s; missed: cycles so far."""
+    def put(self, t, q, u, r, measured, busy, missed):
+        """The loop adds one sample: t s; q, u, r (3,) rad, PWM counts, rad; measured, busy s; missed: cycles so far."""
         number = int(self._status[_SAMPLES])
         row = self._ring[number % CAPACITY]
         row[-1] = -1.0
-        row[0], row[1:4], row[4:7], row[7:10], row[10], row[11] = t, q, u, r, woke, busy
+        row[0], row[1:4], row[4:7], row[7:10], row[10], row[11] = t, q, u, r, measured, busy
         row[-1] = number
         self._status[_MISSED] = missed
         self._status[_SAMPLES] = number + 1
