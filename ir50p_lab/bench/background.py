@@ -95,7 +95,8 @@ class LoopStatistics:
     """How well the loop keeps time.
 
     cycles, missed: counts since the start; period_p50, period_p99, period_max: s between measurements; busy_p50,
-    busy_max: s from having a sample until its command was sent. The times are of the last 80 s at most; NaN before there are any.
+    busy_max: s from having a sample until its command was sent. The times are of the last 80 s at most; NaN before
+    there are any.
     """
 
     cycles: int
