@@ -71,6 +71,13 @@ def test_lists_are_ranked_and_say_why_they_are_empty():
     assert nothing == [] and "red" in nothing.reason
 
 
+def test_shown_in_a_notebook():
+    assert repr(Ball(12.345678, 200.0, 30.5, 0.987)) == "Ball(x=12.35, y=200.00, radius=30.50, score=0.99)"
+    nothing = find_balls(photograph(empty()))
+    assert repr(nothing) == f"Balls([], reason={nothing.reason!r})"
+    assert repr(find_balls(drawn()))[:8] == "[Ball(x="
+
+
 def test_balls_that_touch():
     light = empty()
     for x in (200, 260, 320):

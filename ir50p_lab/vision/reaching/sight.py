@@ -7,9 +7,9 @@ import numpy as np
 from ir50p_lab.errors import CalibrationError, InputError, VisionError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import frames
-from ir50p_lab.vision.ball import find_balls
+from ir50p_lab.vision.ball.colour import RED, Colour
+from ir50p_lab.vision.ball.find import find_balls
 from ir50p_lab.vision.board_pose import checked_transform, inverse_transform, moved
-from ir50p_lab.vision.colour import RED, Colour
 
 GREEN = Colour(hue=135.0, tolerance=35.0, name="green")  # of the marker on the hand
 MARKER_AT = (-0.042, 0.0, 0.0)  # m, tool coordinates: between the fingers, before the end of the forearm

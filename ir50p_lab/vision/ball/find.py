@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.vision.ball_evidence import score_of
-from ir50p_lab.vision.ball_fit import view_of
-from ir50p_lab.vision.ball_measure import measure
-from ir50p_lab.vision.ball_regions import guess_circles
-from ir50p_lab.vision.colour import RED, Colour
+from ir50p_lab.vision.ball.colour import RED, Colour, learn_from_patch
+from ir50p_lab.vision.ball.evidence import score_of
+from ir50p_lab.vision.ball.fit import view_of
+from ir50p_lab.vision.ball.measure import measure
+from ir50p_lab.vision.ball.regions import guess_circles
 from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import Pinhole
 
@@ -35,6 +35,9 @@ class Ball:
     score: float
     support: float = 1.0
 
+    def __repr__(self):
+        return f"Ball(x={self.x:.2f}, y={self.y:.2f}, radius={self.radius:.2f}, score={self.score:.2f})"
+
 
 class Balls(list):
     """The balls found, best first: a list of Ball.
@@ -46,6 +49,9 @@ class Balls(list):
     def __init__(self, balls=(), *, reason="", rejected=()):
         super().__init__(balls)
         self.reason, self.rejected = reason, tuple(rejected)
+
+    def __repr__(self):
+        return super().__repr__() if self or not self.reason else f"Balls([], reason={self.reason!r})"
 
 
 def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
@@ -142,8 +148,6 @@ def _as_colour(colour):
     if isinstance(colour, Colour):
         return colour
     if isinstance(colour, np.ndarray):
-        from ir50p_lab.vision.colour import learn_from_patch
-
         return learn_from_patch(colour)
     raise InputError(f"colour = {colour!r}: give RED, a Colour (learn_colour makes one from a click), or a patch")
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.vision.ball_edge import cast, contrast_axis, directions, find_edges
-from ir50p_lab.vision.ball_fit import Outline, fit_outline
+from ir50p_lab.vision.ball.edge import cast, contrast_axis, directions, find_edges
+from ir50p_lab.vision.ball.fit import Outline, fit_outline
 
 
 def _smooth(r):

@@ -2,7 +2,7 @@
 
 Each term is a weight times something measured; score = 1 / (1 + exp(-sum)). The weights are a logistic regression on
 what the search proposes in rendered scenes (kinds 'ball' and 'no_ball' of `scene_distribution`, seeds 100 to 499); they
-are held out of every evaluation. `ball.LEAST_SCORE` says from where on a ball is reported.
+are held out of every evaluation. `find.LEAST_SCORE` says from where on a ball is reported.
 """
 
 from math import exp, log
