@@ -6,11 +6,13 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import ImageError
+from ir50p_lab.vision.picture_file import decode
 
 MARK = "rendered by ir50p_lab: not a photograph"
 """What a rendered picture carries in its file (PNG: a tEXt chunk, JPEG: a comment)."""
 
-SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp")
+SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp")  # of files that are written
+READ = (*SUFFIXES, ".ppm", ".pgm", ".gif")
 _PNG = b"\x89PNG\r\n\x1a\n"
 
 
@@ -52,12 +54,11 @@ def to_grey(image):
 def load_image(path, *, allow_grey=False):
     """Read a picture: (h, w, 3) uint8, red green blue; the right way up if its EXIF says so, without transparency.
 
-    allow_grey: a picture of one channel is taken too, its value three times (a checkerboard needs no colour).
-    Raises ImageError for a path that is missing or a folder, an empty file, one that is no picture or cut off, and one
-    of one channel or more than 8 bits.
+    Of an animation the first picture is taken. allow_grey: a picture of one channel is taken too, its value three
+    times (a checkerboard needs no colour).
+    Raises ImageError for a path that is missing or a folder, an empty file, one that is no picture, damaged or cut
+    off, and one of one channel or more than 8 bits.
     """
-    import cv2
-
     path = Path(path)
     if path.is_dir():
         raise ImageError(f"{path} is a folder: give one of its files, or open_camera('folder:{path}') for all of them")
@@ -70,18 +71,17 @@ def load_image(path, *, allow_grey=False):
         raise ImageError(f"{path} cannot be read ({error.strerror}): check the rights of the file") from None
     if not data:
         raise ImageError(f"{path} is empty (0 bytes): copy or take the picture again")
-    if why := _cut_off(data):
-        raise ImageError(f"{path} is cut off ({why}): copy or take the picture again")
-    raw = _decode(data, cv2.IMREAD_UNCHANGED)
-    if raw is None:
-        raise ImageError(
-            f"{path} is no picture that can be read (starts with {data[:8]!r}): give {', '.join(SUFFIXES)}"
-        )
-    if raw.dtype != np.uint8:
-        raise ImageError(f"{path} has {8 * raw.itemsize} bits per colour: save it with 8")
-    if raw.ndim == 2 and not allow_grey:
-        raise ImageError(f"{path} has one channel: a grey picture holds no colour to look for; give the colour picture")
-    image = _decode(data, cv2.IMREAD_COLOR)
+    image, problem = decode(data)
+    if problem:
+        raise ImageError(f"{path} {problem}")
+    if image.dtype != np.uint8:
+        raise ImageError(f"{path} has {8 * image.itemsize} bits per colour: save it with 8, image // 257 of 16 bits")
+    if image.ndim == 2:
+        if not allow_grey:
+            raise ImageError(
+                f"{path} has one channel: a grey picture holds no colour to look for; give the colour picture"
+            )
+        return np.repeat(image[:, :, None], 3, axis=2)
     return np.ascontiguousarray(image[..., ::-1])
 
 
@@ -120,10 +120,12 @@ def list_images(folder):
     if not folder.is_dir():
         what = "is a file, not a folder" if folder.exists() else "does not exist"
         raise ImageError(f"{folder} {what}: give the folder of the pictures (here is {Path.cwd()})")
-    paths = [p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES and not p.name.startswith(".")]
+    files = [p for p in folder.iterdir() if not p.name.startswith(".")]
+    paths = [p for p in files if p.suffix.lower() in READ]
     if not paths:
-        others = len(list(folder.iterdir()))
-        raise ImageError(f"{folder} holds no picture ({others} other files): pictures end in {', '.join(SUFFIXES)}")
+        heic = any(p.suffix.lower() in (".heic", ".heif") for p in files)
+        hint = "; save the HEIC pictures of a phone as JPEG" if heic else ""
+        raise ImageError(f"{folder} holds no picture ({len(files)} other files): they end in {', '.join(READ)}{hint}")
     return sorted(paths, key=_by_number)
 
 
@@ -131,29 +133,6 @@ def _by_number(path):
     parts = "".join(c if c.isdigit() else " " for c in path.name).split()
     words = "".join(" " if c.isdigit() else c for c in path.name.lower()).split()
     return words[:1], [int(part) for part in parts if part.isdecimal()], path.name
-
-
-def _decode(data, flags):
-    import cv2
-
-    try:
-        return cv2.imdecode(np.frombuffer(data, dtype=np.uint8), flags)
-    except cv2.error:  # sizes beyond what OpenCV takes
-        return None
-
-
-def _cut_off(data):
-    """Why the data of a picture end too early, or None: OpenCV would fill the rest with grey and say nothing."""
-    if data.startswith(b"\xff\xd8"):
-        # the picture proper starts at the last 'start of scan'; an earlier 'end of image' is that of a thumbnail
-        scan = data.rfind(b"\xff\xda")
-        return None if scan > 0 and data.find(b"\xff\xd9", scan) > 0 else "JPEG without its end"
-    if data.startswith(_PNG):
-        return None if b"IEND" in data[-4096:] else "PNG without its end"
-    if data.startswith(b"BM") and len(data) >= 6:
-        size = int.from_bytes(data[2:6], "little")
-        return f"BMP of {size} bytes, {len(data)} here" if size > len(data) else None
-    return None
 
 
 def _marked(data):

@@ -235,7 +235,7 @@ def test_one_pose_again_and_again_is_refused_or_uncertain(views):
         ([], {}, InputError, "no pictures"),
         (3, {}, InputError, "list of pictures"),
         (np.zeros((480, 640, 3), np.uint8), {}, InputError, "one picture"),
-        ("nowhere/at/all", {}, ImageError, "no folder"),
+        ("nowhere/at/all", {}, ImageError, "does not exist"),
         ([np.zeros((480, 640, 3), np.uint8)] * 3, {"board": 9}, InputError, "Checkerboard"),
         (["a.jpg", "b.jpg"], {}, CalibrationError, "2 unreadable"),
     ],
@@ -246,7 +246,7 @@ def test_pictures_that_are_refused(images, options, error, match):
 
 
 def test_empty_folder(tmp_path):
-    with pytest.raises(ImageError, match="no pictures"):
+    with pytest.raises(ImageError, match="holds no picture"):
         calibrate(tmp_path)
 
 

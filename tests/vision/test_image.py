@@ -85,7 +85,7 @@ def test_refused_files(tmp_path, picture):
     with pytest.raises(ImageError, match="is empty"):
         load_image(tmp_path / "empty.png")
     (tmp_path / "text.png").write_text("this is no picture at all")
-    with pytest.raises(ImageError, match="no picture that can be read"):
+    with pytest.raises(ImageError, match="is no picture"):
         load_image(tmp_path / "text.png")
     cv2.imwrite(str(tmp_path / "grey.png"), picture[..., 0])
     with pytest.raises(ImageError, match="one channel"):

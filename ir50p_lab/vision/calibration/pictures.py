@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import ImageError, InputError
-
-_ENDINGS = {".jpg", ".jpeg", ".png", ".bmp", ".tif", ".tiff", ".webp", ".ppm", ".pgm"}
+from ir50p_lab.vision.image import list_images, load_image
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +36,7 @@ class Picture:
 def pictures_of(images):
     """A list of Picture. Raises InputError for what cannot hold pictures, ImageError for a missing or empty folder."""
     if isinstance(images, str | Path):
-        images = _in_folder(Path(images))
+        images = list_images(images)
     elif (isinstance(images, np.ndarray) and images.ndim < 4) or hasattr(images, "image"):
         raise InputError("one picture is not enough: give a list of pictures, or a folder")
     try:
@@ -49,19 +48,8 @@ def pictures_of(images):
     return [_picture(k, one) for k, one in enumerate(images)]
 
 
-def _in_folder(folder):
-    if not folder.is_dir():
-        raise ImageError(f"{folder} is no folder: give the folder with the pictures, or a list of files")
-    files = sorted(f for f in folder.iterdir() if f.suffix.lower() in _ENDINGS)
-    if not files:
-        raise ImageError(f"no pictures ({', '.join(sorted(_ENDINGS))}) in {folder}")
-    return files
-
-
 def _picture(index, one):
     if isinstance(one, str | Path):
-        from ir50p_lab.vision.image import load_image
-
         try:
             return Picture(Path(one).name, index, load_image(one, allow_grey=True))
         except ImageError as error:

@@ -1,0 +1,89 @@
+"""The bytes of a picture file: decoded, or the reason why they are none."""
+
+import contextlib
+import os
+import tempfile
+
+import numpy as np
+
+_PNG = b"\x89PNG\r\n\x1a\n"
+_GREY_AND_ALPHA = 4  # colour type of a PNG
+
+
+def decode(data):
+    """(picture, None) or (None, why there is none).
+
+    data: bytes of a file. Picture: blue, green, red (h, w, 3), or (h, w) of one channel, with its own number of bits;
+    the right way up, without transparency; of an animation the first.
+    """
+    import cv2
+
+    if why := _cut_off(data):
+        return None, f"is cut off ({why}): copy or take the picture again"
+    with _said() as said:
+        try:
+            image = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_ANYCOLOR | cv2.IMREAD_ANYDEPTH)
+        except cv2.error:  # sizes beyond what OpenCV takes
+            image = None
+    if image is None:
+        return None, _what_instead(data)
+    damage = [line for line in said if "Corrupt JPEG" in line and "extraneous" not in line]  # those are harmless
+    if damage:
+        return None, f"is damaged ({damage[0].strip()}): copy or take the picture again"
+    if data.startswith(_PNG) and data[25] == _GREY_AND_ALPHA:
+        image = np.ascontiguousarray(image[..., 0])
+    return image, None
+
+
+def _cut_off(data):
+    """Why the data of a picture end too early, or None: OpenCV would fill the rest with grey and say nothing."""
+    if data.startswith(b"\xff\xd8"):
+        # the picture proper starts at the last 'start of scan'; an earlier 'end of image' is that of a thumbnail
+        scan = data.rfind(b"\xff\xda")
+        return None if scan > 0 and data.find(b"\xff\xd9", scan) > 0 else "JPEG without its end"
+    if data.startswith(_PNG):
+        return None if b"IEND" in data[-4096:] else "PNG without its end"
+    size = None
+    if data.startswith(b"BM") and len(data) >= 6:
+        size = int.from_bytes(data[2:6], "little")
+    elif data.startswith(b"RIFF") and data[8:12] == b"WEBP":
+        size = int.from_bytes(data[4:8], "little") + 8
+    return f"{size} bytes long, {len(data)} here" if size is not None and size > len(data) else None
+
+
+def _what_instead(data):
+    kind = data[4:12]
+    if kind.startswith(b"ftyp") and kind[4:] in (b"heic", b"heix", b"hevc", b"mif1", b"msf1", b"heim", b"heis"):
+        return (
+            "is a HEIC picture of a phone: save it as JPEG (iPhone: Settings, Camera, Formats, 'Most Compatible' takes "
+            "JPEGs from then on)"
+        )
+    if kind.startswith(b"ftyp"):
+        return "is a video, or of a kind that OpenCV does not know: save the picture as JPEG or PNG"
+    if data.startswith((_PNG, b"\xff\xd8", b"BM", b"II*\0", b"MM\0*", b"RIFF", b"GIF8")):
+        return "is damaged, or of a kind that OpenCV does not know (a camera's raw?): save it again as JPEG or PNG"
+    return f"is no picture (starts with {data[:8]!r}): give a JPEG or PNG file"
+
+
+@contextlib.contextmanager
+def _said():
+    """Lines that the decoders write on the console: they belong into an error, and are their only word on damage."""
+    import cv2
+
+    lines, level = [], cv2.utils.logging.getLogLevel()
+    try:
+        kept = os.dup(2)
+    except OSError:  # a program without a console
+        yield lines
+        return
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
+    with tempfile.TemporaryFile() as file:
+        os.dup2(file.fileno(), 2)
+        try:
+            yield lines
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
+            cv2.utils.logging.setLogLevel(level)
+            file.seek(0)
+            lines += file.read().decode(errors="replace").splitlines()
