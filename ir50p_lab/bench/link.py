@@ -17,6 +17,7 @@ except ImportError:  # Windows
 PORT_ERRORS = (OSError, _termios_error)
 READ_TIMEOUT = 0.004  # s; an answer takes 1 ms on the wire and up to 3 ms more through USB
 REPEAT = 0.004  # s without an answer until the question is asked again
+AWAKE = 0.001  # s; a tenth of a processor at 100 Hz
 HEARD = 80  # first bytes kept to tell what it is that does not answer
 
 
@@ -24,7 +25,15 @@ class Clock:
     """The computer's clock, s from an arbitrary start, and its sleep: what a virtual clock stands in for in tests."""
 
     now = staticmethod(time.perf_counter)
-    sleep = staticmethod(time.sleep)
+
+    @staticmethod
+    def sleep(seconds):
+        """Sleep; the last millisecond awake, because a sleeper is often woken late when other programs run."""
+        until = time.perf_counter() + seconds
+        if seconds > AWAKE:
+            time.sleep(seconds - AWAKE)
+        while time.perf_counter() < until:
+            pass
 
 
 class LinkStatistics(NamedTuple):
