@@ -28,3 +28,12 @@ def first_not_finite(array):
     """Describe the first NaN or infinity of `array`, with its place."""
     place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
     return f"{array[place]} at index {place if len(place) > 1 else place[0]}"
+
+
+def check_arm(arm):
+    """Return `arm`. Raises InputError if it is no Arm."""
+    from ir50p_lab.modelling.arm import Arm
+
+    if not isinstance(arm, Arm):
+        raise InputError(f"arm = {arm!r:.60}: give an Arm, such as IR50P or load_arm()")
+    return arm

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.bench import shared_loop
+from ir50p_lab.bench.base import check_controller, check_reference
 from ir50p_lab.bench.live_loop import live_loop
 from ir50p_lab.bench.set_point import checked_set_point
 from ir50p_lab.bench.shared_loop import SharedLoop
@@ -36,15 +37,11 @@ def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest
     Returns: LiveRun. Raises BenchError if the bench is closed or busy, InputError for bad arguments, and what opening
     the port raises.
     """
-    if seconds is not None and not (math.isfinite(seconds) and seconds > 0):
+    if seconds is not None and not (isinstance(seconds, int | float | np.number) and 0 < seconds < math.inf):
         raise InputError(f"seconds = {seconds!r}: give how long to run, in seconds, > 0, or None: until stopped")
-    for name, thing in (("controller", controller), ("reference", reference)):
-        if (
-            not callable(getattr(thing, "step", None))
-            if name == "controller"
-            else not (thing is None or callable(thing))
-        ):
-            raise InputError(f"{name} = {thing!r}: give a {_NEEDED[name]}")
+    check_controller(controller)
+    if reference is not None:
+        check_reference(reference)
     bench._take_back()
     if not bench._is_open:
         raise BenchError("the bench is closed: open it with connect() and start before it is closed")
@@ -62,12 +59,6 @@ def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest
     bench._live = run
     worker.start()
     return run
-
-
-_NEEDED = {
-    "controller": "controller with step(t, measured, reference), such as PID(...)",
-    "reference": "function of time, target(t) -> (q, qd, qdd), such as hold([...]), or None to hold the pose",
-}
 
 
 def _packed(controller, reference):

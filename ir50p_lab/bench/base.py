@@ -9,6 +9,7 @@ import numpy as np
 from ir50p_lab.bench.recorder import Recorder
 from ir50p_lab.bench.rest import rest_pose, way_to_rest
 from ir50p_lab.errors import BenchError, InputError
+from ir50p_lab.inputs import check_arm
 
 JOINTS = 3
 LIMIT_PWM = 255
@@ -55,8 +56,9 @@ class Bench(abc.ABC):
 
     def __init__(self, arm, calibration, *, period=0.01, record_to=None, name=None):
         """record_to: folder for recordings (default: ./recordings), or False for none on disk."""
-        if not (math.isfinite(period) and 0.001 <= period <= 1.0):
-            raise InputError(f"period = {period} s: give 0.001 to 1 s (the thesis samples every 0.01 s)")
+        arm = check_arm(arm)
+        if not (isinstance(period, int | float | np.number) and 0.001 <= period <= 1.0):
+            raise InputError(f"period = {period!r} s: give 0.001 to 1 s (the thesis samples every 0.01 s)")
         self.arm, self.calibration, self.period = arm, calibration, float(period)
         self.name = name or f"{self.kind} {arm.name}"
         self.recording = None
@@ -239,7 +241,10 @@ class Bench(abc.ABC):
         if not self._running:
             self.cut()
             raise BenchError("drive() works only inside `for sample in bench.run(...)`: outside nothing keeps watch")
-        command = np.asarray(pwm, dtype=float)
+        try:
+            command = np.asarray(pwm, dtype=float)
+        except (TypeError, ValueError):
+            command = np.full(JOINTS, np.nan)
         if command.shape != (JOINTS,) or not math.isfinite(command[0] + command[1] + command[2]):
             self.cut()
             raise InputError(f"pwm = {pwm!r}: give three finite numbers of PWM counts; the drive has been cut")
@@ -262,8 +267,10 @@ class Bench(abc.ABC):
     def follow(self, controller, reference, seconds, *, record=True, **header):
         """Run `controller` on `reference` for `seconds`; the loop of the lesson in one call.
 
-        Returns the Recording (None with record=False).
+        Returns the Recording (None with record=False). Raises InputError if these are no controller and reference.
         """
+        check_controller(controller)
+        check_reference(reference)
         controller.reset() if hasattr(controller, "reset") else None
         for sample in self.run(seconds, record=record, **{**header_of(controller), **header}):
             target = reference(sample.t)
@@ -287,6 +294,22 @@ class Bench(abc.ABC):
     def rest_pose(self):
         """The pose (3,) rad where the arm is let go."""
         return rest_pose(self.arm)
+
+
+def check_controller(controller):
+    """Raise InputError if it has no step()."""
+    if not callable(getattr(controller, "step", None)):
+        raise InputError(
+            f"controller = {controller!r:.60}: give a controller with step(t, measured, reference), such as PID(...)"
+        )
+
+
+def check_reference(reference):
+    """Raise InputError if it is neither a function of time nor an object that samples one."""
+    if not (callable(reference) or hasattr(reference, "sample")):
+        raise InputError(
+            f"reference = {reference!r:.60}: give a function of time, target(t) -> (q, qd, qdd), such as hold([...])"
+        )
 
 
 def header_of(controller):

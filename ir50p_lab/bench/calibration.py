@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError, SuspiciousArmWarning
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import check_arm, vectors3
 
 _PLAUSIBLE = (20.0, 1023 / np.radians(60))  # counts/rad: a potentiometer of many turns; of 60 deg over the full range
 _HEADS = ("joint", "counts/rad", "counts at q = 0", "rms residual", "points")
@@ -172,7 +172,7 @@ def saved_calibration(arm):
     """
     from ir50p_lab.bench.calibration_file import find_calibration
 
-    return find_calibration(arm)
+    return find_calibration(check_arm(arm))
 
 
 # Bench data of an older ROB3 (public repository eurobtec/rob3): counts of a 10-bit converter per rad of axes 1-3.
@@ -187,6 +187,7 @@ def nominal_calibration(arm):
     travel reads 512. A joint without limits is taken to turn from -pi to pi.
     Args: arm: Arm. Returns: Calibration, without standard errors.
     """
+    arm = check_arm(arm)
     low, high = (np.clip(limit, -np.pi, np.pi) for limit in (arm.q_min, arm.q_max))
     slope = np.minimum(_SISTER_SLOPE, 2 * min(_MIDDLE - _LOWEST, _HIGHEST - _MIDDLE) / (high - low))
     zero = _MIDDLE - slope * 0.5 * (low + high)

@@ -49,7 +49,10 @@ def _asked_for(wish, reason, common, simulated):
         options = {name: common[name] for name in ("arm", "record_to")} | {"realtime": simulated.get("realtime", False)}
         bench = ReplayBench(wish[len("replay:") :], **options)
         return _say(bench.open(), f"asked for by {reason}", _TO_BOARD)
-    return _say_board(_serial(wish, common), f"asked for by {reason}")
+    try:
+        return _say_board(_serial(wish, common), f"asked for by {reason}")
+    except PortError as error:
+        raise PortError(f"{error}. To go on without a board: connect('simulated')") from None
 
 
 def _look_for_a_board(common, simulated):

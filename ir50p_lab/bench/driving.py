@@ -149,7 +149,10 @@ class StopCriterion:
 
 
 def _finite(name, value):
-    array = np.asarray(value, dtype=float)
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} = {value!r}: give numbers (PWM counts)") from None
     if not np.isfinite(array).all():
         raise InputError(f"{name} = {value!r}: every number must be finite (PWM counts)")
     return array

@@ -9,7 +9,8 @@ import numpy as np
 from ir50p_lab.bench.base import Bench
 from ir50p_lab.bench.calibration import Calibration, nominal_calibration
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.errors import RecordingError
+from ir50p_lab.errors import InputError, RecordingError
+from ir50p_lab.inputs import check_arm
 from ir50p_lab.modelling.arm import load_arm
 
 
@@ -26,7 +27,7 @@ class ReplayBench(Bench):
         record_to: folder for recordings of your commands; default: in memory only.
 
     Attributes: original: the Recording that is played.
-    Raises RecordingError if the file is none, or has no sample.
+    Raises RecordingError if the file is none, or has no sample; InputError if `recording` or `arm` is something else.
     """
 
     kind = "replay"
@@ -34,9 +35,11 @@ class ReplayBench(Bench):
     def __init__(self, recording, *, arm=None, realtime=False, record_to=None, name=None):
         if isinstance(recording, str | os.PathLike):
             recording = Recording.load(recording)
+        if not isinstance(recording, Recording):
+            raise InputError(f"recording = {recording!r:.60}: give a Recording, or the path of one")
         if not len(recording):
             raise RecordingError(f"{recording!r} has no sample to replay: choose another recording")
-        arm = load_arm() if arm is None else arm
+        arm = load_arm() if arm is None else check_arm(arm)
         self.original, self.simulated, self.realtime = recording, recording.simulated, realtime
         period = recording.period
         super().__init__(

@@ -11,6 +11,7 @@ from ir50p_lab.bench.calibration import nominal_calibration, saved_calibration
 from ir50p_lab.bench.link import PORT_ERRORS, Clock, Link
 from ir50p_lab.bench.ports import open_port
 from ir50p_lab.errors import BoardError, BoardLostError, InputError
+from ir50p_lab.inputs import check_arm
 
 BOOT_LOADER = 2.0  # s; the Mega's own lasts 1 to 2 s, and 8 s if it hears anything meanwhile: so we keep silent
 HANDSHAKE = 2.0  # s; then nobody is there
@@ -45,7 +46,7 @@ class SerialBench(Bench):
         named = isinstance(port, str | os.PathLike) and str(port)
         if not (named or hasattr(port, "write")):
             raise InputError(f"port = {port!r}: give the name of a serial port, or an open port")
-        arm = load_arm() if arm is None else arm
+        arm = load_arm() if arm is None else check_arm(arm)
         self.port = os.fspath(port) if named else getattr(port, "name", None) or "a given port"
         super().__init__(
             arm,

@@ -1,0 +1,86 @@
+"""What is no arm, no recording, no number, no port: every public name of the bench says so, and how to go on."""
+
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import (
+    ReplayBench,
+    SerialBench,
+    SimulatedBench,
+    bridge_inputs,
+    connect,
+    mean_voltage,
+    nominal_calibration,
+    saved_calibration,
+    sign_and_magnitude,
+    thesis_map,
+)
+from ir50p_lab.controllers import PID
+from ir50p_lab.errors import InputError, LabError, PortError
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.signals import hold
+
+RUBBISH = ["x", -1, float("nan"), [], {}, object(), np.full((3, 3), np.nan)]
+
+
+@pytest.mark.parametrize("rubbish", [None, *RUBBISH], ids=repr)
+@pytest.mark.parametrize("function", [nominal_calibration, saved_calibration])
+def test_no_arm(function, rubbish):
+    with pytest.raises(InputError, match=r"give an Arm"):
+        function(rubbish)
+
+
+@pytest.mark.parametrize("rubbish", RUBBISH, ids=repr)
+@pytest.mark.parametrize(
+    "make", [SimulatedBench, lambda arm: SerialBench("COM3", arm=arm)], ids=["simulated", "serial"]
+)
+def test_no_arm_for_a_bench(make, rubbish):
+    with pytest.raises(InputError, match=r"give an Arm"):
+        make(rubbish)
+
+
+@pytest.mark.parametrize("rubbish", [None, *RUBBISH[1:]], ids=repr)
+def test_no_recording(rubbish):
+    with pytest.raises(InputError, match=r"give a Recording"):
+        ReplayBench(rubbish)
+
+
+@pytest.mark.parametrize("rubbish", ["x", {}, object(), float("nan"), [1, None]], ids=repr)
+@pytest.mark.parametrize("function", [bridge_inputs, mean_voltage, sign_and_magnitude, thesis_map])
+def test_no_command(function, rubbish):
+    with pytest.raises(InputError, match=r"PWM counts"):
+        function(rubbish)
+
+
+@pytest.mark.parametrize("period", [None, "0.01", float("nan"), 0.0, -0.01, 2.0], ids=repr)
+def test_no_period(period):
+    with pytest.raises(InputError, match=r"period"):
+        SimulatedBench(IR50P, period=period, record_to=False)
+
+
+@pytest.mark.parametrize("rubbish", RUBBISH, ids=repr)
+def test_a_run_refuses(rubbish):
+    with SimulatedBench(IR50P, record_to=False) as bench:
+        with pytest.raises(LabError):
+            list(bench.run(rubbish))
+        with pytest.raises(LabError):
+            for _ in bench.run(0.02):
+                bench.drive(rubbish)
+        with pytest.raises(LabError):
+            bench.follow(PID(kp=(1, 1, 1), limit_pwm=255), hold([0, 0, 0]), rubbish)
+        with pytest.raises(InputError, match=r"give a controller"):
+            bench.follow(rubbish, hold([0, 0, 0]), 1.0)
+        with pytest.raises(InputError, match=r"give a function of time"):
+            bench.follow(PID(kp=(1, 1, 1), limit_pwm=255), rubbish, 1.0)
+        with pytest.raises(LabError):
+            bench.start(rubbish, hold([0, 0, 0]))
+        with pytest.raises(LabError):
+            bench.start(PID(kp=(1, 1, 1), limit_pwm=255), rubbish)
+        with pytest.raises(LabError):
+            bench.start(PID(kp=(1, 1, 1), limit_pwm=255), hold([0, 0, 0]), seconds=rubbish)
+
+
+def test_a_misspelt_bench_says_how_to_go_on_without_a_board(monkeypatch):
+    monkeypatch.setenv("IR50P_BENCH", "simulatd")
+    with pytest.raises(PortError, match=r"simulatd does not exist.*connect\('simulated'\)"):
+        connect()
