@@ -20,7 +20,7 @@ from ir50p_lab.signals.low_pass import low_pass
 _ORDER = 3  # of the filters
 _WIDER = 2.0  # cut-off of the differentiation over that of the regression: what lies between is lost in both sides
 # Periods of the cut-off, before and after a slow stretch, that are left out too: the arm sticks where the simulated one
-# may not, so it reverses later, and filters smear what happens then. Without it joint 1's friction was off by 1.5 errors.
+# may not, so it reverses later, and filters smear what happens then. Else joint 1's friction is off by 1.5 errors.
 _AROUND = 0.3
 
 
@@ -46,8 +46,9 @@ def fit_with_instruments(
     it are not noise: what they do to the parameters no standard error holds.
 
     Args: first: Estimate or theta (3, 20) with which the loop is simulated, from `identify` or `output_error`;
-    recordings, controller, references, delay: as in `output_error`, evenly sampled. cutoff_hz: of both sides, Hz. slow: rad/s, simulated
-    speed below which samples of a joint are left out, and 0.3/cutoff_hz seconds around them. columns, l2, g: as in `fit`.
+    recordings, controller, references, delay: as in `output_error`, evenly sampled. cutoff_hz: of both sides, Hz.
+    slow: rad/s, simulated speed below which samples of a joint, and those 0.3/cutoff_hz seconds around, are left out.
+    columns, l2, g: as in `fit`.
     Returns: Estimate of method "iv". Raises: InputError, IdentificationError as `fit` does.
     """
     theta, _ = as_theta(getattr(first, "theta", first))
