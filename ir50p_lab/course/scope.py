@@ -8,6 +8,7 @@ import anywidget
 import numpy as np
 import traitlets
 
+from ir50p_lab.course.canvas import CANVAS
 from ir50p_lab.course.style import COLOURS
 
 __all__ = ["Scope"]
@@ -15,14 +16,6 @@ __all__ = ["Scope"]
 _MOST = 500  # samples in a frame: about two for every pixel column of a joint
 
 _DRAW = """
-const NICE = [1, 2, 5, 10, 20, 50, 100];
-const niceStep = (span, most) => {
-  const scale = 10 ** (Math.floor(Math.log10(span / most)) );
-  for (const n of NICE) if (span / (n * scale) <= most) return n * scale;
-  return 100 * scale;
-};
-const decimals = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
-
 // The present range, unless what is shown leaves it or has become small in it.
 function rangeFor(old, low, high) {
   const middle = (low + high) / 2, span = Math.max(high - low, 4);
@@ -33,70 +26,52 @@ function rangeFor(old, low, high) {
   return [Math.floor(need[0] / step) * step, Math.ceil(need[1] / step) * step];
 }
 
-function render({ model, el }) {
-  const canvas = document.createElement("canvas");
-  canvas.setAttribute("role", "img");
-  canvas.style.cssText = "width:100%;display:block;background:white;";
-  el.style.width = "100%";
-  el.appendChild(canvas);
-  const ctx = canvas.getContext("2d");
-  let ranges = [null, null, null], wanted = false;
-
-  function plot(x0, y0, w, h, t0, t1, low, high, options) {
-    const X = (t) => x0 + (t - t0) / (t1 - t0) * w, Y = (v) => y0 + h - (v - low) / (high - low) * h;
-    ctx.lineWidth = 1; ctx.setLineDash([]); ctx.font = "11px sans-serif"; ctx.textBaseline = "middle";
-    const yStep = options.yStep || niceStep(high - low, 5), places = decimals(yStep);
-    ctx.textAlign = "right";
-    for (let v = Math.ceil(low / yStep - 1e-9) * yStep; v <= high + 1e-9; v += yStep) {
-      const y = Math.round(Y(v)) + 0.5;
-      ctx.strokeStyle = Math.abs(v) < 1e-9 && options.zero ? "#BBBBBB" : "#E6E6E6";
-      ctx.beginPath(); ctx.moveTo(x0, y); ctx.lineTo(x0 + w, y); ctx.stroke();
-      ctx.fillStyle = "#555555";
-      ctx.fillText((Math.abs(v) < 1e-9 ? 0 : v).toFixed(places).replace("-", "\\u2212"), x0 - 5, y);
-    }
-    const xStep = niceStep(t1 - t0, 5);
-    ctx.textAlign = "center"; ctx.textBaseline = "top";
-    for (let t = Math.ceil(t0 / xStep - 1e-9) * xStep; t <= t1 + 1e-9; t += xStep) {
-      const x = Math.round(X(t)) + 0.5;
-      ctx.strokeStyle = "#E6E6E6";
-      ctx.beginPath(); ctx.moveTo(x, y0); ctx.lineTo(x, y0 + h); ctx.stroke();
-      if (options.times) { ctx.fillStyle = "#555555"; ctx.fillText(t.toFixed(0), x, y0 + h + 4); }
-    }
-    ctx.strokeStyle = "#666666";
-    ctx.beginPath(); ctx.moveTo(x0 + 0.5, y0); ctx.lineTo(x0 + 0.5, y0 + h + 0.5); ctx.lineTo(x0 + w, y0 + h + 0.5);
-    ctx.stroke();
-    return [X, Y];
+function plot(ctx, x0, y0, w, h, t0, t1, low, high, options) {
+  const X = (t) => x0 + (t - t0) / (t1 - t0) * w, Y = (v) => y0 + h - (v - low) / (high - low) * h;
+  ctx.lineWidth = 1; ctx.setLineDash([]); ctx.font = "11px sans-serif"; ctx.textBaseline = "middle";
+  const yStep = options.yStep || niceStep(high - low, 5), places = decimals(yStep);
+  ctx.textAlign = "right";
+  for (let v = Math.ceil(low / yStep - 1e-9) * yStep; v <= high + 1e-9; v += yStep) {
+    const y = Math.round(Y(v)) + 0.5;
+    ctx.strokeStyle = Math.abs(v) < 1e-9 && options.zero ? "#BBBBBB" : "#E6E6E6";
+    ctx.beginPath(); ctx.moveTo(x0, y); ctx.lineTo(x0 + w, y); ctx.stroke();
+    ctx.fillStyle = "#555555";
+    ctx.fillText(fixed(v, places), x0 - 5, y);
   }
-
-  function line(data, n, columns, column, X, Y, colour, width, dash, stairs, box) {
-    ctx.save();
-    ctx.beginPath(); ctx.rect(...box); ctx.clip();
-    ctx.strokeStyle = colour; ctx.lineWidth = width; ctx.setLineDash(dash); ctx.lineJoin = "round";
-    ctx.beginPath();
-    let last = 0;
-    for (let k = 0; k < n; k++) {
-      const x = X(data[k * columns]), y = Y(data[k * columns + column]);
-      if (k === 0) ctx.moveTo(x, y);
-      else { if (stairs) ctx.lineTo(x, last); ctx.lineTo(x, y); }
-      last = y;
-    }
-    ctx.stroke();
-    ctx.restore();
+  const xStep = niceStep(t1 - t0, 5);
+  ctx.textAlign = "center"; ctx.textBaseline = "top";
+  for (let t = Math.ceil(t0 / xStep - 1e-9) * xStep; t <= t1 + 1e-9; t += xStep) {
+    const x = Math.round(X(t)) + 0.5;
+    ctx.strokeStyle = "#E6E6E6";
+    ctx.beginPath(); ctx.moveTo(x, y0); ctx.lineTo(x, y0 + h); ctx.stroke();
+    if (options.times) { ctx.fillStyle = "#555555"; ctx.fillText(t.toFixed(0), x, y0 + h + 4); }
   }
+  ctx.strokeStyle = "#666666";
+  ctx.beginPath(); ctx.moveTo(x0 + 0.5, y0); ctx.lineTo(x0 + 0.5, y0 + h + 0.5); ctx.lineTo(x0 + w, y0 + h + 0.5);
+  ctx.stroke();
+  return [X, Y];
+}
 
-  function draw() {
-    wanted = false;
-    const s = model.get("settings"), bytes = model.get("samples");
-    const raw = bytes.buffer ? bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) : bytes;
-    const columns = 10, data = new Float32Array(raw), n = Math.floor(data.length / columns);
-    const width = Math.max(el.clientWidth, 480), height = s.height, dpr = window.devicePixelRatio || 1;
-    if (canvas.width !== Math.round(width * dpr) || canvas.height !== Math.round(height * dpr)) {
-      canvas.width = Math.round(width * dpr); canvas.height = Math.round(height * dpr);
-      canvas.style.height = height + "px";
-    }
-    canvas.setAttribute("aria-label", s.description);
-    ctx.setTransform(dpr, 0, 0, dpr, 0, 0);
-    ctx.fillStyle = "white"; ctx.fillRect(0, 0, width, height);
+function line(ctx, data, n, columns, column, X, Y, colour, width, dash, stairs, box) {
+  ctx.save();
+  ctx.beginPath(); ctx.rect(...box); ctx.clip();
+  ctx.strokeStyle = colour; ctx.lineWidth = width; ctx.setLineDash(dash); ctx.lineJoin = "round";
+  ctx.beginPath();
+  let last = 0;
+  for (let k = 0; k < n; k++) {
+    const x = X(data[k * columns]), y = Y(data[k * columns + column]);
+    if (k === 0) ctx.moveTo(x, y);
+    else { if (stairs) ctx.lineTo(x, last); ctx.lineTo(x, y); }
+    last = y;
+  }
+  ctx.stroke();
+  ctx.restore();
+}
+
+function render(view) {
+  let ranges = [null, null, null];
+  return onCanvas(view, (ctx, data, s, width, height) => {
+    const columns = 10, n = Math.floor(data.length / columns);
     const t1 = n ? Math.max(data[(n - 1) * columns], s.window) : s.window, t0 = t1 - s.window;
     if (n && data[(n - 1) * columns] < 0.5) ranges = [null, null, null];
     const left = 62, gap = 46, top = 30, below = 36, between = 16;
@@ -111,39 +86,28 @@ function render({ model, el }) {
       }
       if (low <= high) ranges[j] = rangeFor(ranges[j], low, high);
       const range = ranges[j] || [-10, 10];
-      let [X, Y] = plot(x0, top, w, upper, t0, t1, range[0], range[1], {});
-      line(data, n, columns, 1 + j, X, Y, colour, 1.8, [], false, [x0, top, w, upper]);
-      line(data, n, columns, 4 + j, X, Y, s.dark, 1.4, [6, 4], true, [x0, top, w, upper]);
+      let [X, Y] = plot(ctx, x0, top, w, upper, t0, t1, range[0], range[1], {});
+      line(ctx, data, n, columns, 1 + j, X, Y, colour, 1.8, [], false, [x0, top, w, upper]);
+      line(ctx, data, n, columns, 4 + j, X, Y, s.dark, 1.4, [6, 4], true, [x0, top, w, upper]);
       const y1 = top + upper + between;
-      [X, Y] = plot(x0, y1, w, lower, t0, t1, -270, 270, { times: true, yStep: 255, zero: true });
-      line(data, n, columns, 7 + j, X, Y, colour, 1.3, [], true, [x0, y1, w, lower]);
+      [X, Y] = plot(ctx, x0, y1, w, lower, t0, t1, -270, 270, { times: true, yStep: 255, zero: true });
+      line(ctx, data, n, columns, 7 + j, X, Y, colour, 1.3, [], true, [x0, y1, w, lower]);
       ctx.setLineDash([]); ctx.textBaseline = "alphabetic"; ctx.textAlign = "left";
       ctx.fillStyle = colour; ctx.font = "bold 13px sans-serif";
       ctx.fillText("joint " + (j + 1), x0, 19);
       if (n) {
-        const at = (n - 1) * columns, text = (v) => v.toFixed(1).replace("-", "\\u2212");
+        const at = (n - 1) * columns, degrees = (k) => fixed(data[at + k], 1) + "\\u00b0";
         ctx.fillStyle = "#333333"; ctx.font = "12px sans-serif"; ctx.textAlign = "right";
-        ctx.fillText(text(data[at + 1 + j]) + "\\u00b0,  set " + text(data[at + 4 + j]) + "\\u00b0", x0 + w, 19);
+        ctx.fillText(degrees(1 + j) + ",  set " + degrees(4 + j), x0 + w, 19);
       }
       ctx.fillStyle = "#333333"; ctx.font = "12px sans-serif"; ctx.textAlign = "center";
       ctx.fillText("time [s]", x0 + w / 2, height - 5);
     }
-    const sideways = (text, y) => {
-      ctx.save(); ctx.translate(14, y); ctx.rotate(-Math.PI / 2); ctx.textAlign = "center";
-      ctx.fillText(text, 0, 0); ctx.restore();
-    };
-    sideways("angle [deg]", top + upper / 2);
-    sideways("PWM [counts]", top + upper + between + lower / 2);
+    sideways(ctx, "angle [deg]", 14, top + upper / 2);
+    sideways(ctx, "PWM [counts]", 14, top + upper + between + lower / 2);
     ctx.textAlign = "left"; ctx.fillStyle = "#777777"; ctx.font = "11px sans-serif";
     if (s.badge) ctx.fillText(s.badge, 2, 12);
-  }
-  const soon = () => { if (!wanted) { wanted = true; requestAnimationFrame(draw); } };
-  model.on("change:samples", soon);
-  model.on("change:settings", soon);
-  const observer = new ResizeObserver(soon);
-  observer.observe(el);
-  soon();
-  return () => { model.off("change:samples", soon); model.off("change:settings", soon); observer.disconnect(); };
+  });
 }
 export default { render };
 """
@@ -155,7 +119,7 @@ class Scope(anywidget.AnyWidget):
     window: s; height: pixels; badge: a word in the corner, such as "simulated". `frames` counts what `show` has sent.
     """
 
-    _esm = _DRAW
+    _esm = CANVAS + _DRAW
     samples = traitlets.Bytes(b"").tag(sync=True)
     settings = traitlets.Dict().tag(sync=True)
 

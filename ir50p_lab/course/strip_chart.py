@@ -10,6 +10,7 @@ import anywidget
 import numpy as np
 import traitlets
 
+from ir50p_lab.course.canvas import CANVAS
 from ir50p_lab.course.style import COLOURS
 
 __all__ = ["StripChart"]
@@ -18,88 +19,53 @@ _MOST = 600  # points in a frame
 _COLOURS = ("blue", "orange", "green", "purple", "amber", "sky")
 
 _DRAW = """
-const niceStep = (span, most) => {
-  const scale = 10 ** Math.floor(Math.log10(span / most));
-  for (const n of [1, 2, 5, 10, 20, 50, 100]) if (span / (n * scale) <= most) return n * scale;
-  return 100 * scale;
-};
-const decimals = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
-const minus = (text) => text.replace("-", "\\u2212");
-
-function render({ model, el }) {
-  const canvas = document.createElement("canvas");
-  canvas.setAttribute("role", "img");
-  canvas.style.cssText = "width:100%;display:block;background:white;";
-  el.style.width = "100%";
-  el.appendChild(canvas);
-  const ctx = canvas.getContext("2d");
-  let wanted = false;
-
-  function draw() {
-    wanted = false;
-    const s = model.get("settings"), bytes = model.get("samples"), columns = s.labels.length + 1;
-    const raw = bytes.buffer ? bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) : bytes;
-    const data = new Float32Array(raw), n = Math.floor(data.length / columns);
-    const width = Math.min(Math.max(el.clientWidth, 480), 960), height = s.height, dpr = window.devicePixelRatio || 1;
-    canvas.width = Math.round(width * dpr); canvas.height = Math.round(height * dpr);
-    canvas.style.height = height + "px"; canvas.style.width = width + "px";
-    canvas.setAttribute("aria-label", s.description);
-    ctx.setTransform(dpr, 0, 0, dpr, 0, 0);
-    ctx.fillStyle = "white"; ctx.fillRect(0, 0, width, height);
-    const x0 = 62, y0 = 30, w = width - x0 - 150, h = height - y0 - 38;
-    const [low, high] = s.ylim, X = (t) => x0 + t / s.duration * w, Y = (v) => y0 + h - (v - low) / (high - low) * h;
-    ctx.font = "11px sans-serif"; ctx.lineWidth = 1; ctx.fillStyle = "#555555"; ctx.strokeStyle = "#E6E6E6";
-    const yStep = niceStep(high - low, 6), xStep = niceStep(s.duration, 8);
-    ctx.textAlign = "right"; ctx.textBaseline = "middle";
-    for (let v = Math.ceil(low / yStep) * yStep; v <= high; v += yStep) {
-      const y = Math.round(Y(v)) + 0.5;
-      ctx.beginPath(); ctx.moveTo(x0, y); ctx.lineTo(x0 + w, y); ctx.stroke();
-      ctx.fillText(minus((Math.abs(v) < 1e-9 ? 0 : v).toFixed(decimals(yStep))), x0 - 6, y);
-    }
-    ctx.textAlign = "center"; ctx.textBaseline = "top";
-    for (let t = 0; t <= s.duration + 1e-9; t += xStep) {
-      const x = Math.round(X(t)) + 0.5;
-      ctx.beginPath(); ctx.moveTo(x, y0); ctx.lineTo(x, y0 + h); ctx.stroke();
-      ctx.fillText(t.toFixed(decimals(xStep)), x, y0 + h + 5);
-    }
-    ctx.strokeStyle = "#666666";
-    ctx.strokeRect(x0 + 0.5, y0 + 0.5, 0, h); ctx.strokeRect(x0 + 0.5, y0 + h + 0.5, w, 0);
-    ctx.save(); ctx.beginPath(); ctx.rect(x0, y0, w, h); ctx.clip();
-    for (let c = 1; c < columns; c++) {
-      ctx.strokeStyle = s.colours[c - 1];
-      if (s.levels.length) {
-        ctx.lineWidth = 1.2; ctx.setLineDash([6, 4]);
-        ctx.beginPath(); ctx.moveTo(x0, Y(s.levels[c - 1])); ctx.lineTo(x0 + w, Y(s.levels[c - 1])); ctx.stroke();
-      }
-      ctx.lineWidth = 1.8; ctx.setLineDash([]); ctx.lineJoin = "round"; ctx.beginPath();
-      for (let k = 0; k < n; k++) {
-        const x = X(data[k * columns]), y = Y(Math.max(-1e6, Math.min(1e6, data[k * columns + c])));
-        if (k === 0) ctx.moveTo(x, y); else ctx.lineTo(x, y);
-      }
-      ctx.stroke();
-    }
-    ctx.restore();
-    ctx.textAlign = "left"; ctx.textBaseline = "middle"; ctx.font = "12px sans-serif";
-    for (let c = 1; c < columns; c++) {
-      ctx.fillStyle = s.colours[c - 1];
-      const last = n ? ":  " + minus(data[(n - 1) * columns + c].toPrecision(3)) : "";
-      ctx.fillText(s.labels[c - 1] + last, x0 + w + 12, y0 + 14 + 20 * (c - 1));
-    }
-    ctx.fillStyle = "#333333"; ctx.textAlign = "center"; ctx.textBaseline = "alphabetic";
-    ctx.fillText("time [s]", x0 + w / 2, height - 6);
-    ctx.font = "bold 13px sans-serif"; ctx.textAlign = "left"; ctx.fillText(s.title, x0, 19);
-    ctx.save(); ctx.translate(14, y0 + h / 2); ctx.rotate(-Math.PI / 2); ctx.textAlign = "center";
-    ctx.font = "12px sans-serif"; ctx.fillText(s.ylabel, 0, 0); ctx.restore();
+function paint(ctx, data, s, width, height) {
+  const columns = s.labels.length + 1, n = Math.floor(data.length / columns);
+  const x0 = 62, y0 = 30, w = width - x0 - 150, h = height - y0 - 38;
+  const [low, high] = s.ylim, X = (t) => x0 + t / s.duration * w, Y = (v) => y0 + h - (v - low) / (high - low) * h;
+  ctx.font = "11px sans-serif"; ctx.lineWidth = 1; ctx.fillStyle = "#555555"; ctx.strokeStyle = "#E6E6E6";
+  const yStep = niceStep(high - low, 6), xStep = niceStep(s.duration, 8);
+  ctx.textAlign = "right"; ctx.textBaseline = "middle";
+  for (let v = Math.ceil(low / yStep) * yStep; v <= high; v += yStep) {
+    const y = Math.round(Y(v)) + 0.5;
+    ctx.beginPath(); ctx.moveTo(x0, y); ctx.lineTo(x0 + w, y); ctx.stroke();
+    ctx.fillText(fixed(v, decimals(yStep)), x0 - 6, y);
   }
-  const soon = () => { if (!wanted) { wanted = true; requestAnimationFrame(draw); } };
-  model.on("change:samples", soon);
-  model.on("change:settings", soon);
-  const observer = new ResizeObserver(soon);
-  observer.observe(el);
-  soon();
-  return () => { model.off("change:samples", soon); model.off("change:settings", soon); observer.disconnect(); };
+  ctx.textAlign = "center"; ctx.textBaseline = "top";
+  for (let t = 0; t <= s.duration + 1e-9; t += xStep) {
+    const x = Math.round(X(t)) + 0.5;
+    ctx.beginPath(); ctx.moveTo(x, y0); ctx.lineTo(x, y0 + h); ctx.stroke();
+    ctx.fillText(t.toFixed(decimals(xStep)), x, y0 + h + 5);
+  }
+  ctx.strokeStyle = "#666666";
+  ctx.strokeRect(x0 + 0.5, y0 + 0.5, 0, h); ctx.strokeRect(x0 + 0.5, y0 + h + 0.5, w, 0);
+  ctx.save(); ctx.beginPath(); ctx.rect(x0, y0, w, h); ctx.clip();
+  for (let c = 1; c < columns; c++) {
+    ctx.strokeStyle = s.colours[c - 1];
+    if (s.levels.length) {
+      ctx.lineWidth = 1.2; ctx.setLineDash([6, 4]);
+      ctx.beginPath(); ctx.moveTo(x0, Y(s.levels[c - 1])); ctx.lineTo(x0 + w, Y(s.levels[c - 1])); ctx.stroke();
+    }
+    ctx.lineWidth = 1.8; ctx.setLineDash([]); ctx.lineJoin = "round"; ctx.beginPath();
+    for (let k = 0; k < n; k++) {
+      const x = X(data[k * columns]), y = Y(Math.max(-1e6, Math.min(1e6, data[k * columns + c])));
+      if (k === 0) ctx.moveTo(x, y); else ctx.lineTo(x, y);
+    }
+    ctx.stroke();
+  }
+  ctx.restore();
+  ctx.textAlign = "left"; ctx.textBaseline = "middle"; ctx.font = "12px sans-serif";
+  for (let c = 1; c < columns; c++) {
+    ctx.fillStyle = s.colours[c - 1];
+    const last = n ? ":  " + data[(n - 1) * columns + c].toPrecision(3).replace("-", "\\u2212") : "";
+    ctx.fillText(s.labels[c - 1] + last, x0 + w + 12, y0 + 14 + 20 * (c - 1));
+  }
+  ctx.fillStyle = "#333333"; ctx.textAlign = "center"; ctx.textBaseline = "alphabetic";
+  ctx.fillText("time [s]", x0 + w / 2, height - 6);
+  ctx.font = "bold 13px sans-serif"; ctx.textAlign = "left"; ctx.fillText(s.title, x0, 19);
+  ctx.font = "12px sans-serif"; sideways(ctx, s.ylabel, 14, y0 + h / 2);
 }
-export default { render };
+export default { render: (view) => onCanvas(view, paint, 960) };
 """
 
 
@@ -113,7 +79,7 @@ class StripChart(anywidget.AnyWidget):
     (n, k) so far; frames: pictures sent.
     """
 
-    _esm = _DRAW
+    _esm = CANVAS + _DRAW
     samples = traitlets.Bytes(b"").tag(sync=True)
     settings = traitlets.Dict().tag(sync=True)
 
