@@ -1,13 +1,12 @@
 """The bytes of a picture file: decoded, or the reason why they are none."""
 
-import contextlib
-import os
-import tempfile
-
 import numpy as np
+
+from ir50p_lab.vision.console import captured
 
 _PNG = b"\x89PNG\r\n\x1a\n"
 _GREY_AND_ALPHA = 4  # colour type of a PNG
+_ORIENTATION = 0x0112  # tag of EXIF
 
 
 def decode(data):
@@ -20,7 +19,7 @@ def decode(data):
 
     if why := _cut_off(data):
         return None, f"is cut off ({why}): copy or take the picture again"
-    with _said() as said:
+    with captured() as said:  # the decoder of JPEG says of damage nowhere else
         try:
             image = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_ANYCOLOR | cv2.IMREAD_ANYDEPTH)
         except cv2.error:  # sizes beyond what OpenCV takes
@@ -33,6 +32,20 @@ def decode(data):
     if data.startswith(_PNG) and data[25] == _GREY_AND_ALPHA:
         image = np.ascontiguousarray(image[..., 0])
     return image, None
+
+
+def quarter_turns(data):
+    """By how many quarter turns to the right a phone turned this JPEG upright (its EXIF orientation), 0 to 3."""
+    head = data[data.find(b"Exif\0\0", 0, 65536) + 6 :] if b"Exif\0\0" in data[:65536] else b""
+    order = "little" if head[:2] == b"II" else "big"
+
+    def number(at, size):
+        return int.from_bytes(head[at : at + size], order)
+
+    first = number(4, 4)
+    entries = (first + 2 + 12 * k for k in range(number(first, 2)))
+    orientation = next((number(at + 8, 2) for at in entries if number(at, 2) == _ORIENTATION), 1)
+    return {6: 1, 3: 2, 8: 3}.get(orientation, 0)
 
 
 def _cut_off(data):
@@ -63,27 +76,3 @@ def _what_instead(data):
     if data.startswith((_PNG, b"\xff\xd8", b"BM", b"II*\0", b"MM\0*", b"RIFF", b"GIF8")):
         return "is damaged, or of a kind that OpenCV does not know (a camera's raw?): save it again as JPEG or PNG"
     return f"is no picture (starts with {data[:8]!r}): give a JPEG or PNG file"
-
-
-@contextlib.contextmanager
-def _said():
-    """Lines that the decoders write on the console: they belong into an error, and are their only word on damage."""
-    import cv2
-
-    lines, level = [], cv2.utils.logging.getLogLevel()
-    try:
-        kept = os.dup(2)
-    except OSError:  # a program without a console
-        yield lines
-        return
-    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
-    with tempfile.TemporaryFile() as file:
-        os.dup2(file.fileno(), 2)
-        try:
-            yield lines
-        finally:
-            os.dup2(kept, 2)
-            os.close(kept)
-            cv2.utils.logging.setLogLevel(level)
-            file.seek(0)
-            lines += file.read().decode(errors="replace").splitlines()

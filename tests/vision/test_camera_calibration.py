@@ -154,6 +154,15 @@ def test_view_that_does_not_belong_is_left_out(views):
     assert len(found.views) == 14 and abs(found.fx - TRUTH[0]) < 3 * found.stderr["fx"]
 
 
+def test_view_that_pulls_the_camera_along_is_left_out_too(views):
+    """A picture that was cropped: its centre lies elsewhere, and the other views fit badly for its sake."""
+    spoilt = [xy.copy() for xy in views]
+    spoilt[4] += [300, 0]
+    found = calibrate_corners(POINTS, spoilt, (940, 480))
+    assert [(one.index, one.reason) for one in found.rejected] == [(4, Reason.OUTLIER)]
+    assert (np.abs(values(found) - TRUTH) < 3 * np.array([found.stderr[n] for n in NAMES[:4]])).all()
+
+
 def test_honest_noise_is_no_outlier():
     for seed in range(5):
         assert not calibrate_corners(POINTS, corner_sets(POINTS, 12, seed=30 + seed), SIZE).rejected

@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from ir50p_lab.errors import ImageError
-from ir50p_lab.vision import PictureFolder, load_image
+from ir50p_lab.vision import PictureFolder, load_image, to_grey
 from ir50p_lab.vision.calibration.pictures import pictures_of
 
 TURN = Image.Transpose
@@ -43,6 +43,18 @@ def test_a_phone_held_in_any_way(tmp_path, picture, suffix, orientation):
     found = load_image(tmp_path / f"a.{suffix}")
     assert found.shape == picture.shape and np.abs(found.astype(int) - picture).mean() < 2
     assert (PictureFolder(tmp_path).read().image == found).all()
+
+
+@pytest.mark.parametrize("usual", [1, 3, 6, 8])
+def test_a_calibration_sees_what_the_sensor_saw_however_the_phone_was_held(tmp_path, picture, usual):
+    """Four pictures of one scene by one sensor, tagged differently: all are brought to how most were held."""
+    for k, orientation in enumerate((usual, usual, 1, 3, 6, 8)):
+        exif = Image.Exif()
+        exif[0x0112] = orientation
+        Image.fromarray(picture).save(tmp_path / f"{k}.jpg", exif=exif, quality=95)
+    found = [one.image for one in pictures_of(tmp_path)]
+    assert (found[0] == to_grey(load_image(tmp_path / "0.jpg"))).all()
+    assert all(np.abs(one.astype(int) - found[0]).max() < 12 for one in found)
 
 
 def kinds(picture, folder):

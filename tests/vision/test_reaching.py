@@ -14,7 +14,7 @@ from ir50p_lab.errors import CalibrationError, CameraError, InputError, Unreacha
 from ir50p_lab.modelling import IR50P, forward_kinematics, frames
 from ir50p_lab.vision import Reacher, RenderedBench, Sight, TablePlane, plan, reach, reach_pose, work_area
 from ir50p_lab.vision.reaching.budget import error_budget
-from ir50p_lab.vision.reaching.plan import MARGIN, nearest_reachable
+from ir50p_lab.vision.reaching.plan import ALMOST, MARGIN, nearest_reachable, within_reach
 from ir50p_lab.vision.reaching.result import BallTracker
 from tests.targets.vision_setup import calibrated
 
@@ -68,7 +68,7 @@ def test_refusals_and_distances_are_those_of_an_independent_search():
 @pytest.mark.parametrize(
     ("p", "why"),
     [
-        ((0.70, 0.0, 0.09), "mm out of reach"),
+        ((0.70, 0.0, 0.09), "out of reach"),
         ((0.40, 0.0, -0.02), "under the table"),
         ((-0.40, 0.0, 0.09), "joint limit"),
         ((0.10, 0.0, 0.09), "joint limit"),
@@ -80,6 +80,23 @@ def test_a_refusal_says_why_and_how_far(p, why):
     assert refused.value.distance > 0.01
     assert "misses it by" in str(refused.value)
     assert np.allclose(refused.value.nearest, nearest_reachable(IR50P, np.array(p)))
+
+
+def test_a_hair_out_of_reach_counts_as_the_nearest_point():
+    """Where the ball is seen is known to tenths of a millimetre."""
+    r = work_area(IR50P).r_max - 0.03 + np.linspace(-0.004, 0.012, 33)
+    taken = 0
+    for p in np.column_stack([r, np.zeros(33), np.full(33, 0.09)]):
+        distance = oracle_distance(p)
+        if distance > 1.1 * ALMOST:
+            with pytest.raises(UnreachableError):
+                within_reach(IR50P, p)
+        elif distance < 0.9 * ALMOST:
+            near = within_reach(IR50P, p)
+            assert np.linalg.norm(near - p) < ALMOST + 1e-5
+            assert np.allclose(forward_kinematics(IR50P, reach_pose(IR50P, near)), near)
+            taken += (near != p).any()
+    assert taken >= 1
 
 
 def test_plans_arrive_are_smooth_and_stay_clear():
@@ -158,6 +175,34 @@ def test_no_ball_or_one_out_of_reach_moves_nothing():
             reach(bench, sight, rest=False)
         assert np.abs(bench.plant.q_true - before).max() < 0.05
     assert 0.05 < refused.value.distance < 0.12
+
+
+def test_a_ball_that_rolls_out_of_reach_between_two_looks_does_not_let_the_arm_fall():
+    bench, world, sight = rig((0.40, 0.1, 0.03))
+    looks = []
+
+    def look():
+        if looks:
+            world._lying[0] = 0.70, 0.1, 0.03
+        looks.append(1)
+        return type(sight).look(sight)
+
+    sight.look = look
+    with bench:
+        done = reach(bench, sight, rest=False)
+    assert "out of reach now" in done.looks[0].note and "moved by 300 mm" in done.looks[0].note
+    assert np.linalg.norm(done.tip_true - [0.40, 0.1, 0.09]) < 6e-3 and done.miss > 0.25
+
+
+def test_a_ball_that_cannot_be_gripped_is_not_reached_for():
+    """Over it the arm reaches farther than down there."""
+    bench, _, sight = rig((0.525, 0.0, 0.03))
+    reach_pose(IR50P, np.array([0.525, 0.0, 0.09]))
+    with bench, Reacher(bench, sight, rest=False) as reacher:
+        before = bench.plant.q_true
+        with pytest.raises(UnreachableError, match="out of reach"):
+            reacher.pick_and_place((0.36, 0.15))
+        assert np.abs(bench.plant.q_true - before).max() < 0.05
 
 
 def test_the_budget_is_what_reaching_measures():

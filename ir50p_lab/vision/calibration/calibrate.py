@@ -118,10 +118,10 @@ def _calibrate(names, found, size, board, options, rejected, points=None):
     model, wanted = Model(("k1", "k2"), aspect), _terms(lens)
     rough = fit(corners, model, guess)
     for _ in range(max(1, len(keys) // 4)):
-        worst = outlier_view(rough)
-        if worst is None:
+        outlier = outlier_view(corners, rough)
+        if outlier is None:
             break
-        rms, usual = rough.view_rms[worst], float(np.median(rough.view_rms))
+        worst, rms, usual = outlier
         name, index = names[keys[worst]]
         detail = f"its corners are {rms:.2g} px off the model, those of the other views {usual:.2g} px"
         rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
@@ -288,8 +288,9 @@ def _drop_duplicates(found, size):
 
 def _why_too_few(count, rejected, seen, board):
     reasons = Counter(str(one.reason) for one in rejected)
-    text = ", ".join(f"{n} {reason}" for reason, n in reasons.most_common()) or "no picture was given"
-    message = f"{count} usable pictures of a {board}, at least {_FEWEST} are needed; the others: {text}"
+    message = f"{count} usable pictures of a {board}, at least {_FEWEST} are needed, 10 to 20 are good"
+    if rejected:
+        message += "; the others: " + ", ".join(f"{n} {reason}" for reason, n in reasons.most_common())
     del seen[None]
     likely = [parts for parts, n in seen.most_common(1) if n >= 1]
     if likely and reasons.get(Reason.WRONG_BOARD):

@@ -2,25 +2,54 @@
 
 import numpy as np
 
+from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.fit import Model, fit
 from ir50p_lab.vision.calibration.models import Evidence, compare
 
 _TILTED = np.deg2rad(15)
 
 
-def outlier_view(fitted):
-    """The view that fits worst if it does not belong to the others, else None.
+def outlier_view(corners, fitted):
+    """(number of the view that fits worst, its rms, usual rms, px) if it does not belong to the others, else None.
 
-    It must be three times worse than the median view, and eight times the usual scatter of views above it.
+    It must be three times worse than the median view, and eight times the usual scatter of views above it. A view that
+    is far off pulls the camera along and spoils the others, too: if they fit twice as well without the worst, it is
+    judged by the camera that they make without it.
     """
     rms = fitted.view_rms
     if len(rms) < 5:
         return None
     worst = int(np.argmax(rms))
     others = np.delete(rms, worst)
-    scatter = 1.4826 * np.median(np.abs(others - np.median(others)))
-    limit = np.median(others) + max(2 * np.median(others), 8 * scatter)
-    return worst if rms[worst] > max(limit, 0.02) else None
+    if rms[worst] > _far_off(others):
+        return worst, float(rms[worst]), float(np.median(others))
+    if rms[worst] < 2 * np.median(others):
+        return None
+    try:
+        alone = fit(corners.without(worst), fitted.model, (fitted.camera, np.delete(fitted.poses, worst, axis=0)))
+    except CalibrationError:
+        return None
+    off = _seen_by(alone.camera, corners, worst, fitted.poses[worst])
+    if np.median(alone.view_rms) < 0.5 * np.median(others) and off > _far_off(alone.view_rms):
+        return worst, off, float(np.median(alone.view_rms))
+    return None
+
+
+def _far_off(rms):
+    """Limit of what one more view may be off, px, beside others of these rms."""
+    scatter = 1.4826 * np.median(np.abs(rms - np.median(rms)))
+    return max(np.median(rms) + max(2 * np.median(rms), 8 * scatter), 0.02)
+
+
+def _seen_by(camera, corners, view, pose):
+    """rms, px, of the corners of a view for a camera (12,) that does not know it: only the pose gives way."""
+    import cv2
+
+    K = np.array([[camera[0], 0, camera[2]], [0, camera[1], camera[3]], [0, 0, 1]])
+    points, pixels = corners.points[view], corners.pixels[view]
+    _, turn, shift = cv2.solvePnP(points, pixels, K, camera[4:9], pose[:3].copy(), pose[3:].copy(), True)
+    xy, _ = cv2.projectPoints(points, turn, shift, K, camera[4:9])
+    return float(np.sqrt(((pixels - xy[:, 0]) ** 2).sum(axis=1).mean()))
 
 
 def bent_board(corners, flat):

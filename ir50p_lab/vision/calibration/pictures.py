@@ -1,23 +1,28 @@
 """What `calibrate` may be given: arrays, Frames, paths, or a folder of pictures."""
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from ir50p_lab.errors import ImageError, InputError
-from ir50p_lab.vision.image import list_images, load_image
+from ir50p_lab.vision.image import list_images, load_image, to_grey
+from ir50p_lab.vision.picture_file import quarter_turns
 
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """One picture, not decoded twice: name; index; image (h, w, 3) or (h, w) uint8, or None and the problem with it."""
+    """One picture, not decoded twice: name; index; image (h, w, 3) or (h, w) uint8, or None and the problem with it.
+
+    turns: quarter turns to the right that made it upright, if its file says so.
+    """
 
     name: str
     index: int
     image: np.ndarray | None
     problem: str | None = None
+    turns: int = 0
 
     @property
     def size(self):
@@ -45,13 +50,26 @@ def pictures_of(images):
         raise InputError(f"images = {images!r}: give a list of pictures or paths, or a folder") from None
     if not images:
         raise InputError("no pictures were given: take 10 to 20 of the board, in different places and tilts")
-    return [_picture(k, one) for k, one in enumerate(images)]
+    return _as_most_were_held([_picture(k, one) for k, one in enumerate(images)])
+
+
+def _as_most_were_held(pictures):
+    """Pictures of a phone, turned upright by it, as its sensor saw them: the lens does not turn with the picture."""
+    turns = Counter(picture.turns for picture in pictures if picture.image is not None)
+    usual = turns.most_common(1)[0][0] if turns else 0
+    return [
+        replace(one, image=np.ascontiguousarray(np.rot90(one.image, one.turns - usual)), turns=usual)
+        if one.image is not None and one.turns != usual
+        else one
+        for one in pictures
+    ]
 
 
 def _picture(index, one):
     if isinstance(one, str | Path):
         try:
-            return Picture(Path(one).name, index, load_image(one, allow_grey=True))
+            image = to_grey(load_image(one, allow_grey=True))  # a third of the memory: twenty of 12 Mpixel are 240 MB
+            return Picture(Path(one).name, index, image, turns=quarter_turns(Path(one).read_bytes()))
         except ImageError as error:
             return Picture(Path(one).name, index, None, str(error))
     name = getattr(one, "name", None) or f"picture {index + 1}"

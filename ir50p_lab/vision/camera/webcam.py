@@ -1,6 +1,5 @@
 """A webcam through OpenCV: found quietly, fresh pictures, a clear word when it is unplugged."""
 
-import contextlib
 import os
 import time
 from pathlib import Path
@@ -9,6 +8,7 @@ import numpy as np
 
 from ir50p_lab.errors import CameraError, ImageError
 from ir50p_lab.vision.camera.interface import TO_RENDERED, Camera, Frame
+from ir50p_lab.vision.console import captured
 
 LOST_AFTER = 3  # s without a picture: the webcam is unplugged
 
@@ -23,17 +23,20 @@ class Webcam(Camera):
 
     def __init__(self, index=0, *, size=(640, 480), capture=None):
         self.name, self._index = f"webcam {index}", index
-        with _quiet():
+        with captured():
             self._capture = _capture(index) if capture is None else capture
         if self._capture is None or not self._capture.isOpened():
             raise CameraError(
-                f"there is no webcam {index}, or another program uses it: plug it in or close that program; "
-                f"{TO_RENDERED}"
+                f"there is no webcam {index}, or it is in use: plug it in, close the program that has it, or "
+                f"camera.close() if you opened it before; {TO_RENDERED}"
             )
         self._opened = time.monotonic()
         self._ask_for(size)
         try:
             image = self._grab()
+        except ImageError:
+            self.close()
+            raise
         except CameraError:
             self.close()
             raise CameraError(
@@ -98,26 +101,3 @@ def _capture(index):
     import cv2
 
     return cv2.VideoCapture(index)
-
-
-@contextlib.contextmanager
-def _quiet():
-    """OpenCV's own messages and those of its drivers stay out of the notebook while a camera is looked for."""
-    import cv2
-
-    level = cv2.utils.logging.getLogLevel()
-    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
-    try:
-        kept = os.dup(2)
-    except OSError:  # a program without a console
-        yield
-        return
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-        os.close(nowhere)
-        cv2.utils.logging.setLogLevel(level)

@@ -15,6 +15,7 @@ from ir50p_lab.signals.reference import Reference
 
 MARGIN = 0.03  # rad kept from the joint limits: at a limit the drive is cut
 CLEAR = 0.08  # m that the tip keeps above the table on its way: over a ball of 60 mm
+ALMOST = 1e-3  # m out of reach that does not matter: the nearest point will do
 _LIFT = 0.08  # m above the goal from which the last piece leads straight down
 _SPEED = 0.5  # rad/s of the fastest joint: joint 2 follows that against gravity
 _PEAK = 1.875  # a quintic's largest speed over its mean
@@ -71,7 +72,7 @@ def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
         nearest = nearest_reachable(arm, p)
         distance = float(np.linalg.norm(nearest - p))
         error = UnreachableError(
-            f"the arm cannot go to {np.round(p, 3).tolist()} m: {why}. It misses it by {1e3 * distance:.0f} mm; the "
+            f"the arm cannot go to {np.round(p, 3).tolist()} m: {why}. It misses it by {1e3 * distance:.1f} mm; the "
             f"nearest point is {np.round(nearest, 3).tolist()} m"
         )
         error.distance, error.nearest = distance, nearest
@@ -79,6 +80,22 @@ def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
     solutions = inverse_kinematics(arm, p)
     distance = np.abs(solutions.q - near).max(axis=-1)
     return solutions.q[np.where(_allowed(arm, solutions.q), distance, np.inf).argmin()]
+
+
+def within_reach(arm, p, tolerance=ALMOST):
+    """p (3,) m, or the nearest point that the arm reaches, if that is no farther than `tolerance` m.
+
+    A ball is seen to some tenths of a millimetre: that must not decide between a reach and a refusal.
+    Raises UnreachableError as `reach_pose`.
+    """
+    p = vectors3("p", p, unit="m")
+    try:
+        reach_pose(arm, p)
+    except UnreachableError as error:
+        if not 0 < error.distance <= tolerance:
+            raise
+        return p + (error.nearest - p) * (1 + 1e-6 / error.distance)  # 1 um inside
+    return p
 
 
 def nearest_reachable(arm, p):
@@ -210,7 +227,7 @@ def _refusal(arm, p):
         return f"it lies {-1e3 * p[2]:.0f} mm under the table"
     outside = float(reachability(arm, p))
     if outside > 0:
-        return f"it is {1e3 * outside:.0f} mm out of reach"
+        return "it is out of reach of the stretched or folded arm"
     solutions = inverse_kinematics(arm, p)
     if _allowed(arm, solutions.q).any():
         return ""

@@ -5,11 +5,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from ir50p_lab.errors import InputError, VisionError
+from ir50p_lab.errors import InputError, UnreachableError, VisionError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.vision.reaching.moving import Mover
-from ir50p_lab.vision.reaching.plan import plan, reach_pose
+from ir50p_lab.vision.reaching.plan import plan, reach_pose, within_reach
 from ir50p_lab.vision.reaching.result import BallTracker, FollowLog, Look, Reached
 
 HEIGHT = 0.06  # m of the tip over the ball's centre: 30 mm over its top
@@ -72,7 +72,8 @@ class Reacher(Mover):
         """Put the tip over the ball, `height` m above its centre; look again from there and correct.
 
         looks: 1: one look, then potentiometers alone; 2: after arriving the camera sees where ball and hand really
-        are, and the hand is moved by the difference.
+        are, and the hand is moved by the difference. A goal less than 1 mm out of reach counts as the nearest point
+        that is within it.
         Returns: Reached. Raises UnreachableError (.distance, .nearest) before anything moves; VisionError if no ball
         is seen, with the reason.
         """
@@ -80,22 +81,23 @@ class Reacher(Mover):
             raise InputError(f"looks = {looks!r}: give 1, 2 or 3")
         begin = self._last.t
         seen = self._sure(self.look())
-        ball, records, first = seen.position, [], None
+        ball, records, over = seen.position, [], np.array([0.0, 0.0, height])
+        goal = within_reach(self.arm, ball + over)
+        first = plan(self.arm, self.q, goal)
+        self.move_along(first)
         for number in range(looks):
-            goal = ball + np.array([0.0, 0.0, height])
-            pose = reach_pose(self.arm, goal, self.q)
-            if number == 0:
-                first = plan(self.arm, self.q, goal)
-                self.move_along(first)
-            q = self.settle(pose)
+            q = self.settle(reach_pose(self.arm, goal, self.q))
             tip, marker, note = forward_kinematics(self.arm, q), None, ""
             if number + 1 < looks:
                 ball, marker, q, note = self._look_again(ball, q)
                 tip = forward_kinematics(self.arm, q)
+            then, refusal = self._next_goal(goal, ball + over)
+            note = "; ".join(text for text in (note, refusal) if text)
             records.append(Look(ball, goal, tip, marker, self.errors.copy(), note))
+            goal = then
         return Reached(
             ball=ball,
-            goal=ball + np.array([0.0, 0.0, height]),
+            goal=ball + over,
             tip=tip,
             q=q,
             looks=tuple(records),
@@ -103,6 +105,13 @@ class Reacher(Mover):
             seconds=self._last.t - begin,
             tip_true=self.bench.plant.tip_true if self.bench.simulated and hasattr(self.bench, "plant") else None,
         )
+
+    def _next_goal(self, goal, wanted):
+        """(where to go after another look, note): a ball that has rolled out of reach must not let the arm fall."""
+        try:
+            return within_reach(self.arm, wanted), ""
+        except UnreachableError as error:
+            return goal, f"the ball is out of reach now, by {1e3 * error.distance:.0f} mm: the arm stays"
 
     def _sure(self, seen):
         if not seen:
@@ -133,8 +142,8 @@ class Reacher(Mover):
     def pick_and_place(self, place, *, contact=0.0, looks=2):
         """Reach, go down, close the gripper, carry the ball to `place` (2,) m on the table, open, go up.
 
-        contact: m of the tip over the ball's centre when gripping; 0: the fingers close about its middle. The place
-        is tested before anything moves.
+        contact: m of the tip over the ball's centre when gripping; 0: the fingers close about its middle. Place and
+        ball are tested before anything moves: the arm reaches less far down there than over the ball.
         Returns: Reached, of the reach. Raises as `reach`, for the place, too.
         """
         place = np.asarray(place, dtype=float)
@@ -143,6 +152,7 @@ class Reacher(Mover):
         put = np.array([*place, self.sight.radius + contact])
         up = np.array([0.0, 0.0, HEIGHT])
         reach_pose(self.arm, put + up), reach_pose(self.arm, put)
+        reach_pose(self.arm, self._sure(self.look()).position + np.array([0.0, 0.0, contact]))
         self.grip(False, 0.1)
         found = self.reach(looks=looks)
         self.move_to(found.ball + np.array([0.0, 0.0, contact]), lift=0.0)
