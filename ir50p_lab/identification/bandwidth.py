@@ -11,6 +11,8 @@ _BIAS = 1e-3  # noise power in the acceleration over its own: the inertia is too
 _MOTION = 0.99  # share of the velocity's power that must stay below the cut-off, whatever the noise
 _BEARABLE = 0.05  # the same, up to which the cut-off is raised to keep the motion
 _SIGN = 0.02  # the same for the speed whose sign is taken
+_STRETCH = 8  # periods of the cut-off, at least, in a stretch of steady speed
+_SAW = 0.06  # step^2, a little more than 1/(2 pi^2)
 _HIGHEST = 0.2  # of the rate: above, central differences themselves are wrong by more than a quarter
 
 
@@ -31,25 +33,31 @@ class Bandwidth:
     speed: float
 
 
-def bandwidth(q, rate_hz, cutoff_hz=None):
-    """Choose the cut-off for q (n,) rad, evenly sampled at rate_hz, or judge a given one.
+def bandwidth(pieces, rate_hz, cutoff_hz=None):
+    """Choose the cut-off for an angle, or judge a given one. pieces: list of (n,) rad, each evenly sampled at rate_hz.
 
     White noise of the sensor is what the spectrum holds between a quarter and half of the rate; the steps of a coarse
     one count as noise too, spread over the frequencies at which they come. The highest cut-off is taken whose
     acceleration holds at most 0.1 % of noise power (noise in a regressor pulls its parameter towards zero by that
     share), but at least the one that keeps 99 % of the velocity's power, as long as that holds no more than 5 %.
+    Steady speed, which the spectrum does not show, counts as motion.
     """
     from scipy.signal import welch
 
-    n = len(q)
-    f, power = welch(q - q.mean(), rate_hz, nperseg=min(n, max(256, n // 6)), detrend="linear")
-    f, power = f[1:], power[1:]
+    longest = max(map(len, pieces))
+    length = min(longest, max(256, sum(map(len, pieces)) // 6))
+    pieces = [q for q in pieces if len(q) >= length]
+    spectra = [welch(q - q.mean(), rate_hz, nperseg=length, detrend="linear") for q in pieces]
+    sizes = np.array([len(q) for q in pieces], dtype=float)
+    f, power = spectra[0][0][1:], np.average([density for _, density in spectra], axis=0, weights=sizes)[1:]
+    steady = _steady_speed(pieces, length, rate_hz)
     step = f[1] - f[0]
     floor = float(np.median(power[f >= rate_hz / 4])) / math.log(2)  # median of a chi-squared with 2 degrees
-    floor = max(floor, _coarseness(q, rate_hz))
+    floor = max(floor, _coarseness(pieces, rate_hz))
     w2 = (2 * np.pi * f) ** 2
     above = np.clip(power - floor, 0.0, None)
-    above[power < 3 * floor] = 0.0
+    # a slow ramp seen in steps is a saw with lines of (step/pi)^2/2: no motion either
+    above[(power < 3 * floor) | (power * step < _SAW * quantum_of(np.concatenate(pieces)) ** 2)] = 0.0
     speed, speed_noise = np.cumsum(w2 * above) * step, np.cumsum(w2) * floor * step
     share = np.cumsum(w2**2) * floor / np.maximum(np.cumsum(w2**2 * above), 1e-300)
     speed_share = speed_noise / np.maximum(speed, 1e-300)
@@ -58,6 +66,8 @@ def bandwidth(q, rate_hz, cutoff_hz=None):
         good = np.flatnonzero(share[:highest] <= _BIAS)
         bearable = np.flatnonzero(share[:highest] <= _BEARABLE)
         needed = min(int(np.searchsorted(speed, _MOTION * speed[-1])), int(bearable[-1]) if len(bearable) else highest)
+        if steady**2 > speed[-1]:  # sweeps of steady speeds: a filter shorter than the stretches
+            needed = max(needed, _STRETCH)
         at = min(max(int(good[-1]) if len(good) else 0, needed), highest - 1)
         cutoff_hz = float(f[at])
     at = min(int(np.searchsorted(f, cutoff_hz)), len(f) - 1)
@@ -69,15 +79,22 @@ def bandwidth(q, rate_hz, cutoff_hz=None):
         noise=math.sqrt(floor * rate_hz / 2),
         speed_noise=math.sqrt(speed_noise[at]),
         acceleration_share=float(min(share[at], 1e6)),
-        speed=math.sqrt(speed[at]),
+        speed=math.hypot(math.sqrt(speed[at]), steady),
     )
 
 
-def _coarseness(q, rate_hz):
+def _steady_speed(pieces, length, rate_hz):
+    """Root mean square of the mean speeds of stretches of `length` samples, rad/s: what detrending takes away."""
+    ends = [q[k * length : (k + 1) * length][[0, -1]] for q in pieces for k in range(len(q) // length)]
+    return float(np.sqrt(np.mean(np.diff(ends, axis=1) ** 2))) * rate_hz / max(length - 1, 1)
+
+
+def _coarseness(pieces, rate_hz):
     """Power density of the steps of a coarse angle, rad^2/Hz: step^2/12 over as many Hz as steps come in a second."""
+    q = np.concatenate(pieces)
     step = quantum_of(q)
     if step == 0:
         return 0.0
-    path = float(np.abs(np.diff(q)).sum())
+    path = sum(float(np.abs(np.diff(piece)).sum()) for piece in pieces)
     steps_per_second = path / step * rate_hz / len(q)
     return step**2 / 12 / min(max(steps_per_second, rate_hz / len(q)), rate_hz / 2)

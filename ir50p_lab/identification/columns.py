@@ -7,7 +7,7 @@ from ir50p_lab.inputs import first_not_finite
 
 
 def columns_of(recording, q=None, u=None):
-    """Return t (n,), q (n, k) and u (n, k) as float arrays.
+    """Return t (n,), q (n, k) and u (n, k) as float arrays; t `without_rounding`.
 
     recording: anything with t, q and u, then q and u must be left out; or the times themselves.
     Raises InputError on shapes that do not fit, NaN, or times that do not increase, naming the first such sample.
@@ -36,7 +36,7 @@ def columns_of(recording, q=None, u=None):
             f"time runs backwards or stands still: t[{i}] = {t[i]:.9g} s after t[{i - 1}] = {t[i - 1]:.9g} s "
             f"({len(back)} such step(s)): sort the samples by time and remove doubled ones"
         )
-    n = len(t)
+    n, t = len(t), without_rounding(t)
     return t, np.ascontiguousarray(q.reshape(n, -1)), np.ascontiguousarray(u.reshape(n, -1))
 
 
@@ -49,12 +49,41 @@ def sampling_period(t):
     return float(dt[near].sum() / max(steps[near].sum(), 1.0))
 
 
+def without_rounding(t):
+    """Times (n,) s of an even clock that were rounded to a coarse tick (1 ms, say), put back onto even steps.
+
+    Only where every time lies within 3/4 of its tick of the grid (gaps are whole steps): the grid then says nothing
+    that the times deny. Else they are returned as they are.
+    """
+    dt = np.diff(t)
+    period = sampling_period(t)
+    near = dt[dt < 3 * period]
+    steps = np.diff(np.unique(near))
+    steps = steps[steps > 1e-6 * period + 4 * np.spacing(np.abs(t).max())]
+    if not len(steps):
+        return t
+    tick = float(steps.min())
+    if np.abs(near / tick - np.rint(near / tick)).max() > 0.01:
+        return t
+    k = np.concatenate([[0.0], np.cumsum(np.rint(dt / period))])
+    slope, first = np.polyfit(k, t - t[0], 1)
+    grid = t[0] + first + slope * k
+    return grid if np.abs(grid - t).max() <= 0.75 * tick else t
+
+
 def quantum_of(x):
-    """Step of a coarse sensor or converter: the least difference between values of x (n,); 0 if most are different."""
+    """Step of a coarse sensor or converter: the least difference between values of x (n,), rad; 0 if there is none.
+
+    There is one if values repeat, or if all differences are whole steps.
+    """
     values = np.unique(x)
     steps = np.diff(values)
     steps = steps[steps > 1e-9 * np.ptp(x)]  # rounding of what was meant to be the same
-    return float(steps.min()) if len(steps) and len(values) < len(x) / 2 else 0.0
+    if not len(steps):
+        return 0.0
+    step = float(steps.min())
+    repeats = len(values) < len(x) / 2
+    return step if repeats or np.abs(steps / step - np.rint(steps / step)).max() < 0.05 else 0.0
 
 
 def runs(t, max_gap):

@@ -12,6 +12,7 @@ FEWEST = 40  # samples, ten for each parameter
 _MOTION = 3.0  # least speed over that of the noise
 _TURNS = 2.5 * math.pi  # rad: a joint that goes further is rare, one in degrees is not
 _FAST = 20.0  # rad/s: faster than a servo without load
+_SLOW_CLOCK = 0.15  # s: nobody samples a joint so slowly, many write milliseconds
 _LEVELS = 16  # an input of so few levels is switched, not clipped
 _STAYS = 5  # samples at the largest value that look like more than chance
 _BROKEN = 3.5  # samples: noise breaks a stay into pieces this near to each other
@@ -19,6 +20,7 @@ _BROKEN = 3.5  # samples: noise breaks a stay into pieces this near to each othe
 # that saturates, 0.67 at most. `reach`: how far these samples lie outside the ones the model was fitted to.
 _EXCESS, _BEYOND = 0.01, 0.85
 _TIMING = 1.5  # sampling periods by which u and q may be apart
+_MATTERS = 0.1  # of the spread of u: an inertia that moves it less is hardly seen
 _EXPLAINED = 0.02  # least share of the variance of u that the motion explains
 
 
@@ -133,17 +135,25 @@ def refuse_unexplained(solution, table):
         )
 
 
-def refuse_negative_inertia(solution, band, period):
-    """Refuse an inertia that is negative beyond three standard errors and beyond what wrong timing makes of friction.
+def refuse_negative(solution, table, band, period):
+    """Refuse friction that is all negative, and an inertia that is beyond three standard errors and wrong timing.
 
     Where u and q are apart by a sample, friction at a reversal looks like an inertia of (viscous + Coulomb/speed) times
-    that. In a sweep of steady speeds that is all the inertia there is to see: it is flagged, not refused.
+    that; in a sweep of steady speeds that is all the inertia there is to see. Such a one, or one that hardly moves u,
+    is left out and flagged, not refused.
     """
     J, b, c, _ = solution.x
-    if J < -3 * solution.stderr[0] - _TIMING * period * (abs(b) + abs(c) / band.speed):
+    sJ, sb, sc, _ = solution.stderr
+    if b < -3 * sb and c < -3 * sc:
         raise IdentificationError(
-            f"the inertia comes out as {J:.4g} +- {solution.stderr[0]:.2g}, which no body has: is the sign of u or q "
-            "turned round, does u come late (give delay=), or was it recorded before its limit?"
+            f"viscous and Coulomb friction come out negative ({b:.3g} +- {sb:.2g}, {c:.3g} +- {sc:.2g}): is the sign "
+            "of u or q turned round?"
+        )
+    matters = np.std(J * table.A[:, 0]) > _MATTERS * np.std(table.y)
+    if matters and J < -3 * sJ - _TIMING * period * (abs(b) + abs(c) / band.speed):
+        raise IdentificationError(
+            f"the inertia comes out as {J:.4g} +- {sJ:.2g}, which no body has: is the sign of u or q turned round, "
+            "does u come late (give delay=), or was it recorded before its limit?"
         )
 
 
@@ -179,8 +189,8 @@ def refuse_clipped_drive(u, table):
             )
 
 
-def doubts(q, u, solution, table, band, period):
-    """Sentences on what is possible but hardly meant."""
+def doubts(q, u, solution, table, band, period, negative=None):
+    """Sentences on what is possible but hardly meant. negative: (inertia, its error) that was left out, or None."""
     switched = len(np.unique(u)) <= _LEVELS
     J, b, c, _ = solution.x
     sJ, sb, sc, _ = solution.stderr
@@ -189,15 +199,20 @@ def doubts(q, u, solution, table, band, period):
     if table.fastest > _FAST:
         turns = table.fastest / (2 * math.pi)
         yield f"the joint reaches {table.fastest:.3g} rad/s, {turns:.2g} turns a second: is q in degrees?"
-    if 0 in solution.dropped:
+    if period > _SLOW_CLOCK:
+        yield (
+            f"one sample every {period:.4g} s: is t in ms or microseconds? Give seconds, or inertia and viscous "
+            "friction come out in other units"
+        )
+    if negative is not None:
+        yield (
+            "inertia {:.3g} +- {:.2g} is negative, as a sample of wrong timing makes it, and was left out: record "
+            "faster reversals, and check when u and q are read".format(*negative)
+        )
+    elif 0 in solution.dropped:
         yield (
             "inertia: the acceleration is noise or nothing here, so no inertia is given; record faster reversals, or "
             "a finer angle"
-        )
-    elif J < 0:
-        yield (
-            f"inertia {J:.3g} +- {sJ:.2g} is negative, as a sample of wrong timing makes it: do not use it; record "
-            "faster reversals, and check when u and q are read"
         )
     elif sJ > 0.5 * abs(J):
         yield f"inertia {J:.3g} +- {sJ:.2g}: this motion hardly shows it; record faster reversals"
@@ -233,7 +248,8 @@ def doubts(q, u, solution, table, band, period):
             "explain it well: was it clipped in the recording? Widen the range that is recorded"
         )
     yield from _gravity(solution, table)
-    yield from _late(solution, table, period)
+    if 0 not in solution.dropped:
+        yield from _late(solution, table, period)
     if solution.correlation > 0.9 and solution.rms > 0.1 * np.std(table.y):
         yield (
             f"residuals are far from white (neighbours correlate by {solution.correlation:.2f}): something is missing "

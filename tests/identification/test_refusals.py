@@ -48,6 +48,7 @@ BAD = {
     "scale_from_payload": [(ESTIMATE, TH), (TH, ESTIMATE), (None, None)],
     "causal_derivatives": [(NAN_Q, 100.0), (Q, -1.0), (Q, 2.0), ("x", 100.0)],
     "central_derivatives": [(NAN_Q, 100.0), (Q, -1.0), (Q, 2.0), (Q[:2], 100.0)],
+    "read_columns": [("no_such_file.csv",), ("/",), (None,)],
     "process": [(Run(q=NAN_Q),), (Run(t=T[::-1]),), (T,), (Run(q=Q[:5]),), (Run(T[:5], Q[:5], U[:5]),)],
     "identify": [(Run(q=NAN_Q),), (Run(t=T[::-1]),), (Run(T[:5], Q[:5], U[:5]),), (Run(q=0 * Q),), ([],)],
     "rehearse": [(None, IR50P, PD), (MOTION, TH, PD)],
