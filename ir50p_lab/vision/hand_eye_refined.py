@@ -73,7 +73,8 @@ class RefinedHandEye:
     T_tool_board  board to tool coordinates                                                 (4, 4)
     correction    JointCorrection: what the potentiometers are off by
     stderr        of each fitted term                                                       name -> rad
-    covariance    of a small turn and shift of the camera, in camera coordinates            (6, 6) rad, m
+    covariance    of a small turn and shift of the camera, in camera coordinates, with      (6, 6) rad, m
+                  the turn about the column that a constant error of joint 1 would hide
     joint_errors  what is left of each reading: scatter of the potentiometers               (n, 3) rad
     pose_rms      of the corners of each pose, seen minus model                             (n,) px
     ============= ========================================================================= ================
@@ -194,15 +195,25 @@ def refine_hand_eye(
     root = Vt.T / singular / scale[:, None]
     covariance = root @ root.T
     T_cam_base, T_tool_board, correction, e = unpack(result.x)
+    camera = covariance[:6, :6]
+    if known[0] is None:
+        column = _about_column(T_cam_base)
+        camera = camera + sigma_q[0] ** 2 * np.outer(column, column)
     return RefinedHandEye(
         T_base_cam=inverse_transform(T_cam_base),
         T_tool_board=T_tool_board,
         correction=correction,
         stderr={name: float(np.sqrt(covariance[12 + k, 12 + k])) for k, name in enumerate(terms)},
-        covariance=covariance[:6, :6],
+        covariance=camera,
         joint_errors=e,
         pose_rms=np.sqrt(((project(result.x) - corners) ** 2).sum(axis=2).mean(axis=1)),
     )
+
+
+def _about_column(T_cam_base):
+    """How the camera turns and shifts (6,), in camera coordinates, for 1 rad about the z axis of the base."""
+    axis = T_cam_base[:3, 2]
+    return np.concatenate([axis, np.cross(T_cam_base[:3, 3], axis)])
 
 
 def _known(given, *, turn=False):

@@ -103,10 +103,12 @@ def test_refinement_takes_out_what_can_be_told_of_the_potentiometers():
 
 
 def test_standard_errors_are_those_of_trials():
+    """A constant error of joint 1 hides in the camera's turn about the column: its standard error counts that."""
     off, place = [], []
     for trial in range(12):
         q, corners = views(20, 2, 0.1)
-        shown = measured(q, seed=trial, terms={"offset2": 0.01})
+        hidden = np.random.default_rng([trial, 3]).normal(0, SIGMA_Q[0])
+        shown = measured(q, seed=trial, terms={"offset1": hidden, "offset2": 0.01})
         start = hand_eye(IR50P, shown, seen(corners))
         fit = refine_hand_eye(IR50P, CAMERA, shown, corners, BOARD, start, sigma_px=0.1, sigma_q=SIGMA_Q)
         off.append((fit.correction.terms["offset2"] - 0.01) / fit.stderr["offset2"])
