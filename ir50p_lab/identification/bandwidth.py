@@ -59,8 +59,8 @@ def bandwidth(pieces, rate_hz, cutoff_hz=None):
     # a slow ramp seen in steps is a saw with lines of (step/pi)^2/2: no motion either
     above[(power < 3 * floor) | (power * step < _SAW * quantum_of(np.concatenate(pieces)) ** 2)] = 0.0
     speed, speed_noise = np.cumsum(w2 * above) * step, np.cumsum(w2) * floor * step
-    share = np.cumsum(w2**2) * floor / np.maximum(np.cumsum(w2**2 * above), 1e-300)
-    speed_share = speed_noise / np.maximum(speed, 1e-300)
+    noise, motion = np.cumsum(w2**2) * floor, np.cumsum(w2**2 * above)
+    share, speed_share = noise / np.maximum(motion, 1e-12 * noise), speed_noise / np.maximum(speed, 1e-12 * speed_noise)
     highest = int(np.searchsorted(f, _HIGHEST * rate_hz))
     if cutoff_hz is None:
         good = np.flatnonzero(share[:highest] <= _BIAS)

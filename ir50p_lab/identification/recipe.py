@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification import joint_checks as checks
+from ir50p_lab.identification import signal_checks as signals
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.columns import columns_of
 from ir50p_lab.identification.estimate import Estimate
@@ -90,11 +90,11 @@ def _looked_at(recording):
     notes = []
     for joint in range(q.shape[1]):
         try:
-            checks.refuse_short_or_constant(t, q[:, joint], u[:, joint])
-            checks.refuse_whole_turns(t, q[:, joint])
-            checks.refuse_clipped_angle(t, q[:, joint])
+            signals.refuse_bad_signals(t, q[:, joint], u[:, joint])
         except IdentificationError as error:
             raise IdentificationError(f"joint {joint + 1}: {error}") from None
+        for name, x in (("q", q), ("u", u)):
+            notes += [f"joint {joint + 1}: {said}" for said in signals.outliers(name, t, x[:, joint])]
         span = np.ptp(q[:, joint])
         if span > _TURN_OF_A_JOINT:
             notes.append(

@@ -7,6 +7,7 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import joint_checks as checks
+from ir50p_lab.identification import signal_checks as signals
 from ir50p_lab.identification.bandwidth import bandwidth
 from ir50p_lab.identification.columns import columns_of, runs, sampling_period
 from ir50p_lab.identification.processing import process
@@ -99,15 +100,14 @@ def fit_joint(t, q=None, u=None, *, cutoff_hz=None, delay=0.0, held=None):
     if held is not None and not isinstance(held, (bool, np.bool_)):
         raise InputError(f"held = {held!r}: give True, False, or None to let the data choose")
     period = sampling_period(t)
-    checks.refuse_short_or_constant(t, q[:, 0], u[:, 0])
-    checks.refuse_whole_turns(t, q[:, 0])
-    checks.refuse_clipped_angle(t, q[:, 0])
+    signals.refuse_bad_signals(t, q[:, 0], u[:, 0])
     band = _bandwidth(t, q[:, 0], period, cutoff_hz)
     checks.refuse_noise_only(band, q[:, 0])
     solution, table, held = _fitted(t, q, u, period, band, delay, held)
     checks.refuse_unexplained(solution, table)
     checks.refuse_clipped_drive(u[:, 0], table)
     checks.refuse_negative(solution, table, band, period)
+    notes = [*signals.outliers("q", t, q[:, 0]), *signals.outliers("u", t, u[:, 0])]
     negative = (solution.x[0], solution.stderr[0]) if solution.x[0] < 0 else None
     if negative:
         solution = _solved(table, inertia=False)
@@ -126,7 +126,7 @@ def fit_joint(t, q=None, u=None, *, cutoff_hz=None, delay=0.0, held=None):
         held=held,
         samples=len(y),
         unidentifiable=tuple(NAMES[j] for j in solution.dropped),
-        warnings=tuple(checks.doubts(q[:, 0], u[:, 0], solution, table, band, period, negative)),
+        warnings=(*notes, *checks.doubts(q[:, 0], u[:, 0], solution, table, band, period, negative)),
     )
 
 
@@ -150,9 +150,9 @@ def _bandwidth(t, q, period, cutoff_hz):
     """Bandwidth of the runs without a gap."""
     parts = runs(t, 3.5 * period)
     longest = max(last - first for first, last in parts)
-    if longest < checks.FEWEST:
+    if longest < signals.FEWEST:
         raise IdentificationError(
-            f"the longest of the runs without a gap has {longest} samples; at least {checks.FEWEST} are needed: "
+            f"the longest of the runs without a gap has {longest} samples; at least {signals.FEWEST} are needed: "
             "record in one piece"
         )
     pieces = []

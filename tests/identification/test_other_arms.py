@@ -166,6 +166,22 @@ def test_degrees_are_flagged(good, scale):
     assert any("degrees" in text for text in found.warnings)
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize("seconds", [0.2, 1.0, 5.0])
+def test_a_frozen_or_slow_sensor_is_refused_and_outliers_are_flagged(good, seconds):
+    q = good.q.copy()
+    hung = (good.t > 9) & (good.t < 9 + seconds)
+    q[hung, 1] = q[hung, 1][0]
+    with pytest.raises(IdentificationError, match="joint 2: q stands"):
+        identify(spoilt(good, q=q), unit="N m")
+    rows = round(4 * seconds) + 2
+    with pytest.raises(IdentificationError, match="joint 1: q is new only"):
+        identify(spoilt(good, q=np.repeat(good.q[::rows], rows, axis=0)[: len(q)]), unit="N m")
+    q = good.q.copy()
+    q[777, 2] += seconds
+    assert "joint 3: q has 1 outlier(s)" in " ".join(identify(spoilt(good, q=q), unit="N m").warnings)
+
+
 def test_unequal_gains_matter_little_where_friction_dominates():
     """The same comparison as for the rich noise-free data, where the shared fit loses much: here it loses little."""
     rng = np.random.default_rng(3)

@@ -374,6 +374,38 @@ def test_clipped(machine, share):
         refused("q was clipped", t, np.clip(q, middle - half, middle + half), u)
 
 
+@pytest.mark.parametrize("rows", [2, 5, 20])
+def test_a_sensor_slower_than_the_file(rows):
+    t, q, u = analytic(200)
+    held = np.repeat(q[::rows], rows)[: len(t)]
+    refused(f"in every {rows}", t, held, u)
+    keep = np.r_[True, np.diff(held) != 0]  # the remedy that is named
+    assert fit_joint(t[keep], held[keep], u[keep]).coulomb == pytest.approx(0.4, abs=0.1)
+
+
+@pytest.mark.parametrize("seconds", [0.2, 1.0, 5.0])
+def test_a_frozen_sensor(seconds):
+    t, q, u = analytic(100)
+    begin = t[500 + np.argmax(np.abs(np.diff(q[500:1400])))] - 0.1
+    hung = (t > begin) & (t < begin + seconds)
+    refused("hung", t, np.where(hung, q[hung][0], q), u)
+    assert fit_joint(t[~hung], q[~hung], u[~hung]).inertia == pytest.approx(0.7, rel=0.03)
+
+
+@pytest.mark.parametrize("count", [1, 5, 50])
+@pytest.mark.parametrize("size", [0.3, 1.0, 10.0])
+@machines
+def test_outliers_are_flagged(machine, count, size):
+    for signal in (1, 2):
+        record = [x.copy() for x in recorded(machine)]
+        places = np.random.default_rng(0).choice(np.arange(2, len(record[0]) - 2, 3), count, replace=False)
+        record[signal][places] += size * np.ptp(record[signal])
+        try:
+            assert "outlier(s)" in " ".join(fit_joint(*record).warnings)
+        except IdentificationError:  # the worst are refused, for what they do to the fit
+            assert count > 1 or size > 1
+
+
 @pytest.mark.parametrize("turns", [1, 5, 40])
 def test_wrapped_angles(turns):
     t = np.arange(0, 20, 0.01)
