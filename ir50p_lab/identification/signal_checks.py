@@ -113,7 +113,7 @@ def refuse_frozen_angle(t, q):
         k = moved[frozen[0]]
         raise IdentificationError(
             f"q stands at {q[k]:.6g} rad for {stood[frozen[0]] + 1} samples and jumps by {q[k + 1] - q[k]:.3g} rad at "
-            f"t = {t[k + 1]:.6g} s ({len(frozen)} time(s)): the sensor or the link hung. Leave these samples out; a gap "
+            f"t = {t[k + 1]:.6g} s ({len(frozen)} time(s)): the sensor or link hung. Leave these samples out; a gap "
             "in time is understood"
         )
 
