@@ -196,3 +196,16 @@ def _points(points):
     if array.ndim != 2 or array.shape[1] != 3 or not np.isfinite(array).all():
         raise InputError(f"points has shape {array.shape}; give (n, 3) finite numbers, m")
     return array
+
+
+def check_picture_size(camera, image):
+    """Raise CalibrationError if a picture is of another size than the camera was calibrated for.
+
+    image: colour (h, w, 3) or grey (h, w); camera: Calibration or Pinhole; one without `size` takes every picture.
+    """
+    size, here = getattr(camera, "size", None), (image.shape[1], image.shape[0])
+    if size is not None and tuple(size) != here:
+        raise CalibrationError(
+            f"the camera sends {here[0]}x{here[1]}, its calibration is of {size[0]}x{size[1]}: set the camera to that "
+            "size, or calibrate it at this one"
+        )

@@ -1,5 +1,6 @@
 """Pictures as arrays: read, check, write. Always uint8, (height, width, 3), in the order red, green, blue."""
 
+import os
 import zlib
 from pathlib import Path
 
@@ -59,6 +60,8 @@ def load_image(path, *, allow_grey=False):
     Raises ImageError for a path that is missing or a folder, an empty file, one that is no picture, damaged or cut
     off, and one of one channel or more than 8 bits.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise ImageError(f"path = {path!r:.60}: give the path of a picture file")
     path = Path(path)
     if path.is_dir():
         raise ImageError(f"{path} is a folder: give one of its files, or open_camera('folder:{path}') for all of them")
@@ -118,8 +121,8 @@ def list_images(folder):
     """
     folder = Path(folder)
     if not folder.is_dir():
-        what = "is a file, not a folder" if folder.exists() else "does not exist"
-        raise ImageError(f"{folder} {what}: give the folder of the pictures (here is {Path.cwd()})")
+        what = "is a file, not a folder:" if folder.exists() else "does not exist: check the name, and"
+        raise ImageError(f"{folder} {what} give the folder of the pictures (here is {Path.cwd()})")
     files = [p for p in folder.iterdir() if not p.name.startswith(".")]
     paths = [p for p in files if p.suffix.lower() in READ]
     if not paths:

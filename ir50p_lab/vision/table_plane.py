@@ -7,6 +7,7 @@ from ir50p_lab.vision.board_pose import (
     board_points,
     board_pose,
     camera_numbers,
+    check_picture_size,
     checked_transform,
     inverse_transform,
     pixels,
@@ -85,14 +86,17 @@ class TablePlane:
     def from_picture(cls, camera, image, pattern=(9, 6), square=0.025, T_table_board=None):
         """The plane from a picture (RGB) of a checkerboard that lies at T_table_board; see `board_points`.
 
-        Raises CalibrationError if the board is not found, with the reason; else as `from_board`.
+        Raises CalibrationError for a picture of another size than the calibration's, and if the board is not found,
+        with the reason; else as `from_board`.
         """
         from ir50p_lab.vision.calibration.corners import find_checkerboard
         from ir50p_lab.vision.calibration.reasons import NotUsable
         from ir50p_lab.vision.image import to_grey
 
+        grey = to_grey(image)
+        check_picture_size(camera, grey)
         try:
-            corners = find_checkerboard(to_grey(image), pattern).xy
+            corners = find_checkerboard(grey, pattern).xy
         except NotUsable as why:
             raise CalibrationError(f"the board on the table is not found: {why}") from None
         return cls.from_board(camera, corners, board_points(pattern, square, T_table_board))

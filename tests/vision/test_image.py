@@ -81,6 +81,8 @@ def test_refused_files(tmp_path, picture):
         load_image(tmp_path / "no" / "a.png")
     with pytest.raises(ImageError, match="is a folder"):
         load_image(tmp_path)
+    with pytest.raises(ImageError, match="path = None"):
+        load_image(None)
     (tmp_path / "empty.png").touch()
     with pytest.raises(ImageError, match="is empty"):
         load_image(tmp_path / "empty.png")

@@ -257,3 +257,11 @@ def test_bad_pixels_are_refused(xy, options, match):
 def test_an_impossible_board_is_refused():
     with pytest.raises(InputError, match="pattern"):
         board_points((1, 6))
+
+
+def test_a_picture_of_another_size_than_the_calibration_is_refused():
+    small = np.zeros((240, 320, 3), np.uint8)
+    with pytest.raises(CalibrationError, match=r"320x240.*calibration is of 640x480"):
+        TablePlane.from_picture(CAMERA, small)
+    with pytest.raises(CalibrationError, match="not found"):  # one of the right size, without a board
+        TablePlane.from_picture(CAMERA.scaled((320, 240)), small)

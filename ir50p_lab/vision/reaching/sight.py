@@ -4,12 +4,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ir50p_lab.errors import CalibrationError, InputError, VisionError
+from ir50p_lab.errors import InputError, VisionError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.ball.colour import RED, Colour
 from ir50p_lab.vision.ball.find import find_balls
-from ir50p_lab.vision.board_pose import checked_transform, inverse_transform, moved
+from ir50p_lab.vision.board_pose import check_picture_size, checked_transform, inverse_transform, moved
 
 GREEN = Colour(hue=135.0, tolerance=35.0, name="green")  # of the marker on the hand
 MARKER_AT = (-0.042, 0.0, 0.0)  # m, tool coordinates: between the fingers, before the end of the forearm
@@ -80,12 +80,7 @@ class Sight:
 
         Raises CalibrationError if the picture is of another size than the calibration.
         """
-        size = getattr(self.plane.camera, "size", None)
-        if size is not None and tuple(size) != (image.shape[1], image.shape[0]):
-            raise CalibrationError(
-                f"the camera sends {image.shape[1]}x{image.shape[0]}, its calibration is of {size[0]}x{size[1]}: "
-                "set the camera to that size, or calibrate it at this one"
-            )
+        check_picture_size(self.plane.camera, image)
         balls = find_balls(image, self.colour, camera=self._model())
         if not balls:
             return Seen(None, None, None, image, simulated, balls.reason)
