@@ -4,17 +4,13 @@ import numpy as np
 from matplotlib.collections import LineCollection
 
 from ir50p_lab.course.style import COLOURS, new_figure
+from ir50p_lab.course.vision_views import stamp
 from ir50p_lab.vision import Pinhole
-
-RENDERED = "rendered, not photographed"
 
 
 def rendered_figure(*size, **layout):
     """A `new_figure` with a note in its lower right corner: rendered, not photographed."""
-    figure = new_figure(*size, **layout)
-    x, y = 1.0 - 0.04 / figure.get_figwidth(), 0.03 / figure.get_figheight()
-    figure.text(x, y, RENDERED, ha="right", va="bottom", fontsize=7.5, color=COLOURS["grey"], style="italic")
-    return figure
+    return stamp(new_figure(*size, **layout))
 
 
 def show_picture(ax, image, title=""):

@@ -21,7 +21,7 @@ def loop_figure():
     """What passes from picture to motor, box by box (Figure 4.14). Returns: LabFigure."""
     figure = new_figure(9.0, 2.2)
     (ax,) = figure.axes
-    ax.set(xlim=(0, 6), ylim=(-0.35, 1.6), title="From the picture to the motors, and round again")
+    ax.set(xlim=(0, 6), ylim=(-0.05, 1.6), title="From the picture to the motors, and round again")
     ax.axis("off")
     boxes = (
         ("camera", "picture"),
@@ -37,9 +37,10 @@ def loop_figure():
         ax.text(k + 0.5, 0.88, out, ha="center", va="top", fontsize=8, color=COLOURS["dark"])
         if k < 5:
             ax.add_patch(FancyArrowPatch((k + 0.9, 1.22), (k + 1.1, 1.22), arrowstyle="-|>", mutation_scale=10))
-    style = {"arrowstyle": "-|>", "mutation_scale": 10, "connectionstyle": "arc,angleA=-90,angleB=-90,armA=40,armB=40"}
+    style = {"arrowstyle": "-|>", "mutation_scale": 10, "connectionstyle": "arc,angleA=-90,angleB=-90,armA=25,armB=25"}
     ax.add_patch(FancyArrowPatch((5.5, 0.6), (0.5, 0.6), **style))
-    ax.text(3.0, -0.3, "the camera sees ball and hand: look again", ha="center", fontsize=9, color=COLOURS["dark"])
+    again = {"ha": "center", "va": "top", "fontsize": 9, "color": COLOURS["dark"]}
+    ax.text(3.0, 0.2, "the camera sees ball and hand: look again", **again)
     return figure
 
 
@@ -48,10 +49,14 @@ def frames_figure(arm, q, T_base_cam, ball=None, T_base_board=None, simulated=Tr
     figure = _stamped(origin(simulated), 8.0, 5.0, projection="3d")
     (ax,) = figure.axes
     _stage(ax, arm, q, T_base_cam)
-    draw_frame(ax, np.eye(4), "{0}", 0.18)
+    ax.view_init(elev=34, azim=-66)
+    draw_frame(ax, np.eye(4), "{0}", 0.13)
     draw_frame(ax, T_base_cam, "{c}", 0.18)
     if T_base_board is not None:
-        draw_frame(ax, T_base_board, "{b}", 0.1)
+        rim = 0.025 * np.array([[-1, -1], [9, -1], [9, 6], [-1, 6], [-1, -1]])  # of the board of 9x6 corners
+        rim = np.column_stack([rim, np.zeros(5)]) @ T_base_board[:3, :3].T + T_base_board[:3, 3]
+        ax.plot(*rim.T, color=COLOURS["grey"], linewidth=1.2)
+        ax.text(*rim[1], "  board", fontsize=8, color=COLOURS["dark"])
     if ball is not None:
         T = np.eye(4)
         T[:3, 3] = ball
@@ -64,7 +69,7 @@ def frames_figure(arm, q, T_base_cam, ball=None, T_base_board=None, simulated=Tr
 def _stage(ax, arm, q, T_base_cam):
     view = ArmView(ax, arm, q)
     eye = T_base_cam[:3, 3]
-    reach = 1.05 * max(arm.reach, abs(eye[0]), abs(eye[1]))
+    reach = 1.15 * max(arm.reach, abs(eye[0]), abs(eye[1]))
     top = max(arm.l[0] + arm.reach, 1.15 * eye[2])
     ax.set(xlim=(-0.4, reach), ylim=(-0.6 * reach, 0.6 * reach), zlim=(0, top))
     ax.set_box_aspect((reach + 0.4, 1.2 * reach, top), zoom=1.25)

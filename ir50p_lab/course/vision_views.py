@@ -4,6 +4,7 @@ import html
 
 import ipywidgets as widgets
 import numpy as np
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ir50p_lab.course.clickable import ClickableImage
 from ir50p_lab.course.painter import encode_png
@@ -16,7 +17,10 @@ _GREY = {"cmap": "gray", "vmin": 0, "vmax": 255, "interpolation": "nearest"}
 
 
 def stamp(figure, text=STAMP):
-    """Write in the lower right corner of a figure where its pictures are from. Returns the figure."""
+    """Write in the lower right corner of a figure, below its axes, where its pictures are from. Returns the figure."""
+    engine, strip = figure.get_layout_engine(), 0.16 / figure.get_figheight()
+    if isinstance(engine, ConstrainedLayoutEngine):
+        engine.set(rect=(0, strip, 1, 1 - strip))
     x, y = 1.0 - 0.04 / figure.get_figwidth(), 0.03 / figure.get_figheight()
     figure.text(x, y, text, ha="right", va="bottom", fontsize=7.5, color=COLOURS["grey"], style="italic")
     return figure
@@ -74,6 +78,9 @@ def colour_solids_figure():
         ),
     ):
         ax.scatter(*points.T, c=rgb / 255, s=22, depthshade=False)
+        ax.set_box_aspect(None, zoom=0.85)  # room for the labels, which the layout does not see
+    cube.set(xticks=(0, 128, 255), yticks=(0, 128, 255), zticks=(0, 128, 255))
+    cone.set(xticks=(-1, 0, 1), yticks=(-1, 0, 1), zticks=(0, 0.5, 1))
     cube.set(xlabel="R [level]", ylabel="G [level]", zlabel="B [level]", title="RGB: a cube")
     cone.set(xlabel="S V cos H [1]", ylabel="S V sin H [1]", zlabel="V [1]", title="HSV: a cone, hue is the angle")
     return figure
@@ -157,10 +164,10 @@ def votes_figure(points, votes, centre):
     left.plot(*np.asarray(points).T, ".", ms=5, color="white")
     shown = right.imshow(votes, cmap="viridis", interpolation="nearest")
     right.grid(False)
-    figure.colorbar(shown, ax=right, label="votes [1]", shrink=0.85)
+    figure.colorbar(shown, ax=right, label="votes [1]", shrink=0.85, ticks=range(int(votes.max()) + 1))
     right.plot(*centre, "+", ms=14, mew=2, color=COLOURS["orange"])
     right.set_title("most votes at the centre", fontsize=10)
-    for ax in figure.axes:
+    for ax in (left, right):
         ax.set(xlabel="x [px]", ylabel="y [px]")
     return figure
 
