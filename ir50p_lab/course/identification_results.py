@@ -6,6 +6,7 @@ from ir50p_lab.bench import Recording, SimulatedBench
 from ir50p_lab.course.bench_views import origin
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
 from ir50p_lab.identification import RLS, fit, process, regressor, validate
+from ir50p_lab.identification.parameters import NAMES
 from ir50p_lab.signals import LowPass
 
 JOINTS = (COLOURS["blue"], COLOURS["orange"], COLOURS["green"])
@@ -88,6 +89,47 @@ def ablation_figure(names, fits, best=None):
     ax.set(xlabel="fit on raw PWM of the validation run [%]", xlim=(min(50, np.min(fits) - 3), 101))
     ax.set_title("Most is won by better signals; dotted: true parameters")
     ax.legend(fontsize=8, loc="lower left")
+    return figure
+
+
+def estimators_figure(found, fits, joint=0, column=0, truth=None):
+    """Fits of several estimates, and one of their parameters with three standard errors. Returns: LabFigure.
+
+    Args: found: {name: Estimate}; fits: (n, 3) % on the validation run; truth: the parameter's value, drawn dashed.
+    """
+    figure = new_figure(9.6, 1.3 + 0.32 * len(found), cols=2, width_ratios=(1.2, 1))
+    left, right = figure.axes
+    y = np.arange(len(found))[::-1]
+    for k, marker in enumerate("os^"):
+        left.plot(np.maximum(fits[:, k], 50), y, marker, ms=7, color=JOINTS[k], label=f"joint {k + 1}")
+    values, errors = ([getattr(x, name)[joint, column] for x in found.values()] for name in ("theta", "stderr"))
+    right.errorbar(values, y, xerr=3 * np.array(errors), fmt="o", color=JOINTS[joint], capsize=3)
+    if truth is not None:
+        right.axvline(truth, **SETPOINT)
+    left.set_yticks(y, list(found))
+    right.set_yticks(y, [""] * len(found))
+    right.set_ylim(left.get_ylim())
+    left.set(xlim=(49, 101), xlabel="fit on raw PWM of the validation run [%]", title="What each cure does for the fit")
+    right.set(xlabel=f"{NAMES[column]} of joint {joint + 1}, ± 3 standard errors [PWM, SI]")
+    right.set_title("No error bar knows a bias; dashed: true")
+    left.legend(fontsize=8, loc="lower left")
+    return figure
+
+
+def whiteness_figure(tests, joint=1):
+    """Autocorrelation of the residuals of several models. Returns: LabFigure.
+
+    Args: tests: {name: Whiteness}, of residuals 10 ms apart; joint: 0, 1, 2.
+    """
+    figure = new_figure(9.0, 3.2)
+    ax = figure.axes[0]
+    for (name, test), colour in zip(tests.items(), ("orange", "blue", "green"), strict=False):
+        lags = 10 * np.r_[0, test.lags]
+        ax.plot(lags, np.r_[1, test.correlation[:, joint]], ".-", ms=4, color=COLOURS[colour], label=name)
+    ax.axhspan(-test.bound, test.bound, color=COLOURS["grey"], alpha=0.4, lw=0)
+    ax.set(xlabel="time between two residuals [ms]", ylabel="their correlation [1]", ylim=(-0.5, 1.05))
+    ax.set_title(f"Joint {joint + 1}: grey, as white noise would be; what is above, a model could still learn")
+    ax.legend(fontsize=8)
     return figure
 
 
