@@ -1,0 +1,91 @@
+"""Figures of notebook 11: they say what is simulated, and show the numbers they are given."""
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+from quick_sight import QuickSight
+
+from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.bench.rest import rest_pose
+from ir50p_lab.course import reaching_views as views
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.vision import RenderedBench, Seen, TablePlane, plan, reach
+from ir50p_lab.vision.board_pose import board_points, inverse_transform, transform
+from ir50p_lab.vision.hand_eye import HandEye, tool_poses
+from ir50p_lab.vision.reaching.budget import Budget, Cause
+from ir50p_lab.vision.reaching.result import FollowLog
+from ir50p_lab.vision.rendering import bench_camera
+
+CAMERA, T_CAM_BASE = bench_camera()
+T_BASE_CAM = inverse_transform(T_CAM_BASE)
+PLANE = TablePlane(CAMERA, T_CAM_BASE)
+BALL = np.array([0.40, 0.05, 0.03])
+
+
+def text_of(figure):
+    figure.canvas.draw()
+    return " ".join(text.get_text() for text in figure.findobj(Text))
+
+
+def test_loop_and_frames_name_their_parts():
+    assert all(name in text_of(views.loop_figure()) for name in ("find_balls", "T_base_table", "u [PWM]", "look again"))
+    board = np.diag([1.0, -1, -1, 1])
+    text = text_of(views.frames_figure(IR50P, rest_pose(IR50P), T_BASE_CAM, BALL, board))
+    assert all(name in text for name in ("{0}", "{c}", "{ob}", "board", "rendered picture, simulated arm"))
+    assert "photograph, real arm" in text_of(views.frames_figure(IR50P, rest_pose(IR50P), T_BASE_CAM, simulated=False))
+
+
+def test_what_is_seen_is_written_beside_it():
+    ball = type("Ball", (), {"x": 300.0, "y": 200.0, "radius": 25.0})
+    image = np.zeros((480, 640, 3), np.uint8)
+    seen = Seen(BALL, np.array([4e-4, 3e-4]), ball, image, True)
+    text = text_of(views.seen_figure(seen, IR50P, rest_pose(IR50P), T_BASE_CAM, (310.0, 150.0)))
+    assert "Ball at (300.0, 200.0) px" in text and "(400, 50, 30) mm" in text and "0.4, 0.3 mm" in text
+    assert "Ball at" not in text_of(
+        views.seen_figure(Seen(None, None, None, image, True, "none"), IR50P, rest_pose(IR50P), T_BASE_CAM)
+    )
+    assert "before" in text_of(views.pictures_figure([image, image], ["before", "after"]))
+
+
+def test_the_height_moves_the_reading():
+    xy = CAMERA.project(T_CAM_BASE, BALL)
+    figure, update = views.height_figure(PLANE, IR50P, BALL, xy)
+    assert "(400.0, 50.0) mm" in update(30.0) and "+0.0 mm off" in text_of(figure)
+    update(0.0)
+    (off,) = (float(word) for word in text_of(figure).split() if word.startswith("+"))
+    assert off == pytest.approx(1e3 * np.linalg.norm(PLANE.to_table(xy, 0.0) - BALL[:2]), abs=0.1)
+
+
+def test_a_way_says_how_low_it_comes():
+    way = plan(IR50P, rest_pose(IR50P), BALL + np.array([0, 0, 0.06]))
+    assert f"Never below {100 * way.lowest:.0f} cm" in text_of(views.way_figure(way, BALL))
+
+
+def test_tip_and_budget_and_residuals_show_their_numbers():
+    bench = SimulatedBench(IR50P, q0=rest_pose(IR50P), record_to=False)
+    world = RenderedBench(bench, BALL)
+    with bench:
+        done = reach(bench, QuickSight(world, PLANE), looks=1, rest=False)
+    text = text_of(views.tip_figure(IR50P, bench.recording, done))
+    assert f"{1e3 * done.miss:.1f} mm beside it" in text and "simulated arm" in text
+    budget = Budget((Cause("marker", 3e-3, 1e-3), Cause("camera", 4e-3, 0.0)))
+    assert "takes 5.0 mm down to 1.0 mm" in text_of(views.budget_figure(budget, (5e-3, 1e-3)))
+    found = HandEye(T_BASE_CAM, np.eye(4), np.full(4, 2e-3), np.full(4, 1e-3), "TSAI", {"TSAI": 1e-3})
+    assert "[mrad]" in text_of(views.residual_figure(found))
+
+
+def test_following_says_how_near_it_stays():
+    t = np.linspace(0, 4, 50)
+    ball = np.column_stack([0.4 + 0 * t, 0.02 * t])
+    log = FollowLog(t, np.column_stack([ball + np.array([0.01, 0]), 0.1 + 0 * t]), ball)
+    assert "within 10 mm" in text_of(views.follow_figure(log))
+
+
+def test_poses_hold_the_board_into_the_picture():
+    grip, board = transform([2.1, 2.3, 0.1], [0.02, -0.05, 0.02]), board_points((9, 6), 0.012, np.eye(4))
+    q = views.poses_before(IR50P, CAMERA, T_CAM_BASE, grip, board, 5, np.random.default_rng(1))
+    assert q.shape == (5, 3)
+    for T in T_CAM_BASE @ tool_poses(IR50P, q) @ grip:
+        xy = CAMERA.project(T, board)
+        assert (xy > 0).all() and (xy < np.array(CAMERA.size)).all()
+        assert T[2, 2] >= 0.3  # the print faces the camera
