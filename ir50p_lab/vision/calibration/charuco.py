@@ -1,7 +1,11 @@
 """Corners of a ChArUco board: the markers say which corner is which, so that part of the board is enough."""
 
+import contextlib
+from dataclasses import replace
+
 import numpy as np
 
+from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.corners import _SOFT, Corners
 from ir50p_lab.vision.calibration.grid import apply, homography
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
@@ -17,21 +21,17 @@ def find_charuco(grey, board):
     """
     import cv2
 
-    opencv_board = board.opencv()
-    parameters = cv2.aruco.DetectorParameters()
-    parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
-    detector = cv2.aruco.CharucoDetector(opencv_board, cv2.aruco.CharucoParameters(), parameters)
-    corners, index, _, ids = detector.detectBoard(grey)
-    count = 0 if index is None else len(index)
-    if ids is None or len(ids) == 0:
-        raise NotUsable(Reason.NO_BOARD, f"no marker of {board.dictionary} in it")
+    corners, index, ids = _detect(grey, board)
+    count = len(index)
+    if len(ids) == 0:
+        raise NotUsable(Reason.NO_BOARD, f"no marker of {board.dictionary} in it{_other_markers(grey, board)}")
     if count < _FEWEST:
-        known = np.isin(ids.ravel(), opencv_board.getIds()).mean()
+        known = np.isin(ids, board.opencv().getIds()).mean()
         if known < 0.5 or (len(ids) > 6 and count == 0):
-            raise NotUsable(Reason.WRONG_BOARD, f"{len(ids)} markers, but not where the {board} has them")
+            fits = _other_board(grey, board)
+            raise NotUsable(Reason.WRONG_BOARD, f"{len(ids)} markers, but not where this board has them{fits}")
         raise NotUsable(Reason.CROPPED, f"{count} corners of the board seen, {_FEWEST} needed: show more of it")
-    index, xy = index.ravel(), corners.reshape(-1, 2).astype(float)
-    points = board.points[index, :2]
+    xy, points = corners, board.points[index, :2]
     side = _spacing(points, xy, board.square)
     gap = (board.square - board.marker) / 2 / board.square  # the markers' own corners must stay out of the window
     half = int(np.clip(min(0.3, gap) * side - 1, 2, 20))
@@ -47,8 +47,64 @@ def find_charuco(grey, board):
     H = homography(points, xy)
     off = np.linalg.norm(apply(H, points) - xy, axis=1)
     if np.median(off) > 0.15 * side:
-        raise NotUsable(Reason.WRONG_BOARD, f"its corners are not where the {board} has them")
+        fits = _other_board(grey, board)
+        raise NotUsable(Reason.WRONG_BOARD, f"its corners are not where this board has them{fits}")
     return Corners(xy, index, np.nan, rise, "ChArUco")
+
+
+def _detect(grey, board):
+    """Corners (n, 2) px, their numbers (n,), and the numbers (m,) of the markers seen."""
+    import cv2
+
+    parameters = cv2.aruco.DetectorParameters()
+    parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
+    detector = cv2.aruco.CharucoDetector(board.opencv(), cv2.aruco.CharucoParameters(), parameters)
+    corners, index, _, ids = detector.detectBoard(grey)
+    xy = np.empty((0, 2)) if corners is None else corners.reshape(-1, 2).astype(float)
+    return xy, *(np.empty(0, dtype=int) if one is None else one.ravel() for one in (index, ids))
+
+
+def _other_board(grey, board):
+    """In words which board these markers fit: columns and rows swapped, squares counted, the older layout; or ''."""
+    columns, rows = board.pattern
+    best, most = None, _FEWEST - 1
+    for less in (0, 1, -1):
+        for pattern in ((columns - less, rows - less), (rows - less, columns - less)):
+            for legacy in (board.legacy, not board.legacy):
+                with contextlib.suppress(CalibrationError):  # too small, or more markers than the dictionary has
+                    other = replace(board, pattern=pattern, legacy=legacy)
+                    xy, index, _ = _detect(grey, other)
+                    if len(index) > most and _lies_well(other.points[index, :2], xy):
+                        best, most = other, len(index)
+    if best is None:
+        return ""
+    legacy = ", legacy=True" if best.legacy else ""
+    return f"; they fit a board with pattern={best.pattern}{legacy} (inner corners: one less than squares each way)"
+
+
+def _other_markers(grey, board):
+    """In words what markers there are instead: mirrored ones, or those of another dictionary; or ''."""
+    import cv2
+
+    def seen(picture, dictionary):
+        known = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
+        ids = cv2.aruco.ArucoDetector(known).detectMarkers(picture)[1]
+        return 0 if ids is None else len(ids)
+
+    if seen(np.ascontiguousarray(grey[:, ::-1]), board.dictionary) > 3:
+        return ", but mirrored: switch the mirroring of the camera off"
+    families = ("DICT_4X4_1000", "DICT_5X5_1000", "DICT_6X6_1000", "DICT_7X7_1000", "DICT_ARUCO_ORIGINAL")
+    count, family = max((seen(grey, family), family) for family in families)
+    return f", but {count} of {family} or a smaller one of this family" if count > 3 else ""
+
+
+def _lies_well(points, xy):
+    """Whether corners xy (n, 2) px are where a flat board has them, points (n, 2)."""
+    H = homography(points, xy)
+    if H is None:
+        return False
+    size = np.linalg.norm(np.ptp(xy, axis=0))
+    return bool(np.median(np.linalg.norm(apply(H, points) - xy, axis=1)) < 0.02 * size)
 
 
 def _spacing(points, xy, square):
