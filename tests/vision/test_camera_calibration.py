@@ -189,6 +189,22 @@ def test_tilts_about_one_axis():
     assert any("one axis" in text for text in calibrate_corners(POINTS, views, SIZE, lens=("k1",)).warnings)
 
 
+def test_a_fisheye_is_not_passed_off_as_a_lens_of_this_model(calibration):
+    """Equidistant, 160 degrees across the diagonal: the polynomial in r is left behind by a pixel."""
+    K_fish, rng, views = np.array([[280, 0, 322.0], [0, 280, 238], [0, 0, 1]]), np.random.default_rng(0), []
+    while len(views) < 15:
+        turn, (aside, about) = rng.normal(0, 0.35, 3), rng.uniform((0, 0), (1.1, 6.28))
+        away = np.array([np.sin(aside) * np.cos(about), np.sin(aside) * np.sin(about), np.cos(aside)])
+        R = cv2.Rodrigues(turn)[0]
+        shift = rng.uniform(0.12, 0.3) * away - R @ POINTS.mean(axis=0)
+        if (POINTS @ R.T + shift)[:, 2].min() > 0.02:
+            xy = cv2.fisheye.projectPoints(POINTS[None], turn, shift, K_fish, np.zeros(4))[0][0]
+            if (xy > 3).all() and (xy < (636, 476)).all():
+                views.append(xy)
+    assert any("fisheye" in text for text in calibrate_corners(POINTS, views, SIZE).warnings)
+    assert not any("fisheye" in text for text in calibration.warnings)
+
+
 def test_stretched_pictures_are_noticed(views):
     wide = [xy * [4 / 3, 1] for xy in views]
     assert any("not square" in text for text in calibrate_corners(POINTS, wide, (853, 480)).warnings)

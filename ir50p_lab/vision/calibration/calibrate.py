@@ -56,7 +56,7 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, as
     board = board if board is not None else Checkerboard(pattern, square)
     if not isinstance(board, Checkerboard):
         raise InputError(f"board = {board!r}: give a Checkerboard or a Charuco")
-    pictures = pictures_of(images)
+    pictures = pictures_of(images, progress)
     found, rejected, seen = {}, [], Counter()
     size = common_size(pictures)
     for picture in with_bar(pictures, progress):

@@ -7,6 +7,7 @@ from ir50p_lab.vision.calibration.fit import Model, fit
 from ir50p_lab.vision.calibration.models import Evidence, compare
 
 _TILTED = np.deg2rad(15)
+_ROUGH = 0.7  # px rms, of pictures up to 1280 px wide
 
 
 def outlier_view(corners, fitted):
@@ -109,8 +110,13 @@ def about_lens(calibration):
 
 
 def about_camera(calibration):
-    """Sentences about focal lengths and centre that a camera hardly has."""
+    """Sentences about corners that do not fit, and focal lengths and a centre that a camera hardly has."""
     found, (w, h), K = [], calibration.size, calibration.K
+    if calibration.rms > _ROUGH * max(1, w / 1280):
+        found.append(
+            f"rms {calibration.rms:.2g} px is more than corners err (0.05 to 0.5 px): is it a fisheye, which this "
+            "model does not describe, or did focus or zoom change between pictures?"
+        )
     ratio = K[0, 0] / K[1, 1]
     error = ratio * np.hypot(calibration.stderr["fx"] / K[0, 0], calibration.stderr["fy"] / K[1, 1])
     if abs(ratio - 1) > max(0.02, 3 * error):

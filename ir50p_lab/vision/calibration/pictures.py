@@ -38,8 +38,11 @@ class Picture:
         return cv2.cvtColor(np.ascontiguousarray(self.image[..., :3]), cv2.COLOR_RGB2GRAY)
 
 
-def pictures_of(images):
-    """A list of Picture. Raises InputError for what cannot hold pictures, ImageError for a missing or empty folder."""
+def pictures_of(images, progress=False):
+    """A list of Picture, read with a progress bar if asked for (None: if they are many).
+
+    Raises InputError for what cannot hold pictures, ImageError for a missing or empty folder.
+    """
     if isinstance(images, str | Path):
         images = list_images(images)
     elif (isinstance(images, np.ndarray) and images.ndim < 4) or hasattr(images, "image"):
@@ -50,6 +53,8 @@ def pictures_of(images):
         raise InputError(f"images = {images!r}: give a list of pictures or paths, or a folder") from None
     if not images:
         raise InputError("no pictures were given: take 10 to 20 of the board, in different places and tilts")
+    files = any(isinstance(one, str | Path) for one in images)
+    images = with_bar(images, progress, "reading pictures") if files else images  # the large ones take their time
     return _as_most_were_held([_picture(k, one) for k, one in enumerate(images)])
 
 
@@ -83,13 +88,13 @@ def _picture(index, one):
     return Picture(str(name), index, array)
 
 
-def with_bar(pictures, progress):
+def with_bar(pictures, progress, what="finding corners"):
     """The pictures, with a progress bar if asked for (None: if they are many)."""
     if progress is False or (progress is None and len(pictures) < 8):
         return pictures
     from tqdm.auto import tqdm
 
-    return tqdm(pictures, desc="finding corners", leave=False)
+    return tqdm(pictures, desc=what, leave=False)
 
 
 def common_size(pictures):
