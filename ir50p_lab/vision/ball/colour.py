@@ -1,6 +1,6 @@
 """The colour of a thing as ranges of hue, saturation and value: the default red, or learnt from a picture."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -51,6 +51,11 @@ class Colour:
         s = max(self.saturation, saturation or 0.0)
         low = (max(0, round((hue - self.tolerance) / 2)), round(255 * s), round(255 * self.value))
         return low, (min(179, round((hue + self.tolerance) / 2)), 255, 255)
+
+    @property
+    def looser(self):
+        """The colour as dim or glaring light shows it: darker and paler; for smoothed pictures."""
+        return replace(self, saturation=0.7 * self.saturation, value=0.4 * self.value)
 
     def hsv_of(self, image):
         """HSV of an RGB picture, in OpenCV's scale; with red and blue exchanged for a colour at the seam."""

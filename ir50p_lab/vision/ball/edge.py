@@ -56,6 +56,7 @@ def cast(image, x, y, radii, relative, directions):
     return Rays(x, y, cos, sin, rho, rgb, within)
 
 
+@cache
 def directions(n):
     """Unit vectors (cos (n,), sin (n,)) all around, float32."""
     angle = np.arange(n, dtype=np.float32) * np.float32(2 * np.pi / n)

@@ -1,30 +1,28 @@
-"""What speaks for a ball and what against: a sum of terms, and the strongest objection in words.
+"""What speaks against a ball, in words: the judge decides, this says why.
 
-Each term is a weight times something measured; score = 1 / (1 + exp(-sum)). The weights are a logistic regression on
-what the search proposes in rendered scenes (kinds 'ball' and 'no_ball' of `scene_distribution`, seeds 100 to 499); they
-are held out of every evaluation. `find.LEAST_SCORE` says from where on a ball is reported.
+Each term is a weight times something measured, about 1 where it alone makes a ball doubtful.
 """
 
-from math import exp, log
+from math import log
 
 import numpy as np
 
-START = 3.0
 # what is measured, its weight, and what to say if it is the strongest objection
 TERMS = (
-    ("missing", -1.8, "{0:.0%} of the circle show no edge"),
-    ("unseen", -4.3, "{0:.0%} of the circle lie outside the picture"),
-    ("beyond", -5.6, "the colour goes on beyond {0:.0%} of the circle"),
-    ("hollow", -5.5, "{0:.0%} of the disc have another colour"),
-    ("bumps", -3.7, "the outline is not round: waves of {1:.2f} pixels on a radius of {2:.0f}"),
-    ("oval", -1.0, "the outline is oval"),
-    ("alike", -2.35, "it hardly stands out from its surroundings"),
-    ("through", -1.4, "{0:.0%} of the part that is missing look like the background: nothing hides it"),
-    ("broken", -0.4, "the outline is broken in {0:.0f} places more than one thing in front could do"),
-    ("texture", -0.2, "the edges around it are those of a texture"),
-    ("small", -2.9, "it is small, radius {2:.1f} pixels, and what is seen of it is not enough"),
-    ("ragged", -1.95, "its edges scatter about a circle"),
+    ("missing", 1.8, "{0:.0%} of the circle show no edge"),
+    ("unseen", 4.3, "{0:.0%} of the circle lie outside the picture"),
+    ("beyond", 5.6, "the colour goes on beyond {0:.0%} of the circle"),
+    ("hollow", 5.5, "{0:.0%} of the disc have another colour"),
+    ("bumps", 3.7, "the outline is not round: waves of {1:.2f} pixels on a radius of {2:.0f}"),
+    ("oval", 1.0, "the outline is oval"),
+    ("alike", 2.35, "it hardly stands out from its surroundings"),
+    ("through", 1.4, "{0:.0%} of the part that is missing look like the background: nothing hides it"),
+    ("broken", 0.4, "the outline is broken in {0:.0f} places more than one thing in front could do"),
+    ("texture", 0.2, "the edges around it are those of a texture"),
+    ("small", 2.9, "it is small, radius {2:.1f} pixels, and what is seen of it is not enough"),
+    ("ragged", 1.95, "its edges scatter about a circle"),
 )
+NOTHING_SPECIAL = "taken together, edge and shading are not those of a ball"
 _WELL_APART = 5.5  # standard deviations between ball and surroundings, usual for a ball
 
 
@@ -39,7 +37,7 @@ def evidence(found, others=()):
         "hollow": 1 - found.fill,
         "bumps": found.bumps * o.r / pixels,
         "oval": found.oval * o.r / (0.4 + 0.06 * o.r),
-        "alike": -log(max(found.apart, 0.2)),
+        "alike": max(log(_WELL_APART / max(found.apart, 0.2)), 0.0),
         "through": found.through,
         "broken": max(found.gaps - 1, 0),
         "texture": max(found.step - 0.9, 0.0),
@@ -49,15 +47,13 @@ def evidence(found, others=()):
     return {name: (amounts[name], weight * amounts[name]) for name, weight, _ in TERMS}
 
 
-def score_of(found, others=()):
-    """Score 0..1 of a Measured, and the strongest objection as a text."""
+def objection(found, others=()):
+    """The strongest objection to a Measured, as a text."""
     terms = evidence(found, others)
-    total = START + sum(weighed for _, weighed in terms.values())
-    usual = {"alike": -2.35 * -log(_WELL_APART)}
-    worst = min(terms, key=lambda name: terms[name][1] - usual.get(name, 0.0))
-    text = next(text for name, _, text in TERMS if name == worst)
+    worst = max(terms, key=lambda name: terms[name][1])
+    text = next(text for name, _, text in TERMS if name == worst) if terms[worst][1] > 0.3 else NOTHING_SPECIAL
     o = found.outline
-    return 1 / (1 + exp(-total)), text.format(terms[worst][0], found.bumps * o.r, o.r)
+    return text.format(terms[worst][0], found.bumps * o.r, o.r)
 
 
 def beyond(found, others=()):

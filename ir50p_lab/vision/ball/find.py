@@ -6,19 +6,22 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.vision.ball.colour import RED, Colour, learn_from_patch
-from ir50p_lab.vision.ball.evidence import score_of
+from ir50p_lab.vision.ball.evidence import objection
 from ir50p_lab.vision.ball.fit import view_of
+from ir50p_lab.vision.ball.judge import score
 from ir50p_lab.vision.ball.measure import measure
-from ir50p_lab.vision.ball.regions import guess_circles
+from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
 from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import Pinhole
 
-_TRIED = 14  # first guesses measured
+_TRIED, _TRIED_CLOSER = 14, 24  # guesses measured; the closer look is only for pictures that show no ball so far
 
-LEAST_SCORE = 0.65  # more than a half: a false alarm is worse than a miss
+LEAST_SCORE = 0.82  # more than a half: a false alarm is worse than a miss
+_SMALL, _LEAST_SMALL = 8.0, 0.97  # of so few pixels of radius a box can look like a ball: then it must be surer
 # Whatever else speaks for it, a ball shows an edge on this much of the circle, this much of its disc has the colour,
 # and its outline leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and a part of a pixel.
-_LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.35, 0.75, (0.010, 0.32)
+_LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.32, 0.40, (0.010, 0.45)
+_MOST_HUE = 1.05  # median over the disc of the distance from the colour's hue, over its tolerance
 
 
 @dataclass(frozen=True)
@@ -77,23 +80,19 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     if camera is not None and not isinstance(camera, Pinhole):
         raise InputError(f"camera = {camera!r}: give a Pinhole, or None if the camera is not known")
     view = view_of(image.shape, camera)
-    guesses, regions = guess_circles(image, colour, least_radius)
+    measured, rejected, regions, tried = [], [], 0, 0
+    for guess, most in ((guess_circles, _TRIED), (guess_closer, _TRIED_CLOSER)):
+        guesses, count = guess(image, colour, least_radius)
+        regions, tried = regions + count, tried + len(guesses)
+        for place in guesses[:most, :3]:
+            _measure(image, place, view, colour, camera, least_radius, measured, rejected)
+        balls, objections = _judge(measured)
+        if balls:
+            break
     if not regions:
         return Balls(reason=f"nothing in the picture is {colour.name}, or it is smaller than {least_radius:g} pixels")
-    if not len(guesses):
+    if not tried:
         return Balls(reason=f"what is {colour.name} has no round outline")
-    measured, rejected = [], []
-    for x, y, r, _ in guesses[:_TRIED]:
-        if any(np.hypot(x - m.outline.x, y - m.outline.y) + abs(r - m.outline.r) < 0.3 * r for m in measured):
-            continue  # an earlier guess led to the same outline
-        found = measure(image, (x, y, r), view, colour, camera)
-        if isinstance(found, str):
-            rejected.append(((float(x), float(y), float(r)), found))
-        elif why := _blunt(found, least_radius):
-            rejected.append((_place(found), why))
-        else:
-            measured.append(found)
-    balls, objections = _judge(measured)
     rejected = (*objections, *rejected)
     if balls or not rejected:
         return Balls(balls, rejected=rejected)
@@ -101,22 +100,38 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     return Balls(reason=f"the likeliest thing, at ({x:.0f}, {y:.0f}) with radius {r:.0f}: {why}", rejected=rejected)
 
 
+def _measure(image, place, view, colour, camera, least_radius, measured, rejected):
+    """Measure at a guess (x, y, r): add to `measured` what may be a ball, else to `rejected` ((x, y, r), why)."""
+    x, y, r = map(float, place)
+    if any(np.hypot(x - m.outline.x, y - m.outline.y) + abs(r - m.outline.r) < 0.3 * r for m in measured):
+        return  # an earlier guess led to the same outline
+    found = measure(image, (x, y, r), view, colour, camera)
+    if isinstance(found, str):
+        rejected.append(((x, y, r), found))
+    elif why := blunt(found, least_radius):
+        rejected.append((_place(found), why))
+    else:
+        measured.append(found)
+
+
 def _judge(measured):
     """Balls best first, and what was rejected as ((x, y, r), why), best first; balls that touch excuse each other."""
-    scored = sorted(((*score_of(m), m) for m in measured), key=lambda s: -s[0])
+    if not measured:
+        return [], []
+    scores = score(measured)
     for _ in range(2):
         balls, objections = [], []
-        for score, why, found in scored:
-            o = found.outline
+        for k in np.argsort(-scores, kind="stable"):
+            found, o = measured[k], measured[k].outline
             if any(np.hypot(o.x - b.x, o.y - b.y) < 0.8 * max(o.r, b.radius) for b in balls):
                 continue  # the same ball, or a part of it
-            if score >= LEAST_SCORE:
-                balls.append(Ball(*found.centre, o.r, score, found.support))
+            if scores[k] >= (LEAST_SCORE if o.r > _SMALL else _LEAST_SMALL):
+                balls.append(Ball(*found.centre, o.r, float(scores[k]), found.support))
             else:
-                objections.append((_place(found), why))
+                objections.append((_place(found), objection(found, _but(balls, found))))
         if not balls or not objections:
             break
-        scored = sorted(((*score_of(m, _but(balls, m)), m) for m in measured), key=lambda s: -s[0])
+        scores = score(measured, [_but(balls, m) for m in measured])
     return balls, objections
 
 
@@ -129,7 +144,7 @@ def _place(found):
     return found.outline.x, found.outline.y, found.outline.r
 
 
-def _blunt(found, least_radius):
+def blunt(found, least_radius):
     """Why a measured outline is no ball, whatever else speaks for it; "" if nothing of the kind."""
     r = found.outline.r
     if r < least_radius:
@@ -138,8 +153,12 @@ def _blunt(found, least_radius):
         return f"an edge on {found.support:.0%} of the circle only"
     if found.fill < _LEAST_FILL:
         return f"hollow, or another colour: {found.fill:.0%} of the disc have the colour"
-    rough = float(np.hypot(found.bumps, found.ragged))
-    if rough * r > _MOST_BUMPS[0] * r + _MOST_BUMPS[1]:
+    hue = float(np.median(found.samples[:, :6, 2]))
+    if hue > _MOST_HUE:
+        return f"another colour: its hue is {hue:.1f} times as far off as the colour allows"
+    part, pixels = _MOST_BUMPS
+    rough = max(found.bumps, 0.6 * float(np.hypot(found.bumps, found.ragged)))  # noise alone makes edges scatter
+    if rough * r > part * r + pixels:
         return f"not round: its outline leaves a circle by {rough:.1%} of the radius"
     return ""
 

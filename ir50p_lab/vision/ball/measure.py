@@ -7,6 +7,7 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.vision.ball.edge import cast, contrast_axis, directions, find_edges
 from ir50p_lab.vision.ball.fit import Outline, fit_outline
+from ir50p_lab.vision.ball.look import RAYS, look
 
 
 def _smooth(r):
@@ -31,7 +32,8 @@ class Measured:
     gaps: into how many pieces what is missing falls. ragged: rms distance of the edge points from the smooth outline,
     over the radius. step: median height of the edges, over the contrast of the disc and its surroundings.
     apart: of the colours in and out, in standard deviations. through: how much of the missing part looks like what
-    surrounds the ball.
+    surrounds the ball. samples (RAYS, radii, channels): of `look`. edges (RAYS, 4): whether there is an edge on the
+    outline, how far off it is (in units of what is usual), its height, and `beyond`.
     """
 
     outline: Outline
@@ -47,6 +49,8 @@ class Measured:
     gaps: int
     ragged: float
     step: float
+    samples: np.ndarray
+    edges: np.ndarray
 
 
 def measure(image, guess, view, colour, camera=None):
@@ -124,8 +128,17 @@ def _fine(image, outline, view, colour, unit, camera):
         through=_shown_through(rgb, on, missing & ~beyond, inside),
         gaps=_gaps(missing),
         step=float(np.median(edge.height[on])),
+        samples=look(image, outline, weights, middle, colour),
+        edges=_along(on, off / (0.3 + 0.01 * outline.r), edge.height, beyond),
         **dict(zip(("bumps", "oval", "ragged"), _waves(off[on], unit[0][on], unit[1][on], outline.r), strict=True)),
     )
+
+
+def _along(on, off, height, beyond):
+    """Edges for the judge, (RAYS, 4) float32."""
+    chosen = np.arange(RAYS) * len(on) // RAYS
+    edges = np.column_stack([on, np.clip(off, -4, 4) * on, np.clip(height, 0, 2), beyond])[chosen]
+    return edges.astype(np.float32)
 
 
 def _through_the_lens(x, y, outline, view, camera):
@@ -190,7 +203,7 @@ def _colours(image, outline, colour, unit):
     hsv = colour.hsv_of(rays.rgb)
     alike = (cv2.inRange(hsv, *colour.bounds()) > 0) & rays.within
     bright = (hsv[:, :12, 2] > 200) & (hsv[:, :12, 1] < 255 * colour.saturation)
-    inside = alike[:, :12]
+    inside = (cv2.inRange(hsv[:, :12], *colour.looser.bounds()) > 0) & rays.within[:, :12]  # it may lie in the shade
     if (bright @ inner).mean() < 0.35 * inner.sum():  # a highlight is a part of the disc
         inside = inside | bright
     return inside, alike[:, 12:], rays.rgb

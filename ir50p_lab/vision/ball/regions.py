@@ -1,11 +1,17 @@
 """Where a ball might be: arcs of circles in the outlines of regions that have its colour."""
 
+from math import sqrt
+
 import numpy as np
+
+from ir50p_lab.jit import jit
 
 STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
 _MUCH = 0.05  # of the picture: if more has the colour, the table may have it, and the mask is split further
 _LARGEST = 10  # regions looked at in each mask
 _ROUND = 0.07  # rms over radius of an outline that is a circle as a whole
+_SPLIT = 6  # regions told into parts
+_SURE = 14  # so few guesses are all measured, in whatever order
 _CIRCLES = 4  # of one outline: balls that touch share one
 
 
@@ -15,17 +21,55 @@ def guess_circles(image, colour, least_radius):
     A large picture is halved first: it costs a quarter, and noise goes. Returns also the number of regions of this
     colour, for a reason where nothing is found.
     """
+    shrink = 1 if max(image.shape) < 480 else 2
+    small = _smaller(image, shrink)
+    circles, regions = _circles_of(masks(colour.hsv_of(small), colour), least_radius / shrink)
+    return _ranked(_unscaled(circles, image, small), image), regions
+
+
+def guess_closer(image, colour, least_radius):
+    """Further guesses, as `guess_circles`, where those led to no ball: smoothed at three scales, in a looser colour.
+
+    Noise breaks up the colour of a dark ball, highlights and glare punch holes; a ball of ten pixels is lost in the
+    halved picture; one before a thing of nearly its colour shows only when the two are told apart.
+    """
+    import cv2
+
+    shrink = 1 if max(image.shape) < 480 else 2
+    found, regions, loose = [np.empty((0, 4))], 0, colour.looser
+    for scale, sigma in ((1, 1.2), (shrink, 1.5), (2 * shrink, 1.2)):
+        small = cv2.GaussianBlur(_smaller(image, scale), (0, 0), sigma)
+        hsv = loose.hsv_of(small)
+        plain = [_closed(cv2.inRange(hsv, *loose.bounds(s))) for s in STRICTNESS[:2]]
+        circles, count = _circles_of([*plain, *split(hsv, loose)], least_radius / scale)
+        regions = max(regions, count)
+        found.append(_unscaled(circles, image, small))
+    return _ranked(np.concatenate(found), image), regions
+
+
+def _smaller(image, shrink):
     import cv2
 
     height, width = image.shape[:2]
-    shrink = 1 if max(height, width) < 480 else 2
-    small = image
-    if shrink > 1:
-        small = cv2.resize(image, (width // shrink, height // shrink), interpolation=cv2.INTER_AREA)
-    sx, sy = width / small.shape[1], height / small.shape[0]
-    least = max(1.5, 0.7 * least_radius / shrink)
+    size = max(width // shrink, 1), max(height // shrink, 1)
+    return image if shrink == 1 else cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+
+
+def _unscaled(circles, image, small):
+    """Circles of the small copy in pixels of the picture."""
+    sx, sy = image.shape[1] / small.shape[1], image.shape[0] / small.shape[0]
+    x, y, r, share = circles.T
+    # an outline runs through the centres of its last pixels
+    return np.column_stack([(x + 0.5) * sx - 0.5, (y + 0.5) * sy - 0.5, (r + 0.5) * (sx + sy) / 2, share])
+
+
+def _circles_of(found_in, least_radius):
+    """Circles (n, 4) in the outlines of masks, and the largest number of regions in one of them."""
+    import cv2
+
+    least = max(1.5, 0.7 * least_radius)
     found, regions = [], 0
-    for mask in masks(colour.hsv_of(small), colour):
+    for mask in found_in:
         contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
         large = [c[:, 0] for c in contours if len(c) >= max(8, 4 * least)]
         large = sorted(large, key=len, reverse=True)[:_LARGEST]
@@ -37,11 +81,60 @@ def guess_circles(image, colour, least_radius):
             found += circles
         if irregular:
             found += _inscribed(mask, least)
-    circles = np.array(found).reshape(-1, 4)
-    circles[:, 0] = (circles[:, 0] + 0.5) * sx - 0.5
-    circles[:, 1] = (circles[:, 1] + 0.5) * sy - 0.5
-    circles[:, 2] = (circles[:, 2] + 0.5) * (sx + sy) / 2  # the outline runs through the centres of its last pixels
-    return _different(circles), regions
+    return np.array(found).reshape(-1, 4), regions
+
+
+def _closed(mask):
+    import cv2
+
+    return cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
+
+
+def split(hsv, colour):
+    """Parts of the largest regions of the colour, (h, w) uint8: above and below Otsu's threshold of each channel."""
+    import cv2
+
+    mask = cv2.inRange(hsv, *colour.bounds())
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(mask)
+    order = np.argsort(-stats[1:, cv2.CC_STAT_AREA], kind="stable")[:_SPLIT] + 1
+    found = [np.zeros_like(mask) for _ in range(6)]
+    for label in order:
+        x, y, w, h, area = stats[label]
+        if area < 60:
+            continue
+        box = np.s_[y : y + h, x : x + w]
+        here = np.where(labels[box] == label, np.uint8(255), np.uint8(0))
+        for channel in range(3):
+            values = np.ascontiguousarray(hsv[box][:, :, channel])
+            middle, _ = cv2.threshold(values[here > 0], 0, 255, cv2.THRESH_OTSU)
+            upper = cv2.bitwise_and(cv2.compare(values, middle, cv2.CMP_GT), here)
+            found[2 * channel][box] |= upper
+            found[2 * channel + 1][box] |= cv2.subtract(here, upper)
+    kernel = np.ones((3, 3), np.uint8)
+    return [cv2.morphologyEx(part, cv2.MORPH_OPEN, kernel) for part in found]
+
+
+def _ranked(circles, image):
+    """Different circles, first those with a step of colour around them, whatever its direction in RGB."""
+    circles = _different(circles)
+    if len(circles) <= _SURE:
+        return circles
+    angle = np.arange(32) * (2 * np.pi / 32)
+    x, y, r, share = circles.T[:, :, None]
+    ring = []
+    for relative in (0.75, 0.88, 1.15, 1.3):
+        col = np.rint(x + relative * r * np.cos(angle)).astype(int)
+        row = np.rint(y + relative * r * np.sin(angle)).astype(int)
+        within = (col >= 0) & (row >= 0) & (col < image.shape[1]) & (row < image.shape[0])
+        rgb = image[np.clip(row, 0, image.shape[0] - 1), np.clip(col, 0, image.shape[1] - 1)]
+        ring.append((rgb.astype(np.float32), within))
+    step = (ring[0][0] + ring[1][0] - ring[2][0] - ring[3][0]) / 2
+    step[~(ring[1][1] & ring[2][1])] = 0
+    along = np.median(step, axis=1, keepdims=True)
+    along /= np.linalg.norm(along, axis=2, keepdims=True) + 1e-6
+    height = np.sort((step * along).sum(axis=2), axis=1)[:, 12:]  # a third may be hidden
+    promise = height.mean(axis=1) / (height.std(axis=1) + 10) + share[:, 0]
+    return circles[np.argsort(-promise, kind="stable")]
 
 
 def masks(hsv, colour):
@@ -117,34 +210,53 @@ def circles_in(points, shape, least_radius):
 
 def _best_circle(p, usable, step, least_radius, most_radius):
     m = len(p)
-    index = np.arange(m)
     apart = sorted({max(2, m // k) for k in (16, 9, 5, 3)} | ({4, 8, 16, 32} if m > 100 else set()))
-    triples = [(index, (index + d) % m, (index + 2 * d) % m) for d in apart]
-    i, j, k = (np.concatenate(part) for part in zip(*triples, strict=True))
-    good = usable[i] & usable[j] & usable[k]
-    A, B, C = p[i[good]], p[j[good]], p[k[good]]
-    if not len(A):
-        return None
-    b, c = B - A, C - A
-    cross = 2 * (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])
     # the outline runs around its region: where it bends the other way the circle is a bay, not a ball
-    bent = cross < -1e-6 if _clockwise(p) else cross > 1e-6
-    b, c, A, cross = b[bent], c[bent], A[bent], cross[bent]
-    bb, cc = (b * b).sum(axis=1), (c * c).sum(axis=1)
-    ux, uy = (c[:, 1] * bb - b[:, 1] * cc) / cross, (b[:, 0] * cc - c[:, 0] * bb) / cross
-    r = np.hypot(ux, uy)
-    fits = (r >= least_radius) & (r <= most_radius)
-    if not fits.any():
+    x, y, r, share = _vote(p, usable, np.array(apart), step, least_radius, most_radius, 1 if _clockwise(p) else -1)
+    if r == 0:
         return None
-    x, y, r = A[fits, 0] + ux[fits], A[fits, 1] + uy[fits], r[fits]
-    far = np.hypot(p[:, 0] - x[:, None], p[:, 1] - y[:, None]) - r[:, None]
-    near = (np.abs(far) < np.maximum(0.9, 0.06 * r)[:, None]) & usable
-    share = np.minimum(near.sum(axis=1) * step / (5.6 * r), 1.0)  # a pixel chain is longer than it counts
-    best = int(np.argmax(share * np.sqrt(r)))
-    used = np.abs(far[best]) < max(1.5, 0.10 * r[best])
-    points = p[near[best]]
-    x, y, r = _kasa(points) if len(points) >= 5 else (x[best], y[best], r[best])
-    return x, y, r, float(share[best]), used
+    far = np.hypot(p[:, 0] - x, p[:, 1] - y) - r
+    used = np.abs(far) < max(1.5, 0.10 * r)
+    points = p[(np.abs(far) < max(0.9, 0.06 * r)) & usable]
+    if len(points) >= 5:
+        x, y, r = _kasa(points)
+    return x, y, r, share, used
+
+
+@jit()
+def _vote(p, usable, apart, step, least_radius, most_radius, turn):
+    """The circle (x, y, r) through three points (i, i + d, i + 2 d) near which most of the outline lies, and its share.
+
+    r = 0 if there is none.
+    """
+    m, best = len(p), 0.0
+    bx = by = br = bs = 0.0
+    for d in apart:
+        for i in range(m):
+            j, k = (i + d) % m, (i + 2 * d) % m
+            if not (usable[i] and usable[j] and usable[k]):
+                continue
+            b0, b1, c0, c1 = p[j, 0] - p[i, 0], p[j, 1] - p[i, 1], p[k, 0] - p[i, 0], p[k, 1] - p[i, 1]
+            cross = 2 * (b0 * c1 - b1 * c0)
+            if not turn * cross < -1e-6:
+                continue
+            bb, cc = b0 * b0 + b1 * b1, c0 * c0 + c1 * c1
+            ux, uy = (c1 * bb - b1 * cc) / cross, (b0 * cc - c0 * bb) / cross
+            r = sqrt(ux * ux + uy * uy)
+            if not least_radius <= r <= most_radius:
+                continue
+            x, y = p[i, 0] + ux, p[i, 1] + uy
+            limit, near = max(0.9, 0.06 * r), 0
+            low, high = max(r - limit, 0.0) ** 2, (r + limit) ** 2
+            for q in range(m):
+                square = (p[q, 0] - x) ** 2 + (p[q, 1] - y) ** 2
+                if usable[q] and low < square < high:
+                    near += 1
+            share = min(near * step / (5.6 * r), 1.0)  # a pixel chain is longer than it counts
+            if share * sqrt(r) > best:
+                best = share * sqrt(r)
+                bx, by, br, bs = x, y, r, share
+    return bx, by, br, bs
 
 
 def _clockwise(p):
@@ -161,9 +273,22 @@ def _kasa(p):
 
 def _different(circles):
     """Drop circles that another, with a larger share, already tells."""
-    kept = []
-    for circle in circles[np.argsort(-circles[:, 3] * np.minimum(circles[:, 2], 20) ** 0.5, kind="stable")]:
-        x, y, r, _ = circle
-        if all(np.hypot(x - o[0], y - o[1]) + abs(r - o[2]) > 0.25 * max(r, o[2]) for o in kept):
-            kept.append(circle)
-    return np.array(kept).reshape(-1, 4)
+    order = np.argsort(-circles[:, 3] * np.minimum(circles[:, 2], 20) ** 0.5, kind="stable")
+    circles = np.ascontiguousarray(circles[order])
+    return circles[_new(circles)]
+
+
+@jit()
+def _new(circles):
+    """Which circles (n, 4) differ from those before them, (n,) bool."""
+    new = np.ones(len(circles), np.bool_)
+    for i in range(len(circles)):
+        x, y, r = circles[i, 0], circles[i, 1], circles[i, 2]
+        for k in range(i):
+            if not new[k]:
+                continue
+            ox, oy, o = circles[k, 0], circles[k, 1], circles[k, 2]
+            if sqrt((x - ox) ** 2 + (y - oy) ** 2) + abs(r - o) <= 0.25 * max(r, o):
+                new[i] = False
+                break
+    return new

@@ -1,0 +1,114 @@
+"""Ball or not: small networks look at the samples around an outline and at what was measured of it.
+
+Along each ray the samples pass a layer shared by all rays, with their neighbours, and a second one that looks further
+around; mean and maximum over the rays do not depend on how the ball is turned. With the measures they decide. The
+score is the mean of several such networks. `python -m tests.targets.train_ball_judge` makes the weights.
+"""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from ir50p_lab.vision.ball.edge import directions
+from ir50p_lab.vision.ball.evidence import beyond
+from ir50p_lab.vision.ball.look import RADII, RAYS
+
+WEIGHTS = Path(__file__).with_name("judge.npz")
+LAYERS = ("w1", "b1", "w2", "b2", "w3", "b3", "w4", "b4")
+NEAR, FAR = (-1, 0, 1), (-4, -2, 0, 2, 4)  # rays that the first and the second layer look at
+_JUST_OUTSIDE = 9  # among RADII
+
+
+def rays_of(found, others=()):
+    """What is seen along the rays of a Measured, (RAYS, channels) float32; less what `others` (Balls) cover."""
+    samples, edges = found.samples, found.edges
+    if others:
+        o, (cos, sin) = found.outline, directions(RAYS)
+        t = o.radii(cos, sin)[:, None] * RADII
+        x, y = o.x + t * cos[:, None], o.y + t * sin[:, None]
+        free = np.all([np.hypot(x - b.x, y - b.y) > 1.05 * b.radius + 1 for b in others], axis=0)
+        samples = samples * free[:, :, None]
+        edges = edges * free[:, [_JUST_OUTSIDE]]
+    return np.concatenate([samples.reshape(RAYS, -1), edges], axis=1)
+
+
+def measures(found, others=()):
+    """What is measured of a Measured, (m,) float32, for the judge; others: Balls that may touch it."""
+    o = found.outline
+    pixels = 0.3 + 0.01 * o.r
+    hue, saturation = np.median(found.samples[:, :6, 2:4].reshape(-1, 2), axis=0)
+    return np.float32(
+        [
+            np.log(o.r / 20),
+            found.seen,
+            found.support,
+            found.seen - found.support,
+            beyond(found, others),
+            found.fill,
+            found.bumps * o.r / pixels,
+            found.oval * o.r / (0.4 + 0.06 * o.r),
+            found.ragged * o.r / pixels,
+            np.log(max(found.apart, 0.2)),
+            found.through,
+            min(found.gaps, 5),
+            found.step,
+            found.bumps * 20,
+            found.ragged * 20,
+            hue,
+            saturation,
+        ]
+    )
+
+
+@cache
+def around(layer):
+    """Indices (RAYS, len(layer)) of the rays that a layer looks at from each."""
+    return (np.arange(RAYS)[:, None] + np.array(layer)) % RAYS
+
+
+@cache
+def _networks():
+    """All networks side by side, the scales of the inputs folded into their first layers."""
+    with np.load(WEIGHTS) as file:
+        net = {name: file[name].astype(np.float32) for name in file.files}
+    w1 = net["w1"].reshape(len(net["w1"]), len(NEAR), -1, net["w1"].shape[2]) / net["ray_std"][:, None]
+    b1 = net["b1"] - np.einsum("knij,i->kj", w1, net["ray_mean"])
+    count, _, channels, wide = w1.shape
+    w3 = net["w3"].copy()
+    w3[:, -len(net["number_std"]) :] /= net["number_std"][:, None]
+    b3 = net["b3"] - net["number_mean"] @ w3[:, -len(net["number_mean"]) :]
+    first = w1.transpose(1, 2, 0, 3).reshape(len(NEAR) * channels, count * wide)
+    return first, b1.ravel(), net["w2"], net["b2"][:, None], w3, b3[:, None], net["w4"][:, :, None], net["b4"]
+
+
+def score(found, others=None):
+    """Score 0..1 of each Measured in a list; others: for each the Balls that may touch it. Returns: (n,)."""
+    others = others or [()] * len(found)
+    w1, b1, w2, b2, w3, b3, w4, b4 = _networks()
+    rays = np.stack([rays_of(m, o) for m, o in zip(found, others, strict=True)])
+    numbers = np.stack([measures(m, o) for m, o in zip(found, others, strict=True)])
+    n, count = len(found), len(w2)
+    h1 = np.maximum(rays[:, around(NEAR)].reshape(n * RAYS, -1) @ w1 + b1, 0)
+    x2 = h1.reshape(n, RAYS, count, -1).transpose(2, 0, 1, 3)[:, :, around(FAR)]
+    h2 = np.maximum(x2.reshape(count, n * RAYS, -1) @ w2 + b2, 0).reshape(count, n, RAYS, -1)
+    pooled = [h2.mean(axis=2), h2.max(axis=2), np.broadcast_to(numbers, (count, *numbers.shape))]
+    h3 = np.maximum(np.concatenate(pooled, axis=2) @ w3 + b3, 0)
+    return 1 / (1 + np.exp(-((h3 @ w4)[:, :, 0].mean(axis=0) + b4.mean())))
+
+
+def logit(rays, numbers, net, keep=1.0):
+    """Log odds (n,) of one network, and the layers on the way: what training goes back through.
+
+    keep: factors of the pooled features, in training.
+    """
+    n = len(rays)
+    x1 = rays[:, around(NEAR)].reshape(n, rays.shape[1], -1)
+    h1 = np.maximum(x1 @ net["w1"] + net["b1"], 0)
+    x2 = h1[:, around(FAR)].reshape(n, rays.shape[1], -1)
+    h2 = np.maximum(x2 @ net["w2"] + net["b2"], 0)
+    top = h2.argmax(axis=1)
+    pooled = np.concatenate([h2.mean(axis=1), np.take_along_axis(h2, top[:, None], axis=1)[:, 0], numbers], axis=1)
+    pooled *= keep
+    h3 = np.maximum(pooled @ net["w3"] + net["b3"], 0)
+    return h3 @ net["w4"] + net["b4"], (x1, h1, x2, h2, top, pooled, h3)

@@ -1,0 +1,32 @@
+"""What the judge looks at: the disc and its surroundings along rays, in units for any ball, light and colour."""
+
+import numpy as np
+
+from ir50p_lab.vision.ball.edge import cast, directions
+
+RAYS = 32
+RADII = np.float32((0.1, 0.3, 0.5, 0.66, 0.78, 0.87, 0.94, 1.0, 1.06, 1.13, 1.22, 1.36, 1.6))  # of the outline's
+CHANNELS = 5  # contrast, brightness, hue, saturation, and whether the sample lies in the picture
+
+
+def look(image, outline, weights, middle, colour):
+    """Samples (RAYS, len(RADII), CHANNELS) float32 around a fitted outline.
+
+    weights (3,), middle: of the contrast between ball and surroundings, about 1/2 inside and -1/2 outside. Brightness
+    is the logarithm over the disc's median; hue the distance from the colour's over its tolerance, 0 where there is
+    hardly a colour; saturation is over the least the colour must have. Samples outside the picture are 0.
+    """
+    unit = directions(RAYS)
+    rays = cast(image, outline.x, outline.y, outline.radii(*unit), RADII, unit)
+    hsv = colour.hsv_of(rays.rgb).astype(np.float32)
+    value = np.log(hsv[:, :, 2] + 4)
+    centre = (240.0 - colour.hue) % 360.0 if colour.swaps else colour.hue
+    hue = np.abs((2 * hsv[:, :, 0] - np.float32(centre) + 180) % 360 - 180) / np.float32(colour.tolerance)
+    sure = np.minimum(hsv[:, :, 1] * hsv[:, :, 2] / 6000, 1)  # noise makes the hue of grey and of black
+    seen = np.empty((RAYS, len(RADII), CHANNELS), np.float32)
+    seen[:, :, 0] = np.clip(rays.rgb @ weights - np.float32(middle), -1.5, 1.5)
+    seen[:, :, 1] = np.clip(value - np.median(value[:, :6]), -1.5, 1.5)
+    seen[:, :, 2] = np.minimum(hue, 3) * sure
+    seen[:, :, 3] = np.minimum(hsv[:, :, 1] / np.float32(255 * max(colour.saturation, 0.05)), 3)
+    seen[:, :, 4] = 1
+    return seen * rays.within[:, :, None]

@@ -1,0 +1,141 @@
+"""Train the judge of the ball detector: `python -m tests.targets.train_ball_judge [--scenes N] [--folder DIR]`.
+
+Scenes 100 to 1059 of the kinds 'ball' and 'no_ball' (no evaluation uses these seeds; every fifth is held out to choose
+the threshold by) are rendered, kept in the folder, and searched; what the search proposes in them and in changed copies
+trains a few small networks, which are written to ir50p_lab/vision/ball/judge.npz. NumPy only, single precision; the same
+seeds give the same weights on the same machine. Rendering takes about a second a scene, the rest some fifteen minutes.
+"""
+
+import argparse
+import sys
+import time
+
+import numpy as np
+
+from ir50p_lab.vision.ball.judge import FAR, LAYERS, NEAR, WEIGHTS, around, logit
+from ir50p_lab.vision.ball.look import RAYS
+from tests.targets.ball_examples import examples
+
+FIRST = 100
+WIDTHS = (24, 24, 24)  # of the layers
+NETWORKS = 3
+EPOCHS, BATCH, RATE, DECAY = 16, 64, 2e-3, 0.2
+NOISE, DROP = 0.3, 0.35  # added to the scaled inputs; share of the pooled features left out, in training
+FALSE_COSTS = 2.0  # a false alarm is worse than a miss
+
+
+def start(rng, channels, numbers):
+    """Weights of an untrained network (He's initialisation)."""
+    a, b, c = WIDTHS
+    shapes = {"w1": (channels * len(NEAR), a), "w2": (a * len(FAR), b), "w3": (2 * b + numbers, c), "w4": (c,)}
+    net = {name: rng.normal(0, np.sqrt(2 / shape[0]), shape) for name, shape in shapes.items()}
+    net |= {"b1": np.zeros(a), "b2": np.zeros(b), "b3": np.zeros(c), "b4": np.zeros(())}
+    return {name: value.astype(np.float32) for name, value in net.items()}
+
+
+def gradient(rays, numbers, labels, weights, net, keep=1.0):
+    """Gradient of the weighted cross-entropy, and its mean; keep: factors of the pooled features (dropout)."""
+    z, (x1, h1, x2, h2, top, pooled, h3) = logit(rays, numbers, net, keep)
+    p = 1 / (1 + np.exp(-z))
+    loss = float(np.mean(weights * (np.logaddexp(0, z) - labels * z)))
+    n, a, b = len(z), h1.shape[2], h2.shape[2]
+    dz = (weights * (p - labels) / n).astype(np.float32)
+    grad = {"w4": h3.T @ dz, "b4": dz.sum()}
+    d3 = np.outer(dz, net["w4"]) * (h3 > 0)
+    grad |= {"w3": pooled.T @ d3, "b3": d3.sum(axis=0)}
+    dp = (d3 @ net["w3"].T) * keep
+    d2 = np.repeat(dp[:, None, :b] / RAYS, RAYS, axis=1)
+    rows = np.arange(n)[:, None], top, np.arange(b)[None]
+    d2[rows] += dp[:, b : 2 * b]
+    d2 *= h2 > 0
+    grad |= {"w2": x2.reshape(-1, x2.shape[2]).T @ d2.reshape(-1, b), "b2": d2.sum(axis=(0, 1))}
+    dx2 = (d2.reshape(-1, b) @ net["w2"].T).reshape(n, RAYS, len(FAR), a)
+    d1 = np.zeros_like(h1)
+    for k, column in enumerate(around(FAR).T):
+        d1[:, column] += dx2[:, :, k]  # a column names every ray once
+    d1 *= h1 > 0
+    grad |= {"w1": x1.reshape(-1, x1.shape[2]).T @ d1.reshape(-1, a), "b1": d1.sum(axis=(0, 1))}
+    return grad, loss
+
+
+def train(rays, numbers, labels, weights, rng, report=print):
+    """One network, by Adam with a rate that falls to nothing; examples are turned and mirrored as they come."""
+    net = start(rng, rays.shape[2], numbers.shape[1])
+    first = {name: np.zeros_like(value) for name, value in net.items()}
+    second = {name: np.zeros_like(value) for name, value in net.items()}
+    steps, step = EPOCHS * (len(labels) // BATCH), 0
+    for epoch in range(EPOCHS):
+        order, losses = rng.permutation(len(labels)), []
+        for k in range(len(labels) // BATCH):
+            chosen = order[k * BATCH : (k + 1) * BATCH]
+            turn = np.arange(RAYS)[:: rng.choice([-1, 1])]
+            x = rays[chosen][:, turn] + NOISE * rng.standard_normal((BATCH, *rays.shape[1:]), np.float32)
+            y = numbers[chosen] + NOISE * rng.standard_normal((BATCH, numbers.shape[1]), np.float32)
+            keep = (rng.random((BATCH, len(net["w3"])), np.float32) > DROP) / np.float32(1 - DROP)
+            grad, loss = gradient(x, y, labels[chosen], weights[chosen], net, keep)
+            losses.append(loss)
+            step += 1
+            rate = RATE * 0.5 * (1 + np.cos(np.pi * step / steps)) * min(1, step / 200)
+            for name in LAYERS:
+                first[name] += 0.1 * (grad[name] - first[name])
+                second[name] += 0.001 * (grad[name] ** 2 - second[name])
+                size = np.sqrt(second[name] / (1 - 0.999**step)) + 1e-8
+                net[name] -= np.float32(rate) * (first[name] / (1 - 0.9**step) / size + DECAY * net[name])
+        report(f"epoch {epoch}: loss {np.mean(losses):.4f}")
+    return net
+
+
+def fit(rays, numbers, labels, seeds, kinds, report=print):
+    """The weights of the judge from examples (n, ...)."""
+    rng = np.random.default_rng(6)
+    rays = rays.astype(np.float32)
+    flat = rays.reshape(-1, rays.shape[2])
+    scale = {
+        "ray_mean": flat.mean(axis=0),
+        "ray_std": flat.std(axis=0) + 1e-3,
+        "number_mean": numbers.mean(axis=0),
+        "number_std": numbers.std(axis=0) + 1e-3,
+    }
+    rays = (rays - scale["ray_mean"]) / scale["ray_std"]
+    numbers = ((numbers - scale["number_mean"]) / scale["number_std"]).astype(np.float32)
+    labels = labels.astype(np.float32)
+    # a scene counts once, however much was proposed in it
+    count = np.array(
+        [
+            np.count_nonzero(seeds[kinds] == s) + 1j * np.count_nonzero(seeds[~kinds] == s)
+            for s in range(seeds.max() + 1)
+        ]
+    )
+    count = np.where(kinds, count.real[seeds], count.imag[seeds])
+    weights = np.where(labels == 1, 1.0, FALSE_COSTS * 5 / (count + 5)).astype(np.float32)
+    nets = [train(rays, numbers, labels, weights, rng, report) for _ in range(NETWORKS)]
+    return scale | {name: np.stack([net[name] for net in nets]) for name in LAYERS}
+
+
+def main(arguments):
+    """Collect, train, write."""
+    parser = argparse.ArgumentParser(prog="python -m tests.targets.train_ball_judge", description=__doc__)
+    parser.add_argument("--scenes", type=int, default=960, help="of each kind")
+    parser.add_argument("--folder", help="where rendered scenes are kept")
+    options = parser.parse_args(arguments)
+    found, seeds, kinds = [], [], []
+    begun = time.monotonic()
+    for seed in range(FIRST, FIRST + options.scenes):
+        if seed % 5 == 0:
+            continue  # held out
+        for kind in ("ball", "no_ball"):
+            new = examples(seed, kind, folder=options.folder)
+            found += new
+            seeds += [seed] * len(new)
+            kinds += [kind == "ball"] * len(new)
+        if seed % 50 == 49:
+            print(f"scene {seed}: {len(found)} examples, {time.monotonic() - begun:.0f} s", flush=True)
+    rays, numbers, labels = (np.array(part) for part in zip(*found, strict=True))
+    parts = fit(rays, numbers, labels, np.array(seeds), np.array(kinds))
+    np.savez_compressed(WEIGHTS, **{name: value.astype(np.float16) for name, value in parts.items()})
+    print(f"{WEIGHTS}: {WEIGHTS.stat().st_size / 1000:.0f} kB from {len(labels)} examples")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,94 @@
+"""The judge of the ball detector: its weights, what it may not depend on, and how they are trained."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
+
+from ir50p_lab.vision import RED, Ball, Colour, find_balls
+from ir50p_lab.vision.ball.fit import view_of
+from ir50p_lab.vision.ball.judge import LAYERS, WEIGHTS, logit, score
+from ir50p_lab.vision.ball.look import RAYS
+from ir50p_lab.vision.ball.measure import measure
+from tests.targets.ball_examples import examples, painted
+from tests.targets.train_ball_judge import gradient, start
+
+RNG = np.random.default_rng(3)
+
+
+def measured(light, guess=(300, 200, 40), colour=RED):
+    picture = photograph(light)
+    return measure(picture, guess, view_of(picture.shape), colour)
+
+
+def test_ball_and_octagon():
+    ball = measured(add_ball(empty(grain=0.05), 700, (300, 200), 40))
+    octagon = measured(add_polygon(empty(grain=0.05), circle_corners((300, 200), 40, 8)))
+    scores = score([ball, octagon])
+    assert scores[0] > 0.9 and scores[1] < 0.5
+
+
+def test_weights_are_small():
+    assert WEIGHTS.stat().st_size < 300_000
+
+
+def test_turned_and_alone_or_among_others():
+    ball = measured(add_ball(empty(grain=0.05), 700, (300, 200), 40))
+    turned = dataclasses.replace(ball, samples=np.roll(ball.samples, 5, axis=0), edges=np.roll(ball.edges, 5, axis=0))
+    np.testing.assert_allclose(score([ball]), score([turned, ball])[1], atol=1e-5)
+    np.testing.assert_allclose(score([ball]), score([turned])[0], atol=1e-4)
+
+
+def test_what_another_ball_covers_is_left_out():
+    light = add_ball(add_ball(empty(), 700, (300, 200), 40), 700, (362, 200), 25)
+    found = measured(light)
+    assert score([found], [[Ball(362.0, 200.0, 25.0, 0.9)]])[0] >= score([found])[0]
+
+
+@pytest.mark.parametrize("paint", [(0.03, 0.12, 0.5), (0.05, 0.4, 0.08), (0.7, 0.45, 0.02)])
+def test_any_colour(paint):
+    """The judge has seen red balls only: shape and shading count, not the hue."""
+    picture = photograph(add_ball(empty(), 700, (300, 200), 30, colour=paint))
+    patch = picture[190:211, 290:311]
+    assert find_balls(patch if patch.shape[0] > 40 else picture, patch)[0].score > 0.9
+
+
+def test_dark_and_noisy():
+    light = 0.06 * add_ball(empty(), 700, (300, 200), 24)
+    balls = find_balls(photograph(light, noise=6))
+    assert np.hypot(balls[0].x - 300, balls[0].y - 200) < 1.5
+
+
+def test_looser_colour():
+    looser = Colour(hue=355.0, tolerance=20.0, saturation=0.3, value=0.14).looser
+    assert looser.value < 0.14 and looser.saturation < 0.3
+
+
+def test_examples_tell_balls_from_the_rest():
+    found = examples(101, "ball", copies=1)
+    labels = np.array([label for *_, label in found])
+    assert set(labels) == {0, 1}
+    assert all(rays.shape[0] == RAYS and np.isfinite(rays).all() and np.isfinite(m).all() for rays, m, _ in found)
+    shapes = [label for turn in range(3) for *_, label in painted(101, turn)]
+    assert 0 < sum(shapes) < len(shapes)  # discs and others
+
+
+@pytest.mark.parametrize("name", LAYERS)
+def test_gradient_against_differences(name):
+    net = {key: value.astype(float) for key, value in start(RNG, 9, 5).items()}
+    rays, numbers = RNG.normal(size=(6, RAYS, 9)), RNG.normal(size=(6, 5))
+    labels, weights = np.array([0.0, 1, 1, 0, 1, 0]), RNG.uniform(0.5, 2, 6)
+    slope = np.asarray(gradient(rays, numbers, labels, weights, net)[0][name])
+    along = RNG.normal(size=net[name].shape)
+    ends = [gradient(rays, numbers, labels, weights, net | {name: net[name] + e * along})[1] for e in (1e-5, -1e-5)]
+    assert np.sum(slope * along) == pytest.approx((ends[0] - ends[1]) / 2e-5, rel=1e-3, abs=1e-6)
+
+
+def test_networks_agree_in_shape():
+    with np.load(WEIGHTS) as file:
+        count = {name: len(file[name]) for name in LAYERS}
+        channels, numbers = len(file["ray_mean"]), len(file["number_mean"])
+        net = {name: file[name][0].astype(np.float32) for name in LAYERS}
+    assert len(set(count.values())) == 1
+    assert logit(np.zeros((2, RAYS, channels), np.float32), np.zeros((2, numbers), np.float32), net)[0].shape == (2,)
