@@ -1,4 +1,6 @@
-"""Checks of array arguments at the public edge: a wrong shape or a NaN gets a sentence, not a result."""
+"""Checks of arguments at the public edge: a wrong shape, a wrong type or a NaN gets a sentence, not a result."""
+
+import math
 
 import numpy as np
 
@@ -10,10 +12,7 @@ def vectors3(name, value, *, unit="rad"):
 
     Raises InputError, naming `name` and `unit`, if the shape is not (3,) or (n, 3) or a number is not finite.
     """
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must hold numbers in {unit}; got {value!r}") from None
+    array = numbers(name, value, unit=unit)
     if array.ndim == 0 or array.shape[-1] != 3:
         raise InputError(f"{name} has shape {array.shape}; give shape (3,), or (n, 3) with one row per sample ({unit})")
     if not np.isfinite(array).all():
@@ -22,6 +21,50 @@ def vectors3(name, value, *, unit="rad"):
             "remove or repair that sample"
         )
     return array
+
+
+def numbers(name, value, *, unit="its unit"):
+    """`value` as a float array of any shape. Raises InputError for what holds no real numbers, or ragged rows."""
+    try:
+        return np.asarray(value, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{name} must hold numbers in {unit}; got {value!r:.60}") from None
+
+
+def number(name, value, rule="finite", *, unit="", hint=""):
+    """`value` as a float. rule: "finite", ">= 0", "> 0", or "> 0 or inf". Raises InputError, ending with `hint`."""
+    try:
+        single = not isinstance(value, (str, bytes, bool)) and np.ndim(value) == 0
+        x = float(value) if single else math.nan
+    except (TypeError, ValueError, OverflowError):
+        x = math.nan
+    fits = {"finite": math.isfinite(x), ">= 0": 0 <= x < math.inf, "> 0": 0 < x < math.inf, "> 0 or inf": x > 0}
+    if not fits[rule]:
+        asked = "one finite number" if rule == "finite" else f"one {'' if 'inf' in rule else 'finite '}number {rule}"
+        raise InputError(f"{name} = {value!r:.60}{' ' * bool(unit)}{unit}: give {asked}{': ' * bool(hint)}{hint}")
+    return x
+
+
+def whole(name, value, least, most):
+    """`value` as an int from `least` to `most`. Raises InputError."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
+        raise InputError(f"{name} = {value!r:.60}: give a whole number from {least} to {most}")
+    return int(value)
+
+
+def choice(name, value, choices):
+    """`value`, one of some texts. Raises InputError naming them all."""
+    if not isinstance(value, str) or value not in choices:
+        *first, last = map(repr, choices)
+        raise InputError(f"{name} = {value!r:.60}: choose {', '.join(first)} or {last}")
+    return value
+
+
+def switch(name, value):
+    """`value` as True or False; nothing else counts as one. Raises InputError."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise InputError(f"{name} = {value!r:.60}: give True or False")
+    return bool(value)
 
 
 def first_not_finite(array):

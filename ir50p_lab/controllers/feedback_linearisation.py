@@ -100,7 +100,10 @@ def gains_for_poles(poles):
 
     Raises InputError if a pole is not in the left half plane, or a complex one comes without its partner.
     """
-    poles = np.atleast_1d(np.asarray(poles, dtype=complex))
+    try:
+        poles = np.atleast_1d(np.asarray(poles, dtype=complex))
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"poles = {poles!r:.60}: give n numbers, complex ones in pairs") from None
     if poles.ndim != 1 or not len(poles) or not np.isfinite(poles).all() or (poles.real >= 0).any():
         raise InputError(f"poles = {poles.tolist()}: give numbers with negative real part; the error grows otherwise")
     coefficients = np.poly(poles)
@@ -154,8 +157,8 @@ def pendulum_with_motor_lag():
 def _numbers(name, values):
     try:
         array = np.atleast_1d(np.asarray(values, dtype=float))
-    except (TypeError, ValueError):
-        raise InputError(f"{name} = {values!r}: give numbers, K0 first") from None
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{name} = {values!r:.60}: give numbers, K0 first") from None
     if array.ndim != 1 or not len(array) or not np.isfinite(array).all():
         raise InputError(f"{name} = {values!r}: give finite numbers, K0 first")
     return array

@@ -7,6 +7,7 @@ import numpy as np
 
 from ir50p_lab.controllers.model_based import LIMIT_PWM, model_in_unit
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import number
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.dynamics import inverse_dynamics
 from ir50p_lab.signals.reference import per_joint
@@ -65,7 +66,7 @@ def saturation_forecast(model, reference, seconds=None, *, limit=None, margin=0.
     if limit is None:
         raise InputError("limit = None: say how much the drives can give, in the unit of the model")
     limit = np.array(per_joint("limit", limit, unit=unit, positive=True))
-    if not (np.isscalar(margin) and 0 <= margin < 1):
+    if number("margin", margin, ">= 0") >= 1:
         raise InputError(f"margin = {margin!r}: give the share of the limit kept for feedback, 0 to below 1")
     t, rows = _samples(reference, seconds, period)
 
@@ -95,10 +96,7 @@ def _samples(reference, seconds, period):
         raise InputError(f"reference = {reference!r}: give a reference of `signals`, such as quintic(...)")
     seconds = reference.duration if seconds is None else seconds
     for name, value in (("seconds", seconds), ("period", period)):
-        if not (np.isscalar(value) and not isinstance(value, str) and math.isfinite(value) and value > 0):
-            raise InputError(
-                f"{name} = {value!r}: give a finite number of s > 0 (a motion without end needs `seconds`)"
-            )
+        number(name, value, "> 0", unit="s", hint="a motion without end needs `seconds`")
     t = np.arange(math.floor(seconds / period + 1e-9) + 1) * period
     return t, reference.sample(t)
 

@@ -6,8 +6,9 @@ import numpy as np
 
 from ir50p_lab.controllers import model_law as law
 from ir50p_lab.controllers.base import Controller
-from ir50p_lab.controllers.pid import gains
+from ir50p_lab.controllers.pid import gains, positive
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import choice, number, switch
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.dynamics import as_theta
 from ir50p_lab.signals.reference import per_joint
@@ -61,20 +62,20 @@ class ModelController(Controller):
         if position_filter_hz is not None:
             rate = 2 * np.pi * positive("position_filter_hz", position_filter_hz, infinite=True)
             p[law.POSITION_RATE] = 0.0 if math.isinf(rate) else rate
-        if not (np.isscalar(delay) and 0 <= delay <= 1):
+        if number("delay", delay, ">= 0", unit="s") > 1:
             raise InputError(f"delay = {delay!r} s: give 0 to 1 s, from a sample to the moment its command acts")
         p[law.DELAY] = delay
         p[law.MODE], p[law.GRAVITY], p[law.FADE_RATE] = self.mode, gravity, 1 / _FADE
-        p[law.RATE_OF_ANGLE] = _choice("velocity", velocity, ("error", "angle")) == "angle"
-        p[law.SIGN_OF_MEASURED] = _choice("friction_sign", friction_sign, ("reference", "measured")) == "measured"
-        p[law.REFERENCE_VELOCITY] = _choice("model_velocity", model_velocity, ("measured", "reference")) == "reference"
-        p[law.ANTI_WINDUP] = bool(anti_windup)
+        p[law.RATE_OF_ANGLE] = choice("velocity", velocity, ("error", "angle")) == "angle"
+        p[law.SIGN_OF_MEASURED] = choice("friction_sign", friction_sign, ("reference", "measured")) == "measured"
+        p[law.REFERENCE_VELOCITY] = choice("model_velocity", model_velocity, ("measured", "reference")) == "reference"
+        p[law.ANTI_WINDUP] = switch("anti_windup", anti_windup)
         self._friction(model, theta, friction, smooth, breakaway, qs)
         self._write_gains(kp, ki, kd)
 
     def _friction(self, model, theta, friction, smooth, breakaway, qs):
         p, theta = self.parameters, theta.copy()
-        p[law.DRY] = _FRICTION[_choice("friction", friction, tuple(_FRICTION))]
+        p[law.DRY] = _FRICTION[choice("friction", friction, tuple(_FRICTION))]
         if friction == "none":
             theta[:, 10:16] = 0.0
         p[law.THETA :] = theta.ravel()
@@ -184,24 +185,3 @@ def model_in_unit(model, limit_pwm=None, limit=None, g=None):
     if limit_pwm is None:
         return theta, gravity, "N m"
     return (np.array(model.theta_pwm) if isinstance(model, Arm) else theta), gravity, "PWM"
-
-
-def positive(name, value, *, infinite=False, joints=False):
-    """One positive number (or one per joint) as an array; infinite only where allowed. Raises InputError."""
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        array = np.array(np.nan)
-    if np.isnan(array).any() or (array <= 0).any() or array.shape not in ((), (3,) if joints else ()):
-        raise InputError(
-            f"{name} = {value!r}: give {'one positive number, or one per joint' if joints else 'one positive number'}"
-        )
-    if not (infinite or joints) and not np.isfinite(array).all():
-        raise InputError(f"{name} = {value!r}: must be finite")
-    return array
-
-
-def _choice(name, value, choices):
-    if value not in choices:
-        raise InputError(f"{name} = {value!r}: choose one of {', '.join(map(repr, choices))}")
-    return value

@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.controllers.base import Controller
 from ir50p_lab.controllers.sampling import elapsed
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import choice, numbers, switch, vectors3
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling.closed_form import not_denormal
 
@@ -96,20 +96,19 @@ class PID(Controller):
     ):
         if limit_pwm is not None and limit is not None:
             raise InputError("give limit_pwm (PWM counts) or limit (N m), not both: the command has one unit")
-        if derivative_on not in ("measurement", "error"):
-            raise InputError(f"derivative_on = {derivative_on!r}: choose 'measurement' or 'error'")
+        choice("derivative_on", derivative_on, ("measurement", "error"))
         self.unit = "N m" if limit_pwm is None else "PWM"
         bound = limit if limit_pwm is None else limit_pwm
         self.parameters = np.zeros(N_PARAMETERS)
         self.state = np.zeros(N_STATES)
-        self.parameters[LIMIT : LIMIT + 3] = np.inf if bound is None else _positive("limit", bound)
-        self.parameters[PERIOD] = _positive("period", period)
-        self.parameters[FILTER_RATE] = 2 * np.pi * _positive("filter_hz", filter_hz)
+        self.parameters[LIMIT : LIMIT + 3] = np.inf if bound is None else positive("limit", bound, joints=True)
+        self.parameters[PERIOD] = positive("period", period)
+        self.parameters[FILTER_RATE] = 2 * np.pi * positive("filter_hz", filter_hz, infinite=True)
         if position_filter_hz is not None:
-            rate = 2 * np.pi * _positive("position_filter_hz", position_filter_hz)
+            rate = 2 * np.pi * positive("position_filter_hz", position_filter_hz, infinite=True)
             self.parameters[POSITION_RATE] = 0.0 if np.isinf(rate) else rate  # 0 and inf: no filter
         self.parameters[ON_ERROR] = derivative_on == "error"
-        self.parameters[ANTI_WINDUP] = bool(anti_windup)
+        self.parameters[ANTI_WINDUP] = switch("anti_windup", anti_windup)
         self._write_gains(kp, ki, kd)
 
     def _write_gains(self, kp, ki, kd):
@@ -157,7 +156,8 @@ class PID(Controller):
 
 def gains(name, value):
     """Three gains, finite and not negative, as an array (3,); a scalar counts for all joints."""
-    value = vectors3(name, np.broadcast_to(value, 3) if np.ndim(value) == 0 else value, unit="command per rad")
+    value = numbers(name, value, unit="command per rad")
+    value = vectors3(name, np.broadcast_to(value, 3) if value.ndim == 0 else value, unit="command per rad")
     if value.shape != (3,) or (value < 0).any():
         raise InputError(
             f"{name} = {value.tolist()}: give three gains >= 0, one per joint; a negative gain pushes away"
@@ -165,8 +165,13 @@ def gains(name, value):
     return value
 
 
-def _positive(name, value):
-    array = np.asarray(value, dtype=float)
-    if np.isnan(array).any() or (array <= 0).any():
-        raise InputError(f"{name} = {value}: must be positive")
+def positive(name, value, *, infinite=False, joints=False):
+    """One positive number (or one per joint) as an array; infinite only where allowed. Raises InputError."""
+    array = np.array(np.nan) if isinstance(value, (str, bool)) else numbers(name, value)
+    if np.isnan(array).any() or (array <= 0).any() or array.shape not in ((), (3,) if joints else ()):
+        raise InputError(
+            f"{name} = {value!r:.60}: give {'one positive number, or one per joint' if joints else 'a positive number'}"
+        )
+    if not (infinite or joints) and not np.isfinite(array).all():
+        raise InputError(f"{name} = {value!r}: must be finite")
     return array

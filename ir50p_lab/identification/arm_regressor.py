@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
@@ -89,8 +89,7 @@ def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
     if len(shape) > 2 or any(x.shape != shape for x in arrays.values()):
         shapes = ", ".join(f"{name} {x.shape}" for name, x in arrays.items())
         raise InputError(f"shapes do not fit: {shapes}; give all (3,), or all (n, 3) with the same n")
-    if not (np.isfinite(g) and g >= 0):
-        raise InputError(f"g = {g} m/s^2 must be finite and >= 0: the base z axis points up")
+    g = number("g", g, ">= 0", unit="m/s^2", hint="the base z axis points up")
     rows = {name: np.ascontiguousarray(x).reshape(-1, 3) for name, x in arrays.items()}
     out = np.zeros((len(rows["q"]), 3, 20))
     _regressor_loop(float(g), rows["q"], rows["qd"], rows["qdd"], _direction(sign, rows), out)
@@ -105,6 +104,5 @@ def _direction(sign, rows):
         if largest > 1:
             raise InputError(f"sign holds {largest:g}: a direction lies in -1 to 1; for a velocity give np.sign(qd)")
         return rows["sign"]
-    if isinstance(sign, (bool, str)) or not np.isscalar(sign) or not (np.isfinite(sign) and sign > 0):
-        raise InputError(f"sign = {sign!r}: give None, a speed > 0 in rad/s for tanh(qd/speed), or an array")
+    sign = number("sign", sign, "> 0", unit="rad/s", hint="a speed for tanh(qd/speed), or None, or an array")
     return np.tanh(rows["qd"] / sign)

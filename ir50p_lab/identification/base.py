@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.parameters import NAMES
 from ir50p_lab.identification.qr import independent_columns, r_factor
-from ir50p_lab.inputs import first_not_finite
+from ir50p_lab.inputs import first_not_finite, number, numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,6 +60,8 @@ def base_parameters(Phi, *, names=None, known=None, tolerance=1e-8):
         rank: the motion lies between excited and not excited.
     """
     A, names = _checked(Phi, names, tolerance)
+    if known is not None and not isinstance(known, dict):
+        raise InputError(f"known = {known!r:.60}: give a dict, name: value")
     length = np.linalg.norm(A, axis=0)
     seen = np.flatnonzero(length > 1e-14 * length.max())
     scaled = A[:, seen] / length[seen]
@@ -92,15 +94,12 @@ def base_parameters(Phi, *, names=None, known=None, tolerance=1e-8):
 
 
 def _checked(Phi, names, tolerance):
-    try:
-        A = np.asarray(Phi, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError("Phi must hold numbers, (n, 3, p) or (m, p)") from None
+    A = numbers("Phi", Phi, unit="(n, 3, p) or (m, p)")
     if A.ndim not in (2, 3) or not A.size:
         raise InputError(f"Phi has shape {A.shape}; give (n, 3, p) or (m, p)")
     if not np.isfinite(A).all():
         raise InputError(f"Phi holds {first_not_finite(A)}: remove or repair that sample")
-    if not 0 < tolerance < 0.1:
+    if not number("tolerance", tolerance, "> 0") < 0.1:
         raise InputError(
             f"tolerance = {tolerance} must lie between 0 and 0.1: the part of a column that must stick out"
         )
@@ -108,6 +107,8 @@ def _checked(Phi, names, tolerance):
     p = A.shape[1]
     if names is None:
         names = NAMES if p == len(NAMES) else tuple(f"p{k + 1}" for k in range(p))
+    if not isinstance(names, (tuple, list)):
+        raise InputError(f"names = {names!r:.60}: give a tuple, one for each of {p} columns")
     if len(names) != p:
         raise InputError(f"{len(names)} names for {p} columns: give one for each")
     if len(A) < 2 * p:

@@ -8,7 +8,7 @@ from ir50p_lab.controllers.base import Controller
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.columns import columns_of, sampling_period
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import choice, number, vectors3
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
 from ir50p_lab.simulation.plant import DRY, FS, QS, make_plant
@@ -63,11 +63,11 @@ class Run:
             raise InputError("the times are uneven or have gaps: a loop is compared without; cut with between(t0, t1)")
         if not isinstance(controller, Controller):
             raise InputError(f"controller is a {type(controller).__name__}: give the PID (or other) of the run")
-        if not (np.isscalar(delay) and np.isfinite(delay) and 0 <= delay < 1):
+        choice("unit", unit, ("PWM", "N m"))
+        if number("delay", delay, ">= 0", unit="s") >= 1:
             raise InputError(f"delay = {delay!r} s: give 0 to below 1 s")
-        limit = (255.0 if unit == "PWM" else np.inf) if limit is None else float(limit)
-        if not limit > 0:
-            raise InputError(f"limit = {limit}: must be positive, in the unit of u")
+        g = number("g", g, ">= 0", unit="m/s^2")
+        limit = (255.0 if unit == "PWM" else np.inf) if limit is None else number("limit", limit, "> 0 or inf")
         rows = _rows(recording, reference, t, period)
         start, late = q[:_STILL].mean(axis=0), round(delay / period)
         return cls(t, q, u, rows, start, period, controller, late, limit, unit, float(g))
@@ -109,7 +109,7 @@ def _rows(recording, reference, t, period):
 
 def runs_of(recordings, controller, references=None, *, seconds=None, **options):
     """A list of Run, cut to the first `seconds` (None: whole): a recording or a list; a motion for all, or for each."""
-    if seconds is not None and not (np.isscalar(seconds) and not isinstance(seconds, str) and seconds >= 2):
+    if seconds is not None and number("seconds", seconds, "> 0", unit="s") < 2:
         raise InputError(f"seconds = {seconds!r}: give 2 s or more of each recording")
     recordings = list(recordings) if isinstance(recordings, (list, tuple)) else [recordings]
     if not isinstance(references, (list, tuple)):

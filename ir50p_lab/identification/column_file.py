@@ -1,6 +1,7 @@
 """Recordings of other people's machines: t, q and u from a text table of whatever program wrote it."""
 
 import math
+import os
 import re
 from dataclasses import dataclass
 
@@ -75,9 +76,9 @@ def read_columns(path, *, t=None, q=None, u=None, time_unit=None, angle_unit=Non
 
 def _lines(path):
     try:
-        with open(path, "rb") as file:
+        with open(os.fspath(path), "rb") as file:  # fspath: a number would be an open file's
             data = file.read()
-    except (OSError, TypeError) as error:
+    except (OSError, TypeError, ValueError) as error:
         raise RecordingError(f"cannot read {path!r}: {getattr(error, 'strerror', error)}; check the path") from None
     for encoding in ("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig", "latin-1"):
         try:

@@ -95,8 +95,10 @@ def runs(t, max_gap):
 def _numbers(name, value, unit):
     try:
         array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"{name} must hold numbers in {unit}; got {value!r:.60}") from None
+    if array.ndim == 0:
+        raise InputError(f"{name} = {value!r:.60} is a single number: give an array, time first")
     bad = ~np.isfinite(array)
     if bad.any():
         raise InputError(

@@ -9,6 +9,7 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.excitation_kernel import BOUNDS, evaluate, slopes
 from ir50p_lab.identification.parameters import ACTS_ON, chosen_columns
+from ir50p_lab.inputs import choice, number, switch, whole
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.signals.fourier import Fourier, at_rest, fourier, limits_of
 from ir50p_lab.signals.reference import seconds
@@ -47,6 +48,7 @@ def regressor_condition(reference, *, rows="joint", columns="rigid", samples=500
     Returns: (3,), one per joint, or with rows="shared" one number. Raises InputError.
     """
     _check_rows(rows)
+    whole("samples", samples, 20, 10**6)
     length = getattr(reference, "period", None) or getattr(reference, "duration", 0.0)
     if not (math.isfinite(length) and length > 0):
         raise InputError(f"the reference lasts {length} s: give a motion of finite length > 0, such as `fourier`")
@@ -95,8 +97,10 @@ def optimise_excitation(
     """
     _check(arm, harmonics, starts, iterations, seed)
     _check_rows(rows)
-    if not (np.isscalar(standing) and not isinstance(standing, (str, bool)) and 0 <= standing < math.inf):
-        raise InputError(f"standing = {standing!r}: give a finite number >= 0, the price of time near standstill")
+    standing = number("standing", standing, ">= 0", hint="the price of time near standstill")
+    table, margin = number("table", table, unit="m"), number("margin", margin, ">= 0", unit="rad")
+    whole("periods", periods, 1, 10**6)
+    switch("progress", progress)
     period = seconds("period", period, positive=True)
     picked = _columns(columns)
     limits = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
@@ -106,13 +110,13 @@ def optimise_excitation(
     from tqdm.auto import tqdm
 
     with tqdm(total=starts * iterations, disable=not progress, unit="step", desc="excitation") as bar:
-        for number in range(starts):
+        for start in range(starts):
             x = problem.start(generator)
             if x is None:
                 continue
             plain = x if plain is None else plain
             found = problem.improve(x, iterations, bar.update)
-            bar.update((number + 1) * iterations - bar.n)
+            bar.update((start + 1) * iterations - bar.n)
             ends.append(math.exp(problem.value(found)))
             bar.set_postfix_str(f"condition {min(ends):.3g}")
             if best is None or problem.value(found) < problem.value(best):
@@ -262,8 +266,7 @@ def _condition(A):
 
 
 def _check_rows(rows):
-    if rows not in ("joint", "shared"):
-        raise InputError(f"rows = {rows!r}: choose 'joint' (each its own parameters) or 'shared' (one theta for all)")
+    choice("rows", rows, ("joint", "shared"))
 
 
 def _check(arm, harmonics, starts, iterations, seed):
@@ -277,5 +280,4 @@ def _check(arm, harmonics, starts, iterations, seed):
         ("iterations", iterations, 1, 10**5),
         ("seed", seed, 0, 2**63),
     ):
-        if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
-            raise InputError(f"{name} = {value!r}: give a whole number from {least} to {most}")
+        whole(name, value, least, most)

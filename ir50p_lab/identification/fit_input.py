@@ -3,15 +3,15 @@
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.inputs import first_not_finite, vectors3
+from ir50p_lab.inputs import choice, first_not_finite, number, numbers, vectors3
 
 METHODS = ("ls", "weighted", "huber", "ridge", "bounded", "iv")
 
 
 def checked_data(Phi, y, every):
     """Phi (n, 3, 20) and y (n, 3) as float arrays, each `every`-th sample. Raises InputError."""
-    if isinstance(every, bool) or int(every) != every or every < 1:
-        raise InputError(f"every = {every!r}: a whole number of samples >= 1")
+    if isinstance(every, bool) or not isinstance(every, (int, np.integer)) or every < 1:
+        raise InputError(f"every = {every!r:.60}: a whole number of samples >= 1")
     Phi, y = blocks("Phi", Phi), vectors3("y", y, unit="PWM or N m")
     if y.shape != Phi.shape[:2]:
         raise InputError(f"y has shape {y.shape}, Phi {Phi.shape}; give y (n, 3) with a row for each of Phi's")
@@ -20,10 +20,7 @@ def checked_data(Phi, y, every):
 
 def blocks(name, value):
     """`value` as a float array (n, 3, 20), all finite. Raises InputError naming `name`."""
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must hold numbers, (n, 3, 20); got {type(value).__name__}") from None
+    array = numbers(name, value, unit="(n, 3, 20)")
     if array.ndim != 3 or array.shape[1:] != (3, 20) or not len(array):
         raise InputError(f"{name} has shape {array.shape}; give (n, 3, 20), n >= 1, as regressor(q, qd, qdd) returns")
     # a sum is finite unless a number is not (or huge): much faster than looking at each
@@ -39,11 +36,10 @@ def checked_options(method, rows, errors, l2, threshold, strength):
         ("rows", rows, ("joint", "shared")),
         ("errors", errors, ("hac", "classical")),
     ):
-        if value not in choices:
-            raise InputError(f"{name} = {value!r}: choose {', '.join(map(repr, choices))}")
-    for name, value, unit in (("l2", l2, " m"), ("threshold", threshold, ""), ("strength", strength, "")):
-        if value is not None and not (np.isfinite(value) and value > 0):
-            raise InputError(f"{name} = {value}{unit} must be finite and > 0")
+        choice(name, value, choices)
+    for name, value, unit in (("l2", l2, "m"), ("threshold", threshold, ""), ("strength", strength, "")):
+        if value is not None:
+            number(name, value, "> 0", unit=unit)
     if l2 is not None and l2 > 10:
         raise InputError(f"l2 = {l2} m is longer than 10 m: is it in millimetres? Give metres")
 
@@ -63,7 +59,10 @@ def checked_weights(weights, n, every):
 
 def checked_use(use, n, every):
     """Which samples count, (n, 3) bool, after decimation. Raises InputError."""
-    use = np.asarray(use)
+    try:
+        use = np.asarray(use)
+    except ValueError:
+        raise InputError("use has rows of different length: give (n, 3) of True and False, as Motion.use") from None
     if use.dtype != bool or use.ndim != 2 or use.shape[1] != 3 or len(use[:: int(every)]) != n:
         raise InputError(f"use has shape {use.shape}, type {use.dtype}: give (n, 3) of True and False, as Motion.use")
     use = use[:: int(every)]

@@ -13,6 +13,7 @@ from ir50p_lab.identification.parameters import ACTS_ON, NAMES, chosen_columns
 from ir50p_lab.identification.problem import prepare
 from ir50p_lab.identification.robust import huber
 from ir50p_lab.identification.standard_errors import lag_one, sandwich
+from ir50p_lab.inputs import choice
 
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 
@@ -65,6 +66,7 @@ def fit(
     Raises: InputError on bad arguments; IdentificationError if there are too few samples, no motion, or an estimator
         cannot settle.
     """
+    choice("unit", unit, ("PWM", "N m"))
     fit_input.checked_options(method, rows, errors, l2, threshold, strength)
     Phi, y = fit_input.checked_data(Phi, y, every)
     use = None if use is None else fit_input.checked_use(use, len(y), every)

@@ -126,7 +126,7 @@ def _columns(**columns):
     for name, value in columns.items():
         try:
             arrays[name] = np.array(value, dtype=float)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise InputError(f"{name} must be a list of numbers; got {type(value).__name__} {value!r:.60}") from None
         if arrays[name].ndim != 1 or not len(arrays[name]):
             raise InputError(f"{name} has shape {arrays[name].shape}; give one value per sample, shape (n,)")
@@ -146,7 +146,10 @@ def _columns(**columns):
 
 
 def _is_number(value):
-    return np.ndim(value) == 0 and not isinstance(value, (str, bytes)) and math.isfinite(value)
+    try:
+        return np.ndim(value) == 0 and not isinstance(value, (str, bytes)) and math.isfinite(value)
+    except (TypeError, ValueError, OverflowError):
+        return False
 
 
 def _jumps(t, u, u_before):

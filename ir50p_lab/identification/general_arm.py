@@ -11,7 +11,7 @@ import numpy as np
 import sympy
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
 from ir50p_lab.modelling.symbolic import derive
 
@@ -37,8 +37,8 @@ def general_parameters(links, *, rotors=(0.0, 0.0, 0.0)):
     Raises InputError on shapes.
     """
     found = {f"j{i + 1}": float(x) for i, x in enumerate(vectors3("rotors", rotors, unit="kg m^2"))}
-    if len(links) != 3:
-        raise InputError(f"{len(links)} links: give three of (m, com, inertia)")
+    if not isinstance(links, (list, tuple)) or [len(x) for x in links if isinstance(x, (list, tuple))] != [3, 3, 3]:
+        raise InputError(f"links = {links!r:.60}: give three of (m, com, inertia)")
     for i, (m, com, inertia) in enumerate(links, start=1):
         com, inertia = vectors3(f"com of link {i}", com, unit="m"), vectors3(f"inertia of link {i}", inertia, unit="SI")
         if com.shape != (3,) or inertia.shape != (3, 3) or not np.allclose(inertia, inertia.T, rtol=1e-9, atol=0):
@@ -63,10 +63,7 @@ def general_regressor(q, qd, qdd, *, l2, g=STANDARD_GRAVITY):
     q, qd, qdd = (vectors3(name, x, unit="SI") for name, x in (("q", q), ("qd", qd), ("qdd", qdd)))
     if q.ndim != 2 or q.shape != qd.shape or q.shape != qdd.shape:
         raise InputError(f"q {q.shape}, qd {qd.shape}, qdd {qdd.shape}: give all (n, 3)")
-    if not (np.isfinite(l2) and l2 > 0):
-        raise InputError(f"l2 = {l2} m must be finite and > 0")
-    if not (np.isfinite(g) and g >= 0):
-        raise InputError(f"g = {g} m/s^2 must be finite and >= 0")
+    l2, g = number("l2", l2, "> 0", unit="m"), number("g", g, ">= 0", unit="m/s^2")
     model, torque = _torque()
     out = np.zeros((len(q), 3, len(GENERAL_NAMES)))
     for k, name in enumerate(_KEPT):

@@ -14,6 +14,7 @@ from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.closed_loop import runs_of
 from ir50p_lab.identification.fitting import fit
 from ir50p_lab.identification.processing import central_derivatives, process
+from ir50p_lab.inputs import number
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta
 from ir50p_lab.signals.low_pass import low_pass
 
@@ -53,8 +54,7 @@ def fit_with_instruments(
     """
     theta, _ = as_theta(getattr(first, "theta", first))
     for name, value in (("cutoff_hz", cutoff_hz), ("slow", slow)):
-        if isinstance(value, (str, bool)) or not (np.isscalar(value) and np.isfinite(value) and value > 0):
-            raise InputError(f"{name} = {value!r}: give a finite number > 0")
+        number(name, value, "> 0")
     runs = runs_of(recordings, controller, references, delay=delay, unit="PWM", g=g)
     dry = getattr(first, "fs", None), getattr(first, "qs", None)
     parts = [_filtered(run, (theta, *dry), float(delay), cutoff_hz, slow) for run in runs]

@@ -10,6 +10,7 @@ from ir50p_lab.identification.closed_loop import Run, runs_of
 from ir50p_lab.identification.parameters import ACTS_ON, NAMES, OFFSETS, ONLY_THESIS
 from ir50p_lab.identification.standard_errors import long_run_sum
 from ir50p_lab.identification.validation import Validation, nrmse_fit
+from ir50p_lab.inputs import number, switch, whole
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta
 
 _STEP = 0.02  # of a parameter's scale, for differences: stiction makes the output jump on smaller ones
@@ -104,6 +105,10 @@ def output_error(
     Returns: OutputError. Raises InputError on bad arguments; IdentificationError if the first model's loop runs away.
     """
     theta, unit = _start(estimate, unit)
+    l2 = None if l2 is None else number("l2", l2, "> 0", unit="m")
+    seconds, step = number("seconds", seconds, "> 0", unit="s"), number("step", step, "> 0", unit="s")
+    whole("iterations", iterations, 1, 10**4)
+    stribeck, progress = switch("stribeck", stribeck), switch("progress", progress)
     runs = runs_of(recordings, controller, references, delay=delay, limit=limit, unit=unit, g=g, seconds=seconds)
     shape = _Shape.of(estimate, theta, l2, stribeck, seconds)
     from scipy.optimize import least_squares

@@ -1,5 +1,7 @@
 """The 20 parameters by name, and which of them act on which joint (thesis 2.50, 2.51 corrected)."""
 
+import numpy as np
+
 from ir50p_lab.errors import InputError
 
 # name: what it is for an in-line arm (Arm.theta). Masses and inertias in kg, m; times 1/K_i in PWM counts.
@@ -48,10 +50,12 @@ def chosen_columns(columns):
             raise InputError(f"columns = {columns!r}: choose 'rigid', 'thesis', or give a list of names")
         return [k for k, name in enumerate(NAMES) if columns == "thesis" or name not in ONLY_THESIS]
     found = set()
+    if not isinstance(columns, (list, tuple, set, range, np.ndarray)):
+        raise InputError(f"columns = {columns!r:.60}: choose 'rigid', 'thesis', or give a list of names")
     for item in columns:
         if isinstance(item, str) and item in NAMES:
             found.add(NAMES.index(item))
-        elif not isinstance(item, (str, bool)) and item in range(20):
+        elif isinstance(item, (int, np.integer)) and not isinstance(item, bool) and 0 <= item < 20:
             found.add(int(item))
         else:
             raise InputError(f"{item!r} is no column: give indices 0 to 19, or names of {', '.join(NAMES)}")

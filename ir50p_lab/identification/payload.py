@@ -10,6 +10,7 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.parameters import NAMES
+from ir50p_lab.inputs import number
 
 _CHANGED = ("theta2", "theta3", "theta4", "theta5", "theta6")
 _SURE = 3.0  # standard errors by which the payload must show
@@ -34,7 +35,7 @@ def payload_change(mass, *, l2, at):
     mass: kg; l2: upper arm, m; at: m from the elbow (the arm's l3 at the flange). Raises InputError.
     """
     for name, value, unit in (("mass", mass, "kg"), ("l2", l2, "m"), ("at", at, "m")):
-        if isinstance(value, (str, bool)) or not (np.isscalar(value) and np.isfinite(value) and 0 < value < 100):
+        if number(name, value, "> 0", unit=unit) >= 100:
             raise InputError(f"{name} = {value!r} {unit}: give a number above 0 and below 100")
     change = dict(zip(_CHANGED, (mass * l2**2, mass * l2, mass * at, mass * at**2, mass * at * l2), strict=True))
     return np.array([change.get(name, 0.0) for name in NAMES])

@@ -7,6 +7,7 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.columns import columns_of, runs, sampling_period
+from ir50p_lab.inputs import choice, number, switch, whole
 from ir50p_lab.signals.low_pass import low_pass
 
 _KINDS = ("zero-phase", "causal")
@@ -128,7 +129,7 @@ def process(
     t, q, u = columns_of(recording, q, u)
     period = sampling_period(t)
     rate = 1 / period
-    _check_options(derivatives, delay, held, decimate, trim, max_gap)
+    _check_options(derivatives, cutoff_hz, filter_u, delay, held, decimate, trim, max_gap)
     slow = _thresholds(slow, q.shape[1])
     if cutoff_hz is None and derivatives == "causal":
         raise InputError("cutoff_hz = None: the causal way needs its filter; give 1.5 to 10 Hz")
@@ -140,7 +141,7 @@ def process(
         notes.append(f"{len(parts) - 1} gap(s) in time: {len(parts)} runs, each filtered by itself")
     shortest = max(8, math.ceil(2 * trim * rate) + 4)
     uneven = False
-    for number, (first, last) in enumerate(parts):
+    for k, (first, last) in enumerate(parts):
         if last - first < shortest:
             notes.append(f"{last - first} samples from {t[first]:.4g} s on left out: too short a run")
             continue
@@ -151,7 +152,7 @@ def process(
         grid = piece[0]
         keep = np.flatnonzero((grid >= grid[0] + max(trim, delay) - 1e-9) & (grid <= grid[-1] - trim + 1e-9))
         keep = keep[(keep > 0) & (keep < len(grid) - 1)][:: int(decimate)]
-        pieces.append([x[keep] for x in piece] + [np.full(len(keep), number)])
+        pieces.append([x[keep] for x in piece] + [np.full(len(keep), k)])
     if sum(len(piece[0]) for piece in pieces) < 2:
         raise IdentificationError(
             f"nothing is left of {len(t)} samples: every run without a gap is shorter than {shortest} samples (filter "
@@ -192,25 +193,23 @@ def _piece(t, q, u, period, derivatives, cutoff_hz, order, filter_u, delay, held
     return [grid, *states, u], uneven
 
 
-def _check_options(derivatives, delay, held, decimate, trim, max_gap):
-    if derivatives not in _KINDS:
-        raise InputError(f"derivatives = {derivatives!r}: choose one of {', '.join(map(repr, _KINDS))}")
-    if not isinstance(held, (bool, np.bool_)):
-        raise InputError(f"held = {held!r}: give True (u held between samples) or False (measured at the instant)")
-    if isinstance(decimate, bool) or not (np.isscalar(decimate) and decimate in range(1, 10**6)):
-        raise InputError(f"decimate = {decimate!r}: give a whole number >= 1, every how many samples to keep")
+def _check_options(derivatives, cutoff_hz, filter_u, delay, held, decimate, trim, max_gap):
+    choice("derivatives", derivatives, _KINDS)
+    switch("filter_u", filter_u)
+    if cutoff_hz is not None:
+        number("cutoff_hz", cutoff_hz, "> 0", unit="Hz")
+    switch("held", held)
+    whole("decimate", decimate, 1, 10**6)
     for name, value, low in (("delay", delay, 0.0), ("trim", trim, 0.0), ("max_gap", max_gap, 1e-300)):
         if value is None and name != "delay":
             continue
-        number = np.isscalar(value) and not isinstance(value, (str, bytes)) and math.isfinite(value)
-        if not (number and value >= low):
-            raise InputError(f"{name} = {value!r}: give finite seconds {'>= 0' if low == 0 else '> 0'}")
+        number(name, value, ">= 0" if low == 0 else "> 0", unit="s")
 
 
 def _thresholds(slow, joints):
     try:
         array = np.broadcast_to(np.asarray(slow, dtype=float), joints)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         array = np.array([np.nan])
     if not (np.isfinite(array).all() and (array >= 0).all()):
         raise InputError(f"slow = {slow!r} rad/s: give one number >= 0, or one for each of {joints} joint(s)")

@@ -6,6 +6,7 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.validation import validate
+from ir50p_lab.inputs import number, numbers
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.dynamics import as_theta
 from ir50p_lab.signals.fourier import heights
@@ -60,17 +61,18 @@ def rehearse(reference, arm, controller, *, model=None, noise=5.0, seconds=None,
 
     if not hasattr(reference, "sample"):
         raise InputError(f"reference is a {type(reference).__name__}: give a motion such as `fourier` makes")
-    noise = np.asarray(noise, dtype=float)
+    noise = numbers("noise", noise, unit="PWM")
     if noise.shape not in ((), (3,)) or not np.isfinite(noise).all() or (noise < 0).any():
         raise InputError(f"noise = {noise.tolist()} PWM: give one number or three, finite and >= 0")
     if not isinstance(arm, Arm):
         raise InputError(f"arm is a {type(arm).__name__}: give an Arm, and a first estimate as model=")
-    if not np.isfinite(table):
-        raise InputError(f"table = {table} m: give its height, finite; -10 for none")
+    number("table", table, unit="m", hint="its height; -10 for none")
+    if not hasattr(controller, "step"):
+        raise InputError(f"controller is a {type(controller).__name__}: give the PID (or other) of the run")
     theta = arm.theta_pwm if model is None else as_theta(getattr(model, "theta", model))[0]
     if seconds is None:
         seconds = 2 * getattr(reference, "period", 0.5 * getattr(reference, "duration", np.inf))
-    if not (np.isscalar(seconds) and np.isfinite(seconds) and seconds >= 2):
+    if number("seconds", seconds, "> 0", unit="s") < 2:
         raise InputError(f"seconds = {seconds}: give a finite length of 2 s or more")
     run = simulate(
         arm if model is None else theta,

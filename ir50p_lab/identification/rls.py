@@ -18,7 +18,7 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.fit_input import blocks, checked_data
 from ir50p_lab.identification.parameters import ACTS_ON, chosen_columns
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import choice, number, numbers, vectors3
 from ir50p_lab.jit import jit
 
 _fast = jit(fastmath={"reassoc", "contract", "nsz", "arcp"})  # sums in any order: several products at once
@@ -106,15 +106,14 @@ class RLS:
     """
 
     def __init__(self, *, rows="joint", columns="rigid", P0=1e8, theta0=None, forgetting=1.0):
-        if rows not in ("joint", "shared"):
-            raise InputError(f"rows = {rows!r}: choose 'joint' or 'shared'")
-        if not (np.isfinite(P0) and P0 > 0):
-            raise InputError(f"P0 = {P0} must be finite and > 0: 1e8 says that nothing is known")
-        if not 0 < forgetting <= 1:
+        choice("rows", rows, ("joint", "shared"))
+        P0 = number("P0", P0, "> 0", hint="1e8 says that nothing is known")
+        forgetting = number("forgetting", forgetting, "> 0", hint="1 forgets nothing, 0.999 recalls 1000 samples")
+        if forgetting > 1:
             raise InputError(
                 f"forgetting = {forgetting} must be in (0, 1]: 1 forgets nothing, 0.999 recalls 1000 samples"
             )
-        start = np.zeros((3, 20)) if theta0 is None else np.array(theta0, dtype=float)
+        start = np.zeros((3, 20)) if theta0 is None else numbers("theta0", theta0)
         if start.shape not in ((20,), (3, 20)) or not np.isfinite(start).all():
             raise InputError(f"theta0 has shape {start.shape}: give (3, 20) or (20,), all finite")
         start = np.broadcast_to(start, (3, 20))

@@ -12,6 +12,7 @@ from ir50p_lab.identification.bandwidth import bandwidth
 from ir50p_lab.identification.columns import columns_of, runs, sampling_period
 from ir50p_lab.identification.processing import process
 from ir50p_lab.identification.regression import solve
+from ir50p_lab.inputs import number
 from ir50p_lab.signals.low_pass import low_pass
 
 NAMES = ("inertia", "viscous", "coulomb", "offset")
@@ -159,7 +160,7 @@ def _bandwidth(t, q, period, cutoff_hz):
     for first, last in parts:
         grid = t[first] + period * np.arange(math.floor((t[last - 1] - t[first]) / period + 1e-6) + 1)
         pieces.append(np.interp(grid, t[first:last], q[first:last]))
-    if cutoff_hz is not None and not (np.isscalar(cutoff_hz) and 0 < cutoff_hz < 0.5 / period):
+    if cutoff_hz is not None and number("cutoff_hz", cutoff_hz, "> 0", unit="Hz") >= 0.5 / period:
         raise InputError(f"cutoff_hz = {cutoff_hz!r}: give a number between 0 and half the rate, {0.5 / period:.4g} Hz")
     return bandwidth(pieces, 1 / period, cutoff_hz)
 
@@ -192,8 +193,8 @@ def _fit(t, q, u, period, band, delay, held):
     edge = math.ceil(rate / cutoff / 2)
     thin = max(1, int(rate / cutoff / _OWN))
     rows, fastest = [np.empty((0, 9))], 0.0
-    for number in np.unique(whole.segment):
-        here = whole.segment == number
+    for segment in np.unique(whole.segment):
+        here = whole.segment == segment
         if here.sum() < 2 * edge + 30:  # too short for the filter
             continue
         angle, drive = whole.q[here, 0], whole.u[here, 0]

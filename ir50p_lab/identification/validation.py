@@ -1,6 +1,5 @@
 """How good an identified model is on data it has not seen: as Table 4.4 on raw PWM, simulated, and by its residuals."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +8,7 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.identification.processing import process
+from ir50p_lab.inputs import choice, number, numbers, switch
 from ir50p_lab.modelling.dynamics import as_theta
 
 
@@ -54,7 +54,7 @@ def nrmse_fit(measured, predicted):
     Args: measured, predicted: (n,) or (n, k). Returns: (rms, fit), numbers or (k,). Raises InputError on shapes that
     differ, numbers that are not finite, or a measured column that never changes.
     """
-    y, p = (np.asarray(x, dtype=float) for x in (measured, predicted))
+    y, p = (numbers(name, x) for name, x in (("measured", measured), ("predicted", predicted)))
     if y.shape != p.shape or y.ndim not in (1, 2) or len(y) < 2:
         raise InputError(f"measured {y.shape} and predicted {p.shape}: give two arrays of one shape, (n,) or (n, k)")
     for name, x in (("measured", y), ("predicted", p)):
@@ -84,11 +84,11 @@ def validate(estimate, recording, q=None, u=None, *, delay=0.0, held=True, sign=
     motion = process(t, q, u, held=False, **steps)
     Phi = regressor(motion.q, motion.qd, motion.qdd, g=g, sign=sign)
     predicted = np.einsum("nij,ij->ni", Phi, theta)
-    later = held and steps.get("derivatives", "zero-phase") == "zero-phase"
+    later = switch("held", held) and steps.get("derivatives", "zero-phase") == "zero-phase"
     acts = t + _seconds("delay", delay) + (0.5 * np.diff(t, append=t[-1] + sampling_period(t)) if later else 0.0)
     kept, found = [], []
-    for number in np.unique(motion.segment):
-        here = motion.segment == number
+    for segment in np.unique(motion.segment):
+        here = motion.segment == segment
         inside = (acts >= motion.t[here][0]) & (acts <= motion.t[here][-1])
         kept.append(np.flatnonzero(inside))
         found.append(np.column_stack([np.interp(acts[inside], motion.t[here], p) for p in predicted[here].T]))
@@ -109,14 +109,16 @@ def validate_ahead(estimate, recording, q=None, u=None, *, horizon=1.0, delay=0.
     from ir50p_lab.simulation import simulate
 
     theta, t, q, u = _inputs(estimate, recording, q, u)
+    choice("unit", unit, ("PWM", "N m"))
+    g = number("g", g, ">= 0", unit="m/s^2")
     motion = process(t, q, u, delay=_seconds("delay", delay), held=True, **steps)
     period = 1 / motion.rate_hz
     count = round(_seconds("horizon", horizon) / period)
     if count < 2:
         raise InputError(f"horizon = {horizon} s is less than two samples of {period:.4g} s: give a longer one")
     times, measured, predicted = [], [], []
-    for number in np.unique(motion.segment):
-        here = np.flatnonzero(motion.segment == number)
+    for segment in np.unique(motion.segment):
+        here = np.flatnonzero(motion.segment == segment)
         for first in range(here[0], here[-1] - count, count):
             start = motion.t[first] - delay
             drive = u[np.clip(np.searchsorted(t, start + period * np.arange(count + 1) + 1e-9) - 1, 0, None)]
@@ -155,6 +157,12 @@ def validate_closed_loop(estimate, recording, controller, reference, *, delay=0.
     from ir50p_lab.simulation import simulate
 
     theta, t, q, u = _inputs(estimate, recording, None, None)
+    choice("unit", unit, ("PWM", "N m"))
+    g = number("g", g, ">= 0", unit="m/s^2")
+    if not (hasattr(controller, "step") and callable(reference)):
+        raise InputError(
+            f"controller = {controller!r:.40}, reference = {reference!r:.40}: give the controller and motion of the run"
+        )
     period = sampling_period(t)
     if np.abs(np.diff(t) - period).max() > 0.1 * period:
         raise InputError("the times are uneven or have gaps: a loop must be compared without; cut the recording")
@@ -222,9 +230,7 @@ def _inputs(estimate, recording, q, u):
 
 
 def _seconds(name, value):
-    if not (np.isscalar(value) and not isinstance(value, (str, bytes)) and math.isfinite(value) and value >= 0):
-        raise InputError(f"{name} = {value!r}: give finite seconds >= 0")
-    return float(value)
+    return number(name, value, ">= 0", unit="s")
 
 
 def _result(t, measured, predicted, of):

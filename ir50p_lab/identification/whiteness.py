@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +38,7 @@ def whiteness(residuals, *, lags=None):
     Args: residuals: (n,) or (n, k), evenly sampled, the mean is taken out; lags: whole number, default min(50, n/5).
     Returns: Whiteness. Raises InputError for fewer than 20 samples, numbers that are not finite, constant residuals.
     """
-    e = np.asarray(residuals, dtype=float)
+    e = numbers("residuals", residuals)
     e = e[:, None] if e.ndim == 1 else e
     if e.ndim != 2 or len(e) < 20:
         raise InputError(f"residuals have shape {np.shape(residuals)}: give 20 or more, (n,) or (n, k), time first")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import number, numbers, vectors3
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.arm import Arm
@@ -31,10 +31,9 @@ def as_theta(arm, g=None):
                 f"g = {g}: an Arm carries its own gravity ({arm.g} m/s^2); use dataclasses.replace(arm, g=...)"
             )
         return arm.kernel_theta, arm.g
-    g = STANDARD_GRAVITY if g is None else float(g)
-    if not (np.isfinite(g) and g >= 0):
-        raise InputError(f"g = {g} m/s^2 must be >= 0: the base z axis points up")
-    theta = np.array(arm, dtype=float, order="C") if np.ndim(arm) else None
+    g = STANDARD_GRAVITY if g is None else number("g", g, ">= 0", unit="m/s^2", hint="the base z axis points up")
+    single = arm is None or np.isscalar(arm) or not hasattr(arm, "__len__")
+    theta = None if single else np.array(numbers("theta", arm, unit="SI or PWM"), order="C")
     if theta is None or theta.shape not in ((3, 20), (20,)):
         found = type(arm).__name__ if theta is None else f"an array of shape {theta.shape}"
         raise InputError(f"expected an Arm, or theta with shape (3, 20) or (20,), got {found}")

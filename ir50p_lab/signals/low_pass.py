@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite
+from ir50p_lab.inputs import first_not_finite, number, numbers, whole
 
 
 def low_pass(x, cutoff_hz, rate_hz, *, order=1, kind="causal"):
@@ -117,10 +117,8 @@ def alias(f_hz, rate_hz):
 
 def _sections(cutoff_hz, rate_hz, order):
     rate_hz = _rate(rate_hz)
-    if isinstance(order, bool) or order not in range(1, 9):
-        raise InputError(f"order = {order!r}: give a whole number from 1 to 8")
-    if not (np.isscalar(cutoff_hz) and not isinstance(cutoff_hz, str) and cutoff_hz > 0):
-        raise InputError(f"cutoff_hz = {cutoff_hz!r} Hz: give one number > 0")
+    whole("order", order, 1, 8)
+    cutoff_hz = number("cutoff_hz", cutoff_hz, "> 0 or inf", unit="Hz")
     if cutoff_hz >= rate_hz / 2:
         raise InputError(
             f"cutoff_hz = {cutoff_hz:g} Hz, but samples at {rate_hz:g} Hz hold nothing above half their rate, "
@@ -138,9 +136,7 @@ def _butterworth(order, cutoff_hz, rate_hz):
 
 
 def _rate(rate_hz):
-    if not (np.isscalar(rate_hz) and not isinstance(rate_hz, str) and math.isfinite(rate_hz) and rate_hz > 0):
-        raise InputError(f"rate_hz = {rate_hz!r}: give the number of samples per second, > 0")
-    return float(rate_hz)
+    return number("rate_hz", rate_hz, "> 0", hint="samples per second")
 
 
 def _angle(f, rate_hz):
@@ -151,10 +147,7 @@ def _angle(f, rate_hz):
 
 
 def _signal(x):
-    try:
-        x = np.asarray(x, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"x must hold numbers; got {x!r}") from None
+    x = numbers("x", x)
     if x.ndim not in (1, 2) or len(x) < 2:
         raise InputError(f"x has shape {x.shape}; give at least two samples, (n,) or (n, k), time first")
     if not np.isfinite(x).all():

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite, vectors3
+from ir50p_lab.inputs import first_not_finite, numbers, vectors3
 
 
 class Reference:
@@ -81,7 +81,8 @@ def pose(name, value, *, unit="rad"):
 
 def per_joint(name, value, *, unit, positive=False):
     """Like `pose`, but one number counts for all three joints; each must be > 0 if `positive`."""
-    values = pose(name, (value,) * 3 if np.ndim(value) == 0 else value, unit=unit)
+    array = numbers(name, value, unit=unit)
+    values = pose(name, np.broadcast_to(array, 3) if array.ndim == 0 else array, unit=unit)
     if positive and min(values) <= 0:
         joint = int(np.argmin(values)) + 1
         raise InputError(f"{name} of joint {joint} is {values[joint - 1]} {unit}; it must be > 0")

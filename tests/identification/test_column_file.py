@@ -96,7 +96,7 @@ def test_refusals(tmp_path, text, options, words):
         read_columns(path, **options)
 
 
-@pytest.mark.parametrize("path", ["no_such_file.csv", "/", None, 3.5])
+@pytest.mark.parametrize("path", ["no_such_file.csv", "/", None, 3.5, 1, True, "a\0b", object()])
 def test_no_file(path):
     with pytest.raises(RecordingError, match="cannot read"):
         read_columns(path)
