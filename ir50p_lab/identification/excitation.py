@@ -89,7 +89,8 @@ def optimise_excitation(
         max_joint_speed, table, margin: as in `fourier`. rows, columns: as in `fit`: what is to be estimated.
         standing: price of time spent near standstill, where a joint may stick and no theta says what u does: with 4, a
             share of 10 % (of 1/(1 + (qd/0.1 rad/s)^2)) counts as much as a condition number half as large again. On
-            the simulated bench 4 raised, with 3 harmonics, the fit that any theta reaches from 89/61/96 to 94/91/96 %.
+            the simulated bench 4 raised, with 3 harmonics, the fit that any theta reaches from 89/61/96 to 94/91/96 %;
+            with 5, on 20 pairs of motions, 30 in place of 8 raised joint 2 from 91.9 to 92.5 %.
         starts, iterations: more take longer (default: some ten seconds) and find a little better.
         seed: the same seed gives the same motion. progress: show a bar.
 

@@ -38,7 +38,7 @@ def identify(
 ):
     """Identify the arm from one or several recordings: the recipe of the course in one call.
 
-        motion = optimise_excitation(arm, margin=0.2, table=0.1, standing=6).reference     # and drive it for a minute
+        motion = optimise_excitation(arm, margin=0.2, table=0.15, standing=30).reference   # and drive it for a minute
         model = identify(recording, l2=0.2)
         print(model.score(another_recording))                                              # Table 4.4
 
