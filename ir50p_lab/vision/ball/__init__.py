@@ -1,1 +1,1 @@
-"""The ball in a picture: regions of its colour, edges, an outline, and the evidence for and against it."""
+"""The ball in a picture: regions of its colour, edges, an outline, a judge that decides, and the reasons in words."""

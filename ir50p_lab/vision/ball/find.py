@@ -16,12 +16,12 @@ from ir50p_lab.vision.pinhole import Pinhole
 
 _TRIED, _TRIED_CLOSER = 14, 24  # guesses measured; the closer look is only for pictures that show no ball so far
 
-LEAST_SCORE = 0.82  # more than a half: a false alarm is worse than a miss
+LEAST_SCORE = 0.85  # more than a half: a false alarm is worse than a miss
 _SMALL, _LEAST_SMALL = 8.0, 0.97  # of so few pixels of radius a box can look like a ball: then it must be surer
 # Whatever else speaks for it, a ball shows an edge on this much of the circle, this much of its disc has the colour,
 # and its outline leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and a part of a pixel.
 _LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.32, 0.40, (0.010, 0.45)
-_MOST_HUE = 1.05  # median over the disc of the distance from the colour's hue, over its tolerance
+_MOST_HUE = 0.95  # median over the disc of the distance from the colour's hue, over its tolerance
 
 
 @dataclass(frozen=True)
@@ -61,8 +61,9 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     """Find the balls of a colour, best first; a false alarm is worse than a miss.
 
     Regions of the colour give arcs of circles; around each the edge is measured along rays to sub-pixel, and an
-    outline is fitted that is an ellipse, as perspective wants it. What has no edge around it, is hollow, angular or
-    goes on beyond the circle is no ball.
+    outline is fitted that is an ellipse, as perspective wants it. What has hardly an edge, is hollow or angular
+    is no ball; of the rest a judge decides, trained on rendered scenes, that looks at disc and surroundings. If nothing
+    is found, a closer look follows at several scales, for balls in the dark or in glare; it takes many times as long.
 
     Args:
         image: RGB, uint8, (height, width, 3).
