@@ -9,7 +9,7 @@ from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 from ir50p_lab.vision import RED, Ball, Colour, find_balls
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.judge import LAYERS, WEIGHTS, logit, score
-from ir50p_lab.vision.ball.look import RAYS
+from ir50p_lab.vision.ball.look import RAYS, median
 from ir50p_lab.vision.ball.measure import measure
 from tests.targets.ball_examples import examples, painted
 from tests.targets.train_ball_judge import gradient, start
@@ -92,3 +92,9 @@ def test_networks_agree_in_shape():
         net = {name: file[name][0].astype(np.float32) for name in LAYERS}
     assert len(set(count.values())) == 1
     assert logit(np.zeros((2, RAYS, channels), np.float32), np.zeros((2, numbers), np.float32), net)[0].shape == (2,)
+
+
+@pytest.mark.parametrize("shape", [(1,), (4, 3), (32, 6), (5, 5)])
+def test_median(shape):
+    values = RNG.normal(size=shape)
+    assert median(values) == pytest.approx(np.median(values))

@@ -9,6 +9,7 @@ from ir50p_lab.vision.ball.colour import RED, Colour, learn_from_patch
 from ir50p_lab.vision.ball.evidence import objection
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.judge import score
+from ir50p_lab.vision.ball.look import median
 from ir50p_lab.vision.ball.measure import measure
 from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
 from ir50p_lab.vision.image import check_image
@@ -154,7 +155,7 @@ def blunt(found, least_radius):
         return f"an edge on {found.support:.0%} of the circle only"
     if found.fill < _LEAST_FILL:
         return f"hollow, or another colour: {found.fill:.0%} of the disc have the colour"
-    hue = float(np.median(found.samples[:, :6, 2]))
+    hue = float(median(found.samples[:, :6, 2]))
     if hue > _MOST_HUE:
         return f"another colour: its hue is {hue:.1f} times as far off as the colour allows"
     part, pixels = _MOST_BUMPS

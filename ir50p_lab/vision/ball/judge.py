@@ -12,7 +12,7 @@ import numpy as np
 
 from ir50p_lab.vision.ball.edge import directions
 from ir50p_lab.vision.ball.evidence import beyond
-from ir50p_lab.vision.ball.look import RADII, RAYS
+from ir50p_lab.vision.ball.look import RADII, RAYS, median
 
 WEIGHTS = Path(__file__).with_name("judge.npz")
 LAYERS = ("w1", "b1", "w2", "b2", "w3", "b3", "w4", "b4")
@@ -37,7 +37,7 @@ def measures(found, others=()):
     """What is measured of a Measured, (m,) float32, for the judge; others: Balls that may touch it."""
     o = found.outline
     pixels = 0.3 + 0.01 * o.r
-    hue, saturation = np.median(found.samples[:, :6, 2:4].reshape(-1, 2), axis=0)
+    hue, saturation = median(found.samples[:, :6, 2]), median(found.samples[:, :6, 3])
     return np.float32(
         [
             np.log(o.r / 20),
@@ -89,8 +89,8 @@ def score(found, others=None):
     rays = np.stack([rays_of(m, o) for m, o in zip(found, others, strict=True)])
     numbers = np.stack([measures(m, o) for m, o in zip(found, others, strict=True)])
     n, count = len(found), len(w2)
-    h1 = np.maximum(rays[:, around(NEAR)].reshape(n * RAYS, -1) @ w1 + b1, 0)
-    x2 = h1.reshape(n, RAYS, count, -1).transpose(2, 0, 1, 3)[:, :, around(FAR)]
+    h1 = np.maximum(rays.take(around(NEAR), axis=1).reshape(n * RAYS, -1) @ w1 + b1, 0)
+    x2 = h1.reshape(n, RAYS, count, -1).take(around(FAR), axis=1).transpose(3, 0, 1, 2, 4)
     h2 = np.maximum(x2.reshape(count, n * RAYS, -1) @ w2 + b2, 0).reshape(count, n, RAYS, -1)
     pooled = [h2.mean(axis=2), h2.max(axis=2), np.broadcast_to(numbers, (count, *numbers.shape))]
     h3 = np.maximum(np.concatenate(pooled, axis=2) @ w3 + b3, 0)

@@ -24,9 +24,17 @@ def look(image, outline, weights, middle, colour):
     hue = np.abs((2 * hsv[:, :, 0] - np.float32(centre) + 180) % 360 - 180) / np.float32(colour.tolerance)
     sure = np.minimum(hsv[:, :, 1] * hsv[:, :, 2] / 6000, 1)  # noise makes the hue of grey and of black
     seen = np.empty((RAYS, len(RADII), CHANNELS), np.float32)
-    seen[:, :, 0] = np.clip(rays.rgb @ weights - np.float32(middle), -1.5, 1.5)
-    seen[:, :, 1] = np.clip(value - np.median(value[:, :6]), -1.5, 1.5)
+    seen[:, :, 0] = np.minimum(np.maximum(rays.rgb @ weights - np.float32(middle), -1.5), 1.5)
+    seen[:, :, 1] = np.minimum(np.maximum(value - median(value[:, :6]), -1.5), 1.5)
     seen[:, :, 2] = np.minimum(hue, 3) * sure
     seen[:, :, 3] = np.minimum(hsv[:, :, 1] / np.float32(255 * max(colour.saturation, 0.05)), 3)
     seen[:, :, 4] = 1
     return seen * rays.within[:, :, None]
+
+
+def median(values):
+    """Median of an array: NumPy's own takes longer than all the rest of a look."""
+    values = values.ravel()
+    low, high = (len(values) - 1) // 2, len(values) // 2
+    values = np.partition(values, (low, high))
+    return (values[low] + values[high]) / 2
