@@ -123,7 +123,7 @@ def _table(name, value):
     """Numbers for all parameters of all joints, (3, 20); infinite ones are allowed."""
     try:
         table = np.broadcast_to(np.asarray(value, dtype=float), (3, 20))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"{name}: give one number, 20 numbers, or 20 per joint, (3, 20)") from None
     if np.isnan(table).any():
         raise InputError(f"{name} holds NaN: give numbers")

@@ -37,6 +37,14 @@ bench.recording.plot()
 """
 
 
+@pytest.fixture
+def ctrl_c():
+    """Ctrl-C raises KeyboardInterrupt, as in a terminal; programs started in the background ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.fixture(params=RIGS)
 def rig_at(request, tmp_path):
     """A rig with the arm at a pose: rig_at(q0)."""
@@ -243,7 +251,7 @@ class TestContract:
         assert (bench.recording.u[4:] == 0).all()
 
     @pytest.mark.parametrize("error", [ZeroDivisionError, KeyboardInterrupt, "Ctrl-C", GeneratorExit])
-    def test_an_error_in_the_body_cuts_at_once(self, rig, error):
+    def test_an_error_in_the_body_cuts_at_once(self, rig, error, ctrl_c):
         bench = rig.bench()
         expected = KeyboardInterrupt if error == "Ctrl-C" else error
         with pytest.raises(expected), bench:

@@ -270,6 +270,25 @@ def test_negative_viscous_friction_is_flagged(strength):
     assert found.viscous < 0 and "viscous friction" in " ".join(found.warnings)
 
 
+@pytest.mark.parametrize("size", [0.3, 1.0, 10.0])
+def test_friction_that_is_all_negative(size):
+    """u recorded with the wrong sign: the joint would speed up by itself. The right sign is taken."""
+    t, q, u = sweep([0.02, -0.02, 0.1, -0.1, 0.05, -0.05])
+    assert fit_joint(t, q, size * u).viscous > 0
+    with pytest.raises(IdentificationError, match=r"friction come out negative.*sign"):
+        fit_joint(t, q, -size * u)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("share", [0.9, 1.2, 1.5])
+def test_a_model_that_explains_little_is_flagged(share):
+    """Another load, `share` times as strong as what the model explains, that follows nothing it knows."""
+    t, q, u = recorded(MACHINES["industrial arm, 1 kHz, encoder"])
+    load = np.std(u) * np.repeat(np.random.default_rng(0).normal(size=len(t) // 50), 50)  # another push every 0.05 s
+    assert "explains little" in " ".join(fit_joint(t, q, u + share * load).warnings)
+    assert "explains little" not in " ".join(fit_joint(t, q, u + 0.2 * load).warnings)
+
+
 @pytest.mark.compiled
 @pytest.mark.parametrize("part", [0.05, 0.3, 0.7])
 def test_a_time_constant_below_the_sampling_period_is_flagged(part):

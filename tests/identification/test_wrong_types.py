@@ -48,6 +48,7 @@ GOOD = {
     "ComputedTorque": MODEL,
     "FeedForward": MODEL,
     "GravityPD": MODEL,
+    "AdaptiveControl": {"model": IR50P, "Lambda": 5, "K": 10, "Gamma": 1.0},
     "hurwitz": {"gains": (1, 1)},
     "routh_table": {"gains": (1, 1)},
     "gains_for_poles": {"poles": (-1, -2)},
