@@ -4,6 +4,8 @@ Scenes 100 to 1059 of the kinds 'ball' and 'no_ball' (no evaluation uses these s
 the threshold by) are rendered, kept in the folder, and searched; what the search proposes in them and in changed copies
 trains a few small networks, which are written to ir50p_lab/vision/ball/judge.npz. NumPy only, single precision; the same
 seeds give the same weights on the same machine. Rendering takes about a second a scene, the rest some fifteen minutes.
+The weights in the package are of an earlier state of these examples (other shares of the painted shapes); training anew
+gives as good a judge (97.7 % found against 98.0 %, as many false alarms), not the same one.
 """
 
 import argparse
