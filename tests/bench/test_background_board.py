@@ -15,7 +15,7 @@ from ir50p_lab.course.bench_panel import live_panel
 from ir50p_lab.modelling import IR50P
 from tests.emulator.board_process import BoardProcess
 
-PAUSE, BUSY = 0.002, 0.1  # s; the second: what a busy machine may add
+PAUSE = 0.002
 
 
 def until(condition, timeout=20.0):
@@ -70,7 +70,7 @@ def test_a_kill_cuts_the_drive_within_110_ms(board, victim):
             notebook.kill()
     cut = next(change.monotonic for change in board.changes() if change.monotonic > killed and not driven(change.pins))
     print(f"{victim} killed: pins off after {1e3 * (cut - killed):.1f} ms")
-    assert cut - killed < 0.110 + BUSY
+    assert cut - killed < 0.110
 
 
 def test_the_panel_tunes_the_loop_on_the_board(board):
@@ -85,10 +85,9 @@ def test_the_panel_tunes_the_loop_on_the_board(board):
             time.sleep(0.02)
         statistics = panel.run.statistics()
         print(statistics)
-        assert panel.error is None and panel.run.gains["kp"][0] == 89
-        # On two quiet cores 200 cycles, 99 % within 11 ms (benchmark); a busy machine leaves cycles out.
-        assert statistics.cycles > 40
+        assert statistics.cycles > 150 and panel.error is None and panel.run.gains["kp"][0] == 89
         assert statistics.period_p50 == pytest.approx(0.01, abs=0.001)
+        assert statistics.period_p99 < 0.05  # 11 ms on two quiet cores; here only: the panel does not hold it up
         panel.cut()
         until(lambda: not driven(board.changes()[-1].pins))
         bench.run(0.1)  # the port is here again

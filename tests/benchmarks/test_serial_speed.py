@@ -2,7 +2,7 @@
 
 The board is the compiled firmware in an emulator, in real time, in a process of its own: it takes about one processor.
 Targets on two quiet processors: an exchange 1.5 ms (median), the period at 100 Hz 11 ms (99 %), also with the live
-panel open. Without --benchmark-enable the runs are short and only medians are guarded: machines of CI are shared.
+panel open. Without --benchmark-enable the runs are short and the limits are only a guard: machines of CI are shared.
 """
 
 import os
@@ -48,7 +48,7 @@ def test_exchange(board, request):
         times.append(time.perf_counter() - begun)
     link.close()
     median, _ = tell("exchange at 500 kbaud", times)
-    assert median < (1.5 if full else 10)
+    assert median < (1.5 if full else 5)
 
 
 @pytest.mark.parametrize("hertz", [100, 200])
@@ -68,7 +68,7 @@ def test_loop(board, request, hertz):
     tell("  between samples at hand", np.diff(begun))
     print(f"  {statistics}")
     assert p50 == pytest.approx(1e3 / hertz, abs=1)
-    assert p99 < 1e3 / hertz + 1 or not full or hertz > 100
+    assert p99 < 1e3 / hertz + (1 if full and hertz == 100 else 25)
 
 
 def test_loop_with_the_panel(board, request):
@@ -88,4 +88,4 @@ def test_loop_with_the_panel(board, request):
         bench.abort()
     print(f"\nwith the panel: {statistics}")
     assert statistics.period_p50 == pytest.approx(0.01, abs=0.001)
-    assert statistics.period_p99 < 0.011 or not full
+    assert statistics.period_p99 < (0.011 if full else 0.035)

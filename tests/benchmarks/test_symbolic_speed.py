@@ -65,4 +65,5 @@ def test_ratio_to_simplified_trees(request):
     peer = seconds(lambda: by_expression_trees(sympy.simplify if measured else sympy.expand))
     ours = min(seconds(derive) for _ in range(5 if measured else 1))
     print(f"\nM and g by SymPy's simplify {peer:.1f} s; M, C and g by derive() {ours * 1e3:.0f} ms: {peer / ours:.0f}x")
-    assert ours < peer or not measured
+    assert ours < peer
+    assert ours < 0.2 or not measured  # s
