@@ -80,3 +80,19 @@ def check_arm(arm):
     if not isinstance(arm, Arm):
         raise InputError(f"arm = {arm!r:.60}: give an Arm, such as IR50P or load_arm()")
     return arm
+
+
+def check_controller(controller):
+    """Raise InputError if it has no step()."""
+    if not callable(getattr(controller, "step", None)):
+        raise InputError(
+            f"controller = {controller!r:.60}: give a controller with step(t, measured, reference), such as PID(...)"
+        )
+
+
+def check_reference(reference):
+    """Raise InputError if it is no function."""
+    if not callable(reference):
+        raise InputError(
+            f"reference = {reference!r:.60}: give a function of time, target(t) -> (q, qd, qdd), such as hold([...])"
+        )

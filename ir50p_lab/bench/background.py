@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.bench import shared_loop
-from ir50p_lab.bench.base import check_controller, check_reference
 from ir50p_lab.bench.live_loop import live_loop
 from ir50p_lab.bench.set_point import checked_set_point
 from ir50p_lab.bench.shared_loop import SharedLoop
 from ir50p_lab.controllers.base import Controller
 from ir50p_lab.controllers.pid import gains
 from ir50p_lab.errors import BenchError, InputError
+from ir50p_lab.inputs import check_controller, check_reference
 
 _TO_REST = 60.0  # s: a way to the rest pose that takes longer has failed
 _OBEYED = 0.25  # s: a loop that has not taken the order to cut by then hangs

@@ -9,7 +9,7 @@ import numpy as np
 from ir50p_lab.bench.recorder import Recorder
 from ir50p_lab.bench.rest import rest_pose, way_to_rest
 from ir50p_lab.errors import BenchError, InputError
-from ir50p_lab.inputs import check_arm
+from ir50p_lab.inputs import check_arm, check_controller, check_reference
 
 JOINTS = 3
 LIMIT_PWM = 255
@@ -294,22 +294,6 @@ class Bench(abc.ABC):
     def rest_pose(self):
         """The pose (3,) rad where the arm is let go."""
         return rest_pose(self.arm)
-
-
-def check_controller(controller):
-    """Raise InputError if it has no step()."""
-    if not callable(getattr(controller, "step", None)):
-        raise InputError(
-            f"controller = {controller!r:.60}: give a controller with step(t, measured, reference), such as PID(...)"
-        )
-
-
-def check_reference(reference):
-    """Raise InputError if it is neither a function of time nor an object that samples one."""
-    if not (callable(reference) or hasattr(reference, "sample")):
-        raise InputError(
-            f"reference = {reference!r:.60}: give a function of time, target(t) -> (q, qd, qdd), such as hold([...])"
-        )
 
 
 def header_of(controller):

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Sample, check_controller, check_reference, header_of
+from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Sample, header_of
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, convert, read_pots
 from ir50p_lab.bench.unit import UNIT
 from ir50p_lab.controllers.base import Controller
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import check_arm
+from ir50p_lab.inputs import check_arm, check_controller, check_reference
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling.arm import load_arm
 
@@ -167,7 +167,8 @@ class SimulatedBench(Bench):
         if self.realtime or not isinstance(controller, Controller):
             return super().follow(controller, reference, seconds, record=record, **header)
         check_controller(controller)
-        check_reference(reference)
+        if not hasattr(reference, "sample"):
+            check_reference(reference)
         controller.reset()
         cycles = self._number_of_cycles(seconds)
         self._end_run()  # of a loop that was left by break

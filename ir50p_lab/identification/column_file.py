@@ -96,7 +96,7 @@ def _table(lines, path):
     comments = [line for line in lines if line.startswith(("#", "%", "//"))]
     lines = [line for line in lines if not line.startswith(("#", "%", "//"))]
     separator = next((s for s in (";", "\t", ",") if sum(s in line for line in lines) > len(lines) / 2), None)
-    cells = [[cell.strip().strip('"') for cell in line.split(separator)] for line in lines]
+    cells = [_split(line, separator) for line in lines]
     rows = [_numbers(row, separator) for row in cells]
     first = next((k for k, row in enumerate(rows) if row is not None and len(row) > 1), None)
     if first is None:

@@ -9,8 +9,7 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.excitation_kernel import BOUNDS, evaluate, slopes
 from ir50p_lab.identification.parameters import ACTS_ON, chosen_columns
-from ir50p_lab.inputs import choice, number, switch, whole
-from ir50p_lab.modelling.arm import Arm
+from ir50p_lab.inputs import check_arm, choice, number, switch, whole
 from ir50p_lab.signals.fourier import Fourier, at_rest, fourier, limits_of
 from ir50p_lab.signals.reference import seconds
 
@@ -271,8 +270,7 @@ def _check_rows(rows):
 
 
 def _check(arm, harmonics, starts, iterations, seed):
-    if not isinstance(arm, Arm):
-        raise InputError(f"arm is a {type(arm).__name__}: give an Arm; its lengths and limits bound the motion")
+    check_arm(arm)
     if not np.isfinite([*arm.q_min, *arm.q_max]).all():
         raise InputError(f"{arm.name} has no joint limits: give q_min and q_max, dataclasses.replace(arm, q_min=...)")
     for name, value, least, most in (

@@ -6,8 +6,7 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.validation import validate
-from ir50p_lab.inputs import number, numbers
-from ir50p_lab.modelling.arm import Arm
+from ir50p_lab.inputs import check_arm, check_controller, number, numbers
 from ir50p_lab.modelling.dynamics import as_theta
 from ir50p_lab.signals.fourier import heights
 
@@ -64,11 +63,9 @@ def rehearse(reference, arm, controller, *, model=None, noise=5.0, seconds=None,
     noise = numbers("noise", noise, unit="PWM")
     if noise.shape not in ((), (3,)) or not np.isfinite(noise).all() or (noise < 0).any():
         raise InputError(f"noise = {noise.tolist()} PWM: give one number or three, finite and >= 0")
-    if not isinstance(arm, Arm):
-        raise InputError(f"arm is a {type(arm).__name__}: give an Arm, and a first estimate as model=")
+    check_arm(arm)
     number("table", table, unit="m", hint="its height; -10 for none")
-    if not hasattr(controller, "step"):
-        raise InputError(f"controller is a {type(controller).__name__}: give the PID (or other) of the run")
+    check_controller(controller)
     theta = arm.theta_pwm if model is None else as_theta(getattr(model, "theta", model))[0]
     if seconds is None:
         seconds = 2 * getattr(reference, "period", 0.5 * getattr(reference, "duration", np.inf))

@@ -8,7 +8,7 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.identification.processing import process
-from ir50p_lab.inputs import choice, number, numbers, switch
+from ir50p_lab.inputs import check_controller, check_reference, choice, number, numbers, switch
 from ir50p_lab.modelling.dynamics import as_theta
 
 
@@ -159,10 +159,8 @@ def validate_closed_loop(estimate, recording, controller, reference, *, delay=0.
     theta, t, q, u = _inputs(estimate, recording, None, None)
     choice("unit", unit, ("PWM", "N m"))
     g = number("g", g, ">= 0", unit="m/s^2")
-    if not (hasattr(controller, "step") and callable(reference)):
-        raise InputError(
-            f"controller = {controller!r:.40}, reference = {reference!r:.40}: give the controller and motion of the run"
-        )
+    check_controller(controller)
+    check_reference(reference)
     period = sampling_period(t)
     if np.abs(np.diff(t) - period).max() > 0.1 * period:
         raise InputError("the times are uneven or have gaps: a loop must be compared without; cut the recording")

@@ -65,5 +65,6 @@ def test_ratio_to_simplified_trees(request):
     peer = seconds(lambda: by_expression_trees(sympy.simplify if measured else sympy.expand))
     ours = min(seconds(derive) for _ in range(5 if measured else 1))
     print(f"\nM and g by SymPy's simplify {peer:.1f} s; M, C and g by derive() {ours * 1e3:.0f} ms: {peer / ours:.0f}x")
-    assert ours < peer
-    assert ours < 0.2 or not measured  # s
+    if measured:  # the plain test run, with a peer that simplifies less, only sees that it works
+        assert ours < peer
+        assert ours < 0.2  # s

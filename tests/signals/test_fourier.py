@@ -164,7 +164,7 @@ def test_speed_and_table():
         ({"record": 3.0}, "record 10 s"),
         ({"ends": "soft"}, "choose 'check' or 'adjust'"),
         ({"start": np.nan}, "start = nan"),
-        ({"arm": "IR50P"}, "arm is a str"),
+        ({"arm": "IR50P"}, "arm = .IR50P.: give an Arm"),
         ({"arm": IR50P, "margin": -1}, "margin = -1"),
         ({"arm": IR50P, "table": "low"}, "table = 'low'"),
         ({"arm": IR50P, "max_joint_speed": 0}, "max_joint_speed of joint 1"),
