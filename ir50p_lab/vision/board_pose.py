@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError, VisionError
-from ir50p_lab.inputs import first_not_finite
+from ir50p_lab.inputs import first_not_finite, numbers
 from ir50p_lab.vision.pinhole import undistort_xy
 
 _WORST_RMS = 5.0  # px; a board of another size, or corners in another order, miss by far more
@@ -168,7 +168,7 @@ def moved(T, points):
 
 def checked_transform(name, T):
     """`T` as a (4, 4) float array; InputError unless it is a rotation and a translation."""
-    T = np.asarray(T, dtype=float)
+    T = numbers(name, T, unit="m and a rotation")
     rigid = T.shape == (4, 4) and np.isfinite(T).all() and np.array_equal(T[3], [0, 0, 0, 1])
     if not rigid or np.abs(T[:3, :3] @ T[:3, :3].T - np.eye(3)).max() > 1e-6 or np.linalg.det(T[:3, :3]) < 0:
         raise InputError(f"{name} is no rigid transform: give (4, 4) with a rotation, a translation in m and 0 0 0 1")

@@ -5,13 +5,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import check_arm, vectors3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.board_pose import BoardPose, checked_transform, inverse_transform
 
 _FEWEST = 4  # poses; three would do for exact angles
 _LEAST_SPREAD = 0.1  # rad rms that the hand must turn about a second axis; potentiometers err by some 0.005
-_WORST = 0.10  # m and rad rms; what is left of inputs that do not belong together is larger
+_LEVER = 0.3  # m; a turn of 1 rad counts like a shift of 0.3 m
+_WORST = 0.03  # m rms; of poses that belong together 5 mm are left, of others 60 and more
+_ODD, _ODD_TIMES = 0.02, 4.0  # m, and times the median pose: a pose that is farther off does not belong to the others
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,9 +79,11 @@ def hand_eye(arm, q, T_cam_board):
 
     Args: arm: Arm; q: (n, 3) rad, n >= 4; T_cam_board: n poses, each BoardPose or (4, 4).
     Returns: HandEye. Raises CalibrationError for too few poses, turns about one axis only, poses given the wrong way
-    round, or that do not belong to these q; InputError for wrong shapes.
+    round, or that do not belong to these q, naming single ones; InputError for wrong shapes.
     """
-    T_tool = tool_poses(arm, q)
+    T_tool = tool_poses(check_arm(arm), q)
+    if not isinstance(T_cam_board, list | tuple | np.ndarray):
+        raise InputError(f"T_cam_board = {T_cam_board!r:.60}: give a list of poses, each BoardPose or (4, 4)")
     poses = [one.T_cam_board if isinstance(one, BoardPose) else one for one in T_cam_board]
     T_cam = np.array([checked_transform(f"T_cam_board[{i}]", T) for i, T in enumerate(poses)]).reshape(-1, 4, 4)
     if len(T_cam) != len(T_tool):
@@ -89,18 +93,24 @@ def hand_eye(arm, q, T_cam_board):
     if not results:
         raise CalibrationError("no method found a finite answer: are the views sharp, and of one and the same board?")
     best = min(results, key=lambda name: results[name][0])
-    rms = results[best][0]
+    rms, T_base_cam, T_tool_board, turn, shift = results[best]
+    back = _all_methods(T_tool, np.array([inverse_transform(T) for T in T_cam]))
+    if back and min(value[0] for value in back.values()) < rms / 3:
+        raise CalibrationError(
+            "the views look inverted: T_cam_board takes board to camera coordinates; give inverse_transform(...)"
+        )
+    odd, others = _odd_poses(T_tool, T_cam)
+    if odd and others < rms / 2:
+        raise CalibrationError(
+            f"poses that do not belong to the others (counted from 0): {', '.join(map(str, odd))}; with them "
+            f"{1e3 * rms:.0f} mm rms are left, without {1e3 * others:.0f} mm. Leave them out of q and of the views, or "
+            "take them again"
+        )
     if rms > _WORST:
-        back = _all_methods(T_tool, np.array([inverse_transform(T) for T in T_cam]))
-        if back and min(value[0] for value in back.values()) < 0.3 * rms:
-            raise CalibrationError(
-                "the views look inverted: T_cam_board takes board to camera coordinates; give inverse_transform(...)"
-            )
         raise CalibrationError(
             f"arm and camera disagree by {1e3 * rms:.0f} mm rms: do the views belong to these q, in this order, did "
             "the board slip in the gripper, or did the camera move?"
         )
-    _, T_base_cam, T_tool_board, turn, shift = results[best]
     return HandEye(
         T_base_cam=T_base_cam,
         T_tool_board=T_tool_board,
@@ -120,6 +130,28 @@ def loop_errors(T_base_cam, T_tool_board, T_base_tool, T_cam_board):
     cosine = 0.5 * (np.trace(turn, axis1=1, axis2=2) - 1)
     angle = np.arctan2(np.linalg.norm(axis, axis=0), cosine)
     return angle, np.linalg.norm(ours[:, :3, 3] - seen[:, :3, 3], axis=1)
+
+
+def _odd_poses(T_base_tool, T_cam_board):
+    """(numbers of up to a quarter of the poses that do not belong to the others, rms m of the others).
+
+    A wrong pose pulls the camera towards itself, and the others off: so the worst goes out, and the rest is fitted anew
+    until no pose sticks out and little is left. No numbers if that takes more than a quarter.
+    """
+    kept, rms = list(range(len(T_base_tool))), np.inf
+    for _ in range(max(1, len(kept) // 4) + 1):
+        found = _all_methods(T_base_tool[kept], T_cam_board[kept])
+        if not found:
+            break
+        rms, _, _, turn, shift = min(found.values(), key=lambda one: one[0])
+        off = np.hypot(shift, _LEVER * turn)
+        worst = int(np.argmax(off))
+        if rms < _WORST and off[worst] < max(_ODD, _ODD_TIMES * np.median(off)):
+            return sorted(set(range(len(T_base_tool))) - set(kept)), rms
+        if len(kept) <= _FEWEST:
+            break
+        del kept[worst]
+    return [], rms
 
 
 def _all_methods(T_base_tool, T_cam_board):
@@ -154,7 +186,7 @@ def _keep(found, name, T_base_cam, T_tool_board, T_base_tool, T_cam_board):
     if not (np.isfinite(T_base_cam).all() and np.isfinite(T_tool_board).all()):
         return
     turn, shift = loop_errors(T_base_cam, T_tool_board, T_base_tool, T_cam_board)
-    rms = float(np.sqrt(np.mean(shift**2) + (0.3 * np.sqrt(np.mean(turn**2))) ** 2))  # a turn counts at 0.3 m
+    rms = float(np.sqrt(np.mean(shift**2 + (_LEVER * turn) ** 2)))
     found[name] = (rms, T_base_cam, T_tool_board, turn, shift)
 
 

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import number, numbers, vectors3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.board_pose import camera_numbers, checked_transform, inverse_transform, rvec_tvec, transform
 from ir50p_lab.vision.pinhole import distort_xy
@@ -130,16 +130,23 @@ def refine_hand_eye(
     from scipy.optimize import least_squares
 
     q = vectors3("q", q).reshape(-1, 3)
-    corners = np.asarray(corners, dtype=float)
-    points = np.asarray(points, dtype=float)
+    corners = numbers("corners", corners, unit="px")
+    points = numbers("points", points, unit="m")
     if corners.shape != (len(q), len(points), 2) or points.shape[-1:] != (3,):
         raise InputError(f"corners {corners.shape}, q {q.shape}, points {points.shape}: give (n, m, 2), (n, 3), (m, 3)")
     if not np.isfinite(corners).all() or not np.isfinite(points).all():
         raise InputError("corners and points must be finite numbers")
     JointCorrection.of(arm, dict.fromkeys(terms, 0.0))
     K, distortion = camera_numbers(camera)
-    sigma_q = vectors3("sigma_q", sigma_q)
-    T0 = (inverse_transform(checked_transform("T_base_cam", start.T_base_cam)), start.T_tool_board)
+    sigma_px, sigma_q = number("sigma_px", sigma_px, "> 0", unit="px"), vectors3("sigma_q", sigma_q)
+    if sigma_q.shape != (3,) or not (sigma_q > 0).all():
+        raise InputError(f"sigma_q = {sigma_q.tolist()} rad: give three numbers > 0")
+    if not (hasattr(start, "T_base_cam") and hasattr(start, "T_tool_board")):
+        raise InputError(f"start = {start!r:.60}: give what hand_eye(...) found, with T_base_cam and T_tool_board")
+    T0 = (
+        inverse_transform(checked_transform("T_base_cam", start.T_base_cam)),
+        checked_transform("T_tool_board", start.T_tool_board),
+    )
     known = (_known(known_T_base_cam, turn=True), _known(known_T_tool_board))
     fixed = 12 + len(terms)
 

@@ -172,6 +172,35 @@ def test_inverted_and_mixed_up_views_are_refused():
         hand_eye(IR50P, q, T[:-1])
 
 
+@pytest.mark.parametrize("n", [8, 15, 25])
+@pytest.mark.parametrize("seed", range(4))
+def test_inverted_views_are_refused_however_few_the_poses(n, seed):
+    """Their residuals can be as small as 70 mm, with the camera 0.7 m off."""
+    q, corners = views(n, seed, 0.1)
+    shown = measured(q, seed=seed, terms={"offset2": 0.012})
+    T = [pose.T_cam_board for pose in seen(corners)]
+    assert far(hand_eye(IR50P, shown, T).T_base_cam, T_BASE_CAM)[1] < 0.02
+    with pytest.raises(CalibrationError, match="inverted"):
+        hand_eye(IR50P, shown, [inverse_transform(one) for one in T])
+
+
+@pytest.mark.parametrize("n", [5, 15, 25])
+def test_single_wrong_views_are_named(n):
+    """One of 15 shifts the camera by centimetres."""
+    q, corners = views(25, 3, 0.1)
+    shown = measured(q, seed=3)[:n]
+    T = [pose.T_cam_board for pose in seen(corners)][:n]
+    with pytest.raises(CalibrationError, match=r"do not belong to the others \(counted from 0\): 2;"):
+        hand_eye(IR50P, shown, [*T[:2], T[3], *T[3:]])
+    if n > 8:
+        with pytest.raises(CalibrationError, match=r"from 0\): 1, 4;"):
+            hand_eye(IR50P, shown, [T[0], T[4], T[2], T[3], T[1], *T[5:]])
+        slipped = T[1].copy()
+        slipped[0, 3] += 0.05
+        with pytest.raises(CalibrationError, match=r"from 0\): 1;"):
+            hand_eye(IR50P, shown, [T[0], slipped, *T[2:]])
+
+
 def test_bad_arguments_of_the_refinement_are_refused():
     q, corners = views()
     start = hand_eye(IR50P, q, seen(corners))
@@ -183,3 +212,13 @@ def test_bad_arguments_of_the_refinement_are_refused():
         refine_hand_eye(IR50P, CAMERA, q, corners * np.nan, BOARD, start)
     with pytest.raises(InputError, match="sigmas"):
         refine_hand_eye(IR50P, CAMERA, q, corners, BOARD, start, known_T_base_cam=(T_BASE_CAM, 0, 1))
+    for name, bad in {"sigma_px": 0, "sigma_q": (0, 1, 1)}.items():
+        with pytest.raises(InputError, match=name):
+            refine_hand_eye(IR50P, CAMERA, q, corners, BOARD, start, **{name: bad})
+    with pytest.raises(InputError, match="start = None"):
+        refine_hand_eye(IR50P, CAMERA, q, corners, BOARD, None)
+    with pytest.raises(InputError, match="corners must hold numbers"):
+        refine_hand_eye(IR50P, CAMERA, q, [corners[0][:3], *corners[1:]], BOARD, start)
+    for bad in (None, ["a"] * len(q)):
+        with pytest.raises(InputError, match="T_cam_board"):
+            hand_eye(IR50P, q, bad)
