@@ -1,9 +1,9 @@
-"""Figures of notebook 10: what a lens bends, which pictures a calibration used, where its residuals point."""
+"""Figures of notebook 10: what a hole and a lens do, which pictures a calibration used, where its residuals point."""
 
 import numpy as np
 from matplotlib.collections import LineCollection
 
-from ir50p_lab.course.style import COLOURS, new_figure
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
 from ir50p_lab.course.vision_views import stamp
 from ir50p_lab.vision import Pinhole
 
@@ -22,6 +22,38 @@ def show_picture(ax, image, title=""):
     ax.set_title(title, fontsize=9)
 
 
+def pinhole_figure(points):
+    """Rays through a pinhole and where they cut the plane at Z = 1 (the idea of Figure 3.10). Returns: LabFigure.
+
+    points: {name: (X, Y, Z) m, camera coordinates}; X over Z is drawn, as seen from above.
+    """
+    figure = new_figure(7.4, 3.2)
+    ax = figure.axes[0]
+    far = 1.12 * max(1.1, *(Z for _, _, Z in points.values()))
+    top = max(max(X, X / Z) for X, _, Z in points.values())
+    ax.axhline(0, color=COLOURS["dark"], linewidth=1)
+    ax.axvline(1, color=COLOURS["blue"], linewidth=2)
+    colours = [COLOURS[name] for name in ("orange", "green", "purple")]
+    for k, ((name, (X, _, Z)), colour) in enumerate(zip(points.items(), colours, strict=False)):
+        end = max(1.0, Z)
+        if k == 0:  # the similar triangles
+            ax.fill([0, 1, 1], [0, 0, X / Z], color=COLOURS["blue"], alpha=0.1)
+            ax.fill([0, Z, Z], [0, 0, X], color=colour, alpha=0.2)
+            ax.plot([Z, Z], [0, X], color=colour, linewidth=1)
+        ax.plot([0, end], [0, X / Z * end], color=colour, linewidth=1, linestyle=("-", "--", ":")[k % 3])
+        ax.plot(Z, X, "o", color=colour, markersize=8 - 2 * k)
+        ax.annotate(name, (Z, X), (-6, 6), textcoords="offset points", ha="right", color=colour, fontweight="bold")
+        ax.plot(1, X / Z, "s", color=COLOURS["blue"], markersize=5, zorder=3)
+    for x in sorted({round(X / Z, 6) for X, _, Z in points.values()}):
+        ax.annotate(f"x = {x:.2f}", (1, x), (6, -13), textcoords="offset points", color=COLOURS["blue"])
+    ax.plot(0, 0, "o", color="white", markeredgecolor=COLOURS["dark"], markersize=9, zorder=3)
+    ax.text(0, -0.04 * top, "hole", ha="left", va="top", fontsize=9)
+    ax.text(1, -0.04 * top, " plane Z = 1", ha="left", va="top", fontsize=9, color=COLOURS["blue"])
+    ax.set(xlim=(-0.03, far), ylim=(-0.2 * top, 1.25 * top), xlabel="Z [m], forward", ylabel="X [m], to the right")
+    ax.set_title("Similar triangles: x is to 1 as X is to Z")
+    return figure
+
+
 class LensView:
     """A square grid as a lens shows it: straight lines in grey, what becomes of them in blue; `update` moves them.
 
@@ -37,9 +69,11 @@ class LensView:
         self._counts = np.cumsum([len(line) for line in across + down])[:-1]
         straight = across + down
         self._rays = pinhole.to_normalised(np.concatenate(straight))
+        self._radius = np.linspace(0, np.linalg.norm(self._rays, axis=1).max(), 100)
         self.figure = new_figure(6.4, 5.0)
         ax = self.figure.axes[0]
-        ax.add_collection(LineCollection(straight, colors=COLOURS["light"], linewidths=1))
+        ax.grid(False)  # it would pass for the grid that is drawn
+        ax.add_collection(LineCollection(straight, colors=COLOURS["grey"], linewidths=1))
         self._lines = LineCollection(straight, colors=COLOURS["blue"], linewidths=1.5)
         ax.add_collection(self._lines)
         ax.plot(*pinhole.K[:2, 2], "+", color=COLOURS["orange"], markersize=12)
@@ -47,12 +81,33 @@ class LensView:
         ax.set_title("A square grid through the lens")
 
     def update(self, k1=0.0, k2=0.0, p1=0.0, p2=0.0):
-        """Draw the grid for these coefficients; returns how far the outermost point moves, in words."""
+        """Draw the grid for these coefficients; returns in words what it looks like and how far a point moves."""
         lens = Pinhole(self.pinhole.K, (k1, k2, p1, p2), self.pinhole.size)
         xy = lens.to_pixels(lens.distort(self._rays))
         self._lines.set_segments(np.split(xy, self._counts))
         moved = np.linalg.norm(xy - lens.to_pixels(self._rays), axis=1).max()
-        return f"the outermost point moves by {moved:.1f} px"
+        seen = [radial_shape(k1, k2, self._radius), "wider on one side" * bool(p1 or p2)]
+        shape = ", ".join(filter(None, seen)) or "straight"
+        return f"{shape}: a point moves by up to {moved:.1f} px"
+
+
+def radial_shape(k1, k2, radius):
+    """What k1 and k2 make of straight lines out to `radius`, from 0 upwards: "barrel", "pincushion", both, or ""."""
+    magnified = np.diff(k1 * radius**2 + k2 * radius**4)  # outwards less and less: a barrel
+    names = ["barrel"] * bool((magnified < 0).any()) + ["pincushion"] * bool((magnified > 0).any())
+    return " and further out ".join(names if magnified[0] < 0 else names[::-1])
+
+
+def covered_figure(whole, covered, view):
+    """A picture of a board beside the same with a part hidden, the corners found drawn in. Returns: LabFigure.
+
+    Args: whole, covered (h, w, 3); view: View of the covered picture.
+    """
+    figure = rendered_figure(9.0, 3.6, cols=2)
+    show_picture(figure.axes[0], whole, "The whole board: a marker in each white square")
+    show_picture(figure.axes[1], covered, f"The right hidden: {len(view.corners)} corners found")
+    figure.axes[1].plot(*view.corners.T, "o", fillstyle="none", color=COLOURS["orange"], markersize=7)
+    return figure
 
 
 def contact_sheet(images, calibration, columns=5):
@@ -96,6 +151,32 @@ def estimate_figure(calibration, truth):
     return figure
 
 
+def rms_figure(reports, noise):
+    """rms of the residuals and standard error of fx over the number of views, both logarithmic. Returns: LabFigure.
+
+    reports: {views: (rms, standard error of fx), px}; noise: rms to be expected of many views, px.
+    """
+    figure = new_figure(6.4, 3.4)
+    ax, views = figure.axes[0], list(reports)
+    rms, error = np.transpose(list(reports.values()))
+    ax.plot(views, error, "o-", color=COLOURS["orange"])
+    ax.plot(views, rms, "s-", color=COLOURS["blue"])
+    ax.axhline(noise, **SETPOINT)
+    for words, at, shift, colour in (
+        ("standard error of fx", (views[1], error[1]), (10, 4), "orange"),
+        ("rms of the residuals", (views[-1], noise), (-120, 5), "blue"),
+        ("to be expected of many views", (views[0], noise), (6, 5), "dark"),
+    ):
+        ax.annotate(words, at, shift, textcoords="offset points", color=COLOURS[colour])
+    ax.set(xscale="log", yscale="log", xlabel="number of views [-]", ylabel="[px]")
+    ax.set_xticks(views, [str(n) for n in views])
+    ax.minorticks_off()
+    ticks = [t for t in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20) if 0.7 * rms.min() < t < 1.5 * error.max()]
+    ax.set_yticks(ticks, [f"{t:g}" for t in ticks])
+    ax.set_title("The rms stays, the camera becomes known")
+    return figure
+
+
 def residual_figure(images, calibration, view, gain=500):
     """A picture with its residuals as arrows, `gain` times longer, beside those of all views. Returns: LabFigure."""
     one = calibration.views[view]
@@ -112,7 +193,7 @@ def residual_figure(images, calibration, view, gain=500):
     circle = calibration.rms * np.exp(1j * np.linspace(0, 2 * np.pi, 80))
     right.plot(circle.real, circle.imag, color=COLOURS["dark"], linewidth=1)
     reach = 4 * calibration.rms
-    right.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xlabel="x [px]", ylabel="y [px]")
+    right.set(xlim=(-reach, reach), ylim=(reach, -reach), aspect="equal", xlabel="x [px]", ylabel="y [px]")  # y down
     right.set_title(f"All views: rms {calibration.rms:.3f} px (circle)", fontsize=10)
     return figure
 
@@ -122,33 +203,41 @@ def coverage_figure(calibration):
     from ir50p_lab.vision import direction_stderr
 
     w, h = calibration.size
-    figure = rendered_figure(9.0, 3.6, cols=2)
+    figure = rendered_figure(9.4, 3.4, cols=2)
     left, right = figure.axes
     cover, following = calibration.coverage, calibration.next_view()
-    left.imshow(cover.counts, extent=(0, w, h, 0), cmap="Greens", vmin=0)
+    counted = left.imshow(cover.counts, extent=(0, w, h, 0), cmap="Greens", vmin=0)
+    figure.colorbar(counted, ax=left, label="corners per cell [-]", shrink=0.75)
     for view in calibration.views:
         left.plot(*view.corners.T, ".", color=COLOURS["dark"], markersize=1)
     left.set_title(f"Corners in {100 * cover.share:.0f} % of the cells")
     x, y = np.meshgrid(np.linspace(0, w - 1, 33), np.linspace(0, h - 1, 25))
     doubt = direction_stderr(calibration, np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
     filled = right.contourf(x, y, doubt, 8, cmap="Blues")
-    figure.colorbar(filled, ax=right, label="standard error [px]")
-    right.set_title(f"Best next view: from {following.before:.2f} to {following.after:.2f} px")
+    figure.colorbar(filled, ax=right, label="uncertainty of a pixel's direction [px]", shrink=0.75)
+    right.set_title(f"The next view (orange) fills empty cells: {following.new}")
+    xy = np.concatenate([view.corners for view in calibration.views]) - calibration.K[:2, 2]
+    rim = np.hypot(*xy.T).max() * np.exp(1j * np.linspace(0, 2 * np.pi, 120))
+    rim = np.column_stack([rim.real, rim.imag]) + calibration.K[:2, 2]
     loop = np.vstack([following.outline, following.outline[:1]])
     for ax in (left, right):
         ax.plot(*loop.T, color=COLOURS["orange"], linewidth=2)
+        ax.plot(*rim.T, ":", color=COLOURS["dark"], linewidth=1.2)
         ax.set(xlim=(0, w), ylim=(h, 0), aspect="equal", xlabel="x [px]", ylabel="y [px]")
         ax.grid(False)
     return figure
 
 
-def board_residual_figure(flat, bent, gain=300):
-    """Residuals by place on the board, mean over the views, turned into the board: flat model beside bent.
+def board_residual_figure(picture, flat, bent):
+    """One picture, and the residuals by place on the board, mean over the views, as depths: flat model beside bent.
 
-    Args: flat, bent: Calibration of the same pictures without and with the shape of the board. Returns: LabFigure.
+    Args: picture (h, w, 3); flat, bent: Calibration of the same pictures without and with the shape of the board.
+    Returns: LabFigure.
     """
-    figure = rendered_figure(9.0, 3.4, cols=2)
-    for ax, one, name in zip(figure.axes, (flat, bent), ("Board taken for flat", "Bend estimated"), strict=True):
+    figure = rendered_figure(10.5, 3.1, cols=3, width_ratios=(1.1, 1, 1))
+    show_picture(figure.axes[0], picture, "One of the pictures")
+    maps = figure.axes[1:]
+    for ax, one, name in zip(maps, (flat, bent), ("Board taken for flat", "Bend estimated"), strict=True):
         towards = [_height_direction(one, view) for view in one.views]
         lift = np.mean(
             [(v.residuals * d).sum(axis=1) / (d**2).sum(axis=1) for v, d in zip(one.views, towards, strict=True)],
@@ -165,10 +254,10 @@ def board_residual_figure(flat, bent, gain=300):
             vmax=reach,
             extent=(-0.5 * size, (columns - 0.5) * size, (rows - 0.5) * size, -0.5 * size),
         )
-        figure.colorbar(drawn, ax=ax, label="lies deeper by [mm]", shrink=0.8)
         ax.set(xlabel="along the board [mm]", ylabel="down the board [mm]")
-        ax.set_title(f"{name}: rms {one.rms:.3f} px", fontsize=11)
+        ax.set_title(f"{name}: rms {one.rms:.3f} px", fontsize=9)
         ax.grid(False)
+    figure.colorbar(drawn, ax=maps, label="lies deeper by [mm]", shrink=0.8)
     return figure
 
 

@@ -19,7 +19,7 @@ LENS = ("k1", "k2", "p1", "p2")
 
 def test_a_pixel_by_opencv():
     K = np.array([[700.0, 0, 320], [0, 690, 240], [0, 0, 1]])
-    xy, _ = cv2.projectPoints(np.array([[0.12, -0.05, 0.6]]), STILL, STILL, K, None)
+    xy, _ = cv2.projectPoints(np.array([[-0.08, 0.06, 0.5]]), STILL, STILL, K, None)
     assert np.ravel(xy) == pytest.approx(solution("calib-1"))
 
 

@@ -128,6 +128,18 @@ def test_next_view_keeps_its_promise(calibration):
     assert doubt(advised) < doubt(old[0])
 
 
+def test_next_view_fills_empty_cells_where_it_costs_nothing(calibration):
+    """Views of one half of the picture: of the poses that bring nearly the most, none fills more empty cells."""
+    left = [view.corners for view in calibration.views if view.corners[:, 0].mean() < 330]
+    half = calibrate_corners(POINTS, left, SIZE, lens=("k1", "k2"), bend=False)
+    following = half.next_view()
+    afters = [after for _, _, after, _ in following.tried]
+    assert afters == sorted(afters) and following.after <= following.before - 0.9 * (following.before - afters[0])
+    enough = following.before - 0.9 * (following.before - afters[0])
+    assert following.new == max(new for *_, after, new in following.tried if after <= enough) > 0
+    assert f"{following.new} empty cell" in str(following) and following.outline[:, 0].mean() > 320
+
+
 def test_rows_and_columns_are_transposes():
     camera, T = bench_camera()
     rows, columns = row_camera_matrix(*to_rows(camera.K, T)), column_camera_matrix(camera.K, T)

@@ -94,7 +94,24 @@ def test_lens_by_evidence(model):
     assert all(np.isnan(found.stderr[name]) == (name not in model) for name in NAMES[4:])
     kept = {question.term for question in found.evidence if question.kept}
     assert ("k3" in kept) == ("k3" in model)
-    assert all(str(question) for question in found.evidence)
+    for question in found.evidence:
+        yes = "yes" if question.term == "bent board" else "kept"
+        assert (f": {yes} (such" in str(question)) == question.kept
+        assert question.kept == (question.p_value < question.limit) or "too little to count" in str(question)
+
+
+@pytest.mark.parametrize(
+    ("evidence", "words"),
+    [
+        (("k3", 0.046, 2.8, False, 0.01), "k3: dropped (such an improvement by chance: 4.6 %; the limit is 1 %)"),
+        (("p", 1e-9, 90.0, True, 0.05), "p1 and p2: kept (such an improvement by chance: less than 0.01 %; the limit is 5 %)"),
+        (("bent board", 2e-4, 9.0, False, 1e-3), "bent board: no (such an improvement by chance: 0.02 %; the limit is 0.1 %; but too little to count)"),
+    ],
+)  # fmt: skip
+def test_evidence_says_by_which_limit(evidence, words):
+    from ir50p_lab.vision.calibration.models import Evidence
+
+    assert str(Evidence(*evidence)) == words
 
 
 def test_a_coefficient_that_means_nothing_is_named(views):

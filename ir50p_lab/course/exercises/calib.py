@@ -8,7 +8,7 @@ NOTEBOOK = "10_camera_calibration"
 
 # calib-1: a point through a camera without distortion.
 _K = np.array([[700.0, 0, 320], [0, 690, 240], [0, 0, 1]])
-_POINT = np.array([0.12, -0.05, 0.6])  # m, camera coordinates
+_POINT = np.array([-0.08, 0.06, 0.5])  # m, camera coordinates; not the point of the notebook's own example
 
 
 def _pixel(point, K):
@@ -47,7 +47,7 @@ def _shift(height, away, radius):
 EXERCISES = (
     Exercise(
         "calib-1",
-        "the pixel (x, y) of the point (0.12, -0.05, 0.6) m in camera coordinates, for fx, fy = 700, 690 and "
+        "the pixel (x, y) of the point (-0.08, 0.06, 0.50) m in camera coordinates, for fx, fy = 700, 690 and "
         "cx, cy = 320, 240, without distortion",
         Number(_pixel(_POINT, _K), unit="px", tolerance=0.05, because="a tenth of a pixel is what a finder resolves"),
         why="Divide by the depth first: that is all of perspective; K only scales and shifts.",

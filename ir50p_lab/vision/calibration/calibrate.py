@@ -22,7 +22,7 @@ from ir50p_lab.vision.calibration.checks import (
 from ir50p_lab.vision.calibration.corners import Corners as FoundCorners
 from ir50p_lab.vision.calibration.corners import find_checkerboard
 from ir50p_lab.vision.calibration.fit import NAMES, Corners, Model, fit, start
-from ir50p_lab.vision.calibration.models import choose, total_covariance
+from ir50p_lab.vision.calibration.models import choose, in_percent, total_covariance
 from ir50p_lab.vision.calibration.pictures import common_size, pictures_of, with_bar
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
 from ir50p_lab.vision.calibration.result import Calibration, View
@@ -194,8 +194,8 @@ def _best(corners, rough, wanted, aspect, bend):
         if question.kept:
             ratio = free.camera[0] / free.camera[1]
             said.append(
-                f"aspect = {aspect:g} was prescribed, but the corners say fx/fy = {ratio:.4f} (chance "
-                f"{question.p_value:.1g}): leave aspect=None"
+                f"aspect = {aspect:g} was prescribed, but the corners say fx/fy = {ratio:.4f} (by "
+                f"chance: {in_percent(question.p_value)}): leave aspect=None"
             )
     return best, evidence, tried, said
 

@@ -7,6 +7,7 @@ from ir50p_lab.vision.calibration.fit import Model, fit
 from ir50p_lab.vision.calibration.models import Evidence, compare
 
 _TILTED = np.deg2rad(15)
+_LIMIT = 1e-3  # chance below which a bend, or another ratio fx/fy, is believed
 _ROUGH = 0.7  # px rms, of pictures up to 1280 px wide
 
 
@@ -64,8 +65,8 @@ def bent_board(corners, flat):
     bent = fit(corners, Model(flat.model.terms, flat.model.aspect, True), (flat.camera, flat.poses))
     p_value, gain = compare(flat, bent, np.eye(12)[9:])
     size = sag_size(corners, bent.camera[9:])
-    seen = p_value < 1e-3 and gain > 15 and size > 4 * sag_size(corners, bent.stderr[9:]) / np.sqrt(3)
-    return Evidence("bent board", p_value, gain, bool(seen))
+    seen = p_value < _LIMIT and gain > 15 and size > 4 * sag_size(corners, bent.stderr[9:]) / np.sqrt(3)
+    return Evidence("bent board", p_value, gain, bool(seen), _LIMIT)
 
 
 def sag_size(corners, b):
@@ -83,7 +84,7 @@ def free_aspect(corners, held):
     contrast = np.zeros(12)
     contrast[:2] = 1, -held.model.aspect
     p_value, gain = compare(held, free, contrast)
-    return Evidence("fx/fy free", p_value, gain, bool(p_value < 1e-3)), free
+    return Evidence("fx/fy free", p_value, gain, bool(p_value < _LIMIT), _LIMIT), free
 
 
 def about_lens(calibration):

@@ -1,6 +1,6 @@
 """Where in the picture the board was seen, and where to hold it next so that the camera becomes surer."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from ir50p_lab.vision.calibration.fit import Corners, Model, _project, _reduce, 
 
 _CELLS = (6, 8)  # rows, columns of the coverage map
 _TILT = np.deg2rad(35)
+_NEARLY = 0.9  # of the largest gain: poses that bring as much count as equally good
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,13 +30,17 @@ class NextView:
     """The picture that would help most.
 
     outline: (4, 2) px, corners of the board as it should appear; text: what to do; before, after: uncertainty of a
-    pixel's direction, mean over the picture, px, now and with that picture.
+    pixel's direction from the noise of the corners, mean over the picture, px, now and with that picture; new: empty
+    cells of the coverage map that it would fill; tried: (place, tilt, after, new) of each pose that fits into the
+    picture, the one that makes surest first.
     """
 
     outline: np.ndarray
     text: str
     before: float
     after: float
+    new: int = 0
+    tried: tuple = field(default=(), repr=False)
 
     def __str__(self):
         return self.text
@@ -46,11 +51,8 @@ def coverage(calibration):
     _need_views(calibration)
     w, h = calibration.size
     xy = np.concatenate([view.corners for view in calibration.views])
-    rows, columns = _CELLS
-    i = np.clip((xy[:, 1] + 0.5) / h * rows, 0, rows - 1).astype(int)
-    j = np.clip((xy[:, 0] + 0.5) / w * columns, 0, columns - 1).astype(int)
     counts = np.zeros(_CELLS, dtype=int)
-    np.add.at(counts, (i, j), 1)
+    np.add.at(counts, _cells(xy, calibration.size), 1)
     centre = calibration.K[:2, 2]
     ends = np.array([[0, 0], [w - 1, 0], [0, h - 1], [w - 1, h - 1]])
     reach = np.linalg.norm(xy - centre, axis=1).max() / np.linalg.norm(ends - centre, axis=1).max()
@@ -80,7 +82,9 @@ def next_view(calibration):
     """The board's pose, among 9 places in the picture and 5 tilts, after which the camera would be surest: NextView.
 
     Corners are taken to be as noisy as those so far. The measure is the standard error of a pixel's direction, mean
-    over the picture. Raises CalibrationError if the calibration holds no views.
+    over the picture. It trusts the lens model, for which one corner of the picture is as good as another; so of the
+    poses that bring nearly the most the one counts that fills most empty cells of the coverage map: corners where none
+    were test the model, too. Raises CalibrationError if the calibration holds no views.
     """
     _need_views(calibration)
     B = _columns_of(calibration)
@@ -98,26 +102,39 @@ def next_view(calibration):
 
     points = calibration.board.points
     trial = Corners([points], [points[:, :2]], calibration.size)
-    best = None
+    counts, tried = calibration.coverage.counts, []
     for place, tilt, T in _candidates(calibration, points):
         pose = _pose(T)
         xy = -_project(trial, 0, camera, pose)[0] + points[:, :2]
         if (xy < 2).any() or (xy > np.array([w, h]) - 3).any():
             continue
         after = doubt(S + _information(trial, 0, camera, pose, B))
-        if best is None or after < best[0]:
-            columns, rows = calibration.board.pattern
-            outline = xy[[0, columns - 1, columns * rows - 1, columns * (rows - 1)]]
-            best = after, place, tilt, outline
-    if best is None:
+        cells = set(zip(*_cells(xy, calibration.size), strict=True))
+        tried.append(((place, tilt, after, sum(not counts[cell] for cell in cells)), xy))
+    if not tried:
         raise CalibrationError("no pose of the board was found that would fit into the picture")
-    after, place, tilt, outline = best
     before = doubt(S)
+    tried.sort(key=lambda one: one[0][2])
+    enough = max(before - _NEARLY * (before - tried[0][0][2]), tried[0][0][2])
+    good = [one for one in tried if one[0][2] <= enough]
+    (place, tilt, after, new), xy = max(good, key=lambda one: one[0][3])  # of equals the first, the surest
+    columns, rows = calibration.board.pattern
+    outline = xy[[0, columns - 1, columns * rows - 1, columns * (rows - 1)]]
     text = (
         f"take one with the board {place}, {tilt}: the direction of a pixel would then be known to "
         f"{after:.2f} px in place of {before:.2f} px"
+        + f", and {new} empty cell{'s' * (new > 1)} of the map filled"
+        * (new > 0)
     )
-    return NextView(outline, text, before, after)
+    return NextView(outline, text, before, after, new, tuple(words for words, _ in tried))
+
+
+def _cells(xy, size):
+    """Cell (row, column) of the coverage map for pixels (n, 2), as two arrays (n,)."""
+    (w, h), (rows, columns) = size, _CELLS
+    i = np.clip((xy[:, 1] + 0.5) / h * rows, 0, rows - 1).astype(int)
+    j = np.clip((xy[:, 0] + 0.5) / w * columns, 0, columns - 1).astype(int)
+    return i, j
 
 
 def _need_views(calibration):

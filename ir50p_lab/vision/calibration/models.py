@@ -6,7 +6,8 @@ import numpy as np
 
 from ir50p_lab.vision.calibration.fit import LADDER, NAMES, Model, fit
 
-_DOUBT = {"k3": 0.01, "p": 0.05, "k2": 0.05, "k1": 0.05}  # p-value below which a term stays
+# p-value below which a term stays; k3 must earn its place: it is the term that runs wild beyond the outermost corner
+_LIMIT = {"k3": 0.01, "p": 0.05, "k2": 0.05, "k1": 0.05}
 _NAMED = {"p": ("p1", "p2")}
 
 
@@ -14,19 +15,30 @@ _NAMED = {"p": ("p1", "p2")}
 class Evidence:
     """One question put to the data: does the term help more than chance would?
 
-    term: "k1", "k2", "p" (p1 and p2), "k3", "bent board" or "fx = fy"; p_value: chance of such an improvement if it
+    term: "k1", "k2", "p" (p1 and p2), "k3", "bent board" or "fx/fy free"; p_value: chance of such an improvement if it
     were not needed, the larger of an F test of the sums of squares (corners independent) and of a Wald test with the
-    covariance by views; gain: of the corrected Akaike criterion, positive if the term is worth it; kept: bool.
+    covariance by views; gain: of the corrected Akaike criterion AICc, by which models are weighted, not chosen; kept:
+    bool; limit: of the p-value, to be kept it must be below (a bent board must be bent by more than its error, too).
     """
 
     term: str
     p_value: float
     gain: float
     kept: bool
+    limit: float
 
     def __str__(self):
-        verdict = "kept" if self.kept else "not needed"
-        return f"{self.term}: {verdict} (chance {self.p_value:.2g}, AICc gain {self.gain:.1f})"
+        verdict = ("dropped", "kept") if self.term in _LIMIT else ("no", "yes")
+        small = "; but too little to count" if not self.kept and self.p_value < self.limit else ""
+        return (
+            f"{' and '.join(_NAMED.get(self.term, (self.term,)))}: {verdict[self.kept]} (such an improvement by "
+            f"chance: {in_percent(self.p_value)}; the limit is {100 * self.limit:g} %{small})"
+        )
+
+
+def in_percent(chance):
+    """A probability in words: "4.6 %", "less than 0.01 %"."""
+    return f"{100 * chance:.2g} %" if chance >= 1e-4 else "less than 0.01 %"
 
 
 def aicc(fitted):
@@ -74,8 +86,8 @@ def choose(corners, guess, aspect=None, bent=False):
         smaller = fit(corners, Model(fewer, aspect, bent), (best.camera, best.poses))
         tried.append(smaller)
         p_value, gain = compare(smaller, best, contrast_of(term))
-        keep = p_value < _DOUBT[term]
-        evidence.append(Evidence(term, p_value, gain, keep))
+        keep = p_value < _LIMIT[term]
+        evidence.append(Evidence(term, p_value, gain, keep, _LIMIT[term]))
         if not keep:
             best, terms = smaller, fewer
     return best, tuple(evidence), tuple(tried)
