@@ -12,7 +12,18 @@ from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import CalibrationError, CameraError, InputError, UnreachableError, VisionError
 from ir50p_lab.modelling import IR50P, forward_kinematics, frames
-from ir50p_lab.vision import Reacher, RenderedBench, Sight, TablePlane, plan, reach, reach_pose, work_area
+from ir50p_lab.vision import (
+    Reacher,
+    RenderedBench,
+    Sight,
+    TablePlane,
+    camera_over,
+    plan,
+    reach,
+    reach_pose,
+    work_area,
+)
+from ir50p_lab.vision.camera import webcam
 from ir50p_lab.vision.reaching.budget import error_budget
 from ir50p_lab.vision.reaching.plan import ALMOST, MARGIN, nearest_reachable, within_reach
 from ir50p_lab.vision.reaching.result import BallTracker
@@ -301,6 +312,36 @@ def test_a_camera_that_dies_cuts_the_drive():
     with pytest.raises(CameraError), bench:
         reach(bench, sight)
     assert (bench._pwm == 0).all()
+
+
+class Real:
+    """What a bench with a real arm says of itself."""
+
+    simulated, name = False, "arm on a bench"
+
+
+def test_a_real_arm_is_given_no_rendered_camera(monkeypatch, capsys):
+    monkeypatch.setattr(webcam, "webcam_present", lambda: False)
+    monkeypatch.delenv("IR50P_CAMERA", raising=False)
+    for source in (None, "rendered"):
+        with pytest.raises(CameraError, match="plug a webcam in"):
+            camera_over(Real(), source=source)
+
+
+def test_a_real_arm_does_not_reach_for_a_rendered_ball():
+    bench, _, sight = rig()
+    bench.simulated = bench.realtime = False
+    with pytest.raises(CameraError, match="the picture is rendered"):  # before the drive is on
+        Reacher(bench, sight)
+    bench.simulated = True
+    for task in (Reacher.reach, lambda reacher: reacher.follow_ball(1.0)):
+        before = bench.plant.q_true
+        with pytest.raises(CameraError, match="the picture is rendered"), bench, Reacher(bench, sight) as reacher:
+            bench.simulated, bench.realtime = False, True  # the camera says nothing, its picture does
+            task(reacher)
+        bench.simulated, bench.realtime = True, False
+        assert (bench._pwm == 0).all()
+        assert np.abs(bench.plant.q_true - before).max() < 0.05
 
 
 def test_the_loop_goes_on_while_the_eye_looks():

@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from ir50p_lab.errors import InputError, UnreachableError, VisionError
+from ir50p_lab.errors import CameraError, InputError, UnreachableError, VisionError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.vision.reaching.moving import Mover
@@ -28,7 +28,8 @@ class Reacher(Mover):
     and the picture is worked on, the loop goes on in this thread and the eye works in another.
 
     Args:
-        bench: an open bench. sight: Sight, or None for moving only. controller: default `reaching_controller(arm)`.
+        bench: an open bench. sight: Sight, or None for moving only; one of rendered pictures raises CameraError for a
+        real arm. controller: default `reaching_controller(arm)`.
         correction: JointCorrection of the potentiometers, from `refine_hand_eye`; default none.
         sigma_q: (3,) rad, how far the potentiometers may be off after that; default 0.7 counts if the calibration of
         the bench was measured (what a straight line leaves of a bent characteristic), 2.5 if it is a nominal one.
@@ -40,6 +41,7 @@ class Reacher(Mover):
     def __init__(self, bench, sight=None, *, controller=None, correction=None, sigma_q=None, rest=True):
         super().__init__(bench, controller=controller, correction=correction, rest=rest)
         self.sight, self._pool = sight, None
+        self._refuse_drawn(getattr(getattr(sight, "camera", None), "simulated", False))
         if sigma_q is None:
             measured = bench.calibration.stderr_slope is not None
             sigma_q = (_COUNTS if measured else _COUNTS_NOMINAL) / np.abs(bench.calibration.slope)
@@ -60,11 +62,24 @@ class Reacher(Mover):
         if self.sight is None:
             raise InputError("this Reacher has no sight: give Reacher(bench, sight)")
         if self.bench.simulated and not getattr(self.bench, "realtime", False):
-            return self.sight.look()
-        job = self._pool.submit(self.sight.look)
+            return self._see()
+        job = self._pool.submit(self._see)
         while not job.done():
             self.hold(self.bench.period)
         return job.result()
+
+    def _see(self):
+        seen = self.sight.look()
+        self._refuse_drawn(seen.simulated)
+        return seen
+
+    def _refuse_drawn(self, drawn):
+        """A real arm would move among real things to where a ball was drawn."""
+        if drawn and not self.bench.simulated:
+            raise CameraError(
+                f"{self.bench.name} is a real arm, but the picture is rendered: open a webcam with open_camera(0), or "
+                "take the simulated arm, connect('simulated')"
+            )
 
     # ---- tasks
 
@@ -181,7 +196,7 @@ class Reacher(Mover):
             t = self._last.t
             if job is None and t >= next_look:
                 next_look = t + every
-                job = (t, self._pool.submit(self.sight.look)) if live else (t, self.sight.look())
+                job = (t, self._pool.submit(self._see)) if live else (t, self._see())
             if job is not None and (not live or job[1].done()):
                 taken, seen = job[0], job[1].result() if live else job[1]
                 job = None

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
+from ir50p_lab.errors import CameraError, InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.board_pose import moved
@@ -115,11 +115,19 @@ def camera_over(bench, balls=(0.40, 0.0, 0.03), *, source=None, small=False, **o
 
     balls: where balls lie in a rendered picture (a real camera sees yours); small: pictures of half the width and
     height, for what must be quick; options: of RenderedBench.
+    Raises CameraError for a real arm if there is no webcam: it would reach for a ball that was only drawn.
     """
     from ir50p_lab.vision.camera.interface import open_camera
 
     if not hasattr(bench, "plant"):
-        return open_camera(source, **({"size": (320, 240)} if small else {}))
+        camera = open_camera(source, **({"size": (320, 240)} if small else {}))
+        if camera.simulated and not bench.simulated:
+            camera.close()
+            raise CameraError(
+                "a real arm needs a camera that sees it: plug a webcam in, close the program that has it, or take the "
+                "simulated arm, connect('simulated')"
+            )
+        return camera
     if small:
         scene = options.get("scene") or bench_scene()
         width, height = scene.pinhole.size
