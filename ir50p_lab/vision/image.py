@@ -65,15 +65,7 @@ def load_image(path, *, allow_grey=False):
     path = Path(path)
     if path.is_dir():
         raise ImageError(f"{path} is a folder: give one of its files, or open_camera('folder:{path}') for all of them")
-    try:
-        data = path.read_bytes()
-    except FileNotFoundError:
-        beside = "" if path.parent.is_dir() else f", nor the folder {path.parent}"
-        raise ImageError(f"there is no file {path}{beside}: check the name (here is {Path.cwd()})") from None
-    except OSError as error:
-        raise ImageError(f"{path} cannot be read ({error.strerror}): check the rights of the file") from None
-    if not data:
-        raise ImageError(f"{path} is empty (0 bytes): copy or take the picture again")
+    data = _bytes(path)
     image, problem = decode(data)
     if problem:
         raise ImageError(f"{path} {problem}")
@@ -86,6 +78,22 @@ def load_image(path, *, allow_grey=False):
             )
         return np.repeat(image[:, :, None], 3, axis=2)
     return np.ascontiguousarray(image[..., ::-1])
+
+
+def _bytes(path):
+    """What is in the file; ImageError if nothing is, or it cannot be read."""
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        beside = "" if path.parent.is_dir() else f", nor the folder {path.parent}"
+        raise ImageError(f"there is no file {path}{beside}: check the name (here is {Path.cwd()})") from None
+    except ValueError:
+        raise ImageError(f"{str(path)!r} is no path (it holds a null byte): check the name") from None
+    except OSError as error:
+        raise ImageError(f"{path} cannot be read ({error.strerror}): check the rights of the file") from None
+    if not data:
+        raise ImageError(f"{path} is empty (0 bytes): copy or take the picture again")
+    return data
 
 
 def save_image(path, image, *, rendered=False, quality=95):
@@ -109,9 +117,8 @@ def save_image(path, image, *, rendered=False, quality=95):
 
 
 def is_rendered(path):
-    """Whether the picture file carries the mark of a rendered one."""
-    with open(path, "rb") as file:
-        return MARK.encode() in file.read(4096)
+    """Whether the picture file carries the mark of a rendered one. Raises ImageError for a file that is not there."""
+    return MARK.encode() in _bytes(Path(path))[:4096]
 
 
 def list_images(folder):

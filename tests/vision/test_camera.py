@@ -1,10 +1,11 @@
 """One interface, three cameras; the webcam is played by a fake below the driver's edge."""
 
+import cv2
 import numpy as np
 import pytest
 
-from ir50p_lab.errors import CameraError, ImageError, InputError
-from ir50p_lab.vision import Frame, PictureFolder, RenderedCamera, Webcam, open_camera, save_image
+from ir50p_lab.errors import CalibrationError, CameraError, ImageError, InputError
+from ir50p_lab.vision import Frame, PictureFolder, RenderedCamera, Webcam, calibrate, open_camera, save_image
 from ir50p_lab.vision.camera import interface, webcam
 from ir50p_lab.vision.rendering import Ball, Scene, bench_scene
 
@@ -73,9 +74,11 @@ def test_a_webcam_that_answers_is_taken(monkeypatch, capsys):
 
 def test_a_webcam_that_does_not_answer_gives_way(monkeypatch, capsys):
     monkeypatch.setattr(webcam, "webcam_present", lambda: True)
-    with open_camera() as found:
-        assert isinstance(found, RenderedCamera)
-    assert "no webcam 0" in capsys.readouterr().out
+    for capture, why in ((FakeCapture(opened=False), "no webcam 0"), (FakeCapture(channels=1), "one channel")):
+        monkeypatch.setattr(webcam, "_capture", lambda index, it=capture: it)
+        with open_camera() as found:
+            assert isinstance(found, RenderedCamera)
+        assert why in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("wish", ["rendered", "RENDERED"])
@@ -126,6 +129,38 @@ def test_bad_folders_and_files(tmp_path, folder):
     assert found.read().source == "view10.png"
 
 
+def test_a_folder_without_a_usable_picture_is_refused(tmp_path):
+    cv2.imwrite(str(tmp_path / "a.png"), np.zeros((6, 8), np.uint8))
+    with pytest.raises(ImageError, match="one channel"):
+        open_camera(tmp_path)
+    (tmp_path / "b.jpg").write_bytes(b"x")
+    with pytest.raises(ImageError, match=r"none of the 2 pictures of folder .* one channel"):
+        open_camera(tmp_path)
+
+
+def test_a_broken_file_among_rendered_pictures_makes_no_photographs(tmp_path, capsys):
+    for name in "bc":
+        save_image(tmp_path / f"{name}.png", np.zeros((6, 8, 3), np.uint8), rendered=True)
+    for name, content in (("a.png", b""), ("d.jpg", b"x")):
+        (tmp_path / name).write_bytes(content)
+    assert open_camera(tmp_path).simulated and "8x6, rendered" in capsys.readouterr().out
+    save_image(tmp_path / "e.png", np.zeros((6, 8, 3), np.uint8))
+    assert not open_camera(tmp_path).simulated
+
+
+def test_calibrating_with_a_folder_camera_is_calibrating_with_the_folder(folder):
+    """A bad file is left out with its reason; it does not end the calibration."""
+    (folder / "view2.png").write_bytes(b"broken")
+    said = []
+    for images in (folder, open_camera(folder), open_camera(folder, loop=True)):
+        with pytest.raises(CalibrationError) as why:
+            calibrate(images)
+        said.append(str(why.value))
+    assert "unreadable" in said[0] and len(set(said)) == 1
+    with pytest.raises(InputError, match="no last picture"):
+        calibrate(RenderedCamera())
+
+
 def test_unplugged_while_streaming(monkeypatch):
     capture = FakeCapture(pictures=3)
     found = Webcam(0, capture=capture)
@@ -163,6 +198,36 @@ def test_a_webcam_without_pictures_or_colour():
         with pytest.raises(error, match=words):
             Webcam(0, capture=capture)
         assert capture.released  # or the next attempt finds it busy
+
+
+@pytest.mark.parametrize("error", [cv2.error("boom"), OSError("device gone")])
+@pytest.mark.parametrize("where", ["read", "grab"])
+def test_what_a_driver_raises_is_a_camera_error(error, where):
+    capture = FakeCapture()
+    found = Webcam(0, capture=capture)
+
+    def broken():
+        raise error
+
+    setattr(capture, where, broken)
+    with pytest.raises(CameraError, match=f"stopped .{error}"):
+        found.read()
+
+
+@pytest.mark.parametrize("picture", [np.zeros((4, 5, 2), np.uint8), np.zeros((4, 5, 3), np.uint16)])
+def test_raw_pictures_of_a_driver_are_refused(picture):
+    capture = FakeCapture()
+    capture.read = lambda: (True, picture)
+    with pytest.raises(ImageError, match=f"{picture.shape[2]} channels of {picture.dtype}"):
+        Webcam(0, capture=capture)
+
+
+def test_numbers_that_are_none_are_refused():
+    for options in ({"period": "a"}, {"period": 0}, {"seed": "a"}):
+        with pytest.raises(InputError, match=next(iter(options))):
+            RenderedCamera(**options)
+    with pytest.raises(InputError, match="position must hold numbers"):
+        RenderedCamera().move_ball("abc")
 
 
 def test_rendered_ball_moves_and_arm_poses():

@@ -141,3 +141,11 @@ def test_importing_the_package_costs_nothing():
     code = "import ir50p_lab.vision, ir50p_lab.vision.rendering, sys; print(' '.join(sys.modules))"
     loaded = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
     assert not {"cv2", "numpy", "scipy", "matplotlib"} & set(loaded)
+
+
+def test_a_path_with_a_null_byte_and_a_missing_file_are_refused():
+    for ask in (load_image, is_rendered):
+        with pytest.raises(ImageError, match="null byte"):
+            ask("a\0b")
+        with pytest.raises(ImageError, match="there is no file"):
+            ask("nowhere.png")

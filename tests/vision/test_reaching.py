@@ -380,3 +380,6 @@ def test_bad_arguments_of_reaching_are_refused():
             reacher.look()
     with bench, Reacher(bench, sight, rest=False) as reacher, pytest.raises(InputError, match="looks"):
         reacher.reach(looks=0)
+    for task, name in ((lambda r: r.reach(height="a"), "height"), (lambda r: r.pick_and_place("ab"), "place")):
+        with bench, Reacher(bench, sight, rest=False) as reacher, pytest.raises(InputError, match=name):
+            task(reacher)

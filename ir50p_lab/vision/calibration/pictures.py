@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import ImageError, InputError
+from ir50p_lab.vision.camera.interface import Camera
+from ir50p_lab.vision.camera.picture_folder import PictureFolder
 from ir50p_lab.vision.image import list_images, load_image, to_grey
 from ir50p_lab.vision.picture_file import quarter_turns
 
@@ -45,6 +47,10 @@ def pictures_of(images, progress=False):
     """
     if isinstance(images, str | Path):
         images = list_images(images)
+    elif isinstance(images, PictureFolder):
+        images = images.paths  # as if the folder were given: read() would stop at a bad file
+    elif isinstance(images, Camera):
+        raise InputError(f"{images.name} has no last picture: give a list, [camera.read(), ...]")
     elif (isinstance(images, np.ndarray) and images.ndim < 4) or hasattr(images, "image"):
         raise InputError("one picture is not enough: give a list of pictures, or a folder")
     try:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.errors import CameraError, InputError
+from ir50p_lab.errors import CameraError, ImageError, InputError
 
 VARIABLE = "IR50P_CAMERA"
 TO_WEBCAM = f"for a webcam: open_camera(0) or {VARIABLE}=0"
@@ -94,7 +94,7 @@ def open_camera(source=None, **options):
         if not webcam_present():
             raise CameraError("no webcam found")
         camera = Webcam(0, **_only(options, "size"))
-    except CameraError as error:
+    except (CameraError, ImageError) as error:
         why = str(error).split(";")[0].split(":")[0]
         return _say(RenderedCamera(**_only(options, "scene", "seed", "period")), why, TO_WEBCAM)
     return _say(camera, "a webcam is plugged in and answers", TO_RENDERED)

@@ -12,40 +12,52 @@ from ir50p_lab.vision.image import is_rendered, list_images, load_image
 class PictureFolder(Camera):
     """The pictures of a folder, or one picture, in the order of their names; after the last, CameraError unless `loop`.
 
-    Raises ImageError for a missing or empty folder; `read` raises it for a file that is no colour picture, and goes on
-    with the next one then.
+    Raises ImageError for a missing folder, and one without a colour picture; `read` raises it for a file that is none,
+    and goes on with the next one then. Attributes: paths: of all its files; simulated: no photograph is among them.
     """
 
     def __init__(self, path, *, loop=False):
         path = Path(path)
-        self._paths = [path] if path.is_file() else list_images(path)
+        self.paths = [path] if path.is_file() else list_images(path)
         self.name, self._loop, self._next = f"folder {path}" if path.is_dir() else f"picture {path}", loop, 0
         self._closed, self._opened = False, time.monotonic()
-        self.simulated = all(is_rendered(p) for p in self._paths)
-        for candidate in self._paths:
-            with contextlib.suppress(ImageError):
-                height, width = load_image(candidate).shape[:2]
-                self.size = (width, height)
-                break
+        self.size = self._first_size()
+        self.simulated = not any(_is_photograph(one) for one in self.paths)
+
+    def _first_size(self):
+        problems = []
+        for path in self.paths:
+            try:
+                height, width = load_image(path).shape[:2]
+            except ImageError as error:
+                problems.append(str(error))
+            else:
+                return width, height
+        if len(problems) == 1:
+            raise ImageError(problems[0])
+        raise ImageError(
+            f"none of the {len(problems)} pictures of {self.name} can be used. The first: {problems[0]}. (To calibrate "
+            "with grey ones, give calibrate the folder.)"
+        )
 
     def __len__(self):
-        return len(self._paths)
+        return len(self.paths)
 
     def __iter__(self):
-        while self._loop or self._next < len(self._paths):
+        while self._loop or self._next < len(self.paths):
             yield self.read()
 
     def read(self):
         """The next Frame. Raises CameraError after the last picture, ImageError for a file that is none."""
         if self._closed:
             raise CameraError(f"{self.name} is closed: open it again")
-        if self._next >= len(self._paths):
+        if self._next >= len(self.paths):
             if not self._loop:
                 raise CameraError(
-                    f"{self.name} has no more than {len(self._paths)} pictures: open it again, or with loop=True"
+                    f"{self.name} has no more than {len(self.paths)} pictures: open it again, or with loop=True"
                 )
             self._next = 0
-        path = self._paths[self._next]
+        path = self.paths[self._next]
         self._next += 1
         return Frame(
             image=load_image(path),
@@ -57,3 +69,10 @@ class PictureFolder(Camera):
     def close(self):
         """No more pictures."""
         self._closed = True
+
+
+def _is_photograph(path):
+    """Whether a file holds a picture that was not rendered; what cannot be read is none."""
+    with contextlib.suppress(ImageError):
+        return not is_rendered(path) and load_image(path) is not None
+    return False

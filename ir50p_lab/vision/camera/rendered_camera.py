@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.errors import CameraError, InputError
+from ir50p_lab.inputs import number, numbers, whole
 from ir50p_lab.vision.camera.interface import Camera, Frame
 from ir50p_lab.vision.rendering.arm_shape import arm_sticks
 from ir50p_lab.vision.rendering.places import bench_scene
@@ -24,11 +25,10 @@ class RenderedCamera(Camera):
     simulated = True
 
     def __init__(self, scene=None, *, seed=0, period=1 / 30):
-
-        if not period > 0:
-            raise InputError(f"period = {period}: give the seconds between pictures, more than 0")
         self.scene = bench_scene() if scene is None else scene
-        self.seed, self.period, self._count, self._truth, self._closed = int(seed), float(period), 0, None, False
+        self.seed = whole("seed", seed, 0, 2**62)
+        self.period = number("period", period, "> 0", unit="s", hint="the time between two pictures")
+        self._count, self._truth, self._closed = 0, None, False
         self.name = "rendered camera"
         self.size = self._now().pinhole.size
 
@@ -60,7 +60,7 @@ class RenderedCamera(Camera):
         places = [i for i, thing in enumerate(scene.objects) if isinstance(thing, Ball)]
         if not 0 <= index < len(places):
             raise InputError(f"ball {index}: the scene has {len(places)} balls, counted from 0")
-        position = np.asarray(position, dtype=float)
+        position = numbers("position", position, unit="m")
         ball = scene.objects[places[index]]
         if position.shape == (2,):
             position = np.append(position, ball.radius)

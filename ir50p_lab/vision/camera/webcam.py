@@ -55,10 +55,15 @@ class Webcam(Camera):
     def _grab(self):
         began = time.monotonic()
         while True:
-            ok, image = self._capture.read()
+            ok, image = self._ask("read")
             if ok and image is not None and image.size:
                 if image.ndim == 2 or image.shape[2] == 1:
                     raise ImageError(f"{self.name} gives one channel (an infrared camera?): take a colour camera")
+                if image.shape[2] not in (3, 4) or image.dtype != np.uint8:
+                    raise ImageError(
+                        f"{self.name} gives {image.shape[2]} channels of {image.dtype}: set it to colour pictures of "
+                        "8 bits, or take another camera"
+                    )
                 return np.ascontiguousarray(image[..., 2::-1])  # from blue, green, red
             if not self._capture.isOpened() or time.monotonic() - began > self._patience:
                 raise CameraError(
@@ -66,6 +71,15 @@ class Webcam(Camera):
                     f"in and open it again; {TO_RENDERED}"
                 )
             time.sleep(0.01)
+
+    def _ask(self, what):
+        """Call read() or grab() of the driver."""
+        import cv2
+
+        try:
+            return getattr(self._capture, what)()
+        except (cv2.error, OSError) as error:
+            raise CameraError(f"{self.name} stopped ({error}): plug it in and open it again; {TO_RENDERED}") from None
 
     _patience = LOST_AFTER
 
@@ -82,7 +96,7 @@ class Webcam(Camera):
         # one that waited comes at once; one that is being taken makes grab() wait for it
         for _ in range(5):
             began = time.monotonic()
-            if not self._capture.grab() or time.monotonic() - began > 0.005:
+            if not self._ask("grab") or time.monotonic() - began > 0.005:
                 return
 
     def close(self):

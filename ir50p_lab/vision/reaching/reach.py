@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from ir50p_lab.errors import CameraError, InputError, UnreachableError, VisionError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import number, numbers, vectors3, whole
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.vision.reaching.moving import Mover
 from ir50p_lab.vision.reaching.plan import plan, reach_pose, within_reach
@@ -92,18 +92,17 @@ class Reacher(Mover):
         Returns: Reached. Raises UnreachableError (.distance, .nearest) before anything moves; VisionError if no ball
         is seen, with the reason.
         """
-        if looks not in (1, 2, 3):
-            raise InputError(f"looks = {looks!r}: give 1, 2 or 3")
-        begin = self._last.t
+        looks = whole("looks", looks, 1, 3)
+        height, begin = number("height", height, unit="m"), self._last.t
         seen = self._sure(self.look())
         ball, records, over = seen.position, [], np.array([0.0, 0.0, height])
         goal = within_reach(self.arm, ball + over)
         first = plan(self.arm, self.q, goal)
         self.move_along(first)
-        for number in range(looks):
+        for k in range(looks):
             q = self.settle(reach_pose(self.arm, goal, self.q))
             tip, marker, note = forward_kinematics(self.arm, q), None, ""
-            if number + 1 < looks:
+            if k + 1 < looks:
                 ball, marker, q, note = self._look_again(ball, q)
                 tip = forward_kinematics(self.arm, q)
             then, refusal = self._next_goal(goal, ball + over)
@@ -161,9 +160,10 @@ class Reacher(Mover):
         ball are tested before anything moves: the arm reaches less far down there than over the ball.
         Returns: Reached, of the reach. Raises as `reach`, for the place, too.
         """
-        place = np.asarray(place, dtype=float)
+        place = numbers("place", place, unit="m")
         if place.shape != (2,) or not np.isfinite(place).all():
             raise InputError(f"place = {place.tolist()}: give x, y on the table, m")
+        contact = number("contact", contact, unit="m")
         put = np.array([*place, self.sight.radius + contact])
         up = np.array([0.0, 0.0, HEIGHT])
         reach_pose(self.arm, put + up), reach_pose(self.arm, put)
