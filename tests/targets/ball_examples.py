@@ -19,6 +19,7 @@ from ir50p_lab.vision.rendering import random_scene
 
 LEAST_RADIUS = 6.0
 BALL, NOTHING, UNCLEAR = 1, 0, -1
+_COPIES = {"ball": 4, "no_ball": 3}  # of each scene, changed
 
 
 def scene(seed, kind, folder=None):
@@ -34,7 +35,7 @@ def scene(seed, kind, folder=None):
     return image, balls
 
 
-def examples(seed, kind, *, copies=3, folder=None):
+def examples(seed, kind, *, folder=None):
     """Rays (n, 32, channels), measures (n, m) and labels (n,) of one scene and of changed copies of it."""
     rng = np.random.default_rng([seed, kind == "ball", 77])
     image, balls = scene(seed, kind, folder)
@@ -43,7 +44,7 @@ def examples(seed, kind, *, copies=3, folder=None):
     found = _look(image, guesses, balls, red)
     if kind == "no_ball":
         found += painted(seed, 0, folder) + painted(seed, 1, folder)
-    for _ in range(copies):
+    for _ in range(_COPIES[kind]):
         found += _look(*_changed(rng, image, guesses, balls), _another_red(rng))
     return found
 
@@ -271,10 +272,10 @@ def _cuboid(rng, image, middle, r, turn, colour):
 
 
 def _seen(rng, image):
-    """Another light and another camera: gains, gamma, blur, noise, compression."""
+    """Another light and another camera: gains, gamma, blur, noise, compression; what was overexposed stays so."""
     gain = rng.uniform(0.55, 1.4) * rng.uniform(0.93, 1.07, 3)
-    table = np.arange(256)[:, None] / 255
-    table = 255 * np.clip(gain * table ** rng.uniform(0.75, 1.3), 0, 1)
+    table = (np.arange(256)[:, None] / 255) ** rng.uniform(0.75, 1.3)
+    table = 255 * np.where(gain < 1, gain * table / (1 - (1 - gain) * table), np.minimum(gain * table, 1))
     image = cv2.LUT(image, np.rint(table).astype(np.uint8)[:, None])
     if rng.random() < 0.5:
         image = cv2.GaussianBlur(image, (0, 0), rng.uniform(0.4, 1.3))

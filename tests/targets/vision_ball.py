@@ -1,6 +1,6 @@
 """The ball detector against its targets, on the frozen scenes: `python -m tests.targets.vision --only ball`.
 
-Seeds from 10000 on: the judge was trained on seeds 100 to 1059 (tests/targets/train_ball_judge.py). A scene of kind
+Seeds from 10000 on: the judge was trained on seeds 100 to 3199 (tests/targets/train_ball_judge.py). A scene of kind
 'ball' counts as found if a ball is reported within a third of the radius of the true centre; whatever else is reported
 there is a false alarm.
 """

@@ -17,12 +17,13 @@ from ir50p_lab.vision.pinhole import Pinhole
 
 _TRIED, _TRIED_CLOSER = 14, 24  # guesses measured; the closer look is only for pictures that show no ball so far
 
-LEAST_SCORE = 0.85  # more than a half: a false alarm is worse than a miss
-_SMALL, _LEAST_SMALL = 8.0, 0.97  # of so few pixels of radius a box can look like a ball: then it must be surer
+LEAST_SCORE = 0.89  # more than a half: a false alarm is worse than a miss
+_SMALL, _LEAST_SMALL = 8.0, 0.977  # of so few pixels of radius a box can look like a ball: then it must be surer
 # Whatever else speaks for it, a ball shows an edge on this much of the circle, this much of its disc has the colour,
 # and its outline leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and a part of a pixel.
 _LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.32, 0.40, (0.010, 0.45)
-_MOST_HUE = 0.95  # median over the disc of the distance from the colour's hue, over its tolerance
+_MOST_HUE = 0.9  # of the disc, distance from the colour's hue over its tolerance
+_ENOUGH = 0.1  # of the disc that is not overexposed: less tells nothing of the hue
 
 
 @dataclass(frozen=True)
@@ -155,14 +156,27 @@ def blunt(found, least_radius):
         return f"an edge on {found.support:.0%} of the circle only"
     if found.fill < _LEAST_FILL:
         return f"hollow, or another colour: {found.fill:.0%} of the disc have the colour"
-    hue = float(median(found.samples[:, :6, 2]))
-    if hue > _MOST_HUE:
+    if (hue := _hue(found.samples[:, :6])) > _MOST_HUE:
         return f"another colour: its hue is {hue:.1f} times as far off as the colour allows"
     part, pixels = _MOST_BUMPS
     rough = max(found.bumps, 0.6 * float(np.hypot(found.bumps, found.ragged)))  # noise alone makes edges scatter
     if rough * r > part * r + pixels:
         return f"not round: its outline leaves a circle by {rough:.1%} of the radius"
     return ""
+
+
+def _hue(disc):
+    """Distance from the colour's hue over its tolerance: of the disc, or its darker half, or where nothing is clipped.
+
+    The least of the three: a thing in front has another hue, and a red that is clipped looks orange.
+    """
+    brightness, hue, overexposure, within = np.moveaxis(disc[:, :, [1, 2, 4, 5]], 2, 0)
+    dark, clear = (brightness <= 0) & (within > 0), (overexposure < 1) & (within > 0)
+    hues = [median(hue)]
+    if dark.any():
+        hues.append(median(hue[dark]))
+    hues.append(median(hue[clear]) if clear.mean() >= _ENOUGH else 0.0)
+    return float(min(hues))
 
 
 def _as_colour(colour):

@@ -37,7 +37,8 @@ def measures(found, others=()):
     """What is measured of a Measured, (m,) float32, for the judge; others: Balls that may touch it."""
     o = found.outline
     pixels = 0.3 + 0.01 * o.r
-    hue, saturation = median(found.samples[:, :6, 2]), median(found.samples[:, :6, 3])
+    disc = found.samples[:, :6]
+    dark = (disc[:, :, 1] <= 0) & (disc[:, :, 5] > 0)  # the darker half of it shows its own hue, not the light's
     return np.float32(
         [
             np.log(o.r / 20),
@@ -55,8 +56,10 @@ def measures(found, others=()):
             found.step,
             found.bumps * 20,
             found.ragged * 20,
-            hue,
-            saturation,
+            median(disc[:, :, 2]),
+            median(disc[:, :, 2][dark]) if dark.any() else 0,
+            median(disc[:, :, 3]),
+            disc[:, :, 4].mean(),
         ]
     )
 
@@ -78,8 +81,8 @@ def _networks():
     w3 = net["w3"].copy()
     w3[:, -len(net["number_std"]) :] /= net["number_std"][:, None]
     b3 = net["b3"] - net["number_mean"] @ w3[:, -len(net["number_mean"]) :]
-    first = w1.transpose(1, 2, 0, 3).reshape(len(NEAR) * channels, count * wide)
-    return first, b1.ravel(), net["w2"], net["b2"][:, None], w3, b3[:, None], net["w4"][:, :, None], net["b4"]
+    first = w1.reshape(count, len(NEAR) * channels, wide)
+    return first, b1[:, None], net["w2"], net["b2"][:, None], w3, b3[:, None], net["w4"][:, :, None], net["b4"]
 
 
 def score(found, others=None):
@@ -89,12 +92,15 @@ def score(found, others=None):
     rays = np.stack([rays_of(m, o) for m, o in zip(found, others, strict=True)])
     numbers = np.stack([measures(m, o) for m, o in zip(found, others, strict=True)])
     n, count = len(found), len(w2)
-    h1 = np.maximum(rays.take(around(NEAR), axis=1).reshape(n * RAYS, -1) @ w1 + b1, 0)
-    x2 = h1.reshape(n, RAYS, count, -1).take(around(FAR), axis=1).transpose(3, 0, 1, 2, 4)
-    h2 = np.maximum(x2.reshape(count, n * RAYS, -1) @ w2 + b2, 0).reshape(count, n, RAYS, -1)
-    pooled = [h2.mean(axis=2), h2.max(axis=2), np.broadcast_to(numbers, (count, *numbers.shape))]
-    h3 = np.maximum(np.concatenate(pooled, axis=2) @ w3 + b3, 0)
-    return 1 / (1 + np.exp(-((h3 @ w4)[:, :, 0].mean(axis=0) + b4.mean())))
+    # a product for each candidate and network: so small ones stay on one thread, which a busy computer has to spare
+    x1 = rays.take(around(NEAR), axis=1).reshape(n, 1, RAYS, -1)
+    h1 = np.maximum(x1 @ w1 + b1, 0)
+    x2 = h1.take(around(FAR), axis=2).reshape(n, count, RAYS, -1)
+    h2 = np.maximum(x2 @ w2 + b2, 0)
+    numbers = np.broadcast_to(numbers[:, None], (n, count, numbers.shape[1]))
+    pooled = np.concatenate([h2.mean(axis=2), h2.max(axis=2), numbers], axis=2)[:, :, None]
+    h3 = np.maximum(pooled @ w3 + b3, 0)
+    return 1 / (1 + np.exp(-((h3 @ w4)[:, :, 0, 0].mean(axis=1) + b4.mean())))
 
 
 def logit(rays, numbers, net, keep=1.0):
