@@ -16,6 +16,7 @@ from ir50p_lab.vision.calibration.checks import (
     about_views,
     bent_board,
     free_aspect,
+    lacking_terms,
     outlier_view,
     sag_size,
 )
@@ -176,11 +177,27 @@ def _best(corners, rough, wanted, aspect, bend):
         return one, (), (one,)
 
     best, evidence, tried = estimate(False)
-    shape = bent_board(corners, best)
+    lacking, wide = None, best  # the fit with what a prescribed lens lacks: a lens can look like a bent board
+    try:
+        if wanted is not None:
+            lacking, wide = lacking_terms(corners, best, guess)
+        shape = bent_board(corners, wide)
+        if shape.kept and bend is None:
+            best, evidence, tried = estimate(True)
+            lacking, wide = (None, best) if wanted is None else lacking_terms(corners, best, guess)
+    except CalibrationError:
+        shape = None
+        said.append("the views are too few or too much alike to test whether the board is bent")
+    if lacking is not None:
+        evidence = (*evidence, lacking)
+    if lacking is not None and lacking.kept:
+        said.append(
+            f"lens = {best.model.lens} was prescribed, but the corners say {wide.model.lens} (by "
+            f"chance: {in_percent(lacking.p_value)}): leave lens=None"
+        )
     if shape is not None and shape.kept and bend is False:
         said.append("bend=False was prescribed, but the corners say that the board is bent: leave bend=None")
     elif shape is not None and shape.kept:
-        best, evidence, tried = estimate(True)
         size = 1000 * sag_size(corners, best.camera[9:])
         error = 1000 * sag_size(corners, best.stderr[9:]) / np.sqrt(3)
         said.append(
@@ -189,7 +206,7 @@ def _best(corners, rough, wanted, aspect, bend):
         )
     evidence = (*evidence, shape) if shape is not None else evidence
     if aspect:
-        question, free = free_aspect(corners, best)
+        question, free = free_aspect(corners, wide)
         evidence = (*evidence, question)
         if question.kept:
             ratio = free.camera[0] / free.camera[1]

@@ -4,10 +4,11 @@ import numpy as np
 
 from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.fit import Model, fit
-from ir50p_lab.vision.calibration.models import Evidence, compare
+from ir50p_lab.vision.calibration.models import Evidence, choose, compare, contrast_of, in_words
 
 _TILTED = np.deg2rad(15)
-_LIMIT = 1e-3  # chance below which a bend, or another ratio fx/fy, is believed
+_LIMIT = 1e-3  # chance below which a bend, another ratio fx/fy, or a lens with more terms is believed
+_GONE = 0.33  # part of the sum of squares: 2 mm of sag make 0.39 of it or more, flat boards in photographs 0.22 or less
 _ROUGH = 0.7  # px rms, of pictures up to 1280 px wide
 
 
@@ -54,19 +55,46 @@ def _seen_by(camera, corners, view, pose):
     return float(np.sqrt(((pixels - xy[:, 0]) ** 2).sum(axis=1).mean()))
 
 
+def lacking_terms(corners, held, guess):
+    """(Evidence or None, Fit): whether a prescribed lens lacks terms that the corners ask for, and the fit with them.
+
+    None, and the fit that was held, if the lens that the corners would choose has no others.
+    """
+    model = held.model
+    chosen, _, _ = choose(corners, guess, model.aspect, model.bent)
+    lacking = tuple(term for term in chosen.model.terms if term not in model.terms)
+    if not lacking:
+        return None, held
+    free = fit(corners, Model((*model.terms, *lacking), model.aspect, model.bent), (chosen.camera, chosen.poses))
+    p_value, gain = compare(held, free, np.vstack([contrast_of(term) for term in lacking]))
+    clear, why = _clear(p_value, held, free)
+    return Evidence(f"lens lacks {in_words(*lacking)}", p_value, gain, clear, _LIMIT, why), free if clear else held
+
+
 def bent_board(corners, flat):
-    """Evidence whether the same bend of the board shows in all the views; None if they are too few to say.
+    """Evidence whether the same bend of the board shows in all the views.
 
     A bend moves the same corners of the board in every view, as far as it is tilted; three numbers describe it to
-    second order. Three views cannot tell it from the lens: five are needed.
+    second order. Raises CalibrationError if the views cannot tell them from the camera.
     """
-    if len(corners) < 5:
-        return None
     bent = fit(corners, Model(flat.model.terms, flat.model.aspect, True), (flat.camera, flat.poses))
     p_value, gain = compare(flat, bent, np.eye(12)[9:])
-    size = sag_size(corners, bent.camera[9:])
-    seen = p_value < _LIMIT and gain > 15 and size > 4 * sag_size(corners, bent.stderr[9:]) / np.sqrt(3)
-    return Evidence("bent board", p_value, gain, bool(seen), _LIMIT)
+    size, error = sag_size(corners, bent.camera[9:]), sag_size(corners, bent.stderr[9:]) / np.sqrt(3)
+    clear, why = _clear(p_value, flat, bent)
+    if clear and (gain <= 15 or size <= 4 * error):
+        clear, why = False, f"the {1000 * size:.2g} mm of sag are too little beside their error, {1000 * error:.1g} mm"
+    return Evidence("bent board", p_value, gain, clear, _LIMIT, why)
+
+
+def _clear(p_value, small, large):
+    """(bool, why): whether chance is out of the question: by the p-value, or as a third of the sum of squares is gone.
+
+    With few views the p-value by views can hardly fall below the limit, whatever the corners say.
+    """
+    gone = 1 - large.cost / small.cost
+    if p_value < _LIMIT or gone < _GONE:
+        return bool(p_value < _LIMIT), ""
+    return True, f"{100 * gone:.0f} % of the squared residuals are gone"
 
 
 def sag_size(corners, b):

@@ -15,10 +15,10 @@ _NAMED = {"p": ("p1", "p2")}
 class Evidence:
     """One question put to the data: does the term help more than chance would?
 
-    term: "k1", "k2", "p" (p1 and p2), "k3", "bent board" or "fx/fy free"; p_value: chance of such an improvement if it
-    were not needed, the larger of an F test of the sums of squares (corners independent) and of a Wald test with the
-    covariance by views; gain: of the corrected Akaike criterion AICc, by which models are weighted, not chosen; kept:
-    bool; limit: of the p-value, to be kept it must be below (a bent board must be bent by more than its error, too).
+    term: "k1", "k2", "p" (p1 and p2), "k3", "bent board", "fx/fy free" or "lens lacks k1"; p_value: chance of such an
+    improvement if it were not needed, the larger of an F test of the sums of squares (corners independent) and of a
+    Wald test with the covariance by views; gain: of the corrected Akaike criterion AICc, by which models are weighted,
+    not chosen; kept: bool; limit: of the p-value, to be kept it must be below; why: what else decided, if anything.
     """
 
     term: str
@@ -26,14 +26,20 @@ class Evidence:
     gain: float
     kept: bool
     limit: float
+    why: str = ""
 
     def __str__(self):
         verdict = ("dropped", "kept") if self.term in _LIMIT else ("no", "yes")
-        small = "; but too little to count" if not self.kept and self.p_value < self.limit else ""
+        but = f"; but {self.why}" if self.why else ""
         return (
-            f"{' and '.join(_NAMED.get(self.term, (self.term,)))}: {verdict[self.kept]} (such an improvement by "
-            f"chance: {in_percent(self.p_value)}; the limit is {100 * self.limit:g} %{small})"
+            f"{in_words(self.term)}: {verdict[self.kept]} (such an improvement by "
+            f"chance: {in_percent(self.p_value)}; the limit is {100 * self.limit:g} %{but})"
         )
+
+
+def in_words(*terms):
+    """Terms of the lens by their coefficients: "k1 and p1 and p2"."""
+    return " and ".join(name for term in terms for name in _NAMED.get(term, (term,)))
 
 
 def in_percent(chance):
