@@ -224,6 +224,21 @@ def test_view_that_pulls_the_camera_along_is_left_out_too(views):
     assert (np.abs(values(found) - TRUTH) < 3 * np.array([found.stderr[n] for n in NAMES[:4]])).all()
 
 
+def test_the_view_that_alone_needs_k3_is_no_outlier():
+    """Eleven views in the middle, one far out: 1.4 px off with k1 and k2 only, with good corners."""
+    K_wide, lens = np.array([[350, 0, 322.0], [0, 351, 238], [0, 0, 1]]), np.array([-0.3, 0.12, 0, 0, -0.03])
+    rng = np.random.default_rng(3)
+    poses = [look(0.35, rng.uniform(0.2, 0.6), 0.6 * k, at=rng.uniform(-0.25, 0.25, 2)) for k in range(11)]
+    views = [
+        cv2.projectPoints(POINTS, cv2.Rodrigues(T[:3, :3])[0], T[:3, 3], K_wide, lens)[0][:, 0]
+        + rng.normal(0, 0.07, (54, 2))
+        for T in (*poses, look(0.25, 0.3, 2.0, at=(0.7, 0.45)))
+    ]
+    found = calibrate_corners(POINTS, views, SIZE)
+    assert not found.rejected and "k3" in found.model
+    assert abs(found.fx - 350) < 3 * found.stderr["fx"]
+
+
 def test_honest_noise_is_no_outlier():
     for seed in range(5):
         assert not calibrate_corners(POINTS, corner_sets(POINTS, 12, seed=30 + seed), SIZE).rejected

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.fit import Model, fit
+from ir50p_lab.vision.calibration.fit import LADDER, Model, fit
 from ir50p_lab.vision.calibration.models import Evidence, choose, compare, contrast_of, in_words
 
 _TILTED = np.deg2rad(15)
@@ -12,8 +12,24 @@ _GONE = 0.33  # part of the sum of squares: 2 mm of sag make 0.39 of it or more,
 _ROUGH = 0.7  # px rms, of pictures up to 1280 px wide
 
 
-def outlier_view(corners, fitted):
+def outlier_view(corners, rough):
     """(number of the view that fits worst, its rms, usual rms, px) if it does not belong to the others, else None.
+
+    rough: Fit with k1 and k2. What is off that is judged again by the full lens: a view far out may be the only one
+    that needs its k3.
+    """
+    suspect = _worst_view(corners, rough)
+    if suspect is None or rough.model.terms == LADDER:
+        return suspect
+    try:
+        full = fit(corners, Model(LADDER, rough.model.aspect), (rough.camera, rough.poses))
+    except CalibrationError:
+        return suspect
+    return _worst_view(corners, full)
+
+
+def _worst_view(corners, fitted):
+    """The same by one Fit.
 
     It must be three times worse than the median view, and eight times the usual scatter of views above it. A view that
     is far off pulls the camera along and spoils the others, too: if they fit twice as well without the worst, it is
