@@ -227,7 +227,7 @@ def test_view_that_pulls_the_camera_along_is_left_out_too(views):
 def test_the_view_that_alone_needs_k3_is_no_outlier():
     """Eleven views in the middle, one far out: 1.4 px off with k1 and k2 only, with good corners."""
     K_wide, lens = np.array([[350, 0, 322.0], [0, 351, 238], [0, 0, 1]]), np.array([-0.3, 0.12, 0, 0, -0.03])
-    rng = np.random.default_rng(3)
+    rng = np.random.default_rng(5)
     poses = [look(0.35, rng.uniform(0.2, 0.6), 0.6 * k, at=rng.uniform(-0.25, 0.25, 2)) for k in range(11)]
     views = [
         cv2.projectPoints(POINTS, cv2.Rodrigues(T[:3, :3])[0], T[:3, 3], K_wide, lens)[0][:, 0]
