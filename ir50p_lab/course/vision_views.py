@@ -10,7 +10,15 @@ from ir50p_lab.course.clickable import ClickableImage
 from ir50p_lab.course.painter import encode_png
 from ir50p_lab.course.style import COLOURS, new_figure
 from ir50p_lab.errors import LabError
-from ir50p_lab.vision import RED, blur_diameter, find_balls, learn_colour, rgb_to_hsv
+from ir50p_lab.vision import (
+    RED,
+    blur_diameter,
+    find_balls,
+    image_distance,
+    learn_colour,
+    rays_on_sensor,
+    rgb_to_hsv,
+)
 
 STAMP = "rendered, not photographed"
 _GREY = {"cmap": "gray", "vmin": 0, "vmax": 255, "interpolation": "nearest"}
@@ -46,15 +54,18 @@ def pictures_figure(*titled, width=9.6, height=None, source=STAMP):
     return stamp(figure, source)
 
 
-def numbers_figure(grey, x, y, n=9, *, source=STAMP):
-    """A corner of a grey picture as grey levels and as numbers (Figure 3.1): n x n pixels from (x, y)."""
+def numbers_figure(grey, x, y, n=9, *, title="An image is a matrix of numbers", white=255, source=STAMP):
+    """A corner of a grey picture as grey levels and as numbers (Figure 3.1): n x n pixels from (x, y).
+
+    white: the level shown as white.
+    """
     part = grey[y : y + n, x : x + n]
-    figure = new_figure(4.6, 4.4)
+    figure = new_figure(0.91 + 0.41 * n, 0.71 + 0.41 * n)
     ax = figure.axes[0]
-    show_picture(ax, part, "An image is a matrix of numbers", extent=(x - 0.5, x + n - 0.5, y + n - 0.5, y - 0.5))
+    show_picture(ax, part, title, vmax=white, extent=(x - 0.5, x + n - 0.5, y + n - 0.5, y - 0.5))
     for row in range(n):
         for col in range(n):
-            ink = "white" if part[row, col] < 128 else "black"
+            ink = "white" if part[row, col] < white / 2 else "black"
             ax.text(x + col, y + row, str(part[row, col]), ha="center", va="center", fontsize=7.5, color=ink)
     ax.set(xlabel="x [px]", ylabel="y [px]")
     return stamp(figure, source)
@@ -138,96 +149,189 @@ def mask_between(hsv, hue_low, hue_high, s_low, s_high, v_low):
     return 255 * (near & (saturation >= s_low) & (saturation <= s_high) & (value >= v_low)).astype(np.uint8)
 
 
-def canny_figure(steps, *, title="Thick slopes, then crests, then what hangs together"):
-    """The four steps of Canny, from CannySteps: LabFigure."""
+def canny_figure(steps, low, high):
+    """The four steps of Canny, from CannySteps; crests in classes by the thresholds low and high: LabFigure."""
     figure = new_figure(9.6, 2.9, cols=4)
     strength = 255 * steps.strength / max(steps.strength.max(), 1)
-    thin = 255 * np.clip(3 * steps.thin / max(steps.thin.max(), 1), 0, 1)
+    crests = np.zeros((*steps.thin.shape, 3), np.uint8)
+    for least, colour in ((1, "#444444"), (low + 1, COLOURS["sky"]), (high + 1, "#FFFFFF")):
+        crests[steps.thin >= least] = [int(colour[k : k + 2], 16) for k in (1, 3, 5)]
     panels = (
         ("1 smoothed", steps.smoothed),
-        ("2 strength", strength),
-        ("3 crests", thin),
+        ("2 strength of the slope", strength),
+        ("3 crests: weak blue, strong white", crests),
         ("4 edges", 255 * steps.edges),
     )
     for ax, (name, picture) in zip(figure.axes, panels, strict=True):
         show_picture(ax, picture, name)
         ax.set(xticks=[], yticks=[])
-    figure.suptitle(title, fontsize=11)
+    figure.suptitle("Thick slopes, then crests, then what hangs on a strong one", fontsize=11)
     return stamp(figure)
 
 
 def votes_figure(points, votes, centre):
-    """Edge points on a circle, and the votes of four of them or of all (Figure 3.7): LabFigure."""
-    figure = new_figure(8.4, 3.8, cols=2)
+    """Edge points on a circle, and their votes for its centre, counted where two or more meet (Figure 3.7): LabFigure.
+
+    points (n, 2): x, y; votes (h, w), as of circle_votes; centre: (x, y), gets a ring.
+    """
+    figure = new_figure(8.4, 3.3, cols=2)
     left, right = figure.axes
     show_picture(left, np.zeros(votes.shape), "edge points")
     left.plot(*np.asarray(points).T, ".", ms=5, color="white")
     shown = right.imshow(votes, cmap="viridis", interpolation="nearest")
     right.grid(False)
     figure.colorbar(shown, ax=right, label="votes [1]", shrink=0.85, ticks=range(int(votes.max()) + 1))
-    right.plot(*centre, "+", ms=14, mew=2, color=COLOURS["orange"])
+    right.plot(*centre, "o", ms=16, mew=1.5, mfc="none", color=COLOURS["orange"])
+    for x, y, count in _meetings(votes):
+        right.annotate(str(count), (x, y), (9, 7), textcoords="offset points", color="white", fontsize=10)
     right.set_title("most votes at the centre", fontsize=10)
     for ax in (left, right):
+        ax.tick_params(labelsize=7)
         ax.set(xlabel="x [px]", ylabel="y [px]")
     return figure
 
 
-class LensView:
-    """Rays of two points through a thin lens onto the sensor (Figure 3.8), and blur over distance; for sliders.
+def _meetings(votes, apart=10):
+    """Places (x, y, count) of two or more votes, most first, none nearer than `apart` pixels to one with more."""
+    found = []
+    for y, x in sorted(np.argwhere(votes > 1).tolist(), key=lambda place: -votes[tuple(place)]):
+        if all(np.hypot(x - a, y - b) > apart for a, b, _ in found):
+            found.append((x, y, int(votes[y, x])))
+    return found
 
-    f, aperture: m; pixel: size of a pixel, m. Attribute figure; `update(focused_at, aperture)`.
+
+class LensView:
+    """Rays of an object through a thin lens onto the sensor (Figure 3.8), and blur over distance; for sliders.
+
+    Three panels: lens and sensor to scale; the place where the rays meet, much larger; the blur over the distance. In
+    orange the object, in blue a point that is in focus.
+
+    f: m; pixel: size of a pixel, m. Attribute figure; `update(focused_at, object_at, aperture_mm)`.
     """
 
     def __init__(self, *, f=0.004, pixel=3e-6):
         self._f, self._pixel = f, pixel
         self._alpha = np.geomspace(0.1, 4.0, 300)
-        self.figure = new_figure(8.6, 3.4)
-        ax = self.figure.axes[0]
-        (self._curve,) = ax.loglog([], [], color=COLOURS["blue"])
-        (self._mark,) = ax.loglog([], [], "o", color=COLOURS["orange"])
-        ax.axhline(1, color=COLOURS["dark"], linestyle="--", linewidth=1)
-        ax.set(xlim=(0.1, 4), ylim=(0.05, 100), xlabel="distance of the object [m]", ylabel="blur [px]")
-        ax.set_xticks([0.1, 0.2, 0.5, 1, 2, 4], ["0.1", "0.2", "0.5", "1", "2", "4"])
-        ax.minorticks_off()
-        ax.set_title("Sharp at one distance, sharp enough around it")
+        self.figure = new_figure(10.2, 3.5, cols=3, width_ratios=(1.2, 1, 1.3))
+        self._whole, self._close, curve = self.figure.axes
+        far, near = 1000 * f, 1000 * float(image_distance(0.1, f))  # mm behind the lens: the pictures' range
+        self._whole.set(xlim=(-2.5, 1.2 * far), ylim=(-2.1, 2.1), aspect="equal", title="Lens and sensor, to scale")
+        self._whole.set(xlabel="behind the lens [mm]", ylabel="height [mm]")
+        (self._stop,) = self._whole.plot([], [], color=COLOURS["dark"], linewidth=4, solid_capstyle="butt")
+        self._close.set(xlim=(far - 0.03, near + 0.07), ylim=(-30, 30), title="Where they meet; bar: the disc")
+        self._close.set(xlabel="behind the lens [mm]", ylabel="height [µm]")
+        self._rays, self._sensors = [], []
+        for ax in (self._whole, self._close):
+            self._sensors += ax.plot([], [], color=COLOURS["grey"], linewidth=3)
+            pair = [ax.plot([], [], color=COLOURS[name], linewidth=w)[0] for name, w in (("blue", 1.6), ("orange", 1))]
+            self._rays.append(pair)
+        (self._disc,) = self._close.plot([], [], color=COLOURS["orange"], linewidth=5, solid_capstyle="butt")
+        style = {"fontsize": 8, "color": COLOURS["dark"]}
+        self._whole.text(0, -1.98, "lens", ha="center", **style)
+        self._whole.text(far, -1.98, "sensor", ha="center", **style)
+        self._whole.text(-2.4, 1.72, "point in focus", fontsize=8, color=COLOURS["blue"])
+        self._whole.text(0.5, 1.72, "object", fontsize=8, color=COLOURS["orange"])
+        (self._curve,) = curve.loglog([], [], color=COLOURS["dark"])
+        (self._sharp,) = curve.loglog([], [], "o", color=COLOURS["blue"], clip_on=False)
+        (self._mark,) = curve.loglog([], [], "o", color=COLOURS["orange"], clip_on=False)
+        curve.axhline(1, color=COLOURS["dark"], linestyle="--", linewidth=1)
+        curve.set(xlim=(0.1, 4), ylim=(0.05, 100), xlabel="distance of the object [m]")
+        curve.set_ylabel(f"blur [pixels of {1e6 * pixel:g} µm]")
+        curve.set_xticks([0.1, 0.2, 0.5, 1, 2, 4], ["0.1", "0.2", "0.5", "1", "2", "4"])
+        curve.set_yticks([0.1, 1, 10, 100], ["0.1", "1", "10", "100"])
+        curve.minorticks_off()
+        curve.set_title("Sharp at one distance, nearly so around it")
+        for ax in self.figure.axes:
+            ax.title.set_fontsize(10)
 
     def blur_pixels(self, alpha, focused_at, aperture):
         """Diameter of the blur, pixels, of points at alpha m."""
         return blur_diameter(alpha, focused_at, self._f, aperture) / self._pixel
 
-    def update(self, focused_at, aperture):
-        """Draw the blur for this focus, m, and aperture, m. Returns where it stays below a pixel, in words."""
+    def update(self, focused_at, object_at, aperture_mm):
+        """Draw focus and object (m) and aperture (mm). Returns the blur, and where it stays below a pixel, in words."""
+        aperture = aperture_mm / 1000
+        sensor = 1000 * float(image_distance(focused_at, self._f))
+        for line, reach in zip(self._sensors, (1.65, 40), strict=True):
+            line.set_data([sensor, sensor], [-reach, reach])
+        half = 500 * aperture
+        self._stop.set_data([0, 0, np.nan, 0, 0], [-1.65, -half, np.nan, half, 1.65])
+        for k, alpha in enumerate((focused_at, object_at)):
+            self._rays[0][k].set_data(*self._bundle(alpha, aperture, (-2.5, 0.0, sensor)))
+            x, y = self._bundle(alpha, aperture, (*self._close.get_xlim(),))
+            self._rays[1][k].set_data(x, 1000 * y)
+        disc = 1e6 * rays_on_sensor(object_at, focused_at, self._f, aperture)
+        self._disc.set_data([sensor, sensor], [disc.min(), disc.max()])
         blur = self.blur_pixels(self._alpha, focused_at, aperture)
         self._curve.set_data(self._alpha, np.maximum(blur, 1e-3))
-        self._mark.set_data([focused_at], [0.05])
+        own = float(self.blur_pixels(object_at, focused_at, aperture))
+        self._mark.set_data([object_at], [max(own, 0.05)])
+        self._sharp.set_data([focused_at], [0.05])
         sharp = self._alpha[blur < 1]
-        return (
-            f"below one pixel from {sharp.min():.2f} to {sharp.max():.2f} m" if len(sharp) else "nowhere below a pixel"
-        )
+        where = f"from {sharp.min():.2f} to {sharp.max():.2f} m" if len(sharp) else "nowhere"
+        return f"blur of the object {own:.1f} px; below one pixel {where}"
+
+    def _bundle(self, alpha, aperture, places, n=5):
+        """Rays of a point at alpha m, at `places` (mm behind the lens): one line with gaps, x and y in mm."""
+        h = np.linspace(-500 * aperture, 500 * aperture, n)[:, None]
+        x = np.array([*places, np.nan])
+        slope = np.where(x <= 0, h / (1000 * alpha), h / (1000 * alpha) - h / (1000 * self._f))
+        return np.tile(x, n), (h + slope * x).ravel()
 
 
 def balls_figure(image, balls, title, *, source=STAMP):
-    """A picture with the balls found, ranked: LabFigure."""
+    """A picture with the balls found, ranked, and dashed what had the colour and was no ball: LabFigure."""
     figure = pictures_figure((title, image), width=7.2, source=source)
-    ax = figure.axes[0]
-    angle = np.linspace(0, 2 * np.pi, 100)
+    ax, (height, width) = figure.axes[0], image.shape[:2]
+    for (x, y, radius), _ in getattr(balls, "rejected", ()):
+        _circle(ax, x, y, radius, COLOURS["sky"], rim=0, linestyle="--")
     for rank, ball in enumerate(balls, start=1):
-        ax.plot(ball.x + ball.radius * np.cos(angle), ball.y + ball.radius * np.sin(angle), color="white", lw=2.5)
-        ax.plot(
-            ball.x + ball.radius * np.cos(angle), ball.y + ball.radius * np.sin(angle), color=COLOURS["blue"], lw=1.2
-        )
+        _circle(ax, ball.x, ball.y, ball.radius, COLOURS["blue"])
         ax.plot(ball.x, ball.y, "+", ms=9, color="white")
-        text = f"{rank}: ({ball.x:.1f}, {ball.y:.1f}), r {ball.radius:.1f} px, score {ball.score:.2f}"
+        above = ball.y - 1.25 * ball.radius - 4
         ax.text(
-            ball.x,
-            ball.y - 1.25 * ball.radius - 4,
-            text,
+            np.clip(ball.x, 0.24 * width, 0.76 * width),
+            above if above > 0.05 * height else ball.y + 1.25 * ball.radius + 4 + 0.04 * height,
+            f"{rank}: ({ball.x:.1f}, {ball.y:.1f}), r {ball.radius:.1f} px, score {ball.score:.2f}",
             ha="center",
             fontsize=8,
             color="white",
             backgroundcolor="#0008",
         )
+    ax.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
     return figure
+
+
+def sheet_figure(seen, *, columns=4, source=STAMP):
+    """Pictures, small, each with the ball found and how far it is off; dashed where one was missed: LabFigure.
+
+    seen: list of (picture, balls found, truth of the ball: x, y, radius).
+    """
+    rows = -(-len(seen) // columns)
+    figure = new_figure(9.6, 2.05 * rows + 0.2, rows=rows, cols=columns)
+    for ax in figure.axes:
+        ax.set_axis_off()
+    for ax, (picture, found, target) in zip(figure.axes, seen, strict=False):
+        height, width = picture.shape[:2]
+        ax.imshow(picture[::2, ::2], extent=(-0.5, width - 0.5, height - 0.5, -0.5))
+        off = [np.hypot(ball.x - target.x, ball.y - target.y) for ball in found[:1]]
+        for ball in found:
+            _circle(ax, ball.x, ball.y, ball.radius, COLOURS["blue"])
+        if not found:
+            _circle(ax, target.x, target.y, 1.5 * target.radius, COLOURS["orange"], linestyle="--")
+        ax.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
+        ax.set_title(
+            f"{off[0]:.2f} px off" if off else "missed", fontsize=9, color=COLOURS["dark" if off else "orange"]
+        )
+    return stamp(figure, source)
+
+
+def _circle(ax, x, y, radius, colour, *, rim=2.5, **style):
+    """A circle in a colour with a white rim, seen on any picture; rim: its width, points."""
+    angle = np.linspace(0, 2 * np.pi, 100)
+    x, y = x + radius * np.cos(angle), y + radius * np.sin(angle)
+    ax.plot(x, y, color="white", lw=rim)
+    ax.plot(x, y, color=colour, lw=1.2, **style)
 
 
 class ClickColour(widgets.VBox):
@@ -268,7 +372,11 @@ class ClickColour(widgets.VBox):
             centre, radius = (round(16 * ball.x), round(16 * ball.y)), round(16 * ball.radius)
             cv2.circle(left, centre, radius, (255, 255, 255), 3, cv2.LINE_AA, 4)
             cv2.circle(left, centre, radius, (0, 114, 178), 1, cv2.LINE_AA, 4)
-        self.image_box.value = encode_png(np.concatenate([left, np.repeat(mask[..., None], 3, axis=2)], axis=1))
+        right = cv2.cvtColor(mask, cv2.COLOR_GRAY2RGB)
+        cv2.rectangle(
+            right, (0, 0), (mask.shape[1] - 1, mask.shape[0] - 1), (153, 153, 153), 3
+        )  # white on a white page
+        self.image_box.value = encode_png(np.concatenate([left, right], axis=1))
         found = f"{len(self.balls)} ball{'s' * (len(self.balls) != 1)}" if self.balls else self.balls.reason
         self.status.value = html.escape(
             f"hue {colour.hue:.0f} ± {colour.tolerance:.0f} degrees, saturation from {colour.saturation:.2f}: {found} "

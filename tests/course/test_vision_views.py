@@ -8,7 +8,18 @@ from PIL import Image
 
 from ir50p_lab.course import vision_views as views
 from ir50p_lab.course.widgets import live
-from ir50p_lab.vision import RED, Ball, canny_steps, circle_votes, render_scene, rgb_to_hsv, to_grey
+from ir50p_lab.vision import (
+    RED,
+    Ball,
+    Balls,
+    blur_diameter,
+    canny_steps,
+    circle_votes,
+    image_distance,
+    render_scene,
+    rgb_to_hsv,
+    to_grey,
+)
 from ir50p_lab.vision.rendering import Ball as SceneBall
 from ir50p_lab.vision.rendering import bench_scene
 
@@ -32,8 +43,9 @@ def test_every_picture_says_that_it_is_rendered(bench):
         views.numbers_figure(grey, 100, 100),
         views.ball_hues_figure(image, ball)[0],
         views.MaskView(image[::2, ::2]).figure,
-        views.canny_figure(canny_steps(grey, 60, 160)),
+        views.canny_figure(canny_steps(grey, 60, 160), 60, 160),
         views.balls_figure(image, [Ball(ball.x, ball.y, ball.radius, 0.9)], "found"),
+        views.sheet_figure([(image, [], ball)]),
     ]
     for figure in figures:
         figure.savefig(io.BytesIO(), format="png")
@@ -76,13 +88,73 @@ def test_mask_panel_redraws(bench):
     assert panel.image.value != before and "% of the picture" in panel.status.value
 
 
-def test_votes_and_lens():
-    votes = circle_votes([(20, 20)], (40, 50), 8)
-    views.votes_figure([(20, 20)], votes, (20, 20)).savefig(io.BytesIO(), format="png")
-    lens = views.LensView()
-    assert "below one pixel from" in lens.update(0.7, 0.002)
+def test_kernel_in_numbers():
+    figure = views.numbers_figure(np.arange(9).reshape(3, 3), 0, 0, 3, title="weights", white=8, source="")
+    assert [t.get_text() for t in figure.axes[0].texts] == [str(k) for k in range(9)]
+    assert figure.axes[0].images[0].get_clim() == (0, 8) and views.STAMP not in texts(figure)
+
+
+def test_crests_in_classes():
+    steps = canny_steps(np.repeat(np.repeat([[0, 20, 70, 70]], 9, axis=1), 20, axis=0).astype(np.uint8), 60, 160)
+    shown = np.asarray(views.canny_figure(steps, 60, 160).axes[2].images[0].get_array())
+    colours = {tuple(colour) for colour in shown.reshape(-1, 3).tolist()}
+    assert (shown[steps.thin > 160] == 255).all() and not shown[steps.thin == 0].any()
+    assert len(colours) == 3 and (0x56, 0xB4, 0xE9) in colours  # a step of 20 levels is weak
+
+
+def test_votes_are_counted():
+    points = [(12, 20), (28, 20), (20, 12)]
+    figure = views.votes_figure(points, circle_votes(points, (40, 50), 8, width=1.6), (20, 20))
+    figure.savefig(io.BytesIO(), format="png")
+    counted = {(round(t.xy[0]), round(t.xy[1])): t.get_text() for t in figure.axes[1].texts}
+    assert counted[20, 20] == "3" and set(counted.values()) == {"2", "3"}
+
+
+def test_lens():
+    lens = views.LensView(f=0.004, pixel=3e-6)
+    panel = live(lens.figure, lens.update, focused_at=(0.1, 4, 0.1, 0.7), object_at=(0.1, 4, 0.1, 0.3), aperture_mm=[2])
+    wanted = blur_diameter(0.3, 0.7, 0.004, 0.002) / 3e-6
+    assert f"{wanted:.1f} px; below one pixel from 0.56 to 0.94 m" in panel.status.value
     assert lens.blur_pixels(0.7, 0.7, 0.002) == 0
+    before = panel.image.value
+    panel.set(focused_at=0.3)
+    assert panel.image.value != before and "object 0.0 px" in panel.status.value
+    panel.set(focused_at=0.1, object_at=0.1)
+    assert panel._painter.backgrounds == 1  # no slider step draws ticks and grids anew
+
+
+def test_rays_of_the_lens_meet_at_the_image():
+    lens = views.LensView(f=0.004)
+    behind = 1000 * image_distance(0.3, 0.004)  # mm
+    x, y = lens._bundle(0.3, 0.002, (0.0, behind))
+    assert np.allclose(x[1::3], behind) and np.allclose(y[1::3], 0, atol=1e-12)
+    assert np.nanmax(y) == pytest.approx(1.0)
+
+
+def test_colour_solids():
     views.colour_solids_figure().savefig(io.BytesIO(), format="png")
+
+
+@pytest.mark.parametrize("x", [3.0, 150.0, 316.0])
+@pytest.mark.parametrize("y", [4.0, 230.0])
+def test_labels_of_balls_stay_in_the_picture(x, y):
+    rejected = [((100.0, 100.0, 9.0), "not round")]
+    found = Balls([Ball(x, y, 20, 0.9)], rejected=rejected)
+    figure = views.balls_figure(np.zeros((240, 320, 3), np.uint8), found, "found")
+    figure.savefig(io.BytesIO(), format="png")
+    (ax,) = figure.axes
+    label, frame = ax.texts[0].get_window_extent(), ax.get_window_extent()
+    assert frame.x0 <= label.x0 and label.x1 <= frame.x1 and frame.y0 <= label.y0 and label.y1 <= frame.y1
+    drawn = [line.get_xydata().mean(axis=0) for line in ax.lines]
+    assert any(np.allclose(middle, (100, 100), atol=0.2) for middle in drawn)  # what was rejected is seen too
+
+
+def test_sheet(bench):
+    image, truth = bench
+    ball = truth.red_balls[0]
+    seen = [(image, [Ball(ball.x + 0.5, ball.y, ball.radius, 0.9)], ball), (image, [], ball)]
+    figure = views.sheet_figure(seen, columns=3)
+    assert [ax.get_title() for ax in figure.axes] == ["0.50 px off", "missed", ""]
 
 
 def test_a_click_learns_the_colour(bench):
@@ -98,6 +170,7 @@ def test_a_click_learns_the_colour(bench):
     shown = np.asarray(Image.open(io.BytesIO(panel.image_box.value)))
     assert shown.shape[:2] == (height, 2 * width)
     assert (shown[round(blue.y), width + round(blue.x)] == 255).all()
+    assert (shown[[0, -1], width:] == 153).all() and (shown[:, -1] == 153).all()  # a frame around the mask
 
 
 def test_a_refused_click_is_said(bench):

@@ -81,6 +81,21 @@ def test_learnt_colour_covers_the_ball_and_little_else(colour):
     assert mask[far > 44].mean() < 0.02
 
 
+def test_a_saturated_thing_on_a_paler_one_of_its_hue():
+    """An orange ball on wood: the wood around it is not learnt with it, wherever on the ball the click falls."""
+    light = np.empty((480, 640, 3))
+    light[:] = (0.42, 0.25, 0.13)
+    shown = photograph(add_ball(light, 700, (200, 200), 30, colour=(0.85, 0.25, 0.02)))
+    y, x = np.mgrid[: shown.shape[0], : shown.shape[1]]
+    far = np.hypot(x - 200, y - 200)
+    for xy in (200, 200), (190, 190), (215, 210), (200, 222):
+        mask = learn_colour(shown, xy).mask(shown) > 0
+        assert mask[far < 27].mean() > 0.95
+        assert mask[far > 36].mean() < 0.02
+    wood = learn_colour(shown, (400, 300))  # there is no upper bound: the ball lies in the range of the wood
+    assert (wood.mask(shown)[(far > 36) | (far < 20)] > 0).mean() > 0.98
+
+
 def test_patch_and_click_agree():
     shown = picture()
     a, b = learn_colour(shown, (200, 200)), learn_from_patch(shown[185:215, 185:215])

@@ -8,6 +8,8 @@ from ir50p_lab.errors import ImageError, InputError
 from ir50p_lab.vision.image import check_image
 
 HALF_CIRCLE = 90  # OpenCV's hue is degrees/2: 0..179
+_PALE = 0.7  # of the saturation where the click was: what has less is something else of the same hue
+_LEAST_SATURATION, _MOST_SATURATION = 0.18, 0.55  # that a colour learnt asks for: parts of a ball are paler
 
 
 @dataclass(frozen=True)
@@ -76,8 +78,9 @@ RED = Colour(hue=355.0, tolerance=20.0, name="red")  # 335 to 15 degrees: both e
 def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
     """Learn a Colour from a click: the pixels around it that are like it.
 
-    A small disc around the pixel gives a first hue; then every pixel within `radius` whose hue is near counts, so
-    that shade and light of the same thing are in.
+    A small disc around the pixel gives a first hue and saturation; then every pixel within `radius` counts whose hue
+    is near and which is hardly paler, so that shade and light of the same thing are in. If a third of
+    what lies around it has the hue but is paler (an orange ball on wood), the least saturation is half way between.
 
     Args: image: RGB uint8 (h, w, 3); xy: (x, y) pixel of the click; radius: of the neighbourhood, pixels, by default
         a twelfth of the picture's height; name: for messages.
@@ -95,12 +98,23 @@ def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
     radius = height / 12 if radius is None else float(radius)
     rows, cols = np.mgrid[:height, :width]
     far = np.hypot(cols - x, rows - y)
-    seed = _colour_of(image[far <= max(1.5, radius / 8)], name)
+    middle = image[far <= max(1.5, radius / 8)]
+    seed = _colour_of(middle, name)
     near = image[far <= max(3.0, radius)]
     hsv = seed.hsv_of(near[None])[0].astype(float)
-    low, high = seed.bounds()
+    low, high = replace(seed, saturation=_LEAST_SATURATION).bounds()
     alike = ((hsv >= low) & (hsv <= high)).all(axis=1)
-    return _colour_of(near[alike], name) if alike.sum() >= 8 else seed
+    pale = hsv[:, 1] < _PALE * np.median(seed.hsv_of(middle[None])[0, :, 1])
+    own = alike & ~pale
+    if own.sum() < 8:
+        return seed
+    colour = _colour_of(near[own], name)
+    ring = far[far <= max(3.0, radius)] > 0.75 * radius
+    around = ring & alike & pale
+    if around.sum() < max(8, ring.sum() / 3):
+        return colour
+    between = (np.percentile(hsv[around, 1], 90) + np.percentile(hsv[own, 1], 10)) / 510
+    return replace(colour, saturation=max(colour.saturation, min(float(between), _MOST_SATURATION)))
 
 
 def learn_from_patch(patch, *, name="the colour learnt"):
@@ -132,6 +146,6 @@ def _colour_of(pixels, name):
     return Colour(
         hue=mean % 360.0,
         tolerance=min(max(1.6 * spread, 14.0), 30.0),
-        saturation=min(max(0.55 * least, 0.18), 0.40),
+        saturation=min(max(0.55 * least, _LEAST_SATURATION), 0.40),
         name=name,
     )
