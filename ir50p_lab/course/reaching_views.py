@@ -10,6 +10,7 @@ from ir50p_lab.modelling.chain import forward_kinematics, frames
 
 _XYZ = (COLOURS["orange"], COLOURS["green"], COLOURS["blue"])
 _RENDERED = "rendered picture, simulated arm"
+_ARRIVED = 1.5  # s after which a followed ball has been caught up with
 
 
 def origin(simulated):
@@ -103,12 +104,17 @@ def seen_figure(seen, arm, q, T_base_cam, marker=None):
     return figure
 
 
-def pictures_figure(images, titles, simulated=True):
-    """Pictures side by side. images: RGB; titles: one each. Returns: LabFigure."""
+def pictures_figure(images, titles, simulated=True, marks=None):
+    """Pictures side by side. images: RGB; titles: one each; marks: (2,) px or None for each. Returns: LabFigure."""
     figure = _stamped(origin(simulated), 9.5, 3.1, cols=len(images))
-    for ax, image, title in zip(figure.axes, images, titles, strict=True):
+    marks = [None] * len(images) if marks is None else marks
+    for ax, image, title, mark in zip(figure.axes, images, titles, marks, strict=True):
         _picture(ax, image)
         ax.set_title(title, fontsize=10)
+        if mark is not None:
+            ax.plot(*mark, "+", color="white", ms=13, mew=2)
+    for ax in figure.axes[1:]:
+        ax.set(xlabel="", ylabel="", yticklabels=[])
     return figure
 
 
@@ -136,7 +142,11 @@ def height_figure(plane, arm, ball, xy):
     (level,) = ax.plot([-160, 80], [0, 0], **SETPOINT)
     (mark,) = ax.plot([], [], "X", color=COLOURS["purple"], ms=11, mec="white")
     ax.set(
-        xlim=(-160, 80), ylim=(-12, 110), aspect="equal", xlabel="along the line of sight [mm]", ylabel="height [mm]"
+        xlim=(-160, 80),
+        ylim=(-12, 110),
+        aspect="equal",
+        xlabel="away from the camera, horizontally [mm]",
+        ylabel="height [mm]",
     )
 
     def update(height_mm):
@@ -172,14 +182,21 @@ def way_figure(way, ball=None, radius=0.03):
 def tip_figure(arm, recording, done, simulated=True):
     """X, Y, Z of the tip over time, by potentiometers, with the goal dashed (Figure 4.20). Returns: LabFigure."""
     figure = _stamped(origin(simulated).split(", ")[1], 9.0, 4.6, rows=3, sharex=True)
-    p = 1e3 * forward_kinematics(arm, recording.q)
+    t, p = recording.t, forward_kinematics(arm, recording.q)
     for ax, k, name, colour in zip(figure.axes, range(3), "XYZ", _XYZ, strict=True):
-        ax.plot(recording.t, p[:, k], color=colour, linewidth=1)
+        ax.plot(t, 1e3 * p[:, k], color=colour, linewidth=1)
         ax.axhline(1e3 * done.goal[k], **SETPOINT)
         ax.set_ylabel(f"{name} [mm]")
-    figure.axes[0].set_title(
-        f"The tip goes where the camera saw the ball; it stands {1e3 * done.miss:.1f} mm beside it"
-    )
+        for look in done.looks[:-1]:
+            ax.axvline(look.t, color=COLOURS["grey"], linewidth=1)
+    first = figure.axes[0]
+    for number, look in enumerate(done.looks[:-1]):
+        name = f"{('second', 'third')[number]} look "
+        first.text(look.t, 0.06, name, transform=first.get_xaxis_transform(), ha="right", fontsize=9)
+    beside = np.linalg.norm(p[t > t[-1] - 0.5].mean(axis=0) - done.goal)
+    title = f"By potentiometers {1e3 * beside:.0f} mm beside the goal at the end"
+    camera = f", by the camera {1e3 * done.miss:.1f} mm" if any(look.marker is not None for look in done.looks) else ""
+    first.set_title(title + camera)
     figure.axes[-1].set_xlabel("t [s]")
     return figure
 
@@ -202,34 +219,89 @@ def budget_figure(budget, measured=()):
     return figure
 
 
+def hand_eye_figure():
+    """The two ways from the base to a board in the hand: what is measured, what is sought. Returns: LabFigure."""
+    figure = new_figure(7.5, 2.5)
+    (ax,) = figure.axes
+    ax.set(xlim=(0, 6), ylim=(-0.05, 1.9), title="Two ways from the base to the board, equal in every pose")
+    ax.axis("off")
+    places = {"base": (0.8, 1.35), "tool": (5.2, 1.35), "camera": (0.8, 0.35), "board": (5.2, 0.35)}
+    for name, (x, y) in places.items():
+        ax.add_patch(
+            FancyBboxPatch((x - 0.4, y - 0.16), 0.8, 0.32, boxstyle="round,pad=0.04", fc="#EDF3F8", ec="#0072B2")
+        )
+        ax.text(x, y, name, ha="center", va="center", fontsize=10)
+    known, sought = {"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "ls": "--"}
+    for a, b, style in (
+        ("base", "tool", known),
+        ("tool", "board", sought),
+        ("base", "camera", sought),
+        ("camera", "board", known),
+    ):
+        (xa, ya), (xb, yb) = places[a], places[b]
+        dx, dy = (0.48, 0.0) if ya == yb else (0.0, -0.24)
+        ax.add_patch(
+            FancyArrowPatch(
+                (xa + dx, ya + dy), (xb - dx, yb - dy), arrowstyle="-|>", mutation_scale=12, lw=1.6, **style
+            )
+        )
+    for x, y, text, colour in (
+        (3.0, 1.44, r"$T^{base}_{tool}(q_i)$: potentiometers, in every pose", "blue"),
+        (3.0, 0.44, r"$T^{cam}_{board,i}$: a picture of every pose", "blue"),
+        (0.95, 0.85, r"$T^{base}_{cam}$: sought, constant", "orange"),
+        (5.05, 0.85, r"$T^{tool}_{board}$: unknown, constant", "orange"),
+    ):
+        ha = {0.95: "left", 5.05: "right"}.get(x, "center")
+        va = "center" if y == 0.85 else "bottom"
+        ax.text(x, y, text, ha=ha, va=va, fontsize=10, color=COLOURS[colour])
+    return figure
+
+
 def residual_figure(fit):
     """Loop errors of a HandEye, pose by pose. Returns: LabFigure."""
     figure = new_figure(9.0, 2.8, cols=2)
-    for ax, values, unit in zip(
-        figure.axes, (1e3 * fit.translation_error, 1e3 * fit.rotation_error), ("mm", "mrad"), strict=True
-    ):
+    place, turn = 1e3 * fit.translation_error, 1e3 * fit.rotation_error
+    for ax, what, values, unit in zip(figure.axes, ("Place", "Turn"), (place, turn), ("mm", "mrad"), strict=True):
         ax.bar(np.arange(len(values)), values, color=COLOURS["blue"])
-        ax.set(xlabel="pose [number]", ylabel=f"left over [{unit}]")
-    figure.axes[0].set_title("The two ways round the loop differ by millimetres:")
-    figure.axes[1].set_title("quantised potentiometers, taken as exact")
+        rms = np.sqrt(np.mean(np.square(values)))
+        ax.set(
+            xlabel="pose [number]",
+            ylabel=f"left over [{unit}]",
+            title=f"{what}: the loop stays open by {rms:.1f} {unit}",
+        )
     return figure
 
 
-def follow_figure(log, simulated=True):
-    """The table from above: the ball as tracked and the tip after it. Returns: LabFigure."""
-    figure = _stamped(origin(simulated), 9.0, 3.8, cols=2, width_ratios=(1, 1.3))
+def follow_figure(logs, simulated=True):
+    """Followed balls: the table from above for the first FollowLog, how far each tip is ahead. Returns: LabFigure."""
+    figure = _stamped(origin(simulated), 9.5, 4.0, cols=2, width_ratios=(1, 1.6))
     above, time = figure.axes
-    above.plot(*(1e3 * log.ball.T), color="#C8202D", label="ball, as seen")
-    above.plot(*(1e3 * log.tip[:, :2].T), color=COLOURS["blue"], label="tip")
-    above.set(xlabel="x [mm]", ylabel="y [mm]", aspect="equal", title="From above")
+    above.plot(*(1e3 * logs[0].ball.T), color="#C8202D", label="ball, as seen")
+    settled = logs[0].t > _ARRIVED
+    above.plot(*(1e3 * logs[0].tip[settled, :2].T), ".", ms=2, color=COLOURS["blue"], label="tip")
+    above.set(xlabel="x [mm]", ylabel="y [mm]", title=f"From above, lead {logs[0].lead:g} s")
+    above.set_aspect("equal", adjustable="datalim")
     above.legend(fontsize=8)
-    off = 1e3 * np.linalg.norm(log.tip[:, :2] - log.ball, axis=1)
-    time.plot(log.t, off, color=COLOURS["blue"])
-    late = off[log.t > 0.5 * log.t[-1]]
-    time.set(
-        xlabel="t [s]", ylabel="tip beside the ball [mm]", title=f"Once there, it stays within {late.max():.0f} mm"
-    )
+    for log, colour in zip(logs, (COLOURS["blue"], COLOURS["orange"], COLOURS["green"]), strict=False):
+        settled = log.t > _ARRIVED
+        t, ahead = log.t[settled], 1e3 * log.ahead[settled]
+        time.plot(t, ahead, ".", ms=2, color=colour, alpha=0.35)
+        time.plot(t, _smooth(ahead), color=colour, lw=2, label=f"lead {log.lead:g} s")
+        time.plot(t, 1e3 * log.lead * log.speed[settled], color=colour, lw=1.2, ls="--")
+    time.plot([], [], color=COLOURS["dark"], lw=1.2, ls="--", label="lead × speed")
+    time.axhline(0, color=COLOURS["dark"], lw=0.8)
+    time.set(xlabel="t [s]", ylabel="tip before the ball [mm]", title="A lead puts the tip before the ball")
+    time.legend(fontsize=8, loc="upper center", ncols=len(logs) + 1)
+    low, high = time.get_ylim()
+    time.set_ylim(low, high + 0.15 * (high - low))
     return figure
+
+
+def _smooth(values, n=31):
+    """Mean of n neighbours, fewer at the ends, without those that are NaN."""
+    there, ones = np.isfinite(values), np.ones(min(n, len(values)))
+    number = np.convolve(there, ones, "same")
+    return np.convolve(np.where(there, values, 0.0), ones, "same") / np.maximum(number, 1e-9)
 
 
 def poses_before(arm, camera, T_cam_base, T_tool_board, board, n, rng):

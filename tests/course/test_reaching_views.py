@@ -1,5 +1,7 @@
 """Figures of notebook 11: they say what is simulated, and show the numbers they are given."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.text import Text
@@ -44,7 +46,9 @@ def test_what_is_seen_is_written_beside_it():
     assert "Ball at" not in text_of(
         views.seen_figure(Seen(None, None, None, image, True, "none"), IR50P, rest_pose(IR50P), T_BASE_CAM)
     )
-    assert "before" in text_of(views.pictures_figure([image, image], ["before", "after"]))
+    figure = views.pictures_figure([image, image], ["before", "after"], marks=[None, (30.0, 40.0)])
+    assert "before" in text_of(figure)
+    assert [len(ax.lines) for ax in figure.axes] == [0, 1]
 
 
 def test_the_height_moves_the_reading():
@@ -65,20 +69,31 @@ def test_tip_and_budget_and_residuals_show_their_numbers():
     bench = SimulatedBench(IR50P, q0=rest_pose(IR50P), record_to=False)
     world = RenderedBench(bench, BALL)
     with bench:
-        done = reach(bench, QuickSight(world, PLANE), looks=1, rest=False)
+        done = reach(bench, QuickSight(world, PLANE), rest=False)
     text = text_of(views.tip_figure(IR50P, bench.recording, done))
-    assert f"{1e3 * done.miss:.1f} mm beside it" in text and "simulated arm" in text
+    assert f"beside the goal at the end, by the camera {1e3 * done.miss:.1f} mm" in text and "simulated arm" in text
+    assert "second look" in text
+    alone = views.tip_figure(IR50P, bench.recording, replace(done, looks=done.looks[-1:]))
+    assert "look" not in text_of(alone) and "by the camera" not in text_of(alone)
     budget = Budget((Cause("marker", 3e-3, 1e-3), Cause("camera", 4e-3, 0.0)))
     assert "takes 5.0 mm down to 1.0 mm" in text_of(views.budget_figure(budget, (5e-3, 1e-3)))
     found = HandEye(T_BASE_CAM, np.eye(4), np.full(4, 2e-3), np.full(4, 1e-3), "TSAI", {"TSAI": 1e-3})
-    assert "[mrad]" in text_of(views.residual_figure(found))
+    text = text_of(views.residual_figure(found))
+    assert "open by 1.0 mm" in text and "open by 2.0 mrad" in text
+    assert all(name in text_of(views.hand_eye_figure()) for name in ("base", "tool", "camera", "board", "sought"))
 
 
-def test_following_says_how_near_it_stays():
-    t = np.linspace(0, 4, 50)
-    ball = np.column_stack([0.4 + 0 * t, 0.02 * t])
-    log = FollowLog(t, np.column_stack([ball + np.array([0.01, 0]), 0.1 + 0 * t]), ball)
-    assert "within 10 mm" in text_of(views.follow_figure(log))
+def test_following_shows_how_far_the_tip_is_ahead():
+    t = np.linspace(0, 4, 401)
+    ball, velocity = np.column_stack([0.4 + 0 * t, 0.02 * t]), np.tile([0.0, 0.02], (len(t), 1))
+    velocity[::50] = 0.0  # where it stands there is no ahead
+    tips = [np.column_stack([ball + np.array([0.003, ahead]), 0.1 + 0 * t]) for ahead in (0.005, -0.001)]
+    logs = [FollowLog(t, tip, ball, velocity, lead) for tip, lead in zip(tips, (0.25, 0.0), strict=True)]
+    figure = views.follow_figure(logs)
+    text = text_of(figure)
+    assert "lead 0.25 s" in text and "lead 0 s" in text and "lead × speed" in text
+    thick = [line.get_ydata() for line in figure.axes[1].lines if line.get_linewidth() == 2]
+    assert np.allclose(thick[0], 5.0) and np.allclose(thick[1], -1.0)
 
 
 def test_poses_hold_the_board_into_the_picture():

@@ -1,5 +1,6 @@
 """Reaching: plans that are clear and reachable, refusals as an oracle has them, looks that correct, balls carried."""
 
+from dataclasses import replace
 from functools import cache
 from time import sleep
 
@@ -242,6 +243,21 @@ def test_a_ball_is_picked_and_placed():
     assert np.abs(bench.plant.q_true - rest_pose(IR50P)).max() < 0.1
 
 
+def test_a_ball_is_picked_seen_in_the_grip_and_put():
+    bench, world, sight = rig((0.42, -0.12, 0.03), 3)
+    with bench, Reacher(bench, sight) as reacher:
+        found = reacher.pick()
+        assert world.held
+        assert np.linalg.norm(found.ball - (0.42, -0.12, 0.03)) < 2e-3
+        assert world.balls_true[0, 2] > 0.07
+        with pytest.raises(UnreachableError):
+            reacher.put((0.9, 0.0))
+        assert world.held
+        reacher.put((0.36, 0.15))
+        assert not world.held
+    assert np.linalg.norm(world.balls_true[0, :2] - (0.36, 0.15)) < 0.015
+
+
 def test_a_place_out_of_reach_is_refused_before_anything_moves():
     bench, _, sight = rig()
     with bench, Reacher(bench, sight, rest=False) as reacher:
@@ -251,17 +267,49 @@ def test_a_place_out_of_reach_is_refused_before_anything_moves():
             reacher.pick_and_place((0.3, 0.0, 0.1))
 
 
-def test_a_rolling_ball_is_followed():
+def followed(seconds=8.0, age=0.0, **options):
+    """(log, time by which the tip is before the true ball, s): by potentiometers, least squares, without the first 2 s."""
+
     def rolling(t):
-        return np.array([0.40 + 0.05 * np.cos(0.6 * t), 0.12 * np.sin(0.4 * t), 0.03])
+        return np.array([0.38 + 0.03 * np.cos(0.3 * t), 0.12 * np.sin(0.4 * t), 0.03])
+
+    class Camera(QuickSight):
+        """Shows what was `age` s ago; the pictures of a camera that is late are no rendered ones."""
+
+        def look(self):
+            world._rolling = lambda t: rolling(t - age)
+            seen = replace(super().look(), simulated=not age)
+            world._rolling = rolling
+            return seen
 
     bench, world, sight = rig(rolling)
-    with bench, Reacher(bench, sight, rest=False) as reacher:
-        log = reacher.follow_ball(8.0)
-        off = np.linalg.norm(bench.plant.tip_true[:2] - world.balls_true[0, :2])
-    assert off < 0.03
-    late = log.t > 4
-    assert np.nanmax(np.linalg.norm(log.tip[late, :2] - log.ball[late], axis=1)) < 0.05
+    with bench, Reacher(bench, Camera(world, sight.plane), rest=False) as reacher:
+        log = reacher.follow_ball(seconds, **options)
+        end = world.t - 0.3  # it holds still for a while then
+        assert np.linalg.norm(bench.plant.tip_true[:2] - rolling(end)[:2]) < 0.03
+    late = log.t > 2
+    t = log.t[late] - log.t[-1] + end
+    ball, then = (np.array([rolling(one)[:2] for one in t + dt]) for dt in (0.0, 1e-3))
+    velocity = (then - ball) / 1e-3
+    return log, np.sum((log.tip[late, :2] - ball) * velocity) / np.sum(velocity**2)
+
+
+@pytest.mark.parametrize("age", [0.0, 0.1])
+def test_a_rolling_ball_is_followed_without_lag_by_default(age):
+    log, early = followed(age=age)
+    assert log.lead == pytest.approx(0.04 + age)
+    assert abs(early) < 0.03
+    late = log.t > 2
+    assert np.nanmax(np.linalg.norm(log.tip[late, :2] - log.ball[late], axis=1)) < 0.03
+
+
+def test_a_lead_puts_the_tip_before_the_ball_by_lead_times_speed():
+    log, early = followed(lead=0.25)
+    assert log.lead == 0.25
+    assert early == pytest.approx(0.25 - 0.04, abs=0.03)
+    late = log.t > 2
+    shown = np.sum((log.ahead * log.speed)[late]) / np.sum(log.speed[late] ** 2)
+    assert shown == pytest.approx(early, abs=0.03)
 
 
 def test_the_tracker_knows_where_a_ball_will_be():
@@ -380,6 +428,12 @@ def test_bad_arguments_of_reaching_are_refused():
             reacher.look()
     with bench, Reacher(bench, sight, rest=False) as reacher, pytest.raises(InputError, match="looks"):
         reacher.reach(looks=0)
-    for task, name in ((lambda r: r.reach(height="a"), "height"), (lambda r: r.pick_and_place("ab"), "place")):
+    for task, name in (
+        (lambda r: r.reach(height="a"), "height"),
+        (lambda r: r.pick_and_place("ab"), "place"),
+        (lambda r: r.put("ab"), "place"),
+        (lambda r: r.pick(contact=np.nan), "contact"),
+        (lambda r: r.follow_ball(1.0, lead=np.nan), "lead"),
+    ):
         with bench, Reacher(bench, sight, rest=False) as reacher, pytest.raises(InputError, match=name):
             task(reacher)

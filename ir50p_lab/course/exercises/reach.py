@@ -1,4 +1,4 @@
-"""Exercises of notebook 11: from the camera's frame to the arm's, reach, counts at the tip, what looks can tell."""
+"""Exercises of notebook 11: from the camera's frame to the arm's, reach, counts at the tip, what tells joint 1."""
 
 import numpy as np
 
@@ -129,21 +129,24 @@ EXERCISES = (
     ),
     Exercise(
         "reach-5",
-        "what a camera beside the arm cannot tell, however often it sees the board in the hand",
+        "the one measurement that tells a constant error of joint 1, which the board in the hand does not",
         Choice(
-            "offset1",
+            "table",
             {
-                "offset1": "a constant error of joint 1",
-                "offset2": "a constant error of joint 2",
-                "slope3": "an error of scale of joint 3",
-                "noise": "how much the readings scatter",
+                "poses": "another hundred poses of the board in the hand",
+                "pixels": "the same pictures with four times the pixels",
+                "second": "a second camera, its place found with the board in the hand, too",
+                "table": "one picture of the board on the table, its place measured with a ruler from the column",
             },
         ),
-        why="Turn arm and camera about the column together: every picture stays the same.",
+        why="Turn arm and camera about the column together: every picture of the hand stays the same. A thing that "
+        "stays where it is on the table, at a place known in the base frame, does not turn along.",
         slips=(
-            Slip("offset2", "Joint 2 carries the elbow, whose way through space the camera sees."),
-            Slip("slope3", "A scale shows as soon as joint 3 moves: the hand turns more or less than it should."),
-            Slip("noise", "The scatter of the readings is what is left over, pose by pose."),
+            Slip(
+                "poses", "Turn the arm in all of them by the same angle, and the camera with it: nothing is seen of it."
+            ),
+            Slip("pixels", "Finer pictures of something that does not change: the camera turns along with joint 1."),
+            Slip("second", "It turns about the column along with the first: its place comes from the same joint 1."),
         ),
     ),
 )

@@ -120,7 +120,9 @@ def nearest_reachable(arm, p):
 
 
 def plan(arm, q, p, *, speed=_SPEED, lift=_LIFT, clear=CLEAR):
-    """The way of the tip from the pose q to the point p: up and over in joint space, then straight down.
+    """The way of the tip from the pose q to the point p: over it in joint space, then straight down.
+
+    Where the direct way over comes too low it rises first.
 
     Args: arm: Arm; q: (3,) rad, where it stands; p: (3,) m. speed: rad/s of the fastest joint. lift: m above p where
     the last piece begins; 0 goes there directly. clear: m that tip and elbow keep above the table (less where the way

@@ -15,6 +15,8 @@ from ir50p_lab.vision.reaching.result import BallTracker, FollowLog, Look, Reach
 HEIGHT = 0.06  # m of the tip over the ball's centre: 30 mm over its top
 _COUNTS, _COUNTS_NOMINAL = 0.7, 2.5  # what potentiometers are off by, counts (assumed: a good wire-wound one)
 _MOVED = 0.008  # m between two looks: then the ball has moved, and only the second counts
+_ARM_LAG = 0.04  # s that the tip follows its moving aim behind (simulated arms: 0.03 to 0.06 s)
+_CAMERA_LAG = 0.1  # s that the picture of a webcam is old (assumed: exposure, transfer, a picture that waits)
 
 
 class Reacher(Mover):
@@ -35,7 +37,8 @@ class Reacher(Mover):
         the bench was measured (what a straight line leaves of a bent characteristic), 2.5 if it is a nominal one.
         rest: go to the rest pose at the end.
 
-    Methods: reach, pick_and_place, follow_ball, move_to, move_along, hold. Attributes: q: (3,) rad, best estimate.
+    Methods: reach, pick, put, pick_and_place, follow_ball, look, move_to, move_along, hold. Attributes: q: (3,) rad,
+    best estimate.
     """
 
     def __init__(self, bench, sight=None, *, controller=None, correction=None, sigma_q=None, rest=True):
@@ -101,13 +104,13 @@ class Reacher(Mover):
         self.move_along(first)
         for k in range(looks):
             q = self.settle(reach_pose(self.arm, goal, self.q))
-            tip, marker, note = forward_kinematics(self.arm, q), None, ""
+            tip, marker, note, stood = forward_kinematics(self.arm, q), None, "", self._last.t
             if k + 1 < looks:
                 ball, marker, q, note = self._look_again(ball, q)
                 tip = forward_kinematics(self.arm, q)
             then, refusal = self._next_goal(goal, ball + over)
             note = "; ".join(text for text in (note, refusal) if text)
-            records.append(Look(ball, goal, tip, marker, self.errors.copy(), note))
+            records.append(Look(ball, goal, tip, marker, self.errors.copy(), note, stood))
             goal = then
         return Reached(
             ball=ball,
@@ -153,42 +156,71 @@ class Reacher(Mover):
                 notes.append(str(error))
         return ball, marker, q, "; ".join(notes)
 
-    def pick_and_place(self, place, *, contact=0.0, looks=2):
-        """Reach, go down, close the gripper, carry the ball to `place` (2,) m on the table, open, go up.
+    def pick(self, *, contact=0.0, looks=2):
+        """Reach, go down, close the gripper, go up again.
 
-        contact: m of the tip over the ball's centre when gripping; 0: the fingers close about its middle. Place and
-        ball are tested before anything moves: the arm reaches less far down there than over the ball.
-        Returns: Reached, of the reach. Raises as `reach`, for the place, too.
+        contact: m of the tip over the ball's centre when gripping; 0: the fingers close about its middle. That the arm
+        reaches down there is tested before anything moves.
+        Returns: Reached, of the reach. Raises as `reach`. Whether the ball came along only another look can tell.
         """
-        place = numbers("place", place, unit="m")
-        if place.shape != (2,) or not np.isfinite(place).all():
-            raise InputError(f"place = {place.tolist()}: give x, y on the table, m")
         contact = number("contact", contact, unit="m")
-        put = np.array([*place, self.sight.radius + contact])
-        up = np.array([0.0, 0.0, HEIGHT])
-        reach_pose(self.arm, put + up), reach_pose(self.arm, put)
         reach_pose(self.arm, self._sure(self.look()).position + np.array([0.0, 0.0, contact]))
         self.grip(False, 0.1)
         found = self.reach(looks=looks)
         self.move_to(found.ball + np.array([0.0, 0.0, contact]), lift=0.0)
         self.grip(True)
-        self.move_to(found.ball + up + [0, 0, contact], lift=0.0)
-        self.move_to(put, lift=HEIGHT)
-        self.grip(False)
-        self.move_to(put + up, lift=0.0)
+        self.move_to(found.ball + np.array([0.0, 0.0, HEIGHT + contact]), lift=0.0)
         return found
 
-    def follow_ball(self, seconds, *, height=0.10, every=0.1, lead=0.25):
+    def put(self, place, *, contact=0.0):
+        """Carry what the gripper holds to `place` (2,) m on the table, open, go up. contact: that of `pick`.
+
+        Raises InputError for a place that is none, UnreachableError before anything moves.
+        """
+        down, up = self._over_place(place, contact)
+        self.move_to(down, lift=HEIGHT)
+        self.grip(False)
+        self.move_to(up, lift=0.0)
+
+    def pick_and_place(self, place, *, contact=0.0, looks=2):
+        """`pick` and `put`: the ball to `place` (2,) m on the table; both are tested before anything moves.
+
+        The arm reaches less far down there than over the ball.
+        Returns: Reached, of the reach. Raises as `pick` and `put`.
+        """
+        self._over_place(place, contact)
+        found = self.pick(contact=contact, looks=looks)
+        self.put(place, contact=contact)
+        return found
+
+    def _over_place(self, place, contact):
+        """Where the tip puts a ball down at `place` (2,) m, and HEIGHT above it: both (3,) m, both within reach."""
+        place = numbers("place", place, unit="m")
+        if place.shape != (2,) or not np.isfinite(place).all():
+            raise InputError(f"place = {place.tolist()}: give x, y on the table, m")
+        down = np.array([*place, self.sight.radius + number("contact", contact, unit="m")])
+        up = down + np.array([0.0, 0.0, HEIGHT])
+        reach_pose(self.arm, up), reach_pose(self.arm, down)
+        return down, up
+
+    def follow_ball(self, seconds, *, height=0.10, every=0.1, lead=None):
         """Keep the tip over a moving ball: a look every `every` s, position and velocity filtered, aimed ahead.
 
         First a planned way to where the ball is seen, clear of the table; `seconds` count from there.
-        lead: s that the aim lies ahead, for what camera and arm lag behind. Where the ball cannot be followed (out of
-        reach, or not seen) the arm waits at the last place.
+        lead: s that the aim lies ahead: as much as camera and arm together are late. More puts the tip before the
+        ball, less behind it, by the difference times its speed. Default 0.04 s, for the arm, with rendered pictures,
+        which show this moment; 0.1 s more with any other camera (assumed of a webcam: if you have measured yours, give
+        the sum).
+        Where the ball cannot be followed (out of reach, or not seen) the arm waits at the last place.
         Returns: FollowLog.
         """
         from ir50p_lab.bench.set_point import SetPoint
 
-        self.move_along(plan(self.arm, self.q, self._sure(self.look()).position + np.array([0.0, 0.0, height])))
+        seen = self._sure(self.look())
+        if lead is None:
+            lead = _ARM_LAG if seen.simulated else _ARM_LAG + _CAMERA_LAG
+        lead = number("lead", lead, unit="s")
+        self.move_along(plan(self.arm, self.q, seen.position + np.array([0.0, 0.0, height])))
         tracker, log, point = BallTracker(), [], SetPoint(self._set, speed=0.6, acceleration=3.0)
         begin, next_look, job, self._frozen = self._last.t, self._last.t, None, None
         live = not self.bench.simulated or getattr(self.bench, "realtime", False)
@@ -209,10 +241,11 @@ class Reacher(Mover):
             rows = point(t)
             self._set = rows[0]
             self._cycle(rows)
-            log.append((t - begin, forward_kinematics(self.arm, self.true(self._last.q)), tracker.at(t)))
+            t = self._last.t  # of the readings that this cycle has brought
+            tip = forward_kinematics(self.arm, self.true(self._last.q))
+            log.append((t - begin, tip, tracker.at(t), tracker.velocity))
         self.hold(0.3)
-        t, tip, ball = zip(*log, strict=True)
-        return FollowLog(np.array(t), np.array(tip), np.array(ball))
+        return FollowLog(*(np.array(column) for column in zip(*log, strict=True)), lead=lead)
 
 
 def reach(bench, sight, **options):

@@ -7,7 +7,10 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """One look of a reach: where the ball is, where the hand is by potentiometers and (if seen) by the camera, m."""
+    """One look of a reach: where the ball is, where the hand is by potentiometers and (if seen) by the camera, m.
+
+    t: s, when the arm stood there, of the clock of the run; before the last goal the camera looks again then.
+    """
 
     ball: np.ndarray
     goal: np.ndarray
@@ -15,6 +18,7 @@ class Look:
     marker: np.ndarray | None
     joint_errors: np.ndarray
     note: str = ""
+    t: float = np.nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +53,27 @@ class Reached:
 
 @dataclass(frozen=True, eq=False)
 class FollowLog:
-    """t (n,) s; tip (n, 3) m by potentiometers; ball (n, 2) m as tracked, NaN before the first look."""
+    """t (n,) s; tip (n, 3) m by potentiometers; ball (n, 2) m and velocity (n, 2) m/s as tracked; lead: s, aimed ahead.
+
+    ball is NaN before the first look.
+    """
 
     t: np.ndarray
     tip: np.ndarray
     ball: np.ndarray
+    velocity: np.ndarray
+    lead: float
+
+    @property
+    def speed(self):
+        """Of the ball, (n,) m/s."""
+        return np.linalg.norm(self.velocity, axis=1)
+
+    @property
+    def ahead(self):
+        """How far the tip is before the ball along its way, (n,) m: negative behind it, NaN where it stands."""
+        along = np.sum((self.tip[:, :2] - self.ball) * self.velocity, axis=1)
+        return np.divide(along, self.speed, out=np.full(len(along), np.nan), where=self.speed > 0)
 
 
 class BallTracker:
