@@ -38,12 +38,12 @@ class Pinhole:
     def __post_init__(self):
         object.__setattr__(self, "K", _frozen(_check_K(self.K)))
         object.__setattr__(self, "distortion", _frozen(_check_distortion(self.distortion)))
-        object.__setattr__(self, "size", _check_size(self.size))
+        object.__setattr__(self, "size", check_size(self.size))
 
     @classmethod
     def simple(cls, f, size=(640, 480), distortion=()):
         """Square pixels and the axis through the middle of the picture: f focal length, pixels."""
-        width, height = _check_size(size)
+        width, height = check_size(size)
         K = [[f, 0, (width - 1) / 2], [0, f, (height - 1) / 2], [0, 0, 1]]
         return cls(K, distortion, (width, height))
 
@@ -140,7 +140,7 @@ class Pinhole:
         Pixel edges, not centres, scale: c' = (c + 1/2) s - 1/2. The height follows from the new size by cropping
         or adding rows alike at top and bottom.
         """
-        width, height = _check_size(size)
+        width, height = check_size(size)
         s = width / self.size[0]
         K = np.array(self.K)
         K[:2, :2] *= s
@@ -222,7 +222,8 @@ def _check_distortion(distortion):
     return np.concatenate([k, np.zeros(5 - len(k))])
 
 
-def _check_size(size):
+def check_size(size):
+    """(width, height) as whole numbers of pixels. Raises InputError."""
     try:
         width, height = (int(n) for n in size)
         whole = (width, height) == tuple(size)

@@ -351,6 +351,40 @@ def test_empty_folder(tmp_path):
         calibrate(tmp_path)
 
 
+def test_views_with_different_numbers_of_points(views, calibration):
+    some = [slice(9 * (k % 3), None) for k in range(len(views))]
+    found = calibrate_corners([POINTS[s] for s in some], [xy[s] for xy, s in zip(views, some, strict=True)], SIZE)
+    assert abs(found.fx - calibration.fx) < 3 * found.stderr["fx"]
+    assert calibrate_corners(POINTS.tolist(), views, SIZE).fx == calibration.fx
+
+
+@pytest.mark.parametrize("size", [(640,), "ab", None, (0, 0), (640.5, 480), (np.nan, 3), (320, 240), (480, 640)])
+def test_a_size_that_cannot_be(views, size):
+    with pytest.raises(InputError, match="size = "):
+        calibrate_corners(POINTS, views, size)
+
+
+@pytest.mark.parametrize(
+    ("points", "seen"), [(None, ...), (POINTS, None), (POINTS, 5), ("x", ...), (POINTS, ["a"] * 4), ([None] * 15, ...)]
+)
+def test_points_that_are_no_points(views, points, seen):
+    with pytest.raises(InputError, match="_points"):
+        calibrate_corners(points, views if seen is ... else seen, SIZE)
+
+
+@pytest.mark.parametrize(
+    "option",
+    [{"aspect": a} for a in (0, -1, np.nan, "a", True)] + [{"lens": a} for a in (5, (5,), ["k1", None], "k4")]
+    + [{"bend": a} for a in (True, "a", 0)],
+)  # fmt: skip
+def test_options_that_make_no_sense(views, option):
+    (name,) = option
+    with pytest.raises(InputError, match=f"{name} = "):
+        calibrate_corners(POINTS, views, SIZE, **option)
+    with pytest.raises(InputError, match=f"{name} = "):
+        calibrate(["a.jpg", "b.jpg", "c.jpg"], **option)
+
+
 def test_unknown_coefficient(views):
     with pytest.raises(InputError, match="k4"):
         calibrate_corners(POINTS, views, SIZE, lens=("k4",))

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError
-from ir50p_lab.inputs import first_not_finite
+from ir50p_lab.inputs import first_not_finite, number, numbers, switch
 from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.charuco import find_charuco
 from ir50p_lab.vision.calibration.checks import (
@@ -27,6 +27,7 @@ from ir50p_lab.vision.calibration.models import choose, in_percent, total_covari
 from ir50p_lab.vision.calibration.pictures import common_size, pictures_of, with_bar
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
 from ir50p_lab.vision.calibration.result import Calibration, View
+from ir50p_lab.vision.pinhole import check_size
 
 _FEWEST = 3
 _SAME = 1.0 / 800  # of the diagonal: a board that moved less is taken for the same view
@@ -57,6 +58,7 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, as
     board = board if board is not None else Checkerboard(pattern, square)
     if not isinstance(board, Checkerboard):
         raise InputError(f"board = {board!r}: give a Checkerboard or a Charuco")
+    options = _options(lens, aspect, bend)
     pictures = pictures_of(images, progress)
     found, rejected, seen = {}, [], Counter()
     size = common_size(pictures)
@@ -73,9 +75,7 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, as
     if len(found) < _FEWEST:
         raise CalibrationError(_why_too_few(len(found), rejected, seen, board))
     names = {i: (picture.name, i) for i, (picture, _) in found.items()}
-    return _calibrate(
-        names, {i: corners for i, (_, corners) in found.items()}, size, board, (lens, aspect, bend), rejected
-    )
+    return _calibrate(names, {i: corners for i, (_, corners) in found.items()}, size, board, options, rejected)
 
 
 def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=None, bend=None):
@@ -88,15 +88,27 @@ def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=No
 
     Returns: Calibration. Raises CalibrationError as `calibrate`, InputError for shapes that do not fit, or NaN.
     """
-    pixels = [_array("image_points", xy, 2) for xy in image_points]
-    shared = np.ndim(object_points) == 2
-    points = [_array("object_points", p, 3) for p in ([object_points] * len(pixels) if shared else object_points)]
+    options, size = _options(lens, aspect, bend), check_size(size)
+    pixels = _arrays("image_points", image_points, 2)
+    try:
+        shared = np.ndim(object_points) == 2
+    except ValueError:  # views with different numbers of points
+        shared = False
+    points = _arrays("object_points", [object_points] * len(pixels) if shared else object_points, 3)
     if len(points) != len(pixels) or any(len(p) != len(xy) for p, xy in zip(points, pixels, strict=True)):
         raise InputError("object_points and image_points must hold as many views, and each view as many points")
     if len(pixels) < _FEWEST:
         raise CalibrationError(f"{len(pixels)} views: at least {_FEWEST} are needed, 10 to 20 are good")
     if any(np.ptp(p[:, 2]) > 0 for p in points):
         raise InputError("object_points must lie in the plane z = 0 of the board")
+    for i, xy in enumerate(pixels):
+        outside = ((xy < -1.5) | (xy > np.array(size) + 0.5)).any(axis=1)  # one pixel over the edge
+        if outside.any():
+            x, y = xy[outside][0]
+            raise InputError(
+                f"view {i + 1} has a corner at ({x:.0f}, {y:.0f}), outside the picture of size = {size}: give its "
+                "(width, height)"
+            )
     everything, inverse = np.unique(np.concatenate(points), axis=0, return_inverse=True)
     board = _board_like(everything)
     places = np.split(inverse.ravel(), np.cumsum([len(p) for p in points])[:-1])
@@ -105,18 +117,17 @@ def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=No
         for i, (xy, place) in enumerate(zip(pixels, places, strict=True))
     }
     names = {i: (f"view {i + 1}", i) for i in corners}
-    width, height = (int(n) for n in size)
-    return _calibrate(names, corners, (width, height), board, (lens, aspect, bend), [], everything)
+    return _calibrate(names, corners, size, board, options, [], everything)
 
 
 def _calibrate(names, found, size, board, options, rejected, points=None):
     """From corners by picture to a Calibration: outlier views out, lens chosen, bend of the board tested."""
     points = board.points if points is None else points
-    lens, aspect, bend = options
+    wanted, aspect, bend = options
     keys = list(found)
     corners = Corners([points[found[i].index] for i in keys], [found[i].xy for i in keys], size)
     guess, rejected = start(corners), list(rejected)
-    model, wanted = Model(("k1", "k2"), aspect), _terms(lens)
+    model = Model(("k1", "k2"), aspect)
     rough = fit(corners, model, guess)
     for _ in range(max(1, len(keys) // 4)):
         outlier = outlier_view(corners, rough)
@@ -222,13 +233,23 @@ def _named(covariance, fitted):
     return {name: float(np.sqrt(covariance[i, i])) if used[i] else float("nan") for i, name in enumerate(NAMES)}
 
 
+def _options(lens, aspect, bend):
+    """(terms, aspect, bend), checked. Raises InputError."""
+    if aspect is not None:
+        aspect = number("aspect", aspect, "> 0", hint="fx/fy, 1 for square pixels, or None to estimate it")
+    if bend is not None and switch("bend", bend):
+        raise InputError(
+            "bend = True: give None to test for a bend and estimate it, or False to take the board for flat"
+        )
+    return _terms(lens), aspect, None if bend is None else False
+
+
 def _terms(lens):
     """Terms of the ladder for coefficient names, None for None. Raises InputError for unknown names."""
     if lens is None:
         return None
-    names = [lens] if isinstance(lens, str) else list(lens)
-    unknown = [name for name in names if name not in NAMES[4:]]
-    if unknown:
+    names = [lens] if isinstance(lens, str) or not np.iterable(lens) else list(lens)
+    if not all(isinstance(name, str) and name in NAMES[4:] for name in names):
         raise InputError(f"lens = {lens!r}: give coefficients out of {NAMES[4:]}, or None to let the data choose")
     return tuple(dict.fromkeys("p" if name in ("p1", "p2") else name for name in names))
 
@@ -241,8 +262,15 @@ def _transform(pose):
     return T
 
 
+def _arrays(name, views, n):
+    """The views as a list of float arrays (points, n). Raises InputError."""
+    if isinstance(views, str) or not np.iterable(views):
+        raise InputError(f"{name} = {views!r:.60}: give a list with the points of each view, (points, {n})")
+    return [_array(name, one, n) for one in views]
+
+
 def _array(name, value, n):
-    array = np.asarray(value, dtype=float)
+    array = numbers(name, value, unit="px" if n == 2 else "m")
     array = array.reshape(-1, n) if array.ndim == 3 and array.shape[-1] == n else array
     if array.ndim != 2 or array.shape[1] != n or len(array) < 4:
         raise InputError(f"{name} holds a view of shape {array.shape}: give (n, {n}) with at least 4 points")
