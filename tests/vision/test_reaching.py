@@ -312,6 +312,36 @@ def test_a_lead_puts_the_tip_before_the_ball_by_lead_times_speed():
     assert shown == pytest.approx(early, abs=0.03)
 
 
+def test_a_ball_that_is_lost_is_waited_for():
+    """Half a second after the last look nothing is known of it: the arm stops there, and goes on when it is back."""
+    bench, world, sight = rig(lambda t: np.array([0.38, -0.15 + 0.02 * t, 0.03]))
+    with bench, Reacher(bench, sight, rest=False) as reacher:
+        see, looks = sight.look, []
+
+        def look():
+            looks.append(world.t)
+            gone = len(looks) > 1 and looks[1] + 4 < world.t < looks[1] + 8
+            sight.no_ball = "it is covered" if gone else ""
+            return see()
+
+        sight.look = look
+        log = reacher.follow_ball(11.0)
+    lost = np.flatnonzero(np.isnan(log.ball[:, 0]))
+    first, last = log.t[lost[[0, -1]]]
+    assert (np.diff(lost) == 1).all()
+    assert last - first == pytest.approx(4 - 0.5, abs=0.15)
+    early, late = (log.tip[(log.t > last - s) & (log.t <= last - s + 1)].mean(axis=0) for s in (2, 1))
+    assert np.linalg.norm(late - early) < 0.002  # it would be 20 mm
+    assert np.linalg.norm(log.tip[-1, :2] - log.ball[-1]) < 0.02  # there again
+
+
+@pytest.mark.parametrize("seconds", [0, -1, np.nan, "a"])
+def test_following_for_no_time_is_refused(seconds):
+    bench, _, sight = rig()
+    with bench, Reacher(bench, sight, rest=False) as reacher, pytest.raises(InputError, match="seconds"):
+        reacher.follow_ball(seconds)
+
+
 def test_the_tracker_knows_where_a_ball_will_be():
     tracker, rng = BallTracker(), np.random.default_rng(0)
     assert np.isnan(tracker.at(1.0)).all()

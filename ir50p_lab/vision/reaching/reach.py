@@ -15,6 +15,7 @@ from ir50p_lab.vision.reaching.result import BallTracker, FollowLog, Look, Reach
 HEIGHT = 0.06  # m of the tip over the ball's centre: 30 mm over its top
 _COUNTS, _COUNTS_NOMINAL = 0.7, 2.5  # what potentiometers are off by, counts (assumed: a good wire-wound one)
 _MOVED = 0.008  # m between two looks: then the ball has moved, and only the second counts
+_LOST = 0.5  # s without a look that shows the ball: from then on nobody knows where it rolls
 _ARM_LAG = 0.04  # s that the tip follows its moving aim behind (simulated arms: 0.03 to 0.06 s)
 _CAMERA_LAG = 0.1  # s that the picture of a webcam is old (assumed: exposure, transfer, a picture that waits)
 
@@ -211,18 +212,20 @@ class Reacher(Mover):
         ball, less behind it, by the difference times its speed. Default 0.04 s, for the arm, with rendered pictures,
         which show this moment; 0.1 s more with any other camera (assumed of a webcam: if you have measured yours, give
         the sum).
-        Where the ball cannot be followed (out of reach, or not seen) the arm waits at the last place.
+        Where the ball cannot be followed (out of reach, or not seen for 0.5 s) the arm waits at the last place.
         Returns: FollowLog.
         """
         from ir50p_lab.bench.set_point import SetPoint
 
-        seen = self._sure(self.look())
+        seconds, every = number("seconds", seconds, "> 0", unit="s"), number("every", every, ">= 0", unit="s")
+        height, seen = number("height", height, unit="m"), self._sure(self.look())
         if lead is None:
             lead = _ARM_LAG if seen.simulated else _ARM_LAG + _CAMERA_LAG
         lead = number("lead", lead, unit="s")
         self.move_along(plan(self.arm, self.q, seen.position + np.array([0.0, 0.0, height])))
         tracker, log, point = BallTracker(), [], SetPoint(self._set, speed=0.6, acceleration=3.0)
-        begin, next_look, job, self._frozen = self._last.t, self._last.t, None, None
+        begin = next_look = last_seen = self._last.t
+        job = self._frozen = None
         live = not self.bench.simulated or getattr(self.bench, "realtime", False)
         while self._last.t - begin < seconds:
             t = self._last.t
@@ -234,6 +237,9 @@ class Reacher(Mover):
                 job = None
                 if seen:
                     tracker.update(taken, seen.position[:2])
+                    last_seen = t
+            if t - last_seen > _LOST:
+                tracker = BallTracker()
             if tracker.position is not None:
                 aim = np.array([*tracker.at(t + lead), self.sight.radius + height])
                 with contextlib.suppress(ValueError):  # UnreachableError: wait

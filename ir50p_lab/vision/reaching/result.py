@@ -55,7 +55,7 @@ class Reached:
 class FollowLog:
     """t (n,) s; tip (n, 3) m by potentiometers; ball (n, 2) m and velocity (n, 2) m/s as tracked; lead: s, aimed ahead.
 
-    ball is NaN before the first look.
+    ball is NaN before the first look, and while the ball has not been seen for 0.5 s.
     """
 
     t: np.ndarray
