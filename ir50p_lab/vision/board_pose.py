@@ -116,7 +116,9 @@ def camera_numbers(camera):
     """K (3, 3) and distortion (5,) of a Pinhole or Calibration, checked; missing coefficients are zero."""
     K = np.asarray(getattr(camera, "K", None), dtype=float)
     if K.shape != (3, 3) or not np.isfinite(K).all() or K[0, 0] <= 0 or K[1, 1] <= 0:
-        raise InputError(f"camera = {camera!r}: give a Pinhole or a Calibration (with K, (3, 3) px, and distortion)")
+        raise InputError(
+            f"camera = {camera!r:.60}: give a Pinhole or a Calibration (with K, (3, 3) px, and distortion)"
+        )
     distortion = getattr(camera, "distortion", None)
     distortion = np.zeros(0) if distortion is None else np.ravel(distortion).astype(float)
     if distortion.size > 5 or not np.isfinite(distortion).all():

@@ -222,6 +222,14 @@ def _check_distortion(distortion):
     return np.concatenate([k, np.zeros(5 - len(k))])
 
 
+def as_pinhole(camera):
+    """`camera` as a Pinhole: a Pinhole itself, or that of a Calibration. Raises InputError for anything else."""
+    pinhole = camera if isinstance(camera, Pinhole) else getattr(camera, "pinhole", None)
+    if not isinstance(pinhole, Pinhole):
+        raise InputError(f"camera = {camera!r:.60}: give a Pinhole(K, distortion, size) or a Calibration")
+    return pinhole
+
+
 def check_size(size):
     """(width, height) as whole numbers of pixels. Raises InputError."""
     try:

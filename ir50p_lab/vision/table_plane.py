@@ -35,7 +35,8 @@ class TablePlane:
         camera: Pinhole or Calibration. T_cam_table: (4, 4), takes coordinates of the table (z up, 0 on its surface) to
         those of the camera (z forward, y down).
         pose_covariance: (6, 6) of (rvec, tvec) of T_cam_table, rad and m; default 0: exactly known.
-        camera_covariance: (9, 9) of (fx, fy, cx, cy, k1, k2, p1, p2, k3); default that of the Calibration, or 0.
+        camera_covariance: (9, 9) of (fx, fy, cx, cy, k1, k2, p1, p2, k3); default that of the Calibration, or 0
+        (a Pinhole, or a Calibration from a file without standard errors, counts as exactly known).
         pose_by_camera: (6, 9), how the pose follows errors of the camera's numbers; `from_board` knows.
 
     Attributes: camera; T_cam_table; rms: px, of the board it was made from, or None; centre: (3,) m, of the lens.
@@ -247,7 +248,7 @@ def covariance_of(camera):
     """Covariance (9, 9) of (fx, fy, cx, cy, k1, k2, p1, p2, k3) that a Calibration holds; zeros where it has none."""
     covariance = np.zeros((9, 9))
     known = getattr(camera, "covariance", None)
-    if known is not None:
+    if known is not None and np.isfinite(known).all():
         n = min(9, len(known))
         covariance[:n, :n] = np.asarray(known, dtype=float)[:n, :n]
     return covariance

@@ -5,12 +5,13 @@ import numpy as np
 import pytest
 from board_pictures import SIZE, corner_sets, look
 
-from ir50p_lab.errors import CalibrationError
+from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.vision import (
     Calibration,
     Charuco,
     Checkerboard,
     Pinhole,
+    TablePlane,
     calibrate,
     calibrate_corners,
     column_camera_matrix,
@@ -20,7 +21,8 @@ from ir50p_lab.vision import (
     to_rows,
 )
 from ir50p_lab.vision.calibration.rendered import board_pictures, board_poses
-from ir50p_lab.vision.rendering import bench_camera
+from ir50p_lab.vision.pinhole import as_pinhole
+from ir50p_lab.vision.rendering import Scene, bench_camera
 
 POINTS = Checkerboard().points
 
@@ -70,6 +72,81 @@ def test_another_size_is_refused(calibration, tmp_path):
         Calibration.load(path, size=(1280, 720))
     with pytest.raises(CalibrationError, match="calibrate it at the new one"):
         calibration.check_size((320, 240))
+
+
+ROS = """image_width: 640
+image_height: 480
+camera_name: cam
+camera_matrix:
+  rows: 3
+  cols: 3
+  data: [650, 0, 320, 0, 651, 240, 0, 0, 1]
+distortion_model: plumb_bob
+distortion_coefficients:
+  rows: 1
+  cols: 5
+  data: [-0.2, 0.1, 0.001, 0, 0]
+"""
+
+
+def test_what_ros_writes_is_read(tmp_path):
+    path = tmp_path / "camera_info.yaml"
+    path.write_text(ROS)
+    found = Calibration.load(path, size=SIZE)
+    assert (found.fx, found.fy, found.cx, found.cy) == (650, 651, 320, 240)
+    assert found.distortion.tolist() == [-0.2, 0.1, 0.001, 0, 0]
+    path.write_text(ROS.replace("cols: 5", "cols: 4"))
+    with pytest.raises(CalibrationError, match="no calibration"):
+        Calibration.load(path)
+
+
+def test_a_fisheye_is_refused(calibration, tmp_path):
+    path = calibration.save(tmp_path / "camera.yml")
+    ours = path.read_text()
+    for text in (
+        ours.replace("image_width", "fisheye_model: 1\nimage_width", 1),
+        ROS.replace("plumb_bob", "equidistant"),
+    ):
+        path.write_text(text)
+        with pytest.raises(CalibrationError, match="fisheye"):
+            Calibration.load(path)
+    path.write_text(ours.replace("image_width", "fisheye_model: 0\nimage_width", 1))
+    assert Calibration.load(path).fx == calibration.fx
+
+
+def test_without_standard_errors_nothing_is_said_to_be_exact(calibration, tmp_path):
+    path = tmp_path / "camera_info.yaml"
+    path.write_text(ROS)
+    found = Calibration.load(path)
+    assert np.isnan(direction_stderr(found, np.array([[3.0, 4.0]]))).all()
+    assert any("no standard errors" in text for text in found.warnings)
+    again = Calibration.load(found.save(tmp_path / "again.yml"))
+    assert again.warnings == found.warnings and np.isnan(again.covariance).all()
+    plane = TablePlane(found, bench_camera()[1])
+    assert np.isfinite(plane.standard_error((320, 240), 0.03)).all() and plane.variations() == []
+    assert not calibration.warnings[0].startswith("the file holds no") and np.isfinite(calibration.covariance).all()
+
+
+@pytest.mark.parametrize("path", [None, 5, ["camera.yml"]])
+def test_what_names_no_file(calibration, path):
+    with pytest.raises(InputError, match="path = "):
+        calibration.save(path)
+    with pytest.raises(InputError, match="path = "):
+        Calibration.load(path)
+    with pytest.raises(InputError, match="size = "):
+        calibration.check_size(path)
+
+
+def test_a_calibration_in_place_of_a_pinhole(calibration):
+    assert as_pinhole(calibration.pinhole).size == SIZE
+    assert np.array_equal(as_pinhole(calibration).K, calibration.K)
+    assert np.array_equal(board_poses(calibration, 2), board_poses(calibration.pinhole, 2))
+    T = bench_camera()[1]
+    assert np.array_equal(Scene(pinhole=calibration, T_cam_world=T).pinhole.K, calibration.K)
+    for nothing in (None, 5, np.eye(3)):
+        with pytest.raises(InputError, match="give a Pinhole") as caught:
+            as_pinhole(nothing)
+        assert len(str(caught.value)) < 150
 
 
 @pytest.mark.parametrize(

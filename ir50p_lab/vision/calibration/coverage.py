@@ -60,7 +60,10 @@ def coverage(calibration):
 
 
 def direction_stderr(calibration, xy, covariance=None):
-    """How uncertain the ray of each pixel (n, 2) is, (n,) px: standard error of where its fixed ray falls."""
+    """How uncertain the ray of each pixel (n, 2) is, (n,) px: standard error of where its fixed ray falls.
+
+    nan if the calibration holds no covariance, as a file of another program.
+    """
     V = calibration.covariance if covariance is None else covariance
     J = _ray_jacobian(calibration, np.asarray(xy, dtype=float))
     return np.sqrt(np.einsum("nij,jk,nik->n", J, V, J))

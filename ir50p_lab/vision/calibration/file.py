@@ -4,11 +4,18 @@ from pathlib import Path
 
 import numpy as np
 
-from ir50p_lab.errors import CalibrationError
+from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.fit import NAMES
 from ir50p_lab.vision.calibration.reasons import Reason, Rejected
 from ir50p_lab.vision.calibration.result import Calibration, View
+
+
+def _checked(path):
+    """A Path. Raises InputError for what names no file."""
+    if not isinstance(path, (str, Path)):
+        raise InputError(f"path = {path!r:.60}: give the name of a file, such as 'camera.yml'")
+    return Path(path)
 
 
 def save(calibration, path):
@@ -18,7 +25,7 @@ def save(calibration, path):
     """
     import cv2
 
-    path = Path(path)
+    path = _checked(path)
     # written in memory: OpenCV does not open paths with letters beyond ASCII everywhere, and says nothing
     file = cv2.FileStorage(path.suffix.lower() or ".yml", cv2.FileStorage_WRITE | cv2.FileStorage_MEMORY)
     width, height = calibration.size
@@ -83,13 +90,15 @@ def load(path, size=None):
     """Read a Calibration from a file of `save`, or of a program that uses OpenCV's names; see Calibration.load."""
     import cv2
 
-    path = Path(path)
+    path = _checked(path)
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
         raise CalibrationError(f"there is no file {path}: calibrate the camera first, and save") from None
     except (OSError, UnicodeDecodeError) as error:
         raise CalibrationError(f"{path} cannot be read: {error}") from None
+    if not text.lstrip().startswith(("%YAML", "<?xml", "{")):  # as ROS writes camera_info; OpenCV wants a first line
+        text = "%YAML:1.0\n---\n" + text
     try:
         file = cv2.FileStorage(text, cv2.FileStorage_READ | cv2.FileStorage_MEMORY)
         values = _basics(file)
@@ -120,7 +129,13 @@ def _texts(file, name, texts):
 
 def _basics(file):
     """K, distortion, rms and size, or None if the file lacks them."""
-    K, d = file.getNode("camera_matrix").mat(), file.getNode("distortion_coefficients").mat()
+    lens = file.getNode("distortion_model").string()
+    if file.getNode("fisheye_model").real() or lens in ("equidistant", "fisheye"):
+        raise CalibrationError(
+            "a calibration with a fisheye lens (fisheye_model, or distortion_model equidistant): this package knows "
+            "pinholes with k1, k2, p1, p2, k3 only. Calibrate the camera here, with the board where the lens bends less"
+        )
+    K, d = (_matrix(file.getNode(name)) for name in ("camera_matrix", "distortion_coefficients"))
     width, height = file.getNode("image_width").real(), file.getNode("image_height").real()
     if K is None or d is None or K.shape != (3, 3) or not width or not height:
         return None
@@ -134,6 +149,16 @@ def _basics(file):
         "rms": float("nan") if rms.empty() else rms.real(),
         "size": (int(width), int(height)),
     }
+
+
+def _matrix(node):
+    """A matrix as OpenCV writes it, or as ROS does: rows, cols and data, without saying that it is one."""
+    data = node.getNode("data") if node.isMap() else None
+    if data is None or not data.isSeq() or node.getNode("dt").isString():
+        return node.mat()
+    shape = [int(node.getNode(name).real()) for name in ("rows", "cols")]
+    numbers = np.array([data.at(i).real() for i in range(data.size())])
+    return numbers.reshape(shape) if numbers.size == np.prod(shape) else None
 
 
 def _details(file):
@@ -153,7 +178,9 @@ def _details(file):
         if not node.empty():
             numbers = node.mat().ravel()
             found[name] = {n: float(x) if x >= 0 else float("nan") for n, x in zip(NAMES, numbers, strict=True)}
-    if not (node := file.getNode("covariance_fx_fy_cx_cy_k1_k2_p1_p2_k3")).empty():
+    node = file.getNode("covariance_fx_fy_cx_cy_k1_k2_p1_p2_k3")
+    known = not node.empty()
+    if known:
         found["covariance"] = node.mat()
     if not (node := file.getNode("corner_sigma")).empty():
         found["sigma"] = node.real()
@@ -162,6 +189,11 @@ def _details(file):
     for name in ("model", "warnings"):
         node = file.getNode(name)
         found[name] = tuple(node.at(i).string() for i in range(node.size())) if node.isSeq() else ()
+    if not known:
+        found["warnings"] += (
+            "the file holds no standard errors: how sure the camera is, is not known, and what is computed from it "
+            "leaves that out",
+        )
     found["views"] = tuple(_view(node) for node in _items(file.getNode("views")))
     found["rejected"] = tuple(_rejected(node) for node in _items(file.getNode("rejected")))
     return found

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.vision.pinhole import as_pinhole
 from ir50p_lab.vision.rendering import Board, Lens, Scene, Sensor, Sky, Sun, bench_camera, render_scene
 
 _WINDOW = (0.36, 0.92)  # part of the picture's width that the board fills
@@ -11,11 +12,12 @@ _WINDOW = (0.36, 0.92)  # part of the picture's width that the board fills
 def board_poses(pinhole, count, seed=0, board=None, tilts_deg=(8, 42)):
     """T_cam_board (count, 4, 4): a board all over the picture, tilted in all directions, fully in view.
 
-    pinhole: Pinhole; seed: of the generator; board: rendering.Board; tilts_deg: smallest and largest tilt.
+    pinhole: Pinhole or Calibration; seed: of the generator; board: rendering.Board; tilts_deg: smallest, largest tilt.
     Raises InputError if no such poses are found.
     """
     import cv2
 
+    pinhole = as_pinhole(pinhole)
     board, rng, poses = board or Board(), np.random.default_rng(seed), []
     columns, rows = board.pattern
     s = board.square

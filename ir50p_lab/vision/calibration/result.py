@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.calibration.fit import NAMES
-from ir50p_lab.vision.pinhole import Pinhole
+from ir50p_lab.vision.pinhole import Pinhole, check_size
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -41,7 +41,7 @@ class View:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Calibration:
-    """A calibrated camera; usable wherever a Pinhole is (`K`, `distortion`, `size`).
+    """A calibrated camera; what takes a camera takes it in place of a Pinhole (`pinhole.as_pinhole`).
 
     ============== ======================================================================================== =========
     field          meaning                                                                                  shape
@@ -52,7 +52,8 @@ class Calibration:
     rms            root mean square distance between corners and model: sqrt(sum |e|^2 / N)                 px
     stderr         standard error of "fx", "fy", "cx", "cy", "k1"...: the larger of two routes, and the     dict
                    doubt about the model; nan where not estimated
-    covariance     of fx, fy, cx, cy, k1, k2, p1, p2, k3 with those standard errors; 0 where not estimated  (9, 9)
+    covariance     of fx, fy, cx, cy, k1, k2, p1, p2, k3 with those standard errors; 0 where not estimated, (9, 9)
+                   all nan where a file holds none
     views          View of each picture used                                                                tuple
     rejected       Rejected: each picture not used, with a reason                                           tuple
     warnings       what to mind, as sentences                                                               tuple
@@ -75,7 +76,7 @@ class Calibration:
     rejected: tuple = ()
     warnings: tuple = ()
     size: tuple = (640, 480)
-    covariance: np.ndarray = field(default_factory=lambda: np.zeros((9, 9)), repr=False)
+    covariance: np.ndarray = field(default_factory=lambda: np.full((9, 9), np.nan), repr=False)
     board: Checkerboard = field(default_factory=Checkerboard)
     model: tuple = ()
     evidence: tuple = ()
@@ -115,7 +116,8 @@ class Calibration:
 
     def check_size(self, size):
         """Refuse pictures (width, height) of another size than those of the calibration, with CalibrationError."""
-        if tuple(size) != tuple(self.size):
+        size = check_size(size)
+        if size != tuple(self.size):
             raise CalibrationError(
                 f"this calibration is of a camera with pictures of {self.size[0]}x{self.size[1]}, not "
                 f"{size[0]}x{size[1]}: set the camera to that size, or calibrate it at the new one"
@@ -129,7 +131,7 @@ class Calibration:
 
     @staticmethod
     def load(path, size=None):
-        """Read such a file, or one that OpenCV's calibration sample wrote.
+        """Read such a file, or one that OpenCV's calibration sample or ROS (camera_info) wrote; no fisheyes.
 
         size: (width, height) of the pictures it is for. Raises CalibrationError for a file that is missing or no
         calibration, and for one of another picture size.

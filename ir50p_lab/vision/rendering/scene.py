@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.vision.pinhole import Pinhole
+from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
 from ir50p_lab.vision.rendering.scene_checks import check_numbers, check_pose
 
 COLOURS = {  # paints, not light: measured from nothing, chosen to look like toy balls and tape
@@ -265,8 +265,7 @@ class Scene:
     texture_seed: int = 0
 
     def __post_init__(self):
-        if not isinstance(self.pinhole, Pinhole):
-            raise InputError(f"pinhole is a {type(self.pinhole).__name__}: give a Pinhole(K, distortion, size)")
+        object.__setattr__(self, "pinhole", as_pinhole(self.pinhole))
         check_pose(self, "T_cam_world")
         for field_name, kinds in _PARTS.items():
             for part in getattr(self, field_name):
