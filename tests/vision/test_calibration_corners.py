@@ -1,5 +1,6 @@
 """Corners against the projection they were painted by; each reason for refusing a picture, provoked."""
 
+import importlib
 from types import SimpleNamespace
 
 import cv2
@@ -104,6 +105,54 @@ def test_reason(good, reason):
 def test_part_of_the_board_covered_is_cropped_not_another_board(good):
     (one,) = calibrate([*good, covered()]).rejected
     assert one.reason is Reason.CROPPED
+
+
+@pytest.mark.parametrize(
+    ("tilt", "about", "window"),
+    [
+        (0.7, 5.0, np.s_[:, :377]),
+        (0.9, 5.0, np.s_[:, :356]),
+        (0.5, 0.5, np.s_[:290]),
+        (0.5, 5.0, np.s_[:285]),
+        (0.9, 0.5, np.s_[:274]),
+        (0.7, 0.5, np.s_[:, :436]),
+        (0.7, 2.0, np.s_[:, 216:]),
+        (0.7, 5.0, np.s_[:, 181:]),
+    ],
+)
+def test_a_board_partly_out_of_the_picture(tilt, about, window):
+    """Cut obliquely: there is no part of 4x3 that SB's finder sees, or corners lie beyond the edge."""
+    grey = np.ascontiguousarray(paint(look(0.45, tilt, about, spin=0.3))[..., 0][window])
+    with pytest.raises(NotUsable) as caught:
+        find_checkerboard(grey, (9, 6))
+    assert caught.value.reason is Reason.CROPPED
+
+
+def test_no_board_is_seen_where_there_is_none():
+    """Writing, and smooth random patches, are full of saddles."""
+    soft = cv2.GaussianBlur(np.random.default_rng(0).normal(0, 1, (480, 640)), (0, 0), 5)
+    text = np.full((480, 640), 230, np.uint8)
+    for line in range(20):
+        cv2.putText(text, "The quick brown fox jumps over ####", (5, 25 * line + 10), 0, 0.8, 30, 2)
+    for grey in (cv2.normalize(soft, None, 0, 255, cv2.NORM_MINMAX).astype(np.uint8), text):
+        with pytest.raises(NotUsable) as caught:
+            find_checkerboard(grey, (9, 6))
+        assert caught.value.reason is Reason.NO_BOARD
+
+
+def test_a_picture_that_opencv_fails_on_does_not_lose_the_others(good, monkeypatch):
+    module = importlib.import_module("ir50p_lab.vision.calibration.calibrate")
+    seen = []
+
+    def fails_once(grey, pattern):
+        seen.append(grey)
+        if len(seen) == 2:
+            raise cv2.error("OpenCV(4.10.0) error: (-215) initial corner is outside the image")
+        return find_checkerboard(grey, pattern)
+
+    monkeypatch.setattr(module, "find_checkerboard", fails_once)
+    (one,) = calibrate(good).rejected
+    assert one.index == 1 and one.reason is Reason.NO_BOARD and "outside the image" in one.detail
 
 
 def test_a_larger_board_is_another_board():

@@ -1,5 +1,6 @@
 """Corners of a checkerboard in a picture, to a few hundredths of a pixel, or the reason why there are none to use."""
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ from ir50p_lab.vision.calibration.grid import (
     spacing,
 )
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
+from ir50p_lab.vision.calibration.saddles import parts_by_saddles
 
 _SEARCHED = 1280  # px; corners are searched in a picture reduced to this, and refined in the picture itself
 _WINDOW = 0.36  # half the refinement window, in squares: larger is more precise until the next edges come in
@@ -130,9 +132,17 @@ def _named_like(grid, pattern):
 
 
 def refine(grey, grid):
-    """Corners (rows, columns, 2) to sub-pixel: `cornerSubPix` with a window for each corner from its squares."""
+    """Corners (rows, columns, 2) to sub-pixel: `cornerSubPix` with a window for each corner from its squares.
+
+    Raises NotUsable if one lies outside the picture.
+    """
     import cv2
 
+    h, w = grey.shape
+    if not ((grid >= 0) & (grid <= (w - 1, h - 1))).all():
+        raise NotUsable(
+            Reason.CROPPED, f"corners beyond the {_sides(grid, grey)} of the picture: move the board into view"
+        )
     part = np.where(next_to_margin(grid, grey), _WINDOW / 2, _WINDOW)
     half = np.clip(np.round(part * spacing(grid)), *_WINDOW_PX).astype(int).ravel()
     xy = grid.reshape(-1, 1, 2).astype(np.float32)
@@ -169,13 +179,10 @@ def refuse_soft(grey, grid):
 
 def _piece_together(grey, small, factor, pattern):
     """The grid from a part that was found and grown, if it becomes the whole board; else NotUsable says why not."""
-    for less in (1, 2, 4):
-        grid = _part(small, less)
-        if grid is not None:
-            break
-    else:
+    grid = _part(small)
+    if grid is None:
         raise NotUsable(Reason.NO_BOARD, "nothing like a checkerboard: more light, less glare, the whole board in view")
-    grid = refine(grey, enlarged(grid, factor * less))
+    grid = refine(grey, enlarged(grid, factor))
     refuse_soft(grey, grid)
     grid, outside = grow(grid, grey)
     if sorted(grid.shape[:2]) == sorted(pattern):
@@ -191,19 +198,35 @@ def _piece_together(grey, small, factor, pattern):
     )
 
 
-def _part(grey, less):
-    """A grid found anywhere in a picture reduced `less` times, or None."""
-    h, w = grey.shape
-    if min(h, w) < 60 * less:
-        return None
+def _part(grey):
+    """A grid found anywhere in a picture, at its size or reduced, by its saddles or by SB; or None."""
     import cv2
 
-    small = grey if less == 1 else cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
-    for part in ((4, 3), (3, 3), (3, 4)):
-        grid = largest_grid(small, part)
-        if grid is not None:
+    for find in (_grown_from_saddles, _largest_by_sb):
+        for less in (1, 2, 4):
+            h, w = grey.shape
+            if min(h, w) >= 60 * less:
+                small = grey if less == 1 else cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
+                grid = find(small)
+                if grid is not None:
+                    return enlarged(grid, less)
+    return None
+
+
+def _grown_from_saddles(grey):
+    """The grid around the first part by its saddles that becomes 4x3 or more and is smooth, or None."""
+    for part in itertools.islice(parts_by_saddles(grey), 20):
+        grid, _ = grow(refine(grey, part), grey)
+        smooth = roughness(grid) < _ROUGH / 2 * np.median(spacing(grid))
+        if smooth and grid.shape[0] * grid.shape[1] >= 12 and is_checkerboard(grid, grey):
             return grid
     return None
+
+
+def _largest_by_sb(grey):
+    """The grid around the first part that `findChessboardCornersSB` finds, or None."""
+    parts = (largest_grid(grey, part) for part in ((4, 3), (3, 3), (3, 4)))
+    return next((grid for grid in parts if grid is not None), None)
 
 
 def _part_of_it(shape, outside, pattern):

@@ -106,7 +106,7 @@ def grow(grid, grey):
                 break
             if np.nanmean(np.abs(found)) < 0.7:
                 break
-            turned = np.concatenate([turned, following[:, None]], axis=1)
+            turned = np.concatenate([turned, _settled(following, turned[:, -1], grey)[:, None]], axis=1)
         grid = _turn(turned, -quarter_turns)
     return grid, outside
 
@@ -142,11 +142,26 @@ def _next_column(grid):
     if grid.shape[1] < 3:
         return 2 * grid[:, -1] - grid[:, -2]
     a, b, c = grid[:, -3], grid[:, -2], grid[:, -1]
-    ab = np.linalg.norm(b - a, axis=1, keepdims=True)
-    bc = np.linalg.norm(c - b, axis=1, keepdims=True)
+    ab = np.maximum(np.linalg.norm(b - a, axis=1, keepdims=True), 1e-6)
+    bc = np.maximum(np.linalg.norm(c - b, axis=1, keepdims=True), 1e-6)
     # equally spaced points have the cross-ratio 4/3: (ac * bd) / (bc * ad)
-    cd = bc * (ab + bc) / np.maximum(3 * ab - bc, 0.2 * ab)
+    cd = bc * (ab + bc) / np.maximum(3 * ab - bc, 0.2 * bc)
     return c + (c - b) / bc * cd
+
+
+def _settled(column, before, grey):
+    """A column of corners (rows, 2) drawn to where squares meet, as far as that is near and in the picture."""
+    import cv2
+
+    step = float(np.median(np.linalg.norm(column - before, axis=1)))
+    h, w = grey.shape
+    inside = ((column >= 0) & (column <= (w - 1, h - 1))).all(axis=1)
+    half, settled = int(np.clip(0.25 * step, 2, 20)), column.copy()
+    if inside.any():
+        xy = column[inside][:, None].astype(np.float32)
+        settled[inside] = cv2.cornerSubPix(grey, xy, (half, half), (-1, -1), (3, 20, 1e-2))[:, 0]
+    near = np.linalg.norm(settled - column, axis=1) < 0.15 * step
+    return np.where(near[:, None], settled, column)
 
 
 def is_checkerboard(grid, grey):
