@@ -46,6 +46,17 @@ def test_a_board_with_narrow_outer_squares():
     assert np.abs(found(T, rim=0.45) - project(T, BOARD.points)).max() < 0.5
 
 
+@pytest.mark.parametrize("distance", [1.9, 2.3])
+def test_small_squares_are_used_if_sharp_and_blurred_if_not(distance):
+    """Squares of 9 and 7 px, on which OpenCV does not measure the edges."""
+    T = look(distance, 0.3, 2.0)
+    off = found(T, over=3) - project(T, BOARD.points)
+    assert np.sqrt((off**2).sum(axis=1).mean()) < 0.25
+    with pytest.raises(NotUsable, match=r"edges are \d\.\d px wide") as caught:
+        found(T, over=3, blur=2.2)
+    assert caught.value.reason is Reason.BLURRED
+
+
 def test_order_of_a_board_that_looks_alike_upside_down():
     xy = found(look(0.6, 0.3, 0.5, spin=3.1), pattern=(9, 7))
     assert xy[0].sum() < xy[-1].sum()
@@ -212,11 +223,15 @@ def test_charuco_reasons(board, image, reason):
     ("make", "match"),
     [
         (lambda: Checkerboard((9,)), "columns, rows"),
-        (lambda: Checkerboard((1, 6)), "at least 3x2"),
+        (lambda: Checkerboard((1, 6)), "at least 3x3"),
+        (lambda: Checkerboard((3, 2)), "at least 3x3"),
+        (lambda: Charuco((3, 2)), "at least 3x3"),
+        (lambda: find_checkerboard(np.zeros((480, 640), np.uint8), (3, 2)), "at least 3x3"),
         (lambda: Checkerboard((9.5, 6)), "inner corners"),
         (lambda: Checkerboard((9, 6), 0), "positive length"),
         (lambda: Charuco((9, 6), 0.02, 0.025), "smaller than a square"),
         (lambda: Charuco((9, 6), dictionary="DICT_9X9"), "no dictionary"),
+        (lambda: Charuco((9, 6), dictionary=999), "no dictionary 999"),
         (lambda: Charuco((30, 30), dictionary="DICT_4X4_50").opencv(), "too few markers"),
     ],
 )
@@ -245,3 +260,27 @@ def test_a_mirrored_charuco_says_so():
     mirrored = np.ascontiguousarray(charuco_picture(Charuco((9, 6)), WARP)[:, ::-1])
     with pytest.raises(NotUsable, match="mirrored"):
         find_charuco(mirrored, Charuco((9, 6)))
+
+
+def test_a_dictionary_may_be_given_by_its_number():
+    assert Charuco((9, 6), dictionary=cv2.aruco.DICT_4X4_100) == Charuco((9, 6), dictionary="DICT_4X4_100")
+
+
+@pytest.mark.parametrize("hidden", [0, 1, 3])
+def test_a_charuco_view_again_is_a_duplicate_also_with_corners_hidden(hidden):
+    board, tilts = Charuco((9, 6)), ((1e-4, 1e-4), (-1e-4, 3e-4), (3e-4, -1e-4), (4e-4, 4e-4))
+    warps = [np.vstack([WARP[:2], (*tilt, 1.0)]) for tilt in tilts]
+    pictures = [charuco_picture(board, warp) for warp in warps]
+    again = pictures[1].copy()
+    for xy in find_charuco(again, board).xy[:hidden].astype(int):
+        cv2.circle(again, xy.tolist(), 14, 128, -1)
+    (one,) = calibrate([*pictures, again], board=board).rejected
+    assert one.reason is Reason.DUPLICATE and "picture 2" in one.detail
+
+
+@pytest.mark.parametrize("blur", [4, 6])
+def test_a_blurred_charuco_is_told_to_focus(blur):
+    """Its markers cannot be read, so that nothing says whose board it is: the reason stays NO_BOARD."""
+    with pytest.raises(NotUsable, match="focus") as caught:
+        find_charuco(cv2.GaussianBlur(charuco_picture(Charuco((9, 6)), WARP), (0, 0), blur), Charuco((9, 6)))
+    assert caught.value.reason is Reason.NO_BOARD

@@ -17,7 +17,7 @@ class Checkerboard:
     turned by half a turn, and the frame is that nearer to the top left of the picture.
 
     A wrong square size changes nothing but the scale of the distances: K and the distortion stay the same.
-    Raises CalibrationError for a pattern below 3x2 or a size that is not positive.
+    Raises CalibrationError for a pattern below 3x3 or a size that is not positive.
     """
 
     pattern: tuple = (9, 6)
@@ -43,8 +43,8 @@ class Charuco(Checkerboard):
     """A checkerboard with markers in its white squares: every corner has a number, so part of the board is enough.
 
     pattern: (columns, rows) of *inner corners*, as for a checkerboard (OpenCV counts squares: one more each way).
-    marker: side of a marker, m; dictionary: name in cv2.aruco, such as "DICT_5X5_100"; legacy: boards printed with
-    OpenCV before 4.6 whose number of rows is even begin with a white square.
+    marker: side of a marker, m; dictionary: name in cv2.aruco, such as "DICT_5X5_100", or its number there; legacy:
+    boards printed with OpenCV before 4.6 whose number of rows is even begin with a white square.
     The frame is OpenCV's for such boards, moved to the first inner corner.
     """
 
@@ -59,7 +59,11 @@ class Charuco(Checkerboard):
             raise CalibrationError(f"marker = {self.marker} m must be smaller than a square, {self.square} m")
         import cv2
 
-        if not self.dictionary.startswith("DICT_") or not hasattr(cv2.aruco, self.dictionary):
+        names = [name for name in dir(cv2.aruco) if name.startswith("DICT_")]
+        for name in names:
+            if type(self.dictionary) is int and getattr(cv2.aruco, name) == self.dictionary:
+                object.__setattr__(self, "dictionary", name)
+        if self.dictionary not in names:
             raise CalibrationError(f"cv2.aruco has no dictionary {self.dictionary!r}; one is 'DICT_5X5_100'")
 
     def opencv(self):
@@ -88,9 +92,9 @@ def check_pattern(pattern):
         whole = (columns, rows) == tuple(pattern)
     except (TypeError, ValueError):
         whole, columns, rows = False, 0, 0
-    if not whole or min(columns, rows) < 2 or max(columns, rows) < 3:
+    if not whole or min(columns, rows) < 3:
         raise CalibrationError(
-            f"pattern = {pattern!r}: give (columns, rows) of inner corners (where four squares meet), at least 3x2; a "
+            f"pattern = {pattern!r}: give (columns, rows) of inner corners (where four squares meet), at least 3x3; a "
             "board of 10x7 squares has (9, 6)"
         )
     return columns, rows

@@ -31,6 +31,7 @@ from ir50p_lab.vision.pinhole import check_size
 
 _FEWEST = 3
 _SAME = 1.0 / 800  # of the diagonal: a board that moved less is taken for the same view
+_COMMON = 0.8  # of the corners seen, at which two views of part of a board are compared
 
 
 def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, aspect=None, bend=None, progress=None):
@@ -287,7 +288,7 @@ def _board_like(points):
     """The checkerboard that points (n, 3) seem to be of, for coverage and advice."""
     columns, rows = (len(np.unique(points[:, k].round(9))) for k in (0, 1))
     width = float(np.ptp(points[:, 0]))
-    return Checkerboard((max(columns, 3), max(rows, 2)), width / max(columns - 1, 1) if width else 0.025)
+    return Checkerboard((max(columns, 3), max(rows, 3)), width / max(columns - 1, 1) if width else 0.025)
 
 
 def _corners_in(picture, board, size):
@@ -328,8 +329,9 @@ def _drop_duplicates(found, size):
         picture, corners = found[key]
         for earlier in kept:
             name, old = found[earlier][0].name, found[earlier][1]
-            if np.array_equal(old.index, corners.index):
-                moved = float(np.sqrt(((old.xy - corners.xy) ** 2).sum(axis=1).mean()))
+            _, here, there = np.intersect1d(corners.index, old.index, return_indices=True)
+            if len(here) >= _COMMON * len(corners.index):
+                moved = float(np.median(np.linalg.norm(old.xy[there] - corners.xy[here], axis=1)))
                 if moved < limit:
                     detail = f"the board is where it was in {name}, {moved:.2f} px away: move it between pictures"
                     dropped.append(Rejected(picture.name, picture.index, Reason.DUPLICATE, detail))

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.corners import _SOFT, Corners
+from ir50p_lab.vision.calibration.corners import SOFT_SLOPE, Corners, slope_rise
 from ir50p_lab.vision.calibration.grid import apply, homography
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 
@@ -41,8 +41,8 @@ def find_charuco(grey, board):
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     if spread[1] < 1.2 * board.square:
         raise NotUsable(Reason.CROPPED, f"the {count} corners seen lie on a line: show more of the board")
-    rise = _rise(grey, xy, side)
-    if rise > _SOFT * side:
+    rise = slope_rise(grey, xy, side)
+    if rise > SOFT_SLOPE * side:
         raise NotUsable(Reason.BLURRED, f"edges are {rise:.0f} px wide, squares {side:.0f} px: focus, hold still")
     H = homography(points, xy)
     off = np.linalg.norm(apply(H, points) - xy, axis=1)
@@ -83,7 +83,7 @@ def _other_board(grey, board):
 
 
 def _other_markers(grey, board):
-    """In words what markers there are instead: mirrored ones, or those of another dictionary; or ''."""
+    """In words what markers there are instead: mirrored ones, or those of another dictionary; or what to do."""
     import cv2
 
     def seen(picture, dictionary):
@@ -95,7 +95,9 @@ def _other_markers(grey, board):
         return ", but mirrored: switch the mirroring of the camera off"
     families = ("DICT_4X4_1000", "DICT_5X5_1000", "DICT_6X6_1000", "DICT_7X7_1000", "DICT_ARUCO_ORIGINAL")
     count, family = max((seen(grey, family), family) for family in families)
-    return f", but {count} of {family} or a smaller one of this family" if count > 3 else ""
+    if count > 3:
+        return f", but {count} of {family} or a smaller one of this family"
+    return " that can be read: if the board is in view, focus, hold still, or come nearer"
 
 
 def _lies_well(points, xy):
@@ -114,15 +116,3 @@ def _spacing(points, xy, square):
         raise NotUsable(Reason.CROPPED, "the corners seen lie on a line: show more of the board")
     sides = [np.linalg.norm(apply(H, points + step) - apply(H, points), axis=1) for step in np.eye(2) * square]
     return float(np.median(np.minimum(*sides)))
-
-
-def _rise(grey, xy, side):
-    """Rough width of the edges at corners, px: step of grey levels over the steepest slope, median of the corners."""
-    import cv2
-
-    gx, gy = cv2.Sobel(grey, cv2.CV_32F, 1, 0) / 8, cv2.Sobel(grey, cv2.CV_32F, 0, 1) / 8
-    slope, reach, widths = np.hypot(gx, gy), max(2, round(0.4 * side)), []
-    for x, y in np.round(xy).astype(int):
-        window = np.s_[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1]
-        widths.append(float(np.ptp(grey[window])) / max(float(slope[window].max()), 1e-6))
-    return 0.8 * float(np.median(widths))  # from 10 to 90 % of the step

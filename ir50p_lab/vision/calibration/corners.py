@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ir50p_lab.vision.calibration.board import check_pattern
 from ir50p_lab.vision.calibration.grid import (
     grow,
     in_order,
@@ -21,6 +22,8 @@ _SEARCHED = 1280  # px; corners are searched in a picture reduced to this, and r
 _WINDOW = 0.36  # half the refinement window, in squares: larger is more precise until the next edges come in
 _WINDOW_PX = (2, 20)
 _SOFT = 0.55  # rise of an edge from dark to light, in squares, at which neighbouring edges run together
+_UNKNOWN = 100  # what OpenCV says for the rise where squares are too small for it to follow an edge
+SOFT_SLOPE = 0.45  # the same limit for `slope_rise`: waves of that length, all that blur leaves, have 0.5
 _ROUGH = 0.08  # scatter about a smooth grid, in squares, that no board shows
 
 
@@ -48,8 +51,9 @@ def find_checkerboard(grey, pattern):
     a finder is content with a part of it.
 
     Args: grey: (h, w) uint8; pattern: (columns, rows). Returns: Corners, all of them, in the order of `Checkerboard`.
-    Raises NotUsable with the Reason.
+    Raises NotUsable with the Reason, CalibrationError for a pattern that cannot be.
     """
+    pattern = check_pattern(pattern)
     small, factor = reduced(grey, _SEARCHED)
     best, finder = None, ""
     for name, grid in _search(small, pattern):
@@ -166,13 +170,29 @@ def edge_rise(grey, grid):
     return float(max(rises))
 
 
+def slope_rise(grey, xy, side):
+    """Rough width of the edges at corners, px: step of grey levels over the steepest slope, median of the corners."""
+    import cv2
+
+    gx, gy = cv2.Sobel(grey, cv2.CV_32F, 1, 0) / 8, cv2.Sobel(grey, cv2.CV_32F, 0, 1) / 8
+    slope, reach, widths = np.hypot(gx, gy), max(2, round(0.4 * side)), []
+    for x, y in np.round(xy).astype(int):
+        window = np.s_[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1]
+        widths.append(float(np.ptp(grey[window])) / max(float(slope[window].max()), 1e-6))
+    return 0.8 * float(np.median(widths))  # from 10 to 90 % of the step
+
+
 def refuse_soft(grey, grid):
     """Width of the edges, px. Raises NotUsable if they run into each other."""
-    rise, nearest = edge_rise(grey, grid), float(np.median(spacing(grid)))
-    if rise > _SOFT * nearest:
-        wide = f"edges are {rise:.0f} px wide, " if rise < 100 else ""
+    nearest = float(np.median(spacing(grid)))
+    rise, limit = edge_rise(grey, grid), _SOFT * nearest
+    if rise >= _UNKNOWN:
+        rise, limit = slope_rise(grey, grid.reshape(-1, 2), nearest), SOFT_SLOPE * nearest
+    if rise > limit:
         raise NotUsable(
-            Reason.BLURRED, f"{wide}squares only {nearest:.0f} px: focus, hold board and camera still, or come nearer"
+            Reason.BLURRED,
+            f"edges are {rise:.1f} px wide, squares only {nearest:.0f} px: focus, hold board and camera still, or come "
+            "nearer",
         )
     return rise
 
