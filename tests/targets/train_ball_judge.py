@@ -3,8 +3,8 @@
 Scenes 100 to 3199 of the kinds 'ball' and 'no_ball' (no evaluation uses these seeds; every fifth is held out to choose
 the threshold by) are rendered, kept in the folder, and searched; what the search proposes in them and in changed copies
 trains a few small networks, which are written to ir50p_lab/vision/ball/judge.npz. NumPy only, single precision; the same
-seeds give the same weights on the same machine. Rendering and searching take some seconds a scene, training a quarter of
-an hour.
+seeds give the same weights on the same machine. Rendering and searching take some seconds a scene, training twenty
+minutes.
 """
 
 import argparse
@@ -19,7 +19,7 @@ from tests.targets.ball_examples import examples
 
 FIRST = 100
 WIDTHS = (24, 24, 24)  # of the layers
-NETWORKS = 3
+NETWORKS = 5
 EPOCHS, BATCH, RATE, DECAY = 16, 64, 2e-3, 0.2
 NOISE, DROP = 0.3, 0.35  # added to the scaled inputs; share of the pooled features left out, in training
 FALSE_COSTS = 2.0  # a false alarm is worse than a miss

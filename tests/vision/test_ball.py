@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 
-from ir50p_lab.errors import ImageError, InputError
+from ir50p_lab.errors import CalibrationError, ImageError, InputError
 from ir50p_lab.vision import RED, Ball, Colour, Pinhole, find_balls, learn_colour, render_scene
 from ir50p_lab.vision.rendering import Ball as SceneBall
 from ir50p_lab.vision.rendering import bench_scene, random_scene
@@ -184,6 +184,8 @@ def test_bad_arguments():
             find_balls(picture, least_radius=radius)
     with pytest.raises(InputError, match="Pinhole"):
         find_balls(picture, camera=700)
+    with pytest.raises(CalibrationError, match="320x200"):
+        find_balls(picture, camera=Pinhole.simple(F, size=(320, 200)))
 
 
 def test_tiny_and_plain_pictures():

@@ -12,13 +12,14 @@ from ir50p_lab.vision.ball.judge import score
 from ir50p_lab.vision.ball.look import median
 from ir50p_lab.vision.ball.measure import measure
 from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
+from ir50p_lab.vision.board_pose import check_picture_size
 from ir50p_lab.vision.image import check_image
-from ir50p_lab.vision.pinhole import Pinhole
+from ir50p_lab.vision.pinhole import as_pinhole
 
 _TRIED, _TRIED_CLOSER = 14, 24  # guesses measured; the closer look is only for pictures that show no ball so far
 
-LEAST_SCORE = 0.89  # more than a half: a false alarm is worse than a miss
-_SMALL, _LEAST_SMALL = 8.0, 0.977  # of so few pixels of radius a box can look like a ball: then it must be surer
+LEAST_SCORE = 0.79  # more than a half: a false alarm is worse than a miss
+_SMALL, _LEAST_SMALL = 8.0, 0.978  # of so few pixels of radius a box can look like a ball: then it must be surer
 # Whatever else speaks for it, a ball shows an edge on this much of the circle, this much of its disc has the colour,
 # and its outline leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and a part of a pixel.
 _LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.32, 0.40, (0.010, 0.45)
@@ -70,18 +71,20 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     Args:
         image: RGB, uint8, (height, width, 3).
         colour: Colour, or a patch (RGB picture of nothing but the ball) to learn it from.
-        camera: Pinhole, if known: then the projected centre is exact, and distortion is allowed for. Without it a
-            usual webcam is assumed, with its axis in the middle of the picture.
+        camera: Pinhole or Calibration, if known: then the projected centre is exact, and distortion is allowed for.
+            Without it a usual webcam is assumed, with its axis in the middle of the picture.
         least_radius: of the balls sought, pixels; smaller things are left out.
 
     Returns: Balls, a list of Ball with `.reason`.
-    Raises ImageError for a bad picture, InputError for a bad colour or radius.
+    Raises ImageError for a bad picture, InputError for a bad colour, camera or radius, CalibrationError for a picture
+    of another size than the camera's.
     """
     image = check_image(image)
     colour = _as_colour(colour)
     least_radius = _check_radius(least_radius)
-    if camera is not None and not isinstance(camera, Pinhole):
-        raise InputError(f"camera = {camera!r}: give a Pinhole, or None if the camera is not known")
+    if camera is not None:
+        camera = as_pinhole(camera)
+        check_picture_size(camera, image)
     view = view_of(image.shape, camera)
     measured, rejected, regions, tried = [], [], 0, 0
     for guess, most in ((guess_circles, _TRIED), (guess_closer, _TRIED_CLOSER)):

@@ -129,11 +129,16 @@ def _ranked(circles, image):
         rgb = image[np.clip(row, 0, image.shape[0] - 1), np.clip(col, 0, image.shape[1] - 1)]
         ring.append((rgb.astype(np.float32), within))
     step = (ring[0][0] + ring[1][0] - ring[2][0] - ring[3][0]) / 2
-    step[~(ring[1][1] & ring[2][1])] = 0
-    along = np.median(step, axis=1, keepdims=True)
+    seen = ring[1][1] & ring[2][1]
+    inside = seen.any(axis=1)
+    circles, step, seen, share = circles[inside], step[inside], seen[inside], share[inside, 0]
+    step[~seen] = np.nan
+    along = np.nanmedian(step, axis=1, keepdims=True)
     along /= np.linalg.norm(along, axis=2, keepdims=True) + 1e-6
-    height = np.sort((step * along).sum(axis=2), axis=1)[:, 12:]  # a third may be hidden
-    promise = height.mean(axis=1) / (height.std(axis=1) + 10) + share[:, 0]
+    height = -np.sort(-(step * along).sum(axis=2), axis=1)  # highest first, what lies outside the picture last
+    part = seen.mean(axis=1)
+    height[np.arange(len(angle)) >= 0.63 * len(angle) * part[:, None]] = np.nan  # a third may be hidden
+    promise = np.sqrt(part) * np.nanmean(height, axis=1) / (np.nanstd(height, axis=1) + 10) + share
     return circles[np.argsort(-promise, kind="stable")]
 
 
