@@ -223,8 +223,8 @@ def _best_circle(p, usable, step, least_radius, most_radius):
     far = np.hypot(p[:, 0] - x, p[:, 1] - y) - r
     used = np.abs(far) < max(1.5, 0.10 * r)
     points = p[(np.abs(far) < max(0.9, 0.06 * r)) & usable]
-    if len(points) >= 5:
-        x, y, r = _kasa(points)
+    if len(points) >= 5 and np.isfinite(circle := _kasa(points)).all():
+        x, y, r = circle
     return x, y, r, share, used
 
 
@@ -268,12 +268,24 @@ def _clockwise(p):
     return np.sum(p[:, 0] * np.roll(p[:, 1], -1) - p[:, 1] * np.roll(p[:, 0], -1)) < 0
 
 
+@jit()
 def _kasa(p):
-    """Algebraic circle through points (n, 2): least squares of x^2 + y^2 = a x + b y + c."""
-    mean = p.mean(axis=0)
-    d = p - mean
-    a, b, c = np.linalg.lstsq(np.column_stack([d, np.ones(len(d))]), (d * d).sum(axis=1), rcond=None)[0]
-    return mean[0] + a / 2, mean[1] + b / 2, float(np.sqrt(max(c + (a * a + b * b) / 4, 1e-9)))
+    """Algebraic circle through points (n, 2): least squares of x^2 + y^2 = a x + b y + c; r = inf on a line."""
+    mx, my = p[:, 0].mean(), p[:, 1].mean()
+    xx = xy = yy = xz = yz = z = 0.0
+    for x, y in p - np.array([mx, my]):
+        square = x * x + y * y
+        xx += x * x
+        xy += x * y
+        yy += y * y
+        xz += x * square
+        yz += y * square
+        z += square
+    det = xx * yy - xy * xy
+    if det <= 1e-12 * (xx + yy) ** 2:
+        return mx, my, np.inf
+    a, b = (yy * xz - xy * yz) / det, (xx * yz - xy * xz) / det
+    return mx + a / 2, my + b / 2, sqrt(z / len(p) + (a * a + b * b) / 4)
 
 
 def _different(circles):
