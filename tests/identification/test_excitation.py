@@ -143,7 +143,7 @@ def test_impossible_limits():
 @pytest.mark.parametrize(
     "arm, options, words",
     [
-        ("IR50P", {}, "arm is a str"),
+        ("IR50P", {}, "arm = .IR50P.: give an Arm"),
         (Arm(l=(1, 1, 1), m=(1, 1, 1), lc=(0, 0, 0)), {}, "has no joint limits"),
         (IR50P, {"period": 0}, "period = 0"),
         (IR50P, {"harmonics": 1}, "harmonics = 1"),
