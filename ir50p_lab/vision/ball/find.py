@@ -24,6 +24,7 @@ _SMALL, _LEAST_SMALL = 8.0, 0.978  # of so few pixels of radius a box can look l
 # and its outline leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and a part of a pixel.
 _LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.32, 0.40, (0.010, 0.45)
 _MOST_HUE = 0.9  # of the disc, distance from the colour's hue over its tolerance
+_COMPRESSED = 0.3  # overexposure from which on a hue is not to be trusted: tone curves bend before they clip
 _ENOUGH = 0.1  # of the disc that is not overexposed: less tells nothing of the hue
 
 
@@ -169,12 +170,12 @@ def blunt(found, least_radius):
 
 
 def _hue(disc):
-    """Distance from the colour's hue over its tolerance: of the disc, or its darker half, or where nothing is clipped.
+    """Distance from the colour's hue over its tolerance: of the disc, its darker half, or where it is not overexposed.
 
-    The least of the three: a thing in front has another hue, and a red that is clipped looks orange.
+    The least of the three: a thing in front has another hue, and an overexposed red looks orange.
     """
     brightness, hue, overexposure, within = np.moveaxis(disc[:, :, [1, 2, 4, 5]], 2, 0)
-    dark, clear = (brightness <= 0) & (within > 0), (overexposure < 1) & (within > 0)
+    dark, clear = (brightness <= 0) & (within > 0), (overexposure < _COMPRESSED) & (within > 0)
     hues = [median(hue)]
     if dark.any():
         hues.append(median(hue[dark]))
