@@ -45,6 +45,12 @@ def test_what_another_ball_covers_is_left_out():
     assert score([found], [[Ball(345.0, 215.0, 35.0, 0.9)]])[0] > max(score([found])[0], 0.98)
 
 
+@pytest.mark.parametrize("radius", [30, 48, 52])
+def test_guess_too_small_or_too_large(radius):
+    found = measured(add_ball(empty(grain=0.05), 700, (300, 200), 40), guess=(301, 199, radius))
+    assert np.hypot(found.outline.x - 300, found.outline.y - 200) < 0.3 and abs(found.outline.r - 40) < 0.5
+
+
 @pytest.mark.parametrize("paint", [(0.03, 0.12, 0.5), (0.05, 0.4, 0.08), (0.7, 0.45, 0.02)])
 def test_any_colour(paint):
     """The judge has seen red balls only: shape and shading count, not the hue."""

@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.vision.ball.edge import cast, contrast_axis, directions, find_edges
 from ir50p_lab.vision.ball.fit import Outline, fit_outline
-from ir50p_lab.vision.ball.look import RAYS, look
+from ir50p_lab.vision.ball.look import RAYS, look, median
 
 
 def _smooth(r):
@@ -71,9 +71,10 @@ def measure(image, guess, view, colour, camera=None):
         strong = edge.height > _EDGE
         if strong.sum() < 8:
             return "no edge around it"
-        fit = fit_outline(
-            x + edge.rho[strong] * unit[0][strong], y + edge.rho[strong] * unit[1][strong], view, (x, y, r)
-        )
+        edges = x + edge.rho[strong] * unit[0][strong], y + edge.rho[strong] * unit[1][strong]
+        fit = fit_outline(*edges, view, (x, y, r))
+        if fit is None:  # the guess may have been too large or too small for edges that agree well
+            fit = fit_outline(*edges, view, (x, y, float(median(edge.rho[strong]))))
         if fit is None:
             return "its edges lie on no circle"
         found = fit
