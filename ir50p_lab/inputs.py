@@ -90,9 +90,9 @@ def check_controller(controller):
         )
 
 
-def check_reference(reference):
-    """Raise InputError if it is no function."""
-    if not callable(reference):
+def check_reference(reference, *, sampled=False):
+    """Raise InputError if it is no function; sampled: what only has `sample(times)` is enough."""
+    if not (callable(reference) or (sampled and hasattr(reference, "sample"))):
         raise InputError(
             f"reference = {reference!r:.60}: give a function of time, target(t) -> (q, qd, qdd), such as hold([...])"
         )

@@ -167,8 +167,7 @@ class SimulatedBench(Bench):
         if self.realtime or not isinstance(controller, Controller):
             return super().follow(controller, reference, seconds, record=record, **header)
         check_controller(controller)
-        if not hasattr(reference, "sample"):
-            check_reference(reference)
+        check_reference(reference, sampled=True)
         controller.reset()
         cycles = self._number_of_cycles(seconds)
         self._end_run()  # of a loop that was left by break

@@ -4,7 +4,8 @@ Scenes 100 to 3199 of the kinds 'ball' and 'no_ball' (no evaluation uses these s
 the threshold by) are rendered, kept in the folder, and searched; what the search proposes in them and in changed copies
 trains a few small networks, which are written to ir50p_lab/vision/ball/judge.npz. NumPy only, single precision; the same
 seeds give the same weights on the same machine. Rendering and searching take some seconds a scene, training twenty
-minutes.
+minutes. The weights in the package are of an earlier state of the search (its order of guesses, and how near to clipping
+a hue counts): training anew gives others.
 """
 
 import argparse

@@ -137,3 +137,21 @@ def test_bad_arrays():
         rgb_to_hsv([1, 2])
     with pytest.raises(InputError, match="outside"):
         rgb_to_hsv([1, 2, 300])
+
+
+@pytest.mark.parametrize("radius", [0, -5, np.nan, np.inf, "a"])
+def test_radius_that_is_none(radius):
+    with pytest.raises(InputError, match="radius"):
+        learn_colour(picture(), (200, 200), radius=radius)
+
+
+@pytest.mark.parametrize("part", [0.9, 0.95])
+def test_a_click_near_the_rim(part):
+    """Half of what lies around such a click is the table: the colour learnt is the ball's all the same."""
+    light = np.empty((480, 640, 3))
+    light[:] = (0.42, 0.25, 0.13)
+    shown = photograph(add_ball(light, 700, (200, 200), 30))
+    for angle in np.arange(8) * np.pi / 4:
+        click = 200 + 30 * part * np.cos(angle), 200 + 30 * part * np.sin(angle)
+        mask = learn_colour(shown, click).mask(shown) > 0
+        assert mask[190:211, 190:211].mean() > 0.95 and mask.mean() < 0.02

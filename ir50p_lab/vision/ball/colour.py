@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ir50p_lab.errors import ImageError, InputError
+from ir50p_lab.inputs import number
 from ir50p_lab.vision.image import check_image
 
 HALF_CIRCLE = 90  # OpenCV's hue is degrees/2: 0..179
@@ -79,8 +80,8 @@ def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
     """Learn a Colour from a click: the pixels around it that are like it.
 
     A small disc around the pixel gives a first hue and saturation; then every pixel within `radius` counts whose hue
-    is near and which is hardly paler, so that shade and light of the same thing are in. If a third of
-    what lies around it has the hue but is paler (an orange ball on wood), the least saturation is half way between.
+    is near and which is hardly paler, so that shade and light of the same thing are in. If a third of what lies around
+    it has the hue but is paler (an orange ball on wood), the least saturation is half way between.
 
     Args: image: RGB uint8 (h, w, 3); xy: (x, y) pixel of the click; radius: of the neighbourhood, pixels, by default
         a twelfth of the picture's height; name: for messages.
@@ -95,7 +96,7 @@ def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
         raise InputError(f"xy = {xy!r}: give the pixel (x, y) of a click") from None
     if not (-0.5 <= x < width - 0.5 and -0.5 <= y < height - 0.5):
         raise InputError(f"({x:g}, {y:g}) lies outside the picture of {width}x{height} pixels")
-    radius = height / 12 if radius is None else float(radius)
+    radius = height / 12 if radius is None else number("radius", radius, "> 0", unit="px")
     rows, cols = np.mgrid[:height, :width]
     far = np.hypot(cols - x, rows - y)
     middle = image[far <= max(1.5, radius / 8)]

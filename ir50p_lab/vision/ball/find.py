@@ -161,7 +161,7 @@ def blunt(found, least_radius):
     if found.fill < _LEAST_FILL:
         return f"hollow, or another colour: {found.fill:.0%} of the disc have the colour"
     if (hue := _hue(found.samples[:, :6])) > _MOST_HUE:
-        return f"another colour: its hue is {hue:.1f} times as far off as the colour allows"
+        return f"another colour: its hue is off by {hue:.1f} of the colour's tolerance, a ball's by at most {_MOST_HUE}"
     part, pixels = _MOST_BUMPS
     rough = max(found.bumps, 0.6 * float(np.hypot(found.bumps, found.ragged)))  # noise alone makes edges scatter
     if rough * r > part * r + pixels:
