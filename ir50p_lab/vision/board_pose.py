@@ -49,10 +49,18 @@ def board_points(pattern=(9, 6), square=0.025, T_table_board=None):
     Args: pattern: corners along a row, and rows; square: m; T_table_board: (4, 4) where the board lies. Default: print
     upwards, its first corner at the origin, rows along x, further rows towards -y: diag(1, -1, -1, 1). The identity
     gives the corners in board coordinates, for `board_pose` of a board in the hand.
+    Raises InputError for a pattern or a square that no board has.
     """
-    columns, rows = pattern
-    if min(columns, rows) < 2 or not square > 0:
-        raise InputError(f"pattern = {pattern}, square = {square} m: at least 2 x 2 corners, square > 0")
+    try:
+        columns, rows = (int(n) for n in pattern)
+        possible = (columns, rows) == tuple(pattern) and min(columns, rows) >= 2 and 0 < square < np.inf
+    except (TypeError, ValueError):
+        possible = False
+    if not possible:
+        raise InputError(
+            f"pattern = {pattern!r}, square = {square!r} m: give (columns, rows) of inner corners, at least (2, 2), and "
+            "the side of a square, > 0"
+        )
     grid = np.zeros((rows * columns, 3))
     grid[:, :2] = square * np.mgrid[:columns, :rows].T.reshape(-1, 2)
     lies = np.diag([1.0, -1.0, -1.0, 1.0]) if T_table_board is None else T_table_board

@@ -126,6 +126,18 @@ def test_standard_errors_are_those_of_random_trials():
     assert np.allclose(sum(parts.values())[:, 0, 0], predicted[:, 0] ** 2)
 
 
+@pytest.mark.parametrize("pattern", [9, "9x6", (9.5, 6), (9, 1), (9, 6, 3), None])
+def test_a_pattern_no_board_has(pattern):
+    with pytest.raises(InputError, match="inner corners"):
+        board_points(pattern)
+
+
+@pytest.mark.parametrize("square", [0, -0.025, "25 mm", np.inf, np.nan, None])
+def test_a_square_no_board_has(square):
+    with pytest.raises(InputError, match="side of a square"):
+        board_points((9, 6), square)
+
+
 def test_variations_spread_as_the_covariance_says():
     points = board_points(T_table_board=LYING)
     corners = CAMERA.project(POSE, points) + np.random.default_rng(6).normal(0, 0.2, (54, 2))
