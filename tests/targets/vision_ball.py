@@ -11,35 +11,32 @@ import numpy as np
 
 from ir50p_lab.vision import find_balls, render_scene
 from ir50p_lab.vision.rendering import random_scene
+from tests.targets.in_parallel import mapped
 from tests.targets.rows import Row
 
 FIRST_SEED = 50_000
 THESIS = "(290, 181), r = 18 px, no error given"
 
 
-def measure(n, first=FIRST_SEED):
-    """Errors (n, 2) px of the centre, without and with the camera known, NaN for a miss; reports that are no ball."""
-    errors, wrong = np.full((n, 2), np.nan), 0
-    for k in range(n):
-        image, truth = render_scene(random_scene(first + k, "ball"), seed=first + k)
-        for way, camera in enumerate((None, truth.pinhole)):
-            found = find_balls(image, camera=camera)
-            for true in truth.red_balls:
-                near = [b for b in found if np.hypot(b.x - true.x, b.y - true.y) < true.radius / 3]
-                if near and true.visible >= 0.6:
-                    errors[k, way] = np.hypot(near[0].x - true.x, near[0].y - true.y)
-                found = [b for b in found if b not in near]
-            wrong += len(found) * (way == 0)
+def one_ball(seed):
+    """Errors (2,) px of the centre in a scene, without and with the camera known, NaN for a miss; other reports."""
+    image, truth = render_scene(random_scene(seed, "ball"), seed=seed)
+    errors, wrong = np.full(2, np.nan), 0
+    for way, camera in enumerate((None, truth.pinhole)):
+        found = find_balls(image, camera=camera)
+        for true in truth.red_balls:
+            near = [b for b in found if np.hypot(b.x - true.x, b.y - true.y) < true.radius / 3]
+            if near and true.visible >= 0.6:
+                errors[way] = np.hypot(near[0].x - true.x, near[0].y - true.y)
+            found = [b for b in found if b not in near]
+        wrong += len(found) * (way == 0)
     return errors, wrong
 
 
-def false_alarms(n, first=FIRST_SEED):
-    """How many of n scenes without a ball have one reported."""
-    count = 0
-    for seed in range(first, first + n):
-        image, _ = render_scene(random_scene(seed, "no_ball"), seed=seed)
-        count += bool(find_balls(image))
-    return count
+def false_alarm(seed):
+    """Whether a ball is reported in a scene without one."""
+    image, _ = render_scene(random_scene(seed, "no_ball"), seed=seed)
+    return bool(find_balls(image))
 
 
 def milliseconds(n=60):
@@ -64,9 +61,10 @@ def _percentiles(errors):
 def rows(quick=False):
     """The targets of the ball detector as Rows; quick: 20 and 20 scenes."""
     n, m = (20, 20) if quick else (1000, 2000)
-    errors, wrong = measure(n)
+    errors, wrong = zip(*mapped(one_ball, range(FIRST_SEED, FIRST_SEED + n), "scenes with a ball"), strict=True)
+    errors, wrong = np.array(errors), sum(wrong)
     found = np.isfinite(errors[:, 0])
-    alarms, ms = false_alarms(m), milliseconds()
+    alarms, ms = sum(mapped(false_alarm, range(FIRST_SEED, FIRST_SEED + m), "scenes without a ball")), milliseconds()
     median, p95 = _percentiles(errors[:, 0])
     known = "{:.2f} px, {:.2f} px".format(*_percentiles(errors[:, 1]))
     return [

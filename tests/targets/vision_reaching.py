@@ -10,6 +10,7 @@ from ir50p_lab.vision import RenderedBench, Sight, reach, reach_pose, work_area
 from ir50p_lab.vision.reaching.budget import error_budget
 from ir50p_lab.vision.reaching.plan import MARGIN
 from ir50p_lab.vision.reaching.reach import HEIGHT
+from tests.targets.in_parallel import mapped
 from tests.targets.rows import Row
 from tests.targets.vision_setup import calibrated, own_plane
 
@@ -35,8 +36,9 @@ def oracle_reaches(p, n=400):
     return best < 1e-3
 
 
-def one_reach(ball, seed):
-    """(true miss m, miss after one look m, parts) of a reach with rendered pictures, or why there was none."""
+def one_reach(task):
+    """(true miss m, miss after one look m, parts) of a reach to (ball, seed) with rendered pictures, or why not."""
+    ball, seed = task
     unit = UNITS[seed % len(UNITS)]
     bench = SimulatedBench(IR50P, seed=unit, q0=rest_pose(IR50P), record_to=False, calibration=calibrated(unit))
     world = RenderedBench(bench, ball, seed=seed)
@@ -54,7 +56,7 @@ def rows(*, quick=False):
     """The table of targets."""
     n = 10 if quick else 200
     balls = work_area(IR50P).draw(np.random.default_rng(11), n)
-    results = [one_reach(ball, k) for k, ball in enumerate(balls)]
+    results = mapped(one_reach, [(ball, seed) for seed, ball in enumerate(balls)], "balls reached for")
     possible = np.array([oracle_reaches(ball + OVER) for ball in balls])
     reached = np.array([isinstance(one, tuple) for one in results])
     refused = np.array([isinstance(one, UnreachableError) for one in results])
