@@ -58,8 +58,8 @@ def board_points(pattern=(9, 6), square=0.025, T_table_board=None):
         possible = False
     if not possible:
         raise InputError(
-            f"pattern = {pattern!r}, square = {square!r} m: give (columns, rows) of inner corners, at least (2, 2), and "
-            "the side of a square, > 0"
+            f"pattern = {pattern!r}, square = {square!r} m: give (columns, rows) of inner corners, at least (2, 2), "
+            "and the side of a square, > 0"
         )
     grid = np.zeros((rows * columns, 3))
     grid[:, :2] = square * np.mgrid[:columns, :rows].T.reshape(-1, 2)
