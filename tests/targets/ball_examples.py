@@ -18,7 +18,7 @@ from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
 from ir50p_lab.vision.rendering import random_scene
 
 LEAST_RADIUS = 6.0
-BALL, NOTHING, UNCLEAR = 1, 0, -1
+BALL, NEARLY, NOTHING, UNCLEAR = 1, 2, 0, -1  # NEARLY: of a ball, the outline a little off
 _COPIES = {"ball": 4, "no_ball": 3}  # of each scene, changed
 
 
@@ -43,7 +43,7 @@ def examples(seed, kind, *, folder=None):
     guesses = np.concatenate([guess(image, red, LEAST_RADIUS)[0][:18, :3] for guess in (guess_circles, guess_closer)])
     found = _look(image, guesses, balls, red)
     if kind == "no_ball":
-        found += painted(seed, 0, folder) + painted(seed, 1, folder)
+        found += painted(seed, 0, folder) + painted(seed, 1, folder) + behind(seed, folder)
     for _ in range(_COPIES[kind]):
         found += _look(*_changed(rng, image, guesses, balls), _another_red(rng))
     return found
@@ -67,9 +67,11 @@ def _look(image, guesses, balls, colour):
 
 def _label(o, balls):
     for x, y, r, visible in balls:
-        off = np.hypot(o.x - x, o.y - y)
-        if off < max(1.2, 0.10 * r) and abs(o.r - r) < max(1.0, 0.13 * r):
+        off, larger = np.hypot(o.x - x, o.y - y), abs(o.r - r)
+        if off < max(1.2, 0.10 * r) and larger < max(1.0, 0.13 * r):
             return BALL if visible >= 0.57 else UNCLEAR
+        if off < 0.6 + 0.25 * r and larger < 0.6 + 0.25 * r and visible >= 0.57:
+            return NEARLY
         if off < 0.34 * r and o.r > 0.5 * r:
             return UNCLEAR
     return NOTHING
@@ -258,6 +260,70 @@ def _painted(rng, image, count):
         _blend(image, mask, colour, other, rng)
         guesses += [(x, y, r * scale) for scale in ((1.0,) if what == "disc" else (0.97, 0.88))]
     return image, np.array(guesses).reshape(-1, 3), np.array(discs).reshape(-1, 4)
+
+
+def behind(seed, folder=None):
+    """Examples of balls and of rods with round ends, shaded alike, half behind something: a rod's sides are straight."""
+    rng = np.random.default_rng([seed, 79])
+    image, balls = scene(seed, "no_ball", folder)
+    image, _, balls = _resized(rng, image, np.empty((0, 3)), balls)
+    image = np.ascontiguousarray(image)
+    height, width = image.shape[:2]
+    guesses, shown, taken = [], [], []
+    for _ in range(8):
+        r = float(np.exp(rng.uniform(np.log(6.5), np.log(0.12 * min(height, width)))))
+        x, y = rng.uniform((r, r), (width - r, height - r))
+        if any(np.hypot(x - a, y - b) < 4 * (r + c) for a, b, c in taken):
+            continue
+        taken.append((x, y, r))
+        turn, left = rng.uniform(0, 2 * np.pi), rng.uniform(0.2, 1.1)  # of r, from the middle to what is in front
+        along = np.array([np.cos(turn), np.sin(turn)])
+        rod = left > 0.4 and rng.random() < 0.6  # a shorter stump of a rod cannot be told from a ball
+        _shaded(rng, image, (x, y), along * (rng.uniform(0.8, 5) * r if rod else 0), r, _paint(rng, red=True))
+        _in_front(rng, image, np.array([x, y]) + left * r * along, turn, r)
+        cut = min(left, 1.0)
+        share = 0.5 + (cut * np.sqrt(1 - cut**2) + np.arcsin(cut)) / np.pi
+        if not rod:
+            shown.append((x, y, r, share))
+        guesses += [(x, y, r * scale) for scale in (1.0, 0.9)] + [(*(np.array([x, y]) + 0.15 * r * along), r)]
+    shown = np.array(shown).reshape(-1, 4)
+    return _look(_seen(rng, image), np.array(guesses).reshape(-1, 3), shown, _another_red(rng))
+
+
+def _shaded(rng, image, end, axis, r, colour):
+    """A rod from `end` along `axis` (2,), of radius r, in place; a ball if the axis is 0: matt with a highlight."""
+    height, width = image.shape[:2]
+    rows, cols = np.mgrid[:height, :width].astype(np.float32)
+    dx, dy = cols - end[0], rows - end[1]
+    along = np.clip((dx * axis[0] + dy * axis[1]) / max(axis @ axis, 1e-9), 0, 1) if axis.any() else 0
+    dx, dy = (dx - along * axis[0]) / r, (dy - along * axis[1]) / r
+    square = dx**2 + dy**2
+    normal = np.stack([dx, dy, np.sqrt(np.maximum(1 - square, 0))], axis=-1)
+    light = np.array([*rng.uniform(-0.7, 0.7, 2), 1.0])
+    light /= np.linalg.norm(light)
+    matt = rng.uniform(0.2, 0.6)
+    bright = matt + (1 - matt) * np.maximum(normal @ light, 0)
+    half = light + np.array([0.0, 0.0, 1.0])  # Blinn: the highlight is where the surface faces half way to the light
+    half /= np.linalg.norm(half)
+    shine = rng.choice([0, 1]) * rng.uniform(40, 220) * np.maximum(normal @ half, 0) ** rng.uniform(15, 120)
+    paint = np.asarray(colour) * bright[..., None] + shine[..., None]
+    cover = np.clip((1 - np.sqrt(square)) * r + 0.5, 0, 1)[..., None]
+    image[:] = np.clip(image * (1 - cover) + paint * cover, 0, 255).astype(np.uint8)
+
+
+def _in_front(rng, image, at, turn, r):
+    """Something that ends at a point (2,), in place: a large ball, or a board with a straight edge."""
+    colour = _paint(rng, red=rng.random() < 0.1)
+    if rng.random() < 0.4:
+        large = r * rng.uniform(1.2, 4)
+        tilt = turn + rng.uniform(-0.3, 0.3)
+        _shaded(rng, image, at + large * np.array([np.cos(tilt), np.sin(tilt)]), np.zeros(2), large, colour)
+        return
+    tilt, wide = turn + rng.uniform(-0.6, 0.6), r * rng.uniform(1.0, 5)
+    along, across = np.array([np.cos(tilt), np.sin(tilt)]), np.array([-np.sin(tilt), np.cos(tilt)])
+    reach = r * rng.uniform(2.5, 8)
+    corners = [at + s * reach * across for s in (-1, 1)] + [at + wide * along + s * reach * across for s in (1, -1)]
+    _fill(image, corners, colour, colour * rng.uniform(0.6, 1.0), rng)
 
 
 def _cuboid(rng, image, middle, r, turn, colour):

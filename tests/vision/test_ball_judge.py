@@ -11,7 +11,7 @@ from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.judge import LAYERS, WEIGHTS, logit, score
 from ir50p_lab.vision.ball.look import RAYS, median
 from ir50p_lab.vision.ball.measure import measure
-from tests.targets.ball_examples import examples, painted
+from tests.targets.ball_examples import BALL, NEARLY, NOTHING, behind, examples, painted
 from tests.targets.train_ball_judge import gradient, start
 
 RNG = np.random.default_rng(3)
@@ -82,10 +82,12 @@ def test_looser_colour():
 def test_examples_tell_balls_from_the_rest():
     found = examples(101, "ball")
     labels = np.array([label for *_, label in found])
-    assert set(labels) == {0, 1}
+    assert {NOTHING, BALL} <= set(labels) <= {NOTHING, BALL, NEARLY}
     assert all(rays.shape[0] == RAYS and np.isfinite(rays).all() and np.isfinite(m).all() for rays, m, _ in found)
     shapes = [label for turn in range(3) for *_, label in painted(101, turn)]
     assert 0 < sum(shapes) < len(shapes)  # discs and others
+    halves = {label for seed in range(101, 104) for *_, label in behind(seed)}
+    assert {NOTHING, BALL} <= halves  # rods and balls
 
 
 @pytest.mark.parametrize("name", LAYERS)

@@ -18,8 +18,8 @@ from ir50p_lab.vision.pinhole import as_pinhole
 
 _TRIED, _TRIED_CLOSER = 14, 24  # guesses measured; the closer look is only for pictures that show no ball so far
 
-LEAST_SCORE = 0.79  # more than a half: a false alarm is worse than a miss
-_SMALL, _LEAST_SMALL = 8.0, 0.978  # of so few pixels of radius a box can look like a ball: then it must be surer
+LEAST_SCORE = 0.86  # more than a half: a false alarm is worse than a miss
+_SMALL, _LEAST_SMALL = 8.0, 0.94  # of so few pixels of radius a box can look like a ball: then it must be surer
 # Whatever else speaks for it, a ball shows an edge on this much of the circle, this much of its disc has the colour,
 # and its outline leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and a part of a pixel.
 _LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.32, 0.40, (0.010, 0.45)
