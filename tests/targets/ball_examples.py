@@ -67,10 +67,10 @@ def _look(image, guesses, balls, colour):
 
 def _label(o, balls):
     for x, y, r, visible in balls:
-        off, larger = np.hypot(o.x - x, o.y - y), abs(o.r - r)
-        if off < max(1.2, 0.10 * r) and larger < max(1.0, 0.13 * r):
+        off, misfit = np.hypot(o.x - x, o.y - y), abs(o.r - r)
+        if off < max(1.2, 0.10 * r) and misfit < max(1.0, 0.13 * r):
             return BALL if visible >= 0.57 else UNCLEAR
-        if off < 0.6 + 0.25 * r and larger < 0.6 + 0.25 * r and visible >= 0.57:
+        if off < 0.6 + 0.25 * r and misfit < 0.6 + 0.25 * r and visible >= 0.57:
             return NEARLY
         if off < 0.34 * r and o.r > 0.5 * r:
             return UNCLEAR
