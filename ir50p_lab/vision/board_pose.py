@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError, VisionError
-from ir50p_lab.inputs import first_not_finite, numbers
+from ir50p_lab.inputs import first_not_finite, number, numbers, whole
 from ir50p_lab.vision.pinhole import undistort_xy
 
 _WORST_RMS = 5.0  # px; a board of another size, or corners in another order, miss by far more
@@ -52,15 +52,12 @@ def board_points(pattern=(9, 6), square=0.025, T_table_board=None):
     Raises InputError for a pattern or a square that no board has.
     """
     try:
-        columns, rows = (int(n) for n in pattern)
-        possible = (columns, rows) == tuple(pattern) and min(columns, rows) >= 2 and 0 < square < np.inf
+        columns, rows = pattern
     except (TypeError, ValueError):
-        possible = False
-    if not possible:
-        raise InputError(
-            f"pattern = {pattern!r}, square = {square!r} m: give (columns, rows) of inner corners, at least (2, 2), "
-            "and the side of a square, > 0"
-        )
+        raise InputError(f"pattern = {pattern!r:.60}: give (columns, rows) of inner corners, such as (9, 6)") from None
+    columns = whole("pattern, columns of inner corners", columns, 2, 100)
+    rows = whole("pattern, rows of inner corners", rows, 2, 100)
+    square = number("square", square, "> 0", unit="m", hint="the side of a square, such as 0.025")
     grid = np.zeros((rows * columns, 3))
     grid[:, :2] = square * np.mgrid[:columns, :rows].T.reshape(-1, 2)
     lies = np.diag([1.0, -1.0, -1.0, 1.0]) if T_table_board is None else T_table_board

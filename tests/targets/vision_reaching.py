@@ -37,7 +37,10 @@ def oracle_reaches(p, n=400):
 
 
 def one_reach(task):
-    """(true miss m, miss after one look m, parts) of a reach to (ball, seed) with rendered pictures, or why not."""
+    """Reach for a rendered ball, task = (ball (3,) m, seed): distances in m, or the error that says why not.
+
+    True tip to true goal; of the ball, seen to true; of the tip, believed to true; believed tip to believed goal.
+    """
     ball, seed = task
     unit = UNITS[seed % len(UNITS)]
     bench = SimulatedBench(IR50P, seed=unit, q0=rest_pose(IR50P), record_to=False, calibration=calibrated(unit))
@@ -49,7 +52,7 @@ def one_reach(task):
             return error
     goal = world.balls_true[0] + OVER
     seen = np.linalg.norm(done.ball - world.balls_true[0])
-    return np.linalg.norm(done.tip_true - goal), done, seen, np.linalg.norm(done.tip - done.tip_true), done.miss
+    return np.linalg.norm(done.tip_true - goal), seen, np.linalg.norm(done.tip - done.tip_true), done.miss
 
 
 def rows(*, quick=False):
@@ -61,7 +64,7 @@ def rows(*, quick=False):
     reached = np.array([isinstance(one, tuple) for one in results])
     refused = np.array([isinstance(one, UnreachableError) for one in results])
     agree = int((refused == ~possible).sum())
-    miss, _, seen, hand, stand = zip(*[one for one in results if isinstance(one, tuple)], strict=True)
+    miss, seen, hand, stand = zip(*[one for one in results if isinstance(one, tuple)], strict=True)
     median, p95, rms = np.median(miss), np.percentile(miss, 95), np.sqrt(np.mean(np.square(miss)))
     wanted = 150 * n / 200
     sight = Sight(None, own_plane())
