@@ -199,7 +199,7 @@ def refuse_soft(grey, grid):
 
 def _piece_together(grey, small, factor, pattern):
     """The grid from a part that was found and grown, if it becomes the whole board; else NotUsable says why not."""
-    grid = _part(small)
+    grid = part_of_a_checkerboard(small)
     if grid is None:
         raise NotUsable(Reason.NO_BOARD, "nothing like a checkerboard: more light, less glare, the whole board in view")
     grid = refine(grey, enlarged(grid, factor))
@@ -218,7 +218,7 @@ def _piece_together(grey, small, factor, pattern):
     )
 
 
-def _part(grey):
+def part_of_a_checkerboard(grey):
     """A grid found anywhere in a picture, at its size or reduced, by its saddles or by SB; or None."""
     import cv2
 
