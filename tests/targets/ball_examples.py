@@ -4,18 +4,22 @@ The copies differ in size, light, sharpness, noise, compression, in what hides a
 into some shapes are painted: the judge is to know a ball, not the renderer.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
 import numpy as np
 
+from ir50p_lab.errors import InputError
 from ir50p_lab.vision import Colour, render_scene
 from ir50p_lab.vision.ball.find import blunt
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.judge import measures, rays_of
 from ir50p_lab.vision.ball.measure import measure
 from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
-from ir50p_lab.vision.rendering import random_scene
+from ir50p_lab.vision.rendering import Ball, random_scene
+from ir50p_lab.vision.rendering.random_things import distractor, hider, random_red
+from ir50p_lab.vision.rendering.scene import Stick
 
 LEAST_RADIUS = 6.0
 BALL, NEARLY, NOTHING, UNCLEAR = 1, 2, 0, -1  # NEARLY: of a ball, the outline a little off
@@ -24,10 +28,14 @@ _COPIES = {"ball": 4, "no_ball": 3}  # of each scene, changed
 
 def scene(seed, kind, folder=None):
     """Picture of a scene, and its red balls (n, 4): x, y, radius, visible share; kept in `folder` if there is one."""
-    stem = Path(folder or ".") / f"{kind}_{seed}"
+    return _kept(f"{kind}_{seed}", lambda: random_scene(seed, kind), seed, folder)
+
+
+def _kept(name, draw, seed, folder):
+    stem = Path(folder or ".") / name
     if folder and stem.with_suffix(".npy").exists():
         return np.ascontiguousarray(cv2.imread(f"{stem}.png")[..., ::-1]), np.load(stem.with_suffix(".npy"))
-    image, truth = render_scene(random_scene(seed, kind), seed=seed)
+    image, truth = render_scene(draw(), seed=seed)
     balls = np.array([(b.x, b.y, b.radius, b.visible) for b in truth.red_balls]).reshape(-1, 4)
     if folder:
         cv2.imwrite(f"{stem}.png", image[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 1])
@@ -43,10 +51,99 @@ def examples(seed, kind, *, folder=None):
     guesses = np.concatenate([guess(image, red, LEAST_RADIUS)[0][:18, :3] for guess in (guess_circles, guess_closer)])
     found = _look(image, guesses, balls, red)
     if kind == "no_ball":
-        found += painted(seed, 0, folder) + painted(seed, 1, folder) + behind(seed, folder)
+        found += painted(seed, 0, folder) + painted(seed, 1, folder) + behind(seed, 0, folder) + behind(seed, 1, folder)
     for _ in range(_COPIES[kind]):
         found += _look(*_changed(rng, image, guesses, balls), _another_red(rng))
     return found
+
+
+def crowded_examples(seed, kind, *, copies=2, folder=None):
+    """As `examples`, of a `crowded` scene: small pictures that show much of what is easily taken for a ball."""
+    rng = np.random.default_rng([seed, kind == "ball", 80])
+    image, balls = _kept(f"crowded_{kind}_{seed}", lambda: crowded(seed, kind), seed, folder)
+    red = Colour(hue=355.0, tolerance=20.0)
+    guesses = np.concatenate([guess(image, red, LEAST_RADIUS)[0][:30, :3] for guess in (guess_circles, guess_closer)])
+    found = _look(image, guesses, balls, red)
+    for _ in range(copies):
+        found += _look(*_changed(rng, image, guesses, balls, most=20), _another_red(rng))
+    return found
+
+
+def crowded(seed, kind):
+    """A Scene of kind 'ball' or 'no_ball' with many more things in it, red sticks and half-hidden ones most of all."""
+    rng = np.random.default_rng([seed, kind == "ball", 81])
+    scene = _smaller(random_scene(seed, kind))
+    camera = -scene.T_cam_world[:3, :3].T @ scene.T_cam_world[:3, 3]
+    objects, patches = list(scene.objects), list(scene.patches)
+    for _ in range(rng.integers(5, 13)):
+        place = _place_in_view(rng, scene, camera)
+        if place is None:
+            continue
+        if kind == "ball" and rng.random() < 0.4:
+            objects.append(replace(place, colour=random_red(rng), gloss=rng.uniform(0, 0.7)))
+            if rng.random() < 0.5:
+                objects += hider(rng, camera, place)
+            continue
+        what = str(rng.choice(["red stick", "red box", "red cable", "ball", "skin", "tape", "red blob"], p=_CROWD))
+        things, flat = distractor(rng, camera, place, near=rng.random() < 0.5, what=what)
+        if what == "red stick":
+            things = _thicker(rng, things[0], camera)
+        objects += things
+        patches += flat
+    return replace(scene, objects=tuple(objects), patches=tuple(patches))
+
+
+_CROWD = (0.35, 0.15, 0.08, 0.18, 0.12, 0.06, 0.06)
+_WIDEST = 640  # pixels, of crowded pictures: small ones are drawn quickly
+
+
+def _smaller(scene):
+    width, height = scene.pinhole.size
+    if width <= _WIDEST:
+        return scene
+    scale = _WIDEST / width
+    lens = replace(scene.lens, defocus=scale * scene.lens.defocus, motion=tuple(scale * x for x in scene.lens.motion))
+    return replace(scene, pinhole=scene.pinhole.scaled((_WIDEST, round(scale * height))), lens=lens)
+
+
+def _place_in_view(rng, scene, camera):
+    """A Ball on the table somewhere in the picture, as large as those that are sought; None where no table is near."""
+    width, height = scene.pinhole.size
+    try:
+        ray = scene.T_cam_world[:3, :3].T @ scene.pinhole.rays(rng.uniform((0, 0), (width, height)))
+    except InputError:
+        return None
+    if ray[2] > -0.15:
+        return None
+    distance = camera[2] / -ray[2]
+    r = np.exp(rng.uniform(np.log(7), np.log(0.15 * height))) * distance / scene.pinhole.fx
+    x, y = camera[:2] + distance * ray[:2]
+    return Ball(position=(x, y, r), radius=float(r))
+
+
+def _thicker(rng, stick, camera):
+    """A stick as thick or up to three times thicker, with something in front of it near an end, half of the time."""
+    r = stick.radius * rng.uniform(1, 3)
+    start, end = (np.array((*p[:2], r)) for p in (stick.start, stick.end))
+    things = [replace(stick, start=tuple(start), end=tuple(end), radius=r)]
+    if rng.random() < 0.6:
+        along = (end - start) / np.linalg.norm(end - start)
+        at = end - along * r * rng.uniform(0.5, 2.5)
+        things.append(_across(rng, at, along, r, camera))
+    return things
+
+
+def _across(rng, at, along, r, camera):
+    """A ball or a finger between the camera and a point (3,) of a stick: it hides what is further along it."""
+    towards = (camera - at) / np.linalg.norm(camera - at)
+    size = r * rng.uniform(0.8, 4)
+    middle = at + towards * (r + size) - along * size
+    colour = tuple(_paint(rng, red=False))
+    if rng.random() < 0.5:
+        return Ball(position=tuple(middle), radius=size, colour=colour, gloss=rng.uniform(0, 0.7))
+    turned = np.cross(along, towards) + rng.normal(0, 0.3, 3)
+    half = turned / np.linalg.norm(turned) * size * rng.uniform(2, 8)
+    return Stick(start=tuple(middle - half), end=tuple(middle + half), radius=size, colour=colour)
 
 
 def _look(image, guesses, balls, colour):
@@ -85,7 +182,7 @@ def _another_red(rng):
     return Colour(hue=rng.uniform(351, 358), tolerance=rng.uniform(15, 22), saturation=rng.uniform(0.18, 0.4))
 
 
-def _changed(rng, image, guesses, balls):
+def _changed(rng, image, guesses, balls, most=10):
     """A copy of the picture as another camera, light or desk would show it; with its guesses and balls."""
     guesses, balls = guesses.copy(), balls.copy()
     keep = rng.permutation(len(guesses))
@@ -93,7 +190,7 @@ def _changed(rng, image, guesses, balls):
         x, y, r = balls[0, :3]
         near = np.hypot(guesses[keep, 0] - x, guesses[keep, 1] - y) + np.abs(guesses[keep, 2] - r) < 0.6 * r + 1
         keep = np.concatenate([keep[near][:3], keep[~near]])
-    guesses = guesses[keep[:10]]
+    guesses = guesses[keep[:most]]
     image, guesses, balls = _resized(rng, image, guesses, balls)
     if rng.random() < 0.5:
         image = image[:, ::-1]
@@ -262,9 +359,9 @@ def _painted(rng, image, count):
     return image, np.array(guesses).reshape(-1, 3), np.array(discs).reshape(-1, 4)
 
 
-def behind(seed, folder=None):
+def behind(seed, turn=0, folder=None):
     """Examples of balls and of rods with round ends, shaded alike, half behind something: a rod's sides are straight."""
-    rng = np.random.default_rng([seed, 79])
+    rng = np.random.default_rng([seed, turn, 79])
     image, balls = scene(seed, "no_ball", folder)
     image, _, balls = _resized(rng, image, np.empty((0, 3)), balls)
     image = np.ascontiguousarray(image)
@@ -313,12 +410,13 @@ def _shaded(rng, image, end, axis, r, colour):
 
 def _in_front(rng, image, at, turn, r):
     """Something that ends at a point (2,), in place: a large ball, or a board with a straight edge."""
-    colour = _paint(rng, red=rng.random() < 0.1)
     if rng.random() < 0.4:
+        colour = _paint(rng, red=False)
         large = r * rng.uniform(1.2, 4)
         tilt = turn + rng.uniform(-0.3, 0.3)
         _shaded(rng, image, at + large * np.array([np.cos(tilt), np.sin(tilt)]), np.zeros(2), large, colour)
         return
+    colour = _paint(rng, red=rng.random() < 0.25)
     tilt, wide = turn + rng.uniform(-0.6, 0.6), r * rng.uniform(1.0, 5)
     along, across = np.array([np.cos(tilt), np.sin(tilt)]), np.array([-np.sin(tilt), np.cos(tilt)])
     reach = r * rng.uniform(2.5, 8)

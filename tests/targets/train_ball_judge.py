@@ -17,14 +17,17 @@ import numpy as np
 
 from ir50p_lab.vision.ball.judge import FAR, LAYERS, NEAR, WEIGHTS, around, logit
 from ir50p_lab.vision.ball.look import RAYS
-from tests.targets.ball_examples import NEARLY, examples
+from tests.targets.ball_examples import NEARLY, crowded_examples, examples
 
 FIRST = 100
-WIDTHS = (40, 40, 32)  # of the layers
+CROWDED = 110_000  # first seed of crowded scenes
+WIDTHS = (56, 56, 40)  # of the layers
 NETWORKS = 4
-EPOCHS, BATCH, RATE, DECAY = 22, 96, 2.5e-3, 0.2
+EPOCHS, BATCH, RATE, DECAY = 24, 96, 2.5e-3, 0.2
+EASY, SPARED = 5.0, 4  # log odds beyond which the judge before is right for sure; of these an epoch sees one in SPARED
 NOISE, DROP = 0.25, 0.3  # added to the scaled inputs; share of the pooled features left out, in training
 FALSE_COSTS = 2.0  # a false alarm is worse than a miss
+OF_CROWDED = 2.5  # scenes is what a crowded one counts for
 
 
 def start(rng, channels, numbers):
@@ -61,15 +64,22 @@ def gradient(rays, numbers, labels, weights, net, keep=1.0):
     return grad, loss
 
 
-def train(rays, numbers, labels, weights, rng, report=print):
-    """One network, by Adam with a rate that falls to nothing; examples are turned and mirrored as they come."""
+def train(rays, numbers, labels, weights, easy, rng, report=print):
+    """One network, by Adam with a rate that falls to nothing; examples are mirrored as they come.
+
+    easy (n,): examples of which each epoch draws one in SPARED, with as much more weight.
+    """
+    hard, rest = np.flatnonzero(~easy), np.flatnonzero(easy)
+    weights = np.where(easy, SPARED, 1).astype(np.float32) * weights
     net = start(rng, rays.shape[2], numbers.shape[1])
     first = {name: np.zeros_like(value) for name, value in net.items()}
     second = {name: np.zeros_like(value) for name, value in net.items()}
-    steps, step = EPOCHS * (len(labels) // BATCH), 0
+    batches = (len(hard) + len(rest) // SPARED) // BATCH
+    steps, step = EPOCHS * batches, 0
     for epoch in range(EPOCHS):
-        order, losses = rng.permutation(len(labels)), []
-        for k in range(len(labels) // BATCH):
+        drawn, losses = rng.choice(rest, len(rest) // SPARED, replace=False), []
+        order = rng.permutation(np.concatenate([hard, drawn]))
+        for k in range(batches):
             chosen = order[k * BATCH : (k + 1) * BATCH]
             turn = np.arange(RAYS)[:: rng.choice([-1, 1])]
             x = rays[chosen][:, turn] + NOISE * rng.standard_normal((BATCH, *rays.shape[1:]), np.float32)
@@ -88,9 +98,10 @@ def train(rays, numbers, labels, weights, rng, report=print):
     return net
 
 
-def fit(rays, numbers, labels, seeds, kinds, report=print):
-    """The weights of the judge from examples (n, ...)."""
+def fit(rays, numbers, labels, scenes, crowded, report=print):
+    """The weights of the judge from examples (n, ...); scenes (n,): number of the scene; crowded (n,): of such a one."""
     rays = rays.astype(np.float32)
+    before = odds(rays, numbers) if WEIGHTS.exists() else np.zeros(len(labels))
     flat = rays.reshape(-1, rays.shape[2])
     scale = {
         "ray_mean": flat.mean(axis=0),
@@ -102,40 +113,52 @@ def fit(rays, numbers, labels, seeds, kinds, report=print):
     numbers = ((numbers - scale["number_mean"]) / scale["number_std"]).astype(np.float32)
     nearly = labels == NEARLY
     labels = (labels > 0).astype(np.float32)
+    easy = np.where(labels == 1, before, -before) > EASY
     # a scene counts once, however much was proposed in it
-    count = np.array(
-        [
-            np.count_nonzero(seeds[kinds] == s) + 1j * np.count_nonzero(seeds[~kinds] == s)
-            for s in range(seeds.max() + 1)
-        ]
-    )
-    count = np.where(kinds, count.real[seeds], count.imag[seeds])
-    weights = np.where(labels == 1, 1.0, FALSE_COSTS * 5 / (count + 5)).astype(np.float32)
+    count = np.bincount(scenes)[scenes]
+    share = np.minimum(np.where(crowded, OF_CROWDED, 1) * 5 / (count + 5), 1)
+    weights = np.where(labels == 1, 1.0, FALSE_COSTS * share).astype(np.float32)
     weights[nearly] = 0.5
-    nets = [train(rays, numbers, labels, weights, np.random.default_rng([6, k]), report) for k in range(NETWORKS)]
+    nets = [train(rays, numbers, labels, weights, easy, np.random.default_rng([7, k]), report) for k in range(NETWORKS)]
     return scale | {name: np.stack([net[name] for net in nets]) for name in LAYERS}
+
+
+def odds(rays, numbers):
+    """Log odds (n,) of examples by the judge in the package: the mean of its networks."""
+    with np.load(WEIGHTS) as file:
+        net = {name: file[name].astype(np.float32) for name in file.files}
+    x = (rays - net["ray_mean"]) / net["ray_std"]
+    y = (numbers - net["number_mean"]) / net["number_std"]
+    each = [{name: net[name][k] for name in LAYERS} for k in range(len(net["w1"]))]
+    parts = [slice(k, k + 1000) for k in range(0, len(x), 1000)]
+    return np.concatenate([np.mean([logit(x[p], y[p], one)[0] for one in each], axis=0) for p in parts])
+
+
+def collect(scenes, crowded, folder, report=print):
+    """Examples of that many scenes of each kind: rays, numbers, labels, number of the scene, whether it is crowded."""
+    ways = [(examples, FIRST, scenes), (crowded_examples, CROWDED, crowded)]
+    found, scene, begun = [], 0, time.monotonic()
+    for make, first, many in ways:
+        for seed in range(first, first + many):
+            if make is examples and seed % 5 == 0:
+                continue  # held out
+            for kind in ("ball", "no_ball"):
+                scene += 1
+                found += [(*one, scene, make is crowded_examples) for one in make(seed, kind, folder=folder)]
+            if seed % 50 == 49:
+                report(f"{make.__name__} {seed}: {len(found)} examples, {time.monotonic() - begun:.0f} s", flush=True)
+    return [np.array(part) for part in zip(*found, strict=True)]
 
 
 def main(arguments):
     """Collect, train, write."""
     parser = argparse.ArgumentParser(prog="python -m tests.targets.train_ball_judge", description=__doc__)
     parser.add_argument("--scenes", type=int, default=6050, help="of each kind")
+    parser.add_argument("--crowded", type=int, default=800, help="of each kind")
     parser.add_argument("--folder", help="where rendered scenes are kept")
     options = parser.parse_args(arguments)
-    found, seeds, kinds = [], [], []
-    begun = time.monotonic()
-    for seed in range(FIRST, FIRST + options.scenes):
-        if seed % 5 == 0:
-            continue  # held out
-        for kind in ("ball", "no_ball"):
-            new = examples(seed, kind, folder=options.folder)
-            found += new
-            seeds += [seed] * len(new)
-            kinds += [kind == "ball"] * len(new)
-        if seed % 50 == 49:
-            print(f"scene {seed}: {len(found)} examples, {time.monotonic() - begun:.0f} s", flush=True)
-    rays, numbers, labels = (np.array(part) for part in zip(*found, strict=True))
-    parts = fit(rays, numbers, labels, np.array(seeds), np.array(kinds))
+    rays, numbers, labels, scenes, crowded = collect(options.scenes, options.crowded, options.folder)
+    parts = fit(rays, numbers, labels, scenes, crowded)
     np.savez_compressed(WEIGHTS, **{name: value.astype(np.float16) for name, value in parts.items()})
     print(f"{WEIGHTS}: {WEIGHTS.stat().st_size / 1000:.0f} kB from {len(labels)} examples")
     return 0

@@ -68,6 +68,16 @@ def test_overexposed():
     assert find_balls(picture) == [] and "another colour" in find_balls(picture).reason
 
 
+@pytest.mark.parametrize("blue,light", [(0.07, 12), (0.10, 6), (0.10, 9)])
+def test_overexposed_in_bluish_light(blue, light):
+    """A red ball turns pink, beyond the hues of red; a thing that is pink in good light is none."""
+    pink = (0.55, 0.03, 0.20)
+    picture = photograph(light * add_ball(empty(grain=0.05), 700, (300, 200), 40, colour=(0.55, 0.02, blue)))
+    assert picture[200, 300, 0] == 255 and picture[200, 300, 2] > picture[200, 300, 1] + 20
+    assert np.hypot(find_balls(picture)[0].x - 300, find_balls(picture)[0].y - 200) < 0.5
+    assert find_balls(photograph(add_ball(empty(grain=0.05), 700, (300, 200), 40, colour=pink))) == []
+
+
 def test_dark_and_noisy():
     light = 0.06 * add_ball(empty(), 700, (300, 200), 24)
     balls = find_balls(photograph(light, noise=6))

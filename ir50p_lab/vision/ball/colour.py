@@ -9,6 +9,7 @@ from ir50p_lab.inputs import number
 from ir50p_lab.vision.image import check_image
 
 HALF_CIRCLE = 90  # OpenCV's hue is degrees/2: 0..179
+_PINK, _CLIPPED = 24, 245  # degrees beyond the range of a red that is overexposed; value from which on it is
 _PALE = 0.7  # of the saturation where the click was: what has less is something else of the same hue
 _LEAST_SATURATION, _MOST_SATURATION = 0.18, 0.55  # that a colour learnt asks for: parts of a ball are paler
 
@@ -54,6 +55,15 @@ class Colour:
         s = max(self.saturation, saturation or 0.0)
         low = (max(0, round((hue - self.tolerance) / 2)), round(255 * s), round(255 * self.value))
         return low, (min(179, round((hue + self.tolerance) / 2)), 255, 255)
+
+    @property
+    def overexposed_bounds(self):
+        """As `bounds`, of the pink that too much light makes of a red: red is clipped, blue is not. None for others."""
+        if not self.swaps:
+            return None
+        hue = (240.0 - self.hue) % 360.0
+        low, high = (hue + self.tolerance) / 2, (hue + self.tolerance + _PINK) / 2
+        return (round(low), round(255 * 0.7 * self.saturation), _CLIPPED), (min(179, round(high)), 255, 255)
 
     @property
     def looser(self):

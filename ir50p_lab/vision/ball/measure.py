@@ -205,6 +205,8 @@ def _colours(image, outline, colour, unit):
     alike = (cv2.inRange(hsv, *colour.bounds()) > 0) & rays.within
     bright = (hsv[:, :12, 2] > 200) & (hsv[:, :12, 1] < 255 * colour.saturation)
     inside = (cv2.inRange(hsv[:, :12], *colour.looser.bounds()) > 0) & rays.within[:, :12]  # it may lie in the shade
+    if pink := colour.overexposed_bounds:
+        inside = inside | (cv2.inRange(hsv[:, :12], *pink) > 0) & rays.within[:, :12]
     if (bright @ inner).mean() < 0.35 * inner.sum():  # a highlight is a part of the disc
         inside = inside | bright
     return inside, alike[:, 12:], rays.rgb

@@ -41,6 +41,8 @@ def guess_closer(image, colour, least_radius):
         small = cv2.GaussianBlur(_smaller(image, scale), (0, 0), sigma)
         hsv = loose.hsv_of(small)
         plain = [_closed(cv2.inRange(hsv, *loose.bounds(s))) for s in STRICTNESS[:2]]
+        if pink := colour.overexposed_bounds:
+            plain.append(_closed(cv2.bitwise_or(cv2.inRange(hsv, *pink), plain[0])))
         circles, count = _circles_of([*plain, *split(hsv, loose)], least_radius / scale)
         regions = max(regions, count)
         found.append(_unscaled(circles, image, small))
