@@ -1,12 +1,14 @@
 """Train the judge of the ball detector: `python -m tests.targets.train_ball_judge [--scenes N] [--folder DIR]`.
 
 Scenes 100 to 6149 of the kinds 'ball' and 'no_ball' (no evaluation uses these seeds; every fifth is held out to choose
-the threshold by) are rendered, kept in the folder, and searched; what the search proposes in them and in changed copies
-trains a few small networks, which are written to ir50p_lab/vision/ball/judge.npz. NumPy only, single precision; the same
-seeds give the same weights on the same machine. Rendering and searching take two seconds a scene, training ten minutes a
-network and 6 GB. The weights in the package come from examples collected in several steps (scenes 1200 to 3199 by an
-earlier order of guesses and without those that are NEARLY a ball; `behind` for 3200 and above, and for two of the four
-networks only): training anew gives others.
+the threshold by) and crowded ones from 110000 on are rendered, kept in the folder, and searched; what the search
+proposes in them and in changed copies trains a few small networks, which are written to
+ir50p_lab/vision/ball/judge.npz. NumPy only, single precision; the same seeds give the same weights on the same machine.
+Rendering and searching take two seconds a scene, training ten minutes a network and 6 GB.
+
+The weights in the package come from examples collected in several steps: scenes 1200 to 3199 by an earlier order of
+guesses, rods `behind` things in two thirds of the scenes, 800 and 400 crowded scenes without and with balls, and 800 and
+200 further plain ones from 130000 on. Training anew gives others.
 """
 
 import argparse

@@ -7,6 +7,7 @@ import pytest
 from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 
 from ir50p_lab.vision import RED, Ball, Colour, find_balls
+from ir50p_lab.vision.ball.find import least_score
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.judge import LAYERS, WEIGHTS, logit, score
 from ir50p_lab.vision.ball.look import RAYS, median
@@ -31,6 +32,11 @@ def test_ball_and_octagon():
 
 def test_weights_are_small():
     assert WEIGHTS.stat().st_size < 300_000
+
+
+def test_small_and_half_hidden_must_be_surer():
+    assert 0.8 < least_score(30, 1.0) < least_score(7, 1.0) < 0.97
+    assert least_score(30, 0.9) < least_score(30, 0.7) < least_score(30, 0.4) < least_score(7, 0.4) < 0.999
 
 
 def test_turned_and_alone_or_among_others():

@@ -18,8 +18,9 @@ from ir50p_lab.vision.pinhole import as_pinhole
 
 _TRIED, _TRIED_CLOSER = 14, 24  # guesses measured; the closer look is only for pictures that show no ball so far
 
-LEAST_SCORE = 0.86  # more than a half: a false alarm is worse than a miss
-_SMALL, _LEAST_SMALL = 8.0, 0.94  # of so few pixels of radius a box can look like a ball: then it must be surer
+_LEAST_ODDS = 1.8  # log odds that a ball needs: well above 0, as a false alarm is worse than a miss
+_SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more
+_CLEAR, _MORE_HIDDEN = 0.75, 5.0  # share of the outline below which the end of a rod can, and what each share costs
 # Whatever else speaks for it, a ball shows an edge on this much of the circle, this much of its disc has the colour,
 # and its outline leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and a part of a pixel.
 _LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.32, 0.40, (0.010, 0.45)
@@ -132,7 +133,7 @@ def _judge(measured):
             found, o = measured[k], measured[k].outline
             if any(np.hypot(o.x - b.x, o.y - b.y) < 0.8 * max(o.r, b.radius) for b in balls):
                 continue  # the same ball, or a part of it
-            if scores[k] >= (LEAST_SCORE if o.r > _SMALL else _LEAST_SMALL):
+            if scores[k] >= least_score(o.r, found.support):
                 balls.append(Ball(*found.centre, o.r, float(scores[k]), found.support))
             else:
                 objections.append((_place(found), objection(found, _but(balls, found))))
@@ -140,6 +141,12 @@ def _judge(measured):
             break
         scores = score(measured, [_but(balls, m) for m in measured])
     return balls, objections
+
+
+def least_score(radius, support):
+    """Score that a ball of this radius (pixels) needs if it shows an edge on this share of its outline."""
+    odds = _LEAST_ODDS + _MORE_SMALL * (radius <= _SMALL) + _MORE_HIDDEN * max(_CLEAR - support, 0)
+    return 1 / (1 + np.exp(-odds))
 
 
 def _but(balls, found):
