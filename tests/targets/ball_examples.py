@@ -4,22 +4,19 @@ The copies differ in size, light, sharpness, noise, compression, in what hides a
 into some shapes are painted: the judge is to know a ball, not the renderer.
 """
 
-from dataclasses import replace
 from pathlib import Path
 
 import cv2
 import numpy as np
 
-from ir50p_lab.errors import InputError
 from ir50p_lab.vision import Colour, render_scene
 from ir50p_lab.vision.ball.find import blunt
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.judge import measures, rays_of
 from ir50p_lab.vision.ball.measure import measure
 from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
-from ir50p_lab.vision.rendering import Ball, random_scene
-from ir50p_lab.vision.rendering.random_things import distractor, hider, random_red
-from ir50p_lab.vision.rendering.scene import Stick
+from ir50p_lab.vision.rendering import random_scene
+from tests.targets.crowded_scene import crowded_scene
 
 LEAST_RADIUS = 6.0
 BALL, NEARLY, NOTHING, UNCLEAR = 1, 2, 0, -1  # NEARLY: of a ball, the outline a little off
@@ -58,92 +55,15 @@ def examples(seed, kind, *, folder=None):
 
 
 def crowded_examples(seed, kind, *, copies=2, folder=None):
-    """As `examples`, of a `crowded` scene: small pictures that show much of what is easily taken for a ball."""
+    """As `examples`, of a crowded scene: small pictures that show much of what is easily taken for a ball."""
     rng = np.random.default_rng([seed, kind == "ball", 80])
-    image, balls = _kept(f"crowded_{kind}_{seed}", lambda: crowded(seed, kind), seed, folder)
+    image, balls = _kept(f"crowded_{kind}_{seed}", lambda: crowded_scene(seed, kind), seed, folder)
     red = Colour(hue=355.0, tolerance=20.0)
     guesses = np.concatenate([guess(image, red, LEAST_RADIUS)[0][:30, :3] for guess in (guess_circles, guess_closer)])
     found = _look(image, guesses, balls, red)
     for _ in range(copies):
         found += _look(*_changed(rng, image, guesses, balls, most=20), _another_red(rng))
     return found
-
-
-def crowded(seed, kind):
-    """A Scene of kind 'ball' or 'no_ball' with many more things in it, red sticks and half-hidden ones most of all."""
-    rng = np.random.default_rng([seed, kind == "ball", 81])
-    scene = _smaller(random_scene(seed, kind))
-    camera = -scene.T_cam_world[:3, :3].T @ scene.T_cam_world[:3, 3]
-    objects, patches = list(scene.objects), list(scene.patches)
-    for _ in range(rng.integers(5, 13)):
-        place = _place_in_view(rng, scene, camera)
-        if place is None:
-            continue
-        if kind == "ball" and rng.random() < 0.4:
-            objects.append(replace(place, colour=random_red(rng), gloss=rng.uniform(0, 0.7)))
-            if rng.random() < 0.5:
-                objects += hider(rng, camera, place)
-            continue
-        what = str(rng.choice(["red stick", "red box", "red cable", "ball", "skin", "tape", "red blob"], p=_CROWD))
-        things, flat = distractor(rng, camera, place, near=rng.random() < 0.5, what=what)
-        if what == "red stick":
-            things = _thicker(rng, things[0], camera)
-        objects += things
-        patches += flat
-    return replace(scene, objects=tuple(objects), patches=tuple(patches))
-
-
-_CROWD = (0.35, 0.15, 0.08, 0.18, 0.12, 0.06, 0.06)
-_WIDEST = 640  # pixels, of crowded pictures: small ones are drawn quickly
-
-
-def _smaller(scene):
-    width, height = scene.pinhole.size
-    if width <= _WIDEST:
-        return scene
-    scale = _WIDEST / width
-    lens = replace(scene.lens, defocus=scale * scene.lens.defocus, motion=tuple(scale * x for x in scene.lens.motion))
-    return replace(scene, pinhole=scene.pinhole.scaled((_WIDEST, round(scale * height))), lens=lens)
-
-
-def _place_in_view(rng, scene, camera):
-    """A Ball on the table somewhere in the picture, as large as those that are sought; None where no table is near."""
-    width, height = scene.pinhole.size
-    try:
-        ray = scene.T_cam_world[:3, :3].T @ scene.pinhole.rays(rng.uniform((0, 0), (width, height)))
-    except InputError:
-        return None
-    if ray[2] > -0.15:
-        return None
-    distance = camera[2] / -ray[2]
-    r = np.exp(rng.uniform(np.log(7), np.log(0.15 * height))) * distance / scene.pinhole.fx
-    x, y = camera[:2] + distance * ray[:2]
-    return Ball(position=(x, y, r), radius=float(r))
-
-
-def _thicker(rng, stick, camera):
-    """A stick as thick or up to three times thicker, with something in front of it near an end, half of the time."""
-    r = stick.radius * rng.uniform(1, 3)
-    start, end = (np.array((*p[:2], r)) for p in (stick.start, stick.end))
-    things = [replace(stick, start=tuple(start), end=tuple(end), radius=r)]
-    if rng.random() < 0.6:
-        along = (end - start) / np.linalg.norm(end - start)
-        at = end - along * r * rng.uniform(0.5, 2.5)
-        things.append(_across(rng, at, along, r, camera))
-    return things
-
-
-def _across(rng, at, along, r, camera):
-    """A ball or a finger between the camera and a point (3,) of a stick: it hides what is further along it."""
-    towards = (camera - at) / np.linalg.norm(camera - at)
-    size = r * rng.uniform(0.8, 4)
-    middle = at + towards * (r + size) - along * size
-    colour = tuple(_paint(rng, red=False))
-    if rng.random() < 0.5:
-        return Ball(position=tuple(middle), radius=size, colour=colour, gloss=rng.uniform(0, 0.7))
-    turned = np.cross(along, towards) + rng.normal(0, 0.3, 3)
-    half = turned / np.linalg.norm(turned) * size * rng.uniform(2, 8)
-    return Stick(start=tuple(middle - half), end=tuple(middle + half), radius=size, colour=colour)
 
 
 def _look(image, guesses, balls, colour):

@@ -12,7 +12,9 @@ from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.judge import LAYERS, WEIGHTS, logit, score
 from ir50p_lab.vision.ball.look import RAYS, median
 from ir50p_lab.vision.ball.measure import measure
-from tests.targets.ball_examples import BALL, NEARLY, NOTHING, behind, examples, painted
+from ir50p_lab.vision.rendering.render import scene_truth
+from tests.targets.ball_examples import BALL, NEARLY, NOTHING, behind, crowded_examples, examples, painted
+from tests.targets.crowded_scene import crowded_scene
 from tests.targets.train_ball_judge import gradient, start
 
 RNG = np.random.default_rng(3)
@@ -84,6 +86,14 @@ def test_overexposed_in_bluish_light(blue, light):
     assert find_balls(photograph(add_ball(empty(grain=0.05), 700, (300, 200), 40, colour=pink))) == []
 
 
+@pytest.mark.parametrize("hue,pink", [(345, True), (355, True), (5, False), (12, False), (120, False)])
+def test_which_colours_turn_pink(hue, pink):
+    bounds = Colour(hue=hue).overexposed_bounds
+    assert (bounds is not None) == pink
+    if pink:  # it goes on where the colour's own range ends
+        assert bounds[0][0] == Colour(hue=hue).bounds()[1][0] and bounds[0][0] < bounds[1][0] and bounds[0][2] > 240
+
+
 def test_dark_and_noisy():
     light = 0.06 * add_ball(empty(), 700, (300, 200), 24)
     balls = find_balls(photograph(light, noise=6))
@@ -104,6 +114,17 @@ def test_examples_tell_balls_from_the_rest():
     assert {NOTHING, BALL} <= set(shapes)  # discs and others
     halves = {label for seed in range(101, 104) for *_, label in behind(seed)}
     assert {NOTHING, BALL} <= halves  # rods and balls
+
+
+@pytest.mark.parametrize("kind", ["ball", "no_ball"])
+def test_crowded_scenes(kind):
+    """Many things; red balls only where the kind says so."""
+    scenes = [crowded_scene(seed, kind) for seed in range(110_000, 110_004)]
+    assert all(scene.pinhole.size[0] <= 640 and len(scene.objects) + len(scene.patches) >= 5 for scene in scenes)
+    balls = [b for scene in scenes for b in scene_truth(scene).balls if b.is_red and b.visible > 0.6]
+    assert len(balls) > 4 if kind == "ball" else not balls
+    labels = {label for *_, label in crowded_examples(110_003, kind, copies=1)}
+    assert NOTHING in labels and (BALL in labels) == (kind == "ball")
 
 
 @pytest.mark.parametrize("name", LAYERS)

@@ -58,8 +58,11 @@ class Colour:
 
     @property
     def overexposed_bounds(self):
-        """As `bounds`, of the pink that too much light makes of a red: red is clipped, blue is not. None for others."""
-        if not self.swaps:
+        """As `bounds`, of the pink that too much light makes of a red: red is clipped, blue is not. None for others.
+
+        A red with more green than blue (hue above 0) turns orange and yellow: that is left to what is not overexposed.
+        """
+        if not self.swaps or self.hue < 180:
             return None
         hue = (240.0 - self.hue) % 360.0
         low, high = (hue + self.tolerance) / 2, (hue + self.tolerance + _PINK) / 2
