@@ -21,6 +21,7 @@ _TRIED, _TRIED_CLOSER = 14, 24  # guesses measured; the closer look is only for 
 _LEAST_ODDS = 1.8  # log odds that a ball needs: well above 0, as a false alarm is worse than a miss
 _SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more
 _CLEAR, _MORE_HIDDEN = 0.75, 5.0  # share of the outline below which the end of a rod can, and what each share costs
+_SURE, _BY_SUPPORT = 0.9975, 5.0  # score beyond which only the edge tells outlines apart; what a share of it counts
 # Whatever else speaks for it, a ball shows an edge on this much of the circle, this much of its disc has the colour,
 # and its outline leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and a part of a pixel.
 _LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.32, 0.40, (0.010, 0.45)
@@ -129,18 +130,32 @@ def _judge(measured):
     scores = score(measured)
     for _ in range(2):
         balls, objections = [], []
-        for k in np.argsort(-scores, kind="stable"):
-            found, o = measured[k], measured[k].outline
-            if any(np.hypot(o.x - b.x, o.y - b.y) < 0.8 * max(o.r, b.radius) for b in balls):
-                continue  # the same ball, or a part of it
-            if scores[k] >= least_score(o.r, found.support):
-                balls.append(Ball(*found.centre, o.r, float(scores[k]), found.support))
+        for k in np.argsort(-_trust(scores, measured), kind="stable"):
+            found, radius = measured[k], measured[k].outline.r
+            if _part_of(balls, found):
+                continue
+            if scores[k] >= least_score(radius, found.support):
+                balls.append(Ball(*found.centre, radius, float(scores[k]), found.support))
             else:
-                objections.append((_place(found), objection(found, _but(balls, found))))
+                objections.append((scores[k], found))
         if not balls or not objections:
             break
         scores = score(measured, [_but(balls, m) for m in measured])
-    return balls, objections
+    balls.sort(key=lambda ball: -ball.score)
+    objections = sorted((pair for pair in objections if not _part_of(balls, pair[1])), key=lambda pair: -pair[0])
+    return balls, [(_place(found), objection(found, _but(balls, found))) for _, found in objections]
+
+
+def _part_of(balls, found):
+    """Whether a Measured is one of these balls again, or a part of it."""
+    o = found.outline
+    return any(np.hypot(o.x - b.x, o.y - b.y) < 0.8 * max(o.r, b.radius) for b in balls)
+
+
+def _trust(scores, measured):
+    """How far each outline is to be trusted: of several sure ones around a ball the one with most edge is nearest."""
+    surest = np.minimum(scores, _SURE)
+    return np.log(surest / (1 - surest)) + _BY_SUPPORT * np.array([found.support for found in measured])
 
 
 def least_score(radius, support):
