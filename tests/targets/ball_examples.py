@@ -9,7 +9,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from ir50p_lab.vision import Colour, render_scene
+from ir50p_lab.vision import RED, Colour, render_scene
 from ir50p_lab.vision.ball.find import blunt
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.judge import measures, rays_of
@@ -44,9 +44,8 @@ def examples(seed, kind, *, folder=None):
     """Rays (n, 32, channels), measures (n, m) and labels (n,) of one scene and of changed copies of it."""
     rng = np.random.default_rng([seed, kind == "ball", 77])
     image, balls = scene(seed, kind, folder)
-    red = Colour(hue=355.0, tolerance=20.0)
-    guesses = np.concatenate([guess(image, red, LEAST_RADIUS)[0][:18, :3] for guess in (guess_circles, guess_closer)])
-    found = _look(image, guesses, balls, red)
+    guesses = _guesses(image, most=18)
+    found = _look(image, guesses, balls, RED)
     if kind == "no_ball":
         found += painted(seed, 0, folder) + painted(seed, 1, folder) + behind(seed, 0, folder) + behind(seed, 1, folder)
     for _ in range(_COPIES[kind]):
@@ -58,12 +57,15 @@ def crowded_examples(seed, kind, *, copies=2, folder=None):
     """As `examples`, of a crowded scene: small pictures that show much of what is easily taken for a ball."""
     rng = np.random.default_rng([seed, kind == "ball", 80])
     image, balls = _kept(f"crowded_{kind}_{seed}", lambda: crowded_scene(seed, kind), seed, folder)
-    red = Colour(hue=355.0, tolerance=20.0)
-    guesses = np.concatenate([guess(image, red, LEAST_RADIUS)[0][:30, :3] for guess in (guess_circles, guess_closer)])
-    found = _look(image, guesses, balls, red)
+    guesses = _guesses(image, most=30)
+    found = _look(image, guesses, balls, RED)
     for _ in range(copies):
         found += _look(*_changed(rng, image, guesses, balls, most=20), _another_red(rng))
     return found
+
+
+def _guesses(image, most):
+    return np.concatenate([guess(image, RED, LEAST_RADIUS)[0][:most, :3] for guess in (guess_circles, guess_closer)])
 
 
 def _look(image, guesses, balls, colour):
@@ -97,7 +99,7 @@ def _label(o, balls):
 def _another_red(rng):
     """As RED, or as a click or a patch would have learnt it."""
     if rng.random() < 0.4:
-        return Colour(hue=355.0, tolerance=20.0)
+        return RED
     # not so wide that an orange ball is one of this colour
     return Colour(hue=rng.uniform(351, 358), tolerance=rng.uniform(15, 22), saturation=rng.uniform(0.18, 0.4))
 

@@ -64,7 +64,7 @@ def _place_in_view(rng, scene, camera):
 
 
 def _thicker(rng, stick, camera):
-    """A stick as thick or up to three times thicker, with something in front of it near an end, half of the time."""
+    """A stick as thick or up to three times thicker, often with something in front of it near an end."""
     r = stick.radius * rng.uniform(1, 3)
     start, end = (np.array((*p[:2], r)) for p in (stick.start, stick.end))
     things = [replace(stick, start=tuple(start), end=tuple(end), radius=r)]

@@ -7,8 +7,9 @@ ir50p_lab/vision/ball/judge.npz. NumPy only, single precision; the same seeds gi
 Rendering and searching take two seconds a scene, training ten minutes a network and 6 GB.
 
 The weights in the package come from examples collected in several steps: scenes 1200 to 3199 by an earlier order of
-guesses, rods `behind` things in two thirds of the scenes, 800 and 400 crowded scenes without and with balls, and 800 and
-200 further plain ones from 130000 on. Training anew gives others.
+guesses, rods `behind` things in two thirds of the scenes (in half of these what is in front may be a red ball), crowded
+scenes (800 without and 400 with balls) with paler things in front, and 800 and 200 further plain ones from 130000 on.
+One of the four networks saw them for 24 epochs only. Training anew gives others.
 """
 
 import argparse
@@ -25,11 +26,11 @@ FIRST = 100
 CROWDED = 110_000  # first seed of crowded scenes
 WIDTHS = (56, 56, 40)  # of the layers
 NETWORKS = 4
-EPOCHS, BATCH, RATE, DECAY = 24, 96, 2.5e-3, 0.2
+EPOCHS, BATCH, RATE, DECAY = 40, 96, 2.5e-3, 0.2
 EASY, SPARED = 5.0, 4  # log odds beyond which the judge before is right for sure; of these an epoch sees one in SPARED
 NOISE, DROP = 0.25, 0.3  # added to the scaled inputs; share of the pooled features left out, in training
 FALSE_COSTS = 2.0  # a false alarm is worse than a miss
-OF_CROWDED = 2.5  # scenes is what a crowded one counts for
+OF_CROWDED = 2.5  # what a crowded scene counts for
 
 
 def start(rng, channels, numbers):

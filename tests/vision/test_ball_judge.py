@@ -7,7 +7,7 @@ import pytest
 from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 
 from ir50p_lab.vision import RED, Ball, Colour, find_balls
-from ir50p_lab.vision.ball.find import least_score
+from ir50p_lab.vision.ball.find import decide, least_score
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.judge import LAYERS, WEIGHTS, logit, score
 from ir50p_lab.vision.ball.look import RAYS, median
@@ -39,6 +39,18 @@ def test_weights_are_small():
 def test_small_and_half_hidden_must_be_surer():
     assert 0.8 < least_score(30, 1.0) < least_score(7, 1.0) < 0.97
     assert least_score(30, 0.9) < least_score(30, 0.7) < least_score(30, 0.4) < least_score(7, 0.4) < 0.999
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_of_two_sure_outlines_the_one_with_most_edge(order):
+    """And no part of a ball is among what is rejected."""
+    ball = measured(add_ball(empty(grain=0.05), 700, (300, 200), 40))
+    assert score([ball])[0] > 0.9975
+    less = dataclasses.replace(ball, support=0.8 * ball.support, centre=(0.0, 0.0))
+    octagon = measured(add_polygon(empty(grain=0.05), circle_corners((300, 200), 40, 8)))
+    (found,), rejected = decide([ball, less, octagon][::order])
+    assert (found.x, found.y) == ball.centre and found.support == ball.support and not rejected
+    assert decide([octagon])[0] == [] and len(decide([octagon])[1]) == 1
 
 
 def test_turned_and_alone_or_among_others():

@@ -66,7 +66,7 @@ class Colour:
             return None
         hue = (240.0 - self.hue) % 360.0
         low, high = (hue + self.tolerance) / 2, (hue + self.tolerance + _PINK) / 2
-        return (round(low), round(255 * 0.7 * self.saturation), _CLIPPED), (min(179, round(high)), 255, 255)
+        return (round(low), round(255 * self.looser.saturation), _CLIPPED), (min(179, round(high)), 255, 255)
 
     @property
     def looser(self):

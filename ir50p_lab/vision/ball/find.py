@@ -20,8 +20,11 @@ _TRIED, _TRIED_CLOSER = 14, 24  # guesses measured; the closer look is only for 
 
 _LEAST_ODDS = 1.8  # log odds that a ball needs: well above 0, as a false alarm is worse than a miss
 _SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more
-_CLEAR, _MORE_HIDDEN = 0.75, 5.0  # share of the outline below which the end of a rod can, and what each share costs
-_SURE, _BY_SUPPORT = 0.9975, 5.0  # score beyond which only the edge tells outlines apart; what a share of it counts
+_CLEAR, _MORE_HIDDEN = (
+    0.75,
+    5.0,
+)  # share of the outline below which the end of a rod can, and what is missing costs, times its share
+_SURE, _BY_SUPPORT = 0.9975, 5.0  # score beyond which only the edge tells outlines apart; what its share counts
 # Whatever else speaks for it, a ball shows an edge on this much of the circle, this much of its disc has the colour,
 # and its outline leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and a part of a pixel.
 _LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.32, 0.40, (0.010, 0.45)
@@ -68,7 +71,8 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
 
     Regions of the colour give arcs of circles; around each the edge is measured along rays to sub-pixel, and an
     outline is fitted that is an ellipse, as perspective wants it. What has hardly an edge, is hollow or angular
-    is no ball; of the rest a judge decides, trained on rendered scenes, that looks at disc and surroundings. If nothing
+    is no ball; of the rest a judge decides, trained on rendered scenes, that looks at disc and surroundings; of what is
+    small or half hidden it must be surer. If nothing
     is found, a closer look follows at several scales, for balls in the dark or in glare; it takes many times as long.
 
     Args:
@@ -95,7 +99,7 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         regions, tried = regions + count, tried + len(guesses)
         for place in guesses[:most, :3]:
             _measure(image, place, view, colour, camera, least_radius, measured, rejected)
-        balls, objections = _judge(measured)
+        balls, objections = decide(measured)
         if balls:
             break
     if not regions:
@@ -123,7 +127,7 @@ def _measure(image, place, view, colour, camera, least_radius, measured, rejecte
         measured.append(found)
 
 
-def _judge(measured):
+def decide(measured):
     """Balls best first, and what was rejected as ((x, y, r), why), best first; balls that touch excuse each other."""
     if not measured:
         return [], []
