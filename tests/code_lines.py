@@ -1,0 +1,80 @@
+"""Code lines of the package beside the budget of each folder: ``python tests/code_lines.py``.
+
+A code line has code on it: blank lines, comments and docstrings do not count. JavaScript counts, bundles (``static/``)
+do not.
+"""
+
+import ast
+import io
+import re
+import tokenize
+from pathlib import Path
+
+PACKAGE = Path(__file__).parents[1] / "ir50p_lab"
+BUDGETS = {
+    "modelling": 1200,
+    "signals": 700,
+    "controllers": 750,
+    "simulation": 620,
+    "bench": 2200,
+    "identification": 2200,
+    "vision": 4300,
+    "course": 4900,
+    "launcher": 500,
+    "grading": 500,
+    "publishing": 300,
+    "root": 120,
+}
+_NO_CODE = {
+    tokenize.COMMENT,
+    tokenize.NL,
+    tokenize.NEWLINE,
+    tokenize.INDENT,
+    tokenize.DEDENT,
+    tokenize.ENCODING,
+    tokenize.ENDMARKER,
+}
+
+
+def python_lines(source):
+    """Count the lines of a Python source that hold code."""
+    code = set()
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type not in _NO_CODE:
+            code |= set(range(token.start[0], token.end[0] + 1))
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+            code -= set(range(node.lineno, node.end_lineno + 1))  # docstrings
+    return len(code)
+
+
+def javascript_lines(source):
+    """Count the lines of a JavaScript source that hold code; a comment beside code is code."""
+    source = re.sub(r"^\s*/\*.*?\*/", "", source, flags=re.MULTILINE | re.DOTALL)
+    return sum(1 for line in source.splitlines() if line.strip() and not line.strip().startswith("//"))
+
+
+def folder_lines(package=PACKAGE):
+    """{folder: code lines}; files beside the folders are `root`."""
+    found = dict.fromkeys(BUDGETS, 0)
+    for path in sorted(package.rglob("*")):
+        parts = path.relative_to(package).parts
+        count = {".py": python_lines, ".js": javascript_lines}.get(path.suffix)
+        if count and "static" not in parts:
+            folder = parts[0] if len(parts) > 1 else "root"
+            found[folder] = found.get(folder, 0) + count(path.read_text("utf-8"))
+    return found
+
+
+def main():
+    """Print the table."""
+    found = folder_lines()
+    print(f"{'folder':<16}{'lines':>7}{'budget':>8}{'over':>7}")
+    for folder, lines in found.items():
+        budget = BUDGETS.get(folder, 0)  # a new folder needs a budget first
+        print(f"{folder:<16}{lines:>7}{budget:>8}{max(lines - budget, 0) or '':>7}")
+    print(f"{'all':<16}{sum(found.values()):>7}{sum(BUDGETS.values()):>8}")
+
+
+if __name__ == "__main__":
+    main()
