@@ -72,7 +72,7 @@ class SimulatedBench(Bench):
 
     Args:
         arm: Arm with actuators; default `load_arm()`. unit: table of what is not ideal; seed: which copy of it, and
-        the noise. q0: (3,) rad, where the arm stands when first opened (default zero).
+        the noise, counted from IR50P_UNIT (IR50P_SEED: other noise). q0: (3,) rad, where the arm stands when first opened (default zero).
         realtime: pace the cycles by the clock, for demonstrations. period: s, whole milliseconds.
         calibration: default the nominal one, from which the unit differs a little, as a real one does.
         record_to: folder for recordings, or False for none on disk.
@@ -99,7 +99,8 @@ class SimulatedBench(Bench):
     ):
         arm = load_arm() if arm is None else check_arm(arm)
         self.plant = SimulatedArm(arm, unit, seed, q0=q0)
-        name = name or f"simulated {arm.name}, unit {seed}"
+        noise = "" if self.plant.noise_seed is None else f", noise {self.plant.noise_seed}"
+        name = name or f"simulated {arm.name}, unit {self.plant.seed}{noise}"
         super().__init__(arm, calibration or self.plant.nominal, period=period, record_to=record_to, name=name)
         self._steps = round(self.period / STEP)
         if abs(self._steps * STEP - self.period) > 1e-9:
@@ -155,7 +156,8 @@ class SimulatedBench(Bench):
         self.plant.advance(np.zeros(JOINTS), _SINK)
 
     def _header(self):
-        return {"seed": str(self.plant.seed), "delay_periods": str(len(self._queue))}
+        noise = {} if self.plant.noise_seed is None else {"noise_seed": str(self.plant.noise_seed)}
+        return {"seed": str(self.plant.seed), **noise, "delay_periods": str(len(self._queue))}
 
     # ---- and what only a simulation can
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.rest import rest_pose
-from ir50p_lab.bench.unit import UNIT
+from ir50p_lab.bench.unit import UNIT, chosen_copy
 from ir50p_lab.errors import ArmError, InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.jit import jit
@@ -81,10 +81,12 @@ class SimulatedArm:
     limits and a table under the tip; the links, and the potentiometers on them, follow within the play of the gear.
 
     Args:
-        arm: Arm with actuators. unit: Unit; its copy number `seed` is drawn. seed: of the unit and of the noise.
+        arm: Arm with actuators. unit: Unit; its copy number `seed` is drawn. seed: of the unit and of the noise,
+        counted from IR50P_UNIT (`chosen_copy`).
         q0: (3,) rad, where it stands; default the zero pose, or the rest pose where zero is not possible.
 
-    Attributes: arm; unit: the drawn Unit; nominal: Calibration a maker would state (the unit differs from it).
+    Attributes: arm; unit: the drawn Unit; seed: its number; noise_seed: None, or what IR50P_SEED says; nominal:
+    Calibration a maker would state (the unit differs from it).
     `q_true`, `qd_true`, `tip_true` are for tests and for plots that say 'truth of the simulation'.
     Raises: ArmError if the arm has no actuators, InputError if q0 is not possible.
     """
@@ -97,7 +99,8 @@ class SimulatedArm:
                 f"{arm.name} has no actuators, so nobody knows what a PWM count does to it: add [actuators] to its "
                 "file, or Actuators.from_joint_data(...) to the Arm"
             )
-        self.arm, self.unit, self.seed = arm, unit.drawn(seed), seed
+        self.seed, self.noise_seed = chosen_copy(seed)
+        self.arm, self.unit = arm, unit.drawn(self.seed)
         self.nominal = nominal_calibration(arm)
         plant = make_plant(arm, unit="PWM", stops=True, table=self.unit.table)
         self._theta, self._numbers = plant.theta, plant.numbers
@@ -107,7 +110,8 @@ class SimulatedArm:
         self._coasting = self._numbers.copy()  # bridges open: no current, so no back-EMF brakes
         self._coasting[FV : FV + 3] = np.array(arm.friction.fv) / arm.actuators.gain
         self._w = self._unit_numbers()
-        self._rng = np.random.default_rng([int(seed), 1])
+        noise = [self.seed, 1] if self.noise_seed is None else [self.seed, 1, self.noise_seed]
+        self._rng = np.random.default_rng(noise)
         self._noise, self._used = np.empty((0, 3)), 0
         self._x, self._joint, self._late = np.zeros(6), np.zeros(3), 0.0
         self.place(self._start() if q0 is None else q0)

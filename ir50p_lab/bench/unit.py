@@ -1,5 +1,6 @@
 """What is not ideal about an arm on the bench: one table, each number with its reason. Nothing here was measured."""
 
+import os
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -86,3 +87,20 @@ class Unit:
 
 
 UNIT = Unit()
+
+
+def chosen_copy(seed):
+    """What the environment makes of copy `seed`: the number of the copy, and a seed of its noise or None.
+
+    IR50P_UNIT (whole, default 0) is the copy that `seed=0` means, the others are counted from it: a course that
+    compares two copies compares two neighbours. IR50P_SEED (whole; unset: none) gives the same copy other noise.
+    Raises InputError if one of them is no whole number from 0.
+    """
+    return int(seed) + (_whole("IR50P_UNIT") or 0), _whole("IR50P_SEED")
+
+
+def _whole(variable):
+    text = os.environ.get(variable, "").strip()
+    if text and not text.isdecimal():
+        raise InputError(f"{variable} = {text!r}: give a whole number from 0, or leave it unset")
+    return int(text) if text else None

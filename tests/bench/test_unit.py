@@ -5,8 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ir50p_lab.bench import UNIT, Unit
+from ir50p_lab.bench import UNIT, SimulatedArm, SimulatedBench, Unit
 from ir50p_lab.errors import InputError
+from ir50p_lab.modelling import IR50P
 
 DRAWN = ("motor_gain", "friction", "pot_slope", "pot_shift", "pot_bow")
 
@@ -58,3 +59,34 @@ def test_half_the_spread_is_half_the_difference():
 def test_impossible_values_are_refused_by_name(field, value):
     with pytest.raises(InputError, match=field):
         Unit(**{field: value})
+
+
+def test_the_environment_chooses_the_copy(monkeypatch):
+    """IR50P_UNIT moves every copy of a course on, IR50P_SEED gives the same copies other noise."""
+    plain = [SimulatedArm(IR50P, seed=seed) for seed in (0, 2, 3)]
+    monkeypatch.setenv("IR50P_UNIT", "2")
+    moved = [SimulatedArm(IR50P, seed=seed) for seed in (0, 1)]
+    monkeypatch.setenv("IR50P_SEED", "5")
+    other = SimulatedArm(IR50P)
+    assert plain[0].unit != moved[0].unit == plain[1].unit == other.unit and moved[1].unit == plain[2].unit
+    pictures = [[tuple(one.counts()) for _ in range(50)] for one in (plain[1], moved[0], other)]
+    assert pictures[0] == pictures[1] != pictures[2]
+
+
+def test_the_bench_says_which_copy_it_is(monkeypatch):
+    monkeypatch.setenv("IR50P_UNIT", "2")
+    assert SimulatedBench(IR50P, seed=1, record_to=False).name == "simulated IR50P, unit 3"
+    monkeypatch.setenv("IR50P_SEED", "5")
+    with SimulatedBench(IR50P, record_to=False) as bench:
+        for _ in bench.run(0.1):
+            pass
+    assert bench.name == "simulated IR50P, unit 2, noise 5"
+    assert (bench.recording.header["seed"], bench.recording.header["noise_seed"]) == ("2", "5")
+
+
+@pytest.mark.parametrize("variable", ["IR50P_UNIT", "IR50P_SEED"])
+def test_what_is_no_number_of_a_copy_is_refused(variable, monkeypatch):
+    for text in ("-1", "1.5", "first"):
+        monkeypatch.setenv(variable, text)
+        with pytest.raises(InputError, match=variable):
+            SimulatedArm(IR50P)

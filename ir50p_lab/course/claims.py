@@ -1,0 +1,58 @@
+"""What a notebook claims, as a sentence that runs: printed with value and limit, or raised with the same words."""
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+
+_VARIABLE = "IR50P_CLAIMS"
+
+
+class ClaimError(AssertionError):
+    """A claim of the text that does not hold for these numbers; the message is the sentence, its value and limit."""
+
+
+def claim(text, value, *, below=None, above=None, near=None, within=None):
+    """Print what is claimed, its value and its limit; raise the same sentence where it does not hold.
+
+        claim("the shoulder sinks", fell, above=0.1)
+        claim("P leaves g/Kp", error, near=predicted, within=1e-6)
+
+    Args: text: the claim, said so that a student understands it. value: a number or an array, of which every element
+    has to keep the limits. below, above: value < below, value > above. near, within: |value - near| < within. Limits
+    are numbers, or arrays that fit the value.
+
+    Where the environment variable IR50P_CLAIMS names a file, a line of JSON is added to it: the text, and how far
+    each element of the value is from its limits. tests/notebooks/margins.py reads that over many units and seeds.
+    Raises: ClaimError (an AssertionError); a value that is not finite fails too. InputError without a limit.
+    """
+    if (near is None) != (within is None) or (below is None and above is None and near is None):
+        raise InputError(f"claim {text!r} needs a limit: below=, above=, or near= and within=")
+    value = np.asarray(value, dtype=float)
+    said, room = [], []
+    for word, limit in (("below", below), ("above", above)):
+        if limit is not None:
+            said.append(f"{word} {_words(limit)}")
+            room.append(limit - value if word == "below" else value - limit)
+    if near is not None:
+        said.append(f"within {_words(within)} of {_words(near)}")
+        room += [near + within - value, value - (near - within)]
+    room = np.stack(np.broadcast_arrays(*room))
+    sentence = f"{text}: {_words(value)} ({' and '.join(said)})"
+    _log(text, room)
+    if not (room > 0).all():  # nan is no room either
+        raise ClaimError(f"does not hold: {sentence}")
+    print(f"✓ {sentence}")
+
+
+def _words(number):
+    return np.array2string(np.asarray(number, dtype=float), formatter={"float": lambda x: f"{x:.4g}"}, separator=", ")
+
+
+def _log(text, room):
+    if path := os.environ.get(_VARIABLE):
+        with Path(path).open("a", encoding="utf-8") as file:
+            file.write(json.dumps({"claim": text, "room": room.ravel().tolist()}) + "\n")
