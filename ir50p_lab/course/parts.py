@@ -1,0 +1,78 @@
+"""An arm handed over as plain numbers and arrays, the way the student's own functions take it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.errors import ArmError
+from ir50p_lab.modelling.arm import Arm
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The numbers of an arm. Arrays are copies: changing them changes no arm.
+
+    ======== ======================================================================= ==================
+    field    meaning                                                                 shape, unit
+    ======== ======================================================================= ==================
+    l        column height, upper arm, forearm                                       (3,) m
+    m        masses of the links                                                     (3,) kg
+    lc       centre of mass, from the link's joint along the link                    (3,) m
+    inertia  about the centre of mass, in the axes of DH frame i at the link's end   (3, 3, 3) kg m^2
+    rotor    inertia of the motors behind their gears, N^2 Jm                        (3,) kg m^2
+    fv       viscous friction                                                        (3,) N m s/rad
+    fc, fs   Coulomb and breakaway torque                                            (3,) N m
+    qs       Stribeck velocity                                                       (3,) rad/s
+    offset   constant friction offset                                                (3,) N m
+    gain     torque per PWM count                                                    (3,) N m
+    damping  back-EMF: the brake that a driven motor is                              (3,) N m s/rad
+    g        gravity                                                                 m/s^2
+    limits   lowest and highest joint angles                                         (2, 3) rad
+    ======== ======================================================================= ==================
+    """
+
+    l: np.ndarray
+    m: np.ndarray
+    lc: np.ndarray
+    inertia: np.ndarray
+    rotor: np.ndarray
+    fv: np.ndarray
+    fc: np.ndarray
+    fs: np.ndarray
+    qs: np.ndarray
+    offset: np.ndarray
+    gain: np.ndarray
+    damping: np.ndarray
+    g: float
+    limits: np.ndarray
+
+
+def parts(arm: Arm) -> Parts:
+    """Return the numbers of an arm as the student's functions take them.
+
+    `Arm` measures link 1 with z along the column and link 3 with z along its joint; the DH frames at the ends of these
+    links have y there (alpha = +90 and -90 deg), so that Iyy and Izz of links 1 and 3 change places.
+
+    Raises ArmError for an arm without motors: it has no gain.
+    """
+    if arm.actuators is None:
+        raise ArmError(f"{arm.name} has no actuators: give the arm `actuators`, its torque per PWM count is needed")
+    diagonals = np.column_stack([arm.Ixx, arm.Iyy, arm.Izz])
+    diagonals[[0, 2]] = diagonals[[0, 2]][:, [0, 2, 1]]
+    friction = arm.friction
+    return Parts(
+        l=np.array(arm.l),
+        m=np.array(arm.m),
+        lc=np.array(arm.lc),
+        inertia=np.array([np.diag(row) for row in diagonals]),
+        rotor=np.array(arm.actuators.reflected_inertia),
+        fv=np.array(friction.fv),
+        fc=np.array(friction.fc),
+        fs=np.array(friction.fs),
+        qs=np.array(friction.qs),
+        offset=np.array(friction.Tf),
+        gain=np.array(arm.actuators.gain),
+        damping=np.array(arm.actuators.back_emf_damping),
+        g=arm.g,
+        limits=np.array([arm.q_min, arm.q_max]),
+    )

@@ -1,0 +1,28 @@
+"""The reference solutions of tests/solutions, one file a function, loaded into one namespace as a student's would be."""
+
+import math
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+
+FOLDER = Path(__file__).parents[1] / "solutions"
+ORDER = (
+    "rot_z dh_matrix frames forward_kinematics inverse_kinematics reach jacobian damped_step mass_matrix "
+    "velocity_torque gravity_torque rk4_step integrate quintic friction_torque motor_torque PID step_metrics fit_line "
+    "low_pass regressor least_squares rls_step fit_percent computed_torque adaptive_step hue_mask circle_votes "
+    "homography pixel_to_plane find_and_reach"
+).split()
+
+
+def source(name):
+    """The text of one solution."""
+    return (FOLDER / f"{name}.py").read_text(encoding="utf-8")
+
+
+def load():
+    """All solutions, each with NumPy, math and those before it."""
+    names = {"np": np, "math": math}
+    for name in ORDER:
+        exec(compile(source(name), f"{name}.py", "exec"), names)
+    return SimpleNamespace(**{name: names[name] for name in ORDER})
