@@ -47,11 +47,13 @@ class Bench(abc.ABC):
     Subclasses supply `_open`, `_begin`, `_measure`, `_send`, `_cut` and `_close`.
 
     Attributes: arm: Arm (limits, kinematics); calibration: counts to rad; period: s; simulated: bool; name: str;
-    recording: Recording of the last run (None before).
+    bench_id: which bench it is, on which results are measured, as 'board-0a1b2c' or 'simulated-unit-0' (None: nobody
+    knows, or the board has none yet); recording: Recording of the last run (None before).
     """
 
     kind = "bench"
     simulated = False
+    bench_id = None
     own_process = False  # whether a loop in the background gets a process of its own
 
     def __init__(self, arm, calibration, *, period=0.01, record_to=None, name=None):
@@ -212,6 +214,7 @@ class Bench(abc.ABC):
             "arm": self.arm.name,
             "kind": self.kind,
             "bench": self.name,
+            "bench_id": self.bench_id or "none",
             "simulated": str(self.simulated).lower(),
             "period_s": f"{self.period:g}",
             **self.calibration.header(),

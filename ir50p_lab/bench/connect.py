@@ -89,7 +89,9 @@ def _serial(device, common):
 
 
 def _say_board(bench, reason):
-    return _say(bench, f"{reason}; calibration: {bench.calibration.source}", _TO_SIMULATED)
+    known = bench.bench_id or "without an id: python3 -m ir50p_lab bench-test gives it one"
+    reason = f"{reason}, version {bench.firmware}; {known}; calibration: {bench.calibration.source}"
+    return _say(bench, reason, _TO_SIMULATED)
 
 
 def _say(bench, reason, other):

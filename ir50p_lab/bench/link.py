@@ -81,7 +81,7 @@ class Link:
         Returns: (State or Identity, when the command was sent that it answers).
         Raises: BoardLostError if no answer came; PORT_ERRORS as they come from the port.
         """
-        wanted = protocol.Identity if kind == protocol.HELLO else protocol.State
+        wanted = protocol.Identity if kind in (protocol.HELLO, protocol.NAME) else protocol.State
         sent = {}
         start = now = self._clock.now()
         while now < start + patience:

@@ -9,11 +9,12 @@ frame      byte 0, 1, 2     then                                                
 command    0xA5  seq  type  pwm 3 x int16 (-255..255), flags uint8 (bit 0 gripper)               CRC-32
 state      0x5A  seq  's'   counts 3 x uint16 (quarter counts), status uint8, bad_frames uint16,  CRC-32
                             clock_ms uint16
-identity   0x5A  seq  'h'   'IR', protocol, firmware major, minor, joints, adc_bits, features    CRC-32
-                            (7 x uint8), boot uint16, reset_cause uint8
+identity   0x5A  seq  'h'   'IR', protocol, firmware major, minor (3 x uint8), board id uint24,   CRC-32
+                            boot uint16, reset_cause uint8
 =========  ====  ===  ====  ===================================================================  =====
 
-Command types: 'H' hello (stops the arm, answered by identity), 'D' drive, 'S' stop (both answered by state). The answer
+Command types: 'H' hello (stops the arm, answered by identity), 'N' name (the same, and gives a board without an id the
+one in the three pwm, 0..255 each), 'D' drive, 'S' stop (both answered by state). The answer
 repeats the sequence number of its command, so that a late answer is not taken for the present one.
 
 Why CRC-32 (the one of zlib, zip, PNG) where 16 bits are common on such a wire: CRC-16 lets one in 65 536 badly damaged
@@ -25,12 +26,13 @@ import struct
 import zlib
 from typing import NamedTuple
 
-VERSION = 1
+VERSION = 2
+MINIMUM_FIRMWARE = (1, 1)  # major, minor; what the sketch must at least be
 BAUD = 500_000  # exact on a 16 MHz processor (115 200 is 2 % off), and 32 bytes there and back take 0.64 ms
 JOINTS = 3
 LIMIT_PWM = 255
 COMMAND_SYNC, REPLY_SYNC = 0xA5, 0x5A
-HELLO, DRIVE, STOP = b"HDS"  # command types
+HELLO, NAME, DRIVE, STOP = b"HNDS"  # command types
 STATE, IDENTITY = b"sh"  # reply types
 MAGIC = b"IR"
 
@@ -43,10 +45,9 @@ HELLO_NEEDED = 16  # the board has (re)started and does not drive before a hello
 HARDWARE_RESET = 32  # its last start was by the hardware watchdog: the sketch had hung
 STATUS_BITS = 63
 
-HAS_GRIPPER = 1  # bit of `features`
+NO_ID = 0xFFFFFF  # what an empty EEPROM holds: the board has no id yet
 
 WATCHDOG_MS = 100  # without a valid drive command for so long, the board brakes
-ADC_BITS = 10
 SUBCOUNTS = 4  # `counts` on the wire are quarters of a converter count: the mean of 16 conversions
 MAX_COUNTS = SUBCOUNTS * 1023
 LOW_COUNTS, HIGH_COUNTS = SUBCOUNTS * 10, SUBCOUNTS * 1013  # beyond: no outward drive
@@ -56,13 +57,13 @@ CRC_POLYNOMIAL = 0xEDB88320  # of zlib.crc32, for the sketch
 _CRC = struct.Struct("<I")
 _COMMAND = struct.Struct("<BBB3hB")
 _STATE = struct.Struct("<BBB3HBHH")
-_IDENTITY = struct.Struct("<BBB2s6BHB")
+_IDENTITY = struct.Struct("<BBB2s3B3sHB")
 COMMAND_SIZE = _COMMAND.size + _CRC.size
 REPLY_SIZE = _STATE.size + _CRC.size
 
 
 class Command(NamedTuple):
-    """Computer to board. seq 0..255; type HELLO, DRIVE or STOP; pwm three whole numbers, -255..255."""
+    """Computer to board. seq 0..255; type HELLO, NAME, DRIVE or STOP; pwm three whole numbers, -255..255."""
 
     seq: int
     type: int
@@ -83,16 +84,15 @@ class State(NamedTuple):
 class Identity(NamedTuple):
     """The board's answer to a hello.
 
-    protocol: VERSION; firmware (major, minor); boot: number of starts so far, differs after each reset, wraps at 65536;
-    reset_cause: the processor's register MCUSR, 0 if a boot loader has cleared it.
+    protocol: VERSION; firmware (major, minor); board_id: 24 bits, given once, NO_ID before; boot: number of starts so
+    far, differs after each reset, wraps at 65536; reset_cause: the processor's register MCUSR, 0 if a boot loader has
+    cleared it.
     """
 
     seq: int
     protocol: int
     firmware: tuple
-    joints: int
-    adc_bits: int
-    features: int
+    board_id: int
     boot: int
     reset_cause: int
 
@@ -105,15 +105,16 @@ def encode(frame):
         seq, counts, *rest = frame
         data = _STATE.pack(REPLY_SYNC, seq, STATE, *counts, *rest)
     else:
-        seq, protocol, firmware, *rest = frame
-        data = _IDENTITY.pack(REPLY_SYNC, seq, IDENTITY, MAGIC, protocol, *firmware, *rest)
+        seq, protocol, firmware, board_id, *rest = frame
+        number = board_id.to_bytes(3, "little")
+        data = _IDENTITY.pack(REPLY_SYNC, seq, IDENTITY, MAGIC, protocol, *firmware, number, *rest)
     return data + _CRC.pack(zlib.crc32(data))
 
 
 def decode_command(data):
     """The Command in COMMAND_SIZE bytes, or None if they are none."""
     sync, seq, kind, *pwm, flags = _COMMAND.unpack_from(data)
-    if sync != COMMAND_SYNC or kind not in (HELLO, DRIVE, STOP) or flags > GRIPPER:
+    if sync != COMMAND_SYNC or kind not in (HELLO, NAME, DRIVE, STOP) or flags > GRIPPER:
         return None
     if not all(-LIMIT_PWM <= u <= LIMIT_PWM for u in pwm) or not _check(data):
         return None
@@ -129,8 +130,9 @@ def decode_reply(data):
         if max(counts) > MAX_COUNTS or status > STATUS_BITS:
             return None
         return State(seq, tuple(counts), status, bad_frames, clock_ms)
-    _, seq, _, magic, protocol, major, minor, *rest = _IDENTITY.unpack_from(data)
-    return Identity(seq, protocol, (major, minor), *rest) if magic == MAGIC else None
+    _, seq, _, magic, protocol, major, minor, number, *rest = _IDENTITY.unpack_from(data)
+    board_id = int.from_bytes(number, "little")
+    return Identity(seq, protocol, (major, minor), board_id, *rest) if magic == MAGIC else None
 
 
 def _check(data):
@@ -184,8 +186,8 @@ def _c_type(value):
 def header():
     """The text of protocol.h: the same description for the sketch."""
     names = (
-        "VERSION BAUD JOINTS LIMIT_PWM COMMAND_SYNC REPLY_SYNC HELLO DRIVE STOP STATE IDENTITY GRIPPER "
-        "WATCHDOG_TRIPPED HELLO_NEEDED HARDWARE_RESET HAS_GRIPPER WATCHDOG_MS ADC_BITS SUBCOUNTS MAX_COUNTS "
+        "VERSION BAUD JOINTS LIMIT_PWM COMMAND_SYNC REPLY_SYNC HELLO NAME DRIVE STOP STATE IDENTITY GRIPPER "
+        "WATCHDOG_TRIPPED HELLO_NEEDED HARDWARE_RESET WATCHDOG_MS SUBCOUNTS MAX_COUNTS "
         "LOW_COUNTS HIGH_COUNTS BROKEN_COUNTS COMMAND_SIZE REPLY_SIZE"
     ).split()
     values = {name: globals()[name] for name in names}
@@ -217,10 +219,10 @@ struct __attribute__((packed)) State {{  // board to computer: answer to DRIVE a
   uint32_t crc;
 }};
 
-struct __attribute__((packed)) Identity {{  // board to computer: answer to HELLO
+struct __attribute__((packed)) Identity {{  // board to computer: answer to HELLO and NAME
   uint8_t sync, seq, type;
   char magic[2];
-  uint8_t protocol, firmware[2], joints, adc_bits, features;
+  uint8_t protocol, firmware[2], board_id[3];
   uint16_t boot;
   uint8_t reset_cause;
   uint32_t crc;

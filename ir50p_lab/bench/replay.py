@@ -54,6 +54,8 @@ class ReplayBench(Bench):
         self._counts = np.where(known, counts, self.calibration.counts(recording.q))
         self._missed = np.nan_to_num(recording.missed).astype(int)
         self._k, self._started = 0, 0.0
+        told = recording.header.get("bench_id", "none")
+        self.bench_id = None if told == "none" else told
 
     def _open(self):
         pass

@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import secrets
 
 import numpy as np
 
@@ -131,8 +132,7 @@ class SerialBench(Bench):
                 link.close()
 
     def _header(self):
-        major, minor = self.identity.firmware
-        return {"port": self.port, "firmware": f"{major}.{minor}", "protocol": str(self.identity.protocol)}
+        return {"port": self.port, "firmware": self.firmware, "protocol": str(self.identity.protocol)}
 
     @property
     def own_process(self):
@@ -151,6 +151,30 @@ class SerialBench(Bench):
     # ---- more than the contract asks for
 
     @property
+    def firmware(self):
+        """Version of the board's firmware, as '1.1'; the bench must have been open."""
+        return ".".join(map(str, self.identity.firmware))
+
+    @property
+    def bench_id(self):
+        """The id in the board's memory, as 'board-0a1b2c'; None: the board has none yet, or was never open."""
+        if self.identity is None or self.identity.board_id == protocol.NO_ID:
+            return None
+        return f"board-{self.identity.board_id:06x}"
+
+    def give_id(self):
+        """Give the board an id by chance if it has none; it keeps it for good. Brakes. Returns `bench_id`.
+
+        Raises BoardError if the bench is closed or the board does not answer.
+        """
+        if self._link is None:
+            raise BoardError("the bench is closed: open it before the board is given an id")
+        if self.bench_id is None:
+            number = [secrets.randbelow(255) for _ in range(3)]  # never NO_ID
+            self.identity = self._shake_hands(HANDSHAKE, protocol.NAME, number)
+        return self.bench_id
+
+    @property
     def statistics(self):
         """What happened on the wire since the bench was opened: LinkStatistics."""
         if self._link is None:
@@ -167,12 +191,12 @@ class SerialBench(Bench):
         if wait > 0:
             self._clock.sleep(wait)
 
-    def _shake_hands(self, patience):
+    def _shake_hands(self, patience, kind=protocol.HELLO, pwm=(0, 0, 0)):
         """Say hello until the board says who it is. Raises BoardError, with the remedy, if it is not ours."""
         link = self._link
         try:
             link.forget()
-            identity, _ = link.ask(protocol.HELLO, patience=patience, repeat=min(0.05, patience / 4))
+            identity, _ = link.ask(kind, pwm, patience=patience, repeat=min(0.05, patience / 4))
         except BoardLostError:
             raise BoardError(f"{self.port}: {_who_is_it(bytes(link.heard))}") from None
         except PORT_ERRORS as error:
@@ -182,10 +206,11 @@ class SerialBench(Bench):
                 f"{self.port}: the board's firmware speaks protocol {identity.protocol}, this lab book "
                 f"{protocol.VERSION}: put the sketch of {FIRMWARE} on the board (its README shows how)"
             )
-        if identity.joints != JOINTS or identity.adc_bits != protocol.ADC_BITS:
+        if identity.firmware < protocol.MINIMUM_FIRMWARE:
+            found, needed = (".".join(map(str, v)) for v in (identity.firmware, protocol.MINIMUM_FIRMWARE))
             raise BoardError(
-                f"{self.port}: the board drives {identity.joints} joints with a converter of {identity.adc_bits} bits; "
-                f"this lab book needs {JOINTS} and {protocol.ADC_BITS}: put the sketch of {FIRMWARE} on the board"
+                f"{self.port}: the board's firmware is {found}, this lab book needs {needed} or newer: put the sketch "
+                f"of {FIRMWARE} on the board (its README shows how)"
             )
         return identity
 

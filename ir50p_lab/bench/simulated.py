@@ -109,6 +109,11 @@ class SimulatedBench(Bench):
         self._queue = np.zeros((int(self.plant.unit.delay), JOINTS))
         self._truth, self._started, self._missed = deque(maxlen=_KEPT), 0.0, 0
 
+    @property
+    def bench_id(self):
+        """Which simulated copy of the arm this is, as 'simulated-unit-0'."""
+        return f"simulated-unit-{self.plant.seed}"
+
     # ---- what Bench asks for
 
     def _open(self):

@@ -111,7 +111,7 @@ def test_a_board_that_answers_is_taken(computer, said, name):
             bench.drive([20, 0, 0])
         assert there.q[0] > 0
     line = said()
-    assert line.startswith(f"Bench: board on COM7 for IR50P ({name} found and its firmware answers; ")
+    assert line.startswith(f"Bench: board on COM7 for IR50P ({name} found and its firmware answers, version 1.1; ")
     assert "calibration: nominal, not measured" in line
     assert line.endswith("; for the simulated arm: connect('simulated') or IR50P_BENCH=simulated)")
 

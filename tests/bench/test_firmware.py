@@ -76,7 +76,22 @@ def test_the_period_is_set_after_the_mode():
 
 def test_hello_says_what_the_board_is(board):
     identity = Talk(board).hello()
-    assert identity[1:6] == (protocol.VERSION, (1, 0), 3, 10, protocol.HAS_GRIPPER)
+    assert identity[1:4] == (protocol.VERSION, protocol.MINIMUM_FIRMWARE, protocol.NO_ID)
+
+
+def test_an_id_is_given_once_and_survives_a_reset(board, talk):
+    assert talk.ask(protocol.NAME, (1, 2, 3)).board_id == 0x030201
+    assert talk.ask(protocol.NAME, (7, 7, 7)).board_id == 0x030201
+    board.reset()
+    board.sleep(0.05)
+    assert talk.hello().board_id == 0x030201
+    assert board.resets == 1  # the button: writing the id was no hang
+
+
+def test_naming_brakes(board, talk):
+    talk.drive(200, -200, 200)
+    talk.ask(protocol.NAME, (1, 2, 3))
+    assert braking(board.pins())
 
 
 def test_before_hello_it_measures_but_does_not_drive(board):

@@ -11,17 +11,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ir50p_lab.bench import protocol
-from ir50p_lab.bench.protocol import DRIVE, HELLO, STOP, Command, FrameParser, Identity, State, encode
+from ir50p_lab.bench.protocol import DRIVE, HELLO, NAME, STOP, Command, FrameParser, Identity, State, encode
 from tests.emulator.noise import noisy_stream, true_frames
 
 HEADER = Path(protocol.__file__).parent / "firmware/ir50p_board/protocol.h"
 
 bytes1, words = st.integers(0, 255), st.integers(0, 65535)
 pwm = st.integers(-255, 255)
-commands = st.builds(Command, bytes1, st.sampled_from([HELLO, DRIVE, STOP]), st.tuples(pwm, pwm, pwm), st.booleans())
+commands = st.builds(
+    Command, bytes1, st.sampled_from([HELLO, NAME, DRIVE, STOP]), st.tuples(pwm, pwm, pwm), st.booleans()
+)
 quarters = st.integers(0, protocol.MAX_COUNTS)
 states = st.builds(State, bytes1, st.tuples(quarters, quarters, quarters), st.integers(0, 63), words, words)
-identities = st.builds(Identity, bytes1, bytes1, st.tuples(bytes1, bytes1), bytes1, bytes1, bytes1, words, bytes1)
+identities = st.builds(Identity, bytes1, bytes1, st.tuples(bytes1, bytes1), st.integers(0, 0xFFFFFF), words, bytes1)
 
 
 def random_command(rng):
@@ -37,7 +39,9 @@ def random_command(rng):
 
 def random_reply(rng):
     if rng.random() < 0.2:
-        return encode(Identity(rng.randrange(256), 1, (1, rng.randrange(9)), 3, 10, 1, rng.randrange(65536), 0))
+        return encode(
+            Identity(rng.randrange(256), 1, (1, rng.randrange(9)), rng.randrange(1 << 24), rng.randrange(65536), 0)
+        )
     counts = tuple(rng.randrange(protocol.MAX_COUNTS + 1) for _ in range(3))
     return encode(State(rng.randrange(256), counts, rng.randrange(64), rng.randrange(65536), rng.randrange(65536)))
 

@@ -160,8 +160,7 @@ def test_device_that_floods_the_wire(board):
     ("identity", "expected"),
     [
         ({"protocol": protocol.VERSION + 1}, f"protocol {protocol.VERSION + 1}, this lab book {protocol.VERSION}"),
-        ({"joints": 2}, "drives 2 joints"),
-        ({"adc_bits": 12}, "converter of 12 bits"),
+        ({"firmware": (0, 99)}, "firmware is 0.99, this lab book needs 1.1 or newer"),
     ],
 )
 def test_another_firmware(board, identity, expected):
@@ -171,6 +170,24 @@ def test_another_firmware(board, identity, expected):
     assert expected in str(error.value)
     assert board.closed
     assert not any(command.type == protocol.DRIVE for _, command in board.commands)
+
+
+def test_an_id_is_given_once_and_known_afterwards(board):
+    bench = bench_of(board)
+    assert bench.bench_id is None
+    with pytest.raises(BoardError, match="open it"):
+        bench.give_id()
+    with bench:
+        assert bench.bench_id is None
+        given = bench.give_id()
+        assert given == bench.give_id() == bench.bench_id
+        assert given.startswith("board-")
+        for _ in bench.run(0.02):
+            pass
+        assert bench.recording.header["bench_id"] == given
+        assert bench.recording.header["firmware"] == bench.firmware
+    with bench_of(board) as again:
+        assert again.bench_id == given
 
 
 # ---- opening restarts the board

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ir50p_lab.bench import Recording, SimulatedBench, Unit
+from ir50p_lab.bench import Recording, ReplayBench, SimulatedBench, Unit
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import ArmError, BenchError, InputError
@@ -269,3 +269,11 @@ def test_default_arm_is_the_students(monkeypatch, tmp_path):
         assert bench.arm == OTHER
         recording = bench.follow(pid(), hold([0.4, 0.6, 0.2]), 5)
         assert np.isfinite(recording.q).all() and np.ptp(recording.q[:, 1]) > 0.1
+
+
+def test_each_copy_and_its_recording_say_which_bench_it_is():
+    bench = SimulatedBench(seed=3, record_to=False)
+    assert bench.bench_id == "simulated-unit-3"
+    with bench:
+        bench.follow(PID(kp=(9, 9, 9), limit_pwm=255), hold([0, 0, 0]), 0.1)
+        assert ReplayBench(bench.recording).bench_id == "simulated-unit-3"

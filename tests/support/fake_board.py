@@ -26,7 +26,7 @@ class FakeBoard:
         self.calibration, self.q, self.pwm, self.gripper = calibration, np.array(q, dtype=float), np.zeros(3), False
         self.t = 100.0
         self.dead = self.unplugged = self.closed = False
-        self.identity, self.answer_after = {}, ANSWER
+        self.identity, self.answer_after, self.board_id = {}, ANSWER, protocol.NO_ID
         self.on_command = self.on_answer = lambda n, data: data
         self.commands, self.writes, self.answers, self.trips, self.hellos = [], 0, 0, 0, 0
         self._parser = FrameParser("commands")
@@ -103,11 +103,13 @@ class FakeBoard:
         self.reset_cause = 8 if hung else 0
 
     def _answer(self, command: Command):
-        if command.type == protocol.HELLO:
+        if command.type in (protocol.HELLO, protocol.NAME):
+            if command.type == protocol.NAME and self.board_id == protocol.NO_ID:
+                self.board_id = int.from_bytes(bytes(command.pwm), "little")
             self._greeted, self._tripped, self.pwm, self._watched = True, False, np.zeros(3), False
             self.hellos += 1
-            fields = {"protocol": protocol.VERSION, "firmware": (1, 0), "joints": 3, "adc_bits": 10, "features": 1}
-            fields |= {"boot": self.boot, "reset_cause": self.reset_cause} | self.identity
+            fields = {"protocol": protocol.VERSION, "firmware": protocol.MINIMUM_FIRMWARE}
+            fields |= {"board_id": self.board_id, "boot": self.boot, "reset_cause": self.reset_cause} | self.identity
             self._reply(Identity(command.seq, **fields))
             return
         drive = command.type == protocol.DRIVE and self._greeted

@@ -15,7 +15,7 @@
 
 using namespace protocol;
 
-const uint8_t FIRMWARE[2] = {1, 0};
+const uint8_t FIRMWARE[2] = {1, 1};
 
 // ---- pins: all three PWM outputs belong to timer 4, so that one setting gives all of them 20 kHz
 
@@ -35,6 +35,8 @@ bool tripped = false;        // the watchdog has cut the drive since the last re
 uint16_t bad_frames = 0;
 uint16_t boot;               // number of this start
 uint8_t reset_cause;         // MCUSR as found
+uint8_t board_id[3];         // all 0xFF: none was given yet
+uint8_t *const ID_PLACE = (uint8_t *)2;  // in the EEPROM, behind `boot`
 bool was_hung;               // the last start was by the hardware watchdog
 
 // ---- potentiometers: conversions run on their own, joint after joint; each joint keeps the sum of its last 16
@@ -189,7 +191,7 @@ bool valid(const Command &frame) {
 // Whether these first `length` bytes are, or may become, a valid command. (Said early: a flood of noise costs no time.)
 bool promising(const Command &frame, uint8_t length) {
   if (frame.sync != COMMAND_SYNC) return false;
-  if (length > 2 && frame.type != HELLO && frame.type != DRIVE && frame.type != STOP) return false;
+  if (length > 2 && frame.type != HELLO && frame.type != NAME && frame.type != DRIVE && frame.type != STOP) return false;
   return length < COMMAND_SIZE || valid(frame);
 }
 
@@ -204,7 +206,7 @@ void send(void *reply) {
 
 void send_identity(uint8_t seq) {
   Identity reply = {REPLY_SYNC, seq, IDENTITY, {MAGIC[0], MAGIC[1]}, VERSION, {FIRMWARE[0], FIRMWARE[1]},
-                    JOINTS, ADC_BITS, HAS_GRIPPER, boot, reset_cause, 0};
+                    {board_id[0], board_id[1], board_id[2]}, boot, reset_cause, 0};
   send(&reply);
 }
 
@@ -219,9 +221,17 @@ void send_state(uint8_t seq) {
   send(&reply);
 }
 
+// The board's id is given once: what was measured on this bench is known by it.
+void take_name(const Command &frame) {
+  if (board_id[0] != 0xFF || board_id[1] != 0xFF || board_id[2] != 0xFF) return;
+  for (uint8_t j = 0; j < JOINTS; j++) board_id[j] = frame.pwm[j];
+  eeprom_update_block(board_id, ID_PLACE, sizeof board_id);  // 10 ms
+}
+
 void obey(const Command &frame) {
-  if (frame.type == HELLO) {
+  if (frame.type == HELLO || frame.type == NAME) {
     cut();
+    if (frame.type == NAME) take_name(frame);
     greeted = true;
     tripped = false;
     send_identity(frame.seq);
@@ -276,6 +286,7 @@ void setup() {
   wdt_disable();
   start_bridges();
   count_start();
+  eeprom_read_block(board_id, ID_PLACE, sizeof board_id);
   make_crc_table();
   start_potentiometers();
   Serial.begin(BAUD);

@@ -5,13 +5,14 @@
 
 namespace protocol {
 
-const uint8_t VERSION = 1;
+const uint8_t VERSION = 2;
 const uint32_t BAUD = 500000;
 const uint8_t JOINTS = 3;
 const uint8_t LIMIT_PWM = 255;
 const uint8_t COMMAND_SYNC = 165;
 const uint8_t REPLY_SYNC = 90;
 const uint8_t HELLO = 72;
+const uint8_t NAME = 78;
 const uint8_t DRIVE = 68;
 const uint8_t STOP = 83;
 const uint8_t STATE = 115;
@@ -20,9 +21,7 @@ const uint8_t GRIPPER = 1;
 const uint8_t WATCHDOG_TRIPPED = 1;
 const uint8_t HELLO_NEEDED = 16;
 const uint8_t HARDWARE_RESET = 32;
-const uint8_t HAS_GRIPPER = 1;
 const uint8_t WATCHDOG_MS = 100;
-const uint8_t ADC_BITS = 10;
 const uint8_t SUBCOUNTS = 4;
 const int16_t MAX_COUNTS = 4092;
 const uint8_t LOW_COUNTS = 40;
@@ -48,10 +47,10 @@ struct __attribute__((packed)) State {  // board to computer: answer to DRIVE an
   uint32_t crc;
 };
 
-struct __attribute__((packed)) Identity {  // board to computer: answer to HELLO
+struct __attribute__((packed)) Identity {  // board to computer: answer to HELLO and NAME
   uint8_t sync, seq, type;
   char magic[2];
-  uint8_t protocol, firmware[2], joints, adc_bits, features;
+  uint8_t protocol, firmware[2], board_id[3];
   uint16_t boot;
   uint8_t reset_cause;
   uint32_t crc;
