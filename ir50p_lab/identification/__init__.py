@@ -23,10 +23,10 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "payload": ["Scale", "payload_change", "scale_from_payload"],
         "processing": ["Motion", "causal_derivatives", "central_derivatives", "process"],
         "recipe": ["Identified", "identify"],
-        "rehearsal": ["Rehearsal", "rehearse"],
+        "simulated_identification": ["SimulatedIdentification", "simulate_identification"],
         "rls": ["RLS"],
         "single_joint": ["JointFit", "fit_joint"],
-        "validation": ["Validation", "nrmse_fit", "validate", "validate_ahead", "validate_closed_loop"],
+        "validation": ["Validation", "nrmse_fit", "validate"],
         "whiteness": ["Whiteness", "whiteness"],
     },
 )

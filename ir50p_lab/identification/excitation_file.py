@@ -35,7 +35,7 @@ def load_excitations(path=None):
     """Motions from a file of `save_excitations`, {name: Fourier}; default: those in data/excitation_ir50p.json.
 
     That file holds "plain" (random coefficients as large as the limits allow), "training" and "validation 1" to
-    "validation 20" (optimised, rehearsed). Raises InputError if the file cannot be read or is no such file.
+    "validation 20" (optimised, tried in simulation). Raises InputError if the file cannot be read or is no such file.
     """
     path = DATA if path is None else _path(path)
     try:

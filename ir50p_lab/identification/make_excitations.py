@@ -11,7 +11,7 @@ from ir50p_lab.controllers import PID
 from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification.excitation import optimise_excitation
 from ir50p_lab.identification.excitation_file import DATA, save_excitations
-from ir50p_lab.identification.rehearsal import rehearse
+from ir50p_lab.identification.simulated_identification import simulate_identification
 from ir50p_lab.modelling import IR50P
 
 CANDIDATES, KEPT = 200, 21
@@ -29,7 +29,7 @@ def thesis_pid():
 def make_excitations(arm=IR50P, *, seed=0, candidates=CANDIDATES, kept=KEPT, progress=True, **settings):
     """{name: Fourier}: 'plain', 'training', 'validation 1', ...: the best `kept` of `candidates` optimised motions.
 
-    Each candidate is optimised from another seed, then rehearsed with the nominal arm and the thesis' gains; those on
+    Each candidate is optimised from another seed, then simulated with the nominal arm and the thesis' gains; those on
     which a rigid-body model can explain most of u are kept. The first is for training, the others for validation.
     "plain" has random coefficients, as large as the limits allow, and keeps clear too.
     Args: arm: Arm with actuators; seed: of the first candidate; settings: for `optimise_excitation`.
@@ -42,17 +42,19 @@ def make_excitations(arm=IR50P, *, seed=0, candidates=CANDIDATES, kept=KEPT, pro
     found = []
     for number in tqdm(range(seed, seed + candidates), disable=not progress, unit="motion", desc="excitation"):
         made = optimise_excitation(arm, seed=number, **options)
-        worth = rehearse(made.reference, arm, thesis_pid(), noise=NOISE).worth()
+        worth = simulate_identification(made.reference, arm, thesis_pid(), noise=NOISE).worth()
         found.append((worth, number, made))
     found.sort(key=lambda one: -one[0])
     if found[kept - 1][0] == -np.inf:
         raise IdentificationError(
             f"of {candidates} motions only {sum(one[0] > -np.inf for one in found)} keep clear of limits and table in "
-            f"the rehearsal, {kept} are wanted: try more candidates, or a larger margin and table"
+            f"the simulation, {kept} are wanted: try more candidates, or a larger margin and table"
         )
     best = [made for _, _, made in found[:kept]]
     befores = (made.before for _, _, made in found)
-    clear = (motion for motion in befores if rehearse(motion, arm, thesis_pid()).worth((-1e9,) * 3) > -np.inf)
+    clear = (
+        motion for motion in befores if simulate_identification(motion, arm, thesis_pid()).worth((-1e9,) * 3) > -np.inf
+    )
     motions = {"plain": next(clear, best[0].before), "training": best[0].reference}
     return motions | {f"validation {k}": made.reference for k, made in enumerate(best[1:], start=1)}
 

@@ -13,10 +13,10 @@ from ir50p_lab.identification import (
     identify,
     load_excitations,
     output_error,
-    validate_closed_loop,
 )
 from ir50p_lab.identification.closed_loop import Run
 from ir50p_lab.identification.make_excitations import thesis_pid
+from ir50p_lab.identification.output_error import compare
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
 
@@ -82,7 +82,8 @@ def test_predicts_another_run_better_than_the_regression(refined, record):
         other = bench.follow(thesis_pid(), motion, 30)
     q, u = refined.score(other, thesis_pid(), motion)
     assert (q.fit > 95).all() and (u.fit > 92).all()
-    before, _ = validate_closed_loop(identify(record, l2=0.2), other, thesis_pid(), motion, delay=0.02)
+    run = Run.of(other, thesis_pid(), motion, delay=0.02)
+    before, _ = compare([run], [run.simulate(identify(record, l2=0.2).theta)])
     assert q.rms.sum() < before.rms.sum()
 
 

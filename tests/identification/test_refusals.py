@@ -51,12 +51,10 @@ BAD = {
     "read_columns": [("no_such_file.csv",), ("/",), (None,)],
     "process": [(Run(q=NAN_Q),), (Run(t=T[::-1]),), (T,), (Run(q=Q[:5]),), (Run(T[:5], Q[:5], U[:5]),)],
     "identify": [(Run(q=NAN_Q),), (Run(t=T[::-1]),), (Run(T[:5], Q[:5], U[:5]),), (Run(q=0 * Q),), ([],)],
-    "rehearse": [(None, IR50P, PD), (MOTION, TH, PD)],
+    "simulate_identification": [(None, IR50P, PD), (MOTION, TH, PD)],
     "fit_joint": [(T, NAN_Q[:, 0], U[:, 0]), (T[::-1], Q[:, 0], U[:, 0]), (T[:5], Q[:5, 0], U[:5, 0]), (T, Q, U)],
     "nrmse_fit": [(NAN_Q, Q), (Q, Q[:5]), (0 * Q, Q)],
     "validate": [(TH, Run(q=NAN_Q)), (TH[:1], Run()), (TH, Run(t=T[::-1]))],
-    "validate_ahead": [(TH, Run(q=NAN_Q)), (TH[:1], Run()), (TH, Run(t=T[::-1]))],
-    "validate_closed_loop": [(TH, Run(q=NAN_Q), PD, MOTION), (TH[:1], Run(), PD, MOTION)],
     "whiteness": [(NAN_Q,), (Q[:5],), (0 * Q,)],
     "RLS": [],  # its steps below
 }

@@ -7,24 +7,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ir50p_lab.controllers import PID
-from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.errors import InputError
 from ir50p_lab.identification import (
     nrmse_fit,
     regressor,
     validate,
-    validate_ahead,
-    validate_closed_loop,
     whiteness,
 )
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import at_rest, fourier
-from ir50p_lab.simulation import simulate
 
 THETA = np.array(IR50P.theta_pwm)
 A, B = at_rest(*np.random.default_rng(2).normal(0, 0.15, (2, 3, 4)))
 TARGET = fourier(A, B, period=10.0, q0=(0, 0.6, -1), periods=2)
-GAINS = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30)}
 
 
 def analytic(rate=200.0, delay=0.0):
@@ -34,13 +29,6 @@ def analytic(rate=200.0, delay=0.0):
     rows = TARGET.sample(t + delay)
     u = np.einsum("nij,ij->ni", regressor(rows[:, 0], rows[:, 1], rows[:, 2]), THETA)
     return SimpleNamespace(t=t, q=q, u=u)
-
-
-def loop(theta=THETA, period=0.01, seconds=20.0):
-    """A closed loop in the simulation engine; the command is limited to 255 counts."""
-    pid = PID(**GAINS, limit_pwm=255)
-    run = simulate(theta, pid, TARGET, duration=seconds, period=period, q0=TARGET.q_start, unit="PWM")
-    return SimpleNamespace(t=run.t, q=run.q, u=run.u), pid
 
 
 # --- numbers
@@ -102,34 +90,6 @@ def test_gaps_leave_raw_samples_out():
     assert not ((found.t > 7.99) & (found.t < 9.01)).any() and (found.fit > 98).all()
 
 
-# --- simulated
-
-
-@pytest.mark.compiled
-def test_closed_loop_with_the_model_itself_is_exact():
-    record, pid = loop()
-    for found in validate_closed_loop(THETA, record, pid, TARGET):
-        assert (found.fit > 99.999).all()
-    light = THETA.copy()
-    light[1, 2:4] *= 0.7
-    q, u = validate_closed_loop(light, record, pid, TARGET)
-    assert q.fit[1] < 98 and u.fit[1] < 90 and q.of == "q" and u.of == "u"
-    q, u = validate_closed_loop(THETA, record, pid, TARGET, delay=0.02)
-    assert (q.fit > 95).all() and (q.fit < 99.99).all()
-
-
-@pytest.mark.compiled
-def test_ahead_with_the_model_itself_stays_near():
-    record, _ = loop()
-    found = validate_ahead(THETA, record, horizon=0.5, cutoff_hz=10.0)
-    assert (found.fit > 97).all() and found.of == "q"
-    heavy = THETA.copy()
-    heavy[1, 2:4] *= 1.5
-    assert validate_ahead(heavy, record, horizon=0.5, cutoff_hz=10.0).fit[1] < found.fit[1] - 2
-    longer = validate_ahead(heavy, record, horizon=1.5, cutoff_hz=10.0)
-    assert longer.rms[1] > 1.5 * validate_ahead(heavy, record, horizon=0.5, cutoff_hz=10.0).rms[1]
-
-
 # --- whiteness
 
 
@@ -172,13 +132,6 @@ def test_bad_input():
     for delay in (-1, np.nan, None):
         with pytest.raises(InputError, match="delay"):
             validate(THETA, record, delay=delay)
-    with pytest.raises(InputError, match="two samples"):
-        validate_ahead(THETA, record, horizon=0.01)
-    with pytest.raises(IdentificationError, match="shorter horizon"):
-        validate_ahead(THETA, record, horizon=100.0)
-    record.t[100:] += 0.1
-    with pytest.raises(InputError, match="uneven or have gaps"):
-        validate_closed_loop(THETA, record, PID(**GAINS), TARGET)
 
 
 @pytest.mark.parametrize(

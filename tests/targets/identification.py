@@ -4,7 +4,7 @@ Each seed is another copy of the arm with other noise, trains on one motion and 
 as there are seeds, at most 20). Nothing of the bench but its recordings reaches the identification.
 
 What the numbers hold for: motions that were chosen. `make_excitations` keeps the 21 of 200 on which a rigid-body model
-can explain most of u when the nominal arm (with its assumed friction) rehearses them; their length and harmonics were
+can explain most of u when the nominal arm (with its assumed friction) is simulated on them; their length and harmonics were
 picked among some ten settings on other seeds, by the full fit and by how near the naive one comes to the trial. One row
 is for motions that nobody chose, as `optimise_excitation` gives them, one a seed, with a high price on standing; with
 the price of `make_excitations` joint 2 reached 91.9 % there, on random motions about 83 %: there the joint stands for

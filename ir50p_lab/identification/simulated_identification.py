@@ -1,4 +1,4 @@
-"""A motion rehearsed in simulation before the arm makes it: what the controller leaves of it, and what sticks."""
+"""A motion tried in simulation before the arm makes it: how much of u a rigid-body model can explain afterwards."""
 
 from dataclasses import dataclass
 
@@ -14,8 +14,8 @@ _SLOW = 0.1  # rad/s: about where a dry joint may stick
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Rehearsal:
-    """What `rehearse` found, per joint (3,).
+class SimulatedIdentification:
+    """What `simulate_identification` found, per joint (3,).
 
     fit: best fit in % of the commands that a model without sticking can reach on such a run; spread: standard deviation
     of u; standing: share of time near standstill, 1/(1 + (qd/0.1 rad/s)^2), 0 to 1; q: (n, 3) rad, as it was followed;
@@ -40,7 +40,9 @@ class Rehearsal:
         return float((self.fit - np.asarray(floor, dtype=float)).min())
 
 
-def rehearse(reference, arm, controller, *, model=None, noise=5.0, seconds=None, table=0.0, cutoff_hz=1.2, sign=0.05):
+def simulate_identification(
+    reference, arm, controller, *, model=None, noise=5.0, seconds=None, table=0.0, cutoff_hz=1.2, sign=0.05
+):
     """Simulate the closed loop on a motion, and say how much of u a rigid-body model could explain afterwards.
 
     An optimised motion is not the one that the arm makes: a weak controller lags and sags under gravity, and a joint
@@ -54,17 +56,14 @@ def rehearse(reference, arm, controller, *, model=None, noise=5.0, seconds=None,
         noise: PWM counts rms in u, one number or (3,). seconds: s, default two periods. table: its height, m.
         cutoff_hz, sign: as in `validate`.
 
-    Returns: Rehearsal. Raises InputError on bad input, or if the loop runs away.
+    Returns: SimulatedIdentification. Raises InputError on bad input, or if the loop runs away.
     """
     from ir50p_lab.simulation import simulate
 
     if not hasattr(reference, "sample"):
         raise InputError(f"reference is a {type(reference).__name__}: give a motion such as `fourier` makes")
     noise = numbers("noise", noise, unit="PWM")
-    if noise.shape not in ((), (3,)) or not np.isfinite(noise).all() or (noise < 0).any():
-        raise InputError(f"noise = {noise.tolist()} PWM: give one number or three, finite and >= 0")
     check_arm(arm)
-    number("table", table, unit="m", hint="its height; -10 for none")
     check_controller(controller)
     theta = arm.theta_pwm if model is None else as_theta(getattr(model, "theta", model))[0]
     if seconds is None:
@@ -80,7 +79,7 @@ def rehearse(reference, arm, controller, *, model=None, noise=5.0, seconds=None,
         unit="PWM",
     )
     found = validate(theta, run.t, run.q, run.u, sign=sign, cutoff_hz=cutoff_hz)
-    return Rehearsal(
+    return SimulatedIdentification(
         fit=100 * (1 - np.hypot(found.rms, noise) / found.spread),
         spread=found.spread,
         standing=np.mean(1 / (1 + (run.qd / _SLOW) ** 2), axis=0),
