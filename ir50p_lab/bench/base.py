@@ -105,6 +105,14 @@ class Bench(abc.ABC):
         """More lines for the head of a recording: dict of str."""
         return {}
 
+    def _make_guard(self):
+        """What looks at every exchange of the run that begins, or None.
+
+        Its check(sample, pwm) gets each Sample before the program does, and the command (3,) PWM counts that the motors
+        had since the sample before. What it raises cuts the drive and ends the run.
+        """
+        return None
+
     def _arguments(self):
         """Keyword arguments that make the same bench in another process; needed if `own_process`."""
         raise NotImplementedError(f"{type(self).__name__} has own_process, so it must define _arguments()")
@@ -186,10 +194,13 @@ class Bench(abc.ABC):
         self._pwm = np.zeros(JOINTS)
         try:
             self._begin()
+            guard = self._make_guard()
             for k in range(cycles):
                 t, counts, missed = self._measure(k)
                 sample = Sample(t, self._radians(counts), counts, missed)
                 self._last = sample
+                if guard is not None:
+                    guard.check(sample, self._pwm)
                 self._reference = None
                 yield sample
                 if recorder is not None:

@@ -72,8 +72,8 @@ class SimulatedBench(Bench):
 
     Args:
         arm: Arm with actuators; default `load_arm()`. unit: table of what is not ideal; seed: which copy of it, and
-        the noise, counted from IR50P_UNIT (IR50P_SEED: other noise). q0: (3,) rad, where the arm stands when first opened (default zero).
-        realtime: pace the cycles by the clock, for demonstrations. period: s, whole milliseconds.
+        the noise, counted from IR50P_UNIT (IR50P_SEED: other noise). q0: (3,) rad, where the arm stands when first
+        opened (default zero). realtime: pace the cycles by the clock. period: s, whole milliseconds.
         calibration: default the nominal one, from which the unit differs a little, as a real one does.
         record_to: folder for recordings, or False for none on disk.
 
