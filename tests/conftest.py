@@ -14,6 +14,14 @@ settings.register_profile("uncompiled", settings.get_profile("lab"), max_example
 settings.load_profile("uncompiled" if UNCOMPILED else "lab")
 
 
+@pytest.fixture(scope="session", autouse=True)
+def students_folder(tmp_path_factory):
+    """No test reads or writes what belongs to whoever runs it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("IR50P_HOME", str(tmp_path_factory.mktemp("home")))
+        yield
+
+
 def pytest_collection_modifyitems(config, items):
     """Without the compiler, only the first two cases of a test run; the first n of one marked `compiled(keep=n)`.
 

@@ -11,6 +11,7 @@ import numpy as np
 from ir50p_lab.bench.recording import Recording
 from ir50p_lab.bench.recording_file import COLUMNS, ROW, ROW_WITHOUT_REFERENCE, event_text, head_text, rows_text
 from ir50p_lab.errors import InputError, RecordingError
+from ir50p_lab.home import home
 
 _FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINARY", 0)
 _NAN3 = (math.nan,) * 3
@@ -21,8 +22,8 @@ class Recorder:
 
     Args:
         head: dict of str for the head of the file; "kind" and "simulated" also go into its name.
-        folder: where to; None: the folder of the environment variable IR50P_RECORDINGS, else ./recordings;
-        False: in memory only. A folder that is missing is made.
+        folder: where to; None: the folder of the environment variable IR50P_RECORDINGS, else recordings/ in
+        the student's folder (IR50P_HOME); False: in memory only. A folder that is missing is made.
 
     Attributes: recording: a Recording that grows with every sample; path: the file or None.
     Raises RecordingError if the file cannot be made.
@@ -35,7 +36,7 @@ class Recorder:
         self.recording = Recording(self._rows, head, path=self.path)
 
     def _create(self, head, folder):
-        folder = Path(folder or os.environ.get("IR50P_RECORDINGS") or "recordings")
+        folder = Path(folder or os.environ.get("IR50P_RECORDINGS") or home() / "recordings")
         kind = head.get("kind", "arm")
         if head.get("simulated") == "true" and "simulated" not in kind:
             kind += "_simulated"
@@ -120,7 +121,7 @@ class Recorder:
             os.close(file)
 
 
-_ELSEWHERE = "choose another folder with record_to=... or the environment variable IR50P_RECORDINGS"
+_ELSEWHERE = "choose another folder with record_to=... or the environment variable IR50P_HOME"
 
 
 def _three(reference):

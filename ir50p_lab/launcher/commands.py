@@ -86,8 +86,8 @@ def _run(arguments, root):
             raise SetUpError(f"There is no arm file '{arm}'. Write one with Arm.save, or give its path.")
         variables["IR50P_ARM"] = str(Path(arm).resolve())
     if tests:
-        with tempfile.TemporaryDirectory() as recordings:  # notebooks record: tests leave nothing behind
-            variables.setdefault("IR50P_RECORDINGS", recordings)
+        with tempfile.TemporaryDirectory() as home:  # neither the student's results are used nor others left behind
+            variables["IR50P_HOME"] = home
             run = _test_command(environment.root, arguments) if command == "test" else _targets_command(arguments)
             return _attend([python, *run], variables, environment.root)
     code = _attend([python, *_lab_command(environment.root, arguments)], variables)

@@ -125,16 +125,16 @@ def test_names_tell_when_and_what_and_never_collide(tmp_path):
 
 
 def test_default_folder_and_the_environment_variable(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("IR50P_RECORDINGS", raising=False)
-    assert Recorder(HEAD).path.parent.name == "recordings"
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path / "mine"))
+    assert Recorder(HEAD).path.parent == tmp_path / "mine" / "recordings"
     monkeypatch.setenv("IR50P_RECORDINGS", str(tmp_path / "other"))
     assert Recorder(HEAD).path.parent == tmp_path / "other"
 
 
 def test_a_folder_that_cannot_be_is_said_with_the_remedy(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
-    with pytest.raises(RecordingError, match=r"cannot record in .*file.*record_to=.*IR50P_RECORDINGS"):
+    with pytest.raises(RecordingError, match=r"cannot record in .*file.*record_to=.*IR50P_HOME"):
         Recorder(HEAD, tmp_path / "file" / "below")
 
     def forbidden(*args):

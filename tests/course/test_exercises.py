@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import sympy
 
+from ir50p_lab import home
 from ir50p_lab.course import exercises as package
 from ir50p_lab.course.exercises import (
     Choice,
@@ -28,6 +29,7 @@ from ir50p_lab.course.exercises import (
 )
 from ir50p_lab.course.exercises._catalogue import everything, prefixes
 from ir50p_lab.course.exercises._display import Note, Table
+from ir50p_lab.course.exercises._progress import progress_path, read_progress
 from ir50p_lab.errors import InputError
 
 ALL = [exercise for _, exercise in everything()]
@@ -299,7 +301,8 @@ def test_first_success_stays(capsys, own_progress):
 
 
 @pytest.mark.parametrize(
-    "content", ["", "{", "[]", '{"done": 3}', '{"done": {"start-1": 1}}', "{}", b"\xff\xfe".decode("latin1")]
+    "content",
+    ["", "{", "[]", "[" * 100_000, '{"done": 3}', '{"done": {"start-1": 1}}', "{}", b"\xff\xfe".decode("latin1")],
 )
 def test_damaged_file(content, capsys, own_progress):
     own_progress.write_bytes(content.encode("latin1"))
@@ -330,12 +333,27 @@ def test_failed_swap_leaves_the_old_file(capsys, own_progress, monkeypatch):
     assert len(list(own_progress.parent.iterdir())) == 1
 
 
-def test_default_place_is_the_project_root(monkeypatch):
-    from ir50p_lab.course.exercises._progress import progress_path
-
+def test_the_file_lies_in_the_students_folder(monkeypatch, tmp_path, capsys):
     monkeypatch.delenv("IR50P_PROGRESS")
-    assert progress_path() == _root() / "progress.json"
-    assert "progress.json" in (_root() / ".gitignore").read_text().split()
+    monkeypatch.delenv("IR50P_HOME", raising=False)
+    assert progress_path() == _root() / "notebooks" / "progress.json"
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path / "new" / "folder"))
+    said(capsys, "start-1", solution("start-1"))
+    assert list(json.loads((tmp_path / "new" / "folder" / "progress.json").read_text())["done"]) == ["start-1"]
+
+
+def test_progress_of_an_earlier_version_is_taken_over(monkeypatch, tmp_path, capsys):
+    """It lay in the project's root; what is new goes to the student's folder, and the old file stays as it is."""
+    monkeypatch.delenv("IR50P_PROGRESS")
+    monkeypatch.delenv("IR50P_HOME", raising=False)
+    monkeypatch.setattr(home, "PROJECT", tmp_path)
+    (tmp_path / "notebooks").mkdir()
+    old = tmp_path / "progress.json"
+    old.write_text('{"done": {"start-2": "2020-01-01T00:00+00:00"}}')
+    said(capsys, "start-1", solution("start-1"))
+    assert list(read_progress()) == ["start-1", "start-2"] and "start-1" not in old.read_text()
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path / "of somebody else"))
+    assert read_progress() == {}
 
 
 # --- how it looks

@@ -11,7 +11,7 @@ STAND_IN = """
 import json, os, signal, sys, time
 if "--stay" in sys.argv:  # before anything is said: who reads it may end this at once
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-told = ("IR50P_ARM", "IR50P_RECORDINGS", "VIRTUAL_ENV", "JUPYTER_PREFER_ENV_PATH")
+told = ("IR50P_ARM", "IR50P_HOME", "VIRTUAL_ENV", "JUPYTER_PREFER_ENV_PATH")
 print(json.dumps({"argv": sys.argv[1:], "cwd": os.getcwd(), "prefix": sys.prefix} | {n: os.environ.get(n) for n in told}))
 sys.stdout.flush()
 if "--stay" in sys.argv:

@@ -57,13 +57,13 @@ def test_started_as_a_folder_from_elsewhere(made, tmp_path):
 
 
 def test_test_runs_pytest_and_nbval_over_everything(tested):
-    start = told(tested.run("test", variables={"IR50P_RECORDINGS": None}))
+    start = told(tested.run("test"))
     assert start["argv"] == [
         *("--nbval", "--nbval-current-env", f"--nbval-cell-timeout={commands.CELL_TIMEOUT}"),
         *(str(tested.root / "tests"), str(tested.root / "notebooks")),
     ]
     assert start["cwd"] == str(tested.root)
-    assert start["IR50P_RECORDINGS"] and not Path(start["IR50P_RECORDINGS"]).exists()  # kept out of notebooks/, gone
+    assert start["IR50P_HOME"] and not Path(start["IR50P_HOME"]).exists()  # kept out of notebooks/, gone
 
 
 def test_further_arguments_go_to_pytest_and_paths_replace_the_defaults(tested):
@@ -84,18 +84,18 @@ def test_targets_run_in_the_project_with_the_test_tools(tested, tmp_path):
     folder.mkdir(parents=True)
     (folder / "__init__.py").write_text("")
     (folder / "__main__.py").write_text(TARGETS)
-    done = tested.run("targets", "vision", "--quick", variables={"IR50P_RECORDINGS": None})
+    done = tested.run("targets", "vision", "--quick")
     assert done.returncode == 7, done.stderr
     start = json.loads(done.stdout.splitlines()[-1])
     assert start["argv"] == ["vision", "--quick"] and start["cwd"] == str(tested.root)
     assert start["prefix"] == str(tested.venv)
-    assert start["recordings"] and not Path(start["recordings"]).exists()
+    assert start["home"] and not Path(start["home"]).exists()
 
 
 TARGETS = """
 import json, os, sys
 import pebble_test
-told = {"argv": sys.argv[1:], "cwd": os.getcwd(), "prefix": sys.prefix, "recordings": os.environ["IR50P_RECORDINGS"]}
+told = {"argv": sys.argv[1:], "cwd": os.getcwd(), "prefix": sys.prefix, "home": os.environ["IR50P_HOME"]}
 print(json.dumps(told))
 sys.exit(7)
 """

@@ -6,7 +6,7 @@ In a notebook:
     check("start-1", answer)    # "start-1: not answered yet. To find: ..."
 
 For instructors: solution("start-1") returns the right answer, exercises() lists the names. The progress file is
-progress.json in the project root, or the file that the environment variable IR50P_PROGRESS names.
+progress.json in the student's folder (IR50P_HOME), or the file that the environment variable IR50P_PROGRESS names.
 
 Adding exercises
 ----------------

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from datetime import datetime
 from pathlib import Path
 
+from ir50p_lab import home
 from ir50p_lab.errors import LabError
 
 _VARIABLE = "IR50P_PROGRESS"
@@ -18,17 +18,21 @@ class ProgressError(LabError):
 
 
 def progress_path() -> Path:
-    """Return where the progress file lies: $IR50P_PROGRESS, else progress.json in the project root."""
+    """Return where the progress file lies: $IR50P_PROGRESS, else progress.json in the student's folder."""
     chosen = os.environ.get(_VARIABLE)
-    if chosen:
-        return Path(chosen).expanduser()
-    root = Path(__file__).resolve().parents[3]
-    return (root if (root / "pyproject.toml").is_file() else Path.cwd()) / "progress.json"
+    return Path(chosen).expanduser() if chosen else home.home() / "progress.json"
+
+
+def _to_read() -> Path:
+    """The progress file; where there is none yet, that of earlier versions in the project's root."""
+    path, old = progress_path(), home.PROJECT / "progress.json"
+    moved = os.environ.get(_VARIABLE) or os.environ.get(home.VARIABLE)
+    return path if moved or path.exists() or not old.exists() else old
 
 
 def read_progress() -> dict[str, str]:
     """Return {exercise: time of the first right answer}; empty when there is no file yet."""
-    path = progress_path()
+    path = _to_read()
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         done = content["done"]
@@ -38,7 +42,7 @@ def read_progress() -> dict[str, str]:
         return {}
     except OSError as error:
         raise ProgressError(f"The progress file {path} cannot be read ({error.strerror}).") from error
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise ProgressError(
             f"The progress file {path} is damaged: rename or delete it, and a new one is begun."
         ) from error
@@ -55,20 +59,12 @@ def record(name: str) -> None:
 
 
 def _write(path: Path, content: dict) -> None:
-    """Write a file beside the old one, then swap: a crash leaves the old or the new one, whole."""
-    scratch = None
     try:
-        with tempfile.NamedTemporaryFile(
-            "w", encoding="utf-8", dir=path.parent, prefix=".progress-", suffix=".tmp", delete=False
-        ) as file:
-            scratch = file.name
-            file.write(json.dumps(content, indent=2) + "\n")
-        os.replace(scratch, path)
+        home.home().mkdir(parents=True, exist_ok=True)
+        home.replace_text(path, json.dumps(content, indent=2) + "\n")
     except OSError as error:
-        if scratch is not None:
-            Path(scratch).unlink(missing_ok=True)
         reason = error.strerror or type(error).__name__
         raise ProgressError(
             f"The progress file {path} cannot be written ({reason}): "
-            f"set {_VARIABLE} to a file in a folder that you may write to."
+            f"set {home.VARIABLE} to a folder that you may write to."
         ) from error
