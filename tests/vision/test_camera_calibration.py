@@ -321,13 +321,11 @@ def test_corners_that_are_refused(arguments, error, match):
         calibrate_corners(*arguments)
 
 
-def test_one_pose_again_and_again_is_refused_or_uncertain(views):
-    try:
-        found = calibrate_corners(POINTS, [views[0]] * 4, SIZE, lens=())
-    except CalibrationError as error:
-        assert "tilt" in str(error)
-    else:
-        assert found.warnings
+def test_one_pose_again_and_again_is_refused(views):
+    """One picture of a plane has eight numbers, and ten are asked of it: rounding must not make up the difference."""
+    for view in views:
+        with pytest.raises(CalibrationError, match="tilt"):
+            calibrate_corners(POINTS, [view] * 4, SIZE, lens=())
 
 
 @pytest.mark.parametrize(
@@ -355,7 +353,7 @@ def test_views_with_different_numbers_of_points(views, calibration):
     some = [slice(9 * (k % 3), None) for k in range(len(views))]
     found = calibrate_corners([POINTS[s] for s in some], [xy[s] for xy, s in zip(views, some, strict=True)], SIZE)
     assert abs(found.fx - calibration.fx) < 3 * found.stderr["fx"]
-    assert calibrate_corners(POINTS.tolist(), views, SIZE).fx == calibration.fx
+    assert calibrate_corners(POINTS.tolist(), views, SIZE).fx == pytest.approx(calibration.fx, rel=1e-9)
 
 
 @pytest.mark.parametrize("size", [(640,), "ab", None, (0, 0), (640.5, 480), (np.nan, 3), (320, 240), (480, 640)])

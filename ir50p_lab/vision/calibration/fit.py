@@ -13,6 +13,9 @@ from ir50p_lab.errors import CalibrationError
 NAMES = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
 _LENS = {"k1": (4,), "k2": (5,), "p": (6, 7), "k3": (8,)}
 LADDER = tuple(_LENS)  # terms of the lens model: p stands for the pair p1, p2
+# Of what the camera's numbers do to the corners, a board's pose can hide all but this share: then no view shows them.
+# Squared pixels, thus rounding is 1e-15; four views that are nearly one leave 1e-10.
+_SHOWN = 1e-12
 
 
 @dataclass(frozen=True)
@@ -254,6 +257,9 @@ def _with_covariance(corners, model, camera, poses):
     views = [_project(corners, i, camera, poses[i], B) for i in range(count)]
     reduced = [_reduce(*v) for v in views]
     S = sum(r[0] for r in reduced)
+    scale = np.linalg.norm(np.concatenate([v[1] for v in views]), axis=0)
+    if not np.linalg.eigvalsh(S / np.outer(scale, scale))[0] > _SHOWN:
+        raise CalibrationError("the views leave the camera undetermined: tilt the board in different directions")
     fit = Fit(camera, poses, tuple(v[0] for v in views), np.zeros((12, 12)), np.zeros((12, 12)), model)
     if 2 * fit.points <= fit.parameters:
         raise CalibrationError(
@@ -261,8 +267,6 @@ def _with_covariance(corners, model, camera, poses):
             "more views, or a board with more corners"
         )
     by_corners = fit.sigma**2 * _solve(S, np.eye(len(S)))
-    if not (np.diag(by_corners) > 0).all():
-        raise CalibrationError("the views leave the camera undetermined: tilt the board in different directions")
     by_views = np.zeros((12, 12))
     if count > 3:
         moves = np.array([_solve(S - r[0], r[1]) for r in reduced])  # what leaving out a view does, to first order
