@@ -126,6 +126,11 @@ class Bench(abc.ABC):
             self._is_open = True
         return self
 
+    @property
+    def is_open(self):
+        """Whether the arm is in hand."""
+        return self._is_open
+
     def __enter__(self):
         return self.open()
 

@@ -141,6 +141,13 @@ class Recording:
         events = [event for event in self.events if t0 <= event[0] <= t1]
         return Recording(table[(table[:, T] >= t0) & (table[:, T] <= t1)], header, notes=self.notes, events=events)
 
+    def recent(self, seconds):
+        """The last `seconds` as a Recording of its own; cheap while the run goes on."""
+        rows, count = self._rows, 1 + math.ceil(seconds / float(self.header.get("period_s", 0.01)))
+        if isinstance(rows, array):
+            rows = np.frombuffer(rows[-count * len(COLUMNS) :].tobytes()).reshape(-1, len(COLUMNS))
+        return Recording(rows[-count:], self.header)
+
     def metrics(self):
         """How each joint did: list of three JointSummary. Raises RecordingError if there is no sample."""
         from ir50p_lab.bench.recording_plot import summarise

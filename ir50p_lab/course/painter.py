@@ -1,6 +1,7 @@
 """Fast redrawing of a matplotlib figure: frames, ticks and grids are drawn once, the rest each time (blitting)."""
 
 import struct
+import threading
 import zlib
 
 import numpy as np
@@ -12,6 +13,9 @@ from mpl_toolkits.mplot3d.art3d import Line3D
 from PIL import Image
 
 from ir50p_lab.course.text_cache import TextCache
+
+# Widget callbacks may run in threads beside the cell's; matplotlib is shared by all of them.
+DRAWING = threading.RLock()
 
 
 class Painter:

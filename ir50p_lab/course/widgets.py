@@ -25,13 +25,10 @@ from typing import ClassVar
 import ipywidgets as widgets
 
 from ir50p_lab.course.controls import Slider, ends, label_of, make_control, refuse_bad_value, slider, value_of
-from ir50p_lab.course.painter import Painter
+from ir50p_lab.course.painter import DRAWING, Painter
 from ir50p_lab.errors import InputError, LabError, UnstableLoopWarning
 
 __all__ = ["LivePanel", "Slider", "exercise_all_panels", "live", "slider"]
-
-# Widget callbacks may run in threads beside the cell's; matplotlib and sys.stdout are shared by all of them.
-_DRAWING = threading.RLock()
 
 
 def live(figure, update, **controls):
@@ -75,7 +72,7 @@ class LivePanel(widgets.VBox):
         self._wanted, self._drawer, self._filler, self._quiet = None, None, None, 0
 
         said = io.StringIO()
-        with _DRAWING:
+        with DRAWING:
             self._call_update(self._start, said)  # directly: an error belongs in the cell
             self._painter = Painter(figure)
             pixels = round(figure.bbox.width)
@@ -132,7 +129,7 @@ class LivePanel(widgets.VBox):
 
     def redraw(self):
         """Draw everything anew, background included."""
-        with _DRAWING:
+        with DRAWING:
             self._painter.forget()
             self._draw(self.values)
 
@@ -194,7 +191,7 @@ class LivePanel(widgets.VBox):
 
     def _draw(self, values):
         said = io.StringIO()
-        with _DRAWING:
+        with DRAWING:
             try:
                 self._call_update(values, said)
                 self.image.value = self._painter.png()

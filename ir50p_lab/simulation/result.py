@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -45,6 +46,7 @@ class SimulationResult:
     arm: object = field(repr=False)
     g: float | None = None
     unstable: str = ""
+    simulated: ClassVar = True
 
     @cached_property
     def energy(self):

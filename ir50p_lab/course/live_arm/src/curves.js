@@ -1,0 +1,164 @@
+// Curves over time beside the arm: a plot for each joint, one for the commands, and a cursor that the player shares.
+import { contacts } from "./track.js";
+
+const JOINT = ["#0072B2", "#D55E00", "#009E73"], RUN = ["#0072B2", "#009E73"], INK = "#333333";
+const LEFT = 46, RIGHT = 10, TOP = 22, GAP = 13, BOTTOM = 34;
+
+const niceStep = (span, most) => {
+  const scale = 10 ** Math.floor(Math.log10(span / most));
+  return [1, 2, 5, 10].map((n) => n * scale).find((step) => span / step <= most);
+};
+const text = (value) => String(+value.toFixed(6)).replace("-", "\u2212");
+
+export class Curves {
+  // seek: called with the time of a press or drag on the curves.
+  constructor(limits, lengths, seek) {
+    Object.assign(this, { limits, lengths, track: null });
+    this.canvas = document.createElement("canvas");
+    this.canvas.setAttribute("role", "img");
+    const pressed = (event) => {
+      if (!this.track || !event.buttons) return;
+      const box = this.canvas.getBoundingClientRect();
+      const part = (event.clientX - box.left - LEFT) / (box.width - LEFT - RIGHT);
+      seek(this.t0 + Math.min(Math.max(part, 0), 1) * (this.t1 - this.t0));
+    };
+    this.canvas.addEventListener("pointerdown", pressed);
+    this.canvas.addEventListener("pointermove", pressed);
+  }
+
+  load(track) {
+    this.track = track;
+    this.t0 = track.start;
+    this.t1 = Math.max(track.end, track.start + 1e-3);
+    const angles = [0, 1, 2].map((joint) => ({
+      title: `joint ${joint + 1} [deg]` + (joint === 0 && track.runs[0].reference !== null ? ", set point dashed" : ""), least: 4,
+      lines: track.runs.flatMap((run, k) => [
+        ...(run.reference === null ? [] : [{ column: run.reference + joint, colour: INK, dash: [5, 4], scale: 180 / Math.PI }]),
+        { column: run.q + joint, colour: track.runs.length > 1 ? RUN[k] : JOINT[joint], scale: 180 / Math.PI },
+      ]),
+    }));
+    const driven = track.runs.filter((run) => run.u !== null).slice(0, 1);
+    const commands = driven.map((run) => ({
+      title: `command [${track.unit}]` + (track.runs.length > 1 ? `, ${run.label}` : ""), least: 1,
+      lines: [0, 1, 2].map((joint) => ({ column: run.u + joint, colour: JOINT[joint], scale: 1, stairs: true, name: `${joint + 1}` })),
+    }));
+    this.plots = [...angles, ...commands].map((plot) => ({ ...plot, range: this.range(plot) }));
+    const said = track.runs.map((run) => run.label).join(" and ");
+    this.canvas.setAttribute("aria-label", `angles of the three joints over time, ${said}; set point dashed`);
+    this.picture = null;
+  }
+
+  range({ lines, least }) {
+    let low = Infinity, high = -Infinity;
+    for (const { column, scale } of lines) {
+      for (let row = 0; row < this.track.rows; row++) {
+        const value = this.track.value(row, column) * scale;
+        if (value < low) low = value;
+        if (value > high) high = value;
+      }
+    }
+    if (!(low <= high)) return [-1, 1];
+    const spare = 0.08 * Math.max(high - low, least);
+    return [low - spare, high + spare];
+  }
+
+  // The curves once, as a picture; then only the cursor moves over it.
+  draw(t, width, height) {
+    const dots = Math.min(window.devicePixelRatio || 1, 2), across = Math.round(width * dots), down = Math.round(height * dots);
+    if (!this.picture || this.picture.width !== across || this.picture.height !== down) {
+      this.picture = Object.assign(document.createElement("canvas"), { width: across, height: down });
+      const pen = this.picture.getContext("2d");
+      pen.scale(dots, dots);
+      this.drawPlots(pen, width, height);
+      Object.assign(this.canvas, { width: across, height: down });
+      Object.assign(this.canvas.style, { width: width + "px", height: height + "px" });
+    }
+    const pen = this.canvas.getContext("2d");
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.drawImage(this.picture, 0, 0);
+    pen.scale(dots, dots);
+    const x = LEFT + ((t - this.t0) / (this.t1 - this.t0)) * (width - LEFT - RIGHT);
+    pen.strokeStyle = "#CC79A7";
+    pen.lineWidth = 1.6;
+    pen.beginPath();
+    pen.moveTo(x, TOP - 4);
+    pen.lineTo(x, height - BOTTOM);
+    pen.stroke();
+    const row = this.track.row(t);
+    for (const plot of this.plots) {
+      for (const { column, colour, scale, dash } of plot.lines) {
+        if (dash) continue;
+        pen.fillStyle = colour;
+        pen.beginPath();
+        pen.arc(x, plot.Y(this.track.value(row, column) * scale), 3, 0, 2 * Math.PI);
+        pen.fill();
+      }
+    }
+  }
+
+  drawPlots(pen, width, height) {
+    const w = width - LEFT - RIGHT, h = (height - TOP - BOTTOM - GAP * (this.plots.length - 1)) / this.plots.length;
+    const X = (t) => LEFT + ((t - this.t0) / (this.t1 - this.t0)) * w;
+    pen.fillStyle = "#ffffff";
+    pen.fillRect(0, 0, width, height);
+    const xStep = niceStep(this.t1 - this.t0, 6);
+    this.plots.forEach((plot, k) => {
+      const y0 = TOP + k * (h + GAP), [low, high] = plot.range;
+      plot.Y = (value) => y0 + h - ((value - low) / (high - low)) * h;
+      this.shadeContacts(pen, k, X, y0, h);
+      Object.assign(pen, { lineWidth: 1, strokeStyle: "#E6E6E6", fillStyle: "#555555", font: "11px sans-serif", textBaseline: "middle" });
+      pen.setLineDash([]);
+      const rule = (x1, y1, x2, y2) => { pen.beginPath(); pen.moveTo(x1, y1); pen.lineTo(x2, y2); pen.stroke(); };
+      const yStep = niceStep(high - low, Math.max(2, Math.floor(h / 24)));
+      pen.textAlign = "right";
+      for (let value = Math.ceil(low / yStep) * yStep; value <= high; value += yStep) {
+        rule(LEFT, plot.Y(value), LEFT + w, plot.Y(value));
+        pen.fillText(text(value), LEFT - 5, plot.Y(value));
+      }
+      pen.textAlign = "center";
+      for (let t = Math.ceil(this.t0 / xStep - 1e-6) * xStep; t <= this.t1 + 1e-6; t += xStep) {
+        rule(X(t), y0, X(t), y0 + h);
+        if (k === this.plots.length - 1) pen.fillText(text(t), X(t), y0 + h + 10);
+      }
+      pen.strokeStyle = "#666666";
+      rule(LEFT, y0, LEFT, y0 + h);
+      rule(LEFT, y0 + h, LEFT + w, y0 + h);
+      for (const line of plot.lines) this.stroke(pen, line, X, plot.Y);
+      pen.setLineDash([]);
+      Object.assign(pen, { fillStyle: INK, textAlign: "left", font: "600 11px sans-serif", lineWidth: 4, strokeStyle: "#ffffffee" });
+      pen.strokeText(plot.title, LEFT + 6, y0 + 3);
+      pen.fillText(plot.title, LEFT + 6, y0 + 3);
+    });
+    Object.assign(pen, { textAlign: "center", fillStyle: INK, font: "12px sans-serif" });
+    pen.fillText("time [s]", LEFT + w / 2, height - 9);
+  }
+
+  stroke(pen, { column, colour, dash = [], scale, stairs, name }, X, Y) {
+    Object.assign(pen, { strokeStyle: colour, lineWidth: dash.length ? 1.3 : 1.8, lineJoin: "round" });
+    pen.setLineDash(dash);
+    pen.beginPath();
+    let last = null;
+    for (let row = 0; row < this.track.rows; row++) {
+      const x = X(this.track.time(row)), y = Y(this.track.value(row, column) * scale);
+      if (stairs && last !== null) pen.lineTo(x, last);
+      pen.lineTo(x, y);
+      last = y;
+    }
+    pen.stroke();
+    if (!name) return;
+    Object.assign(pen, { fillStyle: colour, font: "600 11px sans-serif", textAlign: "left" });
+    pen.fillText(name, X(this.t1) + 3, last);
+  }
+
+  // Amber where a joint is at its stop, and under all joints where the arm touches the table.
+  shadeContacts(pen, joint, X, y0, h) {
+    if (joint > 2) return;
+    pen.fillStyle = "#E69F0033";
+    for (let row = 0; row + 1 < this.track.rows; row++) {
+      const q = [0, 1, 2].map((i) => this.track.value(row, this.track.runs[0].q + i));
+      const { stops, table } = contacts(this.lengths, this.limits, q);
+      const from = X(this.track.time(row));
+      if (stops[joint] || table) pen.fillRect(from, y0, X(this.track.time(row + 1)) - from + 0.5, h);
+    }
+  }
+}

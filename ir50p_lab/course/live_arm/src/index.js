@@ -1,0 +1,468 @@
+// LiveArm in the browser: an anywidget's render, and mount() for a page without a kernel.
+// State (see __init__.py): lengths, limits, q, options, layers, things, poses, track, shape.
+import { Matrix4, Mesh, MeshBasicMaterial, PerspectiveCamera, Plane, Raycaster, Group, SphereGeometry, Vector2, Vector3 } from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Curves } from "./curves.js";
+import { frames, jacobian, reach, tip } from "./kinematics.js";
+import { jointSliders, layout, make, playerBar } from "./page.js";
+import * as renderer from "./renderer.js";
+import { COLOURS, Robot } from "./robot.js";
+import { Layers, makeScene, Trail } from "./stage.js";
+import { contacts, Track } from "./track.js";
+
+const REST = 160; // ms without motion until the fine picture is drawn
+const EVERY = 33; // ms between two messages to the kernel
+
+class View {
+  constructor(model, el) {
+    this.model = model;
+    this.l = model.get("lengths");
+    this.limits = model.get("limits");
+    this.options = model.get("options");
+    this.size = this.l[1] + this.l[2];
+    this.q = [...model.get("q")];
+    this.on = new Set(model.get("layers"));
+    this.parts = layout();
+    el.append(this.parts.box);
+    this.makeScene();
+    this.makePage();
+    this.listen();
+    renderer.enter(this);
+    this.loadTrack();
+    this.moved();
+    this.parts.box.liveArm = this; // for tests in a browser
+  }
+
+  // ---- the scene
+
+  makeScene() {
+    this.scene = makeScene(this.size);
+    this.layers = new Layers(this.scene, { lengths: this.l, limits: this.limits }, this.model.get("things"));
+    this.robot = new Robot(this.l);
+    this.ghost = new Robot(this.l, { upper: "#8a8f98", fore: "#8a8f98", opacity: 0.3 });
+    this.second = new Robot(this.l, { upper: COLOURS.second, fore: COLOURS.second });
+    this.shade = new Robot(this.l, { shadow: true }); // the arm pressed flat: a shadow without a shadow map
+    this.shadow = new Group().add(this.shade.root);
+    this.shadow.scale.z = 1e-4;
+    this.shadow.position.z = 0.0012;
+    this.trails = [new Trail(COLOURS.trail), new Trail(COLOURS.second)];
+    this.lost = new Trail(COLOURS.target, 2);
+    this.target = new Mesh(new SphereGeometry(0.014 * this.size, 20, 14), new MeshBasicMaterial({ color: COLOURS.target }));
+    this.nearest = new Mesh(new SphereGeometry(0.01 * this.size, 20, 14), new MeshBasicMaterial({ color: COLOURS.dark }));
+    this.target.visible = this.nearest.visible = this.ghost.root.visible = this.second.root.visible = false;
+    this.scene.add(this.robot.root, this.ghost.root, this.second.root, this.shadow, this.target, this.nearest);
+    this.scene.add(...this.trails.map((trail) => trail.line), this.lost.line);
+    this.camera = new PerspectiveCamera(30, 16 / 9, 0.01, 60);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, this.parts.canvas);
+    this.controls.enableZoom = false; // the wheel scrolls the page until the view is clicked
+    this.controls.addEventListener("change", () => this.soon());
+    this.lookFromStart();
+  }
+
+  lookFromStart() {
+    this.camera.position.set(1.55 * this.size, -2.6 * this.size, this.l[0] + 1.1 * this.size);
+    this.controls.target.set(0, 0, this.l[0] + 0.06 * this.size);
+    this.controls.update();
+  }
+
+  // Draw when something changed, at most once a frame; finely when all has come to rest.
+  soon() {
+    if (this.wanted || this.closed) return;
+    this.wanted = true;
+    requestAnimationFrame(() => {
+      this.wanted = false;
+      this.draw(true);
+      clearTimeout(this.fine);
+      this.fine = setTimeout(() => this.draw(false), REST);
+    });
+  }
+
+  draw(moving) {
+    if (this.closed || !this.seen || !this.width) return;
+    this.shadow.visible = !(moving && renderer.isSlow());
+    for (const { material } of [...this.trails, this.lost]) material.resolution.set(this.width, this.height);
+    renderer.paint(this, moving);
+    if (this.track) this.curves.draw(this.time, this.sideWidth, this.height);
+  }
+
+  // ---- the page around it
+
+  makePage() {
+    const { parts, options } = this;
+    this.canvas = parts.canvas;
+    parts.badge.textContent = options.badge;
+    parts.badge.classList.toggle("yours", options.badge === "yours");
+    parts.badge.title = "whose code moves this arm";
+    this.showJoints = jointSliders(parts.joints, this.limits, (i, value) => {
+      this.pause();
+      this.pose(this.q.map((old, k) => (k === i ? value : old)), true);
+    });
+    parts.joints.hidden = !options.sliders;
+    const clear = make("button", { textContent: "clear trail" });
+    clear.addEventListener("click", () => { this.written = []; this.trails[0].set([]); this.soon(); });
+    for (const name of [...Object.keys(this.layers.all), "ghost", "trail", "shadow"]) {
+      const tick = make("input", { type: "checkbox", checked: this.on.has(name) });
+      tick.addEventListener("change", () => {
+        this.on[tick.checked ? "add" : "delete"](name);
+        this.model.set("layers", [...this.on]);
+        this.model.save_changes();
+        this.moved();
+      });
+      parts.layers.append(make("label", {}, {}, tick, ` ${name}`));
+    }
+    parts.layers.append(clear);
+    this.written = [];
+    this.showPlayer = playerBar(parts.player, {
+      toggle: () => (this.playing ? this.pause() : this.play()),
+      seek: (part) => this.seek(this.track.start + part * (this.track.end - this.track.start)),
+      speed: (rate) => { this.rate = rate; },
+      loop: () => { this.again = !this.again; this.seen && this.tellPlayer(); },
+    });
+    this.curves = new Curves(this.limits, this.l, (t) => this.seek(t));
+    parts.side.append(this.curves.canvas);
+  }
+
+  // ---- poses
+
+  // Move to q; tell: the kernel is to hear of it.
+  pose(q, tell = false) {
+    this.q = q;
+    if (this.options.frames === "function") this.ask({ frames: q });
+    if (tell) {
+      this.write();
+      this.tell();
+    }
+    this.moved();
+  }
+
+  // Everything that follows from the pose.
+  moved() {
+    const own = this.model.get("poses");
+    const given = this.options.frames && own.length ? own.map((rows) => new Matrix4().set(...rows.flat())) : null;
+    const transforms = given ?? frames(this.l, this.q);
+    this.robot.place(transforms);
+    this.shade.place(transforms);
+    this.layers.place(transforms, this.q);
+    this.layers.show([...this.on]);
+    this.shade.root.visible = this.on.has("shadow");
+    this.trails.forEach((trail) => { trail.line.visible = this.on.has("trail"); });
+    this.tipAt = new Vector3().setFromMatrixPosition(transforms[3]).toArray();
+    const { stops, table } = contacts(this.l, this.limits, this.q);
+    this.robot.alarm(this.track ? stops : [false, false, false]);
+    if (!this.dragging && !this.error) {
+      const touched = this.track ? [...stops.flatMap((at, i) => (at ? [`joint ${i + 1} at its stop`] : [])), ...(table ? ["touches the table"] : [])] : [];
+      this.say(touched.join(", "));
+    }
+    const [x, y, z] = this.tipAt.map((v) => v.toFixed(3).replace("-", "\u2212"));
+    this.parts.tip.textContent = `tip ${x}, ${y}, ${z} m`;
+    this.canvas.setAttribute("aria-label", `the arm in 3-D, tip at x ${x} m, y ${y} m, z ${z} m; arrow keys turn the view`);
+    this.showJoints(this.q);
+    this.soon();
+  }
+
+  say(text) {
+    this.parts.note.textContent = text;
+  }
+
+  // The trail that the hand writes.
+  write() {
+    const at = tip(this.l, this.q), last = this.written.at(-1);
+    if (last && Math.hypot(...at.map((v, i) => v - last[i])) < 0.002) return;
+    this.written = [...this.written, at].slice(-3000);
+    if (!this.track) this.trails[0].set(this.written);
+  }
+
+  // ---- the kernel
+
+  // One message of a kind is under way at most; of those that wait only the last is sent.
+  ask(message) {
+    const kind = Object.keys(message)[0];
+    this.waiting ??= {};
+    if (this.waiting[kind]) { this.waiting[kind].next = message; return; }
+    this.waiting[kind] = { next: null };
+    this.model.send(message);
+  }
+
+  answered(kind) {
+    const next = this.waiting?.[kind]?.next;
+    if (this.waiting) this.waiting[kind] = null;
+    if (next) this.ask(next);
+  }
+
+  tell() {
+    this.telling ??= setTimeout(() => {
+      this.telling = null;
+      this.told = performance.now();
+      this.model.set("q", [...this.q]);
+      this.model.save_changes();
+    }, Math.max(0, EVERY - (performance.now() - (this.told ?? 0))));
+  }
+
+  listen() {
+    const { model, canvas } = this, { box, stage } = this.parts;
+    this.heard = {
+      "change:q": () => { if (!this.dragging && !this.telling && !this.playing) this.pose([...model.get("q")]); },
+      "change:poses": () => this.moved(),
+      "change:layers": () => { this.on = new Set(model.get("layers")); this.moved(); },
+      "change:track": () => this.loadTrack(),
+      "msg:custom": (message, buffers) => this.message(message, buffers),
+    };
+    for (const [event, handler] of Object.entries(this.heard)) model.on(event, handler);
+    this.sizes = new ResizeObserver(() => this.resize());
+    this.sizes.observe(box);
+    this.sight = new IntersectionObserver((entries) => {
+      this.seen = entries.at(-1).isIntersecting;
+      if (this.seen) this.soon();
+    }, { rootMargin: "200px" });
+    this.sight.observe(stage);
+    this.listenToHand();
+    canvas.addEventListener("keydown", (event) => this.key(event));
+    canvas.addEventListener("focus", () => { this.controls.enableZoom = true; });
+    canvas.addEventListener("blur", () => { this.controls.enableZoom = false; });
+    canvas.addEventListener("pointerdown", () => canvas.focus({ preventScroll: true }));
+  }
+
+  message(message, buffers) {
+    if (message.live) this.live(new Track(buffers[0], message.live));
+    if (message.posed) this.answered("frames");
+    if ("dragged" in message) {
+      this.answered("drag");
+      this.error = message.error ?? null;
+      if (message.error) this.say(message.error);
+      else this.followed(message.dragged, "kernel");
+    }
+  }
+
+  resize() {
+    const wide = this.parts.box.clientWidth;
+    if (!wide) return;
+    this.parts.side.hidden = !this.track;
+    this.height = this.options.height;
+    this.width = this.parts.stage.clientWidth;
+    this.sideWidth = Math.max(this.parts.side.clientWidth, 240);
+    this.canvas.style.height = this.height + "px";
+    this.camera.aspect = this.width / this.height;
+    this.camera.fov = 30 * Math.max(1, 1.25 / this.camera.aspect); // a narrow view shows the whole arm too
+    this.camera.updateProjectionMatrix();
+    this.soon();
+  }
+
+  // ---- hand and keys
+
+  listenToHand() {
+    const { canvas } = this, ray = new Raycaster(), plane = new Plane(), hit = new Vector3(), eye = new Vector3();
+    const aim = (event) => {
+      const box = canvas.getBoundingClientRect();
+      ray.setFromCamera(new Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height), this.camera);
+    };
+    const overTip = () => ray.ray.distanceToPoint(new Vector3(...this.tipAt)) < 0.06 * this.size;
+    canvas.addEventListener("pointerdown", (event) => { // in the capture phase: before OrbitControls
+      aim(event);
+      if (!overTip() || this.isLive) return;
+      event.stopImmediatePropagation();
+      this.pause();
+      this.dragging = true;
+      canvas.focus({ preventScroll: true });
+      canvas.setPointerCapture(event.pointerId);
+      plane.setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(eye), new Vector3(...this.tipAt));
+    }, true);
+    canvas.addEventListener("pointermove", (event) => {
+      aim(event);
+      if (!this.dragging) {
+        canvas.style.cursor = overTip() ? "grab" : "default";
+        return;
+      }
+      if (ray.ray.intersectPlane(plane, hit)) this.drag([hit.x, hit.y, Math.max(hit.z, 0)]);
+    });
+    const release = () => {
+      if (!this.dragging) return;
+      this.dragging = this.target.visible = this.nearest.visible = false;
+      this.lost.set([]);
+      this.moved();
+    };
+    canvas.addEventListener("pointerup", release);
+    canvas.addEventListener("pointercancel", release);
+  }
+
+  // The hand wants the tip at p.
+  drag(p) {
+    this.wantedAt = p;
+    this.best = reach(this.l, this.limits, p, this.q);
+    if (this.options.drag === "kernel" && !this.model.isPage) this.ask({ drag: p, q: this.q });
+    else this.followed(this.best.q, "browser");
+    this.soon();
+  }
+
+  // An answer to the hand: q, or null for none. Shows what is missing to the point wanted.
+  followed(q, whose) {
+    if (q) this.pose(q, whose === "browser");
+    if (q && whose === "kernel") this.write();
+    if (!this.dragging) return;
+    const at = q ? tip(this.l, q) : tip(this.l, this.best.q), away = Math.hypot(...at.map((v, i) => v - this.wantedAt[i]));
+    this.target.position.set(...this.wantedAt);
+    this.nearest.position.set(...at);
+    this.target.visible = true;
+    this.nearest.visible = away > 0.001;
+    this.lost.set(away > 0.001 ? [at, this.wantedAt] : []);
+    const millimetres = `${(1000 * away).toFixed(0)} mm`;
+    if (q) this.say(away > 0.001 ? `out of reach by ${millimetres}; the black point is the nearest` : "");
+    else this.say(away > 0.001 ? `no solution here: the nearest point is ${millimetres} away` : "no solution, although this point can be reached");
+    this.soon();
+  }
+
+  key(event) {
+    const offset = this.camera.position.clone().sub(this.controls.target), up = this.camera.up;
+    const aside = new Vector3().crossVectors(up, offset).normalize(), angle = offset.angleTo(up);
+    const turn = { ArrowLeft: -0.06, ArrowRight: 0.06 }[event.key], tilt = { ArrowUp: -0.06, ArrowDown: 0.06 }[event.key];
+    const zoom = { "+": 0.92, "=": 0.92, "-": 1.08 }[event.key];
+    if (turn) offset.applyAxisAngle(up, turn);
+    else if (tilt && angle + tilt > 0.05 && angle + tilt < 3.1) offset.applyAxisAngle(aside, tilt);
+    else if (zoom) offset.multiplyScalar(zoom);
+    else if (event.key === "Home") { this.lookFromStart(); return event.preventDefault(); }
+    else if (event.key === " " && this.track) { this.playing ? this.pause() : this.play(); return event.preventDefault(); }
+    else return;
+    event.preventDefault();
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.soon();
+  }
+
+  // ---- motions
+
+  loadTrack() {
+    const bytes = this.model.get("track"), shape = this.model.get("shape");
+    this.isLive = false;
+    this.pause();
+    this.take(bytes?.byteLength ? new Track(bytes, shape) : null);
+    if (!this.track) return;
+    this.rate = this.options.speed;
+    this.again = this.options.loop;
+    this.seek(this.track.start);
+  }
+
+  take(track) {
+    this.track = track?.rows ? track : null;
+    this.parts.player.hidden = this.parts.side.hidden = !this.track;
+    const runs = this.track?.runs ?? [];
+    this.ghost.root.visible = this.second.root.visible = false;
+    this.trails.forEach((trail, k) => trail.set(runs[k] ? this.track.path(this.l, runs[k].q) : k ? [] : this.written));
+    if (this.track) this.curves.load(this.track);
+    this.trails[0].material.color.set(runs.length > 1 ? COLOURS.upper : COLOURS.trail);
+    const chips = runs.length > 1 ? [["#0072B2", runs[0].label], [COLOURS.second, runs[1].label]] : runs.map((run) => [null, run.label]);
+    const words = this.track?.source ? [[null, this.track.source]] : [];
+    const ghost = runs.some((run) => run.reference !== null) ? [["#8a8f9888", "set point"]] : [];
+    this.parts.legend.replaceChildren(...[...chips, ...ghost, ...words].filter(([, name]) => name).map(([colour, name]) =>
+      make("span", {}, {}, ...(colour ? [make("i", { style: `background:${colour}` })] : []), name)));
+    this.resize();
+  }
+
+  // A window of samples that has just come: show the last.
+  live(track) {
+    const first = !this.isLive;
+    this.isLive = true;
+    this.playing = false;
+    if (first) this.on.add("trail");
+    this.take(track);
+    if (this.track) this.seek(this.track.end);
+  }
+
+  seek(t) {
+    const { track } = this, [first, second] = track.runs;
+    this.time = Math.min(Math.max(t, track.start), track.end);
+    const row = track.row(this.time);
+    this.trails.forEach((trail) => trail.show(row + 1));
+    const wanted = first.reference === null ? null : track.at(this.time, first.reference);
+    this.ghost.root.visible = this.on.has("ghost") && wanted !== null && wanted.every(Number.isFinite);
+    if (this.ghost.root.visible) this.ghost.place(frames(this.l, wanted));
+    this.second.root.visible = Boolean(second);
+    if (second) this.second.place(frames(this.l, track.at(this.time, second.q)));
+    this.pose(track.at(this.time, first.q));
+    this.tellPlayer();
+  }
+
+  tellPlayer() {
+    const { track, time, playing, isLive, rate, again } = this;
+    this.showPlayer({ t: time, start: track.start, end: track.end, playing, live: isLive, rate: rate ?? 1, again });
+  }
+
+  play() {
+    if (this.time >= this.track.end) this.time = this.track.start;
+    this.playing = true;
+    let last = null;
+    const tick = (now) => {
+      if (!this.playing || this.closed) return;
+      const next = this.time + (last === null ? 0 : ((now - last) / 1000) * this.rate);
+      last = now;
+      if (next >= this.track.end && !this.again) this.playing = false;
+      this.seek(next >= this.track.end && this.again ? this.track.start : next);
+      if (this.playing) requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  }
+
+  pause() {
+    if (!this.playing) return;
+    this.playing = false;
+    this.tellPlayer();
+    this.tell();
+  }
+
+  // For tests: where on the page a point of the base frame is seen.
+  onPage(p) {
+    const at = new Vector3(...p).project(this.camera), box = this.canvas.getBoundingClientRect();
+    return [box.left + ((at.x + 1) / 2) * box.width, box.top + ((1 - at.y) / 2) * box.height];
+  }
+
+  close() {
+    this.closed = true;
+    clearTimeout(this.fine);
+    clearTimeout(this.telling);
+    this.sizes.disconnect();
+    this.sight.disconnect();
+    this.controls.dispose();
+    for (const [event, handler] of Object.entries(this.heard)) this.model.off(event, handler);
+    renderer.leave(this);
+    this.scene.traverse((thing) => {
+      thing.geometry?.dispose();
+      thing.material?.map?.dispose();
+      thing.material?.dispose();
+    });
+  }
+}
+
+// Without WebGL the kernel draws: a picture of the same view.
+function picture({ model, el }) {
+  const image = make("img", { alt: "the arm" }, { style: "max-width: 100%" });
+  const show = (message, buffers) => {
+    if (message.picture) image.src = URL.createObjectURL(new Blob([buffers[0]], { type: "image/png" }));
+  };
+  const ask = () => model.send({ picture: true });
+  model.on("msg:custom", show);
+  model.on("change:q", ask);
+  el.append(image);
+  ask();
+  return () => { model.off("msg:custom", show); model.off("change:q", ask); };
+}
+
+export function render({ model, el }) {
+  if (!renderer.possible()) return picture({ model, el });
+  const view = new View(model, el);
+  return () => view.close();
+}
+
+// On a page without a kernel. state: as the widget's, track as base64. Returns whether the view could be made.
+export function mount(el, state) {
+  if (!renderer.possible()) return false;
+  const bytes = Uint8Array.from(atob(state.track), (letter) => letter.charCodeAt(0));
+  const values = { ...state, track: bytes };
+  const model = {
+    isPage: true, get: (name) => values[name], set: (name, value) => { values[name] = value; },
+    save_changes() {}, send() {}, on() {}, off() {},
+  };
+  el.replaceChildren();
+  new View(model, el);
+  return true;
+}
+
+export const inspect = { figures: renderer.figures, frames: (l, q) => frames(l, q).map((T) => T.clone().transpose().toArray()), jacobian, reach, tip };

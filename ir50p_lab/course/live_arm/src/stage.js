@@ -1,0 +1,181 @@
+// What stands around the arm: light, table, and the layers that can be switched on and off.
+import {
+  ArrowHelper, BoxGeometry, BufferGeometry, CanvasTexture, CircleGeometry, Color, DirectionalLight, DoubleSide,
+  Float32BufferAttribute, Group, HemisphereLight, LineBasicMaterial, LineDashedMaterial, LineSegments,
+  Matrix4, Mesh, MeshBasicMaterial, MeshPhongMaterial, PlaneGeometry, PolarGridHelper, Scene, SphereGeometry, Sprite,
+  SRGBColorSpace,  SpriteMaterial, Vector3,
+} from "three";
+import { Line2 } from "three/addons/lines/Line2.js";
+import { LineGeometry } from "three/addons/lines/LineGeometry.js";
+import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { jacobian, tip } from "./kinematics.js";
+import { COLOURS } from "./robot.js";
+
+export function makeScene(reach) {
+  const scene = new Scene();
+  scene.background = new Color("#fbfcfd");
+  const sun = new DirectionalLight("#ffffff", 2.4), fill = new DirectionalLight("#dfe9ff", 0.7);
+  sun.position.set(0.5 * reach, -1.6 * reach, 3 * reach);
+  fill.position.set(-2 * reach, 1.5 * reach, 1.2 * reach);
+  scene.add(sun, fill, new HemisphereLight("#ffffff", "#c9ced6", 1.5));
+  return scene;
+}
+
+function texture(canvas) {
+  return Object.assign(new CanvasTexture(canvas), { colorSpace: SRGBColorSpace, anisotropy: 4 });
+}
+
+// A text that faces the eye; size: its height, m.
+export function label(text, colour, size) {
+  const canvas = document.createElement("canvas"), pen = canvas.getContext("2d"), font = "600 44px sans-serif";
+  pen.font = font;
+  canvas.width = Math.ceil(pen.measureText(text).width) + 16;
+  canvas.height = 60;
+  Object.assign(pen, { font, textBaseline: "middle", lineWidth: 8, strokeStyle: "#ffffffdd", fillStyle: colour, lineJoin: "round" });
+  pen.strokeText(text, 8, 31);
+  pen.fillText(text, 8, 31);
+  const sprite = new Sprite(new SpriteMaterial({ map: texture(canvas), depthTest: false, transparent: true }));
+  sprite.scale.set((size * canvas.width) / canvas.height, size, 1);
+  sprite.renderOrder = 10;
+  return sprite;
+}
+
+// A line of `width` CSS pixels through points, of which the first n can be shown.
+export class Trail {
+  constructor(colour, width = 2.5, most = 3000) {
+    this.points = new Float32Array(3 * most);
+    this.material = new LineMaterial({ color: colour, linewidth: width });
+    this.line = new Line2(new LineGeometry(), this.material);
+    this.line.frustumCulled = false;
+    this.set([]);
+  }
+
+  set(points) { // [[x, y, z], ...] m
+    this.count = Math.min(points.length, this.points.length / 3);
+    const flat = points.length > 1 ? points.flat() : [0, 0, 0, 0, 0, 0];
+    this.line.geometry.dispose();
+    this.line.geometry = new LineGeometry().setPositions(flat);
+    this.show(points.length);
+  }
+
+  show(n) {
+    this.line.geometry.instanceCount = Math.max(n - 1, 0);
+  }
+}
+
+function axes(length, name) {
+  const group = Object.assign(new Group(), { matrixAutoUpdate: false });
+  ["x", "y", "z"].forEach((axis, i) => {
+    const along = new Vector3().setComponent(i, 1);
+    const arrow = new ArrowHelper(along, new Vector3(), length, COLOURS[axis], 0.22 * length, 0.13 * length);
+    const letter = label(axis + name, COLOURS[axis], 0.38 * length);
+    letter.position.copy(along.multiplyScalar(1.18 * length));
+    group.add(arrow, letter);
+  });
+  return group;
+}
+
+function ellipsoid(colour) {
+  const look = { color: colour, transparent: true, opacity: 0.35, side: DoubleSide, depthWrite: false };
+  const mesh = new Mesh(new SphereGeometry(1, 40, 24), new MeshPhongMaterial(look));
+  return Object.assign(mesh, { matrixAutoUpdate: false });
+}
+
+function thin(points, colour, dashed = false) {
+  const look = dashed ? new LineDashedMaterial({ color: colour, dashSize: 0.02, gapSize: 0.012 }) : new LineBasicMaterial({ color: colour });
+  const line = new LineSegments(new BufferGeometry().setAttribute("position", new Float32BufferAttribute(points.flat(), 3)), look);
+  return dashed ? line.computeLineDistances() : line;
+}
+
+const matrixOf = (rows) => new Matrix4().set(...rows.flat());
+
+function checkerboard({ T, square, pattern: [columns, rows] }) {
+  const canvas = document.createElement("canvas"), pen = canvas.getContext("2d");
+  Object.assign(canvas, { width: 40 * (columns + 1), height: 40 * (rows + 1) });
+  for (let i = 0; i <= columns; i++) {
+    for (let j = 0; j <= rows; j++) {
+      pen.fillStyle = (i + j) % 2 ? "#ffffff" : "#1b1e22";
+      pen.fillRect(40 * i, 40 * j, 40, 40);
+    }
+  }
+  const sheet = new PlaneGeometry((columns + 1) * square, (rows + 1) * square);
+  sheet.translate(((columns - 1) / 2) * square, ((rows - 1) / 2) * square, 0.001); // the origin is the first inner corner
+  const mesh = new Mesh(sheet, new MeshBasicMaterial({ map: texture(canvas), side: DoubleSide }));
+  return Object.assign(mesh, { matrixAutoUpdate: false, matrix: matrixOf(T) });
+}
+
+// K (3, 3), size [width, height] in pixels, T: camera to base coordinates.
+function frustum({ T, K, size: [width, height] }, reach) {
+  const depth = 0.25 * reach, corner = (u, v) => [((u - K[0][2]) / K[0][0]) * depth, ((v - K[1][2]) / K[1][1]) * depth, depth];
+  const corners = [corner(0, 0), corner(width, 0), corner(width, height), corner(0, height)];
+  const edges = corners.flatMap((point, i) => [[0, 0, 0], point, point, corners[(i + 1) % 4]]);
+  const group = Object.assign(new Group(), { matrixAutoUpdate: false, matrix: matrixOf(T) });
+  const body = new Mesh(new BoxGeometry(0.05, 0.035, 0.045).translate(0, 0, -0.024), new MeshPhongMaterial({ color: COLOURS.dark }));
+  return group.add(thin(edges, "#7a3b69"), body);
+}
+
+// The reachable part of the plane of the arm: curves with one joint at an end of its travel, or the arm stretched.
+function workspace(l, [, second, third]) {
+  const bends = third[0] < 0 && third[1] > 0 ? [third[0], 0, third[1]] : third, curves = [];
+  const sweep = (from, to, pose) => {
+    const curve = Array.from({ length: 61 }, (_, k) => tip(l, pose(from + ((to - from) * k) / 60)));
+    curves.push(...curve.slice(1).flatMap((point, k) => [curve[k], point]));
+  };
+  bends.forEach((bend) => sweep(...second, (q2) => [0, q2, bend]));
+  second.forEach((q2) => sweep(...third, (bend) => [0, q2, bend]));
+  return thin(curves, "#56B4E9");
+}
+
+// All layers by name: Object3D each. Only what can be shown is there.
+export class Layers {
+  constructor(scene, { lengths, limits }, things) {
+    const reach = lengths[1] + lengths[2];
+    this.lengths = lengths;
+    const table = new Group(), top = new Mesh(new CircleGeometry(1.12 * reach, 96), new MeshBasicMaterial({ color: "#eef1f4", side: DoubleSide }));
+    const grid = new PolarGridHelper(1.1 * reach, 12, Math.round(11 * reach), 96, "#d3d9e0", "#d3d9e0").rotateX(Math.PI / 2);
+    grid.position.z = 0.0006;
+    table.add(top, grid);
+    this.triads = [0, 1, 2, 3].map((i) => axes(0.17 * reach, String(i)));
+    this.joints = [1, 2, 3].map((i) => {
+      const name = label(`joint ${i}`, COLOURS.dark, 0.07 * reach);
+      name.position.z = 0.3 * reach;
+      const group = Object.assign(new Group(), { matrixAutoUpdate: false });
+      return group.add(thin([[0, 0, -0.25 * reach], [0, 0, 0.27 * reach]], COLOURS.dark, true), name);
+    });
+    this.velocity = ellipsoid("#56B4E9");
+    this.force = ellipsoid(COLOURS.target);
+    this.space = workspace(lengths, limits);
+    this.all = {
+      table, frames: new Group().add(...this.triads), "joint axes": new Group().add(...this.joints),
+      "velocity ellipsoid": this.velocity, "force ellipsoid": this.force, workspace: this.space,
+    };
+    if (things.ball) {
+      const { p, radius } = things.ball;
+      this.all.ball = new Mesh(new SphereGeometry(radius, 32, 24), new MeshPhongMaterial({ color: COLOURS.ball, shininess: 60 }));
+      this.all.ball.position.set(...p);
+    }
+    if (things.board) this.all.board = checkerboard(things.board);
+    if (things.camera) this.all.camera = frustum(things.camera, reach);
+    scene.add(...Object.values(this.all));
+  }
+
+  // on: names to be shown.
+  show(on) {
+    for (const [name, thing] of Object.entries(this.all)) thing.visible = on.includes(name);
+  }
+
+  place(transforms, q) {
+    transforms.forEach((matrix, i) => this.triads[i].matrix.copy(matrix));
+    this.joints.forEach((group, i) => group.matrix.copy(transforms[i]));
+    this.space.rotation.z = q[0];
+    const J = jacobian(this.lengths, q), at = new Vector3().setFromMatrixPosition(transforms[3]);
+    const size = 0.25, speed = new Matrix4().set(...J.flatMap((row) => [...row, 0]), 0, 0, 0, 1);
+    // J carries the ball of unit joint rates onto the velocity ellipsoid, its inverse transpose that of unit torques
+    // onto the force ellipsoid; at a singular pose the latter has no end
+    const singular = Math.abs(speed.determinant()) < 1e-4;
+    this.force.scale.setScalar(1);
+    this.force.matrix.copy(singular ? new Matrix4().makeScale(0, 0, 0) : speed.clone().invert().transpose());
+    this.force.matrix.premultiply(new Matrix4().makeScale(0.025, 0.025, 0.025)).setPosition(at);
+    this.velocity.matrix.copy(speed.premultiply(new Matrix4().makeScale(size, size, size))).setPosition(at);
+  }
+}

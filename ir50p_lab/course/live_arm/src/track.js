@@ -1,0 +1,57 @@
+// A motion: rows of float32 with the time first. Layout of a row: runs = [{label, q, reference, u}], numbers of the first
+// of three columns each (reference and u may be null).
+import { tip } from "./kinematics.js";
+
+export class Track {
+  constructor(bytes, { columns, runs, unit, source }) {
+    // a DataView in a notebook, whose start need not be a multiple of four
+    const own = bytes.buffer ? bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) : bytes;
+    this.data = new Float32Array(own);
+    Object.assign(this, { columns, runs, unit, source, rows: Math.floor(this.data.length / columns) });
+  }
+
+  time(row) {
+    return this.data[row * this.columns];
+  }
+
+  get start() {
+    return this.time(0);
+  }
+
+  get end() {
+    return this.time(this.rows - 1);
+  }
+
+  // The last row at or before t.
+  row(t) {
+    let low = 0, high = this.rows - 1;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (this.time(middle) <= t) low = middle;
+      else high = middle;
+    }
+    return t >= this.end ? this.rows - 1 : low;
+  }
+
+  // Three columns at time t, linear between the rows.
+  at(t, first) {
+    const a = this.row(t), b = Math.min(a + 1, this.rows - 1), span = this.time(b) - this.time(a);
+    const part = span > 0 ? Math.min(Math.max((t - this.time(a)) / span, 0), 1) : 0;
+    return [0, 1, 2].map((i) => this.value(a, first + i) * (1 - part) + this.value(b, first + i) * part);
+  }
+
+  value(row, column) {
+    return this.data[row * this.columns + column];
+  }
+
+  path(lengths, first) {
+    return Array.from({ length: this.rows }, (_, k) => tip(lengths, [0, 1, 2].map((i) => this.value(k, first + i))));
+  }
+}
+
+// Where the pose touches what it should not: a stop of a joint, the table.
+export function contacts(lengths, limits, q) {
+  const stops = q.map((value, i) => value <= limits[i][0] + 0.01 || value >= limits[i][1] - 0.01);
+  const elbow = lengths[0] + lengths[1] * Math.sin(q[1]);
+  return { stops, table: Math.min(tip(lengths, q)[2], elbow) < 0.003 };
+}
