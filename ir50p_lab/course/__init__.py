@@ -1,5 +1,14 @@
-"""What the notebooks share: figures, live sliders, exercises, claims, and what the thesis prints."""
+"""What the notebooks share: figures, live sliders, what students write and predict, claims, what the thesis prints."""
 
 import lazy_loader
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(__name__, submod_attrs={"claims": ["ClaimError", "claim"]})
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submodules=["my_robot"],
+    submod_attrs={
+        "checking": ["check", "reset"],
+        "claims": ["ClaimError", "claim"],
+        "lab_book": ["keep", "measured", "note", "predict"],
+        "parts": ["parts"],
+    },
+)

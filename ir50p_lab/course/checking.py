@@ -1,0 +1,151 @@
+"""check(name, answer): what a student wrote is tried, told apart, and kept when it is right."""
+
+import ast
+import hashlib
+import html
+import math
+import random
+import timeit
+
+import numpy as np
+
+from ir50p_lab.course import lab_book
+from ir50p_lab.course.functions import folder
+from ir50p_lab.course.functions.catalogue import ORDER, is_function, task
+from ir50p_lab.course.functions.cell import CannotTake, take
+from ir50p_lab.course.functions.judge import judge
+from ir50p_lab.errors import InputError
+
+_BEFORE_SCRAMBLE, _BEFORE_LOAN = 3, 6  # different failing sources
+
+
+def check(name, answer=...):
+    """Say in a sentence what was found in an answer; a function that is right becomes part of `my_robot`.
+
+    name: of a function ("rot_z") or an exercise ("start-1"). answer: the function or class itself, or the number.
+    Shows a sentence and returns None; raises nothing, whatever the answer does.
+    """
+    from ir50p_lab.course import exercises
+
+    if not is_function(str(name)):
+        return exercises.check(name, answer)
+    try:
+        wanted = task(name)
+    except InputError as error:
+        return _show("open", name, str(error))
+    if answer is ...:
+        return _show("open", name, f"not written yet: {wanted.asks}")
+    try:
+        source = take(answer, name, wanted.leans_on)
+    except CannotTake as reason:
+        return _show("wrong", name, f"not yet: {reason}.")
+    if _is_stub(source.text, name):
+        return _show("open", name, f"not written yet. It returns {wanted.asks}.")
+    verdict = judge(wanted, _in_its_own_room(source, wanted))
+    if verdict.state == "right":
+        return _keep(source, wanted)
+    return _wrong(source, wanted, verdict)
+
+
+def reset(name):
+    """Begin a function again: yours goes to my_robot/old, the course's stands in."""
+    if not is_function(str(name)):
+        raise InputError(f"{name!r} is no function of my_robot; they are {', '.join(ORDER)}")
+    folder.put_aside(name)
+    lab_book.change(lambda book: book["attempts"].pop(name, None))
+    print(f"{name}: begun again; what you had is in {folder.folder() / 'old'}")
+
+
+def _in_its_own_room(source, wanted):
+    """The function with NumPy, math and the earlier functions, and nothing of the notebook."""
+    room = {"np": np, "numpy": np, "math": math}
+    for name in source.calls:
+        room[name] = folder.load(name) if folder.is_there(name) else task(name).right
+    exec(compile(source.text, f"<my_robot {wanted.name}>", "exec"), room)
+    return room[wanted.name]
+
+
+def _is_stub(text, name):
+    """Tell whether dots still stand where the answer should be."""
+    definition = next(node for node in ast.parse(text).body if getattr(node, "name", "") == name)
+    return any(
+        isinstance(node, ast.Expr | ast.Return) and isinstance(node.value, ast.Constant) and node.value.value is ...
+        for node in ast.walk(definition)
+    )
+
+
+def _keep(source, wanted):
+    from ir50p_lab.course.exercises import ProgressError, record
+
+    try:
+        lent = folder.keep(source, wanted)
+        record(wanted.name)
+    except (OSError, ProgressError) as error:
+        return _show("right", wanted.name, f"right, but it could not be kept: {error}")
+    more = f" {', '.join(lent)}, which it calls, came along on loan: write your own." if lent else ""
+    text = f"right, and yours: from now on my_robot.{wanted.name} is this function.{more}"
+    return _show("right", wanted.name, text, _beside(source, wanted))
+
+
+def _beside(source, wanted):
+    """Both listings and both speeds."""
+    case = wanted.cases()[0]
+    mine = folder.load(wanted.name)
+    speeds = [min(timeit.repeat(lambda f=f: f(*case), number=20, repeat=3)) / 20 * 1e6 for f in (mine, wanted.right)]
+    title = f"yours beside the course's: {speeds[0]:.0f} and {speeds[1]:.0f} microseconds a call"
+    return [(title, f"# yours\n{source.text}\n\n# the course's, without its checks\n{wanted.loan}")]
+
+
+def _wrong(source, wanted, verdict):
+    mark = hashlib.sha256(ast.dump(ast.parse(source.text)).encode()).hexdigest()[:12]
+
+    def edit(book):
+        marks = book["attempts"].setdefault(wanted.name, [])
+        if mark not in marks:
+            marks.append(mark)
+        return len(marks)
+
+    tries = lab_book.change(edit)
+    says, more = f"not yet: {verdict.says}.", [("one input that fails", verdict.example)] if verdict.example else []
+    if tries >= _BEFORE_LOAN and not folder.is_there(wanted.name):
+        folder.lend(wanted)
+        says += (
+            f" The course lends you its {wanted.name}, so that you can go on; it is marked as a loan in your report."
+        )
+    elif tries >= _BEFORE_SCRAMBLE:
+        lines = [line for line in wanted.loan.splitlines() if line.strip()]
+        random.Random(wanted.name).shuffle(lines)
+        more.append(("the lines of a solution, in the wrong order", "\n".join(line.strip() for line in lines)))
+    else:
+        more += [(f"hint {k + 1}", hint) for k, hint in enumerate(wanted.hints) if hint]
+    return _show("wrong", wanted.name, says, more, open_first=bool(verdict.example))
+
+
+class _Answer:
+    """A sentence with a bar, and what can be opened below it."""
+
+    colours = {"right": "#009E73", "open": "#999999", "wrong": "#E69F00"}  # noqa: RUF012
+
+    def __init__(self, state, name, text, more, open_first):
+        self.state, self.name, self.text, self.more, self.open_first = state, name, text, more, open_first
+
+    def __repr__(self):
+        shown = [f"{title}:\n{text}" for title, text in self.more[: 1 if self.open_first else 0]]
+        return "\n".join([f"{self.name}: {self.text}", *shown])
+
+    def _repr_html_(self):
+        folds = "".join(
+            f"<details{' open' if self.open_first and k == 0 else ''}><summary>{html.escape(title)}</summary>"
+            f"<pre>{html.escape(text)}</pre></details>"
+            for k, (title, text) in enumerate(self.more)
+        )
+        return (
+            f'<div style="border-left: 5px solid {self.colours[self.state]}; padding: 2px 0 2px 12px; margin: 2px 0">'
+            f"<b>{html.escape(self.name)}</b>: {html.escape(self.text, quote=False)}{folds}</div>"
+        )
+
+
+def _show(state, name, text, more=(), *, open_first=False):
+    from IPython.display import display
+
+    display(_Answer(state, str(name), text, list(more), open_first))

@@ -1,0 +1,57 @@
+"""The functions of `my_robot` in the order in which they are written, and where each is asked for."""
+
+import importlib
+from functools import cache
+
+from ir50p_lab.errors import InputError
+
+# DESIGN 6: every function, by the notebook that asks for it
+NOTEBOOKS = {
+    "00": ("rot_z",),
+    "01": ("dh_matrix", "frames", "forward_kinematics"),
+    "02": ("inverse_kinematics", "reach"),
+    "03": ("jacobian", "damped_step"),
+    "04": ("mass_matrix",),
+    "05": ("velocity_torque", "gravity_torque"),
+    "06": ("rk4_step", "integrate", "quintic"),
+    "07": ("friction_torque", "motor_torque"),
+    "08": ("PID",),
+    "09": ("step_metrics",),
+    "10": ("fit_line", "low_pass"),
+    "12": ("regressor", "least_squares", "rls_step"),
+    "13": ("fit_percent",),
+    "14": ("computed_torque",),
+    "15": ("adaptive_step",),
+    "16": ("hue_mask", "circle_votes"),
+    "17": ("homography", "pixel_to_plane"),
+    "18": ("find_and_reach",),
+}
+ORDER = tuple(name for names in NOTEBOOKS.values() for name in names)
+_MODULES = {"00": "pose", "01": "pose", "02": "inverse", "03": "velocity"}  # of the notebooks that are written
+
+
+def notebook_of(name):
+    """Number of the notebook that asks for a function, "02"."""
+    return next(number for number, names in NOTEBOOKS.items() if name in names)
+
+
+def is_function(name):
+    """Tell whether a name is a function of `my_robot`."""
+    return name in ORDER
+
+
+def written():
+    """Names of the functions that can be checked today."""
+    return tuple(name for name in ORDER if notebook_of(name) in _MODULES)
+
+
+@cache
+def task(name):
+    """The Task of a function. Raises InputError for a name that is none, or whose notebook is still to come."""
+    if not is_function(name):
+        raise InputError(f"{name!r} is no function of my_robot; they are {', '.join(ORDER)}")
+    number = notebook_of(name)
+    if number not in _MODULES:
+        raise InputError(f"{name} is asked for in notebook {number}, which is still to come")
+    module = importlib.import_module(f"ir50p_lab.course.functions.{_MODULES[number]}")
+    return next(one for one in module.TASKS if one.name == name)

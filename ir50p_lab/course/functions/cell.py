@@ -1,0 +1,138 @@
+"""A function taken out of the notebook: its own lines and the helpers of its cell, able to stand in a file."""
+
+import ast
+import builtins
+import linecache
+import re
+from dataclasses import dataclass
+
+_GIVEN = {"np": "import numpy as np", "numpy": "import numpy", "math": "import math"}
+_ALLOWED = {"numpy", "math"}
+
+
+class CannotTake(Exception):  # noqa: N818  (a sentence for the student, never shown as an error)
+    """The cell cannot stand alone; the message says why and what to do."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """The text of a function and its helpers, and which earlier functions of `my_robot` it calls."""
+
+    name: str
+    text: str
+    calls: tuple
+
+    @property
+    def module(self):
+        """The text of the file that holds it: imports, then the student's lines."""
+        imports = [line for name, line in _GIVEN.items() if re.search(rf"\b{name}\.", self.text)]
+        imports += [f"from ._{name} import {name}" for name in self.calls]
+        return "\n".join([*imports, "", "", self.text, ""]) if imports else self.text + "\n"
+
+
+def take(thing, name, earlier):
+    """Return the Source of a function or class as its cell has it.
+
+    name: what it has to be called; earlier: names of the functions of `my_robot` it may lean on. Lines of the cell that
+    it does not need stay behind. Raises CannotTake, saying why: another name, a variable or an import from elsewhere.
+    """
+    if getattr(thing, "__name__", None) != name:
+        raise CannotTake(f"the function has to be called `{name}`, yours is called `{getattr(thing, '__name__', '?')}`")
+    text = re.sub(r"\bmy_robot\.(\w+)", r"\1", _cell_text(thing))
+    tree = ast.parse(text)
+    offered = _definitions(tree)
+    wanted, calls, queue = [], set(), [name]
+    while queue:
+        one = queue.pop()
+        if one in offered:
+            if offered[one] not in wanted:
+                wanted.append(offered[one])
+                queue += _globals_of(offered[one])
+        elif one in earlier:
+            calls.add(one)
+        elif one not in _GIVEN and not hasattr(builtins, one):
+            raise CannotTake(_stranger(one, getattr(thing, "__globals__", None) or _globals_of_class(thing)))
+    for node in wanted:
+        _refuse_imports(node)
+    wanted.sort(key=lambda node: node.lineno)
+    return Source(name, "\n\n\n".join(_lines(text, node) for node in wanted), tuple(sorted(calls)))
+
+
+def _cell_text(thing):
+    code = _code_of(thing)
+    text = "".join(linecache.getlines(code.co_filename)) if code else ""
+    if not text:
+        raise CannotTake("its text is not to be found: define it in a cell of the notebook, with `def`")
+    return text
+
+
+def _code_of(thing):
+    if hasattr(thing, "__code__"):
+        return thing.__code__
+    methods = [value for value in vars(thing).values() if hasattr(value, "__code__")]
+    return methods[0].__code__ if methods else None
+
+
+def _globals_of_class(thing):
+    methods = [value for value in vars(thing).values() if hasattr(value, "__globals__")]
+    return methods[0].__globals__ if methods else {}
+
+
+def _definitions(tree):
+    """The last definition of each name at the top of the cell: functions, classes, constants, imports."""
+    found = {}
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            found[node.name] = node
+        elif isinstance(node, ast.Assign):
+            found |= {target.id: node for target in node.targets if isinstance(target, ast.Name)}
+        elif isinstance(node, ast.Import | ast.ImportFrom):
+            found |= {alias.asname or alias.name.partition(".")[0]: node for alias in node.names}
+    return {name: node for name, node in found.items() if name not in _GIVEN}
+
+
+def _globals_of(node):
+    """Names that a definition looks up outside itself, as the compiler sees them."""
+    names, codes = set(), [compile(ast.Module([node], []), "cell", "exec")]
+    while codes:
+        code = codes.pop()
+        codes += [constant for constant in code.co_consts if hasattr(constant, "co_names")]
+        names |= {name for name in code.co_names if _looked_up(code, name)}
+    return names - {getattr(node, "name", None), "__name__", "__module__", "__qualname__"}
+
+
+def _looked_up(code, name):
+    import dis
+
+    kinds = {"LOAD_GLOBAL", "LOAD_NAME"}
+    return any(step.opname in kinds and step.argval == name for step in dis.get_instructions(code))
+
+
+def _stranger(name, notebook):
+    value = notebook.get(name)
+    if value is None and name not in notebook:
+        return f"it uses `{name}`, which is defined nowhere"
+    module = (getattr(value, "__module__", None) or getattr(value, "__name__", "")).partition(".")[0]
+    if module == "numpy" or module == "math":
+        return f"it uses `{name}` from another cell: write `np.{name}`, which is always there"
+    if callable(value) or hasattr(value, "__file__"):
+        return f"it uses `{name}` of the notebook: put it into the same cell, or write that part yourself"
+    return f"it uses `{name}`, a variable of the notebook: a function takes what it needs as arguments"
+
+
+def _refuse_imports(node):
+    for one in ast.walk(node):
+        if isinstance(one, ast.Import):
+            modules = [alias.name for alias in one.names]
+        elif isinstance(one, ast.ImportFrom):
+            modules = [one.module or "."]
+        else:
+            continue
+        for module in modules:
+            if module.partition(".")[0] not in _ALLOWED:
+                raise CannotTake(f"it imports {module}: your robot stands on NumPy alone, and this part is yours")
+
+
+def _lines(text, node):
+    first = min([node.lineno, *(decorator.lineno for decorator in getattr(node, "decorator_list", []))])
+    return "\n".join(text.splitlines()[first - 1 : node.end_lineno])

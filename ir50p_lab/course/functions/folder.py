@@ -1,0 +1,137 @@
+"""The folder `my_robot`: a plain Python package of what the student has written, importable without this one."""
+
+import importlib.util
+import shutil
+import sys
+from datetime import datetime
+from pathlib import Path
+
+import cloudpickle
+import numpy as np
+
+from ir50p_lab import home
+from ir50p_lab.course.functions.catalogue import ORDER
+
+_LOAN = "# on loan from the course"
+_PACKAGE = "my_robot"
+_loaded = {"stamp": None}
+
+
+def folder() -> Path:
+    """Where the student's functions lie: `my_robot` in the student's folder."""
+    return home.home() / "my_robot"
+
+
+def path_of(name) -> Path:
+    """The file of one function; the underscore keeps module and function apart."""
+    return folder() / f"_{name}.py"
+
+
+def is_there(name):
+    """Tell whether a function is in the folder, the student's or on loan."""
+    return path_of(name).exists()
+
+
+def on_loan(name):
+    """Tell whether a function in the folder is the course's."""
+    return is_there(name) and path_of(name).read_text(encoding="utf-8").startswith(_LOAN)
+
+
+def keep(source, task, *, loan=False):
+    """Write a function with its small test, and the list of what there is. What was there before goes to `old`.
+
+    Functions that it calls and that are not there yet come along on loan. Returns their names. Raises OSError.
+    """
+    from ir50p_lab.course.functions.catalogue import task as find
+
+    folder().mkdir(parents=True, exist_ok=True)
+    lent = []
+    for name in source.calls:
+        if not is_there(name):
+            lent += [name, *lend(find(name))]
+    put_aside(source.name, unless=source.module)
+    head = f"{_LOAN}: write your own, and this one goes to old/\n" if loan else ""
+    _write(path_of(source.name), head + source.module)
+    _write(folder() / f"test_{source.name}.py", _small_test(task))
+    _write(folder() / "__init__.py", _exports())
+    return lent
+
+
+def lend(task):
+    """Write the course's solution of a function, marked as on loan. Returns what else came along."""
+    from ir50p_lab.course.functions.cell import Source
+
+    return keep(Source(task.name, task.loan, _calls(task)), task, loan=True)
+
+
+def put_aside(name, unless=""):
+    """Move a function's file to `old`, with the time in its name; nothing is lost. Raises OSError."""
+    path = path_of(name)
+    if not path.exists() or path.read_text(encoding="utf-8") == unless:
+        return
+    old = folder() / "old"
+    old.mkdir(exist_ok=True)
+    shutil.move(path, old / f"{name}_{datetime.now():%Y-%m-%d_%H%M%S_%f}.py")
+    (folder() / f"test_{name}.py").unlink(missing_ok=True)
+    _write(folder() / "__init__.py", _exports())
+
+
+def load(name):
+    """The function from the folder, read again when a file has changed. What is wrong in a file is raised."""
+    files = sorted(folder().glob("_*.py"))
+    stamp = tuple((path.name, path.stat().st_mtime_ns, path.stat().st_size) for path in files)
+    if _loaded["stamp"] != (folder(), stamp):
+        for module in [one for one in sys.modules if one.partition(".")[0] == _PACKAGE]:
+            del sys.modules[module]
+        spec = importlib.util.spec_from_file_location(
+            _PACKAGE, folder() / "__init__.py", submodule_search_locations=[str(folder())]
+        )
+        package = importlib.util.module_from_spec(spec)
+        sys.modules[_PACKAGE] = package
+        spec.loader.exec_module(package)
+        cloudpickle.register_pickle_by_value(package)  # another process has no such module
+        _loaded["stamp"] = (folder(), stamp)
+    return getattr(sys.modules[_PACKAGE], name)
+
+
+def _calls(task):
+    import re
+
+    return tuple(sorted(one for one in task.leans_on if re.search(rf"\b{one}\(", task.loan)))
+
+
+def _exports():
+    names = [name for name in ORDER if is_there(name)]
+    return '"""My robot: the functions I wrote."""\n\n' + "".join(f"from ._{name} import {name}\n" for name in names)
+
+
+def _small_test(task):
+    """A test of one case, in plain numbers."""
+    cases = task.cases()
+    case = cases[min(1, len(cases) - 1)]
+    arguments = ", ".join(_plain(value) for value in case)
+    expected = task.right(*case)
+    return (
+        f"import numpy as np\nfrom numpy import array\n\nfrom my_robot import {task.name}\n\n\n"
+        f"def test_{task.name}():\n    found = {task.name}({arguments})\n"
+        f"    expected = {_plain(expected)}\n"
+        "    found, expected = sorted(np.atleast_2d(found).tolist()), sorted(np.atleast_2d(expected).tolist())\n"
+        "    np.testing.assert_allclose(found, expected, atol=1e-6)\n"
+    )
+
+
+def _plain(value):
+    return repr(value.tolist()).join(("array(", ")")) if isinstance(value, np.ndarray) else repr(value)
+
+
+def _write(path, text):
+    """Write a file in one step; Windows may hold the old one open for a moment."""
+    import time
+
+    for attempt in range(5):
+        try:
+            return home.replace_text(path, text)
+        except PermissionError:
+            if attempt == 4:
+                raise
+            time.sleep(0.05)

@@ -1,0 +1,70 @@
+"""One function that the student writes: what is asked, on what it is tried, and how it is wrong when it is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A typical mistake.
+
+    wrong: a function with the task's arguments that makes this mistake. says: the symptom in the student's numbers and
+    where to look, never the corrected expression.
+    """
+
+    wrong: Callable
+    says: str
+
+
+@dataclass(frozen=True)
+class Task:
+    """A function of `my_robot`.
+
+    name, notebook: of the function, and the notebook that asks for it; signature: its arguments, as in `def`.
+    asks: one line, what it returns; right: the course's own answer, a function of the same arguments.
+    cases: tuples of arguments, edge cases among them; leans_on: earlier functions it may call.
+    slips: known mistakes, most specific first; symptom: function of (cases, returned, expected), lists of equal length,
+    that returns a sentence about a mistake no slip covers, or "". where: {words: function of a case}: kinds of cases,
+    to say that only these go wrong. hints: two, opened on demand; loan: a plain solution, as text.
+    same: compares what came back with what was expected; None: equal within tolerance. unit: of what comes back.
+    """
+
+    name: str
+    notebook: str
+    signature: tuple
+    asks: str
+    right: Callable
+    cases: Callable
+    loan: str
+    leans_on: tuple = ()
+    slips: tuple = ()
+    symptom: Callable | None = None
+    where: dict = field(default_factory=dict)
+    hints: tuple = ("", "")
+    same: Callable | None = None
+    tolerance: float = 1e-9
+    unit: str = ""
+
+    def agrees(self, returned, expected):
+        """Tell whether what came back is what was expected."""
+        if self.same is not None:
+            return self.same(returned, expected)
+        returned, expected = np.asarray(returned, dtype=float), np.asarray(expected, dtype=float)
+        return returned.shape == expected.shape and bool(np.allclose(returned, expected, atol=self.tolerance, rtol=0))
+
+
+def shown(value):
+    """A value as a student writes it, short."""
+    if value is None:
+        return "None"
+    if callable(value):
+        return getattr(value, "__name__", "a function")
+    array = np.asarray(value)
+    if array.dtype == object:
+        return str(value)[:80]
+    text = np.array2string(array, precision=4, suppress_small=True, separator=", ", max_line_width=100)
+    return text if array.ndim < 2 else "\n" + text

@@ -1,0 +1,132 @@
+"""The lab book itself: what the student predicted, measured, noted and kept, as readable JSON."""
+
+import json
+import re
+from datetime import datetime
+
+from ir50p_lab import home
+from ir50p_lab.errors import LabError
+
+
+class LabBookError(LabError):
+    """The lab book cannot be read or written; the message says what to do."""
+
+
+def path():
+    """Where the lab book lies: results/lab_book.json in the student's folder."""
+    return home.home() / "results" / "lab_book.json"
+
+
+def read():
+    """Return {"predictions": {name: ...}, "notes": [...], "figures": [...], "attempts": {function: [...]}}."""
+    empty = {"predictions": {}, "notes": [], "figures": [], "attempts": {}}
+    try:
+        content = json.loads(path().read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return empty
+    except (OSError, ValueError, RecursionError) as error:
+        raise LabBookError(f"{path()} cannot be read ({error}): rename it, and a new one is begun") from error
+    if not isinstance(content, dict) or not all(
+        isinstance(content.get(key, one), type(one)) for key, one in empty.items()
+    ):
+        raise LabBookError(f"{path()} is no lab book: rename it, and a new one is begun")
+    return {**empty, **content}
+
+
+def change(edit):
+    """Read the lab book, let `edit(book)` change it, write it in one step; return what edit returned."""
+    book = read()
+    answer = edit(book)
+    try:
+        path().parent.mkdir(parents=True, exist_ok=True)
+        home.replace_text(path(), json.dumps(book, indent=1, ensure_ascii=False) + "\n")
+    except OSError as error:
+        raise LabBookError(f"{path()} cannot be written ({error}): set {home.VARIABLE} to a folder of yours") from error
+    return answer
+
+
+def now():
+    """The time, as it is written into the lab book."""
+    return datetime.now().astimezone().isoformat(timespec="seconds")
+
+
+def predict(name, guess, unit=""):
+    """Write down a guess before the run that answers it: predict("fk.height", 0.3, "m").
+
+    With the dots it says that a guess is missing, and goes on. The first number counts; a later one is shown, too.
+    """
+    if guess is ...:
+        print(f"{name}: put your guess in place of the dots, in {unit or 'numbers'}. Then run the cell.")
+        return
+    guess = _number(name, guess)
+
+    def edit(book):
+        entry = book["predictions"].setdefault(name, {"guess": guess, "unit": unit, "guessed": now()})
+        if "guess" not in entry:
+            entry.update(guess=guess, unit=unit, guessed=now(), late="truth" in entry)
+        if entry["guess"] != guess:
+            entry["changed"] = guess
+        return entry
+
+    entry = change(edit)
+    changed = f" (changed to {_say(entry['changed'], unit)}; the first one counts)" if entry["guess"] != guess else ""
+    print(f"{name}: your guess is {_say(entry['guess'], unit)}{changed}")
+
+
+def measured(name, value):
+    """Show what came out beside what was guessed, and write it down."""
+    value = _number(name, value)
+
+    def edit(book):
+        entry = book["predictions"].setdefault(name, {})
+        entry.update(truth=value, measured=now())
+        return entry
+
+    entry = change(edit)
+    unit = entry.get("unit", "")
+    if "guess" not in entry:
+        print(f"{name}: measured {_say(value, unit)}. You made no guess.")
+    else:
+        off = f", {_say(entry['guess'] - value, unit, sign=True)} off"
+        print(f"{name}: you guessed {_say(entry['guess'], unit)}, it is {_say(value, unit)}{off}.")
+
+
+def note(text):
+    """Write a remark into the lab book; the report shows it with its time. The same remark is kept once."""
+    text = str(text).strip()
+    if text in ("", "..."):
+        print("note: write what you saw between the quotation marks, then run the cell.")
+        return
+    change(
+        lambda book: text in (one["text"] for one in book["notes"]) or book["notes"].append({"text": text, "at": now()})
+    )
+    print("noted")
+
+
+def keep(figure, name):
+    """Put a matplotlib figure into the lab book as `name`; the report shows the last one of each name."""
+    file = f"{re.sub(r'[^a-zA-Z0-9]+', '_', name).strip('_') or 'figure'}.png"
+    place = path().parent / "figures" / file
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        figure.savefig(place, dpi=120, bbox_inches="tight")
+    except OSError as error:
+        raise LabBookError(f"{place} cannot be written ({error}): set {home.VARIABLE} to a folder of yours") from error
+
+    def edit(book):
+        book["figures"] = [one for one in book["figures"] if one["file"] != file]
+        book["figures"].append({"name": name, "file": file, "at": now()})
+
+    change(edit)
+    print(f"kept: {name}")
+
+
+def _number(name, value):
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise LabBookError(f"{name}: a prediction is one number, got {value!r:.60}") from None
+
+
+def _say(value, unit, sign=False):
+    return f"{value:{'+' if sign else ''}.4g} {unit}".strip()

@@ -1,0 +1,52 @@
+"""my_robot: every function is the student's own where there is one, else the course's stands in.
+
+    from ir50p_lab.course import my_robot
+    my_robot.rot_z(0.5)
+
+A name is looked up each time: a function that was just written, in this notebook or another, is used from then on.
+`my_robot.whose("rot_z")` says whose it is: "yours", "on loan" or "the course's".
+"""
+
+import sys
+
+from ir50p_lab.course.functions import folder
+from ir50p_lab.course.functions.catalogue import ORDER, is_function, task, written
+
+_said = set()
+
+
+def __getattr__(name):
+    if not is_function(name):
+        raise AttributeError(f"my_robot has no {name}; its functions are {', '.join(ORDER)}")
+    mine = folder.is_there(name)
+    function = folder.load(name) if mine else task(name).right
+    _say(name)
+    return function
+
+
+def whose(name):
+    """Say whose function is used: "yours", "on loan" or "the course's"."""
+    if not folder.is_there(name):
+        return "the course's"
+    return "on loan" if folder.on_loan(name) else "yours"
+
+
+def done():
+    """Names of the functions that are the student's own, in order."""
+    return tuple(name for name in ORDER if whose(name) == "yours")
+
+
+def _say(name):
+    """Say once in a session, and again when it changes, whose function is in use."""
+    if (name, whose(name)) not in _said:
+        _said.add((name, whose(name)))
+        words = {
+            "yours": "yours",
+            "on loan": "on loan from the course",
+            "the course's": "the course's, until you write yours",
+        }
+        print(f"my_robot.{name}: {words[whose(name)]}", file=sys.stdout)
+
+
+def __dir__():
+    return [*written(), "done", "whose"]
