@@ -9,7 +9,7 @@ PROJECT = Path(__file__).parents[1]
 
 
 def home():
-    """The student's folder: $IR50P_HOME, else notebooks/ of the project, else the working folder. It may not exist yet."""
+    """The student's folder: $IR50P_HOME, else notebooks/ of the project, else the working one. It may not exist yet."""
     if os.environ.get(VARIABLE):
         return Path(os.environ[VARIABLE]).expanduser().absolute()
     notebooks = PROJECT / "notebooks"

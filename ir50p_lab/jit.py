@@ -13,6 +13,7 @@ _collects = gc.isenabled()
 gc.disable()  # what an import builds stays: looking through it for garbage is a tenth of its time
 try:
     import numba
+    from numba.core import event
     from numba.core.registry import cpu_target
 
     cpu_target.target_context.refresh()  # what numba loads at the first call
@@ -40,3 +41,29 @@ _drop_stale_code()
 
 # division by zero gives inf or NaN as in NumPy: the caller checks results once, not every operation
 jit = functools.partial(numba.njit, cache=True, error_model="numpy")
+
+
+class _Once(event.Listener):
+    """Prints a line when the first function is compiled; code that lies in the cache is not."""
+
+    def __init__(self, line):
+        self._line = line
+
+    def on_start(self, _):
+        if self._line:
+            print(self._line, flush=True)
+        self._line = ""
+
+    def on_end(self, _):
+        pass
+
+
+def says_that_it_compiles(function):
+    """Decorator: a call that compiles says so, for it may take half a minute."""
+
+    @functools.wraps(function)
+    def wrapper(*args, **options):
+        with event.install_listener("numba:compile", _Once(f"{function.__name__} is compiled, once: up to 30 s...")):
+            return function(*args, **options)
+
+    return wrapper

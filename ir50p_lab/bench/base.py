@@ -57,7 +57,7 @@ class Bench(abc.ABC):
     own_process = False  # whether a loop in the background gets a process of its own
 
     def __init__(self, arm, calibration, *, period=0.01, record_to=None, name=None):
-        """record_to: folder for recordings (default: recordings/ in the student's folder), or False for none on disk."""
+        """record_to: folder for recordings (default: recordings/ in the student's folder), False for none on disk."""
         arm = check_arm(arm)
         if not (isinstance(period, int | float | np.number) and 0.001 <= period <= 1.0):
             raise InputError(f"period = {period!r} s: give 0.001 to 1 s (the thesis samples every 0.01 s)")

@@ -70,7 +70,7 @@ def read_calibration(path):
             f"cannot read the calibration file {path}: {error.strerror}; check the path or {VARIABLE}, or calibrate "
             "(notebook 06)"
         ) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise InputError(f"{path} is not a TOML file: {error}. Write one with Calibration.save") from None
     try:
         return _build(data)
@@ -92,8 +92,8 @@ def _build(data):
         points = tuple(_points(name, data.get(name, {"q": [], "counts": []})) for name in joints)
     texts = {name: data[name] for name in _TEXTS if name in data}
     remarks = data.get("remarks", [])
-    if not all(isinstance(text, str) for text in (*texts.values(), *remarks)):
-        raise InputError("arm, source and remarks must be text in quotes")
+    if not isinstance(remarks, list) or not all(isinstance(text, str) for text in (*texts.values(), *remarks)):
+        raise InputError("arm and source must be text in quotes, remarks a list of such texts")
     numbers = {name: data[name] for name in _COMMENTS if name in data}
     return Calibration(**numbers, **texts, remarks=tuple(remarks), points=points)
 

@@ -52,9 +52,12 @@ def _one_line(value):
     return text.encode("ascii", "backslashreplace").decode("ascii")
 
 
-def _as_written(text):
+def _as_written(text, place):
     escapes = r"\\(?:x([0-9a-f]{2})|u([0-9a-f]{4})|U([0-9a-f]{8}))"
-    return re.sub(escapes, lambda found: chr(int(found[1] or found[2] or found[3], 16)), text)
+    try:
+        return re.sub(escapes, lambda found: chr(int(found[1] or found[2] or found[3], 16)), text)
+    except (ValueError, OverflowError):
+        raise RecordingError(f"{place}: an escape in {text:.60} stands for no letter; repair or delete it") from None
 
 
 def read(path):
@@ -83,7 +86,7 @@ def parse(data, name):
     if "\0" in text:
         raise RecordingError(f"{name} is no text file; a recording is a CSV file")
     lines = text.splitlines()
-    header, first = _read_header(lines)
+    header, first = _read_header(lines, name)
     ours = FORMAT in header
     if first == len(lines) or (first == len(lines) - 1 and not text.endswith("\n")):
         raise RecordingError(f"{name} ends before its first sample: the run was stopped as it began; record again")
@@ -95,7 +98,7 @@ def parse(data, name):
         body = body[:-1]
     table = _read_rows(body, first + 2, name, delimiter, places, width)
     header.pop(FORMAT, None), header.pop("units", None)
-    return header, table, tuple(notes), tuple(_events(body))
+    return header, table, tuple(notes), tuple(_events(body, first + 2, name))
 
 
 def event_text(t, text):
@@ -103,14 +106,17 @@ def event_text(t, text):
     return f"# event: {t:.3f} s: {_one_line(text)}\n"
 
 
-def _events(lines):
-    for line in lines:
+def _events(lines, number, name):
+    for k, line in enumerate(lines):
         found = re.match(r"\W*event: (-?[\d.]+) s: (.*)", line) if line.lstrip(' "').startswith("#") else None
+        place = f"{name}, line {number + k}"
+        if found and not _is_number(found[1]):
+            raise RecordingError(f"{place}: {found[1]} s is no time; repair or delete that line")
         if found:
-            yield float(found[1]), _as_written(found[2].rstrip(';,\t" '))
+            yield float(found[1]), _as_written(found[2].rstrip(';,\t" '), place)
 
 
-def _read_header(lines):
+def _read_header(lines, name):
     """Header and the index of the line behind it."""
     header = {}
     for k, line in enumerate(lines):
@@ -119,7 +125,7 @@ def _read_header(lines):
             return header, k
         key, colon, value = line.lstrip("# ").partition(":")
         if colon:
-            header[key.strip()] = _as_written(value.strip())
+            header[key.strip()] = _as_written(value.strip(), f"{name}, line {k + 1}")
     return header, len(lines)
 
 

@@ -85,7 +85,7 @@ def plot(recording):
     axes[1, 0].set_ylabel("u [PWM counts]")
     if known:
         axes[0, 0].legend(fontsize=9)
-    figure.suptitle(_origin(recording), fontsize=10, color=_GREY)
+    figure.suptitle(_origin(recording), fontsize=10, color=_GREY, parse_math=False)
     return figure
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import numbers, vectors3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.signals.quintic import quintic
 from ir50p_lab.signals.reference import Reference, per_joint, pose
@@ -39,7 +39,7 @@ class SetPoint:
 
     def move_to(self, q):
         """From now on go to q (3,) rad; NaN leaves a joint's goal as it is. Raises InputError on anything else."""
-        q = np.asarray(q, dtype=float)
+        q = numbers("set point", q, unit="rad")
         if q.shape != (3,) or np.isinf(q).any():
             raise InputError(f"set point {q.tolist()}: give one angle per joint, (3,) rad")
         self.goal = tuple(float(new) if new == new else old for new, old in zip(q, self.goal, strict=True))
@@ -115,7 +115,7 @@ def checked_set_point(arm, q):
 
     The limits of the joints are checked always, the table (elbow and tip must stay above it) when no joint is NaN.
     """
-    q = np.array([np.nan if value is None else value for value in q] if np.ndim(q) == 1 else q, dtype=float)
+    q = numbers("set point", [np.nan if value is None else value for value in q] if np.ndim(q) == 1 else q, unit="rad")
     if q.shape != (3,) or np.isinf(q).any():
         raise InputError(f"set point {q.tolist()}: give one angle per joint, (3,) rad")
     for i in range(3):

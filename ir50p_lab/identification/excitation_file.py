@@ -43,7 +43,7 @@ def load_excitations(path=None):
         return {name: fourier(**row) for name, row in rows.items()}
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror}; give a file made by save_excitations") from None
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise InputError(f"{path} is no file of excitations ({error!r:.80}): make it with save_excitations") from None
 
 

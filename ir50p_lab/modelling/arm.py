@@ -60,6 +60,8 @@ class Arm:
     g: float = 9.81
 
     def __post_init__(self):
+        if not isinstance(self.name, str) or "$" in self.name:
+            raise ArmError(f"name = {self.name!r}: give a text without $, which figures take for mathematics")
         for name, unit in _VECTORS.items():
             object.__setattr__(self, name, _three(name, getattr(self, name), unit))
         for name in ("q_min", "q_max"):

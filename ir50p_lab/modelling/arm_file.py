@@ -72,7 +72,7 @@ def read_arm(path):
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise ArmError(f"cannot read the arm file {path}: {error.strerror}; check the path or IR50P_ARM") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise ArmError(f"{path} is not a TOML file: {error}. Write one with Arm.save and edit it") from None
     try:
         parts = {name: _make(cls, data.pop(name)) for name, cls in _PARTS.items() if name in data}

@@ -156,7 +156,7 @@ def _read(path):
         try:
             entry = json.loads(line)
             known[entry["case"]] = entry["result"]
-        except (json.JSONDecodeError, KeyError, TypeError):
+        except (json.JSONDecodeError, KeyError, TypeError, RecursionError):
             if number == len(lines):
                 _cut_last_line(path)  # the process was killed while it wrote: that case is computed again
                 break

@@ -167,6 +167,7 @@ def test_pixels_alone_decide():
         (np.zeros((48, 64, 1), np.uint8), ImageError),
         (np.zeros((48, 64, 4), np.uint8), ImageError),
         (np.zeros((48, 64, 3)), ImageError),
+        (np.full((1, 1, 3), 255, np.uint8), ImageError),
     ],
 )
 def test_bad_pictures(picture, error):
@@ -189,7 +190,7 @@ def test_bad_arguments():
 
 
 def test_tiny_and_plain_pictures():
-    for shape in ((1, 1, 3), (2, 5, 3), (9, 9, 3)):
+    for shape in ((1, 2, 3), (2, 5, 3), (9, 9, 3)):
         for value in (0, 255):
             assert find_balls(np.full(shape, value, np.uint8)) == []
     red = np.zeros((60, 80, 3), np.uint8)

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
+from ir50p_lab.errors import ImageError, InputError
+from ir50p_lab.jit import says_that_it_compiles
 from ir50p_lab.vision.ball.colour import RED, Colour, learn_from_patch
 from ir50p_lab.vision.ball.evidence import objection
 from ir50p_lab.vision.ball.fit import view_of
@@ -66,6 +67,7 @@ class Balls(list):
         return super().__repr__() if self or not self.reason else f"Balls([], reason={self.reason!r})"
 
 
+@says_that_it_compiles
 def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     """Find the balls of a colour, best first; a false alarm is worse than a miss.
 
@@ -89,6 +91,8 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     image = check_image(image)
     colour = _as_colour(colour)
     least_radius = _check_radius(least_radius)
+    if image.shape[0] * image.shape[1] < 2:
+        raise ImageError("a picture of one pixel shows no ball: take a larger one")
     if camera is not None:
         camera = as_pinhole(camera)
         check_picture_size(camera, image)

@@ -1,5 +1,6 @@
 """A calibration as a file: YAML that cv2.FileStorage reads, with the names that OpenCV's own sample uses."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,8 @@ from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.fit import NAMES
 from ir50p_lab.vision.calibration.reasons import Reason, Rejected
 from ir50p_lab.vision.calibration.result import Calibration, View
+
+_DEEPEST = 1000  # lists within lists: a calibration has five
 
 
 def _checked(path):
@@ -99,6 +102,8 @@ def load(path, size=None):
         raise CalibrationError(f"{path} cannot be read: {error}") from None
     if not text.lstrip().startswith(("%YAML", "<?xml", "{")):  # as ROS writes camera_info; OpenCV wants a first line
         text = "%YAML:1.0\n---\n" + text
+    if _too_deep(text):
+        raise CalibrationError(f"{path} is no calibration: it holds {_DEEPEST} lists within lists")
     try:
         file = cv2.FileStorage(text, cv2.FileStorage_READ | cv2.FileStorage_MEMORY)
         values = _basics(file)
@@ -116,6 +121,16 @@ def load(path, size=None):
     if size is not None:
         calibration.check_size(size)
     return calibration
+
+
+def _too_deep(text):
+    """Whether brackets, XML elements or the dashes of YAML are nested so deeply that OpenCV would crash the process."""
+    depth = 0
+    for opening in re.finditer(rf"[\[{{]|<\w|(?:-\s+){{{_DEEPEST}}}|([\]}}]|</|/>)", text):
+        depth += -1 if opening[1] else _DEEPEST if opening[0][0] == "-" else 1
+        if depth >= _DEEPEST:
+            return True
+    return False
 
 
 def _texts(file, name, texts):
