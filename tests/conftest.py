@@ -1,10 +1,49 @@
-"""In CI a skipped test is a failure: a run must not pass by leaving things out. Marker `compiled`."""
+"""In CI a skipped test is a failure: a run must not pass by leaving things out. Marks and what they leave out."""
 
 import os
 from collections import Counter
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+TESTS = Path(__file__).parent
+#: Marks of whole files and folders (pyproject.toml says what they mean).
+MARKS = {
+    "timing": (
+        "benchmarks",
+        "bench/test_background.py",
+        "bench/test_background_board.py",
+        "bench/test_board_process.py",
+        "bench/test_real_time.py",
+    ),
+    "emulator": (
+        "bench/test_background_board.py",
+        "bench/test_board_process.py",
+        "bench/test_firmware.py",
+        "bench/test_firmware_faults.py",
+        "bench/test_firmware_noise.py",
+        "bench/test_real_time.py",
+        "benchmarks/test_serial_speed.py",
+    ),
+    "numeric": (
+        "identification",
+        "simulation",
+        "bench/test_calibration.py",
+        "controllers/test_adaptive.py",
+        "controllers/test_computed_torque.py",
+        "controllers/test_identified_model.py",
+        "course/test_calibration_views.py",
+        "course/test_identification_views.py",
+        "modelling/test_dynamics.py",
+        "modelling/test_kinematics.py",
+        "vision/test_calibration_corners.py",
+        "vision/test_camera_calibration.py",
+        "vision/test_hand_eye.py",
+        "vision/test_pinhole.py",
+        "vision/test_table_plane.py",
+    ),
+}
 
 UNCOMPILED = os.environ.get("NUMBA_DISABLE_JIT") == "1"  # the run that counts jitted lines, a hundred times slower
 
@@ -22,22 +61,45 @@ def students_folder(tmp_path_factory):
         yield
 
 
+def pytest_addoption(parser):
+    parser.addoption("--quick", action="store_true", help="without notebooks and without the emulated board")
+    parser.addoption("--timing", choices=("only", "without"), help="only tests that measure time, or all others")
+
+
 def pytest_collection_modifyitems(config, items):
+    """Mark whole files and folders, then leave out what the options leave out."""
+    for item in items:
+        for mark, places in MARKS.items():
+            if any(item.path.is_relative_to(TESTS / place) for place in places):
+                item.add_marker(mark)
+    kept = [item for item in items if _is_asked_for(item, config.option)]
+    if UNCOMPILED:
+        kept = _first_cases(kept)
+    chosen = set(kept)
+    config.hook.pytest_deselected(items=[item for item in items if item not in chosen])
+    items[:] = kept
+
+
+def _is_asked_for(item, option):
+    marks = {mark.name for mark in item.iter_markers()}
+    if option.quick and marks & {"notebook", "emulator"}:
+        return False
+    return option.timing is None or (option.timing == "only") == ("timing" in marks)
+
+
+def _first_cases(items):
     """Without the compiler, only the first two cases of a test run; the first n of one marked `compiled(keep=n)`.
 
     All cases run compiled in the main run; the few here are to reach the same lines.
     """
-    if not UNCOMPILED:
-        return
-    seen, out = Counter(), []
+    seen, kept = Counter(), []
     for item in items:
         marker = item.get_closest_marker("compiled")
         name = item.nodeid.partition("[")[0]
         seen[name] += 1
-        if seen[name] > (2 if marker is None else marker.kwargs.get("keep", 0)):
-            out.append(item)
-    config.hook.pytest_deselected(items=out)
-    items[:] = [item for item in items if item not in set(out)]
+        if seen[name] <= (2 if marker is None else marker.kwargs.get("keep", 0)):
+            kept.append(item)
+    return kept
 
 
 @pytest.hookimpl(trylast=True)

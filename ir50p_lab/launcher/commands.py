@@ -18,6 +18,7 @@ The IR50P lab book. In the project's folder (on Windows write py instead of pyth
 
   python3 -m ir50p_lab [...]          set up .venv on first use, then open JupyterLab on notebooks/
   python3 -m ir50p_lab test [...]     set up with the test tools, then run the tests and every notebook
+                                      (--quick: no notebooks; --everywhere: as on other processors, other arms)
   python3 -m ir50p_lab targets [...]  measure what the project set out to reach, as tables beside the thesis
   python3 -m ir50p_lab setup          only set up (--rebuild: from nothing; --tests: with the test tools)
   python3 -m ir50p_lab doctor         what is installed, what is missing, serial ports, verdict
@@ -25,18 +26,13 @@ The IR50P lab book. In the project's folder (on Windows write py instead of pyth
   --here         use the Python that runs this instead of .venv (Binder, JupyterHub); installs nothing
   --arm FILE     use the arm in this file instead of the IR50P (the same as IR50P_ARM=FILE)
 
-Further arguments go to JupyterLab, to pytest or to the targets:
+Further arguments go to JupyterLab, to pytest (paths count from the project's folder) or to the targets:
 
   py -m ir50p_lab --no-browser --port 9999
   py -m ir50p_lab test -k pose
   py -m ir50p_lab targets vision --quick    (or identification, computed_torque; without a name all of them)
 """
 COMMANDS = ("lab", "test", "targets", "setup", "doctor")
-
-#: Seconds one notebook cell may take.
-CELL_TIMEOUT = 120
-#: pytest options that are followed by a value in the next argument.
-_PYTEST_VALUES = ("-k", "-m", "-p", "-c", "-o", "-W", "-n", "-r")
 
 
 def main(arguments, root=ROOT):
@@ -88,8 +84,8 @@ def _run(arguments, root):
     if tests:
         with tempfile.TemporaryDirectory() as home:  # neither the student's results are used nor others left behind
             variables["IR50P_HOME"] = home
-            run = _test_command(environment.root, arguments) if command == "test" else _targets_command(arguments)
-            return _attend([python, *run], variables, environment.root)
+            module = "tests" if command == "test" else "tests.targets"
+            return _attend([python, "-m", module, *arguments], variables, environment.root)
     code = _attend([python, *_lab_command(environment.root, arguments)], variables)
     return 0 if code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
 
@@ -113,28 +109,6 @@ def _lab_command(root, arguments):
         arguments = [*arguments, "--allow-root"]  # containers run as root; JupyterLab would only refuse
     print("Opening JupyterLab. If no browser opens, copy the address http://... below into one; Ctrl-C here ends it.")
     return ["-P", "-m", "jupyterlab", *target, *arguments]
-
-
-def _test_command(root, arguments):
-    """Build one pytest run over tests/ and every cell of notebooks/, or over the paths given."""
-    paths = [
-        argument
-        for before, argument in zip(["", *arguments], arguments, strict=False)
-        if before not in _PYTEST_VALUES and not argument.startswith("-") and Path(argument.split("::")[0]).exists()
-    ]
-    absolute = {path: str(Path(path.split("::")[0]).resolve()) + path[len(path.split("::")[0]) :] for path in paths}
-    arguments = [absolute.get(argument, argument) for argument in arguments]
-    targets = [] if paths else [str(root / "tests"), str(root / "notebooks")]
-    return [
-        *("-m", "pytest", "--nbval", "--nbval-current-env", f"--nbval-cell-timeout={CELL_TIMEOUT}"),
-        *targets,
-        *arguments,
-    ]
-
-
-def _targets_command(arguments):
-    """Build the run of tests/targets, which the project's folder must be the current one for."""
-    return ["-m", "tests.targets", *arguments]
 
 
 def _attend(command, variables, folder=None):

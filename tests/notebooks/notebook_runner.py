@@ -1,6 +1,8 @@
 """Runs a notebook in its own kernel and pushes its sliders in that same kernel."""
 
 import json
+import os
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,26 +17,48 @@ PUSH_SLIDERS = (Path(__file__).parent / "push_sliders.py").read_text(encoding="u
 
 @dataclass(frozen=True)
 class Run:
-    """What came of running a notebook: error of the first cell that failed (or ""), report on its panels."""
+    """What came of running a notebook: the first thing that is wrong with a cell (or ""), report on its panels."""
 
     error: str
     panels: list
     cells: list
 
 
-def run_notebook(notebook, folder=FOLDER, timeout=120):
-    """Run a notebook (not the file: nothing is written), then push the sliders of its panels. Returns Run."""
+def run_notebook(notebook, folder=FOLDER, timeout=120, variables=None):
+    """Run a notebook (not the file: nothing is written), then push the sliders of its panels.
+
+    variables: environment of its kernel, beside those of this process.
+    """
     from nbclient import NotebookClient
-    from nbclient.exceptions import CellExecutionError
+    from nbclient.exceptions import CellExecutionError, CellTimeoutError
 
     notebook = notebook.copy()
     notebook.cells = [*notebook.cells, nbformat.v4.new_code_cell(PUSH_SLIDERS)]
+    environment = os.environ | (variables or {})
+    environment["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # a debugger's notice on stderr
     client = NotebookClient(
         notebook, timeout=timeout, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
     )
     try:
-        client.execute()
-    except CellExecutionError as error:
+        client.execute(env=environment)
+    except CellTimeoutError as error:
         return Run(str(error), [], notebook.cells)
+    except CellExecutionError:
+        return Run(complaint(notebook.cells), [], notebook.cells)
     said = "".join(output.get("text", "") for output in notebook.cells[-1].outputs)
-    return Run("", json.loads(said), notebook.cells[:-1])
+    return Run(complaint(notebook.cells), json.loads(said), notebook.cells[:-1])
+
+
+def complaint(cells):
+    """Say which cell raised or wrote to stderr (a warning is a message to somebody else) first, and what; or ""."""
+    for number, cell in enumerate(cells):
+        for output in cell.get("outputs", []):
+            if output.output_type == "error":
+                said = "\n".join(output.traceback)
+            elif output.get("name") == "stderr":
+                said = f"on stderr: {output.text}"
+            else:
+                continue
+            said = re.sub(r"\x1b\[[\d;]*m", "", said)  # colours
+            return f"cell {number} (counted from 0, text cells included), id {cell.get('id')}:\n{cell.source}\n\n{said}"
+    return ""

@@ -1,0 +1,30 @@
+"""The test command: ``python3 -m ir50p_lab test``, further arguments go to pytest.
+
+--quick        without notebooks and without the emulated board
+--everywhere   notebooks and the tests marked `numeric`, as on other processors and other arms: tests/everywhere.py
+"""
+
+import subprocess
+import sys
+
+from tests import everywhere
+
+PYTEST = [sys.executable, "-m", "pytest"]
+NOTHING_FOUND = 5  # pytest's exit code
+
+
+def main(arguments):
+    """Run pytest on all cores, then one at a time what measures time; return the exit code."""
+    if "--everywhere" in arguments:
+        return everywhere.main([argument for argument in arguments if argument != "--everywhere"])
+    together = [*PYTEST, "-n", "logical", "--dist", "worksteal", "--timing=without", *arguments]
+    alone = [*PYTEST, "-p", "no:xdist", "--timing=only", *arguments]
+    if any(argument.startswith("--cov") for argument in arguments):
+        alone.append("--cov-append")
+    codes = [subprocess.run(command).returncode for command in (together, alone)]
+    found = [code for code in codes if code != NOTHING_FOUND]
+    return max(found, default=NOTHING_FOUND)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,79 @@
+"""Every notebook runs, and every slider of it answers from end to end: a broken callback is invisible otherwise."""
+
+import re
+
+import nbformat
+import pytest
+from notebook_runner import NOTEBOOKS, run_notebook
+
+#: Notebooks that keep results for later ones or load them.
+CHAIN = [path for path in NOTEBOOKS if re.search(r"\bresults\b", path.read_text(encoding="utf-8"))]
+
+
+def code_of(notebook):
+    return "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "code")
+
+
+@pytest.mark.notebook
+def test_notebook(path, notebook, tmp_path):
+    """Every cell runs, none complains, every slider moves something."""
+    run = run_notebook(notebook, variables={"IR50P_HOME": str(tmp_path)})
+    if run.error:
+        pytest.fail(f"{path.name}, {run.error}", pytrace=False)
+    assert len(run.panels) >= len(re.findall(r"^live\(|[^\w]live\(", code_of(notebook)))
+    for panel in run.panels:
+        assert panel["errors"] == []
+        assert panel["pushes"] >= 4
+        assert panel["pictures"] >= 2, f"nothing moves when {panel['controls']} are pushed"
+
+
+@pytest.mark.notebook
+def test_notebooks_in_a_chain(tmp_path):
+    """In order, with one home: what a notebook keeps there is what later ones load."""
+    for path in CHAIN:
+        run = run_notebook(nbformat.read(path, as_version=4), variables={"IR50P_HOME": str(tmp_path)})
+        if run.error:
+            pytest.fail(
+                f"after {', '.join(p.name for p in CHAIN[: CHAIN.index(path)])}: {path.name}, {run.error}",
+                pytrace=False,
+            )
+
+
+BROKEN = """
+from ir50p_lab.course.figures import new_figure
+from ir50p_lab.course.widgets import live, slider
+figure = new_figure(3, 2)
+line, = figure.axes[0].plot([0, 1], [0, 1])
+def update(k):
+    line.set_ydata([0, 1 / (k - 2)])
+live(figure, update, k=slider(0, 4, 1, 1))
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "found"), [(BROKEN, "ZeroDivisionError"), (BROKEN.replace("1 / (k - 2)", "1"), "still")]
+)
+def test_a_broken_callback_is_found(code, found):
+    """The test above is not vacuous: an update that fails in the middle, and one that does nothing, are seen."""
+    run = run_notebook(nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(code)]))
+    (panel,) = run.panels
+    if found == "still":
+        assert panel["errors"] == [] and panel["pictures"] == 1
+    else:
+        assert any(found in error for error in panel["errors"])
+
+
+@pytest.mark.parametrize(
+    ("code", "found"),
+    [("assert 1 == 2", "AssertionError"), ("import warnings; warnings.warn('loud')", "on stderr: .*loud")],
+)
+def test_a_failing_cell_is_found(code, found):
+    cells = [nbformat.v4.new_markdown_cell("text"), nbformat.v4.new_code_cell(code)]
+    error = run_notebook(nbformat.v4.new_notebook(cells=cells)).error
+    assert error.startswith("cell 1 ") and code in error
+    assert re.search(found, error)
+
+
+def test_a_cell_without_end_is_found():
+    cells = [nbformat.v4.new_code_cell("while True: pass")]
+    assert "timed out" in run_notebook(nbformat.v4.new_notebook(cells=cells), timeout=3).error
