@@ -7,9 +7,9 @@ from matplotlib.colors import LogNorm
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
+from ir50p_lab.course.identification_views import kept_motion
 from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure
-from ir50p_lab.identification import fit, load_excitations, optimise_excitation, process, regressor
-from ir50p_lab.modelling import IR50P
+from ir50p_lab.identification import fit, process, regressor
 from ir50p_lab.simulation import simulate
 
 _RUNS = (COLOURS["blue"], COLOURS["orange"], COLOURS["green"])
@@ -38,18 +38,8 @@ def follow(arm, controller, reference, seconds, *, seed=3):
 
 
 def training_run(arm, *, seed=3):
-    """A recording to identify from, on the simulated bench: the optimised motion of notebook 07, thesis' PID.
-
-    For the IR50P the motion comes from data/excitation_ir50p.json; for another arm it is optimised here, briefly.
-    """
-    if arm == IR50P:
-        motion, seconds = load_excitations()["training"], 110.0
-    else:
-        speed = 0.8 * arm.actuators.no_load_speed
-        # room at the limits and over the table: the thesis' PID lags and sags
-        options = {"standing": 6, "margin": 0.2, "table": 0.1, "starts": 1, "iterations": 30, "progress": False}
-        motion, seconds = optimise_excitation(arm, max_joint_speed=speed, **options).reference, 110.0
-    return follow(arm, thesis_pid(), motion, seconds, seed=seed)
+    """A recording to identify from, on the simulated bench: the first motion of notebook 07, thesis' PID."""
+    return follow(arm, thesis_pid(), kept_motion(arm), 110.0, seed=seed)
 
 
 def naive_model(recording):

@@ -12,7 +12,7 @@ from ir50p_lab.course import identification_results as results
 from ir50p_lab.course import identification_views as views
 from ir50p_lab.course.painter import Painter
 from ir50p_lab.errors import InputError
-from ir50p_lab.identification import RLS, fit_joint, optimise_excitation, process, regressor, validate
+from ir50p_lab.identification import RLS, fit_joint, load_excitations, optimise_excitation, process, regressor, validate
 from ir50p_lab.modelling import IR50P, gravity, mass_matrix
 from ir50p_lab.signals import quintic
 
@@ -22,16 +22,12 @@ POSE = np.array([0, 0.7, -0.8])
 
 @pytest.fixture(scope="module")
 def excitation():
-    speed = 0.8 * IR50P.actuators.no_load_speed
-    return optimise_excitation(
-        IR50P, harmonics=3, standing=4, max_joint_speed=speed, starts=1, iterations=40, progress=False
-    )
+    return views.kept_motion(IR50P)
 
 
 def recorded(excitation, seconds, arm=IR50P, seed=0):
-    motion = excitation.reference
-    bench = SimulatedBench(arm, seed=seed, unit=Unit(spread=0), q0=motion.q_start, record_to=False).open()
-    return bench.follow(PID(**PID_TABLES, position_filter_hz=3, filter_hz=np.inf), motion, seconds)
+    bench = SimulatedBench(arm, seed=seed, unit=Unit(spread=0), q0=excitation.q_start, record_to=False).open()
+    return bench.follow(PID(**PID_TABLES, position_filter_hz=3, filter_hz=np.inf), excitation, seconds)
 
 
 @pytest.fixture(scope="module")
@@ -95,10 +91,25 @@ def test_twice_as_strong_takes_the_same_counts():
 # ---- excitation
 
 
+def test_the_arm_of_the_course_has_kept_motions_another_one_gets_its_own(monkeypatch):
+    assert [views.kept_motion(IR50P, k) for k in (0, 1)] == [
+        load_excitations()[x] for x in ("training", "validation 1")
+    ]
+    seen = {}
+
+    def quick(arm, **options):
+        seen.update(options)
+        return SimpleNamespace(reference="made here")
+
+    monkeypatch.setattr(views, "optimise_excitation", quick)
+    assert views.kept_motion(replace(IR50P, name="another"), 1) == "made here"
+    assert seen["table"] > 0 and seen["seed"] == 1
+
+
 def test_relative_errors_are_those_of_a_covariance(excitation):
-    percent, u = views.relative_errors(IR50P, excitation.reference, 0.1)
-    t = 10 * (np.arange(300) + 0.5) / 300
-    rows = excitation.reference.sample(t)
+    percent, u = views.relative_errors(IR50P, excitation, 1 / excitation.period)
+    t = excitation.period * (np.arange(300) + 0.5) / 300
+    rows = excitation.sample(t)
     Phi = regressor(rows[:, 0], rows[:, 1], rows[:, 2])
     A = Phi[:, 0, [0, 1, 4, 5, 10, 11, 16]]
     stderr = 8 * np.sqrt(np.linalg.pinv(A.T @ A)[0, 0] * 300 / 1100)
@@ -107,9 +118,10 @@ def test_relative_errors_are_those_of_a_covariance(excitation):
 
 
 def test_frequency_view(excitation):
-    view = views.FrequencyView(IR50P, excitation.reference, 0.02, 0.3)
+    view = views.FrequencyView(IR50P, excitation, 0.02, 0.3)
     assert "within reach" in view.update(0.03) and "out of reach" in view.update(0.3)
-    assert "condition numbers" in views.excitation_figure(excitation).axes[1].get_title()
+    made = optimise_excitation(IR50P, harmonics=2, starts=1, iterations=2, progress=False)
+    assert "condition numbers" in views.excitation_figure(made).axes[1].get_title()
 
 
 # ---- results
@@ -154,7 +166,7 @@ def test_forgetting_follows_a_payload(records, excitation):
 
 
 def test_hysteresis_is_not_to_blame_but_noise_is(excitation):
-    motions, pid = (excitation.reference,) * 2, PID(**PID_TABLES, position_filter_hz=3, filter_hz=np.inf)
+    motions, pid = (excitation,) * 2, PID(**PID_TABLES, position_filter_hz=3, filter_hz=np.inf)
     units = Unit(spread=0), Unit(spread=0, backlash=(0, 0, 0), dead_zone=(0, 0, 0)), Unit(spread=0, noise=0)
     plain, tight, quiet = (results.as_the_thesis(IR50P, unit, motions, pid, (30, 30)) for unit in units)
     assert np.abs(tight - plain).max() < 2 and (quiet - plain).max() > 4

@@ -107,18 +107,3 @@ def test_printed_errors_and_right_law_is_computed_torque():
     np.testing.assert_allclose(runs[0].q, runs[1].q, atol=1e-3)  # they take the velocity in two ways
     law.reset()
     assert law.last is None
-
-
-@pytest.mark.compiled
-def test_another_arm_is_excited_here(monkeypatch):
-    seen = {}
-
-    def quick(arm, **options):
-        seen.update(options)
-        return type("Made", (), {"reference": quintic((0, 0.5, -0.5), (0.3, 0.6, -0.4), duration=2)})
-
-    monkeypatch.setattr(views, "optimise_excitation", quick)
-    from dataclasses import replace
-
-    recording = views.training_run(replace(IR50P, name="another"), seed=1)
-    assert seen["table"] > 0 and len(recording) > 5000

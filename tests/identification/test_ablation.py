@@ -5,7 +5,7 @@ import pytest
 
 from ir50p_lab.bench import SimulatedBench, Unit
 from ir50p_lab.controllers import PID
-from ir50p_lab.identification import fit, optimise_excitation, process, regressor, validate
+from ir50p_lab.identification import fit, load_excitations, process, regressor, validate
 from ir50p_lab.modelling import IR50P
 
 NO_PLAY = Unit(dead_zone=(0, 0, 0), backlash=(0, 0, 0), pot_bow=(0, 0, 0), bow_spread=0.0)  # one count of noise
@@ -17,18 +17,8 @@ FULL = {"delay": 0.02, "slow": 0.05}
 def records():
     """Training, validation: two motions, each its own noise."""
     made = []
-    for seed in (0, 1):
-        motion = optimise_excitation(
-            IR50P,
-            harmonics=3,
-            standing=4.0,
-            max_joint_speed=0.8 * IR50P.actuators.no_load_speed,
-            periods=6,
-            starts=2,
-            iterations=60,
-            seed=seed,
-            progress=False,
-        ).reference
+    for name in ("training", "validation 1"):
+        motion = load_excitations()[name]
         gains = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30), "limit_pwm": 255}
         pid = PID(**gains, position_filter_hz=3.0, filter_hz=np.inf)
         with SimulatedBench(IR50P, seed=3, unit=NO_PLAY, q0=motion.q_start, record_to=False) as bench:
