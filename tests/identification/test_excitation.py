@@ -13,6 +13,7 @@ from ir50p_lab.modelling import IR50P, Arm, forward_kinematics
 from ir50p_lab.signals import fourier, hold, quintic
 from ir50p_lab.signals.fourier import limits_of
 
+pytestmark = pytest.mark.numeric
 OTHER = Arm(name="other", l=(0.5, 0.3, 0.2), m=(1, 1, 1), lc=(0.1, 0.1, 0.1), q_min=(-1, 0, -2), q_max=(2, 1.5, 1))
 QUICK = {"harmonics": 3, "starts": 1, "iterations": 25, "progress": False}  # from every start to a good optimum
 compiled = pytest.mark.compiled

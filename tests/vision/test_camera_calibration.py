@@ -9,6 +9,7 @@ from ir50p_lab.errors import CalibrationError, ImageError, InputError
 from ir50p_lab.vision import Checkerboard, Reason, calibrate, calibrate_corners
 from ir50p_lab.vision.calibration.fit import NAMES
 
+pytestmark = pytest.mark.numeric
 POINTS = Checkerboard().points
 TRUTH = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2]])
 FULL = ("k1", "k2", "p1", "p2")
