@@ -45,6 +45,10 @@ class BoardLostError(BenchError):
     """The board answered before and does no longer (cable pulled), or has reset in the middle of a run."""
 
 
+class NotMeasuredError(BenchError):
+    """A real arm needs what nobody has measured on it: calibration, model or camera."""
+
+
 class RecordingError(LabError, ValueError):
     """A recording that cannot be written on, or a file that is none (the message names the line)."""
 

@@ -225,8 +225,9 @@ class Bench(abc.ABC):
             if self._recorder is recorder:
                 self._end_run()
 
-    def _start_recorder(self, header):
-        head = {
+    def head(self):
+        """What the head of a recording says of this bench: dict of str."""
+        return {
             "arm": self.arm.name,
             "kind": self.kind,
             "bench": self.name,
@@ -235,8 +236,10 @@ class Bench(abc.ABC):
             "period_s": f"{self.period:g}",
             **self.calibration.header(),
             **self._header(),
-            **{name: str(value) for name, value in header.items()},
         }
+
+    def _start_recorder(self, header):
+        head = self.head() | {name: str(value) for name, value in header.items()}
         recorder = Recorder(head, folder=self._record_to)
         self.recording = recorder.recording
         return recorder

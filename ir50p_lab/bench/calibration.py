@@ -27,8 +27,8 @@ class Calibration:
     remarks      what the fit found suspicious, sentences
     ============ ================================================================ =====================
 
-    Counts are those of a 10-bit converter, 0..1023. Make one with `fit_calibration`, keep it with `save`; the bench
-    takes the one of its arm by itself (`saved_calibration`).
+    Counts are those of a 10-bit converter, 0..1023. Make one with `fit_calibration`, keep it with
+    `course.save_result`: then `connect()` takes it for the bench it was measured on.
 
     Raises InputError if a number is not finite, a slope is 0 or a standard error negative. Warns SuspiciousArmWarning
     for a negative slope (then the joint runs away from its set point) and for one that no potentiometer has.
@@ -120,11 +120,8 @@ class Calibration:
             "calibration": self.source,
         }
 
-    def save(self, path=None):
-        """Write it as a readable file (TOML); without a path to where `saved_calibration` looks. Returns the Path.
-
-        Raises InputError if it belongs to no arm by name and no path is given, or the file cannot be written.
-        """
+    def save(self, path):
+        """Write it as a readable file (TOML). Returns the Path. Raises InputError if it cannot be written."""
         from ir50p_lab.bench.calibration_file import write_calibration
 
         return write_calibration(self, path)
@@ -161,18 +158,6 @@ class Calibration:
             residual = self.residuals[i] if self.points else np.empty(0)
             rms = f"{np.degrees(np.sqrt(np.mean(residual**2))):.2f} deg" if residual.size else "not measured"
             yield [*cells, rms, str(residual.size)]
-
-
-def saved_calibration(arm):
-    """The calibration that was saved for `arm`, or None if there is none.
-
-    Looks for the file named by the environment variable IR50P_CALIBRATION, else for calibration_<arm>.toml in the
-    working folder. Raises InputError if the variable names a file that is not there, if the file is broken, or if it
-    belongs to another arm.
-    """
-    from ir50p_lab.bench.calibration_file import find_calibration
-
-    return find_calibration(check_arm(arm))
 
 
 # Bench data of an older ROB3 (public repository eurobtec/rob3): counts of a 10-bit converter per rad of axes 1-3.

@@ -1,7 +1,5 @@
 """Calibrations as TOML files: readable, with units in comments, one per arm."""
 
-import os
-import re
 import tomllib
 from pathlib import Path
 
@@ -10,7 +8,6 @@ import tomlkit
 from ir50p_lab.bench.calibration import Calibration
 from ir50p_lab.errors import InputError
 
-VARIABLE = "IR50P_CALIBRATION"
 _COMMENTS = {
     "slope": "counts/rad, joints 1 to 3",
     "zero": "counts at q = 0",
@@ -20,19 +17,8 @@ _COMMENTS = {
 _TEXTS = ("arm", "source")
 
 
-def default_path(name):
-    """Where the calibration of the arm `name` is kept: IR50P_CALIBRATION, else calibration_<name>.toml here."""
-    if os.environ.get(VARIABLE):
-        return Path(os.environ[VARIABLE])
-    return Path(f"calibration_{re.sub(r'[^A-Za-z0-9.-]+', '_', name).strip('_.') or 'arm'}.toml")
-
-
-def write_calibration(calibration, path=None):
+def write_calibration(calibration, path):
     """Write `calibration`; every number with all its digits. Returns the Path; see `Calibration.save`."""
-    if path is None:
-        if not calibration.arm:
-            raise InputError("this calibration belongs to no arm by name: give save(path), or fit it with arm=...")
-        path = default_path(calibration.arm)
     document = tomlkit.document()
     document.add(
         tomlkit.comment("Calibration of the potentiometers: counts = zero + slope q (10-bit counts, q in rad).")
@@ -67,8 +53,7 @@ def read_calibration(path):
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(
-            f"cannot read the calibration file {path}: {error.strerror}; check the path or {VARIABLE}, or calibrate "
-            "(notebook 06)"
+            f"cannot read the calibration file {path}: {error.strerror}; check the path, or calibrate (notebook 06)"
         ) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise InputError(f"{path} is not a TOML file: {error}. Write one with Calibration.save") from None
@@ -106,17 +91,3 @@ def _points(name, table):
     if len(q) != len(counts):
         raise InputError(f"[{name}] holds {len(q)} angles but {len(counts)} counts: they belong together in pairs")
     return q, counts
-
-
-def find_calibration(arm):
-    """The saved calibration of `arm`, or None; see `saved_calibration`."""
-    path = default_path(arm.name)
-    if not path.exists() and not os.environ.get(VARIABLE):
-        return None
-    calibration = read_calibration(path)
-    if calibration.arm and calibration.arm != arm.name:
-        raise InputError(
-            f"{path} holds the calibration of '{calibration.arm}', but the arm is '{arm.name}': its angles would be "
-            f"wrong; calibrate this arm, or clear {VARIABLE}"
-        )
-    return calibration

@@ -3,6 +3,7 @@
 import os
 
 from ir50p_lab.bench.ports import list_ports
+from ir50p_lab.bench.result_files import own_calibration
 from ir50p_lab.errors import BoardError, InputError, PortError
 
 VARIABLE = "IR50P_BENCH"
@@ -18,7 +19,8 @@ def connect(port=None, *, arm=None, calibration=None, period=0.01, record_to=Non
 
     Args:
         port: 'simulated', 'replay:FILE', or a serial port ('COM3', '/dev/ttyACM0'); None looks for a board.
-        arm: Arm, default `load_arm()`; calibration: counts to rad, default that of the arm; period: s;
+        arm: Arm, default `load_arm()`; calibration: counts to rad, default yours, if one was
+        measured on this very bench (`course.results`), else the nominal one; period: s;
         record_to: folder of the recordings, False for none on disk. simulated: further options of SimulatedBench, as
         `seed` and `unit`; the other benches take no notice of them, so that a cell runs on any bench (a replay keeps
         to `realtime`).
@@ -78,7 +80,9 @@ def _simulated(common, simulated):
     from ir50p_lab.bench.simulated import SimulatedBench
 
     known = {name: common[name] for name in ("arm", "period", "record_to")}
-    return SimulatedBench(**known, **simulated).open()
+    bench = SimulatedBench(**known, **simulated)
+    bench.calibration = common["calibration"] or own_calibration(bench) or bench.calibration
+    return bench.open()
 
 
 def _serial(device, common):
@@ -90,11 +94,10 @@ def _serial(device, common):
 
 def _say_board(bench, reason):
     known = bench.bench_id or "without an id: python3 -m ir50p_lab bench-test gives it one"
-    reason = f"{reason}, version {bench.firmware}; {known}; calibration: {bench.calibration.source}"
-    return _say(bench, reason, _TO_SIMULATED)
+    return _say(bench, f"{reason}, version {bench.firmware}; {known}", _TO_SIMULATED)
 
 
 def _say(bench, reason, other):
     """The one line, padded to wipe out what was announced before it."""
-    print(f"Bench: {bench.name} ({reason}; {other})".ljust(80))
+    print(f"Bench: {bench.name} ({reason}; calibration: {bench.calibration.source}; {other})".ljust(80))
     return bench

@@ -8,9 +8,10 @@ import numpy as np
 
 from ir50p_lab.bench import protocol
 from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench
-from ir50p_lab.bench.calibration import nominal_calibration, saved_calibration
+from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.link import PORT_ERRORS, Clock, Link
 from ir50p_lab.bench.ports import open_port
+from ir50p_lab.bench.result_files import own_calibration
 from ir50p_lab.errors import BoardError, BoardLostError, InputError
 from ir50p_lab.inputs import check_arm
 
@@ -27,7 +28,8 @@ class SerialBench(Bench):
 
     Args:
         port: name of the serial port ('COM3', '/dev/ttyACM0'), or an open pyserial-like object.
-        arm: Arm, default `load_arm()`; calibration: default the one saved for the arm, else the nominal one.
+        arm: Arm, default `load_arm()`; calibration: default yours, if one was measured on
+        this board (`result_files`), else the nominal one.
         clock: object with now() and sleep(s); default the computer's. period: s. record_to: folder, or False.
         announce: takes the line that says why opening lasts 2 s; default print.
 
@@ -51,12 +53,13 @@ class SerialBench(Bench):
         self.port = os.fspath(port) if named else getattr(port, "name", None) or "a given port"
         super().__init__(
             arm,
-            calibration or saved_calibration(arm) or nominal_calibration(arm),
+            calibration or nominal_calibration(arm),
             period=period,
             record_to=record_to,
             name=f"board on {self.port} for {arm.name}",
         )
         self._given = None if named else port
+        self._calibrated = calibration is not None
         self._clock, self._announce = clock or Clock, announce
         self._link = self.identity = None
         self._start = self._skipped = self._missed = 0
@@ -74,6 +77,8 @@ class SerialBench(Bench):
             _load_controllers()
             self._wait_for(ready)
             self.identity = self._shake_hands(HANDSHAKE)
+            if not self._calibrated:
+                self.calibration = own_calibration(self) or self.calibration
         except BaseException:
             self._close()
             raise

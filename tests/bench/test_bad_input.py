@@ -11,7 +11,6 @@ from ir50p_lab.bench import (
     connect,
     mean_voltage,
     nominal_calibration,
-    saved_calibration,
     sign_and_magnitude,
     thesis_map,
 )
@@ -24,7 +23,7 @@ RUBBISH = ["x", -1, float("nan"), [], {}, object(), np.full((3, 3), np.nan)]
 
 
 @pytest.mark.parametrize("rubbish", [None, *RUBBISH], ids=repr)
-@pytest.mark.parametrize("function", [nominal_calibration, saved_calibration])
+@pytest.mark.parametrize("function", [nominal_calibration])
 def test_no_arm(function, rubbish):
     with pytest.raises(InputError, match=r"give an Arm"):
         function(rubbish)

@@ -10,6 +10,7 @@ from fake_board import FakeBoard
 from ir50p_lab.bench import Calibration, ReplayBench, SerialBench, SimulatedBench, connect, nominal_calibration
 from ir50p_lab.bench import ports as port_list
 from ir50p_lab.bench.ports import Port
+from ir50p_lab.bench.result_files import add
 from ir50p_lab.errors import BoardError, InputError, PortError, RecordingError
 from ir50p_lab.launcher.boards import MEGA
 from ir50p_lab.modelling import IR50P
@@ -21,7 +22,7 @@ CLONE = "CH340 chip, as on clones of the Mega"
 def computer(monkeypatch, tmp_path):
     """A computer without any port, unless a test plugs something in: computer({name: (board, what is there)})."""
     monkeypatch.chdir(tmp_path)
-    for variable in ("IR50P_BENCH", "IR50P_ARM", "IR50P_CALIBRATION", "IR50P_RECORDINGS"):
+    for variable in ("IR50P_BENCH", "IR50P_ARM", "IR50P_RECORDINGS"):
         monkeypatch.delenv(variable, raising=False)
     opened = []
 
@@ -87,7 +88,8 @@ def test_no_board_gives_the_simulated_arm(said):
         assert isinstance(bench, SimulatedBench)
         assert len(list(bench.run(0.1))) == 10
     assert said() == (
-        "Bench: simulated IR50P, unit 0 (no Arduino Mega found; for a board: connect('PORT') or IR50P_BENCH=PORT)"
+        "Bench: simulated IR50P, unit 0 (no Arduino Mega found; calibration: nominal, not measured; "
+        "for a board: connect('PORT') or IR50P_BENCH=PORT)"
     )
 
 
@@ -165,7 +167,7 @@ def test_the_simulated_arm_although_a_board_is_there(computer, said, monkeypatch
     assert isinstance(connect(wish) if how == "argument" else connect(), SimulatedBench)
     assert not opened
     reason = f"connect('{wish}')" if how == "argument" else f"IR50P_BENCH={wish}"
-    assert f"(asked for by {reason}; for a board: " in said()
+    assert f"(asked for by {reason}; calibration: " in said()
 
 
 @pytest.mark.parametrize("how", ["argument", "variable"])
@@ -239,15 +241,26 @@ def test_a_wrong_option_is_an_error():
         connect(sed=3)
 
 
-def test_the_saved_calibration_is_taken(computer, said, tmp_path):
-    nominal = nominal_calibration(IR50P)
-    zero = tuple(z + 5 for z in nominal.zero)
-    Calibration(nominal.slope, zero, source="measured on Monday", arm=IR50P.name).save()
-    computer({"COM3": (MEGA, board())})
-    bench = connect()
-    assert bench.calibration.zero == zero
-    assert "calibration: measured on Monday" in said()
-    bench.abort()
+def test_a_board_takes_only_a_calibration_measured_on_it(computer, said, monkeypatch, tmp_path):
+    """Neither one of the simulated arm, nor one of another board; and none while the board has no id."""
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+    nominal, mine = nominal_calibration(IR50P), board()
+    for k, where in enumerate(("simulated-unit-0", "board-0a0b0c")):
+        zero = tuple(z + 5 + k for z in nominal.zero)
+        about = {"arm": "IR50P", "bench": where, "unit": "", "seed": "", "simulated": k == 0}
+        add("calibration", ".toml", Calibration(nominal.slope, zero, source="x").save, bench_id=where, **about)
+    computer({"COM3": (MEGA, mine)})
+    with connect() as bench:
+        assert bench.calibration == nominal and "calibration: nominal, not measured" in said()
+        here = bench.give_id()
+    zero = tuple(z + 9 for z in nominal.zero)
+    measured = Calibration(nominal.slope, zero, source="on Monday")
+    add("calibration", ".toml", measured.save, **about | {"bench_id": here})
+    mine.is_open = True
+    with connect() as bench:
+        assert bench.calibration.zero == zero and "calibration: yours, calibration-3 (on Monday)" in said()
+    with connect("simulated") as bench:
+        assert bench.calibration.zero == tuple(z + 5 for z in nominal.zero)
 
 
 def test_nothing_but_connect_prints(computer, capsys):

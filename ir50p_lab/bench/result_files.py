@@ -1,0 +1,111 @@
+"""The student's results as files: what was measured, when, on which bench; and the newest that counts for a bench."""
+
+import json
+from dataclasses import asdict, dataclass, replace
+from datetime import datetime
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.home import home, replace_text
+
+
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """One result: a description NAME.json in `results/` of the student's folder, and the file that it names.
+
+    name: such as 'model-2'; kind: 'calibration', 'model' or 'camera'; made, chosen: ISO times, chosen is the later one
+    if an older result was taken again; arm, bench: names; bench_id: of the bench it was measured on; unit, seed: of a
+    simulated arm, else ''; simulated: bool; withdrawn: bool; file: name of the file with the numbers.
+    """
+
+    name: str
+    kind: str
+    made: str
+    chosen: str
+    arm: str
+    bench: str
+    bench_id: str
+    unit: str
+    seed: str
+    simulated: bool
+    withdrawn: bool
+    file: str
+
+    @property
+    def path(self):
+        """The file with the numbers: Path."""
+        return folder() / self.file
+
+    def __str__(self):
+        return f"{self.name} of {self.made[:16].replace('T', ' ')}, measured on {self.bench}"
+
+
+def folder():
+    """Where results lie: Path; it may not exist yet."""
+    return home() / "results"
+
+
+def every():
+    """All Results, the one chosen last at the end. Raises InputError for a description that is none."""
+    found = []
+    for path in folder().glob("*-*.json"):
+        try:
+            found.append(Result(**json.loads(path.read_text(encoding="utf-8"))))
+        except (OSError, ValueError, TypeError, RecursionError) as error:
+            raise InputError(f"{path} describes no result ({error!r:.80}): delete it, or move it elsewhere") from None
+    return sorted(found, key=lambda one: one.chosen)
+
+
+def newest(kind, bench_id, arm):
+    """The Result of this kind for the arm on the bench with this id that was chosen last; None if there is none."""
+    fits = [one for one in every() if (one.kind, one.bench_id, one.arm) == (kind, bench_id, arm) and not one.withdrawn]
+    return fits[-1] if fits else None
+
+
+def add(kind, suffix, write, **about):
+    """Keep a result. write: function (path) that writes the numbers; about: the other fields of Result. Returns it.
+
+    Raises InputError if it cannot be written.
+    """
+    number = 1 + max((int(one.name.rpartition("-")[2]) for one in every() if one.kind == kind), default=0)
+    name, now = f"{kind}-{number}", datetime.now().astimezone().isoformat()
+    result = Result(name=name, kind=kind, made=now, chosen=now, withdrawn=False, file=f"{name}{suffix}", **about)
+    try:
+        folder().mkdir(parents=True, exist_ok=True)
+        write(result.path)
+        _describe(result)
+    except OSError as error:
+        raise InputError(f"cannot keep {name} in {folder()}: {error.strerror}; set IR50P_HOME to a folder") from None
+    return result
+
+
+def change(name, **fields):
+    """Change the description of a result: Result. Raises InputError for a name that is none."""
+    known = {one.name: one for one in every()}
+    if name not in known:
+        raise InputError(f"there is no result {name!r}: {', '.join(known) or 'none at all'}")
+    result = replace(known[name], **fields)
+    _describe(result)
+    return result
+
+
+def choose(name):
+    """From now on this result counts, whatever is newer: Result. Raises InputError for a name that is none."""
+    return change(name, chosen=datetime.now().astimezone().isoformat(), withdrawn=False)
+
+
+def _describe(result):
+    replace_text(folder() / f"{result.name}.json", json.dumps(asdict(result), indent=1) + "\n")
+
+
+def own_calibration(bench):
+    """The Calibration measured on an open bench that counts, its source says which it is; None if there is none."""
+    from ir50p_lab.bench.calibration import Calibration
+
+    found = newest("calibration", bench.bench_id, bench.arm.name) if bench.bench_id else None
+    if found is None:
+        return None
+    try:
+        calibration = Calibration.load(found.path)
+    except InputError as error:
+        raise InputError(f"{error}. To do without it: results(withdraw={found.name!r})") from None
+    return replace(calibration, source=f"yours, {found.name} ({calibration.source})")

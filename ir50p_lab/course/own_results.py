@@ -1,0 +1,149 @@
+"""The chain of the student's own results: calibration (06), model (07), camera (10), each for the bench it is from."""
+
+import dataclasses
+import json
+
+import numpy as np
+
+from ir50p_lab.bench import result_files
+from ir50p_lab.bench.connect import connect
+from ir50p_lab.errors import InputError, NotMeasuredError
+
+NOTEBOOKS = {"calibration": "06_bench", "model": "07_identification", "camera": "10_camera_calibration"}
+_ENDINGS = {"calibration": ".toml", "model": ".model", "camera": ".yml"}
+_RENDERED = {"bench": "rendered pictures", "bench_id": "rendered", "arm": "", "simulated": "true"}
+
+
+def save_result(kind, value, measured_on=None):
+    """Keep a result with its origin; later notebooks take the newest. One line says what was kept.
+
+    Args:
+        kind: 'calibration' (of potentiometers), 'model' (what `identify` returns) or 'camera' (what `calibrate`
+        returns). measured_on: the open bench, or the Recording, that it is from; None: rendered pictures of a camera.
+
+    Raises InputError for another kind, for a board without an id, and if it cannot be written.
+    """
+    _check(kind)
+    head = _origin(measured_on, kind)
+    if head.get("bench_id", "none") == "none":
+        raise InputError("nobody knows which bench this is from: give its board an id, python3 -m ir50p_lab bench-test")
+    write = (lambda path: _write_model(value, path)) if kind == "model" else value.save
+    simulated = head.get("simulated") == "true"
+    unit, seed = head.get("seed", "") if simulated else "", head.get("noise_seed", "")
+    about = {name: head.get(name, "") for name in ("arm", "bench", "bench_id")}
+    print("Kept:", result_files.add(kind, _ENDINGS[kind], write, simulated=simulated, unit=unit, seed=seed, **about))
+
+
+def load_result(kind, bench, course=None):
+    """Your newest result of this kind for a bench; on a simulated arm without one the course's. One line says whose.
+
+    Args: kind: 'model' or 'camera' (`connect()` takes the calibration by itself). bench: the bench it is for: what was
+    measured on another one does not count. course: function () -> what the course has instead.
+    Raises NotMeasuredError for a real arm on which nothing was measured; InputError for a damaged file.
+    """
+    found = newest_result(kind, bench)
+    if found is None and not bench.simulated:
+        raise NotMeasuredError(f"{_missing(kind, bench)}: measure first, with notebook {NOTEBOOKS[kind]}")
+    if found is None:
+        print(f"The course's {kind}: {_missing(kind, bench)} (notebook {NOTEBOOKS[kind]} does)")
+        return course()
+    print(f"Your {found}")
+    return _read(found)
+
+
+def newest_result(kind, bench):
+    """The Result of this kind that counts for a bench; None if there is none."""
+    _check(kind)
+    if kind == "camera" and bench.simulated:
+        return result_files.newest(kind, _RENDERED["bench_id"], "")
+    return result_files.newest(kind, bench.bench_id, bench.arm.name) if bench.bench_id else None
+
+
+def results(*, choose=None, withdraw=None):
+    """Your results as a table, the one that counts for its bench marked.
+
+    Args: choose: name of a result that is to count from now on, whatever is newer; withdraw: name of one that is not
+    to count any more (`choose` takes it back). Returns: pandas.DataFrame.
+    """
+    import pandas as pd
+
+    if choose is not None:
+        result_files.choose(choose)
+    if withdraw is not None:
+        result_files.change(withdraw, withdrawn=True)
+    rows = []
+    for one in result_files.every():
+        counts = one == result_files.newest(one.kind, one.bench_id, one.arm)
+        state = "withdrawn" if one.withdrawn else "counts" if counts else ""
+        origin = "simulated" if one.simulated else "real"
+        rows.append(
+            (one.name, state, one.made[:16].replace("T", " "), one.bench, one.bench_id, origin, one.unit, one.seed)
+        )
+    names = ("name", "state", "made", "bench", "bench_id", "arm is", "unit", "seed")
+    return pd.DataFrame(rows, columns=names).set_index("name")
+
+
+def arm_that_answers(*needs, **options):
+    """`connect(**options)`, but the simulated arm where the bench cannot do what a cell needs; a line says why.
+
+    A recording does not answer. A real arm needs the results named in `needs` ('calibration', 'model', 'camera'),
+    measured on this very bench: no law that rests on a model of another arm ever drives it. Returns: an open bench.
+    """
+    bench = connect(**options)
+    missing = [kind for kind in needs if not bench.simulated and newest_result(kind, bench) is None]
+    if bench.kind != "replay" and not missing:
+        return bench
+    bench.abort()  # it has not moved
+    why = "a recording does not answer"
+    if bench.kind != "replay":
+        todo = "; ".join(f"{_missing(kind, bench)} (notebook {NOTEBOOKS[kind]} does)" for kind in missing)
+        why = f"measure first: {todo}"
+    print(f"The simulated arm instead: {why}")
+    return connect("simulated", **options)
+
+
+def _missing(kind, bench):
+    return f"no {kind} of yours was measured on {bench.name if kind != 'camera' or not bench.simulated else 'pictures'}"
+
+
+def _check(kind):
+    if kind not in NOTEBOOKS:
+        raise InputError(f"kind = {kind!r}: choose {', '.join(NOTEBOOKS)}")
+
+
+def _origin(measured_on, kind):
+    """Lines of the head of a recording that say where something is from."""
+    if measured_on is None and kind == "camera":
+        return _RENDERED
+    if hasattr(measured_on, "header"):
+        return measured_on.header
+    if not hasattr(measured_on, "bench_id"):
+        raise InputError(f"measured_on = {measured_on!r:.60}: give the open bench or the Recording that it is from")
+    return measured_on.head()
+
+
+def _write_model(model, path):
+    fields = {one.name: getattr(model, one.name) for one in dataclasses.fields(model)}
+    fields["residuals"] = np.round(model.residuals, 4)
+    listed = {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in fields.items()}
+    path.write_text(json.dumps(listed), encoding="utf-8")
+
+
+def _read(found):
+    if found.kind == "camera":
+        from ir50p_lab.vision import Calibration
+
+        return Calibration.load(found.path)
+    from ir50p_lab.identification.recipe import Identified
+
+    try:
+        listed = json.loads(found.path.read_text(encoding="utf-8"))
+        arrays = {one.name for one in dataclasses.fields(Identified) if one.type is np.ndarray}
+        fields = {name: np.array(value) if name in arrays else value for name, value in listed.items()}
+        return Identified(**{name: _tuples(value) for name, value in fields.items()})
+    except (OSError, ValueError, TypeError, RecursionError) as error:
+        raise InputError(f"{found.path} is no model ({error!r:.80}): results(withdraw={found.name!r})") from None
+
+
+def _tuples(value):
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
