@@ -54,7 +54,7 @@ def pinhole_figure(points):
     return figure
 
 
-class LensView:
+class DistortionView:
     """A square grid as a lens shows it: straight lines in grey, what becomes of them in blue; `update` moves them.
 
     Args: pinhole: Pinhole, whose K and size are used. Attribute: figure.

@@ -200,7 +200,7 @@ def _meetings(votes, apart=10):
     return found
 
 
-class LensView:
+class ThinLensView:
     """Rays of an object through a thin lens onto the sensor (Figure 3.8), and blur over distance; for sliders.
 
     Three panels: lens and sensor to scale; the place where the rays meet, much larger; the blur over the distance. In
@@ -305,7 +305,7 @@ def balls_figure(image, balls, title, *, source=STAMP):
 def sheet_figure(seen, *, columns=4, source=STAMP):
     """Pictures, small, each with the ball found and how far it is off; dashed where one was missed: LabFigure.
 
-    seen: list of (picture, balls found, truth of the ball: x, y, radius).
+    seen: list of (picture, balls found, (x, y, radius) of the true ball).
     """
     rows = -(-len(seen) // columns)
     figure = new_figure(9.6, 2.05 * rows + 0.2, rows=rows, cols=columns)
@@ -314,11 +314,12 @@ def sheet_figure(seen, *, columns=4, source=STAMP):
     for ax, (picture, found, target) in zip(figure.axes, seen, strict=False):
         height, width = picture.shape[:2]
         ax.imshow(picture[::2, ::2], extent=(-0.5, width - 0.5, height - 0.5, -0.5))
-        off = [np.hypot(ball.x - target.x, ball.y - target.y) for ball in found[:1]]
+        x, y, radius = target
+        off = [np.hypot(ball.x - x, ball.y - y) for ball in found[:1]]
         for ball in found:
             _circle(ax, ball.x, ball.y, ball.radius, COLOURS["blue"])
         if not found:
-            _circle(ax, target.x, target.y, 1.5 * target.radius, COLOURS["orange"], linestyle="--")
+            _circle(ax, x, y, 1.5 * radius, COLOURS["orange"], linestyle="--")
         ax.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
         ax.set_title(
             f"{off[0]:.2f} px off" if off else "missed", fontsize=9, color=COLOURS["dark" if off else "orange"]

@@ -4,9 +4,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ir50p_lab.errors import CalibrationError, InputError, VisionError
-from ir50p_lab.inputs import first_not_finite, number, numbers, whole
-from ir50p_lab.vision.pinhole import undistort_xy
+from ir50p_lab.errors import CalibrationError, InputError
+from ir50p_lab.vision.calibration.board import Checkerboard
+from ir50p_lab.vision.checks import point_list, rigid
+from ir50p_lab.vision.pinhole import as_pinhole
 
 _WORST_RMS = 5.0  # px; a board of another size, or corners in another order, miss by far more
 
@@ -49,26 +50,18 @@ def board_points(pattern=(9, 6), square=0.025, T_table_board=None):
     Args: pattern: corners along a row, and rows; square: m; T_table_board: (4, 4) where the board lies. Default: print
     upwards, its first corner at the origin, rows along x, further rows towards -y: diag(1, -1, -1, 1). The identity
     gives the corners in board coordinates, for `board_pose` of a board in the hand.
-    Raises InputError for a pattern or a square that no board has.
+    Raises CalibrationError for a pattern or a square that no board has.
     """
-    try:
-        columns, rows = pattern
-    except (TypeError, ValueError):
-        raise InputError(f"pattern = {pattern!r:.60}: give (columns, rows) of inner corners, such as (9, 6)") from None
-    columns = whole("pattern, columns of inner corners", columns, 2, 100)
-    rows = whole("pattern, rows of inner corners", rows, 2, 100)
-    square = number("square", square, "> 0", unit="m", hint="the side of a square, such as 0.025")
-    grid = np.zeros((rows * columns, 3))
-    grid[:, :2] = square * np.mgrid[:columns, :rows].T.reshape(-1, 2)
+    grid = Checkerboard(pattern, square).points
     lies = np.diag([1.0, -1.0, -1.0, 1.0]) if T_table_board is None else T_table_board
-    return moved(checked_transform("T_table_board", lies), grid)
+    return moved(rigid("T_table_board", lies), grid)
 
 
 def board_pose(camera, corners, points):
     """Pose of a flat board: IPPE for the start, then least squares of the reprojection error (Levenberg-Marquardt).
 
     Args:
-        camera: Pinhole or Calibration (anything with K (3, 3) and distortion, OpenCV's order).
+        camera: Pinhole or Calibration.
         corners: (n, 2) px, as the finder gives them; points: (n, 3) m, the same corners in board or table
         coordinates, all in one plane. n >= 4.
 
@@ -77,13 +70,14 @@ def board_pose(camera, corners, points):
     """
     import cv2
 
-    corners, points = pixels("corners", corners), _points(points)
+    camera = as_pinhole(camera)
+    corners, points = point_list("corners", corners, 2), point_list("points", points, 3, "m")
     if len(corners) != len(points) or len(corners) < 4:
         raise InputError(f"{len(corners)} corners for {len(points)} points: give the same number, at least 4")
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     if spread[1] < 1e-6 * spread[0] or spread[2] > 1e-6 * spread[0]:
         raise InputError("the points must lie in one plane, but not on one line: use the whole board")
-    K, distortion = camera_numbers(camera)
+    K, distortion = camera.K, camera.distortion
     found, rvecs, tvecs, _ = cv2.solvePnPGeneric(points, corners, K, distortion, flags=cv2.SOLVEPNP_IPPE)
     candidates = [
         cv2.solvePnPRefineLM(points, corners, K, distortion, rvec.copy(), tvec.copy())
@@ -117,34 +111,6 @@ def board_pose(camera, corners, points):
     )
 
 
-def camera_numbers(camera):
-    """K (3, 3) and distortion (5,) of a Pinhole or Calibration, checked; missing coefficients are zero."""
-    K = np.asarray(getattr(camera, "K", None), dtype=float)
-    if K.shape != (3, 3) or not np.isfinite(K).all() or K[0, 0] <= 0 or K[1, 1] <= 0:
-        raise InputError(
-            f"camera = {camera!r:.60}: give a Pinhole or a Calibration (with K, (3, 3) px, and distortion)"
-        )
-    distortion = getattr(camera, "distortion", None)
-    distortion = np.zeros(0) if distortion is None else np.ravel(distortion).astype(float)
-    if distortion.size > 5 or not np.isfinite(distortion).all():
-        raise InputError(f"distortion = {distortion.tolist()}: give k1, k2, p1, p2, k3, or the first of them")
-    return K, np.concatenate([distortion, np.zeros(5 - distortion.size)])
-
-
-def undistorted(K, distortion, xy):
-    """Pixels (n, 2) to coordinates on the plane one unit in front of the camera, distortion removed, (n, 2)."""
-    y = (xy[:, 1] - K[1, 2]) / K[1, 1]
-    x = (xy[:, 0] - K[0, 2] - K[0, 1] * y) / K[0, 0]
-    found = np.column_stack(undistort_xy(distortion, x, y))
-    if np.isnan(found).any():
-        lost = xy[np.isnan(found).any(axis=1)][0]
-        raise VisionError(
-            f"no ray leads to pixel {np.round(lost, 1).tolist()} through a lens with the distortion "
-            f"{distortion.tolist()}: it lies too far outside the picture, or the calibration is of another camera"
-        )
-    return found
-
-
 def transform(rvec, tvec):
     """Homogeneous transform (4, 4) of OpenCV's rotation vector (3,) rad and translation (3,) m."""
     import cv2
@@ -171,48 +137,3 @@ def inverse_transform(T):
 def moved(T, points):
     """Points (n, 3) or (3,) under the transform T (4, 4)."""
     return points @ T[:3, :3].T + T[:3, 3]
-
-
-def checked_transform(name, T):
-    """`T` as a (4, 4) float array; InputError unless it is a rotation and a translation."""
-    T = numbers(name, T, unit="m and a rotation")
-    rigid = T.shape == (4, 4) and np.isfinite(T).all() and np.array_equal(T[3], [0, 0, 0, 1])
-    if not rigid or np.abs(T[:3, :3] @ T[:3, :3].T - np.eye(3)).max() > 1e-6 or np.linalg.det(T[:3, :3]) < 0:
-        raise InputError(f"{name} is no rigid transform: give (4, 4) with a rotation, a translation in m and 0 0 0 1")
-    return T
-
-
-def pixels(name, xy):
-    """`xy` as (n, 2) float array of finite pixels; (2,) counts as one."""
-    try:
-        array = np.ascontiguousarray(xy, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must hold pixel coordinates; got {xy!r}") from None
-    if array.ndim == 3 and array.shape[1:] == (1, 2):  # as OpenCV hands them out
-        array = array[:, 0]
-    array = array[None] if array.ndim == 1 else array
-    if array.ndim != 2 or array.shape[1] != 2:
-        raise InputError(f"{name} has shape {np.shape(xy)}; give (n, 2) or (2,) pixel coordinates x, y")
-    if not np.isfinite(array).all():
-        raise InputError(f"{name} holds {first_not_finite(array)}: every pixel must be finite")
-    return array
-
-
-def _points(points):
-    array = np.ascontiguousarray(points, dtype=float)
-    if array.ndim != 2 or array.shape[1] != 3 or not np.isfinite(array).all():
-        raise InputError(f"points has shape {array.shape}; give (n, 3) finite numbers, m")
-    return array
-
-
-def check_picture_size(camera, image):
-    """Raise CalibrationError if a picture is of another size than the camera was calibrated for.
-
-    image: colour (h, w, 3) or grey (h, w); camera: Calibration or Pinhole; one without `size` takes every picture.
-    """
-    size, here = getattr(camera, "size", None), (image.shape[1], image.shape[0])
-    if size is not None and tuple(size) != here:
-        raise CalibrationError(
-            f"the camera sends {here[0]}x{here[1]}, its calibration is of {size[0]}x{size[1]}: set the camera to that "
-            "size, or calibrate it at this one"
-        )

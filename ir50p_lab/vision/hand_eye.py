@@ -7,7 +7,8 @@ import numpy as np
 from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.inputs import check_arm, vectors3
 from ir50p_lab.modelling.chain import frames
-from ir50p_lab.vision.board_pose import BoardPose, checked_transform, inverse_transform
+from ir50p_lab.vision.board_pose import BoardPose, inverse_transform
+from ir50p_lab.vision.checks import rigid
 
 _FEWEST = 4  # poses; three would do for exact angles
 _LEAST_SPREAD = 0.1  # rad rms that the hand must turn about a second axis; potentiometers err by some 0.005
@@ -25,8 +26,7 @@ class HandEye:
     T_tool_board      the board in the hand: board to tool coordinates (frame 3)      (4, 4)
     rotation_error    of each pose, what the two ways round the loop differ by        (n,) rad
     translation_error the same, of the board's origin                                 (n,) m
-    method            of OpenCV, the one with the smallest error
-    methods           rms translation error of every method tried                     name -> m
+    method            of OpenCV, the one with the smaller error
     ================= =============================================================== ==============
     """
 
@@ -35,19 +35,16 @@ class HandEye:
     rotation_error: np.ndarray = field(repr=False)
     translation_error: np.ndarray = field(repr=False)
     method: str
-    methods: dict = field(repr=False)
 
     @property
     def rms(self):
         """(rotation rad, translation m), rms over the poses."""
         return tuple(float(np.sqrt(np.mean(e**2))) for e in (self.rotation_error, self.translation_error))
 
-    def table(self):
-        """Each pose with what it leaves over, as text."""
-        lines = [f"{'pose':>4} {'rotation':>10} {'translation':>12}"]
-        for i, (turn, shift) in enumerate(zip(self.rotation_error, self.translation_error, strict=True)):
-            lines.append(f"{i:>4} {1e3 * turn:>5.1f} mrad {1e3 * shift:>9.1f} mm")
-        return "\n".join([*lines, f"T_base_cam by the method of {self.method}"])
+    @property
+    def errors(self):
+        """Of each pose rotation and translation in one number, (n,) m: 1 rad counts like 0.3 m."""
+        return np.hypot(self.translation_error, _LEVER * self.rotation_error)
 
 
 def camera_from_board(pose, T_base_board):
@@ -58,9 +55,8 @@ def camera_from_board(pose, T_base_board):
     Args: pose: BoardPose or T_cam_board (4, 4); T_base_board: (4, 4), z of a lying board points down (see
     `board_points`). Raises InputError for matrices that are no rigid transforms.
     """
-    T_cam_board = pose.T_cam_board if isinstance(pose, BoardPose) else pose
-    T_cam_board = checked_transform("T_cam_board", T_cam_board)
-    return checked_transform("T_base_board", T_base_board) @ inverse_transform(T_cam_board)
+    T_cam_board = rigid("T_cam_board", pose.T_cam_board if isinstance(pose, BoardPose) else pose)
+    return rigid("T_base_board", T_base_board) @ inverse_transform(T_cam_board)
 
 
 def tool_poses(arm, q):
@@ -69,33 +65,27 @@ def tool_poses(arm, q):
 
 
 def hand_eye(arm, q, T_cam_board):
-    """Camera and board from arm poses: A X = Z B by six methods of OpenCV, the best by what is left over.
+    """Camera and board from arm poses: A X = Z B by two methods of OpenCV (Shah, Li), the one that leaves less.
 
         T_base_tool(q_i) T_tool_board = T_base_cam T_cam_board_i      for every pose i
 
-    The potentiometers quantise, and are off; every method takes q as exact, so what is left over is theirs, and
-    `refine_hand_eye` does better. The hand of this arm turns about two axes only, the column (q1) and the joint axis
-    of q2 + q3: that is enough, if both are used.
+    The methods take q as exact, so what is left over is the potentiometers', which round and are off. The hand of this
+    arm turns about two axes only, the column (q1) and the joint axis of q2 + q3: that is enough, if both are used.
 
     Args: arm: Arm; q: (n, 3) rad, n >= 4; T_cam_board: n poses, each BoardPose or (4, 4).
     Returns: HandEye. Raises CalibrationError for too few poses, turns about one axis only, poses given the wrong way
     round, or that do not belong to these q, naming single ones; InputError for wrong shapes.
     """
     T_tool = tool_poses(check_arm(arm), q)
-    if not isinstance(T_cam_board, list | tuple | np.ndarray):
-        raise InputError(f"T_cam_board = {T_cam_board!r:.60}: give a list of poses, each BoardPose or (4, 4)")
+    if not isinstance(T_cam_board, list | tuple | np.ndarray) or len(T_cam_board) != len(T_tool):
+        raise InputError(f"T_cam_board must be a list of poses, each BoardPose or (4, 4), one of each of {len(T_tool)}")
     poses = [one.T_cam_board if isinstance(one, BoardPose) else one for one in T_cam_board]
-    T_cam = np.array([checked_transform(f"T_cam_board[{i}]", T) for i, T in enumerate(poses)]).reshape(-1, 4, 4)
-    if len(T_cam) != len(T_tool):
-        raise InputError(f"{len(T_tool)} joint poses for {len(T_cam)} views: give one of each per pose")
+    T_cam = np.array([rigid(f"T_cam_board[{i}]", T) for i, T in enumerate(poses)])
     _refuse_poor_poses(T_tool)
-    results = _all_methods(T_tool, T_cam)
-    if not results:
-        raise CalibrationError("no method found a finite answer: are the views sharp, and of one and the same board?")
-    best = min(results, key=lambda name: results[name][0])
-    rms, T_base_cam, T_tool_board, turn, shift = results[best]
-    back = _all_methods(T_tool, np.array([inverse_transform(T) for T in T_cam]))
-    if back and min(value[0] for value in back.values()) < rms / 3:
+    found = _solve(T_tool, T_cam)
+    rms = np.sqrt(np.mean(found.errors**2))
+    back = _solve(T_tool, np.array([inverse_transform(T) for T in T_cam]))
+    if np.sqrt(np.mean(back.errors**2)) < rms / 3:
         raise CalibrationError(
             "the views look inverted: T_cam_board takes board to camera coordinates; give inverse_transform(...)"
         )
@@ -111,25 +101,38 @@ def hand_eye(arm, q, T_cam_board):
             f"arm and camera disagree by {1e3 * rms:.0f} mm rms: do the views belong to these q, in this order, did "
             "the board slip in the gripper, or did the camera move?"
         )
-    return HandEye(
-        T_base_cam=T_base_cam,
-        T_tool_board=T_tool_board,
-        rotation_error=turn,
-        translation_error=shift,
-        method=best,
-        methods={name: value[0] for name, value in results.items()},
-    )
+    return found
 
 
-def loop_errors(T_base_cam, T_tool_board, T_base_tool, T_cam_board):
-    """What the two ways round the loop differ by: angles (n,) rad, distances of the board's origin (n,) m."""
-    ours, seen = T_base_tool @ T_tool_board, T_base_cam @ T_cam_board
-    turn = np.einsum("nji,njk->nik", ours[:, :3, :3], seen[:, :3, :3])
-    # sin and cos of the angle: acos of the trace alone would lose half the digits
-    axis = 0.5 * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]])
-    cosine = 0.5 * (np.trace(turn, axis1=1, axis2=2) - 1)
-    angle = np.arctan2(np.linalg.norm(axis, axis=0), cosine)
-    return angle, np.linalg.norm(ours[:, :3, 3] - seen[:, :3, 3], axis=1)
+def _solve(T_base_tool, T_cam_board):
+    """HandEye of the method that leaves less."""
+    import cv2
+    from scipy.spatial.transform import Rotation
+
+    nothing = np.full(len(T_base_tool), np.inf)
+    found = [HandEye(np.eye(4), np.eye(4), nothing, nothing, "none")]
+    poses = [part for T in (T_cam_board, T_base_tool) for part in (T[:, :3, :3], T[:, :3, 3])]
+    for name in ("SHAH", "LI"):
+        method = getattr(cv2, f"CALIB_ROBOT_WORLD_HAND_EYE_{name}")
+        try:
+            *board, R_cb, t_cb = cv2.calibrateRobotWorldHandEye(*poses, method=method)
+        except cv2.error:  # no camera explains these poses
+            continue
+        T_tool_board, T_base_cam = (inverse_transform(_rotation_and_shift(*one)) for one in (board, (R_cb, t_cb)))
+        ours, seen = T_base_tool @ T_tool_board, T_base_cam @ T_cam_board
+        turn = Rotation.from_matrix(ours[:, :3, :3].transpose(0, 2, 1) @ seen[:, :3, :3]).magnitude()
+        shift = np.linalg.norm(ours[:, :3, 3] - seen[:, :3, 3], axis=1)
+        found.append(HandEye(T_base_cam, T_tool_board, turn, shift, name))
+    return min(found, key=lambda one: np.sum(one.errors**2))
+
+
+def _rotation_and_shift(R, t):
+    """Transform with the rotation nearest to R: the methods return one that is not quite orthonormal."""
+    U, _, Vt = np.linalg.svd(R)
+    T = np.eye(4)
+    T[:3, :3] = U @ np.diag([1, 1, np.linalg.det(U @ Vt)]) @ Vt
+    T[:3, 3] = np.ravel(t)
+    return T
 
 
 def _odd_poses(T_base_tool, T_cam_board):
@@ -138,73 +141,16 @@ def _odd_poses(T_base_tool, T_cam_board):
     A wrong pose pulls the camera towards itself, and the others off: so the worst goes out, and the rest is fitted anew
     until no pose sticks out and little is left. No numbers if that takes more than a quarter.
     """
-    kept, rms = list(range(len(T_base_tool))), np.inf
+    kept = list(range(len(T_base_tool)))
     for _ in range(max(1, len(kept) // 4) + 1):
-        found = _all_methods(T_base_tool[kept], T_cam_board[kept])
-        if not found:
-            break
-        rms, _, _, turn, shift = min(found.values(), key=lambda one: one[0])
-        off = np.hypot(shift, _LEVER * turn)
-        worst = int(np.argmax(off))
+        off = _solve(T_base_tool[kept], T_cam_board[kept]).errors
+        rms, worst = np.sqrt(np.mean(off**2)), int(np.argmax(off))
         if rms < _WORST and off[worst] < max(_ODD, _ODD_TIMES * np.median(off)):
             return sorted(set(range(len(T_base_tool))) - set(kept)), rms
         if len(kept) <= _FEWEST:
             break
         del kept[worst]
-    return [], rms
-
-
-def _all_methods(T_base_tool, T_cam_board):
-    """name -> (rms m, T_base_cam, T_tool_board, rotation errors, translation errors)."""
-    import cv2
-
-    R_tool, t_tool = T_base_tool[:, :3, :3], T_base_tool[:, :3, 3]
-    R_view, t_view = T_cam_board[:, :3, :3], T_cam_board[:, :3, 3]
-    back = np.array([inverse_transform(T) for T in T_base_tool])
-    found = {}
-    for name in ("TSAI", "PARK", "HORAUD", "DANIILIDIS"):  # eye-in-hand turned round: base and tool change places
-        method = getattr(cv2, f"CALIB_HAND_EYE_{name}")
-        try:
-            R, t = cv2.calibrateHandEye(back[:, :3, :3], back[:, :3, 3], R_view, t_view, method=method)
-        except cv2.error:
-            continue
-        T_base_cam = _rigid(R, t)
-        boards = np.array([inverse_transform(T) for T in T_base_tool]) @ T_base_cam @ T_cam_board
-        _keep(found, name, T_base_cam, _mean_pose(boards), T_base_tool, T_cam_board)
-    for name in ("SHAH", "LI"):  # both unknowns at once
-        method = getattr(cv2, f"CALIB_ROBOT_WORLD_HAND_EYE_{name}")
-        try:
-            R_bt, t_bt, R_cb, t_cb = cv2.calibrateRobotWorldHandEye(R_view, t_view, R_tool, t_tool, method=method)
-        except cv2.error:
-            continue
-        T_tool_board, T_base_cam = inverse_transform(_rigid(R_bt, t_bt)), inverse_transform(_rigid(R_cb, t_cb))
-        _keep(found, name, T_base_cam, T_tool_board, T_base_tool, T_cam_board)
-    return found
-
-
-def _keep(found, name, T_base_cam, T_tool_board, T_base_tool, T_cam_board):
-    if not (np.isfinite(T_base_cam).all() and np.isfinite(T_tool_board).all()):
-        return
-    turn, shift = loop_errors(T_base_cam, T_tool_board, T_base_tool, T_cam_board)
-    rms = float(np.sqrt(np.mean(shift**2 + (_LEVER * turn) ** 2)))
-    found[name] = (rms, T_base_cam, T_tool_board, turn, shift)
-
-
-def _rigid(R, t):
-    """Transform with the rotation nearest to R; some methods return one that is not quite orthonormal."""
-    T = np.full((4, 4), np.nan)
-    R, t = np.asarray(R, dtype=float), np.ravel(t)
-    if np.isfinite(R).all() and np.isfinite(t).all():
-        U, _, Vt = np.linalg.svd(R)
-        T = np.eye(4)
-        T[:3, :3] = U @ np.diag([1, 1, np.linalg.det(U @ Vt)]) @ Vt
-        T[:3, 3] = t
-    return T
-
-
-def _mean_pose(T):
-    """Mean of poses that are near to each other."""
-    return _rigid(T[:, :3, :3].mean(axis=0), T[:, :3, 3].mean(axis=0))
+    return [], np.inf
 
 
 def _refuse_poor_poses(T_tool):

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite
+from ir50p_lab.inputs import numbers
+from ir50p_lab.vision.checks import coordinates, picture_size, rigid
 
 _NEWTON_STEPS = 30
 
@@ -38,34 +39,19 @@ class Pinhole:
     def __post_init__(self):
         object.__setattr__(self, "K", _frozen(_check_K(self.K)))
         object.__setattr__(self, "distortion", _frozen(_check_distortion(self.distortion)))
-        object.__setattr__(self, "size", check_size(self.size))
+        object.__setattr__(self, "size", picture_size(self.size))
 
     @classmethod
     def simple(cls, f, size=(640, 480), distortion=()):
         """Square pixels and the axis through the middle of the picture: f focal length, pixels."""
-        width, height = check_size(size)
+        width, height = picture_size(size)
         K = [[f, 0, (width - 1) / 2], [0, f, (height - 1) / 2], [0, 0, 1]]
         return cls(K, distortion, (width, height))
 
-    @property
-    def fx(self):
-        """Focal length over the width of a pixel."""
-        return float(self.K[0, 0])
-
-    @property
-    def fy(self):
-        """Focal length over the height of a pixel."""
-        return float(self.K[1, 1])
-
-    @property
-    def cx(self):
-        """Column of the optical axis, pixels."""
-        return float(self.K[0, 2])
-
-    @property
-    def cy(self):
-        """Row of the optical axis, pixels."""
-        return float(self.K[1, 2])
+    fx = property(lambda self: float(self.K[0, 0]), doc="Focal length over the width of a pixel.")
+    fy = property(lambda self: float(self.K[1, 1]), doc="Focal length over the height of a pixel.")
+    cx = property(lambda self: float(self.K[0, 2]), doc="Column of the optical axis, pixels.")
+    cy = property(lambda self: float(self.K[1, 2]), doc="Row of the optical axis, pixels.")
 
     @property
     def widest(self):
@@ -84,8 +70,8 @@ class Pinhole:
         T_cam_world: (4, 4), takes world to camera coordinates.
         Raises InputError for a wrong shape, NaN, or a point that is not in front of the camera.
         """
-        T = _check_transform(T_cam_world)
-        X = _points("X", X, 3, "m")
+        T = rigid("T_cam_world", T_cam_world)
+        X = coordinates("X", X, 3, "m")
         X_cam = X @ T[:3, :3].T + T[:3, 3]
         depth = X_cam[..., 2]
         if (depth <= 0).any():
@@ -97,17 +83,17 @@ class Pinhole:
 
     def distort(self, xy):
         """Distorted normalised coordinates (..., 2) of undistorted ones (..., 2)."""
-        xy = _points("xy", xy, 2, "normalised coordinates")
+        xy = coordinates("xy", xy, 2, "normalised coordinates")
         return np.stack(distort_xy(self.distortion, xy[..., 0], xy[..., 1]), axis=-1)
 
     def to_pixels(self, xy):
         """Pixels K (x, y, 1) of normalised coordinates (..., 2), without distortion."""
-        xy = _points("xy", xy, 2, "normalised coordinates")
+        xy = coordinates("xy", xy, 2, "normalised coordinates")
         return xy @ self.K[:2, :2].T + self.K[:2, 2]
 
     def to_normalised(self, xy):
         """Normalised coordinates (..., 2) of pixels (..., 2); the distortion stays in."""
-        xy = _points("xy", xy, 2, "pixels")
+        xy = coordinates("xy", xy, 2)
         y = (xy[..., 1] - self.K[1, 2]) / self.K[1, 1]
         x = (xy[..., 0] - self.K[0, 2] - self.K[0, 1] * y) / self.K[0, 0]
         return np.stack([x, y], axis=-1)
@@ -140,7 +126,7 @@ class Pinhole:
         Pixel edges, not centres, scale: c' = (c + 1/2) s - 1/2. The height follows from the new size by cropping
         or adding rows alike at top and bottom.
         """
-        width, height = check_size(size)
+        width, height = picture_size(size)
         s = width / self.size[0]
         K = np.array(self.K)
         K[:2, :2] *= s
@@ -193,15 +179,10 @@ def _frozen(array):
 
 
 def _check_K(K):
-    try:
-        K = np.array(K, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"K must be a 3x3 matrix of numbers, got {K!r}") from None
-    if K.shape != (3, 3):
-        raise InputError(f"K has shape {K.shape}: give the 3x3 matrix [[fx, skew, cx], [0, fy, cy], [0, 0, 1]]")
-    if not np.isfinite(K).all():
-        raise InputError(f"K holds {first_not_finite(K)}: every entry must be finite")
-    if K[0, 0] > 0 and K[1, 1] > 0 and (K[2, 0] or K[2, 1]) and not (K[0, 2] or K[1, 2]):
+    K = numbers("K", K, unit="px").copy()
+    if K.shape != (3, 3) or not np.isfinite(K).all():
+        raise InputError(f"K = {K.tolist()}: give the finite 3x3 matrix [[fx, skew, cx], [0, fy, cy], [0, 0, 1]]")
+    if (K[2, 0] or K[2, 1]) and not (K[0, 2] or K[1, 2]):
         raise InputError(f"K has cx, cy = {K[2, 0]:g}, {K[2, 1]:g} in its last row, as MATLAB prints it: give K.T")
     if K[1, 0] or K[2, 0] or K[2, 1] or K[2, 2] != 1 or K[0, 0] <= 0 or K[1, 1] <= 0:
         raise InputError(
@@ -211,14 +192,9 @@ def _check_K(K):
 
 
 def _check_distortion(distortion):
-    try:
-        k = np.array(() if distortion is None else distortion, dtype=float).ravel()
-    except (TypeError, ValueError):
-        raise InputError(f"distortion must hold numbers k1, k2, p1, p2, k3; got {distortion!r}") from None
-    if len(k) not in (0, 2, 4, 5):
-        raise InputError(f"distortion has {len(k)} numbers: give k1, k2, p1, p2, k3 (or the first 0, 2 or 4 of them)")
-    if not np.isfinite(k).all():
-        raise InputError(f"distortion holds {first_not_finite(k)}: every coefficient must be finite")
+    k = numbers("distortion", () if distortion is None else distortion, unit="k1, k2, p1, p2, k3").ravel()
+    if len(k) not in (0, 2, 4, 5) or not np.isfinite(k).all():
+        raise InputError(f"distortion = {k.tolist()}: give k1, k2, p1, p2, k3 (or the first 0, 2 or 4 of them)")
     return np.concatenate([k, np.zeros(5 - len(k))])
 
 
@@ -228,45 +204,3 @@ def as_pinhole(camera):
     if not isinstance(pinhole, Pinhole):
         raise InputError(f"camera = {camera!r:.60}: give a Pinhole(K, distortion, size) or a Calibration")
     return pinhole
-
-
-def check_size(size):
-    """(width, height) as whole numbers of pixels. Raises InputError."""
-    try:
-        width, height = (int(n) for n in size)
-        whole = (width, height) == tuple(size)
-    except (TypeError, ValueError):
-        raise InputError(f"size = {size!r}: give (width, height) of the picture, pixels") from None
-    if not whole or width < 1 or height < 1:
-        raise InputError(f"size = {size!r}: give (width, height) of the picture as whole pixels, at least 1")
-    return width, height
-
-
-def _check_transform(T):
-    try:
-        T = np.asarray(T, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"T_cam_world must be a 4x4 matrix, got {T!r}") from None
-    if T.shape != (4, 4):
-        raise InputError(f"T_cam_world has shape {T.shape}: give the 4x4 transform that takes world to camera")
-    if not np.isfinite(T).all():
-        raise InputError(f"T_cam_world holds {first_not_finite(T)}: every entry must be finite")
-    R = T[:3, :3]
-    if np.abs(R.T @ R - np.eye(3)).max() > 1e-6 or np.linalg.det(R) < 0 or (T[3] != (0, 0, 0, 1)).any():
-        raise InputError(
-            "T_cam_world is no rigid transform: its upper left 3x3 must be a rotation, its last row 0 0 0 1 "
-            "(for points in rows, as MATLAB has them, give the transpose)"
-        )
-    return T
-
-
-def _points(name, value, n, unit):
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must hold numbers ({unit}); got {value!r}") from None
-    if array.ndim == 0 or array.shape[-1] != n:
-        raise InputError(f"{name} has shape {array.shape}; give shape ({n},) or (..., {n}) ({unit})")
-    if not np.isfinite(array).all():
-        raise InputError(f"{name} holds {first_not_finite(array)}; every number must be finite ({unit})")
-    return array

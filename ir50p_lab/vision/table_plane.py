@@ -3,19 +3,10 @@
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError, VisionError
-from ir50p_lab.vision.board_pose import (
-    board_points,
-    board_pose,
-    camera_numbers,
-    check_picture_size,
-    checked_transform,
-    inverse_transform,
-    pixels,
-    rvec_tvec,
-    transform,
-    undistorted,
-)
-from ir50p_lab.vision.pinhole import Pinhole
+from ir50p_lab.inputs import choice, number
+from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transform, rvec_tvec, transform
+from ir50p_lab.vision.checks import check_picture_size, point_list, rigid
+from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
 
 _STEPS = 4  # of the outline's correction: each gains a factor (radius / distance)^2, some 500
 _SLANT = 0.02  # rad above the plane; a ray flatter than this meets it anywhere
@@ -47,21 +38,18 @@ class TablePlane:
         self, camera, T_cam_table, *, pose_covariance=None, camera_covariance=None, pose_by_camera=None, rms=None
     ):
         self.camera, self.rms = camera, rms
-        self.T_cam_table = checked_transform("T_cam_table", T_cam_table).copy()
-        self._K, self._distortion = camera_numbers(camera)
+        self.T_cam_table = rigid("T_cam_table", T_cam_table).copy()
+        self.pinhole = as_pinhole(camera)
         self.centre = inverse_transform(self.T_cam_table)[:3, 3]
         if self.centre[2] <= 0:
             raise InputError(
                 f"the camera would be {-self.centre[2]:.3g} m below the table: T_cam_table takes table to camera "
                 "coordinates (is it inverted?), and z of the table points up (is the board's first corner right?)"
             )
-        if camera_covariance is None:
-            camera_covariance = covariance_of(camera)
-        self._pose_covariance = _square("pose_covariance", pose_covariance, 6)
-        self._camera_covariance = _square("camera_covariance", camera_covariance, 9)
-        self._by_camera = np.zeros((6, 9)) if pose_by_camera is None else np.asarray(pose_by_camera, dtype=float)
-        if self._by_camera.shape != (6, 9):
-            raise InputError(f"pose_by_camera has shape {self._by_camera.shape}; give (6, 9)")
+        known = covariance_of(camera) if camera_covariance is None else camera_covariance
+        self._camera_covariance = np.asarray(known, dtype=float)
+        self._pose_covariance = np.zeros((6, 6)) if pose_covariance is None else np.asarray(pose_covariance, float)
+        self._by_camera = np.zeros((6, 9)) if pose_by_camera is None else np.asarray(pose_by_camera, float)
 
     @classmethod
     def from_board(cls, camera, corners, points, *, camera_covariance=None):
@@ -105,7 +93,7 @@ class TablePlane:
     def homography(self, height=0.0):
         """H (3, 3) of the plane at `height` m: s (x_n, y_n, 1) = H (X, Y, 1)."""
         R, t = self.T_cam_table[:3, :3], self.T_cam_table[:3, 3]
-        return np.column_stack([R[:, 0], R[:, 1], t + _height(height) * R[:, 2]])
+        return np.column_stack([R[:, 0], R[:, 1], t + number("height", height, unit="m") * R[:, 2]])
 
     def to_table(self, xy, height=0.0, *, radius=None, route="homography"):
         """Places (n, 2) m on the plane at `height` m for pixels (n, 2); a single pixel (2,) gives (2,).
@@ -120,13 +108,11 @@ class TablePlane:
 
         Raises InputError on bad pixels; VisionError for a pixel whose line of sight does not meet the plane.
         """
-        points = pixels("xy", xy)
-        if route not in ("homography", "ray"):
-            raise InputError(f"route = {route!r}: choose 'homography' or 'ray'")
-        if radius is not None and not (np.isscalar(radius) and np.isfinite(radius) and radius > 0):
-            raise InputError(f"radius = {radius!r} m: give the radius of the ball, > 0")
-        x_n = undistorted(self._K, self._distortion, points)
-        found = self._place(self.T_cam_table, x_n, _height(height), radius, route, points)
+        points, height = point_list("xy", xy, 2), number("height", height, unit="m")
+        choice("route", route, ("homography", "ray"))
+        if radius is not None:
+            number("radius", radius, "> 0", unit="m", hint="of the ball")
+        found = self._place(self.T_cam_table, self.pinhole.undistort_points(points), height, radius, route, points)
         return found[0] if np.ndim(xy) == 1 else found
 
     def to_points(self, xy, height=0.0, *, radius=None):
@@ -140,7 +126,9 @@ class TablePlane:
 
         points = np.asarray(points, dtype=float)
         rvec, tvec = rvec_tvec(self.T_cam_table)
-        found = cv2.projectPoints(points.reshape(-1, 1, 3), rvec, tvec, self._K, self._distortion)[0][:, 0]
+        found = cv2.projectPoints(points.reshape(-1, 1, 3), rvec, tvec, self.pinhole.K, self.pinhole.distortion)[0][
+            :, 0
+        ]
         return found[0] if points.ndim == 1 else found
 
     def covariance(self, xy, height=0.0, *, sigma_px=0.3, sigma_height=0.0, parts=False):
@@ -152,15 +140,15 @@ class TablePlane:
         Args: sigma_px: standard error of each pixel coordinate; sigma_height: m, of the height.
         parts: True for a dict with 'pixel', 'height', 'pose' and 'camera', each (n, 2, 2).
         """
-        points, height = pixels("xy", xy), _height(height)
-        K, distortion = self._K, self._distortion
+        points, height = point_list("xy", xy, 2), number("height", height, unit="m")
+        K, distortion = self.pinhole.K, self.pinhole.distortion
         pose = np.concatenate(rvec_tvec(self.T_cam_table))
         own = np.concatenate([[K[0, 0], K[1, 1], K[0, 2], K[1, 2]], distortion])
 
         def place(px=0.0, py=0.0, dh=0.0, dpose=0.0, down=0.0):
             numbers = own + down
             K_ = np.array([[numbers[0], 0, numbers[2]], [0, numbers[1], numbers[3]], [0, 0, 1]])
-            x_n = undistorted(K_, numbers[4:], points + np.array([px, py]))
+            x_n = Pinhole(K_, numbers[4:]).undistort_points(points + np.array([px, py]))
             vector = pose + dpose
             T = transform(vector[:3], vector[3:])
             return self._place(T, x_n, height + dh, None, "homography", points)
@@ -208,7 +196,7 @@ class TablePlane:
             if size < 1e-12:
                 continue
             d = np.sqrt(size) * scale * direction
-            K, distortion = self._K.copy(), self._distortion + d[4:9]
+            K, distortion = self.pinhole.K.copy(), self.pinhole.distortion + d[4:9]
             K[[0, 1, 0, 1], [0, 1, 2, 2]] += d[:4]
             pose = np.concatenate(rvec_tvec(self.T_cam_table)) + d[9:]
             found.append(TablePlane(Pinhole(K, distortion), transform(pose[:3], pose[3:])))
@@ -246,22 +234,5 @@ class TablePlane:
 
 def covariance_of(camera):
     """Covariance (9, 9) of (fx, fy, cx, cy, k1, k2, p1, p2, k3) that a Calibration holds; zeros where it has none."""
-    covariance = np.zeros((9, 9))
     known = getattr(camera, "covariance", None)
-    if known is not None and np.isfinite(known).all():
-        n = min(9, len(known))
-        covariance[:n, :n] = np.asarray(known, dtype=float)[:n, :n]
-    return covariance
-
-
-def _square(name, value, n):
-    array = np.zeros((n, n)) if value is None else np.asarray(value, dtype=float)
-    if array.shape != (n, n) or not np.isfinite(array).all():
-        raise InputError(f"{name} has shape {array.shape}; give {(n, n)} finite numbers")
-    return array
-
-
-def _height(value):
-    if not (np.isscalar(value) and not isinstance(value, str) and np.isfinite(value)):
-        raise InputError(f"height = {value!r} m: give one finite number, the height above the table")
-    return float(value)
+    return np.zeros((9, 9)) if known is None or not np.isfinite(known).all() else known

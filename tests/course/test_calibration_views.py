@@ -49,7 +49,7 @@ def test_contact_sheet_names_the_reason(calibration, images):
 
 
 def test_lens_view_moves_lines_as_the_lens_does():
-    view = views.LensView(Pinhole.simple(700))
+    view = views.DistortionView(Pinhole.simple(700))
     straight = [line.copy() for line in view._lines.get_segments()]
     assert view.update() == "straight: a point moves by up to 0.0 px"
     assert float(view.update(k1=-0.3).split()[-2]) > 20
@@ -71,12 +71,12 @@ def test_lens_view_moves_lines_as_the_lens_does():
     ],
 )
 def test_lens_view_says_what_the_grid_looks_like(k, shape):
-    assert views.LensView(Pinhole.simple(700)).update(**k).split(":")[0] == shape
+    assert views.DistortionView(Pinhole.simple(700)).update(**k).split(":")[0] == shape
 
 
 @pytest.mark.parametrize("k1", [-0.3, 0.3])
 def test_a_barrel_has_its_corners_nearer_to_the_centre_than_its_straight_sides_say(k1):
-    view = views.LensView(Pinhole.simple(700))
+    view = views.DistortionView(Pinhole.simple(700))
     said = view.update(k1=k1)
     top = view._lines.get_segments()[0]
     bulges_up = top[len(top) // 2, 1] < top[0, 1]  # y down
@@ -84,7 +84,7 @@ def test_a_barrel_has_its_corners_nearer_to_the_centre_than_its_straight_sides_s
 
 
 def test_tangential_terms_make_one_side_wider():
-    view = views.LensView(Pinhole.simple(700))
+    view = views.DistortionView(Pinhole.simple(700))
     view.update(p1=0.03)
     lines = view._lines.get_segments()
     width = [np.ptp(line[:, 0]) for line in (lines[0], lines[8])]

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from quick_sight import QuickSight
+from quick_locator import QuickLocator
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.bench.rest import rest_pose
@@ -69,7 +69,7 @@ def test_tip_and_budget_and_residuals_show_their_numbers():
     bench = SimulatedBench(IR50P, q0=rest_pose(IR50P), record_to=False)
     world = RenderedBench(bench, BALL)
     with bench:
-        done = reach(bench, QuickSight(world, PLANE), rest=False)
+        done = reach(bench, QuickLocator(world, PLANE), rest=False)
     text = text_of(views.tip_figure(IR50P, bench.recording, done))
     assert f"beside the goal at the end, by the camera {1e3 * done.miss:.1f} mm" in text and "simulated arm" in text
     assert "second look" in text

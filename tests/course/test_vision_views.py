@@ -20,8 +20,7 @@ from ir50p_lab.vision import (
     rgb_to_hsv,
     to_grey,
 )
-from ir50p_lab.vision.rendering import Ball as SceneBall
-from ir50p_lab.vision.rendering import bench_scene
+from ir50p_lab.vision.rendering import SceneBall, bench_scene
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +110,7 @@ def test_votes_are_counted():
 
 
 def test_lens():
-    lens = views.LensView(f=0.004, pixel=3e-6)
+    lens = views.ThinLensView(f=0.004, pixel=3e-6)
     panel = live(lens.figure, lens.update, focused_at=(0.1, 4, 0.1, 0.7), object_at=(0.1, 4, 0.1, 0.3), aperture_mm=[2])
     wanted = blur_diameter(0.3, 0.7, 0.004, 0.002) / 3e-6
     assert f"{wanted:.1f} px; below one pixel from 0.56 to 0.94 m" in panel.status.value
@@ -124,7 +123,7 @@ def test_lens():
 
 
 def test_rays_of_the_lens_meet_at_the_image():
-    lens = views.LensView(f=0.004)
+    lens = views.ThinLensView(f=0.004)
     behind = 1000 * image_distance(0.3, 0.004)  # mm
     x, y = lens._bundle(0.3, 0.002, (0.0, behind))
     assert np.allclose(x[1::3], behind) and np.allclose(y[1::3], 0, atol=1e-12)

@@ -1,7 +1,7 @@
-"""Examples for the judge of the ball detector: what the search proposes in rendered scenes, and in changed copies of them.
+"""Examples for the classifier of the ball detector: what the search proposes in rendered scenes, and in changed copies of them.
 
 The copies differ in size, light, sharpness, noise, compression, in what hides a part and where the picture ends, and
-into some shapes are painted: the judge is to know a ball, not the renderer.
+into some shapes are painted: the classifier is to know a ball, not the renderer.
 """
 
 from pathlib import Path
@@ -10,12 +10,12 @@ import cv2
 import numpy as np
 
 from ir50p_lab.vision import RED, Colour, render_scene
-from ir50p_lab.vision.ball.find import blunt
+from ir50p_lab.vision.ball.classifier import measures, rays_of
+from ir50p_lab.vision.ball.find import rejection_reason
 from ir50p_lab.vision.ball.fit import view_of
-from ir50p_lab.vision.ball.judge import measures, rays_of
 from ir50p_lab.vision.ball.measure import measure
 from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
-from ir50p_lab.vision.rendering import random_scene
+from tests.support.random_scene import random_scene
 from tests.targets.crowded_scene import crowded_scene
 
 LEAST_RADIUS = 6.0
@@ -72,7 +72,7 @@ def _look(image, guesses, balls, colour):
     view, known, found = view_of(image.shape), [], []
     for guess in guesses:
         m = measure(image, tuple(guess), view, colour)
-        if isinstance(m, str) or blunt(m, LEAST_RADIUS):
+        if isinstance(m, str) or rejection_reason(m, LEAST_RADIUS):
             continue
         o = m.outline
         if any(np.hypot(o.x - x, o.y - y) + abs(o.r - r) < 0.05 * r for x, y, r in known):

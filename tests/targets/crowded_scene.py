@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.vision.rendering import Ball, random_scene
-from ir50p_lab.vision.rendering.random_things import distractor, hider, other_colour, random_red
+from ir50p_lab.vision.rendering import SceneBall
 from ir50p_lab.vision.rendering.scene import Stick
+from tests.support.random_scene import random_scene
+from tests.support.random_things import distractor, hider, other_colour, random_red
 
 CROWD = {
     "red stick": 0.35, "red box": 0.15, "red cable": 0.08, "ball": 0.18, "skin": 0.12, "tape": 0.06, "red blob": 0.06,
@@ -49,7 +50,7 @@ def _smaller(scene):
 
 
 def _place_in_view(rng, scene, camera):
-    """A Ball on the table somewhere in the picture, as large as those that are sought; None where no table is near."""
+    """A SceneBall on the table somewhere in the picture, as large as those that are sought; None where no table is near."""
     width, height = scene.pinhole.size
     try:
         ray = scene.T_cam_world[:3, :3].T @ scene.pinhole.rays(rng.uniform((0, 0), (width, height)))
@@ -60,7 +61,7 @@ def _place_in_view(rng, scene, camera):
     distance = camera[2] / -ray[2]
     r = np.exp(rng.uniform(np.log(7), np.log(0.15 * height))) * distance / scene.pinhole.fx
     x, y = camera[:2] + distance * ray[:2]
-    return Ball(position=(x, y, r), radius=float(r))
+    return SceneBall(position=(x, y, r), radius=float(r))
 
 
 def _thicker(rng, stick, camera):
@@ -82,7 +83,7 @@ def _across(rng, at, along, r, camera):
     middle = at + towards * (r + size) - along * size
     colour = other_colour(rng)
     if rng.random() < 0.5:
-        return Ball(position=tuple(middle), radius=size, colour=colour, gloss=rng.uniform(0, 0.7))
+        return SceneBall(position=tuple(middle), radius=size, colour=colour, gloss=rng.uniform(0, 0.7))
     turned = np.cross(along, towards) + rng.normal(0, 0.3, 3)
     half = turned / np.linalg.norm(turned) * size * rng.uniform(2, 8)
     return Stick(start=tuple(middle - half), end=tuple(middle + half), radius=size, colour=colour)

@@ -1,7 +1,7 @@
 """The ball detector against its targets, on the frozen scenes: `python -m tests.targets.vision --only ball`.
 
 Seeds from 80000 on, on which nothing was tuned: the judge was trained on 100 to 6149 and from 110000 on
-(tests/targets/train_ball_judge.py), rules and thresholds were chosen on others below 62000. A scene of kind 'ball'
+(tests/targets/train_ball_classifier.py), rules and thresholds were chosen on others below 62000. A scene of kind 'ball'
 counts as found if a ball is reported within a third of the radius of the true centre; whatever else is reported there
 is a false alarm.
 """
@@ -11,7 +11,7 @@ import time
 import numpy as np
 
 from ir50p_lab.vision import find_balls, render_scene
-from ir50p_lab.vision.rendering import random_scene
+from tests.support.random_scene import random_scene
 from tests.targets.in_parallel import mapped
 from tests.targets.rows import Row
 

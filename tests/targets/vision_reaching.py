@@ -6,7 +6,7 @@ from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import UnreachableError, VisionError
 from ir50p_lab.modelling import IR50P, forward_kinematics
-from ir50p_lab.vision import RenderedBench, Sight, reach, reach_pose, work_area
+from ir50p_lab.vision import BallLocator, RenderedBench, reach, reach_pose, work_area
 from ir50p_lab.vision.reaching.budget import error_budget
 from ir50p_lab.vision.reaching.plan import MARGIN
 from ir50p_lab.vision.reaching.reach import HEIGHT
@@ -47,7 +47,7 @@ def one_reach(task):
     world = RenderedBench(bench, ball, seed=seed)
     with bench:
         try:
-            done = reach(bench, Sight(world, own_plane()), rest=False)
+            done = reach(bench, BallLocator(world, own_plane()), rest=False)
         except (UnreachableError, VisionError) as error:
             return error
     goal = world.balls_true[0] + OVER
@@ -67,10 +67,10 @@ def rows(*, quick=False):
     miss, seen, hand, stand = zip(*[one for one in results if isinstance(one, tuple)], strict=True)
     median, p95, rms = np.median(miss), np.percentile(miss, 95), np.sqrt(np.mean(np.square(miss)))
     wanted = 150 * n / 200
-    sight = Sight(None, own_plane())
+    locator = BallLocator(None, own_plane())
     slope = np.array(calibrated(UNITS[0]).slope)
     poses = [reach_pose(IR50P, ball + OVER) for ball in balls[possible][:20]]
-    budgets = [error_budget(IR50P, sight, q, sigma_q=BENT / slope, slope=slope) for q in poses]
+    budgets = [error_budget(IR50P, locator, q, sigma_q=BENT / slope, slope=slope) for q in poses]
     predicted = 1e-3 * _rms([budget.total[1] for budget in budgets])
     parts = {name: _predicted(budgets, name) for name in ("ball", "hand", "standing")}
     return [

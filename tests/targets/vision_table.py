@@ -3,8 +3,8 @@
 import numpy as np
 
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.vision import Sight, render_scene, work_area
-from ir50p_lab.vision.rendering import Ball, bench_scene
+from ir50p_lab.vision import BallLocator, render_scene, work_area
+from ir50p_lab.vision.rendering import SceneBall, bench_scene
 from tests.targets.rows import Row
 from tests.targets.vision_setup import own_calibration, own_plane
 
@@ -12,15 +12,15 @@ from tests.targets.vision_setup import own_calibration, own_plane
 TABLE_4_8 = (((400, -100), (406, -101)), ((300, 300), (300, 302)), ((500, 0), (492, -6)), ((400, 200), (402, 199)))
 
 
-def sight():
+def locator():
     """Our own plane with the detector before it; no camera."""
-    return Sight(None, own_plane())
+    return BallLocator(None, own_plane())
 
 
 def found(place, seed):
     """Position (2,) m of a rendered ball that lies at `place`, NaN if it is not found."""
-    image, _ = render_scene(bench_scene(Ball(position=(*place, 0.03)), texture_seed=seed), seed=seed)
-    seen = sight().seen_in(image, simulated=True)
+    image, _ = render_scene(bench_scene(SceneBall(position=(*place, 0.03)), texture_seed=seed), seed=seed)
+    seen = locator().seen_in(image, simulated=True)
     return seen.position[:2] if seen else np.full(2, np.nan)
 
 

@@ -7,8 +7,8 @@ from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 
 from ir50p_lab.errors import CalibrationError, ImageError, InputError
 from ir50p_lab.vision import RED, Ball, Colour, Pinhole, find_balls, learn_colour, render_scene
-from ir50p_lab.vision.rendering import Ball as SceneBall
-from ir50p_lab.vision.rendering import bench_scene, random_scene
+from ir50p_lab.vision.rendering import SceneBall, bench_scene
+from tests.support.random_scene import random_scene
 
 F = 700.0
 

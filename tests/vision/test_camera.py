@@ -7,7 +7,7 @@ import pytest
 from ir50p_lab.errors import CalibrationError, CameraError, ImageError, InputError
 from ir50p_lab.vision import Frame, PictureFolder, RenderedCamera, Webcam, calibrate, open_camera, save_image
 from ir50p_lab.vision.camera import interface, webcam
-from ir50p_lab.vision.rendering import Ball, Scene, bench_scene
+from ir50p_lab.vision.rendering import Scene, SceneBall, bench_scene
 
 
 class FakeCapture:
@@ -262,7 +262,7 @@ def test_frames_say_and_keep_what_they_are(tmp_path):
 
 
 def test_scene_as_a_function_of_time():
-    found = open_camera(lambda t: bench_scene(Ball(position=(0.4 + t, 0, 0.03))), period=0.1)
+    found = open_camera(lambda t: bench_scene(SceneBall(position=(0.4 + t, 0, 0.03))), period=0.1)
     found.read()
     assert found.read().t == pytest.approx(0.1)
     assert found.truth.balls[0].position[0] == pytest.approx(0.5)

@@ -1,12 +1,12 @@
-"""The pictures of data/calibration: each has a recipe, and the recipe makes it again."""
+"""The rendered pictures of data/: each has a recipe, and the recipe makes it again."""
 
 import numpy as np
 import pytest
 
 from ir50p_lab.vision import is_rendered, load_image
-from ir50p_lab.vision.calibration.make_pictures import FOLDER, main, recipes
+from tests.support.make_pictures import FOLDER, main, recipes
 
-SOME = ("flat/board_03", "flat/cropped", "flat/blurred", "flat/other_size", "bent/board_01", "table/balls")
+SOME = ("calibration/flat/blurred", "calibration/flat/other_size", "calibration/bent/board_01", "scenes/70000")
 
 
 def test_every_picture_has_a_recipe_and_says_that_it_is_rendered():

@@ -7,16 +7,16 @@ from time import sleep
 import cv2
 import numpy as np
 import pytest
-from quick_sight import QuickSight
+from quick_locator import QuickLocator
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import CalibrationError, CameraError, InputError, UnreachableError, VisionError
 from ir50p_lab.modelling import IR50P, forward_kinematics, frames
 from ir50p_lab.vision import (
+    BallLocator,
     Reacher,
     RenderedBench,
-    Sight,
     TablePlane,
     camera_over,
     plan,
@@ -37,7 +37,7 @@ OVER = np.array([0.0, 0.0, 0.06])
 def rig(ball=(0.40, 0.10, 0.03), seed=0, **options):
     bench = SimulatedBench(IR50P, seed=seed, q0=rest_pose(IR50P), record_to=False, calibration=calibrated(seed))
     world = RenderedBench(bench, ball, seed=seed)
-    return bench, world, QuickSight(world, TablePlane(world.pinhole, world.T_cam_world), seed=seed, **options)
+    return bench, world, QuickLocator(world, TablePlane(world.pinhole, world.T_cam_world), seed=seed, **options)
 
 
 # ---- where the arm can go
@@ -150,9 +150,9 @@ def misses(looks):
     for seed in range(6):
         ball = work_area(IR50P).draw(np.random.default_rng([seed, 3]), 40)
         ball = next(p for p in ball if oracle_distance(p + OVER, 30) < 3e-3 and np.hypot(*p[:2]) < 0.5)
-        bench, world, sight = rig(ball, seed)
+        bench, world, locator = rig(ball, seed)
         with bench:
-            done = reach(bench, sight, looks=looks, rest=False)
+            done = reach(bench, locator, looks=looks, rest=False)
         found.append(np.linalg.norm(done.tip_true - world.balls_true[0] - OVER))
         assert done.plan.lowest > 0.05
     return np.array(found)
@@ -166,51 +166,51 @@ def test_two_looks_put_the_true_tip_over_the_true_ball():
 
 
 def test_without_marker_or_ball_in_sight_the_reach_says_so_and_goes_on():
-    bench, _, sight = rig()
-    sight.blind = True
+    bench, _, locator = rig()
+    locator.blind = True
     with bench:
-        done = reach(bench, sight, rest=False)
+        done = reach(bench, locator, rest=False)
     assert "marker" in done.looks[0].note
     assert np.linalg.norm(done.tip_true - done.goal) < 0.012
 
 
 def test_no_ball_or_one_out_of_reach_moves_nothing():
-    bench, _, sight = rig()
-    sight.no_ball = "nothing in the picture is red"
+    bench, _, locator = rig()
+    locator.no_ball = "nothing in the picture is red"
     with bench:
         with pytest.raises(VisionError, match="nothing in the picture is red"):
-            reach(bench, sight, rest=False)
-    bench, _, sight = rig((0.60, 0.1, 0.03))
+            reach(bench, locator, rest=False)
+    bench, _, locator = rig((0.60, 0.1, 0.03))
     with bench:
         before = bench.plant.q_true
         with pytest.raises(UnreachableError, match="misses it by") as refused:
-            reach(bench, sight, rest=False)
+            reach(bench, locator, rest=False)
         assert np.abs(bench.plant.q_true - before).max() < 0.05
     assert 0.05 < refused.value.distance < 0.12
 
 
 def test_a_ball_that_rolls_out_of_reach_between_two_looks_does_not_let_the_arm_fall():
-    bench, world, sight = rig((0.40, 0.1, 0.03))
+    bench, world, locator = rig((0.40, 0.1, 0.03))
     looks = []
 
     def look():
         if looks:
             world._lying[0] = 0.70, 0.1, 0.03
         looks.append(1)
-        return type(sight).look(sight)
+        return type(locator).look(locator)
 
-    sight.look = look
+    locator.look = look
     with bench:
-        done = reach(bench, sight, rest=False)
+        done = reach(bench, locator, rest=False)
     assert "out of reach now" in done.looks[0].note and "moved by 300 mm" in done.looks[0].note
     assert np.linalg.norm(done.tip_true - [0.40, 0.1, 0.09]) < 6e-3 and done.miss > 0.25
 
 
 def test_a_ball_that_cannot_be_gripped_is_not_reached_for():
     """Over it the arm reaches farther than down there."""
-    bench, _, sight = rig((0.525, 0.0, 0.03))
+    bench, _, locator = rig((0.525, 0.0, 0.03))
     reach_pose(IR50P, np.array([0.525, 0.0, 0.09]))
-    with bench, Reacher(bench, sight, rest=False) as reacher:
+    with bench, Reacher(bench, locator, rest=False) as reacher:
         before = bench.plant.q_true
         with pytest.raises(UnreachableError, match="out of reach"):
             reacher.pick_and_place((0.36, 0.15))
@@ -218,10 +218,10 @@ def test_a_ball_that_cannot_be_gripped_is_not_reached_for():
 
 
 def test_the_budget_is_what_reaching_measures():
-    _, world, sight = rig()
+    _, world, locator = rig()
     budget = error_budget(
         IR50P,
-        sight,
+        locator,
         reach_pose(IR50P, [0.4, 0.1, 0.09]),
         sigma_q=0.5 / np.array([189, 122, 192.0]),
         slope=(189, 122, 192),
@@ -235,8 +235,8 @@ def test_the_budget_is_what_reaching_measures():
 
 
 def test_a_ball_is_picked_and_placed():
-    bench, world, sight = rig((0.42, -0.12, 0.03), 3)
-    with bench, Reacher(bench, sight) as reacher:
+    bench, world, locator = rig((0.42, -0.12, 0.03), 3)
+    with bench, Reacher(bench, locator) as reacher:
         reacher.pick_and_place((0.36, 0.15))
         assert not world.held
         assert np.linalg.norm(world.balls_true[0, :2] - (0.36, 0.15)) < 0.015
@@ -244,8 +244,8 @@ def test_a_ball_is_picked_and_placed():
 
 
 def test_a_ball_is_picked_seen_in_the_grip_and_put():
-    bench, world, sight = rig((0.42, -0.12, 0.03), 3)
-    with bench, Reacher(bench, sight) as reacher:
+    bench, world, locator = rig((0.42, -0.12, 0.03), 3)
+    with bench, Reacher(bench, locator) as reacher:
         found = reacher.pick()
         assert world.held
         assert np.linalg.norm(found.ball - (0.42, -0.12, 0.03)) < 2e-3
@@ -259,8 +259,8 @@ def test_a_ball_is_picked_seen_in_the_grip_and_put():
 
 
 def test_a_place_out_of_reach_is_refused_before_anything_moves():
-    bench, _, sight = rig()
-    with bench, Reacher(bench, sight, rest=False) as reacher:
+    bench, _, locator = rig()
+    with bench, Reacher(bench, locator, rest=False) as reacher:
         with pytest.raises(UnreachableError):
             reacher.pick_and_place((0.9, 0.0))
         with pytest.raises(InputError, match="place"):
@@ -273,7 +273,7 @@ def followed(seconds=8.0, age=0.0, **options):
     def rolling(t):
         return np.array([0.38 + 0.03 * np.cos(0.3 * t), 0.12 * np.sin(0.4 * t), 0.03])
 
-    class Camera(QuickSight):
+    class Camera(QuickLocator):
         """Shows what was `age` s ago; the pictures of a camera that is late are no rendered ones."""
 
         def look(self):
@@ -282,8 +282,8 @@ def followed(seconds=8.0, age=0.0, **options):
             world._rolling = rolling
             return seen
 
-    bench, world, sight = rig(rolling)
-    with bench, Reacher(bench, Camera(world, sight.plane), rest=False) as reacher:
+    bench, world, locator = rig(rolling)
+    with bench, Reacher(bench, Camera(world, locator.plane), rest=False) as reacher:
         log = reacher.follow_ball(seconds, **options)
         end = world.t - 0.3  # it holds still for a while then
         assert np.linalg.norm(bench.plant.tip_true[:2] - rolling(end)[:2]) < 0.03
@@ -314,17 +314,17 @@ def test_a_lead_puts_the_tip_before_the_ball_by_lead_times_speed():
 
 def test_a_ball_that_is_lost_is_waited_for():
     """Half a second after the last look nothing is known of it: the arm stops there, and goes on when it is back."""
-    bench, world, sight = rig(lambda t: np.array([0.38, -0.15 + 0.02 * t, 0.03]))
-    with bench, Reacher(bench, sight, rest=False) as reacher:
-        see, looks = sight.look, []
+    bench, world, locator = rig(lambda t: np.array([0.38, -0.15 + 0.02 * t, 0.03]))
+    with bench, Reacher(bench, locator, rest=False) as reacher:
+        see, looks = locator.look, []
 
         def look():
             looks.append(world.t)
             gone = len(looks) > 1 and looks[1] + 4 < world.t < looks[1] + 8
-            sight.no_ball = "it is covered" if gone else ""
+            locator.no_ball = "it is covered" if gone else ""
             return see()
 
-        sight.look = look
+        locator.look = look
         log = reacher.follow_ball(11.0)
     lost = np.flatnonzero(np.isnan(log.ball[:, 0]))
     first, last = log.t[lost[[0, -1]]]
@@ -337,8 +337,8 @@ def test_a_ball_that_is_lost_is_waited_for():
 
 @pytest.mark.parametrize("seconds", [0, -1, np.nan, "a"])
 def test_following_for_no_time_is_refused(seconds):
-    bench, _, sight = rig()
-    with bench, Reacher(bench, sight, rest=False) as reacher, pytest.raises(InputError, match="seconds"):
+    bench, _, locator = rig()
+    with bench, Reacher(bench, locator, rest=False) as reacher, pytest.raises(InputError, match="seconds"):
         reacher.follow_ball(seconds)
 
 
@@ -355,40 +355,40 @@ def test_the_tracker_knows_where_a_ball_will_be():
 
 def test_the_rendered_camera_sees_ball_and_marker_where_they_are():
     bench, world, _ = rig((0.42, 0.08, 0.03))
-    sight = Sight(world, TablePlane(world.pinhole, world.T_cam_world))
-    seen = sight.look()
+    locator = BallLocator(world, TablePlane(world.pinhole, world.T_cam_world))
+    seen = locator.look()
     assert seen.simulated
     assert np.linalg.norm(seen.position - world.balls_true[0]) < 1.5e-3
     q = reach_pose(IR50P, [0.42, 0.08, 0.09])
     bench.plant.place(q)
-    again = sight.look()
-    marker = sight.find_marker(again.image, IR50P, q + 0.005)
-    expected = world.pinhole.project(world.T_cam_world, sight.marker_place(IR50P, q))
+    again = locator.look()
+    marker = locator.find_marker(again.image, IR50P, q + 0.005)
+    expected = world.pinhole.project(world.T_cam_world, locator.marker_place(IR50P, q))
     assert np.linalg.norm(marker - expected) < 1.0
-    e, covariance = sight.joint_errors(IR50P, q - [0.004, -0.003, 0.0], marker, [0.006, 0.006, 0.004])
+    e, covariance = locator.joint_errors(IR50P, q - [0.004, -0.003, 0.0], marker, [0.006, 0.006, 0.004])
     after = forward_kinematics(IR50P, q - [0.004, -0.003, 0.0] + e) - forward_kinematics(IR50P, q)
     assert np.linalg.norm(after) < 2.5e-3
     assert (np.diag(covariance) < np.square([0.006, 0.006, 0.004])).all()
     with pytest.raises(VisionError, match="potentiometers put it"):
-        sight.joint_errors(IR50P, q + np.array([0.08, 0, 0]), marker, [0.006, 0.006, 0.004])
+        locator.joint_errors(IR50P, q + np.array([0.08, 0, 0]), marker, [0.006, 0.006, 0.004])
 
 
 def test_a_picture_of_another_size_than_the_calibration_is_refused():
     _, world, _ = rig()
     small = TablePlane(world.pinhole.scaled((320, 240)), world.T_cam_world)
-    with pytest.raises(CalibrationError, match="640x480, its calibration is of 320x240"):
-        Sight(world, small).look()
+    with pytest.raises(CalibrationError, match="640x480 pixels, its calibration is of 320x240"):
+        BallLocator(world, small).look()
 
 
 def test_a_camera_that_dies_cuts_the_drive():
-    bench, _, sight = rig()
+    bench, _, locator = rig()
 
     def unplugged():
         raise CameraError("the camera was unplugged")
 
-    sight.look = unplugged
+    locator.look = unplugged
     with pytest.raises(CameraError), bench:
-        reach(bench, sight)
+        reach(bench, locator)
     assert (bench._pwm == 0).all()
 
 
@@ -407,14 +407,14 @@ def test_a_real_arm_is_given_no_rendered_camera(monkeypatch, capsys):
 
 
 def test_a_real_arm_does_not_reach_for_a_rendered_ball():
-    bench, _, sight = rig()
+    bench, _, locator = rig()
     bench.simulated = bench.realtime = False
     with pytest.raises(CameraError, match="the picture is rendered"):  # before the drive is on
-        Reacher(bench, sight)
+        Reacher(bench, locator)
     bench.simulated = True
     for task in (Reacher.reach, lambda reacher: reacher.follow_ball(1.0)):
         before = bench.plant.q_true
-        with pytest.raises(CameraError, match="the picture is rendered"), bench, Reacher(bench, sight) as reacher:
+        with pytest.raises(CameraError, match="the picture is rendered"), bench, Reacher(bench, locator) as reacher:
             bench.simulated, bench.realtime = False, True  # the camera says nothing, its picture does
             task(reacher)
         bench.simulated, bench.realtime = True, False
@@ -423,15 +423,15 @@ def test_a_real_arm_does_not_reach_for_a_rendered_ball():
 
 
 def test_the_loop_goes_on_while_the_eye_looks():
-    bench, _, sight = rig()
-    bench.realtime, quick = True, sight.look
+    bench, _, locator = rig()
+    bench.realtime, quick = True, locator.look
 
     def slow():
         sleep(0.15)
         return quick()
 
-    sight.look = slow
-    with bench, Reacher(bench, sight, rest=False) as reacher:
+    locator.look = slow
+    with bench, Reacher(bench, locator, rest=False) as reacher:
         before = reacher._last.t
         assert reacher.look()
         assert reacher._last.t - before > 0.05  # cycles went by meanwhile, each with a command
@@ -441,22 +441,22 @@ def test_the_loop_goes_on_while_the_eye_looks():
 @pytest.mark.parametrize(
     "change", [{"radius": 0}, {"sigma_px": -1}, {"T_base_table": np.eye(3)}, {"marker_at": (1, 2)}]
 )
-def test_a_sight_of_bad_numbers_is_refused(change):
+def test_a_locator_of_bad_numbers_is_refused(change):
     _, world, _ = rig()
     with pytest.raises(InputError):
-        Sight(world, TablePlane(world.pinhole, world.T_cam_world), **change)
+        BallLocator(world, TablePlane(world.pinhole, world.T_cam_world), **change)
 
 
 def test_bad_arguments_of_reaching_are_refused():
-    bench, _, sight = rig()
+    bench, _, locator = rig()
     with pytest.raises(InputError, match="one point"):
         reach_pose(IR50P, np.zeros((2, 3)))
     with pytest.raises(InputError, match="simulated arm"):
         RenderedBench(object())
     with bench, Reacher(bench, rest=False) as reacher:
-        with pytest.raises(InputError, match="no sight"):
+        with pytest.raises(InputError, match="no locator"):
             reacher.look()
-    with bench, Reacher(bench, sight, rest=False) as reacher, pytest.raises(InputError, match="looks"):
+    with bench, Reacher(bench, locator, rest=False) as reacher, pytest.raises(InputError, match="looks"):
         reacher.reach(looks=0)
     for task, name in (
         (lambda r: r.reach(height="a"), "height"),
@@ -465,5 +465,5 @@ def test_bad_arguments_of_reaching_are_refused():
         (lambda r: r.pick(contact=np.nan), "contact"),
         (lambda r: r.follow_ball(1.0, lead=np.nan), "lead"),
     ):
-        with bench, Reacher(bench, sight, rest=False) as reacher, pytest.raises(InputError, match=name):
+        with bench, Reacher(bench, locator, rest=False) as reacher, pytest.raises(InputError, match=name):
             task(reacher)

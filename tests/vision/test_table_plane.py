@@ -126,16 +126,10 @@ def test_standard_errors_are_those_of_random_trials():
     assert np.allclose(sum(parts.values())[:, 0, 0], predicted[:, 0] ** 2)
 
 
-@pytest.mark.parametrize("pattern", [9, "9x6", (9.5, 6), (9, 1), (9, 6, 3), None])
-def test_a_pattern_no_board_has(pattern):
-    with pytest.raises(InputError, match="inner corners"):
-        board_points(pattern)
-
-
-@pytest.mark.parametrize("square", [0, -0.025, "25 mm", np.inf, np.nan, None])
-def test_a_square_no_board_has(square):
-    with pytest.raises(InputError, match="side of a square"):
-        board_points((9, 6), square)
+@pytest.mark.parametrize("board", [(9,), ((9.5, 6),), ((9, 1),), ((9, 6), 0), ((9, 6), np.nan), ((9, 6), "25 mm")])
+def test_a_board_that_cannot_be_is_refused(board):
+    with pytest.raises(CalibrationError, match=r"inner corners|positive length"):
+        board_points(*board)
 
 
 def test_variations_spread_as_the_covariance_says():
@@ -162,7 +156,7 @@ def test_an_error_of_the_camera_mostly_cancels_when_the_pose_comes_from_the_boar
 
 def test_a_calibration_brings_its_own_covariance():
     spread = np.diag([4.0, 4, 1, 1, 0, 0, 0, 0, 0])
-    calibration = SimpleNamespace(K=CAMERA.K, distortion=CAMERA.distortion, covariance=spread)
+    calibration = SimpleNamespace(pinhole=CAMERA, covariance=spread)
     xy = CAMERA.project(POSE, lifted(0.0))
     with_it, without = TablePlane(calibration, POSE), TablePlane(CAMERA, POSE)
     assert (with_it.standard_error(xy) > without.standard_error(xy)).all()
@@ -227,7 +221,7 @@ def test_pixels_that_look_past_the_table_are_refused():
     plane = TablePlane(CAMERA, looking_at((5.0, 0, 0.4), (-0.5, 0, 0.5)))
     with pytest.raises(VisionError, match="horizon"):
         plane.to_table((320, 100))
-    with pytest.raises(VisionError, match="no ray"):
+    with pytest.raises(InputError, match="no ray"):
         plane.to_table((1e4, 300))
 
 
@@ -237,11 +231,7 @@ def test_pixels_that_look_past_the_table_are_refused():
         ({"T_cam_table": np.eye(3)}, "rigid"),
         ({"T_cam_table": np.diag([1, 1, 2, 1])}, "rigid"),
         ({"T_cam_table": POSE @ np.diag([1.0, -1, -1, 1])}, "below the table"),
-        ({"camera": SimpleNamespace(K=None)}, "Pinhole"),
-        ({"camera": SimpleNamespace(K=CAMERA.K, distortion=np.zeros(8))}, "k1, k2"),
-        ({"pose_covariance": np.eye(5)}, "pose_covariance"),
-        ({"camera_covariance": np.full((9, 9), np.nan)}, "camera_covariance"),
-        ({"pose_by_camera": np.eye(6)}, "pose_by_camera"),
+        ({"camera": np.eye(3)}, "Pinhole"),
     ],
 )
 def test_a_plane_of_bad_numbers_is_refused(change, match):
@@ -255,7 +245,7 @@ def test_a_plane_of_bad_numbers_is_refused(change, match):
     [
         ([np.nan, 1], {}, "finite"),
         ([1, 2, 3], {}, "shape"),
-        ("red", {}, "pixel"),
+        ("red", {}, "px"),
         ([1, 2], {"height": np.nan}, "height"),
         ([1, 2], {"route": "guess"}, "route"),
         ([1, 2], {"radius": -1.0}, "radius"),
@@ -264,11 +254,6 @@ def test_a_plane_of_bad_numbers_is_refused(change, match):
 def test_bad_pixels_are_refused(xy, options, match):
     with pytest.raises(InputError, match=match):
         TablePlane(CAMERA, POSE).to_table(xy, **options)
-
-
-def test_an_impossible_board_is_refused():
-    with pytest.raises(InputError, match="pattern"):
-        board_points((1, 6))
 
 
 def test_a_picture_of_another_size_than_the_calibration_is_refused():

@@ -1,1 +1,1 @@
-"""The ball in a picture: regions of its colour, edges, an outline, a judge that decides, and the reasons in words."""
+"""The ball in a picture: regions of its colour, edges, an outline, a classifier, and the reasons in words."""

@@ -17,7 +17,7 @@ def slope_kernel(sigma):
 
 
 @dataclass(frozen=True)
-class Rays:
+class RaySamples:
     """Samples of a picture along rays from (x, y), one ray a row.
 
     cos, sin (n,): directions; rho (n, m): distance of the samples from (x, y), pixels; rgb (n, m, 3) uint8;
@@ -42,7 +42,7 @@ class Edge:
 
 
 def cast(image, x, y, radii, relative, directions):
-    """Sample the picture along rays: at `relative` (m,) times `radii` (n,) or (1,) pixels. Returns: Rays."""
+    """Sample the picture along rays: at `relative` (m,) times `radii` (n,) or (1,) pixels. Returns: RaySamples."""
     import cv2
 
     cos, sin = directions
@@ -53,7 +53,7 @@ def cast(image, x, y, radii, relative, directions):
     height, width = image.shape[:2]
     rgb = cv2.remap(image, px, py, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     within = (px >= -0.5) & (px <= width - 0.5) & (py >= -0.5) & (py <= height - 0.5)
-    return Rays(x, y, cos, sin, rho, rgb, within)
+    return RaySamples(x, y, cos, sin, rho, rgb, within)
 
 
 @cache

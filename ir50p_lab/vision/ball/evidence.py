@@ -1,4 +1,4 @@
-"""What speaks against a ball, in words: the judge decides, this says why.
+"""What speaks against a ball, in words: the classifier decides, this says why.
 
 Each term is a weight times something measured, about 1 where it alone makes a ball doubtful.
 """

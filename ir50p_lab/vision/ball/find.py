@@ -6,14 +6,14 @@ import numpy as np
 
 from ir50p_lab.errors import ImageError, InputError
 from ir50p_lab.jit import says_that_it_compiles
+from ir50p_lab.vision.ball.classifier import score
 from ir50p_lab.vision.ball.colour import RED, Colour, learn_from_patch
 from ir50p_lab.vision.ball.evidence import objection
+from ir50p_lab.vision.ball.features import median
 from ir50p_lab.vision.ball.fit import view_of
-from ir50p_lab.vision.ball.judge import score
-from ir50p_lab.vision.ball.look import median
 from ir50p_lab.vision.ball.measure import measure
 from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
-from ir50p_lab.vision.board_pose import check_picture_size
+from ir50p_lab.vision.checks import check_picture_size
 from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import as_pinhole
 
@@ -72,10 +72,10 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     """Find the balls of a colour, best first; a false alarm is worse than a miss.
 
     Regions of the colour give arcs of circles; around each the edge is measured along rays to sub-pixel, and an
-    outline is fitted that is an ellipse, as perspective wants it. What has hardly an edge, is hollow or angular
-    is no ball; of the rest a judge decides, trained on rendered scenes, that looks at disc and surroundings; of what is
-    small or half hidden it must be surer. If nothing
-    is found, a closer look follows at several scales, for balls in the dark or in glare; it takes many times as long.
+    outline is fitted that is an ellipse, as perspective wants it. What has hardly an edge, is hollow or angular is no
+    ball; of the rest a classifier decides, trained on rendered scenes, that looks at disc and surroundings; of what is
+    small or half hidden it must be surer. If nothing is found, a closer look follows at several scales, for balls in
+    the dark or in glare; it takes longer.
 
     Args:
         image: RGB, uint8, (height, width, 3).
@@ -125,7 +125,7 @@ def _measure(image, place, view, colour, camera, least_radius, measured, rejecte
     found = measure(image, (x, y, r), view, colour, camera)
     if isinstance(found, str):
         rejected.append(((x, y, r), found))
-    elif why := blunt(found, least_radius):
+    elif why := rejection_reason(found, least_radius):
         rejected.append((_place(found), why))
     else:
         measured.append(found)
@@ -181,7 +181,7 @@ def _place(found):
     return found.outline.x, found.outline.y, found.outline.r
 
 
-def blunt(found, least_radius):
+def rejection_reason(found, least_radius):
     """Why a measured outline is no ball, whatever else speaks for it; "" if nothing of the kind."""
     r = found.outline.r
     if r < least_radius:

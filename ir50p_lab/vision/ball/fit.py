@@ -23,7 +23,7 @@ _LARGE_ENOUGH = 12.0  # pixels: smaller balls do not tell perspective
 
 
 @dataclass(frozen=True)
-class View:
+class PixelGeometry:
     """Where pixels point: principal point (cx, cy), kappa = 1/f^2 (1/pixels^2), ratio fx/fy; sure: really known."""
 
     cx: float
@@ -46,7 +46,7 @@ class Outline:
     r: float
     cone: tuple
     kappa: float
-    view: View
+    view: PixelGeometry
 
     def distances(self, x, y):
         """Signed distance of pixels (n,) to the outline, pixels, outwards positive (first order)."""
@@ -62,11 +62,11 @@ class Outline:
 
 
 def view_of(shape, camera=None):
-    """View of a picture of this shape: of the Pinhole `camera`, or an assumed one with its axis in the middle."""
+    """PixelGeometry of a picture: of the Pinhole `camera`, or of an assumed one with its axis in the middle."""
     height, width = shape[:2]
     if camera is not None:
-        return View(camera.cx, camera.cy, camera.fx**-2, camera.fx / camera.fy, True)
-    return View((width - 1) / 2, (height - 1) / 2, (NOMINAL_F * max(width, height)) ** -2)
+        return PixelGeometry(camera.cx, camera.cy, camera.fx**-2, camera.fx / camera.fy, True)
+    return PixelGeometry((width - 1) / 2, (height - 1) / 2, (NOMINAL_F * max(width, height)) ** -2)
 
 
 def fit_outline(x, y, view, start, *, noise=0.25, rounds=6):

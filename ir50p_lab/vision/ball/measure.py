@@ -6,8 +6,8 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.vision.ball.edge import cast, contrast_axis, directions, find_edges
+from ir50p_lab.vision.ball.features import RAYS, look, median
 from ir50p_lab.vision.ball.fit import Outline, fit_outline
-from ir50p_lab.vision.ball.look import RAYS, look, median
 
 
 def _smooth(r):
@@ -136,7 +136,7 @@ def _fine(image, outline, view, colour, unit, camera):
 
 
 def _along(on, off, height, beyond):
-    """Edges for the judge, (RAYS, 4) float32."""
+    """Edges for the classifier, (RAYS, 4) float32."""
     chosen = np.arange(RAYS) * len(on) // RAYS
     edges = np.column_stack([on, np.clip(off, -4, 4) * on, np.clip(height, 0, 2), beyond])[chosen]
     return edges.astype(np.float32)

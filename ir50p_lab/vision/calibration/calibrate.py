@@ -20,14 +20,13 @@ from ir50p_lab.vision.calibration.checks import (
     outlier_view,
     sag_size,
 )
-from ir50p_lab.vision.calibration.corners import Corners as FoundCorners
-from ir50p_lab.vision.calibration.corners import find_checkerboard
-from ir50p_lab.vision.calibration.fit import NAMES, Corners, Model, fit, start
+from ir50p_lab.vision.calibration.corners import BoardCorners, find_checkerboard
+from ir50p_lab.vision.calibration.fit import NAMES, CornerSets, Model, fit, start
 from ir50p_lab.vision.calibration.models import choose, in_percent, total_covariance
 from ir50p_lab.vision.calibration.pictures import common_size, pictures_of, with_bar
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
 from ir50p_lab.vision.calibration.result import Calibration, View
-from ir50p_lab.vision.pinhole import check_size
+from ir50p_lab.vision.checks import picture_size
 
 _FEWEST = 3
 _SAME = 1.0 / 800  # of the diagonal: a board that moved less is taken for the same view
@@ -69,12 +68,14 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, as
     size = common_size(pictures)
     for picture in with_bar(pictures, progress):
         try:
-            found[picture.index] = picture, _corners_in(picture, board, size)
+            other = seen.most_common(1)[0][0] if seen and not found else None
+            found[picture.index] = picture, _corners_in(picture, board, size, other)
         except NotUsable as why:
             rejected.append(
                 (Rejected(picture.name, picture.index, why.reason, why.detail), None if why.whole else why.seen)
             )
-            seen[why.seen] += why.seen is not None
+            if why.seen is not None:
+                seen[why.seen] += 1
     rejected = [_covered_or_other(one, parts, board, bool(found)) for one, parts in rejected]
     rejected += _drop_duplicates(found, size)
     if len(found) < _FEWEST:
@@ -93,7 +94,7 @@ def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=No
 
     Returns: Calibration. Raises CalibrationError as `calibrate`, InputError for shapes that do not fit, or NaN.
     """
-    options, size = _options(lens, aspect, bend), check_size(size)
+    options, size = _options(lens, aspect, bend), picture_size(size)
     pixels = _arrays("image_points", image_points, 2)
     try:
         shared = np.ndim(object_points) == 2
@@ -118,7 +119,7 @@ def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=No
     board = _board_like(everything)
     places = np.split(inverse.ravel(), np.cumsum([len(p) for p in points])[:-1])
     corners = {
-        i: FoundCorners(xy, place, np.nan, np.nan, "given")
+        i: BoardCorners(xy, place, np.nan, np.nan, "given")
         for i, (xy, place) in enumerate(zip(pixels, places, strict=True))
     }
     names = {i: (f"view {i + 1}", i) for i in corners}
@@ -130,7 +131,7 @@ def _calibrate(names, found, size, board, options, rejected, points=None):
     points = board.points if points is None else points
     wanted, aspect, bend = options
     keys = list(found)
-    corners = Corners([points[found[i].index] for i in keys], [found[i].xy for i in keys], size)
+    corners = CornerSets([points[found[i].index] for i in keys], [found[i].xy for i in keys], size)
     guess, rejected = start(corners), list(rejected)
     model = Model(("k1", "k2"), aspect)
     rough = fit(corners, model, guess)
@@ -183,7 +184,7 @@ def _calibrate(names, found, size, board, options, rejected, points=None):
 
 
 def _best(corners, rough, wanted, aspect, bend):
-    """(Fit, evidence, fits tried, warnings): lens as the data say or as asked for, board flat or bent, aspect."""
+    """(CameraFit, evidence, fits tried, warnings): lens as the data say or as asked for, board flat or bent, aspect."""
     guess, said = (rough.camera, rough.poses), []
 
     def estimate(bent):
@@ -291,7 +292,7 @@ def _board_like(points):
     return Checkerboard((max(columns, 3), max(rows, 3)), width / max(columns - 1, 1) if width else 0.025)
 
 
-def _corners_in(picture, board, size):
+def _corners_in(picture, board, size, other):
     if picture.problem is not None:
         raise NotUsable(Reason.UNREADABLE, picture.problem)
     if picture.size != size:
@@ -303,7 +304,9 @@ def _corners_in(picture, board, size):
 
     grey = picture.grey()
     try:
-        return find_charuco(grey, board) if isinstance(board, Charuco) else find_checkerboard(grey, board.pattern)
+        return (
+            find_charuco(grey, board) if isinstance(board, Charuco) else find_checkerboard(grey, board.pattern, other)
+        )
     except cv2.error as error:  # one picture must not lose the others
         raise NotUsable(Reason.NO_BOARD, f"OpenCV finds no corners in it: {' '.join(str(error).split())}") from error
 
@@ -347,7 +350,6 @@ def _why_too_few(count, rejected, seen, board):
     message = f"{count} usable pictures of a {board}, at least {_FEWEST} are needed, 10 to 20 are good"
     if rejected:
         message += "; the others: " + ", ".join(f"{n} {reason}" for reason, n in reasons.most_common())
-    del seen[None]
     likely = [parts for parts, n in seen.most_common(1) if n >= 1]
     if likely and reasons.get(Reason.WRONG_BOARD):
         message += f". They seem to show a board with {likely[0][0]}x{likely[0][1]} inner corners: pattern={likely[0]}"

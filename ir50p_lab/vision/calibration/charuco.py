@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.corners import SOFT_SLOPE, Corners, part_of_a_checkerboard, slope_rise
+from ir50p_lab.vision.calibration.corners import SOFT_SLOPE, BoardCorners, part_of_a_checkerboard, slope_rise
 from ir50p_lab.vision.calibration.grid import apply, homography, spacing
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 
@@ -55,7 +55,7 @@ def find_charuco(grey, board):
     if np.median(off) > 0.15 * side:
         fits = _other_board(grey, board)
         raise NotUsable(Reason.WRONG_BOARD, f"its corners are not where this board has them{fits}")
-    return Corners(xy, index, np.nan, rise, "ChArUco")
+    return BoardCorners(xy, index, np.nan, rise, "ChArUco")
 
 
 def _refuse_unreadable(grey):

@@ -15,8 +15,8 @@ _ROUGH = 0.7  # px rms, of pictures up to 1280 px wide
 def outlier_view(corners, rough):
     """(number of the view that fits worst, its rms, usual rms, px) if it does not belong to the others, else None.
 
-    rough: Fit with k1 and k2. What is off that is judged again by the full lens: a view far out may be the only one
-    that needs its k3.
+    rough: CameraFit with k1 and k2. What is off that is judged again by the full lens: a view far out may be the only
+    one that needs its k3.
     """
     suspect = _worst_view(corners, rough)
     if suspect is None or rough.model.terms == LADDER:
@@ -29,7 +29,7 @@ def outlier_view(corners, rough):
 
 
 def _worst_view(corners, fitted):
-    """The same by one Fit.
+    """The same by one CameraFit.
 
     It must be three times worse than the median view, and eight times the usual scatter of views above it. A view that
     is far off pulls the camera along and spoils the others, too: if they fit twice as well without the worst, it is
@@ -72,7 +72,7 @@ def _seen_by(camera, corners, view, pose):
 
 
 def lacking_terms(corners, held, guess):
-    """(Evidence or None, Fit): whether a prescribed lens lacks terms that the corners ask for, and the fit with them.
+    """(Evidence or None, CameraFit with them): whether a prescribed lens lacks terms that the corners ask for.
 
     None, and the fit that was held, if the lens that the corners would choose has no others.
     """
@@ -123,7 +123,7 @@ def sag_size(corners, b):
 
 
 def free_aspect(corners, held):
-    """(Evidence, Fit with fx and fy free): whether the ratio fx/fy that was prescribed contradicts the corners."""
+    """(Evidence, CameraFit with fx and fy free): whether the prescribed ratio fx/fy contradicts the corners."""
     free = fit(corners, Model(held.model.terms, None, held.model.bent), (held.camera, held.poses))
     contrast = np.zeros(12)
     contrast[:2] = 1, -held.model.aspect

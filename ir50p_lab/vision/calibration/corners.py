@@ -24,11 +24,12 @@ _WINDOW_PX = (2, 20)
 _SOFT = 0.55  # rise of an edge from dark to light, in squares, at which neighbouring edges run together
 _UNKNOWN = 100  # what OpenCV says for the rise where squares are too small for it to follow an edge
 SOFT_SLOPE = 0.45  # the same limit for `slope_rise`: waves of that length, all that blur leaves, have 0.5
+_UNEVEN = 0.01  # the same: from here on a slower finder is asked, too
 _ROUGH = 0.08  # scatter about a smooth grid, in squares, that no board shows
 
 
 @dataclass(frozen=True, eq=False)
-class Corners:
+class BoardCorners:
     """Corners found in one picture.
 
     xy: (n, 2) pixels; index: (n,) places in `board.points`; noise: px rms about a smooth grid, NaN if unknown;
@@ -42,35 +43,56 @@ class Corners:
     finder: str
 
 
-def find_checkerboard(grey, pattern):
-    """All inner corners of a checkerboard: both of OpenCV's finders, refined, the smoother result.
+def find_checkerboard(grey, pattern, other=None):
+    """All inner corners of a checkerboard: by OpenCV's finders or its own saddles, refined.
 
-    `findChessboardCornersSB` finds blurred and uneven boards, `findChessboardCorners` small and skewed ones. Where both
-    succeed they agree; of the refined corners (`cornerSubPix`, window from the size of the squares) and SB's own
-    those are taken that lie better on a smooth grid. A board that goes on beyond the pattern is another board, although
-    a finder is content with a part of it.
+    `findChessboardCorners` is quick; where it sees nothing, or uneven corners, a grid is grown from the saddles of the
+    picture, and `findChessboardCornersSB`, slow and good at blur, has the last word. Corners are refined by
+    `cornerSubPix` with a window from the size of the squares; of several grids the smoothest counts. A board that goes
+    on beyond the pattern is another board, although a finder is content with a part of it.
 
-    Args: grey: (h, w) uint8; pattern: (columns, rows). Returns: Corners, all of them, in the order of `Checkerboard`.
+    Args: grey: (h, w) uint8; pattern: (columns, rows); other: (columns, rows) of a board that other pictures showed
+    in its place, looked for first. Returns: BoardCorners, all, in the order of `Checkerboard`.
     Raises NotUsable with the Reason, CalibrationError for a pattern that cannot be.
     """
     pattern = check_pattern(pattern)
     small, factor = reduced(grey, _SEARCHED)
-    best, finder = None, ""
-    for name, grid in _search(small, pattern):
-        found = _examine(grey, enlarged(grid, factor), pattern)
-        if found is None:
-            continue
-        own = enlarged(grid, factor)
-        if name == "SB" and factor == 1 and roughness(own) < 0.8 * roughness(found):
-            found, name = own, "SB, its own corners"
-        if best is None or roughness(found) < 0.98 * roughness(best):
-            best, finder = found, name
+    if other is not None:
+        _refuse_other(grey, small, factor, other, pattern)
+    best = _examined(grey, _classic(small, pattern), factor, pattern)
+    finder, why = "classic", None
     if best is None:
-        best, finder = _piece_together(grey, small, factor, pattern), "pieced together"
+        finder = "pieced together"
+        try:
+            best = _piece_together(grey, small, factor, pattern)
+        except NotUsable as reason:
+            why = reason
+            if why.whole:
+                raise
+    if best is None or roughness(best) > _UNEVEN * np.median(spacing(best)):
+        found = _sb(small, pattern)
+        refined = _examined(grey, found, factor, pattern)
+        choices = [] if refined is None else [(refined, "SB")]
+        if refined is not None and factor == 1:
+            choices.append((found, "SB, its own corners"))
+        for grid, name in choices:
+            if best is None or roughness(grid) < 0.8 * roughness(best):
+                best, finder = grid, name
+    if best is None:
+        raise why
     best = in_order(best, grey, pattern)
     rise = refuse_soft(grey, best)
     columns, rows = pattern
-    return Corners(best.reshape(-1, 2).astype(float), np.arange(columns * rows), roughness(best), rise, finder)
+    return BoardCorners(best.reshape(-1, 2).astype(float), np.arange(columns * rows), roughness(best), rise, finder)
+
+
+def _refuse_other(grey, small, factor, other, pattern):
+    """Raise NotUsable if the picture shows all of that other board."""
+    grid = _classic(small, other)
+    if grid is not None:
+        grid = refine(grey, enlarged(grid, factor))
+        if is_checkerboard(grid, grey) and is_whole(grid, grey):
+            raise wrong_board(grid, pattern, whole=True)
 
 
 def reduced(grey, longest):
@@ -89,31 +111,35 @@ def enlarged(xy, factor):
     return (xy + 0.5) * factor - 0.5
 
 
-def _search(grey, pattern):
-    """(name, grid (rows, columns, 2)) of each finder that finds the pattern."""
+def _classic(grey, pattern):
+    """Grid (rows, columns, 2) by `findChessboardCorners`, or None."""
     import cv2
 
-    columns, rows = pattern
-    for flags in (0, cv2.CALIB_CB_EXHAUSTIVE):
-        flags |= cv2.CALIB_CB_NORMALIZE_IMAGE  # not ACCURACY: slower, and no better than what refines them here
-        found, corners = cv2.findChessboardCornersSB(grey, pattern, flags=flags)
-        if found:
-            yield "SB", corners.reshape(rows, columns, 2)
-            break
     flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_FAST_CHECK
     found, corners = cv2.findChessboardCorners(grey, pattern, None, flags)
-    if found:
-        yield "classic", corners.reshape(rows, columns, 2)
+    return corners.reshape(pattern[1], pattern[0], 2) if found else None
 
 
-def _examine(grey, grid, pattern):
+def _sb(grey, pattern):
+    """The same by `findChessboardCornersSB`; without ACCURACY: slower, and no better than what refines them here."""
+    import cv2
+
+    found, corners = cv2.findChessboardCornersSB(
+        grey, pattern, flags=cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE
+    )
+    return corners.reshape(pattern[1], pattern[0], 2) if found else None
+
+
+def _examined(grey, found, factor, pattern):
     """Refined corners of a grid; None if it is no checkerboard. Raises NotUsable if the board goes on beyond it."""
-    grid = refine(grey, grid)
+    if found is None:
+        return None
+    grid = refine(grey, enlarged(found, factor))
     if roughness(grid) > _ROUGH * np.median(spacing(grid)) or not is_checkerboard(grid, grey):
         return None
     larger, _ = grow(grid, grey)
     if larger.shape != grid.shape:
-        raise wrong_board(larger, pattern)
+        raise wrong_board(larger, pattern, whole=True)
     return grid
 
 
@@ -222,15 +248,14 @@ def part_of_a_checkerboard(grey):
     """A grid found anywhere in a picture, at its size or reduced, by its saddles or by SB; or None."""
     import cv2
 
-    for find in (_grown_from_saddles, _largest_by_sb):
-        for less in (1, 2, 4):
-            h, w = grey.shape
-            if min(h, w) >= 60 * less:
-                small = grey if less == 1 else cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
-                grid = find(small)
-                if grid is not None:
-                    return enlarged(grid, less)
-    return None
+    for less in (1, 2, 4):
+        h, w = grey.shape
+        if min(h, w) >= 60 * less:
+            small = grey if less == 1 else cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
+            grid = _grown_from_saddles(small)
+            if grid is not None:
+                return enlarged(grid, less)
+    return largest_grid(grey, (4, 3))
 
 
 def _grown_from_saddles(grey):
@@ -241,12 +266,6 @@ def _grown_from_saddles(grey):
         if smooth and grid.shape[0] * grid.shape[1] >= 12 and is_checkerboard(grid, grey):
             return grid
     return None
-
-
-def _largest_by_sb(grey):
-    """The grid around the first part that `findChessboardCornersSB` finds, or None."""
-    parts = (largest_grid(grey, part) for part in ((4, 3), (3, 3), (3, 4)))
-    return next((grid for grid in parts if grid is not None), None)
 
 
 def _part_of_it(shape, outside, pattern):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.fit import Corners, Model, _project, _reduce, _solve
+from ir50p_lab.vision.calibration.fit import CornerSets, Model, _project, _reduce, _solve
 
 _CELLS = (6, 8)  # rows, columns of the coverage map
 _TILT = np.deg2rad(35)
@@ -92,7 +92,7 @@ def next_view(calibration):
     _need_views(calibration)
     B = _columns_of(calibration)
     camera = np.array([*calibration.values.values(), 0, 0, 0])
-    seen = Corners([v.points for v in calibration.views], [v.corners for v in calibration.views], calibration.size)
+    seen = CornerSets([v.points for v in calibration.views], [v.corners for v in calibration.views], calibration.size)
     S = sum(_information(seen, i, camera, _pose(v.T_cam_board), B) for i, v in enumerate(calibration.views))
     w, h = calibration.size
     grid = np.stack(np.meshgrid((np.arange(8) + 0.5) * w / 8, (np.arange(6) + 0.5) * h / 6), axis=-1).reshape(-1, 2)
@@ -104,7 +104,7 @@ def next_view(calibration):
         return float(np.sqrt(np.einsum("nij,jk,nik->n", J, V, J).mean()))
 
     points = calibration.board.points
-    trial = Corners([points], [points[:, :2]], calibration.size)
+    trial = CornerSets([points], [points[:, :2]], calibration.size)
     counts, tried = calibration.coverage.counts, []
     for place, tilt, T in _candidates(calibration, points):
         pose = _pose(T)

@@ -44,11 +44,11 @@ class Model:
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class CameraFit:
     """A camera that fits corners.
 
     ============== ================================================================================== ============
-    camera         fx, fy, cx, cy, k1, k2, p1, p2, k3, and b of the board's shape (see `Corners`)     (12,) px, m
+    camera         fx, fy, cx, cy, k1, k2, p1, p2, k3, and b of the board's shape (see `CornerSets`)     (12,) px, m
     poses          rvec, tvec of the board in each view                                               (v, 6) rad, m
     residuals      seen minus model, one array per view                                               (n, 2) px
     by_corners     covariance of `camera` if every corner errs on its own                             (12, 12)
@@ -100,7 +100,7 @@ class Fit:
         return np.sqrt(np.maximum(np.diag(self.by_corners), np.diag(self.by_views)))
 
 
-class Corners:
+class CornerSets:
     """What was seen: points (n, 3) m on the board and pixels (n, 2), one array of each per view; the picture's size.
 
     shapes: three ways (n, 3) in which the board can bend (along x, as a saddle, along y), each 1 at half the board's
@@ -124,7 +124,7 @@ class Corners:
     def without(self, view):
         """The same without one view."""
         keep = [i for i in range(len(self)) if i != view]
-        return Corners([self.points[i] for i in keep], [self.pixels[i] for i in keep], self.size)
+        return CornerSets([self.points[i] for i in keep], [self.pixels[i] for i in keep], self.size)
 
 
 def start(corners):
@@ -183,7 +183,7 @@ def fit(corners, model, guess, steps=50):
 
     Poses are eliminated view by view (Schur complement), so that a step costs one small system however many views.
 
-    Args: corners: Corners; model: Model; guess: (camera (12,), poses (v, 6)). Returns: Fit.
+    Args: corners: CornerSets; model: Model; guess: (camera (12,), poses (v, 6)). Returns: CameraFit.
     Raises CalibrationError if it does not converge, or the views leave a parameter undetermined.
     """
     B = model.columns
@@ -260,7 +260,7 @@ def _with_covariance(corners, model, camera, poses):
     scale = np.linalg.norm(np.concatenate([v[1] for v in views]), axis=0)
     if not np.linalg.eigvalsh(S / np.outer(scale, scale))[0] > _SHOWN:
         raise CalibrationError("the views leave the camera undetermined: tilt the board in different directions")
-    fit = Fit(camera, poses, tuple(v[0] for v in views), np.zeros((12, 12)), np.zeros((12, 12)), model)
+    fit = CameraFit(camera, poses, tuple(v[0] for v in views), np.zeros((12, 12)), np.zeros((12, 12)), model)
     if 2 * fit.points <= fit.parameters:
         raise CalibrationError(
             f"{fit.points} corners in {count} views give {2 * fit.points} numbers for {fit.parameters} parameters: "

@@ -70,17 +70,17 @@ def compare(small, large, contrast):
 
 
 def contrast_of(term):
-    """Rows (q, 12) that pick the coefficients of a term of the lens out of `Fit.camera`."""
+    """Rows (q, 12) that pick the coefficients of a term of the lens out of `CameraFit.camera`."""
     return np.eye(12)[[NAMES.index(name) for name in _NAMED.get(term, (term,))]]
 
 
 def choose(corners, guess, aspect=None, bent=False):
-    """The simplest lens that the corners do not object to: (Fit, evidence, all fits that were tried).
+    """The simplest lens that the corners do not object to: (CameraFit, evidence, all fits that were tried).
 
     From the full model k1, k2, p1, p2, k3 the terms are dropped one after the other, k3 first, as long as the data can
     do without: backwards, because a lens bends light more than it is regular. k2 stays if k3 does, k1 if k2 does.
 
-    Args: corners: Corners; guess: as for `fit`; aspect: fx/fy if it is known; bent: estimate the board's shape, too.
+    Args: corners: CornerSets; guess: as for `fit`; aspect: fx/fy if it is known; bent: estimate the board's shape, too.
     """
     terms, evidence = LADDER, []
     best = fit(corners, Model(terms, aspect, bent), guess)

@@ -7,7 +7,8 @@ import numpy as np
 from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.calibration.fit import NAMES
-from ir50p_lab.vision.pinhole import Pinhole, check_size
+from ir50p_lab.vision.checks import picture_size
+from ir50p_lab.vision.pinhole import Pinhole
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -116,7 +117,7 @@ class Calibration:
 
     def check_size(self, size):
         """Refuse pictures (width, height) of another size than those of the calibration, with CalibrationError."""
-        size = check_size(size)
+        size = picture_size(size)
         if size != tuple(self.size):
             raise CalibrationError(
                 f"this calibration is of a camera with pictures of {self.size[0]}x{self.size[1]}, not "

@@ -10,7 +10,7 @@ from ir50p_lab.vision.camera.interface import Camera, Frame
 from ir50p_lab.vision.rendering.arm_shape import arm_sticks
 from ir50p_lab.vision.rendering.places import bench_scene
 from ir50p_lab.vision.rendering.render import render_scene
-from ir50p_lab.vision.rendering.scene import Ball, Scene
+from ir50p_lab.vision.rendering.scene import Scene, SceneBall
 
 
 class RenderedCamera(Camera):
@@ -57,7 +57,7 @@ class RenderedCamera(Camera):
     def move_ball(self, position, index=0):
         """Put ball number `index` with its centre at `position` (3,) m, or (2,): on the table at these x, y."""
         scene = self._fixed()
-        places = [i for i, thing in enumerate(scene.objects) if isinstance(thing, Ball)]
+        places = [i for i, thing in enumerate(scene.objects) if isinstance(thing, SceneBall)]
         if not 0 <= index < len(places):
             raise InputError(f"ball {index}: the scene has {len(places)} balls, counted from 0")
         position = numbers("position", position, unit="m")

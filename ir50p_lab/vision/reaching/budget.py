@@ -40,33 +40,33 @@ class Budget:
         return "\n".join(lines)
 
 
-def error_budget(arm, sight, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_marker_px=0.15, noise=1.0):
+def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_marker_px=0.15, noise=1.0):
     """Predict the rms error of a reach that ends in the pose q, to first order.
 
     With J = dp/dq of the tip, H = dpixel/dq of the marker, and the gain G of the camera's correction
-    (`Sight.joint_errors`), potentiometers that are off by e leave J e after the first look and J (I - G H) e after the
-    second. What is wrong with the camera, or where it stands, shifts ball and hand alike: after the second look only
-    the difference counts.
+    (`BallLocator.joint_errors`), potentiometers that are off by e leave J e after the first look and J (I - G H) e
+    after the second. What is wrong with the camera, or where it stands, shifts ball and hand alike: after the second
+    look only the difference counts.
 
-    Args: arm: Arm; sight: Sight, its plane with covariances; q: (3,) rad, pose over the ball; sigma_q: (3,) rad, of
-    the potentiometers' smooth errors; slope: (3,) counts/rad; sigma_ball_px, sigma_marker_px: px, of found centres;
-    noise: counts rms of a reading before rounding.
+    Args: arm: Arm; locator: BallLocator, its plane with covariances; q: (3,) rad, pose over the ball; sigma_q: (3,)
+    rad, of the potentiometers' smooth errors; slope: (3,) counts/rad; sigma_ball_px, sigma_marker_px: px, of found
+    centres; noise: counts rms of a reading before rounding.
     Returns: Budget.
     """
     J, P = jacobian(arm, q)[:3], np.diag(np.square(sigma_q))
-    hand, tip = sight.marker_place(arm, q), forward_kinematics(arm, q)
-    H = np.column_stack([_slope(lambda d, u=u: sight.to_image(sight.marker_place(arm, q + d * u))) for u in np.eye(3)])
-    G = np.linalg.solve(H @ P @ H.T + sight.sigma_px**2 * np.eye(2), H @ P).T
+    hand, tip = locator.marker_place(arm, q), forward_kinematics(arm, q)
+    H = np.column_stack([_slope(lambda d, u=u: locator.marker_pixel(arm, q + d * u)) for u in np.eye(3)])
+    G = np.linalg.solve(H @ P @ H.T + locator.sigma_px**2 * np.eye(2), H @ P).T
     left = np.eye(3) - G @ H
 
-    to_table = inverse_transform(sight.T_base_table)
-    ball = moved(to_table, np.array([*tip[:2], sight.radius]))
-    xy = sight.plane.to_image(ball)
-    in_picture = sight.plane.covariance(xy, ball[2], sigma_px=sigma_ball_px, parts=True)["pixel"][0]
+    to_table = inverse_transform(locator.T_base_table)
+    ball = moved(to_table, np.array([*tip[:2], locator.radius]))
+    xy = locator.plane.to_image(ball)
+    in_picture = locator.plane.covariance(xy, ball[2], sigma_px=sigma_ball_px, parts=True)["pixel"][0]
     pixel = float(np.sqrt(np.trace(in_picture)))
     shifts = [  # one standard deviation in each direction of what is wrong with the camera: ball m, hand px
-        (one.to_table(xy, ball[2]) - ball[:2], one.to_image(moved(to_table, hand)) - sight.to_image(hand))
-        for one in sight.plane.variations()
+        (one.to_table(xy, ball[2]) - ball[:2], one.to_image(moved(to_table, hand)) - locator.to_image(hand))
+        for one in locator.plane.variations()
     ]
     ball_off = np.array([[*b, 0.0] for b, _ in shifts]).reshape(-1, 3).T
     both_off = ball_off + J @ G @ np.array([h for _, h in shifts]).reshape(-1, 2).T

@@ -5,7 +5,6 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.dynamics import gravity
-from ir50p_lab.vision.hand_eye_refined import JointCorrection
 from ir50p_lab.vision.reaching.plan import CLEAR, plan
 
 _LONGEST = 3600.0  # s, of one session
@@ -35,16 +34,14 @@ class Mover:
 
     Args:
         bench: an open bench. controller: default `reaching_controller(arm)`.
-        correction: JointCorrection of the potentiometers, from `refine_hand_eye`; default none.
         rest: go to the rest pose at the end.
 
     Attributes: q: (3,) rad, best estimate of its set point; errors: (3,) rad, what the potentiometers are off by here.
     """
 
-    def __init__(self, bench, *, controller=None, correction=None, rest=True):
+    def __init__(self, bench, *, controller=None, rest=True):
         self.bench, self.arm, self.rest = bench, bench.arm, rest
         self.controller = reaching_controller(bench.arm, bench.period) if controller is None else controller
-        self.correction = JointCorrection.of(bench.arm) if correction is None else correction
         self.errors = np.zeros(3)
         self._samples = self._last = self._gripper = self._frozen = None
         self._u = self._mean_u = np.zeros(3)
@@ -84,11 +81,11 @@ class Mover:
 
     def true(self, shown):
         """Best estimate of the arm's angles for those of the potentiometers, (3,) rad."""
-        return self.correction(shown + self.errors)
+        return shown + self.errors
 
     def shown(self, q):
         """What the potentiometers shall show for angles (3,) or (n, 3) of the arm, rad."""
-        return self.correction.back(q) - self.errors
+        return q - self.errors
 
     @property
     def q(self):

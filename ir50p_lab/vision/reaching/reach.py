@@ -21,9 +21,9 @@ _CAMERA_LAG = 0.1  # s that the picture of a webcam is old (assumed: exposure, t
 
 
 class Reacher(Mover):
-    """The arm on an open bench, driven by what a Sight sees; every phase runs in one loop without a pause.
+    """The arm on an open bench, driven by what a BallLocator sees; every phase runs in one loop without a pause.
 
-        with connect() as bench, Reacher(bench, sight) as reacher:
+        with connect() as bench, Reacher(bench, locator) as reacher:
             found = reacher.reach()
 
     The drive goes on from the first command to the end of the `with` block, where the arm moves to its rest pose:
@@ -31,9 +31,8 @@ class Reacher(Mover):
     and the picture is worked on, the loop goes on in this thread and the eye works in another.
 
     Args:
-        bench: an open bench. sight: Sight, or None for moving only; one of rendered pictures raises CameraError for a
-        real arm. controller: default `reaching_controller(arm)`.
-        correction: JointCorrection of the potentiometers, from `refine_hand_eye`; default none.
+        bench: an open bench. locator: BallLocator, or None for moving only; one of rendered pictures raises
+        CameraError for a real arm. controller: default `reaching_controller(arm)`.
         sigma_q: (3,) rad, how far the potentiometers may be off after that; default 0.7 counts if the calibration of
         the bench was measured (what a straight line leaves of a bent characteristic), 2.5 if it is a nominal one.
         rest: go to the rest pose at the end.
@@ -42,10 +41,10 @@ class Reacher(Mover):
     best estimate.
     """
 
-    def __init__(self, bench, sight=None, *, controller=None, correction=None, sigma_q=None, rest=True):
-        super().__init__(bench, controller=controller, correction=correction, rest=rest)
-        self.sight, self._pool = sight, None
-        self._refuse_drawn(getattr(getattr(sight, "camera", None), "simulated", False))
+    def __init__(self, bench, locator=None, *, controller=None, sigma_q=None, rest=True):
+        super().__init__(bench, controller=controller, rest=rest)
+        self.locator, self._pool = locator, None
+        self._refuse_drawn(getattr(getattr(locator, "camera", None), "simulated", False))
         if sigma_q is None:
             measured = bench.calibration.stderr_slope is not None
             sigma_q = (_COUNTS if measured else _COUNTS_NOMINAL) / np.abs(bench.calibration.slope)
@@ -63,8 +62,8 @@ class Reacher(Mover):
 
     def look(self):
         """Let the eye look while the loop goes on. Returns Seen."""
-        if self.sight is None:
-            raise InputError("this Reacher has no sight: give Reacher(bench, sight)")
+        if self.locator is None:
+            raise InputError("this Reacher has no locator: give Reacher(bench, locator)")
         if self.bench.simulated and not getattr(self.bench, "realtime", False):
             return self._see()
         job = self._pool.submit(self._see)
@@ -73,7 +72,7 @@ class Reacher(Mover):
         return job.result()
 
     def _see(self):
-        seen = self.sight.look()
+        seen = self.locator.look()
         self._refuse_drawn(seen.simulated)
         return seen
 
@@ -146,12 +145,12 @@ class Reacher(Mover):
             ball = seen.position
         else:
             ball = 0.5 * (ball + seen.position)
-        marker = self.sight.find_marker(seen.image, self.arm, q)
+        marker = self.locator.find_marker(seen.image, self.arm, q)
         if marker is None:
             notes.append("the marker on the hand is not seen: potentiometers alone")
         else:
             try:
-                e, _ = self.sight.joint_errors(self.arm, q, marker, self.sigma_q)
+                e, _ = self.locator.joint_errors(self.arm, q, marker, self.sigma_q)
                 self.errors, q = self.errors + e, q + e
             except VisionError as error:
                 notes.append(str(error))
@@ -199,7 +198,7 @@ class Reacher(Mover):
         place = numbers("place", place, unit="m")
         if place.shape != (2,) or not np.isfinite(place).all():
             raise InputError(f"place = {place.tolist()}: give x, y on the table, m")
-        down = np.array([*place, self.sight.radius + number("contact", contact, unit="m")])
+        down = np.array([*place, self.locator.radius + number("contact", contact, unit="m")])
         up = down + np.array([0.0, 0.0, HEIGHT])
         reach_pose(self.arm, up), reach_pose(self.arm, down)
         return down, up
@@ -241,7 +240,7 @@ class Reacher(Mover):
             if t - last_seen > _LOST:
                 tracker = BallTracker()
             if tracker.position is not None:
-                aim = np.array([*tracker.at(t + lead), self.sight.radius + height])
+                aim = np.array([*tracker.at(t + lead), self.locator.radius + height])
                 with contextlib.suppress(ValueError):  # UnreachableError: wait
                     point.move_to(self.shown(reach_pose(self.arm, aim, self.q)))
             rows = point(t)
@@ -254,8 +253,8 @@ class Reacher(Mover):
         return FollowLog(*(np.array(column) for column in zip(*log, strict=True)), lead=lead)
 
 
-def reach(bench, sight, **options):
+def reach(bench, locator, **options):
     """One reach on an open bench, and back to rest: `Reacher` in one call; options of Reacher and of `reach`."""
     how = {name: options.pop(name) for name in ("height", "looks") if name in options}
-    with Reacher(bench, sight, **options) as reacher:
+    with Reacher(bench, locator, **options) as reacher:
         return reacher.reach(**how)

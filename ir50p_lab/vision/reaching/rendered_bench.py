@@ -9,8 +9,8 @@ from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.board_pose import moved
 from ir50p_lab.vision.camera.interface import Camera, Frame
-from ir50p_lab.vision.reaching.sight import MARKER_AT
-from ir50p_lab.vision.rendering import Ball, bench_scene, render_scene
+from ir50p_lab.vision.reaching.ball_locator import MARKER_AT
+from ir50p_lab.vision.rendering import SceneBall, bench_scene, render_scene
 from ir50p_lab.vision.rendering.arm_shape import arm_sticks
 
 MARKER = 0.012  # m, radius of the green ball on the wrist: 10 px in the default camera (assumed)
@@ -92,13 +92,15 @@ class RenderedBench(Camera):
 
     def read(self):
         """A picture of this moment: Frame."""
-        balls = tuple(Ball(position=tuple(p), radius=self.radius) for p in self.balls_true)
-        others = tuple(thing for thing in self.scene.objects if not isinstance(thing, Ball) or thing.colour != "red")
+        balls = tuple(SceneBall(position=tuple(p), radius=self.radius) for p in self.balls_true)
+        others = tuple(
+            thing for thing in self.scene.objects if not isinstance(thing, SceneBall) or thing.colour != "red"
+        )
         hand = ()
         arm, q = self.bench.arm, self.bench.plant.q_true
         if self.marker:
             place = moved(frames(arm, q)[3], np.array(MARKER_AT))
-            hand = (Ball(position=tuple(place), radius=MARKER, colour=(25, 150, 60), gloss=0.1),)
+            hand = (SceneBall(position=tuple(place), radius=MARKER, colour=(25, 150, 60), gloss=0.1),)
         opening = 0.06 if self._closed else 0.07
         scene = replace(self.scene, objects=(*balls, *hand, *others), arm=arm_sticks(q, arm, opening=opening))
         self.pictures += 1

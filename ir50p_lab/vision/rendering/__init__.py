@@ -7,7 +7,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     submod_attrs={
         "arm_shape": ["arm_sticks"],
         "scene": [
-            "Ball",
+            "SceneBall",
             "Board",
             "Box",
             "Lamp",
@@ -18,11 +18,10 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "Sky",
             "Stick",
             "Sun",
-            "Table",
+            "Tabletop",
         ],
         "places": ["bench_camera", "bench_scene", "look_at", "pose"],
         "render": ["render_scene", "scene_truth"],
-        "scene_distribution": ["random_scene"],
-        "truth": ["BallTruth", "BoardTruth", "Truth"],
+        "truth": ["BallTruth", "BoardTruth", "SceneTruth"],
     },
 )

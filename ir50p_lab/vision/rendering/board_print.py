@@ -4,7 +4,7 @@ import functools
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
+from ir50p_lab.vision.calibration.board import Charuco
 
 
 def inner_corners(board):
@@ -47,27 +47,10 @@ def _marker(board, u, v, i, j):
     return dark
 
 
-def charuco_board(board):
-    """The cv2.aruco.CharucoBoard of a Board of kind 'charuco'; its origin is the corner of the outermost square."""
-    columns, rows = board.pattern
-    return _opencv_board(columns, rows, board.square, board.marker, board.dictionary)
-
-
-def _opencv_board(columns, rows, square, marker, dictionary):
-    import cv2
-
-    if not hasattr(cv2.aruco, dictionary) or not dictionary.startswith("DICT_"):
-        raise InputError(f"dictionary {dictionary!r} is not one of cv2.aruco: give DICT_5X5_100 or the like")
-    if not 0 < marker < square:
-        raise InputError(f"markers of {marker} m do not fit squares of {square} m: marker must be smaller")
-    known = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
-    return cv2.aruco.CharucoBoard((columns + 1, rows + 1), square, marker, known)
-
-
 @functools.lru_cache(maxsize=8)
 def _markers(columns, rows, square, marker, dictionary):
     """Number of the marker in each square [row, column], -1 for none; their bits (n, cells, cells), 0 is black."""
-    board = _opencv_board(columns, rows, square, marker, dictionary)
+    board = Charuco((columns, rows), square, marker, dictionary).opencv()
     numbers = np.full((rows + 1, columns + 1), -1)
     cells = board.getDictionary().markerSize + 2
     bits = []

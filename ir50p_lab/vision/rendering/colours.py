@@ -1,5 +1,6 @@
 """Between the numbers of the screen (sRGB, 0..255) and amounts of light (0..1)."""
 
+import colorsys
 import functools
 
 import numpy as np
@@ -23,6 +24,14 @@ def light_of(colour):
     if rgb.shape != (3,) or not ((rgb >= 0) & (rgb <= 255)).all():
         raise InputError(f"colour {colour!r}: give (r, g, b), three numbers 0..255, or one of {', '.join(COLOURS)}")
     return to_linear(rgb / 255)
+
+
+def is_red(colour):
+    """Whether a paint, name or (r, g, b) 0..255, is what the detector of red balls has to find."""
+    if isinstance(colour, str):
+        return colour == "red"
+    hue, saturation, value = colorsys.rgb_to_hsv(*(c / 255 for c in colour))
+    return (hue * 360 <= 9 or hue * 360 >= 349) and saturation >= 0.7 and value >= 0.4
 
 
 def to_linear(s):

@@ -5,7 +5,7 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.vision.pinhole import Pinhole
-from ir50p_lab.vision.rendering.scene import Ball, Lamp, Scene, Sky, Sun, Table
+from ir50p_lab.vision.rendering.scene import Lamp, Scene, SceneBall, Sky, Sun, Tabletop
 
 # Assumed: an ordinary VGA webcam (thesis intro 5.3: 640x480) with 49 deg across: f = 320 / tan(24.5 deg) = 700 px.
 # Nobody's pixels are exactly square, nor is a lens exactly over the middle; the barrel distortion is that of a cheap
@@ -59,8 +59,8 @@ def bench_scene(*objects, **changes):
     scene = {
         "pinhole": pinhole,
         "T_cam_world": T_cam_world,
-        "objects": objects or (Ball(),),
-        "table": Table(),
+        "objects": objects or (SceneBall(),),
+        "table": Tabletop(),
         "lights": (Sky(), Sun(towards=(0.4, 0.5, 1.0)), Lamp(position=(0.2, -0.6, 0.8), strength=0.25)),
     }
     return Scene(**(scene | changes))

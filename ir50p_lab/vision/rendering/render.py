@@ -8,12 +8,12 @@ from ir50p_lab.vision.rendering.board_print import black, print_range
 from ir50p_lab.vision.rendering.colours import light_of
 from ir50p_lab.vision.rendering.light import highlight, irradiance
 from ir50p_lab.vision.rendering.rays import grid_rays, rays_through
-from ir50p_lab.vision.rendering.scene import Ball, Board, Box, Scene, Stick
+from ir50p_lab.vision.rendering.scene import Board, Box, Scene, SceneBall, Stick
 from ir50p_lab.vision.rendering.sensor import blur, expose
 from ir50p_lab.vision.rendering.shadow import table_light
 from ir50p_lab.vision.rendering.shapes import BoxShape, SheetShape, SphereShape, StickShape
 from ir50p_lab.vision.rendering.surface import room_light, table_albedo
-from ir50p_lab.vision.rendering.truth import Truth, ball_truth, board_truth
+from ir50p_lab.vision.rendering.truth import SceneTruth, ball_truth, board_truth
 
 ROOM, TABLE = 0, 1  # owners of pixels; things follow
 _DETAILS = 64  # codes per owner: faces, squares, patches
@@ -27,30 +27,23 @@ def render_scene(scene, seed=0):
     Every pixel is the mean light over its square: one ray where nothing changes, 34 where an edge runs through it. The
     lens blurs light, not bytes; then come noise, tone curve and JPEG.
 
-    Args: scene: Scene; seed: of the noise. Returns: image (h, w, 3) uint8, red green blue; Truth.
+    Args: scene: Scene; seed: of the noise. Returns: image (h, w, 3) uint8, red green blue; SceneTruth.
     Raises InputError for things that cannot be drawn.
     """
     if not isinstance(scene, Scene):
         raise InputError(f"render_scene draws a Scene, not {type(scene).__name__}: build one, or take bench_scene()")
-    picture = _Picture(scene)
+    picture = RayTracer(scene)
     light = blur(picture.light(), scene.lens)
     image = expose(light, scene.sensor, np.random.default_rng([int(seed), 0]))
     return image, picture.truth(int(seed))
 
 
 def scene_truth(scene, seed=0):
-    """The Truth of a scene without drawing it."""
-    return _Picture(scene).truth(int(seed))
+    """The SceneTruth of a scene without drawing it."""
+    return RayTracer(scene).truth(int(seed))
 
 
-def sparse_light(scene, across=16, down=12):
-    """Light (n, 3) along a few rays spread over the picture: what an exposure meter sees."""
-    w, h = scene.pinhole.size
-    x, y = np.meshgrid((np.arange(across) + 0.5) / across * w - 0.5, (np.arange(down) + 0.5) / down * h - 0.5)
-    return _Picture(scene).trace(rays_through(scene.pinhole, x.ravel(), y.ravel()))[0]
-
-
-class _Picture:
+class RayTracer:
     """The scene in camera coordinates."""
 
     def __init__(self, scene):
@@ -65,7 +58,7 @@ class _Picture:
         self.table_colour = light_of(table.colour if table else "grey").astype(np.float32)
 
     def _shape(self, thing):
-        if isinstance(thing, Ball):
+        if isinstance(thing, SceneBall):
             return SphereShape(self.R @ np.asarray(thing.position, dtype=float) + self.t, thing.radius)
         if isinstance(thing, Stick):
             ends = (self.R @ np.asarray(p, dtype=float) + self.t for p in (thing.start, thing.end))
@@ -177,7 +170,7 @@ class _Picture:
         return light, detail
 
     def truth(self, seed):
-        """The Truth of this picture."""
+        """The SceneTruth of this picture."""
         scene, w, h = self.scene, *self.scene.pinhole.size
 
         def seen(number):
@@ -192,14 +185,14 @@ class _Picture:
         balls = tuple(
             ball_truth(scene.pinhole, self.T, thing, seen(i))
             for i, thing in enumerate(self.things)
-            if isinstance(thing, Ball)
+            if isinstance(thing, SceneBall)
         )
         boards = tuple(
             board_truth(scene.pinhole, self.T, thing, self.shapes[i], seen(i))
             for i, thing in enumerate(self.things)
             if isinstance(thing, Board)
         )
-        return Truth(balls=balls, boards=boards, pinhole=scene.pinhole, T_cam_world=self.T, scene=scene, seed=seed)
+        return SceneTruth(balls=balls, boards=boards, pinhole=scene.pinhole, T_cam_world=self.T, scene=scene, seed=seed)
 
 
 def _spread(n):

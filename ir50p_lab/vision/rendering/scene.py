@@ -9,8 +9,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import number, vectors3
+from ir50p_lab.vision.checks import rigid
 from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
-from ir50p_lab.vision.rendering.scene_checks import check_numbers, check_pose
 
 COLOURS = {  # paints, not light: measured from nothing, chosen to look like toy balls and tape
     "red": (200, 30, 40),
@@ -29,7 +30,7 @@ COLOURS = {  # paints, not light: measured from nothing, chosen to look like toy
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ball:
+class SceneBall:
     """A ball: centre (3,) m, radius m, colour name or (r, g, b).
 
     gloss: strength of the highlight, 0 matt (felt, foam) to 1 (lacquer); shininess: exponent, large is a small spot.
@@ -42,9 +43,8 @@ class Ball:
     shininess: float = 40.0
 
     def __post_init__(self):
-        check_numbers(self, position=3)
-        check_numbers(self, above=0, radius=1, shininess=1)
-        check_numbers(self, at_least=0, gloss=1)
+        vectors3("position", self.position, unit="m")
+        number("radius", self.radius, "> 0", unit="m")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,17 +71,6 @@ class Board:
     white: tuple = (238, 238, 236)
     black: tuple = (28, 28, 30)
 
-    def __post_init__(self):
-        check_pose(self, "T_world_board")
-        check_numbers(self, above=1, pattern=2)
-        check_numbers(self, above=0, square=1, marker=1)
-        check_numbers(self, at_least=0, border=1)
-        check_numbers(self, bend=1)
-        if tuple(self.pattern) != tuple(int(n) for n in self.pattern):
-            raise InputError(f"pattern = {self.pattern}: give whole numbers of inner corners (columns, rows)")
-        if self.kind not in ("checkerboard", "charuco"):
-            raise InputError(f"kind = {self.kind!r} of a board: give 'checkerboard' or 'charuco'")
-
 
 @dataclass(frozen=True, kw_only=True)
 class Patch:
@@ -97,10 +86,6 @@ class Patch:
     outline: str = "rectangle"
     seed: int = 0
 
-    def __post_init__(self):
-        check_numbers(self, position=2, angle=1)
-        check_numbers(self, above=0, size=2)
-
 
 @dataclass(frozen=True, kw_only=True)
 class Stick:
@@ -113,10 +98,6 @@ class Stick:
     gloss: float = 0.0
     shininess: float = 30.0
 
-    def __post_init__(self):
-        check_numbers(self, start=3, end=3)
-        check_numbers(self, above=0, radius=1)
-
 
 @dataclass(frozen=True, kw_only=True)
 class Box:
@@ -126,13 +107,9 @@ class Box:
     size: tuple = (0.06, 0.04, 0.03)
     colour: str | tuple = "brown"
 
-    def __post_init__(self):
-        check_pose(self, "T_world_box")
-        check_numbers(self, above=0, size=3)
-
 
 @dataclass(frozen=True, kw_only=True)
-class Table:
+class Tabletop:
     """The table: texture 'plain', 'wood', 'cloth', 'speckle' or 'tiles', its colour, contrast 0..1, grain size m.
 
     x, y: (from, to) m of its edges; beyond them the camera sees the room (colour `room`), blurred.
@@ -147,11 +124,6 @@ class Table:
     y: tuple = (-0.8, 0.8)
     room: str | tuple = (120, 118, 115)
 
-    def __post_init__(self):
-        check_numbers(self, above=0, grain=1)
-        check_numbers(self, x=2, y=2, angle=1)
-        check_numbers(self, at_least=0, contrast=1)
-
 
 @dataclass(frozen=True, kw_only=True)
 class Sky:
@@ -159,9 +131,6 @@ class Sky:
 
     colour: tuple = (1.0, 1.0, 1.0)
     strength: float = 0.45
-
-    def __post_init__(self):
-        check_numbers(self, at_least=0, colour=3, strength=1)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,12 +146,6 @@ class Sun:
     softness: float = 0.02
     edge: tuple | None = None
 
-    def __post_init__(self):
-        check_numbers(self, towards=3)
-        check_numbers(self, at_least=0, colour=3, strength=1, softness=1)
-        if self.towards[2] <= 0:
-            raise InputError(f"a sun must stand above the table: towards = {self.towards}, its z must be more than 0")
-
 
 @dataclass(frozen=True, kw_only=True)
 class Lamp:
@@ -193,12 +156,6 @@ class Lamp:
     strength: float = 0.6
     size: float = 0.05
 
-    def __post_init__(self):
-        check_numbers(self, position=3)
-        check_numbers(self, at_least=0, colour=3, strength=1, size=1)
-        if self.position[2] <= 0:
-            raise InputError(f"a lamp must hang above the table: position = {self.position}, its z must be more than 0")
-
 
 @dataclass(frozen=True, kw_only=True)
 class Lens:
@@ -208,10 +165,6 @@ class Lens:
     motion: tuple = (0.0, 0.0)
     sigma: float = 0.5
     vignetting: float = 0.15
-
-    def __post_init__(self):
-        check_numbers(self, motion=2)
-        check_numbers(self, at_least=0, defocus=1, sigma=1, vignetting=1)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -233,12 +186,6 @@ class Sensor:
     jpeg: int | None = 92
     gamma: bool = True
 
-    def __post_init__(self):
-        check_numbers(self, above=0, exposure=1, balance=3)
-        check_numbers(self, at_least=0, read_noise=1, shot_noise=1, sharpen=1, saturation=1)
-        if self.jpeg is not None and not 1 <= self.jpeg <= 100:
-            raise InputError(f"jpeg = {self.jpeg}: give a quality 1..100, or None for no compression")
-
 
 NO_LENS = Lens(sigma=0.0, vignetting=0.0)
 NO_SENSOR = Sensor(read_noise=0.0, shot_noise=0.0, jpeg=None)
@@ -248,9 +195,9 @@ NO_SENSOR = Sensor(read_noise=0.0, shot_noise=0.0, jpeg=None)
 class Scene:
     """Everything `render_scene` needs, but for the seed of the noise.
 
-    pinhole: the camera. T_cam_world (4, 4): where it is. objects: Ball, Board, Stick, Box in any number; patches: on
-    the table, later ones over earlier ones; lights: Sky, Sun, Lamp. arm: tuple of Stick (`arm_sticks`), kept apart so
-    that it can be posed. texture_seed: of the table's grain and of the room.
+    pinhole: the camera. T_cam_world (4, 4): where it is. objects: SceneBall, Board, Stick, Box in any number; patches:
+    on the table, later ones over earlier ones; lights: Sky, Sun, Lamp. arm: tuple of Stick (`arm_sticks`), kept apart
+    so that it can be posed. texture_seed: of the table's grain and of the room.
     """
 
     pinhole: Pinhole
@@ -258,7 +205,7 @@ class Scene:
     objects: tuple = ()
     patches: tuple = ()
     arm: tuple = ()
-    table: Table | None = Table()
+    table: Tabletop | None = Tabletop()
     lights: tuple = (Sky(), Sun())
     lens: Lens = Lens()
     sensor: Sensor = Sensor()
@@ -266,7 +213,7 @@ class Scene:
 
     def __post_init__(self):
         object.__setattr__(self, "pinhole", as_pinhole(self.pinhole))
-        check_pose(self, "T_cam_world")
+        object.__setattr__(self, "T_cam_world", rigid("T_cam_world", self.T_cam_world))
         for field_name, kinds in _PARTS.items():
             for part in getattr(self, field_name):
                 if not isinstance(part, kinds):
@@ -276,7 +223,7 @@ class Scene:
     @property
     def balls(self):
         """The balls among the objects, in their order."""
-        return tuple(thing for thing in self.objects if isinstance(thing, Ball))
+        return tuple(thing for thing in self.objects if isinstance(thing, SceneBall))
 
     @property
     def boards(self):
@@ -288,4 +235,4 @@ class Scene:
         return replace(self, lens=NO_LENS, sensor=replace(NO_SENSOR, exposure=self.sensor.exposure, gamma=False))
 
 
-_PARTS = {"objects": (Ball, Board, Stick, Box), "patches": (Patch,), "arm": (Stick,), "lights": (Sky, Sun, Lamp)}
+_PARTS = {"objects": (SceneBall, Board, Stick, Box), "patches": (Patch,), "arm": (Stick,), "lights": (Sky, Sun, Lamp)}

@@ -4,7 +4,7 @@ import numpy as np
 
 from ir50p_lab.vision.rendering.board_print import print_range
 from ir50p_lab.vision.rendering.light import direction, smooth
-from ir50p_lab.vision.rendering.scene import Ball, Board, Box, Lamp, Sky, Stick
+from ir50p_lab.vision.rendering.scene import Board, Box, Lamp, SceneBall, Sky, Stick
 from ir50p_lab.vision.rendering.shapes import BoxShape, SheetShape
 
 
@@ -12,7 +12,7 @@ def table_light(scene, X, Y):
     """Light (n, 3) on the table at X, Y (n,) m: every light, less what the things keep from it."""
     light = np.zeros((len(X), 3), dtype=np.float32)
     P = np.stack([X, Y, np.zeros_like(X)])
-    balls = [thing for thing in scene.objects if isinstance(thing, Ball)]
+    balls = [thing for thing in scene.objects if isinstance(thing, SceneBall)]
     sticks = [thing for thing in (*scene.objects, *scene.arm) if isinstance(thing, Stick)]
     hulls = [_corners(thing) for thing in scene.objects if isinstance(thing, Box | Board)]
     for source in scene.lights:

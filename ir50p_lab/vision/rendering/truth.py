@@ -6,7 +6,7 @@ import numpy as np
 
 from ir50p_lab.vision.pinhole import Pinhole, distort_xy
 from ir50p_lab.vision.rendering.board_print import inner_corners
-from ir50p_lab.vision.rendering.random_things import is_red
+from ir50p_lab.vision.rendering.colours import is_red
 
 _RIM = 256
 _RINGS = 24
@@ -59,7 +59,7 @@ class BoardTruth:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Truth:
+class SceneTruth:
     """Of one rendered picture: balls and boards in the order of the scene, camera, scene, seed. Always `simulated`."""
 
     balls: tuple
@@ -78,7 +78,7 @@ class Truth:
 
 
 def ball_truth(pinhole, T_cam_world, ball, seen):
-    """BallTruth of a Ball; `seen(px, py)` tells which pixels (n,) really show it."""
+    """BallTruth of a SceneBall; `seen(px, py)` tells which pixels (n,) really show it."""
     centre = T_cam_world[:3, :3] @ np.asarray(ball.position, dtype=float) + T_cam_world[:3, 3]
     known = {"position": tuple(map(float, ball.position)), "ball_radius": float(ball.radius), "colour": ball.colour}
     reach = np.hypot(*centre[:2]) + ball.radius

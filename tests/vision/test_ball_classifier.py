@@ -1,4 +1,4 @@
-"""The judge of the ball detector: its weights, what it may not depend on, and how they are trained."""
+"""The classifier of the ball detector: its weights, what it may not depend on, and how they are trained."""
 
 import dataclasses
 
@@ -7,15 +7,15 @@ import pytest
 from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 
 from ir50p_lab.vision import RED, Ball, Colour, find_balls
+from ir50p_lab.vision.ball.classifier import LAYERS, WEIGHTS, logit, score
+from ir50p_lab.vision.ball.features import RAYS, median
 from ir50p_lab.vision.ball.find import decide, least_score
 from ir50p_lab.vision.ball.fit import view_of
-from ir50p_lab.vision.ball.judge import LAYERS, WEIGHTS, logit, score
-from ir50p_lab.vision.ball.look import RAYS, median
 from ir50p_lab.vision.ball.measure import measure
 from ir50p_lab.vision.rendering.render import scene_truth
 from tests.targets.ball_examples import BALL, NEARLY, NOTHING, behind, crowded_examples, examples, painted
 from tests.targets.crowded_scene import crowded_scene
-from tests.targets.train_ball_judge import gradient, start
+from tests.targets.train_ball_classifier import gradient, start
 
 RNG = np.random.default_rng(3)
 
@@ -73,7 +73,7 @@ def test_guess_too_small_or_too_large(radius):
 
 @pytest.mark.parametrize("paint", [(0.03, 0.12, 0.5), (0.05, 0.4, 0.08), (0.7, 0.45, 0.02)])
 def test_any_colour(paint):
-    """The judge has seen red balls only: shape and shading count, not the hue."""
+    """The classifier has seen red balls only: shape and shading count, not the hue."""
     picture = photograph(add_ball(empty(), 700, (300, 200), 30, colour=paint))
     patch = picture[190:211, 290:311]
     assert find_balls(picture, patch)[0].score > 0.9

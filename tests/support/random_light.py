@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ir50p_lab.vision.rendering.render import sparse_light
+from ir50p_lab.vision.rendering.rays import rays_through
+from ir50p_lab.vision.rendering.render import RayTracer
 from ir50p_lab.vision.rendering.scene import Lamp, Lens, Sensor, Sky, Sun
 from ir50p_lab.vision.rendering.shadow import table_light
 
@@ -88,3 +89,10 @@ def random_sensor(rng, scene, position):
         saturation=rng.uniform(0.8, 1.3),
         jpeg=int(rng.integers(50, 98)) if rng.random() < 0.8 else None,
     )
+
+
+def sparse_light(scene, across=16, down=12):
+    """Light (n, 3) along a few rays spread over the picture: what an exposure meter sees."""
+    w, h = scene.pinhole.size
+    x, y = np.meshgrid((np.arange(across) + 0.5) / across * w - 0.5, (np.arange(down) + 0.5) / down * h - 0.5)
+    return RayTracer(scene).trace(rays_through(scene.pinhole, x.ravel(), y.ravel()))[0]

@@ -2,7 +2,7 @@
 
 Along each ray the samples pass a layer shared by all rays, with their neighbours, and a second one that looks further
 around; mean and maximum over the rays do not depend on how the ball is turned. With the measures they decide. The
-score is the mean of several such networks. `python -m tests.targets.train_ball_judge` makes the weights.
+score is the mean of several such networks. `python -m tests.targets.train_ball_classifier` makes the weights.
 """
 
 from functools import cache
@@ -12,9 +12,9 @@ import numpy as np
 
 from ir50p_lab.vision.ball.edge import directions
 from ir50p_lab.vision.ball.evidence import beyond
-from ir50p_lab.vision.ball.look import RADII, RAYS, median
+from ir50p_lab.vision.ball.features import RADII, RAYS, median
 
-WEIGHTS = Path(__file__).with_name("judge.npz")
+WEIGHTS = Path(__file__).with_name("classifier.npz")
 LAYERS = ("w1", "b1", "w2", "b2", "w3", "b3", "w4", "b4")
 NEAR, FAR = (-1, 0, 1), (-4, -2, 0, 2, 4)  # rays that the first and the second layer look at
 _JUST_OUTSIDE = 9  # among RADII
@@ -34,7 +34,7 @@ def rays_of(found, others=()):
 
 
 def measures(found, others=()):
-    """What is measured of a Measured, (m,) float32, for the judge; others: Balls that may touch it."""
+    """What is measured of a Measured, (m,) float32, for the classifier; others: Balls that may touch it."""
     o = found.outline
     pixels = 0.3 + 0.01 * o.r
     disc = found.samples[:, :6]

@@ -11,10 +11,10 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.vision.pinhole import Pinhole
 from ir50p_lab.vision.rendering.places import look_at
-from ir50p_lab.vision.rendering.random_light import random_lens, random_lights, random_sensor
-from ir50p_lab.vision.rendering.random_things import distractor, hider, random_red, random_table
 from ir50p_lab.vision.rendering.render import scene_truth
-from ir50p_lab.vision.rendering.scene import Ball, Scene
+from ir50p_lab.vision.rendering.scene import Scene, SceneBall
+from tests.support.random_light import random_lens, random_lights, random_sensor
+from tests.support.random_things import distractor, hider, random_red, random_table
 
 KINDS = {
     "ball": "one red ball, at least 60 % visible, with or without distractors",
@@ -51,7 +51,7 @@ def random_scene(seed, kind="ball"):
 def _draw(rng, kind):
     size = SIZES[rng.choice(len(SIZES), p=SIZE_SHARES)]
     pinhole = random_pinhole(rng, size)
-    ball = Ball(
+    ball = SceneBall(
         position=(rng.uniform(0.25, 0.55), rng.uniform(-0.25, 0.25), 0.0),
         radius=rng.uniform(0.015, 0.04),  # table tennis ball 20 mm, thesis 30 mm, tennis ball 33 mm
         colour=random_red(rng),

@@ -5,11 +5,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ir50p_lab.errors import InputError, VisionError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.ball.colour import RED, Colour
 from ir50p_lab.vision.ball.find import find_balls
-from ir50p_lab.vision.board_pose import check_picture_size, checked_transform, inverse_transform, moved
+from ir50p_lab.vision.board_pose import inverse_transform, moved
+from ir50p_lab.vision.checks import check_picture_size, rigid
 
 GREEN = Colour(hue=135.0, tolerance=35.0, name="green")  # of the marker on the hand
 MARKER_AT = (-0.042, 0.0, 0.0)  # m, tool coordinates: between the fingers, before the end of the forearm
@@ -36,7 +37,7 @@ class Seen:
         return self.position is not None
 
 
-class Sight:
+class BallLocator:
     """A camera that knows where it stands: ball and hand in the base frame of the arm.
 
     Args:
@@ -63,11 +64,9 @@ class Sight:
     ):
         self.marker_at = vectors3("marker_at", marker_at, unit="m")
         self.camera, self.plane, self.colour, self.marker = camera, plane, colour, marker
-        self.T_base_table = np.eye(4) if T_base_table is None else checked_transform("T_base_table", T_base_table)
-        for name, value in (("radius", radius), ("sigma_px", sigma_px)):
-            if not (np.isscalar(value) and np.isfinite(value) and value > 0):
-                raise InputError(f"{name} = {value!r}: give a number > 0")
-        self.radius, self.sigma_px = float(radius), float(sigma_px)
+        self.T_base_table = np.eye(4) if T_base_table is None else rigid("T_base_table", T_base_table)
+        self.radius = number("radius", radius, "> 0", unit="m")
+        self.sigma_px = number("sigma_px", sigma_px, "> 0", unit="px")
         self.T_cam_base = plane.T_cam_table @ inverse_transform(self.T_base_table)
 
     def look(self):
@@ -80,21 +79,17 @@ class Sight:
 
         Raises CalibrationError if the picture is of another size than the calibration.
         """
-        check_picture_size(self.plane.camera, image)
-        balls = find_balls(image, self.colour, camera=self._model())
+        check_picture_size(self.plane.pinhole, image)
+        balls = find_balls(image, self.colour, camera=self.plane.pinhole)
         if not balls:
             return Seen(None, None, None, image, simulated, balls.reason)
         xy = [balls[0].x, balls[0].y]
         try:
             place = self.plane.to_points(xy, self.radius)
-        except VisionError as error:
+        except (InputError, VisionError) as error:
             return Seen(None, None, balls[0], image, simulated, str(error))
         stderr = self.plane.standard_error(xy, self.radius, sigma_px=self.sigma_px)
         return Seen(moved(self.T_base_table, place), stderr, balls[0], image, simulated)
-
-    def _model(self):
-        camera = self.plane.camera
-        return camera if hasattr(camera, "undistort_points") else getattr(camera, "pinhole", None)
 
     def to_image(self, p):
         """Pixel (2,) of a point p (3,) m of the base frame."""
@@ -104,12 +99,16 @@ class Sight:
         """Where the marker is with the arm at q (3,) rad: (3,) m, base frame."""
         return moved(frames(arm, q)[3], self.marker_at)
 
+    def marker_pixel(self, arm, q):
+        """Pixel (2,) where it should then be seen."""
+        return self.to_image(self.marker_place(arm, q))
+
     def find_marker(self, image, arm, q):
         """Pixel (2,) of the marker on the hand, searched near where q (3,) rad puts it; None if it is not seen."""
         if self.marker is None:
             return None
-        expected = self.to_image(self.marker_place(arm, q))
-        for one in find_balls(image, self.marker, camera=self._model(), least_radius=4.0):
+        expected = self.marker_pixel(arm, q)
+        for one in find_balls(image, self.marker, camera=self.plane.pinhole, least_radius=4.0):
             if np.hypot(one.x - expected[0], one.y - expected[1]) < _MARKER_NEAR:
                 return np.array([one.x, one.y])
         return None
@@ -127,7 +126,7 @@ class Sight:
         q, sigma_q = vectors3("q", q), vectors3("sigma_q", sigma_q)
 
         def seen(e):
-            return self.to_image(self.marker_place(arm, q + e))
+            return self.marker_pixel(arm, q + e)
 
         e, h = np.zeros(3), 1e-5
         for _ in range(4):  # Gauss-Newton; errors of 20 mrad are almost linear

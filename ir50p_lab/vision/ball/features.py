@@ -1,4 +1,4 @@
-"""What the judge looks at: the disc and its surroundings along rays, in units for any ball, light and colour."""
+"""What the classifier looks at: the disc and its surroundings along rays, in units for any ball, light and colour."""
 
 import numpy as np
 

@@ -1,12 +1,12 @@
-"""A sight without pictures: the truth of a rendered bench, projected, with the noise of a good detection."""
+"""A ball locator without pictures: the truth of a rendered bench, projected, with the noise of a good detection."""
 
 import numpy as np
 
 from ir50p_lab.vision.board_pose import moved
-from ir50p_lab.vision.reaching.sight import Seen, Sight
+from ir50p_lab.vision.reaching.ball_locator import BallLocator, Seen
 
 
-class QuickSight(Sight):
+class QuickLocator(BallLocator):
     """Sees ball and marker of a RenderedBench with `noise` px per coordinate; no picture is drawn."""
 
     def __init__(self, world, plane, *, noise=0.15, seed=0, **options):

@@ -5,7 +5,7 @@ import colorsys
 import numpy as np
 
 from ir50p_lab.vision.rendering.places import pose
-from ir50p_lab.vision.rendering.scene import Ball, Box, Patch, Stick, Table
+from ir50p_lab.vision.rendering.scene import Box, Patch, SceneBall, Stick, Tabletop
 
 # Tables: light wood, dark wood, white laminate, grey, black, green cutting mat, blue cloth, reddish wood (the hardest)
 TABLES = (
@@ -26,14 +26,6 @@ def random_red(rng):
     Thesis 4.5.1 takes hue 340 to 360 and saturation up to 0.8: a clean red ball has more (ERRATA 4.5.1).
     """
     return rgb(rng.uniform(-10, 8), rng.uniform(0.72, 0.97), rng.uniform(0.45, 0.92))
-
-
-def is_red(colour):
-    """Whether a paint is one of `random_red`, or named red: what the detector has to find."""
-    if isinstance(colour, str):
-        return colour == "red"
-    hue, saturation, value = colorsys.rgb_to_hsv(*(c / 255 for c in colour))
-    return (hue * 360 <= 9 or hue * 360 >= 349) and saturation >= 0.7 and value >= 0.4
 
 
 def other_colour(rng):
@@ -63,7 +55,7 @@ def random_table(rng, position):
     """A table under the ball; one in five ends close behind it, so that the room is seen."""
     x, y = position[:2]
     ends = rng.uniform(0.15, 0.4, 4) if rng.random() < 0.2 else rng.uniform(0.5, 3.0, 4)
-    return Table(
+    return Tabletop(
         texture=str(rng.choice(["plain", "wood", "cloth", "speckle", "tiles"], p=[0.25, 0.3, 0.2, 0.15, 0.1])),
         colour=TABLES[rng.integers(len(TABLES))],
         contrast=rng.uniform(0.03, 0.5),
@@ -128,7 +120,7 @@ def distractor(rng, camera, ball, *, near, what=None):
         return _hand(rng, (x, y), turn, size=rng.uniform(0.8, 1.2)), []
     if what in ("ball", "red ball"):
         paint = random_red(rng) if what == "red ball" else other_colour(rng)
-        return [Ball(position=(x, y, size), radius=size, colour=paint, gloss=rng.uniform(0, 0.7))], []
+        return [SceneBall(position=(x, y, size), radius=size, colour=paint, gloss=rng.uniform(0, 0.7))], []
     raise ValueError(what)
 
 

@@ -1,9 +1,9 @@
-"""Train the judge of the ball detector: `python -m tests.targets.train_ball_judge [--scenes N] [--folder DIR]`.
+"""Train the classifier of the ball detector: `python -m tests.targets.train_ball_classifier [--scenes N] [--folder DIR]`.
 
 Scenes 100 to 6149 of the kinds 'ball' and 'no_ball' (no evaluation uses these seeds; every fifth is held out to choose
 the threshold by) and crowded ones from 110000 on are rendered, kept in the folder, and searched; what the search
 proposes in them and in changed copies trains a few small networks, which are written to
-ir50p_lab/vision/ball/judge.npz. NumPy only, single precision; the same seeds give the same weights on the same machine.
+ir50p_lab/vision/ball/classifier.npz. NumPy only, single precision; the same seeds give the same weights on the same machine.
 Rendering and searching take two seconds a scene, training ten minutes a network and 6 GB.
 
 The weights in the package come from examples collected in several steps: scenes 1200 to 3199 by an earlier order of
@@ -18,8 +18,8 @@ import time
 
 import numpy as np
 
-from ir50p_lab.vision.ball.judge import FAR, LAYERS, NEAR, WEIGHTS, around, logit
-from ir50p_lab.vision.ball.look import RAYS
+from ir50p_lab.vision.ball.classifier import FAR, LAYERS, NEAR, WEIGHTS, around, logit
+from ir50p_lab.vision.ball.features import RAYS
 from tests.targets.ball_examples import NEARLY, crowded_examples, examples
 
 FIRST = 100
@@ -27,7 +27,10 @@ CROWDED = 110_000  # first seed of crowded scenes
 WIDTHS = (56, 56, 40)  # of the layers
 NETWORKS = 4
 EPOCHS, BATCH, RATE, DECAY = 40, 96, 2.5e-3, 0.2
-EASY, SPARED = 5.0, 4  # log odds beyond which the judge before is right for sure; of these an epoch sees one in SPARED
+EASY, SPARED = (
+    5.0,
+    4,
+)  # log odds beyond which the classifier before is right for sure; of these an epoch sees one in SPARED
 NOISE, DROP = 0.25, 0.3  # added to the scaled inputs; share of the pooled features left out, in training
 FALSE_COSTS = 2.0  # a false alarm is worse than a miss
 OF_CROWDED = 2.5  # what a crowded scene counts for
@@ -102,7 +105,7 @@ def train(rays, numbers, labels, weights, easy, rng, report=print):
 
 
 def fit(rays, numbers, labels, scenes, crowded, report=print):
-    """The weights of the judge from examples (n, ...); scenes (n,): number of the scene; crowded (n,): of such a one."""
+    """The weights of the classifier from examples (n, ...); scenes (n,): number of the scene; crowded (n,): of such a one."""
     rays = rays.astype(np.float32)
     before = odds(rays, numbers) if WEIGHTS.exists() else np.zeros(len(labels))
     flat = rays.reshape(-1, rays.shape[2])
@@ -127,7 +130,7 @@ def fit(rays, numbers, labels, scenes, crowded, report=print):
 
 
 def odds(rays, numbers):
-    """Log odds (n,) of examples by the judge in the package: the mean of its networks."""
+    """Log odds (n,) of examples by the classifier in the package: the mean of its networks."""
     with np.load(WEIGHTS) as file:
         net = {name: file[name].astype(np.float32) for name in file.files}
     x = (rays - net["ray_mean"]) / net["ray_std"]
@@ -155,7 +158,7 @@ def collect(scenes, crowded, folder, report=print):
 
 def main(arguments):
     """Collect, train, write."""
-    parser = argparse.ArgumentParser(prog="python -m tests.targets.train_ball_judge", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tests.targets.train_ball_classifier", description=__doc__)
     parser.add_argument("--scenes", type=int, default=6050, help="of each kind")
     parser.add_argument("--crowded", type=int, default=800, help="of each kind")
     parser.add_argument("--folder", help="where rendered scenes are kept")

@@ -1,0 +1,54 @@
+"""Checks of arguments at the public edge of this folder; behind it, code trusts its callers."""
+
+import numpy as np
+
+from ir50p_lab.errors import CalibrationError, InputError
+from ir50p_lab.inputs import first_not_finite, numbers
+
+
+def coordinates(name, value, n, unit="px"):
+    """`value` as finite floats of shape (..., n). Raises InputError."""
+    array = numbers(name, value, unit=unit)
+    if array.ndim == 0 or array.shape[-1] != n:
+        raise InputError(f"{name} has shape {array.shape}: give shape ({n},) or (..., {n}) ({unit})")
+    if not np.isfinite(array).all():
+        raise InputError(f"{name} holds {first_not_finite(array)}: every number must be finite ({unit})")
+    return array
+
+
+def point_list(name, value, n, unit="px"):
+    """The same as a list of points (m, n); one point (n,) counts as a list, and (m, 1, n) as OpenCV has them."""
+    array = coordinates(name, value, n, unit)
+    if array.ndim > 2 and array.shape[1:] != (1, n):
+        raise InputError(f"{name} has shape {array.shape}: give (n, {n}) ({unit})")
+    return np.ascontiguousarray(array.reshape(-1, n))
+
+
+def rigid(name, T):
+    """`T` as a (4, 4) float array. Raises InputError unless it is a rotation and a translation."""
+    T = numbers(name, T, unit="m and a rotation")
+    good = T.shape == (4, 4) and np.isfinite(T).all() and np.array_equal(T[3], [0, 0, 0, 1])
+    if not good or np.abs(T[:3, :3] @ T[:3, :3].T - np.eye(3)).max() > 1e-6 or np.linalg.det(T[:3, :3]) < 0:
+        raise InputError(
+            f"{name} is no rigid transform: give (4, 4) with a rotation, a translation in m and 0 0 0 1 below (for "
+            "points in rows, as MATLAB has them, give the transpose)"
+        )
+    return T
+
+
+def picture_size(size):
+    """(width, height) as whole numbers of pixels. Raises InputError."""
+    array = numbers("size", size, unit="px")
+    if array.shape != (2,) or (array < 1).any() or (array != np.round(array)).any():
+        raise InputError(f"size = {size!r}: give (width, height) of the picture as whole pixels, at least 1")
+    return int(array[0]), int(array[1])
+
+
+def check_picture_size(camera, image):
+    """Raise CalibrationError if a picture (h, w, 3) or (h, w) is of another size than its Calibration or Pinhole."""
+    size, here = tuple(camera.size), (image.shape[1], image.shape[0])
+    if size != here:
+        raise CalibrationError(
+            f"the picture has {here[0]}x{here[1]} pixels, its calibration is of {size[0]}x{size[1]}: set the camera to "
+            "that size, or calibrate it at this one"
+        )
