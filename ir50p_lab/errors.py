@@ -49,6 +49,10 @@ class NotMeasuredError(BenchError):
     """A real arm needs what nobody has measured on it: calibration, model or camera."""
 
 
+class RunawayError(BenchError):
+    """A joint does not do what its motor makes it do: wires swapped, a potentiometer loose or torn, or blocked."""
+
+
 class RecordingError(LabError, ValueError):
     """A recording that cannot be written on, or a file that is none (the message names the line)."""
 

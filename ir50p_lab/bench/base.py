@@ -8,6 +8,7 @@ import numpy as np
 
 from ir50p_lab.bench.recorder import Recorder
 from ir50p_lab.bench.rest import rest_pose, way_to_rest
+from ir50p_lab.bench.runaway import RunawayGuard
 from ir50p_lab.errors import BenchError, InputError
 from ir50p_lab.inputs import check_arm, check_controller, check_reference
 
@@ -54,6 +55,7 @@ class Bench(abc.ABC):
     kind = "bench"
     simulated = False
     bench_id = None
+    guarded = True  # whether a runaway is cut; off only while the motors have no supply
     own_process = False  # whether a loop in the background gets a process of its own
 
     def __init__(self, arm, calibration, *, period=0.01, record_to=None, name=None):
@@ -109,9 +111,12 @@ class Bench(abc.ABC):
         """What looks at every exchange of the run that begins, or None.
 
         Its check(sample, pwm) gets each Sample before the program does, and the command (3,) PWM counts that the motors
-        had since the sample before. What it raises cuts the drive and ends the run.
+        had since the sample before. What it raises cuts the drive and ends the run. An arm without actuators has none:
+        nobody knows what its motors can do.
         """
-        return None
+        if not self.guarded or self.arm.actuators is None:
+            return None
+        return RunawayGuard(self.arm, self.calibration, self.period)
 
     def _arguments(self):
         """Keyword arguments that make the same bench in another process; needed if `own_process`."""

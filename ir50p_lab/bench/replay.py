@@ -87,6 +87,9 @@ class ReplayBench(Bench):
     def _close(self):
         pass
 
+    def _make_guard(self):
+        return None  # the arm moved by another command
+
     def _header(self):
         return {f"original_{key}": value for key, value in self.original.header.items() if key in _TOLD} | {
             "original": str(self.original.path or "in memory")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Sample, header_of
+from ir50p_lab.bench.runaway import watch_step
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, convert, read_pots
 from ir50p_lab.bench.unit import UNIT
 from ir50p_lab.controllers.base import Controller
@@ -22,10 +23,13 @@ _SINK = 3.0  # s without drive after which an arm that was let go lies still
 
 
 @jit()
-def _compiled_cycles(theta, n, w, x, joint, slope, zero, low, high, queue, pwm, kind, p, s, t, r, noise, steps, out):
+def _compiled_cycles(
+    theta, n, w, x, joint, slope, zero, low, high, queue, pwm, kind, p, s, watch, t, r, noise, steps, out
+):
     """The loop of `run`, `step` and `drive`, many cycles at once; out (cycles, 15): counts, q, u, truth q and qd.
 
-    Returns the number of cycles done; fewer than asked for if the command of the last was not finite.
+    Returns the number of cycles done, and the alarm of `watch_step`; fewer than asked for with an alarm, or if the
+    command of the last was not finite.
     """
     counts, q, command = np.empty(3), np.empty(3), np.empty(3)
     delay = queue.shape[0]
@@ -44,18 +48,21 @@ def _compiled_cycles(theta, n, w, x, joint, slope, zero, low, high, queue, pwm, 
         convert(counts)
         for i in range(3):
             q[i] = (counts[i] - zero[i]) / slope[i]
+        alarm = watch_step(watch, t[k], q, pwm)
+        if alarm > 0:
+            return k, alarm
         control_step(kind, p, s, t[k], q, r[k], command)
         for i in range(3):
             out[k, i], out[k, 3 + i] = counts[i], q[i]
             out[k, 9 + i], out[k, 12 + i] = joint[i], x[3 + i]
         if not np.isfinite(command[0] + command[1] + command[2]):
-            return k
+            return k, 0
         for i in range(3):
             u = min(max(np.rint(command[i]), -LIMIT_PWM), LIMIT_PWM)
             if (q[i] <= low[i] and u < 0.0) or (q[i] >= high[i] and u > 0.0):
                 u = 0.0
             pwm[i] = out[k, 6 + i] = u
-    return t.size
+    return t.size, 0
 
 
 @dataclass(frozen=True)
@@ -182,8 +189,9 @@ class SimulatedBench(Bench):
         self._pwm = np.zeros(JOINTS)
         try:
             self._begin()
+            guard = self._make_guard()
             for first in range(0, cycles, _BLOCK):
-                self._block(controller, reference, np.arange(first, min(first + _BLOCK, cycles)), recorder)
+                self._block(controller, reference, np.arange(first, min(first + _BLOCK, cycles)), recorder, guard)
         except BaseException:
             self.cut()
             raise
@@ -191,7 +199,7 @@ class SimulatedBench(Bench):
             self._end_run()
         return self.recording if record else None
 
-    def _block(self, controller, reference, k, recorder):
+    def _block(self, controller, reference, k, recorder, guard):
         t = k * self.period
         if hasattr(reference, "sample"):
             r = np.ascontiguousarray(reference.sample(t))
@@ -203,11 +211,13 @@ class SimulatedBench(Bench):
         law = (controller.kind, controller.parameters, controller.state)
         arrays = (plant._theta, plant._numbers, plant._w, plant._x, plant._joint)
         noise = plant._next_noise(len(t))
-        done = _compiled_cycles(*arrays, *fixed, self._queue, self._pwm, *law, t, r, noise, self._steps, out)
+        state = (self._queue, self._pwm, *law, guard.watch)
+        done, alarm = _compiled_cycles(*arrays, *fixed, *state, t, r, noise, self._steps, out)
         rows = out[:done]
         if recorder is not None and done:
             recorder.write_block(t[:done], rows[:, 3:6], rows[:, :3], rows[:, 6:9], r[:done, 0], self._gripper, 0)
         self._truth.append((t[:done], rows[:, 9:12], rows[:, 12:15]))
+        guard.judge(alarm, t[min(done, len(t) - 1)])
         if done < len(t):
             raise InputError(
                 f"the command of the controller at t = {t[done]:.6g} s is not finite; the drive has been cut. Check "

@@ -1,4 +1,4 @@
-"""The command line: lab (the default), test, targets, setup, doctor."""
+"""The command line: lab (the default), test, targets, setup, doctor, bench-test."""
 
 import os
 import signal
@@ -21,6 +21,7 @@ The IR50P lab book. In the project's folder (on Windows write py instead of pyth
                                       (--quick: no notebooks; --everywhere: as on other processors, other arms)
   python3 -m ir50p_lab targets [...]  measure what the project set out to reach, as tables beside the thesis
   python3 -m ir50p_lab setup          only set up (--rebuild: from nothing; --tests: with the test tools)
+  python3 -m ir50p_lab bench-test     first power-on of the arm, joint by joint (rehearse: bench-test simulated)
   python3 -m ir50p_lab doctor         what is installed, what is missing, serial ports, verdict
 
   --here         use the Python that runs this instead of .venv (Binder, JupyterHub); installs nothing
@@ -32,7 +33,7 @@ Further arguments go to JupyterLab, to pytest (paths count from the project's fo
   py -m ir50p_lab test -k pose
   py -m ir50p_lab targets vision --quick    (or identification, computed_torque; without a name all of them)
 """
-COMMANDS = ("lab", "test", "targets", "setup", "doctor")
+COMMANDS = ("lab", "test", "targets", "setup", "doctor", "bench-test")
 
 
 def main(arguments, root=ROOT):
@@ -86,6 +87,8 @@ def _run(arguments, root):
             variables["IR50P_HOME"] = home
             module = "tests" if command == "test" else "tests.targets"
             return _attend([python, "-m", module, *arguments], variables, environment.root)
+    if command == "bench-test":
+        return _attend([python, "-m", "ir50p_lab.bench.bench_test", *arguments], variables, environment.root)
     code = _attend([python, *_lab_command(environment.root, arguments)], variables)
     return 0 if code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
 

@@ -54,7 +54,7 @@ def test_the_limits_are_those_of_the_wire():
     assert f"| {WATCHDOG_MS} ms |" in PAGE
 
 
-def test_its_cells_run_on_the_emulated_board(monkeypatch, tmp_path, capsys):
+def test_its_cells_run_on_the_emulated_board(monkeypatch, tmp_path):
     """In order, as a student would; the arm behind the board is the simulated one."""
     matplotlib.use("Agg")
     boards = []
@@ -65,13 +65,11 @@ def test_its_cells_run_on_the_emulated_board(monkeypatch, tmp_path, capsys):
         return SerialBench(board, arm=IR50P, clock=board, record_to=tmp_path).open()
 
     monkeypatch.setattr(bench, "connect", connect, raising=False)
-    assert len(CELLS) == 3
+    assert len(CELLS) == 2
     names = {}
     for cell in CELLS:
-        shorter = cell.replace("seconds=30", "seconds=1").replace("seconds=5", "seconds=3")
-        exec(shorter.replace("push(1, 60)", "push(1, 120)"), names)
-    moved = float(re.search(r"moved it by (\S+) counts", capsys.readouterr().out)[1])
-    assert moved > 1
+        exec(cell.replace("seconds=5", "seconds=2"), names)
+        assert any(changes.pwm[0] > 0 for _, changes in boards[-1].changes)
     turned = names["bench"].recording.q[-1] - names["bench"].recording.q[0]
     assert 0.05 < turned[0] < 0.3
     assert not any(boards[-1].pins().pwm)

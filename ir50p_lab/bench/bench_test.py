@@ -1,0 +1,290 @@
+"""`python3 -m ir50p_lab bench-test`: the first power-on, joint by joint, with small drives; writes what it found.
+
+Steps: noise at rest; each potentiometer turned by hand from end to end; each joint pushed by a drive that rises until
+it moves, first away from the nearer end, then back; the board's watchdog. A joint whose potentiometer is not right is
+not driven. The person at the bench is asked before each step; behind the simulated arm stands a simulated person.
+"""
+
+import argparse
+import contextlib
+import datetime
+import json
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
+
+from ir50p_lab.bench.rest import rest_pose
+from ir50p_lab.errors import BenchError, InputError
+from ir50p_lab.home import home, replace_text
+
+STEP_PWM, STEP_CYCLES = 3, 5  # the drive rises by 3 counts every five samples
+HIGHEST_PWM = 150
+MOVED = 8.0  # counts a joint must move to have moved: 40 to 65 mrad
+STEADY = 3.0  # counts rms at rest
+JUMP = 40.0  # counts from one sample to the next: no hand turns so fast, only a gap in the track does
+ENDS = (20.0, 1003.0)  # counts; nearer to the ends of the scale the board's limits are near
+TRAVEL = 100.0  # counts that a joint turned from end to end must change at least
+SILENCE = 0.3  # s without a command; the board cuts after 0.1 s, the run goes on until 0.5 s
+UP = ("counter-clockwise seen from above", "up", "up")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What a step found. joint: 1 to 3, 0: all; passed: bool; text: a sentence; values: numbers by name."""
+
+    step: str
+    joint: int
+    passed: bool
+    text: str
+    values: dict = field(default_factory=dict)
+
+
+class Person:
+    """Whoever stands at the bench: is told what to do next, and presses Enter. turn: s to turn a joint by hand."""
+
+    turn = 20.0
+
+    def ask(self, text):
+        """Wait until the person has done what `text` says."""
+        input(f"{text}. Then press Enter. ")
+
+    def at(self, joint, share):
+        """Nothing: a person turns the joint; called at each sample with the share 0..1 of the time that is over."""
+
+    def lay_down(self):
+        """Wait until the arm lies where it stays without drive."""
+        self.ask("Lay the arm down so that it stays by itself, something soft under it")
+
+
+class SimulatedPerson(Person):
+    """Turns the joints of a SimulatedArm, and lays it down."""
+
+    turn = 2.0
+
+    def __init__(self, plant):
+        self._plant, self._rest = plant, rest_pose(plant.arm)
+
+    def ask(self, text):
+        """Say what a person would be asked."""
+        print(f"{text}: done by the simulated person")
+
+    def at(self, joint, share):
+        """Turn `joint` (0 to 2) to its upper end, its lower end, and back; the table stops the hand, too."""
+        q, arm = self._rest.copy(), self._plant.arm
+        low, high = np.clip(arm.q_min[joint], -np.pi, np.pi), np.clip(arm.q_max[joint], -np.pi, np.pi)
+        q[joint] = np.interp(share, [0, 0.25, 0.75, 1], [q[joint], high, low, q[joint]])
+        with contextlib.suppress(InputError):
+            self._plant.place(q)
+
+    def lay_down(self):
+        """Put the arm into its rest pose."""
+        self._plant.place(self._rest)
+
+
+def bench_test(bench, person, *, joints=(1, 2, 3), say=print):
+    """Test these joints of an open bench; its drive is cut at the end. Returns the Findings, in order.
+
+    A step that ends in a BenchError (a broken wire, a runaway, a lost board) is a Finding that says so.
+    """
+    findings = []
+
+    def found(finding):
+        findings.append(finding)
+        say(f"{'ok    ' if finding.passed else 'WRONG '} {finding.step}: {finding.text}")
+        return finding.passed
+
+    try:
+        person.ask("Motor supply off")
+        person.lay_down()
+        found(_guarded("noise", 0, _noise, bench))
+        sound = {}
+        for joint in joints:
+            person.ask(
+                f"During the next {person.turn:.0f} s turn joint {joint} by hand: {UP[joint - 1]} to its end, slowly "
+                "to the other end, and back. Nothing else may move"
+            )
+            sound[joint] = found(_guarded("potentiometer", joint, _potentiometer, bench, person, joint - 1))
+        person.lay_down()
+        person.ask("Motor supply on, limit at 1 A, a hand on the emergency stop")
+        for joint in joints:
+            if not sound[joint]:
+                found(Finding("drive", joint, False, f"joint {joint} was not driven: its potentiometer first"))
+                continue
+            found(_guarded("drive", joint, _drive, bench, joint - 1))
+        driven = {finding.joint: finding for finding in findings if finding.step == "drive" and finding.passed}
+        if 1 in driven:
+            found(_guarded("watchdog", 1, _watchdog, bench, driven[1].values))
+    finally:
+        bench.cut()
+    return findings
+
+
+def _guarded(step, joint, action, *arguments):
+    try:
+        return action(*arguments)
+    except BenchError as error:
+        return Finding(step, joint, False, str(error))
+
+
+def _rest(bench, seconds=1.0):
+    """Counts (n, 3) of a run without drive."""
+    counts = [sample.counts for sample in bench.run(seconds, record=False)]
+    return np.array(counts, dtype=float)
+
+
+def _noise(bench):
+    counts = _rest(bench)
+    rms = counts.std(axis=0)
+    worst = int(rms.argmax())
+    text = f"{rms.round(2).tolist()} counts rms at rest"
+    if rms[worst] > STEADY:
+        text += f"; joint {worst + 1} is not steady: look at the grounds and the 100 nF, and that nothing moves"
+    values = {"noise_counts": rms.round(3).tolist(), "counts_at_rest": counts.mean(axis=0).round(2).tolist()}
+    return Finding("noise", 0, bool(rms[worst] <= STEADY), text, values)
+
+
+def _potentiometer(bench, person, joint):
+    counts = []
+    bench.guarded = False  # a hand may turn a joint faster than its motor
+    try:
+        for sample in bench.run(person.turn, record=False):
+            counts.append(sample.counts)
+            person.at(joint, sample.t / person.turn)
+    finally:
+        bench.guarded = True
+    counts = np.array(counts, dtype=float)
+    own, span = counts[:, joint], np.ptp(counts, axis=0)
+    low, high, name = own.min(), own.max(), f"joint {joint + 1}"
+    other = int(span.argmax())
+    wrong = None
+    if span[other] < TRAVEL:
+        wrong = (
+            f"no number changed by {TRAVEL:.0f} counts: is the potentiometer coupled to {name}, and does it have 5 V?"
+        )
+    elif other != joint:
+        wrong = f"{name} moved the number of joint {other + 1}: swap the wires at A{joint} and A{other}"
+    elif np.abs(np.diff(own)).max() > JUMP:
+        wrong = f"the number of {name} jumped: a gap of the track is within the travel; turn its potentiometer's shaft"
+    elif low < ENDS[0] or high > ENDS[1]:
+        wrong = f"{name} reads {low:.0f} to {high:.0f}, 20 to 1003 are free: turn its potentiometer's shaft"
+    elif own.argmax() > own.argmin():
+        wrong = f"the number of {name} falls when it moves {UP[joint]}: swap the two ends of its potentiometer"
+    text = wrong or f"{name} reads {low:.0f} to {high:.0f} counts, rising when it moves {UP[joint]}"
+    return Finding("potentiometer", joint + 1, wrong is None, text, {"low_counts": low, "high_counts": high})
+
+
+def _drive(bench, joint):
+    """Push the joint away from its nearer end, then back."""
+    first = 1 if _rest(bench)[-10:, joint].mean() < 512 else -1
+    values = {}
+    for sign in (first, -first):
+        pwm, moved = _push(bench, joint, sign)
+        other = int(np.abs(moved).argmax())
+        if pwm is None:
+            if sign == first:
+                text = (
+                    f"joint {joint + 1} did not move up to {HIGHEST_PWM} PWM counts: is the supply at its current "
+                    "limit, is ENABLE at 5 V, is the fuse whole?"
+                )
+                return Finding("drive", joint + 1, False, text, values)
+            continue
+        if sign == first and other != joint:
+            text = f"the drive of joint {joint + 1} moved joint {other + 1}: their two bridges are swapped"
+            return Finding("drive", joint + 1, False, text, values)
+        if sign == first and moved[joint] * sign < 0:
+            text = f"PWM {pwm:+d} moved joint {joint + 1} by {moved[joint]:+.0f} counts: swap its two motor wires"
+            return Finding("drive", joint + 1, False, text, values)
+        values["breakaway_up_pwm" if sign > 0 else "breakaway_down_pwm"] = pwm
+    shown = " and ".join(f"{pwm:+d}" for pwm in values.values())
+    return Finding(
+        "drive", joint + 1, True, f"joint {joint + 1} breaks away at {shown} PWM counts, as commanded", values
+    )
+
+
+def _push(bench, joint, sign):
+    """Raise the drive of a joint until something moves. Returns PWM counts (None: nothing did), change (3,) counts."""
+    before = _rest(bench, 0.6)[-10:].mean(axis=0)
+    recent, pwm = [], 0
+    steps = HIGHEST_PWM // STEP_PWM
+    for k, sample in enumerate(bench.run((steps + 1) * STEP_CYCLES * bench.period, record=False)):
+        recent = [*recent[-4:], sample.counts]
+        moved = np.mean(recent, axis=0) - before
+        if np.abs(moved).max() > MOVED:
+            break
+        pwm = min(k // STEP_CYCLES + 1, steps) * STEP_PWM * sign
+        bench.drive([pwm if j == joint else 0 for j in range(3)])
+    else:
+        pwm = None
+    bench.cut()
+    return pwm, moved
+
+
+def _watchdog(bench, values):
+    """Keep joint 1 moving, then say nothing: the board must brake by itself."""
+    if bench.simulated:
+        return Finding("watchdog", 1, True, "the simulated arm has no board, and no watchdog to test")
+    sign = -1 if "breakaway_up_pwm" not in values else 1
+    pwm = sign * (20 + abs(values.get("breakaway_up_pwm", values.get("breakaway_down_pwm"))))
+    trips, places = bench.statistics.watchdog_trips, []
+    for sample in bench.run(1.2, record=False):
+        places.append((sample.t, sample.counts[0]))
+        if sample.t < 0.5:
+            bench.drive([pwm, 0, 0])
+        elif len(places) > 2 and places[-2][0] < 0.5:
+            bench._clock.sleep(SILENCE)
+            bench.cut()  # else the next frame repeats the command
+    tripped = bench.statistics.watchdog_trips - trips
+    after = [counts for t, counts in places if t > 0.5 + SILENCE]
+    still = np.ptp(after) < MOVED
+    text = f"after {SILENCE:g} s without a command the board had cut the drive {tripped} times"
+    text += ", and joint 1 stood" if still else ", but joint 1 went on: switch off, and load the sketch again"
+    return Finding("watchdog", 1, bool(tripped == 1 and still), text)
+
+
+def write_report(bench, findings):
+    """Write what was found into the student's folder results/; returns its path."""
+    date = datetime.datetime.now().astimezone()
+    report = {
+        "what": "bench-test",
+        "bench": bench.name,
+        "bench_id": bench.bench_id,
+        "date": date.isoformat(timespec="seconds"),
+        "simulated": bench.simulated,
+        "firmware": getattr(bench, "firmware", None),
+        "passed": all(finding.passed for finding in findings),
+        "findings": [asdict(finding) for finding in findings],
+    }
+    path = home() / "results" / f"bench-test-{bench.bench_id}-{date:%Y%m%d-%H%M%S}.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    replace_text(path, json.dumps(report, indent=1, ensure_ascii=False) + "\n")
+    return path
+
+
+def main(arguments=None):
+    """The command. Returns 0 if everything was right, else 1."""
+    from ir50p_lab.bench.connect import connect
+
+    parser = argparse.ArgumentParser(prog="python3 -m ir50p_lab bench-test", description=__doc__.splitlines()[0])
+    parser.add_argument("port", nargs="?", help="port of the board, or 'simulated' (default: look for a board)")
+    parser.add_argument("--joint", type=int, choices=(1, 2, 3), help="test this joint alone")
+    options = parser.parse_args(arguments)
+    joints = (options.joint,) if options.joint else (1, 2, 3)
+    bench = connect(options.port, record_to=False)
+    try:
+        if bench.kind == "replay":
+            raise InputError("a recording has no motors to test: give the port of a board, or 'simulated'")
+        if not bench.simulated:
+            print(f"Firmware {bench.firmware}, bench {bench.give_id()}")
+        person = SimulatedPerson(bench.plant) if bench.simulated else Person()
+        findings = bench_test(bench, person, joints=joints)
+        path = write_report(bench, findings)
+    finally:
+        bench.abort()
+    wrong = sum(not finding.passed for finding in findings)
+    verdict = f"{wrong} steps failed: begin with the first" if wrong else "Everything is right"
+    print(f"{verdict}. Written to {path}")
+    return min(wrong, 1)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
