@@ -253,7 +253,7 @@ def replay_figure(recording, replayed, joint=0):
     return figure
 
 
-def calibrate_by_hand(arm, *, points=21, seed=0):
+def calibrate_by_hand(arm, *, points=61, seed=0):
     """The calibration experiment on a simulated arm: a hand moves it through its travel, a protractor gives the angle.
 
     The protractor is read to half a degree, the counts are means of 16; the table is taken away, so that the whole
