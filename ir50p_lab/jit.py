@@ -1,46 +1,49 @@
 """`jit`: numba's njit with a cache on disk that notices when any compiled file of the package changed.
 
 numba checks only the file of the function itself: machine code that has inlined a function of another, since changed
-file would be used on, silently. Here all cached code is dropped when any of the files changed.
+file would be used on, silently. Here the folder of the cache is named by a hash of all compiled files.
 """
 
-import contextlib
 import functools
-import gc
+import hashlib
+import os
 from pathlib import Path
 
-_collects = gc.isenabled()
-gc.disable()  # what an import builds stays: looking through it for garbage is a tenth of its time
-try:
-    import numba
-    from numba.core import event
-    from numba.core.registry import cpu_target
-
-    cpu_target.target_context.refresh()  # what numba loads at the first call
-finally:
-    gc.freeze()  # nor is it looked through later
-    if _collects:
-        gc.enable()
+import numba
+from numba.core import event
 
 _PACKAGE = Path(__file__).parent
-_STAMP = _PACKAGE / "__pycache__" / "compiled_from.txt"
 
 
-def _drop_stale_code():
-    sources = sorted(path for path in _PACKAGE.rglob("*.py") if b"@jit(" in path.read_bytes())
-    state = "\n".join(f"{p.relative_to(_PACKAGE)} {p.stat().st_mtime_ns} {p.stat().st_size}" for p in sources)
-    with contextlib.suppress(OSError):  # a read-only installation: numba then keeps its cache elsewhere
-        if not _STAMP.exists() or _STAMP.read_text() != state:
-            for path in _PACKAGE.rglob("__pycache__/*.nb[ic]"):
-                path.unlink(missing_ok=True)
-            _STAMP.parent.mkdir(exist_ok=True)
-            _STAMP.write_text(state)
+@functools.cache
+def cache_folder():
+    """Where the machine code of these sources lies: in the package, or in the user's cache if that is read-only.
+
+    $NUMBA_CACHE_DIR goes before both.
+    """
+    sources = {str(p.relative_to(_PACKAGE)): p.read_bytes() for p in sorted(_PACKAGE.rglob("*.py"))}
+    compiled = {name: text for name, text in sources.items() if b"@jit(" in text}
+    name = f"ir50p_lab-{hashlib.sha1(repr(compiled).encode()).hexdigest()[:16]}"
+    own = _PACKAGE / "__pycache__"
+    writable = os.access(own if own.exists() else _PACKAGE, os.W_OK)
+    base = own if writable else Path.home() / ".cache"
+    return Path(numba.config.CACHE_DIR or base, name)
 
 
-_drop_stale_code()
+def jit(**options):
+    """Decorator: numba's njit, compiled at the first call and kept on disk. options: of njit.
 
-# division by zero gives inf or NaN as in NumPy: the caller checks results once, not every operation
-jit = functools.partial(numba.njit, cache=True, error_model="numpy")
+    Division by zero gives inf or NaN as in NumPy: the caller checks results once, not every operation.
+    """
+
+    def decorate(function):
+        before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())
+        try:
+            return numba.njit(cache=True, error_model="numpy", **options)(function)
+        finally:
+            numba.config.CACHE_DIR = before
+
+    return decorate
 
 
 class _Once(event.Listener):

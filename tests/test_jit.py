@@ -1,7 +1,11 @@
-"""What is compiled while somebody waits says so."""
+"""Compiled code: what is compiled while somebody waits says so; code of other sources is never used."""
+
+import subprocess
+import sys
 
 import numba
 
+from ir50p_lab import jit
 from ir50p_lab.jit import says_that_it_compiles
 from ir50p_lab.vision import find_balls
 
@@ -16,3 +20,26 @@ def test_the_first_call_says_that_it_compiles_and_no_other(capsys):
     assert seek(1) == 2 and capsys.readouterr().out.count("seek is compiled, once") == 1
     assert seek(2) == 4 and capsys.readouterr().out == ""
     assert find_balls.__wrapped__  # it wears this
+
+
+def test_another_compiled_source_another_folder(tmp_path, monkeypatch):
+    monkeypatch.setattr(jit, "_PACKAGE", tmp_path)
+    (tmp_path / "plain.py").write_text("x = 1")
+    (tmp_path / "law.py").write_text("@jit()\ndef f(x): ...")
+    seen = set()
+    for name, text in (("plain.py", "x = 2"), ("law.py", "@jit()\ndef f(y): ..."), ("new.py", "@jit()\ndef g(): ...")):
+        jit.cache_folder.cache_clear()
+        seen.add(jit.cache_folder())
+        (tmp_path / name).write_text(text)
+    jit.cache_folder.cache_clear()
+    seen.add(jit.cache_folder())
+    jit.cache_folder.cache_clear()
+    assert len(seen) == 3  # the plain file does not count
+
+
+def test_importing_it_leaves_garbage_collector_and_numba_alone():
+    look = (
+        "import gc, numba; state = lambda: (gc.isenabled(), gc.get_freeze_count(), numba.config.CACHE_DIR); b = state()"
+    )
+    code = f"{look}\nimport ir50p_lab.modelling.dynamics\nassert state() == b, (b, state())"
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 
@@ -33,8 +34,6 @@ class Controller:
         Args: t: s; measured: q (3,) rad; reference: (q, qd, qdd), three vectors (3,) or an array (3, 3).
         Returns: u (3,), in `unit`, after limits. Raises InputError if a number is not finite.
         """
-        from ir50p_lab.controllers.dispatch import control_step
-
         u = np.empty(3)
         control_step(self.kind, self.parameters, self.state, float(t), _plain(measured), _plain_rows(reference), u)
         if not math.isfinite(u[0] + u[1] + u[2]):

@@ -2,7 +2,7 @@
 
 from ir50p_lab.controllers.adaptive_law import adaptive_step
 from ir50p_lab.controllers.model_law import model_step
-from ir50p_lab.controllers.pid import pid_step
+from ir50p_lab.controllers.pid_law import pid_step
 from ir50p_lab.jit import jit
 
 NONE, PID_KIND, MODEL_KIND, ADAPTIVE_KIND = 0, 1, 2, 3

@@ -16,7 +16,7 @@ _SLOWEST = 1000.0  # times as slow: as good as standing
 
 
 @dataclass(frozen=True)
-class SaturationForecast:
+class Saturation:
     """What a motion asks of the drives, if it were followed exactly.
 
     t (n,) s; u (n, 3) command needed; limit (3,), both in `unit`; use (3,): the largest share of the limit that each
@@ -42,7 +42,7 @@ class SaturationForecast:
         return f"saturates from t = {self.first:.2f} s: joints 1 to 3 need {shares} of the limit; {slower}"
 
 
-def saturation_forecast(model, reference, seconds=None, *, limit=None, margin=0.0, period=0.01, g=None):
+def check_saturation(model, reference, seconds=None, *, limit=None, margin=0.0, period=0.01, g=None):
     """Predict from the motors' limits whether a motion can be followed    (4.4.2: 'the motors velocities are limited').
 
     The command needed is inverse dynamics along the reference; with back-EMF in the viscous terms of a model in PWM
@@ -54,7 +54,7 @@ def saturation_forecast(model, reference, seconds=None, *, limit=None, margin=0.
         limit: (3,) or one number, unit of the model; needed for a theta or a model in N m.
         margin: share of the limit kept for feedback, 0 to below 1. period: s between samples. g: of a theta, m/s^2.
 
-    Returns: SaturationForecast. Raises InputError on bad arguments; ArmError for an Arm without actuators.
+    Returns: Saturation. Raises InputError on bad arguments; ArmError for an Arm without actuators.
     """
     if isinstance(model, Arm) and limit is None:
         theta, gravity, unit = model_in_unit(model, LIMIT_PWM, g=g)
@@ -79,7 +79,7 @@ def saturation_forecast(model, reference, seconds=None, *, limit=None, margin=0.
 
     u = needed(1.0)
     beyond = (np.abs(u) > (1 - margin) * limit).any(axis=1)
-    return SaturationForecast(
+    return Saturation(
         t=t,
         u=u,
         limit=limit,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.bench import SimulatedBench
-from ir50p_lab.controllers import ComputedTorque, saturation_forecast
+from ir50p_lab.controllers import ComputedTorque, check_saturation
 from ir50p_lab.errors import ArmError, InputError
 from ir50p_lab.modelling import IR50P, THESIS_C, THESIS_RODS, gravity, inverse_dynamics
 from ir50p_lab.signals import hold, quintic, sinusoid
@@ -14,7 +14,7 @@ START, END = (0.0, 0.9, -1.2), (1.2, 0.2, -0.4)
 
 def test_it_is_inverse_dynamics_along_the_motion():
     motion = quintic(START, END, duration=3)
-    forecast = saturation_forecast(IR50P, motion)
+    forecast = check_saturation(IR50P, motion)
     rows = motion.sample(forecast.t)
     np.testing.assert_allclose(forecast.u, inverse_dynamics(IR50P.theta_pwm, *rows.transpose(1, 0, 2)), rtol=1e-12)
     np.testing.assert_allclose(forecast.use, np.abs(forecast.u).max(axis=0) / 255)
@@ -23,10 +23,10 @@ def test_it_is_inverse_dynamics_along_the_motion():
 
 def test_stretch_is_the_border():
     for duration in (0.5, 2.0, 20.0):
-        stretch = saturation_forecast(IR50P, quintic(START, END, duration=duration)).stretch
-        assert (stretch > 1) == saturation_forecast(IR50P, quintic(START, END, duration=duration)).saturates
-        fits = saturation_forecast(IR50P, quintic(START, END, duration=duration * stretch * 1.01))
-        fails = saturation_forecast(IR50P, quintic(START, END, duration=duration * stretch * 0.98))
+        stretch = check_saturation(IR50P, quintic(START, END, duration=duration)).stretch
+        assert (stretch > 1) == check_saturation(IR50P, quintic(START, END, duration=duration)).saturates
+        fits = check_saturation(IR50P, quintic(START, END, duration=duration * stretch * 1.01))
+        fails = check_saturation(IR50P, quintic(START, END, duration=duration * stretch * 0.98))
         assert not fits.saturates and fails.saturates and fits.first is None and "saturates" in str(fails)
 
 
@@ -40,39 +40,39 @@ def test_the_bench_follows_what_fits_and_not_what_does_not():
             bench.follow(law, motion, duration)
             return np.abs(bench.truth.q - motion.sample(bench.truth.t)[:, 0]).max(axis=0)
 
-    limit = saturation_forecast(IR50P, quintic(START, END, duration=1.0)).stretch  # s
+    limit = check_saturation(IR50P, quintic(START, END, duration=1.0)).stretch  # s
     assert worst(2.0 * limit).max() < 0.12
     assert worst(0.5 * limit).max() > 0.25
 
 
 def test_a_load_too_heavy_to_hold_never_fits():
     heavy = 3 * IR50P.theta_pwm
-    forecast = saturation_forecast(heavy, hold((0, 0, 0)), 1.0, limit=255)
+    forecast = check_saturation(heavy, hold((0, 0, 0)), 1.0, limit=255)
     assert forecast.stretch == np.inf and forecast.saturates and forecast.first == 0.0
     assert np.abs(3 * gravity(IR50P.theta_pwm, np.zeros(3))).max() > 255 and "not even slowly" in str(forecast)
 
 
 def test_margin_and_limits():
     motion = sinusoid((0.8, 0.6, 0.6), (1, 1.5, 2))
-    free = saturation_forecast(THESIS_C, motion, 10, limit=(50, 50, 50))
-    tight = saturation_forecast(THESIS_C, motion, 10, limit=50, margin=0.4)
+    free = check_saturation(THESIS_C, motion, 10, limit=(50, 50, 50))
+    tight = check_saturation(THESIS_C, motion, 10, limit=50, margin=0.4)
     assert tight.stretch > free.stretch and free.unit == "N m"
 
 
 @pytest.mark.parametrize(
     "make, error, words",
     [
-        (lambda m: saturation_forecast(THESIS_C, m), InputError, ["limit = None"]),
-        (lambda m: saturation_forecast(THESIS_RODS, m), ArmError, ["actuators"]),
-        (lambda m: saturation_forecast(IR50P, m, limit=-1), InputError, ["limit", "-1"]),
-        (lambda m: saturation_forecast(IR50P, m, margin=1.0), InputError, ["margin = 1.0"]),
-        (lambda m: saturation_forecast(IR50P, m, margin=np.nan), InputError, ["margin"]),
-        (lambda m: saturation_forecast(IR50P, m, 0), InputError, ["seconds = 0"]),
-        (lambda m: saturation_forecast(IR50P, sinusoid(1, 1)), InputError, ["seconds = inf"]),
-        (lambda m: saturation_forecast(IR50P, m, period=-1), InputError, ["period = -1"]),
-        (lambda m: saturation_forecast(IR50P, [0, 0, 0]), InputError, ["reference"]),
-        (lambda m: saturation_forecast("arm", m), InputError, ["expected an Arm"]),
-        (lambda m: saturation_forecast(IR50P, m, g=3), InputError, ["g = 3"]),
+        (lambda m: check_saturation(THESIS_C, m), InputError, ["limit = None"]),
+        (lambda m: check_saturation(THESIS_RODS, m), ArmError, ["actuators"]),
+        (lambda m: check_saturation(IR50P, m, limit=-1), InputError, ["limit", "-1"]),
+        (lambda m: check_saturation(IR50P, m, margin=1.0), InputError, ["margin = 1.0"]),
+        (lambda m: check_saturation(IR50P, m, margin=np.nan), InputError, ["margin"]),
+        (lambda m: check_saturation(IR50P, m, 0), InputError, ["seconds = 0"]),
+        (lambda m: check_saturation(IR50P, sinusoid(1, 1)), InputError, ["seconds = inf"]),
+        (lambda m: check_saturation(IR50P, m, period=-1), InputError, ["period = -1"]),
+        (lambda m: check_saturation(IR50P, [0, 0, 0]), InputError, ["reference"]),
+        (lambda m: check_saturation("arm", m), InputError, ["expected an Arm"]),
+        (lambda m: check_saturation(IR50P, m, g=3), InputError, ["g = 3"]),
     ],
 )
 def test_bad_input_gets_a_sentence(make, error, words):

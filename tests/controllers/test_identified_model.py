@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.bench import SimulatedBench
-from ir50p_lab.controllers import ComputedTorque, FeedForward, saturation_forecast
+from ir50p_lab.controllers import ComputedTorque, FeedForward, check_saturation
 from ir50p_lab.course.torque_views import follow, naive_model, rms, thesis_pid, training_run
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import IR50P, mass_matrix
@@ -56,11 +56,11 @@ def test_the_naive_model_fails_because_its_inertia_is_negative(unit):
 def test_saturation_is_forecast_from_the_identified_model(unit):
     seed, _, model = unit
     goal = (np.pi / 2, np.pi / 2, -np.pi / 3)
-    limit = saturation_forecast(model, quintic((0, 0, 0), goal, duration=1.0)).stretch
+    limit = check_saturation(model, quintic((0, 0, 0), goal, duration=1.0)).stretch
     law = ComputedTorque(model, **TABLES_4_5, model_velocity="reference")
     for share, fits in ((1.4, True), (0.6, False)):
         motion = quintic((0, 0, 0), goal, duration=share * limit)
-        assert saturation_forecast(model, motion).saturates != fits
+        assert check_saturation(model, motion).saturates != fits
         run = follow(IR50P, law, motion, share * limit, seed=seed)
         assert (rms(run, motion).max() < 100) == fits
         assert (run.u.max() == 255) or fits

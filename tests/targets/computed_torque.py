@@ -11,7 +11,7 @@ import warnings
 
 import numpy as np
 
-from ir50p_lab.controllers import AdaptiveControl, ComputedTorque, FeedForward, GravityPD, saturation_forecast
+from ir50p_lab.controllers import AdaptiveControl, ComputedTorque, FeedForward, GravityPD, check_saturation
 from ir50p_lab.course.printed_control import PARAMETERS_2_1_2, LawWithError, error_2_19, inverse_dynamics_as_printed
 from ir50p_lab.course.torque_views import follow, naive_model, rms, thesis_pid
 from ir50p_lab.identification import identify, load_excitations
@@ -148,14 +148,14 @@ def rows_bench(seeds):
 
 def rows_saturation(model, seed):
     """Too fast a motion: forecast from the model's limits, then driven."""
-    forecast = saturation_forecast(model, MOVE)
+    forecast = check_saturation(model, MOVE)
     rows = []
     for share, fits in ((1.3, True), (0.6, False)):
         duration = share * forecast.stretch * MOVE.duration
         fast = quintic((0, 0, 0), GOAL, duration=duration)
         law = ComputedTorque(model, **TABLES_4_5, model_velocity="reference")
         error = tracked(law, seed, fast, duration).max()
-        said = saturation_forecast(model, fast)
+        said = check_saturation(model, fast)
         ok = said.saturates != fits and ((error < 100) == fits)
         what = f"the quintic in {duration:.1f} s: forecast '{'fits' if not said.saturates else 'saturates'}'"
         asked = "follows (< 100)" if fits else "cannot follow (> 100)"
