@@ -53,6 +53,10 @@ class RunawayError(BenchError):
     """A joint does not do what its motor makes it do: wires swapped, a potentiometer loose or torn, or blocked."""
 
 
+class PauseError(BenchError):
+    """The program left the arm without a command for too long in a run: it drives again only in a new one."""
+
+
 class RecordingError(LabError, ValueError):
     """A recording that cannot be written on, or a file that is none (the message names the line)."""
 

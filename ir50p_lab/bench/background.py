@@ -1,7 +1,6 @@
 """`bench.start(controller, reference)`: the loop of the lesson in the background, and the handle that tunes it."""
 
 import contextlib
-import copy
 import math
 import threading
 from dataclasses import dataclass
@@ -10,9 +9,9 @@ import numpy as np
 
 from ir50p_lab.bench import shared_loop
 from ir50p_lab.bench.live_loop import live_loop
-from ir50p_lab.bench.set_point import checked_set_point
+from ir50p_lab.bench.pace import warm_up
+from ir50p_lab.bench.set_point import checked_reference, checked_set_point
 from ir50p_lab.bench.shared_loop import SharedLoop
-from ir50p_lab.controllers.base import Controller
 from ir50p_lab.controllers.pid import gains
 from ir50p_lab.errors import BenchError, InputError
 from ir50p_lab.inputs import check_controller, check_reference
@@ -42,10 +41,11 @@ def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest
     check_controller(controller)
     if reference is not None:
         check_reference(reference)
+        checked_reference(bench.arm, 0.0, reference(0.0))
     bench._take_back()
     if not bench._is_open:
         raise BenchError("the bench is closed: open it with connect() and start before it is closed")
-    if bench._running:
+    if bench._run is not None:
         raise BenchError("a run in a cell has the arm: end its loop first")
     cargo = _packed(controller, reference)
     options = {"seconds": seconds, "lead_in": lead_in, "rest": rest}
@@ -74,24 +74,18 @@ def _packed(controller, reference):
         ) from None
 
 
-def warm_up(controller):
-    """Let a compiled controller load its machine code before the first cycle, whose time is short."""
-    if isinstance(controller, Controller):
-        with contextlib.suppress(Exception):  # the loop will meet it again and say so
-            copy.deepcopy(controller).step(0.0, np.zeros(3), np.zeros((3, 3)))
-
-
 @dataclass(frozen=True)
 class LoopStatistics:
     """How well the loop keeps time.
 
-    cycles, missed: counts since the start; period_p50, period_p99, period_max: s between measurements; busy_p50,
-    busy_max: s from having a sample until its command was sent. The times are of the last 80 s at most; NaN before
-    there are any.
+    cycles, missed, trips (times the drive was cut because the loop had paused): counts since the start; period_p50,
+    period_p99, period_max: s between measurements; busy_p50, busy_max: s from having a sample until its command was
+    sent. The times are of the last 80 s at most; NaN before there are any.
     """
 
     cycles: int
     missed: int
+    trips: int = 0
     period_p50: float = math.nan
     period_p99: float = math.nan
     period_max: float = math.nan
@@ -102,8 +96,9 @@ class LoopStatistics:
         if not self.cycles:
             return "no cycle yet"
         p50, p99, largest = (1e3 * x for x in (self.period_p50, self.period_p99, self.period_max))
+        cuts = f", {self.trips} cuts of the drive by pauses" if self.trips else ""
         return (
-            f"{self.cycles} cycles, {self.missed} late; period {p50:.2f} ms median, {p99:.2f} ms 99 %, "
+            f"{self.cycles} cycles, {self.missed} late{cuts}; period {p50:.2f} ms median, {p99:.2f} ms 99 %, "
             f"{largest:.2f} ms longest; {1e3 * self.busy_p50:.2f} ms from sample to command"
         )
 
@@ -230,13 +225,12 @@ class LiveRun:
         memory = self._memory
         rows = memory.latest(shared_loop.CAPACITY)
         if len(rows) < 2:
-            return LoopStatistics(memory.samples, memory.missed)
+            return LoopStatistics(memory.samples, memory.missed, memory.trips)
         in_a_row = np.diff(rows[:, -1]) == 1
         periods, busy = np.diff(rows[:, 10])[in_a_row], rows[:, 11]
         p50, p99 = np.percentile(periods, (50, 99))
-        return LoopStatistics(
-            memory.samples, memory.missed, p50, p99, periods.max(), float(np.median(busy)), float(busy.max())
-        )
+        counts = memory.samples, memory.missed, memory.trips
+        return LoopStatistics(*counts, p50, p99, periods.max(), float(np.median(busy)), float(busy.max()))
 
     def __repr__(self):
         return f"<LiveRun: {self.phase}; {self.statistics()}>"
@@ -258,15 +252,17 @@ class ThreadWorker:
         import cloudpickle
 
         self._cargo = cloudpickle.loads(self._cargo)
-        warm_up(self._cargo[0])
+        warm_up(*self._cargo)
         self._thread.start()
 
     def _run(self):
+        realtime, self._bench.realtime = self._bench.realtime, True
         try:
             live_loop(self._bench, *self._cargo, self.memory, **self._options)
         except BaseException as error:
             self.error = error
         finally:
+            self._bench.realtime = realtime
             self.memory.enter(shared_loop.ENDED)
 
     @property

@@ -1,15 +1,18 @@
 """What every bench promises: one loop, whether a board, a simulated arm or a recording answers."""
 
 import abc
+import contextlib
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from ir50p_lab.bench.recorder import Recorder
+from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, Pace, Steps, warm_up
+from ir50p_lab.bench.recorder import Recorder, header_of
 from ir50p_lab.bench.rest import rest_pose, way_to_rest
 from ir50p_lab.bench.runaway import RunawayGuard
-from ir50p_lab.errors import BenchError, InputError
+from ir50p_lab.bench.set_point import checked_reference
+from ir50p_lab.errors import BenchError, InputError, LabError, PauseError
 from ir50p_lab.inputs import check_arm, check_controller, check_reference
 
 JOINTS = 3
@@ -20,13 +23,28 @@ class Sample(NamedTuple):
     """What the bench says once per period.
 
     t: s since the run began, when it was measured; q: (3,) rad, through the calibration; counts: (3,) counts of the
-    10-bit converter (quarters where the board averages); missed: cycles that came late so far in this run.
+    10-bit converter (quarters where the board averages); missed: cycles that came late so far in this run; reference:
+    (3, 3), what the run's reference asks for at t, rows q, qd, qdd in rad, rad/s, rad/s^2 (None without one).
     """
 
     t: float
     q: np.ndarray
     counts: np.ndarray
     missed: int
+    reference: np.ndarray | None = None
+
+
+class Run:
+    """What belongs to one run.
+
+    pace: Pace or Steps; guard: see `Bench._make_guard`; row: the Sample whose command may still come, before its row
+    is written; aim: its reference (3,); trips: of the watchdog; fault: what has ended it.
+    """
+
+    def __init__(self, recorder, reference):
+        self.recorder, self.reference = recorder, reference
+        self.pace = self.guard = self.row = self.aim = self.fault = None
+        self.trips = 0
 
 
 class Bench(abc.ABC):
@@ -49,7 +67,8 @@ class Bench(abc.ABC):
 
     Attributes: arm: Arm (limits, kinematics); calibration: counts to rad; period: s; simulated: bool; name: str;
     bench_id: which bench it is, on which results are measured, as 'board-0a1b2c' or 'simulated-unit-0' (None: nobody
-    knows, or the board has none yet); recording: Recording of the last run (None before).
+    knows, or the board has none yet); recording: Recording of the last run (None before); trips: how often the drive
+    was cut because the program sent no command.
     """
 
     kind = "bench"
@@ -67,9 +86,10 @@ class Bench(abc.ABC):
         self.name = name or f"{self.kind} {arm.name}"
         self.recording = None
         self._record_to = record_to
-        self._is_open = self._running = False
+        self._is_open, self._clock = False, Clock
         self._pwm, self._gripper = np.zeros(JOINTS), False
-        self._last, self._recorder = None, None
+        self._last = self._run = None
+        self.trips = 0
         self._live = None  # the LiveRun that has the arm, or had it last
         self._travel = tuple(zip(arm.q_min, arm.q_max, strict=True))
 
@@ -84,8 +104,11 @@ class Bench(abc.ABC):
         """A run begins: its time is zero now."""
 
     @abc.abstractmethod
-    def _measure(self, k):
-        """Wait for cycle k of the run, measure, keep the present command alive: (t, counts (3,), missed)."""
+    def _measure(self, cycle, drive):
+        """Measure in this cycle of the run; drive: keep the present command alive, else drive nothing.
+
+        Returns: t (s), counts (3,), and whether the watchdog had cut the drive before, so that it is off now.
+        """
 
     @abc.abstractmethod
     def _send(self, pwm, gripper):
@@ -106,6 +129,20 @@ class Bench(abc.ABC):
     def _header(self):
         """More lines for the head of a recording: dict of str."""
         return {}
+
+    def _make_pace(self):
+        """What says when the cycles of a run are due: Steps, or Pace on a bench that follows the clock."""
+        return Steps()
+
+    def _missed(self, cycle):
+        """How many cycles came late so far."""
+        return self._run.pace.missed
+
+    def _statistics(self, run):
+        """What a recording says at its end about how the run went: dict; nothing where time is a counter."""
+        if not isinstance(run.pace, Pace):
+            return {}
+        return {"late_cycles": run.pace.missed, "watchdog_trips": run.trips}
 
     def _make_guard(self):
         """What looks at every exchange of the run that begins, or None.
@@ -174,14 +211,22 @@ class Bench(abc.ABC):
         self._pwm = np.zeros(JOINTS)
         self._cut()
 
-    def run(self, seconds, *, record=True, **header):
+    def run(self, seconds, reference=None, *, record=True, **header):
         """Yield one Sample every period for `seconds`; drive the arm in the loop's body.
 
-        record: whether the run is recorded; header: further lines for the head of its recording (gains, a note).
-        Raises InputError for a bad duration, BenchError if the bench is not open or already runs, BoardLostError if
-        the board stops answering. On any error the drive is cut first.
+        reference: target(t) -> (q, qd, qdd), handed out as `sample.reference`; record: whether the run is recorded;
+        header: further lines for the head of its recording (gains, a note).
+
+        On a bench that follows the clock the drive is cut when the program sends no command for 0.1 s. That becomes an
+        event of the recording, and the next exchange only measures. A pause of more than 0.5 s ends the run.
+
+        Raises InputError for a bad duration, and for a reference that is not finite, leaves the joint limits or is
+        farther than 2 rad from the measured pose; BenchError if the bench is not open or already runs; PauseError
+        after a pause; BoardLostError if the board stops answering. On any error the drive is cut first.
         """
-        return self._cycles(self._number_of_cycles(seconds), record, header)
+        if reference is not None:
+            check_reference(reference)
+        return self._cycles(self._number_of_cycles(seconds), reference, record, header)
 
     def _number_of_cycles(self, seconds):
         if not (isinstance(seconds, int | float | np.number) and math.isfinite(seconds) and seconds > 0):
@@ -197,38 +242,83 @@ class Bench(abc.ABC):
             self._live.give_back()
             self._live = None
 
-    def _cycles(self, cycles, record, header):
+    def _cycles(self, cycles, reference, record, header):
         self._end_run()  # of a loop that was left by break
-        recorder = self._start_recorder(header) if record else None
-        self._recorder, self._running = recorder, True
+        run = self._run = Run(self._start_recorder(header) if record else None, reference)
         self._pwm = np.zeros(JOINTS)
         try:
             self._begin()
-            guard = self._make_guard()
-            for k in range(cycles):
-                t, counts, missed = self._measure(k)
-                sample = Sample(t, self._radians(counts), counts, missed)
-                self._last = sample
-                if guard is not None:
-                    guard.check(sample, self._pwm)
-                self._reference = None
+            run.guard, run.pace = self._make_guard(), self._make_pace()
+            while (sample := self._next_sample(run, cycles)) is not None:
                 yield sample
-                if recorder is not None:
-                    recorder.write(sample, self._pwm, self._reference, self._gripper)
+                if run.fault is not None:  # drive() has raised it, and the loop's body caught it
+                    raise run.fault
         except GeneratorExit:  # the loop was left by break
-            if recorder is not None and self._recorder is recorder:
-                try:
-                    recorder.write(sample, self._pwm, self._reference, self._gripper)
-                except BaseException:  # a full disk; nobody may hear of it while a generator is closed
-                    self.cut()
-                    raise
             raise
-        except BaseException:
+        except BaseException as error:
             self.cut()
+            if isinstance(error, LabError) and error is not run.fault:
+                self.note(f"the run was ended: {error}")
             raise
         finally:
-            if self._recorder is recorder:
+            if self._run is run:
                 self._end_run()
+
+    def _next_sample(self, run, cycles):
+        """Wait for the next cycle and measure. Returns the Sample, or None when the run is over."""
+        pace = run.pace
+        while True:
+            self._write_row(run)  # of the sample before
+            if pace.cycle + 1 >= cycles:
+                return None
+            cycle, silence = pace.next_cycle(), pace.silence()
+            if silence >= WATCHDOG:
+                self._resume(run, silence)
+                continue
+            if cycle >= cycles:
+                return None
+            t, counts, tripped = self._measure(cycle, drive=pace.armed)
+            pace.armed = pace.armed or cycle > 0
+            if tripped:  # commands were lost on the wire
+                self._resume(run, WATCHDOG)
+                continue
+            sample = run.row = self._last = Sample(t, self._radians(counts), counts, self._missed(cycle))
+            if run.guard is not None:
+                run.guard.check(sample, self._pwm)
+            if run.reference is None:
+                return sample
+            rows = checked_reference(self.arm, t, run.reference(t), sample.q)
+            run.aim = rows[0]
+            return sample._replace(reference=rows)
+
+    def _resume(self, run, silence):
+        """The drive was cut in this silence, s: say so and measure, driving nothing; too long a one ends the run."""
+        self._write_row(run)
+        pace, when = run.pace, run.pace.cut_at(silence)
+        run.trips, self.trips = run.trips + 1, self.trips + 1
+        said, ended = f"the drive was cut: no command for {silence:.2f} s", silence > LONGEST_PAUSE
+        self._note_at(when, said + "; the run was ended" * ended)
+        self._pwm = np.zeros(JOINTS)
+        with contextlib.suppress(BenchError) if ended else contextlib.nullcontext():
+            t, counts, _ = self._measure(pace.cycle, drive=False)
+            self._last = run.row = Sample(t, self._radians(counts), counts, self._missed(pace.cycle))
+        if ended:
+            self.cut()
+            run.fault = PauseError(
+                f"the program sent no command for {silence:.1f} s, from t = {when - WATCHDOG:.2f} s on (a plot or "
+                f"input in the loop, a debugger, a laptop that slept?): the drive was cut after {WATCHDOG:g} s and "
+                "stays off. Start a new run with bench.run(...), and keep what takes long out of its loop, or use "
+                "bench.start(...)"
+            )
+            raise run.fault
+        if run.trips == 1:
+            print(f"At t = {when:.2f} s {said}; the run goes on. Further cuts: bench.recording.events.")
+
+    def _write_row(self, run):
+        """Record the last sample with the command that has followed it."""
+        sample, aim, run.row, run.aim = run.row, run.aim, None, None
+        if sample is not None and run.recorder is not None:
+            run.recorder.write(sample, self._pwm, aim, self._gripper)
 
     def head(self):
         """What the head of a recording says of this bench: dict of str."""
@@ -250,9 +340,17 @@ class Bench(abc.ABC):
         return recorder
 
     def _end_run(self):
-        recorder, self._recorder, self._running = self._recorder, None, False
-        if recorder is not None:
-            recorder.close()
+        run, self._run = self._run, None
+        if run is None:
+            return
+        try:
+            self._write_row(run)
+        except BaseException:  # a full disk; nobody may hear of it while a generator is closed
+            self.cut()
+            raise
+        finally:
+            if run.recorder is not None:
+                run.recorder.close(self._statistics(run))
 
     def drive(self, pwm, *, gripper=None, reference=None):
         """Send PWM counts to the three joints; they hold until the next call.
@@ -262,34 +360,55 @@ class Bench(abc.ABC):
             end of its travel that would be driven further out.
             gripper: True closes, False opens, None leaves it. reference: q (3,) rad, only to be recorded beside.
 
-        Returns: what was really sent, (3,) PWM counts.
-        Raises InputError if pwm is no three finite numbers (the drive is cut first), BenchError outside a run.
+        Returns: what was really sent, (3,) PWM counts; zeros after a pause in which the drive was cut.
+        Raises InputError if pwm is no three finite numbers (the drive is cut first), BenchError outside a run,
+        PauseError if the program has paused for longer than 0.5 s.
         """
-        if not self._running:
+        run = self._run
+        if run is None:
             self.cut()
             raise BenchError("drive() works only inside `for sample in bench.run(...)`: outside nothing keeps watch")
+        if run.fault is not None:
+            raise run.fault
+        command = self._command_of(pwm)
+        if run.pace.begins_anew():
+            return np.zeros(JOINTS)
+        if (silence := run.pace.silence()) >= WATCHDOG:
+            run.pace.catch_up()
+            self._resume(run, silence)
+            return np.zeros(JOINTS)
+        run.pace.armed = True
+        if gripper is not None:
+            self._gripper = bool(gripper)
+        if reference is not None:
+            run.aim = reference
+        self._pwm = self._send(command, self._gripper)
+        return self._pwm
+
+    def _command_of(self, pwm):
+        """`pwm` in whole counts, within the limit and not beyond the ends of the travel; else cut and raise."""
         try:
-            command = np.asarray(pwm, dtype=float)
-        except (TypeError, ValueError):
+            given = np.asarray(pwm)
+            command = given.astype(float) if given.dtype.kind in "iufO" else np.full(JOINTS, np.nan)
+        except Exception:  # whatever the conversion of a stranger raises
             command = np.full(JOINTS, np.nan)
-        if command.shape != (JOINTS,) or not math.isfinite(command[0] + command[1] + command[2]):
+        if command.shape != (JOINTS,) or not np.isfinite(command).all():
             self.cut()
-            raise InputError(f"pwm = {pwm!r}: give three finite numbers of PWM counts; the drive has been cut")
+            raise InputError(f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts; the drive has been cut")
         limited = []  # scalars: for three numbers arrays take longer than the arm
         for u, q, (low, high) in zip(command.tolist(), self._last.q.tolist(), self._travel, strict=True):
             out = (q <= low and u < 0) or (q >= high and u > 0)
             limited.append(0.0 if out else min(max(float(round(u)), -LIMIT_PWM), LIMIT_PWM))
-        command = np.array(limited, dtype=float)
-        if gripper is not None:
-            self._gripper = bool(gripper)
-        self._reference = reference
-        self._pwm = self._send(command, self._gripper)
-        return self._pwm
+        return np.array(limited)
 
     def note(self, text):
         """Write into the recording what has just been changed (gains, a payload): it stands between the samples."""
-        if self._recorder is not None and self._last is not None:
-            self._recorder.event(self._last.t, text)
+        if self._last is not None:
+            self._note_at(self._last.t, text)
+
+    def _note_at(self, t, text):
+        if self._run is not None and self._run.recorder is not None:
+            self._run.recorder.event(t, text)
 
     def follow(self, controller, reference, seconds, *, record=True, **header):
         """Run `controller` on `reference` for `seconds`; the loop of the lesson in one call.
@@ -299,9 +418,9 @@ class Bench(abc.ABC):
         check_controller(controller)
         check_reference(reference)
         controller.reset() if hasattr(controller, "reset") else None
-        for sample in self.run(seconds, record=record, **{**header_of(controller), **header}):
-            target = reference(sample.t)
-            self.drive(controller.step(sample.t, sample.q, target), reference=target[0])
+        warm_up(controller, reference)
+        for sample in self.run(seconds, reference, record=record, **{**header_of(controller), **header}):
+            self.drive(controller.step(sample.t, sample.q, sample.reference))
         return self.recording if record else None
 
     def start(self, controller, reference, **options):
@@ -318,11 +437,11 @@ class Bench(abc.ABC):
         self.cut()
 
     @property
+    def q(self):
+        """The pose (3,) rad that was measured last; None before the first run."""
+        return None if self._last is None else self._last.q
+
+    @property
     def rest_pose(self):
         """The pose (3,) rad where the arm is let go."""
         return rest_pose(self.arm)
-
-
-def header_of(controller):
-    """The gains of a controller for the head of a recording, if it tells them."""
-    return controller.header() if hasattr(controller, "header") else {}

@@ -206,12 +206,12 @@ def main():
 def _serve(orders, answers, memory, parent):
     import cloudpickle
 
-    from ir50p_lab.bench.background import warm_up
     from ir50p_lab.bench.live_loop import live_loop
+    from ir50p_lab.bench.pace import warm_up
 
     bench, cargo, options = _receive(orders)
     (kind, arguments), (controller, reference) = cloudpickle.loads(bench), cloudpickle.loads(cargo)
-    warm_up(controller)
+    warm_up(controller, reference)
     _send(answers, ("ready", None))
     if orders.read(1) != _GO:
         return
@@ -236,7 +236,7 @@ def _serve(orders, answers, memory, parent):
         gc.collect()
         gc.freeze()  # what the imports made is never looked through again
         _send(answers, ("opened", None))
-        live_loop(bench, controller, reference, memory, orphaned=orphaned, paced=False, **options)
+        live_loop(bench, controller, reference, memory, orphaned=orphaned, **options)
     finally:
         bench.abort()
 

@@ -1,5 +1,6 @@
 """Writes a run to disk sample by sample: whatever happens to the program, what was recorded is there."""
 
+import contextlib
 import math
 import os
 from array import array
@@ -9,7 +10,15 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.recording_file import COLUMNS, ROW, ROW_WITHOUT_REFERENCE, event_text, head_text, rows_text
+from ir50p_lab.bench.recording_file import (
+    COLUMNS,
+    ROW,
+    ROW_WITHOUT_REFERENCE,
+    event_text,
+    head_text,
+    rows_text,
+    told_text,
+)
 from ir50p_lab.errors import InputError, RecordingError
 from ir50p_lab.home import home
 
@@ -65,7 +74,7 @@ class Recorder:
         Raises RecordingError if the disk takes no more (memory and file keep what was recorded before), InputError
         for a reference that is not three numbers.
         """
-        t, q, counts, missed = sample
+        t, q, counts, missed, _ = sample
         r = _NAN3 if reference is None else _three(reference)
         row = (t, *q.tolist(), *counts.tolist(), *pwm.tolist(), *r, gripper, missed)
         self._rows.extend(row)
@@ -92,11 +101,13 @@ class Recorder:
             self._put(event_text(t, text).encode("ascii"))
 
     def _put(self, data):
+        written = 0
         try:
-            written = os.write(self._file, data)
-            while written < len(data):  # the disk is nearly full, or a signal came
+            while written < len(data):  # in parts if the disk is nearly full, or a signal came
                 written += os.write(self._file, data[written:])
         except OSError as error:
+            if self._size:  # the head is of use only as a whole
+                self._size += data.rfind(b"\n", 0, written) + 1
             self._give_up(error)
         self._size += len(data)
 
@@ -106,7 +117,8 @@ class Recorder:
             os.ftruncate(self._file, self._size)
         except OSError:
             pass  # then its last line is cut off; loading leaves that out
-        self.close()
+        os.close(self._file)
+        self._file = None
         if not self._size:  # not even the head
             self.path.unlink(missing_ok=True)
         raise RecordingError(
@@ -114,8 +126,13 @@ class Recorder:
             f"is safe in it; the run ends here. Make room, or {_ELSEWHERE}"
         ) from None
 
-    def close(self):
-        """End the recording. May be called twice."""
+    def close(self, statistics=None):
+        """End the recording; statistics: dict of numbers about the run for its head. May be called twice."""
+        told = {name: str(value) for name, value in (statistics or {}).items()}
+        self.recording.header.update(told)
+        if self._file is not None and told:
+            with contextlib.suppress(RecordingError):  # a full disk: the samples are there
+                self._put(told_text(told).encode("ascii"))
         file, self._file = self._file, None
         if file is not None:
             os.close(file)
@@ -130,3 +147,8 @@ def _three(reference):
         return float(r1), float(r2), float(r3)
     except (TypeError, ValueError):
         raise InputError(f"reference = {reference!r}: give the three joint angles, rad (target(t)[0])") from None
+
+
+def header_of(controller):
+    """The gains of a controller for the head of a recording, if it tells them."""
+    return controller.header() if hasattr(controller, "header") else {}

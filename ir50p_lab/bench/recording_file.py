@@ -20,14 +20,19 @@ ROW = "%.6f,%.6f,%.6f,%.6f,%g,%g,%g,%g,%g,%g,%.6f,%.6f,%.6f,%d,%d\n"
 ROW_WITHOUT_REFERENCE = "%.6f,%.6f,%.6f,%.6f,%g,%g,%g,%g,%g,%g,,,,%d,%d\n"
 _REQUIRED = COLUMNS[:4]
 _GROUPS = (("counts1", "counts2", "counts3"), ("u1", "u2", "u3"), ("r1", "r2", "r3"))
+_EVENT = re.compile(r"[ \"]*#\W*event: (-?[\d.]+) s: (.*)")
 _UNITS = "t s; q rad; counts of the 10-bit converter; u PWM counts; r (reference) rad; gripper 1 closed; missed cycles"
 
 
 def head_text(header):
     """The lines before the first sample. header: dict of str."""
     lines = [f"# {FORMAT}: 1", f"# units: {_UNITS}"]
-    lines += [f"# {key}: {_one_line(value)}" for key, value in header.items()]
-    return "\n".join(lines) + "\n" + ",".join(COLUMNS) + "\n"
+    return "\n".join(lines) + "\n" + told_text(header) + ",".join(COLUMNS) + "\n"
+
+
+def told_text(header):
+    """Lines of the head that are known only at the end of a run, or all of them: dict of str."""
+    return "".join(f"# {key}: {_one_line(value)}\n" for key, value in header.items())
 
 
 def rows_text(table, events=()):
@@ -98,7 +103,10 @@ def parse(data, name):
         body = body[:-1]
     table = _read_rows(body, first + 2, name, delimiter, places, width)
     header.pop(FORMAT, None), header.pop("units", None)
-    return header, table, tuple(notes), tuple(_events(body, first + 2, name))
+    events = tuple(_events(body, first + 2, name))
+    told = [line for line in body if line.lstrip(' "').startswith("#") and not _EVENT.match(line)]
+    header.update(_read_header(told, name)[0])  # statistics, which stand at the end
+    return header, table, tuple(notes), events
 
 
 def event_text(t, text):
@@ -108,7 +116,7 @@ def event_text(t, text):
 
 def _events(lines, number, name):
     for k, line in enumerate(lines):
-        found = re.match(r"\W*event: (-?[\d.]+) s: (.*)", line) if line.lstrip(' "').startswith("#") else None
+        found = _EVENT.match(line)
         place = f"{name}, line {number + k}"
         if found and not _is_number(found[1]):
             raise RecordingError(f"{place}: {found[1]} s is no time; repair or delete that line")

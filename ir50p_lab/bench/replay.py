@@ -52,7 +52,7 @@ class ReplayBench(Bench):
         )
         counts, known = recording.counts, np.isfinite(recording.counts)
         self._counts = np.where(known, counts, self.calibration.counts(recording.q))
-        self._missed = np.nan_to_num(recording.missed).astype(int)
+        self._late = np.nan_to_num(recording.missed).astype(int)
         self._k, self._started = 0, 0.0
         told = recording.header.get("bench_id", "none")
         self.bench_id = None if told == "none" else told
@@ -63,17 +63,20 @@ class ReplayBench(Bench):
     def _begin(self):
         self._started = time.perf_counter()
 
-    def _cycles(self, cycles, record, header):
+    def _cycles(self, cycles, reference, record, header):
         there = min(cycles, len(self.original))
-        yield from super()._cycles(there, record, header)
+        yield from super()._cycles(there, reference, record, header)
         if there < cycles:
             print(f"The recording ends at t = {self.original.t[-1]:.2f} s, and with it this run.")
 
-    def _measure(self, k):
-        self._k, t = k, self.original.t
+    def _measure(self, cycle, drive):
+        self._k, t = cycle, self.original.t
         if self.realtime:
-            time.sleep(max(0.0, self._started + t[k] - t[0] - time.perf_counter()))
-        return float(t[k]), self._counts[k], int(self._missed[k])
+            time.sleep(max(0.0, self._started + t[cycle] - t[0] - time.perf_counter()))
+        return float(t[cycle]), self._counts[cycle], False
+
+    def _missed(self, cycle):
+        return int(self._late[cycle])
 
     def _radians(self, counts):
         return self.original.q[self._k]

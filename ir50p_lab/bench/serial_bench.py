@@ -7,9 +7,10 @@ import secrets
 import numpy as np
 
 from ir50p_lab.bench import protocol
-from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench
+from ir50p_lab.bench.base import Bench
 from ir50p_lab.bench.calibration import nominal_calibration
-from ir50p_lab.bench.link import PORT_ERRORS, Clock, Link
+from ir50p_lab.bench.link import PORT_ERRORS, Link
+from ir50p_lab.bench.pace import Clock, Pace, load_controllers
 from ir50p_lab.bench.ports import open_port
 from ir50p_lab.bench.result_files import own_calibration
 from ir50p_lab.errors import BoardError, BoardLostError, InputError
@@ -18,7 +19,6 @@ from ir50p_lab.inputs import check_arm
 BOOT_LOADER = 2.0  # s; the Mega's own lasts 1 to 2 s, and 8 s if it hears anything meanwhile: so we keep silent
 HANDSHAKE = 2.0  # s; then nobody is there
 LOST_AFTER = 0.5  # s without answer; the board has cut the drive after 0.1 s, a busy computer may come back
-LATE = 0.2  # of a period; a cycle that begins later than this is counted
 _BROKEN = protocol.BROKEN_COUNTS
 FIRMWARE = "ir50p_lab/bench/firmware"
 
@@ -33,8 +33,8 @@ class SerialBench(Bench):
         clock: object with now() and sleep(s); default the computer's. period: s. record_to: folder, or False.
         announce: takes the line that says why opening lasts 2 s; default print.
 
-    Time is the true time of a measurement. A cycle that begins late is counted in `Sample.missed`, never raised; one
-    that would begin a whole period late is left out, so that the loop never runs to catch up.
+    Time is the true time of a measurement. A cycle that begins late is counted in `Sample.missed`, never raised; see
+    `Pace`.
 
     Raises, when opened: PortError (missing, busy, not permitted), BoardError (not our board or another firmware).
     In a run: BoardLostError if the cable is pulled or the board resets; it brakes 0.1 s after the last command.
@@ -62,7 +62,6 @@ class SerialBench(Bench):
         self._calibrated = calibration is not None
         self._clock, self._announce = clock or Clock, announce
         self._link = self.identity = None
-        self._start = self._skipped = self._missed = 0
 
     # ---- the hooks of Bench
 
@@ -74,8 +73,8 @@ class SerialBench(Bench):
             if self._given is None and _opening_resets(transport):
                 self._announce(f"{self.port}: opening it restarts the board, its boot loader takes {BOOT_LOADER:.0f} s")
                 ready += BOOT_LOADER
-            _load_controllers()
-            self._wait_for(ready)
+            load_controllers()
+            self._clock.sleep(max(0.0, ready - self._clock.now()))
             self.identity = self._shake_hands(HANDSHAKE)
             if not self._calibrated:
                 self.calibration = own_calibration(self) or self.calibration
@@ -88,20 +87,14 @@ class SerialBench(Bench):
             self.identity = self._shake_hands(LOST_AFTER)  # the board may have been reset between two runs
         except BoardError:
             raise self._lost("does not answer") from None
-        self._start, self._skipped, self._missed = self._clock.now(), 0, 0
 
-    def _measure(self, k):
-        due = self._start + (k + self._skipped) * self.period
-        late = self._clock.now() - due
-        if late >= self.period:
-            skipped = int(late / self.period)
-            self._skipped, self._missed = self._skipped + skipped, self._missed + skipped
-            due += skipped * self.period
-        self._wait_for(due)
-        if self._clock.now() - due > LATE * self.period:
-            self._missed += 1
+    def _make_pace(self):
+        return Pace(self._clock, self.period)
+
+    def _measure(self, cycle, drive):
+        kind, command = (protocol.DRIVE, self._command()) if drive else (protocol.STOP, (0, 0, 0))
         try:
-            state, sent = self._link.ask(protocol.DRIVE, self._command(), self._gripper, patience=LOST_AFTER)
+            state, sent = self._link.ask(kind, command, self._gripper, patience=LOST_AFTER)
         except BoardLostError:
             raise self._lost(f"has not answered for {LOST_AFTER:g} s") from None
         except PORT_ERRORS as error:
@@ -114,7 +107,9 @@ class SerialBench(Bench):
                     f"the potentiometer of joint {joint + 1} reads {counts / protocol.SUBCOUNTS:g} of 0..1023 counts, "
                     "as it does only with a broken or shorted wire: the drive is off. Look at its plug and its 5 V"
                 )
-        return sent - self._start, np.array(state.counts) / protocol.SUBCOUNTS, self._missed
+        pace, tripped = self._run.pace, drive and bool(state.status & protocol.WATCHDOG_TRIPPED)
+        pace.heard = sent
+        return sent - pace.start, np.array(state.counts) / protocol.SUBCOUNTS, tripped
 
     def _send(self, pwm, gripper):
         try:
@@ -184,17 +179,19 @@ class SerialBench(Bench):
         """What happened on the wire since the bench was opened: LinkStatistics."""
         if self._link is None:
             raise BoardError("the bench is closed: its statistics are gone")
-        return self._link.statistics
+        return self._link.statistics._replace(watchdog_trips=self.trips)
+
+    def _statistics(self, run):
+        if self._link is None:
+            return super()._statistics(run)
+        known = self._link.statistics._asdict()
+        names = ("commands", "repeats", "stale", "bad_replies", "bad_commands")
+        return super()._statistics(run) | {name: known[name] for name in names}
 
     # ---- the rest
 
     def _command(self):
         return tuple(int(u) for u in self._pwm)
-
-    def _wait_for(self, moment):
-        wait = moment - self._clock.now()
-        if wait > 0:
-            self._clock.sleep(wait)
 
     def _shake_hands(self, patience, kind=protocol.HELLO, pwm=(0, 0, 0)):
         """Say hello until the board says who it is. Raises BoardError, with the remedy, if it is not ours."""
@@ -235,13 +232,6 @@ class SerialBench(Bench):
             f"the board on {self.port} has restarted in the middle of the run ({cause}): its drive is off. Power the "
             "motors from their own supply, not from USB; then run again"
         )
-
-
-def _load_controllers():
-    """Have the compiled controllers loaded, 0.5 s and more: else the first `step` of the first run does it."""
-    from ir50p_lab.controllers import PID
-
-    PID(kp=(0, 0, 0), limit_pwm=LIMIT_PWM).step(0.0, np.zeros(JOINTS), np.zeros((3, JOINTS)))
 
 
 def _opening_resets(transport):

@@ -13,6 +13,8 @@ from ir50p_lab.signals.reference import Reference, per_joint, pose
 
 SPEED = 0.8  # rad/s: with the arm stretched the tip moves at 0.7 m/s
 ACCELERATION = 3.0  # rad/s^2: full speed after a quarter of a second
+FARTHEST = 2.0  # rad from the measured pose: no drive is asked to close such a gap at once
+NOISE = 0.05  # rad; an arm that stands at an end of its travel may be measured so far beyond it
 _THERE = math.radians(0.25)  # nearer than this a lead-in would only waste time: about the noise of the potentiometers
 
 
@@ -108,6 +110,39 @@ def led_in(q, reference, *, speed=SPEED):
     if distance <= _THERE:
         return reference
     return LeadIn(q, reference, max(0.3, 1.875 * distance / speed))  # a quintic's peak is 15/8 of its mean
+
+
+def checked_reference(arm, t, value, q=None):
+    """What a reference asks for at t, as rows q, qd, qdd (3, 3); InputError if the arm must not be driven there.
+
+    Its angles must be finite, within the joint limits (or where the arm stands, if that is beyond) and not farther
+    than 2 rad from the measured q (3,) rad; None: not measured yet.
+    """
+    try:
+        rows = np.asarray(value, dtype=float)
+    except Exception:
+        rows = np.empty(0)
+    if rows.shape != (3, 3) or not np.isfinite(rows).all():
+        raise InputError(
+            f"the reference gives {value!r:.100} at t = {t:.3f} s: give (q, qd, qdd), each (3,) and finite"
+        )
+    for i, wanted in enumerate(rows[0].tolist()):
+        low, high = arm.q_min[i], arm.q_max[i]
+        here = None if q is None else float(q[i])
+        if here is not None:
+            low, high = min(low, here - NOISE), max(high, here + NOISE)
+        if not low - 1e-9 <= wanted <= high + 1e-9:
+            raise InputError(
+                f"the reference of joint {i + 1} is {wanted:.4g} rad at t = {t:.3f} s; the arm's travel is "
+                f"{arm.q_min[i]:.2f} to {arm.q_max[i]:.2f} rad. Are these degrees? np.radians makes them rad"
+            )
+        if here is not None and abs(wanted - here) > FARTHEST:
+            raise InputError(
+                f"the reference of joint {i + 1} is {wanted:.4g} rad at t = {t:.3f} s, {abs(wanted - here):.2f} rad "
+                f"from where the arm is ({here:.2f} rad); {FARTHEST:g} rad is the most. Let it begin where the arm is "
+                "(quintic from sample.q, or bench.start, which leads in). Are these degrees? np.radians makes them rad"
+            )
+    return rows
 
 
 def checked_set_point(arm, q):

@@ -4,7 +4,7 @@ It is one block of bytes, in this process or mapped into two. Only one side writ
 
     orders    written by the notebook: a counter, stop and cut, gains, a set point; closed by a CRC, so that the loop
               never acts on orders that are half written: it takes them one cycle later
-    status    written by the loop: phase, number of samples, missed cycles, sum of the cycles
+    status    written by the loop: phase, number of samples, missed cycles, trips of the watchdog
     ring      written by the loop: the last CAPACITY samples, one row each, column names in COLUMNS
 
 No locks: neither side ever waits for the other.
@@ -27,7 +27,7 @@ PHASES = ("starting", "leading in", "running", "moving to the rest pose", "ended
 
 _ORDERS = struct.Struct("<q??6x q9d q3d")
 _ORDERS_SIZE = _ORDERS.size + 4
-_STATUS_AT, _PHASE, _SAMPLES, _MISSED, _STATUS_COUNT = 256, 0, 1, 2, 8
+_STATUS_AT, _PHASE, _SAMPLES, _MISSED, _TRIPS, _STATUS_COUNT = 256, 0, 1, 2, 3, 8
 _RING_AT = 512
 _SIZE = _RING_AT + CAPACITY * len(COLUMNS) * 8
 
@@ -117,6 +117,11 @@ class SharedLoop:
         """How many cycles came late."""
         return int(self._status[_MISSED])
 
+    @property
+    def trips(self):
+        """How often the drive was cut because the loop had paused."""
+        return int(self._status[_TRIPS])
+
     def latest(self, count):
         """The last `count` samples at most, oldest first: a copy, (n, len(COLUMNS))."""
         end = self.samples
@@ -140,12 +145,12 @@ class SharedLoop:
         """The loop says where it is."""
         self._status[_PHASE] = phase
 
-    def put(self, t, q, u, r, measured, busy, missed):
-        """The loop adds one sample: t s; q, u, r (3,) rad, PWM counts, rad; measured, busy s; missed: cycles so far."""
+    def put(self, t, q, u, r, measured, busy, missed, trips=0):
+        """The loop adds one sample: t s; q, u, r (3,) rad, PWM counts, rad; measured, busy s; missed, trips: so far."""
         number = int(self._status[_SAMPLES])
         row = self._ring[number % CAPACITY]
         row[-1] = -1.0
         row[0], row[1:4], row[4:7], row[7:10], row[10], row[11] = t, q, u, r, measured, busy
         row[-1] = number
-        self._status[_MISSED] = missed
+        self._status[_MISSED], self._status[_TRIPS] = missed, trips
         self._status[_SAMPLES] = number + 1

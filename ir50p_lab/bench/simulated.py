@@ -1,13 +1,15 @@
 """The simulated bench: the same contract as the board, without one; as fast as the machine or at the arm's pace."""
 
-import time
 from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Sample, header_of
+from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Run, Sample
+from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
+from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.runaway import watch_step
+from ir50p_lab.bench.set_point import FARTHEST, NOISE, checked_reference
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, convert, read_pots
 from ir50p_lab.bench.unit import UNIT
 from ir50p_lab.controllers.base import Controller
@@ -28,8 +30,9 @@ def _compiled_cycles(
 ):
     """The loop of `run`, `step` and `drive`, many cycles at once; out (cycles, 15): counts, q, u, truth q and qd.
 
-    Returns the number of cycles done, and the alarm of `watch_step`; fewer than asked for with an alarm, or if the
-    command of the last was not finite.
+    Returns the number of cycles done, and the alarm of `watch_step`; fewer than asked for with an alarm, or if in the
+    next one the reference is beyond the travel or too far from the arm (see `checked_reference`), or the command not
+    finite.
     """
     counts, q, command = np.empty(3), np.empty(3), np.empty(3)
     delay = queue.shape[0]
@@ -48,13 +51,16 @@ def _compiled_cycles(
         convert(counts)
         for i in range(3):
             q[i] = (counts[i] - zero[i]) / slope[i]
+            out[k, i], out[k, 3 + i] = counts[i], q[i]
+            out[k, 9 + i], out[k, 12 + i] = joint[i], x[3 + i]
         alarm = watch_step(watch, t[k], q, pwm)
         if alarm > 0:
             return k, alarm
-        control_step(kind, p, s, t[k], q, r[k], command)
         for i in range(3):
-            out[k, i], out[k, 3 + i] = counts[i], q[i]
-            out[k, 9 + i], out[k, 12 + i] = joint[i], x[3 + i]
+            least, most = min(low[i], q[i] - NOISE) - 1e-9, max(high[i], q[i] + NOISE) + 1e-9
+            if not (least <= r[k, 0, i] <= most and abs(r[k, 0, i] - q[i]) <= FARTHEST):
+                return k, 0
+        control_step(kind, p, s, t[k], q, r[k], command)
         if not np.isfinite(command[0] + command[1] + command[2]):
             return k, 0
         for i in range(3):
@@ -114,7 +120,7 @@ class SimulatedBench(Bench):
             raise InputError(f"period = {period} s: the simulated bench needs whole milliseconds")
         self.realtime = realtime
         self._queue = np.zeros((int(self.plant.unit.delay), JOINTS))
-        self._truth, self._started, self._missed = deque(maxlen=_KEPT), 0.0, 0
+        self._truth, self._cycle, self._acting = deque(maxlen=_KEPT), 0, np.zeros(JOINTS)
 
     @property
     def bench_id(self):
@@ -127,42 +133,45 @@ class SimulatedBench(Bench):
         pass
 
     def _begin(self):
-        self._queue[:] = 0.0
-        self._missed = 0
+        self._cut()
+        self._cycle = 0
         self._truth.clear()
-        self._started = time.perf_counter()
-
-    def _measure(self, k):
-        if k > 0:
-            self.plant.advance(self._acting(), self.period)
         if self.realtime:
-            self._wait(k)
-        t = k * self.period
-        self._truth.append((t, self.plant.q_true, self.plant.qd_true))
-        return t, self.plant.counts(), self._missed
+            load_controllers()
+            self.plant.advance(self._acting, 0.0)
 
-    def _acting(self):
+    def _make_pace(self):
+        return Pace(self._clock, self.period) if self.realtime else super()._make_pace()
+
+    def _measure(self, cycle, drive):
+        """Time is counted in periods; left alone for longer than the board's watchdog allows, the arm has no drive."""
+        for late in range(cycle - self._cycle):
+            if self.realtime and late * self.period >= WATCHDOG:
+                self._cut()
+            self.plant.advance(self._delayed(), self.period)
+        self._cycle = cycle
+        if not drive:
+            self._cut()
+        t = cycle * self.period
+        self._truth.append((t, self.plant.q_true, self.plant.qd_true))
+        return t, self.plant.counts(), False
+
+    def _delayed(self):
         """The command that acts now: the one of `delay` periods ago."""
         if not len(self._queue):
-            return self._pwm
+            return self._acting
         acting = self._queue[0].copy()
         self._queue[:-1] = self._queue[1:]
-        self._queue[-1] = self._pwm
+        self._queue[-1] = self._acting
         return acting
 
-    def _wait(self, k):
-        """Wait for the moment of cycle k, counted from the start of the run, so that no error adds up."""
-        early = self._started + k * self.period - time.perf_counter()
-        if early > 0:
-            time.sleep(early)
-        elif early < -self.period:
-            self._missed += 1
-
     def _send(self, pwm, gripper):
+        self._acting = pwm
         return pwm
 
     def _cut(self):
         self._queue[:] = 0.0
+        self._acting = np.zeros(JOINTS)
 
     def _close(self):
         self.plant.advance(np.zeros(JOINTS), _SINK)
@@ -185,13 +194,13 @@ class SimulatedBench(Bench):
         controller.reset()
         cycles = self._number_of_cycles(seconds)
         self._end_run()  # of a loop that was left by break
-        self._recorder = recorder = self._start_recorder({**header_of(controller), **header}) if record else None
+        run = self._run = Run(self._start_recorder({**header_of(controller), **header}) if record else None, reference)
         self._pwm = np.zeros(JOINTS)
         try:
             self._begin()
-            guard = self._make_guard()
+            run.guard = self._make_guard()
             for first in range(0, cycles, _BLOCK):
-                self._block(controller, reference, np.arange(first, min(first + _BLOCK, cycles)), recorder, guard)
+                self._block(controller, run, np.arange(first, min(first + _BLOCK, cycles)))
         except BaseException:
             self.cut()
             raise
@@ -199,10 +208,10 @@ class SimulatedBench(Bench):
             self._end_run()
         return self.recording if record else None
 
-    def _block(self, controller, reference, k, recorder, guard):
-        t = k * self.period
+    def _block(self, controller, run, k):
+        t, reference = k * self.period, run.reference
         if hasattr(reference, "sample"):
-            r = np.ascontiguousarray(reference.sample(t))
+            r = np.ascontiguousarray(reference.sample(t), dtype=float)
         else:
             r = np.array([np.stack(reference(time)) for time in t], dtype=float)
         plant, out = self.plant, np.empty((len(t), 15))
@@ -211,14 +220,15 @@ class SimulatedBench(Bench):
         law = (controller.kind, controller.parameters, controller.state)
         arrays = (plant._theta, plant._numbers, plant._w, plant._x, plant._joint)
         noise = plant._next_noise(len(t))
-        state = (self._queue, self._pwm, *law, guard.watch)
+        state = (self._queue, self._pwm, *law, run.guard.watch)
         done, alarm = _compiled_cycles(*arrays, *fixed, *state, t, r, noise, self._steps, out)
         rows = out[:done]
-        if recorder is not None and done:
-            recorder.write_block(t[:done], rows[:, 3:6], rows[:, :3], rows[:, 6:9], r[:done, 0], self._gripper, 0)
+        if run.recorder is not None and done:
+            run.recorder.write_block(t[:done], rows[:, 3:6], rows[:, :3], rows[:, 6:9], r[:done, 0], self._gripper, 0)
         self._truth.append((t[:done], rows[:, 9:12], rows[:, 12:15]))
-        guard.judge(alarm, t[min(done, len(t) - 1)])
+        run.guard.judge(alarm, t[min(done, len(t) - 1)])
         if done < len(t):
+            checked_reference(self.arm, t[done], r[done], out[done, 3:6])
             raise InputError(
                 f"the command of the controller at t = {t[done]:.6g} s is not finite; the drive has been cut. Check "
                 "the reference, and reset the controller"

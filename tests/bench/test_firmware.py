@@ -241,8 +241,12 @@ def test_no_command_for_100_ms_and_it_brakes(board, talk, phase):
     board.sleep(0.2)
     assert braking(board.pins())
     assert WATCHDOG - 0.002 < when_braked(board) - last < WATCHDOG + 0.010
-    assert talk.drive(0, 0, 0).status == protocol.WATCHDOG_TRIPPED
-    assert talk.drive(0, 0, 0).status == 0  # said once
+    for _ in range(3):  # refused and said until the computer has stopped and measured
+        assert talk.drive(120, -120, 120).status == protocol.WATCHDOG_TRIPPED
+        assert braking(board.pins())
+    assert talk.stop().status == protocol.WATCHDOG_TRIPPED
+    assert talk.drive(120, -120, 120).status == 0
+    assert not braking(board.pins())
 
 
 def test_a_computer_that_is_only_slow_does_not_trip_it(board, talk):

@@ -83,11 +83,11 @@ def test_error_in_the_body(board):
 
 def test_a_host_that_hangs(board):
     bench = bench_of(board).open()
-    for k, _ in enumerate(bench.run(0.5)):
+    for k, _ in enumerate(bench.run(0.8)):
         bench.drive(DRIVE)
         if k == 20:
             when = board.now()
-            board.sleep(0.5)
+            board.sleep(0.4)
             assert 0.9 * WATCHDOG < off_since(board) - when < 1.1 * WATCHDOG
     assert bench.statistics.watchdog_trips == 1
     assert_driving(board)  # the cell went on: its next command drives again

@@ -37,6 +37,9 @@ class Rig:
     def wait(self, seconds):
         """Let time pass with nobody at the bench."""
 
+    def pause(self, seconds):
+        """Let the program sleep in its loop; only a bench that follows the clock takes notice."""
+
     def device(self):
         """What `connect()` is told to find this bench; None: it finds the board by itself."""
         return None
@@ -60,6 +63,29 @@ class Simulated(Rig):
 
     def device(self):
         return "simulated"
+
+
+class Paced(Simulated):
+    """The simulated arm in real time, on a virtual clock."""
+
+    def set_up(self):
+        self.t = 0.0
+
+    def make(self, **options):
+        bench = SimulatedBench(q0=self.q0, realtime=True, **options)
+        bench._clock = self
+        return bench
+
+    def now(self):
+        return self.t
+
+    def sleep(self, seconds):
+        self.t += seconds
+
+    pause = sleep
+
+    def device(self):
+        raise NotImplementedError("connect() gives it the computer's clock")
 
 
 class Replay(Rig):
@@ -90,6 +116,11 @@ class Serial(Rig):
 
     def wait(self, seconds):
         self.board.sleep(seconds)
+
+    def now(self):
+        return self.board.now()
+
+    pause = wait
 
 
 class Double(Serial):
@@ -124,4 +155,5 @@ class Firmware(Serial):
         return self.board.pins().gripper
 
 
+CLOCKED = {"simulated in real time": Paced, "board in Python": Double, "firmware in the emulator": Firmware}
 RIGS = {"simulated": Simulated, "replay": Replay, "board in Python": Double, "firmware in the emulator": Firmware}

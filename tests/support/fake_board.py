@@ -112,14 +112,14 @@ class FakeBoard:
             fields |= {"board_id": self.board_id, "boot": self.boot, "reset_cause": self.reset_cause} | self.identity
             self._reply(Identity(command.seq, **fields))
             return
-        drive = command.type == protocol.DRIVE and self._greeted
+        drive = command.type == protocol.DRIVE and self._greeted and not self._tripped
         self.pwm = np.array(command.pwm, dtype=float) if drive else np.zeros(3)
         self.gripper = command.gripper if drive else self.gripper
         self._fed, self._watched = self.t, drive
         counts = np.clip(np.rint(protocol.SUBCOUNTS * self.calibration.counts(self.q)), 0, protocol.MAX_COUNTS)
         status = protocol.WATCHDOG_TRIPPED * self._tripped | protocol.HELLO_NEEDED * (not self._greeted)
         status |= protocol.HARDWARE_RESET * bool(self.reset_cause)
-        self._tripped = False
+        self._tripped = self._tripped and command.type == protocol.DRIVE
         clock_ms = int(1000 * (self.t - self._started)) % 65536
         self._reply(State(command.seq, tuple(int(c) for c in counts), status, self._parser.bad % 65536, clock_ms))
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ir50p_lab.bench.base import Bench
 from ir50p_lab.bench.calibration import nominal_calibration
+from ir50p_lab.bench.pace import Pace
 from ir50p_lab.errors import PortError
 from ir50p_lab.modelling.named_arms import IR50P
 
@@ -35,12 +36,14 @@ class FileBench(Bench):
         os.write(self._file, f"{time.monotonic()} {os.getpid()} {what}\n".encode())
 
     def _begin(self):
-        self._start = time.perf_counter()
+        pass
 
-    def _measure(self, k):
-        time.sleep(max(0.0, self._start + k * self.period - time.perf_counter()))
+    def _make_pace(self):
+        return Pace(self._clock, self.period)
+
+    def _measure(self, cycle, drive):
         self._q = self._q + 2e-4 * self._pwm
-        return time.perf_counter() - self._start, self.calibration.counts(self._q), 0
+        return self._clock.now() - self._run.pace.start, self.calibration.counts(self._q), False
 
     def _send(self, pwm, gripper):
         self._tell("drive " + " ".join(f"{u:g}" for u in pwm))

@@ -3,7 +3,7 @@
 // The computer decides, the board obeys - within limits. It measures three potentiometers, sets three motor bridges
 // (L6203) and an optional gripper, and keeps the arm safe when the computer, the cable or this sketch itself fails:
 //   1. no drive before the computer has said hello (a board that has restarted waits);
-//   2. no valid drive command for 100 ms: brake;
+//   2. no valid drive command for 100 ms: brake, and stay so until the computer has stopped and measured;
 //   3. a joint at an end of its potentiometer is not driven further out; a broken wire stops its joint altogether;
 //   4. the sketch hangs: the processor's own watchdog brakes after 30 ms and restarts the board after 60 ms.
 // The wire is described in protocol.py, wiring and first power-on in README.md.
@@ -31,7 +31,7 @@ int16_t command[JOINTS];     // PWM counts asked for, -255..255
 bool driving = false;        // a drive command is being carried out: the watchdog counts
 uint32_t last_drive;         // ms, when the last drive command came
 bool greeted = false;        // the computer has said hello since the board started
-bool tripped = false;        // the watchdog has cut the drive since the last reply
+bool tripped = false;        // the watchdog has cut the drive, and no stop or hello has come since
 uint16_t bad_frames = 0;
 uint16_t boot;               // number of this start
 uint8_t reset_cause;         // MCUSR as found
@@ -217,7 +217,6 @@ void send_state(uint8_t seq) {
   if (was_hung) reply.status |= HARDWARE_RESET;
   for (uint8_t j = 0; j < JOINTS; j++)
     if (limited(j)) reply.status |= LIMIT_ACTIVE[j];
-  tripped = false;
   send(&reply);
 }
 
@@ -238,7 +237,7 @@ void obey(const Command &frame) {
     return;
   }
   if (frame.type == STOP) cut();
-  if (frame.type == DRIVE && greeted) {
+  if (frame.type == DRIVE && greeted && !tripped) {
     for (uint8_t j = 0; j < JOINTS; j++) command[j] = frame.pwm[j];
     digitalWrite(GRIPPER_PIN, frame.flags & GRIPPER);
     driving = true;
@@ -246,6 +245,7 @@ void obey(const Command &frame) {
     drive();
   }
   send_state(frame.seq);
+  if (frame.type == STOP) tripped = false;  // told: it may drive again
 }
 
 // Drops what is no frame, up to the next sync byte: no good frame is lost to the noise before it. Returns what is left.

@@ -1,0 +1,132 @@
+"""The clock of a run: when each cycle is due, and how long the arm has heard nothing from the program."""
+
+import contextlib
+import copy
+import time
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+
+WATCHDOG = 0.1  # s without a command, after which the drive is cut: protocol.WATCHDOG_MS of the board
+LONGEST_PAUSE = 0.5  # s without a command that end a run: what would come after them was meant for another moment
+_AWAKE = 0.001  # s; a tenth of a processor at 100 Hz
+_LATE = 0.2  # of a period; a cycle that begins later than this is counted
+# a clock that goes on while a laptop sleeps (Linux, macOS; on Windows perf_counter does)
+_SLEEPLESS = getattr(time, "CLOCK_BOOTTIME", getattr(time, "CLOCK_MONOTONIC", None))
+
+
+class Clock:
+    """The computer's clock, s from an arbitrary start, and its sleep: what a virtual clock stands in for in tests."""
+
+    @staticmethod
+    def now():
+        """The time, s; it counts what a laptop has slept."""
+        return time.perf_counter() if _SLEEPLESS is None else time.clock_gettime(_SLEEPLESS)
+
+    @classmethod
+    def sleep(cls, seconds):
+        """Sleep; the last millisecond awake, because a sleeper is often woken late when other programs run."""
+        until = cls.now() + seconds
+        if seconds > _AWAKE:
+            time.sleep(seconds - _AWAKE)
+        while cls.now() < until:
+            pass
+
+
+class Steps:
+    """The cycles of a run whose time is a counter: nothing is ever late, and no pause matters. As `Pace`."""
+
+    armed, missed = True, 0
+
+    def __init__(self):
+        self.cycle = -1
+
+    def next_cycle(self):
+        """The number of the next cycle."""
+        self.cycle += 1
+        return self.cycle
+
+    def begins_anew(self):
+        """Never."""
+        return False
+
+    def silence(self):
+        """None, s."""
+        return 0.0
+
+
+class Pace:
+    """The cycles of one run on a clock.
+
+    Cycle k is due k periods after the start. One that would begin a whole period late is left out: the loop never runs
+    to catch up, and a pause makes no run longer. Until the first command has been sent, the clock waits for a program
+    that compiles in its first cycle.
+
+    Attributes: start: when the run began, heard: when the arm last heard of the program, s on the clock; cycle: number
+    of the last one; missed: cycles that came late or were left out; armed: whether a command was sent.
+    """
+
+    def __init__(self, clock, period):
+        if period > 0.5 * WATCHDOG:
+            raise InputError(
+                f"period = {period} s: the drive of an arm that hears nothing for {WATCHDOG:g} s is cut: give "
+                f"{0.5 * WATCHDOG:g} s at most"
+            )
+        self._clock, self._period = clock, period
+        self.start = self.heard = clock.now()
+        self.cycle, self.missed, self.armed = -1, 0, False
+
+    def next_cycle(self):
+        """Wait for the next cycle. Returns its number."""
+        self.begins_anew()
+        self.cycle += 1
+        skipped = max(0, int((self._clock.now() - self.start) / self._period - self.cycle))
+        self.missed += skipped
+        self.cycle += skipped
+        due = self.start + self.cycle * self._period
+        early = due - self._clock.now()
+        if early > 0:
+            self._clock.sleep(early)
+        self.missed += int(self._clock.now() - due > _LATE * self._period)
+        return self.cycle
+
+    def catch_up(self):
+        """Go on to the cycle that it is time for, within the body of the last one."""
+        self.cycle = max(self.cycle + 1, int((self._clock.now() - self.start) / self._period))
+
+    def begins_anew(self):
+        """Whether a long first cycle has let the run begin only now, because nothing had been driven in it yet."""
+        now = self._clock.now()
+        if self.armed or now - self.heard <= LONGEST_PAUSE:
+            return False
+        self.start, self.heard = self.start + now - self.heard, now
+        return True
+
+    def silence(self):
+        """How long the arm has heard nothing although it was driven, s; from now on it is counted anew."""
+        now = self._clock.now()
+        silence, self.heard = now - self.heard, now
+        return silence if self.armed else 0.0
+
+    def cut_at(self, silence):
+        """When the drive was cut in the silence that ends now, s of the run."""
+        return self.heard - silence + WATCHDOG - self.start
+
+
+def warm_up(controller, reference=None):
+    """Let controller and reference compile what they will need: copies of them take one step before the clock starts.
+
+    What fails here fails again in the first cycle, where it is said.
+    """
+    with contextlib.suppress(Exception):
+        controller, reference = copy.deepcopy((controller, reference))
+        rows = np.zeros((3, 3)) if reference is None else np.asarray(reference(0.0), dtype=float)
+        controller.step(0.0, rows[0].copy(), rows)
+
+
+def load_controllers():
+    """Have the compiled controllers loaded, 0.5 s and more: else the first `step` of the first run does it."""
+    from ir50p_lab.controllers import PID
+
+    warm_up(PID(kp=(0, 0, 0), limit_pwm=255))
