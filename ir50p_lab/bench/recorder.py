@@ -74,7 +74,7 @@ class Recorder:
         Raises RecordingError if the disk takes no more (memory and file keep what was recorded before), InputError
         for a reference that is not three numbers.
         """
-        t, q, counts, missed, _ = sample
+        t, q, counts, missed = sample[:4]
         r = _NAN3 if reference is None else _three(reference)
         row = (t, *q.tolist(), *counts.tolist(), *pwm.tolist(), *r, gripper, missed)
         self._rows.extend(row)

@@ -133,8 +133,7 @@ class SimulatedBench(Bench):
         pass
 
     def _begin(self):
-        self._cut()
-        self._cycle = 0
+        self._queue[:], self._acting, self._cycle = 0.0, np.zeros(JOINTS), 0
         self._truth.clear()
         if self.realtime:
             load_controllers()

@@ -67,7 +67,7 @@ def test_it_holds_the_measured_pose_and_leaves_the_caller_free(bench):
     samples = run.recent(10)
     assert run.alive and run.phase == "running" and run.error is None
     assert samples.q.shape == samples.u.shape == samples.reference.shape == (len(samples.t), 3)
-    np.testing.assert_allclose(np.diff(samples.t), 0.01, atol=0.009)
+    assert (np.diff(samples.t) > 0).all() and samples.t[-1] >= 0.099  # late cycles are left out, none is early
     assert (samples.reference == samples.reference[0]).all()  # the pose of the first sample
     assert np.abs(samples.reference[0] - (0.1, 0.2, -0.3)).max() < 0.05
     run.cut()
@@ -83,7 +83,7 @@ def test_the_reference_is_led_in_from_where_the_arm_stands(bench):
     r = run.recent(80).reference
     np.testing.assert_allclose(r[0], (0.1, 0.2, -0.3), atol=0.05)
     np.testing.assert_allclose(r[-1], goal)
-    assert np.abs(np.diff(r, axis=0)).max() < 0.8 * 0.025  # never faster than 0.8 rad/s (a late cycle: 25 ms)
+    assert (np.abs(np.diff(r, axis=0)).max(axis=1) <= 0.8 * np.diff(run.recent(80).t) + 1e-4).all()  # 0.8 rad/s
     way = 1.875 * np.abs(goal - r[0]).max() / 0.8
     assert run.recent(80).t[-1] == pytest.approx(way + 0.2, abs=0.03)
 
