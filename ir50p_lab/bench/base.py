@@ -248,6 +248,8 @@ class Bench(abc.ABC):
         self._pwm = np.zeros(JOINTS)
         try:
             self._begin()
+            if (guard := self._make_guard()) is not None:  # compiles before the clock starts
+                guard.check(Sample(0.0, np.zeros(JOINTS), np.zeros(JOINTS), 0), self._pwm)
             run.guard, run.pace = self._make_guard(), self._make_pace()
             while (sample := self._next_sample(run, cycles)) is not None:
                 yield sample

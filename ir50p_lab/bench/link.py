@@ -24,7 +24,7 @@ class LinkStatistics(NamedTuple):
 
     commands: sent; repeats: of which again, because no answer came; stale: answers that came too late to count;
     bad_replies, bad_commands: damaged frames, dropped by the computer and by the board (its counter, which begins at
-    its start and wraps at 65536); watchdog_trips: times in a run that the drive was cut because no command came for
+    its start and wraps at 65536); watchdog_trips: times that the board cut the drive because no command came for
     100 ms; limits: (3,) bool, joint is at an end of its potentiometer; round_trip: median of the last
     1000, s (nan: none yet).
     """
@@ -52,7 +52,8 @@ class Link:
             transport.timeout = READ_TIMEOUT
         self._parser = protocol.FrameParser("replies")
         self._seq, self._told = 0, None
-        self._commands = self._repeats = self._stale = 0
+        self._commands = self._repeats = self._stale = self._trips = 0
+        self._tripped = False
         self._last = None  # the last State
         self._round_trips = deque(maxlen=1000)
         self.heard = bytearray()
@@ -117,7 +118,7 @@ class Link:
             stale=self._stale,
             bad_replies=self._parser.bad,
             bad_commands=bad,
-            watchdog_trips=0,  # the bench knows
+            watchdog_trips=self._trips,
             limits=tuple(bool(status & bit) for bit in protocol.LIMIT_ACTIVE),
             round_trip=float(np.median(self._round_trips)) if self._round_trips else float("nan"),
         )
@@ -131,3 +132,6 @@ class Link:
     def _note(self, reply):
         if isinstance(reply, protocol.State):
             self._last = reply
+            tripped = bool(reply.status & protocol.WATCHDOG_TRIPPED)
+            self._trips += tripped and not self._tripped  # it is said until a stop is answered
+            self._tripped = tripped

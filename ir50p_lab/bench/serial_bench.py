@@ -179,7 +179,7 @@ class SerialBench(Bench):
         """What happened on the wire since the bench was opened: LinkStatistics."""
         if self._link is None:
             raise BoardError("the bench is closed: its statistics are gone")
-        return self._link.statistics._replace(watchdog_trips=self.trips)
+        return self._link.statistics
 
     def _statistics(self, run):
         if self._link is None:
