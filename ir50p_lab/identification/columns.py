@@ -5,12 +5,15 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import first_not_finite
 
+_BETWEEN = 100  # periods put between two recordings that are fitted together
 
-def columns_of(recording, q=None, u=None):
-    """Return t (n,), q (n, k) and u (n, k) as float arrays; t `without_rounding`.
 
-    recording: anything with t, q and u, then q and u must be left out; or the times themselves.
-    Raises InputError on shapes that do not fit, NaN, or times that do not increase, naming the first such sample.
+def columns_of(recording, q=None, u=None, qd=None, *, drop=False):
+    """Return t (n,), q (n, k) and u (n, k) as float arrays; t `without_rounding`. With qd (n, k) four arrays.
+
+    recording: anything with t, q and u (a Recording, a pandas table), then q and u must be left out; or the times
+    themselves, with q and u as arrays, lists or pandas Series. Masked samples are left out, and with `drop` those that
+    are no numbers. Raises InputError on shapes that do not fit, NaN, or times that do not increase, naming the first.
     """
     if hasattr(recording, "q") and hasattr(recording, "t"):
         if q is not None or u is not None:
@@ -20,24 +23,56 @@ def columns_of(recording, q=None, u=None):
         t = recording
         if q is None or u is None:
             raise InputError("q and u are missing: give a recording, or t, q and u as arrays")
-    t = _numbers("t", t, "s")
-    if t.ndim != 1 or len(t) < 2:
-        raise InputError(f"t has shape {t.shape}; give at least two times in s, shape (n,)")
-    q, u = _numbers("q", q, "rad"), _numbers("u", u, "its own unit")
-    for name, array in (("q", q), ("u", u)):
-        if array.ndim not in (1, 2) or len(array) != len(t):
-            raise InputError(f"{name} has shape {array.shape} beside {len(t)} times: give (n,) or (n, k), time first")
-    if q.shape != u.shape:
-        raise InputError(f"q {q.shape} and u {u.shape}: give one u per joint")
+    given = {"t": t, "q": q, "u": u} | ({} if qd is None else {"qd": qd})
+    units = {"t": "s", "q": "rad", "u": "its own unit", "qd": "rad/s"}
+    arrays = {name: _numbers(name, value, units[name]) for name, value in given.items()}
+    n = len(arrays["t"])
+    if arrays["t"].ndim != 1 or n < 2:
+        raise InputError(f"t has shape {arrays['t'].shape}; give at least two times in s, shape (n,)")
+    for name, array in arrays.items():
+        if array.ndim not in (1, 2) or len(array) != n:
+            raise InputError(f"{name} has shape {array.shape} beside {n} times: give (n,) or (n, k), time first")
+        if name != "t" and array.shape != arrays["q"].shape:
+            raise InputError(f"q {arrays['q'].shape} and {name} {array.shape}: give one {name} per joint")
+    left_out = np.zeros(n, dtype=bool)
+    for name, value in given.items():
+        left_out |= np.ma.getmaskarray(np.ma.asarray(value)).reshape(n, -1).any(axis=1)
+        if drop:
+            left_out |= ~np.isfinite(arrays[name].reshape(n, -1)).all(axis=1)
+    arrays = {name: array[~left_out] for name, array in arrays.items()}
+    for name, array in arrays.items():
+        if not np.isfinite(array).all():
+            raise InputError(
+                f"{name} holds {first_not_finite(array)} ({int((~np.isfinite(array)).sum())} such value(s)): remove "
+                "these samples from t, q and u; a gap in time is understood"
+            )
+    t = arrays.pop("t")
     back = np.flatnonzero(np.diff(t) <= 0)
     if len(back):
         i = int(back[0]) + 1
         raise InputError(
             f"time runs backwards or stands still: t[{i}] = {t[i]:.9g} s after t[{i - 1}] = {t[i - 1]:.9g} s "
-            f"({len(back)} such step(s)): sort the samples by time and remove doubled ones"
+            f"({len(back)} such step(s)): sort the samples by time and remove doubled ones; several recordings: give "
+            "a list of them"
         )
-    n, t = len(t), without_rounding(t)
-    return t, np.ascontiguousarray(q.reshape(n, -1)), np.ascontiguousarray(u.reshape(n, -1))
+    return without_rounding(t), *(np.ascontiguousarray(x.reshape(len(t), -1)) for x in arrays.values())
+
+
+def joined(recordings):
+    """Several recordings one after the other, with gaps between them: t (n,), q, u (n, k).
+
+    Each a recording or a tuple (t, q, u). Raises InputError as `columns_of` does.
+    """
+    parts, end = [], 0.0
+    for recording in recordings:
+        t, q, u = columns_of(*recording) if isinstance(recording, (tuple, list)) else columns_of(recording)
+        parts.append((t - t[0] + end, q, u))
+        end = parts[-1][0][-1] + _BETWEEN * sampling_period(t)
+    if len({part[1].shape[1] for part in parts}) != 1:
+        raise InputError(
+            "the recordings have different numbers of joints, or there is none: give the same joints of each"
+        )
+    return tuple(np.concatenate(x) for x in zip(*parts, strict=True))
 
 
 def sampling_period(t):
@@ -93,16 +128,12 @@ def runs(t, max_gap):
 
 
 def _numbers(name, value, unit):
+    value = np.ma.getdata(value) if np.ma.isMaskedArray(value) else value
     try:
-        array = np.asarray(value, dtype=float)
+        array = np.asarray(value)
+        array = (array - array[0]) / np.timedelta64(1, "s") if array.dtype.kind in "mM" else array.astype(float)
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{name} must hold numbers in {unit}; got {value!r:.60}") from None
     if array.ndim == 0:
         raise InputError(f"{name} = {value!r:.60} is a single number: give an array, time first")
-    bad = ~np.isfinite(array)
-    if bad.any():
-        raise InputError(
-            f"{name} holds {first_not_finite(array)} ({int(bad.sum())} such value(s)): remove these samples from t, q "
-            "and u; a gap in time is understood"
-        )
     return array

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.identification.parameters import NAMES, OFFSETS, ONLY_THESIS
+from ir50p_lab.identification.parameters import FREE_OF_SIGN, NAMES
 from ir50p_lab.modelling.dynamics import mass_matrix
 
 
@@ -91,7 +91,7 @@ def impossible_values(theta, stderr, rows):
     for row in range(1 if rows == "shared" else 3):
         who = "" if rows == "shared" else f"joint {row + 1}: "
         for k, name in enumerate(NAMES):
-            if name not in OFFSETS and name not in ONLY_THESIS and theta[row, k] < -2 * stderr[row, k]:
+            if name not in FREE_OF_SIGN and theta[row, k] < -2 * stderr[row, k]:
                 found.append(
                     f"{who}{name} = {theta[row, k]:.3g} +- {stderr[row, k]:.2g} is negative, which is hardly possible: "
                     "the signals are biased (noise, delay) or the model lacks something; or use method='bounded'"

@@ -5,16 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.identification import fit_input
-from ir50p_lab.identification import least_squares as ls
-from ir50p_lab.identification.bounded import bounded, checked_bounds
+from ir50p_lab.identification import estimators
 from ir50p_lab.identification.estimate import Estimate, impossible_values, indefinite_mass
+from ir50p_lab.identification.fit_input import checked_data, checked_instruments, checked_use, checked_weights
 from ir50p_lab.identification.parameters import ACTS_ON, NAMES, chosen_columns
 from ir50p_lab.identification.problem import prepare
-from ir50p_lab.identification.robust import huber
-from ir50p_lab.identification.standard_errors import lag_one, sandwich
-from ir50p_lab.inputs import choice
+from ir50p_lab.identification.regression import lag_one, sandwich
+from ir50p_lab.inputs import choice, number
 
+METHODS = ("ls", "weighted", "huber", "ridge", "bounded", "iv")
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 
 
@@ -66,28 +65,37 @@ def fit(
     Raises: InputError on bad arguments; IdentificationError if there are too few samples, no motion, or an estimator
         cannot settle.
     """
-    choice("unit", unit, ("PWM", "N m"))
-    fit_input.checked_options(method, rows, errors, l2, threshold, strength)
-    Phi, y = fit_input.checked_data(Phi, y, every)
-    use = None if use is None else fit_input.checked_use(use, len(y), every)
+    for name, value, choices in (
+        ("unit", unit, ("PWM", "N m")),
+        ("method", method, METHODS),
+        ("rows", rows, ("joint", "shared")),
+        ("errors", errors, ("hac", "classical")),
+    ):
+        choice(name, value, choices)
+    number("threshold", threshold, "> 0")
+    number("strength", strength, "> 0")
+    if l2 is not None and number("l2", l2, "> 0", unit="m") > 10:
+        raise InputError(f"l2 = {l2} m is longer than 10 m: is it in millimetres? Give metres")
+    Phi, y = checked_data(Phi, y, every)
+    use = None if use is None else checked_use(use, len(y), every)
     chosen = chosen_columns(columns)
-    limits = checked_bounds(bounds) if method == "bounded" else None
-    Z = fit_input.checked_instruments(instruments, Phi.shape, every) if method == "iv" else None
+    limits = estimators.checked_bounds(bounds) if method == "bounded" else None
+    Z = checked_instruments(instruments, Phi.shape, every) if method == "iv" else None
     if method == "weighted":
         weights = _weights(weights, Phi, y, use, rows, chosen, l2, every)
-    estimators = {
-        "ls": lambda part, problem: ls.least_squares(problem),
-        "weighted": lambda part, problem: ls.least_squares(problem),
-        "huber": lambda part, problem: huber(problem, threshold),
-        "ridge": lambda part, problem: ls.ridge(problem, strength),
-        "bounded": lambda part, problem: bounded(problem, limits),
-        "iv": lambda part, problem: ls.instrumental_variables(problem, part.columns_of(Z, problem.names)),
-    }
+    solver = {
+        "ls": lambda part, problem: estimators.plain(problem),
+        "weighted": lambda part, problem: estimators.plain(problem),
+        "huber": lambda part, problem: estimators.huber(problem, threshold),
+        "ridge": lambda part, problem: estimators.ridge(problem, strength),
+        "bounded": lambda part, problem: estimators.bounded(problem, limits),
+        "iv": lambda part, problem: estimators.instrumental_variables(problem, part.columns_of(Z, problem.names)),
+    }[method]
     parts = [_Part.of(joints, chosen, l2) for joints in ([[0, 1, 2]] if rows == "shared" else [[0], [1], [2]])]
     root_weights = np.sqrt(weights) if method == "weighted" else None
     if use is not None:  # rows of zeros say nothing, and leave the others at their place in time
         root_weights = use.astype(float) if root_weights is None else root_weights * use
-    solved = [_solve(part, Phi, y, root_weights, estimators[method], errors) for part in parts]
+    solved = [_solve(part, Phi, y, root_weights, solver, errors) for part in parts]
     return _gather(parts, solved, Phi, y, use, method, rows, errors, unit)
 
 
@@ -137,7 +145,8 @@ def _solve(part, Phi, y, root_weights, estimator, errors):
     solution = estimator(part, problem)
     in_q = sandwich(solution.bread, solution.rows, solution.residuals, len(y), errors)
     back = part.matrix[:, [part.fitted.index(name) for name in problem.names]] / problem.scale
-    covariance = back @ ls.covariance_of_beta(problem, in_q) @ back.T
+    whole = back @ problem.R_inverse
+    covariance = whole @ in_q @ whole.T
     notes = [*problem.notes, *problem.hardly_told_apart(), *solution.notes]
     return problem, back, back @ solution.beta, covariance, notes
 
@@ -188,7 +197,7 @@ def _gather(parts, solved, Phi, y, use, method, rows, errors, unit):
 def _weights(weights, Phi, y, use, rows, chosen, l2, every):
     """Given weights, or one per joint from a first fit of one theta for all."""
     if weights is not None:
-        return fit_input.checked_weights(weights, len(y), every)
+        return checked_weights(weights, len(y), every)
     if rows == "joint":
         raise InputError("method='weighted' with rows='joint' needs weights (n, 3): 1/variance of each measurement")
     first = fit(Phi, y, rows="shared", columns=[NAMES[k] for k in chosen], l2=l2, use=use)

@@ -7,8 +7,8 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.closed_loop import Run, runs_of
-from ir50p_lab.identification.parameters import ACTS_ON, NAMES, OFFSETS, ONLY_THESIS
-from ir50p_lab.identification.standard_errors import long_run_sum
+from ir50p_lab.identification.parameters import ACTS_ON, FREE_OF_SIGN, NAMES, ONLY_THESIS
+from ir50p_lab.identification.regression import long_run_sum
 from ir50p_lab.identification.validation import Validation, nrmse_fit
 from ir50p_lab.inputs import number, switch, whole
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta
@@ -209,7 +209,7 @@ class _Shape:
         known = np.array([stderr[j, k] if np.isfinite(stderr[j, k]) else 0.0 for j, k in places])
         joint = np.array([np.abs(theta[j]).max() for j, _ in places])
         scale = np.maximum.reduce([0.3 * np.abs(x0), 3 * known, 1e-3 * joint])
-        low = np.array([-np.inf if NAMES[k] in (*OFFSETS, *ONLY_THESIS) else 0.0 for _, k in places])
+        low = np.array([-np.inf if NAMES[k] in FREE_OF_SIGN else 0.0 for _, k in places])
         x0 = np.maximum(x0, np.where(np.isfinite(low), low + 1e-6 * scale, -np.inf))
         high = np.full(len(x0), np.inf)
         names = [f"joint {j + 1}: {NAMES[k]}" for j, k in places]
@@ -283,7 +283,7 @@ def _covariance(J, residuals):
         return np.full((p, p), np.inf), ["a parameter has no effect on the simulated run: its error is not known"]
     Q, R = np.linalg.qr(J / size)
     scores = (Q * residuals.ravel()[:, None]).reshape(len(residuals), 6, p).sum(axis=1)
-    S, _ = long_run_sum(scores, residuals)
+    S = long_run_sum(scores, residuals)
     back = np.linalg.solve(R, np.eye(p))
     covariance = back @ S @ back.T / np.outer(size, size)
     condition = np.linalg.cond(R)

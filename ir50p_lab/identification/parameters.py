@@ -30,6 +30,7 @@ MEANING = {
 NAMES = tuple(MEANING)
 OFFSETS = ("Tf1", "Tf2", "Tf3")
 ONLY_THESIS = ("theta7", "theta8")  # constant products of inertia: left out of a fit unless asked for
+FREE_OF_SIGN = (*OFFSETS, *ONLY_THESIS)  # all others are >= 0 for a body and its friction
 
 # columns that can differ from zero in each joint's row: 9, 12 and 9 of the 20
 ACTS_ON = (

@@ -48,9 +48,10 @@ class Problem:
         """Condition number of A, its columns of length 1."""
         return float(np.linalg.cond(self.R))
 
-    def beta(self, in_q):
-        """Parameters from coordinates in Q: R^-1 x."""
-        return self.R_inverse @ in_q
+    @cached_property
+    def Qty_in_beta(self):
+        """The least-squares parameters R^-1 Q^T y."""
+        return self.R_inverse @ self.Qty
 
     def residuals(self, beta):
         """y - A beta, (N,)."""
@@ -73,7 +74,7 @@ class Problem:
         return found
 
 
-def prepare(who, names, A, y, n):
+def prepare(who, names, A, y, n, tolerance=DEPENDENT):
     """A Problem from columns A (N, p) and y (N,).
 
     Raises IdentificationError if there are fewer than twice as many equations as parameters.
@@ -94,9 +95,9 @@ def prepare(who, names, A, y, n):
         )
     A, length = A[:, seen] / length[seen], length[seen]
     R, Qty = _factors(A, y)
-    kept = independent_columns(R, DEPENDENT)
+    kept = independent_columns(R, tolerance)
     if len(kept) < len(names):
-        notes += groups_in_words(who, names, R / length, kept)
+        notes += _groups_in_words(who, names, R / length, kept)
         lost += [names[k] for k in range(len(names)) if k not in kept]
         names, A, length = [names[k] for k in kept], A[:, kept], length[kept]
         R, Qty = _factors(A, y)
@@ -110,7 +111,7 @@ def _factors(A, y):
     return np.ascontiguousarray(R[:p, :p]), R[:p, -1]
 
 
-def groups_in_words(who, names, R, kept):
+def _groups_in_words(who, names, R, kept):
     """One sentence per dependent column: what the kept ones now stand for."""
     sentences = []
     for k in sorted(set(range(len(names))) - set(kept)):

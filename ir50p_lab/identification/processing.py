@@ -139,7 +139,8 @@ def process(
     parts = runs(t, 3.5 * period if max_gap is None else max_gap)
     if len(parts) > 1:
         notes.append(f"{len(parts) - 1} gap(s) in time: {len(parts)} runs, each filtered by itself")
-    shortest = max(8, math.ceil(2 * trim * rate) + 4)
+    backward = 0 if cutoff_hz is None or derivatives == "causal" else 3 * (2 * math.ceil(order / 2) + 1) + 1
+    shortest = max(8, backward, math.ceil(2 * trim * rate) + 4)
     uneven = False
     for k, (first, last) in enumerate(parts):
         if last - first < shortest:

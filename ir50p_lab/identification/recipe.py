@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification import signal_checks as signals
+from ir50p_lab.errors import InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.columns import columns_of
+from ir50p_lab.identification.doubts import Doubts, check_signals
 from ir50p_lab.identification.estimate import Estimate
 from ir50p_lab.identification.fitting import fit
 from ir50p_lab.identification.processing import process
@@ -17,7 +17,6 @@ from ir50p_lab.identification.validation import validate
 # potentiometers is 5 to 8 mrad; a joint turns over within +-0.05 rad/s, where sgn(qd) would jump at the wrong moment.
 STEPS = {"cutoff_hz": 1.2, "order": 4}
 TURN = 0.05  # rad/s
-_TURN_OF_A_JOINT = 2.5 * np.pi  # rad: a joint that goes further is rare, one in degrees is not
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -34,7 +33,17 @@ class Identified(Estimate):
 
 
 def identify(
-    recordings, *, l2=None, delay=0.02, slow=0.05, method="bounded", rows="joint", g=9.81, unit="PWM", **steps
+    recordings,
+    *,
+    l2=None,
+    delay=0.02,
+    slow=0.05,
+    method="bounded",
+    rows="joint",
+    g=9.81,
+    unit="PWM",
+    anyway=False,
+    **steps,
 ):
     """Identify the arm from one or several recordings: the recipe of the course in one call.
 
@@ -51,7 +60,8 @@ def identify(
         recordings: a Recording (t, q, u), or a list of them: other motions, or another load of work for the same arm.
         l2: upper arm, m, or None. delay: s from a sample to the moment its u acts. slow: rad/s.
         method: "bounded", or another of `fit`; rows, g, unit (of u): as in `fit`, `regressor`; steps: cutoff_hz= (Hz,
-        above what the joints move at), order=, held=, trim=, max_gap= of `process`.
+        above what the joints move at), order=, held=, trim=, max_gap= of `process`; anyway: go on where the data are
+        refused.
 
     Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by some per
     cent, at this length of record more than the standard errors, which do not know it: where the parameters themselves
@@ -70,7 +80,7 @@ def identify(
         raise InputError("no recording given: give one, or a list of them")
     Phi, y, use, notes = [], [], [], []
     for recording in recordings if several else [recordings]:
-        notes += _looked_at(recording)
+        notes += _looked_at(recording, anyway)
         motion = process(recording, delay=delay, slow=slow, **steps)
         if motion.q.shape[1] != 3:
             raise InputError(f"q has {motion.q.shape[1]} columns: give all three joints, or take fit_joint for one")
@@ -84,27 +94,18 @@ def identify(
     return Identified(**values, delay=float(delay), steps=steps, g=float(g))
 
 
-def _looked_at(recording):
+def _looked_at(recording, anyway):
     """Doubts about a recording as sentences; what cannot be right is refused, joint by joint."""
     t, q, u = columns_of(recording)
     notes = []
     for joint in range(q.shape[1]):
-        try:
-            signals.refuse_bad_signals(t, q[:, joint], u[:, joint])
-        except IdentificationError as error:
-            raise IdentificationError(f"joint {joint + 1}: {error}") from None
-        for name, x in (("q", q), ("u", u)):
-            notes += [f"joint {joint + 1}: {said}" for said in signals.outliers(name, t, x[:, joint])]
-        span = np.ptp(q[:, joint])
-        if span > _TURN_OF_A_JOINT:
-            notes.append(
-                f"joint {joint + 1} spans {span:.4g} rad, {span / (2 * np.pi):.2g} turns: "
-                "is it in degrees? Use np.radians(q)"
-            )
+        doubts = Doubts(anyway, f"joint {joint + 1}: ")
+        check_signals(doubts, t, q[:, joint], u[:, joint])
         extreme = np.isin(u[:, joint], (u[:, joint].min(), u[:, joint].max())).mean()
         if extreme > 0.05:
-            notes.append(
-                f"joint {joint + 1}: u is at its largest or smallest value in {100 * extreme:.0f} % of the record: if "
-                "it was clipped after the drive, or the drive saturates, these samples are not what acted"
+            doubts.add(
+                f"u is at its largest or smallest value in {100 * extreme:.0f} % of the record: if it was clipped "
+                "after the drive, or the drive saturates, these samples are not what acted"
             )
+        notes += doubts
     return notes

@@ -1,89 +1,146 @@
-"""Least squares for a few columns with standard errors that stay honest when residuals are alike (HAC)."""
+"""Least squares for any regressor matrix, with standard errors that stay honest when residuals are alike (HAC)."""
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import fft, special
 
-_TOLERANCE = 1e-6  # share of a column's power that the others do not hold, below which it has no answer of its own
+from ir50p_lab.errors import InputError
+from ir50p_lab.identification.problem import prepare
+from ir50p_lab.identification.qr import gram
+from ir50p_lab.inputs import choice, first_not_finite, numbers
 
 
-@dataclass(frozen=True)
-class Solution:
-    """x (p,) with stderr (p,); dropped: indices of columns without an answer of their own (x = 0, stderr = inf).
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LeastSquares:
+    """What `least_squares` found.
 
-    residuals (n,); rms; correlation of neighbouring residuals; condition of the column-normalised matrix.
+    ============== ================================================================================ ==========
+    x              parameters; 0 where a column was left out                                        (p,)
+    stderr         standard errors; inf: the data cannot carry it                                   (p,)
+    covariance     of x; 0 where a column was left out                                              (p, p)
+    residuals      y - A x                                                                          like y
+    rms            of the residuals
+    correlation    of neighbouring residuals: 0 for white noise
+    independent    number of independent samples that carry as much as the n there are
+    condition      of A, its columns scaled to length 1
+    dropped        names of the columns that the data cannot carry                                  tuple
+    warnings       tuple of str: columns left out, columns that are hardly told apart
+    ============== ================================================================================ ==========
     """
 
     x: np.ndarray
     stderr: np.ndarray
-    dropped: tuple
+    covariance: np.ndarray
     residuals: np.ndarray
     rms: float
     correlation: float
+    independent: float
     condition: float
+    dropped: tuple
+    warnings: tuple
 
 
-def solve(A, y, *, drop_first=(), lags=None):
-    """Least squares A x = y by QR; columns that the others hold already are dropped, those of `drop_first` first.
+def least_squares(A, y, *, names=None, errors="hac", tolerance=1e-8):
+    """Least squares A x = y by QR, for any regressor matrix, with standard errors for residuals in time order.
 
-    The covariance is that of Newey and West (Bartlett weights): residuals that stay alike for `lags` samples carry
-    less information than their number. lags: default 4 (n/100)^(2/9), at least until their correlation has died out.
+        found = least_squares(np.column_stack([qd, np.sign(qd)]), torque, names=("viscous", "Coulomb"))
+
+    Args:
+        A: (n, p), or (n, k, p) for k equations a sample; y: (n,) or (n, k). Time first.
+        names: of the p columns. errors: "hac" holds for residuals that are alike over time and of unequal size
+        (heteroscedasticity and autocorrelation consistent, `long_run_sum`); "classical" for white ones.
+        tolerance: a column of which less than this sticks out of those before it is left out.
+
+    Returns: LeastSquares. Noise in A is not in the errors: it biases.
+    Raises: InputError on shapes and numbers that are not finite; IdentificationError if A is zero, or has fewer than
+    twice as many rows as columns.
     """
-    n, p = A.shape
-    size = np.linalg.norm(A, axis=0)
-    kept = [j for j in range(p) if size[j] > 0]
-    order = [j for j in drop_first if j in kept] + [j for j in kept if j not in drop_first]
-    for j in order:
-        others = [k for k in kept if k != j]
-        if others and _own_share(A[:, j] / size[j], A[:, others] / size[others]) < _TOLERANCE:
-            kept = others
-    dropped = tuple(j for j in range(p) if j not in kept)
-    B = A[:, kept] / size[kept]
-    Q, R = np.linalg.qr(B)
-    x = np.linalg.solve(R, Q.T @ y)
-    r = y - B @ x
-    covariance = _hac(Q, R, r, lags)
-    out, stderr = np.zeros(p), np.full(p, np.inf)
-    out[kept], stderr[kept] = x / size[kept], np.sqrt(np.diag(covariance)) / size[kept]
-    power = float(r @ r)
-    scale = float(y @ y)
-    correlation = float(r[1:] @ r[:-1] / power) if power > 1e-24 * scale else 0.0
-    return Solution(out, stderr, dropped, r, math.sqrt(power / n), correlation, float(np.linalg.cond(B)))
+    A, y = numbers("A", A), numbers("y", y)
+    if A.ndim not in (2, 3) or A.shape[:-1] != y.shape or not A.size:
+        raise InputError(f"A has shape {A.shape}, y {y.shape}: give (n, p) and (n,), or (n, k, p) and (n, k)")
+    for name, array in (("A", A), ("y", y)):
+        if not np.isfinite(array).all():
+            raise InputError(f"{name} holds {first_not_finite(array)}: remove or repair that sample")
+    p = A.shape[-1]
+    names = tuple(f"x{k + 1}" for k in range(p)) if names is None else tuple(names)
+    if len(names) != p:
+        raise InputError(f"{len(names)} names for {p} columns: give one for each")
+    problem = prepare("", names, A.reshape(-1, p), y.ravel(), len(y), tolerance)
+    beta = problem.Qty_in_beta
+    e = problem.residuals(beta)
+    in_q = sandwich(np.eye(len(beta)), problem.Q, e, len(y), choice("errors", errors, ("hac", "classical")))
+    kept = [names.index(name) for name in problem.names]
+    back = problem.R_inverse / problem.scale[:, None]
+    x, covariance = np.zeros(p), np.zeros((p, p))
+    x[kept] = beta / problem.scale
+    covariance[np.ix_(kept, kept)] = back @ in_q @ back.T
+    stderr = np.full(p, np.inf)
+    stderr[kept] = np.sqrt(np.diag(covariance))[kept]
+    e = e.reshape(len(y), -1)
+    return LeastSquares(
+        x=x,
+        stderr=stderr,
+        covariance=covariance,
+        residuals=e.reshape(y.shape),
+        rms=math.sqrt(np.mean(e**2)),
+        correlation=float(np.mean(lag_one(e))),
+        independent=float(independent_samples(e)),
+        condition=problem.condition,
+        dropped=problem.lost,
+        warnings=(*problem.notes, *problem.hardly_told_apart()),
+    )
 
 
-def _own_share(column, others):
-    """Share of the power of `column` (of length 1) that `others` cannot express."""
-    Q, _ = np.linalg.qr(others)
-    left = column - Q @ (Q.T @ column)
-    return float(left @ left)
+def sandwich(bread, rows, residuals, n, errors):
+    """Covariance B^-1 S B^-T of an estimate that solves sum of rows^T residuals = 0.
+
+    S is the covariance of that sum. Classical: residuals white, each equation with its own variance. HAC: from the
+    spectrum of the scores near frequency zero.
+
+    Args:
+        bread: (p, p), derivative of the sum by the parameters.
+        rows: (N, p); residuals: (N,): N = n k equations, k of them (1 or 3 joints) per sample, sample by sample.
+        errors: "classical" or "hac".
+    """
+    N, p = rows.shape
+    joints = N // n
+    if errors == "classical":
+        blocks = [(rows[j::joints], residuals[j::joints]) for j in range(joints)]
+        S = N / (N - p) * sum(np.mean(r**2) * gram(block, block) for block, r in blocks)
+    else:
+        scores = (rows * residuals[:, None]).reshape(n, joints, p).sum(axis=1)
+        residuals = residuals.reshape(n, joints)
+        S = long_run_sum(scores, residuals)
+        S *= 1 / max(1 - p / (independent_samples(residuals) * joints), 0.5)  # p of them were spent on the fit
+    return np.linalg.solve(bread, np.linalg.solve(bread, S).T)
 
 
-def _hac(Q, R, r, lags):
-    n, p = Q.shape
-    lags = correlation_length(r) if lags is None else lags
-    lags = int(min(max(lags, math.ceil(4 * (n / 100) ** (2 / 9))), n // 4))
-    scores = Q * r[:, None]
-    S = scores.T @ scores
-    for k in range(1, lags + 1):
-        part = scores[k:].T @ scores[:-k]
-        S += (1 - k / (lags + 1)) * (part + part.T)
-    inverse = np.linalg.solve(R, np.eye(p))
-    covariance = inverse @ S @ inverse.T * n / max(n - p, 1)
-    # Bartlett weights leave out the slow part of the correlation: never below what independent residuals give
-    white = inverse @ inverse.T * float(r @ r) / max(n - p, 1)
-    flat = np.maximum(np.diag(covariance), np.diag(white))
-    return covariance + np.diag(flat - np.diag(covariance))
+def long_run_sum(scores, residuals):
+    """Covariance (p, p) of the sum over time of correlated `scores` (n, p), which go with `residuals` (n, k).
+
+    Mean of the first B squared cosine coefficients ('equal-weighted cosine', Lazarus, Lewis, Stock and Watson 2018):
+    what matters for an estimate is the noise at the frequencies next to zero. B = 0.4 n^(2/3), but no more than where
+    the residuals' spectrum is still flat, taken as half of the band that holds half of their power (a quarter of the
+    cut-off for noise that was low-passed). Few coefficients make the errors themselves uncertain: they are widened as
+    Student's t with B degrees of freedom asks.
+    """
+    n = len(scores)
+    B = int(np.clip(independent_samples(residuals) // 4, 4, max(4, 0.4 * n ** (2 / 3))))
+    coefficients = fft.dct(scores, axis=0)[1 : B + 1]
+    wider = special.stdtrit(B, 0.99865) / 3.0  # three standard errors then hold the truth 997 times in 1000
+    return wider**2 * coefficients.T @ coefficients / (2 * B)
 
 
-def correlation_length(r):
-    """Twice the number of samples after which residuals r (n,) are no longer alike (correlation < 2/sqrt(n))."""
-    n = len(r)
-    power = float(r @ r)
-    if power <= 0:
-        return 0
-    size = 1 << (2 * n - 1).bit_length()
-    spectrum = np.fft.rfft(r, size)
-    correlation = np.fft.irfft(np.abs(spectrum) ** 2, size)[: max(n // 8, 2)] / power
-    quiet = np.flatnonzero(correlation < 2 / math.sqrt(n))
-    return 2 * int(quiet[0] if len(quiet) else len(correlation))
+def independent_samples(residuals):
+    """Independent samples in residuals (n, k): twice the cosine coefficients that hold half of their power."""
+    power = np.cumsum(np.sum(fft.dct(residuals, axis=0) ** 2, axis=1))
+    return max(2 * np.searchsorted(power, power[-1] / 2), 1)
+
+
+def lag_one(residuals):
+    """Correlation of neighbouring residuals, (3,) for (n, 3): 0 for white noise, near 1 after a low-pass."""
+    power = np.sum(residuals**2, axis=0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.nan_to_num(np.sum(residuals[1:] * residuals[:-1], axis=0) / power)

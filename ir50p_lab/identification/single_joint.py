@@ -1,31 +1,41 @@
-"""One joint of any machine: inertia, viscous and Coulomb friction and offset from a recording."""
+"""One joint of any machine: inertia, friction, offset and gravity from a recording of it."""
 
 import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification import joint_checks as checks
-from ir50p_lab.identification import signal_checks as signals
-from ir50p_lab.identification.bandwidth import bandwidth
-from ir50p_lab.identification.columns import columns_of, runs, sampling_period
+from ir50p_lab.errors import InputError
+from ir50p_lab.identification import doubts as checks
+from ir50p_lab.identification.columns import columns_of, joined, runs, sampling_period
+from ir50p_lab.identification.joint_doubts import check_model, check_motion
 from ir50p_lab.identification.processing import process
-from ir50p_lab.identification.regression import solve
-from ir50p_lab.inputs import number
+from ir50p_lab.identification.regression import least_squares
+from ir50p_lab.identification.spectrum import spectrum
+from ir50p_lab.inputs import number, switch
 from ir50p_lab.signals.low_pass import low_pass
 
-NAMES = ("inertia", "viscous", "coulomb", "offset")
+TERMS = ("inertia", "viscous", "coulomb", "offset", "gravity", "stribeck")
+_COLUMNS = ("offset", "gravity_sin", "gravity_cos", "viscous", "coulomb", "stribeck", "inertia")  # later ones go first
+_OWN_SHARE = 1e-3  # of a column, that must stick out of those before it
 _CLEARLY = 0.95  # of the residual of the other choice, below which u held or u measured explains the data better
 _ORDER = 3  # of the low passes, forward and again backward
 _OWN = 4.0  # samples per cut-off period that are kept for the regression: more would say the same again
 _DEAD = 0.1  # of the rms speed, below which a joint may stick and a filtered speed has lost its sign
 _ALL_NOISE = 0.3  # noise power over power of the acceleration from which on no inertia is given
+_AGREE = 1.0  # standard errors of inertia and friction at a cut-off, by which half of it may move them
+_MATTERS = 0.1  # of the value: a change smaller than this is only put into the standard error
+_JUDGED = ("inertia", "viscous", "coulomb")  # by these
+_PEAK = (0.02, 1.0)  # of the rms speed: where the Stribeck speed is looked for
 
 
 @dataclass(frozen=True, kw_only=True)
 class JointFit:
     """u = inertia qdd + viscous qd + coulomb sgn(qd) + offset, per joint; u in its own unit (N m, A, PWM counts...).
+
+    With the terms "gravity" and "stribeck" also
+
+        + gravity_sin sin q + gravity_cos cos q + stribeck sgn(qd) exp(-(qd/stribeck_speed)^2)
 
     ======================= ==================================================== ================
     field                   meaning                                              unit
@@ -33,12 +43,15 @@ class JointFit:
     inertia                                                                      u s^2/rad
     viscous                                                                      u s/rad
     coulomb, offset                                                              u
+    gravity_sin, _cos       0 unless asked for                                   u
+    stribeck                breakaway less Coulomb friction, 0 unless asked for  u
+    stribeck_speed                                                               rad/s
     inertia_stderr ...      standard errors; inf: the data do not hold it, the   like the value
-                            value is then 0
+                            value is then 0; nan: not asked for
     rms                     of the residual                                      u
     fit                     100 (1 - |u - u_model|/|u - mean u|)                 %
     correlation             of neighbouring residuals: 0 for white noise
-    cutoff_hz               of the low pass on q and u                           Hz
+    cutoff_hz               of the low pass on q and u; inf: none                Hz
     delay, held             as used                                              s, bool
     samples                 used in the regression
     unidentifiable          names of parameters that the data do not hold
@@ -63,6 +76,14 @@ class JointFit:
     samples: int
     unidentifiable: tuple = ()
     warnings: tuple = ()
+    gravity_sin: float = 0.0
+    gravity_cos: float = 0.0
+    stribeck: float = 0.0
+    stribeck_speed: float = math.nan
+    gravity_sin_stderr: float = math.nan
+    gravity_cos_stderr: float = math.nan
+    stribeck_stderr: float = math.nan
+    stribeck_speed_stderr: float = math.nan
 
     @property
     def time_constant(self):
@@ -70,158 +91,349 @@ class JointFit:
         return self.inertia / self.viscous if self.inertia > 0 and self.viscous > 0 else math.nan
 
 
-def fit_joint(t, q=None, u=None, *, cutoff_hz=None, delay=0.0, held=None):
+def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, delay=0.0, held=None, anyway=False):
     """Inertia, viscous and Coulomb friction and offset of one joint from a recording of it    (2.48, one joint)
 
         u = inertia qdd + viscous qd + coulomb sgn(qd) + offset
 
     q and u pass the same zero-phase low pass, and so does sgn(qd): the equation stays true, only noise is lost.
-    Samples of a joint that stands are left out (there u may be anything up to the breakaway friction). Standard
-    errors allow for residuals that are alike (Newey-West), and for half of what `held` makes of a parameter where the
-    data do not tell which it is. They know nothing of a model that does not fit (`warnings` does, partly).
+    Samples of a joint that stands are left out (there u may be anything up to the breakaway friction). The cut-off is
+    the highest that noise of q allows at which the parameters agree with those at half of it: above, flexibility and
+    backlash make a rigid model wrong. Standard errors allow for residuals that are alike, for what half the cut-off
+    and twice the least speed change, and for half of what `held` makes of a parameter where the data do not tell which
+    it is.
 
     Args:
-        t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u).
-        q: (n,) rad. u: (n,), torque, current or command, any unit.
-        cutoff_hz: of the low pass; default: from the spectrum of q (`bandwidth`).
+        t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings
+            or of tuples (t, q, u), which are fitted together.
+        q: (n,) rad. u: (n,), torque, current or command, any unit. Arrays, masked arrays, pandas Series.
+        qd: (n,) rad/s, if it was measured too: then q is not differentiated.
+        terms: of "inertia", "viscous", "coulomb", "offset", "gravity", "stribeck". Without inertia and with qd nothing
+            needs a filter: ("viscous", "coulomb") is then the plain least squares of a friction sweep.
+        cutoff_hz: of the low pass; inf: none (with qd, without inertia).
         delay: s from a sample to the moment its u acts.
         held: True: u is held from its sample to the next; False: it is a measurement at the instant; None: whichever
             explains the data better.
+        anyway: go on where the data are refused, and leave out what is no number; the reason is then in `warnings`.
 
     Returns: JointFit.
     Raises: InputError for NaN, times that do not increase, shapes that do not fit. IdentificationError, saying what to
-    do next, if the record is too short or constant, the motion drowns in noise or does not explain u, q or u were
-    clipped, angles jump by whole turns, or inertia or all friction is negative. Other doubts are in `warnings`: angles
-    that look like degrees, times that look like milliseconds, friction that falls with speed, a time constant below the
-    sampling period, parameters that the motion does not show, gravity.
+    do next, if the record is too short or constant, the motion drowns in noise or has nothing to do with u, q or u were
+    clipped or hung beyond doubt, angles jump by whole turns, or all friction is negative. Other doubts are in
+    `warnings`, each with a number: what is without a warning is right within three standard errors.
     """
-    t, q, u = columns_of(t, q, u)
+    terms = _checked_terms(terms)
+    doubts = checks.Doubts(switch("anyway", anyway))
+    if isinstance(t, (list, tuple)) and q is None and u is None:
+        t, q, u = joined(t)
+        v = None
+    else:
+        t, q, u, *v = columns_of(t, q, u, qd, drop=anyway)
+        v = v[0] if v else None
     if q.shape[1] != 1:
         raise InputError(f"q has {q.shape[1]} columns: fit_joint takes one joint; give q[:, i] and u[:, i]")
-    if held is not None and not isinstance(held, (bool, np.bool_)):
-        raise InputError(f"held = {held!r}: give True, False, or None to let the data choose")
+    if held is not None:
+        switch("held", held)
+    new = checks.check_signals(doubts, t, q[:, 0], u[:, 0])
+    t, q, u, v = (x if x is None else x[new] for x in (t, q, u, v))
     period = sampling_period(t)
-    signals.refuse_bad_signals(t, q[:, 0], u[:, 0])
-    band = _bandwidth(t, q[:, 0], period, cutoff_hz)
-    checks.refuse_noise_only(band, q[:, 0])
-    solution, table, held = _fitted(t, q, u, period, band, delay, held)
-    checks.refuse_unexplained(solution, table)
-    checks.refuse_clipped_drive(u[:, 0], table)
-    checks.refuse_negative(solution, table, band, period)
-    notes = [*signals.outliers("q", t, q[:, 0]), *signals.outliers("u", t, u[:, 0])]
-    negative = (solution.x[0], solution.stderr[0]) if solution.x[0] < 0 else None
-    if negative:
-        solution = _solved(table, inertia=False)
-    y = table.y
-    spread = math.sqrt(np.mean((y - y.mean()) ** 2))
-    values = dict(zip(NAMES, solution.x.tolist(), strict=True))
-    errors = {f"{name}_stderr": value for name, value in zip(NAMES, solution.stderr.tolist(), strict=True)}
+    if v is not None:
+        _check_measured_speed(doubts, t, q[:, 0], v[:, 0], period)
+    plain = v is not None and "inertia" not in terms and (cutoff_hz is None or cutoff_hz == math.inf)
+    angle = q[:, 0] if v is None else np.cumsum(v[:, 0]) * period
+    band = _band(t, angle, period, None if plain else cutoff_hz)
+    joint = _Joint.of(t, q, u, v, period, band, delay, terms)
+    check_motion(doubts, band)
+    found = joint.fit(math.inf if plain else band.cutoff_hz, held)
+    checks.check_clipped_drive(doubts, u[:, 0], found)
+    if not plain:
+        found = _at_agreeing_cutoff(doubts, joint, found, held, cutoff_hz is not None)
+        found = _with_slow_motion_in_errors(joint, found)
+    check_model(doubts, found, band, period)
+    if "inertia" in terms and found.value("inertia") < 0 and not found.lost("inertia"):
+        found = joint.fit(found.cutoff_hz, found.held, without=("inertia",))
+    values = {name: float(x) for name, x in zip(found.names, found.x, strict=True)}
+    errors = {f"{name}_stderr": float(s) for name, s in zip(found.names, found.stderr, strict=True)}
+    missing = {name: 0.0 for name in TERMS[:4] if name not in values}
+    errors |= {f"{name}_stderr": math.nan for name in missing}
     return JointFit(
+        **missing,
         **values,
         **errors,
-        rms=solution.rms,
-        fit=100 * (1 - solution.rms / spread),
-        correlation=solution.correlation,
-        cutoff_hz=band.cutoff_hz,
+        rms=found.rms,
+        fit=float(100 * (1 - found.rms / np.std(found.table.y))),
+        correlation=found.correlation,
+        cutoff_hz=found.cutoff_hz,
         delay=float(delay),
-        held=held,
-        samples=len(y),
-        unidentifiable=tuple(NAMES[j] for j in solution.dropped),
-        warnings=(*notes, *checks.doubts(q[:, 0], u[:, 0], solution, table, band, period, negative)),
+        held=found.held,
+        samples=len(found.table.y),
+        unidentifiable=tuple(name for name in found.names if found.lost(name)),
+        warnings=tuple(doubts),
     )
+
+
+def _checked_terms(terms):
+    terms = (terms,) if isinstance(terms, str) else tuple(terms)
+    if not terms or not set(terms) <= set(TERMS):
+        raise InputError(f"terms = {terms!r}: give some of {', '.join(TERMS)}")
+    columns = {"gravity_sin", "gravity_cos"} if "gravity" in terms else set()
+    return tuple(name for name in _COLUMNS if name in columns | set(terms))
+
+
+def _check_measured_speed(doubts, t, q, v, period):
+    """A qd that is not the rate of q: another unit, another joint."""
+    steps = np.diff(t) < 1.5 * period
+    rate, between = (np.diff(q) / np.diff(t))[steps], ((v[1:] + v[:-1]) / 2)[steps]
+    factor = float(rate @ between / max(between @ between, 1e-300))
+    if not 0.9 < factor < 1.1:
+        doubts.add(
+            f"the angle changes at {factor:.3g} times qd: is qd in rad/s and q in rad, of the same joint? Viscous "
+            "friction comes out in the unit of qd"
+        )
+
+
+def _band(t, q, period, cutoff_hz):
+    """Spectrum of the runs without a gap."""
+    pieces = []
+    for first, last in runs(t, 3.5 * period):
+        grid = t[first] + period * np.arange(math.floor((t[last - 1] - t[first]) / period + 1e-6) + 1)
+        pieces.append(np.interp(grid, t[first:last], q[first:last]))
+    if cutoff_hz is not None and number("cutoff_hz", cutoff_hz, "> 0", unit="Hz") >= 0.5 / period:
+        raise InputError(f"cutoff_hz = {cutoff_hz!r}: give a number between 0 and half the rate, {0.5 / period:.4g} Hz")
+    return spectrum(pieces, 1 / period, cutoff_hz)
+
+
+def _at_agreeing_cutoff(doubts, joint, first, held, given):
+    """The fit at the highest cut-off whose parameters agree with those at half of it; else a doubt.
+
+    first: Found at the highest; given: keep it, and only compare.
+    """
+    here = first
+    while here.cutoff_hz > 2 * joint.band.lowest_hz:
+        lower = joint.fit(here.cutoff_hz / 2, held, fewest=first)
+        if lower is None:
+            break
+        moved = np.where(np.isfinite(here.stderr) & np.isfinite(lower.stderr), np.abs(here.x - lower.x), 0.0)
+        wrong = moved > np.maximum(_AGREE * here.stderr, _MATTERS * np.abs(lower.x))
+        wrong &= [name in _JUDGED for name in here.names]
+        if not wrong.any():
+            best = here if here is first else lower
+            return replace(best, stderr=np.hypot(best.stderr, moved))
+        name = here.names[int(np.argmax(np.where(wrong, moved / here.stderr, 0.0)))]
+        here, before = lower, here
+        if given:
+            break
+    if here is first:
+        return first
+    each = ", ".join(
+        f"{one.value(name):.4g} +- {one.value(name, 'stderr'):.2g} at {one.cutoff_hz:.3g} Hz" for one in (before, here)
+    )
+    doubts.add(
+        f"{name} depends on the cut-off: {each}. A rigid joint with this friction does not explain the fast part of "
+        "the motion (flexibility, backlash, a late u); give a lower cutoff_hz and compare"
+    )
+    return first if given else here
+
+
+def _with_slow_motion_in_errors(joint, found):
+    """The same, its standard errors widened by what twice the least speed changes: sticking, ripple, coarse angles."""
+    other = joint.fit(found.cutoff_hz, found.held, fewest=found, slower=2.0)
+    if other is None:
+        return found
+    known = np.isfinite(found.stderr) & np.isfinite(other.stderr)
+    return replace(found, stderr=np.hypot(found.stderr, np.where(known, np.abs(found.x - other.x), 0.0)))
 
 
 @dataclass(frozen=True)
 class Table:
     """What goes into the regression, all through the same low pass.
 
-    A (m, 4) and y (m,); slope (m,): of y, u/s; q (m,) rad; extreme (m, 2): share of the surroundings of a sample in
-    which u has its smallest, its largest value; fastest: rad/s.
+    columns (m, 7), in the order of _COLUMNS, and y (m,); slope (m,): of y, u/s; q (m,) rad; v (m,) rad/s; direction
+    (m,); extreme (m, 2): share of the surroundings of a sample in which u has its smallest, its largest value.
     """
 
-    A: np.ndarray
+    columns: np.ndarray
     y: np.ndarray
     slope: np.ndarray
     q: np.ndarray
+    v: np.ndarray
+    direction: np.ndarray
     extreme: np.ndarray
-    fastest: float
 
 
-def _bandwidth(t, q, period, cutoff_hz):
-    """Bandwidth of the runs without a gap."""
-    parts = runs(t, 3.5 * period)
-    longest = max(last - first for first, last in parts)
-    if longest < signals.FEWEST:
-        raise IdentificationError(
-            f"the longest of the runs without a gap has {longest} samples; at least {signals.FEWEST} are needed: "
-            "record in one piece"
+@dataclass(frozen=True)
+class Found:
+    """A fit at one cut-off: names, x and stderr (p,); A (m, r): the columns that the data hold; its Table."""
+
+    names: tuple
+    x: np.ndarray
+    stderr: np.ndarray
+    residuals: np.ndarray
+    rms: float
+    correlation: float
+    independent: float
+    cutoff_hz: float
+    held: bool
+    table: Table
+    A: np.ndarray
+
+    def value(self, name, kind="x"):
+        """Of a parameter, x or stderr; 0 and inf where it is not in the model."""
+        if name in self.names:
+            return float(getattr(self, kind)[self.names.index(name)])
+        return 0.0 if kind == "x" else math.inf
+
+    def lost(self, name):
+        """Whether the parameter was asked for and the data do not hold it."""
+        return name in self.names and math.isinf(self.value(name, "stderr"))
+
+
+@dataclass(frozen=True)
+class _Joint:
+    """Evenly sampled runs of one joint: q, v, and u in three ways (held, measured, measured and smoothed)."""
+
+    segments: list
+    rate: float
+    band: object
+    terms: tuple
+    n: int
+
+    @classmethod
+    def of(cls, t, q, u, v, period, band, delay, terms):
+        columns = q if v is None else np.hstack([q, v])
+        # taking u between two samples, as for a held one, takes noise from it: a fair comparison does so too
+        padded = np.pad(u, ((1, 1), (0, 0)), mode="edge")
+        smooth = (padded[:-2] + 6 * padded[1:-1] + padded[2:]) / 8
+        ways = []
+        for drive, held in ((u, True), (u, False), (smooth, False)):
+            drives = np.repeat(drive, columns.shape[1], axis=1)
+            ways.append(process(t, columns, drives, cutoff_hz=None, trim=0.0, delay=delay, held=held))
+        segments = []
+        for segment in np.unique(ways[0].segment):
+            here = ways[0].segment == segment
+            drives = np.column_stack([way.u[here, 0] for way in ways])
+            segments.append((ways[0].q[here], drives))
+        return cls(segments, 1 / period, band, terms, len(t))
+
+    def fit(self, cutoff_hz, held=None, *, without=(), fewest=None, slower=1.0):
+        """Found at this cut-off, of motion `slower` times as fast; None if not half of the time of `fewest` is left."""
+        tables = self._tables(cutoff_hz, slower)
+        m = len(tables[0].y)
+        if fewest is not None and (
+            m < checks.FEWEST // 2 or m * fewest.cutoff_hz / cutoff_hz < 0.5 * len(fewest.table.y)
+        ):
+            return None
+        if m < checks.FEWEST // 2:
+            raise checks.IdentificationError(
+                f"only {m} of {self.n} samples are in motion and far enough from standstill, gaps and the ends of the "
+                f"record; at least {checks.FEWEST // 2} independent ones are needed: record longer, with more motion"
+            )
+        if held is not None:
+            return self._solved(tables[0 if held else 1], cutoff_hz, bool(held), without)
+        as_held, measured, fair = (self._solved(x, cutoff_hz, k == 0, without) for k, x in enumerate(tables))
+        if as_held.rms < _CLEARLY * fair.rms:
+            return as_held
+        if fair.rms < _CLEARLY * as_held.rms:
+            return measured
+        difference = np.where(np.isfinite(as_held.stderr), np.abs(as_held.x - measured.x) / 2, 0.0)
+        return replace(as_held, stderr=np.hypot(as_held.stderr, difference))
+
+    def _solved(self, table, cutoff_hz, held, without):
+        names = tuple(name for name in self.terms if name not in without)
+        if self.band.acceleration_share > _ALL_NOISE:
+            names = tuple(name for name in names if name != "inertia")
+        if "stribeck" in names:
+            return self._with_stribeck(table, cutoff_hz, held, names)
+        return self._solve(table, [table.columns[:, _COLUMNS.index(name)] for name in names], names, cutoff_hz, held)
+
+    def _solve(self, table, columns, names, cutoff_hz, held):
+        A = np.column_stack(columns)
+        found = least_squares(A, table.y, names=names, tolerance=_OWN_SHARE)
+        every = tuple(name for name in self.terms if name not in names)  # left out: 0 +- inf
+        return Found(
+            (*names, *every),
+            np.r_[found.x, np.zeros(len(every))],
+            np.r_[found.stderr, np.full(len(every), np.inf)],
+            found.residuals,
+            found.rms,
+            found.correlation,
+            found.independent,
+            cutoff_hz,
+            held,
+            table,
+            A[:, np.isfinite(found.stderr)],
         )
-    pieces = []
-    for first, last in parts:
-        grid = t[first] + period * np.arange(math.floor((t[last - 1] - t[first]) / period + 1e-6) + 1)
-        pieces.append(np.interp(grid, t[first:last], q[first:last]))
-    if cutoff_hz is not None and number("cutoff_hz", cutoff_hz, "> 0", unit="Hz") >= 0.5 / period:
-        raise InputError(f"cutoff_hz = {cutoff_hz!r}: give a number between 0 and half the rate, {0.5 / period:.4g} Hz")
-    return bandwidth(pieces, 1 / period, cutoff_hz)
 
+    def _with_stribeck(self, table, cutoff_hz, held, names):
+        """Least squares over all parameters, for each Stribeck speed; its error from the slope of the column in it."""
+        from scipy.optimize import minimize_scalar
 
-def _fitted(t, q, u, period, band, delay, held):
-    """(Solution, Table, held): where `held` is None, of the choice that explains the data better.
+        def columns(log_speed):
+            share = (table.v / math.exp(log_speed)) ** 2
+            peak = table.direction * np.exp(-share)
+            plain = [peak if name == "stribeck" else table.columns[:, _COLUMNS.index(name)] for name in names]
+            return plain, peak * 2 * share
 
-    Where neither clearly does, half of the difference between the two goes into the standard errors.
-    """
-    if held is not None:
-        return *_fit(t, q, u, period, band, delay, bool(held)), bool(held)
-    (one, as_held), (other, measured) = (_fit(t, q, u, period, band, delay, choice) for choice in (True, False))
-    as_smooth = np.pad(u, ((1, 1), (0, 0)), mode="edge")  # taking u between two samples takes noise from it: so here
-    as_smooth = (as_smooth[:-2] + 6 * as_smooth[1:-1] + as_smooth[2:]) / 8
-    fair, _ = _fit(t, q, as_smooth, period, band, delay, False)
-    if one.rms < _CLEARLY * fair.rms:
-        return one, as_held, True
-    if fair.rms < _CLEARLY * one.rms:
-        return other, measured, False
-    unsure = np.hypot(one.stderr, np.abs(one.x - other.x) / 2)
-    return replace(one, stderr=unsure), as_held, True
+        def left(log_speed):
+            A = np.column_stack(columns(log_speed)[0])
+            e = table.y - A @ np.linalg.lstsq(A, table.y, rcond=None)[0]
+            return float(e @ e)
 
+        low, high = np.log(np.array(_PEAK) * self.band.speed)
+        grid = np.linspace(low, high, 12)
+        at = grid[int(np.argmin([left(x) for x in grid]))]
+        width = grid[1] - grid[0]
+        best = minimize_scalar(left, bounds=(at - width, at + width), method="bounded").x
+        plain, slope = columns(best)
+        size = self._solve(table, plain, names, cutoff_hz, held).value("stribeck")
+        found = self._solve(table, [*plain, size * slope], (*names, "stribeck_speed"), cutoff_hz, held)
+        k, speed = found.names.index("stribeck_speed"), math.exp(best)
+        x, stderr = found.x.copy(), found.stderr.copy()
+        x[k], stderr[k] = speed, speed * stderr[k]
+        return replace(found, x=x, stderr=stderr)
 
-def _fit(t, q, u, period, band, delay, held):
-    """Filtered regression: (Solution, Table)."""
-    whole = process(t, q, u, cutoff_hz=None, trim=0.0, delay=delay, held=held)  # even grid, u at its instant
-    rate, cutoff = 1 / period, band.cutoff_hz
-    slow = max(4 * band.speed_noise, _DEAD * band.speed)
-    low, high = u.min() + 1e-3 * np.ptp(u), u.max() - 1e-3 * np.ptp(u)
-    edge = math.ceil(rate / cutoff / 2)
-    thin = max(1, int(rate / cutoff / _OWN))
-    rows, fastest = [np.empty((0, 9))], 0.0
-    for segment in np.unique(whole.segment):
-        here = whole.segment == segment
-        if here.sum() < 2 * edge + 30:  # too short for the filter
-            continue
-        angle, drive = whole.q[here, 0], whole.u[here, 0]
-        v, a = _derivatives(angle, rate, cutoff)
-        turning, _ = _derivatives(angle, rate, band.sign_cutoff_hz)
-        plain = np.column_stack([np.sign(turning), np.abs(v) > slow, drive, drive < low, drive > high])
-        smooth = low_pass(plain.astype(float), cutoff, rate, order=_ORDER, kind="zero-phase")
-        direction, moving, y = smooth[:, 0], smooth[:, 1], smooth[:, 2]
-        table = np.column_stack([a, v, direction, np.ones_like(v), y, np.gradient(y) * rate, angle, smooth[:, 3:]])
-        inside = np.zeros(len(v), dtype=bool)
-        inside[edge : len(v) - edge : thin] = True
-        rows.append(table[inside & (moving > 0.9)])
-        fastest = max(fastest, float(np.abs(v).max()))
-    x = np.concatenate(rows)
-    checks.refuse_too_little_motion(len(x), len(t))
-    table = Table(A=x[:, :4], y=x[:, 4], slope=x[:, 5], q=x[:, 6], extreme=x[:, 7:], fastest=fastest)
-    return _solved(table, inertia=band.acceleration_share <= _ALL_NOISE), table
+    def _tables(self, cutoff_hz, slower=1.0):
+        """A Table for each way of taking u."""
+        slow = slower * max(4 * self.band.speed_noise, _DEAD * self.band.speed)
+        every = np.concatenate([u[:, 0] for _, u in self.segments])
+        low, high = every.min() + 1e-3 * np.ptp(every), every.max() - 1e-3 * np.ptp(every)
+        edge = 0 if math.isinf(cutoff_hz) else math.ceil(self.rate / cutoff_hz / 2)
+        thin = 1 if math.isinf(cutoff_hz) else max(1, int(self.rate / cutoff_hz / _OWN))
+        rows = [np.empty((0, 12 + len(_COLUMNS)))]
+        for angles, drive in self.segments:
+            n = len(drive)
+            if n < 2 * edge + 20:  # too short for the filter
+                continue
+            v, a = self._derivatives(angles, cutoff_hz)
+            turning, _ = self._derivatives(angles, max(cutoff_hz, self.band.sign_cutoff_hz))
+            moving = np.abs(v) > slow if edge else np.abs(v) > 4 * self.band.speed_noise
+            plain = [np.sign(turning), np.sin(angles[:, 0]), np.cos(angles[:, 0]), moving]
+            plain = np.column_stack([*plain, drive, drive[:, 0] < low, drive[:, 0] > high]).astype(float)
+            direction, sin, cos, moving, *y = self._smooth(plain, cutoff_hz).T
+            A = {"inertia": a, "viscous": v, "coulomb": direction, "offset": np.ones(n), "stribeck": np.zeros(n)}
+            A |= {"gravity_sin": sin, "gravity_cos": cos}
+            slopes = [np.gradient(x) * self.rate for x in y[:3]]
+            table = np.column_stack([*(A[name] for name in _COLUMNS), *y, *slopes, angles[:, 0], v, direction, moving])
+            inside = np.zeros(n, dtype=bool)
+            inside[edge : n - edge : thin] = True
+            rows.append(table[inside & (moving > 0.9)])
+        x = np.concatenate(rows)
+        p = len(_COLUMNS)
+        A, y, extreme, slopes = x[:, :p], x[:, p : p + 3], x[:, p + 3 : p + 5], x[:, p + 5 : p + 8]
+        q, v, direction = x[:, p + 8 : p + 11].T
+        return [Table(A, y[:, k], slopes[:, k], q, v, direction, extreme) for k in range(3)]
 
+    def _smooth(self, x, cutoff_hz):
+        if math.isinf(cutoff_hz):
+            return x
+        return low_pass(x, cutoff_hz, self.rate, order=_ORDER, kind="zero-phase")
 
-def _solved(table, *, inertia=True):
-    A = table.A if inertia else table.A * [0.0, 1.0, 1.0, 1.0]
-    return solve(A, table.y, drop_first=(0, 2, 1))
-
-
-def _derivatives(q, rate, cutoff_hz):
-    """qd, qdd (n,) of q (n,) behind the low pass, from five points: at 20 samples a second three are 1 % wrong."""
-    q = np.pad(low_pass(q, cutoff_hz, rate, order=_ORDER, kind="zero-phase"), 2, mode="reflect", reflect_type="odd")
-    back, before, here, after, ahead = (q[k : len(q) - 4 + k] for k in range(5))
-    qd = (8 * (after - before) - (ahead - back)) * (rate / 12)
-    return qd, (16 * (after + before) - 30 * here - (ahead + back)) * (rate**2 / 12)
+    def _derivatives(self, angles, cutoff_hz):
+        """qd, qdd (n,) behind the low pass, from five points: at 20 samples a second three are 1 % wrong."""
+        x = self._smooth(angles[:, -1], cutoff_hz)  # q, or qd where it was measured
+        x = np.pad(x, 2, mode="reflect", reflect_type="odd")
+        back, before, here, after, ahead = (x[k : len(x) - 4 + k] for k in range(5))
+        first = (8 * (after - before) - (ahead - back)) * (self.rate / 12)
+        if angles.shape[1] == 2:
+            return here, first
+        return first, (16 * (after + before) - 30 * here - (ahead + back)) * (self.rate**2 / 12)

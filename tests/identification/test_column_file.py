@@ -77,14 +77,14 @@ BAD = [
     ("", {}, "no line of numbers"),
     ("only words\nand more\n", {}, "no line of numbers"),
     ("a,b,c\n1,2,3\n", {}, "none is called t"),
-    ("1,2,3\n4,5,6\n", {}, "names no columns"),
+    ("1,2,3\n4,5,6\n", {}, "none is called t"),
     (FILES["plain"], {"q": "angle"}, "q = 'angle'"),
     (FILES["plain"], {"u": 7}, "u = 7"),
     (FILES["plain"], {"u": True}, "u = True"),
     (FILES["plain"], {"q": ("q", "q")}, "one u for each q"),
     (FILES["plain"], {"time_unit": "hours"}, "time_unit"),
     (FILES["plain"], {"angle_unit": "gon"}, "angle_unit"),
-    ("\0\1\2\0", {}, "no text file"),
+    ("\0\1\2\0", {}, "no line of numbers"),
 ]
 
 

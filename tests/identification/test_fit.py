@@ -12,7 +12,7 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import Estimate, fit, regressor
 from ir50p_lab.identification.parameters import ACTS_ON, NAMES, chosen_columns
 from ir50p_lab.identification.qr import r_factor
-from ir50p_lab.identification.standard_errors import long_run_sum
+from ir50p_lab.identification.regression import independent_samples, long_run_sum
 from ir50p_lab.modelling import IR50P, THESIS_C, inverse_dynamics, mass_matrix
 
 METHODS = ("ls", "weighted", "huber", "ridge", "bounded", "iv")
@@ -148,7 +148,7 @@ def test_long_run_variance_of_an_autoregression(rho):
     # known: sigma^2 / (1 - rho)^2 a sample
     n = 100_000
     scores = lfilter([1.0], [1.0, -rho], np.random.default_rng(0).normal(size=(n, 8)), axis=0)
-    S, independent = long_run_sum(scores, scores)
+    S, independent = long_run_sum(scores, scores), independent_samples(scores)
     assert np.mean(np.diag(S)) * (1 - rho) ** 2 / n == pytest.approx(1.0, abs=0.1)
     assert independent / n == pytest.approx(1 if rho == 0 else 2 * (1 - rho) / np.pi, rel=0.1)
 

@@ -39,6 +39,8 @@ BAD = {
     "load_excitations": [("no_such_file.json",), ("/",)],
     "save_excitations": [("/no/such/place.json", {"a": MOTION})],
     "fit": [(NAN_PHI, Y), (PHI, Y[:5]), (PHI[:3], Y[:3]), (0 * PHI, Y), ("x", Y)],
+    "least_squares": [(NAN_PHI, Y), (PHI, Y[:5]), (0 * PHI, Y), (PHI[0, :, :2], "x")],
+    "fit_second_order": [(T, NAN_Q[:, 0], Q[:, 0]), (T[::-1], U[:, 0], Q[:, 0]), (T, 0 * T, Q[:, 0])],
     "fit_with_instruments": [(TH, Run(q=NAN_Q), PD, MOTION), (TH, Run(), None, MOTION), (TH[:1], Run(), PD, MOTION)],
     "output_error": [(TH, Run(q=NAN_Q), PD, MOTION), (TH, Run(), None, MOTION), (TH[:1], Run(), PD, MOTION)],
     "fit_fopdt": [(T, NAN_Q[:, 0], Q[:, 0]), (T[::-1], U[:, 0], Q[:, 0]), (T[:2], U[:2, 0], Q[:2, 0])],

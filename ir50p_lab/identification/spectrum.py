@@ -1,4 +1,4 @@
-"""How fast a recording may be looked at: the cut-off below which the angle is motion, above which it is noise."""
+"""What the spectrum of an angle tells: below which frequency it is motion, above which it is noise."""
 
 import math
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from ir50p_lab.identification.columns import quantum_of
 
 _BIAS = 1e-3  # noise power in the acceleration over its own: the inertia is too small by about as much
 _MOTION = 0.99  # share of the velocity's power that must stay below the cut-off, whatever the noise
-_BEARABLE = 0.05  # the same, up to which the cut-off is raised to keep the motion
+_BEARABLE = 0.05  # the same as _BIAS, up to which the cut-off is raised to keep the motion
 _SIGN = 0.02  # the same for the speed whose sign is taken
 _STRETCH = 8  # periods of the cut-off, at least, in a stretch of steady speed
 _SAW = 0.06  # step^2, a little more than 1/(2 pi^2)
@@ -17,15 +17,17 @@ _HIGHEST = 0.2  # of the rate: above, central differences themselves are wrong b
 
 
 @dataclass(frozen=True)
-class Bandwidth:
+class Spectrum:
     """What the spectrum of an angle tells.
 
-    cutoff_hz: of the low pass for a regression, Hz. sign_cutoff_hz: higher, for the speed whose sign is taken: a smooth
-    speed turns too late or too early. noise: rms of the angle, rad (white part). speed: rad/s rms of the motion;
-    speed_noise: rad/s rms; acceleration_share: noise power over power of the acceleration; all three below cutoff_hz.
+    cutoff_hz: of the low pass for a regression, the highest that noise allows, Hz. lowest_hz: that keeps 99 % of the
+    velocity's power. sign_cutoff_hz: higher, for the speed whose sign is taken: a smooth speed turns too late or too
+    early. noise: rms of the angle, rad (white part). speed: rad/s rms of the motion; speed_noise: rad/s rms;
+    acceleration_share: noise power over power of the acceleration; all three below cutoff_hz.
     """
 
     cutoff_hz: float
+    lowest_hz: float
     sign_cutoff_hz: float
     noise: float
     speed_noise: float
@@ -33,7 +35,7 @@ class Bandwidth:
     speed: float
 
 
-def bandwidth(pieces, rate_hz, cutoff_hz=None):
+def spectrum(pieces, rate_hz, cutoff_hz=None):
     """Choose the cut-off for an angle, or judge a given one. pieces: list of (n,) rad, each evenly sampled at rate_hz.
 
     White noise of the sensor is what the spectrum holds between a quarter and half of the rate; the steps of a coarse
@@ -62,19 +64,21 @@ def bandwidth(pieces, rate_hz, cutoff_hz=None):
     noise, motion = np.cumsum(w2**2) * floor, np.cumsum(w2**2 * above)
     share, speed_share = noise / np.maximum(motion, 1e-12 * noise), speed_noise / np.maximum(speed, 1e-12 * speed_noise)
     highest = int(np.searchsorted(f, _HIGHEST * rate_hz))
+    lowest = int(np.searchsorted(speed, _MOTION * speed[-1]))
     if cutoff_hz is None:
         good = np.flatnonzero(share[:highest] <= _BIAS)
         bearable = np.flatnonzero(share[:highest] <= _BEARABLE)
-        needed = min(int(np.searchsorted(speed, _MOTION * speed[-1])), int(bearable[-1]) if len(bearable) else highest)
+        needed = min(lowest, int(bearable[-1]) if len(bearable) else highest)
         if steady**2 > speed[-1]:  # sweeps of steady speeds: a filter shorter than the stretches
-            needed = max(needed, _STRETCH)
+            needed = lowest = max(needed, _STRETCH)
         at = min(max(int(good[-1]) if len(good) else 0, needed), highest - 1)
         cutoff_hz = float(f[at])
     at = min(int(np.searchsorted(f, cutoff_hz)), len(f) - 1)
     good = np.flatnonzero(speed_share[:highest] <= _SIGN)
     sign_at = max(at, int(good[-1]) if len(good) else 0)
-    return Bandwidth(
+    return Spectrum(
         cutoff_hz=float(cutoff_hz),
+        lowest_hz=float(f[min(lowest, len(f) - 1)]),
         sign_cutoff_hz=max(float(f[sign_at]), float(cutoff_hz)),
         noise=math.sqrt(floor * rate_hz / 2),
         speed_noise=math.sqrt(speed_noise[at]),

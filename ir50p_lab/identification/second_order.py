@@ -1,0 +1,165 @@
+"""A second-order model with a zero and dead time: for responses that overshoot, swing, or start the wrong way."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from ir50p_lab.errors import IdentificationError
+from ir50p_lab.identification.step_record import check_time, jumps_of, recorded, without_outliers
+
+_SMALL = 1e-4  # below this a dt, a series keeps the digits that (1 - exp(-a dt))/a loses
+_BETTER = 12.0  # least F value of a zero
+_DAMPING = (0.02, 10.0)
+_GRID = (0.1, 0.35, 0.8, 2.0)
+
+
+@njit(cache=True)
+def respond_mode(t, jump_times, jumps, a, L, out):
+    """x' = v(t - L) - a x from x = 0, exactly, for a complex rate a: writes x at the times t (n,) into out (n,)."""
+    x, v, now, k = 0j, 0.0, t[0], 0
+    for i in range(len(t)):
+        while True:
+            jump = k < len(jumps) and jump_times[k] + L <= t[i]
+            dt = (jump_times[k] + L if jump else t[i]) - now
+            z = a * dt
+            phi = dt * (1 - z / 2 + z * z / 6) if abs(z) < _SMALL else (1 - np.exp(-z)) / a
+            x = x * np.exp(-z) + v * phi
+            now += dt
+            if not jump:
+                break
+            v += jumps[k]
+            k += 1
+        out[i] = x
+
+
+@dataclass(frozen=True, kw_only=True)
+class SecondOrderModel:
+    """G(s) = K (zero s + 1) exp(-L s)/((s/w)^2 + 2 damping s/w + 1)
+
+    K: y/u; w: rad/s; damping: 1; zero: s, 0 without one, < 0 starts the wrong way; L: s; each with a standard error
+    ..._stderr (0: not fitted); y0: output at rest; rms: of the residual; fit: 100 (1 - |e|/|y - mean y|) %.
+    """
+
+    K: float
+    w: float
+    damping: float
+    zero: float
+    L: float
+    K_stderr: float = math.nan
+    w_stderr: float = math.nan
+    damping_stderr: float = math.nan
+    zero_stderr: float = math.nan
+    L_stderr: float = math.nan
+    y0: float = 0.0
+    rms: float = math.nan
+    fit: float = math.nan
+    warnings: tuple = ()
+
+    def response(self, t, u, *, u_before=None):
+        """Output for the input u(t), (n,), exact between the samples; arguments as in `FOPDT.response`."""
+        t, u = recorded(t=t, u=u)
+        basis = _basis(t, *jumps_of(t, u, u_before), self.w, self.damping, self.L)
+        return self.y0 + basis @ [self.K, self.K * self.zero]
+
+
+def _basis(t, times, jumps, w, damping, L):
+    """(n, 2): the answers of w^2/(s^2 + 2 damping w s + w^2), and of s times that."""
+    damping += 1e-6 * (abs(damping - 1) < 1e-6)  # equal poles: a little apart
+    root = w * np.sqrt(complex(damping**2 - 1))
+    modes = np.empty((2, len(t)), dtype=complex)
+    for a, x in zip((damping * w + root, damping * w - root), modes, strict=True):
+        respond_mode(t, times, jumps, a, L, x)
+    plain = w**2 * (modes[0] - modes[1]) / (-2 * root)
+    slope = w**2 * ((damping * w + root) * modes[0] - (damping * w - root) * modes[1]) / (2 * root)
+    return np.column_stack([plain.real, slope.real])
+
+
+def fit_second_order(t, u, y, *, u_before=None):
+    """Fit K, w, damping, a zero and dead time to a recorded response: where `fit_fopdt` is refused for its shape.
+
+    Least squares over all samples, exact for an input held between samples; the zero is kept where it explains
+    significantly more. Arguments as in `fit_fopdt`.
+
+    Returns: SecondOrderModel. Raises: InputError as `fit_fopdt` does; IdentificationError if u never changes, or the
+    model explains less than half of the variance of y.
+    """
+    t, u, y = recorded(t=t, u=u, y=y)
+    times, jumps = jumps_of(t, u, u_before)
+    if not len(times):
+        raise IdentificationError("u never changes, so the recording holds no step response: give u_before=")
+    warnings = [*check_time(t)]
+    t, y, named = without_outliers(t, y)
+    from scipy.optimize import least_squares
+
+    unit, period = t[-1] - times[0], float(np.median(np.diff(t)))
+    spread = float(np.std(y))
+
+    def model(p, columns):
+        basis = np.column_stack([np.ones_like(t), _basis(t, times, jumps, math.exp(p[0]), p[1], p[2])[:, :columns]])
+        c = np.linalg.lstsq(basis, y, rcond=None)[0]
+        return basis @ c - y, c
+
+    starts = [
+        (np.log(w), damping, L)
+        for w in np.geomspace(3 / unit, 0.5 / period, 10)
+        for damping in _GRID
+        for L in (0.0, 3 * period, 0.1 * unit)
+    ]
+    bounds = ([math.log(0.1 / unit), _DAMPING[0], 0.0], [math.log(3 / period), _DAMPING[1], 0.5 * unit])
+    found = []
+    for columns in (1, 2):
+        costs = [np.sum(model(p, columns)[0] ** 2) for p in starts]
+        fits = [
+            least_squares(lambda p, m=columns: model(p, m)[0] / spread, np.clip(starts[k], *bounds), bounds=bounds)
+            for k in np.argsort(costs)[:3]
+        ]
+        found.append(min(fits, key=lambda fit: fit.cost))
+    freedom = len(t) - 6
+    F = (found[0].cost - found[1].cost) / max(found[1].cost, 1e-14 * len(t)) * freedom
+    columns = 2 if F > _BETTER else 1
+    best = found[columns - 1]
+    e, c = model(best.x, columns)
+    explained = 1 - np.mean(e**2) / spread**2
+    if explained < 0.5:
+        raise IdentificationError(
+            f"a second-order model explains {100 * explained:.0f} % of the variance of y: y does not follow u in this "
+            "way; start from rest and make a larger step"
+        )
+    K, zero = float(c[1]), float(c[2] / c[1]) if columns == 2 else 0.0
+    w, damping, L = math.exp(best.x[0]), float(best.x[1]), float(best.x[2])
+    errors = _standard_errors(t, times, jumps, np.array([K, w, damping, zero, L]), columns, e)
+    if w * period > 1:
+        warnings.append(f"w = {w:.3g} rad/s is {w * period:.2g} rad a sample: not identifiable, sample faster")
+    rms = float(np.sqrt(np.mean(e**2)))
+    names = ("K", "w", "damping", "zero", "L")
+    return SecondOrderModel(
+        **dict(zip(names, (K, w, damping, zero, L), strict=True)),
+        **{f"{name}_stderr": float(x) for name, x in zip(names, errors, strict=True)},
+        y0=float(c[0]),
+        rms=rms,
+        fit=100 * (1 - rms / spread),
+        warnings=(*warnings, *named),
+    )
+
+
+def _standard_errors(t, times, jumps, p, columns, e):
+    """Of K, w, damping, zero and L, widened for residuals that are alike."""
+    free = [k for k in range(5) if columns == 2 or k != 3]
+
+    def response(p):
+        return _basis(t, times, jumps, p[1], p[2], max(p[4], 0.0)) @ [p[0], p[0] * p[3]]
+
+    J = [np.ones_like(t)]
+    for k in free:
+        step = np.zeros(5)
+        step[k] = 1e-5 * max(abs(p[k]), 1e-3 / p[1] if k > 2 else 1e-6)
+        J.append((response(p + step) - response(p - step)) / (2 * step[k]))
+    J = np.column_stack(J)
+    r = max(float(e[1:] @ e[:-1] / max(e @ e, 1e-300)), 0.0)
+    spread = np.sqrt(e @ e / (len(t) - J.shape[1]) * (1 + r) / max(1 - r, 1e-3))
+    size = np.linalg.norm(J, axis=0)
+    out = np.zeros(5)
+    out[free] = (spread * np.linalg.norm(np.linalg.pinv(J / size), axis=1) / size)[1:]
+    return out

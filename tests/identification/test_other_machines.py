@@ -1,0 +1,238 @@
+"""Recordings of the kinds that industry and hobby make, with known truth: not refused, and right or doubted."""
+
+import numpy as np
+import pytest
+from scipy.signal import lsim
+
+from ir50p_lab.errors import IdentificationError
+from ir50p_lab.identification import fit_joint, least_squares, process
+
+NAMES = ("inertia", "viscous", "coulomb")
+
+
+def moves(rng, rate, seconds, size, speed, rest=0.3):
+    """Quintic moves with rests between: t, q, v, a."""
+    n, x0, first = round(rate * seconds), 0.0, 0
+    out = np.zeros((3, n + 100 * rate))
+    while first < n:
+        x1 = rng.uniform(-size, size)
+        T = max(1.9 * abs(x1 - x0) / speed * rng.uniform(1, 1.6), 0.3)
+        s = np.arange(round(T * rate)) / rate / T
+        end, stay = first + len(s), round(rest * rng.uniform() * rate)
+        out[0, first:end] = x0 + (x1 - x0) * (10 * s**3 - 15 * s**4 + 6 * s**5)
+        out[1, first:end] = (x1 - x0) / T * (30 * s**2 - 60 * s**3 + 30 * s**4)
+        out[2, first:end] = (x1 - x0) / T**2 * (60 * s - 180 * s**2 + 120 * s**3)
+        out[0, end : end + stay] = x0 = x1
+        first = end + stay
+    return np.arange(n) / rate, *out[:, :n]
+
+
+def sines(rng, rate, seconds, size, lowest=0.1):
+    """Five harmonics: t, q, v, a."""
+    t = np.arange(round(rate * seconds)) / rate
+    w = 2 * np.pi * lowest * np.arange(1, 6)
+    x, A = w * t[:, None] + rng.uniform(0, 6, 5), size * rng.uniform(0.5, 1, 5) / np.arange(1, 6)
+    return t, np.sin(x) @ A, np.cos(x) @ (A * w), -np.sin(x) @ (A * w**2)
+
+
+def dry(v, c, rng):
+    """Coulomb friction; anything below it where the joint stands."""
+    return np.where(np.abs(v) > 1e-9, c * np.sign(v), rng.uniform(-c, c))
+
+
+def industrial_axis(seed):
+    """Ten seconds at 250 Hz with a heavy load on a flexible gear, torque ripple, a fine encoder that shakes."""
+    rng = np.random.default_rng(seed)
+    t, q, v, a = moves(rng, 250, 10, 0.5, 0.45)
+    slow = v
+    J, b, c, far = rng.uniform((800, 1000, 200, 0.3), (2500, 2500, 500, 0.7))
+    size = np.std(a)
+    for f in rng.uniform(15, 40, 8):  # what shakes the motor does not reach the load
+        A, x = 0.5 * size, 2 * np.pi * f * t + rng.uniform(0, 6)
+        q, v, a = q - A * np.sin(x) / (2 * np.pi * f) ** 2, v - A * np.cos(x) / (2 * np.pi * f), a + A * np.sin(x)
+    w = 2 * np.pi * rng.uniform(5, 12)
+    load = lsim(([0.06 * w, w * w], [1, 0.06 * w, w * w]), a, t)[1]
+    u = J * ((1 - far) * a + far * load) + b * v + dry(slow, c, rng)
+    u += rng.uniform(30, 150) * np.sin(rng.uniform(150, 400) * q) + rng.normal(0, 40, len(t))
+    return (t, q + rng.normal(0, 1e-6, len(t)), u), (J, b, c)
+
+
+def fast_arm(seed, gravity=0.0):
+    """Nine seconds at 2 kHz, rests at the ends of the moves, ripple and noise in the torque."""
+    rng = np.random.default_rng(seed)
+    t, q, v, a = moves(rng, 2000, 9, rng.uniform(1, 2), rng.uniform(3, 6), 0.2)
+    J = 10 ** rng.uniform(-1.5, 0.3)
+    b = J * np.std(a) / np.std(v) * rng.uniform(0.3, 1.0)
+    c = b * np.std(v) * rng.uniform(0.5, 1.5)
+    u = J * a + b * v + dry(v, c, rng) + gravity * c * np.sin(q + 0.3) + 0.1 * c
+    u += np.std(u) * (0.08 * np.sin(40 * q) * np.sign(v) + rng.normal(0, 0.05, len(t)))
+    return (t, q + rng.normal(0, 1e-7, len(t)), u), (J, b, c)
+
+
+def research_arm(seed):
+    """Fifteen seconds at 500 Hz, current as u, a sensor of 50 urad."""
+    rng = np.random.default_rng(seed)
+    t, q, v, a = sines(rng, 500, 15, 0.8)
+    J, b, c = rng.uniform((0.5, 5, 2), (4, 15, 8)) / 12
+    u = J * a + b * v + c * np.sign(v) + rng.uniform(-0.2, 0.2) + rng.normal(0, 0.1, len(t))
+    return (t, np.round(q / 5e-5) * 5e-5, u), (J, b, c)
+
+
+def motor(seed):
+    """Whole PWM counts, an encoder of 1440 counts, 100 to 1000 Hz."""
+    rng = np.random.default_rng(seed)
+    t, q, v, a = sines(rng, (100, 200, 1000)[seed % 3], 20, 1.0, 0.3)
+    J, b, c = rng.uniform((0.5, 3, 5), (3, 12, 25))
+    return (t, np.round(q * 229.18) / 229.18, np.round(J * a + b * v + c * np.sign(v) + 3)), (J, b, c)
+
+
+@pytest.mark.compiled(keep=1)
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("machine", [industrial_axis, fast_arm, research_arm, motor])
+def test_within_three_standard_errors_and_near(machine, seed):
+    record, truth = machine(seed)
+    found = fit_joint(*record)
+    for name, true, near in zip(NAMES, truth, (0.1, 0.15, 0.2), strict=True):
+        x, stderr = getattr(found, name), getattr(found, f"{name}_stderr")
+        assert abs(x - true) < near * true, name
+        if not found.warnings:
+            assert abs(x - true) < 3 * stderr + 0.02 * true, name
+    assert "outlier" not in " ".join(found.warnings)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("seed", range(4))
+def test_too_high_a_cutoff_is_told_by_half_of_it(seed):
+    """The default is right; twice the resonance is not, and is doubted."""
+    record, (J, _, _) = industrial_axis(seed)
+    high = fit_joint(*record, cutoff_hz=45.0)
+    assert high.inertia < 0.9 * J and "depends on the cut-off" in " ".join(high.warnings)
+    assert abs(fit_joint(*record).inertia / J - 1) < 0.1
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("seed", range(4))
+def test_gravity_is_named_and_then_found(seed):
+    record, truth = fast_arm(seed, gravity=2.0)
+    assert "gravity" in " ".join(fit_joint(*record).warnings)
+    found = fit_joint(*record, terms=("inertia", "viscous", "coulomb", "offset", "gravity"))
+    expected = 2 * truth[2] * np.array([np.cos(0.3), np.sin(0.3)])
+    for name, true in zip((*NAMES, "gravity_sin", "gravity_cos"), (*truth, *expected), strict=True):
+        assert abs(getattr(found, name) - true) < 3 * getattr(found, f"{name}_stderr") + 0.05 * abs(true), name
+
+
+def sweep(rng, rate=200, stribeck=0.0, noise=0.05):
+    """Steady speeds to both sides: t, q, v, u; viscous 4, Coulomb 3."""
+    v = np.repeat(np.outer(np.geomspace(0.01, 1, 12), [1, -1]).ravel(), rate * 3)
+    u = 4 * v + (3 + stribeck * np.exp(-((v / 0.06) ** 2))) * np.sign(v)
+    return np.arange(len(v)) / rate, np.cumsum(v) / rate, v, u + rng.normal(0, noise, len(v))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_friction_sweep_is_plain_least_squares_of_two_parameters(seed):
+    t, q, v, u = sweep(np.random.default_rng(seed))
+    found = fit_joint(t, q, u, qd=v, terms=("viscous", "coulomb"), held=False)
+    inside = slice(1, -1)
+    expected = np.linalg.lstsq(np.column_stack([v, np.sign(v)])[inside], u[inside], rcond=None)[0]
+    np.testing.assert_allclose((found.viscous, found.coulomb), expected, rtol=1e-9)
+    assert abs(found.viscous - 4) < 3 * found.viscous_stderr and abs(found.coulomb - 3) < 3 * found.coulomb_stderr
+    assert found.inertia == found.offset == 0 and np.isnan(found.inertia_stderr) and found.warnings == ()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_stribeck_friction_and_its_speed(seed):
+    t, q, v, u = sweep(np.random.default_rng(seed), stribeck=2.0)
+    found = fit_joint(t, q, u, qd=v, terms=("viscous", "coulomb", "stribeck"), held=False)
+    for name, true in (("viscous", 4), ("coulomb", 3), ("stribeck", 2), ("stribeck_speed", 0.06)):
+        assert abs(getattr(found, name) - true) < 4 * getattr(found, f"{name}_stderr"), name
+    assert found.stribeck_stderr < 0.1
+
+
+def test_measured_speed_is_used_and_its_unit_is_checked():
+    rng = np.random.default_rng(0)
+    t, q, v, a = sines(rng, 500, 15, 0.8)
+    u = 0.7 * a + 2 * v + 0.8 * np.sign(v) + 0.1 + rng.normal(0, 0.02, len(t))
+    coarse = np.round(q / 0.02) * 0.02  # too coarse to be differentiated twice
+    found = fit_joint(t, coarse, u, qd=v, cutoff_hz=10.0, held=False)
+    assert (found.inertia, found.viscous, found.coulomb) == pytest.approx((0.7, 2, 0.8), rel=0.04)
+    assert "times qd" in " ".join(fit_joint(t, q, u, qd=v * 9.549).warnings)  # rev/min
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_coulomb_friction_that_drowns_is_named(seed):
+    rng = np.random.default_rng(seed)
+    t, q, v, a = sines(rng, 200, 15, 0.8)
+    drift = 0.3 * np.cumsum(rng.normal(size=len(t))) / np.sqrt(len(t))
+    found = fit_joint(t, q, 0.7 * a + 2 * v + 0.01 * np.sign(v) + drift)
+    assert "coulomb friction" in " ".join(found.warnings).lower()
+
+
+def test_masked_samples_series_and_several_runs():
+    import pandas as pd
+
+    record, truth = research_arm(1)
+    t, q, u = record
+    bad = np.random.default_rng(0).uniform(size=len(t)) < 0.02
+    spoilt = np.where(bad, 1e3, q)
+    masked = fit_joint(t, np.ma.array(spoilt, mask=bad), u)
+    kept = fit_joint(pd.Series(t[~bad]), pd.Series(q[~bad]), pd.Series(u[~bad]))
+    assert masked == kept
+    thirds = [(x[0], x[1], x[2]) for x in zip(*(np.array_split(x, 3) for x in record), strict=True)]
+    whole, together = fit_joint(*record), fit_joint([(x - x[0], q, u) for x, q, u in thirds])
+    for name, true in zip(NAMES, truth, strict=True):
+        assert abs(getattr(together, name) - true) < 3 * getattr(together, f"{name}_stderr") + 0.03 * true
+    assert 0.5 * whole.samples < together.samples < 1.01 * whole.samples
+
+
+def test_anyway_goes_on_with_the_reason():
+    record, truth = research_arm(2)
+    t, q, u = record
+    hung = (t > 5) & (t < 5.6)
+    frozen = np.where(hung, q[hung][0], q)
+    with pytest.raises(IdentificationError, match="hung"):
+        fit_joint(t, frozen, u)
+    found = fit_joint(t, frozen, u, anyway=True)
+    assert "gone on anyway" in " ".join(found.warnings) and found.viscous > 0
+    holes = np.where(np.arange(len(t)) % 50 == 7, np.nan, q)
+    assert fit_joint(t, holes, u, anyway=True).viscous == pytest.approx(truth[1], rel=0.05)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("seed", range(4))
+def test_waiting_at_the_turning_point_and_gaps_are_not_refused(seed):
+    """The same largest angle again and again, a rest there, and pieces cut out while the joint moves."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(12000) / 1000
+    phase = (t % 2.4) / 2.4
+    s = np.clip(np.where(phase < 0.5, phase, 1 - phase) * 2 / 0.7, 0, 1)
+    q = 0.8 * (10 * s**3 - 15 * s**4 + 6 * s**5)
+    v = np.gradient(q, t)
+    a = np.gradient(v, t)
+    u = 0.5 * a + 3 * v + dry(v, 1.5, rng) + rng.normal(0, 0.05, len(t))
+    kept = np.ones(len(t), dtype=bool)
+    for first in rng.integers(500, 11000, 4):
+        kept[first : first + 300] = False
+    found = fit_joint(t[kept], q[kept], u[kept])
+    assert (found.inertia, found.viscous, found.coulomb) == pytest.approx((0.5, 3, 1.5), rel=0.1)
+
+
+def test_general_least_squares_of_more_equations_a_sample():
+    rng = np.random.default_rng(0)
+    A = rng.normal(size=(300, 2, 4))
+    A[:, :, 3] = 2 * A[:, :, 1]
+    x = np.array([1.0, -2.0, 0.5, 0.0])
+    z = []
+    for seed in range(60):
+        found = least_squares(A, A @ x + np.random.default_rng(seed).normal(size=(300, 2)), names="abcd")
+        assert found.dropped == ("d",) and np.isinf(found.stderr[3]) and found.residuals.shape == (300, 2)
+        z.append(((found.x - x) / found.stderr)[:3])
+    assert 0.75 < np.std(z) < 1.15
+
+
+@pytest.mark.parametrize("n", range(4, 24))
+def test_short_runs_are_refused_in_our_own_words(n):
+    t = np.arange(n) / 100
+    try:
+        process(t, np.sin(t), np.cos(t), cutoff_hz=20.0)
+    except IdentificationError as refusal:
+        assert "nothing is left" in str(refusal)
