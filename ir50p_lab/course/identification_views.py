@@ -153,7 +153,15 @@ def kept_motion(arm, number=0):
         return load_excitations()[f"validation {number}" if number else "training"]
     speed = 0.8 * arm.actuators.no_load_speed
     # room at the limits and over the table: the thesis' PID lags and sags
-    options = {"standing": 6, "margin": 0.2, "table": 0.1, "starts": 1, "iterations": 30, "progress": False}
+    options = {
+        "harmonics": 3,
+        "standing": 6,
+        "margin": 0.2,
+        "table": 0.1,
+        "starts": 1,
+        "iterations": 30,
+        "progress": False,
+    }
     return optimise_excitation(arm, max_joint_speed=speed, seed=number, **options).reference
 
 

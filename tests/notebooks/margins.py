@@ -44,7 +44,7 @@ def run(path, unit):
         log = Path(folder, "claims.jsonl")
         log.touch()
         os.environ |= {"IR50P_UNIT": str(unit), "IR50P_CLAIMS": str(log), "IR50P_BENCH": "simulated"}
-        os.environ |= {"IR50P_PROGRESS": f"{folder}/progress.json", "IR50P_RECORDINGS": folder}
+        os.environ |= {"IR50P_HOME": folder, "IR50P_PROGRESS": f"{folder}/progress.json", "IR50P_RECORDINGS": folder}
         NotebookClient(
             notebook, timeout=600, allow_errors=True, resources={"metadata": {"path": str(FOLDER)}}
         ).execute()
