@@ -1,7 +1,7 @@
 """USB ids of the boards that fit the bench, and who may open a serial port. Standard library only."""
 
-import os
 import sys
+from pathlib import Path
 
 MEGA = "Arduino Mega 2560"
 # Arduino's own list (boards.txt of its AVR core): the Mega 2560 under both of its vendors, and the Mega ADK
@@ -32,10 +32,7 @@ def board_name(vid, pid):
 def permission_remedy(device):
     """What to do when this user may not open the serial port `device`, on this operating system."""
     if sys.platform.startswith("linux"):
-        group = _group_of(device)
-        if group in _groups_of_user():
-            return f"you are in the group {group} already: log out and in again, or restart, to make it count"
-        return f"'sudo usermod -aG {group} $USER', then log out and in again"
+        return f"'sudo usermod -aG {_group_of(device)} $USER', then log out and in again, or restart, to make it count"
     if sys.platform == "darwin":
         return f"'ls -l {device}' shows who may; on a managed Mac ask its administrator for access to serial devices"
     return "close the program that holds it (Arduino IDE, another notebook): Windows reports a busy port this way"
@@ -44,21 +41,7 @@ def permission_remedy(device):
 def _group_of(device):
     """Name of the group that may open the port: dialout on Debian and Fedora, uucp on Arch."""
     try:
-        import grp
-
-        name = grp.getgrgid(os.stat(device).st_gid).gr_name
-    except (ImportError, OSError, KeyError):
+        name = Path(device).group()
+    except (OSError, KeyError, NotImplementedError):
         return "dialout"
     return "dialout" if name == "root" else name  # root: no rule gave the port to anybody
-
-
-def _groups_of_user():
-    """Groups of this user by the user database, which may be newer than this session."""
-    try:
-        import grp
-        import pwd
-
-        user = pwd.getpwuid(os.getuid()).pw_name
-        return {group.gr_name for group in grp.getgrall() if user in group.gr_mem}
-    except (ImportError, KeyError):
-        return set()

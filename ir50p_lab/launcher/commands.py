@@ -1,20 +1,4 @@
-"""The command line: lab (the default), test, targets, setup, doctor, bench-test."""
-
-import os
-import signal
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
-
-from ir50p_lab.launcher import doctor, inventory
-from ir50p_lab.launcher.environment import LOCK, TEST_LOCK, Environment
-from ir50p_lab.launcher.problems import COMMAND, SetUpError, from_os_error
-
-ROOT = Path(__file__).resolve().parents[2]
-
-HELP = """\
-The IR50P lab book. In the project's folder (on Windows write py instead of python3):
+"""The IR50P lab book. In the project's folder (on Windows write py instead of python3):
 
   python3 -m ir50p_lab [...]          set up .venv on first use, then open JupyterLab on notebooks/
   python3 -m ir50p_lab test [...]     set up with the test tools, then run the tests and every notebook
@@ -33,6 +17,20 @@ Further arguments go to JupyterLab, to pytest (paths count from the project's fo
   py -m ir50p_lab test -k pose
   py -m ir50p_lab targets vision --quick    (or identification, computed_torque; without a name all of them)
 """
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from ir50p_lab.launcher import doctor, inventory
+from ir50p_lab.launcher.environment import LOCK, TEST_LOCK, Environment
+from ir50p_lab.launcher.problems import COMMAND, SetUpError, from_os_error
+
+ROOT = Path(__file__).resolve().parents[2]
+
 COMMANDS = ("lab", "test", "targets", "setup", "doctor", "bench-test")
 
 
@@ -59,7 +57,7 @@ def main(arguments, root=ROOT):
 
 def _run(arguments, root):
     if arguments[:1] in (["-h"], ["--help"], ["help"]):
-        print(HELP, end="")
+        print(__doc__, end="")
         return 0
     here = _take_flag(arguments, "--here")
     arm = _take_value(arguments, "--arm")
@@ -160,14 +158,12 @@ def _take_flag(arguments, name):
 
 
 def _take_value(arguments, name):
-    for i, argument in enumerate(arguments):
-        if argument == name:
-            if i + 1 == len(arguments):
-                raise SetUpError(f"{name} needs a file after it. Try '{COMMAND} --help'.")
-            value = arguments[i + 1]
-            del arguments[i : i + 2]
-            return value
-        if argument.startswith(name + "="):
-            del arguments[i]
-            return argument[len(name) + 1 :]
-    return None
+    arguments[:] = [part for a in arguments for part in (a.split("=", 1) if a.startswith(f"{name}=") else [a])]
+    if name not in arguments:
+        return None
+    place = arguments.index(name)
+    _, *value = arguments[place : place + 2]
+    if not value:
+        raise SetUpError(f"{name} needs a file after it. Try '{COMMAND} --help'.")
+    del arguments[place : place + 2]
+    return value[0]

@@ -8,6 +8,7 @@ import hashlib
 import importlib.util
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -16,12 +17,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from ir50p_lab.launcher import pip_run, problems
+from ir50p_lab.launcher import inventory, problems
+from ir50p_lab.launcher.installer import Installer
 from ir50p_lab.launcher.problems import COMMAND, SetUpError
 
 LOCK = "environment.txt"
 TEST_LOCK = "environment-test.txt"
-#: Space that .venv and pip's cache take, GB (measured on Linux: see README.md).
+#: Space that .venv and uv's cache take, GB (measured on Linux: see README.md).
 NEEDED_GB = 2.0
 
 _STAMP = "ir50p_lab-setup.json"
@@ -55,15 +57,16 @@ class Environment:
         stamp = self._read_stamp()
         if stamp is None:
             return State(False, "half made (a set-up was interrupted)", rebuild=True)
-        if stamp["root"] != str(self.root):
+        changed = {name: stamp[name] for name, value in self._stamp(tests=True).items() if stamp[name] != value}
+        if "root" in changed:
             return State(False, f"made for another folder ({stamp['root']})", rebuild=True)
-        if stamp["python"] != _python_version():
+        if "python" in changed:
             return State(False, f"made with Python {stamp['python']}, this is {_python_version()}", rebuild=True)
-        if stamp[LOCK] != self._digest(LOCK):
+        if LOCK in changed:
             return State(False, f"out of date ({LOCK} has changed)", rebuild=True)
         if not self._python_works():
             return State(False, "broken (its Python does not start)", rebuild=True)
-        if tests and stamp[TEST_LOCK] != self._digest(TEST_LOCK):
+        if tests and TEST_LOCK in changed:
             return State(False, "without the test tools" if stamp[TEST_LOCK] is None else f"behind {TEST_LOCK}")
         return State(True, "ready")
 
@@ -78,10 +81,14 @@ class Environment:
                 state = self.state(tests=tests)  # again: another set-up may just have finished
                 if state.ready and not rebuild:
                     return
+                started = time.monotonic()
                 if rebuild or state.rebuild:
                     self._build(state, tests, stream, lock)
                 else:
-                    self._add_tests(stream, lock)
+                    (self.folder / _STAMP).unlink()
+                    self._install_lock(TEST_LOCK, "[1/1] test tools of", stream, lock)
+                self._write_stamp(tests)
+                _say(stream, f"Set-up finished in {time.monotonic() - started:.0f} s.")
         except OSError as error:
             raise problems.from_os_error(error, self.root) from error
 
@@ -94,40 +101,53 @@ class Environment:
         variables["JUPYTER_PREFER_ENV_PATH"] = "1"
         return variables
 
+    def look_inside(self, python=None):
+        """Run the inventory with the Python of .venv, or another: (what it found or None, last line of its errors)."""
+        command = [str(python or self.python), "-P", inventory.__file__, str(self.root / LOCK)]
+        variables = _clean_variables() if python else self.variables()
+        done = subprocess.run(command, env=variables, capture_output=True, encoding="utf-8", errors="replace")
+        try:
+            return json.loads(done.stdout), ""
+        except ValueError:
+            return None, (done.stderr.strip().splitlines() or [f"ended with code {done.returncode}"])[-1]
+
     # -- building ------------------------------------------------------------------------------------------------------
 
     def _build(self, state, tests, stream, lock):
-        started = time.monotonic()
         if not state.ready and self._has_content():
             _say(stream, f"The folder .venv is {state.reason}: building it again.")
         else:
-            _say(stream, f"Set-up of {self.folder}: takes a few minutes, once. Ctrl-C stops it safely.")
+            _say(stream, f"Set-up of {self.folder}: takes a minute or two, once. Ctrl-C stops it safely.")
         free = shutil.disk_usage(self.root).free / 1e9
         if free < NEEDED_GB:
             _say(stream, f"Only {free:.1f} GB are free; the set-up may need {NEEDED_GB:.0f} GB.")
         for module in ("venv", "ensurepip"):
             if not _has_module(module):
-                raise problems.no_venv_module(module)
+                raise problems.problem("no_ensurepip", self.root, module)
         self._empty()
         _say(stream, f"[1/4] Python {_python_version()} environment")
         self._run_venv()
-        _say(stream, f"[2/4] packages of {TEST_LOCK if tests else LOCK}")
-        self._install(TEST_LOCK if tests else LOCK, stream, lock)
+        installer = self._install_lock(TEST_LOCK if tests else LOCK, "[2/4] packages of", stream, lock)
         _say(stream, "[3/4] the lab book itself")
-        self._install_project(lock)
-        _say(stream, "[4/4] check")
-        self._check()
+        # Editable, so that notebooks anywhere import the package as it is here; the build tool is in the lock.
+        installer.install("--no-deps", "--no-build-isolation", "--editable", str(self.root))
+        _say(stream, "[4/4] check: everything is imported once")
+        self._check(stream)
         self._quieten_jupyter()
-        self._write_stamp(tests)
-        _say(stream, f"Set-up finished in {time.monotonic() - started:.0f} s.")
 
-    def _add_tests(self, stream, lock):
-        started = time.monotonic()
-        (self.folder / _STAMP).unlink()
-        _say(stream, f"[1/1] test tools of {TEST_LOCK}")
-        self._install(TEST_LOCK, stream, lock)
-        self._write_stamp(tests=True)
-        _say(stream, f"Set-up finished in {time.monotonic() - started:.0f} s.")
+    def _install_lock(self, lock_file, step, stream, lock):
+        """Install what a lock file asks for; return the installer."""
+        _say(stream, f"{step} {lock_file}")
+        path = self.root / lock_file
+        installer = Installer(self.python, self.variables(), folder=self.root, log=self.log, lock=lock, stream=stream)
+        text = path.read_text("utf-8")
+        uv = re.search(r"^uv==\S+", text, re.MULTILINE)
+        if uv and not installer.fetch_uv(uv[0]):
+            path = self.folder / lock_file
+            path.write_text(text.replace(uv[0], ""), encoding="utf-8")
+        # Ready-made packages only: nobody should need a compiler.
+        installer.install("--only-binary", ":all:", "--requirement", str(path))
+        return installer
 
     def _empty(self):
         """Remove what is in .venv, stamp first; the folder itself (it may be a link to another disk) stays."""
@@ -141,7 +161,12 @@ class Environment:
                 else:
                     entry.unlink()
         except PermissionError as error:
-            raise (problems.in_use if os.name == "nt" else problems.no_permission)(self.folder) from error
+            if os.name != "nt":
+                raise
+            raise SetUpError(
+                f"{self.folder} is in use and cannot be rebuilt: close JupyterLab and every program that runs Python "
+                f"from it, then run '{COMMAND}' again."
+            ) from error
 
     def _run_venv(self):
         # Not sys.executable: when that is the .venv being rebuilt, it is gone by now. The module venv refuses links.
@@ -159,51 +184,17 @@ class Environment:
             self.log.write_text(done.stdout, encoding="utf-8")
             raise problems.from_output(done.stdout, done.returncode, self.root, self.log)
 
-    def _install(self, lock_file, stream, lock):
-        path = self.root / lock_file
-        requirements = sum(1 for line in path.read_text("utf-8").splitlines() if line and line[0] not in "#-")
-        self._pip(
-            # Ready-made packages only: nobody should need a compiler.
-            ["install", "--only-binary", ":all:", "--requirement", str(path)],
-            lock,
-            stream=stream,
-            requirements=requirements,
-            count_installed=self._count_installed,
-        )
-
-    def _install_project(self, lock):
-        # Editable, so that notebooks anywhere import the package as it is here; the build tool is in the lock.
-        self._pip(["install", "--no-deps", "--no-index", "--no-build-isolation", "--editable", str(self.root)], lock)
-
-    def _pip(self, arguments, lock, **progress):
-        command = [str(self.python), "-P", "-m", "pip", *arguments]
-        options = ["--no-input", "--disable-pip-version-check", "--no-color", "--log", str(self.log)]
-        variables = self.variables() | {"PIP_USER": "0", "PYTHONIOENCODING": "utf-8", "PYTHONUNBUFFERED": "1"}
-        # pip inherits the lock: after a 'kill -9' of the launcher the next set-up waits until this pip has ended.
-        pass_fds = () if lock is None or os.name == "nt" else (lock,)
-        begin = len(self.log.read_text("utf-8", errors="replace")) if self.log.exists() else 0
-        code, output = pip_run.run(command + options, env=variables, pass_fds=pass_fds, **progress)
-        if code:
-            raise problems.from_output(self._logged_errors(begin) + output, code, self.root, self.log)
-
-    def _logged_errors(self, begin):
-        """Read what pip only writes to its log: addresses without an answer, errors of the programs it runs."""
-        try:
-            lines = self.log.read_text("utf-8", errors="replace")[begin:].splitlines()
-        except OSError:
-            return ""
-        told = [line for line in lines if "Could not fetch URL" in line or "Error: [" in line]
-        return "".join(f"{line}\n" for line in told if "404 Client Error" not in line)
-
-    def _check(self):
-        """The package must be importable from anywhere."""
-        command = [str(self.python), "-P", "-c", "import ir50p_lab"]
-        done = subprocess.run(command, env=self.variables(), capture_output=True, cwd=self.folder)
-        if done.returncode:
+    def _check(self, stream):
+        """The package and all it needs must be importable from anywhere."""
+        found, error = self.look_inside()
+        broken = {"the set-up's last step": error} if found is None else found["broken"]
+        if "ir50p_lab" in broken:
             raise SetUpError(
                 f"The path {self.root} has letters that this Python cannot read when it starts. Move the project to a "
                 f"folder whose path has plain letters only (or use Python 3.13 or newer), then run '{COMMAND}' again."
             )
+        for name, why in broken.items():
+            _say(stream, f"Careful: {name} cannot be used ({why}). '{COMMAND} doctor' says more.")
 
     def _quieten_jupyter(self):
         """Spare the student JupyterLab's question about news from the web at its first start."""
@@ -214,16 +205,19 @@ class Environment:
 
     # -- the stamp -----------------------------------------------------------------------------------------------------
 
-    def _write_stamp(self, tests):
-        stamp = {
+    def _stamp(self, tests):
+        """What a finished set-up leaves behind."""
+        return {
             "root": str(self.root),
             "python": _python_version(),
             LOCK: self._digest(LOCK),
             TEST_LOCK: self._digest(TEST_LOCK) if tests else None,
         }
+
+    def _write_stamp(self, tests):
         path = self.folder / _STAMP
         part = path.with_suffix(".part")
-        part.write_text(json.dumps(stamp, indent=1), encoding="utf-8")
+        part.write_text(json.dumps(self._stamp(tests), indent=1), encoding="utf-8")
         os.replace(part, path)  # all of it or nothing
 
     def _read_stamp(self):
@@ -258,9 +252,6 @@ class Environment:
             return subprocess.run(command, env=_clean_variables(), capture_output=True).returncode == 0
         except OSError:
             return False
-
-    def _count_installed(self):
-        return sum(1 for _ in self.folder.glob("[Ll]ib/**/site-packages/*.dist-info"))
 
     @contextmanager
     def _only_one(self, stream):
@@ -311,12 +302,9 @@ def _python_version():
 
 
 def _clean_variables():
-    """Environment variables without those that would lead another Python's packages into .venv."""
-    return {
-        name: value
-        for name, value in os.environ.items()
-        if name not in ("PYTHONHOME", "PYTHONPATH", "PYTHONSTARTUP", "__PYVENV_LAUNCHER__")
-    }
+    """Environment variables without those that bring in another Python's packages or make warnings of others fatal."""
+    unwanted = ("PYTHONHOME", "PYTHONPATH", "PYTHONSTARTUP", "PYTHONWARNINGS", "__PYVENV_LAUNCHER__")
+    return {name: value for name, value in os.environ.items() if name not in unwanted}
 
 
 def _say(stream, text):

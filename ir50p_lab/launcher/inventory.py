@@ -1,22 +1,33 @@
-"""What this Python has: packages beside what a lock file asks for, and the serial ports.
+"""What this Python has: packages beside what a lock file asks for, what of it can be imported, serial ports.
 
-Also runs as a script inside .venv, for the doctor: ``python inventory.py LOCK_FILE`` prints all of it as JSON.
+Also runs as a script inside .venv: ``python inventory.py LOCK_FILE`` prints all of it as JSON. The imports compile the
+bytecode of what the course uses, so that the first notebook need not.
 """
 
+import contextlib
 import importlib.metadata
+import importlib.util
 import json
+import pkgutil
 import platform
 import re
 import sys
+import tomllib
 from pathlib import Path
+
+#: Imported beside the direct dependencies: what JupyterLab and its kernels start with.
+_STARTED = ("jupyterlab.labapp", "ipykernel.kernelapp")
 
 
 def packages(lock):
-    """List the packages that the lock file asks of this Python: name, wanted and installed version (or None)."""
+    """List the packages that the lock file asks of this Python: name, wanted and installed version (or None).
+
+    Without uv, which is for the set-up only and does not exist for every machine.
+    """
     found = []
     for line in Path(lock).read_text("utf-8").splitlines():
         match = re.match(r"([A-Za-z0-9._-]+)==([^\s;]+)\s*(?:;\s*(.*))?$", line)
-        if match and _applies(match[3]):
+        if match and match[1] != "uv" and _applies(match[3]):
             found.append({"name": match[1], "wanted": match[2], "installed": installed_version(match[1])})
     return found
 
@@ -29,6 +40,39 @@ def installed_version(name):
         return None
 
 
+def direct_dependencies(root):
+    """Names of the packages that pyproject.toml asks for."""
+    with open(Path(root) / "pyproject.toml", "rb") as file:
+        dependencies = tomllib.load(file)["project"]["dependencies"]
+    return [re.split(r"[<>=!~ ]", dependency)[0] for dependency in dependencies if not dependency.startswith("uv")]
+
+
+def broken_imports(distributions):
+    """Import what the distributions hold, and every module of the lab book: {module: why it cannot be imported}."""
+    names = [
+        name
+        for name, sources in importlib.metadata.packages_distributions().items()
+        if set(sources) & set(distributions) and not name.startswith("_")
+    ]
+    names += [name for name in _STARTED if importlib.util.find_spec(name.partition(".")[0])]
+    broken = {}
+    for name in names:
+        _try_import(name, broken)
+    for module in pkgutil.walk_packages(_try_import("ir50p_lab", broken), "ir50p_lab."):
+        if not module.name.endswith("__main__"):
+            _try_import(module.name, broken)
+    return broken
+
+
+def _try_import(name, broken):
+    """Import a module; return where its submodules are."""
+    try:
+        return getattr(importlib.import_module(name), "__path__", [])
+    except BaseException as error:  # whatever a damaged package raises
+        broken[name] = f"{type(error).__name__}: {error}".splitlines()[0]
+        return []
+
+
 def serial_ports():
     """Serial ports with USB vendor and product, or None when pyserial is not there to look."""
     try:
@@ -36,17 +80,13 @@ def serial_ports():
     except ImportError:
         return None
     return [
-        {
-            "device": port.device,
-            "usb": None if port.vid is None else f"{port.vid:04X}:{port.pid:04X}",
-            "description": port.description or "",
-        }
+        {"device": port.device, "vid": port.vid, "pid": port.pid, "description": port.description or ""}
         for port in sorted(list_ports.comports())
     ]
 
 
 def _applies(marker):
-    """Whether an environment marker ('sys_platform == "win32"') holds here; without pip or packaging: assume so."""
+    """Whether an environment marker ('sys_platform == "win32"') holds here; without packaging: assume so."""
     if not marker:
         return True
     try:
@@ -63,12 +103,14 @@ def collect(lock):
     """Everything at once, ready for JSON."""
     return {
         "python": platform.python_version(),
-        "executable": sys.executable,
         "project": installed_version("ir50p-lab"),
         "packages": packages(lock),
+        "broken": broken_imports(direct_dependencies(Path(lock).parent)),
         "ports": serial_ports(),
     }
 
 
 if __name__ == "__main__":
-    json.dump(collect(sys.argv[1]), sys.stdout)
+    with contextlib.redirect_stdout(sys.stderr):  # whatever an import prints
+        found = collect(sys.argv[1])
+    json.dump(found, sys.stdout)

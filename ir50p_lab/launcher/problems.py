@@ -7,129 +7,121 @@ import re
 import sys
 
 COMMAND = "py -m ir50p_lab" if os.name == "nt" else "python3 -m ir50p_lab"
+_PYTHON = "py" if os.name == "nt" else "python3"
 
-#: What pip and the operating systems say when ...
-_DISK_FULL = r"No space left on device|\[Errno 28\]|Disk quota exceeded|\[WinError 112\]|not enough space on the disk"
-_NO_PERMISSION = r"\[Errno 13\]|Permission denied|\[WinError 5\]|Access is denied|Read-only file system|\[Errno 30\]"
-_PATH_TOO_LONG = r"\[WinError 206\]|Windows Long Path support|File name too long|\[Errno 36\]"
-_PROXY = r"ProxyError|Tunnel connection failed|Cannot connect to proxy|407 Proxy"
-_CERTIFICATE = r"CERTIFICATE_VERIFY_FAILED|SSLError|SSLCertVerificationError"
-_NETWORK = (
-    r"connection broken by|NewConnectionError|ConnectTimeout|ReadTimeout|ConnectionResetError|ProtocolError"
-    r"|IncompleteRead|Name or service not known|Temporary failure in name resolution|getaddrinfo failed"
-    r"|Network is unreachable|Max retries exceeded|Could not fetch URL|HTTPError|HTTP error"
+#: What pip and uv say when there is no package for this machine; one group names the package.
+_NO_WHEEL = (
+    r"No matching distribution found for ([^\s;]+)"
+    r"|(?:not found in the (?:provided package locations|package registry)|there is no version of|has no wheels with)"
+    r"[^.]*? you require ([^\s,;]+)"
 )
-_NO_WHEEL = r"No matching distribution found for ([^\s;]+)"
-_HALF_WHEEL = r"has an invalid wheel|BadZipFile|Wheel .* is invalid|File is not a zip file"
-_ENSUREPIP = r"ensurepip is not available|No module named '?ensurepip"
+#: What they say when ... The order matters: a full disk also shows as a broken connection, a missing connection also as
+#: a missing package.
+_SIGNS = {
+    "disk_full": r"No space left on device|\[Errno 28\]|Disk quota exceeded|\[WinError 112\]|not enough space on the",
+    "path_too_long": r"\[WinError 206\]|Windows Long Path support|File name too long|\[Errno 36\]",
+    "no_ensurepip": r"ensurepip is not available|No module named '?ensurepip",
+    "proxy": r"ProxyError|[Tt]unnel (connection failed|error)|Cannot connect to proxy|407 Proxy",
+    "certificate": r"CERTIFICATE_VERIFY_FAILED|SSLError|SSLCertVerificationError|invalid peer certificate",
+    "network": (
+        r"connection broken by|NewConnectionError|ConnectTimeout|ReadTimeout|ConnectionResetError|ProtocolError"
+        r"|IncompleteRead|Name or service not known|Temporary failure in name resolution|getaddrinfo failed"
+        r"|Network is unreachable|Max retries exceeded|Could not fetch URL|HTTPError|HTTP error"
+        r"|Failed to fetch|error sending request|tcp connect error"
+    ),
+    "no_wheel": _NO_WHEEL,
+    "damaged": r"has an invalid wheel|BadZipFile|Wheel .* is invalid|invalid package format|zip file",
+    "no_permission": (
+        r"\[Errno 13\]|Permission denied|\[WinError 5\]|Access is denied|Read-only file system|\[Errno 30\]"
+    ),
+}
+_LINUX_PYTHON = f"python{sys.version_info.major}.{sys.version_info.minor}"
+_AGAIN = f"then run '{COMMAND}' again"
+_NO_NETWORK = (
+    f" (for example HTTPS_PROXY=http://proxy:3128), {_AGAIN}. Without any network: README.md, section 'Offline'."
+)
+#: ... and what to do then.
+_ADVICE = {
+    "disk_full": (
+        "The disk is full: {folder} could not be written. Free about 2 GB (emptying the recycle bin helps, and so does "
+        f"'{_PYTHON} -m pip cache purge'), {_AGAIN}; the set-up starts afresh by itself."
+    ),
+    "path_too_long": (
+        "The path {folder} is too long for this system: move the project to a short one, such as C:\\ir50p, "
+        f"and run '{COMMAND}' there."
+    ),
+    "no_ensurepip": (
+        f"This Python came without its module '{{module}}', which makes the project's own environment. Debian, Ubuntu: "
+        f"'sudo apt install {_LINUX_PYTHON}-venv', {_AGAIN}. "
+        "Elsewhere: install Python from https://www.python.org/downloads/"
+    ),
+    "proxy": f"Download failed: the proxy refused the connection. Check the address in HTTPS_PROXY{_NO_NETWORK}",
+    "certificate": (
+        "Download failed: the download server's certificate was not accepted. Check the clock of this machine; behind "
+        f"a proxy that opens traffic, set PIP_CERT to its certificate file{_NO_NETWORK}"
+    ),
+    "network": (
+        "Download failed: no connection to the download server. Check the network; behind a proxy set HTTPS_PROXY"
+        f"{_NO_NETWORK}"
+    ),
+    "damaged": (
+        f"A downloaded package is damaged. Run '{_PYTHON} -m pip cache purge', then '{COMMAND}' again "
+        "(offline: copy the wheel folder once more)."
+    ),
+    "no_permission": (
+        "No permission to write in {folder}. Move the project into your home folder (or ask its owner for write "
+        f"permission), then run '{COMMAND}' there."
+    ),
+}
 
 
 class SetUpError(Exception):
     """Something the person at the keyboard can put right; its text says how."""
 
 
-def disk_full(folder):
-    """Disk or quota is full."""
-    return SetUpError(
-        f"The disk is full: {folder} could not be written. Free about 2 GB (emptying the recycle bin and "
-        f"'{_python()} -m pip cache purge' help), then run '{COMMAND}' again; the set-up starts afresh by itself."
-    )
+class NoWheelError(SetUpError):
+    """The index or the wheel folder answered, but has no file that fits this machine."""
 
 
-def no_permission(folder):
-    """The project folder (or .venv) may not be written."""
-    return SetUpError(
-        f"No permission to write in {folder}. Move the project into your home folder (or ask its owner for write "
-        f"permission), then run '{COMMAND}' there."
-    )
-
-
-def no_venv_module(missing):
-    """Python came without the module venv or ensurepip."""
-    version = f"{sys.version_info.major}.{sys.version_info.minor}"
-    return SetUpError(
-        f"This Python {version} came without its module '{missing}', which makes the project's own environment. "
-        f"Debian, Ubuntu: 'sudo apt install python{version}-venv', then run '{COMMAND}' again. "
-        "Elsewhere: install Python from https://www.python.org/downloads/"
-    )
-
-
-def in_use(folder):
-    """Windows does not delete files that a program holds open."""
-    return SetUpError(
-        f"{folder} is in use and cannot be rebuilt: close JupyterLab and every program that runs Python from it, "
-        f"then run '{COMMAND}' again."
-    )
+def problem(kind, folder, module="ensurepip"):
+    """Return the SetUpError of one of the kinds above."""
+    return SetUpError(_ADVICE[kind].format(folder=folder, module=module))
 
 
 def from_os_error(error, folder):
     """Turn an OSError of the launcher itself into a SetUpError."""
     if error.errno in (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)):
-        return disk_full(folder)
+        return problem("disk_full", folder)
     if error.errno in (errno.EACCES, errno.EPERM, errno.EROFS):
-        return no_permission(folder)
-    return SetUpError(f"The operating system refused: {error}. Put that right, then run '{COMMAND}' again.")
+        return problem("no_permission", folder)
+    return SetUpError(f"The operating system refused: {error}. Put that right, {_AGAIN}.")
 
 
-def from_output(output, returncode, folder, log):
-    """Turn what a failed pip or venv printed into a SetUpError.
-
-    The order matters: a full disk also shows as a broken connection, a missing connection also as a missing package.
-    """
-    if re.search(_DISK_FULL, output):
-        return disk_full(folder)
-    if re.search(_PATH_TOO_LONG, output):
+def from_output(output, code, folder, log):
+    """Turn what a failed installer or venv printed into a SetUpError."""
+    # an index that lacks a package says so with 404; the next one may have it
+    output = "".join(line for line in output.splitlines(keepends=True) if "404 Client Error" not in line)
+    for kind, sign in _SIGNS.items():
+        found = re.search(sign, output, re.DOTALL)
+        if found and kind == "no_wheel":
+            return _no_wheel(found[1] or found[2])
+        if found:
+            return problem(kind, folder)
+    if code < 0:
         return SetUpError(
-            f"The path {folder} is too long for this system: move the project to a short one, such as C:\\ir50p, "
-            f"and run '{COMMAND}' there."
+            f"The installer was ended by signal {-code} (often: out of memory). Close other programs, {_AGAIN}."
         )
-    if re.search(_ENSUREPIP, output):
-        return no_venv_module("ensurepip")
-    if re.search(_PROXY, output):
-        return no_network("the proxy refused the connection", "Check the address in HTTPS_PROXY")
-    if re.search(_CERTIFICATE, output):
-        return no_network(
-            "the download server's certificate was not accepted",
-            "Check the clock of this machine; behind a proxy that opens traffic, set PIP_CERT to its certificate file",
-        )
-    if re.search(_NETWORK, output):
-        return no_network("no connection to the download server", "Check the network; behind a proxy set HTTPS_PROXY")
-    if match := re.search(_NO_WHEEL, output):
-        return no_wheel(match[1])
-    if re.search(_HALF_WHEEL, output):
-        return SetUpError(
-            f"A downloaded package is damaged. Run '{_python()} -m pip cache purge', then '{COMMAND}' again "
-            "(offline: copy the wheel folder once more)."
-        )
-    if re.search(_NO_PERMISSION, output):
-        return no_permission(folder)
-    if returncode < 0:
-        return SetUpError(
-            f"The installer was ended by signal {-returncode} (often: out of memory). "
-            f"Close other programs, then run '{COMMAND}' again."
-        )
-    return SetUpError(
-        f"The set-up failed: {_last_error(output)}. All of pip's output is in {log}; then run '{COMMAND}' again."
-    )
+    return SetUpError(f"The set-up failed: {_last_error(output)}. All that was printed is in {log}; {_AGAIN}.")
 
 
-def no_network(what, advice):
-    """Nothing could be downloaded."""
-    return SetUpError(
-        f"Download failed: {what}. {advice} (for example HTTPS_PROXY=http://proxy.example:3128), then run "
-        f"'{COMMAND}' again. Without any network: README.md, section 'Offline'."
-    )
-
-
-def no_wheel(requirement):
-    """The index or the wheel folder answered, but has no file that fits this machine."""
+def _no_wheel(requirement):
     machine = f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
     if os.environ.get("PIP_NO_INDEX", "").lower() not in ("", "0", "false", "no", "off"):
-        return SetUpError(
+        return NoWheelError(
             f"The wheel folder ({os.environ.get('PIP_FIND_LINKS', 'PIP_FIND_LINKS is not set')}) has no {requirement} "
             f"for {machine}. Fill it on a machine of the same kind: README.md, section 'Offline'."
         )
-    return SetUpError(
+    return NoWheelError(
         f"There is no ready-made package {requirement} for {machine}. Use a 64-bit Python 3.11 to 3.14 from "
         "https://www.python.org/downloads/ (on Macs with an Intel processor 3.11 to 3.13)."
     )
@@ -140,7 +132,3 @@ def _last_error(output):
     errors = [line for line in lines if re.match(r"(ERROR|error|Error|\w*Error):", line)]
     line = (errors or lines or ["no output"])[-1]
     return re.sub(r"^(ERROR|error|Error): *", "", line).rstrip(".")
-
-
-def _python():
-    return "py" if os.name == "nt" else "python3"

@@ -1,10 +1,7 @@
 """Miniature projects for the tests of the launcher."""
 
-import importlib.metadata
-import zipfile
-
 import pytest
-from mini_project import MiniProject, write_wheel
+from mini_project import MiniProject, repack, write_wheel
 
 #: In the place of JupyterLab and pytest: says how it was started and ends as the test wants it to.
 STAND_IN = """
@@ -22,14 +19,12 @@ sys.exit(int(os.environ.get("STAND_IN_CODE", "0")))
 
 @pytest.fixture(scope="session")
 def wheels(tmp_path_factory):
-    """A wheel folder: the build tool as installed here and two packages of one line each."""
+    """A wheel folder: build tool and uv as installed here, and two packages of one line each."""
     folder = tmp_path_factory.mktemp("wheels")
-    flit = importlib.metadata.distribution("flit-core")
-    with zipfile.ZipFile(folder / f"flit_core-{flit.version}-py3-none-any.whl", "w") as wheel:
-        for file in flit.files:
-            if ".." not in file.parts and file.suffix != ".pyc" and file.name not in ("INSTALLER", "REQUESTED"):
-                wheel.write(file.locate(), str(file))
-    write_wheel(folder, "pebble", {"pebble.py": "weight = 3\n", "jupyterlab/__main__.py": STAND_IN})
+    repack(folder, "flit-core")
+    repack(folder, "uv")
+    stand_ins = {"jupyterlab/__main__.py": STAND_IN, "jupyterlab/labapp.py": ""}
+    write_wheel(folder, "pebble", {"pebble.py": "weight = 3\n"} | stand_ins)
     write_wheel(folder, "pebble_test", {"pebble_test.py": "weight = 3\n", "pytest/__main__.py": STAND_IN})
     return folder
 

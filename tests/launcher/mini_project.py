@@ -4,6 +4,7 @@ import base64
 import hashlib
 import importlib.metadata
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -39,10 +40,10 @@ class MiniProject:
         for name in ("__init__.py", "__main__.py"):
             shutil.copy(package / name, root / "ir50p_lab")
         shutil.copytree(package / "launcher", root / "ir50p_lab" / "launcher", ignore=shutil.ignore_patterns("*.pyc"))
-        flit = "flit-core==" + importlib.metadata.version("flit-core")
+        tools = "".join(f"{name}=={importlib.metadata.version(name)}\n" for name in ("flit-core", "uv"))
         (root / "pyproject.toml").write_text(PYPROJECT)
-        (root / "environment.txt").write_text(f"# a comment\n{flit}\npebble==1.0\nghost==1 ; python_version < '3'\n")
-        (root / "environment-test.txt").write_text(f"{flit}\npebble==1.0\npebble-test==1.0\n")
+        (root / "environment.txt").write_text(f"# a comment\n{tools}pebble==1.0\nghost==1 ; python_version < '3'\n")
+        (root / "environment-test.txt").write_text(f"{tools}pebble==1.0\npebble-test==1.0\n")
         (root / "notebooks").mkdir()
         (root / "tests").mkdir()
 
@@ -90,6 +91,10 @@ class MiniProject:
             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
         )
 
+    def log(self):
+        """What the installers were told and what they said."""
+        return (self.venv / "ir50p_lab-setup.log").read_text("utf-8")
+
     def python(self, code):
         """Run code with the Python of .venv."""
         command = [str(self.interpreter), "-P", "-c", code]
@@ -103,6 +108,17 @@ def one_line(process):
     lines = process.stderr.strip().splitlines()
     assert len(lines) == 1, process.stderr
     return lines[0]
+
+
+def repack(folder, name):
+    """Write the wheel that an installed distribution came from."""
+    distribution = importlib.metadata.distribution(name)
+    tag = re.search(r"^Tag: (.+)$", distribution.read_text("WHEEL"), re.MULTILINE)[1]
+    with zipfile.ZipFile(folder / f"{name.replace('-', '_')}-{distribution.version}-{tag}.whl", "w") as wheel:
+        for file in distribution.files:
+            script = f"{name}-{distribution.version}.data/scripts/{file.name}"
+            if file.suffix != ".pyc" and file.name not in ("INSTALLER", "REQUESTED"):
+                wheel.write(file.locate(), script if ".." in file.parts else str(file))
 
 
 def write_wheel(folder, name, files):

@@ -1,0 +1,61 @@
+"""What pip.conf and PIP_* say, as uv is told; uv asks a server as they say."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from ir50p_lab.launcher.installer import for_uv
+
+AS_PIP = ("--index-strategy", "unsafe-best-match")
+
+
+def listed(folder, config="", **variables):
+    """What `pip config list` prints of a configuration file and variables."""
+    (folder / "pip.conf").write_text(config)
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PIP_")}
+    environment |= {"PIP_CONFIG_FILE": str(folder / "pip.conf"), "HOME": str(folder)} | variables
+    command = [sys.executable, "-m", "pip", "config", "list"]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
+
+
+def test_what_pip_prints_is_translated(tmp_path):
+    config = "[global]\nindex-url = https://a/simple\ncert = /a.pem\n[install]\nextra-index-url =\n  https://b\n  https://c\n"
+    options, variables = for_uv(
+        listed(tmp_path, config, PIP_FIND_LINKS="wheels more", PIP_NO_INDEX="0", PIP_CERT="/b.pem")
+    )
+    assert options[:2] == list(AS_PIP)
+    pairs = list(zip(options[2::2], options[3::2], strict=True))
+    assert sorted(pairs) == [
+        ("--default-index", "https://a/simple"),
+        ("--find-links", "more"),
+        ("--find-links", "wheels"),
+        ("--index", "https://b"),
+        ("--index", "https://c"),
+    ]
+    assert variables == {"SSL_CERT_FILE": "/b.pem"}  # a variable is stronger than a file
+
+
+@pytest.mark.parametrize(
+    ("line", "options", "variables"),
+    [
+        (":env:.no-index='1'", ["--no-index"], {}),
+        (":env:.trusted-host='mirror:8080'", ["--allow-insecure-host", "mirror:8080"], {}),
+        (
+            "global.proxy='http://p:3128'",
+            [],
+            dict.fromkeys(("HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY"), "http://p:3128"),
+        ),
+        ("global.timeout='60'", [], {"UV_HTTP_TIMEOUT": "60"}),
+        ("install.user='true'", [], {}),
+        ("download.dest='x'", [], {}),  # for another command
+    ],
+)
+def test_settings(line, options, variables):
+    assert for_uv(line) == ([*AS_PIP, *options], variables)
+
+
+def test_a_setting_without_counterpart():
+    assert for_uv("global.index-url='https://a'\n:env:.constraint='c.txt'") is None
+    assert for_uv(":env:.constraint=''") is not None
