@@ -2,8 +2,8 @@
 
 commands     the command line: lab, test, setup, doctor
 environment  the folder .venv: is it ready, build it, repair it
-pip_run      one pip run with a progress line
-inventory    what is installed beside what the lock asks for; serial ports (runs inside .venv)
+installer    packages into .venv: uv, told what pip is told; else pip
+inventory    what is installed beside what the lock asks for, what can be imported; serial ports (runs inside .venv)
 boards       USB ids of the boards that fit the bench; who may open a port
 doctor       a report on the machine and a verdict
 problems     every error as one line that says what to do next

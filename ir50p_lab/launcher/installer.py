@@ -64,10 +64,10 @@ class Installer:
         self._folder, self._log, self._stream = folder, log, stream
         # An installer inherits the lock: after a 'kill -9' of the launcher the next set-up waits until it has ended.
         self._pass_fds = () if lock is None or os.name == "nt" else (lock,)
-        self._install = [*self._python, "pip", "install", "--disable-pip-version-check", "--no-color", "--verbose"]
+        self._install = [*self._python, "pip", "install", "--disable-pip-version-check", "--no-color", "-vv"]
 
     def fetch_uv(self, requirement):
-        """Put uv into the environment, to be used if it can do what pip is told to do; False if none fits this machine."""
+        """Put uv there, to be used if it can do what pip is told to do; False if none fits this machine."""
         code, output = self._run([*self._install, "--only-binary", ":all:", requirement])
         if code:
             error = problems.from_output(output, code, self._folder, self._log)

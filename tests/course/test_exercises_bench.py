@@ -1,4 +1,4 @@
-"""Exercises of notebook 06: right answers by another route; the message of each wrong one."""
+"""Exercises of notebook 06: right answers by another route."""
 
 import numpy as np
 import pytest
@@ -6,9 +6,7 @@ import pytest
 from ir50p_lab.bench import SimulatedBench, fit_calibration, nominal_calibration
 from ir50p_lab.bench.driving import bridge_inputs
 from ir50p_lab.controllers import PID
-from ir50p_lab.course.exercises import judge, solution
-from ir50p_lab.course.exercises._catalogue import find
-from ir50p_lab.course.exercises.bench import EXERCISES
+from ir50p_lab.course.exercises import solution
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import alias, hold, low_pass
 
@@ -42,14 +40,3 @@ def test_friction_holds_up_to_that_error(share, moves):
     goal = share * solution("bench-5")
     bench.follow(PID((289, 0, 0), limit_pwm=255), hold([goal, 0, 0]), 3)
     assert (np.ptp(bench.truth.q[:, 0]) > 0.01) == moves
-
-
-@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.name)
-def test_each_wrong_answer_is_told_apart(exercise):
-    kind, messages = find(exercise.name).kind, set()
-    assert judge(exercise, kind.solution).state == "right"
-    for slip in exercise.slips:
-        text = judge(exercise, slip.wrong).text
-        assert slip.message in text
-        messages.add(slip.message)
-    assert len(messages) >= 3

@@ -1,11 +1,10 @@
-"""Exercises of notebook 08: right answers by another route; the message of each wrong one."""
+"""Exercises of notebook 08: right answers by another route."""
 
 import numpy as np
 import pytest
 
 from ir50p_lab.controllers import gains_for_poles
-from ir50p_lab.course.exercises import judge, solution
-from ir50p_lab.course.exercises.ct import EXERCISES
+from ir50p_lab.course.exercises import solution
 from ir50p_lab.modelling import IR50P, inverse_dynamics
 
 
@@ -31,14 +30,3 @@ def test_the_error_that_stays_by_simulation():
 def test_top_speed_needs_full_drive():
     needed = inverse_dynamics(IR50P.theta_pwm, [0, 0, 0], [solution("ct-4"), 0, 0], [0, 0, 0])
     assert needed[0] == pytest.approx(255)
-
-
-@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda e: e.name)
-def test_right_answer_is_right_and_each_slip_gets_its_own_sentence(exercise):
-    assert judge(exercise, solution(exercise.name)).state == "right"
-    texts = set()
-    for slip in exercise.slips:
-        verdict = judge(exercise, slip.wrong)
-        assert verdict.state == "slip" and slip.message in verdict.text
-        texts.add(slip.message)
-    assert len(texts) == len(exercise.slips) >= 3

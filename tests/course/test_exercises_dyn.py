@@ -1,11 +1,10 @@
-"""Exercises of notebook 03: right answers by hand or by another route; the message of each wrong one."""
+"""Exercises of notebook 03: right answers by hand or by another route."""
 
 import numpy as np
 import pytest
 
-from ir50p_lab.course.exercises import judge, solution
+from ir50p_lab.course.exercises import solution
 from ir50p_lab.course.exercises._catalogue import find
-from ir50p_lab.course.exercises.dyn import EXERCISES
 from ir50p_lab.modelling import IR50P, THESIS_RODS, derive, energy, forward_kinematics
 
 
@@ -34,18 +33,6 @@ def test_acceleration_fulfils_the_symbolic_equation_of_motion():
 def test_friction_and_voltage_by_hand():
     assert solution("dyn-4") == pytest.approx(-(2 * 0.02 + 0.5 + 0.4 * np.exp(-0.16)))
     assert solution("dyn-5") == pytest.approx(1.6 * (2 + 0.2 * 3) + 2.5 * 0.5)
-
-
-@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda e: e.name)
-def test_right_answer_is_right_and_each_slip_gets_its_own_sentence(exercise):
-    assert judge(exercise, solution(exercise.name)).state == "right"
-    texts = set()
-    for slip in exercise.slips:
-        verdict = judge(exercise, slip.wrong)
-        assert verdict.state == "slip"
-        assert slip.message in verdict.text
-        texts.add(slip.message)
-    assert len(texts) == len(exercise.slips) >= 3
 
 
 def test_prose_of_the_exercises():

@@ -1,11 +1,9 @@
-"""Exercises of notebook 07: right answers by another route; the message of each wrong one."""
+"""Exercises of notebook 07: right answers by another route."""
 
 import numpy as np
 import pytest
 
-from ir50p_lab.course.exercises import judge, solution
-from ir50p_lab.course.exercises._catalogue import find
-from ir50p_lab.course.exercises.ident import EXERCISES
+from ir50p_lab.course.exercises import solution
 from ir50p_lab.identification import nrmse_fit
 from ir50p_lab.modelling import IR50P, inverse_dynamics
 
@@ -40,14 +38,3 @@ def test_the_spread_gives_the_fit_back():
 def test_the_payload_is_that_of_the_course_arm():
     """The numbers of the question are those of the IR50P, rounded: its gain is nearly the answer."""
     assert solution("ident-4") == pytest.approx(IR50P.actuators.gain[2], rel=0.02)
-
-
-@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.name)
-def test_each_wrong_answer_is_told_apart(exercise):
-    kind, messages = find(exercise.name).kind, set()
-    assert judge(exercise, kind.solution).state == "right"
-    for slip in exercise.slips:
-        text = judge(exercise, slip.wrong).text
-        assert slip.message in text
-        messages.add(slip.message)
-    assert len(messages) >= 3

@@ -1,4 +1,4 @@
-"""Exercises of notebook 09: each right answer by another route, each slip with its own sentence."""
+"""Exercises of notebook 09: each right answer by another route."""
 
 import colorsys
 
@@ -6,8 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from ir50p_lab.course.exercises import judge, solution
-from ir50p_lab.course.exercises.image import EXERCISES
+from ir50p_lab.course.exercises import solution
 from ir50p_lab.vision import Pinhole
 
 
@@ -42,15 +41,3 @@ def test_lens_by_two_rays():
     slopes = np.array([-h / f, -h / alpha])
     beta = h / (slopes[1] - slopes[0])
     assert beta == pytest.approx(solution("image-5"))
-
-
-@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda e: e.name)
-def test_right_answer_is_right_and_each_slip_gets_its_own_sentence(exercise):
-    assert judge(exercise, solution(exercise.name)).state == "right"
-    texts = set()
-    for slip in exercise.slips:
-        verdict = judge(exercise, slip.wrong)
-        assert verdict.state == "slip"
-        assert slip.message in verdict.text
-        texts.add(slip.message)
-    assert len(texts) == len(exercise.slips) >= 3

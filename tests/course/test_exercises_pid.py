@@ -1,12 +1,11 @@
-"""Exercises of notebook 05: right answers by another route; the message of each wrong one."""
+"""Exercises of notebook 05: right answers by another route."""
 
 import numpy as np
 import pytest
 
 from ir50p_lab.controllers import PID, ContinuousPID, simc
-from ir50p_lab.course.exercises import judge, solution
+from ir50p_lab.course.exercises import solution
 from ir50p_lab.course.exercises._catalogue import find
-from ir50p_lab.course.exercises.pid import EXERCISES
 from ir50p_lab.identification import FOPDT
 from ir50p_lab.modelling import THESIS_A
 from ir50p_lab.simulation import simulate
@@ -41,17 +40,6 @@ def test_critical_damping_has_a_double_pole():
 def test_simc_is_that_of_the_package():
     rule = simc(FOPDT(K=0.01, T=0.2, L=0.03), tau_c=0.06, kind="PI")
     np.testing.assert_allclose(solution("pid-5"), (rule.kp, rule.ki))
-
-
-@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda e: e.name)
-def test_right_answer_is_right_and_each_slip_gets_its_own_sentence(exercise):
-    assert judge(exercise, solution(exercise.name)).state == "right"
-    texts = set()
-    for slip in exercise.slips:
-        verdict = judge(exercise, slip.wrong)
-        assert verdict.state == "slip" and slip.message in verdict.text
-        texts.add(slip.message)
-    assert len(texts) == len(exercise.slips) >= 3
 
 
 def test_prose_of_the_exercises():
