@@ -221,7 +221,7 @@ PRINTED = [
     ("ERROR: No matching distribution found for llvmlite==0.50.0", "Use a 64-bit Python 3.11 to 3.14"),
     ("ERROR: six has an invalid wheel, .dist-info directory not found", "A downloaded package is damaged"),
     ("Error: Command '[...]' returned: No module named ensurepip", "came without its module 'ensurepip'"),
-    ("Collecting six\nERROR: Something nobody has thought of.\n", "Something nobody has thought of. All of"),
+    ("Collecting six\nERROR: Something nobody has thought of.\n", "Something nobody has thought of. All that"),
     # uv 0.13
     (
         "error: No solution found when resolving dependencies\n  cause: Because granite was not found in the provided "
