@@ -13,6 +13,7 @@ import pytest
 from PIL import Image
 
 from ir50p_lab.course import widgets
+from ir50p_lab.course.painter import Painter
 from ir50p_lab.course.style import new_figure
 from ir50p_lab.course.widgets import LivePanel, exercise_all_panels, live, slider
 from ir50p_lab.errors import InputError, LabError, UnstableLoopWarning
@@ -51,8 +52,9 @@ def test_picture_follows_the_slider_and_equals_a_full_drawing():
     panel.controls["height"].value = 5.0  # what the browser does
     moved = shown(panel)
     assert (start != moved).any()
-    panel.figure.canvas.draw()
-    np.testing.assert_array_equal(moved, np.asarray(panel.figure.canvas.buffer_rgba())[..., :3])
+    full = Painter(panel.figure)
+    full.forget()
+    np.testing.assert_array_equal(moved, full.rgba()[..., :3])
     panel.controls["height"].value = 0.0
     np.testing.assert_array_equal(shown(panel), start)
 
