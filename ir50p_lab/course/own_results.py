@@ -21,12 +21,14 @@ def save_result(kind, value, measured_on=None):
         kind: 'calibration' (of potentiometers), 'model' (what `identify` returns) or 'camera' (what `calibrate`
         returns). measured_on: the open bench, or the Recording, that it is from; None: rendered pictures of a camera.
 
-    Raises InputError for another kind, for a board without an id, and if it cannot be written.
+    From a board without an id nothing is kept; the line says so. Raises InputError for another kind, and if it cannot
+    be written.
     """
     _check(kind)
     head = _origin(measured_on, kind)
     if head.get("bench_id", "none") == "none":
-        raise InputError("nobody knows which bench this is from: give its board an id, python3 -m ir50p_lab bench-test")
+        print("Not kept: nobody knows which bench this is from. python3 -m ir50p_lab bench-test gives a board its id")
+        return
     write = (lambda path: _write_model(value, path)) if kind == "model" else value.save
     simulated = head.get("simulated") == "true"
     unit, seed = head.get("seed", "") if simulated else "", head.get("noise_seed", "")

@@ -28,7 +28,7 @@ def thesis_pid():
     return PID(**gains, limit_pwm=255, position_filter_hz=3.0, filter_hz=np.inf)
 
 
-def follow(arm, controller, reference, seconds, *, seed=3):
+def follow(arm, controller, reference, seconds, *, seed=0):
     """One run on the simulated bench from the start of the reference, nothing kept on disk: Recording."""
     bench = SimulatedBench(arm, seed=seed, q0=reference(0.0)[0], record_to=False).open()
     try:
@@ -37,7 +37,7 @@ def follow(arm, controller, reference, seconds, *, seed=3):
         bench.abort()  # no way back to the rest pose: it takes longer than the run
 
 
-def training_run(arm, *, seed=3):
+def training_run(arm, *, seed=0):
     """A recording to identify from, on the simulated bench: the first motion of notebook 07, thesis' PID."""
     return follow(arm, thesis_pid(), kept_motion(arm), 110.0, seed=seed)
 

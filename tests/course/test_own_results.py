@@ -88,11 +88,13 @@ def test_a_camera_of_rendered_pictures_serves_simulated_arms_only(capsys):
         load_result("camera", real_bench())
 
 
-def test_a_board_without_an_id_owns_nothing(model):
+def test_a_board_without_an_id_owns_nothing(model, capsys):
     board = FakeBoard(nominal_calibration(IR50P), np.zeros(3))
     with SerialBench(board, clock=board, arm=IR50P, record_to=False) as bench:
-        with pytest.raises(InputError, match="bench-test"):
-            save_result("model", model, bench)
+        save_result("model", model, bench)
+        assert "Not kept" in capsys.readouterr().out and results().empty
+        with pytest.raises(NotMeasuredError):
+            load_result("model", bench)
 
 
 def test_who_cannot_answer_gives_way_to_the_simulated_arm(monkeypatch, capsys, model):

@@ -7,7 +7,7 @@ import pytest
 from notebook_runner import NOTEBOOKS, run_notebook
 
 #: Notebooks that keep results for later ones or load them.
-CHAIN = [path for path in NOTEBOOKS if re.search(r"\bresults\b", path.read_text(encoding="utf-8"))]
+CHAIN = [path for path in NOTEBOOKS if re.search(r"\b(save|load)_result\b", path.read_text(encoding="utf-8"))]
 
 
 def code_of(notebook):

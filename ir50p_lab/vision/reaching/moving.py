@@ -13,17 +13,18 @@ SETTLED, _RESTING = 1e-3, 2e-3  # m at the tip, by averaged counts: near enough;
 ACCEPTED = 1.5e-3  # m at the tip, by a second of counts with the command frozen: there it stays
 
 
-def reaching_controller(arm, period=0.01):
+def reaching_controller(model, period=0.01):
     """The controller that reaching uses: computed torque with a slow integral; without motor data the PIDs of 4.1-4.3.
 
     Gains tried out on simulated arms: stiff (12 rad/s), so that a joint that breaks loose does not jump far, and with
     the two periods of delay led ahead; those of Tables 4.5-4.7 (5, 3, 7 rad/s) leave centimetres at the tip.
+    model: Arm, or what `identify` returns; None: the PIDs.
     """
     from ir50p_lab.controllers import PID, ComputedTorque
 
-    if arm.actuators is None:
+    if model is None or getattr(model, "actuators", model) is None:
         return PID(kp=(289, 225, 270), ki=(50, 150, 50), kd=(40, 30, 30), limit_pwm=255, period=period)
-    return ComputedTorque(arm, kp=150, kd=24, ki=30, limit_pwm=255, period=period, delay=2 * period)
+    return ComputedTorque(model, kp=150, kd=24, ki=30, limit_pwm=255, period=period, delay=2 * period)
 
 
 class Mover:
@@ -33,7 +34,8 @@ class Mover:
     between two runs a board would cut it, and the arm would sink.
 
     Args:
-        bench: an open bench. controller: default `reaching_controller(arm)`.
+        bench: an open bench. controller: default `reaching_controller(arm)`; the PIDs on a
+        real arm, of which a model must have been measured first.
         rest: go to the rest pose at the end.
 
     Attributes: q: (3,) rad, best estimate of its set point; errors: (3,) rad, what the potentiometers are off by here.
@@ -41,7 +43,8 @@ class Mover:
 
     def __init__(self, bench, *, controller=None, rest=True):
         self.bench, self.arm, self.rest = bench, bench.arm, rest
-        self.controller = reaching_controller(bench.arm, bench.period) if controller is None else controller
+        known = bench.arm if bench.simulated else None
+        self.controller = reaching_controller(known, bench.period) if controller is None else controller
         self.errors = np.zeros(3)
         self._samples = self._last = self._gripper = self._frozen = None
         self._u = self._mean_u = np.zeros(3)
