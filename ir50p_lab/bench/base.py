@@ -297,6 +297,7 @@ class Bench(abc.ABC):
         """The drive was cut in this silence, s: say so and measure, driving nothing; too long a one ends the run."""
         self._write_row(run)
         pace, when = run.pace, run.pace.cut_at(silence)
+        pace.catch_up()
         run.trips, self.trips = run.trips + 1, self.trips + 1
         said, ended = f"the drive was cut: no command for {silence:.2f} s", silence > LONGEST_PAUSE
         self._note_at(when, said + "; the run was ended" * ended)
@@ -376,7 +377,6 @@ class Bench(abc.ABC):
         if run.pace.begins_anew():
             return np.zeros(JOINTS)
         if (silence := run.pace.silence()) >= WATCHDOG:
-            run.pace.catch_up()
             self._resume(run, silence)
             return np.zeros(JOINTS)
         run.pace.armed = True

@@ -88,7 +88,15 @@ class Recording:
         header, table, notes, events = recording_file.read(path)
         for note in notes:
             warnings.warn(f"{path}: {note}", RecordingWarning, stacklevel=2)
-        return cls(table, header, path=Path(path), notes=notes, events=events)
+        loaded = cls(table, header, path=Path(path), notes=notes, events=events)
+        told = loaded._told_period()
+        if "period_s" in header and len(loaded) > 1 and told != loaded.period:
+            doubt = (
+                f"period_s = {header['period_s']} does not fit its times: their step of {loaded.period:.4g} s is taken"
+            )
+            loaded.notes += (doubt,)
+            warnings.warn(f"{path}: {doubt}", RecordingWarning, stacklevel=2)
+        return loaded
 
     def save(self, path):
         """Write the recording to `path` (CSV, as a bench writes it). Returns the path."""
@@ -128,11 +136,18 @@ class Recording:
 
     @property
     def period(self):
-        """Sampling period, s: from the head, else the median step."""
+        """Sampling period, s: from the head where it fits the times within 20 %, else their median step."""
+        told = self._told_period()
+        if len(self) < 2:
+            return told
+        step = float(np.median(np.diff(self.t)))
+        return told if abs(told - step) <= 0.2 * step else step
+
+    def _told_period(self):
         try:
             return float(self.header["period_s"])
         except (KeyError, ValueError):
-            return float(np.median(np.diff(self.t))) if len(self) > 1 else math.nan
+            return math.nan
 
     def between(self, t0, t1):
         """The samples with t0 <= t <= t1 (s), as a Recording of its own; times stay as they are."""

@@ -79,12 +79,16 @@ def plot(recording):
         if known:
             above.step(t, recording.reference[:, j], where="post", color=_DARK, ls="--", lw=1.2, label="set point")
         below.step(t, recording.u[:, j], where="post", color=_COLOURS[j], linewidth=0.8)
+        for when, _ in recording.events:
+            below.axvline(when, color=_GREY, ls=":", lw=1.0, label="event")
         above.set_title(_finding(joints[j]), fontsize=10.5, color=_DARK)
         below.set(ylim=(-275, 275), yticks=(-255, 0, 255), xlabel="t [s]")
     axes[0, 0].set_ylabel("angle [rad]")
     axes[1, 0].set_ylabel("u [PWM counts]")
     if known:
         axes[0, 0].legend(fontsize=9)
+    if recording.events:
+        axes[1, 0].legend(handles=axes[1, 0].get_lines()[1:2], fontsize=9)
     figure.suptitle(_origin(recording), fontsize=10, color=_GREY, parse_math=False)
     return figure
 

@@ -351,3 +351,11 @@ def test_events_in_the_middle_of_a_run_survive(tmp_path):
     line = 1 + broken.splitlines().index(next(row for row in broken.splitlines() if row.startswith("x,")))
     with pytest.raises(RecordingError, match=f"line {line}:"):
         Recording.load(path)
+
+
+def test_the_period_in_the_head_is_checked_against_the_times(tmp_path):
+    recording = Recording.from_arrays(0.01 * np.arange(50), np.zeros((50, 3)), header={"period_s": "0.05"})
+    path = recording.save(tmp_path / "wrong_period.csv")
+    with pytest.warns(UserWarning, match=r"period_s = 0\.05 does not fit its times: their step of 0\.01 s"):
+        loaded = Recording.load(path)
+    assert loaded.period == pytest.approx(0.01)
