@@ -173,6 +173,11 @@ class Bench(abc.ABC):
         """Whether the arm is in hand."""
         return self._is_open
 
+    @property
+    def live_run(self):
+        """The loop in the background that has the arm, or had it last; None if there is none."""
+        return self._live
+
     def __enter__(self):
         return self.open()
 

@@ -3,6 +3,7 @@
   python3 -m ir50p_lab [...]          set up .venv on first use, then open JupyterLab on notebooks/
   python3 -m ir50p_lab test [...]     set up with the test tools, then run the tests and every notebook
                                       (--quick: no notebooks; --everywhere: as on other processors, other arms)
+  python3 -m ir50p_lab export [...]   notebooks as pages that need no network: HTML, and PDF where a browser is
   python3 -m ir50p_lab targets [...]  measure what the project set out to reach, as tables beside the thesis
   python3 -m ir50p_lab setup          only set up (--rebuild: from nothing; --tests: with the test tools)
   python3 -m ir50p_lab bench-test     first power-on of the arm, joint by joint (rehearse: bench-test simulated)
@@ -31,7 +32,7 @@ from ir50p_lab.launcher.problems import COMMAND, SetUpError, from_os_error
 
 ROOT = Path(__file__).resolve().parents[2]
 
-COMMANDS = ("lab", "test", "targets", "setup", "doctor", "bench-test")
+COMMANDS = ("lab", "test", "targets", "setup", "doctor", "bench-test", "export")
 
 
 def main(arguments, root=ROOT):
@@ -87,6 +88,8 @@ def _run(arguments, root):
             return _attend([python, "-m", module, *arguments], variables, environment.root)
     if command == "bench-test":
         return _attend([python, "-m", "ir50p_lab.bench.bench_test", *arguments], variables, environment.root)
+    if command == "export":
+        return _attend([python, "-m", "ir50p_lab.publishing", *arguments], variables)
     code = _attend([python, *_lab_command(environment.root, arguments)], variables)
     return 0 if code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
 

@@ -29,8 +29,13 @@ def chromium():
 
 
 @pytest.fixture(scope="session")
+def browser_path():
+    return CHROMIUM
+
+
+@pytest.fixture(scope="session")
 def browser(chromium):
-    browser = chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+    browser = chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS, timeout=90_000)
     yield browser
     browser.close()
 

@@ -132,11 +132,13 @@ class LiveArm(anywidget.AnyWidget):
             self._stop = threading.Event()
             threading.Thread(target=_feed, args=(weakref.ref(self), runs[0], self._stop), daemon=True).start()
         else:
-            names = ["first", "second"][: len(runs)] if len(runs) > 1 else [""]
-            rows, self.shape = pack(runs, labels or names)
-            self.q = [float(v) for v in runs[0].q[0]]
-            self.track = rows
+            self._show(runs, labels or (["first", "second"][: len(runs)] if len(runs) > 1 else [""]))
         return self
+
+    def _show(self, runs, labels):
+        rows, self.shape = pack(runs, labels)
+        self.q = [float(v) for v in runs[0].q[0]]
+        self.track = rows
 
     def _heard(self, _, message, __):
         """What the browser asks for. Errors of the student's function are shown under the arm."""
@@ -172,20 +174,21 @@ def _rows(T):
 
 
 def _feed(view, source, stop):
-    """Send the last samples of a bench or of a loop in the background, until it ends; then the whole run."""
-    run, shown = source, None
-    while not stop.wait(0.04):
-        if view() is None:
-            return
-        over = not (source.is_open if hasattr(source, "is_open") else source.alive)
-        run = source.recording if hasattr(source, "is_open") else source
-        samples = run.recent(_WINDOW) if run is not None else None
+    """Send the last samples of a bench or of a loop in the background; when a run has ended, the whole of it."""
+    is_bench = hasattr(source, "is_open")
+    words = "live" + (", simulated" if getattr(source, "simulated", False) else "")
+    shown, ended = None, True
+    while not stop.wait(0.04) and view() is not None:
+        over = not (source.is_open if is_bench else source.alive)
+        run = (source.live_run or source.recording) if is_bench else source
+        samples = None if run is None else run.recent(_WINDOW)
         if samples is not None and len(samples.t) > 1 and samples.t[-1] != shown:
-            shown = samples.t[-1]
+            shown, ended = samples.t[-1], False
             rows, shape = pack([samples], [""])
-            view().send({"live": shape | {"source": "live"}}, buffers=[rows])
+            view().send({"live": shape | {"source": words}}, buffers=[rows])
+        if not ended and (over or not getattr(run, "alive", True)):
+            ended, whole = True, getattr(run, "recording", run)
+            if whole is not None and len(whole) > 1:
+                view()._show([whole], [""])
         if over:
-            whole = source.recording
-            if whole is not None and len(whole) > 1 and view() is not None:
-                view().play(whole)
             return

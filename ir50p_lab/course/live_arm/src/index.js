@@ -216,6 +216,8 @@ class View {
       if (this.seen) this.soon();
     }, { rootMargin: "200px" });
     this.sight.observe(stage);
+    this.beforePrint = () => { this.seen = true; this.draw(false); };
+    window.addEventListener("beforeprint", this.beforePrint);
     this.listenToHand();
     canvas.addEventListener("keydown", (event) => this.key(event));
     canvas.addEventListener("focus", () => { this.controls.enableZoom = true; });
@@ -420,6 +422,7 @@ class View {
     clearTimeout(this.telling);
     this.sizes.disconnect();
     this.sight.disconnect();
+    window.removeEventListener("beforeprint", this.beforePrint);
     this.controls.dispose();
     for (const [event, handler] of Object.entries(this.heard)) this.model.off(event, handler);
     renderer.leave(this);

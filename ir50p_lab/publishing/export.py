@@ -1,0 +1,124 @@
+"""A notebook as one HTML page without network requests: pictures, formulas and the 3-D arm inside; and as PDF."""
+
+import html
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+import nbformat
+from nbconvert import HTMLExporter
+from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
+from nbconvert.preprocessors import CellExecutionError, ExecutePreprocessor
+from pygments.formatters import HtmlFormatter
+
+from ir50p_lab.errors import InputError, LabError
+from ir50p_lab.publishing.formulas import mathml, mathml_in
+from ir50p_lab.publishing.pictures import live_arm_script, plain_outputs
+
+_BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge", "microsoft-edge")
+_CSS = """
+body { font: 16px/1.55 system-ui, sans-serif; color: #222; max-width: 1080px; margin: 2em auto; padding: 0 1.5em; }
+h1, h2, h3 { line-height: 1.25; margin-top: 1.6em; }
+pre { font: 13px/1.45 ui-monospace, monospace; white-space: pre-wrap; margin: 0; }
+code { font: 0.88em ui-monospace, monospace; background: #f2f4f7; padding: 1px 4px; border-radius: 3px; }
+.input .highlight { background: #f6f8fa; border-left: 3px solid #0072B2; padding: 8px 12px; margin: 1em 0 0.4em; }
+.output { margin: 0.4em 0 1em; } .output pre { padding: 4px 14px; } .prompt { display: none; }
+img { max-width: 100%; height: auto; }
+table { border-collapse: collapse; margin: 1em 0; } td, th { border: 1px solid #d5dbe2; padding: 4px 10px; }
+blockquote { border-left: 3px solid #ccc; margin-left: 0; padding-left: 1em; }
+math[display=block] { margin: 0.8em 0; } .anchor-link { display: none; }
+@media print { body { max-width: none; margin: 0; font-size: 12px; } .output, .input { break-inside: avoid; } }
+"""
+
+
+class _Renderer(IPythonRenderer):
+    """Markdown whose formulas become MathML, which browsers draw by themselves."""
+
+    def inline_math(self, body):
+        return mathml(body)
+
+    def block_math(self, body):
+        return mathml(body, block=True)
+
+    def latex_environment(self, name, body):
+        return mathml(f"\\begin{{{name}}}{body}\\end{{{name}}}", block=True)
+
+
+class _Exporter(HTMLExporter):
+    """The body of a page, without scripts and styles from elsewhere."""
+
+    template_name = "basic"
+
+    def markdown2html(self, source):
+        return MarkdownWithMath(renderer=_Renderer(escape=False, embed_images=True)).render(source)
+
+    def default_filters(self):
+        yield from super().default_filters()
+        yield "markdown2html", self.markdown2html
+
+
+def export(notebook, folder=".", *, run=True, pdf=True):
+    """Write a notebook as `folder`/NAME.html, and NAME.pdf where a browser (Chromium, Chrome, Edge) is found.
+
+    Args: notebook: path of an .ipynb; run: run it first, in its own folder; else its stored outputs are taken.
+    Returns: the paths written. Raises InputError if there is no such notebook, LabError if a cell fails.
+    """
+    notebook, folder = Path(notebook), Path(folder)
+    if not notebook.is_file():
+        raise InputError(f"there is no notebook {notebook}: give the path of an .ipynb file")
+    nb = nbformat.read(notebook, as_version=4)
+    if run:
+        _run(nb, notebook)
+    folder.mkdir(parents=True, exist_ok=True)
+    title = notebook.stem
+    written = [folder / f"{title}.html"]
+    written[0].write_text(_page(nb, title, live=True), encoding="utf-8")
+    browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
+    if pdf and browser:
+        written.append(_print(browser, _page(nb, title, live=False), folder / f"{title}.pdf"))
+    return written
+
+
+def _run(nb, notebook):
+    processor = ExecutePreprocessor(timeout=600, kernel_name="python3", store_widget_state=True)
+    try:
+        processor.preprocess(nb, {"metadata": {"path": str(notebook.resolve().parent)}})
+    except CellExecutionError as error:
+        raise LabError(f"{notebook} does not run: {error}") from None
+
+
+def _page(nb, title, *, live):
+    """The whole page. live: with the 3-D arm in motion; else its pictures."""
+    nb = nbformat.from_dict(nb)
+    state = nb.metadata.get("widgets", {}).get("application/vnd.jupyter.widget-state+json", {}).get("state", {})
+    for cell in nb.cells:
+        if cell.cell_type == "code":
+            cell.outputs = [mathml_in(output) for output in plain_outputs(cell.outputs, state, live=live)]
+    body, _ = _Exporter().from_notebook_node(nb)
+    script = live_arm_script() if "data-live-arm" in body else ""
+    style = _CSS + HtmlFormatter().get_style_defs(".highlight")
+    head = (
+        f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(title)}</title>'
+    )
+    return f"<!doctype html><html lang=en><head>{head}<style>{style}</style></head><body>{body}{script}</body></html>"
+
+
+def _print(browser, page, path):
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder) / "page.html"
+        source.write_text(page, encoding="utf-8")
+        options = [
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            f"--user-data-dir={folder}/profile",
+            "--no-pdf-header-footer",
+        ]
+        command = [browser, *options, f"--print-to-pdf={path.resolve()}", source.as_uri()]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    if not path.is_file():
+        raise LabError(
+            f"{browser} wrote no PDF: {done.stderr[-500:]}; use --no-pdf and print the HTML page from a browser"
+        )
+    return path

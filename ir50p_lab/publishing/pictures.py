@@ -1,0 +1,100 @@
+"""What a page shows in the place of widgets: the pictures they hold, or the 3-D arm without a kernel."""
+
+import base64
+import io
+import json
+import re
+
+import nbformat
+import numpy as np
+
+from ir50p_lab.course.live_arm.view import bundle_text
+from ir50p_lab.course.style import COLOURS, new_figure
+
+_VIEW = "application/vnd.jupyter.widget-view+json"
+_SHOWN = ("lengths", "limits", "q", "options", "layers", "things", "poses", "shape")  # of LiveArm's state
+
+
+def plain_outputs(outputs, widgets, *, live):
+    """Outputs without widgets. widgets: model id -> state, as a notebook stores it; live: with the 3-D arm."""
+    plain = []
+    for output in outputs:
+        data = output.get("data", {})
+        view = data.pop(_VIEW, None)
+        if view is None:
+            if "image/png" in data:  # a picture goes before other forms of the same thing
+                output["data"] = {"image/png": data["image/png"]}
+            plain.append(output)
+            continue
+        still = data.get("image/png")
+        parts = list(_parts(view["model_id"], widgets, still, live))
+        if not any("<div" in part for part in parts) and still:
+            parts = [_image(still)]
+        if parts:
+            plain.append(nbformat.v4.new_output("display_data", {"text/html": "\n".join(parts)}))
+    return plain
+
+
+def _parts(model_id, widgets, still, live):
+    """The pictures of a widget and of those inside it, in order, as HTML."""
+    model = widgets.get(model_id)
+    if model is None:
+        return
+    state, buffers = model["state"], {tuple(one["path"]): one["data"] for one in model.get("buffers", ())}
+    if "lengths" in state and "digest" in state:
+        yield _arm(state, buffers, still) if live else _image(still)
+    elif ("samples",) in buffers and "settings" in state:
+        yield _image(_chart(np.frombuffer(base64.b64decode(buffers["samples",]), "<f4"), state["settings"]))
+    elif ("value",) in buffers:
+        yield _image(buffers["value",].replace("\n", ""))
+    for child in state.get("children", ()):
+        yield from _parts(child.removeprefix("IPY_MODEL_"), widgets, still, live)
+
+
+def _image(png):
+    return f'<img src="data:image/png;base64,{png.strip()}">' if png else ""
+
+
+def _arm(state, buffers, still):
+    """A view of the arm: its picture, which the script at the end of the page replaces."""
+    shown = {name: state[name] for name in _SHOWN} | {"track": buffers.get(("track",), "").replace("\n", "")}
+    text = json.dumps(shown).replace("</", "<\\/")
+    return f'<div data-live-arm>{_image(still)}<script type="application/json">{text}</script></div>'
+
+
+def live_arm_script():
+    """The script that brings the views of a page to life."""
+    bundle = bundle_text()
+    mount = re.search(r"(\w+) as mount\b", bundle)[1]
+    bundle = re.sub(r"export\s*\{[^}]*\};?", "", bundle).replace("</script", "<\\/script")
+    start = (
+        f"for (const box of document.querySelectorAll('[data-live-arm]')) {mount}(box, "
+        "JSON.parse(box.querySelector('script').textContent));"
+    )
+    return f'<script type="module">{bundle}\n{start}</script>'
+
+
+def _chart(samples, settings):
+    """A strip chart or a scope as a picture: base64 of a PNG."""
+    names = settings.get("labels") or [f"joint {i}" for i in (1, 2, 3)]
+    scope = "labels" not in settings
+    rows = samples.reshape(-1, 10 if scope else len(names) + 1)
+    figure = new_figure(9, 3.2)
+    ax = figure.axes[0]
+    for k, (name, colour) in enumerate(zip(names, settings["colours"], strict=True)):
+        ax.plot(rows[:, 0], rows[:, 1 + k], color=colour, label=name)
+        if scope:
+            ax.step(rows[:, 0], rows[:, 4 + k], color=COLOURS["dark"], linestyle="--", linewidth=1, where="post")
+    for level, colour in zip(settings.get("levels", ()), settings["colours"], strict=False):
+        ax.axhline(level, color=colour, linestyle="--", linewidth=1)
+    ax.set(
+        xlabel="time [s]",
+        ylabel=settings.get("ylabel", "angle [deg]"),
+        title=settings.get("title", settings.get("badge", "")),
+    )
+    if "ylim" in settings:
+        ax.set_ylim(settings["ylim"])
+    ax.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=150)
+    return base64.b64encode(stream.getvalue()).decode("ascii")

@@ -1,0 +1,96 @@
+"""Exported pages: every picture is there, formulas are drawn, and nothing is fetched from anywhere."""
+
+import re
+from types import SimpleNamespace
+
+import nbformat
+import pytest
+
+from ir50p_lab.errors import InputError, LabError
+from ir50p_lab.publishing.__main__ import main
+from ir50p_lab.publishing.export import export
+from ir50p_lab.publishing.formulas import mathml
+from ir50p_lab.publishing.pictures import plain_outputs
+
+CELLS = [
+    "from ir50p_lab.course.figures import new_figure\nfigure = new_figure(3, 2)\nfigure",
+    "import ipywidgets\nfrom ir50p_lab.course.widgets import live\nlive(new_figure(3, 2), lambda a: None, a=(0, 1, 0.1, 0))",
+    "from ir50p_lab.course.strip_chart import StripChart\n"
+    "chart = StripChart(['a'], duration=1, ylim=(0, 1), ylabel='x [m]', title='t')\ndisplay(chart)\n"
+    "[chart.add(k / 10, [k / 10]) for k in range(11)]\nchart.flush()",
+    "from tqdm.auto import tqdm\nfor _ in tqdm(range(3)): pass",
+    "from ir50p_lab.course.live_arm import LiveArm\nfrom ir50p_lab.modelling import IR50P\nLiveArm(IR50P, [0, 0.5, -1])",
+    "import sympy\nsympy.sqrt(sympy.Symbol('x')) / 2",
+]
+PICTURES = 4  # figure, panel, chart, arm
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("export")
+    text = "# Title\n\nInline $\\tau = M\\ddot q$, displayed\n\n$$\\begin{pmatrix}1 & 0\\\\ 0 & 1\\end{pmatrix}$$\n\n`cost: $5 and $6`"
+    cells = [nbformat.v4.new_markdown_cell(text), *map(nbformat.v4.new_code_cell, CELLS)]
+    nbformat.write(nbformat.v4.new_notebook(cells=cells), folder / "small.ipynb")
+    return export(folder / "small.ipynb", folder / "pages")
+
+
+def test_a_page_has_as_many_pictures_as_the_notebook_has_figures(pages):
+    page = pages[0].read_text(encoding="utf-8")
+    assert len(re.findall(r'<img[^>]*src="data:image/png;base64,[A-Za-z0-9+/]{500,}', page)) == PICTURES
+    assert page.count("<div data-live-arm>") == 1 and page.count("<math") == 3
+    assert "cost: $5 and $6" in page and "widget-view" not in page
+    assert not re.search(r"""(?:src|href)=["']https?:""", page)
+
+
+def test_a_browser_asks_for_nothing_and_shows_the_arm(pages, page):
+    asked = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.context.set_offline(True)
+    page.goto(pages[0].as_uri())
+    page.wait_for_function("() => document.querySelector('.la')?.liveArm", timeout=60_000)
+    page.wait_for_function("() => [...document.images].every((image) => image.complete && image.naturalWidth > 0)")
+    assert [url for url in asked if not url.startswith(("data:", "blob:"))] == [pages[0].as_uri()]
+    box = page.locator(".la input[aria-label='joint 1 in degrees']")
+    box.focus()
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate("() => document.querySelector('.la').liveArm.q[0]") == pytest.approx(0.01745, abs=1e-4)
+    assert pages[1].suffix == ".pdf" and pages[1].read_bytes().startswith(b"%PDF")
+
+
+def test_a_browser_without_webgl_keeps_the_picture(pages, chromium, browser_path):
+    options = ["--no-sandbox", "--disable-gpu", "--disable-software-rasterizer", "--disable-3d-apis"]
+    browser = chromium.launch(executable_path=browser_path, args=options)
+    page = browser.new_page()
+    page.goto(pages[0].as_uri())
+    page.wait_for_timeout(500)
+    assert page.locator("[data-live-arm] img").is_visible() and page.locator(".la").count() == 0
+    browser.close()
+
+
+def test_a_cell_that_fails_is_named(tmp_path):
+    nbformat.write(nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("1 / 0")]), tmp_path / "bad.ipynb")
+    with pytest.raises(LabError, match="ZeroDivisionError"):
+        export(tmp_path / "bad.ipynb", tmp_path)
+    with pytest.raises(InputError, match="there is no notebook"):
+        export(tmp_path / "none.ipynb")
+    assert main([str(tmp_path / "none.ipynb")]) == 1
+
+
+def test_stored_outputs_are_taken_as_they_are(tmp_path):
+    output = nbformat.v4.new_output("display_data", {"text/plain": "kept as it is"})
+    cell = nbformat.v4.new_code_cell("1 / 0", outputs=[output])
+    nbformat.write(nbformat.v4.new_notebook(cells=[cell]), tmp_path / "stored.ipynb")
+    assert main([str(tmp_path / "stored.ipynb"), "--to", str(tmp_path), "--as-it-is", "--no-pdf"]) == 0
+    assert "kept as it is" in (tmp_path / "stored.html").read_text(encoding="utf-8")
+
+
+def test_widgets_without_state_leave_their_picture():
+    data = {"image/png": "QUJD", "application/vnd.jupyter.widget-view+json": {"model_id": "gone"}}
+    outputs = plain_outputs([SimpleNamespace(get=dict(data=data).get)], {}, live=True)
+    assert "QUJD" in outputs[0]["data"]["text/html"]
+
+
+@pytest.mark.parametrize("latex", [r"\dot q", r"T^i_j", r"\frac{a}{b}", r"\begin{aligned}a&=b\\c&=d\end{aligned}"])
+def test_formulas_become_mathml_with_their_latex_beside_it(latex):
+    found = mathml(latex)
+    assert found.startswith("<math") and "alttext=" in found
