@@ -1,52 +1,36 @@
-"""What the live charts share in the browser: a canvas as wide as its cell, drawn once per frame, and round steps."""
+"""One canvas for what lives in the browser: a picture that hears clicks, and plots of samples that come as float32.
 
-__all__ = ["CANVAS"]
-
-CANVAS = """
-const niceStep = (span, most) => {
-  const scale = 10 ** Math.floor(Math.log10(span / most));
-  for (const n of [1, 2, 5, 10, 20, 50, 100]) if (span / (n * scale) <= most) return n * scale;
-  return 100 * scale;
-};
-const decimals = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
-const fixed = (v, places) => (Math.abs(v) < 1e-9 ? 0 : v).toFixed(places).replace("-", "\\u2212");
-
-// paint(ctx, data, settings, width, height), in CSS pixels, whenever samples, settings or the width have changed
-function onCanvas({ model, el }, paint, widest = Infinity) {
-  const canvas = document.createElement("canvas");
-  canvas.setAttribute("role", "img");
-  canvas.style.cssText = "width:100%;display:block;background:white;";
-  el.style.width = "100%";
-  el.appendChild(canvas);
-  const ctx = canvas.getContext("2d");
-  let wanted = false;
-
-  function draw() {
-    wanted = false;
-    const settings = model.get("settings"), bytes = model.get("samples");
-    const raw = bytes.buffer ? bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) : bytes;
-    const width = Math.min(Math.max(el.clientWidth, 480), widest), height = settings.height;
-    const dpr = window.devicePixelRatio || 1;
-    if (canvas.width !== Math.round(width * dpr) || canvas.height !== Math.round(height * dpr)) {
-      canvas.width = Math.round(width * dpr); canvas.height = Math.round(height * dpr);
-      canvas.style.width = width + "px"; canvas.style.height = height + "px";
-    }
-    canvas.setAttribute("aria-label", settings.description);
-    ctx.setTransform(dpr, 0, 0, dpr, 0, 0);
-    ctx.fillStyle = "white"; ctx.fillRect(0, 0, width, height);
-    paint(ctx, new Float32Array(raw), settings, width, height);
-  }
-  const soon = () => { if (!wanted) { wanted = true; requestAnimationFrame(draw); } };
-  model.on("change:samples", soon);
-  model.on("change:settings", soon);
-  const observer = new ResizeObserver(soon);
-  observer.observe(el);
-  soon();
-  return () => { model.off("change:samples", soon); model.off("change:settings", soon); observer.disconnect(); };
-}
-
-function sideways(ctx, text, x, y) {
-  ctx.save(); ctx.translate(x, y); ctx.rotate(-Math.PI / 2); ctx.textAlign = "center";
-  ctx.fillText(text, 0, 0); ctx.restore();
-}
+The kernel sends all samples with every frame: a browser that comes late, or leaves frames out, is right again with the
+next one. Drawing takes a loop at the bench no time.
 """
+
+from pathlib import Path
+
+import anywidget
+import traitlets
+
+__all__ = ["Canvas"]
+
+
+class Canvas(anywidget.AnyWidget):
+    """A picture, or plots, in the browser.
+
+    value: PNG file (bytes); width: CSS width, such as "900px"; description: what screen readers say; clicked:
+    [right, up, time] of the last click, as fractions 0..1 of the picture from its lower left corner; ratio: pixels of
+    the display per CSS pixel, 1 to 2. samples: float32 rows, time first, for the plots that `settings` describes.
+    """
+
+    _esm = Path(__file__).with_suffix(".js")
+    value = traitlets.Bytes(b"").tag(sync=True)
+    width = traitlets.Unicode("auto").tag(sync=True)
+    description = traitlets.Unicode("").tag(sync=True)
+    clickable = traitlets.Bool(False).tag(sync=True)
+    clicked = traitlets.List().tag(sync=True)
+    ratio = traitlets.Float(1.0).tag(sync=True)
+    samples = traitlets.Bytes(b"").tag(sync=True)
+    settings = traitlets.Dict().tag(sync=True)
+
+    def on_click(self, function):
+        """Call `function(right, up)` for every click from now on."""
+        self.clickable = True
+        self.observe(lambda change: function(float(change["new"][0]), float(change["new"][1])), "clicked")

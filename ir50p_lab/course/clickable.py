@@ -8,65 +8,9 @@ Everything the mouse does the sliders and number boxes of the panel do as well, 
 
 import html
 
-import anywidget
-import traitlets
-
 from ir50p_lab.errors import InputError
 
-__all__ = ["ClickableImage", "click_sets"]
-
-# A new picture replaces the old one only once it is decoded, so that nothing flickers.
-_SHOW_AND_LISTEN = """
-function render({ model, el }) {
-  const img = document.createElement("img");
-  img.style.maxWidth = "100%";
-  img.style.cursor = "crosshair";
-  let shown = null;
-  const show = () => {
-    const url = URL.createObjectURL(new Blob([model.get("value")], { type: "image/png" }));
-    const old = shown;
-    shown = url;
-    img.onload = () => { if (old) URL.revokeObjectURL(old); };
-    img.src = url;
-  };
-  const describe = () => { img.alt = model.get("description"); img.style.width = model.get("width"); };
-  img.addEventListener("click", (event) => {
-    const box = img.getBoundingClientRect();
-    const right = (event.clientX - box.left) / box.width;
-    const up = (box.bottom - event.clientY) / box.height;
-    model.set("clicked", [right, up, event.timeStamp]);
-    model.save_changes();
-  });
-  img.addEventListener("dragstart", (event) => event.preventDefault());
-  model.on("change:value", show);
-  model.on("change:width", describe);
-  model.on("change:description", describe);
-  describe();
-  show();
-  el.appendChild(img);
-  return () => { model.off("change:value", show); if (shown) URL.revokeObjectURL(shown); };
-}
-export default { render };
-"""
-
-
-class ClickableImage(anywidget.AnyWidget):
-    """A PNG picture that reports where it was clicked.
-
-    value: the PNG file (bytes); width: CSS width, such as "900px"; description: what screen readers say;
-    clicked: [right, up, time] of the last click, as fractions 0..1 of the picture from its lower left corner.
-    `on_click(function)` calls `function(right, up)` for every click.
-    """
-
-    _esm = _SHOW_AND_LISTEN
-    value = traitlets.Bytes(b"").tag(sync=True)
-    width = traitlets.Unicode("auto").tag(sync=True)
-    description = traitlets.Unicode("").tag(sync=True)
-    clicked = traitlets.List().tag(sync=True)
-
-    def on_click(self, function):
-        """Call `function(right, up)` for every click from now on."""
-        self.observe(lambda change: function(float(change["new"][0]), float(change["new"][1])), "clicked")
+__all__ = ["click_sets"]
 
 
 def click_sets(panel, axes, *, x, y):
@@ -82,11 +26,7 @@ def click_sets(panel, axes, *, x, y):
     for name in (x, y):
         if not hasattr(panel.controls.get(name), "step"):
             raise InputError(f"no slider {name!r}; this panel has {', '.join(panel.controls)}")
-    image = ClickableImage(
-        value=bytes(panel.image.value),
-        width=panel.image.layout.width,
-        description=f"A map: a click sets {x} and {y}, as the sliders above do",
-    )
+    panel.image.description = f"A map: a click sets {x} and {y}, as the sliders above do"
 
     def moved(right, up):
         try:
@@ -104,10 +44,7 @@ def click_sets(panel, axes, *, x, y):
                 raise
             # else the panel has written it into its status line
 
-    image.on_click(moved)
-    old, panel.image = panel.image, image
-    panel.children = tuple(image if child is old else child for child in panel.children)
-    old.close()
+    panel.image.on_click(moved)
     return panel
 
 

@@ -5,12 +5,11 @@ the next one. Drawing takes the loop at the bench no time: a figure in the loop 
 """
 
 import time
+from itertools import zip_longest
 
-import anywidget
 import numpy as np
-import traitlets
 
-from ir50p_lab.course.canvas import CANVAS
+from ir50p_lab.course.canvas import Canvas
 from ir50p_lab.course.style import COLOURS
 
 __all__ = ["StripChart"]
@@ -18,58 +17,8 @@ __all__ = ["StripChart"]
 _MOST = 600  # points in a frame
 _COLOURS = ("blue", "orange", "green", "purple", "amber", "sky")
 
-_DRAW = """
-function paint(ctx, data, s, width, height) {
-  const columns = s.labels.length + 1, n = Math.floor(data.length / columns);
-  const x0 = 62, y0 = 30, w = width - x0 - 150, h = height - y0 - 38;
-  const [low, high] = s.ylim, X = (t) => x0 + t / s.duration * w, Y = (v) => y0 + h - (v - low) / (high - low) * h;
-  ctx.font = "11px sans-serif"; ctx.lineWidth = 1; ctx.fillStyle = "#555555"; ctx.strokeStyle = "#E6E6E6";
-  const yStep = niceStep(high - low, 6), xStep = niceStep(s.duration, 8);
-  ctx.textAlign = "right"; ctx.textBaseline = "middle";
-  for (let v = Math.ceil(low / yStep) * yStep; v <= high; v += yStep) {
-    const y = Math.round(Y(v)) + 0.5;
-    ctx.beginPath(); ctx.moveTo(x0, y); ctx.lineTo(x0 + w, y); ctx.stroke();
-    ctx.fillText(fixed(v, decimals(yStep)), x0 - 6, y);
-  }
-  ctx.textAlign = "center"; ctx.textBaseline = "top";
-  for (let t = 0; t <= s.duration + 1e-9; t += xStep) {
-    const x = Math.round(X(t)) + 0.5;
-    ctx.beginPath(); ctx.moveTo(x, y0); ctx.lineTo(x, y0 + h); ctx.stroke();
-    ctx.fillText(t.toFixed(decimals(xStep)), x, y0 + h + 5);
-  }
-  ctx.strokeStyle = "#666666";
-  ctx.strokeRect(x0 + 0.5, y0 + 0.5, 0, h); ctx.strokeRect(x0 + 0.5, y0 + h + 0.5, w, 0);
-  ctx.save(); ctx.beginPath(); ctx.rect(x0, y0, w, h); ctx.clip();
-  for (let c = 1; c < columns; c++) {
-    ctx.strokeStyle = s.colours[c - 1];
-    if (s.levels.length) {
-      ctx.lineWidth = 1.2; ctx.setLineDash([6, 4]);
-      ctx.beginPath(); ctx.moveTo(x0, Y(s.levels[c - 1])); ctx.lineTo(x0 + w, Y(s.levels[c - 1])); ctx.stroke();
-    }
-    ctx.lineWidth = 1.8; ctx.setLineDash([]); ctx.lineJoin = "round"; ctx.beginPath();
-    for (let k = 0; k < n; k++) {
-      const x = X(data[k * columns]), y = Y(Math.max(-1e6, Math.min(1e6, data[k * columns + c])));
-      if (k === 0) ctx.moveTo(x, y); else ctx.lineTo(x, y);
-    }
-    ctx.stroke();
-  }
-  ctx.restore();
-  ctx.textAlign = "left"; ctx.textBaseline = "middle"; ctx.font = "12px sans-serif";
-  for (let c = 1; c < columns; c++) {
-    ctx.fillStyle = s.colours[c - 1];
-    const last = n ? ":  " + data[(n - 1) * columns + c].toPrecision(3).replace("-", "\\u2212") : "";
-    ctx.fillText(s.labels[c - 1] + last, x0 + w + 12, y0 + 14 + 20 * (c - 1));
-  }
-  ctx.fillStyle = "#333333"; ctx.textAlign = "center"; ctx.textBaseline = "alphabetic";
-  ctx.fillText("time [s]", x0 + w / 2, height - 6);
-  ctx.font = "bold 13px sans-serif"; ctx.textAlign = "left"; ctx.fillText(s.title, x0, 19);
-  ctx.font = "12px sans-serif"; sideways(ctx, s.ylabel, 14, y0 + h / 2);
-}
-export default { render: (view) => onCanvas(view, paint, 960) };
-"""
 
-
-class StripChart(anywidget.AnyWidget):
+class StripChart(Canvas):
     """Some numbers over time, at most 20 pictures a second; `display` it before the loop that feeds it.
 
     Args: labels: names of the curves, at most six; duration: s that the chart holds; ylim: (low, high); ylabel: with
@@ -79,22 +28,20 @@ class StripChart(anywidget.AnyWidget):
     (n, k) so far; frames: pictures sent.
     """
 
-    _esm = CANVAS + _DRAW
-    samples = traitlets.Bytes(b"").tag(sync=True)
-    settings = traitlets.Dict().tag(sync=True)
-
     def __init__(self, labels, *, duration, ylim, ylabel, title, levels=(), height=300):
         self._count, self._every = len(labels), 1 / 20
+        lines = [
+            {"column": k + 1, "colour": COLOURS[_COLOURS[k % len(_COLOURS)]], "label": label, "level": level}
+            for k, (label, level) in enumerate(zip_longest(labels, map(float, levels)))
+        ]
+        panel = {"place": [0, 0, 1, 1], "ylim": [float(x) for x in ylim], "ylabel": ylabel, "times": True}
         super().__init__(
             settings={
-                "labels": list(labels),
-                "duration": float(duration),
-                "ylim": [float(x) for x in ylim],
-                "ylabel": ylabel,
-                "title": title,
-                "levels": [float(x) for x in levels],
+                "window": float(duration),
                 "height": int(height),
-                "colours": [COLOURS[_COLOURS[k % len(_COLOURS)]] for k in range(len(labels))],
+                "columns": 1 + self._count,
+                "side": 150,
+                "panels": [panel | {"title": title, "colour": COLOURS["dark"], "lines": lines}],
                 "description": f"{title}: {', '.join(labels)} over {duration:g} s",
             }
         )

@@ -6,7 +6,7 @@ import ipywidgets as widgets
 import numpy as np
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from ir50p_lab.course.clickable import ClickableImage
+from ir50p_lab.course.canvas import Canvas
 from ir50p_lab.course.painter import encode_png
 from ir50p_lab.course.style import COLOURS, new_figure
 from ir50p_lab.errors import LabError
@@ -338,14 +338,14 @@ def _circle(ax, x, y, radius, colour, *, rim=2.5, **style):
 class ClickColour(widgets.VBox):
     """A picture to click: the colour there is learnt, its mask shown beside the picture, the balls of it outlined.
 
-    Attributes: image_box (ClickableImage), status; colour, the Colour in use; balls, what find_balls says to it.
+    Attributes: image_box (Canvas), status; colour, the Colour in use; balls, what find_balls says to it.
     `click(x, y)` does from Python what the mouse does.
     """
 
     def __init__(self, image, colour=RED, *, source=STAMP):
         self._image, self._source = image, source
         self.status = widgets.HTML()
-        self.image_box = ClickableImage(
+        self.image_box = Canvas(
             width="900px", description="Left a picture to click, right the mask of the colour that was clicked"
         )
         super().__init__([self.image_box, self.status])

@@ -24,6 +24,7 @@ from typing import ClassVar
 
 import ipywidgets as widgets
 
+from ir50p_lab.course.canvas import Canvas
 from ir50p_lab.course.controls import Slider, ends, label_of, make_control, refuse_bad_value, slider, value_of
 from ir50p_lab.course.painter import DRAWING, Painter
 from ir50p_lab.errors import InputError, LabError, UnstableLoopWarning
@@ -50,7 +51,7 @@ def live(figure, update, **controls):
 class LivePanel(widgets.VBox):
     """A figure, its sliders with number boxes, a reset button and a status line; see `live`.
 
-    Attributes: figure; image, the ipywidgets.Image that shows it; status, its text line; controls, name -> widget;
+    Attributes: figure; image, the Canvas that shows it; status, its text line; controls, name -> widget;
     error, the exception of the last update or None; drawn, the values last drawn; updates, how many were drawn.
     `LivePanel.panels` holds the panels that are alive.
     """
@@ -76,11 +77,7 @@ class LivePanel(widgets.VBox):
             self._call_update(self._start, said)  # directly: an error belongs in the cell
             self._painter = Painter(figure)
             pixels = round(figure.bbox.width)
-            self.image = widgets.Image(
-                value=self._painter.png(),
-                format="png",
-                layout=widgets.Layout(width=f"{pixels}px", height="auto", max_width="100%"),
-            )
+            self.image = Canvas(value=self._painter.png(), width=f"{pixels}px")
         self.drawn, self.updates = self._start, 1
         self.status = widgets.HTML(_as_html(said), layout=widgets.Layout(min_height="1.5em", width=f"{pixels}px"))
         reset = widgets.Button(description="Reset", layout=widgets.Layout(width="80px"))
@@ -92,6 +89,7 @@ class LivePanel(widgets.VBox):
             control.observe(self._changed, "value")
             if hasattr(control, "box"):
                 control.box.observe(partial(self._typed, control), "value")
+        self.image.observe(self._sharpen, "ratio")
         _close_panels_of_earlier_runs(self)
         LivePanel.panels.add(self)
 
@@ -126,6 +124,12 @@ class LivePanel(widgets.VBox):
         """Put every control back to its start."""
         with contextlib.suppress(Exception):  # it is in the status line
             self.set(**self._start)
+
+    def _sharpen(self, change):
+        """As many pixels as the display has."""
+        with DRAWING:
+            self.figure.set_dpi(self.figure.get_dpi() * change["new"] / change["old"])
+        self.redraw()
 
     def redraw(self):
         """Draw everything anew, background included."""

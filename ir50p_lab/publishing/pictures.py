@@ -9,7 +9,7 @@ import nbformat
 import numpy as np
 
 from ir50p_lab.course.live_arm.view import bundle_text
-from ir50p_lab.course.style import COLOURS, new_figure
+from ir50p_lab.course.style import new_figure
 
 _VIEW = "application/vnd.jupyter.widget-view+json"
 _SHOWN = ("lengths", "limits", "q", "options", "layers", "things", "poses", "shape")  # of LiveArm's state
@@ -76,25 +76,20 @@ def live_arm_script():
 
 def _chart(samples, settings):
     """A strip chart or a scope as a picture: base64 of a PNG."""
-    names = settings.get("labels") or [f"joint {i}" for i in (1, 2, 3)]
-    scope = "labels" not in settings
-    rows = samples.reshape(-1, 10 if scope else len(names) + 1)
-    figure = new_figure(9, 3.2)
-    ax = figure.axes[0]
-    for k, (name, colour) in enumerate(zip(names, settings["colours"], strict=True)):
-        ax.plot(rows[:, 0], rows[:, 1 + k], color=colour, label=name)
-        if scope:
-            ax.step(rows[:, 0], rows[:, 4 + k], color=COLOURS["dark"], linestyle="--", linewidth=1, where="post")
-    for level, colour in zip(settings.get("levels", ()), settings["colours"], strict=False):
-        ax.axhline(level, color=colour, linestyle="--", linewidth=1)
-    ax.set(
-        xlabel="time [s]",
-        ylabel=settings.get("ylabel", "angle [deg]"),
-        title=settings.get("title", settings.get("badge", "")),
-    )
-    if "ylim" in settings:
-        ax.set_ylim(settings["ylim"])
-    ax.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
+    rows, panels = samples.reshape(-1, settings["columns"]), [one for one in settings["panels"] if one["title"]]
+    figure = new_figure(9, 3.2, cols=len(panels))
+    for ax, panel in zip(figure.axes, panels, strict=True):
+        for line in panel["lines"]:
+            style = {
+                "color": line["colour"],
+                "linestyle": "--" if line.get("dash") else "-",
+                "label": line.get("label"),
+            }
+            ax.plot(rows[:, 0], rows[:, line["column"]], **style)
+            if line.get("level") is not None:
+                ax.axhline(line["level"], color=line["colour"], linestyle="--", linewidth=1)
+        ax.set(xlabel="time [s]", ylabel=panel["ylabel"], title=panel["title"], ylim=panel.get("ylim"))
+        ax.legend(fontsize=8, frameon=False)
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=150)
     return base64.b64encode(stream.getvalue()).decode("ascii")

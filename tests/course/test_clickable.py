@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.course.clickable import ClickableImage, click_sets, data_coordinates
+from ir50p_lab.course.clickable import click_sets, data_coordinates
 from ir50p_lab.course.figures import new_figure
 from ir50p_lab.course.widgets import live, slider
 from ir50p_lab.errors import InputError
@@ -60,7 +60,7 @@ def test_sliders_still_draw_into_the_picture(panel):
     before = panel.image.value
     panel.set(kp=60)
     assert panel.image.value != before
-    assert panel.image in panel.children and isinstance(panel.image, ClickableImage)
+    assert panel.image in panel.children and panel.image.clickable
 
 
 def test_errors_appear_in_the_status_line(panel):

@@ -55,10 +55,10 @@ def test_the_bundle_is_what_npm_builds(tmp_path):
     for command in (["ci", "--no-audit", "--no-fund"], ["run", "build"]):
         done = subprocess.run([npm, *command], cwd=tmp_path, env=environment, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
-    assert (tmp_path / "live_arm.js").read_bytes() == (FOLDER / "live_arm.js").read_bytes(), (
+    assert (tmp_path / "static" / "live_arm.js").read_bytes() == (FOLDER / "static" / "live_arm.js").read_bytes(), (
         "run `npm ci && npm run build` in ir50p_lab/course/live_arm"
     )
-    assert b"Three.js Authors" in (FOLDER / "live_arm.js").read_bytes()
+    assert b"Three.js Authors" in (FOLDER / "static" / "live_arm.js").read_bytes()
 
 
 def test_rows_of_a_run_keep_its_motion_within_a_milliradian(run):

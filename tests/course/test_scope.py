@@ -27,8 +27,9 @@ def test_a_frame_holds_time_angle_set_point_and_pwm_as_float32():
     np.testing.assert_allclose(rows[:, 4:7], np.degrees(r), rtol=1e-6)
     np.testing.assert_allclose(rows[:, 7:], u, rtol=1e-6)
     assert scope.frames == 1
-    assert scope.settings["window"] == 5.0 and scope.settings["badge"] == "simulated"
-    assert "simulated" in scope.settings["description"] and len(set(scope.settings["colours"])) == 3
+    panels = scope.settings["panels"]
+    assert scope.settings["window"] == 5.0 and "simulated" in panels[0]["title"]
+    assert "simulated" in scope.settings["description"] and len({panel["colour"] for panel in panels}) == 3
 
 
 def test_long_windows_are_thinned_always_to_the_same_samples():

@@ -24,7 +24,8 @@ def test_what_was_added_is_shown_in_the_end():
     one.flush()
     np.testing.assert_allclose(frame(one)[:, 0], one.t, atol=1e-6)
     np.testing.assert_array_equal(frame(one)[:, 1:], one.values)
-    assert one.settings["levels"] == [0.1, 0.2] and "a, b" in one.settings["description"]
+    lines = one.settings["panels"][0]["lines"]
+    assert [line["level"] for line in lines] == [0.1, 0.2] and "a, b" in one.settings["description"]
     one.close()
 
 
@@ -58,5 +59,5 @@ def test_nothing_yet():
 @pytest.mark.parametrize("k", [1, 6])
 def test_a_colour_for_each_curve(k):
     one = StripChart([str(i) for i in range(k)], duration=1, ylim=(0, 1), ylabel="x [m]", title="t")
-    assert len(set(one.settings["colours"])) == k
+    assert len({line["colour"] for line in one.settings["panels"][0]["lines"]}) == k
     one.close()

@@ -61,7 +61,7 @@ def test_picture_follows_the_slider_and_equals_a_full_drawing():
 
 def test_image_is_as_wide_as_the_figure():
     panel = line_panel()
-    assert panel.image.layout.width == "300px"
+    assert panel.image.width == "300px"
     assert shown(panel).shape == (200, 300, 3)
 
 

@@ -26,7 +26,7 @@ LAYERS = ("table", "shadow", "ghost", "trail")
 @cache
 def bundle_text():
     """The script that draws, as built by npm."""
-    return (_FOLDER / "live_arm.js").read_text(encoding="utf-8")
+    return (_FOLDER / "static" / "live_arm.js").read_text(encoding="utf-8")
 
 
 class Bundle(anywidget.AnyWidget):
