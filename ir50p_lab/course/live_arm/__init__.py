@@ -3,8 +3,8 @@
     view = LiveArm(arm, [0.3, 0.8, -1.2], layers=["table", "shadow", "frames"])
     view
 
-Mathematics and drawing run in the browser (`src/`, on three.js, bundled into `static/live_arm.js`). Whoever changes `src/`
-builds the bundle again, in this folder: `npm ci && npm run build`. Nobody else needs Node.
+Mathematics and drawing run in the browser (`src/`, on three.js, bundled into `static/live_arm.js`). Whoever
+changes `src/` builds the bundle again, in this folder: `npm ci && npm run build`. Nobody else needs Node.
 """
 
 from ir50p_lab.course.live_arm.view import LiveArm
