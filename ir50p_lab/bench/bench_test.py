@@ -155,6 +155,7 @@ def _potentiometer(bench, person, joint):
     counts = np.array(counts, dtype=float)
     own, span = counts[:, joint], np.ptp(counts, axis=0)
     low, high, name = own.min(), own.max(), f"joint {joint + 1}"
+    middle = own[len(own) // 10 : -len(own) // 7]  # it may have begun, and may end, at one of the ends
     other = int(span.argmax())
     wrong = None
     if span[other] < TRAVEL:
@@ -167,7 +168,7 @@ def _potentiometer(bench, person, joint):
         wrong = f"the number of {name} jumped: a gap of the track is within the travel; turn its potentiometer's shaft"
     elif low < ENDS[0] or high > ENDS[1]:
         wrong = f"{name} reads {low:.0f} to {high:.0f}, 20 to 1003 are free: turn its potentiometer's shaft"
-    elif own.argmax() > own.argmin():
+    elif middle.argmax() > middle.argmin():
         wrong = f"the number of {name} falls when it moves {UP[joint]}: swap the two ends of its potentiometer"
     text = wrong or f"{name} reads {low:.0f} to {high:.0f} counts, rising when it moves {UP[joint]}"
     return Finding("potentiometer", joint + 1, wrong is None, text, {"low_counts": low, "high_counts": high})
@@ -181,20 +182,20 @@ def _drive(bench, joint):
         pwm, moved = _push(bench, joint, sign)
         other = int(np.abs(moved).argmax())
         if pwm is None:
-            if sign == first:
-                text = (
-                    f"joint {joint + 1} did not move up to {HIGHEST_PWM} PWM counts: is the supply at its current "
-                    "limit, is ENABLE at 5 V, is the fuse whole?"
-                )
-                return Finding("drive", joint + 1, False, text, values)
             continue
-        if sign == first and other != joint:
+        if not values and other != joint:
             text = f"the drive of joint {joint + 1} moved joint {other + 1}: their two bridges are swapped"
             return Finding("drive", joint + 1, False, text, values)
-        if sign == first and moved[joint] * sign < 0:
+        if not values and moved[joint] * sign < 0:
             text = f"PWM {pwm:+d} moved joint {joint + 1} by {moved[joint]:+.0f} counts: swap its two motor wires"
             return Finding("drive", joint + 1, False, text, values)
         values["breakaway_up_pwm" if sign > 0 else "breakaway_down_pwm"] = pwm
+    if not values:
+        text = (
+            f"joint {joint + 1} did not move up to {HIGHEST_PWM} PWM counts: is the supply at its current limit, is "
+            "ENABLE at 5 V, is the fuse whole? Or are its two motor wires swapped, so that its end stop holds it?"
+        )
+        return Finding("drive", joint + 1, False, text)
     shown = " and ".join(f"{pwm:+d}" for pwm in values.values())
     return Finding(
         "drive", joint + 1, True, f"joint {joint + 1} breaks away at {shown} PWM counts, as commanded", values
