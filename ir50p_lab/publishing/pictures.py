@@ -43,9 +43,10 @@ def _parts(model_id, widgets, still, live):
     state, buffers = model["state"], {tuple(one["path"]): one["data"] for one in model.get("buffers", ())}
     if "lengths" in state and "digest" in state:
         yield _arm(state, buffers, still) if live else _image(still)
-    elif ("samples",) in buffers and "settings" in state:
-        yield _image(_chart(np.frombuffer(base64.b64decode(buffers["samples",]), "<f4"), state["settings"]))
-    elif ("value",) in buffers:
+    elif state.get("settings", {}).get("panels"):
+        samples = np.frombuffer(base64.b64decode(buffers.get(("samples",), "")), "<f4")
+        yield _image(_chart(samples, state["settings"]))
+    elif buffers.get(("value",)):
         yield _image(buffers["value",].replace("\n", ""))
     for child in state.get("children", ()):
         yield from _parts(child.removeprefix("IPY_MODEL_"), widgets, still, live)

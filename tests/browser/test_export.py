@@ -37,7 +37,7 @@ def pages(tmp_path_factory):
 def test_a_page_has_as_many_pictures_as_the_notebook_has_figures(pages):
     page = pages[0].read_text(encoding="utf-8")
     assert len(re.findall(r'<img[^>]*src="data:image/png;base64,[A-Za-z0-9+/]{500,}', page)) == PICTURES
-    assert page.count("<div data-live-arm>") == 1 and page.count("<math") == 3
+    assert len(re.findall("<div data-live-arm", page)) == 1 and page.count("<math") == 3
     assert "cost: $5 and $6" in page and "widget-view" not in page
     assert not re.search(r"""(?:src|href)=["']https?:""", page)
 
