@@ -47,7 +47,7 @@ export function reach(l, limits, p, now) {
   for (const start of [...branches(l, p, now), now]) {
     const q = descend(l, limits, p, start.map((value, i) => clamp(value, limits[i])));
     const miss = distance(tip(l, q), p), turn = Math.max(...q.map((value, i) => Math.abs(value - now[i])));
-    const better = !best || miss < best.miss - 1e-4 || (miss < best.miss + 1e-4 && turn < best.turn);
+    const better = !best || miss < best.miss - 1e-7 || (miss < best.miss + 1e-7 && turn < best.turn);
     if (better) best = { q, miss, turn };
   }
   return best;
