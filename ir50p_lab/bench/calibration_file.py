@@ -53,7 +53,7 @@ def read_calibration(path):
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(
-            f"cannot read the calibration file {path}: {error.strerror}; check the path, or calibrate (notebook 06)"
+            f"cannot read the calibration file {path}: {error.strerror}; check the path, or calibrate (notebook 10)"
         ) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise InputError(f"{path} is not a TOML file: {error}. Write one with Calibration.save") from None

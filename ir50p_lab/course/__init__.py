@@ -9,7 +9,9 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "checking": ["check", "reset"],
         "claims": ["ClaimError", "claim"],
         "lab_book": ["keep", "measured", "note", "predict"],
+        "live_arm": ["LiveArm"],
         "own_results": ["arm_that_answers", "load_result", "results", "save_result"],
         "parts": ["parts"],
+        "rehearse": ["RehearsalError", "rehearse"],
     },
 )

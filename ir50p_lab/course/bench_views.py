@@ -1,4 +1,4 @@
-"""Figures of notebook 06: what a bench measured, and what a simulation says where it is asked; each says which."""
+"""Figures of notebook 10: what a bench measured, and what a simulation says where it is asked; each says which."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Figures of notebook 10: what a hole and a lens do, which pictures a calibration used, where its residuals point."""
+"""Figures of notebook 17: what a hole and a lens do, which pictures a calibration used, where its residuals point."""
 
 import numpy as np
 from matplotlib.collections import LineCollection

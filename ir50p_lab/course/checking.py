@@ -66,12 +66,13 @@ def _in_its_own_room(source, wanted):
 
 
 def _is_stub(text, name):
-    """Tell whether dots still stand where the answer should be."""
+    """Tell whether dots still stand where the answer should be (those of `a[..., 0]` do not count)."""
     definition = next(node for node in ast.parse(text).body if getattr(node, "name", "") == name)
-    return any(
-        isinstance(node, ast.Expr | ast.Return) and isinstance(node.value, ast.Constant) and node.value.value is ...
-        for node in ast.walk(definition)
-    )
+    indices = {
+        id(one) for node in ast.walk(definition) if isinstance(node, ast.Subscript) for one in ast.walk(node.slice)
+    }
+    dots = [node for node in ast.walk(definition) if isinstance(node, ast.Constant) and node.value is ...]
+    return any(id(node) not in indices for node in dots)
 
 
 def _keep(source, wanted):

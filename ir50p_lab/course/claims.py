@@ -15,7 +15,7 @@ class ClaimError(AssertionError):
     """A claim of the text that does not hold for these numbers; the message is the sentence, its value and limit."""
 
 
-def claim(text, value, *, below=None, above=None, near=None, within=None):
+def claim(text, value, *, below=None, above=None, near=None, within=None, unit=""):
     """Print what is claimed, its value and its limit; raise the same sentence where it does not hold.
 
         claim("the shoulder sinks", fell, above=0.1)
@@ -23,7 +23,7 @@ def claim(text, value, *, below=None, above=None, near=None, within=None):
 
     Args: text: the claim, said so that a student understands it. value: a number or an array, of which every element
     has to keep the limits. below, above: value < below, value > above. near, within: |value - near| < within. Limits
-    are numbers, or arrays that fit the value.
+    are numbers, or arrays that fit the value. unit: of all of them, said after the value.
 
     Where the environment variable IR50P_CLAIMS names a file, a line of JSON is added to it: the text, and how far
     each element of the value is from its limits. tests/notebooks/margins.py reads that over many units and seeds.
@@ -41,7 +41,7 @@ def claim(text, value, *, below=None, above=None, near=None, within=None):
         said.append(f"within {_words(within)} of {_words(near)}")
         room += [near + within - value, value - (near - within)]
     room = np.stack(np.broadcast_arrays(*room))
-    sentence = f"{text}: {_words(value)} ({' and '.join(said)})"
+    sentence = f"{text}: {f'{_words(value)} {unit}'.strip()} ({' and '.join(said)})"
     _log(text, room)
     if not (room > 0).all():  # nan is no room either
         raise ClaimError(f"does not hold: {sentence}")

@@ -1,4 +1,4 @@
-"""A picture of notebook 03 that moves: the spinning arm as a governor."""
+"""A picture of notebook 04 that moves: the spinning arm as a governor."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Figures of notebook 07, second part: what processing, delay, memory and a model bring, on recordings."""
+"""Figures of notebook 12, second part: what processing, delay, memory and a model bring, on recordings."""
 
 import numpy as np
 

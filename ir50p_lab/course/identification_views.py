@@ -1,4 +1,4 @@
-"""Figures of notebook 07, first part: why feedback biases, and what a motion lets one see."""
+"""Figures of notebook 12, first part: why feedback biases, and what a motion lets one see."""
 
 from dataclasses import replace
 

@@ -73,19 +73,20 @@ def predict(name, guess, unit=""):
     print(f"{name}: your guess is {_say(entry['guess'], unit)}{changed}")
 
 
-def measured(name, value):
-    """Show what came out beside what was guessed, and write it down."""
+def measured(name, value, unit=""):
+    """Show what came out beside what was guessed, and write it down. unit: where nothing was predicted."""
     value = _number(name, value)
 
     def edit(book):
         entry = book["predictions"].setdefault(name, {})
         entry.update(truth=value, measured=now())
+        entry.setdefault("unit", unit)
         return entry
 
     entry = change(edit)
-    unit = entry.get("unit", "")
+    unit = entry["unit"]
     if "guess" not in entry:
-        print(f"{name}: measured {_say(value, unit)}. You made no guess.")
+        print(f"{name}: {_say(value, unit)}")
     else:
         off = f", {_say(entry['guess'] - value, unit, sign=True)} off"
         print(f"{name}: you guessed {_say(entry['guess'], unit)}, it is {_say(value, unit)}{off}.")

@@ -9,7 +9,7 @@ from ir50p_lab.bench import result_files
 from ir50p_lab.bench.connect import connect
 from ir50p_lab.errors import InputError, NotMeasuredError
 
-NOTEBOOKS = {"calibration": "06_bench", "model": "07_identification", "camera": "10_camera_calibration"}
+NOTEBOOKS = {"calibration": "10_bench", "model": "12_identification", "camera": "17_camera_calibration"}
 _ENDINGS = {"calibration": ".toml", "model": ".model", "camera": ".yml"}
 _RENDERED = {"bench": "rendered pictures", "bench_id": "rendered", "arm": "", "simulated": "true"}
 

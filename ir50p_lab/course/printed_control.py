@@ -1,6 +1,6 @@
 """What the thesis prints in 2.1.2 and 4.4, as code: mistakes included.
 
-Only for the 'Thesis check' cells of notebook 08 and their tests. For control use `ir50p_lab.controllers`.
+Only for the 'Thesis check' cells of notebook 14 and their tests. For control use `ir50p_lab.controllers`.
 """
 
 from functools import cache

@@ -1,6 +1,6 @@
 """What the thesis prints in 1.3 (Jacobian) and 1.4 (inverse kinematics), equation by equation: mistakes included.
 
-Only for the 'Thesis check' cells of notebook 02 and their tests. For calculations use `ir50p_lab.modelling`.
+Only for the 'Thesis check' cells of A1 and their tests. For calculations use `ir50p_lab.modelling`.
 The remark after 'wrong:' says what is wrong; an equation without one is right as printed.
 """
 

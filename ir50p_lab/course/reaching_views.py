@@ -1,4 +1,4 @@
-"""Figures of notebook 11: loop and frames, the picture beside the arm, a way, a reach over time, the error budget."""
+"""Figures of notebook 18: loop and frames, the picture beside the arm, a way, a reach over time, the error budget."""
 
 import numpy as np
 from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch

@@ -1,4 +1,4 @@
-"""Figures of simulated runs for notebook 04; each says that nothing in it was measured."""
+"""Figures of simulated runs for notebook 06; each says that nothing in it was measured."""
 
 from dataclasses import dataclass
 

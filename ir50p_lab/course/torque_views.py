@@ -1,4 +1,4 @@
-"""Figures of notebook 08: error dynamics, robustness, tracking beside the reference; and the runs behind them."""
+"""Figures of notebook 14: error dynamics, robustness, tracking beside the reference; and the runs behind them."""
 
 import numpy as np
 from matplotlib import rc_context
@@ -38,7 +38,7 @@ def follow(arm, controller, reference, seconds, *, seed=0):
 
 
 def training_run(arm, *, seed=0):
-    """A recording to identify from, on the simulated bench: the first motion of notebook 07, thesis' PID."""
+    """A recording to identify from, on the simulated bench: the first motion of notebook 12, thesis' PID."""
     return follow(arm, thesis_pid(), kept_motion(arm), 110.0, seed=seed)
 
 

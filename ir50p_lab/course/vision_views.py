@@ -1,4 +1,4 @@
-"""Figures and panels of notebook 09: pictures, colour, edges, votes, blur; rendered pictures say that they are."""
+"""Figures and panels of notebook 16: pictures, colour, edges, votes, blur; rendered pictures say that they are."""
 
 import html
 

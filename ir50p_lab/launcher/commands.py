@@ -7,6 +7,8 @@
   python3 -m ir50p_lab targets [...]  measure what the project set out to reach, as tables beside the thesis
   python3 -m ir50p_lab setup          only set up (--rebuild: from nothing; --tests: with the test tools)
   python3 -m ir50p_lab bench-test     first power-on of the arm, joint by joint (rehearse: bench-test simulated)
+  python3 -m ir50p_lab report         your lab report: predictions, figures, functions (--name "Your Name")
+  python3 -m ir50p_lab update FOLDER  take over what is yours from an older copy of the course
   python3 -m ir50p_lab doctor         what is installed, what is missing, serial ports, verdict
 
   --here         use the Python that runs this instead of .venv (Binder, JupyterHub); installs nothing
@@ -26,13 +28,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-from ir50p_lab.launcher import doctor, inventory
+from ir50p_lab.launcher import doctor, inventory, update
 from ir50p_lab.launcher.environment import LOCK, TEST_LOCK, Environment
 from ir50p_lab.launcher.problems import COMMAND, SetUpError, from_os_error
 
 ROOT = Path(__file__).resolve().parents[2]
 
-COMMANDS = ("lab", "test", "targets", "setup", "doctor", "bench-test", "export")
+COMMANDS = ("lab", "test", "targets", "setup", "doctor", "bench-test", "export", "report", "update")
 
 
 def main(arguments, root=ROOT):
@@ -70,6 +72,8 @@ def _run(arguments, root):
         return doctor.report(environment, here=here)
     if command == "setup":
         return _setup(arguments, environment, here)
+    if command == "update":
+        return update.take_over(arguments, root)
     tests = command in ("test", "targets")  # both need the test tools
     if here:
         _check_here(environment.root, TEST_LOCK if tests else LOCK)
@@ -86,10 +90,13 @@ def _run(arguments, root):
             variables["IR50P_HOME"] = home
             module = "tests" if command == "test" else "tests.targets"
             return _attend([python, "-m", module, *arguments], variables, environment.root)
-    if command == "bench-test":
-        return _attend([python, "-m", "ir50p_lab.bench.bench_test", *arguments], variables, environment.root)
-    if command == "export":
-        return _attend([python, "-m", "ir50p_lab.publishing", *arguments], variables)
+    modules = {
+        "bench-test": "ir50p_lab.bench.bench_test",
+        "export": "ir50p_lab.publishing",
+        "report": "ir50p_lab.publishing.report",
+    }
+    if command in modules:
+        return _attend([python, "-m", modules[command], *arguments], variables)
     code = _attend([python, *_lab_command(environment.root, arguments)], variables)
     return 0 if code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
 

@@ -1,4 +1,4 @@
-"""Figures of notebook 06: they draw what was recorded, and say where it is from."""
+"""Figures of notebook 10: they draw what was recorded, and say where it is from."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Figures of notebook 10: drawn from a small calibration, and saying what they show."""
+"""Figures of notebook 17: drawn from a small calibration, and saying what they show."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The governor of notebook 03 settles where its torque curve says."""
+"""The governor of notebook 04 settles where its torque curve says."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Exercises of notebook 06: right answers by another route."""
+"""Exercises of notebook 10: right answers by another route."""
 
 import numpy as np
 import pytest

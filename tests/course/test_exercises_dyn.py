@@ -1,4 +1,4 @@
-"""Exercises of notebook 03: right answers by hand or by another route."""
+"""Exercises of notebook 04: right answers by hand or by another route."""
 
 import numpy as np
 import pytest

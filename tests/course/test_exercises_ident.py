@@ -1,4 +1,4 @@
-"""Exercises of notebook 07: right answers by another route."""
+"""Exercises of notebook 12: right answers by another route."""
 
 import numpy as np
 import pytest

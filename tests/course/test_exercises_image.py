@@ -1,4 +1,4 @@
-"""Exercises of notebook 09: each right answer by another route."""
+"""Exercises of notebook 16: each right answer by another route."""
 
 import colorsys
 

@@ -1,4 +1,4 @@
-"""Exercises of notebook 04: each right answer by another route, most of them by simulating the case."""
+"""Exercises of notebook 06: each right answer by another route, most of them by simulating the case."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Exercises of notebooks 10 and 11: each solution by another route."""
+"""Exercises of notebooks 17 and 18: each solution by another route."""
 
 from dataclasses import replace
 

@@ -154,8 +154,8 @@ def test_predictions_are_kept_and_the_first_counts(capsys):
     assert "the first one counts" in said(capsys)
     lab_book.measured("fk.height", 0.33)
     assert "you guessed 0.1 m, it is 0.33 m" in said(capsys)
-    lab_book.measured("other", 1)
-    assert "no guess" in said(capsys)
+    lab_book.measured("other", 1, "m")
+    assert said(capsys) == "other: 1 m\n"
     lab_book.note("it sank")
     lab_book.note("it sank")
     assert [one["text"] for one in lab_book.read()["notes"]] == ["it sank"]

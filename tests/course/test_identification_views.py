@@ -1,4 +1,4 @@
-"""Pictures of notebook 07: their numbers against other routes; what is drawn is what was computed."""
+"""Pictures of notebook 12: their numbers against other routes; what is drawn is what was computed."""
 
 from dataclasses import replace
 from types import SimpleNamespace

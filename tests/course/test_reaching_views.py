@@ -1,4 +1,4 @@
-"""Figures of notebook 11: they say what is simulated, and show the numbers they are given."""
+"""Figures of notebook 18: they say what is simulated, and show the numbers they are given."""
 
 from dataclasses import replace
 

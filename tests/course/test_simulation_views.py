@@ -1,4 +1,4 @@
-"""Figures of notebook 04: the note in the corner, curves and levels of Traces, turning points."""
+"""Figures of notebook 06: the note in the corner, curves and levels of Traces, turning points."""
 
 import numpy as np
 import pytest

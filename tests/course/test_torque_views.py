@@ -1,4 +1,4 @@
-"""Figures of notebook 08 and what 2.1.2 prints: what is drawn is what was computed; the misprints are misprints."""
+"""Figures of notebook 14 and what 2.1.2 prints: what is drawn is what was computed; the misprints are misprints."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Views of notebook 09: what they draw is what they were given, and every rendered picture says so."""
+"""Views of notebook 16: what they draw is what they were given, and every rendered picture says so."""
 
 import io
 

@@ -5,7 +5,7 @@ The words are a regular expression; it may match the text of the Thesis check or
 """
 
 ERRATA = {
-    "01": [
+    "A1": [
         ("1.5", "R_y printed as R_y(-theta)"),
         ("1.7", "R_x R_y R_z with moving axes is not the ZYX yaw-pitch-roll it is called"),
         ("1.11", "the product stops at A_(j-1)"),
@@ -19,8 +19,6 @@ ERRATA = {
         ("1.31", "row 2 of T03 has c1 where s1 belongs"),
         ("R03", "the rotation block is not orthonormal", r"R\^0_3|R_0_3"),
         ("1.45", "row 2 of t03"),
-    ],
-    "02": [
         ("1.34", "joint i turns about z_(i-1)"),
         ("1.37", "the same, for the columns of the angular part"),
         ("1.50", "the same, for this arm: columns 1 and 3 come out wrong"),
@@ -42,7 +40,7 @@ ERRATA = {
         ("1.73", "the same: fails where l2 + l3 c3 < 0"),
         ("formulas of 1.4.3", "taken literally they miss the target in about half of the poses", r"half or more"),
     ],
-    "03": [
+    "04": [
         ("1.75", "d/dt is total, not partial; the text cites (1.96) for it"),
         ("1.81", "the derivative of M is by q_i"),
         ("1.88", "J_omega of link i holds the axes up to i only"),
@@ -82,7 +80,7 @@ ERRATA = {
         ("24 V", "24 V motors, driven with 12 V", r"24 V"),
         ("1.5.3c", "G2 multiplies two terms, and has lc2 for l2"),
     ],
-    "04": [
+    "06": [
         (
             "1.115",
             "right for a moving joint; sgn(0) is one value, but a joint at rest holds against any torque up to fs",
@@ -94,7 +92,7 @@ ERRATA = {
         ("2.2", "C q for C qd"),
         ("4.1.2", "motors for 24 V, driven with 12 V: half the torque and half the speed"),
     ],
-    "05": [
+    "08": [
         ("2.1", "P is explained twice; the one of past values is I", r'"past values", is I'),
         ("2.4", "right, and contradicts (2.7)", r"\(2\.4\)"),
         ("2.5", "drops the velocity of the set point: right for a constant one only"),
@@ -110,13 +108,13 @@ ERRATA = {
             r"\(Tables 2\.1-2\.3\).*0\.01 s",
         ),
     ],
-    "06": [
+    "10": [
         ("4.1.2", "24 V in the introduction, 12 V here: half the volts per count, half the speed", r"\(4\.1\.2\)"),
         ("4.1.3", "Shannon printed the wrong way round; a cut-off of 300 Hz at 100 Hz is impossible"),
         ("4.2.1, map", "[-255, 255] to [0, 255]: the command 0 becomes half the supply", r"4\.2\.1, the map"),
         ("4.2.1, stop", "e < 0.01 holds for every negative error; letting go drops a joint", r"4\.2\.1, Figure 4\.7"),
     ],
-    "07": [
+    "12": [
         ("2.37", "the inverse stops at t - 1, the sum beside it goes to t"),
         ("2.39", "the sum goes to t instead of t - 1"),
         ("2.40", "line 1 subtracts the measurement"),
@@ -134,7 +132,7 @@ ERRATA = {
         ("Table 4.4", "right: its fit is the one of the norm, no share of a variance", r"Table 4\.4"),
         ("4.3.3", "blames Stribeck friction and hysteresis; it is noise and lag, as it half says", r"4\.3\.3"),
     ],
-    "08": [
+    "14": [
         ("2.6", "C q for C qd, G(qd) for G(q)"),
         ("2.7", "e = qd + q; the law needs e = q - qd", r"2\.7"),
         ("2.8", "right; but positive gains are enough for n <= 2 only", r"2\.8-2\.12"),
@@ -152,7 +150,7 @@ ERRATA = {
         ("Figure 4.13", "lag of the filter: the arm runs ahead, the picture lags", r"Figure 4\.13"),
         ("4.4.2", "too fast a trajectory: said, here forecast"),
     ],
-    "09": [
+    "16": [
         ("3.1.3", "hues squeezed into a byte: magenta is 212.5, not 200; orange 21, not 17"),
         ("3.1", "right: a threshold"),
         ("3.2", "right: sums to 159, sigma 1.4"),
@@ -162,7 +160,7 @@ ERRATA = {
         ("4.5.1, hue", "340 to 360 and S below 0.8: loses the cleanest red, and red over the seam", r"4\.5\.1, hue"),
         ("4.5.1, radius", "radii 35 to 65 cannot give 18: these are diameters", r"4\.5\.1, radius"),
     ],
-    "10": [
+    "17": [
         ("3.5", "lost in the scan: right in row form"),
         ("3.6", "the same"),
         ("3.7", "column form, which does not go with the row form of (3.8)"),
@@ -172,7 +170,7 @@ ERRATA = {
         ("4.5.3", "[R; t] K is 4x3 and has no inverse; the height of the ball's centre is forgotten"),
         ("Table 4.8", "its arithmetic is right: mean 5.08, largest 10 mm", r"Table 4\.8"),
     ],
-    "11": [
+    "18": [
         ("4.5", "from the board's frame into the base's: said, no equation does it"),
         ("Table 4.8", "balls at 412 to 500 mm: out of reach of an arm with links of 0.2 m", r"Table 4\.8"),
     ],

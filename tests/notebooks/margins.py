@@ -1,7 +1,7 @@
 """How far are the claims of the notebooks from failing? Over units, noise and random draws:
 
-    python tests/notebooks/margins.py 06 07 08 10            # 20 units; a quarter of an hour a notebook on one core
-    python tests/notebooks/margins.py 07 --units 5 --jobs 2
+    python tests/notebooks/margins.py 10 12 14 17            # 20 units; a quarter of an hour a notebook on one core
+    python tests/notebooks/margins.py 12 --units 5 --jobs 2
 
 Unit k is IR50P_UNIT=k, with every `default_rng(n)` and `seed=n` of the cells moved on by 100 k. Each `claim` has a
 room, the distance of its value from its limit (several of an array); a claim whose mean room is under 3 standard

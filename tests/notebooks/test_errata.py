@@ -6,7 +6,7 @@ import re
 import nbformat
 import pytest
 from errata import ERRATA
-from notebook_runner import NOTEBOOKS
+from notebook_runner import NOTEBOOKS, REWRITTEN
 
 WIDEST_RANGE = 10  # "(1.101-1.110)" names ten equations; a wider range names none of them
 
@@ -44,31 +44,30 @@ def test_is_checked(case):
     (path,) = [path for path in NOTEBOOKS if path.name.startswith(number)]
     found = [check for check in thesis_checks(path) if names(check, place, *words)]
     assert found, f"no Thesis check of {path.name} names {place} ({what})"
-    assert any(code.cell_type == "code" and "assert" in code.source for _, code in found)
+    assert any(code.cell_type == "code" and re.search("assert|claim", code.source) for _, code in found)
 
 
 def test_thesis_checks_run_and_assert(path):
     checks = thesis_checks(path)
-    assert checks
+    assert checks or path.name[:2] in (*REWRITTEN, "A2")  # theirs stand in A1
     for text, code in checks:
-        assert code.cell_type == "code" and "assert" in code.source, text.splitlines()[0]
+        assert code.cell_type == "code" and re.search("assert|claim", code.source), text.splitlines()[0]
 
 
 def test_the_list_is_complete():
     """Every number once; the counts are those of the study of the thesis that the list comes from."""
     counts = {number: len(entries) for number, entries in ERRATA.items()}
     assert counts == {
-        "01": 13,
-        "02": 20,
-        "03": 38,
-        "04": 7,
-        "05": 6,
-        "06": 4,
-        "07": 16,
-        "08": 16,
-        "09": 8,
-        "10": 8,
-        "11": 2,
+        "A1": 33,
+        "04": 38,
+        "06": 7,
+        "08": 6,
+        "10": 4,
+        "12": 16,
+        "14": 16,
+        "16": 8,
+        "17": 8,
+        "18": 2,
     }
     assert len({(case[0], case[1]) for case in CASES}) == len(CASES)
 

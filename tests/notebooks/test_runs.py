@@ -4,7 +4,8 @@ import re
 
 import nbformat
 import pytest
-from notebook_runner import NOTEBOOKS, run_notebook
+import solutions
+from notebook_runner import NOTEBOOKS, REWRITTEN, run_notebook
 
 #: Notebooks that keep results for later ones or load them.
 CHAIN = [path for path in NOTEBOOKS if re.search(r"\b(save|load)_result\b", path.read_text(encoding="utf-8"))]
@@ -37,6 +38,26 @@ def test_notebooks_in_a_chain(tmp_path):
                 f"after {', '.join(p.name for p in CHAIN[: CHAIN.index(path)])}: {path.name}, {run.error}",
                 pytrace=False,
             )
+
+
+@pytest.mark.notebook
+@pytest.mark.parametrize("number", REWRITTEN)
+def test_notebook_with_solutions(number, tmp_path):
+    """A student writes every function rightly: each passes its check, becomes the robot, and runs in what follows."""
+    (found,) = [one for one in NOTEBOOKS if one.name.startswith(number)]
+    notebook = nbformat.read(found, as_version=4)
+    asked = []
+    for cell in notebook.cells:
+        for name in re.findall(r'^check\("(\w+)"', cell.source, re.M):
+            asked.append(name)
+            cell.source = f'{solutions.source(name)}\n\ncheck("{name}", {name})'
+    run = run_notebook(notebook, variables={"IR50P_HOME": str(tmp_path)})
+    if run.error:
+        pytest.fail(f"{found.name}, {run.error}", pytrace=False)
+    said = "".join(str(output.get("data", "")) for cell in run.cells for output in cell.get("outputs", []))
+    for name in asked:
+        assert f"from now on my_robot.{name} is this function" in said, name
+        assert (tmp_path / "my_robot" / f"_{name}.py").exists()
 
 
 BROKEN = """

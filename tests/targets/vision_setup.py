@@ -34,7 +34,7 @@ def own_plane(seed=1):
 
 @cache
 def calibrated(seed):
-    """The line through nine angles of each joint, as the experiment of notebook 06 finds it."""
+    """The line through nine angles of each joint, as the experiment of notebook 10 finds it."""
     plant, points = SimulatedBench(IR50P, seed=seed, record_to=False).plant, []
     for joint in range(3):
         angles = np.linspace(IR50P.q_min[joint] + 0.05, IR50P.q_max[joint] - 0.05, 9)

@@ -1,4 +1,4 @@
-"""Exercises of notebook 06: volts of a command, calibration, largest cut-off, lag of a filter, error by stiction."""
+"""Exercises of notebook 10: volts of a command, calibration, largest cut-off, lag of a filter, error by stiction."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from ir50p_lab.course.exercises import Exercise, Number, Slip
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import low_pass_lag
 
-NOTEBOOK = "06_bench"
+NOTEBOOK = "10_bench"
 
 # bench-1: the breakaway of joint 1 of the IR50P, in counts, at 12 V.
 _BREAK = 36.0  # PWM counts

@@ -1,10 +1,10 @@
-"""Exercises of notebook 10: a pixel, a lens, a wrong square, a ball that is not on the plane."""
+"""Exercises of notebook 17: a pixel, a lens, a wrong square, a ball that is not on the plane."""
 
 import numpy as np
 
 from ir50p_lab.course.exercises import Choice, Exercise, Function, Number, Slip
 
-NOTEBOOK = "10_camera_calibration"
+NOTEBOOK = "17_camera_calibration"
 
 # calib-1: a point through a camera without distortion.
 _K = np.array([[700.0, 0, 320], [0, 690, 240], [0, 0, 1]])

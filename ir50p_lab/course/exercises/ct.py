@@ -1,9 +1,9 @@
-"""Exercises of notebook 08: gains that are positive and unstable, two poles, an error that stays, a top speed."""
+"""Exercises of notebook 14: gains that are positive and unstable, two poles, an error that stays, a top speed."""
 
 from ir50p_lab.course.exercises import Exercise, Number, Slip
 from ir50p_lab.modelling import IR50P
 
-NOTEBOOK = "08_computed_torque"
+NOTEBOOK = "14_computed_torque"
 
 # ct-1: s^3 + K2 s^2 + K1 s + K0; Routh: K2 K1 > K0.
 _K1, _K2 = 6.0, 4.0

@@ -1,4 +1,4 @@
-"""Exercises of notebook 03: inertia, holding torque, acceleration, friction, motor voltage."""
+"""Exercises of notebook 04: inertia, holding torque, acceleration, friction, motor voltage."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from ir50p_lab.modelling import (
     mass_matrix,
 )
 
-NOTEBOOK = "03_dynamics"
+NOTEBOOK = "04_dynamics"
 
 # dyn-1: a slender rod that turns about its end, with a hand at the other end.
 _ROD_MASS, _HAND_MASS, _LENGTH = 0.6, 0.2, 0.4  # kg, kg, m

@@ -1,4 +1,4 @@
-"""Exercises of notebook 07: a step of recursive least squares, what a clamped joint hides, a fit, the scale."""
+"""Exercises of notebook 12: a step of recursive least squares, what a clamped joint hides, a fit, the scale."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from ir50p_lab.identification import base_parameters, regressor
 from ir50p_lab.identification.parameters import NAMES, ONLY_THESIS
 from ir50p_lab.modelling import IR50P
 
-NOTEBOOK = "07_identification"
+NOTEBOOK = "12_identification"
 
 # ident-1: one parameter, one sample.
 _THETA, _P, _PHI, _Y = 2.0, 0.5, 3.0, 9.0

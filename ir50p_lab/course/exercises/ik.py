@@ -1,11 +1,11 @@
-"""Exercises of notebook 02: Jacobian, singular poses, inverse kinematics."""
+"""Exercises of notebooks 02 and 03: allowed branches, tip velocity, singular poses."""
 
 import numpy as np
 
-from ir50p_lab.course.exercises import Choice, Exercise, Function, Number, Slip
-from ir50p_lab.modelling import IR50P, inverse_kinematics, jacobian, reachability
+from ir50p_lab.course.exercises import Choice, Exercise, Number, Slip
+from ir50p_lab.modelling import IR50P, jacobian
 
-NOTEBOOK = "02_jacobian_and_inverse_kinematics"
+NOTEBOOK = "03_velocities_and_singular_poses"
 
 _L1, _L2, _L3 = IR50P.l
 
@@ -25,10 +25,6 @@ def _printed_jv(q):
 # ik-2: the tip passes the axis of the column.
 _DISTANCE, _SPEED = 0.04, 0.2
 
-# ik-3: a point in the hole around the shoulder.
-_P_HOLE = np.array([0.05, 0.03, 0.25])
-_R_HOLE = np.linalg.norm(_P_HOLE - [0, 0, _L1])
-
 # ik-5: a target of which the joint limits leave one pose.
 _P_LIMITS = np.array([0.40, 0.15, 0.35])
 _BRANCH_SLIPS = {
@@ -36,15 +32,6 @@ _BRANCH_SLIPS = {
     "back/up": "Joint 1 would have to face away from the target, far beyond its travel to either side.",
     "back/down": "Joint 1 would face away and the elbow would bend backwards: both are beyond their limits.",
 }
-
-
-def _elbow(r):
-    """Angle q3 <= 0 for a tip at distance r from the shoulder."""
-    return float(inverse_kinematics(IR50P, [r, 0.0, _L1])["front/up"][2])
-
-
-def _inner_angle(r):
-    return np.pi + _elbow(r)
 
 
 EXERCISES = (
@@ -83,52 +70,6 @@ EXERCISES = (
             Slip(_DISTANCE / _SPEED, "That is d / v: a time, in seconds."),
         ),
         hint="Where the line is nearest to the axis the tip moves sideways, on a circle of radius 0.04 m.",
-    ),
-    Exercise(
-        "ik-3",
-        "the distance of the point (0.05, 0.03, 0.25) m to the workspace of the IR50P, joint limits aside",
-        Number(
-            reachability(IR50P, _P_HOLE), unit="m", tolerance=1e-3, because="a millimetre is what this arm can resolve"
-        ),
-        why="The forearm is longer than the upper arm: around the shoulder is a hole no pose can enter.",
-        slips=(
-            Slip(0.0, "Near is not the same as reachable: how close to the shoulder can the folded arm get?"),
-            Slip(_R_HOLE, "That is the distance from the shoulder; wanted is how much is missing to the inner edge."),
-            Slip(
-                (_L2 + _L3) - _R_HOLE, "That is the way to the outer edge, through the hole; the inner edge is nearer."
-            ),
-            Slip(
-                (_L3 - _L2) - np.linalg.norm(_P_HOLE),
-                "That counts from the foot of the column; the shell lies about the shoulder, l1 above it.",
-            ),
-        ),
-    ),
-    Exercise(
-        "ik-4",
-        "a function that returns q3 of the elbow-up pose of the IR50P for a tip at distance r (m) from the shoulder",
-        Function(
-            _elbow,
-            cases=[0.2, 0.3, 0.4, 0.5, 0.55],
-            unit="rad",
-            tolerance=1e-4,
-            because="four decimals show that the formula is right",
-        ),
-        why="The distance alone decides the elbow; turning joints 1 and 2 then points the arm.",
-        slips=(
-            Slip(lambda r: -_elbow(r), "That is elbow down: the acos of (1.69) knows only angles >= 0."),
-            Slip(
-                _inner_angle,
-                "That is the angle alpha inside the triangle (1.65); q3 is measured from the stretched arm.",
-            ),
-            Slip(
-                lambda r: -_inner_angle(r),
-                "That is -alpha, the angle inside the triangle; from it to q3 pi is missing.",
-            ),
-            Slip(
-                lambda r: -2 * np.arccos(np.clip(r / (_L2 + _L3), -1, 1)),
-                "That holds for links of equal length; here the law of cosines is needed.",
-            ),
-        ),
     ),
     Exercise(
         "ik-5",

@@ -1,11 +1,11 @@
-"""Exercises of notebook 09: scales of hue, distance on the circle, a kernel, a radius in pixels, the lens law."""
+"""Exercises of notebook 16: scales of hue, distance on the circle, a kernel, a radius in pixels, the lens law."""
 
 import numpy as np
 
 from ir50p_lab.course.exercises import Exercise, Function, Number, Slip
 from ir50p_lab.vision import KERNEL_3_2, hue_distance, hue_in, image_distance
 
-NOTEBOOK = "09_images_and_ball"
+NOTEBOOK = "16_images_and_ball"
 
 # image-1: a red a little towards magenta.
 _HUE = 350.0  # degrees

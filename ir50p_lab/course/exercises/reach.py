@@ -1,11 +1,11 @@
-"""Exercises of notebook 11: from the camera's frame to the arm's, reach, counts at the tip, what tells joint 1."""
+"""Exercises of notebook 18: from the camera's frame to the arm's, reach, counts at the tip, what tells joint 1."""
 
 import numpy as np
 
 from ir50p_lab.course.exercises import Choice, Exercise, Function, Number, Slip
 from ir50p_lab.modelling import IR50P, frames, jacobian
 
-NOTEBOOK = "11_vision_guided_reaching"
+NOTEBOOK = "18_vision_guided_reaching"
 
 # reach-1: where the camera stands, and a ball in camera coordinates.
 _T_BASE_CAM = np.array([[0.0, 0.6, -0.8, 0.9], [1.0, 0.0, 0.0, 0.1], [0.0, -0.8, -0.6, 0.7], [0.0, 0.0, 0.0, 1.0]])

@@ -1,11 +1,11 @@
-"""Exercises of notebook 04: a step of time, a joint that sticks, a motor at its limit, a motion within a torque."""
+"""Exercises of notebook 06: a step of time, a joint that sticks, a motor at its limit, a motion within a torque."""
 
 import numpy as np
 
 from ir50p_lab.course.exercises import Exercise, Function, Number, Slip
 from ir50p_lab.modelling import THESIS_RODS, Actuators, forward_dynamics
 
-NOTEBOOK = "04_simulation_and_friction"
+NOTEBOOK = "06_simulation_and_friction"
 
 
 # sim-1: the midpoint rule for the thesis' arm (slender rods) without drive.

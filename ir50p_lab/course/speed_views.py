@@ -1,0 +1,158 @@
+"""Pictures of notebook 03: arrows of the joints, axis and lever, the way out, damping, steps to a place."""
+
+import numpy as np
+
+from ir50p_lab.course.arm3d import ArmView, SideView
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.modelling.chain import forward_kinematics
+from ir50p_lab.modelling.differential import jacobian
+from ir50p_lab.modelling.ik import inverse_kinematics
+
+_JOINTS = ("purple", "sky", "amber")
+
+
+class ColumnsView:
+    """The arm in 3-D with three arrows at its tip: the tip velocity that each joint alone would give it.
+
+    Args: ax: 3-D axes; arm: Arm; scale: m of arrow per m/s of tip at 1 rad/s.
+    """
+
+    def __init__(self, ax, arm, scale=0.5):
+        self.arm, self._scale = arm, scale
+        self.view = ArmView(ax, arm)
+        # one line each: tail, head, a gap, and the number of the joint as a marker (a legend takes long to draw)
+        self.arrows = [
+            ax.plot(
+                *np.zeros((3, 4)), color=colour, linewidth=3.5, marker=f"${k + 1}$", markevery=[3], ms=9, zorder=40
+            )[0]
+            for k, colour in enumerate(COLOURS[name] for name in _JOINTS)
+        ]
+
+    def update(self, q):
+        """Move the arm to q (3,) rad. Returns: Jv (3, 3) m/rad."""
+        self.view.update(q)
+        tip, Jv = self.view.points[3], jacobian(self.arm, q)[:3]
+        for k, arrow in enumerate(self.arrows):
+            head = tip + self._scale * Jv[:, k]
+            beyond = head + 0.07 * self.arm.reach * Jv[:, k] / max(np.linalg.norm(Jv[:, k]), 1e-9)
+            arrow.set_data_3d(*np.column_stack([tip, head, np.full(3, np.nan), beyond]))
+        return Jv
+
+
+def arrows(arm, q, J, scale=0.5):
+    """The arm at q and the columns of J (3, 3) m/rad at its tip, an arrow a joint: LabFigure."""
+    figure = new_figure(7.5, 5.0, projection="3d")
+    ax = figure.axes[0]
+    view = ArmView(ax, arm, q)
+    tip = view.points[3]
+    for joint, colour in enumerate(_JOINTS):
+        start = tip + np.array([0.02 * (joint == 2), 0, 0])  # arrows 2 and 3 would lie on each other
+        ax.quiver(
+            *start, *(scale * J[:, joint]), color=COLOURS[colour], linewidth=3, arrow_length_ratio=0.15, zorder=40
+        )
+        ax.text(
+            *(start + 1.12 * scale * J[:, joint]), f"joint {joint + 1}", color=COLOURS[colour], weight="bold", zorder=41
+        )
+    ax.set_title("Where the tip goes if one joint turns (half size: 0.5 m an rad)")
+    return figure
+
+
+def arrows_panel(arm):
+    """The same for any shoulder and elbow, for `live`: figure, f(q2, q3) in degrees -> sentence."""
+    figure = new_figure(7.5, 5.2, projection="3d")
+    figure.axes[0].set_title("One arrow a joint: its share of the tip's velocity")
+    columns = ColumnsView(figure.axes[0], arm)
+
+    def turn(q2, q3):
+        J = columns.update(np.radians([-30.0, q2, q3]))
+        lengths = np.linalg.norm(J[:, 1:], axis=0)
+        cosine = J[:, 1] @ J[:, 2] / max(np.prod(lengths), 1e-12)
+        return f"arrows 2 and 3 are {np.degrees(np.arccos(np.clip(cosine, -1, 1))):.0f} degrees apart"
+
+    return figure, turn
+
+
+def axis_and_lever():
+    """A point that turns about an axis: axis, lever and velocity at right angles. LabFigure."""
+    figure = new_figure(6.0, 4.2, projection="3d")
+    ax = figure.axes[0]
+    circle = np.linspace(0, 2 * np.pi, 91)
+    ax.plot(np.cos(circle), np.sin(circle), 0, color=COLOURS["light"])
+    arrows_of = (
+        ((0, 0, -0.4), (0, 0, 1.3), "dark", "axis", (0.05, 0, 0.95)),
+        ((0, 0, 0), (1, 0, 0), "blue", "lever", (0.45, 0, 0.1)),
+        ((1, 0, 0), (0, 1, 0), "orange", "velocity", (1.05, 0.75, 0.08)),
+    )
+    for start, along, colour, name, place in arrows_of:
+        ax.quiver(*start, *along, color=COLOURS[colour], linewidth=3, arrow_length_ratio=0.12)
+        ax.text(*place, name, color=COLOURS[colour], fontsize=12, weight="bold")
+    ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-0.4, 1))
+    ax.set_axis_off()
+    ax.view_init(elev=25, azim=-50)
+    return figure
+
+
+def way_out(arm, distances, speeds, limit):
+    """The arm from the side near its full reach, and the elbow's speed on the way there: LabFigure."""
+    figure = new_figure(9.5, 4.0, cols=2)
+    plane, ax = figure.axes
+    SideView(plane, arm, inverse_kinematics(arm, [distances[len(distances) // 2], 0, arm.l[0]])["front/up"])
+    plane.set_title("Outwards at 0.1 m/s")
+    ax.semilogy(1000 * (arm.reach - distances), speeds, linewidth=2.5, label="elbow")
+    ax.axhline(limit, **SETPOINT, label=f"its motor: {limit} rad/s")
+    ax.invert_xaxis()
+    ax.set(xlabel="still to go to the full reach [mm]", ylabel="speed [rad/s]")
+    ax.set_title("The tip keeps its pace, the elbow runs away")
+    ax.legend(loc="upper left")
+    return figure
+
+
+def damping_curves(damping):
+    """How much a step asks of a direction, plain and damped, over how well the arm moves in it: LabFigure."""
+    figure = new_figure(7.4, 3.6)
+    ax = figure.axes[0]
+    sigma = np.linspace(0.002, 0.4, 400)
+    ax.plot(sigma, 1 / sigma, label=r"plain: $1/\sigma$")
+    ax.plot(
+        sigma,
+        sigma / (sigma**2 + damping**2),
+        label=rf"damped: $\sigma/(\sigma^2 + \lambda^2)$, $\lambda$ = {damping} m",
+    )
+    ax.set(xlim=(0, 0.4), ylim=(0, 40), xlabel=r"how well the arm moves there, $\sigma$ [m/rad]")
+    ax.set_ylabel("turn asked for [rad/m]")
+    ax.set_title("Damping asks least where it would cost most")
+    ax.legend()
+    return figure
+
+
+def steps_panel(damped_step, arm, q_start, p, steps=25):
+    """Miss and elbow after each step towards p (3,) m from q_start, for `live`: figure, f(damping) -> sentence."""
+    figure = new_figure(9.4, 3.8, cols=2)
+    misses, elbows = figure.axes
+    number = np.arange(steps + 1)
+    (miss,) = misses.semilogy(number, np.ones(steps + 1), "o-", ms=4, label="distance of the tip")
+    (elbow,) = elbows.plot(number, np.zeros(steps + 1), "o-", ms=4, color=COLOURS["orange"], label="elbow")
+    misses.set(xlabel="step", ylabel="distance to the place [m]", ylim=(1e-12, 10))
+    elbows.set(xlabel="step", ylabel="elbow [deg]", ylim=(-400, 400))
+    for ax in figure.axes:
+        ax.legend(loc="upper right")
+
+    def search(damping):
+        q, path = np.array(q_start, dtype=float), []
+        for _ in range(steps + 1):
+            path.append(q)
+            q = damped_step(q, p, arm.l, max(damping, 1e-9))
+        path = np.array(path)
+        left = np.linalg.norm(forward_kinematics(arm, path) - p, axis=1)
+        miss.set_ydata(np.maximum(left, 1e-12))
+        elbow.set_ydata(np.degrees(path[:, 2]))
+        arrived = np.flatnonzero(left < 1e-3)
+        turns = np.degrees(np.abs(path[:, 2] - path[0, 2]).max())
+        when = (
+            f"within 1 mm after {arrived[0]} steps"
+            if len(arrived)
+            else f"{1000 * left[-1]:.3g} mm left after {steps} steps"
+        )
+        return f"{when}; on the way the elbow turned by up to {turns:.0f} degrees"
+
+    return figure, search

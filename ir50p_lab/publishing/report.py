@@ -1,0 +1,137 @@
+"""The lab report: what a student predicted, measured, noted, kept and wrote, as one HTML file with everything inside.
+
+`python3 -m ir50p_lab report` writes results/report_DATE.html in the student's folder.
+"""
+
+import argparse
+import base64
+import html
+import os
+from datetime import date
+from pathlib import Path
+
+from ir50p_lab.bench import result_files
+from ir50p_lab.course import lab_book, my_robot
+from ir50p_lab.course.exercises import exercises, read_progress
+from ir50p_lab.course.functions import folder
+from ir50p_lab.course.functions.catalogue import ORDER, notebook_of
+
+_STYLE = """
+body { font: 16px/1.5 sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; color: #222 }
+table { border-collapse: collapse; margin: 1rem 0 } td, th { padding: 3px 14px 3px 0; text-align: left }
+th { border-bottom: 2px solid #999 } td { border-bottom: 1px solid #ddd; vertical-align: top }
+pre { background: #f4f4f4; padding: 10px; overflow-x: auto } figure { margin: 1rem 0 } img { max-width: 100% }
+.loan { color: #B35900; font-weight: bold } h1, h2 { font-weight: 600 }
+"""
+
+
+def report(name="") -> str:
+    """Return the report as the text of an HTML page. name: of the student."""
+    book = lab_book.read()
+    parts = [
+        f"<h1>Lab report: the IR50P</h1><p>{_text(name) or 'Name: ______________'}<br>{date.today():%d %B %Y}</p>",
+        _origin(),
+        _section("Predicted and measured", _predictions(book["predictions"])),
+        _section("Notes", "".join(_note(one) for one in book["notes"])),
+        _section("Figures kept", "".join(_figure(one) for one in book["figures"])),
+        _section("Exercises and functions", _done(book["attempts"])),
+        _section("My robot", _listings()),
+    ]
+    return f"<!doctype html><meta charset='utf-8'><title>Lab report</title><style>{_STYLE}</style>{''.join(parts)}"
+
+
+def _note(one):
+    return f"<p>{_text(one['text'])} <small>{one['at'][:16]}</small></p>"
+
+
+def _section(title, content):
+    return f"<h2>{title}</h2>{content or '<p>Nothing yet.</p>'}"
+
+
+def _text(value):
+    return html.escape(str(value))
+
+
+def _table(head, rows):
+    line = "".join(f"<th>{_text(one)}</th>" for one in head)
+    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<table><tr>{line}</tr>{body}</table>" if rows else ""
+
+
+def _origin():
+    """On which bench: simulated or real, unit and seed, as the results say."""
+    unit = os.environ.get("IR50P_UNIT", "")
+    seed = os.environ.get("IR50P_SEED", "")
+    rows = [
+        (_text(one), "simulated" if one.simulated else "real", "withdrawn" if one.withdrawn else "")
+        for one in result_files.every()
+    ]
+    chosen = f"<p>Simulated arm: unit {_text(unit or 'of the course')}, seed {_text(seed or 'of the notebook')}.</p>"
+    return chosen + (_table(["results of my own", "", ""], rows) if rows else "")
+
+
+def _predictions(predictions):
+    rows = []
+    for name, entry in predictions.items():
+        unit = entry.get("unit", "")
+        guess = _number(entry.get("guess"), unit)
+        if "changed" in entry:
+            guess += f" <small>(later {_number(entry['changed'], unit)})</small>"
+        if entry.get("late"):
+            guess += " <small>(after the answer)</small>"
+        rows.append((_text(name), guess, _number(entry.get("truth"), unit), entry.get("guessed", "")[:16]))
+    return _table(["what", "my guess", "measured", "when"], rows)
+
+
+def _number(value, unit):
+    return "" if value is None else _text(f"{value:.4g} {unit}".strip())
+
+
+def _figure(one):
+    path = lab_book.path().parent / "figures" / one["file"]
+    if not path.exists():
+        return f"<p>{_text(one['name'])}: the picture {_text(path.name)} is gone.</p>"
+    picture = base64.b64encode(path.read_bytes()).decode("ascii")
+    return f"<figure><img src='data:image/png;base64,{picture}'><figcaption>{_text(one['name'])}</figcaption></figure>"
+
+
+def _done(attempts):
+    done = read_progress()
+    rows = [
+        (notebook_of(name), _text(name), _whose(name), str(len(attempts.get(name, []))))
+        for name in ORDER
+        if folder.is_there(name) or name in attempts
+    ]
+    numbers = [f"{_text(name)} {done[name][:10]}" for name in exercises() if name in done]
+    listed = f"<p>Exercises done: {', '.join(numbers)}.</p>" if numbers else ""
+    return _table(["notebook", "function", "whose", "answers that were wrong"], rows) + listed
+
+
+def _whose(name):
+    whose = my_robot.whose(name)
+    return f"<span class='loan'>{whose}</span>" if whose == "on loan" else whose
+
+
+def _listings():
+    shown = []
+    for name in ORDER:
+        if folder.is_there(name):
+            text = folder.path_of(name).read_text(encoding="utf-8")
+            shown.append(f"<h3>{_text(name)} ({_whose(name)})</h3><pre>{_text(text)}</pre>")
+    return "".join(shown)
+
+
+def main(arguments=None):
+    """Write the report and say where it is."""
+    parser = argparse.ArgumentParser(prog="python3 -m ir50p_lab report", description="Write your lab report.")
+    parser.add_argument("--name", default="", help="your name, for the first line")
+    parser.add_argument("--to", type=Path, help="file to write (default: results/report_DATE.html in your folder)")
+    chosen = parser.parse_args(arguments)
+    path = chosen.to or lab_book.path().parent / f"report_{date.today():%Y-%m-%d}.html"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(report(chosen.name), encoding="utf-8")
+    print(f"Your report: {path}")
+
+
+if __name__ == "__main__":
+    main()
