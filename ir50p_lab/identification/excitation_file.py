@@ -12,10 +12,6 @@ DATA = Path(__file__).resolve().parents[2] / "data" / "excitation_ir50p.json"
 
 def save_excitations(path, motions, *, made_by):
     """Write {name: Fourier} to a JSON file, every digit kept. made_by: the command. Returns the path."""
-    if not isinstance(motions, dict):
-        raise InputError(f"motions = {motions!r:.60}: give a dict, name: motion")
-    if not isinstance(made_by, str):
-        raise InputError(f"made_by = {made_by!r:.60}: give the command, as text")
     rows = {}
     for name, motion in motions.items():
         if not isinstance(motion, Fourier):

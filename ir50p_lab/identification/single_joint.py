@@ -26,6 +26,7 @@ _ALL_NOISE = 0.3  # noise power over power of the acceleration from which on no 
 _AGREE = 1.0  # standard errors of inertia and friction at a cut-off, by which half of it may move them
 _MATTERS = 0.1  # of the value: a change smaller than this is only put into the standard error
 _JUDGED = ("inertia", "viscous", "coulomb")  # by these
+_EXACT = 2e-3  # of a parameter: differences and interpolation are no better
 _PEAK = (0.02, 1.0)  # of the rms speed: where the Stribeck speed is looked for
 
 
@@ -237,11 +238,12 @@ def _at_agreeing_cutoff(doubts, joint, first, held, given):
 
 def _with_slow_motion_in_errors(joint, found):
     """The same, its standard errors widened by what twice the least speed changes: sticking, ripple, coarse angles."""
+    stderr = np.hypot(found.stderr, _EXACT * np.abs(found.x))
     other = joint.fit(found.cutoff_hz, found.held, fewest=found, slower=2.0)
-    if other is None:
-        return found
-    known = np.isfinite(found.stderr) & np.isfinite(other.stderr)
-    return replace(found, stderr=np.hypot(found.stderr, np.where(known, np.abs(found.x - other.x), 0.0)))
+    if other is not None:
+        known = np.isfinite(found.stderr) & np.isfinite(other.stderr)
+        stderr = np.hypot(stderr, np.where(known, np.abs(found.x - other.x), 0.0))
+    return replace(found, stderr=stderr)
 
 
 @dataclass(frozen=True)
