@@ -115,7 +115,7 @@ def test_a_wrong_frame_draws_a_wrong_arm(notebook):
     wrong = forward_kinematics(IR50P, right * [1, 1, -1])
     np.testing.assert_allclose(drawn, wrong, atol=1e-6)
     assert np.linalg.norm(wrong - forward_kinematics(IR50P, right)) > 0.1
-    notebook.locator(".la").nth(2).get_by_label("joint 1 in degrees").focus()
+    notebook.locator(".la").nth(2).get_by_label("joint 2 in degrees").focus()
     notebook.keyboard.press("ArrowRight")  # asks the kernel for frames
     notebook.wait_for_function(
         f"(old) => Math.hypot(...{VIEW.format(2)}.tipAt.map((v, i) => v - old[i])) > 1e-3", arg=drawn, timeout=5000
