@@ -216,3 +216,49 @@ def test_random_scenes():
         picture, _ = render_scene(random_scene(seed, "no_ball"), seed=seed)
         assert find_balls(picture) == []
     assert found >= 4
+
+
+def disc(colour, seed, radius=26, centre=(310.0, 230.0)):
+    """A shaded ball of a paint (r, g, b) 0..255 as the picture shows it where the light falls straight."""
+    rng = np.random.default_rng(seed)
+    light = tuple((np.array(colour) / 255) ** 2.2)
+    place = np.array(centre) + rng.uniform(-60, 60, 2)
+    return photograph(add_ball(empty(grain=0.05, seed=seed), F, place, radius, light, ambient=0.7), seed=seed)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("colour", [(40, 8, 10), (46, 14, 18), (30, 4, 4)])
+def test_a_nearly_black_disc_is_not_red(colour, seed):
+    assert not find_balls(disc(colour, seed))
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("colour", [(105, 52, 36), (90, 45, 32), (110, 60, 42)])
+def test_a_brown_sweet_is_no_red_ball(colour, seed):
+    assert not find_balls(disc(colour, seed, radius=20))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_fingertips_beside_a_ball_are_no_balls(seed):
+    rng = np.random.default_rng(seed)
+    light, centre = empty(grain=0.05, seed=seed), np.array([320.0, 240.0])
+    skin = (np.array([218, 140, 120]) / 255) ** 2.2 * rng.uniform(0.7, 1.1)
+    add_ball(light, F, centre, 30)
+    tips = [centre + 52 * np.array([np.cos(a), np.sin(a)]) for a in rng.uniform(0, 6.28) + np.arange(3) * 0.75]
+    for tip in tips:
+        add_ball(light, F, tip, 15, tuple(skin), ambient=0.7)
+    balls = find_balls(photograph(light, seed=seed))
+    assert [np.hypot(b.x - 320, b.y - 240) < 2 for b in balls] == [True]
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_colour_learnt_by_a_click_holds_in_other_light(seed):
+    """The same green ball, learnt in white light, under light that turns its hue by 20 degrees either way."""
+    colour = learn_colour(disc((40, 150, 60), seed, centre=(310, 230)), _middle(seed))
+    assert colour.tolerance >= 26
+    for other in ((75, 150, 40), (40, 150, 95)):
+        assert len(find_balls(disc(other, seed + 50), colour)) == 1
+
+
+def _middle(seed):
+    return np.array((310.0, 230.0)) + np.random.default_rng(seed).uniform(-60, 60, 2)

@@ -155,11 +155,11 @@ def test_a_picture_that_opencv_fails_on_does_not_lose_the_others(good, monkeypat
     module = importlib.import_module("ir50p_lab.vision.calibration.calibrate")
     seen = []
 
-    def fails_once(grey, pattern):
+    def fails_once(grey, pattern, other):
         seen.append(grey)
         if len(seen) == 2:
             raise cv2.error("OpenCV(4.10.0) error: (-215) initial corner is outside the image")
-        return find_checkerboard(grey, pattern)
+        return find_checkerboard(grey, pattern, other)
 
     monkeypatch.setattr(module, "find_checkerboard", fails_once)
     (one,) = calibrate(good).rejected

@@ -196,13 +196,13 @@ def test_a_lens_that_lacks_terms_is_said_and_not_blamed_on_the_board(views):
 def test_evidence_gives_the_reason_for_a_bend_that_is_not_kept():
     """A board that sags by another amount in each view: more than chance, but not known well enough."""
     from ir50p_lab.vision.calibration.checks import bent_board
-    from ir50p_lab.vision.calibration.fit import Corners, Model, fit, start
+    from ir50p_lab.vision.calibration.fit import CornerSets, Model, fit, start
 
     views = []
     for k, sag in enumerate(np.random.default_rng(1).normal(0.0003, 0.0004, 13)):
         z = sag * ((POINTS[:, 0] - 0.1) / 0.1) ** 2
         views.append(corner_sets(np.column_stack([POINTS[:, :2], z]), 13, seed=40)[k])
-    corners = Corners([POINTS] * 13, views, SIZE)
+    corners = CornerSets([POINTS] * 13, views, SIZE)
     question = bent_board(corners, fit(corners, Model(("k1", "k2")), start(corners)))
     assert not question.kept and question.p_value < question.limit
     assert "mm of sag are too little beside their error" in str(question)
@@ -388,3 +388,47 @@ def test_unknown_coefficient(views):
     with pytest.raises(InputError, match="k4"):
         calibrate_corners(POINTS, views, SIZE, lens=("k4",))
     assert LENS[4] == 0
+
+
+# ---- doubts that good-looking fits leave
+
+
+def stretched(points, bend):
+    """Points of a board that is 3 % longer along y than it says, and bent by `bend` m at 0.1 m from its middle."""
+    x = (points[:, 0] - points[:, 0].mean()) / 0.1
+    return points * [1, 1.03, 1] + np.column_stack([0 * x, 0 * x, bend * x * x])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_ratio_of_focal_lengths_is_judged_with_its_covariance(seed):
+    """A board longer one way looks like pixels that are not square: fx/fy is known far better than fx and fy."""
+    right = calibrate_corners(POINTS, corner_sets(POINTS, 8, 0.3, seed), SIZE)
+    wrong = calibrate_corners(POINTS, corner_sets(stretched(POINTS, 0.0), 8, 0.3, seed), SIZE)
+    assert not any("square" in text for text in right.warnings)
+    assert any("pixels are not square" in text for text in wrong.warnings)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_board_bent_and_stretched_is_said_to_be_not_separable(seed):
+    found = calibrate_corners(POINTS, corner_sets(stretched(POINTS, 0.0015), 12, 0.05, seed), SIZE)
+    assert found.sag is not None and any("cannot be separated" in text for text in found.warnings)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("other", [0.8, 0.93, 1.1])
+def test_two_cameras_in_one_call_are_noticed(seed, other):
+    views = corner_sets(POINTS, 14, 0.1, seed)
+    scaled = np.diag([other, other, 1]) @ K
+    for i in range(0, 14, 2):
+        ray = cv2.undistortPoints(views[i][:, None], K, LENS)
+        views[i] = cv2.projectPoints(cv2.convertPointsToHomogeneous(ray), *np.zeros((2, 3)), scaled, LENS)[0][:, 0]
+        views[i] -= (scaled - K)[:2, 2]
+    inside = [xy for xy in views if (xy > 0).all() and (xy < np.array(SIZE) - 1).all()]
+    assert any("two cameras" in text for text in calibrate_corners(POINTS, inside, SIZE).warnings)
+
+
+@pytest.mark.parametrize("noise", [0.1, 0.5, 1.0])
+def test_one_camera_is_not_taken_for_two(noise):
+    for seed in range(3):
+        found = calibrate_corners(POINTS, corner_sets(POINTS, 12, noise, seed), SIZE)
+        assert not any("two cameras" in text for text in found.warnings)

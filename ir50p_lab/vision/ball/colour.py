@@ -11,6 +11,7 @@ from ir50p_lab.vision.image import check_image
 HALF_CIRCLE = 90  # OpenCV's hue is degrees/2: 0..179
 _PINK, _CLIPPED = 24, 245  # degrees beyond the range of a red that is overexposed; value from which on it is
 _PALE = 0.7  # of the saturation where the click was: what has less is something else of the same hue
+_LEAST_TOLERANCE = 26.0  # degrees; with 14 every fifth ball is lost, and false alarms are no fewer
 _LEAST_SATURATION, _MOST_SATURATION = 0.18, 0.55  # that a colour learnt asks for: parts of a ball are paler
 
 
@@ -45,6 +46,11 @@ class Colour:
     def swaps(self):
         """True if red and blue are exchanged before the hue is taken: then the range does not cross the seam."""
         return min(self.hue, 360 - self.hue) < self.tolerance + 1
+
+    @property
+    def is_red(self):
+        """Whether the hue is within 20 degrees of red, 0."""
+        return min(self.hue, 360 - self.hue) <= 20
 
     def bounds(self, saturation=None):
         """Lower and upper bound for cv2.inRange, in OpenCV's scale (0..179, 0..255, 0..255), of `hsv_of(image)`.
@@ -159,7 +165,7 @@ def _colour_of(pixels, name):
     least = float(np.percentile(saturation[keep], 10)) / 255
     return Colour(
         hue=mean % 360.0,
-        tolerance=min(max(1.6 * spread, 14.0), 30.0),
+        tolerance=min(max(1.6 * spread, _LEAST_TOLERANCE), 30.0),
         saturation=min(max(0.55 * least, _LEAST_SATURATION), 0.40),
         name=name,
     )

@@ -26,11 +26,13 @@ _CLEAR, _MORE_HIDDEN = (
     5.0,
 )  # share of the outline below which the end of a rod can, and what is missing costs, times its share
 _SURE, _BY_SUPPORT = 0.9975, 5.0  # score beyond which only the edge tells outlines apart; what its share counts
-# Whatever else speaks for it, a ball shows an edge on this much of the circle, this much of its disc has the colour,
-# and its outline leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and a part of a pixel.
-_LEAST_SUPPORT, _LEAST_FILL, _MOST_BUMPS = 0.32, 0.40, (0.010, 0.45)
+# The outline of a ball leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and of a pixel.
+_MOST_BUMPS = 0.010, 0.45
 _MOST_HUE = 0.9  # of the disc, distance from the colour's hue over its tolerance
 _COMPRESSED = 0.3  # overexposure from which on a hue is not to be trusted: tone curves bend before they clip
+_LEAST_VALUE = 0.2
+_GLARE = 0.95  # value from which on a disc is overexposed, and its paint is not to be told
+_SKIN, _BROWN = (5.0, 0.5), (8.0, 0.72, 0.45)  # degrees towards orange; then least saturation, value
 _ENOUGH = 0.1  # of the disc that is not overexposed: less tells nothing of the hue
 
 
@@ -125,7 +127,7 @@ def _measure(image, place, view, colour, camera, least_radius, measured, rejecte
     found = measure(image, (x, y, r), view, colour, camera)
     if isinstance(found, str):
         rejected.append(((x, y, r), found))
-    elif why := rejection_reason(found, least_radius):
+    elif why := rejection_reason(found, least_radius, colour):
         rejected.append((_place(found), why))
     else:
         measured.append(found)
@@ -181,21 +183,33 @@ def _place(found):
     return found.outline.x, found.outline.y, found.outline.r
 
 
-def rejection_reason(found, least_radius):
+def rejection_reason(found, least_radius, colour=RED):
     """Why a measured outline is no ball, whatever else speaks for it; "" if nothing of the kind."""
     r = found.outline.r
     if r < least_radius:
         return f"too small, radius {r:.1f} pixels"
-    if found.support < _LEAST_SUPPORT:
-        return f"an edge on {found.support:.0%} of the circle only"
-    if found.fill < _LEAST_FILL:
-        return f"hollow, or another colour: {found.fill:.0%} of the disc have the colour"
     if (hue := _hue(found.samples[:, :6])) > _MOST_HUE:
         return f"another colour: its hue is off by {hue:.1f} of the colour's tolerance, a ball's by at most {_MOST_HUE}"
+    if why := _other_paint(found.paint, colour):
+        return why
     part, pixels = _MOST_BUMPS
     rough = max(found.bumps, 0.6 * float(np.hypot(found.bumps, found.ragged)))  # noise alone makes edges scatter
     if rough * r > part * r + pixels:
         return f"not round: its outline leaves a circle by {rough:.1%} of the radius"
+    return ""
+
+
+def _other_paint(paint, colour):
+    """Why the paint of a disc is not the colour sought, although its hue is: nearly black; for reds skin or brown."""
+    warm, saturation, value = paint
+    if value < _LEAST_VALUE:
+        return f"nearly black: value {value:.2f}, a colour has at least {_LEAST_VALUE}"
+    if not colour.is_red:
+        return ""
+    if warm > _SKIN[0] and saturation < _SKIN[1] and value < _GLARE:
+        return f"skin, or another pale orange: saturation {saturation:.2f}, a red as warm has at least {_SKIN[1]}"
+    if warm > _BROWN[0] and saturation < _BROWN[1] and value < _BROWN[2]:
+        return f"brown: saturation {saturation:.2f} and value {value:.2f}, a red as warm has more of one of them"
     return ""
 
 

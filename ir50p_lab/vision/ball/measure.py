@@ -17,6 +17,8 @@ def _smooth(r):
 
 _AREA = np.append(np.linspace(0.1, 0.85, 11), 0.93)  # of the rings that the samples stand for
 _AREA /= _AREA.sum()
+# Whatever else speaks for it, a ball shows an edge on this much of the circle, and this much of its disc has the colour
+LEAST_SUPPORT, LEAST_FILL = 0.32, 0.40
 _EDGE = 0.30  # least height of an edge, in units of the contrast between ball and surroundings
 
 
@@ -32,8 +34,8 @@ class Measured:
     gaps: into how many pieces what is missing falls. ragged: rms distance of the edge points from the smooth outline,
     over the radius. step: median height of the edges, over the contrast of the disc and its surroundings.
     apart: of the colours in and out, in standard deviations. through: how much of the missing part looks like what
-    surrounds the ball. samples (RAYS, radii, channels): of `look`. edges (RAYS, 4): whether there is an edge on the
-    outline, how far off it is (in units of what is usual), its height, and `beyond`.
+    surrounds the ball. paint: of `_paint`. samples (RAYS, radii, channels): of `look`. edges (RAYS, 4): whether there
+    is an edge on the outline, how far off it is (in units of what is usual), its height, and `beyond`.
     """
 
     outline: Outline
@@ -49,6 +51,7 @@ class Measured:
     gaps: int
     ragged: float
     step: float
+    paint: tuple
     samples: np.ndarray
     edges: np.ndarray
 
@@ -113,8 +116,13 @@ def _fine(image, outline, view, colour, unit, camera):
     on = strong & (np.abs(off) < max(1.2, 0.05 * outline.r))
     if on.sum() < 8:
         return "its edges lie on no circle"
+    if on.mean() < LEAST_SUPPORT:
+        return f"an edge on {on.mean():.0%} of the circle only"
     seen = rays.within[:, steps]
-    inside, outside, rgb = _colours(image, outline, colour, unit)
+    inside, outside, rgb, hsv = _colours(image, outline, colour, unit)
+    fill = float((inside[on] @ _AREA).mean())
+    if fill < LEAST_FILL:
+        return f"hollow, or another colour: {fill:.0%} of the disc have the colour"
     missing = ~on & seen
     outside &= rgb[:, 12:] @ weights > middle + 0.05
     beyond = missing & inside[:, -1] & outside[:, 0] & outside[:, 1]
@@ -124,11 +132,12 @@ def _fine(image, outline, view, colour, unit, camera):
         support=float(on.mean()),
         seen=float(seen.mean()),
         beyond=beyond,
-        fill=float((inside[on] @ _AREA).mean()),
+        fill=fill,
         apart=apart,
         through=_shown_through(rgb, on, missing & ~beyond, inside),
         gaps=_gaps(missing),
         step=float(np.median(edge.height[on])),
+        paint=_paint(hsv[inside], colour),
         samples=look(image, outline, weights, middle, colour),
         edges=_along(on, off / (0.3 + 0.01 * outline.r), edge.height, beyond),
         **dict(zip(("bumps", "oval", "ragged"), _waves(off[on], unit[0][on], unit[1][on], outline.r), strict=True)),
@@ -209,4 +218,21 @@ def _colours(image, outline, colour, unit):
         inside = inside | (cv2.inRange(hsv[:, :12], *pink) > 0) & rays.within[:, :12]
     if (bright @ inner).mean() < 0.35 * inner.sum():  # a highlight is a part of the disc
         inside = inside | bright
-    return inside, alike[:, 12:], rays.rgb
+    return inside, alike[:, 12:], rays.rgb, hsv[:, :12]
+
+
+def _paint(hsv, colour):
+    """Of HSV samples (n, 3) of the disc: hue from the colour's towards orange, degrees; saturation; value, 0..1.
+
+    The value is that of the lighter part: a ball has one, what is nearly black has none.
+    """
+    if not len(hsv):
+        return 0.0, 0.0, 0.0
+    hsv = hsv.astype(float)
+    centre = (240.0 - colour.hue) % 360.0 if colour.swaps else colour.hue
+    off = (2.0 * hsv[:, 0] - centre + 180) % 360 - 180
+    return (
+        float(median(-off if colour.swaps else off)),
+        float(median(hsv[:, 1])) / 255,
+        np.percentile(hsv[:, 2], 90) / 255,
+    )

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError
-from ir50p_lab.inputs import first_not_finite, number, numbers, switch
+from ir50p_lab.inputs import number, switch
 from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.charuco import find_charuco
 from ir50p_lab.vision.calibration.checks import (
@@ -19,6 +19,7 @@ from ir50p_lab.vision.calibration.checks import (
     lacking_terms,
     outlier_view,
     sag_size,
+    two_cameras,
 )
 from ir50p_lab.vision.calibration.corners import BoardCorners, find_checkerboard
 from ir50p_lab.vision.calibration.fit import NAMES, CornerSets, Model, fit, start
@@ -26,7 +27,7 @@ from ir50p_lab.vision.calibration.models import choose, in_percent, total_covari
 from ir50p_lab.vision.calibration.pictures import common_size, pictures_of, with_bar
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
 from ir50p_lab.vision.calibration.result import Calibration, View
-from ir50p_lab.vision.checks import picture_size
+from ir50p_lab.vision.checks import picture_size, point_list
 
 _FEWEST = 3
 _SAME = 1.0 / 800  # of the diagonal: a board that moved less is taken for the same view
@@ -95,14 +96,18 @@ def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=No
     Returns: Calibration. Raises CalibrationError as `calibrate`, InputError for shapes that do not fit, or NaN.
     """
     options, size = _options(lens, aspect, bend), picture_size(size)
-    pixels = _arrays("image_points", image_points, 2)
-    try:
-        shared = np.ndim(object_points) == 2
-    except ValueError:  # views with different numbers of points
-        shared = False
-    points = _arrays("object_points", [object_points] * len(pixels) if shared else object_points, 3)
-    if len(points) != len(pixels) or any(len(p) != len(xy) for p, xy in zip(points, pixels, strict=True)):
-        raise InputError("object_points and image_points must hold as many views, and each view as many points")
+    if (
+        not (np.iterable(image_points) and np.iterable(object_points))
+        or isinstance(image_points, str)
+        or len(object_points) == 0
+    ):
+        raise InputError("object_points and image_points: give lists with the points of each view, (n, 3) and (n, 2)")
+    pixels = [point_list("image_points", one, 2) for one in image_points]
+    if np.ndim(object_points[0]) < 2:
+        object_points = [object_points] * len(pixels)
+    points = [point_list("object_points", one, 3, "m") for one in object_points]
+    if [len(p) for p in points] != [len(xy) for xy in pixels] or min(map(len, points), default=4) < 4:
+        raise InputError("object_points and image_points must hold as many views, and each as many points, at least 4")
     if len(pixels) < _FEWEST:
         raise CalibrationError(f"{len(pixels)} views: at least {_FEWEST} are needed, 10 to 20 are good")
     if any(np.ptp(p[:, 2]) > 0 for p in points):
@@ -146,6 +151,7 @@ def _calibrate(names, found, size, board, options, rejected, points=None):
         corners, keys = corners.without(worst), [k for n, k in enumerate(keys) if n != worst]
         rough = fit(corners, model, start(corners))
     best, evidence, tried, said = _best(corners, rough, wanted, aspect, bend)
+    said = two_cameras(corners, best) + said
     views = tuple(
         View(
             name=names[key][0],
@@ -266,23 +272,6 @@ def _transform(pose):
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = cv2.Rodrigues(pose[:3])[0], pose[3:]
     return T
-
-
-def _arrays(name, views, n):
-    """The views as a list of float arrays (points, n). Raises InputError."""
-    if isinstance(views, str) or not np.iterable(views):
-        raise InputError(f"{name} = {views!r:.60}: give a list with the points of each view, (points, {n})")
-    return [_array(name, one, n) for one in views]
-
-
-def _array(name, value, n):
-    array = numbers(name, value, unit="px" if n == 2 else "m")
-    array = array.reshape(-1, n) if array.ndim == 3 and array.shape[-1] == n else array
-    if array.ndim != 2 or array.shape[1] != n or len(array) < 4:
-        raise InputError(f"{name} holds a view of shape {array.shape}: give (n, {n}) with at least 4 points")
-    if not np.isfinite(array).all():
-        raise InputError(f"{name} holds {first_not_finite(array)}: every number must be finite")
-    return array
 
 
 def _board_like(points):

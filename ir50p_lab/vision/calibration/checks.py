@@ -9,6 +9,8 @@ from ir50p_lab.vision.calibration.models import Evidence, choose, compare, contr
 _TILTED = np.deg2rad(15)
 _LIMIT = 1e-3  # chance below which a bend, another ratio fx/fy, or a lens with more terms is believed
 _GONE = 0.33  # part of the sum of squares: 2 mm of sag make 0.39 of it or more, flat boards in photographs 0.22 or less
+_SQUARE = 0.01  # difference of fx and fy that sensors have without anything being wrong
+_MIXED, _APART = 0.84, 0.03  # of the rms is left if each view has the better of two cameras; relative step of fx
 _ROUGH = 0.7  # px rms, of pictures up to 1280 px wide
 
 
@@ -69,6 +71,53 @@ def _seen_by(camera, corners, view, pose):
     _, turn, shift = cv2.solvePnP(points, pixels, K, camera[4:9], pose[:3].copy(), pose[3:].copy(), True)
     xy, _ = cv2.projectPoints(points, turn, shift, K, camera[4:9])
     return float(np.sqrt(((pixels - xy[:, 0]) ** 2).sum(axis=1).mean()))
+
+
+def two_cameras(corners, best):
+    """A sentence if the views are of two cameras (or the zoom was changed between them), else none: a list.
+
+    Each view alone tells a rough focal length; the shorter and the longer half make a camera each, every view goes to
+    the one that it fits better, and so on. Twice the parameters hardly help one camera; two cameras they free of most
+    of the residuals.
+    """
+    if len(corners) < 6:
+        return []
+    first = np.argsort(np.argsort([_focal_length(corners, i) for i in range(len(corners))])) < len(corners) // 2
+    model = Model(tuple(term for term in best.model.terms if term in ("k1", "k2")), best.model.aspect)
+    try:
+        for _ in range(5):
+            if not 3 <= first.sum() <= len(first) - 3:
+                return []
+            parts = [np.flatnonzero(first), np.flatnonzero(~first)]
+            cameras = [fit(corners.only(part), model, (best.camera, best.poses[part])).camera for part in parts]
+            off = np.array([[_seen_by(c, corners, i, pose) for i, pose in enumerate(best.poses)] for c in cameras])
+            if np.array_equal(first, off[0] < off[1]):
+                break
+            first = off[0] < off[1]
+    except CalibrationError:
+        return []
+    focal = np.array([camera[0] for camera in cameras])
+    left = np.sqrt(np.mean(off.min(axis=0) ** 2)) / best.rms
+    if left > _MIXED or abs(np.diff(np.log(focal))) < _APART:
+        return []
+    told = " and ".join(f"{len(part)} with fx = {f:.0f} px" for part, f in zip(parts, focal, strict=True))
+    return [f"these seem to be pictures of two cameras, or the zoom was changed: {told}. Calibrate them apart"]
+
+
+def _focal_length(corners, view):
+    """Focal length, px, that one view tells if pixels are square and the axis is in the middle; nan where it does not.
+
+    The first two columns of the homography K [r1 r2 t] are images of unit vectors at right angles.
+    """
+    import cv2
+
+    middle = np.array([(n - 1) / 2 for n in corners.size])
+    H, _ = cv2.findHomography(corners.points[view][:, :2], (corners.pixels[view] - middle) / middle[0])
+    g, h = H[:, 0], H[:, 1]
+    above = np.array([g[:2] @ h[:2], g[:2] @ g[:2] - h[:2] @ h[:2]])
+    below = np.array([g[2] * h[2], g[2] ** 2 - h[2] ** 2])
+    square = -(above @ above) / (above @ below)
+    return middle[0] * np.sqrt(square) if square > 0 else np.nan
 
 
 def lacking_terms(corners, held, guess):
@@ -163,10 +212,18 @@ def about_camera(calibration):
             "model does not describe, or did focus or zoom change between pictures?"
         )
     ratio = K[0, 0] / K[1, 1]
-    error = ratio * np.hypot(calibration.stderr["fx"] / K[0, 0], calibration.stderr["fy"] / K[1, 1])
-    if abs(ratio - 1) > max(0.02, 3 * error):
+    slope = np.array([1 / K[0, 0], -1 / K[1, 1]])  # fx and fy err together: their ratio is known far better than they
+    error = ratio * float(np.sqrt(max(slope @ calibration.covariance[:2, :2] @ slope, 0.0)))
+    if abs(ratio - 1) > max(_SQUARE, 3 * error):
         found.append(
-            f"fx/fy = {ratio:.3f}: pixels are not square. Rare in a webcam: was the picture stretched (4:3 to 16:9)?"
+            f"fx/fy = {ratio:.3f} +- {error:.1g}: pixels are not square. Rare in a webcam: was the picture stretched "
+            "(4:3 to 16:9)? "
+            + (
+                "The board is bent; if it is stretched as well, that cannot be separated from fx/fy, and both focal "
+                "lengths may be off by as much. Use a flat plate, or aspect=1 for square pixels"
+                if calibration.sag is not None
+                else "Or is the board bent or stretched (paper): measure its squares both ways, use a flat plate"
+            )
         )
     off = np.abs(K[:2, 2] - [(w - 1) / 2, (h - 1) / 2]) / (w, h)
     if off.max() > 0.15:

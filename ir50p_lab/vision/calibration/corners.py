@@ -25,6 +25,7 @@ _SOFT = 0.55  # rise of an edge from dark to light, in squares, at which neighbo
 _UNKNOWN = 100  # what OpenCV says for the rise where squares are too small for it to follow an edge
 SOFT_SLOPE = 0.45  # the same limit for `slope_rise`: waves of that length, all that blur leaves, have 0.5
 _UNEVEN = 0.01  # the same: from here on a slower finder is asked, too
+_SMOOTHER = 0.98  # of the scatter, at which another grid is taken
 _ROUGH = 0.08  # scatter about a smooth grid, in squares, that no board shows
 
 
@@ -70,13 +71,13 @@ def find_checkerboard(grey, pattern, other=None):
             if why.whole:
                 raise
     if best is None or roughness(best) > _UNEVEN * np.median(spacing(best)):
-        found = _sb(small, pattern)
+        found = _sb(small, pattern, exhaustive=best is None)
         refined = _examined(grey, found, factor, pattern)
         choices = [] if refined is None else [(refined, "SB")]
         if refined is not None and factor == 1:
             choices.append((found, "SB, its own corners"))
         for grid, name in choices:
-            if best is None or roughness(grid) < 0.8 * roughness(best):
+            if best is None or roughness(grid) < _SMOOTHER * roughness(best):
                 best, finder = grid, name
     if best is None:
         raise why
@@ -91,7 +92,7 @@ def _refuse_other(grey, small, factor, other, pattern):
     grid = _classic(small, other)
     if grid is not None:
         grid = refine(grey, enlarged(grid, factor))
-        if is_checkerboard(grid, grey) and is_whole(grid, grey):
+        if is_checkerboard(grid, grey) and _is_other(grid, grey, pattern):
             raise wrong_board(grid, pattern, whole=True)
 
 
@@ -115,12 +116,12 @@ def _classic(grey, pattern):
     """Grid (rows, columns, 2) by `findChessboardCorners`, or None."""
     import cv2
 
-    flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_FAST_CHECK
+    flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE
     found, corners = cv2.findChessboardCorners(grey, pattern, None, flags)
     return corners.reshape(pattern[1], pattern[0], 2) if found else None
 
 
-def _sb(grey, pattern):
+def _sb(grey, pattern, exhaustive):
     """The same by `findChessboardCornersSB`; without ACCURACY: slower, and no better than what refines them here."""
     import cv2
 
@@ -234,7 +235,7 @@ def _piece_together(grey, small, factor, pattern):
     if sorted(grid.shape[:2]) == sorted(pattern):
         return refine(grey, grid if grid.shape[:2] == (pattern[1], pattern[0]) else np.rot90(grid))
     if not _part_of_it(grid.shape[:2], outside, pattern):
-        raise wrong_board(grid, pattern, "at least " if outside else "", is_whole(grid, grey))
+        raise wrong_board(grid, pattern, "at least " if outside else "", _is_other(grid, grey, pattern))
     columns, rows = _named_like(grid, pattern)
     raise NotUsable(
         Reason.CROPPED,
@@ -248,14 +249,15 @@ def part_of_a_checkerboard(grey):
     """A grid found anywhere in a picture, at its size or reduced, by its saddles or by SB; or None."""
     import cv2
 
-    for less in (1, 2, 4):
-        h, w = grey.shape
-        if min(h, w) >= 60 * less:
-            small = grey if less == 1 else cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
-            grid = _grown_from_saddles(small)
-            if grid is not None:
-                return enlarged(grid, less)
-    return largest_grid(grey, (4, 3))
+    for find, scales in ((_grown_from_saddles, (1, 2, 4)), (_largest_by_sb, (2, 4))):
+        for less in scales:
+            h, w = grey.shape
+            if min(h, w) >= 60 * less:
+                small = cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
+                grid = find(small)
+                if grid is not None:
+                    return enlarged(grid, less)
+    return None
 
 
 def _grown_from_saddles(grey):
@@ -266,6 +268,12 @@ def _grown_from_saddles(grey):
         if smooth and grid.shape[0] * grid.shape[1] >= 12 and is_checkerboard(grid, grey):
             return grid
     return None
+
+
+def _is_other(grid, grey, pattern):
+    """Whether a grid is surely no part of the pattern: larger one way, or its board is seen to end all round."""
+    larger = any(n > m for n, m in zip(sorted(grid.shape[:2]), sorted(pattern), strict=True))
+    return larger or is_whole(grid, grey)
 
 
 def _part_of_it(shape, outside, pattern):
@@ -291,12 +299,12 @@ def _sides(grid, grey):
     return " and ".join(side for side, is_near in near.items() if is_near) or "edge"
 
 
-def largest_grid(grey, part):
-    """The largest grid (rows, columns, 2) around a part (columns, rows) of a checkerboard, or None."""
+def _largest_by_sb(grey):
+    """The largest grid (rows, columns, 2) around 3x3 corners that `findChessboardCornersSB` finds, or None."""
     import cv2
 
     flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_LARGER
-    found, corners, meta = cv2.findChessboardCornersSBWithMeta(grey, part, flags)
+    found, corners, meta = cv2.findChessboardCornersSBWithMeta(grey, (3, 3), flags)
     if not found:
         return None
     grid = corners.reshape(*meta.shape, 2).astype(float)

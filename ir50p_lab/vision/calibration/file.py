@@ -1,6 +1,8 @@
 """A calibration as a file: YAML that cv2.FileStorage reads, with the names that OpenCV's own sample uses."""
 
+import json
 import re
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +14,9 @@ from ir50p_lab.vision.calibration.reasons import Reason, Rejected
 from ir50p_lab.vision.calibration.result import Calibration, View
 
 _DEEPEST = 1000  # lists within lists: a calibration has five
+
+_LONGEST = 2000  # characters of one text in such a file: OpenCV takes 4096 bytes
+_DETAILS = tuple("covariance sigma sag stderr stderr_corners stderr_views model warnings board views rejected".split())
 
 
 def _checked(path):
@@ -42,44 +47,15 @@ def save(calibration, path):
         ("camera_matrix", calibration.K),
         ("distortion_coefficients", calibration.distortion.reshape(-1, 1)),
         ("avg_reprojection_error", calibration.rms),
-        ("corner_sigma", calibration.sigma),
-        ("covariance_fx_fy_cx_cy_k1_k2_p1_p2_k3", calibration.covariance),
         ("board_width", calibration.board.pattern[0]),
         ("board_height", calibration.board.pattern[1]),
         ("square_size", calibration.board.square),
     ):
         file.write(name, value)
-    if isinstance(calibration.board, Charuco):
-        file.write("marker_size", calibration.board.marker)
-        file.write("dictionary", calibration.board.dictionary)
-        file.write("legacy", int(calibration.board.legacy))
-    if calibration.sag is not None:
-        file.write("board_sag", calibration.sag)
-    for kind in ("stderr", "stderr_corners", "stderr_views"):
-        numbers = getattr(calibration, kind)
-        if numbers:
-            file.write(kind, np.array([numbers[name] if numbers[name] == numbers[name] else -1.0 for name in NAMES]))
-    _texts(file, "model", calibration.model)
-    _texts(file, "warnings", calibration.warnings)
-    file.startWriteStruct("views", cv2.FileNode_SEQ)
-    for view in calibration.views:
-        file.startWriteStruct("", cv2.FileNode_MAP)
-        for name in ("name", "index", "finder", "rise", "T_cam_board", "points", "corners", "residuals"):
-            value = getattr(view, name)
-            file.write(name, -1.0 if isinstance(value, float) and value != value else value)
-        file.endWriteStruct()
-    file.endWriteStruct()
-    file.startWriteStruct("rejected", cv2.FileNode_SEQ)
-    for one in calibration.rejected:
-        file.startWriteStruct("", cv2.FileNode_MAP)
-        for name, value in (
-            ("name", one.name),
-            ("index", one.index),
-            ("reason", one.reason.name),
-            ("detail", one.detail),
-        ):
-            file.write(name, value)
-        file.endWriteStruct()
+    text = json.dumps({name: _plain(getattr(calibration, name)) for name in _DETAILS})
+    file.startWriteStruct("details", cv2.FileNode_SEQ)
+    for start in range(0, len(text), _LONGEST):
+        file.write("", text[start : start + _LONGEST])
     file.endWriteStruct()
     text = file.releaseAndGetString()
     try:
@@ -133,13 +109,13 @@ def _too_deep(text):
     return False
 
 
-def _texts(file, name, texts):
-    import cv2
-
-    file.startWriteStruct(name, cv2.FileNode_SEQ)
-    for text in texts:
-        file.write("", text)
-    file.endWriteStruct()
+def _plain(value):
+    """What JSON can hold of a field: arrays as lists, data classes as dicts."""
+    if is_dataclass(value):
+        return {one.name: _plain(getattr(value, one.name)) for one in fields(value)}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [_plain(one) for one in value] if isinstance(value, tuple) else value
 
 
 def _basics(file):
@@ -178,59 +154,22 @@ def _matrix(node):
 
 def _details(file):
     """What only files of this package hold; what is missing is left to the defaults."""
-    found = {"stderr": dict.fromkeys(NAMES, float("nan"))}
-    pattern = [int(file.getNode(name).real()) for name in ("board_width", "board_height")]
-    square = file.getNode("square_size").real()
-    if min(pattern) >= 2 and max(pattern) >= 3 and square > 0:
-        marker = file.getNode("marker_size")
-        if marker.empty():
-            found["board"] = Checkerboard(tuple(pattern), square)
-        else:
-            legacy = bool(file.getNode("legacy").real())
-            found["board"] = Charuco(tuple(pattern), square, marker.real(), file.getNode("dictionary").string(), legacy)
-    for name in ("stderr", "stderr_corners", "stderr_views"):
-        node = file.getNode(name)
-        if not node.empty():
-            numbers = node.mat().ravel()
-            found[name] = {n: float(x) if x >= 0 else float("nan") for n, x in zip(NAMES, numbers, strict=True)}
-    node = file.getNode("covariance_fx_fy_cx_cy_k1_k2_p1_p2_k3")
-    known = not node.empty()
-    if known:
-        found["covariance"] = node.mat()
-    if not (node := file.getNode("corner_sigma")).empty():
-        found["sigma"] = node.real()
-    if not (node := file.getNode("board_sag")).empty():
-        found["sag"] = node.mat().ravel()
-    for name in ("model", "warnings"):
-        node = file.getNode(name)
-        found[name] = tuple(node.at(i).string() for i in range(node.size())) if node.isSeq() else ()
-    if not known:
-        found["warnings"] += (
-            "the file holds no standard errors: how sure the camera is, is not known, and what is computed from it "
-            "leaves that out",
-        )
-    found["views"] = tuple(_view(node) for node in _items(file.getNode("views")))
-    found["rejected"] = tuple(_rejected(node) for node in _items(file.getNode("rejected")))
-    return found
+    node = file.getNode("details")
+    if not node.isSeq():
+        unknown = "the file holds no standard errors: how sure the camera is, is not known, and what is computed from "
+        return {"stderr": dict.fromkeys(NAMES, float("nan")), "warnings": (f"{unknown}it leaves that out",)}
+    found = json.loads("".join(node.at(i).string() for i in range(node.size())))
+    board = found["board"] | {"pattern": tuple(found["board"]["pattern"])}
+    return found | {
+        "covariance": np.array(found["covariance"], dtype=float),
+        "sag": None if found["sag"] is None else np.array(found["sag"]),
+        "model": tuple(found["model"]),
+        "warnings": tuple(found["warnings"]),
+        "board": Charuco(**board) if "marker" in board else Checkerboard(**board),
+        "views": tuple(View(**{name: _array(value) for name, value in one.items()}) for one in found["views"]),
+        "rejected": tuple(Rejected(**one | {"reason": Reason(one["reason"])}) for one in found["rejected"]),
+    }
 
 
-def _items(node):
-    return [node.at(i) for i in range(node.size())] if node.isSeq() else []
-
-
-def _view(node):
-    rise = node.getNode("rise").real()
-    return View(
-        name=node.getNode("name").string(),
-        index=int(node.getNode("index").real()),
-        finder=node.getNode("finder").string(),
-        rise=rise if rise >= 0 else float("nan"),
-        **{name: node.getNode(name).mat() for name in ("points", "corners", "residuals", "T_cam_board")},
-    )
-
-
-def _rejected(node):
-    reason = Reason[node.getNode("reason").string()]
-    return Rejected(
-        node.getNode("name").string(), int(node.getNode("index").real()), reason, node.getNode("detail").string()
-    )
+def _array(value):
+    return np.array(value) if isinstance(value, list) else value

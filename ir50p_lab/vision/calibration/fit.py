@@ -123,8 +123,11 @@ class CornerSets:
 
     def without(self, view):
         """The same without one view."""
-        keep = [i for i in range(len(self)) if i != view]
-        return CornerSets([self.points[i] for i in keep], [self.pixels[i] for i in keep], self.size)
+        return self.only([i for i in range(len(self)) if i != view])
+
+    def only(self, views):
+        """The same with these views."""
+        return CornerSets([self.points[i] for i in views], [self.pixels[i] for i in views], self.size)
 
 
 def start(corners):
@@ -156,11 +159,6 @@ def start(corners):
     return camera, poses
 
 
-def residuals(corners, camera, poses):
-    """Seen minus model, a list of (n, 2) px, for a camera (12,) and poses (v, 6)."""
-    return [_project(corners, i, camera, poses[i])[0] for i in range(len(corners))]
-
-
 def _project(corners, i, camera, pose, B=None):
     """Residual (n, 2) of view i; with B also Jacobians by the free parameters (2n, free) and by the pose (2n, 6)."""
     import cv2
@@ -188,26 +186,35 @@ def fit(corners, model, guess, steps=50):
     """
     B = model.columns
     camera, poses = _within(model, guess[0]), np.array(guess[1], dtype=float)
-    cost = sum((e**2).sum() for e in residuals(corners, camera, poses))
-    damping = 1e-6
+    views = _projected(corners, camera, poses, B)
+    cost, damping = _cost(camera, views), 1e-6
     for _ in range(steps):
-        views = [_reduce(*_project(corners, i, camera, poses[i], B)) for i in range(len(corners))]
-        S, g = sum(v[0] for v in views), sum(v[1] for v in views)
+        reduced = [_reduce(*view) for view in views]
+        S, g = sum(v[0] for v in reduced), sum(v[1] for v in reduced)
         while True:
             step = _solve(S, g, damping)
             new_camera = camera + B @ step
-            new_poses = poses + np.array([v[2] - v[3] @ step for v in views])
-            new_cost = _cost(corners, new_camera, new_poses)
+            new_poses = poses + np.array([v[2] - v[3] @ step for v in reduced])
+            new_views = _projected(corners, new_camera, new_poses, B)
+            new_cost = _cost(new_camera, new_views)
             if new_cost <= cost * (1 + 1e-12) or damping > 1e6:
                 break
             damping = max(10 * damping, 1e-6)
         gain = cost - new_cost
         if damping > 1e6:
-            raise CalibrationError("the fit does not converge: a view has corners in a wrong order, or is no board")
-        camera, poses, cost, damping = new_camera, new_poses, min(cost, new_cost), damping / 10
-        if abs(gain) <= 1e-11 * cost + 1e-18:
+            raise CalibrationError(
+                "the fit does not converge: a view has corners in a wrong order, is no board, or of another camera"
+            )
+        camera, poses, views, cost, damping = new_camera, new_poses, new_views, min(cost, new_cost), damping / 10
+        if abs(gain) <= 1e-9 * cost + 1e-18:
             break
-    return _with_covariance(corners, model, camera, poses)
+    return _with_covariance(model, camera, poses, views)
+
+
+def _projected(corners, camera, poses, B):
+    """What `_project` says of every view."""
+    with np.errstate(all="ignore"):
+        return [_project(corners, i, camera, pose, B) for i, pose in enumerate(poses)]
 
 
 def _within(model, camera):
@@ -222,12 +229,10 @@ def _within(model, camera):
     return inside
 
 
-def _cost(corners, camera, poses):
-    if camera[0] <= 0 or camera[1] <= 0:
-        return np.inf
+def _cost(camera, views):
     with np.errstate(all="ignore"):
-        cost = sum((e**2).sum() for e in residuals(corners, camera, poses))
-    return cost if np.isfinite(cost) else np.inf
+        cost = sum((view[0] ** 2).sum() for view in views)
+    return cost if np.isfinite(cost) and camera[0] > 0 and camera[1] > 0 else np.inf
 
 
 def _reduce(error, U, V):
@@ -252,9 +257,8 @@ def _solve(S, g, damping=0.0):
     return (x.T / scale).T
 
 
-def _with_covariance(corners, model, camera, poses):
-    B, count = model.columns, len(corners)
-    views = [_project(corners, i, camera, poses[i], B) for i in range(count)]
+def _with_covariance(model, camera, poses, views):
+    B, count = model.columns, len(views)
     reduced = [_reduce(*v) for v in views]
     S = sum(r[0] for r in reduced)
     scale = np.linalg.norm(np.concatenate([v[1] for v in views]), axis=0)

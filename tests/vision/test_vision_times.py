@@ -1,0 +1,36 @@
+"""Times of the processor, as another program may be running."""
+
+import time
+
+import cv2
+import numpy as np
+import pytest
+from board_pictures import look, paint
+
+from ir50p_lab.errors import CalibrationError
+from ir50p_lab.vision import calibrate
+
+
+@pytest.fixture(autouse=True)
+def one_thread():
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    yield
+    cv2.setNumThreads(threads)
+
+
+@pytest.fixture(scope="module")
+def pictures():
+    rng = np.random.default_rng(0)
+    poses = [
+        look(rng.uniform(0.35, 0.5), rng.uniform(0.2, 0.7), rng.uniform(0, 6.28), rng.normal(0, 0.2)) for _ in range(13)
+    ]
+    return [paint(T, seed=k) for k, T in enumerate(poses)]
+
+
+@pytest.mark.parametrize("pattern", [(8, 6), (5, 4), (7, 7), (10, 7)])
+def test_a_wrong_pattern_is_refused_within_three_seconds(pictures, pattern):
+    start = time.process_time()
+    with pytest.raises(CalibrationError, match=r"pattern=\(9, 6\)"):
+        calibrate(pictures, pattern=pattern, progress=False)
+    assert time.process_time() - start < 3
