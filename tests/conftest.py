@@ -16,6 +16,7 @@ MARKS = {
         "bench/test_background_board.py",
         "bench/test_board_process.py",
         "bench/test_real_time.py",
+        "bench/test_stopped_process.py",
     ),
     "emulator": (
         "bench/test_background_board.py",
@@ -24,6 +25,7 @@ MARKS = {
         "bench/test_firmware_faults.py",
         "bench/test_firmware_noise.py",
         "bench/test_real_time.py",
+        "bench/test_stopped_process.py",
         "benchmarks/test_serial_speed.py",
     ),
     "numeric": (

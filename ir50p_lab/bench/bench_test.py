@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass, field
 import numpy as np
 
 from ir50p_lab.bench.rest import rest_pose
-from ir50p_lab.errors import BenchError, InputError
+from ir50p_lab.errors import BenchError, InputError, RunawayError
 from ir50p_lab.home import home, replace_text
 
 STEP_PWM, STEP_CYCLES = 3, 5  # the drive rises by 3 counts every five samples
@@ -175,11 +175,14 @@ def _potentiometer(bench, person, joint):
 
 
 def _drive(bench, joint):
-    """Push the joint away from its nearer end, then back."""
+    """Push the joint away from its nearer end, then back.
+
+    Swapped motor wires press a joint that lies at an end against it: then only the other push frees it.
+    """
     first = 1 if _rest(bench)[-10:, joint].mean() < 512 else -1
     values = {}
     for sign in (first, -first):
-        pwm, moved = _push(bench, joint, sign)
+        pwm, moved = _push(bench, joint, sign, outwards=sign != first and not values)
         other = int(np.abs(moved).argmax())
         if pwm is None:
             continue
@@ -192,8 +195,8 @@ def _drive(bench, joint):
         values["breakaway_up_pwm" if sign > 0 else "breakaway_down_pwm"] = pwm
     if not values:
         text = (
-            f"joint {joint + 1} did not move up to {HIGHEST_PWM} PWM counts: is the supply at its current limit, is "
-            "ENABLE at 5 V, is the fuse whole? Or are its two motor wires swapped, so that its end stop holds it?"
+            f"joint {joint + 1} did not move, neither way, up to {HIGHEST_PWM} PWM counts: has its motor no supply "
+            "(current limit, ENABLE at 5 V, fuse), or does something block it?"
         )
         return Finding("drive", joint + 1, False, text)
     shown = " and ".join(f"{pwm:+d}" for pwm in values.values())
@@ -202,21 +205,33 @@ def _drive(bench, joint):
     )
 
 
-def _push(bench, joint, sign):
-    """Raise the drive of a joint until something moves. Returns PWM counts (None: nothing did), change (3,) counts."""
+def _push(bench, joint, sign, *, outwards):
+    """Raise the drive of a joint until something moves; outwards: also at an end of its travel, against the stop.
+
+    Returns: PWM counts (None: nothing moved, up to the highest or until the guard took it for stuck), change (3,)
+    counts.
+    """
     before = _rest(bench, 0.6)[-10:].mean(axis=0)
-    recent, pwm = [], 0
+    recent, pwm, moved = [], 0, np.zeros(3)
     steps = HIGHEST_PWM // STEP_PWM
-    for k, sample in enumerate(bench.run((steps + 1) * STEP_CYCLES * bench.period, record=False)):
-        recent = [*recent[-4:], sample.counts]
-        moved = np.mean(recent, axis=0) - before
-        if np.abs(moved).max() > MOVED:
-            break
-        pwm = min(k // STEP_CYCLES + 1, steps) * STEP_PWM * sign
-        bench.drive([pwm if j == joint else 0 for j in range(3)])
-    else:
+    travel = bench._travel
+    if outwards:
+        bench._travel = ((-np.inf, np.inf),) * 3
+    try:
+        for k, sample in enumerate(bench.run((steps + 1) * STEP_CYCLES * bench.period, record=False)):
+            recent = [*recent[-4:], sample.counts]
+            moved = np.mean(recent, axis=0) - before
+            if np.abs(moved).max() > MOVED:
+                break
+            pwm = min(k // STEP_CYCLES + 1, steps) * STEP_PWM * sign
+            bench.drive([pwm if j == joint else 0 for j in range(3)])
+        else:
+            pwm = None
+    except RunawayError:  # what moves is seen here before the guard sees it: this joint stood still
         pwm = None
-    bench.cut()
+    finally:
+        bench._travel = travel
+        bench.cut()
     return pwm, moved
 
 

@@ -14,6 +14,7 @@ except ImportError:  # Windows
     _termios_error = OSError
 
 PORT_ERRORS = (OSError, _termios_error)
+STALL = 0.1  # s in one read: the program was stopped, not the board
 READ_TIMEOUT = 0.004  # s; an answer takes 1 ms on the wire and up to 3 ms more through USB
 REPEAT = 0.004  # s without an answer until the question is asked again
 HEARD = 80  # first bytes kept to tell what it is that does not answer
@@ -61,12 +62,13 @@ class Link:
     def ask(self, kind, pwm=(0, 0, 0), gripper=False, *, patience, repeat=REPEAT):
         """Send a command and wait for its answer; ask again every `repeat` s without one, `patience` s in all.
 
-        An answer to any of the repeats counts: all of them were sent by this call.
+        An answer to any of the repeats counts: all of them were sent by this call. A program that was stopped while it
+        waited first takes what has come meanwhile.
         Returns: (State or Identity, when the command was sent that it answers).
         Raises: BoardLostError if no answer came; PORT_ERRORS as they come from the port.
         """
         wanted = protocol.Identity if kind in (protocol.HELLO, protocol.NAME) else protocol.State
-        sent = {}
+        sent, stalled = {}, False
         start = now = self._clock.now()
         while now < start + patience:
             self._repeats += bool(sent)
@@ -74,8 +76,10 @@ class Link:
             sent[seq] = now
             size, next_try = protocol.REPLY_SIZE, now + repeat
             while now < next_try:
-                data = self._transport.read(size)
+                before, data = now, self._transport.read(size)
                 now = self._clock.now()
+                if now - before > STALL and not stalled:
+                    stalled, start, next_try = True, now, now + repeat
                 self.heard += data[: HEARD - len(self.heard)]
                 replies = self._parser.feed(data)
                 for reply in replies:

@@ -136,9 +136,12 @@ class Recording:
 
     @property
     def period(self):
-        """Sampling period, s: from the head where it fits the times within 20 %, else their median step."""
+        """Sampling period, s: from the head where it fits the times within 20 %, else their median step.
+
+        Where most cycles came late or were left out their times say nothing of it.
+        """
         told = self._told_period()
-        if len(self) < 2:
+        if len(self) < 2 or (told > 0 and self.missed[-1] > 0.5 * len(self)):
             return told
         step = float(np.median(np.diff(self.t)))
         return told if abs(told - step) <= 0.2 * step else step

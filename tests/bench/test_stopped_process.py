@@ -1,0 +1,103 @@
+"""A loop whose process is really stopped for 2 s, as by a debugger or a sleeping laptop, drives the emulated board."""
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import Recording, SerialBench
+from ir50p_lab.errors import PauseError
+from ir50p_lab.modelling import IR50P
+
+pytest.importorskip("termios", reason="Windows has no pseudo-terminals")
+from tests.emulator.board_process import BoardProcess
+
+PUSH = 30.0  # PWM counts for joint 1: less than breaks it away, so a held arm is no runaway
+
+NINE_LINES = """
+    from ir50p_lab.bench import SerialBench
+    from ir50p_lab.modelling import IR50P
+
+    bench = SerialBench({port!r}, arm=IR50P, record_to={folder!r}, announce=lambda line: None).open()
+    try:
+        for k, sample in enumerate(bench.run(60)):
+            bench.drive([{push}, 0, 0])
+            if k == 50:
+                print(bench.recording.path, flush=True)
+    except Exception as error:
+        print(type(error).__name__, flush=True)
+    input()  # the bench stays open: nothing but the stop keeps the drive off
+"""
+
+
+class Push:
+    def step(self, t, measured, reference):
+        return np.array([PUSH, 0.0, 0.0])
+
+
+@pytest.fixture
+def board(tmp_path):
+    with BoardProcess(tmp_path) as board:
+        yield board
+
+
+def stop_for_two_seconds(process_id):
+    """Stop the process and let it go on. Returns when it went on, s of the monotonic clock."""
+    os.kill(process_id, signal.SIGSTOP)
+    try:
+        time.sleep(2.0)
+    finally:
+        woken = time.monotonic()
+        os.kill(process_id, signal.SIGCONT)
+    return woken
+
+
+def assert_off_since(board, woken):
+    before = [change for change in board.changes() if change.monotonic <= woken]
+    assert any(any(change.pins.pwm) for change in before)
+    assert not any(before[-1].pins.pwm)  # the board had cut
+    assert not any(any(change.pins.pwm) for change in board.changes()[len(before) :])
+
+
+def assert_recorded(recording):
+    assert (recording.u[5:20, 0] == PUSH).all()
+    assert recording.u[-1].tolist() == [0, 0, 0] and recording.t[-1] - recording.t[-2] > 1.9
+    when, said = recording.events[-1]
+    assert recording.t[-2] < when < recording.t[-1]
+    assert "the drive was cut: no command for 2." in said and "the run was ended" in said
+
+
+def test_a_stopped_cell_drives_nothing_when_it_goes_on(board, tmp_path):
+    code = textwrap.dedent(NINE_LINES.format(port=board.port, folder=str(tmp_path), push=PUSH))
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with subprocess.Popen([sys.executable, "-c", code], env=environment, **pipes) as cell:
+        try:
+            path = cell.stdout.readline().strip()
+            woken = stop_for_two_seconds(cell.pid)
+            assert cell.stdout.readline().strip() == "PauseError"
+            time.sleep(0.2)
+            assert_off_since(board, woken)
+        finally:
+            cell.kill()
+    assert_recorded(Recording.load(path))
+
+
+def test_a_stopped_loop_in_the_background_drives_nothing_when_it_goes_on(board, tmp_path):
+    bench = SerialBench(board.port, arm=IR50P, record_to=tmp_path, announce=lambda line: None).open()
+    try:
+        run = bench.start(Push(), None)
+        while run.alive and run.statistics().cycles < 50:
+            time.sleep(0.01)
+        woken = stop_for_two_seconds(run._worker.pid)
+        with pytest.raises(PauseError, match=r"no command for 2\.\d s.*new run"):
+            run.join(20)
+        assert_off_since(board, woken)
+        assert_recorded(run.recording)
+    finally:
+        bench.abort()
