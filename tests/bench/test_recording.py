@@ -359,3 +359,10 @@ def test_the_period_in_the_head_is_checked_against_the_times(tmp_path):
     with pytest.warns(UserWarning, match=r"period_s = 0\.05 does not fit its times: their step of 0\.01 s"):
         loaded = Recording.load(path)
     assert loaded.period == pytest.approx(0.01)
+
+
+def test_a_run_most_of_whose_cycles_were_left_out_keeps_its_period(tmp_path):
+    t = 0.01 * np.cumsum(np.tile([1, 9, 14], 10))
+    recording = Recording.from_arrays(t, np.zeros((30, 3)), missed=np.arange(30) * 8, header={"period_s": "0.01"})
+    loaded = Recording.load(recording.save(tmp_path / "late.csv"))
+    assert loaded.period == 0.01 and loaded.notes == ()

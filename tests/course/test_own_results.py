@@ -84,7 +84,7 @@ def test_a_camera_of_rendered_pictures_serves_simulated_arms_only(capsys):
     camera = CameraCalibration(K=K, distortion=np.zeros(5), rms=0.1, size=(640, 480), stderr=stderr)
     save_result("camera", camera)
     assert load_result("camera", simulated(7)).fx == 700
-    with pytest.raises(NotMeasuredError, match="10_camera"):
+    with pytest.raises(NotMeasuredError, match="17_camera"):
         load_result("camera", real_bench())
 
 
