@@ -14,8 +14,8 @@ from ir50p_lab.modelling.named_arms import IR50P
 from ir50p_lab.signals import through
 from ir50p_lab.vision import TablePlane, calibrate, camera_over, load_image
 from ir50p_lab.vision.image import save_image
+from ir50p_lab.vision.reaching.ball_locator import BallLocator
 from ir50p_lab.vision.reaching.plan import reach_pose
-from ir50p_lab.vision.reaching.sight import Sight
 from ir50p_lab.vision.rendering import pose
 
 _GAINS = {"kp": (1000, 1200, 1000), "ki": (2000, 1500, 1500), "kd": (60, 80, 60)}  # found by trying: follows closely
@@ -31,7 +31,7 @@ def main(data="data"):
     plane = TablePlane.from_picture(calibrate(boards, progress=False), board, T_table_board=T_base_board)
     start = rest_pose(IR50P)
     bench = SimulatedBench(IR50P, seed=7, q0=start, record_to=False).open()
-    seen = Sight(camera_over(bench, np.array(_BALL)), plane).look()
+    seen = BallLocator(camera_over(bench, np.array(_BALL)), plane).look()
     save_image(data / "first_reach.jpg", seen.image, rendered=True, quality=85)
     goal = reach_pose(IR50P, seen.position + np.array([0, 0, 0.06]))
     controller = PID(**_GAINS, limit_pwm=255)
