@@ -73,6 +73,7 @@ class Bench(abc.ABC):
 
     kind = "bench"
     simulated = False
+    answers = True  # whether drive moves the arm
     bench_id = None
     guarded = True  # whether a runaway is cut; off only while the motors have no supply
     own_process = False  # whether a loop in the background gets a process of its own
@@ -294,7 +295,7 @@ class Bench(abc.ABC):
                 run.guard.check(sample, self._pwm)
             if run.reference is None:
                 return sample
-            rows = checked_reference(self.arm, t, run.reference(t), sample.q)
+            rows = checked_reference(self.arm, t, run.reference(t), sample.q if self.answers else None)
             run.aim = rows[0]
             return sample._replace(reference=rows)
 

@@ -31,6 +31,7 @@ class ReplayBench(Bench):
     """
 
     kind = "replay"
+    answers = False
 
     def __init__(self, recording, *, arm=None, realtime=False, record_to=None, name=None):
         if isinstance(recording, str | os.PathLike):
