@@ -92,8 +92,10 @@ class Pace:
         return self.cycle
 
     def catch_up(self):
-        """Go on to the cycle that it is time for."""
-        self.cycle = max(self.cycle, int((self._clock.now() - self.start) / self._period))
+        """Go on to the cycle that it is time for; those before it were left out."""
+        cycle = max(self.cycle, int((self._clock.now() - self.start) / self._period))
+        self.missed += cycle - self.cycle
+        self.cycle = cycle
 
     def begins_anew(self):
         """Whether a long first cycle has let the run begin only now, because nothing had been driven in it yet."""

@@ -140,8 +140,8 @@ def checked_reference(arm, t, value, q=None):
             raise InputError(
                 f"the reference of joint {i + 1} is {wanted:.4g} rad at t = {t:.3f} s, {abs(wanted - here):.2f} rad "
                 f"from where the arm is ({here:.2f} rad); {FARTHEST:g} rad is the most. Let it begin where the arm is "
-                "(quintic from sample.q, or bench.start, which leads in). Are these degrees? np.radians makes it rad. "
-                "If it began near, the arm does not follow: `python3 -m ir50p_lab bench-test` finds out why"
+                "(quintic from sample.q, or bench.start, which leads in). Are these degrees? np.radians makes them "
+                "rad. If it began near, the arm does not follow: `python3 -m ir50p_lab bench-test` finds out why"
             )
     return rows
 
