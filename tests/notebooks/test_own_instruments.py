@@ -1,0 +1,72 @@
+"""The cells with which a student measures a real arm and a webcam: what they keep counts for that board."""
+
+from pathlib import Path
+
+import nbformat
+import numpy as np
+import pytest
+from fake_board import FakeBoard
+from notebook_runner import FOLDER
+
+import ir50p_lab.vision
+from ir50p_lab.bench import SerialBench, fit_calibration, nominal_calibration
+from ir50p_lab.course import save_result
+from ir50p_lab.course.own_results import newest_result
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.vision import Calibration, calibrate
+from ir50p_lab.vision.camera.picture_folder import PictureFolder
+
+PICTURES = Path(__file__).parents[2] / "data/calibration/flat"
+
+
+def cell(notebook, name):
+    (path,) = FOLDER.glob(f"{notebook}_*.ipynb")
+    (found,) = [one for one in nbformat.read(path, as_version=4).cells if one.get("id") == name]
+    return found.source
+
+
+@pytest.fixture
+def board(monkeypatch, tmp_path):
+    """A board with an id; `connect()` finds it."""
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+    board = FakeBoard(nominal_calibration(IR50P))
+    board.board_id = 0x0A1B2C
+    monkeypatch.setattr("ir50p_lab.bench.connect", lambda **_: opened(board))
+    return board
+
+
+def opened(board):
+    return SerialBench(board, clock=board, arm=IR50P, record_to=False).open()
+
+
+def test_calibration_of_a_real_arm(board):
+    """Poses in degrees and the counts that the cell reads: the line of this board, and nothing has moved."""
+    truth = nominal_calibration(IR50P)
+    names = {"np": np, "arm": IR50P, "fit_calibration": fit_calibration, "save_result": save_result}
+    names["connect"] = lambda **_: opened(board)
+    source = cell("10", "bench-yours")
+    exec(source, names)
+    assert newest_result("calibration", opened(board)) is None
+    degrees = np.random.default_rng(0).uniform(-60, 60, (12, 3)).round()
+    counts = []
+    for pose in degrees:
+        board.q = np.radians(pose)
+        counts.append(names["counts_by_hand"]().tolist())
+        assert np.array_equal(board.q, np.radians(pose))
+    source = source.replace("my_degrees = []", f"my_degrees = {degrees.tolist()}")
+    exec(source.replace("my_counts = []", f"my_counts = {counts}"), names)
+    bench = opened(board)
+    assert bench.calibration.source.startswith("yours, calibration-1")
+    assert np.allclose(bench.calibration.slope, truth.slope, rtol=0.01)
+
+
+def test_calibration_of_a_webcam(board, monkeypatch):
+    """Twenty photographs, one a key press, make a camera that counts for this board."""
+    pressed = []
+    monkeypatch.setattr("builtins.input", pressed.append)
+    monkeypatch.setattr(ir50p_lab.vision, "open_camera", lambda number: PictureFolder(PICTURES))
+    source = cell("17", "camera-yours").replace("my_square = None", "my_square = 0.025")
+    exec(source, {"calibrate": calibrate, "save_result": save_result})
+    kept = newest_result("camera", opened(board))
+    assert len(pressed) == 20 and not kept.simulated
+    assert Calibration.load(kept.path).rms < 0.15
