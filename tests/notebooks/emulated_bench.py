@@ -1,0 +1,97 @@
+"""The emulated board in a notebook's kernel, on its own time, with an arm behind it that a stand-in for a webcam sees.
+
+All that lies between a cell and these is the package itself: `connect()` finds the board, `open_camera()` the webcam.
+"""
+
+import sys
+import time
+from dataclasses import replace
+
+from ir50p_lab.bench import SerialBench, nominal_calibration, serial_bench
+from ir50p_lab.bench.ports import Port
+from ir50p_lab.bench.rest import rest_pose
+from ir50p_lab.bench.simulated_arm import SimulatedArm
+from ir50p_lab.course import save_result
+from ir50p_lab.course.torque_views import training_run
+from ir50p_lab.identification import identify
+from ir50p_lab.modelling import load_arm
+from ir50p_lab.vision import calibrate, camera_over, load_image
+from ir50p_lab.vision.camera import interface
+from tests.emulator.virtual import VirtualBoard
+
+PICTURES = "../data/calibration"
+
+
+class ArmOnATable:
+    """The arm behind the board; of a SimulatedBench it has what a rendered camera looks at."""
+
+    period = 1e-3  # s, of the board's calls
+
+    def __init__(self):
+        self.arm = load_arm()
+        self.plant = SimulatedArm(self.arm, q0=rest_pose(self.arm))
+        self.board = VirtualBoard(self)
+
+    def advance(self, pwm, seconds):
+        self.plant.advance(pwm, seconds)
+        self._send(pwm, self.board.changes[-1][1].gripper)
+
+    def counts(self):
+        return self.plant.counts()
+
+    def _send(self, pwm, gripper):
+        """Where a rendered camera listens."""
+
+
+class Webcam:
+    """A rendered camera whose pictures pass for photographs; the first is of the board on the table.
+
+    names: of the notebook, which says where the ball lies (or rolls, for the small pictures).
+    """
+
+    name, simulated = "stand-in for a webcam", False
+
+    def __init__(self, seen, names, size=None):
+        self._camera = camera_over(seen, names["rolling" if size else "ball_at"], small=bool(size))
+        self.size = self._camera.size
+        self._first = None if size else load_image(f"{PICTURES}/table/board.jpg")
+
+    def read(self):
+        frame, first, self._first = self._camera.read(), self._first, None
+        return replace(frame, simulated=False, image=frame.image if first is None else first)
+
+    def close(self):
+        self._camera.close()
+
+
+def plug_in(names):
+    """Put the board on a serial port and the webcam on the computer, for a notebook with these names. Returns: board."""
+    seen = ArmOnATable()
+    board = seen.board
+
+    def open_port(device, baud):
+        board.is_open = True
+        return board
+
+    sys.modules["ir50p_lab.bench.connect"].list_ports = lambda: [Port("emulated", "Mega 2560")]
+    serial_bench.open_port, serial_bench.Clock = open_port, board
+    SerialBench.own_process = False  # another process has another board
+    interface.open_camera = lambda source=None, **options: Webcam(seen, names, **options)
+    return board
+
+
+def measure():
+    """Keep calibration, model and camera as of this board: what notebooks 10, 12 and 17 leave behind for a real arm."""
+    arm = load_arm()
+    with SerialBench("emulated", record_to=False) as bench:
+        bench.give_id()
+        save_result("calibration", nominal_calibration(arm), bench)
+        save_result("model", identify(training_run(arm), l2=arm.l[1]), bench)
+        save_result("camera", calibrate(f"{PICTURES}/flat", progress=False), bench)
+
+
+def wait(board, seconds):
+    """For a cell beside a loop in the background: until so much of the board's time has passed, 60 s at most."""
+    until, latest = board.now() + seconds, time.monotonic() + 60
+    while board.now() < until and time.monotonic() < latest:
+        time.sleep(0.01)
