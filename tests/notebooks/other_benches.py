@@ -13,7 +13,7 @@ from notebook_runner import NOTEBOOKS, ROOT, run_notebook
 DRIVING = {
     path.stem: path
     for path in NOTEBOOKS
-    if re.search(r"\bconnect\(|\barm_that_answers\(", path.read_text(encoding="utf-8"))
+    if re.search(r"\bwith connect\(|\barm_that_answers\(", path.read_text(encoding="utf-8"))
 }
 
 PLUG_IN = f"""
