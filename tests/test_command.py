@@ -4,7 +4,7 @@ import sys
 from types import SimpleNamespace
 
 import pytest
-from conftest import MARKS, TESTS
+from marks import MARKS, TESTS
 
 from tests import __main__ as command
 from tests import everywhere

@@ -19,7 +19,15 @@ from ir50p_lab.errors import InputError, LabError, PortError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold
 
-RUBBISH = ["x", -1, float("nan"), [], {}, object(), np.full((3, 3), np.nan)]
+
+class Anything:
+    """An object that is nothing the bench knows, with a name that stays."""
+
+    def __repr__(self):
+        return "Anything()"
+
+
+RUBBISH = ["x", -1, float("nan"), [], {}, Anything(), np.full((3, 3), np.nan)]
 
 
 @pytest.mark.parametrize("rubbish", [None, *RUBBISH], ids=repr)
@@ -44,7 +52,7 @@ def test_no_recording(rubbish):
         ReplayBench(rubbish)
 
 
-@pytest.mark.parametrize("rubbish", ["x", {}, object(), float("nan"), [1, None]], ids=repr)
+@pytest.mark.parametrize("rubbish", ["x", {}, Anything(), float("nan"), [1, None]], ids=repr)
 @pytest.mark.parametrize("function", [bridge_inputs, mean_voltage, sign_and_magnitude, thesis_map])
 def test_no_command(function, rubbish):
     with pytest.raises(InputError, match=r"PWM counts"):

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from ir50p_lab.bench import SerialBench, protocol
-from ir50p_lab.bench.link import Clock, Link
+from ir50p_lab.bench.link import Link
+from ir50p_lab.bench.pace import Clock
 from ir50p_lab.bench.ports import open_port
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.bench_panel import live_panel

@@ -1,6 +1,6 @@
 """Where each numbered equation, table and figure of the thesis is taught: `docs/index_of_equations.md`.
 
-`python tests/index_of_equations.py` writes it anew, from `docs/thesis_contents.csv` (what the thesis has, and which
+`python tests/notebooks/index_of_equations.py` writes it anew, from `docs/thesis_contents.csv` (what the thesis has, and which
 notebook is its home), the texts of the notebooks, and the docstrings of package and tests. A mention that disappears
 changes the file, and a test says so.
 """
@@ -11,7 +11,7 @@ import json
 import re
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 INDEX = ROOT / "docs" / "index_of_equations.md"
 REASONS = {  # rows of the rewritten notebooks that are left out on purpose
     "1 History": "origin and definition of the word robot: no part of a lab book",
@@ -117,7 +117,7 @@ def text():
     lines = [
         "# Where everything of the thesis is taught",
         "",
-        "Made by `python tests/index_of_equations.py` from the texts of the notebooks and the docstrings. *Home* is the",
+        "Made by `python tests/notebooks/index_of_equations.py` from the texts of the notebooks and the docstrings. *Home* is the",
         "notebook in which it belongs; a number without a notebook yet is one to come.",
         "",
         "| thesis | what | home | notebook and section | functions | tests |",

@@ -8,7 +8,7 @@ ROWS = list(index.rows())
 
 
 def test_the_index_is_up_to_date():
-    assert index.INDEX.read_text(encoding="utf-8") == index.text(), "run python tests/index_of_equations.py"
+    assert index.INDEX.read_text(encoding="utf-8") == index.text(), "run python tests/notebooks/index_of_equations.py"
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row[0])
