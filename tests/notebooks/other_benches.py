@@ -49,9 +49,7 @@ def test_on_a_replay(name, tmp_path):
 
 @pytest.mark.notebook
 @pytest.mark.emulator
-@pytest.mark.parametrize(
-    "name", ["14_computed_torque"]
-)  # not yet tried whole there: 12, 18; 10's live panel ends early
+@pytest.mark.parametrize("name", ["14_computed_torque"])  # 10, 12 and 18 have not run whole there yet
 def test_on_the_board(name, tmp_path):
     """Found, driven, and never left for the simulated arm."""
     needs_results = re.search(r"\barm_that_answers\(\"", DRIVING[name].read_text(encoding="utf-8").replace("\\", ""))
