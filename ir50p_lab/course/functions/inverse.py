@@ -88,11 +88,6 @@ def _law(p, l, *, up=None, q1=None, inner=False, slope=-1, swap=False, quotient=
     return np.array(poses)
 
 
-def _nan_outside(p, l):
-    poses = inverse_kinematics(p, l)
-    return poses if len(poses) else np.full((4, 3), np.nan)
-
-
 def _poses_symptom(cases, returned, expected):
     far = [k for k, one in enumerate(expected) if len(one) == 0]
     answers = []
