@@ -186,13 +186,14 @@ class Environment:
 
     def _check(self, stream):
         """The package and all it needs must be importable from anywhere."""
-        found, error = self.look_inside()
-        broken = {"the set-up's last step": error} if found is None else found["broken"]
-        if "ir50p_lab" in broken:
+        command = [str(self.python), "-P", "-c", "import ir50p_lab"]
+        if subprocess.run(command, env=self.variables(), capture_output=True, cwd=self.folder).returncode:
             raise SetUpError(
                 f"The path {self.root} has letters that this Python cannot read when it starts. Move the project to a "
                 f"folder whose path has plain letters only (or use Python 3.13 or newer), then run '{COMMAND}' again."
             )
+        found, error = self.look_inside()
+        broken = {"the set-up's last step": error} if found is None else found["broken"]
         for name, why in broken.items():
             _say(stream, f"Careful: {name} cannot be used ({why}). '{COMMAND} doctor' says more.")
 
