@@ -100,6 +100,8 @@ def way_out(arm, distances, speeds, limit):
     plane.set_title("Outwards at 0.1 m/s")
     ax.semilogy(1000 * (arm.reach - distances), speeds, linewidth=2.5, label="elbow")
     ax.axhline(limit, **SETPOINT, label=f"its motor: {limit} rad/s")
+    ax.set_yticks([0.5, 1, 2, 5], ["0.5", "1", "2", "5"])
+    ax.minorticks_off()
     ax.invert_xaxis()
     ax.set(xlabel="still to go to the full reach [mm]", ylabel="speed [rad/s]")
     ax.set_title("The tip keeps its pace, the elbow runs away")
