@@ -6,6 +6,7 @@ import pytest
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import ComputedTorque, FeedForward, check_saturation
 from ir50p_lab.course.torque_views import follow, naive_model, rms, thesis_pid, training_run
+from ir50p_lab.errors import InputError
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import IR50P, mass_matrix
 from ir50p_lab.signals import quintic, sinusoid
@@ -38,8 +39,12 @@ def test_the_identified_model_tracks_where_the_pid_does_not(unit):
 def test_the_naive_model_fails_because_its_inertia_is_negative(unit):
     seed, recording, model = unit
     naive = naive_model(recording)
-    error = rms(follow(IR50P, ComputedTorque(naive, **TABLES_4_5), SWING, 15, seed=seed), SWING)
-    assert error.max() > 400
+    try:
+        error = rms(follow(IR50P, ComputedTorque(naive, **TABLES_4_5), SWING, 15, seed=seed), SWING).max()
+    except InputError as lost:  # the bench cuts: the arm is 2 rad from where it should be
+        assert "from where the arm is" in str(lost)
+        error = 2000
+    assert error > 400
     poses = SWING.sample(np.linspace(0, 15, 100))[:, 0]
     smallest = [np.linalg.eigvals(mass_matrix(m.theta, poses)).real.min() for m in (naive, model)]
     assert smallest[0] < 0 < 3 < smallest[1]
@@ -49,7 +54,7 @@ def test_the_naive_model_fails_because_its_inertia_is_negative(unit):
     inertial = [0, 1, 4, 5, 6, 7, 8, 9, 19]
     mended[:, inertial] = model.theta[:, inertial]
     law = ComputedTorque(mended, **TABLES_4_5, limit_pwm=255)
-    assert rms(follow(IR50P, law, SWING, 15, seed=seed), SWING).max() < 0.5 * error.max()
+    assert rms(follow(IR50P, law, SWING, 15, seed=seed), SWING).max() < 0.5 * error
 
 
 @pytest.mark.compiled

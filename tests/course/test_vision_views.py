@@ -44,7 +44,7 @@ def test_every_picture_says_that_it_is_rendered(bench):
         views.MaskView(image[::2, ::2]).figure,
         views.canny_figure(canny_steps(grey, 60, 160), 60, 160),
         views.balls_figure(image, [Ball(ball.x, ball.y, ball.radius, 0.9)], "found"),
-        views.sheet_figure([(image, [], ball)]),
+        views.sheet_figure([(image, [], (ball.x, ball.y, ball.radius))]),
     ]
     for figure in figures:
         figure.savefig(io.BytesIO(), format="png")
@@ -152,7 +152,8 @@ def test_labels_of_balls_stay_in_the_picture(x, y):
 def test_sheet(bench):
     image, truth = bench
     ball = truth.red_balls[0]
-    seen = [(image, [Ball(ball.x + 0.5, ball.y, ball.radius, 0.9)], ball), (image, [], ball)]
+    target = (ball.x, ball.y, ball.radius)
+    seen = [(image, [Ball(ball.x + 0.5, ball.y, ball.radius, 0.9)], target), (image, [], target)]
     figure = views.sheet_figure(seen, columns=3)
     assert [ax.get_title() for ax in figure.axes] == ["0.50 px off", "missed", ""]
 

@@ -168,15 +168,15 @@ def test_degrees_are_flagged(good, scale):
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("seconds", [0.2, 1.0, 5.0])
-def test_a_frozen_or_slow_sensor_is_refused_and_outliers_are_flagged(good, seconds):
+def test_a_frozen_sensor_is_refused_a_slow_one_and_outliers_are_flagged(good, seconds):
     q = good.q.copy()
     hung = (good.t > 9) & (good.t < 9 + seconds)
     q[hung, 1] = q[hung, 1][0]
     with pytest.raises(IdentificationError, match="joint 2: q stands"):
         identify(spoilt(good, q=q), unit="N m")
     rows = round(4 * seconds) + 2
-    with pytest.raises(IdentificationError, match="joint 1: q is new only"):
-        identify(spoilt(good, q=np.repeat(good.q[::rows], rows, axis=0)[: len(q)]), unit="N m")
+    slow = identify(spoilt(good, q=np.repeat(good.q[::rows], rows, axis=0)[: len(q)]), unit="N m")
+    assert "joint 1: q is new only" in " ".join(slow.warnings)
     q = good.q.copy()
     q[777, 2] += seconds
     assert "joint 3: q has 1 outlier(s)" in " ".join(identify(spoilt(good, q=q), unit="N m").warnings)

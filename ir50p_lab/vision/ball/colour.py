@@ -99,7 +99,7 @@ def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
     """Learn a Colour from a click: the pixels around it that are like it.
 
     A small disc around the pixel gives a first hue and saturation; then every pixel within `radius` counts whose hue
-    is near and which is hardly paler, so that shade and light of the same thing are in. If a third of what lies around
+    is near and which is hardly paler, so that shade and light of the same thing are in. If a twentieth of what lies around
     it has the hue but is paler (an orange ball on wood), the least saturation is half way between.
 
     Args: image: RGB uint8 (h, w, 3); xy: (x, y) pixel of the click; radius: of the neighbourhood, pixels, by default
@@ -131,7 +131,7 @@ def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
     colour = _colour_of(near[own], name)
     ring = far[far <= max(3.0, radius)] > 0.75 * radius
     around = ring & alike & pale
-    if around.sum() < max(8, ring.sum() / 3):
+    if around.sum() < max(8, ring.sum() / 20):
         return colour
     between = (np.percentile(hsv[around, 1], 90) + np.percentile(hsv[own, 1], 10)) / 510
     return replace(colour, saturation=max(colour.saturation, min(float(between), _MOST_SATURATION)))
