@@ -133,11 +133,21 @@ def test_an_error_of_the_controller_cuts_and_is_raised_by_join(bench):
     assert len(run.recent(10).t) == 4
 
 
-def test_an_error_of_the_reference_or_nonsense_from_the_controller_cuts_too(bench):
-    run = bench.start(pid(), lambda t: (np.full(3, np.nan), np.zeros(3), np.zeros(3)), lead_in=False)
+def test_an_error_of_the_reference_before_the_run_drives_nothing(bench):
+    with pytest.raises(InputError):
+        bench.start(pid(), lambda t: (np.full(3, np.nan), np.zeros(3), np.zeros(3)), lead_in=False)
+    with pytest.raises(ZeroDivisionError):
+        bench.start(pid(), lambda t: 1 / 0, lead_in=False)
+    assert bench.start(pid(), None, seconds=0.05, rest=False).join(10)  # and the bench is still ours
+
+
+def test_an_error_of_the_reference_in_the_run_cuts_too(bench):
+    run = bench.start(
+        pid(), lambda t: (np.full(3, np.nan if t > 0.05 else 0.1), np.zeros(3), np.zeros(3)), lead_in=False
+    )
     with pytest.raises(InputError):
         run.join(10)
-    run = bench.start(Failing(None), lambda t: 1 / 0, lead_in=False)
+    run = bench.start(pid(), lambda t: (np.full(3, 0.1 / (t < 0.05)), np.zeros(3), np.zeros(3)), lead_in=False)
     with pytest.raises(ZeroDivisionError):
         run.join(10)
 
@@ -194,7 +204,8 @@ def test_bad_arguments(bench):
     lock = threading.Lock()
 
     def with_a_lock(t):
-        return lock
+        assert not lock.locked()
+        return np.zeros((3, 3))
 
     with pytest.raises(InputError, match="cannot be sent"):
         bench.start(pid(), with_a_lock)
