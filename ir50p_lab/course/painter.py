@@ -17,8 +17,8 @@ class Painter:
 
     An artist that has changed once is taken for one that moves: it becomes `animated`, and so does all that lies above
     it in its axes. The rest, ticks and grid included, is kept as pixels and drawn anew only when matplotlib says that
-    it is stale; after a turn of a 3-D view, of which matplotlib says nothing, call `forget()`. The layout is computed
-    once and then held, so that nothing jumps.
+    it is stale (a new text in a legend makes it so each time); after a turn of a 3-D view, of which matplotlib says
+    nothing, call `forget()`. The layout is computed once and then held, so that nothing jumps.
 
     Attributes: backgrounds: how often the background was drawn (for tests and measurements).
     """

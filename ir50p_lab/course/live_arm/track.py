@@ -5,7 +5,7 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling.chain import forward_kinematics
 
-_MOST = 400  # rows: 27 kB in a saved notebook; the view interpolates
+_MOST = 600  # rows: 40 kB in a saved notebook, 20 rows a second for half a minute; the view interpolates
 
 
 def pack(runs, labels):

@@ -99,8 +99,8 @@ def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
     """Learn a Colour from a click: the pixels around it that are like it.
 
     A small disc around the pixel gives a first hue and saturation; then every pixel within `radius` counts whose hue
-    is near and which is hardly paler, so that shade and light of the same thing are in. If a twentieth of what lies around
-    it has the hue but is paler (an orange ball on wood), the least saturation is half way between.
+    is near and which is hardly paler, so that shade and light of the same thing are in. If a twentieth of what lies
+    around it has the hue but is paler (an orange ball on wood), the least saturation is half way between.
 
     Args: image: RGB uint8 (h, w, 3); xy: (x, y) pixel of the click; radius: of the neighbourhood, pixels, by default
         a twelfth of the picture's height; name: for messages.
