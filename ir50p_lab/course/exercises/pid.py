@@ -1,4 +1,4 @@
-"""Exercises of notebook 08: steady-state error, the PID law, sampling, damping, a tuning rule."""
+"""Exercises of notebook 09: steady-state error, the PID law, sampling, damping, a tuning rule."""
 
 import numpy as np
 from scipy.optimize import fsolve
@@ -6,7 +6,7 @@ from scipy.optimize import fsolve
 from ir50p_lab.course.exercises import Exercise, Function, Number, Slip
 from ir50p_lab.modelling import THESIS_A, gravity
 
-NOTEBOOK = "08_pid_tuning"
+NOTEBOOK = "09_break_it_tune_it"
 
 # pid-1: what a spring of stiffness kp leaves under the weight of the thesis' arm.
 _SET_POINT = np.array([np.pi / 2, np.pi / 2, -np.pi / 3])
