@@ -32,11 +32,13 @@ _LATE = 0.05  # s: so late the board gives the lost time up instead of racing af
 
 
 class Change(NamedTuple):
-    """monotonic: s, time.monotonic() when seen; seconds: the board's own time since power-on; pins: Pins."""
+    """monotonic: s, time.monotonic() when seen; seconds: the board's own time since power-on; pins: Pins;
+    received: s of the board's own time, when it was last sent something."""
 
     monotonic: float
     seconds: float
     pins: Pins
+    received: float
 
 
 class BoardProcess:
@@ -65,7 +67,18 @@ class BoardProcess:
     def changes(self):
         """The Changes so far, oldest first."""
         lines = self.log.read_text().splitlines()
-        return [Change(t, seconds, Pins(*pins)) for t, seconds, pins in map(json.loads, lines)]
+        return [Change(t, seconds, Pins(*pins), received) for t, seconds, pins, received in map(json.loads, lines)]
+
+    def cut_after_last_command(self, timeout=5.0):
+        """Seconds of the board's own time from the last command to the cut; waits for it. No busy computer stretches it."""
+        until = time.monotonic() + timeout
+        while any((last := self.changes()[-1]).pins.pwm):
+            if time.monotonic() > until:
+                raise TimeoutError(f"the bridges still drive after {timeout} s: {last.pins.pwm}")
+            time.sleep(0.01)
+        if not any(any(change.pins.pwm) for change in self.changes()):
+            raise ValueError("the bridges never drove: there was nothing to cut")
+        return last.seconds - last.received
 
 
 def _open_terminal(link):
@@ -88,6 +101,7 @@ def serve(board, link, log, boot=0.0):
     board.timeout = 0
     board.sleep(0.01)  # the arm's compiled code is loaded now, not while somebody waits for an answer
     begin, logged, is_open, listens, came = time.monotonic() - board.now(), 0, False, 0.0, 0.0
+    received = 0.0
     print("ready", link, flush=True)
     while True:
         now = time.monotonic()
@@ -95,7 +109,7 @@ def serve(board, link, log, boot=0.0):
             begin = now - board.now()
         board.sleep_until(now - begin)  # first up to the present: what comes in now must not arrive in the past
         for seconds, pins in board.changes[logged:]:
-            os.write(log, (json.dumps([time.monotonic(), seconds, pins]) + "\n").encode())
+            os.write(log, (json.dumps([time.monotonic(), seconds, pins, received]) + "\n").encode())
         logged = len(board.changes)
         if data := board.read(board.in_waiting):
             with contextlib.suppress(OSError):  # full, or nobody there: lost, as on a wire
@@ -112,6 +126,7 @@ def serve(board, link, log, boot=0.0):
                 data, came = os.read(master, 4096), now
                 if is_open and now >= listens:
                     board.write(data)
+                    received = board.now()
         if closed:
             time.sleep(_PAUSE)  # select would return at once
         else:
