@@ -105,12 +105,14 @@ class LoopStatistics:
 
 @dataclass(frozen=True)
 class LiveSamples:
-    """The last samples: t (n,) s, q (n, 3) rad, u (n, 3) PWM counts as sent, reference (n, 3) rad."""
+    """The last samples: t (n,) s, q (n, 3) rad, u (n, 3) PWM counts as sent, reference (n, 3) rad; trips (k,) s, of the
+    samples at which the drive had been cut because the loop had paused."""
 
     t: np.ndarray
     q: np.ndarray
     u: np.ndarray
     reference: np.ndarray
+    trips: np.ndarray
 
 
 class LiveRun:
@@ -218,7 +220,8 @@ class LiveRun:
         rows = self._memory.latest(1 + math.ceil(seconds / self._bench.period))
         if len(rows):
             rows = rows[rows[:, 0] >= rows[-1, 0] - seconds]
-        return LiveSamples(rows[:, 0], rows[:, 1:4], rows[:, 4:7], rows[:, 7:10])
+        tripped = np.flatnonzero(np.diff(rows[:, 12])) + 1
+        return LiveSamples(rows[:, 0], rows[:, 1:4], rows[:, 4:7], rows[:, 7:10], rows[tripped, 0])
 
     def statistics(self):
         """How well the loop keeps time: LoopStatistics."""

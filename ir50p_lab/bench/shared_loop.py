@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 # measured: when the measurement was taken, s of a true clock; busy: s from having the sample to its command
-COLUMNS = ("t", "q1", "q2", "q3", "u1", "u2", "u3", "r1", "r2", "r3", "measured", "busy", "number")
+COLUMNS = ("t", "q1", "q2", "q3", "u1", "u2", "u3", "r1", "r2", "r3", "measured", "busy", "trips", "number")
 CAPACITY = 8192  # samples: 82 s at 100 Hz
 STARTING, LEADING, RUNNING, RETURNING, ENDED = range(5)
 PHASES = ("starting", "leading in", "running", "moving to the rest pose", "ended")
@@ -150,7 +150,7 @@ class SharedLoop:
         number = int(self._status[_SAMPLES])
         row = self._ring[number % CAPACITY]
         row[-1] = -1.0
-        row[0], row[1:4], row[4:7], row[7:10], row[10], row[11] = t, q, u, r, measured, busy
+        row[0], row[1:4], row[4:7], row[7:10], row[10:13] = t, q, u, r, (measured, busy, trips)
         row[-1] = number
         self._status[_MISSED], self._status[_TRIPS] = missed, trips
         self._status[_SAMPLES] = number + 1

@@ -310,7 +310,7 @@ class BenchPanel(widgets.VBox):
         if run is not None and (alive or self._shown != (run, run.statistics().cycles)):
             samples = run.recent(self._window)
             if samples.t.size:
-                self.scope.show(samples.t, samples.q, samples.reference, samples.u)
+                self.scope.show(samples.t, samples.q, samples.reference, samples.u, samples.trips)
             self._shown = (run, run.statistics().cycles) if not alive else None
         if count % 10 == 0 or phase != self._phase:
             self._phase = phase

@@ -31,7 +31,7 @@ function picture(model, el) {
   return () => { model.off("change:value", show); URL.revokeObjectURL(shown); };
 }
 
-function plot(pen, panel, rows, settings, box, kept) {
+function plot(pen, panel, rows, settings, marks, box, kept) {
   const [x0, y0, w, h] = box, n = rows.length, columns = panel.lines.map((line) => line.column);
   const last = n ? rows[n - 1][0] : 0, t1 = Math.max(last, settings.window), t0 = t1 - settings.window;
   let range = panel.ylim ?? kept.get(panel);
@@ -53,6 +53,9 @@ function plot(pen, panel, rows, settings, box, kept) {
   pen.strokeStyle = "#666666";
   rule(x0, y0, x0, y0 + h); rule(x0, y0 + h, x0 + w, y0 + h);
   pen.save(); pen.beginPath(); pen.rect(x0, y0, w, h); pen.clip();
+  Object.assign(pen, { strokeStyle: "#C0392B", lineWidth: 1.5 });
+  pen.setLineDash([2, 3]);
+  for (const t of marks) rule(X(t), y0, X(t), y0 + h);
   for (const { column, colour, dash, stairs, level } of panel.lines) {
     Object.assign(pen, { strokeStyle: colour, lineWidth: dash ? 1.3 : 1.8, lineJoin: "round" });
     if (level != null) { pen.setLineDash([6, 4]); rule(x0, Y(level), x0 + w, Y(level)); }
@@ -101,7 +104,7 @@ function plots(model, el) {
     const w = width - 62 - (settings.side || 8), h = height - 30 - 38;
     for (const panel of settings.panels) {
       const [left, top, across, down] = panel.place;
-      plot(pen, panel, rows, settings, [62 + left * w, 30 + top * h, across * w, down * h], kept);
+      plot(pen, panel, rows, settings, model.get("marks"), [62 + left * w, 30 + top * h, across * w, down * h], kept);
     }
   };
   const soon = () => { if (!wanted) { wanted = true; requestAnimationFrame(draw); } };

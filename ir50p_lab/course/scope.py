@@ -46,10 +46,11 @@ class Scope(Canvas):
         self.layout.width = "100%"
         self.frames = 0
 
-    def show(self, t, q, reference, u):
+    def show(self, t, q, reference, u, marks=()):
         """Show these samples; what is older than the window is left out.
 
-        Args: t: (n,) s; q, reference: (n, 3) rad; u: (n, 3) PWM counts.
+        Args: t: (n,) s; q, reference: (n, 3) rad; u: (n, 3) PWM counts; marks: times of dotted
+            lines, such as cuts of the drive, s.
         """
         t = np.asarray(t, dtype=float)
         stride = max(1, -(-len(t) // _MOST))
@@ -60,5 +61,6 @@ class Scope(Canvas):
         rows = np.empty((len(kept), 10), dtype="<f4")
         rows[:, 0] = t[kept]
         rows[:, 1:4], rows[:, 4:7], rows[:, 7:] = np.degrees(q[kept]), np.degrees(reference[kept]), u[kept]
+        self.marks = [float(mark) for mark in marks]
         self.samples = rows.tobytes()
         self.frames += 1

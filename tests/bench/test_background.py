@@ -58,6 +58,18 @@ def bench(request, tmp_path):
             made._live.cut()
 
 
+class Dozing:
+    """A controller that takes 0.25 s for its 20th step."""
+
+    steps = 0
+
+    def step(self, t, measured, reference):
+        self.steps += 1
+        if self.steps == 20:
+            time.sleep(0.25)
+        return np.full(3, 20.0)
+
+
 # ---- the contract, the same in a thread and in a process
 
 
@@ -123,6 +135,16 @@ def test_gains_change_without_a_bump(bench):
     assert run.error is None
     ((_, text),) = run.recording.events  # what was tuned is in the recording
     assert text == "kp = 100 225 270; ki = 50 10 50; kd = 20 20 20"
+
+
+def test_a_cut_by_a_pause_is_said_with_its_time(bench):
+    run = bench.start(Dozing(), None, rest=False)
+    until(lambda: run.statistics().trips and len(run.recent(80).t) > 30)
+    run.cut()
+    (when,) = run.recent(80).trips[:1]
+    t = run.recent(80).t
+    last = np.argmax(np.diff(t) > 0.2)  # sample before the pause; the cut shows at it or at the next
+    assert t[last + 1] - t[last] > 0.2 and when in t[last : last + 2]
 
 
 def test_an_error_of_the_controller_cuts_and_is_raised_by_join(bench):

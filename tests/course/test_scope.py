@@ -47,3 +47,9 @@ def test_nothing_to_show_is_no_error():
     scope = Scope()
     scope.show(np.empty(0), np.empty((0, 3)), np.empty((0, 3)), np.empty((0, 3)))
     assert scope.samples == b""
+
+
+def test_cuts_of_the_drive_are_marked():
+    scope = Scope()
+    scope.show(*motion(200), marks=np.array([0.5, 1.25]))
+    assert scope.marks == [0.5, 1.25]
