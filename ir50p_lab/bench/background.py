@@ -106,7 +106,8 @@ class LoopStatistics:
 @dataclass(frozen=True)
 class LiveSamples:
     """The last samples: t (n,) s, q (n, 3) rad, u (n, 3) PWM counts as sent, reference (n, 3) rad; trips (k,) s, of the
-    samples at which the drive had been cut because the loop had paused."""
+    samples at which the drive had been cut because the loop had paused.
+    """
 
     t: np.ndarray
     q: np.ndarray
