@@ -17,8 +17,8 @@ class Canvas(anywidget.AnyWidget):
 
     value: PNG file (bytes); width: CSS width, such as "900px"; description: what screen readers say; clicked:
     [right, up, time] of the last click, as fractions 0..1 of the picture from its lower left corner; ratio: pixels of
-    the display per CSS pixel, 1 to 2. samples: float32 rows, time first, for the plots that `settings` describes; marks:
-    s, where each plot has a dotted line.
+    the display per CSS pixel, 1 to 2. samples: float32 rows, time first, for the plots that `settings` describes;
+    marks: s, where each plot has a dotted line.
     """
 
     _esm = Path(__file__).with_suffix(".js")
