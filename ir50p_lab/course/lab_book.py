@@ -18,8 +18,8 @@ def path():
 
 
 def read():
-    """Return {"predictions": {name: ...}, "notes": [...], "figures": [...], "attempts": {function: [...]}}."""
-    empty = {"predictions": {}, "notes": [], "figures": [], "attempts": {}}
+    """Return {"predictions": {name: ...}, "notes", "figures", "contest": [...], "attempts": {function: [...]}}."""
+    empty = {"predictions": {}, "notes": [], "figures": [], "contest": [], "attempts": {}}
     try:
         content = json.loads(path().read_text(encoding="utf-8"))
     except FileNotFoundError:

@@ -1,0 +1,219 @@
+"""The contest: a controller drives arms it has not seen, and the worst of five figures is its score.
+
+Each run: a copy of the arm as the series scatters, with noise, a converter of 10 bits, dry friction, play, 30 ms of
+delay and a payload; its potentiometers are calibrated. The arm takes up its weight for 3 s (not judged), makes a large
+step of all joints (4 s) and a small one (3 s). Judged is the true angle, by `step_metrics`' figures and two of our own,
+each over a limit that a careful hand can keep. The score is the *largest* of these quotients, over joints and runs:
+what is spared in one buys nothing in another. Below 1 is won. Simulated: no number here was measured.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ir50p_lab.bench.simulated import SimulatedBench
+from ir50p_lab.bench.unit import Unit
+from ir50p_lab.controllers.base import Controller
+from ir50p_lab.controllers.pid import PID
+from ir50p_lab.course import lab_book
+from ir50p_lab.errors import LabError
+from ir50p_lab.inputs import check_controller
+from ir50p_lab.modelling.arm import load_arm
+from ir50p_lab.modelling.chain import frames
+from ir50p_lab.signals import steps
+
+UNIT = Unit(delay=3, pot_bow=(0, 0, 0), slope_spread=0, shift_spread=0, bow_spread=0)
+TIMES, END = (0.0, 3.0, 7.0), 10.0  # s: hold, large step, small step
+LARGE, SMALL = 0.6, 0.15  # rad, each joint's step within 30 % of it, up or down
+PAYLOAD = 0.2  # of the forearm's mass, at most
+BAND = 0.03  # rad: about five counts of the potentiometers
+#: What is judged, and the most of it that wins.
+LIMITS = {
+    "large step": (3.0, "s until it stays within 30 mrad"),
+    "small step": (2.0, "s until it stays within 30 mrad"),
+    "overshoot": (0.20, "rad beyond the target"),
+    "rest error": (0.025, "rad, mean of the last second"),
+    "activity": (14.0, "counts, mean change of the command from sample to sample"),
+}
+PRACTICE = (1, 2, 3)  # seeds that everybody may look at
+RUNS = 3  # arms of an attempt
+_PERIOD = 0.01
+
+
+@dataclass(frozen=True)
+class Draw:
+    """One arm of the contest: poses (3, 3) rad held from TIMES on; payload kg at the tip; copy of the series."""
+
+    poses: np.ndarray
+    payload: float
+    copy: int
+
+    @property
+    def reference(self):
+        """The poses as a reference."""
+        return steps(TIMES, self.poses)
+
+
+@dataclass(frozen=True)
+class Score:
+    """terms (5, 3): the largest of each figure in LIMITS, per joint; fault: why the bench cut the drive, or "".
+
+    value: the largest term over its limit; won: below 1; decides: the name of that term, and the joint (1, 2, 3).
+    """
+
+    terms: np.ndarray
+    fault: str = ""
+
+    @property
+    def quotients(self):
+        """terms over their limits, (5, 3)."""
+        return self.terms / np.array([limit for limit, _ in LIMITS.values()])[:, None]
+
+    @property
+    def value(self):
+        """The score."""
+        return float(self.quotients.max())
+
+    @property
+    def won(self):
+        """Whether every term keeps its limit."""
+        return self.value < 1
+
+    @property
+    def decides(self):
+        """(name of the worst term, joint)."""
+        term, joint = np.unravel_index(np.argmax(self.quotients), self.terms.shape)
+        return list(LIMITS)[term], int(joint) + 1
+
+    def __str__(self):
+        if self.fault:
+            return f"lost: the bench cut the drive. {self.fault}"
+        rows = [f"{'':12s}  joint 1  joint 2  joint 3   limit"]
+        for (name, (limit, unit)), row in zip(LIMITS.items(), self.terms, strict=True):
+            marks = [f"{x:7.3g}{' ' if x < limit else '!'}" for x in row]
+            rows.append(f"{name:12s} {' '.join(marks)} {limit:7.3g} {unit}")
+        term, joint = self.decides
+        verdict = "won" if self.won else "lost"
+        rows.append(f"score {self.value:.2f}, {verdict} (below 1 wins); {term} of joint {joint} decides")
+        return "\n".join(rows)
+
+
+def draw(arm, seed):
+    """The Draw of a seed: poses in the inner 70 % of the travel, elbow and tip at least 8 cm above the table."""
+    rng = np.random.default_rng(seed)
+    low, high = (np.clip(limit, -np.pi, np.pi) for limit in (arm.q_min, arm.q_max))
+    low, high = low + 0.15 * (high - low), high - 0.15 * (high - low)
+    payload, copy = PAYLOAD * arm.m[2] * rng.uniform(), int(rng.integers(1, 10**6))
+    sizes = np.array([LARGE, SMALL])[:, None]
+    while True:
+        jumps = sizes * rng.uniform(0.7, 1.3, (500, 2, 3)) * rng.choice([-1, 1], (500, 2, 3))
+        poses = np.cumsum(np.concatenate([rng.uniform(low, high, (500, 1, 3)), jumps], axis=1), axis=1)
+        poses = poses[((poses > low) & (poses < high)).all(axis=(1, 2))]
+        heights = frames(arm, poses.reshape(-1, 3))[:, 2:, 2, 3].reshape(len(poses), -1)
+        if (heights > 0.08).all(axis=1).any():
+            return Draw(poses[np.argmax((heights > 0.08).all(axis=1))], payload, copy)
+
+
+def carrying(arm, mass):
+    """The arm with a point mass (kg) at its tip."""
+    m3 = arm.m[2] + mass
+    lc3 = (arm.m[2] * arm.lc[2] + mass * arm.l[2]) / m3
+    more = arm.m[2] * (lc3 - arm.lc[2]) ** 2 + mass * (arm.l[2] - lc3) ** 2  # Steiner, both parts
+    return replace(
+        arm,
+        m=(*arm.m[:2], m3),
+        lc=(*arm.lc[:2], lc3),
+        Iyy=(*arm.Iyy[:2], arm.Iyy[2] + more),
+        Izz=(*arm.Izz[:2], arm.Izz[2] + more),
+    )
+
+
+def drive(controller, seed, arm=None):
+    """Drive the arm of a seed. Returns Draw, Recording (what the controller saw and sent) and true angles (1000, 3).
+
+    controller: any object with `step(t, q, reference)`, in PWM counts; the package's PID runs compiled.
+    Raises LabError where the bench cuts the drive, and what the controller raises.
+    """
+    arm = load_arm() if arm is None else arm
+    given = draw(arm, seed)
+    bench = SimulatedBench(
+        carrying(arm, given.payload), unit=UNIT, seed=given.copy, q0=given.poses[0], record_to=False, period=_PERIOD
+    ).open()
+    recording = bench.follow(controller, given.reference, END)
+    return given, recording, bench.truth.q  # left open: closing would only let a simulated arm sink for 3 s
+
+
+def judge_run(given, u, q):
+    """The five figures of LIMITS of a run, (5, 3): u (1000, 3) commands in counts, q (1000, 3) true angles."""
+    first, second, end = (round(t / _PERIOD) for t in (*TIMES[1:], END))
+    found = np.zeros((5, 3))
+    for k, part in enumerate((slice(first, second), slice(second, end))):
+        error = given.poses[k + 1] - q[part]
+        side = np.sign(given.poses[k + 1] - given.poses[k])
+        outside = np.abs(error) > BAND
+        found[k] = _PERIOD * (len(error) - np.argmax(outside[::-1], axis=0)) * outside.any(axis=0)
+        found[2] = np.maximum(found[2], np.max(-side * error, axis=0))
+        found[3] = np.maximum(found[3], np.abs(np.mean(error[-100:], axis=0)))
+        found[4] = np.maximum(found[4], np.mean(np.abs(np.diff(u[part], axis=0)), axis=0))
+    return found
+
+
+def score(controller, seeds=PRACTICE, arm=None):
+    """The Score of a controller on the arms of `seeds`, which everybody may look at. A cut drive is lost (inf)."""
+    check_controller(controller)
+    worst = np.zeros((5, 3))
+    for seed in seeds:
+        try:
+            given, recording, q = drive(controller, seed, arm)
+        except LabError as fault:
+            return Score(np.full((5, 3), np.inf), str(fault))
+        worst = np.maximum(worst, judge_run(given, recording.u, q))
+    return Score(worst)
+
+
+def contest(controller, name):
+    """Enter the contest: three arms drawn for this attempt only. Prints term by term; keeps the attempt, won or lost.
+
+    controller: any object with `step`; what runs is this object, in Python, not a twin. name: what you changed, kept
+    with the attempt and shown in `history`. Returns the Score.
+    """
+    seeds = [int(seed) for seed in np.random.default_rng().integers(1000, 2**31, RUNS)]
+    found = score(controller, seeds)
+    entry = {"name": str(name), "score": found.value, "decides": found.decides, "seeds": seeds, "at": lab_book.now()}
+
+    def edit(book):
+        before = [one["score"] for one in book["contest"]]
+        book["contest"].append(entry)
+        return before
+
+    before = lab_book.change(edit)
+    print(found)
+    if not before or found.value < min(before):
+        print(f"attempt {len(before) + 1}: your best so far")
+    else:
+        print(f"attempt {len(before) + 1}: your best is {min(before):.2f}, attempt {int(np.argmin(before)) + 1}")
+    return found
+
+
+def twin_of(controller, arm=None):
+    """The compiled PID that does what this controller does, or None.
+
+    Built from its gains `kp`, `ki`, `kd`; both see the same angles of a practice run, noise included, and have to
+    send the same commands within a thousandth of a count.
+    """
+    if isinstance(controller, Controller):
+        return controller
+    try:
+        twin = PID(controller.kp, controller.ki, controller.kd, limit_pwm=255)
+    except (AttributeError, LabError):
+        return None
+    given, recording, _ = drive(twin, PRACTICE[0], arm)
+    twin.reset()
+    if hasattr(controller, "reset"):
+        controller.reset()
+    rows = given.reference.sample(recording.t)
+    for t, q, r in zip(recording.t, recording.q, rows, strict=True):
+        theirs = np.asarray(controller.step(t, q.copy(), r.copy()), dtype=float)
+        if theirs.shape != (3,) or not np.abs(theirs - twin.step(t, q, r)).max() < 1e-3:
+            return None
+    return PID(controller.kp, controller.ki, controller.kd, limit_pwm=255)
