@@ -12,6 +12,7 @@ from ir50p_lab.bench.live_loop import live_loop
 from ir50p_lab.bench.pace import warm_up
 from ir50p_lab.bench.set_point import checked_reference, checked_set_point
 from ir50p_lab.bench.shared_loop import SharedLoop
+from ir50p_lab.controllers.base import GAINS, gains_of
 from ir50p_lab.controllers.pid import gains
 from ir50p_lab.errors import BenchError, InputError
 from ir50p_lab.inputs import check_controller, check_reference
@@ -133,8 +134,7 @@ class LiveRun:
 
     def __init__(self, bench, controller, worker):
         self._bench, self._worker, self._memory = bench, worker, worker.memory
-        self._tunable = callable(getattr(controller, "set_gains", None))
-        self._gains = {name: np.array(getattr(controller, name)) for name in _GAINS} if self._tunable else {}
+        self._gains = gains_of(controller)
         self._lock = threading.Lock()  # orders may come from several widgets' threads
 
     @property
@@ -164,14 +164,14 @@ class LiveRun:
 
     def set_gains(self, kp=None, ki=None, kd=None):
         """Change gains from the next cycle on; the command does not jump. Raises InputError for bad gains."""
-        if not self._tunable:
-            raise InputError("this controller has no set_gains(kp=, ki=, kd=): its gains cannot be changed live")
+        if not self._gains:
+            raise InputError("this controller has no gains kp, ki, kd: there is nothing to change live")
         wanted = {
-            name: gains(name, value) for name, value in zip(_GAINS, (kp, ki, kd), strict=True) if value is not None
+            name: gains(name, value) for name, value in zip(GAINS, (kp, ki, kd), strict=True) if value is not None
         }
         with self._lock:
             self._gains.update(wanted)
-            self._memory.order(gains=tuple(np.concatenate([self._gains[name] for name in _GAINS]).tolist()))
+            self._memory.order(gains=tuple(np.concatenate([self._gains[name] for name in GAINS]).tolist()))
 
     def set_point(self, q):
         """Go to q (3,) rad at limited speed; None (or NaN) leaves a joint where its reference is.
@@ -238,9 +238,6 @@ class LiveRun:
 
     def __repr__(self):
         return f"<LiveRun: {self.phase}; {self.statistics()}>"
-
-
-_GAINS = ("kp", "ki", "kd")
 
 
 class ThreadWorker:

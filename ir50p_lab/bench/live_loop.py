@@ -9,6 +9,7 @@ from ir50p_lab.bench import shared_loop
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.rest import way_to_rest
 from ir50p_lab.bench.set_point import LeadIn, SetPoint, led_in
+from ir50p_lab.controllers.base import set_gains
 from ir50p_lab.errors import BenchError
 
 _DAY = 86400.0  # s: the longest run "until stopped"
@@ -73,7 +74,7 @@ class _Loop:
                     if orders.gains_number != gains_number:
                         gains_number = orders.gains_number
                         gains = {"kp": orders.gains[:3], "ki": orders.gains[3:6], "kd": orders.gains[6:]}
-                        controller.set_gains(**gains)
+                        set_gains(controller, **gains)
                         bench.note("; ".join(f"{k} = {' '.join(f'{x:g}' for x in v)}" for k, v in gains.items()))
                     if orders.set_point_number != set_point_number:
                         set_point_number = orders.set_point_number

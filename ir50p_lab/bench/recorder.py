@@ -19,6 +19,7 @@ from ir50p_lab.bench.recording_file import (
     rows_text,
     told_text,
 )
+from ir50p_lab.controllers.base import gains_of
 from ir50p_lab.errors import InputError, RecordingError
 from ir50p_lab.home import home
 
@@ -150,5 +151,7 @@ def _three(reference):
 
 
 def header_of(controller):
-    """The gains of a controller for the head of a recording, if it tells them."""
-    return controller.header() if hasattr(controller, "header") else {}
+    """The gains of a controller for the head of a recording, if it tells or keeps them."""
+    if hasattr(controller, "header"):
+        return controller.header()
+    return {name: " ".join(f"{x:g}" for x in values) for name, values in gains_of(controller).items()}

@@ -8,6 +8,8 @@ from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 
+GAINS = ("kp", "ki", "kd")
+
 
 class Controller:
     """A controller whose law is compiled once and runs in the notebook, the simulation, the sweep and the bench.
@@ -41,6 +43,21 @@ class Controller:
             vectors3("reference", reference, unit="rad, rad/s, rad/s^2")
             raise InputError(f"the command is {u.tolist()} at t = {t} s; the controller's state is spoilt: reset it")
         return u
+
+
+def gains_of(controller):
+    """{'kp': (3,), 'ki': (3,), 'kd': (3,)} of any controller that keeps its gains under these names, else {}."""
+    if not all(hasattr(controller, name) for name in GAINS):
+        return {}
+    return {name: np.broadcast_to(np.asarray(getattr(controller, name), dtype=float), 3).copy() for name in GAINS}
+
+
+def set_gains(controller, **gains):
+    """Change kp, ki, kd of a running controller: by its own `set_gains`, else where it keeps them."""
+    if hasattr(controller, "set_gains"):
+        return controller.set_gains(**gains)
+    for name, value in gains.items():
+        setattr(controller, name, np.array(value, dtype=float))
 
 
 def _plain(q):

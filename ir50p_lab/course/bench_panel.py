@@ -17,13 +17,13 @@ from typing import ClassVar
 import ipywidgets as widgets
 import numpy as np
 
+from ir50p_lab.controllers.base import GAINS, gains_of, set_gains
 from ir50p_lab.course.controls import make_control, slider
 from ir50p_lab.course.scope import Scope
 from ir50p_lab.errors import InputError, LabError
 
 __all__ = ["BenchPanel", "live_panel"]
 
-_GAINS = ("kp", "ki", "kd")
 _UNITS = {"kp": "PWM/rad", "ki": "PWM/(rad s)", "kd": "PWM s/rad"}
 _LEAST = {"kp": 400, "ki": 100, "kd": 100}  # a slider goes at least that far
 _RED = "#c0392b"
@@ -33,7 +33,7 @@ def live_panel(bench, controller, reference=None, *, window=10.0, frames=25):
     """A panel to start, stop and tune `controller` on `bench`.
 
     Args:
-        bench: an open bench, whichever. controller: PID, or any controller; only one with set_gains gets gain sliders.
+        bench: an open bench, whichever. controller: PID, or any controller; one with kp, ki, kd gets sliders for them.
         reference: target(t), until a set point slider is moved; None: hold the pose where the arm stands.
         window: s that the scope shows. frames: a second.
 
@@ -103,11 +103,9 @@ class BenchPanel(widgets.VBox):
         """Set points left, gains right: a row per joint."""
         arm = self.bench.arm
         blocks = [self._column("Set point [deg]", [self._set_point_slider(arm, i) for i in range(3)])]
-        if callable(getattr(self._controller, "set_gains", None)):
-            for name in _GAINS:
-                values = getattr(self._controller, name)
-                rows = [self._gain_slider(name, i, float(values[i])) for i in range(3)]
-                blocks.append(self._column(f"{name.capitalize()} [{_UNITS[name]}]", rows))
+        for name, values in gains_of(self._controller).items():
+            rows = [self._gain_slider(name, i, float(values[i])) for i in range(3)]
+            blocks.append(self._column(f"{name.capitalize()} [{_UNITS[name]}]", rows))
         return widgets.HBox(blocks, layout=widgets.Layout(grid_gap="14px", flex_flow="row wrap"))
 
     @staticmethod
@@ -162,11 +160,11 @@ class BenchPanel(widgets.VBox):
     def _tuned_controller(self):
         """The controller with the gains that the sliders show."""
         if "kp1" in self.controls:
-            self._controller.set_gains(**self._gains())
+            set_gains(self._controller, **self._gains())
         return self._controller
 
     def _gains(self):
-        return {name: [self.controls[f"{name}{i}"].value for i in (1, 2, 3)] for name in _GAINS}
+        return {name: [self.controls[f"{name}{i}"].value for i in (1, 2, 3)] for name in GAINS}
 
     def _sliders_follow(self, run):
         """Put the set point sliders where the reference is."""

@@ -22,7 +22,8 @@ _BEFORE_SCRAMBLE, _BEFORE_LOAN = 3, 6  # different failing sources
 def check(name, answer=...):
     """Say in a sentence what was found in an answer; a function that is right becomes part of `my_robot`.
 
-    name: of a function ("rot_z") or an exercise ("start-1"). answer: the function or class itself, or the number.
+    name: of a function ("rot_z"), a stage of a class ("PID.p") or an exercise ("start-1"). answer: the function or
+    class itself, or the number.
     Shows a sentence and returns None; raises nothing, whatever the answer does.
     """
     from ir50p_lab.course import exercises
@@ -33,17 +34,18 @@ def check(name, answer=...):
         wanted = task(name)
     except InputError as error:
         return _show("open", name, str(error))
+    folder.work_on(name)
     if answer is ...:
         return _show("open", name, f"not written yet: {wanted.asks}")
     try:
-        source = take(answer, name, wanted.leans_on)
+        source = take(answer, wanted.function, wanted.leans_on)
     except CannotTake as reason:
         return _show("wrong", name, f"not yet: {reason}.")
-    if _is_stub(source.text, name):
+    if _is_stub(source.text, wanted.function):
         return _show("open", name, f"not written yet. It returns {wanted.asks}.")
     verdict = judge(wanted, _in_its_own_room(source, wanted))
     if verdict.state == "right":
-        return _keep(source, wanted)
+        return _keep(source, wanted, verdict.says)
     return _wrong(source, wanted, verdict)
 
 
@@ -62,7 +64,7 @@ def _in_its_own_room(source, wanted):
     for name in source.calls:
         room[name] = folder.load(name) if folder.is_there(name) else task(name).right
     exec(compile(source.text, f"<my_robot {wanted.name}>", "exec"), room)
-    return room[wanted.name]
+    return room[wanted.function]
 
 
 def _is_stub(text, name):
@@ -75,7 +77,7 @@ def _is_stub(text, name):
     return any(id(node) not in indices for node in dots)
 
 
-def _keep(source, wanted):
+def _keep(source, wanted, remark):
     from ir50p_lab.course.exercises import ProgressError, record
 
     try:
@@ -84,16 +86,18 @@ def _keep(source, wanted):
     except (OSError, ProgressError) as error:
         return _show("right", wanted.name, f"right, but it could not be kept: {error}")
     more = f" {', '.join(lent)}, which it calls, came along on loan: write your own." if lent else ""
-    text = f"right, and yours: from now on my_robot.{wanted.name} is this function.{more}"
+    kind = "class" if wanted.tried else "function"
+    text = f"right, and yours: from now on my_robot.{wanted.function} is this {kind}.{more} {remark}".rstrip()
     return _show("right", wanted.name, text, _beside(source, wanted))
 
 
 def _beside(source, wanted):
-    """Both listings and both speeds."""
-    case = wanted.cases()[0]
-    mine = folder.load(wanted.name)
-    speeds = [min(timeit.repeat(lambda f=f: f(*case), number=20, repeat=3)) / 20 * 1e6 for f in (mine, wanted.right)]
-    title = f"yours beside the course's: {speeds[0]:.0f} and {speeds[1]:.0f} microseconds a call"
+    """Both listings, and both speeds of a function."""
+    title = "yours beside the course's"
+    if wanted.cases is not None:
+        case, both = wanted.cases()[0], (folder.load(wanted.name), wanted.right)
+        speeds = [min(timeit.repeat(lambda f=f: f(*case), number=20, repeat=3)) / 20 * 1e6 for f in both]
+        title += f": {speeds[0]:.0f} and {speeds[1]:.0f} microseconds a call"
     return [(title, f"# yours\n{source.text}\n\n# the course's, without its checks\n{wanted.loan}")]
 
 
@@ -108,7 +112,7 @@ def _wrong(source, wanted, verdict):
 
     tries = lab_book.change(edit)
     says, more = f"not yet: {verdict.says}.", [("one input that fails", verdict.example)] if verdict.example else []
-    if tries >= _BEFORE_LOAN and not folder.is_there(wanted.name):
+    if tries >= _BEFORE_LOAN and not (folder.is_there(wanted.name) or folder.is_there(wanted.function)):
         folder.lend(wanted)
         says += (
             f" The course lends you its {wanted.name}, so that you can go on; it is marked as a loan in your report."

@@ -4,6 +4,7 @@
     my_robot.rot_z(0.5)
 
 A name is looked up each time: a function that was just written, in this notebook or another, is used from then on.
+A class that is written in stages serves at its stage in the notebook that works on it, elsewhere when it is whole.
 `my_robot.whose("rot_z")` says whose it is: "yours", "on loan" or "the course's".
 """
 
@@ -18,17 +19,18 @@ _said = set()
 def __getattr__(name):
     if not is_function(name):
         raise AttributeError(f"my_robot has no {name}; its functions are {', '.join(ORDER)}")
-    mine = folder.is_there(name)
-    function = folder.load(name) if mine else task(name).right
+    stage = folder.at_work(name)
+    function = folder.load(name) if folder.is_there(stage) else task(stage).right
     _say(name)
     return function
 
 
 def whose(name):
     """Say whose function is used: "yours", "on loan" or "the course's"."""
-    if not folder.is_there(name):
+    stage = folder.at_work(name)
+    if not folder.is_there(stage):
         return "the course's"
-    return "on loan" if folder.on_loan(name) else "yours"
+    return "on loan" if folder.on_loan(stage) else "yours"
 
 
 def done():

@@ -308,7 +308,7 @@ def test_what_is_defined_in_a_notebook_is_sent(commands):
         run = bench.start(Mine(), lambda t: (np.zeros(3),) * 3, seconds=0.05, lead_in=False, rest=False)
         assert run.join(10)
         assert (run.recent(10).u == 7).all()
-        with pytest.raises(InputError, match="no set_gains"):
+        with pytest.raises(InputError, match="no gains"):
             run.set_gains(kp=1)
 
 

@@ -5,13 +5,14 @@ import time
 
 import numpy as np
 import pytest
+import solutions
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.bench_panel import BenchPanel, live_panel
 from ir50p_lab.errors import InputError, LabError
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.signals import sinusoid
+from ir50p_lab.signals import hold, sinusoid
 
 
 def until(condition, timeout=10.0):
@@ -147,3 +148,18 @@ def test_close_leaves_no_thread_and_no_loop(bench):
     panel.close()
     until(lambda: not set(threading.enumerate()) - before)
     assert not panel.run.alive
+
+
+def test_a_students_class_is_tuned_where_it_keeps_its_gains(bench):
+    mine = solutions.load().PID(kp=289, ki=(50, 10, 50))
+    panel = live_panel(bench, mine)
+    panel.start()
+    panel.set(kp2=300, kd3=10)
+    count = panel.run.statistics().cycles
+    until(lambda: panel.run.statistics().cycles > count + 5, timeout=60)
+    panel.run.cut()
+    np.testing.assert_array_equal(panel.run.gains["kp"], (289, 300, 289))
+    assert panel.run.error is None
+    panel.close()
+    recording = bench.follow(mine, hold([0.2, 0.5, -0.6]), 0.1)
+    assert recording.header["ki"] == "50 10 50"

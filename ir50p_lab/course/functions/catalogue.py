@@ -27,17 +27,23 @@ NOTEBOOKS = {
     "18": ("find_and_reach",),
 }
 ORDER = tuple(name for names in NOTEBOOKS.values() for name in names)
-_MODULES = {"00": "pose", "01": "pose", "02": "inverse", "03": "velocity"}  # of the notebooks that are written
+STAGES = {"PID": ("PID.p", "PID.pi", "PID.limits")}  # checked on the way; "PID" itself is the last
+_MODULES = {"00": "pose", "01": "pose", "02": "inverse", "03": "velocity", "08": "controller"}  # what is written
+
+
+def function_of(name):
+    """The function that a stage belongs to: "PID" of "PID.pi"; any other name is its own."""
+    return name.partition(".")[0]
 
 
 def notebook_of(name):
     """Number of the notebook that asks for a function, "02"."""
-    return next(number for number, names in NOTEBOOKS.items() if name in names)
+    return next(number for number, names in NOTEBOOKS.items() if function_of(name) in names)
 
 
 def is_function(name):
-    """Tell whether a name is a function of `my_robot`."""
-    return name in ORDER
+    """Tell whether a name is a function of `my_robot`, or a stage of one."""
+    return name in ORDER or name in STAGES.get(function_of(name), ())
 
 
 def written():

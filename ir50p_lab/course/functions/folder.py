@@ -10,11 +10,13 @@ import cloudpickle
 import numpy as np
 
 from ir50p_lab import home
-from ir50p_lab.course.functions.catalogue import ORDER
+from ir50p_lab.course.functions.catalogue import ORDER, function_of
 
 _LOAN = "# on loan from the course"
+_STAGE = ", stage "
 _PACKAGE = "my_robot"
 _loaded = {"stamp": None}
+_at = {}  # stage of each function that this session works on
 
 
 def folder() -> Path:
@@ -23,18 +25,31 @@ def folder() -> Path:
 
 
 def path_of(name) -> Path:
-    """The file of one function; the underscore keeps module and function apart."""
-    return folder() / f"_{name}.py"
+    """The file of one function, whatever its stage; the underscore keeps module and function apart."""
+    return folder() / f"_{function_of(name)}.py"
 
 
 def is_there(name):
-    """Tell whether a function is in the folder, the student's or on loan."""
-    return path_of(name).exists()
+    """Tell whether a function, or this stage of one, is in the folder, the student's or on loan."""
+    if not path_of(name).exists():
+        return False
+    first = path_of(name).read_text(encoding="utf-8").partition("\n")[0]
+    return first.partition(_STAGE)[2].split(":")[0] == (name if "." in name else "")
 
 
 def on_loan(name):
     """Tell whether a function in the folder is the course's."""
     return is_there(name) and path_of(name).read_text(encoding="utf-8").startswith(_LOAN)
+
+
+def work_on(name):
+    """From now on this session uses a function at this stage; all others use it when it is whole."""
+    _at[function_of(name)] = name
+
+
+def at_work(name):
+    """The stage of a function that this session works on, or the function itself."""
+    return _at.get(name, name)
 
 
 def keep(source, task, *, loan=False):
@@ -49,10 +64,12 @@ def keep(source, task, *, loan=False):
     for name in source.calls:
         if not is_there(name):
             lent += [name, *lend(find(name))]
-    put_aside(source.name, unless=source.module)
-    head = f"{_LOAN}: write your own, and this one goes to old/\n" if loan else ""
-    _write(path_of(source.name), head + source.module)
-    _write(folder() / f"test_{source.name}.py", _small_test(task))
+    stage = f"{_STAGE}{task.name}" if "." in task.name else ""
+    head = f"{_LOAN if loan else '# yours'}{stage}: the next you write takes its place\n" if loan or stage else ""
+    text = head + source.module
+    put_aside(source.name, unless=text)
+    _write(path_of(source.name), text)
+    _write(folder() / f"test_{source.name}.py", task.test or _small_test(task))
     _write(folder() / "__init__.py", _exports())
     return lent
 
@@ -61,12 +78,12 @@ def lend(task):
     """Write the course's solution of a function, marked as on loan. Returns what else came along."""
     from ir50p_lab.course.functions.cell import Source
 
-    return keep(Source(task.name, task.loan, _calls(task)), task, loan=True)
+    return keep(Source(task.function, task.loan, _calls(task)), task, loan=True)
 
 
 def put_aside(name, unless=""):
     """Move a function's file to `old`, with the time in its name; nothing is lost. Raises OSError."""
-    path = path_of(name)
+    path, name = path_of(name), function_of(name)
     if not path.exists() or path.read_text(encoding="utf-8") == unless:
         return
     old = folder() / "old"
@@ -101,7 +118,7 @@ def _calls(task):
 
 
 def _exports():
-    names = [name for name in ORDER if is_there(name)]
+    names = [name for name in ORDER if path_of(name).exists()]
     return '"""My robot: the functions I wrote."""\n\n' + "".join(f"from ._{name} import {name}\n" for name in names)
 
 

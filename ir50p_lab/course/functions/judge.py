@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.course.functions.task import shown
+from ir50p_lab.course.functions.task import Failed, shown
 
 
 @dataclass(frozen=True)
@@ -18,17 +18,18 @@ class Verdict:
     example: str = ""
 
 
-class _Failed(Exception):  # noqa: N818  (becomes a sentence)
-    """The function gave no answer; args: sentence and case."""
-
-
 def judge(task, function):
-    """Return the Verdict on a function, whatever it does."""
+    """Return the Verdict on a function or class, whatever it does."""
+    if task.tried is not None:
+        try:
+            return Verdict("right", task.tried(function))
+        except Failed as failed:
+            return Verdict("wrong", *failed.args)
     cases = task.cases()
     try:
         _check_signature(task, function, cases[0])
         returned = [_call(task, function, case) for case in cases]
-    except _Failed as failed:
+    except Failed as failed:
         return Verdict("wrong", *failed.args)
     expected = [task.right(*copy.deepcopy(case)) for case in cases]
     good = [_agrees(task, one, other) for one, other in zip(returned, expected, strict=True)]
@@ -39,7 +40,7 @@ def judge(task, function):
     for slip in task.slips:
         if all(_is_slip(task, slip, case, one) for case, one in zip(cases, returned, strict=True)):
             return Verdict("wrong", slip.says, example)
-    says = _common(returned[first], expected[first]) or (task.symptom and task.symptom(cases, returned, expected))
+    says = no_numbers(returned[first], expected[first]) or (task.symptom and task.symptom(cases, returned, expected))
     return Verdict("wrong", says or _which(task, cases, good), example)
 
 
@@ -49,7 +50,7 @@ def _check_signature(task, function, case):
     except TypeError:
         found = ", ".join(inspect.signature(function).parameters)
         wanted = ", ".join(task.signature)
-        raise _Failed(f"it takes ({found}); it will be called with ({wanted}), in this order") from None
+        raise Failed(f"it takes ({found}); it will be called with ({wanted}), in this order") from None
 
 
 def _call(task, function, case):
@@ -58,11 +59,11 @@ def _call(task, function, case):
         with np.errstate(all="ignore"):
             result = function(*given)
     except KeyboardInterrupt:
-        raise _Failed("it was stopped: does a loop in it never end?", _given(task, case)) from None
+        raise Failed("it was stopped: does a loop in it never end?", _given(task, case)) from None
     except Exception as error:
-        raise _Failed(f"it stops with {type(error).__name__}: {error}", _given(task, case)) from None
+        raise Failed(f"it stops with {type(error).__name__}: {error}", _given(task, case)) from None
     if not all(_untouched(one, other) for one, other in zip(case, given, strict=True)):
-        raise _Failed("it changes what it was given: work on a copy (`np.array(x)` makes one)", _given(task, case))
+        raise Failed("it changes what it was given: work on a copy (`np.array(x)` makes one)", _given(task, case))
     return result
 
 
@@ -99,7 +100,7 @@ def _judge_type(task, returned, expected):
     return Verdict("right", "")
 
 
-def _common(returned, expected):
+def no_numbers(returned, expected):
     """Mistakes that look alike in every function: nothing returned, another kind of thing, another shape."""
     if returned is None and expected is not None:
         return "it returns nothing: is there a `return`, and is it reached in every case?"

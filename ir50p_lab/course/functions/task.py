@@ -8,6 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 
+class Failed(Exception):  # noqa: N818  (becomes a sentence)
+    """What the student wrote does not do what it has to; args: sentence, and one input that fails or nothing."""
+
+
 @dataclass(frozen=True)
 class Slip:
     """A typical mistake.
@@ -31,6 +35,8 @@ class Task:
     that returns a sentence about a mistake no slip covers, or "". where: {words: function of a case}: kinds of cases,
     to say that only these go wrong. hints: two, opened on demand; loan: a plain solution, as text.
     same: compares what came back with what was expected; None: equal within tolerance. unit: of what comes back.
+    A class has no cases; tried: function of it, raises `Failed` or returns a remark on a right answer ("": none);
+    test: its small test, as text; right: the class that stands in.
     """
 
     name: str
@@ -38,8 +44,8 @@ class Task:
     signature: tuple
     asks: str
     right: Callable
-    cases: Callable
     loan: str
+    cases: Callable | None = None
     leans_on: tuple = ()
     slips: tuple = ()
     symptom: Callable | None = None
@@ -48,6 +54,13 @@ class Task:
     same: Callable | None = None
     tolerance: float = 1e-9
     unit: str = ""
+    tried: Callable | None = None
+    test: str = ""
+
+    @property
+    def function(self):
+        """Name of the function or class; a stage of it has a longer one."""
+        return self.name.partition(".")[0]
 
     def agrees(self, returned, expected):
         """Tell whether what came back is what was expected."""

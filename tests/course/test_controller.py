@@ -1,0 +1,181 @@
+"""What students write as a PID: right ones of several kinds pass, wrong ones are told apart, stages follow each other."""
+
+import numpy as np
+import pytest
+import solutions
+from cells import cell
+
+from ir50p_lab.course import check, my_robot
+from ir50p_lab.course.functions import folder
+from ir50p_lab.course.functions.catalogue import STAGES, task
+from ir50p_lab.course.functions.judge import judge
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.simulation import simulate
+
+ALL = (*STAGES["PID"], "PID")
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path, monkeypatch):
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+    monkeypatch.setattr(folder, "_at", {})
+    my_robot._said.clear()
+    return tmp_path
+
+
+def edited(stage, *edits):
+    """The course's solution of a stage with some lines changed."""
+    text = task(stage).loan
+    for old, new in edits:
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+def made(text):
+    names = {"np": np}
+    exec(text, names)
+    return names["PID"]
+
+
+GROWN = "grown = self.integral + self.ki * error * self.period"
+ADD = "self.integral = self.integral + self.ki * error * self.period"
+WINDS = "winds_up = (np.abs(push) > self.limit) & (push * error > 0)"
+SPEED = "self.speed = self.speed + self.share * ((q - self.last) / self.period - self.speed)"
+TRAPEZOID = (
+    "self.integral = self.integral + self.ki * (error + self.before) / 2 * self.period\n        self.before = error"
+)
+FORGET = "self.integral = np.zeros(3)\n"
+
+
+@pytest.mark.parametrize(
+    ("stage", "edits", "remark"),
+    [
+        ("PID.pi", [(ADD, TRAPEZOID), (FORGET, FORGET + "        self.before = 0\n")], "trapezoidal"),
+        ("PID.pi", [(f"        {ADD}\n", ""), ("return self.kp * error + self.integral",
+          f"push = self.kp * error + self.integral\n        {ADD}\n        return push")], "one period later"),
+        ("PID.pi", [("self.ki * error", "error"), ("+ self.integral", "+ self.ki * self.integral")], ""),
+        ("PID.limits", [("np.where(winds_up, self.integral, grown)", "np.clip(grown, -self.limit, self.limit)")], ""),
+        ("PID.limits", [(WINDS, "winds_up = np.abs(push) > self.limit")], ""),
+        ("PID", [("1 - np.exp(-2 * np.pi * filter_hz * period)",
+          "period / (period + 1 / (2 * np.pi * filter_hz))")], "another share"),
+    ],
+)  # fmt: skip
+def test_other_right_ones_pass(stage, edits, remark):
+    verdict = judge(task(stage), made(edited(stage, *edits)))
+    assert verdict.state == "right"
+    assert remark in verdict.says
+    assert bool(remark) == bool(verdict.says)
+
+
+@pytest.mark.parametrize(
+    ("stage", "old", "new", "words"),
+    [
+        ("PID.p", "q_wanted - q", "q - q_wanted", "the wrong way"),
+        ("PID.p", "q_wanted - q", "q_wanted + q", "sum of both angles"),
+        ("PID.p", "q_wanted - q", "np.degrees(q_wanted - q)", "57 times"),
+        ("PID.p", "q_wanted - q", "q_wanted", "wherever the arm is"),
+        ("PID.p", "q_wanted - q", "abs(q_wanted - q)", "both sides"),
+        ("PID.p", "self.kp * error", "error", "kp is not used"),
+        ("PID.p", "self.kp * error", "np.sum(self.kp * error)", "shape ()"),
+        ("PID.p", "        return self.kp * error", "        push = self.kp * error", "`return`"),
+        ("PID.p", '    unit = "PWM"\n', "", "unit"),
+        ("PID.p", "self.kp = kp", "self.gain = kp\n        self.kp = 0", "kp does nothing"),
+        ("PID.p", "    def __init__(self, kp)", "    def __init__(self)", "its __init__ takes"),
+        ("PID.p", "error = q_wanted - q", "error = q_wanted - angle", "NameError"),
+        ("PID.pi", " * self.period", "", "period is missing"),
+        ("PID.pi", " * self.period", " * 0.01", "0.01 s is written"),
+        ("PID.pi", "self.integral + self.ki * e", "self.integral - self.ki * e", "away from the target"),
+        ("PID.pi", "self.integral + self.ki * e", "self.ki * e", "does not remember"),
+        ("PID.pi", "self.kp * error + self.integral", "self.integral", "kp does nothing"),
+        ("PID.pi", "self.integral = np.zeros(3)", "pass", "AttributeError"),
+        ("PID.pi", "    def reset(self):", "    def begin(self):", "AttributeError"),
+        ("PID.pi", "        self.integral = np.zeros(3)",
+         '        if not hasattr(self, "integral"):\n            self.integral = np.zeros(3)', "not as new: the integral"),
+        ("PID.limits", "np.clip(self.kp * error + self.integral, -self.limit, self.limit)",
+         "self.kp * error + self.integral", "no limit"),
+        ("PID.limits", "-self.limit, self.limit)", "0, self.limit)", "cannot push downwards"),
+        ("PID.limits", "self.limit = limit_pwm", "self.limit = 255", "255 is written"),
+        ("PID.limits", "np.where(winds_up, self.integral, grown)", "grown", "it winds up"),
+        ("PID.limits", "np.where(winds_up, self.integral, grown)", "np.where(winds_up, 0, grown)", "falls back"),
+        ("PID.limits", "np.where(winds_up, self", "np.where(np.any(winds_up), self", "joint by joint"),
+        ("PID", "qd_wanted - self.speed", "qd_wanted + self.speed", "along with the motion"),
+        ("PID", SPEED, "self.speed = (q - self.last) / self.period", "not filtered"),
+        ("PID", "(q - self.last) / self.period", "(q - self.last)", "no speed yet"),
+        ("PID", "(q - self.last) / self.period", "(q - self.last) / 0.01", "0.01 s is written"),
+        ("PID", "self.last = None", "self.last = np.zeros(3)", "come from zero"),
+        ("PID", "2 * np.pi * filter_hz", "filter_hz", "six times too slow"),
+        ("PID", "qd_wanted - self.speed", "-self.speed", "which speed is wanted"),
+        ("PID", "        self.speed = np.zeros(3)\n", '        self.speed = getattr(self, "speed", np.zeros(3))\n',
+         "last angle"),
+        ("PID", "return np.clip(push + self.integral, -self.limit, self.limit)",
+         "return np.clip(self.kp * error + self.integral, -self.limit, self.limit) + push - self.kp * error",
+         "limit the sum"),
+    ],
+)  # fmt: skip
+def test_wrong_ones_are_told_apart(stage, old, new, words):
+    verdict = judge(task(stage), made(edited(stage, (old, new))))
+    assert verdict.state == "wrong"
+    assert words in verdict.says, verdict.says
+
+
+def test_no_reset_a_shared_memory_gains_read_once_and_a_kick():
+    no_reset = edited("PID.pi", ("        self.reset()", "        self.integral = np.zeros(3)"))
+    no_reset = no_reset.replace("    def reset(self):\n        self.integral = np.zeros(3)\n\n", "")
+    assert "no `reset`" in judge(task("PID.pi"), made(no_reset)).says
+
+    shared = edited("PID.pi", ("        self.integral = np.zeros(3)", "        self.integral[:] = 0"))
+    shared = shared.replace('    unit = "PWM"\n', '    unit = "PWM"\n    integral = np.zeros(3)\n')
+    shared = shared.replace("self.integral = self.integral +", "self.integral +=")
+    shared = shared.replace("        self.reset()\n", "")
+    assert "one memory" in judge(task("PID.pi"), made(shared)).says
+
+    once = edited(
+        "PID.p", ("self.kp = kp", "self.kp = kp\n        self.gain = kp"), ("return self.kp", "return self.gain")
+    )
+    assert "was changed while it ran" in judge(task("PID.p"), made(once)).says
+
+    kick = edited("PID", ("(q - self.last)", "(error - self.last)"), ("self.last = q", "self.last = error"))
+    kick = kick.replace("qd_wanted - self.speed", "self.speed")
+    assert "kicks" in judge(task("PID"), made(kick)).says
+
+
+def test_an_integral_that_waits_for_the_last_push_is_told():
+    """Deciding by what was returned last locks up: at its limit it never integrates again."""
+    text = edited("PID.limits", (WINDS, "winds_up = np.abs(self.pushed) >= self.limit"))
+    text = text.replace("self.integral = np.zeros(3)", "self.integral = np.zeros(3)\n        self.pushed = np.zeros(3)")
+    text = text.replace("        return np.clip(", "        self.pushed = np.clip(")
+    assert "never lets go" in judge(task("PID.limits"), made(text + "\n        return self.pushed")).says
+
+
+def test_each_stage_takes_the_place_of_the_one_before(home, capsys):
+    for stage in ALL:
+        check(stage, cell(solutions.source(stage), "PID"))
+        assert "right, and yours: from now on my_robot.PID is this class" in capsys.readouterr().out
+        assert folder.is_there(stage) and my_robot.whose("PID") == "yours"
+        folder._at.clear()  # another notebook: a stage on the way is not used there
+        assert my_robot.whose("PID") == ("yours" if stage == "PID" else "the course's")
+        assert my_robot.PID(kp=1, ki=1, kd=1).unit == "PWM"
+    assert len(list((home / "my_robot" / "old").glob("PID_*.py"))) == 3
+
+
+def test_what_stands_in_is_at_the_same_stage(capsys):
+    target = np.array([0.0, 0.8, 0.0])
+    check("PID.p")
+    short = simulate(IR50P, my_robot.PID(kp=400), target, duration=3)
+    mine = simulate(IR50P, made(task("PID.p").loan)(kp=400), target, duration=3)
+    np.testing.assert_allclose(short.q, mine.q, atol=1e-9)
+    check("PID.pi")
+    far = np.array([0.0, 4.0, 0.0])
+    wound = my_robot.PID(kp=100, ki=400)
+    simulate(IR50P, wound, far, duration=3)
+    assert wound.step(3.01, far, np.zeros((3, 3)))[1] > 255  # no limit yet, and no rest for the integral
+
+
+def test_a_loan_of_a_stage_never_takes_the_place_of_the_whole(capsys):
+    check("PID", cell(solutions.source("PID"), "PID"))
+    for k in range(7):
+        check("PID.p", cell(edited("PID.p", ("self.kp * error", f"{k} * error")), "PID"))
+    assert "lends you" not in capsys.readouterr().out
+    folder._at.clear()
+    assert my_robot.whose("PID") == "yours"
