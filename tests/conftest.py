@@ -1,18 +1,14 @@
 """In CI a skipped test is a failure: a run must not pass by leaving things out. Marks and what they leave out."""
 
 import os
-from collections import Counter
 
 import pytest
 from hypothesis import settings
 from marks import MARKS, TESTS
 
-UNCOMPILED = os.environ.get("NUMBA_DISABLE_JIT") == "1"  # the run that counts jitted lines, a hundred times slower
-
 # no deadline: a first call may compile; the same examples in every run: a failure can be repeated
 settings.register_profile("lab", deadline=None, derandomize=True)
-settings.register_profile("uncompiled", settings.get_profile("lab"), max_examples=3)
-settings.load_profile("uncompiled" if UNCOMPILED else "lab")
+settings.load_profile("lab")
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -35,8 +31,6 @@ def pytest_collection_modifyitems(config, items):
             if any(item.path.is_relative_to(TESTS / place) for place in places):
                 item.add_marker(mark)
     kept = [item for item in items if _is_asked_for(item, config.option)]
-    if UNCOMPILED:
-        kept = _first_cases(kept)
     chosen = set(kept)
     config.hook.pytest_deselected(items=[item for item in items if item not in chosen])
     items[:] = kept
@@ -47,21 +41,6 @@ def _is_asked_for(item, option):
     if option.quick and marks & {"notebook", "emulator"}:
         return False
     return option.timing is None or (option.timing == "only") == ("timing" in marks)
-
-
-def _first_cases(items):
-    """Without the compiler, only the first two cases of a test run; the first n of one marked `compiled(keep=n)`.
-
-    All cases run compiled in the main run; the few here are to reach the same lines.
-    """
-    seen, kept = Counter(), []
-    for item in items:
-        marker = item.get_closest_marker("compiled")
-        name = item.nodeid.partition("[")[0]
-        seen[name] += 1
-        if seen[name] <= (2 if marker is None else marker.kwargs.get("keep", 0)):
-            kept.append(item)
-    return kept
 
 
 @pytest.hookimpl(trylast=True)

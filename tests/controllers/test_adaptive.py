@@ -37,7 +37,6 @@ def test_the_regressor_holds_the_christoffel_matrix(seed):
 
 
 @pytest.mark.parametrize("seed", range(4))
-@pytest.mark.compiled
 def test_the_lyapunov_function_goes_down(seed):
     """V = s'Ms/2 + sum (theta_i - true_i)' Gamma_i^-1 (theta_i - true_i)/2, with dV/dt = -s' K s."""
     rng = np.random.default_rng(seed)
@@ -77,7 +76,6 @@ def payload(arm, kg):
     return theta
 
 
-@pytest.mark.compiled
 def test_it_learns_a_payload_while_it_tracks():
     loaded = payload(THESIS_RODS, 0.5)
     Gamma = np.zeros((3, 20))
@@ -97,7 +95,6 @@ def test_it_learns_a_payload_while_it_tracks():
     assert found == pytest.approx(0.5, rel=0.05)
 
 
-@pytest.mark.compiled
 def test_bounds_hold_and_frozen_parameters_stay():
     Gamma = np.zeros((3, 20))
     Gamma[:, 2:4] = 100.0
@@ -122,7 +119,6 @@ def test_small_errors_and_a_limited_drive_teach_nothing():
     assert learnt([30.0, 0, 0]) == 0  # the command would be 1500 counts
 
 
-@pytest.mark.compiled
 def test_the_dead_band_keeps_noise_from_walking_the_parameters_away():
     def drift(dead_band):
         law = AdaptiveControl(IR50P, 2, 10, 20.0, limit_pwm=255, dead_band=dead_band)

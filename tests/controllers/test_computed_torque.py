@@ -79,7 +79,6 @@ def test_feed_forward_and_gravity_compensation():
     np.testing.assert_allclose(u, gravity(arm, q) + arm.friction.Tf - (3, 4, 5) * (q - r), rtol=1e-9)
 
 
-@pytest.mark.compiled
 def test_gravity_compensation_rests_on_the_set_point_where_a_pd_sags():
     arm, goal = THESIS_RODS, np.array([np.pi / 2, np.pi / 2, -np.pi / 3])
     gains = {"kp": (25, 200, 200), "kd": (10, 40, 40), "period": 0.001, "filter_hz": 100}
@@ -107,7 +106,6 @@ def predicted(kp, kd, e0, period, n):
     return np.array(found)
 
 
-@pytest.mark.compiled
 def test_error_dynamics_are_those_predicted():
     start = np.array([0.2, -0.15, 0.1])
     ends = hold([0.5, 0.4, -0.3])
@@ -123,7 +121,6 @@ def test_error_dynamics_are_those_predicted():
         assert np.abs(e - start[i] * (1 + w * run.t) * np.exp(-w * run.t)).max() < 0.02 * abs(start[i])
 
 
-@pytest.mark.compiled
 def test_the_error_dynamics_do_not_depend_on_the_pose_as_those_of_a_pid_do():
     answers = []
     for centre in ((0.0, 0.0, 0.0), (1.0, 1.4, -1.0), (-0.7, 0.3, 0.9)):
@@ -187,7 +184,6 @@ def rms(model, target, q0=None, period=0.01, **options):
         (0.8, SINUS, (0.551, 1.62, 0.899)),
     ],
 )
-@pytest.mark.compiled
 def test_figure_2_8_and_wrong_masses(scale, target, expected):
     found = rms(scale * THESIS_C, target)
     if scale == 1.0:  # no tighter than what the velocity makes: here a difference quotient, there the true one
@@ -196,13 +192,11 @@ def test_figure_2_8_and_wrong_masses(scale, target, expected):
         np.testing.assert_allclose(found, expected, rtol=0.03)
 
 
-@pytest.mark.compiled
 def test_at_a_fast_sampling_the_exact_model_leaves_nothing():
     assert (rms(THESIS_C, QUINTIC, period=0.001) < 1e-3).all()
     assert (rms(THESIS_C, SINUS, period=0.001) < 3e-3).all()
 
 
-@pytest.mark.compiled
 def test_high_gains_hide_model_errors():
     """A wrong model shows the less, the higher the gains: error of a constant disturbance d is d/(M kp)."""
     low = simulate(
@@ -214,7 +208,6 @@ def test_high_gains_hide_model_errors():
 # ---- options, one by one
 
 
-@pytest.mark.compiled
 def test_rate_of_the_error_does_not_lag_where_the_filtered_velocity_does():
     def run(velocity):
         law = ComputedTorque(THESIS_RODS, **TABLES_4_5, velocity=velocity, filter_hz=3)
@@ -261,7 +254,6 @@ def test_smoothed_sign():
     np.testing.assert_allclose(arm - still, (36, 22, 22), rtol=1e-6)  # breakaway in counts, as the arm is made
 
 
-@pytest.mark.compiled
 def test_integral_takes_a_constant_disturbance_away():
     wrong = THESIS_RODS.theta.copy()
     wrong[:, 2:4] *= 0.8  # gravity
@@ -325,7 +317,6 @@ def test_delay_leads_error_and_reference_ahead():
     np.testing.assert_allclose(step(law, r, (r, rd, rdd)), step(ahead, later[0], later), rtol=1e-9)
 
 
-@pytest.mark.compiled
 def test_position_filter_lags_as_in_the_thesis():
     late = ComputedTorque(THESIS_RODS, **TABLES_4_5, position_filter_hz=3, velocity="angle")
     sharp = ComputedTorque(THESIS_RODS, **TABLES_4_5)

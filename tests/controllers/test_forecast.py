@@ -30,7 +30,6 @@ def test_stretch_is_the_border():
         assert not fits.saturates and fails.saturates and fits.first is None and "saturates" in str(fails)
 
 
-@pytest.mark.compiled
 def test_the_bench_follows_what_fits_and_not_what_does_not():
     law = ComputedTorque(IR50P, (25, 9, 49), (10, 6, 14), limit_pwm=255, model_velocity="reference")
 

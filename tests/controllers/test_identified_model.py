@@ -22,7 +22,6 @@ def unit(request):
     return request.param, recording, identify(recording, l2=IR50P.l[1])
 
 
-@pytest.mark.compiled
 def test_the_identified_model_tracks_where_the_pid_does_not(unit):
     seed, _, model = unit
     law = ComputedTorque(model, **TABLES_4_5, model_velocity="reference")
@@ -35,7 +34,6 @@ def test_the_identified_model_tracks_where_the_pid_does_not(unit):
     assert (rms(follow(IR50P, as_thesis, SWING, 15, seed=seed), SWING) <= (20, 65, 20)).all()
 
 
-@pytest.mark.compiled
 def test_the_naive_model_fails_because_its_inertia_is_negative(unit):
     seed, recording, model = unit
     naive = naive_model(recording)
@@ -57,7 +55,6 @@ def test_the_naive_model_fails_because_its_inertia_is_negative(unit):
     assert rms(follow(IR50P, law, SWING, 15, seed=seed), SWING).max() < 0.5 * error
 
 
-@pytest.mark.compiled
 def test_saturation_is_forecast_from_the_identified_model(unit):
     seed, _, model = unit
     goal = (np.pi / 2, np.pi / 2, -np.pi / 3)
@@ -71,7 +68,6 @@ def test_saturation_is_forecast_from_the_identified_model(unit):
         assert (run.u.max() == 255) or fits
 
 
-@pytest.mark.compiled
 def test_gains_and_model_stand_in_the_recording(unit, tmp_path):
     seed, _, model = unit
     with SimulatedBench(IR50P, seed=seed, q0=SWING(0.0)[0], record_to=tmp_path) as bench:

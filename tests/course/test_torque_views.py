@@ -84,7 +84,6 @@ def test_printed_parameters_are_model_c():
     np.testing.assert_array_equal(thesis_theta(**printed.PARAMETERS_2_1_2), THESIS_C)
 
 
-@pytest.mark.compiled
 def test_printed_equations_cost_more_than_parameters_20_per_cent_off():
     """Numbers: checked numerically with a second program (RMS in mrad)."""
     gains = (400, 2500, 2500), (40, 100, 100)

@@ -36,7 +36,6 @@ def trained(record, *, rows="joint", columns="rigid", **steps):
     return fit(Phi, motion.u, rows=rows, columns=columns, method="weighted", weights=motion.use.astype(float))
 
 
-@pytest.mark.compiled
 def test_each_step_of_the_way_from_the_thesis_to_the_full_method(records):
     train, valid = records
     naive, full = trained(train, rows="shared", columns="thesis", **NAIVE), trained(train, **FULL)

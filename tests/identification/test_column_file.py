@@ -54,7 +54,6 @@ def test_what_is_asked_for_is_taken(tmp_path):
     assert "q from 'a_deg' in deg" in two.notes
 
 
-@pytest.mark.compiled
 def test_our_own_recordings_too(tmp_path):
     with SimulatedBench(record_to=tmp_path) as bench:
         for _ in bench.run(0.5):

@@ -41,7 +41,6 @@ def test_exact_data_of_one_joint(samples):
     assert found.warnings == () and found.rms.shape == (16, 1)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("delay", [0, 2, 5, 8])
 def test_steps_on_the_bench_tell_it_within_two_periods(delay):
     for seed in (1, 2):
@@ -50,7 +49,6 @@ def test_steps_on_the_bench_tell_it_within_two_periods(delay):
         assert abs(found.delay - 0.01 * delay) < 3 * found.stderr
 
 
-@pytest.mark.compiled
 def test_fourier_motion_cannot_tell_it():
     """The claim of the docstring: the estimate is off by far more, and it says so."""
     found = estimate_delay(bench(FOURIER, 2))

@@ -16,7 +16,6 @@ from ir50p_lab.signals.fourier import limits_of
 pytestmark = pytest.mark.numeric
 OTHER = Arm(name="other", l=(0.5, 0.3, 0.2), m=(1, 1, 1), lc=(0.1, 0.1, 0.1), q_min=(-1, 0, -2), q_max=(2, 1.5, 1))
 QUICK = {"harmonics": 3, "starts": 1, "iterations": 25, "progress": False}  # from every start to a good optimum
-compiled = pytest.mark.compiled
 
 
 def problem(arm=IR50P, rows="joint", table=0.0, columns="rigid", standing=0.0):
@@ -63,7 +62,6 @@ def test_slopes_follow_the_value():
         assert (ahead - behind)[0] / 2 == pytest.approx(out[0] @ step, rel=0.05, abs=1e-6)
 
 
-@compiled
 @pytest.mark.parametrize("arm", [IR50P, OTHER], ids=["IR50P", "another arm"])
 def test_better_than_chance_and_inside_the_limits(arm):
     found = optimise_excitation(arm, seed=3, periods=2, **{**QUICK, "iterations": 40})
@@ -81,14 +79,12 @@ def test_better_than_chance_and_inside_the_limits(arm):
     assert "->" in str(found) and len(found.starts) == 1
 
 
-@compiled
 def test_the_same_seed_gives_the_same_motion():
     first, second = (optimise_excitation(IR50P, seed=5, **{**QUICK, "iterations": 6}) for _ in range(2))
     assert first.reference == second.reference and first.starts == second.starts
     assert optimise_excitation(IR50P, seed=6, **{**QUICK, "iterations": 6}).reference != first.reference
 
 
-@compiled
 def test_estimates_are_surer_with_the_better_motion():
     """What it is for: the same noise on u, a smaller spread of theta relative to each column's part in u."""
     found = optimise_excitation(IR50P, seed=1, **{**QUICK, "iterations": 40})
@@ -125,7 +121,6 @@ def test_a_price_on_standing_buys_motion():
     assert max(map(standing_share, motions.values())) < 0.6 * plain
 
 
-@compiled
 def test_shared_rows_and_chosen_columns(capsys):
     found = optimise_excitation(
         IR50P, rows="shared", columns=["theta3", "theta4", "fv1", "fc3"], starts=1, iterations=5

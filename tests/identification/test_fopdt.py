@@ -83,7 +83,6 @@ def test_derivatives_of_the_kernel(a):
 # --- the fit
 
 
-@pytest.mark.compiled(keep=4)
 @pytest.mark.parametrize("seed", range(40))
 def test_exact_data_of_any_scale_give_the_exact_model(seed):
     """Even and uneven times, a step, many steps, or an input that changes at every sample."""
@@ -120,7 +119,6 @@ def test_step_in_the_first_sample_needs_the_input_before_it():
     assert (found.K, found.T, found.L) == pytest.approx((2, 0.5, 0.1))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("kind", ["step, little noise", "step, much noise", "many steps", "uneven times"])
 def test_true_values_lie_within_two_standard_errors_95_times_in_100(kind):
     """White noise, 200 seeds. Binomial: 95.4 % of 200 is 191 +- 3; 180 and 199 are 3.7 and 2.7 deviations off."""
@@ -143,7 +141,6 @@ def inside(model, fits):
     return (np.abs(z) < 2).sum(axis=0)
 
 
-@pytest.mark.compiled
 def test_coloured_noise_widens_the_standard_errors_and_is_named():
     """Correlation 0.7: unwidened errors hold the truth about 60 % of the time; widened ones 85 % or more."""
     model = FOPDT(K=-1.5, T=0.5, L=0.133, y0=3.0)
@@ -166,7 +163,6 @@ def test_a_known_dead_time_is_kept():
     assert abs(found.K + 1) < 3 * found.K_stderr and abs(found.T - 0.3) < 3 * found.T_stderr
 
 
-@pytest.mark.compiled
 def test_a_slow_plant_is_accepted_and_flagged():
     """T longer than what was recorded of it (3.4 s), but the bend is seen."""
     for T, flagged in ((2.0, False), (3.0, False), (4.0, True), (8.0, True)):
@@ -175,7 +171,6 @@ def test_a_slow_plant_is_accepted_and_flagged():
         assert any("not settled" in text for text in found.warnings) == flagged
 
 
-@pytest.mark.compiled
 def test_a_dead_time_lost_in_noise_is_flagged():
     """L = 0.04 s = 2 periods, which the noise of 0.15 blurs to a standard error of about 0.05 s."""
     told = 0
@@ -196,7 +191,6 @@ def refused(words, t, u, y, **options):
     assert words in str(caught.value), caught.value
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("size", NOISES)
 @pytest.mark.parametrize("tau", [0.01, 0.1, 0.5, 2.0, 20.0])
 def test_an_integrating_joint_is_refused_and_the_remedy_works(tau, size):
@@ -209,7 +203,6 @@ def test_an_integrating_joint_is_refused_and_the_remedy_works(tau, size):
         assert found.T == pytest.approx(tau, rel=0.2 if size else 1e-6)
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("size", NOISES)
 @pytest.mark.parametrize("T", [0.2, 0.6, 2.0])
 def test_a_growing_response_is_refused(T, size):
@@ -218,7 +211,6 @@ def test_a_growing_response_is_refused(T, size):
         refused("unstable", T_S, STEP, y)
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9])
 @pytest.mark.parametrize("size", NOISES[:2])
 def test_dead_time_below_the_period_is_said_to_be_not_identifiable(share, size):
@@ -229,7 +221,6 @@ def test_dead_time_below_the_period_is_said_to_be_not_identifiable(share, size):
         assert not fit_fopdt(T_S, STEP, y, dead_time=0).warnings or share
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("share", [0.001, 0.1, 0.5, 0.8])
 @pytest.mark.parametrize("size", NOISES[:2])
 def test_time_constant_below_the_period_is_said_to_be_not_identifiable(share, size):
@@ -239,7 +230,6 @@ def test_time_constant_below_the_period_is_said_to_be_not_identifiable(share, si
         assert abs(found.K / (y[-1] - y[0]) - 1) < 0.02 + 4 * size
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("seed", range(4))
 def test_milliseconds_and_outliers_are_named(seed):
     rng = np.random.default_rng(seed)
@@ -255,7 +245,6 @@ def test_milliseconds_and_outliers_are_named(seed):
     assert abs(found.T - plain.T) < 2 * plain.T_stderr and abs(found.K - plain.K) < 2 * plain.K_stderr
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("zero", [0.0, 0.3, -0.1])
 def test_a_second_order_model_is_offered_and_right(zero, seed):
@@ -281,7 +270,6 @@ def test_a_few_samples_do_not_show_whether_the_model_is_right():
     assert "too few to see" in " ".join(fit_fopdt(t, u, 0.04 * lag(t - 0.03, 0.06), u_before=0).warnings)
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("damping", [0.05, 0.15, 0.3])
 @pytest.mark.parametrize("size", NOISES)
 def test_a_swinging_response_is_refused(damping, size):
@@ -299,7 +287,6 @@ def test_constant_columns_are_refused(level):
     refused("y stays at", T_S, STEP, np.full_like(T_S, level))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
 def test_noise_and_drift_are_not_taken_for_a_response(size):
     for seed in range(20):
@@ -350,7 +337,6 @@ def test_a_model_by_hand_is_checked(bad):
 # --- and nothing else is refused
 
 
-@pytest.mark.compiled(keep=2)
 @pytest.mark.parametrize("size", NOISES)
 @pytest.mark.parametrize("order", [2, 3, 4])
 def test_plants_of_higher_order_without_swing_are_fitted(order, size):
@@ -364,7 +350,6 @@ def test_plants_of_higher_order_without_swing_are_fitted(order, size):
         assert any("not white" in text for text in found.warnings)
 
 
-@pytest.mark.compiled
 def test_good_records_are_never_refused():
     """150 plants with 2 % noise: T and L above two periods, at least 1.5 T of response."""
     refusals = []

@@ -64,7 +64,6 @@ def recording(case, seed=0):
     return SimpleNamespace(t=run.t, q=q, u=run.u)
 
 
-@pytest.mark.compiled
 @arms
 def test_good_recordings_are_taken_and_explained(case):
     record, other = recording(case), recording(case, 1)
@@ -77,7 +76,6 @@ def test_good_recordings_are_taken_and_explained(case):
     assert found.theta[0, 10] == pytest.approx(theta[0, 10], rel=0.25)
 
 
-@pytest.mark.compiled
 @arms
 def test_gaps_uneven_times_and_coarse_angles(case):
     record = recording(case)
@@ -106,7 +104,6 @@ def spoilt(record, **changes):
     return SimpleNamespace(**{**vars(record), **changes})
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("share", [0.001, 0.01, 0.3])
 def test_nan_is_refused(good, share):
     q = good.q.copy()
@@ -115,7 +112,6 @@ def test_nan_is_refused(good, share):
         identify(spoilt(good, q=q))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("back", [0.004, 0.1, 1e3])
 def test_time_going_backwards_is_refused(good, back):
     t = good.t.copy()
@@ -124,14 +120,12 @@ def test_time_going_backwards_is_refused(good, back):
         identify(spoilt(good, t=t))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("samples", [5, 20, 39])
 def test_too_short_is_refused(good, samples):
     with pytest.raises(IdentificationError, match="too short"):
         identify(SimpleNamespace(t=good.t[:samples], q=good.q[:samples], u=good.u[:samples]))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("value", [0.0, 1e-3, 2.0])
 def test_a_constant_joint_is_refused(good, value):
     q = good.q.copy()
@@ -140,7 +134,6 @@ def test_a_constant_joint_is_refused(good, value):
         identify(spoilt(good, q=q))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("share", [0.5, 0.7, 0.9])
 def test_a_clipped_angle_is_refused(good, share):
     q = good.q.copy()
@@ -150,7 +143,6 @@ def test_a_clipped_angle_is_refused(good, share):
         identify(spoilt(good, q=q))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("level", [40, 60, 80])
 def test_a_clipped_drive_is_flagged(good, level):
     limit = np.percentile(np.abs(good.u), level, axis=0)
@@ -158,7 +150,6 @@ def test_a_clipped_drive_is_flagged(good, level):
     assert sum("largest or smallest" in text for text in found.warnings) == 3
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("scale", [0.3, 1.0, 2.0])
 def test_degrees_are_flagged(good, scale):
     middle = good.q.mean(axis=0)
@@ -166,7 +157,6 @@ def test_degrees_are_flagged(good, scale):
     assert any("degrees" in text for text in found.warnings)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("seconds", [0.2, 1.0, 5.0])
 def test_a_frozen_sensor_is_refused_a_slow_one_and_outliers_are_flagged(good, seconds):
     q = good.q.copy()

@@ -86,7 +86,6 @@ def motor(seed):
     return (t, np.round(q * 229.18) / 229.18, np.round(J * a + b * v + c * np.sign(v) + 3)), (J, b, c)
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("machine", [industrial_axis, fast_arm, research_arm, motor])
 def test_within_three_standard_errors_and_near(machine, seed):
@@ -100,7 +99,6 @@ def test_within_three_standard_errors_and_near(machine, seed):
     assert "outlier" not in " ".join(found.warnings)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("seed", range(4))
 def test_too_high_a_cutoff_is_told_by_half_of_it(seed):
     """The default is right; twice the resonance is not, and is doubted."""
@@ -110,7 +108,6 @@ def test_too_high_a_cutoff_is_told_by_half_of_it(seed):
     assert abs(fit_joint(*record).inertia / J - 1) < 0.1
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("seed", range(4))
 def test_gravity_is_named_and_then_found(seed):
     record, truth = fast_arm(seed, gravity=2.0)
@@ -197,7 +194,6 @@ def test_anyway_goes_on_with_the_reason():
     assert fit_joint(t, holes, u, anyway=True).viscous == pytest.approx(truth[1], rel=0.05)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("seed", range(4))
 def test_waiting_at_the_turning_point_and_gaps_are_not_refused(seed):
     """The same largest angle again and again, a rest there, and pieces cut out while the joint moves."""

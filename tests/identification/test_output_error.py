@@ -42,7 +42,6 @@ def refined(record):
     return output_error(identify(record, l2=0.2), record, thesis_pid(), MOTION, l2=0.2, progress=False)
 
 
-@pytest.mark.compiled(keep=1)
 def test_the_loop_is_that_of_simulate_and_of_the_bench(record):
     pid = PID(kp=(289, 225, 270), ki=(50, 10, 50), kd=(40, 30, 30), limit_pwm=255)
     again = simulate(TRUE, pid, MOTION, duration=5.0, q0=MOTION.q_start, unit="PWM")
@@ -58,7 +57,6 @@ def test_the_loop_is_that_of_simulate_and_of_the_bench(record):
     assert np.abs(q - quiet.q).max() < 0.02 and np.sqrt(np.mean((q - quiet.q) ** 2)) < 0.006
 
 
-@pytest.mark.compiled
 def test_finds_the_truth_and_breakaway_friction(refined):
     found = refined
     for joint, column in ((0, 0), (0, 10), (0, 11), (1, 2), (1, 3), (1, 12), (2, 3), (2, 14), (2, 15)):
@@ -75,7 +73,6 @@ def test_finds_the_truth_and_breakaway_friction(refined):
     assert "fs" in str(found) and found.evaluations > 50
 
 
-@pytest.mark.compiled
 def test_predicts_another_run_better_than_the_regression(refined, record):
     motion = load_excitations()["validation 2"]
     with SimulatedBench(IR50P, seed=9, unit=IDEAL, q0=motion.q_start, record_to=False) as bench:
@@ -87,7 +84,6 @@ def test_predicts_another_run_better_than_the_regression(refined, record):
     assert q.rms.sum() < before.rms.sum()
 
 
-@pytest.mark.compiled
 def test_the_recorded_reference_does_as_well(record):
     first = identify(record, l2=0.2)
     given, as_recorded = (
@@ -100,7 +96,6 @@ def test_the_recorded_reference_does_as_well(record):
     assert np.isnan(given.fs_stderr).all()
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("breakaway", [1, 2, 3])
 def test_instruments_take_the_bias_of_noise_away(breakaway):
     """Least squares on noisy angles is off by many standard errors; instruments from the simulated loop are not."""
@@ -132,7 +127,6 @@ BAD = [
 
 
 @pytest.mark.parametrize("options, words", [*BAD, ({"seconds": 0.1}, "2 s or more"), ({"l2": -1}, "l2")])
-@pytest.mark.compiled
 def test_bad_arguments(record, options, words):
     given = {"estimate": TRUE, "recordings": record, "controller": thesis_pid(), "references": MOTION, **options}
     if isinstance(given["references"], list):
@@ -142,7 +136,6 @@ def test_bad_arguments(record, options, words):
 
 
 @pytest.mark.parametrize("options, words", [*BAD, ({"cutoff_hz": 40.0}, "too high"), ({"slow": 0}, "slow")])
-@pytest.mark.compiled
 def test_bad_arguments_of_instruments(record, options, words):
     given = {"estimate": TRUE, "recordings": record, "controller": thesis_pid(), "references": MOTION, **options}
     if isinstance(given["references"], list):
@@ -151,7 +144,6 @@ def test_bad_arguments_of_instruments(record, options, words):
         fit_with_instruments(given.pop("estimate"), given.pop("recordings"), given.pop("controller"), **given)
 
 
-@pytest.mark.compiled
 def test_a_record_with_a_gap_is_refused(record):
     kept = (record.t < 8) | (record.t > 9)
     part = type("R", (), {"t": record.t[kept], "q": record.q[kept], "u": record.u[kept]})

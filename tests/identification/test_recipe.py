@@ -38,7 +38,6 @@ def records():
     return run("training"), run("validation 1", seed=6)
 
 
-@pytest.mark.compiled
 def test_the_recipe_is_its_steps(records):
     train, valid = records
     found = identify(train, l2=0.2)
@@ -54,7 +53,6 @@ def test_the_recipe_is_its_steps(records):
     assert (score.fit > [88, 85, 88]).all()  # on everything that is not ideal, 40 s
 
 
-@pytest.mark.compiled
 def test_two_recordings_are_better_than_one(records):
     train, valid = records
     one, two = identify(train, l2=0.2), identify([train, valid], l2=0.2)
@@ -63,7 +61,6 @@ def test_two_recordings_are_better_than_one(records):
     assert len(two.residuals) > 1.9 * len(one.residuals)
 
 
-@pytest.mark.compiled
 def test_samples_that_do_not_count_do_not_matter(records):
     motion = process(records[0], delay=0.02, slow=0.05)
     Phi = regressor(motion.q, motion.qd, motion.qdd)
@@ -105,7 +102,6 @@ def test_loading_motions_starts_no_numba():
     assert out.strip() == "False"
 
 
-@pytest.mark.compiled
 def test_the_simulation_tells_what_the_run_will_be(records):
     told = simulate_identification(MOTIONS["training"], IR50P, thesis_pid())
     assert told.worth() > 0 and told.worth() == (told.fit - [90, 92, 93]).min()
@@ -118,7 +114,6 @@ def test_the_simulation_tells_what_the_run_will_be(records):
     np.testing.assert_allclose(as_theta.spread, told.spread, rtol=0.2)
 
 
-@pytest.mark.compiled
 def test_the_same_seed_makes_the_same_motions():
     options = {"candidates": 4, "kept": 1, "progress": False, "iterations": 10, "starts": 1, "harmonics": 3}
     one, two = (make_excitations(seed=3, **options) for _ in range(2))

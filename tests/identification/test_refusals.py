@@ -75,7 +75,6 @@ def test_every_public_function_is_here():
     assert functions <= set(BAD), functions - set(BAD)
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("name, number", [(name, k) for name, calls in BAD.items() for k in range(len(calls))])
 def test_bad_input_is_refused_in_words(name, number):
     with pytest.raises(LabError) as refusal:

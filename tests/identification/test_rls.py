@@ -125,7 +125,6 @@ def test_the_factored_form_holds_where_the_plain_one_breaks(seed):
         assert (rls._D > 0).all()
 
 
-@pytest.mark.compiled(keep=0)
 @pytest.mark.parametrize("forgetting", [1.0, 0.9999, 0.99])
 def test_stable_over_a_million_samples(forgetting):
     n, rounds = 50_000, 20
@@ -145,7 +144,6 @@ def test_stable_over_a_million_samples(forgetting):
     assert relative(rls.theta[0], expected) < 1e-6
 
 
-@pytest.mark.compiled(keep=0)
 def test_forgetting_without_excitation_does_not_blow_up():
     Phi, y = data(5, 5000)
     rls = RLS(forgetting=0.99)

@@ -62,7 +62,6 @@ def check(found, machine, tolerance):
 # --- good data
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("seed", range(6))
 @machines
 def test_parameters_are_found_again(machine, seed):
@@ -84,7 +83,6 @@ def test_exact_data_give_exact_parameters():
     assert found.held is False and found.warnings == ()
 
 
-@pytest.mark.compiled
 @machines
 def test_standard_errors_are_not_too_small(machine):
     """Pooled over 20 seeds: within three standard errors, or 1 % (3 % with 2 mrad of noise at 50 Hz)."""
@@ -97,7 +95,6 @@ def test_standard_errors_are_not_too_small(machine):
     assert np.mean(good) > 0.97
 
 
-@pytest.mark.compiled(keep=1)
 @machines
 @pytest.mark.parametrize("limit", [0.3, 0.6, 0.9])
 def test_a_drive_that_really_saturates_is_not_refused(machine, limit):
@@ -105,7 +102,6 @@ def test_a_drive_that_really_saturates_is_not_refused(machine, limit):
     check(fit_joint(*recorded(machine, change=lambda u: np.clip(u, -top, top))), machine, 0.15 if limit < 0.5 else 0.05)
 
 
-@pytest.mark.compiled(keep=1)
 @machines
 def test_switched_inputs_gaps_dropouts_and_coarse_angles_are_not_refused(machine):
     check(fit_joint(*recorded(machine, change=lambda u: np.sign(u) * 0.7 * machine[3])), machine, 0.15)
@@ -241,7 +237,6 @@ def test_negative_coulomb_friction_is_flagged(size):
     assert "Coulomb friction is negative" in " ".join(fit_joint(t, q, a + 5 * v - size * np.sign(v)).warnings)
 
 
-@pytest.mark.compiled
 def test_a_drive_clipped_nearly_all_the_time_is_flagged_at_least():
     for machine in MACHINES.values():
         t, q, u = recorded(machine)
@@ -278,7 +273,6 @@ def test_friction_that_is_all_negative(size):
         fit_joint(t, q, -size * u)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("share", [0.9, 1.2, 1.5])
 def test_a_model_that_explains_little_is_flagged(share):
     """Another load, `share` times as strong as what the model explains, that follows nothing it knows."""
@@ -288,7 +282,6 @@ def test_a_model_that_explains_little_is_flagged(share):
     assert "explains little" not in " ".join(fit_joint(t, q, u + 0.2 * load).warnings)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("part", [0.05, 0.3, 0.7])
 def test_a_time_constant_below_the_sampling_period_is_flagged(part):
     machine = ((part * 0.02, 1.0, 0.3, 0.05), 0.02, 30.0, 3.0, 1e-4)
@@ -298,7 +291,6 @@ def test_a_time_constant_below_the_sampling_period_is_flagged(part):
     assert "below the sampling period" not in " ".join(slow_enough.warnings)
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("scale", [0.3, 1.0, 3.0])
 @machines
 def test_degrees_are_flagged(machine, scale):
@@ -308,7 +300,6 @@ def test_degrees_are_flagged(machine, scale):
     assert "degrees" not in " ".join(fit_joint(t, q, u).warnings)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("samples", [2, 4, 8])
 def test_a_delay_is_flagged_and_taken(samples):
     machine = MACHINES["this arm, 100 Hz, 6 mrad"]
@@ -348,7 +339,6 @@ def test_too_short(machine):
         fit_joint(t[pieces], q[pieces], u[pieces])
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("scale", [1e-3, 0.02, 0.08])
 @machines
 def test_not_exciting(machine, scale):
@@ -381,7 +371,6 @@ def test_time_going_backwards(back):
     refused("time runs backwards", t, q, u, error=InputError)
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("share", [0.4, 0.7, 0.9])
 @machines
 def test_clipped(machine, share):

@@ -27,7 +27,6 @@ SMOOTH = IR50P.without_friction()
 START = {"q0": (0.3, 0.5, -0.7), "qd0": (0.4, -0.6, 0.8)}
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     "arm, bound", [(SMOOTH, 1e-9), (THESIS_A, 1e-5), (THESIS_RODS, 1e-5)], ids=["IR50P with rotors", "A", "rods"]
 )
@@ -59,7 +58,6 @@ def test_equals_scipy_and_mujoco():
     np.testing.assert_allclose(run.q[-1], data.qpos, atol=1e-8)
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize(
     "arm, rises, settles, errors",
     [
@@ -79,7 +77,6 @@ def test_tables_2_1_to_2_3_in_continuous_time(arm, rises, settles, errors):
     np.testing.assert_allclose(run.error[-1], gravity(arm, run.q[-1]) / (25, 200, 200), atol=1e-8)
 
 
-@pytest.mark.compiled
 def test_integral_action_and_saturation_of_the_thesis_loop():
     run = simulate(THESIS_A, ContinuousPID(kp=(25, 200, 200), ki=(0, 100, 100), kd=(10, 40, 40)), SET_POINT)
     assert np.abs(run.error[-1]).max() < 7e-4
@@ -168,7 +165,6 @@ def test_the_reference_may_be_a_function_an_object_or_three_angles():
 # --- dry friction -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("share", [0.0, 0.9, 0.999])
 def test_below_breakaway_nothing_creeps(share):
     arm = THESIS_RODS

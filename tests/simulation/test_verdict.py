@@ -65,7 +65,6 @@ def run(arm, controller, options):
     return simulate(arm, controller(), options.pop("reference", SET_POINT), **options)
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("case", UNSTABLE)
 def test_unstable_loops_are_told(case):
     with pytest.warns(UnstableLoopWarning, match="from limit to limit") as caught:
@@ -76,7 +75,6 @@ def test_unstable_loops_are_told(case):
     assert np.abs(result.qd[last:]).max() > 0.1  # it does not come to rest
 
 
-@pytest.mark.compiled(keep=1)
 @pytest.mark.parametrize("case", STABLE)
 def test_calm_loops_are_left_in_peace(case):
     with warnings.catch_warnings():
