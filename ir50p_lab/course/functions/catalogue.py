@@ -28,7 +28,14 @@ NOTEBOOKS = {
 }
 ORDER = tuple(name for names in NOTEBOOKS.values() for name in names)
 STAGES = {"PID": ("PID.p", "PID.pi", "PID.limits")}  # checked on the way; "PID" itself is the last
-_MODULES = {"00": "pose", "01": "pose", "02": "inverse", "03": "velocity", "08": "controller"}  # what is written
+_MODULES = {  # what is written
+    "00": "pose",
+    "01": "pose",
+    "02": "inverse",
+    "03": "velocity",
+    "08": "controller",
+    "09": "tuning",
+}
 
 
 def function_of(name):

@@ -1,0 +1,275 @@
+"""The function of 09: the figures of a step, taken from what was measured."""
+
+import numpy as np
+
+from ir50p_lab.course.functions.task import Slip, Task
+
+_NAMES = ("rise time", "overshoot", "settling time", "rest error")
+_TOLERANCE = (1e-3, 1e-5, 0.0105, 3e-4)  # s, rad; with or without the sample on the edge of the last second
+
+
+def step_metrics(t, q, target):
+    """Rise time (s), overshoot (rad), settling time (s) and rest error (rad) of one joint's step: four numbers.
+
+    Rise from 10 to 90 % of the way from q[0] to the target, nan if it never gets there; overshoot beyond the target,
+    0 if there is none; settling: from when on the joint stays within max(2 % of the way, 3 standard deviations of the
+    last second) of the target, nan if it is outside at the end; rest error: target less the mean of the last second.
+    """
+    return _figures(t, q, target)
+
+
+def _figures(
+    t,
+    q,
+    target,
+    *,
+    low=0.1,
+    high=0.9,
+    about=None,
+    band=None,
+    over=None,
+    rise=None,
+    settling=None,
+    rest=None,
+    tail=1.0,
+    samples=None,
+):
+    """The figures, each with a place where somebody may err."""
+    way = target - q[0]
+    last = q[t >= t[-1] - tail - 1e-9] if samples is None else q[-samples:]
+    about = target if about is None else about(q, last)
+    done = (q - q[0]) / way
+    found = [np.nan, 0.0, np.nan, target - np.mean(last)]
+    if (done >= high).any():
+        begin, end = t[np.argmax(done >= low)], t[np.argmax(done >= high)]
+        found[0] = end - begin if rise is None else rise(begin, end)
+    elif rise is not None:
+        found[0] = rise(np.nan, np.nan)
+    found[1] = max(0.0, np.max(np.sign(way) * (q - about))) if over is None else over(q, target, way)
+    width = max(0.02 * abs(way), 3 * np.std(last)) if band is None else band(way, last)
+    outside = np.abs(q - about) > width
+    found[2] = _settled(t, outside) if settling is None else settling(t, outside)
+    if rest is not None:
+        found[3] = rest(q, target, last)
+    return tuple(float(one) for one in found)
+
+
+def _settled(t, outside):
+    if outside[-1]:
+        return np.nan
+    return t[np.flatnonzero(outside)[-1] + 1] - t[0] if outside.any() else 0.0
+
+
+def _first_inside(t, outside):
+    return np.nan if outside.all() else t[np.argmin(outside)] - t[0]
+
+
+def _second_order(t, start, target, *, speed, damping, noise=0.0, rng=None, stop=None, short=0.0):
+    """A step of a mass, spring and damper, with noise; `short`: the part of the way that stays undone."""
+    s = t - t[0]
+    end = start + (1 - short) * (target - start)
+    root = speed * np.sqrt(1 - damping**2)
+    wave = np.exp(-damping * speed * s) * (np.cos(root * s) + damping * speed / root * np.sin(root * s))
+    q = end + (start - end) * wave
+    q[0] = start
+    if noise:
+        q[1:] += rng.normal(0, noise, len(t) - 1)
+    return q
+
+
+def _cases():
+    rng = np.random.default_rng(91)
+    t = np.arange(0, 6.005, 0.01)
+    cases = []
+    for start, target, speed, damping, noise, short in (
+        (0.0, 1.0, 4.0, 0.4, 0.0, 0.0),  # swings
+        (0.2, 0.8, 5.0, 0.9, 0.0, 0.0),  # hardly beyond
+        (0.9, -0.3, 4.0, 0.3, 0.0, 0.0),  # downwards
+        (0.4, 0.0, 5.0, 0.5, 0.0, 0.0),  # to zero
+        (-0.5, -1.3, 3.0, 0.6, 0.004, 0.0),  # noise
+        (0.0, 0.3, 6.0, 0.35, 0.011, 0.0),  # noise wider than 2 %
+        (0.1, 1.1, 4.0, 0.8, 0.0, 0.3),  # rests short of 90 %
+        (0.0, 0.8, 5.0, 0.7, 0.002, 0.06),  # rises, and rests outside its band
+    ):
+        q = _second_order(t, start, target, speed=speed, damping=damping, noise=noise, rng=rng, short=short)
+        cases.append((t.copy(), q, target))
+    cases.append((t + 3.0, cases[0][1].copy(), 1.0))  # a clock that does not begin at 0
+    uneven = np.cumsum(rng.uniform(0.02, 0.06, 150))  # a slow computer that comes late now and then
+    cases.append((uneven, _second_order(uneven, 0.0, 0.7, speed=2.0, damping=0.4), 0.7))
+    return cases
+
+
+def _four(returned):
+    values = np.asarray(returned, dtype=float)
+    return values if values.shape == (4,) else None
+
+
+def _same(returned, expected):
+    """The same four numbers, as a tuple or an array; times to a thousandth of a second."""
+    values = _four(returned)
+    return values is not None and bool(np.allclose(values, expected, atol=_TOLERANCE, rtol=0, equal_nan=True))
+
+
+def _symptom(cases, returned, expected):
+    found = [_four(one) for one in returned]
+    if any(one is None for one in found):
+        shape = np.shape(next(back for back, one in zip(returned, found, strict=True) if one is None))
+        return f"four numbers are asked for, {', '.join(_NAMES)}, in this order; yours has the shape {shape}"
+    found, right = np.array(found), np.array(expected)
+    for k, name in enumerate(_NAMES):
+        off = ~np.isclose(found[:, k], right[:, k], atol=_TOLERANCE[k], rtol=0, equal_nan=True)
+        if not off.any():
+            continue
+        case = int(np.argmax(off))
+        _, q, target = cases[case]
+        mine, theirs = found[case, k], right[case, k]
+        step = f"a step from {q[0]:.2f} to {target:.2f} rad"
+        if np.isnan(theirs):
+            return f"the {name} of {step} that never gets there is {mine:.3g}: what never happens has no time, nan"
+        if np.isnan(mine):
+            return f"the {name} of {step} is nan with you, though the joint gets there"
+        return f"the {name} is wrong, first at {step}: yours is {mine:.3g}, by the definition it is {theirs:.3g}"
+    return ""
+
+
+def _slip(says, **changes):
+    return Slip(lambda t, q, target: _figures(t, q, target, **changes), says)
+
+
+def _percent(q, target, way):
+    return 100 * max(0.0, np.max(np.sign(way) * (q - target))) / abs(way)
+
+
+STEP_METRICS = Task(
+    name="step_metrics",
+    notebook="09_break_it_tune_it",
+    signature=("t", "q", "target"),
+    asks="rise time, overshoot, settling time and rest error of a step of one joint: four numbers (s, rad, s, rad)",
+    right=step_metrics,
+    cases=_cases,
+    same=_same,
+    unit="(s, rad, s, rad)",
+    loan="""def step_metrics(t, q, target):
+    way = target - q[0]
+    done = (q - q[0]) / way
+    rise = np.nan
+    if np.any(done >= 0.9):
+        rise = t[np.argmax(done >= 0.9)] - t[np.argmax(done >= 0.1)]
+    overshoot = max(0, np.max(np.sign(way) * (q - target)))
+    last_second = q[t >= t[-1] - 1 - 1e-9]
+    band = max(0.02 * abs(way), 3 * np.std(last_second))
+    outside = np.abs(q - target) > band
+    if outside[-1]:
+        settling = np.nan
+    elif np.any(outside):
+        settling = t[np.flatnonzero(outside)[-1] + 1] - t[0]
+    else:
+        settling = 0
+    return rise, overshoot, settling, target - np.mean(last_second)""",
+    slips=(
+        _slip("the overshoot is in percent of the step; here it is an angle, rad", over=_percent),
+        _slip(
+            "the overshoot is a part of the step, without unit; here it is an angle, rad",
+            over=lambda q, target, way: _percent(q, target, way) / 100,
+        ),
+        _slip(
+            "steps downwards overshoot by the whole step: beyond the target is *below* it there",
+            over=lambda q, target, way: max(0.0, np.max(q - target)),
+        ),
+        _slip(
+            "a joint that stays short of its target overshoots by less than nothing with you; no overshoot is 0",
+            over=lambda q, target, way: np.max(np.sign(way) * (q - target)),
+        ),
+        _slip(
+            "a joint that never passes its target has an overshoot, too: the largest distance on either side "
+            "counts the start as well",
+            over=lambda q, target, way: np.max(np.abs(q - target)),
+        ),
+        _slip(
+            "overshoot and settling are taken about where the joint ends; asked is about where it should end",
+            about=lambda q, last: np.mean(last),
+        ),
+        _slip(
+            "overshoot and settling are taken about the last angle; asked is about where it should end",
+            about=lambda q, last: q[-1],
+        ),
+        Slip(
+            lambda t, q, target: _figures(
+                t, q, target, band=lambda way, last: max(0.02 * abs(target), 3 * np.std(last))
+            ),
+            "the band is 2 % of the target: a step to 0 would have none. It is 2 % of the way from the start",
+        ),
+        Slip(
+            lambda t, q, target: _figures(t, np.r_[0.0, q[1:]], target),
+            "every step begins at 0 rad: look at the first sample for where this one begins",
+        ),
+        _slip("the rise time is negative: which of the two marks does the joint pass first?", rise=lambda a, b: a - b),
+        _slip("the rise time is counted from the start of the run, not from 10 % of the way", low=-np.inf),
+        _slip("the rise time ends at the target itself, not at 90 % of the way", high=1.0),
+        _slip(
+            "where the angle trembles it settles late or never: three standard deviations of noise widen the band",
+            band=lambda way, last: 0.02 * abs(way),
+        ),
+        _slip(
+            "the band is 3 standard deviations only: without noise it has no width, and 2 % of the way is allowed",
+            band=lambda way, last: 3 * np.std(last),
+        ),
+        _slip(
+            "the band is 2 % and the noise together; asked is the wider of the two",
+            band=lambda way, last: 0.02 * abs(way) + 3 * np.std(last),
+        ),
+        _slip(
+            "the band is 5 % of the way; asked is 2 %", band=lambda way, last: max(0.05 * abs(way), 3 * np.std(last))
+        ),
+        _slip(
+            "for steps downwards the band has a negative width, so the joint is never inside: how *long* is the way?",
+            band=lambda way, last: max(0.02 * way, 3 * np.std(last)),
+        ),
+        _slip(
+            "it is settled when it is inside for the first time; a joint that swings leaves the band again",
+            settling=_first_inside,
+        ),
+        _slip(
+            "a clock that begins at 3 s makes it settle 3 s later: the time counts from where the step begins",
+            settling=lambda t, outside: np.nan if outside[-1] else t[np.flatnonzero(outside)[-1] + 1],
+        ),
+        _slip(
+            "the settling time ends at the last sample outside; inside is the one after it (a slow clock shows it)",
+            settling=lambda t, outside: np.nan if outside[-1] else t[np.flatnonzero(outside)[-1]] - t[0],
+        ),
+        _slip(
+            "a joint that is outside at the end gets a settling time: it has not settled, so nan",
+            settling=lambda t, outside: t[np.flatnonzero(outside)[-1]] - t[0] + 0.01 if outside.any() else 0.0,
+        ),
+        _slip(
+            "the rest error has the other sign: what is missing is positive, the target less where it is",
+            rest=lambda q, target, last: np.mean(last) - target,
+        ),
+        _slip(
+            "the rest error has lost its sign: short and too far are not the same",
+            rest=lambda q, target, last: abs(target - np.mean(last)),
+        ),
+        _slip(
+            "the rest error rests on the very last sample, which trembles: take the mean of the last second",
+            rest=lambda q, target, last: target - q[-1],
+        ),
+        _slip("the rest error and the noise are those of the last half second: a whole second is asked for", tail=0.5),
+        _slip(
+            "the last second is taken as the last hundred samples: not every computer is that quick; ask the clock",
+            samples=100,
+        ),
+    ),
+    symptom=_symptom,
+    where={
+        "steps downwards": lambda t, q, target: target < q[0],
+        "a clock that does not begin at 0": lambda t, q, target: t[0] > 0.1,
+    },
+    hints=(
+        "Begin with done = how much of the way is behind the joint, 0 at the start and 1 at the target: rise time and "
+        "direction are easy in it, upwards and downwards alike.",
+        "np.argmax(condition) is the first place where it is true; np.flatnonzero(condition)[-1] the last. A joint has "
+        "settled one sample after it was outside for the last time.",
+    ),
+)
+
+TASKS = (STEP_METRICS,)
