@@ -1,12 +1,14 @@
-"""`jit`: numba's njit with a cache on disk that notices when any compiled file of the package changed.
+"""`jit`, `gufunc`: numba's njit and guvectorize, with a cache on disk that notices when any compiled file changed.
 
 numba checks only the file of the function itself: machine code that has inlined a function of another, since changed
 file would be used on, silently. Here the folder of the cache is named by a hash of all compiled files.
 """
 
+import contextlib
 import functools
 import hashlib
 import os
+import re
 from pathlib import Path
 
 import numba
@@ -22,7 +24,7 @@ def cache_folder():
     $NUMBA_CACHE_DIR goes before both.
     """
     sources = {str(p.relative_to(_PACKAGE)): p.read_bytes() for p in sorted(_PACKAGE.rglob("*.py"))}
-    compiled = {name: text for name, text in sources.items() if b"@jit(" in text}
+    compiled = {name: text for name, text in sources.items() if b"@jit(" in text or b"@kernel(" in text}
     name = f"ir50p_lab-{hashlib.sha1(repr(compiled).encode()).hexdigest()[:16]}"
     own = _PACKAGE / "__pycache__"
     writable = os.access(own if own.exists() else _PACKAGE, os.W_OK)
@@ -37,13 +39,28 @@ def jit(**options):
     """
 
     def decorate(function):
-        before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())
-        try:
+        with _own_cache():
             return numba.njit(cache=True, error_model="numpy", **options)(function)
-        finally:
-            numba.config.CACHE_DIR = before
 
     return decorate
+
+
+def gufunc(function, layout):
+    """A NumPy generalised ufunc of floats with this layout, such as "(n),(n)->(n)", compiled and kept on disk."""
+    operands = [dims.split(",") if dims else [] for dims in re.findall(r"\((.*?)\)", layout)]
+    types = [f"f8[{','.join(':' * len(dims))}]" if dims else "f8" for dims in operands]
+    with _own_cache():
+        compiled = numba.guvectorize([f"void({', '.join(types)})"], layout, nopython=True, cache=True)(function)
+    return compiled.ufunc  # NumPy's own: without numba's look at the arguments
+
+
+@contextlib.contextmanager
+def _own_cache():
+    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())
+    try:
+        yield
+    finally:
+        numba.config.CACHE_DIR = before
 
 
 class _Once(event.Listener):

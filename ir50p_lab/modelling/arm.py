@@ -182,9 +182,9 @@ class Arm:
         return read_only(np.tile([*inertial, *dry, *f.Tf, j3], (3, 1)))
 
     @cached_property
-    def kernel_theta(self):
-        """`theta` for the compiled kernels: writable, so that they compile for one kind of array only."""
-        return self.theta.copy()
+    def lengths(self):
+        """`l` as an array, (3,) m, for the compiled kernels."""
+        return read_only(np.array(self.l))
 
     @cached_property
     def theta_pwm(self):

@@ -4,6 +4,7 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel
 
 JOINTS = 3
 ALPHA = (np.pi / 2, 0.0, -np.pi / 2)  # twist of the links, Table 1.1
@@ -32,9 +33,10 @@ def _step(theta, d, a, cos_alpha, sin_alpha):
     return A
 
 
-def _lengths(arm):
+def lengths(arm):
+    """l1, l2, l3 as an array (3,) m. Raises InputError if `arm` is no Arm."""
     try:
-        return arm.l
+        return arm.lengths
     except AttributeError:
         raise InputError(
             f"kinematics needs an Arm (its lengths), got {type(arm).__name__}; theta holds no column height"
@@ -46,7 +48,7 @@ def dh_table(arm, q):
 
     Args: arm: Arm; q: (3,) rad. Returns: (3, 4), units rad, m, m, rad.
     """
-    l1, l2, l3 = _lengths(arm)
+    l1, l2, l3 = lengths(arm)
     q = vectors3("q", q)
     if q.shape != (3,):
         raise InputError(f"q has shape {q.shape}; a DH table is for one pose, give shape (3,)")
@@ -59,7 +61,7 @@ def frames(arm, q):
     Args: arm: Arm; q: (3,) or (n, 3) rad.
     Returns: (4, 4, 4) or (n, 4, 4, 4); element i takes coordinates of frame i to the base.
     """
-    l1, l2, l3 = _lengths(arm)
+    l1, l2, l3 = lengths(arm)
     q = vectors3("q", q)
     T = np.empty((*q.shape[:-1], 4, 4, 4))
     T[..., 0, :, :] = np.eye(4)
@@ -83,6 +85,15 @@ def transform(arm, q, i, j):
     return np.linalg.solve(T[..., i, :, :], T[..., j, :, :])
 
 
+@kernel("(n),(n)->(n)")
+def _tip(l, q, p):
+    radial = l[1] * np.cos(q[1]) + l[2] * np.cos(q[1] + q[2])
+    p[0], p[1] = radial * np.cos(q[0]), radial * np.sin(q[0])
+    p[2] = l[0] + l[1] * np.sin(q[1]) + l[2] * np.sin(q[1] + q[2])
+    if not np.isfinite(p[0] + p[1] + p[2]):
+        raise InputError(NOT_FINITE)
+
+
 def forward_kinematics(arm, q):
     """Position of the tip in base coordinates, the last column of (1.31 corrected).
 
@@ -91,8 +102,4 @@ def forward_kinematics(arm, q):
     Args: arm: Arm; q: (3,) or (n, 3) rad.
     Returns: (3,) or (n, 3) m. The orientation is `frames(arm, q)[..., 3, :3, :3]`.
     """
-    l1, l2, l3 = _lengths(arm)
-    q1, q2, q3 = np.moveaxis(vectors3("q", q), -1, 0)
-    radial = l2 * np.cos(q2) + l3 * np.cos(q2 + q3)
-    height = l1 + l2 * np.sin(q2) + l3 * np.sin(q2 + q3)
-    return np.stack([radial * np.cos(q1), radial * np.sin(q1), height], axis=-1)
+    return evaluate(_tip, (lengths(arm),), q=q)

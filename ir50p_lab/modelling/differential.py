@@ -4,8 +4,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
-from ir50p_lab.modelling.chain import JOINTS, frames
+from ir50p_lab.modelling.chain import lengths
+from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel
+
+
+@kernel("(n),(m),(n)->(m,n)")
+def _jacobian(l, six, q, J):
+    c1, s1 = np.cos(q[0]), np.sin(q[0])
+    rho3, z3 = l[2] * np.cos(q[1] + q[2]), l[2] * np.sin(q[1] + q[2])  # tip from the elbow: outwards, up
+    rho, z = l[1] * np.cos(q[1]) + rho3, l[1] * np.sin(q[1]) + z3  # tip from the shoulder
+    J[0, 0], J[0, 1], J[0, 2] = -s1 * rho, -c1 * z, -c1 * z3
+    J[1, 0], J[1, 1], J[1, 2] = c1 * rho, -s1 * z, -s1 * z3
+    J[2, 0], J[2, 1], J[2, 2] = 0.0, rho, rho3
+    J[3, 0], J[3, 1], J[3, 2] = 0.0, s1, s1
+    J[4, 0], J[4, 1], J[4, 2] = 0.0, -c1, -c1
+    J[5, 0], J[5, 1], J[5, 2] = 1.0, 0.0, 0.0
+    if not np.isfinite(c1 + rho + z):
+        raise InputError(NOT_FINITE)
+
+
+_SIX = np.empty(6)  # its length is that of a column of J: NumPy's layouts hold no numbers
 
 
 def jacobian(arm, q):
@@ -17,14 +37,7 @@ def jacobian(arm, q):
     Args: arm: Arm; q: (3,) or (n, 3) rad.
     Returns: (6, 3) or (n, 6, 3); rows 0-2 in m/rad (Jv), rows 3-5 without unit (Jw).
     """
-    T = frames(arm, q)
-    z = T[..., :JOINTS, :3, 2]
-    arms = T[..., JOINTS, None, :3, 3] - T[..., :JOINTS, :3, 3]
-    J = np.empty((*T.shape[:-3], 6, JOINTS))
-    for row, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):  # z x arms; np.cross takes as long as all the rest
-        J[..., row, :] = z[..., i] * arms[..., j] - z[..., j] * arms[..., i]
-        J[..., 3 + row, :] = z[..., row]
-    return J
+    return evaluate(_jacobian, (lengths(arm), _SIX), q=q)
 
 
 def manipulability(arm, q):

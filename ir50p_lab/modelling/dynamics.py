@@ -2,7 +2,7 @@
 
 Every function takes an Arm or a theta (3, 20) first (a single row (20,) counts for all joints). With a theta in PWM
 counts the results are in PWM counts too. An Arm carries its gravity; a theta does not and takes 9.81 m/s^2 or the
-option `g`. The kernels are in `closed_form`; here arrays are checked and looped over.
+option `g`. The equations are in `closed_form`.
 """
 
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import number, numbers, vectors3
+from ir50p_lab.inputs import number, numbers
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.arm import Arm
+from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel, same_shape
 
-_FLOAT = np.dtype(float)
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value; an Arm carries its own
 
 
@@ -30,7 +30,7 @@ def as_theta(arm, g=None):
             raise InputError(
                 f"g = {g}: an Arm carries its own gravity ({arm.g} m/s^2); use dataclasses.replace(arm, g=...)"
             )
-        return arm.kernel_theta, arm.g
+        return arm.theta.copy(), arm.g
     g = STANDARD_GRAVITY if g is None else number("g", g, ">= 0", unit="m/s^2", hint="the base z axis points up")
     single = arm is None or np.isscalar(arm) or not hasattr(arm, "__len__")
     theta = None if single else np.array(numbers("theta", arm, unit="SI or PWM"), order="C")
@@ -42,29 +42,33 @@ def as_theta(arm, g=None):
     return np.tile(theta, (3, 1)) if theta.ndim == 1 else theta, g
 
 
-def _rows(**vectors):
-    """Check arrays of one shape, (3,) or (n, 3); return them as (n, 3) and whether they were single."""
-    arrays = {name: vectors3(name, value, unit="SI") for name, value in vectors.items()}
-    shape = np.broadcast_shapes(*(a.shape for a in arrays.values())) if _compatible(arrays) else None
-    if shape is None or len(shape) > 2:
-        shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items())
-        raise InputError(f"shapes do not fit: {shapes}; give all (3,), or all (n, 3) with the same n")
-    rows = [np.ascontiguousarray(np.broadcast_to(a, shape)).reshape(-1, 3) for a in arrays.values()]
-    return rows, len(shape) == 1
-
-
-def _compatible(arrays):
-    lengths = {a.shape[0] for a in arrays.values() if a.ndim == 2}
-    return len(lengths) <= 1
+def _evaluate(function, arm, g=None, **vectors):
+    """`function` of theta, gravity and the vectors. An Arm is right, and a theta of the right shape is tried first."""
+    if g is None and isinstance(arm, Arm):
+        constants = arm.theta, arm.g
+    elif g is None and isinstance(arm, np.ndarray) and arm.shape == (3, 20):
+        constants = arm, STANDARD_GRAVITY
+    else:
+        constants = as_theta(arm, g)
+    return evaluate(function, constants, lambda: as_theta(arm, g), **vectors)
 
 
 @jit()
-def _mass_loop(theta, q, out):
-    for k in range(q.shape[0]):
-        q2, q3 = q[k, 1], q[k, 2]
-        M = cf.mass_terms(theta, np.cos(q2), np.cos(q3), np.cos(q2 + q3))
-        for i in range(3):
-            out[k, i, 0], out[k, i, 1], out[k, i, 2] = M[3 * i], M[3 * i + 1], M[3 * i + 2]
+def _refuse_not_finite(q1, result):
+    """Raise InputError if a number of a result, or q1 (on which nothing depends), is not finite."""
+    total = q1
+    for x in result.flat:
+        total += x
+    if not np.isfinite(total):
+        raise InputError(NOT_FINITE)
+
+
+@kernel("(n,k),(),(n)->(n,n)")
+def _mass(theta, gravity, q, M):
+    terms = cf.mass_terms(theta, np.cos(q[1]), np.cos(q[2]), np.cos(q[1] + q[2]))
+    for i in range(3):
+        M[i, 0], M[i, 1], M[i, 2] = terms[3 * i], terms[3 * i + 1], terms[3 * i + 2]
+    _refuse_not_finite(q[0], M)
 
 
 def mass_matrix(arm, q):
@@ -74,25 +78,21 @@ def mass_matrix(arm, q):
     Returns: (3, 3) or (n, 3, 3), kg m^2. Symmetric and positive definite for an Arm; row-wise for a theta
     with unequal rows. Raises InputError.
     """
-    theta, _ = as_theta(arm)
-    (q,), single = _rows(q=q)
-    out = np.empty((len(q), 3, 3))
-    _mass_loop(theta, q, out)
-    return out[0] if single else out
+    return _evaluate(_mass, arm, q=q)
 
 
-@jit()
-def _coriolis_loop(theta, q, qd, out):
-    for k in range(q.shape[0]):
-        a, b, c = qd[k]
-        q2, q3 = q[k, 1], q[k, 2]
-        c2, s2, s3, c23, s23 = np.cos(q2), np.sin(q2), np.sin(q3), np.cos(q2 + q3), np.sin(q2 + q3)
-        alpha, beta, _ = cf.coriolis_factors(theta, 0, c2, s2, s3, c23, s23)
-        out[k, 0, 0], out[k, 0, 1], out[k, 0, 2] = -alpha * b - beta * c, -alpha * a, -beta * a
-        alpha, _, h = cf.coriolis_factors(theta, 1, c2, s2, s3, c23, s23)
-        out[k, 1, 0], out[k, 1, 1], out[k, 1, 2] = alpha * a, -h * c, -h * (b + c)
-        _, beta, h = cf.coriolis_factors(theta, 2, c2, s2, s3, c23, s23)
-        out[k, 2, 0], out[k, 2, 1], out[k, 2, 2] = beta * a, h * b, 0.0
+@kernel("(n,k),(),(n),(n)->(n,n)")
+def _coriolis(theta, gravity, q, qd, C):
+    a, b, c = qd
+    q2, q3 = q[1], q[2]
+    c2, s2, s3, c23, s23 = np.cos(q2), np.sin(q2), np.sin(q3), np.cos(q2 + q3), np.sin(q2 + q3)
+    alpha, beta, _ = cf.coriolis_factors(theta, 0, c2, s2, s3, c23, s23)
+    C[0, 0], C[0, 1], C[0, 2] = -alpha * b - beta * c, -alpha * a, -beta * a
+    alpha, _, h = cf.coriolis_factors(theta, 1, c2, s2, s3, c23, s23)
+    C[1, 0], C[1, 1], C[1, 2] = alpha * a, -h * c, -h * (b + c)
+    _, beta, h = cf.coriolis_factors(theta, 2, c2, s2, s3, c23, s23)
+    C[2, 0], C[2, 1], C[2, 2] = beta * a, h * b, 0.0
+    _refuse_not_finite(q[0], C)
 
 
 def coriolis_matrix(arm, q, qd):
@@ -101,18 +101,14 @@ def coriolis_matrix(arm, q, qd):
     Args: arm: Arm or theta; q, qd: (3,) or (n, 3), rad and rad/s.
     Returns: (3, 3) or (n, 3, 3), N m s/rad. C qd are the centrifugal and Coriolis torques (1.97 corrected).
     """
-    theta, _ = as_theta(arm)
-    (q, qd), single = _rows(q=q, qd=qd)
-    out = np.empty((len(q), 3, 3))
-    _coriolis_loop(theta, q, qd, out)
-    return out[0] if single else out
+    return _evaluate(_coriolis, arm, q=q, qd=qd)
 
 
-@jit()
-def _gravity_loop(theta, gravity, q, out):
-    for k in range(q.shape[0]):
-        out[k, 0] = 0.0
-        out[k, 1], out[k, 2] = cf.gravity_torques(theta, gravity, np.cos(q[k, 1]), np.cos(q[k, 1] + q[k, 2]))
+@kernel("(n,k),(),(n)->(n)")
+def _gravity(theta, gravity, q, torques):
+    torques[0] = 0.0
+    torques[1], torques[2] = cf.gravity_torques(theta, gravity, np.cos(q[1]), np.cos(q[1] + q[2]))
+    _refuse_not_finite(q[0], torques)
 
 
 def gravity(arm, q, *, g=None):
@@ -120,11 +116,7 @@ def gravity(arm, q, *, g=None):
 
     Args: arm: Arm or theta; q: (3,) or (n, 3) rad; g: of a theta, m/s^2, default 9.81. Returns: shape of q, N m.
     """
-    theta, g = as_theta(arm, g)
-    (q,), single = _rows(q=q)
-    out = np.empty_like(q)
-    _gravity_loop(theta, g, q, out)
-    return out[0] if single else out
+    return _evaluate(_gravity, arm, g, q=q)
 
 
 def bias(arm, q, qd, *, g=None):
@@ -135,12 +127,12 @@ def bias(arm, q, qd, *, g=None):
     return inverse_dynamics(arm, q, qd, np.zeros(3), g=g)
 
 
-@jit()
-def _inverse_loop(theta, gravity, q, qd, qdd, out):
-    for k in range(q.shape[0]):
-        out[k, 0], out[k, 1], out[k, 2] = cf.inverse(
-            theta, gravity, q[k, 1], q[k, 2], qd[k, 0], qd[k, 1], qd[k, 2], qdd[k, 0], qdd[k, 1], qdd[k, 2]
-        )
+@kernel("(n,k),(),(n),(n),(n)->(n)")
+def _inverse(theta, gravity, q, qd, qdd, tau):
+    a, b, c = qd
+    A, B, C = qdd
+    tau[0], tau[1], tau[2] = cf.inverse(theta, gravity, q[1], q[2], a, b, c, A, B, C)
+    _refuse_not_finite(q[0], tau)
 
 
 def inverse_dynamics(arm, q, qd, qdd, *, g=None):
@@ -152,30 +144,18 @@ def inverse_dynamics(arm, q, qd, qdd, *, g=None):
     Args: arm: Arm or theta; q, qd, qdd: (3,) or (n, 3), rad, rad/s, rad/s^2; g: of a theta, m/s^2, default 9.81.
     Returns: shape of q, N m (PWM counts for a theta in PWM). Raises InputError.
     """
-    theta, g = as_theta(arm, g)
-    (q, qd, qdd), single = _rows(q=q, qd=qd, qdd=qdd)
-    out = np.empty_like(q)
-    _inverse_loop(theta, g, q, qd, qdd, out)
-    return out[0] if single else out
+    return _evaluate(_inverse, arm, g, q=q, qd=qd, qdd=qdd)
 
 
-@jit()
-def _forward_one(theta, gravity, q, qd, tau, out):
-    """One state into out; returns det M, NaN if any number that went in is not finite."""
-    out[0], out[1], out[2], det = cf.forward(theta, gravity, q[1], q[2], qd[0], qd[1], qd[2], tau[0], tau[1], tau[2])
-    return det + 0.0 * (q[0] + out[0] + out[1] + out[2])
-
-
-@jit()
-def _forward_loop(theta, gravity, q, qd, tau, out):
-    """Fills out; returns the first row with a singular M, or -1."""
-    for k in range(q.shape[0]):
-        out[k, 0], out[k, 1], out[k, 2], det = cf.forward(
-            theta, gravity, q[k, 1], q[k, 2], qd[k, 0], qd[k, 1], qd[k, 2], tau[k, 0], tau[k, 1], tau[k, 2]
+@kernel("(n,k),(),(n),(n),(n)->(n)")
+def _forward(theta, gravity, q, qd, tau, qdd):
+    a, b, c = qd
+    qdd[0], qdd[1], qdd[2], det = cf.forward(theta, gravity, q[1], q[2], a, b, c, tau[0], tau[1], tau[2])
+    if not abs(det) > 0.0:
+        raise InputError(
+            "the mass matrix is singular: a joint moves no inertia. Give the links inertia, or the motors rotor inertia"
         )
-        if not (det > 0.0 or det < 0.0):
-            return k
-    return -1
+    _refuse_not_finite(q[0], qdd)
 
 
 def forward_dynamics(arm, q, qd, tau, *, g=None):
@@ -188,28 +168,7 @@ def forward_dynamics(arm, q, qd, tau, *, g=None):
     Returns: shape of q, rad/s^2.
     Raises: InputError on bad input, or if M is singular at a pose (a link without any inertia).
     """
-    # One state, as in a Python simulation loop. It is checked by its result (a bad number makes det NaN), so that
-    # checking costs next to nothing; whatever is not plain goes the long way below.
-    if (
-        type(arm) is Arm
-        and g is None
-        and type(q) is type(qd) is type(tau) is np.ndarray
-        and q.shape == (3,) == qd.shape == tau.shape
-        and q.dtype is qd.dtype is tau.dtype is _FLOAT
-    ):
-        qdd = np.empty(3)
-        if _forward_one(arm.kernel_theta, arm.g, q, qd, tau, qdd) > 0.0:
-            return qdd
-    theta, g = as_theta(arm, g)
-    (q, qd, tau), single = _rows(q=q, qd=qd, tau=tau)
-    out = np.empty_like(q)
-    row = _forward_loop(theta, g, q, qd, tau, out)
-    if row >= 0:
-        raise InputError(
-            f"the mass matrix is singular at q = {q[row].tolist()} rad: a joint moves no inertia there. "
-            "Give the links inertia, or the motors rotor inertia"
-        )
-    return out[0] if single else out
+    return _evaluate(_forward, arm, g, q=q, qd=qd, tau=tau)
 
 
 @dataclass(frozen=True)
@@ -238,9 +197,7 @@ def energy(arm, q, qd, *, g=None):
     inertial = theta[:, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 19]]
     if not (inertial == inertial[0]).all():
         raise InputError("energy needs a theta with three equal rows (N m); this one has its own row per joint")
-    (q, qd), single = _rows(q=q, qd=qd)
-    M = np.empty((len(q), 3, 3))
-    _mass_loop(theta, q, M)
-    kinetic = 0.5 * np.einsum("ni,nij,nj->n", qd, M, qd)
-    potential = g * (theta[0, 2] * np.sin(q[:, 1]) + theta[0, 3] * np.sin(q[:, 1] + q[:, 2]))
-    return Energy(kinetic[0], potential[0]) if single else Energy(kinetic, potential)
+    q, qd = same_shape(q=q, qd=qd)
+    kinetic = 0.5 * np.einsum("...i,...ij,...j", qd, mass_matrix(theta, q), qd)
+    potential = g * (theta[0, 2] * np.sin(q[..., 1]) + theta[0, 3] * np.sin(q[..., 1] + q[..., 2]))
+    return Energy(kinetic, potential)

@@ -1,13 +1,16 @@
 """Inverse kinematics: all four branches in closed form, and step by step (1.56)-(1.73 corrected)."""
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ir50p_lab.errors import InputError, UnreachableError
 from ir50p_lab.inputs import vectors3
-from ir50p_lab.modelling.chain import forward_kinematics
+from ir50p_lab.modelling.chain import forward_kinematics, lengths
 from ir50p_lab.modelling.differential import jacobian
+from ir50p_lab.modelling.kernel import evaluate, kernel
 
 BRANCHES = ("front/up", "front/down", "back/up", "back/down")
 _EDGE = 1e-12  # relative to the reach: rounding may put a stretched arm's own tip this far outside
@@ -17,20 +20,23 @@ _EDGE = 1e-12  # relative to the reach: rounding may put a stretched arm's own t
 class IKSolutions:
     """All joint angles that reach a point.
 
-    q: (4, 3) or (n, 4, 3) rad, one row per branch in the order of `branches`; within_limits: (4,) or (n, 4);
-    q_min, q_max: the limits they were held against, rad. Front: joint 1 faces the point; back: it faces away
-    and the arm bends over backwards. Up and down are the sign of q3: up is q3 <= 0, down is q3 >= 0. For the front
-    branches up puts the elbow above the line from shoulder to tip, down below it; bent over backwards it is the
-    other way round. On the edge of the workspace up and down coincide.
+    q: (4, 3) or (n, 4, 3) rad, one row per branch in the order of `branches`; q_min, q_max: the joint limits, rad.
+    Front: joint 1 faces the point; back: it faces away and the arm bends over backwards. Up and down are the sign of
+    q3: up is q3 <= 0, down is q3 >= 0. For the front branches up puts the elbow above the line from shoulder to tip,
+    down below it; bent over backwards it is the other way round. On the edge of the workspace up and down coincide.
 
     Iterating, indexing and len() go over the branches of a single point.
     """
 
     q: np.ndarray
-    within_limits: np.ndarray
     q_min: tuple
     q_max: tuple
     branches: tuple = BRANCHES
+
+    @cached_property
+    def within_limits(self):
+        """Which branches are within the joint limits, (4,) or (n, 4)."""
+        return ((self.q >= np.array(self.q_min)) & (self.q <= np.array(self.q_max))).all(axis=-1)
 
     def __len__(self):
         return len(self.branches)
@@ -84,11 +90,11 @@ def reachability(arm, p):
     return np.maximum(0.0, np.maximum(r - (l2 + l3), abs(l2 - l3) - r))
 
 
-def _refuse_out_of_reach(arm, p):
+def _out_of_reach(arm, p):
+    """The error that names the worst of the points, how far it is outside, and the nearest that can be reached."""
+    p = vectors3("p", p, unit="m")
     distance = reachability(arm, p)
     outside = distance > _EDGE * arm.reach
-    if not outside.any():
-        return
     l1, l2, l3 = arm.l
     worst = np.unravel_index(np.argmax(distance), distance.shape)
     shoulder = np.array([0.0, 0.0, l1])
@@ -104,7 +110,33 @@ def _refuse_out_of_reach(arm, p):
         f"nearest point {np.round(nearest, 4).tolist()} m"
     )
     error.distance, error.nearest = float(distance[worst]), nearest
-    raise error
+    return error
+
+
+@kernel("(n),(b),(n)->(b,n)")
+def _branches(l, four, p, q):
+    l1, l2, l3 = l
+    delta, z = math.hypot(p[0], p[1]), p[2] - l1
+    r = math.hypot(delta, z)
+    # differences of squares as products: rounding adds nothing to that of p at the edges of the workspace
+    inner, outer = r - abs(l2 - l3), l2 + l3 - r
+    if not min(inner, outer) >= -_EDGE * (l2 + l3):
+        raise UnreachableError("a point is out of reach")
+    inner = math.sqrt(max(0.0, inner) * (r + abs(l2 - l3)))
+    outer = math.sqrt(max(0.0, outer) * (l2 + l3 + r))
+    bend = 2 * math.atan2(outer, inner)
+    for k in range(4):  # in the order of BRANCHES
+        side, elbow = 1.0 if k < 2 else -1.0, -1.0 if k % 2 == 0 else 1.0
+        q3 = elbow * bend
+        q2 = math.atan2(z, side * delta) - math.atan2(l3 * math.sin(q3), l2 + l3 * math.cos(q3))
+        if q2 > math.pi:
+            q2 -= 2 * math.pi
+        elif q2 <= -math.pi:
+            q2 += 2 * math.pi
+        q[k, 0], q[k, 1], q[k, 2] = math.atan2(side * p[1], side * p[0]), q2, q3
+
+
+_FOUR = np.empty(4)  # its length is the number of branches: NumPy's layouts hold no numbers
 
 
 def inverse_kinematics(arm, p):
@@ -124,31 +156,11 @@ def inverse_kinematics(arm, p):
     Raises: UnreachableError (with .distance in m and .nearest (3,) m) if a point is outside the workspace;
     InputError on a wrong shape or a number that is not finite.
     """
-    p = vectors3("p", p, unit="m")
-    _refuse_out_of_reach(arm, p)
-    l1, l2, l3 = arm.l
-    x, y, z = np.moveaxis(p, -1, 0)
-    delta, z1 = np.hypot(x, y), z - l1
-    r = np.hypot(delta, z1)
-    # differences of squares as products: rounding adds nothing to that of p at the edges of the workspace
-    inner = np.sqrt(np.maximum(0.0, (r - abs(l2 - l3)) * (r + abs(l2 - l3))))
-    outer = np.sqrt(np.maximum(0.0, (l2 + l3 - r) * (l2 + l3 + r)))
-    bend = 2 * np.arctan2(outer, inner)
-
-    q = np.empty((*p.shape[:-1], 4, 3))
-    for k, (side, elbow) in enumerate(((1, -1), (1, 1), (-1, -1), (-1, 1))):
-        q3 = elbow * bend
-        q[..., k, 0] = np.arctan2(side * y, side * x)
-        q[..., k, 1] = _wrap(np.arctan2(z1, side * delta) - np.arctan2(l3 * np.sin(q3), l2 + l3 * np.cos(q3)))
-        q[..., k, 2] = q3
-    within = ((q >= np.array(arm.q_min)) & (q <= np.array(arm.q_max))).all(axis=-1)
-    return IKSolutions(q=q, within_limits=within, q_min=arm.q_min, q_max=arm.q_max)
-
-
-def _wrap(angle):
-    """The same angle in (-pi, pi]."""
-    wrapped = np.where(angle > np.pi, angle - 2 * np.pi, angle)
-    return np.where(wrapped <= -np.pi, wrapped + 2 * np.pi, wrapped)
+    try:
+        q = evaluate(_branches, (lengths(arm), _FOUR), p=p)
+    except UnreachableError:
+        raise _out_of_reach(arm, p) from None
+    return IKSolutions(q=q, q_min=arm.q_min, q_max=arm.q_max)
 
 
 @dataclass(frozen=True)

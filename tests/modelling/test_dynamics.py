@@ -2,6 +2,7 @@
 
 import mujoco
 import numpy as np
+import pandas as pd
 import pytest
 from arms import mujoco_model, random_arm, random_states
 from hypothesis import given
@@ -190,14 +191,33 @@ def vars_of(arm):
     return {name: getattr(arm, name) for name in ("l", "m", "lc", "Ixx", "Iyy", "Izz")}
 
 
-def test_one_state_and_many_states_agree():
-    q, qd, tau = random_states(np.random.default_rng(11), 5)
-    many = forward_dynamics(IR50P, q, qd, tau)
+FUNCTIONS = {mass_matrix: 1, gravity: 1, coriolis_matrix: 2, inverse_dynamics: 3, forward_dynamics: 3}
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda f: f.__name__)
+@pytest.mark.parametrize("model", [IR50P, IR50P.theta, IR50P.theta_pwm.tolist()], ids=["arm", "theta", "rows"])
+def test_one_state_or_many_as_arrays_lists_or_tuples_of_any_numbers(function, model):
+    rng = np.random.default_rng(11)
+    states = [rng.integers(-3, 4, (5, 3)).astype(float) for _ in range(FUNCTIONS[function])]
+    many = function(model, *states)
+    assert type(many) is np.ndarray and len(many) == 5
+    assert (function(model, *[x.reshape(5, 1, 3) for x in states])[:, 0] == many).all()
     for k in range(5):
-        assert (forward_dynamics(IR50P, q[k], qd[k], tau[k]) == many[k]).all()
-        assert (forward_dynamics(IR50P, list(q[k]), tuple(qd[k]), tau[k]) == many[k]).all()
-    assert mass_matrix(IR50P, q).shape == (5, 3, 3) and mass_matrix(IR50P, q[0]).shape == (3, 3)
-    assert coriolis_matrix(IR50P, q, qd).shape == (5, 3, 3)
+        one = [x[k] for x in states]
+        locked = [x.copy() for x in one]
+        for x in locked:
+            x.setflags(write=False)
+        spread = [np.repeat(x, 2)[::2] for x in one]
+        integers = [x.astype(int) for x in one]
+        singles = [x.astype(np.float32) for x in one]
+        series = [pd.Series(x, index=["a", "b", "c"]) for x in one]
+        for same in (one, locked, spread, integers, singles, series, map(list, one), map(tuple, integers)):
+            found = function(model, *same)
+            assert type(found) is np.ndarray and (found == many[k]).all()
+
+
+def test_energy_of_one_state_and_of_many():
+    q, qd, _ = random_states(np.random.default_rng(11), 5)
     assert energy(IR50P, q[0], qd[0]).total == pytest.approx(energy(IR50P, q, qd).total[0], rel=1e-15)
 
 
@@ -210,7 +230,11 @@ def test_one_state_and_many_states_agree():
         (lambda: forward_dynamics(IR50P, np.array([np.inf, 0, 0]), np.zeros(3), np.zeros(3)), ["q", "inf"]),
         (lambda: forward_dynamics(IR50P, np.zeros(3), np.zeros(3), np.array([0, 0, np.inf])), ["tau", "inf"]),
         (lambda: inverse_dynamics(IR50P, np.zeros((4, 3)), np.zeros((5, 3)), np.zeros(3)), ["q (4, 3)", "qd (5, 3)"]),
-        (lambda: mass_matrix(IR50P, np.zeros((2, 2, 3))), ["(2, 2, 3)"]),
+        (
+            lambda: inverse_dynamics(IR50P, np.full(3, 1e200), np.full(3, 1e200), np.zeros(3)),
+            ["not finite", "too large"],
+        ),
+        (lambda: inverse_dynamics(IR50P, np.zeros((4, 3)), np.zeros(3), np.full(3, np.nan)), ["qdd", "nan"]),
         (lambda: mass_matrix(np.zeros((3, 19)), np.zeros(3)), ["(3, 19)", "(3, 20)"]),
         (lambda: mass_matrix(np.full((3, 20), np.nan), np.zeros(3)), ["theta", "not finite"]),
         (lambda: mass_matrix(3.0, np.zeros(3)), ["float", "(3, 20)"]),

@@ -1,0 +1,61 @@
+"""One state or many: functions of one state as NumPy's generalised ufuncs, and the sentence for what they refuse."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import vectors3
+
+NOT_FINITE = "the result is not finite: the numbers are too large"
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """A function of one state as a generalised ufunc of floats, compiled when it is first needed.
+
+    function: its last argument is the result, which it fills. It raises InputError(NOT_FINITE) if that is not finite:
+    a NaN that went in has come out. layout: NumPy's, such as "(n),(n)->(n)".
+    """
+
+    function: object
+    layout: str
+
+    @cached_property
+    def ufunc(self):
+        """NumPy's ufunc."""
+        from ir50p_lab.jit import gufunc  # numba takes a while: not at import
+
+        return gufunc(self.function, self.layout)
+
+
+def kernel(layout):
+    """Decorator: the function becomes a Kernel with this layout."""
+    return lambda function: Kernel(function, layout)
+
+
+def evaluate(kernel, constants, check=None, /, **vectors):
+    """`kernel` of the constants and the vectors, each (3,) or (..., 3): arrays, lists or tuples.
+
+    Good input is not looked at here: NumPy refuses what does not fit, the kernel what is not finite. Only then, or if
+    NumPy hands the work to another kind of array, the arguments are checked one by one, for the sentence that names
+    the fault. check() gives the constants, checked.
+    """
+    try:
+        result = kernel.ufunc(*constants, *vectors.values())
+        if type(result) is np.ndarray:
+            return result
+    except (TypeError, ValueError):
+        pass
+    return kernel.ufunc(*(check() if check else constants), *same_shape(**vectors))
+
+
+def same_shape(**vectors):
+    """The vectors as arrays (..., 3), broadcast to one shape. Raises InputError."""
+    arrays = {name: vectors3(name, x, unit="SI") for name, x in vectors.items()}
+    try:
+        return np.broadcast_arrays(*arrays.values())
+    except ValueError:
+        shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items())
+        raise InputError(f"shapes do not fit: {shapes}; give all (3,), or all (n, 3) with the same n") from None
