@@ -21,11 +21,12 @@ def one_thread():
 
 @pytest.fixture(scope="module")
 def pictures():
+    """Of two boards: one with whole squares around it, and one with its outer squares cut narrow."""
     rng = np.random.default_rng(0)
     poses = [
         look(rng.uniform(0.35, 0.5), rng.uniform(0.2, 0.7), rng.uniform(0, 6.28), rng.normal(0, 0.2)) for _ in range(13)
     ]
-    return [paint(T, seed=k) for k, T in enumerate(poses)]
+    return [paint(T, seed=k, rim=(1.0, 0.4)[k % 2]) for k, T in enumerate(poses)]
 
 
 @pytest.mark.parametrize("pattern", [(8, 6), (5, 4), (7, 7), (10, 7)])

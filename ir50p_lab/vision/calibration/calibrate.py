@@ -78,7 +78,7 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, as
             if why.seen is not None:
                 seen[why.seen] += 1
     rejected = [_covered_or_other(one, parts, board, bool(found)) for one, parts in rejected]
-    rejected += _drop_duplicates(found, size)
+    rejected += _drop_duplicates(found, size, board)
     if len(found) < _FEWEST:
         raise CalibrationError(_why_too_few(len(found), rejected, seen, board))
     names = {i: (picture.name, i) for i, (picture, _) in found.items()}
@@ -314,24 +314,23 @@ def _covered_or_other(one, seen, board, others_fit):
     return one
 
 
-def _drop_duplicates(found, size):
+def _drop_duplicates(found, size, board):
     """Take out of `found` the views in which the board is where it was before; a list of Rejected."""
-    dropped, kept = [], []
+    dropped, kept = [], {}
     limit = _SAME * float(np.hypot(*size)) if size else 0.0
-    for key in list(found):
-        picture, corners = found[key]
-        for earlier in kept:
-            name, old = found[earlier][0].name, found[earlier][1]
-            _, here, there = np.intersect1d(corners.index, old.index, return_indices=True)
-            if len(here) >= _COMMON * len(corners.index):
-                moved = float(np.median(np.linalg.norm(old.xy[there] - corners.xy[here], axis=1)))
-                if moved < limit:
-                    detail = f"the board is where it was in {name}, {moved:.2f} px away: move it between pictures"
-                    dropped.append(Rejected(picture.name, picture.index, Reason.DUPLICATE, detail))
-                    del found[key]
-                    break
+    for key, (picture, corners) in list(found.items()):
+        xy = np.full((len(board.points), 2), np.nan)
+        xy[corners.index] = corners.xy
+        for name, old in kept.items():
+            moved = np.linalg.norm(old - xy, axis=1)
+            moved = moved[np.isfinite(moved)]
+            if len(moved) >= _COMMON * len(corners.index) and (least := float(np.median(moved))) < limit:
+                detail = f"the board is where it was in {name}, {least:.2f} px away: move it between pictures"
+                dropped.append(Rejected(picture.name, picture.index, Reason.DUPLICATE, detail))
+                del found[key]
+                break
         else:
-            kept.append(key)
+            kept[picture.name] = xy
     return dropped
 
 

@@ -3,14 +3,15 @@
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.fit import LADDER, Model, fit
+from ir50p_lab.vision.calibration.fit import LADDER, Model, fit, focal_steps
 from ir50p_lab.vision.calibration.models import Evidence, choose, compare, contrast_of, in_words
 
 _TILTED = np.deg2rad(15)
 _LIMIT = 1e-3  # chance below which a bend, another ratio fx/fy, or a lens with more terms is believed
 _GONE = 0.33  # part of the sum of squares: 2 mm of sag make 0.39 of it or more, flat boards in photographs 0.22 or less
 _SQUARE = 0.01  # difference of fx and fy that sensors have without anything being wrong
-_MIXED, _APART = 0.84, 0.03  # of the rms is left if each view has the better of two cameras; relative step of fx
+# Two cameras: of the scatter is left in two heaps; sigmas of what is gone; relative step of fx between them
+_LEFT, _SIGMAS, _APART = 0.2, 5.0, 0.03
 _ROUGH = 0.7  # px rms, of pictures up to 1280 px wide
 
 
@@ -76,48 +77,34 @@ def _seen_by(camera, corners, view, pose):
 def two_cameras(corners, best):
     """A sentence if the views are of two cameras (or the zoom was changed between them), else none: a list.
 
-    Each view alone tells a rough focal length; the shorter and the longer half make a camera each, every view goes to
-    the one that it fits better, and so on. Twice the parameters hardly help one camera; two cameras they free of most
-    of the residuals.
+    Each view alone asks for a focal length of its own. For one camera these scatter about one value; for two they lie
+    in two heaps, and hardly scatter within. Chance parts one heap into two with R = 0.36 of the scatter left within.
     """
     if len(corners) < 6:
         return []
-    first = np.argsort(np.argsort([_focal_length(corners, i) for i in range(len(corners))])) < len(corners) // 2
+    steps, weights = focal_steps(corners, best)
+    order = np.argsort(steps)
+    heaps = [(order[:k], order[k:]) for k in range(3, len(order) - 2)]
+    within = [sum(_scatter(steps[part], weights[part]) for part in parts) for parts in heaps]
+    parts, total = heaps[np.argmin(within)], _scatter(steps, weights)
+    if min(within) > _LEFT * total or total - min(within) < (_SIGMAS * best.sigma) ** 2:
+        return []
     model = Model(tuple(term for term in best.model.terms if term in ("k1", "k2")), best.model.aspect)
     try:
-        for _ in range(5):
-            if not 3 <= first.sum() <= len(first) - 3:
-                return []
-            parts = [np.flatnonzero(first), np.flatnonzero(~first)]
-            cameras = [fit(corners.only(part), model, (best.camera, best.poses[part])).camera for part in parts]
-            off = np.array([[_seen_by(c, corners, i, pose) for i, pose in enumerate(best.poses)] for c in cameras])
-            if np.array_equal(first, off[0] < off[1]):
-                break
-            first = off[0] < off[1]
+        each = [fit(corners.only(part), model, (best.camera, best.poses[part])) for part in parts]
     except CalibrationError:
         return []
-    focal = np.array([camera[0] for camera in cameras])
-    left = np.sqrt(np.mean(off.min(axis=0) ** 2)) / best.rms
-    if left > _MIXED or abs(np.diff(np.log(focal))) < _APART:
+    focal, error = np.array([one.camera[0] for one in each]), np.array([one.stderr[0] for one in each])
+    apart = np.ptp(np.log(focal))
+    if apart < max(_APART, 3 * np.hypot(*(error / focal))):
         return []
     told = " and ".join(f"{len(part)} with fx = {f:.0f} px" for part, f in zip(parts, focal, strict=True))
     return [f"these seem to be pictures of two cameras, or the zoom was changed: {told}. Calibrate them apart"]
 
 
-def _focal_length(corners, view):
-    """Focal length, px, that one view tells if pixels are square and the axis is in the middle; nan where it does not.
-
-    The first two columns of the homography K [r1 r2 t] are images of unit vectors at right angles.
-    """
-    import cv2
-
-    middle = np.array([(n - 1) / 2 for n in corners.size])
-    H, _ = cv2.findHomography(corners.points[view][:, :2], (corners.pixels[view] - middle) / middle[0])
-    g, h = H[:, 0], H[:, 1]
-    above = np.array([g[:2] @ h[:2], g[:2] @ g[:2] - h[:2] @ h[:2]])
-    below = np.array([g[2] * h[2], g[2] ** 2 - h[2] ** 2])
-    square = -(above @ above) / (above @ below)
-    return middle[0] * np.sqrt(square) if square > 0 else np.nan
+def _scatter(values, weights):
+    """Weighted sum of squares about the mean."""
+    return float(np.sum(weights * (values - np.average(values, weights=weights)) ** 2))
 
 
 def lacking_terms(corners, held, guess):

@@ -24,9 +24,10 @@ _WINDOW_PX = (2, 20)
 _SOFT = 0.55  # rise of an edge from dark to light, in squares, at which neighbouring edges run together
 _UNKNOWN = 100  # what OpenCV says for the rise where squares are too small for it to follow an edge
 SOFT_SLOPE = 0.45  # the same limit for `slope_rise`: waves of that length, all that blur leaves, have 0.5
-_UNEVEN = 0.01  # the same: from here on a slower finder is asked, too
-_SMOOTHER = 0.98  # of the scatter, at which another grid is taken
-_ROUGH = 0.08  # scatter about a smooth grid, in squares, that no board shows
+_UNEVEN = 0.03  # scatter about a smooth grid, in squares, from which on a slower finder is asked, too
+_UNEVEN_SMALL, _SMALL = 0.01, 22  # the same for squares smaller than so many px, which leave little for a window
+_BLUR, _BLUR_PX = 0.05, 1.0  # in squares, at most so many px: noise and compression go, corners stay where they are
+_ROUGH = 0.08  # the same, that no board shows
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,10 +48,10 @@ class BoardCorners:
 def find_checkerboard(grey, pattern, other=None):
     """All inner corners of a checkerboard: by OpenCV's finders or its own saddles, refined.
 
-    `findChessboardCorners` is quick; where it sees nothing, or uneven corners, a grid is grown from the saddles of the
-    picture, and `findChessboardCornersSB`, slow and good at blur, has the last word. Corners are refined by
-    `cornerSubPix` with a window from the size of the squares; of several grids the smoothest counts. A board that goes
-    on beyond the pattern is another board, although a finder is content with a part of it.
+    `findChessboardCorners` is quick; where it sees nothing a grid is grown from the saddles of the picture, then
+    `findChessboardCornersSB` is asked, slow and good at blur; also for uneven corners and small squares, where the
+    smoother grid counts. Corners are refined by `cornerSubPix` with a window from the size of the squares. A board
+    that goes on beyond the pattern is another board, although a finder is content with a part of it.
 
     Args: grey: (h, w) uint8; pattern: (columns, rows); other: (columns, rows) of a board that other pictures showed
     in its place, looked for first. Returns: BoardCorners, all, in the order of `Checkerboard`.
@@ -60,40 +61,49 @@ def find_checkerboard(grey, pattern, other=None):
     small, factor = reduced(grey, _SEARCHED)
     if other is not None:
         _refuse_other(grey, small, factor, other, pattern)
-    best = _examined(grey, _classic(small, pattern), factor, pattern)
-    finder, why = "classic", None
+    best, finder = _examined(grey, _classic(small, pattern), factor, pattern), "classic"
     if best is None:
-        finder = "pieced together"
-        try:
-            best = _piece_together(grey, small, factor, pattern)
-        except NotUsable as reason:
-            why = reason
-            if why.whole:
-                raise
-    if best is None or roughness(best) > _UNEVEN * np.median(spacing(best)):
-        found = _sb(small, pattern, exhaustive=best is None)
-        refined = _examined(grey, found, factor, pattern)
-        choices = [] if refined is None else [(refined, "SB")]
-        if refined is not None and factor == 1:
-            choices.append((found, "SB, its own corners"))
-        for grid, name in choices:
-            if best is None or roughness(grid) < _SMOOTHER * roughness(best):
-                best, finder = grid, name
-    if best is None:
-        raise why
+        best, finder = _found_slowly(grey, small, factor, pattern)
+    noise, side = roughness(best), np.median(spacing(best))
+    if finder == "classic" and noise > (_UNEVEN_SMALL if side < _SMALL else _UNEVEN) * side:
+        other = _by_sb(grey, small, factor, pattern)
+        if other is not None and roughness(other) < noise:
+            best, finder, noise = other, "SB", roughness(other)
     best = in_order(best, grey, pattern)
     rise = refuse_soft(grey, best)
     columns, rows = pattern
-    return BoardCorners(best.reshape(-1, 2).astype(float), np.arange(columns * rows), roughness(best), rise, finder)
+    return BoardCorners(best.reshape(-1, 2).astype(float), np.arange(columns * rows), noise, rise, finder)
+
+
+def _found_slowly(grey, small, factor, pattern):
+    """(grid, finder) where `findChessboardCorners` finds none. Raises NotUsable with the Reason."""
+    try:
+        return _piece_together(grey, small, factor, pattern), "pieced together"
+    except NotUsable as why:
+        if why.whole:
+            raise
+        grid = _examined(grey, _sb(small, pattern), factor, pattern)
+        if grid is None:
+            raise
+        return grid, "SB"
+
+
+def _by_sb(grey, small, factor, pattern):
+    """Corners by SB of a board that is known to be there: its own in a picture at its size; or None."""
+    grid = _sb(small, pattern)
+    if grid is not None and factor > 1:
+        grid = refine(grey, enlarged(grid, factor))
+    return grid if grid is not None and is_checkerboard(grid, grey) else None
 
 
 def _refuse_other(grey, small, factor, other, pattern):
-    """Raise NotUsable if the picture shows all of that other board."""
+    """Raise NotUsable if the picture shows all of that other board, and no more."""
     grid = _classic(small, other)
-    if grid is not None:
-        grid = refine(grey, enlarged(grid, factor))
-        if is_checkerboard(grid, grey) and _is_other(grid, grey, pattern):
-            raise wrong_board(grid, pattern, whole=True)
+    if grid is None:
+        return
+    grid = refine(grey, enlarged(grid, factor))
+    if is_checkerboard(grid, grey) and grow(grid, grey)[0].shape == grid.shape:
+        raise wrong_board(grid, pattern, whole=_is_other(grid, grey, pattern))
 
 
 def reduced(grey, longest):
@@ -121,7 +131,7 @@ def _classic(grey, pattern):
     return corners.reshape(pattern[1], pattern[0], 2) if found else None
 
 
-def _sb(grey, pattern, exhaustive):
+def _sb(grey, pattern):
     """The same by `findChessboardCornersSB`; without ACCURACY: slower, and no better than what refines them here."""
     import cv2
 
@@ -174,13 +184,14 @@ def refine(grey, grid):
         raise NotUsable(
             Reason.CROPPED, f"corners beyond the {_sides(grid, grey)} of the picture: move the board into view"
         )
-    part = np.where(next_to_margin(grid, grey), _WINDOW / 2, _WINDOW)
-    half = np.clip(np.round(part * spacing(grid)), *_WINDOW_PX).astype(int).ravel()
+    part, side = np.where(next_to_margin(grid, grey), _WINDOW / 2, _WINDOW), spacing(grid)
+    half = np.clip(np.round(part * side), *_WINDOW_PX).astype(int).ravel()
+    smooth = cv2.GaussianBlur(grey, (0, 0), float(np.clip(_BLUR * np.median(side), 0.2, _BLUR_PX)))
     xy = grid.reshape(-1, 1, 2).astype(np.float32)
     stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-4)
     for size in np.unique(half):
         which = half == size
-        xy[which] = cv2.cornerSubPix(grey, xy[which].copy(), (int(size), int(size)), (-1, -1), stop)
+        xy[which] = cv2.cornerSubPix(smooth, xy[which].copy(), (int(size), int(size)), (-1, -1), stop)
     return xy.reshape(grid.shape).astype(float)
 
 

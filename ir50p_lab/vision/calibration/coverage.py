@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.fit import CornerSets, Model, _project, _reduce, _solve
+from ir50p_lab.vision.calibration.fit import CornerSets, Model, project, reduce, solve
 
 _CELLS = (6, 8)  # rows, columns of the coverage map
 _TILT = np.deg2rad(35)
@@ -93,27 +93,29 @@ def next_view(calibration):
     B = _columns_of(calibration)
     camera = np.array([*calibration.values.values(), 0, 0, 0])
     seen = CornerSets([v.points for v in calibration.views], [v.corners for v in calibration.views], calibration.size)
-    S = sum(_information(seen, i, camera, _pose(v.T_cam_board), B) for i, v in enumerate(calibration.views))
+    poses = np.array([_pose(v.T_cam_board) for v in calibration.views])
+    S = reduce(B, *project(seen, camera, poses))[0].sum(axis=0)
     w, h = calibration.size
     grid = np.stack(np.meshgrid((np.arange(8) + 0.5) * w / 8, (np.arange(6) + 0.5) * h / 6), axis=-1).reshape(-1, 2)
     sigma2 = calibration.sigma**2
     J = _ray_jacobian(calibration, grid) @ B[:9]
 
     def doubt(information):
-        V = sigma2 * _solve(information, np.eye(len(information)))
+        V = sigma2 * solve(information, np.eye(len(information)))
         return float(np.sqrt(np.einsum("nij,jk,nik->n", J, V, J).mean()))
 
     points = calibration.board.points
-    trial = CornerSets([points], [points[:, :2]], calibration.size)
+    places, tilts, transforms = zip(*_candidates(calibration, points), strict=True)
+    count = len(transforms)
+    trial = CornerSets([points] * count, [points[:, :2]] * count, calibration.size)
+    views = project(trial, camera, np.array([_pose(T) for T in transforms]))
+    information, seen_at = reduce(B, *views)[0], points[:, :2] - views[0]
     counts, tried = calibration.coverage.counts, []
-    for place, tilt, T in _candidates(calibration, points):
-        pose = _pose(T)
-        xy = -_project(trial, 0, camera, pose)[0] + points[:, :2]
+    for place, tilt, gained, xy in zip(places, tilts, information, seen_at, strict=True):
         if (xy < 2).any() or (xy > np.array([w, h]) - 3).any():
             continue
-        after = doubt(S + _information(trial, 0, camera, pose, B))
         cells = set(zip(*_cells(xy, calibration.size), strict=True))
-        tried.append(((place, tilt, after, sum(not counts[cell] for cell in cells)), xy))
+        tried.append(((place, tilt, doubt(S + gained), sum(not counts[cell] for cell in cells)), xy))
     if not tried:
         raise CalibrationError("no pose of the board was found that would fit into the picture")
     before = doubt(S)
@@ -151,10 +153,6 @@ def _columns_of(calibration):
     return model.columns
 
 
-def _information(corners, i, camera, pose, B):
-    return _reduce(*_project(corners, i, camera, pose, B))[0]
-
-
 def _pose(T):
     import cv2
 
@@ -180,16 +178,7 @@ def _candidates(calibration, points):
             place = {"middle centre": "in the middle"}.get(f"{row} {column}", f"at the {row} {column}")
             for words, axis in tilts.items():
                 R = cv2.Rodrigues(np.array([*axis, 0.0]) * _TILT)[0]
-                aim = (
-                    np.array(
-                        [
-                            (x * w - calibration.K[0, 2]) / calibration.K[0, 0],
-                            (y * h - calibration.K[1, 2]) / calibration.K[1, 1],
-                            1.0,
-                        ]
-                    )
-                    * Z
-                )
+                aim = Z * np.linalg.solve(calibration.K, [x * w, y * h, 1.0])
                 T = np.eye(4)
                 T[:3, :3], T[:3, 3] = R, aim - R @ ((points.min(axis=0) + points.max(axis=0)) / 2)
                 yield place, words, T

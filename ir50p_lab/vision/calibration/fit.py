@@ -5,6 +5,7 @@ take every corner for independent, which corners of one picture are not.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -118,6 +119,16 @@ class CornerSets:
             x, y = ((p - middle) / half)[:, :2].T
             self.shapes.append(np.column_stack([x * x, x * y, y * y]))
 
+    @cached_property
+    def stacked(self):
+        """All views as arrays (views, n, ...), filled up to the longest: points, pixels, shapes, and which are real."""
+        sizes = np.array([len(p) for p in self.points])
+        real = np.arange(sizes.max()) < sizes[:, None]
+        filled = [np.zeros((*real.shape, k)) for k in (3, 2, 3)]
+        for array, lists in zip(filled, (self.points, self.pixels, self.shapes), strict=True):
+            array[real] = np.concatenate(lists)
+        return *filled, real
+
     def __len__(self):
         return len(self.points)
 
@@ -159,21 +170,43 @@ def start(corners):
     return camera, poses
 
 
-def _project(corners, i, camera, pose, B=None):
-    """Residual (n, 2) of view i; with B also Jacobians by the free parameters (2n, free) and by the pose (2n, 6)."""
+def project(corners, camera, poses):
+    """Residuals of all views (v, n, 2), and Jacobians of the model by the camera (v, n, 2, 12) and pose (v, n, 2, 6).
+
+    As `cv2.projectPoints`, with the shape of the board, for all views at once.
+    """
     import cv2
 
-    points = corners.points[i]
-    if camera[9:].any():
-        points = points + np.outer(corners.shapes[i] @ camera[9:], [0.0, 0.0, 1.0])
-    K = np.array([[camera[0], 0, camera[2]], [0, camera[1], camera[3]], [0, 0, 1]])
-    xy, J = cv2.projectPoints(points, pose[:3], pose[3:], K, camera[4:9])
-    error = corners.pixels[i] - xy[:, 0]
-    if B is None:
-        return (error,)
-    by_height = J[:, 3:6] @ cv2.Rodrigues(pose[:3])[0][:, 2]
-    by_camera = np.hstack([J[:, 6:15], by_height[:, None] * np.repeat(corners.shapes[i], 2, axis=0)])
-    return error, by_camera @ B, J[:, :6]
+    points, pixels, shapes, real = corners.stacked
+    fx, fy, cx, cy, k1, k2, p1, p2, k3 = camera[:9]
+    turns = [cv2.Rodrigues(rvec) for rvec in poses[:, :3]]
+    R, by_rvec = np.array([R for R, _ in turns]), np.array([J.reshape(3, 3, 3) for _, J in turns])
+    points = points + (shapes @ camera[9:])[..., None] * (0.0, 0.0, 1.0)
+    X, Y, Z = np.moveaxis(points @ R.transpose(0, 2, 1) + poses[:, None, 3:], 2, 0)
+    x, y = X / Z, Y / Z
+    r2 = x * x + y * y
+    radial, slope = 1 + r2 * (k1 + r2 * (k2 + r2 * k3)), k1 + r2 * (2 * k2 + r2 * 3 * k3)
+    u = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)
+    v = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y
+    error = pixels - np.stack([fx * u + cx, fy * v + cy], axis=-1)
+    by_camera, by_xy, by_point = np.zeros((*x.shape, 2, 12)), np.empty((*x.shape, 2, 2)), np.zeros((*x.shape, 2, 3))
+    by_camera[..., 0, 0], by_camera[..., 1, 1] = u, v
+    by_camera[..., 0, 2] = by_camera[..., 1, 3] = 1
+    radials = np.stack([r2, r2 * r2, r2 * r2 * r2], axis=-1)
+    by_camera[..., 0, [4, 5, 8]] = fx * x[..., None] * radials
+    by_camera[..., 1, [4, 5, 8]] = fy * y[..., None] * radials
+    by_camera[..., 0, 6], by_camera[..., 0, 7] = fx * 2 * x * y, fx * (r2 + 2 * x * x)
+    by_camera[..., 1, 6], by_camera[..., 1, 7] = fy * (r2 + 2 * y * y), fy * 2 * x * y
+    across = 2 * (x * y * slope + p1 * x + p2 * y)
+    by_xy[..., 0, 0], by_xy[..., 0, 1] = fx * (radial + 2 * x * x * slope + 2 * p1 * y + 6 * p2 * x), fx * across
+    by_xy[..., 1, 0], by_xy[..., 1, 1] = fy * across, fy * (radial + 2 * y * y * slope + 6 * p1 * y + 2 * p2 * x)
+    by_point[..., 0, 0] = by_point[..., 1, 1] = 1 / Z
+    by_point[..., 0, 2], by_point[..., 1, 2] = -x / Z, -y / Z
+    by_point = by_xy @ by_point
+    by_camera[..., 9:] = (by_point @ R[:, None, :, 2:]) * shapes[..., None, :]
+    by_turn = by_point @ np.einsum("vkij,vnj->vnik", by_rvec, points)
+    by_pose = np.concatenate([by_turn, by_point], axis=-1)
+    return tuple(np.where(real.reshape(*real.shape, *(1,) * (a.ndim - 2)), a, 0.0) for a in (error, by_camera, by_pose))
 
 
 def fit(corners, model, guess, steps=50):
@@ -186,35 +219,28 @@ def fit(corners, model, guess, steps=50):
     """
     B = model.columns
     camera, poses = _within(model, guess[0]), np.array(guess[1], dtype=float)
-    views = _projected(corners, camera, poses, B)
-    cost, damping = _cost(camera, views), 1e-6
-    for _ in range(steps):
-        reduced = [_reduce(*view) for view in views]
-        S, g = sum(v[0] for v in reduced), sum(v[1] for v in reduced)
-        while True:
-            step = _solve(S, g, damping)
-            new_camera = camera + B @ step
-            new_poses = poses + np.array([v[2] - v[3] @ step for v in reduced])
-            new_views = _projected(corners, new_camera, new_poses, B)
-            new_cost = _cost(new_camera, new_views)
-            if new_cost <= cost * (1 + 1e-12) or damping > 1e6:
-                break
-            damping = max(10 * damping, 1e-6)
-        gain = cost - new_cost
-        if damping > 1e6:
-            raise CalibrationError(
-                "the fit does not converge: a view has corners in a wrong order, is no board, or of another camera"
-            )
-        camera, poses, views, cost, damping = new_camera, new_poses, new_views, min(cost, new_cost), damping / 10
-        if abs(gain) <= 1e-9 * cost + 1e-18:
-            break
-    return _with_covariance(model, camera, poses, views)
-
-
-def _projected(corners, camera, poses, B):
-    """What `_project` says of every view."""
     with np.errstate(all="ignore"):
-        return [_project(corners, i, camera, pose, B) for i, pose in enumerate(poses)]
+        views = project(corners, camera, poses)
+        cost, damping = _cost(camera, views), 1e-6
+        for _ in range(steps):
+            S, g, own, following = reduce(B, *views)
+            while True:
+                step = solve(S.sum(axis=0), g.sum(axis=0), damping)
+                new_camera, new_poses = camera + B @ step, poses + own - following @ step
+                new_views = project(corners, new_camera, new_poses)
+                new_cost = _cost(new_camera, new_views)
+                if new_cost <= cost * (1 + 1e-12) or damping > 1e6:
+                    break
+                damping = max(10 * damping, 1e-6)
+            gain = cost - new_cost
+            if damping > 1e6:
+                raise CalibrationError(
+                    "the fit does not converge: a view has corners in a wrong order, is no board, or of another camera"
+                )
+            camera, poses, views, cost, damping = new_camera, new_poses, new_views, min(cost, new_cost), damping / 10
+            if abs(gain) <= 1e-9 * cost + 1e-18:
+                break
+    return _with_covariance(corners, model, camera, poses, views)
 
 
 def _within(model, camera):
@@ -230,21 +256,24 @@ def _within(model, camera):
 
 
 def _cost(camera, views):
-    with np.errstate(all="ignore"):
-        cost = sum((view[0] ** 2).sum() for view in views)
+    cost = (views[0] ** 2).sum()
     return cost if np.isfinite(cost) and camera[0] > 0 and camera[1] > 0 else np.inf
 
 
-def _reduce(error, U, V):
-    """Of one view: S = U'U and g = U'e with the pose eliminated, its own step, and how the step follows the camera."""
-    e = error.ravel()
-    VV = V.T @ V
-    VU, Ve = V.T @ U, V.T @ e
-    X = np.linalg.solve(VV, np.column_stack([VU, Ve]))
-    return U.T @ U - VU.T @ X[:, :-1], U.T @ e - VU.T @ X[:, -1], X[:, -1], X[:, :-1]
+def reduce(B, error, by_camera, by_pose):
+    """Of each view: S = U'U and g = U'e with the pose eliminated, its own step, and how the step follows the camera."""
+    count = len(error)
+    U, V, e = (by_camera @ B).reshape(count, -1, B.shape[1]), by_pose.reshape(count, -1, 6), error.reshape(count, -1, 1)
+    turned = V.transpose(0, 2, 1)
+    VU, X = turned @ U, np.linalg.solve(turned @ V, turned @ np.concatenate([U, e], axis=2))
+    following, own = X[:, :, :-1], X[:, :, -1]
+    UV = VU.transpose(0, 2, 1)
+    S = U.transpose(0, 2, 1) @ U - UV @ following
+    g = U.transpose(0, 2, 1) @ e - UV @ own[..., None]
+    return S, g[..., 0], own, following
 
 
-def _solve(S, g, damping=0.0):
+def solve(S, g, damping=0.0):
     """Solve S x = g (g a vector or a matrix) with the scales of the parameters taken out. Raises CalibrationError."""
     scale = np.sqrt(np.maximum(np.diag(S), 1e-300))
     A = S / np.outer(scale, scale)
@@ -257,23 +286,35 @@ def _solve(S, g, damping=0.0):
     return (x.T / scale).T
 
 
-def _with_covariance(model, camera, poses, views):
-    B, count = model.columns, len(views)
-    reduced = [_reduce(*v) for v in views]
-    S = sum(r[0] for r in reduced)
-    scale = np.linalg.norm(np.concatenate([v[1] for v in views]), axis=0)
-    if not np.linalg.eigvalsh(S / np.outer(scale, scale))[0] > _SHOWN:
+def _with_covariance(corners, model, camera, poses, views):
+    B, count = model.columns, len(poses)
+    S, g, _, _ = reduce(B, *views)
+    total = S.sum(axis=0)
+    scale = np.linalg.norm((views[1] @ B).reshape(-1, B.shape[1]), axis=0)
+    if not np.linalg.eigvalsh(total / np.outer(scale, scale))[0] > _SHOWN:
         raise CalibrationError("the views leave the camera undetermined: tilt the board in different directions")
-    fit = CameraFit(camera, poses, tuple(v[0] for v in views), np.zeros((12, 12)), np.zeros((12, 12)), model)
+    residuals = tuple(e[: len(p)] for e, p in zip(views[0], corners.points, strict=True))
+    fit = CameraFit(camera, poses, residuals, np.zeros((12, 12)), np.zeros((12, 12)), model)
     if 2 * fit.points <= fit.parameters:
         raise CalibrationError(
             f"{fit.points} corners in {count} views give {2 * fit.points} numbers for {fit.parameters} parameters: "
             "more views, or a board with more corners"
         )
-    by_corners = fit.sigma**2 * _solve(S, np.eye(len(S)))
+    by_corners = fit.sigma**2 * solve(total, np.eye(len(total)))
     by_views = np.zeros((12, 12))
-    if count > 3:
-        moves = np.array([_solve(S - r[0], r[1]) for r in reduced])  # what leaving out a view does, to first order
+    if count > 3:  # what leaving out a view does, to first order
+        moves = np.array([solve(total - S[i], g[i]) for i in range(count)])
         moves -= moves.mean(axis=0)
         by_views = B @ ((count - 1) / count * moves.T @ moves) @ B.T
     return replace(fit, by_corners=B @ by_corners @ B.T, by_views=by_views)
+
+
+def focal_steps(corners, fitted):
+    """Relative step of the focal lengths that each view alone asks for (v,), and its weight, px^2 (v,).
+
+    To first order, with the pose of the view free and all else held. Its variance is sigma^2 / weight.
+    """
+    both = np.zeros((12, 1))
+    both[:2, 0] = fitted.camera[:2]
+    S, g, _, _ = reduce(both, *project(corners, fitted.camera, fitted.poses))
+    return g[:, 0] / S[:, 0, 0], S[:, 0, 0]

@@ -202,7 +202,8 @@ def _crossings(places, out, along, grey, swing):
 
     out, along: (n, 2) px, where to look in each direction; swing: between light and dark squares, grey levels.
     """
-    a, d, b, c = (sample(grey, places + i * out + j * along) for i, j in ((1, 1), (-1, -1), (1, -1), (-1, 1)))
+    around = [places + i * out + j * along for i, j in ((1, 1), (-1, -1), (1, -1), (-1, 1))]
+    a, d, b, c = sample(grey, np.concatenate(around)).reshape(4, -1)
     signed = (a + d - b - c) / 2
     cross = np.abs(signed)
     uneven = np.maximum(np.abs(a - d), np.abs(b - c))
