@@ -2,12 +2,17 @@
 
 import ast
 import builtins
+import importlib
+import inspect
 import linecache
 import re
 from dataclasses import dataclass
 
+from ir50p_lab.course.functions.catalogue import ORDER
+
 _GIVEN = {"np": "import numpy as np", "numpy": "import numpy", "math": "import math"}
-_ALLOWED = {"numpy", "math"}
+_ALLOWED = {"numpy", "math", "cmath", "collections", "dataclasses", "functools", "itertools", "operator", "typing"}
+_BACK_DOORS = {"__import__", "eval", "exec", "compile", "open", "input", "getattr", "setattr", "globals", "vars"}
 
 
 class CannotTake(Exception):  # noqa: N818  (a sentence for the student, never shown as an error)
@@ -25,7 +30,8 @@ class Source:
     @property
     def module(self):
         """The text of the file that holds it: imports, then the student's lines."""
-        imports = [line for name, line in _GIVEN.items() if re.search(rf"\b{name}\.", self.text)]
+        names = {one.id for one in ast.walk(ast.parse(self.text)) if isinstance(one, ast.Name)}
+        imports = [line for name, line in _GIVEN.items() if name in names]
         imports += [f"from ._{name} import {name}" for name in self.calls]
         return "\n".join([*imports, "", "", self.text, ""]) if imports else self.text + "\n"
 
@@ -36,11 +42,15 @@ def take(thing, name, earlier):
     name: what it has to be called; earlier: names of the functions of `my_robot` it may lean on. Lines of the cell that
     it does not need stay behind. Raises CannotTake, saying why: another name, a variable or an import from elsewhere.
     """
-    if getattr(thing, "__name__", None) != name:
-        raise CannotTake(f"the function has to be called `{name}`, yours is called `{getattr(thing, '__name__', '?')}`")
+    thing = inspect.unwrap(thing)
+    called = getattr(thing, "__name__", "?")
+    if called not in (name, "<lambda>"):
+        raise CannotTake(f"the function has to be called `{name}`, yours is called `{called}`")
     text = re.sub(r"\bmy_robot\.(\w+)", r"\1", _cell_text(thing))
     tree = ast.parse(text)
     offered = _definitions(tree)
+    if name not in offered:
+        raise CannotTake(f"the cell has to define `{name}`, with `def {name}(...)`")
     wanted, calls, queue = [], set(), [name]
     while queue:
         one = queue.pop()
@@ -50,10 +60,15 @@ def take(thing, name, earlier):
                 queue += _globals_of(offered[one])
         elif one in earlier:
             calls.add(one)
+        elif one in ORDER:
+            raise CannotTake(f"it calls `{one}`: this function is to do without")
+        elif one in _BACK_DOORS:
+            raise CannotTake(f"it uses `{one}`: your robot stands on plain functions and NumPy alone")
         elif one not in _GIVEN and not hasattr(builtins, one):
             raise CannotTake(_stranger(one, getattr(thing, "__globals__", None) or _globals_of_class(thing)))
     for node in wanted:
         _refuse_imports(node)
+        _refuse_changes(node)
     wanted.sort(key=lambda node: node.lineno)
     return Source(name, "\n\n\n".join(_lines(text, node) for node in wanted), tuple(sorted(calls)))
 
@@ -84,10 +99,13 @@ def _definitions(tree):
     for node in tree.body:
         if isinstance(node, ast.FunctionDef | ast.ClassDef):
             found[node.name] = node
-        elif isinstance(node, ast.Assign):
-            found |= {target.id: node for target in node.targets if isinstance(target, ast.Name)}
+        elif isinstance(node, ast.Assign | ast.AnnAssign):
+            names = [one for one in ast.walk(node) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)]
+            found |= {one.id: node for one in names}
         elif isinstance(node, ast.Import | ast.ImportFrom):
             found |= {alias.asname or alias.name.partition(".")[0]: node for alias in node.names}
+            if node.names[0].name == "*" and node.module in _GIVEN:
+                found |= dict.fromkeys(dir(importlib.import_module(node.module)), node)
     return {name: node for name, node in found.items() if name not in _GIVEN}
 
 
@@ -131,6 +149,40 @@ def _refuse_imports(node):
         for module in modules:
             if module.partition(".")[0] not in _ALLOWED:
                 raise CannotTake(f"it imports {module}: your robot stands on NumPy alone, and this part is yours")
+
+
+def _refuse_changes(node):
+    """Nothing outside is changed or looked into: `np.allclose = ...`, `np.__builtins__`; `self` may be."""
+    for one in ast.walk(node):
+        if not isinstance(one, ast.Attribute):
+            continue
+        root = ast.unparse(one).partition(".")[0].partition("[")[0]
+        if root != "self" and (one.attr.startswith("__") or not isinstance(one.ctx, ast.Load)):
+            raise CannotTake(
+                f"it changes or opens `{ast.unparse(one)}`: a function returns its answer and leaves the rest"
+            )
+
+
+def is_copy(text, other):
+    """Tell whether two texts are the same program: comments, layout and the names of variables do not count."""
+    return _plain(text) == _plain(other)
+
+
+def _plain(text):
+    """The program with its local names numbered, without docstrings."""
+    tree = ast.parse(text)
+    own = {one.name for one in ast.walk(tree) if isinstance(one, ast.FunctionDef)}
+    own |= {one.arg for one in ast.walk(tree) if isinstance(one, ast.arg)}
+    own |= {one.id for one in ast.walk(tree) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)}
+    numbers = {}
+    for one in ast.walk(tree):
+        for part in ("id", "arg", "name"):
+            if getattr(one, part, None) in own:
+                setattr(one, part, numbers.setdefault(getattr(one, part), f"name{len(numbers)}"))
+        if isinstance(one, ast.FunctionDef) and ast.get_docstring(one):
+            one.body = one.body[1:]
+    kept = [node for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef | ast.Assign)]
+    return sorted(ast.dump(node) for node in kept)
 
 
 def _lines(text, node):

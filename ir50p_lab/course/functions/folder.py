@@ -13,6 +13,7 @@ from ir50p_lab import home
 from ir50p_lab.course.functions.catalogue import ORDER, function_of
 
 _LOAN = "# on loan from the course"
+_SEEN = f"{_LOAN}, after six tries"
 _STAGE = ", stage "
 _PACKAGE = "my_robot"
 _loaded = {"stamp": None}
@@ -52,7 +53,13 @@ def at_work(name):
     return _at.get(name, name)
 
 
-def keep(source, task, *, loan=False):
+def was_lent(name):
+    """Tell whether the course lent a function because it would not come right: now, or before it was begun again."""
+    files = [path_of(name), *(folder() / "old").glob(f"{name}_*.py")]
+    return any(file.exists() and file.read_text(encoding="utf-8").startswith(_SEEN) for file in files)
+
+
+def keep(source, task, *, loan=""):
     """Write a function with its small test, and the list of what there is. What was there before goes to `old`.
 
     Functions that it calls and that are not there yet come along on loan. Returns their names. Raises OSError.
@@ -65,7 +72,7 @@ def keep(source, task, *, loan=False):
         if not is_there(name):
             lent += [name, *lend(find(name))]
     stage = f"{_STAGE}{task.name}" if "." in task.name else ""
-    head = f"{_LOAN if loan else '# yours'}{stage}: the next you write takes its place\n" if loan or stage else ""
+    head = f"{loan or '# yours'}{stage}: the next you write takes its place\n" if loan or stage else ""
     text = head + source.module
     put_aside(source.name, unless=text)
     _write(path_of(source.name), text)
@@ -74,11 +81,11 @@ def keep(source, task, *, loan=False):
     return lent
 
 
-def lend(task):
+def lend(task, *, after_tries=False):
     """Write the course's solution of a function, marked as on loan. Returns what else came along."""
     from ir50p_lab.course.functions.cell import Source
 
-    return keep(Source(task.function, task.loan, _calls(task)), task, loan=True)
+    return keep(Source(task.function, task.loan, _calls(task)), task, loan=_SEEN if after_tries else _LOAN)
 
 
 def put_aside(name, unless=""):

@@ -4,11 +4,12 @@ import numpy as np
 
 from ir50p_lab import modelling
 from ir50p_lab.course.functions.pose import _LENGTHS, arm_of, forward_kinematics, frames
-from ir50p_lab.course.functions.task import Slip, Task
+from ir50p_lab.course.functions.task import Slip, Task, shown
 from ir50p_lab.errors import UnreachableError
 
 _EDGE = 1e-9  # m: rounding may put a stretched arm's own tip this far outside
-_SAME = 1e-6  # rad: near the stretched arm rounding of the place leaves the elbow uncertain by 3e-8
+_INSIDE = 14  # the first cases lie well within reach
+_SAME = 1e-5  # rad: near the stretched arm rounding of the place leaves the elbow uncertain by 3e-8, 2e-6 degrees
 
 
 # ---------------------------------------------------------------------------------------------- inverse_kinematics
@@ -32,12 +33,18 @@ def inverse_kinematics(p, l):
 def _targets():
     rng = np.random.default_rng(7)
     cases = []
-    for k, q in enumerate(rng.uniform([-3, -2, -2.8], [3, 2, 2.8], (14, 3))):
+    for k, q in enumerate(rng.uniform([-3, -2, -2.8], [3, 2, 2.8], (_INSIDE, 3))):
         l = _LENGTHS[k % 2].copy()
         cases.append((forward_kinematics(q, l), l))
     for k, q in enumerate(rng.uniform([-3, -2, 0], [3, 2, 0], (12, 3))):  # stretched: on the edge, but for rounding
         l = _LENGTHS[k % 2].copy()
         cases.append((forward_kinematics(q, l), l))
+    for direction in rng.normal(size=(3, 3)):
+        for l in _LENGTHS[:2]:
+            for r in (l[1] + l[2], abs(l[1] - l[2])):
+                for step in (-1e-6, -0.5e-9, 0.5e-9, 1e-6):
+                    p = np.array([0, 0, l[0]]) + (r + step) * direction / np.linalg.norm(direction)
+                    cases.append((p, l.copy()))
     for far in ((0.6, 0.3, 0.5), (-0.5, 0.4, 0.6), (0.02, 0.01, 0.3)):
         cases.append((np.array(far), _LENGTHS[0].copy()))
     return cases
@@ -64,77 +71,129 @@ def same_poses(returned, expected):
     if len(a) == 0 or len(b) == 0:
         return len(a) == len(b)
     apart = _apart(a, b)
-    return bool((apart.min(axis=0) < _SAME).all() and (apart.min(axis=1) < _SAME).all() and len(a) <= len(b))
-
-
-def _law(p, l, *, up=None, q1=None, inner=False, slope=-1, swap=False, quotient=False, sides=(1, -1), bends=(-1, 1)):
-    """Poses by the law of cosines with one step replaced: how students get it wrong."""
-    x, y, z = p
-    l1, l2, l3 = (l[0], l[2], l[1]) if swap else l
-    up = z - l1 if up is None else up
-    r = np.sqrt(x * x + y * y + up * up)
-    if not abs(l2 - l3) - _EDGE <= r <= l2 + l3 + _EDGE:
-        return np.empty((0, 3))
-    cosine = np.clip((r * r - l2 * l2 - l3 * l3) / (2 * l2 * l3), -1, 1)
-    bend = np.arccos(-cosine if inner else cosine)
-    poses = []
-    for side in sides:
-        waist = np.arctan(y / x) if quotient else np.arctan2(side * y, side * x)
-        for sign in bends:
-            q3 = sign * bend
-            out = side * np.hypot(x, y)
-            q2 = np.arctan2(up, out) + slope * np.arctan2(l3 * np.sin(q3), l2 + l3 * np.cos(q3))
-            poses.append([waist if q1 is None else q1, q2, q3])
-    return np.array(poses)
+    straight = np.abs(np.sin(b[:, 2])).max() < 1e-2
+    number = len(a) <= len(b) if straight else len(a) == len(b)
+    return bool((apart.min(axis=0) < _SAME).all() and (apart.min(axis=1) < _SAME).all() and number)
 
 
 def _poses_symptom(cases, returned, expected):
-    far = [k for k, one in enumerate(expected) if len(one) == 0]
     answers = []
     for one in returned:
+        if one is None:
+            return "out of reach it returns None: no pose means no row, an empty array"
         try:
             answers.append(as_poses(one))
         except (TypeError, ValueError):
-            shape = np.shape(one)
-            if shape == (3,):
-                return (
-                    "it returns one pose, three numbers: all poses are asked for, one a row; how many arms does a "
-                    "cosine leave you?"
-                )
-            columns = len(shape) == 2 and shape[0] == 3
-            rows = "one pose a *row*, three angles each"
-            return f"{rows}: yours stand in columns" if columns else f"{rows}: yours has the shape {shape}"
-    for k in far:
-        if len(answers[k]):
-            if not np.isfinite(answers[k]).all():
-                return "out of reach it returns nan: a root of less than nothing. No pose means no row"
-            return "a place out of reach gets poses: no pose means no row, np.empty((0, 3))"
-    for rows, (p, l) in zip(answers, cases, strict=True):
-        for number, q in enumerate(rows):
-            off = np.linalg.norm(forward_kinematics(q, l) - p)
-            if not off < 1e-6:
-                side = " behind the column" if p[0] < 0 else ""
-                return (
-                    f"not every pose reaches the place: pose {number + 1} of {len(rows)} puts the tip "
-                    f"{1000 * off:.0f} mm beside the place{side}. Feed each row to your forward_kinematics"
-                )
-    edge = [k for k in range(14, 26) if len(answers[k]) == 0]
-    if edge and all(len(answers[k]) for k in range(14)):
+            return _no_rows(np.shape(one))
+    if not all(np.isfinite(rows).all() for rows in answers):
+        return "it returns nan on the edge or out of reach: a root of less than nothing, an arccos of more than 1"
+    if all(map(same_poses, map(np.radians, answers), expected)):
+        return "the angles are in degrees: everything here is rad"
+    says = next(filter(None, map(_missing_pose, answers, cases, expected)), "")
+    far = [k for k, one in enumerate(expected) if len(one) == 0 and len(answers[k])]
+    if says or far:
+        return says or "a place out of reach gets poses: no pose means no row, an empty array"
+    refused = [k for k in range(len(cases)) if len(expected[k]) and not len(answers[k])]
+    if refused and min(refused) >= _INSIDE:
         return (
-            f"{len(edge)} of 12 places on the very edge, where the arm is stretched, count as out of reach: there "
+            f"{len(refused)} places on the very edge, where the arm is stretched, count as out of reach: there "
             "rounding makes r a hair too large; allow it 1e-9 m"
         )
-    fewer = {len(one) for one in answers[:14]}
-    if fewer == {1}:
-        return "one pose a place: a cosine leaves two arms, and the waist may turn its back"
-    if fewer == {2}:
-        faces = [np.cos(one[:, 0] - np.arctan2(p[1], p[0])) for one, (p, _) in zip(answers[:14], cases, strict=False)]
-        if max(np.ptp(np.sign(one)) for one in faces) > 0:
-            return "two poses a place, one facing it and one with its back to it: the elbow has two ways in each"
-        return "two poses a place: the waist may also turn its back, and the arm bends over"
-    if 0 in fewer:
+    return _fewer(answers[:_INSIDE], cases, refused)
+
+
+def _no_rows(shape):
+    if shape == (3,):
+        return (
+            "it returns one pose, three numbers: all poses are asked for, one a row; how many arms does a cosine "
+            "leave you?"
+        )
+    columns = len(shape) == 2 and shape[0] == 3
+    return "one pose a *row*, three angles each: yours " + ("stand in columns" if columns else f"has the shape {shape}")
+
+
+def _missing_pose(rows, case, right):
+    """What is wrong in the first pose that does not reach the place."""
+    p, l = case
+    for number, q in enumerate(rows):
+        off = np.linalg.norm(forward_kinematics(q, l) - p)
+        if off < 1e-5 or not len(right):
+            continue
+        back = "its back to" if np.cos(q[0] - np.arctan2(p[1], p[0])) < 0 else "facing"
+        says = f"pose {number + 1} of {len(rows)}, {back} the place, puts the tip {1000 * off:.0f} mm beside it"
+        for joint, name in enumerate(("waist", "shoulder", "elbow")):
+            others = [k for k in range(3) if k != joint]
+            if (_apart(q[None, others], right[:, others]) < _SAME).any():
+                return f"{says}: its {name} is wrong, the two other joints are right"
+        return f"{says}: feed each row to your forward_kinematics"
+    return ""
+
+
+def _fewer(answers, cases, refused):
+    """Which poses of a place within reach are left out."""
+    if refused:
         return "a place within reach gets no pose"
-    return "poses are missing: some places get fewer than they have"
+    single = [np.unique(np.round(one, 6), axis=0) for one in answers]
+    if any(len(one) < len(other) for one, other in zip(single, answers, strict=True)):
+        return "the same pose comes twice: are the rows copies of one list, or is one branch written down again?"
+    counts = {len(one) for one in single}
+    if counts == {1}:
+        return "one pose a place: a cosine leaves two arms, and the waist may turn its back"
+    if counts == {2}:
+        waists = [one[:, 0] - np.arctan2(p[1], p[0]) for one, (p, _) in zip(single, cases, strict=False)]
+        if any(np.ptp(np.sign(np.cos(waist))) > 0 for waist in waists):
+            return "two poses a place, one facing it and one with its back to it: the elbow has two ways in each"
+        return "two poses a place, all on one side: the waist may also turn its back, and the arm bends over"
+    if counts == {3}:
+        return "three poses a place: two elbows facing it, two with the back to it"
+    return "some places get fewer poses than others: are some struck out? Limits come later, in `reach`"
+
+
+_LOAN = """def inverse_kinematics(p, l):
+    x, y, z = p
+    l1, l2, l3 = l
+    height = z - l1
+    r = np.sqrt(x**2 + y**2 + height**2)
+    if r > l2 + l3 + 1e-9 or r < abs(l2 - l3) - 1e-9:
+        return np.empty((0, 3))
+    cosine = (r**2 - l2**2 - l3**2) / (2 * l2 * l3)
+    bend = np.arccos(np.clip(cosine, -1, 1))
+    poses = []
+    for side in [1, -1]:
+        waist = np.arctan2(side * y, side * x)
+        distance_outwards = side * np.hypot(x, y)
+        for elbow in [bend, -bend]:
+            slope = np.arctan2(height, distance_outwards)
+            angle_between = np.arctan2(l3 * np.sin(elbow), l2 + l3 * np.cos(elbow))
+            shoulder = slope - angle_between
+            poses.append([waist, shoulder, elbow])
+    return np.array(poses)"""
+_BY_LENGTH = """    if r > l2 + l3 + 1e-9 or r < abs(l2 - l3) - 1e-9:
+        return np.empty((0, 3))
+"""
+_BY_COSINE = """    if abs(cosine) > 1 + 1e-7:
+        return np.empty((0, 3))
+"""
+_STRAIGHT = "    bend ="
+_BY_THE_TRIANGLE = """def inverse_kinematics(p, l):
+    x, y, z = p
+    height = z - l[0]
+    r = np.sqrt(x**2 + y**2 + height**2)
+    if r > l[1] + l[2] + 1e-9 or r < abs(l[1] - l[2]) - 1e-9:
+        return np.empty((0, 3))
+    inside_elbow = np.arccos(np.clip((l[1]**2 + l[2]**2 - r**2) / (2 * l[1] * l[2]), -1, 1))
+    inside_shoulder = np.arccos(np.clip((r**2 + l[1]**2 - l[2]**2) / (2 * r * l[1]), -1, 1))
+    waist = np.arctan2(y, x)
+    waist_back = np.arctan2(-y, -x)
+    slope = np.arctan2(height, np.hypot(x, y))
+    slope_back = np.pi - slope
+    elbow = np.pi - inside_elbow
+    return np.array([
+        [waist, slope + inside_shoulder, -elbow],
+        [waist, slope - inside_shoulder, elbow],
+        [waist_back, slope_back + inside_shoulder, -elbow],
+        [waist_back, slope_back - inside_shoulder, elbow],
+    ])"""
 
 
 INVERSE_KINEMATICS = Task(
@@ -146,75 +205,9 @@ INVERSE_KINEMATICS = Task(
     cases=_targets,
     leans_on=("forward_kinematics", "frames", "dh_matrix", "rot_z"),
     same=same_poses,
-    loan="""def inverse_kinematics(p, l):
-    x, y, z = p
-    l1, l2, l3 = l
-    up = z - l1
-    r = np.sqrt(x**2 + y**2 + up**2)
-    if r > l2 + l3 + 1e-9 or r < abs(l2 - l3) - 1e-9:
-        return np.empty((0, 3))
-    cosine = (r**2 - l2**2 - l3**2) / (2 * l2 * l3)
-    bend = np.arccos(np.clip(cosine, -1, 1))
-    poses = []
-    for side in [1, -1]:
-        q1 = np.arctan2(side * y, side * x)
-        out = side * np.hypot(x, y)
-        for q3 in [bend, -bend]:
-            slope = np.arctan2(up, out)
-            between = np.arctan2(l3 * np.sin(q3), l2 + l3 * np.cos(q3))
-            poses.append([q1, slope - between, q3])
-    return np.array(poses)""",
-    slips=(
-        Slip(lambda p, l: np.degrees(inverse_kinematics(p, l)), "the angles are in degrees: everything here is rad"),
-        Slip(
-            lambda p, l: _law(p, l, up=p[2]),
-            "every pose misses by the height of the column: from where does the triangle measure its height?",
-        ),
-        Slip(
-            lambda p, l: _law(p, l, up=p[2] + l[0]),
-            "every pose misses by twice the height of the column: above the shoulder means less than above the table",
-        ),
-        Slip(
-            lambda p, l: _law(p, l, inner=True),
-            "the elbow has the angle *inside* the triangle: q3 is 0 when the arm "
-            "is straight, and then that angle is half a turn",
-        ),
-        Slip(
-            lambda p, l: _law(p, l, slope=1),
-            "the tip misses with both elbows: the two angles of the shoulder go "
-            "together the wrong way round. Which one bends the arm down when the elbow points up?",
-        ),
-        Slip(lambda p, l: _law(p, l, swap=True), "upper arm and forearm have changed their lengths"),
-        Slip(
-            lambda p, l: _law(p, l, quotient=True, sides=(1,)),
-            "places behind the column are missed, the others are right: a quotient y/x is the same in front and behind",
-        ),
-        Slip(
-            lambda p, l: _law(p, l, quotient=True),
-            "places are missed, some in front and some behind the column: a "
-            "quotient y/x cannot tell the two sides apart",
-        ),
-        Slip(
-            lambda p, l: _law(p, l, sides=(1,), bends=(1,)),
-            "one pose a place, its elbow below: a cosine leaves two arms, and the waist may turn its back",
-        ),
-        Slip(
-            lambda p, l: _law(p, l, sides=(1,), bends=(-1,)),
-            "one pose a place, its elbow above: a cosine leaves two arms, and the waist may turn its back",
-        ),
-        Slip(lambda p, l: inverse_kinematics(p, l)[:, ::-1], "the angles stand in the wrong order: q1, q2, q3"),
-        Slip(
-            lambda p, l: inverse_kinematics(p, l) * [-1, 1, 1], "the waist turns the wrong way: q1 has the wrong sign"
-        ),
-        Slip(
-            lambda p, l: inverse_kinematics(p, l) * [1, -1, 1],
-            "the shoulder turns the wrong way: q2 has the wrong sign",
-        ),
-        Slip(
-            lambda p, l: inverse_kinematics(p, _LENGTHS[0]),
-            "it has the lengths of one arm built in: use l, which changes from arm to arm",
-        ),
-    ),
+    loan=_LOAN,
+    routes=(_BY_THE_TRIANGLE, _LOAN.replace(_BY_LENGTH, "").replace(_STRAIGHT, _BY_COSINE + _STRAIGHT)),
+    parts=("q1", "q2", "q3"),
     symptom=_poses_symptom,
     hints=(
         "First the pose with the elbow up, facing the place. Does your forward_kinematics bring it back to p?",
@@ -230,17 +223,13 @@ def reach(p, l, q_now, limits):
     return _chosen(p, l, q_now, limits)
 
 
-def _chosen(p, l, q_now, limits, *, turn=None, allowed=None, last=False):
+def _chosen(p, l, q_now, limits, *, turn=None, allowed=None):
     turn = turn or (lambda q: np.abs(q - q_now).max())
     allowed = allowed or (lambda q: within(q, limits) and above_table(q, l))
     best = [q for q in inverse_kinematics(p, l) if allowed(q)]
     if not best:
         return None
-    return best[-1] if last else min(best, key=turn)
-
-
-def _in_degrees(q):
-    return None if q is None else np.degrees(q)
+    return min(best, key=turn)
 
 
 def within(q, limits):
@@ -262,17 +251,29 @@ def _reach_cases():
     wide = np.array([[-3.1, -3.1, -3.1], [3.1, 3.1, 3.1]])
     l = _LENGTHS[0]
     cases = [(np.array([0.42, -0.15, 0.09]), l.copy(), np.array([0, 0.3, -0.6]), limits.copy())]
-    while len(cases) < 60:
+    while len(cases) < 30:
         bounds = limits if len(cases) % 2 else wide
         p = forward_kinematics(rng.uniform(*bounds), l)
         if p[2] > 0:
             cases.append((p, l.copy(), rng.uniform(*limits), bounds.copy()))
+    for joint in range(3):  # the nearest pose breaks one limit alone
+        for side, step in ((0, 0.05), (1, -0.05)):
+            for q in rng.uniform([-2, 0.2, -1.5], [2, 1, 1.5], (3, 3)):
+                bounds = wide.copy()
+                bounds[side, joint] = q[joint] + step
+                cases.append((forward_kinematics(q, l), l.copy(), q, bounds))
     near = np.array([0.5, -0.5, 1.5])  # the elbow is below the table, the tip above
     elbow_low = forward_kinematics(near, _LENGTHS[2])
     narrow = np.array([near - 0.1, near + 0.1])
     cases.append((elbow_low, _LENGTHS[2].copy(), near, narrow))
     cases.append((np.array([0.3, 0.2, -0.05]), l.copy(), np.zeros(3), wide.copy()))
     cases.append((np.array([0.9, 0, 0.2]), l.copy(), np.zeros(3), wide.copy()))
+    for q in rng.uniform([-1.5, 0.2, -1.5], [1.5, 1, -0.5], (3, 3)):  # the nearest pose breaks all limits
+        p = forward_kinematics(q, l)
+        farthest = max(inverse_kinematics(p, l), key=lambda pose, q=q: np.abs(pose - q).min())
+        cases.append((p, l.copy(), q, np.array([farthest - 0.1, farthest + 0.1])))
+    ahead = np.array([[0, -3.1, -3.1], [3.1, 3.1, 3.1]])  # the waist stands exactly on its limit
+    cases.append((np.array([0.42, 0, 0.2]), l.copy(), np.zeros(3), ahead))
     return cases
 
 
@@ -284,16 +285,30 @@ def _same_pose(returned, expected):
 
 
 def _reach_symptom(cases, returned, expected):
-    for (p, l, _, limits), one, right in zip(cases, returned, expected, strict=True):
+    there = [k for k, right in enumerate(expected) if right is not None]
+    refused = [k for k in there if returned[k] is None]
+    if len(refused) == len(there):
+        return (
+            f"it returns None for all {len(there)} places that have an allowed pose: is every pose struck out (limits "
+            "in rad, low ones first), or is the choice never returned?"
+        )
+    if refused:
+        return f"it returns None for {len(refused)} of {len(there)} places that have an allowed pose"
+    if all(_same_pose(returned[k], expected[k]) for k in there):
+        one = next(one for one, right in zip(returned, expected, strict=True) if one is not None and right is None)
+        return f"where no pose is allowed it returns {shown(one)}: None is asked for"
+    for (p, l, _, limits), one in zip(cases, returned, strict=True):
         if one is None:
-            if right is not None:
-                return "it says None although there is an allowed pose"
             continue
         q = np.asarray(one, dtype=float)
         if q.shape != (3,):
-            return f"it returns something of shape {q.shape}: one pose, three angles, or None"
-        if right is None and np.linalg.norm(p - [0, 0, l[0]]) > l[1] + l[2]:
-            return "a place out of reach gets a pose: no pose means None"
+            return f"it returns {shown(one)}: the pose itself is asked for, three angles"
+        off = np.linalg.norm(forward_kinematics(q, l) - p)
+        if not off < 1e-5:
+            return (
+                "it returns a pose that is none of those of your inverse_kinematics: its tip is "
+                f"{1000 * off:.0f} mm beside the place"
+            )
         if not within(q, limits):
             joint = int(np.argmax((q < limits[0]) | (q > limits[1])))
             return (
@@ -304,6 +319,23 @@ def _reach_symptom(cases, returned, expected):
             part = "elbow" if frames(q, l)[2][2, 3] < -1e-9 else "tip"
             return f"it takes a pose whose {part} is below the table: elbow and tip have to stay above, z >= 0"
     return "the poses are allowed, but another allowed one turns its busiest joint less: compare the largest turns"
+
+
+def _turned(says, turn):
+    """A Slip that compares the turns in another way."""
+    return Slip(lambda p, l, q, m: _chosen(p, l, q, m, turn=lambda x: turn(x, q)), says)
+
+
+def _allowed(says, allowed, parts=(2, 3)):
+    """A Slip that strikes out other poses: what keeps the limits, and which frames have to stay above the table."""
+    return Slip(
+        lambda p, l, q, m: _chosen(p, l, q, m, allowed=lambda x: allowed(x, m) and above_table(x, l, parts)), says
+    )
+
+
+def _only_the_nearest(p, l, q_now, limits):
+    nearest = _chosen(p, l, q_now, limits, allowed=lambda x: True)
+    return nearest if nearest is not None and within(nearest, limits) and above_table(nearest, l) else None
 
 
 REACH = Task(
@@ -319,74 +351,39 @@ REACH = Task(
     loan="""def reach(p, l, q_now, limits):
     best = None
     smallest = np.inf
-    for q in inverse_kinematics(p, l):
-        allowed = np.all(q >= limits[0]) and np.all(q <= limits[1])
-        heights = frames(q, l)[2:, 2, 3]
-        clear = np.all(heights >= -1e-9)
-        turn = np.max(np.abs(q - q_now))
-        if allowed and clear and turn < smallest:
-            best = q
+    for pose in inverse_kinematics(p, l):
+        within_limits = np.all(pose >= limits[0]) and np.all(pose <= limits[1])
+        heights = frames(pose, l)[2:, 2, 3]
+        above_table = np.all(heights >= -1e-9)
+        turn = np.max(np.abs(pose - q_now))
+        if within_limits and above_table and turn < smallest:
+            best = pose
             smallest = turn
     return best""",
+    parts=("q1", "q2", "q3"),
     slips=(
-        Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, turn=lambda x: np.abs(x - q).sum()),
-            "it takes the pose with the smallest *sum* of turns; all joints move at once, so the busiest one counts",
+        _turned("only the waist's turn is compared", lambda x, q: abs(x[0] - q[0])),
+        _turned(
+            "a turn counts as the short way round, through an end stop: a joint turns straight from angle to angle",
+            lambda x, q: np.abs(np.angle(np.exp(1j * (x - q)))).max(),
         ),
         Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, turn=lambda x: ((x - q) ** 2).sum()),
-            "it takes the pose with the "
-            "smallest *length* of the turn (the root of squares); all joints move at once, so the busiest one counts",
+            _only_the_nearest,
+            "where the nearest pose is forbidden it gives up, although a farther one is allowed: first strike out, "
+            "then compare",
         ),
-        Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, turn=lambda x: -np.abs(x - q).max()),
-            "it takes the allowed pose that is farthest away",
+        _allowed("neither limits nor table are asked: what is nearest may be forbidden", lambda x, m: True, ()),
+        _allowed("the limits are not asked: the nearest pose may be forbidden", lambda x, m: True),
+        _allowed("the table is not asked: an elbow or tip may end below z = 0", within, ()),
+        _allowed("the tip stays above the table, the elbow does not: it counts, too", within, (3,)),
+        _allowed("the elbow stays above the table, the tip does not: it counts, too", within, (2,)),
+        _allowed("only the upper limits are asked", lambda x, m: (x <= m[1]).all()),
+        _allowed("only the lower limits are asked", lambda x, m: (x >= m[0]).all()),
+        _allowed("the upper limits serve as lower ones, too: those are others", lambda x, m: (np.abs(x) <= m[1]).all()),
+        _allowed(
+            "a joint that stands exactly on its limit is refused: the limits themselves are allowed",
+            lambda x, m: (x > m[0]).all() and (x < m[1]).all(),
         ),
-        Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, turn=lambda x: np.abs(x).max()),
-            "it takes the pose nearest to zero, not to where the arm is now",
-        ),
-        Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, turn=lambda x: (x - q).max()),
-            "a turn to the other side counts as less than none: its size is what takes time",
-        ),
-        Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, turn=lambda x: abs(x[0] - q[0])), "only the waist's turn is compared"
-        ),
-        Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, turn=lambda x: 0), "it takes the first allowed pose, not the nearest"
-        ),
-        Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, last=True),
-            "it takes the last allowed pose, not the nearest: is `smallest` kept up to date?",
-        ),
-        Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, allowed=lambda x: True),
-            "neither limits nor table are asked: what is nearest may be forbidden",
-        ),
-        Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, allowed=lambda x: above_table(x, l)),
-            "the limits are not asked: the nearest pose may be forbidden",
-        ),
-        Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, allowed=lambda x: within(x, m)),
-            "the table is not asked: an elbow or tip may end below z = 0",
-        ),
-        Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, allowed=lambda x: within(x, m) and above_table(x, l, (3,))),
-            "the tip stays above the table, the elbow does not: it counts, too",
-        ),
-        Slip(
-            lambda p, l, q, m: _chosen(p, l, q, m, allowed=lambda x: within(x, m) and above_table(x, l, (2,))),
-            "the elbow stays above the table, the tip does not: it counts, too",
-        ),
-        Slip(
-            lambda p, l, q, m: _chosen(
-                p, l, q, m, allowed=lambda x: bool((x >= m[0]).any() and (x <= m[1]).any()) and above_table(x, l)
-            ),
-            "one joint within its limits is enough for it: *every* joint has to keep them",
-        ),
-        Slip(lambda p, l, q, m: _in_degrees(_chosen(p, l, q, m)), "the angles are in degrees: everything here is rad"),
     ),
     symptom=_reach_symptom,
     hints=(

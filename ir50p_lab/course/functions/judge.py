@@ -2,10 +2,14 @@
 
 import copy
 import inspect
+import warnings
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
+from ir50p_lab.course.functions.distortions import distortions, entries
+from ir50p_lab.course.functions.stops import why_it_stops
 from ir50p_lab.course.functions.task import Failed, shown
 
 
@@ -36,11 +40,22 @@ def judge(task, function):
     if all(good):
         return _judge_type(task, returned, expected)
     first = good.index(False)
+    bad_first = sorted(range(len(cases)), key=lambda k: good[k])
+    stopped = [one for one in returned if isinstance(one, Failed)]
+    silent = 2 * len(stopped) >= len(cases) or all(one is None for one in returned)  # nothing to compare
+    for slip in () if silent else chain(task.slips, distortions(task)):
+        if all(_is_slip(task, slip, cases[k], returned[k]) for k in bad_first):
+            return Verdict("wrong", slip.says, _example(task, cases[first], expected[first], returned[first]))
+    if stopped:
+        return Verdict("wrong", *stopped[0].args)
+    says = (
+        _common(task, returned, expected)
+        or (
+            task.same is None and (_alone(returned) or _nearly(returned, expected) or entries(task, returned, expected))
+        )
+        or (task.symptom and task.symptom(cases, returned, expected))
+    )
     example = _example(task, cases[first], expected[first], returned[first])
-    for slip in task.slips:
-        if all(_is_slip(task, slip, case, one) for case, one in zip(cases, returned, strict=True)):
-            return Verdict("wrong", slip.says, example)
-    says = no_numbers(returned[first], expected[first]) or (task.symptom and task.symptom(cases, returned, expected))
     return Verdict("wrong", says or _which(task, cases, good), example)
 
 
@@ -54,6 +69,7 @@ def _check_signature(task, function, case):
 
 
 def _call(task, function, case):
+    """What it returns; Failed, returned as well, where it stops."""
     given = copy.deepcopy(case)
     try:
         with np.errstate(all="ignore"):
@@ -61,7 +77,7 @@ def _call(task, function, case):
     except KeyboardInterrupt:
         raise Failed("it was stopped: does a loop in it never end?", _given(task, case)) from None
     except Exception as error:
-        raise Failed(f"it stops with {type(error).__name__}: {error}", _given(task, case)) from None
+        return Failed(why_it_stops(error), _given(task, case))
     if not all(_untouched(one, other) for one, other in zip(case, given, strict=True)):
         raise Failed("it changes what it was given: work on a copy (`np.array(x)` makes one)", _given(task, case))
     return result
@@ -79,12 +95,13 @@ def _agrees(task, returned, expected):
 
 
 def _is_slip(task, slip, case, returned):
+    """Tell whether a slip gives the same answer, or stops where this one stops."""
     try:
-        with np.errstate(all="ignore"):
+        with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
             wrong = slip.wrong(*copy.deepcopy(case))
-        return task.agrees(returned, wrong)
     except Exception:
-        return False
+        return isinstance(returned, Failed)
+    return _agrees(task, returned, wrong)
 
 
 def _judge_type(task, returned, expected):
@@ -100,27 +117,63 @@ def _judge_type(task, returned, expected):
     return Verdict("right", "")
 
 
-def no_numbers(returned, expected):
+def _common(task, returned, expected):
     """Mistakes that look alike in every function: nothing returned, another kind of thing, another shape."""
-    if returned is None and expected is not None:
+    if all(one is None for one in returned) and not any(one is None for one in expected):
         return "it returns nothing: is there a `return`, and is it reached in every case?"
-    if expected is None or returned is None:
-        return ""
+    pairs = [(one, other) for one, other in zip(returned, expected, strict=True) if other is not None]
+    found = (no_numbers(one, other) for one, other in pairs if task.same is None)
+    return next(filter(None, chain(found, (_kind(one) for one in returned if one is not None))), "")
+
+
+def no_numbers(returned, expected):
+    """Why something is not what is expected before its numbers are looked at, or ""."""
+    if returned is None:
+        return "it returns nothing for some inputs: is its `return` reached in every case?"
+    if says := _kind(returned):
+        return says
+    array, wanted = np.asarray(returned, dtype=float), np.shape(expected)
+    if array.shape != wanted:
+        if array.size == np.size(expected) and np.allclose(array.ravel(), np.ravel(expected)):
+            return f"the numbers are right, their shape is not: {array.shape}, expected is {wanted}"
+        if array.shape[1:] == wanted and array.ndim > 1:
+            return f"it returns {len(array)} arrays where one is asked for"
+        return f"it returns an array of shape {array.shape}; expected is {wanted}"
+    if not np.isfinite(array).all() and np.isfinite(np.asarray(expected, dtype=float)).all():
+        return "it returns a number that is not finite (nan or inf): a division by zero, a root of less than nothing?"
+    return ""
+
+
+def _kind(returned):
+    """Why something cannot be read as numbers, or ""."""
     if returned is Ellipsis:
         return "the dots are still in it"
     if callable(returned):
         return f"it returns the function {getattr(returned, '__name__', '')}, not what that gives: add its arguments"
     try:
-        array = np.asarray(returned, dtype=float)
+        np.asarray(returned, dtype=float)
     except (TypeError, ValueError):
-        return (
-            f"it returns {type(returned).__name__} that cannot be read as an array of numbers: {str(returned)[:60]!r}"
-        )
-    wanted = np.shape(expected)
-    if array.shape != wanted and len(wanted) and wanted[0]:
-        return f"it returns an array of shape {array.shape}; expected is {wanted}"
-    if not np.isfinite(array).all() and np.isfinite(np.asarray(expected, dtype=float)).all():
-        return "it returns a number that is not finite (nan or inf): a division by zero, a root of less than nothing?"
+        kind = type(returned).__name__
+        if isinstance(returned, tuple | list):
+            return f"it returns a {kind} of {len(returned)} things that make no array: one array is asked for"
+        return f"it returns {kind} that cannot be read as an array of numbers: {str(returned)[:60]!r}"
+    return ""
+
+
+def _alone(returned):
+    """What no right answer is like: the same for every input, or whole numbers."""
+    if all(np.array_equal(one, returned[0]) for one in returned):
+        return f"it returns the same for every input: {shown(returned[0])}"
+    if all(np.array_equal(one, np.round(one)) for one in returned):
+        return "it holds whole numbers only: what was put in was cut off (an array of integers?)"
+    return ""
+
+
+def _nearly(returned, expected):
+    """Rounded, or made with a number written by hand."""
+    gap = max(np.abs(np.asarray(one) - other).max() for one, other in zip(returned, expected, strict=True))
+    if gap < 0.01 * max(np.abs(one).max() for one in expected):
+        return f"it is nearly right, the numbers are off by {gap:.1g}: is one rounded, or written by hand (3.14)?"
     return ""
 
 
@@ -134,7 +187,7 @@ def _which(task, cases, good):
     for words, is_such in task.where.items():
         if fine and all(is_such(*case) for case in bad):
             return f"it is right for {len(fine)} of {len(cases)} inputs; all the wrong ones have {words}"
-    return f"it is right for {len(fine)} of {len(cases)} inputs" if fine else "not yet"
+    return f"it is right for {len(fine)} of {len(cases)} inputs: try the one below with pencil and paper"
 
 
 def _given(task, case):
@@ -142,5 +195,7 @@ def _given(task, case):
 
 
 def _example(task, case, expected, returned):
+    if isinstance(returned, Failed):
+        return returned.args[1]
     unit = f" {task.unit}" if task.unit else ""
     return f"{_given(task, case)}\nexpected{unit}: {shown(expected)}\nyours: {shown(returned)}"

@@ -31,9 +31,11 @@ class Task:
     name, notebook: of the function, and the notebook that asks for it; signature: its arguments, as in `def`.
     asks: one line, what it returns; right: the course's own answer, a function of the same arguments.
     cases: tuples of arguments, edge cases among them; leans_on: earlier functions it may call.
-    slips: known mistakes, most specific first; symptom: function of (cases, returned, expected), lists of equal length,
-    that returns a sentence about a mistake no slip covers, or "". where: {words: function of a case}: kinds of cases,
-    to say that only these go wrong. hints: two, opened on demand; loan: a plain solution, as text.
+    slips: mistakes with a sentence of their own, most specific first; the usual ones need none (`distortions`);
+    routes: other solutions, as text; parts: names of what stands beside each other in the answer.
+    symptom: function of (cases, returned, expected), lists of equal length, that returns a sentence about a mistake no
+    slip covers, or "". where: {words: function of a case}: kinds of cases, to say that only these go wrong.
+    hints: two, opened on demand; loan: a plain solution, as text, whose names are words.
     same: compares what came back with what was expected; None: equal within tolerance. unit: of what comes back.
     A class has no cases; tried: function of it, raises `Failed` or returns a remark on a right answer ("": none);
     test: its small test, as text; right: the class that stands in.
@@ -48,6 +50,8 @@ class Task:
     cases: Callable | None = None
     leans_on: tuple = ()
     slips: tuple = ()
+    routes: tuple = ()
+    parts: tuple = ()
     symptom: Callable | None = None
     where: dict = field(default_factory=dict)
     hints: tuple = ("", "")
@@ -67,7 +71,9 @@ class Task:
         if self.same is not None:
             return self.same(returned, expected)
         returned, expected = np.asarray(returned, dtype=float), np.asarray(expected, dtype=float)
-        return returned.shape == expected.shape and bool(np.allclose(returned, expected, atol=self.tolerance, rtol=0))
+        return returned.shape == expected.shape and bool(
+            np.allclose(returned, expected, 0, self.tolerance, equal_nan=True)
+        )
 
 
 def shown(value):
@@ -76,7 +82,10 @@ def shown(value):
         return "None"
     if callable(value):
         return getattr(value, "__name__", "a function")
-    array = np.asarray(value)
+    try:
+        array = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        return str(value)[:80]
     if array.dtype == object:
         return str(value)[:80]
     text = np.array2string(array, precision=4, suppress_small=True, separator=", ", max_line_width=100)

@@ -12,14 +12,18 @@ def jacobian(T, link, point):
     return _columns(T, link, point)
 
 
-def _columns(T, link, point, *, axis=0, origin=0, across=np.cross, joints=None):
-    """The Jacobian with one step replaced: the frame whose axis and origin count, the product, the joints."""
+def _columns(T, link, point, *, axis=None, across=np.cross):
+    """The Jacobian, with another axis or product."""
     J = np.zeros((6, 3))
-    for joint in range(link if joints is None else joints):
-        z, o = T[joint + axis][:3, 2], T[joint + origin][:3, 3]
-        J[:3, joint] = across(z, point - o)
+    for joint in range(link):
+        z = T[joint][:3, 2] if axis is None else axis
+        J[:3, joint] = across(z, point - T[joint][:3, 3])
         J[3:, joint] = z
     return J
+
+
+def _lever_to_the_next(T, link, point):
+    return np.column_stack([_columns(T, link, frame[:3, 3])[:, k] for k, frame in enumerate(T[1:])])
 
 
 def _points():
@@ -37,8 +41,10 @@ def _points():
 def _jacobian_symptom(cases, returned, expected):
     J, right = np.array(returned, dtype=float), np.array(expected)
     for k, (_, link, _) in enumerate(cases):
-        if link < 3 and np.abs(J[k][:, link:]).max() > 1e-9:
+        if np.allclose(J[k][:, :link], right[k][:, :link]) and np.abs(J[k][:, link:]).sum() > 1e-9:
             return f"link {link} moves with joint {link + 1}, which comes after it: which joints carry a link?"
+    if not J[:, 3:].any():
+        return "the lower three rows are still zero: about which axis does each joint turn the link?"
     top, bottom = np.allclose(J[:, :3], right[:, :3]), np.allclose(J[:, 3:], right[:, 3:])
     if bottom and not top:
         if np.allclose(J[:, :3], -right[:, :3]):
@@ -75,63 +81,24 @@ JACOBIAN = Task(
         J[3:, joint] = axis
     return J""",
     slips=(
-        Slip(
-            lambda T, k, p: _columns(T, k, p, axis=1, origin=1),
-            "each joint turns about the axis of the frame *after* it: joint 1 turns about z of the base, frame 0",
-        ),
-        Slip(
-            lambda T, k, p: _columns(T, k, p, axis=1),
-            "each joint turns about the axis of the frame *after* it: joint 1 turns about z of the base, frame 0",
-        ),
-        Slip(lambda T, k, p: _columns(T, k, p, origin=1), "the axes are right, the levers start one joint too late"),
-        Slip(
-            lambda T, k, p: _columns(T, k, p, across=lambda a, b: np.cross(b, a)),
-            "the velocities point backwards: axis x lever is not lever x axis",
-        ),
-        Slip(
-            lambda T, k, p: _columns(T, k, p, across=lambda a, b: a * b),
-            "the velocities are products entry by entry (`*`): axis and lever need the cross product",
-        ),
-        Slip(
-            lambda T, k, p: _columns(T, 3, p, joints=3),
-            "every joint moves every link in it: a link is carried by the joints before it only",
-        ),
-        Slip(
-            lambda T, k, p: _columns(T, k, p, joints=k - 1),
-            "the last joint before the link is missing: link 1 is carried by joint 1",
-        ),
-        Slip(
-            lambda T, k, p: _columns(T, k, T[k][:3, 3]),
-            "it is the end of the link that moves in it, not the point: `point` is not used",
-        ),
-        Slip(
-            lambda T, k, p: _columns(T, k, T[3][:3, 3]),
-            "it is the tip that moves in it, not the point: `point` is not used",
-        ),
-        Slip(
-            lambda T, k, p: np.vstack([jacobian(T, k, p)[3:], jacobian(T, k, p)[:3]]),
-            "turning stands above velocity: the other way round is asked for",
-        ),
-        Slip(
-            lambda T, k, p: jacobian(T, k, p)[:3],
-            "it has three rows, the velocity: the link turns, too; three rows more, below",
-        ),
-        Slip(lambda T, k, p: jacobian(T, k, p).T, "rows and columns have changed places: one *column* a joint"),
+        Slip(lambda T, k, p: _columns(T, k, T[k][:3, 3]), "the end of the link moves in it: `point` is not used"),
+        Slip(lambda T, k, p: _columns(T, k, T[3][:3, 3]), "it is the tip that moves in it: `point` is not used"),
         Slip(
             lambda T, k, p: jacobian(T, k, p)[:, :k],
             "there are three columns always: joints that do not carry the link get zeros",
         ),
         Slip(
-            lambda T, k, p: _columns([t.T for t in T], k, p),
-            "it reads rows of the transforms: axes and origin stand in columns",
-        ),
-        Slip(
-            lambda T, k, p: np.vstack([jacobian(T, k, p)[:3], np.zeros((3, 3))]),
-            "the lower three rows are still zero: about which axis does each joint turn the link?",
-        ),
-        Slip(
             lambda T, k, p: _columns(T, k, p, across=lambda z, _: np.cross(z, p)),
             "the levers all start at the base: each starts at its own joint",
+        ),
+        Slip(_lever_to_the_next, "each lever ends at the next joint, not at the point"),
+        Slip(
+            lambda T, k, p: _columns(T, k, (T[k] @ np.append(p, 1))[:3]),
+            "the point is turned and shifted once more: it is given in base coordinates already",
+        ),
+        Slip(
+            lambda T, k, p: _columns(T, k, p, axis=np.array([0.0, 0, 1])),
+            "every joint turns about the vertical in it: the axes of shoulder and elbow lie flat",
         ),
     ),
     symptom=_jacobian_symptom,
@@ -148,14 +115,22 @@ def damped_step(q, p, l, damping):
     return _step(q, p, l, damping)
 
 
-def _step(q, p, l, damping, *, square=True, sign=1, back=None, start=True):
+def _step(q, p, l, damping, *, solve=None, rows=slice(3)):
     T = frames(q, l)
     tip = T[3][:3, 3]
-    J = jacobian(T, 3, tip)[:3]
-    lam = damping**2 if square else damping
-    left = sign * (p - tip)
-    dq = J.T @ np.linalg.solve(J @ J.T + lam * np.eye(3), left) if back is None else back(J, left, damping)
-    return q + dq if start else dq
+    J = jacobian(T, 3, tip)[rows]
+    dq = solve(J, p - tip, damping) if solve else J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(3), p - tip)
+    return q + dq
+
+
+def _changed(says, change):
+    """A Slip that changes the step before it is added."""
+    return Slip(lambda q, p, l, d: q + change(damped_step(q, p, l, d) - q, d), says)
+
+
+def _solved(says, solve):
+    """A Slip that finds the step in another way."""
+    return Slip(lambda q, p, l, d: _step(q, p, l, d, solve=solve), says)
 
 
 def _steps():
@@ -171,22 +146,23 @@ def _steps():
     return cases
 
 
-def _plain(J, left, _):
-    return np.linalg.pinv(J) @ left
-
-
 def _step_symptom(cases, returned, expected):
     here = [np.asarray(case[0]) for case in cases]
     if all(np.allclose(one, q) for one, q in zip(returned, here, strict=True)):
         return "it stays where it is: it returns q unchanged"
+    ends = [
+        forward_kinematics(np.asarray(one, dtype=float), case[2]) for one, case in zip(returned, cases, strict=True)
+    ]
+    if sum(np.linalg.norm(end - case[1]) < 1e-4 for end, case in zip(ends, cases, strict=True)) > len(cases) / 2:
+        return "it is at the place already: one step is asked for, the loop that repeats it stands outside"
     worse = 0
-    for (q, p, l, _), one in zip(cases[:8], returned, strict=False):
-        before = np.linalg.norm(forward_kinematics(q, l) - p)
-        worse += np.linalg.norm(forward_kinematics(np.asarray(one, dtype=float), l) - p) > before
+    for (q, p, l, _), end in zip(cases[:8], ends, strict=False):
+        worse += np.linalg.norm(end - p) > np.linalg.norm(forward_kinematics(q, l) - p)
     if worse >= 6:
         return f"{worse} of 8 steps lead away from the place, not towards it"
     return (
-        "most steps come nearer, but they are not those of the damped formula: look at damping, and at what is solved"
+        "most steps come nearer, but they are not those of the damped formula: look at the damping, at what is solved, "
+        "and whether anything is cut or added afterwards"
     )
 
 
@@ -198,70 +174,45 @@ DAMPED_STEP = Task(
     right=damped_step,
     cases=_steps,
     leans_on=("jacobian", "forward_kinematics", "frames", "dh_matrix", "rot_z"),
-    tolerance=1e-8,
+    tolerance=1e-5,  # a Jacobian by differences over 1e-6 rad leaves 2e-6
+    parts=("q1", "q2", "q3"),
     loan="""def damped_step(q, p, l, damping):
     T = frames(q, l)
     tip = T[3][:3, 3]
     J = jacobian(T, 3, tip)[:3]
-    A = J @ J.T + damping**2 * np.eye(3)
-    y = np.linalg.solve(A, p - tip)
-    return q + J.T @ y""",
+    missing = p - tip
+    matrix = J @ J.T + damping**2 * np.eye(3)
+    push = np.linalg.solve(matrix, missing)
+    step = J.T @ push
+    return q + step""",
     slips=(
-        Slip(
-            lambda q, p, l, d: _step(q, p, l, d, sign=-1),
-            "it steps away from the place: what is missing is place less tip, not tip less place",
-        ),
-        Slip(
-            lambda q, p, l, d: _step(q, p, l, d, start=False),
-            "it returns the step alone; asked for is where the step leads, the next q",
-        ),
-        Slip(
-            lambda q, p, l, d: _step(q, p, l, d, square=False),
-            "the damping is added as it is; J times its transpose is "
-            "in square metres, so damping (m) has to be squared",
-        ),
-        Slip(
-            lambda q, p, l, d: _step(q, p, l, d, back=_plain),
-            "the damping does nothing: near the stretched arm the step has no bound",
-        ),
-        Slip(
-            lambda q, p, l, d: _step(q, p, l, d, back=lambda J, e, _: J.T @ e),
+        _changed("the step is made into degrees before it is added: all is rad here", lambda dq, d: np.degrees(dq)),
+        _changed("the step is shortened by the damping, too: that belongs into the matrix only", lambda dq, d: d * dq),
+        _changed("the step is divided by the damping, too: that belongs into the matrix only", lambda dq, d: dq / d),
+        _solved(
             "it follows the transpose alone, without solving: the right side, but far too short or too long",
+            lambda J, e, d: J.T @ e,
         ),
-        Slip(
-            lambda q, p, l, d: _step(
-                q, p, l, d, back=lambda J, e, _: d * np.linalg.solve(J @ J.T + d**2 * np.eye(3), e)
-            ),
-            "the step is shortened by the damping as well: it belongs inside the matrix only",
+        _solved(
+            "the transpose comes before the solving: it belongs behind, to bring the answer to the joints",
+            lambda J, e, d: np.linalg.solve(J @ J.T + d**2 * np.eye(3), J.T @ e),
         ),
-        Slip(
-            lambda q, p, l, d: _step(q, p, l, d, back=lambda J, e, d: np.linalg.solve(J @ J.T + d**2 * np.eye(3), e)),
-            "after solving, what you have is a push at the tip, in metres' kind; the joints feel it through the "
-            "transpose, which is missing",
-        ),
-        Slip(
-            lambda q, p, l, d: _step(
-                q, p, l, d, back=lambda J, e, d: J @ np.linalg.solve(J @ J.T + d**2 * np.eye(3), e)
-            ),
-            "at the end stands J where its transpose belongs: from the tip back to the joints",
-        ),
-        Slip(
-            lambda q, p, l, d: _step(q, p, l, d, back=lambda J, e, d: np.linalg.solve(J + d * np.eye(3), e)),
+        _solved(
             "the damping is added to J itself: that changes where the step leads, instead of shortening it",
+            lambda J, e, d: np.linalg.solve(J + d * np.eye(3), e),
+        ),
+        _solved(
+            "`**-1` inverts each entry, not the matrix",
+            lambda J, e, d: J.T @ ((J @ J.T + d**2 * np.eye(3)) ** -1.0 @ e),
         ),
         Slip(
-            lambda q, p, l, d: _step(
-                q, p, l, d, back=lambda J, e, d: J.T @ np.linalg.solve(J @ J.T - d**2 * np.eye(3), e)
-            ),
-            "the damping is taken away, not added: it has to keep the matrix from vanishing",
+            lambda q, p, l, d: np.angle(np.exp(1j * damped_step(q, p, l, d))),
+            "the angles are wrapped to half a turn: a joint goes where the step leads, leave them as they are",
         ),
         Slip(
-            lambda q, p, l, d: _step(
-                q, p, l, d, back=lambda J, e, d: J.T @ np.linalg.solve(J.T @ J + d**2 * np.eye(3), e)
-            ),
-            "J and its transpose are mixed up in one place: J J' goes with J' in front, J' J with J' behind",
+            lambda q, p, l, d: _step(q, p, l, d, rows=slice(3, 6)),
+            "the lower three rows of the Jacobian are used, the turning: a place needs the velocity",
         ),
-        Slip(lambda q, p, l, d: np.degrees(_step(q, p, l, d)), "it returns degrees: everything here is rad"),
     ),
     symptom=_step_symptom,
     hints=(

@@ -1,0 +1,207 @@
+"""Right answers spoilt in every usual way: a wrong answer is told by the numbers it shares with one of them."""
+
+import math
+
+import numpy as np
+
+from ir50p_lab.course.functions.task import Slip
+from ir50p_lab.course.functions.variants import variants
+
+_OF_NUMBERS = (
+    ("{} counts with the wrong sign", np.negative),
+    ("{} does nothing in it: is it used?", np.zeros_like),
+    ("{} hardly counts: it comes in radians already, is it converted once more?", np.radians),
+    ("{} counts far too much: it is in radians already, is it made into degrees?", np.degrees),
+    ("{} is cut to a whole number", np.trunc),
+    ("{} counts twice", lambda x: 2 * x),
+    ("{} counts by half", lambda x: x / 2),
+    ("{} is taken for millimetres", lambda x: 1000 * x),
+)
+_OF_TABLES = (
+    ("rows and columns of {} have changed places", lambda x: np.swapaxes(x, -1, -2)),
+    ("{} is read in the opposite order, the last for the first", lambda x: x[::-1]),
+    *_OF_NUMBERS[2:4],
+)
+_OF_PARTS = (
+    ("{} has the wrong sign, the rest is right", np.negative),
+    ("{} is always 0, the rest is right", np.zeros_like),
+    ("{} is in degrees: everything here is rad", np.degrees),
+)
+_OF_RESULTS = (
+    ("rows and columns have changed places", lambda y: np.swapaxes(y, -1, -2)),
+    ("everything has the wrong sign", np.negative),
+    ("it goes the way back: its inverse would be right", np.linalg.inv),
+    ("it returns degrees: everything here is rad", np.degrees),
+    ("it returns angles that were turned into radians once more", np.radians),
+    ("it returns thousandths (mm): everything here is in metres", lambda y: 1000 * y),
+    ("it returns twice what is asked for", lambda y: 2 * y),
+    ("it returns half of what is asked for", lambda y: y / 2),
+    ("what it returns stands in the opposite order, the last first", lambda y: y[::-1]),
+    ("the turn in it goes the way back, its place is right", lambda y: _with_turn(y, np.swapaxes(y, -1, -2))),
+    ("it returns the sum of all", lambda y: y.sum(axis=0)),
+    ("it returns the size alone, one number", np.linalg.norm),
+    ("a 1 stands at its end that belongs to a transform", lambda y: np.append(y, 1.0)),
+    ("its last row and column are missing", lambda y: y[..., :-1, :-1]),
+    ("its upper and lower half have changed places", lambda y: np.roll(y, len(y) // 2, axis=0)),
+    ("it is a transform: asked for is the turn in it alone", lambda y: np.pad(y, (0, 1)) + np.diag([0.0] * 3 + [1])),
+)
+
+
+def distortions(task):
+    """Yield Slips: arguments misread, results misplaced, and the course's solutions with one step changed."""
+    for kind in (_of_results, _of_arguments, variants):
+        yield from kind(task)
+
+
+def _of_arguments(task):
+    case = task.cases()[0]
+    for k, (name, value) in enumerate(zip(task.signature, case, strict=True)):
+        if callable(value) or isinstance(value, str):
+            continue
+        for says, change in _readings(name, np.asarray(value)):
+            yield Slip(_reading(task, k, change), says)
+        yield Slip(_reading(task, k, lambda _, value=value: value), f"it has one {name} built in, whatever it is given")
+    for k in range(len(case)):
+        for m in range(k):
+            if np.shape(case[k]) == np.shape(case[m]) and not callable(case[k]):
+                says = f"{task.signature[m]} and {task.signature[k]} have changed places"
+                yield Slip(_exchanged(task, m, k), says)
+
+
+def _readings(name, value):
+    """Pairs (words, change) for one argument."""
+    if value.ndim > 1:
+        return [(says.format(name), change) for says, change in _OF_TABLES]
+    found = [(says.format(name), change) for says, change in _OF_NUMBERS]
+    if value.ndim == 1:
+        parts = [f"{name}[{j}]" for j in range(len(value))]
+        for j, part in enumerate(parts):
+            found += [(says.format(part), _on_part(j, change)) for says, change in _OF_NUMBERS]
+            for i in range(j):
+                found += [(f"{parts[i]} and {part} have changed places", _swapped(i, j))]
+                for sign, word in ((1, "+"), (-1, "-")):
+                    says = f"{part} counts as {part} {word} {parts[i]}: from where is it measured?"
+                    found += [(says, _combined(i, j, sign))]
+    return found
+
+
+def _of_results(task):
+    for says, change in _OF_RESULTS:
+        yield Slip(_result(task, change), says)
+    shape = np.shape(next(one for one in (task.right(*case) for case in task.cases()) if one is not None))
+    if not shape:
+        return
+    for j in range(shape[-1]):
+        part = task.parts[j] if task.parts else f"column {j + 1}"
+        for says, change in _OF_PARTS:
+            yield Slip(_result(task, _on_part(j, change)), says.format(part))
+        for i in range(j):
+            other = task.parts[i] if task.parts else f"column {i + 1}"
+            yield Slip(_result(task, _swapped(i, j)), f"{other} and {part} have changed places")
+        yield Slip(_result(task, lambda y, j=j: y[..., j]), f"it returns {part} alone")
+        yield Slip(_result(task, lambda y, j=j: np.delete(y, j, axis=-1)), f"{part} is missing")
+    if len(shape) > 1 and task.same is None:
+        for i in range(shape[0]):
+            says = f"it returns the first {i} of {shape[0]} only: are the others left out, or does it return too early?"
+            yield Slip(_result(task, lambda y, i=i: y[:i]), says)
+            yield Slip(_result(task, lambda y, i=i: y[i]), f"it returns number {i + 1} of {shape[0]} alone")
+            yield Slip(_result(task, lambda y, i=i: np.delete(y, i, 0)), f"number {i + 1} of {shape[0]} is missing")
+            for j in range(i):
+                change = _on_rows(_swapped(i, j))
+                yield Slip(_result(task, change), f"rows {j + 1} and {i + 1} have changed places")
+
+
+def _reading(task, k, change):
+    return lambda *case: task.right(*case[:k], change(case[k]), *case[k + 1 :])
+
+
+def _exchanged(task, m, k):
+    def wrong(*case):
+        case = list(case)
+        case[m], case[k] = case[k], case[m]
+        return task.right(*case)
+
+    return wrong
+
+
+def _result(task, change):
+    def wrong(*case):
+        right = task.right(*case)
+        return right if right is None or np.size(right) == 0 else change(np.asarray(right, dtype=float))
+
+    return wrong
+
+
+def _on_part(j, change):
+    def edit(value):
+        value = np.array(value, dtype=float)
+        value[..., j] = change(value[..., j])
+        return value
+
+    return edit
+
+
+def _swapped(i, j):
+    def edit(value):
+        value = np.array(value, dtype=float)
+        value[..., [i, j]] = value[..., [j, i]]
+        return value
+
+    return edit
+
+
+def _combined(i, j, sign):
+    def edit(value):
+        value = np.array(value, dtype=float)
+        value[..., j] += sign * value[..., i]
+        return value
+
+    return edit
+
+
+def _on_rows(change):
+    return lambda value: np.moveaxis(change(np.moveaxis(value, 0, -1)), -1, 0)
+
+
+def _with_turn(y, turned):
+    y = y.copy()
+    y[..., :3, :3] = turned[..., :3, :3]
+    return y
+
+
+# ------------------------------------------------------------------------------------------- what needs no suspicion
+def entries(task, returned, expected):
+    """A sentence on the entries that are wrong, if they are few and always the same; else ""."""
+    shape = np.shape(expected[0])
+    if not 1 <= len(shape) <= 2 or any(np.shape(one) != shape for one in (*returned, *expected)):
+        return ""
+    found, right = np.array(returned, dtype=float), np.array(expected, dtype=float)
+    wrong = [place for place in np.ndindex(shape) if not _alike(task, found[:, *place], right[:, *place])]
+    if len(wrong) > min(2, math.prod(shape) // 2):
+        return ""
+    return "all is right but " + "; ".join(_entry(task, place, found, right) for place in wrong)
+
+
+def _entry(task, place, found, right):
+    numbers = found[:, *place]
+    name = task.parts[place[-1]] if task.parts and len(place) == 1 else f"row {place[0] + 1}"
+    name += f", column {place[1] + 1}" if len(place) == 2 else ""
+    if _alike(task, numbers, -right[:, *place]):
+        return f"{name} has the wrong sign"
+    if _alike(task, np.abs(numbers), np.abs(right[:, *place])):
+        return f"{name} has the right size, but for some inputs the wrong sign"
+    if np.ptp(numbers) == 0:
+        return f"{name} is always {numbers[0]:g}"
+    for other in np.ndindex(right.shape[1:]):
+        for sign, words in ((1, ""), (-1, "minus ")):
+            if _alike(task, numbers, sign * right[:, *other]):
+                return f"{name} holds {words}what belongs into {_name(task, other)}"
+    return f"{name} is wrong"
+
+
+def _name(task, place):
+    return task.parts[place[0]] if task.parts else f"row {place[0] + 1}, column {place[-1] + 1}"
+
+
+def _alike(task, a, b):
+    return np.allclose(a, b, atol=task.tolerance, rtol=0)

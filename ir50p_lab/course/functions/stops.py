@@ -1,0 +1,86 @@
+"""Why a student's function stopped: the line it stopped in, and the usual reason in plain words."""
+
+import ast
+import linecache
+import traceback
+
+import numpy as np
+
+from ir50p_lab.errors import LabError
+
+ROOM = "<my_robot"  # the file name of what is tried begins so
+
+_REASONS = (  # kind of error, what its message holds, the usual reason
+    ("TypeError", "NoneType", "something in it is None: does a helper lack its `return`?"),
+    ("ValueError", "has 0, gufunc", "a single number or None stands in a matrix product: does a helper lack `return`?"),
+    ("TypeError", "bitwise_xor", "`^` is no power in Python; `**` is"),
+    ("TypeError", "'^'", "`^` is no power in Python; `**` is"),
+    ("TypeError", "array() takes", "the rows need brackets round them all: one list of lists"),
+    ("TypeError", "dot() takes", "`np.dot` takes two factors: chain them with `@`"),
+    ("TypeError", "converted to Python scalar", "a function of one number (`math`) is given an array: take NumPy's"),
+    ("TypeError", "not callable", "what stands before the brackets is no function: is a `*` or a comma missing?"),
+    ("TypeError", "not subscriptable", "what stands before the square brackets has no parts"),
+    ("ValueError", "truth value", "comparing arrays gives an answer for each part: do all of them count, or any?"),
+    ("ValueError", "inhomogeneous", "rows of different lengths make no array"),
+    ("ValueError", "array element with a sequence", "a whole array is put where one number belongs"),
+    ("ValueError", "mismatch in its core dimension", "two arrays in a product do not fit together"),
+    ("ValueError", "not aligned", "two arrays in a product do not fit together"),
+    ("ValueError", "broadcast", "two arrays do not fit together"),
+    ("IndexError", "", "one place too far: places are counted from 0, so the last of n is n - 1"),
+    ("ZeroDivisionError", "", "a division by zero"),
+    ("ValueError", "math domain error", "a root of less than nothing, or an arccos of more than 1"),
+    ("LinAlgError", "ingular", "the matrix has no inverse there: the arm is stretched, a direction is lost"),
+    ("LinAlgError", "square", "only a square matrix has an inverse"),
+    ("UnboundLocalError", "", "a name is used before it gets its value: is that only set inside an `if` or a loop?"),
+    ("RecursionError", "", "it calls itself without an end"),
+)
+
+
+def why_it_stops(error):
+    """A sentence on an error: the line, the usual reason, what did not fit together, and Python's own words."""
+    line, operands = _where(error)
+    said = f"{type(error).__name__}: {error}"
+    reason = next((why for kind, part, why in _REASONS if kind == type(error).__name__ and part in str(error)), "")
+    if isinstance(error, LabError):
+        reason = "an earlier function is given what it cannot take: are its arguments in their order?"
+    place = f" in `{line}`" if line else ""
+    if not reason:
+        return f"it stops{place} with {said}"
+    return f"it stops{place}: {reason}{operands}. Python says {said}"
+
+
+def _where(error):
+    """The student's line, and the two operands that do not go together."""
+    for frame, number in reversed(list(traceback.walk_tb(error.__traceback__))):
+        file = frame.f_code.co_filename
+        if file.startswith(ROOM):
+            line = linecache.getline(file, number).strip()
+            return line, _operands(line, frame)
+    return "", ""
+
+
+def _operands(line, frame):
+    try:
+        operations = [node for node in ast.walk(ast.parse(line)) if isinstance(node, ast.BinOp)]
+    except SyntaxError:  # a part of a longer line
+        return ""
+    for node in reversed(operations):
+        try:
+            _value(node.left, frame), _value(node.right, frame)
+            _value(node, frame)
+        except Exception:
+            try:
+                return "; ".join(["", *(_named(one, frame) for one in (node.left, node.right))])
+            except Exception:
+                continue
+    return ""
+
+
+def _value(node, frame):
+    return eval(compile(ast.Expression(node), "<part>", "eval"), frame.f_globals, frame.f_locals)
+
+
+def _named(node, frame):
+    value = _value(node, frame)
+    kind = f"has the shape {value.shape}" if isinstance(value, np.ndarray) else f"is {str(value)[:30]}"
+    return f"`{ast.unparse(node)}` {kind}"

@@ -1,0 +1,266 @@
+"""A right solution with one step changed, every step in every usual way: what a slip of the pen computes."""
+
+import ast
+import copy
+import math
+import re
+from collections import defaultdict
+from functools import cache
+
+import numpy as np
+
+from ir50p_lab.course.functions.task import Slip
+
+_PAIRS = {"sin": "cos", "cos": "sin", "arccos": "arcsin", "all": "any", "max": "min"}
+_PAIR_WORDS = {
+    "sin": "sine and cosine have changed places",
+    "cos": "sine and cosine have changed places",
+    "arccos": "arcsin stands where the cosine has to be undone",
+    "all": "one is enough where all are asked for",
+    "max": "the smallest counts, not the largest",
+}
+
+
+_MANY_NAMES = 14  # exchanging each for each of more takes seconds
+
+
+def variants(task):
+    """Yield Slips: the loan and the other solutions of a task with one step changed, or one kind of step throughout."""
+    from ir50p_lab.course.functions.catalogue import task as find
+
+    room = {"np": np, "math": math, **{name: find(name).right for name in task.leans_on}}
+    for text in (task.loan, *task.routes):
+        for says, code in _spoilt(text):
+            names = dict(room)
+            exec(code, names)
+            yield Slip(names[task.function], says)
+
+
+@cache
+def _spoilt(text):
+    """Pairs (words, code) of a solution: nodes are changed in place, and back."""
+    tree = ast.parse(text)
+    found = []
+    for function in tree.body:
+        alike = defaultdict(dict)
+        for node, words, other, place in _all_changes(function):
+            found.append((f"{words}: look at {place}", _compiled(tree, {node: other})))
+            for kind in () if words.startswith("`") else (words, f"{words}: look at {place}"):
+                alike[kind].setdefault(node, other)
+        found += [(words, _compiled(tree, changes)) for words, changes in alike.items() if len(changes) > 1]
+    return [(words, code) for words, code in found if code]
+
+
+def _compiled(tree, changes):
+    before = {node: (node.__class__, dict(node.__dict__)) for node in changes}
+    for node, other in changes.items():
+        node.__class__, node.__dict__ = other.__class__, dict(other.__dict__)
+    try:
+        return compile(ast.fix_missing_locations(tree), "<variant>", "exec")
+    except (SyntaxError, ValueError):
+        return None
+    finally:
+        for node, (kind, parts) in before.items():
+            node.__class__, node.__dict__ = kind, parts
+
+
+def _all_changes(function):
+    """Every change of every node of a function: node, words, the other node, where it stands."""
+    local = {one.id for one in ast.walk(function) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)}
+    local |= {one.arg for one in function.args.args}
+    last = [one for one in ast.walk(function) if isinstance(one, ast.Return)][-1]
+    statements = _statements(function)
+    filled = {
+        node.value for node in ast.walk(function) if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store)
+    }
+    lists = [node.iter for node in ast.walk(function) if isinstance(node, ast.For) and isinstance(node.iter, ast.List)]
+    margins = [one for one in ast.walk(function) if isinstance(one, ast.Compare) and any(map(_tiny, ast.walk(one)))]
+    left_alone = filled.union(*map(ast.walk, lists), *map(ast.walk, margins))
+    for node in [one for one in ast.walk(function) if one not in left_alone]:
+        place = _place(statements.get(id(node)))
+        for words, other in _changes(node, local, last):
+            yield node, words, other, place
+
+
+def _statements(function):
+    """The innermost statement that holds each node."""
+    found = {}
+    for statement in ast.walk(function):
+        if isinstance(statement, ast.stmt):
+            found |= {id(node): statement for node in ast.walk(statement)}
+    return found
+
+
+def _place(statement):
+    """Where a step stands, by what it computes: names of a solution are words."""
+    match statement:
+        case ast.Assign(targets=[target]):
+            name = next(one.id for one in ast.walk(target) if isinstance(one, ast.Name))
+            place = re.sub(r"^(?=.*_|[a-z]{3})", "the ", name).replace("_", " ")
+        case ast.If():
+            place = "the condition"
+        case ast.For():
+            place = "the loop"
+        case _:
+            place = "what it returns"
+    return place
+
+
+def _changes(node, local, last):
+    """Pairs (words, the node in its place)."""
+    match node:
+        case ast.BinOp(left=left, op=op, right=right) if not (_tiny(left) or _tiny(right)):
+            yield from _of_operation(left, op, right)
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            yield "a minus is missing", operand
+        case ast.Call(func=ast.Attribute(attr=name), args=args):
+            yield from _of_numpy(node, name, args)
+        case ast.Call(func=ast.Name(id="range"), args=[count]):
+            for words, start, stop in (
+                ("the loop leaves out the first", "1", "{}"),
+                ("the loop ends one too early", "0", "{} - 1"),
+                ("the loop goes one too far", "0", "{} + 1"),
+                ("the loop always runs over all three", "0", "3"),
+            ):
+                yield words, _parsed(f"range({start}, {stop.format(ast.unparse(count))})")
+        case ast.Call(func=function, args=args):
+            for k in range(len(args) - 1):
+                swapped = [*args[:k], args[k + 1], args[k], *args[k + 2 :]]
+                words = f"arguments {k + 1} and {k + 2} of `{ast.unparse(function)}` have changed places"
+                yield words, ast.Call(function, swapped, [])
+            for k, arg in enumerate(args):
+                if isinstance(arg, ast.Constant) and isinstance(arg.value, int):
+                    for other in {arg.value - 1, arg.value + 1}:
+                        words = f"argument {k + 1} of `{ast.unparse(function)}` is {other}, one off"
+                        yield words, ast.Call(function, [*args[:k], ast.Constant(other), *args[k + 1 :]], [])
+        case ast.Attribute(value=value, attr="T"):
+            yield "a transpose is missing", value
+        case ast.Subscript(value=value, slice=ast.Tuple(elts=[*places]), ctx=ast.Load()):
+            yield "the whole is taken where a part of it is needed", value
+            other = ast.Subscript(value, ast.Tuple(places[::-1], ast.Load()), node.ctx)
+            yield "a row is read where a column belongs", other
+            for k, place in enumerate(places):
+                for step in (1, -1, 2, -2, -3) if isinstance(place, ast.Constant) else ():
+                    moved = [*places[:k], ast.Constant(place.value + step), *places[k + 1 :]]
+                    words = "another row or column is read than the one that is needed (they count from 0)"
+                    yield words, ast.Subscript(value, ast.Tuple(moved, ast.Load()), node.ctx)
+        case ast.Subscript(value=value, slice=ast.Constant(value=int(k)), ctx=ast.Load()):
+            for step in (1, -1, 2, -2, -3):
+                if k + step >= 0:
+                    words = f"number {k + step} of {ast.unparse(value)} is taken, not the one needed (counted from 0)"
+                    yield words, ast.Subscript(value, ast.Constant(k + step), node.ctx)
+        case ast.Subscript(value=value, slice=ast.Name() as k, ctx=ast.Load()):
+            for words, op in (("after", ast.Add()), ("before", ast.Sub())):
+                moved = ast.BinOp(k, op, ast.Constant(1))
+                yield f"the one {words} it is taken from {ast.unparse(value)}", ast.Subscript(value, moved, node.ctx)
+        case ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.Lt() | ast.LtE() as op], comparators=[right]):
+            other = ast.LtE() if isinstance(op, ast.Gt | ast.GtE) else ast.GtE()
+            yield "a comparison is the wrong way round", ast.Compare(left, [other], [right])
+        case ast.BoolOp(op=op, values=values):
+            other = ast.Or() if isinstance(op, ast.And) else ast.And()
+            yield "`and` and `or` have changed places", ast.BoolOp(other, values)
+            for k, value in enumerate(values):
+                rest = values[:k] + values[k + 1 :]
+                words = f"a condition is not asked (that on {_subject(value)})"
+                yield words, rest[0] if len(rest) == 1 else ast.BoolOp(op, rest)
+        case ast.For(target=target, iter=rounds, body=body):
+            yield "it returns inside the loop, after the first round", ast.For(target, rounds, [*body, last], [])
+        case ast.If(test=test, body=body):
+            yield "the condition is not asked", ast.If(ast.Constant(True), body, [])
+            yield "the condition is not asked", ast.If(ast.Constant(False), body, [])
+            yield "it stops at the first that fits", ast.If(test, [*body, ast.Break()], [])
+        case ast.Assign(targets=[ast.Name()]):
+            yield "it is not kept up to date", ast.Pass()
+        case ast.Assign(targets=[ast.Subscript()]):
+            yield "a part of it is never filled in", ast.Pass()
+        case ast.Tuple(elts=elts, ctx=ast.Store()):
+            for k in range(len(elts) - 1):
+                swapped = [*elts[:k], elts[k + 1], elts[k], *elts[k + 2 :]]
+                words = f"{ast.unparse(elts[k])} and {ast.unparse(elts[k + 1])} have changed places"
+                yield words, ast.Tuple(swapped, ast.Store())
+        case ast.Name(id=name, ctx=ast.Load()) if name in local:
+            for other in sorted(local - {name}) if len(local) < _MANY_NAMES else ():
+                yield f"`{other.replace('_', ' ')}` stands where something else belongs", ast.Name(other, ast.Load())
+            own, words = copy.copy(node), name.replace("_", " ")
+            yield f"`{words}` is transposed once too often", ast.Attribute(own, "T", ast.Load())
+            yield f"`{words}` has the wrong sign", ast.UnaryOp(ast.USub(), own)
+            yield f"`{words}` is made into degrees", ast.Call(_parsed("np.degrees"), [own], [])
+            yield f"`{words}` counts by half", ast.BinOp(own, ast.Div(), ast.Constant(2))
+
+
+def _of_operation(left, op, right):
+    match op:
+        case ast.MatMult():
+            yield "matrices are multiplied entry by entry (`*`, not `@`)", ast.BinOp(left, ast.Mult(), right)
+            yield "the factors of a matrix product have changed places", ast.BinOp(right, op, left)
+            yield "matrices are added, not multiplied", ast.BinOp(left, ast.Add(), right)
+            yield "a factor of a matrix product is missing", left
+            yield "a factor of a matrix product is missing", right
+        case ast.Add() | ast.Sub():
+            other = ast.Sub() if isinstance(op, ast.Add) else ast.Add()
+            yield "plus and minus are exchanged", ast.BinOp(left, other, right)
+            yield "the difference is taken the wrong way round", ast.BinOp(right, ast.Sub(), left)
+            yield f"a term is missing ({_subject(right)})", left
+            yield f"a term is missing ({_subject(left)})", right
+        case ast.Mult():
+            yield f"a factor is missing ({_subject(right)})", left
+            yield f"a factor is missing ({_subject(left)})", right
+            yield "it divides where it has to multiply", ast.BinOp(left, ast.Div(), right)
+        case ast.Div():
+            yield "a quotient stands upside down", ast.BinOp(right, op, left)
+            yield "a division is missing", left
+        case ast.Pow():
+            yield "a square is missing", left
+
+
+def _of_numpy(node, name, args):
+    if name in _PAIRS:
+        yield _PAIR_WORDS[name], ast.Call(_parsed(f"np.{_PAIRS[name]}"), args, node.keywords)
+    if name in ("cross", "arctan2"):
+        words = "the factors of the cross product" if name == "cross" else "the two arguments of arctan2"
+        yield f"{words} have changed places", ast.Call(node.func, args[::-1], [])
+    if name == "cross":
+        yield "a product entry by entry (`*`) stands for the cross product", ast.BinOp(args[0], ast.Mult(), args[1])
+        yield "a sum stands for the cross product", ast.BinOp(*_between(args, ast.Add()))
+        unit = _parsed("({0}) / np.linalg.norm({0})".format(ast.unparse(args[1])))
+        yield "the lever is cut to length 1", ast.Call(node.func, [args[0], unit], [])
+    if name == "arctan2":
+        words = "a quotient cannot tell two opposite directions apart"
+        yield words, ast.Call(_parsed("np.arctan"), [ast.BinOp(*_between(args, ast.Div()))], [])
+    if name == "hypot":
+        yield "x alone counts, not the distance", args[0]
+    if name == "max":
+        yield "the sum counts, not the largest", ast.Call(_parsed("np.sum"), args, [])
+        yield "the length (root of squares) counts, not the largest", ast.Call(_parsed("np.linalg.norm"), args, [])
+    if name in ("abs", "sqrt", "sin", "cos", "arccos"):
+        yield f"{name} is missing", args[0]
+    if name in ("arccos", "arctan2"):
+        yield "an angle is made into degrees before it is used", ast.Call(_parsed("np.degrees"), [copy.copy(node)], [])
+    if name == "solve":
+        yield "the matrix is multiplied, nothing is solved", ast.BinOp(*_between(args, ast.MatMult()))
+    if name == "eye":
+        ones = _parsed(f"np.ones(2 * ({ast.unparse(args[0])},))")
+        yield "what belongs on the diagonal stands in all entries", ones
+    if name in ("eye", "zeros", "empty"):
+        whole = [ast.keyword("dtype", ast.Name("int", ast.Load()))]
+        yield "an array of integers cuts off what is put into it", ast.Call(node.func, args, whole)
+
+
+def _between(args, op):
+    return args[0], op, args[1]
+
+
+def _parsed(text):
+    return ast.parse(text, mode="eval").body
+
+
+def _subject(node):
+    """What an expression is about: its first name, in words."""
+    names = [one.id for one in ast.walk(node) if isinstance(one, ast.Name) and one.id not in ("np", "math")]
+    text = names[0].replace("_", " ") if names else ast.unparse(node)
+    return "half a turn" if text == "np.pi" else "the identity" if "eye" in text else text
+
+
+def _tiny(node):
+    """A margin for rounding, 1e-9."""
+    return isinstance(node, ast.Constant) and isinstance(node.value, float) and 0 < node.value < 1e-6

@@ -1,0 +1,170 @@
+"""Wrong answers are told apart from their numbers, right ones of any shape are taken, and nothing makes check raise."""
+
+import re
+
+import numpy as np
+import pytest
+import solutions
+from cells import cell
+
+from ir50p_lab.course import check, my_robot, reset
+from ir50p_lab.course.functions import folder
+from ir50p_lab.course.functions.catalogue import task
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path, monkeypatch):
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+    my_robot._said.clear()
+    return tmp_path
+
+
+def told(capsys, name, *changes, text=None, notebook=()):
+    """What check says of the reference solution with some words replaced."""
+    text = solutions.source(name) if text is None else text
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new)
+    capsys.readouterr()
+    check(name, cell(text, name, notebook))
+    return capsys.readouterr().out.split("one input that fails")[0]
+
+
+HAND = "def rot_z(angle):\n    {}\n    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])"
+SINE = "c, s = np.cos(angle), np.sin(angle)"
+REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "words"),
+    [
+        ("rot_z", "[c, -s, 0.0]", "[c, s, 0.0]", "a minus is missing"),
+        ("rot_z", "np.cos(angle), np.sin(angle)", "np.sin(angle), np.cos(angle)", "sine and cosine have changed"),
+        (
+            "dh_matrix",
+            "turn_z(theta) @ shift(0, 0, d) @ shift(a, 0, 0)",
+            "shift(a, 0, d) @ turn_z(theta)",
+            "sticks out",
+        ),
+        ("dh_matrix", "shift(a, 0, 0)", "shift(0, a, 0)", "a shifts along y"),
+        ("frames", "A1 @ A2 @ A3", "A1 @ A3", "look at T3|frame 2 to frame 3"),
+        ("frames", "np.pi / 2)", "3.14 / 2)", "nearly right"),
+        ("forward_kinematics", "[:3, 3]", "[:3, 2]", "another row or column"),
+        ("inverse_kinematics", "np.array(poses)", "np.degrees(poses)", "degrees"),
+        ("inverse_kinematics", "[1, -1]", "[1]", "two poses a place, all on one side"),
+        ("inverse_kinematics", "[-bend, bend]", "[bend]", "two poses a place, one facing it and one with its back"),
+        ("inverse_kinematics", "np.arctan2(side * y, side * x)", "np.arctan2(y, x)", "factor is missing"),
+        ("inverse_kinematics", "r > longest + 1e-9", "r > longest - 1e-9", "very edge"),
+        ("inverse_kinematics", "r > longest + 1e-9", "r > longest + 2e-6", "out of reach gets poses"),
+        ("inverse_kinematics", "return np.empty((0, 3))", "return None", "no pose means no row"),
+        ("reach", REACH_LIMITS, "np.all(q <= limits[1]) and q[0] >= limits[0][0]", "joint [23] would stand"),
+        ("reach", REACH_LIMITS, "np.all(q <= limits[1])", "only the upper limits"),
+        ("reach", "    return best", "    return None", "None for all"),
+        ("reach", "    return best", "    return best, smallest", "things that make no array"),
+        ("jacobian", "axis = T[joint][:3, 2]", "axis = T[joint][:3, 0]", "look at the axis"),
+        ("jacobian", "np.zeros((6, 3))", "np.zeros((6, 3), dtype=int)", "array of integers|whole numbers"),
+        ("damped_step", "J @ J.T", "J * J.T", r"entry by entry \(`\*`"),
+        ("damped_step", "damping**2", "damping", "a square is missing"),
+        ("damped_step", "damping**2 * np.eye(3)", "damping**2", "identity"),
+        ("damped_step", "damping**2", "damping^2", "no power in Python"),
+        ("damped_step", "[:3]\n", "\n", r"`J @ J.T` has the shape \(6, 6\)"),
+    ],
+)
+def test_a_usual_mistake_has_its_sentence(name, old, new, words, capsys):
+    said = told(capsys, name, (old, new))
+    assert re.search(words, said), said
+
+
+@pytest.mark.parametrize("name", ["dh_matrix", "frames", "jacobian"])
+def test_integers_that_cut_off_are_named_everywhere(name, capsys):
+    whole = {
+        "dh_matrix": [("T = np.eye(4)", "T = np.eye(4, dtype=int)")],
+        "frames": [("return np.array([np.eye(4), A1, A1 @ A2, A1 @ A2 @ A3])",
+                    "return np.array([np.eye(4), A1, A1 @ A2, A1 @ A2 @ A3]).astype(int)")],
+        "jacobian": [("np.zeros((6, 3))", "np.zeros((6, 3), int)")],
+    }[name]  # fmt: skip
+    assert "integers" in told(capsys, name, *whole)
+
+
+@pytest.mark.parametrize(
+    "value", ["[[1, 2], [3]]", "np", "'text'", "{1: 2}", "None", "np.nan", "[]", "(1, [2, 3])", "..."]
+)
+@pytest.mark.parametrize("name", ["rot_z", "inverse_kinematics", "reach", "damped_step"])
+def test_whatever_comes_back_is_no_error(name, value, capsys):
+    arguments = ", ".join(task(name).signature)
+    assert "not" in told(capsys, name, text=f"def {name}({arguments}):\n    x = {value}\n    return x")
+
+
+def test_a_number_of_the_edge_is_a_nanometre(capsys):
+    for step, inside in ((-0.5e-9, True), (0.5e-9, True), (1e-6, False)):
+        l = np.array([0.285, 0.2, 0.372])
+        p = np.array([0, 0, l[0]]) + (l[1] + l[2] + step) * np.array([0.6, 0, 0.8])
+        assert (len(task("inverse_kinematics").right(p, l)) > 0) == inside
+
+
+@pytest.mark.parametrize("difference", ["(place(q + e) - place(q - e)) / 2e-6", "(place(q + e) - place(q)) / 1e-6"])
+def test_a_good_numeric_jacobian_is_right(difference, capsys):
+    text = f"""def damped_step(q, p, l, damping):
+    def place(q):
+        return forward_kinematics(q, l)
+    J = np.zeros((3, 3))
+    for k in range(3):
+        e = np.zeros(3)
+        e[k] = 1e-6
+        J[:, k] = {difference}
+    return q + J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(3), p - place(q))"""
+    assert "right, and yours" in told(capsys, "damped_step", text=text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from math import *\n\n\n" + HAND.format("c, s = cos(angle), sin(angle)"),
+        "from functools import lru_cache\n\n\n@lru_cache\n" + HAND.format(SINE),
+        "import itertools\nfrom typing import Any\nfrom collections import namedtuple\n\nPair = namedtuple('Pair', 'c s')\n\n\n"
+        + HAND.format("c, s = Pair(*itertools.chain([np.cos(angle)], [np.sin(angle)]))"),
+        "cosine = lambda a: np.cos(a)\n\n\n" + HAND.format("c, s = cosine(angle), np.sin(angle)"),
+        "cosine, sine = np.cos, np.sin\n\n\n" + HAND.format("c, s = cosine(angle), sine(angle)"),
+        "rot_z = lambda a: np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]])",
+        HAND.format("f = np; c, s = f.cos(angle), f.sin(angle)"),
+    ],
+)
+def test_right_ones_of_any_shape_are_kept_and_run_alone(text, capsys):
+    said = told(capsys, "rot_z", text=text, notebook={"sin": 0})
+    assert "right, and yours" in said
+    np.testing.assert_allclose(my_robot.rot_z(0.3), task("rot_z").right(0.3))
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("np.allclose = lambda *a, **k: True; c, s = 1, 0", "changes or opens `np.allclose`"),
+        ("c = s = __import__('ir50p_lab.modelling').modelling.rot_z(angle)", "uses `__import__`"),
+        ("exec('from ir50p_lab.modelling import rot_z as r', d := {}); c = s = d['r'](angle)", "uses `exec`"),
+        ("c = s = np.__builtins__", "changes or opens"),
+        ("c = s = frames(angle, angle)", "calls `frames`: this function is to do without"),
+    ],
+)
+def test_ways_round_the_task_are_refused(line, words, capsys):
+    before = np.allclose
+    assert words in told(capsys, "rot_z", text=HAND.format(line))
+    assert np.allclose is before
+
+
+def test_a_loan_pasted_back_stays_a_loan(capsys):
+    assert "right, and yours" in told(capsys, "rot_z", text=task("rot_z").loan)  # before it was lent, it is one's own
+    reset("rot_z")
+    for k in range(6):
+        told(capsys, "rot_z", text=f"def rot_z(angle):\n    return {k} * np.eye(3)")
+    lent = folder.path_of("rot_z").read_text()
+    disguised = lent.replace("c = ", "ahead = ").replace("c,", "ahead,").replace("[s, c", "[s, ahead")
+    disguised = disguised.replace("    s =", "    # mine\n    s   =").replace("angle", "a")
+    for text in (lent, disguised):
+        assert "it stays a loan" in told(capsys, "rot_z", text=text)
+        assert my_robot.whose("rot_z") == "on loan"
+    assert "right, and yours" in told(capsys, "rot_z")
+
+
+def test_no_sentence_says_not_yet_twice(capsys):
+    said = told(capsys, "forward_kinematics", text="def forward_kinematics(q, l):\n    return np.cos(q * l) + q**3")
+    assert said.count("not yet") == 1 and "0 of 9 inputs" in said
