@@ -127,17 +127,23 @@ def inverse(theta, gravity, q2, q3, a, b, c, A, B, C):
 
 
 @jit()
+def solve_in_line(M, r1, r2, r3):
+    """`solve_mass` where the waist is decoupled (M12 = M13 = M21 = M31 = 0): every in-line arm. No branches."""
+    M11, _, _, _, M22, M23, _, M32, M33 = M
+    minor = M22 * M33 - M23 * M32
+    return r1 / M11, (r2 * M33 - M23 * r3) / minor, (M22 * r3 - r2 * M32) / minor, M11 * minor
+
+
+@jit()
 def solve_mass(M, r1, r2, r3):
     """Solve M x = r for the nine scalars M: x1, x2, x3, and det M (0 or NaN: singular).
 
-    When the waist is decoupled (M12 = M13 = M21 = M31 = 0, every in-line arm) it is 1 + 2, else Cramer's rule,
-    which for 3 x 3 inertia matrices loses no digits that matter (tested against LAPACK).
+    Cramer's rule, which for 3 x 3 inertia matrices loses no digits that matter (tested against LAPACK).
     """
     M11, M12, M13, M21, M22, M23, M31, M32, M33 = M
-    minor = M22 * M33 - M23 * M32
     if M12 == 0.0 and M13 == 0.0 and M21 == 0.0 and M31 == 0.0:
-        x1, x2, x3 = r1 / M11, (r2 * M33 - M23 * r3) / minor, (M22 * r3 - r2 * M32) / minor
-        return x1, x2, x3, M11 * minor
+        return solve_in_line(M, r1, r2, r3)
+    minor = M22 * M33 - M23 * M32
     det = M11 * minor - M12 * (M21 * M33 - M23 * M31) + M13 * (M21 * M32 - M22 * M31)
     x1 = (r1 * minor - M12 * (r2 * M33 - M23 * r3) + M13 * (r2 * M32 - M22 * r3)) / det
     x2 = (M11 * (r2 * M33 - M23 * r3) - r1 * (M21 * M33 - M23 * M31) + M13 * (M21 * r3 - r2 * M31)) / det

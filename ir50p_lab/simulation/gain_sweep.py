@@ -50,7 +50,7 @@ def sweep_gains(
     executor=None,
     progress=True,
 ):
-    """Simulate the sampled `PID` for many gain sets at once; the numbers are those of `simulate` with `PID`.
+    """Simulate the sampled `PID` for many gain sets at once; the numbers are, up to rounding, those of `simulate`.
 
     Args:
         arm: Arm without dry friction (`arm.without_friction()`), or such a theta. In-line links.
@@ -106,11 +106,11 @@ def sweep_gains(
 
 
 def run_block(theta, n, kp, ki, kd, bound, period, rate, r, x0, step, steps):
-    """One block of gain sets, each (W, 3): returns (5, 3, W). Runs on any worker."""
-    lanes = [np.ascontiguousarray(gains.T) for gains in (kp, ki, kd)]
-    out = np.empty((len(METRICS), 3, len(kp)))
+    """One block of at most LANES gain sets, each (W, 3): returns (5, 3, W). Runs on any worker."""
+    lanes = [np.ascontiguousarray(np.resize(gains, (LANES, 3)).T) for gains in (kp, ki, kd)]  # filled up by repeating
+    out = np.empty((len(METRICS), 3, LANES))
     pid_batch(theta, n, *lanes, bound, period, rate, r, x0, step, steps, out)
-    return out
+    return out[:, :, : len(kp)]
 
 
 def _gain_sets(**sets):
