@@ -1,0 +1,58 @@
+"""How long a notebook takes: ``PYTHONPATH=. python tests/notebooks/minutes.py`` prints it and fills
+README's table and the openings.
+
+words/150 + 3 a prediction + 2 a panel + 6, 15 or 40 a function by its size + code lines/2, in steps of five minutes.
+"""
+
+import ast
+import re
+
+import nbformat
+from notebook_runner import FOLDER, REWRITTEN, ROOT
+
+from ir50p_lab.course.functions.catalogue import is_function, task
+
+README = ROOT / "README.md"
+PANEL = re.compile(r"^(?:live|LiveArm|\w*(?:panel|slider)\w*)\(", re.M)
+
+
+def minutes(path):
+    """Minutes of a notebook, a multiple of five."""
+    cells = nbformat.read(path, as_version=4).cells
+    text = "\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
+    code = "\n".join(cell.source for cell in cells if cell.cell_type == "code")
+    functions = [name for name in re.findall(r'^check\("([\w.]+)"', code, re.M) if is_function(name)]
+    lines = sum(bool(line.strip()) for line in code.splitlines())
+    predictions, panels = len(re.findall(r"^predict\(", code, re.M)), len(PANEL.findall(code))
+    written = sum(_writing(task(name).loan) for name in functions)
+    return 5 * round((len(text.split()) / 150 + 3 * predictions + 2 * panels + written + lines / 2) / 5)
+
+
+def _writing(solution):
+    """Minutes for a function, by the statements of a plain solution."""
+    statements = sum(isinstance(node, ast.stmt) for node in ast.walk(ast.parse(solution)))
+    return 6 if statements <= 4 else 15 if statements <= 14 else 40
+
+
+def rewritten():
+    """The notebooks whose minutes are counted."""
+    return [path for path in sorted(FOLDER.glob("[0-9A][0-9]_*.ipynb")) if path.name[:2] in REWRITTEN]
+
+
+def filled(text):
+    """The text of README with the minutes of its table as counted."""
+    for path in rewritten():
+        text = re.sub(rf"(\| `{path.stem}` \|.*\| )\d+( \| \w+ \|)$", rf"\g<1>{minutes(path)}\2", text, flags=re.M)
+    return text
+
+
+def opening(path):
+    """The text of a notebook's file with its minutes as counted."""
+    return re.sub(r"about \d+ minutes", f"about {minutes(path)} minutes", path.read_text(encoding="utf-8"), count=1)
+
+
+if __name__ == "__main__":
+    for one in rewritten():
+        print(f"{one.stem}: {minutes(one)} min")
+        one.write_text(opening(one), encoding="utf-8", newline="\n")
+    README.write_text(filled(README.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")
