@@ -12,6 +12,7 @@ from ir50p_lab.bench.ports import Port
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.bench.simulated_arm import SimulatedArm
 from ir50p_lab.course import save_result
+from ir50p_lab.course.identification_views import with_payload
 from ir50p_lab.course.torque_views import training_run
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import load_arm
@@ -78,6 +79,12 @@ def plug_in(names):
     SerialBench.own_process, SerialBench.realtime = False, True  # in this process: another one has another board
     interface.open_camera = lambda source=None, **options: Webcam(seen, names, **options)
     return board
+
+
+def hang(board, mass):
+    """Put `mass` kg into the gripper, as a notebook asks for."""
+    seen = board.plant
+    seen.plant = SimulatedArm(with_payload(seen.arm, mass), q0=seen.plant.q_true)
 
 
 def measure():

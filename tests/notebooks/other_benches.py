@@ -1,4 +1,4 @@
-"""Notebooks that drive the arm run whole on a replay; notebook 14 on the emulated board too, in its own time.
+"""Notebooks that drive the arm run whole on a replay; they run on the emulated board too, in its own time.
 
 CI runs this file by its name: it takes minutes, and `ir50p_lab test` is to be quick.
 """
@@ -23,15 +23,19 @@ import emulated_bench
 board = emulated_bench.plug_in(globals())
 """
 
+#: What a cell asks for beside the board, and how it is done to the emulated one.
+BY_HAND = {
+    "from time import sleep": "sleep = lambda s: emulated_bench.wait(board, s)",
+    "payload = 0.3  #": "payload = 0.3; emulated_bench.hang(board, payload)  #",
+}
+
 
 def said_by(path, home, first="", variables=None):
     """What the cells of a notebook print, with another cell before them; fails if one complains."""
     notebook = nbformat.read(path, as_version=4)
-    for cell in notebook.cells:
-        if first:
-            cell.source = cell.source.replace(
-                "from time import sleep", "sleep = lambda s: emulated_bench.wait(board, s)"
-            )
+    for cell in notebook.cells if first else ():
+        for asked, done in BY_HAND.items():
+            cell.source = cell.source.replace(asked, done)
     notebook.cells.insert(0, nbformat.v4.new_code_cell(first))
     run = run_notebook(notebook, timeout=900, variables={"IR50P_HOME": str(home)} | (variables or {}))
     if run.error:
@@ -49,7 +53,7 @@ def test_on_a_replay(name, tmp_path):
 
 @pytest.mark.notebook
 @pytest.mark.emulator
-@pytest.mark.parametrize("name", ["14_computed_torque"])  # 10, 12 and 18 have not run whole there yet
+@pytest.mark.parametrize("name", ["10_bench", "12_identification", "14_computed_torque", "18_vision_guided_reaching"])
 def test_on_the_board(name, tmp_path):
     """Found, driven, and never left for the simulated arm."""
     needs_results = re.search(r"\barm_that_answers\(\"", DRIVING[name].read_text(encoding="utf-8").replace("\\", ""))
