@@ -39,6 +39,20 @@ ERRATA = {
         ("1.72", "the same"),
         ("1.73", "the same: fails where l2 + l3 c3 < 0"),
         ("formulas of 1.4.3", "taken literally they miss the target in about half of the poses", r"half or more"),
+        ("2.1", "P is explained twice; the one of past values is I", r'"past values", is I'),
+        ("2.4", "right, and contradicts (2.7)", r"\(2\.4\)"),
+        ("2.5", "drops the velocity of the set point: right for a constant one only"),
+        ("2.7", "e = qd + q: a perfectly tracking arm would have an error"),
+        (
+            "Tables 2.1-2.3, gravity",
+            "Ki = 0 and no gravity term: g/Kp stays as an error",
+            r"Figure 2\.5, Tables 2\.1-2\.3",
+        ),
+        (
+            "Tables 2.1-2.3, sampling",
+            "unstable when held for the 0.01 s that the thesis names",
+            r"\(Tables 2\.1-2\.3\).*0\.01 s",
+        ),
     ],
     "04": [
         ("1.75", "d/dt is total, not partial; the text cites (1.96) for it"),
@@ -91,22 +105,6 @@ ERRATA = {
         ("1.120", "the same"),
         ("2.2", "C q for C qd"),
         ("4.1.2", "motors for 24 V, driven with 12 V: half the torque and half the speed"),
-    ],
-    "08": [
-        ("2.1", "P is explained twice; the one of past values is I", r'"past values", is I'),
-        ("2.4", "right, and contradicts (2.7)", r"\(2\.4\)"),
-        ("2.5", "drops the velocity of the set point: right for a constant one only"),
-        ("2.7", "e = qd + q: a perfectly tracking arm would have an error"),
-        (
-            "Tables 2.1-2.3, gravity",
-            "Ki = 0 and no gravity term: g/Kp stays as an error",
-            r"Figure 2\.5, Tables 2\.1-2\.3",
-        ),
-        (
-            "Tables 2.1-2.3, sampling",
-            "unstable when held for the 0.01 s that the thesis names",
-            r"\(Tables 2\.1-2\.3\).*0\.01 s",
-        ),
     ],
     "10": [
         ("4.1.2", "24 V in the introduction, 12 V here: half the volts per count, half the speed", r"\(4\.1\.2\)"),

@@ -7,6 +7,8 @@ import pytest
 import solutions
 from notebook_runner import NOTEBOOKS, REWRITTEN, run_notebook
 
+from ir50p_lab.course.functions.catalogue import function_of, is_function
+
 #: Notebooks that keep results for later ones or load them.
 CHAIN = [path for path in NOTEBOOKS if re.search(r"\b(save|load)_result\b", path.read_text(encoding="utf-8"))]
 
@@ -48,16 +50,17 @@ def test_notebook_with_solutions(number, tmp_path):
     notebook = nbformat.read(found, as_version=4)
     asked = []
     for cell in notebook.cells:
-        for name in re.findall(r'^check\("(\w+)"', cell.source, re.M):
-            asked.append(name)
-            cell.source = f'{solutions.source(name)}\n\ncheck("{name}", {name})'
+        for name in re.findall(r'^check\("([\w.]+)", \w+\)', cell.source, re.M):
+            if is_function(name):
+                asked.append(name)
+                cell.source = f'{solutions.source(name)}\n\ncheck("{name}", {function_of(name)})'
     run = run_notebook(notebook, variables={"IR50P_HOME": str(tmp_path)})
     if run.error:
         pytest.fail(f"{found.name}, {run.error}", pytrace=False)
     said = "".join(str(output.get("data", "")) for cell in run.cells for output in cell.get("outputs", []))
     for name in asked:
-        assert f"from now on my_robot.{name} is this function" in said, name
-        assert (tmp_path / "my_robot" / f"_{name}.py").exists()
+        assert f"<b>{name}</b>: right, and yours: from now on my_robot.{function_of(name)} is this" in said, name
+        assert (tmp_path / "my_robot" / f"_{function_of(name)}.py").exists()
 
 
 BROKEN = """

@@ -1,0 +1,109 @@
+"""Pictures of notebook 08: block diagrams of the loop, a push against the weight, where constant pushes end."""
+
+import numpy as np
+from matplotlib.patches import FancyBboxPatch
+
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.modelling.dynamics import gravity
+
+_ARROW = {"arrowstyle": "-|>", "color": COLOURS["dark"], "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
+
+
+def _sheet(width, height):
+    figure = new_figure(width, height)
+    ax = figure.axes[0]
+    ax.set(xlim=(0, width), ylim=(0, height), aspect="equal")
+    ax.set_axis_off()
+    return figure, ax
+
+
+def _box(ax, x, y, text, *, width=1.2, height=0.6, colour="dark"):
+    """A block about (x, y)."""
+    style = {"boxstyle": "square,pad=0", "facecolor": "white", "edgecolor": COLOURS[colour], "linewidth": 1.8}
+    ax.add_patch(FancyBboxPatch((x - width / 2, y - height / 2), width, height, zorder=5, **style))
+    ax.text(x, y, text, ha="center", va="center", fontsize=11, color=COLOURS[colour], zorder=6)
+
+
+def _wire(ax, *points, arrow=True):
+    """A line through points; arrow: at its end."""
+    ax.plot(*np.transpose(points), color=COLOURS["dark"], linewidth=1.4)
+    if arrow:
+        ax.annotate("", points[-1], points[-2], arrowprops=_ARROW)
+
+
+def _sum(ax, x, y, *signs):
+    """A circle where signals are added; signs: (dx, dy, text)."""
+    ax.plot(x, y, "o", ms=15, mfc="white", mec=COLOURS["dark"], mew=1.6)
+    for dx, dy, text in signs:
+        ax.text(x + dx, y + dy, text, ha="center", va="center", fontsize=11)
+
+
+def one_loop():
+    """A joint under its PID: error, three parts, limit, arm, and the way back (Figure 2.1): LabFigure."""
+    figure, ax = _sheet(9.4, 3.4)
+    middle, low = 2.0, 0.35
+    ax.text(0.15, middle + 0.15, "$q_d$", fontsize=13)
+    _wire(ax, (0.1, middle), (0.95, middle))
+    _sum(ax, 1.1, middle, (-0.27, 0.24, "+"), (0.2, -0.3, "\u2212"))
+    _wire(ax, (1.25, middle), (2.0, middle), arrow=False)
+    ax.text(1.55, middle + 0.15, "$e$", fontsize=13)
+    parts = (("P:  $K_p e$", "blue"), (r"I:  $K_i\int e\,dt$", "orange"), (r"D:  $K_d\,\dot e$", "green"))
+    for (text, colour), y in zip(parts, (3.0, 2.0, 1.0), strict=True):
+        _wire(ax, (2.0, middle), (2.0, y), (2.35, y))
+        _box(ax, 3.15, y, text, width=1.6, colour=colour)
+        _wire(ax, (3.95, y), *([(4.6, y), (4.6, middle + np.sign(y - middle) * 0.15)] if y != middle else [(4.45, y)]))
+    _sum(ax, 4.6, middle)
+    _wire(ax, (4.75, middle), (5.3, middle))
+    _box(ax, 5.85, middle, "limit", width=1.1)
+    _wire(ax, (6.4, middle), (7.15, middle))
+    ax.text(6.65, middle + 0.15, "$u$", fontsize=13)
+    _box(ax, 7.75, middle, "arm")
+    _wire(ax, (8.35, middle), (9.3, middle))
+    ax.text(8.9, middle + 0.15, "$q$", fontsize=13)
+    _wire(ax, (8.75, middle), (8.75, low), (1.1, low), (1.1, middle - 0.15))
+    return figure
+
+
+def three_loops():
+    """Three controllers that know nothing of each other, and one arm that couples them (Figure 2.2): LabFigure."""
+    figure, ax = _sheet(8.4, 4.0)
+    for joint, (y, colour) in enumerate(zip((3.3, 2.15, 1.0), ("blue", "orange", "green"), strict=True), start=1):
+        ax.text(0.1, y + 0.13, f"$q_{{d{joint}}}$", fontsize=12)
+        _wire(ax, (0.1, y), (0.95, y))
+        _sum(ax, 1.1, y, (0.2, -0.3, "\u2212"))
+        _wire(ax, (1.25, y), (2.1, y))
+        ax.text(1.6, y + 0.13, f"$e_{joint}$", fontsize=12)
+        _box(ax, 2.85, y, f"PID {joint}", width=1.5, colour=colour)
+        _wire(ax, (3.6, y), (4.9, y))
+        ax.text(4.15, y + 0.13, f"$u_{joint}$", fontsize=12)
+        _wire(ax, (6.5, y), (8.1, y))
+        ax.text(7.6, y + 0.13, f"$q_{joint}$", fontsize=12)
+        _wire(ax, (7.1, y), (7.1, y - 0.55), (1.1, y - 0.55), (1.1, y - 0.15))
+    _box(ax, 5.7, 2.15, "one arm:\nwhat one joint\ndoes, the others\nfeel", width=1.6, height=3.0)
+    return figure
+
+
+def weight_over_angle(arm, push):
+    """What the shoulder's weight asks for in counts over its angle, elbow straight, and a constant push: LabFigure."""
+    figure = new_figure(7.4, 3.8)
+    ax = figure.axes[0]
+    q2 = np.linspace(arm.q_min[1], arm.q_max[1], 200)
+    weight = gravity(arm, np.column_stack([0 * q2, q2, 0 * q2]))[:, 1] / arm.actuators.gain[1]
+    holds = arm.friction.fs[1] / arm.actuators.gain[1]
+    ax.plot(q2, weight, linewidth=2.5, label="weight")
+    ax.fill_between(q2, weight - holds, weight + holds, color=COLOURS["sky"], alpha=0.3, label="friction holds")
+    ax.axhline(push, color=COLOURS["orange"], linewidth=2.5, label=f"a push of {push} counts")
+    ax.set(xlabel="angle of the shoulder [rad]", ylabel="push [PWM counts]")
+    ax.legend(loc="lower left")
+    return figure
+
+
+def ends(pushes, angles, target):
+    """Where the shoulder ends under constant pushes: LabFigure."""
+    figure = new_figure(7.4, 3.4)
+    ax = figure.axes[0]
+    ax.plot(pushes, angles, "o", ms=8, label="after 30 s")
+    ax.axhline(target, **SETPOINT, label="wanted")
+    ax.set(xlabel="constant push [PWM counts]", ylabel="angle of the shoulder [rad]")
+    ax.legend(loc="upper left")
+    return figure
