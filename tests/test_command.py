@@ -52,15 +52,31 @@ def test_marked_files_exist():
 
 @pytest.fixture
 def two_legs(monkeypatch, tmp_path):
-    """Two legs over a project of one test, which fails where FAULT is set."""
-    (tmp_path / "test_one.py").write_text("import os\ndef test_it(): assert 'FAULT' not in os.environ\n")
+    """Two legs over a project of one file; a leg fails where FAULT is set."""
+    (tmp_path / "test_one.py").write_text("def test_it(): pass\n")
     monkeypatch.setattr(everywhere, "ROOT", tmp_path)
     monkeypatch.setattr(everywhere, "STATE", tmp_path / ".everywhere")
     monkeypatch.setattr(everywhere, "READ", ("test_one.py",))
     monkeypatch.setattr(everywhere, "legs", lambda: {"native": {}, "faulty": {"FAULT": "1"}})
-    run = everywhere.run
-    monkeypatch.setattr(everywhere, "run", lambda name, variables, _: run(name, variables, ["-n", "0", "-p", "no:cov"]))
+
+    def run(name, variables, arguments):
+        tests = (tmp_path / "test_one.py").read_text().count("def ")
+        failed = ["test_one::test_it"] if "FAULT" in variables else []
+        return {"passed": tests - len(failed), "failed": failed, "seconds": 1, "code": len(failed)}
+
+    (tmp_path / ".everywhere").mkdir()
+    monkeypatch.setattr(everywhere, "run", run)
     return tmp_path
+
+
+def test_a_leg_is_run_with_its_variables(monkeypatch, tmp_path):
+    (tmp_path / "test_one.py").write_text(
+        "import os\ndef test_it(): assert 'FAULT' not in os.environ\ndef test_other(): pass\n"
+    )
+    monkeypatch.setattr(everywhere, "ROOT", tmp_path)
+    monkeypatch.setattr(everywhere, "STATE", tmp_path / ".everywhere")
+    result = everywhere.run("faulty", {"FAULT": "1"}, ["-n", "0", "-p", "no:cov"])
+    assert result["failed"] == ["test_one::test_it"] and (result["passed"], result["code"]) == (1, 1)
 
 
 def test_legs_that_passed_are_remembered_until_a_file_changes(two_legs, capsys):

@@ -72,17 +72,7 @@ def test_a_kill_cuts_the_drive_within_110_ms(board, victim):
 
 
 def test_the_panel_tunes_the_loop_on_the_board(board):
-    """Start, 25 frames a second, a slider event every 20 ms: the loop of the other process does not feel it.
-
-    What else the computer does only adds to the times: the best of five runs is the loop's own.
-    """
-    medians, longest = zip(*(tuned_loop(board) for _ in range(5)), strict=True)
-    assert min(medians) == pytest.approx(0.01, abs=0.001)
-    assert min(longest) < 0.05  # 11 ms on two quiet cores; here only: the panel does not hold it up
-
-
-def tuned_loop(board):
-    """(median, 99 %) of the period, s, while a slider is dragged."""
+    """Start, 25 frames a second, a slider event every 20 ms. That the loop does not feel it: test_serial_speed.py."""
     bench = SerialBench(board.port, arm=IR50P, record_to=False, announce=lambda line: None)
     bench.open()
     panel = live_panel(bench, PID(kp=(40, 40, 40), limit_pwm=255))
@@ -92,8 +82,8 @@ def tuned_loop(board):
             panel.set(kp1=40 + k % 50)
             time.sleep(0.02)
         statistics = panel.run.statistics()
-        print(statistics)
-        assert statistics.cycles > 50 and panel.error is None and panel.run.gains["kp"][0] == 89
+        assert statistics.cycles + statistics.missed > 150
+        assert panel.error is None and panel.run.gains["kp"][0] == 89
         panel.cut()
         until(lambda: not driven(board.changes()[-1].pins))
         bench.run(0.1)  # the port is here again
@@ -101,4 +91,3 @@ def tuned_loop(board):
         panel.cut()
         panel.close()
         bench.abort()
-    return statistics.period_p50, statistics.period_p99

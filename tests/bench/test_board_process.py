@@ -1,6 +1,5 @@
-"""In real time, with pyserial, on a pseudo-terminal: round trip, and a computer that is killed while it drives."""
+"""In real time, with pyserial, on a pseudo-terminal: a computer that is killed while it drives."""
 
-import statistics
 import subprocess
 import sys
 import time
@@ -43,19 +42,6 @@ def greet(port):
         if talk.hello():
             return talk
     raise AssertionError("no answer to hello")
-
-
-def test_round_trip_in_real_time(board, record_property):
-    with serial.Serial(board.port, BAUD, timeout=0.2) as port:
-        talk, times = greet(port), []
-        for k in range(1000):
-            begin = time.perf_counter()
-            assert talk.drive(k % 200, 0, -k % 200) is not None
-            times.append(time.perf_counter() - begin)
-    median = 1e3 * statistics.median(times)
-    record_property("median_ms", median)
-    print(f"exchange: median {median:.2f} ms, 99 % {1e3 * sorted(times)[990]:.2f} ms")
-    assert median < 5  # 1.5 ms on a machine with nothing else to do; here only: no wait hides in it
 
 
 def test_opening_the_port_resets_the_board(board):

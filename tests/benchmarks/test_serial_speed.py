@@ -49,7 +49,7 @@ def test_exchange(board, request):
         times.append(time.perf_counter() - begun)
     link.close()
     median, _ = tell("exchange at 500 kbaud", times)
-    assert median < (1.5 if full else 5)
+    assert median < 1.5 or not full
 
 
 @pytest.mark.parametrize("hertz", [100, 200])
@@ -68,8 +68,10 @@ def test_loop(board, request, hertz):
     p50, p99 = tell(f"period at {hertz} Hz, {missed} late of {len(begun)}", np.diff(bench.recording.t))
     tell("  between samples at hand", np.diff(begun))
     print(f"  {statistics}")
-    assert p50 == pytest.approx(1e3 / hertz, abs=1)
-    assert p99 < 1e3 / hertz + (1 if full and hertz == 100 else 25)
+    assert len(begun) + missed >= hertz * (20 if full else 2)
+    if full:
+        assert p50 == pytest.approx(1e3 / hertz, abs=1)
+        assert p99 < 1e3 / hertz + (1 if hertz == 100 else 25)
 
 
 def test_loop_with_the_panel(board, request):
@@ -88,5 +90,7 @@ def test_loop_with_the_panel(board, request):
         panel.close()
         bench.abort()
     print(f"\nwith the panel: {statistics}")
-    assert statistics.period_p50 == pytest.approx(0.01, abs=0.001)
-    assert statistics.period_p99 < (0.011 if full else 0.035)
+    assert statistics.cycles + statistics.missed > 50 and panel.error is None
+    if full:
+        assert statistics.period_p50 == pytest.approx(0.01, abs=0.001)
+        assert statistics.period_p99 < 0.011

@@ -11,14 +11,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from mini_project import PROJECT, PYPROJECT, one_line
+from mini_project import PROJECT, one_line
 
 from ir50p_lab.launcher import environment as environment_module
 from ir50p_lab.launcher import problems
 from ir50p_lab.launcher.environment import Environment
 from ir50p_lab.launcher.problems import SetUpError
-
-NOTHING_SET = {"PIP_NO_INDEX": None, "PIP_FIND_LINKS": None, "PIP_RETRIES": "0", "PIP_DEFAULT_TIMEOUT": "5"}
 
 # -- Python too old --------------------------------------------------------------------------------------------------------
 
@@ -92,33 +90,7 @@ def test_what_debians_venv_prints_is_understood(project, monkeypatch):
         Environment(project.root).ensure(stream=sys.stdout)
 
 
-# -- no network, a proxy that refuses, an incomplete wheel folder ----------------------------------------------------------
-
-
-def test_no_network(project):
-    closed = NOTHING_SET | {"PIP_INDEX_URL": "http://127.0.0.1:9/simple"}  # nobody listens on port 9
-    line = one_line(project.run("setup", variables=closed))
-    assert line.startswith("Download failed: no connection to the download server.")
-    assert "HTTPS_PROXY=http" in line
-    assert "section 'Offline'" in line
-    assert project.run("setup").returncode == 0  # with the network back, the next run repairs
-
-
-def test_proxy_that_does_not_answer(project):
-    refused = NOTHING_SET | {"PIP_INDEX_URL": "https://127.0.0.1:9/simple", "PIP_PROXY": "http://127.0.0.1:9"}
-    line = one_line(project.run("setup", variables=refused))
-    assert "the proxy refused the connection. Check the address in HTTPS_PROXY" in line
-
-
-def test_wheel_folder_without_a_package(project):
-    lock = project.root / "environment.txt"
-    lock.write_text(lock.read_text() + "granite==2.0\n")
-    line = one_line(project.run("setup"))
-    assert f"The wheel folder ({project.wheels}) has no granite==2.0 for Python" in line
-    assert "section 'Offline'" in line
-
-
-# -- no permission, disk full ----------------------------------------------------------------------------------------------
+# -- no permission, disk full (in the middle of pip, and without network: hostile_setups.py) -------------------------------
 
 
 def obey_permissions():
@@ -146,26 +118,6 @@ def test_ready_environment_needs_no_write_permission(made):
     finally:
         made.root.chmod(0o755)
     assert done.returncode == 0, done.stderr
-
-
-BACKEND = """
-def prepare_metadata_for_build_editable(*arguments):
-    with open("/dev/full", "w") as file:  # this device answers every write with: no space left
-        file.write("x")
-build_editable = build_wheel = prepare_metadata_for_build_editable
-"""
-
-
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="the device /dev/full of Linux")
-def test_disk_full_in_the_middle_of_pip(project):
-    # A real 'no space left on device' inside pip: the project's build step writes to the device that is always full.
-    (project.root / "backend.py").write_text(BACKEND)
-    pyproject = PYPROJECT.replace('"flit_core.buildapi"', '"backend"\nbackend-path = ["."]')
-    (project.root / "pyproject.toml").write_text(pyproject)
-    line = one_line(project.run("setup"))
-    assert line.startswith(f"The disk is full: {project.root} could not be written. Free about 2 GB")
-    (project.root / "pyproject.toml").write_text(PYPROJECT)
-    assert "half made" in project.run("setup").stdout  # with space again, the next run repairs
 
 
 def test_disk_full_while_the_launcher_writes(project, monkeypatch):

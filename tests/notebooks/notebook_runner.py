@@ -31,8 +31,8 @@ class Run:
     cells: list
 
 
-def run_notebook(notebook, folder=FOLDER, timeout=120, variables=None):
-    """Run a notebook (not the file: nothing is written), then push the sliders of its panels.
+def run_notebook(notebook, folder=FOLDER, timeout=120, variables=None, push=True):
+    """Run a notebook (not the file: nothing is written), then push the sliders of its panels if `push`.
 
     variables: environment of its kernel, beside those of this process.
     """
@@ -40,7 +40,8 @@ def run_notebook(notebook, folder=FOLDER, timeout=120, variables=None):
     from nbclient.exceptions import CellExecutionError, CellTimeoutError
 
     notebook = notebook.copy()
-    notebook.cells = [*notebook.cells, nbformat.v4.new_code_cell(PUSH_SLIDERS)]
+    last = PUSH_SLIDERS if push else 'print("[]")'
+    notebook.cells = [*notebook.cells, nbformat.v4.new_code_cell(last)]
     environment = os.environ | (variables or {})
     environment["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # a debugger's notice on stderr
     client = NotebookClient(

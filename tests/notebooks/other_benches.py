@@ -37,7 +37,7 @@ def said_by(path, home, first="", variables=None):
         for asked, done in BY_HAND.items():
             cell.source = cell.source.replace(asked, done)
     notebook.cells.insert(0, nbformat.v4.new_code_cell(first))
-    run = run_notebook(notebook, timeout=900, variables={"IR50P_HOME": str(home)} | (variables or {}))
+    run = run_notebook(notebook, timeout=900, variables={"IR50P_HOME": str(home)} | (variables or {}), push=False)
     if run.error:
         pytest.fail(f"{path.name}, {run.error}", pytrace=False)
     return "".join(output.get("text", "") for cell in run.cells for output in cell.get("outputs", []))

@@ -34,7 +34,7 @@ def test_notebook(path, notebook, tmp_path):
 def test_notebooks_in_a_chain(tmp_path):
     """In order, with one home: what a notebook keeps there is what later ones load."""
     for path in CHAIN:
-        run = run_notebook(nbformat.read(path, as_version=4), variables={"IR50P_HOME": str(tmp_path)})
+        run = run_notebook(nbformat.read(path, as_version=4), variables={"IR50P_HOME": str(tmp_path)}, push=False)
         if run.error:
             pytest.fail(
                 f"after {', '.join(p.name for p in CHAIN[: CHAIN.index(path)])}: {path.name}, {run.error}",

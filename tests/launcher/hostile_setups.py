@@ -1,0 +1,187 @@
+"""Set-ups under hostile conditions, each provoked for real: interrupted, without network, on a full disk, half made.
+
+CI runs this file by its name: every test builds an environment, some two, and `ir50p_lab test` is to be quick.
+"""
+
+import os
+import shutil
+import signal
+import threading
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+
+import pytest
+from mini_project import PYPROJECT, one_line
+
+IMPORT_BOTH = "import pebble, ir50p_lab; print(ir50p_lab.__file__)"
+NOTHING_SET = {"PIP_NO_INDEX": None, "PIP_FIND_LINKS": None, "PIP_RETRIES": "0", "PIP_DEFAULT_TIMEOUT": "5"}
+
+
+def test_warnings_as_errors_do_not_break_the_setup(project):
+    done = project.run("setup", variables={"PYTHONWARNINGS": "error"})
+    assert done.returncode == 0, done.stderr
+
+
+def test_pip_does_the_work_where_a_setting_has_no_counterpart(project):
+    (project.root / "constraints.txt").write_text("pebble==1.0\n")
+    done = project.run("setup", variables={"PIP_CONSTRAINT": "constraints.txt"})
+    assert done.returncode == 0, done.stderr
+    assert "-m', 'uv'" not in project.log()
+    assert project.python(IMPORT_BOTH).returncode == 0
+
+
+def test_pip_does_the_work_where_no_uv_fits(project, tmp_path):
+    folder = tmp_path / "wheels"
+    shutil.copytree(project.wheels, folder)
+    (wheel,) = folder.glob("uv-*.whl")
+    wheel.rename(str(wheel).replace("linux", "other"))
+    done = project.run("setup", variables={"PIP_FIND_LINKS": str(folder)})
+    assert done.returncode == 0, done.stderr
+    assert "-m', 'uv'" not in project.log()
+    assert project.python(IMPORT_BOTH).returncode == 0
+    assert project.run("doctor", variables={"IR50P_ARM": None}).returncode == 0
+
+
+def test_copied_environment_is_rebuilt(project, made):
+    shutil.copytree(made.venv, project.venv, symlinks=True)
+    done = project.run("setup")
+    assert f"made for another folder ({made.root}): building it again" in done.stdout
+    assert str(project.root) in project.python(IMPORT_BOTH).stdout
+
+
+def test_foreign_or_half_made_environment_is_rebuilt(project):
+    (project.venv / "lib").mkdir(parents=True)
+    (project.venv / "lib" / "debris.txt").write_text("left by an interrupted run")
+    done = project.run("setup")
+    assert "half made (a set-up was interrupted): building it again" in done.stdout
+    assert done.returncode == 0
+    assert not (project.venv / "lib" / "debris.txt").exists()
+
+
+def test_environment_behind_a_link_keeps_the_link(project, tmp_path):
+    elsewhere = tmp_path / "bigger disk"
+    elsewhere.mkdir()
+    project.venv.symlink_to(elsewhere, target_is_directory=True)
+    assert project.run("setup").returncode == 0
+    assert project.venv.is_symlink()
+    assert project.python(IMPORT_BOTH).returncode == 0
+
+
+@pytest.fixture
+def silent_index():
+    """A package index that accepts a request and does not answer until the test is over."""
+    asked, over = threading.Event(), threading.Event()
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_GET(self):  # the name that http.server looks for
+            asked.set()
+            over.wait(300)
+
+    server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    server.daemon_threads = True
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    server.asked, server.over = asked, over
+    server.variables = {
+        "PIP_NO_INDEX": None,
+        "PIP_FIND_LINKS": None,
+        "PIP_INDEX_URL": f"http://127.0.0.1:{server.server_port}/simple",
+        "PIP_RETRIES": "0",
+    } | {name: None for name in ("HTTP_PROXY", "http_proxy", "ALL_PROXY", "all_proxy")}
+    yield server
+    over.set()
+    server.shutdown()
+    server.server_close()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="process groups and signals of POSIX")
+def test_ctrl_c_in_the_middle(project, silent_index):
+    process = project.start("setup", variables=silent_index.variables)
+    assert silent_index.asked.wait(300)
+    os.killpg(process.pid, signal.SIGINT)  # the launcher and pip, as a terminal does
+    _, errors = process.communicate(timeout=300)
+    assert process.returncode == 130
+    assert errors.strip().startswith("Stopped.")
+    assert len(errors.strip().splitlines()) == 1
+    repaired = project.run("setup")
+    assert "half made" in repaired.stdout
+    assert project.python(IMPORT_BOTH).returncode == 0
+
+
+@pytest.mark.skipif(os.name == "nt", reason="process groups and signals of POSIX")
+def test_termination_takes_pip_along(project, silent_index):
+    process = project.start("setup", variables=silent_index.variables)
+    assert silent_index.asked.wait(300)
+    process.terminate()  # the launcher alone; reading to the end of its pipes shows that nothing else holds them
+    _, errors = process.communicate(timeout=300)
+    assert process.returncode == 130
+    assert "Traceback" not in errors
+    assert project.run("setup").returncode == 0
+
+
+@pytest.mark.skipif(os.name == "nt", reason="process groups and signals of POSIX")
+def test_kill_9_in_the_middle_and_the_orphaned_pip_is_waited_for(project, silent_index):
+    process = project.start("setup", variables=silent_index.variables)
+    assert silent_index.asked.wait(300)
+    process.kill()  # its pip lives on and still holds the lock
+    process.wait(timeout=300)
+    again = project.start("setup")
+    lines = iter(again.stdout.readline, "")
+    assert next(lines).startswith("Another set-up is at work in this folder: waiting")
+    silent_index.over.set()  # pip gets no answer and ends
+    rest = "".join(lines)
+    again.communicate(timeout=300)
+    assert again.returncode == 0
+    assert "half made (a set-up was interrupted): building it again" in rest
+    assert project.python(IMPORT_BOTH).returncode == 0
+    process.stdout.close()
+    process.stderr.close()
+
+
+def test_two_setups_at_once_build_once(project):
+    first, second = project.start("setup"), project.start("setup")
+    outputs = [process.communicate(timeout=300)[0] for process in (first, second)]
+    assert first.returncode == second.returncode == 0
+    assert sorted("Set-up finished" in output for output in outputs) == [False, True]
+    assert all("Ready" in output for output in outputs)
+
+
+def test_no_network(project):
+    closed = NOTHING_SET | {"PIP_INDEX_URL": "http://127.0.0.1:9/simple"}  # nobody listens on port 9
+    line = one_line(project.run("setup", variables=closed))
+    assert line.startswith("Download failed: no connection to the download server.")
+    assert "HTTPS_PROXY=http" in line
+    assert "section 'Offline'" in line
+    assert project.run("setup").returncode == 0  # with the network back, the next run repairs
+
+
+def test_proxy_that_does_not_answer(project):
+    refused = NOTHING_SET | {"PIP_INDEX_URL": "https://127.0.0.1:9/simple", "PIP_PROXY": "http://127.0.0.1:9"}
+    line = one_line(project.run("setup", variables=refused))
+    assert "the proxy refused the connection. Check the address in HTTPS_PROXY" in line
+
+
+def test_wheel_folder_without_a_package(project):
+    lock = project.root / "environment.txt"
+    lock.write_text(lock.read_text() + "granite==2.0\n")
+    line = one_line(project.run("setup"))
+    assert f"The wheel folder ({project.wheels}) has no granite==2.0 for Python" in line
+    assert "section 'Offline'" in line
+
+
+BACKEND = """
+def prepare_metadata_for_build_editable(*arguments):
+    with open("/dev/full", "w") as file:  # this device answers every write with: no space left
+        file.write("x")
+build_editable = build_wheel = prepare_metadata_for_build_editable
+"""
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="the device /dev/full of Linux")
+def test_disk_full_in_the_middle_of_pip(project):
+    # A real 'no space left on device' inside pip: the project's build step writes to the device that is always full.
+    (project.root / "backend.py").write_text(BACKEND)
+    pyproject = PYPROJECT.replace('"flit_core.buildapi"', '"backend"\nbackend-path = ["."]')
+    (project.root / "pyproject.toml").write_text(pyproject)
+    line = one_line(project.run("setup"))
+    assert line.startswith(f"The disk is full: {project.root} could not be written. Free about 2 GB")
+    (project.root / "pyproject.toml").write_text(PYPROJECT)
+    assert "half made" in project.run("setup").stdout  # with space again, the next run repairs
