@@ -316,21 +316,21 @@ def _covered_or_other(one, seen, board, others_fit):
 
 def _drop_duplicates(found, size, board):
     """Take out of `found` the views in which the board is where it was before; a list of Rejected."""
-    dropped, kept = [], {}
+    dropped, kept = [], []
     limit = _SAME * float(np.hypot(*size)) if size else 0.0
-    for key, (picture, corners) in list(found.items()):
-        xy = np.full((len(board.points), 2), np.nan)
-        xy[corners.index] = corners.xy
-        for name, old in kept.items():
-            moved = np.linalg.norm(old - xy, axis=1)
-            moved = moved[np.isfinite(moved)]
-            if len(moved) >= _COMMON * len(corners.index) and (least := float(np.median(moved))) < limit:
-                detail = f"the board is where it was in {name}, {least:.2f} px away: move it between pictures"
-                dropped.append(Rejected(picture.name, picture.index, Reason.DUPLICATE, detail))
-                del found[key]
-                break
+    places, names = np.full((len(found), len(board.points), 2), np.nan), [picture.name for picture, _ in found.values()]
+    for k, (key, (picture, corners)) in enumerate(list(found.items())):
+        places[k, corners.index] = corners.xy
+        moved = np.linalg.norm(places[kept] - places[k], axis=2)
+        common, still = np.isfinite(moved).sum(axis=1), (moved < limit).sum(axis=1)
+        same = np.flatnonzero((common >= _COMMON * len(corners.index)) & (still > common / 2))
+        if len(same):
+            least, name = np.nanmedian(moved[same[0]]), names[kept[same[0]]]
+            detail = f"the board is where it was in {name}, {least:.2f} px away: move it between pictures"
+            dropped.append(Rejected(picture.name, picture.index, Reason.DUPLICATE, detail))
+            del found[key]
         else:
-            kept[picture.name] = xy
+            kept.append(k)
     return dropped
 
 

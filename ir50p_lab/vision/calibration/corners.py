@@ -188,7 +188,7 @@ def refine(grey, grid):
     half = np.clip(np.round(part * side), *_WINDOW_PX).astype(int).ravel()
     smooth = cv2.GaussianBlur(grey, (0, 0), float(np.clip(_BLUR * np.median(side), 0.2, _BLUR_PX)))
     xy = grid.reshape(-1, 1, 2).astype(np.float32)
-    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-4)
+    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 30, 1e-3)
     for size in np.unique(half):
         which = half == size
         xy[which] = cv2.cornerSubPix(smooth, xy[which].copy(), (int(size), int(size)), (-1, -1), stop)

@@ -157,6 +157,7 @@ def start(corners):
             None,
             None,
             flags=flags,
+            criteria=(cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 20, 1e-6),  # `fit` goes on from there
         )
     except cv2.error as error:
         raise CalibrationError(
@@ -225,7 +226,7 @@ def fit(corners, model, guess, steps=50):
         for _ in range(steps):
             S, g, own, following = reduce(B, *views)
             while True:
-                step = solve(S.sum(axis=0), g.sum(axis=0), damping)
+                step = solve(S.sum(axis=0), g.sum(axis=0)[:, None], damping)[:, 0]
                 new_camera, new_poses = camera + B @ step, poses + own - following @ step
                 new_views = project(corners, new_camera, new_poses)
                 new_cost = _cost(new_camera, new_views)
@@ -238,7 +239,7 @@ def fit(corners, model, guess, steps=50):
                     "the fit does not converge: a view has corners in a wrong order, is no board, or of another camera"
                 )
             camera, poses, views, cost, damping = new_camera, new_poses, new_views, min(cost, new_cost), damping / 10
-            if abs(gain) <= 1e-9 * cost + 1e-18:
+            if abs(gain) <= 1e-8 * cost + 1e-18:
                 break
     return _with_covariance(corners, model, camera, poses, views)
 
@@ -274,16 +275,19 @@ def reduce(B, error, by_camera, by_pose):
 
 
 def solve(S, g, damping=0.0):
-    """Solve S x = g (g a vector or a matrix) with the scales of the parameters taken out. Raises CalibrationError."""
-    scale = np.sqrt(np.maximum(np.diag(S), 1e-300))
-    A = S / np.outer(scale, scale)
+    """Solve S x = g, (..., n, n) and (..., n, k), with the scales of the parameters taken out.
+
+    Raises CalibrationError if S is singular.
+    """
+    scale = np.sqrt(np.maximum(np.diagonal(S, axis1=-2, axis2=-1), 1e-300))[..., None]
+    A = S / (scale * np.swapaxes(scale, -1, -2))
     try:
-        x = np.linalg.solve(A + damping * np.eye(len(A)), (g.T / scale).T)
+        x = np.linalg.solve(A + damping * np.eye(A.shape[-1]), g / scale)
     except np.linalg.LinAlgError:
         x = np.full_like(g, np.inf)
     if not np.isfinite(x).all():
         raise CalibrationError("the views leave the camera undetermined: tilt the board in different directions")
-    return (x.T / scale).T
+    return x / scale
 
 
 def _with_covariance(corners, model, camera, poses, views):
@@ -303,7 +307,7 @@ def _with_covariance(corners, model, camera, poses, views):
     by_corners = fit.sigma**2 * solve(total, np.eye(len(total)))
     by_views = np.zeros((12, 12))
     if count > 3:  # what leaving out a view does, to first order
-        moves = np.array([solve(total - S[i], g[i]) for i in range(count)])
+        moves = solve(total - S, g[..., None])[..., 0]
         moves -= moves.mean(axis=0)
         by_views = B @ ((count - 1) / count * moves.T @ moves) @ B.T
     return replace(fit, by_corners=B @ by_corners @ B.T, by_views=by_views)

@@ -176,15 +176,14 @@ def is_checkerboard(grid, grey):
     dark, light = np.nanpercentile(levels, (5, 95)) if np.isfinite(levels).any() else (0, 0)
     if swing < max(8, 0.4 * (light - dark)):
         return False
-    near = _crossings(places, 0.3 * out, 0.3 * along, grey, swing)
+    near, *far = _crossings_at(((0.3, 0.3), (0.7, 0.3), (0.3, 0.7)), places, out, along, grey, swing)
     known = np.isfinite(near)
     if known.mean() < 0.7 or (near[known] != 0).mean() < 0.85:
         return False
     inner = np.zeros(grid.shape[:2], dtype=bool)
     inner[1:-1, 1:-1] = True  # the outermost squares of a board may be cut narrow
     inner = inner.ravel() & known
-    far = [_crossings(places, i * out, j * along, grey, swing)[inner] for i, j in ((0.7, 0.3), (0.3, 0.7))]
-    return bool(inner.any() and np.mean([each == near[inner] for each in far]) > 0.8)
+    return bool(inner.any() and np.mean([each[inner] == near[inner] for each in far]) > 0.8)
 
 
 def next_to_margin(grid, grey):
@@ -192,9 +191,14 @@ def next_to_margin(grid, grey):
     swing = abs(contrast(grid, grey))
     out, along = np.gradient(grid, axis=1), np.gradient(grid, axis=0)
     places, out, along = (a.reshape(-1, 2) for a in (grid, out, along))
-    near = _crossings(places, 0.3 * out, 0.3 * along, grey, swing)
-    far = [_crossings(places, i * out, j * along, grey, swing) for i, j in ((0.7, 0.3), (0.3, 0.7))]
+    near, *far = _crossings_at(((0.3, 0.3), (0.7, 0.3), (0.3, 0.7)), places, out, along, grey, swing)
     return ((near != 0) & ((far[0] != near) | (far[1] != near))).reshape(grid.shape[:2])
+
+
+def _crossings_at(parts, places, out, along, grey, swing):
+    """`_crossings` at several distances, each (part of `out`, part of `along`), in one go: (len(parts), n)."""
+    out, along = (np.concatenate([part[k] * step for part in parts]) for k, step in enumerate((out, along)))
+    return _crossings(np.tile(places, (len(parts), 1)), out, along, grey, swing).reshape(len(parts), -1)
 
 
 def _crossings(places, out, along, grey, swing):
