@@ -75,7 +75,7 @@ def first_not_finite(array):
 
 def check_arm(arm):
     """Return `arm`. Raises InputError if it is no Arm."""
-    if not hasattr(arm, "theta_pwm"):  # not isinstance: this module is below the arm's
+    if not hasattr(type(arm), "theta_pwm"):  # not isinstance: this module is below the arm's
         raise InputError(f"arm = {arm!r:.60}: give an Arm, such as IR50P or load_arm()")
     return arm
 

@@ -101,10 +101,14 @@ class GainMap:
         self.map.grid(False)
         self.map.set(xlabel="Kp [PWM/rad]", ylabel="Kd [PWM s/rad]", title=title)
         (self._mark,) = self.map.plot([], [], "o", ms=9, mfc="none", mec=COLOURS["orange"], mew=2.5)
-        self._side.axhline(target, **SETPOINT)
+        self._side.axhline(target, **SETPOINT, label="target")
         self._side.set(xlim=(0, duration), ylim=sorted((-0.1 * target, 1.3 * target)))
         self._side.set(xlabel="time [s]", ylabel="angle [rad]")
-        self._lines = [self._side.plot([], [], **style)[0] for style in _RUNS[:2]]
+        self._lines = [
+            self._side.plot([], [], label=label, **style)[0]
+            for label, style in zip(("without friction", "with friction"), _RUNS[:2], strict=True)
+        ]
+        self._side.legend(fontsize=8, loc="lower right")
 
     def curve(self, kp, kd, label):
         """Draw a curve of theory into the map, with its label at its right end."""
@@ -115,11 +119,60 @@ class GainMap:
         self.map.text(kp[at], min(kd[at], 0.92 * limits[1][1]), label, **style)
         self.map.set(xlim=limits[0], ylim=limits[1])
 
+    def lay_over(self, kp, kd, values, levels, label, *, colour):
+        """Lines of another figure (m, n) over the same grid, each with its value; label: in the legend of the map."""
+        style = {"colors": COLOURS[colour], "linewidths": 1.4}
+        lines = self.map.contour(kp, kd, values, levels=levels, **style)
+        self.map.clabel(lines, fontsize=7)
+        self.map.plot([], [], color=COLOURS[colour], label=label)
+        self.map.legend(fontsize=8, loc="upper left", framealpha=0.9)
+
     def update(self, kp, kd, *responses):
         """Mark the gain set and draw its responses, pairs (t, angle): the first blue, the second orange."""
         self._mark.set_data([kp], [kd])
         for line, (t, angle) in zip(self._lines, responses, strict=False):
             line.set_data(t, angle)
+
+
+def one_joint(*runs, labels, joint, unit="PWM"):
+    """Angle above, command below, of one joint (1, 2, 3) in several runs; the first's target dashed: LabFigure."""
+    figure = new_figure(9.0, 4.0, rows=2, sharex=True)
+    above, below = figure.axes
+    reference = np.asarray(runs[0].reference)
+    reference = reference[:, 0] if reference.ndim == 3 else reference
+    above.plot(runs[0].t, reference[:, joint - 1], drawstyle="steps-post", label="target", **SETPOINT)
+    for run, label, style in zip(runs, labels, _RUNS, strict=False):
+        above.plot(run.t, run.q[:, joint - 1], label=label, **style)
+        below.plot(run.t, run.u[:, joint - 1], drawstyle="steps-post", label=label, **style)
+    above.set(ylabel=f"angle of joint {joint} [rad]")
+    below.set(xlabel="time [s]", ylabel=f"command [{unit}]")
+    above.legend(fontsize=8, loc="best")
+    return figure
+
+
+def speed_step(t, speed, fitted=None):
+    """A measured answer of the speed (n,) rad/s to a jump at 2 s, and what was fitted to it: LabFigure."""
+    figure = new_figure(8.0, 3.0)
+    ax = figure.axes[0]
+    ax.plot(t, speed, ".", color=COLOURS["grey"], label="measured speed of joint 1")
+    if fitted is not None:
+        ax.plot(t, fitted, color=COLOURS["blue"], label="fitted: gain, time constant, dead time")
+    ax.axvline(2.0, label="the counts jump", **SETPOINT)
+    ax.set(xlim=(1.9, 2.8), xlabel="time [s]", ylabel="speed [rad/s]")
+    ax.legend(fontsize=8, loc="lower right")
+    return figure
+
+
+def speed_answers(answers, *, period=0.01):
+    """Closed loops of the speed under several rules, {name: (n,) rad/s}, to a step of 1 rad/s: LabFigure."""
+    figure = new_figure(8.0, 3.0)
+    ax = figure.axes[0]
+    ax.axhline(1.0, label="target", **SETPOINT)
+    for (name, speed), style in zip(answers.items(), _RUNS, strict=True):
+        ax.plot(period * np.arange(1, len(speed) + 1), speed, label=name, **style)
+    ax.set(xlabel="time [s]", ylabel="speed [rad/s]")
+    ax.legend(fontsize=8, loc="lower right")
+    return figure
 
 
 class LocusView:

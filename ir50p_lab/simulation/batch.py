@@ -13,13 +13,13 @@ from ir50p_lab.simulation.plant import LIMIT
 from ir50p_lab.simulation.steps import rk4_step
 
 LANES = 32  # several vector registers; a number that the compiler knows, or it does not vectorise
-METRICS = ("rms_error", "overshoot", "settling_time", "end_error", "peak_command")
+METRICS = ("rms_error", "overshoot", "settling_time", "end_error", "peak_command", "saturated_time", "top_speed")
 _BAND = 0.02
 
 
 @jit(nogil=True)
 def pid_batch(theta, n, kp, ki, kd, limit, period, filter_rate, r, x0, h, steps, out):
-    """Run LANES sampled PIDs; kp, ki, kd (3, LANES); r (samples, 3, 3); x0 (6,); out (5, 3, LANES) as METRICS.
+    """Run LANES sampled PIDs; kp, ki, kd (3, LANES); r (samples, 3, 3); x0 (6,); out (7, 3, LANES) as METRICS.
 
     The law is that of `pid_step` (derivative on the measurement, anti-windup), written over lanes; the motion is that
     of `rk4_step`. Every loop over the lanes is free of branches: the compiler turns it into vector instructions.
@@ -59,6 +59,8 @@ def pid_batch(theta, n, kp, ki, kd, limit, period, filter_rate, r, x0, h, steps,
                 out[2, i, w] = time + period if abs(e) > band else out[2, i, w]
                 out[3, i, w] = e
                 out[4, i, w] = max(out[4, i, w], abs(u[i, w]))
+                out[5, i, w] += period if abs(u[i, w]) >= bound else 0.0
+                out[6, i, w] = max(out[6, i, w], abs(x[3 + i, w]))
         if sample + 1 == samples:
             break
         for _ in range(steps):

@@ -18,7 +18,8 @@ class GainSweep:
     """Figures of merit of N gain sets, (N, 3) per joint; NaN where a run left all bounds (`unstable` (N,)).
 
     rms_error rad; overshoot rad past the set point; settling_time s (last time outside 2 % of the step about the set
-    point; the duration if never inside to the end); end_error rad (set point - angle); peak_command in the unit of u.
+    point; the duration if never inside to the end); end_error rad (set point - angle); peak_command in the unit of u;
+    saturated_time s with the command at its limit; top_speed rad/s.
     """
 
     kp: np.ndarray
@@ -29,6 +30,8 @@ class GainSweep:
     settling_time: np.ndarray
     end_error: np.ndarray
     peak_command: np.ndarray
+    saturated_time: np.ndarray
+    top_speed: np.ndarray
     unstable: np.ndarray
 
 
@@ -106,7 +109,7 @@ def sweep_gains(
 
 
 def run_block(theta, n, kp, ki, kd, bound, period, rate, r, x0, step, steps):
-    """One block of at most LANES gain sets, each (W, 3): returns (5, 3, W). Runs on any worker."""
+    """One block of at most LANES gain sets, each (W, 3): returns (7, 3, W). Runs on any worker."""
     lanes = [np.ascontiguousarray(np.resize(gains, (LANES, 3)).T) for gains in (kp, ki, kd)]  # filled up by repeating
     out = np.empty((len(METRICS), 3, LANES))
     pid_batch(theta, n, *lanes, bound, period, rate, r, x0, step, steps, out)

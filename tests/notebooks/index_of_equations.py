@@ -31,6 +31,11 @@ REASONS = {  # rows of the rewritten notebooks that are left out on purpose
     "2.1.1a saturation": "08, sections 5, 6 and 8",
     "ERRATA 2 poses": "tests/modelling",
     "ERRATA 2 states": "tests/modelling",
+    "2.2.2 non-parametric": "09, section 5: the answer to a step, and to a blow",
+    "2.2.2 tuning": "09, section 5: rules for speed and angle",
+    "sweeps elsewhere": "09, section 4",
+    "gain map, FOPDT, rules": "09, sections 4 and 5",
+    "kick, windup, delay, friction": "09, section 2",
 }
 
 

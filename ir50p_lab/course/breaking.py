@@ -1,0 +1,157 @@
+"""Six loops that are broken, each in its own way: shown without a name, named by the student, then cured.
+
+    run = broken("A")
+    name_it("A", "windup")
+
+Simulated, on the arm of the course; case C on the thesis' own arm, whose gains it is about.
+"""
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.controllers import PID
+from ir50p_lab.errors import InputError, UnstableLoopWarning
+from ir50p_lab.modelling import THESIS_A, load_arm
+from ir50p_lab.signals import steps
+from ir50p_lab.simulation import simulate
+
+NAMES = ("delay", "friction", "kick", "noise", "sampling", "windup")
+THESIS_TARGET = (np.pi / 2, np.pi / 2, -np.pi / 3)
+THESIS_KP, THESIS_KD = (25, 200, 200), (10, 40, 40)
+
+
+@dataclass(frozen=True)
+class Case:
+    """name: what is wrong; clue: where to look, for whoever names something else; because: what gives it away."""
+
+    name: str
+    clue: str
+    because: str
+
+
+CASES = {
+    "A": Case(
+        "windup",
+        "For how long is the command at its limit, and when does it come back: at the target, or long after it?",
+        "the command stays at its limit although the joint has passed its target: a memory fills while the motor can "
+        "give no more, and has to be emptied again on the far side.",
+    ),
+    "B": Case(
+        "kick",
+        "Look at the command in the very sample in which the target jumps. What had the *arm* done by then?",
+        "one push to the limit in the instant of the jump, before anything has moved: only the target leaps there.",
+    ),
+    "C": Case(
+        "sampling",
+        "The command goes from limit to limit, and each push lasts equally long: 10 ms. What would a quicker clock do?",
+        "each push is held for a whole sample, and is right for the beginning of it only: at its end the joint has "
+        "been turned round, and the next push is larger.",
+    ),
+    "D": Case(
+        "delay",
+        "A slow swing that lives on. How far behind the angle does the command come?",
+        "the swing is slow and regular, and the push changes sides too late: it answers to where the joint was.",
+    ),
+    "E": Case(
+        "friction",
+        "Find the seconds in which the joint does not move at all. What does the command do meanwhile?",
+        "the joint stands still, short of its target, while the command creeps up; then it jumps, and stands again.",
+    ),
+    "F": Case(
+        "noise",
+        "The arm is where it should be. What does the command look like once it is there?",
+        "the arm rests and the command does not: it answers to angles that are nothing but the converter's trembling.",
+    ),
+}
+
+
+class Late:
+    """A controller that hears of every angle some samples late."""
+
+    def __init__(self, controller, samples):
+        self.controller, self.samples, self.unit = controller, samples, "PWM"
+        self.reset()
+
+    def reset(self):
+        """Forget what was heard."""
+        self.controller.reset()
+        self.heard = []
+
+    def step(self, t, q, reference):
+        """Answer to the angle of `samples` samples ago."""
+        self.heard = [*self.heard[-self.samples :], np.array(q)]
+        return self.controller.step(t, self.heard[0], reference)
+
+
+def far_target(arm):
+    """The thesis' set point, where the arm's travel allows it, (3,) rad."""
+    return np.clip(THESIS_TARGET, 0.9 * np.array(arm.q_min), 0.9 * np.array(arm.q_max))
+
+
+def broken(letter, arm=None):
+    """The run of a case, "A" to "F"."""
+    _case(letter)
+    arm = load_arm() if arm is None else arm
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnstableLoopWarning)  # to be named by the student, not by us
+        return {"A": windup, "B": kick, "C": sampling, "D": delay, "E": friction, "F": noise}[letter](arm)
+
+
+def windup(arm, *, cured=False):
+    """A large step, with and without rest for the integral at the limit."""
+    pid = PID((289, 225, 270), ki=200, kd=(40, 30, 30), limit_pwm=255, anti_windup=cured)
+    return simulate(arm, pid, far_target(arm), duration=6)
+
+
+def kick(arm, *, cured=False):
+    """A small jump, D on the error or on the measurement."""
+    pid = PID(100, ki=20, kd=40, limit_pwm=255, derivative_on="measurement" if cured else "error")
+    return simulate(arm.without_friction(), pid, steps([0, 1], [[0, 0, 0], [0.2, 0, 0]]), duration=3)
+
+
+def sampling(arm, *, period=0.01):
+    """The thesis' arm with its gains, the command (N m, at most 330) held for `period` s."""
+    pid = PID(THESIS_KP, kd=THESIS_KD, limit=330, period=period, filter_hz=np.inf)
+    return simulate(THESIS_A, pid, THESIS_TARGET, duration=2, period=period, step=min(period, 0.0005))
+
+
+def delay(arm, *, samples=15):
+    """Tuned gains that hear late."""
+    pid = PID((1000, 1000, 1000), ki=(800, 2800, 2400), kd=(8, 1, 1), limit_pwm=255)
+    return simulate(arm, Late(pid, samples), 0.4 * far_target(arm), duration=6)
+
+
+def friction(arm, *, ki=20.0):
+    """A small step of joint 1 that friction stops short."""
+    pid = PID((150, 400, 400), ki=(ki, 1500, 1500), kd=(20, 10, 10), limit_pwm=255)
+    target = 0.4 * far_target(arm)
+    return simulate(arm, pid, target, q0=target - [0.3, 0, 0], duration=10)
+
+
+def noise(arm, *, filter_hz=np.inf):
+    """The measured angle, with a D that hears every count."""
+    from ir50p_lab.course.contest import PRACTICE, drive
+
+    pid = PID((1000, 1000, 1000), ki=(800, 2800, 2400), kd=60, limit_pwm=255, filter_hz=filter_hz)
+    return drive(pid, PRACTICE[0], arm)[1]
+
+
+def name_it(letter, name=...):
+    """Say what is wrong with a case, one of NAMES; the answer is a sentence."""
+    case = _case(letter)
+    if name is ...:
+        print(f"{letter}: put one of these in place of the dots: {', '.join(NAMES)}.")
+    elif name == case.name:
+        print(f"{letter}, {name}: yes, {case.because}")
+    elif name in NAMES:
+        print(f"{letter}, {name}: not this one. {case.clue}")
+    else:
+        print(f"{letter}: {name!r} is none of them: {', '.join(NAMES)}.")
+
+
+def _case(letter):
+    if letter not in CASES:
+        raise InputError(f"{letter!r}: the cases are {', '.join(CASES)}")
+    return CASES[letter]
