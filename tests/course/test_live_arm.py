@@ -187,3 +187,10 @@ def until(true, seconds=10):
 def test_importing_the_view_costs_no_bundle():
     code = "import ir50p_lab.course.live_arm.view as v; assert v.Bundle.shared is None"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_an_arm_without_motors_can_be_shown():
+    """The thesis' arm is driven by torque: it has no PWM, and is an arm."""
+    from ir50p_lab.modelling import THESIS_A
+
+    assert LiveArm(THESIS_A).arm is THESIS_A
