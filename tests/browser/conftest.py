@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import urllib.request
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -57,14 +58,21 @@ def lab(tmp_path_factory):
     """Address of a JupyterLab on the demo page: its own settings, port and token."""
     home = tmp_path_factory.mktemp("lab")
     shutil.copy(Path(__file__).parent / "live_arm.ipynb", home)
+    with running_lab(home) as (address, _):
+        yield address.format("live_arm.ipynb")
+
+
+@contextmanager
+def running_lab(home, **variables):
+    """A JupyterLab on a folder: the address of a notebook, with {} for its name, and the process."""
     settings = home / "settings" / "@jupyterlab" / "notebook-extension"
-    settings.mkdir(parents=True)
+    settings.mkdir(parents=True, exist_ok=True)
     (settings / "tracker.jupyterlab-settings").write_text(json.dumps({"windowingMode": "none"}))
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     token = secrets.token_hex(16)
-    variables = os.environ | {
+    variables |= {
         "JUPYTERLAB_SETTINGS_DIR": str(home / "settings"),
         "JUPYTERLAB_WORKSPACES_DIR": str(home / "workspaces"),
         "JUPYTER_CONFIG_DIR": str(home / "config"),
@@ -75,11 +83,12 @@ def lab(tmp_path_factory):
     command = ["-m", "jupyterlab", "--no-browser", "--allow-root", f"--port={port}", "--expose-app-in-browser"]
     command += ["--ServerApp.port_retries=0", f"--ServerApp.root_dir={home}", "--LabApp.news_url=None"]
     with open(home / "log", "w") as log:
-        server = subprocess.Popen([sys.executable, *command], env=variables, stdout=log, stderr=log, cwd=home)
+        environment = os.environ | variables
+        server = subprocess.Popen([sys.executable, *command], env=environment, stdout=log, stderr=log, cwd=home)
     address = f"http://127.0.0.1:{port}"
     try:
         _wait_for(f"{address}/api?token={token}", server, home / "log")
-        yield f"{address}/lab/tree/live_arm.ipynb?token={token}"
+        yield f"{address}/lab/tree/{{}}?token={token}", server
     finally:
         server.terminate()
         server.wait(20)
