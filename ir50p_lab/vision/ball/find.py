@@ -17,7 +17,7 @@ from ir50p_lab.vision.checks import check_picture_size
 from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import as_pinhole
 
-_TRIED, _TRIED_CLOSER = 14, 24  # guesses measured; the closer look is only for pictures that show no ball so far
+_TRIED, _TRIED_CLOSER = 14, 10  # guesses measured; the closer look is only for pictures that show no ball so far
 
 _LEAST_ODDS = 1.8  # log odds that a ball needs: well above 0, as a false alarm is worse than a miss
 _SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more

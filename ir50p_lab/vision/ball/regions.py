@@ -189,6 +189,8 @@ def circles_in(points, shape, least_radius):
     Three points some way apart on the outline make a circle; the one with most of its length along the outline wins,
     its points go, and the search goes on with the rest.
     """
+    import cv2
+
     height, width = shape
     n = len(points)
     m = min(n, 48 + n // 4, 160)
@@ -200,11 +202,13 @@ def circles_in(points, shape, least_radius):
     off = np.hypot(p[inside, 0] - x, p[inside, 1] - y) - r
     if r < max(height, width) and np.sqrt(np.mean(off**2)) < max(_ROUND * r, 0.5) and inside.mean() > 0.4:
         return [(x, y, r, 1.0)]
+    # the outline runs around its region: where it bends the other way the circle is a bay, not a ball
+    turn = 1 if cv2.contourArea(p.astype(np.float32), True) < 0 else -1
     left, found = inside.copy(), []
     for _ in range(_CIRCLES):
         if left.sum() < 6:
             break
-        best = _best_circle(p, left, n / m, least_radius, 0.75 * max(height, width))
+        best = _best_circle(p, left, n / m, least_radius, 0.75 * max(height, width), turn)
         if best is None:
             break
         x, y, r, share, used = best
@@ -215,11 +219,10 @@ def circles_in(points, shape, least_radius):
     return found
 
 
-def _best_circle(p, usable, step, least_radius, most_radius):
+def _best_circle(p, usable, step, least_radius, most_radius, turn):
     m = len(p)
     apart = sorted({max(2, m // k) for k in (16, 9, 5, 3)} | ({4, 8, 16, 32} if m > 100 else set()))
-    # the outline runs around its region: where it bends the other way the circle is a bay, not a ball
-    x, y, r, share = _vote(p, usable, np.array(apart), step, least_radius, most_radius, 1 if _clockwise(p) else -1)
+    x, y, r, share = _vote(p, usable, np.array(apart), step, least_radius, most_radius, turn)
     if r == 0:
         return None
     far = np.hypot(p[:, 0] - x, p[:, 1] - y) - r
@@ -264,10 +267,6 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
                 best = share * sqrt(r)
                 bx, by, br, bs = x, y, r, share
     return bx, by, br, bs
-
-
-def _clockwise(p):
-    return np.sum(p[:, 0] * np.roll(p[:, 1], -1) - p[:, 1] * np.roll(p[:, 0], -1)) < 0
 
 
 @jit()
