@@ -81,7 +81,7 @@ class Late:
 
     def step(self, t, q, reference):
         """Answer to the angle of `samples` samples ago."""
-        self.heard = [*self.heard[-self.samples :], np.array(q)]
+        self.heard = [*self.heard, np.array(q)][-1 - self.samples :]
         return self.controller.step(t, self.heard[0], reference)
 
 

@@ -179,7 +179,8 @@ def contest(controller, name):
     """
     seeds = [int(seed) for seed in np.random.default_rng().integers(1000, 2**31, RUNS)]
     found = score(controller, seeds)
-    entry = {"name": str(name), "score": found.value, "decides": found.decides, "seeds": seeds, "at": lab_book.now()}
+    kept = min(found.value, 1e6)  # a cut drive is infinite, which JSON does not know
+    entry = {"name": str(name), "score": kept, "decides": found.decides, "seeds": seeds, "at": lab_book.now()}
 
     def edit(book):
         before = [one["score"] for one in book["contest"]]

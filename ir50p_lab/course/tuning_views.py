@@ -44,7 +44,7 @@ class JointPlots:
     def update(self, *runs, titles=("joint 1", "joint 2", "joint 3")):
         """Draw one SimulationResult per label. Returns the figure.
 
-        Long titles cost a slider more time than all curves together: there, `findings` belong in the status line.
+        Long titles cost a slider more time than all curves together: there, words belong in the status line.
         """
         for joint, title in enumerate(titles):
             self._titles[joint].set_text(title)
@@ -52,19 +52,6 @@ class JointPlots:
                 q.set_data(run.t, run.q[:, joint])
                 u.set_data(run.t, run.u[:, joint])
         return self.figure
-
-
-def findings(run):
-    """Overshoot, settling time (2 %, both about the value reached) and remaining error: three lines of text."""
-    return [_finding(metrics) for metrics in run.metrics()]
-
-
-def _finding(metrics):
-    error = 0.0 if abs(metrics.error) < 5e-5 else metrics.error  # no "-0.0000"
-    if np.isnan(metrics.settling_time):
-        return f"joint {metrics.joint}: does not move, e = {error:.4f} rad"
-    steps = f"{metrics.overshoot_percent:.1f} %, {metrics.settling_time:.2f} s"
-    return f"joint {metrics.joint}: {steps}, e = {error:.4f} rad"
 
 
 def three_columns(panel):
@@ -109,15 +96,6 @@ class GainMap:
             for label, style in zip(("without friction", "with friction"), _RUNS[:2], strict=True)
         ]
         self._side.legend(fontsize=8, loc="lower right")
-
-    def curve(self, kp, kd, label):
-        """Draw a curve of theory into the map, with its label at its right end."""
-        limits = self.map.get_xlim(), self.map.get_ylim()
-        self.map.plot(kp, kd, color=COLOURS["dark"], linestyle=":", linewidth=2)
-        at = int(np.argmin(np.abs(np.asarray(kp) - (0.97 * limits[0][1] + 0.03 * limits[0][0]))))
-        style = {"ha": "right", "va": "bottom", "fontsize": 9, "color": COLOURS["dark"]}
-        self.map.text(kp[at], min(kd[at], 0.92 * limits[1][1]), label, **style)
-        self.map.set(xlim=limits[0], ylim=limits[1])
 
     def lay_over(self, kp, kd, values, levels, label, *, colour):
         """Lines of another figure (m, n) over the same grid, each with its value; label: in the legend of the map."""

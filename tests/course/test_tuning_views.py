@@ -1,11 +1,13 @@
 """Pictures for tuning: what is drawn is what was simulated; the same picture for the same numbers."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.painter import Painter
-from ir50p_lab.course.tuning_views import GainMap, JointPlots, LocusView, findings, three_columns
+from ir50p_lab.course.tuning_views import GainMap, JointPlots, LocusView, one_joint, three_columns
 from ir50p_lab.course.widgets import live
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
@@ -38,15 +40,6 @@ def test_several_runs_need_as_many_labels(run):
         view.update(run)
 
 
-def test_findings_are_the_metrics(run):
-    metrics = run.metrics()
-    assert findings(run) == [
-        f"joint {m.joint}: {m.overshoot_percent:.1f} %, {m.settling_time:.2f} s, e = {m.error:.4f} rad" for m in metrics
-    ]
-    still = simulate(IR50P.without_friction(), PID(50, kd=5), (0, 0, 0), duration=0.1)
-    assert findings(still)[0] == "joint 1: does not move, e = 0.0000 rad"
-
-
 def test_sliders_in_three_columns(run):
     view = JointPlots(TARGET, duration=2, unit="PWM", u_max=255)
     panel = live(view.figure, lambda **gains: view.update(run) and None, **{f"k{i}": (0, 9, 1, 1) for i in range(9)})
@@ -61,7 +54,10 @@ def test_gain_map_places_its_cells_at_the_gains(run):
     view = GainMap(kp, kd, values, title="t", label="s [s]", target=0.8, duration=2)
     left, right, bottom, top = view.map.images[0].get_extent()
     assert (left, right) == (5, 105) and (bottom, top) == (-1, 9)  # the centres of the cells are the gains
-    view.curve(kp, 100 * kd.max() + kp, "outside")
+    view.lay_over(kp, kd, np.tile(kp, (5, 1)), [35.0], "half", colour="purple")  # a line where kp is 35
+    places = np.concatenate([path.vertices for one in view.map.collections for path in one.get_paths()])
+    assert np.allclose(places[:, 0], 35)
+    assert "half" in [text.get_text() for text in view.map.get_legend().get_texts()]
     assert view.map.get_xlim() == (5, 105) and view.map.get_ylim() == (-1, 9)
     painter = Painter(view.figure)
     before = painter.png()
@@ -84,3 +80,14 @@ def test_locus_marks_the_poles_of_the_nearest_gain():
     left, right = view.figure.axes
     np.testing.assert_array_equal(left.lines[-1].get_ydata(), [1, -1])
     np.testing.assert_allclose(right.lines[-1].get_xdata(), np.exp(0.1 * continuous[1]).real)
+
+
+def test_one_joint_shows_each_run_and_the_target_of_the_first(run):
+    """A simulated run and one with a flat reference, as recordings have it."""
+    flat = SimpleNamespace(t=run.t, q=run.q + 0.1, u=run.u - 5, reference=run.reference[:, 0])
+    figure = one_joint(run, flat, labels=["a", "b"], joint=2)
+    target, first, second = (line.get_ydata() for line in figure.axes[0].lines)
+    np.testing.assert_array_equal(target, run.reference[:, 0, 1])
+    np.testing.assert_array_equal(first, run.q[:, 1])
+    np.testing.assert_array_equal(second, flat.q[:, 1])
+    np.testing.assert_array_equal(figure.axes[1].lines[1].get_ydata(), flat.u[:, 1])
