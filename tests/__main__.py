@@ -1,6 +1,6 @@
 """The test command: ``python3 -m ir50p_lab test``, further arguments go to pytest.
 
---quick        without notebooks and without the emulated board
+--quick        without notebooks, the emulated board, and what takes long or measures time
 --everywhere   notebooks and the tests marked `numeric`, as on other processors and other arms: tests/everywhere.py
 """
 
@@ -21,7 +21,8 @@ def main(arguments):
     alone = [*PYTEST, "-p", "no:xdist", "--timing=only", *arguments]
     if any(argument.startswith("--cov") for argument in arguments):
         alone.append("--cov-append")
-    codes = [subprocess.run(command).returncode for command in (together, alone)]
+    commands = (together,) if "--quick" in arguments else (together, alone)
+    codes = [subprocess.run(command).returncode for command in commands]
     found = [code for code in codes if code != NOTHING_FOUND]
     return max(found, default=NOTHING_FOUND)
 

@@ -20,7 +20,7 @@ def students_folder(tmp_path_factory):
 
 
 def pytest_addoption(parser):
-    parser.addoption("--quick", action="store_true", help="without notebooks and without the emulated board")
+    parser.addoption("--quick", action="store_true", help="without notebooks, the emulated board, and what takes long")
     parser.addoption("--timing", choices=("only", "without"), help="only tests that measure time, or all others")
 
 
@@ -38,7 +38,7 @@ def pytest_collection_modifyitems(config, items):
 
 def _is_asked_for(item, option):
     marks = {mark.name for mark in item.iter_markers()}
-    if option.quick and marks & {"notebook", "emulator"}:
+    if option.quick and marks & {"notebook", "emulator", "slow", "timing"}:
         return False
     return option.timing is None or (option.timing == "only") == ("timing" in marks)
 

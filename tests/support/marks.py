@@ -1,4 +1,4 @@
-"""Which files and folders are timed, need the emulated board, or rest on numerics of this processor."""
+"""Which files and folders are timed, are slow, need the emulated board, or rest on numerics of this processor."""
 
 from pathlib import Path
 
@@ -22,6 +22,31 @@ MARKS = {
         "bench/test_real_time.py",
         "bench/test_stopped_process.py",
         "benchmarks/test_serial_speed.py",
+    ),
+    "slow": (
+        "browser",
+        "launcher",
+        "bench/test_bench_test.py",
+        "bench/test_recorder_killed.py",
+        "course/test_figures.py",
+        "course/test_functions.py",
+        "course/test_live_arm.py",
+        "course/test_painter.py",
+        "course/test_vision_views.py",
+        "identification/test_fit.py",
+        "identification/test_fopdt.py",
+        "identification/test_output_error.py",
+        "modelling/test_symbolic.py",
+        "simulation/test_sweep.py",
+        "test_command.py",
+        "vision/test_ball.py",
+        "vision/test_ball_classifier.py",
+        "vision/test_calibration_corners.py",
+        "vision/test_calibration_file.py",
+        "vision/test_camera_calibration.py",
+        "vision/test_reaching.py",
+        "vision/test_rendering.py",
+        "vision/test_vision_times.py",
     ),
     "numeric": (
         "identification",
