@@ -23,6 +23,14 @@ def vectors3(name, value, *, unit="rad"):
     return array
 
 
+def vector3(name, value, *, unit="rad"):
+    """`value` as a float array (3,). Raises InputError as `vectors3` does, and for many rows."""
+    array = vectors3(name, value, unit=unit)
+    if array.shape != (3,):
+        raise InputError(f"{name} has shape {array.shape}; give three numbers, shape (3,) ({unit})")
+    return array
+
+
 def numbers(name, value, *, unit="its unit"):
     """`value` as a float array of any shape. Raises InputError for what holds no real numbers, or ragged rows."""
     try:

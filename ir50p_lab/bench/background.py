@@ -13,7 +13,7 @@ from ir50p_lab.bench.pace import warm_up
 from ir50p_lab.bench.set_point import checked_reference, checked_set_point
 from ir50p_lab.bench.shared_loop import SharedLoop
 from ir50p_lab.controllers.base import GAINS, gains_of
-from ir50p_lab.controllers.pid import gains
+from ir50p_lab.controllers.gains import gains
 from ir50p_lab.errors import BenchError, InputError
 from ir50p_lab.inputs import check_controller, check_reference
 

@@ -26,13 +26,10 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "pid": ["PID"],
         "tuning": [
             "PIDGains",
-            "UltimatePoint",
             "amigo",
             "simc",
             "simc_integrating",
-            "ultimate_point",
             "ziegler_nichols",
-            "ziegler_nichols_ultimate",
         ],
     },
 )

@@ -4,8 +4,8 @@ import numpy as np
 
 from ir50p_lab.controllers import adaptive_law as law
 from ir50p_lab.controllers.base import Controller
+from ir50p_lab.controllers.gains import gains, positive
 from ir50p_lab.controllers.model_based import LIMIT_PWM, model_in_unit
-from ir50p_lab.controllers.pid import gains, positive
 from ir50p_lab.errors import InputError
 from ir50p_lab.signals.reference import per_joint
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import vector3, vectors3
 
 GAINS = ("kp", "ki", "kd")
 
@@ -63,10 +63,7 @@ def set_gains(controller, **gains):
 def _plain(q):
     if type(q) is np.ndarray and q.shape == (3,) and q.dtype == np.float64:
         return q
-    q = vectors3("measured q", q)
-    if q.shape != (3,):
-        raise InputError(f"measured q has shape {q.shape}; a controller takes one sample, shape (3,)")
-    return np.ascontiguousarray(q)
+    return np.ascontiguousarray(vector3("measured q", q))
 
 
 def _plain_rows(reference):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.controllers.pid import gains
+from ir50p_lab.controllers.gains import gains
 from ir50p_lab.errors import InputError
 
 

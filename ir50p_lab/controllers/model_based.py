@@ -5,8 +5,7 @@ import math
 import numpy as np
 
 from ir50p_lab.controllers import model_law as law
-from ir50p_lab.controllers.base import Controller
-from ir50p_lab.controllers.pid import gains, positive
+from ir50p_lab.controllers.gains import GainController, gains, positive
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import choice, number, switch
 from ir50p_lab.modelling.arm import Arm
@@ -18,7 +17,7 @@ _FADE = 0.3  # s in which the jump that a change of gains would make fades in
 _FRICTION = {"none": 0.0, "viscous": 0.0, "coulomb": 1.0, "stribeck": 2.0}
 
 
-class ModelController(Controller):
+class ModelController(GainController):
     """A controller with a model of the arm inside; see its subclasses for the laws.
 
     Attributes: theta (3, 20) the model in `unit`; kp, ki, kd (3,); limit (3,).
@@ -106,10 +105,6 @@ class ModelController(Controller):
         p[law.BREAKAWAY : law.BREAKAWAY + 3] = fs
         p[law.QS : law.QS + 3] = per_joint("qs", qs, unit="rad/s", positive=True)
 
-    def _write_gains(self, kp, ki, kd):
-        for name, place, value in (("kp", law.KP, kp), ("ki", law.KI, ki), ("kd", law.KD, kd)):
-            self.parameters[place : place + 3] = gains(name, value)
-
     def set_gains(self, kp=None, ki=None, kd=None):
         """Change gains in the middle of a run: the command does not jump, what would be the jump fades in.
 
@@ -144,26 +139,6 @@ class ModelController(Controller):
     def theta(self):
         """The model inside, (3, 20), in `unit`."""
         return self.parameters[law.THETA :].reshape(3, 20).copy()
-
-    @property
-    def kp(self):
-        """Proportional gains (3,)."""
-        return self.parameters[law.KP : law.KP + 3].copy()
-
-    @property
-    def ki(self):
-        """Integral gains (3,)."""
-        return self.parameters[law.KI : law.KI + 3].copy()
-
-    @property
-    def kd(self):
-        """Derivative gains (3,)."""
-        return self.parameters[law.KD : law.KD + 3].copy()
-
-    @property
-    def limit(self):
-        """Limits of the command (3,), in its unit; infinite where there is none."""
-        return self.parameters[law.LIMIT : law.LIMIT + 3].copy()
 
 
 def model_in_unit(model, limit_pwm=None, limit=None, g=None):

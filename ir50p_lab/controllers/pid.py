@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.controllers.base import Controller
+from ir50p_lab.controllers.gains import GainController, positive
 from ir50p_lab.controllers.pid_law import (
     ANTI_WINDUP,
     ERROR,
@@ -21,10 +21,10 @@ from ir50p_lab.controllers.pid_law import (
     STARTED,
 )
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import choice, numbers, switch, vectors3
+from ir50p_lab.inputs import choice, switch
 
 
-class PID(Controller):
+class PID(GainController):
     """Three independent PIDs, one per joint, sampled every `period` seconds.
 
         u = kp e + I + kd (qd_ref - v),  e = q_ref - q,  I <- I + ki e T       (2.1)-(2.3), with e = q_ref - q (2.4)
@@ -83,10 +83,6 @@ class PID(Controller):
         self.parameters[ANTI_WINDUP] = switch("anti_windup", anti_windup)
         self._write_gains(kp, ki, kd)
 
-    def _write_gains(self, kp, ki, kd):
-        for name, place, value in (("kp", KP, kp), ("ki", KI, ki), ("kd", KD, kd)):
-            self.parameters[place : place + 3] = gains(name, value)
-
     def set_gains(self, kp=None, ki=None, kd=None):
         """Change gains in the middle of a run; the integral takes up the difference, so that u does not jump."""
         old = self.parameters.copy()
@@ -104,46 +100,3 @@ class PID(Controller):
         filters = {"filter_hz": FILTER_RATE, "position_filter_hz": POSITION_RATE}
         rates = {name: self.parameters[place] / (2 * np.pi) for name, place in filters.items()}
         return {**super().header(), **lines, **{name: f"{hz or np.inf:g}" for name, hz in rates.items()}}
-
-    @property
-    def kp(self):
-        """Proportional gains (3,)."""
-        return self.parameters[KP : KP + 3].copy()
-
-    @property
-    def ki(self):
-        """Integral gains (3,)."""
-        return self.parameters[KI : KI + 3].copy()
-
-    @property
-    def kd(self):
-        """Derivative gains (3,)."""
-        return self.parameters[KD : KD + 3].copy()
-
-    @property
-    def limit(self):
-        """Limits of the command (3,), in its unit; infinite where there is none."""
-        return self.parameters[LIMIT : LIMIT + 3].copy()
-
-
-def gains(name, value):
-    """Three gains, finite and not negative, as an array (3,); a scalar counts for all joints."""
-    value = numbers(name, value, unit="command per rad")
-    value = vectors3(name, np.broadcast_to(value, 3) if value.ndim == 0 else value, unit="command per rad")
-    if value.shape != (3,) or (value < 0).any():
-        raise InputError(
-            f"{name} = {value.tolist()}: give three gains >= 0, one per joint; a negative gain pushes away"
-        )
-    return value
-
-
-def positive(name, value, *, infinite=False, joints=False):
-    """One positive number (or one per joint) as an array; infinite only where allowed. Raises InputError."""
-    array = np.array(np.nan) if isinstance(value, (str, bool)) else numbers(name, value)
-    if np.isnan(array).any() or (array <= 0).any() or array.shape not in ((), (3,) if joints else ()):
-        raise InputError(
-            f"{name} = {value!r:.60}: give {'one positive number, or one per joint' if joints else 'a positive number'}"
-        )
-    if not (infinite or joints) and not np.isfinite(array).all():
-        raise InputError(f"{name} = {value!r}: must be finite")
-    return array

@@ -45,30 +45,6 @@ class PIDGains:
         return self.kd / self.kp if self.kp else 0.0
 
 
-@dataclass(frozen=True)
-class UltimatePoint:
-    """Where proportional control begins to swing for ever: gain Ku (u/y) and period Tu (s) of the oscillation."""
-
-    Ku: float
-    Tu: float
-
-
-def ultimate_point(model):
-    """Ultimate gain and period of a FOPDT model: the frequency at which its phase is -180 degrees.
-
-    w L + atan(w T) = pi,  Ku = sqrt(1 + (w T)^2)/K,  Tu = 2 pi/w
-
-    Args: model: FOPDT. Returns: UltimatePoint; Ku has the sign of K.
-    Raises: InputError if L is 0 (a first-order plant never swings under proportional control).
-    """
-    from scipy.optimize import brentq  # only this function needs it
-
-    K, T, L = _model(model, "an ultimate point", dead_time=True)
-    # the root lies between pi/2 and pi over L
-    w = brentq(lambda w: w * L + math.atan(w * T) - math.pi, 0.5 * math.pi / L, math.pi / L, xtol=1e-14 / L)
-    return UltimatePoint(Ku=math.hypot(1, w * T) / K, Tu=2 * math.pi / w)
-
-
 def ziegler_nichols(model, *, kind="PID"):
     """Ziegler and Nichols' rule for the step response (reaction curve).
 
@@ -87,24 +63,6 @@ def ziegler_nichols(model, *, kind="PID"):
     if not 0.1 <= L / T <= 1:
         notes += (f"L/T = {L / T:.3g} is outside 0.1 to 1, for which the rule was made: prefer simc or amigo",)
     return _standard(factor * T / (K * L), Ti, Td, f"Ziegler-Nichols step response, {kind}", notes)
-
-
-def ziegler_nichols_ultimate(ultimate, *, kind="PID"):
-    """Ziegler and Nichols' rule for the ultimate gain.
-
-    P: kp = 0.5 Ku;  PI: kp = 0.45 Ku, Ti = Tu/1.2;  PID: kp = 0.6 Ku, Ti = Tu/2, Td = Tu/8
-
-    For L above about 2 T the derivative, unless filtered, takes the margin away: at L = 5 T nothing is left.
-
-    Source: as `ziegler_nichols`.
-    Args: ultimate: UltimatePoint, measured (UltimatePoint(Ku, Tu)) or from `ultimate_point(model)`; kind: "P", "PI" or
-    "PID". Returns: PIDGains. Raises: InputError if Ku is 0 or Tu is not > 0, or `kind` is unknown.
-    """
-    Ku, Tu = _numbers(ultimate, ("Ku", "Tu"), "an UltimatePoint")
-    if Ku == 0 or Tu <= 0:
-        raise InputError(f"Ku = {Ku}, Tu = {Tu} s: give the gain of lasting oscillation, not 0, and its period > 0")
-    factor, Ti, Td = _pick(kind, {"P": (0.5, math.inf, 0.0), "PI": (0.45, Tu / 1.2, 0.0), "PID": (0.6, Tu / 2, Tu / 8)})
-    return _standard(factor * Ku, Ti, Td, f"Ziegler-Nichols ultimate gain, {kind}")
 
 
 def simc(model, *, tau_c=None, kind="PI"):

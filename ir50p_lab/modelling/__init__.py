@@ -25,17 +25,13 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "friction": ["Friction", "friction_torque"],
         "ik": [
             "IKSolutions",
-            "IterativeSolution",
             "inverse_kinematics",
-            "iterative_inverse_kinematics",
             "reachability",
         ],
         "inertia": [
             "Body",
             "Solid",
-            "ball",
             "box",
-            "cone",
             "cylinder",
             "integrate_solid",
             "rod",
@@ -52,7 +48,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "angles_from_rotation",
             "check_rotation",
             "check_transform",
-            "compose",
             "gimbal_lock",
             "homogeneous",
             "inverse_transform",
@@ -62,7 +57,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "rot_z",
             "rotation_from_angles",
             "singular_angles",
-            "transform_points",
         ],
     },
 )

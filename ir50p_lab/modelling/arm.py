@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import ArmError, SuspiciousArmWarning
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import vector3, vectors3
 from ir50p_lab.modelling.actuators import Actuators
 from ir50p_lab.modelling.friction import Friction
 
@@ -63,7 +63,7 @@ class Arm:
         if not isinstance(self.name, str) or "$" in self.name:
             raise ArmError(f"name = {self.name!r}: give a text without $, which figures take for mathematics")
         for name, unit in _VECTORS.items():
-            object.__setattr__(self, name, _three(name, getattr(self, name), unit))
+            object.__setattr__(self, name, tuple(vector3(name, getattr(self, name), unit=unit).tolist()))
         for name in ("q_min", "q_max"):
             values = np.asarray(getattr(self, name), dtype=float)
             if values.shape != (3,) or np.isnan(values).any():
@@ -215,13 +215,6 @@ class Arm:
         from ir50p_lab.modelling.arm_file import read_arm
 
         return read_arm(path)
-
-
-def _three(name, value, unit):
-    array = vectors3(name, value, unit=unit)
-    if array.shape != (3,):
-        raise ArmError(f"{name} has shape {array.shape}; give one number per link, (3,), in {unit}")
-    return tuple(array.tolist())
 
 
 def refuse_impossible_inertia(who, principal):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import vector3, vectors3
 from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel
 
 JOINTS = 3
@@ -49,9 +49,7 @@ def dh_table(arm, q):
     Args: arm: Arm; q: (3,) rad. Returns: (3, 4), units rad, m, m, rad.
     """
     l1, l2, l3 = lengths(arm)
-    q = vectors3("q", q)
-    if q.shape != (3,):
-        raise InputError(f"q has shape {q.shape}; a DH table is for one pose, give shape (3,)")
+    q = vector3("q", q)
     return np.column_stack([q, (l1, 0.0, 0.0), (0.0, l2, l3), ALPHA])
 
 

@@ -1,4 +1,4 @@
-"""Inverse kinematics: all four branches in closed form, and step by step (1.56)-(1.73 corrected)."""
+"""Inverse kinematics: all four branches in closed form (1.60)-(1.73 corrected)."""
 
 import math
 from dataclasses import dataclass
@@ -6,10 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ir50p_lab.errors import InputError, UnreachableError
+from ir50p_lab.errors import UnreachableError
 from ir50p_lab.inputs import vectors3
-from ir50p_lab.modelling.chain import forward_kinematics, lengths
-from ir50p_lab.modelling.differential import jacobian
+from ir50p_lab.modelling.chain import lengths
 from ir50p_lab.modelling.kernel import evaluate, kernel
 
 BRANCHES = ("front/up", "front/down", "back/up", "back/down")
@@ -161,63 +160,3 @@ def inverse_kinematics(arm, p):
     except UnreachableError:
         raise _out_of_reach(arm, p) from None
     return IKSolutions(q=q, q_min=arm.q_min, q_max=arm.q_max)
-
-
-@dataclass(frozen=True)
-class IterativeSolution:
-    """Result of a step-by-step search and its history.
-
-    q: (3,) rad, last iterate; converged: error below the tolerance; iterations: steps taken; q_history: (k, 3) rad
-    and error_history: (k,) m with k = iterations + 1, from the start to the last iterate.
-    """
-
-    q: np.ndarray
-    converged: bool
-    iterations: int
-    q_history: np.ndarray
-    error_history: np.ndarray
-
-
-def iterative_inverse_kinematics(arm, p, q0, *, damping=0.05, tolerance=1e-10, max_iterations=200):
-    """Damped least squares: repeat dq = Jv^T (Jv Jv^T + lambda^2 I)^-1 (p - p(q))    (1.56)-(1.59) corrected
-
-    The thesis' (J^T J)^-1 J^T takes the 6x3 Jacobian for a 3-vector and is singular in its own start pose. Here lambda
-    falls after a step that helped and grows after one that did not (which is taken back), the Levenberg-Marquardt
-    rule: quadratic convergence away from singular poses, no wild jumps near them.
-
-    Args:
-        arm: Arm; p: (3,) m, target; q0: (3,) rad, start.
-        damping: first lambda relative to the reach; 0 gives the plain Newton step, always taken.
-        tolerance: m. max_iterations: steps after which it gives up and says so in `converged`.
-
-    Returns: IterativeSolution. A target out of reach does not raise: it does not converge, and the error that is
-    left is its distance to the workspace, unless the search ended in a pose from which every small step is worse.
-    Raises: InputError on a wrong shape, a number that is not finite or a negative option.
-    """
-    p, q = vectors3("p", p, unit="m"), vectors3("q0", q0)
-    if p.shape != (3,) or q.shape != (3,):
-        raise InputError(f"p {p.shape} and q0 {q.shape} must be single points of shape (3,)")
-    for name, value in (("damping", damping), ("tolerance", tolerance)):
-        if not (np.isfinite(value) and value >= 0):
-            raise InputError(f"{name} = {value}: give a finite number >= 0")
-    lam = damping * arm.reach
-    offset = p - forward_kinematics(arm, q)
-    path, errors = [q], [float(np.linalg.norm(offset))]
-    while errors[-1] > tolerance and len(errors) <= max_iterations:
-        # the augmented least-squares problem is the damped step without forming Jv Jv^T (twice the digits)
-        A = np.vstack([jacobian(arm, q)[:3], lam * np.eye(3)])
-        trial = q + np.linalg.lstsq(A, np.r_[offset, np.zeros(3)], rcond=None)[0]
-        left = p - forward_kinematics(arm, trial)
-        better = np.linalg.norm(left) < errors[-1]
-        if better or damping == 0:
-            q, offset = trial, left
-        lam = 0.2 * lam if better else min(4 * lam, 1e6 * arm.reach)
-        path.append(q)
-        errors.append(float(np.linalg.norm(offset)))
-    return IterativeSolution(
-        q=q,
-        converged=errors[-1] <= tolerance,
-        iterations=len(errors) - 1,
-        q_history=np.array(path),
-        error_history=np.array(errors),
-    )

@@ -112,25 +112,6 @@ def _turned(name, inner, outer):
     )
 
 
-def cone():
-    """A cone of base radius R and height L along x, tip at x = L, base at x = 0."""
-    R, L = sympy.symbols("R L", positive=True)
-    x, rho, phi = sympy.symbols("x rho phi", real=True)
-    p = (x, rho * sympy.cos(phi), rho * sympy.sin(phi))
-    limits = [(phi, 0, 2 * sympy.pi), (rho, 0, R * (1 - x / L)), (x, 0, L)]
-    return integrate_solid("cone", p, limits, volume_element=rho)
-
-
-def ball():
-    """A ball of radius R."""
-    R = sympy.Symbol("R", positive=True)
-    rho, theta, phi = sympy.symbols("rho theta phi", real=True)
-    s = sympy.sin(theta)
-    p = (rho * s * sympy.cos(phi), rho * s * sympy.sin(phi), rho * sympy.cos(theta))
-    limits = [(phi, 0, 2 * sympy.pi), (theta, 0, sympy.pi), (rho, 0, R)]
-    return integrate_solid("ball", p, limits, volume_element=rho**2 * s)
-
-
 def rod():
     """A slender rod of length L along x, its mass spread over the length alone (`volume` is that length)."""
     L, x = sympy.Symbol("L", positive=True), sympy.Symbol("x", real=True)

@@ -154,22 +154,6 @@ def homogeneous(R=None, t=None):
     return T
 
 
-def compose(*transforms):
-    """Chain transforms from left to right: compose(T_A_B, T_B_C) is T_A_C = T_A_B T_B_C.
-
-    transforms: one or more (...,4,4), leading dimensions broadcast. Returns T (...,4,4).
-    Raises InputError for none at all or for one that is no homogeneous transform.
-    """
-    if not transforms:
-        raise InputError("compose() needs at least one transform of shape (4, 4), and got none")
-    result = check_transform(transforms[0])
-    for T in transforms[1:]:
-        T = check_transform(T)
-        _broadcast("the transforms", result.shape[:-2], T.shape[:-2])
-        result = result @ T
-    return result
-
-
 def inverse_transform(T):
     """Inverse of a homogeneous transform in closed form: T_B_A = [[R^T, -R^T t], [0, 1]].
 
@@ -182,19 +166,6 @@ def inverse_transform(T):
     result[..., :3, 3] = -(R_transposed @ T[..., :3, 3, None])[..., 0]
     result[..., 3, 3] = 1
     return result
-
-
-def transform_points(T, points):
-    """Coordinates of points in the outer frame, (1.9): p_A = R p_B + t.
-
-    T: (...,4,4), T_A_B; points: (...,3) m in frame B; leading dimensions are broadcast, so that one T takes
-    n points and n transforms take one point. Returns (...,3) m in frame A.
-    Raises InputError if T is no homogeneous transform or the points are not (...,3) and finite.
-    """
-    T = check_transform(T)
-    points = _finite("points", points, (3,))
-    _broadcast("T and points", T.shape[:-2], points.shape[:-1])
-    return (T[..., :3, :3] @ points[..., None])[..., 0] + T[..., :3, 3]
 
 
 def check_rotation(R, tolerance=TOLERANCE):

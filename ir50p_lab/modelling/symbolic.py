@@ -7,7 +7,7 @@ import numpy as np
 import sympy
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import vector3
 from ir50p_lab.modelling import symbolic_steps as steps
 from ir50p_lab.modelling.symbolic_display import Formulas, short_names
 from ir50p_lab.modelling.trig_ring import TrigRing
@@ -155,10 +155,7 @@ class NumericModel:
     functions: dict
 
     def _call(self, name, *state):
-        state = [vectors3(letter, x) for letter, x in zip(("q", "qd"), state, strict=False)]
-        for x in state:
-            if x.shape != (3,):
-                raise InputError(f"the symbolic model takes one state at a time, (3,); got shape {x.shape}")
+        state = [vector3(letter, x) for letter, x in zip(("q", "qd"), state, strict=False)]
         return np.array(self.functions[name](*state, self.parameters), dtype=float)
 
     def M(self, q):

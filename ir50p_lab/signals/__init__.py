@@ -21,6 +21,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "sinusoid": ["sinusoid"],
         "steps": ["hold", "steps"],
         "trapezoid": ["trapezoid"],
-        "velocity": ["DifferenceVelocity", "VelocityKalman", "difference_velocity"],
+        "velocity": ["VelocityKalman", "difference_velocity"],
     },
 )

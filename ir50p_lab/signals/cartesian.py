@@ -1,18 +1,17 @@
 """Paths of the tip in space, straight or round, as references for the joints: through the IK, from rest to rest."""
 
-import math
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ir50p_lab.errors import InputError, UnreachableError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import number, vector3
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.differential import jacobian, singularity
 from ir50p_lab.modelling.ik import BRANCHES, inverse_kinematics, reachability
 from ir50p_lab.signals.joint_motion import joint_motion
 from ir50p_lab.signals.path_shapes import Circle, Line
-from ir50p_lab.signals.reference import Reference, seconds
+from ir50p_lab.signals.reference import Reference, per_joint, pose, seconds
 from ir50p_lab.signals.speed_profile import SpeedProfile, fastest
 
 _SINGULAR = 1e-3  # smallest singular value of Jv over the reach, below which no joint speed is finite in practice
@@ -73,7 +72,7 @@ def cartesian_line(arm, start, end, **options):
     Returns: CartesianPath, a Reference with `.tip(t)`, `.points`, `.q_start`, `.branch`.
     Raises: as `cartesian_circle`; InputError if start and end are the same point.
     """
-    return _path(arm, Line(_point("start", start), _point("end", end)), **options)
+    return _path(arm, Line(pose("start", start, unit="m"), pose("end", end, unit="m")), **options)
 
 
 def cartesian_circle(arm, centre, radius, *, normal=(0.0, 0.0, 1.0), turns=1.0, phase=0.0, **options):
@@ -99,7 +98,8 @@ def cartesian_circle(arm, centre, radius, *, normal=(0.0, 0.0, 1.0), turns=1.0, 
     if a joint would have to be faster than max_joint_speed: then the path passes near a singular pose, or the speed is
     too high. InputError on a wrong shape or a number that is not finite or out of range.
     """
-    return _path(arm, Circle(_point("centre", centre), radius, _point("normal", normal), turns, phase), **options)
+    centre, normal = pose("centre", centre, unit="m"), pose("normal", normal, unit="1")
+    return _path(arm, Circle(centre, radius, normal, turns, phase), **options)
 
 
 def _path(
@@ -115,12 +115,12 @@ def _path(
     table=0.0,
     margin=0.03,
 ):
-    near = np.zeros(3) if near is None else np.array(_point("near", near, unit="rad"))
+    near = vector3("near", (0.0, 0.0, 0.0) if near is None else near)
     if branch is not None and branch not in BRANCHES:
         raise InputError(f"branch = {branch!r}: choose one of {', '.join(BRANCHES)}")
-    speed, acceleration = _positive("speed", speed, "m/s"), _positive("acceleration", acceleration, "m/s^2")
-    if not (np.isscalar(margin) and math.isfinite(margin) and margin >= 0):
-        raise InputError(f"margin = {margin!r} rad: give a finite number >= 0")
+    speed = number("speed", speed, "> 0", unit="m/s")
+    acceleration = number("acceleration", acceleration, "> 0", unit="m/s^2")
+    number("margin", margin, ">= 0", unit="rad")
     bound = _joint_speed_bound(arm, max_joint_speed)
     s = np.linspace(0, shape.length, shape.grid)
     p, tangent, _ = shape(s)
@@ -199,8 +199,7 @@ def _refuse_out_of_reach(arm, p):
 def _refuse_below(part, heights, table, p):
     if table is None:
         return
-    if not (np.isscalar(table) and math.isfinite(table)):
-        raise InputError(f"table = {table!r}: give its height in m, or None for no table")
+    number("table", table, unit="m", hint="its height, or None for no table")
     i = int(heights.argmin())
     depth = table - heights[i]
     if depth > 1e-12:
@@ -255,23 +254,7 @@ def _unreachable(message, i, p, distance):
 def _joint_speed_bound(arm, value):
     if value is None:
         return np.full(3, 2.0) if arm.actuators is None else 0.5 * arm.actuators.no_load_speed
-    bound = vectors3("max_joint_speed", np.broadcast_to(value, 3) if np.ndim(value) == 0 else value, unit="rad/s")
-    if bound.shape != (3,) or (bound <= 0).any():
-        raise InputError(f"max_joint_speed = {value!r} rad/s: give one number > 0, or three")
-    return bound
-
-
-def _point(name, value, *, unit="m"):
-    array = vectors3(name, value, unit=unit)
-    if array.shape != (3,):
-        raise InputError(f"{name} has shape {array.shape}; give one point, shape (3,) ({unit})")
-    return tuple(array.tolist())
-
-
-def _positive(name, value, unit):
-    if not (np.isscalar(value) and not isinstance(value, str) and math.isfinite(value) and value > 0):
-        raise InputError(f"{name} = {value!r} {unit}: give one finite number > 0")
-    return float(value)
+    return np.array(per_joint("max_joint_speed", value, unit="rad/s", positive=True))
 
 
 def _percent(i, p):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite
+from ir50p_lab.inputs import first_not_finite, number
 
 
 def measured_lag(x, y, rate_hz, *, max_lag=1.0):
@@ -26,8 +26,8 @@ def measured_lag(x, y, rate_hz, *, max_lag=1.0):
             raise InputError(f"{name} holds {first_not_finite(signal)}: repair that sample first")
         if np.ptp(signal) == 0:
             raise InputError(f"{name} does not move: a lag shows only in motion")
-    if not (math.isfinite(rate_hz) and rate_hz > 0 and math.isfinite(max_lag) and max_lag > 0):
-        raise InputError(f"rate_hz = {rate_hz} and max_lag = {max_lag} s: give finite numbers > 0")
+    number("rate_hz", rate_hz, "> 0")
+    number("max_lag", max_lag, "> 0", unit="s")
     most = min(math.ceil(max_lag * rate_hz), len(x) // 2)
     if most < 1:
         raise InputError(

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite, numbers, vectors3
+from ir50p_lab.inputs import first_not_finite, numbers, vector3
 
 
 class Reference:
@@ -73,10 +73,7 @@ def time_vector(name, value):
 
 def pose(name, value, *, unit="rad"):
     """Return `value` as a tuple of three floats; InputError on another shape or a number that is not finite."""
-    array = vectors3(name, value, unit=unit)
-    if array.shape != (3,):
-        raise InputError(f"{name} has shape {array.shape}; give one value per joint, shape (3,) ({unit})")
-    return tuple(array.tolist())
+    return tuple(vector3(name, value, unit=unit).tolist())
 
 
 def per_joint(name, value, *, unit, positive=False):

@@ -1,13 +1,11 @@
 """Joint velocity from sampled angles: differences behind a low pass, and a Kalman filter beside them."""
 
-import math
-
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import choice, number, vector3, vectors3
 from ir50p_lab.jit import jit
-from ir50p_lab.signals.low_pass import LowPass, low_pass
+from ir50p_lab.signals.low_pass import low_pass
 from ir50p_lab.signals.reference import per_joint
 
 ONE_COUNT = (0.0056, 0.0084, 0.0054)  # rad rms: 1 count of noise and rounding, by the slopes of the sister arm
@@ -30,28 +28,6 @@ def difference_velocity(q, rate_hz, *, cutoff_hz=None, order=1, kind="causal"):
     else:
         v = np.diff(q, axis=0, prepend=q[:1]) * rate_hz
     return v if cutoff_hz is None else low_pass(v, cutoff_hz, rate_hz, order=order, kind=kind)
-
-
-class DifferenceVelocity:
-    """`difference_velocity` sample by sample: the same numbers, in rad/s. step(q) -> qd, q a number or (k,) rad.
-
-    rate_hz, cutoff_hz, order: as in `low_pass`. Raises InputError as `LowPass` does.
-    """
-
-    def __init__(self, rate_hz, *, cutoff_hz, order=1):
-        self.filter = LowPass(cutoff_hz, rate_hz, order=order)
-        self.reset()
-
-    def reset(self):
-        """Forget the past."""
-        self._last = None
-        self.filter.reset()
-
-    def step(self, q):
-        """The velocity after this sample, rad/s."""
-        q = np.array(q, dtype=float)
-        last, self._last = q if self._last is None else self._last, q
-        return self.filter.step((q - last) * self.filter.rate_hz)
 
 
 @jit()
@@ -92,11 +68,8 @@ class VelocityKalman:
     """
 
     def __init__(self, period=0.01, *, noise=ONE_COUNT, change=10.0, model="velocity"):
-        if not (np.isscalar(period) and math.isfinite(period) and period > 0):
-            raise InputError(f"period = {period!r} s: give one finite number > 0")
-        if model not in ("velocity", "acceleration"):
-            raise InputError(f"model = {model!r}: choose 'velocity' or 'acceleration' (what is taken to be constant)")
-        self.period, self.model = float(period), model
+        self.period = number("period", period, "> 0", unit="s")
+        self.model = choice("model", model, ("velocity", "acceleration"))
         self.noise = per_joint("noise", noise, unit="rad", positive=True)
         self.change = per_joint("change", change, unit="rad/s^2", positive=True)
         self.gain = np.zeros((3, 3))
@@ -113,9 +86,7 @@ class VelocityKalman:
 
     def step(self, q):
         """Take one sample q (3,) rad; returns the estimates q (3,) rad and qd (3,) rad/s."""
-        q = vectors3("q", q)
-        if q.shape != (3,):
-            raise InputError(f"q has shape {q.shape}; step takes one sample (3,), estimate a record (n, 3)")
+        q = vector3("q", q)
         self._started = _run(self.gain, self.period, q[None], self.state, self._started, self._one)
         return self._one[0, 0].copy(), self._one[0, 1].copy()
 

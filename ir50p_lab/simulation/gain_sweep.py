@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite
+from ir50p_lab.inputs import first_not_finite, vector3
 from ir50p_lab.simulation.batch import LANES, METRICS, pid_batch
 from ir50p_lab.simulation.plant import make_plant
-from ir50p_lab.simulation.simulate import _sample, _single, _target, _times
+from ir50p_lab.simulation.simulate import _sample, _target, _times
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def sweep_gains(
     from tqdm.auto import tqdm
 
     steps, t = _times(duration, period, step)
-    q0 = _single("q0", q0, "rad")
+    q0 = vector3("q0", q0)
     plant = make_plant(arm, unit="N m" if limit_pwm is None else "PWM", g=g)
     if plant.dry:
         raise InputError(

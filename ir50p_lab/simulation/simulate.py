@@ -6,7 +6,8 @@ import numpy as np
 
 from ir50p_lab.controllers.base import Controller
 from ir50p_lab.errors import InputError, UnstableLoopWarning
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import number, vector3
+from ir50p_lab.signals.steps import hold
 from ir50p_lab.simulation.plant import make_plant
 from ir50p_lab.simulation.result import SimulationResult
 from ir50p_lab.simulation.verdict import looks_unstable
@@ -51,7 +52,7 @@ def simulate(
     result keeps the sentence as `unstable`). Without a controller nothing is judged.
     """
     steps, t = _times(duration, period, step)
-    q0, qd0 = _single("q0", q0, "rad"), _single("qd0", qd0, "rad/s")
+    q0, qd0 = vector3("q0", q0), vector3("qd0", qd0, unit="rad/s")
     unit = unit or getattr(controller, "unit", "N m")
     plant = make_plant(arm, unit=unit, stops=stops, table=table, g=g)
     target = _target(reference, q0)
@@ -104,9 +105,8 @@ def _python_loop(plant, controller, t, r, x, step, steps, q, qd, u):
 
     for k in range(len(t)):
         q[k], qd[k] = x[:3], x[3:]
-        command = _single(
-            f"the controller's command at t = {t[k]:.6g} s", controller.step(t[k], q[k].copy(), r[k]), "u"
-        )
+        command = controller.step(t[k], q[k].copy(), r[k])
+        command = vector3(f"the controller's command at t = {t[k]:.6g} s", command, unit="u")
         u[k] = np.clip(command, -plant.limit, plant.limit)
         if k + 1 < len(t):
             advance(plant.theta, plant.numbers, x, u[k], step, steps)
@@ -114,8 +114,7 @@ def _python_loop(plant, controller, t, r, x, step, steps, q, qd, u):
 
 def _times(duration, period, step):
     for name, value in (("duration", duration), ("period", period), ("step", step)):
-        if not (np.isfinite(value) and value > 0):
-            raise InputError(f"{name} = {value} s: must be positive")
+        number(name, value, "> 0", unit="s")
     steps = round(period / step)
     if steps < 1 or abs(steps * step - period) > 1e-9 * period:
         raise InputError(f"period = {period} s is not a whole number of steps of {step} s; change one of them")
@@ -125,29 +124,12 @@ def _times(duration, period, step):
     return steps, np.arange(samples + 1) * period
 
 
-def _single(name, value, unit):
-    array = vectors3(name, value, unit=unit)
-    if array.shape != (3,):
-        raise InputError(f"{name} has shape {array.shape}; give shape (3,)")
-    return array
-
-
-class _Hold:
-    """A set point as a reference, for callers that give three angles."""
-
-    def __init__(self, q):
-        self.rows = np.stack([q, np.zeros(3), np.zeros(3)])
-
-    def sample(self, t):
-        return np.broadcast_to(self.rows, (len(t), 3, 3)).copy()
-
-
 def _target(reference, q0):
     if reference is None:
-        return _Hold(q0)
+        return hold(q0)
     if callable(reference) or hasattr(reference, "sample"):
         return reference
-    return _Hold(_single("reference", reference, "rad"))
+    return hold(vector3("reference", reference))
 
 
 def _sample(target, t):

@@ -324,7 +324,7 @@ def test_refusals_say_what_to_do(inline):
         inline.numeric({"m1": float("nan")})
     with pytest.raises(InputError, match="give a mapping"):
         derive(links="thesis").numeric(IR50P)
-    with pytest.raises(InputError, match="one state at a time"):
+    with pytest.raises(InputError, match=r"give three numbers, shape \(3,\)"):
         inline.numeric(IR50P).M(np.zeros((2, 3)))
     with pytest.raises(InputError, match="choose 'M'"):
         inline.read("K")

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.signals import (
-    DifferenceVelocity,
     VelocityKalman,
     difference_velocity,
     low_pass_lag,
@@ -53,9 +52,6 @@ def test_sample_by_sample_gives_the_same_numbers(model):
     np.testing.assert_array_equal(steps, np.stack(whole.estimate(q), axis=1))
     loop.reset()
     np.testing.assert_array_equal(loop.step(q[0])[1], 0)
-    difference = DifferenceVelocity(RATE, cutoff_hz=5, order=2)
-    found = [difference.step(row) for row in q]
-    np.testing.assert_allclose(found, difference_velocity(q, RATE, cutoff_hz=5, order=2), rtol=1e-9, atol=1e-9)
 
 
 @given(st.floats(-2, 2), st.floats(-3, 3), st.floats(0.5, 100))
