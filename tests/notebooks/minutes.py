@@ -6,11 +6,12 @@ words/150 + 3 a prediction + 2 a panel + 6, 15 or 40 a function by its size + co
 
 import ast
 import re
+from itertools import pairwise
 
 import nbformat
 from notebook_runner import FOLDER, REWRITTEN, ROOT
 
-from ir50p_lab.course.functions.catalogue import is_function, task
+from ir50p_lab.course.functions.catalogue import function_of, is_function, task
 
 README = ROOT / "README.md"
 PANEL = re.compile(r"^(?:live|LiveArm|\w*(?:panel|slider)\w*)\(", re.M)
@@ -24,13 +25,19 @@ def minutes(path):
     functions = [name for name in re.findall(r'^check\("([\w.]+)"', code, re.M) if is_function(name)]
     lines = sum(bool(line.strip()) for line in code.splitlines())
     predictions, panels = len(re.findall(r"^predict\(", code, re.M)), len(PANEL.findall(code))
-    written = sum(_writing(task(name).loan) for name in functions)
+    sizes = {name: _size(task(name).loan) for name in functions}
+    before = {name: sizes[one] for one, name in pairwise(functions) if function_of(one) == function_of(name)}
+    written = sum(_writing(size - before.get(name, 0)) for name, size in sizes.items())
     return 5 * round((len(text.split()) / 150 + 3 * predictions + 2 * panels + written + lines / 2) / 5)
 
 
-def _writing(solution):
-    """Minutes for a function, by the statements of a plain solution."""
-    statements = sum(isinstance(node, ast.stmt) for node in ast.walk(ast.parse(solution)))
+def _size(solution):
+    """Statements of a plain solution; what a stage has in common with the one before it is not written again."""
+    return sum(isinstance(node, ast.stmt) for node in ast.walk(ast.parse(solution)))
+
+
+def _writing(statements):
+    """Minutes for a function of so many statements."""
     return 6 if statements <= 4 else 15 if statements <= 14 else 40
 
 
