@@ -362,6 +362,7 @@ REACH = Task(
     return best""",
     parts=("q1", "q2", "q3"),
     slips=(
+        _turned("it takes the allowed pose that is farthest away", lambda x, q: -np.abs(x - q).max()),
         _turned("only the waist's turn is compared", lambda x, q: abs(x[0] - q[0])),
         _turned(
             "a turn counts as the short way round, through an end stop: a joint turns straight from angle to angle",

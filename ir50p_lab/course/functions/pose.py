@@ -232,7 +232,7 @@ def _frames_symptom(cases, returned, expected):
     if np.allclose(T, T[:, :1]):
         return "all four are the same: is one array changed again and again, and put into the list each time?"
     if not np.allclose(T[:, 0], np.eye(4)):
-        return "the first of the four is the base itself, seen from itself: it never moves. Yours does"
+        return "the first of the four is the base itself, seen from itself: it does nothing. Yours does"
     if np.allclose(np.linalg.det(T[:, :, :3, :3]), 1):
         links, right = np.linalg.inv(T[:, :3]) @ T[:, 1:], np.linalg.inv(right[:, :3]) @ right[:, 1:]
         bad = [k for k in range(3) if not np.allclose(links[:, k], right[:, k])]
