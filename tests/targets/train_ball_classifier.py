@@ -18,7 +18,7 @@ import time
 
 import numpy as np
 
-from ir50p_lab.vision.ball.classifier import FAR, LAYERS, NEAR, WEIGHTS, around, logit
+from ir50p_lab.vision.ball.classifier import FAR, LAYERS, NEAR, WEIGHTS, around
 from ir50p_lab.vision.ball.features import RAYS
 from tests.targets.ball_examples import NEARLY, crowded_examples, examples
 
@@ -34,6 +34,23 @@ EASY, SPARED = (
 NOISE, DROP = 0.25, 0.3  # added to the scaled inputs; share of the pooled features left out, in training
 FALSE_COSTS = 2.0  # a false alarm is worse than a miss
 OF_CROWDED = 2.5  # what a crowded scene counts for
+
+
+def logit(rays, numbers, net, keep=1.0):
+    """Log odds (n,) of one network, and the layers on the way: what training goes back through.
+
+    keep: factors of the pooled features, in training.
+    """
+    n = len(rays)
+    x1 = rays[:, around(NEAR)].reshape(n, rays.shape[1], -1)
+    h1 = np.maximum(x1 @ net["w1"] + net["b1"], 0)
+    x2 = h1[:, around(FAR)].reshape(n, rays.shape[1], -1)
+    h2 = np.maximum(x2 @ net["w2"] + net["b2"], 0)
+    top = h2.argmax(axis=1)
+    pooled = np.concatenate([h2.mean(axis=1), np.take_along_axis(h2, top[:, None], axis=1)[:, 0], numbers], axis=1)
+    pooled *= keep
+    h3 = np.maximum(pooled @ net["w3"] + net["b3"], 0)
+    return h3 @ net["w4"] + net["b4"], (x1, h1, x2, h2, top, pooled, h3)
 
 
 def start(rng, channels, numbers):

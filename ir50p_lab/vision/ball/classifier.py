@@ -101,20 +101,3 @@ def score(found, others=None):
     pooled = np.concatenate([h2.mean(axis=2), h2.max(axis=2), numbers], axis=2)[:, :, None]
     h3 = np.maximum(pooled @ w3 + b3, 0)
     return 1 / (1 + np.exp(-((h3 @ w4)[:, :, 0, 0].mean(axis=1) + b4.mean())))
-
-
-def logit(rays, numbers, net, keep=1.0):
-    """Log odds (n,) of one network, and the layers on the way: what training goes back through.
-
-    keep: factors of the pooled features, in training.
-    """
-    n = len(rays)
-    x1 = rays[:, around(NEAR)].reshape(n, rays.shape[1], -1)
-    h1 = np.maximum(x1 @ net["w1"] + net["b1"], 0)
-    x2 = h1[:, around(FAR)].reshape(n, rays.shape[1], -1)
-    h2 = np.maximum(x2 @ net["w2"] + net["b2"], 0)
-    top = h2.argmax(axis=1)
-    pooled = np.concatenate([h2.mean(axis=1), np.take_along_axis(h2, top[:, None], axis=1)[:, 0], numbers], axis=1)
-    pooled *= keep
-    h3 = np.maximum(pooled @ net["w3"] + net["b3"], 0)
-    return h3 @ net["w4"] + net["b4"], (x1, h1, x2, h2, top, pooled, h3)
