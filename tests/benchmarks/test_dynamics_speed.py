@@ -47,7 +47,8 @@ class Peer:
     def __init__(self):
         self.model = mujoco_model(ARM)
         self.data = mujoco.MjData(self.model)
-        self.M, self.Jv, self.Jw, self.tau = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3)), np.zeros(3)
+        self.M, self.J, self.tau = np.zeros((3, 3)), np.zeros((6, 3)), np.zeros(3)
+        self.Jv, self.Jw = self.J[:3], self.J[3:]
 
     def place(self):
         self.data.qpos[:] = q
@@ -61,7 +62,7 @@ class Peer:
         self.place()
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_jacSite(self.model, self.data, self.Jv, self.Jw, 0)
-        return np.vstack([self.Jv, self.Jw])
+        return self.J
 
     def mass_matrix(self):
         self.place()
