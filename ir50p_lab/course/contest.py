@@ -8,6 +8,7 @@ what is spared in one buys nothing in another. Below 1 is won. Simulated: no num
 """
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -98,6 +99,7 @@ class Score:
         return "\n".join(rows)
 
 
+@lru_cache(maxsize=32)
 def draw(arm, seed):
     """The Draw of a seed: poses in the inner 70 % of the travel, elbow and tip at least 8 cm above the table."""
     rng = np.random.default_rng(seed)
@@ -114,6 +116,7 @@ def draw(arm, seed):
             return Draw(poses[np.argmax((heights > 0.08).all(axis=1))], payload, copy)
 
 
+@lru_cache(maxsize=32)
 def carrying(arm, mass):
     """The arm with a point mass (kg) at its tip."""
     m3 = arm.m[2] + mass

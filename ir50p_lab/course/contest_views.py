@@ -34,7 +34,7 @@ class Practice:
             )
             below.set(ylim=(-275, 275), xlabel="time [s]")
             self._q += above.plot([], [], color=COLOURS[colour], label="true angle")
-            self._u += below.plot([], [], color=COLOURS[colour], linewidth=0.8, drawstyle="steps-post")
+            self._u += below.plot([], [], color=COLOURS[colour], linewidth=0.6, antialiased=False)
         self.figure.axes[0].set_ylabel("angle [rad]")
         self.figure.axes[3].set_ylabel("command [PWM]")
         self.figure.axes[0].legend(fontsize=7, loc="best")
