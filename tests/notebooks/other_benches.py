@@ -53,7 +53,10 @@ def test_on_a_replay(name, tmp_path):
 
 @pytest.mark.notebook
 @pytest.mark.emulator
-@pytest.mark.parametrize("name", ["10_bench", "12_identification", "14_computed_torque", "18_vision_guided_reaching"])
+@pytest.mark.parametrize(
+    "name",
+    ["08_pid_from_its_parts", "10_bench", "12_identification", "14_computed_torque", "18_vision_guided_reaching"],
+)
 def test_on_the_board(name, tmp_path):
     """Found, driven, and never left for the simulated arm."""
     needs_results = re.search(r"\barm_that_answers\(\"", DRIVING[name].read_text(encoding="utf-8").replace("\\", ""))
