@@ -2,7 +2,7 @@
 
 import nbformat
 import pytest
-from notebook_runner import NOTEBOOKS
+from notebook_runner import CHAIN, NOTEBOOKS
 
 
 @pytest.fixture(params=NOTEBOOKS, ids=lambda path: path.stem)
@@ -15,3 +15,12 @@ def path(request):
 def notebook(path):
     """The notebook as nbformat reads it."""
     return nbformat.read(path, as_version=4)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config, items):
+    """A notebook of the chain is not run a second time beside it: a home of its own it has where the chain is left out."""
+    if any(item.name == "test_notebooks_in_a_chain" for item in items):
+        double = [item for item in items if item.name in {f"test_notebook[{path.stem}]" for path in CHAIN}]
+        config.hook.pytest_deselected(items=double)
+        items[:] = [item for item in items if item not in double]

@@ -5,12 +5,9 @@ import re
 import nbformat
 import pytest
 import solutions
-from notebook_runner import NOTEBOOKS, REWRITTEN, run_notebook
+from notebook_runner import CHAIN, NOTEBOOKS, REWRITTEN, run_notebook
 
 from ir50p_lab.course.functions.catalogue import function_of, is_function
-
-#: Notebooks that keep results for later ones or load them.
-CHAIN = [path for path in NOTEBOOKS if re.search(r"\b(save|load)_result\b", path.read_text(encoding="utf-8"))]
 
 
 def code_of(notebook):
@@ -20,7 +17,11 @@ def code_of(notebook):
 @pytest.mark.notebook
 def test_notebook(path, notebook, tmp_path):
     """Every cell runs, none complains, every slider moves something."""
-    run = run_notebook(notebook, variables={"IR50P_HOME": str(tmp_path)})
+    assert_runs(path, notebook, tmp_path)
+
+
+def assert_runs(path, notebook, home):
+    run = run_notebook(notebook, variables={"IR50P_HOME": str(home)})
     if run.error:
         pytest.fail(f"{path.name}, {run.error}", pytrace=False)
     assert len(run.panels) >= len(re.findall(r"^live\(|[^\w]live\(", code_of(notebook)))
@@ -32,14 +33,9 @@ def test_notebook(path, notebook, tmp_path):
 
 @pytest.mark.notebook
 def test_notebooks_in_a_chain(tmp_path):
-    """In order, with one home: what a notebook keeps there is what later ones load."""
+    """In order, with one home: what a notebook keeps there is what later ones load. In a home of their own: conftest.py."""
     for path in CHAIN:
-        run = run_notebook(nbformat.read(path, as_version=4), variables={"IR50P_HOME": str(tmp_path)}, push=False)
-        if run.error:
-            pytest.fail(
-                f"after {', '.join(p.name for p in CHAIN[: CHAIN.index(path)])}: {path.name}, {run.error}",
-                pytrace=False,
-            )
+        assert_runs(path, nbformat.read(path, as_version=4), tmp_path)
 
 
 @pytest.mark.notebook
