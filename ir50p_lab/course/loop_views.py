@@ -42,19 +42,26 @@ def _sum(ax, x, y, *signs):
 
 
 def one_loop():
-    """A joint under its PID: error, three parts, limit, arm, and the way back (Figure 2.1): LabFigure."""
-    figure, ax = _sheet(9.4, 3.4)
-    middle, low = 2.0, 0.35
+    """A joint under its PID: error, three parts, limit, arm, and the way back (Figure 2.1): LabFigure.
+
+    D is drawn as the class has it: from the speed wanted and the angle measured, not from the error.
+    """
+    figure, ax = _sheet(9.4, 3.6)
+    middle, low = 2.2, 0.25
     ax.text(0.15, middle + 0.15, "$q_d$", fontsize=13)
     _wire(ax, (0.1, middle), (0.95, middle))
     _sum(ax, 1.1, middle, (-0.27, 0.24, "+"), (0.2, -0.3, "\u2212"))
-    _wire(ax, (1.25, middle), (2.0, middle), arrow=False)
+    _wire(ax, (1.25, middle), (2.35, middle))
+    _wire(ax, (2.0, middle), (2.0, 3.2), (2.35, 3.2))
     ax.text(1.55, middle + 0.15, "$e$", fontsize=13)
-    parts = (("P:  $K_p e$", "blue"), (r"I:  $K_i\int e\,dt$", "orange"), (r"D:  $K_d\,\dot e$", "green"))
-    for (text, colour), y in zip(parts, (3.0, 2.0, 1.0), strict=True):
-        _wire(ax, (2.0, middle), (2.0, y), (2.35, y))
-        _box(ax, 3.15, y, text, width=1.6, colour=colour)
-        _wire(ax, (3.95, y), *([(4.6, y), (4.6, middle + np.sign(y - middle) * 0.15)] if y != middle else [(4.45, y)]))
+    ax.text(0.15, 1.35, r"$\dot q_d$", fontsize=13)
+    _wire(ax, (0.1, 1.2), (2.1, 1.2))
+    parts = (("P:  $K_p e$", "blue"), (r"I:  $K_i\int e\,dt$", "orange"), (r"D:  $K_d(\dot q_d - \dot q)$", "green"))
+    for (text, colour), y in zip(parts, (3.2, 2.2, 1.2), strict=True):
+        _box(ax, 3.15, y, text, width=1.6 if colour != "green" else 2.1, colour=colour)
+    for y, right in ((3.2, 3.95), (1.2, 4.2)):
+        _wire(ax, (right, y), (4.6, y), (4.6, middle + np.sign(y - middle) * 0.15))
+    _wire(ax, (3.95, middle), (4.45, middle))
     _sum(ax, 4.6, middle)
     _wire(ax, (4.75, middle), (5.3, middle))
     _box(ax, 5.85, middle, "limit", width=1.1)
@@ -64,6 +71,8 @@ def one_loop():
     _wire(ax, (8.35, middle), (9.3, middle))
     ax.text(8.9, middle + 0.15, "$q$", fontsize=13)
     _wire(ax, (8.75, middle), (8.75, low), (1.1, low), (1.1, middle - 0.15))
+    _wire(ax, (3.15, low), (3.15, 0.9))
+    ax.plot([2.0, 3.15, 8.75], [middle, low, middle], "o", ms=5, color=COLOURS["dark"])
     return figure
 
 
