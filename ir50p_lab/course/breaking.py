@@ -17,9 +17,10 @@ from ir50p_lab.modelling import THESIS_A, load_arm
 from ir50p_lab.signals import steps
 from ir50p_lab.simulation import simulate
 
-NAMES = ("delay", "friction", "kick", "noise", "sampling", "windup")
+NAMES = ("delay", "friction", "kick", "noise", "sampling", "weak motor", "windup")  # one too many
 THESIS_TARGET = (np.pi / 2, np.pi / 2, -np.pi / 3)
 THESIS_KP, THESIS_KD = (25, 200, 200), (10, 40, 40)
+FIRM_KP, FIRM_KI = (1500, 1500, 1500), (300, 2000, 2000)
 
 
 @dataclass(frozen=True)
@@ -34,9 +35,9 @@ class Case:
 CASES = {
     "A": Case(
         "windup",
-        "For how long is the command at its limit, and when does it come back: at the target, or long after it?",
-        "the command stays at its limit although the joint has passed its target: a memory fills while the motor can "
-        "give no more, and has to be emptied again on the far side.",
+        "At the instant in which the joint passes its target: which sign has the command? Which term can that be?",
+        "the joint passes its target, and the command still pushes *on*, for most of a second: P has turned round, and "
+        "a memory filled on the way outweighs it.",
     ),
     "B": Case(
         "kick",
@@ -57,7 +58,7 @@ CASES = {
     "E": Case(
         "friction",
         "Find the seconds in which the joint does not move at all. What does the command do meanwhile?",
-        "the joint stands still, short of its target, while the command creeps up; then it jumps, and stands again.",
+        "the joint stands still, short of its target, while the command creeps up; then it slides, and stands again.",
     ),
     "F": Case(
         "noise",
@@ -118,9 +119,17 @@ def sampling(arm, *, period=0.01):
 
 
 def delay(arm, *, samples=15):
-    """Tuned gains that hear late."""
-    pid = PID((1000, 1000, 1000), ki=(800, 2800, 2400), kd=(8, 1, 1), limit_pwm=255)
+    """Firm gains that hear late."""
+    pid = PID(FIRM_KP, ki=FIRM_KI, kd=(30, 10, 10), limit_pwm=255)
     return simulate(arm, Late(pid, samples), 0.4 * far_target(arm), duration=6)
+
+
+def swing(arm, controller, samples):
+    """Swing of joint 1 in the last second, rad, if a controller hears `samples` late."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnstableLoopWarning)  # what is looked for
+        run = simulate(arm, Late(controller, samples), 0.4 * far_target(arm), duration=6)
+    return np.ptp(run.q[-100:, 0])
 
 
 def friction(arm, *, ki=20.0):
@@ -134,7 +143,7 @@ def noise(arm, *, filter_hz=np.inf):
     """The measured angle, with a D that hears every count."""
     from ir50p_lab.course.contest import PRACTICE, drive
 
-    pid = PID((1000, 1000, 1000), ki=(800, 2800, 2400), kd=60, limit_pwm=255, filter_hz=filter_hz)
+    pid = PID(FIRM_KP, ki=FIRM_KI, kd=60, limit_pwm=255, filter_hz=filter_hz)
     return drive(pid, PRACTICE[0], arm)[1]
 
 

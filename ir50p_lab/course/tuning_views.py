@@ -129,26 +129,14 @@ def one_joint(*runs, labels, joint, unit="PWM"):
 
 
 def speed_step(t, speed, fitted=None):
-    """A measured answer of the speed (n,) rad/s to a jump at 2 s, and what was fitted to it: LabFigure."""
+    """A measured answer of the speed (n,) rad/s to a jump at 1 s, and what was fitted to it: LabFigure."""
     figure = new_figure(8.0, 3.0)
     ax = figure.axes[0]
     ax.plot(t, speed, ".", color=COLOURS["grey"], label="measured speed of joint 1")
     if fitted is not None:
         ax.plot(t, fitted, color=COLOURS["blue"], label="fitted: gain, time constant, dead time")
-    ax.axvline(2.0, label="the counts jump", **SETPOINT)
-    ax.set(xlim=(1.9, 2.8), xlabel="time [s]", ylabel="speed [rad/s]")
-    ax.legend(fontsize=8, loc="lower right")
-    return figure
-
-
-def speed_answers(answers, *, period=0.01):
-    """Closed loops of the speed under several rules, {name: (n,) rad/s}, to a step of 1 rad/s: LabFigure."""
-    figure = new_figure(8.0, 3.0)
-    ax = figure.axes[0]
-    ax.axhline(1.0, label="target", **SETPOINT)
-    for (name, speed), style in zip(answers.items(), _RUNS, strict=True):
-        ax.plot(period * np.arange(1, len(speed) + 1), speed, label=name, **style)
-    ax.set(xlabel="time [s]", ylabel="speed [rad/s]")
+    ax.axvline(1.0, label="the counts jump", **SETPOINT)
+    ax.set(xlim=(0.9, 1.8), xlabel="time [s]", ylabel="speed [rad/s]")
     ax.legend(fontsize=8, loc="lower right")
     return figure
 

@@ -12,8 +12,10 @@ def step_metrics(t, q, target):
     """Rise time (s), overshoot (rad), settling time (s) and rest error (rad) of one joint's step: four numbers.
 
     Rise from 10 to 90 % of the way from q[0] to the target, nan if it never gets there; overshoot beyond the target,
-    0 if there is none; settling: from when on the joint stays within max(2 % of the way, 3 standard deviations of the
-    last second) of the target, nan if it is outside at the end; rest error: target less the mean of the last second.
+    0 if there is none; settling: from when on the joint stays within max(2 % of the way, 4 sigma) of the target, nan if
+    it is outside at the end; rest error: target less the mean of the last second. sigma is the noise, taken from what
+    neighbouring samples of the last second differ by, std(diff)/sqrt(2): a slow swing does not widen its own band. With
+    3 sigma one sample in 370 is outside and is taken for the end of the step.
     """
     return _figures(t, q, target)
 
@@ -46,12 +48,16 @@ def _figures(
     elif rise is not None:
         found[0] = rise(np.nan, np.nan)
     found[1] = max(0.0, np.max(np.sign(way) * (q - about))) if over is None else over(q, target, way)
-    width = max(0.02 * abs(way), 3 * np.std(last)) if band is None else band(way, last)
+    width = max(0.02 * abs(way), 4 * _noise(last)) if band is None else band(way, last)
     outside = np.abs(q - about) > width
     found[2] = _settled(t, outside) if settling is None else settling(t, outside)
     if rest is not None:
         found[3] = rest(q, target, last)
     return tuple(float(one) for one in found)
+
+
+def _noise(last):
+    return np.std(np.diff(last)) / np.sqrt(2)
 
 
 def _settled(t, outside):
@@ -90,6 +96,7 @@ def _cases():
         (0.0, 0.3, 6.0, 0.35, 0.011, 0.0),  # noise wider than 2 %
         (0.1, 1.1, 4.0, 0.8, 0.0, 0.3),  # rests short of 90 %
         (0.0, 0.8, 5.0, 0.7, 0.002, 0.06),  # rises, and rests outside its band
+        (0.0, 0.8, 6.0, 0.005, 0.0, 0.0),  # swings for ever
     ):
         q = _second_order(t, start, target, speed=speed, damping=damping, noise=noise, rng=rng, short=short)
         cases.append((t.copy(), q, target))
@@ -157,7 +164,8 @@ STEP_METRICS = Task(
         rise = t[np.argmax(done >= 0.9)] - t[np.argmax(done >= 0.1)]
     overshoot = max(0, np.max(np.sign(way) * (q - target)))
     last_second = q[t >= t[-1] - 1 - 1e-9]
-    band = max(0.02 * abs(way), 3 * np.std(last_second))
+    noise = np.std(np.diff(last_second)) / np.sqrt(2)
+    band = max(0.02 * abs(way), 4 * noise)
     outside = np.abs(q - target) > band
     if outside[-1]:
         settling = np.nan
@@ -195,7 +203,7 @@ STEP_METRICS = Task(
         ),
         Slip(
             lambda t, q, target: _figures(
-                t, q, target, band=lambda way, last: max(0.02 * abs(target), 3 * np.std(last))
+                t, q, target, band=lambda way, last: max(0.02 * abs(target), 4 * _noise(last))
             ),
             "the band is 2 % of the target: a step to 0 would have none. It is 2 % of the way from the start",
         ),
@@ -207,23 +215,35 @@ STEP_METRICS = Task(
         _slip("the rise time is counted from the start of the run, not from 10 % of the way", low=-np.inf),
         _slip("the rise time ends at the target itself, not at 90 % of the way", high=1.0),
         _slip(
-            "where the angle trembles it settles late or never: three standard deviations of noise widen the band",
+            "where the angle trembles it settles late or never: four standard deviations of the noise widen the band",
             band=lambda way, last: 0.02 * abs(way),
         ),
         _slip(
-            "the band is 3 standard deviations only: without noise it has no width, and 2 % of the way is allowed",
-            band=lambda way, last: 3 * np.std(last),
+            "the band is 4 standard deviations only: without noise it has no width, and 2 % of the way is allowed",
+            band=lambda way, last: 4 * _noise(last),
+        ),
+        _slip(
+            "a joint that swings for ever settles: its swing fills the band; noise is what *neighbours* differ by",
+            band=lambda way, last: max(0.02 * abs(way), 4 * np.std(last)),
+        ),
+        _slip(
+            "the band is 3 standard deviations of the noise: one sample in 370 is outside; asked are 4",
+            band=lambda way, last: max(0.02 * abs(way), 3 * _noise(last)),
+        ),
+        _slip(
+            "the difference of two samples has the noise of both: divide its standard deviation by the root of 2",
+            band=lambda way, last: max(0.02 * abs(way), 4 * np.std(np.diff(last))),
         ),
         _slip(
             "the band is 2 % and the noise together; asked is the wider of the two",
-            band=lambda way, last: 0.02 * abs(way) + 3 * np.std(last),
+            band=lambda way, last: 0.02 * abs(way) + 4 * _noise(last),
         ),
         _slip(
-            "the band is 5 % of the way; asked is 2 %", band=lambda way, last: max(0.05 * abs(way), 3 * np.std(last))
+            "the band is 5 % of the way; asked is 2 %", band=lambda way, last: max(0.05 * abs(way), 4 * _noise(last))
         ),
         _slip(
             "for steps downwards the band has a negative width, so the joint is never inside: how *long* is the way?",
-            band=lambda way, last: max(0.02 * way, 3 * np.std(last)),
+            band=lambda way, last: max(0.02 * way, 4 * _noise(last)),
         ),
         _slip(
             "it is settled when it is inside for the first time; a joint that swings leaves the band again",
