@@ -67,6 +67,15 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
         ("damped_step", "damping**2", "damping", "a square is missing"),
         ("damped_step", "damping**2 * np.eye(3)", "damping**2", "identity"),
         ("damped_step", "damping**2", "damping^2", "no power in Python"),
+        ("step_metrics", "(q - start) / jump", "q / target", "begins at 0 rad and wrong elsewhere"),
+        (
+            "step_metrics",
+            "    if np.any(done >= 0.9):\n        rise",
+            "    if True:\n        rise",
+            "never reaches 90 %",
+        ),
+        ("step_metrics", "np.abs(q - target) > band", "np.abs(q - np.mean(last_second)) > band", "about the target"),
+        ("step_metrics", "np.std(np.diff(last_second)) / np.sqrt(2)", "np.std(q)", "last second"),
         ("damped_step", "[:3]\n", "\n", r"`J @ J.T` has the shape \(6, 6\)"),
     ],
 )
@@ -168,3 +177,19 @@ def test_a_loan_pasted_back_stays_a_loan(capsys):
 def test_no_sentence_says_not_yet_twice(capsys):
     said = told(capsys, "forward_kinematics", text="def forward_kinematics(q, l):\n    return np.cos(q * l) + q**3")
     assert said.count("not yet") == 1 and "0 of 9 inputs" in said
+
+
+def test_long_runs_are_shown_short_and_last(capsys):
+    text = solutions.source("step_metrics").replace("0.02", "0.05")
+    check("step_metrics", cell(text, "step_metrics"))
+    said = capsys.readouterr().out
+    assert "expected (s, rad, s, rad)" in said and said.index("target = ") < said.index("t = [")
+    assert len(re.findall(r"\d\.\d*", said.split("expected")[0])) < 25
+
+
+def test_a_question_ends_as_one_and_names_are_the_students(capsys):
+    said = told(capsys, "rot_z", ("[c, -s, 0.0], [s", "[c, s, 0.0], [-s"))
+    assert "?." not in said and said.rstrip().endswith("?")
+    text = task("damped_step").loan.replace("missing = p - tip", "e = tip - p").replace("missing", "e")
+    said = told(capsys, "damped_step", text=text)
+    assert "wrong way round" in said and "missing" not in said

@@ -7,6 +7,7 @@ import numpy as np
 from ir50p_lab.course.functions.task import Slip
 from ir50p_lab.course.functions.variants import variants
 
+_MANY = 6  # longer ones are runs: no part of them has a meaning of its own
 _OF_NUMBERS = (
     ("{} counts with the wrong sign", np.negative),
     ("{} does nothing in it: is it used?", np.zeros_like),
@@ -73,7 +74,7 @@ def _readings(name, value):
     if value.ndim > 1:
         return [(says.format(name), change) for says, change in _OF_TABLES]
     found = [(says.format(name), change) for says, change in _OF_NUMBERS]
-    if value.ndim == 1:
+    if value.ndim == 1 and len(value) <= _MANY:
         parts = [f"{name}[{j}]" for j in range(len(value))]
         for j, part in enumerate(parts):
             found += [(says.format(part), _on_part(j, change)) for says, change in _OF_NUMBERS]

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+_LONG = 12  # numbers: of a longer row the first and last three are shown
+
 
 class Failed(Exception):  # noqa: N818  (becomes a sentence)
     """What the student wrote does not do what it has to; args: sentence, and one input that fails or nothing."""
@@ -76,6 +78,11 @@ class Task:
         )
 
 
+def is_run(value):
+    """Tell whether a value is a run of many samples."""
+    return np.ndim(value) == 1 and len(value) > _LONG
+
+
 def shown(value):
     """A value as a student writes it, short."""
     if value is None:
@@ -88,5 +95,8 @@ def shown(value):
         return str(value)[:80]
     if array.dtype == object:
         return str(value)[:80]
-    text = np.array2string(array, precision=4, suppress_small=True, separator=", ", max_line_width=100)
+    threshold = _LONG if array.ndim == 1 else array.size
+    text = np.array2string(
+        array, precision=4, suppress_small=True, separator=", ", max_line_width=100, threshold=threshold
+    )
     return text if array.ndim < 2 else "\n" + text

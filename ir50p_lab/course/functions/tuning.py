@@ -28,6 +28,7 @@ def _figures(
     low=0.1,
     high=0.9,
     about=None,
+    rests=None,
     band=None,
     over=None,
     rise=None,
@@ -49,7 +50,7 @@ def _figures(
         found[0] = rise(np.nan, np.nan)
     found[1] = max(0.0, np.max(np.sign(way) * (q - about))) if over is None else over(q, target, way)
     width = max(0.02 * abs(way), 4 * _noise(last)) if band is None else band(way, last)
-    outside = np.abs(q - about) > width
+    outside = np.abs(q - (about if rests is None else rests(last))) > width
     found[2] = _settled(t, outside) if settling is None else settling(t, outside)
     if rest is not None:
         found[3] = rest(q, target, last)
@@ -131,6 +132,10 @@ def _symptom(cases, returned, expected):
         _, q, target = cases[case]
         mine, theirs = found[case, k], right[case, k]
         step = f"a step from {q[0]:.2f} to {target:.2f} rad"
+        if k == 0 and _from_zero(cases, off):
+            return "the rise time is right where a step begins at 0 rad and wrong elsewhere: the way begins at q[0]"
+        if k == 0 and np.isnan(theirs):
+            return f"the {name} of {step} that never reaches 90 % of the way is {mine:.3g}: it has none, so nan"
         if np.isnan(theirs):
             return f"the {name} of {step} that never gets there is {mine:.3g}: what never happens has no time, nan"
         if np.isnan(mine):
@@ -139,8 +144,20 @@ def _symptom(cases, returned, expected):
     return ""
 
 
+def _from_zero(cases, off):
+    """Tell whether steps go wrong that do not begin at 0, upwards as well as downwards, and only they."""
+    begins = np.array([q[0] for _, q, _ in cases])
+    upwards = np.array([target > q[0] for _, q, target in cases])
+    return not off[begins == 0].any() and off[(begins != 0) & upwards].any() and off[~upwards].any()
+
+
 def _slip(says, **changes):
     return Slip(lambda t, q, target: _figures(t, q, target, **changes), says)
+
+
+def _always_rises(t, q, target):
+    done = (q - q[0]) / (target - q[0])
+    return t[np.argmax(done >= 0.9)] - t[np.argmax(done >= 0.1)], *_figures(t, q, target)[1:]
 
 
 def _percent(q, target, way):
@@ -201,6 +218,19 @@ STEP_METRICS = Task(
             "overshoot and settling are taken about the last angle; asked is about where it should end",
             about=lambda q, last: q[-1],
         ),
+        _slip(
+            "the band lies about where the joint ends; asked is about the target: a joint beside it has not settled",
+            rests=np.mean,
+        ),
+        *(
+            Slip(
+                lambda t, q, target, k=k: _figures(
+                    t, q, target, band=lambda way, last: max(0.02 * abs(way), k * np.std(q))
+                ),
+                "the band is that of the whole run, the step itself counts as noise: take the last second",
+            )
+            for k in (3, 4)
+        ),
         Slip(
             lambda t, q, target: _figures(
                 t, q, target, band=lambda way, last: max(0.02 * abs(target), 4 * _noise(last))
@@ -211,6 +241,7 @@ STEP_METRICS = Task(
             lambda t, q, target: _figures(t, np.r_[0.0, q[1:]], target),
             "every step begins at 0 rad: look at the first sample for where this one begins",
         ),
+        Slip(_always_rises, "a step that never reaches 90 % of the way gets a rise time: it has none, so nan"),
         _slip("the rise time is negative: which of the two marks does the joint pass first?", rise=lambda a, b: a - b),
         _slip("the rise time is counted from the start of the run, not from 10 % of the way", low=-np.inf),
         _slip("the rise time ends at the target itself, not at 90 % of the way", high=1.0),

@@ -2,6 +2,7 @@
 
 import ast
 import copy
+import inspect
 import math
 import re
 from collections import defaultdict
@@ -19,6 +20,11 @@ _PAIR_WORDS = {
     "all": "one is enough where all are asked for",
     "max": "the smallest counts, not the largest",
 }
+_OWN_WORDS = ("condition", "loop", "what_it_returns", "half_a_turn", "the_identity", "T1", "T2", "T3")
+_NAMED = re.compile(
+    r" \((?:that on )?(?P<named>[\w ]+)\)|: look at (?:the )?(?P<place>[\w ]+)$"
+    r"|`(?P<quoted>[\w ]+)`(?= (?:is|has|counts|stands))"
+)
 
 
 _MANY_NAMES = 14  # exchanging each for each of more takes seconds
@@ -34,6 +40,25 @@ def variants(task):
             names = dict(room)
             exec(code, names)
             yield Slip(names[task.function], says)
+
+
+def in_words_of(function, says):
+    """A sentence on a variant without the names that the course's solution has and the student's has not."""
+    function = inspect.unwrap(function)
+    file = getattr(getattr(function, "__code__", None), "co_filename", "")
+    codes = [getattr(one, "__code__", None) for one in getattr(function, "__globals__", {}).values()]
+    known = set(_OWN_WORDS)
+    for code in codes:
+        if code is not None and code.co_filename == file:
+            known |= {*code.co_varnames, *code.co_names}
+
+    def kept(match):
+        name = (match["named"] or match["place"] or match["quoted"]).replace(" ", "_")
+        if name in known:
+            return match[0]
+        return "something" if match["quoted"] else ""
+
+    return _NAMED.sub(kept, says)
 
 
 @cache
