@@ -15,7 +15,7 @@ from ir50p_lab.course.functions import folder
 from ir50p_lab.course.functions.catalogue import ORDER, is_function, task
 from ir50p_lab.course.functions.cell import CannotTake, is_copy, take
 from ir50p_lab.course.functions.judge import judge
-from ir50p_lab.course.functions.stops import ROOM
+from ir50p_lab.course.functions.stops import ROOM, ended
 from ir50p_lab.errors import InputError
 
 _BEFORE_SCRAMBLE, _BEFORE_LOAN = 3, 6  # different failing sources
@@ -42,7 +42,7 @@ def check(name, answer=...):
     try:
         source = take(answer, wanted.function, wanted.leans_on)
     except CannotTake as reason:
-        return _show("wrong", name, f"not yet: {reason}.")
+        return _show("wrong", name, f"not yet: {ended(str(reason))}")
     if _is_stub(source.text):
         return _show("open", name, f"not written yet. It returns {wanted.asks}.")
     verdict = judge(wanted, _in_its_own_room(source, wanted))
@@ -117,9 +117,8 @@ def _wrong(source, wanted, verdict):
         return len(marks)
 
     tries = lab_book.change(edit)
-    stop = "" if verdict.says.endswith("?") else "."
     says, more = (
-        f"not yet: {verdict.says}{stop}",
+        f"not yet: {ended(verdict.says)}",
         [("one input that fails", verdict.example)] if verdict.example else [],
     )
     if tries >= _BEFORE_LOAN and not (folder.is_there(wanted.name) or folder.is_there(wanted.function)):

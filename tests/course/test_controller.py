@@ -52,6 +52,8 @@ FORGET = "self.integral = np.zeros(3)\n"
     ("stage", "edits", "remark"),
     [
         ("PID.pi", [(ADD, TRAPEZOID), (FORGET, FORGET + "        self.before = 0\n")], "trapezoidal"),
+        ("PID.pi", [(ADD, f"self.before = error if self.before is None else self.before\n        {TRAPEZOID}"),
+          (FORGET, FORGET + "        self.before = None\n")], "trapezoidal"),
         ("PID.pi", [(f"        {ADD}\n", ""), ("return self.kp * error + self.integral",
           f"push = self.kp * error + self.integral\n        {ADD}\n        return push")], "one period later"),
         ("PID.pi", [("self.ki * error", "error"), ("+ self.integral", "+ self.ki * self.integral")], ""),
@@ -94,6 +96,11 @@ def test_other_right_ones_pass(stage, edits, remark):
          '        if not hasattr(self, "integral"):\n            self.integral = np.zeros(3)', "not as new: the integral"),
         ("PID.limits", "np.clip(self.kp * error + self.integral, -self.limit, self.limit)",
          "self.kp * error + self.integral", "no limit"),
+        ("PID.pi", "self.ki * error", "self.ki * error * self.kp", "ki is a gain of its own"),
+        ("PID.limits", "return np.clip(self.kp * error + self.integral, -self.limit, self.limit)",
+         "push = self.kp * error + self.integral\n        np.clip(push, -self.limit, self.limit)\n        return push",
+         "is what it gives used"),
+        ("PID", "        self.last = q\n", "        self.last = q if self.last is None else self.last\n", "stays the first"),
         ("PID.limits", "-self.limit, self.limit)", "0, self.limit)", "cannot push downwards"),
         ("PID.limits", "self.limit = limit_pwm", "self.limit = 255", "255 is written"),
         ("PID.limits", "np.where(winds_up, self.integral, grown)", "grown", "it winds up"),
@@ -179,3 +186,21 @@ def test_a_loan_of_a_stage_never_takes_the_place_of_the_whole(capsys):
     assert "lends you" not in capsys.readouterr().out
     folder._at.clear()
     assert my_robot.whose("PID") == "yours"
+
+
+@pytest.mark.parametrize(
+    ("stage", "old", "new", "line", "reason"),
+    [
+        ("PID.p", "q_wanted - q", "q_wanted[0] - q[0]", "`return self.kp * error`", "three belong"),
+        ("PID.p", "self.kp = kp", "self.kp = float(kp)", "`self.kp = float(kp)`", "one a joint"),
+        ("PID.pi", "self.integral = self.integral + self", "self.integral += self", "`self.integral += self", "whole"),
+        ("PID.limits", WINDS, "winds_up = np.abs(push) > self.limit and push * error > 0", "`winds_up =", "np.where"),
+    ],
+)
+def test_a_class_that_stops_is_told_the_line(stage, old, new, line, reason, capsys):
+    text = edited(stage, (old, new))
+    if reason == "whole":
+        text = text.replace("np.zeros(3)", "np.array([0, 0, 0])")
+    check(stage, cell(text, "PID"))
+    said = capsys.readouterr().out
+    assert f"it stops in {line}" in said and reason in said.split("Python says")[0], said

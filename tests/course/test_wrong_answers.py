@@ -58,6 +58,18 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
         ("inverse_kinematics", "r > longest + 1e-9", "r > longest + 2e-6", "out of reach gets poses"),
         ("inverse_kinematics", "return np.empty((0, 3))", "return None", "no pose means no row"),
         ("reach", REACH_LIMITS, "np.all(q <= limits[1]) and q[0] >= limits[0][0]", "joint [23] would stand"),
+        (
+            "inverse_kinematics",
+            "q2 = np.arctan2(np.sin(q2), np.cos(q2))",
+            "pass",
+            r"the shoulder of pose \d is -?\d.\d rad",
+        ),
+        (
+            "inverse_kinematics",
+            "for q3 in [-bend, bend]",
+            "for q3 in [bend - np.pi, np.pi - bend]",
+            "inside the triangle",
+        ),
         ("reach", REACH_LIMITS, "np.all(q <= limits[1])", "only the upper limits"),
         ("reach", "    return best", "    return None", "None for all"),
         ("reach", "    return best", "    return best, smallest", "things that make no array"),
@@ -193,3 +205,24 @@ def test_a_question_ends_as_one_and_names_are_the_students(capsys):
     text = task("damped_step").loan.replace("missing = p - tip", "e = tip - p").replace("missing", "e")
     said = told(capsys, "damped_step", text=text)
     assert "wrong way round" in said and "missing" not in said
+
+
+def test_a_waist_beyond_half_a_turn_is_told(capsys):
+    said = told(capsys, "inverse_kinematics", ("q1 = np.arctan2(side * y, side * x)",
+                "q1 = np.arctan2(y, x) + (np.pi if side < 0 else 0)"))  # fmt: skip
+    assert re.search(r"the waist of pose 3 is (\d.\d) rad: the same pose is -\d.\d rad", said), said
+
+
+def test_numbers_that_two_mistakes_share_name_both(capsys):
+    said = told(capsys, "jacobian", text=task("jacobian").loan.replace("cross(axis, lever)", "cross(lever, axis)"))
+    assert "factors of the cross product" in said and "from the point to the joint" in said
+    said = told(capsys, "reach", text=task("reach").loan.replace("            smallest = turn\n", ""))
+    assert "compared" in said and "kept up to date" in said
+
+
+def test_places_to_reach_have_one_best_pose():
+    for p, l, q_now, limits in task("reach").cases():
+        turns = [np.abs(q - q_now).max() for q in task("inverse_kinematics").right(p, l)
+                 if (q >= limits[0]).all() and (q <= limits[1]).all()
+                 and (task("frames").right(q, l)[2:, 2, 3] >= 0).all()]  # fmt: skip
+        assert len(turns) < 2 or np.diff(np.sort(turns))[0] > 0.05

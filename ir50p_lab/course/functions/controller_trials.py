@@ -5,6 +5,7 @@ import inspect
 import numpy as np
 
 from ir50p_lab.course.functions.judge import no_numbers
+from ir50p_lab.course.functions.stops import why_it_stops
 from ir50p_lab.course.functions.task import Failed, shown
 
 _KP, _KI, _KD = np.array([40.0, 60.0, 80.0]), np.array([20.0, 30.0, 40.0]), np.array([10.0, 20.0, 30.0])
@@ -28,7 +29,7 @@ def _guarded(do, what=str):
     except KeyboardInterrupt:
         raise Failed("it was stopped: does a loop in it never end?", what()) from None
     except Exception as error:
-        raise Failed(f"it stops with {type(error).__name__}: {error}", what()) from None
+        raise Failed(why_it_stops(error), what()) from None
 
 
 def _run(pid, q, wanted=0.0, speed=0.0):
@@ -141,7 +142,7 @@ def _integral(cls):
         "Yours takes the mean of two neighbouring errors, the trapezoidal sum: right, too, and different from the "
     )
     trapezoid += "course's, which takes the newest; they are half a period apart."
-    rights += ((total - e / 2, trapezoid), (total - e / 2 - e[0] / 2, trapezoid))
+    rights += tuple((total - e / 2 + first * e[0] / 2, trapezoid) for first in (-1, 0, 1))  # the first strip
     for area, says in rights:
         if np.allclose(u, push + _KI * _PERIOD * area, atol=1e-6):
             return says
@@ -153,6 +154,7 @@ def _integral(cls):
         (push + _KI * _PERIOD * e, "it does not remember: only the newest error is in its integral"),
         (push, "ki does nothing: a gain of the integral makes no difference"),
         (push + area, "ki is not used: the sum is added as it is"),
+        (push + _KP * memory, "kp multiplies all: here ki is a gain of its own, not a share of kp"),
         (push + _KP * area, "the integral has the gain kp: it has its own, ki"),
         (push + np.cumsum(memory, axis=0) * _PERIOD, "it is summed up twice: one memory is enough"),
         (push + _KI * total.sum(axis=1, keepdims=True) * _PERIOD, "all joints share one sum: each remembers its own"),
@@ -177,7 +179,11 @@ def _limit(cls):
     e = _constant(0.1, 1.0) * [1.0, -1.0, 0.01]
     right, free = np.clip(400 * e, -100, 100), 400 * e
     slips = (
-        (free, "it has no limit: it asks for 400 counts where 100 are allowed"),
+        (
+            free,
+            "it has no limit: it asks for 400 counts where 100 are allowed. If there is a np.clip, is what it gives "
+            "used? It changes nothing by itself",
+        ),
         (free / 4, "one joint at its limit weakens the others: each joint has a limit of its own"),
         (np.minimum(free, 100), "it is limited upwards only: the limit holds on both sides"),
         (np.clip(free, -255, 255), "255 is written into it: it was made with another limit_pwm"),
@@ -249,6 +255,7 @@ def _damping(cls):
         if np.allclose(u, -_KD * speed, atol=1e-6):
             return says
     right, from_zero = -_KD * rights[0][0], np.diff(q, axis=0, prepend=0 * q[:1]) / _PERIOD
+    from_first = (q - q[0]) / _PERIOD
     slips = (
         (-right, "D pushes along with the motion: it has to act against it"),
         (-_KD * slope, "the speed is not filtered: a potentiometer's trembling goes straight to the motor"),
@@ -256,6 +263,8 @@ def _damping(cls):
         (right * _PERIOD / 0.01, "0.01 s is written into it: it was made with another period"),
         (-_KD * _filtered(from_zero, exact), "at the first sample it believes that the arm has come from zero in one "
          "period: what is the speed when there is no angle before?"),
+        (-_KD * _filtered(from_first, exact), "the last angle stays the first one: is it brought up to date in every "
+         "step?"),
         (-_KD * _filtered(slope, 1 - np.exp(-hz * _PERIOD)), "its filter is six times too slow: filter_hz counts whole "
          "turns a second, and a turn has 2 pi"),
         (-_KD * _filtered(slope, 1 - exact), "the two shares of the filter are swapped"),

@@ -102,6 +102,35 @@ def _poses_symptom(cases, returned, expected):
     return _fewer(answers[:_INSIDE], cases, refused)
 
 
+def _whole_turns(poses):
+    """Which angle is a whole turn too far: right in the picture, but limits would strike it out."""
+    for number, q in enumerate(as_poses(poses)):
+        for angle, name in zip(q, ("waist", "shoulder", "elbow"), strict=True):
+            if abs(angle) > np.pi + 1e-9:
+                same = np.angle(np.exp(1j * angle))
+                return (
+                    f"the {name} of pose {number + 1} is {angle:.1f} rad: the same pose is {same:.1f} rad; a whole "
+                    "turn is 2 pi, and every angle belongs between -pi and pi, where the limits are"
+                )
+    return ""
+
+
+def _inside_the_triangle(p, l, *, shoulder_too):
+    """Poses whose elbow is the angle inside the triangle; the shoulder found with it, or by itself."""
+    poses = []
+    for waist, shoulder, elbow in inverse_kinematics(p, l):
+        inside = np.copysign(np.pi - abs(elbow), elbow)
+        if shoulder_too:
+            shoulder += _between(elbow, l) - _between(inside, l)
+        poses.append([waist, shoulder, inside])
+    return np.array(poses)
+
+
+def _between(elbow, l):
+    """Angle between the upper arm and the line from shoulder to tip."""
+    return np.arctan2(l[2] * np.sin(elbow), l[1] + l[2] * np.cos(elbow))
+
+
 def _no_rows(shape):
     if shape == (3,):
         return (
@@ -165,7 +194,8 @@ _LOAN = """def inverse_kinematics(p, l):
         for elbow in [bend, -bend]:
             slope = np.arctan2(height, distance_outwards)
             angle_between = np.arctan2(l3 * np.sin(elbow), l2 + l3 * np.cos(elbow))
-            shoulder = slope - angle_between
+            turn = slope - angle_between
+            shoulder = np.arctan2(np.sin(turn), np.cos(turn))
             poses.append([waist, shoulder, elbow])
     return np.array(poses)"""
 _BY_LENGTH = """    if r > l2 + l3 + 1e-9 or r < abs(l2 - l3) - 1e-9:
@@ -208,7 +238,16 @@ INVERSE_KINEMATICS = Task(
     loan=_LOAN,
     routes=(_BY_THE_TRIANGLE, _LOAN.replace(_BY_LENGTH, "").replace(_STRAIGHT, _BY_COSINE + _STRAIGHT)),
     parts=("q1", "q2", "q3"),
+    slips=tuple(
+        Slip(
+            lambda p, l, both=both: _inside_the_triangle(p, l, shoulder_too=both),
+            "the elbow is the angle inside the triangle, or its cosine has the wrong sign: q3 is 0 where the arm is "
+            "stretched, and what is the inner angle there?",
+        )
+        for both in (True, False)
+    ),
     symptom=_poses_symptom,
+    form=_whole_turns,
     hints=(
         "First the pose with the elbow up, facing the place. Does your forward_kinematics bring it back to p?",
         "The angle between r and the upper arm: draw the perpendicular from the tip onto the line of the upper arm. "
@@ -251,7 +290,7 @@ def _reach_cases():
     wide = np.array([[-3.1, -3.1, -3.1], [3.1, 3.1, 3.1]])
     l = _LENGTHS[0]
     cases = [(np.array([0.42, -0.15, 0.09]), l.copy(), np.array([0, 0.3, -0.6]), limits.copy())]
-    while len(cases) < 30:
+    while len(cases) < 40:
         bounds = limits if len(cases) % 2 else wide
         p = forward_kinematics(rng.uniform(*bounds), l)
         if p[2] > 0:
@@ -273,8 +312,15 @@ def _reach_cases():
         farthest = max(inverse_kinematics(p, l), key=lambda pose, q=q: np.abs(pose - q).min())
         cases.append((p, l.copy(), q, np.array([farthest - 0.1, farthest + 0.1])))
     ahead = np.array([[0, -3.1, -3.1], [3.1, 3.1, 3.1]])  # the waist stands exactly on its limit
-    cases.append((np.array([0.42, 0, 0.2]), l.copy(), np.zeros(3), ahead))
-    return cases
+    cases.append((np.array([0.42, 0, 0.2]), l.copy(), np.array([0, 0.3, -0.6]), ahead))
+    return [case for case in cases if _has_one_best(*case)]
+
+
+def _has_one_best(p, l, q_now, limits):
+    """Tell whether no other allowed pose turns its busiest joint nearly as little, within 0.05 rad."""
+    allowed = [q for q in inverse_kinematics(p, l) if within(q, limits) and above_table(q, l)]
+    turns = sorted(np.abs(q - q_now).max() for q in allowed)
+    return len(turns) < 2 or turns[1] - turns[0] > 0.05
 
 
 def _same_pose(returned, expected):
@@ -318,7 +364,10 @@ def _reach_symptom(cases, returned, expected):
         if not above_table(q, l):
             part = "elbow" if frames(q, l)[2][2, 3] < -1e-9 else "tip"
             return f"it takes a pose whose {part} is below the table: elbow and tip have to stay above, z >= 0"
-    return "the poses are allowed, but another allowed one turns its busiest joint less: compare the largest turns"
+    return (
+        "the poses are allowed, but another allowed one turns its busiest joint less: compare the largest turns, "
+        "and is the smallest so far kept up to date?"
+    )
 
 
 def _turned(says, turn):
@@ -336,6 +385,11 @@ def _allowed(says, allowed, parts=(2, 3)):
 def _only_the_nearest(p, l, q_now, limits):
     nearest = _chosen(p, l, q_now, limits, allowed=lambda x: True)
     return nearest if nearest is not None and within(nearest, limits) and above_table(nearest, l) else None
+
+
+def _the_last_allowed(p, l, q_now, limits):
+    allowed = [q for q in inverse_kinematics(p, l) if within(q, limits) and above_table(q, l)]
+    return allowed[-1] if allowed else None
 
 
 REACH = Task(
@@ -363,6 +417,11 @@ REACH = Task(
     parts=("q1", "q2", "q3"),
     slips=(
         _turned("it takes the allowed pose that is farthest away", lambda x, q: -np.abs(x - q).max()),
+        Slip(
+            _the_last_allowed,
+            "the last allowed pose wins: is its largest turn compared with the smallest so far, and is that kept up to "
+            "date?",
+        ),
         _turned("only the waist's turn is compared", lambda x, q: abs(x[0] - q[0])),
         _turned(
             "a turn counts as the short way round, through an end stop: a joint turns straight from angle to angle",

@@ -42,7 +42,7 @@ def judge(task, function):
     expected = [task.right(*copy.deepcopy(case)) for case in cases]
     good = [_agrees(task, one, other) for one, other in zip(returned, expected, strict=True)]
     if all(good):
-        return _judge_type(task, returned, expected)
+        return _judge_form(task, cases, returned, expected)
     first = good.index(False)
     bad_first = sorted(range(len(cases)), key=lambda k: good[k])
     stopped = [one for one in returned if isinstance(one, Failed)]
@@ -118,9 +118,11 @@ def _is_slip(task, slip, case, returned):
     return _agrees(task, returned, wrong)
 
 
-def _judge_type(task, returned, expected):
+def _judge_form(task, cases, returned, expected):
     """The numbers are right; what the next functions need is an array, too."""
-    for one, other in zip(returned, expected, strict=True):
+    for case, one, other in zip(cases, returned, expected, strict=True):
+        if task.form is not None and (says := task.form(one)):
+            return Verdict("wrong", says, _example(task, case, other, one))
         if isinstance(other, np.ndarray) and not isinstance(one, np.ndarray):
             kind = type(one).__name__
             return Verdict(

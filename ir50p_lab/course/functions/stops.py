@@ -20,12 +20,20 @@ _REASONS = (  # kind of error, what its message holds, the usual reason
     ("TypeError", "converted to Python scalar", "a function of one number (`math`) is given an array: take NumPy's"),
     ("TypeError", "not callable", "what stands before the brackets is no function: is a `*` or a comma missing?"),
     ("TypeError", "not subscriptable", "what stands before the square brackets has no parts"),
-    ("ValueError", "truth value", "comparing arrays gives an answer for each part: do all of them count, or any?"),
+    (
+        "ValueError",
+        "truth value",
+        "`if` asks one question, here are three joints: np.where decides for each, np.all or np.any for all together",
+    ),
+    ("TypeError", "multiply sequence by", "a list times one number: does the number stand where three belong?"),
+    ("TypeError", "real number, not 'tuple'", "it is three numbers, one a joint, and is read as one"),
+    ("UFuncTypeError", "Cannot cast ufunc", "an array of whole numbers takes no fractions: np.zeros makes another"),
     ("ValueError", "inhomogeneous", "rows of different lengths make no array"),
     ("ValueError", "array element with a sequence", "a whole array is put where one number belongs"),
     ("ValueError", "mismatch in its core dimension", "two arrays in a product do not fit together"),
     ("ValueError", "not aligned", "two arrays in a product do not fit together"),
     ("ValueError", "broadcast", "two arrays do not fit together"),
+    ("IndexError", "with size 0", "the array is empty: for this input nothing fits its condition"),
     ("IndexError", "", "one place too far: places are counted from 0, so the last of n is n - 1"),
     ("ZeroDivisionError", "", "a division by zero"),
     ("ValueError", "math domain error", "a root of less than nothing, or an arccos of more than 1"),
@@ -46,7 +54,12 @@ def why_it_stops(error):
     place = f" in `{line}`" if line else ""
     if not reason:
         return f"it stops{place} with {said}"
-    return f"it stops{place}: {reason}{operands}. Python says {said}"
+    return f"it stops{place}: {ended(reason + operands)} Python says {said}"
+
+
+def ended(says):
+    """A sentence with its full stop; a question has its mark already."""
+    return says if says.endswith("?") else f"{says}."
 
 
 def _where(error):

@@ -37,6 +37,7 @@ class Task:
     routes: other solutions, as text; parts: names of what stands beside each other in the answer.
     symptom: function of (cases, returned, expected), lists of equal length, that returns a sentence about a mistake no
     slip covers, or "". where: {words: function of a case}: kinds of cases, to say that only these go wrong.
+    form: function of one right answer; a sentence if later functions cannot use it as it is, or "".
     hints: two, opened on demand; loan: a plain solution, as text, whose names are words.
     same: compares what came back with what was expected; None: equal within tolerance. unit: of what comes back.
     A class has no cases; tried: function of it, raises `Failed` or returns a remark on a right answer ("": none);
@@ -56,6 +57,7 @@ class Task:
     parts: tuple = ()
     symptom: Callable | None = None
     where: dict = field(default_factory=dict)
+    form: Callable | None = None
     hints: tuple = ("", "")
     same: Callable | None = None
     tolerance: float = 1e-9

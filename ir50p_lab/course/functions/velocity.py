@@ -47,8 +47,6 @@ def _jacobian_symptom(cases, returned, expected):
         return "the lower three rows are still zero: about which axis does each joint turn the link?"
     top, bottom = np.allclose(J[:, :3], right[:, :3]), np.allclose(J[:, 3:], right[:, 3:])
     if bottom and not top:
-        if np.allclose(J[:, :3], -right[:, :3]):
-            return "the velocities point backwards: axis x lever is not lever x axis"
         return (
             "the lower three rows (turning) are right, the upper three (velocity) are not: axis x lever, and the lever "
             "goes from where to where?"
@@ -90,6 +88,11 @@ JACOBIAN = Task(
         Slip(
             lambda T, k, p: _columns(T, k, p, across=lambda z, _: np.cross(z, p)),
             "the levers all start at the base: each starts at its own joint",
+        ),
+        Slip(
+            lambda T, k, p: _columns(T, k, p, across=lambda z, lever: np.cross(lever, z)),
+            "the velocities point backwards: the factors of the cross product have changed places, or the lever goes "
+            "from the point to the joint",
         ),
         Slip(_lever_to_the_next, "each lever ends at the next joint, not at the point"),
         Slip(
