@@ -82,9 +82,9 @@ def plug_in(names):
 
 
 def hang(board, mass):
-    """Put `mass` kg into the gripper, as a notebook asks for."""
+    """Put `mass` kg into the gripper of the arm at rest, as a notebook asks for."""
     seen = board.plant
-    seen.plant = SimulatedArm(with_payload(seen.arm, mass), q0=seen.plant.q_true)
+    seen.plant = SimulatedArm(with_payload(seen.arm, mass), q0=rest_pose(seen.arm))
 
 
 def measure():
