@@ -1,5 +1,6 @@
 """Wrong answers are told apart from their numbers, right ones of any shape are taken, and nothing makes check raise."""
 
+import itertools
 import re
 
 import numpy as np
@@ -9,7 +10,9 @@ from cells import cell
 
 from ir50p_lab.course import check, my_robot, reset
 from ir50p_lab.course.functions import folder
+from ir50p_lab.course.functions import judge as judging
 from ir50p_lab.course.functions.catalogue import task
+from ir50p_lab.course.functions.task import Slip
 
 
 @pytest.fixture(autouse=True)
@@ -226,3 +229,10 @@ def test_places_to_reach_have_one_best_pose():
                  if (q >= limits[0]).all() and (q <= limits[1]).all()
                  and (task("frames").right(q, l)[2:, 2, 3] >= 0).all()]  # fmt: skip
         assert len(turns) < 2 or np.diff(np.sort(turns))[0] > 0.05
+
+
+def test_the_search_for_a_mistake_ends_in_time(monkeypatch):
+    monkeypatch.setattr(judging, "_PATIENCE", 0.05)
+    endless = (Slip(lambda angle: np.zeros(angle), f"number {k}") for k in itertools.count())
+    monkeypatch.setattr(judging, "distortions", lambda task: endless)
+    assert judging.judge(task("rot_z"), lambda angle: np.eye(3) + angle).state == "wrong"

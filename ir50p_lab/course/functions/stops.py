@@ -25,7 +25,7 @@ _REASONS = (  # kind of error, what its message holds, the usual reason
         "truth value",
         "`if` asks one question, here are three joints: np.where decides for each, np.all or np.any for all together",
     ),
-    ("TypeError", "multiply sequence by", "a list times one number: does the number stand where three belong?"),
+    ("TypeError", "multiply sequence by", "a tuple or list times one number: that stands where three belong"),
     ("TypeError", "real number, not 'tuple'", "it is three numbers, one a joint, and is read as one"),
     ("UFuncTypeError", "Cannot cast ufunc", "an array of whole numbers takes no fractions: np.zeros makes another"),
     ("ValueError", "inhomogeneous", "rows of different lengths make no array"),
