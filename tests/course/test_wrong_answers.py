@@ -194,6 +194,14 @@ def test_no_sentence_says_not_yet_twice(capsys):
     assert said.count("not yet") == 1 and "0 of 9 inputs" in said
 
 
+@pytest.mark.parametrize("noise", ["0.75 * np.std(np.diff(last_second)) / np.sqrt(2)", "0.75 * np.std(last_second)"])
+def test_another_measure_of_the_noise_is_right_too(capsys, noise):
+    """Three standard deviations for four, and of the samples themselves."""
+    text = solutions.source("step_metrics").replace("np.std(np.diff(last_second)) / np.sqrt(2)", noise)
+    check("step_metrics", cell(text, "step_metrics"))
+    assert "from now on my_robot.step_metrics is this function" in capsys.readouterr().out
+
+
 def test_long_runs_are_shown_short_and_last(capsys):
     text = solutions.source("step_metrics").replace("0.02", "0.05")
     check("step_metrics", cell(text, "step_metrics"))
