@@ -34,11 +34,12 @@ LIMITS = {
     "small step": (2.0, "s until it stays within 30 mrad"),
     "overshoot": (0.20, "rad beyond the target"),
     "rest error": (0.025, "rad, mean of the last second"),
-    "activity": (14.0, "counts, mean change of the command from sample to sample"),
+    "activity": (44.0, "counts that the command swings by within 0.1 s, mean"),
 }
 PRACTICE = (1, 2, 3)  # seeds that everybody may look at
 RUNS = 3  # arms of an attempt
 _PERIOD = 0.01
+_MOMENT = 10  # samples: a command held for some of them swings no less
 
 
 @dataclass(frozen=True)
@@ -157,7 +158,8 @@ def judge_run(given, u, q):
         found[k] = _PERIOD * (len(error) - np.argmax(outside[::-1], axis=0)) * outside.any(axis=0)
         found[2] = np.maximum(found[2], np.max(-side * error, axis=0))
         found[3] = np.maximum(found[3], np.abs(np.mean(error[-100:], axis=0)))
-        found[4] = np.maximum(found[4], np.mean(np.abs(np.diff(u[part], axis=0)), axis=0))
+        moments = np.lib.stride_tricks.sliding_window_view(u[part], _MOMENT, axis=0)
+        found[4] = np.maximum(found[4], np.mean(np.ptp(moments, axis=-1), axis=0))
     return found
 
 
