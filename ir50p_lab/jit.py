@@ -14,6 +14,8 @@ from pathlib import Path
 import numba
 from numba.core import event
 
+from ir50p_lab.file_lock import take_lock
+
 _PACKAGE = Path(__file__).parent
 
 
@@ -49,7 +51,7 @@ def gufunc(function, layout):
     """A NumPy generalised ufunc of floats with this layout, such as "(n),(n)->(n)", compiled and kept on disk."""
     operands = [dims.split(",") if dims else [] for dims in re.findall(r"\((.*?)\)", layout)]
     types = [f"f8[{','.join(':' * len(dims))}]" if dims else "f8" for dims in operands]
-    with _own_cache():
+    with _own_cache(), _no_other_process():
         compiled = numba.guvectorize([f"void({', '.join(types)})"], layout, nopython=True, cache=True)(function)
     return compiled.ufunc  # NumPy's own: without numba's look at the arguments
 
@@ -61,6 +63,19 @@ def _own_cache():
         yield
     finally:
         numba.config.CACHE_DIR = before
+
+
+@contextlib.contextmanager
+def _no_other_process():
+    """While a ufunc is compiled or loaded.
+
+    numba keeps its two halves in two files that must come from one process. Of a mixture it calls the null pointer.
+    """
+    cache_folder().mkdir(parents=True, exist_ok=True)
+    with open(cache_folder() / "lock", "a") as file:
+        with contextlib.suppress(OSError):  # some network drives have no locks: go on without
+            take_lock(file, wait=True)
+        yield
 
 
 class _Once(event.Listener):

@@ -1,5 +1,6 @@
 """Compiled code: what is compiled while somebody waits says so; code of other sources is never used."""
 
+import os
 import subprocess
 import sys
 
@@ -43,3 +44,22 @@ def test_importing_it_leaves_garbage_collector_and_numba_alone():
     )
     code = f"{look}\nimport ir50p_lab.modelling.dynamics\nassert state() == b, (b, state())"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_processes_that_compile_at_once_leave_a_cache_that_can_be_used(tmp_path):
+    """numba names a ufunc's machine code by a count of its own, which differs from process to process."""
+    call = """
+import sys
+from numba.core.bytecode import FunctionIdentity
+
+for _ in range(int(sys.argv[1])):
+    next(FunctionIdentity._unique_ids)
+from ir50p_lab.modelling import load_arm, forward_kinematics
+
+forward_kinematics(load_arm(), [0.1, 0.2, 0.3])
+"""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    start = [[sys.executable, "-c", call, str(9 * k)] for k in range(4)]
+    at_once = [subprocess.Popen(command, env=environment) for command in start[1:]]
+    assert [process.wait() for process in at_once] == [0, 0, 0]
+    subprocess.run(start[0], env=environment, check=True)

@@ -17,6 +17,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from ir50p_lab.file_lock import take_lock
 from ir50p_lab.launcher import inventory, problems
 from ir50p_lab.launcher.installer import Installer
 from ir50p_lab.launcher.problems import COMMAND, SetUpError
@@ -260,35 +261,13 @@ class Environment:
         self.folder.mkdir(exist_ok=True)
         with open(self.folder / _BUSY, "a") as file:
             try:
-                if not _lock(file, wait=False):
+                if not take_lock(file, wait=False):
                     _say(stream, "Another set-up is at work in this folder: waiting for it to end (Ctrl-C to give up).")
-                    _lock(file, wait=True)
+                    take_lock(file, wait=True)
             except OSError:  # some network drives have no locks: go on without
                 yield None
                 return
             yield file.fileno()
-
-
-def _lock(file, *, wait):
-    """Take the lock; it falls by itself when every process that holds the file open has ended."""
-    if os.name == "nt":
-        import msvcrt
-
-        while True:
-            try:
-                msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-                return True
-            except OSError:
-                if not wait:
-                    return False
-                time.sleep(1)
-    import fcntl
-
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
-        return True
-    except BlockingIOError:
-        return False
 
 
 def _has_module(name):

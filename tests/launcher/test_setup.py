@@ -108,7 +108,7 @@ def test_drives_without_locks_are_set_up_all_the_same(project, monkeypatch):
     def no_locks(file, *, wait):
         raise OSError("no locks available")
 
-    monkeypatch.setattr(environment_module, "_lock", no_locks)
+    monkeypatch.setattr(environment_module, "take_lock", no_locks)
     with Environment(project.root)._only_one(sys.stdout) as lock:
         assert lock is None
 
