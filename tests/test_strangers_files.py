@@ -2,12 +2,12 @@
 
 import pytest
 
-from ir50p_lab.bench import Calibration, Recording, SimulatedBench
+from ir50p_lab.bench import JointCalibration, Recording, SimulatedBench
 from ir50p_lab.bench.set_point import SetPoint, checked_set_point
 from ir50p_lab.errors import ArmError, CalibrationError, InputError, RecordingError
 from ir50p_lab.identification import load_excitations
 from ir50p_lab.modelling import IR50P, Arm, load_arm
-from ir50p_lab.vision import Calibration as CameraCalibration
+from ir50p_lab.vision import Calibration
 
 MANY = 200_000
 CAMERA = "%YAML:1.0\n---\nimage_width: "
@@ -20,15 +20,15 @@ ROWS = "t,q1,q2,q3\n0,0,0,0\n0.01,0,0,0\n"
         (Recording.load, ROWS + "# event: 1.2.3 s: x\n", RecordingError),
         (Recording.load, r"# note: \U00110000" + "\n" + ROWS, RecordingError),
         (Recording.load, ROWS + r"# event: 1 s: \Uffffffff" + "\n", RecordingError),
-        (Calibration.load, "slope = [1, 1, 1]\nzero = [0, 0, 0]\nremarks = 5", InputError),
-        (Calibration.load, "slope = " + "[" * MANY, InputError),
+        (JointCalibration.load, "slope = [1, 1, 1]\nzero = [0, 0, 0]\nremarks = 5", InputError),
+        (JointCalibration.load, "slope = " + "[" * MANY, InputError),
         (load_arm, "l = " + "[" * MANY, ArmError),
         (load_excitations, '{"motions": ' + "[" * MANY, InputError),
-        (CameraCalibration.load, CAMERA + "[" * MANY, CalibrationError),
-        (CameraCalibration.load, CAMERA + "{a: " * MANY, CalibrationError),
-        (CameraCalibration.load, CAMERA + "\n  " + "- " * MANY, CalibrationError),
-        (CameraCalibration.load, '<?xml version="1.0"?>\n<opencv_storage>' + "<a>" * MANY, CalibrationError),
-        (CameraCalibration.load, '{"image_width": ' + "[" * MANY, CalibrationError),
+        (Calibration.load, CAMERA + "[" * MANY, CalibrationError),
+        (Calibration.load, CAMERA + "{a: " * MANY, CalibrationError),
+        (Calibration.load, CAMERA + "\n  " + "- " * MANY, CalibrationError),
+        (Calibration.load, '<?xml version="1.0"?>\n<opencv_storage>' + "<a>" * MANY, CalibrationError),
+        (Calibration.load, '{"image_width": ' + "[" * MANY, CalibrationError),
     ],
     ids=lambda value: value[:40] if isinstance(value, str) else value.__name__,
 )

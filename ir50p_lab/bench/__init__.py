@@ -6,7 +6,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
         "base": ["Bench", "Sample"],
-        "calibration": ["Calibration", "nominal_calibration"],
+        "calibration": ["JointCalibration", "nominal_calibration"],
         "calibration_fit": ["fit_calibration"],
         "connect": ["connect"],
         "driving": ["StopCriterion", "bridge_inputs", "mean_voltage", "sign_and_magnitude", "thesis_map"],
@@ -15,6 +15,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "serial_bench": ["SerialBench"],
         "simulated": ["SimulatedBench"],
         "simulated_arm": ["SimulatedArm"],
-        "unit": ["UNIT", "Unit"],
+        "arm_instance": ["UNIT", "ArmInstance"],
     },
 )

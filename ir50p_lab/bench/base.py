@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, Pace, Steps, warm_up
+from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, CountedPace, Pace, warm_up
 from ir50p_lab.bench.recorder import Recorder, header_of
 from ir50p_lab.bench.rest import rest_pose, way_to_rest
 from ir50p_lab.bench.runaway import RunawayGuard
@@ -37,8 +37,8 @@ class Sample(NamedTuple):
 class Run:
     """What belongs to one run.
 
-    pace: Pace or Steps; guard: see `Bench._make_guard`; row: the Sample whose command may still come, before its row
-    is written; aim: its reference (3,); trips: of the watchdog; fault: what has ended it.
+    pace: Pace or CountedPace; guard: see `Bench._make_guard`; row: the Sample whose command may still come, before
+    its row is written; aim: its reference (3,); trips: of the watchdog; fault: what has ended it.
     """
 
     def __init__(self, recorder, reference):
@@ -132,8 +132,8 @@ class Bench(abc.ABC):
         return {}
 
     def _make_pace(self):
-        """What says when the cycles of a run are due: Steps, or Pace on a bench that follows the clock."""
-        return Steps()
+        """What says when the cycles of a run are due: CountedPace, or Pace on a bench that follows the clock."""
+        return CountedPace()
 
     def _missed(self, cycle):
         """How many cycles came late so far."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ir50p_lab.bench.calibration_file import read_calibration, write_calibration
 from ir50p_lab.errors import InputError, SuspiciousArmWarning
 from ir50p_lab.inputs import check_arm, vectors3
 
@@ -13,7 +14,7 @@ _HEADS = ("joint", "counts/rad", "counts at q = 0", "rms residual", "points")
 
 
 @dataclass(frozen=True)
-class Calibration:
+class JointCalibration:
     """counts = zero + slope q, for each joint.
 
     ============ ================================================================ =====================
@@ -98,9 +99,16 @@ class Calibration:
         """
         if self.stderr_slope is None or not self.points:
             return None
-        from ir50p_lab.bench.calibration_fit import stderr_at
-
-        return stderr_at(self, np.asarray(counts, dtype=float))
+        counts = np.asarray(counts, dtype=float)
+        found = np.full(counts.shape, np.nan)
+        for i, ((_, at), residual) in enumerate(zip(self.points, self.residuals, strict=True)):
+            m = len(at)
+            if m < 3:
+                continue
+            at = np.array(at)
+            s2 = residual @ residual / (m - 2)
+            found[..., i] = np.sqrt(s2 * (1 / m + (counts[..., i] - at.mean()) ** 2 / ((at - at.mean()) ** 2).sum()))
+        return found
 
     @property
     def residuals(self):
@@ -122,16 +130,12 @@ class Calibration:
 
     def save(self, path):
         """Write it as a readable file (TOML). Returns the Path. Raises InputError if it cannot be written."""
-        from ir50p_lab.bench.calibration_file import write_calibration
-
         return write_calibration(self, path)
 
     @classmethod
     def load(cls, path):
         """Read a file that `save` wrote (or a person). Raises InputError that names the file and what is wrong."""
-        from ir50p_lab.bench.calibration_file import read_calibration
-
-        return read_calibration(path)
+        return read_calibration(cls, path)
 
     def table(self):
         """Slopes, zeros, standard errors and residuals as text, then the remarks."""
@@ -170,10 +174,10 @@ def nominal_calibration(arm):
 
     Slopes of the sister arm, smaller where the travel of a joint would not fit into 20..1003 counts; the middle of the
     travel reads 512. A joint without limits is taken to turn from -pi to pi.
-    Args: arm: Arm. Returns: Calibration, without standard errors.
+    Args: arm: Arm. Returns: JointCalibration, without standard errors.
     """
     arm = check_arm(arm)
     low, high = (np.clip(limit, -np.pi, np.pi) for limit in (arm.q_min, arm.q_max))
     slope = np.minimum(_SISTER_SLOPE, 2 * min(_MIDDLE - _LOWEST, _HIGHEST - _MIDDLE) / (high - low))
     zero = _MIDDLE - slope * 0.5 * (low + high)
-    return Calibration(slope=tuple(slope.tolist()), zero=tuple(zero.tolist()), source="nominal, not measured")
+    return JointCalibration(slope=tuple(slope.tolist()), zero=tuple(zero.tolist()), source="nominal, not measured")

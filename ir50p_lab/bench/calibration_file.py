@@ -5,7 +5,6 @@ from pathlib import Path
 
 import tomlkit
 
-from ir50p_lab.bench.calibration import Calibration
 from ir50p_lab.errors import InputError
 
 _COMMENTS = {
@@ -18,7 +17,7 @@ _TEXTS = ("arm", "source")
 
 
 def write_calibration(calibration, path):
-    """Write `calibration`; every number with all its digits. Returns the Path; see `Calibration.save`."""
+    """Write `calibration`; every number with all its digits. Returns the Path; see `JointCalibration.save`."""
     document = tomlkit.document()
     document.add(
         tomlkit.comment("Calibration of the potentiometers: counts = zero + slope q (10-bit counts, q in rad).")
@@ -46,8 +45,8 @@ def write_calibration(calibration, path):
     return path
 
 
-def read_calibration(path):
-    """Read a calibration file; see `Calibration.load`."""
+def read_calibration(cls, path):
+    """Read a calibration file as an object of `cls`; see `JointCalibration.load`."""
     path = Path(path)
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -56,14 +55,14 @@ def read_calibration(path):
             f"cannot read the calibration file {path}: {error.strerror}; check the path, or calibrate (notebook 10)"
         ) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise InputError(f"{path} is not a TOML file: {error}. Write one with Calibration.save") from None
+        raise InputError(f"{path} is not a TOML file: {error}. Write one with JointCalibration.save") from None
     try:
-        return _build(data)
+        return cls(**_fields(data))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
 
-def _build(data):
+def _fields(data):
     joints = [f"joint{i}" for i in (1, 2, 3)]
     known = (*_TEXTS, *_COMMENTS, "remarks", *joints)
     for name in data:
@@ -80,7 +79,7 @@ def _build(data):
     if not isinstance(remarks, list) or not all(isinstance(text, str) for text in (*texts.values(), *remarks)):
         raise InputError("arm and source must be text in quotes, remarks a list of such texts")
     numbers = {name: data[name] for name in _COMMENTS if name in data}
-    return Calibration(**numbers, **texts, remarks=tuple(remarks), points=points)
+    return {**numbers, **texts, "remarks": tuple(remarks), "points": points}
 
 
 def _points(name, table):

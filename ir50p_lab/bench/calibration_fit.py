@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.bench.calibration import Calibration
+from ir50p_lab.bench.calibration import JointCalibration
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import first_not_finite
 
@@ -27,10 +27,10 @@ def fit_calibration(q, counts, *, joint=None, others=None, angles="read", arm=""
     Args:
         q, counts: (m, 3), m poses of the whole arm; or three lists of different lengths, one experiment per joint; or
             (m,) for one joint only: then give `joint` and `others`. Angles in rad, counts of the 10-bit converter.
-        joint: 1, 2 or 3. others: Calibration that keeps the other two joints (`nominal_calibration(arm)`, say).
+        joint: 1, 2 or 3. others: JointCalibration that keeps the other two joints (`nominal_calibration(arm)`, say).
         arm: Arm or its name, saved with it. source: kept with it (who measured, when).
 
-    Returns: Calibration with standard errors (0 for a joint that was not measured), points and residuals; its
+    Returns: JointCalibration with standard errors (0 for a joint that was not measured), points and residuals; its
     `remarks` name what looks wrong: a bow that a line cannot follow (F test against a cubic), a point that lies far
     off, a negative slope, few points, a narrow range, a reading at the end of the track.
     Raises: InputError for what no line fits: fewer than 3 points, angles in degrees, counts outside 0..1023, a reading
@@ -51,7 +51,7 @@ def fit_calibration(q, counts, *, joint=None, others=None, angles="read", arm=""
 def _one_joint(q, counts, joint, others, angles, name, source):
     if joint not in (1, 2, 3):
         raise InputError(f"joint = {joint!r}: give 1, 2 or 3")
-    if not isinstance(others, Calibration):
+    if not isinstance(others, JointCalibration):
         raise InputError("one joint alone makes no calibration: give others=, for example nominal_calibration(arm)")
     fits = []
     for i in range(3):
@@ -67,7 +67,7 @@ def _one_joint(q, counts, joint, others, angles, name, source):
 
 def _calibration(fits, name, source):
     slope, zero, stderr_slope, stderr_zero, points, remarks = zip(*fits, strict=True)
-    return Calibration(
+    return JointCalibration(
         slope=slope,
         zero=zero,
         stderr_slope=stderr_slope,
@@ -259,16 +259,3 @@ def _bow(x, y):
         return None  # rounding
     F = (rss - left) / 2 / max(left / (m - 4), 1e-30)
     return float(np.abs(cubic - line).max()) if fdtrc(2, m - 4, F) < 0.01 else None
-
-
-def stderr_at(calibration, counts):
-    """Standard error of the angle at counts (..., 3), rad; see `Calibration.stderr_radians`."""
-    found = np.full(np.shape(counts), np.nan)
-    for i, ((_, at), residual) in enumerate(zip(calibration.points, calibration.residuals, strict=True)):
-        m = len(at)
-        if m < 3:
-            continue
-        at = np.array(at)
-        s2 = residual @ residual / (m - 2)
-        found[..., i] = np.sqrt(s2 * (1 / m + (counts[..., i] - at.mean()) ** 2 / ((at - at.mean()) ** 2).sum()))
-    return found

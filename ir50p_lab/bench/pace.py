@@ -34,7 +34,7 @@ class Clock:
             pass
 
 
-class Steps:
+class CountedPace:
     """The cycles of a run whose time is a counter: nothing is ever late, and no pause matters. As `Pace`."""
 
     armed, missed = True, 0

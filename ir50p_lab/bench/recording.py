@@ -3,40 +3,18 @@
 import math
 import warnings
 from array import array
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ir50p_lab.bench import recording_file
 from ir50p_lab.bench.recording_file import COLUMNS, COUNTS, GRIPPER, MISSED, Q, R, T, U
+from ir50p_lab.bench.recording_plot import plot, summarise
 from ir50p_lab.errors import InputError, RecordingError
 
 
 class RecordingWarning(UserWarning):
     """Something of a recording was left out when it was loaded."""
-
-
-@dataclass(frozen=True)
-class JointSummary:
-    """How one joint did in a run; angles in rad, u in PWM counts; NaN where the recording has no reference or u.
-
-    joint: 1, 2, 3; start, final: angle first, and mean of the last second; target: last reference;
-    error: target - final; overshoot: how far the angle went beyond the last reference, seen from the start;
-    swing: largest minus smallest angle in the last 5 s (or the last half of a short run): hunting shows here;
-    rms_error: of reference - q over the run; saturated: share of the run with |u| = 255; u_std: PWM counts.
-    """
-
-    joint: int
-    start: float
-    final: float
-    target: float
-    error: float
-    overshoot: float
-    swing: float
-    rms_error: float
-    saturated: float
-    u_std: float
 
 
 class Recording:
@@ -168,8 +146,6 @@ class Recording:
 
     def metrics(self):
         """How each joint did: list of three JointSummary. Raises RecordingError if there is no sample."""
-        from ir50p_lab.bench.recording_plot import summarise
-
         return summarise(self)
 
     def plot(self):
@@ -177,8 +153,6 @@ class Recording:
 
         A notebook shows it at the end of a cell. Raises RecordingError if there is no sample.
         """
-        from ir50p_lab.bench.recording_plot import plot
-
         return plot(self)
 
     def __repr__(self):

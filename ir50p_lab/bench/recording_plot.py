@@ -2,6 +2,7 @@
 
 import io
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,10 +26,30 @@ _STYLE = {
 }
 
 
+@dataclass(frozen=True)
+class JointSummary:
+    """How one joint did in a run; angles in rad, u in PWM counts; NaN where the recording has no reference or u.
+
+    joint: 1, 2, 3; start, final: angle first, and mean of the last second; target: last reference;
+    error: target - final; overshoot: how far the angle went beyond the last reference, seen from the start;
+    swing: largest minus smallest angle in the last 5 s (or the last half of a short run): hunting shows here;
+    rms_error: of reference - q over the run; saturated: share of the run with |u| = 255; u_std: PWM counts.
+    """
+
+    joint: int
+    start: float
+    final: float
+    target: float
+    error: float
+    overshoot: float
+    swing: float
+    rms_error: float
+    saturated: float
+    u_std: float
+
+
 def summarise(recording):
     """List of three JointSummary of a Recording; RecordingError if it has no sample."""
-    from ir50p_lab.bench.recording import JointSummary
-
     if not len(recording):
         raise RecordingError("the recording has no sample: run the bench first")
     t, q, u, r = recording.t, recording.q, recording.u, recording.reference

@@ -7,11 +7,11 @@ import time
 import numpy as np
 
 from ir50p_lab.bench.base import Bench
-from ir50p_lab.bench.calibration import Calibration, nominal_calibration
+from ir50p_lab.bench.calibration import JointCalibration, nominal_calibration
 from ir50p_lab.bench.recording import Recording
 from ir50p_lab.errors import InputError, RecordingError
 from ir50p_lab.inputs import check_arm
-from ir50p_lab.modelling.arm import load_arm
+from ir50p_lab.modelling.named_arms import load_arm
 
 
 class ReplayBench(Bench):
@@ -115,4 +115,4 @@ def _calibration(recording, arm):
         return nominal_calibration(arm)
     if len(slope) != 3 or len(zero) != 3:
         return nominal_calibration(arm)
-    return Calibration(slope=slope, zero=zero, source=head.get("calibration", "of the recording"))
+    return JointCalibration(slope=slope, zero=zero, source=head.get("calibration", "of the recording"))

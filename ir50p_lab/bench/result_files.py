@@ -98,14 +98,14 @@ def _describe(result):
 
 
 def own_calibration(bench):
-    """The Calibration measured on an open bench that counts, its source says which it is; None if there is none."""
-    from ir50p_lab.bench.calibration import Calibration
+    """The JointCalibration measured on an open bench that counts, or None; its source says which it is."""
+    from ir50p_lab.bench.calibration import JointCalibration
 
     found = newest("calibration", bench.bench_id, bench.arm.name) if bench.bench_id else None
     if found is None:
         return None
     try:
-        calibration = Calibration.load(found.path)
+        calibration = JointCalibration.load(found.path)
     except InputError as error:
         raise InputError(f"{error}. To do without it: results(withdraw={found.name!r})") from None
     return replace(calibration, source=f"yours, {found.name} ({calibration.source})")

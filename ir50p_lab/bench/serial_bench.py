@@ -44,7 +44,7 @@ class SerialBench(Bench):
     kind = "board"
 
     def __init__(self, port, *, arm=None, calibration=None, clock=None, period=0.01, record_to=None, announce=print):
-        from ir50p_lab.modelling.arm import load_arm
+        from ir50p_lab.modelling.named_arms import load_arm
 
         named = isinstance(port, str | os.PathLike) and str(port)
         if not (named or hasattr(port, "write")):

@@ -5,19 +5,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ir50p_lab.bench.arm_instance import UNIT
 from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Run, Sample
 from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.runaway import watch_step
 from ir50p_lab.bench.set_point import FARTHEST, NOISE, checked_reference
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, convert, read_pots
-from ir50p_lab.bench.unit import UNIT
 from ir50p_lab.controllers.base import Controller
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import check_arm, check_controller, check_reference
 from ir50p_lab.jit import jit
-from ir50p_lab.modelling.arm import load_arm
+from ir50p_lab.modelling.named_arms import load_arm
 
 _BLOCK = 1000  # samples between two looks at the disk and at Ctrl-C in a compiled run
 _KEPT = 100_000  # cycles of truth: a live run may last for hours

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
+from ir50p_lab.bench.arm_instance import UNIT, chosen_copy
 from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.rest import rest_pose
-from ir50p_lab.bench.unit import UNIT, chosen_copy
 from ir50p_lab.errors import ArmError, InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.jit import jit
@@ -81,12 +81,12 @@ class SimulatedArm:
     limits and a table under the tip; the links, and the potentiometers on them, follow within the play of the gear.
 
     Args:
-        arm: Arm with actuators. unit: Unit; its copy number `seed` is drawn. seed: of the unit and of the noise,
+        arm: Arm with actuators. unit: ArmInstance; its copy number `seed` is drawn. seed: of the unit and of the noise,
         counted from IR50P_UNIT (`chosen_copy`).
         q0: (3,) rad, where it stands; default the zero pose, or the rest pose where zero is not possible.
 
-    Attributes: arm; unit: the drawn Unit; seed: its number; noise_seed: None, or what IR50P_SEED says; nominal:
-    Calibration a maker would state (the unit differs from it).
+    Attributes: arm; unit: the drawn ArmInstance; seed: its number; noise_seed: None, or what IR50P_SEED says; nominal:
+    JointCalibration a maker would state (the unit differs from it).
     `q_true`, `qd_true`, `tip_true` are for tests and for plots that say 'truth of the simulation'.
     Raises: ArmError if the arm has no actuators, InputError if q0 is not possible.
     """

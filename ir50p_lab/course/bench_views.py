@@ -77,7 +77,7 @@ def breakaway_figure(recording, joint, moved_at):
 def residual_figure(calibration):
     """What the calibration line leaves, in counts, over the angle, joint by joint. Returns: LabFigure.
 
-    Args: calibration: Calibration with points.
+    Args: calibration: JointCalibration with points.
     """
     figure = new_figure(9.6, 3.0, cols=3)
     for joint, (ax, residual) in enumerate(zip(figure.axes, calibration.residuals, strict=True)):

@@ -14,7 +14,7 @@ from ir50p_lab.course import lab_book
 from ir50p_lab.course.functions import folder
 from ir50p_lab.course.functions.catalogue import ORDER, is_function, task
 from ir50p_lab.course.functions.cell import CannotTake, is_copy, take
-from ir50p_lab.course.functions.judge import judge
+from ir50p_lab.course.functions.grade import grade
 from ir50p_lab.course.functions.stops import ROOM, ended
 from ir50p_lab.errors import InputError
 
@@ -45,7 +45,7 @@ def check(name, answer=...):
         return _show("wrong", name, f"not yet: {ended(str(reason))}")
     if _is_stub(source.text):
         return _show("open", name, f"not written yet. It returns {wanted.asks}.")
-    verdict = judge(wanted, _in_its_own_room(source, wanted))
+    verdict = grade(wanted, _in_its_own_room(source, wanted))
     if verdict.state == "right" and folder.was_lent(name) and is_copy(source.text, wanted.loan):
         return _show("open", name, "right, but it is the course's, as it was lent: it stays a loan. Write it your way.")
     if verdict.state == "right":

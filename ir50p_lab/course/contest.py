@@ -12,18 +12,18 @@ from functools import lru_cache
 
 import numpy as np
 
+from ir50p_lab.bench.arm_instance import ArmInstance
 from ir50p_lab.bench.simulated import SimulatedBench
-from ir50p_lab.bench.unit import Unit
 from ir50p_lab.controllers.base import Controller
 from ir50p_lab.controllers.pid import PID
 from ir50p_lab.course import lab_book
 from ir50p_lab.errors import LabError
 from ir50p_lab.inputs import check_controller
-from ir50p_lab.modelling.arm import load_arm
 from ir50p_lab.modelling.chain import frames
+from ir50p_lab.modelling.named_arms import load_arm
 from ir50p_lab.signals import steps
 
-UNIT = Unit(delay=3, pot_bow=(0, 0, 0), slope_spread=0, shift_spread=0, bow_spread=0)
+UNIT = ArmInstance(delay=3, pot_bow=(0, 0, 0), slope_spread=0, shift_spread=0, bow_spread=0)
 TIMES, END = (0.0, 3.0, 7.0), 10.0  # s: hold, large step, small step
 LARGE, SMALL = 0.6, 0.15  # rad, each joint's step within 30 % of it, up or down
 PAYLOAD = 0.2  # of the forearm's mass, at most
@@ -147,7 +147,7 @@ def drive(controller, seed, arm=None):
     return given, recording, bench.truth.q  # left open: closing would only let a simulated arm sink for 3 s
 
 
-def judge_run(given, u, q):
+def grade_run(given, u, q):
     """The five figures of LIMITS of a run, (5, 3): u (1000, 3) commands in counts, q (1000, 3) true angles."""
     first, second, end = (round(t / _PERIOD) for t in (*TIMES[1:], END))
     found = np.zeros((5, 3))
@@ -172,7 +172,7 @@ def score(controller, seeds=PRACTICE, arm=None):
             given, recording, q = drive(controller, seed, arm)
         except LabError as fault:
             return Score(np.full((5, 3), np.inf), str(fault))
-        worst = np.maximum(worst, judge_run(given, recording.u, q))
+        worst = np.maximum(worst, grade_run(given, recording.u, q))
     return Score(worst)
 
 

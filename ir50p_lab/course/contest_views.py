@@ -45,7 +45,7 @@ class Practice:
         for joint in range(3):
             self._q[joint].set_data(self.recording.t, q[:, joint])
             self._u[joint].set_data(self.recording.t, self.recording.u[:, joint])
-        return contest.Score(contest.judge_run(given, self.recording.u, q))
+        return contest.Score(contest.grade_run(given, self.recording.u, q))
 
 
 def sliders_of(controller, arm, practice):

@@ -6,7 +6,7 @@ import numpy as np
 
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import InputError, LabError, UnstableLoopWarning
-from ir50p_lab.modelling.arm import load_arm
+from ir50p_lab.modelling.named_arms import load_arm
 from ir50p_lab.simulation import simulate
 
 _SECONDS = 10.0

@@ -1,9 +1,8 @@
-"""Pictures of notebook 00: a turn seen from above, the arm turned by the student's function, speeds, what is owned."""
+"""Pictures of notebook 00: a turn seen from above, the arm turned by the student's function, speeds."""
 
 import numpy as np
 
 from ir50p_lab.course import my_robot
-from ir50p_lab.course.functions.catalogue import NOTEBOOKS, ORDER
 from ir50p_lab.course.style import COLOURS, new_figure
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.modelling.pose import homogeneous
@@ -52,39 +51,4 @@ def speed_over_time(*runs, joint, labels=None):
     ax.set_xticks(np.arange(0, runs[0].t[-1] + 0.01, 0.1))
     ax.set_title("Simulated: a constant push from rest")
     ax.legend(loc="lower right")
-    return figure
-
-
-_PARTS = {  # what of the robot a function makes, notebook by notebook: where its mark stands in the drawing
-    "column": (("00", "01"), (0.18, 1.1)),
-    "joints": (("02", "03"), (0.9, 2.75)),
-    "weight": (("04", "05"), (1.75, 2.0)),
-    "motion": (("06", "07"), (2.75, 2.35)),
-    "control": (("08", "09"), (-1.1, 1.05)),
-    "bench": (("10",), (-1.1, 0.45)),
-    "model": (("12", "13", "14", "15"), (-1.1, 1.65)),
-    "eye": (("16", "17", "18"), (3.5, 3.1)),
-}
-
-
-def owned():
-    """The robot with its parts: green what is the student's, amber what is on loan, grey the course's. LabFigure."""
-    figure = new_figure(8.6, 3.9)
-    ax = figure.axes[0]
-    whose = {name: my_robot.whose(name) for name in ORDER}
-    colours = {"yours": COLOURS["green"], "on loan": COLOURS["amber"], "the course's": "#C4C4C4"}
-    ax.plot([0, 0, 1.1, 2.9], [0, 1.6, 2.6, 1.9], color="#E4E4E4", linewidth=16, solid_capstyle="round", zorder=1)
-    ax.plot([-0.5, 0.5], [0, 0], color="#E4E4E4", linewidth=16, solid_capstyle="round", zorder=1)
-    ax.plot([0, 1.1], [1.6, 2.6], "o", color="#D0D0D0", ms=22, zorder=2)
-    ax.plot(3.5, 0.1, "o", color="#C8102E", ms=14)
-    for part, (notebooks, (x, y)) in _PARTS.items():
-        names = [name for number in notebooks for name in NOTEBOOKS[number]]
-        for k, name in enumerate(names):
-            ax.plot(x + 0.2 * k, y, "s", color=colours[whose[name]], mec="white", ms=10, zorder=3)
-        ax.annotate(part, (x, y), (-4, 9), textcoords="offset points", fontsize=9, color=COLOURS["dark"], zorder=4)
-    mine = sum(one == "yours" for one in whose.values())
-    ax.set(xlim=(-1.4, 4.9), ylim=(-0.3, 3.5), aspect="equal")
-    ax.set_axis_off()
-    lent = sum(one == "on loan" for one in whose.values())
-    ax.set_title(f"{mine} of {len(ORDER)} functions are yours{f', {lent} on loan' if lent else ''}; a square each")
     return figure

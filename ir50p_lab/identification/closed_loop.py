@@ -37,7 +37,7 @@ def delayed_loop(theta, n, kind, p, s, t, r, x, limit, late, h, steps, q, u):
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class ClosedLoopRun:
     """A recording with what is needed to repeat it in simulation: t (m,), q, u (m, 3), rows r (m, 3, 3), start (3,)."""
 
     t: np.ndarray
@@ -108,7 +108,7 @@ def _rows(recording, reference, t, period):
 
 
 def runs_of(recordings, controller, references=None, *, seconds=None, **options):
-    """A list of Run, cut to the first `seconds` (None: whole): a recording or a list; a motion for all, or for each."""
+    """ClosedLoopRuns of a recording or a list, cut to the first `seconds` (None: all); a motion for all or each."""
     if seconds is not None and number("seconds", seconds, "> 0", unit="s") < 2:
         raise InputError(f"seconds = {seconds!r}: give 2 s or more of each recording")
     recordings = list(recordings) if isinstance(recordings, (list, tuple)) else [recordings]
@@ -118,7 +118,7 @@ def runs_of(recordings, controller, references=None, *, seconds=None, **options)
         raise InputError(f"{len(recordings)} recordings and {len(references)} references: give one for each")
     runs = []
     for recording, reference in zip(recordings, references, strict=True):
-        run = Run.of(recording, controller, reference, **options)
+        run = ClosedLoopRun.of(recording, controller, reference, **options)
         m = len(run.t) if seconds is None else int(min(len(run.t), round(seconds / run.period)))
         runs.append(replace(run, t=run.t[:m], q=run.q[:m], u=run.u[:m], r=run.r[:m]))
     return runs

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.closed_loop import Run, runs_of
+from ir50p_lab.identification.closed_loop import ClosedLoopRun, runs_of
 from ir50p_lab.identification.parameters import ACTS_ON, FREE_OF_SIGN, NAMES, ONLY_THESIS
 from ir50p_lab.identification.regression import long_run_sum
 from ir50p_lab.identification.validation import Validation, nrmse_fit
@@ -54,7 +54,9 @@ class OutputError:
 
     def score(self, recording, controller, reference=None, *, limit=None):
         """Simulate the loop of another recording: (Validation of "q", Validation of "u")."""
-        run = Run.of(recording, controller, reference, delay=self.delay, limit=limit, unit=self.unit, g=self.g)
+        run = ClosedLoopRun.of(
+            recording, controller, reference, delay=self.delay, limit=limit, unit=self.unit, g=self.g
+        )
         return compare([run], [run.simulate(self.theta, self.fs, self.qs)])
 
     def __str__(self):

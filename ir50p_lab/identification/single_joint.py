@@ -247,7 +247,7 @@ def _with_slow_motion_in_errors(joint, found):
 
 
 @dataclass(frozen=True)
-class Table:
+class JointTable:
     """What goes into the regression, all through the same low pass.
 
     columns (m, 7), in the order of _COLUMNS, and y (m,); slope (m,): of y, u/s; q (m,) rad; v (m,) rad/s; direction
@@ -265,7 +265,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Found:
-    """A fit at one cut-off: names, x and stderr (p,); A (m, r): the columns that the data hold; its Table."""
+    """A fit at one cut-off: names, x and stderr (p,); A (m, r): the columns that the data hold; its JointTable."""
 
     names: tuple
     x: np.ndarray
@@ -276,7 +276,7 @@ class Found:
     independent: float
     cutoff_hz: float
     held: bool
-    table: Table
+    table: JointTable
     A: np.ndarray
 
     def value(self, name, kind="x"):
@@ -395,7 +395,7 @@ class _Joint:
         return replace(found, x=x, stderr=stderr)
 
     def _tables(self, cutoff_hz, slower=1.0):
-        """A Table for each way of taking u."""
+        """A JointTable for each way of taking u."""
         slow = slower * max(4 * self.band.speed_noise, _DEAD * self.band.speed)
         every = np.concatenate([u[:, 0] for _, u in self.segments])
         low, high = every.min() + 1e-3 * np.ptp(every), every.max() - 1e-3 * np.ptp(every)
@@ -423,7 +423,7 @@ class _Joint:
         p = len(_COLUMNS)
         A, y, extreme, slopes = x[:, :p], x[:, p : p + 3], x[:, p + 3 : p + 5], x[:, p + 5 : p + 8]
         q, v, direction = x[:, p + 8 : p + 11].T
-        return [Table(A, y[:, k], slopes[:, k], q, v, direction, extreme) for k in range(3)]
+        return [JointTable(A, y[:, k], slopes[:, k], q, v, direction, extreme) for k in range(3)]
 
     def _smooth(self, x, cutoff_hz):
         if math.isinf(cutoff_hz):

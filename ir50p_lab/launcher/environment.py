@@ -33,7 +33,7 @@ _BUSY = "ir50p_lab-setup.lock"
 
 
 @dataclass(frozen=True)
-class State:
+class EnvironmentState:
     """Whether .venv can be used, why not, and whether it must be built from nothing."""
 
     ready: bool
@@ -54,22 +54,26 @@ class Environment:
     def state(self, *, tests=False):
         """Look, without changing anything."""
         if not self.folder.exists():
-            return State(False, "not made yet", rebuild=True)
+            return EnvironmentState(False, "not made yet", rebuild=True)
         stamp = self._read_stamp()
         if stamp is None:
-            return State(False, "half made (a set-up was interrupted)", rebuild=True)
+            return EnvironmentState(False, "half made (a set-up was interrupted)", rebuild=True)
         changed = {name: stamp[name] for name, value in self._stamp(tests=True).items() if stamp[name] != value}
         if "root" in changed:
-            return State(False, f"made for another folder ({stamp['root']})", rebuild=True)
+            return EnvironmentState(False, f"made for another folder ({stamp['root']})", rebuild=True)
         if "python" in changed:
-            return State(False, f"made with Python {stamp['python']}, this is {_python_version()}", rebuild=True)
+            return EnvironmentState(
+                False, f"made with Python {stamp['python']}, this is {_python_version()}", rebuild=True
+            )
         if LOCK in changed:
-            return State(False, f"out of date ({LOCK} has changed)", rebuild=True)
+            return EnvironmentState(False, f"out of date ({LOCK} has changed)", rebuild=True)
         if not self._python_works():
-            return State(False, "broken (its Python does not start)", rebuild=True)
+            return EnvironmentState(False, "broken (its Python does not start)", rebuild=True)
         if tests and TEST_LOCK in changed:
-            return State(False, "without the test tools" if stamp[TEST_LOCK] is None else f"behind {TEST_LOCK}")
-        return State(True, "ready")
+            return EnvironmentState(
+                False, "without the test tools" if stamp[TEST_LOCK] is None else f"behind {TEST_LOCK}"
+            )
+        return EnvironmentState(True, "ready")
 
     def ensure(self, *, tests=False, rebuild=False, stream=None):
         """Make .venv ready, building what is not; say on `stream` what happens. Raises SetUpError."""

@@ -9,7 +9,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
         "actuators": ["Actuators"],
-        "arm": ["Arm", "load_arm"],
+        "arm": ["Arm"],
         "chain": ["dh_matrix", "dh_table", "forward_kinematics", "frames", "transform"],
         "differential": ["Singularity", "jacobian", "manipulability", "singularity"],
         "dynamics": [
@@ -38,7 +38,15 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "second_moment_tensor",
             "tube",
         ],
-        "named_arms": ["IR50P", "IR50P_WEAK_SHOULDER", "THESIS_A", "THESIS_C", "THESIS_RODS", "thesis_theta"],
+        "named_arms": [
+            "IR50P",
+            "IR50P_WEAK_SHOULDER",
+            "THESIS_A",
+            "THESIS_C",
+            "THESIS_RODS",
+            "load_arm",
+            "thesis_theta",
+        ],
         "symbolic": ["SymbolicModel", "derive", "same_function"],
         "pose": [
             "CARDANIAN",

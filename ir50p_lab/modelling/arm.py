@@ -1,17 +1,16 @@
 """The arm: a 3-DOF elbow manipulator by its lengths, masses and inertias, checked when it is made."""
 
 import dataclasses
-import os
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 
 from ir50p_lab.errors import ArmError, SuspiciousArmWarning
 from ir50p_lab.inputs import vector3, vectors3
 from ir50p_lab.modelling.actuators import Actuators
+from ir50p_lab.modelling.arm_file import read_arm, write_arm
 from ir50p_lab.modelling.friction import Friction
 
 _VECTORS = {"l": "m", "m": "kg", "lc": "m", "Ixx": "kg m^2", "Iyy": "kg m^2", "Izz": "kg m^2"}
@@ -205,16 +204,12 @@ class Arm:
 
     def save(self, path):
         """Write the arm to `path` as TOML, with units in comments. Read it back with Arm.load."""
-        from ir50p_lab.modelling.arm_file import write_arm
-
         write_arm(self, path)
 
     @classmethod
     def load(cls, path):
         """Read an arm from a TOML file. Raises ArmError naming the file and what is wrong in it."""
-        from ir50p_lab.modelling.arm_file import read_arm
-
-        return read_arm(path)
+        return read_arm(cls, path)
 
 
 def refuse_impossible_inertia(who, principal):
@@ -239,13 +234,3 @@ def read_only(array):
     """Lock an array that is shared, so that no student's cell changes an arm by accident."""
     array.setflags(write=False)
     return array
-
-
-def load_arm(path=None):
-    """The arm of the course: from `path`, else from the file that $IR50P_ARM names, else the IR50P."""
-    path = path or os.environ.get("IR50P_ARM")
-    if path:
-        return Arm.load(Path(path))
-    from ir50p_lab.modelling.named_arms import IR50P
-
-    return IR50P

@@ -8,7 +8,6 @@ import tomlkit
 
 from ir50p_lab.errors import ArmError, LabError
 from ir50p_lab.modelling.actuators import Actuators
-from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.friction import Friction
 
 _COMMENTS = {
@@ -61,8 +60,8 @@ def _fill(table, part):
             table[field.name].comment(_COMMENTS[field.name])
 
 
-def read_arm(path):
-    """Read an arm from a TOML file.
+def read_arm(cls, path):
+    """Read an arm, an object of `cls`, from a TOML file.
 
     Raises ArmError, naming the file, if it is missing, is not TOML, lacks a field, has a field that is not
     known (with the known ones), or describes an impossible arm.
@@ -75,8 +74,8 @@ def read_arm(path):
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise ArmError(f"{path} is not a TOML file: {error}. Write one with Arm.save and edit it") from None
     try:
-        parts = {name: _make(cls, data.pop(name)) for name, cls in _PARTS.items() if name in data}
-        return _make(Arm, {**data, **parts})
+        parts = {name: _make(part, data.pop(name)) for name, part in _PARTS.items() if name in data}
+        return _make(cls, {**data, **parts})
     except LabError as error:
         raise ArmError(f"{path}: {error}") from None
 

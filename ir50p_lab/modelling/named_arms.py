@@ -1,6 +1,7 @@
 """The arms of the course: the real one (with its assumptions) and the thesis' models."""
 
 import dataclasses
+import os
 
 import numpy as np
 
@@ -127,3 +128,9 @@ THESIS_C = thesis_theta(
     Iyy=(0, 0.05, 0.05),
     Iyz=(0, 0.05, 0),
 )
+
+
+def load_arm(path=None):
+    """The arm of the course: from `path`, else from the file that $IR50P_ARM names, else the IR50P."""
+    path = path or os.environ.get("IR50P_ARM")
+    return Arm.load(path) if path else IR50P

@@ -1,4 +1,4 @@
-"""Calibration: truth recovered within its standard errors, the right regression, faults in the data named."""
+"""Calibration of the joints: truth recovered within its standard errors, the right regression, faults in the data named."""
 
 import dataclasses
 import math
@@ -9,7 +9,7 @@ from arms import random_arm
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ir50p_lab.bench import Calibration, fit_calibration, nominal_calibration
+from ir50p_lab.bench import JointCalibration, fit_calibration, nominal_calibration
 from ir50p_lab.errors import InputError, SuspiciousArmWarning
 from ir50p_lab.modelling import IR50P
 
@@ -193,13 +193,13 @@ def test_bad_options():
 )
 def test_impossible_calibrations(fields, match):
     with pytest.raises(InputError, match=match):
-        Calibration(**{"slope": (189, 122, 191), "zero": (512, 512, 512)} | fields)
+        JointCalibration(**{"slope": (189, 122, 191), "zero": (512, 512, 512)} | fields)
 
 
 @pytest.mark.parametrize("slope", [3.3, 0.01, 5000.0])
 def test_implausible_slopes_are_warned_of(slope):
     with pytest.warns(SuspiciousArmWarning, match="degrees"):
-        Calibration(slope=(189, slope, 191), zero=(512, 512, 512))
+        JointCalibration(slope=(189, slope, 191), zero=(512, 512, 512))
 
 
 # ---- files
@@ -207,7 +207,7 @@ def test_implausible_slopes_are_warned_of(slope):
 
 def test_a_file_gives_the_same_calibration(tmp_path):
     found = fit_calibration(*experiment(), arm=IR50P, source='by "me", Nov 21')
-    assert Calibration.load(found.save(tmp_path / "mine.toml")) == found
+    assert JointCalibration.load(found.save(tmp_path / "mine.toml")) == found
     with pytest.raises(InputError, match="cannot write"):
         TRUTH.save(tmp_path / "missing" / "x.toml")
 
@@ -230,7 +230,7 @@ def test_broken_files(tmp_path, text, match):
     path = tmp_path / "c.toml"
     path.write_text(text)
     with pytest.raises(InputError, match=match) as caught:
-        Calibration.load(path)
+        JointCalibration.load(path)
     assert "c.toml" in str(caught.value)
 
 

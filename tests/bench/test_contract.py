@@ -13,7 +13,7 @@ import pytest
 from benches import GAINS, RIGS
 
 from ir50p_lab.bench import Recording, Sample, nominal_calibration, serial_bench
-from ir50p_lab.bench.calibration import Calibration
+from ir50p_lab.bench.calibration import JointCalibration
 from ir50p_lab.bench.ports import Port
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.controllers import PID
@@ -239,7 +239,7 @@ class TestContract:
         rig = rig_at([limit - 0.1 * outwards, *REST[1:]])
         nominal = nominal_calibration(IR50P)
         zero = nominal.zero[0] - 0.2 * outwards * nominal.slope[0]
-        bench = rig.bench(calibration=Calibration(nominal.slope, (zero, *nominal.zero[1:]))).open()
+        bench = rig.bench(calibration=JointCalibration(nominal.slope, (zero, *nominal.zero[1:]))).open()
         for k, sample in enumerate(bench.run(0.05)):
             assert outwards * (sample.q[0] - limit) > 0
             sent = bench.drive([100 * outwards, -5, 5] if k < 3 else [-100 * outwards, -5, 5])

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ir50p_lab.bench import Recording, ReplayBench, SimulatedBench, Unit
+from ir50p_lab.bench import ArmInstance, Recording, ReplayBench, SimulatedBench
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import ArmError, BenchError, InputError
@@ -39,7 +39,7 @@ def bench(tmp_path):
 def test_compiled_and_python_loop_agree_to_the_last_bit(arm, delay):
     recordings, truths, benches = [], [], []
     for run in (in_python, SimulatedBench.follow):
-        bench = SimulatedBench(arm, unit=Unit(delay=delay), seed=4, record_to=False).open()
+        bench = SimulatedBench(arm, unit=ArmInstance(delay=delay), seed=4, record_to=False).open()
         for reference in (sinusoid([0.3, 0.2, 0.2], [1.0, 1.5, 2.0]), hold([0.2, 0.3, -0.2])):
             recording = run(bench, pid(position_filter_hz=3), reference, 11)  # more than a block
         recordings.append(recording)
@@ -91,7 +91,7 @@ def test_time_is_a_counter(bench):
 
 @pytest.mark.parametrize("delay", [0, 1, 2, 5])
 def test_a_command_acts_so_many_periods_after_its_sample(delay):
-    unit = Unit(delay=delay, spread=0, noise=0, backlash=(0, 0, 0))
+    unit = ArmInstance(delay=delay, spread=0, noise=0, backlash=(0, 0, 0))
     bench = SimulatedBench(IR50P, unit=unit, q0=(0, np.pi / 2, 0), record_to=False).open()
     for k, _ in enumerate(bench.run(0.2)):
         bench.drive([200, 0, 0] if k == 3 else [0, 0, 0])
@@ -100,7 +100,7 @@ def test_a_command_acts_so_many_periods_after_its_sample(delay):
 
 
 def test_a_command_holds_until_the_next_and_ends_with_its_run():
-    bench = SimulatedBench(IR50P, unit=Unit(spread=0), q0=(0, np.pi / 2, 0), record_to=False).open()
+    bench = SimulatedBench(IR50P, unit=ArmInstance(spread=0), q0=(0, np.pi / 2, 0), record_to=False).open()
     for k, _ in enumerate(bench.run(0.3)):
         if k == 0:
             bench.drive([150, 0, 0])
@@ -241,7 +241,9 @@ def test_realtime_holds_for_follow():
 
 
 def test_pot_errors_of_a_unit_show_in_the_angles_and_a_calibration_takes_them_out():
-    unit = Unit(spread=0, noise=0, pot_bow=(0, 0, 0), pot_shift=(3, 3, 3), pot_slope=(1.01, 1, 1), backlash=(0, 0, 0))
+    unit = ArmInstance(
+        spread=0, noise=0, pot_bow=(0, 0, 0), pot_shift=(3, 3, 3), pot_slope=(1.01, 1, 1), backlash=(0, 0, 0)
+    )
     bench = SimulatedBench(IR50P, unit=unit, q0=(1.0, 0.5, 0.0), record_to=False).open()
     off = next(iter(bench.run(0.1))).q - bench.plant.q_true
     np.testing.assert_allclose(off, [3 / 189.1 + 0.01, 3 / 122.1, 3 / 191.7], atol=0.5 / 122)

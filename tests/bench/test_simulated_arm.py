@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.bench import Unit
+from ir50p_lab.bench import ArmInstance
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.bench.simulated_arm import SimulatedArm
 from ir50p_lab.errors import ArmError, InputError
@@ -11,7 +11,7 @@ from ir50p_lab.modelling import IR50P, IR50P_WEAK_SHOULDER, THESIS_A, Arm, forwa
 from ir50p_lab.simulation import simulate
 
 NO_PLAY = {"backlash": (0, 0, 0), "spread": 0}
-IDEAL = Unit(**NO_PLAY, dead_zone=(0, 0, 0), noise=0, pot_bow=(0, 0, 0))
+IDEAL = ArmInstance(**NO_PLAY, dead_zone=(0, 0, 0), noise=0, pot_bow=(0, 0, 0))
 OTHER = Arm.load("data/arm_example.toml")
 STRAIGHT_UP = (0.0, np.pi / 2, 0.0)  # no gravity on any joint
 
@@ -82,7 +82,7 @@ def test_supply_saturates():
 
 def test_dead_zone_swallows_short_pulses_only():
     slick = IR50P.without_friction()
-    arm = SimulatedArm(slick, Unit(**NO_PLAY, dead_zone=(3, 3, 3)), q0=STRAIGHT_UP)
+    arm = SimulatedArm(slick, ArmInstance(**NO_PLAY, dead_zone=(3, 3, 3)), q0=STRAIGHT_UP)
     arm.advance((2.9, 0, 0), 1.0)
     assert arm.q_true[0] == 0.0
     free = SimulatedArm(slick, IDEAL, q0=STRAIGHT_UP)
@@ -92,7 +92,7 @@ def test_dead_zone_swallows_short_pulses_only():
 
 
 def test_motor_gain_is_torque_per_count():
-    weak = SimulatedArm(IR50P, Unit(**NO_PLAY, noise=0, motor_gain=(0.5, 1, 1)), q0=STRAIGHT_UP)
+    weak = SimulatedArm(IR50P, ArmInstance(**NO_PLAY, noise=0, motor_gain=(0.5, 1, 1)), q0=STRAIGHT_UP)
     weak.advance((79, 0, 0), 1.0)
     assert weak.q_true[0] == 0.0  # 79 halves to 39.5 < 40
     weak.advance((81, 0, 0), 1.0)
@@ -100,7 +100,7 @@ def test_motor_gain_is_torque_per_count():
 
 
 def test_friction_of_the_unit():
-    rough = SimulatedArm(IR50P, Unit(**NO_PLAY, noise=0, friction=(2, 1, 1)), q0=STRAIGHT_UP)
+    rough = SimulatedArm(IR50P, ArmInstance(**NO_PLAY, noise=0, friction=(2, 1, 1)), q0=STRAIGHT_UP)
     rough.advance((75, 0, 0), 1.0)
     assert rough.q_true[0] == 0.0  # 2 x 36 + 4
     rough.advance((77, 0, 0), 1.0)
@@ -109,7 +109,7 @@ def test_friction_of_the_unit():
 
 def test_backlash_loses_the_play_when_the_motion_turns_and_no_more():
     play = 0.02
-    arm = SimulatedArm(IR50P, Unit(spread=0, backlash=(play,) * 3, noise=0), q0=STRAIGHT_UP)
+    arm = SimulatedArm(IR50P, ArmInstance(spread=0, backlash=(play,) * 3, noise=0), q0=STRAIGHT_UP)
     gap = []
     for pwm in (100, -100, 100):
         arm.advance((pwm, 0, 0), 0.6)
@@ -118,7 +118,7 @@ def test_backlash_loses_the_play_when_the_motion_turns_and_no_more():
 
 
 def test_gravity_presses_the_teeth_of_joints_2_and_3_together():
-    arm = SimulatedArm(IR50P, Unit(spread=0, backlash=(0.02,) * 3, noise=0))  # stretched out, horizontal
+    arm = SimulatedArm(IR50P, ArmInstance(spread=0, backlash=(0.02,) * 3, noise=0))  # stretched out, horizontal
     for pwm in (200, 100):  # up, then down: the link hangs on the lower flank both times
         arm.advance((0, pwm, 57), 0.5)
         assert arm._x[1] - arm.q_true[1] == pytest.approx(0.01)
@@ -126,14 +126,14 @@ def test_gravity_presses_the_teeth_of_joints_2_and_3_together():
 
 
 def test_end_stops_hold():
-    arm = SimulatedArm(IR50P, Unit(**NO_PLAY), q0=STRAIGHT_UP)
+    arm = SimulatedArm(IR50P, ArmInstance(**NO_PLAY), q0=STRAIGHT_UP)
     arm.advance((255, 0, 255), 3.0)
     np.testing.assert_allclose(arm.q_true[[0, 2]], np.array(IR50P.q_max)[[0, 2]], atol=1e-9)
     np.testing.assert_allclose(arm.qd_true[[0, 2]], 0, atol=1e-9)
 
 
 def test_table_holds_the_tip():
-    arm = SimulatedArm(IR50P, Unit(**NO_PLAY))
+    arm = SimulatedArm(IR50P, ArmInstance(**NO_PLAY))
     heights = []
     for _ in range(300):
         arm.advance((0, -60, -40), 0.01)
@@ -175,7 +175,7 @@ def test_counts_are_whole_and_as_the_nominal_line_says():
 
 
 def test_noise_is_one_count_rms_before_rounding():
-    arm = SimulatedArm(IR50P, Unit(spread=0, pot_bow=(0, 0, 0)))
+    arm = SimulatedArm(IR50P, ArmInstance(spread=0, pot_bow=(0, 0, 0)))
     before = np.array([arm.voltage_counts() for _ in range(4000)]) - arm.nominal.counts(arm.q_true)
     np.testing.assert_allclose(before.std(axis=0), 1.0, rtol=0.04)
     np.testing.assert_allclose(before.mean(axis=0), 0.0, atol=0.06)
@@ -185,7 +185,7 @@ def test_noise_is_one_count_rms_before_rounding():
 
 
 def test_bow_is_its_number_in_the_middle_and_nothing_at_the_ends():
-    unit = Unit(spread=0, noise=0, pot_bow=(2.0, -1.0, 0.5), table=-1.0)
+    unit = ArmInstance(spread=0, noise=0, pot_bow=(2.0, -1.0, 0.5), table=-1.0)
     low, high = np.array(IR50P.q_min), np.array(IR50P.q_max)
     for q, share in ((low, 0), (high, 0), ((low + high) / 2, 1), (low + (high - low) / 4, 0.75)):
         arm = SimulatedArm(IR50P, unit, q0=q)
@@ -193,7 +193,7 @@ def test_bow_is_its_number_in_the_middle_and_nothing_at_the_ends():
 
 
 def test_the_converter_ends_at_0_and_1023():
-    arm = SimulatedArm(IR50P, Unit(spread=0, pot_shift=(900, -900, 0)))
+    arm = SimulatedArm(IR50P, ArmInstance(spread=0, pot_shift=(900, -900, 0)))
     assert arm.counts()[:2].tolist() == [1023, 0]
 
 

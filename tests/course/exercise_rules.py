@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 import sympy
 
-from ir50p_lab.course.exercises import Choice, Expression, Function, Number, judge
+from ir50p_lab.course.exercises import Choice, Expression, Function, Number, grade
 
 SEED = 20261121
 
@@ -37,14 +37,14 @@ def _shape(exercise):
 
 def _right(exercise):
     for form in right_forms(exercise):
-        verdict = judge(exercise, form)
+        verdict = grade(exercise, form)
         if verdict.state != "right" or exercise.why not in verdict.text:
             yield f"right answer {form!r} is {verdict.state}: {verdict.text}"
 
 
 def _stubs(exercise):
     for stub in stubs(exercise):
-        verdict = judge(exercise, stub)
+        verdict = grade(exercise, stub)
         if verdict.state != "open" or "not answered yet" not in verdict.text or exercise.task not in verdict.text:
             yield f"stub {stub!r} is {verdict.state}: {verdict.text}"
 
@@ -56,7 +56,7 @@ def _slips(exercise):
     if len(set(messages)) < len(messages):
         yield "two slips share a message"
     for slip in exercise.all_slips:
-        verdict = judge(exercise, wrong_answer(exercise.kind, slip.wrong))
+        verdict = grade(exercise, wrong_answer(exercise.kind, slip.wrong))
         if verdict.state != "slip" or not verdict.text.endswith(slip.message):
             yield f"slip {slip.message!r} is answered by {verdict.state}: {verdict.text}"
     if isinstance(exercise.kind, Choice) and len(exercise.slips) != len(exercise.kind.options) - 1:
@@ -64,12 +64,12 @@ def _slips(exercise):
 
 
 def _wrong(exercise):
-    verdict = judge(exercise, random_wrong(exercise.kind))
+    verdict = grade(exercise, random_wrong(exercise.kind))
     generic = "unreadable" if isinstance(exercise.kind, Choice) else "wrong"
     if verdict.state != generic or exercise.kind.wanted not in verdict.text:
         yield f"a random wrong answer is {verdict.state}: {verdict.text}"
     for junk in JUNK:
-        verdict = judge(exercise, junk)
+        verdict = grade(exercise, junk)
         if verdict.state not in ("unreadable", "wrong", "slip"):
             yield f"{junk!r} is {verdict.state}"
         if not 10 < len(verdict.text) < 700 or "Traceback" in verdict.text:

@@ -87,7 +87,7 @@ def test_figures_of_a_motion_that_is_known():
     q[300:700] = 0.5 * (1 - np.exp(-(t[300:700] - 3) / 0.4))[:, None]
     q[700:] = 0.6 + 0.05 * np.exp(-(t[700:] - 7) / 0.4)[:, None]
     u = np.outer(np.arange(1000) % 2, [0.0, 4.0, 9.0])
-    found = jury.judge_run(given, u, q)
+    found = jury.grade_run(given, u, q)
     assert found[0] == pytest.approx(0.4 * np.log(0.5 / jury.BAND), abs=0.011)
     assert found[1] == pytest.approx(0.4 * np.log(0.05 / jury.BAND), abs=0.011)
     assert found[2] == pytest.approx(0.05) and found[4] == pytest.approx([0, 4, 9])

@@ -8,7 +8,7 @@ from cells import cell
 from ir50p_lab.course import check, my_robot
 from ir50p_lab.course.functions import folder
 from ir50p_lab.course.functions.catalogue import STAGES, task
-from ir50p_lab.course.functions.judge import judge
+from ir50p_lab.course.functions.grade import grade
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
 
@@ -64,7 +64,7 @@ FORGET = "self.integral = np.zeros(3)\n"
     ],
 )  # fmt: skip
 def test_other_right_ones_pass(stage, edits, remark):
-    verdict = judge(task(stage), made(edited(stage, *edits)))
+    verdict = grade(task(stage), made(edited(stage, *edits)))
     assert verdict.state == "right"
     assert remark in verdict.says
     assert bool(remark) == bool(verdict.says)
@@ -121,7 +121,7 @@ def test_other_right_ones_pass(stage, edits, remark):
     ],
 )  # fmt: skip
 def test_wrong_ones_are_told_apart(stage, old, new, words):
-    verdict = judge(task(stage), made(edited(stage, (old, new))))
+    verdict = grade(task(stage), made(edited(stage, (old, new))))
     assert verdict.state == "wrong"
     assert words in verdict.says, verdict.says
 
@@ -129,22 +129,22 @@ def test_wrong_ones_are_told_apart(stage, old, new, words):
 def test_no_reset_a_shared_memory_gains_read_once_and_a_kick():
     no_reset = edited("PID.pi", ("        self.reset()", "        self.integral = np.zeros(3)"))
     no_reset = no_reset.replace("    def reset(self):\n        self.integral = np.zeros(3)\n\n", "")
-    assert "no `reset`" in judge(task("PID.pi"), made(no_reset)).says
+    assert "no `reset`" in grade(task("PID.pi"), made(no_reset)).says
 
     shared = edited("PID.pi", ("        self.integral = np.zeros(3)", "        self.integral[:] = 0"))
     shared = shared.replace('    unit = "PWM"\n', '    unit = "PWM"\n    integral = np.zeros(3)\n')
     shared = shared.replace("self.integral = self.integral +", "self.integral +=")
     shared = shared.replace("        self.reset()\n", "")
-    assert "one memory" in judge(task("PID.pi"), made(shared)).says
+    assert "one memory" in grade(task("PID.pi"), made(shared)).says
 
     once = edited(
         "PID.p", ("self.kp = kp", "self.kp = kp\n        self.gain = kp"), ("return self.kp", "return self.gain")
     )
-    assert "was changed while it ran" in judge(task("PID.p"), made(once)).says
+    assert "was changed while it ran" in grade(task("PID.p"), made(once)).says
 
     kick = edited("PID", ("(q - self.last)", "(error - self.last)"), ("self.last = q", "self.last = error"))
     kick = kick.replace("qd_wanted - self.speed", "self.speed")
-    assert "kicks" in judge(task("PID"), made(kick)).says
+    assert "kicks" in grade(task("PID"), made(kick)).says
 
 
 def test_an_integral_that_waits_for_the_last_push_is_told():
@@ -152,7 +152,7 @@ def test_an_integral_that_waits_for_the_last_push_is_told():
     text = edited("PID.limits", (WINDS, "winds_up = np.abs(self.pushed) >= self.limit"))
     text = text.replace("self.integral = np.zeros(3)", "self.integral = np.zeros(3)\n        self.pushed = np.zeros(3)")
     text = text.replace("        return np.clip(", "        self.pushed = np.clip(")
-    assert "never lets go" in judge(task("PID.limits"), made(text + "\n        return self.pushed")).says
+    assert "never lets go" in grade(task("PID.limits"), made(text + "\n        return self.pushed")).says
 
 
 def test_each_stage_takes_the_place_of_the_one_before(home, capsys):

@@ -23,7 +23,7 @@ from ir50p_lab.course.exercises import (
     Slip,
     check,
     exercises,
-    judge,
+    grade,
     progress,
     solution,
 )
@@ -157,7 +157,7 @@ ELBOW = Exercise("x-7", "the branch", Choice("a", {"a": "elbow up", "b": "elbow 
     ],
 )
 def test_a_wrong_form_is_named(exercise, answer, words):
-    verdict = judge(exercise, answer)
+    verdict = grade(exercise, answer)
     assert verdict.state == "unreadable"
     assert words in verdict.text
 
@@ -194,22 +194,22 @@ def test_a_wrong_form_is_named(exercise, answer, words):
     ],
 )
 def test_what_is_said(exercise, answer, state, words):
-    verdict = judge(exercise, answer)
+    verdict = grade(exercise, answer)
     assert verdict.state == state, verdict.text
     assert words in verdict.text
 
 
 @pytest.mark.parametrize("answer", [[1.0001, 2, 3.5], [1.2, 2.2, 3.3]])
 def test_what_is_far_off_is_not_called_close(answer):
-    assert "close" not in judge(VECTOR, answer).text
+    assert "close" not in grade(VECTOR, answer).text
 
 
 def test_a_velocity_in_sympys_own_words_is_the_packages():
     t = sympy.Symbol("t")
     q1 = sympy.Function("q1")(t)
     rate = Exercise("x-8", "the rate", Expression(sympy.sympify("q1 * qdot1 + qddot1")), "because")
-    assert judge(rate, q1 * q1.diff(t) + q1.diff(t, 2)).state == "right"
-    assert judge(rate, q1 * q1.diff(t)).state == "wrong"
+    assert grade(rate, q1 * q1.diff(t) + q1.diff(t, 2)).state == "right"
+    assert grade(rate, q1 * q1.diff(t)).state == "wrong"
 
 
 def test_a_student_cannot_change_the_question(capsys):
@@ -224,7 +224,7 @@ def test_an_interrupt_is_not_swallowed():
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        judge(SQUARE, stop)
+        grade(SQUARE, stop)
 
 
 def test_a_choice_needs_its_right_option():

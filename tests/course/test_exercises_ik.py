@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.course.exercises import judge, solution
+from ir50p_lab.course.exercises import grade, solution
 from ir50p_lab.course.exercises.ik import _BRANCH_SLIPS, EXERCISES
 
 BY_NAME = {exercise.name: exercise for exercise in EXERCISES}
@@ -37,7 +37,7 @@ def test_every_exercise_is_worked_out_here():
 
 @pytest.mark.parametrize("name", BY_HAND)
 def test_the_answer_by_hand_is_right(name):
-    assert judge(BY_NAME[name], BY_HAND[name]).state == "right"
+    assert grade(BY_NAME[name], BY_HAND[name]).state == "right"
     if name in ("ik-1", "ik-2"):
         np.testing.assert_allclose(solution(name), BY_HAND[name], atol=1e-12)
 
@@ -59,7 +59,7 @@ def test_the_answer_by_hand_is_right(name):
     ],
 )
 def test_a_typical_slip_gets_its_own_message(name, answer, hint):
-    verdict = judge(BY_NAME[name], answer)
+    verdict = grade(BY_NAME[name], answer)
     assert verdict.state == "slip"
     assert hint in verdict.text
 

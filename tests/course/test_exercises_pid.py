@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.controllers import ContinuousPID
-from ir50p_lab.course.exercises import judge, solution
+from ir50p_lab.course.exercises import grade, solution
 from ir50p_lab.course.exercises._catalogue import find
 from ir50p_lab.modelling import THESIS_A
 from ir50p_lab.simulation import simulate
@@ -25,8 +25,8 @@ def test_longest_period_by_stepping(factor, grows):
 
 def test_a_period_that_grows_is_refused():
     longest = find("pid-3")
-    assert judge(longest, 0.0125).state == "right"
-    assert judge(longest, 0.0126).state == judge(longest, 0.0124).state == "wrong"
+    assert grade(longest, 0.0125).state == "right"
+    assert grade(longest, 0.0126).state == grade(longest, 0.0124).state == "wrong"
 
 
 def test_prose_of_the_exercises():

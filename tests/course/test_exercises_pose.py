@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.course.exercises import judge, solution
+from ir50p_lab.course.exercises import grade, solution
 from ir50p_lab.course.exercises.pose import EXERCISES
 
 BY_NAME = {exercise.name: exercise for exercise in EXERCISES}
@@ -19,7 +19,7 @@ def test_every_exercise_is_worked_out_here():
 
 @pytest.mark.parametrize("name", BY_HAND)
 def test_the_answer_by_hand_is_right(name):
-    assert judge(BY_NAME[name], BY_HAND[name]).state == "right"
+    assert grade(BY_NAME[name], BY_HAND[name]).state == "right"
     np.testing.assert_allclose(solution(name), BY_HAND[name], atol=1e-12)
 
 
@@ -35,6 +35,6 @@ def test_the_answer_by_hand_is_right(name):
     ],
 )
 def test_typical_wrong_answers_are_told_apart(name, answer, hint):
-    verdict = judge(BY_NAME[name], answer)
+    verdict = grade(BY_NAME[name], answer)
     assert verdict.state in ("slip", "wrong")
     assert any(part in verdict.text for part in hint.split("|")), verdict.text

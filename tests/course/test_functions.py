@@ -11,7 +11,7 @@ from cells import cell
 from ir50p_lab.course import check, lab_book, my_robot, reset
 from ir50p_lab.course.functions import folder
 from ir50p_lab.course.functions.catalogue import ORDER, task, written
-from ir50p_lab.course.functions.judge import judge
+from ir50p_lab.course.functions.grade import grade
 
 
 @pytest.fixture(autouse=True)
@@ -49,14 +49,14 @@ def test_reference_solutions_pass_become_the_robot_and_stand_alone(home, capsys)
 def test_the_loan_is_right_too(name):
     names = {"np": np, **{one: task(one).right for one in written()}}
     exec(task(name).loan, names)
-    assert judge(task(name), names[name]).state == "right"
+    assert grade(task(name), names[name]).state == "right"
 
 
 @pytest.mark.parametrize("name", written())
 def test_every_slip_gets_its_own_sentence(name):
     one = task(name)
     for slip in one.slips:
-        verdict = judge(one, slip.wrong)
+        verdict = grade(one, slip.wrong)
         assert verdict.says == slip.says
         assert verdict.state == "wrong"
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ir50p_lab.bench import SimulatedBench, Unit
+from ir50p_lab.bench import ArmInstance, SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course import identification_results as results
 from ir50p_lab.course import identification_views as views
@@ -27,7 +27,7 @@ def excitation():
 
 
 def recorded(excitation, seconds, arm=IR50P, seed=0):
-    bench = SimulatedBench(arm, seed=seed, unit=Unit(spread=0), q0=excitation.q_start, record_to=False).open()
+    bench = SimulatedBench(arm, seed=seed, unit=ArmInstance(spread=0), q0=excitation.q_start, record_to=False).open()
     return bench.follow(PID(**PID_TABLES, position_filter_hz=3, filter_hz=np.inf), excitation, seconds)
 
 
@@ -168,7 +168,11 @@ def test_forgetting_follows_a_payload(records, excitation):
 
 def test_hysteresis_is_not_to_blame_but_noise_is(excitation):
     motions, pid = (excitation,) * 2, PID(**PID_TABLES, position_filter_hz=3, filter_hz=np.inf)
-    units = Unit(spread=0), Unit(spread=0, backlash=(0, 0, 0), dead_zone=(0, 0, 0)), Unit(spread=0, noise=0)
+    units = (
+        ArmInstance(spread=0),
+        ArmInstance(spread=0, backlash=(0, 0, 0), dead_zone=(0, 0, 0)),
+        ArmInstance(spread=0, noise=0),
+    )
     plain, tight, quiet = (results.as_the_thesis(IR50P, unit, motions, pid, (30, 30)) for unit in units)
     assert np.abs(tight - plain).max() < 2 and (quiet - plain).max() > 4
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from fake_board import FakeBoard
 
-from ir50p_lab.bench import Calibration, ReplayBench, SerialBench, SimulatedBench, nominal_calibration
+from ir50p_lab.bench import JointCalibration, ReplayBench, SerialBench, SimulatedBench, nominal_calibration
 from ir50p_lab.course import arm_that_answers, load_result, results, save_result
 from ir50p_lab.course import torque_views as views
 from ir50p_lab.errors import InputError, NotMeasuredError
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.vision import Calibration as CameraCalibration
+from ir50p_lab.vision import Calibration
 from ir50p_lab.vision.calibration.fit import NAMES
 
 
@@ -55,7 +55,7 @@ def test_what_is_kept_comes_back(model, recording, capsys):
 def test_the_newest_counts_until_it_is_withdrawn_or_another_chosen(model):
     bench = simulated()
     for k in (1, 2, 3):
-        save_result("calibration", Calibration((100 + k,) * 3, (512,) * 3, source=f"try {k}"), bench)
+        save_result("calibration", JointCalibration((100 + k,) * 3, (512,) * 3, source=f"try {k}"), bench)
     state = results()["state"]
     assert dict(state) == {"calibration-1": "", "calibration-2": "", "calibration-3": "counts"}
     assert results(withdraw="calibration-3")["state"]["calibration-2"] == "counts"
@@ -81,7 +81,7 @@ def test_a_real_arm_uses_only_what_was_measured_on_it(model, recording, capsys):
 def test_a_camera_of_rendered_pictures_serves_simulated_arms_only(capsys):
     K = np.array([[700.0, 0, 320], [0, 700, 240], [0, 0, 1]])
     stderr = dict.fromkeys(NAMES, 0.1)
-    camera = CameraCalibration(K=K, distortion=np.zeros(5), rms=0.1, size=(640, 480), stderr=stderr)
+    camera = Calibration(K=K, distortion=np.zeros(5), rms=0.1, size=(640, 480), stderr=stderr)
     save_result("camera", camera)
     assert load_result("camera", simulated(7)).fx == 700
     with pytest.raises(NotMeasuredError, match="17_camera"):

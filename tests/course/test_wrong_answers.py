@@ -10,9 +10,9 @@ from cells import cell
 
 from ir50p_lab.course import check, my_robot, reset
 from ir50p_lab.course.functions import folder
-from ir50p_lab.course.functions import judge as judging
+from ir50p_lab.course.functions import grade as grading
 from ir50p_lab.course.functions.catalogue import task
-from ir50p_lab.course.functions.task import Slip
+from ir50p_lab.course.functions.task import Mistake
 
 
 @pytest.fixture(autouse=True)
@@ -240,7 +240,7 @@ def test_places_to_reach_have_one_best_pose():
 
 
 def test_the_search_for_a_mistake_ends_in_time(monkeypatch):
-    monkeypatch.setattr(judging, "_PATIENCE", 0.05)
-    endless = (Slip(lambda angle: np.zeros(angle), f"number {k}") for k in itertools.count())
-    monkeypatch.setattr(judging, "distortions", lambda task: endless)
-    assert judging.judge(task("rot_z"), lambda angle: np.eye(3) + angle).state == "wrong"
+    monkeypatch.setattr(grading, "_PATIENCE", 0.05)
+    endless = (Mistake(lambda angle: np.zeros(angle), f"number {k}") for k in itertools.count())
+    monkeypatch.setattr(grading, "distortions", lambda task: endless)
+    assert grading.grade(task("rot_z"), lambda angle: np.eye(3) + angle).state == "wrong"

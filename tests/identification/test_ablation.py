@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.bench import SimulatedBench, Unit
+from ir50p_lab.bench import ArmInstance, SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.identification import fit, load_excitations, process, regressor, validate
 from ir50p_lab.modelling import IR50P
 
 pytestmark = pytest.mark.numeric
-NO_PLAY = Unit(dead_zone=(0, 0, 0), backlash=(0, 0, 0), pot_bow=(0, 0, 0), bow_spread=0.0)  # one count of noise
+NO_PLAY = ArmInstance(dead_zone=(0, 0, 0), backlash=(0, 0, 0), pot_bow=(0, 0, 0), bow_spread=0.0)  # one count of noise
 NAIVE = {"derivatives": "causal", "cutoff_hz": 3.0}
 FULL = {"delay": 0.02, "slow": 0.05}
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ir50p_lab.bench import SimulatedBench, Unit
+from ir50p_lab.bench import ArmInstance, SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import estimate_delay
@@ -21,7 +21,7 @@ FOURIER = fourier(A, B, period=10.0, q0=(0, 0.6, -0.9), periods=6)
 
 def bench(reference, delay, seed=1):
     pid = PID(kp=(289, 225, 270), ki=(50, 10, 50), kd=(40, 30, 30), limit_pwm=255)
-    unit = Unit(delay=delay)
+    unit = ArmInstance(delay=delay)
     with SimulatedBench(IR50P, seed=seed, unit=unit, q0=reference(0.0)[0], record_to=False) as arm:
         return arm.follow(pid, reference, 60)
 

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ir50p_lab.bench import SimulatedBench, Unit
+from ir50p_lab.bench import ArmInstance, SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification import (
@@ -14,7 +14,7 @@ from ir50p_lab.identification import (
     load_excitations,
     output_error,
 )
-from ir50p_lab.identification.closed_loop import Run
+from ir50p_lab.identification.closed_loop import ClosedLoopRun
 from ir50p_lab.identification.make_excitations import thesis_pid
 from ir50p_lab.identification.output_error import compare
 from ir50p_lab.modelling import IR50P
@@ -23,11 +23,11 @@ from ir50p_lab.simulation import simulate
 TRUE = np.array(IR50P.theta_pwm)
 FS = np.array([36.0, 22.0, 22.0])
 MOTION = load_excitations()["training"]
-IDEAL = Unit(dead_zone=(0, 0, 0), backlash=(0, 0, 0), pot_bow=(0, 0, 0), spread=0.0)
+IDEAL = ArmInstance(dead_zone=(0, 0, 0), backlash=(0, 0, 0), pot_bow=(0, 0, 0), spread=0.0)
 
 
 def recorded(seed=0, seconds=30.0, noise=1.0):
-    unit = Unit(**{**vars(IDEAL), "noise": noise})
+    unit = ArmInstance(**{**vars(IDEAL), "noise": noise})
     with SimulatedBench(IR50P, seed=seed, unit=unit, q0=MOTION.q_start, record_to=False) as bench:
         return bench.follow(thesis_pid(), MOTION, seconds)
 
@@ -45,14 +45,14 @@ def refined(record):
 def test_the_loop_is_that_of_simulate_and_of_the_bench(record):
     pid = PID(kp=(289, 225, 270), ki=(50, 10, 50), kd=(40, 30, 30), limit_pwm=255)
     again = simulate(TRUE, pid, MOTION, duration=5.0, q0=MOTION.q_start, unit="PWM")
-    run = Run.of(type("R", (), {"t": again.t, "q": again.q, "u": again.u}), pid, MOTION)
+    run = ClosedLoopRun.of(type("R", (), {"t": again.t, "q": again.q, "u": again.u}), pid, MOTION)
     run.start[:] = MOTION.q_start
     q, u = run.simulate(TRUE)
     np.testing.assert_allclose(q, again.q, atol=1e-12)
     np.testing.assert_allclose(u, again.u, atol=1e-9)
     # the bench, with its delay, rounding and friction, but for the noise of its sensors
     quiet = recorded(noise=0.0, seconds=10.0)
-    run = Run.of(quiet, thesis_pid(), MOTION, delay=0.02)
+    run = ClosedLoopRun.of(quiet, thesis_pid(), MOTION, delay=0.02)
     q, u = run.simulate(TRUE, FS, np.full(3, 0.05))
     assert np.abs(q - quiet.q).max() < 0.02 and np.sqrt(np.mean((q - quiet.q) ** 2)) < 0.006
 
@@ -79,7 +79,7 @@ def test_predicts_another_run_better_than_the_regression(refined, record):
         other = bench.follow(thesis_pid(), motion, 30)
     q, u = refined.score(other, thesis_pid(), motion)
     assert (q.fit > 95).all() and (u.fit > 92).all()
-    run = Run.of(other, thesis_pid(), motion, delay=0.02)
+    run = ClosedLoopRun.of(other, thesis_pid(), motion, delay=0.02)
     before, _ = compare([run], [run.simulate(identify(record, l2=0.2).theta)])
     assert q.rms.sum() < before.rms.sum()
 

@@ -20,7 +20,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: more threa
 import numpy as np
 from tqdm.auto import tqdm
 
-from ir50p_lab.bench import SimulatedBench, Unit
+from ir50p_lab.bench import ArmInstance, SimulatedBench
 from ir50p_lab.identification import (
     fit,
     fit_with_instruments,
@@ -90,7 +90,7 @@ def honesty(seeds, arm):
 
     A nominal arm, whose parameters are known, with one count of noise, rounding and delay.
     """
-    unit, motion = Unit(**PLAIN, spread=0.0), MOTIONS["training"]
+    unit, motion = ArmInstance(**PLAIN, spread=0.0), MOTIONS["training"]
     z = []
     for seed in tqdm(seeds, unit="seed", desc="standard errors"):
         known = record(motion, seed, 0, unit=unit, arm=arm)
@@ -106,8 +106,8 @@ def rows(seeds=20, *, first=100, quick=False):
     seeds = range(first, first + seeds)
     out = []
     for name, unit, floor in (
-        ("1 count of noise, no backlash, dead zone, bow", Unit(**PLAIN), (90, 92, 93)),
-        ("everything on", Unit(), (85, 85, 85)),
+        ("1 count of noise, no backlash, dead zone, bow", ArmInstance(**PLAIN), (90, 92, 93)),
+        ("everything on", ArmInstance(), (85, 85, 85)),
     ):
         naive, full, angle, command = fits(seeds, unit, refine=not quick)
         if floor[0] == 90:

@@ -6,7 +6,7 @@ import pytest
 
 from ir50p_lab.errors import CalibrationError, CameraError, ImageError, InputError
 from ir50p_lab.vision import Frame, PictureFolder, RenderedCamera, Webcam, calibrate, open_camera, save_image
-from ir50p_lab.vision.camera import interface, webcam
+from ir50p_lab.vision.camera import webcam
 from ir50p_lab.vision.rendering import Scene, SceneBall, bench_scene
 
 
@@ -42,7 +42,7 @@ class FakeCapture:
 def _no_webcam(monkeypatch):
     monkeypatch.setattr(webcam, "_capture", lambda index: FakeCapture(opened=False))
     monkeypatch.setattr(webcam, "webcam_present", lambda: False)
-    monkeypatch.delenv(interface.VARIABLE, raising=False)
+    monkeypatch.delenv(webcam.VARIABLE, raising=False)
 
 
 @pytest.fixture
@@ -83,13 +83,13 @@ def test_a_webcam_that_does_not_answer_gives_way(monkeypatch, capsys):
 
 @pytest.mark.parametrize("wish", ["rendered", "RENDERED"])
 def test_environment_variable(monkeypatch, capsys, wish, folder):
-    monkeypatch.setenv(interface.VARIABLE, wish)
+    monkeypatch.setenv(webcam.VARIABLE, wish)
     assert isinstance(open_camera(), RenderedCamera)
     assert f"IR50P_CAMERA={wish}" in capsys.readouterr().out
-    monkeypatch.setenv(interface.VARIABLE, f"folder:{folder}")
+    monkeypatch.setenv(webcam.VARIABLE, f"folder:{folder}")
     assert isinstance(open_camera(), PictureFolder)
     assert isinstance(open_camera("rendered"), RenderedCamera)  # the argument wins
-    monkeypatch.setenv(interface.VARIABLE, "0")
+    monkeypatch.setenv(webcam.VARIABLE, "0")
     with pytest.raises(CameraError, match="no webcam 0"):
         open_camera()
 

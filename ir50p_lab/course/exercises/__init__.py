@@ -51,7 +51,7 @@ from ir50p_lab.course.exercises._answers import Slip
 from ir50p_lab.course.exercises._catalogue import everything, find
 from ir50p_lab.course.exercises._choices import Choice
 from ir50p_lab.course.exercises._display import Note, Table, show
-from ir50p_lab.course.exercises._exercise import Exercise, Verdict, judge
+from ir50p_lab.course.exercises._exercise import Exercise, Verdict, grade
 from ir50p_lab.course.exercises._expressions import Expression
 from ir50p_lab.course.exercises._functions import Function
 from ir50p_lab.course.exercises._numbers import Number
@@ -68,7 +68,7 @@ __all__ = [
     "Verdict",
     "check",
     "exercises",
-    "judge",
+    "grade",
     "progress",
     "solution",
 ]
@@ -85,7 +85,7 @@ def check(name: str, answer=...) -> None:
     except InputError as error:
         show(Note("unknown", "check", str(error)))
         return
-    verdict = judge(exercise, answer)
+    verdict = grade(exercise, answer)
     text = verdict.text
     if verdict.state == "right":
         try:

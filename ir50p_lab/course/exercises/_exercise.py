@@ -51,7 +51,7 @@ class Verdict:
     text: str
 
 
-def judge(exercise: Exercise, answer) -> Verdict:
+def grade(exercise: Exercise, answer) -> Verdict:
     """Compare an answer with the exercise; never raises, whatever the answer does."""
     kind = exercise.kind
     if answer is Ellipsis:

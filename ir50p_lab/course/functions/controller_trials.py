@@ -4,7 +4,7 @@ import inspect
 
 import numpy as np
 
-from ir50p_lab.course.functions.judge import no_numbers
+from ir50p_lab.course.functions.grade import no_numbers
 from ir50p_lab.course.functions.stops import why_it_stops
 from ir50p_lab.course.functions.task import Failed, shown
 

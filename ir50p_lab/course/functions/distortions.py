@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ir50p_lab.course.functions.task import Slip
+from ir50p_lab.course.functions.task import Mistake
 from ir50p_lab.course.functions.variants import variants
 
 _MANY = 6  # longer ones are runs: no part of them has a meaning of its own
@@ -60,13 +60,13 @@ def _of_arguments(task):
         if callable(value) or isinstance(value, str):
             continue
         for says, change in _readings(name, np.asarray(value)):
-            yield Slip(_reading(task, k, change), says)
-        yield Slip(_reading(task, k, lambda _, value=value: value), f"it has one {name} built in, whatever it is given")
+            yield Mistake(_reading(task, k, change), says)
+        yield Mistake(_reading(task, k, lambda _, value=value: value), f"it has one {name} built in, whatever comes in")
     for k in range(len(case)):
         for m in range(k):
             if np.shape(case[k]) == np.shape(case[m]) and not callable(case[k]):
                 says = f"{task.signature[m]} and {task.signature[k]} have changed places"
-                yield Slip(_exchanged(task, m, k), says)
+                yield Mistake(_exchanged(task, m, k), says)
 
 
 def _readings(name, value):
@@ -88,28 +88,28 @@ def _readings(name, value):
 
 def _of_results(task):
     for says, change in _OF_RESULTS:
-        yield Slip(_result(task, change), says)
+        yield Mistake(_result(task, change), says)
     shape = np.shape(next(one for one in (task.right(*case) for case in task.cases()) if one is not None))
     if not shape:
         return
     for j in range(shape[-1]):
         part = task.parts[j] if task.parts else f"column {j + 1}"
         for says, change in _OF_PARTS:
-            yield Slip(_result(task, _on_part(j, change)), says.format(part))
+            yield Mistake(_result(task, _on_part(j, change)), says.format(part))
         for i in range(j):
             other = task.parts[i] if task.parts else f"column {i + 1}"
-            yield Slip(_result(task, _swapped(i, j)), f"{other} and {part} have changed places")
-        yield Slip(_result(task, lambda y, j=j: y[..., j]), f"it returns {part} alone")
-        yield Slip(_result(task, lambda y, j=j: np.delete(y, j, axis=-1)), f"{part} is missing")
+            yield Mistake(_result(task, _swapped(i, j)), f"{other} and {part} have changed places")
+        yield Mistake(_result(task, lambda y, j=j: y[..., j]), f"it returns {part} alone")
+        yield Mistake(_result(task, lambda y, j=j: np.delete(y, j, axis=-1)), f"{part} is missing")
     if len(shape) > 1 and task.same is None:
         for i in range(shape[0]):
             says = f"it returns the first {i} of {shape[0]} only: are the others left out, or does it return too early?"
-            yield Slip(_result(task, lambda y, i=i: y[:i]), says)
-            yield Slip(_result(task, lambda y, i=i: y[i]), f"it returns number {i + 1} of {shape[0]} alone")
-            yield Slip(_result(task, lambda y, i=i: np.delete(y, i, 0)), f"number {i + 1} of {shape[0]} is missing")
+            yield Mistake(_result(task, lambda y, i=i: y[:i]), says)
+            yield Mistake(_result(task, lambda y, i=i: y[i]), f"it returns number {i + 1} of {shape[0]} alone")
+            yield Mistake(_result(task, lambda y, i=i: np.delete(y, i, 0)), f"number {i + 1} of {shape[0]} is missing")
             for j in range(i):
                 change = _on_rows(_swapped(i, j))
-                yield Slip(_result(task, change), f"rows {j + 1} and {i + 1} have changed places")
+                yield Mistake(_result(task, change), f"rows {j + 1} and {i + 1} have changed places")
 
 
 def _reading(task, k, change):

@@ -4,7 +4,7 @@ import numpy as np
 
 from ir50p_lab import modelling
 from ir50p_lab.course.functions.pose import _LENGTHS, arm_of, forward_kinematics, frames
-from ir50p_lab.course.functions.task import Slip, Task, shown
+from ir50p_lab.course.functions.task import Mistake, Task, shown
 from ir50p_lab.errors import UnreachableError
 
 _EDGE = 1e-9  # m: rounding may put a stretched arm's own tip this far outside
@@ -239,7 +239,7 @@ INVERSE_KINEMATICS = Task(
     routes=(_BY_THE_TRIANGLE, _LOAN.replace(_BY_LENGTH, "").replace(_STRAIGHT, _BY_COSINE + _STRAIGHT)),
     parts=("q1", "q2", "q3"),
     slips=tuple(
-        Slip(
+        Mistake(
             lambda p, l, both=both: _inside_the_triangle(p, l, shoulder_too=both),
             "the elbow is the angle inside the triangle, or its cosine has the wrong sign: q3 is 0 where the arm is "
             "stretched, and what is the inner angle there?",
@@ -371,13 +371,13 @@ def _reach_symptom(cases, returned, expected):
 
 
 def _turned(says, turn):
-    """A Slip that compares the turns in another way."""
-    return Slip(lambda p, l, q, m: _chosen(p, l, q, m, turn=lambda x: turn(x, q)), says)
+    """A Mistake that compares the turns in another way."""
+    return Mistake(lambda p, l, q, m: _chosen(p, l, q, m, turn=lambda x: turn(x, q)), says)
 
 
 def _allowed(says, allowed, parts=(2, 3)):
-    """A Slip that strikes out other poses: what keeps the limits, and which frames have to stay above the table."""
-    return Slip(
+    """A Mistake that strikes out other poses: what keeps the limits, and which frames have to stay above the table."""
+    return Mistake(
         lambda p, l, q, m: _chosen(p, l, q, m, allowed=lambda x: allowed(x, m) and above_table(x, l, parts)), says
     )
 
@@ -417,7 +417,7 @@ REACH = Task(
     parts=("q1", "q2", "q3"),
     slips=(
         _turned("it takes the allowed pose that is farthest away", lambda x, q: -np.abs(x - q).max()),
-        Slip(
+        Mistake(
             _the_last_allowed,
             "the last allowed pose wins: is its largest turn compared with the smallest so far, and is that kept up to "
             "date?",
@@ -427,7 +427,7 @@ REACH = Task(
             "a turn counts as the short way round, through an end stop: a joint turns straight from angle to angle",
             lambda x, q: np.abs(np.angle(np.exp(1j * (x - q)))).max(),
         ),
-        Slip(
+        Mistake(
             _only_the_nearest,
             "where the nearest pose is forbidden it gives up, although a farther one is allowed: first strike out, "
             "then compare",

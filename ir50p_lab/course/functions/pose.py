@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from ir50p_lab import modelling
-from ir50p_lab.course.functions.task import Slip, Task
+from ir50p_lab.course.functions.task import Mistake, Task
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.pose import homogeneous, rot_x, rot_y
 
@@ -68,13 +68,13 @@ ROT_Z = Task(
         [0, 0, 1],
     ])""",
     slips=(
-        Slip(
+        Mistake(
             lambda a: rot_z(a).T,
             "it turns the wrong way round: a quarter turn takes (1, 0, 0) to (0, -1, 0), to the "
             "right. Which way is counter-clockwise seen from above?",
         ),
         *(
-            Slip(lambda a, turn=turn, sign=sign: turn(sign * a), f"it turns about {axis}: what stays has to be z")
+            Mistake(lambda a, turn=turn, sign=sign: turn(sign * a), f"it turns about {axis}: what stays has to be z")
             for axis, turn in (("x", rot_x), ("y", rot_y))
             for sign in (1, -1)
         ),
@@ -129,7 +129,9 @@ def _other_motions():
                 steps[k] = other(row[k])
                 return np.linalg.multi_dot(steps)
 
-            yield Slip(wrong, f"{name} {verb} {axis}: which axis is {'the joint' if right == 'z' else 'the link'}'s?")
+            yield Mistake(
+                wrong, f"{name} {verb} {axis}: which axis is {'the joint' if right == 'z' else 'the link'}'s?"
+            )
 
 
 def _dh_symptom(cases, returned, expected):
@@ -180,25 +182,25 @@ def dh_matrix(theta, d, a, alpha):
     link = shift(a, 0, 0) @ turn_x(alpha)
     return joint @ link""",
     slips=(
-        Slip(
+        Mistake(
             lambda t, d, a, f: dh_matrix(np.radians(t), d, a, np.radians(f)),
             "it hardly turns: theta and alpha come in radians already",
         ),
-        Slip(lambda t, d, a, f: dh_matrix(-t, d, a, -f), "both angles turn the wrong way round"),
-        Slip(
+        Mistake(lambda t, d, a, f: dh_matrix(-t, d, a, -f), "both angles turn the wrong way round"),
+        Mistake(
             lambda t, d, a, f: turn_x(f) @ shift(a, 0, 0) @ turn_z(t) @ shift(0, 0, d),
             "the link's motions come before "
             "the joint's: walk from the base, first turn and lift at the joint, then go along the link",
         ),
-        Slip(
+        Mistake(
             lambda t, d, a, f: shift(a, 0, d) @ turn_z(t) @ turn_x(f),
             "the link sticks out before the joint has turned: a is along the x axis *after* theta",
         ),
-        Slip(
+        Mistake(
             lambda t, d, a, f: turn_z(t) @ shift(a, 0, 0) @ turn_x(f) @ shift(0, 0, d),
             "d comes after the tilt: the joint lifts along its own axis, before the link tilts it",
         ),
-        Slip(lambda t, d, a, f: turn_z(t) * shift(a, 0, d) * turn_x(f), "entry by entry (`*`) is no matrix product"),
+        Mistake(lambda t, d, a, f: turn_z(t) * shift(a, 0, d) * turn_x(f), "entry by entry (`*`) is no matrix product"),
         *_other_motions(),
     ),
     symptom=_dh_symptom,
@@ -266,17 +268,17 @@ FRAMES = Task(
     T3 = T2 @ A3
     return np.array([T0, T1, T2, T3])""",
     slips=(
-        Slip(
+        Mistake(
             lambda q, l: np.array([np.eye(4), *_links(q, l)]),
             "each link is seen from the link before it, not from the base: chain them",
         ),
-        Slip(
+        Mistake(
             lambda q, l: np.array(_links(q, l)),
             "there are three, each seen from the link before it: the base comes "
             "first, and the others are seen from the base",
         ),
         *(
-            Slip(lambda q, l, alphas=alphas: _chain(*_links(q, l, alphas)), says)
+            Mistake(lambda q, l, alphas=alphas: _chain(*_links(q, l, alphas)), says)
             for says, alphas in (
                 ("alpha has the wrong sign in rows 1 and 3: lifting the shoulder lowers the arm", (-1, 0, 1)),
                 ("alpha of row 1 has the wrong sign: the shoulder's axis points to the other side", (-1, 0, -1)),
@@ -324,7 +326,7 @@ FORWARD_KINEMATICS = Task(
     tip = T[3]
     return tip[:3, 3]""",
     slips=(
-        Slip(
+        Mistake(
             lambda q, l: np.zeros(3),
             "it returns zeros: the place of the base itself, or a *row* of the transform; the place stands in a column",
         ),

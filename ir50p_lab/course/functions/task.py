@@ -15,7 +15,7 @@ class Failed(Exception):  # noqa: N818  (becomes a sentence)
 
 
 @dataclass(frozen=True)
-class Slip:
+class Mistake:
     """A typical mistake.
 
     wrong: a function with the task's arguments that makes this mistake. says: the symptom in the student's numbers and

@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ir50p_lab.course.functions.task import Slip, Task
+from ir50p_lab.course.functions.task import Mistake, Task
 
 _NAMES = ("rise time", "overshoot", "settling time", "rest error")
 _TOLERANCE = (1e-3, 1e-5, 0.0105, 3e-4)  # s, rad; with or without the sample on the edge of the last second
@@ -168,7 +168,7 @@ def _from_zero(cases, off):
 
 
 def _slip(says, **changes):
-    return Slip(lambda t, q, target: _figures(t, q, target, **changes), says)
+    return Mistake(lambda t, q, target: _figures(t, q, target, **changes), says)
 
 
 def _always_rises(t, q, target):
@@ -239,7 +239,7 @@ STEP_METRICS = Task(
             rests=np.mean,
         ),
         *(
-            Slip(
+            Mistake(
                 lambda t, q, target, k=k: _figures(
                     t, q, target, band=lambda way, last: max(0.02 * abs(way), k * np.std(q))
                 ),
@@ -247,17 +247,17 @@ STEP_METRICS = Task(
             )
             for k in (3, 4)
         ),
-        Slip(
+        Mistake(
             lambda t, q, target: _figures(
                 t, q, target, band=lambda way, last: max(0.02 * abs(target), 4 * _noise(last))
             ),
             "the band is 2 % of the target: a step to 0 would have none. It is 2 % of the way from the start",
         ),
-        Slip(
+        Mistake(
             lambda t, q, target: _figures(t, np.r_[0.0, q[1:]], target),
             "every step begins at 0 rad: look at the first sample for where this one begins",
         ),
-        Slip(_always_rises, "a step that never reaches 90 % of the way gets a rise time: it has none, so nan"),
+        Mistake(_always_rises, "a step that never reaches 90 % of the way gets a rise time: it has none, so nan"),
         _slip("the rise time is negative: which of the two marks does the joint pass first?", rise=lambda a, b: a - b),
         _slip("the rise time is counted from the start of the run, not from 10 % of the way", low=-np.inf),
         _slip("the rise time ends at the target itself, not at 90 % of the way", high=1.0),

@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 
-from ir50p_lab.course.functions.task import Slip
+from ir50p_lab.course.functions.task import Mistake
 
 _PAIRS = {"sin": "cos", "cos": "sin", "arccos": "arcsin", "all": "any", "max": "min"}
 _PAIR_WORDS = {
@@ -39,7 +39,7 @@ def variants(task):
         for says, code in _spoilt(text):
             names = dict(room)
             exec(code, names)
-            yield Slip(names[task.function], says)
+            yield Mistake(names[task.function], says)
 
 
 def in_words_of(function, says):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.course.functions.pose import _LENGTHS, forward_kinematics, frames
-from ir50p_lab.course.functions.task import Slip, Task
+from ir50p_lab.course.functions.task import Mistake, Task
 
 
 # -------------------------------------------------------------------------------------------------------- jacobian
@@ -79,27 +79,27 @@ JACOBIAN = Task(
         J[3:, joint] = axis
     return J""",
     slips=(
-        Slip(lambda T, k, p: _columns(T, k, T[k][:3, 3]), "the end of the link moves in it: `point` is not used"),
-        Slip(lambda T, k, p: _columns(T, k, T[3][:3, 3]), "it is the tip that moves in it: `point` is not used"),
-        Slip(
+        Mistake(lambda T, k, p: _columns(T, k, T[k][:3, 3]), "the end of the link moves in it: `point` is not used"),
+        Mistake(lambda T, k, p: _columns(T, k, T[3][:3, 3]), "it is the tip that moves in it: `point` is not used"),
+        Mistake(
             lambda T, k, p: jacobian(T, k, p)[:, :k],
             "there are three columns always: joints that do not carry the link get zeros",
         ),
-        Slip(
+        Mistake(
             lambda T, k, p: _columns(T, k, p, across=lambda z, _: np.cross(z, p)),
             "the levers all start at the base: each starts at its own joint",
         ),
-        Slip(
+        Mistake(
             lambda T, k, p: _columns(T, k, p, across=lambda z, lever: np.cross(lever, z)),
             "the velocities point backwards: the factors of the cross product have changed places, or the lever goes "
             "from the point to the joint",
         ),
-        Slip(_lever_to_the_next, "each lever ends at the next joint, not at the point"),
-        Slip(
+        Mistake(_lever_to_the_next, "each lever ends at the next joint, not at the point"),
+        Mistake(
             lambda T, k, p: _columns(T, k, (T[k] @ np.append(p, 1))[:3]),
             "the point is turned and shifted once more: it is given in base coordinates already",
         ),
-        Slip(
+        Mistake(
             lambda T, k, p: _columns(T, k, p, axis=np.array([0.0, 0, 1])),
             "every joint turns about the vertical in it: the axes of shoulder and elbow lie flat",
         ),
@@ -127,13 +127,13 @@ def _step(q, p, l, damping, *, solve=None, rows=slice(3)):
 
 
 def _changed(says, change):
-    """A Slip that changes the step before it is added."""
-    return Slip(lambda q, p, l, d: q + change(damped_step(q, p, l, d) - q, d), says)
+    """A Mistake that changes the step before it is added."""
+    return Mistake(lambda q, p, l, d: q + change(damped_step(q, p, l, d) - q, d), says)
 
 
 def _solved(says, solve):
-    """A Slip that finds the step in another way."""
-    return Slip(lambda q, p, l, d: _step(q, p, l, d, solve=solve), says)
+    """A Mistake that finds the step in another way."""
+    return Mistake(lambda q, p, l, d: _step(q, p, l, d, solve=solve), says)
 
 
 def _steps():
@@ -208,11 +208,11 @@ DAMPED_STEP = Task(
             "`**-1` inverts each entry, not the matrix",
             lambda J, e, d: J.T @ ((J @ J.T + d**2 * np.eye(3)) ** -1.0 @ e),
         ),
-        Slip(
+        Mistake(
             lambda q, p, l, d: np.angle(np.exp(1j * damped_step(q, p, l, d))),
             "the angles are wrapped to half a turn: a joint goes where the step leads, leave them as they are",
         ),
-        Slip(
+        Mistake(
             lambda q, p, l, d: _step(q, p, l, d, rows=slice(3, 6)),
             "the lower three rows of the Jacobian are used, the turning: a place needs the velocity",
         ),

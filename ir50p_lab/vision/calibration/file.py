@@ -11,7 +11,7 @@ from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.fit import NAMES
 from ir50p_lab.vision.calibration.reasons import Reason, Rejected
-from ir50p_lab.vision.calibration.result import Calibration, View
+from ir50p_lab.vision.calibration.view import View
 
 _DEEPEST = 1000  # lists within lists: a calibration has five
 
@@ -65,8 +65,8 @@ def save(calibration, path):
     return path
 
 
-def load(path, size=None):
-    """Read a Calibration from a file of `save`, or of a program that uses OpenCV's names; see Calibration.load."""
+def load(cls, path, size=None):
+    """Read a Calibration, of class `cls`, as `save` or a program with OpenCV's names wrote it; see Calibration.load."""
     import cv2
 
     path = _checked(path)
@@ -90,7 +90,7 @@ def load(path, size=None):
             f"{path} is no calibration: it needs image_width, image_height, camera_matrix and distortion_coefficients"
         )
     try:
-        calibration = Calibration(**values, **_details(file))
+        calibration = cls(**values, **_details(file))
         calibration.pinhole  # noqa: B018 - refuses numbers that are no camera
     except (ValueError, KeyError, AttributeError, cv2.error) as error:
         raise CalibrationError(f"{path} is a damaged calibration: {error}") from None

@@ -6,38 +6,10 @@ import numpy as np
 
 from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.board import Checkerboard
+from ir50p_lab.vision.calibration.file import load, save
 from ir50p_lab.vision.calibration.fit import NAMES
 from ir50p_lab.vision.checks import picture_size
 from ir50p_lab.vision.pinhole import Pinhole
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class View:
-    """One picture of the board that was used.
-
-    name, index: as in `Rejected`; points (n, 3) m on the board; corners (n, 2) px as found; residuals (n, 2) px, found
-    minus model; rms: of their lengths, px; T_cam_board (4, 4) takes board to camera coordinates; rise: width of an
-    edge, px; finder: who found the corners.
-    """
-
-    name: str
-    index: int
-    points: np.ndarray = field(repr=False)
-    corners: np.ndarray = field(repr=False)
-    residuals: np.ndarray = field(repr=False)
-    T_cam_board: np.ndarray = field(repr=False)
-    rise: float = np.nan
-    finder: str = ""
-
-    @property
-    def rms(self):
-        """Root mean square distance between found and model corners, px."""
-        return float(np.sqrt((self.residuals**2).sum(axis=1).mean()))
-
-    @property
-    def tilt(self):
-        """Angle between the board and the plane of the picture, rad."""
-        return float(np.arccos(np.clip(abs(self.T_cam_board[2, 2]), 0, 1)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -126,20 +98,16 @@ class Calibration:
 
     def save(self, path):
         """Write a YAML file that cv2.FileStorage (and OpenCV's samples) read. Returns the path."""
-        from ir50p_lab.vision.calibration.file import save
-
         return save(self, path)
 
-    @staticmethod
-    def load(path, size=None):
+    @classmethod
+    def load(cls, path, size=None):
         """Read such a file, or one that OpenCV's calibration sample or ROS (camera_info) wrote; no fisheyes.
 
         size: (width, height) of the pictures it is for. Raises CalibrationError for a file that is missing or no
         calibration, and for one of another picture size.
         """
-        from ir50p_lab.vision.calibration.file import load
-
-        return load(path, size)
+        return load(cls, path, size)
 
     def __str__(self):
         lines = [

@@ -7,8 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import CameraError, ImageError
-from ir50p_lab.vision.camera.interface import TO_RENDERED, Camera, Frame
+from ir50p_lab.vision.camera.interface import Camera, Frame
 from ir50p_lab.vision.console import captured
+
+VARIABLE = "IR50P_CAMERA"
+TO_RENDERED = f"for the rendered bench: open_camera('rendered') or {VARIABLE}=rendered"
 
 LOST_AFTER = 3  # s without a picture: the webcam is unplugged
 

@@ -119,7 +119,7 @@ def camera_over(bench, balls=(0.40, 0.0, 0.03), *, source=None, small=False, **o
     height, for what must be quick; options: of RenderedBench.
     Raises CameraError for a real arm if there is no webcam: it would reach for a ball that was only drawn.
     """
-    from ir50p_lab.vision.camera.interface import open_camera
+    from ir50p_lab.vision.camera.opening import open_camera
 
     if not hasattr(bench, "plant"):
         camera = open_camera(source, **({"size": (320, 240)} if small else {}))

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ir50p_lab.bench import UNIT, SimulatedArm, SimulatedBench, Unit
+from ir50p_lab.bench import UNIT, ArmInstance, SimulatedArm, SimulatedBench
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import IR50P
 
@@ -24,7 +24,7 @@ def test_a_seed_is_one_copy():
 
 
 def test_without_spread_every_copy_is_the_nominal_one():
-    assert Unit(spread=0).drawn(7) == Unit(spread=0)
+    assert ArmInstance(spread=0).drawn(7) == ArmInstance(spread=0)
 
 
 def test_copies_stay_within_the_tolerances_and_use_them():
@@ -39,7 +39,7 @@ def test_copies_stay_within_the_tolerances_and_use_them():
 
 
 def test_half_the_spread_is_half_the_difference():
-    full, half = Unit().drawn(1), Unit(spread=0.5).drawn(1)
+    full, half = ArmInstance().drawn(1), ArmInstance(spread=0.5).drawn(1)
     np.testing.assert_allclose(np.array(half.pot_shift), 0.5 * np.array(full.pot_shift))
 
 
@@ -58,7 +58,7 @@ def test_half_the_spread_is_half_the_difference():
 )
 def test_impossible_values_are_refused_by_name(field, value):
     with pytest.raises(InputError, match=field):
-        Unit(**{field: value})
+        ArmInstance(**{field: value})
 
 
 def test_the_environment_chooses_the_copy(monkeypatch):

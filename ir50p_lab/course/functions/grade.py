@@ -18,7 +18,7 @@ _PATIENCE = 2.0  # s of computing: the search for a likely mistake ends then
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Grade:
     """state: "right" or "wrong"; says: one or two sentences; example: one failing input with both answers, or ""."""
 
     state: str
@@ -26,23 +26,23 @@ class Verdict:
     example: str = ""
 
 
-def judge(task, function):
-    """Return the Verdict on a function or class, whatever it does."""
+def grade(task, function):
+    """Return the Grade on a function or class, whatever it does."""
     if task.tried is not None:
         try:
-            return Verdict("right", task.tried(function))
+            return Grade("right", task.tried(function))
         except Failed as failed:
-            return Verdict("wrong", *failed.args)
+            return Grade("wrong", *failed.args)
     cases = task.cases()
     try:
         _check_signature(task, function, cases[0])
         returned = [_call(task, function, case) for case in cases]
     except Failed as failed:
-        return Verdict("wrong", *failed.args)
+        return Grade("wrong", *failed.args)
     expected = [task.right(*copy.deepcopy(case)) for case in cases]
     good = [_agrees(task, one, other) for one, other in zip(returned, expected, strict=True)]
     if all(good):
-        return _judge_form(task, cases, returned, expected)
+        return _grade_form(task, cases, returned, expected)
     first = good.index(False)
     bad_first = sorted(range(len(cases)), key=lambda k: good[k])
     stopped = [one for one in returned if isinstance(one, Failed)]
@@ -50,9 +50,9 @@ def judge(task, function):
     for slip in () if silent else chain(task.slips, _while_patient(distortions(task))):
         if all(_is_slip(task, slip, cases[k], returned[k]) for k in bad_first):
             says = slip.says if slip in task.slips else in_words_of(function, slip.says)
-            return Verdict("wrong", says, _example(task, cases[first], expected[first], returned[first]))
+            return Grade("wrong", says, _example(task, cases[first], expected[first], returned[first]))
     if stopped:
-        return Verdict("wrong", *stopped[0].args)
+        return Grade("wrong", *stopped[0].args)
     says = (
         _common(task, returned, expected)
         or (
@@ -61,7 +61,7 @@ def judge(task, function):
         or (task.symptom and task.symptom(cases, returned, expected))
     )
     example = _example(task, cases[first], expected[first], returned[first])
-    return Verdict("wrong", says or _which(task, cases, good), example)
+    return Grade("wrong", says or _which(task, cases, good), example)
 
 
 def _while_patient(slips):
@@ -118,19 +118,19 @@ def _is_slip(task, slip, case, returned):
     return _agrees(task, returned, wrong)
 
 
-def _judge_form(task, cases, returned, expected):
+def _grade_form(task, cases, returned, expected):
     """The numbers are right; what the next functions need is an array, too."""
     for case, one, other in zip(cases, returned, expected, strict=True):
         if task.form is not None and (says := task.form(one)):
-            return Verdict("wrong", says, _example(task, case, other, one))
+            return Grade("wrong", says, _example(task, case, other, one))
         if isinstance(other, np.ndarray) and not isinstance(one, np.ndarray):
             kind = type(one).__name__
-            return Verdict(
+            return Grade(
                 "wrong",
                 f"the numbers are right, but it returns a {kind}: later functions will slice it, so "
                 "return an array, `np.array(...)`",
             )
-    return Verdict("right", "")
+    return Grade("right", "")
 
 
 def _common(task, returned, expected):

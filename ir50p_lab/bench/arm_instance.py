@@ -10,7 +10,7 @@ from ir50p_lab.inputs import vectors3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Unit:
+class ArmInstance:
     """One copy of an arm, with what its drawing does not say.
 
     Friction, breakaway, motor gains, back-EMF and the limit of the supply are the Arm's (`arm.friction`,
@@ -71,7 +71,7 @@ class Unit:
             raise InputError(f"unit delay = {self.delay}: give whole periods, 0 to 100")
 
     def drawn(self, seed):
-        """The copy number `seed` of the series: a Unit with spread 0 that holds its own values (even distribution)."""
+        """The copy number `seed` of the series: spread 0, its own values (even distribution)."""
         if self.spread == 0:
             return self
         even = np.random.default_rng([int(seed), 0]).uniform(-self.spread, self.spread, (5, 3))
@@ -86,7 +86,7 @@ class Unit:
         )
 
 
-UNIT = Unit()
+UNIT = ArmInstance()
 
 
 def chosen_copy(seed):
