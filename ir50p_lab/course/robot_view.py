@@ -5,12 +5,12 @@ from ir50p_lab.course.style import COLOURS, new_figure
 
 _PARTS = {  # what of the robot a function makes, notebook by notebook: where its mark stands in the drawing
     "column": (("00", "01"), (0.18, 1.1)),
-    "joints": (("02", "03"), (0.9, 2.75)),
-    "weight": (("04", "05"), (1.75, 2.0)),
-    "motion": (("06", "07"), (2.75, 2.35)),
-    "control": (("08", "09"), (-1.1, 1.05)),
-    "bench": (("10",), (-1.1, 0.45)),
-    "model": (("12", "13", "14", "15"), (-1.1, 1.65)),
+    "joints": (("02", "03"), (0.9, 3.0)),
+    "weight": (("04", "05"), (1.3, 1.6)),
+    "motion": (("06", "07"), (2.3, 2.55)),
+    "control": (("08", "09"), (-1.5, 1.05)),
+    "bench": (("10",), (-1.5, 0.45)),
+    "model": (("12", "13", "14", "15"), (-1.5, 1.65)),
     "eye": (("16", "17", "18"), (3.5, 3.1)),
 }
 
@@ -33,7 +33,7 @@ def owned(whose):
             ax.plot(x + 0.2 * k, y, "s", color=colours[whose[name]], mec="white", ms=10, zorder=3)
         ax.annotate(part, (x, y), (-4, 9), textcoords="offset points", fontsize=9, color=COLOURS["dark"], zorder=4)
     mine = sum(one == "yours" for one in whose.values())
-    ax.set(xlim=(-1.4, 4.9), ylim=(-0.3, 3.5), aspect="equal")
+    ax.set(xlim=(-1.8, 4.7), ylim=(-0.3, 3.5), aspect="equal")
     ax.set_axis_off()
     lent = sum(one == "on loan" for one in whose.values())
     ax.set_title(f"{mine} of {len(ORDER)} functions are yours{f', {lent} on loan' if lent else ''}; a square each")

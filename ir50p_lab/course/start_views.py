@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from ir50p_lab.course import my_robot
 from ir50p_lab.course.style import COLOURS, new_figure
 from ir50p_lab.modelling.chain import frames
-from ir50p_lab.modelling.pose import homogeneous
 
 
 def from_above(angle):
@@ -30,25 +28,33 @@ def from_above(angle):
     return figure
 
 
-def turned_by(arm):
-    """f(q) -> (4, 4, 4): frames of the arm with its waist turned by `my_robot.rot_z`, the rest the course's."""
+def turned_by(arm, rot_z):
+    """f(q) -> (4, 4, 4): frames of the arm with its waist turned by `rot_z`, right or wrong; the rest is the course's.
+
+    rot_z: f(angle) -> (3, 3).
+    """
 
     def with_own_waist(q):
+        waist = np.eye(4)
+        waist[:3, :3] = rot_z(q[0])
         level = frames(arm, [0.0, q[1], q[2]])
-        waist = homogeneous(my_robot.rot_z(q[0]), np.zeros(3))
         return np.array([np.eye(4), *(waist @ T for T in level[1:])])
 
     return with_own_waist
 
 
 def speed_over_time(*runs, joint, labels=None):
-    """Speed of one joint (1 to 3) of simulated runs: LabFigure."""
+    """Speed of one joint (1 to 3) of simulated runs; of a single run with a line at 63 % of its end: LabFigure."""
     figure = new_figure(8, 3.4)
     ax = figure.axes[0]
     for run, label in zip(runs, labels or [f"joint {joint}"], strict=True):
         ax.plot(run.t, run.qd[:, joint - 1], label=label, linewidth=2)
+    if len(runs) == 1:
+        last = runs[0].qd[-1, joint - 1]
+        ax.axhline((1 - np.exp(-1)) * last, color=COLOURS["dark"], linestyle="--", label="63 % of the last speed")
     ax.set(xlim=(0, runs[0].t[-1]), ylim=(0, None), xlabel="time [s]", ylabel="speed [rad/s]")
     ax.set_xticks(np.arange(0, runs[0].t[-1] + 0.01, 0.1))
+    ax.set_xticks(np.arange(0, runs[0].t[-1] + 0.01, 0.02), minor=True)
     ax.set_title("Simulated: a constant push from rest")
     ax.legend(loc="lower right")
     return figure

@@ -7,7 +7,7 @@ from ir50p_lab.modelling import IR50P, mass_matrix
 
 NOTEBOOK = "00_start_here"
 
-# start-5: the waist of the IR50P pushed from rest, shoulder and elbow bent (0, -0.2, 0.2) rad.
+# start-5: the waist of the IR50P pushed from rest, shoulder and elbow at -0.2 and 0.2 rad.
 _T = float(mass_matrix(IR50P, [0, -0.2, 0.2])[0, 0] / (IR50P.actuators.back_emf_damping[0] + IR50P.friction.fv[0]))
 
 
@@ -31,7 +31,7 @@ EXERCISES = (
     Exercise(
         "start-5",
         "the time constant T of the speed drawn above",
-        Number(_T, unit="s", tolerance=0.05, because="a reading from a plot is good to half a grid line"),
+        Number(_T, unit="s", tolerance=0.02, because="a reading from the plot is good to a tick"),
         why="T says how fast a system answers; each motor and each filter of the arm has one.",
         slips=(
             Slip(1.8, "That is the final value; the time constant is a time, read on the other axis."),

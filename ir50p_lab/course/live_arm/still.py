@@ -12,12 +12,12 @@ from ir50p_lab.course.style import COLOURS, new_figure
 
 
 def still_png(view):
-    """The present pose of a LiveArm, its set point and path if it plays a run, by matplotlib: bytes of a PNG file."""
+    """The present pose of a LiveArm, and its path if it plays a run, by matplotlib: bytes of a PNG file."""
     with DRAWING:
         figure = new_figure(7.2, 4.6, projection="3d")
         ax = figure.axes[0]
         arm = ArmView(ax, view.arm, view.q, frames="frames" in view.layers)
-        if view.track:
+        if view.track and "trail" in view.layers:
             arm.trail(path_of(view.arm, view.track, view.shape))
         if "ball" in view.things:
             ax.scatter(*np.transpose([view.things["ball"]["p"]]), s=90, color="#C8102E")
