@@ -133,15 +133,39 @@ def test_a_saved_notebook_of_twenty_views_has_less_than_a_megabyte(run):
     assert len(json.dumps(embed_data(views, state=dependency_state(views))["manager_state"])) < 1e6
 
 
-def test_the_still_picture_shows_the_pose(run):
-    view = LiveArm(IR50P, [0, 0.5, -1])
-    pictures = []
-    for q in ([0, 0.5, -1], [1, 0.5, -1]):
-        view.q = q
-        data, _ = view._repr_mimebundle_()
-        pictures.append(np.asarray(Image.open(io.BytesIO(base64.b64decode(data["image/png"]))).convert("RGB")))
+def still(view):
+    data, _ = view._repr_mimebundle_()
     assert "application/vnd.jupyter.widget-view+json" in data
-    assert (pictures[0] != pictures[1]).any(axis=-1).mean() > 0.01
+    return np.asarray(Image.open(io.BytesIO(base64.b64decode(data["image/png"]))).convert("RGB")).astype(int)
+
+
+def coloured(picture, colour):
+    """Share of the pixels that are nearly of a colour."""
+    return (np.abs(picture - colour).max(axis=-1) < 12).mean()
+
+
+def test_the_still_picture_shows_pose_frames_and_ellipsoids():
+    view = LiveArm(IR50P, [0, 0.5, -1])
+    first = still(view)
+    view.q = [1, 0.5, -1]
+    assert (first != still(view)).any(axis=-1).mean() > 0.01
+    forearm = (213, 94, 0)
+    own = still(LiveArm(IR50P, [0, 0.5, -1], frames=lambda q: frames(IR50P, -q)))
+    assert coloured(first, forearm) > 0.002 > coloured(own, forearm)  # links of frames have one colour
+    both = ["velocity ellipsoid", "force ellipsoid"]
+    bent, stretched = (still(LiveArm(IR50P, q, layers=both)) for q in ([0, 0.5, -1], [0, 0.5, 0]))
+    assert bluish(bent) > bluish(first) + 0.002
+    assert pink(bent) > 0.005 > 0.001 > pink(stretched)  # stretched out, the forces have no end
+
+
+def bluish(picture):
+    r, _, b = np.moveaxis(picture, -1, 0)
+    return (b > r + 30).mean()
+
+
+def pink(picture):
+    r, g, b = np.moveaxis(picture, -1, 0)
+    return ((r > g + 15) & (b > g + 8)).mean()
 
 
 def test_a_loop_in_the_background_feeds_the_view_and_can_be_played_afterwards(heard, tmp_path):

@@ -9,6 +9,8 @@ from ir50p_lab.course.arm3d import ArmView
 from ir50p_lab.course.live_arm.track import path_of
 from ir50p_lab.course.painter import DRAWING
 from ir50p_lab.course.style import COLOURS, new_figure
+from ir50p_lab.modelling.chain import forward_kinematics
+from ir50p_lab.modelling.differential import jacobian
 
 
 def still_png(view):
@@ -21,9 +23,30 @@ def still_png(view):
             arm.trail(path_of(view.arm, view.track, view.shape))
         if "ball" in view.things:
             ax.scatter(*np.transpose([view.things["ball"]["p"]]), s=90, color="#C8102E")
+        if view.poses:
+            arm.set_visible(False)
+            corners = np.array(view.poses, dtype=float)[:, :3, 3]
+            ax.plot(*corners.T, color=COLOURS["blue"], linewidth=8, solid_capstyle="round")
+        _ellipsoids(ax, view)
         ax.text2D(0.02, 0.95, view.options["badge"], transform=ax.transAxes, color=COLOURS["dark"], weight="bold")
         stream = io.BytesIO()
         figure.savefig(stream, format="png")
     small = io.BytesIO()
     Image.open(stream).convert("RGB").quantize(64).save(small, format="png", optimize=True)
     return small.getvalue()
+
+
+def _ellipsoids(ax, view):
+    """At the tip, as large as in the browser; at a singular pose that of the forces has no end and is left out."""
+    J = jacobian(view.arm, view.q)[:3]
+    tip = forward_kinematics(view.arm, view.q)
+    turn, height = np.linspace(0, 2 * np.pi, 41), np.linspace(0, np.pi, 21)[:, None]
+    ball = np.stack(np.broadcast_arrays(np.sin(height) * np.cos(turn), np.sin(height) * np.sin(turn), np.cos(height)))
+    for name, colour, matrix, row in (
+        ("velocity ellipsoid", COLOURS["sky"], lambda: 0.25 * J, 0),
+        ("force ellipsoid", COLOURS["purple"], lambda: 0.025 * np.linalg.inv(J).T, 1),
+    ):
+        if name in view.layers and (row == 0 or abs(np.linalg.det(J)) > 1e-4):
+            surface = np.einsum("ij,jkl->ikl", matrix(), ball) + tip[:, None, None]
+            ax.plot_surface(*surface, color=colour, alpha=0.35, linewidth=0)
+            ax.text2D(0.02, 0.88 - 0.06 * row, name, transform=ax.transAxes, color=colour)
