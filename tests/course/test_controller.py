@@ -147,6 +147,13 @@ def test_no_reset_a_shared_memory_gains_read_once_and_a_kick():
     assert "kicks" in grade(task("PID"), made(kick)).says
 
 
+def test_a_memory_limited_in_rad_s_is_told():
+    text = edited("PID.limits", ("self.ki * error", "error"), ("+ grown", "+ self.ki * grown"))
+    text = text.replace("np.where(winds_up, self.integral, grown)", "np.clip(grown, -self.limit, self.limit)")
+    text = text.replace("error + self.integral,", "error + self.ki * self.integral,")
+    assert "your memory is in rad s" in grade(task("PID.limits"), made(text)).says
+
+
 def test_an_integral_that_waits_for_the_last_push_is_told():
     """Deciding by what was returned last locks up: at its limit it never integrates again."""
     text = edited("PID.limits", (WINDS, "winds_up = np.abs(self.pushed) >= self.limit"))

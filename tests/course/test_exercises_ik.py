@@ -54,6 +54,7 @@ def test_the_answer_by_hand_is_right(name):
         ("ik-2", 0.2 / 0.572, "stretched"),
         ("ik-2", 0.2, "time"),
         ("ik-5", "front/down", "upper limit"),
+        ("ik-5", " Front / down ", "upper limit"),
         ("ik-5", "back/up", "face away"),
         ("ik-5", "back/down", "bend backwards"),
     ],

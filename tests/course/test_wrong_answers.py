@@ -1,5 +1,6 @@
 """Wrong answers are told apart from their numbers, right ones of any shape are taken, and nothing makes check raise."""
 
+import dataclasses
 import itertools
 import re
 
@@ -11,7 +12,7 @@ from cells import cell
 from ir50p_lab.course import check, my_robot, reset
 from ir50p_lab.course.functions import folder
 from ir50p_lab.course.functions import grade as grading
-from ir50p_lab.course.functions.catalogue import task
+from ir50p_lab.course.functions.catalogue import task, written
 from ir50p_lab.course.functions.task import Mistake
 
 
@@ -35,6 +36,7 @@ def told(capsys, name, *changes, text=None, notebook=()):
 
 HAND = "def rot_z(angle):\n    {}\n    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])"
 SINE = "c, s = np.cos(angle), np.sin(angle)"
+SLOPE = "np.arctan2(up, out) - np.arctan2"
 REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
 
 
@@ -56,7 +58,11 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
         ("inverse_kinematics", "np.array(poses)", "np.degrees(poses)", "degrees"),
         ("inverse_kinematics", "[1, -1]", "[1]", "two poses a place, all on one side"),
         ("inverse_kinematics", "[-bend, bend]", "[bend]", "two poses a place, one facing it and one with its back"),
-        ("inverse_kinematics", "np.arctan2(side * y, side * x)", "np.arctan2(y, x)", "factor is missing"),
+        ("inverse_kinematics", "np.arctan2(side * y, side * x)", "np.arctan2(y, x)", "half a turn off in the poses"),
+        ("inverse_kinematics", "np.arctan2(side * y, side * x)", "np.arctan(y / x)", "can that which it is taken from"),
+        ("inverse_kinematics", "= side * np.hypot(x, y)", "= np.hypot(x, y)", "the shoulder of the one that faces it"),
+        ("inverse_kinematics", SLOPE, SLOPE.replace("-", "+"), "do not fit together: is it the sign"),
+        ("inverse_kinematics", " or r < shortest - 1e-9", "", r"too near the shoulder \(r < |l2 - l3|\)"),
         ("inverse_kinematics", "r > longest + 1e-9", "r > longest - 1e-9", "very edge"),
         ("inverse_kinematics", "r > longest + 1e-9", "r > longest + 2e-6", "out of reach gets poses"),
         ("inverse_kinematics", "return np.empty((0, 3))", "return None", "no pose means no row"),
@@ -74,13 +80,35 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
             "inside the triangle",
         ),
         ("reach", REACH_LIMITS, "np.all(q <= limits[1])", "only the upper limits"),
-        ("reach", "    return best", "    return None", "None for all"),
+        ("reach", REACH_LIMITS, "all(limits[k][0] <= q[k] <= limits[k][1] for k in range(2))", "read as columns"),
+        ("reach", REACH_LIMITS, "all(limits[0][k] <= q[k] <= limits[1][k] for k in range(2))", "of joint 3 are not"),
+        ("reach", "np.max(np.abs(q - q_now))", "np.sum(np.abs(q - q_now))", "adds up the turns of the three joints"),
+        ("reach", "np.max(np.abs(q - q_now))", "max(q - q_now)", "with their sign"),
+        ("rot_z", "[s, c, 0.0]", "[-s, c, 0.0]", "row 2, column 1 has the wrong sign"),
+        ("dh_matrix", "T[:3, 3] = [x", "T[3, :3] = [x", "stands in the bottom row"),
+        ("jacobian", "axis = T[joint]", "axis = T[joint + 1]", "axis of joint k is taken from frame k, one too far"),
+        (
+            "jacobian",
+            "origin = T[joint]",
+            "origin = T[joint + 1]",
+            "lever of joint k is taken from frame k, one too far",
+        ),
+        (
+            "damped_step",
+            "J.T @ np.linalg.solve(A, p - tip)",
+            "np.linalg.pinv(J) @ (p - tip) / (1 + damping**2)",
+            "without damping, made shorter",
+        ),
+        ("damped_step", "J.T @ np.linalg.solve", "0.5 * J.T @ np.linalg.solve", "counts by half|length is not"),
+        ("step_metrics", "t[np.argmax(done >= 0.1)]", "t[np.argmax(done >= 0.1) - 1]", "time is 1 sample too long"),
+        ("reach", "    return best", "    return None", r"None for (\d+) of \1 "),
         ("reach", "    return best", "    return best, smallest", "things that make no array"),
         ("jacobian", "axis = T[joint][:3, 2]", "axis = T[joint][:3, 0]", "look at the axis"),
         ("jacobian", "np.zeros((6, 3))", "np.zeros((6, 3), dtype=int)", "array of integers|whole numbers"),
         ("damped_step", "J @ J.T", "J * J.T", r"entry by entry \(`\*`"),
         ("damped_step", "damping**2", "damping", "a square is missing"),
-        ("damped_step", "damping**2 * np.eye(3)", "damping**2", "identity"),
+        ("damped_step", "damping**2 * np.eye(3)", "damping**2", "all nine entries"),
+        ("damped_step", "damping**2 * np.eye(3)", "damping**2 * 1", "all nine entries"),
         ("damped_step", "damping**2", "damping^2", "no power in Python"),
         ("step_metrics", "(q - start) / jump", "q / target", "begins at 0 rad and wrong elsewhere"),
         (
@@ -244,3 +272,60 @@ def test_the_search_for_a_mistake_ends_in_time(monkeypatch):
     endless = (Mistake(lambda angle: np.zeros(angle), f"number {k}") for k in itertools.count())
     monkeypatch.setattr(grading, "distortions", lambda task: endless)
     assert grading.grade(task("rot_z"), lambda angle: np.eye(3) + angle).state == "wrong"
+
+
+CLOSED = """def dh_matrix(theta, d, a, alpha):
+    c, s, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
+    return np.array([[c, -s * ca, s * sa, a * c], [s, c * ca, -c * sa, a * s], [0, sa, ca, a], [0, 0, 0, 1]])"""
+TOO_MANY_ROWS = """def damped_step(q, p, l, damping):
+    J = jacobian(frames(q, l), 3, forward_kinematics(q, l))
+    return q + J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(6), p - forward_kinematics(q, l))"""
+ELBOW_KEPT = """def inverse_kinematics(p, l):
+    q1, out, up = np.arctan2(p[1], p[0]), np.hypot(p[0], p[1]), p[2] - l[0]
+    c = (out**2 + up**2 - l[1]**2 - l[2]**2) / (2 * l[1] * l[2])
+    if abs(c) > 1 + 1e-7:
+        return np.empty((0, 3))
+    q3 = np.arccos(np.clip(c, -1, 1)) * np.array([1, -1])
+    q2 = np.arctan2(up, out) - np.arctan2(l[2] * np.sin(q3), l[1] + l[2] * np.cos(q3))
+    poses = [[q1, q2[k], q3[k]] for k in (0, 1)] + [[q1 + np.pi, np.pi - q2[k], q3[k]] for k in (0, 1)]
+    return (np.array(poses) + np.pi) % (2 * np.pi) - np.pi"""
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("dh_matrix", CLOSED, "row 3, column 4 holds a"),
+        ("damped_step", TOO_MANY_ROWS, r"shape \(6, 6\); `p - forward_kinematics\(q, l\)` has the shape \(3,\)"),
+        ("inverse_kinematics", ELBOW_KEPT, "do not fit together in the poses with their back"),
+        ("rot_z", "def rot_z(angle):\n    return my_robot.rot_z(angle)", "the function you are about to write"),
+    ],
+)
+def test_other_ways_to_be_wrong_have_theirs(name, text, words, capsys):
+    said = told(capsys, name, text=text, notebook={"my_robot": my_robot})
+    assert re.search(words, said) and "gufunc" not in said, said
+
+
+def test_two_mistakes_at_once_are_told_one_by_one(capsys):
+    said = told(capsys, "inverse_kinematics", (SLOPE, SLOPE.replace("-", "+")), ("longest + 1e-9", "longest - 1e-9"))
+    assert "do not fit together" in said and "something else is wrong, too" in said
+
+
+@pytest.mark.parametrize("name", [name for name in written() if task(name).cases is not None])
+def test_the_example_shown_is_one_where_the_mistake_named_happens(name, monkeypatch):
+    """With the sentences for known mistakes taken away, the symptom has to speak of what is shown."""
+    monkeypatch.setattr(grading, "distortions", lambda task: ())
+    monkeypatch.setattr(grading, "variants", lambda task: ())
+    known, one = task(name).slips[::3], dataclasses.replace(task(name), slips=())
+    cases, shown = one.cases(), 0
+    expected = [one.right(*case) for case in cases]
+    for mistake in known:
+        returned = [grading._call(one, mistake.wrong, case) for case in cases]
+        verdict = grading.grade(one, mistake.wrong)
+        there = [k for k, case in enumerate(cases) if verdict.example.startswith(grading._given(one, case) + "\n")]
+        shown += bool(there)
+        assert not there or any(not grading._agrees(one, returned[k], expected[k]) for k in there)
+        others = (grading._common, grading._usual)
+        if there and one.symptom and not any(read(one, cases, returned, expected) for read in others):
+            alone = [one.symptom([cases[k]], [returned[k]], [expected[k]]) for k in there]
+            assert grading._without_numbers(verdict.says) in map(grading._without_numbers, alone)
+    assert shown > 0.8 * len(known)

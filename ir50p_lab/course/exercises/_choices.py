@@ -76,4 +76,4 @@ class Choice:
 
 
 def _plain(text: str) -> str:
-    return " ".join(text.lower().strip(" .()'\"").split())
+    return "".join(text.lower().strip(" .()'\"").split())

@@ -52,7 +52,7 @@ EXERCISES = (
                 jacobian(IR50P, _Q)[3:] @ _QD, "That is how fast the hand turns (rows 4 to 6), not how fast it moves."
             ),
         ),
-        hint="jacobian(IR50P, q) has six rows; the first three make velocities out of joint rates.",
+        hint="Those are the joint speeds; multiply the upper three rows of jacobian(T, 3, tip) with them.",
     ),
     Exercise(
         "ik-2",

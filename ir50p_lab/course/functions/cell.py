@@ -46,7 +46,7 @@ def take(thing, name, earlier):
     called = getattr(thing, "__name__", "?")
     if called not in (name, "<lambda>"):
         raise CannotTake(f"the function has to be called `{name}`, yours is called `{called}`")
-    text = re.sub(r"\bmy_robot\.(\w+)", r"\1", _cell_text(thing))
+    text = re.sub(rf"\bmy_robot\.(?!{name}\b)(\w+)", r"\1", _cell_text(thing))
     tree = ast.parse(text)
     offered = _definitions(tree)
     if name not in offered:
@@ -60,6 +60,8 @@ def take(thing, name, earlier):
                 queue += _globals_of(offered[one])
         elif one in earlier:
             calls.add(one)
+        elif one == "my_robot":
+            raise CannotTake(f"it calls `my_robot.{name}`: that is the function you are about to write")
         elif one in ORDER:
             raise CannotTake(f"it calls `{one}`: this function is to do without")
         elif one in _BACK_DOORS:

@@ -192,22 +192,31 @@ def _limit(cls):
     _expect(_run(_make(cls, kp=400.0), 0 * e, e), np.clip(free, -255, 255), (), "without limit_pwm the limit is 255")
 
 
-def _windup(cls):
-    settings = {"kp": 100.0, "ki": 200.0, "period": _PERIOD}
-    back = _constant(10, -0.5)
+def _at_its_limit(cls, error):
+    """Commands held at the limit by an error (rad) for 3 s and for 6 s, and those against one of other sign after."""
     held, tails = [], []
     for seconds in (3, 6):
-        far = _constant(seconds, 1.0)
-        wanted = np.vstack([far, back])
-        u = _run(_make(cls, **settings), 0 * wanted, wanted)
-        held.append(u[len(far) // 2 : len(far)])
-        tails.append(u[len(far) :])
+        wanted = np.vstack([_constant(seconds, error), _constant(10, -error / 2)])
+        u = _run(_make(cls, kp=100.0, ki=200.0, period=_PERIOD), 0 * wanted, wanted)
+        half, end = round(seconds / _PERIOD / 2), round(seconds / _PERIOD)
+        held.append(u[half:end])
+        tails.append(u[end:])
+    return held, tails
+
+
+def _windup(cls):
+    held, tails = _at_its_limit(cls, 1.0)
     if min(one.min() for one in held) < 250:
         raise Failed(
             f"while the error stays at 1 rad, its push falls back from the limit to {min(o.min() for o in held):.0f}: "
             "rest the integral there, do not throw it away"
         )
     if np.abs(tails[0] - tails[1]).max() > 1.0:
+        if np.allclose(*_at_its_limit(cls, 100.0)[1]):
+            raise Failed(
+                "its memory has a limit, and far too late: 255 is counts, your memory is in rad s. Multiply by ki "
+                "before you add up"
+            )
         late = [_PERIOD * np.sum((tail > 250).all(axis=1)) for tail in tails]
         raise Failed(
             f"it winds up: after 3 s at its limit it pushes on for {late[0]:.1f} s against an error of other sign, "

@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from ir50p_lab.course.functions.task import Mistake
-from ir50p_lab.course.functions.variants import variants
 
 _MANY = 6  # longer ones are runs: no part of them has a meaning of its own
 _OF_NUMBERS = (
@@ -49,9 +48,9 @@ _OF_RESULTS = (
 
 
 def distortions(task):
-    """Yield Slips: arguments misread, results misplaced, and the course's solutions with one step changed."""
-    for kind in (_of_results, _of_arguments, variants):
-        yield from kind(task)
+    """Yield Mistakes: results misplaced, arguments misread."""
+    yield from _of_results(task)
+    yield from _of_arguments(task)
 
 
 def _of_arguments(task):
@@ -171,37 +170,45 @@ def _with_turn(y, turned):
 
 
 # ------------------------------------------------------------------------------------------- what needs no suspicion
-def entries(task, returned, expected):
+def entries(task, cases, returned, expected):
     """A sentence on the entries that are wrong, if they are few and always the same; else ""."""
     shape = np.shape(expected[0])
-    if not 1 <= len(shape) <= 2 or any(np.shape(one) != shape for one in (*returned, *expected)):
+    if not shape or any(np.shape(one) != shape for one in (*returned, *expected)):
         return ""
     found, right = np.array(returned, dtype=float), np.array(expected, dtype=float)
     wrong = [place for place in np.ndindex(shape) if not _alike(task, found[:, *place], right[:, *place])]
-    if len(wrong) > min(2, math.prod(shape) // 2):
+    if not 0 < len(wrong) <= min(3, math.prod(shape) // 3):
         return ""
-    return "all is right but " + "; ".join(_entry(task, place, found, right) for place in wrong)
+    return "all is right but " + "; ".join(_entry(task, place, cases, found, right) for place in wrong)
 
 
-def _entry(task, place, found, right):
-    numbers = found[:, *place]
-    name = task.parts[place[-1]] if task.parts and len(place) == 1 else f"row {place[0] + 1}"
-    name += f", column {place[1] + 1}" if len(place) == 2 else ""
+def _entry(task, place, cases, found, right):
+    numbers, name = found[:, *place], _name(task, place)
     if _alike(task, numbers, -right[:, *place]):
         return f"{name} has the wrong sign"
     if _alike(task, np.abs(numbers), np.abs(right[:, *place])):
         return f"{name} has the right size, but for some inputs the wrong sign"
     if np.ptp(numbers) == 0:
         return f"{name} is always {numbers[0]:g}"
-    for other in np.ndindex(right.shape[1:]):
+    belonging = {f"what belongs into {_name(task, other)}": right[:, *other] for other in np.ndindex(right.shape[1:])}
+    for what, values in (_arguments(task, cases) | belonging).items():
         for sign, words in ((1, ""), (-1, "minus ")):
-            if _alike(task, numbers, sign * right[:, *other]):
-                return f"{name} holds {words}what belongs into {_name(task, other)}"
+            if _alike(task, numbers, sign * values):
+                return f"{name} holds {words}{what}"
     return f"{name} is wrong"
 
 
+def _arguments(task, cases):
+    """{name: its values} of the numbers that come in one by one."""
+    given = zip(task.signature, zip(*cases, strict=True), strict=True)
+    return {name: np.array(values) for name, values in given if np.ndim(values[0]) == 0}
+
+
 def _name(task, place):
-    return task.parts[place[0]] if task.parts else f"row {place[0] + 1}, column {place[-1] + 1}"
+    if task.parts and len(place) == 1:
+        return task.parts[place[0]]
+    words = ("row", "column") if len(place) < 3 else ("number", "row", "column")
+    return ", ".join(f"{word} {k + 1}" for word, k in zip(words, place, strict=False))
 
 
 def _alike(task, a, b):

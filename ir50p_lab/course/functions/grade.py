@@ -2,6 +2,7 @@
 
 import copy
 import inspect
+import re
 import time
 import warnings
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ import numpy as np
 from ir50p_lab.course.functions.distortions import distortions, entries
 from ir50p_lab.course.functions.stops import why_it_stops
 from ir50p_lab.course.functions.task import Failed, is_run, shown
-from ir50p_lab.course.functions.variants import in_words_of
+from ir50p_lab.course.functions.variants import in_words_of, variants
 
 _PATIENCE = 2.0  # s of computing: the search for a likely mistake ends then
 
@@ -43,25 +44,51 @@ def grade(task, function):
     good = [_agrees(task, one, other) for one, other in zip(returned, expected, strict=True)]
     if all(good):
         return _grade_form(task, cases, returned, expected)
-    first = good.index(False)
-    bad_first = sorted(range(len(cases)), key=lambda k: good[k])
+    bad = [k for k, fine in enumerate(good) if not fine]
+    says, guess = _known(task, function, cases, returned, expected, bad)
     stopped = [one for one in returned if isinstance(one, Failed)]
-    silent = 2 * len(stopped) >= len(cases) or all(one is None for one in returned)  # nothing to compare
-    for slip in () if silent else chain(task.slips, _while_patient(distortions(task))):
-        if all(_is_slip(task, slip, cases[k], returned[k]) for k in bad_first):
-            says = slip.says if slip in task.slips else in_words_of(function, slip.says)
-            return Grade("wrong", says, _example(task, cases[first], expected[first], returned[first]))
-    if stopped:
+    if stopped and not says:
         return Grade("wrong", *stopped[0].args)
-    says = (
-        _common(task, returned, expected)
-        or (
-            task.same is None and (_alone(returned) or _nearly(returned, expected) or entries(task, returned, expected))
-        )
-        or (task.symptom and task.symptom(cases, returned, expected))
+    readings = () if says else (_common, _usual, _mostly, _symptom)
+    for read in readings:
+        if says := read(task, cases, returned, expected):
+            if read in (_common, _symptom):
+                bad = _shown_by(read, says, task, cases, returned, expected, bad)
+            break
+    visible = (_example(task, cases[k], expected[k], returned[k]) for k in bad)
+    return Grade("wrong", says or guess or _which(task, cases, good), next(filter(None, visible), ""))
+
+
+def _known(task, function, cases, returned, expected, bad):
+    """The sentence of the mistake that gives these answers, or ""; and one that says too little, or ""."""
+    stopped = [one for one in returned if isinstance(one, Failed)]
+    if 2 * len(stopped) >= len(cases) or all(one is None for one in returned):  # nothing to compare
+        return "", ""
+    order = [*bad, *sorted(set(range(len(cases))) - set(bad))]
+    usual = _while_patient(chain(distortions(task), variants(task)))
+    for slip in chain(task.slips, usual):
+        if not all(_is_slip(task, slip, cases[k], returned[k]) for k in order):
+            continue
+        if not slip.of_code:
+            return slip.says, ""
+        words, complete = in_words_of(function, slip.says)
+        where = "" if stopped or task.same else entries(task, cases, returned, expected)
+        if where:
+            return f"{where}: {words.partition(': look at')[0]}" if complete else where, ""
+        return (words, "") if complete else ("", words)
+    return "", ""
+
+
+def _shown_by(read, says, task, cases, returned, expected, bad):
+    """The cases that show by themselves what is said of all, those with the very same numbers first."""
+    told = {k: read(task, *([many[k]] for many in (cases, returned, expected))) for k in bad}
+    return sorted(
+        (k for k in bad if _without_numbers(told[k]) == _without_numbers(says)), key=lambda k: told[k] != says
     )
-    example = _example(task, cases[first], expected[first], returned[first])
-    return Grade("wrong", says or _which(task, cases, good), example)
+
+
+def _without_numbers(says):
+    return re.sub(r"-?\d[\d.]*", "", says)
 
 
 def _while_patient(slips):
@@ -133,7 +160,31 @@ def _grade_form(task, cases, returned, expected):
     return Grade("right", "")
 
 
-def _common(task, returned, expected):
+def _usual(task, cases, returned, expected):
+    """What numbers alone tell, whatever the function."""
+    if task.same is not None:
+        return ""
+    return _alone(returned) or _nearly(returned, expected) or entries(task, cases, returned, expected)
+
+
+def _mostly(task, cases, returned, expected):
+    """A mistake of the task's own that explains many of the wrong answers, beside another one."""
+    wrong = [k for k in range(len(cases)) if not _agrees(task, returned[k], expected[k])]
+    right = sorted(set(range(len(cases))) - set(wrong))
+    for slip in task.slips:
+        if not all(_is_slip(task, slip, cases[k], returned[k]) for k in right):
+            continue
+        share = sum(returned[k] is not None and _is_slip(task, slip, cases[k], returned[k]) for k in wrong)
+        if share >= max(3, len(wrong) / 3):
+            return f"{slip.says} (that explains {share} of {len(wrong)} wrong answers; something else is wrong, too)"
+    return ""
+
+
+def _symptom(task, cases, returned, expected):
+    return task.symptom(cases, returned, expected) if task.symptom else ""
+
+
+def _common(task, cases, returned, expected):
     """Mistakes that look alike in every function: nothing returned, another kind of thing, another shape."""
     if all(one is None for one in returned) and not any(one is None for one in expected):
         return "it returns nothing: is there a `return`, and is it reached in every case?"
@@ -215,4 +266,5 @@ def _example(task, case, expected, returned):
     if isinstance(returned, Failed):
         return returned.args[1]
     unit = f" {task.unit}" if task.unit else ""
-    return f"{_given(task, case)}\nexpected{unit}: {shown(expected)}\nyours: {shown(returned)}"
+    both = shown(expected), shown(returned)
+    return f"{_given(task, case)}\nexpected{unit}: {both[0]}\nyours: {both[1]}" if both[0] != both[1] else ""

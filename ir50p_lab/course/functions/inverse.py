@@ -8,7 +8,6 @@ from ir50p_lab.course.functions.task import Mistake, Task, shown
 from ir50p_lab.errors import UnreachableError
 
 _EDGE = 1e-9  # m: rounding may put a stretched arm's own tip this far outside
-_INSIDE = 14  # the first cases lie well within reach
 _SAME = 1e-5  # rad: near the stretched arm rounding of the place leaves the elbow uncertain by 3e-8, 2e-6 degrees
 
 
@@ -33,7 +32,7 @@ def inverse_kinematics(p, l):
 def _targets():
     rng = np.random.default_rng(7)
     cases = []
-    for k, q in enumerate(rng.uniform([-3, -2, -2.8], [3, 2, 2.8], (_INSIDE, 3))):
+    for k, q in enumerate(rng.uniform([-3, -2, -2.8], [3, 2, 2.8], (14, 3))):
         l = _LENGTHS[k % 2].copy()
         cases.append((forward_kinematics(q, l), l))
     for k, q in enumerate(rng.uniform([-3, -2, 0], [3, 2, 0], (12, 3))):  # stretched: on the edge, but for rounding
@@ -71,9 +70,13 @@ def same_poses(returned, expected):
     if len(a) == 0 or len(b) == 0:
         return len(a) == len(b)
     apart = _apart(a, b)
-    straight = np.abs(np.sin(b[:, 2])).max() < 1e-2
-    number = len(a) <= len(b) if straight else len(a) == len(b)
+    number = len(a) <= len(b) if _straight(b) else len(a) == len(b)
     return bool((apart.min(axis=0) < _SAME).all() and (apart.min(axis=1) < _SAME).all() and number)
+
+
+def _straight(poses):
+    """Tell whether the arm is stretched or folded flat, where its two elbows are one."""
+    return np.abs(np.sin(poses[:, 2])).max() < 1e-2
 
 
 def _poses_symptom(cases, returned, expected):
@@ -94,12 +97,13 @@ def _poses_symptom(cases, returned, expected):
     if says or far:
         return says or "a place out of reach gets poses: no pose means no row, an empty array"
     refused = [k for k in range(len(cases)) if len(expected[k]) and not len(answers[k])]
-    if refused and min(refused) >= _INSIDE:
+    if refused and all(_straight(expected[k]) for k in refused):
         return (
             f"{len(refused)} places on the very edge, where the arm is stretched, count as out of reach: there "
             "rounding makes r a hair too large; allow it 1e-9 m"
         )
-    return _fewer(answers[:_INSIDE], cases, refused)
+    inside = [k for k, one in enumerate(expected) if len(one) and not _straight(one)]
+    return _fewer([answers[k] for k in inside], [cases[k] for k in inside], refused)
 
 
 def _whole_turns(poses):
@@ -115,15 +119,55 @@ def _whole_turns(poses):
     return ""
 
 
-def _inside_the_triangle(p, l, *, shoulder_too):
-    """Poses whose elbow is the angle inside the triangle; the shoulder found with it, or by itself."""
-    poses = []
-    for waist, shoulder, elbow in inverse_kinematics(p, l):
-        inside = np.copysign(np.pi - abs(elbow), elbow)
-        if shoulder_too:
-            shoulder += _between(elbow, l) - _between(inside, l)
-        poses.append([waist, shoulder, inside])
-    return np.array(poses)
+_WHERE = (  # some of the poses: in words, and told from whether it faces the place, q3, x and q1
+    ("", lambda facing, e, x, w: True),
+    (" in the poses with their back to the place", lambda facing, e, x, w: not facing),
+    (" where x < 0", lambda facing, e, x, w: x < 0),
+    (" wherever it is beyond a quarter turn", lambda facing, e, x, w: abs(w) > np.pi / 2),
+    (" with the elbow up", lambda facing, e, x, w: e < 0),
+    (" with the elbow down", lambda facing, e, x, w: e > 0),
+)
+_BENDS = (  # what becomes of waist w, shoulder s and elbow e; g: angle between upper arm and r for an elbow
+    ("shoulder and elbow do not fit together{}: is it the sign of q3, or that of the angle between r and upper arm?",
+     lambda w, s, e, g: (w, s + 2 * g(e), e)),
+    ("the waist is half a turn off{}: can that which it is taken from tell (x, y) from (-x, -y)?",
+     lambda w, s, e, g: (w + np.pi, s, e)),
+    ("the elbow is the angle inside the triangle{}, or its cosine has the wrong sign: what is it when stretched?",
+     lambda w, s, e, g: (w, s, np.copysign(np.pi - abs(e), e))),
+    ("the elbow is the angle inside the triangle{}, or its cosine has the wrong sign; the shoulder follows it",
+     lambda w, s, e, g: (w, s + g(e) - g(np.copysign(np.pi - abs(e), e)), np.copysign(np.pi - abs(e), e))),
+    ("the shoulder points straight at the place{}: how far is the upper arm from r?",
+     lambda w, s, e, g: (w, s + g(e), e)),
+    ("the slope of r is not in the shoulder{}", lambda w, s, e, g: (w, -g(e), e)),
+    ("the slope of r has the wrong sign{}: what is it for a high place?", lambda w, s, e, g: (w, -s - 2 * g(e), e)),
+    ("the shoulder has the wrong sign{}: positive lifts", lambda w, s, e, g: (w, -s, e)),
+    ("the shoulder is counted from the vertical{}: it is 0 lying flat", lambda w, s, e, g: (w, np.pi / 2 - s, e)),
+    ("the shoulder is half a turn off{}", lambda w, s, e, g: (w, s + np.pi, e)),
+    ("the elbow is counted from the horizon{}: it is 0 where the arm is straight", lambda w, s, e, g: (w, s, e + s)),
+    ("the waist has the wrong sign{}", lambda w, s, e, g: (-w, s, e)),
+    ("the waist is counted from the y axis{}: it is 0 along x", lambda w, s, e, g: (np.pi / 2 - w, s, e)),
+)  # fmt: skip
+
+
+def _bent(p, l, bend, where):
+    """The right poses, some of them bent."""
+    poses = inverse_kinematics(p, l)
+    for k, (w, s, e) in enumerate(poses):
+        if where(np.cos(w - np.arctan2(p[1], p[0])) > 0, e, p[0], w):
+            poses[k] = bend(w, s, e, lambda elbow: _between(elbow, l))
+    return poses
+
+
+def _facing_arm(w, s, e, g):
+    return w, np.pi - s - 2 * g(e), e
+
+
+def _never_refused(p, l, near):
+    """Poses of the nearest place that can be reached, for places too near or too far."""
+    from_shoulder = p - [0, 0, l[0]]
+    r = np.linalg.norm(from_shoulder)
+    edge = abs(l[1] - l[2]) if near else l[1] + l[2]
+    return inverse_kinematics(p + from_shoulder * (edge / r - 1) if (r < edge) == near else p, l)
 
 
 def _between(elbow, l):
@@ -198,32 +242,6 @@ _LOAN = """def inverse_kinematics(p, l):
             shoulder = np.arctan2(np.sin(turn), np.cos(turn))
             poses.append([waist, shoulder, elbow])
     return np.array(poses)"""
-_BY_LENGTH = """    if r > l2 + l3 + 1e-9 or r < abs(l2 - l3) - 1e-9:
-        return np.empty((0, 3))
-"""
-_BY_COSINE = """    if abs(cosine) > 1 + 1e-7:
-        return np.empty((0, 3))
-"""
-_STRAIGHT = "    bend ="
-_BY_THE_TRIANGLE = """def inverse_kinematics(p, l):
-    x, y, z = p
-    height = z - l[0]
-    r = np.sqrt(x**2 + y**2 + height**2)
-    if r > l[1] + l[2] + 1e-9 or r < abs(l[1] - l[2]) - 1e-9:
-        return np.empty((0, 3))
-    inside_elbow = np.arccos(np.clip((l[1]**2 + l[2]**2 - r**2) / (2 * l[1] * l[2]), -1, 1))
-    inside_shoulder = np.arccos(np.clip((r**2 + l[1]**2 - l[2]**2) / (2 * r * l[1]), -1, 1))
-    waist = np.arctan2(y, x)
-    waist_back = np.arctan2(-y, -x)
-    slope = np.arctan2(height, np.hypot(x, y))
-    slope_back = np.pi - slope
-    elbow = np.pi - inside_elbow
-    return np.array([
-        [waist, slope + inside_shoulder, -elbow],
-        [waist, slope - inside_shoulder, elbow],
-        [waist_back, slope_back + inside_shoulder, -elbow],
-        [waist_back, slope_back - inside_shoulder, elbow],
-    ])"""
 
 
 INVERSE_KINEMATICS = Task(
@@ -236,15 +254,24 @@ INVERSE_KINEMATICS = Task(
     leans_on=("forward_kinematics", "frames", "dh_matrix", "rot_z"),
     same=same_poses,
     loan=_LOAN,
-    routes=(_BY_THE_TRIANGLE, _LOAN.replace(_BY_LENGTH, "").replace(_STRAIGHT, _BY_COSINE + _STRAIGHT)),
     parts=("q1", "q2", "q3"),
-    slips=tuple(
+    slips=(
         Mistake(
-            lambda p, l, both=both: _inside_the_triangle(p, l, shoulder_too=both),
-            "the elbow is the angle inside the triangle, or its cosine has the wrong sign: q3 is 0 where the arm is "
-            "stretched, and what is the inner angle there?",
-        )
-        for both in (True, False)
+            lambda p, l: _bent(p, l, _facing_arm, lambda facing, e, x, w: not facing),
+            "with its back to the place the arm has the shoulder of the one that faces it: there the place lies "
+            "behind, at minus the distance",
+        ),
+        *(
+            Mistake(lambda p, l, bend=bend, where=where: _bent(p, l, bend, where), says.format(words))
+            for says, bend in _BENDS
+            for words, where in _WHERE
+        ),
+        *(
+            Mistake(
+                lambda p, l, near=near: _never_refused(p, l, near), f"places too {says} get poses: nobody reaches them"
+            )
+            for near, says in ((True, "near the shoulder (r < |l2 - l3|)"), (False, "far away (r > l2 + l3)"))
+        ),
     ),
     symptom=_poses_symptom,
     form=_whole_turns,
@@ -333,13 +360,11 @@ def _same_pose(returned, expected):
 def _reach_symptom(cases, returned, expected):
     there = [k for k, right in enumerate(expected) if right is not None]
     refused = [k for k in there if returned[k] is None]
-    if len(refused) == len(there):
-        return (
-            f"it returns None for all {len(there)} places that have an allowed pose: is every pose struck out (limits "
-            "in rad, low ones first), or is the choice never returned?"
-        )
     if refused:
-        return f"it returns None for {len(refused)} of {len(there)} places that have an allowed pose"
+        return (
+            f"it returns None for {len(refused)} of {len(there)} places that have an allowed pose: is too much struck "
+            "out (limits in rad, low ones first), or is the choice not returned?"
+        )
     if all(_same_pose(returned[k], expected[k]) for k in there):
         one = next(one for one, right in zip(returned, expected, strict=True) if one is not None and right is None)
         return f"where no pose is allowed it returns {shown(one)}: None is asked for"
@@ -417,6 +442,17 @@ REACH = Task(
     parts=("q1", "q2", "q3"),
     slips=(
         _turned("it takes the allowed pose that is farthest away", lambda x, q: -np.abs(x - q).max()),
+        *(
+            _turned(f"yours {says}; asked for is the pose whose largest turn is smallest", turn)
+            for says, turn in (
+                ("adds up the turns of the three joints", lambda x, q: np.abs(x - q).sum()),
+                ("takes the length, the root of the squares", lambda x, q: np.linalg.norm(x - q)),
+                ("compares the smallest turn of each pose", lambda x, q: np.abs(x - q).min()),
+                ("compares turns with their sign, so that a far one counts as small", lambda x, q: (x - q).max()),
+                ("adds up turns with their sign, so that they cancel", lambda x, q: (x - q).sum()),
+                ("compares the angles, not how far they are from q_now", lambda x, q: np.abs(x).max()),
+            )
+        ),
         Mistake(
             _the_last_allowed,
             "the last allowed pose wins: is its largest turn compared with the smallest so far, and is that kept up to "
@@ -437,6 +473,17 @@ REACH = Task(
         _allowed("the table is not asked: an elbow or tip may end below z = 0", within, ()),
         _allowed("the tip stays above the table, the elbow does not: it counts, too", within, (3,)),
         _allowed("the elbow stays above the table, the tip does not: it counts, too", within, (2,)),
+        *(
+            _allowed(
+                f"the limits of joint {j + 1} are not asked",
+                lambda x, m, j=j: within(np.delete(x, j), np.delete(m, j, axis=1)),
+            )
+            for j in range(3)
+        ),
+        _allowed(
+            "the two rows of `limits` are read as columns: the first row holds the lower ones, the second the upper",
+            lambda x, m: all(m[k, 0] <= x[k] <= m[k, 1] for k in range(2)),
+        ),
         _allowed("only the upper limits are asked", lambda x, m: (x <= m[1]).all()),
         _allowed("only the lower limits are asked", lambda x, m: (x >= m[0]).all()),
         _allowed("the upper limits serve as lower ones, too: those are others", lambda x, m: (np.abs(x) <= m[1]).all()),

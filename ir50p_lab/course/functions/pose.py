@@ -138,11 +138,10 @@ def _dh_symptom(cases, returned, expected):
     T = [np.asarray(one, dtype=float) for one in returned]
     if not all(np.allclose(one[3], [0, 0, 0, 1]) for one in T):
         return "its last row is not (0, 0, 0, 1): a transform needs that row, whatever the motion"
-    names = ("theta", "d", "a", "alpha")
-    alone = [not np.allclose(T[k], expected[k]) for k in range(4)]
-    if any(alone):
-        k = alone.index(True)
-        return f"with {names[k]} alone it is wrong already (the others 0). Which motion does {names[k]} stand for?"
+    for case, one, right in zip(cases, T, expected, strict=True):
+        moved = [name for name, value in zip(("theta", "d", "a", "alpha"), case, strict=True) if value]
+        if len(moved) == 1 and not np.allclose(one, right):
+            return f"with {moved[0]} alone it is wrong already (the others 0). Which motion does {moved[0]} stand for?"
     return (
         "each motion alone is right, together they are not: their order. Each one happens in the frame that the "
         "motions before it have made"
@@ -201,6 +200,10 @@ def dh_matrix(theta, d, a, alpha):
             "d comes after the tilt: the joint lifts along its own axis, before the link tilts it",
         ),
         Mistake(lambda t, d, a, f: turn_z(t) * shift(a, 0, d) * turn_x(f), "entry by entry (`*`) is no matrix product"),
+        Mistake(
+            lambda t, d, a, f: turn_z(t) @ shift(a, 0, d).T @ turn_x(f),
+            "a shift stands in the bottom row: what a point is moved by belongs into the last column",
+        ),
         *_other_motions(),
     ),
     symptom=_dh_symptom,

@@ -47,14 +47,14 @@ _REASONS = (  # kind of error, what its message holds, the usual reason
 def why_it_stops(error):
     """A sentence on an error: the line, the usual reason, what did not fit together, and Python's own words."""
     line, operands = _where(error)
-    said = f"{type(error).__name__}: {error}"
+    said = f"Python says {type(error).__name__}: {error}"
     reason = next((why for kind, part, why in _REASONS if kind == type(error).__name__ and part in str(error)), "")
     if isinstance(error, LabError):
         reason = "an earlier function is given what it cannot take: are its arguments in their order?"
     place = f" in `{line}`" if line else ""
     if not reason:
-        return f"it stops{place} with {said}"
-    return f"it stops{place}: {ended(reason + operands)} Python says {said}"
+        return f"it stops{place}. {said}"
+    return f"it stops{place}: {ended(reason + operands)} {said if 'gufunc' not in said else ''}".rstrip()
 
 
 def ended(says):
@@ -74,19 +74,24 @@ def _where(error):
 
 def _operands(line, frame):
     try:
-        operations = [node for node in ast.walk(ast.parse(line)) if isinstance(node, ast.BinOp)]
+        operations = [node for node in ast.walk(ast.parse(line)) if _is_operation(node)]
     except SyntaxError:  # a part of a longer line
         return ""
     for node in reversed(operations):
+        parts = node.args if isinstance(node, ast.Call) else (node.left, node.right)
         try:
-            _value(node.left, frame), _value(node.right, frame)
+            named = [_named(one, frame) for one in parts]
+        except Exception:  # the one that fails lies deeper
+            continue
+        try:
             _value(node, frame)
         except Exception:
-            try:
-                return "; ".join(["", *(_named(one, frame) for one in (node.left, node.right))])
-            except Exception:
-                continue
+            return "; ".join(["", *named])
     return ""
+
+
+def _is_operation(node):
+    return isinstance(node, ast.BinOp) or (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute))
 
 
 def _value(node, frame):

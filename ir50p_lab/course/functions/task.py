@@ -19,11 +19,12 @@ class Mistake:
     """A typical mistake.
 
     wrong: a function with the task's arguments that makes this mistake. says: the symptom in the student's numbers and
-    where to look, never the corrected expression.
+    where to look, never the corrected expression. of_code: it is a change of the course's solution, told in its names.
     """
 
     wrong: Callable
     says: str
+    of_code: bool = False
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,8 @@ class Task:
     slips: mistakes with a sentence of their own, most specific first; the usual ones need none (`distortions`);
     routes: other solutions, as text; parts: names of what stands beside each other in the answer.
     symptom: function of (cases, returned, expected), lists of equal length, that returns a sentence about a mistake no
-    slip covers, or "". where: {words: function of a case}: kinds of cases, to say that only these go wrong.
+    slip covers, or ""; the example shown is a case that gives the same sentence alone. where: {words: function of a
+    case}: kinds of cases, to say that only these go wrong.
     form: function of one right answer; a sentence if later functions cannot use it as it is, or "".
     hints: two, opened on demand; loan: a plain solution, as text, whose names are words.
     same: compares what came back with what was expected; None: equal within tolerance. unit: of what comes back.

@@ -147,6 +147,10 @@ def _symptom(cases, returned, expected):
         case = int(np.argmax(off))
         _, q, target = cases[case]
         mine, theirs = found[case, k], right[case, k]
+        samples = (mine - theirs) / np.median(np.diff(cases[case][0]))
+        if k in (0, 2) and 0.5 < abs(samples) < 2.5:
+            off = f"{'1 sample' if abs(samples) < 1.5 else '2 samples'} too {'long' if samples > 0 else 'short'}"
+            return f"the {name} is {off}: with which sample does it begin, and with which does it end?"
         step = f"a step from {q[0]:.2f} to {target:.2f} rad"
         if k == 0 and _from_zero(cases, off):
             return "the rise time is right where a step begins at 0 rad and wrong elsewhere: the way begins at q[0]"

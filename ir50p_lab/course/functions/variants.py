@@ -39,11 +39,11 @@ def variants(task):
         for says, code in _spoilt(text):
             names = dict(room)
             exec(code, names)
-            yield Mistake(names[task.function], says)
+            yield Mistake(names[task.function], says, of_code=True)
 
 
 def in_words_of(function, says):
-    """A sentence on a variant without the names that the course's solution has and the student's has not."""
+    """A sentence on a variant without the names that only the course's solution has; and whether it is still whole."""
     function = inspect.unwrap(function)
     file = getattr(getattr(function, "__code__", None), "co_filename", "")
     codes = [getattr(one, "__code__", None) for one in getattr(function, "__globals__", {}).values()]
@@ -52,13 +52,17 @@ def in_words_of(function, says):
         if code is not None and code.co_filename == file:
             known |= {*code.co_varnames, *code.co_names}
 
+    lost = []
+
     def kept(match):
         name = (match["named"] or match["place"] or match["quoted"]).replace(" ", "_")
         if name in known:
             return match[0]
+        lost.append(not match["place"])
         return "something" if match["quoted"] else ""
 
-    return _NAMED.sub(kept, says)
+    words = _NAMED.sub(kept, says)
+    return words, not any(lost)
 
 
 @cache
@@ -175,9 +179,9 @@ def _changes(node, local, last):
                     words = f"number {k + step} of {ast.unparse(value)} is taken, not the one needed (counted from 0)"
                     yield words, ast.Subscript(value, ast.Constant(k + step), node.ctx)
         case ast.Subscript(value=value, slice=ast.Name() as k, ctx=ast.Load()):
-            for words, op in (("after", ast.Add()), ("before", ast.Sub())):
+            for words, op in (("late: the first round needs number 0", ast.Add()), ("early", ast.Sub())):
                 moved = ast.BinOp(k, op, ast.Constant(1))
-                yield f"the one {words} it is taken from {ast.unparse(value)}", ast.Subscript(value, moved, node.ctx)
+                yield f"{ast.unparse(value)} is read one place too {words}", ast.Subscript(value, moved, node.ctx)
         case ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.Lt() | ast.LtE() as op], comparators=[right]):
             other = ast.LtE() if isinstance(op, ast.Gt | ast.GtE) else ast.GtE()
             yield "a comparison is the wrong way round", ast.Compare(left, [other], [right])

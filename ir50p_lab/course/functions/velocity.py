@@ -12,12 +12,12 @@ def jacobian(T, link, point):
     return _columns(T, link, point)
 
 
-def _columns(T, link, point, *, axis=None, across=np.cross):
-    """The Jacobian, with another axis or product."""
+def _columns(T, link, point, *, axis=None, across=np.cross, turns=0, begins=0):
+    """The Jacobian, with another axis or product; turns, begins: how many frames too far axis and lever are taken."""
     J = np.zeros((6, 3))
     for joint in range(link):
-        z = T[joint][:3, 2] if axis is None else axis
-        J[:3, joint] = across(z, point - T[joint][:3, 3])
+        z = T[joint + turns][:3, 2] if axis is None else axis
+        J[:3, joint] = across(z, point - T[joint + begins][:3, 3])
         J[3:, joint] = z
     return J
 
@@ -79,6 +79,18 @@ JACOBIAN = Task(
         J[3:, joint] = axis
     return J""",
     slips=(
+        *(
+            Mistake(
+                lambda T, k, p, turns=turns, begins=begins: _columns(T, k, p, turns=turns, begins=begins),
+                f"{says} taken from frame k, one too far: joint k turns about z of the frame before, and stands at its "
+                "origin; the first column needs T[0]",
+            )
+            for says, turns, begins in (
+                ("the axis of joint k is", 1, 0),
+                ("the lever of joint k is", 0, 1),
+                ("axis and lever of joint k are", 1, 1),
+            )
+        ),
         Mistake(lambda T, k, p: _columns(T, k, T[k][:3, 3]), "the end of the link moves in it: `point` is not used"),
         Mistake(lambda T, k, p: _columns(T, k, T[3][:3, 3]), "it is the tip that moves in it: `point` is not used"),
         Mistake(
@@ -158,15 +170,37 @@ def _step_symptom(cases, returned, expected):
     ]
     if sum(np.linalg.norm(end - case[1]) < 1e-4 for end, case in zip(ends, cases, strict=True)) > len(cases) / 2:
         return "it is at the place already: one step is asked for, the loop that repeats it stands outside"
+    if says := _along(cases, returned, expected):
+        return says
     worse = 0
-    for (q, p, l, _), end in zip(cases[:8], ends, strict=False):
+    for (q, p, l, _), end in zip(cases, ends, strict=True):
         worse += np.linalg.norm(end - p) > np.linalg.norm(forward_kinematics(q, l) - p)
-    if worse >= 6:
-        return f"{worse} of 8 steps lead away from the place, not towards it"
+    if worse >= 0.7 * len(cases):
+        return f"{worse} of {len(cases)} steps lead away from the place, not towards it"
     return (
         "most steps come nearer, but they are not those of the damped formula: look at the damping, at what is solved, "
         "and whether anything is cut or added afterwards"
     )
+
+
+def _along(cases, returned, expected):
+    """Which step has the student's direction, if not its length: the damped one, or the plain one."""
+    mine, damped, plain = [], [], []
+    for (q, p, l, _), one, right in zip(cases, returned, expected, strict=True):
+        mine.append(one - q)
+        damped.append(right - q)
+        plain.append(_step(q, p, l, 0.0, solve=lambda J, e, _: np.linalg.pinv(J) @ e) - q)
+    for says, steps in (
+        ("the direction of the step is right, its length is not: is it cut, scaled or divided afterwards?", damped),
+        (
+            "it is the step without damping, made shorter or longer: the damping belongs inside, into what is solved, "
+            "where it acts on the lost direction most",
+            plain,
+        ),
+    ):
+        if all(np.allclose(np.cross(a, b), 0, atol=1e-6) and a @ b > 0 for a, b in zip(mine, steps, strict=True)):
+            return says
+    return ""
 
 
 DAMPED_STEP = Task(
@@ -203,6 +237,10 @@ DAMPED_STEP = Task(
         _solved(
             "the damping is added to J itself: that changes where the step leads, instead of shortening it",
             lambda J, e, d: np.linalg.solve(J + d * np.eye(3), e),
+        ),
+        _solved(
+            "a number is added to all nine entries of the matrix; the 1 of the formula is the matrix np.eye(3)",
+            lambda J, e, d: J.T @ np.linalg.solve(J @ J.T + d**2, e),
         ),
         _solved(
             "`**-1` inverts each entry, not the matrix",
