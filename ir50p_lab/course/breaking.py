@@ -36,7 +36,7 @@ CASES = {
     "A": Case(
         "windup",
         "At the instant in which the joint passes its target: which sign has the command? Which term can that be?",
-        "the joint passes its target, and the command still pushes *on*, for most of a second: P has turned round, and "
+        "the joint passes its target, and the command still pushes *on*, for half a second: P has turned round, and "
         "a memory filled on the way outweighs it.",
     ),
     "B": Case(
@@ -101,9 +101,9 @@ def broken(letter, arm=None):
 
 
 def windup(arm, *, cured=False):
-    """A large step, with and without rest for the integral at the limit."""
+    """A large step without friction, with and without rest for the integral at the limit."""
     pid = PID((289, 225, 270), ki=200, kd=(40, 30, 30), limit_pwm=255, anti_windup=cured)
-    return simulate(arm, pid, far_target(arm), duration=6)
+    return simulate(arm.without_friction(), pid, far_target(arm), duration=6)
 
 
 def kick(arm, *, cured=False):
@@ -119,17 +119,16 @@ def sampling(arm, *, period=0.01):
 
 
 def delay(arm, *, samples=15):
-    """Firm gains that hear late."""
-    pid = PID(FIRM_KP, ki=FIRM_KI, kd=(30, 10, 10), limit_pwm=255)
-    return simulate(arm, Late(pid, samples), 0.4 * far_target(arm), duration=6)
+    """A loop that hears late, without friction; the step is so small that the motor keeps within its limit."""
+    pid = PID((800, 1500, 1500), ki=(0, 2000, 2000), kd=10, limit_pwm=255)
+    return simulate(arm.without_friction(), Late(pid, samples), 0.18 * far_target(arm), duration=6)
 
 
-def swing(arm, controller, samples):
-    """Swing of joint 1 in the last second, rad, if a controller hears `samples` late."""
+def hears_late(arm, controller, samples):
+    """A middling step by a controller that hears `samples` late."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnstableLoopWarning)  # what is looked for
-        run = simulate(arm, Late(controller, samples), 0.4 * far_target(arm), duration=6)
-    return np.ptp(run.q[-100:, 0])
+        return simulate(arm, Late(controller, samples), 0.4 * far_target(arm), duration=6)
 
 
 def friction(arm, *, ki=20.0):

@@ -86,12 +86,14 @@ def _is_stub(text):
 def _keep(source, wanted, remark):
     from ir50p_lab.course.exercises import ProgressError, record
 
+    whole = "." in wanted.name and folder.is_there(wanted.function) and not folder.on_loan(wanted.function)
     try:
         lent = folder.keep(source, wanted)
         record(wanted.name)
     except (OSError, ProgressError) as error:
         return _show("right", wanted.name, f"right, but it could not be kept: {error}")
     more = f" {', '.join(lent)}, which it calls, came along on loan: write your own." if lent else ""
+    more += f" Your finished {wanted.function} was put aside, into my_robot/old: check it again last." if whole else ""
     kind = "class" if wanted.tried else "function"
     text = f"right, and yours: from now on my_robot.{wanted.function} is this {kind}.{more} {remark}".rstrip()
     return _show("right", wanted.name, text, _beside(source, wanted))

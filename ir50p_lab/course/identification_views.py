@@ -47,21 +47,6 @@ def open_loop_figure(closed, again):
     return figure
 
 
-def with_payload(arm, mass):
-    """The arm with a point mass (kg) at its tip: link 3 has another mass, centre of mass and inertia. Returns: Arm."""
-    m3, lc3, l3 = arm.m[2], arm.lc[2], arm.l[2]
-    total = m3 + mass
-    centre = (m3 * lc3 + mass * l3) / total
-    more = m3 * lc3**2 + mass * l3**2 - total * centre**2
-    return replace(
-        arm,
-        m=(*arm.m[:2], total),
-        lc=(*arm.lc[:2], centre),
-        Iyy=(*arm.Iyy[:2], arm.Iyy[2] + more),
-        Izz=(*arm.Izz[:2], arm.Izz[2] + more),
-    )
-
-
 def twice_as_strong(arm):
     """The arm with all masses, inertias, friction, rotors and motor torques doubled: the same in PWM counts."""
     double = {name: tuple(2 * np.array(getattr(arm, name))) for name in ("m", "Ixx", "Iyy", "Izz")}

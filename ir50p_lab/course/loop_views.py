@@ -44,7 +44,8 @@ def _sum(ax, x, y, *signs):
 def one_loop():
     """A joint under its PID: error, three parts, limit, arm, and the way back (Figure 2.1): LabFigure.
 
-    D is drawn as the class has it: from the speed wanted and the angle measured, not from the error.
+    D is drawn as the class has it: from the speed wanted and the angle measured and filtered, not from the error; the
+    limit tells I when to rest.
     """
     figure, ax = _sheet(9.4, 3.6)
     middle, low = 2.2, 0.25
@@ -71,7 +72,11 @@ def one_loop():
     _wire(ax, (8.35, middle), (9.3, middle))
     ax.text(8.9, middle + 0.15, "$q$", fontsize=13)
     _wire(ax, (8.75, middle), (8.75, low), (1.1, low), (1.1, middle - 0.15))
-    _wire(ax, (3.15, low), (3.15, 0.9))
+    _wire(ax, (5.85, 2.5), (5.85, 2.85), (3.55, 2.85), (3.55, 2.5))
+    ax.text(5.0, 2.95, "at the limit: rest", ha="center", fontsize=9, color=COLOURS["orange"])
+    _wire(ax, (3.15, low), (3.15, 0.38))
+    _wire(ax, (3.15, 0.76), (3.15, 0.9))
+    _box(ax, 3.15, 0.57, "speed, filtered", width=1.7, height=0.38, colour="green")
     ax.plot([2.0, 3.15, 8.75], [middle, low, middle], "o", ms=5, color=COLOURS["dark"])
     return figure
 
@@ -80,17 +85,14 @@ def three_loops():
     """Three controllers that know nothing of each other, and one arm that couples them (Figure 2.2): LabFigure."""
     figure, ax = _sheet(8.4, 4.0)
     for joint, (y, colour) in enumerate(zip((3.3, 2.15, 1.0), ("blue", "orange", "green"), strict=True), start=1):
-        ax.text(0.1, y + 0.13, f"$q_{{d{joint}}}$", fontsize=12)
-        _wire(ax, (0.1, y), (0.95, y))
-        _sum(ax, 1.1, y, (0.2, -0.3, "\u2212"))
-        _wire(ax, (1.25, y), (2.1, y))
-        ax.text(1.6, y + 0.13, f"$e_{joint}$", fontsize=12)
+        ax.text(0.1, y + 0.13, rf"$q_{{d{joint}}},\ \dot q_{{d{joint}}}$", fontsize=12)
+        _wire(ax, (0.1, y), (2.1, y))
         _box(ax, 2.85, y, f"PID {joint}", width=1.5, colour=colour)
         _wire(ax, (3.6, y), (4.9, y))
         ax.text(4.15, y + 0.13, f"$u_{joint}$", fontsize=12)
         _wire(ax, (6.5, y), (8.1, y))
         ax.text(7.6, y + 0.13, f"$q_{joint}$", fontsize=12)
-        _wire(ax, (7.1, y), (7.1, y - 0.55), (1.1, y - 0.55), (1.1, y - 0.15))
+        _wire(ax, (7.1, y), (7.1, y - 0.55), (2.85, y - 0.55), (2.85, y - 0.3))
     _box(ax, 5.7, 2.15, "one arm:\nwhat one joint\ndoes, the others\nfeel", width=1.6, height=3.0)
     return figure
 

@@ -20,14 +20,14 @@ def _unit(controller):
     return getattr(controller, "unit", "PWM")
 
 
-def rehearse(controller, reference, *, arm=None, show=True):
+def rehearse(controller, reference, *, arm=None, show=True, **view):
     """Ten seconds on the simulated arm, from its rest pose, shown; then the same controller, to go on with.
 
         with connect() as bench:
             bench.start(rehearse(pid, target), target)
 
     Args: controller: any object with `step`; reference: as for `simulate`. arm: Arm (default: that of the course).
-    show: False shows nothing.
+    show: False shows nothing; view: options of LiveArm, as `ball`.
     Returns: the controller, reset if it can be. Raises RehearsalError, naming joint, time and angle, if a joint would
     leave its limits.
     """
@@ -48,7 +48,7 @@ def rehearse(controller, reference, *, arm=None, show=True):
 
         from ir50p_lab.course.live_arm import LiveArm
 
-        display(LiveArm(arm, badge="rehearsal, simulated").play(run))
+        display(LiveArm(arm, badge="rehearsal, simulated", **view).play(run))
     if outside.any():
         k, joint = np.argwhere(outside)[0]
         raise RehearsalError(

@@ -97,13 +97,14 @@ class GainMap:
         ]
         self._side.legend(fontsize=8, loc="lower right")
 
-    def lay_over(self, kp, kd, values, levels, label, *, colour):
-        """Lines of another figure (m, n) over the same grid, each with its value; label: in the legend of the map."""
+    def lay_over(self, kp, kd, values, levels, label, *, colour, unit=""):
+        """Lines of another figure (m, n) over the same grid, each with value and unit; label: in the legend below."""
         style = {"colors": COLOURS[colour], "linewidths": 1.4}
         lines = self.map.contour(kp, kd, values, levels=levels, **style)
-        self.map.clabel(lines, fontsize=7)
+        self.map.clabel(lines, fontsize=7, fmt=f"%g {unit}")
         self.map.plot([], [], color=COLOURS[colour], label=label)
-        self.map.legend(fontsize=8, loc="upper left", framealpha=0.9)
+        self.figure.legends.clear()
+        self.figure.legend(handles=self.map.lines[1:], fontsize=8, loc="outside lower left", ncols=2)
 
     def update(self, kp, kd, *responses):
         """Mark the gain set and draw its responses, pairs (t, angle): the first blue, the second orange."""
@@ -126,6 +127,12 @@ def one_joint(*runs, labels, joint, unit="PWM"):
     below.set(xlabel="time [s]", ylabel=f"command [{unit}]")
     above.legend(fontsize=8, loc="best")
     return figure
+
+
+def redraw(figure, run, joint):
+    """Put another run in place of the last one in a figure of `one_joint`, for a slider."""
+    for axes, values in zip(figure.axes, (run.q, run.u), strict=True):
+        axes.lines[-1].set_data(run.t, values[:, joint - 1])
 
 
 def speed_step(t, speed, fitted=None):

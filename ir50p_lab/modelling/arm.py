@@ -202,6 +202,20 @@ class Arm:
         """The same arm with no friction at all (rotor inertia stays)."""
         return dataclasses.replace(self, friction=Friction())
 
+    def with_payload(self, mass):
+        """The arm with a point mass (kg) at its tip: link 3 has another mass, centre of mass and inertia."""
+        m3, lc3, l3 = self.m[2], self.lc[2], self.l[2]
+        total = m3 + mass
+        centre = (m3 * lc3 + mass * l3) / total
+        more = m3 * lc3**2 + mass * l3**2 - total * centre**2  # Steiner, both parts
+        return dataclasses.replace(
+            self,
+            m=(*self.m[:2], total),
+            lc=(*self.lc[:2], centre),
+            Iyy=(*self.Iyy[:2], self.Iyy[2] + more),
+            Izz=(*self.Izz[:2], self.Izz[2] + more),
+        )
+
     def save(self, path):
         """Write the arm to `path` as TOML, with units in comments. Read it back with Arm.load."""
         write_arm(self, path)

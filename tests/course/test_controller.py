@@ -173,6 +173,15 @@ def test_each_stage_takes_the_place_of_the_one_before(home, capsys):
     assert len(list((home / "my_robot" / "old").glob("PID_*.py"))) == 3
 
 
+def test_an_early_stage_run_again_says_where_the_finished_class_went(home, capsys):
+    check("PID.pi", cell(solutions.source("PID.pi"), "PID"))
+    check("PID", cell(solutions.source("PID"), "PID"))
+    assert "finished" not in capsys.readouterr().out
+    check("PID.p", cell(solutions.source("PID.p"), "PID"))
+    assert "finished PID was put aside, into my_robot/old" in capsys.readouterr().out
+    assert any("filter_hz" in file.read_text(encoding="utf-8") for file in (home / "my_robot" / "old").glob("PID_*.py"))
+
+
 def test_what_stands_in_is_at_the_same_stage(capsys):
     target = np.array([0.0, 0.8, 0.0])
     check("PID.p")

@@ -1,4 +1,4 @@
-"""Exercises of notebook 09: right answers by another route."""
+"""Exercises of notebook 08: right answers by another route."""
 
 import numpy as np
 import pytest

@@ -73,7 +73,7 @@ def test_two_copies():
 
 
 def test_payload_is_a_point_mass_at_the_tip():
-    loaded, q = views.with_payload(IR50P, 0.3), np.random.default_rng(0).uniform(-1, 1, (20, 3))
+    loaded, q = IR50P.with_payload(0.3), np.random.default_rng(0).uniform(-1, 1, (20, 3))
     l2, l3 = IR50P.l[1:]
     lever = l2 * np.cos(q[:, 1]) + l3 * np.cos(q[:, 1] + q[:, 2])
     more = gravity(loaded, q) - gravity(IR50P, q)
@@ -156,7 +156,7 @@ def test_cutoff_view(records):
 
 
 def test_forgetting_follows_a_payload(records, excitation):
-    loaded = recorded(excitation, 40, arm=views.with_payload(IR50P, 0.3))
+    loaded = recorded(excitation, 40, arm=IR50P.with_payload(0.3))
     parts = [process(run, delay=0.02, slow=0.05) for run in (records[0], loaded)]
     levels = [results.learn(run, delay=0.02, slow=0.05).theta[2, 3] for run in (records[0], loaded)]
     assert levels[1] - levels[0] == pytest.approx(0.3 * IR50P.l[2] / IR50P.actuators.gain[2], rel=0.1)

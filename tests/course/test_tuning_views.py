@@ -57,7 +57,7 @@ def test_gain_map_places_its_cells_at_the_gains(run):
     view.lay_over(kp, kd, np.tile(kp, (5, 1)), [35.0], "half", colour="purple")  # a line where kp is 35
     places = np.concatenate([path.vertices for one in view.map.collections for path in one.get_paths()])
     assert np.allclose(places[:, 0], 35)
-    assert "half" in [text.get_text() for text in view.map.get_legend().get_texts()]
+    assert "half" in [text.get_text() for text in view.figure.legends[0].get_texts()]
     assert view.map.get_xlim() == (5, 105) and view.map.get_ylim() == (-1, 9)
     painter = Painter(view.figure)
     before = painter.png()

@@ -12,7 +12,6 @@ from ir50p_lab.bench.ports import Port
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.bench.simulated_arm import SimulatedArm
 from ir50p_lab.course import save_result
-from ir50p_lab.course.identification_views import with_payload
 from ir50p_lab.course.torque_views import training_run
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import load_arm
@@ -84,7 +83,7 @@ def plug_in(names):
 def hang(board, mass):
     """Put `mass` kg into the gripper of the arm at rest, as a notebook asks for."""
     seen = board.plant
-    seen.plant = SimulatedArm(with_payload(seen.arm, mass), q0=rest_pose(seen.arm))
+    seen.plant = SimulatedArm(seen.arm.with_payload(mass), q0=rest_pose(seen.arm))
 
 
 def measure():

@@ -28,7 +28,7 @@ REASONS = {  # rows of the rewritten notebooks that are left out on purpose
     "(1.7) singularity": "A2, section 2; rings in 01, section 4",
     "(energy, Mdot - 2C)": "not in the thesis",
     "2.1": "a statement of the problem; 08 asks it as a task",
-    "2.1.1a saturation": "08, sections 4, 5 and 9",
+    "2.1.1a saturation": "08, sections 4 and 5",
     "ERRATA 2 poses": "tests/modelling",
     "ERRATA 2 states": "tests/modelling",
     "2.2.2 non-parametric": "09, section 5: the answer to a step, and to a blow",

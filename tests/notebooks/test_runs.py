@@ -42,14 +42,34 @@ def test_notebooks_in_a_chain(tmp_path):
 @pytest.mark.parametrize("number", REWRITTEN)
 def test_notebook_with_solutions(number, tmp_path):
     """A student writes every function rightly: each passes its check, becomes the robot, and runs in what follows."""
+    assert_solved(number, tmp_path, solutions.source)
+
+
+def clipped(name):
+    """A solution; of PIDs the one whose memory does not rest at the limit, but is clipped: right as well."""
+    rests, clips = "np.where(winds_up, self.integral, grown)", "np.clip(grown, -self.limit, self.limit)"
+    return solutions.source(name).replace(rests, clips)
+
+
+@pytest.mark.notebook
+@pytest.mark.parametrize("number", ["08", "09"])
+def test_notebook_with_a_clipped_memory(number, tmp_path):
+    """What is said and claimed of the student's PID holds of every PID that its check accepts."""
+    assert clipped("PID") != solutions.source("PID")
+    assert_solved(number, tmp_path, clipped, first=("PID",) if number == "09" else ())
+
+
+def assert_solved(number, tmp_path, source, first=()):
+    """Run a notebook by source(name) of each function; `first`: functions of earlier notebooks, written before."""
     (found,) = [one for one in NOTEBOOKS if one.name.startswith(number)]
     notebook = nbformat.read(found, as_version=4)
+    notebook.cells[2:2] = [nbformat.v4.new_code_cell(f'check("{name}", {name})') for name in first]
     asked = []
     for cell in notebook.cells:
         for name in re.findall(r'^check\("([\w.]+)", \w+\)', cell.source, re.M):
             if is_function(name):
                 asked.append(name)
-                cell.source = f'{solutions.source(name)}\n\ncheck("{name}", {function_of(name)})'
+                cell.source = f'{source(name)}\n\ncheck("{name}", {function_of(name)})'
     run = run_notebook(notebook, variables={"IR50P_HOME": str(tmp_path)})
     if run.error:
         pytest.fail(f"{found.name}, {run.error}", pytrace=False)

@@ -1,4 +1,4 @@
-"""Exercises of notebook 09 and, about sampling, of A2: the error that remains, the longest period."""
+"""Exercises of notebook 08 and, about sampling, of A2: the error that remains, the longest period."""
 
 import numpy as np
 from scipy.optimize import fsolve
@@ -6,7 +6,7 @@ from scipy.optimize import fsolve
 from ir50p_lab.course.exercises import Exercise, Number, Slip
 from ir50p_lab.modelling import THESIS_A, gravity
 
-NOTEBOOK = "09_break_it_tune_it"
+NOTEBOOK = "08_pid_from_its_parts"
 
 # pid-1: what a spring of stiffness kp leaves under the weight of the thesis' arm.
 _SET_POINT = np.array([np.pi / 2, np.pi / 2, -np.pi / 3])
