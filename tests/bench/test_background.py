@@ -266,13 +266,22 @@ def test_gains_reach_the_loop_and_u_does_not_jump():
     assert np.abs(np.diff(samples.u[before - 5 : before + 25, 0])).max() <= 3  # noise
 
 
+def least_lag(run):
+    """Of 20 looks, the least time of the clock minus that of the last sample, s: a busy machine only adds to it."""
+    lags = []
+    for _ in range(20):
+        lags.append(time.perf_counter() - run.recent(0.05).t[-1])
+        time.sleep(0.01)
+    return min(lags)
+
+
 def test_time_is_kept_without_drift():
     with SimulatedBench(IR50P, record_to=False) as bench:
         run = bench.start(pid(), None, rest=False)
         until(lambda: run.statistics().cycles > 10)
-        t0, wall = run.recent(0.05).t[-1], time.perf_counter()
+        early = least_lag(run)
         until(lambda: run.statistics().cycles > 210)
-        assert run.recent(0.05).t[-1] - t0 == pytest.approx(time.perf_counter() - wall, abs=0.05)
+        assert least_lag(run) == pytest.approx(early, abs=0.03)
         assert run.statistics().period_p50 == pytest.approx(0.01, abs=0.0005)
         run.cut()
 
