@@ -1,4 +1,4 @@
-"""Pictures of notebook 01: bricks that turn, the three axes of an angle sequence, joints that turn or slide."""
+"""Pictures of notebooks 01 and A2: bricks that turn, the rings of an angle sequence."""
 
 import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -154,47 +154,14 @@ class GimbalView:
 
 
 def two_bricks(angle):
-    """Two bricks turned by `angle` (rad) about x and about their own y, in either order: LabFigure."""
-    figure = space(2)
+    """A brick, and turned by `angle` (rad) about x and about its own y, in either order: LabFigure."""
+    figure = space(3, width=10)
     for ax, R, title in zip(
         figure.axes,
-        (rot_x(angle) @ rot_y(angle), rot_y(angle) @ rot_x(angle)),
-        ("first x, then its own y", "first y, then its own x"),
+        (np.eye(3), rot_x(angle) @ rot_y(angle), rot_y(angle) @ rot_x(angle)),
+        ("before", "first x, then its own y", "first y, then its own x"),
         strict=True,
     ):
         Brick(ax, homogeneous(R))
         ax.set_title(title)
-    return figure
-
-
-def rings(sequence):
-    """Rings that show an angle sequence, for `live`: figure, f(middle_deg) -> sentence."""
-    figure = space(2, flat_last=True, width=9.6)
-    view = GimbalView(*figure.axes)
-
-    def turn(middle_deg):
-        view.update(sequence, np.radians([60, middle_deg, 35]))
-        return f"worst axis: the angles change by {view.gain:.3g} deg per degree of turning"
-
-    return figure, turn
-
-
-def joint_kinds():
-    """A joint that turns and one that slides, each with the number that changes: LabFigure."""
-    figure = new_figure(8.4, 2.6, cols=2)
-    turning, sliding = figure.axes
-    for ax, title in ((turning, r"revolute: $q_i = \theta_i$ turns"), (sliding, r"prismatic: $q_i = d_i$ slides")):
-        ax.set(xlim=(-0.3, 2.4), ylim=(-0.5, 1.2), aspect="equal")
-        ax.set_axis_off()
-        ax.set_title(title)
-        ax.plot([-0.2, 0.5], [0, 0], color=COLOURS["grey"], linewidth=12, solid_capstyle="butt")
-    for angle, alpha in ((0.0, 0.25), (0.7, 1.0)):
-        end = 0.5 + 1.4 * np.cos(angle), 1.4 * np.sin(angle)
-        turning.plot([0.5, end[0]], [0, end[1]], color=COLOURS["blue"], linewidth=9, alpha=alpha)
-    arc = np.linspace(0, 0.7, 30)
-    turning.plot(0.5 + 0.8 * np.cos(arc), 0.8 * np.sin(arc), color=COLOURS["orange"])
-    turning.plot(0.5, 0, "o", color=COLOURS["dark"], ms=14)
-    for end, alpha in ((1.3, 0.25), (2.0, 1.0)):
-        sliding.plot([0.4, end], [0, 0], color=COLOURS["blue"], linewidth=6, alpha=alpha)
-    sliding.annotate("", (2.0, 0.35), (1.3, 0.35), arrowprops={"arrowstyle": "->", "color": COLOURS["orange"]})
     return figure

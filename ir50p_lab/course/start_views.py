@@ -31,12 +31,12 @@ def from_above(angle):
 def turned_by(arm, rot_z):
     """f(q) -> (4, 4, 4): frames of the arm with its waist turned by `rot_z`, right or wrong; the rest is the course's.
 
-    rot_z: f(angle) -> (3, 3).
+    rot_z: f(angle) -> (3, 3); what is still `...` in it counts as 0.
     """
 
     def with_own_waist(q):
-        waist = np.eye(4)
-        waist[:3, :3] = rot_z(q[0])
+        waist, R = np.eye(4), np.asarray(rot_z(q[0]))
+        waist[:3, :3] = np.where(R == ..., 0, R)
         level = frames(arm, [0.0, q[1], q[2]])
         return np.array([np.eye(4), *(waist @ T for T in level[1:])])
 

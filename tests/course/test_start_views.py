@@ -1,0 +1,39 @@
+"""What the student's functions draw in 00 and 01: right, wrong, and not written yet."""
+
+import numpy as np
+import pytest
+
+from ir50p_lab.course.start_views import turned_by
+from ir50p_lab.course.walk_view import arm_by_table, printed_tip, walk
+from ir50p_lab.modelling import IR50P, dh_matrix, forward_kinematics, frames, rot_z
+
+
+@pytest.fixture
+def q():
+    return np.random.default_rng().uniform(-1, 1, 3)
+
+
+def test_the_arm_is_turned_by_the_function_right_or_wrong(q):
+    np.testing.assert_allclose(turned_by(IR50P, rot_z)(q), frames(IR50P, q), atol=1e-12)
+    backwards = turned_by(IR50P, lambda angle: rot_z(-angle))(q)
+    np.testing.assert_allclose(backwards[1:], frames(IR50P, q * [-1, 1, 1])[1:], atol=1e-12)
+    unwritten = turned_by(IR50P, lambda angle: np.array([[..., ..., 0], [..., ..., 0], [0, 0, 1]]))(q)
+    assert not unwritten[3, :2, 3].any() and unwritten[3, 2, 3] == pytest.approx(forward_kinematics(IR50P, q)[2])
+
+
+def test_the_arm_is_drawn_by_the_table(q):
+    l1, l2, l3 = IR50P.l
+    table = [[l1, 0, np.pi / 2], [0, l2, 0], [0, l3, -np.pi / 2]]
+    np.testing.assert_allclose(arm_by_table(table, dh_matrix)(q), frames(IR50P, q), atol=1e-12)
+    assert not arm_by_table([[..., ..., ...]] * 3, dh_matrix)(q)[:, :3, 3].any()
+
+
+def test_the_walker_names_what_it_does_and_never_what_comes_next():
+    _, go = walk(IR50P, np.ones(3))
+    assert go(1.0).startswith("joint 1: turn theta") and go(1.25) == "joint 1: shift d along z"
+    assert go(4.0).startswith("joint 1: turn alpha") and go(12.0) == "frame 3 has arrived at the tip"
+
+
+def test_the_printed_tip_is_right_at_two_waist_angles_only(q):
+    waist, off = printed_tip(IR50P, q).axes[1].lines[0].get_data()
+    np.testing.assert_allclose(waist[off < 1e-9], [-135, 45])
