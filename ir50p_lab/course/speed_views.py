@@ -20,11 +20,13 @@ class ColumnsView:
     def __init__(self, ax, arm, scale=0.5):
         self.arm, self._scale = arm, scale
         self.view = ArmView(ax, arm)
-        # one line each: tail, head, a gap, and the number of the joint as a marker (a legend takes long to draw)
+        azimuth, elevation = np.radians([ax.azim, ax.elev])
+        self._to_eye = [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
+        # one line each: tail, head, barbs, a gap, and the number of the joint as a marker (a legend takes long to draw)
         self.arrows = [
-            ax.plot(
-                *np.zeros((3, 4)), color=colour, linewidth=3.5, marker=f"${k + 1}$", markevery=[3], ms=9, zorder=40
-            )[0]
+            ax.plot(*np.zeros((3, 7)), color=colour, linewidth=3, marker=f"${k + 1}$", markevery=[6], ms=9, zorder=40)[
+                0
+            ]
             for k, colour in enumerate(COLOURS[name] for name in _JOINTS)
         ]
 
@@ -33,9 +35,12 @@ class ColumnsView:
         self.view.update(q)
         tip, Jv = self.view.points[3], jacobian(self.arm, q)[:3]
         for k, arrow in enumerate(self.arrows):
-            head = tip + self._scale * Jv[:, k]
+            along = self._scale * Jv[:, k]
+            head = tip + along
+            side = np.cross(along, self._to_eye)
+            barbs = [head - 0.15 * along + sign * 0.07 * side for sign in (1, -1)]
             beyond = head + 0.07 * self.arm.reach * Jv[:, k] / max(np.linalg.norm(Jv[:, k]), 1e-9)
-            arrow.set_data_3d(*np.column_stack([tip, head, np.full(3, np.nan), beyond]))
+            arrow.set_data_3d(*np.column_stack([tip, head, barbs[0], head, barbs[1], np.full(3, np.nan), beyond]))
         return Jv
 
 
@@ -50,10 +55,9 @@ def arrows(arm, q, J, scale=0.5):
         ax.quiver(
             *start, *(scale * J[:, joint]), color=COLOURS[colour], linewidth=3, arrow_length_ratio=0.15, zorder=40
         )
-        ax.text(
-            *(start + 1.12 * scale * J[:, joint]), f"joint {joint + 1}", color=COLOURS[colour], weight="bold", zorder=41
-        )
-    ax.set_title("Where the tip goes if one joint turns (half size: 0.5 m an rad)")
+        head = start + 1.15 * scale * J[:, joint]
+        ax.text(*head, f"{joint + 1}", color=COLOURS[colour], weight="bold", fontsize=12, zorder=41)
+    ax.set_title("Where the tip goes if joint 1, 2 or 3 turns (arrows drawn at half length)")
     return figure
 
 
@@ -74,19 +78,20 @@ def arrows_panel(arm):
 
 def axis_and_lever():
     """A point that turns about an axis: axis, lever and velocity at right angles. LabFigure."""
-    figure = new_figure(6.0, 4.2, projection="3d")
+    figure = new_figure(5.4, 3.4, projection="3d")
     ax = figure.axes[0]
     circle = np.linspace(0, 2 * np.pi, 91)
     ax.plot(np.cos(circle), np.sin(circle), 0, color=COLOURS["light"])
     arrows_of = (
         ((0, 0, -0.4), (0, 0, 1.3), "dark", "axis", (0.05, 0, 0.95)),
         ((0, 0, 0), (1, 0, 0), "blue", "lever", (0.45, 0, 0.1)),
-        ((1, 0, 0), (0, 1, 0), "orange", "velocity", (1.05, 0.75, 0.08)),
+        ((1, 0, 0), (0, 1, 0), "orange", "velocity", (0.95, 0.35, -0.25)),
     )
     for start, along, colour, name, place in arrows_of:
         ax.quiver(*start, *along, color=COLOURS[colour], linewidth=3, arrow_length_ratio=0.12)
         ax.text(*place, name, color=COLOURS[colour], fontsize=12, weight="bold")
     ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-0.4, 1))
+    ax.set_box_aspect((2, 2, 1.4), zoom=1.0)
     ax.set_axis_off()
     ax.view_init(elev=25, azim=-50)
     return figure
@@ -98,14 +103,31 @@ def way_out(arm, distances, speeds, limit):
     plane, ax = figure.axes
     SideView(plane, arm, inverse_kinematics(arm, [distances[len(distances) // 2], 0, arm.l[0]])["front/up"])
     plane.set_title("Outwards at 0.1 m/s")
-    ax.semilogy(1000 * (arm.reach - distances), speeds, linewidth=2.5, label="elbow")
+    plane.set_xlabel("outwards from the column [m]")
+    ax.plot(1000 * (arm.reach - distances), speeds, linewidth=2.5, label="elbow")
     ax.axhline(limit, **SETPOINT, label=f"its motor: {limit} rad/s")
-    ax.set_yticks([0.5, 1, 2, 5], ["0.5", "1", "2", "5"])
-    ax.minorticks_off()
     ax.invert_xaxis()
-    ax.set(xlabel="still to go to the full reach [mm]", ylabel="speed [rad/s]")
+    ax.set(ylim=(0, None), xlabel="still to go to the full reach [mm]", ylabel="speed [rad/s]")
     ax.set_title("The tip keeps its pace, the elbow runs away")
     ax.legend(loc="upper left")
+    return figure
+
+
+def where_not(arm, tips, fastest, limit):
+    """Places of the arm's vertical plane where a joint would be faster than limit rad/s: LabFigure.
+
+    tips: (n, m, 3) m of a grid of poses; fastest: (n, m) rad/s, the fastest joint there.
+    """
+    figure = new_figure(6.2, 5.6)
+    ax = figure.axes[0]
+    colours = ["#D6E8F4", COLOURS["orange"]]
+    ax.contourf(tips[..., 0], tips[..., 2], fastest, levels=[0, limit, np.inf], colors=colours)
+    ax.plot([0, 0], [0, arm.l[0]], color=COLOURS["dark"], linewidth=8, solid_capstyle="butt", label="column")
+    for colour, text in zip(colours, ("every direction is open", "some direction is too fast"), strict=True):
+        ax.plot([], [], "s", color=colour, ms=10, label=text)
+    ax.set(aspect="equal", xlabel="outwards from the column [m]", ylabel="height [m]")
+    ax.set_title("Where can it not go, at 0.1 m/s?")
+    figure.legend(loc="outside lower center", ncols=3)
     return figure
 
 
@@ -135,7 +157,7 @@ def steps_panel(damped_step, arm, q_start, p, steps=25):
     (miss,) = misses.semilogy(number, np.ones(steps + 1), "o-", ms=4, label="distance of the tip")
     (elbow,) = elbows.plot(number, np.zeros(steps + 1), "o-", ms=4, color=COLOURS["orange"], label="elbow")
     misses.set(xlabel="step", ylabel="distance to the place [m]", ylim=(1e-12, 10))
-    elbows.set(xlabel="step", ylabel="elbow [deg]", ylim=(-400, 400))
+    elbows.set(xlabel="step", ylabel="elbow [deg]", ylim=(-200, 40))
     for ax in figure.axes:
         ax.legend(loc="upper right")
 

@@ -26,7 +26,7 @@ def elbow_by_hand(r):
 
 BY_HAND = {
     "ik-1": velocity_by_hand(),
-    "ik-2": 0.2 / 0.04,
+    "ik-2": 0.2 / 1.3,
     "ik-5": "front/up",
 }
 
@@ -49,10 +49,9 @@ def test_the_answer_by_hand_is_right(name):
         ("ik-1", np.negative(velocity_by_hand()), "sign"),
         ("ik-1", np.pi / 180 * np.array(velocity_by_hand()), "converted once too often"),
         ("ik-1", [0.1, -0.1 * np.sqrt(3), 0.5], "turns"),
-        ("ik-2", 0.008, "v d"),
-        ("ik-2", 286.48, "degrees per second"),
-        ("ik-2", 0.2 / 0.572, "stretched"),
-        ("ik-2", 0.2, "time"),
+        ("ik-2", 0.26, "more room"),
+        ("ik-2", 6.5, "not a distance"),
+        ("ik-2", 0.0026851, "degrees per second"),
         ("ik-5", "front/down", "upper limit"),
         ("ik-5", " Front / down ", "upper limit"),
         ("ik-5", "back/up", "face away"),

@@ -7,8 +7,6 @@ from ir50p_lab.modelling import IR50P, jacobian
 
 NOTEBOOK = "03_velocities_and_singular_poses"
 
-_L1, _L2, _L3 = IR50P.l
-
 # ik-1: velocity of the IR50P's tip in this state.
 _Q = np.deg2rad([30, 45, -60])
 _QD = np.array([0.5, -0.2, 0.4])
@@ -23,7 +21,7 @@ def _printed_jv(q):
 
 
 # ik-2: the tip passes the axis of the column.
-_DISTANCE, _SPEED = 0.04, 0.2
+_SPEED, _RATE = 0.2, 1.3
 
 # ik-5: a target of which the joint limits leave one pose.
 _P_LIMITS = np.array([0.40, 0.15, 0.35])
@@ -56,20 +54,16 @@ EXERCISES = (
     ),
     Exercise(
         "ik-2",
-        "the largest rate of joint 1 while the tip passes the column's axis on a straight horizontal line, "
-        "0.04 m beside it, at 0.2 m/s",
-        Number(_SPEED / _DISTANCE, unit="rad/s", tolerance=0.01, because="a hundredth shows that the idea is right"),
-        why="v / d: half the distance, twice the rate. On the axis itself no rate is enough.",
+        "the smallest distance from the column's axis at which the tip may pass it on a straight horizontal line at "
+        "0.2 m/s, if joint 1 manages 1.3 rad/s",
+        Number(_SPEED / _RATE, unit="m", tolerance=0.001, because="a millimetre is what this arm can resolve"),
+        why="v / d is the rate: half the distance, twice the rate. On the axis itself no rate is enough.",
         slips=(
-            Slip(_SPEED * _DISTANCE, "That is v d, which is small near the axis: but there joint 1 must hurry."),
-            Slip(np.rad2deg(_SPEED / _DISTANCE), "That is in degrees per second; asked for is rad/s."),
-            Slip(
-                _SPEED / (_L2 + _L3),
-                "That is the rate with the arm stretched, where a little turning moves the tip far.",
-            ),
-            Slip(_DISTANCE / _SPEED, "That is d / v: a time, in seconds."),
+            Slip(_SPEED * _RATE, "That is v times the rate: a faster joint would need more room."),
+            Slip(_RATE / _SPEED, "That is the rate divided by v: in 1/m, not a distance."),
+            Slip(_SPEED / np.rad2deg(_RATE), "The rate went in as degrees per second; it is 1.3 rad/s."),
         ),
-        hint="Where the line is nearest to the axis the tip moves sideways, on a circle of radius 0.04 m.",
+        hint="Where the line is nearest to the axis the tip moves sideways, on a circle about the axis.",
     ),
     Exercise(
         "ik-5",
