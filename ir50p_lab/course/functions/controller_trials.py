@@ -93,6 +93,8 @@ def _push(cls):
         (np.maximum(_KP * e, 0), "it cannot push downwards: a push has two directions"),
         (e, "kp is not used: the push is the error itself"),
         (_KP[0] * e, "all joints get the gain of joint 1: kp may be three numbers, one a joint"),
+        (_KP * (0.3 - q), "the speed that is wanted is taken for the angle: the reference has three rows"),
+        (_KP * e**2, "the error is squared: twice as far is twice the push, and an error has a sign"),
         (_KP * np.abs(e), "it pushes the same way on both sides of the target: an error has a sign"),
     )  # fmt: skip
     otherwise = "the push is not proportional to what is missing"
@@ -152,7 +154,9 @@ def _integral(cls):
         (push + _KI * total * 0.01, "0.01 s is written into it: it was made with another period"),
         (push - memory, "the integral pulls away from the target: look at the sign of what you add up"),
         (push + _KI * _PERIOD * e, "it does not remember: only the newest error is in its integral"),
-        (push, "ki does nothing: a gain of the integral makes no difference"),
+        (push, "ki does nothing: does the memory grow, or rest where it need not?"),
+        (push + _KI * total / _PERIOD, "it divides by the period: the sum is one of areas, error x period"),
+        (push + _KI * np.cumsum(np.abs(e), axis=0) * _PERIOD, "its memory can only grow: an error has a sign"),
         (push + area, "ki is not used: the sum is added as it is"),
         (push + _KP * memory, "kp multiplies all: here ki is a gain of its own, not a share of kp"),
         (push + _KP * area, "the integral has the gain kp: it has its own, ki"),
@@ -188,7 +192,9 @@ def _limit(cls):
         (np.minimum(free, 100), "it is limited upwards only: the limit holds on both sides"),
         (np.clip(free, -255, 255), "255 is written into it: it was made with another limit_pwm"),
     )
-    _expect(_run(_make(cls, kp=400.0, limit_pwm=100), 0 * e, e), right, slips, "the push is not limited to limit_pwm")
+    u = _run(_make(cls, kp=400.0, limit_pwm=100), 0 * e, e)
+    otherwise = f"its largest push is {np.abs(u).max():.0f} where limit_pwm is 100, and 4 where nothing limits it"
+    _expect(u, right, slips, otherwise)
     _expect(_run(_make(cls, kp=400.0), 0 * e, e), np.clip(free, -255, 255), (), "without limit_pwm the limit is 255")
 
 
@@ -278,7 +284,7 @@ def _damping(cls):
          "turns a second, and a turn has 2 pi"),
         (-_KD * _filtered(slope, 1 - exact), "the two shares of the filter are swapped"),
         (-_KD[0] * rights[0][0], "all joints get the kd of joint 1: each has its own"),
-        (0 * right, "kd does nothing"),
+        (0 * right, "kd does nothing: is the last angle kept for the next step?"),
     )  # fmt: skip
     return _expect(u, right, slips, "D is not kd times the filtered speed, against the motion")
 

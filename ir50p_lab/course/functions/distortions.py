@@ -179,6 +179,8 @@ def entries(task, cases, returned, expected):
     wrong = [place for place in np.ndindex(shape) if not _alike(task, found[:, *place], right[:, *place])]
     if not 0 < len(wrong) <= min(3, math.prod(shape) // 3):
         return ""
+    if len(wrong) == 2 and all(_alike(task, found[:, *a], right[:, *b]) for a, b in (wrong, wrong[::-1])):
+        return f"all is right but {_name(task, wrong[0])} and {_name(task, wrong[1])} have changed places"
     return "all is right but " + "; ".join(_entry(task, place, cases, found, right) for place in wrong)
 
 

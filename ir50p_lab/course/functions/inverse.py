@@ -90,8 +90,6 @@ def _poses_symptom(cases, returned, expected):
             return _no_rows(np.shape(one))
     if not all(np.isfinite(rows).all() for rows in answers):
         return "it returns nan on the edge or out of reach: a root of less than nothing, an arccos of more than 1"
-    if all(map(same_poses, map(np.radians, answers), expected)):
-        return "the angles are in degrees: everything here is rad"
     says = next(filter(None, map(_missing_pose, answers, cases, expected)), "")
     far = [k for k, one in enumerate(expected) if len(one) == 0 and len(answers[k])]
     if says or far:
@@ -119,13 +117,14 @@ def _whole_turns(poses):
     return ""
 
 
-_WHERE = (  # some of the poses: in words, and told from whether it faces the place, q3, x and q1
-    ("", lambda facing, e, x, w: True),
-    (" in the poses with their back to the place", lambda facing, e, x, w: not facing),
-    (" where x < 0", lambda facing, e, x, w: x < 0),
-    (" wherever it is beyond a quarter turn", lambda facing, e, x, w: abs(w) > np.pi / 2),
-    (" with the elbow up", lambda facing, e, x, w: e < 0),
-    (" with the elbow down", lambda facing, e, x, w: e > 0),
+_WHERE = (  # some of the poses: in words, and told from whether it faces the place, q3, p and q1
+    ("", lambda facing, e, p, w: True),
+    (" in the poses with their back to the place", lambda facing, e, p, w: not facing),
+    (" where x < 0", lambda facing, e, p, w: p[0] < 0),
+    (" where y < 0", lambda facing, e, p, w: p[1] < 0),
+    (" wherever it is beyond a quarter turn", lambda facing, e, p, w: abs(w) > np.pi / 2),
+    (" with the elbow up", lambda facing, e, p, w: e < 0),
+    (" with the elbow down", lambda facing, e, p, w: e > 0),
 )
 _BENDS = (  # what becomes of waist w, shoulder s and elbow e; g: angle between upper arm and r for an elbow
     ("shoulder and elbow do not fit together{}: is it the sign of q3, or that of the angle between r and upper arm?",
@@ -153,7 +152,7 @@ def _bent(p, l, bend, where):
     """The right poses, some of them bent."""
     poses = inverse_kinematics(p, l)
     for k, (w, s, e) in enumerate(poses):
-        if where(np.cos(w - np.arctan2(p[1], p[0])) > 0, e, p[0], w):
+        if where(np.cos(w - np.arctan2(p[1], p[0])) > 0, e, p, w):
             poses[k] = bend(w, s, e, lambda elbow: _between(elbow, l))
     return poses
 
@@ -162,12 +161,11 @@ def _facing_arm(w, s, e, g):
     return w, np.pi - s - 2 * g(e), e
 
 
-def _never_refused(p, l, near):
-    """Poses of the nearest place that can be reached, for places too near or too far."""
+def _never_refused(p, l, shortest, longest):
+    """Poses of the nearest place that can be reached, for places nearer or farther."""
     from_shoulder = p - [0, 0, l[0]]
     r = np.linalg.norm(from_shoulder)
-    edge = abs(l[1] - l[2]) if near else l[1] + l[2]
-    return inverse_kinematics(p + from_shoulder * (edge / r - 1) if (r < edge) == near else p, l)
+    return inverse_kinematics(p + from_shoulder * (np.clip(r, shortest(l), longest(l)) / r - 1), l)
 
 
 def _between(elbow, l):
@@ -194,11 +192,10 @@ def _missing_pose(rows, case, right):
             continue
         back = "its back to" if np.cos(q[0] - np.arctan2(p[1], p[0])) < 0 else "facing"
         says = f"pose {number + 1} of {len(rows)}, {back} the place, puts the tip {1000 * off:.0f} mm beside it"
-        for joint, name in enumerate(("waist", "shoulder", "elbow")):
-            others = [k for k in range(3) if k != joint]
-            if (_apart(q[None, others], right[:, others]) < _SAME).any():
-                return f"{says}: its {name} is wrong, the two other joints are right"
-        return f"{says}: feed each row to your forward_kinematics"
+        wrong = np.abs(np.angle(np.exp(1j * (q - right)))) > _SAME
+        most = wrong[np.argmin(wrong.sum(axis=1))]
+        names = [f"the {name}" for name, is_wrong in zip(("waist", "shoulder", "elbow"), most, strict=True) if is_wrong]
+        return f"{says}; what is wrong: {' and '.join(names)}"
     return ""
 
 
@@ -256,21 +253,22 @@ INVERSE_KINEMATICS = Task(
     loan=_LOAN,
     parts=("q1", "q2", "q3"),
     slips=(
-        Mistake(
-            lambda p, l: _bent(p, l, _facing_arm, lambda facing, e, x, w: not facing),
-            "with its back to the place the arm has the shoulder of the one that faces it: there the place lies "
-            "behind, at minus the distance",
-        ),
+        Mistake(lambda p, l: _bent(p, l, _facing_arm, lambda facing, e, p, w: not facing),
+                "with its back to the place the arm has the shoulder of the one that faces it: there the place lies "
+                "behind, at minus the distance"),
         *(
             Mistake(lambda p, l, bend=bend, where=where: _bent(p, l, bend, where), says.format(words))
             for says, bend in _BENDS
             for words, where in _WHERE
         ),
         *(
-            Mistake(
-                lambda p, l, near=near: _never_refused(p, l, near), f"places too {says} get poses: nobody reaches them"
+            Mistake(lambda p, l, shortest=shortest, longest=longest: _never_refused(p, l, shortest, longest),
+                    f"places too {says} get poses: nobody reaches them")
+            for says, shortest, longest in (
+                ("near the shoulder (r < |l2 - l3|)", lambda l: abs(l[1] - l[2]), lambda l: np.inf),
+                ("far away (r > l2 + l3)", lambda l: 0.0, lambda l: l[1] + l[2]),
+                ("near the shoulder, and those too far away,", lambda l: abs(l[1] - l[2]), lambda l: l[1] + l[2]),
             )
-            for near, says in ((True, "near the shoulder (r < |l2 - l3|)"), (False, "far away (r > l2 + l3)"))
         ),
     ),
     symptom=_poses_symptom,
@@ -280,7 +278,7 @@ INVERSE_KINEMATICS = Task(
         "The angle between r and the upper arm: draw the perpendicular from the tip onto the line of the upper arm. "
         "Both sides of that small triangle are easy, and arctan2 knows the quadrant.",
     ),
-)
+)  # fmt: skip
 
 
 # ----------------------------------------------------------------------------------------------------------- reach
@@ -458,26 +456,20 @@ REACH = Task(
             "the last allowed pose wins: is its largest turn compared with the smallest so far, and is that kept up to "
             "date?",
         ),
-        _turned("only the waist's turn is compared", lambda x, q: abs(x[0] - q[0])),
-        _turned(
-            "a turn counts as the short way round, through an end stop: a joint turns straight from angle to angle",
-            lambda x, q: np.abs(np.angle(np.exp(1j * (x - q)))).max(),
-        ),
-        Mistake(
-            _only_the_nearest,
-            "where the nearest pose is forbidden it gives up, although a farther one is allowed: first strike out, "
-            "then compare",
-        ),
+        *(_turned(f"only the turn of joint {j + 1} is compared", lambda x, q, j=j: abs(x[j] - q[j])) for j in range(3)),
+        _turned("a turn counts as the short way round, through an end stop: a joint turns straight from angle to angle",
+                lambda x, q: np.abs(np.angle(np.exp(1j * (x - q)))).max()),
+        Mistake(_only_the_nearest,
+                "where the nearest pose is forbidden it gives up, although a farther one is allowed: first strike out, "
+                "then compare"),
         _allowed("neither limits nor table are asked: what is nearest may be forbidden", lambda x, m: True, ()),
         _allowed("the limits are not asked: the nearest pose may be forbidden", lambda x, m: True),
         _allowed("the table is not asked: an elbow or tip may end below z = 0", within, ()),
         _allowed("the tip stays above the table, the elbow does not: it counts, too", within, (3,)),
         _allowed("the elbow stays above the table, the tip does not: it counts, too", within, (2,)),
         *(
-            _allowed(
-                f"the limits of joint {j + 1} are not asked",
-                lambda x, m, j=j: within(np.delete(x, j), np.delete(m, j, axis=1)),
-            )
+            _allowed(f"the limits of joint {j + 1} are not asked",
+                     lambda x, m, j=j: within(np.delete(x, j), np.delete(m, j, axis=1)))
             for j in range(3)
         ),
         _allowed(
@@ -487,10 +479,8 @@ REACH = Task(
         _allowed("only the upper limits are asked", lambda x, m: (x <= m[1]).all()),
         _allowed("only the lower limits are asked", lambda x, m: (x >= m[0]).all()),
         _allowed("the upper limits serve as lower ones, too: those are others", lambda x, m: (np.abs(x) <= m[1]).all()),
-        _allowed(
-            "a joint that stands exactly on its limit is refused: the limits themselves are allowed",
-            lambda x, m: (x > m[0]).all() and (x < m[1]).all(),
-        ),
+        _allowed("a joint that stands exactly on its limit is refused: the limits themselves are allowed",
+                 lambda x, m: (x > m[0]).all() and (x < m[1]).all()),
     ),
     symptom=_reach_symptom,
     hints=(
@@ -498,6 +488,6 @@ REACH = Task(
         "Of those that are left: how far has each joint to turn, which of the three turns most, and in which row is "
         "that least?",
     ),
-)
+)  # fmt: skip
 
 TASKS = (INVERSE_KINEMATICS, REACH)

@@ -68,11 +68,9 @@ ROT_Z = Task(
         [0, 0, 1],
     ])""",
     slips=(
-        Mistake(
-            lambda a: rot_z(a).T,
-            "it turns the wrong way round: a quarter turn takes (1, 0, 0) to (0, -1, 0), to the "
-            "right. Which way is counter-clockwise seen from above?",
-        ),
+        Mistake(lambda a: rot_z(a).T,
+                "it turns the wrong way round: a quarter turn takes (1, 0, 0) to (0, -1, 0), to the "
+                "right. Which way is counter-clockwise seen from above?"),
         *(
             Mistake(lambda a, turn=turn, sign=sign: turn(sign * a), f"it turns about {axis}: what stays has to be z")
             for axis, turn in (("x", rot_x), ("y", rot_y))
@@ -84,7 +82,7 @@ ROT_Z = Task(
         "Where does (1, 0, 0) go when the waist turns by the angle? Draw it from above. That is the first column.",
         "Where does (0, 1, 0) go? It stays a right angle ahead of the first. And (0, 0, 1)?",
     ),
-)
+)  # fmt: skip
 
 
 # ------------------------------------------------------------------------------------------------------- dh_matrix
@@ -181,29 +179,19 @@ def dh_matrix(theta, d, a, alpha):
     link = shift(a, 0, 0) @ turn_x(alpha)
     return joint @ link""",
     slips=(
-        Mistake(
-            lambda t, d, a, f: dh_matrix(np.radians(t), d, a, np.radians(f)),
-            "it hardly turns: theta and alpha come in radians already",
-        ),
+        Mistake(lambda t, d, a, f: dh_matrix(np.radians(t), d, a, np.radians(f)),
+                "it hardly turns: theta and alpha come in radians already"),
         Mistake(lambda t, d, a, f: dh_matrix(-t, d, a, -f), "both angles turn the wrong way round"),
-        Mistake(
-            lambda t, d, a, f: turn_x(f) @ shift(a, 0, 0) @ turn_z(t) @ shift(0, 0, d),
-            "the link's motions come before "
-            "the joint's: walk from the base, first turn and lift at the joint, then go along the link",
-        ),
-        Mistake(
-            lambda t, d, a, f: shift(a, 0, d) @ turn_z(t) @ turn_x(f),
-            "the link sticks out before the joint has turned: a is along the x axis *after* theta",
-        ),
-        Mistake(
-            lambda t, d, a, f: turn_z(t) @ shift(a, 0, 0) @ turn_x(f) @ shift(0, 0, d),
-            "d comes after the tilt: the joint lifts along its own axis, before the link tilts it",
-        ),
+        Mistake(lambda t, d, a, f: turn_x(f) @ shift(a, 0, 0) @ turn_z(t) @ shift(0, 0, d),
+                "the link's motions come before "
+                "the joint's: walk from the base, first turn and lift at the joint, then go along the link"),
+        Mistake(lambda t, d, a, f: shift(a, 0, d) @ turn_z(t) @ turn_x(f),
+                "the link sticks out before the joint has turned: a is along the x axis *after* theta"),
+        Mistake(lambda t, d, a, f: turn_z(t) @ shift(a, 0, 0) @ turn_x(f) @ shift(0, 0, d),
+                "d comes after the tilt: the joint lifts along its own axis, before the link tilts it"),
         Mistake(lambda t, d, a, f: turn_z(t) * shift(a, 0, d) * turn_x(f), "entry by entry (`*`) is no matrix product"),
-        Mistake(
-            lambda t, d, a, f: turn_z(t) @ shift(a, 0, d).T @ turn_x(f),
-            "a shift stands in the bottom row: what a point is moved by belongs into the last column",
-        ),
+        Mistake(lambda t, d, a, f: turn_z(t) @ shift(a, 0, d).T @ turn_x(f),
+                "a shift stands in the bottom row: what a point is moved by belongs into the last column"),
         *_other_motions(),
     ),
     symptom=_dh_symptom,
@@ -211,7 +199,7 @@ def dh_matrix(theta, d, a, alpha):
         "Write four small matrices first, one a motion: your rot_z in a 4 x 4, two shifts, a turn about x.",
         "Motions in the moving frame are multiplied from the left to the right, in the order in which they happen.",
     ),
-)
+)  # fmt: skip
 
 
 # ---------------------------------------------------------------------------------------------------------- frames
@@ -271,15 +259,11 @@ FRAMES = Task(
     T3 = T2 @ A3
     return np.array([T0, T1, T2, T3])""",
     slips=(
-        Mistake(
-            lambda q, l: np.array([np.eye(4), *_links(q, l)]),
-            "each link is seen from the link before it, not from the base: chain them",
-        ),
-        Mistake(
-            lambda q, l: np.array(_links(q, l)),
-            "there are three, each seen from the link before it: the base comes "
-            "first, and the others are seen from the base",
-        ),
+        Mistake(lambda q, l: np.array([np.eye(4), *_links(q, l)]),
+                "each link is seen from the link before it, not from the base: chain them"),
+        Mistake(lambda q, l: np.array(_links(q, l)),
+                "there are three, each seen from the link before it: the base comes "
+                "first, and the others are seen from the base"),
         *(
             Mistake(lambda q, l, alphas=alphas: _chain(*_links(q, l, alphas)), says)
             for says, alphas in (
@@ -287,6 +271,7 @@ FRAMES = Task(
                 ("alpha of row 1 has the wrong sign: the shoulder's axis points to the other side", (-1, 0, -1)),
                 ("frame 3 stands on its head: the sign of alpha in row 3 (the thesis prints this one, too)", (1, 0, 1)),
                 ("alpha of row 3 is missing: the place is right, the axes of frame 3 are not", (1, 0, 0)),
+                ("alpha of row 1 is missing: the shoulder turns about the vertical", (0, 0, -1)),
                 ("every alpha is 0: the shoulder turns about the vertical, and the arm stays flat", (0, 0, 0)),
                 ("alpha is given in degrees: 90 rad are fourteen turns and a bit", (180 / np.pi, 0, -180 / np.pi)),
             )
@@ -297,7 +282,7 @@ FRAMES = Task(
         "One line a joint: dh_matrix with the row of the arm's table. Then chain them.",
         "T1 = T0 @ A1, T2 = T1 @ A2 ...: each new frame is seen through the one before it.",
     ),
-)
+)  # fmt: skip
 
 
 # ---------------------------------------------------------------------------------------------- forward_kinematics
@@ -333,11 +318,14 @@ FORWARD_KINEMATICS = Task(
             lambda q, l: np.zeros(3),
             "it returns zeros: the place of the base itself, or a *row* of the transform; the place stands in a column",
         ),
+        Mistake(
+            lambda q, l: np.linalg.inv(frames(q, l)[3])[:3, 3], "that is the base as the tip sees it: no inverse here"
+        ),
     ),
     hints=(
         "You have the tip's frame already. What stands where in a transform?",
         "T[3] is 4 x 4; the place is a column.",
     ),
-)
+)  # fmt: skip
 
 TASKS = (ROT_Z, DH_MATRIX, FRAMES, FORWARD_KINEMATICS)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -37,8 +37,7 @@ class Task:
     slips: mistakes with a sentence of their own, most specific first; the usual ones need none (`distortions`);
     routes: other solutions, as text; parts: names of what stands beside each other in the answer.
     symptom: function of (cases, returned, expected), lists of equal length, that returns a sentence about a mistake no
-    slip covers, or ""; the example shown is a case that gives the same sentence alone. where: {words: function of a
-    case}: kinds of cases, to say that only these go wrong.
+    slip covers, or ""; the example shown is a case that gives the same sentence alone.
     form: function of one right answer; a sentence if later functions cannot use it as it is, or "".
     hints: two, opened on demand; loan: a plain solution, as text, whose names are words.
     same: compares what came back with what was expected; None: equal within tolerance. unit: of what comes back.
@@ -58,7 +57,6 @@ class Task:
     routes: tuple = ()
     parts: tuple = ()
     symptom: Callable | None = None
-    where: dict = field(default_factory=dict)
     form: Callable | None = None
     hints: tuple = ("", "")
     same: Callable | None = None

@@ -152,6 +152,12 @@ def _symptom(cases, returned, expected):
             off = f"{'1 sample' if abs(samples) < 1.5 else '2 samples'} too {'long' if samples > 0 else 'short'}"
             return f"the {name} is {off}: with which sample does it begin, and with which does it end?"
         step = f"a step from {q[0]:.2f} to {target:.2f} rad"
+        usual = mine / theirs if theirs else 1.0
+        if (
+            abs(np.log10(abs(usual) + 1e-9)) > 1.3
+            and np.mean(np.isclose(found[:, k], usual * right[:, k], rtol=1e-3)) > 0.5
+        ):
+            return f"the {name} is {usual:.3g} times what it should be: in which unit is it?"
         if k == 0 and _from_zero(cases, off):
             return "the rise time is right where a step begins at 0 rad and wrong elsewhere: the way begins at q[0]"
         if k == 0 and np.isnan(theirs):
@@ -175,11 +181,6 @@ def _slip(says, **changes):
     return Mistake(lambda t, q, target: _figures(t, q, target, **changes), says)
 
 
-def _always_rises(t, q, target):
-    done = (q - q[0]) / (target - q[0])
-    return t[np.argmax(done >= 0.9)] - t[np.argmax(done >= 0.1)], *_figures(t, q, target)[1:]
-
-
 def _percent(q, target, way):
     return 100 * max(0.0, np.max(np.sign(way) * (q - target))) / abs(way)
 
@@ -192,6 +193,7 @@ STEP_METRICS = Task(
     right=step_metrics,
     cases=_cases,
     same=_same,
+    parts=_NAMES,
     unit="(s, rad, s, rad)",
     loan="""def step_metrics(t, q, target):
     way = target - q[0]
@@ -213,35 +215,21 @@ STEP_METRICS = Task(
     return rise, overshoot, settling, target - np.mean(last_second)""",
     slips=(
         _slip("the overshoot is in percent of the step; here it is an angle, rad", over=_percent),
-        _slip(
-            "the overshoot is a part of the step, without unit; here it is an angle, rad",
-            over=lambda q, target, way: _percent(q, target, way) / 100,
-        ),
-        _slip(
-            "steps downwards overshoot by the whole step: beyond the target is *below* it there",
-            over=lambda q, target, way: max(0.0, np.max(q - target)),
-        ),
-        _slip(
-            "a joint that stays short of its target overshoots by less than nothing with you; no overshoot is 0",
-            over=lambda q, target, way: np.max(np.sign(way) * (q - target)),
-        ),
-        _slip(
-            "a joint that never passes its target has an overshoot, too: the largest distance on either side "
-            "counts the start as well",
-            over=lambda q, target, way: np.max(np.abs(q - target)),
-        ),
-        _slip(
-            "overshoot and settling are taken about where the joint ends; asked is about where it should end",
-            about=lambda q, last: np.mean(last),
-        ),
-        _slip(
-            "overshoot and settling are taken about the last angle; asked is about where it should end",
-            about=lambda q, last: q[-1],
-        ),
-        _slip(
-            "the band lies about where the joint ends; asked is about the target: a joint beside it has not settled",
-            rests=np.mean,
-        ),
+        _slip("the overshoot is a part of the step, without unit; here it is an angle, rad",
+              over=lambda q, target, way: _percent(q, target, way) / 100),
+        _slip("steps downwards overshoot by the whole step: beyond the target is *below* it there",
+              over=lambda q, target, way: max(0.0, np.max(q - target))),
+        _slip("a joint that stays short of its target overshoots by less than nothing with you; no overshoot is 0",
+              over=lambda q, target, way: np.max(np.sign(way) * (q - target))),
+        _slip("a joint that never passes its target has an overshoot, too: the largest distance on either side "
+              "counts the start as well",
+              over=lambda q, target, way: np.max(np.abs(q - target))),
+        _slip("overshoot and settling are taken about where the joint ends; asked is about where it should end",
+              about=lambda q, last: np.mean(last)),
+        _slip("overshoot and settling are taken about the last angle; asked is about where it should end",
+              about=lambda q, last: q[-1]),
+        _slip("the band lies about where the joint ends; asked is about the target: a joint beside it has not settled",
+              rests=np.mean),
         *(
             Mistake(
                 lambda t, q, target, k=k: _figures(
@@ -257,82 +245,61 @@ STEP_METRICS = Task(
             ),
             "the band is 2 % of the target: a step to 0 would have none. It is 2 % of the way from the start",
         ),
-        Mistake(
-            lambda t, q, target: _figures(t, np.r_[0.0, q[1:]], target),
-            "every step begins at 0 rad: look at the first sample for where this one begins",
-        ),
-        Mistake(_always_rises, "a step that never reaches 90 % of the way gets a rise time: it has none, so nan"),
+        Mistake(lambda t, q, target: _figures(t, np.r_[0.0, q[1:]], target),
+                "every step begins at 0 rad: look at the first sample for where this one begins"),
         _slip("the rise time is negative: which of the two marks does the joint pass first?", rise=lambda a, b: a - b),
-        _slip("the rise time is counted from the start of the run, not from 10 % of the way", low=-np.inf),
-        _slip("the rise time ends at the target itself, not at 90 % of the way", high=1.0),
-        _slip(
-            "where the angle trembles it settles late or never: four standard deviations of the noise widen the band",
-            band=lambda way, last: 0.02 * abs(way),
+        *(
+            _slip(f"the rise time goes {marks}, not from 10 to 90 % of the way", low=low, high=high)
+            for marks, low, high in (
+                ("from the start to 90 %", -np.inf, 0.9),
+                ("from 10 % to the target itself", 0.1, 1.0),
+                ("from the start to the target", -np.inf, 1.0),
+                ("from 10 to 95 %", 0.1, 0.95),
+                ("from 5 to 95 %", 0.05, 0.95),
+            )
         ),
-        _slip(
-            "the band is 4 standard deviations only: without noise it has no width, and 2 % of the way is allowed",
-            band=lambda way, last: 4 * _noise(last),
-        ),
-        _slip(
-            "the difference of two samples has the noise of both: divide its standard deviation by the root of 2",
-            band=lambda way, last: max(0.02 * abs(way), 4 * np.std(np.diff(last))),
-        ),
-        _slip(
-            "the band is 2 % and the noise together; asked is the wider of the two",
-            band=lambda way, last: 0.02 * abs(way) + 4 * _noise(last),
-        ),
+        _slip("the overshoot is that of the last sample, not of the farthest one",
+              over=lambda q, target, way: max(0.0, np.sign(way) * (q[-1] - target))),
+        _slip("the rest error is a median; asked is the mean", rest=lambda q, target, last: target - np.median(last)),
+        _slip("the last second begins one sample late: its first sample is included", tail=1 - 1e-6),
+        _slip("where the angle trembles it settles late or never: four standard deviations of the noise widen the band",
+              band=lambda way, last: 0.02 * abs(way)),
+        _slip("the band is 4 standard deviations only: without noise it has no width, and 2 % of the way is allowed",
+              band=lambda way, last: 4 * _noise(last)),
+        _slip("the difference of two samples has the noise of both: divide its standard deviation by the root of 2",
+              band=lambda way, last: max(0.02 * abs(way), 4 * np.std(np.diff(last)))),
+        _slip("the band is 2 % and the noise together; asked is the wider of the two",
+              band=lambda way, last: 0.02 * abs(way) + 4 * _noise(last)),
         _slip(
             "the band is 5 % of the way; asked is 2 %", band=lambda way, last: max(0.05 * abs(way), 4 * _noise(last))
         ),
-        _slip(
-            "for steps downwards the band has a negative width, so the joint is never inside: how *long* is the way?",
-            band=lambda way, last: max(0.02 * way, 4 * _noise(last)),
-        ),
-        _slip(
-            "it is settled when it is inside for the first time; a joint that swings leaves the band again",
-            settling=_first_inside,
-        ),
-        _slip(
-            "a clock that begins at 3 s makes it settle 3 s later: the time counts from where the step begins",
-            settling=lambda t, outside: np.nan if outside[-1] else t[np.flatnonzero(outside)[-1] + 1],
-        ),
-        _slip(
-            "the settling time ends at the last sample outside; inside is the one after it (a slow clock shows it)",
-            settling=lambda t, outside: np.nan if outside[-1] else t[np.flatnonzero(outside)[-1]] - t[0],
-        ),
-        _slip(
-            "a joint that is outside at the end gets a settling time: it has not settled, so nan",
-            settling=lambda t, outside: t[np.flatnonzero(outside)[-1]] - t[0] + 0.01 if outside.any() else 0.0,
-        ),
-        _slip(
-            "the rest error has the other sign: what is missing is positive, the target less where it is",
-            rest=lambda q, target, last: np.mean(last) - target,
-        ),
-        _slip(
-            "the rest error has lost its sign: short and too far are not the same",
-            rest=lambda q, target, last: abs(target - np.mean(last)),
-        ),
-        _slip(
-            "the rest error rests on the very last sample, which trembles: take the mean of the last second",
-            rest=lambda q, target, last: target - q[-1],
-        ),
+        _slip("for steps downwards the band has a negative width, so the joint is never inside: how *long* is the way?",
+              band=lambda way, last: max(0.02 * way, 4 * _noise(last))),
+        _slip("it is settled when it is inside for the first time; a joint that swings leaves the band again",
+              settling=_first_inside),
+        _slip("it counts from the first sample outside, not from the last",
+              settling=lambda t, outside: np.nan if outside[-1] else t[np.argmax(outside) + 1] - t[0]),
+        _slip("a clock that begins at 3 s makes it settle 3 s later: the time counts from where the step begins",
+              settling=lambda t, outside: np.nan if outside[-1] else t[np.flatnonzero(outside)[-1] + 1]),
+        _slip("the settling time ends at the last sample outside; inside is the one after it (a slow clock shows it)",
+              settling=lambda t, outside: np.nan if outside[-1] else t[np.flatnonzero(outside)[-1]] - t[0]),
+        _slip("the rest error has the other sign: what is missing is positive, the target less where it is",
+              rest=lambda q, target, last: np.mean(last) - target),
+        _slip("the rest error has lost its sign: short and too far are not the same",
+              rest=lambda q, target, last: abs(target - np.mean(last))),
+        _slip("the rest error rests on the very last sample, which trembles: take the mean of the last second",
+              rest=lambda q, target, last: target - q[-1]),
         _slip("the rest error and the noise are those of the last half second: a whole second is asked for", tail=0.5),
-        _slip(
-            "the last second is taken as the last hundred samples: not every computer is that quick; ask the clock",
-            samples=100,
-        ),
+        _slip("the last second is taken as the last hundred samples: not every computer is that quick; ask the clock",
+              samples=100),
     ),
     symptom=_symptom,
-    where={
-        "steps downwards": lambda t, q, target: target < q[0],
-        "a clock that does not begin at 0": lambda t, q, target: t[0] > 0.1,
-    },
     hints=(
         "Begin with done = how much of the way is behind the joint, 0 at the start and 1 at the target: rise time and "
         "direction are easy in it, upwards and downwards alike.",
         "np.argmax(condition) is the first place where it is true; np.flatnonzero(condition)[-1] the last. A joint has "
         "settled one sample after it was outside for the last time.",
     ),
-)
+)  # fmt: skip
 
 TASKS = (STEP_METRICS,)

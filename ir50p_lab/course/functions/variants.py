@@ -27,6 +27,7 @@ _NAMED = re.compile(
 )
 
 
+_SAY_LITTLE = ("something else", "the condition is not asked")
 _MANY_NAMES = 14  # exchanging each for each of more takes seconds
 
 
@@ -62,7 +63,7 @@ def in_words_of(function, says):
         return "something" if match["quoted"] else ""
 
     words = _NAMED.sub(kept, says)
-    return words, not any(lost)
+    return words, not any(lost) and not any(one in words for one in _SAY_LITTLE)
 
 
 @cache
@@ -171,12 +172,12 @@ def _changes(node, local, last):
             for k, place in enumerate(places):
                 for step in (1, -1, 2, -2, -3) if isinstance(place, ast.Constant) else ():
                     moved = [*places[:k], ast.Constant(place.value + step), *places[k + 1 :]]
-                    words = "another row or column is read than the one that is needed (they count from 0)"
+                    words = "another row or column is read than the one needed, counted from 0"
                     yield words, ast.Subscript(value, ast.Tuple(moved, ast.Load()), node.ctx)
         case ast.Subscript(value=value, slice=ast.Constant(value=int(k)), ctx=ast.Load()):
             for step in (1, -1, 2, -2, -3):
                 if k + step >= 0:
-                    words = f"number {k + step} of {ast.unparse(value)} is taken, not the one needed (counted from 0)"
+                    words = f"number {k + step} of {ast.unparse(value)} is taken, not the one needed, counted from 0"
                     yield words, ast.Subscript(value, ast.Constant(k + step), node.ctx)
         case ast.Subscript(value=value, slice=ast.Name() as k, ctx=ast.Load()):
             for words, op in (("late: the first round needs number 0", ast.Add()), ("early", ast.Sub())):

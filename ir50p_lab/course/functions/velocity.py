@@ -93,35 +93,29 @@ JACOBIAN = Task(
         ),
         Mistake(lambda T, k, p: _columns(T, k, T[k][:3, 3]), "the end of the link moves in it: `point` is not used"),
         Mistake(lambda T, k, p: _columns(T, k, T[3][:3, 3]), "it is the tip that moves in it: `point` is not used"),
-        Mistake(
-            lambda T, k, p: jacobian(T, k, p)[:, :k],
-            "there are three columns always: joints that do not carry the link get zeros",
-        ),
-        Mistake(
-            lambda T, k, p: _columns(T, k, p, across=lambda z, _: np.cross(z, p)),
-            "the levers all start at the base: each starts at its own joint",
-        ),
+        Mistake(lambda T, k, p: jacobian(T, k, p)[:, :k],
+                "there are three columns always: joints that do not carry the link get zeros"),
+        Mistake(lambda T, k, p: _columns(T, k, p, across=lambda z, _: np.cross(z, p)),
+                "the levers all start at the base: each starts at its own joint"),
         Mistake(
             lambda T, k, p: _columns(T, k, p, across=lambda z, lever: np.cross(lever, z)),
             "the velocities point backwards: the factors of the cross product have changed places, or the lever goes "
             "from the point to the joint",
         ),
         Mistake(_lever_to_the_next, "each lever ends at the next joint, not at the point"),
-        Mistake(
-            lambda T, k, p: _columns(T, k, (T[k] @ np.append(p, 1))[:3]),
-            "the point is turned and shifted once more: it is given in base coordinates already",
-        ),
-        Mistake(
-            lambda T, k, p: _columns(T, k, p, axis=np.array([0.0, 0, 1])),
-            "every joint turns about the vertical in it: the axes of shoulder and elbow lie flat",
-        ),
+        Mistake(lambda T, k, p: _columns(T, k, (T[k] @ np.append(p, 1))[:3]),
+                "the point is turned and shifted once more: it is given in base coordinates already"),
+        Mistake(lambda T, k, p: _columns(T, k, p, axis=T[k][:3, 2]),
+                "every joint turns about z of the link's own frame: each has an axis of its own"),
+        Mistake(lambda T, k, p: _columns(T, k, p, axis=np.array([0.0, 0, 1])),
+                "every joint turns about the vertical in it: the axes of shoulder and elbow lie flat"),
     ),
     symptom=_jacobian_symptom,
     hints=(
         "Joint 1 alone turns: how fast does a point move that is 0.5 m from the axis, and where to? Axis x lever.",
         "Joint k turns about the z axis of frame k - 1, and stands at its origin. Both are columns of T[k - 1].",
     ),
-)
+)  # fmt: skip
 
 
 # ----------------------------------------------------------------------------------------------------- damped_step
@@ -130,10 +124,10 @@ def damped_step(q, p, l, damping):
     return _step(q, p, l, damping)
 
 
-def _step(q, p, l, damping, *, solve=None, rows=slice(3)):
+def _step(q, p, l, damping, *, solve=None, rows=slice(3), point=None):
     T = frames(q, l)
     tip = T[3][:3, 3]
-    J = jacobian(T, 3, tip)[rows]
+    J = jacobian(T, 3, tip if point is None else point)[rows]
     dq = solve(J, p - tip, damping) if solve else J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(3), p - tip)
     return q + dq
 
@@ -184,12 +178,18 @@ def _step_symptom(cases, returned, expected):
 
 
 def _along(cases, returned, expected):
-    """Which step has the student's direction, if not its length: the damped one, or the plain one."""
-    mine, damped, plain = [], [], []
+    """A step with another damping, or one with another length than the damped or the plain one."""
+    mine, damped, plain, added = [], [], [], []
     for (q, p, l, _), one, right in zip(cases, returned, expected, strict=True):
+        J, missing = jacobian(frames(q, l), 3, forward_kinematics(q, l))[:3], p - forward_kinematics(q, l)
+        left = J.T @ (missing - J @ (one - q))
+        number = left @ (one - q) / ((one - q) @ (one - q))  # on the diagonal
         mine.append(one - q)
         damped.append(right - q)
-        plain.append(_step(q, p, l, 0.0, solve=lambda J, e, _: np.linalg.pinv(J) @ e) - q)
+        plain.append(np.linalg.pinv(J) @ missing)
+        added.append(number if np.allclose(number * (one - q), left, atol=1e-6) else np.nan)
+    if np.isfinite(added).all():
+        return f"{added[0]:.3g} is added on the diagonal where the damping is {cases[0][3]:g}: look at the formula"
     for says, steps in (
         ("the direction of the step is right, its length is not: is it cut, scaled or divided afterwards?", damped),
         (
@@ -226,40 +226,28 @@ DAMPED_STEP = Task(
         _changed("the step is made into degrees before it is added: all is rad here", lambda dq, d: np.degrees(dq)),
         _changed("the step is shortened by the damping, too: that belongs into the matrix only", lambda dq, d: d * dq),
         _changed("the step is divided by the damping, too: that belongs into the matrix only", lambda dq, d: dq / d),
-        _solved(
-            "it follows the transpose alone, without solving: the right side, but far too short or too long",
-            lambda J, e, d: J.T @ e,
-        ),
-        _solved(
-            "the transpose comes before the solving: it belongs behind, to bring the answer to the joints",
-            lambda J, e, d: np.linalg.solve(J @ J.T + d**2 * np.eye(3), J.T @ e),
-        ),
-        _solved(
-            "the damping is added to J itself: that changes where the step leads, instead of shortening it",
-            lambda J, e, d: np.linalg.solve(J + d * np.eye(3), e),
-        ),
-        _solved(
-            "a number is added to all nine entries of the matrix; the 1 of the formula is the matrix np.eye(3)",
-            lambda J, e, d: J.T @ np.linalg.solve(J @ J.T + d**2, e),
-        ),
-        _solved(
-            "`**-1` inverts each entry, not the matrix",
-            lambda J, e, d: J.T @ ((J @ J.T + d**2 * np.eye(3)) ** -1.0 @ e),
-        ),
-        Mistake(
-            lambda q, p, l, d: np.angle(np.exp(1j * damped_step(q, p, l, d))),
-            "the angles are wrapped to half a turn: a joint goes where the step leads, leave them as they are",
-        ),
-        Mistake(
-            lambda q, p, l, d: _step(q, p, l, d, rows=slice(3, 6)),
-            "the lower three rows of the Jacobian are used, the turning: a place needs the velocity",
-        ),
+        _solved("it follows the transpose alone, without solving: the right side, but far too short or too long",
+                lambda J, e, d: J.T @ e),
+        _solved("the transpose comes before the solving: it belongs behind, to bring the answer to the joints",
+                lambda J, e, d: np.linalg.solve(J @ J.T + d**2 * np.eye(3), J.T @ e)),
+        _solved("the damping is added to J itself: that changes where the step leads, instead of shortening it",
+                lambda J, e, d: np.linalg.solve(J + d * np.eye(3), e)),
+        _solved("a number is added to all nine entries of the matrix; the 1 of the formula is the matrix np.eye(3)",
+                lambda J, e, d: J.T @ np.linalg.solve(J @ J.T + d**2, e)),
+        _solved("`**-1` inverts each entry, not the matrix",
+                lambda J, e, d: J.T @ ((J @ J.T + d**2 * np.eye(3)) ** -1.0 @ e)),
+        Mistake(lambda q, p, l, d: np.angle(np.exp(1j * damped_step(q, p, l, d))),
+                "the angles are wrapped to half a turn: a joint goes where the step leads, leave them as they are"),
+        Mistake(lambda q, p, l, d: _step(q, p, l, d, point=p),
+                "the Jacobian is taken at the place that is wanted: it is the tip that moves"),
+        Mistake(lambda q, p, l, d: _step(q, p, l, d, rows=slice(3, 6)),
+                "the lower three rows of the Jacobian are used, the turning: a place needs the velocity"),
     ),
     symptom=_step_symptom,
     hints=(
         "Of your jacobian only the three rows of velocity count here: a place has three numbers.",
         "Solve (J J' + damping^2 1) y = what is missing, with np.linalg.solve. Then back to the joints with J'.",
     ),
-)
+)  # fmt: skip
 
 TASKS = (JACOBIAN, DAMPED_STEP)
