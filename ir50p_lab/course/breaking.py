@@ -121,7 +121,7 @@ def sampling(arm, *, period=0.01):
 def delay(arm, *, samples=15):
     """A loop that hears late, without friction; the step is so small that the motor keeps within its limit."""
     pid = PID((800, 1500, 1500), ki=(0, 2000, 2000), kd=10, limit_pwm=255)
-    return simulate(arm.without_friction(), Late(pid, samples), 0.18 * far_target(arm), duration=6)
+    return simulate(arm.without_friction(), Late(pid, samples), 0.15 * far_target(arm), duration=6)
 
 
 def hears_late(arm, controller, samples):

@@ -92,6 +92,6 @@ def history(rules=None):
         ax.axhline(min(found.value, 100), color=COLOURS[colour], linestyle="-.", label=name)
     top = max([2.0, *values, *(min(found.value, 100) for found in (rules or {}).values())])
     ax.set(yscale="log", ylim=(0.4, 1.5 * top), xlim=(0.5, max(len(values), 5) + 0.5))
-    ax.set(xlabel="attempt [1]", ylabel="score [1]", title="The worst term over its limit, attempt by attempt")
+    ax.set(xlabel="attempt", ylabel="score", title="The worst term over its limit, attempt by attempt")
     ax.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure

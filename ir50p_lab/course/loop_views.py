@@ -73,7 +73,7 @@ def one_loop():
     ax.text(8.9, middle + 0.15, "$q$", fontsize=13)
     _wire(ax, (8.75, middle), (8.75, low), (1.1, low), (1.1, middle - 0.15))
     _wire(ax, (5.85, 2.5), (5.85, 2.85), (3.55, 2.85), (3.55, 2.5))
-    ax.text(5.0, 2.95, "at the limit: rest", ha="center", fontsize=9, color=COLOURS["orange"])
+    ax.text(4.72, 2.93, "at the limit: rest", fontsize=9, color=COLOURS["orange"])
     _wire(ax, (3.15, low), (3.15, 0.38))
     _wire(ax, (3.15, 0.76), (3.15, 0.9))
     _box(ax, 3.15, 0.57, "speed, filtered", width=1.7, height=0.38, colour="green")
