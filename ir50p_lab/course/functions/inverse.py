@@ -157,10 +157,6 @@ def _bent(p, l, bend, where):
     return poses
 
 
-def _facing_arm(w, s, e, g):
-    return w, np.pi - s - 2 * g(e), e
-
-
 def _never_refused(p, l, shortest, longest):
     """Poses of the nearest place that can be reached, for places nearer or farther."""
     from_shoulder = p - [0, 0, l[0]]
@@ -253,7 +249,7 @@ INVERSE_KINEMATICS = Task(
     loan=_LOAN,
     parts=("q1", "q2", "q3"),
     slips=(
-        Mistake(lambda p, l: _bent(p, l, _facing_arm, lambda facing, e, p, w: not facing),
+        Mistake(lambda p, l: _bent(p, l, lambda w, s, e, g: (w, np.pi - s - 2 * g(e), e), _WHERE[1][1]),
                 "with its back to the place the arm has the shoulder of the one that faces it: there the place lies "
                 "behind, at minus the distance"),
         *(
@@ -447,7 +443,6 @@ REACH = Task(
                 ("takes the length, the root of the squares", lambda x, q: np.linalg.norm(x - q)),
                 ("compares the smallest turn of each pose", lambda x, q: np.abs(x - q).min()),
                 ("compares turns with their sign, so that a far one counts as small", lambda x, q: (x - q).max()),
-                ("adds up turns with their sign, so that they cancel", lambda x, q: (x - q).sum()),
                 ("compares the angles, not how far they are from q_now", lambda x, q: np.abs(x).max()),
             )
         ),

@@ -253,7 +253,6 @@ STEP_METRICS = Task(
             for marks, low, high in (
                 ("from the start to 90 %", -np.inf, 0.9),
                 ("from 10 % to the target itself", 0.1, 1.0),
-                ("from the start to the target", -np.inf, 1.0),
                 ("from 10 to 95 %", 0.1, 0.95),
                 ("from 5 to 95 %", 0.05, 0.95),
             )

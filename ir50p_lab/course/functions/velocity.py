@@ -22,10 +22,6 @@ def _columns(T, link, point, *, axis=None, across=np.cross, turns=0, begins=0):
     return J
 
 
-def _lever_to_the_next(T, link, point):
-    return np.column_stack([_columns(T, link, frame[:3, 3])[:, k] for k, frame in enumerate(T[1:])])
-
-
 def _points():
     rng = np.random.default_rng(31)
     cases = []
@@ -102,7 +98,6 @@ JACOBIAN = Task(
             "the velocities point backwards: the factors of the cross product have changed places, or the lever goes "
             "from the point to the joint",
         ),
-        Mistake(_lever_to_the_next, "each lever ends at the next joint, not at the point"),
         Mistake(lambda T, k, p: _columns(T, k, (T[k] @ np.append(p, 1))[:3]),
                 "the point is turned and shifted once more: it is given in base coordinates already"),
         Mistake(lambda T, k, p: _columns(T, k, p, axis=T[k][:3, 2]),
@@ -224,8 +219,6 @@ DAMPED_STEP = Task(
     return q + step""",
     slips=(
         _changed("the step is made into degrees before it is added: all is rad here", lambda dq, d: np.degrees(dq)),
-        _changed("the step is shortened by the damping, too: that belongs into the matrix only", lambda dq, d: d * dq),
-        _changed("the step is divided by the damping, too: that belongs into the matrix only", lambda dq, d: dq / d),
         _solved("it follows the transpose alone, without solving: the right side, but far too short or too long",
                 lambda J, e, d: J.T @ e),
         _solved("the transpose comes before the solving: it belongs behind, to bring the answer to the joints",
