@@ -25,28 +25,38 @@ def columns_of(recording, q=None, u=None, qd=None, *, drop=False):
             raise InputError("q and u are missing: give a recording, or t, q and u as arrays")
     given = {"t": t, "q": q, "u": u} | ({} if qd is None else {"qd": qd})
     units = {"t": "s", "q": "rad", "u": "its own unit", "qd": "rad/s"}
+    arrays = same_samples(given, units, drop)
+    t = arrays.pop("t")
+    for name, array in arrays.items():
+        if array.shape != arrays["q"].shape:
+            raise InputError(f"q {arrays['q'].shape} and {name} {array.shape}: give one {name} per joint")
+    return without_rounding(t), *(np.ascontiguousarray(x.reshape(len(t), -1)) for x in arrays.values())
+
+
+def same_samples(given, units, drop=False):
+    """Float arrays of the columns `given` (name: values), "t" (n,) and increasing, the others (n,) or (n, k).
+
+    Masked samples are left out, and with `drop` those that are no numbers. Raises InputError.
+    """
     arrays = {name: _numbers(name, value, units[name]) for name, value in given.items()}
     n = len(arrays["t"])
     if arrays["t"].ndim != 1 or n < 2:
         raise InputError(f"t has shape {arrays['t'].shape}; give at least two times in s, shape (n,)")
+    left_out = np.zeros(n, dtype=bool)
     for name, array in arrays.items():
         if array.ndim not in (1, 2) or len(array) != n:
             raise InputError(f"{name} has shape {array.shape} beside {n} times: give (n,) or (n, k), time first")
-        if name != "t" and array.shape != arrays["q"].shape:
-            raise InputError(f"q {arrays['q'].shape} and {name} {array.shape}: give one {name} per joint")
-    left_out = np.zeros(n, dtype=bool)
-    for name, value in given.items():
-        left_out |= np.ma.getmaskarray(np.ma.asarray(value)).reshape(n, -1).any(axis=1)
+        left_out |= np.ma.getmaskarray(np.ma.asarray(given[name])).reshape(n, -1).any(axis=1)
         if drop:
-            left_out |= ~np.isfinite(arrays[name].reshape(n, -1)).all(axis=1)
+            left_out |= ~np.isfinite(array.reshape(n, -1)).all(axis=1)
     arrays = {name: array[~left_out] for name, array in arrays.items()}
     for name, array in arrays.items():
         if not np.isfinite(array).all():
             raise InputError(
                 f"{name} holds {first_not_finite(array)} ({int((~np.isfinite(array)).sum())} such value(s)): remove "
-                "these samples from t, q and u; a gap in time is understood"
+                "these samples from every column; a gap in time is understood"
             )
-    t = arrays.pop("t")
+    t = arrays["t"]
     back = np.flatnonzero(np.diff(t) <= 0)
     if len(back):
         i = int(back[0]) + 1
@@ -55,7 +65,7 @@ def columns_of(recording, q=None, u=None, qd=None, *, drop=False):
             f"({len(back)} such step(s)): sort the samples by time and remove doubled ones; several recordings: give "
             "a list of them"
         )
-    return without_rounding(t), *(np.ascontiguousarray(x.reshape(len(t), -1)) for x in arrays.values())
+    return arrays
 
 
 def joined(recordings):

@@ -16,11 +16,12 @@ _BROKEN = 3.5  # samples: noise breaks a stay into pieces this near to each othe
 _ABRUPT = 0.2  # of the rms speed, with which a joint runs into the end of its sensor, and comes back out of it
 _JUMP = 5.0  # times the largest usual step, by which a frozen angle jumps when it is alive again
 _SPIKE = 0.05  # of the range, and 12 times the bends around it: one sample this far from both neighbours is an outlier
+_LEAST = 3  # quanta, of an outlier: fewer are the flicker of a coarse signal
 _LEVELS = 16  # an input of so few levels is switched, not clipped
 
 
 class Doubts(list):
-    """Sentences; `refuse` raises IdentificationError, unless `anyway`: then it adds its sentence too."""
+    """Sentences; `refuse` raises IdentificationError, with them, unless `anyway`: then it adds its sentence too."""
 
     def __init__(self, anyway=False, who=""):
         self.anyway, self.who = anyway, who
@@ -32,7 +33,7 @@ class Doubts(list):
     def refuse(self, sentence):
         """What makes the numbers meaningless."""
         if not self.anyway:
-            raise IdentificationError(f"{self.who}{sentence} (anyway=True goes on)")
+            raise IdentificationError(" Also: ".join([f"{self.who}{sentence} (anyway=True goes on)", *self]))
         self.add(f"gone on anyway: {sentence}")
 
 
@@ -50,7 +51,7 @@ def check_signals(doubts, t, q, u):
     ):
         if np.ptp(x) <= 1e-12 * np.abs(x).max():
             raise IdentificationError(f"{doubts.who}{name} is constant at {x[0]:.6g} in the whole record: {remedy}")
-        _outliers(doubts, name, t, x)
+        check_outliers(doubts, name, t, x)
     if len(np.unique(q)) < 3:
         doubts.refuse(f"q takes only {len(np.unique(q))} values: no motion can be seen; use a finer sensor")
     else:
@@ -175,11 +176,14 @@ def outliers(x):
     low, high = np.quantile(x, (0.02, 0.98))
     off = np.abs(x[1:-1] - (x[:-2] + x[2:]) / 2)
     around = np.maximum(median_filter(off, 41, mode="nearest"), np.median(off))
-    alone = (off > np.maximum(_SPIKE * (high - low), 12 * around)) & (np.abs(x[2:] - x[:-2]) < 0.4 * off)
+    alone = (off > np.maximum(max(_SPIKE * (high - low), _LEAST * quantum_of(x)), 12 * around)) & (
+        np.abs(x[2:] - x[:-2]) < 0.4 * off
+    )
     return np.flatnonzero(alone) + 1
 
 
-def _outliers(doubts, name, t, x):
+def check_outliers(doubts, name, t, x):
+    """Name the first of them."""
     places = outliers(x)
     if len(places):
         k = places[0]

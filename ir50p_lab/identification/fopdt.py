@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.doubts import Doubts
+from ir50p_lab.identification.doubts import Doubts, check_outliers
 from ir50p_lab.identification.first_order import Record, respond
 from ir50p_lab.identification.second_order import fit_second_order
 from ir50p_lab.identification.step_record import check_time, is_number, jumps_of, recorded, without_outliers
@@ -108,6 +108,7 @@ def fit_fopdt(t, u, y, *, dead_time=None, u_before=None, anyway=False):
     times, jumps = jumps_of(t, u, u_before)
     doubts = Doubts(anyway)
     doubts += check_time(t)
+    check_outliers(doubts, "u", t, u)
     _refuse_silent(t, y, times)
     whole = t, u, y
     t, y, named = without_outliers(t, y)

@@ -3,7 +3,6 @@
 import numpy as np
 
 from ir50p_lab.identification.doubts import check_speed
-from ir50p_lab.identification.regression import least_squares
 
 _MOTION = 3.0  # least speed over that of the noise
 _EXPLAINED = 0.02  # least share of the variance of u that the motion explains
@@ -150,12 +149,11 @@ def _inertia(doubts, found, band, period):
 
 
 def _late(doubts, found, period):
-    """Whether u acts later than it was recorded: u(t - delay) is about u - delay du/dt."""
+    """Whether u acts later than it was recorded."""
     if found.lost("inertia") or "inertia" not in found.names:
         return
-    more = least_squares(np.column_stack([found.A, found.table.slope]), found.table.y)
-    delay, sigma = more.x[-1], more.stderr[-1]
-    if more.rms < 0.9 * found.rms and abs(delay) > 5 * sigma and abs(delay) > 0.3 * period:
+    delay, sigma, rms = found.delay
+    if rms < 0.9 * found.rms and abs(delay) > 5 * sigma and abs(delay) > 0.3 * period:
         doubts.add(
             f"u seems to act about {delay:.2g} s after it was recorded, which makes the inertia too large by "
             "viscous times that: give delay="

@@ -20,7 +20,7 @@ class LeastSquares:
     x              parameters; 0 where a column was left out                                        (p,)
     stderr         standard errors; inf: the data cannot carry it                                   (p,)
     covariance     of x; 0 where a column was left out                                              (p, p)
-    residuals      y - A x                                                                          like y
+    residuals      y - A x, of the samples used                                                     like y
     rms            of the residuals
     correlation    of neighbouring residuals: 0 for white noise
     independent    number of independent samples that carry as much as the n there are
@@ -48,7 +48,7 @@ def least_squares(A, y, *, names=None, errors="hac", tolerance=1e-8):
         found = least_squares(np.column_stack([qd, np.sign(qd)]), torque, names=("viscous", "Coulomb"))
 
     Args:
-        A: (n, p), or (n, k, p) for k equations a sample; y: (n,) or (n, k). Time first.
+        A: (n, p), or (n, k, p) for k equations a sample; y: (n,) or (n, k). Time first. Masked samples are left out.
         names: of the p columns. errors: "hac" holds for residuals that are alike over time and of unequal size
         (heteroscedasticity and autocorrelation consistent, `long_run_sum`); "classical" for white ones.
         tolerance: a column of which less than this sticks out of those before it is left out.
@@ -57,9 +57,13 @@ def least_squares(A, y, *, names=None, errors="hac", tolerance=1e-8):
     Raises: InputError on shapes and numbers that are not finite; IdentificationError if A is zero, or has fewer than
     twice as many rows as columns.
     """
+    masks = [np.ma.getmaskarray(x) for x in (A, y) if np.ma.isMaskedArray(x)]
     A, y = numbers("A", A), numbers("y", y)
     if A.ndim not in (2, 3) or A.shape[:-1] != y.shape or not A.size:
         raise InputError(f"A has shape {A.shape}, y {y.shape}: give (n, p) and (n,), or (n, k, p) and (n, k)")
+    if masks:
+        keep = ~np.any([mask.reshape(len(y), -1).any(axis=1) for mask in masks], axis=0)
+        A, y = A[keep], y[keep]
     for name, array in (("A", A), ("y", y)):
         if not np.isfinite(array).all():
             raise InputError(f"{name} holds {first_not_finite(array)}: remove or repair that sample")

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from ir50p_lab.signals.low_pass import low_pass
 TERMS = ("inertia", "viscous", "coulomb", "offset", "gravity", "stribeck")
 _COLUMNS = ("offset", "gravity_sin", "gravity_cos", "viscous", "coulomb", "stribeck", "inertia")  # later ones go first
 _OWN_SHARE = 1e-3  # of a column, that must stick out of those before it
-_CLEARLY = 0.95  # of the residual of the other choice, below which u held or u measured explains the data better
+_CLEARLY = 0.95  # of the residual of u held, below which u measured explains the data better
 _ORDER = 3  # of the low passes, forward and again backward
 _OWN = 4.0  # samples per cut-off period that are kept for the regression: more would say the same again
 _DEAD = 0.1  # of the rms speed, below which a joint may stick and a filtered speed has lost its sign
@@ -26,6 +27,7 @@ _ALL_NOISE = 0.3  # noise power over power of the acceleration from which on no 
 _AGREE = 1.0  # standard errors of inertia and friction at a cut-off, by which half of it may move them
 _MATTERS = 0.1  # of the value: a change smaller than this is only put into the standard error
 _JUDGED = ("inertia", "viscous", "coulomb")  # by these
+_POLYNOMIAL = 6  # degree of a force of the position
 _EXACT = 2e-3  # of a parameter: differences and interpolation are no better
 _PEAK = (0.02, 1.0)  # of the rms speed: where the Stribeck speed is looked for
 
@@ -100,9 +102,9 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     q and u pass the same zero-phase low pass, and so does sgn(qd): the equation stays true, only noise is lost.
     Samples of a joint that stands are left out (there u may be anything up to the breakaway friction). The cut-off is
     the highest that noise of q allows at which the parameters agree with those at half of it: above, flexibility and
-    backlash make a rigid model wrong. Standard errors allow for residuals that are alike, for what half the cut-off
-    and twice the least speed change, and for half of what `held` makes of a parameter where the data do not tell which
-    it is.
+    backlash make a rigid model wrong. Standard errors allow for residuals that are alike, and for what
+    lower cut-offs, twice the least speed, any force of the position and, unless `held` is given, half a period between
+    q and u change (less, or more, where the data tell the delay).
 
     Args:
         t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings
@@ -113,8 +115,8 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
             needs a filter: ("viscous", "coulomb") is then the plain least squares of a friction sweep.
         cutoff_hz: of the low pass; inf: none (with qd, without inertia).
         delay: s from a sample to the moment its u acts.
-        held: True: u is held from its sample to the next; False: it is a measurement at the instant; None: whichever
-            explains the data better.
+        held: True: u is held from its sample to the next; False: it is a measurement at the instant; None: held,
+            unless the other explains the data clearly better.
         anyway: go on where the data are refused, and leave out what is no number; the reason is then in `warnings`.
 
     Returns: JointFit.
@@ -149,7 +151,7 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     checks.check_clipped_drive(doubts, u[:, 0], found)
     if not plain:
         found = _at_agreeing_cutoff(doubts, joint, found, held, cutoff_hz is not None)
-        found = _with_slow_motion_in_errors(joint, found)
+        found = _with_other_fits_in_errors(joint, found, held)
     check_model(doubts, found, band, period)
     if "inertia" in terms and found.value("inertia") < 0 and not found.lost("inertia"):
         found = joint.fit(found.cutoff_hz, found.held, without=("inertia",))
@@ -218,8 +220,7 @@ def _at_agreeing_cutoff(doubts, joint, first, held, given):
         wrong = moved > np.maximum(_AGREE * here.stderr, _MATTERS * np.abs(lower.x))
         wrong &= [name in _JUDGED for name in here.names]
         if not wrong.any():
-            best = here if here is first else lower
-            return replace(best, stderr=np.hypot(best.stderr, moved))
+            return here if here is first else lower
         name = here.names[int(np.argmax(np.where(wrong, moved / here.stderr, 0.0)))]
         here, before = lower, here
         if given:
@@ -236,27 +237,39 @@ def _at_agreeing_cutoff(doubts, joint, first, held, given):
     return first if given else here
 
 
-def _with_slow_motion_in_errors(joint, found):
-    """The same, its standard errors widened by what twice the least speed changes: sticking, ripple, coarse angles."""
-    stderr = np.hypot(found.stderr, _EXACT * np.abs(found.x))
-    other = joint.fit(found.cutoff_hz, found.held, fewest=found, slower=2.0)
-    if other is not None:
-        known = np.isfinite(found.stderr) & np.isfinite(other.stderr)
-        stderr = np.hypot(stderr, np.where(known, np.abs(found.x - other.x), 0.0))
-    return replace(found, stderr=stderr)
+def _with_other_fits_in_errors(joint, found, held):
+    """The same, its standard errors widened by what fits that are as good a choice change beyond their own errors.
+
+    Lower cut-offs: flexibility, backlash. Twice the least speed: sticking, coarse angles. Any force of the position:
+    gravity, ripple. If `held` was not given, a u that acts at another instant: by half a period, if the data do not
+    tell.
+    """
+    others = [joint.fit(found.cutoff_hz, found.held, fewest=found, slower=2.0)]
+    cutoff_hz = found.cutoff_hz / 2
+    while cutoff_hz > joint.band.lowest_hz:
+        others.append(joint.fit(cutoff_hz, found.held, fewest=found))
+        cutoff_hz /= 2
+    pairs = [(other.x, other.stderr) for other in others if other is not None]
+    pairs += found.of_position()
+    moved = np.zeros(len(found.x))
+    for x, stderr in pairs:
+        beyond = np.where(np.isfinite(found.stderr + stderr), (found.x - x) ** 2 - stderr**2, 0.0)
+        moved = np.maximum(moved, np.sqrt(np.clip(beyond, 0.0, None)))
+    late = 0.0 if held is not None else found.moved_by_delay(0.5 / joint.rate)
+    return replace(found, stderr=np.sqrt(found.stderr**2 + moved**2 + late**2 + (_EXACT * found.x) ** 2))
 
 
 @dataclass(frozen=True)
 class JointTable:
     """What goes into the regression, all through the same low pass.
 
-    columns (m, 7), in the order of _COLUMNS, and y (m,); slope (m,): of y, u/s; q (m,) rad; v (m,) rad/s; direction
-    (m,); extreme (m, 2): share of the surroundings of a sample in which u has its smallest, its largest value.
+    columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7), and y (m,); q (m,) rad; v (m,) rad/s;
+    direction (m,); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its largest value.
     """
 
     columns: np.ndarray
+    rates: np.ndarray
     y: np.ndarray
-    slope: np.ndarray
     q: np.ndarray
     v: np.ndarray
     direction: np.ndarray
@@ -284,6 +297,46 @@ class Found:
         if name in self.names:
             return float(getattr(self, kind)[self.names.index(name)])
         return 0.0 if kind == "x" else math.inf
+
+    def _with(self, columns):
+        """(x, stderr) of the same parameters, and of the last of more columns."""
+        known = np.isfinite(self.stderr)
+        more = least_squares(np.column_stack([self.A, columns]), self.table.y, tolerance=_OWN_SHARE)
+        x, stderr = np.zeros(len(known)), np.full(len(known), np.inf)
+        x[known], stderr[known] = more.x[: known.sum()], more.stderr[: known.sum()]
+        return x, stderr, float(more.x[-1]), float(more.stderr[-1]), more.rms
+
+    @cached_property
+    def delay(self):
+        """Of u behind its record, s, its standard error (inf: not seen), and the rms then left.
+
+        u(t) is then the model at t + delay, about A x + delay d(A x)/dt: without the noise of du/dt.
+        """
+        return self._beside_delay[2:]
+
+    @cached_property
+    def _beside_delay(self):
+        terms = [(x, _COLUMNS.index(name)) for name, x in zip(self.names, self.x, strict=True) if name in _COLUMNS]
+        return self._with(sum(x * self.table.rates[:, k] for x, k in terms))
+
+    def moved_by_delay(self, unsure):
+        """(p,) by which a delay moves the parameters, that is 0 +- unsure s before and known better by the data."""
+        x, _, delay, sigma, _ = self._beside_delay
+        if not math.isfinite(sigma) or delay == 0:
+            return np.zeros(len(x))
+        share = unsure**2 / (unsure**2 + sigma**2)
+        size = math.sqrt((share * delay) ** 2 + share * sigma**2)
+        return np.where(np.isfinite(self.stderr), (x - self.x) / delay * size, 0.0)
+
+    def of_position(self):
+        """[(x, stderr)] beside a polynomial of q: a force that depends on it; [] if there are too few samples."""
+        if len(self.table.y) < 6 * (len(self.x) + _POLYNOMIAL):
+            return []
+        q = self.table.q - self.table.q.min()
+        columns = np.polynomial.legendre.legvander(2 * q / max(np.ptp(q), 1e-300) - 1, _POLYNOMIAL)[:, 1:]
+        x, stderr = self._with(columns)[:2]
+        judged = [name in _JUDGED for name in self.names]
+        return [(x, np.where(judged, stderr, np.inf))]
 
     def lost(self, name):
         """Whether the parameter was asked for and the data do not hold it."""
@@ -330,15 +383,10 @@ class _Joint:
                 f"only {m} of {self.n} samples are in motion and far enough from standstill, gaps and the ends of the "
                 f"record; at least {checks.FEWEST // 2} independent ones are needed: record longer, with more motion"
             )
-        if held is not None:
-            return self._solved(tables[0 if held else 1], cutoff_hz, bool(held), without)
-        as_held, measured, fair = (self._solved(x, cutoff_hz, k == 0, without) for k, x in enumerate(tables))
-        if as_held.rms < _CLEARLY * fair.rms:
-            return as_held
-        if fair.rms < _CLEARLY * as_held.rms:
-            return measured
-        difference = np.where(np.isfinite(as_held.stderr), np.abs(as_held.x - measured.x) / 2, 0.0)
-        return replace(as_held, stderr=np.hypot(as_held.stderr, difference))
+        if held is None:
+            as_held, fair = (self._solved(tables[k], cutoff_hz, k == 0, without) for k in (0, 2))
+            held = fair.rms >= _CLEARLY * as_held.rms
+        return self._solved(tables[0 if held else 1], cutoff_hz, bool(held), without)
 
     def _solved(self, table, cutoff_hz, held, without):
         names = tuple(name for name in self.terms if name not in without)
@@ -401,7 +449,7 @@ class _Joint:
         low, high = every.min() + 1e-3 * np.ptp(every), every.max() - 1e-3 * np.ptp(every)
         edge = 0 if math.isinf(cutoff_hz) else math.ceil(self.rate / cutoff_hz / 2)
         thin = 1 if math.isinf(cutoff_hz) else max(1, int(self.rate / cutoff_hz / _OWN))
-        rows = [np.empty((0, 12 + len(_COLUMNS)))]
+        rows = [np.empty((0, 9 + 2 * len(_COLUMNS)))]
         for angles, drive in self.segments:
             n = len(drive)
             if n < 2 * edge + 20:  # too short for the filter
@@ -414,16 +462,17 @@ class _Joint:
             direction, sin, cos, moving, *y = self._smooth(plain, cutoff_hz).T
             A = {"inertia": a, "viscous": v, "coulomb": direction, "offset": np.ones(n), "stribeck": np.zeros(n)}
             A |= {"gravity_sin": sin, "gravity_cos": cos}
-            slopes = [np.gradient(x) * self.rate for x in y[:3]]
-            table = np.column_stack([*(A[name] for name in _COLUMNS), *y, *slopes, angles[:, 0], v, direction, moving])
+            columns = np.column_stack([A[name] for name in _COLUMNS])
+            rates = np.gradient(columns, axis=0) * self.rate
+            table = np.column_stack([columns, rates, *y, angles[:, 0], v, direction, moving])
             inside = np.zeros(n, dtype=bool)
             inside[edge : n - edge : thin] = True
             rows.append(table[inside & (moving > 0.9)])
         x = np.concatenate(rows)
         p = len(_COLUMNS)
-        A, y, extreme, slopes = x[:, :p], x[:, p : p + 3], x[:, p + 3 : p + 5], x[:, p + 5 : p + 8]
-        q, v, direction = x[:, p + 8 : p + 11].T
-        return [JointTable(A, y[:, k], slopes[:, k], q, v, direction, extreme) for k in range(3)]
+        A, rates, y, extreme = x[:, :p], x[:, p : 2 * p], x[:, 2 * p : 2 * p + 3], x[:, 2 * p + 3 : 2 * p + 5]
+        q, v, direction = x[:, 2 * p + 5 : 2 * p + 8].T
+        return [JointTable(A, rates, y[:, k], q, v, direction, extreme) for k in range(3)]
 
     def _smooth(self, x, cutoff_hz):
         if math.isinf(cutoff_hz):

@@ -5,35 +5,16 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.identification.columns import same_samples
 from ir50p_lab.identification.doubts import outliers
-from ir50p_lab.inputs import first_not_finite
 
 
 def recorded(**columns):
     """Columns of a recording as float arrays: one dimension, one length, finite; `t` increasing. Raises InputError."""
-    arrays = {}
-    for name, value in columns.items():
-        try:
-            arrays[name] = np.array(value, dtype=float)
-        except (TypeError, ValueError, OverflowError):
-            raise InputError(f"{name} must be a list of numbers; got {type(value).__name__} {value!r:.60}") from None
-        if arrays[name].ndim != 1 or not len(arrays[name]):
-            raise InputError(f"{name} has shape {arrays[name].shape}; give one value per sample, shape (n,)")
-    if len({len(array) for array in arrays.values()}) > 1:
-        lengths = ", ".join(f"{name} {len(array)}" for name, array in arrays.items())
-        raise InputError(f"lengths differ ({lengths}): cut the columns to the same samples")
-    masked = np.any([np.ma.getmaskarray(np.ma.asarray(value)) for value in columns.values()], axis=0)
-    arrays = {name: array[~masked] for name, array in arrays.items()}
+    arrays = same_samples(columns, {"t": "s", "u": "its own unit", "y": "its own unit"})
     for name, array in arrays.items():
-        if not np.isfinite(array).all():
-            raise InputError(f"{name} holds {first_not_finite(array)}: remove that sample from t, u and y")
-    back = np.diff(arrays["t"]) <= 0
-    if back.any():
-        i = int(np.argmax(back)) + 1
-        raise InputError(
-            f"t[{i}] = {arrays['t'][i]} s does not lie after t[{i - 1}] = {arrays['t'][i - 1]} s: sort the recording "
-            "by time and remove doubled samples"
-        )
+        if array.ndim != 1:
+            raise InputError(f"{name} has shape {array.shape}; give one value per sample, shape (n,)")
     return arrays.values()
 
 

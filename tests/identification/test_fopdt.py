@@ -315,12 +315,14 @@ def test_bad_columns_get_a_sentence(n):
     back, twice = t.copy(), t.copy()
     back[n // 2], twice[n // 2] = t[n // 2 - 1] - 1, t[n // 2 - 1]
     for wrong in (back, twice):
-        with pytest.raises(InputError, match=r"does not lie after"):
+        with pytest.raises(InputError, match="time runs backwards or stands still"):
             fit_fopdt(wrong, u, y)
-    with pytest.raises(InputError, match="lengths differ"):
+    with pytest.raises(InputError, match="y has shape"):
         fit_fopdt(t, u, y[:-1])
     with pytest.raises(InputError, match="shape"):
         fit_fopdt(t[:, None], u, y)
+    with pytest.raises(InputError, match="at least two times"):
+        fit_fopdt(t[:1], u[:1], y[:1])
     with pytest.raises(InputError, match="numbers"):
         fit_fopdt(t, u, ["a"] * n)
     for options in ({"dead_time": -1.0}, {"dead_time": math.nan}, {"u_before": math.inf}, {"u_before": "0"}):
@@ -365,3 +367,15 @@ def test_good_records_are_never_refused():
         else:
             assert abs(found.K - model.K) < 5 * found.K_stderr
     assert refusals == []
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_dates_are_times_and_an_outlier_of_u_is_named(seed):
+    rng = np.random.default_rng(seed)
+    model = FOPDT(K=rng.uniform(1, 3), T=rng.uniform(0.2, 0.5), L=0.05)
+    t, u = 0.01 * np.arange(400), np.repeat([0.0, 1.0], [40, 360])
+    y = model.response(t, u) + 0.01 * rng.normal(size=400)
+    dates = np.datetime64("2024-01-01") + np.round(1e6 * t).astype("timedelta64[us]")
+    assert fit_fopdt(dates, u, y).T == pytest.approx(fit_fopdt(t, u, y).T, rel=1e-6)
+    u[rng.integers(150, 300)] = 20.0
+    assert "u has 1 outlier" in " ".join(fit_fopdt(t, u, y, anyway=True).warnings)

@@ -196,6 +196,37 @@ def test_what_one_frequency_cannot_tell_about_timing_is_in_the_errors(w):
     check(found, ((0.7, 1.1, 0.4, -0.2),), 0.003)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_what_other_fits_change_is_in_the_errors(seed):
+    """A u that acts at any instant within a period, and a force of the position that nobody asked for."""
+    rng = np.random.default_rng(seed)
+    rate, n = 100, 3000
+    t, w = np.arange(n) / rate, 2 * np.pi * rng.uniform(0.3, 1.5, 3)
+    phase, late = rng.uniform(0, 6, 3), rng.uniform(0, 1) / rate
+    J, b, c, spring = rng.uniform(0.5, 2), rng.uniform(2, 10), rng.uniform(0.2, 1), rng.uniform(0, 0.1)
+
+    def motion(t):
+        arg = w * t[:, None] + phase
+        return np.sin(arg).sum(axis=1), (w * np.cos(arg)).sum(axis=1), -(w**2 * np.sin(arg)).sum(axis=1)
+
+    x, v, a = motion(t + late)
+    u = J * a + b * v + c * np.sign(v) + spring * x + 0.02 * rng.normal(size=n)
+    found = fit_joint(t, motion(t)[0] + 1e-5 * rng.normal(size=n), u)
+    check(found, ((J, b, c, 0.0),), 1e-3)
+    assert found.inertia_stderr < 0.1 * J and found.viscous_stderr < 0.1 * b
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_flicker_of_a_coarse_drive_is_no_outlier_and_masked_samples_are_left_out(seed):
+    t, q, u = recorded(MACHINES["industrial arm, 1 kHz, encoder"], seed)
+    assert not any("outlier" in text for text in fit_joint(t, q, np.round(u / 5 + 0.1 * np.sin(900 * t)) * 5).warnings)
+    rng = np.random.default_rng(seed)
+    A, mask = rng.normal(size=(90, 2)), np.arange(90) % 7 == 0
+    y = A @ [1.0, 2.0] + 0.1 * rng.normal(size=90)
+    found = least_squares(A, np.ma.array(np.where(mask, 1e6, y), mask=mask))
+    assert found.x == pytest.approx(np.linalg.lstsq(A[~mask], y[~mask], rcond=None)[0])
+
+
 @pytest.mark.parametrize("unit", [1e3, 1e6, 1e9])
 @machines
 def test_times_in_other_units_are_flagged(machine, unit):
