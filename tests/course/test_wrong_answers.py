@@ -344,7 +344,8 @@ def test_the_example_shown_is_one_where_the_mistake_named_happens(name, monkeypa
         shown += bool(there)
         assert not there or any(not grading._agrees(one, returned[k], expected[k]) for k in there)
         others = (grading._common, grading._usual)
-        if there and one.symptom and not any(read(one, cases, returned, expected) for read in others):
+        by_symptom = one.symptom and one.symptom(cases, returned, expected)
+        if there and by_symptom and not any(read(one, cases, returned, expected) for read in others):
             alone = [one.symptom([cases[k]], [returned[k]], [expected[k]]) for k in there]
             assert grading._without_numbers(verdict.says) in map(grading._without_numbers, alone)
-    assert shown > 0.8 * len(known)
+    assert len(known) - shown <= max(1, 0.2 * len(known))
