@@ -149,10 +149,10 @@ def _inertia(doubts, found, band, period):
 
 
 def _late(doubts, found, period):
-    """Whether u acts later than it was recorded."""
+    """Whether u acts later than it was recorded, or was filtered."""
     if found.lost("inertia") or "inertia" not in found.names:
         return
-    delay, sigma, rms = found.delay
+    delay, sigma, rms = min(found.delay, found.lag, key=lambda one: one[2])
     if rms < 0.9 * found.rms and abs(delay) > 5 * sigma and abs(delay) > 0.3 * period:
         doubts.add(
             f"u seems to act about {delay:.2g} s after it was recorded, which makes the inertia too large by "

@@ -263,13 +263,15 @@ def _with_other_fits_in_errors(joint, found, held):
 class JointTable:
     """What goes into the regression, all through the same low pass.
 
-    columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7), and y (m,); q (m,) rad; v (m,) rad/s;
-    direction (m,); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its largest value.
+    columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7), y (m,) and its slope (m,); q (m,) rad;
+    v (m,) rad/s; direction (m,); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its
+    largest value.
     """
 
     columns: np.ndarray
     rates: np.ndarray
     y: np.ndarray
+    slope: np.ndarray
     q: np.ndarray
     v: np.ndarray
     direction: np.ndarray
@@ -313,6 +315,14 @@ class Found:
         u(t) is then the model at t + delay, about A x + delay d(A x)/dt: without the noise of du/dt.
         """
         return self._beside_delay[2:]
+
+    @cached_property
+    def lag(self):
+        """Of a first-order low pass of u, as a negative delay, s, its standard error, and the rms then left.
+
+        What went in is u + lag du/dt.
+        """
+        return self._with(self.table.slope)[2:]
 
     @cached_property
     def _beside_delay(self):
@@ -449,7 +459,7 @@ class _Joint:
         low, high = every.min() + 1e-3 * np.ptp(every), every.max() - 1e-3 * np.ptp(every)
         edge = 0 if math.isinf(cutoff_hz) else math.ceil(self.rate / cutoff_hz / 2)
         thin = 1 if math.isinf(cutoff_hz) else max(1, int(self.rate / cutoff_hz / _OWN))
-        rows = [np.empty((0, 9 + 2 * len(_COLUMNS)))]
+        rows = [np.empty((0, 12 + 2 * len(_COLUMNS)))]
         for angles, drive in self.segments:
             n = len(drive)
             if n < 2 * edge + 20:  # too short for the filter
@@ -464,15 +474,16 @@ class _Joint:
             A |= {"gravity_sin": sin, "gravity_cos": cos}
             columns = np.column_stack([A[name] for name in _COLUMNS])
             rates = np.gradient(columns, axis=0) * self.rate
-            table = np.column_stack([columns, rates, *y, angles[:, 0], v, direction, moving])
+            slopes = [np.gradient(x) * self.rate for x in y[:3]]
+            table = np.column_stack([columns, rates, *y, *slopes, angles[:, 0], v, direction, moving])
             inside = np.zeros(n, dtype=bool)
             inside[edge : n - edge : thin] = True
             rows.append(table[inside & (moving > 0.9)])
         x = np.concatenate(rows)
         p = len(_COLUMNS)
-        A, rates, y, extreme = x[:, :p], x[:, p : 2 * p], x[:, 2 * p : 2 * p + 3], x[:, 2 * p + 3 : 2 * p + 5]
-        q, v, direction = x[:, 2 * p + 5 : 2 * p + 8].T
-        return [JointTable(A, rates, y[:, k], q, v, direction, extreme) for k in range(3)]
+        A, rates, y, extreme, slopes = np.split(x[:, :-4], np.cumsum([p, p, 3, 2]), axis=1)
+        q, v, direction = x[:, -4:-1].T
+        return [JointTable(A, rates, y[:, k], slopes[:, k], q, v, direction, extreme) for k in range(3)]
 
     def _smooth(self, x, cutoff_hz):
         if math.isinf(cutoff_hz):

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import JointFit, fit_joint, least_squares
@@ -342,6 +343,16 @@ def test_a_delay_is_flagged_and_taken(samples):
     early = t[:-samples], q[samples:], u[:-samples]
     assert "before u" in " ".join(fit_joint(*early).warnings) or samples == 8  # there the inertia is all gone
     assert fit_joint(*early).warnings
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_filtered_drive_is_flagged(seed):
+    rng = np.random.default_rng(seed)
+    t, q, u = analytic(500, w=2 * np.pi * rng.uniform(0.3, 2.0, 3), seed=seed)
+    kept = np.exp(-0.002 * 2 * np.pi * rng.uniform(5.0, 10.0))
+    filtered = lfilter([1 - kept], [1, -kept], u)
+    assert "u is filtered" in " ".join(fit_joint(t[200:], q[200:], filtered[200:]).warnings)
+    assert "filtered" not in " ".join(fit_joint(t, q, u).warnings)
 
 
 @pytest.mark.parametrize("share", [1.0, 2.0, 5.0])
