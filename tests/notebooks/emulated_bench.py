@@ -16,7 +16,7 @@ from ir50p_lab.course.torque_views import training_run
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import load_arm
 from ir50p_lab.vision import calibrate, camera_over, load_image
-from ir50p_lab.vision.camera import interface
+from ir50p_lab.vision.camera import opening
 from tests.emulator.virtual import VirtualBoard
 
 PICTURES = "../data/calibration"
@@ -76,7 +76,7 @@ def plug_in(names):
     sys.modules["ir50p_lab.bench.connect"].list_ports = lambda: [Port("emulated", "Mega 2560")]
     serial_bench.open_port, serial_bench.Clock = open_port, board
     SerialBench.own_process, SerialBench.realtime = False, True  # in this process: another one has another board
-    interface.open_camera = lambda source=None, **options: Webcam(seen, names, **options)
+    opening.open_camera = lambda source=None, **options: Webcam(seen, names, **options)
     return board
 
 
