@@ -87,7 +87,7 @@ def test_cable_pulled(board):
             if k == 20:
                 when = time.monotonic()
                 board.process.kill()
-    assert time.monotonic() - when < 2
+    assert time.monotonic() - when < 0.5
 
 
 def test_two_benches_on_one_port(board):

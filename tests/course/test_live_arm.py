@@ -168,14 +168,15 @@ def pink(picture):
     return ((r > g + 15) & (b > g + 8)).mean()
 
 
-def test_a_loop_in_the_background_feeds_the_view_and_can_be_played_afterwards(heard, tmp_path):
+def test_a_loop_in_the_background_feeds_the_view_and_can_be_played_afterwards(heard, tmp_path, request):
     with SimulatedBench(IR50P, q0=[0, 0.8, -1.2], realtime=True, record_to=tmp_path) as bench:
         live = bench.start(PID(**PID_OF_TABLES), hold([0.4, 0.8, -1.2]), seconds=2, rest=False)
         view = LiveArm(IR50P).play(live)
         live.join(20)
     until(lambda: view.track)
     frames_sent = [buffers[0] for message, buffers in heard if "live" in message]
-    assert len(frames_sent) > 5  # 25 a second are wanted; a busy machine gives fewer
+    measured = request.config.getoption("benchmark_enable")  # else a guard only: machines of CI are shared
+    assert len(frames_sent) > (20 if measured else 5)  # a second at least, at 25 a second
     last = np.frombuffer(frames_sent[-1], "<f4").reshape(-1, view.shape["columns"])
     np.testing.assert_allclose(
         np.frombuffer(view.track, "<f4").reshape(-1, last.shape[1])[-1, 1:4], last[-1, 1:4], atol=0.1

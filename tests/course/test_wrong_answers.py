@@ -334,7 +334,7 @@ def test_the_example_shown_is_one_where_the_mistake_named_happens(name, monkeypa
     """With the sentences for known mistakes taken away, the symptom has to speak of what is shown."""
     monkeypatch.setattr(grading, "distortions", lambda task: ())
     monkeypatch.setattr(grading, "variants", lambda task: ())
-    known, one = task(name).slips[::3], dataclasses.replace(task(name), slips=())
+    known, one = task(name).slips, dataclasses.replace(task(name), slips=())
     cases, shown = one.cases(), 0
     expected = [one.right(*case) for case in cases]
     for mistake in known:
@@ -344,8 +344,9 @@ def test_the_example_shown_is_one_where_the_mistake_named_happens(name, monkeypa
         shown += bool(there)
         assert not there or any(not grading._agrees(one, returned[k], expected[k]) for k in there)
         others = (grading._common, grading._usual)
-        by_symptom = one.symptom and one.symptom(cases, returned, expected)
-        if there and by_symptom and not any(read(one, cases, returned, expected) for read in others):
+        if any(read(one, cases, returned, expected) for read in others):
+            continue
+        if there and one.symptom and one.symptom(cases, returned, expected):
             alone = [one.symptom([cases[k]], [returned[k]], [expected[k]]) for k in there]
             assert grading._without_numbers(verdict.says) in map(grading._without_numbers, alone)
-    assert len(known) - shown <= max(1, 0.2 * len(known))
+    assert shown > 0.8 * len(known)

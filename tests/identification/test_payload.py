@@ -13,19 +13,6 @@ K = np.array(IR50P.actuators.gain)
 L2, L3 = IR50P.l[1], IR50P.l[2]
 
 
-def with_payload(arm, mass):
-    """The same arm with a point mass at the flange: mass, centre of mass and inertia of the forearm by hand."""
-    m, c = arm.m[2] + mass, (arm.m[2] * arm.lc[2] + mass * L3) / (arm.m[2] + mass)
-    more = arm.m[2] * (arm.lc[2] - c) ** 2 + mass * (L3 - c) ** 2
-    return dataclasses.replace(
-        arm,
-        m=(*arm.m[:2], m),
-        lc=(*arm.lc[:2], c),
-        Iyy=(*arm.Iyy[:2], arm.Iyy[2] + more),
-        Izz=(*arm.Izz[:2], arm.Izz[2] + more),
-    )
-
-
 def estimate(arm, seed, noise=5.0, n=4000, **options):
     rng = np.random.default_rng(seed)
     q, qd, qdd = (rng.uniform(-1, 1, (n, 3)) * scale for scale in (1.5, 1.0, 3.0))
@@ -36,7 +23,7 @@ def estimate(arm, seed, noise=5.0, n=4000, **options):
 
 def test_the_change_is_that_of_the_arm():
     for mass in (0.1, 0.5, 2.0):
-        change = np.array(with_payload(IR50P, mass).theta[0]) - IR50P.theta[0]
+        change = np.array(IR50P.with_payload(mass).theta[0]) - IR50P.theta[0]
         np.testing.assert_allclose(payload_change(mass, l2=L2, at=L3), change, atol=1e-12)
 
 
@@ -61,7 +48,7 @@ def test_gains_and_masses_are_found(options):
     for seed in range(25):
         found = scale_from_payload(
             estimate(IR50P, seed, **options),
-            estimate(with_payload(IR50P, 0.5), 100 + seed, **options),
+            estimate(IR50P.with_payload(0.5), 100 + seed, **options),
             mass=0.5,
             l2=L2,
             at=L3,
@@ -74,7 +61,7 @@ def test_gains_and_masses_are_found(options):
 
 
 def test_a_wrong_mass_scales_and_a_wrong_place_is_noticed():
-    bare, loaded = estimate(IR50P, 1, noise=0.5), estimate(with_payload(IR50P, 0.5), 2, noise=0.5)
+    bare, loaded = estimate(IR50P, 1, noise=0.5), estimate(IR50P.with_payload(0.5), 2, noise=0.5)
     right = scale_from_payload(bare, loaded, mass=0.5, l2=L2, at=L3)
     twice = scale_from_payload(bare, loaded, mass=1.0, l2=L2, at=L3)
     np.testing.assert_allclose(twice.K, 2 * right.K)
@@ -85,7 +72,7 @@ def test_a_wrong_mass_scales_and_a_wrong_place_is_noticed():
 @pytest.mark.parametrize("mass", [1e-6, 1e-5, 1e-4])
 def test_a_payload_too_light_is_refused(mass):
     with pytest.raises(IdentificationError, match="does not show"):
-        scale_from_payload(estimate(IR50P, 1), estimate(with_payload(IR50P, mass), 2), mass=mass, l2=L2, at=L3)
+        scale_from_payload(estimate(IR50P, 1), estimate(IR50P.with_payload(mass), 2), mass=mass, l2=L2, at=L3)
 
 
 @pytest.mark.parametrize("name, value", [("mass", 0), ("mass", -1), ("mass", np.nan), ("l2", 200), ("at", "far")])
