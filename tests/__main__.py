@@ -17,7 +17,7 @@ def main(arguments):
     """Run pytest on all cores, then one at a time what measures time; return the exit code."""
     if "--everywhere" in arguments:
         return everywhere.main([argument for argument in arguments if argument != "--everywhere"])
-    together = [*PYTEST, "-n", "logical", "--dist", "worksteal", "--timing=without", *arguments]
+    together = [*PYTEST, *everywhere.PARALLEL, "--timing=without", *arguments]
     alone = [*PYTEST, "-p", "no:xdist", "--timing=only", *arguments]
     if any(argument.startswith("--cov") for argument in arguments):
         alone.append("--cov-append")

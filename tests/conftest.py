@@ -1,6 +1,7 @@
 """In CI a skipped test is a failure: a run must not pass by leaving things out. Marks and what they leave out."""
 
 import os
+from functools import cache
 
 import pytest
 from hypothesis import settings
@@ -27,13 +28,19 @@ def pytest_addoption(parser):
 def pytest_collection_modifyitems(config, items):
     """Mark whole files and folders, then leave out what the options leave out."""
     for item in items:
-        for mark, places in MARKS.items():
-            if any(item.path.is_relative_to(TESTS / place) for place in places):
-                item.add_marker(mark)
+        for mark in _marks_of(item.path):
+            item.add_marker(mark)
     kept = [item for item in items if _is_asked_for(item, config.option)]
     chosen = set(kept)
     config.hook.pytest_deselected(items=[item for item in items if item not in chosen])
-    items[:] = kept
+    items[:] = sorted(
+        kept, key=lambda item: item.get_closest_marker("notebook") is None
+    )  # the longest do not begin last
+
+
+@cache
+def _marks_of(path):
+    return [mark for mark, places in MARKS.items() if any(path.is_relative_to(TESTS / place) for place in places)]
 
 
 def _is_asked_for(item, option):

@@ -17,6 +17,7 @@ import time
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
+PARALLEL = ("-n", str(os.cpu_count() + 1), "--dist", "worksteal")  # one more than cores: some tests wait for a board
 ROOT = Path(__file__).parents[1]
 STATE = ROOT / ".everywhere"
 READ = ("ir50p_lab", "tests", "notebooks", "data", "pyproject.toml", "environment-test.txt")
@@ -61,17 +62,7 @@ def run(name, variables, arguments):
     environment = os.environ | variables
     if "NUMBA_CPU_NAME" in variables:  # its machine code is kept apart, for the next run
         environment["NUMBA_CACHE_DIR"] = str(STATE / f"numba-{name}")
-    command = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-n",
-        "logical",
-        "--dist",
-        "worksteal",
-        f"--junitxml={report}",
-        *arguments,
-    ]
+    command = [sys.executable, "-m", "pytest", *PARALLEL, f"--junitxml={report}", *arguments]
     begin = time.monotonic()
     code = subprocess.run(command, env=environment, cwd=ROOT).returncode
     seconds = time.monotonic() - begin

@@ -26,8 +26,9 @@ def started(monkeypatch):
 def test_what_measures_time_runs_alone_after_the_rest(started):
     assert command.main(["-k", "pose"]) == 0
     together, alone = started.commands
-    assert together == ["-n", "logical", "--dist", "worksteal", "--timing=without", "-k", "pose"]
+    assert together == [*everywhere.PARALLEL, "--timing=without", "-k", "pose"]
     assert alone == ["-p", "no:xdist", "--timing=only", "-k", "pose"]
+    assert everywhere.PARALLEL[0] == "-n" and int(everywhere.PARALLEL[1]) > 1
 
 
 def test_covered_lines_of_both_runs_count(started):

@@ -21,7 +21,11 @@ def arm_points(arm, q):
 
 
 class FrameView:
-    """A coordinate frame in 3-D axes: x orange, y green, z blue. `update(T)` moves it."""
+    """A coordinate frame in 3-D axes: x orange, y green, z blue; `update(T)` moves it.
+
+    Args: ax: 3-D axes; T: (4, 4) transform of the frame; name: text at its origin; length: of its axes, in the unit
+    of the plot.
+    """
 
     def __init__(self, ax, T, name="", length=0.1):
         self._length = length
@@ -38,6 +42,7 @@ class FrameView:
                 markersize=7,
                 markeredgewidth=0.3,
                 zorder=30,
+                clip_on=False,
             )[0]
             for letter, colour in zip("xyz", _AXIS_COLOURS, strict=True)
         ]
@@ -60,15 +65,6 @@ class FrameView:
         """Show or hide the frame."""
         for artist in (*self.axes, self.title):
             artist.set_visible(visible)
-
-
-def draw_frame(ax, T=None, name="", length=0.1):
-    """Draw a coordinate frame in 3-D axes.
-
-    Args: ax: 3-D axes; T: (4, 4) transform of the frame, the identity by default; name: text at its origin;
-    length: of its axes, in the unit of the plot. Returns: FrameView, whose `update(T)` moves it.
-    """
-    return FrameView(ax, np.eye(4) if T is None else T, name, length)
 
 
 class ArmView:

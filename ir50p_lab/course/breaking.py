@@ -46,9 +46,9 @@ CASES = {
     ),
     "C": Case(
         "sampling",
-        "The command goes from limit to limit, and each push lasts equally long: 10 ms. What would a quicker clock do?",
+        "The command goes from limit to limit, and changes every 10 ms at most. What would a quicker clock do?",
         "each push is held for a whole sample, and is right for the beginning of it only: at its end the joint has "
-        "been turned round, and the next push is larger.",
+        "been turned round, and the next push is larger, up to the limit.",
     ),
     "D": Case(
         "delay",

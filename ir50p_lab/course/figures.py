@@ -5,7 +5,7 @@
 
 import sys
 
-from ir50p_lab.course.arm3d import ArmView, FrameView, SideView, arm_points, draw_frame
+from ir50p_lab.course.arm3d import ArmView, FrameView, SideView, arm_points
 from ir50p_lab.course.style import COLOURS, SETPOINT, LabFigure, figure_style, new_figure, show
 
 __all__ = [
@@ -16,7 +16,6 @@ __all__ = [
     "LabFigure",
     "SideView",
     "arm_points",
-    "draw_frame",
     "figure_style",
     "new_figure",
     "readme_picture",

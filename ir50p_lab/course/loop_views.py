@@ -103,9 +103,9 @@ def weight_over_angle(arm, push):
     ax = figure.axes[0]
     q2 = np.linspace(arm.q_min[1], arm.q_max[1], 200)
     weight = gravity(arm, np.column_stack([0 * q2, q2, 0 * q2]))[:, 1] / arm.actuators.gain[1]
-    holds = arm.friction.fs[1] / arm.actuators.gain[1]
+    low, high = weight + (arm.friction.Tf[1] + np.array([[-1], [1]]) * arm.friction.fs[1]) / arm.actuators.gain[1]
     ax.plot(q2, weight, linewidth=2.5, label="weight")
-    ax.fill_between(q2, weight - holds, weight + holds, color=COLOURS["sky"], alpha=0.3, label="friction holds")
+    ax.fill_between(q2, low, high, color=COLOURS["sky"], alpha=0.3, label="friction holds")
     ax.axhline(push, color=COLOURS["orange"], linewidth=2.5, label=f"a push of {push} counts")
     ax.set(xlabel="angle of the shoulder [rad]", ylabel="push [PWM counts]")
     ax.legend(loc="lower left")

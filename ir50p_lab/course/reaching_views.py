@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch
 
-from ir50p_lab.course.arm3d import ArmView, SideView, draw_frame
+from ir50p_lab.course.arm3d import ArmView, FrameView, SideView
 from ir50p_lab.course.bench_views import _stamped
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
 from ir50p_lab.modelling.chain import forward_kinematics, frames
@@ -51,8 +51,8 @@ def frames_figure(arm, q, T_base_cam, ball=None, T_base_board=None, simulated=Tr
     (ax,) = figure.axes
     _stage(ax, arm, q, T_base_cam)
     ax.view_init(elev=34, azim=-66)
-    draw_frame(ax, np.eye(4), "{0}", 0.13)
-    draw_frame(ax, T_base_cam, "{c}", 0.18)
+    FrameView(ax, np.eye(4), "{0}", 0.13)
+    FrameView(ax, T_base_cam, "{c}", 0.18)
     if T_base_board is not None:
         rim = 0.025 * np.array([[-1, -1], [9, -1], [9, 6], [-1, 6], [-1, -1]])  # of the board of 9x6 corners
         rim = np.column_stack([rim, np.zeros(5)]) @ T_base_board[:3, :3].T + T_base_board[:3, 3]
@@ -61,7 +61,7 @@ def frames_figure(arm, q, T_base_cam, ball=None, T_base_board=None, simulated=Tr
     if ball is not None:
         T = np.eye(4)
         T[:3, 3] = ball
-        draw_frame(ax, T, "{ob}", 0.1)
+        FrameView(ax, T, "{ob}", 0.1)
         ax.plot(*np.column_stack([T_base_cam[:3, 3], ball]), color=COLOURS["grey"], linewidth=1, linestyle=":")
     ax.set_title("Base {0}, camera {c}, ball {ob}: one transform takes the camera's numbers to the arm's")
     return figure
@@ -96,7 +96,7 @@ def seen_figure(seen, arm, q, T_base_cam, marker=None):
     if marker is not None:
         picture.plot(*marker, "s", mfc="none", mec=COLOURS["amber"], ms=12, mew=2)
     view = _stage(space, arm, q, T_base_cam)
-    draw_frame(space, T_base_cam, "{c}", 0.15)
+    FrameView(space, T_base_cam, "{c}", 0.15)
     if seen:
         view.target(seen.position)
         space.plot(*np.column_stack([T_base_cam[:3, 3], seen.position]), color=COLOURS["grey"], lw=1, ls=":")

@@ -1,4 +1,4 @@
-"""The speed of joint 1 when its counts jump: what section 5 of 09 reads a small model from. Simulated."""
+"""The speed of joint 1 when its counts jump: what section 4 of 09 reads a small model from. Simulated."""
 
 import numpy as np
 

@@ -156,7 +156,8 @@ def steps_panel(damped_step, arm, q_start, p, steps=25):
     number = np.arange(steps + 1)
     (miss,) = misses.semilogy(number, np.ones(steps + 1), "o-", ms=4, label="distance of the tip")
     (elbow,) = elbows.plot(number, np.zeros(steps + 1), "o-", ms=4, color=COLOURS["orange"], label="elbow")
-    misses.set(xlabel="step", ylabel="distance to the place [m]", ylim=(1e-12, 10))
+    misses.axhline(1e-3, **SETPOINT, label="1 mm")
+    misses.set(xlabel="step", ylabel="distance to the place [m]", ylim=(1e-5, 10))
     elbows.set(xlabel="step", ylabel="elbow [deg]", ylim=(-200, 40))
     for ax in figure.axes:
         ax.legend(loc="upper right")

@@ -1,4 +1,4 @@
-"""Pictures of notebook 00: a turn seen from above, the arm turned by the student's function, speeds."""
+"""Pictures of notebook 00: a turn seen from above, the arm turned by the student's function, a speed."""
 
 import numpy as np
 
@@ -43,18 +43,16 @@ def turned_by(arm, rot_z):
     return with_own_waist
 
 
-def speed_over_time(*runs, joint, labels=None):
-    """Speed of one joint (1 to 3) of simulated runs; of a single run with a line at 63 % of its end: LabFigure."""
+def speed_over_time(run, joint):
+    """Speed of one joint (1 to 3) of a simulated run, with a line at 63 % of its end: LabFigure."""
     figure = new_figure(8, 3.4)
     ax = figure.axes[0]
-    for run, label in zip(runs, labels or [f"joint {joint}"], strict=True):
-        ax.plot(run.t, run.qd[:, joint - 1], label=label, linewidth=2)
-    if len(runs) == 1:
-        last = runs[0].qd[-1, joint - 1]
-        ax.axhline((1 - np.exp(-1)) * last, color=COLOURS["dark"], linestyle="--", label="63 % of the last speed")
-    ax.set(xlim=(0, runs[0].t[-1]), ylim=(0, None), xlabel="time [s]", ylabel="speed [rad/s]")
-    ax.set_xticks(np.arange(0, runs[0].t[-1] + 0.01, 0.1))
-    ax.set_xticks(np.arange(0, runs[0].t[-1] + 0.01, 0.02), minor=True)
+    speed, end = run.qd[:, joint - 1], run.t[-1]
+    ax.plot(run.t, speed, label=f"joint {joint}", linewidth=2)
+    ax.axhline((1 - np.exp(-1)) * speed[-1], color=COLOURS["dark"], linestyle="--", label="63 % of the last speed")
+    ax.set(xlim=(0, end), ylim=(0, None), xlabel="time [s]", ylabel="speed [rad/s]")
+    ax.set_xticks(np.arange(0, end + 0.01, 0.1))
+    ax.set_xticks(np.arange(0, end + 0.01, 0.02), minor=True)
     ax.set_title("Simulated: a constant push from rest")
     ax.legend(loc="lower right")
     return figure

@@ -5,6 +5,7 @@ import io
 import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.image import imsave
 
 from ir50p_lab.errors import InputError
 
@@ -59,9 +60,15 @@ class LabFigure(Figure):
 
     def _repr_png_(self):
         """PNG at twice the pixels (sharp on dense screens), and the size to show it at."""
-        stream = io.BytesIO()
-        self.savefig(stream, format="png", dpi=2 * self.dpi)
         width, height = self.bbox.size
+        shown_at = self.dpi
+        stream = io.BytesIO()
+        try:
+            self.dpi = 2 * shown_at
+            self.canvas.draw()  # once; savefig draws a figure with a layout twice
+            imsave(stream, self.canvas.buffer_rgba(), format="png")
+        finally:
+            self.dpi = shown_at
         return stream.getvalue(), {"width": round(width), "height": round(height)}
 
 

@@ -102,7 +102,8 @@ def side_view(arm, p):
 def triangles(arm, p):
     """Elbow up and elbow down over each other, for the place p (3,) m: LabFigure.
 
-    With r, its slope gamma, the angle beta between r and either upper arm (Figure 1.8), and both q3.
+    With r, its slope gamma, the angle beta between r and either upper arm (Figure 1.8), both q3, and for the elbow up
+    the perpendicular from the tip onto the upper arm, prolonged.
     """
     figure, ax = _plane()
     _column(ax, arm)
@@ -112,8 +113,11 @@ def triangles(arm, p):
         _draw(ax, points, colour, label=name)
         shoulder, elbow, tip = points
         upper, r = elbow - shoulder, tip - shoulder
-        ax.plot(*np.transpose([elbow, elbow + 0.35 * upper]), ":", color=COLOURS[colour], linewidth=2)
         q3 = answers[branch][2]
+        ax.plot(*np.transpose([elbow, elbow + 0.35 * upper]), ":", color=COLOURS[colour], linewidth=2)
+        if branch == "front/up":  # the perpendicular from the tip onto the upper arm, prolonged
+            foot = shoulder + upper * (upper @ r) / (upper @ upper)
+            ax.plot(*np.transpose([shoulder + upper, foot, tip]), ":", color=COLOURS["dark"], linewidth=2)
         slope = np.arctan2(upper[1], upper[0])
         _arc(ax, elbow, slope, slope + q3, 0.06, colour, "$q_3$", 1.6)
         gamma = np.arctan2(r[1], r[0])

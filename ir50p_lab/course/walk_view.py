@@ -9,15 +9,16 @@ from ir50p_lab.modelling import chain
 _MOTIONS = ("turn theta about z", "shift d along z", "shift a along x", "turn alpha about x")
 
 
-def walk(arm, q, dh_matrix=chain.dh_matrix):
+def walk(arm, q):
     """A frame that does the twelve motions from the base to the tip, for `live`.
 
-    Args: arm: Arm; q: (3,) rad, in which it stands; dh_matrix: f(theta, d, a, alpha) -> (4, 4) that moves the frame.
+    Args: arm: Arm; q: (3,) rad, in which it stands.
     Returns: figure; f(motions) that shows so many of the twelve and returns a sentence.
     """
     figure = new_figure(7.5, 5.2, projection="3d")
     ArmView(figure.axes[0], arm, q, thickness=5)
     figure.axes[0].set_title("Four motions a joint carry frame 0 to frame 3")
+    figure.axes[0].view_init(elev=22, azim=-30)  # no axis of the walker hides another
     walker = FrameView(figure.axes[0], np.eye(4), length=0.3 * arm.reach)
     rows = chain.dh_table(arm, q)  # theta, d, a, alpha a joint
 
@@ -25,7 +26,7 @@ def walk(arm, q, dh_matrix=chain.dh_matrix):
         shares = np.clip(motions - np.arange(12), 0, 1).reshape(3, 4)
         T = np.eye(4)
         for row, share in zip(rows, shares, strict=True):
-            T = T @ dh_matrix(*(row * share))
+            T = T @ chain.dh_matrix(*(row * share))
         walker.update(T)
         if motions in (0, 12):
             return "frame 3 has arrived at the tip" if motions else "frame 0: the base. What comes first?"

@@ -25,12 +25,13 @@ def respond(t, jump_times, jumps, a, L, out):
             jump = k < len(jumps) and jump_times[k] + L <= t[i]
             dt = (jump_times[k] + L if jump else t[i]) - now
             z = a * dt
-            E = math.exp(-z)
+            gone = -math.expm1(-z)
+            E = 1 - gone
             if abs(z) < _SMALL:
                 phi = dt * (1 - z / 2 + z * z / 6)
                 dphi = dt * dt * (-1 / 2 + z / 3 - z * z / 8)
             else:
-                phi = -math.expm1(-z) / a
+                phi = gone / a
                 dphi = (dt * E - phi) / a
             s = s * E - dt * E * x + v * dphi
             x = x * E + v * phi

@@ -24,8 +24,9 @@ def respond_mode(t, jump_times, jumps, a, L, out):
             jump = k < len(jumps) and jump_times[k] + L <= t[i]
             dt = (jump_times[k] + L if jump else t[i]) - now
             z = a * dt
-            phi = dt * (1 - z / 2 + z * z / 6) if abs(z) < _SMALL else (1 - np.exp(-z)) / a
-            x = x * np.exp(-z) + v * phi
+            E = np.exp(-z)
+            phi = dt * (1 - z / 2 + z * z / 6) if abs(z) < _SMALL else (1 - E) / a
+            x = x * E + v * phi
             now += dt
             if not jump:
                 break

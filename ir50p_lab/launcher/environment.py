@@ -31,6 +31,15 @@ _STAMP = "ir50p_lab-setup.json"
 _LOG = "ir50p_lab-setup.log"
 _BUSY = "ir50p_lab-setup.lock"
 
+_UNWANTED = (
+    "PYTHONDONTWRITEBYTECODE",
+    "PYTHONHOME",
+    "PYTHONPATH",
+    "PYTHONSTARTUP",
+    "PYTHONWARNINGS",
+    "__PYVENV_LAUNCHER__",
+)
+
 
 @dataclass(frozen=True)
 class EnvironmentState:
@@ -286,9 +295,11 @@ def _python_version():
 
 
 def _clean_variables():
-    """Environment variables without those that bring in another Python's packages or make warnings of others fatal."""
-    unwanted = ("PYTHONHOME", "PYTHONPATH", "PYTHONSTARTUP", "PYTHONWARNINGS", "__PYVENV_LAUNCHER__")
-    return {name: value for name, value in os.environ.items() if name not in unwanted}
+    """Environment variables without those that bring in another Python's packages or make warnings of others fatal.
+
+    Nor the one that container images set: without bytecode each notebook compiles its libraries again, for seconds.
+    """
+    return {name: value for name, value in os.environ.items() if name not in _UNWANTED}
 
 
 def _say(stream, text):

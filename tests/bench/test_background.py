@@ -8,6 +8,7 @@ import sys
 import textwrap
 import threading
 import time
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import BenchError, InputError, PortError
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.signals import hold, quintic
+from ir50p_lab.signals import hold
 
 GAINS = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30)}
 
@@ -46,16 +47,50 @@ class Failing:
         return np.array([10.0, 20.0, 30.0])
 
 
-@pytest.fixture(params=["thread", "process"])
-def bench(request, tmp_path):
-    if request.param == "thread":
-        made = SimulatedBench(IR50P, seed=3, record_to=tmp_path, q0=(0.1, 0.2, -0.3))
+@contextmanager
+def opened(kind, folder):
+    """A bench whose loops run in a thread, or in a process of their own."""
+    if kind == "thread":
+        made = SimulatedBench(IR50P, seed=3, record_to=folder, q0=(0.1, 0.2, -0.3))
     else:
-        made = FileBench(str(tmp_path / "commands.txt"), record_to=str(tmp_path))
+        made = FileBench(str(folder / "commands.txt"), record_to=str(folder))
     with made:
         yield made
         if made._live is not None:
             made._live.cut()
+
+
+KINDS = ["thread", "process"]
+
+
+@pytest.fixture(params=KINDS)
+def bench(request, tmp_path):
+    with opened(request.param, tmp_path) as made:
+        yield made
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def holding(request, tmp_path_factory):
+    """A bench and its loop, which holds the pose: one for all tests that leave it running."""
+    with opened(request.param, tmp_path_factory.mktemp("holding")) as bench:
+        run = bench.start(pid(), None, rest=False)
+        until(lambda: run.statistics().cycles > 10)
+        yield bench, run
+        assert run.alive and run.error is None
+
+
+GOAL = np.array([0.3, 0.3, -0.2])
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def led_in(request, tmp_path_factory):
+    """A run that is over: it was led to a goal and held it for 0.2 s."""
+    with opened(request.param, tmp_path_factory.mktemp("led_in")) as bench:
+        run = bench.start(pid(), hold(GOAL), seconds=0.2, rest=False)
+        until(lambda: run.statistics().cycles > 3)
+        assert run.phase == "leading in"
+        assert run.join(10)
+        yield run
 
 
 class Dozing:
@@ -73,43 +108,26 @@ class Dozing:
 # ---- the contract, the same in a thread and in a process
 
 
-def test_it_holds_the_measured_pose_and_leaves_the_caller_free(bench):
-    run = bench.start(pid(), None, rest=False)
-    until(lambda: run.statistics().cycles > 10)
-    samples = run.recent(10)
+def test_it_holds_the_measured_pose_and_leaves_the_caller_free(holding):
+    _, run = holding
     assert run.alive and run.phase == "running" and run.error is None
+    samples = run.recent(80)
     assert samples.q.shape == samples.u.shape == samples.reference.shape == (len(samples.t), 3)
     assert (np.diff(samples.t) > 0).all() and samples.t[-1] >= 0.099  # late cycles are left out, none is early
-    assert (samples.reference == samples.reference[0]).all()  # the pose of the first sample
+    assert (samples.reference[:10] == samples.reference[0]).all()  # the pose of the first sample
     assert np.abs(samples.reference[0] - (0.1, 0.2, -0.3)).max() < 0.05
-    run.cut()
-    assert not run.alive and run.phase == "ended" and run.join()
 
 
-def test_the_reference_is_led_in_from_where_the_arm_stands(bench):
-    goal = np.array([0.3, 0.3, -0.2])
-    run = bench.start(pid(), hold(goal), seconds=0.2, rest=False)
-    until(lambda: run.statistics().cycles > 3)
-    assert run.phase == "leading in"
-    assert run.join(10)
-    r = run.recent(80).reference
-    np.testing.assert_allclose(r[0], (0.1, 0.2, -0.3), atol=0.05)
-    np.testing.assert_allclose(r[-1], goal)
-    assert (np.abs(np.diff(r, axis=0)).max(axis=1) <= 0.8 * np.diff(run.recent(80).t) + 1e-4).all()  # 0.8 rad/s
-    way = 1.875 * np.abs(goal - r[0]).max() / 0.8
-    assert run.recent(80).t[-1] == pytest.approx(way + 0.2, abs=0.03)
+def test_a_loop_in_the_background_has_the_bench(holding):
+    bench, run = holding
+    for other in (lambda: bench.run(1), lambda: bench.start(pid(), None)):
+        with pytest.raises(BenchError, match=r"stop\(\) or cut\(\)"):
+            other()
+    assert run.alive
 
 
-def test_without_lead_in_the_reference_starts_at_once(bench):
-    run = bench.start(pid(), hold([0.3, 0.3, -0.2]), seconds=0.05, lead_in=False, rest=False)
-    assert run.join(10)
-    np.testing.assert_array_equal(run.recent(80).reference[0], [0.3, 0.3, -0.2])
-    assert len(run.recent(80).t) == 5
-
-
-def test_a_set_point_moves_the_reference_smoothly(bench):
-    run = bench.start(pid(), None, rest=False)
-    until(lambda: run.statistics().cycles > 3)
+def test_a_set_point_moves_the_reference_smoothly(holding):
+    _, run = holding
     start = run.recent(10).reference[-1]
     run.set_point([None, 0.35, math.nan])
     until(lambda: run.recent(0.01).reference[-1][1] == 0.35)
@@ -119,11 +137,42 @@ def test_a_set_point_moves_the_reference_smoothly(bench):
     for bad, said in (((0, 3.0, 0), "travel is -50 to 110 deg"), ((0, -0.8, -1.0), "below the table")):
         with pytest.raises(InputError, match=said):
             run.set_point(bad)
-    run.cut()
 
 
-def test_gains_change_without_a_bump(bench):
-    run = bench.start(pid(), None, rest=False)
+def test_the_reference_is_led_in_from_where_the_arm_stands(led_in):
+    samples = led_in.recent(80)
+    r = samples.reference
+    np.testing.assert_allclose(r[0], (0.1, 0.2, -0.3), atol=0.05)
+    np.testing.assert_allclose(r[-1], GOAL)
+    assert (np.abs(np.diff(r, axis=0)).max(axis=1) <= 0.8 * np.diff(samples.t) + 1e-4).all()  # 0.8 rad/s
+    way = 1.875 * np.abs(GOAL - r[0]).max() / 0.8
+    assert samples.t[-1] == pytest.approx(way + 0.2, abs=0.03)
+
+
+def test_the_recording_is_on_disk_with_gains_and_reference(led_in):
+    recording, samples = led_in.recording, led_in.recent(80)
+    assert recording.header["controller"] == "PID" and recording.header["kp"] == "289 225 270"
+    assert len(recording.t) == len(samples.t) + 1  # the last cycle found the time over
+    np.testing.assert_allclose(recording.reference[:-1], samples.reference, atol=1e-5)
+    np.testing.assert_array_equal(recording.u[:-1], samples.u)
+
+
+def test_without_lead_in_the_reference_starts_at_once_and_after_it_the_bench_is_here_again(bench):
+    run = bench.start(pid(), hold(GOAL), seconds=0.05, lead_in=False, rest=False)
+    assert run.join(10)
+    np.testing.assert_array_equal(run.recent(80).reference[0], GOAL)
+    assert len(run.recent(80).t) == 5
+    applied = [bench.drive([0, 0, 0]) for _ in bench.run(0.05)]
+    assert len(applied) == 5
+    for _ in bench.run(0.05):
+        with pytest.raises(BenchError, match="in a cell"):
+            bench.start(pid(), None)
+    bench.abort()
+
+
+def test_gains_change_without_a_bump_and_not_those_of_the_callers_controller(bench):
+    mine = pid()
+    run = bench.start(mine, None, rest=False)
     until(lambda: run.statistics().cycles > 20)
     run.set_gains(kp=(100, 225, 270), kd=20)
     np.testing.assert_array_equal(run.gains["kd"], (20, 20, 20))
@@ -132,7 +181,9 @@ def test_gains_change_without_a_bump(bench):
     with pytest.raises(InputError, match="gains >= 0"):
         run.set_gains(ki=-1)
     run.cut()
-    assert run.error is None
+    assert not run.alive and run.phase == "ended" and run.join() and run.error is None
+    np.testing.assert_array_equal(mine.kp, GAINS["kp"])
+    assert not mine.state.any()
     ((_, text),) = run.recording.events  # what was tuned is in the recording
     assert text == "kp = 100 225 270; ki = 50 10 50; kd = 20 20 20"
 
@@ -140,7 +191,8 @@ def test_gains_change_without_a_bump(bench):
 def test_a_cut_by_a_pause_is_said_with_its_time(bench):
     run = bench.start(Dozing(), None, rest=False)
     until(lambda: run.statistics().trips and len(run.recent(80).t) > 30)
-    run.cut()
+    bench.cut()
+    assert not run.alive
     (when,) = run.recent(80).trips[:1]
     t = run.recent(80).t
     last = np.argmax(np.diff(t) > 0.2)  # sample before the pause; the cut shows at it or at the next
@@ -160,7 +212,8 @@ def test_an_error_of_the_reference_before_the_run_drives_nothing(bench):
         bench.start(pid(), lambda t: (np.full(3, np.nan), np.zeros(3), np.zeros(3)), lead_in=False)
     with pytest.raises(ZeroDivisionError):
         bench.start(pid(), lambda t: 1 / 0, lead_in=False)
-    assert bench.start(pid(), None, seconds=0.05, rest=False).join(10)  # and the bench is still ours
+    assert list(bench.run(0.05))  # and the bench is still ours
+    bench.abort()
 
 
 def test_an_error_of_the_reference_in_the_run_cuts_too(bench):
@@ -169,25 +222,7 @@ def test_an_error_of_the_reference_in_the_run_cuts_too(bench):
     )
     with pytest.raises(InputError):
         run.join(10)
-    run = bench.start(pid(), lambda t: (np.full(3, 0.1 / (t < 0.05)), np.zeros(3), np.zeros(3)), lead_in=False)
-    with pytest.raises(ZeroDivisionError):
-        run.join(10)
-
-
-def test_the_bench_is_busy_until_the_loop_is_over(bench):
-    run = bench.start(pid(), None, rest=False)
-    with pytest.raises(BenchError, match=r"stop\(\) or cut\(\)"):
-        bench.run(1)
-    with pytest.raises(BenchError, match=r"stop\(\) or cut\(\)"):
-        bench.start(pid(), None)
-    bench.cut()
     assert not run.alive
-    applied = [bench.drive([0, 0, 0]) for _ in bench.run(0.05)]  # and then it is here again
-    assert len(applied) == 5
-    for _ in bench.run(0.05):
-        with pytest.raises(BenchError, match="in a cell"):
-            bench.start(pid(), None)
-    bench.abort()
 
 
 def test_leaving_the_block_by_an_error_cuts_the_loop(bench):
@@ -195,25 +230,6 @@ def test_leaving_the_block_by_an_error_cuts_the_loop(bench):
         run = bench.start(pid(), None)
         raise RuntimeError("a cell fails")
     assert not run.alive and run.phase == "ended"
-
-
-def test_the_copy_in_the_loop_leaves_the_controller_alone(bench):
-    mine = pid()
-    run = bench.start(mine, None, seconds=0.1, rest=False)
-    run.set_gains(kp=10)
-    assert run.join(10)
-    np.testing.assert_array_equal(mine.kp, GAINS["kp"])
-    assert not mine.state.any()
-
-
-def test_the_recording_is_on_disk_with_gains_and_reference(bench):
-    run = bench.start(pid(), quintic((0.1, 0.2, -0.3), (0.2, 0.3, -0.2), duration=0.3), seconds=0.3, rest=False)
-    assert run.join(10)
-    recording = run.recording
-    assert recording.header["controller"] == "PID" and recording.header["kp"] == "289 225 270"
-    assert len(recording.t) == len(run.recent(80).t) + 1  # the last cycle found the time over
-    np.testing.assert_allclose(recording.reference[:-1], run.recent(80).reference, atol=1e-5)
-    np.testing.assert_array_equal(recording.u[:-1], run.recent(80).u)
 
 
 def test_bad_arguments(bench):
@@ -237,6 +253,14 @@ def test_bad_arguments(bench):
 
 
 # ---- in a thread: a simulated arm
+
+
+def test_a_reference_that_raises_in_the_run_cuts():
+    with SimulatedBench(IR50P, seed=0, record_to=False) as bench:
+        run = bench.start(pid(), lambda t: (np.full(3, 0.1 / (t < 0.05)), np.zeros(3), np.zeros(3)), lead_in=False)
+        with pytest.raises(ZeroDivisionError):
+            run.join(10)
+        assert not run.alive
 
 
 def test_stop_goes_to_the_rest_pose_first():
@@ -294,18 +318,7 @@ def commands(tmp_path):
     return str(tmp_path / "commands.txt")
 
 
-def test_the_loop_is_another_process_and_takes_the_port_with_it(commands):
-    with FileBench(commands) as bench:
-        run = bench.start(pid(), None, rest=False)
-        assert bench._file is None
-        until(lambda: run.statistics().cycles > 3)
-        run.cut()
-        child = [pid for _, pid, words in lines(commands) if words[0] == "drive"]
-        assert set(child) == {run._worker.pid} != {os.getpid()}
-        assert lines(commands)[-1][2] == ["cut"]
-
-
-def test_what_is_defined_in_a_notebook_is_sent(commands):
+def test_the_loop_is_another_process_with_the_port_and_what_a_notebook_defines(commands):
     gain = 7.0
 
     class Mine:
@@ -315,8 +328,12 @@ def test_what_is_defined_in_a_notebook_is_sent(commands):
 
     with FileBench(commands) as bench:
         run = bench.start(Mine(), lambda t: (np.zeros(3),) * 3, seconds=0.05, lead_in=False, rest=False)
+        assert bench._file is None
         assert run.join(10)
         assert (run.recent(10).u == 7).all()
+        child = [pid for _, pid, words in lines(commands) if words[0] == "drive"]
+        assert set(child) == {run._worker.pid} != {os.getpid()}
+        assert lines(commands)[-1][2] == ["cut"]
         with pytest.raises(InputError, match="no gains"):
             run.set_gains(kp=1)
 
@@ -353,12 +370,9 @@ def test_a_controller_that_hangs_is_killed_by_cut(commands):
         assert not run.alive and time.monotonic() - begun < 2.0
 
 
-@pytest.mark.parametrize("how", ["SIGKILL", "exit"])
-def test_the_drive_is_cut_when_the_notebook_dies(commands, how):
-    if not hasattr(signal, "SIGKILL"):
-        pytest.skip("no SIGKILL on this system")
+def test_the_drive_is_cut_when_the_notebook_dies(commands):
     notebook = textwrap.dedent(f"""
-        import os, sys, time
+        import time
         from file_bench import FileBench
         from ir50p_lab.controllers import PID
         bench = FileBench({commands!r}).open()
@@ -366,16 +380,13 @@ def test_the_drive_is_cut_when_the_notebook_dies(commands, how):
         while run.statistics().cycles < 20:
             time.sleep(0.01)
         print("running", flush=True)
-        if {how!r} == "exit":
-            os._exit(0)
         time.sleep(60)
     """)
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     with subprocess.Popen([sys.executable, "-c", notebook], stdout=subprocess.PIPE, env=environment) as parent:
         assert parent.stdout.readline().strip() == b"running"
         killed = time.monotonic()
-        parent.kill() if how == "SIGKILL" else None
-        parent.wait()
+        parent.kill()
     until(lambda: lines(commands)[-1][2] == ["cut"])
     cut = next(t for t, _, words in lines(commands) if words == ["cut"] and t > killed)
     driven = max(t for t, _, words in lines(commands) if words[0] == "drive")

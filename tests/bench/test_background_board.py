@@ -9,10 +9,6 @@ import time
 
 import pytest
 
-from ir50p_lab.bench import SerialBench
-from ir50p_lab.controllers import PID
-from ir50p_lab.course.bench_panel import live_panel
-from ir50p_lab.modelling import IR50P
 from tests.emulator.board_process import BoardProcess
 
 PAUSE = 0.002
@@ -69,25 +65,3 @@ def test_a_kill_cuts_the_drive_within_110_ms(board, victim):
             notebook.kill()
     print(f"{victim} killed: pins off {1e3 * cut:.1f} ms after the last command")
     assert cut < 0.110
-
-
-def test_the_panel_tunes_the_loop_on_the_board(board):
-    """Start, 25 frames a second, a slider event every 20 ms. That the loop does not feel it: test_serial_speed.py."""
-    bench = SerialBench(board.port, arm=IR50P, record_to=False, announce=lambda line: None)
-    bench.open()
-    panel = live_panel(bench, PID(kp=(40, 40, 40), limit_pwm=255))
-    try:
-        panel.start()
-        for k in range(100):
-            panel.set(kp1=40 + k % 50)
-            time.sleep(0.02)
-        statistics = panel.run.statistics()
-        assert statistics.cycles + statistics.missed > 150
-        assert panel.error is None and panel.run.gains["kp"][0] == 89
-        panel.cut()
-        until(lambda: not driven(board.changes()[-1].pins))
-        bench.run(0.1)  # the port is here again
-    finally:
-        panel.cut()
-        panel.close()
-        bench.abort()

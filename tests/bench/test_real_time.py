@@ -3,10 +3,7 @@
 What takes its time here is the clock itself; everything that can be tried on virtual time is in test_contract.py.
 """
 
-import subprocess
-import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,23 +16,7 @@ from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold
 from tests.emulator.board_process import BoardProcess
 
-ROOT = Path(__file__).parents[2]
-WATCHDOG = 0.11  # s
 PUSH = (30, -30, 30)  # PWM counts: less than breaks a joint away, so the held arm is no runaway
-
-KERNEL = """
-import sys, time
-from ir50p_lab.bench import SerialBench
-from ir50p_lab.controllers import PID
-from ir50p_lab.modelling import IR50P
-from ir50p_lab.signals import hold
-bench = SerialBench(sys.argv[1], arm=IR50P, record_to=False).open()
-run = bench.start(PID(kp=(100, 100, 100), limit_pwm=255), hold([0.5, 1.0, -1.0]), lead_in=False)
-while run.statistics().cycles < 50:
-    time.sleep(0.01)
-print("driving", flush=True)
-time.sleep(60)
-"""
 
 
 @pytest.fixture
@@ -97,27 +78,3 @@ def test_two_benches_on_one_port(board):
     assert list(bench.run(0.1))
     bench.abort()
     bench_of(board).open().abort()  # given free
-
-
-def test_a_loop_in_its_own_process(board):
-    """The port goes to the loop's process and comes back."""
-    bench = bench_of(board).open()
-    run = bench.start(PID(kp=(100, 100, 100), limit_pwm=255), hold([0.5, 1.0, -1.0]), seconds=2.0, rest=False)
-    assert run.join(60)
-    assert run.statistics().cycles + run.statistics().missed >= 200
-    assert list(bench.run(0.1))
-    bench.abort()
-    board.cut_after_last_command()
-
-
-def test_a_killed_kernel_cuts_the_drive(board):
-    """As when Jupyter dies: the loop in its own process notices, and the watchdog of the board would."""
-    kernel = subprocess.Popen([sys.executable, "-c", KERNEL, board.port], cwd=ROOT, stdout=subprocess.PIPE, text=True)
-    try:
-        assert kernel.stdout.readline() == "driving\n"
-        assert any(any(change.pins.pwm) for change in board.changes())
-    finally:
-        kernel.kill()
-        kernel.wait()
-        kernel.stdout.close()
-    assert board.cut_after_last_command() < WATCHDOG

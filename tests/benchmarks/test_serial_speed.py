@@ -22,9 +22,9 @@ from ir50p_lab.signals import hold
 from tests.emulator.board_process import BoardProcess
 
 
-@pytest.fixture
-def board(tmp_path):
-    with BoardProcess(tmp_path) as board:
+@pytest.fixture(scope="module")
+def board(tmp_path_factory):
+    with BoardProcess(tmp_path_factory.mktemp("board")) as board:  # opening its port restarts it
         yield board
 
 
@@ -43,7 +43,7 @@ def test_exchange(board, request):
     full = request.config.getoption("benchmark_enable")
     link, times = Link(open_port(board.port, protocol.BAUD), Clock), []
     link.ask(protocol.HELLO, patience=2.0, repeat=0.05)
-    for k in range(3000 if full else 500):
+    for k in range(3000 if full else 100):
         begun = time.perf_counter()
         link.ask(protocol.DRIVE, (k % 200, 0, -(k % 200)), patience=0.5)
         times.append(time.perf_counter() - begun)
@@ -75,22 +75,26 @@ def test_loop(board, request, hertz):
 
 
 def test_loop_with_the_panel(board, request):
-    """The loop in its own process, with the scope drawing and a gain moving ten times a second."""
+    """The loop in its own process, with the scope drawing 25 frames a second, and a gain that a slider moves."""
     full = request.config.getoption("benchmark_enable")
     bench = SerialBench(board.port, arm=IR50P, record_to=os.path.dirname(board.port)).open()
     panel = live_panel(bench, PID(kp=(40, 40, 40), limit_pwm=255))
     try:
         panel.start()
-        for k in range(200 if full else 20):
-            panel.set(kp1=40 + k % 20)
-            time.sleep(0.1)
+        for k in range(200 if full else 100):
+            panel.set(kp1=40 + k % 50)
+            time.sleep(0.1 if full else 0.02)
         statistics = panel.run.statistics()
+        assert panel.error is None and panel.run.gains["kp"][0] == 89
+        panel.cut()
+        board.wait_until_off()
+        assert list(bench.run(0.1))  # the port is here again
     finally:
         panel.cut()
         panel.close()
         bench.abort()
     print(f"\nwith the panel: {statistics}")
-    assert statistics.cycles + statistics.missed > 50 and panel.error is None
+    assert statistics.cycles + statistics.missed > 150
     if full:
         assert statistics.period_p50 == pytest.approx(0.01, abs=0.001)
         assert statistics.period_p99 < 0.011

@@ -52,7 +52,8 @@ def seconds(call):
 
 def test_both_derive_the_same():
     M, g, x = by_expression_trees(lambda e: e)
-    model, numeric = derive(), derive().numeric(IR50P)
+    model = derive()
+    numeric = model.numeric(IR50P)
     numbers = dict(zip((str(s) for s in model.symbols.values()), model.values(IR50P), strict=True))
     for q in np.random.default_rng(0).uniform(-3, 3, (5, 3)):
         at_q = {s: numbers[str(s)] for s in (M.free_symbols | g.free_symbols) - set(x)} | dict(zip(x, q, strict=True))

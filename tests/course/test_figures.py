@@ -14,9 +14,9 @@ from ir50p_lab.course.figures import (
     COLOURS,
     SETPOINT,
     ArmView,
+    FrameView,
     SideView,
     arm_points,
-    draw_frame,
     figure_style,
     new_figure,
     readme_picture,
@@ -212,7 +212,7 @@ def test_side_view_target_and_visibility():
 
 def test_a_frame_moves_and_hides():
     figure = new_figure(3, 3, projection="3d")
-    frame = draw_frame(figure.axes[0], name="A", length=0.5)
+    frame = FrameView(figure.axes[0], np.eye(4), "A", 0.5)
     T = np.eye(4)
     T[:3, 3] = (1, 2, 3)
     frame.update(T)
@@ -224,7 +224,7 @@ def test_a_frame_moves_and_hides():
 @pytest.mark.parametrize("T", [np.eye(3), np.full((4, 4), np.nan)])
 def test_a_frame_that_is_none_is_refused(T):
     with pytest.raises(InputError, match="finite"):
-        draw_frame(new_figure(projection="3d").axes[0], T)
+        FrameView(new_figure(projection="3d").axes[0], T)
 
 
 @pytest.mark.parametrize("q", [np.zeros((2, 3)), (0, 0), (0, np.nan, 0)])

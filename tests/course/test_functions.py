@@ -8,10 +8,12 @@ import pytest
 import solutions
 from cells import cell
 
+from ir50p_lab import modelling
 from ir50p_lab.course import check, lab_book, my_robot, reset
 from ir50p_lab.course.functions import folder
 from ir50p_lab.course.functions.catalogue import ORDER, task, written
 from ir50p_lab.course.functions.grade import grade
+from ir50p_lab.modelling import IR50P
 
 
 @pytest.fixture(autouse=True)
@@ -43,6 +45,14 @@ def test_reference_solutions_pass_become_the_robot_and_stand_alone(home, capsys)
     code = "import sys; import my_robot; my_robot.frames([0, 0, 0], [1, 1, 1]); assert 'ir50p_lab' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], cwd=home, check=True)
     subprocess.run([sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "my_robot"], cwd=home, check=True)
+
+
+def test_poses_and_tip_that_stand_in_are_the_packages():
+    l, q = np.array(IR50P.l), np.random.default_rng(0).uniform(-1.5, 1.5, (50, 3))
+    tips = modelling.forward_kinematics(IR50P, q)
+    np.testing.assert_allclose(task("forward_kinematics").right(q, l), tips, atol=1e-12)
+    poses = [task("inverse_kinematics").right(p, l) for p in tips]
+    np.testing.assert_allclose(np.exp(1j * np.array(poses)), np.exp(1j * modelling.inverse_kinematics(IR50P, tips).q))
 
 
 @pytest.mark.parametrize("name", written())

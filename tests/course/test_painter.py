@@ -32,18 +32,19 @@ def assert_same_pixels(painter):
 
 
 def plane_figure():
-    figure = new_figure(5, 3.5, rows=2, cols=2, sharex=True)
+    figure = new_figure(4, 3.5, rows=3, sharex=True)
     x = np.linspace(0, 6, 200)
     for k, ax in enumerate(figure.axes):
         ax.plot(x, np.sin(x + k), label="model")
         ax.plot(x[::9], np.cos(x[::9] + k), "o", ms=3, label="measured")
         ax.set(ylim=(-2, 2), ylabel="q [rad]")
-    figure.axes[0].legend(loc="upper right")
-    figure.axes[1].add_patch(Circle((3, 0), 0.7, alpha=0.5))
-    figure.axes[2].scatter(x[::20], np.sin(x[::20]))
-    figure.axes[3].text(1, 1, "note")
-    figure.axes[2].set_xlabel("time [s]")
-    figure.axes[0].set_title("first")
+    above, below, last = figure.axes
+    above.legend(loc="upper right")
+    above.set_title("first")
+    below.add_patch(Circle((3, 0), 0.7, alpha=0.5))
+    below.scatter(x[::20], np.sin(x[::20]))
+    last.text(1, 1, "note")
+    below.set_xlabel("time [s]")
     return figure
 
 
@@ -72,30 +73,30 @@ def toggle(artist):
 IN_THE_PLANE = {
     "data": lambda f, r: f.axes[0].lines[0].set_ydata(r.normal(size=200)),
     "title": lambda f, r: f.axes[0].set_title(f"the finding is {r.normal():.3f}"),
-    "two-line title": lambda f, r: f.axes[3].set_title(f"a gy\n{r.normal():.2f} gy"),
+    "two-line title": lambda f, r: f.axes[2].set_title(f"a gy\n{r.normal():.2f} gy"),
     "limits": lambda f, r: f.axes[1].set_ylim(-3 - r.random(), 3),
     "shared x limits": lambda f, r: f.axes[0].set_xlim(0, 4 + r.random()),
-    "axis label": lambda f, r: f.axes[2].set_xlabel(f"time {r.random():.2f} [s]"),
+    "axis label": lambda f, r: f.axes[1].set_xlabel(f"time {r.random():.2f} [s]"),
     "ticks": lambda f, r: f.axes[0].set_yticks([-1, r.random()]),
     "tick size": lambda f, r: f.axes[0].tick_params(labelsize=4 + r.integers(4)),
     "scale": lambda f, r: f.axes[0].set_yscale("symlog"),
     "grid": lambda f, r: f.axes[1].xaxis.grid(),
-    "new line": lambda f, r: f.axes[2].plot([0, 6], r.normal(size=2)),
-    "removed line": lambda f, r: f.axes[2].lines[-1].remove(),
+    "new line": lambda f, r: f.axes[1].plot([0, 6], r.normal(size=2)),
+    "removed line": lambda f, r: f.axes[1].lines[-1].remove(),
     "moved patch": lambda f, r: f.axes[1].patches[0].set_center((6 * r.random(), 0)),
     "hidden line": lambda f, r: toggle(f.axes[0].lines[1]),
-    "text": lambda f, r: f.axes[3].texts[0].set_text(f"{r.random():.3f}"),
+    "text": lambda f, r: f.axes[2].texts[0].set_text(f"{r.random():.3f}"),
     "legend text": lambda f, r: f.axes[0].get_legend().get_texts()[0].set_text(f"m {r.random():.2f}"),
     "face colour": lambda f, r: f.axes[0].set_facecolor(r.random(3)),
     "figure colour": lambda f, r: f.set_facecolor((1, 1, 0.5 + r.random() / 2)),
     "figure text": lambda f, r: f.text(0.5, 0.5, f"{r.random():.2f}"),
-    "grid in front": lambda f, r: f.axes[3].set_axisbelow(False),
-    "axis hidden": lambda f, r: toggle(f.axes[2].xaxis),
-    "axes hidden": lambda f, r: toggle(f.axes[3]),
+    "grid in front": lambda f, r: f.axes[2].set_axisbelow(False),
+    "axis hidden": lambda f, r: toggle(f.axes[1].xaxis),
+    "axes hidden": lambda f, r: toggle(f.axes[2]),
     "frame": lambda f, r: toggle(f.axes[0].spines["left"]),
     "dpi": lambda f, r: f.set_dpi(90 + r.integers(20)),
     "size": lambda f, r: f.set_size_inches(5 + r.random(), 3.5),
-    "position": lambda f, r: f.axes[3].set_position([0.6, 0.1, 0.3 + 0.05 * r.random(), 0.3]),
+    "position": lambda f, r: f.axes[2].set_position([0.6, 0.1, 0.3 + 0.05 * r.random(), 0.3]),
 }
 IN_SPACE = {
     "data": lambda f, r: f.axes[0].lines[0].set_data_3d(*r.normal(size=(3, 5))),

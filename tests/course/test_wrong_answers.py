@@ -127,7 +127,8 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
         ("damped_step", "J @ J.T", "J * J.T", r"entry by entry \(`\*`"),
         ("damped_step", "damping**2", "damping", "a square is missing"),
         ("damped_step", "damping**2 * np.eye(3)", "damping**2", "all nine entries"),
-        ("damped_step", "damping**2 * np.eye(3)", "damping**2 * 1", "all nine entries"),
+        ("damped_step", "+ J.T @ np.linalg.solve", "+ np.linalg.solve", "it is no turn of joints yet"),
+        ("jacobian", "axis = T[joint][:3, 2]", "axis = T[joint][2, :3]", "read by rows: an axis is a column"),
         ("damped_step", "damping**2", "damping^2", "no power in Python"),
         ("step_metrics", "(q - start) / jump", "q / target", "begins at 0 rad and wrong elsewhere"),
         (
@@ -230,7 +231,8 @@ def test_a_loan_pasted_back_stays_a_loan(capsys):
     lent = folder.path_of("rot_z").read_text()
     disguised = lent.replace("c = ", "ahead = ").replace("c,", "ahead,").replace("[s, c", "[s, ahead")
     disguised = disguised.replace("    s =", "    # mine\n    s   =").replace("angle", "a")
-    for text in (lent, disguised):
+    wrapped = lent.replace("def rot_z", "def turn") + "\n\ndef rot_z(a):\n    unused = 3\n    return 1 * turn(a) + 0.0"
+    for text in (lent, disguised, wrapped):
         assert "it stays a loan" in told(capsys, "rot_z", text=text)
         assert my_robot.whose("rot_z") == "on loan"
     assert "right, and yours" in told(capsys, "rot_z")
@@ -299,6 +301,7 @@ CLOSED = """def dh_matrix(theta, d, a, alpha):
 TOO_MANY_ROWS = """def damped_step(q, p, l, damping):
     J = jacobian(frames(q, l), 3, forward_kinematics(q, l))
     return q + J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(6), p - forward_kinematics(q, l))"""
+ALL_ROWS = TOO_MANY_ROWS.replace("p - forward_kinematics(q, l))", "np.append(p - forward_kinematics(q, l), [0, 0, 0]))")
 ELBOW_KEPT = """def inverse_kinematics(p, l):
     q1, out, up = np.arctan2(p[1], p[0]), np.hypot(p[0], p[1]), p[2] - l[0]
     c = (out**2 + up**2 - l[1]**2 - l[2]**2) / (2 * l[1] * l[2])
@@ -317,6 +320,17 @@ ELBOW_KEPT = """def inverse_kinematics(p, l):
         ("damped_step", TOO_MANY_ROWS, r"shape \(6, 6\); `p - forward_kinematics\(q, l\)` has the shape \(3,\)"),
         ("inverse_kinematics", ELBOW_KEPT, "do not fit together in the poses with their back"),
         ("rot_z", "def rot_z(angle):\n    return my_robot.rot_z(angle)", "the function you are about to write"),
+        (
+            "rot_z",
+            "R = np.eye(3)\n\n\ndef rot_z(angle):\n    R[0, 0] += angle\n    return R",
+            "it changes `R`, made once",
+        ),
+        ("damped_step", ALL_ROWS, "the hand must not turn, either"),
+        (
+            "inverse_kinematics",
+            "def inverse_kinematics(p, l):\n    raise ValueError(p)",
+            "asked for an answer there, too",
+        ),
     ],
 )
 def test_other_ways_to_be_wrong_have_theirs(name, text, words, capsys):

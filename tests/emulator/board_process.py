@@ -69,13 +69,18 @@ class BoardProcess:
         lines = self.log.read_text().splitlines()
         return [Change(t, seconds, Pins(*pins), received) for t, seconds, pins, received in map(json.loads, lines)]
 
-    def cut_after_last_command(self, timeout=5.0):
-        """Seconds of the board's own time from the last command to the cut; waits for it. No busy computer stretches it."""
+    def wait_until_off(self, timeout=5.0):
+        """The Change after which no bridge drives."""
         until = time.monotonic() + timeout
         while any((last := self.changes()[-1]).pins.pwm):
             if time.monotonic() > until:
                 raise TimeoutError(f"the bridges still drive after {timeout} s: {last.pins.pwm}")
             time.sleep(0.01)
+        return last
+
+    def cut_after_last_command(self):
+        """Seconds of the board's own time from the last command to the cut; waits for it. No busy computer stretches it."""
+        last = self.wait_until_off()
         if not any(any(change.pins.pwm) for change in self.changes()):
             raise ValueError("the bridges never drove: there was nothing to cut")
         return last.seconds - last.received

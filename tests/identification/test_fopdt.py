@@ -18,6 +18,8 @@ T_S = np.arange(200) * PERIOD  # 4 s
 STEP = np.where(T_S >= 0.4, 1.0, 0.0)
 SINCE = np.maximum(T_S - 0.4, 0.0)  # s since the step
 NOISES = (0.0, 0.003, 0.03)  # of a response of 1
+UNITS = ((-1e-5, 1.0), (1e4, -3e3), (1.0, 0.0))  # factor and offset: each noise has its own
+IN_UNITS = [(size, lambda y, a=a, b=b: a * y + b) for size, (a, b) in zip(NOISES, UNITS, strict=True)]
 
 
 def noise(seed, size, correlation=0.0):
@@ -28,11 +30,6 @@ def noise(seed, size, correlation=0.0):
 
 def lag(t, T):
     return -np.expm1(-np.maximum(t, 0) / T)
-
-
-def scales(y):
-    """The same response in large, ordinary and small units, with an offset."""
-    return [(1e4 * y - 3e3), y, -1e-5 * y + 1]
 
 
 # --- the model
@@ -83,7 +80,7 @@ def test_derivatives_of_the_kernel(a):
 # --- the fit
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(20))
 def test_exact_data_of_any_scale_give_the_exact_model(seed):
     """Even and uneven times, a step, many steps, or an input that changes at every sample."""
     rng = np.random.default_rng(seed)
@@ -121,7 +118,7 @@ def test_step_in_the_first_sample_needs_the_input_before_it():
 
 @pytest.mark.parametrize("kind", ["step, little noise", "step, much noise", "many steps", "uneven times"])
 def test_true_values_lie_within_two_standard_errors_95_times_in_100(kind):
-    """White noise, 100 seeds. Binomial: 95.4 % of 100 is 95 +- 2; 88 is 3.6 deviations off."""
+    """White noise, 50 seeds. Binomial: 95.4 % of 50 is 47.7 +- 1.5; 42 is 3.8 off. Half as large, they held it 34 times."""
     rng, t, u = np.random.default_rng(7), T_S, STEP
     if kind == "many steps":
         u = np.repeat(rng.choice([0.0, 1.0], 20), 10)
@@ -131,8 +128,8 @@ def test_true_values_lie_within_two_standard_errors_95_times_in_100(kind):
     model = FOPDT(K=-1.5, T=0.5, L=0.133, y0=3.0)
     y = model.response(t, u)
     size = 0.01 if kind == "step, little noise" else 0.06
-    hits = inside(model, [fit_fopdt(t, u, y + noise(seed, size)) for seed in range(100)])
-    assert (hits >= 88).all() and hits.sum() < 300, hits
+    hits = inside(model, [fit_fopdt(t, u, y + noise(seed, size)) for seed in range(50)])
+    assert (hits >= 42).all() and hits.sum() < 150, hits
 
 
 def inside(model, fits):
@@ -145,15 +142,15 @@ def test_coloured_noise_widens_the_standard_errors_and_is_named():
     """Correlation 0.7: unwidened errors hold the truth about 60 % of the time; widened ones 85 % or more."""
     model = FOPDT(K=-1.5, T=0.5, L=0.133, y0=3.0)
     y = model.response(T_S, STEP)
-    fits = [fit_fopdt(T_S, STEP, y + noise(seed, 0.03, correlation=0.7)) for seed in range(100)]
+    fits = [fit_fopdt(T_S, STEP, y + noise(seed, 0.03, correlation=0.7)) for seed in range(50)]
     assert all("not white" in fit.warnings[0] for fit in fits)
-    assert (inside(model, fits) >= 85).all()
+    assert (inside(model, fits) >= 43).all()
     narrow = []
     for fit in fits:
         widened = math.sqrt((1 + fit.correlation) / (1 - fit.correlation))
         errors = {f"{p}_stderr": getattr(fit, f"{p}_stderr") / widened for p in "KTL"}
         narrow.append(dataclasses.replace(fit, **errors))
-    assert (inside(model, narrow)[:2] <= 75).all()
+    assert (inside(model, narrow)[:2] <= 37).all()
 
 
 def test_a_known_dead_time_is_kept():
@@ -191,43 +188,41 @@ def refused(words, t, u, y, **options):
     assert words in str(caught.value), caught.value
 
 
-@pytest.mark.parametrize("size", NOISES)
+@pytest.mark.parametrize("size, in_units", IN_UNITS)
 @pytest.mark.parametrize("tau", [0.01, 0.1, 0.5, 2.0, 20.0])
-def test_an_integrating_joint_is_refused_and_the_remedy_works(tau, size):
+def test_an_integrating_joint_is_refused_and_the_remedy_works(tau, size, in_units):
     """Position of a joint with viscous friction under constant torque; its velocity is of first order."""
     position = SINCE - tau * lag(SINCE, tau)
-    for y in scales(position / position.max() + noise(3, size)):
-        refused("integrates", T_S, STEP, y)
+    refused("integrates", T_S, STEP, in_units(position / position.max() + noise(3, size)))
     if 0.02 < tau < 3:
         found = fit_fopdt(T_S, STEP, lag(SINCE, tau) + noise(4, size), dead_time=0)
         assert found.T == pytest.approx(tau, rel=0.2 if size else 1e-6)
 
 
-@pytest.mark.parametrize("size", NOISES)
+@pytest.mark.parametrize("size, in_units", IN_UNITS)
 @pytest.mark.parametrize("T", [0.2, 0.6, 2.0])
-def test_a_growing_response_is_refused(T, size):
+def test_a_growing_response_is_refused(T, size, in_units):
     growth = np.expm1(SINCE / T)
-    for y in scales(growth / growth.max() + noise(3, size)):
-        refused("unstable", T_S, STEP, y)
+    refused("unstable", T_S, STEP, in_units(growth / growth.max() + noise(3, size)))
 
 
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9])
-@pytest.mark.parametrize("size", NOISES[:2])
-def test_dead_time_below_the_period_is_said_to_be_not_identifiable(share, size):
-    for y in scales(lag(SINCE - share * PERIOD, 0.2) + noise(2, size / 3)):
-        found = fit_fopdt(T_S, STEP, y)
-        assert "dead time is not identifiable" in " ".join(found.warnings) and found.L_stderr >= 0.99 * PERIOD
-        assert found.T == pytest.approx(0.2, rel=0.1)
-        assert not fit_fopdt(T_S, STEP, y, dead_time=0).warnings or share
+@pytest.mark.parametrize("size, in_units", IN_UNITS[:2])
+def test_dead_time_below_the_period_is_said_to_be_not_identifiable(share, size, in_units):
+    y = in_units(lag(SINCE - share * PERIOD, 0.2) + noise(2, size / 3))
+    found = fit_fopdt(T_S, STEP, y)
+    assert "dead time is not identifiable" in " ".join(found.warnings) and found.L_stderr >= 0.99 * PERIOD
+    assert found.T == pytest.approx(0.2, rel=0.1)
+    assert share or not fit_fopdt(T_S, STEP, y, dead_time=0).warnings
 
 
 @pytest.mark.parametrize("share", [0.001, 0.1, 0.5, 0.8])
-@pytest.mark.parametrize("size", NOISES[:2])
-def test_time_constant_below_the_period_is_said_to_be_not_identifiable(share, size):
-    for y in scales(lag(SINCE - 0.1, share * PERIOD) + noise(2, size)):
-        found = fit_fopdt(T_S, STEP, y)
-        assert "time constant is not identifiable" in " ".join(found.warnings) and math.isinf(found.T_stderr)
-        assert abs(found.K / (y[-1] - y[0]) - 1) < 0.02 + 4 * size
+@pytest.mark.parametrize("size, in_units", IN_UNITS[:2])
+def test_time_constant_below_the_period_is_said_to_be_not_identifiable(share, size, in_units):
+    y = in_units(lag(SINCE - 0.1, share * PERIOD) + noise(2, size))
+    found = fit_fopdt(T_S, STEP, y)
+    assert "time constant is not identifiable" in " ".join(found.warnings) and math.isinf(found.T_stderr)
+    assert abs(found.K / (y[-1] - y[0]) - 1) < 0.02 + 4 * size
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -245,8 +240,7 @@ def test_milliseconds_and_outliers_are_named(seed):
     assert abs(found.T - plain.T) < 2 * plain.T_stderr and abs(found.K - plain.K) < 2 * plain.K_stderr
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("zero", [0.0, 0.3, -0.1])
+@pytest.mark.parametrize("seed, zero", [(0, 0.0), (1, 0.3), (2, -0.1)])
 def test_a_second_order_model_is_offered_and_right(zero, seed):
     """Second route: scipy.signal's simulation of the transfer function."""
     rng = np.random.default_rng(seed)
@@ -271,13 +265,13 @@ def test_a_few_samples_do_not_show_whether_the_model_is_right():
 
 
 @pytest.mark.parametrize("damping", [0.05, 0.15, 0.3])
-@pytest.mark.parametrize("size", NOISES)
-def test_a_swinging_response_is_refused(damping, size):
+@pytest.mark.parametrize("size, in_units", IN_UNITS)
+def test_a_swinging_response_is_refused(damping, size, in_units):
     w = 6.0
     wd = w * math.sqrt(1 - damping**2)
     swing = np.cos(wd * SINCE) + damping * w / wd * np.sin(wd * SINCE)
-    for y in scales(1 - np.exp(-damping * w * SINCE) * swing + noise(2, size)):
-        refused("second-order model", T_S, STEP, y)
+    y = in_units(1 - np.exp(-damping * w * SINCE) * swing + noise(2, size))
+    refused("second-order model", T_S, STEP, y)
 
 
 @pytest.mark.parametrize("level", [0.0, 1e-6, 1.0, -1e6])
@@ -287,14 +281,13 @@ def test_constant_columns_are_refused(level):
     refused("y stays at", T_S, STEP, np.full_like(T_S, level))
 
 
-@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
-def test_noise_and_drift_are_not_taken_for_a_response(size):
-    for seed in range(20):
+def test_noise_and_drift_are_not_taken_for_a_response():
+    for seed, size in zip(range(20), itertools.cycle([1e-6, 1.0, 1e6])):
         with pytest.raises(IdentificationError, match=r"not follow u|integrates|not the shape"):
             fit_fopdt(T_S, STEP, noise(seed, size))
     for seed in range(5):
         with pytest.raises(IdentificationError):
-            fit_fopdt(T_S, STEP, noise(seed, size, correlation=0.8))
+            fit_fopdt(T_S, STEP, noise(seed, 1.0, correlation=0.8))
 
 
 @pytest.mark.parametrize("after", [1, 4, 7])
@@ -353,9 +346,9 @@ def test_plants_of_higher_order_without_swing_are_fitted(order, size):
 
 
 def test_good_records_are_never_refused():
-    """150 plants with 2 % noise: T and L above two periods, at least 1.5 T of response."""
+    """80 plants with 2 % noise: T and L above two periods, at least 1.5 T of response."""
     refusals = []
-    for seed in range(150):
+    for seed in range(80):
         rng = np.random.default_rng(seed)
         T, L = rng.uniform(2, 60) * PERIOD, rng.uniform(3, 60) * PERIOD
         model = FOPDT(K=rng.choice([-1, 1]) * 10 ** rng.uniform(-4, 4), T=T, L=L)

@@ -3,6 +3,7 @@
 import pytest
 from mini_project import MiniProject, repack, write_wheel
 
+STRANGE = "robot räume δ"  # a path may have a space and letters beyond ASCII
 #: In the place of JupyterLab and pytest: says how it was started and ends as the test wants it to.
 STAND_IN = """
 import json, os, signal, sys, time
@@ -31,14 +32,22 @@ def wheels(tmp_path_factory):
 
 @pytest.fixture
 def project(tmp_path, wheels):
-    """A fresh miniature whose path has a space and letters beyond ASCII."""
-    return MiniProject(tmp_path / "robot räume δ", wheels)
+    """A fresh miniature."""
+    return MiniProject(tmp_path / STRANGE, wheels)
 
 
 @pytest.fixture(scope="session")
 def made(tmp_path_factory, wheels):
-    """A miniature that is set up once; tests must leave it ready."""
-    project = MiniProject(tmp_path_factory.mktemp("made"), wheels)
-    done = project.run("setup")
-    assert done.returncode == 0, done.stdout + done.stderr
+    """A miniature that is set up once, `first` being how that went; tests must leave it ready."""
+    project = MiniProject(tmp_path_factory.mktemp("made") / STRANGE, wheels)
+    project.first = project.run("setup")
+    assert project.first.returncode == 0, project.first.stdout + project.first.stderr
     return project
+
+
+@pytest.fixture(scope="session")
+def tested(made):
+    """The same with the test tools, `added` being how they came."""
+    made.added = made.run("setup", "--tests")
+    assert made.added.returncode == 0, made.added.stdout + made.added.stderr
+    return made

@@ -1,4 +1,4 @@
-"""Set-ups under hostile conditions, each provoked for real: interrupted, without network, on a full disk, half made.
+"""Set-ups built again, and under hostile conditions, each provoked for real: interrupted, without network, half made...
 
 CI runs this file by its name: every test builds an environment, some two, and `ir50p_lab test` is to be quick.
 """
@@ -39,6 +39,25 @@ def test_pip_does_the_work_where_no_uv_fits(project, tmp_path):
     assert "-m', 'uv'" not in project.log()
     assert project.python(IMPORT_BOTH).returncode == 0
     assert project.run("doctor", variables={"IR50P_ARM": None}).returncode == 0
+
+
+def test_changed_lock_file_rebuilds(project):
+    assert project.run("setup").returncode == 0
+    lock = project.root / "environment.txt"
+    lock.write_text(lock.read_text().replace("pebble==1.0", "pebble-test==1.0"))
+    done = project.run("setup")
+    assert "out of date (environment.txt has changed): building it again" in done.stdout
+    assert project.python("import pebble_test").returncode == 0
+    assert project.python("import pebble").returncode == 1  # nothing of the old lock stays behind
+
+
+def test_rebuild_starts_from_nothing(tested):
+    (tested.venv / "debris.txt").write_text("")
+    done = tested.run("setup", "--rebuild", "--tests")
+    assert done.returncode == 0, done.stderr
+    assert "[2/4] packages of environment-test.txt" in done.stdout
+    assert not (tested.venv / "debris.txt").exists()
+    assert tested.python("import pebble, pebble_test").returncode == 0
 
 
 def test_copied_environment_is_rebuilt(project, made):

@@ -14,13 +14,6 @@ from ir50p_lab.launcher import commands, inventory
 AS_ROOT = ["--allow-root"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []
 
 
-@pytest.fixture(scope="module")
-def tested(made):
-    """The miniature with the test tools."""
-    assert made.run("setup", "--tests").returncode == 0
-    return made
-
-
 def told(done):
     """What the stand-in said about how it was started."""
     return json.loads(done.stdout.splitlines()[-1])
@@ -124,15 +117,6 @@ def test_words_that_are_no_command(project):
     assert "neither a command nor a file 'tset'" in one_line(project.run("tset"))
     assert "setup does not know '--fast'" in one_line(project.run("setup", "--fast"))
     assert not project.venv.exists()
-
-
-def test_rebuild_starts_from_nothing(tested):
-    (tested.venv / "debris.txt").write_text("")
-    done = tested.run("setup", "--rebuild", "--tests")
-    assert done.returncode == 0, done.stderr
-    assert "[2/4] packages of environment-test.txt" in done.stdout
-    assert not (tested.venv / "debris.txt").exists()
-    assert tested.python("import pebble, pebble_test").returncode == 0
 
 
 # -- --here ----------------------------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""The set-up from end to end: first time, again, after changes. After interruptions: hostile_setups.py."""
+"""The set-up from end to end: first time, again, with the test tools. After changes and interruptions: hostile_setups.py."""
 
 import json
 import os
@@ -14,14 +14,16 @@ from ir50p_lab.launcher.problems import SetUpError
 IMPORT_BOTH = "import pebble, ir50p_lab; print(ir50p_lab.__file__)"
 
 
-def test_first_setup_says_what_it_does_and_makes_the_package_importable_anywhere(project):
-    done = project.run("setup")
-    assert done.returncode == 0, done.stderr
+def test_first_setup_says_what_it_does_and_makes_the_package_importable_anywhere(made):
     for step in ("[1/4]", "[2/4] packages of environment.txt", "[3/4]", "[4/4]", "Set-up finished"):
-        assert step in done.stdout
-    assert "-m', 'uv', 'pip', 'install'" in project.log()
-    assert project.python(IMPORT_BOTH).stdout.strip() == str(project.root / "ir50p_lab" / "__init__.py")
-    assert "pebble_test" not in os.listdir(next(project.venv.glob("[Ll]ib/**/site-packages")))
+        assert step in made.first.stdout
+    assert "-m', 'uv', 'pip', 'install'" in made.log()
+    assert made.python(IMPORT_BOTH).stdout.strip() == str(made.root / "ir50p_lab" / "__init__.py")
+
+
+def test_the_imports_of_the_check_compile_what_is_used(made):
+    assert made.variables()["PYTHONDONTWRITEBYTECODE"] == "1"  # as container images set it
+    assert list(made.venv.glob("[Ll]ib/**/__pycache__/pebble.*.pyc"))
 
 
 def test_second_setup_does_nothing(made):
@@ -31,29 +33,13 @@ def test_second_setup_does_nothing(made):
     assert made.stamp.stat().st_mtime_ns == before
 
 
-def test_the_imports_of_the_check_compile_what_is_used(project):
-    done = project.run("setup", variables={"PYTHONDONTWRITEBYTECODE": None})
-    assert done.returncode == 0, done.stderr
-    assert list(project.venv.glob("[Ll]ib/**/__pycache__/pebble.*.pyc"))
-
-
-def test_changed_lock_file_rebuilds(project):
-    assert project.run("setup").returncode == 0
-    lock = project.root / "environment.txt"
-    lock.write_text(lock.read_text().replace("pebble==1.0", "pebble-test==1.0"))
-    done = project.run("setup")
-    assert "out of date (environment.txt has changed): building it again" in done.stdout
-    assert project.python("import pebble_test").returncode == 0
-    assert project.python("import pebble").returncode == 1  # nothing of the old lock stays behind
-
-
-def test_test_tools_are_added_in_place_and_stay(project):
-    assert project.run("setup").returncode == 0
-    done = project.run("setup", "--tests")
-    assert "[1/1] test tools of environment-test.txt" in done.stdout
-    assert project.python("import pebble, pebble_test").returncode == 0
-    assert project.run("setup").stdout.startswith("Ready")
-    assert project.run("setup", "--tests").stdout.startswith("Ready")
+def test_test_tools_are_added_in_place_and_stay(tested):
+    before, _, after = tested.log().partition("environment-test.txt")
+    assert "pebble-test" not in before and "pebble-test" in after  # the first set-up did not bring them
+    assert "[1/1] test tools of environment-test.txt" in tested.added.stdout
+    assert tested.python("import pebble, pebble_test").returncode == 0
+    assert tested.run("setup").stdout.startswith("Ready")
+    assert tested.run("setup", "--tests").stdout.startswith("Ready")
 
 
 def test_states_that_need_a_rebuild(made, monkeypatch):

@@ -59,53 +59,64 @@ def random_states(n, seed):
     return rng.uniform(-np.pi, np.pi, (n, 3)), rng.normal(0, 2, (n, 3)), rng.normal(0, 5, (n, 3))
 
 
-# ---- the direct Lagrange derivation (1.75)-(1.77) by SymPy's diff, nothing simplified ---------------------------------
+# ---- the direct Lagrange derivation (1.75)-(1.77) by SymPy's diff: polynomials in cos, sin and the rates, all expanded --
 
 
-def rot_z(angle):
-    c, s = sympy.cos(angle), sympy.sin(angle)
-    return sympy.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+_, *GENERATORS = sympy.ring("c1:4, s1:4, v1:4", sympy.QQ)
+COS, SIN, RATES = GENERATORS[:3], GENERATORS[3:6], GENERATORS[6:]
 
 
-def rot_x_quarter():
-    return sympy.Matrix([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+def by_angle(polynomial, k):
+    return polynomial.diff(SIN[k]) * COS[k] - polynomial.diff(COS[k]) * SIN[k]
+
+
+@np.vectorize
+def rate(entry):
+    """Time derivative of a function of the angles by the chain rule."""
+    return sum(by_angle(0 * COS[0] + entry, k) * RATES[k] for k in range(3))
+
+
+def rot_z(k):
+    c, s = COS[k], SIN[k]
+    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+
+ROT_X_QUARTER = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
 
 
 def lagrange_torque(model, q, qd, qdd, numbers):
     """d/dt(dL/dqd) - dL/dq in floats, from positions and angular velocities found by differentiation in time."""
-    x, v = sympy.symbols("x1:4"), sympy.symbols("v1:4")
-    n = {str(s): value for s, value in numbers.items()}
-
-    def rate(expression):
-        """Time derivative of a function of the angles by the chain rule."""
-        return sum((expression.diff(x[k]) * v[k] for k in range(3)), 0 * expression)
-
-    R1 = rot_z(x[0])
-    R2 = R1 * rot_x_quarter() * rot_z(x[1])
-    R3 = R2 * rot_z(x[2])
-    shoulder = sympy.Matrix([0, 0, n["l1"]])
-    elbow = shoulder + R2 * sympy.Matrix([n["l2"], 0, 0])
-    rotations, origins = (R1, R2, R3), (sympy.zeros(3, 1), shoulder, elbow)
+    n = {str(s): sympy.QQ.from_sympy(value) for s, value in numbers.items()}
+    R1 = rot_z(0)
+    R2 = R1 @ ROT_X_QUARTER @ rot_z(1)
+    R3 = R2 @ rot_z(2)
+    shoulder = np.array([0, 0, n["l1"]])
+    elbow = shoulder + R2[:, 0] * n["l2"]
+    rotations, origins = (R1, R2, R3), (np.zeros(3, int), shoulder, elbow)
     L = 0
     for i, (R, origin) in enumerate(zip(rotations, origins, strict=True), start=1):
         if model.links == "general":
-            r = sympy.Matrix([n[f"{axis}{i}"] for axis in "xyz"])
+            r = np.array([n[f"{axis}{i}"] for axis in "xyz"])
         else:
             column = model.links == "in-line" and i == 1
-            r = sympy.Matrix([0, 0, n["lc1"]]) if column else sympy.Matrix([n[f"lc{i}"], 0, 0])
+            r = np.array([0, 0, n["lc1"]]) if column else np.array([n[f"lc{i}"], 0, 0])
         xx, yy, zz, xy, xz, yz = (n.get(f"I{pair}{i}", 0) for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
-        inertia = sympy.Matrix([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]])
-        p = origin + R * r
-        spin = rate(R) * R.T  # skew matrix of the angular velocity, base frame
-        w = (R1 if model.links == "thesis" else R).T * sympy.Matrix([spin[2, 1], spin[0, 2], spin[1, 0]])
-        L += (n[f"m{i}"] * rate(p).dot(rate(p)) + w.dot(inertia * w) + n[f"j{i}"] * v[i - 1] ** 2) / 2
+        inertia = np.array([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]])
+        p = origin + R @ r
+        spin = rate(R) @ R.T  # skew matrix of the angular velocity, base frame
+        w = (R1 if model.links == "thesis" else R).T @ np.array([spin[2, 1], spin[0, 2], spin[1, 0]])
+        L += (n[f"m{i}"] * (rate(p) @ rate(p)) + w @ inertia @ w + n[f"j{i}"] * RATES[i - 1] ** 2) / 2
         L -= n[f"m{i}"] * n["g"] * p[2]
+    values = [value.evalf(40) for value in (*map(sympy.cos, q), *map(sympy.sin, q), *qd)]
+    state = dict(zip((one.as_expr() for one in GENERATORS), values, strict=True))
     tau = []
     for i in range(3):
-        momentum = L.diff(v[i])
-        ddt = rate(momentum) + sum(momentum.diff(v[k]) * qdd[k] for k in range(3))
-        tau.append(ddt - L.diff(x[i]))
-    return sympy.lambdify([x, v], tau, "math", cse=True)([float(k) for k in q], [float(k) for k in qd])
+        momentum = L.diff(RATES[i])
+        ddt = sum(
+            by_angle(momentum, k) * RATES[k] + momentum.diff(RATES[k]) * sympy.QQ.from_sympy(qdd[k]) for k in range(3)
+        )
+        tau.append((ddt - by_angle(L, i)).as_expr())
+    return [float(one.xreplace(state)) for one in tau]
 
 
 def test_tau_equals_sympys_lagrange_route(model):

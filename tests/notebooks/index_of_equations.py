@@ -9,6 +9,7 @@ import ast
 import csv
 import json
 import re
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -31,10 +32,10 @@ REASONS = {  # rows of the rewritten notebooks that are left out on purpose
     "2.1.1a saturation": "08, sections 4 and 5",
     "ERRATA 2 poses": "tests/modelling",
     "ERRATA 2 states": "tests/modelling",
-    "2.2.2 non-parametric": "09, section 5: the answer to a step, and to a blow",
-    "2.2.2 tuning": "09, section 5: rules for speed and angle",
-    "sweeps elsewhere": "09, section 4",
-    "gain map, FOPDT, rules": "09, sections 4 and 5",
+    "2.2.2 non-parametric": "09, section 4: the answer to a step, and to a blow",
+    "2.2.2 tuning": "09, section 4: rules for speed and angle",
+    "sweeps elsewhere": "A2, section 5",
+    "gain map, FOPDT, rules": "09, sections 4 and 6",
     "kick, windup, delay, friction": "09, section 2",
 }
 
@@ -86,6 +87,7 @@ def notebook_mentions():
     return found
 
 
+@cache
 def docstring_mentions(folder):
     """{tag: [place]} from the docstrings below a folder: of functions for the package, of files for tests."""
     found = {}

@@ -1,4 +1,4 @@
-"""Notebooks that drive the arm run whole on a replay; they run on the emulated board too, in its own time.
+"""Notebooks that drive the arm run whole on a replay, and on the emulated board, in its own time; 08 and 09 with a second PID.
 
 CI runs this file by its name: it takes minutes, and `ir50p_lab test` is to be quick.
 """
@@ -7,7 +7,9 @@ import re
 
 import nbformat
 import pytest
+import solutions
 from notebook_runner import NOTEBOOKS, ROOT, run_notebook
+from test_runs import assert_solved
 
 #: Notebooks that drive the arm.
 DRIVING = {
@@ -62,3 +64,17 @@ def test_on_the_board(name, tmp_path):
     needs_results = re.search(r"\barm_that_answers\(\"", DRIVING[name].read_text(encoding="utf-8").replace("\\", ""))
     said = said_by(DRIVING[name], tmp_path, PLUG_IN + ("emulated_bench.measure()" if needs_results else ""))
     assert "Bench: board on emulated" in said and "The simulated arm instead" not in said
+
+
+def clipped(name):
+    """A solution; of PIDs the one whose memory does not rest at the limit, but is clipped: right as well."""
+    rests, clips = "np.where(winds_up, self.integral, grown)", "np.clip(grown, -self.limit, self.limit)"
+    return solutions.source(name).replace(rests, clips)
+
+
+@pytest.mark.notebook
+@pytest.mark.parametrize("number", ["08", "09"])
+def test_notebook_with_a_clipped_memory(number, tmp_path):
+    """What is said and claimed of the student's PID holds of every PID that its check accepts."""
+    assert clipped("PID") != solutions.source("PID")
+    assert_solved(number, tmp_path, clipped, first=("PID",) if number == "09" else ())

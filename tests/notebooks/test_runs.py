@@ -45,20 +45,6 @@ def test_notebook_with_solutions(number, tmp_path):
     assert_solved(number, tmp_path, solutions.source)
 
 
-def clipped(name):
-    """A solution; of PIDs the one whose memory does not rest at the limit, but is clipped: right as well."""
-    rests, clips = "np.where(winds_up, self.integral, grown)", "np.clip(grown, -self.limit, self.limit)"
-    return solutions.source(name).replace(rests, clips)
-
-
-@pytest.mark.notebook
-@pytest.mark.parametrize("number", ["08", "09"])
-def test_notebook_with_a_clipped_memory(number, tmp_path):
-    """What is said and claimed of the student's PID holds of every PID that its check accepts."""
-    assert clipped("PID") != solutions.source("PID")
-    assert_solved(number, tmp_path, clipped, first=("PID",) if number == "09" else ())
-
-
 def assert_solved(number, tmp_path, source, first=()):
     """Run a notebook by source(name) of each function; `first`: functions of earlier notebooks, written before."""
     (found,) = [one for one in NOTEBOOKS if one.name.startswith(number)]

@@ -1,5 +1,7 @@
 """Pictures of a flat board, painted ray by ray: a second route beside the package's own renderer, and corner sets."""
 
+from functools import lru_cache
+
 import cv2
 import numpy as np
 
@@ -18,6 +20,16 @@ def look(distance=0.6, tilt=0.0, about=0.0, spin=0.0, at=(0.0, 0.0), centre=(0.1
     return T
 
 
+@lru_cache(2)
+def rays(size, over, lens):
+    """Normalised coordinates (h over, w over, 2) of over x over rays in each pixel."""
+    w, h = size
+    x, y = np.meshgrid((np.arange(w * over) + 0.5) / over - 0.5, (np.arange(h * over) + 0.5) / over - 0.5)
+    distorted = np.stack([x.ravel(), y.ravel()], 1)
+    undistorted = cv2.undistortPointsIter(distorted, K, np.array(lens), None, None, (3, 15, 1e-8))
+    return np.float32(undistorted).reshape(h * over, w * over, 2)
+
+
 def paint(
     T,
     pattern=(9, 6),
@@ -33,20 +45,15 @@ def paint(
     rim=1.0,
 ):
     """Picture (h, w, 3): every pixel the mean of over x over rays, undistorted and cut with the board's plane."""
-    w, h = size
-    x, y = np.meshgrid((np.arange(w * over) + 0.5) / over - 0.5, (np.arange(h * over) + 0.5) / over - 0.5)
-    rays = cv2.undistortPointsIter(np.stack([x.ravel(), y.ravel()], 1)[:, None], K, lens, None, None, (3, 30, 1e-9))[
-        :, 0
-    ]
-    X = np.linalg.solve(T[:3, [0, 1, 3]], np.column_stack([rays, np.ones(len(rays))]).T)
-    u, v = X[0] / X[2] / square, X[1] / X[2] / square
+    to_squares = np.diag([1, 1, square]) @ np.linalg.inv(T[:3, [0, 1, 3]])
+    u, v = cv2.split(cv2.perspectiveTransform(rays(size, over, tuple(lens)), to_squares))
     columns, rows = pattern
-    dark = (np.floor(u) + np.floor(v)) % 2 == 0
+    dark = (np.floor(u).astype(np.int32) + np.floor(v).astype(np.int32)) & 1 == 0
     board = (u > -rim) & (u < columns - 1 + rim) & (v > -rim) & (v < rows - 1 + rim)
     paper = (u > -1.6) & (u < columns + 0.6) & (v > -1.6) & (v < rows + 0.6)
-    light = np.where(paper, np.where(board & dark, *map(float, levels)), 120.0).reshape(h * over, w * over)
-    light = cv2.GaussianBlur(light, (0, 0), blur * over).reshape(h, over, w, over).mean((1, 3))
-    light += np.random.default_rng(seed).normal(0, noise, light.shape)
+    light = np.where(paper, np.where(board & dark, *np.float32(levels)), np.float32(120))
+    light = cv2.resize(cv2.GaussianBlur(light, (0, 0), blur * over), size, interpolation=cv2.INTER_AREA)
+    light = light + np.random.default_rng(seed).normal(0, noise, light.shape)
     return np.dstack([np.clip(np.round(light), 0, 255).astype(np.uint8)] * 3)
 
 

@@ -6,7 +6,8 @@ TESTS = Path(__file__).parents[1]
 #: Marks of whole files and folders (pyproject.toml says what they mean).
 MARKS = {
     "timing": (
-        "benchmarks",
+        "benchmarks/test_bench_speed.py",
+        "benchmarks/test_serial_speed.py",
         "bench/test_background.py",
         "bench/test_background_board.py",
         "bench/test_board_process.py",
@@ -24,6 +25,7 @@ MARKS = {
         "benchmarks/test_serial_speed.py",
     ),
     "slow": (
+        "benchmarks",
         "browser",
         "launcher",
         "bench/test_bench_test.py",

@@ -118,13 +118,13 @@ def test_looser_colour():
 
 
 def test_examples_tell_balls_from_the_rest():
-    found = [one for seed in range(101, 105) for one in examples(seed, "ball")]
+    found = [one for seed in range(101, 103) for one in examples(seed, "ball")]
     labels = np.array([label for *_, label in found])
     assert {NOTHING, BALL} <= set(labels) <= {NOTHING, BALL, NEARLY}
     assert all(rays.shape[0] == RAYS and np.isfinite(rays).all() and np.isfinite(m).all() for rays, m, _ in found)
-    shapes = [label for turn in range(3) for *_, label in painted(103, turn)]
+    shapes = [label for turn in range(2) for *_, label in painted(103, turn)]
     assert {NOTHING, BALL} <= set(shapes)  # discs and others
-    halves = {label for seed in range(101, 108) for *_, label in behind(seed)}
+    halves = {label for seed in range(101, 104) for *_, label in behind(seed)}
     assert {NOTHING, BALL} <= halves  # rods and balls
 
 

@@ -50,10 +50,10 @@ def test_a_board_with_narrow_outer_squares():
 def test_small_squares_are_used_if_sharp_and_blurred_if_not(distance):
     """Squares of 9 and 7 px, on which OpenCV does not measure the edges."""
     T = look(distance, 0.3, 2.0)
-    off = found(T, over=3) - project(T, BOARD.points)
+    off = found(T, over=4) - project(T, BOARD.points)
     assert np.sqrt((off**2).sum(axis=1).mean()) < 0.25
     with pytest.raises(NotUsable, match=r"edges are \d\.\d px wide") as caught:
-        found(T, over=3, blur=2.2)
+        found(T, over=4, blur=2.2)
     assert caught.value.reason is Reason.BLURRED
 
 
@@ -278,9 +278,14 @@ def test_a_charuco_view_again_is_a_duplicate_also_with_corners_hidden(hidden):
     assert one.reason is Reason.DUPLICATE and "picture 2" in one.detail
 
 
-@pytest.mark.parametrize("scale", [0.5, 1.0, 2.25])
-@pytest.mark.parametrize("blur", [3, 6, 10])
-@pytest.mark.parametrize("pattern", [(9, 6), (6, 4)])
+@pytest.mark.parametrize(
+    ("pattern", "blur", "scale"),
+    [
+        ((9, 6), 3, 0.5), ((6, 4), 3, 1.0), ((9, 6), 3, 2.25),
+        ((6, 4), 6, 0.5), ((9, 6), 6, 1.0), ((6, 4), 6, 2.25),
+        ((9, 6), 10, 0.5), ((6, 4), 10, 1.0), ((9, 6), 10, 2.25),
+    ],
+)  # fmt: skip
 def test_a_charuco_too_blurred_for_its_markers_is_told_to_focus(pattern, blur, scale):
     """Its squares still are a checkerboard, the more so as blur takes the markers away."""
     noise = np.random.default_rng(blur).normal(0, 3, (round(480 * scale), round(640 * scale)))
@@ -291,7 +296,7 @@ def test_a_charuco_too_blurred_for_its_markers_is_told_to_focus(pattern, blur, s
     assert caught.value.reason is Reason.BLURRED
 
 
-@pytest.mark.parametrize("blur", [0, 2, 8])
+@pytest.mark.parametrize("blur", [0, 8])
 def test_where_there_is_no_charuco_blur_is_not_the_reason(blur):
     grey = np.random.default_rng(4).integers(0, 255, (60, 80), dtype=np.uint8)
     grey = cv2.GaussianBlur(cv2.resize(grey, (640, 480), interpolation=cv2.INTER_NEAREST), (0, 0), blur + 0.1)

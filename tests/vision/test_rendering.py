@@ -1,6 +1,7 @@
 """Rendered pictures against their truth, by routes that share no code with the renderer."""
 
 from dataclasses import replace
+from functools import cache
 
 import cv2
 import numpy as np
@@ -268,10 +269,15 @@ def test_refuses_what_is_no_scene():
         render_scene(SceneBall())
 
 
+@cache
+def truth_of(seed, kind):
+    return scene_truth(random_scene(seed, kind))
+
+
 @pytest.mark.parametrize("kind", ["ball", "no_ball", "several", "hidden"])
 def test_scenes_keep_what_their_kind_promises(kind):
     for seed in range(12):
-        truth = scene_truth(random_scene(seed, kind))
+        truth = truth_of(seed, kind)
         red = truth.red_balls
         if kind == "no_ball":
             assert not red and (truth.scene.objects or truth.scene.patches)
@@ -281,8 +287,8 @@ def test_scenes_keep_what_their_kind_promises(kind):
 
 
 def test_random_scenes_are_as_wide_as_meant():
-    scenes = [random_scene(seed, "ball") for seed in range(60)]
-    balls = [scene_truth(scene).red_balls[0] for scene in scenes]
+    truths = [truth_of(seed, "ball") for seed in range(60)]
+    scenes, balls = [truth.scene for truth in truths], [truth.red_balls[0] for truth in truths]
     assert {scene.pinhole.size for scene in scenes} == set(SIZES)
     assert {scene.table.texture for scene in scenes} == {"plain", "wood", "cloth", "speckle", "tiles"}
     radius = np.array([ball.radius for ball in balls])
@@ -296,7 +302,7 @@ def test_random_scenes_are_as_wide_as_meant():
 def test_random_scenes_can_be_drawn_and_red_is_where_the_ball_is(kind):
     drawn = 0
     for seed in range(15):
-        scene = random_scene(seed, kind)
+        scene = truth_of(seed, kind).scene
         width, height = scene.pinhole.size
         if width > 640:
             continue

@@ -1,8 +1,8 @@
-"""Exercises of notebooks 02 and 03: allowed branches, tip velocity, singular poses."""
+"""Exercises of notebook 03: tip velocity, singular poses."""
 
 import numpy as np
 
-from ir50p_lab.course.exercises import Choice, Exercise, Number, Slip
+from ir50p_lab.course.exercises import Exercise, Number, Slip
 from ir50p_lab.modelling import IR50P, jacobian
 
 NOTEBOOK = "03_velocities_and_singular_poses"
@@ -22,14 +22,6 @@ def _printed_jv(q):
 
 # ik-2: the tip passes the axis of the column.
 _SPEED, _RATE = 0.2, 1.3
-
-# ik-5: a target of which the joint limits leave one pose.
-_P_LIMITS = np.array([0.40, 0.15, 0.35])
-_BRANCH_SLIPS = {
-    "front/down": "q3 is beyond its upper limit there: the elbow of this arm bends the other way.",
-    "back/up": "Joint 1 would have to face away from the target, far beyond its travel to either side.",
-    "back/down": "Joint 1 would face away and the elbow would bend backwards: both are beyond their limits.",
-}
 
 
 EXERCISES = (
@@ -64,20 +56,5 @@ EXERCISES = (
             Slip(_SPEED / np.rad2deg(_RATE), "The rate went in as degrees per second; it is 1.3 rad/s."),
         ),
         hint="Where the line is nearest to the axis the tip moves sideways, on a circle about the axis.",
-    ),
-    Exercise(
-        "ik-5",
-        "the only branch on which the IR50P may reach (0.40, 0.15, 0.35) m within its joint limits",
-        Choice(
-            "front/up",
-            {
-                "front/up": "joint 1 faces the target, q3 <= 0",
-                "front/down": "joint 1 faces the target, q3 >= 0",
-                "back/up": "joint 1 faces away, q3 <= 0",
-                "back/down": "joint 1 faces away, q3 >= 0",
-            },
-        ),
-        why="Reach first, then branches, then limits: in this order a 'no' always has a reason.",
-        slips=tuple(Slip(branch, message) for branch, message in _BRANCH_SLIPS.items()),
     ),
 )

@@ -35,6 +35,8 @@ EXERCISES = (
         why="T says how fast a system answers; each motor and each filter of the arm has one.",
         slips=(
             Slip(1.8, "That is the final value; the time constant is a time, read on the other axis."),
+            Slip(1.8 * (1 - np.exp(-1)), "That is the speed at the dashed line; at what time is it reached?"),
+            Slip(1 - np.exp(-1), "That is the share of the last speed; at what time is it reached?"),
             Slip(3 * _T, "That is when 95 % are reached, three time constants: look where 63 % are."),
             Slip(_T * np.log(2), "That is the time to half of the final value: look where 63 % are."),
         ),

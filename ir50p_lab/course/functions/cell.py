@@ -6,6 +6,7 @@ import importlib
 import inspect
 import linecache
 import re
+from collections import Counter
 from dataclasses import dataclass
 
 from ir50p_lab.course.functions.catalogue import ORDER
@@ -166,25 +167,40 @@ def _refuse_changes(node):
 
 
 def is_copy(text, other):
-    """Tell whether two texts are the same program: comments, layout and the names of variables do not count."""
-    return _plain(text) == _plain(other)
+    """Tell whether a text computes all that another does: names, layout, `1 *` and what is added do not count."""
+    return not _steps(other) - _steps(text)
 
 
-def _plain(text):
-    """The program with its local names numbered, without docstrings."""
-    tree = ast.parse(text)
-    own = {one.name for one in ast.walk(tree) if isinstance(one, ast.FunctionDef)}
-    own |= {one.arg for one in ast.walk(tree) if isinstance(one, ast.arg)}
+def _steps(text):
+    """The expressions of a program, one a statement, how often each; its own names are left out."""
+    tree = _Bare().visit(ast.parse(text))
+    own = {getattr(one, "name", None) or getattr(one, "arg", None) for one in ast.walk(tree)}
     own |= {one.id for one in ast.walk(tree) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)}
-    numbers = {}
     for one in ast.walk(tree):
-        for part in ("id", "arg", "name"):
-            if getattr(one, part, None) in own:
-                setattr(one, part, numbers.setdefault(getattr(one, part), f"name{len(numbers)}"))
-        if isinstance(one, ast.FunctionDef) and ast.get_docstring(one):
-            one.body = one.body[1:]
-    kept = [node for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef | ast.Assign)]
-    return sorted(ast.dump(node) for node in kept)
+        if isinstance(one, ast.Name) and one.id in own:
+            one.id = "_"
+    parts = [part for one in ast.walk(tree) if isinstance(one, ast.stmt) for part in ast.iter_child_nodes(one)]
+    return Counter(ast.dump(one) for one in parts if isinstance(one, ast.expr) and not isinstance(one, ast.Name))
+
+
+class _Bare(ast.NodeTransformer):
+    """Takes out what changes no number: 1 * x, x / 1, x + 0, - -x, np.array(x), x.copy()."""
+
+    def visit(self, node):
+        match node := super().visit(node):
+            case (
+                ast.BinOp(left=ast.Constant(value=1), op=ast.Mult(), right=bare)
+                | ast.BinOp(left=bare, op=ast.Mult() | ast.Div(), right=ast.Constant(value=1))
+                | ast.BinOp(left=ast.Constant(value=0), op=ast.Add(), right=bare)
+                | ast.BinOp(left=bare, op=ast.Add() | ast.Sub(), right=ast.Constant(value=0))
+                | ast.UnaryOp(op=ast.USub(), operand=ast.UnaryOp(op=ast.USub(), operand=bare))
+                | ast.Call(func=ast.Attribute(attr="array" | "asarray" | "copy"), args=[bare])
+                | ast.Call(func=ast.Attribute(value=bare, attr="copy"), args=[])
+            ):
+                return bare
+            case ast.Constant(value=int(number)):
+                return ast.Constant(float(number))
+        return node
 
 
 def _lines(text, node):

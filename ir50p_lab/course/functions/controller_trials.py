@@ -89,16 +89,17 @@ def _push(cls):
         (_KP * wanted, "q is not used: it pushes the same wherever the arm is"),
         (-_KP * q, aimless),
         (_KP * q, aimless),
-        (0 * e, "kp does nothing: P has to push, whatever else does"),
         (np.maximum(_KP * e, 0), "it cannot push downwards: a push has two directions"),
-        (e, "kp is not used: the push is the error itself"),
-        (_KP[0] * e, "all joints get the gain of joint 1: kp may be three numbers, one a joint"),
         (_KP * (0.3 - q), "the speed that is wanted is taken for the angle: the reference has three rows"),
         (_KP * e**2, "the error is squared: twice as far is twice the push, and an error has a sign"),
         (_KP * np.abs(e), "it pushes the same way on both sides of the target: an error has a sign"),
     )  # fmt: skip
     otherwise = "the push is not proportional to what is missing"
-    _expect(_run(_make(cls, kp=tuple(_KP)), q, wanted, speed=0.3), _KP * e, slips, otherwise)
+    u = _run(_make(cls, kp=tuple(_KP)), q, wanted, speed=0.3)
+    says = otherwise
+    if np.allclose(u, (gain := u[0] / e[0] + 0.0) * e):
+        says = f"for each rad that is missing it pushes with {shown(gain)} counts, where kp is {shown(_KP)}"
+    _expect(u, _KP * e, slips, says)
     _expect(_run(_make(cls, kp=50), q, wanted), 50 * e, (), f"with one number for kp: {otherwise}")
 
 
@@ -141,9 +142,8 @@ def _integral(cls):
         (total - e[0], "Yours counts no time before the first sample: right, too."),
     )
     trapezoid = (
-        "Yours takes the mean of two neighbouring errors, the trapezoidal sum: right, too, and different from the "
+        "Yours takes the mean of two neighbouring errors, the trapezoidal sum: half a period apart, and right, too."
     )
-    trapezoid += "course's, which takes the newest; they are half a period apart."
     rights += tuple((total - e / 2 + first * e[0] / 2, trapezoid) for first in (-1, 0, 1))  # the first strip
     for area, says in rights:
         if np.allclose(u, push + _KI * _PERIOD * area, atol=1e-6):
@@ -163,7 +163,9 @@ def _integral(cls):
         (push + np.cumsum(memory, axis=0) * _PERIOD, "it is summed up twice: one memory is enough"),
         (push + _KI * total.sum(axis=1, keepdims=True) * _PERIOD, "all joints share one sum: each remembers its own"),
     )
-    return _expect(u, push + memory, slips, "P is right, the integral is not the sum of error x period")
+    taken, strip = shown(np.diff((u - push) / _KI, axis=0)[-1]), shown(e[-1] * _PERIOD)
+    otherwise = f"P is right, the memory is not: its last step takes in {taken} rad s, where error x period is {strip}"
+    return _expect(u, push + memory, slips, otherwise)
 
 
 def _again(cls, forgotten, **settings):
@@ -212,6 +214,8 @@ def _at_its_limit(cls, error):
 
 def _windup(cls):
     held, tails = _at_its_limit(cls, 1.0)
+    if (most := max(one.max() for one in held)) > 255 + 1e-9:
+        raise Failed(f"P and I together push with {most:.0f} counts, 255 are allowed: limit their sum")
     if min(one.min() for one in held) < 250:
         raise Failed(
             f"while the error stays at 1 rad, its push falls back from the limit to {min(o.min() for o in held):.0f}: "

@@ -19,6 +19,7 @@ _OF_NUMBERS = (
 )
 _OF_TABLES = (
     ("rows and columns of {} have changed places", lambda x: np.swapaxes(x, -1, -2)),
+    ("the turns in {} are read by rows: an axis is a column", lambda x: _with_turn(x, np.swapaxes(x, -1, -2))),
     ("{} is read in the opposite order, the last for the first", lambda x: x[::-1]),
     *_OF_NUMBERS[2:4],
 )

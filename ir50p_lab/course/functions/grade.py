@@ -35,6 +35,7 @@ def grade(task, function):
         except Failed as failed:
             return Grade("wrong", *failed.args)
     cases = task.cases()
+    outside = _outside(function)
     try:
         _check_signature(task, function, cases[0])
         returned = [_call(task, function, case) for case in cases]
@@ -46,6 +47,11 @@ def grade(task, function):
         return _grade_form(task, cases, returned, expected)
     bad = [k for k, fine in enumerate(good) if not fine]
     says, guess = _known(task, function, cases, returned, expected, bad)
+    changed = [name for name, before in outside.items() if _outside(function)[name] != before]
+    if changed and not says:
+        return Grade(
+            "wrong", f"it changes `{changed[0]}`, made once outside it: the next call or helper finds it changed"
+        )
     stopped = [one for one in returned if isinstance(one, Failed)]
     if stopped and not says:
         return Grade("wrong", *stopped[0].args)
@@ -78,6 +84,14 @@ def _known(task, function, cases, returned, expected, bad):
             return f"{where}: {words.partition(': look at')[0]}" if complete else where, ""
         return (words, "") if complete else ("", words)
     return "", ""
+
+
+def _outside(function):
+    """The lists, dicts and arrays that stand beside a function in its cell, as text."""
+    found = getattr(inspect.unwrap(function), "__globals__", {})
+    return {
+        name: repr(one) for name, one in found.items() if isinstance(one, list | dict | np.ndarray) and name[0] != "_"
+    }
 
 
 def _shown_by(read, says, task, cases, returned, expected, bad):

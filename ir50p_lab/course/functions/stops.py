@@ -25,8 +25,9 @@ _REASONS = (  # kind of error, what its message holds, the usual reason
         "truth value",
         "`if` asks one question, here are three joints: np.where decides for each, np.all or np.any for all together",
     ),
-    ("TypeError", "multiply sequence by", "a tuple or list times one number: that stands where three belong"),
+    ("TypeError", "multiply sequence by", "one number times a tuple: three belong there, or an array"),
     ("TypeError", "real number, not 'tuple'", "it is three numbers, one a joint, and is read as one"),
+    ("TypeError", "'tuple'", "a tuple cannot be calculated with: `np.array` makes an array of it"),
     ("UFuncTypeError", "Cannot cast ufunc", "an array of whole numbers takes no fractions: np.zeros makes another"),
     ("ValueError", "inhomogeneous", "rows of different lengths make no array"),
     ("ValueError", "array element with a sequence", "a whole array is put where one number belongs"),
@@ -51,6 +52,8 @@ def why_it_stops(error):
     reason = next((why for kind, part, why in _REASONS if kind == type(error).__name__ and part in str(error)), "")
     if isinstance(error, LabError):
         reason = "an earlier function is given what it cannot take: are its arguments in their order?"
+    if line.startswith("raise"):
+        reason = "it is asked for an answer there, too, not for an error"
     place = f" in `{line}`" if line else ""
     if not reason:
         return f"it stops{place}. {said}"

@@ -123,7 +123,8 @@ def _step(q, p, l, damping, *, solve=None, rows=slice(3), point=None):
     T = frames(q, l)
     tip = T[3][:3, 3]
     J = jacobian(T, 3, tip if point is None else point)[rows]
-    dq = solve(J, p - tip, damping) if solve else J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(3), p - tip)
+    missing = np.pad(p - tip, (0, len(J) - 3))
+    dq = solve(J, missing, damping) if solve else J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(len(J)), missing)
     return q + dq
 
 
@@ -227,12 +228,22 @@ DAMPED_STEP = Task(
                 lambda J, e, d: np.linalg.solve(J + d * np.eye(3), e)),
         _solved("a number is added to all nine entries of the matrix; the 1 of the formula is the matrix np.eye(3)",
                 lambda J, e, d: J.T @ np.linalg.solve(J @ J.T + d**2, e)),
+        _solved("the answer of solve is added as it is: it is no turn of joints yet, the turned-over matrix is missing",
+                lambda J, e, d: np.linalg.solve(J @ J.T + d**2 * np.eye(3), e)),
         _solved("`**-1` inverts each entry, not the matrix",
                 lambda J, e, d: J.T @ ((J @ J.T + d**2 * np.eye(3)) ** -1.0 @ e)),
         Mistake(lambda q, p, l, d: np.angle(np.exp(1j * damped_step(q, p, l, d))),
                 "the angles are wrapped to half a turn: a joint goes where the step leads, leave them as they are"),
-        Mistake(lambda q, p, l, d: _step(q, p, l, d, point=p),
-                "the Jacobian is taken at the place that is wanted: it is the tip that moves"),
+        *(
+            Mistake(lambda q, p, l, d, point=point: _step(q, p, l, d, point=point(p, frames(q, l))),
+                    f"the Jacobian is taken {at}: it is the tip that moves")
+            for at, point in (
+                ("at the place that is wanted", lambda p, T: p),
+                ("at the elbow", lambda p, T: T[2][:3, 3]),
+            )
+        ),
+        Mistake(lambda q, p, l, d: _step(q, p, l, d, rows=slice(6)),
+                "all six rows count in it, so that the hand must not turn, either: a place has three numbers"),
         Mistake(lambda q, p, l, d: _step(q, p, l, d, rows=slice(3, 6)),
                 "the lower three rows of the Jacobian are used, the turning: a place needs the velocity"),
     ),
