@@ -13,6 +13,7 @@ from ir50p_lab.identification.parameters import FREE_OF_SIGN, NAMES
 from ir50p_lab.identification.qr import gram, inverse_upper, product, r_factor
 
 _WEAK = 0.1  # smallest canonical correlation of instruments and regressors below which they are weak
+_NOTHING = 1e-8  # below it the estimate would be rounding
 _MOST_STEPS = 200
 _NORMAL = 0.6744897501960817  # median of |x| of a standard normal
 
@@ -131,7 +132,7 @@ def instrumental_variables(problem, Z):
     Qz = product(Z / length, inverse_upper(R))
     bread = gram(Qz, problem.Q)
     smallest = np.linalg.svd(bread, compute_uv=False)[-1]
-    if smallest < 1e-3:
+    if smallest < _NOTHING:
         raise IdentificationError(
             f"{problem.who}instruments and regressors have a correlation of {smallest:.1g} only in some direction: "
             "take instruments that follow the same motion, such as the regressor of the reference or of a simulation"

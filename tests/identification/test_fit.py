@@ -470,6 +470,8 @@ def test_instruments_of_another_motion_are_weak():
     blind[:, 2, 19] = other[:, 2, 19] - A @ np.linalg.lstsq(A, other[:, 2, 19], rcond=None)[0]
     with pytest.raises(IdentificationError, match="joint 3: instruments and regressors have a correlation of"):
         fit(Phi, y, method="iv", instruments=blind)
+    blind[:, 2, 19] += 1e-3 * Phi[:, 2, 19]  # one that says little is warned of, not refused
+    assert any("joint 3: weak instruments" in text for text in fit(Phi, y, method="iv", instruments=blind).warnings)
     twice = Phi.copy()
     twice[:, 0, 0] = twice[:, 0, 10]
     with pytest.raises(IdentificationError, match="joint 1: the instruments depend on each other"):
