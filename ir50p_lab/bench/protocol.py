@@ -1,7 +1,7 @@
-"""What goes over the wire between the computer and the board: the one description both sides are made from.
+"""What goes over the wire between the computer and the board; the sketch has the same in C.
 
-`python -m ir50p_lab.bench.protocol` prints `firmware/ir50p_board/protocol.h`; a test fails when that file and this one
-differ. All numbers are little endian. The computer asks, the board answers; it never speaks first.
+A test fails when `firmware/ir50p_board/protocol.h` and this file differ. All numbers are little endian.
+The computer asks, the board answers; it never speaks first.
 
 =========  ====  ===  ====  ===================================================================  =====
 frame      byte 0, 1, 2     then                                                                 then
@@ -53,7 +53,6 @@ MAX_COUNTS = SUBCOUNTS * 1023
 LOW_COUNTS, HIGH_COUNTS = SUBCOUNTS * 10, SUBCOUNTS * 1013  # beyond: no outward drive
 BROKEN_COUNTS = SUBCOUNTS * 3  # so near to 0 or to MAX_COUNTS only a broken or shorted wire reads: no drive at all
 
-CRC_POLYNOMIAL = 0xEDB88320  # of zlib.crc32, for the sketch
 _CRC = struct.Struct("<I")
 _COMMAND = struct.Struct("<BBB3hB")
 _STATE = struct.Struct("<BBB3HBHH")
@@ -176,67 +175,3 @@ class FrameParser:
     def reset(self):
         """Forget what has come of an unfinished frame."""
         self._buffer = b""
-
-
-def _c_type(value):
-    """Signed from two bytes on, so that `-LIMIT` and comparisons with signed numbers mean what they say."""
-    return "uint8_t" if value <= 0xFF else "int16_t" if value <= 0x7FFF else "uint32_t"
-
-
-def header():
-    """The text of protocol.h: the same description for the sketch."""
-    names = (
-        "VERSION BAUD JOINTS LIMIT_PWM COMMAND_SYNC REPLY_SYNC HELLO NAME DRIVE STOP STATE IDENTITY GRIPPER "
-        "WATCHDOG_TRIPPED HELLO_NEEDED HARDWARE_RESET WATCHDOG_MS SUBCOUNTS MAX_COUNTS "
-        "LOW_COUNTS HIGH_COUNTS BROKEN_COUNTS COMMAND_SIZE REPLY_SIZE"
-    ).split()
-    values = {name: globals()[name] for name in names}
-    constants = "\n".join(f"const {_c_type(value)} {name} = {value};" for name, value in values.items())
-    return f"""\
-// Written by `python -m ir50p_lab.bench.protocol`: change protocol.py, not this file.
-// The wire: what each name means is explained in ir50p_lab/bench/protocol.py. All numbers are little endian.
-#pragma once
-#include <stdint.h>
-
-namespace protocol {{
-
-{constants}
-const uint8_t LIMIT_ACTIVE[JOINTS] = {{{", ".join(map(str, LIMIT_ACTIVE))}}};
-const char MAGIC[2] = {{{", ".join(f"'{chr(c)}'" for c in MAGIC)}}};
-
-struct __attribute__((packed)) Command {{  // computer to board
-  uint8_t sync, seq, type;
-  int16_t pwm[JOINTS];
-  uint8_t flags;
-  uint32_t crc;
-}};
-
-struct __attribute__((packed)) State {{  // board to computer: answer to DRIVE and STOP
-  uint8_t sync, seq, type;
-  uint16_t counts[JOINTS];
-  uint8_t status;
-  uint16_t bad_frames, clock_ms;
-  uint32_t crc;
-}};
-
-struct __attribute__((packed)) Identity {{  // board to computer: answer to HELLO and NAME
-  uint8_t sync, seq, type;
-  char magic[2];
-  uint8_t protocol, firmware[2], board_id[3];
-  uint16_t boot;
-  uint8_t reset_cause;
-  uint32_t crc;
-}};
-
-static_assert(sizeof(Command) == COMMAND_SIZE, "Command differs from protocol.py");
-static_assert(sizeof(State) == REPLY_SIZE, "State differs from protocol.py");
-static_assert(sizeof(Identity) == REPLY_SIZE, "Identity differs from protocol.py");
-
-const uint32_t CRC_POLYNOMIAL = 0x{CRC_POLYNOMIAL:08X};  // CRC-32 of zlib, lowest bit first
-
-}}  // namespace protocol
-"""
-
-
-if __name__ == "__main__":
-    print(header(), end="")

@@ -1,7 +1,6 @@
 import random
+import re
 import struct
-import subprocess
-import sys
 import time
 import zlib
 from pathlib import Path
@@ -49,10 +48,29 @@ def random_reply(rng):
 SIDES = [("commands", random_command, protocol.COMMAND_SIZE), ("replies", random_reply, protocol.REPLY_SIZE)]
 
 
-def test_the_sketch_has_the_same_description_as_python():
-    printed = subprocess.run([sys.executable, "-m", "ir50p_lab.bench.protocol"], capture_output=True, text=True)
-    assert printed.returncode == 0, printed.stderr
-    assert HEADER.read_text() == printed.stdout, "write it anew: python -m ir50p_lab.bench.protocol > " + str(HEADER)
+def test_the_sketch_has_the_same_numbers_as_python():
+    numbers = dict(re.findall(r"const u?int\d+_t (\w+) = (\w+);", HEADER.read_text()))
+    assert int(numbers.pop("CRC_POLYNOMIAL"), 0) == int(f"{0x04C11DB7:032b}"[::-1], 2)  # zlib's, lowest bit first
+    assert len(numbers) == 24
+    assert {name: int(value) for name, value in numbers.items()} == {name: getattr(protocol, name) for name in numbers}
+    lists = dict(re.findall(r"const \w+ (\w+)\[\w+\] = {(.*)};", HEADER.read_text()))
+    assert lists["LIMIT_ACTIVE"] == ", ".join(map(str, protocol.LIMIT_ACTIVE))
+    assert lists["MAGIC"] == ", ".join(f"'{chr(byte)}'" for byte in protocol.MAGIC)
+
+
+@pytest.mark.parametrize(
+    "name, layout", [("Command", protocol._COMMAND), ("State", protocol._STATE), ("Identity", protocol._IDENTITY)]
+)
+def test_the_sketch_has_the_same_frames_as_python(name, layout):
+    letters = {"uint8_t": "B", "char": "B", "int16_t": "h", "uint16_t": "H", "uint32_t": "I"}
+    body = re.search(rf"struct .* {name} {{.*?\n(.*?)}};", HEADER.read_text(), re.DOTALL)[1]
+    fields = ""
+    for kind, declared in re.findall(r"(\w+) (.*);", body):
+        for field in declared.split(", "):
+            length = re.search(r"\[(\w+)\]", field)
+            fields += letters[kind] * (int(length[1].replace("JOINTS", "3")) if length else 1)
+    mine = re.sub(r"(\d)(\w)", lambda found: int(found[1]) * found[2], layout.format.replace("s", "B"))
+    assert "<" + fields == mine + "I"  # the check stands behind
 
 
 def test_the_layout_in_bytes():

@@ -1,4 +1,4 @@
-// Written by `python -m ir50p_lab.bench.protocol`: change protocol.py, not this file.
+// The same as ir50p_lab/bench/protocol.py: change both; a test compares them.
 // The wire: what each name means is explained in ir50p_lab/bench/protocol.py. All numbers are little endian.
 #pragma once
 #include <stdint.h>
