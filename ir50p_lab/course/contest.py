@@ -9,6 +9,7 @@ what is spared in one buys nothing in another. Below 1 is won. Simulated: no num
 
 from dataclasses import dataclass
 from functools import lru_cache
+from types import MappingProxyType
 
 import numpy as np
 
@@ -28,14 +29,14 @@ TIMES, END = (0.0, 3.0, 7.0), 10.0  # s: hold, large step, small step
 LARGE, SMALL = 0.6, 0.15  # rad, each joint's step within 30 % of it, up or down
 PAYLOAD = 0.2  # of the forearm's mass, at most
 BAND = 0.03  # rad: about five counts of the potentiometers
-#: What is judged, and the most of it that wins.
-LIMITS = {
+#: What is judged, and the most of it that wins; a cell cannot change it.
+LIMITS = MappingProxyType({
     "large step": (3.0, "s until it stays within 30 mrad"),
     "small step": (2.0, "s until it stays within 30 mrad"),
     "overshoot": (0.20, "rad beyond the target"),
     "rest error": (0.025, "rad, mean of the last second"),
     "activity": (44.0, "counts that the command swings by within 0.1 s, mean"),
-}
+})  # fmt: skip
 PRACTICE = (1, 2, 3)  # seeds that everybody may look at
 RUNS = 9  # arms of an attempt: on three, gains that fail one arm in five won every second time
 _PERIOD = 0.01
@@ -165,10 +166,25 @@ def contest(controller, name):
     """Enter the contest: RUNS arms drawn for this attempt only. Prints term by term; keeps the attempt, won or lost.
 
     controller: any object with `step`; what runs is this object, in Python, not a twin. name: what you changed, kept
-    with the attempt and shown in `history`. Returns the Score.
+    with the attempt and shown in `history`. Returns the Score. Raises what the controller raises: that attempt is lost.
     """
+    check_controller(controller)
     seeds = [int(seed) for seed in np.random.default_rng().integers(1000, 2**31, RUNS)]
-    found = score(controller, seeds)
+    found = Score(np.full((5, 3), np.inf), "it stopped on the way")
+    try:
+        found = score(controller, seeds)
+    finally:  # else whoever stops on an unlucky arm could enter until all are lucky
+        before = _keep(found, name, seeds)
+    print(found)
+    if not before or found.value < min(before):
+        print(f"attempt {len(before) + 1}: your best so far")
+    else:
+        print(f"attempt {len(before) + 1}: your best is {min(before):.2f}, attempt {int(np.argmin(before)) + 1}")
+    return found
+
+
+def _keep(found, name, seeds):
+    """Write an attempt into the lab book. Returns the scores of those before it."""
     kept = min(found.value, 1e6)  # a cut drive is infinite, which JSON does not know
     entry = {"name": str(name), "score": kept, "decides": found.decides, "seeds": seeds, "at": lab_book.now()}
 
@@ -177,13 +193,7 @@ def contest(controller, name):
         book["contest"].append(entry)
         return before
 
-    before = lab_book.change(edit)
-    print(found)
-    if not before or found.value < min(before):
-        print(f"attempt {len(before) + 1}: your best so far")
-    else:
-        print(f"attempt {len(before) + 1}: your best is {min(before):.2f}, attempt {int(np.argmin(before)) + 1}")
-    return found
+    return lab_book.change(edit)
 
 
 def twin_of(controller, arm=None):

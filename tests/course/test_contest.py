@@ -144,6 +144,27 @@ def test_any_controller_may_enter_and_attempts_are_kept(tmp_path, monkeypatch, c
     assert jury.score(student(**TUNED), kept[1]["seeds"]).value == pytest.approx(kept[1]["score"])
 
 
+def test_who_stops_on_the_way_has_lost_an_attempt(tmp_path, monkeypatch):
+    """Else a class could break off on an unlucky arm, unseen, until nine lucky ones come."""
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+
+    class BreaksOff(Mine):
+        def step(self, t, q, reference):
+            if t > 5:
+                raise KeyboardInterrupt
+            return super().step(t, q, reference)
+
+    with pytest.raises(KeyboardInterrupt):
+        jury.contest(BreaksOff(), "breaks off")
+    (kept,) = lab_book.read()["contest"]
+    assert kept["name"] == "breaks off" and kept["score"] >= 1e6
+
+
+def test_a_cell_cannot_move_the_limits():
+    with pytest.raises(TypeError):
+        jury.LIMITS["activity"] = (1000.0, "")
+
+
 def test_a_cut_drive_is_lost_and_says_why():
     class Nonsense:
         unit = "PWM"

@@ -34,6 +34,11 @@ def _guarded(do, what=str):
 
 def _run(pid, q, wanted=0.0, speed=0.0):
     """Commands (n, 3) of a controller that is shown q (n, 3) rad, one sample a period, and asked for wanted, speed."""
+    try:
+        inspect.signature(pid.step).bind(0.0, q, q)
+    except TypeError:
+        names = ", ".join(inspect.signature(type(pid).step).parameters)
+        raise Failed(f"its step takes ({names}); begin it with `def step(self, t, q, reference):`") from None
     q = np.asarray(q, dtype=float)
     rows = np.zeros((len(q), 3, 3))
     rows[:, 0], rows[:, 1] = wanted, speed
@@ -93,12 +98,16 @@ def _push(cls):
         (_KP * (0.3 - q), "the speed that is wanted is taken for the angle: the reference has three rows"),
         (_KP * e**2, "the error is squared: twice as far is twice the push, and an error has a sign"),
         (_KP * np.abs(e), "it pushes the same way on both sides of the target: an error has a sign"),
+        (_KP * np.sign(e), "it pushes as hard when little is missing as when much is: only the error's sign is used"),
+        (np.round(_KP * e), "it rounds: a push need not be a whole number of counts"),
     )  # fmt: skip
     otherwise = "the push is not proportional to what is missing"
     u = _run(_make(cls, kp=tuple(_KP)), q, wanted, speed=0.3)
     says = otherwise
     if np.allclose(u, (gain := u[0] / e[0] + 0.0) * e):
         says = f"for each rad that is missing it pushes with {shown(gain)} counts, where kp is {shown(_KP)}"
+    elif np.allclose(u - _KP * e, more := u[0] - _KP * e[0]):
+        says = f"at its target, where nothing is missing, it pushes with {shown(more)} counts"
     _expect(u, _KP * e, slips, says)
     _expect(_run(_make(cls, kp=50), q, wanted), 50 * e, (), f"with one number for kp: {otherwise}")
 
@@ -195,7 +204,7 @@ def _limit(cls):
         (np.clip(free, -255, 255), "255 is written into it: it was made with another limit_pwm"),
     )
     u = _run(_make(cls, kp=400.0, limit_pwm=100), 0 * e, e)
-    otherwise = f"its largest push is {np.abs(u).max():.0f} where limit_pwm is 100, and 4 where nothing limits it"
+    otherwise = f"where kp times the error is [400, -400, 4] and limit_pwm 100, it sends {shown(u[0])}"
     _expect(u, right, slips, otherwise)
     _expect(_run(_make(cls, kp=400.0), 0 * e, e), np.clip(free, -255, 255), (), "without limit_pwm the limit is 255")
 
@@ -288,7 +297,10 @@ def _damping(cls):
          "turns a second, and a turn has 2 pi"),
         (-_KD * _filtered(slope, 1 - exact), "the two shares of the filter are swapped"),
         (-_KD[0] * rights[0][0], "all joints get the kd of joint 1: each has its own"),
-        (0 * right, "kd does nothing: is the last angle kept for the next step?"),
+        (-_KD * exact * slope, "its filter keeps nothing: the speed of the last sample is where it goes on from"),
+        (np.degrees(right), "D is 57 times too strong: everything here is rad, no degrees anywhere"),
+        (_KD * (q[0] - q), "D looks at how far away the arm is: it is to look at how fast it moves"),
+        (0 * right, "kd does nothing: is the last angle kept for the next step, and used before it is written over?"),
     )  # fmt: skip
     return _expect(u, right, slips, "D is not kd times the filtered speed, against the motion")
 
