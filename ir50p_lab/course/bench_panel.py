@@ -12,13 +12,14 @@ import math
 import threading
 import time
 import weakref
+from functools import partial
 from typing import ClassVar
 
 import ipywidgets as widgets
 import numpy as np
 
 from ir50p_lab.controllers.base import GAINS, gains_of, set_gains
-from ir50p_lab.course.controls import make_control, slider
+from ir50p_lab.course.controls import close_all, make_control, slider
 from ir50p_lab.course.scope import Scope
 from ir50p_lab.errors import InputError, LabError
 
@@ -125,12 +126,10 @@ class BenchPanel(widgets.VBox):
     def _slider(self, name, numbers, moved, width):
         label = name if name[0] == "q" else name.capitalize()
         spec = slider(*numbers, label=label)
-        control, row = make_control(name, spec, "34px")
+        control, row = make_control(name, spec, "34px", partial(self._guarded, moved, name))
         control.layout.width = f"{34 + width}px"
         control.box.layout.width = "66px"
         row.children = (control, control.box)
-        control.observe(lambda change: self._slid(control, moved, name, change["new"]), "value")
-        control.box.observe(lambda change: self._typed(control, change["new"]), "value")
         self.controls[name] = control
         return row
 
@@ -207,60 +206,13 @@ class BenchPanel(widgets.VBox):
     def __del__(self):
         """Not the close() of other widgets: garbage collection must not move an arm."""
 
-    def exercise(self, seconds=2.0):
-        """Start, move every slider there and back, end: for tests, where no hand moves anything.
-
-        On hardware the arm then goes to its rest pose; a simulated one is cut, which saves the way there.
-
-        Returns: the LoopStatistics. Raises LabError if anything failed or the scope did not move, and what ended the
-        loop early.
-        """
-        frames = self.scope.frames
-        self.start()
-        self._keep_on(seconds / 2)
-        for name, control in self.controls.items():
-            kept = control.value
-            self.set(**{name: min(control.max, kept + 3 * control.step)})
-            self.set(**{name: kept})
-        self._keep_on(seconds / 2)
-        statistics, drawn = self.run.statistics(), self.scope.frames - frames
-        self.cut() if self.bench.simulated else self.stop()
-        self.run.join(10)
-        if drawn < 0.25 * seconds / self._pause:
-            raise LabError(f"the scope drew only {drawn} frames in {seconds} s")
-        return statistics
-
-    def _keep_on(self, seconds):
-        deadline = time.monotonic() + seconds
-        while time.monotonic() < deadline:
-            if not self.run.alive:
-                self.run.join(0)
-                raise LabError("the loop has ended although nobody stopped it")
-            time.sleep(0.02)
-
     # ---- callbacks
 
-    def _slid(self, control, moved, name, value):
-        """First the order, then the number beside the slider, which must not drag it back."""
-        self._guarded(moved, name, value)
-        if control.box.value != value:
-            self._quiet.filling = True
-            try:
-                control.box.value = (
-                    round(value, 6) if isinstance(value, float) else value
-                )  # without the noise of the browser's steps
-            finally:
-                self._quiet.filling = False
-
-    def _typed(self, control, value):
-        if not getattr(self._quiet, "filling", False):
-            control.value = value
-
-    def _gain_moved(self, name, value):
+    def _gain_moved(self, name):
         if self.run is not None and self.run.alive:
             self.run.set_gains(**{name[:2]: self._gains()[name[:2]]})
 
-    def _set_point_moved(self, name, value):
+    def _set_point_moved(self, _):
         if self.run is None or not self.run.alive:
             return
         goal = [math.radians(self.controls[f"q{i}"].value) for i in (1, 2, 3)]
@@ -344,15 +296,7 @@ class BenchPanel(widgets.VBox):
     def _detach(self):
         """End the widgets, not the loop."""
         BenchPanel.panels.discard(self)
-        for widget in _all_below(self):
-            for part in (widget.layout, widget if widget is not self else super()):
-                part.close()
-
-
-def _all_below(widget):
-    for child in getattr(widget, "children", ()):
-        yield from _all_below(child)
-    yield widget
+        close_all(self)
 
 
 def _pump(reference, closed, pause):

@@ -6,7 +6,7 @@
 Everything the mouse does the sliders and number boxes of the panel do as well, for keyboards and screen readers.
 """
 
-import html
+import contextlib
 
 from ir50p_lab.errors import InputError
 
@@ -29,20 +29,10 @@ def click_sets(panel, axes, *, x, y):
     panel.image.description = f"A map: a click sets {x} and {y}, as the sliders above do"
 
     def moved(right, up):
-        try:
-            place = data_coordinates(axes, right, up)
-            if place is None:
-                return
+        if place := data_coordinates(axes, right, up):
             values = {name: _on_scale(panel.controls[name], v) for name, v in zip((x, y), place, strict=True)}
-        except Exception as error:  # invisible in a browser otherwise
-            panel.status.value = f'<span style="color:#c0392b">{html.escape(f"{type(error).__name__}: {error}")}</span>'
-            return
-        try:
-            panel.set(**values)
-        except Exception:
-            if panel.error is None:
-                raise
-            # else the panel has written it into its status line
+            with contextlib.suppress(Exception):  # it is in the status line
+                panel.set(**values)
 
     panel.image.on_click(moved)
     return panel

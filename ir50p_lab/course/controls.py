@@ -1,6 +1,7 @@
 """The controls of a live figure: sliders with a number box, menus, checkboxes."""
 
 import math
+import threading
 from dataclasses import dataclass
 
 import ipywidgets as widgets
@@ -45,17 +46,19 @@ def _plain(number):
     return number.item() if hasattr(number, "item") and getattr(number, "ndim", 0) == 0 else number
 
 
-def make_control(name, spec, label_width):
-    """The widget that holds the value, and the row that shows it."""
+def make_control(name, spec, label_width, moved):
+    """The widget that holds the value, and the row that shows it; `moved()` is called after each change."""
     style = {"description_width": label_width}
     if isinstance(spec, bool):
         control = widgets.Checkbox(value=spec, description=name, indent=False)
+        control.observe(lambda _: moved(), "value")
         return control, control
     if isinstance(spec, list | dict):
         if not spec:
             raise InputError(f"{name}: an empty menu; give at least one choice")
         layout = widgets.Layout(width=f"calc({label_width} + 230px)")
         control = widgets.Dropdown(options=spec, description=name, style=style, layout=layout)
+        control.observe(lambda _: moved(), "value")
         return control, control
     if isinstance(spec, tuple) and len(spec) == 4:
         spec = Slider(*spec)
@@ -78,7 +81,26 @@ def make_control(name, spec, label_width):
     )
     control.box = box_kind(**common, layout=widgets.Layout(width="80px"))
     control.digits = None if whole else _digits(step, low)
+    _tie(control, control.box, moved)
     return control, widgets.HBox([control, control.box, widgets.Label(spec.unit)])
+
+
+def _tie(control, box, moved):
+    """Slider and number box follow each other; the box comes after `moved`, whose picture is what the eye waits for."""
+    filling = threading.local()  # of each thread its own: a number that was filled in must not drag the slider back
+
+    def slid(_):
+        moved()
+        filling.on = True
+        box.value = value_of(control)
+        filling.on = False
+
+    def typed(change):
+        if not getattr(filling, "on", False):
+            control.value = change["new"]
+
+    control.observe(slid, "value")
+    box.observe(typed, "value")
 
 
 def _digits(*numbers):
@@ -107,10 +129,9 @@ def refuse_bad_value(name, value, controls):
         raise InputError(f"{name} = {value} is off its slider ({control.min} to {control.max})")
 
 
-def ends(control):
-    """The values a control can be pushed to: both ends of a slider, every choice of a menu."""
-    if hasattr(control, "min"):
-        return [control.min, control.max]
-    if isinstance(control, widgets.Checkbox):
-        return [False, True]
-    return [value for _, value in control._options_full]
+def close_all(widget):
+    """End a widget and those inside it, which the browser and the kernel would keep for ever."""
+    for child in getattr(widget, "children", ()):
+        close_all(child)
+    widget.layout.close()
+    widgets.Widget.close(widget)

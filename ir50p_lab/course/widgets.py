@@ -19,17 +19,16 @@ import threading
 import traceback
 import warnings
 import weakref
-from functools import partial
 from typing import ClassVar
 
 import ipywidgets as widgets
 
 from ir50p_lab.course.canvas import Canvas
-from ir50p_lab.course.controls import Slider, ends, label_of, make_control, refuse_bad_value, slider, value_of
+from ir50p_lab.course.controls import Slider, close_all, label_of, make_control, refuse_bad_value, slider, value_of
 from ir50p_lab.course.painter import DRAWING, Painter
-from ir50p_lab.errors import InputError, LabError, UnstableLoopWarning
+from ir50p_lab.errors import InputError, UnstableLoopWarning
 
-__all__ = ["LivePanel", "Slider", "exercise_all_panels", "live", "slider"]
+__all__ = ["LivePanel", "Slider", "live", "slider"]
 
 
 def live(figure, update, **controls):
@@ -65,12 +64,12 @@ class LivePanel(widgets.VBox):
         self.controls, rows = {}, []
         width = max(len(label) for label in (label_of(name, spec) for name, spec in controls.items())) + 2
         for name, spec in controls.items():
-            self.controls[name], row = make_control(name, spec, f"{width}ch")
+            self.controls[name], row = make_control(name, spec, f"{width}ch", self._changed)
             rows.append(row)
         self._start = self.values
         self._update, self._warned = update, set()
         self._condition = threading.Condition()
-        self._wanted, self._drawer, self._filler, self._quiet = None, None, None, 0
+        self._wanted, self._drawer, self._quiet = None, None, 0
 
         said = io.StringIO()
         with DRAWING:
@@ -85,10 +84,6 @@ class LivePanel(widgets.VBox):
         columns = 1 if len(rows) <= 3 else 2
         grid = widgets.Layout(grid_template_columns="max-content " * columns, grid_gap="0 24px")
         super().__init__([widgets.GridBox([*rows, reset], layout=grid), self.image, self.status])
-        for control in self.controls.values():
-            control.observe(self._changed, "value")
-            if hasattr(control, "box"):
-                control.box.observe(partial(self._typed, control), "value")
         self.image.observe(self._sharpen, "ratio")
         _close_panels_of_earlier_runs(self)
         LivePanel.panels.add(self)
@@ -137,7 +132,7 @@ class LivePanel(widgets.VBox):
             self._painter.forget()
             self._draw(self.values)
 
-    def _changed(self, _=None):
+    def _changed(self):
         """Draw the latest values. If a drawing is under way, its thread draws them next: there is no queue."""
         with self._condition:
             if self._quiet:
@@ -154,25 +149,10 @@ class LivePanel(widgets.VBox):
                         self._finish()
                         return
                 self._draw(values)
-                self._fill_boxes(values)
         except BaseException:  # an interrupted kernel must find the panel usable
             with self._condition:
                 self._finish()
             raise
-
-    def _fill_boxes(self, values):
-        """The number boxes follow their sliders after the picture, which is what the eye waits for."""
-        self._filler = threading.get_ident()
-        for name, control in self.controls.items():
-            box = getattr(control, "box", None)
-            if box is not None and box.value != values[name]:
-                box.value = values[name]
-        self._filler = None
-
-    def _typed(self, control, change):
-        """A number typed into a box moves its slider; one that `_fill_boxes` wrote must not drag it back."""
-        if self._filler != threading.get_ident():
-            control.value = change["new"]
 
     def _finish(self):
         self._drawer = None
@@ -223,32 +203,6 @@ def _as_html(said):
     return html.escape(said.getvalue().rstrip()).replace("\n", "<br>")
 
 
-def exercise_all_panels():
-    """Push every control of every living panel to its ends, and to all corners together, and put them back.
-
-    For tests: a callback that raises is invisible to a notebook's cells.
-
-    Returns: the number of updates drawn. Raises LabError that names panel, values and error if an update raised.
-    """
-    before = sum(panel.updates for panel in LivePanel.panels)
-    for number, panel in enumerate(sorted(LivePanel.panels, key=lambda panel: panel.model_id)):
-        kept = panel.values
-        limits = {name: ends(control) for name, control in panel.controls.items()}
-        trials = [{name: value} for name, values in limits.items() for value in values]
-        trials += [{name: values[0] for name, values in limits.items()}]
-        trials += [{name: values[-1] for name, values in limits.items()}]
-        trials += [{name: values[-1 if k % 2 else 0] for k, (name, values) in enumerate(limits.items())}]
-        for trial in trials:
-            try:
-                panel.set(**trial)
-            except Exception as error:
-                raise LabError(
-                    f"panel {number} ({', '.join(panel.controls)}) at {panel.values}: {_explain(error)}"
-                ) from error
-        panel.set(**kept)
-    return sum(panel.updates for panel in LivePanel.panels) - before
-
-
 def _explain(error):
     """The error in one line, with the line of `update` it came from."""
     frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename != __file__]
@@ -268,11 +222,4 @@ def _close_panels_of_earlier_runs(panel):
     for old in list(LivePanel.panels):
         if old._run and old._run[0] == cell and old._run[1] != run:
             LivePanel.panels.discard(old)
-            _close(old)
-
-
-def _close(widget):
-    for child in getattr(widget, "children", ()):
-        _close(child)
-    widget.layout.close()
-    widget.close()
+            close_all(old)

@@ -15,8 +15,8 @@ from PIL import Image
 from ir50p_lab.course import widgets
 from ir50p_lab.course.painter import Painter
 from ir50p_lab.course.style import new_figure
-from ir50p_lab.course.widgets import LivePanel, exercise_all_panels, live, slider
-from ir50p_lab.errors import InputError, LabError, UnstableLoopWarning
+from ir50p_lab.course.widgets import LivePanel, live, slider
+from ir50p_lab.errors import InputError, UnstableLoopWarning
 
 
 @pytest.fixture(autouse=True)
@@ -300,31 +300,6 @@ def test_panel_shows_as_a_widget_and_as_a_picture_where_there_are_none():
     data = bundle[0] if isinstance(bundle, tuple) else bundle
     assert data["application/vnd.jupyter.widget-view+json"]["model_id"] == panel.model_id
     assert data["image/png"].startswith("iVBORw0KGgo")
-
-
-def test_exercising_all_panels_reaches_every_end_and_puts_them_back():
-    seen = []
-    panel = live(
-        new_figure(2, 2),
-        lambda **values: seen.append(values),
-        a=(0.0, 1.0, 0.1, 0.5),
-        menu=["x", "y", "z"],
-        box=False,
-    )
-    count = exercise_all_panels()
-    assert count == len(seen) - 1
-    assert {v["a"] for v in seen} == {0.0, 0.5, 1.0}
-    assert {v["menu"] for v in seen} == {"x", "y", "z"}
-    assert {v["box"] for v in seen} == {True, False}
-    assert {"a": 1.0, "menu": "z", "box": True} in seen
-    assert panel.values == {"a": 0.5, "menu": "x", "box": False}
-
-
-def test_exercising_all_panels_finds_the_one_that_fails():
-    panels = [line_panel(), line_panel(too_high)]  # kept alive
-    with pytest.raises(LabError, match=r"height.*10.0.*too high"):
-        exercise_all_panels()
-    assert len(panels) == 2
 
 
 def test_running_a_cell_again_closes_its_old_panel(monkeypatch):
