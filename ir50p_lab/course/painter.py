@@ -16,9 +16,10 @@ class Painter:
     """Draws `figure` again and again in a fraction of its time, by matplotlib's blitting.
 
     An artist that has changed once is taken for one that moves: it becomes `animated`, and so does all that lies above
-    it in its axes. The rest, ticks and grid included, is kept as pixels and drawn anew only when matplotlib says that
-    it is stale (a new text in a legend makes it so each time); after a turn of a 3-D view, of which matplotlib says
-    nothing, call `forget()`. The layout is computed once and then held, so that nothing jumps.
+    it in its axes; where a grid lies above it, nothing does, and all is drawn each time. The rest, ticks and grid
+    included, is kept as pixels and drawn anew only when matplotlib says that it is stale (a new text in a legend makes
+    it so each time); after a turn of a 3-D view, of which matplotlib says nothing, call `forget()`. The layout is
+    computed once and then held, so that nothing jumps.
 
     Attributes: backgrounds: how often the background was drawn (for tests and measurements).
     """
@@ -85,9 +86,16 @@ def _parts(parent):
 
 
 def _animate(parts):
-    """Let the lowest artist that has changed move, and what lies above it."""
-    moving = False
-    for artist in parts:
-        moving = moving or artist.get_animated() or artist.stale
-        if moving:
-            artist.set_animated(True)
+    """Let the lowest artist that has changed move, and what lies above it; nothing if that would cover a grid."""
+    first = next((k for k, artist in enumerate(parts) if artist.get_animated() or artist.stale), len(parts))
+    covers = first < len(parts) and parts[first].get_zorder() < _grid_height(parts[first].axes)
+    for k, artist in enumerate(parts):
+        artist.set_animated(k >= first and not covers)
+
+
+def _grid_height(axes):
+    """How high the grid of a plane axes lies; below everything if there is none."""
+    if axes is None or not axes.axison or hasattr(axes, "get_proj"):
+        return -np.inf
+    grids = [axis for axis in (axes.xaxis, axes.yaxis) if any(line.get_visible() for line in axis.get_gridlines())]
+    return max((axis.get_zorder() for axis in grids), default=-np.inf)

@@ -161,6 +161,37 @@ def test_background_is_kept_while_only_what_has_moved_before_moves_again():
     assert painter.backgrounds == before + 2
 
 
+@pytest.mark.parametrize("below", [False, "line"])
+def test_what_moves_under_a_grid_stays_under_it(below):
+    figure = plane_figure()
+    middle = figure.axes[1]
+    middle.set_axisbelow(below)
+    painter = Painter(figure)
+    rng = np.random.default_rng(6)
+    for name in ("moved patch", "data", "limits", "moved patch"):
+        IN_THE_PLANE[name](figure, rng)
+        middle.lines[0].set_ydata(rng.normal(size=200))
+        assert_same_pixels(painter)
+    middle.set_axisbelow(True)
+    for _ in range(3):
+        IN_THE_PLANE["moved patch"](figure, rng)
+        assert_same_pixels(painter)
+    middle.set_axisbelow(below)  # what moved already goes under it again
+    for _ in range(2):
+        IN_THE_PLANE["moved patch"](figure, rng)
+        assert_same_pixels(painter)
+
+
+def test_a_picture_that_changes_stays_under_the_grid():
+    figure = new_figure(3, 3)
+    picture = figure.axes[0].imshow(np.eye(5))
+    painter = Painter(figure)
+    rng = np.random.default_rng(7)
+    for _ in range(3):
+        picture.set_data(rng.random((5, 5)))
+        assert_same_pixels(painter)
+
+
 def test_hidden_artists_stay_hidden_and_the_others_are_shown_again():
     figure = plane_figure()
     figure.axes[0].lines[0].set_visible(False)
