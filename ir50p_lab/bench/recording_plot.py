@@ -1,29 +1,11 @@
 """A recording in numbers and in a picture."""
 
-import io
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from ir50p_lab.errors import RecordingError
-
-_COLOURS = ("#0072B2", "#D55E00", "#009E73")  # joints 1, 2, 3 as in all figures of the book
-_DARK, _GREY = "#333333", "#666666"
-_STYLE = {
-    "axes.axisbelow": True,
-    "axes.edgecolor": _GREY,
-    "axes.grid": True,
-    "axes.labelcolor": _DARK,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "axes.xmargin": 0.02,
-    "grid.color": "#E6E6E6",
-    "xtick.color": _GREY,
-    "xtick.labelsize": 9,
-    "ytick.color": _GREY,
-    "ytick.labelsize": 9,
-}
 
 
 @dataclass(frozen=True)
@@ -87,22 +69,23 @@ def _last_known(values):
 def plot(recording):
     """Angles and PWM of a Recording, one column per joint; RecordingError if it has no sample."""
     import matplotlib
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+    from ir50p_lab.lab_figure import COLOURS, LabFigure, figure_style
+
+    colours, dark, grey = [COLOURS[name] for name in ("blue", "orange", "green")], COLOURS["dark"], "#666666"
     joints = recording.metrics()
-    with matplotlib.rc_context(_STYLE):
-        figure = _figure_class()(figsize=(9.0, 4.8), layout="constrained", facecolor="white", dpi=100)
-        FigureCanvasAgg(figure)
+    with matplotlib.rc_context(figure_style()):
+        figure = LabFigure(figsize=(9.0, 4.8), layout="constrained")
         axes = figure.subplots(2, 3, sharex=True, sharey="row", height_ratios=(3, 2))
     t, known = recording.t, np.isfinite(recording.reference).any()
     for j, (above, below) in enumerate(axes.T):
-        above.plot(t, recording.q[:, j], color=_COLOURS[j], linewidth=1.4, label="angle")
+        above.plot(t, recording.q[:, j], color=colours[j], linewidth=1.4, label="angle")
         if known:
-            above.step(t, recording.reference[:, j], where="post", color=_DARK, ls="--", lw=1.2, label="set point")
-        below.step(t, recording.u[:, j], where="post", color=_COLOURS[j], linewidth=0.8)
+            above.step(t, recording.reference[:, j], where="post", color=dark, ls="--", lw=1.2, label="set point")
+        below.step(t, recording.u[:, j], where="post", color=colours[j], linewidth=0.8)
         for when, _ in recording.events:
-            below.axvline(when, color=_GREY, ls=":", lw=1.0, label="event")
-        above.set_title(_finding(joints[j]), fontsize=10.5, color=_DARK)
+            below.axvline(when, color=grey, ls=":", lw=1.0, label="event")
+        above.set_title(_finding(joints[j]), fontsize=10.5, color=dark)
         below.set(ylim=(-275, 275), yticks=(-255, 0, 255), xlabel="t [s]")
     axes[0, 0].set_ylabel("angle [rad]")
     axes[1, 0].set_ylabel("u [PWM counts]")
@@ -110,7 +93,7 @@ def plot(recording):
         axes[0, 0].legend(fontsize=9)
     if recording.events:
         axes[1, 0].legend(handles=axes[1, 0].get_lines()[1:2], fontsize=9)
-    figure.suptitle(_origin(recording), fontsize=10, color=_GREY, parse_math=False)
+    figure.suptitle(_origin(recording), fontsize=10, color=grey, parse_math=False)
     return figure
 
 
@@ -127,18 +110,3 @@ def _origin(recording):
         parts.append("simulated, not measured")
     parts += [head["date"][:16].replace("T", " ")] if "date" in head else []
     return "   |   ".join(parts)
-
-
-def _figure_class():
-    from matplotlib.figure import Figure
-
-    class RecordingFigure(Figure):
-        """A Figure that a notebook displays at the end of a cell, with no pyplot behind it."""
-
-        def _repr_png_(self):
-            stream = io.BytesIO()
-            self.savefig(stream, format="png", dpi=2 * self.dpi)
-            width, height = self.bbox.size
-            return stream.getvalue(), {"width": round(width), "height": round(height)}
-
-    return RecordingFigure
