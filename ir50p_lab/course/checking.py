@@ -2,7 +2,6 @@
 
 import ast
 import hashlib
-import html
 import linecache
 import math
 import random
@@ -137,31 +136,7 @@ def _wrong(source, wanted, verdict):
     return _show("wrong", wanted.name, says, more, open_first=bool(verdict.example))
 
 
-class _Answer:
-    """A sentence with a bar, and what can be opened below it."""
-
-    colours = {"right": "#009E73", "open": "#999999", "wrong": "#E69F00"}  # noqa: RUF012
-
-    def __init__(self, state, name, text, more, open_first):
-        self.state, self.name, self.text, self.more, self.open_first = state, name, text, more, open_first
-
-    def __repr__(self):
-        shown = [f"{title}:\n{text}" for title, text in self.more[: 1 if self.open_first else 0]]
-        return "\n".join([f"{self.name}: {self.text}", *shown])
-
-    def _repr_html_(self):
-        folds = "".join(
-            f"<details{' open' if self.open_first and k == 0 else ''}><summary>{html.escape(title)}</summary>"
-            f"<pre>{html.escape(text)}</pre></details>"
-            for k, (title, text) in enumerate(self.more)
-        )
-        return (
-            f'<div style="border-left: 5px solid {self.colours[self.state]}; padding: 2px 0 2px 12px; margin: 2px 0">'
-            f"<b>{html.escape(self.name)}</b>: {html.escape(self.text, quote=False)}{folds}</div>"
-        )
-
-
 def _show(state, name, text, more=(), *, open_first=False):
-    from IPython.display import display
+    from ir50p_lab.course.exercises._display import Note, show
 
-    display(_Answer(state, str(name), text, list(more), open_first))
+    show(Note(state, str(name), text, tuple(more), open_first))

@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 import sympy
 
-from ir50p_lab.course.exercises import Choice, Expression, Function, Number, grade
+from ir50p_lab.course.exercises import Choice, Function, Number, grade
 
 SEED = 20261121
 
@@ -137,7 +137,7 @@ def stubs(exercise):
 def right_forms(exercise):
     """Return the right answer in all the forms that must be accepted."""
     right, kind = exercise.kind.solution, exercise.kind
-    return [right, *exercise.forms, *_FORMS[type(kind)](kind, right)]
+    return [right, *_FORMS[type(kind)](kind, right)]
 
 
 def _number_forms(kind, right):
@@ -154,55 +154,28 @@ def _number_forms(kind, right):
         forms.append(array.astype(int))
     if kind.angle:
         forms += [array + 2 * np.pi, array - 4 * np.pi]
-    if kind.any_order:
-        forms += [array[::-1], np.roll(array, 1, axis=0), list(array), set(map(tuple, array))]
     return forms
 
 
 def _function_forms(kind, right):
     forms = [lambda *args: right(*args), lambda *args: np.asarray(right(*args)).tolist()]
-    forms.append(lambda *args: np.asarray(right(*args))[..., None])
-    if all(np.ndim(arg) == 0 for args in kind._inputs for arg in args):
-        # works on arrays of one entry only, by masks
-        forms.append(lambda *args: np.array([right(*(arg[0] for arg in args))]))
-        forms.append(lambda *args: right(*map(_strictly_float, args)))
-    elif len(kind._inputs[0]) == 1 and np.ndim(kind._inputs[0][0]) == 1:
-        names = ", ".join(f"x{i}" for i in range(len(kind._inputs[0][0])))
-        forms.append(eval(f"lambda {names}: right([{names}])", {"right": lambda x: right(np.array(x))}))
-    return forms
-
-
-def _strictly_float(value):
-    if np.ndim(value):
-        raise TypeError("a scalar is needed")
-    return float(value)
-
-
-def _expression_forms(kind, right):
-    plain = {s: sympy.Symbol(s.name) for s in right.free_symbols}
-    positive = {s: sympy.Symbol(s.name, positive=True) for s in right.free_symbols}
-    forms = [right.subs(plain), right.subs(positive), right.expand(), right + right * 0]
-    if not getattr(right, "shape", ()):
-        forms += [str(right), (right.subs(plain) ** 2 + 1) - (right.subs(plain) - 1) ** 2 - right.subs(plain)]
-    else:
-        forms.append(right.tolist())
-    return forms
+    return [*forms, lambda *args: np.asarray(right(*args))[..., None], lambda *args: tuple(np.ravel(right(*args)))][
+        : 4 if np.ndim(right(*kind._inputs[0])) == 1 else 3
+    ]
 
 
 def _choice_forms(kind, right):
     return [right.upper(), f" {right}. ", kind.options[right], kind.options[right].capitalize()]
 
 
-_FORMS = {Number: _number_forms, Function: _function_forms, Expression: _expression_forms, Choice: _choice_forms}
+_FORMS = {Number: _number_forms, Function: _function_forms, Choice: _choice_forms}
 
 
 def wrong_answer(kind, wrong):
     """Return the student's answer that belongs to a slip."""
     if isinstance(kind, Function | Choice):
         return wrong
-    if isinstance(kind, Number):
-        return wrong(kind.solution) if callable(wrong) else wrong
-    return wrong(kind.right) if callable(wrong) and not hasattr(wrong, "free_symbols") else wrong
+    return wrong(kind.solution) if callable(wrong) else wrong
 
 
 def random_wrong(kind):
@@ -216,10 +189,6 @@ def random_wrong(kind):
         return moved(kind.solution)
     if isinstance(kind, Function):
         return lambda *args: moved(kind.right(*args))
-    if isinstance(kind, Expression):
-        # 1.7 times a symbol is added to every entry
-        extra = sympy.Symbol(kind._names[0]) * sympy.Float("1.7317")
-        return kind.right.applyfunc(lambda e: e + extra) if hasattr(kind.right, "shape") else kind.right + extra
     return "none of them"
 
 
@@ -229,8 +198,6 @@ def secrets(exercise):
     if isinstance(kind, Number):
         texts = {f"{abs(x):.{digits}g}" for x in np.ravel(right) for digits in (3, 4, 5)}
         return {text for text in texts if len(text.replace(".", "").strip("0")) >= 3}
-    if isinstance(kind, Expression):
-        return {str(right)}
     if isinstance(kind, Choice):
         return {kind.options[right]} if len(kind.options[right]) > 5 else set()
     return set()

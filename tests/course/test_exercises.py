@@ -17,7 +17,6 @@ from ir50p_lab.course import exercises as package
 from ir50p_lab.course.exercises import (
     Choice,
     Exercise,
-    Expression,
     Function,
     Number,
     Slip,
@@ -28,7 +27,7 @@ from ir50p_lab.course.exercises import (
     solution,
 )
 from ir50p_lab.course.exercises._catalogue import everything, prefixes
-from ir50p_lab.course.exercises._display import Note, Table
+from ir50p_lab.course.exercises._display import Note
 from ir50p_lab.course.exercises._progress import progress_path, read_progress
 from ir50p_lab.errors import InputError
 
@@ -81,7 +80,7 @@ def test_the_rules_find_faults():
     good = ALL[0]
 
     def found(**changes):
-        kept = {f: getattr(good, f) for f in ("name", "task", "kind", "why", "slips", "hint", "forms")}
+        kept = {f: getattr(good, f) for f in ("name", "task", "kind", "why", "slips", "hint")}
         return " ".join(exercise_rules.problems(Exercise(**(kept | changes))))
 
     right = good.kind.solution
@@ -95,22 +94,17 @@ def test_the_rules_find_faults():
     assert "is answered by right" in found(slips=(Slip(right, "This is in fact the right answer."),))
     assert "gives the answer away" in found(slips=(Slip(right * 2, "It should begin with 1.571 in fact."),))
     assert "gives the answer away" in found(hint="Try -0.785.")
-    assert "right answer" in found(forms=(right + 1,))
     assert "is slip" in found(slips=(Slip(exercise_rules.random_wrong(good.kind), "Anything goes in this one."),))
 
 
-# --- the four kinds of answer
+# --- the three kinds of answer
 
 VECTOR = Exercise("x-1", "three numbers", Number([1.0, 2.0, 3.5], unit="m"), "because")
-ROWS = Exercise(
-    "x-2", "two angles", Number([[0.1, 0.2], [3.0, -3.0]], unit="rad", angle=True, any_order=True), "because"
-)
+ANGLES = Exercise("x-2", "two angles", Number([0.1, 3.0], unit="rad", angle=True), "because")
 SQUARE = Exercise("x-3", "the square", Function(lambda x: x**2, cases=[1.5, -2.0, np.float64(3)]), "because")
 WHOLE = Exercise(
     "x-4", "the sum", Function(lambda q: q.sum(), cases=[np.array([1.0, 2, 4]), np.array([0, 0, 1.0])]), "b"
 )
-DOUBLE = Exercise("x-5", "sin 2q", Expression(sympy.sympify("2*sin(q)*cos(q)"), also=("t",)), "because")
-COLUMN = Exercise("x-6", "a column", Expression(sympy.Matrix([sympy.Symbol("a"), 1 - sympy.Symbol("b")])), "because")
 ELBOW = Exercise("x-7", "the branch", Choice("a", {"a": "elbow up", "b": "elbow down", "no": "none"}), "because")
 
 
@@ -134,23 +128,9 @@ ELBOW = Exercise("x-7", "the branch", Choice("a", {"a": "elbow up", "b": "elbow 
         (VECTOR, lambda: 1, "found a function"),
         (VECTOR, object(), "type object"),
         (VECTOR, [], "something empty"),
-        (ROWS, np.zeros((3, 2)), "found a 3 x 2 matrix; expected a 2 x 2 matrix in rad, in any order"),
         (SQUARE, 4, "a value, not a function"),
         (SQUARE, "x**2", "the text"),
         (SQUARE, float, "found a class"),
-        (SQUARE, lambda x, y: x, "found a function of (x, y); expected a function of (x)"),
-        (SQUARE, lambda x: 1 / 0, "stops with ZeroDivisionError: division by zero (called with x = 1.5)"),
-        (SQUARE, lambda x: print(end="") or None, "returns None (is there a `return` missing?) (called with x = 1.5)"),
-        (SQUARE, lambda x: [x, x], "returns 2 numbers; expected"),
-        (SQUARE, lambda x: np.sqrt(x), "returns nan"),
-        (DOUBLE, sympy.Symbol("z"), "an expression with z in it"),
-        (DOUBLE, sympy.Eq(sympy.Symbol("q"), 1), "an equation"),
-        (DOUBLE, "2 sin q", "no expression"),
-        (DOUBLE, [1, 2], "2 x 1 matrix"),
-        (DOUBLE, np.sin, "the function sin"),
-        (DOUBLE, object(), "type object"),
-        (DOUBLE, sympy.zoo, "no finite value"),
-        (COLUMN, sympy.Symbol("a"), "found a single expression; expected a 2 x 1 matrix"),
         (ELBOW, "sideways", "found the text 'sideways'; expected one of 'a', 'b', 'no'"),
         (ELBOW, 3.0, "type float"),
         (ELBOW, 3, "found 3"),
@@ -169,26 +149,19 @@ def test_a_wrong_form_is_named(exercise, answer, words):
         (VECTOR, [1.000004, 2, 3.5], "wrong", "close, but 1e-06 m"),
         (VECTOR, [-1, -2, -3.5], "slip", "sign"),
         (VECTOR, [1000, 2000, 3500], "slip", "millimetres"),
-        (ROWS, [[3.0, -3.0], [0.1 + 2 * np.pi, 0.2]], "right", ""),
-        (ROWS, [[0.1, 0.2], [0.1, 0.2]], "wrong", "1 of 2 rows"),
-        (ROWS, np.rad2deg([[0.1, 0.2], [3.0, -3.0]]), "slip", "degrees"),
         (SQUARE, lambda x: x * x, "right", ""),
-        (SQUARE, lambda x: x * abs(x), "wrong", "right in 2 of 3 cases"),
-        (SQUARE, lambda x: -x * x, "slip", "sign"),
+        (SQUARE, lambda x: x * abs(x), "wrong", "right for 2 of 3 inputs"),
+        (SQUARE, lambda x: -x * x, "wrong", "sign"),
         (SQUARE, lambda x: np.where(x > 0, x, -x) ** 2, "right", ""),
         (SQUARE, lambda *x: x[0] ** 2, "right", ""),
-        (WHOLE, lambda q1, q2, q3: q1 + q2 + q3, "right", ""),
+        (SQUARE, lambda x, y: x, "wrong", "it takes (x, y); it will be called with (x)"),
+        (SQUARE, lambda x: 1 / 0, "wrong", "a division by zero"),
+        (SQUARE, lambda x: print(end="") or None, "wrong", "is there a `return`"),
+        (SQUARE, lambda x: [x, x], "wrong", "an array of shape (2,); expected is ()"),
+        (SQUARE, lambda x: np.sqrt(x), "wrong", "not finite"),
         (WHOLE, sum, "right", ""),
-        (WHOLE, lambda q: q[0], "wrong", "returns 1 for q = [1, 2, 4]"),
-        (WHOLE, lambda q: (q.sort(), q[-1])[1], "wrong", "returns 4 for q = [1, 2, 4]"),
-        (DOUBLE, sympy.sin(2 * sympy.Symbol("q", real=True)), "right", ""),
-        (DOUBLE, sympy.sin(2 * sympy.Function("q")(sympy.Symbol("t"))), "right", ""),
-        (DOUBLE, "sin(2*q)", "right", ""),
-        (DOUBLE, 1, "wrong", "expected an expression in q, t"),
-        (DOUBLE, -sympy.sin(2 * sympy.Symbol("q")), "slip", "sign"),
-        (COLUMN, [[sympy.Symbol("a"), 1 - sympy.Symbol("b")]], "right", ""),
-        (COLUMN, [sympy.Symbol("a"), 1], "wrong", "look again at answer[1]"),
-        (COLUMN, (..., ...), "open", "not answered"),
+        (WHOLE, lambda q: q[0], "wrong", "Expected: a function of (q) that returns a number."),
+        (WHOLE, lambda q: (q.fill(1.0), q.sum())[1], "wrong", "it changes what it was given"),
         (ELBOW, " Elbow up. ", "right", ""),
         (ELBOW, False, "wrong", "found 'no'"),
     ],
@@ -204,14 +177,6 @@ def test_what_is_far_off_is_not_called_close(answer):
     assert "close" not in grade(VECTOR, answer).text
 
 
-def test_a_velocity_in_sympys_own_words_is_the_packages():
-    t = sympy.Symbol("t")
-    q1 = sympy.Function("q1")(t)
-    rate = Exercise("x-8", "the rate", Expression(sympy.sympify("q1 * qdot1 + qddot1")), "because")
-    assert grade(rate, q1 * q1.diff(t) + q1.diff(t, 2)).state == "right"
-    assert grade(rate, q1 * q1.diff(t)).state == "wrong"
-
-
 def test_a_student_cannot_change_the_question(capsys):
     answer = solution("start-1")
     answer[:] = 0
@@ -219,12 +184,16 @@ def test_a_student_cannot_change_the_question(capsys):
     assert said(capsys, "start-1", answer).startswith("start-1: not yet")
 
 
-def test_an_interrupt_is_not_swallowed():
+def test_an_interrupt_is_told_from_a_mistake():
     def stop(x):
         raise KeyboardInterrupt
 
-    with pytest.raises(KeyboardInterrupt):
-        grade(SQUARE, stop)
+    assert "it was stopped: does a loop in it never end?" in grade(SQUARE, stop).text
+
+
+def test_an_input_that_fails_is_shown():
+    verdict = grade(WHOLE, lambda q: q[0])
+    assert verdict.example == "for q = [1., 2., 4.]\nexpected: 7.\nyours: 1."
 
 
 def test_a_choice_needs_its_right_option():
@@ -361,9 +330,3 @@ def test_progress_of_an_earlier_version_is_taken_over(monkeypatch, tmp_path, cap
 def test_note_in_a_notebook():
     shown = Note("slip", "x-1", "use `R @ v`, not <v>")._repr_html_()
     assert "<code>R @ v</code>" in shown and "&lt;v&gt;" in shown and shown.count("<div") == 1
-
-
-def test_table_in_a_notebook():
-    shown = Table((("00", "x-1", "a < b", "2026-01-02T03:04"), ("00", "x-2", "c", None)), "A note.")._repr_html_()
-    assert shown.count("<tr>") == 3 and "2026-01-02" in shown and "a &lt; b" in shown
-    assert "1 of 2 exercises done. A note." in shown

@@ -13,7 +13,7 @@ Adding exercises
 One module per notebook in this folder, named after the prefix of its exercises: "ik-2" lives in ik.py, which is
 imported only when an "ik-" exercise is asked for. It defines two names:
 
-    NOTEBOOK = "02_jacobian_ik"     # stem of the notebook's file name
+    NOTEBOOK = "02_inverse_kinematics"     # stem of the notebook's file name
     EXERCISES = (Exercise(...), ...)
 
     Exercise(
@@ -25,34 +25,33 @@ imported only when an "ik-" exercise is asked for. It defines two names:
     )
 
 Kinds of answer (each documents its options):
-    Number(right, unit=, tolerance=, because=, angle=, any_order=)   number, vector, matrix, or rows as a set
-    Function(right, cases, unit=, ..., angles_in=)                   tried out on the cases, values compared
-    Expression(right, also=)                                         SymPy, any equivalent form, symbols by name
-    Choice(right, options)                                           a key of {key: wording}, or its wording
+    Number(right, unit=, tolerance=, because=, angle=)   number, vector or matrix
+    Function(right, cases, unit=, tolerance=)            tried out on the cases, values compared
+    Choice(right, options)                               a key of {key: wording}, or its wording
 
 Rules:
 - Compute `right` with the package and with constants of this module (IR50P, not load_arm()): the student's
   variables, or another arm, must not move it. Task and figures in the notebook state the same constants.
 - `Slip(wrong, message)`: `wrong` is a wrong answer, or a function of the right one (np.negative); for a Function
-  the wrong function. Every kind brings common slips along: the sign; degrees (unit="rad", angles_in=True);
-  millimetres (unit="m"). Together at least three, with different messages, none equal to another or to the right
-  answer; a Choice needs a slip for every wrong option. A message says what is wrong and where to look, never the
-  answer. The student's answer is repeated in front of it.
+  the wrong function. Numbers bring common slips along: the sign; degrees (unit="rad"); millimetres (unit="m");
+  functions those of `functions/distortions.py`. Name at least three, with different messages, none equal to another
+  or to the right answer; a Choice needs a slip for every wrong option. A message says what is wrong and where to
+  look, never the answer. The student's answer is repeated in front of it.
 - `why` is read after a right answer: one line on what it is good for.
-- `hint=` is added to the message for an answer that is wrong in no known way; `forms=` lists other right answers
-  that the tests try (lists, columns, SymPy numbers, text and so on are tried anyway).
+- `hint=` is added to the message for an answer that is wrong in no known way.
 - A function stub in a notebook is `def answer(q): ...`; a stub with several parts may be `(..., ...)`.
 - `pytest tests/course/test_exercises.py` tries every exercise of every module; read start.py as the example.
 """
 
 from __future__ import annotations
 
+import textwrap
+
 from ir50p_lab.course.exercises._answers import Slip
 from ir50p_lab.course.exercises._catalogue import everything, find
 from ir50p_lab.course.exercises._choices import Choice
-from ir50p_lab.course.exercises._display import Note, Table, show
+from ir50p_lab.course.exercises._display import Note, show
 from ir50p_lab.course.exercises._exercise import Exercise, Verdict, grade
-from ir50p_lab.course.exercises._expressions import Expression
 from ir50p_lab.course.exercises._functions import Function
 from ir50p_lab.course.exercises._numbers import Number
 from ir50p_lab.course.exercises._progress import ProgressError, read_progress, record
@@ -61,7 +60,6 @@ from ir50p_lab.errors import InputError
 __all__ = [
     "Choice",
     "Exercise",
-    "Expression",
     "Function",
     "Number",
     "Slip",
@@ -92,7 +90,8 @@ def check(name: str, answer=...) -> None:
             record(exercise.name)
         except ProgressError as error:
             text += f" (Not noted: {error})"
-    show(Note(verdict.state, exercise.name, text))
+    more = (("one input that fails", verdict.example),) if verdict.example else ()
+    show(Note(verdict.state, exercise.name, text, more, open_first=True))
 
 
 def solution(name: str):
@@ -109,10 +108,17 @@ def exercises() -> list[str]:
 
 
 def progress() -> None:
-    """Show a table of all exercises by notebook: done (since when) or open."""
+    """Print all exercises by notebook: done or open."""
     try:
         done, note = read_progress(), ""
     except ProgressError as error:
         done, note = {}, str(error)
-    rows = tuple((notebook, one.name, one.task, done.get(one.name)) for notebook, one in everything())
-    show(Table(rows, note))
+    last = None
+    for notebook, one in everything():
+        if notebook != last:
+            print(notebook)
+        last = notebook
+        state = "done" if one.name in done else "open"
+        print(f"  {one.name:<10} {state}  {textwrap.shorten(one.task, 80, placeholder=' ...')}")
+    known = exercises()
+    print(f"{sum(name in done for name in known)} of {len(known)} exercises done. {note}".strip())

@@ -27,9 +27,45 @@ class Slip:
     message: str
 
 
-def worth_having(slips, kind) -> tuple[Slip, ...]:
-    """Return the slips whose wrong answer differs from the right one (the sign of zero is no slip)."""
-    return tuple(slip for slip in slips if not kind.is_right(kind.read_wrong(slip.wrong)))
+class Kind:
+    """A kind of answer that is read, and then compared with the right one and with those of the slips.
+
+    It has `solution`, the right answer in usable form; `wanted`, what is asked for in words, without the answer;
+    `read(answer)`, which may raise NotAnswered or Unreadable; `is_right(found)`, `is_slip(found, wrong)` and
+    `show(found)` of what was read.
+    """
+
+    @property
+    def solution(self):
+        """The right answer in usable form."""
+        return self.right
+
+    def check_form(self, found) -> None:
+        """Raise Unreadable if an answer that was read has not the form of the right one."""
+
+    def read_wrong(self, wrong):
+        """Return a slip's answer, read."""
+        return self.read(wrong)
+
+    def remark(self, found) -> str:
+        """Say how far a wrong answer is right, without giving the answer away."""
+        return ""
+
+    def common_slips(self) -> tuple[Slip, ...]:
+        """Slips that every exercise of this kind knows."""
+        return ()
+
+    def judge(self, answer, exercise) -> tuple[str, str, str]:
+        """Return the state, what to say, and one input that fails or "": see Verdict."""
+        found = self.read(answer)
+        if self.is_right(found):
+            return "right", "", ""
+        for slip in exercise.all_slips:
+            if self.is_slip(found, self.read_wrong(slip.wrong)):
+                return "slip", f"not yet, found {self.show(found)}. {slip.message}", ""
+        self.check_form(found)  # after the slips: a slip may have another shape
+        extra = " ".join(filter(None, (self.remark(found), exercise.hint)))
+        return "wrong", f"not yet, found {self.show(found)}; expected {self.wanted}: {exercise.task}. {extra}", ""
 
 
 def kind_of(value) -> str:

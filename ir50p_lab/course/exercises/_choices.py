@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ir50p_lab.course.exercises._answers import NotAnswered, Slip, Unreadable, kind_of
+from ir50p_lab.course.exercises._answers import Kind, Unreadable, kind_of
 
 
 @dataclass(frozen=True, eq=False)
-class Choice:
+class Choice(Kind):
     """One option out of several, as text: its key or its wording, capitals and spaces do not matter.
 
     right: key of the right option.
@@ -24,19 +24,12 @@ class Choice:
             raise ValueError(f"the right answer {self.right!r} is none of {tuple(self.options)}")
 
     @property
-    def solution(self) -> str:
-        """Key of the right option."""
-        return self.right
-
-    @property
     def wanted(self) -> str:
         """What is asked for, in words, without the answer."""
         return "one of " + ", ".join(repr(key) for key in self.options)
 
     def read(self, answer) -> str:
         """Return the key of the option that was meant; Unreadable where there is none."""
-        if answer is Ellipsis:
-            raise NotAnswered
         if isinstance(answer, bool):
             answer = "yes" if answer else "no"
         if not isinstance(answer, str | int):
@@ -46,13 +39,6 @@ class Choice:
             if said in (_plain(key), _plain(wording)):
                 return key
         raise Unreadable(kind_of(answer) if isinstance(answer, str) else str(answer))
-
-    def check_form(self, found) -> None:
-        """Nothing to refuse: what could be read has the right form."""
-
-    def read_wrong(self, wrong) -> str:
-        """Return the key of a slip's option."""
-        return self.read(wrong)
 
     def is_right(self, found) -> bool:
         """Tell whether the key is that of the right option."""
@@ -65,14 +51,6 @@ class Choice:
     def show(self, found) -> str:
         """Repeat the option that was chosen."""
         return repr(found)
-
-    def remark(self, found) -> str:
-        """Nothing to add: an option is right or wrong."""
-        return ""
-
-    def common_slips(self) -> tuple[Slip, ...]:
-        """None: every wrong option gets its own message from the author."""
-        return ()
 
 
 def _plain(text: str) -> str:

@@ -1,4 +1,4 @@
-"""Answers that are numbers: one, a vector, a matrix, or rows in any order."""
+"""Answers that are numbers: one, a vector or a matrix."""
 
 from __future__ import annotations
 
@@ -7,18 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.course.exercises._answers import NotAnswered, Slip, Unreadable, kind_of, worth_having
+from ir50p_lab.course.exercises._answers import Kind, NotAnswered, Slip, Unreadable, kind_of
 
 
 @dataclass(frozen=True, eq=False)
-class Number:
+class Number(Kind):
     """A number or an array of numbers, compared entry by entry.
 
     right: number or array, computed by the package.
     unit: what the numbers are in, "rad", "m", "N m"; "" for none or several.
     tolerance: largest absolute difference of an entry that still counts as right; because: why that much.
     angle: the entries are angles in rad, equal modulo 2 pi.
-    any_order: the first axis is a set (the rows may come in any order).
     """
 
     right: float | np.ndarray
@@ -26,7 +25,6 @@ class Number:
     tolerance: float = 1e-6
     because: str = "only rounding may differ"
     angle: bool = False
-    any_order: bool = False
 
     def __post_init__(self):
         """Hold the right answer as an array of floats."""
@@ -40,9 +38,7 @@ class Number:
     @property
     def wanted(self) -> str:
         """What is asked for, in words, without the answer."""
-        in_unit = f" in {self.unit}" if self.unit else ""
-        order = ", in any order" if self.any_order else ""
-        return f"{shape_in_words(self.right.shape)}{in_unit}{order}"
+        return shape_in_words(self.right.shape) + f" in {self.unit}" * bool(self.unit)
 
     def read(self, answer) -> np.ndarray:
         """Return the student's answer as finite floats, in the shape of the right one if it can have it.
@@ -89,8 +85,6 @@ class Number:
         agrees = self._agreement(found, self.right, self.tolerance)
         if agrees.ndim == 0 or not agrees.any():
             return ""
-        if self.any_order:
-            return f"{agrees.sum()} of {agrees.size} rows are among the right ones."
         off = [str(list(map(int, i))) for i in np.argwhere(~agrees)]
         return f"Not all of it is wrong; look again at {', '.join('answer' + i for i in off[:4])}."
 
@@ -101,39 +95,23 @@ class Number:
             slips.append(Slip(np.rad2deg, "That is in degrees; inside the package every angle is in radians."))
         if self.unit == "m":
             slips.append(Slip(lambda right: np.multiply(1000, right), "That is in millimetres, not in metres."))
-        return worth_having(slips, self)
+        return tuple(slip for slip in slips if not self.is_right(self.read_wrong(slip.wrong)))  # the sign of zero
 
     def _agreement(self, found, target, tolerance) -> np.ndarray:
-        """Return which entries (any_order: which rows of found) agree with the target."""
+        """Return which entries agree with the target."""
         if np.shape(found) != np.shape(target):
             return np.array(False)
-        if not self.any_order:
-            return self._difference(found, target) <= tolerance
-        free = list(range(len(target)))
-        agrees = np.zeros(len(found), dtype=bool)
-        for i, row in enumerate(found):
-            for j in free:
-                if np.all(self._difference(row, target[j]) <= tolerance):
-                    agrees[i] = True
-                    free.remove(j)  # every right row is used once
-                    break
-        return agrees
-
-    def _difference(self, found, target) -> np.ndarray:
         difference = np.subtract(found, target)
         if self.angle:
             difference = (difference + np.pi) % (2 * np.pi) - np.pi
-        return np.abs(difference)
+        return np.abs(difference) <= tolerance
 
 
 def to_floats(answer) -> np.ndarray:
     """Return numbers in any usual form as a float array; Unreadable says what was found instead.
 
-    Lists, tuples, arrays, sets, dicts (their values), SymPy numbers and matrices, SciPy rotations (their
-    matrix) and objects that can be iterated over are all read.
+    Lists, tuples, arrays, dicts (their values), SymPy numbers and matrices, and what can be iterated over are all read.
     """
-    if callable(getattr(answer, "as_matrix", None)):
-        answer = answer.as_matrix()
     if isinstance(answer, dict):
         answer = list(answer.values())
     elif not isinstance(answer, str | np.ndarray) and isinstance(answer, Iterable):
