@@ -44,7 +44,7 @@ def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest
         check_reference(reference)
         checked_reference(bench.arm, 0.0, reference(0.0))
     bench._take_back()
-    if not bench._is_open:
+    if not bench.is_open:
         raise BenchError("the bench is closed: open it with connect() and start before it is closed")
     if bench._run is not None:
         raise BenchError("a run in a cell has the arm: end its loop first")
@@ -57,7 +57,7 @@ def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest
     else:
         worker = ThreadWorker(bench, cargo, options)
     run = LiveRun(bench, controller, worker)
-    bench._live = run
+    bench.live_run = run
     worker.start()
     return run
 

@@ -67,7 +67,8 @@ class Bench(abc.ABC):
 
     Attributes: arm: Arm (limits, kinematics); calibration: counts to rad; period: s; simulated: bool; name: str;
     bench_id: which bench it is, on which results are measured, as 'board-0a1b2c' or 'simulated-unit-0' (None: nobody
-    knows, or the board has none yet); recording: Recording of the last run (None before); trips: how often the drive
+    knows, or the board has none yet); is_open: whether the arm is in hand; live_run: the LiveRun that has the arm, or
+    had it last; recording: Recording of the last run (None before); trips: how often the drive
     was cut because the program sent no command.
     """
 
@@ -87,11 +88,11 @@ class Bench(abc.ABC):
         self.name = name or f"{self.kind} {arm.name}"
         self.recording = None
         self._record_to = record_to
-        self._is_open, self._clock = False, Clock
+        self.is_open, self._clock = False, Clock
         self._pwm, self._gripper = np.zeros(JOINTS), False
         self._last = self._run = None
         self.trips = 0
-        self._live = None  # the LiveRun that has the arm, or had it last
+        self.live_run = None
         self._travel = tuple(zip(arm.q_min, arm.q_max, strict=True))
 
     # ---- what a subclass supplies
@@ -164,20 +165,10 @@ class Bench(abc.ABC):
 
     def open(self):
         """Get hold of the arm (`with` and `connect()` do it). Returns the bench."""
-        if not self._is_open:
+        if not self.is_open:
             self._open()
-            self._is_open = True
+            self.is_open = True
         return self
-
-    @property
-    def is_open(self):
-        """Whether the arm is in hand."""
-        return self._is_open
-
-    @property
-    def live_run(self):
-        """The loop in the background that has the arm, or had it last; None if there is none."""
-        return self._live
 
     def __enter__(self):
         return self.open()
@@ -190,11 +181,11 @@ class Bench(abc.ABC):
 
     def close(self):
         """Go to the rest pose, let go, and give the port free. May be called twice."""
-        if not self._is_open:
+        if not self.is_open:
             return
         try:
-            if self._live is not None:
-                self._live.stop()  # brings the arm to its rest pose
+            if self.live_run is not None:
+                self.live_run.stop()  # brings the arm to its rest pose
             self._end_run()
             if self._last is not None:  # never moved: nothing to bring back
                 self.go_to_rest()
@@ -203,17 +194,17 @@ class Bench(abc.ABC):
 
     def abort(self):
         """Cut the drive and give the port free, at once. May be called twice."""
-        if not self._is_open:
+        if not self.is_open:
             return
         self.cut()
         self._end_run()
-        self._is_open = False
+        self.is_open = False
         self._close()
 
     def cut(self):
         """Drive off at once; a run in a cell goes on without it until the next `drive`, one in the background ends."""
-        if self._live is not None and not self._live.is_here():
-            self._live.cut()
+        if self.live_run is not None and not self.live_run.is_here():
+            self.live_run.cut()
         self._pwm = np.zeros(JOINTS)
         self._cut()
 
@@ -238,15 +229,15 @@ class Bench(abc.ABC):
         if not (isinstance(seconds, int | float | np.number) and math.isfinite(seconds) and seconds > 0):
             raise InputError(f"seconds = {seconds!r}: give how long to run, in seconds, > 0")
         self._take_back()
-        if not self._is_open:
+        if not self.is_open:
             raise BenchError("the bench is closed: open it with `with connect() as bench:` and run inside the block")
         return max(1, round(seconds / self.period))
 
     def _take_back(self):
         """Have the arm back from a loop in the background that is over; BenchError if it is not."""
-        if self._live is not None and not self._live.is_here():
-            self._live.give_back()
-            self._live = None
+        if self.live_run is not None and not self.live_run.is_here():
+            self.live_run.give_back()
+            self.live_run = None
 
     def _cycles(self, cycles, reference, record, header):
         self._end_run()  # of a loop that was left by break

@@ -7,7 +7,7 @@ import numpy as np
 
 from ir50p_lab.bench.calibration_file import read_calibration, write_calibration
 from ir50p_lab.errors import InputError, SuspiciousArmWarning
-from ir50p_lab.inputs import check_arm, vectors3
+from ir50p_lab.inputs import check_arm, vector3
 
 _PLAUSIBLE = (20.0, 1023 / np.radians(60))  # counts/rad: a potentiometer of many turns; of 60 deg over the full range
 _HEADS = ("joint", "counts/rad", "counts at q = 0", "rms residual", "points")
@@ -54,9 +54,7 @@ class JointCalibration:
             value = getattr(self, name)
             if value is None and name.startswith("stderr"):
                 continue
-            array = vectors3(name, value, unit=unit)
-            if array.shape != (3,):
-                raise InputError(f"{name} has shape {array.shape}; give one value per joint, shape (3,) ({unit})")
+            array = vector3(name, value, unit=unit)
             if name.startswith("stderr") and (array < 0).any():
                 raise InputError(f"{name} = {array.tolist()}: a standard error cannot be negative")
             object.__setattr__(self, name, tuple(array.tolist()))
@@ -91,24 +89,6 @@ class JointCalibration:
     def counts(self, q):
         """Counts at angles; both (3,) or (n, 3), not rounded."""
         return self._zero + self._slope * np.asarray(q, dtype=float)
-
-    def stderr_radians(self, counts):
-        """Standard error of `radians(counts)` that the calibration brings, joint by joint; None if not measured.
-
-        The line is known best in the middle of the points it was fitted to and worse towards and past their ends.
-        """
-        if self.stderr_slope is None or not self.points:
-            return None
-        counts = np.asarray(counts, dtype=float)
-        found = np.full(counts.shape, np.nan)
-        for i, ((_, at), residual) in enumerate(zip(self.points, self.residuals, strict=True)):
-            m = len(at)
-            if m < 3:
-                continue
-            at = np.array(at)
-            s2 = residual @ residual / (m - 2)
-            found[..., i] = np.sqrt(s2 * (1 / m + (counts[..., i] - at.mean()) ** 2 / ((at - at.mean()) ** 2).sum()))
-        return found
 
     @property
     def residuals(self):

@@ -4,7 +4,7 @@ import numpy as np
 
 from ir50p_lab.bench.calibration import JointCalibration
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite
+from ir50p_lab.inputs import first_not_finite, numbers
 
 _FULL = 1023.0
 _WRAP = 300.0  # counts: no two neighbouring points of a sound potentiometer jump back by so much
@@ -99,10 +99,7 @@ def _pair(joint, q, counts):
     """Two arrays (m,) of one joint; InputError if they are none, not finite or out of range."""
     pair = []
     for name, value in (("q", q), ("counts", counts)):
-        try:
-            array = np.asarray(value, dtype=float)
-        except (TypeError, ValueError):
-            raise InputError(f"joint {joint}: {name} must hold numbers; got {value!r}") from None
+        array = numbers(f"joint {joint}: {name}", value)
         if array.ndim != 1:
             raise InputError(f"joint {joint}: {name} has shape {array.shape}; give (m,)")
         if not np.isfinite(array).all():
@@ -152,7 +149,7 @@ def _line(joint, q, counts, angles):
             )
     _refuse_wrap(joint, q, counts)
     x, y = (counts, q) if angles == "read" else (q, counts)
-    a, b, cov = _regress(x, y)
+    (b, a), cov = np.polyfit(x, y, 1, cov=True)
     r2 = np.corrcoef(q, counts)[0, 1] ** 2
     if r2 < 0.5:
         raise InputError(
@@ -161,25 +158,12 @@ def _line(joint, q, counts, angles):
         )
     if angles == "read":  # errors carried over to first order
         slope, zero = 1 / b, -a / b
-        variances = cov[1, 1] / b**4, (cov[0, 0] + zero**2 * cov[1, 1] + 2 * zero * cov[0, 1]) / b**2
+        variances = cov[0, 0] / b**4, (cov[1, 1] + zero**2 * cov[0, 0] + 2 * zero * cov[0, 1]) / b**2
     else:
-        slope, zero, variances = b, a, (cov[1, 1], cov[0, 0])
+        slope, zero, variances = b, a, (cov[0, 0], cov[1, 1])
     errors = [float(np.sqrt(max(0.0, v))) for v in variances]
     remarks = [f"joint {joint}: {text}" for text in _remarks(q, counts, slope, zero, errors[0])]
     return float(slope), float(zero), *errors, (tuple(q.tolist()), tuple(counts.tolist())), remarks
-
-
-def _regress(x, y):
-    """y = a + b x: a, b and their covariance (2, 2). The mean of x is taken out first: no digits are lost."""
-    shift, scale = x.mean(), x.std()
-    A = np.column_stack([np.ones_like(x), (x - shift) / scale])
-    (level, rise), *_ = np.linalg.lstsq(A, y)
-    residual = y - A @ (level, rise)
-    s2 = residual @ residual / (len(x) - 2)
-    b = rise / scale
-    var_b = s2 / (len(x) * scale**2)
-    cov = np.array([[s2 / len(x) + shift**2 * var_b, -shift * var_b], [-shift * var_b, var_b]])
-    return level - b * shift, b, cov
 
 
 def _refuse_wrap(joint, q, counts):

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import check_controller, choice, number, numbers
 from ir50p_lab.signals.reference import per_joint
 
 LIMIT_PWM = 255
@@ -86,19 +87,14 @@ class StopCriterion:
     """
 
     def __init__(self, controller, inner=0.01, outer=0.02, *, hold="latch", dwell=0.1, smooth=0.05, signed=False):
-        if not callable(getattr(controller, "step", None)):
-            raise InputError(f"controller = {controller!r}: give an object with step(t, measured, reference)")
-        if hold not in ("latch", "off"):
-            raise InputError(f"hold = {hold!r}: choose 'latch' (keep the present command) or 'off' (no drive)")
+        check_controller(controller)
+        choice("hold", hold, ("latch", "off"))
         self.inner = np.array(per_joint("inner", inner, unit="rad", positive=True))
         self.outer = np.array(per_joint("outer", outer, unit="rad", positive=True))
         if (self.outer <= self.inner).any():
             raise InputError(f"outer = {outer} rad must be larger than inner = {inner} rad: the gap is the hysteresis")
-        for name, value in (("dwell", dwell), ("smooth", smooth)):
-            if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0):
-                raise InputError(f"{name} = {value!r} s: give a finite number >= 0")
         self.controller, self.hold, self.signed = controller, hold, bool(signed)
-        self.dwell, self.smooth = float(dwell), float(smooth)
+        self.dwell, self.smooth = number("dwell", dwell, ">= 0", unit="s"), number("smooth", smooth, ">= 0", unit="s")
         self._forget()
 
     @property
@@ -149,10 +145,7 @@ class StopCriterion:
 
 
 def _finite(name, value):
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} = {value!r}: give numbers (PWM counts)") from None
+    array = numbers(name, value, unit="PWM counts")
     if not np.isfinite(array).all():
         raise InputError(f"{name} = {value!r}: every number must be finite (PWM counts)")
     return array

@@ -10,7 +10,6 @@ import gc
 import os
 import pickle
 import signal
-import struct
 import subprocess
 import sys
 import tempfile
@@ -26,8 +25,7 @@ from ir50p_lab.errors import BenchError, LabError
 
 _READY_WITHIN = 60.0  # s: a cold start imports and compiles
 _OPEN_WITHIN = 20.0  # s: a board that restarts when its port is opened
-_GO = b"g"
-_LENGTH = struct.Struct("<I")
+_GO = "go"
 _PACKAGE_ROOT = str(Path(__file__).resolve().parents[2])
 _START = f"import sys; sys.path.insert(0, {_PACKAGE_ROOT!r}); from ir50p_lab.bench.loop_process import main; main()"
 
@@ -53,7 +51,6 @@ class ProcessWorker:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._said,
-            bufsize=0,
             **options,
         )
         threading.Thread(target=self._listen, name="bench loop's messages", daemon=True).start()
@@ -65,7 +62,7 @@ class ProcessWorker:
             self._await("ready", _READY_WITHIN)
             self._bench._close()  # the port is the child's from here on
             with contextlib.suppress(BrokenPipeError):
-                self._process.stdin.write(_GO)
+                _send(self._process.stdin, _GO)
             self._await("opened", _OPEN_WITHIN)
         except BaseException:
             self.give_up()
@@ -84,9 +81,9 @@ class ProcessWorker:
 
     def _listen(self):
         """Hear what the child says until it is gone."""
-        with contextlib.suppress(EOFError, OSError):
+        with contextlib.suppress(EOFError, OSError, pickle.UnpicklingError):
             while True:
-                stage, content = _receive(self._process.stdout)
+                stage, content = pickle.load(self._process.stdout)
                 if stage == "failed":
                     self.error = _error_from(content)
                 elif stage == "recording":
@@ -147,7 +144,7 @@ class ProcessWorker:
 
     def give_back(self):
         """The port is wanted here again."""
-        if self._bench._is_open:
+        if self._bench.is_open:
             self._bench._open()
 
 
@@ -159,22 +156,8 @@ def _error_from(content):
 
 
 def _send(pipe, message):
-    data = pickle.dumps(message)
-    pipe.write(_LENGTH.pack(len(data)) + data)
-
-
-def _receive(pipe):
-    return pickle.loads(_exactly(pipe, _LENGTH.unpack(_exactly(pipe, _LENGTH.size))[0]))
-
-
-def _exactly(pipe, size):
-    data = b""
-    while len(data) < size:
-        part = pipe.read(size - len(data))
-        if not part:
-            raise EOFError("the other process is gone")
-        data += part
-    return data
+    pickle.dump(message, pipe)
+    pipe.flush()
 
 
 # ---- the child
@@ -182,10 +165,10 @@ def _exactly(pipe, size):
 
 def main():
     """What the child does, from its first to its last moment."""
-    orders = os.fdopen(os.dup(0), "rb", buffering=0)
-    answers = os.fdopen(os.dup(1), "wb", buffering=0)
+    orders = os.fdopen(os.dup(0), "rb")
+    answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a controller prints must not get among the answers
-    path, address, parent = _receive(orders)
+    path, address, parent = pickle.load(orders)
     sys.path[:] = path
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     memory = None
@@ -209,12 +192,11 @@ def _serve(orders, answers, memory, parent):
     from ir50p_lab.bench.live_loop import live_loop
     from ir50p_lab.bench.pace import warm_up
 
-    bench, cargo, options = _receive(orders)
+    bench, cargo, options = pickle.load(orders)
     (kind, arguments), (controller, reference) = cloudpickle.loads(bench), cloudpickle.loads(cargo)
     warm_up(controller, reference)
     _send(answers, ("ready", None))
-    if orders.read(1) != _GO:
-        return
+    pickle.load(orders)  # the word to go; EOFError if nobody is there to give it
     left_alone = threading.Event()
     threading.Thread(target=_watch, args=(orders, left_alone), daemon=True).start()
 
@@ -244,7 +226,7 @@ def _serve(orders, answers, memory, parent):
 def _watch(orders, left_alone):
     """The parent never writes again: reading ends when it is gone."""
     with contextlib.suppress(OSError):
-        while orders.read(1):
+        while os.read(orders.fileno(), 1):
             time.sleep(0.01)
     left_alone.set()
 

@@ -8,7 +8,7 @@ from ir50p_lab.bench.arm_instance import UNIT, chosen_copy
 from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import ArmError, InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import vector3
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.arm import Arm
@@ -149,9 +149,7 @@ class SimulatedArm:
 
     def place(self, q):
         """Put the arm at rest at q (3,) rad, as by hand. Raises InputError if it cannot be there."""
-        q = vectors3("q0", q)
-        if q.shape != (3,):
-            raise InputError(f"q0 has shape {q.shape}: give three angles, rad")
+        q = vector3("q0", q)
         if why := self._why_not(q):
             raise InputError(f"the arm cannot stand at q0 = {q.tolist()} rad: {why}")
         self._x[:3], self._x[3:], self._joint[:] = q, 0.0, q
@@ -176,8 +174,7 @@ class SimulatedArm:
 
     def counts(self):
         """What the 10-bit converter reads now: (3,) whole counts. Each call takes the next noise of the seed."""
-        counts = np.empty(3)
-        read_pots(self._w, self._joint, self._next_noise(1)[0], counts)
+        counts = self.voltage_counts()
         convert(counts)
         return counts
 

@@ -199,7 +199,7 @@ class BenchPanel(widgets.VBox):
     def close(self):
         """End loop, scope and panel. Nothing of the bench is closed."""
         self._closed.set()
-        if self.run is not None and self.run.alive and self.bench._live is self.run:
+        if self.run is not None and self.run.alive and self.bench.live_run is self.run:
             self.run.stop()
         self._detach()
 
@@ -287,7 +287,7 @@ class BenchPanel(widgets.VBox):
             if old.bench is self.bench and not old._closed.is_set():
                 old._closed.set()
                 old._detach()
-        live = self.bench._live
+        live = self.bench.live_run
         if live is not None and live.alive:
             self.run = live
             self._put({f"{name}{i + 1}": value for name in live.gains for i, value in enumerate(live.gains[name])})

@@ -56,8 +56,8 @@ def opened(kind, folder):
         made = FileBench(str(folder / "commands.txt"), record_to=str(folder))
     with made:
         yield made
-        if made._live is not None:
-            made._live.cut()
+        if made.live_run is not None:
+            made.live_run.cut()
 
 
 KINDS = ["thread", "process"]

@@ -136,7 +136,7 @@ def test_close_leaves_no_thread_and_no_loop(bench):
     before = set(threading.enumerate())
     panel = live_panel(bench, PID(kp=(289, 225, 270), limit_pwm=255))
     panel.start()
-    bench._live.cut()
+    bench.live_run.cut()
     panel.close()
     until(lambda: not set(threading.enumerate()) - before)
     assert not panel.run.alive

@@ -106,7 +106,7 @@ def test_who_cannot_answer_gives_way_to_the_simulated_arm(monkeypatch, capsys, m
     monkeypatch.setattr(own_results, "connect", lambda *port, **more: simulate(*port) if port else found.pop(0))
     assert arm_that_answers().kind == "simulated" and "a recording does not answer" in capsys.readouterr().out
     assert arm_that_answers("model").kind == "simulated" and "measure first: no model" in capsys.readouterr().out
-    assert not real._is_open  # nothing moved, and the port is free
+    assert not real.is_open  # nothing moved, and the port is free
     real._given.is_open = True
     real.open()
     save_result("model", model, real)
