@@ -80,8 +80,8 @@ class LoopStatistics:
     """How well the loop keeps time.
 
     cycles, missed, trips (times the drive was cut because the loop had paused): counts since the start; period_p50,
-    period_p99, period_max: s between measurements; busy_p50, busy_max: s from having a sample until its command was
-    sent. The times are of the last 80 s at most; NaN before there are any.
+    period_p99, period_max: s between measurements; busy_p50: s from having a sample until its command was sent. The
+    times are of the last 80 s at most; NaN before there are any.
     """
 
     cycles: int
@@ -91,7 +91,6 @@ class LoopStatistics:
     period_p99: float = math.nan
     period_max: float = math.nan
     busy_p50: float = math.nan
-    busy_max: float = math.nan
 
     def __str__(self):
         if not self.cycles:
@@ -234,7 +233,7 @@ class LiveRun:
         periods, busy = np.diff(rows[:, 10])[in_a_row], rows[:, 11]
         p50, p99 = np.percentile(periods, (50, 99))
         counts = memory.samples, memory.missed, memory.trips
-        return LoopStatistics(*counts, p50, p99, periods.max(), float(np.median(busy)), float(busy.max()))
+        return LoopStatistics(*counts, p50, p99, periods.max(), float(np.median(busy)))
 
     def __repr__(self):
         return f"<LiveRun: {self.phase}; {self.statistics()}>"

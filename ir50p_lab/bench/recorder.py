@@ -10,15 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.recording_file import (
-    COLUMNS,
-    ROW,
-    ROW_WITHOUT_REFERENCE,
-    event_text,
-    head_text,
-    rows_text,
-    told_text,
-)
+from ir50p_lab.bench.recording_file import COLUMNS, event_text, head_text, row_text, rows_text, told_text
 from ir50p_lab.controllers.base import gains_of
 from ir50p_lab.errors import InputError, RecordingError
 from ir50p_lab.home import home
@@ -80,10 +72,7 @@ class Recorder:
         row = (t, *q.tolist(), *counts.tolist(), *pwm.tolist(), *r, gripper, missed)
         self._rows.extend(row)
         if self._file is not None:
-            if reference is None:
-                self._put((ROW_WITHOUT_REFERENCE % (row[:10] + row[13:])).encode())
-            else:
-                self._put((ROW % row).encode())
+            self._put(row_text(row).encode())
 
     def write_block(self, t, q, counts, u, r=None, gripper=False, missed=0):
         """Record many cycles at once, for compiled runs: arrays (n,), (n, 3)... as in Recording; r may be None."""

@@ -16,8 +16,8 @@ FORMAT = "ir50p_lab recording"
 COLUMNS = ("t", "q1", "q2", "q3", "counts1", "counts2", "counts3", "u1", "u2", "u3", "r1", "r2", "r3")
 COLUMNS += ("gripper", "missed")
 T, Q, COUNTS, U, R, GRIPPER, MISSED = 0, slice(1, 4), slice(4, 7), slice(7, 10), slice(10, 13), 13, 14
-ROW = "%.6f,%.6f,%.6f,%.6f,%g,%g,%g,%g,%g,%g,%.6f,%.6f,%.6f,%d,%d\n"
-ROW_WITHOUT_REFERENCE = "%.6f,%.6f,%.6f,%.6f,%g,%g,%g,%g,%g,%g,,,,%d,%d\n"
+_ROW = "%.6f,%.6f,%.6f,%.6f,%g,%g,%g,%g,%g,%g,%.6f,%.6f,%.6f,%d,%d\n"
+_CELLS = _ROW.strip().split(",")
 _REQUIRED = COLUMNS[:4]
 _GROUPS = (("counts1", "counts2", "counts3"), ("u1", "u2", "u3"), ("r1", "r2", "r3"))
 _EVENT = re.compile(r"[ \"]*#\W*event: (-?[\d.]+) s: (.*)")
@@ -45,10 +45,13 @@ def rows_text(table, events=()):
             begin = end
         return "".join([*parts, rows_text(table[begin:])])
     if not np.isnan(table).any():
-        return "".join([ROW % tuple(row) for row in table.tolist()])
-    cells = [cell.split("%")[1] for cell in ROW.strip().split(",")]
-    rows = ([("" if math.isnan(x) else f"%{f}" % x) for f, x in zip(cells, row, strict=True)] for row in table.tolist())
-    return "".join([",".join(row) + "\n" for row in rows])
+        return "".join([_ROW % tuple(row) for row in table.tolist()])
+    return "".join(map(row_text, table.tolist()))
+
+
+def row_text(row):
+    """The line of one sample: 15 numbers as COLUMNS, NaN where not known."""
+    return ",".join(["" if x != x else form % x for form, x in zip(_CELLS, row, strict=True)]) + "\n"
 
 
 def _one_line(value):

@@ -4,9 +4,10 @@ import numpy as np
 
 from ir50p_lab.controllers import adaptive_law as law
 from ir50p_lab.controllers.base import Controller
-from ir50p_lab.controllers.gains import gains, positive
+from ir50p_lab.controllers.gains import gains, limits
 from ir50p_lab.controllers.model_based import LIMIT_PWM, model_in_unit
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import number, numbers
 from ir50p_lab.signals.reference import per_joint
 
 _OFFSETS = (16, 17, 18)
@@ -67,9 +68,9 @@ class AdaptiveControl(Controller):
         self.state = np.zeros(law.N_STATES)
         p[law.LAMBDA : law.LAMBDA + 3] = gains("Lambda", Lambda)
         p[law.K : law.K + 3] = gains("K", K)
-        p[law.LIMIT : law.LIMIT + 3] = np.inf if bound is None else positive("limit", bound, joints=True)
-        p[law.PERIOD] = positive("period", period)
-        p[law.FILTER_RATE] = 2 * np.pi * positive("filter_hz", filter_hz, infinite=True)
+        p[law.LIMIT : law.LIMIT + 3] = limits(bound)
+        p[law.PERIOD] = number("period", period, "> 0", unit="s")
+        p[law.FILTER_RATE] = 2 * np.pi * number("filter_hz", filter_hz, "> 0 or inf", unit="Hz")
         p[law.GRAVITY] = gravity
         for name, place, value in (("dead_band", law.DEAD_BAND, dead_band), ("smooth", law.SMOOTH, smooth)):
             value = np.array(per_joint(name, value, unit="rad/s"))
@@ -122,8 +123,8 @@ class AdaptiveControl(Controller):
 def _table(name, value):
     """Numbers for all parameters of all joints, (3, 20); infinite ones are allowed."""
     try:
-        table = np.broadcast_to(np.asarray(value, dtype=float), (3, 20))
-    except (TypeError, ValueError, OverflowError):
+        table = np.broadcast_to(numbers(name, value), (3, 20))
+    except ValueError:
         raise InputError(f"{name}: give one number, 20 numbers, or 20 per joint, (3, 20)") from None
     if np.isnan(table).any():
         raise InputError(f"{name} holds NaN: give numbers")

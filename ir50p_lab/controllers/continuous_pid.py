@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.controllers.gains import gains
-from ir50p_lab.errors import InputError
+from ir50p_lab.controllers.gains import gains, limits
 
 
 class ContinuousPID:
@@ -21,9 +20,7 @@ class ContinuousPID:
 
     def __init__(self, kp, ki=(0.0, 0.0, 0.0), kd=(0.0, 0.0, 0.0), *, limit=None):
         self.kp, self.ki, self.kd = gains("kp", kp), gains("ki", ki), gains("kd", kd)
-        self.limit = np.broadcast_to(np.inf if limit is None else np.asarray(limit, dtype=float), 3).copy()
-        if not (self.limit > 0).all():
-            raise InputError(f"limit = {limit}: must be positive")
+        self.limit = np.broadcast_to(limits(limit), 3).copy()
 
     @property
     def parameters(self):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import numbers
 
 
 @dataclass(frozen=True)
@@ -155,10 +156,7 @@ def pendulum_with_motor_lag():
 
 
 def _numbers(name, values):
-    try:
-        array = np.atleast_1d(np.asarray(values, dtype=float))
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name} = {values!r:.60}: give numbers, K0 first") from None
+    array = np.atleast_1d(numbers(name, values))
     if array.ndim != 1 or not len(array) or not np.isfinite(array).all():
         raise InputError(f"{name} = {values!r}: give finite numbers, K0 first")
     return array

@@ -1,19 +1,39 @@
-"""Controllers with gains kp, ki, kd and a limit: what they share, and the check of gains."""
+"""Controllers with gains kp, ki, kd, a limit and filters: what they share, and the check of gains and limits."""
 
 import numpy as np
 
-from ir50p_lab.controllers.base import Controller
-from ir50p_lab.controllers.pid_law import KD, KI, KP, LIMIT
+from ir50p_lab.controllers.base import GAINS, Controller
+from ir50p_lab.controllers.pid_law import FILTER_RATE, KD, KI, KP, LIMIT, PERIOD, POSITION_RATE
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import numbers, vectors3
+from ir50p_lab.inputs import number, numbers, vectors3
 
 
 class GainController(Controller):
-    """A controller whose `parameters` begin with kp, ki, kd and the limit of the command, three numbers each."""
+    """A controller whose `parameters` begin with kp, ki, kd and the limit of the command, three numbers each.
+
+    Then come the period and the two filters.
+    """
+
+    def _write_limit_and_filters(self, limit, period, filter_hz, position_filter_hz):
+        """limit: of the command, None: none; the others as the controllers' arguments."""
+        p = self.parameters
+        p[LIMIT : LIMIT + 3] = limits(limit)
+        p[PERIOD] = number("period", period, "> 0", unit="s")
+        p[FILTER_RATE] = 2 * np.pi * number("filter_hz", filter_hz, "> 0 or inf", unit="Hz")
+        if position_filter_hz is not None:
+            rate = 2 * np.pi * number("position_filter_hz", position_filter_hz, "> 0 or inf", unit="Hz")
+            p[POSITION_RATE] = 0.0 if np.isinf(rate) else rate  # 0 and inf: no filter
 
     def _write_gains(self, kp, ki, kd):
         for name, place, value in (("kp", KP, kp), ("ki", KI, ki), ("kd", KD, kd)):
             self.parameters[place : place + 3] = gains(name, value)
+
+    def header(self):
+        """Lines for the head of a recording: the gains, joints 1 to 3, and the filters."""
+        lines = {name: " ".join(f"{x:g}" for x in getattr(self, name)) for name in GAINS}
+        for name, place in (("filter_hz", FILTER_RATE), ("position_filter_hz", POSITION_RATE)):
+            lines[name] = f"{self.parameters[place] / (2 * np.pi) or np.inf:g}"
+        return {**super().header(), **lines}
 
     @property
     def kp(self):
@@ -47,13 +67,11 @@ def gains(name, value):
     return value
 
 
-def positive(name, value, *, infinite=False, joints=False):
-    """One positive number (or one per joint) as an array; infinite only where allowed. Raises InputError."""
-    array = np.array(np.nan) if isinstance(value, (str, bool)) else numbers(name, value)
-    if np.isnan(array).any() or (array <= 0).any() or array.shape not in ((), (3,) if joints else ()):
-        raise InputError(
-            f"{name} = {value!r:.60}: give {'one positive number, or one per joint' if joints else 'a positive number'}"
-        )
-    if not (infinite or joints) and not np.isfinite(array).all():
-        raise InputError(f"{name} = {value!r}: must be finite")
+def limits(value):
+    """Limits of a command, > 0, one number or one per joint; infinite, or None: no limit. Raises InputError."""
+    if value is None:
+        return np.array(np.inf)
+    array = np.array(np.nan) if isinstance(value, (str, bool)) else numbers("limit", value)
+    if array.shape not in ((), (3,)) or not (array > 0).all():
+        raise InputError(f"limit = {value!r:.60}: must be positive: give one number, or one per joint")
     return array

@@ -1,11 +1,9 @@
 """What the controllers that know the arm have in common: the model, its unit, gains that change without a bump."""
 
-import math
-
 import numpy as np
 
 from ir50p_lab.controllers import model_law as law
-from ir50p_lab.controllers.gains import GainController, gains, positive
+from ir50p_lab.controllers.gains import GainController, gains
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import choice, number, switch
 from ir50p_lab.modelling.arm import Arm
@@ -55,12 +53,7 @@ class ModelController(GainController):
         p = self.parameters = np.zeros(law.N_PARAMETERS)
         self.state = np.zeros(law.N_STATES)
         bound = limit if self.unit == "N m" else limit_pwm
-        p[law.LIMIT : law.LIMIT + 3] = np.inf if bound is None else positive("limit", bound, joints=True)
-        p[law.PERIOD] = positive("period", period)
-        p[law.FILTER_RATE] = 2 * np.pi * positive("filter_hz", filter_hz, infinite=True)
-        if position_filter_hz is not None:
-            rate = 2 * np.pi * positive("position_filter_hz", position_filter_hz, infinite=True)
-            p[law.POSITION_RATE] = 0.0 if math.isinf(rate) else rate
+        self._write_limit_and_filters(bound, period, filter_hz, position_filter_hz)
         if number("delay", delay, ">= 0", unit="s") > 1:
             raise InputError(f"delay = {delay!r} s: give 0 to 1 s, from a sample to the moment its command acts")
         p[law.DELAY] = delay
@@ -120,13 +113,9 @@ class ModelController(GainController):
             s[law.BUMP : law.BUMP + 3] += (old[0] - self.kp) * ahead + (old[2] - self.kd) * slope
 
     def header(self):
-        """Lines for the head of a recording: gains, filter, friction, delay, and the model as 20 numbers a joint."""
+        """Lines for the head of a recording: gains, filters, friction, delay, and the model as 20 numbers a joint."""
         p = self.parameters
-        lines = {name: " ".join(f"{x:g}" for x in getattr(self, name)) for name in ("kp", "ki", "kd")}
-        position = p[law.POSITION_RATE] / (2 * np.pi) or np.inf
-        lines |= {
-            "filter_hz": f"{p[law.FILTER_RATE] / (2 * np.pi):g}",
-            "position_filter_hz": f"{position:g}",
+        lines = {
             "velocity": "angle" if p[law.RATE_OF_ANGLE] else "error",
             "dry_friction": ("none", "coulomb", "stribeck")[int(p[law.DRY])],
             "delay_s": f"{p[law.DELAY]:g}",

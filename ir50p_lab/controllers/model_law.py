@@ -5,14 +5,13 @@ Everything they share stands here once: error and its rate, prediction, integral
 
 import math
 
-from ir50p_lab.controllers.pid_law import KD, KI, KP, LIMIT
+from ir50p_lab.controllers.pid_law import FILTER_RATE, KD, KI, KP, LIMIT, PERIOD, POSITION_RATE
 from ir50p_lab.controllers.sampling import elapsed
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 
 LINEARISE, FEED_FORWARD, GRAVITY_ONLY = 0.0, 1.0, 2.0  # modes
-# places in the parameter vector, after KP to LIMIT
-PERIOD, FILTER_RATE, POSITION_RATE = 12, 13, 14
+# places in the parameter vector, after KP to POSITION_RATE
 MODE, RATE_OF_ANGLE, REFERENCE_VELOCITY, DELAY, ANTI_WINDUP, FADE_RATE, GRAVITY = 15, 16, 17, 18, 19, 20, 21
 DRY, SIGN_OF_MEASURED, SMOOTH, BREAKAWAY, QS = 22, 23, 24, 27, 30
 THETA, N_PARAMETERS = 33, 93

@@ -2,24 +2,8 @@
 
 import numpy as np
 
-from ir50p_lab.controllers.gains import GainController, positive
-from ir50p_lab.controllers.pid_law import (
-    ANTI_WINDUP,
-    ERROR,
-    FILTER_RATE,
-    INTEGRAL,
-    KD,
-    KI,
-    KP,
-    LIMIT,
-    N_PARAMETERS,
-    N_STATES,
-    ON_ERROR,
-    PERIOD,
-    POSITION_RATE,
-    SLOPE,
-    STARTED,
-)
+from ir50p_lab.controllers import pid_law as law
+from ir50p_lab.controllers.gains import GainController
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import choice, switch
 
@@ -70,33 +54,21 @@ class PID(GainController):
             raise InputError("give limit_pwm (PWM counts) or limit (N m), not both: the command has one unit")
         choice("derivative_on", derivative_on, ("measurement", "error"))
         self.unit = "N m" if limit_pwm is None else "PWM"
+        self.parameters = np.zeros(law.N_PARAMETERS)
+        self.state = np.zeros(law.N_STATES)
         bound = limit if limit_pwm is None else limit_pwm
-        self.parameters = np.zeros(N_PARAMETERS)
-        self.state = np.zeros(N_STATES)
-        self.parameters[LIMIT : LIMIT + 3] = np.inf if bound is None else positive("limit", bound, joints=True)
-        self.parameters[PERIOD] = positive("period", period)
-        self.parameters[FILTER_RATE] = 2 * np.pi * positive("filter_hz", filter_hz, infinite=True)
-        if position_filter_hz is not None:
-            rate = 2 * np.pi * positive("position_filter_hz", position_filter_hz, infinite=True)
-            self.parameters[POSITION_RATE] = 0.0 if np.isinf(rate) else rate  # 0 and inf: no filter
-        self.parameters[ON_ERROR] = derivative_on == "error"
-        self.parameters[ANTI_WINDUP] = switch("anti_windup", anti_windup)
+        self._write_limit_and_filters(bound, period, filter_hz, position_filter_hz)
+        self.parameters[law.ON_ERROR] = derivative_on == "error"
+        self.parameters[law.ANTI_WINDUP] = switch("anti_windup", anti_windup)
         self._write_gains(kp, ki, kd)
 
     def set_gains(self, kp=None, ki=None, kd=None):
         """Change gains in the middle of a run; the integral takes up the difference, so that u does not jump."""
         old = self.parameters.copy()
-        new = [old[place : place + 3] if g is None else g for place, g in ((KP, kp), (KI, ki), (KD, kd))]
-        self._write_gains(*new)
-        if self.state[STARTED]:
-            change = old[:LIMIT] - self.parameters[:LIMIT]
-            self.state[INTEGRAL : INTEGRAL + 3] += (
-                change[KP:KI] * self.state[ERROR : ERROR + 3] + change[KD:] * self.state[SLOPE : SLOPE + 3]
+        places = ((law.KP, kp), (law.KI, ki), (law.KD, kd))
+        self._write_gains(*(old[place : place + 3] if new is None else new for place, new in places))
+        if self.state[law.STARTED]:
+            change, s = old[: law.LIMIT] - self.parameters[: law.LIMIT], self.state
+            s[law.INTEGRAL : law.INTEGRAL + 3] += (
+                change[law.KP : law.KI] * s[law.ERROR : law.ERROR + 3] + change[law.KD :] * s[law.SLOPE : law.SLOPE + 3]
             )
-
-    def header(self):
-        """Lines for the head of a recording: the gains, joints 1 to 3, and the filters."""
-        lines = {name: " ".join(f"{x:g}" for x in getattr(self, name)) for name in ("kp", "ki", "kd")}
-        filters = {"filter_hz": FILTER_RATE, "position_filter_hz": POSITION_RATE}
-        rates = {name: self.parameters[place] / (2 * np.pi) for name, place in filters.items()}
-        return {**super().header(), **lines, **{name: f"{hz or np.inf:g}" for name, hz in rates.items()}}

@@ -7,7 +7,7 @@ from ir50p_lab.jit import jit
 from ir50p_lab.modelling.closed_form import not_denormal
 
 # places in the parameter vector
-KP, KI, KD, LIMIT, PERIOD, FILTER_RATE, ON_ERROR, ANTI_WINDUP, POSITION_RATE = 0, 3, 6, 9, 12, 13, 14, 15, 16
+KP, KI, KD, LIMIT, PERIOD, FILTER_RATE, POSITION_RATE, ON_ERROR, ANTI_WINDUP = 0, 3, 6, 9, 12, 13, 14, 15, 16
 N_PARAMETERS = 17
 # places in the state vector
 INTEGRAL, VELOCITY, LAST, ERROR, SLOPE, TIME, STARTED, FILTERED, N_STATES = 0, 3, 6, 9, 12, 15, 16, 17, 20

@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import number
 
 
 @dataclass(frozen=True)
@@ -149,20 +150,12 @@ def _series(kp, Ti, Td, rule, warnings):
     return PIDGains(kp=kp * (1 + Td / Ti), ki=kp / Ti, kd=kp * Td, rule=rule, warnings=warnings)
 
 
-def _numbers(source, names, kind):
-    try:
-        values = [float(getattr(source, name)) for name in names]
-    except (AttributeError, TypeError, ValueError):
-        raise InputError(f"expected {kind} with numbers {', '.join(names)}, got {source!r:.80}") from None
-    for name, value in zip(names, values, strict=True):
-        if not math.isfinite(value):
-            raise InputError(f"{name} = {value}: tuning needs finite numbers; fit the model again or set it by hand")
-    return values
-
-
 def _model(model, rule, *, dead_time=False):
     """(K, T, L), checked; with `dead_time` L must be > 0."""
-    K, T, L = _numbers(model, ("K", "T", "L"), "a FOPDT model (fit_fopdt, or FOPDT(K=, T=, L=))")
+    try:
+        K, T, L = (number(name, getattr(model, name)) for name in "KTL")
+    except AttributeError:
+        raise InputError(f"expected a FOPDT model (fit_fopdt, or FOPDT(K=, T=, L=)), got {model!r:.80}") from None
     if K == 0 or T <= 0 or L < 0:
         raise InputError(f"K = {K}, T = {T} s, L = {L} s: a FOPDT model needs K != 0, T > 0 and L >= 0")
     if dead_time and L == 0:
@@ -178,10 +171,7 @@ def _tau_c(tau_c, L):
         raise InputError(
             "L = 0, so there is no natural tau_c: give the closed-loop time constant you want, tau_c= in s"
         )
-    tau_c = L if tau_c is None else tau_c
-    if isinstance(tau_c, str) or not (math.isfinite(tau_c) and tau_c > 0):
-        raise InputError(f"tau_c = {tau_c!r} s: the closed-loop time constant must be a finite number > 0")
-    return tau_c
+    return L if tau_c is None else number("tau_c", tau_c, "> 0", unit="s")
 
 
 def _pick(kind, choices):

@@ -48,33 +48,6 @@ class IKSolutions:
         index = self.branches.index(branch) if isinstance(branch, str) else branch
         return self.q[..., index, :]
 
-    def best(self, near=(0.0, 0.0, 0.0)):
-        """The solution within the joint limits that is nearest to the pose `near` (3,) rad.
-
-        Returns: (3,) or (n, 3) rad. Raises UnreachableError if no branch of a point is within the limits, naming
-        for each branch the joint that stands in the way.
-        """
-        near = vectors3("near", near)
-        if not self.within_limits.any(axis=-1).all():
-            raise UnreachableError(self._why_not())
-        distance = np.abs(self.q - near[..., None, :]).max(axis=-1)
-        choice = np.where(self.within_limits, distance, np.inf).argmin(axis=-1)
-        return np.take_along_axis(self.q, choice[..., None, None], axis=-2)[..., 0, :]
-
-    def _why_not(self):
-        blocked = ~self.within_limits.any(axis=-1)
-        point = tuple(np.argwhere(blocked)[0]) if blocked.ndim else ()
-        reasons = []
-        for name, q in zip(self.branches, self.q[point], strict=True):
-            out = [
-                f"q{i + 1} = {np.degrees(q[i]):.1f} deg, limits {np.degrees(lo):.0f}..{np.degrees(hi):.0f}"
-                for i, (lo, hi) in enumerate(zip(self.q_min, self.q_max, strict=True))
-                if not lo <= q[i] <= hi
-            ]
-            reasons.append(f"{name}: {'; '.join(out)}")
-        where = f"point {int(point[0])}" if point else "the point"
-        return f"{where} is within reach but outside the joint limits on every branch ({' | '.join(reasons)})"
-
 
 def reachability(arm, p):
     """Distance from `p` to the workspace, 0 inside: a thick shell about the shoulder, joint limits not counted.

@@ -146,7 +146,10 @@ def homogeneous(R=None, t=None):
     """
     R = np.eye(3) if R is None else check_rotation(R)
     t = np.zeros(3) if t is None else _finite("t", t, (3,))
-    leading = _broadcast("R and t", R.shape[:-2], t.shape[:-1])
+    try:
+        leading = np.broadcast_shapes(R.shape[:-2], t.shape[:-1])
+    except ValueError:
+        raise InputError(f"R and t do not fit together: shapes {R.shape} and {t.shape}") from None
     T = np.zeros((*leading, 4, 4))
     T[..., :3, :3] = R
     T[..., :3, 3] = t
@@ -242,10 +245,3 @@ def _finite(name, value, tail):
     if not np.all(np.isfinite(array)):
         raise InputError(f"{name} holds NaN or infinity; check where it comes from: {array}")
     return array
-
-
-def _broadcast(names, *shapes):
-    try:
-        return np.broadcast_shapes(*shapes)
-    except ValueError as error:
-        raise InputError(f"{names} do not fit together: leading dimensions {' and '.join(map(str, shapes))}") from error

@@ -1,6 +1,6 @@
 """The equations of motion derived as formulas, in milliseconds: frames, Jacobians, M, C, g, energy (1.74)-(1.114)."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -136,51 +136,42 @@ class SymbolicModel:
 
     def numeric(self, arm):
         """The formulas as functions of numbers, for `arm` (see `values`): a NumericModel."""
-        states = {"M": [self.q], "C": [self.q, self.qd], "g": [self.q], "p": [self.q], "J": [self.q]}
-        formulas = {"M": self.M, "C": self.C, "g": self.g, "p": self.frames[3][:3, 3], "J": self.J}
-        states["energy"], formulas["energy"] = [self.q, self.qd], self.energy
-        parameters = list(self.symbols.values())
-        functions = {
-            name: sympy.lambdify([*map(list, states[name]), parameters], formulas[name], "numpy", cse=True)
-            for name in formulas
-        }
-        return NumericModel(self.values(arm), functions)
+        values, parameters = self.values(arm), list(self.symbols.values())
+
+        def function(formula, *state, shape=None):
+            compiled = sympy.lambdify([*map(list, state), parameters], formula, "numpy", cse=True)
+
+            def of_numbers(*numbers):
+                checked = [vector3(letter, x) for letter, x in zip(("q", "qd"), numbers, strict=False)]
+                result = np.array(compiled(*checked, values), dtype=float)
+                return result if shape is None else result.reshape(shape)
+
+            return of_numbers
+
+        return NumericModel(
+            M=function(self.M, self.q),
+            C=function(self.C, self.q, self.qd),
+            g=function(self.g, self.q, shape=3),
+            p=function(self.frames[3][:3, 3], self.q, shape=3),
+            J=function(self.J, self.q),
+            energy=function(self.energy, self.q, self.qd, shape=()),
+        )
 
 
 @dataclass(frozen=True)
 class NumericModel:
-    """The symbolic model evaluated in numbers: q rad, qd rad/s, both (3,). An independent route, not a fast one."""
+    """The symbolic model evaluated in numbers: an independent route, not a fast one. q rad, qd rad/s, both (3,).
 
-    parameters: list
-    functions: dict
+    M(q): mass matrix, (3, 3) kg m^2; C(q, qd): Coriolis matrix, (3, 3) N m s/rad; g(q): gravity torque, (3,) N m;
+    p(q): tip in the base frame, (3,) m; J(q): geometric Jacobian of the tip, (6, 3); energy(q, qd): in all, J.
+    """
 
-    def _call(self, name, *state):
-        state = [vector3(letter, x) for letter, x in zip(("q", "qd"), state, strict=False)]
-        return np.array(self.functions[name](*state, self.parameters), dtype=float)
-
-    def M(self, q):
-        """Mass matrix, (3, 3) kg m^2."""
-        return self._call("M", q)
-
-    def C(self, q, qd):
-        """Coriolis matrix, (3, 3) N m s/rad."""
-        return self._call("C", q, qd)
-
-    def g(self, q):
-        """Gravity torque, (3,) N m."""
-        return self._call("g", q).ravel()
-
-    def p(self, q):
-        """Tip position in the base frame, (3,) m."""
-        return self._call("p", q).ravel()
-
-    def J(self, q):
-        """Geometric Jacobian of the tip, (6, 3)."""
-        return self._call("J", q)
-
-    def energy(self, q, qd):
-        """Total energy, J."""
-        return float(self._call("energy", q, qd))
+    M: Callable
+    C: Callable
+    g: Callable
+    p: Callable
+    J: Callable
+    energy: Callable
 
 
 def derive(*, links="in-line", general=False):

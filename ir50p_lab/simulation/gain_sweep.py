@@ -1,13 +1,13 @@
 """PID gain sweeps at full speed: thousands of gain sets a second, figures of merit only."""
 
 import os
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite, vector3
+from ir50p_lab.inputs import first_not_finite, numbers, vector3
 from ir50p_lab.simulation.batch import LANES, METRICS, pid_batch
 from ir50p_lab.simulation.plant import make_plant
 from ir50p_lab.simulation.simulate import _sample, _target, _times
@@ -89,16 +89,13 @@ def sweep_gains(
     out = np.empty((len(METRICS), 3, len(kp)))
     try:
         with tqdm(total=len(kp), disable=not progress, unit="sim") as bar:
-            waiting = {}
-            for job in jobs:
-                args = (plant.theta, plant.numbers, kp[job], ki[job], kd[job], bound, period, rate, r, x0, step, steps)
-                waiting[pool.submit(run_block, *args)] = job
-            while waiting:
-                ready, _ = wait(waiting, return_when=FIRST_COMPLETED) if executor is None else (list(waiting)[:1], None)
-                for future in ready:
-                    job = waiting.pop(future)
-                    out[:, :, job] = future.result()
-                    bar.update(out[:, :, job].shape[2])
+            common = (bound, period, rate, r, x0, step, steps)
+            blocks = [
+                pool.submit(run_block, plant.theta, plant.numbers, kp[job], ki[job], kd[job], *common) for job in jobs
+            ]
+            for job, block in zip(jobs, blocks, strict=True):
+                out[:, :, job] = block.result()
+                bar.update(len(kp[job]))
     finally:
         if executor is None:
             pool.shutdown(cancel_futures=True)
@@ -119,7 +116,7 @@ def run_block(theta, n, kp, ki, kd, bound, period, rate, r, x0, step, steps):
 def _gain_sets(**sets):
     arrays = {}
     for name, value in sets.items():
-        array = np.asarray(value, dtype=float)
+        array = numbers(name, value)
         if not np.isfinite(array).all():
             raise InputError(f"{name} holds {first_not_finite(np.atleast_1d(array))}; every gain must be finite")
         if (array < 0).any():
