@@ -76,6 +76,7 @@ class GainMap:
     def __init__(self, kp, kd, values, *, title, label, target, duration):
         self.figure = new_figure(9.6, 4.0, cols=2, width_ratios=(1.25, 1))
         self.map, self._side = self.figure.axes
+        self._grid = kp, kd
         half_kp, half_kd = (kp[1] - kp[0]) / 2, (kd[1] - kd[0]) / 2
         extent = (kp[0] - half_kp, kp[-1] + half_kp, kd[0] - half_kd, kd[-1] + half_kd)
         colours = ScalarMappable(Normalize(np.nanmin(values), np.nanmax(values)), "cividis_r")
@@ -97,10 +98,10 @@ class GainMap:
         ]
         self._side.legend(fontsize=8, loc="lower right")
 
-    def lay_over(self, kp, kd, values, levels, label, *, colour, unit=""):
+    def lay_over(self, values, levels, label, *, colour, unit=""):
         """Lines of another figure (m, n) over the same grid, each with value and unit; label: in the legend below."""
         style = {"colors": COLOURS[colour], "linewidths": 1.4}
-        lines = self.map.contour(kp, kd, values, levels=levels, **style)
+        lines = self.map.contour(*self._grid, values, levels=levels, **style)
         self.map.clabel(lines, fontsize=7, fmt=f"%g {unit}")
         self.map.plot([], [], color=COLOURS[colour], label=label)
         self.figure.legends.clear()

@@ -54,7 +54,7 @@ def test_gain_map_places_its_cells_at_the_gains(run):
     view = GainMap(kp, kd, values, title="t", label="s [s]", target=0.8, duration=2)
     left, right, bottom, top = view.map.images[0].get_extent()
     assert (left, right) == (5, 105) and (bottom, top) == (-1, 9)  # the centres of the cells are the gains
-    view.lay_over(kp, kd, np.tile(kp, (5, 1)), [35.0], "half", colour="purple")  # a line where kp is 35
+    view.lay_over(np.tile(kp, (5, 1)), [35.0], "half", colour="purple")  # a line where kp is 35
     places = np.concatenate([path.vertices for one in view.map.collections for path in one.get_paths()])
     assert np.allclose(places[:, 0], 35)
     assert "half" in [text.get_text() for text in view.figure.legends[0].get_texts()]
