@@ -47,11 +47,10 @@ def picture_size(size):
     return int(array[0]), int(array[1])
 
 
-def check_picture_size(camera, image):
-    """Raise CalibrationError if a picture (h, w, 3) or (h, w) is of another size than its Calibration or Pinhole."""
-    size, here = tuple(camera.size), (image.shape[1], image.shape[0])
-    if size != here:
+def check_picture_size(camera, size):
+    """Raise CalibrationError if a picture of this size, (width, height), is not one of the Calibration or Pinhole."""
+    if tuple(size) != tuple(camera.size):
         raise CalibrationError(
-            f"the picture has {here[0]}x{here[1]} pixels, its calibration is of {size[0]}x{size[1]}: set the camera to "
-            "that size, or calibrate it at this one"
+            f"this calibration is of a camera with pictures of {camera.size[0]}x{camera.size[1]}, not "
+            f"{size[0]}x{size[1]}: set the camera to that size, or calibrate it at the new one"
         )

@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.inputs import check_arm, vectors3
 from ir50p_lab.modelling.chain import frames
-from ir50p_lab.vision.board_pose import BoardPose, inverse_transform
+from ir50p_lab.vision.board_pose import BoardPose, inverse_transform, transform
 from ir50p_lab.vision.checks import rigid
 
 _FEWEST = 4  # poses; three would do for exact angles
@@ -26,7 +26,6 @@ class HandEye:
     T_tool_board      the board in the hand: board to tool coordinates (frame 3)      (4, 4)
     rotation_error    of each pose, what the two ways round the loop differ by        (n,) rad
     translation_error the same, of the board's origin                                 (n,) m
-    method            of OpenCV, the one with the smaller error
     ================= =============================================================== ==============
     """
 
@@ -34,7 +33,6 @@ class HandEye:
     T_tool_board: np.ndarray
     rotation_error: np.ndarray = field(repr=False)
     translation_error: np.ndarray = field(repr=False)
-    method: str
 
     @property
     def rms(self):
@@ -65,11 +63,11 @@ def tool_poses(arm, q):
 
 
 def hand_eye(arm, q, T_cam_board):
-    """Camera and board from arm poses: A X = Z B by two methods of OpenCV (Shah, Li), the one that leaves less.
+    """Camera and board from arm poses: A X = Z B by OpenCV (method of Shah).
 
         T_base_tool(q_i) T_tool_board = T_base_cam T_cam_board_i      for every pose i
 
-    The methods take q as exact, so what is left over is the potentiometers', which round and are off. The hand of this
+    The method takes q as exact, so what is left over is the potentiometers', which round and are off. The hand of this
     arm turns about two axes only, the column (q1) and the joint axis of q2 + q3: that is enough, if both are used.
 
     Args: arm: Arm; q: (n, 3) rad, n >= 4; T_cam_board: n poses, each BoardPose or (4, 4).
@@ -105,34 +103,21 @@ def hand_eye(arm, q, T_cam_board):
 
 
 def _solve(T_base_tool, T_cam_board):
-    """HandEye of the method that leaves less."""
+    """HandEye by the method of Shah; errors are infinite where no camera explains the poses."""
     import cv2
     from scipy.spatial.transform import Rotation
 
-    nothing = np.full(len(T_base_tool), np.inf)
-    found = [HandEye(np.eye(4), np.eye(4), nothing, nothing, "none")]
     poses = [part for T in (T_cam_board, T_base_tool) for part in (T[:, :3, :3], T[:, :3, 3])]
-    for name in ("SHAH", "LI"):
-        method = getattr(cv2, f"CALIB_ROBOT_WORLD_HAND_EYE_{name}")
-        try:
-            *board, R_cb, t_cb = cv2.calibrateRobotWorldHandEye(*poses, method=method)
-        except cv2.error:  # no camera explains these poses
-            continue
-        T_tool_board, T_base_cam = (inverse_transform(_rotation_and_shift(*one)) for one in (board, (R_cb, t_cb)))
-        ours, seen = T_base_tool @ T_tool_board, T_base_cam @ T_cam_board
-        turn = Rotation.from_matrix(ours[:, :3, :3].transpose(0, 2, 1) @ seen[:, :3, :3]).magnitude()
-        shift = np.linalg.norm(ours[:, :3, 3] - seen[:, :3, 3], axis=1)
-        found.append(HandEye(T_base_cam, T_tool_board, turn, shift, name))
-    return min(found, key=lambda one: np.sum(one.errors**2))
-
-
-def _rotation_and_shift(R, t):
-    """Transform with the rotation nearest to R: the methods return one that is not quite orthonormal."""
-    U, _, Vt = np.linalg.svd(R)
-    T = np.eye(4)
-    T[:3, :3] = U @ np.diag([1, 1, np.linalg.det(U @ Vt)]) @ Vt
-    T[:3, 3] = np.ravel(t)
-    return T
+    try:
+        found = cv2.calibrateRobotWorldHandEye(*poses, method=cv2.CALIB_ROBOT_WORLD_HAND_EYE_SHAH)
+        back = [transform(Rotation.from_matrix(R).as_rotvec(), t) for R, t in (found[:2], found[2:])]
+    except (cv2.error, ValueError):
+        nothing = np.full(len(T_base_tool), np.inf)
+        return HandEye(np.eye(4), np.eye(4), nothing, nothing)
+    T_tool_board, T_base_cam = map(inverse_transform, back)
+    ours, seen = T_base_tool @ T_tool_board, T_base_cam @ T_cam_board
+    turn = Rotation.from_matrix(ours[:, :3, :3].transpose(0, 2, 1) @ seen[:, :3, :3]).magnitude()
+    return HandEye(T_base_cam, T_tool_board, turn, np.linalg.norm(ours[:, :3, 3] - seen[:, :3, 3], axis=1))
 
 
 def _odd_poses(T_base_tool, T_cam_board):

@@ -3,12 +3,13 @@
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError, VisionError
-from ir50p_lab.inputs import choice, number
+from ir50p_lab.inputs import number
 from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transform, rvec_tvec, transform
 from ir50p_lab.vision.checks import check_picture_size, point_list, rigid
 from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
 
 _STEPS = 4  # of the outline's correction: each gains a factor (radius / distance)^2, some 500
+_SMALL = 1e-3  # standard deviations: steps of derivatives
 _SLANT = 0.02  # rad above the plane; a ray flatter than this meets it anywhere
 
 
@@ -83,7 +84,7 @@ class TablePlane:
         from ir50p_lab.vision.image import to_grey
 
         grey = to_grey(image)
-        check_picture_size(camera, grey)
+        check_picture_size(camera, grey.shape[::-1])
         try:
             corners = find_checkerboard(grey, pattern).xy
         except NotUsable as why:
@@ -95,7 +96,7 @@ class TablePlane:
         R, t = self.T_cam_table[:3, :3], self.T_cam_table[:3, 3]
         return np.column_stack([R[:, 0], R[:, 1], t + number("height", height, unit="m") * R[:, 2]])
 
-    def to_table(self, xy, height=0.0, *, radius=None, route="homography"):
+    def to_table(self, xy, height=0.0, *, radius=None):
         """Places (n, 2) m on the plane at `height` m for pixels (n, 2); a single pixel (2,) gives (2,).
 
         Args:
@@ -104,15 +105,18 @@ class TablePlane:
             it seems farther away, by r times the tangent of the camera's angle from the vertical.
             radius: m; then xy is the centre of the outline of a ball with this radius, which lies a little farther
             from the middle of the picture than the image of its centre, and that is put right.
-            route: 'homography', or 'ray' (the line of sight cut with the plane): the same, another way.
 
         Raises InputError on bad pixels; VisionError for a pixel whose line of sight does not meet the plane.
         """
         points, height = point_list("xy", xy, 2), number("height", height, unit="m")
-        choice("route", route, ("homography", "ray"))
         if radius is not None:
             number("radius", radius, "> 0", unit="m", hint="of the ball")
-        found = self._place(self.T_cam_table, self.pinhole.undistort_points(points), height, radius, route, points)
+        x_n, toward = self.pinhole.undistort_points(points), self.T_cam_table[2]
+        found = self._cut(x_n, height, points)
+        for _ in range(_STEPS if radius is not None else 0):
+            # outline's centre = sphere's centre / (1 - (r/z)^2) on the plane one unit ahead
+            z = found @ toward[:2] + height * toward[2] + toward[3]
+            found = self._cut(x_n * (1.0 - (radius / z) ** 2)[:, None], height, points)
         return found[0] if np.ndim(xy) == 1 else found
 
     def to_points(self, xy, height=0.0, *, radius=None):
@@ -131,46 +135,24 @@ class TablePlane:
         ]
         return found[0] if points.ndim == 1 else found
 
-    def covariance(self, xy, height=0.0, *, sigma_px=0.3, sigma_height=0.0, parts=False):
-        """Covariance of the places, (n, 2, 2) m^2, to first order.
+    def covariance(self, xy, height=0.0, *, sigma_px=0.3, sigma_height=0.0):
+        """Covariance of the places, (n, 2, 2) m^2, to first order: of pixel, height, and camera and pose together.
 
-            J_px J_px^T sigma_px^2 + J_h J_h^T sigma_h^2 + J_pose P_pose J_pose^T + J_cam P_cam J_cam^T,
-            J_cam = dX/dcamera + J_pose dpose/dcamera
+            J_px J_px^T sigma_px^2 + J_h J_h^T sigma_h^2 + sum of d d^T, d a change by one of the `variations`
 
         Args: sigma_px: standard error of each pixel coordinate; sigma_height: m, of the height.
-        parts: True for a dict with 'pixel', 'height', 'pose' and 'camera', each (n, 2, 2).
         """
         points, height = point_list("xy", xy, 2), number("height", height, unit="m")
-        K, distortion = self.pinhole.K, self.pinhole.distortion
-        pose = np.concatenate(rvec_tvec(self.T_cam_table))
-        own = np.concatenate([[K[0, 0], K[1, 1], K[0, 2], K[1, 2]], distortion])
 
-        def place(px=0.0, py=0.0, dh=0.0, dpose=0.0, down=0.0):
-            numbers = own + down
-            K_ = np.array([[numbers[0], 0, numbers[2]], [0, numbers[1], numbers[3]], [0, 0, 1]])
-            x_n = Pinhole(K_, numbers[4:]).undistort_points(points + np.array([px, py]))
-            vector = pose + dpose
-            T = transform(vector[:3], vector[3:])
-            return self._place(T, x_n, height + dh, None, "homography", points)
+        def slope(*step):
+            step = np.array(step)
+            forth, back = (self.to_table(points + way * step[:2], height + way * step[2]) for way in (1, -1))
+            return (forth - back) / (2 * step.sum())
 
-        def slope(step, **at):
-            forth = place(**{name: step * np.asarray(value) for name, value in at.items()})
-            back = place(**{name: -step * np.asarray(value) for name, value in at.items()})
-            return (forth - back) / (2 * step)
-
-        J_px = np.stack([slope(1e-2, px=1.0), slope(1e-2, py=1.0)], axis=-1)
-        J_h = slope(1e-5, dh=1.0)[..., None]
-        J_pose = np.stack([slope(1e-6, dpose=unit) for unit in np.eye(6)], axis=-1)
-        scale = np.where(np.arange(own.size) < 4, 1e-2, 1e-5)  # px, or of a coefficient
-        J_cam = np.stack([slope(s, down=unit) for s, unit in zip(scale, np.eye(own.size), strict=True)], axis=-1)
-        J_cam = J_cam + J_pose @ self._by_camera
-        found = {
-            "pixel": sigma_px**2 * J_px @ J_px.transpose(0, 2, 1),
-            "height": sigma_height**2 * J_h @ J_h.transpose(0, 2, 1),
-            "pose": J_pose @ self._pose_covariance @ J_pose.transpose(0, 2, 1),
-            "camera": J_cam @ self._camera_covariance @ J_cam.transpose(0, 2, 1),
-        }
-        return found if parts else sum(found.values())
+        changes = [sigma_px * slope(1e-2, 0, 0), sigma_px * slope(0, 1e-2, 0), sigma_height * slope(0, 0, 1e-5)]
+        here = self.to_table(points, height)
+        changes += [(one.to_table(points, height) - here) / _SMALL for one in self.variations(_SMALL)]
+        return sum(change[:, :, None] * change[:, None] for change in changes)
 
     def standard_error(self, xy, height=0.0, *, sigma_px=0.3, sigma_height=0.0):
         """Standard errors of x and y, (n, 2) m ((2,) for one pixel); see `covariance`."""
@@ -178,8 +160,8 @@ class TablePlane:
         found = np.sqrt(np.diagonal(both, axis1=1, axis2=2))
         return found[0] if np.ndim(xy) == 1 else found
 
-    def variations(self):
-        """Planes that are wrong by one standard deviation, in each independent direction of camera and pose errors.
+    def variations(self, part=1.0):
+        """Planes wrong by (a part of) one standard deviation, in each independent direction of camera and pose errors.
 
         Whatever is computed from the plane spreads by the root of the summed squares of its changes: a list of
         TablePlane, empty if everything is exactly known.
@@ -195,26 +177,15 @@ class TablePlane:
         for size, direction in zip(sizes, directions.T, strict=True):
             if size < 1e-12:
                 continue
-            d = np.sqrt(size) * scale * direction
+            d = part * np.sqrt(size) * scale * direction
             K, distortion = self.pinhole.K.copy(), self.pinhole.distortion + d[4:9]
             K[[0, 1, 0, 1], [0, 1, 2, 2]] += d[:4]
             pose = np.concatenate(rvec_tvec(self.T_cam_table)) + d[9:]
             found.append(TablePlane(Pinhole(K, distortion), transform(pose[:3], pose[3:])))
         return found
 
-    def _place(self, T, x_n, height, radius, route, points):
-        found = self._cut(T, x_n, height, route, points)
-        if radius is None:
-            return found
-        x_c = x_n
-        for _ in range(_STEPS):  # outline's centre = sphere's centre / (1 - (r/z)^2) on the plane one unit ahead
-            z = np.column_stack([found, np.full(len(found), height)]) @ T[2, :3] + T[2, 3]
-            x_c = x_n * (1.0 - (radius / z) ** 2)[:, None]
-            found = self._cut(T, x_c, height, route, points)
-        return found
-
-    def _cut(self, T, x_n, height, route, points):
-        R, t = T[:3, :3], T[:3, 3]
+    def _cut(self, x_n, height, points):
+        R, t = self.T_cam_table[:3, :3], self.T_cam_table[:3, 3]
         sight = np.column_stack([x_n, np.ones(len(x_n))])
         down = -(sight @ R)[:, 2] / np.linalg.norm(sight, axis=1)  # of the line of sight, towards the table
         above = -R[:, 2] @ t - height  # of the lens, over the plane
@@ -224,11 +195,7 @@ class TablePlane:
                 f"the pixel {np.round(points[lost][0], 1).tolist()} looks past the plane at height {height:g} m: it "
                 "lies at or above the horizon, so no place on the table belongs to it"
             )
-        if route == "ray":
-            centre, rays = -R.T @ t, sight @ R
-            return (centre + rays * ((height - centre[2]) / rays[:, 2])[:, None])[:, :2]
-        H = np.column_stack([R[:, 0], R[:, 1], t + height * R[:, 2]])
-        X = np.linalg.solve(H, sight.T)
+        X = np.linalg.solve(self.homography(height), sight.T)
         return (X[:2] / X[2]).T
 
 

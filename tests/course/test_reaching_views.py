@@ -77,7 +77,7 @@ def test_tip_and_budget_and_residuals_show_their_numbers():
     assert "look" not in text_of(alone) and "by the camera" not in text_of(alone)
     budget = Budget((Cause("marker", 3e-3, 1e-3), Cause("camera", 4e-3, 0.0)))
     assert "takes 5.0 mm down to 1.0 mm" in text_of(views.budget_figure(budget, (5e-3, 1e-3)))
-    found = HandEye(T_BASE_CAM, np.eye(4), np.full(4, 2e-3), np.full(4, 1e-3), "TSAI")
+    found = HandEye(T_BASE_CAM, np.eye(4), np.full(4, 2e-3), np.full(4, 1e-3))
     text = text_of(views.residual_figure(found))
     assert "open by 1.0 mm" in text and "open by 2.0 mrad" in text
     assert all(name in text_of(views.hand_eye_figure()) for name in ("base", "tool", "camera", "board", "sought"))

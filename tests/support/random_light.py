@@ -4,8 +4,9 @@ import numpy as np
 
 from ir50p_lab.vision.rendering.rays import rays_through
 from ir50p_lab.vision.rendering.render import RayTracer
-from ir50p_lab.vision.rendering.scene import Lamp, Lens, Sensor, Sky, Sun
+from ir50p_lab.vision.rendering.scene import Lamp, Lens, Sky, Sun
 from ir50p_lab.vision.rendering.shadow import table_light
+from tests.support.desk import WebcamSensor, WindowSun
 
 
 def warm(amount):
@@ -41,7 +42,7 @@ def random_lights(rng, position):
             angle = rng.uniform(0, 2 * np.pi)
             through = np.cos(angle) * x + np.sin(angle) * y + rng.uniform(-0.1, 0.1)
             edge = (angle, through, rng.uniform(0.003, 0.04))
-        sun = Sun(
+        sun = WindowSun(
             towards=towards, strength=rng.uniform(0.6, 1.2), colour=warm(rng.uniform(0, 0.4)), softness=0.01, edge=edge
         )
         return (Sky(strength=rng.uniform(0.15, 0.35), colour=warm(rng.uniform(-0.5, 0))), sun)
@@ -79,7 +80,7 @@ def random_sensor(rng, scene, position):
     balance = (lit.mean() / lit) ** rng.uniform(0.4, 1.0)
     # square roots, as the tone curve about does: a window in the corner does not darken everything
     exposure = 0.2 / np.sqrt(sparse_light(scene)).mean() ** 2 * 2.0 ** rng.uniform(-0.9, 0.9)
-    return Sensor(
+    return WebcamSensor(
         exposure=float(exposure),
         balance=tuple(map(float, balance * 1.05 ** rng.normal(0, 1, 3))),
         read_noise=rng.uniform(0.001, 0.008),

@@ -5,7 +5,8 @@ import colorsys
 import numpy as np
 
 from ir50p_lab.vision.rendering.places import pose
-from ir50p_lab.vision.rendering.scene import Box, Patch, SceneBall, Stick, Tabletop
+from ir50p_lab.vision.rendering.scene import Patch, SceneBall, Stick, Tabletop
+from tests.support.desk import TEXTURES, Box
 
 # Tables: light wood, dark wood, white laminate, grey, black, green cutting mat, blue cloth, reddish wood (the hardest)
 TABLES = (
@@ -56,7 +57,7 @@ def random_table(rng, position):
     x, y = position[:2]
     ends = rng.uniform(0.15, 0.4, 4) if rng.random() < 0.2 else rng.uniform(0.5, 3.0, 4)
     return Tabletop(
-        texture=str(rng.choice(["plain", "wood", "cloth", "speckle", "tiles"], p=[0.25, 0.3, 0.2, 0.15, 0.1])),
+        texture=TEXTURES[str(rng.choice(list(TEXTURES), p=[0.25, 0.3, 0.2, 0.15, 0.1]))],
         colour=TABLES[rng.integers(len(TABLES))],
         contrast=rng.uniform(0.03, 0.5),
         grain=rng.uniform(0.01, 0.06),

@@ -138,7 +138,6 @@ def test_the_work_area_of_another_arm_follows_its_reach():
     r = np.hypot(*places[:, :2].T)
     assert area.r_min <= r.min() < r.max() <= area.r_max
     assert np.abs(np.arctan2(places[:, 1], places[:, 0])).max() <= area.angle
-    assert area.outline.shape[1] == 2
 
 
 # ---- reaching
@@ -376,7 +375,7 @@ def test_the_rendered_camera_sees_ball_and_marker_where_they_are():
 def test_a_picture_of_another_size_than_the_calibration_is_refused():
     _, world, _ = rig()
     small = TablePlane(world.pinhole.scaled((320, 240)), world.T_cam_world)
-    with pytest.raises(CalibrationError, match="640x480 pixels, its calibration is of 320x240"):
+    with pytest.raises(CalibrationError, match="320x240, not 640x480"):
         BallLocator(world, small).look()
 
 

@@ -11,7 +11,6 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.vision import Charuco, Pinhole
 from ir50p_lab.vision.rendering import (
     Board,
-    Box,
     Lens,
     Patch,
     SceneBall,
@@ -26,10 +25,18 @@ from ir50p_lab.vision.rendering import (
     scene_truth,
 )
 from ir50p_lab.vision.rendering.colours import to_bytes, to_linear, to_srgb
-from ir50p_lab.vision.rendering.sensor import disc, expose, mosaic, streak
+from ir50p_lab.vision.rendering.sensor import disc, expose, streak
 from ir50p_lab.vision.rendering.shadow import table_light
 from ir50p_lab.vision.rendering.shapes import SheetShape
+from tests.support.desk import TEXTURES, Box, mosaic
 from tests.support.random_scene import SIZES, random_scene
+
+
+def clean(scene, exposure=1.0):
+    """The scene through a perfect lens and sensor: sharp, no noise, no JPEG, bytes proportional to light."""
+    sensor = Sensor(read_noise=0.0, shot_noise=0.0, jpeg=None, gamma=False, exposure=exposure)
+    return replace(scene, lens=Lens(sigma=0.0, vignetting=0.0), sensor=sensor)
+
 
 PLAIN = Tabletop(texture="plain", contrast=0.0)
 ON_TABLE = np.diag([1.0, -1.0, -1.0, 1.0])
@@ -48,7 +55,7 @@ def aligned(corners, truth):
 
 
 def corners_by_opencv(scene, sigma=0.7):
-    image, truth = render_scene(replace(scene.clean(), lens=Lens(sigma=sigma, vignetting=0)))
+    image, truth = render_scene(replace(clean(scene), lens=Lens(sigma=sigma, vignetting=0)))
     grey = cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
     found, corners = cv2.findChessboardCorners(grey, (9, 6))
     assert found
@@ -90,7 +97,7 @@ def test_bent_board_keeps_its_arc_length_and_shows_its_corners():
 
 def test_charuco_board_is_read_by_opencv():
     board = Board(T_world_board=pose((0.5, 0.08, 0.35), (0.1, 0.2, 0.3)) @ ON_TABLE, kind="charuco")
-    image, truth = render_scene(replace(bench_scene(board, table=PLAIN).clean(), lens=Lens(vignetting=0)))
+    image, truth = render_scene(replace(clean(bench_scene(board, table=PLAIN)), lens=Lens(vignetting=0)))
     detector = cv2.aruco.CharucoDetector(Charuco(board.pattern, board.square, board.marker, board.dictionary).opencv())
     corners, numbers, _, _ = detector.detectBoard(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY))
     assert len(numbers) == 54
@@ -101,7 +108,7 @@ def test_charuco_board_is_read_by_opencv():
 def coverage(ball, **camera):
     """Part (h, w) of each pixel that a black ball hides of a bright room: one minus the quotient of two pictures."""
     scene = bench_scene(replace(ball, colour=(0, 0, 0), gloss=0.0), table=None, lights=(Sky(strength=0.0),), **camera)
-    scene = replace(scene.clean(), sensor=replace(scene.clean().sensor, exposure=3.0))
+    scene = clean(scene, exposure=3.0)
     with_ball, truth = render_scene(scene)
     without, _ = render_scene(replace(scene, objects=()))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -126,10 +133,6 @@ def test_outline_of_a_ball_is_where_the_truth_says(ball):
     assert np.sum(part * y) / part.sum() == pytest.approx(truth.outline_y, abs=0.02)
     assert np.sqrt(part.sum() / np.pi) == pytest.approx(truth.radius, abs=0.02)
     assert truth.visible == 1.0
-    dx, dy = x - truth.outline_x, y - truth.outline_y
-    second = np.array([[np.sum(part * a * b) for a in (dx, dy)] for b in (dx, dy)]) / part.sum()
-    short, long = 2 * np.sqrt(np.linalg.eigvalsh(second))
-    assert (truth.short, truth.long) == pytest.approx((short, long), abs=0.05)
 
 
 def test_centre_of_a_ball_is_its_projection_not_the_middle_of_its_outline():
@@ -177,7 +180,7 @@ def test_the_nearer_ball_hides_the_farther():
 def test_shadow_lies_away_from_the_sun_and_under_the_ball():
     lights = (Sky(strength=0.3), Sun(towards=(0.0, 1.0, 1.0), strength=0.7, softness=0.01))
     table = Tabletop(texture="plain", contrast=0.0, colour="white")
-    scene = bench_scene(SceneBall(), lights=lights, table=table).clean()
+    scene = clean(bench_scene(SceneBall(), lights=lights, table=table))
     lit = np.diff([table_light(scene, np.array([0.4]), np.array([y]))[0, 1] for y in (-0.03, 0.2)])
     hidden_sky = 0.3 * 0.03 * 0.03**2 / np.hypot(0.03, 0.03) ** 3
     assert lit[0] == pytest.approx(0.7 / np.sqrt(2) + hidden_sky, rel=0.01)
@@ -290,7 +293,7 @@ def test_random_scenes_are_as_wide_as_meant():
     truths = [truth_of(seed, "ball") for seed in range(60)]
     scenes, balls = [truth.scene for truth in truths], [truth.red_balls[0] for truth in truths]
     assert {scene.pinhole.size for scene in scenes} == set(SIZES)
-    assert {scene.table.texture for scene in scenes} == {"plain", "wood", "cloth", "speckle", "tiles"}
+    assert {scene.table.texture for scene in scenes} == set(TEXTURES.values())
     radius = np.array([ball.radius for ball in balls])
     assert radius.min() < 10 and radius.max() > 65 and 15 < np.median(radius) < 40
     assert 0.1 < np.mean([ball.visible < 0.99 for ball in balls]) < 0.5
@@ -310,7 +313,7 @@ def test_random_scenes_can_be_drawn_and_red_is_where_the_ball_is(kind):
         assert image.shape == (height, width, 3) and 3 < image.mean() < 254
         for ball in truth.red_balls:
             y, x = np.mgrid[:height, :width]
-            inside = np.hypot(x - ball.outline_x, y - ball.outline_y) < 0.9 * ball.short
+            inside = np.hypot(x - ball.outline_x, y - ball.outline_y) < 0.8 * ball.radius
             r, g, b = np.median(image[inside], axis=0)
             drawn += r > 1.2 * max(g, b)
     assert drawn >= 6 or kind == "no_ball"

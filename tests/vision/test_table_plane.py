@@ -33,12 +33,17 @@ def lifted(height):
     return np.column_stack([PLACES, np.full(len(PLACES), height)])
 
 
+def by_rays(plane, xy, height):
+    """The lines of sight cut with the plane: places without a homography."""
+    rays = plane.pinhole.rays(xy) @ plane.T_cam_table[:3, :3]
+    return (plane.centre + rays * ((height - plane.centre[2]) / rays[:, 2])[:, None])[:, :2]
+
+
 @pytest.mark.parametrize("height", [0.0, 0.03, -0.01])
-@pytest.mark.parametrize("route", ["homography", "ray"])
-def test_a_projected_point_comes_back(height, route):
+def test_a_projected_point_comes_back(height):
     xy = CAMERA.project(POSE, lifted(height))
     plane = TablePlane(CAMERA, POSE)
-    assert np.allclose(plane.to_table(xy, height, route=route), PLACES, atol=1e-12)
+    assert np.allclose(plane.to_table(xy, height), PLACES, atol=1e-12)
     assert np.allclose(plane.to_image(lifted(height)), xy, atol=1e-9)
     assert plane.to_table(xy[0], height).shape == (2,)
     assert np.allclose(plane.to_points(xy, height), lifted(height), atol=1e-12)
@@ -50,7 +55,7 @@ def test_a_random_camera_gives_the_same_on_both_routes():
         eye = [rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0.3, 1.5)]
         plane = TablePlane(CAMERA, looking_at((*rng.uniform(-0.1, 0.1, 2), 0), eye))
         height, xy = rng.uniform(0, 0.05), rng.uniform((200, 150), (440, 330), (20, 2))
-        assert np.allclose(plane.to_table(xy, height), plane.to_table(xy, height, route="ray"), atol=1e-12)
+        assert np.allclose(plane.to_table(xy, height), by_rays(plane, xy, height), atol=1e-12)
 
 
 def test_the_homography_is_the_thesis_formula_with_the_third_row_dropped():
@@ -122,8 +127,6 @@ def test_standard_errors_are_those_of_random_trials():
     plane = TablePlane.from_board(CAMERA, noisy, points, camera_covariance=np.diag(spread**2))
     predicted = plane.standard_error(at, 0.03, sigma_px=0.4, sigma_height=0.001)
     assert np.allclose(np.std(found, axis=0) / predicted, 1.0, atol=0.2)
-    parts = plane.covariance(at, 0.03, sigma_px=0.4, sigma_height=0.001, parts=True)
-    assert np.allclose(sum(parts.values())[:, 0, 0], predicted[:, 0] ** 2)
 
 
 @pytest.mark.parametrize("board", [(9,), ((9.5, 6),), ((9, 1),), ((9, 6), 0), ((9, 6), np.nan), ((9, 6), "25 mm")])
@@ -247,7 +250,6 @@ def test_a_plane_of_bad_numbers_is_refused(change, match):
         ([1, 2, 3], {}, "shape"),
         ("red", {}, "px"),
         ([1, 2], {"height": np.nan}, "height"),
-        ([1, 2], {"route": "guess"}, "route"),
         ([1, 2], {"radius": -1.0}, "radius"),
     ],
 )
@@ -258,7 +260,7 @@ def test_bad_pixels_are_refused(xy, options, match):
 
 def test_a_picture_of_another_size_than_the_calibration_is_refused():
     small = np.zeros((240, 320, 3), np.uint8)
-    with pytest.raises(CalibrationError, match=r"320x240.*calibration is of 640x480"):
+    with pytest.raises(CalibrationError, match="640x480, not 320x240"):
         TablePlane.from_picture(CAMERA, small)
     with pytest.raises(CalibrationError, match="not found"):  # one of the right size, without a board
         TablePlane.from_picture(CAMERA.scaled((320, 240)), small)

@@ -97,7 +97,7 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         raise ImageError("a picture of one pixel shows no ball: take a larger one")
     if camera is not None:
         camera = as_pinhole(camera)
-        check_picture_size(camera, image)
+        check_picture_size(camera, image.shape[1::-1])
     view = view_of(image.shape, camera)
     measured, rejected, regions, tried = [], [], 0, 0
     for guess, most in ((guess_circles, _TRIED), (guess_closer, _TRIED_CLOSER)):

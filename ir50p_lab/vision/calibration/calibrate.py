@@ -8,6 +8,7 @@ import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.inputs import number, switch
+from ir50p_lab.vision.board_pose import transform
 from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.charuco import find_charuco
 from ir50p_lab.vision.calibration.checks import (
@@ -161,7 +162,7 @@ def _calibrate(names, found, size, board, options, rejected, points=None):
             points=points[found[key].index],
             corners=found[key].xy,
             residuals=best.residuals[n],
-            T_cam_board=_transform(best.poses[n]),
+            T_cam_board=transform(best.poses[n, :3], best.poses[n, 3:]),
             rise=found[key].rise,
             finder=found[key].finder,
         )
@@ -268,14 +269,6 @@ def _terms(lens):
     return tuple(dict.fromkeys("p" if name in ("p1", "p2") else name for name in names))
 
 
-def _transform(pose):
-    import cv2
-
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = cv2.Rodrigues(pose[:3])[0], pose[3:]
-    return T
-
-
 def _board_like(points):
     """The checkerboard that points (n, 3) seem to be of, for coverage and advice."""
     columns, rows = (len(np.unique(points[:, k].round(9))) for k in (0, 1))
@@ -293,10 +286,11 @@ def _corners_in(picture, board, size, other):
         )
     import cv2
 
-    grey = picture.grey()
     try:
         return (
-            find_charuco(grey, board) if isinstance(board, Charuco) else find_checkerboard(grey, board.pattern, other)
+            find_charuco(picture.image, board)
+            if isinstance(board, Charuco)
+            else find_checkerboard(picture.image, board.pattern, other)
         )
     except cv2.error as error:  # one picture must not lose the others
         raise NotUsable(Reason.NO_BOARD, f"OpenCV finds no corners in it: {' '.join(str(error).split())}") from error

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
+from ir50p_lab.vision.board_pose import rvec_tvec, transform
 from ir50p_lab.vision.calibration.fit import CornerSets, Model, project, reduce, solve
 
 _CELLS = (6, 8)  # rows, columns of the coverage map
@@ -93,7 +94,7 @@ def next_view(calibration):
     B = _columns_of(calibration)
     camera = np.array([*calibration.values.values(), 0, 0, 0])
     seen = CornerSets([v.points for v in calibration.views], [v.corners for v in calibration.views], calibration.size)
-    poses = np.array([_pose(v.T_cam_board) for v in calibration.views])
+    poses = np.array([np.concatenate(rvec_tvec(v.T_cam_board)) for v in calibration.views])
     S = reduce(B, *project(seen, camera, poses))[0].sum(axis=0)
     w, h = calibration.size
     grid = np.stack(np.meshgrid((np.arange(8) + 0.5) * w / 8, (np.arange(6) + 0.5) * h / 6), axis=-1).reshape(-1, 2)
@@ -108,8 +109,8 @@ def next_view(calibration):
     places, tilts, transforms = zip(*_candidates(calibration, points), strict=True)
     count = len(transforms)
     trial = CornerSets([points] * count, [points[:, :2]] * count, calibration.size)
-    views = project(trial, camera, np.array([_pose(T) for T in transforms]))
-    information, seen_at = reduce(B, *views)[0], points[:, :2] - views[0]
+    views = project(trial, camera, np.array([np.concatenate(rvec_tvec(T)) for T in transforms]))
+    information, seen_at = reduce(B, *views)[0], points[:, :2] - views[0].reshape(count, -1, 2)
     counts, tried = calibration.coverage.counts, []
     for place, tilt, gained, xy in zip(places, tilts, information, seen_at, strict=True):
         if (xy < 2).any() or (xy > np.array([w, h]) - 3).any():
@@ -153,12 +154,6 @@ def _columns_of(calibration):
     return model.columns
 
 
-def _pose(T):
-    import cv2
-
-    return np.concatenate([cv2.Rodrigues(T[:3, :3])[0].ravel(), T[:3, 3]])
-
-
 def _candidates(calibration, points):
     """(words for the place, words for the tilt, T_cam_board) of boards that fill about a third of the picture."""
     import cv2
@@ -177,8 +172,7 @@ def _candidates(calibration, points):
         for column, x in zip(("left", "centre", "right"), (0.27, 0.5, 0.73), strict=True):
             place = {"middle centre": "in the middle"}.get(f"{row} {column}", f"at the {row} {column}")
             for words, axis in tilts.items():
-                R = cv2.Rodrigues(np.array([*axis, 0.0]) * _TILT)[0]
+                turn = np.array([*axis, 0.0]) * _TILT
+                R = cv2.Rodrigues(turn)[0]
                 aim = Z * np.linalg.solve(calibration.K, [x * w, y * h, 1.0])
-                T = np.eye(4)
-                T[:3, :3], T[:3, 3] = R, aim - R @ ((points.min(axis=0) + points.max(axis=0)) / 2)
-                yield place, words, T
+                yield place, words, transform(turn, aim - R @ ((points.min(axis=0) + points.max(axis=0)) / 2))

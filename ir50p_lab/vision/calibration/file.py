@@ -12,6 +12,7 @@ from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.fit import NAMES
 from ir50p_lab.vision.calibration.reasons import Reason, Rejected
 from ir50p_lab.vision.calibration.view import View
+from ir50p_lab.vision.checks import check_picture_size, picture_size
 
 _DEEPEST = 1000  # lists within lists: a calibration has five
 
@@ -95,7 +96,7 @@ def load(cls, path, size=None):
     except (ValueError, KeyError, AttributeError, cv2.error) as error:
         raise CalibrationError(f"{path} is a damaged calibration: {error}") from None
     if size is not None:
-        calibration.check_size(size)
+        check_picture_size(calibration, picture_size(size))
     return calibration
 
 

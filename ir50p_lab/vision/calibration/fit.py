@@ -75,7 +75,7 @@ class CameraFit:
         """Number of parameters, six of every pose included."""
         return self.model.columns.shape[1] + self.poses.size
 
-    @property
+    @cached_property
     def cost(self):
         """Sum of the squared residuals, px^2."""
         return float(sum((e**2).sum() for e in self.residuals))
@@ -118,16 +118,6 @@ class CornerSets:
         for p in self.points:
             x, y = ((p - middle) / half)[:, :2].T
             self.shapes.append(np.column_stack([x * x, x * y, y * y]))
-
-    @cached_property
-    def stacked(self):
-        """All views as arrays (views, n, ...), filled up to the longest: points, pixels, shapes, and which are real."""
-        sizes = np.array([len(p) for p in self.points])
-        real = np.arange(sizes.max()) < sizes[:, None]
-        filled = [np.zeros((*real.shape, k)) for k in (3, 2, 3)]
-        for array, lists in zip(filled, (self.points, self.pixels, self.shapes), strict=True):
-            array[real] = np.concatenate(lists)
-        return *filled, real
 
     def __len__(self):
         return len(self.points)
@@ -172,42 +162,25 @@ def start(corners):
 
 
 def project(corners, camera, poses):
-    """Residuals of all views (v, n, 2), and Jacobians of the model by the camera (v, n, 2, 12) and pose (v, n, 2, 6).
+    """Residuals of all views (v, 2n), and Jacobians of the model by the camera (v, 2n, 12) and pose (v, 2n, 6).
 
-    As `cv2.projectPoints`, with the shape of the board, for all views at once.
+    x and y of a corner alternate; views with fewer corners than the fullest are filled up with zeros.
     """
     import cv2
 
-    points, pixels, shapes, real = corners.stacked
-    fx, fy, cx, cy, k1, k2, p1, p2, k3 = camera[:9]
-    turns = [cv2.Rodrigues(rvec) for rvec in poses[:, :3]]
-    R, by_rvec = np.array([R for R, _ in turns]), np.array([J.reshape(3, 3, 3) for _, J in turns])
-    points = points + (shapes @ camera[9:])[..., None] * (0.0, 0.0, 1.0)
-    X, Y, Z = np.moveaxis(points @ R.transpose(0, 2, 1) + poses[:, None, 3:], 2, 0)
-    x, y = X / Z, Y / Z
-    r2 = x * x + y * y
-    radial, slope = 1 + r2 * (k1 + r2 * (k2 + r2 * k3)), k1 + r2 * (2 * k2 + r2 * 3 * k3)
-    u = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)
-    v = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y
-    error = pixels - np.stack([fx * u + cx, fy * v + cy], axis=-1)
-    by_camera, by_xy, by_point = np.zeros((*x.shape, 2, 12)), np.empty((*x.shape, 2, 2)), np.zeros((*x.shape, 2, 3))
-    by_camera[..., 0, 0], by_camera[..., 1, 1] = u, v
-    by_camera[..., 0, 2] = by_camera[..., 1, 3] = 1
-    radials = np.stack([r2, r2 * r2, r2 * r2 * r2], axis=-1)
-    by_camera[..., 0, [4, 5, 8]] = fx * x[..., None] * radials
-    by_camera[..., 1, [4, 5, 8]] = fy * y[..., None] * radials
-    by_camera[..., 0, 6], by_camera[..., 0, 7] = fx * 2 * x * y, fx * (r2 + 2 * x * x)
-    by_camera[..., 1, 6], by_camera[..., 1, 7] = fy * (r2 + 2 * y * y), fy * 2 * x * y
-    across = 2 * (x * y * slope + p1 * x + p2 * y)
-    by_xy[..., 0, 0], by_xy[..., 0, 1] = fx * (radial + 2 * x * x * slope + 2 * p1 * y + 6 * p2 * x), fx * across
-    by_xy[..., 1, 0], by_xy[..., 1, 1] = fy * across, fy * (radial + 2 * y * y * slope + 6 * p1 * y + 2 * p2 * x)
-    by_point[..., 0, 0] = by_point[..., 1, 1] = 1 / Z
-    by_point[..., 0, 2], by_point[..., 1, 2] = -x / Z, -y / Z
-    by_point = by_xy @ by_point
-    by_camera[..., 9:] = (by_point @ R[:, None, :, 2:]) * shapes[..., None, :]
-    by_turn = by_point @ np.einsum("vkij,vnj->vnik", by_rvec, points)
-    by_pose = np.concatenate([by_turn, by_point], axis=-1)
-    return tuple(np.where(real.reshape(*real.shape, *(1,) * (a.ndim - 2)), a, 0.0) for a in (error, by_camera, by_pose))
+    K = np.array([[camera[0], 0, camera[2]], [0, camera[1], camera[3]], [0, 0, 1]])
+    shape = len(poses), 2 * max(map(len, corners.points))
+    error, by_camera, by_pose = np.zeros(shape), np.zeros((*shape, 12)), np.zeros((*shape, 6))
+    views = zip(corners.points, corners.pixels, corners.shapes, poses, strict=True)
+    for view, (points, pixels, shapes, pose) in enumerate(views):
+        bent = points + np.outer(shapes @ camera[9:], (0.0, 0.0, 1.0))
+        seen, J = cv2.projectPoints(bent, pose[:3], pose[3:], K, camera[4:9])
+        by_height = J[:, 3:6] @ cv2.Rodrigues(pose[:3])[0][:, 2:]  # a point that rises moves as the board does along z
+        n = 2 * len(points)
+        error[view, :n] = (pixels - seen[:, 0]).ravel()
+        by_camera[view, :n] = np.hstack([J[:, 6:15], by_height * np.repeat(shapes, 2, axis=0)])
+        by_pose[view, :n] = J[:, :6]
+    return error, by_camera, by_pose
 
 
 def fit(corners, model, guess, steps=50):
@@ -263,15 +236,11 @@ def _cost(camera, views):
 
 def reduce(B, error, by_camera, by_pose):
     """Of each view: S = U'U and g = U'e with the pose eliminated, its own step, and how the step follows the camera."""
-    count = len(error)
-    U, V, e = (by_camera @ B).reshape(count, -1, B.shape[1]), by_pose.reshape(count, -1, 6), error.reshape(count, -1, 1)
-    turned = V.transpose(0, 2, 1)
-    VU, X = turned @ U, np.linalg.solve(turned @ V, turned @ np.concatenate([U, e], axis=2))
-    following, own = X[:, :, :-1], X[:, :, -1]
-    UV = VU.transpose(0, 2, 1)
-    S = U.transpose(0, 2, 1) @ U - UV @ following
-    g = U.transpose(0, 2, 1) @ e - UV @ own[..., None]
-    return S, g[..., 0], own, following
+    both = np.concatenate([by_camera @ B, error[..., None]], axis=2)
+    turned = by_pose.transpose(0, 2, 1)
+    pose = np.linalg.solve(turned @ by_pose, turned @ both)
+    left = both[..., :-1].transpose(0, 2, 1) @ (both - by_pose @ pose)
+    return left[..., :-1], left[..., -1], pose[..., -1], pose[..., :-1]
 
 
 def solve(S, g, damping=0.0):
@@ -297,7 +266,7 @@ def _with_covariance(corners, model, camera, poses, views):
     scale = np.linalg.norm((views[1] @ B).reshape(-1, B.shape[1]), axis=0)
     if not np.linalg.eigvalsh(total / np.outer(scale, scale))[0] > _SHOWN:
         raise CalibrationError("the views leave the camera undetermined: tilt the board in different directions")
-    residuals = tuple(e[: len(p)] for e, p in zip(views[0], corners.points, strict=True))
+    residuals = tuple(e[: 2 * len(p)].reshape(-1, 2) for e, p in zip(views[0], corners.points, strict=True))
     fit = CameraFit(camera, poses, residuals, np.zeros((12, 12)), np.zeros((12, 12)), model)
     if 2 * fit.points <= fit.parameters:
         raise CalibrationError(

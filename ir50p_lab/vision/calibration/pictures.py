@@ -15,7 +15,7 @@ from ir50p_lab.vision.picture_file import quarter_turns
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """One picture, not decoded twice: name; index; image (h, w, 3) or (h, w) uint8, or None and the problem with it.
+    """One picture, not decoded twice: name; index; image: grey levels (h, w) uint8, or None and the problem with it.
 
     turns: quarter turns to the right that made it upright, if its file says so.
     """
@@ -30,14 +30,6 @@ class Picture:
     def size(self):
         """(width, height), or None if there is no picture."""
         return None if self.image is None else (self.image.shape[1], self.image.shape[0])
-
-    def grey(self):
-        """Grey levels (h, w) uint8."""
-        if self.image.ndim == 2:
-            return np.ascontiguousarray(self.image)
-        import cv2
-
-        return cv2.cvtColor(np.ascontiguousarray(self.image[..., :3]), cv2.COLOR_RGB2GRAY)
 
 
 def pictures_of(images, progress=False):
@@ -77,6 +69,8 @@ def _as_most_were_held(pictures):
 
 
 def _picture(index, one):
+    import cv2
+
     if isinstance(one, str | Path):
         try:
             image = to_grey(load_image(one, allow_grey=True))  # a third of the memory: twenty of 12 Mpixel are 240 MB
@@ -91,7 +85,9 @@ def _picture(index, one):
     if not good:
         what = f"{array.dtype} array of shape {array.shape}: give uint8 of shape (h, w, 3), or (h, w)"
         return Picture(str(name), index, None, what)
-    return Picture(str(name), index, array)
+    if array.ndim == 3:
+        array = cv2.cvtColor(np.ascontiguousarray(array[..., :3]), cv2.COLOR_RGB2GRAY)
+    return Picture(str(name), index, np.ascontiguousarray(array))
 
 
 def with_bar(pictures, progress, what="finding corners"):

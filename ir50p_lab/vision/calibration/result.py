@@ -1,14 +1,12 @@
 """What a calibration found: the camera, how sure it is, what each picture said, and which were not used."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.calibration.file import load, save
 from ir50p_lab.vision.calibration.fit import NAMES
-from ir50p_lab.vision.checks import picture_size
 from ir50p_lab.vision.pinhole import Pinhole
 
 
@@ -87,15 +85,6 @@ class Calibration:
 
         return next_view(self)
 
-    def check_size(self, size):
-        """Refuse pictures (width, height) of another size than those of the calibration, with CalibrationError."""
-        size = picture_size(size)
-        if size != tuple(self.size):
-            raise CalibrationError(
-                f"this calibration is of a camera with pictures of {self.size[0]}x{self.size[1]}, not "
-                f"{size[0]}x{size[1]}: set the camera to that size, or calibrate it at the new one"
-            )
-
     def save(self, path):
         """Write a YAML file that cv2.FileStorage (and OpenCV's samples) read. Returns the path."""
         return save(self, path)
@@ -119,7 +108,3 @@ class Calibration:
                 lines.append(f"  {name}  {value:12.5g} +- {self.stderr.get(name, np.nan):.2g}")
         lines += [f"not used: {one}" for one in self.rejected]
         return "\n".join([*lines, *self.warnings])
-
-    def with_warnings(self, *sentences):
-        """A copy with further warnings."""
-        return replace(self, warnings=(*self.warnings, *sentences))

@@ -19,11 +19,6 @@ class Frame:
     simulated: bool
     source: str
 
-    @property
-    def caption(self):
-        """A line for the title of a figure: where the picture comes from, and whether it is a photograph."""
-        return f"{self.source}, t = {self.t:.2f} s ({'rendered' if self.simulated else 'photograph'})"
-
     def save(self, path):
         """Write the picture to a file; a rendered one carries a mark (PNG and JPEG). Raises ImageError."""
         save_image(path, self.image, rendered=self.simulated)

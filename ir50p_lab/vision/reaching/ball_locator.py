@@ -79,7 +79,7 @@ class BallLocator:
 
         Raises CalibrationError if the picture is of another size than the calibration.
         """
-        check_picture_size(self.plane.pinhole, image)
+        check_picture_size(self.plane.pinhole, image.shape[1::-1])
         balls = find_balls(image, self.colour, camera=self.plane.pinhole)
         if not balls:
             return Seen(None, None, None, image, simulated, balls.reason)

@@ -8,6 +8,7 @@ from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.vision.board_pose import inverse_transform, moved
 from ir50p_lab.vision.reaching.moving import ACCEPTED
+from ir50p_lab.vision.table_plane import TablePlane
 
 _READINGS = 100  # counts averaged at rest
 
@@ -62,8 +63,8 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
     to_table = inverse_transform(locator.T_base_table)
     ball = moved(to_table, np.array([*tip[:2], locator.radius]))
     xy = locator.plane.to_image(ball)
-    in_picture = locator.plane.covariance(xy, ball[2], sigma_px=sigma_ball_px, parts=True)["pixel"][0]
-    pixel = float(np.sqrt(np.trace(in_picture)))
+    exact = TablePlane(locator.plane.pinhole, locator.plane.T_cam_table)
+    pixel = float(np.sqrt(np.trace(exact.covariance(xy, ball[2], sigma_px=sigma_ball_px)[0])))
     shifts = [  # one standard deviation in each direction of what is wrong with the camera: ball m, hand px
         (one.to_table(xy, ball[2]) - ball[:2], one.to_image(moved(to_table, hand)) - locator.to_image(hand))
         for one in locator.plane.variations()

@@ -38,13 +38,6 @@ class WorkArea:
         a = rng.uniform(-self.angle, self.angle, n)
         return np.column_stack([r * np.cos(a), r * np.sin(a), np.full(n, float(height))])
 
-    @property
-    def outline(self):
-        """Its rim, (n, 2) m, for a drawing."""
-        a = np.linspace(-self.angle, self.angle, 41)
-        arc = np.column_stack([np.cos(a), np.sin(a)])
-        return np.vstack([self.r_max * arc, self.r_min * arc[::-1], self.r_max * arc[:1]])
-
 
 def work_area(arm, height=0.09, *, angle=0.52):
     """The area of this arm for goals at `height` m: from its inner to 30 mm past its outer edge.

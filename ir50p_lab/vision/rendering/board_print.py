@@ -7,13 +7,6 @@ import numpy as np
 from ir50p_lab.vision.calibration.board import Charuco
 
 
-def inner_corners(board):
-    """Inner corners (n, 3) m of the flat print, row by row: x = column, y = row, in squares."""
-    columns, rows = board.pattern
-    x, y = np.meshgrid(np.arange(columns), np.arange(rows))
-    return np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)]) * float(board.square)
-
-
 def print_range(board):
     """x and y range (from, to) m of the sheet, border included."""
     columns, rows = board.pattern

@@ -6,8 +6,21 @@ import functools
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.vision.rendering.scene import COLOURS
 
+COLOURS = {  # paints, not light: measured from nothing, chosen to look like toy balls and tape
+    "red": (200, 30, 40),
+    "orange": (235, 110, 25),
+    "yellow": (230, 200, 40),
+    "green": (40, 140, 60),
+    "blue": (35, 70, 170),
+    "purple": (110, 45, 130),
+    "pink": (235, 120, 150),
+    "brown": (120, 65, 40),
+    "skin": (215, 160, 130),
+    "white": (235, 235, 230),
+    "grey": (128, 128, 128),
+    "black": (30, 30, 32),
+}
 _STEPS = 4096
 
 

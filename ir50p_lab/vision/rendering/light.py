@@ -32,18 +32,10 @@ def direction(source, X):
     """Direction (3, n) or (3, 1) to a Sun or Lamp from X (3, n), its strength there, and its half width in rad."""
     if isinstance(source, Sun):
         L = np.asarray(source.towards, dtype=float)
-        return (L / np.linalg.norm(L)).astype(X.dtype)[:, None], source.strength * _lit(source, X), source.softness
+        return (L / np.linalg.norm(L)).astype(X.dtype)[:, None], source.strength_at(X), source.softness
     v = np.asarray(source.position, dtype=X.dtype)[:, None] - X
     r = np.sqrt(np.sum(v * v, axis=0))
     return v / r, source.strength / r**2, source.size / max(source.position[2], 1e-3)
-
-
-def _lit(sun, X):
-    if sun.edge is None:
-        return 1.0
-    angle, offset, width = sun.edge
-    along = (np.cos(angle) * X[0] + np.sin(angle) * X[1] - offset) / width
-    return smooth(along + 0.5)
 
 
 def smooth(x):

@@ -4,6 +4,7 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
+from ir50p_lab.vision.board_pose import transform
 from ir50p_lab.vision.pinhole import Pinhole
 from ir50p_lab.vision.rendering.scene import Lamp, Scene, SceneBall, Sky, Sun, Tabletop
 
@@ -37,15 +38,14 @@ def look_at(position, target, roll=0.0):
     y = np.cross(z, x)
     c, s = np.cos(roll), np.sin(roll)
     R = np.stack([c * x + s * y, c * y - s * x, z])
-    return _transform(R, -R @ position)
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, -R @ position
+    return T
 
 
 def pose(position, rotation_vector=(0.0, 0.0, 0.0)):
     """T_world_thing (4, 4) at `position` (3,) m, turned by `rotation_vector` (3,) rad (axis times angle)."""
-    from scipy.spatial.transform import Rotation
-
-    position = vectors3("position", position, unit="m")
-    return _transform(Rotation.from_rotvec(vectors3("rotation_vector", rotation_vector)).as_matrix(), position)
+    return transform(vectors3("rotation_vector", rotation_vector), vectors3("position", position, unit="m"))
 
 
 def bench_camera():
@@ -64,9 +64,3 @@ def bench_scene(*objects, **changes):
         "lights": (Sky(), Sun(towards=(0.4, 0.5, 1.0)), Lamp(position=(0.2, -0.6, 0.8), strength=0.25)),
     }
     return Scene(**(scene | changes))
-
-
-def _transform(R, t):
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = R, t
-    return T

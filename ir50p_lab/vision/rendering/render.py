@@ -8,10 +8,10 @@ from ir50p_lab.vision.rendering.board_print import black, print_range
 from ir50p_lab.vision.rendering.colours import light_of
 from ir50p_lab.vision.rendering.light import highlight, irradiance
 from ir50p_lab.vision.rendering.rays import grid_rays, rays_through
-from ir50p_lab.vision.rendering.scene import Board, Box, Scene, SceneBall, Stick
+from ir50p_lab.vision.rendering.scene import Board, Scene, SceneBall, SolidThing, Stick
 from ir50p_lab.vision.rendering.sensor import blur, expose
 from ir50p_lab.vision.rendering.shadow import table_light
-from ir50p_lab.vision.rendering.shapes import BoxShape, SheetShape, SphereShape, StickShape
+from ir50p_lab.vision.rendering.shapes import SheetShape, SphereShape, StickShape
 from ir50p_lab.vision.rendering.surface import room_light, table_albedo
 from ir50p_lab.vision.rendering.truth import SceneTruth, ball_truth, board_truth
 
@@ -63,9 +63,9 @@ class RayTracer:
         if isinstance(thing, Stick):
             ends = (self.R @ np.asarray(p, dtype=float) + self.t for p in (thing.start, thing.end))
             return StickShape(*ends, thing.radius)
-        if isinstance(thing, Box):
-            return BoxShape(self.T @ thing.T_world_box, thing.size)
-        return SheetShape(self.T @ thing.T_world_board, *print_range(thing), thing.bend)
+        if isinstance(thing, Board):
+            return SheetShape(self.T @ thing.T_world_board, *print_range(thing), thing.bend)
+        return thing.shape(self.T)
 
     def _pixel_box(self, corners):
         """Pixels (x0, y0, x1, y1) around points (n, 3); None where some are beside or behind the camera."""
@@ -161,7 +161,7 @@ class RayTracer:
             albedo = np.where(dark[:, None], light_of(thing.black), light_of(thing.white))
         else:
             albedo = light_of(thing.colour)
-        if isinstance(thing, Box):
+        if isinstance(thing, SolidThing):
             detail = shape.faces(X)
         light = light * albedo
         if getattr(thing, "gloss", 0) > 0:

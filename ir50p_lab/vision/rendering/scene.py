@@ -4,7 +4,7 @@ Lengths in m in world coordinates: the base frame of the arm, table at z = 0 (as
 Colours are (red, green, blue) 0..255 as on the screen: what the surface would show in full white light.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -12,21 +12,7 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.vision.checks import rigid
 from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
-
-COLOURS = {  # paints, not light: measured from nothing, chosen to look like toy balls and tape
-    "red": (200, 30, 40),
-    "orange": (235, 110, 25),
-    "yellow": (230, 200, 40),
-    "green": (40, 140, 60),
-    "blue": (35, 70, 170),
-    "purple": (110, 45, 130),
-    "pink": (235, 120, 150),
-    "brown": (120, 65, 40),
-    "skin": (215, 160, 130),
-    "white": (235, 235, 230),
-    "grey": (128, 128, 128),
-    "black": (30, 30, 32),
-}
+from ir50p_lab.vision.rendering.colours import to_bytes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +62,7 @@ class Board:
 class Patch:
     """Something flat on the table (tape, paper, a stain): outline, middle (2,) m, size (2,) m, angle rad, colour.
 
-    outline: 'rectangle', 'ellipse' or 'blob' (an ellipse with a wavy rim drawn from `seed`).
+    outline: 'rectangle' or 'blob' (an ellipse with a wavy rim drawn from `seed`).
     """
 
     position: tuple = (0.40, 0.10)
@@ -99,23 +85,25 @@ class Stick:
     shininess: float = 30.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Box:
-    """A box (book, carton, card): middle T_world_box (4, 4), size (3,) m, colour."""
+class SolidThing:
+    """Any other thing on the table: a subclass has a colour, and says where rays meet it and what light it takes.
 
-    T_world_box: np.ndarray
-    size: tuple = (0.06, 0.04, 0.03)
-    colour: str | tuple = "brown"
+    `shape(T_cam_world)` gives a shape as in `shapes`, with `faces(X)`, the number of the face at X (3, n), besides;
+    `dim_sky(open_sky, X, Y)` and `shade(part, source, softness, X, Y)` take off, in place, what the places X, Y (n,) m
+    of the table lose of the sky and of a Sun or Lamp.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
 class Tabletop:
-    """The table: texture 'plain', 'wood', 'cloth', 'speckle' or 'tiles', its colour, contrast 0..1, grain size m.
+    """The table: texture 'plain' or 'wood', its colour, contrast 0..1, grain size m.
 
+    texture may be a function of (table, u, v, seed), with coordinates (n,) in grains along and across it, that gives
+    the brightness (n,), 0 on average, and None or how much of the light the places keep (n,), 1 but for joints.
     x, y: (from, to) m of its edges; beyond them the camera sees the room (colour `room`), blurred.
     """
 
-    texture: str = "wood"
+    texture: object = "wood"
     colour: str | tuple = (176, 148, 112)
     contrast: float = 0.18
     grain: float = 0.03
@@ -135,16 +123,16 @@ class Sky:
 
 @dataclass(frozen=True, kw_only=True)
 class Sun:
-    """Parallel light: `towards` (3,) points from the scene to the light. softness: rad, half the width of the source.
-
-    edge: None, or (angle, offset m, width m): light only on one side of a line on the table, as beside a window frame.
-    """
+    """Parallel light: `towards` (3,) points to the light. softness: rad, half the width of its source."""
 
     towards: tuple = (0.3, 0.4, 1.0)
     colour: tuple = (1.0, 1.0, 1.0)
     strength: float = 0.6
     softness: float = 0.02
-    edge: tuple | None = None
+
+    def strength_at(self, X):
+        """Strength at the places X (3, n)."""
+        return self.strength
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -169,35 +157,31 @@ class Lens:
 
 @dataclass(frozen=True, kw_only=True)
 class Sensor:
-    """From light to bytes: exposure, white balance (3,), noise, mosaic, sharpening, gamma, JPEG.
+    """From light to bytes: exposure, white balance (3,), noise, gamma, JPEG.
 
-    read_noise and shot_noise are standard deviations at black and (on top) at white, parts of full scale. mosaic: one
-    colour per pixel, as sensors have it, filled in by interpolation. sharpen: strength of an unsharp mask. saturation:
-    of colours, 1 as they are. jpeg: quality 1..100, or None. gamma: False keeps bytes proportional to light.
+    read_noise and shot_noise are standard deviations at black and (on top) at white, parts of full scale.
+    jpeg: quality 1..100, or None. gamma: False keeps bytes proportional to light.
     """
 
     exposure: float = 1.0
     balance: tuple = (1.0, 1.0, 1.0)
     read_noise: float = 0.003
     shot_noise: float = 0.012
-    mosaic: bool = False
-    sharpen: float = 0.0
-    saturation: float = 1.0
     jpeg: int | None = 92
     gamma: bool = True
 
-
-NO_LENS = Lens(sigma=0.0, vignetting=0.0)
-NO_SENSOR = Sensor(read_noise=0.0, shot_noise=0.0, jpeg=None)
+    def developed(self, light):
+        """Bytes (h, w, 3) of what the sensor measured, light (h, w, 3)."""
+        return to_bytes(light * np.asarray(self.balance, dtype=np.float32), self.gamma)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scene:
     """Everything `render_scene` needs, but for the seed of the noise.
 
-    pinhole: the camera. T_cam_world (4, 4): where it is. objects: SceneBall, Board, Stick, Box in any number; patches:
-    on the table, later ones over earlier ones; lights: Sky, Sun, Lamp. arm: tuple of Stick (`arm_sticks`), kept apart
-    so that it can be posed. texture_seed: of the table's grain and of the room.
+    pinhole: the camera. T_cam_world (4, 4): where it is. objects: SceneBall, Board, Stick, SolidThing in any number;
+    patches: on the table, later ones over earlier ones; lights: Sky, Sun, Lamp. arm: tuple of Stick (`arm_sticks`),
+    kept apart so that it can be posed. texture_seed: of the table's grain and of the room.
     """
 
     pinhole: Pinhole
@@ -220,19 +204,10 @@ class Scene:
                     names = ", ".join(kind.__name__ for kind in kinds)
                     raise InputError(f"{part!r:.60} is none of the {field_name} of a Scene: give {names}")
 
-    @property
-    def balls(self):
-        """The balls among the objects, in their order."""
-        return tuple(thing for thing in self.objects if isinstance(thing, SceneBall))
 
-    @property
-    def boards(self):
-        """The boards among the objects, in their order."""
-        return tuple(thing for thing in self.objects if isinstance(thing, Board))
-
-    def clean(self):
-        """The same scene through a perfect lens and sensor: sharp, no noise, no JPEG, bytes proportional to light."""
-        return replace(self, lens=NO_LENS, sensor=replace(NO_SENSOR, exposure=self.sensor.exposure, gamma=False))
-
-
-_PARTS = {"objects": (SceneBall, Board, Stick, Box), "patches": (Patch,), "arm": (Stick,), "lights": (Sky, Sun, Lamp)}
+_PARTS = {
+    "objects": (SceneBall, Board, Stick, SolidThing),
+    "patches": (Patch,),
+    "arm": (Stick,),
+    "lights": (Sky, Sun, Lamp),
+}

@@ -1,8 +1,6 @@
-"""From light on the sensor to the bytes of a picture: blur, noise, mosaic, tone, JPEG."""
+"""From light on the sensor to the bytes of a picture: blur, noise, tone, JPEG."""
 
 import numpy as np
-
-from ir50p_lab.vision.rendering.colours import to_bytes
 
 _SPAN = 16  # sub-steps per pixel of the kernels
 
@@ -57,45 +55,10 @@ def expose(light, sensor, rng):
         light = np.minimum(light, 1.0)  # full wells
         sigma = np.sqrt(sensor.read_noise**2 + sensor.shot_noise**2 * np.maximum(light, 0))
         light = light + sigma * rng.standard_normal(light.shape, dtype=np.float32)
-    if sensor.mosaic:
-        light = mosaic(light)
-    light = light * np.asarray(sensor.balance, dtype=np.float32)
-    if sensor.saturation != 1:
-        grey = light @ np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
-        light = grey[..., None] + np.float32(sensor.saturation) * (light - grey[..., None])
-    image = to_bytes(light, sensor.gamma)
-    if sensor.sharpen > 0:
-        image = sharpen(image, sensor.sharpen)
+    image = sensor.developed(light)
     if sensor.jpeg is not None:
         image = through_jpeg(image, sensor.jpeg)
     return image
-
-
-def mosaic(light):
-    """Light (h, w, 3) of which each pixel keeps one colour (red green / green blue), the others filled in from around.
-
-    Bilinear, by one filter per colour: green from 4 neighbours, red and blue from 2 or 4; no shift.
-    """
-    import cv2
-
-    cross = np.array([[0, 1, 0], [1, 4, 1], [0, 1, 0]], dtype=np.float32) / 4
-    square = np.array([[1, 2, 1], [2, 4, 2], [1, 2, 1]], dtype=np.float32) / 4
-    filled = np.empty_like(light)
-    for channel, sites in enumerate((((0, 0),), ((0, 1), (1, 0)), ((1, 1),))):
-        kept = np.zeros(light.shape[:2], dtype=np.float32)
-        for i, j in sites:
-            kept[i::2, j::2] = light[i::2, j::2, channel]
-        kernel = cross if channel == 1 else square
-        filled[..., channel] = cv2.filter2D(kept, -1, kernel, borderType=cv2.BORDER_REFLECT_101)
-    return filled
-
-
-def sharpen(image, strength):
-    """The picture with an unsharp mask, as webcams do: plus `strength` times what a blur of 1.2 pixels takes away."""
-    import cv2
-
-    soft = cv2.GaussianBlur(image, (0, 0), 1.2)
-    return cv2.addWeighted(image, 1 + strength, soft, -strength, 0)
 
 
 def through_jpeg(image, quality):

@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from ir50p_lab.vision.rendering.board_print import print_range
 from ir50p_lab.vision.rendering.light import direction, smooth
-from ir50p_lab.vision.rendering.scene import Board, Box, Lamp, SceneBall, Sky, Stick
-from ir50p_lab.vision.rendering.shapes import BoxShape, SheetShape
+from ir50p_lab.vision.rendering.scene import Lamp, SceneBall, Sky, SolidThing, Stick
 
 
 def table_light(scene, X, Y):
@@ -14,7 +12,7 @@ def table_light(scene, X, Y):
     P = np.stack([X, Y, np.zeros_like(X)])
     balls = [thing for thing in scene.objects if isinstance(thing, SceneBall)]
     sticks = [thing for thing in (*scene.objects, *scene.arm) if isinstance(thing, Stick)]
-    hulls = [_corners(thing) for thing in scene.objects if isinstance(thing, Box | Board)]
+    solids = [thing for thing in scene.objects if isinstance(thing, SolidThing)]
     for source in scene.lights:
         colour = np.asarray(source.colour, dtype=np.float32)
         if isinstance(source, Sky):
@@ -23,8 +21,8 @@ def table_light(scene, X, Y):
                 _under_ball(open_sky, ball, X, Y)
             for stick in sticks:
                 _under_stick(open_sky, stick, X, Y)
-            for corners in hulls:
-                _beside_wall(open_sky, corners, X, Y)
+            for solid in solids:
+                solid.dim_sky(open_sky, X, Y)
             light += (source.strength * open_sky)[:, None] * colour
             continue
         towards, strength, softness = direction(source, P)
@@ -33,8 +31,8 @@ def table_light(scene, X, Y):
             _ball_shadow(part, ball, source, softness, X, Y)
         for stick in sticks:
             _stick_shadow(part, stick, source, softness, X, Y)
-        for corners in hulls:
-            _hull_shadow(part, corners, source, softness, X, Y)
+        for solid in solids:
+            solid.shade(part, source, softness, X, Y)
         light += part[:, None] * colour
     return light
 
@@ -61,59 +59,6 @@ def _under_stick(open_sky, stick, X, Y):
     nearest = a[:, None] + axis[:, None] * w
     D2 = np.maximum(np.sum((nearest - P) ** 2, axis=0), stick.radius**2)
     open_sky[near] *= 1 - np.clip(nearest[2] * stick.radius / D2, 0, 1)
-
-
-def _beside_wall(open_sky, corners, X, Y):
-    """The part of the sky that a wall of height H hides at distance d: (1 - d / sqrt(d^2 + H^2)) / 2."""
-    height, bottom = corners[:, 2].max(), corners[:, 2].min()
-    if height < 1e-3 or bottom > 0.5 * height:
-        return
-    near, distance = _outside(corners[:, :2], 4 * height, X, Y)
-    d = np.maximum(distance, 0)
-    open_sky[near] *= 1 - 0.5 * (1 - d / np.hypot(d, height))
-
-
-def _hull_shadow(part, corners, source, softness, X, Y):
-    """Shadow of the corners (n, 3) m of something without hollows: the hull of their shadows, rim by its height."""
-    if corners[:, 2].max() < 1e-3:
-        return
-    above = np.maximum(corners, (-np.inf, -np.inf, 0.0))
-    if isinstance(source, Lamp):
-        towards = np.asarray(source.position, dtype=float) - above
-    else:
-        towards = np.broadcast_to(np.asarray(source.towards, dtype=float), above.shape)
-    if (towards[:, 2] <= 1e-3).any():  # a lamp lower than the thing: a shadow without end, left out
-        return
-    foot = above[:, :2] - towards[:, :2] * (above[:, 2] / towards[:, 2])[:, None]
-    half = max(softness * above[:, 2].mean(), 2e-4)
-    near, distance = _outside(foot, half, X, Y)
-    part[near] *= smooth(0.5 + distance / (2 * half))
-
-
-def _outside(points, margin, X, Y):
-    """Index of the X, Y (n,) near the hull of points (m, 2), and their distance outside it (negative inside)."""
-    import cv2
-
-    hull = cv2.convexHull(points.astype(np.float32))[:, 0].astype(float)
-    low, high = hull.min(axis=0) - margin, hull.max(axis=0) + margin
-    near = np.flatnonzero((X > low[0]) & (X < high[0]) & (Y > low[1]) & (Y < high[1]))
-    x, y = X[near], Y[near]
-    distance = np.full(len(near), -np.inf)
-    edges = np.roll(hull, -1, axis=0) - hull
-    turn = np.sign(np.sum(hull[:, 0] * np.roll(hull[:, 1], -1) - hull[:, 1] * np.roll(hull[:, 0], -1)))
-    for start, edge in zip(hull, edges, strict=True):
-        length = np.hypot(*edge)
-        if length > 1e-9:
-            outward = turn * np.array([edge[1], -edge[0]]) / length
-            distance = np.maximum(distance, (x - start[0]) * outward[0] + (y - start[1]) * outward[1])
-    return near, distance
-
-
-def _corners(thing):
-    """Points (n, 3) m around a Box or Board in world coordinates."""
-    if isinstance(thing, Box):
-        return BoxShape(np.asarray(thing.T_world_box, dtype=float), thing.size).bounds()
-    return SheetShape(np.asarray(thing.T_world_board, dtype=float), *print_range(thing), thing.bend).bounds()
 
 
 def _ball_shadow(part, ball, source, softness, X, Y):

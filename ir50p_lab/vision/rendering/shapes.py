@@ -66,44 +66,6 @@ class StickShape:
         return (X - self.a[:, None] - axis[:, None] * along) / self.radius
 
 
-class BoxShape:
-    """A box: T_cam_box (4, 4), size (3,)."""
-
-    def __init__(self, T_cam_box, size):
-        self.R, self.t, self.half = T_cam_box[:3, :3], T_cam_box[:3, 3], np.asarray(size, dtype=float) / 2
-
-    def bounds(self):
-        """Its corners (8, 3)."""
-        signs = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1)
-        return (self.R @ (signs * self.half[:, None])).T + self.t
-
-    def depth(self, rays):
-        """Depth Z of the first hit, inf where there is none."""
-        origin = -self.R.T @ self.t
-        enter = np.full(rays.x.shape, -np.inf, dtype=rays.x.dtype)
-        leave = np.full(rays.x.shape, np.inf, dtype=rays.x.dtype)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            for i in range(3):
-                d = rays.x * self.R[0, i] + rays.y * self.R[1, i] + self.R[2, i]
-                t1, t2 = (-self.half[i] - origin[i]) / d, (self.half[i] - origin[i]) / d
-                enter = np.maximum(enter, np.minimum(t1, t2))
-                leave = np.minimum(leave, np.maximum(t1, t2))
-            return np.where((enter < leave) & (enter > 0), enter, np.inf).astype(rays.x.dtype)
-
-    def normal(self, X):
-        """Normals (3, n) at the points X (3, n)."""
-        local = self.R.T @ (X - self.t[:, None]) / self.half[:, None]
-        face = np.argmax(np.abs(local), axis=0)
-        sign = np.sign(np.take_along_axis(local, face[None], axis=0)[0])
-        return self.R[:, face] * sign
-
-    def faces(self, X):
-        """Number 0..5 of the face at X (3, n), so that edges between faces are seen."""
-        local = self.R.T @ (X - self.t[:, None]) / self.half[:, None]
-        face = np.argmax(np.abs(local), axis=0)
-        return 2 * face + (np.take_along_axis(local, face[None], axis=0)[0] > 0)
-
-
 class SheetShape:
     """A printed sheet, bent about its y axis: T_cam_sheet (4, 4), x and y ranges of the print, curvature `bend`.
 

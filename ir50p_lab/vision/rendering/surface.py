@@ -12,17 +12,13 @@ _TILE = 512
 
 def table_albedo(table, patches, X, Y, seed):
     """Linear colours (n, 3) of the table at X, Y (n,) m and a code (n,) of what lies there (for edges)."""
-    shade = 1 + np.float32(0.9 * table.contrast) * _texture(table, X, Y, seed)
-    colour = light_of(table.colour).astype(np.float32)
-    albedo = np.clip(shade[:, None], 0.1, 1.9) * colour
+    brightness, kept = _texture(table, X, Y, seed)
+    shade = 1 + np.float32(0.9 * table.contrast) * brightness
+    albedo = np.clip(shade[:, None], 0.1, 1.9) * light_of(table.colour).astype(np.float32)
     code = np.zeros(X.shape, dtype=np.int16)
-    if table.texture == "tiles":
-        c, s = np.cos(table.angle), np.sin(table.angle)
-        side = 4 * table.grain
-        u, v = np.mod((c * X + s * Y) / side, 1), np.mod((c * Y - s * X) / side, 1)
-        joint = (u < 0.03) | (v < 0.03)
-        albedo[joint] *= 1 - 0.6 * table.contrast
-        code[joint] = 1
+    if kept is not None:
+        albedo *= kept[:, None]
+        code[kept < 1] = 1
     for number, patch in enumerate(patches):
         reach = 0.75 * np.float32(np.hypot(*patch.size))
         x, y = X - np.float32(patch.position[0]), Y - np.float32(patch.position[1])
@@ -39,38 +35,32 @@ def _inside(patch, x, y):
     u, v = (c * x + s * y) / (patch.size[0] / 2), (c * y - s * x) / (patch.size[1] / 2)
     if patch.outline == "rectangle":
         return (np.abs(u) <= 1) & (np.abs(v) <= 1)
-    if patch.outline == "ellipse":
-        return u * u + v * v <= 1
     if patch.outline == "blob":
         rng = np.random.default_rng([int(patch.seed), 7])
         angle, rim = np.arctan2(v, u), np.ones(len(u))
         for k in range(2, 6):
             rim += rng.uniform(-0.3, 0.3) / k * np.cos(k * angle + rng.uniform(0, 2 * np.pi))
         return np.hypot(u, v) <= np.minimum(rim, 1.4)
-    raise InputError(f"outline {patch.outline!r} of a patch: give 'rectangle', 'ellipse' or 'blob'")
+    raise InputError(f"outline {patch.outline!r} of a patch: give 'rectangle' or 'blob'")
 
 
 def _texture(table, X, Y, seed):
-    """Brightness (n,) around 0, standard deviation about 1, of the table's texture."""
+    """Brightness (n,) around 0, standard deviation about 1, of the texture, and what its joints keep of the light."""
     c, s = np.cos(table.angle), np.sin(table.angle)
     u, v = (c * X + s * Y) / table.grain, (c * Y - s * X) / table.grain
     if table.texture == "plain":
-        return 0.25 * _lookup("soft", seed, 10 * u, 10 * v)
+        return 0.25 * noise("soft", seed, 10 * u, 10 * v), None
     if table.texture == "wood":
-        return 0.6 * _lookup("soft", seed, 2 * u, 24 * v) + 0.4 * _lookup("rough", seed, 3 * u, 60 * v)
-    if table.texture == "cloth":
-        return 0.5 * _lookup("rough", seed, 40 * u, 40 * v) + 0.5 * _lookup("soft", seed, 12 * u, 12 * v)
-    if table.texture == "speckle":
-        return _lookup("rough", seed, 30 * u, 30 * v)
-    if table.texture == "tiles":
-        return 0.3 * _lookup("rough", seed, 20 * u, 20 * v)
-    raise InputError(f"texture {table.texture!r} of the table: give 'plain', 'wood', 'cloth', 'speckle' or 'tiles'")
+        return 0.6 * noise("soft", seed, 2 * u, 24 * v) + 0.4 * noise("rough", seed, 3 * u, 60 * v), None
+    if callable(table.texture):
+        return table.texture(table, u, v, seed)
+    raise InputError(f"texture {table.texture!r} of the table: give 'plain', 'wood' or a function")
 
 
 def room_light(table, rays_x, rays_y, seed):
     """Linear colours (n, 3) of the room behind the table: broad blurred areas, by direction x, y of the rays."""
     colour = light_of(table.room if table is not None else (120, 118, 115)).astype(np.float32)
-    areas = [_lookup("broad", seed + 11 * i, 220 * rays_x + 60 * i, 220 * rays_y) for i in range(3)]
+    areas = [noise("broad", seed + 11 * i, 220 * rays_x + 60 * i, 220 * rays_y) for i in range(3)]
     # mostly light and dark, a little colour
     tint = np.exp(np.stack([0.4 * areas[0] + 0.12 * a for a in (areas[1], 0.3 * areas[2], -areas[1])], axis=-1))
     return np.clip(tint, 0.1, 2.2) * colour
@@ -91,7 +81,7 @@ def _tile(kind, seed):
     return (noise / noise.std()).astype(np.float32)
 
 
-def _lookup(kind, seed, u, v):
+def noise(kind, seed, u, v):
     """The noise at u, v (n,), in its own pixels, interpolated."""
     import cv2
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.pinhole import Pinhole, distort_xy
-from ir50p_lab.vision.rendering.board_print import inner_corners
 from ir50p_lab.vision.rendering.colours import is_red
 
 _RIM = 256
@@ -18,7 +18,7 @@ class BallTruth:
 
     x, y: projected centre of the sphere, pixels. radius: of the circle with the area of its image, pixels.
     outline_x, outline_y: centre of area of its image; a sphere's image is an ellipse whose middle is not where the
-    sphere's centre is seen. long, short: semi-axes of that ellipse, pixels. visible: part 0..1 of its image that is in
+    sphere's centre is seen. visible: part 0..1 of its image that is in
     the picture and not hidden; 0, with NaN for the rest, for a ball beside or behind the camera. position
     (3,) m and ball_radius m in world coordinates; colour: name or (r, g, b).
     """
@@ -28,8 +28,6 @@ class BallTruth:
     radius: float
     outline_x: float
     outline_y: float
-    long: float
-    short: float
     visible: float
     position: tuple
     ball_radius: float
@@ -83,11 +81,11 @@ def ball_truth(pinhole, T_cam_world, ball, seen):
     known = {"position": tuple(map(float, ball.position)), "ball_radius": float(ball.radius), "colour": ball.colour}
     reach = np.hypot(*centre[:2]) + ball.radius
     if centre[2] - ball.radius <= 1e-3 or reach / (centre[2] - ball.radius) >= pinhole.widest:
-        lost = dict.fromkeys(("x", "y", "radius", "outline_x", "outline_y", "long", "short"), float("nan"))
+        lost = dict.fromkeys(("x", "y", "radius", "outline_x", "outline_y"), float("nan"))
         return BallTruth(**lost, visible=0.0, **known)
     x, y = pinhole.project(np.eye(4), centre)
     rim = sphere_rim(pinhole, centre, ball.radius)
-    area, ox, oy, long, short = _area_moments(rim)
+    area, ox, oy = _area_and_centre(rim)
     # points of equal area: rings towards the middle of area
     s = np.sqrt((np.arange(_RINGS) + 0.5) / _RINGS)[:, None, None]
     inside = (np.array([ox, oy]) + s * (rim - (ox, oy))).reshape(-1, 2)
@@ -100,8 +98,6 @@ def ball_truth(pinhole, T_cam_world, ball, seen):
         radius=float(np.sqrt(area / np.pi)),
         outline_x=ox,
         outline_y=oy,
-        long=long,
-        short=short,
         visible=visible,
         **known,
     )
@@ -121,7 +117,7 @@ def sphere_rim(pinhole, centre, radius, n=_RIM):
 
 def board_truth(pinhole, T_cam_world, board, shape, seen):
     """BoardTruth of a Board; shape: its SheetShape; `seen(px, py)` tells which pixels (n,) really show it."""
-    flat = inner_corners(board)
+    flat = Checkerboard(board.pattern, board.square).points
     X = shape.place(flat[:, 0], flat[:, 1]) @ shape.R.T + shape.t
     front = (X[:, 2] > 1e-6) & (np.hypot(X[:, 0], X[:, 1]) < pinhole.widest * X[:, 2])
     corners = np.full((len(X), 2), np.nan)
@@ -140,19 +136,12 @@ def _cross(a, b):
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
-def _area_moments(rim):
-    """Area, centre of area and semi-axes of the ellipse with the same second moments, of a polygon (n, 2)."""
+def _area_and_centre(rim):
+    """Area and centre of area of a polygon (n, 2)."""
     middle = rim.mean(axis=0)
     a = rim - middle
     b = np.roll(a, -1, axis=0)
     c = _cross(a, b)
     area = c.sum() / 2
-    centre = ((a + b) * c[:, None]).sum(axis=0) / (6 * area)
-    second = (
-        np.einsum("n,ni,nj->ij", c, a, a)
-        + np.einsum("n,ni,nj->ij", c, b, b)
-        + np.einsum("n,ni,nj->ij", c, a + b, a + b)
-    )
-    second = second / (24 * area) - np.outer(centre, centre)
-    short, long = 2 * np.sqrt(np.linalg.eigvalsh(second))
-    return abs(area), float(centre[0] + middle[0]), float(centre[1] + middle[1]), float(long), float(short)
+    x, y = middle + ((a + b) * c[:, None]).sum(axis=0) / (6 * area)
+    return abs(area), float(x), float(y)
