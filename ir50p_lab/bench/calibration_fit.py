@@ -4,13 +4,13 @@ import numpy as np
 
 from ir50p_lab.bench.calibration import JointCalibration
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite, numbers
+from ir50p_lab.inputs import choice, first_not_finite, numbers
 
 _FULL = 1023.0
 _WRAP = 300.0  # counts: no two neighbouring points of a sound potentiometer jump back by so much
 
 
-def fit_calibration(q, counts, *, joint=None, others=None, angles="read", arm="", source="measured"):
+def fit_calibration(q, counts, *, angles="read", arm="", source="measured"):
     """Fit counts = zero + slope q to an experiment: the joint stands at angles q, the converter shows counts (4.1.2).
 
     Which of the two carries the error decides how to fit. A protractor is read to about half a degree, which is one or
@@ -25,47 +25,23 @@ def fit_calibration(q, counts, *, joint=None, others=None, angles="read", arm=""
     With ten points over a wide range the two differ by less than their standard errors; with a narrow one they do not.
 
     Args:
-        q, counts: (m, 3), m poses of the whole arm; or three lists of different lengths, one experiment per joint; or
-            (m,) for one joint only: then give `joint` and `others`. Angles in rad, counts of the 10-bit converter.
-        joint: 1, 2 or 3. others: JointCalibration that keeps the other two joints (`nominal_calibration(arm)`, say).
+        q, counts: (m, 3), m poses of the whole arm; or three lists of different lengths, one experiment per joint (to
+            measure one joint anew take those of the others from `points` of the last calibration). Angles in rad,
+            counts of the 10-bit converter.
+        angles: "read" or "set", see above.
         arm: Arm or its name, saved with it. source: kept with it (who measured, when).
 
-    Returns: JointCalibration with standard errors (0 for a joint that was not measured), points and residuals; its
+    Returns: JointCalibration with standard errors, points and residuals; its
     `remarks` name what looks wrong: a bow that a line cannot follow (F test against a cubic), a point that lies far
     off, a negative slope, few points, a narrow range, a reading at the end of the track.
     Raises: InputError for what no line fits: fewer than 3 points, angles in degrees, counts outside 0..1023, a reading
     that does not change or does not follow its angle, a potentiometer that wraps, cables of two joints swapped.
     """
-    if angles not in ("read", "set"):
-        raise InputError(f"angles = {angles!r}: choose 'read' (joint stood, angle read) or 'set' (moved to marks)")
-    name = getattr(arm, "name", arm)
-    if joint is not None:
-        return _one_joint(q, counts, joint, others, angles, name, source)
+    choice("angles", angles, ("read", "set"))
     q, counts = _three("q", q), _three("counts", counts)
     if all(len(x) == len(q[0]) for x in (*q, *counts)):
         _refuse_swapped(np.array(q), np.array(counts))
     fits = [_line(i + 1, *_pair(i + 1, q[i], counts[i]), angles) for i in range(3)]
-    return _calibration(fits, name, source)
-
-
-def _one_joint(q, counts, joint, others, angles, name, source):
-    if joint not in (1, 2, 3):
-        raise InputError(f"joint = {joint!r}: give 1, 2 or 3")
-    if not isinstance(others, JointCalibration):
-        raise InputError("one joint alone makes no calibration: give others=, for example nominal_calibration(arm)")
-    fits = []
-    for i in range(3):
-        if i + 1 == joint:
-            fits.append(_line(joint, *_pair(joint, q, counts), angles))
-            continue
-        points = others.points[i] if others.points else ((), ())
-        errors = [0.0 if e is None else e[i] for e in (others.stderr_slope, others.stderr_zero)]
-        remarks = [text for text in others.remarks if text.startswith(f"joint {i + 1}:")]
-        fits.append((others.slope[i], others.zero[i], *errors, points, remarks))
-    return _calibration(fits, name or others.arm, source)
-
-
-def _calibration(fits, name, source):
     slope, zero, stderr_slope, stderr_zero, points, remarks = zip(*fits, strict=True)
     return JointCalibration(
         slope=slope,
@@ -73,9 +49,9 @@ def _calibration(fits, name, source):
         stderr_slope=stderr_slope,
         stderr_zero=stderr_zero,
         source=source,
-        arm=name,
+        arm=getattr(arm, "name", arm),
         points=points,
-        remarks=tuple(text for texts in remarks for text in texts),
+        remarks=sum(remarks, ()),
     )
 
 
@@ -88,7 +64,7 @@ def _three(name, value):
     if array is not None and array.ndim == 2 and array.shape[1] == 3:
         return list(array.T)
     if array is not None and array.ndim == 1:
-        raise InputError(f"{name} has shape {array.shape}: one joint only? Then give joint= and others=")
+        raise InputError(f"{name} has shape {array.shape}: one joint only? Give three lists, one per joint")
     if not hasattr(value, "__len__") or len(value) != 3 or (array is not None and array.ndim > 2):
         shape = "" if array is None else f" has shape {array.shape}"
         raise InputError(f"{name}{shape}: give (m, 3), one row per pose, or three lists, one per joint")
@@ -162,7 +138,7 @@ def _line(joint, q, counts, angles):
     else:
         slope, zero, variances = b, a, (cov[0, 0], cov[1, 1])
     errors = [float(np.sqrt(max(0.0, v))) for v in variances]
-    remarks = [f"joint {joint}: {text}" for text in _remarks(q, counts, slope, zero, errors[0])]
+    remarks = tuple(f"joint {joint}: {text}" for text in _remarks(q, counts, slope, zero, errors[0]))
     return float(slope), float(zero), *errors, (tuple(q.tolist()), tuple(counts.tolist())), remarks
 
 

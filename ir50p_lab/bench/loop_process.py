@@ -19,6 +19,7 @@ import traceback
 from pathlib import Path
 
 from ir50p_lab.bench import shared_loop
+from ir50p_lab.bench.live_run import LiveRun
 from ir50p_lab.bench.recording import Recording
 from ir50p_lab.bench.shared_loop import SharedLoop
 from ir50p_lab.errors import BenchError, LabError
@@ -30,20 +31,19 @@ _PACKAGE_ROOT = str(Path(__file__).resolve().parents[2])
 _START = f"import sys; sys.path.insert(0, {_PACKAGE_ROOT!r}); from ir50p_lab.bench.loop_process import main; main()"
 
 
-class ProcessWorker:
+class ProcessRun(LiveRun):
     """The parent's side: starts the child, lends it the port, hears what it says."""
 
-    def __init__(self, bench, cargo, options):
-        self._bench, self._cargo, self._options = bench, cargo, options
-        self.memory, self.error = SharedLoop.shared(), None
+    def __init__(self, bench, controller, cargo, options):
+        super().__init__(bench, controller, cargo, options, SharedLoop.shared())
         self._process, self._path, self._said, self._words = None, None, tempfile.TemporaryFile(), ""
         self._ended, self._heard, self._stages = threading.Event(), threading.Condition(), set()
 
-    def start(self):
+    def begin(self):
         """Start the child; back when it has the port and its first cycle follows. Raises what kept it from that."""
         import cloudpickle
 
-        options = {"start_new_session": True, "pass_fds": self.memory.file_descriptors}
+        options = {"start_new_session": True, "pass_fds": self._memory.file_descriptors}
         if os.name == "nt":  # either way: Ctrl-C and the notebook's interrupt button are not for the child
             options = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
         self._process = subprocess.Popen(
@@ -57,7 +57,7 @@ class ProcessWorker:
         try:
             bench = cloudpickle.dumps((type(self._bench), self._bench._arguments()))
             with contextlib.suppress(BrokenPipeError):  # it has died: the messages say why
-                _send(self._process.stdin, (sys.path, self.memory.address, os.getpid()))
+                _send(self._process.stdin, (sys.path, self._memory.address, os.getpid()))
                 _send(self._process.stdin, (bench, self._cargo, self._options))
             self._await("ready", _READY_WITHIN)
             self._bench._close()  # the port is the child's from here on
@@ -94,7 +94,7 @@ class ProcessWorker:
         code = self._process.wait()
         self._words = self._last_words()
         self._said.close()
-        self.memory.handed_over()
+        self._memory.handed_over()
         if self.error is None and "done" not in self._stages and "opened" in self._stages:
             self.error = BenchError(
                 f"the process of the loop has died (exit code {code}): the board has cut the drive 0.1 s after its "
@@ -128,10 +128,6 @@ class ProcessWorker:
         """The recording as far as it is on disk; None if it is not recorded there."""
         return Recording.load(self._path) if self._path else None
 
-    def is_here(self):
-        """The loop is never in this process."""
-        return False
-
     def wait(self, timeout):
         """Wait for the end. Returns whether it came."""
         return self._ended.wait(timeout) if self._process is not None else True
@@ -142,7 +138,7 @@ class ProcessWorker:
             self._process.kill()
         self.wait(5.0)
 
-    def give_back(self):
+    def _take_back(self):
         """The port is wanted here again."""
         if self._bench.is_open:
             self._bench._open()

@@ -332,7 +332,7 @@ def test_the_loop_is_another_process_with_the_port_and_what_a_notebook_defines(c
         assert run.join(10)
         assert (run.recent(10).u == 7).all()
         child = [pid for _, pid, words in lines(commands) if words[0] == "drive"]
-        assert set(child) == {run._worker.pid} != {os.getpid()}
+        assert set(child) == {run.pid} != {os.getpid()}
         assert lines(commands)[-1][2] == ["cut"]
         with pytest.raises(InputError, match="no gains"):
             run.set_gains(kp=1)
@@ -349,7 +349,7 @@ def test_a_killed_loop_is_noticed(commands):
     with FileBench(commands) as bench:
         run = bench.start(pid(), None)
         until(lambda: run.statistics().cycles > 3)
-        os.kill(run._worker.pid, signal.SIGKILL)
+        os.kill(run.pid, signal.SIGKILL)
         with pytest.raises(BenchError, match="has died"):
             run.join(10)
         assert not run.alive

@@ -46,7 +46,7 @@ NOTEBOOK = """
     run = bench.start(Push(), None)
     while run.statistics().cycles < 30:
         time.sleep(0.01)
-    print(run._worker.pid, flush=True)
+    print(run.pid, flush=True)
     time.sleep(600)
 """
 

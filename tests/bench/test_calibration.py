@@ -67,13 +67,11 @@ def test_errors_of_the_protractor_make_the_usual_regression_too_flat():
     np.testing.assert_allclose(usual / TRUTH.slope, variance / (variance + error**2), rtol=0.03)
 
 
-def test_one_joint_at_a_time_and_lists_of_different_lengths():
+def test_one_joint_anew_and_lists_of_different_lengths():
     q, counts = experiment()
     whole = fit_calibration(q, counts, arm=IR50P)
-    one = TRUTH
-    for joint in (3, 1, 2):
-        one = fit_calibration(q[:, joint - 1], counts[:, joint - 1], joint=joint, others=one, arm="IR50P")
-    assert one == whole
+    again = fit_calibration(*zip(*whole.points, strict=True), arm="IR50P")
+    assert again == whole
     lists = fit_calibration([q[:8, 0], q[:, 1], q[:5, 2]], [counts[:8, 0], counts[:, 1], counts[:5, 2]])
     assert lists.slope[1] == whole.slope[1] and [len(r) for r in lists.residuals] == [8, 12, 5]
     assert any("joint 3: only 5 points" in text for text in lists.remarks)
@@ -172,10 +170,6 @@ def test_bad_options():
     q, counts = experiment()
     with pytest.raises(InputError, match="angles"):
         fit_calibration(q, counts, angles="guessed")
-    with pytest.raises(InputError, match="joint = 4"):
-        fit_calibration(q[:, 0], counts[:, 0], joint=4, others=TRUTH)
-    with pytest.raises(InputError, match="others"):
-        fit_calibration(q[:, 0], counts[:, 0], joint=1)
 
 
 @pytest.mark.parametrize(
