@@ -14,19 +14,18 @@ class JointPlots:
     """Angles above, commands below, one column per joint. `update(run, ...)` draws simulation results.
 
     Args: target: (3,) rad, drawn dashed; duration: s; unit: of the command; u_max: the command axis ends there;
-    labels: one for each run that will be drawn (a legend if there are several); start: (3,) rad where runs begin;
-    band: how far beyond start and target the angle axes reach, in parts of the way between them (at least 0.2 rad).
+    labels: one for each run that will be drawn (a legend if there are several). Runs begin at 0 rad.
 
     Attributes: figure (LabFigure), to be shown itself or with `live`.
     """
 
-    def __init__(self, target, *, duration, unit, u_max, labels=("",), start=(0.0, 0.0, 0.0), band=0.25, height=4.2):
-        self.figure = new_figure(9.6, height, rows=2, cols=3, sharex=True)
+    def __init__(self, target, *, duration, unit, u_max, labels=("",)):
+        self.figure = new_figure(9.6, 4.2, rows=2, cols=3, sharex=True)
         above, below = self.figure.axes[:3], self.figure.axes[3:]
         self._q, self._u = [], []
         for joint in range(3):
-            low, high = sorted((start[joint], target[joint]))
-            room = max(band * (high - low), 0.2)
+            low, high = sorted((0.0, target[joint]))
+            room = max(0.25 * (high - low), 0.2)
             above[joint].axhline(target[joint], **SETPOINT)
             above[joint].set(xlim=(0, duration), ylim=(low - room, high + room))
             below[joint].set(ylim=(-1.08 * u_max, 1.08 * u_max), xlabel="time [s]")
