@@ -216,11 +216,11 @@ def _best(corners, rough, wanted, aspect, bend):
         said.append("the views are too few or too much alike to test whether the board is bent")
     if lacking is not None:
         evidence = (*evidence, lacking)
-    if lacking is not None and lacking.kept:
-        said.append(
-            f"lens = {best.model.lens} was prescribed, but the corners say {wide.model.lens} (by "
-            f"chance: {in_percent(lacking.p_value)}): leave lens=None"
-        )
+        if lacking.kept:
+            said.append(
+                f"lens = {best.model.lens} was prescribed, but the corners say {wide.model.lens} (by "
+                f"chance: {in_percent(lacking.p_value)}): leave lens=None"
+            )
     if shape is not None and shape.kept and bend is False:
         said.append("bend=False was prescribed, but the corners say that the board is bent: leave bend=None")
     elif shape is not None and shape.kept:

@@ -1,4 +1,4 @@
-"""The print of a calibration board: which points are black, and where its corners are."""
+"""The print of a calibration board: its size, and which points are black."""
 
 import functools
 

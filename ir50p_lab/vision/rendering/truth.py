@@ -44,16 +44,13 @@ class BoardTruth:
     """One board of the picture.
 
     corners (n, 2) pixels, NaN beside or behind the camera; inside (n,): in the picture and not hidden;
-    object_points (n, 3) m, as of a flat board; T_cam_board (4, 4); pattern, square, bend as in Board.
+    object_points (n, 3) m, as of a flat board; T_cam_board (4, 4).
     """
 
     corners: np.ndarray
     inside: np.ndarray
     object_points: np.ndarray
     T_cam_board: np.ndarray
-    pattern: tuple
-    square: float
-    bend: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -126,10 +123,8 @@ def board_truth(pinhole, T_cam_world, board, shape, seen):
     w, h = pinhole.size
     inside = front & np.all((corners >= -0.5) & (corners <= (w - 0.5, h - 0.5)), axis=1)
     inside[inside] = seen(corners[inside, 0], corners[inside, 1])
-    return BoardTruth(
-        corners=corners, inside=inside, object_points=flat, T_cam_board=T_cam_world @ board.T_world_board,
-        pattern=tuple(board.pattern), square=float(board.square), bend=float(board.bend),
-    )  # fmt: skip
+    T_cam_board = T_cam_world @ board.T_world_board
+    return BoardTruth(corners=corners, inside=inside, object_points=flat, T_cam_board=T_cam_board)
 
 
 def _cross(a, b):
