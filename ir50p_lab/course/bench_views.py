@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.bench import UNIT, SimulatedArm
 from ir50p_lab.course.arm3d import ArmView, SideView
 from ir50p_lab.course.simulation_views import Row, Traces
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.signals import (
     alias,
@@ -18,8 +18,6 @@ from ir50p_lab.signals import (
     velocity_estimators,
 )
 
-_JOINTS = (COLOURS["blue"], COLOURS["orange"], COLOURS["green"])
-
 
 def origin(recording):
     """Where a recording is from, in two words: 'simulated arm', 'the real arm' or 'origin unknown'."""
@@ -28,20 +26,12 @@ def origin(recording):
     return "simulated arm" if recording.simulated else "the real arm"
 
 
-def _stamped(text, *figure_size, **layout):
-    """A `new_figure` with a small note at its lower right: where the data are from."""
-    figure = new_figure(*figure_size, **layout)
-    x, y = 1.0 - 0.04 / figure.get_figwidth(), 0.03 / figure.get_figheight()
-    figure.text(x, y, text, ha="right", va="bottom", fontsize=7.5, color=COLOURS["grey"], style="italic")
-    return figure
-
-
 def let_go_figure(arm, recording):
     """The arm from the side at the first and last sample of a run, and its angles over time. Returns: LabFigure.
 
     Args: arm: Arm; recording: Recording of a run without drive.
     """
-    figure = _stamped(origin(recording), 9.0, 3.8, cols=2, width_ratios=(1, 1.15))
+    figure = new_figure(9.0, 3.8, cols=2, width_ratios=(1, 1.15), note=origin(recording))
     side, angles = figure.axes
     heading = recording.q[0, 0]
     for sample, colour, label in ((0, "blue", "first sample"), (-1, "orange", "last sample")):
@@ -51,7 +41,7 @@ def let_go_figure(arm, recording):
     fallen = forward_kinematics(arm, recording.q[0])[2] - forward_kinematics(arm, recording.q[-1])[2]
     side.set_title(f"Nobody drives: the tip falls {100 * fallen:.0f} cm" if fallen > 0.02 else "It stays")
     for joint in range(3):
-        angles.plot(recording.t, recording.q[:, joint], color=_JOINTS[joint], label=f"joint {joint + 1}")
+        angles.plot(recording.t, recording.q[:, joint], color=JOINTS[joint], label=f"joint {joint + 1}")
     angles.set(xlabel="t [s]", ylabel="angle [rad]", title="What the potentiometers say")
     angles.legend(fontsize=8)
     return figure
@@ -62,7 +52,7 @@ def breakaway_figure(recording, joint, moved_at):
 
     Args: recording: Recording; joint: 0, 1 or 2; moved_at: s.
     """
-    figure = _stamped(origin(recording), 9.0, 3.6, rows=2, sharex=True)
+    figure = new_figure(9.0, 3.6, rows=2, sharex=True, note=origin(recording))
     above, below = figure.axes
     above.plot(recording.t, recording.u[:, joint], color=COLOURS["orange"], drawstyle="steps-post")
     below.plot(recording.t, recording.q[:, joint], ".", ms=3, color=COLOURS["grey"])
@@ -194,7 +184,7 @@ def stop_figure(goal, as_printed, let_go, held):
 
     Args: goal: (3,) rad; as_printed, let_go, held: Recordings of the same motion. Returns: LabFigure.
     """
-    figure = _stamped(origin(held), 9.6, 4.4, rows=2, cols=2, sharex=True)
+    figure = new_figure(9.6, 4.4, rows=2, cols=2, sharex=True, note=origin(held))
     runs = (
         ((held, "blue", "|e|, command held"), (as_printed, "orange", "e < 0.01, as printed")),
         ((let_go, "orange", "|e|, let go"), (held, "blue", "|e|, command held")),
@@ -228,8 +218,8 @@ def path_figure(arm, path, done, before):
     space.plot(*done.wanted.T, color=COLOURS["dark"], linestyle="--", linewidth=1.2, zorder=28)
     space.set_title(f"Dashed: wanted; green: done, {done.rms_mm:.0f} mm rms")
     for axis, name in enumerate("xyz"):
-        over_time.plot(before.t, before.tip[:, axis], color=_JOINTS[axis], lw=0.8, alpha=0.7)
-        over_time.plot(done.t, done.tip[:, axis], color=_JOINTS[axis], lw=2, label=name)
+        over_time.plot(before.t, before.tip[:, axis], color=JOINTS[axis], lw=0.8, alpha=0.7)
+        over_time.plot(done.t, done.tip[:, axis], color=JOINTS[axis], lw=2, label=name)
         over_time.plot(done.t, done.wanted[:, axis], **SETPOINT)
     over_time.set(xlabel="t [s]", ylabel="position of the tip [m]")
     over_time.set_title(f"Thin: Tables 4.1-4.3, {before.rms_mm:.0f} mm rms")
@@ -242,7 +232,7 @@ def replay_figure(recording, replayed, joint=0):
 
     Args: recording: Recording, with u; replayed: Recording of a ReplayBench; joint: 0, 1 or 2.
     """
-    figure = _stamped(f"recorded: {origin(recording)}", 9.0, 3.8, rows=2, sharex=True)
+    figure = new_figure(9.0, 3.8, rows=2, sharex=True, note=f"recorded: {origin(recording)}")
     above, below = figure.axes
     above.plot(recording.t, recording.q[:, joint], color=COLOURS["dark"])
     above.set(ylabel="angle [rad]", title=f"Joint {joint + 1}: the angles are past, the commands are new")

@@ -4,13 +4,8 @@ import numpy as np
 from matplotlib.collections import LineCollection
 
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
-from ir50p_lab.course.vision_views import stamp
+from ir50p_lab.course.vision_views import STAMP
 from ir50p_lab.vision import Pinhole
-
-
-def rendered_figure(*size, **layout):
-    """A `new_figure` with a note in its lower right corner: rendered, not photographed."""
-    return stamp(new_figure(*size, **layout))
 
 
 def show_picture(ax, image, title=""):
@@ -103,7 +98,7 @@ def covered_figure(whole, covered, view):
 
     Args: whole, covered (h, w, 3); view: View of the covered picture.
     """
-    figure = rendered_figure(9.0, 3.6, cols=2)
+    figure = new_figure(9.0, 3.6, cols=2, note=STAMP)
     show_picture(figure.axes[0], whole, "The whole board: a marker in each white square")
     show_picture(figure.axes[1], covered, f"The right hidden: {len(view.corners)} corners found")
     figure.axes[1].plot(*view.corners.T, "o", fillstyle="none", color=COLOURS["orange"], markersize=7)
@@ -116,7 +111,7 @@ def contact_sheet(images, calibration, columns=5):
     images: list of (h, w, 3), in the order given to `calibrate`; calibration: Calibration.
     """
     rows = -(-len(images) // columns)
-    figure = rendered_figure(9.0, 1.62 * rows + 0.2, rows=rows, cols=columns)
+    figure = new_figure(9.0, 1.62 * rows + 0.2, rows=rows, cols=columns, note=STAMP)
     used = {view.index: view for view in calibration.views}
     refused = {one.index: one for one in calibration.rejected}
     for k, ax in enumerate(figure.axes):
@@ -140,7 +135,7 @@ def estimate_figure(calibration, truth):
     right = dict(zip(calibration.values, (truth.fx, truth.fy, truth.cx, truth.cy, *truth.distortion), strict=True))
     names = [name for name, error in calibration.stderr.items() if np.isfinite(error)]
     off = [(calibration.values[n] - right[n]) / calibration.stderr[n] for n in names]
-    figure = rendered_figure(8.0, 2.8)
+    figure = new_figure(8.0, 2.8, note=STAMP)
     ax = figure.axes[0]
     ax.axhspan(-3, 3, color=COLOURS["light"], alpha=0.4)
     ax.axhline(0, color=COLOURS["dark"], linewidth=1)
@@ -180,7 +175,7 @@ def rms_figure(reports, noise):
 def residual_figure(images, calibration, view, gain=500):
     """A picture with its residuals as arrows, `gain` times longer, beside those of all views. Returns: LabFigure."""
     one = calibration.views[view]
-    figure = rendered_figure(9.0, 3.8, cols=2, width_ratios=(1.5, 1))
+    figure = new_figure(9.0, 3.8, cols=2, width_ratios=(1.5, 1), note=STAMP)
     left, right = figure.axes
     show_picture(left, images[one.index], f"{one.name}: residuals, {gain} times longer, rms {one.rms:.3f} px")
     arrows = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.006}
@@ -203,7 +198,7 @@ def coverage_figure(calibration):
     from ir50p_lab.vision import direction_stderr
 
     w, h = calibration.size
-    figure = rendered_figure(9.4, 3.4, cols=2)
+    figure = new_figure(9.4, 3.4, cols=2, note=STAMP)
     left, right = figure.axes
     cover, following = calibration.coverage, calibration.next_view()
     counted = left.imshow(cover.counts, extent=(0, w, h, 0), cmap="Greens", vmin=0)
@@ -234,7 +229,7 @@ def board_residual_figure(picture, flat, bent):
     Args: picture (h, w, 3); flat, bent: Calibration of the same pictures without and with the shape of the board.
     Returns: LabFigure.
     """
-    figure = rendered_figure(10.5, 3.1, cols=3, width_ratios=(1.1, 1, 1))
+    figure = new_figure(10.5, 3.1, cols=3, width_ratios=(1.1, 1, 1), note=STAMP)
     show_picture(figure.axes[0], picture, "One of the pictures")
     maps = figure.axes[1:]
     for ax, one, name in zip(maps, (flat, bent), ("Board taken for flat", "Bend estimated"), strict=True):
@@ -274,7 +269,7 @@ def table_figure(image, pixels, errors):
 
     Args: image (h, w, 3); pixels (n, 2) of the balls; errors: {name: estimate minus truth (n, 2) m}.
     """
-    figure = rendered_figure(9.0, 3.7, cols=2, width_ratios=(1.3, 1))
+    figure = new_figure(9.0, 3.7, cols=2, width_ratios=(1.3, 1), note=STAMP)
     left, right = figure.axes
     show_picture(left, image, "Balls at the places of Table 4.8")
     left.plot(*np.transpose(pixels), "+", color="white", markersize=12, markeredgewidth=2)

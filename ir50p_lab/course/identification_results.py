@@ -4,12 +4,10 @@ import numpy as np
 
 from ir50p_lab.bench import Recording, SimulatedBench
 from ir50p_lab.course.bench_views import origin
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure
 from ir50p_lab.identification import RLS, fit, process, regressor, validate
 from ir50p_lab.identification.parameters import NAMES
 from ir50p_lab.signals import LowPass
-
-JOINTS = (COLOURS["blue"], COLOURS["orange"], COLOURS["green"])
 
 
 def learn(recording, *, rows="joint", columns="rigid", method="ls", l2=None, **steps):

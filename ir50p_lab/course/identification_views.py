@@ -5,13 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.bench import SimulatedBench
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure
 from ir50p_lab.identification import load_excitations, optimise_excitation, regressor
 from ir50p_lab.identification.parameters import ACTS_ON, NAMES, ONLY_THESIS
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals.fourier import series
 
-JOINTS = (COLOURS["blue"], COLOURS["orange"], COLOURS["green"])
 NOISE_PWM, INDEPENDENT = 8.0, 1100  # assumed: what is left of u, and how many independent samples 110 s hold
 _WATCHED = ((0, "theta1"), (1, "theta9"), (2, "j3"), (1, "theta3"))  # joint, parameter: inertias, and one of gravity
 

@@ -1,15 +1,16 @@
 """Figures of notebook 18: loop and frames, the picture beside the arm, a way, a reach over time, the error budget."""
 
 import numpy as np
-from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch
+from matplotlib.patches import Circle
 
+from ir50p_lab.course import vision_views
 from ir50p_lab.course.arm3d import ArmView, FrameView, SideView
-from ir50p_lab.course.bench_views import _stamped
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
 from ir50p_lab.modelling.chain import forward_kinematics, frames
 
 _XYZ = (COLOURS["orange"], COLOURS["green"], COLOURS["blue"])
 _RENDERED = "rendered picture, simulated arm"
+_BOX = {"boxstyle": "round,pad=0.8", "fc": "#EDF3F8", "ec": "#0072B2"}
 _ARRIVED = 1.5  # s after which a followed ball has been caught up with
 
 
@@ -33,21 +34,23 @@ def loop_figure():
         ("controller", "u [PWM]"),
     )
     for k, (name, out) in enumerate(boxes):
-        ax.add_patch(FancyBboxPatch((k + 0.12, 1.0), 0.76, 0.45, boxstyle="round,pad=0.04", fc="#EDF3F8", ec="#0072B2"))
-        ax.text(k + 0.5, 1.22, name, ha="center", va="center", fontsize=9.5)
+        ax.text(k + 0.5, 1.22, name, ha="center", va="center", fontsize=9.5, bbox=_BOX)
         ax.text(k + 0.5, 0.88, out, ha="center", va="top", fontsize=8, color=COLOURS["dark"])
         if k < 5:
-            ax.add_patch(FancyArrowPatch((k + 0.9, 1.22), (k + 1.1, 1.22), arrowstyle="-|>", mutation_scale=10))
-    style = {"arrowstyle": "-|>", "mutation_scale": 10, "connectionstyle": "arc,angleA=-90,angleB=-90,armA=25,armB=25"}
-    ax.add_patch(FancyArrowPatch((5.5, 0.6), (0.5, 0.6), **style))
+            _arrow(ax, (k + 0.87, 1.22), (k + 1.13, 1.22))
+    _arrow(ax, (5.5, 0.6), (0.5, 0.6), connectionstyle="arc,angleA=-90,angleB=-90,armA=25,armB=25")
     again = {"ha": "center", "va": "top", "fontsize": 9, "color": COLOURS["dark"]}
     ax.text(3.0, 0.2, "the camera sees ball and hand: look again", **again)
     return figure
 
 
+def _arrow(ax, start, end, **style):
+    ax.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0} | style)
+
+
 def frames_figure(arm, q, T_base_cam, ball=None, T_base_board=None, simulated=True):
     """The frames {0}, {c}, {ob} of Figures 4.15, 4.16 in 3-D, and the board, if its place is given. LabFigure."""
-    figure = _stamped(origin(simulated), 8.0, 5.0, projection="3d")
+    figure = new_figure(8.0, 5.0, projection="3d", note=origin(simulated))
     (ax,) = figure.axes
     _stage(ax, arm, q, T_base_cam)
     ax.view_init(elev=34, azim=-66)
@@ -84,9 +87,10 @@ def seen_figure(seen, arm, q, T_base_cam, marker=None):
 
     seen: Seen; marker: (2,) px of the marker on the hand, if found.
     """
-    figure = _stamped(origin(seen.simulated), 9.5, 4.4, cols=2, projection=[None, "3d"], width_ratios=(1.25, 1))
+    figure = new_figure(9.5, 4.4, cols=2, projection=[None, "3d"], width_ratios=(1.25, 1), note=origin(seen.simulated))
     picture, space = figure.axes
-    _picture(picture, seen.image)
+    vision_views.show_picture(picture, seen.image)
+    picture.set(xlabel="x [px]", ylabel="y [px]")
     if seen:
         x, y, r = seen.ball.x, seen.ball.y, seen.ball.radius
         picture.add_patch(Circle((x, y), r, fill=False, ec=COLOURS["sky"], lw=2))
@@ -104,24 +108,13 @@ def seen_figure(seen, arm, q, T_base_cam, marker=None):
     return figure
 
 
-def pictures_figure(images, titles, simulated=True, marks=None):
+def pictures_figure(images, titles, simulated=True, marks=()):
     """Pictures side by side. images: RGB; titles: one each; marks: (2,) px or None for each. Returns: LabFigure."""
-    figure = _stamped(origin(simulated), 9.5, 3.1, cols=len(images))
-    marks = [None] * len(images) if marks is None else marks
-    for ax, image, title, mark in zip(figure.axes, images, titles, marks, strict=True):
-        _picture(ax, image)
-        ax.set_title(title, fontsize=10)
+    figure = vision_views.pictures_figure(*zip(titles, images, strict=True), width=9.5, source=origin(simulated))
+    for ax, mark in zip(figure.axes, marks, strict=False):
         if mark is not None:
             ax.plot(*mark, "+", color="white", ms=13, mew=2)
-    for ax in figure.axes[1:]:
-        ax.set(xlabel="", ylabel="", yticklabels=[])
     return figure
-
-
-def _picture(ax, image):
-    ax.imshow(image)
-    ax.grid(False)
-    ax.set(xlabel="x [px]", ylabel="y [px]")
 
 
 def height_figure(plane, arm, ball, xy):
@@ -181,7 +174,7 @@ def way_figure(way, ball=None, radius=0.03):
 
 def tip_figure(arm, recording, done, simulated=True):
     """X, Y, Z of the tip over time, by potentiometers, with the goal dashed (Figure 4.20). Returns: LabFigure."""
-    figure = _stamped(origin(simulated).split(", ")[1], 9.0, 4.6, rows=3, sharex=True)
+    figure = new_figure(9.0, 4.6, rows=3, sharex=True, note=origin(simulated).split(", ")[1])
     t, p = recording.t, forward_kinematics(arm, recording.q)
     for ax, k, name, colour in zip(figure.axes, range(3), "XYZ", _XYZ, strict=True):
         ax.plot(t, 1e3 * p[:, k], color=colour, linewidth=1)
@@ -227,11 +220,8 @@ def hand_eye_figure():
     ax.axis("off")
     places = {"base": (0.8, 1.35), "tool": (5.2, 1.35), "camera": (0.8, 0.35), "board": (5.2, 0.35)}
     for name, (x, y) in places.items():
-        ax.add_patch(
-            FancyBboxPatch((x - 0.4, y - 0.16), 0.8, 0.32, boxstyle="round,pad=0.04", fc="#EDF3F8", ec="#0072B2")
-        )
-        ax.text(x, y, name, ha="center", va="center", fontsize=10)
-    known, sought = {"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "ls": "--"}
+        ax.text(x, y, name, ha="center", va="center", fontsize=10, bbox=_BOX)
+    known, sought = {"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linestyle": "--"}
     for a, b, style in (
         ("base", "tool", known),
         ("tool", "board", sought),
@@ -240,11 +230,7 @@ def hand_eye_figure():
     ):
         (xa, ya), (xb, yb) = places[a], places[b]
         dx, dy = (0.48, 0.0) if ya == yb else (0.0, -0.24)
-        ax.add_patch(
-            FancyArrowPatch(
-                (xa + dx, ya + dy), (xb - dx, yb - dy), arrowstyle="-|>", mutation_scale=12, lw=1.6, **style
-            )
-        )
+        _arrow(ax, (xa + dx, ya + dy), (xb - dx, yb - dy), lw=1.6, **style)
     for x, y, text, colour in (
         (3.0, 1.44, r"$T^{base}_{tool}(q_i)$: potentiometers, in every pose", "blue"),
         (3.0, 0.44, r"$T^{cam}_{board,i}$: a picture of every pose", "blue"),
@@ -274,7 +260,7 @@ def residual_figure(fit):
 
 def follow_figure(logs, simulated=True):
     """Followed balls: the table from above for the first FollowLog, how far each tip is ahead. Returns: LabFigure."""
-    figure = _stamped(origin(simulated), 9.5, 4.0, cols=2, width_ratios=(1, 1.6))
+    figure = new_figure(9.5, 4.0, cols=2, width_ratios=(1, 1.6), note=origin(simulated))
     above, time = figure.axes
     above.plot(*(1e3 * logs[0].ball.T), color="#C8202D", label="ball, as seen")
     settled = logs[0].t > _ARRIVED

@@ -10,17 +10,6 @@ from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
 STAMP = "simulated, not measured"
 
 
-def simulation_figure(width=9.0, height=None, **layout):
-    """A `new_figure` with a note in its lower right corner: simulated, not measured.
-
-    Args: as `new_figure`. Returns: LabFigure.
-    """
-    figure = new_figure(width, height, **layout)
-    x, y = 1.0 - 0.04 / figure.get_figwidth(), 0.03 / figure.get_figheight()
-    figure.text(x, y, STAMP, ha="right", va="bottom", fontsize=7.5, color=COLOURS["grey"], style="italic")
-    return figure
-
-
 @dataclass(frozen=True)
 class Row:
     """One of the axes of `Traces`.
@@ -93,7 +82,7 @@ def order_figure(steps, errors):
 
     Args: steps (n,) s; errors: {method: errors (n,) rad}. Returns: LabFigure, {method: slope}.
     """
-    figure = simulation_figure(8.0, 3.4)
+    figure = new_figure(8.0, 3.4, note=STAMP)
     ax, slopes = figure.axes[0], {}
     for name, error in errors.items():
         slopes[name] = float(np.polyfit(np.log(steps), np.log(error), 1)[0])
@@ -112,7 +101,7 @@ def friction_figure(law, breakaway, speeds, torques):
     Args: law: function of qd (n, 3) rad/s that returns torques (n, 3) N m; breakaway: N m; speeds, torques (n,):
     what was found, rad/s, N m. Returns: LabFigure.
     """
-    figure = simulation_figure(8.0, 3.2)
+    figure = new_figure(8.0, 3.2, note=STAMP)
     ax = figure.axes[0]
     v = np.linspace(1e-6, 1.1 * max(speeds), 300)
     ax.plot(v, law(np.outer(v, [1, 0, 0]))[:, 0], label="(1.115)-(1.117)")
@@ -129,7 +118,7 @@ def sinking_figure(arm, q, tips):
 
     Args: arm: Arm; q (n, 3) rad, a run in one vertical plane; tips (n, 3) m. Returns: LabFigure.
     """
-    figure = simulation_figure(5.5, 4.2)
+    figure = new_figure(5.5, 4.2, note=STAMP)
     ax = figure.axes[0]
     for pose, colour, label in ((q[0], "blue", "let go"), (q[-1], "orange", "in the end")):
         SideView(ax, arm, colour=COLOURS[colour], label=label).update(pose, heading=q[0, 0])
@@ -149,7 +138,7 @@ def chatter_figure(naive, stuck):
 
     Args: naive, stuck: (t (n,) s, change of angle (n,) rad, velocity (n,) rad/s). Returns: LabFigure.
     """
-    figure = simulation_figure(9.0, 3.0, cols=2)
+    figure = new_figure(9.0, 3.0, cols=2, note=STAMP)
     for k, (ax, label) in enumerate(zip(figure.axes, ("angle, change [rad]", "velocity [rad/s]"), strict=True)):
         ax.plot(naive[0], naive[1 + k], color=COLOURS["orange"], label="sgn() in Runge-Kutta")
         ax.plot(stuck[0], stuck[1 + k], color=COLOURS["blue"], linewidth=2.5, label="a step that sticks")

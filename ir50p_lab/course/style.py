@@ -5,10 +5,11 @@ import matplotlib
 from ir50p_lab.errors import InputError
 from ir50p_lab.lab_figure import COLOURS, LabFigure, figure_style
 
+JOINTS = (COLOURS["blue"], COLOURS["orange"], COLOURS["green"])
 SETPOINT = {"color": COLOURS["dark"], "linestyle": "--", "linewidth": 1.2}
 
 
-def new_figure(width=9.0, height=None, *, rows=1, cols=1, projection=None, sharex=False, width_ratios=None):
+def new_figure(width=9.0, height=None, *, rows=1, cols=1, projection=None, sharex=False, width_ratios=None, note=""):
     """A new figure in the style of the book, with its axes in `figure.axes` (row by row).
 
     Dashed lines are for set points (`**SETPOINT`), dots or thin grey for measurements, lines for models.
@@ -17,6 +18,7 @@ def new_figure(width=9.0, height=None, *, rows=1, cols=1, projection=None, share
         width, height: inches at 100 dots per inch; the default height fits the rows.
         rows, cols: grid of axes. projection: None (2-D), "3d", or a list with one of these per axes.
         sharex: the axes of a column share their x limits. width_ratios: relative widths of the columns.
+        note: small words in the lower right corner, below the axes: where the data are from.
 
     Returns: LabFigure. It belongs to nobody but you: pyplot does not know it, nothing shows it twice.
     """
@@ -42,6 +44,11 @@ def new_figure(width=9.0, height=None, *, rows=1, cols=1, projection=None, share
                     axis.line.set_color("#AAAAAA")
             elif sharex and k + cols < rows * cols:
                 ax.tick_params(labelbottom=False)
+    if note:
+        strip = 0.16 / height
+        figure.get_layout_engine().set(rect=(0, strip, 1, 1 - strip))
+        x, y = 1.0 - 0.04 / width, 0.03 / height
+        figure.text(x, y, note, ha="right", va="bottom", fontsize=7.5, color=COLOURS["grey"], style="italic")
     return figure
 
 

@@ -8,12 +8,9 @@ from matplotlib.colors import LogNorm
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.identification_views import kept_motion
-from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure
+from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, figure_style, new_figure
 from ir50p_lab.identification import fit, process, regressor
 from ir50p_lab.simulation import simulate
-
-_RUNS = (COLOURS["blue"], COLOURS["orange"], COLOURS["green"])
-JOINTS = _RUNS
 
 
 def rms(run, reference, since=0.0):
@@ -78,7 +75,7 @@ def pendulum_figure(t, angles, labels):
     """Responses of the pendulum with motor lag. t (n,) s; angles (m, n) rad; labels: m texts. Returns: LabFigure."""
     figure = new_figure(8.0, 3.0)
     ax = figure.axes[0]
-    for angle, label, colour in zip(angles, labels, _RUNS, strict=False):
+    for angle, label, colour in zip(angles, labels, JOINTS, strict=False):
         ax.plot(t, angle, color=colour, label=label)
     ax.axhline(0, **SETPOINT)
     ax.set(ylim=(-2, 2), xlabel="time [s]  -  simulated", ylabel="angle [rad]")
@@ -165,7 +162,7 @@ class TrackingView:
         for j in range(3):
             low, high = wanted[:, j].min(), wanted[:, j].max()
             room = max(0.35 * (high - low), 0.1)
-            styles = [{"color": c, "lw": 1.5} for c in _RUNS[: len(labels)]]
+            styles = [{"color": c, "lw": 1.5} for c in JOINTS[: len(labels)]]
             self._q.append([above[j].plot([], [], label=n, **s)[0] for n, s in zip(labels, styles, strict=True)])
             self._e.append([below[j].plot([], [], **s)[0] for s in styles])
             above[j].plot(t, wanted[:, j], **SETPOINT)
@@ -196,7 +193,7 @@ def learning_figure(law, arms, reference, seconds, *, column, joint, truth):
     figure = new_figure(9.6, 3.2, cols=2)
     left, right = figure.axes
     beliefs = []
-    for (label, arm), colour in zip(arms.items(), _RUNS, strict=False):
+    for (label, arm), colour in zip(arms.items(), JOINTS, strict=False):
         watched = _Watched(law(), joint, column)
         run = simulate(arm, watched, reference, q0=reference(0.0)[0], duration=seconds)
         left.plot(run.t, -1e3 * run.error[:, joint], color=colour, lw=1)

@@ -4,7 +4,6 @@ import html
 
 import ipywidgets as widgets
 import numpy as np
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ir50p_lab.course.canvas import Canvas
 from ir50p_lab.course.painter import encode_png
@@ -24,16 +23,6 @@ STAMP = "rendered, not photographed"
 _GREY = {"cmap": "gray", "vmin": 0, "vmax": 255, "interpolation": "nearest"}
 
 
-def stamp(figure, text=STAMP):
-    """Write in the lower right corner of a figure, below its axes, where its pictures are from. Returns the figure."""
-    engine, strip = figure.get_layout_engine(), 0.16 / figure.get_figheight()
-    if isinstance(engine, ConstrainedLayoutEngine):
-        engine.set(rect=(0, strip, 1, 1 - strip))
-    x, y = 1.0 - 0.04 / figure.get_figwidth(), 0.03 / figure.get_figheight()
-    figure.text(x, y, text, ha="right", va="bottom", fontsize=7.5, color=COLOURS["grey"], style="italic")
-    return figure
-
-
 def show_picture(ax, picture, title="", **options):
     """Draw a picture, (h, w, 3) or (h, w), into axes whose units are pixels. Returns the artist."""
     artist = ax.imshow(picture, **({} if picture.ndim == 3 else _GREY) | options)
@@ -47,11 +36,11 @@ def pictures_figure(*titled, width=9.6, height=None, source=STAMP):
     """Pictures side by side: each (title, picture). source: where they are from, in words. Returns: LabFigure."""
     shape = titled[0][1].shape
     each = width / len(titled)
-    figure = new_figure(width, height or min(0.55 + each * shape[0] / shape[1], 5.2), cols=len(titled))
+    figure = new_figure(width, height or min(0.55 + each * shape[0] / shape[1], 5.2), cols=len(titled), note=source)
     for ax, (title, picture) in zip(figure.axes, titled, strict=True):
         show_picture(ax, picture, title)
     figure.axes[0].set(xlabel="x [px]", ylabel="y [px]")
-    return stamp(figure, source)
+    return figure
 
 
 def numbers_figure(grey, x, y, n=9, *, title="An image is a matrix of numbers", white=255, source=STAMP):
@@ -60,7 +49,7 @@ def numbers_figure(grey, x, y, n=9, *, title="An image is a matrix of numbers", 
     white: the level shown as white.
     """
     part = grey[y : y + n, x : x + n]
-    figure = new_figure(0.91 + 0.41 * n, 0.71 + 0.41 * n)
+    figure = new_figure(0.91 + 0.41 * n, 0.71 + 0.41 * n, note=source)
     ax = figure.axes[0]
     show_picture(ax, part, title, vmax=white, extent=(x - 0.5, x + n - 0.5, y + n - 0.5, y - 0.5))
     for row in range(n):
@@ -68,7 +57,7 @@ def numbers_figure(grey, x, y, n=9, *, title="An image is a matrix of numbers", 
             ink = "white" if part[row, col] < white / 2 else "black"
             ax.text(x + col, y + row, str(part[row, col]), ha="center", va="center", fontsize=7.5, color=ink)
     ax.set(xlabel="x [px]", ylabel="y [px]")
-    return stamp(figure, source)
+    return figure
 
 
 def colour_solids_figure():
@@ -107,7 +96,7 @@ def ball_hues_figure(image, ball):
     hue, saturation, _ = rgb_to_hsv(image[disc]).T
     turned = (hue + 180) % 360 - 180  # -180..180: red in the middle
     taken = (turned > -20) & (turned < 0) & (saturation > 0.2) & (saturation < 0.8)
-    figure = new_figure(6.4, 3.6)
+    figure = new_figure(6.4, 3.6, note=STAMP)
     ax = figure.axes[0]
     ax.fill_between([-20, 0], 0.2, 0.8, color=COLOURS["light"], label="4.5.1: 340 to 360 degrees, 0.2 to 0.8")
     ax.plot(turned[~taken], saturation[~taken], ".", ms=4, color=COLOURS["orange"], label="pixels it loses")
@@ -115,7 +104,7 @@ def ball_hues_figure(image, ball):
     ax.set(xlim=(-40, 40), ylim=(0, 1.02), xlabel="hue [degrees; -20 is 340]", ylabel="saturation [1]")
     ax.set_title(f"4.5.1 keeps {taken.mean():.0%} of the ball")
     ax.legend(fontsize=8, loc="lower right")
-    return stamp(figure), float(taken.mean())
+    return figure, float(taken.mean())
 
 
 class MaskView:
@@ -151,7 +140,7 @@ def mask_between(hsv, hue_low, hue_high, s_low, s_high, v_low):
 
 def canny_figure(steps, low, high):
     """The four steps of Canny, from CannySteps; crests in classes by the thresholds low and high: LabFigure."""
-    figure = new_figure(9.6, 2.9, cols=4)
+    figure = new_figure(9.6, 2.9, cols=4, note=STAMP)
     strength = 255 * steps.strength / max(steps.strength.max(), 1)
     crests = np.zeros((*steps.thin.shape, 3), np.uint8)
     for least, colour in ((1, "#444444"), (low + 1, COLOURS["sky"]), (high + 1, "#FFFFFF")):
@@ -166,7 +155,7 @@ def canny_figure(steps, low, high):
         show_picture(ax, picture, name)
         ax.set(xticks=[], yticks=[])
     figure.suptitle("Thick slopes, then crests, then what hangs on a strong one", fontsize=11)
-    return stamp(figure)
+    return figure
 
 
 def votes_figure(points, votes, centre):
@@ -308,7 +297,7 @@ def sheet_figure(seen, *, columns=4, source=STAMP):
     seen: list of (picture, balls found, (x, y, radius) of the true ball).
     """
     rows = -(-len(seen) // columns)
-    figure = new_figure(9.6, 2.05 * rows + 0.2, rows=rows, cols=columns)
+    figure = new_figure(9.6, 2.05 * rows + 0.2, rows=rows, cols=columns, note=source)
     for ax in figure.axes:
         ax.set_axis_off()
     for ax, (picture, found, target) in zip(figure.axes, seen, strict=False):
@@ -324,7 +313,7 @@ def sheet_figure(seen, *, columns=4, source=STAMP):
         ax.set_title(
             f"{off[0]:.2f} px off" if off else "missed", fontsize=9, color=COLOURS["dark" if off else "orange"]
         )
-    return stamp(figure, source)
+    return figure
 
 
 def _circle(ax, x, y, radius, colour, *, rim=2.5, **style):

@@ -101,6 +101,7 @@ def test_the_rules_find_faults():
 
 VECTOR = Exercise("x-1", "three numbers", Number([1.0, 2.0, 3.5], unit="m"), "because")
 ANGLES = Exercise("x-2", "two angles", Number([0.1, 3.0], unit="rad", angle=True), "because")
+TYPED = Exercise("x-3", "e", Number(np.e, tolerance=1e-3), "because")
 SQUARE = Exercise("x-3", "the square", Function(lambda x: x**2, cases=[1.5, -2.0, np.float64(3)]), "because")
 WHOLE = Exercise(
     "x-4", "the sum", Function(lambda q: q.sum(), cases=[np.array([1.0, 2, 4]), np.array([0, 0, 1.0])]), "b"
@@ -147,6 +148,7 @@ def test_a_wrong_form_is_named(exercise, answer, words):
     [
         (VECTOR, [1, 2, 4], "wrong", "look again at answer[2]"),
         (VECTOR, [1.000004, 2, 3.5], "wrong", "close, but 1e-06 m"),
+        (TYPED, 2.72, "wrong", "close, but 0.001 is the limit (3 decimals are what you would type)"),
         (VECTOR, [-1, -2, -3.5], "slip", "sign"),
         (VECTOR, [1000, 2000, 3500], "slip", "millimetres"),
         (SQUARE, lambda x: x * x, "right", ""),

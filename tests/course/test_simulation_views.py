@@ -11,7 +11,6 @@ from ir50p_lab.course.simulation_views import (
     chatter_figure,
     friction_figure,
     order_figure,
-    simulation_figure,
     sinking_figure,
     turning_points,
 )
@@ -21,7 +20,6 @@ from ir50p_lab.modelling import IR50P, forward_kinematics
 T = np.linspace(0, 1, 11)
 RUN = np.column_stack([np.full(5, 0.4), np.linspace(1.2, -0.8, 5), np.linspace(-0.5, 0.4, 5)])
 FIGURES = {
-    "plain": simulation_figure,
     "traces": lambda: Traces("t [s]", (0, 1), Row("q [rad]", (0, 1))).figure,
     "order": lambda: order_figure([0.1, 0.2], {"A": [1e-3, 2e-3]})[0],
     "friction": lambda: friction_figure(lambda qd: qd, 0.1, [0.5, 1.0], [0.5, 1.0]),

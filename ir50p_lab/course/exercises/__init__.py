@@ -19,7 +19,7 @@ imported only when an "ik-" exercise is asked for. It defines two names:
     Exercise(
         "ik-1",
         "the joint angles q of the branch front/up for p = (0.3, 0.1, 0.4) m",       # the task, one line
-        Number(right, unit="rad", tolerance=1e-3, because="three decimals are what you would type", angle=True),
+        Number(right, unit="rad", tolerance=1e-3, angle=True),
         why="All four branches put the tip on the same point; the joint limits choose.",
         slips=(Slip(down, "That is the elbow-down branch: the sign of sin q3 chooses."), ...),
     )

@@ -23,14 +23,13 @@ class Function(Kind):
 
     right: the right function; its argument names are the ones the question uses. It returns a number or an array, of
     the same shape for every case. cases: inputs, each a tuple of arguments (or the one argument itself).
-    unit, tolerance, because: of the value, as in Number.
+    unit, tolerance: of the value, as in Number.
     """
 
     right: Callable
     cases: Sequence
     unit: str = ""
     tolerance: float = 1e-6
-    because: str = "only rounding may differ"
 
     @property
     def wanted(self) -> str:

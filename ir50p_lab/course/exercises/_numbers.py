@@ -16,14 +16,15 @@ class Number(Kind):
 
     right: number or array, computed by the package.
     unit: what the numbers are in, "rad", "m", "N m"; "" for none or several.
-    tolerance: largest absolute difference of an entry that still counts as right; because: why that much.
+    tolerance: largest absolute difference of an entry that still counts as right; because: why that much
+        (by default: how many decimals one types).
     angle: the entries are angles in rad, equal modulo 2 pi.
     """
 
     right: float | np.ndarray
     unit: str = ""
     tolerance: float = 1e-6
-    because: str = "only rounding may differ"
+    because: str = ""
     angle: bool = False
 
     def __post_init__(self):
@@ -81,7 +82,7 @@ class Number(Kind):
         near = min(20 * self.tolerance, 0.1 * np.max(np.abs(self.right), initial=0))
         if np.all(self._agreement(found, self.right, near)):
             limit = f"{self.tolerance:.2g}{' ' * bool(self.unit)}{self.unit}"
-            return f"It is close, but {limit} is the limit ({self.because})."
+            return f"It is close, but {limit} is the limit ({self.because or self._decimals()})."
         agrees = self._agreement(found, self.right, self.tolerance)
         if agrees.ndim == 0 or not agrees.any():
             return ""
@@ -96,6 +97,13 @@ class Number(Kind):
         if self.unit == "m":
             slips.append(Slip(lambda right: np.multiply(1000, right), "That is in millimetres, not in metres."))
         return tuple(slip for slip in slips if not self.is_right(self.read_wrong(slip.wrong)))  # the sign of zero
+
+    def _decimals(self) -> str:
+        if self.tolerance <= 1e-6:
+            return "only rounding may differ"
+        decimals = round(-np.log10(self.tolerance))
+        typed = f"{decimals} decimal{'s are' if decimals > 1 else ' is'}" if decimals > 0 else "whole numbers are"
+        return f"{typed} what you would type"
 
     def _agreement(self, found, target, tolerance) -> np.ndarray:
         """Return which entries agree with the target."""

@@ -32,12 +32,7 @@ EXERCISES = (
     Exercise(
         "bench-1",
         "the mean voltage at the motor for 36 PWM counts by sign and magnitude, supply 12 V",
-        Number(
-            mean_voltage(_BREAK, supply=_SUPPLY),
-            unit="V",
-            tolerance=0.006,
-            because="two decimals are what you would type",
-        ),
+        Number(mean_voltage(_BREAK, supply=_SUPPLY), unit="V", tolerance=0.006),
         why="A seventh of the supply before anything moves: that is what friction costs a slow joint.",
         slips=(
             Slip(
@@ -52,7 +47,7 @@ EXERCISES = (
     Exercise(
         "bench-2",
         "the slope of a potentiometer that reads 412.5 counts at -0.5 rad and 715.1 counts at 1.1 rad",
-        Number(_SLOPE, unit="counts/rad", tolerance=0.06, because="one decimal is what you would type"),
+        Number(_SLOPE, unit="counts/rad", tolerance=0.06),
         why="Two points always fit; only a third one can show that the line is wrong.",
         slips=(
             Slip(1 / _SLOPE, "Upside down: that is in rad per count."),
@@ -70,7 +65,7 @@ EXERCISES = (
     Exercise(
         "bench-3",
         "the bound for the cut-off of a low pass in a loop that samples every 4 ms",
-        Number(0.5 / _PERIOD, unit="Hz", tolerance=0.5, because="whole hertz are what you would type"),
+        Number(0.5 / _PERIOD, unit="Hz", tolerance=0.5),
         why="Above it there is nothing left to filter: fast noise has become slow noise when it was sampled.",
         slips=(
             Slip(1 / _PERIOD, "That is the sampling rate; two samples are needed for each period of a signal."),
@@ -82,7 +77,7 @@ EXERCISES = (
     Exercise(
         "bench-4",
         "how far, in rad, a first-order low pass of 2 Hz is behind a joint that turns at a steady 0.5 rad/s",
-        Number(_SPEED * _LAG, unit="rad", tolerance=5e-4, because="three decimals are what you would type"),
+        Number(_SPEED * _LAG, unit="rad", tolerance=5e-4),
         why="A PID behind this filter steers by where the joint was: that is why it swings.",
         slips=(
             Slip(_LAG, "That is the lag in seconds: how far does the joint turn in that time?"),
@@ -93,7 +88,7 @@ EXERCISES = (
     Exercise(
         "bench-5",
         "the largest error that breakaway can leave in joint 1 of the IR50P with Kp = 289 and no integral",
-        Number(_FS / (_K * _KP), unit="rad", tolerance=1e-3, because="three decimals are what you would type"),
+        Number(_FS / (_K * _KP), unit="rad", tolerance=1e-3),
         why="Seven degrees, by friction alone: this is why lowering Kp1 leaves a large error.",
         slips=(
             Slip(_FS / _KP, "That divides N m by PWM counts per rad: bring both to one unit with K."),

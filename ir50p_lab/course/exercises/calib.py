@@ -67,7 +67,7 @@ EXERCISES = (
     Exercise(
         "calib-2",
         "distorted (x, y) of the normalised point (x, y) by k1, k2, p1, p2: a function of (x, y, k1, k2, p1, p2)",
-        Function(_distort, cases=_LENSES, tolerance=1e-9, because="only rounding may differ"),
+        Function(_distort, cases=_LENSES, tolerance=1e-9),
         why="These are the formulas the thesis names and leaves out; k3 r^6 would be the next radial term.",
         slips=(
             Slip(_with_r, "The radial terms hold r^2 and r^4, even powers: with r itself the lens would have a cusp."),

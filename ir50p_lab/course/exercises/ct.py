@@ -53,7 +53,7 @@ EXERCISES = (
         "ct-3",
         "the error e = q - q_ref that stays when the model holds 4 N m of weight, the arm has 5.5 N m, "
         "M = 0.6 kg m^2, Kp = 49 1/s^2 and Kd = 14 1/s",
-        Number(_SAG, unit="rad", tolerance=5e-4, because="three decimals are what you would type"),
+        Number(_SAG, unit="rad", tolerance=5e-4),
         why="It sags: an error of the model is divided by M Kp, so that high gains hide it.",
         slips=(
             Slip((_BELIEVED - _TRUE) / _KP, "Kp is an acceleration per rad here; the torque per rad is M Kp."),
@@ -64,7 +64,7 @@ EXERCISES = (
     Exercise(
         "ct-4",
         "the highest constant speed of joint 1 of the IR50P (row 1 of IR50P.theta_pwm) at 255 counts, level, no load",
-        Number((_FULL - _FC - _TF) / _D, unit="rad/s", tolerance=5e-3, because="two decimals are what you would type"),
+        Number((_FULL - _FC - _TF) / _D, unit="rad/s", tolerance=5e-3),
         why="No controller passes it: what a motion needs beyond that, the forecast shows before the arm does.",
         slips=(
             Slip(

@@ -74,12 +74,7 @@ EXERCISES = (
     Exercise(
         "dyn-1",
         "the moment of inertia about the elbow of a rod (0.6 kg, 0.4 m) with a hand (0.2 kg, a point) at its end",
-        Number(
-            _ROD / 3 + _HAND,
-            unit="kg m^2",
-            tolerance=1e-4,
-            because="four decimals are what you would type",
-        ),
+        Number(_ROD / 3 + _HAND, unit="kg m^2", tolerance=1e-4),
         why="The hand is a quarter of the mass and half of the inertia: distance counts squared.",
         slips=(
             Slip(
@@ -93,12 +88,7 @@ EXERCISES = (
     Exercise(
         "dyn-2",
         "the three torques that hold the IR50P at q = (0.3, 0.5, -0.7) rad with 0.5 kg at its tip",
-        Number(
-            _OWN + _LIFT * _PAYLOAD * IR50P.g,
-            unit="N m",
-            tolerance=1e-3,
-            because="three decimals are what you would type",
-        ),
+        Number(_OWN + _LIFT * _PAYLOAD * IR50P.g, unit="N m", tolerance=1e-3),
         why="Half a kilogram (the maker's payload) adds three quarters of what the links ask of the shoulder.",
         slips=(
             Slip(_OWN, "That holds the arm alone: the payload pulls at the tip as well."),
@@ -110,13 +100,7 @@ EXERCISES = (
     Exercise(
         "dyn-3",
         "the acceleration of THESIS_RODS as a function of (q, qd, tau), from M, C and g",
-        Function(
-            _acceleration,
-            cases=_STATES,
-            unit="rad/s^2",
-            tolerance=1e-6,
-            because="only rounding may differ",
-        ),
+        Function(_acceleration, cases=_STATES, unit="rad/s^2", tolerance=1e-6),
         why="These three lines are forward dynamics: every simulation of this course calls them.",
         slips=(
             Slip(_without_coriolis, "The velocities have no effect in it: C qd is missing."),
@@ -130,7 +114,7 @@ EXERCISES = (
     Exercise(
         "dyn-4",
         "the friction torque at -0.02 rad/s for fv = 2, fc = 0.5, fs = 0.9 and qs = 0.05",
-        Number(_RIGHT_FRICTION, unit="N m", tolerance=1e-3, because="three decimals are what you would type"),
+        Number(_RIGHT_FRICTION, unit="N m", tolerance=1e-3),
         why="Below the Stribeck velocity the slower joint needs more torque: this makes it stick and slip.",
         slips=(
             Slip(2 * _CREEP - 0.5, "That leaves the Stribeck term out, which matters at this low speed."),
@@ -149,7 +133,7 @@ EXERCISES = (
         "dyn-5",
         "the motor voltage for 2 N m at the joint, 0.5 rad/s and 3 rad/s^2 "
         "(N = 50, Jm = 8e-5 kg m^2, kt = ke = 0.05, Ra = 4 ohm)",
-        Number(_VOLTS, unit="V", tolerance=5e-3, because="two decimals are what you would type"),
+        Number(_VOLTS, unit="V", tolerance=5e-3),
         why="The gear multiplies the rotor's inertia by N^2: 0.2 kg m^2 here, more than the forearm has.",
         slips=(
             Slip(_VOLTS - _BACK_EMF, "The back-EMF ke N qd is missing: a turning motor works against its supply."),

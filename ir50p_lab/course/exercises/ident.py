@@ -36,7 +36,7 @@ EXERCISES = (
     Exercise(
         "ident-1",
         "the estimate after one step of recursive least squares from theta = 2, P = 0.5, with phi = 3 and y = 9",
-        Number(_STEP, tolerance=2e-3, because="three decimals are what you would type"),
+        Number(_STEP, tolerance=2e-3),
         why="One sample explains most of itself: the new estimate predicts 8.45 where 9 was measured.",
         slips=(
             Slip(
@@ -72,7 +72,7 @@ EXERCISES = (
         "ident-3",
         "the standard deviation of the PWM counts of joint 1 in the thesis' validation, from its RMS error of 47 "
         "counts and its fit of 63 %",
-        Number(_SPREAD, unit="PWM", tolerance=0.6, because="whole counts are what you would type"),
+        Number(_SPREAD, unit="PWM", tolerance=0.6),
         why="All three columns of Table 4.4 give about 125: its fit is this one, and no share of a variance.",
         slips=(
             Slip(_RMS / (_FIT / 100), "That divides by the fit; the error is what the fit leaves."),
@@ -85,7 +85,7 @@ EXERCISES = (
         "ident-4",
         "the torque of one PWM count at joint 3, if theta4 of that joint grows from 5.8 to 10.5 (per N m of a count) "
         "when 0.3 kg are put into the gripper, 0.372 m from the joint",
-        Number(_K, unit="N m", tolerance=2e-4, because="four decimals are what you would type"),
+        Number(_K, unit="N m", tolerance=2e-4),
         why="Now every parameter of joint 3 can be had in kg and m: multiply by this.",
         slips=(
             Slip(1 / _K, "Upside down: that is in counts per N m."),

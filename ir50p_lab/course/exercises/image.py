@@ -58,7 +58,6 @@ EXERCISES = (
             cases=[(350.0, 10.0), (10.0, 350.0), (90.0, 60.0), (359.5, 179.5), (0.0, 200.0)],
             unit="degrees",
             tolerance=1e-6,
-            because="only rounding may differ",
         ),
         why="With it a range around red needs no second range at the other end.",
         slips=(
@@ -82,7 +81,7 @@ EXERCISES = (
     Exercise(
         "image-4",
         "the radius of a 30 mm ball (radius) at 0.80 m before a camera with f = 700 px",
-        Number(_F * _BALL / _AWAY, unit="px", tolerance=0.1, because="one decimal is what you would type"),
+        Number(_F * _BALL / _AWAY, unit="px", tolerance=0.1),
         why="So the radii to search for follow from the camera and the work area: they need no trial.",
         slips=(
             Slip(2 * _F * _BALL / _AWAY, "That is the diameter: the mistake of 4.5.1 again."),

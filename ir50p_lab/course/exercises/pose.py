@@ -22,13 +22,7 @@ EXERCISES = (
         "pose-2",
         "the first angle, in rad, of the XYZ angles (first, 90 degrees, 0) that give the same rotation as "
         "(20, 90, 35) degrees",
-        Number(
-            _FIRST + _THIRD,
-            unit="rad",
-            tolerance=1e-3,
-            because="three decimals are what you would type",
-            angle=True,
-        ),
+        Number(_FIRST + _THIRD, unit="rad", tolerance=1e-3, angle=True),
         why="At +90 degrees only the sum of the outer angles matters; at -90 degrees it is their difference.",
         slips=(
             Slip(_FIRST - _THIRD, "That is the difference, which counts at -90 degrees; try it in the matrix."),

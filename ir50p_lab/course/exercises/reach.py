@@ -116,7 +116,6 @@ EXERCISES = (
             cases=[[0.0, 0.0, 0.0], [0.4, 0.5, -1.2], [-0.7, 0.9, -1.6], [1.0, 0.2, -0.5]],
             unit="m",
             tolerance=5e-4,
-            because="half a millimetre is half a pixel here",
         ),
         why="A point of the hand is constant in the hand's frame: T_base_tool does the rest.",
         slips=(

@@ -73,7 +73,7 @@ EXERCISES = (
     Exercise(
         "sim-1",
         "a step of h seconds by the midpoint rule for THESIS_RODS without drive: the new q and qd from (q, qd, h)",
-        Function(_midpoint, cases=_STATES, tolerance=1e-7, because="only rounding may differ"),
+        Function(_midpoint, cases=_STATES, tolerance=1e-7),
         why="Two evaluations make it second order; Runge-Kutta spends four and is fourth order.",
         slips=(
             Slip(_euler, "That is Euler's step: it uses the rates at the start, not those half way."),
@@ -85,7 +85,7 @@ EXERCISES = (
     Exercise(
         "sim-2",
         "where a joint with kp = 2 N m/rad and Coulomb friction 0.1 N m stops, let go at +0.37 rad from its set point",
-        Number(_RIGHT_REST, unit="rad", tolerance=1e-3, because="three decimals are what you would type"),
+        Number(_RIGHT_REST, unit="rad", tolerance=1e-3),
         why="Anywhere within fc/kp of the set point it may rest: dry friction leaves an error if nothing integrates.",
         slips=(
             Slip(0.0, "Within fc/kp of the set point the controller is too weak to move it: it need not get there."),
@@ -104,7 +104,7 @@ EXERCISES = (
         "sim-3",
         "the steady speed at full 24 V of a joint with 4 N m stall torque and 2.5 rad/s no-load speed at 12 V, "
         "against 0.5 N m of friction",
-        Number(_speed(_STRONG, _RUBS), unit="rad/s", tolerance=5e-3, because="two decimals are what you would type"),
+        Number(_speed(_STRONG, _RUBS), unit="rad/s", tolerance=5e-3),
         why="The line from stall to no-load speed moves outwards with the supply; its slope, the back-EMF, stays.",
         slips=(
             Slip(_speed(_WEAK, _RUBS), "That is the speed at 12 V: the supply moves both ends of the motor's line."),
@@ -116,7 +116,7 @@ EXERCISES = (
     Exercise(
         "sim-4",
         "the shortest quintic over 1.2 rad for a joint of 0.8 kg m^2 (no gravity) and 3 N m",
-        Number(np.sqrt(_QUINTIC * _SQUARE), unit="s", tolerance=5e-3, because="two decimals are what you would type"),
+        Number(np.sqrt(_QUINTIC * _SQUARE), unit="s", tolerance=5e-3),
         why="Twice the torque makes it 1.4 times faster only: time counts squared.",
         slips=(
             Slip(_QUINTIC * _SQUARE, "That is the duration squared: the acceleration falls with duration^2."),

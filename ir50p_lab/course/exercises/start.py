@@ -15,12 +15,7 @@ EXERCISES = (
     Exercise(
         "start-1",
         "the joint angles (90, -45, 30) degrees in radians",
-        Number(
-            np.deg2rad([90, -45, 30]),
-            unit="rad",
-            tolerance=1e-3,
-            because="three decimals are what you would type",
-        ),
+        Number(np.deg2rad([90, -45, 30]), unit="rad", tolerance=1e-3),
         why="Inside the package every angle is in radians; degrees appear only on sliders, named `_deg`.",
         slips=(
             Slip([90, -45, 30], "These are still degrees: half a turn is 180 degrees, or pi radians."),
