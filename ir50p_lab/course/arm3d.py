@@ -73,43 +73,31 @@ class ArmView:
     Args:
         ax: 3-D axes (`new_figure(projection="3d")`). arm: Arm.
         q: (3,) rad, first pose. frames: also draw frames 0 to 3 (True), or those listed, such as (0, 3).
-        colour: one colour for the whole arm instead of one per link; ghost: links only, thin and pale, for a
-        second pose in the same axes (the first view has set limits, ground and labels).
         thickness: of the links, points.
     """
 
-    def __init__(self, ax, arm, q=(0.0, 0.0, 0.0), *, frames=False, colour=None, ghost=False, thickness=10.0):
+    def __init__(self, ax, arm, q=(0.0, 0.0, 0.0), *, frames=False, thickness=10.0):
         self.ax, self.arm, self.q = ax, arm, None
-        self._ghost = ghost
-        if not ghost:
-            _stage(ax, arm)
-        alpha = 0.45 if ghost else 1.0
-        thickness = 0.55 * thickness if ghost else thickness
-        colours = _LINK_COLOURS if colour is None else (_LINK_COLOURS[0], colour, colour)
+        _stage(ax, arm)
 
         def line(width, colour, **more):
-            more = {"solid_capstyle": "round", "alpha": alpha} | more
+            more = {"solid_capstyle": "round"} | more
             return ax.plot([0, 0], [0, 0], [0, 0], linewidth=width, color=colour, **more)[0]
 
         # each part is an outline and a fill, both kept; `update` orders the parts by depth
         self._links = []
-        for colour, width, cap in zip(colours, (1.25, 1.0, 0.8), ("butt", "round", "round"), strict=True):
+        for colour, width, cap in zip(_LINK_COLOURS, (1.25, 1.0, 0.8), ("butt", "round", "round"), strict=True):
             style = {"solid_capstyle": cap}
             outline = line(width * thickness + 2.0, "#222222", **style)
             self._links.append((outline, line(width * thickness, colour, **style)))
-        self._hubs, self._shadow, self._frames = [], None, {}
-        if not ghost:
-            hub = {"solid_capstyle": "butt"}
-            self._hubs = [
-                (line(1.45 * thickness + 2, "#222222", **hub), line(1.45 * thickness, "#C8C8C8", **hub))
-                for _ in range(4)
-            ]
-            self._shadow = line(0.6 * thickness, "#000000", alpha=0.10, zorder=2, solid_joinstyle="round")
-            if frames:
-                size = 0.28 * arm.reach
-                numbers = range(4) if frames is True else frames
-                self._frames = {k: FrameView(ax, np.eye(4), str(k), size) for k in numbers}
-        self._tip = ax.plot([0], [0], [0], "o", ms=0.75 * thickness, color=COLOURS["dark"], alpha=alpha)[0]
+        hub = {"solid_capstyle": "butt"}
+        self._hubs = [
+            (line(1.45 * thickness + 2, "#222222", **hub), line(1.45 * thickness, "#C8C8C8", **hub)) for _ in range(4)
+        ]
+        self._shadow = line(0.6 * thickness, "#000000", alpha=0.10, zorder=2, solid_joinstyle="round")
+        numbers = range(4) if frames is True else frames or ()
+        self._frames = {k: FrameView(ax, np.eye(4), str(k), 0.28 * arm.reach) for k in numbers}
+        self._tip = ax.plot([0], [0], [0], "o", ms=0.75 * thickness, color=COLOURS["dark"])[0]
         self._trail = ax.plot([], [], [], "-", color=COLOURS["green"], linewidth=1.6, zorder=3)[0]
         self._target = ax.plot([], [], [], "X", color=COLOURS["purple"], ms=10, mec="white", zorder=25)[0]
         self.trail([])
@@ -139,8 +127,7 @@ class ArmView:
             parts.append((pair, np.array([middle, middle + half * (-1) ** k * axis])))
         self._place(parts)
         self._tip.set_data_3d(*corners[3:].T)
-        if self._shadow is not None:
-            self._shadow.set_data_3d(corners[1:, 0], corners[1:, 1], np.zeros(3))
+        self._shadow.set_data_3d(corners[1:, 0], corners[1:, 1], np.zeros(3))
         for k, view in self._frames.items():
             view.update(T[k])
 
@@ -159,7 +146,7 @@ class ArmView:
     def set_visible(self, visible):
         """Show or hide the arm and its frames (not its target and trail)."""
         pairs = [artist for pair in (*self._links, *self._hubs) for artist in pair]
-        for artist in (*pairs, self._tip, *filter(None, [self._shadow])):
+        for artist in (*pairs, self._tip, self._shadow):
             artist.set_visible(visible)
         for view in self._frames.values():
             view.set_visible(visible)
@@ -169,13 +156,12 @@ class ArmView:
         azimuth, elevation = np.radians([self.ax.azim, self.ax.elev])
         to_eye = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
         order = np.argsort([ends.mean(axis=0) @ to_eye for _, ends in parts])
-        base = 5 if self._ghost else 10
         for rank, k in enumerate(order):
             (outline, fill), ends = parts[k]
             for artist, above in ((outline, 0.0), (fill, 0.5)):
                 artist.set_data_3d(*ends.T)
-                artist.set_zorder(base + rank + above)
-        self._tip.set_zorder(base + len(parts))
+                artist.set_zorder(10 + rank + above)
+        self._tip.set_zorder(10 + len(parts))
 
 
 def _stage(ax, arm):
@@ -197,32 +183,15 @@ class SideView:
     `update(q, heading=...)` projects the arm on the plane of that heading (rad; by default joint 1's own), so that
     front and back solutions of one target share a plane.
 
-    Args: ax: 2-D axes; arm: Arm; colour: of the links; ghost: links only, pale, for a further pose in the same
-    axes; label: for the legend.
+    Args: ax: 2-D axes; arm: Arm; colour: of the links; label: for the legend.
     """
 
-    def __init__(self, ax, arm, q=(0.0, 0.0, 0.0), *, colour=COLOURS["blue"], ghost=False, label=None):
+    def __init__(self, ax, arm, q=(0.0, 0.0, 0.0), *, colour=COLOURS["blue"], label=None):
         self.arm = arm
-        if not ghost:
-            _side_stage(ax, arm)
-        alpha = 0.6 if ghost else 1.0
-        self._line = ax.plot(
-            [],
-            [],
-            "-o",
-            color=colour,
-            alpha=alpha,
-            linewidth=4,
-            ms=8,
-            mfc="white",
-            mew=2,
-            label=label,
-            solid_capstyle="round",
-            solid_joinstyle="round",
-            zorder=4,
-        )[0]
+        _side_stage(ax, arm)
+        style = {"solid_capstyle": "round", "solid_joinstyle": "round", "ms": 8, "mfc": "white", "mew": 2}
+        self._line = ax.plot([], [], "-o", color=colour, linewidth=4, label=label, zorder=4, **style)[0]
         self._tip = ax.plot([], [], "o", color=COLOURS["dark"], ms=6, zorder=5)[0]
-        self._target = ax.plot([], [], "X", color=COLOURS["purple"], ms=10, mec="white", zorder=6)[0]
         self.update(q)
 
     @property
@@ -237,19 +206,6 @@ class SideView:
         radius = corners[:, :2] @ np.array([np.cos(heading), np.sin(heading)])
         self._line.set_data(radius[1:], corners[1:, 2])
         self._tip.set_data(radius[3:], corners[3:, 2])
-
-    def target(self, radius=None, height=None):
-        """Mark a point of the plane, m; no arguments remove the mark."""
-        self._target.set_data(*(([], []) if radius is None else ([radius], [height])))
-
-    def set_visible(self, visible):
-        """Show or hide this arm."""
-        for artist in (self._line, self._tip):
-            artist.set_visible(visible)
-
-    def set_alpha(self, alpha):
-        """Make this arm pale (towards 0) or full (1)."""
-        self._line.set_alpha(alpha)
 
 
 def _side_stage(ax, arm):

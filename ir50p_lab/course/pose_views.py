@@ -5,7 +5,6 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from ir50p_lab.course.arm3d import FrameView
 from ir50p_lab.course.style import COLOURS, new_figure
-from ir50p_lab.errors import InputError
 from ir50p_lab.modelling.pose import (
     check_transform,
     gimbal_lock,
@@ -23,38 +22,23 @@ _CIRCLE = np.array([np.cos(_TURN), np.sin(_TURN)])
 _TURN_COLOURS = (COLOURS["purple"], COLOURS["amber"], COLOURS["sky"])  # first, second, third turn
 
 
-def space(cols=1, *, low=-1.0, high=1.0, width=None, unit="", width_ratios=None, flat_last=False):
-    """A figure with `cols` equal 3-D axes from `low` to `high` on x, y and z.
+def space(cols=1, *, width=None, flat_last=False):
+    """A figure with `cols` equal 3-D axes from -1 to 1, with the grey axes x, y, z of the frame they are drawn in.
 
-    unit: of the axis labels, such as "m"; without one the axes carry no numbers, only the grey axes x, y, z of the
-    frame in which everything is drawn. width: inches; width_ratios: of the columns; flat_last: the last axes are 2-D.
-    Returns: LabFigure. Raises InputError if low is not below high.
+    width: inches; flat_last: the last axes are 2-D. Returns: LabFigure.
     """
-    if not low < high:
-        raise InputError(f"low = {low} must be below high = {high}")
     kinds = ["3d"] * (cols - 1) + [None if flat_last else "3d"]
-    figure = new_figure(width or 4.6 * cols, 4.4, cols=cols, projection=kinds, width_ratios=width_ratios)
+    figure = new_figure(width or 4.6 * cols, 4.4, cols=cols, projection=kinds)
     for ax, kind in zip(figure.axes, kinds, strict=True):
         if kind == "3d":
-            ax.set(xlim=(low, high), ylim=(low, high), zlim=(low, high))
-            ax.set_box_aspect((1, 1, 1), zoom=1.0 if unit else 1.25)
-            ax.locator_params(nbins=4)
-            ax.view_init(elev=22, azim=-40 if unit else 35)
-            if unit:
-                ax.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]", zlabel=f"z [{unit}]")
-            else:
-                _grey_axes(ax, low, high)
+            ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
+            ax.set_box_aspect((1, 1, 1), zoom=1.25)
+            ax.view_init(elev=22, azim=35)
+            ax.set_axis_off()
+            for name, axis in zip("xyz", np.eye(3), strict=True):
+                ax.plot(*np.outer(axis, [0, 1]), color=COLOURS["grey"], linewidth=1.0, zorder=1)
+                ax.text(*1.08 * axis, name, color=COLOURS["grey"], fontsize=10, ha="center")
     return figure
-
-
-def _grey_axes(ax, low, high):
-    ax.set_axis_off()
-    origin = np.clip(0.0, low, high)
-    for k, name in enumerate("xyz"):
-        ends = np.full((2, 3), origin)
-        ends[:, k] = origin, high
-        ax.plot(*ends.T, color=COLOURS["grey"], linewidth=1.0, zorder=1)
-        ax.text(*(ends[1] + (ends[1] - ends[0]) * 0.08), name, color=COLOURS["grey"], fontsize=10, ha="center")
 
 
 class Brick:

@@ -173,15 +173,6 @@ def test_target_and_trail_appear_and_go():
     np.testing.assert_array_equal(painter.rgba(), bare)
 
 
-def test_a_ghost_adds_an_arm_and_nothing_else():
-    ax = new_figure(projection="3d").axes[0]
-    first = ArmView(ax, IR50P)
-    collections, limits = len(ax.collections), ax.get_xlim()
-    ghost = ArmView(ax, IR50P, (1.0, 0.5, -0.5), ghost=True, colour=COLOURS["purple"])
-    assert len(ax.collections) == collections and ax.get_xlim() == limits
-    assert max(fill.get_zorder() for _, fill in ghost._links) < min(o.get_zorder() for o, _ in first._links)
-
-
 @pytest.mark.parametrize("arm", ARMS, ids=lambda arm: arm.name)
 @pytest.mark.parametrize("q", POSES)
 def test_the_side_view_is_the_arm_seen_from_the_side(arm, q):
@@ -195,19 +186,6 @@ def test_the_side_view_is_the_arm_seen_from_the_side(arm, q):
     assert abs(side.points[2, 0]) == pytest.approx(np.hypot(*tip[:2]), abs=1e-12)
     side.update(q, heading=q[0] + np.pi)
     assert side.points[1, 0] == pytest.approx(-arm.l[1] * c2), "seen from behind"
-
-
-def test_side_view_target_and_visibility():
-    figure = new_figure(3, 3)
-    side = SideView(figure.axes[0], IR50P)
-    painter = Painter(figure)
-    bare = painter.rgba().copy()
-    side.target(0.3, 0.4)
-    assert (painter.rgba() != bare).any()
-    side.target()
-    np.testing.assert_array_equal(painter.rgba(), bare)
-    side.set_visible(False)
-    assert (painter.rgba() != bare).any()
 
 
 def test_a_frame_moves_and_hides():
