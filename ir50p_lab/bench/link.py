@@ -26,8 +26,7 @@ class LinkStatistics(NamedTuple):
     commands: sent; repeats: of which again, because no answer came; stale: answers that came too late to count;
     bad_replies, bad_commands: damaged frames, dropped by the computer and by the board (its counter, which begins at
     its start and wraps at 65536); watchdog_trips: times that the board cut the drive because no command came for
-    100 ms; limits: (3,) bool, joint is at an end of its potentiometer; round_trip: median of the last
-    1000, s (nan: none yet).
+    100 ms; round_trip: median of the last 1000, s (nan: none yet).
     """
 
     commands: int
@@ -36,7 +35,6 @@ class LinkStatistics(NamedTuple):
     bad_replies: int
     bad_commands: int
     watchdog_trips: int
-    limits: tuple
     round_trip: float
 
 
@@ -115,15 +113,13 @@ class Link:
     @property
     def statistics(self):
         """LinkStatistics up to now."""
-        status, bad = (self._last.status, self._last.bad_frames) if self._last else (0, 0)
         return LinkStatistics(
             commands=self._commands,
             repeats=self._repeats,
             stale=self._stale,
             bad_replies=self._parser.bad,
-            bad_commands=bad,
+            bad_commands=self._last.bad_frames if self._last else 0,
             watchdog_trips=self._trips,
-            limits=tuple(bool(status & bit) for bit in protocol.LIMIT_ACTIVE),
             round_trip=float(np.median(self._round_trips)) if self._round_trips else float("nan"),
         )
 

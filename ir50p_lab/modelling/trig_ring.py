@@ -153,7 +153,7 @@ class TrigRing:
             coefficient, factors = p.factor_list() if len(p) > 1 else (QQ.one, [(p, 1)])
             symbols = [self._sympy[k] for k in used]
             factors = [f.as_expr(*symbols) ** n for f, n in factors]
-            self._factors[known] = sympy.Mul(_sympy_number(coefficient), *factors)
+            self._factors[known] = sympy.Mul(QQ.to_sympy(coefficient), *factors)
         return self._factors[known]
 
 
@@ -162,8 +162,4 @@ def _primitive(p):
     common = tuple(map(min, zip(*p, strict=True)))
     number = abs(functools.reduce(QQ.gcd, p.values())) * (-1 if all(c < 0 for c in p.values()) else 1)
     rest = {tuple(a - b for a, b in zip(m, common, strict=True)): c / number for m, c in p.items()}
-    return _sympy_number(number), common, rest
-
-
-def _sympy_number(x):
-    return sympy.Rational(int(x.numerator), int(x.denominator))
+    return QQ.to_sympy(number), common, rest
