@@ -21,6 +21,7 @@ from ir50p_lab.controllers import PID
 from ir50p_lab.course import live_arm
 from ir50p_lab.course.live_arm import LiveArm
 from ir50p_lab.course.live_arm.track import pack
+from ir50p_lab.course.live_views import step_through
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import IR50P, forward_kinematics, frames
 from ir50p_lab.signals import hold, quintic
@@ -212,6 +213,13 @@ def until(true, seconds=10):
 def test_importing_the_view_costs_no_bundle():
     code = "import ir50p_lab.course.live_arm.view as v; assert v.Bundle.shared is None"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_panel_of_poses_has_the_picture_of_its_arm():
+    panel = step_through(IR50P, np.array([[0, 0.5, -1], [0, 0.2, -0.5]]), (0.4, 0.0, 0.1))
+    data = panel._repr_mimebundle_()
+    assert "application/vnd.jupyter.widget-view+json" in data
+    assert Image.open(io.BytesIO(base64.b64decode(data["image/png"]))).width > 400
 
 
 def test_an_arm_without_motors_can_be_shown():

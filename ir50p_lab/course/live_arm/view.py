@@ -56,7 +56,7 @@ class LiveArm(anywidget.AnyWidget):
         layers: which of table, shadow, ghost, trail, frames, joint axes, velocity ellipsoid, force ellipsoid,
         workspace, ball, board, camera are shown at first. ball: (p, radius) m; board: (T, square, (columns, rows)),
         T (4, 4) of the checkerboard's first inner corner; camera: (K, T, (width, height)), T camera to base.
-        height: CSS pixels; sliders: of the joints.
+        height: CSS pixels; sliders: of the joints; readout: where the tip is, in numbers (the menu has a switch too).
 
     Attributes: q, list of rad, in both directions; layers.
     `play(run)` shows a motion, `draw(T)` an arm by its frames. Raises InputError for what cannot be drawn.
@@ -76,7 +76,7 @@ class LiveArm(anywidget.AnyWidget):
     shape = traitlets.Dict().tag(sync=True)
 
     def __init__(self, arm, q=(0.0, 0.0, 0.0), *, on_drag=None, frames=None, badge=None, layers=LAYERS, ball=None,
-                 board=None, camera=None, height=420, sliders=True):  # fmt: skip
+                 board=None, camera=None, height=420, sliders=True, readout=True):  # fmt: skip
         self.arm, self._on_drag, self._frames = check_arm(arm), on_drag, frames
         self._stop = threading.Event()
         own = on_drag is not None or frames is not None
@@ -100,6 +100,7 @@ class LiveArm(anywidget.AnyWidget):
                 "frames": None if frames is None else "function",
                 "height": int(height),
                 "sliders": bool(sliders),
+                "readout": bool(readout),
                 "speed": 1.0,
                 "loop": False,
             },

@@ -4,10 +4,10 @@ import { Matrix4, Mesh, MeshBasicMaterial, PerspectiveCamera, Plane, Raycaster, 
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Curves } from "./curves.js";
 import { frames, jacobian, reach, tip } from "./kinematics.js";
-import { jointSliders, layout, make, playerBar } from "./page.js";
+import { jointSliders, layout, make, playerBar, showLegend } from "./page.js";
 import * as renderer from "./renderer.js";
 import { COLOURS, Robot } from "./robot.js";
-import { Layers, makeScene, Trail } from "./stage.js";
+import { KEYS, Layers, makeScene, Trail } from "./stage.js";
 import { contacts, Track } from "./track.js";
 
 const REST = 160; // ms without motion until the fine picture is drawn
@@ -101,16 +101,25 @@ class View {
     parts.joints.hidden = !options.sliders;
     const clear = make("button", { textContent: "clear trail" });
     clear.addEventListener("click", () => { this.written = []; this.trails[0].set([]); this.soon(); });
-    for (const name of [...Object.keys(this.layers.all), "ghost", "trail", "shadow"]) {
-      const tick = make("input", { type: "checkbox", checked: this.on.has(name) });
+    const choice = (name, checked, changed) => {
+      const tick = make("input", { type: "checkbox", checked });
       tick.addEventListener("change", () => {
-        this.on[tick.checked ? "add" : "delete"](name);
-        this.model.set("layers", [...this.on]);
+        changed(tick.checked);
         this.model.save_changes();
         this.moved();
       });
       parts.layers.append(make("label", {}, {}, tick, ` ${name}`));
+    };
+    for (const name of [...Object.keys(this.layers.all), "ghost", "trail", "shadow"]) {
+      choice(name, this.on.has(name), (on) => {
+        this.on[on ? "add" : "delete"](name);
+        this.model.set("layers", [...this.on]);
+      });
     }
+    choice("place of the tip", options.readout, (on) => {
+      this.options = { ...this.options, readout: on };
+      this.model.set("options", this.options);
+    });
     parts.layers.append(clear);
     this.written = [];
     this.showPlayer = playerBar(parts.player, {
@@ -145,6 +154,7 @@ class View {
     this.shade.place(transforms);
     this.layers.place(transforms, this.q);
     this.layers.show([...this.on]);
+    showLegend(this.parts.keys, [...this.on].flatMap((name) => KEYS[name] ?? []));
     this.shade.root.visible = this.on.has("shadow");
     this.trails.forEach((trail) => { trail.line.visible = this.on.has("trail"); });
     this.tipAt = new Vector3().setFromMatrixPosition(transforms[3]).toArray();
@@ -155,8 +165,10 @@ class View {
       this.say(touched.join(", "));
     }
     const [x, y, z] = this.tipAt.map((v) => v.toFixed(3).replace("-", "\u2212"));
+    const { readout } = this.options, place = readout ? `, tip at x ${x} m, y ${y} m, z ${z} m` : "";
+    this.parts.tip.hidden = !readout;
     this.parts.tip.textContent = `tip ${x}, ${y}, ${z} m`;
-    this.canvas.setAttribute("aria-label", `the arm in 3-D, tip at x ${x} m, y ${y} m, z ${z} m; arrow keys turn the view`);
+    this.canvas.setAttribute("aria-label", `the arm in 3-D${place}; arrow keys turn the view`);
     this.showJoints(this.q);
     this.soon();
   }
@@ -354,8 +366,7 @@ class View {
     const chips = runs.length > 1 ? [["#0072B2", runs[0].label], [COLOURS.second, runs[1].label]] : runs.map((run) => [null, run.label]);
     const words = this.track?.source ? [[null, this.track.source]] : [];
     const ghost = runs.some((run) => run.reference !== null) ? [["#8a8f9888", "set point"]] : [];
-    this.parts.legend.replaceChildren(...[...chips, ...ghost, ...words].filter(([, name]) => name).map(([colour, name]) =>
-      make("span", {}, {}, ...(colour ? [make("i", { style: `background:${colour}` })] : []), name)));
+    showLegend(this.parts.legend, [...chips, ...ghost, ...words]);
     this.resize();
   }
 

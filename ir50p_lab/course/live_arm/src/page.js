@@ -8,6 +8,12 @@ export function make(tag, properties = {}, attributes = {}, ...children) {
   return element;
 }
 
+// Names with their colours, null for a name without: [[colour, name], ...].
+export function showLegend(element, entries) {
+  element.replaceChildren(...entries.filter(([, name]) => name).map(([colour, name]) =>
+    make("span", {}, {}, ...(colour ? [make("i", { style: `background:${colour}` })] : []), name)));
+}
+
 const degrees = (rad) => (rad * 180) / Math.PI;
 
 export function layout() {
@@ -15,6 +21,7 @@ export function layout() {
     canvas: make("canvas", { tabIndex: 0 }, { role: "img" }),
     badge: make("span", { className: "la-badge" }),
     legend: make("span", { className: "la-legend" }),
+    keys: make("span", { className: "la-legend" }),
     tip: make("span", { className: "la-tip" }),
     layers: make("div"),
     note: make("div", { className: "la-note" }, { "aria-live": "polite" }),
@@ -23,7 +30,7 @@ export function layout() {
     joints: make("div", { className: "la-bar" }),
   };
   const menu = make("details", { className: "la-layers" }, {}, make("summary", { textContent: "Layers" }), parts.layers);
-  const top = make("div", { className: "la-top" }, {}, parts.badge, parts.legend, parts.tip, menu);
+  const top = make("div", { className: "la-top" }, {}, parts.badge, parts.legend, parts.keys, parts.tip, menu);
   parts.stage = make("div", { className: "la-stage" }, {}, parts.canvas, top, parts.note);
   // JupyterLab takes keys for itself, unless told; here they belong to sliders and view
   parts.box = make("div", { className: "la" }, { "data-lm-suppress-shortcuts": "true" },

@@ -11,6 +11,14 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { jacobian, tip } from "./kinematics.js";
 import { COLOURS } from "./robot.js";
 
+// What a layer's colours mean.
+export const KEYS = {
+  frames: [[COLOURS.x, "x"], [COLOURS.y, "y"], [COLOURS.z, "z"]],
+  "velocity ellipsoid": [["#56B4E9", "velocity ellipsoid"]],
+  "force ellipsoid": [[COLOURS.target, "force ellipsoid"]],
+  workspace: [["#E69F00", "workspace"]],
+};
+
 export function makeScene(reach) {
   const scene = new Scene();
   scene.background = new Color("#fbfcfd");
@@ -123,7 +131,7 @@ function workspace(l, [, second, third]) {
   };
   bends.forEach((bend) => sweep(...second, (q2) => [0, q2, bend]));
   second.forEach((q2) => sweep(...third, (bend) => [0, q2, bend]));
-  return thin(curves, "#56B4E9");
+  return thin(curves, KEYS.workspace[0][0]);
 }
 
 // All layers by name: Object3D each. Only what can be shown is there.
@@ -142,7 +150,7 @@ export class Layers {
       const group = Object.assign(new Group(), { matrixAutoUpdate: false });
       return group.add(thin([[0, 0, -0.25 * reach], [0, 0, 0.27 * reach]], COLOURS.dark, true), name);
     });
-    this.velocity = ellipsoid("#56B4E9");
+    this.velocity = ellipsoid(KEYS["velocity ellipsoid"][0][0]);
     this.force = ellipsoid(COLOURS.target);
     this.space = workspace(lengths, limits);
     this.all = {
