@@ -1,5 +1,7 @@
 """Pictures for tuning: angles and commands of the joints, a map of gains with a response beside it, root loci."""
 
+from itertools import pairwise
+
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.cm import ScalarMappable
@@ -151,12 +153,13 @@ def speed_step(t, speed, fitted=None):
 class LocusView:
     """Root loci of the same loop in continuous time (s plane) and sampled (z plane, with the unit circle).
 
-    Args: gains (n,), increasing; continuous, sampled: poles (n, k) for each gain (rad/s, and 1).
+    Args: gains (n,), increasing; continuous, sampled: poles (n, k) for each gain (rad/s, and 1); zeros: of each of the
+    two loops, where the paths end.
 
     Attributes: figure. `update(gain)` marks the poles of the nearest gain.
     """
 
-    def __init__(self, gains, continuous, sampled):
+    def __init__(self, gains, continuous, sampled, *, zeros=((), ())):
         self.figure = new_figure(9.6, 4.2, cols=2)
         self._gains, self._loci = np.asarray(gains), (np.asarray(continuous), np.asarray(sampled))
         left, right = self.figure.axes
@@ -167,10 +170,14 @@ class LocusView:
         left.axvline(0, **SETPOINT)
         left.set(title="Continuous: the poles never cross to the right", xlabel="Re s [1/s]", ylabel="Im s [1/s]")
         self._marks = []
-        for ax, loci in zip((left, right), self._loci, strict=True):
-            ax.plot(loci.real, loci.imag, color=COLOURS["grey"], linewidth=1)
-            ax.plot(loci[0].real, loci[0].imag, "x", color=COLOURS["dark"])
-            self._marks += ax.plot([], [], "o", color=COLOURS["orange"], ms=7)
+        for ax, loci, ends in zip((left, right), self._loci, zeros, strict=True):
+            path = _joined(loci)
+            labels = ["path of the poles", *[None] * (path.shape[1] - 1)]
+            ax.plot(path.real, path.imag, color=COLOURS["grey"], linewidth=1, label=labels)
+            ax.plot(loci[0].real, loci[0].imag, "x", color=COLOURS["dark"], label="poles at the least gain")
+            ax.plot(np.real(ends), np.imag(ends), "o", color=COLOURS["dark"], mfc="none", label="zeros")
+            self._marks += ax.plot([], [], "o", color=COLOURS["orange"], ms=7, label="poles at this gain")
+        left.legend(fontsize=8, loc="upper left")
         size = 1.1 * np.percentile(np.abs(self._loci[0]), 90)
         left.set(xlim=(-size, 0.25 * size), ylim=(-0.625 * size, 0.625 * size))
 
@@ -179,3 +186,15 @@ class LocusView:
         k = int(np.argmin(np.abs(self._gains - gain)))
         for mark, loci in zip(self._marks, self._loci, strict=True):
             mark.set_data(loci[k].real, loci[k].imag)
+
+
+def _joined(loci):
+    """Loci (n, k) with the places where two branches meet between two gains: without them the paths have corners."""
+    rows = [loci[0]]
+    for here, there in pairwise(loci):
+        met = (here.imag == 0) != (there.imag == 0)
+        if met.sum() == 2:
+            place = (here[met].real.mean() + there[met].real.mean()) / 2
+            rows.append(np.where(met, place, (here + there) / 2))
+        rows.append(there)
+    return np.array(rows)

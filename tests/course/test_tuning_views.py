@@ -82,6 +82,20 @@ def test_locus_marks_the_poles_of_the_nearest_gain():
     np.testing.assert_allclose(right.lines[-1].get_xdata(), np.exp(0.1 * continuous[1]).real)
 
 
+def test_paths_that_meet_have_no_corner_and_zeros_are_marked():
+    gains = np.linspace(1, 4, 8)
+    poles = np.array([np.roots([1, 2, gain / 2]) for gain in gains])  # they meet at -1, at a gain of 2
+    left = LocusView(gains, poles, np.exp(0.1 * poles), zeros=([-3.0], [])).figure.axes[0]
+    paths = [line for line in left.lines if len(line.get_xdata()) > len(gains)]
+    assert len(paths) == 2
+    for path in paths:
+        places = path.get_xdata() + 1j * path.get_ydata()
+        assert np.abs(places + 1).min() < 1e-9
+    (zeros,) = [line for line in left.lines if line.get_label() == "zeros"]
+    np.testing.assert_array_equal(zeros.get_xdata(), [-3.0])
+    assert {"path of the poles", "zeros"} <= {text.get_text() for text in left.get_legend().get_texts()}
+
+
 def test_one_joint_shows_each_run_and_the_target_of_the_first(run):
     """A simulated run and one with a flat reference, as recordings have it."""
     flat = SimpleNamespace(t=run.t, q=run.q + 0.1, u=run.u - 5, reference=run.reference[:, 0])
