@@ -6,11 +6,12 @@ Each returns a Solution in the coordinates of Q (A = Q R), where numbers are wel
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.parameters import FREE_OF_SIGN, NAMES
-from ir50p_lab.identification.qr import gram, inverse_upper, product, r_factor
+from ir50p_lab.identification.qr import gram, product, r_factor
 
 _WEAK = 0.1  # smallest canonical correlation of instruments and regressors below which they are weak
 _NOTHING = 1e-8  # below it the estimate would be rounding
@@ -129,7 +130,7 @@ def instrumental_variables(problem, Z):
     R = r_factor(Z / length)
     if np.abs(np.diag(R)).min() < 1e-8:
         raise IdentificationError(f"{problem.who}the instruments depend on each other: they excite fewer columns")
-    Qz = product(Z / length, inverse_upper(R))
+    Qz = product(Z / length, solve_triangular(R, np.eye(len(R))))
     bread = gram(Qz, problem.Q)
     smallest = np.linalg.svd(bread, compute_uv=False)[-1]
     if smallest < _NOTHING:

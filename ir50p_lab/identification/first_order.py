@@ -16,23 +16,25 @@ _SMALL = 1e-4  # below this a dt, series keep the digits that (1 - exp(-a dt))/a
 def respond(t, jump_times, jumps, a, L, out):
     """x' = v(t - L) - a x from x = 0, exactly, with dead time L of any size (no multiple of a period).
 
-    v is the sum of the jumps that have happened. a = 0 integrates, a < 0 grows. Writes into out (3, n):
-    x, dx/da and dx/dL at the times t (n,), increasing; jump_times (m,), increasing, none before t[0].
+    v is the sum of the jumps that have happened. a = 0 integrates, a < 0 grows, a complex one swings. Writes into
+    out (3, n), of the type of a: x, dx/da and dx/dL at the times t (n,), increasing; jump_times (m,), increasing, none
+    before t[0].
     """
-    x, s, v, now, k = 0.0, 0.0, 0.0, t[0], 0
+    x, s, v, now, k = 0.0 * a, 0.0 * a, 0.0, t[0], 0
+    tau = 1 / a if a != 0 else a
     for i in range(len(t)):
         while True:
             jump = k < len(jumps) and jump_times[k] + L <= t[i]
             dt = (jump_times[k] + L if jump else t[i]) - now
             z = a * dt
-            gone = -math.expm1(-z)
+            gone = -np.expm1(-z)
             E = 1 - gone
             if abs(z) < _SMALL:
                 phi = dt * (1 - z / 2 + z * z / 6)
                 dphi = dt * dt * (-1 / 2 + z / 3 - z * z / 8)
             else:
-                phi = gone / a
-                dphi = (dt * E - phi) / a
+                phi = gone * tau
+                dphi = (dt * E - phi) * tau
             s = s * E - dt * E * x + v * dphi
             x = x * E + v * phi
             now += dt

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from ir50p_lab.errors import IdentificationError
-from ir50p_lab.identification.qr import independent_columns, inverse_upper, product, r_factor
+from ir50p_lab.identification.qr import independent_columns, product, r_factor
 
 DEPENDENT = 1e-8  # a column of which less than this sticks out of the others carries nothing but rounding
 _CLOSE = 30.0  # condition index from which columns are hardly told apart (Belsley, Kuh and Welsch 1980)
@@ -41,7 +42,7 @@ class Problem:
     @cached_property
     def R_inverse(self):
         """R^-1: triangular, so that back substitution gives it without loss of digits."""
-        return inverse_upper(self.R)
+        return solve_triangular(self.R, np.eye(len(self.R)))
 
     @cached_property
     def condition(self):

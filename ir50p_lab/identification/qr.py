@@ -6,8 +6,6 @@ second thread made the same fit ten times as slow.
 
 import numpy as np
 
-from ir50p_lab.jit import jit
-
 _BLOCK = 190  # rows factored at once: fits in the fast cache with 20 columns
 _PRODUCT = 600  # rows multiplied at once
 
@@ -22,20 +20,6 @@ def r_factor(A):
         R = np.linalg.qr(A[:whole].reshape(-1, _BLOCK, A.shape[1]), mode="r").reshape(-1, A.shape[1])
         A = np.concatenate([R, A[whole:]])
     return np.linalg.qr(A, mode="r")
-
-
-@jit()
-def inverse_upper(R):
-    """R^-1 of an upper triangular R (p, p), by back substitution."""
-    p = len(R)
-    out = np.zeros((p, p))
-    for column in range(p):
-        for i in range(column, -1, -1):
-            rest = 1.0 if i == column else 0.0
-            for k in range(i + 1, column + 1):
-                rest -= R[i, k] * out[k, column]
-            out[i, column] = rest / R[i, i]
-    return out
 
 
 def product(A, B):

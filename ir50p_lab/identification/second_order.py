@@ -4,35 +4,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from ir50p_lab.errors import IdentificationError
+from ir50p_lab.identification.first_order import respond
 from ir50p_lab.identification.step_record import check_time, jumps_of, recorded, without_outliers
 
-_SMALL = 1e-4  # below this a dt, a series keeps the digits that (1 - exp(-a dt))/a loses
 _BETTER = 12.0  # least F value of a zero
 _DAMPING = (0.02, 10.0)
 _GRID = (0.1, 0.35, 0.8, 2.0)
-
-
-@njit(cache=True)
-def respond_mode(t, jump_times, jumps, a, L, out):
-    """x' = v(t - L) - a x from x = 0, exactly, for a complex rate a: writes x at the times t (n,) into out (n,)."""
-    x, v, now, k = 0j, 0.0, t[0], 0
-    for i in range(len(t)):
-        while True:
-            jump = k < len(jumps) and jump_times[k] + L <= t[i]
-            dt = (jump_times[k] + L if jump else t[i]) - now
-            z = a * dt
-            E = np.exp(-z)
-            phi = dt * (1 - z / 2 + z * z / 6) if abs(z) < _SMALL else (1 - E) / a
-            x = x * E + v * phi
-            now += dt
-            if not jump:
-                break
-            v += jumps[k]
-            k += 1
-        out[i] = x
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,11 +48,13 @@ def _basis(t, times, jumps, w, damping, L):
     """(n, 2): the answers of w^2/(s^2 + 2 damping w s + w^2), and of s times that."""
     damping += 1e-6 * (abs(damping - 1) < 1e-6)  # equal poles: a little apart
     root = w * np.sqrt(complex(damping**2 - 1))
-    modes = np.empty((2, len(t)), dtype=complex)
-    for a, x in zip((damping * w + root, damping * w - root), modes, strict=True):
-        respond_mode(t, times, jumps, a, L, x)
-    plain = w**2 * (modes[0] - modes[1]) / (-2 * root)
-    slope = w**2 * ((damping * w + root) * modes[0] - (damping * w - root) * modes[1]) / (2 * root)
+    poles = damping * w + root, damping * w - root
+    modes = np.empty((2, 3, len(t)), dtype=complex)
+    for a, out in zip(poles, modes, strict=True):
+        respond(t, times, jumps, a, L, out)
+    fast, slow = modes[:, 0]
+    plain = w**2 * (fast - slow) / (-2 * root)
+    slope = w**2 * (poles[0] * fast - poles[1] * slow) / (2 * root)
     return np.column_stack([plain.real, slope.real])
 
 

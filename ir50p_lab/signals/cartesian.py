@@ -9,11 +9,11 @@ from ir50p_lab.inputs import number, vector3
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.differential import jacobian, singularity
 from ir50p_lab.modelling.ik import BRANCHES, inverse_kinematics, reachability
-from ir50p_lab.signals.joint_motion import joint_motion
 from ir50p_lab.signals.path_shapes import Circle, Line
 from ir50p_lab.signals.reference import Reference, per_joint, pose, seconds
 from ir50p_lab.signals.speed_profile import SpeedProfile, fastest
 
+_STEP = 1e-5  # s, of the difference that gives Jvd, right to ten digits
 _SINGULAR = 1e-3  # smallest singular value of Jv over the reach, below which no joint speed is finite in practice
 
 
@@ -43,10 +43,16 @@ class CartesianPath(Reference):
         p, tangent, bend = self.shape(s)
         sd, sdd = sd[:, None], sdd[:, None]
         near = self.q_grid[np.rint(s / self.shape.length * (len(self.q_grid) - 1)).astype(int)]
-        side, elbow = (1.0 if "front" in self.branch else -1.0), (-1.0 if "up" in self.branch else 1.0)
-        rows = np.empty((len(t), 3, 3))
-        joint_motion(*self.arm.l, side, elbow, p, tangent * sd, tangent * sdd + bend * sd**2, near, rows)
-        return rows
+        q = inverse_kinematics(self.arm, p).q[:, BRANCHES.index(self.branch)]
+        q = q + 2 * np.pi * np.rint((near - q) / (2 * np.pi))
+        qd = self._joint_rates(q, tangent * sd)
+        ahead, behind = (jacobian(self.arm, q + step * qd)[:, :3] for step in (_STEP, -_STEP))
+        Jvd = (ahead - behind) / (2 * _STEP)
+        a = tangent * sdd + bend * sd**2 - (Jvd @ qd[..., None])[..., 0]
+        return np.stack([q, qd, self._joint_rates(q, a)], axis=1)
+
+    def _joint_rates(self, q, v):
+        return np.linalg.solve(jacobian(self.arm, q)[:, :3], v[..., None])[..., 0]
 
     def tip(self, t):
         """Where the tip shall be at one time t (3,) or at times (n,), (n, 3), in s; m."""

@@ -15,7 +15,7 @@ from ir50p_lab.identification import (
     output_error,
 )
 from ir50p_lab.identification.closed_loop import ClosedLoopRun
-from ir50p_lab.identification.make_excitations import thesis_pid
+from ir50p_lab.course.torque_views import thesis_pid
 from ir50p_lab.identification.output_error import compare
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate

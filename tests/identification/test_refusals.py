@@ -37,7 +37,6 @@ BAD = {
     "optimise_excitation": [(TH,), (None,), ("arm",)],
     "regressor_condition": [(None,), (3.0,)],
     "load_excitations": [("no_such_file.json",), ("/",)],
-    "save_excitations": [("/no/such/place.json", {"a": MOTION})],
     "fit": [(NAN_PHI, Y), (PHI, Y[:5]), (PHI[:3], Y[:3]), (0 * PHI, Y), ("x", Y)],
     "least_squares": [(NAN_PHI, Y), (PHI, Y[:5]), (0 * PHI, Y), (PHI[0, :, :2], "x")],
     "fit_second_order": [(T, NAN_Q[:, 0], Q[:, 0]), (T[::-1], U[:, 0], Q[:, 0]), (T, 0 * T, Q[:, 0])],
@@ -53,7 +52,6 @@ BAD = {
     "read_columns": [("no_such_file.csv",), ("/",), (None,)],
     "process": [(Run(q=NAN_Q),), (Run(t=T[::-1]),), (T,), (Run(q=Q[:5]),), (Run(T[:5], Q[:5], U[:5]),)],
     "identify": [(Run(q=NAN_Q),), (Run(t=T[::-1]),), (Run(T[:5], Q[:5], U[:5]),), (Run(q=0 * Q),), ([],)],
-    "simulate_identification": [(None, IR50P, PD), (MOTION, TH, PD)],
     "fit_joint": [(T, NAN_Q[:, 0], U[:, 0]), (T[::-1], Q[:, 0], U[:, 0]), (T[:5], Q[:5, 0], U[:5, 0]), (T, Q, U)],
     "nrmse_fit": [(NAN_Q, Q), (Q, Q[:5]), (0 * Q, Q)],
     "validate": [(TH, Run(q=NAN_Q)), (TH[:1], Run()), (TH, Run(t=T[::-1]))],
@@ -64,7 +62,6 @@ KEYWORDS = {
     "general_regressor": {"l2": 0.2},
     "payload_change": {"l2": 0.2, "at": 0.3},
     "scale_from_payload": {"mass": 0.5, "l2": 0.2, "at": 0.3},
-    "save_excitations": {"made_by": "a test"},
     "output_error": {"progress": False},
     "optimise_excitation": {"progress": False},
 }

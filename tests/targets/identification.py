@@ -21,6 +21,7 @@ import numpy as np
 from tqdm.auto import tqdm
 
 from ir50p_lab.bench import ArmInstance, SimulatedBench
+from ir50p_lab.course.torque_views import thesis_pid
 from ir50p_lab.identification import (
     fit,
     fit_with_instruments,
@@ -32,8 +33,8 @@ from ir50p_lab.identification import (
     regressor,
     validate,
 )
-from ir50p_lab.identification.make_excitations import SETTINGS, thesis_pid
 from ir50p_lab.modelling import IR50P
+from tests.support.make_excitations import SETTINGS
 from tests.targets.rows import Row, table
 
 TRIAL = np.array([65, 70, 77])
