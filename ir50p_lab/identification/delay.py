@@ -9,7 +9,7 @@ from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.identification.parameters import ACTS_ON, NAMES, ONLY_THESIS
 from ir50p_lab.identification.processing import process
-from ir50p_lab.inputs import number
+from ir50p_lab.inputs import number, whole
 
 _FLAT = 1.01  # a residual this near to the smallest does not speak against a delay
 _FEWEST = 200  # samples in motion, of each joint
@@ -59,8 +59,7 @@ def estimate_delay(
     step = period if step is None else step
     for name, value in (("longest", longest), ("step", step)):
         number(name, value, "> 0", unit="s")
-    if isinstance(blocks, bool) or not isinstance(blocks, (int, np.integer)) or not 2 <= blocks <= 100:
-        raise InputError(f"blocks = {blocks!r}: give a whole number from 2 to 100")
+    whole("blocks", blocks, 2, 100)
     delays = step * np.arange(int(longest / step + 1e-9) + 1)
     if len(delays) < 4:
         raise InputError(f"longest = {longest} s holds {len(delays)} delays of {step:g} s: give 4 or more to compare")

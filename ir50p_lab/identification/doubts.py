@@ -183,14 +183,21 @@ def outliers(x):
 
 
 def check_outliers(doubts, name, t, x):
-    """Name the first of them."""
-    places = outliers(x)
-    if len(places):
-        k = places[0]
-        doubts.add(
-            f"{name} has {len(places)} outlier(s), the first at t = {t[k]:.6g} s ({x[k]:.4g} between {x[k - 1]:.4g} "
-            f"and {x[k + 1]:.4g}): leave these samples out, they pull at every parameter"
-        )
+    """A doubt about outliers of the signal `name`."""
+    remedy = "leave these samples out, they pull at every parameter"
+    for sentence in named_outliers(name, t, x, outliers(x), remedy):
+        doubts.add(sentence)
+
+
+def named_outliers(name, t, x, places, remedy):
+    """A sentence about the outliers at `places` with the first of them, in a list; [] if there are none."""
+    if not len(places):
+        return []
+    k = places[0]
+    return [
+        f"{name} has {len(places)} outlier(s), the first at t = {t[k]:.6g} s ({x[k]:.4g} between {x[k - 1]:.4g} and "
+        f"{x[k + 1]:.4g}): {remedy}"
+    ]
 
 
 # Measured on three machines, 3 seeds, limits at 30 to 90 %: clipped 0.02 of the range or more and 1.0 or more; a drive

@@ -46,7 +46,7 @@ def regressor_condition(reference, *, rows="joint", columns="rigid", samples=500
     Args: reference: Fourier, or any Reference with a finite duration > 0; rows, columns: as in `fit`; samples: points.
     Returns: (3,), one per joint, or with rows="shared" one number. Raises InputError.
     """
-    _check_rows(rows)
+    choice("rows", rows, ("joint", "shared"))
     whole("samples", samples, 20, 10**6)
     length = getattr(reference, "period", None) or getattr(reference, "duration", 0.0)
     if not (math.isfinite(length) and length > 0):
@@ -96,7 +96,7 @@ def optimise_excitation(
     Returns: Excitation. Raises: InputError on bad arguments; IdentificationError if no motion fits the limits.
     """
     _check(arm, harmonics, starts, iterations, seed)
-    _check_rows(rows)
+    choice("rows", rows, ("joint", "shared"))
     standing = number("standing", standing, ">= 0", hint="the price of time near standstill")
     table, margin = number("table", table, unit="m"), number("margin", margin, ">= 0", unit="rad")
     whole("periods", periods, 1, 10**6)
@@ -263,10 +263,6 @@ def _columns(columns):
 def _condition(A):
     size = np.linalg.norm(A, axis=0)
     return float("inf") if (size == 0).any() else float(np.linalg.cond(A / size))
-
-
-def _check_rows(rows):
-    choice("rows", rows, ("joint", "shared"))
 
 
 def _check(arm, harmonics, starts, iterations, seed):

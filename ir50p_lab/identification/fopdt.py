@@ -9,7 +9,8 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.doubts import Doubts, check_outliers
 from ir50p_lab.identification.first_order import Record, respond
 from ir50p_lab.identification.second_order import fit_second_order
-from ir50p_lab.identification.step_record import check_time, is_number, jumps_of, recorded, without_outliers
+from ir50p_lab.identification.step_record import check_time, jumps_of, recorded, without_outliers
+from ir50p_lab.inputs import number
 
 _FEWEST = 8  # samples from the first change of u on: twice the number of parameters
 _RESPONSE = 15.0  # least F value for "y follows u": a search over T and L in pure noise stays below it
@@ -101,10 +102,10 @@ def fit_fopdt(t, u, y, *, dead_time=None, u_before=None, anyway=False):
         InputError: NaN, shapes or lengths that do not fit, time that does not increase.
     """
     t, u, y = recorded(t=t, u=u, y=y)
-    if dead_time is not None and not (is_number(dead_time) and dead_time >= 0):
-        raise InputError(f"dead_time = {dead_time!r}: give finite seconds >= 0, or None to fit it")
-    if u_before is not None and not is_number(u_before):
-        raise InputError(f"u_before = {u_before!r}: give the input at rest before t[0], one finite number")
+    if dead_time is not None:
+        number("dead_time", dead_time, ">= 0", unit="s", hint="or None to fit it")
+    if u_before is not None:
+        number("u_before", u_before, hint="the input at rest before t[0]")
     times, jumps = jumps_of(t, u, u_before)
     doubts = Doubts(anyway)
     doubts += check_time(t)

@@ -9,7 +9,7 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.closed_loop import ClosedLoopRun, runs_of
 from ir50p_lab.identification.parameters import ACTS_ON, FREE_OF_SIGN, NAMES, ONLY_THESIS
 from ir50p_lab.identification.regression import long_run_sum
-from ir50p_lab.identification.validation import Validation, nrmse_fit
+from ir50p_lab.identification.validation import compared
 from ir50p_lab.inputs import number, switch, whole
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta
 
@@ -175,9 +175,7 @@ def compare(runs, simulated):
     for of, index in (("q", 0), ("u", 1)):
         measured = np.concatenate([getattr(run, of) for run in runs])
         predicted = np.concatenate([pair[index] for pair in simulated])
-        rms, fit = nrmse_fit(measured, predicted)
-        spread = measured.std(axis=0)
-        out.append(Validation(rms=rms, fit=fit, spread=spread, t=t, measured=measured, predicted=predicted, of=of))
+        out.append(compared(t, measured, predicted, of))
     return tuple(out)
 
 
@@ -196,8 +194,8 @@ class _Shape:
 
     @classmethod
     def of(cls, estimate, theta, l2, stribeck, seconds):
-        if l2 is not None and not (np.isfinite(l2) and 0 < l2 < 10):
-            raise InputError(f"l2 = {l2} m: give the length of the upper arm in metres, > 0")
+        if l2 is not None and number("l2", l2, "> 0", unit="m") >= 10:
+            raise InputError(f"l2 = {l2} m: give the length of the upper arm in metres")
         columns = getattr(estimate, "columns", None)
         places = [
             (j, k)

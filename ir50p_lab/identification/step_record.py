@@ -1,12 +1,10 @@
 """A recorded step response, checked: columns, the steps of u, units of time, outliers."""
 
-import math
-
 import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.columns import same_samples
-from ir50p_lab.identification.doubts import outliers
+from ir50p_lab.identification.doubts import named_outliers, outliers
 
 
 def recorded(**columns):
@@ -37,21 +35,5 @@ def check_time(t):
 def without_outliers(t, y):
     """t and y without single samples far from both neighbours, and a sentence about them, in a list."""
     places = outliers(y)
-    if not len(places):
-        return t, y, []
-    first = places[0]
-    said = (
-        f"y has {len(places)} outlier(s), the first at t = {t[first]:.6g} s ({y[first]:.4g} between {y[first - 1]:.4g} "
-        f"and {y[first + 1]:.4g}): left out; look for their cause"
-    )
-    keep = np.ones(len(t), dtype=bool)
-    keep[places] = False
-    return t[keep], y[keep], [said]
-
-
-def is_number(value):
-    """Whether `value` is one finite number."""
-    try:
-        return np.ndim(value) == 0 and not isinstance(value, (str, bytes)) and math.isfinite(value)
-    except (TypeError, ValueError, OverflowError):
-        return False
+    said = named_outliers("y", t, y, places, "left out; look for their cause")
+    return np.delete(t, places), np.delete(y, places), said

@@ -80,12 +80,17 @@ def validate(estimate, recording, q=None, u=None, *, delay=0.0, held=True, sign=
     for name in ("decimate", "slow", "filter_u"):
         if name in steps:
             raise InputError(f"{name} is no step of a validation: every raw u counts; leave it out")
-    theta, t, q, u = _inputs(estimate, recording, q, u)
+    theta, _ = as_theta(getattr(estimate, "theta", estimate) if not hasattr(estimate, "m") else estimate)
+    t, q, u = columns_of(recording, q, u)
+    if q.shape[1] != 3:
+        raise InputError(f"q has {q.shape[1]} columns: validation needs the three joints, (n, 3)")
     motion = process(t, q, u, held=False, **steps)
     Phi = regressor(motion.q, motion.qd, motion.qdd, g=g, sign=sign)
     predicted = np.einsum("nij,ij->ni", Phi, theta)
     later = switch("held", held) and steps.get("derivatives", "zero-phase") == "zero-phase"
-    acts = t + _seconds("delay", delay) + (0.5 * np.diff(t, append=t[-1] + sampling_period(t)) if later else 0.0)
+    acts = t + number("delay", delay, ">= 0", unit="s")
+    if later:
+        acts = acts + 0.5 * np.diff(t, append=t[-1] + sampling_period(t))
     kept, found = [], []
     for segment in np.unique(motion.segment):
         here = motion.segment == segment
@@ -93,22 +98,11 @@ def validate(estimate, recording, q=None, u=None, *, delay=0.0, held=True, sign=
         kept.append(np.flatnonzero(inside))
         found.append(np.column_stack([np.interp(acts[inside], motion.t[here], p) for p in predicted[here].T]))
     kept = np.concatenate(kept)
-    return _result(t[kept], u[kept], np.concatenate(found), "u")
+    return compared(t[kept], u[kept], np.concatenate(found), "u")
 
 
-def _inputs(estimate, recording, q, u):
-    theta, _ = as_theta(getattr(estimate, "theta", estimate) if not hasattr(estimate, "m") else estimate)
-    t, q, u = columns_of(recording, q, u)
-    if q.shape[1] != 3:
-        raise InputError(f"q has {q.shape[1]} columns: validation needs the three joints, (n, 3)")
-    return theta, t, q, u
-
-
-def _seconds(name, value):
-    return number(name, value, ">= 0", unit="s")
-
-
-def _result(t, measured, predicted, of):
+def compared(t, measured, predicted, of):
+    """Validation of "u" or "q", (n, 3) each."""
     rms, fit = nrmse_fit(measured, predicted)
     spread = measured.std(axis=0)
     return Validation(rms=rms, fit=fit, spread=spread, t=t, measured=measured, predicted=predicted, of=of)

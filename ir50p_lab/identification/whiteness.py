@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import numbers
+from ir50p_lab.inputs import numbers, whole
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,9 +45,7 @@ def whiteness(residuals, *, lags=None):
     if not np.isfinite(e).all():
         raise InputError("residuals hold numbers that are not finite: remove those samples")
     n = len(e)
-    lags = min(50, n // 5) if lags is None else lags
-    if isinstance(lags, bool) or not isinstance(lags, (int, np.integer)) or not 1 <= lags <= n // 2:
-        raise InputError(f"lags = {lags!r}: give a whole number from 1 to half the number of samples, {n // 2}")
+    lags = min(50, n // 5) if lags is None else whole("lags", lags, 1, n // 2)
     scale = np.abs(e).max(axis=0)
     e = e - e.mean(axis=0)
     power = (e**2).sum(axis=0)

@@ -9,8 +9,9 @@ from ir50p_lab.inputs import number, vector3
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.differential import jacobian, singularity
 from ir50p_lab.modelling.ik import BRANCHES, inverse_kinematics, reachability
+from ir50p_lab.signals.fourier import heights, limits_of
 from ir50p_lab.signals.path_shapes import Circle, Line
-from ir50p_lab.signals.reference import Reference, per_joint, pose, seconds
+from ir50p_lab.signals.reference import Reference, pose, seconds
 from ir50p_lab.signals.speed_profile import SpeedProfile, fastest
 
 _STEP = 1e-5  # s, of the difference that gives Jvd, right to ten digits
@@ -126,26 +127,24 @@ def _path(
         raise InputError(f"branch = {branch!r}: choose one of {', '.join(BRANCHES)}")
     speed = number("speed", speed, "> 0", unit="m/s")
     acceleration = number("acceleration", acceleration, "> 0", unit="m/s^2")
-    number("margin", margin, ">= 0", unit="rad")
-    bound = _joint_speed_bound(arm, max_joint_speed)
+    low, high, bound, table = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
     s = np.linspace(0, shape.length, shape.grid)
     p, tangent, _ = shape(s)
     _refuse_out_of_reach(arm, p)
     _refuse_below("tip", p[:, 2], table, p)
     solutions = np.unwrap(inverse_kinematics(arm, p).q, axis=0)  # (n, 4, 3), each branch without jumps
-    solutions = _nearest_turn(solutions, near, arm, margin)
+    solutions = _nearest_turn(solutions, near, low, high)
     choice = _choose(arm, solutions, p, near, branch, margin)
     q = solutions[:, choice]
     if table is not None:
-        _refuse_below("elbow", arm.l[0] + arm.l[1] * np.sin(q[:, 1]), table, p)
+        _refuse_below("elbow", heights(arm.l, q)[0], table, p)
     _refuse_fast_joints(arm, q, p, tangent, speed, bound)
     profile = fastest(shape, speed, acceleration, seconds("start_time", start_time))
     return CartesianPath(arm=arm, shape=shape, profile=profile, branch=BRANCHES[choice], q_grid=q)
 
 
-def _nearest_turn(solutions, near, arm, margin):
+def _nearest_turn(solutions, near, low, high):
     """Shift each branch by whole turns: into the joint limits if it fits there, else near to the pose `near`."""
-    low, high = np.array(arm.q_min) + margin, np.array(arm.q_max) - margin
     turns = 2 * np.pi * np.rint((near - solutions[0]) / (2 * np.pi))
     best = solutions + turns
     for k in (-1, 0, 1):
@@ -205,7 +204,6 @@ def _refuse_out_of_reach(arm, p):
 def _refuse_below(part, heights, table, p):
     if table is None:
         return
-    number("table", table, unit="m", hint="its height, or None for no table")
     i = int(heights.argmin())
     depth = table - heights[i]
     if depth > 1e-12:
@@ -255,12 +253,6 @@ def _unreachable(message, i, p, distance):
     error = UnreachableError(message)
     error.share, error.point, error.distance = i / (len(p) - 1), p[i], distance
     return error
-
-
-def _joint_speed_bound(arm, value):
-    if value is None:
-        return np.full(3, 2.0) if arm.actuators is None else 0.5 * arm.actuators.no_load_speed
-    return np.array(per_joint("max_joint_speed", value, unit="rad/s", positive=True))
 
 
 def _percent(i, p):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ir50p_lab.errors import InputError, UnreachableError
-from ir50p_lab.inputs import check_arm, first_not_finite
+from ir50p_lab.inputs import check_arm, choice, first_not_finite, number, numbers
 from ir50p_lab.signals.reference import Reference, per_joint, seconds
 
 _GRID = 256  # points per period of the fastest harmonic: between them no more than 1 - cos(pi/256) of the swing hides
@@ -89,8 +89,7 @@ def fourier(
     a, b = _coefficients(a, b)
     period, start = seconds("period", period, positive=True), seconds("start", start)
     periods = _whole_periods(period, periods, record)
-    if ends not in ("check", "adjust"):
-        raise InputError(f"ends = {ends!r}: choose 'check' or 'adjust'")
+    choice("ends", ends, ("check", "adjust"))
     if ends == "adjust":
         a, b = at_rest(a, b)
     _refuse_moving_ends(a, b)
@@ -186,10 +185,9 @@ def heights(l, q):
 
 def limits_of(arm, *, max_joint_speed=None, table=0.0, margin=0.03):
     """The bounds `fourier` checks: (q low (3,), q high (3,) rad, speed (3,) rad/s, table m or None). InputError."""
-    if not (np.isscalar(margin) and not isinstance(margin, str) and math.isfinite(margin) and margin >= 0):
-        raise InputError(f"margin = {margin!r} rad: give a finite number >= 0")
-    if table is not None and not (np.isscalar(table) and not isinstance(table, str) and math.isfinite(table)):
-        raise InputError(f"table = {table!r}: give its height in m, or None for no table")
+    number("margin", margin, ">= 0", unit="rad")
+    if table is not None:
+        number("table", table, unit="m", hint="its height, or None for no table")
     if max_joint_speed is None:
         speed = np.full(3, 2.0) if arm.actuators is None else 0.5 * arm.actuators.no_load_speed
     else:
@@ -206,10 +204,7 @@ def _too_far(message, joint, time, value, limit):
 def _coefficients(a, b):
     arrays = []
     for name, value in (("a", a), ("b", b)):
-        try:
-            array = np.array(value, dtype=float)
-        except (TypeError, ValueError):
-            raise InputError(f"{name} must hold numbers in rad, shape (3, N); got {value!r:.60}") from None
+        array = numbers(name, value, unit="rad, shape (3, N)")
         if array.ndim != 2 or array.shape[0] != 3 or array.shape[1] < 1:
             raise InputError(f"{name} has shape {array.shape}; give a row of N coefficients per joint, (3, N) (rad)")
         if not np.isfinite(array).all():

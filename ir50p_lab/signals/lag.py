@@ -34,7 +34,8 @@ def measured_lag(x, y, rate_hz, *, max_lag=1.0):
             f"{len(x)} samples are too few to shift them: give at least 4, and max_lag of a sample or more"
         )
     shifts = np.arange(-most, most + 1)
-    likeness = _correlations(x - x.mean(), y - y.mean(), most)
+    x, y = x - x.mean(), y - y.mean()
+    likeness = np.array([_likeness(x, y, k) for k in shifts])
     best = int(likeness.argmax())
     if best in (0, len(shifts) - 1):
         raise InputError(
@@ -46,26 +47,12 @@ def measured_lag(x, y, rate_hz, *, max_lag=1.0):
     return float((shifts[best] + (0.5 * (left - right) / bend if bend < 0 else 0.0)) / rate_hz)
 
 
-def _correlations(x, y, most):
-    """Correlation coefficients (2 most + 1,) of y, k samples later, with x; -1 where one of them stands still.
-
-    All shifts at once: means and energies of the common stretches come from running sums.
-    """
-    from scipy.signal import correlate
-
-    n = len(x)
-    k = np.arange(-most, most + 1)
-    length = n - np.abs(k)
-    products = correlate(y, x, mode="full")[n - 1 - most : n + most]
-    (x1, x2), (y1, y2) = ((_running(z), _running(z * z)) for z in (x, y))
-    at_x, at_y = np.maximum(0, -k), np.maximum(0, k)
-    sum_x, sum_y = x1[at_x + length] - x1[at_x], y1[at_y + length] - y1[at_y]
-    energy_x = x2[at_x + length] - x2[at_x] - sum_x**2 / length
-    energy_y = y2[at_y + length] - y2[at_y] - sum_y**2 / length
-    moves = (energy_x > 1e-12 * x2[-1]) & (energy_y > 1e-12 * y2[-1])
-    size = np.sqrt(np.where(moves, energy_x * energy_y, 1.0))
-    return np.where(moves, (products - sum_x * sum_y / length) / size, -1.0)
-
-
-def _running(z):
-    return np.concatenate([[0.0], np.cumsum(z)])
+def _likeness(x, y, k):
+    """Correlation coefficient of y, k samples later, with x over their common stretch; -1 where one stands still."""
+    length = len(x) - abs(k)
+    energies = x @ x, y @ y
+    x, y = x[max(0, -k) :][:length], y[max(0, k) :][:length]
+    x, y = x - x.mean(), y - y.mean()
+    if x @ x <= 1e-12 * energies[0] or y @ y <= 1e-12 * energies[1]:
+        return -1.0
+    return x @ y / math.sqrt((x @ x) * (y @ y))

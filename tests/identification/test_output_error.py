@@ -7,6 +7,7 @@ import pytest
 
 from ir50p_lab.bench import ArmInstance, SimulatedBench
 from ir50p_lab.controllers import PID
+from ir50p_lab.course.torque_views import thesis_pid
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification import (
     fit_with_instruments,
@@ -15,7 +16,6 @@ from ir50p_lab.identification import (
     output_error,
 )
 from ir50p_lab.identification.closed_loop import ClosedLoopRun
-from ir50p_lab.course.torque_views import thesis_pid
 from ir50p_lab.identification.output_error import compare
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
