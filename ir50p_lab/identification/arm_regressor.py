@@ -10,15 +10,13 @@ from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
 
 
 @jit()
-def regressor_block(gravity, q, qd, qdd, direction, out):
+def regressor_block(gravity, q2, q3, a, b, c, A, B, C, s1, s2, s3, out):
     """One state into out (3, 20), which must hold zeros: only entries that can differ from zero are written.
 
-    q, qd, qdd, direction (what stands for sgn(qd)): (3,) each.
+    (a, b, c) velocities, (A, B, C) accelerations, (s1, s2, s3) what stands for sgn(qd).
     """
-    a, b, c = qd[0], qd[1], qd[2]
-    A, B, C = qdd[0], qdd[1], qdd[2]
-    sin2, c2 = cf.sincos(q[1])
-    sin3, c3 = cf.sincos(q[2])
+    sin2, c2 = cf.sincos(q2)
+    sin3, c3 = cf.sincos(q3)
     c23, sin23 = c2 * c3 - sin2 * sin3, sin2 * c3 + c2 * sin3
     one, two, three = out[0], out[1], out[2]
     # inertia of the upper arm (theta2) and of the forearm (theta5, theta6) about the waist: it changes with the pose
@@ -44,14 +42,28 @@ def regressor_block(gravity, q, qd, qdd, direction, out):
     three[19] = C
     # friction and offset
     one[10], two[12], three[14] = a, b, c
-    one[11], two[13], three[15] = direction[0], direction[1], direction[2]
+    one[11], two[13], three[15] = s1, s2, s3
     one[16] = two[17] = three[18] = 1.0
 
 
 @jit()
 def _regressor_loop(gravity, q, qd, qdd, direction, out):
     for k in range(q.shape[0]):
-        regressor_block(gravity, q[k], qd[k], qdd[k], direction[k], out[k])
+        regressor_block(
+            gravity,
+            q[k, 1],
+            q[k, 2],
+            qd[k, 0],
+            qd[k, 1],
+            qd[k, 2],
+            qdd[k, 0],
+            qdd[k, 1],
+            qdd[k, 2],
+            direction[k, 0],
+            direction[k, 1],
+            direction[k, 2],
+            out[k],
+        )
 
 
 def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):

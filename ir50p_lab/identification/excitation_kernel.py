@@ -34,7 +34,7 @@ def evaluate(x, basis, picked, shared, bounds, out):
                 motion[d, k, i] = total
     _room(motion, bounds, out)
     gram = np.zeros((3, 20, 20))
-    block, direction = np.zeros((3, 20)), np.empty(3)
+    block = np.zeros((3, 20))
     place, count = np.zeros((3, 20), dtype=np.int64), np.zeros(3, dtype=np.int64)
     for i in range(3):
         for a in range(20):
@@ -42,9 +42,11 @@ def evaluate(x, basis, picked, shared, bounds, out):
                 place[i, count[i]] = a
                 count[i] += 1
     for k in range(n):
-        for i in range(3):
-            direction[i] = math.tanh(motion[1, k, i] / _TURN)
-        regressor_block(_GRAVITY, motion[0, k], motion[1, k], motion[2, k], direction, block)
+        q, qd, qdd = motion[0, k], motion[1, k], motion[2, k]
+        regressor_block(
+            _GRAVITY, q[1], q[2], qd[0], qd[1], qd[2], qdd[0], qdd[1], qdd[2],
+            np.tanh(qd[0] / _TURN), np.tanh(qd[1] / _TURN), np.tanh(qd[2] / _TURN), block,
+        )  # fmt: skip
         for i in range(3):
             for m in range(count[i]):
                 a = place[i, m]
