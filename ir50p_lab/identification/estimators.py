@@ -6,7 +6,6 @@ Each returns a Solution in the coordinates of Q (A = Q R), where numbers are wel
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from ir50p_lab.errors import IdentificationError, InputError
@@ -130,7 +129,7 @@ def instrumental_variables(problem, Z):
     R = r_factor(Z / length)
     if np.abs(np.diag(R)).min() < 1e-8:
         raise IdentificationError(f"{problem.who}the instruments depend on each other: they excite fewer columns")
-    Qz = product(Z / length, solve_triangular(R, np.eye(len(R))))
+    Qz = product(Z / length, np.linalg.solve(R, np.eye(len(R))))
     bread = gram(Qz, problem.Q)
     smallest = np.linalg.svd(bread, compute_uv=False)[-1]
     if smallest < _NOTHING:

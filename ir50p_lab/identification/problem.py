@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification.qr import independent_columns, product, r_factor
@@ -41,8 +40,8 @@ class Problem:
 
     @cached_property
     def R_inverse(self):
-        """R^-1: triangular, so that back substitution gives it without loss of digits."""
-        return solve_triangular(self.R, np.eye(len(self.R)))
+        """R^-1: triangular, so that elimination is back substitution, without loss of digits."""
+        return np.linalg.solve(self.R, np.eye(len(self.R)))
 
     @cached_property
     def condition(self):
