@@ -31,19 +31,9 @@ class FrameView:
         self._length = length
         self._name = name
         # each axis is one line: origin, end, a gap, and the letter as a marker (a Text costs twice as much to draw)
+        style = {"linewidth": 2.2, "solid_capstyle": "round", "markersize": 7, "markeredgewidth": 0.3, "zorder": 30}
         self.axes = [
-            ax.plot(
-                *np.zeros((3, 4)),
-                color=colour,
-                linewidth=2.2,
-                solid_capstyle="round",
-                marker=f"${letter}$",
-                markevery=[3],
-                markersize=7,
-                markeredgewidth=0.3,
-                zorder=30,
-                clip_on=False,
-            )[0]
+            ax.plot(*np.zeros((3, 4)), color=colour, marker=f"${letter}$", markevery=[3], clip_on=False, **style)[0]
             for letter, colour in zip("xyz", _AXIS_COLOURS, strict=True)
         ]
         self.title = ax.text(0, 0, 0, name, fontsize=9, fontweight="bold", ha="right", va="top", zorder=31)

@@ -118,10 +118,8 @@ def _wrong(source, wanted, verdict):
         return len(marks)
 
     tries = lab_book.change(edit)
-    says, more = (
-        f"not yet: {ended(verdict.says)}",
-        [("one input that fails", verdict.example)] if verdict.example else [],
-    )
+    says = f"not yet: {ended(verdict.says)}"
+    more = [("one input that fails", verdict.example)] if verdict.example else []
     if tries >= _BEFORE_LOAN and not (folder.is_there(wanted.name) or folder.is_there(wanted.function)):
         folder.lend(wanted, after_tries=True)
         says += (

@@ -83,8 +83,7 @@ def dh(theta, d, a, alpha):
     # fmt: on
 
 
-# Table 1.1. The rows are right. Wrong: the header, which should read theta_i, d_i, a_i, alpha_i.
-TABLE_1_1_HEADER = ("theta_{i-1}", "d_{i-1}", "phi_i", "alpha_i")
+# Table 1.1. The rows are right. Wrong: the header theta_{i-1}, d_{i-1}, phi_i, alpha_i for theta_i, d_i, a_i, alpha_i.
 TABLE_1_1 = ((q1, l1, 0, pi / 2), (q2, 0, l2, 0), (q3, 0, l3, -pi / 2))
 
 

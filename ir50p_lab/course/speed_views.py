@@ -23,11 +23,10 @@ class ColumnsView:
         azimuth, elevation = np.radians([ax.azim, ax.elev])
         self._to_eye = [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
         # one line each: tail, head, barbs, a gap, and the number of the joint as a marker (a legend takes long to draw)
+        style = {"linewidth": 3, "markevery": [6], "ms": 9, "zorder": 40}
         self.arrows = [
-            ax.plot(*np.zeros((3, 7)), color=colour, linewidth=3, marker=f"${k + 1}$", markevery=[6], ms=9, zorder=40)[
-                0
-            ]
-            for k, colour in enumerate(COLOURS[name] for name in _JOINTS)
+            ax.plot(*np.zeros((3, 7)), color=COLOURS[name], marker=f"${k + 1}$", **style)[0]
+            for k, name in enumerate(_JOINTS)
         ]
 
     def update(self, q):
@@ -52,9 +51,8 @@ def arrows(arm, q, J, scale=0.5):
     tip = view.points[3]
     for joint, colour in enumerate(_JOINTS):
         start = tip + np.array([0.02 * (joint == 2), 0, 0])  # arrows 2 and 3 would lie on each other
-        ax.quiver(
-            *start, *(scale * J[:, joint]), color=COLOURS[colour], linewidth=3, arrow_length_ratio=0.15, zorder=40
-        )
+        style = {"color": COLOURS[colour], "linewidth": 3, "arrow_length_ratio": 0.15, "zorder": 40}
+        ax.quiver(*start, *(scale * J[:, joint]), **style)
         head = start + 1.15 * scale * J[:, joint]
         ax.text(*head, f"{joint + 1}", color=COLOURS[colour], weight="bold", fontsize=12, zorder=41)
     ax.set_title("Where the tip goes if joint 1, 2 or 3 turns (arrows drawn at half length)")
@@ -137,11 +135,8 @@ def damping_curves(damping):
     ax = figure.axes[0]
     sigma = np.linspace(0.002, 0.4, 400)
     ax.plot(sigma, 1 / sigma, label=r"plain: $1/\sigma$")
-    ax.plot(
-        sigma,
-        sigma / (sigma**2 + damping**2),
-        label=rf"damped: $\sigma/(\sigma^2 + \lambda^2)$, $\lambda$ = {damping} m",
-    )
+    damped = rf"damped: $\sigma/(\sigma^2 + \lambda^2)$, $\lambda$ = {damping} m"
+    ax.plot(sigma, sigma / (sigma**2 + damping**2), label=damped)
     ax.set(xlim=(0, 0.4), ylim=(0, 40), xlabel=r"how well the arm moves there, $\sigma$ [m/rad]")
     ax.set_ylabel("turn asked for [rad/m]")
     ax.set_title("Damping asks least where it would cost most")
@@ -173,11 +168,9 @@ def steps_panel(damped_step, arm, q_start, p, steps=25):
         elbow.set_ydata(np.degrees(path[:, 2]))
         arrived = np.flatnonzero(left < 1e-3)
         turns = np.degrees(np.abs(path[:, 2] - path[0, 2]).max())
-        when = (
-            f"within 1 mm after {arrived[0]} steps"
-            if len(arrived)
-            else f"{1000 * left[-1]:.3g} mm left after {steps} steps"
-        )
+        when = f"{1000 * left[-1]:.3g} mm left after {steps} steps"
+        if len(arrived):
+            when = f"within 1 mm after {arrived[0]} steps"
         return f"{when}; on the way the elbow turned by up to {turns:.0f} degrees"
 
     return figure, search

@@ -57,19 +57,10 @@ def _column(ax, arm):
 
 def _arc(ax, centre, start, end, radius, colour, text, out=1.35):
     angles = np.linspace(start, end, 40)
-    ax.plot(
-        centre[0] + radius * np.cos(angles), centre[1] + radius * np.sin(angles), color=COLOURS[colour], linewidth=2
-    )
-    middle = angles[20]
-    ax.text(
-        centre[0] + out * radius * np.cos(middle),
-        centre[1] + out * radius * np.sin(middle),
-        text,
-        color=COLOURS[colour],
-        fontsize=13,
-        ha="center",
-        va="center",
-    )
+    directions = np.column_stack([np.cos(angles), np.sin(angles)])
+    ax.plot(*(centre + radius * directions).T, color=COLOURS[colour], linewidth=2)
+    place = centre + out * radius * directions[20]
+    ax.text(*place, text, color=COLOURS[colour], fontsize=13, ha="center", va="center")
 
 
 def side_view(arm, p):

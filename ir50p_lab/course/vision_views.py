@@ -68,15 +68,9 @@ def colour_solids_figure():
     hue, saturation, value = rgb_to_hsv(rgb).T
     figure = new_figure(9.0, 4.2, cols=2, projection="3d")
     cube, cone = figure.axes
-    for ax, points in (
-        (cube, rgb),
-        (
-            cone,
-            np.column_stack(
-                [p * saturation * value for p in (np.cos(np.radians(hue)), np.sin(np.radians(hue)))] + [value]
-            ),
-        ),
-    ):
+    chroma, angle = saturation * value, np.radians(hue)
+    in_cone = np.column_stack([chroma * np.cos(angle), chroma * np.sin(angle), value])
+    for ax, points in ((cube, rgb), (cone, in_cone)):
         ax.scatter(*points.T, c=rgb / 255, s=22, depthshade=False)
         ax.set_box_aspect(None, zoom=0.85)  # room for the labels, which the layout does not see
     cube.set(xticks=(0, 128, 255), yticks=(0, 128, 255), zticks=(0, 128, 255))
@@ -277,16 +271,11 @@ def balls_figure(image, balls, title, *, source=STAMP):
     for rank, ball in enumerate(balls, start=1):
         _circle(ax, ball.x, ball.y, ball.radius, COLOURS["blue"])
         ax.plot(ball.x, ball.y, "+", ms=9, color="white")
-        above = ball.y - 1.25 * ball.radius - 4
-        ax.text(
-            np.clip(ball.x, 0.24 * width, 0.76 * width),
-            above if above > 0.05 * height else ball.y + 1.25 * ball.radius + 4 + 0.04 * height,
-            f"{rank}: ({ball.x:.1f}, {ball.y:.1f}), r {ball.radius:.1f} px, score {ball.score:.2f}",
-            ha="center",
-            fontsize=8,
-            color="white",
-            backgroundcolor="#0008",
-        )
+        x, y = np.clip(ball.x, 0.24 * width, 0.76 * width), ball.y - 1.25 * ball.radius - 4
+        if y < 0.05 * height:  # no room above it
+            y = ball.y + 1.25 * ball.radius + 4 + 0.04 * height
+        words = f"{rank}: ({ball.x:.1f}, {ball.y:.1f}), r {ball.radius:.1f} px, score {ball.score:.2f}"
+        ax.text(x, y, words, ha="center", fontsize=8, color="white", backgroundcolor="#0008")
     ax.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
     return figure
 
