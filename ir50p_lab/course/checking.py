@@ -12,7 +12,7 @@ import numpy as np
 from ir50p_lab.course import lab_book
 from ir50p_lab.course.functions import folder
 from ir50p_lab.course.functions.catalogue import ORDER, is_function, task
-from ir50p_lab.course.functions.cell import CannotTake, is_copy, take
+from ir50p_lab.course.functions.cell import CannotTake, has_dots, is_copy, take
 from ir50p_lab.course.functions.grade import grade
 from ir50p_lab.course.functions.stops import ROOM, ended
 from ir50p_lab.errors import InputError
@@ -42,7 +42,7 @@ def check(name, answer=...):
         source = take(answer, wanted.function, wanted.leans_on)
     except CannotTake as reason:
         return _show("wrong", name, f"not yet: {ended(str(reason))}")
-    if _is_stub(source.text):
+    if has_dots(source.text):
         return _show("open", name, f"not written yet. It returns {wanted.asks}.")
     verdict = grade(wanted, _in_its_own_room(source, wanted))
     if verdict.state == "right" and folder.was_lent(name) and is_copy(source.text, wanted.loan):
@@ -70,16 +70,6 @@ def _in_its_own_room(source, wanted):
     linecache.cache[file] = (len(source.text), None, source.text.splitlines(keepends=True), file)
     exec(compile(source.text, file, "exec"), room)
     return room[wanted.function]
-
-
-def _is_stub(text):
-    """Tell whether dots still stand where the answer should be (those of `a[..., 0]` do not count)."""
-    definition = ast.parse(text)
-    indices = {
-        id(one) for node in ast.walk(definition) if isinstance(node, ast.Subscript) for one in ast.walk(node.slice)
-    }
-    dots = [node for node in ast.walk(definition) if isinstance(node, ast.Constant) and node.value is ...]
-    return any(id(node) not in indices for node in dots)
 
 
 def _keep(source, wanted, remark):

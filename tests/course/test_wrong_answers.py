@@ -140,6 +140,20 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
         ("step_metrics", "np.abs(q - target) > band", "np.abs(q - np.mean(last_second)) > band", "about the target"),
         ("step_metrics", "np.std(np.diff(last_second)) / np.sqrt(2)", "np.std(q)", "last second"),
         ("damped_step", "[:3]\n", "\n", r"`J @ J.T` has the shape \(6, 6\)"),
+        ("damped_step", "np.linalg.solve(A, p - tip)", "((p - tip) / A)", "`/` divides entry by entry"),
+        ("reach", ">= -1e-9", "> 0", "exactly on the table, z = 0, are refused"),
+        (
+            "inverse_kinematics",
+            "np.arctan2(l3 * np.sin(q3), l2 + l3 * np.cos(q3))",
+            "np.arcsin(l3 * np.sin(q3) / r)",
+            "arcsin does not know angles",
+        ),
+        (
+            "inverse_kinematics",
+            "np.arctan2(l3 * np.sin(q3), l2 + l3 * np.cos(q3))",
+            "np.arctan2(l2 * np.sin(q3), l3 + l2 * np.cos(q3))",
+            "have changed places",
+        ),
     ],
 )
 def test_a_usual_mistake_has_its_sentence(name, old, new, words, capsys):
@@ -214,6 +228,7 @@ def test_right_ones_of_any_shape_are_kept_and_run_alone(text, capsys):
         ("c = s = __import__('ir50p_lab.modelling').modelling.rot_z(angle)", "uses `__import__`"),
         ("exec('from ir50p_lab.modelling import rot_z as r', d := {}); c = s = d['r'](angle)", "uses `exec`"),
         ("c = s = np.__builtins__", "changes or opens"),
+        ("c = s = np.f2py.sys.modules['ir50p_lab.modelling']", "changes or opens `np.f2py.sys`"),
         ("c = s = frames(angle, angle)", "calls `frames`: this function is to do without"),
     ],
 )
@@ -236,6 +251,31 @@ def test_a_loan_pasted_back_stays_a_loan(capsys):
         assert "it stays a loan" in told(capsys, "rot_z", text=text)
         assert my_robot.whose("rot_z") == "on loan"
     assert "right, and yours" in told(capsys, "rot_z")
+
+
+def test_a_loan_with_a_new_last_line_is_no_work_of_ones_own(capsys):
+    for k in range(6):
+        told(capsys, "frames", text=f"def frames(q, l):\n    return {k} * np.eye(3)")
+    lent = task("frames").loan
+    for last in (
+        "np.stack([T0, T1, T2, T3])",
+        "+np.array([T0, T1, T2, T3])",
+        "(lambda x: x)(np.array([T0, T1, T2, T3]))",
+    ):
+        text = lent.replace("np.array([T0, T1, T2, T3])", last)
+        assert "it stays a loan" in told(capsys, "frames", text=text)
+    assert "right, and yours" in told(capsys, "frames")
+
+
+def test_two_mistakes_at_once_are_both_told(capsys):
+    text = HAND.format("c, s = np.cos(np.radians(angle)), -np.sin(np.radians(angle))")
+    said = told(capsys, "rot_z", text=text)
+    assert "two things at once: it turns the wrong way round" in said and "And angle hardly counts" in said
+
+
+def test_a_result_in_degrees_is_told_though_the_edge_is_wrong_too(capsys):
+    changes = ("r > longest + 1e-9", "r > longest - 1e-9"), ("np.array(poses)", "np.degrees(poses)")
+    assert re.search("it returns degrees.*something else is wrong, too", told(capsys, "inverse_kinematics", *changes))
 
 
 def test_no_sentence_says_not_yet_twice(capsys):

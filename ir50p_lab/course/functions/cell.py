@@ -155,20 +155,45 @@ def _refuse_imports(node):
 
 
 def _refuse_changes(node):
-    """Nothing outside is changed or looked into: `np.allclose = ...`, `np.__builtins__`; `self` may be."""
+    """Nothing outside is changed or looked into: `np.allclose = ...`, `np.__builtins__`, `np.f2py.sys`; `self` may."""
     for one in ast.walk(node):
         if not isinstance(one, ast.Attribute):
             continue
         root = ast.unparse(one).partition(".")[0].partition("[")[0]
-        if root != "self" and (one.attr.startswith("__") or not isinstance(one.ctx, ast.Load)):
+        opens = one.attr.startswith("__") or not isinstance(one.ctx, ast.Load) or _leads_out(ast.unparse(one))
+        if root != "self" and opens:
             raise CannotTake(
                 f"it changes or opens `{ast.unparse(one)}`: a function returns its answer and leaves the rest"
             )
 
 
+def _leads_out(path):
+    """Tell whether a dotted name leads from an allowed module to one that is not: `np.f2py.sys`."""
+    root, *names = path.split(".")
+    root = "numpy" if root == "np" else root
+    if root not in _ALLOWED:
+        return False
+    thing = importlib.import_module(root)
+    for name in names:
+        thing = getattr(thing, name, None)
+    return inspect.ismodule(thing) and thing.__name__.partition(".")[0] not in _ALLOWED
+
+
+def has_dots(text):
+    """Tell whether dots still stand where the answer should be (those of `a[..., 0]` do not count)."""
+    tree = ast.parse(text)
+    indices = {id(one) for node in ast.walk(tree) if isinstance(node, ast.Subscript) for one in ast.walk(node.slice)}
+    dots = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and node.value is ...]
+    return any(id(node) not in indices for node in dots)
+
+
 def is_copy(text, other):
-    """Tell whether a text computes all that another does: names, layout, `1 *` and what is added do not count."""
-    return not _steps(other) - _steps(text)
+    """Tell whether a text computes what another does: names, layout, `1 *` and what is added do not count.
+
+    One step in six may be another, so that it takes more than a new last line.
+    """
+    steps = _steps(other)
+    return (steps - _steps(text)).total() <= steps.total() // 6
 
 
 def _steps(text):

@@ -1,9 +1,11 @@
 """Right answers spoilt in every usual way: a wrong answer is told by the numbers it shares with one of them."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
+from ir50p_lab.course.functions.stops import ended
 from ir50p_lab.course.functions.task import Mistake
 
 _MANY = 6  # longer ones are runs: no part of them has a meaning of its own
@@ -50,8 +52,15 @@ _OF_RESULTS = (
 
 def distortions(task):
     """Yield Mistakes: results misplaced, arguments misread."""
-    yield from _of_results(task)
+    yield from of_results(task)
     yield from _of_arguments(task)
+
+
+def pairs(task):
+    """Yield Mistakes: two at once, one of the task's own or a result misplaced, and an argument misread."""
+    for first in (*task.slips, *of_results(task)):
+        for second in _of_arguments(replace(task, right=first.wrong)):
+            yield Mistake(second.wrong, f"two things at once: {ended(first.says)} And {second.says}")
 
 
 def _of_arguments(task):
@@ -61,7 +70,8 @@ def _of_arguments(task):
             continue
         for says, change in _readings(name, np.asarray(value)):
             yield Mistake(_reading(task, k, change), says)
-        yield Mistake(_reading(task, k, lambda _, value=value: value), f"it has one {name} built in, whatever comes in")
+        one = f"{name} = {value}" if np.ndim(value) == 0 else f"one {name}"
+        yield Mistake(_reading(task, k, lambda _, value=value: value), f"{one} is built in, whatever comes in")
     for k in range(len(case)):
         for m in range(k):
             if np.shape(case[k]) == np.shape(case[m]) and not callable(case[k]):
@@ -86,7 +96,8 @@ def _readings(name, value):
     return found
 
 
-def _of_results(task):
+def of_results(task):
+    """Yield Mistakes: what is right is returned in another form, place, sign or unit."""
     for says, change in _OF_RESULTS:
         yield Mistake(_result(task, change), says)
     shape = np.shape(next(one for one in (task.right(*case) for case in task.cases()) if one is not None))

@@ -10,7 +10,7 @@ from itertools import chain
 
 import numpy as np
 
-from ir50p_lab.course.functions.distortions import distortions, entries
+from ir50p_lab.course.functions.distortions import distortions, entries, of_results, pairs
 from ir50p_lab.course.functions.stops import why_it_stops
 from ir50p_lab.course.functions.task import Failed, is_run, shown
 from ir50p_lab.course.functions.variants import in_words_of, variants
@@ -72,7 +72,7 @@ def _known(task, function, cases, returned, expected, bad):
     if 2 * len(stopped) >= len(cases) or all(one is None for one in returned):  # nothing to compare
         return "", ""
     order = [*bad, *sorted(set(range(len(cases))) - set(bad))]
-    usual = _while_patient(chain(distortions(task), variants(task)))
+    usual = _while_patient(chain(distortions(task), variants(task), pairs(task)))
     for slip in chain(task.slips, usual):
         if not all(_is_slip(task, slip, cases[k], returned[k]) for k in order):
             continue
@@ -183,10 +183,10 @@ def _usual(task, cases, returned, expected):
 
 
 def _mostly(task, cases, returned, expected):
-    """A mistake of the task's own that explains many of the wrong answers, beside another one."""
+    """A mistake, of the task's own or of the result's form, that explains many of the wrong answers."""
     wrong = [k for k in range(len(cases)) if not _agrees(task, returned[k], expected[k])]
     right = sorted(set(range(len(cases))) - set(wrong))
-    for slip in task.slips:
+    for slip in (*task.slips, *of_results(task)):
         if not all(_is_slip(task, slip, cases[k], returned[k]) for k in right):
             continue
         share = sum(returned[k] is not None and _is_slip(task, slip, cases[k], returned[k]) for k in wrong)

@@ -96,7 +96,7 @@ def _poses_symptom(cases, returned, expected):
     if refused and all(_straight(expected[k]) for k in refused):
         return (
             f"{len(refused)} places on the very edge, where the arm is stretched, count as out of reach: there "
-            "rounding makes r a hair too large; allow it 1e-9 m"
+            "rounding makes r a hair too large; allow r 1e-9 m"
         )
     inside = [k for k, one in enumerate(expected) if len(one) and not _straight(one)]
     return _fewer([answers[k] for k in inside], [cases[k] for k in inside], refused)
@@ -330,6 +330,10 @@ def _reach_cases():
         p = forward_kinematics(q, l)
         farthest = max(inverse_kinematics(p, l), key=lambda pose, q=q: np.abs(pose - q).min())
         cases.append((p, l.copy(), q, np.array([farthest - 0.1, farthest + 0.1])))
+    for q in rng.uniform([-1, 0.2, -2], [1, 1.2, -1], (8, 3)):  # on the table, but for rounding
+        p = forward_kinematics(q, l)
+        p[2] = 0.0
+        cases.append((p, l.copy(), q, limits.copy()))
     ahead = np.array([[0, -3.1, -3.1], [3.1, 3.1, 3.1]])  # the waist stands exactly on its limit
     cases.append((np.array([0.42, 0, 0.2]), l.copy(), np.array([0, 0.3, -0.6]), ahead))
     return [case for case in cases if _has_one_best(*case)]
@@ -352,6 +356,11 @@ def _same_pose(returned, expected):
 def _reach_symptom(cases, returned, expected):
     there = [k for k, right in enumerate(expected) if right is not None]
     refused = [k for k in there if returned[k] is None]
+    if refused and all(cases[k][0][2] == 0 for k in refused):
+        return (
+            f"{len(refused)} places exactly on the table, z = 0, are refused: they are allowed, and rounding may put "
+            "the tip a hair below; allow it 1e-9 m"
+        )
     if refused:
         return (
             f"it returns None for {len(refused)} of {len(there)} places that have an allowed pose: is too much struck "
@@ -413,8 +422,8 @@ REACH = Task(
     name="reach",
     notebook="02",
     signature=("p", "l", "q_now", "limits"),
-    asks="the allowed pose (3,) for p whose largest joint turn from q_now is smallest, elbow and tip above the table; "
-    "None if there is none",
+    asks="the allowed pose (3,) for p whose largest joint turn from q_now is smallest, elbow and tip not below the "
+    "table; None if there is none",
     right=reach,
     cases=_reach_cases,
     leans_on=("inverse_kinematics", "forward_kinematics", "frames", "dh_matrix", "rot_z"),

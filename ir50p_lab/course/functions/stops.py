@@ -62,7 +62,7 @@ def why_it_stops(error):
 
 def ended(says):
     """A sentence with its full stop; a question has its mark already."""
-    return says if says.endswith("?") else f"{says}."
+    return says if says.endswith(("?", ".")) else f"{says}."
 
 
 def _where(error):

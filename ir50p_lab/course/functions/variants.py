@@ -3,6 +3,7 @@
 import ast
 import copy
 import inspect
+import itertools
 import math
 import re
 from collections import defaultdict
@@ -28,6 +29,7 @@ _NAMED = re.compile(
 
 
 _SAY_LITTLE = ("something else", "the condition is not asked")
+_LETTER = 2  # characters: l2, l3, q1
 _MANY_NAMES = 14  # exchanging each for each of more takes seconds
 
 
@@ -77,8 +79,22 @@ def _spoilt(text):
             found.append((f"{words}: look at {place}", _compiled(tree, {node: other})))
             for kind in () if words.startswith("`") else (words, f"{words}: look at {place}"):
                 alike[kind].setdefault(node, other)
+        found += [(words, _compiled(tree, changes)) for words, changes in _exchanges(function)]
         found += [(words, _compiled(tree, changes)) for words, changes in alike.items() if len(changes) > 1]
     return [(words, code) for words, code in found if code]
+
+
+def _exchanges(function):
+    """Pairs (words, changes) where two letters have changed places in all of a statement."""
+    for statement in [one for one in ast.walk(function) if isinstance(one, ast.Assign)]:
+        letters = defaultdict(list)
+        for node in ast.walk(statement.value):
+            if isinstance(node, ast.Name) and len(node.id) == _LETTER:
+                letters[node.id].append(node)
+        for one, other in itertools.combinations(sorted(letters), 2):
+            changes = dict.fromkeys(letters[one], ast.Name(other, ast.Load()))
+            changes |= dict.fromkeys(letters[other], ast.Name(one, ast.Load()))
+            yield f"{one} and {other} have changed places: look at {_place(statement)}", changes
 
 
 def _compiled(tree, changes):
@@ -257,6 +273,8 @@ def _of_numpy(node, name, args):
     if name == "arctan2":
         words = "a quotient cannot tell two opposite directions apart"
         yield words, ast.Call(_parsed("np.arctan"), [ast.BinOp(*_between(args, ast.Div()))], [])
+        sine = "np.arcsin(({0}) / np.hypot({0}, {1}))".format(*map(ast.unparse, args))
+        yield "arcsin does not know angles beyond a quarter turn", _parsed(sine)
     if name == "hypot":
         yield "x alone counts, not the distance", args[0]
     if name == "max":
@@ -268,6 +286,7 @@ def _of_numpy(node, name, args):
         yield "an angle is made into degrees before it is used", ast.Call(_parsed("np.degrees"), [copy.copy(node)], [])
     if name == "solve":
         yield "the matrix is multiplied, nothing is solved", ast.BinOp(*_between(args, ast.MatMult()))
+        yield "`/` divides entry by entry, nothing is solved", ast.BinOp(*_between(args[::-1], ast.Div()))
     if name == "eye":
         ones = _parsed(f"np.ones(2 * ({ast.unparse(args[0])},))")
         yield "what belongs on the diagonal stands in all entries", ones

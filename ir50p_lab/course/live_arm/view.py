@@ -13,6 +13,7 @@ import ipywidgets
 import numpy as np
 import traitlets
 
+from ir50p_lab.course.badge import badge_of
 from ir50p_lab.course.live_arm.still import still_png
 from ir50p_lab.course.live_arm.track import pack
 from ir50p_lab.errors import InputError
@@ -51,8 +52,7 @@ class LiveArm(anywidget.AnyWidget):
         arm: Arm. q: (3,) rad, where it starts.
         on_drag: f(p, q_now) -> q or None, moves the arm when its tip is dragged to p (3,) m; None: inverse kinematics
         in the browser. frames: f(q) -> (4, 4, 4), transforms of frames 0 to 3 to the base: the arm is drawn by them,
-        wrong ones too. badge: whose code moves the arm, 'yours' or "the course's"; by default 'yours' if one of these
-        functions is given.
+        wrong ones too. badge: whose code moves the arm, 'yours' or "the course's"; by default told from them.
         layers: which of table, shadow, ghost, trail, frames, joint axes, velocity ellipsoid, force ellipsoid,
         workspace, ball, board, camera are shown at first. ball: (p, radius) m; board: (T, square, (columns, rows)),
         T (4, 4) of the checkerboard's first inner corner; camera: (K, T, (width, height)), T camera to base.
@@ -79,7 +79,6 @@ class LiveArm(anywidget.AnyWidget):
                  board=None, camera=None, height=420, sliders=True, readout=True):  # fmt: skip
         self.arm, self._on_drag, self._frames = check_arm(arm), on_drag, frames
         self._stop = threading.Event()
-        own = on_drag is not None or frames is not None
         things = {}
         if ball is not None:
             things["ball"] = {"p": vectors3("ball", ball[0]).tolist(), "radius": float(ball[1])}
@@ -95,7 +94,7 @@ class LiveArm(anywidget.AnyWidget):
             limits=np.column_stack([np.clip(arm.q_min, -np.pi, None), np.clip(arm.q_max, None, np.pi)]).tolist(),
             q=vectors3("q", q).tolist(),
             options={
-                "badge": badge or ("yours" if own else "the course's"),
+                "badge": badge or badge_of(on_drag or frames),
                 "drag": "browser" if on_drag is None else "kernel",
                 "frames": None if frames is None else "function",
                 "height": int(height),
