@@ -67,6 +67,11 @@ class Traces:
         for line, y in zip(self.lines, ys, strict=True):
             line.set_data(x[::every], y[::every])
 
+    def clear(self):
+        """Empty all curves."""
+        for line in self.lines:
+            line.set_data([], [])
+
     def title(self, text):
         """What is seen, above the first row."""
         self.axes[0].set_title(text)

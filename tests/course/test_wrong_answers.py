@@ -388,6 +388,8 @@ def test_the_example_shown_is_one_where_the_mistake_named_happens(name, monkeypa
     """With the sentences for known mistakes taken away, the symptom has to speak of what is shown."""
     monkeypatch.setattr(grading, "distortions", lambda task: ())
     monkeypatch.setattr(grading, "variants", lambda task: ())
+    monkeypatch.setattr(grading, "pairs", lambda task: ())
+    monkeypatch.setattr(grading, "of_results", lambda task: ())
     known, one = task(name).slips, dataclasses.replace(task(name), slips=())
     cases, shown = one.cases(), 0
     expected = [one.right(*case) for case in cases]
