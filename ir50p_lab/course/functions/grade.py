@@ -72,7 +72,8 @@ def _known(task, function, cases, returned, expected, bad):
     if 2 * len(stopped) >= len(cases) or all(one is None for one in returned):  # nothing to compare
         return "", ""
     order = [*bad, *sorted(set(range(len(cases))) - set(bad))]
-    usual = _while_patient(chain(distortions(task), variants(task), pairs(task)))
+    both = pairs(task) if any(map(_has_numbers, returned)) else ()
+    usual = _while_patient(chain(distortions(task), variants(task), both))
     for slip in chain(task.slips, usual):
         if not all(_is_slip(task, slip, cases[k], returned[k]) for k in order):
             continue
@@ -84,6 +85,13 @@ def _known(task, function, cases, returned, expected, bad):
             return f"{where}: {words.partition(': look at')[0]}" if complete else where, ""
         return (words, "") if complete else ("", words)
     return "", ""
+
+
+def _has_numbers(result):
+    try:
+        return np.isfinite(np.asarray(result, dtype=float)).any()
+    except (TypeError, ValueError):
+        return False
 
 
 def _outside(function):
