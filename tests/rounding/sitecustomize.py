@@ -6,8 +6,8 @@ what separates processors and smaller than what any claim may rest on. It stands
 
 import functools
 import importlib.machinery
-import random
 import sys
+import zlib
 
 NOISE = 1e-12
 MODULES = {
@@ -39,26 +39,28 @@ class Finder:
 
 
 def noisy(function):
-    """Wrap a function so that its result differs in the last digits, the same way in every run."""
-    state = random.Random(0)
+    """Wrap a function so that its result differs in the last digits."""
 
     @functools.wraps(function)
     def wrapped(*arguments, **options):
-        return with_noise(function(*arguments, **options), state)
+        return with_noise(function(*arguments, **options))
 
     return wrapped
 
 
-def with_noise(result, state):
-    """Return the result with noise: arrays, numbers, and tuples of them; whole numbers and single precision as they are."""
+def with_noise(result):
+    """Return the result with noise: arrays, numbers, and tuples of them; whole numbers and single precision as they are.
+
+    A result has its own noise: the same question has the same answer on every processor.
+    """
     import numpy as np
 
     if isinstance(result, tuple):
-        parts = [with_noise(part, state) for part in result]
+        parts = [with_noise(part) for part in result]
         return type(result)(*parts) if hasattr(result, "_fields") else tuple(parts)
     if not isinstance(result, np.ndarray | float | complex) or np.asarray(result).dtype not in (float, complex):
         return result
-    noise = np.random.default_rng(state.getrandbits(64)).uniform(-NOISE, NOISE, np.shape(result))
+    noise = np.random.default_rng(zlib.crc32(np.asarray(result).tobytes())).uniform(-NOISE, NOISE, np.shape(result))
     return result * (1 + noise)
 
 
