@@ -133,7 +133,7 @@ def test_two_runs_play_pause_scrub_and_start_again(notebook):
     stopped = notebook.evaluate(f"() => {VIEW.format(3)}.time")
     notebook.wait_for_timeout(300)
     assert notebook.evaluate(f"() => {VIEW.format(3)}.time") == stopped
-    plots = box.locator(".la-side canvas").bounding_box()
+    plots = box.locator(".la-side canvas").first.bounding_box()
     notebook.mouse.click(plots["x"] + plots["width"] / 2, plots["y"] + plots["height"] / 2)  # curves share the cursor
     time, wanted = notebook.evaluate(
         f"() => [{VIEW.format(3)}.time, {VIEW.format(3)}.track.at({VIEW.format(3)}.time, 1)]"

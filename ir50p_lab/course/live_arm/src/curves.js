@@ -14,8 +14,10 @@ export class Curves {
   // seek: called with the time of a press or drag on the curves.
   constructor(limits, lengths, seek) {
     Object.assign(this, { limits, lengths, track: null });
-    this.canvas = document.createElement("canvas");
+    this.canvas = document.createElement("canvas"); // the curves
     this.canvas.setAttribute("role", "img");
+    this.cursor = document.createElement("canvas"); // over them: what moves
+    this.cursor.className = "la-cursor";
     const pressed = (event) => {
       if (!this.track || !event.buttons) return;
       const box = this.canvas.getBoundingClientRect();
@@ -45,7 +47,7 @@ export class Curves {
     this.plots = [...angles, ...commands].map((plot) => ({ ...plot, range: this.range(plot) }));
     const said = track.runs.map((run) => run.label).join(" and ");
     this.canvas.setAttribute("aria-label", `angles of the three joints over time, ${said}; set point dashed`);
-    this.picture = null;
+    this.drawn = null;
   }
 
   range({ lines, least }) {
@@ -62,21 +64,20 @@ export class Curves {
     return [low - spare, high + spare];
   }
 
-  // The curves once, as a picture; then only the cursor moves over it.
+  // The curves once; then only the cursor moves, on a canvas of its own: copying the curves for each frame is slow.
   draw(t, width, height) {
-    const dots = Math.min(window.devicePixelRatio || 1, 2), across = Math.round(width * dots), down = Math.round(height * dots);
-    if (!this.picture || this.picture.width !== across || this.picture.height !== down) {
-      this.picture = Object.assign(document.createElement("canvas"), { width: across, height: down });
-      const pen = this.picture.getContext("2d");
-      pen.scale(dots, dots);
-      this.drawPlots(pen, width, height);
-      Object.assign(this.canvas, { width: across, height: down });
-      Object.assign(this.canvas.style, { width: width + "px", height: height + "px" });
+    const dots = Math.min(window.devicePixelRatio || 1, 2), size = [width, height, dots].join();
+    if (this.drawn !== size) {
+      this.drawn = size;
+      for (const canvas of [this.canvas, this.cursor]) {
+        Object.assign(canvas, { width: Math.round(width * dots), height: Math.round(height * dots) });
+        Object.assign(canvas.style, { width: width + "px", height: height + "px" });
+        canvas.getContext("2d").scale(dots, dots);
+      }
+      this.drawPlots(this.canvas.getContext("2d"), width, height);
     }
-    const pen = this.canvas.getContext("2d");
-    pen.setTransform(1, 0, 0, 1, 0, 0);
-    pen.drawImage(this.picture, 0, 0);
-    pen.scale(dots, dots);
+    const pen = this.cursor.getContext("2d");
+    pen.clearRect(0, 0, width, height);
     const x = LEFT + ((t - this.t0) / (this.t1 - this.t0)) * (width - LEFT - RIGHT);
     pen.strokeStyle = "#CC79A7";
     pen.lineWidth = 1.6;

@@ -129,7 +129,7 @@ class View {
       loop: () => { this.again = !this.again; this.seen && this.tellPlayer(); },
     });
     this.curves = new Curves(this.limits, this.l, (t) => this.seek(t));
-    parts.side.append(this.curves.canvas);
+    parts.side.append(this.curves.canvas, this.curves.cursor);
   }
 
   // ---- poses
