@@ -11,6 +11,7 @@ import tokenize
 from pathlib import Path
 
 BUILT = {"live_arm.js"}  # bundles
+NOT_OURS = {"node_modules", "__pycache__"}
 PACKAGE = Path(__file__).parents[1] / "ir50p_lab"
 BUDGETS = {
     "modelling": 1200,
@@ -61,7 +62,7 @@ def folder_lines(package=PACKAGE):
     for path in sorted(package.rglob("*")):
         parts = path.relative_to(package).parts
         count = {".py": python_lines, ".js": javascript_lines}.get(path.suffix)
-        if count and path.name not in BUILT:
+        if count and path.name not in BUILT and not NOT_OURS & set(parts):
             folder = parts[0] if len(parts) > 1 else "root"
             found[folder] = found.get(folder, 0) + count(path.read_text("utf-8"))
     return found

@@ -167,9 +167,11 @@ def _inscribed(mask, least_radius):
     """Circles that fit into the mask best, at most six: a ball with tape beside it is its widest part."""
     import cv2
 
-    depth = cv2.distanceTransform(cv2.copyMakeBorder(mask, 1, 1, 1, 1, cv2.BORDER_REPLICATE), cv2.DIST_L2, 3)[
-        1:-1, 1:-1
-    ]
+    left, above, width, height = cv2.boundingRect(mask)
+    left, above = max(left - 1, 0), max(above - 1, 0)
+    part = mask[above : above + height + 2, left : left + width + 2]  # with a rim of 0, but at the picture's border
+    bordered = cv2.copyMakeBorder(part, 1, 1, 1, 1, cv2.BORDER_REPLICATE)
+    depth = cv2.distanceTransform(bordered, cv2.DIST_L2, 3)[1:-1, 1:-1]
     top = cv2.dilate(depth, np.ones((7, 7), np.uint8))
     y, x = np.nonzero((depth >= top) & (depth > least_radius) & (depth < max(mask.shape)))
     order = np.argsort(-depth[y, x], kind="stable")[:30]
@@ -180,7 +182,7 @@ def _inscribed(mask, least_radius):
             found.append((float(x[i]), float(y[i]), r, 0.3))
         if len(found) == 6:
             break
-    return found
+    return [(x + left, y + above, r, share) for x, y, r, share in found]
 
 
 def circles_in(points, shape, least_radius):
