@@ -33,9 +33,9 @@ def main(data="data"):
     bench = SimulatedBench(IR50P, seed=7, q0=start, record_to=False).open()
     seen = BallLocator(camera_over(bench, np.array(_BALL)), plane).look()
     save_image(data / "first_reach.jpg", seen.image, rendered=True, quality=85)
-    goal = reach_pose(IR50P, seen.position + np.array([0, 0, 0.06]))
+    high, goal = (reach_pose(IR50P, seen.position + np.array([0, 0, z])) for z in (0.12, 0.06))
     controller = PID(**_GAINS, limit_pwm=255)
-    bench.follow(controller, through([start, start, goal, goal], durations=(0.5, 3.0, 2.5)), 6)
+    bench.follow(controller, through([start, start, high, goal, goal], durations=(0.5, 2.5, 1.5, 1.5)), 6)
     recording = bench.recording
     del recording.header["date"]
     recording.header["made_by"] = "python -m ir50p_lab.course.make_first_reach"

@@ -43,16 +43,16 @@ def turned_by(arm, rot_z):
     return with_own_waist
 
 
-def speed_over_time(run, joint):
-    """Speed of one joint (1 to 3) of a simulated run, with a line at 63 % of its end: LabFigure."""
+def speed_over_time(run, joint, end=1.4):
+    """Speed of one joint (1 to 3) of a simulated run until `end` s, with a line at 63 % of its most: LabFigure."""
     figure = new_figure(8, 3.4)
     ax = figure.axes[0]
-    speed, end = run.qd[:, joint - 1], run.t[-1]
+    speed = run.qd[:, joint - 1]
     ax.plot(run.t, speed, label=f"joint {joint}", linewidth=2)
-    ax.axhline((1 - np.exp(-1)) * speed[-1], color=COLOURS["dark"], linestyle="--", label="63 % of the last speed")
+    ax.axhline((1 - np.exp(-1)) * speed.max(), color=COLOURS["dark"], linestyle="--", label="63 % of the top speed")
     ax.set(xlim=(0, end), ylim=(0, None), xlabel="time [s]", ylabel="speed [rad/s]")
     ax.set_xticks(np.arange(0, end + 0.01, 0.1))
     ax.set_xticks(np.arange(0, end + 0.01, 0.02), minor=True)
-    ax.set_title("Simulated: a constant push from rest")
-    ax.legend(loc="lower right")
+    ax.set_title("Simulated: a push from rest, and then nothing")
+    ax.legend(loc="lower center")
     return figure

@@ -7,8 +7,8 @@ from ir50p_lab.modelling import IR50P, mass_matrix
 
 NOTEBOOK = "00_start_here"
 
-# start-5: the waist of the IR50P pushed from rest, shoulder and elbow at -0.2 and 0.2 rad.
-_T = float(mass_matrix(IR50P, [0, -0.2, 0.2])[0, 0] / (IR50P.actuators.back_emf_damping[0] + IR50P.friction.fv[0]))
+# start-5: the waist of the IR50P pushed from rest, shoulder and elbow folded.
+_T = float(mass_matrix(IR50P, [0, 1.9, -2.44])[0, 0] / (IR50P.actuators.back_emf_damping[0] + IR50P.friction.fv[0]))
 
 
 EXERCISES = (
@@ -29,11 +29,11 @@ EXERCISES = (
         Number(_T, unit="s", tolerance=0.02, because="a reading from the plot is good to a tick"),
         why="T says how fast a system answers; each motor and each filter of the arm has one.",
         slips=(
-            Slip(1.8, "That is the final value; the time constant is a time, read on the other axis."),
-            Slip(1.8 * (1 - np.exp(-1)), "That is the speed at the dashed line; at what time is it reached?"),
-            Slip(1 - np.exp(-1), "That is the share of the last speed; at what time is it reached?"),
+            Slip(1.74, "That is the top speed; the time constant is a time, read on the other axis."),
+            Slip(1.74 * (1 - np.exp(-1)), "That is the speed at the dashed line; at what time is it reached?"),
+            Slip(1 - np.exp(-1), "That is the share of the top speed; at what time is it reached?"),
             Slip(3 * _T, "That is when 95 % are reached, three time constants: look where 63 % are."),
-            Slip(_T * np.log(2), "That is the time to half of the final value: look where 63 % are."),
+            Slip(_T * np.log(2), "That is the time to half of the top speed: look where 63 % are."),
         ),
     ),
 )
