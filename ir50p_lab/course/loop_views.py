@@ -1,11 +1,8 @@
-"""Pictures of notebook 08: block diagrams, a push against the weight, where pushes end; and what its sliders run."""
+"""Pictures of notebook 08: block diagrams, a push against the weight, where pushes end."""
 
 import numpy as np
 from matplotlib.patches import FancyBboxPatch
 
-from ir50p_lab.course import my_robot
-from ir50p_lab.course.functions import folder
-from ir50p_lab.course.functions.catalogue import task
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
 from ir50p_lab.modelling.dynamics import gravity
 
@@ -27,11 +24,10 @@ def _box(ax, x, y, text, *, width=1.2, height=0.6, colour="dark"):
     ax.text(x, y, text, ha="center", va="center", fontsize=11, color=COLOURS[colour], zorder=6)
 
 
-def _wire(ax, *points, arrow=True):
-    """A line through points; arrow: at its end."""
-    ax.plot(*np.transpose(points), color=COLOURS["dark"], linewidth=1.4)
-    if arrow:
-        ax.annotate("", points[-1], points[-2], arrowprops=_ARROW)
+def _wire(ax, *points, colour="dark"):
+    """A line through points, with an arrow at its end."""
+    ax.plot(*np.transpose(points), color=COLOURS[colour], linewidth=1.4)
+    ax.annotate("", points[-1], points[-2], arrowprops=_ARROW | {"color": COLOURS[colour]})
 
 
 def _sum(ax, x, y, *signs):
@@ -85,14 +81,21 @@ def three_loops():
     """Three controllers that know nothing of each other, and one arm that couples them (Figure 2.2): LabFigure."""
     figure, ax = _sheet(8.4, 4.0)
     for joint, (y, colour) in enumerate(zip((3.3, 2.15, 1.0), ("blue", "orange", "green"), strict=True), start=1):
-        ax.text(0.1, y + 0.13, rf"$q_{{d{joint}}},\ \dot q_{{d{joint}}}$", fontsize=12)
+        ax.text(0.1, y + 0.13, rf"$q_{{d{joint}}}$", fontsize=12)
         _wire(ax, (0.1, y), (2.1, y))
-        _box(ax, 2.85, y, f"PID {joint}", width=1.5, colour=colour)
+        _box(ax, 2.85, y, f"controller {joint}", width=1.5, colour=colour)
         _wire(ax, (3.6, y), (4.9, y))
         ax.text(4.15, y + 0.13, f"$u_{joint}$", fontsize=12)
-        _wire(ax, (6.5, y), (8.1, y))
-        ax.text(7.6, y + 0.13, f"$q_{joint}$", fontsize=12)
-        _wire(ax, (7.1, y), (7.1, y - 0.55), (2.85, y - 0.55), (2.85, y - 0.3))
+        _wire(ax, (6.5, y), (8.3, y))
+        ax.text(7.95, y + 0.13, f"$q_{joint}$", fontsize=12)
+        right, low, left = (
+            8.0 - 0.3 * joint,
+            -0.05 + 0.17 * joint,
+            0.9 + 0.27 * joint,
+        )  # round the arm, each its own way
+        way = ((right, y), (right, low), (left, low), (left, y - 0.18), (2.1, y - 0.18))
+        _wire(ax, *way, colour=colour)
+        ax.plot(right, y, "o", ms=5, color=COLOURS[colour])
     _box(ax, 5.7, 2.15, "one arm:\nwhat one joint\ndoes, the others\nfeel", width=1.6, height=3.0)
     return figure
 
@@ -107,6 +110,10 @@ def weight_over_angle(arm, push):
     ax.plot(q2, weight, linewidth=2.5, label="weight")
     ax.fill_between(q2, low, high, color=COLOURS["sky"], alpha=0.3, label="friction holds")
     ax.axhline(push, color=COLOURS["orange"], linewidth=2.5, label=f"a push of {push} counts")
+    for k in np.flatnonzero(np.diff(np.sign(weight - push))):
+        ax.plot(q2[k], push, "o", ms=9, color=COLOURS["dark"])
+        says = "hanging:\ncomes back" if q2[k] < 0 else "standing:\nleaves"
+        ax.annotate(says, (q2[k], push), (0, -14), textcoords="offset points", ha="center", va="top", fontsize=9)
     ax.set(xlabel="angle of the shoulder [rad]", ylabel="push [PWM counts]")
     ax.legend(loc="lower left")
     return figure
@@ -123,18 +130,29 @@ def ends(pushes, angles, target):
     return figure
 
 
-def quick(run, *values):
-    """The PID class that a slider runs: the compiled twin where it gives the student's own run, else the student's.
+def curves(t, lines, labels, ylabel, targets=()):
+    """Lines (k, n) over time (n,) s, each with its label; targets: dashed levels. LabFigure."""
+    figure = new_figure(8.6, 3.2)
+    ax = figure.axes[0]
+    for target in targets:
+        ax.axhline(target, **SETPOINT)
+    for values, label in zip(lines, labels, strict=True):
+        ax.plot(t, values, label=label)
+    ax.set(xlabel="time [s]", ylabel=ylabel)
+    ax.legend()
+    return figure
 
-    run: f(PID, *values) -> SimulationResult; values: at which both are compared. Prints which it is. A trapezoidal sum,
-    for instance, is right and another run: then the student's Python runs, some ten times slower.
-    """
-    mine, twin = my_robot.PID, task(folder.at_work("PID")).right
-    if my_robot.whose("PID") == "the course's":
-        return twin
-    apart = np.abs(run(mine, *values).q - run(twin, *values).q).max()
-    if apart < 1e-6:
-        print("The slider runs the compiled twin of your class: on this run the two agree to a millionth of a radian.")
-        return twin
-    print(f"The slider runs your class in Python: its run and the compiled twin's are {apart:.2g} rad apart.")
-    return mine
+
+class Trembling:
+    """A controller that is shown what the simulated bench would show it: whole steps, and a wobble of one (rms)."""
+
+    unit = "PWM"
+
+    def __init__(self, controller):
+        self.controller, self.random = controller, np.random.default_rng(1)
+        self.one = np.array([0.005, 0.008, 0.005])  # rad, a step of each converter
+
+    def step(self, t, q, reference):
+        """Hand on the angles, shaken."""
+        seen = self.one * np.round(q / self.one + self.random.normal(size=3))
+        return self.controller.step(t, seen, reference)

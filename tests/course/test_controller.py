@@ -94,7 +94,7 @@ def test_other_right_ones_pass(stage, edits, remark):
         ("PID.pi", " * self.period", " / self.period", "divides by the period"),
         ("PID.pi", " * self.period", " * t", "its last step takes in"),
         ("PID.p", "q_wanted - q", "qd_wanted - q", "speed that is wanted is taken for the angle"),
-        ("PID.limits", "self.limit = limit_pwm", "self.limit = limit_pwm / 2", "and limit_pwm 100, it sends [ 50., -50.,   4.]"),
+        ("PID.limits", "= kp, ki, limit_pwm,", "= kp, ki, limit_pwm / 2,", "and limit_pwm 100, it sends [ 50., -50.,   4.]"),
         ("PID.pi", " * self.period", " * 0.01", "0.01 s is written"),
         ("PID.pi", "self.integral + self.ki * e", "self.integral - self.ki * e", "away from the target"),
         ("PID.pi", "self.integral + self.ki * e", "self.ki * e", "does not remember"),
@@ -111,7 +111,7 @@ def test_other_right_ones_pass(stage, edits, remark):
          "is what it gives used"),
         ("PID", "        self.last = q\n", "        self.last = q if self.last is None else self.last\n", "stays the first"),
         ("PID.limits", "-self.limit, self.limit)", "0, self.limit)", "cannot push downwards"),
-        ("PID.limits", "self.limit = limit_pwm", "self.limit = 255", "255 is written"),
+        ("PID.limits", "= kp, ki, limit_pwm,", "= kp, ki, 255,", "255 is written"),
         ("PID.limits", "np.where(winds_up, self.integral, grown)", "grown", "it winds up"),
         ("PID.limits", "        winds_up = (np.abs(push) > self.limit) & (push * error > 0)\n"
          "        self.integral = np.where(winds_up, self.integral, grown)\n"
@@ -233,6 +233,7 @@ def test_a_loan_of_a_stage_never_takes_the_place_of_the_whole(capsys):
         ("PID.p", "self.kp = kp", "self.kp = float(kp)", "`self.kp = float(kp)`", "one a joint"),
         ("PID.pi", "self.integral = self.integral + self", "self.integral += self", "`self.integral += self", "whole"),
         ("PID.limits", WINDS, "winds_up = np.abs(push) > self.limit and push * error > 0", "`winds_up =", "np.where"),
+        ("PID", "if self.last is not None:", "if True:", "`self.speed = ", "in the first step self.last is still None"),
     ],
 )
 def test_a_class_that_stops_is_told_the_line(stage, old, new, line, reason, capsys):

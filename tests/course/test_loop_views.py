@@ -1,37 +1,18 @@
-"""What the sliders of notebook 08 run."""
+"""What a controller is shown in notebook 08 in place of perfect angles."""
 
 import numpy as np
-import pytest
-import solutions
-from cells import cell
 
-from ir50p_lab.course import check, my_robot
-from ir50p_lab.course import loop_views as views
-from ir50p_lab.course.functions import folder
+from ir50p_lab.course.functions.controller import PID
+from ir50p_lab.course.loop_views import Trembling
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
 
 
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    monkeypatch.setattr(folder, "_at", {})
-    my_robot._said.clear()
-
-
-def turn(PID, kp):
-    return simulate(IR50P, PID(kp=kp, ki=100, kd=20), np.array([0.5, 0.3, -0.4]), duration=2)
-
-
-def test_a_slider_runs_the_twin_only_where_it_is_the_students_run(capsys):
-    text = solutions.source("PID")
-    check("PID", cell(text, "PID"))
-    assert views.quick(turn, 300) is not my_robot.PID
-    assert "compiled twin of your class" in capsys.readouterr().out
-    add = "grown = self.integral + self.ki * error * self.period"
-    trapezoid = text.replace(add, add.replace("error", "(error + self.before) / 2") + "\n        self.before = error")
-    trapezoid = trapezoid.replace("self.last = None\n", "self.last = None\n        self.before = np.zeros(3)\n")
-    check("PID", cell(trapezoid, "PID"))
-    assert "trapezoidal" in capsys.readouterr().out
-    assert views.quick(turn, 300) is my_robot.PID
-    assert "runs your class in Python" in capsys.readouterr().out
+def test_a_trembling_potentiometer_shakes_the_push_and_each_time_alike():
+    target = np.array([0, 0.8, 0])
+    calm = simulate(IR50P, PID(400), target, duration=5)
+    shaken, again = (simulate(IR50P, Trembling(PID(400)), target, duration=5) for _ in range(2))
+    np.testing.assert_array_equal(shaken.u, again.u)
+    steps = 400 * np.array([0.005, 0.008, 0.005])  # counts
+    rest = (shaken.u - calm.u)[-100:]
+    assert (rest.std(axis=0) > 0.7 * steps).all() and (rest.std(axis=0) < 1.5 * steps).all()

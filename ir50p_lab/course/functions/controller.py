@@ -54,9 +54,7 @@ _LOAN_PI = """class PID:
     unit = "PWM"
 
     def __init__(self, kp, ki=0, period=0.01):
-        self.kp = kp
-        self.ki = ki
-        self.period = period
+        self.kp, self.ki, self.period = kp, ki, period
         self.reset()
 
     def reset(self):
@@ -72,10 +70,7 @@ _LOAN_LIMITS = """class PID:
     unit = "PWM"
 
     def __init__(self, kp, ki=0, limit_pwm=255, period=0.01):
-        self.kp = kp
-        self.ki = ki
-        self.limit = limit_pwm
-        self.period = period
+        self.kp, self.ki, self.limit, self.period = kp, ki, limit_pwm, period
         self.reset()
 
     def reset(self):
@@ -94,11 +89,7 @@ _LOAN_PID = """class PID:
     unit = "PWM"
 
     def __init__(self, kp, ki=0, kd=0, limit_pwm=255, period=0.01, filter_hz=10):
-        self.kp = kp
-        self.ki = ki
-        self.kd = kd
-        self.limit = limit_pwm
-        self.period = period
+        self.kp, self.ki, self.kd, self.limit, self.period = kp, ki, kd, limit_pwm, period
         self.share = 1 - np.exp(-2 * np.pi * filter_hz * period)
         self.reset()
 
