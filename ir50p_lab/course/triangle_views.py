@@ -4,7 +4,7 @@ import numpy as np
 
 from ir50p_lab.course.style import COLOURS, new_figure
 from ir50p_lab.modelling.chain import forward_kinematics, frames
-from ir50p_lab.modelling.ik import inverse_kinematics
+from ir50p_lab.modelling.ik import inverse_kinematics, reachability
 
 
 def seen_from_above(arm, p):
@@ -55,12 +55,17 @@ def _column(ax, arm):
     ax.axhline(0, color=COLOURS["dark"], linewidth=1)
 
 
-def _arc(ax, centre, start, end, radius, colour, text, out=1.35):
+def _arc(ax, centre, start, end, radius, colour, text, out=1.35, *, arrow=True):
+    """An arc with its name at `out` radii; an angle that has a sign gets an arrow, from start to end."""
     angles = np.linspace(start, end, 40)
     directions = np.column_stack([np.cos(angles), np.sin(angles)])
-    ax.plot(*(centre + radius * directions).T, color=COLOURS[colour], linewidth=2)
+    points = centre + radius * directions
+    ax.plot(*points.T, color=COLOURS[colour], linewidth=2)
+    if arrow:
+        style = {"arrowstyle": "-|>", "color": COLOURS[colour], "mutation_scale": 16, "shrinkB": 0}
+        ax.annotate("", points[-1], points[-5], arrowprops=style)
     place = centre + out * radius * directions[20]
-    ax.text(*place, text, color=COLOURS[colour], fontsize=13, ha="center", va="center")
+    ax.text(*place, text, c=COLOURS[colour], size=13, ha="center", va="center", bbox={"fc": "w", "ec": "w", "pad": 1})
 
 
 def side_view(arm, p):
@@ -76,50 +81,56 @@ def side_view(arm, p):
     ax.plot(*np.transpose([elbow, on]), ":", color=COLOURS["orange"], linewidth=2)
     slope, turned = np.arctan2(*upper[::-1]), np.arctan2(*fore[::-1])
     _arc(ax, elbow, slope, turned, 0.07, "orange", "$q_3$", 1.5)
-    _arc(ax, elbow, slope - np.pi, turned, 0.05, "green", r"$\alpha$", 1.6)
+    _arc(ax, elbow, slope - np.pi, turned, 0.05, "green", r"$\alpha$", 0.6, arrow=False)
     for a, b, text, shift in ((shoulder, elbow, "$l_2$", (-0.02, 0.03)), (elbow, tip, "$l_3$", (0.025, 0.025))):
         ax.text(*(0.5 * (a + b) + shift), text, fontsize=13, color=COLOURS["blue"])
     ax.text(*(0.55 * shoulder + 0.45 * tip - [0.01, 0.035]), "$r$", fontsize=13)
     ax.plot(*tip, "o", color="#C8102E", ms=11)
     ax.annotate("", (tip[0], shoulder[1]), shoulder, arrowprops={"arrowstyle": "<->", "color": COLOURS["grey"]})
-    ax.text(0.78 * tip[0], shoulder[1] + 0.012, r"out ($\Delta$)", color=COLOURS["dark"])
+    ax.text(0.78 * tip[0], shoulder[1] + 0.012, "out", color=COLOURS["dark"])
     ax.annotate("", tip, (tip[0], shoulder[1]), arrowprops={"arrowstyle": "<->", "color": COLOURS["grey"]})
-    ax.text(tip[0] + 0.012, 0.5 * (tip[1] + shoulder[1]), "up ($z_1$,\nhere < 0)", color=COLOURS["dark"], va="center")
+    ax.text(tip[0] + 0.012, 0.5 * (tip[1] + shoulder[1]), "up\n(here < 0)", color=COLOURS["dark"], va="center")
     ax.set_xlim(-0.12, tip[0] + 0.16)
     ax.set_title("From the side: a triangle with three known sides")
     return figure
 
 
 def triangles(arm, p):
-    """Elbow up and elbow down over each other, for the place p (3,) m: LabFigure.
+    """Both elbows over each other, facing the place p (3,) m: LabFigure.
 
-    With r, its slope gamma, the angle beta between r and either upper arm (Figure 1.8), both q3, and for the elbow up
-    the perpendicular from the tip onto the upper arm, prolonged.
+    With r, its slope gamma, the angle beta between r and either upper arm (Figure 1.8), both q3, and for the upper
+    elbow the perpendicular from the tip onto the upper arm, prolonged.
     """
     figure, ax = _plane()
     _column(ax, arm)
     answers = inverse_kinematics(arm, p)
-    for branch, colour, name in (("front/up", "blue", "elbow up"), ("front/down", "orange", "elbow down")):
+    for branch, colour, name in (("front/up", "blue", "one elbow"), ("front/down", "orange", "the other")):
         points = _corners(arm, answers[branch])
         _draw(ax, points, colour, label=name)
         shoulder, elbow, tip = points
         upper, r = elbow - shoulder, tip - shoulder
-        q3 = answers[branch][2]
         ax.plot(*np.transpose([elbow, elbow + 0.35 * upper]), ":", color=COLOURS[colour], linewidth=2)
         if branch == "front/up":  # the perpendicular from the tip onto the upper arm, prolonged
             foot = shoulder + upper * (upper @ r) / (upper @ upper)
-            ax.plot(*np.transpose([shoulder + upper, foot, tip]), ":", color=COLOURS["dark"], linewidth=2)
+            ax.plot(*np.transpose([elbow, foot, tip]), ":", color=COLOURS["dark"], linewidth=2)
+            along, across = upper / np.linalg.norm(upper), (tip - foot) / np.linalg.norm(tip - foot)
+            ax.plot(*(foot + 0.02 * np.array([-along, across - along, across])).T, color=COLOURS["dark"])
+            for name, begin, end, aside in (("along", shoulder, foot, -across), ("across", foot, tip, along)):
+                ends = np.array([begin, end]) + 0.025 * aside
+                ax.update_datalim(ends)
+                ax.annotate("", *ends, arrowprops={"arrowstyle": "<->", "color": COLOURS["grey"]})
+                ax.text(*(ends.mean(axis=0) + 0.025 * aside), name, color=COLOURS["dark"], ha="center")
         slope = np.arctan2(upper[1], upper[0])
-        _arc(ax, elbow, slope, slope + q3, 0.06, colour, "$q_3$", 1.6)
+        _arc(ax, elbow, slope, slope + answers[branch][2], 0.06, colour, "$q_3$", 1.6)
         gamma = np.arctan2(r[1], r[0])
-        _arc(ax, shoulder, gamma, slope, 0.13, colour, r"$\beta$", 1.2)
+        _arc(ax, shoulder, gamma, slope, 0.13, colour, r"$\beta$", 0.8, arrow=False)
     ax.plot(*np.transpose([shoulder, tip]), "--", color=COLOURS["dark"])
     ax.text(*(0.25 * shoulder + 0.75 * tip + [0.005, 0.015]), "$r$", fontsize=13)
     ax.plot([0, 1.1 * np.hypot(p[0], p[1])], [shoulder[1], shoulder[1]], color=COLOURS["grey"], linewidth=1)
     _arc(ax, shoulder, 0, gamma, 0.2, "green", r"$\gamma$", 1.12)
     ax.plot(*tip, "o", color="#C8102E", ms=11)
     ax.set_xlim(-0.12, tip[0] + 0.16)
-    ax.legend(loc="upper right")
+    ax.legend(loc="lower right")
     ax.set_title("One triangle, folded over: two elbows")
     return figure
 
@@ -164,64 +175,55 @@ def circles(arm):
     return figure, show
 
 
-def halfway(arm, q_start, q_end):
-    """The tip's path when all joints turn evenly, beside the straight line, from above and from the side: LabFigure."""
-    figure = new_figure(9.4, 4.4, cols=2)
-    above, side = figure.axes
-    share = np.linspace(0, 1, 61)[:, None]
-    path = forward_kinematics(arm, q_start + share * (np.asarray(q_end) - q_start))
-    line = path[0] + share * (path[-1] - path[0])
-    along = (path[-1] - path[0]) / np.linalg.norm(path[-1] - path[0])
-    foot = path[0] + ((path[30] - path[0]) @ along) * along
-    for ax, view in ((above, [0, 1]), (side, [1, 2])):
-        ax.plot(*line[:, view].T, "--", color=COLOURS["dark"], label="straight line")
-        ax.plot(*path[:, view].T, color=COLOURS["blue"], linewidth=2.5, label="tip, joints turning evenly")
-        ax.plot(*path[30, view], "o", color=COLOURS["blue"], ms=9, label="halfway")
-        ax.plot(*np.array([path[30], foot])[:, view].T, color=COLOURS["orange"], linewidth=2, label="distance")
-        ax.set_aspect("equal", adjustable="datalim")
-    above.plot(0, 0, "s", color=COLOURS["dark"], ms=12)
-    above.set(xlabel="x [m]", ylabel="y [m]", title="From above")
-    side.set(xlabel="y [m]", ylabel="z [m]", title="From the front")
-    side.invert_xaxis()
-    above.legend(loc="lower left", fontsize=9)
-    return figure
+def straight_line(arm, places, q_start, q_end, way=()):
+    """From above: a line of places (n, 3) m, and the tip's path when all joints turn evenly instead: LabFigure.
 
-
-_KINDS = ("a pose that the stops allow", "a pose that the stops forbid", "a pose that misses the place")
-
-
-def printed_answers(p, hit, within):
-    """Places p (n, 3) m from above and from the side, by what a formula says there: LabFigure.
-
-    hit, within: (n,) bool, whether its pose reaches the place, and whether it keeps the joint limits.
+    way: for each place the pose that was found, or None; places without one are marked.
     """
-    kind = np.where(~hit, 2, np.where(within, 0, 1))
-    figure = new_figure(9.4, 4.8, cols=2)
-    above, side = figure.axes
-    for number, (mark, colour) in enumerate(((".", "blue"), ("+", "grey"), ("x", "orange"))):
-        x, y, z = p[kind == number].T
-        style = {"linestyle": "", "marker": mark, "color": COLOURS[colour], "ms": 4}
-        above.plot(x, y, **style)
-        side.plot(np.hypot(x, y), z, label=f"{_KINDS[number]}: {np.mean(kind == number):.0%}", **style)
-    above.plot(0, 0, "s", color=COLOURS["dark"], ms=11)
-    above.set(aspect="equal", xlabel="x, ahead [m]", ylabel="y, to the left [m]", title="From above")
-    side.set(aspect="equal", xlabel="distance from the column [m]", ylabel="height [m]", title="From the side")
-    figure.legend(loc="outside lower center", ncols=3, markerscale=2, fontsize=9)
+    figure = new_figure(7.2, 5.4)
+    ax = figure.axes[0]
+    path = forward_kinematics(arm, np.linspace(q_start, q_end, 61))
+    ax.plot(*places[:, :2].T, "--", color=COLOURS["dark"], label="the straight line")
+    ax.plot(*path[:, :2].T, color=COLOURS["blue"], linewidth=2.5, label="the tip, joints turning evenly")
+    beside = 1000 * np.linalg.norm(path[30] - places.mean(axis=0))
+    ax.plot(*path[30, :2], "o", color=COLOURS["blue"], ms=9, label=f"halfway, {beside:.0f} mm beside the line")
+    refused = [p[:2] for p, pose in zip(places, way, strict=False) if pose is None]
+    if refused:
+        ax.plot(*np.transpose(refused), "x", color=COLOURS["orange"], ms=8, mew=2, label="no pose")
+    ax.plot(0, 0, "s", color=COLOURS["dark"], ms=12)
+    ax.set(adjustable="datalim", aspect="equal", xlabel="x, ahead [m]", ylabel="y, to the left [m]", title="From above")
+    ax.legend(loc="center left", bbox_to_anchor=(0, 0.2), fontsize=9)
     return figure
 
 
-def allowed_map(side, count):
-    """How many poses (n, n), nan out of reach, are allowed at the places side x side (n,) m, from above: LabFigure."""
+def through_column(arm, q):
+    """Tell whether the forearm of a pose (3,) rad goes through the axis of the arm's own column."""
+    _, elbow, tip = _corners(arm, q)
+    if elbow[0] * tip[0] >= 0:
+        return False  # both on the same side of it
+    height = elbow[1] + (tip[1] - elbow[1]) * elbow[0] / (elbow[0] - tip[0])
+    return bool(height < arm.l[0])
+
+
+def allowed_map(arm, allowed, free=None):
+    """How many poses allowed(p) lists at the places 0.03 m above the table, from above: LabFigure.
+
+    free(p): the poses among them that are really free; places that have only others are marked.
+    """
     figure = new_figure(7.6, 5.0)
     ax = figure.axes[0]
-    x, y = np.meshgrid(side, side)
-    within = np.isfinite(count).sum()
-    for number, colour in enumerate((COLOURS["light"], COLOURS["sky"], COLOURS["blue"])):
-        here = count == number
-        label = f"{number} poses allowed: {here.sum() / within:.0%}"
-        ax.plot(x[here], y[here], "s", color=colour, ms=4.5, label=label)
+    side = np.linspace(-arm.reach, arm.reach, 61)
+    places = np.array([[x, y, 0.03] for y in side for x in side])
+    places = places[reachability(arm, places) == 0]
+    count, left = (np.array([min(len(poses(p)), 2) for p in places]) for poses in (allowed, free or allowed))
+    lost = (count > 0) & (left == 0)
+    only_lost = f"only through the column ({lost.sum() / (count > 0).sum():.0%} of the blue)"
+    kinds = (("light", "no pose"), ("sky", "one pose"), ("blue", "two or more"), ("orange", only_lost))
+    for number, (colour, label) in enumerate(kinds):
+        here = np.where(lost, 3, left) == number
+        if here.any():
+            ax.plot(*places[here, :2].T, "s", color=COLOURS[colour], ms=4.5, label=label)
     ax.plot(0, 0, "s", color=COLOURS["dark"], ms=11)
-    ax.set(aspect="equal", xlabel="x, ahead [m]", ylabel="y, to the left [m]")
-    ax.set_title("Places at the height of the ball, from above")
-    figure.legend(loc="outside right upper", markerscale=2)
+    ax.set(aspect="equal", xlabel="x, ahead [m]", ylabel="y, to the left [m]", title="From above, 3 cm over the table")
+    figure.legend(loc="outside upper center", ncols=len(kinds), markerscale=2, fontsize=9)
     return figure
