@@ -151,6 +151,5 @@ def two_bricks(angle):
     figure.axes[2].plot(*np.outer(axis, [-1, 1]), "--", color=COLOURS["dark"], linewidth=1.6, zorder=40)
     for start, colour in zip(0.55 * first.T, ("orange", "green", "blue"), strict=True):
         way = Rotation.from_rotvec(np.outer(np.linspace(0, 1, 40), turn)).apply(start)
-        figure.axes[2].plot(*way.T, ":", color=COLOURS[colour], linewidth=2.2, zorder=40)
-        figure.axes[2].plot(*way[-1:].T, "o", color=COLOURS[colour], ms=7, zorder=41)
+        figure.axes[2].plot(*way.T, ":o", color=COLOURS[colour], linewidth=2.2, ms=7, markevery=[-1], zorder=40)
     return figure

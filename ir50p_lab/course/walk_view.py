@@ -50,11 +50,7 @@ def chain(q, table, dh_matrix=dh_matrix):
 
 def arm_by_table(table, dh_matrix):
     """f(q): frames of the `chain` of this table by this `dh_matrix`."""
-
-    def frames(q):
-        return chain(q, table, dh_matrix)
-
-    return frames
+    return lambda q: chain(q, table, dh_matrix)
 
 
 def two_views(arms):
