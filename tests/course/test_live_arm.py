@@ -153,6 +153,8 @@ def test_the_still_picture_shows_pose_frames_and_ellipsoids():
     forearm = (213, 94, 0)
     own = still(LiveArm(IR50P, [0, 0.5, -1], frames=lambda q: frames(IR50P, -q)))
     assert coloured(first, forearm) > 0.002 > coloured(own, forearm)  # links of frames have one colour
+    axes = still(LiveArm(IR50P, [0, 0.5, -1], frames=lambda q: frames(IR50P, -q), layers=["frames"]))
+    assert (axes != own).any(axis=-1).mean() > 0.01
     both = ["velocity ellipsoid", "force ellipsoid"]
     bent, stretched = (still(LiveArm(IR50P, q, layers=both)) for q in ([0, 0.5, -1], [0, 0.5, 0]))
     assert bluish(bent) > bluish(first) + 0.002

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.course.start_views import turned_by
-from ir50p_lab.course.walk_view import arm_by_table, printed_tip, walk
+from ir50p_lab.course.walk_view import arm_by_table, two_views, walk
 from ir50p_lab.modelling import IR50P, dh_matrix, forward_kinematics, frames, rot_z
 
 
@@ -34,6 +34,8 @@ def test_the_walker_names_what_it_does_and_never_what_comes_next():
     assert go(4.0).startswith("joint 1: turn alpha") and go(12.0) == "frame 3 has arrived at the tip"
 
 
-def test_the_printed_tip_is_right_at_two_waist_angles_only(q):
-    waist, off = printed_tip(IR50P, q).axes[1].lines[0].get_data()
-    np.testing.assert_allclose(waist[off < 1e-9], [-135, 45])
+def test_two_arms_are_seen_from_above_and_from_the_right(q):
+    T = np.array(frames(IR50P, q))
+    above, side = two_views({"one": T, "another": T[::-1]}).axes
+    np.testing.assert_allclose(above.lines[0].get_xydata(), T[:, [0, 1], 3])
+    np.testing.assert_allclose(side.lines[1].get_xydata(), T[::-1][:, [0, 2], 3])

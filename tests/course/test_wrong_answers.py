@@ -52,8 +52,8 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
             "sticks out",
         ),
         ("dh_matrix", "shift(a, 0, 0)", "shift(0, a, 0)", "a shifts along y"),
-        ("frames", "A1 @ A2 @ A3", "A1 @ A3", "look at T3|frame 2 to frame 3"),
-        ("frames", "np.pi / 2)", "3.14 / 2)", "nearly right"),
+        ("frames", "[0, l[2], -np.pi / 2", "[l[1], l[2], 1", "look at T3|frame 2 to frame 3"),
+        ("frames", "np.pi / 2]", "3.14 / 2]", "nearly right"),
         ("forward_kinematics", "[:3, 3]", "[:3, 2]", "another row or column"),
         ("inverse_kinematics", "np.array(poses)", "np.degrees(poses)", "degrees"),
         ("inverse_kinematics", "[1, -1]", "[1]", "two poses a place, all on one side"),
@@ -165,8 +165,7 @@ def test_a_usual_mistake_has_its_sentence(name, old, new, words, capsys):
 def test_integers_that_cut_off_are_named_everywhere(name, capsys):
     whole = {
         "dh_matrix": [("T = np.eye(4)", "T = np.eye(4, dtype=int)")],
-        "frames": [("return np.array([np.eye(4), A1, A1 @ A2, A1 @ A2 @ A3])",
-                    "return np.array([np.eye(4), A1, A1 @ A2, A1 @ A2 @ A3]).astype(int)")],
+        "frames": [("return np.array(T)", "return np.array(T).astype(int)")],
         "jacobian": [("np.zeros((6, 3))", "np.zeros((6, 3), int)")],
     }[name]  # fmt: skip
     assert "integers" in told(capsys, name, *whole)

@@ -5,7 +5,7 @@ import io
 import numpy as np
 from PIL import Image
 
-from ir50p_lab.course.arm3d import ArmView
+from ir50p_lab.course.arm3d import ArmView, FrameView
 from ir50p_lab.course.live_arm.track import path_of
 from ir50p_lab.course.painter import DRAWING
 from ir50p_lab.course.style import COLOURS, new_figure
@@ -25,8 +25,16 @@ def still_png(view):
             ax.scatter(*np.transpose([view.things["ball"]["p"]]), s=90, color="#C8102E")
         if view.poses:
             arm.set_visible(False)
-            corners = np.array(view.poses, dtype=float)[:, :3, 3]
-            ax.plot(*corners.T, color=COLOURS["blue"], linewidth=8, solid_capstyle="round")
+            T = np.array(view.poses, dtype=float)
+            corners = T[:, :3, 3]
+            colour = "#B8C2CC" if "frames" in view.layers else COLOURS["blue"]  # their z is blue
+            ax.plot(*corners.T, color=colour, linewidth=8, solid_capstyle="round")
+            if "shadow" in view.layers:
+                ax.plot(*corners[1:, :2].T, 0, color="#000000", alpha=0.10, linewidth=6, zorder=2)
+            if "frames" in view.layers and np.isfinite(T).all():
+                ax.view_init(elev=22, azim=-30)
+                for k in range(4):
+                    FrameView(ax, T[k], str(k), 0.28 * view.arm.reach)
         _ellipsoids(ax, view)
         ax.text2D(0.02, 0.95, view.options["badge"], transform=ax.transAxes, color=COLOURS["dark"], weight="bold")
         stream = io.BytesIO()
