@@ -137,6 +137,7 @@ def where_not(arm, tips, rates, limit):
         others = np.delete(rates, joint, axis=2).max(axis=2)
         ax.contourf(x, z, rates[..., joint] - np.maximum(others, limit), levels=[0, np.inf], colors=COLOURS[colour])
         ax.plot([], [], "s", color=COLOURS[colour], ms=10, label=f"{joint + 1}, {name}")
+    ax.plot([], [], "s", color="#E6F0F7", ms=10, label="every direction open")
     stop = np.abs([arm.q_min[2], arm.q_max[2]]).max()
     if stop < np.pi:
         nearest = np.hypot(arm.l[1] + arm.l[2] * np.cos(stop), arm.l[2] * np.sin(stop))
