@@ -1,8 +1,10 @@
-"""Pictures of notebook 03: arrows of the joints, axis and lever, the way out, damping, steps to a place."""
+"""Pictures of notebook 03: arrows of the joints, axis and lever, the way out, where not, steps to a place."""
 
 import numpy as np
 
 from ir50p_lab.course.arm3d import ArmView, SideView
+from ir50p_lab.course.functions import velocity
+from ir50p_lab.course.functions.pose import frames
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
@@ -75,23 +77,25 @@ def arrows_panel(arm):
 
 
 def axis_and_lever():
-    """A point that turns about an axis: axis, lever and velocity at right angles. LabFigure."""
-    figure = new_figure(5.4, 3.4, projection="3d")
+    """A point that turns about an axis, two levers from the axis to it, and its one velocity. LabFigure."""
+    figure = new_figure(5.0, 3.2, projection="3d")
     ax = figure.axes[0]
     circle = np.linspace(0, 2 * np.pi, 91)
     ax.plot(np.cos(circle), np.sin(circle), 0, color=COLOURS["light"])
+    point = np.array([np.cos(-2.2), np.sin(-2.2), 0])
     arrows_of = (
-        ((0, 0, -0.4), (0, 0, 1.3), "dark", "axis", (0.05, 0, 0.95)),
-        ((0, 0, 0), (1, 0, 0), "blue", "lever", (0.45, 0, 0.1)),
-        ((1, 0, 0), (0, 1, 0), "orange", "velocity", (0.95, 0.35, -0.25)),
+        ((0, 0, -0.3), (0, 0, 1.5), "dark", "axis", (0.08, 0, 0.95)),
+        ((0, 0, 0), point, "blue", "lever", 0.55 * point + [0, 0, -0.2]),
+        ((0, 0, 0.8), point - [0, 0, 0.8], "purple", "another lever", 0.75 * point + [-0.85, -0.45, 0.4]),
+        (point, (-point[1], point[0], 0), "orange", "velocity", (0.25, -1.1, -0.12)),
     )
     for start, along, colour, name, place in arrows_of:
         ax.quiver(*start, *along, color=COLOURS[colour], linewidth=3, arrow_length_ratio=0.12)
         ax.text(*place, name, color=COLOURS[colour], fontsize=12, weight="bold")
-    ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-0.4, 1))
-    ax.set_box_aspect((2, 2, 1.4), zoom=1.0)
+    ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-0.4, 1.2))
+    ax.set_box_aspect((2, 2, 1.6), zoom=1.4)
     ax.set_axis_off()
-    ax.view_init(elev=25, azim=-50)
+    ax.view_init(elev=28, azim=-60)
     return figure
 
 
@@ -111,54 +115,60 @@ def way_out(arm, distances, speeds, limit):
     return figure
 
 
-def where_not(arm, tips, fastest, limit):
-    """Places of the arm's vertical plane where a joint would be faster than limit rad/s: LabFigure.
+def pace(q, direction, l, fastest):
+    """Stand-in for the student's function: greatest tip speed (m/s) along direction, no joint above fastest (rad/s)."""
+    T = frames(q, l)
+    Jv = velocity.jacobian(T, 3, T[3][:3, 3])[:3]
+    if abs(np.linalg.det(Jv)) < 1e-9:
+        return 0.0
+    return fastest / np.max(np.abs(np.linalg.solve(Jv, direction)))
 
-    tips: (n, m, 3) m of a grid of poses; fastest: (n, m) rad/s, the fastest joint there.
+
+def where_not(arm, tips, rates, limit):
+    """Places of the arm's vertical plane where a joint would be faster than limit rad/s, and which one: LabFigure.
+
+    tips: (n, m, 3) m of a grid of poses; rates: (n, m, 3) rad/s, what each joint needs there at worst.
     """
-    figure = new_figure(6.2, 5.6)
+    figure = new_figure(6.4, 5.6)
     ax = figure.axes[0]
-    colours = ["#D6E8F4", COLOURS["orange"]]
-    ax.contourf(tips[..., 0], tips[..., 2], fastest, levels=[0, limit, np.inf], colors=colours)
+    x, z = tips[..., 0], tips[..., 2]
+    ax.contourf(x, z, rates.max(axis=2), levels=[0, limit], colors=["#E6F0F7"])
+    for joint, (name, colour) in enumerate(zip(("waist", "shoulder", "elbow"), _JOINTS, strict=True)):
+        others = np.delete(rates, joint, axis=2).max(axis=2)
+        ax.contourf(x, z, rates[..., joint] - np.maximum(others, limit), levels=[0, np.inf], colors=COLOURS[colour])
+        ax.plot([], [], "s", color=COLOURS[colour], ms=10, label=f"{joint + 1}, {name}")
+    ax.plot([], [], "s", color="#E6F0F7", ms=10, label="every direction open")
+    stop = np.abs([arm.q_min[2], arm.q_max[2]]).max()
+    if stop < np.pi:
+        nearest = np.hypot(arm.l[1] + arm.l[2] * np.cos(stop), arm.l[2] * np.sin(stop))
+        turn = np.linspace(0, 2 * np.pi, 181)
+        ax.plot(nearest * np.cos(turn), arm.l[0] + nearest * np.sin(turn), **SETPOINT, label="elbow at its stop")
     ax.plot([0, 0], [0, arm.l[0]], color=COLOURS["dark"], linewidth=8, solid_capstyle="butt", label="column")
-    for colour, text in zip(colours, ("every direction is open", "some direction is too fast"), strict=True):
-        ax.plot([], [], "s", color=colour, ms=10, label=text)
     ax.set(aspect="equal", xlabel="outwards from the column [m]", ylabel="height [m]")
-    ax.set_title("Where can it not go, at 0.1 m/s?")
+    ax.set_title("The joint that gives up, where some direction is shut at 0.1 m/s")
     figure.legend(loc="outside lower center", ncols=3)
     return figure
 
 
-def damping_curves(damping):
-    """How much a step asks of a direction, plain and damped, over how well the arm moves in it: LabFigure."""
-    figure = new_figure(7.4, 3.6)
-    ax = figure.axes[0]
-    sigma = np.linspace(0.002, 0.4, 400)
-    ax.plot(sigma, 1 / sigma, label=r"plain: $1/\sigma$")
-    damped = rf"damped: $\sigma/(\sigma^2 + \lambda^2)$, $\lambda$ = {damping} m"
-    ax.plot(sigma, sigma / (sigma**2 + damping**2), label=damped)
-    ax.set(xlim=(0, 0.4), ylim=(0, 40), xlabel=r"how well the arm moves there, $\sigma$ [m/rad]")
-    ax.set_ylabel("turn asked for [rad/m]")
-    ax.set_title("Damping asks least where it would cost most")
-    ax.legend()
-    return figure
-
-
 def steps_panel(damped_step, arm, q_start, p, steps=25):
-    """Miss and elbow after each step towards p (3,) m from q_start, for `live`: figure, f(damping) -> sentence."""
+    """Miss and elbow after each step towards p (3,) m from q_start, for `live`.
+
+    Returns: figure, f(damping, start) -> sentence; start: the elbow's, in degrees, in place of that of q_start.
+    """
     figure = new_figure(9.4, 3.8, cols=2)
     misses, elbows = figure.axes
     number = np.arange(steps + 1)
     (miss,) = misses.semilogy(number, np.ones(steps + 1), "o-", ms=4, label="distance of the tip")
     (elbow,) = elbows.plot(number, np.zeros(steps + 1), "o-", ms=4, color=COLOURS["orange"], label="elbow")
     misses.axhline(1e-3, **SETPOINT, label="1 mm")
+    elbows.axhline(-90, **SETPOINT, label="the cable")
     misses.set(xlabel="step", ylabel="distance to the place [m]", ylim=(1e-5, 10))
     elbows.set(xlabel="step", ylabel="elbow [deg]", ylim=(-200, 40))
     for ax in figure.axes:
         ax.legend(loc="upper right")
 
-    def search(damping):
-        q, path = np.array(q_start, dtype=float), []
+    def search(damping, start):
+        q, path = np.array([*q_start[:2], np.radians(start)]), []
         for _ in range(steps + 1):
             path.append(q)
             q = damped_step(q, p, arm.l, max(damping, 1e-9))
@@ -167,10 +177,10 @@ def steps_panel(damped_step, arm, q_start, p, steps=25):
         miss.set_ydata(np.maximum(left, 1e-12))
         elbow.set_ydata(np.degrees(path[:, 2]))
         arrived = np.flatnonzero(left < 1e-3)
-        turns = np.degrees(np.abs(path[:, 2] - path[0, 2]).max())
+        lowest, highest = np.degrees([path[:, 2].min(), path[:, 2].max()])
         when = f"{1000 * left[-1]:.3g} mm left after {steps} steps"
         if len(arrived):
             when = f"within 1 mm after {arrived[0]} steps"
-        return f"{when}; on the way the elbow turned by up to {turns:.0f} degrees"
+        return f"{when}; the elbow was between {lowest:.0f} and {highest:.0f} degrees"
 
     return figure, search

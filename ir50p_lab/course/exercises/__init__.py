@@ -10,7 +10,7 @@ progress.json in the student's folder (IR50P_HOME), or the file that the environ
 
 Adding exercises
 ----------------
-One module per notebook in this folder, named after the prefix of its exercises: "ik-2" lives in ik.py, which is
+One module per notebook in this folder, named after the prefix of its exercises: "ik-1" lives in ik.py, which is
 imported only when an "ik-" exercise is asked for. It defines two names:
 
     NOTEBOOK = "02_inverse_kinematics"     # stem of the notebook's file name

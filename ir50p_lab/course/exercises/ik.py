@@ -1,4 +1,4 @@
-"""Exercises of notebook 03: tip velocity, singular poses."""
+"""The exercise of notebook 03: tip velocity."""
 
 import numpy as np
 
@@ -20,10 +20,6 @@ def _printed_jv(q):
     return Jv
 
 
-# ik-2: the tip passes the axis of the column.
-_SPEED, _RATE = 0.2, 1.3
-
-
 EXERCISES = (
     Exercise(
         "ik-1",
@@ -43,18 +39,5 @@ EXERCISES = (
             ),
         ),
         hint="Those are the joint speeds; multiply the upper three rows of jacobian(T, 3, tip) with them.",
-    ),
-    Exercise(
-        "ik-2",
-        "the smallest distance from the column's axis at which the tip may pass it on a straight horizontal line at "
-        "0.2 m/s, if joint 1 manages 1.3 rad/s",
-        Number(_SPEED / _RATE, unit="m", tolerance=0.001, because="a millimetre is what this arm can resolve"),
-        why="v / d is the rate: half the distance, twice the rate. On the axis itself no rate is enough.",
-        slips=(
-            Slip(_SPEED * _RATE, "That is v times the rate: a faster joint would need more room."),
-            Slip(_RATE / _SPEED, "That is the rate divided by v: in 1/m, not a distance."),
-            Slip(_SPEED / np.rad2deg(_RATE), "The rate went in as degrees per second; it is 1.3 rad/s."),
-        ),
-        hint="Where the line is nearest to the axis the tip moves sideways, on a circle about the axis.",
     ),
 )
