@@ -36,7 +36,9 @@ def test_sliders_move_the_students_gains():
         said[words] = update(**GAINS), view.recording.u.copy()
     compiled, own = said
     assert "compiled PID runs" in compiled and "your Python runs" in own
-    assert "score on this arm" in said[own][0] and not np.allclose(said[own][1], said[compiled][1])
+    assert f"practice arms {contest.score(Half(900, 800, 5), arm=IR50P).value:.2f}" in said[own][0]
+    assert "kp, ki, kd = (900, 900, 900), (800, 800, 800), (5, 5, 5)" in said[own][0]
+    assert not np.allclose(said[own][1], said[compiled][1])
     wanted = Half(kp=(900,) * 3, ki=(800,) * 3, kd=(5,) * 3)  # the sliders' gains, not those it began with
     np.testing.assert_array_equal(said[own][1], contest.drive(wanted, contest.PRACTICE[0], IR50P)[1].u)
 
