@@ -109,7 +109,9 @@ class GainMap:
         style = {"colors": COLOURS[colour], "linewidths": 1.4}
         lines = self.map.contour(*self._grid, values, levels=levels, **style)
         paths = [path.vertices for path in lines.get_paths() if len(path.vertices)]
-        self.map.clabel(lines, fontsize=8, fmt=f"%g {unit}", manual=[path[int(at * (len(path) - 1))] for path in paths])
+        places = [path[int(at * (len(path) - 1))] for path in paths]
+        for text in self.map.clabel(lines, fontsize=8, fmt=f"%g {unit}", manual=places):
+            text.set_bbox({"facecolor": "white", "linewidth": 0, "pad": 1})
         self.map.plot([], [], color=COLOURS[colour], label=label)
         self.figure.legends.clear()
         self.figure.legend(handles=self.map.lines[1:], fontsize=8, loc="outside lower left", ncols=2)
