@@ -131,11 +131,11 @@ def hears_late(arm, controller, samples):
         return simulate(arm, Late(controller, samples), 0.4 * far_target(arm), duration=6)
 
 
-def friction(arm, *, ki=20.0):
+def friction(arm, *, kp=150.0, ki=20.0, duration=10):
     """A small step of joint 1 that friction stops short."""
-    pid = PID((150, 400, 400), ki=(ki, 1500, 1500), kd=(20, 10, 10), limit_pwm=255)
+    pid = PID((kp, 400, 400), ki=(ki, 1500, 1500), kd=(20, 10, 10), limit_pwm=255)
     target = 0.4 * far_target(arm)
-    return simulate(arm, pid, target, q0=target - [0.3, 0, 0], duration=10)
+    return simulate(arm, pid, target, q0=target - [0.3, 0, 0], duration=duration)
 
 
 def noise(arm, *, filter_hz=np.inf):

@@ -92,8 +92,9 @@ class Score:
         if self.fault:
             return f"lost: the bench cut the drive. {self.fault}"
         rows = [f"{'':12s}  joint 1  joint 2  joint 3   limit"]
-        for (name, (limit, unit)), row in zip(LIMITS.items(), self.terms, strict=True):
-            marks = [f"{x:7.3g}{' ' if x < limit else '!'}" for x in row]
+        never = [TIMES[2] - TIMES[1], END - TIMES[2], *[np.inf] * 3]  # outside the band to the end
+        for (name, (limit, unit)), row, end in zip(LIMITS.items(), self.terms, never, strict=True):
+            marks = [f"{x:7.3g}{' ' if x < limit else '!'}" if x < end else "  never!" for x in row]
             rows.append(f"{name:12s} {' '.join(marks)} {limit:7.3g} {unit}")
         term, joint = self.decides
         verdict = "won" if self.won else "lost"

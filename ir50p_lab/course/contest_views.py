@@ -5,9 +5,11 @@ import numpy as np
 from ir50p_lab.controllers import PID
 from ir50p_lab.course import contest, lab_book
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.course.widgets import slider
 from ir50p_lab.errors import LabError
 
 _JOINTS = ("blue", "orange", "green")
+_SLIDERS = {"kp": (2000, 10), "ki": (3000, 10), "kd": (60, 0.5)}  # right end, step
 _MARKERS = dict(zip(contest.LIMITS, "osv^D", strict=True))
 
 
@@ -48,9 +50,20 @@ class Practice:
         return contest.Score(contest.grade_run(given, self.recording.u, q))
 
 
+def gain_sliders(gains):
+    """Nine sliders kp1 to kd3 for `live`; they begin at gains (3, 3): rows kp, ki, kd, columns joints."""
+    made = {}
+    for (part, (end, step)), row in zip(_SLIDERS.items(), gains, strict=True):
+        for joint, gain in enumerate(row, start=1):
+            start = min(step * round(gain / step), end)
+            made[f"{part}{joint}"] = slider(0, end, step, start, label=f"K{part[1]}{joint}")
+    return made
+
+
 def sliders_of(controller, arm, practice):
     """What the sliders of a panel call, and a sentence that says whose controller they move: (update, words).
 
+    The picture is that of one arm, the score that of all practice arms.
     While the compiled twin sends the same commands as the student's class, the twin runs; else the student's Python.
     """
     compiled = contest.twin_of(controller, arm) is not None
@@ -62,11 +75,13 @@ def sliders_of(controller, arm, practice):
             for part, value in gains.items():
                 setattr(controller, part, np.array(value, dtype=float))
         try:
-            found = practice.update(runs)
+            practice.update(runs)
         except LabError as cut:
             return f"the bench cut the drive: {cut}"
-        term, joint = found.decides
-        return f"score on this arm {found.value:.2f}: {term} of joint {joint} decides"
+        found = contest.score(runs, arm=arm)
+        (term, joint), sets = found.decides, (f"({', '.join(f'{x:g}' for x in row)})" for row in gains.values())
+        words = found.fault or f"{term} of joint {joint} decides"
+        return f"score on all three practice arms {found.value:.2f}: {words}\nkp, ki, kd = {', '.join(sets)}"
 
     if compiled:
         return update, "the sliders set your gains; the compiled PID runs, it sent the same commands as your class"

@@ -7,7 +7,9 @@ from matplotlib import rc_context
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
+from ir50p_lab.controllers import simc_integrating
 from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure
+from ir50p_lab.identification import FOPDT
 
 _RUNS = ({"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linewidth": 1.2}, {"color": COLOURS["green"]})
 
@@ -99,11 +101,17 @@ class GainMap:
         ]
         self._side.legend(fontsize=8, loc="lower right")
 
-    def lay_over(self, values, levels, label, *, colour, unit=""):
-        """Lines of another figure (m, n) over the same grid, each with value and unit; label: in the legend below."""
+    def lay_over(self, values, levels, label, *, colour, unit="", at=0.5):
+        """Lines of another figure (m, n) over the same grid, each with value and unit; label: in the legend below.
+
+        at: where along each line its value stands, 0 to 1 (so that those of two figures do not meet).
+        """
         style = {"colors": COLOURS[colour], "linewidths": 1.4}
         lines = self.map.contour(*self._grid, values, levels=levels, **style)
-        self.map.clabel(lines, fontsize=7, fmt=f"%g {unit}")
+        paths = [path.vertices for path in lines.get_paths() if len(path.vertices)]
+        places = [path[int(at * (len(path) - 1))] for path in paths]
+        for text in self.map.clabel(lines, fontsize=8, fmt=f"%g {unit}", manual=places):
+            text.set_bbox({"facecolor": "white", "linewidth": 0, "pad": 1})
         self.map.plot([], [], color=COLOURS[colour], label=label)
         self.figure.legends.clear()
         self.figure.legend(handles=self.map.lines[1:], fontsize=8, loc="outside lower left", ncols=2)
@@ -129,6 +137,53 @@ def one_joint(*runs, labels, joint, unit="PWM"):
     below.set(xlabel="time [s]", ylabel=f"command [{unit}]")
     above.legend(fontsize=8, loc="best")
     return figure
+
+
+def ruler():
+    """The four figures of a step, drawn on a made-up one: LabFigure."""
+    figure = new_figure(8.0, 3.4)
+    ax = figure.axes[0]
+    t = np.linspace(0, 5, 501)
+    q = 0.97 - 0.97 * np.exp(-1.3 * t) * (np.cos(3 * t) + 0.43 * np.sin(3 * t))
+    band = 0.06  # drawn wide, to be seen
+    rise, settled = t[[np.argmax(q > 0.1), np.argmax(q > 0.9)]], t[np.flatnonzero(np.abs(q - 1) > band)[-1] + 1]
+    top = np.argmax(q)
+    ax.axhspan(1 - band, 1 + band, color=COLOURS["light"], label="band about the target")
+    ax.axhline(1, label="target", **SETPOINT)
+    ax.plot(t, q, color=COLOURS["blue"], label="angle")
+    arrow = {"arrowprops": {"arrowstyle": "<->", "color": COLOURS["orange"], "shrinkA": 0, "shrinkB": 0}}
+    for a, b, words, place in (
+        ((rise[0], 0.1), (rise[1], 0.1), "rise time: from 10 % to 90 %", (rise[1] + 0.1, 0.07)),
+        ((0, -0.15), (settled, -0.15), "settling time: from here on it stays in the band", (settled + 0.1, -0.18)),
+        ((t[top], 1), (t[top], q[top]), "overshoot", (t[top] + 0.1, q[top] + 0.05)),
+        ((4.5, q[450]), (4.5, 1), "rest error", (4.1, 0.8)),
+    ):
+        ax.annotate("", a, b, **arrow)
+        ax.text(*place, words, fontsize=9, color=COLOURS["orange"])
+    for x, y in ((rise[0], 0.1), (rise[1], 0.9), (settled, q[np.searchsorted(t, settled)])):
+        ax.plot([x, x], [-0.15 if x == settled else 0.1, y], ":", color=COLOURS["orange"])
+    ax.set(xlim=(0, 5), ylim=(-0.3, 1.35), xlabel="time [s]", ylabel="share of the way [1]")
+    ax.legend(fontsize=8, loc="center right")
+    return figure
+
+
+def rule_in_use(rule):
+    """The student's rule(K, T, L, tau_c), or the course's while that is unwritten; says which, and how they compare."""
+
+    def course(K, T, L, tau_c):
+        gains = simc_integrating(FOPDT(K=K, T=T, L=L), tau_c=tau_c)
+        return gains.kp, gains.ki, gains.kd
+
+    example = {"K": 0.01, "T": 0.2, "L": 0.03, "tau_c": 0.1}
+    try:
+        mine = np.array(rule(**example), dtype=float)
+    except TypeError:
+        print("rule: the course's, until yours is written")
+        return course
+    theirs = np.round(course(**example), 2)
+    same = mine.shape == (3,) and np.allclose(mine, course(**example))
+    print("rule: yours, and right" if same else f"rule: the course's; for {example} yours gives {mine}, not {theirs}")
+    return rule if same else course
 
 
 def redraw(figure, run, joint):

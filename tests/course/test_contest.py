@@ -112,6 +112,11 @@ def test_the_payload_is_a_point_mass_at_the_tip():
     np.testing.assert_allclose(mass_matrix(more, q) - mass_matrix(IR50P, q), mass * J.T @ J, atol=1e-12)
 
 
+def test_who_never_arrives_has_no_time():
+    said = str(jury.Score(np.array([[4.0, 3.9, 1], [3.0, 2.9, 1], *np.ones((3, 3))])))
+    assert said.count("never!") == 2 and "3.9!" in said and "2.9!" in said
+
+
 def test_draws_are_within_reach_and_differ():
     arms = [load_arm("data/arm_example.toml"), IR50P]
     for arm in arms:

@@ -36,7 +36,9 @@ def test_sliders_move_the_students_gains():
         said[words] = update(**GAINS), view.recording.u.copy()
     compiled, own = said
     assert "compiled PID runs" in compiled and "your Python runs" in own
-    assert "score on this arm" in said[own][0] and not np.allclose(said[own][1], said[compiled][1])
+    assert f"practice arms {contest.score(Half(900, 800, 5), arm=IR50P).value:.2f}" in said[own][0]
+    assert "kp, ki, kd = (900, 900, 900), (800, 800, 800), (5, 5, 5)" in said[own][0]
+    assert not np.allclose(said[own][1], said[compiled][1])
     wanted = Half(kp=(900,) * 3, ki=(800,) * 3, kd=(5,) * 3)  # the sliders' gains, not those it began with
     np.testing.assert_array_equal(said[own][1], contest.drive(wanted, contest.PRACTICE[0], IR50P)[1].u)
 
@@ -54,3 +56,9 @@ def test_history_shows_every_attempt_and_the_rules(tmp_path, monkeypatch):
     assert {"your best", "activity decided", "a rule", "below: won"} <= set(labels)
     best = next(line for line in figure.axes[0].lines if line.get_label() == "your best")
     assert best.get_ydata() == pytest.approx([8, 3, 3, 0.9])
+
+
+def test_sliders_begin_at_the_gains_and_stay_on_the_scale():
+    made = contest_views.gain_sliders(np.array([[528, 1074, 9000], [488, 1114, 942], [7.6, 5.3, 76]]))
+    assert list(made) == list(GAINS)
+    assert [made[name].start for name in ("kp1", "kp3", "ki2", "kd1", "kd3")] == [530, 2000, 1110, 7.5, 60]
