@@ -1,12 +1,12 @@
 """How fast LiveArm is in JupyterLab, and what is allowed (here: software WebGL). Needs a quiet machine; run by hand:
 
-    .venv/bin/python -m pytest -s tests/browser/timings.py
+.venv/bin/python -m pytest -s tests/browser/timings.py
 """
 
 import statistics
 
 import pytest
-from test_live_arm_in_lab import KERNEL_IDLE, RUN_ALL, VIEW, show
+from test_live_arm_in_lab import KERNEL_IDLE, RUN_ALL, show
 
 # Time of an event to the first frame whose pixels, read back and thus finished, differ.
 WATCH = """([number, event]) => {
