@@ -240,6 +240,14 @@ def test_the_view_that_alone_needs_k3_is_no_outlier():
     assert abs(found.fx - 350) < 3 * found.stderr["fx"]
 
 
+@pytest.mark.parametrize("count", [5, 8])
+def test_corners_without_noise_give_the_camera_itself(count):
+    """What is left of the error is rounding, and no step makes it less: that is no fit that does not converge."""
+    for seed in range(15):
+        found = calibrate_corners(POINTS, corner_sets(POINTS, count, noise=0, seed=seed), SIZE, lens=FULL)
+        np.testing.assert_allclose(values(found), TRUTH, rtol=1e-6)
+
+
 def test_honest_noise_is_no_outlier():
     for seed in range(5):
         assert not calibrate_corners(POINTS, corner_sets(POINTS, 12, seed=30 + seed), SIZE).rejected

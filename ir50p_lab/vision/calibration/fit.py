@@ -17,6 +17,7 @@ LADDER = tuple(_LENS)  # terms of the lens model: p stands for the pair p1, p2
 # Of what the camera's numbers do to the corners, a board's pose can hide all but this share: then no view shows them.
 # Squared pixels, thus rounding is 1e-15; four views that are nearly one leave 1e-10.
 _SHOWN = 1e-12
+_ROUNDING = 1e-10  # pixels: less than this no fit can mend, and corners without noise leave less
 
 
 @dataclass(frozen=True)
@@ -196,6 +197,7 @@ def fit(corners, model, guess, steps=50):
     with np.errstate(all="ignore"):
         views = project(corners, camera, poses)
         cost, damping = _cost(camera, views), 1e-6
+        nothing = views[0].size * _ROUNDING**2
         for _ in range(steps):
             S, g, own, following = reduce(B, *views)
             while True:
@@ -203,7 +205,7 @@ def fit(corners, model, guess, steps=50):
                 new_camera, new_poses = camera + B @ step, poses + own - following @ step
                 new_views = project(corners, new_camera, new_poses)
                 new_cost = _cost(new_camera, new_views)
-                if new_cost <= cost * (1 + 1e-12) or damping > 1e6:
+                if new_cost <= cost * (1 + 1e-12) + nothing or damping > 1e6:
                     break
                 damping = max(10 * damping, 1e-6)
             gain = cost - new_cost
@@ -212,7 +214,7 @@ def fit(corners, model, guess, steps=50):
                     "the fit does not converge: a view has corners in a wrong order, is no board, or of another camera"
                 )
             camera, poses, views, cost, damping = new_camera, new_poses, new_views, min(cost, new_cost), damping / 10
-            if abs(gain) <= 1e-8 * cost + 1e-18:
+            if abs(gain) <= 1e-8 * cost + nothing:
                 break
     return _with_covariance(corners, model, camera, poses, views)
 
