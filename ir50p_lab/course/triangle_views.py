@@ -95,16 +95,16 @@ def side_view(arm, p):
     return figure
 
 
-def triangles(arm, p):
-    """Both elbows over each other, facing the place p (3,) m: LabFigure.
+def triangles(arm, p, *, back=False):
+    """Both elbows over each other, facing the place p (3,) m or with the back to it: LabFigure.
 
     With r, its slope gamma, the angle beta between r and either upper arm (Figure 1.8), both q3, and for the upper
     elbow the perpendicular from the tip onto the upper arm, prolonged.
     """
     figure, ax = _plane()
     _column(ax, arm)
-    answers = inverse_kinematics(arm, p)
-    for branch, colour, name in (("front/up", "blue", "one elbow"), ("front/down", "orange", "the other")):
+    answers, waist = inverse_kinematics(arm, p), "back" if back else "front"
+    for branch, colour, name in ((f"{waist}/up", "blue", "one elbow"), (f"{waist}/down", "orange", "the other")):
         points = _corners(arm, answers[branch])
         _draw(ax, points, colour, label=name)
         shoulder, elbow, tip = points
@@ -120,18 +120,18 @@ def triangles(arm, p):
                 ax.update_datalim(ends)
                 ax.annotate("", *ends, arrowprops={"arrowstyle": "<->", "color": COLOURS["grey"]})
                 ax.text(*(ends.mean(axis=0) + 0.025 * aside), name, color=COLOURS["dark"], ha="center")
-        slope = np.arctan2(upper[1], upper[0])
+        gamma, slope = np.arctan2(r[1], r[0]), np.arctan2(upper[1], upper[0])
+        slope += 2 * np.pi * np.round((gamma - slope) / (2 * np.pi))  # the turn that is nearer to r
         _arc(ax, elbow, slope, slope + answers[branch][2], 0.06, colour, "$q_3$", 1.6)
-        gamma = np.arctan2(r[1], r[0])
         _arc(ax, shoulder, gamma, slope, 0.13, colour, r"$\beta$", 0.8, arrow=False)
     ax.plot(*np.transpose([shoulder, tip]), "--", color=COLOURS["dark"])
     ax.text(*(0.25 * shoulder + 0.75 * tip + [0.005, 0.015]), "$r$", fontsize=13)
     ax.plot([0, 1.1 * np.hypot(p[0], p[1])], [shoulder[1], shoulder[1]], color=COLOURS["grey"], linewidth=1)
     _arc(ax, shoulder, 0, gamma, 0.2, "green", r"$\gamma$", 1.12)
     ax.plot(*tip, "o", color="#C8102E", ms=11)
-    ax.set_xlim(-0.12, tip[0] + 0.16)
+    ax.set_xlim(min(-0.12, tip[0] - 0.06), max(0.5, tip[0] + 0.16))
     ax.legend(loc="lower right")
-    ax.set_title("One triangle, folded over: two elbows")
+    ax.set_title("The waist looks right, the place lies left" if back else "One triangle, folded over: two elbows")
     return figure
 
 
@@ -186,13 +186,13 @@ def straight_line(arm, places, q_start, q_end, way=()):
     ax.plot(*places[:, :2].T, "--", color=COLOURS["dark"], label="the straight line")
     ax.plot(*path[:, :2].T, color=COLOURS["blue"], linewidth=2.5, label="the tip, joints turning evenly")
     beside = 1000 * np.linalg.norm(path[30] - places.mean(axis=0))
-    ax.plot(*path[30, :2], "o", color=COLOURS["blue"], ms=9, label=f"halfway, {beside:.0f} mm beside the line")
+    ax.plot(*path[30, :2], "o", color=COLOURS["blue"], ms=9, label=f"halfway, {beside:.0f} mm from the middle")
     refused = [p[:2] for p, pose in zip(places, way, strict=False) if pose is None]
     if refused:
         ax.plot(*np.transpose(refused), "x", color=COLOURS["orange"], ms=8, mew=2, label="no pose")
     ax.plot(0, 0, "s", color=COLOURS["dark"], ms=12)
     ax.set(adjustable="datalim", aspect="equal", xlabel="x, ahead [m]", ylabel="y, to the left [m]", title="From above")
-    ax.legend(loc="center left", bbox_to_anchor=(0, 0.2), fontsize=9)
+    ax.legend(loc="upper left", fontsize=9)
     return figure
 
 

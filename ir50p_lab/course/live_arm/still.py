@@ -22,7 +22,7 @@ def still_png(view):
         if view.track and "trail" in view.layers:
             arm.trail(path_of(view.arm, view.track, view.shape))
         if "ball" in view.things:
-            ax.scatter(*np.transpose([view.things["ball"]["p"]]), s=90, color="#C8102E")
+            ax.scatter(*np.transpose([view.things["ball"]["p"]]), s=230, color="#C8102E")
         if view.poses:
             arm.set_visible(False)
             T = np.array(view.poses, dtype=float)
