@@ -10,7 +10,7 @@ from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.modelling.ik import inverse_kinematics
 
-_JOINTS = ("purple", "sky", "amber")
+_JOINTS, _NAMES = ("purple", "sky", "amber"), ("waist", "shoulder", "elbow")
 
 
 class ColumnsView:
@@ -103,10 +103,13 @@ def way_out(arm, distances, speeds, limit):
     """The arm from the side near its full reach, and the elbow's speed on the way there: LabFigure."""
     figure = new_figure(9.5, 4.0, cols=2)
     plane, ax = figure.axes
-    SideView(plane, arm, inverse_kinematics(arm, [distances[len(distances) // 2], 0, arm.l[0]])["front/up"])
+    halfway, k = distances[len(distances) // 2], np.argmax(speeds > limit)
+    SideView(plane, arm, inverse_kinematics(arm, [halfway, 0, arm.l[0]])["front/up"])
+    plane.annotate("", (halfway + 0.13, arm.l[0]), (halfway + 0.02, arm.l[0]), arrowprops={"color": COLOURS["orange"]})
     plane.set_title("Outwards at 0.1 m/s")
     plane.set_xlabel("outwards from the column [m]")
     ax.plot(1000 * (arm.reach - distances), speeds, linewidth=2.5, label="elbow")
+    ax.plot(1000 * (arm.reach - distances[k]), limit, "o", ms=10, color=COLOURS["orange"], label="it gives up")
     ax.axhline(limit, **SETPOINT, label=f"its motor: {limit} rad/s")
     ax.invert_xaxis()
     ax.set(ylim=(0, None), xlabel="still to go to the full reach [mm]", ylabel="speed [rad/s]")
@@ -124,6 +127,19 @@ def pace(q, direction, l, fastest):
     return fastest / np.max(np.abs(np.linalg.solve(Jv, direction)))
 
 
+def pace_along(paces, busiest):
+    """The pace (n,) m/s along a way, in the colour of the joint (n,), 0 to 2, that sets it: LabFigure."""
+    figure = new_figure(7.5, 3.2)
+    ax, share = figure.axes[0], np.linspace(0, 100, len(paces))
+    for joint, (name, colour) in enumerate(zip(_NAMES, _JOINTS, strict=True)):
+        part = np.where(np.array(busiest) == joint, paces, np.nan)
+        if np.isfinite(part).any():
+            ax.plot(share, part, linewidth=3, color=COLOURS[colour], label=f"the {name} sets it")
+    ax.set(xlabel="share of the line [%]", ylabel="pace [m/s]", ylim=(0, None))
+    ax.legend(loc="lower left")
+    return figure
+
+
 def where_not(arm, tips, rates, limit):
     """Places of the arm's vertical plane where a joint would be faster than limit rad/s, and which one: LabFigure.
 
@@ -133,7 +149,7 @@ def where_not(arm, tips, rates, limit):
     ax = figure.axes[0]
     x, z = tips[..., 0], tips[..., 2]
     ax.contourf(x, z, rates.max(axis=2), levels=[0, limit], colors=["#E6F0F7"])
-    for joint, (name, colour) in enumerate(zip(("waist", "shoulder", "elbow"), _JOINTS, strict=True)):
+    for joint, (name, colour) in enumerate(zip(_NAMES, _JOINTS, strict=True)):
         others = np.delete(rates, joint, axis=2).max(axis=2)
         ax.contourf(x, z, rates[..., joint] - np.maximum(others, limit), levels=[0, np.inf], colors=COLOURS[colour])
         ax.plot([], [], "s", color=COLOURS[colour], ms=10, label=f"{joint + 1}, {name}")
@@ -145,7 +161,7 @@ def where_not(arm, tips, rates, limit):
         ax.plot(nearest * np.cos(turn), arm.l[0] + nearest * np.sin(turn), **SETPOINT, label="elbow at its stop")
     ax.plot([0, 0], [0, arm.l[0]], color=COLOURS["dark"], linewidth=8, solid_capstyle="butt", label="column")
     ax.set(aspect="equal", xlabel="outwards from the column [m]", ylabel="height [m]")
-    ax.set_title("The joint that gives up, where some direction is shut at 0.1 m/s")
+    ax.set_title("The joint that gives up, where some direction is too fast at 0.1 m/s")
     figure.legend(loc="outside lower center", ncols=3)
     return figure
 
