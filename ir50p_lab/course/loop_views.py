@@ -112,7 +112,7 @@ def weight_over_angle(arm, push):
     ax.axhline(push, color=COLOURS["orange"], linewidth=2.5, label=f"a push of {push} counts")
     for k in np.flatnonzero(np.diff(np.sign(weight - push))):
         ax.plot(q2[k], push, "o", ms=9, color=COLOURS["dark"])
-        says = "hanging:\ncomes back" if q2[k] < 0 else "standing:\nleaves"
+        says = "hanging:\nwould come back" if q2[k] < 0 else "standing:\nwould leave"
         ax.annotate(says, (q2[k], push), (0, -14), textcoords="offset points", ha="center", va="top", fontsize=9)
     ax.set(xlabel="angle of the shoulder [rad]", ylabel="push [PWM counts]")
     ax.legend(loc="lower left")
@@ -137,7 +137,7 @@ def curves(t, lines, labels, ylabel, targets=()):
     for target in targets:
         ax.axhline(target, **SETPOINT)
     for values, label in zip(lines, labels, strict=True):
-        ax.plot(t, values, label=label)
+        ax.plot(t, values, label=label, alpha=0.35 if label == "raw" else 1)
     ax.set(xlabel="time [s]", ylabel=ylabel)
     ax.legend()
     return figure
