@@ -139,7 +139,7 @@ class GimbalView:
 
 
 def two_bricks(angle):
-    """A brick, turned by `angle` (rad) about x and about its own y, in either order, and the turn between: LabFigure."""
+    """A brick as it lay, turned by `angle` (rad) about x and its own y in either order, the turn between: LabFigure."""
     figure = space(4, width=11.5)
     first, second = rot_x(angle) @ rot_y(angle), rot_y(angle) @ rot_x(angle)
     titles = ("as it lay", "first x, then its own y", "first y, then its own x", "the single turn between")

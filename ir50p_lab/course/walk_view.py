@@ -33,9 +33,8 @@ def walk(arm, q):
         what = f"{_MOTIONS[motion]} by {size if number else '0: nothing'}"
         what = f"joint {joint + 1}, motion {motion + 1} of 4: {what}" if motions else "frame 0, at the base"
         figure.axes[0].set_title(what)
-        if motions == 12:
-            return "Frame 3 has arrived at the tip."
-        return "Done. What comes next?" if motions == int(motions) else ""
+        ends = {0: "What comes first?", 12: "Frame 3 has arrived at the tip."}
+        return ends.get(motions, "Done. What comes next?" if motions == int(motions) else "")
 
     return figure, go
 
