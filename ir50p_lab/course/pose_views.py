@@ -139,17 +139,17 @@ class GimbalView:
 
 
 def two_bricks(angle):
-    """A brick turned by `angle` (rad) about x and about its own y, in either order, and the turn between: LabFigure."""
-    figure = space(3, width=10)
+    """A brick as it lay, turned by `angle` (rad) about x and its own y in either order, the turn between: LabFigure."""
+    figure = space(4, width=11.5)
     first, second = rot_x(angle) @ rot_y(angle), rot_y(angle) @ rot_x(angle)
-    titles = ("first x, then its own y", "first y, then its own x", "the single turn between them")
-    for ax, R, title in zip(figure.axes, (first, second, first), titles, strict=True):
+    titles = ("as it lay", "first x, then its own y", "first y, then its own x", "the single turn between")
+    for ax, R, title in zip(figure.axes, (np.eye(3), first, second, first), titles, strict=True):
         Brick(ax, homogeneous(R), length=0.55)
         ax.set_title(title)
     turn = Rotation.from_matrix(second @ first.T).as_rotvec()
     axis = 1.1 * turn / np.linalg.norm(turn)
-    figure.axes[2].plot(*np.outer(axis, [-1, 1]), "--", color=COLOURS["dark"], linewidth=1.6, zorder=40)
+    figure.axes[3].plot(*np.outer(axis, [-1, 1]), "--", color=COLOURS["dark"], linewidth=1.6, zorder=40)
     for start, colour in zip(0.55 * first.T, ("orange", "green", "blue"), strict=True):
         way = Rotation.from_rotvec(np.outer(np.linspace(0, 1, 40), turn)).apply(start)
-        figure.axes[2].plot(*way.T, ":o", color=COLOURS[colour], linewidth=2.2, ms=7, markevery=[-1], zorder=40)
+        figure.axes[3].plot(*way.T, ":o", color=COLOURS[colour], linewidth=2.2, ms=7, markevery=[-1], zorder=40)
     return figure

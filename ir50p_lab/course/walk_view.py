@@ -6,18 +6,17 @@ from ir50p_lab.course.arm3d import ArmView, FrameView
 from ir50p_lab.course.style import COLOURS, new_figure
 from ir50p_lab.modelling.chain import dh_matrix, dh_table
 
-_MOTIONS = ("turn theta about z", "shift d along z", "shift a along x", "turn alpha about x")
+_MOTIONS = ("turn about z", "shift along z", "shift along x", "turn about x")
 
 
 def walk(arm, q):
     """A frame that does the twelve motions from the base to the tip, for `live`.
 
     Args: arm: Arm; q: (3,) rad, in which it stands.
-    Returns: figure; f(motions) that shows so many of the twelve and returns a sentence.
+    Returns: figure; f(motions) that shows so many of the twelve, names the last in the title, and asks for the next.
     """
     figure = new_figure(7.5, 5.2, projection="3d")
     ArmView(figure.axes[0], arm, q, thickness=5)
-    figure.axes[0].set_title("Four motions a joint carry frame 0 to frame 3")
     figure.axes[0].view_init(elev=22, azim=-30)  # no axis of the walker hides another
     walker = FrameView(figure.axes[0], np.eye(4), length=0.3 * arm.reach)
     rows = dh_table(arm, q)  # theta, d, a, alpha a joint
@@ -28,11 +27,14 @@ def walk(arm, q):
         for row, share in zip(rows, shares, strict=True):
             T = T @ dh_matrix(*(row * share))
         walker.update(T)
-        if motions in (0, 12):
-            return "frame 3 has arrived at the tip" if motions else "frame 0: the base. What comes first?"
-        last = int(np.ceil(motions)) - 1
-        done = ", done. What comes next?" if motions == last + 1 else ""
-        return f"joint {last // 4 + 1}: {_MOTIONS[last % 4]}{done}"
+        joint, motion = divmod(max(int(np.ceil(motions)) - 1, 0), 4)
+        number = rows[joint, motion]
+        size = f"{np.degrees(number):.0f}°" if motion in (0, 3) else f"{number:.3g} m"
+        what = f"{_MOTIONS[motion]} by {size if number else '0: nothing'}"
+        what = f"joint {joint + 1}, motion {motion + 1} of 4: {what}" if motions else "frame 0, at the base"
+        figure.axes[0].set_title(what)
+        ends = {0: "What comes first?", 12: "Frame 3 has arrived at the tip."}
+        return ends.get(motions, "Done. What comes next?" if motions == int(motions) else "")
 
     return figure, go
 

@@ -29,9 +29,17 @@ def test_the_arm_is_drawn_by_the_table(q):
 
 
 def test_the_walker_names_what_it_does_and_never_what_comes_next():
-    _, go = walk(IR50P, np.ones(3))
-    assert go(1.0).startswith("joint 1: turn theta") and go(1.25) == "joint 1: shift d along z"
-    assert go(4.0).startswith("joint 1: turn alpha") and go(12.0) == "frame 3 has arrived at the tip"
+    figure, go = walk(IR50P, np.ones(3))
+    for motions, said in (
+        (0.0, "frame 0, at the base"),
+        (1.0, "joint 1, motion 1 of 4: turn about z by 57°"),
+        (1.25, "joint 1, motion 2 of 4: shift along z by 0.285 m"),
+        (6.0, "joint 2, motion 2 of 4: shift along z by 0: nothing"),
+        (12.0, "joint 3, motion 4 of 4: turn about x by -90°"),
+    ):
+        asks = go(motions)
+        assert figure.axes[0].get_title() == said
+        assert bool(asks) == (motions == int(motions))
 
 
 def test_two_arms_are_seen_from_above_and_from_the_right(q):
