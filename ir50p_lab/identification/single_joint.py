@@ -22,6 +22,7 @@ _OWN_SHARE = 1e-3  # of a column, that must stick out of those before it
 _CLEARLY = 0.95  # of the residual of u held, below which u measured explains the data better
 _ORDER = 3  # of the low passes, forward and again backward
 _OWN = 4.0  # samples per cut-off period that are kept for the regression: more would say the same again
+_TELLS_DELAY = 0.2  # share of what a delay adds to u that no parameter can add, from which on the data tell it
 _DEAD = 0.1  # of the rms speed, below which a joint may stick and a filtered speed has lost its sign
 _ALL_NOISE = 0.3  # noise power over power of the acceleration from which on no inertia is given
 _AGREE = 1.0  # standard errors of inertia and friction at a cut-off, by which half of it may move them
@@ -244,18 +245,23 @@ def _with_other_fits_in_errors(joint, found, held):
     gravity, ripple. If `held` was not given, a u that acts at another instant: by half a period, if the data do not
     tell.
     """
-    others = [joint.fit(found.cutoff_hz, found.held, fewest=found, slower=2.0)]
+    lower = []
     cutoff_hz = found.cutoff_hz / 2
     while cutoff_hz > joint.band.lowest_hz:
-        others.append(joint.fit(cutoff_hz, found.held, fewest=found))
+        lower.append(joint.fit(cutoff_hz, found.held, fewest=found))
         cutoff_hz /= 2
-    pairs = [(other.x, other.stderr) for other in others if other is not None]
+    lower = [one for one in lower if one is not None]
+    faster = joint.fit(found.cutoff_hz, found.held, fewest=found, slower=2.0)
+    pairs = [(other.x, other.stderr) for other in (*lower, faster) if other is not None]
     pairs += found.of_position()
     moved = np.zeros(len(found.x))
     for x, stderr in pairs:
         beyond = np.where(np.isfinite(found.stderr + stderr), (found.x - x) ** 2 - stderr**2, 0.0)
         moved = np.maximum(moved, np.sqrt(np.clip(beyond, 0.0, None)))
-    late = 0.0 if held is not None else found.moved_by_delay(0.5 / joint.rate)
+    late = 0.0
+    if held is None:
+        told = (lower or [found])[-1].tells_delay  # where the jerk has least noise
+        late = found.moved_by_delay(0.5 / joint.rate, told)
     return replace(found, stderr=np.sqrt(found.stderr**2 + moved**2 + late**2 + (_EXACT * found.x) ** 2))
 
 
@@ -312,9 +318,9 @@ class Found:
     def delay(self):
         """Of u behind its record, s, its standard error (inf: not seen), and the rms then left.
 
-        u(t) is then the model at t + delay, about A x + delay d(A x)/dt: without the noise of du/dt.
+        u(t) is then the model at t + delay, about A x + delay d(A x)/dt.
         """
-        return self._beside_delay[2:]
+        return self._with(self._late_column)[2:]
 
     @cached_property
     def lag(self):
@@ -325,18 +331,28 @@ class Found:
         return self._with(self.table.slope)[2:]
 
     @cached_property
-    def _beside_delay(self):
+    def _late_column(self):
+        """d(A x)/dt: what one second of delay adds to u, without the noise of du/dt."""
         terms = [(x, _COLUMNS.index(name)) for name, x in zip(self.names, self.x, strict=True) if name in _COLUMNS]
-        return self._with(sum(x * self.table.rates[:, k] for x, k in terms))
+        return sum(x * self.table.rates[:, k] for x, k in terms)
 
-    def moved_by_delay(self, unsure):
-        """(p,) by which a delay moves the parameters, that is 0 +- unsure s before and known better by the data."""
-        x, _, delay, sigma, _ = self._beside_delay
-        if not math.isfinite(sigma) or delay == 0:
-            return np.zeros(len(x))
-        share = unsure**2 / (unsure**2 + sigma**2)
-        size = math.sqrt((share * delay) ** 2 + share * sigma**2)
-        return np.where(np.isfinite(self.stderr), (x - self.x) / delay * size, 0.0)
+    @property
+    def tells_delay(self):
+        """Whether a delay adds to u what no parameter can: in one sinusoid, inertia seen late is viscous friction."""
+        late = self._late_column
+        alone = late - self.A @ np.linalg.lstsq(self.A, late, rcond=None)[0]
+        return np.linalg.norm(alone) > _TELLS_DELAY * np.linalg.norm(late)
+
+    def moved_by_delay(self, unsure, told):
+        """(p,) by which a delay moves the parameters, that is 0 +- unsure s before and, if told, known better now."""
+        delay, sigma, _ = self.delay
+        size = unsure
+        if told:
+            share = unsure**2 / (unsure**2 + sigma**2)
+            size = math.sqrt((share * delay) ** 2 + share * sigma**2)
+        moved = np.zeros(len(self.x))
+        moved[np.isfinite(self.stderr)] = size * np.linalg.lstsq(self.A, self._late_column, rcond=None)[0]
+        return moved
 
     def of_position(self):
         """[(x, stderr)] beside a polynomial of q: a force that depends on it; [] if there are too few samples."""
