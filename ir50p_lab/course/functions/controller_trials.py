@@ -21,19 +21,15 @@ def _make(cls, **settings):
     return _guarded(lambda: cls(**settings), lambda: f"PID({settings})")
 
 
-def _guarded(do, what=str, pid=None):
-    """What `do` gives; what: function that names the case, called only when it fails; pid: whose step it is."""
+def _guarded(do, what=str):
+    """What `do` gives; what: function that names the case, called only when it fails."""
     try:
         with np.errstate(all="ignore"):
             return do()
     except KeyboardInterrupt:
         raise Failed("it was stopped: does a loop in it never end?", what()) from None
     except Exception as error:
-        says = why_it_stops(error)
-        for name in (name for name, value in getattr(pid, "__dict__", {}).items() if value is None):
-            early = f"in the first step self.{name} is still None. Is it asked first, `if self.{name} is not None:`?"
-            says = says.replace("something in it is None: does a helper lack its `return`?", early)
-        raise Failed(says, what()) from None
+        raise Failed(why_it_stops(error), what()) from None
 
 
 def _run(pid, q, wanted=0.0, speed=0.0):
@@ -52,7 +48,7 @@ def _run(pid, q, wanted=0.0, speed=0.0):
         def what(k=k):
             return f"step({k * _PERIOD:.2f}, {shown(q[k])}, reference), reference = {shown(rows[k])}"
 
-        command = _guarded(lambda k=k: pid.step(k * _PERIOD, q[k].copy(), rows[k].copy()), what, pid)
+        command = _guarded(lambda k=k: pid.step(k * _PERIOD, q[k].copy(), rows[k].copy()), what)
         if says := no_numbers(command, np.zeros(3)):
             raise Failed(says.replace("it returns", "step returns"), what())
         commands[k] = command

@@ -2,6 +2,7 @@
 
 import ast
 import linecache
+import re
 import traceback
 
 import numpy as np
@@ -47,9 +48,11 @@ _REASONS = (  # kind of error, what its message holds, the usual reason
 
 def why_it_stops(error):
     """A sentence on an error: the line, the usual reason, what did not fit together, and Python's own words."""
-    line, operands = _where(error)
+    line, operands, empty = _where(error)
     said = f"Python says {type(error).__name__}: {error}"
     reason = next((why for kind, part, why in _REASONS if kind == type(error).__name__ and part in str(error)), "")
+    if empty and "NoneType" in str(error):
+        reason = f"in the first step {empty} is still None. Is it asked first, `if {empty} is not None:`?"
     if isinstance(error, LabError):
         reason = "an earlier function is given what it cannot take: are its arguments in their order?"
     if line.startswith("raise"):
@@ -66,13 +69,20 @@ def ended(says):
 
 
 def _where(error):
-    """The student's line, and the two operands that do not go together."""
+    """The student's line, the two operands that do not go together, and what of `self` is None there."""
     for frame, number in reversed(list(traceback.walk_tb(error.__traceback__))):
         file = frame.f_code.co_filename
         if file.startswith(ROOM):
             line = linecache.getline(file, number).strip()
-            return line, _operands(line, frame)
-    return "", ""
+            return line, _operands(line, frame), _empty(line, frame)
+    return "", "", ""
+
+
+def _empty(line, frame):
+    """What the controller remembers, if it is None and stands in the line."""
+    memory = getattr(frame.f_locals.get("self"), "__dict__", {})
+    names = (f"self.{name}" for name, value in memory.items() if value is None)
+    return next((name for name in names if re.search(rf"{name}\b", line)), "")
 
 
 def _operands(line, frame):
