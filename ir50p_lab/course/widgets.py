@@ -68,8 +68,8 @@ class LivePanel(widgets.VBox):
             rows.append(row)
         self._start = self.values
         self._update, self._warned = update, set()
-        self._condition = threading.Condition()
-        self._wanted, self._drawer, self._quiet = None, None, 0
+        self._drawing, self._drawer, self._wanted = threading.Lock(), None, None
+        self._quiet = threading.local()
 
         said = io.StringIO()
         with DRAWING:
@@ -100,18 +100,16 @@ class LivePanel(widgets.VBox):
         """
         for name, value in values.items():
             refuse_bad_value(name, value, self.controls)
-        with self._condition:
-            self._quiet += 1
+        self._quiet.on = True
         try:
             for name, value in values.items():
                 self.controls[name].value = value
         finally:
-            with self._condition:
-                self._quiet -= 1
+            self._quiet.on = False
         self._changed()
-        with self._condition:
-            if self._drawer != threading.get_ident():
-                self._condition.wait_for(lambda: self._drawer is None)
+        if self._drawer != threading.get_ident():
+            with self._drawing:  # by another thread: wait for it
+                pass
         if self.error is not None:
             raise self.error
 
@@ -134,29 +132,18 @@ class LivePanel(widgets.VBox):
 
     def _changed(self):
         """Draw the latest values. If a drawing is under way, its thread draws them next: there is no queue."""
-        with self._condition:
-            if self._quiet:
-                return
-            self._wanted = self.values
-            if self._drawer is not None:
-                return
-            self._drawer = threading.get_ident()
-        try:
-            while True:
-                with self._condition:
-                    values, self._wanted = self._wanted, None
-                    if values is None:
-                        self._finish()
-                        return
-                self._draw(values)
-        except BaseException:  # an interrupted kernel must find the panel usable
-            with self._condition:
-                self._finish()
-            raise
-
-    def _finish(self):
-        self._drawer = None
-        self._condition.notify_all()
+        if getattr(self._quiet, "on", False):
+            return
+        self._wanted = self.values
+        while self._wanted is not None and self._drawing.acquire(blocking=False):
+            try:
+                self._drawer = threading.get_ident()
+                values, self._wanted = self._wanted, None
+                if values is not None:
+                    self._draw(values)
+            finally:
+                self._drawer = None
+                self._drawing.release()
 
     def _call_update(self, values, said):
         """Call `update`; what it prints or returns as text, and a warning of an unstable loop, go into `said`."""
