@@ -153,14 +153,15 @@ def grade_run(given, u, q):
 def score(controller, seeds=PRACTICE, arm=None):
     """The Score of a controller on the arms of `seeds`, which everybody may look at. A cut drive is lost (inf)."""
     check_controller(controller)
-    worst = np.zeros((5, 3))
-    for seed in seeds:
-        try:
-            given, recording, q = drive(controller, seed, arm)
-        except LabError as fault:
-            return Score(np.full((5, 3), np.inf), str(fault))
-        worst = np.maximum(worst, grade_run(given, recording.u, q))
-    return Score(worst)
+    try:
+        return score_of([drive(controller, seed, arm) for seed in seeds])
+    except LabError as fault:
+        return Score(np.full((5, 3), np.inf), str(fault))
+
+
+def score_of(runs):
+    """The Score of what `drive` has returned, a list."""
+    return Score(np.max([grade_run(given, recording.u, q) for given, recording, q in runs], axis=0))
 
 
 def contest(controller, name):

@@ -14,15 +14,14 @@ _MARKERS = dict(zip(contest.LIMITS, "osv^D", strict=True))
 
 
 class Practice:
-    """Angles and commands of a practice run, three columns; `update(controller)` drives it anew.
+    """Angles and commands of a run on the first practice arm, three columns; `show(run)` draws it.
 
-    Args: arm: Arm; seed: one of contest.PRACTICE. Attributes: figure; recording, the last run's.
+    Args: arm: Arm. Attributes: figure; recording, the last run's.
     """
 
-    def __init__(self, arm, seed=contest.PRACTICE[0]):
-        self.arm, self.seed = arm, seed
+    def __init__(self, arm):
         self.figure = new_figure(9.6, 4.2, rows=2, cols=3, sharex=True)
-        given = contest.draw(arm, seed)
+        given = contest.draw(arm, contest.PRACTICE[0])
         t = np.append(contest.TIMES, contest.END)
         self._q, self._u = [], []
         for joint, colour in enumerate(_JOINTS):
@@ -41,13 +40,12 @@ class Practice:
         self.figure.axes[3].set_ylabel("command [PWM]")
         self.figure.axes[0].legend(fontsize=7, loc="best")
 
-    def update(self, controller):
-        """Drive the run, draw it; returns the Score of this one arm."""
-        given, self.recording, q = contest.drive(controller, self.seed, self.arm)
+    def show(self, run):
+        """Draw what `contest.drive` has returned."""
+        _, self.recording, q = run
         for joint in range(3):
             self._q[joint].set_data(self.recording.t, q[:, joint])
             self._u[joint].set_data(self.recording.t, self.recording.u[:, joint])
-        return contest.Score(contest.grade_run(given, self.recording.u, q))
 
 
 def gain_sliders(gains):
@@ -70,18 +68,20 @@ def sliders_of(controller, arm, practice):
 
     def update(**values):
         gains = {part: [values[f"{part}{joint}"] for joint in (1, 2, 3)] for part in ("kp", "ki", "kd")}
-        runs = PID(**gains, limit_pwm=255) if compiled else controller
+        pid = PID(**gains, limit_pwm=255) if compiled else controller
         if not compiled:
             for part, value in gains.items():
                 setattr(controller, part, np.array(value, dtype=float))
         try:
-            practice.update(runs)
+            runs = [contest.drive(pid, seed, arm) for seed in contest.PRACTICE]
         except LabError as cut:
             return f"the bench cut the drive: {cut}"
-        found = contest.score(runs, arm=arm)
-        (term, joint), sets = found.decides, (f"({', '.join(f'{x:g}' for x in row)})" for row in gains.values())
-        words = found.fault or f"{term} of joint {joint} decides"
-        return f"score on all three practice arms {found.value:.2f}: {words}\nkp, ki, kd = {', '.join(sets)}"
+        practice.show(runs[0])
+        found = contest.score_of(runs)
+        term, joint = found.decides
+        sets = (f"({', '.join(f'{x:g}' for x in row)})" for row in gains.values())
+        said = f"score on all three practice arms {found.value:.2f}: {term} of joint {joint} decides"
+        return f"{said}\nkp, ki, kd = {', '.join(sets)}"
 
     if compiled:
         return update, "the sliders set your gains; the compiled PID runs, it sent the same commands as your class"

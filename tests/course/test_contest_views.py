@@ -11,14 +11,16 @@ from ir50p_lab.modelling import IR50P
 GAINS = {f"{part}{joint}": value for part, value in (("kp", 900), ("ki", 800), ("kd", 5)) for joint in (1, 2, 3)}
 
 
-def test_practice_draws_the_run_and_scores_it():
+def test_practice_draws_the_run_that_is_scored():
     view = contest_views.Practice(IR50P)
-    found = view.update(PID(900, 800, 5, limit_pwm=255))
-    _, recording, q = contest.drive(PID(900, 800, 5, limit_pwm=255), contest.PRACTICE[0], IR50P)
+    run = contest.drive(PID(900, 800, 5, limit_pwm=255), contest.PRACTICE[0], IR50P)
+    view.show(run)
+    _, recording, q = run
     for joint in range(3):
         np.testing.assert_array_equal(view.figure.axes[joint].lines[-1].get_ydata(), q[:, joint])
         np.testing.assert_array_equal(view.figure.axes[3 + joint].lines[-1].get_ydata(), recording.u[:, joint])
-    assert found.value == contest.score(PID(900, 800, 5, limit_pwm=255), contest.PRACTICE[:1], IR50P).value
+    found = contest.score(PID(900, 800, 5, limit_pwm=255), contest.PRACTICE[:1], IR50P)
+    assert found.value == contest.score_of([run]).value
 
 
 def test_sliders_move_the_students_gains():
