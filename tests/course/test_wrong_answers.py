@@ -139,6 +139,12 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
         ),
         ("step_metrics", "np.abs(q - target) > band", "np.abs(q - np.mean(last_second)) > band", "about the target"),
         ("step_metrics", "np.std(np.diff(last_second)) / np.sqrt(2)", "np.std(q)", "last second"),
+        ("step_metrics", "np.diff(last_second)", "np.diff(q)", "that of the whole run"),
+        ("step_metrics", "0.02", "0.04", "4 % of the way"),
+        ("step_metrics", " / np.sqrt(2)", "", "too wide"),
+        ("step_metrics", "4 * ", "5 * ", "too wide"),
+        ("step_metrics", "np.max(np.sign(jump) * (q - target))", "max(abs(q)) - abs(target)", "sizes"),
+        ("step_metrics", " if np.any(outside) else 0.0", "", "the array is empty"),
         ("damped_step", "[:3]\n", "\n", r"`J @ J.T` has the shape \(6, 6\)"),
         ("damped_step", "np.linalg.solve(A, p - tip)", "((p - tip) / A)", "`/` divides entry by entry"),
         ("reach", ">= -1e-9", "> 0", "exactly on the table, z = 0, are refused"),
@@ -280,6 +286,22 @@ def test_a_result_in_degrees_is_told_though_the_edge_is_wrong_too(capsys):
 def test_no_sentence_says_not_yet_twice(capsys):
     said = told(capsys, "forward_kinematics", text="def forward_kinematics(q, l):\n    return np.cos(q * l) + q**3")
     assert said.count("not yet") == 1 and "0 of 9 inputs" in said
+
+
+def test_crossings_between_two_samples_are_right_too(capsys):
+    text = """def step_metrics(t, q, target):
+    rise, *others = by_samples(t, q, target)
+    done = (q - q[0]) / (target - q[0])
+    if np.any(done >= 0.9):
+        first, last = np.argmax(done >= 0.1), np.argmax(done >= 0.9)
+        rise = np.interp(0.9, done[last - 1:last + 1], t[last - 1:last + 1])
+        rise -= np.interp(0.1, done[first - 1:first + 1], t[first - 1:first + 1])
+    return rise, *others"""
+    check(
+        "step_metrics",
+        cell(solutions.source("step_metrics").replace("step_metrics", "by_samples") + "\n\n\n" + text, "step_metrics"),
+    )
+    assert "from now on my_robot.step_metrics is this function" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("noise", ["0.75 * np.std(np.diff(last_second)) / np.sqrt(2)", "0.75 * np.std(last_second)"])

@@ -53,7 +53,7 @@ def _figures(
     found[1] = max(0.0, np.max(np.sign(way) * (q - about))) if over is None else over(q, target, way)
     width = max(0.02 * abs(way), 4 * _noise(last)) if band is None else band(way, last)
     outside = np.abs(q - (about if rests is None else rests(last))) > width
-    found[2] = _settled(t, outside) if settling is None else settling(t, outside)
+    found[2] = (settling or _settled)(t, outside) if outside.any() else 0.0
     if rest is not None:
         found[3] = rest(q, target, last)
     return tuple(float(one) for one in found)
@@ -69,7 +69,7 @@ _SIZES = (_noise, np.std)  # of the noise: by neighbours, or plainly, where a sw
 def _settled(t, outside):
     if outside[-1]:
         return np.nan
-    return t[np.flatnonzero(outside)[-1] + 1] - t[0] if outside.any() else 0.0
+    return t[np.flatnonzero(outside)[-1] + 1] - t[0]
 
 
 def _first_inside(t, outside):
@@ -103,6 +103,7 @@ def _cases():
         (0.1, 1.1, 4.0, 0.8, 0.0, 0.3),  # rests short of 90 %
         (0.0, 0.8, 5.0, 0.7, 0.002, 0.06),  # rises, and rests outside its band
         (0.0, 0.8, 6.0, 0.005, 0.0, 0.0),  # swings for ever
+        (0.0, 0.02, 6.0, 0.7, 0.012, 0.0),  # never outside its band: all of it is noise
     ):
         q = _second_order(t, start, target, speed=speed, damping=damping, noise=noise, rng=rng, short=short)
         cases.append((t.copy(), q, target))
@@ -118,20 +119,41 @@ def _four(returned):
 
 
 @lru_cache(maxsize=1)
-def _settled_otherwise():
-    """{figures of a case: settling times by other measures of the noise}: these are right as well."""
+def _otherwise():
+    """{figures of a case: (rise times, settling times) by other readings}: these are right as well.
+
+    Other readings: crossings between two samples, other measures of the noise.
+    """
     bands = [lambda way, last, k=k, size=size: max(0.02 * abs(way), k * size(last)) for k in (3, 4) for size in _SIZES]
-    return {repr(step_metrics(*case)): [_figures(*case, band=band)[2] for band in bands] for case in _cases()}
+    return {
+        repr(step_metrics(*case)): ([_between_samples(*case)], [_figures(*case, band=band)[2] for band in bands])
+        for case in _cases()
+    }
+
+
+def _between_samples(t, q, target):
+    """Rise time with both crossings interpolated."""
+    done = (q - q[0]) / (target - q[0])
+    times = []
+    for mark in (0.1, 0.9):
+        k = int(np.argmax(done >= mark))
+        if done[k] < mark:
+            return np.nan
+        times.append(t[k - 1] + (mark - done[k - 1]) / (done[k] - done[k - 1]) * (t[k] - t[k - 1]))
+    return times[1] - times[0]
 
 
 def _same(returned, expected):
     """The same four numbers, as a tuple or an array; times to a thousandth of a second."""
-    values = _four(returned)
-    if values is None:
+    values, right = _four(returned), _four(expected)
+    if values is None or right is None:
         return False
-    others = _settled_otherwise().get(repr(expected), ())
-    rows = [expected, *([*expected[:2], settled, expected[3]] for settled in others)]
-    return any(np.allclose(values, row, atol=_TOLERANCE, rtol=0, equal_nan=True) for row in rows)
+    rises, settlings = _otherwise().get(repr(expected), ((), ()))
+    readings = ([right[0], *rises], [right[1]], [right[2], *settlings], [right[3]])
+    return all(
+        np.isclose(value, reading, atol=tolerance, rtol=0, equal_nan=True).any()
+        for value, reading, tolerance in zip(values, readings, _TOLERANCE, strict=True)
+    )
 
 
 def _symptom(cases, returned, expected):
@@ -154,7 +176,8 @@ def _symptom(cases, returned, expected):
         step = f"a step from {q[0]:.2f} to {target:.2f} rad"
         usual = mine / theirs if theirs else 1.0
         if (
-            abs(np.log10(abs(usual) + 1e-9)) > 1.3
+            usual
+            and abs(np.log10(abs(usual))) > 1.3
             and np.mean(np.isclose(found[:, k], usual * right[:, k], rtol=1e-3)) > 0.5
         ):
             return f"the {name} is {usual:.3g} times what it should be: in which unit is it?"
@@ -165,7 +188,7 @@ def _symptom(cases, returned, expected):
         if np.isnan(theirs):
             return f"the {name} of {step} that never gets there is {mine:.3g}: what never happens has no time, nan"
         if np.isnan(mine):
-            return f"the {name} of {step} is nan with you, though the joint gets there"
+            return f"the {name} of {step} is nan with you; by the definition it is {theirs:.3g}"
         return f"the {name} is wrong, first at {step}: yours is {mine:.3g}, by the definition it is {theirs:.3g}"
     return ""
 
@@ -232,12 +255,13 @@ STEP_METRICS = Task(
               rests=np.mean),
         *(
             Mistake(
-                lambda t, q, target, k=k: _figures(
-                    t, q, target, band=lambda way, last: max(0.02 * abs(way), k * np.std(q))
+                lambda t, q, target, k=k, size=size: _figures(
+                    t, q, target, band=lambda way, last: max(0.02 * abs(way), k * size(q))
                 ),
                 "the band is that of the whole run, the step itself counts as noise: take the last second",
             )
             for k in (3, 4)
+            for size in _SIZES
         ),
         Mistake(
             lambda t, q, target: _figures(
@@ -265,13 +289,19 @@ STEP_METRICS = Task(
               band=lambda way, last: 0.02 * abs(way)),
         _slip("the band is 4 standard deviations only: without noise it has no width, and 2 % of the way is allowed",
               band=lambda way, last: 4 * _noise(last)),
-        _slip("the difference of two samples has the noise of both: divide its standard deviation by the root of 2",
+        _slip("the band is too wide: the difference of two samples has the noise of both, the root of 2 more than one",
               band=lambda way, last: max(0.02 * abs(way), 4 * np.std(np.diff(last)))),
         _slip("the band is 2 % and the noise together; asked is the wider of the two",
               band=lambda way, last: 0.02 * abs(way) + 4 * _noise(last)),
-        _slip(
-            "the band is 5 % of the way; asked is 2 %", band=lambda way, last: max(0.05 * abs(way), 4 * _noise(last))
+        *(
+            _slip(f"the band is {percent} % of the way; asked is 2 %",
+                  band=lambda way, last, part=percent / 100: max(part * abs(way), 4 * _noise(last)))
+            for percent in (1, 4, 5, 10)
         ),
+        _slip("it counts to the last sample inside; asked is the first after which the joint stays inside",
+              settling=lambda t, outside: np.nan if outside[-1] else t[np.flatnonzero(~outside)[-1]] - t[0]),
+        _slip("the overshoot compares sizes without their sign: a step that passes 0 shows it",
+              over=lambda q, target, way: max(0.0, np.max(np.abs(q)) - abs(target))),
         _slip("for steps downwards the band has a negative width, so the joint is never inside: how *long* is the way?",
               band=lambda way, last: max(0.02 * way, 4 * _noise(last))),
         _slip("it is settled when it is inside for the first time; a joint that swings leaves the band again",
