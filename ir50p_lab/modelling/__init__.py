@@ -11,7 +11,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "actuators": ["Actuators"],
         "arm": ["Arm"],
         "chain": ["dh_matrix", "dh_table", "forward_kinematics", "frames", "transform"],
-        "differential": ["Singularity", "jacobian", "manipulability", "singularity"],
+        "differential": ["jacobian", "singularity"],
         "dynamics": [
             "Energy",
             "bias",
@@ -31,7 +31,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "inertia": [
             "Body",
             "Solid",
-            "box",
             "cylinder",
             "integrate_solid",
             "rod",
@@ -54,11 +53,8 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "SEQUENCES",
             "GimbalLock",
             "angles_from_rotation",
-            "check_rotation",
-            "check_transform",
             "gimbal_lock",
             "homogeneous",
-            "inverse_transform",
             "rate_matrix",
             "rot_x",
             "rot_y",

@@ -2,7 +2,7 @@
 
 import dataclasses
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -46,17 +46,20 @@ class Arm:
     """
 
     name: str = "my arm"
-    l: tuple
-    m: tuple
-    lc: tuple
-    Ixx: tuple = (0.0, 0.0, 0.0)
-    Iyy: tuple = (0.0, 0.0, 0.0)
-    Izz: tuple = (0.0, 0.0, 0.0)
+    l: tuple = field(metadata={"comment": "m: column height, upper arm, forearm"})
+    m: tuple = field(metadata={"comment": "kg"})
+    lc: tuple = field(metadata={"comment": "m: centre of mass on the link axis, from the joint (link 1: height)"})
+    Ixx: tuple = field(
+        default=(0.0, 0.0, 0.0),
+        metadata={"comment": "kg m^2, about the centre of mass; x along links 2 and 3, z along the joint axis"},
+    )
+    Iyy: tuple = field(default=(0.0, 0.0, 0.0), metadata={"comment": "kg m^2"})
+    Izz: tuple = field(default=(0.0, 0.0, 0.0), metadata={"comment": "kg m^2 (link 1: about the column)"})
     friction: Friction = Friction()
     actuators: Actuators | None = None
-    q_min: tuple = (-np.inf, -np.inf, -np.inf)
-    q_max: tuple = (np.inf, np.inf, np.inf)
-    g: float = 9.81
+    q_min: tuple = field(default=(-np.inf, -np.inf, -np.inf), metadata={"comment": "rad"})
+    q_max: tuple = field(default=(np.inf, np.inf, np.inf), metadata={"comment": "rad"})
+    g: float = field(default=9.81, metadata={"comment": "m/s^2"})
 
     def __post_init__(self):
         if not isinstance(self.name, str) or "$" in self.name:
@@ -123,28 +126,21 @@ class Arm:
         Raises ArmError if a centre of mass is off the link axis or a tensor has products of inertia
         (1.104 corrected: I = [[Ixx, -Ixy, -Ixz], ...]).
         """
-        com = vectors3("com", com, unit="m")
-        inertia = np.asarray(inertia, dtype=float)
+        com, inertia = vectors3("com", com, unit="m"), np.asarray(inertia, dtype=float)
         if com.shape != (3, 3) or inertia.shape != (3, 3, 3) or not np.isfinite(inertia).all():
             raise ArmError(f"com has shape {com.shape}, inertia {inertia.shape}; give (3, 3) and (3, 3, 3), all finite")
-        lc = []
+        along = (2, 0, 0)  # the link's own axis: z of the column, x of the others
         for i in range(3):
-            axis = 2 if i == 0 else 0
-            off_axis = np.hypot(*np.delete(com[i], axis))
-            scale = max(np.abs(inertia[i]).max(), 1e-30)
-            if off_axis > 1e-9:
+            beside = np.hypot(*np.delete(com[i], along[i]))
+            product = np.abs(inertia[i] - np.diag(np.diag(inertia[i]))).max()
+            if beside > 1e-9 or product > 1e-9 * np.abs(inertia[i]).max():
                 raise ArmError(
-                    f"the centre of mass of link {i + 1} is {off_axis:.3g} m off the link axis; the 20 parameters "
-                    "theta hold only links whose centre of mass is on it. derive(general=True) derives the others"
+                    f"the centre of mass of link {i + 1} is {beside:.3g} m off the link axis and its products of "
+                    f"inertia reach {product:.3g} kg m^2; the 20 parameters theta hold only links in line, which have "
+                    "neither. derive(general=True) derives the others"
                 )
-            if np.abs(inertia[i] - np.diag(np.diag(inertia[i]))).max() > 1e-9 * scale:
-                raise ArmError(
-                    f"the inertia tensor of link {i + 1} has products of inertia; the 20 parameters theta hold only "
-                    "links that are symmetric about their axis planes. derive(general=True) derives the others"
-                )
-            lc.append(com[i, axis])
-        Ixx, Iyy, Izz = (inertia[:, k, k] for k in range(3))
-        return cls(l=l, m=m, lc=lc, Ixx=Ixx, Iyy=Iyy, Izz=Izz, **options)
+        Ixx, Iyy, Izz = np.diagonal(inertia, axis1=1, axis2=2).T
+        return cls(l=l, m=m, lc=com[range(3), along], Ixx=Ixx, Iyy=Iyy, Izz=Izz, **options)
 
     @property
     def reach(self):

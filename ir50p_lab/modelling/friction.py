@@ -1,11 +1,11 @@
 """Joint friction: viscous, Coulomb, Stribeck and a constant offset (1.115)-(1.117)."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
 from ir50p_lab.errors import ArmError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import vector3, vectors3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,18 +25,18 @@ class Friction:
     Raises ArmError if a coefficient is negative, if fs < fc, or if a Stribeck velocity is not positive.
     """
 
-    fv: tuple = (0.0, 0.0, 0.0)
-    fc: tuple = (0.0, 0.0, 0.0)
-    fs: tuple | None = None
-    qs: tuple = (0.05, 0.05, 0.05)
-    Tf: tuple = (0.0, 0.0, 0.0)
+    fv: tuple = field(default=(0.0, 0.0, 0.0), metadata={"comment": "N m s/rad, viscous"})
+    fc: tuple = field(default=(0.0, 0.0, 0.0), metadata={"comment": "N m, Coulomb"})
+    fs: tuple | None = field(default=None, metadata={"comment": "N m, breakaway (>= fc)"})
+    qs: tuple = field(default=(0.05, 0.05, 0.05), metadata={"comment": "rad/s, Stribeck velocity"})
+    Tf: tuple = field(default=(0.0, 0.0, 0.0), metadata={"comment": "N m, offset"})
 
     def __post_init__(self):
         if self.fs is None:
             object.__setattr__(self, "fs", self.fc)
-        for field in fields(self):
-            values = vectors3(f"friction {field.name}", getattr(self, field.name), unit="N m, rad/s")
-            object.__setattr__(self, field.name, tuple(values.tolist()))
+        for name in (each.name for each in fields(self)):
+            values = vector3(f"friction {name}", getattr(self, name), unit="N m, rad/s")
+            object.__setattr__(self, name, tuple(values.tolist()))
         for joint in range(3):
             for name in ("fv", "fc"):
                 if getattr(self, name)[joint] < 0:

@@ -7,7 +7,6 @@ import sympy
 
 from ir50p_lab.errors import ArmError, InputError
 from ir50p_lab.modelling.arm import refuse_impossible_inertia
-from ir50p_lab.modelling.pose import check_rotation
 
 _TOLERANCE = 1e-9  # relative: rounding in tensors that were rotated or moved
 
@@ -85,13 +84,6 @@ def integrate_solid(name, p, limits, *, volume_element=1):
     return Solid(name, m, sizes, volume, sympy.ImmutableMatrix(com), sympy.ImmutableMatrix(about_com))
 
 
-def box():
-    """A box with edges a, b, c along x, y, z."""
-    a, b, c = sympy.symbols("a b c", positive=True)
-    x, y, z = sympy.symbols("x y z", real=True)
-    return integrate_solid("box", (x, y, z), [(x, -a / 2, a / 2), (y, -b / 2, b / 2), (z, -c / 2, c / 2)])
-
-
 def cylinder():
     """A solid cylinder of radius R and length L along x."""
     R = sympy.Symbol("R", positive=True)
@@ -123,7 +115,7 @@ class Body:
     """A rigid body in numbers: mass kg, com (3,) m, inertia (3, 3) kg m^2 about the centre of mass.
 
     The inertia tensor is I = [[Ixx, -Ixy, -Ixz], [-Ixy, Iyy, -Iyz], [-Ixz, -Iyz, Izz]] (1.104 corrected).
-    Bodies can be moved, rotated and added: a link is a tube plus a motor.
+    Bodies can be moved and added: a link is a tube plus a motor.
 
     Raises InputError on wrong shapes, ArmError for a tensor that no rigid body has (not symmetric, a negative
     principal moment, or one larger than the sum of the other two).
@@ -163,17 +155,8 @@ class Body:
         """The same body shifted by (3,) m; its inertia about its own centre of mass stays."""
         return Body(self.mass, self.com + np.asarray(by, dtype=float), self.inertia)
 
-    def rotated(self, R):
-        """The same body turned about the origin by the rotation matrix R (3, 3): R I R^T. Raises InputError."""
-        R = check_rotation(R)
-        return Body(self.mass, R @ self.com, R @ self.inertia @ R.T)
-
     def __add__(self, other):
         """Both bodies as one: masses add, tensors add about the common centre of mass."""
-        if not isinstance(other, Body):
-            return NotImplemented
         mass = self.mass + other.mass
-        if mass == 0:
-            return Body(0.0, (self.com + other.com) / 2, self.inertia + other.inertia)
         com = (self.mass * self.com + other.mass * other.com) / mass
         return Body(mass, com, self.about(com) + other.about(com))

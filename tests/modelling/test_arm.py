@@ -81,7 +81,7 @@ def test_full_rigid_bodies_are_taken_or_refused():
         Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=beside, inertia=inertia)
     skewed = inertia.copy()
     skewed[2, 0, 1] = skewed[2, 1, 0] = 0.002
-    with pytest.raises(ArmError, match="link 3 has products of inertia"):
+    with pytest.raises(ArmError, match=r"link 3 .* products of inertia reach 0\.002"):
         Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=com, inertia=skewed)
     with pytest.raises(ArmError, match=r"\(3, 3, 3\)"):
         Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=com, inertia=inertia[0])
