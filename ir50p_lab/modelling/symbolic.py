@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import sympy
@@ -10,7 +11,6 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vector3
 from ir50p_lab.modelling import symbolic_steps as steps
 from ir50p_lab.modelling.symbolic_display import Formulas, short_names
-from ir50p_lab.modelling.trig_ring import TrigRing
 
 _PAIRS = ("xx", "yy", "zz", "xy", "xz", "yz")
 _COM_AND_INERTIA = {
@@ -198,36 +198,39 @@ def derive(*, links="in-line", general=False):
     q, qd, qdd = (sympy.ImmutableMatrix(sympy.symbols(f"{name}1:4", real=True)) for name in ("q", "qdot", "qddot"))
     com_names, inertia_names = _COM_AND_INERTIA[links]
     names = ["g", *f"l1 l2 l3 m1 m2 m3 {com_names} {inertia_names} j1 j2 j3".split()]
-    ring = TrigRing(q, names)
-    body_like = {name for name in names if name[0] in "mIj"}
+    symbols = {name: sympy.Symbol(name, real=True) for name in names}
+    by = [symbols[name] for name in names if name[0] in "mIj"]
 
-    def matrix(rows):
-        return sympy.ImmutableMatrix([[ring.to_sympy(p, by=body_like) for p in row] for row in rows])
+    @cache  # the same sums come back
+    def formula(expression):
+        return steps.ordered(expression, by)
 
-    frames, rotations = steps.chain(ring)
-    centres, tensors = steps.bodies(ring, links, frames, rotations)
-    Jv = [steps.jacobian(ring, p) for p in centres]
-    Jw = steps.angular_jacobians(ring, frames)
-    Jv_tip = steps.jacobian(ring, [row[3] for row in frames[3][:3]])
-    M = steps.mass_matrix(ring, Jv, Jw, tensors)
-    U = steps.potential(ring, centres)
-    b = [[[ring.to_sympy(p, by=body_like) for p in row] for row in block] for block in steps.christoffel(ring, M)]
-    C = [[sympy.Add(*[b[i][j][k] * qd[k] for k in range(3)]) for j in range(3)] for i in range(3)]
+    frames, rotations = steps.chain(q, *(symbols[name] for name in ("l1", "l2", "l3")))
+    centres, tensors = steps.bodies(symbols, links, frames, rotations)
+    Jv = [p.jacobian(q) for p in centres]
+    Jw = steps.angular_jacobians(frames)
+    M = steps.mass_matrix(q, symbols, Jv, Jw, tensors).applyfunc(formula)
+    b = [[list(map(formula, row)) for row in block] for block in steps.christoffel(q, M)]
+    potential = formula(symbols["g"] * sum(symbols[f"m{i + 1}"] * centres[i][2] for i in range(3)))
+
+    def tidy(matrix):
+        return sympy.ImmutableMatrix(matrix.applyfunc(sympy.factor_terms))
+
     return SymbolicModel(
         links=links,
         q=q,
         qd=qd,
         qdd=qdd,
-        symbols=ring.symbols,
-        frames=tuple(matrix(T) for T in frames),
-        J=matrix(Jv_tip + Jw[2]),
-        com=tuple(matrix([[x] for x in p]) for p in centres),
-        Jv=tuple(map(matrix, Jv)),
-        Jw=tuple(map(matrix, Jw)),
-        M=matrix(M),
-        C=sympy.ImmutableMatrix(C),
-        g=matrix([[ring.reduce(ring.diff(U, i))] for i in range(3)]),
-        potential=ring.to_sympy(U, by=body_like),
+        symbols=symbols,
+        frames=tuple(map(tidy, frames)),
+        J=tidy(frames[3][:3, 3].jacobian(q).col_join(Jw[2])),
+        com=tuple(map(tidy, centres)),
+        Jv=tuple(map(tidy, Jv)),
+        Jw=tuple(map(tidy, Jw)),
+        M=sympy.ImmutableMatrix(M),
+        C=sympy.ImmutableMatrix(3, 3, lambda i, j: sympy.Add(*[b[i][j][k] * qd[k] for k in range(3)])),
+        g=sympy.ImmutableMatrix([formula(potential.diff(angle)) for angle in q]),
+        potential=potential,
         _b=b,
     )
 
