@@ -65,16 +65,9 @@ class Actuators:
         for name, values in (("stall_torque", stall_torque), ("no_load_speed", no_load_speed), ("N", N)):
             if (values <= 0).any():
                 raise ArmError(f"{name} = {values.tolist()}: every value must be positive")
+        Jm = vector3("reflected_inertia", reflected_inertia, unit="kg m^2") / N**2
         k = V / (N * no_load_speed)
-        return cls(
-            N=N,
-            Jm=vector3("reflected_inertia", reflected_inertia, unit="kg m^2") / N**2,
-            kt=k,
-            ke=k,
-            Ra=k * N * V / stall_torque,
-            V=V,
-            limit_pwm=limit_pwm,
-        )
+        return cls(N=N, Jm=Jm, kt=k, ke=k, Ra=k * N * V / stall_torque, V=V, limit_pwm=limit_pwm)
 
     def _array(self, name):
         return np.array(getattr(self, name))

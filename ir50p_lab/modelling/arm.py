@@ -227,17 +227,15 @@ def refuse_impossible_inertia(who, principal):
 
     None may be negative and none larger than the sum of the other two: Ixx + Iyy - Izz = 2 int z^2 dm >= 0.
     """
-    named = dict(zip(("Ixx", "Iyy", "Izz"), principal, strict=True))
-    for axis, value in named.items():
-        if value < 0:
-            raise ArmError(f"{axis} of {who} is {value} kg m^2: a moment of inertia cannot be negative")
-    for axis, value in named.items():
-        others = sum(principal) - value
-        if value > others + _RELATIVE_SLACK * sum(principal):
-            raise ArmError(
-                f"{axis} = {value:.6g} kg m^2 of {who} exceeds the sum of the other two, {others:.6g}: "
-                "no rigid body has that (triangle inequality). Check the axes: x runs along links 2 and 3"
-            )
+    (least, least_axis), _, (most, most_axis) = sorted(zip(principal, ("Ixx", "Iyy", "Izz"), strict=True))
+    if least < 0:
+        raise ArmError(f"{least_axis} of {who} is {least} kg m^2: a moment of inertia cannot be negative")
+    others = sum(principal) - most
+    if most > others + _RELATIVE_SLACK * sum(principal):
+        raise ArmError(
+            f"{most_axis} = {most:.6g} kg m^2 of {who} exceeds the sum of the other two, {others:.6g}: "
+            "no rigid body has that (triangle inequality). Check the axes: x runs along links 2 and 3"
+        )
 
 
 def read_only(array):

@@ -12,14 +12,11 @@ from ir50p_lab.inputs import vector3
 from ir50p_lab.modelling import symbolic_steps as steps
 from ir50p_lab.modelling.symbolic_display import Formulas, short_names
 
-_PAIRS = ("xx", "yy", "zz", "xy", "xz", "yz")
 _COM_AND_INERTIA = {
-    "in-line": ("lc1 lc2 lc3", "Izz1 Ixx2 Iyy2 Izz2 Ixx3 Iyy3 Izz3"),
-    "general": (
-        " ".join(axis + i for i in "123" for axis in "xyz"),
-        " ".join(f"I{pair}{i}" for i in "123" for pair in _PAIRS),
-    ),
-    "thesis": ("lc1 lc2 lc3", "Izz1 Iyy2 Izz2 Iyz2 Iyy3 Izz3 Iyz3"),
+    "in-line": "lc1 lc2 lc3 Izz1 Ixx2 Iyy2 Izz2 Ixx3 Iyy3 Izz3",
+    "general": "x1 y1 z1 x2 y2 z2 x3 y3 z3 "
+    "Ixx1 Iyy1 Izz1 Ixy1 Ixz1 Iyz1 Ixx2 Iyy2 Izz2 Ixy2 Ixz2 Iyz2 Ixx3 Iyy3 Izz3 Ixy3 Ixz3 Iyz3",
+    "thesis": "lc1 lc2 lc3 Izz1 Iyy2 Izz2 Iyz2 Iyy3 Izz3 Iyz3",
 }
 
 
@@ -81,18 +78,9 @@ class SymbolicModel:
         return (self.qd.T * self.M * self.qd)[0] / 2
 
     @property
-    def energy(self):
-        """Total energy, kinetic plus potential, J."""
-        return self.kinetic + self.potential
-
-    @property
     def tau(self):
         """Joint torque M qdd + C qd + g of the arm without friction, (3, 1) N m (1.74)."""
         return self.M * self.qdd + self.h + self.g
-
-    def short(self, expression):
-        """`expression` with c_{2} for cos(q2), s_{23} for sin(q2 + q3) ...: shorter to read, only for display."""
-        return sympy.sympify(expression).xreplace(short_names(self.q))
 
     def read(self, name):
         """The entries of "M", "C", "g", "h" or "tau" as equations to read, without zeros: Formulas.
@@ -102,7 +90,8 @@ class SymbolicModel:
         """
         if name not in ("M", "C", "g", "h", "tau"):
             raise InputError(f"read({name!r}): choose 'M', 'C', 'g', 'h' or 'tau'")
-        matrix, letter = self.short(getattr(self, name)), {"tau": r"\tau"}.get(name, name)
+        matrix = getattr(self, name).xreplace(short_names(self.q))
+        letter = {"tau": r"\tau"}.get(name, name)
         rows = []
         for i in range(3):
             for j in range(matrix.shape[1]):
@@ -121,7 +110,15 @@ class SymbolicModel:
         Raises InputError for an unknown or missing name, a number that is not finite, or an Arm where `links`
         is "thesis" (its constant inertias belong to no rigid body: give a mapping).
         """
-        given = dict(arm) if isinstance(arm, Mapping) else _from_arm(arm, self.links)
+        if isinstance(arm, Mapping):
+            given = arm
+        elif self.links == "thesis":
+            raise InputError(
+                "the thesis' model holds constant products of inertia, which an Arm cannot: give a mapping of "
+                "parameter names to numbers, or use derive() for this arm"
+            )
+        else:
+            given = {name: value for name, value in _from_arm(arm).items() if name in self.symbols}
         for name, value in given.items():
             if name not in self.symbols:
                 raise InputError(f"{name!r} is no parameter of this model; it has {', '.join(self.symbols)}")
@@ -138,23 +135,22 @@ class SymbolicModel:
         """The formulas as functions of numbers, for `arm` (see `values`): a NumericModel."""
         values, parameters = self.values(arm), list(self.symbols.values())
 
-        def function(formula, *state, shape=None):
+        def function(formula, *state):
             compiled = sympy.lambdify([*map(list, state), parameters], formula, "numpy", cse=True)
 
             def of_numbers(*numbers):
                 checked = [vector3(letter, x) for letter, x in zip(("q", "qd"), numbers, strict=False)]
-                result = np.array(compiled(*checked, values), dtype=float)
-                return result if shape is None else result.reshape(shape)
+                return np.squeeze(np.array(compiled(*checked, values), dtype=float))
 
             return of_numbers
 
         return NumericModel(
             M=function(self.M, self.q),
             C=function(self.C, self.q, self.qd),
-            g=function(self.g, self.q, shape=3),
-            p=function(self.frames[3][:3, 3], self.q, shape=3),
+            g=function(self.g, self.q),
+            p=function(self.frames[3][:3, 3], self.q),
             J=function(self.J, self.q),
-            energy=function(self.energy, self.q, self.qd, shape=()),
+            energy=function(self.kinetic + self.potential, self.q, self.qd),
         )
 
 
@@ -196,8 +192,7 @@ def derive(*, links="in-line", general=False):
     if links not in _COM_AND_INERTIA:
         raise InputError(f"links = {links!r}: choose one of {', '.join(map(repr, _COM_AND_INERTIA))}")
     q, qd, qdd = (sympy.ImmutableMatrix(sympy.symbols(f"{name}1:4", real=True)) for name in ("q", "qdot", "qddot"))
-    com_names, inertia_names = _COM_AND_INERTIA[links]
-    names = ["g", *f"l1 l2 l3 m1 m2 m3 {com_names} {inertia_names} j1 j2 j3".split()]
+    names = f"g l1 l2 l3 m1 m2 m3 {_COM_AND_INERTIA[links]} j1 j2 j3".split()
     symbols = {name: sympy.Symbol(name, real=True) for name in names}
     by = [symbols[name] for name in names if name[0] in "mIj"]
 
@@ -256,23 +251,13 @@ def same_function(a, b):
     return sympy.expand(difference) == 0
 
 
-def _from_arm(arm, links):
-    """The numbers of an Arm by parameter name."""
-    if links == "thesis":
-        raise InputError(
-            "the thesis' model holds constant products of inertia, which an Arm cannot: give a mapping of "
-            "parameter names to numbers, or use derive() for this arm"
-        )
-    numbers = {"g": arm.g}
+def _from_arm(arm):
+    """The numbers of an Arm by parameter name, for in-line and for general links."""
     rotors = (0.0, 0.0, 0.0) if arm.actuators is None else arm.actuators.reflected_inertia
+    numbers = {"g": arm.g}
     for i in range(3):
-        numbers |= {f"l{i + 1}": arm.l[i], f"m{i + 1}": arm.m[i], f"j{i + 1}": rotors[i]}
-        numbers |= {f"I{axis}{i + 1}": getattr(arm, f"I{axis}")[i] for axis in ("xx", "yy", "zz")}
-        if links == "general":
-            numbers |= {f"{axis}{i + 1}": 0.0 for axis in "xyz"}
-            numbers["z1" if i == 0 else f"x{i + 1}"] = arm.lc[i]
-        else:
-            numbers[f"lc{i + 1}"] = arm.lc[i]
-    if links == "in-line":  # the column only turns about its own axis
-        del numbers["Ixx1"], numbers["Iyy1"]
+        com = dict.fromkeys("xyz", 0.0) | {"z" if i == 0 else "x": arm.lc[i]}
+        link = {"l": arm.l[i], "m": arm.m[i], "j": rotors[i], "lc": arm.lc[i], **com}
+        link |= {name: getattr(arm, name)[i] for name in ("Ixx", "Iyy", "Izz")}
+        numbers |= {f"{name}{i + 1}": value for name, value in link.items()}
     return numbers

@@ -20,12 +20,6 @@ class Formulas:
     def __init__(self, rows):
         self.rows = tuple(rows)
 
-    def __iter__(self):
-        return iter(self.rows)
-
-    def __len__(self):
-        return len(self.rows)
-
     def __repr__(self):
         return "\n".join(f"{re.sub('[{}]', '', name)} = {expression}" for name, expression in self.rows)
 
