@@ -16,15 +16,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "friction": ["Friction", "friction_torque"],
         "ik": ["inverse_kinematics", "reachability"],
         "inertia": ["Body", "cylinder", "integrate_solid", "rod", "second_moment_tensor", "tube"],
-        "named_arms": [
-            "IR50P",
-            "IR50P_WEAK_SHOULDER",
-            "THESIS_A",
-            "THESIS_C",
-            "THESIS_RODS",
-            "load_arm",
-            "thesis_theta",
-        ],
+        "named_arms": ["IR50P", "IR50P_WEAK_SHOULDER", "THESIS_A", "THESIS_C", "THESIS_RODS", "load_arm"],
         "symbolic": ["derive", "same_function"],
         "pose": [
             "CARDANIAN",

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ir50p_lab.errors import ArmError, SuspiciousArmWarning
-from ir50p_lab.inputs import vector3, vectors3
+from ir50p_lab.inputs import number, vector3, vectors3
 from ir50p_lab.modelling.actuators import Actuators
 from ir50p_lab.modelling.arm_file import read_arm, write_arm
 from ir50p_lab.modelling.friction import Friction
@@ -71,9 +71,8 @@ class Arm:
             if values.shape != (3,) or np.isnan(values).any():
                 raise ArmError(f"{name} = {getattr(self, name)!r}: give three angles in rad (inf for no limit)")
             object.__setattr__(self, name, tuple(values.tolist()))
-        object.__setattr__(self, "g", float(self.g))
-        if not (np.isfinite(self.g) and self.g >= 0):
-            raise ArmError(f"g = {self.g} m/s^2 must be >= 0: the base z axis points up")
+        g = number("g", self.g, ">= 0", unit="m/s^2", hint="the base z axis points up")
+        object.__setattr__(self, "g", g)
         self._refuse_impossible()
         for text in self.suspicions:
             warnings.warn(f"{self.name}: {text}", SuspiciousArmWarning, stacklevel=3)

@@ -6,7 +6,7 @@ import numpy as np
 import sympy
 
 from ir50p_lab.errors import ArmError, InputError
-from ir50p_lab.modelling.arm import refuse_impossible_inertia
+from ir50p_lab.modelling.arm import read_only, refuse_impossible_inertia
 
 _TOLERANCE = 1e-9  # relative: rounding in tensors that were rotated or moved
 
@@ -138,9 +138,8 @@ class Body:
         principal = np.linalg.eigvalsh(inertia)
         principal[np.abs(principal) < _TOLERANCE * np.abs(principal).max()] = 0.0  # a slender rod has an exact zero
         refuse_impossible_inertia("the body (principal axes)", principal)
-        for name, array in (("com", com), ("inertia", inertia)):
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
+        object.__setattr__(self, "com", read_only(com))
+        object.__setattr__(self, "inertia", read_only(inertia))
         object.__setattr__(self, "mass", float(self.mass))
 
     def about(self, point=(0.0, 0.0, 0.0)):

@@ -65,12 +65,10 @@ class SymbolicModel:
     @property
     def h(self):
         """Centrifugal and Coriolis torque C(q, qd) qd, (3, 1) N m, sorted by products of velocities (1.97)."""
-        rows = []
-        for b in self._b:
-            squares = [b[j][j] * self.qd[j] ** 2 for j in range(3)]
-            mixed = [sympy.Mul(2, b[j][k], self.qd[j], self.qd[k]) for j, k in ((0, 1), (0, 2), (1, 2))]
-            rows.append(sympy.Add(*squares, *mixed))
-        return sympy.ImmutableMatrix(rows)
+        pairs = [(j, k) for j in range(3) for k in range(j, 3)]
+        return sympy.ImmutableMatrix(
+            [sympy.Add(*[sympy.Mul(1 + (j != k), b[j][k], self.qd[j], self.qd[k]) for j, k in pairs]) for b in self._b]
+        )
 
     @property
     def kinetic(self):
@@ -132,7 +130,7 @@ class SymbolicModel:
         return [float(given.get(name, 0.0)) for name in self.symbols]
 
     def numeric(self, arm):
-        """The formulas as functions of numbers, for `arm` (see `values`): a NumericModel."""
+        """M, C and g as functions of numbers, for `arm` (see `values`): a NumericModel."""
         values, parameters = self.values(arm), list(self.symbols.values())
 
         def function(formula, *state):
@@ -148,9 +146,6 @@ class SymbolicModel:
             M=function(self.M, self.q),
             C=function(self.C, self.q, self.qd),
             g=function(self.g, self.q),
-            p=function(self.frames[3][:3, 3], self.q),
-            J=function(self.J, self.q),
-            energy=function(self.kinetic + self.potential, self.q, self.qd),
         )
 
 
@@ -158,16 +153,12 @@ class SymbolicModel:
 class NumericModel:
     """The symbolic model evaluated in numbers: an independent route, not a fast one. q rad, qd rad/s, both (3,).
 
-    M(q): mass matrix, (3, 3) kg m^2; C(q, qd): Coriolis matrix, (3, 3) N m s/rad; g(q): gravity torque, (3,) N m;
-    p(q): tip in the base frame, (3,) m; J(q): geometric Jacobian of the tip, (6, 3); energy(q, qd): in all, J.
+    M(q): mass matrix, (3, 3) kg m^2; C(q, qd): Coriolis matrix, (3, 3) N m s/rad; g(q): gravity torque, (3,) N m.
     """
 
     M: Callable
     C: Callable
     g: Callable
-    p: Callable
-    J: Callable
-    energy: Callable
 
 
 def derive(*, links="in-line", general=False):
@@ -233,7 +224,7 @@ def derive(*, links="in-line", general=False):
 def same_function(a, b):
     """True if two formulas are the same function of the angles, proved exactly (not by trying numbers).
 
-    Sines and cosines of sums are expanded, then s^2 = 1 - c^2 leaves one form only.
+    Written with exponentials and expanded, such a function has one form only.
 
     Args:
         a, b: sympy expressions, or matrices of one shape, polynomial in sines and cosines of sums of symbols.
@@ -241,13 +232,7 @@ def same_function(a, b):
     if isinstance(a, sympy.MatrixBase) or isinstance(b, sympy.MatrixBase):
         a, b = sympy.Matrix(a), sympy.Matrix(b)
         return a.shape == b.shape and all(map(same_function, a, b))
-    difference = sympy.expand(sympy.sympify(a) - b, trig=True)
-    angles = {f.args[0] for f in difference.atoms(sympy.sin, sympy.cos)}
-    for angle in angles:
-        s, c = sympy.symbols("s c", cls=sympy.Dummy)
-        polynomial = sympy.Poly(difference.xreplace({sympy.sin(angle): s, sympy.cos(angle): c}), s, c)
-        difference = polynomial.rem(sympy.Poly(s**2 + c**2 - 1, s, c)).as_expr()
-        difference = difference.xreplace({s: sympy.sin(angle), c: sympy.cos(angle)})
+    difference = (sympy.sympify(a) - b).rewrite([sympy.sin, sympy.cos], sympy.exp)
     return sympy.expand(difference) == 0
 
 

@@ -17,8 +17,8 @@ from ir50p_lab.modelling import (
     Friction,
     friction_torque,
     load_arm,
-    thesis_theta,
 )
+from ir50p_lab.modelling.named_arms import thesis_theta
 
 GOOD = {"l": (0.3, 0.2, 0.3), "m": (3, 1, 1), "lc": (0.1, 0.1, 0.1)}
 
