@@ -24,13 +24,10 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "SEQUENCES",
             "angles_from_rotation",
             "gimbal_lock",
-            "homogeneous",
-            "rate_matrix",
             "rot_x",
             "rot_y",
             "rot_z",
             "rotation_from_angles",
-            "singular_angles",
         ],
     },
 )

@@ -6,7 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from ir50p_lab.errors import ArmError
-from ir50p_lab.inputs import vector3, vectors3
+from ir50p_lab.inputs import number, vector3
+from ir50p_lab.modelling.kernel import same_shape
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,11 +47,11 @@ class Actuators:
     def __post_init__(self):
         for each in fields(self):
             name, value = f"actuators {each.name}", getattr(self, each.name)
-            value = float(value) if each.type is float else tuple(vector3(name, value, unit="SI").tolist())
+            value = number(name, value) if each.type is float else tuple(vector3(name, value, unit="SI").tolist())
             object.__setattr__(self, each.name, value)
-            for x in np.ravel(value):
-                if not (0 < x < np.inf or (x == 0 and each.name == "Jm")):
-                    raise ArmError(f"{name} = {x}: must be a positive number")
+            least = np.min(value)
+            if least < 0 or (least == 0 and each.name != "Jm"):
+                raise ArmError(f"{name} = {least}: must be a positive number")
 
     @classmethod
     def from_joint_data(cls, *, stall_torque, no_load_speed, reflected_inertia, N, V, limit_pwm=255.0):
@@ -102,8 +103,7 @@ class Actuators:
 
         tau, qd, qdd: (3,) or (n, 3) in N m, rad/s, rad/s^2. The result may exceed the supply: compare with `V`.
         """
-        tau, qd = vectors3("tau", tau, unit="N m"), vectors3("qd", qd, unit="rad/s")
-        qdd = vectors3("qdd", qdd, unit="rad/s^2")
+        tau, qd, qdd = same_shape(tau=tau, qd=qd, qdd=qdd)
         N = self._array("N")
         drive = tau + self.reflected_inertia * qdd
         return self._array("Ra") / (self._array("kt") * N) * drive + self._array("ke") * N * qd

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ir50p_lab.errors import ArmError, SuspiciousArmWarning
-from ir50p_lab.inputs import number, vector3, vectors3
+from ir50p_lab.inputs import number, numbers, vector3, vectors3
 from ir50p_lab.modelling.actuators import Actuators
 from ir50p_lab.modelling.arm_file import read_arm, write_arm
 from ir50p_lab.modelling.friction import Friction
@@ -67,7 +67,7 @@ class Arm:
         for name, unit in _VECTORS.items():
             object.__setattr__(self, name, tuple(vector3(name, getattr(self, name), unit=unit).tolist()))
         for name in ("q_min", "q_max"):
-            values = np.asarray(getattr(self, name), dtype=float)
+            values = numbers(name, getattr(self, name), unit="rad")
             if values.shape != (3,) or np.isnan(values).any():
                 raise ArmError(f"{name} = {getattr(self, name)!r}: give three angles in rad (inf for no limit)")
             object.__setattr__(self, name, tuple(values.tolist()))
@@ -78,10 +78,9 @@ class Arm:
             warnings.warn(f"{self.name}: {text}", SuspiciousArmWarning, stacklevel=3)
 
     def _refuse_impossible(self):
-        for i, length in enumerate(self.l):
-            if length < 0 or (i > 0 and length == 0):
-                raise ArmError(f"l{i + 1} = {length} m: the column may be 0, upper arm and forearm must be > 0")
         for i in range(3):
+            if self.l[i] < 0 or (i > 0 and self.l[i] == 0):
+                raise ArmError(f"l{i + 1} = {self.l[i]} m: the column may be 0, upper arm and forearm must be > 0")
             if self.m[i] < 0:
                 raise ArmError(f"m{i + 1} = {self.m[i]} kg: a mass cannot be negative")
             refuse_impossible_inertia(f"link {i + 1}", (self.Ixx[i], self.Iyy[i], self.Izz[i]))
@@ -97,19 +96,18 @@ class Arm:
     def suspicions(self):
         """What is possible but hardly meant, as a tuple of sentences (empty for a plausible arm)."""
         found = []
-        for i in range(3):
-            if self.l[i] > 0 and self.lc[i] > self.l[i]:
+        for i, (l, lc, *limits) in enumerate(zip(self.l, self.lc, self.q_min, self.q_max, strict=True), start=1):
+            if l > 0 and lc > l:
                 found.append(
-                    f"the centre of mass of link {i + 1} is {self.lc[i] / self.l[i]:.2g} link lengths out "
-                    f"(lc = {self.lc[i]} m, l = {self.l[i]} m)"
+                    f"the centre of mass of link {i} is {lc / l:.2g} link lengths out (lc = {lc} m, l = {l} m)"
                 )
-            if self.lc[i] < 0:
-                found.append(f"the centre of mass of link {i + 1} is behind its joint (lc = {self.lc[i]} m)")
-            if self.l[i] > 10:
-                found.append(f"l{i + 1} = {self.l[i]} m is longer than 10 m: is it in millimetres?")
-            for limit in (self.q_min[i], self.q_max[i]):
+            if lc < 0:
+                found.append(f"the centre of mass of link {i} is behind its joint (lc = {lc} m)")
+            if l > 10:
+                found.append(f"l{i} = {l} m is longer than 10 m: is it in millimetres?")
+            for limit in limits:
                 if np.isfinite(limit) and abs(limit) > 4 * np.pi:
-                    found.append(f"a limit of joint {i + 1} is {limit} rad, over two turns: is it in degrees?")
+                    found.append(f"a limit of joint {i} is {limit} rad, over two turns: is it in degrees?")
         return tuple(found)
 
     @classmethod

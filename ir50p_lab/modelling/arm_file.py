@@ -19,22 +19,18 @@ def write_arm(arm, path):
     document.add(tomlkit.comment("An arm for the IR50P lab book. SI units; joints and links 1, 2, 3 in order."))
     _fill(document, arm)
     for name in _PARTS:
-        part = getattr(arm, name)
-        if part is not None:
-            table = tomlkit.table()
-            _fill(table, part)
-            document.add(name, table)
+        if getattr(arm, name) is not None:
+            document.add(name, _fill(tomlkit.table(), getattr(arm, name)))
     Path(path).write_text(tomlkit.dumps(document), encoding="utf-8")
 
 
 def _fill(table, part):
     for field in dataclasses.fields(part):
-        if field.name in _PARTS:
-            continue
-        value = getattr(part, field.name)
-        table.add(field.name, tomlkit.item(list(value) if isinstance(value, tuple) else value))
-        if field.metadata:
-            table[field.name].comment(field.metadata["comment"])
+        if field.name not in _PARTS:
+            table.add(field.name, getattr(part, field.name))
+            if field.metadata:
+                table[field.name].comment(field.metadata["comment"])
+    return table
 
 
 def read_arm(cls, path):
@@ -43,9 +39,8 @@ def read_arm(cls, path):
     Raises ArmError, naming the file, if it is missing, is not TOML, lacks a field, has a field that is not
     known (with the known ones), or describes an impossible arm.
     """
-    path = Path(path)
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
         raise ArmError(f"cannot read the arm file {path}: {error.strerror}; check the path or IR50P_ARM") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
@@ -67,9 +62,4 @@ def _make(cls, data):
     missing = [name for name in required if required[name] and name not in data]
     if missing:
         raise ArmError(f"{cls.__name__} lacks {', '.join(missing)}")
-    try:
-        return cls(**data)
-    except LabError:
-        raise
-    except (TypeError, ValueError) as error:
-        raise ArmError(f"{cls.__name__}: {error}") from None
+    return cls(**data)

@@ -37,20 +37,20 @@ class Friction:
         for name in (each.name for each in fields(self)):
             values = vector3(f"friction {name}", getattr(self, name), unit="N m, rad/s")
             object.__setattr__(self, name, tuple(values.tolist()))
-        for joint in range(3):
-            for name in ("fv", "fc"):
-                if getattr(self, name)[joint] < 0:
+        for joint, (fv, fc, fs, qs) in enumerate(zip(self.fv, self.fc, self.fs, self.qs, strict=True), start=1):
+            for name, value in (("fv", fv), ("fc", fc)):
+                if value < 0:
                     raise ArmError(
-                        f"friction {name} of joint {joint + 1} is {getattr(self, name)[joint]}; it must be >= 0: "
+                        f"friction {name} of joint {joint} is {value}; it must be >= 0: "
                         "friction takes energy out of the arm, a negative coefficient would feed it"
                     )
-            if self.fs[joint] < self.fc[joint]:
+            if fs < fc:
                 raise ArmError(
-                    f"breakaway torque fs = {self.fs[joint]} N m of joint {joint + 1} is below its Coulomb torque "
-                    f"fc = {self.fc[joint]} N m; give fs >= fc"
+                    f"breakaway torque fs = {fs} N m of joint {joint} is below its Coulomb torque fc = {fc} N m; "
+                    "give fs >= fc"
                 )
-            if self.qs[joint] <= 0:
-                raise ArmError(f"Stribeck velocity qs = {self.qs[joint]} rad/s of joint {joint + 1} must be > 0")
+            if qs <= 0:
+                raise ArmError(f"Stribeck velocity qs = {qs} rad/s of joint {joint} must be > 0")
 
 
 def friction_torque(friction, qd):

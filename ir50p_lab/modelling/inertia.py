@@ -22,16 +22,15 @@ def second_moment_tensor(p):
 
 @dataclass(frozen=True)
 class Solid:
-    """A uniform solid as formulas: volume, centre of mass and inertia tensor about it.
+    """A uniform solid as formulas: centre of mass and inertia tensor about it.
 
     sizes: the symbols of its dimensions, m.  mass: its symbol, kg.
-    volume m^3, com (3, 1) m in the solid's own frame, inertia (3, 3) kg m^2 about the centre of mass.
+    com (3, 1) m in the solid's own frame, inertia (3, 3) kg m^2 about the centre of mass.
     """
 
     name: str
     mass: sympy.Symbol
     sizes: tuple
-    volume: sympy.Expr
     com: sympy.Matrix
     inertia: sympy.Matrix
 
@@ -77,17 +76,13 @@ def integrate_solid(name, p, limits, *, volume_element=1):
     com = p.applyfunc(lambda x: sympy.factor(integral(sympy.expand(x * volume_element)) / volume))
     about_origin = second_moment_tensor(p).applyfunc(lambda f: density * integral(sympy.expand(f * volume_element)))
     about_com = (about_origin - m * second_moment_tensor(com)).applyfunc(sympy.factor)
-    coordinates = {c for c, _, _ in limits}
-    used = set().union(*(sympy.sympify(e).free_symbols for e in (*p, volume_element, *sum(limits, ()))))
-    sizes = tuple(sorted(used - coordinates, key=str))
-    volume = sympy.factor_terms(sympy.expand(volume))
-    return Solid(name, m, sizes, volume, sympy.ImmutableMatrix(com), sympy.ImmutableMatrix(about_com))
+    sizes = tuple(sorted(sympy.Tuple(volume, *com).free_symbols, key=str))
+    return Solid(name, m, sizes, sympy.ImmutableMatrix(com), sympy.ImmutableMatrix(about_com))
 
 
 def cylinder():
     """A solid cylinder of radius R and length L along x."""
-    R = sympy.Symbol("R", positive=True)
-    return _turned("cylinder", 0, R)
+    return _turned("cylinder", 0, sympy.Symbol("R", positive=True))
 
 
 def tube():
@@ -105,7 +100,7 @@ def _turned(name, inner, outer):
 
 
 def rod():
-    """A slender rod of length L along x, its mass spread over the length alone (`volume` is that length)."""
+    """A slender rod of length L along x, its mass spread over the length alone."""
     L, x = sympy.Symbol("L", positive=True), sympy.Symbol("x", real=True)
     return integrate_solid("rod", (x, 0, 0), [(x, -L / 2, L / 2)])
 

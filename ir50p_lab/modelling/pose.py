@@ -24,7 +24,6 @@ SEQUENCES = EULERIAN + CARDANIAN
 """The twelve angle sequences. Capital letters: each turn is about an axis that has already been moved."""
 
 _ROUNDING = 1e-6  # largest entry of R^T R - I, and of det R - 1, that still counts as rounding
-_AXES = {"X": 0, "Y": 1, "Z": 2}
 
 
 def rot_x(angle):
@@ -99,7 +98,7 @@ def rate_matrix(sequence, angles):
     """
     choice("sequence", sequence, SEQUENCES)
     angles = vectors3("angles", angles)
-    first, second, third = (_AXES[letter] for letter in sequence)
+    first, second, third = map("XYZ".index, sequence)
     R_1 = _elementary(sequence[0], angles[..., 0])
     R_12 = R_1 @ _elementary(sequence[1], angles[..., 1])
     e_1 = np.broadcast_to(np.eye(3)[first], angles.shape)
@@ -132,8 +131,7 @@ def gimbal_lock(sequence, angles):
     left, values, _ = np.linalg.svd(E)
     smallest = values[..., -1]
     # Below this, a singular value is rounding: the svd of a singular 3x3 matrix gives about 1e-16.
-    with np.errstate(divide="ignore"):
-        gain = 1 / np.where(smallest < 1e-15, 0.0, smallest)
+    gain = np.where(smallest < 1e-15, np.inf, 1 / np.maximum(smallest, 1e-15))
     return GimbalLock(sine=np.abs(np.linalg.det(E)), gain=gain, lost_axis=left[..., :, -1])
 
 

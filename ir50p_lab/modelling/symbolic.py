@@ -8,7 +8,7 @@ import numpy as np
 import sympy
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vector3
+from ir50p_lab.inputs import choice, vector3
 from ir50p_lab.modelling import symbolic_steps as steps
 from ir50p_lab.modelling.symbolic_display import Formulas, short_names
 
@@ -86,8 +86,7 @@ class SymbolicModel:
         Of M only the upper triangle. In a notebook they appear in the thesis' notation, c_23 = cos(q2 + q3).
         Raises InputError for another name.
         """
-        if name not in ("M", "C", "g", "h", "tau"):
-            raise InputError(f"read({name!r}): choose 'M', 'C', 'g', 'h' or 'tau'")
+        choice("name", name, ("M", "C", "g", "h", "tau"))
         matrix = getattr(self, name).xreplace(short_names(self.q))
         letter = {"tau": r"\tau"}.get(name, name)
         rows = []
@@ -142,11 +141,7 @@ class SymbolicModel:
 
             return of_numbers
 
-        return NumericModel(
-            M=function(self.M, self.q),
-            C=function(self.C, self.q, self.qd),
-            g=function(self.g, self.q),
-        )
+        return NumericModel(M=function(self.M, self.q), C=function(self.C, self.q, self.qd), g=function(self.g, self.q))
 
 
 @dataclass(frozen=True)
@@ -178,10 +173,7 @@ def derive(*, links="in-line", general=False):
 
     Raises InputError for another word.
     """
-    if general:
-        links = "general"
-    if links not in _COM_AND_INERTIA:
-        raise InputError(f"links = {links!r}: choose one of {', '.join(map(repr, _COM_AND_INERTIA))}")
+    links = "general" if general else choice("links", links, _COM_AND_INERTIA)
     q, qd, qdd = (sympy.ImmutableMatrix(sympy.symbols(f"{name}1:4", real=True)) for name in ("q", "qdot", "qddot"))
     names = f"g l1 l2 l3 m1 m2 m3 {_COM_AND_INERTIA[links]} j1 j2 j3".split()
     symbols = {name: sympy.Symbol(name, real=True) for name in names}

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import ArmError, InputError
+from ir50p_lab.inputs import choice
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.dynamics import as_theta
 
@@ -50,8 +51,7 @@ def make_plant(arm, *, unit="N m", stops=False, table=None, g=None):
 
     Raises: ArmError (no actuators for PWM), InputError (a table or end stops for a theta, g for an Arm, unknown unit).
     """
-    if unit not in ("N m", "PWM"):
-        raise InputError(f"unit = {unit!r}: the command is in 'N m' or in 'PWM' counts")
+    choice("unit", unit, ("N m", "PWM"))
     theta, gravity = as_theta(arm, g)
     scale, limit = np.ones(3), np.full(3, np.inf)
     if isinstance(arm, Arm):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.course.pose_views import Brick, GimbalView, space
-from ir50p_lab.modelling import homogeneous, rot_x, rot_z, rotation_from_angles
+from ir50p_lab.modelling.pose import homogeneous, rot_x, rot_z, rotation_from_angles
 
 
 def test_space_has_equal_axes_and_three_names():

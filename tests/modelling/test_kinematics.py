@@ -240,7 +240,7 @@ def test_branches_beyond_the_limits_are_marked():
         (lambda: frames(IR50P, [0, 0]), ["q", "(2,)"]),
         (lambda: frames(np.zeros((3, 20)), [0, 0, 0]), ["Arm", "ndarray"]),
         (lambda: dh_table(IR50P, np.zeros((2, 3))), ["(2, 3)", "shape (3,)"]),
-        (lambda: transform(IR50P, [0, 0, 0], 0, 4), ["j = 4", "0 (base) to 3"]),
+        (lambda: transform(IR50P, [0, 0, 0], 0, 4), ["frame j = 4", "from 0 to 3"]),
         (lambda: inverse_kinematics(IR50P, [0.3, np.inf, 0]), ["p", "inf"]),
     ],
 )
