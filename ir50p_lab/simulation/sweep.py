@@ -79,14 +79,16 @@ def sweep(run, cases, *, executor=None, progress=True, save_to=None):
             for future in list(waiting):
                 if not future.cancel() and future.done():
                     take(future)
+            if executor is None:
+                pool.shutdown(wait=False)
     failures.sort(key=lambda failure: failure.index)
     return SweepResult(cases=cases, results=results, failures=failures)
 
 
 def _all_cores():
-    from loky import get_reusable_executor
+    from loky import ProcessPoolExecutor
 
-    return get_reusable_executor()  # its processes end by themselves when they have been idle for a while
+    return ProcessPoolExecutor()
 
 
 def _plain(value):
