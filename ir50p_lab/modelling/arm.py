@@ -41,8 +41,8 @@ class Arm:
     Only such in-line links are expressed exactly by the 20 parameters theta. `Arm.from_rigid_bodies` takes
     full centres of mass and inertia tensors and refuses the others; `derive(general=True)` can still derive them.
 
-    Raises ArmError for what no rigid body can have; warns SuspiciousArmWarning for what is hardly meant
-    (the list stays in `suspicions`).
+    Raises ArmError for what no rigid body can have, InputError for wrong shapes and what is no number; warns
+    SuspiciousArmWarning for what is hardly meant (the list stays in `suspicions`).
     """
 
     name: str = "my arm"

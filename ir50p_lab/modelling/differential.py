@@ -1,4 +1,4 @@
-"""Differential kinematics: the geometric Jacobian, manipulability, singular poses (1.32)-(1.55)."""
+"""Differential kinematics: the geometric Jacobian, singular poses (1.32)-(1.55)."""
 
 from dataclasses import dataclass
 
