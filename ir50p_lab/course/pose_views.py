@@ -7,7 +7,6 @@ from scipy.spatial.transform import Rotation
 from ir50p_lab.course.arm3d import FrameView
 from ir50p_lab.course.style import COLOURS, new_figure
 from ir50p_lab.modelling.pose import (
-    check_transform,
     gimbal_lock,
     homogeneous,
     rate_matrix,
@@ -72,8 +71,7 @@ class Brick:
         return self._drawn
 
     def update(self, T):
-        """Move the brick. T: (4, 4), takes coordinates of the brick to those of the axes."""
-        T = check_transform(T)
+        """Move the brick. T: (4, 4), array that takes coordinates of the brick to those of the axes."""
         self._drawn = self._faces @ T[:3, :3].T + T[:3, 3]
         self._box.set_verts(self._drawn)
         self._frame.update(T)

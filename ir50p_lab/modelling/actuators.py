@@ -1,12 +1,13 @@
 """The three DC motors with gears, in honest units (1.118)-(1.120 corrected)."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 
 import numpy as np
 
 from ir50p_lab.errors import ArmError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import number, vector3
+from ir50p_lab.modelling.kernel import same_shape
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,30 +33,25 @@ class Actuators:
     limit_pwm PWM count that gives the full supply    counts
     ========= ======================================= ===================
 
-    Raises ArmError if a value is not positive (Jm may be 0).
+    Raises ArmError if a value is not positive (Jm may be 0), InputError for wrong shapes and what is no number.
     """
 
-    N: tuple
-    Jm: tuple
-    kt: tuple
-    ke: tuple
-    Ra: tuple
-    V: float
-    limit_pwm: float = 255.0
+    N: tuple = field(metadata={"comment": "gear ratio"})
+    Jm: tuple = field(metadata={"comment": "kg m^2, rotor"})
+    kt: tuple = field(metadata={"comment": "N m/A"})
+    ke: tuple = field(metadata={"comment": "V s/rad"})
+    Ra: tuple = field(metadata={"comment": "ohm"})
+    V: float = field(metadata={"comment": "V, supply"})
+    limit_pwm: float = field(default=255.0, metadata={"comment": "counts that give the full supply"})
 
     def __post_init__(self):
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name in ("V", "limit_pwm"):
-                value = float(value)
-                object.__setattr__(self, field.name, value)
-                values = (value,)
-            else:
-                values = tuple(vectors3(f"actuators {field.name}", value, unit="SI").tolist())
-                object.__setattr__(self, field.name, values)
-            for x in values:
-                if not (np.isfinite(x) and (x > 0 or (x == 0 and field.name == "Jm"))):
-                    raise ArmError(f"actuators {field.name} = {x}: must be a positive number")
+        for each in fields(self):
+            name, value = f"actuators {each.name}", getattr(self, each.name)
+            value = number(name, value) if each.type is float else tuple(vector3(name, value, unit="SI").tolist())
+            object.__setattr__(self, each.name, value)
+            least = np.min(value)
+            if least < 0 or (least == 0 and each.name != "Jm"):
+                raise ArmError(f"{name} = {least}: must be a positive number")
 
     @classmethod
     def from_joint_data(cls, *, stall_torque, no_load_speed, reflected_inertia, N, V, limit_pwm=255.0):
@@ -64,23 +60,15 @@ class Actuators:
         Args: stall_torque (3,) N m, no_load_speed (3,) rad/s, reflected_inertia = N^2 Jm (3,) kg m^2,
         gear ratio N (3,), V volts. With kt = ke (SI, an ideal DC machine): ke = V/(N w0), Ra = kt N V/tau_stall.
         """
-        stall_torque = vectors3("stall_torque", stall_torque, unit="N m")
-        no_load_speed = vectors3("no_load_speed", no_load_speed, unit="rad/s")
-        reflected_inertia = vectors3("reflected_inertia", reflected_inertia, unit="kg m^2")
-        N = vectors3("N", N, unit="1")
+        stall_torque = vector3("stall_torque", stall_torque, unit="N m")
+        no_load_speed = vector3("no_load_speed", no_load_speed, unit="rad/s")
+        N = vector3("N", N, unit="1")
         for name, values in (("stall_torque", stall_torque), ("no_load_speed", no_load_speed), ("N", N)):
             if (values <= 0).any():
                 raise ArmError(f"{name} = {values.tolist()}: every value must be positive")
+        Jm = vector3("reflected_inertia", reflected_inertia, unit="kg m^2") / N**2
         k = V / (N * no_load_speed)
-        return cls(
-            N=N,
-            Jm=reflected_inertia / N**2,
-            kt=k,
-            ke=k,
-            Ra=k * N * V / stall_torque,
-            V=V,
-            limit_pwm=limit_pwm,
-        )
+        return cls(N=N, Jm=Jm, kt=k, ke=k, Ra=k * N * V / stall_torque, V=V, limit_pwm=limit_pwm)
 
     def _array(self, name):
         return np.array(getattr(self, name))
@@ -115,8 +103,7 @@ class Actuators:
 
         tau, qd, qdd: (3,) or (n, 3) in N m, rad/s, rad/s^2. The result may exceed the supply: compare with `V`.
         """
-        tau, qd = vectors3("tau", tau, unit="N m"), vectors3("qd", qd, unit="rad/s")
-        qdd = vectors3("qdd", qdd, unit="rad/s^2")
+        tau, qd, qdd = same_shape(tau=tau, qd=qd, qdd=qdd)
         N = self._array("N")
         drive = tau + self.reflected_inertia * qdd
         return self._array("Ra") / (self._array("kt") * N) * drive + self._array("ke") * N * qd

@@ -2,13 +2,13 @@
 
 import dataclasses
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from ir50p_lab.errors import ArmError, SuspiciousArmWarning
-from ir50p_lab.inputs import vector3, vectors3
+from ir50p_lab.inputs import number, numbers, vector3, vectors3
 from ir50p_lab.modelling.actuators import Actuators
 from ir50p_lab.modelling.arm_file import read_arm, write_arm
 from ir50p_lab.modelling.friction import Friction
@@ -41,22 +41,25 @@ class Arm:
     Only such in-line links are expressed exactly by the 20 parameters theta. `Arm.from_rigid_bodies` takes
     full centres of mass and inertia tensors and refuses the others; `derive(general=True)` can still derive them.
 
-    Raises ArmError for what no rigid body can have; warns SuspiciousArmWarning for what is hardly meant
-    (the list stays in `suspicions`).
+    Raises ArmError for what no rigid body can have, InputError for wrong shapes and what is no number; warns
+    SuspiciousArmWarning for what is hardly meant (the list stays in `suspicions`).
     """
 
     name: str = "my arm"
-    l: tuple
-    m: tuple
-    lc: tuple
-    Ixx: tuple = (0.0, 0.0, 0.0)
-    Iyy: tuple = (0.0, 0.0, 0.0)
-    Izz: tuple = (0.0, 0.0, 0.0)
+    l: tuple = field(metadata={"comment": "m: column height, upper arm, forearm"})
+    m: tuple = field(metadata={"comment": "kg"})
+    lc: tuple = field(metadata={"comment": "m: centre of mass on the link axis, from the joint (link 1: height)"})
+    Ixx: tuple = field(
+        default=(0.0, 0.0, 0.0),
+        metadata={"comment": "kg m^2, about the centre of mass; x along links 2 and 3, z along the joint axis"},
+    )
+    Iyy: tuple = field(default=(0.0, 0.0, 0.0), metadata={"comment": "kg m^2"})
+    Izz: tuple = field(default=(0.0, 0.0, 0.0), metadata={"comment": "kg m^2 (link 1: about the column)"})
     friction: Friction = Friction()
     actuators: Actuators | None = None
-    q_min: tuple = (-np.inf, -np.inf, -np.inf)
-    q_max: tuple = (np.inf, np.inf, np.inf)
-    g: float = 9.81
+    q_min: tuple = field(default=(-np.inf, -np.inf, -np.inf), metadata={"comment": "rad"})
+    q_max: tuple = field(default=(np.inf, np.inf, np.inf), metadata={"comment": "rad"})
+    g: float = field(default=9.81, metadata={"comment": "m/s^2"})
 
     def __post_init__(self):
         if not isinstance(self.name, str) or "$" in self.name:
@@ -64,22 +67,20 @@ class Arm:
         for name, unit in _VECTORS.items():
             object.__setattr__(self, name, tuple(vector3(name, getattr(self, name), unit=unit).tolist()))
         for name in ("q_min", "q_max"):
-            values = np.asarray(getattr(self, name), dtype=float)
+            values = numbers(name, getattr(self, name), unit="rad")
             if values.shape != (3,) or np.isnan(values).any():
                 raise ArmError(f"{name} = {getattr(self, name)!r}: give three angles in rad (inf for no limit)")
             object.__setattr__(self, name, tuple(values.tolist()))
-        object.__setattr__(self, "g", float(self.g))
-        if not (np.isfinite(self.g) and self.g >= 0):
-            raise ArmError(f"g = {self.g} m/s^2 must be >= 0: the base z axis points up")
+        g = number("g", self.g, ">= 0", unit="m/s^2", hint="the base z axis points up")
+        object.__setattr__(self, "g", g)
         self._refuse_impossible()
         for text in self.suspicions:
             warnings.warn(f"{self.name}: {text}", SuspiciousArmWarning, stacklevel=3)
 
     def _refuse_impossible(self):
-        for i, length in enumerate(self.l):
-            if length < 0 or (i > 0 and length == 0):
-                raise ArmError(f"l{i + 1} = {length} m: the column may be 0, upper arm and forearm must be > 0")
         for i in range(3):
+            if self.l[i] < 0 or (i > 0 and self.l[i] == 0):
+                raise ArmError(f"l{i + 1} = {self.l[i]} m: the column may be 0, upper arm and forearm must be > 0")
             if self.m[i] < 0:
                 raise ArmError(f"m{i + 1} = {self.m[i]} kg: a mass cannot be negative")
             refuse_impossible_inertia(f"link {i + 1}", (self.Ixx[i], self.Iyy[i], self.Izz[i]))
@@ -95,19 +96,18 @@ class Arm:
     def suspicions(self):
         """What is possible but hardly meant, as a tuple of sentences (empty for a plausible arm)."""
         found = []
-        for i in range(3):
-            if self.l[i] > 0 and self.lc[i] > self.l[i]:
+        for i, (l, lc, *limits) in enumerate(zip(self.l, self.lc, self.q_min, self.q_max, strict=True), start=1):
+            if l > 0 and lc > l:
                 found.append(
-                    f"the centre of mass of link {i + 1} is {self.lc[i] / self.l[i]:.2g} link lengths out "
-                    f"(lc = {self.lc[i]} m, l = {self.l[i]} m)"
+                    f"the centre of mass of link {i} is {lc / l:.2g} link lengths out (lc = {lc} m, l = {l} m)"
                 )
-            if self.lc[i] < 0:
-                found.append(f"the centre of mass of link {i + 1} is behind its joint (lc = {self.lc[i]} m)")
-            if self.l[i] > 10:
-                found.append(f"l{i + 1} = {self.l[i]} m is longer than 10 m: is it in millimetres?")
-            for limit in (self.q_min[i], self.q_max[i]):
+            if lc < 0:
+                found.append(f"the centre of mass of link {i} is behind its joint (lc = {lc} m)")
+            if l > 10:
+                found.append(f"l{i} = {l} m is longer than 10 m: is it in millimetres?")
+            for limit in limits:
                 if np.isfinite(limit) and abs(limit) > 4 * np.pi:
-                    found.append(f"a limit of joint {i + 1} is {limit} rad, over two turns: is it in degrees?")
+                    found.append(f"a limit of joint {i} is {limit} rad, over two turns: is it in degrees?")
         return tuple(found)
 
     @classmethod
@@ -123,28 +123,21 @@ class Arm:
         Raises ArmError if a centre of mass is off the link axis or a tensor has products of inertia
         (1.104 corrected: I = [[Ixx, -Ixy, -Ixz], ...]).
         """
-        com = vectors3("com", com, unit="m")
-        inertia = np.asarray(inertia, dtype=float)
+        com, inertia = vectors3("com", com, unit="m"), np.asarray(inertia, dtype=float)
         if com.shape != (3, 3) or inertia.shape != (3, 3, 3) or not np.isfinite(inertia).all():
             raise ArmError(f"com has shape {com.shape}, inertia {inertia.shape}; give (3, 3) and (3, 3, 3), all finite")
-        lc = []
+        along = (2, 0, 0)  # the link's own axis: z of the column, x of the others
         for i in range(3):
-            axis = 2 if i == 0 else 0
-            off_axis = np.hypot(*np.delete(com[i], axis))
-            scale = max(np.abs(inertia[i]).max(), 1e-30)
-            if off_axis > 1e-9:
+            beside = np.hypot(*np.delete(com[i], along[i]))
+            product = np.abs(inertia[i] - np.diag(np.diag(inertia[i]))).max()
+            if beside > 1e-9 or product > 1e-9 * np.abs(inertia[i]).max():
                 raise ArmError(
-                    f"the centre of mass of link {i + 1} is {off_axis:.3g} m off the link axis; the 20 parameters "
-                    "theta hold only links whose centre of mass is on it. derive(general=True) derives the others"
+                    f"the centre of mass of link {i + 1} is {beside:.3g} m off the link axis and its products of "
+                    f"inertia reach {product:.3g} kg m^2; the 20 parameters theta hold only links in line, which have "
+                    "neither. derive(general=True) derives the others"
                 )
-            if np.abs(inertia[i] - np.diag(np.diag(inertia[i]))).max() > 1e-9 * scale:
-                raise ArmError(
-                    f"the inertia tensor of link {i + 1} has products of inertia; the 20 parameters theta hold only "
-                    "links that are symmetric about their axis planes. derive(general=True) derives the others"
-                )
-            lc.append(com[i, axis])
-        Ixx, Iyy, Izz = (inertia[:, k, k] for k in range(3))
-        return cls(l=l, m=m, lc=lc, Ixx=Ixx, Iyy=Iyy, Izz=Izz, **options)
+        Ixx, Iyy, Izz = np.diagonal(inertia, axis1=1, axis2=2).T
+        return cls(l=l, m=m, lc=com[range(3), along], Ixx=Ixx, Iyy=Iyy, Izz=Izz, **options)
 
     @property
     def reach(self):
@@ -231,17 +224,15 @@ def refuse_impossible_inertia(who, principal):
 
     None may be negative and none larger than the sum of the other two: Ixx + Iyy - Izz = 2 int z^2 dm >= 0.
     """
-    named = dict(zip(("Ixx", "Iyy", "Izz"), principal, strict=True))
-    for axis, value in named.items():
-        if value < 0:
-            raise ArmError(f"{axis} of {who} is {value} kg m^2: a moment of inertia cannot be negative")
-    for axis, value in named.items():
-        others = sum(principal) - value
-        if value > others + _RELATIVE_SLACK * sum(principal):
-            raise ArmError(
-                f"{axis} = {value:.6g} kg m^2 of {who} exceeds the sum of the other two, {others:.6g}: "
-                "no rigid body has that (triangle inequality). Check the axes: x runs along links 2 and 3"
-            )
+    (least, least_axis), _, (most, most_axis) = sorted(zip(principal, ("Ixx", "Iyy", "Izz"), strict=True))
+    if least < 0:
+        raise ArmError(f"{least_axis} of {who} is {least} kg m^2: a moment of inertia cannot be negative")
+    others = sum(principal) - most
+    if most > others + _RELATIVE_SLACK * sum(principal):
+        raise ArmError(
+            f"{most_axis} = {most:.6g} kg m^2 of {who} exceeds the sum of the other two, {others:.6g}: "
+            "no rigid body has that (triangle inequality). Check the axes: x runs along links 2 and 3"
+        )
 
 
 def read_only(array):

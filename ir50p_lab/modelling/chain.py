@@ -3,12 +3,10 @@
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vector3, vectors3
+from ir50p_lab.inputs import vector3, vectors3, whole
 from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel
 
-JOINTS = 3
-ALPHA = (np.pi / 2, 0.0, -np.pi / 2)  # twist of the links, Table 1.1
-_COS_ALPHA = (0.0, 1.0, 0.0)  # exact, where cos(pi/2) in floating point is 6e-17
+_COS_ALPHA = (0.0, 1.0, 0.0)  # of the twists of Table 1.1, exact where cos(pi/2) in floating point is 6e-17
 _SIN_ALPHA = (1.0, 0.0, -1.0)
 
 
@@ -49,8 +47,7 @@ def dh_table(arm, q):
     Args: arm: Arm; q: (3,) rad. Returns: (3, 4), units rad, m, m, rad.
     """
     l1, l2, l3 = lengths(arm)
-    q = vector3("q", q)
-    return np.column_stack([q, (l1, 0.0, 0.0), (0.0, l2, l3), ALPHA])
+    return np.column_stack([vector3("q", q), (l1, 0.0, 0.0), (0.0, l2, l3), (np.pi / 2, 0.0, -np.pi / 2)])
 
 
 def frames(arm, q):
@@ -76,9 +73,7 @@ def transform(arm, q, i, j):
 
     Args: arm: Arm; q: (3,) or (n, 3) rad. Returns: (4, 4) or (n, 4, 4).
     """
-    for name, index in (("i", i), ("j", j)):
-        if index not in range(JOINTS + 1):
-            raise InputError(f"frame {name} = {index}: this arm has frames 0 (base) to {JOINTS} (tip)")
+    i, j = whole("frame i", i, 0, 3), whole("frame j", j, 0, 3)
     T = frames(arm, q)
     return np.linalg.solve(T[..., i, :, :], T[..., j, :, :])
 

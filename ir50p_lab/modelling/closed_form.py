@@ -119,11 +119,10 @@ def inverse(theta, gravity, q2, q3, a, b, c, A, B, C):
     """Torques for accelerations (A, B, C): M qdd + C qd + g + friction    (1.74)."""
     n1, n2, n3, c2, c3, c23 = bias_torques(theta, gravity, q2, q3, a, b, c)
     M11, M12, M13, M21, M22, M23, M31, M32, M33 = mass_terms(theta, c2, c3, c23)
-    return (
-        M11 * A + M12 * B + M13 * C + n1,
-        M21 * A + M22 * B + M23 * C + n2,
-        M31 * A + M32 * B + M33 * C + n3,
-    )
+    tau1 = M11 * A + M12 * B + M13 * C + n1
+    tau2 = M21 * A + M22 * B + M23 * C + n2
+    tau3 = M31 * A + M32 * B + M33 * C + n3
+    return tau1, tau2, tau3
 
 
 @jit()

@@ -1,4 +1,4 @@
-"""Differential kinematics: the geometric Jacobian, manipulability, singular poses (1.32)-(1.55)."""
+"""Differential kinematics: the geometric Jacobian, singular poses (1.32)-(1.55)."""
 
 from dataclasses import dataclass
 
@@ -40,34 +40,17 @@ def jacobian(arm, q):
     return evaluate(_jacobian, (lengths(arm), _SIX), q=q)
 
 
-def manipulability(arm, q):
-    """Yoshikawa's measure |det Jv| = l2 l3 |s3 (l2 c2 + l3 c23)|, (…,) in m^3: 0 in a singular pose.
-
-    It is the volume of the ellipsoid of tip velocities for unit joint rates, up to the factor 4 pi / 3.
-    """
-    return np.abs(_det_jv(arm, q))
-
-
-def _det_jv(arm, q):
-    _, q2, q3 = np.moveaxis(vectors3("q", q), -1, 0)
-    _, l2, l3 = arm.l
-    return -l2 * l3 * np.sin(q3) * (l2 * np.cos(q2) + l3 * np.cos(q2 + q3))
-
-
 @dataclass(frozen=True)
 class Singularity:
-    """How near a pose is to losing a direction of motion.
+    """How near a pose is to losing a direction of motion; the product of elbow, shoulder, l2 and l3 is |det Jv|.
 
-    det: determinant of Jv, m^3. elbow: sin q3 (0: stretched or folded). shoulder: tip distance from the
-    vertical axis, m, with sign (0: joint 1 no longer moves the tip). smallest: smallest singular value of Jv,
-    m/rad: slowest tip speed per unit joint rate. direction: (…, 3) unit vector in which that happens.
+    elbow: sin q3 (0: stretched or folded). shoulder: tip distance from the vertical axis, m, with sign (0: joint 1 no
+    longer moves the tip). smallest: smallest singular value of Jv, m/rad: slowest tip speed per unit joint rate.
     """
 
-    det: np.ndarray
     elbow: np.ndarray
     shoulder: np.ndarray
     smallest: np.ndarray
-    direction: np.ndarray
 
 
 def singularity(arm, q):
@@ -76,12 +59,10 @@ def singularity(arm, q):
     Args: arm: Arm; q: (3,) or (n, 3) rad. Returns: Singularity.
     """
     q = vectors3("q", q)
-    U, S, _ = np.linalg.svd(jacobian(arm, q)[..., :3, :])
+    _, stretches, _ = np.linalg.svd(jacobian(arm, q)[..., :3, :])
     _, l2, l3 = arm.l
     return Singularity(
-        det=_det_jv(arm, q),
         elbow=np.sin(q[..., 2]),
         shoulder=l2 * np.cos(q[..., 1]) + l3 * np.cos(q[..., 1] + q[..., 2]),
-        smallest=S[..., -1],
-        direction=U[..., :, -1],
+        smallest=stretches[..., -1],
     )

@@ -32,11 +32,12 @@ def as_theta(arm, g=None):
             )
         return arm.theta.copy(), arm.g
     g = STANDARD_GRAVITY if g is None else number("g", g, ">= 0", unit="m/s^2", hint="the base z axis points up")
-    single = arm is None or np.isscalar(arm) or not hasattr(arm, "__len__")
-    theta = None if single else np.array(numbers("theta", arm, unit="SI or PWM"), order="C")
-    if theta is None or theta.shape not in ((3, 20), (20,)):
-        found = type(arm).__name__ if theta is None else f"an array of shape {theta.shape}"
-        raise InputError(f"expected an Arm, or theta with shape (3, 20) or (20,), got {found}")
+    shape = np.shape(arm)
+    if shape not in ((3, 20), (20,)):
+        raise InputError(
+            f"expected an Arm, or theta with shape (3, 20) or (20,), got {type(arm).__name__} of shape {shape}"
+        )
+    theta = np.array(numbers("theta", arm, unit="SI or PWM"), order="C")
     if not np.isfinite(theta).all():
         raise InputError("theta holds a number that is not finite; identify again or drop that parameter (set it to 0)")
     return np.tile(theta, (3, 1)) if theta.ndim == 1 else theta, g
@@ -117,14 +118,6 @@ def gravity(arm, q, *, g=None):
     Args: arm: Arm or theta; q: (3,) or (n, 3) rad; g: of a theta, m/s^2, default 9.81. Returns: shape of q, N m.
     """
     return _evaluate(_gravity, arm, g, q=q)
-
-
-def bias(arm, q, qd, *, g=None):
-    """All torques but those of acceleration: C(q, qd) qd + g(q) + friction of theta.
-
-    Args: arm: Arm or theta; q, qd: (3,) or (n, 3); g: of a theta, m/s^2, default 9.81. Returns: shape of q, N m.
-    """
-    return inverse_dynamics(arm, q, qd, np.zeros(3), g=g)
 
 
 @kernel("(n,k),(),(n),(n),(n)->(n)")

@@ -1,11 +1,11 @@
 """Joint friction: viscous, Coulomb, Stribeck and a constant offset (1.115)-(1.117)."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
 from ir50p_lab.errors import ArmError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import vector3, vectors3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,32 +25,32 @@ class Friction:
     Raises ArmError if a coefficient is negative, if fs < fc, or if a Stribeck velocity is not positive.
     """
 
-    fv: tuple = (0.0, 0.0, 0.0)
-    fc: tuple = (0.0, 0.0, 0.0)
-    fs: tuple | None = None
-    qs: tuple = (0.05, 0.05, 0.05)
-    Tf: tuple = (0.0, 0.0, 0.0)
+    fv: tuple = field(default=(0.0, 0.0, 0.0), metadata={"comment": "N m s/rad, viscous"})
+    fc: tuple = field(default=(0.0, 0.0, 0.0), metadata={"comment": "N m, Coulomb"})
+    fs: tuple | None = field(default=None, metadata={"comment": "N m, breakaway (>= fc)"})
+    qs: tuple = field(default=(0.05, 0.05, 0.05), metadata={"comment": "rad/s, Stribeck velocity"})
+    Tf: tuple = field(default=(0.0, 0.0, 0.0), metadata={"comment": "N m, offset"})
 
     def __post_init__(self):
         if self.fs is None:
             object.__setattr__(self, "fs", self.fc)
-        for field in fields(self):
-            values = vectors3(f"friction {field.name}", getattr(self, field.name), unit="N m, rad/s")
-            object.__setattr__(self, field.name, tuple(values.tolist()))
-        for joint in range(3):
-            for name in ("fv", "fc"):
-                if getattr(self, name)[joint] < 0:
+        for name in (each.name for each in fields(self)):
+            values = vector3(f"friction {name}", getattr(self, name), unit="N m, rad/s")
+            object.__setattr__(self, name, tuple(values.tolist()))
+        for joint, (fv, fc, fs, qs) in enumerate(zip(self.fv, self.fc, self.fs, self.qs, strict=True), start=1):
+            for name, value in (("fv", fv), ("fc", fc)):
+                if value < 0:
                     raise ArmError(
-                        f"friction {name} of joint {joint + 1} is {getattr(self, name)[joint]}; it must be >= 0: "
+                        f"friction {name} of joint {joint} is {value}; it must be >= 0: "
                         "friction takes energy out of the arm, a negative coefficient would feed it"
                     )
-            if self.fs[joint] < self.fc[joint]:
+            if fs < fc:
                 raise ArmError(
-                    f"breakaway torque fs = {self.fs[joint]} N m of joint {joint + 1} is below its Coulomb torque "
-                    f"fc = {self.fc[joint]} N m; give fs >= fc"
+                    f"breakaway torque fs = {fs} N m of joint {joint} is below its Coulomb torque fc = {fc} N m; "
+                    "give fs >= fc"
                 )
-            if self.qs[joint] <= 0:
-                raise ArmError(f"Stribeck velocity qs = {self.qs[joint]} rad/s of joint {joint + 1} must be > 0")
+            if qs <= 0:
+                raise ArmError(f"Stribeck velocity qs = {qs} rad/s of joint {joint} must be > 0")
 
 
 def friction_torque(friction, qd):

@@ -67,14 +67,13 @@ def _out_of_reach(arm, p):
     p = vectors3("p", p, unit="m")
     distance = reachability(arm, p)
     outside = distance > _EDGE * arm.reach
-    l1, l2, l3 = arm.l
     worst = np.unravel_index(np.argmax(distance), distance.shape)
+    l1, l2, l3 = arm.l
     shoulder = np.array([0.0, 0.0, l1])
     offset = p[worst] - shoulder
     r = np.linalg.norm(offset)
-    limit = l2 + l3 if r > l2 + l3 else abs(l2 - l3)
     direction = offset / r if r > 0 else np.array([1.0, 0.0, 0.0])
-    nearest = shoulder + limit * direction
+    nearest = shoulder + np.clip(r, abs(l2 - l3), l2 + l3) * direction
     count = f" (and {int(outside.sum()) - 1} more points)" if outside.sum() > 1 else ""
     error = UnreachableError(
         f"p = {np.round(p[worst], 4).tolist()} m is {distance[worst]:.4g} m outside the workspace: it lies "

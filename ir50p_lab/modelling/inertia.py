@@ -6,8 +6,7 @@ import numpy as np
 import sympy
 
 from ir50p_lab.errors import ArmError, InputError
-from ir50p_lab.modelling.arm import refuse_impossible_inertia
-from ir50p_lab.modelling.pose import check_rotation
+from ir50p_lab.modelling.arm import read_only, refuse_impossible_inertia
 
 _TOLERANCE = 1e-9  # relative: rounding in tensors that were rotated or moved
 
@@ -23,16 +22,15 @@ def second_moment_tensor(p):
 
 @dataclass(frozen=True)
 class Solid:
-    """A uniform solid as formulas: volume, centre of mass and inertia tensor about it.
+    """A uniform solid as formulas: centre of mass and inertia tensor about it.
 
     sizes: the symbols of its dimensions, m.  mass: its symbol, kg.
-    volume m^3, com (3, 1) m in the solid's own frame, inertia (3, 3) kg m^2 about the centre of mass.
+    com (3, 1) m in the solid's own frame, inertia (3, 3) kg m^2 about the centre of mass.
     """
 
     name: str
     mass: sympy.Symbol
     sizes: tuple
-    volume: sympy.Expr
     com: sympy.Matrix
     inertia: sympy.Matrix
 
@@ -78,24 +76,13 @@ def integrate_solid(name, p, limits, *, volume_element=1):
     com = p.applyfunc(lambda x: sympy.factor(integral(sympy.expand(x * volume_element)) / volume))
     about_origin = second_moment_tensor(p).applyfunc(lambda f: density * integral(sympy.expand(f * volume_element)))
     about_com = (about_origin - m * second_moment_tensor(com)).applyfunc(sympy.factor)
-    coordinates = {c for c, _, _ in limits}
-    used = set().union(*(sympy.sympify(e).free_symbols for e in (*p, volume_element, *sum(limits, ()))))
-    sizes = tuple(sorted(used - coordinates, key=str))
-    volume = sympy.factor_terms(sympy.expand(volume))
-    return Solid(name, m, sizes, volume, sympy.ImmutableMatrix(com), sympy.ImmutableMatrix(about_com))
-
-
-def box():
-    """A box with edges a, b, c along x, y, z."""
-    a, b, c = sympy.symbols("a b c", positive=True)
-    x, y, z = sympy.symbols("x y z", real=True)
-    return integrate_solid("box", (x, y, z), [(x, -a / 2, a / 2), (y, -b / 2, b / 2), (z, -c / 2, c / 2)])
+    sizes = tuple(sorted(sympy.Tuple(volume, *com).free_symbols, key=str))
+    return Solid(name, m, sizes, sympy.ImmutableMatrix(com), sympy.ImmutableMatrix(about_com))
 
 
 def cylinder():
     """A solid cylinder of radius R and length L along x."""
-    R = sympy.Symbol("R", positive=True)
-    return _turned("cylinder", 0, R)
+    return _turned("cylinder", 0, sympy.Symbol("R", positive=True))
 
 
 def tube():
@@ -113,7 +100,7 @@ def _turned(name, inner, outer):
 
 
 def rod():
-    """A slender rod of length L along x, its mass spread over the length alone (`volume` is that length)."""
+    """A slender rod of length L along x, its mass spread over the length alone."""
     L, x = sympy.Symbol("L", positive=True), sympy.Symbol("x", real=True)
     return integrate_solid("rod", (x, 0, 0), [(x, -L / 2, L / 2)])
 
@@ -123,7 +110,7 @@ class Body:
     """A rigid body in numbers: mass kg, com (3,) m, inertia (3, 3) kg m^2 about the centre of mass.
 
     The inertia tensor is I = [[Ixx, -Ixy, -Ixz], [-Ixy, Iyy, -Iyz], [-Ixz, -Iyz, Izz]] (1.104 corrected).
-    Bodies can be moved, rotated and added: a link is a tube plus a motor.
+    Bodies can be moved and added: a link is a tube plus a motor.
 
     Raises InputError on wrong shapes, ArmError for a tensor that no rigid body has (not symmetric, a negative
     principal moment, or one larger than the sum of the other two).
@@ -146,9 +133,8 @@ class Body:
         principal = np.linalg.eigvalsh(inertia)
         principal[np.abs(principal) < _TOLERANCE * np.abs(principal).max()] = 0.0  # a slender rod has an exact zero
         refuse_impossible_inertia("the body (principal axes)", principal)
-        for name, array in (("com", com), ("inertia", inertia)):
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
+        object.__setattr__(self, "com", read_only(com))
+        object.__setattr__(self, "inertia", read_only(inertia))
         object.__setattr__(self, "mass", float(self.mass))
 
     def about(self, point=(0.0, 0.0, 0.0)):
@@ -163,17 +149,8 @@ class Body:
         """The same body shifted by (3,) m; its inertia about its own centre of mass stays."""
         return Body(self.mass, self.com + np.asarray(by, dtype=float), self.inertia)
 
-    def rotated(self, R):
-        """The same body turned about the origin by the rotation matrix R (3, 3): R I R^T. Raises InputError."""
-        R = check_rotation(R)
-        return Body(self.mass, R @ self.com, R @ self.inertia @ R.T)
-
     def __add__(self, other):
         """Both bodies as one: masses add, tensors add about the common centre of mass."""
-        if not isinstance(other, Body):
-            return NotImplemented
         mass = self.mass + other.mass
-        if mass == 0:
-            return Body(0.0, (self.com + other.com) / 2, self.inertia + other.inertia)
         com = (self.mass * self.com + other.mass * other.com) / mass
         return Body(mass, com, self.about(com) + other.about(com))

@@ -1,7 +1,6 @@
 """One state or many: functions of one state as NumPy's generalised ufuncs, and the sentence for what they refuse."""
 
-from dataclasses import dataclass
-from functools import cached_property
+from functools import cache
 
 import numpy as np
 
@@ -11,28 +10,23 @@ from ir50p_lab.inputs import vectors3
 NOT_FINITE = "the result is not finite: the numbers are too large"
 
 
-@dataclass(frozen=True)
-class Kernel:
-    """A function of one state as a generalised ufunc of floats, compiled when it is first needed.
+def kernel(layout):
+    """Decorator: a function of one state becomes a function that gives it as NumPy's generalised ufunc of floats.
 
-    function: its last argument is the result, which it fills. It raises InputError(NOT_FINITE) if that is not finite:
-    a NaN that went in has come out. layout: NumPy's, such as "(n),(n)->(n)".
+    layout: NumPy's, such as "(n),(n)->(n)". The last argument of the function is the result, which it fills. It raises
+    InputError(NOT_FINITE) if that is not finite: a NaN that went in has come out. Compiled when it is first needed.
     """
 
-    function: object
-    layout: str
+    def decorate(function):
+        @cache
+        def ufunc():
+            from ir50p_lab.jit import gufunc  # numba takes a while: not at import
 
-    @cached_property
-    def ufunc(self):
-        """NumPy's ufunc."""
-        from ir50p_lab.jit import gufunc  # numba takes a while: not at import
+            return gufunc(function, layout)
 
-        return gufunc(self.function, self.layout)
+        return ufunc
 
-
-def kernel(layout):
-    """Decorator: the function becomes a Kernel with this layout."""
-    return lambda function: Kernel(function, layout)
+    return decorate
 
 
 def evaluate(kernel, constants, check=None, /, **vectors):
@@ -43,12 +37,12 @@ def evaluate(kernel, constants, check=None, /, **vectors):
     the fault. check() gives the constants, checked.
     """
     try:
-        result = kernel.ufunc(*constants, *vectors.values())
+        result = kernel()(*constants, *vectors.values())
         if type(result) is np.ndarray:
             return result
     except (TypeError, ValueError):
         pass
-    return kernel.ufunc(*(check() if check else constants), *same_shape(**vectors))
+    return kernel()(*(check() if check else constants), *same_shape(**vectors))
 
 
 def same_shape(**vectors):

@@ -10,7 +10,33 @@ from ir50p_lab.modelling.arm import Arm, read_only
 from ir50p_lab.modelling.friction import Friction
 
 _DEG = np.pi / 180
-_K = np.array([4.0, 7.0, 6.0]) / 255  # N m per PWM count at 12 V: the stall torques below over 255 counts
+
+
+def _drive(stall_torque, no_load_speed):
+    """Motors and dry friction as fields of an Arm, from torque (N m) and speed (rad/s) at the joints, on 12 V.
+
+    12 V is the supply of thesis 4.1.2 (the motors are 24 V ones); a 24 V drive doubles both.
+    """
+    K = np.array(stall_torque) / 255  # N m per PWM count
+    friction = Friction(
+        # Assumed: all speed-dependent loss is the motors' back-EMF, so none is left here.
+        fv=(0.0, 0.0, 0.0),
+        # Assumed, given in PWM counts at 12 V: Coulomb 18, 16, 16; breakaway 36, 22, 22; offset 4, -3, 2.
+        fc=np.array([18.0, 16.0, 16.0]) * K,
+        fs=np.array([36.0, 22.0, 22.0]) * K,
+        qs=(0.05, 0.05, 0.05),
+        Tf=np.array([4.0, -3.0, 2.0]) * K,
+    )
+    motors = Actuators.from_joint_data(
+        stall_torque=stall_torque,
+        no_load_speed=no_load_speed,
+        reflected_inertia=(0.15, 0.20, 0.12),
+        # Assumed: only N^2 Jm and N kt matter at the joint; 100 is usual for such an arm.
+        N=(100.0, 100.0, 100.0),
+        V=12.0,
+    )
+    return {"friction": friction, "actuators": motors}
+
 
 # The thesis gives neither masses nor motors of the IR50P. What is not sourced is an assumption, chosen so that
 # identification lands near the thesis' Table 4.4; nothing here was measured on an IR50P.
@@ -26,50 +52,19 @@ IR50P = Arm(
     Ixx=(0.03, 0.0006, 0.0006),
     Iyy=(0.03, 0.0035, 0.0085),
     Izz=(0.02, 0.0035, 0.0085),
-    friction=Friction(
-        # Assumed: all speed-dependent loss is the motors' back-EMF, so none is left here.
-        fv=(0.0, 0.0, 0.0),
-        # Assumed, given in PWM counts at 12 V: Coulomb 18, 16, 16; breakaway 36, 22, 22; offset 4, -3, 2.
-        fc=tuple(np.array([18.0, 16.0, 16.0]) * _K),
-        fs=tuple(np.array([36.0, 22.0, 22.0]) * _K),
-        qs=(0.05, 0.05, 0.05),
-        Tf=tuple(np.array([4.0, -3.0, 2.0]) * _K),
-    ),
-    actuators=Actuators.from_joint_data(
-        # Assumed: stall torque and no-load speed at the joint for 12 V, the supply of thesis 4.1.2 (the
-        # motors are 24 V ones). A 24 V drive doubles both.
-        stall_torque=(4.0, 7.0, 6.0),
-        no_load_speed=(2.5, 1.1, 1.3),
-        reflected_inertia=(0.15, 0.20, 0.12),
-        # Assumed: only N^2 Jm and N kt matter at the joint; 100 is usual for such an arm.
-        N=(100.0, 100.0, 100.0),
-        V=12.0,
-    ),
+    # Assumed: stall torque and no-load speed.
+    **_drive(stall_torque=(4.0, 7.0, 6.0), no_load_speed=(2.5, 1.1, 1.3)),
     # Assumed: the ROB3i manual gives 200 deg of travel, not where. Chosen so that the thesis' set points fit.
     q_min=(-100 * _DEG, -50 * _DEG, -140 * _DEG),
     q_max=(100 * _DEG, 110 * _DEG, 30 * _DEG),
 )
 
-_K_WEAK = np.array([2.5, 9.0, 9.0]) / 255  # N m per PWM count at 12 V
-
 # The same arm with a weaker, faster motor in joint 1: the unit whose shoulder oscillates about its set point as in
-# Figure 4.8. Assumed and chosen for that; friction is the same in PWM counts, so in N m it follows its own K.
+# Figure 4.8. Assumed and chosen for that; friction is the same in PWM counts, so in N m it follows its own motors.
 IR50P_WEAK_SHOULDER = dataclasses.replace(
     IR50P,
     name="IR50P weak shoulder",
-    friction=Friction(
-        fc=tuple(np.array([18.0, 16.0, 16.0]) * _K_WEAK),
-        fs=tuple(np.array([36.0, 22.0, 22.0]) * _K_WEAK),
-        qs=(0.05, 0.05, 0.05),
-        Tf=tuple(np.array([4.0, -3.0, 2.0]) * _K_WEAK),
-    ),
-    actuators=Actuators.from_joint_data(
-        stall_torque=(2.5, 9.0, 9.0),
-        no_load_speed=(3.0, 1.1, 1.3),
-        reflected_inertia=(0.15, 0.20, 0.12),
-        N=(100.0, 100.0, 100.0),
-        V=12.0,
-    ),
+    **_drive(stall_torque=(2.5, 9.0, 9.0), no_load_speed=(3.0, 1.1, 1.3)),
 )
 
 # Thesis 2.1.1: l = 1 m, m = (3, 1, 1) kg, lc = 0.5 m, no inertias. The thesis puts the centre of mass of the
@@ -85,11 +80,9 @@ THESIS_A = Arm(
 )
 
 # The same lengths and masses as slender uniform rods: I = m l^2 / 12 across, 0 along the rod.
-THESIS_RODS = Arm(
+THESIS_RODS = dataclasses.replace(
+    THESIS_A,
     name="thesis 2.1.1, slender rods (model B)",
-    l=(1.0, 1.0, 1.0),
-    m=(3.0, 1.0, 1.0),
-    lc=(0.5, 0.5, 0.5),
     Ixx=(3 / 12, 0.0, 0.0),
     Iyy=(3 / 12, 1 / 12, 1 / 12),
     Izz=(0.0, 1 / 12, 1 / 12),

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import choice, numbers, vectors3
 
 EULERIAN = ("XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ")
 """Sequences that come back to their first axis (thesis 1.1.2 b)."""
@@ -22,10 +23,7 @@ CARDANIAN = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 SEQUENCES = EULERIAN + CARDANIAN
 """The twelve angle sequences. Capital letters: each turn is about an axis that has already been moved."""
 
-TOLERANCE = 1e-6
-"""Largest entry of ``R^T R - I`` that still counts as rounding."""
-
-_AXES = {"X": 0, "Y": 1, "Z": 2}
+_ROUNDING = 1e-6  # largest entry of R^T R - I, and of det R - 1, that still counts as rounding
 
 
 def rot_x(angle):
@@ -56,8 +54,8 @@ def rotation_from_angles(sequence, angles):
     """
     from scipy.spatial.transform import Rotation
 
-    _check_sequence(sequence)
-    angles = _finite("angles", angles, (3,))
+    choice("sequence", sequence, SEQUENCES)
+    angles = vectors3("angles", angles)
     R = Rotation.from_euler(sequence, angles.reshape(-1, 3)).as_matrix()
     return R.reshape(*angles.shape[:-1], 3, 3)
 
@@ -74,7 +72,7 @@ def angles_from_rotation(sequence, R):
     """
     from scipy.spatial.transform import Rotation
 
-    _check_sequence(sequence)
+    choice("sequence", sequence, SEQUENCES)
     R = check_rotation(R)
     rotation = Rotation.from_matrix(R.reshape(-1, 3, 3))
     # The gimbal-lock warning of SciPy is replaced by the documented choice above and by `gimbal_lock`.
@@ -87,7 +85,7 @@ def singular_angles(sequence):
     (0, pi) for an Eulerian sequence, (-pi/2, pi/2) for a Cardanian one: there the third axis lies on the first.
     Raises InputError for an unknown sequence.
     """
-    _check_sequence(sequence)
+    choice("sequence", sequence, SEQUENCES)
     return (0.0, np.pi) if sequence in EULERIAN else (-np.pi / 2, np.pi / 2)
 
 
@@ -98,9 +96,9 @@ def rate_matrix(sequence, angles):
     angles: (...,3) rad. Returns E (...,3,3), without unit.
     Raises InputError for an unknown sequence, a wrong shape, NaN or infinity.
     """
-    _check_sequence(sequence)
-    angles = _finite("angles", angles, (3,))
-    first, second, third = (_AXES[letter] for letter in sequence)
+    choice("sequence", sequence, SEQUENCES)
+    angles = vectors3("angles", angles)
+    first, second, third = map("XYZ".index, sequence)
     R_1 = _elementary(sequence[0], angles[..., 0])
     R_12 = R_1 @ _elementary(sequence[1], angles[..., 1])
     e_1 = np.broadcast_to(np.eye(3)[first], angles.shape)
@@ -133,8 +131,7 @@ def gimbal_lock(sequence, angles):
     left, values, _ = np.linalg.svd(E)
     smallest = values[..., -1]
     # Below this, a singular value is rounding: the svd of a singular 3x3 matrix gives about 1e-16.
-    with np.errstate(divide="ignore"):
-        gain = 1 / np.where(smallest < 1e-15, 0.0, smallest)
+    gain = np.where(smallest < 1e-15, np.inf, 1 / np.maximum(smallest, 1e-15))
     return GimbalLock(sine=np.abs(np.linalg.det(E)), gain=gain, lost_axis=left[..., :, -1])
 
 
@@ -145,103 +142,38 @@ def homogeneous(R=None, t=None):
     dimensions are broadcast. Returns T (...,4,4). Raises InputError if R is not a rotation or t is not (...,3).
     """
     R = np.eye(3) if R is None else check_rotation(R)
-    t = np.zeros(3) if t is None else _finite("t", t, (3,))
-    try:
-        leading = np.broadcast_shapes(R.shape[:-2], t.shape[:-1])
-    except ValueError:
-        raise InputError(f"R and t do not fit together: shapes {R.shape} and {t.shape}") from None
-    T = np.zeros((*leading, 4, 4))
+    t = np.zeros(3) if t is None else vectors3("t", t, unit="m")
+    T = np.zeros((*np.broadcast_shapes(R.shape[:-2], t.shape[:-1]), 4, 4))
     T[..., :3, :3] = R
     T[..., :3, 3] = t
     T[..., 3, 3] = 1
     return T
 
 
-def inverse_transform(T):
-    """Inverse of a homogeneous transform in closed form: T_B_A = [[R^T, -R^T t], [0, 1]].
+def check_rotation(R):
+    """Return R as an array of floats if it is a rotation: R^T R = I and det R = +1, within 1e-6.
 
-    T: (...,4,4). Returns (...,4,4). Raises InputError if T is no homogeneous transform.
+    R: (...,3,3). Raises InputError that says by how much R fails.
     """
-    T = check_transform(T)
-    R_transposed = np.swapaxes(T[..., :3, :3], -1, -2)
-    result = np.zeros_like(T)
-    result[..., :3, :3] = R_transposed
-    result[..., :3, 3] = -(R_transposed @ T[..., :3, 3, None])[..., 0]
-    result[..., 3, 3] = 1
-    return result
-
-
-def check_rotation(R, tolerance=TOLERANCE):
-    """Return R as an array of floats if it is a rotation: R^T R = I and det R = +1.
-
-    R: (...,3,3). tolerance: largest allowed entry of R^T R - I and of det R - 1, without unit.
-    Raises InputError that says by how much R fails.
-    """
-    R = _finite("R", R, (3, 3))
+    R = numbers("R", R, unit="1")
+    if R.shape[-2:] != (3, 3) or not np.isfinite(R).all():
+        raise InputError(f"R has shape {R.shape}; give (..., 3, 3), all finite")
     defect = np.abs(np.swapaxes(R, -1, -2) @ R - np.eye(3)).max(axis=(-1, -2))
     determinant = np.linalg.det(R)
-    wrong = (defect > tolerance) | (np.abs(determinant - 1) > tolerance)
-    if np.any(wrong):
-        where = tuple(int(i) for i in np.argwhere(wrong)[0])
-        name = f"R[{', '.join(map(str, where))}]" if where else "R"
-        if defect[where] <= tolerance:
-            advice = "It is a reflection: reverse one axis"
-        else:
-            advice = "Its columns must be orthogonal unit vectors: check the signs and the order of the entries"
+    wrong = (defect > _ROUNDING) | (np.abs(determinant - 1) > _ROUNDING)
+    if wrong.any():
         raise InputError(
-            f"{name} is not a rotation: the largest entry of R^T R - I is {defect[where]:.3g} and det R is "
-            f"{determinant[where]:.6g} (wanted 0 and 1, within {tolerance:g}). {advice}."
+            f"R is not a rotation: the largest entry of R^T R - I is {defect[wrong][0]:.3g} and det R is "
+            f"{determinant[wrong][0]:.6g} (wanted 0 and 1). Its columns must be orthogonal unit vectors, right-handed: "
+            "check the signs and the order of the entries; det R = -1 is a reflection"
         )
     return R
-
-
-def check_transform(T, tolerance=TOLERANCE):
-    """Return T as an array of floats if it is a homogeneous transform: a rotation, a translation, a row 0 0 0 1.
-
-    T: (...,4,4). tolerance: as in `check_rotation`. Raises InputError that says what is wrong.
-    """
-    T = _finite("T", T, (4, 4))
-    wrong = np.any(np.abs(T[..., 3, :] - [0, 0, 0, 1]) > tolerance, axis=-1)
-    if np.any(wrong):
-        row = T[..., 3, :][wrong][0]
-        raise InputError(
-            f"the last row of a homogeneous transform is 0 0 0 1, and this one is {row}; a transposed matrix "
-            "has its translation there"
-        )
-    check_rotation(T[..., :3, :3], tolerance)
-    return T
 
 
 def _elementary(letter, angle):
     from scipy.spatial.transform import Rotation
 
-    angle = _finite("angle", angle, ())
+    angle = numbers("angle", angle, unit="rad")
+    if not np.isfinite(angle).all():
+        raise InputError(f"angle = {angle} holds NaN or infinity; check where it comes from")
     return Rotation.from_euler(letter, angle.reshape(-1, 1)).as_matrix().reshape(*angle.shape, 3, 3)
-
-
-def _check_sequence(sequence):
-    if isinstance(sequence, str) and sequence in SEQUENCES:
-        return
-    hint = ""
-    if isinstance(sequence, str) and sequence.upper() in SEQUENCES:
-        hint = (
-            f" Small letters would mean fixed axes: that is the moving sequence '{sequence[::-1].upper()}' "
-            "with the angles in reverse order."
-        )
-    elif isinstance(sequence, str) and len(sequence) == 3 and set(sequence) <= set("XYZ"):
-        hint = " Two turns in a row about the same axis are one turn."
-    raise InputError(f"unknown sequence {sequence!r}: choose one of {', '.join(SEQUENCES)}.{hint}")
-
-
-def _finite(name, value, tail):
-    """Return `value` as floats of shape (..., *tail), or raise InputError."""
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{name} must be real numbers, not {value!r}") from error
-    if array.ndim < len(tail) or array.shape[array.ndim - len(tail) :] != tail:
-        wanted = "(" + ", ".join(["...", *map(str, tail)]) + ")"
-        raise InputError(f"{name} has shape {array.shape}, but must have shape {wanted}")
-    if not np.all(np.isfinite(array)):
-        raise InputError(f"{name} holds NaN or infinity; check where it comes from: {array}")
-    return array

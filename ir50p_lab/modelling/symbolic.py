@@ -2,24 +2,21 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import sympy
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vector3
+from ir50p_lab.inputs import choice, vector3
 from ir50p_lab.modelling import symbolic_steps as steps
 from ir50p_lab.modelling.symbolic_display import Formulas, short_names
-from ir50p_lab.modelling.trig_ring import TrigRing
 
-_PAIRS = ("xx", "yy", "zz", "xy", "xz", "yz")
 _COM_AND_INERTIA = {
-    "in-line": ("lc1 lc2 lc3", "Izz1 Ixx2 Iyy2 Izz2 Ixx3 Iyy3 Izz3"),
-    "general": (
-        " ".join(axis + i for i in "123" for axis in "xyz"),
-        " ".join(f"I{pair}{i}" for i in "123" for pair in _PAIRS),
-    ),
-    "thesis": ("lc1 lc2 lc3", "Izz1 Iyy2 Izz2 Iyz2 Iyy3 Izz3 Iyz3"),
+    "in-line": "lc1 lc2 lc3 Izz1 Ixx2 Iyy2 Izz2 Ixx3 Iyy3 Izz3",
+    "general": "x1 y1 z1 x2 y2 z2 x3 y3 z3 "
+    "Ixx1 Iyy1 Izz1 Ixy1 Ixz1 Iyz1 Ixx2 Iyy2 Izz2 Ixy2 Ixz2 Iyz2 Ixx3 Iyy3 Izz3 Ixy3 Ixz3 Iyz3",
+    "thesis": "lc1 lc2 lc3 Izz1 Iyy2 Izz2 Iyz2 Iyy3 Izz3 Iyz3",
 }
 
 
@@ -68,12 +65,10 @@ class SymbolicModel:
     @property
     def h(self):
         """Centrifugal and Coriolis torque C(q, qd) qd, (3, 1) N m, sorted by products of velocities (1.97)."""
-        rows = []
-        for b in self._b:
-            squares = [b[j][j] * self.qd[j] ** 2 for j in range(3)]
-            mixed = [sympy.Mul(2, b[j][k], self.qd[j], self.qd[k]) for j, k in ((0, 1), (0, 2), (1, 2))]
-            rows.append(sympy.Add(*squares, *mixed))
-        return sympy.ImmutableMatrix(rows)
+        pairs = [(j, k) for j in range(3) for k in range(j, 3)]
+        return sympy.ImmutableMatrix(
+            [sympy.Add(*[sympy.Mul(1 + (j != k), b[j][k], self.qd[j], self.qd[k]) for j, k in pairs]) for b in self._b]
+        )
 
     @property
     def kinetic(self):
@@ -81,18 +76,9 @@ class SymbolicModel:
         return (self.qd.T * self.M * self.qd)[0] / 2
 
     @property
-    def energy(self):
-        """Total energy, kinetic plus potential, J."""
-        return self.kinetic + self.potential
-
-    @property
     def tau(self):
         """Joint torque M qdd + C qd + g of the arm without friction, (3, 1) N m (1.74)."""
         return self.M * self.qdd + self.h + self.g
-
-    def short(self, expression):
-        """`expression` with c_{2} for cos(q2), s_{23} for sin(q2 + q3) ...: shorter to read, only for display."""
-        return sympy.sympify(expression).xreplace(short_names(self.q))
 
     def read(self, name):
         """The entries of "M", "C", "g", "h" or "tau" as equations to read, without zeros: Formulas.
@@ -100,9 +86,9 @@ class SymbolicModel:
         Of M only the upper triangle. In a notebook they appear in the thesis' notation, c_23 = cos(q2 + q3).
         Raises InputError for another name.
         """
-        if name not in ("M", "C", "g", "h", "tau"):
-            raise InputError(f"read({name!r}): choose 'M', 'C', 'g', 'h' or 'tau'")
-        matrix, letter = self.short(getattr(self, name)), {"tau": r"\tau"}.get(name, name)
+        choice("name", name, ("M", "C", "g", "h", "tau"))
+        matrix = getattr(self, name).xreplace(short_names(self.q))
+        letter = {"tau": r"\tau"}.get(name, name)
         rows = []
         for i in range(3):
             for j in range(matrix.shape[1]):
@@ -121,7 +107,15 @@ class SymbolicModel:
         Raises InputError for an unknown or missing name, a number that is not finite, or an Arm where `links`
         is "thesis" (its constant inertias belong to no rigid body: give a mapping).
         """
-        given = dict(arm) if isinstance(arm, Mapping) else _from_arm(arm, self.links)
+        if isinstance(arm, Mapping):
+            given = arm
+        elif self.links == "thesis":
+            raise InputError(
+                "the thesis' model holds constant products of inertia, which an Arm cannot: give a mapping of "
+                "parameter names to numbers, or use derive() for this arm"
+            )
+        else:
+            given = {name: value for name, value in _from_arm(arm).items() if name in self.symbols}
         for name, value in given.items():
             if name not in self.symbols:
                 raise InputError(f"{name!r} is no parameter of this model; it has {', '.join(self.symbols)}")
@@ -135,43 +129,31 @@ class SymbolicModel:
         return [float(given.get(name, 0.0)) for name in self.symbols]
 
     def numeric(self, arm):
-        """The formulas as functions of numbers, for `arm` (see `values`): a NumericModel."""
+        """M, C and g as functions of numbers, for `arm` (see `values`): a NumericModel."""
         values, parameters = self.values(arm), list(self.symbols.values())
 
-        def function(formula, *state, shape=None):
+        def function(formula, *state):
             compiled = sympy.lambdify([*map(list, state), parameters], formula, "numpy", cse=True)
 
             def of_numbers(*numbers):
                 checked = [vector3(letter, x) for letter, x in zip(("q", "qd"), numbers, strict=False)]
-                result = np.array(compiled(*checked, values), dtype=float)
-                return result if shape is None else result.reshape(shape)
+                return np.squeeze(np.array(compiled(*checked, values), dtype=float))
 
             return of_numbers
 
-        return NumericModel(
-            M=function(self.M, self.q),
-            C=function(self.C, self.q, self.qd),
-            g=function(self.g, self.q, shape=3),
-            p=function(self.frames[3][:3, 3], self.q, shape=3),
-            J=function(self.J, self.q),
-            energy=function(self.energy, self.q, self.qd, shape=()),
-        )
+        return NumericModel(M=function(self.M, self.q), C=function(self.C, self.q, self.qd), g=function(self.g, self.q))
 
 
 @dataclass(frozen=True)
 class NumericModel:
     """The symbolic model evaluated in numbers: an independent route, not a fast one. q rad, qd rad/s, both (3,).
 
-    M(q): mass matrix, (3, 3) kg m^2; C(q, qd): Coriolis matrix, (3, 3) N m s/rad; g(q): gravity torque, (3,) N m;
-    p(q): tip in the base frame, (3,) m; J(q): geometric Jacobian of the tip, (6, 3); energy(q, qd): in all, J.
+    M(q): mass matrix, (3, 3) kg m^2; C(q, qd): Coriolis matrix, (3, 3) N m s/rad; g(q): gravity torque, (3,) N m.
     """
 
     M: Callable
     C: Callable
     g: Callable
-    p: Callable
-    J: Callable
-    energy: Callable
 
 
 def derive(*, links="in-line", general=False):
@@ -191,43 +173,42 @@ def derive(*, links="in-line", general=False):
 
     Raises InputError for another word.
     """
-    if general:
-        links = "general"
-    if links not in _COM_AND_INERTIA:
-        raise InputError(f"links = {links!r}: choose one of {', '.join(map(repr, _COM_AND_INERTIA))}")
+    links = "general" if general else choice("links", links, _COM_AND_INERTIA)
     q, qd, qdd = (sympy.ImmutableMatrix(sympy.symbols(f"{name}1:4", real=True)) for name in ("q", "qdot", "qddot"))
-    com_names, inertia_names = _COM_AND_INERTIA[links]
-    names = ["g", *f"l1 l2 l3 m1 m2 m3 {com_names} {inertia_names} j1 j2 j3".split()]
-    ring = TrigRing(q, names)
-    body_like = {name for name in names if name[0] in "mIj"}
+    names = f"g l1 l2 l3 m1 m2 m3 {_COM_AND_INERTIA[links]} j1 j2 j3".split()
+    symbols = {name: sympy.Symbol(name, real=True) for name in names}
+    by = [symbols[name] for name in names if name[0] in "mIj"]
 
-    def matrix(rows):
-        return sympy.ImmutableMatrix([[ring.to_sympy(p, by=body_like) for p in row] for row in rows])
+    @cache  # the same sums come back
+    def formula(expression):
+        return steps.ordered(expression, by)
 
-    frames, rotations = steps.chain(ring)
-    centres, tensors = steps.bodies(ring, links, frames, rotations)
-    Jv = [steps.jacobian(ring, p) for p in centres]
-    Jw = steps.angular_jacobians(ring, frames)
-    Jv_tip = steps.jacobian(ring, [row[3] for row in frames[3][:3]])
-    M = steps.mass_matrix(ring, Jv, Jw, tensors)
-    U = steps.potential(ring, centres)
-    b = [[[ring.to_sympy(p, by=body_like) for p in row] for row in block] for block in steps.christoffel(ring, M)]
-    C = [[sympy.Add(*[b[i][j][k] * qd[k] for k in range(3)]) for j in range(3)] for i in range(3)]
+    frames, rotations = steps.chain(q, *(symbols[name] for name in ("l1", "l2", "l3")))
+    centres, tensors = steps.bodies(symbols, links, frames, rotations)
+    Jv = [p.jacobian(q) for p in centres]
+    Jw = steps.angular_jacobians(frames)
+    M = steps.mass_matrix(q, symbols, Jv, Jw, tensors).applyfunc(formula)
+    b = [[list(map(formula, row)) for row in block] for block in steps.christoffel(q, M)]
+    potential = formula(symbols["g"] * sum(symbols[f"m{i + 1}"] * centres[i][2] for i in range(3)))
+
+    def tidy(matrix):
+        return sympy.ImmutableMatrix(matrix.applyfunc(sympy.factor_terms))
+
     return SymbolicModel(
         links=links,
         q=q,
         qd=qd,
         qdd=qdd,
-        symbols=ring.symbols,
-        frames=tuple(matrix(T) for T in frames),
-        J=matrix(Jv_tip + Jw[2]),
-        com=tuple(matrix([[x] for x in p]) for p in centres),
-        Jv=tuple(map(matrix, Jv)),
-        Jw=tuple(map(matrix, Jw)),
-        M=matrix(M),
-        C=sympy.ImmutableMatrix(C),
-        g=matrix([[ring.reduce(ring.diff(U, i))] for i in range(3)]),
-        potential=ring.to_sympy(U, by=body_like),
+        symbols=symbols,
+        frames=tuple(map(tidy, frames)),
+        J=tidy(frames[3][:3, 3].jacobian(q).col_join(Jw[2])),
+        com=tuple(map(tidy, centres)),
+        Jv=tuple(map(tidy, Jv)),
+        Jw=tuple(map(tidy, Jw)),
+        M=sympy.ImmutableMatrix(M),
+        C=sympy.ImmutableMatrix(3, 3, lambda i, j: sympy.Add(*[b[i][j][k] * qd[k] for k in range(3)])),
+        g=sympy.ImmutableMatrix([formula(potential.diff(angle)) for angle in q]),
+        potential=potential,
         _b=b,
     )
 
@@ -235,7 +216,7 @@ def derive(*, links="in-line", general=False):
 def same_function(a, b):
     """True if two formulas are the same function of the angles, proved exactly (not by trying numbers).
 
-    Sines and cosines of sums are expanded, then s^2 = 1 - c^2 leaves one form only.
+    Written with exponentials and expanded, such a function has one form only.
 
     Args:
         a, b: sympy expressions, or matrices of one shape, polynomial in sines and cosines of sums of symbols.
@@ -243,33 +224,17 @@ def same_function(a, b):
     if isinstance(a, sympy.MatrixBase) or isinstance(b, sympy.MatrixBase):
         a, b = sympy.Matrix(a), sympy.Matrix(b)
         return a.shape == b.shape and all(map(same_function, a, b))
-    difference = sympy.expand(sympy.sympify(a) - b, trig=True)
-    angles = {f.args[0] for f in difference.atoms(sympy.sin, sympy.cos)}
-    for angle in angles:
-        s, c = sympy.symbols("s c", cls=sympy.Dummy)
-        polynomial = sympy.Poly(difference.xreplace({sympy.sin(angle): s, sympy.cos(angle): c}), s, c)
-        difference = polynomial.rem(sympy.Poly(s**2 + c**2 - 1, s, c)).as_expr()
-        difference = difference.xreplace({s: sympy.sin(angle), c: sympy.cos(angle)})
+    difference = (sympy.sympify(a) - b).rewrite([sympy.sin, sympy.cos], sympy.exp)
     return sympy.expand(difference) == 0
 
 
-def _from_arm(arm, links):
-    """The numbers of an Arm by parameter name."""
-    if links == "thesis":
-        raise InputError(
-            "the thesis' model holds constant products of inertia, which an Arm cannot: give a mapping of "
-            "parameter names to numbers, or use derive() for this arm"
-        )
-    numbers = {"g": arm.g}
+def _from_arm(arm):
+    """The numbers of an Arm by parameter name, for in-line and for general links."""
     rotors = (0.0, 0.0, 0.0) if arm.actuators is None else arm.actuators.reflected_inertia
+    numbers = {"g": arm.g}
     for i in range(3):
-        numbers |= {f"l{i + 1}": arm.l[i], f"m{i + 1}": arm.m[i], f"j{i + 1}": rotors[i]}
-        numbers |= {f"I{axis}{i + 1}": getattr(arm, f"I{axis}")[i] for axis in ("xx", "yy", "zz")}
-        if links == "general":
-            numbers |= {f"{axis}{i + 1}": 0.0 for axis in "xyz"}
-            numbers["z1" if i == 0 else f"x{i + 1}"] = arm.lc[i]
-        else:
-            numbers[f"lc{i + 1}"] = arm.lc[i]
-    if links == "in-line":  # the column only turns about its own axis
-        del numbers["Ixx1"], numbers["Iyy1"]
+        com = dict.fromkeys("xyz", 0.0) | {"z" if i == 0 else "x": arm.lc[i]}
+        link = {"l": arm.l[i], "m": arm.m[i], "j": rotors[i], "lc": arm.lc[i], **com}
+        link |= {name: getattr(arm, name)[i] for name in ("Ixx", "Iyy", "Izz")}
+        numbers |= {f"{name}{i + 1}": value for name, value in link.items()}
     return numbers

@@ -4,6 +4,7 @@ import re
 
 import sympy
 
+_ORDER = {"I": 1, "j": 2, "m": 3, "g": 4, "c": 6, "s": 6, "q": 7}  # in a product; lengths, all others, are 5
 _LINE = 105  # visible characters that fit on a line of a notebook, roughly
 
 
@@ -19,12 +20,6 @@ class Formulas:
 
     def __init__(self, rows):
         self.rows = tuple(rows)
-
-    def __iter__(self):
-        return iter(self.rows)
-
-    def __len__(self):
-        return len(self.rows)
 
     def __repr__(self):
         return "\n".join(f"{re.sub('[{}]', '', name)} = {expression}" for name, expression in self.rows)
@@ -59,12 +54,6 @@ def _latex(expression):
 def _rank_and_name(name):
     """Place of a symbol in a product, and how it is written."""
     kind, number = re.fullmatch(r"(\D*?)_?\{?(\d*)\}?", name).groups()
-    if kind in ("c", "s"):
-        return 6, f"{kind}_{{{number}}}"
-    if kind.startswith("q"):
-        dots = {"qdot": r"\dot{q}", "qddot": r"\ddot{q}"}.get(kind, kind)
-        return 7, f"{dots}_{{{number}}}"
-    if len(kind) > 1:  # Ixx2, lc3
-        return (1 if kind[0] == "I" else 5), f"{kind[0]}_{{{kind[1:]}{number}}}"
-    rank = {"j": 2, "m": 3, "g": 4}.get(kind, 5)
-    return rank, f"{kind}_{{{number}}}" if number else kind
+    letter = {"qdot": r"\dot{q}", "qddot": r"\ddot{q}"}.get(kind, kind[0])
+    index = kind[1:] + number if kind[0] in "Il" else number  # Ixx2, lc3
+    return _ORDER.get(kind[0], 5), f"{letter}_{{{index}}}" if index else letter

@@ -10,7 +10,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     submod_attrs={
         "gain_sweep": ["GainSweep", "sweep_gains"],
         "plant": ["make_plant"],
-        "result": ["SimulationResult", "StepMetrics"],
+        "result": ["SimulationResult"],
         "simulate": ["simulate"],
         "sweep": ["Failure", "SweepResult", "sweep"],
     },

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite, numbers, vector3
+from ir50p_lab.inputs import numbers, vector3
 from ir50p_lab.simulation.batch import LANES, METRICS, pid_batch
 from ir50p_lab.simulation.plant import make_plant
 from ir50p_lab.simulation.simulate import _sample, _target, _times
@@ -117,10 +117,9 @@ def _gain_sets(**sets):
     arrays = {}
     for name, value in sets.items():
         array = numbers(name, value)
-        if not np.isfinite(array).all():
-            raise InputError(f"{name} holds {first_not_finite(np.atleast_1d(array))}; every gain must be finite")
-        if (array < 0).any():
-            raise InputError(f"{name} holds {array.min()}; gains must be >= 0")
+        wrong = array[~(np.isfinite(array) & (array >= 0))]
+        if wrong.size:
+            raise InputError(f"{name} holds {wrong[0]}; every gain must be finite and >= 0")
         arrays[name] = np.atleast_2d(array)
     try:
         shape = np.broadcast_shapes(*(a.shape for a in arrays.values()), (1, 3))

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import ArmError, InputError
+from ir50p_lab.inputs import choice
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.dynamics import as_theta
 
-_VISCOUS, _COULOMB, _OFFSET = (10, 12, 14), (11, 13, 15), (16, 17, 18)
-
+_JOINTS, _VISCOUS, _COULOMB, _OFFSET = (0, 1, 2), (10, 12, 14), (11, 13, 15), (16, 17, 18)  # places in theta
 
 # places in Plant.numbers; three values each unless said
 GRAVITY, TABLE, DRY = 0, 1, 2  # one value each: m/s^2; height of the table, m; 1 if a step must be able to stick
-FV, FC, FS, QS, TF, LIMIT, Q_MIN, Q_MAX, LENGTHS, FORCE_SCALE, N_NUMBERS = 3, 6, 9, 12, 15, 18, 21, 24, 27, 30, 33
+FV, FC, FS, QS, TF, LIMIT, Q_MIN, Q_MAX, LENGTHS, FORCE_SCALE = 3, 6, 9, 12, 15, 18, 21, 24, 27, 30
 
 
 @dataclass(frozen=True)
@@ -51,37 +51,23 @@ def make_plant(arm, *, unit="N m", stops=False, table=None, g=None):
 
     Raises: ArmError (no actuators for PWM), InputError (a table or end stops for a theta, g for an Arm, unknown unit).
     """
-    if unit not in ("N m", "PWM"):
-        raise InputError(f"unit = {unit!r}: the command is in 'N m' or in 'PWM' counts")
+    choice("unit", unit, ("N m", "PWM"))
     theta, gravity = as_theta(arm, g)
-    is_arm = isinstance(arm, Arm)
-    if not is_arm and (stops or table is not None):
-        raise InputError("end stops and a table need an Arm (its limits and lengths); a theta holds neither")
     scale, limit = np.ones(3), np.full(3, np.inf)
-    if unit == "PWM" and is_arm:
-        theta = arm.theta_pwm  # raises ArmError without actuators
-        scale, limit = 1 / arm.actuators.gain, np.full(3, arm.actuators.limit_pwm)
-    joints = np.arange(3)
-    fv, fc, Tf = (theta[joints, list(columns)] for columns in (_VISCOUS, _COULOMB, _OFFSET))
-    fs = np.array(arm.friction.fs) * scale if is_arm else fc
-    qs = np.array(arm.friction.qs) if is_arm else np.full(3, 0.05)
+    if isinstance(arm, Arm):
+        if unit == "PWM":
+            theta = arm.theta_pwm  # raises ArmError without actuators
+            scale, limit = 1 / arm.actuators.gain, np.full(3, arm.actuators.limit_pwm)
+        fs, qs, lengths = np.array(arm.friction.fs) * scale, arm.friction.qs, arm.l
+    elif stops or table is not None:
+        raise InputError("end stops and a table need an Arm (its limits and lengths); a theta holds neither")
+    else:
+        fs, qs, lengths = theta[_JOINTS, _COULOMB], np.full(3, 0.05), np.zeros(3)
+    fv, fc, Tf = theta[_JOINTS, _VISCOUS], theta[_JOINTS, _COULOMB], theta[_JOINTS, _OFFSET]
     if (fc < 0).any() or (fv < 0).any():
         raise ArmError(f"friction of theta is negative (fv {fv.tolist()}, fc {fc.tolist()}): it would feed the arm")
-    numbers = np.zeros(N_NUMBERS)
-    numbers[GRAVITY] = gravity
-    numbers[TABLE] = -np.inf if table is None else float(table)
-    numbers[DRY] = (fs > 0).any() or stops or table is not None
-    for place, values in (
-        (FV, fv),
-        (FC, fc),
-        (FS, fs),
-        (QS, qs),
-        (TF, Tf),
-        (LIMIT, limit),
-        (Q_MIN, arm.q_min if stops else np.full(3, -np.inf)),
-        (Q_MAX, arm.q_max if stops else np.full(3, np.inf)),
-        (LENGTHS, arm.l if is_arm else np.zeros(3)),
-        (FORCE_SCALE, scale),
-    ):
-        numbers[place : place + 3] = values
+    dry = (fs > 0).any() or stops or table is not None
+    ends = (arm.q_min, arm.q_max) if stops else (np.full(3, -np.inf), np.full(3, np.inf))
+    single = (gravity, -np.inf if table is None else table, dry)
+    numbers = np.concatenate([single, fv, fc, fs, qs, Tf, limit, *ends, lengths, scale])
     return Plant(theta=np.array(theta), numbers=numbers)

@@ -6,25 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
 from ir50p_lab.modelling.dynamics import energy
-
-
-@dataclass(frozen=True)
-class StepMetrics:
-    """How one joint answered a step, from `control.step_info`; times in s, angles in rad.
-
-    overshoot and settling are about the final value reached (2 % band); error = set point - final value.
-    """
-
-    joint: int
-    rise_time: float
-    overshoot_percent: float
-    settling_time: float
-    peak: float
-    final: float
-    error: float
-    peak_command: float
 
 
 @dataclass(frozen=True)
@@ -62,35 +44,3 @@ class SimulationResult:
     def rms_error(self):
         """Root mean square of the error per joint, (3,) rad."""
         return np.sqrt(np.mean(self.error**2, axis=0))
-
-    def metrics(self):
-        """Step metrics of the three joints, a list of StepMetrics (`control.step_info`, about the final value).
-
-        Raises InputError if the reference moves in the end: then there is no step to measure.
-        """
-        import control
-
-        if not (self.reference[-1, 1:] == 0).all():
-            raise InputError("the reference still moves at the end of the run; step metrics need a set point")
-        found = []
-        for joint in range(3):
-            y, target = self.q[:, joint], self.reference[-1, 0, joint]
-            moved = y - y[0]
-            if abs(moved[-1]) < 1e-9:
-                info = dict.fromkeys(("RiseTime", "Overshoot", "SettlingTime"), np.nan)
-            else:
-                info = control.step_info(moved, T=self.t, T_num=len(self.t))
-            far = np.argmax(np.abs(moved))
-            found.append(
-                StepMetrics(
-                    joint=joint + 1,
-                    rise_time=float(info["RiseTime"]),
-                    overshoot_percent=float(info["Overshoot"]),
-                    settling_time=float(info["SettlingTime"]),
-                    peak=float(y[far]),
-                    final=float(y[-1]),
-                    error=float(target - y[-1]),
-                    peak_command=float(np.abs(self.u[:, joint]).max()),
-                )
-            )
-        return found

@@ -7,21 +7,7 @@ import math
 
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
-from ir50p_lab.simulation.plant import (
-    DRY,
-    FC,
-    FORCE_SCALE,
-    FS,
-    FV,
-    GRAVITY,
-    LENGTHS,
-    LIMIT,
-    Q_MAX,
-    Q_MIN,
-    QS,
-    TABLE,
-    TF,
-)
+from ir50p_lab.simulation.plant import DRY, FC, FORCE_SCALE, FS, FV, GRAVITY, LENGTHS, Q_MAX, Q_MIN, QS, TABLE, TF
 
 
 @jit(forceinline=True)
@@ -120,11 +106,9 @@ def dry_step(theta, n, q1, q2, q3, a, b, c, u1, u2, u3, h):
 
 @jit()
 def advance(theta, n, x, u, h, steps):
-    """Advance the state x = (q, qd) (6,) by `steps` steps of h seconds with u (3,) held, limited by the drive."""
+    """Advance the state x = (q, qd) (6,) by `steps` steps of h seconds with u (3,) held, which the drive can give."""
     q1, q2, q3, a, b, c = x[0], x[1], x[2], x[3], x[4], x[5]
-    u1 = min(max(u[0], -n[LIMIT]), n[LIMIT])
-    u2 = min(max(u[1], -n[LIMIT + 1]), n[LIMIT + 1])
-    u3 = min(max(u[2], -n[LIMIT + 2]), n[LIMIT + 2])
+    u1, u2, u3 = u
     if n[DRY] > 0.0:
         for _ in range(steps):
             q1, q2, q3, a, b, c = dry_step(theta, n, q1, q2, q3, a, b, c, u1, u2, u3, h)

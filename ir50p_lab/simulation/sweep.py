@@ -2,8 +2,7 @@
 
 import hashlib
 import json
-import os
-from concurrent.futures import FIRST_COMPLETED, wait
+from concurrent.futures import as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -52,33 +51,36 @@ def sweep(run, cases, *, executor=None, progress=True, save_to=None):
     cases = list(cases)
     name = f"{getattr(run, '__module__', '')}.{getattr(run, '__qualname__', repr(run))}"
     keys = [_key(name, case) for case in cases]
-    known = _read(save_to)
+    known = {} if save_to is None else _read(Path(save_to))
     results = [known.get(key) for key in keys]
-    todo = [i for i, key in enumerate(keys) if key not in known]
-    failures = []
-    file = Path(save_to).open("a", encoding="utf-8") if save_to is not None else None
-    pool, own = (executor, False) if executor is not None else (_all_cores(), True)
-    bar = tqdm(total=len(cases), initial=len(cases) - len(todo), disable=not progress, unit="case")
-    waiting = {}
-    try:
-        queue = iter(todo)
-        # a few cases ahead of the workers: an interrupt then loses little, and memory stays small
-        for i in queue:
-            waiting[pool.submit(run, cases[i])] = i
-            if len(waiting) >= 64:
-                _collect(waiting, cases, keys, results, failures, file, bar)
-        while waiting:
-            _collect(waiting, cases, keys, results, failures, file, bar)
-    finally:
-        finished = [future for future in waiting if future.done()]  # after an interrupt: keep what is there
-        _take(finished, waiting, cases, keys, results, failures, file, bar)
-        for future in waiting:
-            future.cancel()
-        if own:
-            pool.shutdown(wait=False)
-        if file is not None:
-            file.close()
-        bar.close()
+    failures, waiting = [], {}
+
+    def take(future):
+        i = waiting.pop(future)
+        try:
+            results[i] = _plain(future.result())
+        except Exception as error:  # a case may fail in any way; it is reported with its case
+            failures.append(Failure(index=i, case=cases[i], error=f"{type(error).__name__}: {error}"))
+        else:
+            if save_to is not None:
+                _write(Path(save_to), keys[i], results[i])
+        bar.update()
+
+    done = sum(key in known for key in keys)
+    with tqdm(total=len(cases), initial=done, disable=not progress, unit="case") as bar:
+        pool = _all_cores() if executor is None else executor
+        try:
+            for i, key in enumerate(keys):
+                if key not in known:
+                    waiting[pool.submit(run, cases[i])] = i
+            for future in as_completed(waiting):
+                take(future)
+        finally:  # after an interrupt: keep what is there, and do not begin the rest
+            for future in list(waiting):
+                if not future.cancel() and future.done():
+                    take(future)
+            if executor is None:
+                pool.shutdown(wait=False)
     failures.sort(key=lambda failure: failure.index)
     return SweepResult(cases=cases, results=results, failures=failures)
 
@@ -86,35 +88,7 @@ def sweep(run, cases, *, executor=None, progress=True, save_to=None):
 def _all_cores():
     from loky import ProcessPoolExecutor
 
-    return ProcessPoolExecutor(max_workers=os.cpu_count())
-
-
-def _collect(waiting, cases, keys, results, failures, file, bar):
-    """Take what is ready from `waiting`, at least one result."""
-    ready, _ = _wait(waiting)
-    _take(ready, waiting, cases, keys, results, failures, file, bar)
-
-
-def _take(ready, waiting, cases, keys, results, failures, file, bar):
-    for future in ready:
-        i = waiting.pop(future)
-        try:
-            results[i] = _plain(future.result())
-        except Exception as error:  # a case may fail in any way; it is reported with its case
-            failures.append(Failure(index=i, case=cases[i], error=f"{type(error).__name__}: {error}"))
-        else:
-            if file is not None:
-                _write(file, keys[i], results[i])
-        bar.update(1)
-
-
-def _wait(futures):
-    first = next(iter(futures))
-    if type(first).__module__.startswith("distributed"):  # Dask futures have their own wait
-        import distributed
-
-        return distributed.wait(list(futures), return_when=FIRST_COMPLETED)
-    return wait(futures, return_when=FIRST_COMPLETED)
+    return ProcessPoolExecutor()
 
 
 def _plain(value):
@@ -138,34 +112,28 @@ def _key(name, case):
     return hashlib.sha256(text.encode()).hexdigest()[:24]
 
 
-def _write(file, key, result):
+def _write(path, key, result):
     try:
         line = json.dumps({"case": key, "result": result})
     except TypeError as error:
         raise InputError(f"a result cannot be saved ({error}); return numbers, strings, lists or dicts") from None
-    file.write(line + "\n")
-    file.flush()
+    with path.open("a", encoding="utf-8") as file:
+        file.write(line + "\n")
 
 
 def _read(path):
-    if path is None or not Path(path).exists():
-        return {}
+    """{key: result} of the file of a sweep, which is made if there is none."""
+    path.touch()
+    *lines, rest = path.read_text(encoding="utf-8").split("\n")
     known = {}
-    lines = Path(path).read_text(encoding="utf-8").splitlines()
     for number, line in enumerate(lines, start=1):
         try:
             entry = json.loads(line)
             known[entry["case"]] = entry["result"]
         except (json.JSONDecodeError, KeyError, TypeError, RecursionError):
-            if number == len(lines):
-                _cut_last_line(path)  # the process was killed while it wrote: that case is computed again
-                break
             raise InputError(
                 f"{path}, line {number}: not a line of a sweep; delete the file or name another in save_to"
             ) from None
+    if rest:  # the process was killed while it wrote this line: that case is computed again
+        path.write_text("".join(line + "\n" for line in lines), encoding="utf-8")
     return known
-
-
-def _cut_last_line(path):
-    data = Path(path).read_bytes()
-    Path(path).write_bytes(data[: data.rstrip(b"\n").rfind(b"\n") + 1])

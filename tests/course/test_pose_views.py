@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.course.pose_views import Brick, GimbalView, space
-from ir50p_lab.errors import InputError
-from ir50p_lab.modelling import homogeneous, rot_x, rot_z, rotation_from_angles
+from ir50p_lab.modelling.pose import homogeneous, rot_x, rot_z, rotation_from_angles
 
 
 def test_space_has_equal_axes_and_three_names():
@@ -26,8 +25,6 @@ def test_brick_follows_its_transform():
     brick.update(T)
     homogeneous_corners = np.concatenate([still, np.ones((6, 4, 1))], axis=-1)
     np.testing.assert_allclose(brick.corners, (homogeneous_corners @ T.T)[..., :3], atol=1e-15)
-    with pytest.raises(InputError, match="not a rotation"):
-        brick.update(np.diag([2, 2, 2, 1]))
 
 
 def gimbal():

@@ -20,7 +20,6 @@ from ir50p_lab.modelling import (
     frames,
     inverse_kinematics,
     jacobian,
-    manipulability,
     reachability,
     singularity,
     transform,
@@ -191,16 +190,13 @@ def test_jacobian_is_the_derivative_of_the_pose():
         np.testing.assert_allclose(J[:, 3:, i], spin, atol=1e-9)
 
 
-def test_manipulability_and_singular_poses():
+def test_singular_poses():
     q = np.random.default_rng(5).uniform(-PI, PI, (200, 3))
-    np.testing.assert_allclose(manipulability(IR50P, q), np.abs(np.linalg.det(jacobian(IR50P, q)[:, :3])), atol=1e-15)
     s = singularity(IR50P, q)
-    np.testing.assert_allclose(s.det, np.linalg.det(jacobian(IR50P, q)[:, :3]), atol=1e-15)
+    det = -IR50P.l[1] * IR50P.l[2] * s.elbow * s.shoulder
+    np.testing.assert_allclose(det, np.linalg.det(jacobian(IR50P, q)[:, :3]), atol=1e-15)
     for singular in ([0.3, 0.4, 0.0], [0.3, 0.4, PI], [0.3, PI / 2, 0.0]):
         assert singularity(IR50P, singular).smallest < 1e-15
-    stretched = singularity(IR50P, [0.3, 0.4, 0.0])
-    tip = forward_kinematics(IR50P, [0.3, 0.4, 0.0]) - [0, 0, IR50P.l[0]]
-    np.testing.assert_allclose(abs(stretched.direction @ tip) / np.linalg.norm(tip), 1, atol=1e-12)
 
 
 def test_reachability_against_a_search_over_all_poses():
@@ -244,7 +240,7 @@ def test_branches_beyond_the_limits_are_marked():
         (lambda: frames(IR50P, [0, 0]), ["q", "(2,)"]),
         (lambda: frames(np.zeros((3, 20)), [0, 0, 0]), ["Arm", "ndarray"]),
         (lambda: dh_table(IR50P, np.zeros((2, 3))), ["(2, 3)", "shape (3,)"]),
-        (lambda: transform(IR50P, [0, 0, 0], 0, 4), ["j = 4", "0 (base) to 3"]),
+        (lambda: transform(IR50P, [0, 0, 0], 0, 4), ["frame j = 4", "from 0 to 3"]),
         (lambda: inverse_kinematics(IR50P, [0.3, np.inf, 0]), ["p", "inf"]),
     ],
 )

@@ -156,13 +156,6 @@ def test_gain_near_the_singularity_is_the_angle_rate_it_predicts():
     assert lock.gain > 50
 
 
-@REPEATABLE
-@given(angles=ANGLES, t=VECTOR)
-def test_inverse_is_numpys_inverse(angles, t):
-    T = pose.homogeneous(product_by_hand("ZYX", angles), t)
-    np.testing.assert_allclose(pose.inverse_transform(T), np.linalg.inv(T), atol=1e-13)
-
-
 def test_defaults_are_the_identity():
     np.testing.assert_array_equal(pose.homogeneous(), np.eye(4))
     np.testing.assert_array_equal(pose.homogeneous(t=(1, 2, 3)) @ [0, 0, 0, 1], [1, 2, 3, 1])
@@ -174,7 +167,6 @@ def test_every_function_keeps_leading_dimensions(leading):
     angles = rng.uniform(-1, 1, (*leading, 3))
     t = rng.uniform(-1, 1, (*leading, 3))
     R = pose.rotation_from_angles("YZX", angles)
-    T = pose.homogeneous(R, t)
     results = {
         "rot_z": pose.rot_z(angles[..., 0]),
         "R": R,
@@ -182,9 +174,9 @@ def test_every_function_keeps_leading_dimensions(leading):
         "E": pose.rate_matrix("YZX", angles),
         "lost_axis": pose.gimbal_lock("YZX", angles).lost_axis,
         "sine": pose.gimbal_lock("YZX", angles).sine,
-        "inverse": pose.inverse_transform(T),
+        "T": pose.homogeneous(R, t),
     }
-    tails = {"rot_z": (3, 3), "R": (3, 3), "E": (3, 3), "inverse": (4, 4), "sine": ()}
+    tails = {"rot_z": (3, 3), "R": (3, 3), "E": (3, 3), "T": (4, 4), "sine": ()}
     for name, result in results.items():
         assert result.shape == (*leading, *tails.get(name, (3,))), name
     # Element by element it is the same as one at a time.
@@ -197,47 +189,29 @@ def test_every_function_keeps_leading_dimensions(leading):
     [
         (lambda: pose.rot_x(np.nan), "NaN or infinity"),
         (lambda: pose.rot_x([0.0, np.inf]), "NaN or infinity"),
-        (lambda: pose.rot_y("quarter"), "real numbers"),
-        (lambda: pose.rot_y(1j), "real numbers"),
-        (lambda: pose.rotation_from_angles("XYZ", (1, 2)), r"shape \(2,\), but must have shape \(\.\.\., 3\)"),
-        (lambda: pose.rotation_from_angles("XYZ", (1, 2, np.nan)), "NaN or infinity"),
-        (lambda: pose.rotation_from_angles("XXY", (1, 2, 3)), "'XXY'.*same axis"),
-        (lambda: pose.rotation_from_angles("xyz", (1, 2, 3)), "fixed axes.*'ZYX'"),
-        (lambda: pose.rotation_from_angles("roll", (1, 2, 3)), "unknown sequence 'roll': choose one of XYX"),
-        (lambda: pose.rotation_from_angles(123, (1, 2, 3)), "unknown sequence 123"),
-        (lambda: pose.singular_angles("XYW"), "unknown sequence"),
-        (lambda: pose.rate_matrix("ABC", (0, 0, 0)), "unknown sequence"),
-        (lambda: pose.angles_from_rotation("ABC", np.eye(3)), "unknown sequence"),
+        (lambda: pose.rot_y("quarter"), "angle must hold numbers in rad; got 'quarter'"),
+        (lambda: pose.rot_y(1j), "angle must hold numbers in rad; got 1j"),
+        (lambda: pose.rotation_from_angles("XYZ", (1, 2)), r"angles has shape \(2,\); give shape \(3,\)"),
+        (lambda: pose.rotation_from_angles("XYZ", (1, 2, np.nan)), "angles holds nan at index 2"),
+        (lambda: pose.rotation_from_angles("XXY", (1, 2, 3)), "sequence = 'XXY': choose 'XYX'"),
+        (lambda: pose.rotation_from_angles("xyz", (1, 2, 3)), "sequence = 'xyz': choose 'XYX'"),
+        (lambda: pose.rotation_from_angles(123, (1, 2, 3)), "sequence = 123: choose"),
+        (lambda: pose.singular_angles("XYW"), "sequence = 'XYW': choose"),
+        (lambda: pose.rate_matrix("ABC", (0, 0, 0)), "sequence = 'ABC': choose"),
+        (lambda: pose.angles_from_rotation("ABC", np.eye(3)), "sequence = 'ABC': choose"),
         (lambda: pose.angles_from_rotation("XYZ", np.eye(4)), r"R has shape \(4, 4\)"),
         (lambda: pose.check_rotation(np.diag([1, 1, -1])), "det R is -1.*reflection"),
         (lambda: pose.check_rotation(2 * np.eye(3)), "R\\^T R - I is 3 and det R is 8"),
-        (lambda: pose.check_rotation([np.eye(3), np.zeros((3, 3))]), r"R\[1\] is not a rotation"),
+        (lambda: pose.check_rotation([np.eye(3), np.zeros((3, 3))]), "R is not a rotation.*det R is 0"),
+        (lambda: pose.check_rotation(np.full((3, 3), np.nan)), "all finite"),
         (lambda: pose.homogeneous(np.ones((3, 3))), "not a rotation"),
         (lambda: pose.homogeneous(t=(1, 2)), "t has shape"),
-        (lambda: pose.homogeneous(pose.rot_x([0, 1]), np.zeros((3, 3))), "R and t do not fit"),
-        (lambda: pose.check_transform(pose.homogeneous(t=(1, 2, 3)).T), "last row"),
-        (lambda: pose.inverse_transform(np.diag([1, 1, 2, 1])), "not a rotation"),
     ],
 )
 def test_bad_input_is_refused_with_the_reason(call, message):
     with pytest.raises(InputError, match=message) as caught:
         call()
     assert isinstance(caught.value, LabError) and isinstance(caught.value, ValueError)
-
-
-def test_a_tolerance_can_be_given_for_rounded_matrices():
-    rounded = np.round(pose.rot_x(0.3), 3)
-    with pytest.raises(InputError, match="not a rotation"):
-        pose.check_rotation(rounded)
-    np.testing.assert_array_equal(pose.check_rotation(rounded, tolerance=2e-3), rounded)
-
-
-def test_small_letters_hint_is_true():
-    from scipy.spatial.transform import Rotation
-
-    angles = (0.2, -0.5, 1.1)
-    fixed = Rotation.from_euler("xyz", angles).as_matrix()
-    np.testing.assert_allclose(pose.rotation_from_angles("ZYX", angles[::-1]), fixed, atol=1e-15)
 
 
 def test_importing_the_module_does_not_import_scipy():

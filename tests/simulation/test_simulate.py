@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 from arms import mujoco_model
+from control import step_info
 from scipy.integrate import solve_ivp
 
 from ir50p_lab.controllers import PID, ContinuousPID
@@ -69,11 +70,11 @@ def test_equals_scipy_and_mujoco():
 def test_tables_2_1_to_2_3_in_continuous_time(arm, rises, settles, errors):
     """Source: the corrected equations with the gains of Tables 2.1-2.3, integrated by LSODA (tolerances as printed)."""
     run = simulate(arm, ContinuousPID(kp=(25, 200, 200), kd=(10, 40, 40)), SET_POINT)
-    metrics = run.metrics()
-    np.testing.assert_allclose([m.overshoot_percent for m in metrics], rises, atol=0.005)
-    np.testing.assert_allclose([m.settling_time for m in metrics], settles, atol=0.011)
-    np.testing.assert_allclose([m.error for m in metrics], errors, atol=5e-6)
-    np.testing.assert_allclose([m.peak_command for m in metrics], np.abs(SET_POINT) * (25, 200, 200), rtol=1e-12)
+    steps = [step_info(q, T=run.t, T_num=len(run.t)) for q in run.q.T]
+    np.testing.assert_allclose([step["Overshoot"] for step in steps], rises, atol=0.005)
+    np.testing.assert_allclose([step["SettlingTime"] for step in steps], settles, atol=0.011)
+    np.testing.assert_allclose(SET_POINT - run.q[-1], errors, atol=5e-6)
+    np.testing.assert_allclose(np.abs(run.u).max(axis=0), np.abs(SET_POINT) * (25, 200, 200), rtol=1e-12)
     np.testing.assert_allclose(run.error[-1], gravity(arm, run.q[-1]) / (25, 200, 200), atol=1e-8)
 
 
@@ -81,7 +82,8 @@ def test_integral_action_and_saturation_of_the_thesis_loop():
     run = simulate(THESIS_A, ContinuousPID(kp=(25, 200, 200), ki=(0, 100, 100), kd=(10, 40, 40)), SET_POINT)
     assert np.abs(run.error[-1]).max() < 7e-4
     limited = simulate(THESIS_A, ContinuousPID(kp=(25, 200, 200), kd=(10, 40, 40), limit=50), SET_POINT)
-    assert np.abs(limited.u).max() == 50 and 1.85 < limited.metrics()[0].overshoot_percent < 3.15
+    overshoot = step_info(limited.q[:, 0], T=limited.t, T_num=len(limited.t))["Overshoot"]
+    assert np.abs(limited.u).max() == 50 and 1.85 < overshoot < 3.15
 
 
 def test_the_continuous_pid_knows_the_velocity_of_its_reference():
@@ -305,13 +307,6 @@ def test_more_refusals():
         theta = SMOOTH.theta.copy()
         theta[:, 10] = -1
         simulate(theta)
-    moving = simulate(SMOOTH, PID(kp=(9, 9, 9)), lambda t: (np.full(3, t), np.ones(3), np.zeros(3)), duration=0.2)
-    with pytest.raises(InputError, match="still moves"):
-        moving.metrics()
-
-
-def test_a_joint_that_does_not_move_has_no_step_metrics():
-    assert np.isnan(simulate(SMOOTH, PID(kp=(50, 50, 50), kd=(5, 5, 5)), (0, 0.5, 0.3)).metrics()[0].rise_time)
 
 
 class Stepped:
