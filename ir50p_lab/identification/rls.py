@@ -145,7 +145,7 @@ class RLS:
 
         history=False returns only the last theta, (3, 20): for very long data. Raises InputError, state unchanged.
         """
-        Phi, y = checked_data(Phi, y, 1)
+        Phi, y = checked_data(Phi, y)
         states = np.empty((len(y) if history else 0, *self._theta.shape))
         _run(*self._state(), np.ascontiguousarray(Phi), np.ascontiguousarray(y), self._work, states)
         self.samples += len(y)
