@@ -36,6 +36,7 @@ ACTS_ON = (
     (1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 13, 17),
     (3, 4, 5, 7, 9, 14, 15, 18, 19),
 )
+RIGID_ON = tuple([k for k in acting if NAMES[k] not in ONLY_THESIS] for acting in ACTS_ON)  # without theta7, theta8
 
 
 def chosen_columns(columns):
