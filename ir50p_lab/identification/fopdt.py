@@ -113,8 +113,7 @@ def fit_fopdt(t, u, y, *, dead_time=None, u_before=None, anyway=False):
     check_outliers(doubts, "u", t, u)
     _refuse_silent(t, y, times)
     whole = t, u, y
-    t, y, named = without_outliers(t, y)
-    doubts += named
+    t, y = without_outliers(doubts, t, y)
     record = Record(t, y, times, jumps, dead_time)
     fit = record.fit_first_order()
     _wrong_shape(doubts, record, fit, whole, u_before)

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError
+from ir50p_lab.identification.doubts import Doubts
 from ir50p_lab.identification.response_fit import best_fit, respond, standard_errors
 from ir50p_lab.identification.step_record import check_time, jumps_of, recorded, without_outliers
 
@@ -71,8 +72,9 @@ def fit_second_order(t, u, y, *, u_before=None):
     times, jumps = jumps_of(t, u, u_before)
     if not len(times):
         raise IdentificationError("u never changes, so the recording holds no step response: give u_before=")
-    warnings = [*check_time(t)]
-    t, y, named = without_outliers(t, y)
+    doubts = Doubts()
+    doubts += check_time(t)
+    t, y = without_outliers(doubts, t, y)
     unit, period, spread = t[-1] - times[0], float(np.median(np.diff(t))), float(np.std(y))
     starts = [
         [(np.log(w), damping, L) for damping in _GRID for L in (0.0, 3 * period, 0.1 * unit)]
@@ -104,7 +106,7 @@ def fit_second_order(t, u, y, *, u_before=None):
     sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / w, 1e-3 / w][: 4 + zeros])
     errors = [*standard_errors(response, found, sizes, e / spread), 0.0]
     if w * period > 1:
-        warnings.append(f"w = {w:.3g} rad/s is {w * period:.2g} rad a sample: not identifiable, sample faster")
+        doubts.add(f"w = {w:.3g} rad/s is {w * period:.2g} rad a sample: not identifiable, sample faster")
     rms = float(np.sqrt(np.mean(e**2)))
     return SecondOrderModel(
         **{"K": K, "w": w, "damping": damping, "L": L, "zero": zero},
@@ -112,5 +114,5 @@ def fit_second_order(t, u, y, *, u_before=None):
         y0=float(c[0]),
         rms=rms,
         fit=100 * (1 - rms / spread),
-        warnings=(*warnings, *named),
+        warnings=tuple(doubts),
     )
