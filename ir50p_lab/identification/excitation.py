@@ -9,7 +9,7 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.parameters import RIGID_ON
 from ir50p_lab.inputs import check_arm, number, whole
-from ir50p_lab.signals.fourier import Fourier, at_rest, fourier, heights, limits_of
+from ir50p_lab.signals.fourier import Fourier, at_rest, fourier, heights, limits_of, series
 
 _PER_HARMONIC = 32  # points of the grid per period of the fastest harmonic
 _HIDDEN = 1 / math.cos(math.pi / _PER_HARMONIC) - 1  # of half the range: what may hide between the points
@@ -110,9 +110,6 @@ def optimise_excitation(
         raise InputError(f"{arm.name} has no joint limits: give q_min and q_max, dataclasses.replace(arm, q_min=...)")
     whole("harmonics", harmonics, 2, 12)
     whole("periods", periods, 1, 10**6)
-    whole("starts", starts, 1, 10**4)
-    whole("iterations", iterations, 1, 10**5)
-    whole("seed", seed, 0, 2**63)
     number("standing", standing, ">= 0", hint="the price of time near standstill")
     number("period", period, "> 0", unit="s")
     limits = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
@@ -159,18 +156,7 @@ class _Problem:
         k = np.arange(1.0, harmonics + 1)
         self.Za, self.Zb = _null_space(k), _null_space(k**2)  # (N, N - 1)
         n = _PER_HARMONIC * harmonics
-        w = 2 * np.pi / period * k  # rad/s
-        angle = (np.arange(n) + 0.5)[:, None] / n * 2 * np.pi * k
-        s, c = np.sin(angle), np.cos(angle)
-        # free coefficients -> q, qd, qdd: (3, n, 2 (N - 1))
-        sine, cosine = self.Za, -self.Zb
-        self.basis = np.array(
-            [
-                np.hstack([s @ sine, c @ cosine]),
-                np.hstack([(c * w) @ sine, (-s * w) @ cosine]),
-                np.hstack([(-s * w**2) @ sine, (-c * w**2) @ cosine]),
-            ]
-        )
+        self.period, self.t = period, (np.arange(n) + 0.5) / n * period
         self.size = 3 + 6 * (harmonics - 1)
         self._last = None
 
@@ -203,9 +189,8 @@ class _Problem:
 
         Returns (m, 12): room (>= 0 inside) per joint above, below and in speed; then of elbow and tip over the table.
         """
-        q0, free = x[:, None, :3], x[:, 3:].reshape(len(x), 3, -1)
-        q, qd, qdd = np.einsum("dkp,mip->dmki", self.basis, free, optimize=True)
-        q = q + q0
+        motions = [series(*self.split(one), self.period, self.t) for one in x]
+        q, qd, qdd = np.moveaxis(motions, 2, 0)
         Phi = regressor(*(rows.reshape(-1, 3) for rows in (q, qd, qdd)), sign=_TURN)
         still = np.mean(1 / (1 + (qd / _SLOW) ** 2), axis=(1, 2))
         cost = _log_conditions(Phi.reshape(*q.shape[:2], 3, 20)).mean(axis=1) + self.standing * still
@@ -266,9 +251,8 @@ class _Problem:
 
     def split(self, x):
         """(a, b, q0) of the point x."""
-        free = x[3:].reshape(3, -1)
-        half = free.shape[1] // 2
-        return free[:, :half] @ self.Za.T, free[:, half:] @ self.Zb.T, x[:3]
+        a, b = np.split(x[3:].reshape(3, -1), 2, axis=1)
+        return a @ self.Za.T, b @ self.Zb.T, x[:3]
 
 
 def _null_space(weight):
