@@ -1,4 +1,4 @@
-"""What `fit` and `RLS` are given, checked: each refusal names the value, the limit and the remedy."""
+"""Arrays that come from outside, checked: each refusal names the value, the limit and the remedy."""
 
 import numpy as np
 
@@ -16,9 +16,15 @@ def checked_data(Phi, y):
 
 def blocks(name, value):
     """`value` as a float array (n, 3, 20), all finite. Raises InputError naming `name`."""
-    array = numbers(name, value, unit="(n, 3, 20)")
+    array = finite(name, value)
     if array.ndim != 3 or array.shape[1:] != (3, 20) or not len(array):
         raise InputError(f"{name} has shape {array.shape}; give (n, 3, 20), n >= 1, as regressor(q, qd, qdd) returns")
+    return array
+
+
+def finite(name, value):
+    """`value` as a float array of any shape, all finite. Raises InputError naming `name` and the first that is not."""
+    array = numbers(name, value)
     # a sum is finite unless a number is not (or huge): much faster than looking at each
     if not np.isfinite(array.sum()) and not np.isfinite(array).all():
         raise InputError(f"{name} holds {first_not_finite(array)}: remove or repair that sample")

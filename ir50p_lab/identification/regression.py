@@ -8,8 +8,9 @@ from scipy import fft, special
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.estimators import plain
+from ir50p_lab.identification.fit_input import finite
 from ir50p_lab.identification.problem import prepare
-from ir50p_lab.inputs import first_not_finite, numbers
+from ir50p_lab.inputs import numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,9 +65,7 @@ def least_squares(A, y, *, names=None, tolerance=1e-8):
     if masks:
         keep = ~np.any([mask.reshape(len(y), -1).any(axis=1) for mask in masks], axis=0)
         A, y = A[keep], y[keep]
-    for name, array in (("A", A), ("y", y)):
-        if not np.isfinite(array).all():
-            raise InputError(f"{name} holds {first_not_finite(array)}: remove or repair that sample")
+    A, y = finite("A", A), finite("y", y)
     p = A.shape[-1]
     names = tuple(f"x{k + 1}" for k in range(p)) if names is None else tuple(names)
     if len(names) != p:
