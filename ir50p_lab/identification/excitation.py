@@ -35,10 +35,6 @@ class Excitation:
     condition_after: np.ndarray
     starts: tuple
 
-    def __str__(self):
-        pairs = zip(self.condition_before, self.condition_after, strict=True)
-        return "condition number " + ", ".join(f"{a:.3g} -> {b:.3g}" for a, b in pairs)
-
 
 def regressor_condition(reference):
     """Condition number of the regressor along one period of a motion, its columns scaled to length 1: (3,), per joint.
@@ -211,7 +207,7 @@ class _Problem:
         """Derivatives of `both` by differences: (12, size)."""
         if self._last is None or not np.array_equal(self._last[0], x):
             here, ahead = self.both(x), self.evaluate(x + _STEP * np.eye(self.size))
-            self._last = x.copy(), np.column_stack(ahead - here) / _STEP
+            self._last = x.copy(), np.column_stack(ahead - here) / _STEP  # rows in one piece: SLSQP reads no others
         return self._last[1]
 
     def value(self, x):
