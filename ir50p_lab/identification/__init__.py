@@ -10,7 +10,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     submod_attrs={
         "arm_regressor": ["regressor"],
         "base": ["BaseParameters", "base_parameters"],
-        "column_file": ["Columns", "read_columns"],
         "delay": ["DelayEstimate", "estimate_delay"],
         "estimate": ["Estimate"],
         "excitation": ["Excitation", "optimise_excitation", "regressor_condition"],

@@ -10,60 +10,40 @@ from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
 
 
 @jit()
-def regressor_block(gravity, q2, q3, a, b, c, A, B, C, s1, s2, s3, out):
-    """One state into out (3, 20), which must hold zeros: only entries that can differ from zero are written.
-
-    (a, b, c) velocities, (A, B, C) accelerations, (s1, s2, s3) what stands for sgn(qd).
-    """
-    sin2, c2 = cf.sincos(q2)
-    sin3, c3 = cf.sincos(q3)
-    c23, sin23 = c2 * c3 - sin2 * sin3, sin2 * c3 + c2 * sin3
-    one, two, three = out[0], out[1], out[2]
-    # inertia of the upper arm (theta2) and of the forearm (theta5, theta6) about the waist: it changes with the pose
-    one[0] = A
-    one[1] = c2 * c2 * A - 2 * sin2 * c2 * a * b
-    two[1] = B + sin2 * c2 * a * a
-    one[4] = c23 * c23 * A - 2 * sin23 * c23 * a * (b + c)
-    two[4] = three[4] = B + C + sin23 * c23 * a * a
-    mixed = sin23 * c2 + c23 * sin2
-    one[5] = 2 * c2 * c23 * A - 2 * mixed * a * b - 2 * sin23 * c2 * a * c
-    two[5] = 2 * c3 * B + c3 * C + mixed * a * a - sin3 * c * c - 2 * sin3 * b * c
-    three[5] = c3 * B + sin23 * c2 * a * a + sin3 * b * b
-    # gravity
-    two[2] = gravity * c2
-    two[3] = three[3] = gravity * c23
-    # the thesis' constant products of inertia
-    one[6] = B
-    one[7] = B + C
-    two[6] = two[7] = three[7] = A
-    # inertia about the joints' own axes, rotors
-    two[8] = B
-    two[9] = three[9] = B + C
-    three[19] = C
-    # friction and offset
-    one[10], two[12], three[14] = a, b, c
-    one[11], two[13], three[15] = s1, s2, s3
-    one[16] = two[17] = three[18] = 1.0
-
-
-@jit()
-def _regressor_loop(gravity, q, qd, qdd, direction, out):
+def _fill(gravity, q, qd, qdd, direction, out):
+    """Rows of states (n, 3) into out (n, 3, 20), which must hold zeros: only what can differ from zero is written."""
     for k in range(q.shape[0]):
-        regressor_block(
-            gravity,
-            q[k, 1],
-            q[k, 2],
-            qd[k, 0],
-            qd[k, 1],
-            qd[k, 2],
-            qdd[k, 0],
-            qdd[k, 1],
-            qdd[k, 2],
-            direction[k, 0],
-            direction[k, 1],
-            direction[k, 2],
-            out[k],
-        )
+        a, b, c = qd[k, 0], qd[k, 1], qd[k, 2]
+        A, B, C = qdd[k, 0], qdd[k, 1], qdd[k, 2]
+        sin2, c2 = cf.sincos(q[k, 1])
+        sin3, c3 = cf.sincos(q[k, 2])
+        c23, sin23 = c2 * c3 - sin2 * sin3, sin2 * c3 + c2 * sin3
+        one, two, three = out[k, 0], out[k, 1], out[k, 2]
+        # inertia of upper arm (theta2) and forearm (theta5, theta6) about the waist: it changes with the pose
+        one[0] = A
+        one[1] = c2 * c2 * A - 2 * sin2 * c2 * a * b
+        two[1] = B + sin2 * c2 * a * a
+        one[4] = c23 * c23 * A - 2 * sin23 * c23 * a * (b + c)
+        two[4] = three[4] = B + C + sin23 * c23 * a * a
+        mixed = sin23 * c2 + c23 * sin2
+        one[5] = 2 * c2 * c23 * A - 2 * mixed * a * b - 2 * sin23 * c2 * a * c
+        two[5] = 2 * c3 * B + c3 * C + mixed * a * a - sin3 * c * c - 2 * sin3 * b * c
+        three[5] = c3 * B + sin23 * c2 * a * a + sin3 * b * b
+        # gravity
+        two[2] = gravity * c2
+        two[3] = three[3] = gravity * c23
+        # the thesis' constant products of inertia
+        one[6] = B
+        one[7] = B + C
+        two[6] = two[7] = three[7] = A
+        # inertia about the joints' own axes, rotors
+        two[8] = B
+        two[9] = three[9] = B + C
+        three[19] = C
+        # friction and offset
+        one[10], two[12], three[14] = a, b, c
+        one[11], two[13], three[15] = direction[k, 0], direction[k, 1], direction[k, 2]
+        one[16] = two[17] = three[18] = 1.0
 
 
 def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
@@ -92,7 +72,7 @@ def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
     g = number("g", g, ">= 0", unit="m/s^2", hint="the base z axis points up")
     rows = {name: np.ascontiguousarray(x).reshape(-1, 3) for name, x in arrays.items()}
     out = np.zeros((len(rows["q"]), 3, 20))
-    _regressor_loop(float(g), rows["q"], rows["qd"], rows["qdd"], _direction(sign, rows), out)
+    _fill(g, rows["q"], rows["qd"], rows["qdd"], _direction(sign, rows), out)
     return out[0] if len(shape) == 1 else out
 
 

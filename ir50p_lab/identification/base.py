@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification.fit_input import finite
 from ir50p_lab.identification.parameters import NAMES
+from ir50p_lab.identification.problem import DEPENDENT
 from ir50p_lab.identification.qr import independent_columns, r_factor
-from ir50p_lab.inputs import first_not_finite, number, numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,11 +45,11 @@ class BaseParameters:
         return "\n".join([head, *(f"  {k + 1:2}  {group}" for k, group in enumerate(self.groups)), *unseen])
 
 
-def base_parameters(Phi, *, names=None, known=None, tolerance=1e-8):
+def base_parameters(Phi, *, names=None, known=None):
     """Which combinations of parameters the regressor Phi can tell apart, by QR and by SVD.
 
     Columns are scaled to length 1 and taken in order: one that is a combination of kept columns before it (less than
-    `tolerance` sticks out) joins their groups. The singular values must give the same rank.
+    1e-8 sticks out) joins their groups. The singular values must give the same rank.
 
     Args:
         Phi: (n, 3, p), (n, k, p) or (m, p), from exact motion rich enough to excite everything (random states do);
@@ -59,24 +60,22 @@ def base_parameters(Phi, *, names=None, known=None, tolerance=1e-8):
     Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if QR and SVD disagree on the
         rank: the motion lies between excited and not excited.
     """
-    A, names = _checked(Phi, names, tolerance)
-    if known is not None and not isinstance(known, dict):
-        raise InputError(f"known = {known!r:.60}: give a dict, name: value")
+    A, names = _checked(Phi, names)
     length = np.linalg.norm(A, axis=0)
     seen = np.flatnonzero(length > 1e-14 * length.max())
     scaled = A[:, seen] / length[seen]
     R = r_factor(scaled)
-    kept = independent_columns(R, tolerance)
+    kept = independent_columns(R, DEPENDENT)
     s = np.linalg.svd(R, compute_uv=False)
-    by_svd = int(np.sum(s > tolerance * s[0]))
+    by_svd = int(np.sum(s > DEPENDENT * s[0]))
     if by_svd != len(kept):
         near = ", ".join(f"{x:.1e}" for x in s[max(min(by_svd, len(kept)) - 1, 0) :][:4])
         raise IdentificationError(
-            f"the rank is not clear: {len(kept)} columns stick out of the others by more than {tolerance:g}, but "
-            f"{by_svd} singular values are above it, of {near}: use richer or exact motion, or another tolerance"
+            f"the rank is not clear: {len(kept)} columns stick out of the others by more than {DEPENDENT:g}, but "
+            f"{by_svd} singular values are above it, of {near}: use richer or exact motion"
         )
     weights = np.linalg.lstsq(R[:, kept], R, rcond=None)[0]  # column k = kept columns @ weights[:, k]
-    weights[np.abs(weights) < tolerance] = 0.0
+    weights[np.abs(weights) < DEPENDENT] = 0.0
     columns = seen[kept]
     matrix = np.zeros((len(kept), len(names)))
     matrix[:, seen] = weights * length[seen] / length[columns][:, None]
@@ -93,22 +92,14 @@ def base_parameters(Phi, *, names=None, known=None, tolerance=1e-8):
     )
 
 
-def _checked(Phi, names, tolerance):
-    A = numbers("Phi", Phi, unit="(n, 3, p) or (m, p)")
+def _checked(Phi, names):
+    A = finite("Phi", Phi)
     if A.ndim not in (2, 3) or not A.size:
         raise InputError(f"Phi has shape {A.shape}; give (n, 3, p) or (m, p)")
-    if not np.isfinite(A).all():
-        raise InputError(f"Phi holds {first_not_finite(A)}: remove or repair that sample")
-    if not number("tolerance", tolerance, "> 0") < 0.1:
-        raise InputError(
-            f"tolerance = {tolerance} must lie between 0 and 0.1: the part of a column that must stick out"
-        )
     A = A.reshape(-1, A.shape[-1])
     p = A.shape[1]
     if names is None:
-        names = NAMES if p == len(NAMES) else tuple(f"p{k + 1}" for k in range(p))
-    if not isinstance(names, (tuple, list)):
-        raise InputError(f"names = {names!r:.60}: give a tuple, one for each of {p} columns")
+        names = NAMES if p == len(NAMES) else [f"p{k + 1}" for k in range(p)]
     if len(names) != p:
         raise InputError(f"{len(names)} names for {p} columns: give one for each")
     if len(A) < 2 * p:
@@ -131,7 +122,7 @@ def _in_symbols(row, names, known):
 def _symbol(size, known):
     """A positive coefficient as a whole number, a power of a known one, or a product of two; else its digits."""
     candidates = {"": 1.0}
-    powers = {name: value for name, value in known.items()} | {f"{n}^2": v**2 for n, v in known.items()}
+    powers = known | {f"{name}^2": value**2 for name, value in known.items()}
     candidates |= powers | {f"1/{name}": 1 / value for name, value in powers.items()}
     candidates |= {f"{a} {b}": powers[a] * powers[b] for a in known for b in known if a < b}
     candidates |= {f"{k} {name}".strip(): k * value for k in (2, 3, 4) for name, value in list(candidates.items())}

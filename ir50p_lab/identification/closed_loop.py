@@ -1,6 +1,6 @@
 """The closed loop of a run, simulated with a model in place of the arm: what output-error fits compare with."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -8,13 +8,14 @@ from ir50p_lab.controllers.base import Controller
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.columns import columns_of, sampling_period
-from ir50p_lab.inputs import choice, number, vectors3
+from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
 from ir50p_lab.simulation.plant import DRY, FS, QS, make_plant
 from ir50p_lab.simulation.steps import advance
 
 _STILL = 5  # first samples, of which the mean is the start: the arm has hardly moved by then
+_LIMIT = 255.0  # PWM counts, of |u|
 
 
 @jit(nogil=True)
@@ -48,12 +49,9 @@ class ClosedLoopRun:
     period: float
     controller: Controller
     late: int
-    limit: float
-    unit: str
-    g: float
 
     @classmethod
-    def of(cls, recording, controller, reference=None, *, delay=0.0, limit=None, unit="PWM", g=STANDARD_GRAVITY):
+    def of(cls, recording, controller, reference=None, *, delay=0.0, seconds=np.inf):
         """Checked, from a recording, its controller and its reference; see `output_error` for the arguments."""
         t, q, u = columns_of(recording)
         if q.shape[1] != 3 or len(t) < 50:
@@ -63,18 +61,18 @@ class ClosedLoopRun:
             raise InputError("the times are uneven or have gaps: a loop is compared without; cut with between(t0, t1)")
         if not isinstance(controller, Controller):
             raise InputError(f"controller is a {type(controller).__name__}: give the PID (or other) of the run")
-        choice("unit", unit, ("PWM", "N m"))
         if number("delay", delay, ">= 0", unit="s") >= 1:
             raise InputError(f"delay = {delay!r} s: give 0 to below 1 s")
-        g = number("g", g, ">= 0", unit="m/s^2")
-        limit = (255.0 if unit == "PWM" else np.inf) if limit is None else number("limit", limit, "> 0 or inf")
+        if number("seconds", seconds, "> 0 or inf", unit="s") < 2:
+            raise InputError(f"seconds = {seconds!r}: give 2 s or more of each recording")
         rows = _rows(recording, reference, t, period)
+        some = slice(int(min(len(t), np.round(seconds / period))))
         start, late = q[:_STILL].mean(axis=0), round(delay / period)
-        return cls(t, q, u, rows, start, period, controller, late, limit, unit, float(g))
+        return cls(t[some], q[some], u[some], rows[some], start, period, controller, late)
 
     def simulate(self, theta, fs=None, qs=None, *, step=0.001):
-        """q and u, (m, 3) each, of the loop with this model; fs, qs (3,): breakaway and Stribeck speed."""
-        plant = make_plant(theta, unit=self.unit, g=self.g)
+        """q and u (PWM), (m, 3) each, of the loop with this model; fs, qs (3,): breakaway and Stribeck speed."""
+        plant = make_plant(theta, unit="PWM", g=STANDARD_GRAVITY)
         numbers = plant.numbers.copy()
         if fs is not None:
             numbers[FS : FS + 3], numbers[QS : QS + 3] = fs, qs
@@ -84,7 +82,7 @@ class ClosedLoopRun:
         steps = max(1, round(self.period / step))
         law = (self.controller.kind, self.controller.parameters, state)
         h = self.period / steps
-        delayed_loop(plant.theta, numbers, *law, self.t, self.r, x, self.limit, self.late, h, steps, q, u)
+        delayed_loop(plant.theta, numbers, *law, self.t, self.r, x, _LIMIT, self.late, h, steps, q, u)
         return q, u
 
 
@@ -107,18 +105,12 @@ def _rows(recording, reference, t, period):
     return rows
 
 
-def runs_of(recordings, controller, references=None, *, seconds=None, **options):
-    """ClosedLoopRuns of a recording or a list, cut to the first `seconds` (None: all); a motion for all or each."""
-    if seconds is not None and number("seconds", seconds, "> 0", unit="s") < 2:
-        raise InputError(f"seconds = {seconds!r}: give 2 s or more of each recording")
+def runs_of(recordings, controller, references=None, **options):
+    """ClosedLoopRuns of a recording or a list; a motion for all or each; options as of `ClosedLoopRun.of`."""
     recordings = list(recordings) if isinstance(recordings, (list, tuple)) else [recordings]
     if not isinstance(references, (list, tuple)):
         references = [references] * len(recordings)
     if not recordings or len(references) != len(recordings):
         raise InputError(f"{len(recordings)} recordings and {len(references)} references: give one for each")
-    runs = []
-    for recording, reference in zip(recordings, references, strict=True):
-        run = ClosedLoopRun.of(recording, controller, reference, **options)
-        m = len(run.t) if seconds is None else int(min(len(run.t), round(seconds / run.period)))
-        runs.append(replace(run, t=run.t[:m], q=run.q[:m], u=run.u[:m], r=run.r[:m]))
-    return runs
+    pairs = zip(recordings, references, strict=True)
+    return [ClosedLoopRun.of(recording, controller, reference, **options) for recording, reference in pairs]

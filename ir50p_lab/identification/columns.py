@@ -24,8 +24,7 @@ def columns_of(recording, q=None, u=None, qd=None, *, drop=False):
         if q is None or u is None:
             raise InputError("q and u are missing: give a recording, or t, q and u as arrays")
     given = {"t": t, "q": q, "u": u} | ({} if qd is None else {"qd": qd})
-    units = {"t": "s", "q": "rad", "u": "its own unit", "qd": "rad/s"}
-    arrays = same_samples(given, units, drop)
+    arrays = same_samples(given, drop)
     t = arrays.pop("t")
     for name, array in arrays.items():
         if array.shape != arrays["q"].shape:
@@ -33,12 +32,12 @@ def columns_of(recording, q=None, u=None, qd=None, *, drop=False):
     return without_rounding(t), *(np.ascontiguousarray(x.reshape(len(t), -1)) for x in arrays.values())
 
 
-def same_samples(given, units, drop=False):
+def same_samples(given, drop=False):
     """Float arrays of the columns `given` (name: values), "t" (n,) and increasing, the others (n,) or (n, k).
 
     Masked samples are left out, and with `drop` those that are no numbers. Raises InputError.
     """
-    arrays = {name: _numbers(name, value, units[name]) for name, value in given.items()}
+    arrays = {name: _numbers(name, value) for name, value in given.items()}
     n = len(arrays["t"])
     if arrays["t"].ndim != 1 or n < 2:
         raise InputError(f"t has shape {arrays['t'].shape}; give at least two times in s, shape (n,)")
@@ -137,13 +136,13 @@ def runs(t, max_gap):
     return list(zip(np.r_[0, edges].tolist(), np.r_[edges, len(t)].tolist(), strict=True))
 
 
-def _numbers(name, value, unit):
+def _numbers(name, value):
     value = np.ma.getdata(value) if np.ma.isMaskedArray(value) else value
     try:
         array = np.asarray(value)
         array = (array - array[0]) / np.timedelta64(1, "s") if array.dtype.kind in "mM" else array.astype(float)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name} must hold numbers in {unit}; got {value!r:.60}") from None
+        raise InputError(f"{name} must hold numbers; got {value!r:.60}") from None
     if array.ndim == 0:
         raise InputError(f"{name} = {value!r:.60} is a single number: give an array, time first")
     return array

@@ -7,12 +7,13 @@ import numpy as np
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.columns import columns_of, sampling_period
-from ir50p_lab.identification.parameters import ACTS_ON, NAMES, ONLY_THESIS
+from ir50p_lab.identification.parameters import RIGID_ON
 from ir50p_lab.identification.processing import process
-from ir50p_lab.inputs import number, whole
+from ir50p_lab.inputs import number
 
 _FLAT = 1.01  # a residual this near to the smallest does not speak against a delay
 _FEWEST = 200  # samples in motion, of each joint
+_BLOCKS = 6  # stretches of the record that are compared for the standard error
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -33,9 +34,7 @@ class DelayEstimate:
     warnings: tuple
 
 
-def estimate_delay(
-    recording, q=None, u=None, *, longest=0.15, step=None, cutoff_hz=3.0, order=4, slow=0.1, blocks=6, g=9.81
-):
+def estimate_delay(recording, q=None, u=None, *, longest=0.15, cutoff_hz=3.0, slow=0.1):
     """Delay from a sample to the moment its u acts: the one with which the best model leaves the smallest residual.
 
     For each delay that is tried, u is shifted, the model is fitted anew (three joints: the rigid arm with friction; one
@@ -45,9 +44,8 @@ def estimate_delay(
     within one or two periods, for there u jumps and the joint answers; from a Fourier excitation it is off by up to ten
     periods, for there a delay looks like a little more inertia and friction. Backlash and a dead zone look like delay.
 
-    Args: recording, or t, q, u: as in `process`. longest: s, largest delay tried; step: s, default one period.
-    cutoff_hz, order, slow: as in `process`; slow leaves out where a joint may stick. blocks: stretches of the record
-    that are compared for the standard error. g: m/s^2.
+    Args: recording, or t, q, u: as in `process`. longest: s, largest delay tried, from 0 on by whole periods.
+    cutoff_hz, slow: as in `process`; slow leaves out where a joint may stick.
 
     Returns: DelayEstimate. Raises: InputError on bad arguments; IdentificationError if too little motion is left.
     """
@@ -55,15 +53,11 @@ def estimate_delay(
     joints = q.shape[1]
     if joints not in (1, 3):
         raise InputError(f"q has {joints} columns: give one joint, or all three")
-    period = sampling_period(t)
-    step = period if step is None else step
-    for name, value in (("longest", longest), ("step", step)):
-        number(name, value, "> 0", unit="s")
-    whole("blocks", blocks, 2, 100)
-    delays = step * np.arange(int(longest / step + 1e-9) + 1)
+    step = sampling_period(t)
+    delays = step * np.arange(int(number("longest", longest, "> 0", unit="s") / step + 1e-9) + 1)
     if len(delays) < 4:
         raise InputError(f"longest = {longest} s holds {len(delays)} delays of {step:g} s: give 4 or more to compare")
-    options = {"cutoff_hz": cutoff_hz, "order": order, "slow": slow, "filter_u": True, "trim": max(longest, 0.5)}
+    options = {"cutoff_hz": cutoff_hz, "slow": slow, "filter_u": True, "trim": max(longest, 0.5)}
     motion = process(t, q, u, **options)
     fewest = int(motion.use.sum(axis=0).min())
     if fewest < _FEWEST:
@@ -71,7 +65,7 @@ def estimate_delay(
             f"{fewest} samples of a joint are faster than slow = {slow} rad/s; {_FEWEST} are needed: record steps of "
             "the set point for a minute, or give a smaller slow"
         )
-    spaces = [_space(motion, joint, g) for joint in range(joints)]
+    spaces = [_space(motion, joint) for joint in range(joints)]
     left = np.empty((len(delays), len(motion), joints))
     for m, delay in enumerate(delays):
         shifted = process(t, q, u, delay=float(delay), **options)
@@ -81,9 +75,9 @@ def estimate_delay(
     power = (left**2).sum(axis=1)
     rms = np.sqrt(power / motion.use.sum(axis=0))
     per_joint = np.array([_least(delays, power[:, j]) for j in range(joints)])
-    parts = np.array_split(left**2, blocks, axis=1)
+    parts = np.array_split(left**2, _BLOCKS, axis=1)
     by_block = [np.median([_least(delays, part[:, :, j].sum(axis=1)) for j in range(joints)]) for part in parts]
-    stderr = max(np.std(by_block, ddof=1) / np.sqrt(blocks), np.std(per_joint) / np.sqrt(joints), 0.3 * step)
+    stderr = max(np.std(by_block, ddof=1) / np.sqrt(_BLOCKS), np.std(per_joint) / np.sqrt(joints), 0.3 * step)
     flat = np.array([delays[np.flatnonzero(rms[:, j] <= _FLAT * rms[:, j].min())[[0, -1]]] for j in range(joints)])
     found = float(np.median(per_joint))
     return DelayEstimate(
@@ -97,11 +91,10 @@ def estimate_delay(
     )
 
 
-def _space(motion, joint, g):
+def _space(motion, joint):
     """Orthonormal basis (n, p) of what the model of one joint can express, 0 where it is not to be used."""
     if motion.q.shape[1] == 3:
-        columns = [k for k in ACTS_ON[joint] if NAMES[k] not in ONLY_THESIS]
-        A = regressor(motion.q, motion.qd, motion.qdd, g=g)[:, joint][:, columns]
+        A = regressor(motion.q, motion.qd, motion.qdd)[:, joint, RIGID_ON[joint]]
     else:
         v = motion.qd[:, 0]
         A = np.column_stack([motion.qdd[:, 0], v, np.sign(v), np.ones_like(v)])

@@ -182,22 +182,16 @@ def outliers(x):
     return np.flatnonzero(alone) + 1
 
 
-def check_outliers(doubts, name, t, x):
-    """A doubt about outliers of the signal `name`."""
-    remedy = "leave these samples out, they pull at every parameter"
-    for sentence in named_outliers(name, t, x, outliers(x), remedy):
-        doubts.add(sentence)
-
-
-def named_outliers(name, t, x, places, remedy):
-    """A sentence about the outliers at `places` with the first of them, in a list; [] if there are none."""
-    if not len(places):
-        return []
-    k = places[0]
-    return [
-        f"{name} has {len(places)} outlier(s), the first at t = {t[k]:.6g} s ({x[k]:.4g} between {x[k - 1]:.4g} and "
-        f"{x[k + 1]:.4g}): {remedy}"
-    ]
+def check_outliers(doubts, name, t, x, remedy="leave these samples out, they pull at every parameter"):
+    """A doubt about outliers of the signal `name`. Returns their indices."""
+    places = outliers(x)
+    if len(places):
+        k = places[0]
+        doubts.add(
+            f"{name} has {len(places)} outlier(s), the first at t = {t[k]:.6g} s ({x[k]:.4g} between {x[k - 1]:.4g} "
+            f"and {x[k + 1]:.4g}): {remedy}"
+        )
+    return places
 
 
 # Measured on three machines, 3 seeds, limits at 30 to 90 %: clipped 0.02 of the range or more and 1.0 or more; a drive
@@ -218,7 +212,7 @@ def check_clipped_drive(doubts, u, found):
     Q, R = np.linalg.qr(A[plain])
     if np.linalg.cond(R / np.maximum(np.linalg.norm(R, axis=0), 1e-300)) > 1e6:  # too little motion is left to tell
         return
-    left = table.y - A @ np.linalg.solve(R, Q.T @ table.y[plain])
+    left = found.y - A @ np.linalg.solve(R, Q.T @ found.y[plain])
     rms = math.sqrt(np.mean(left[plain] ** 2))
     for side, (name, limit, sign) in enumerate((("smallest", u.min(), -1), ("largest", u.max(), 1))):
         cut = np.flatnonzero(table.extreme[:, side] > 0.5)
@@ -233,7 +227,7 @@ def check_clipped_drive(doubts, u, found):
                 "that is recorded, or drive less"
             )
     share = float((table.extreme.max(axis=1) > 0.5).mean())
-    if share > 0.1 and rms > 0.08 * np.std(table.y):
+    if share > 0.1 and rms > 0.08 * np.std(found.y):
         doubts.add(
             f"u is at its largest or smallest value in {100 * share:.0f} % of the record and the model does not "
             "explain it well: was it clipped in the recording? Widen the range that is recorded"

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
+from ir50p_lab.identification.fit_input import blocks
 from ir50p_lab.identification.parameters import FREE_OF_SIGN, NAMES
 from ir50p_lab.modelling.dynamics import mass_matrix
 
@@ -47,10 +47,7 @@ class Estimate:
 
     def predict(self, Phi):
         """Torque or PWM counts Phi theta, (n, 3), of a regressor (n, 3, 20). Raises InputError on another shape."""
-        Phi = np.asarray(Phi, dtype=float)
-        if Phi.ndim != 3 or Phi.shape[1:] != (3, 20):
-            raise InputError(f"Phi has shape {Phi.shape}; give (n, 3, 20) as regressor(q, qd, qdd) returns")
-        return np.einsum("nij,ij->ni", Phi, self.theta)
+        return np.einsum("nij,ij->ni", blocks("Phi", Phi), self.theta)
 
     @property
     def verdict(self):

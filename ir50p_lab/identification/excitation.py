@@ -7,14 +7,16 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.arm_regressor import regressor
-from ir50p_lab.identification.excitation_kernel import BOUNDS, evaluate, slopes
-from ir50p_lab.identification.parameters import ACTS_ON, chosen_columns
-from ir50p_lab.inputs import check_arm, choice, number, switch, whole
-from ir50p_lab.signals.fourier import Fourier, at_rest, fourier, limits_of
-from ir50p_lab.signals.reference import seconds
+from ir50p_lab.identification.parameters import RIGID_ON
+from ir50p_lab.inputs import check_arm, number, whole
+from ir50p_lab.signals.fourier import Fourier, at_rest, fourier, heights, limits_of, series
 
 _PER_HARMONIC = 32  # points of the grid per period of the fastest harmonic
 _HIDDEN = 1 / math.cos(math.pi / _PER_HARMONIC) - 1  # of half the range: what may hide between the points
+_TURN = 0.03  # rad/s: sgn(qd) as tanh(qd/_TURN), for a jump has no slope to follow
+_SLOW = 0.1  # rad/s: about where a dry joint may stick
+_WORST = 1e8  # condition number that counts as endless
+_STEP = 1e-6  # rad, of the differences
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,8 +24,8 @@ class Excitation:
     """What `optimise_excitation` found.
 
     reference: Fourier, ready for a bench (`q_start` first); before: the plain motion to compare with, random
-    coefficients as large as the limits allow. condition_before, condition_after: (3,), one per joint (rows="shared":
-    one number), of the columns scaled to length 1. starts: what each start ended with, geometric mean of
+    coefficients as large as the limits allow. condition_before, condition_after: (3,), one per joint, of the columns
+    scaled to length 1. starts: what each start ended with, geometric mean of
     the condition numbers times the price of standing.
     """
 
@@ -33,31 +35,37 @@ class Excitation:
     condition_after: np.ndarray
     starts: tuple
 
-    def __str__(self):
-        pairs = zip(np.atleast_1d(self.condition_before), np.atleast_1d(self.condition_after), strict=True)
-        return "condition number " + ", ".join(f"{a:.3g} -> {b:.3g}" for a, b in pairs)
 
-
-def regressor_condition(reference, *, rows="joint", columns="rigid", samples=500):
-    """Condition number of the regressor along one period of a motion, its columns scaled to length 1.
+def regressor_condition(reference):
+    """Condition number of the regressor along one period of a motion, its columns scaled to length 1: (3,), per joint.
 
     1 is best: every parameter is seen apart from the others. 100: of some combination the data say 100 times less.
-
-    Args: reference: Fourier, or any Reference with a finite duration > 0; rows, columns: as in `fit`; samples: points.
-    Returns: (3,), one per joint, or with rows="shared" one number. Raises InputError.
+    reference: Fourier, or any Reference with a finite duration > 0. Raises InputError.
     """
-    choice("rows", rows, ("joint", "shared"))
-    whole("samples", samples, 20, 10**6)
     length = getattr(reference, "period", None) or getattr(reference, "duration", 0.0)
     if not (math.isfinite(length) and length > 0):
         raise InputError(f"the reference lasts {length} s: give a motion of finite length > 0, such as `fourier`")
-    start = getattr(reference, "start", 0.0)
-    motion = reference.sample(start + length * (np.arange(samples) + 0.5) / samples)
-    Phi = regressor(motion[:, 0], motion[:, 1], motion[:, 2])
-    picked = _columns(columns)
-    if rows == "shared":
-        return _condition(Phi[:, :, picked.any(axis=0)].reshape(3 * samples, -1))
-    return np.array([_condition(Phi[:, i, picked[i]]) for i in range(3)])
+    t = getattr(reference, "start", 0.0) + length * (np.arange(500) + 0.5) / 500
+    Phi = regressor(*np.swapaxes(reference.sample(t), 0, 1))
+    return np.array([_condition(Phi[:, joint, columns]) for joint, columns in enumerate(RIGID_ON)])
+
+
+def _condition(A):
+    size = np.linalg.norm(A, axis=0)
+    return float("inf") if (size == 0).any() else float(np.linalg.cond(A / size))
+
+
+def _log_conditions(Phi):
+    """Logarithm of the condition number of each joint's columns, scaled to length 1: (m, 3) for (m, n, 3, 20)."""
+    logs = []
+    for joint, columns in enumerate(RIGID_ON):
+        A = Phi[:, :, joint, columns]
+        G = np.swapaxes(A, 1, 2) @ A
+        size = np.sqrt(np.einsum("mpp->mp", G))
+        size[size == 0] = np.inf
+        values = np.linalg.eigvalsh(G / (size[:, :, None] * size[:, None, :]))
+        logs.append(0.5 * np.log(np.minimum(values[:, -1] / np.maximum(values[:, 0], 1e-300), _WORST**2)))
+    return np.column_stack(logs)
 
 
 def optimise_excitation(
@@ -69,8 +77,6 @@ def optimise_excitation(
     max_joint_speed=None,
     table=0.0,
     margin=0.05,
-    rows="joint",
-    columns="rigid",
     standing=0.0,
     starts=4,
     iterations=80,
@@ -85,7 +91,7 @@ def optimise_excitation(
 
     Args:
         arm: Arm with finite joint limits. period: s; harmonics: 2..12; periods: whole number, length of the record.
-        max_joint_speed, table, margin: as in `fourier`. rows, columns: as in `fit`: what is to be estimated.
+        max_joint_speed, table, margin: as in `fourier`.
         standing: price of time spent near standstill, where a joint may stick and no theta says what u does: with 4, a
             share of 10 % (of 1/(1 + (qd/0.1 rad/s)^2)) counts as much as a condition number half as large again. On
             the simulated bench 4 raised, with 3 harmonics, the fit that any theta reaches from 89/61/96 to 94/91/96 %;
@@ -95,16 +101,15 @@ def optimise_excitation(
 
     Returns: Excitation. Raises: InputError on bad arguments; IdentificationError if no motion fits the limits.
     """
-    _check(arm, harmonics, starts, iterations, seed)
-    choice("rows", rows, ("joint", "shared"))
-    standing = number("standing", standing, ">= 0", hint="the price of time near standstill")
-    table, margin = number("table", table, unit="m"), number("margin", margin, ">= 0", unit="rad")
+    check_arm(arm)
+    if not np.isfinite([*arm.q_min, *arm.q_max]).all():
+        raise InputError(f"{arm.name} has no joint limits: give q_min and q_max, dataclasses.replace(arm, q_min=...)")
+    whole("harmonics", harmonics, 2, 12)
     whole("periods", periods, 1, 10**6)
-    switch("progress", progress)
-    period = seconds("period", period, positive=True)
-    picked = _columns(columns)
+    number("standing", standing, ">= 0", hint="the price of time near standstill")
+    number("period", period, "> 0", unit="s")
     limits = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
-    problem = _Problem(arm, period, harmonics, limits, rows, picked, float(standing))
+    problem = _Problem(arm, period, harmonics, limits, standing)
     generator = np.random.default_rng(seed)
     best, plain, ends = None, None, []
     from tqdm.auto import tqdm
@@ -132,8 +137,8 @@ def optimise_excitation(
     return Excitation(
         reference=reference,
         before=before,
-        condition_before=regressor_condition(before, rows=rows, columns=columns),
-        condition_after=regressor_condition(reference, rows=rows, columns=columns),
+        condition_before=regressor_condition(before),
+        condition_after=regressor_condition(reference),
         starts=tuple(ends),
     )
 
@@ -141,28 +146,13 @@ def optimise_excitation(
 class _Problem:
     """The optimisation in coordinates that end at rest: x = (q0, then the free coefficients of a and b per joint)."""
 
-    def __init__(self, arm, period, harmonics, limits, rows, picked, standing=0.0):
-        low, high, speed, table = limits
-        self.low, self.high, self.N = low, high, harmonics
+    def __init__(self, arm, period, harmonics, limits, standing=0.0):
+        self.l, self.standing = arm.l, standing
+        self.low, self.high, self.speed, self.table = limits
         k = np.arange(1.0, harmonics + 1)
         self.Za, self.Zb = _null_space(k), _null_space(k**2)  # (N, N - 1)
         n = _PER_HARMONIC * harmonics
-        w = 2 * np.pi / period * k  # rad/s
-        angle = (np.arange(n) + 0.5)[:, None] / n * 2 * np.pi * k
-        s, c = np.sin(angle), np.cos(angle)
-        # free coefficients -> q, qd, qdd: (3, n, 2 (N - 1))
-        sine, cosine = self.Za, -self.Zb
-        self.basis = np.ascontiguousarray(
-            [
-                np.hstack([s @ sine, c @ cosine]),
-                np.hstack([(c * w) @ sine, (-s * w) @ cosine]),
-                np.hstack([(-s * w**2) @ sine, (-c * w**2) @ cosine]),
-            ]
-        )
-        self.picked = picked.astype(np.int64)
-        self.shared = rows == "shared"
-        bounds = np.r_[low, high, speed, -np.inf if table is None else table, arm.l, _HIDDEN, standing]
-        self.fixed = (self.basis, self.picked, self.shared, bounds)
+        self.period, self.t = period, (np.arange(n) + 0.5) / n * period
         self.size = 3 + 6 * (harmonics - 1)
         self._last = None
 
@@ -170,7 +160,7 @@ class _Problem:
         """Random coefficients, as large as the limits allow; None if not even the mean pose is allowed."""
         for _ in range(tries):
             q0 = self.low + (self.high - self.low) * generator.uniform(0.3, 0.7, 3)
-            a, b = at_rest(*generator.normal(size=(2, 3, self.N)) / np.arange(1, self.N + 1))
+            a, b = at_rest(*generator.normal(size=(2, 3, len(self.Za))) / np.arange(1, len(self.Za) + 1))
             free = np.hstack([a @ self.Za, b @ self.Zb])
             if (self.both(np.r_[q0, 0 * free.ravel()])[1:] < 0).any():
                 continue
@@ -190,11 +180,35 @@ class _Problem:
             inside, outside = (0.5 * (inside + outside), outside) if fits else (inside, 0.5 * (inside + outside))
         return inside
 
+    def evaluate(self, x):
+        """For m points x (m, size): mean log condition with the price of standing, then the room left at each bound.
+
+        Returns (m, 12): room (>= 0 inside) per joint above, below and in speed; then of elbow and tip over the table.
+        """
+        motions = [series(*self.split(one), self.period, self.t) for one in x]
+        q, qd, qdd = np.moveaxis(motions, 2, 0)
+        Phi = regressor(*(rows.reshape(-1, 3) for rows in (q, qd, qdd)), sign=_TURN)
+        still = np.mean(1 / (1 + (qd / _SLOW) ** 2), axis=(1, 2))
+        cost = _log_conditions(Phi.reshape(*q.shape[:2], 3, 20)).mean(axis=1) + self.standing * still
+        low, high = q.min(axis=1), q.max(axis=1)
+        more = _HIDDEN / 2 * (high - low)
+        fast = np.abs(qd).max(axis=1) * (1 + _HIDDEN)
+        joints = np.stack([self.high - high - more, low - more - self.low, self.speed - fast], axis=2)
+        over = [height.reshape(len(x), -1).min(axis=1) for height in heights(self.l, q.reshape(-1, 3))]
+        table = -np.inf if self.table is None else self.table + _HIDDEN * (self.l[1] + self.l[2])
+        over = np.minimum(np.column_stack(over) - table, 1e3)
+        return np.column_stack([cost, joints.reshape(len(x), 9), over])
+
     def both(self, x):
-        """Mean log condition, then the room left at each bound (>= 0 inside)."""
-        out = np.empty(1 + BOUNDS)
-        evaluate(x, *self.fixed, out)
-        return out
+        """`evaluate` of one point x (size,): (12,)."""
+        return self.evaluate(x[None])[0]
+
+    def slopes(self, x):
+        """Derivatives of `both` by differences: (12, size)."""
+        if self._last is None or not np.array_equal(self._last[0], x):
+            here, ahead = self.both(x), self.evaluate(x + _STEP * np.eye(self.size))
+            self._last = x.copy(), np.column_stack(ahead - here) / _STEP  # rows in one piece: SLSQP reads no others
+        return self._last[1]
 
     def value(self, x):
         return float(self.both(x)[0])
@@ -205,24 +219,17 @@ class _Problem:
 
         best = [self.value(x), x]
 
-        def jacobian(x):
-            if self._last is None or not np.array_equal(self._last[0], x):
-                out = np.empty((1 + BOUNDS, self.size))
-                slopes(x, *self.fixed, out)
-                self._last = (x.copy(), out)
-            return self._last[1]
-
         def seen(x):
             step(1)
             x = self._inside(x)
             if x is not None and self.value(x) < best[0]:
                 best[:] = [self.value(x), x]
 
-        room = {"type": "ineq", "fun": lambda x: self.both(x)[1:] - 1e-6, "jac": lambda x: jacobian(x)[1:]}
+        room = {"type": "ineq", "fun": lambda x: self.both(x)[1:] - 1e-6, "jac": lambda x: self.slopes(x)[1:]}
         minimize(
             self.value,
             x,
-            jac=lambda x: jacobian(x)[0],
+            jac=lambda x: self.slopes(x)[0],
             constraints=[room],
             method="SLSQP",
             callback=seen,
@@ -240,39 +247,10 @@ class _Problem:
 
     def split(self, x):
         """(a, b, q0) of the point x."""
-        free = x[3:].reshape(3, -1)
-        return free[:, : self.N - 1] @ self.Za.T, free[:, self.N - 1 :] @ self.Zb.T, x[:3]
+        a, b = np.split(x[3:].reshape(3, -1), 2, axis=1)
+        return a @ self.Za.T, b @ self.Zb.T, x[:3]
 
 
 def _null_space(weight):
     """Orthonormal columns (N, N - 1) whose sums with `weight` are 0."""
     return np.linalg.qr(np.column_stack([weight, np.eye(len(weight))[:, 1:]]))[0][:, 1:]
-
-
-def _columns(columns):
-    """(3, 20) bool: the columns asked for that act on each joint."""
-    chosen = chosen_columns(columns)
-    picked = np.zeros((3, 20), dtype=bool)
-    for joint, acting in enumerate(ACTS_ON):
-        picked[joint, [k for k in acting if k in chosen]] = True
-    if not picked.any(axis=1).all():
-        raise InputError("columns holds none that acts on one of the joints; name at least one for each")
-    return picked
-
-
-def _condition(A):
-    size = np.linalg.norm(A, axis=0)
-    return float("inf") if (size == 0).any() else float(np.linalg.cond(A / size))
-
-
-def _check(arm, harmonics, starts, iterations, seed):
-    check_arm(arm)
-    if not np.isfinite([*arm.q_min, *arm.q_max]).all():
-        raise InputError(f"{arm.name} has no joint limits: give q_min and q_max, dataclasses.replace(arm, q_min=...)")
-    for name, value, least, most in (
-        ("harmonics", harmonics, 2, 12),
-        ("starts", starts, 1, 10**4),
-        ("iterations", iterations, 1, 10**5),
-        ("seed", seed, 0, 2**63),
-    ):
-        whole(name, value, least, most)

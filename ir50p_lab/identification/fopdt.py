@@ -7,7 +7,8 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.doubts import Doubts, check_outliers
-from ir50p_lab.identification.first_order import Record, respond
+from ir50p_lab.identification.first_order import Record
+from ir50p_lab.identification.response_fit import respond
 from ir50p_lab.identification.second_order import fit_second_order
 from ir50p_lab.identification.step_record import check_time, jumps_of, recorded, without_outliers
 from ir50p_lab.inputs import number
@@ -64,9 +65,9 @@ class FOPDT:
         """
         t, u = recorded(t=t, u=u)
         times, jumps = jumps_of(t, u, u_before)
-        out = np.empty((3, len(t)))
+        out = np.empty(len(t))
         respond(t, times, jumps, 1 / self.T, float(self.L), out)
-        return self.y0 + self.K / self.T * out[0]
+        return self.y0 + self.K / self.T * out
 
 
 def fit_fopdt(t, u, y, *, dead_time=None, u_before=None, anyway=False):
@@ -112,15 +113,14 @@ def fit_fopdt(t, u, y, *, dead_time=None, u_before=None, anyway=False):
     check_outliers(doubts, "u", t, u)
     _refuse_silent(t, y, times)
     whole = t, u, y
-    t, y, named = without_outliers(t, y)
-    doubts += named
+    t, y = without_outliers(doubts, t, y)
     record = Record(t, y, times, jumps, dead_time)
     fit = record.fit_first_order()
     _wrong_shape(doubts, record, fit, whole, u_before)
     _unsettled(doubts, record, fit)
     if fit.a <= 0:
         raise IdentificationError("no first-order model is near this response, not even with anyway=True")
-    K, T, L = record.K(fit), record.unit / fit.a, record.unit * fit.L
+    T, L = record.unit / fit.a, record.unit * fit.L
     K_stderr, T_stderr, L_stderr = record.stderr(fit)
     period = float(np.median(np.diff(t)))
     _warn(doubts, record, fit, T, L, L_stderr, period)
@@ -130,7 +130,7 @@ def fit_fopdt(t, u, y, *, dead_time=None, u_before=None, anyway=False):
         L_stderr = max(L_stderr, period)
     rms = record.y_unit * math.sqrt(fit.rss / len(t))
     return FOPDT(
-        K=K,
+        K=record.slope(fit) * T,
         T=T,
         L=L,
         K_stderr=K_stderr,
@@ -195,7 +195,7 @@ def _second_order(whole, u_before, fit):
 
 def _unsettled(doubts, record, fit):
     """Where 1/T cannot be told from zero, or is negative."""
-    lived = fit.a * record.watched(fit)  # length of the response in time constants
+    lived = fit.a * (1 - fit.L)  # length of the response in time constants
     bend = record.f_value(fit, record.ramp_rss(), 1)
     settles = lived > 1 / _SLOWEST and bend > _BENDS
     if settles and lived > _SETTLED:
@@ -218,20 +218,20 @@ def _unsettled(doubts, record, fit):
 
 def _warn(doubts, record, fit, T, L, L_stderr, period):
     """What is to be minded about a fit that is not refused."""
-    watched = record.unit * record.watched(fit)
+    watched = record.unit * (1 - fit.L)
     if T < _SEEN * period:
         doubts.add(
             f"the time constant is not identifiable: about {T / period:.2f} of the sampling period of {period:.3g} s, "
             "the response is over between two samples and T and L cannot be told apart; K holds. Sample at least five "
             "times in one time constant"
         )
-    elif record.dead_time is None and L < _SEEN * period:
+    elif not record.known and L < _SEEN * period:
         doubts.add(
             f"the dead time is not identifiable: about {L / period:.2f} of the sampling period of {period:.3g} s (when "
             "within a period was u applied, and y read?); K and T hold. Give it if you know it, dead_time=0 for a "
             "plant without; or sample faster. Rules that divide by L (Ziegler-Nichols, AMIGO) have no meaning here"
         )
-    elif record.dead_time is None and L < 2 * L_stderr:
+    elif not record.known and L < 2 * L_stderr:
         doubts.add(
             f"dead time {L:.3g} s is less than two standard errors ({L_stderr:.3g} s): it cannot be told from none"
         )

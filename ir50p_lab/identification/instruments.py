@@ -15,7 +15,7 @@ from ir50p_lab.identification.closed_loop import runs_of
 from ir50p_lab.identification.fitting import fit
 from ir50p_lab.identification.processing import central_derivatives, process
 from ir50p_lab.inputs import number
-from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta
+from ir50p_lab.modelling.dynamics import as_theta
 from ir50p_lab.signals.low_pass import low_pass
 
 _ORDER = 3  # of the filters
@@ -36,7 +36,6 @@ def fit_with_instruments(
     slow=0.1,
     columns="rigid",
     l2=None,
-    g=STANDARD_GRAVITY,
 ):
     """Estimate with standard errors that hold for noisy angles, too: to be believed, where `identify` is to be used.
 
@@ -49,13 +48,13 @@ def fit_with_instruments(
     Args: first: Estimate or theta (3, 20) with which the loop is simulated, from `identify` or `output_error`;
     recordings, controller, references, delay: as in `output_error`, evenly sampled. cutoff_hz: of both sides, Hz.
     slow: rad/s, simulated speed below which samples of a joint, and those 0.3/cutoff_hz seconds around, are left out.
-    columns, l2, g: as in `fit`.
+    columns, l2: as in `fit`.
     Returns: Estimate of method "iv". Raises: InputError, IdentificationError as `fit` does.
     """
     theta, _ = as_theta(getattr(first, "theta", first))
     for name, value in (("cutoff_hz", cutoff_hz), ("slow", slow)):
         number(name, value, "> 0")
-    runs = runs_of(recordings, controller, references, delay=delay, unit="PWM", g=g)
+    runs = runs_of(recordings, controller, references, delay=delay)
     dry = getattr(first, "fs", None), getattr(first, "qs", None)
     parts = [_filtered(run, (theta, *dry), float(delay), cutoff_hz, slow) for run in runs]
     Phi, Z, u, use = map(np.concatenate, zip(*parts, strict=True))
@@ -84,9 +83,7 @@ def _filtered(run, model, delay, cutoff_hz, slow):
 
     def columns(q):
         return smooth(
-            regressor(
-                *central_derivatives(q, rate, cutoff_hz=_WIDER * cutoff_hz, order=_ORDER), g=run.g, sign=direction
-            )
+            regressor(*central_derivatives(q, rate, cutoff_hz=_WIDER * cutoff_hz, order=_ORDER), sign=direction)
         )
 
     around = np.ones((2 * round(_AROUND * rate / cutoff_hz) + 1, 1), dtype=bool)

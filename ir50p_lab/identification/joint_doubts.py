@@ -22,11 +22,11 @@ def check_motion(doubts, band):
 
 def check_model(doubts, found, band, period):
     """All that the fit itself shows."""
-    table = found.table
-    spread = np.std(table.y)
+    table, left = found.table, found.left
+    spread = np.std(found.y)
     check_speed(doubts, float(np.abs(table.v).max()))
     _friction_told_apart(doubts, found)
-    with_gravity = _left(table, table.columns[:, 1:3], found)
+    with_gravity = _left(found, table.columns[:, 1:3])
     _unexplained(doubts, found, with_gravity)
     _signs(doubts, found)
     _inertia(doubts, found, band, period)
@@ -38,22 +38,22 @@ def check_model(doubts, found, band, period):
             doubts.add(
                 f"{name} friction {x:.3g} +- {s:.2g} drowns in its error; record {_MORE[name]}, or leave this term out"
             )
-    if found.rms > (1 - _POOR) * spread:
+    if left.rms > (1 - _POOR) * spread:
         doubts.add(
-            f"the model explains little of u (fit {100 * (1 - found.rms / spread):.0f} %): a load, a spring, outliers "
+            f"the model explains little of u (fit {100 * (1 - left.rms / spread):.0f} %): a load, a spring, outliers "
             "or another machine's friction are in it; look at q and u, and do not use these numbers yet"
         )
     if "gravity_sin" not in found.names and np.ptp(table.q) > 0.2:
-        left = float(found.residuals @ found.residuals)
-        if with_gravity < 0.5 * left and left > 1e-4 * len(table.y) * spread**2:
+        missed = left.rms**2 * len(found.y)
+        if with_gravity < 0.5 * missed and missed > 1e-4 * len(found.y) * spread**2:
             doubts.add(
-                f"what is left of u goes with sin q and cos q ({100 * (1 - with_gravity / left):.0f} % of it): gravity "
-                "(or a spring) acts on this joint; add it, terms=(..., 'gravity'), or fit the arm with `fit`"
+                f"what is left of u goes with sin q and cos q ({100 * (1 - with_gravity / missed):.0f} % of it): "
+                "gravity (or a spring) acts on this joint; add it, terms=(..., 'gravity'), or fit the arm with `fit`"
             )
     _late(doubts, found, period)
-    if found.correlation > 0.9 and found.rms > _MISSING * spread:
+    if left.correlation > 0.9 and left.rms > _MISSING * spread:
         doubts.add(
-            f"residuals are far from white (neighbours correlate by {found.correlation:.2f}): something is missing "
+            f"residuals are far from white (neighbours correlate by {left.correlation:.2f}): something is missing "
             "in the model (backlash, Stribeck friction, delay, a spring); standard errors were widened for it"
         )
 
@@ -65,10 +65,10 @@ _MORE = {
 }
 
 
-def _left(table, extra, found):
+def _left(found, extra):
     """Sum of squares that is left with more columns."""
     A = np.column_stack([found.A, extra])
-    e = table.y - A @ np.linalg.lstsq(A, table.y, rcond=None)[0]
+    e = found.y - A @ np.linalg.lstsq(A, found.y, rcond=None)[0]
     return float(e @ e)
 
 
@@ -83,9 +83,10 @@ def _friction_told_apart(doubts, found):
 
 def _unexplained(doubts, found, with_gravity):
     """A motion that has nothing to do with u, not even by way of gravity."""
-    total = float(np.sum((found.table.y - found.table.y.mean()) ** 2))
-    explained = 1 - min(with_gravity, found.rms**2 * len(found.residuals)) / total if total > 0 else 0.0
-    F = explained / 5 / max((1 - explained) / max(found.independent - 6, 1), 1e-300)
+    total = float(np.sum((found.y - found.y.mean()) ** 2))
+    explained = 1 - min(with_gravity, found.left.rms**2 * len(found.y)) / total if total > 0 else 0.0
+    independent = found.left.independent
+    F = explained / 5 / max((1 - explained) / max(independent - 6, 1), 1e-300)
     if explained < _EXPLAINED or (F < _F and explained < 0.5):
         doubts.refuse(
             f"u does not belong to this motion: it explains {100 * max(explained, 0):.1f} % of the variance of u "
@@ -94,7 +95,7 @@ def _unexplained(doubts, found, with_gravity):
         )
     elif F < _F:
         doubts.add(
-            f"only {found.independent:.0f} independent samples are in this record (F = {F:.1f}, {_F:.0f} would do): "
+            f"only {independent:.0f} independent samples are in this record (F = {F:.1f}, {_F:.0f} would do): "
             "record longer, with more reversals"
         )
 
@@ -152,8 +153,9 @@ def _late(doubts, found, period):
     """Whether u acts later than it was recorded, or was filtered."""
     if found.lost("inertia") or "inertia" not in found.names:
         return
-    delay, sigma, rms = min(found.delay, found.lag, key=lambda one: one[2])
-    if rms < 0.9 * found.rms and abs(delay) > 5 * sigma and abs(delay) > 0.3 * period:
+    lag = found.beside(found.slope)  # a first-order low pass of u, as a negative delay: what went in is u + lag du/dt
+    delay, sigma, rms = min(found.beside_delay[2:], lag[2:], key=lambda one: one[2])
+    if rms < 0.9 * found.left.rms and abs(delay) > 5 * sigma and abs(delay) > 0.3 * period:
         doubts.add(
             f"u seems to act about {delay:.2g} s after it was recorded, which makes the inertia too large by "
             "viscous times that: give delay="

@@ -10,10 +10,11 @@ from ir50p_lab.identification.closed_loop import ClosedLoopRun, runs_of
 from ir50p_lab.identification.parameters import ACTS_ON, FREE_OF_SIGN, NAMES, ONLY_THESIS
 from ir50p_lab.identification.regression import long_run_sum
 from ir50p_lab.identification.validation import compared
-from ir50p_lab.inputs import number, switch, whole
-from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta
+from ir50p_lab.inputs import number, whole
+from ir50p_lab.modelling.dynamics import as_theta
 
 _STEP = 0.02  # of a parameter's scale, for differences: stiction makes the output jump on smaller ones
+_PERIOD = 0.002  # s, of the simulation
 _QS = (0.005, 0.5)  # rad/s, bounds of the Stribeck speed
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 _COULOMB = [NAMES.index(name) for name in ("fc1", "fc2", "fc3")]
@@ -28,10 +29,7 @@ class OutputError:
     stderr       standard errors; nan: not part of the fit                                       (3, 20) unit
     fs, qs       breakaway friction, Stribeck speed (1.117)                                      (3,) unit, rad/s
     fs_stderr, qs_stderr                                                                         (3,)
-    covariance   of the parameters that were fitted, in the order of `names`
-    names        "joint 1: theta1", ..., "joint 1: fs", "joint 1: qs"                            tuple
     before, after  Validation of "q" and of "u" on the training runs, start and end              (2 each)
-    evaluations  closed loops simulated                                                          int
     warnings     tuple of str
     ============ ============================================================================== ===========
     """
@@ -42,25 +40,19 @@ class OutputError:
     qs: np.ndarray
     fs_stderr: np.ndarray
     qs_stderr: np.ndarray
-    covariance: np.ndarray
-    names: tuple
     before: tuple
     after: tuple
-    evaluations: int
     delay: float
-    unit: str
-    g: float
     warnings: tuple
+    unit: str = "PWM"
 
-    def score(self, recording, controller, reference=None, *, limit=None):
+    def score(self, recording, controller, reference=None):
         """Simulate the loop of another recording: (Validation of "q", Validation of "u")."""
-        run = ClosedLoopRun.of(
-            recording, controller, reference, delay=self.delay, limit=limit, unit=self.unit, g=self.g
-        )
+        run = ClosedLoopRun.of(recording, controller, reference, delay=self.delay)
         return compare([run], [run.simulate(self.theta, self.fs, self.qs)])
 
     def __str__(self):
-        lines = [f"output error, {self.evaluations} simulated runs; unit {self.unit}"]
+        lines = [f"output error; unit {self.unit}"]
         for joint in range(3):
             for k, name in enumerate(NAMES):
                 if np.isfinite(self.stderr[joint, k]):
@@ -77,14 +69,9 @@ def output_error(
     references=None,
     *,
     delay=0.02,
-    stribeck=True,
     l2=None,
     seconds=30.0,
-    limit=None,
     iterations=12,
-    unit=None,
-    g=STANDARD_GRAVITY,
-    step=0.002,
     progress=True,
 ):
     """Refine an estimate: least squares on the q and u of the simulated closed loop.
@@ -100,30 +87,29 @@ def output_error(
         recordings: a Recording or a list; references: the motion of all or of each (None: as recorded,
         differentiated);
         controller: of the runs, a compiled one such as PID, with its gains. delay: s, whole periods.
-        stribeck: fit fs and qs too. l2: m, keeps theta6 = l2 theta4. seconds: s of each recording that are used.
-        limit: of |u| (default 255 PWM). iterations: at most. unit, g: of u; m/s^2. step: s, of the simulation.
+        l2: m, keeps theta6 = l2 theta4. seconds: s of each recording that are used. iterations: at most.
         progress: show a bar.
 
     Returns: OutputError. Raises InputError on bad arguments; IdentificationError if the first model's loop runs away.
     """
-    theta, unit = _start(estimate, unit)
-    l2 = None if l2 is None else number("l2", l2, "> 0", unit="m")
-    seconds, step = number("seconds", seconds, "> 0", unit="s"), number("step", step, "> 0", unit="s")
+    theta, _ = as_theta(getattr(estimate, "theta", estimate))
+    if getattr(estimate, "unit", "PWM") != "PWM":
+        raise InputError(f"the estimate is in {estimate.unit}: the loop is simulated in PWM counts")
+    if l2 is not None and number("l2", l2, "> 0", unit="m") >= 10:
+        raise InputError(f"l2 = {l2} m: give the length of the upper arm in metres")
     whole("iterations", iterations, 1, 10**4)
-    stribeck, progress = switch("stribeck", stribeck), switch("progress", progress)
-    runs = runs_of(recordings, controller, references, delay=delay, limit=limit, unit=unit, g=g, seconds=seconds)
-    shape = _Shape.of(estimate, theta, l2, stribeck, seconds)
+    runs = runs_of(recordings, controller, references, delay=delay, seconds=seconds)
+    shape = _Shape.of(estimate, np.array(theta), l2)
     from scipy.optimize import least_squares
     from tqdm.auto import tqdm
 
-    first = [run.simulate(*shape.model(shape.x0), step=step) for run in runs]
+    first = [run.simulate(*shape.model(shape.x0), step=_PERIOD) for run in runs]
     if not all(np.isfinite(q).all() for q, _ in first):
         raise IdentificationError("the loop with the first estimate runs away: fit it with method='bounded' first")
     weights = _weights(runs, first)
-    count = [1]
 
     def residuals(x):
-        found = [run.simulate(*shape.model(x), step=step) for run in runs]
+        found = [run.simulate(*shape.model(x), step=_PERIOD) for run in runs]
         parts = [w * np.hstack([run.q - q, run.u - u]) for run, w, (q, u) in zip(runs, weights, found, strict=True)]
         return np.nan_to_num(np.concatenate(parts), nan=1e3, posinf=1e3, neginf=-1e3).ravel()
 
@@ -136,16 +122,14 @@ def output_error(
             moves = shape.moves(x)
             ahead = list(pool.map(residuals, x + np.diag(moves)))
             behind = list(pool.map(residuals, x - np.diag(moves)))
-            count[0] += 2 * len(x)
             bar.update(1)
             return (np.array(ahead) - np.array(behind)).T / (2 * moves)
 
         found = least_squares(
             residuals, shape.x0, slopes, bounds=shape.bounds, x_scale=shape.scale, max_nfev=iterations, ftol=1e-4
         )
-        J = found.jac
-    last = [run.simulate(*shape.model(found.x), step=step) for run in runs]
-    covariance, notes = _covariance(J, found.fun.reshape(-1, 6))
+    last = [run.simulate(*shape.model(found.x), step=_PERIOD) for run in runs]
+    covariance, notes = _covariance(found.jac, found.fun.reshape(-1, 6))
     values, errors = shape.model(found.x), shape.errors(covariance)
     if found.status == 0:
         notes.append(f"not settled after {iterations} steps: give more, or a better first estimate")
@@ -156,14 +140,9 @@ def output_error(
         qs=values[2],
         fs_stderr=errors[1],
         qs_stderr=errors[2],
-        covariance=covariance,
-        names=shape.names,
         before=compare(runs, first),
         after=compare(runs, last),
-        evaluations=count[0] + found.nfev,
         delay=float(delay),
-        unit=unit,
-        g=float(g),
         warnings=tuple(notes),
     )
 
@@ -186,16 +165,12 @@ class _Shape:
     theta: np.ndarray
     places: list  # (joint, column) of each x
     l2: float | None
-    stribeck: bool
     x0: np.ndarray
     scale: np.ndarray
     bounds: tuple
-    names: tuple
 
     @classmethod
-    def of(cls, estimate, theta, l2, stribeck, seconds):
-        if l2 is not None and number("l2", l2, "> 0", unit="m") >= 10:
-            raise InputError(f"l2 = {l2} m: give the length of the upper arm in metres")
+    def of(cls, estimate, theta, l2):
         columns = getattr(estimate, "columns", None)
         places = [
             (j, k)
@@ -211,15 +186,12 @@ class _Shape:
         scale = np.maximum.reduce([0.3 * np.abs(x0), 3 * known, 1e-3 * joint])
         low = np.array([-np.inf if NAMES[k] in FREE_OF_SIGN else 0.0 for _, k in places])
         x0 = np.maximum(x0, np.where(np.isfinite(low), low + 1e-6 * scale, -np.inf))
-        high = np.full(len(x0), np.inf)
-        names = [f"joint {j + 1}: {NAMES[k]}" for j, k in places]
-        if stribeck:
-            fc = np.maximum([theta[j, k] for j, k in enumerate(_COULOMB)], 1e-9)
-            x0 = np.r_[x0, 0.3 * fc, np.full(3, 0.05)]
-            scale = np.r_[scale, 0.3 * fc, np.full(3, 0.02)]
-            low, high = np.r_[low, np.zeros(3), np.full(3, _QS[0])], np.r_[high, np.full(3, np.inf), np.full(3, _QS[1])]
-            names += [f"joint {j + 1}: {name}" for name in ("fs", "qs") for j in range(3)]
-        return cls(theta, places, l2, stribeck, x0, scale, (low, high), tuple(names))
+        fc = np.maximum(theta[range(3), _COULOMB], 1e-9)
+        x0 = np.r_[x0, 0.3 * fc, np.full(3, 0.05)]
+        scale = np.r_[scale, 0.3 * fc, np.full(3, 0.02)]
+        low, high = np.r_[low, np.zeros(3), np.full(3, _QS[0])], np.full(len(x0), np.inf)
+        high[-3:] = _QS[1]
+        return cls(theta, places, l2, x0, scale, (low, high))
 
     def model(self, x):
         """(theta, fs, qs) of the numbers x."""
@@ -231,8 +203,7 @@ class _Shape:
         fc = np.maximum(theta[range(3), _COULOMB], 0.0)
         theta[range(3), _COULOMB] = fc
         n = len(self.places)
-        fs, qs = (fc + x[n : n + 3], x[n + 3 :]) if self.stribeck else (fc, np.full(3, 0.05))
-        return theta, fs, qs
+        return theta, fc + x[n : n + 3], x[n + 3 :]
 
     def moves(self, x):
         """Steps for differences: small beside the scale, and inside the bounds on both sides."""
@@ -247,18 +218,11 @@ class _Shape:
         if self.l2 is not None:
             theta[1:, _THETA6] = self.l2 * theta[1:, _THETA4]
         n = len(self.places)
-        if not self.stribeck:
-            return theta, np.full(3, np.nan), np.full(3, np.nan)
         fs = np.empty(3)
         for j in range(3):  # fs = fc + x
             at = [k for k, place in enumerate(self.places) if place == (j, _COULOMB[j])] + [n + j]
             fs[j] = np.sqrt(max(covariance[np.ix_(at, at)].sum(), 0.0))
         return theta, fs, s[n + 3 :]
-
-
-def _start(estimate, unit):
-    theta, _ = as_theta(getattr(estimate, "theta", estimate))
-    return np.array(theta), unit or getattr(estimate, "unit", "PWM")
 
 
 def _weights(runs, first):

@@ -1,7 +1,5 @@
 """The 20 parameters by name, and which of them act on which joint (thesis 2.50, 2.51 corrected)."""
 
-import numpy as np
-
 from ir50p_lab.errors import InputError
 
 # name: what it is for an in-line arm (Arm.theta). Masses and inertias in kg, m; times 1/K_i in PWM counts.
@@ -38,28 +36,21 @@ ACTS_ON = (
     (1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 13, 17),
     (3, 4, 5, 7, 9, 14, 15, 18, 19),
 )
+RIGID_ON = tuple([k for k in acting if NAMES[k] not in ONLY_THESIS] for acting in ACTS_ON)  # without theta7, theta8
 
 
 def chosen_columns(columns):
     """Indices of the columns to fit, increasing.
 
-    Args: columns: "rigid" (all but theta7, theta8), "thesis" (all 20), or a list of names or indices 0-19.
+    Args: columns: "rigid" (all but theta7, theta8), "thesis" (all 20), or a list of names.
     Raises InputError for anything else, or nothing chosen.
     """
-    if isinstance(columns, str):
-        if columns not in ("rigid", "thesis"):
-            raise InputError(f"columns = {columns!r}: choose 'rigid', 'thesis', or give a list of names")
-        return [k for k, name in enumerate(NAMES) if columns == "thesis" or name not in ONLY_THESIS]
-    found = set()
-    if not isinstance(columns, (list, tuple, set, range, np.ndarray)):
-        raise InputError(f"columns = {columns!r:.60}: choose 'rigid', 'thesis', or give a list of names")
-    for item in columns:
-        if isinstance(item, str) and item in NAMES:
-            found.add(NAMES.index(item))
-        elif isinstance(item, (int, np.integer)) and not isinstance(item, bool) and 0 <= item < 20:
-            found.add(int(item))
-        else:
-            raise InputError(f"{item!r} is no column: give indices 0 to 19, or names of {', '.join(NAMES)}")
-    if not found:
-        raise InputError("columns is empty: name at least one parameter to fit")
-    return sorted(found)
+    sets = {"rigid": [name for name in NAMES if name not in ONLY_THESIS], "thesis": NAMES}
+    names = sets.get(columns, [columns]) if isinstance(columns, str) else list(columns)
+    unknown = [name for name in names if name not in NAMES]
+    if unknown or not names:
+        raise InputError(
+            f"columns = {columns!r:.60}: {unknown} is no column; choose 'rigid', 'thesis', or give a list of names of "
+            f"{', '.join(NAMES)}"
+        )
+    return sorted(map(NAMES.index, set(names)))

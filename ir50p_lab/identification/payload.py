@@ -65,10 +65,10 @@ def scale_from_payload(without, loaded, *, mass, l2, at):
             continue
         moved = (loaded.theta - without.theta)[j, here]
         total = (without.covariance + loaded.covariance)[j][np.ix_(here, here)]
-        size, axes = np.linalg.eigh(total)
-        known = size > 1e-10 * size.max()  # tied columns vary together
-        a, b = ((axes.T @ x)[known] / np.sqrt(size[known]) for x in (change[here], moved))
-        per_count, sigma = (a @ b) / (a @ a), 1 / np.sqrt(a @ a)
+        weights = np.linalg.pinv(total, rcond=1e-10, hermitian=True)  # tied columns vary together
+        a = change[here]
+        sigma = 1 / np.sqrt(a @ weights @ a)
+        per_count = sigma**2 * (a @ weights @ moved)
         if per_count < _SURE * sigma:
             notes.append(
                 f"joint {j + 1}: the payload changes theta by {per_count / sigma:.1f} standard errors only: take a "
@@ -76,8 +76,8 @@ def scale_from_payload(without, loaded, *, mass, l2, at):
             )
             continue
         K[j], stderr[j] = 1 / per_count, sigma / per_count**2
-        off = np.sum((b - a * per_count) ** 2)
-        if off > 9 * max(len(b), 1):
+        left = moved - a * per_count
+        if left @ weights @ left > 9 * np.linalg.matrix_rank(weights, hermitian=True):
             notes.append(
                 f"joint {j + 1}: the parameters change in other proportions than {mass:g} kg at {at:g} m would make "
                 "them: check mass and place, and the standard errors of both fits"

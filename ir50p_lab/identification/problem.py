@@ -48,11 +48,6 @@ class Problem:
         """Condition number of A, its columns of length 1."""
         return float(np.linalg.cond(self.R))
 
-    @cached_property
-    def Qty_in_beta(self):
-        """The least-squares parameters R^-1 Q^T y."""
-        return self.R_inverse @ self.Qty
-
     def residuals(self, beta):
         """y - A beta, (N,)."""
         return self.y - product(self.A, beta)

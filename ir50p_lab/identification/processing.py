@@ -7,10 +7,9 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.columns import columns_of, runs, sampling_period
-from ir50p_lab.inputs import choice, number, switch, whole
+from ir50p_lab.inputs import choice, number, numbers, switch, whole
 from ir50p_lab.signals.low_pass import low_pass
 
-_KINDS = ("zero-phase", "causal")
 _LATE = 2.0  # a filter of this many time constants (1/(2 pi cutoff)) on either side is cut off by default
 
 
@@ -129,14 +128,18 @@ def process(
     t, q, u = columns_of(recording, q, u)
     period = sampling_period(t)
     rate = 1 / period
-    _check_options(derivatives, cutoff_hz, filter_u, delay, held, decimate, trim, max_gap)
+    choice("derivatives", derivatives, ("zero-phase", "causal"))
+    switch("held", held)
+    whole("decimate", decimate, 1, 10**6)
+    number("delay", delay, ">= 0", unit="s")
     slow = _thresholds(slow, q.shape[1])
     if cutoff_hz is None and derivatives == "causal":
         raise InputError("cutoff_hz = None: the causal way needs its filter; give 1.5 to 10 Hz")
     if trim is None:
-        trim = 0.0 if cutoff_hz is None else _LATE / (2 * math.pi * cutoff_hz)
+        trim = 0.0 if cutoff_hz is None else _LATE / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
+    number("trim", trim, ">= 0", unit="s")
     notes, pieces = [], []
-    parts = runs(t, 3.5 * period if max_gap is None else max_gap)
+    parts = runs(t, 3.5 * period if max_gap is None else number("max_gap", max_gap, "> 0", unit="s"))
     if len(parts) > 1:
         notes.append(f"{len(parts) - 1} gap(s) in time: {len(parts)} runs, each filtered by itself")
     backward = 0 if cutoff_hz is None or derivatives == "causal" else 3 * (2 * math.ceil(order / 2) + 1) + 1
@@ -194,24 +197,8 @@ def _piece(t, q, u, period, derivatives, cutoff_hz, order, filter_u, delay, held
     return [grid, *states, u], uneven
 
 
-def _check_options(derivatives, cutoff_hz, filter_u, delay, held, decimate, trim, max_gap):
-    choice("derivatives", derivatives, _KINDS)
-    switch("filter_u", filter_u)
-    if cutoff_hz is not None:
-        number("cutoff_hz", cutoff_hz, "> 0", unit="Hz")
-    switch("held", held)
-    whole("decimate", decimate, 1, 10**6)
-    for name, value, low in (("delay", delay, 0.0), ("trim", trim, 0.0), ("max_gap", max_gap, 1e-300)):
-        if value is None and name != "delay":
-            continue
-        number(name, value, ">= 0" if low == 0 else "> 0", unit="s")
-
-
 def _thresholds(slow, joints):
-    try:
-        array = np.broadcast_to(np.asarray(slow, dtype=float), joints)
-    except (TypeError, ValueError, OverflowError):
-        array = np.array([np.nan])
-    if not (np.isfinite(array).all() and (array >= 0).all()):
-        raise InputError(f"slow = {slow!r} rad/s: give one number >= 0, or one for each of {joints} joint(s)")
-    return array
+    slow = np.asarray(numbers("slow", slow, unit="rad/s"))
+    if slow.shape not in ((), (joints,)) or not (slow >= 0).all():
+        raise InputError(f"slow = {slow} rad/s: give one number >= 0, or one for each of {joints} joint(s)")
+    return slow

@@ -71,15 +71,12 @@ def identify(
     Raises: InputError, IdentificationError as `process` and `fit` do, and if a joint is constant, its angle wrapped or
     clipped. Angles that look like degrees, and a u that is often at its limit, are in `warnings`.
     """
-    for name in ("derivatives", "decimate", "filter_u"):
-        if name in steps:
-            raise InputError(f"{name} is fixed in this recipe: call process, regressor and fit one by one instead")
     steps = {**STEPS, **steps}
-    several = isinstance(recordings, (list, tuple))
-    if several and not recordings:
+    recordings = list(recordings) if isinstance(recordings, (list, tuple)) else [recordings]
+    if not recordings:
         raise InputError("no recording given: give one, or a list of them")
     Phi, y, use, notes = [], [], [], []
-    for recording in recordings if several else [recordings]:
+    for recording in recordings:
         notes += _looked_at(recording, anyway)
         motion = process(recording, delay=delay, slow=slow, **steps)
         if motion.q.shape[1] != 3:

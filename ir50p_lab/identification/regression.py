@@ -7,9 +7,10 @@ import numpy as np
 from scipy import fft, special
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.identification.estimators import plain
+from ir50p_lab.identification.fit_input import finite
 from ir50p_lab.identification.problem import prepare
-from ir50p_lab.identification.qr import gram
-from ir50p_lab.inputs import choice, first_not_finite, numbers
+from ir50p_lab.inputs import numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -42,18 +43,18 @@ class LeastSquares:
     warnings: tuple
 
 
-def least_squares(A, y, *, names=None, errors="hac", tolerance=1e-8):
+def least_squares(A, y, *, names=None, tolerance=1e-8):
     """Least squares A x = y by QR, for any regressor matrix, with standard errors for residuals in time order.
 
         found = least_squares(np.column_stack([qd, np.sign(qd)]), torque, names=("viscous", "Coulomb"))
 
     Args:
         A: (n, p), or (n, k, p) for k equations a sample; y: (n,) or (n, k). Time first. Masked samples are left out.
-        names: of the p columns. errors: "hac" holds for residuals that are alike over time and of unequal size
-        (heteroscedasticity and autocorrelation consistent, `long_run_sum`); "classical" for white ones.
+        names: of the p columns.
         tolerance: a column of which less than this sticks out of those before it is left out.
 
-    Returns: LeastSquares. Noise in A is not in the errors: it biases.
+    Returns: LeastSquares. Its errors hold for residuals that are alike over time and of unequal size
+    (heteroscedasticity and autocorrelation consistent, `long_run_sum`). Noise in A is not in them: it biases.
     Raises: InputError on shapes and numbers that are not finite; IdentificationError if A is zero, or has fewer than
     twice as many rows as columns.
     """
@@ -64,25 +65,18 @@ def least_squares(A, y, *, names=None, errors="hac", tolerance=1e-8):
     if masks:
         keep = ~np.any([mask.reshape(len(y), -1).any(axis=1) for mask in masks], axis=0)
         A, y = A[keep], y[keep]
-    for name, array in (("A", A), ("y", y)):
-        if not np.isfinite(array).all():
-            raise InputError(f"{name} holds {first_not_finite(array)}: remove or repair that sample")
+    A, y = finite("A", A), finite("y", y)
     p = A.shape[-1]
     names = tuple(f"x{k + 1}" for k in range(p)) if names is None else tuple(names)
     if len(names) != p:
         raise InputError(f"{len(names)} names for {p} columns: give one for each")
     problem = prepare("", names, A.reshape(-1, p), y.ravel(), len(y), tolerance)
-    beta = problem.Qty_in_beta
-    e = problem.residuals(beta)
-    in_q = sandwich(np.eye(len(beta)), problem.Q, e, len(y), choice("errors", errors, ("hac", "classical")))
+    solution = plain(problem)
     kept = [names.index(name) for name in problem.names]
-    back = problem.R_inverse / problem.scale[:, None]
-    x, covariance = np.zeros(p), np.zeros((p, p))
-    x[kept] = beta / problem.scale
-    covariance[np.ix_(kept, kept)] = back @ in_q @ back.T
-    stderr = np.full(p, np.inf)
+    x, covariance, stderr = np.zeros(p), np.zeros((p, p)), np.full(p, np.inf)
+    x[kept], covariance[np.ix_(kept, kept)] = parameters_of(problem, solution)
     stderr[kept] = np.sqrt(np.diag(covariance))[kept]
-    e = e.reshape(len(y), -1)
+    e = solution.residuals.reshape(len(y), -1)
     return LeastSquares(
         x=x,
         stderr=stderr,
@@ -97,28 +91,20 @@ def least_squares(A, y, *, names=None, errors="hac", tolerance=1e-8):
     )
 
 
-def sandwich(bread, rows, residuals, n, errors):
-    """Covariance B^-1 S B^-T of an estimate that solves sum of rows^T residuals = 0.
+def parameters_of(problem, solution):
+    """Parameters of the columns of a Problem, (p,), and their covariance B^-1 S B^-T, (p, p).
 
-    S is the covariance of that sum. Classical: residuals white, each equation with its own variance. HAC: from the
+    The estimate solves sum of rows^T residuals = 0, with derivative B; S is the covariance of that sum, from the
     spectrum of the scores near frequency zero.
-
-    Args:
-        bread: (p, p), derivative of the sum by the parameters.
-        rows: (N, p); residuals: (N,): N = n k equations, k of them (1 or 3 joints) per sample, sample by sample.
-        errors: "classical" or "hac".
     """
-    N, p = rows.shape
-    joints = N // n
-    if errors == "classical":
-        blocks = [(rows[j::joints], residuals[j::joints]) for j in range(joints)]
-        S = N / (N - p) * sum(np.mean(r**2) * gram(block, block) for block, r in blocks)
-    else:
-        scores = (rows * residuals[:, None]).reshape(n, joints, p).sum(axis=1)
-        residuals = residuals.reshape(n, joints)
-        S = long_run_sum(scores, residuals)
-        S *= 1 / max(1 - p / (independent_samples(residuals) * joints), 0.5)  # p of them were spent on the fit
-    return np.linalg.solve(bread, np.linalg.solve(bread, S).T)
+    n, (N, p) = problem.n, solution.rows.shape
+    scores = (solution.rows * solution.residuals[:, None]).reshape(n, -1, p).sum(axis=1)
+    residuals = solution.residuals.reshape(n, -1)
+    S = long_run_sum(scores, residuals)
+    S *= 1 / max(1 - p / (independent_samples(residuals) * N / n), 0.5)  # p of them were spent on the fit
+    in_q = np.linalg.solve(solution.bread, np.linalg.solve(solution.bread, S).T)
+    back = problem.R_inverse / problem.scale[:, None]
+    return solution.beta / problem.scale, back @ in_q @ back.T
 
 
 def long_run_sum(scores, residuals):

@@ -16,9 +16,9 @@ P = U D U^T is updated in its factors, row by row (Bierman 1976): D stays positi
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.identification.fit_input import blocks, checked_data
+from ir50p_lab.identification.fit_input import checked_data
 from ir50p_lab.identification.parameters import ACTS_ON, chosen_columns
-from ir50p_lab.inputs import choice, number, numbers, vectors3
+from ir50p_lab.inputs import choice, number
 from ir50p_lab.jit import jit
 
 _fast = jit(fastmath={"reassoc", "contract", "nsz", "arcp"})  # sums in any order: several products at once
@@ -57,29 +57,25 @@ def ud_row(theta, V, D, h, y, K):
 
 
 @jit()
-def rls_step(theta, V, D, columns, counts, forgetting, largest, Phi, y, work):
-    """One sample, Phi (3, 20) and y (3,), into the state of one shared filter or of three, one per joint.
+def _run(theta, V, D, columns, counts, forgetting, largest, Phi, y, history):
+    """Samples Phi (n, 3, 20) and y (n, 3) into the state of one shared filter or of three, one per joint.
 
     theta (k, p), V (k, p, p), D (k, p): k = 1 or 3 filters, of which the first counts[k] entries are in use for the
-    columns[k] of Phi; work (2, p). Forgetting divides D, but never beyond `largest`.
+    columns[k] of Phi. Forgetting divides D, but never beyond `largest`. Writes theta into history (n, k, p), if it has
+    any rows.
     """
     filters = theta.shape[0]
-    h, K = work[0], work[1]
-    for i in range(3):
-        part = i if filters == 3 else 0
-        p = counts[part]
-        if forgetting < 1.0 and (filters == 3 or i == 0):
-            for j in range(p):
-                D[part, j] = min(D[part, j] / forgetting, largest)
-        for j in range(p):
-            h[j] = Phi[i, columns[part, j]]
-        ud_row(theta[part, :p], V[part], D[part], h, y[i], K)
-
-
-@jit()
-def _run(theta, V, D, columns, counts, forgetting, largest, Phi, y, work, history):
+    h, K = np.empty(theta.shape[1]), np.empty(theta.shape[1])
     for k in range(len(y)):
-        rls_step(theta, V, D, columns, counts, forgetting, largest, Phi[k], y[k], work)
+        for i in range(3):
+            part = i if filters == 3 else 0
+            p = counts[part]
+            if forgetting < 1.0 and (filters == 3 or i == 0):
+                for j in range(p):
+                    D[part, j] = min(D[part, j] / forgetting, largest)
+            for j in range(p):
+                h[j] = Phi[k, i, columns[part, j]]
+            ud_row(theta[part, :p], V[part], D[part], h, y[k, i], K)
         if len(history):
             history[k] = theta
 
@@ -88,14 +84,13 @@ class RLS:
     """Parameters that follow the data, sample by sample    (2.46) corrected.
 
     After n samples theta minimises sum over k of forgetting^(n - k) |y_k - Phi_k theta|^2, plus
-    forgetting^n |theta - theta0|^2/P0: with forgetting 1 and a large P0 it is the least-squares estimate. A step
+    forgetting^n |theta|^2/P0: with forgetting 1 and a large P0 it is the least-squares estimate. A step
     costs the same at any n.
 
     Args:
         rows: "joint": a filter and parameters for each joint; "shared": one theta for all, Phi a 3 x 20 block.
         columns: which parameters, as for `fit`.
         P0: P starts as P0 I: large says 'I know nothing'. In 1/unit^2 of the regressor; > 0.
-        theta0: (3, 20) or (20,) to start from, default 0. With rows="shared" the first row counts.
         forgetting: 0.9 to 1, say. Memory is 1/(1 - forgetting) samples: 0.999 at 100 Hz is 10 s. P never grows beyond
             P0, so that directions without excitation do not blow up.
 
@@ -105,7 +100,7 @@ class RLS:
     Raises InputError on bad arguments.
     """
 
-    def __init__(self, *, rows="joint", columns="rigid", P0=1e8, theta0=None, forgetting=1.0):
+    def __init__(self, *, rows="joint", columns="rigid", P0=1e8, forgetting=1.0):
         choice("rows", rows, ("joint", "shared"))
         P0 = number("P0", P0, "> 0", hint="1e8 says that nothing is known")
         forgetting = number("forgetting", forgetting, "> 0", hint="1 forgets nothing, 0.999 recalls 1000 samples")
@@ -113,41 +108,32 @@ class RLS:
             raise InputError(
                 f"forgetting = {forgetting} must be in (0, 1]: 1 forgets nothing, 0.999 recalls 1000 samples"
             )
-        start = np.zeros((3, 20)) if theta0 is None else numbers("theta0", theta0)
-        if start.shape not in ((20,), (3, 20)) or not np.isfinite(start).all():
-            raise InputError(f"theta0 has shape {start.shape}: give (3, 20) or (20,), all finite")
-        start = np.broadcast_to(start, (3, 20))
         chosen = chosen_columns(columns)
-        self.rows, self.P0, self.forgetting, self.samples = rows, float(P0), float(forgetting), 0
+        self.rows, self.P0, self.forgetting, self.samples = rows, P0, forgetting, 0
         self._members = [chosen] if rows == "shared" else [sorted(set(chosen) & set(acts)) for acts in ACTS_ON]
         p = max(map(len, self._members))
         k = len(self._members)
-        self._columns = np.zeros((k, p), dtype=np.int64)
-        self._theta, self._V = np.zeros((k, p)), np.tile(np.eye(p), (k, 1, 1))
-        self._D, self._work = np.full((k, p), self.P0), np.zeros((2, p))
-        self._counts = np.array([len(members) for members in self._members])
+        self._columns, self._counts = np.zeros((k, p), dtype=np.int64), np.zeros(k, dtype=np.int64)
+        self._theta, self._V, self._D = np.zeros((k, p)), np.tile(np.eye(p), (k, 1, 1)), np.full((k, p), P0)
         for part, members in enumerate(self._members):
+            self._counts[part] = len(members)
             self._columns[part, : len(members)] = members
-            self._theta[part, : len(members)] = start[part, members]
 
     def step(self, Phi, y):
         """Take one sample, Phi (3, 20) and y (3,); returns theta (3, 20). Raises InputError, state unchanged."""
-        Phi = blocks("Phi", np.asarray(Phi)[None])
-        y = vectors3("y", y, unit="PWM or N m")
-        if y.shape != (3,):
-            raise InputError(f"y has shape {y.shape}; a step takes one sample, (3,); for many use run(Phi, y)")
-        rls_step(*self._state(), Phi[0], y, self._work)
-        self.samples += 1
-        return self.theta
+        if np.shape(y) != (3,):
+            raise InputError(f"y has shape {np.shape(y)}; a step takes one sample, (3,); for many use run(Phi, y)")
+        return self.run(np.asarray(Phi)[None], np.asarray(y)[None], history=False)
 
     def run(self, Phi, y, *, history=True):
         """Take n samples, Phi (n, 3, 20) and y (n, 3); returns theta after each, (n, 3, 20).
 
         history=False returns only the last theta, (3, 20): for very long data. Raises InputError, state unchanged.
         """
-        Phi, y = checked_data(Phi, y, 1)
+        Phi, y = checked_data(Phi, y)
         states = np.empty((len(y) if history else 0, *self._theta.shape))
-        _run(*self._state(), np.ascontiguousarray(Phi), np.ascontiguousarray(y), self._work, states)
+        state = self._theta, self._V, self._D, self._columns, self._counts
+        _run(*state, self.forgetting, self.P0, np.ascontiguousarray(Phi), np.ascontiguousarray(y), states)
         self.samples += len(y)
         return self._spread(states) if history else self.theta
 
@@ -165,9 +151,6 @@ class RLS:
             U = self._V[part, :p, :p].T
             P[part][np.ix_(members, members)] = U * self._D[part, :p] @ U.T
         return P[0] if self.rows == "shared" else P
-
-    def _state(self):
-        return self._theta, self._V, self._D, self._columns, self._counts, self.forgetting, self.P0
 
     def _spread(self, states):
         """(n, k, p) as (n, 3, 20)."""

@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError
-from ir50p_lab.identification.first_order import respond
+from ir50p_lab.identification.doubts import Doubts
+from ir50p_lab.identification.response_fit import best_fit, respond, standard_errors
 from ir50p_lab.identification.step_record import check_time, jumps_of, recorded, without_outliers
 
 _BETTER = 12.0  # least F value of a zero
@@ -49,10 +51,9 @@ def _basis(t, times, jumps, w, damping, L):
     damping += 1e-6 * (abs(damping - 1) < 1e-6)  # equal poles: a little apart
     root = w * np.sqrt(complex(damping**2 - 1))
     poles = damping * w + root, damping * w - root
-    modes = np.empty((2, 3, len(t)), dtype=complex)
+    fast, slow = modes = np.empty((2, len(t)), dtype=complex)
     for a, out in zip(poles, modes, strict=True):
         respond(t, times, jumps, a, L, out)
-    fast, slow = modes[:, 0]
     plain = w**2 * (fast - slow) / (-2 * root)
     slope = w**2 * (poles[0] * fast - poles[1] * slow) / (2 * root)
     return np.column_stack([plain.real, slope.real])
@@ -71,77 +72,47 @@ def fit_second_order(t, u, y, *, u_before=None):
     times, jumps = jumps_of(t, u, u_before)
     if not len(times):
         raise IdentificationError("u never changes, so the recording holds no step response: give u_before=")
-    warnings = [*check_time(t)]
-    t, y, named = without_outliers(t, y)
-    from scipy.optimize import least_squares
-
-    unit, period = t[-1] - times[0], float(np.median(np.diff(t)))
-    spread = float(np.std(y))
-
-    def model(p, columns):
-        basis = np.column_stack([np.ones_like(t), _basis(t, times, jumps, math.exp(p[0]), p[1], p[2])[:, :columns]])
-        c = np.linalg.lstsq(basis, y, rcond=None)[0]
-        return basis @ c - y, c
-
+    doubts = Doubts()
+    doubts += check_time(t)
+    t, y = without_outliers(doubts, t, y)
+    unit, period, spread = t[-1] - times[0], float(np.median(np.diff(t))), float(np.std(y))
     starts = [
-        (np.log(w), damping, L)
+        [(np.log(w), damping, L) for damping in _GRID for L in (0.0, 3 * period, 0.1 * unit)]
         for w in np.geomspace(3 / unit, 0.5 / period, 10)
-        for damping in _GRID
-        for L in (0.0, 3 * period, 0.1 * unit)
     ]
     bounds = ([math.log(0.1 / unit), _DAMPING[0], 0.0], [math.log(3 / period), _DAMPING[1], 0.5 * unit])
-    found = []
-    for columns in (1, 2):
-        costs = [np.sum(model(p, columns)[0] ** 2) for p in starts]
-        fits = [
-            least_squares(lambda p, m=columns: model(p, m)[0] / spread, np.clip(starts[k], *bounds), bounds=bounds)
-            for k in np.argsort(costs)[:3]
-        ]
-        found.append(min(fits, key=lambda fit: fit.cost))
-    freedom = len(t) - 6
-    F = (found[0].cost - found[1].cost) / max(found[1].cost, 1e-14 * len(t)) * freedom
-    columns = 2 if F > _BETTER else 1
-    best = found[columns - 1]
-    e, c = model(best.x, columns)
+
+    def columns(p, zeros):
+        return np.column_stack([np.ones_like(t), _basis(t, times, jumps, math.exp(p[0]), *p[1:])[:, : 1 + zeros]])
+
+    without, with_zero = (best_fit(partial(columns, zeros=m), y / spread, starts, bounds) for m in (0, 1))
+    rss, less = (float(fit[2] @ fit[2]) for fit in (without, with_zero))
+    zeros = int((rss - less) / max(less, 1e-14 * len(t)) * (len(t) - 6) > _BETTER)
+    p, c, e = with_zero if zeros else without
+    c, e = c * spread, e * spread
     explained = 1 - np.mean(e**2) / spread**2
     if explained < 0.5:
         raise IdentificationError(
             f"a second-order model explains {100 * explained:.0f} % of the variance of y: y does not follow u in this "
             "way; start from rest and make a larger step"
         )
-    K, zero = float(c[1]), float(c[2] / c[1]) if columns == 2 else 0.0
-    w, damping, L = math.exp(best.x[0]), float(best.x[1]), float(best.x[2])
-    errors = _standard_errors(t, times, jumps, np.array([K, w, damping, zero, L]), columns, e)
+    K, zero = float(c[1]), float(c[2] / c[1]) if zeros else 0.0
+    w, damping, L = math.exp(p[0]), float(p[1]), float(p[2])
+    found = np.array([K, w, damping, L, zero][: 4 + zeros])
+
+    def response(p):
+        return _basis(t, times, jumps, *p[1:4]) @ [p[0], p[0] * p[4] if zeros else 0.0] / spread
+
+    sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / w, 1e-3 / w][: 4 + zeros])
+    errors = [*standard_errors(response, found, sizes, e / spread), 0.0]
     if w * period > 1:
-        warnings.append(f"w = {w:.3g} rad/s is {w * period:.2g} rad a sample: not identifiable, sample faster")
+        doubts.add(f"w = {w:.3g} rad/s is {w * period:.2g} rad a sample: not identifiable, sample faster")
     rms = float(np.sqrt(np.mean(e**2)))
-    names = ("K", "w", "damping", "zero", "L")
     return SecondOrderModel(
-        **dict(zip(names, (K, w, damping, zero, L), strict=True)),
-        **{f"{name}_stderr": float(x) for name, x in zip(names, errors, strict=True)},
+        **{"K": K, "w": w, "damping": damping, "L": L, "zero": zero},
+        **{f"{name}_stderr": float(x) for name, x in zip(("K", "w", "damping", "L", "zero"), errors, strict=False)},
         y0=float(c[0]),
         rms=rms,
         fit=100 * (1 - rms / spread),
-        warnings=(*warnings, *named),
+        warnings=tuple(doubts),
     )
-
-
-def _standard_errors(t, times, jumps, p, columns, e):
-    """Of K, w, damping, zero and L, widened for residuals that are alike."""
-    free = [k for k in range(5) if columns == 2 or k != 3]
-
-    def response(p):
-        return _basis(t, times, jumps, p[1], p[2], max(p[4], 0.0)) @ [p[0], p[0] * p[3]]
-
-    J = [np.ones_like(t)]
-    for k in free:
-        step = np.zeros(5)
-        step[k] = 1e-5 * max(abs(p[k]), 1e-3 / p[1] if k > 2 else 1e-6)
-        J.append((response(p + step) - response(p - step)) / (2 * step[k]))
-    J = np.column_stack(J)
-    r = max(float(e[1:] @ e[:-1] / max(e @ e, 1e-300)), 0.0)
-    spread = np.sqrt(e @ e / (len(t) - J.shape[1]) * (1 + r) / max(1 - r, 1e-3))
-    size = np.linalg.norm(J, axis=0)
-    out = np.zeros(5)
-    out[free] = (spread * np.linalg.norm(np.linalg.pinv(J / size), axis=1) / size)[1:]
-    return out

@@ -3,15 +3,16 @@
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import SimpleNamespace
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
+from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import doubts as checks
 from ir50p_lab.identification.columns import columns_of, joined, runs, sampling_period
 from ir50p_lab.identification.joint_doubts import check_model, check_motion
 from ir50p_lab.identification.processing import process
-from ir50p_lab.identification.regression import least_squares
+from ir50p_lab.identification.regression import LeastSquares, least_squares
 from ir50p_lab.identification.spectrum import spectrum
 from ir50p_lab.inputs import number, switch
 from ir50p_lab.signals.low_pass import low_pass
@@ -164,13 +165,13 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
         **missing,
         **values,
         **errors,
-        rms=found.rms,
-        fit=float(100 * (1 - found.rms / np.std(found.table.y))),
-        correlation=found.correlation,
+        rms=found.left.rms,
+        fit=float(100 * (1 - found.left.rms / np.std(found.y))),
+        correlation=found.left.correlation,
         cutoff_hz=found.cutoff_hz,
         delay=float(delay),
         held=found.held,
-        samples=len(found.table.y),
+        samples=len(found.y),
         unidentifiable=tuple(name for name in found.names if found.lost(name)),
         warnings=tuple(doubts),
     )
@@ -266,38 +267,21 @@ def _with_other_fits_in_errors(joint, found, held):
 
 
 @dataclass(frozen=True)
-class JointTable:
-    """What goes into the regression, all through the same low pass.
-
-    columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7), y (m,) and its slope (m,); q (m,) rad;
-    v (m,) rad/s; direction (m,); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its
-    largest value.
-    """
-
-    columns: np.ndarray
-    rates: np.ndarray
-    y: np.ndarray
-    slope: np.ndarray
-    q: np.ndarray
-    v: np.ndarray
-    direction: np.ndarray
-    extreme: np.ndarray
-
-
-@dataclass(frozen=True)
 class Found:
-    """A fit at one cut-off: names, x and stderr (p,); A (m, r): the columns that the data hold; its JointTable."""
+    """A fit at one cut-off: names, x and stderr (p,); the LeastSquares of A (m, r), the columns that the data hold.
+
+    y (m,): u of the samples in the regression, slope: its rate of change; table: their motion, as of `_Joint.table`.
+    """
 
     names: tuple
     x: np.ndarray
     stderr: np.ndarray
-    residuals: np.ndarray
-    rms: float
-    correlation: float
-    independent: float
+    left: LeastSquares
     cutoff_hz: float
     held: bool
-    table: JointTable
+    table: SimpleNamespace
+    y: np.ndarray
+    slope: np.ndarray
     A: np.ndarray
 
     def value(self, name, kind="x"):
@@ -306,35 +290,24 @@ class Found:
             return float(getattr(self, kind)[self.names.index(name)])
         return 0.0 if kind == "x" else math.inf
 
-    def _with(self, columns):
-        """(x, stderr) of the same parameters, and of the last of more columns."""
+    def beside(self, columns):
+        """The same parameters beside more columns: x, stderr; of the last column value and error; the rms left."""
         known = np.isfinite(self.stderr)
-        more = least_squares(np.column_stack([self.A, columns]), self.table.y, tolerance=_OWN_SHARE)
+        more = least_squares(np.column_stack([self.A, columns]), self.y, tolerance=_OWN_SHARE)
         x, stderr = np.zeros(len(known)), np.full(len(known), np.inf)
         x[known], stderr[known] = more.x[: known.sum()], more.stderr[: known.sum()]
         return x, stderr, float(more.x[-1]), float(more.stderr[-1]), more.rms
-
-    @cached_property
-    def delay(self):
-        """Of u behind its record, s, its standard error (inf: not seen), and the rms then left.
-
-        u(t) is then the model at t + delay, about A x + delay d(A x)/dt.
-        """
-        return self._with(self._late_column)[2:]
-
-    @cached_property
-    def lag(self):
-        """Of a first-order low pass of u, as a negative delay, s, its standard error, and the rms then left.
-
-        What went in is u + lag du/dt.
-        """
-        return self._with(self.table.slope)[2:]
 
     @cached_property
     def _late_column(self):
         """d(A x)/dt: what one second of delay adds to u, without the noise of du/dt."""
         terms = [(x, _COLUMNS.index(name)) for name, x in zip(self.names, self.x, strict=True) if name in _COLUMNS]
         return sum(x * self.table.rates[:, k] for x, k in terms)
+
+    @cached_property
+    def beside_delay(self):
+        """`beside` a delay of u behind its record, s: u(t) is the model at t + delay, about A x + delay d(A x)/dt."""
+        return self.beside(self._late_column)
 
     @property
     def tells_delay(self):
@@ -345,7 +318,7 @@ class Found:
 
     def moved_by_delay(self, unsure, told):
         """(p,) by which a delay moves the parameters, that is 0 +- unsure s before and, if told, known better now."""
-        delay, sigma, _ = self.delay
+        delay, sigma = self.beside_delay[2:4]
         size = unsure
         if told:
             share = unsure**2 / (unsure**2 + sigma**2)
@@ -356,17 +329,22 @@ class Found:
 
     def of_position(self):
         """[(x, stderr)] beside a polynomial of q: a force that depends on it; [] if there are too few samples."""
-        if len(self.table.y) < 6 * (len(self.x) + _POLYNOMIAL):
+        if len(self.y) < 6 * (len(self.x) + _POLYNOMIAL):
             return []
         q = self.table.q - self.table.q.min()
         columns = np.polynomial.legendre.legvander(2 * q / max(np.ptp(q), 1e-300) - 1, _POLYNOMIAL)[:, 1:]
-        x, stderr = self._with(columns)[:2]
+        x, stderr = self.beside(columns)[:2]
         judged = [name in _JUDGED for name in self.names]
         return [(x, np.where(judged, stderr, np.inf))]
 
     def lost(self, name):
         """Whether the parameter was asked for and the data do not hold it."""
         return name in self.names and math.isinf(self.value(name, "stderr"))
+
+
+def _named(columns, names):
+    """Those of the columns (m, 7) that have these names."""
+    return columns[:, [_COLUMNS.index(name) for name in names]]
 
 
 @dataclass(frozen=True)
@@ -398,61 +376,51 @@ class _Joint:
 
     def fit(self, cutoff_hz, held=None, *, without=(), fewest=None, slower=1.0):
         """Found at this cut-off, of motion `slower` times as fast; None if not half of the time of `fewest` is left."""
-        tables = self._tables(cutoff_hz, slower)
-        m = len(tables[0].y)
-        if fewest is not None and (
-            m < checks.FEWEST // 2 or m * fewest.cutoff_hz / cutoff_hz < 0.5 * len(fewest.table.y)
-        ):
+        table = self.table(cutoff_hz, slower)
+        m = len(table.q)
+        enough = m >= checks.FEWEST // 2
+        if fewest is not None and not (enough and m * fewest.cutoff_hz / cutoff_hz >= 0.5 * len(fewest.y)):
             return None
-        if m < checks.FEWEST // 2:
-            raise checks.IdentificationError(
+        if not enough:
+            raise IdentificationError(
                 f"only {m} of {self.n} samples are in motion and far enough from standstill, gaps and the ends of the "
                 f"record; at least {checks.FEWEST // 2} independent ones are needed: record longer, with more motion"
             )
-        if held is None:
-            as_held, fair = (self._solved(tables[k], cutoff_hz, k == 0, without) for k in (0, 2))
-            held = fair.rms >= _CLEARLY * as_held.rms
-        return self._solved(tables[0 if held else 1], cutoff_hz, bool(held), without)
-
-    def _solved(self, table, cutoff_hz, held, without):
-        names = tuple(name for name in self.terms if name not in without)
+        names = [name for name in self.terms if name not in without]
         if self.band.acceleration_share > _ALL_NOISE:
-            names = tuple(name for name in names if name != "inertia")
-        if "stribeck" in names:
-            return self._with_stribeck(table, cutoff_hz, held, names)
-        return self._solve(table, [table.columns[:, _COLUMNS.index(name)] for name in names], names, cutoff_hz, held)
+            names = [name for name in names if name != "inertia"]
+        solve = self._with_stribeck if "stribeck" in names else self._solve
+        if held is None:
+            as_held, fair = (solve(table, k, cutoff_hz, names) for k in (0, 2))
+            held = fair.left.rms >= _CLEARLY * as_held.left.rms
+        return solve(table, 0 if held else 1, cutoff_hz, names)
 
-    def _solve(self, table, columns, names, cutoff_hz, held):
-        A = np.column_stack(columns)
-        found = least_squares(A, table.y, names=names, tolerance=_OWN_SHARE)
-        every = tuple(name for name in self.terms if name not in names)  # left out: 0 +- inf
-        return Found(
-            (*names, *every),
-            np.r_[found.x, np.zeros(len(every))],
-            np.r_[found.stderr, np.full(len(every), np.inf)],
-            found.residuals,
-            found.rms,
-            found.correlation,
-            found.independent,
-            cutoff_hz,
-            held,
-            table,
-            A[:, np.isfinite(found.stderr)],
-        )
+    def _solve(self, table, way, cutoff_hz, names, columns=None):
+        """Found for u taken in this way; columns: instead of those of these names."""
+        A = _named(table.columns, names) if columns is None else columns
+        left = least_squares(A, table.y[:, way], names=names, tolerance=_OWN_SHARE)
+        out = [name for name in self.terms if name not in names]  # left out: 0 +- inf
+        x, stderr = np.r_[left.x, np.zeros(len(out))], np.r_[left.stderr, np.full(len(out), np.inf)]
+        u = table.y[:, way], table.slope[:, way]
+        held_by_data = A[:, np.isfinite(left.stderr)]
+        return Found((*names, *out), x, stderr, left, cutoff_hz, way == 0, table, *u, held_by_data)
 
-    def _with_stribeck(self, table, cutoff_hz, held, names):
+    def _with_stribeck(self, table, way, cutoff_hz, names):
         """Least squares over all parameters, for each Stribeck speed; its error from the slope of the column in it."""
         from scipy.optimize import minimize_scalar
+
+        place = names.index("stribeck")
 
         def columns(log_speed):
             share = (table.v / math.exp(log_speed)) ** 2
             peak = table.direction * np.exp(-share)
-            plain = [peak if name == "stribeck" else table.columns[:, _COLUMNS.index(name)] for name in names]
-            return plain, peak * 2 * share
+            A = _named(table.columns, names)
+            A[:, place] = peak
+            return A, peak * 2 * share
 
         def left(log_speed):
-            A = np.column_stack(columns(log_speed)[0])
-            e = table.y - A @ np.linalg.lstsq(A, table.y, rcond=None)[0]
+            A = columns(log_speed)[0]
+            e = table.y[:, way] - A @ np.linalg.lstsq(A, table.y[:, way], rcond=None)[0]
             return float(e @ e)
 
         low, high = np.log(np.array(_PEAK) * self.band.speed)
@@ -460,22 +428,28 @@ class _Joint:
         at = grid[int(np.argmin([left(x) for x in grid]))]
         width = grid[1] - grid[0]
         best = minimize_scalar(left, bounds=(at - width, at + width), method="bounded").x
-        plain, slope = columns(best)
-        size = self._solve(table, plain, names, cutoff_hz, held).value("stribeck")
-        found = self._solve(table, [*plain, size * slope], (*names, "stribeck_speed"), cutoff_hz, held)
+        A, slope = columns(best)
+        size = self._solve(table, way, cutoff_hz, names, A).value("stribeck")
+        more = np.column_stack([A, size * slope])
+        found = self._solve(table, way, cutoff_hz, [*names, "stribeck_speed"], more)
         k, speed = found.names.index("stribeck_speed"), math.exp(best)
         x, stderr = found.x.copy(), found.stderr.copy()
         x[k], stderr[k] = speed, speed * stderr[k]
         return replace(found, x=x, stderr=stderr)
 
-    def _tables(self, cutoff_hz, slower=1.0):
-        """A JointTable for each way of taking u."""
+    def table(self, cutoff_hz, slower=1.0):
+        """What goes into the regression, all through the same low pass.
+
+        columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 3), u in each way, and its slope
+        (m, 3); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its largest value; q (m,)
+        rad; v (m,) rad/s; direction (m,).
+        """
         slow = slower * max(4 * self.band.speed_noise, _DEAD * self.band.speed)
         every = np.concatenate([u[:, 0] for _, u in self.segments])
         low, high = every.min() + 1e-3 * np.ptp(every), every.max() - 1e-3 * np.ptp(every)
         edge = 0 if math.isinf(cutoff_hz) else math.ceil(self.rate / cutoff_hz / 2)
         thin = 1 if math.isinf(cutoff_hz) else max(1, int(self.rate / cutoff_hz / _OWN))
-        rows = [np.empty((0, 12 + 2 * len(_COLUMNS)))]
+        parts = []
         for angles, drive in self.segments:
             n = len(drive)
             if n < 2 * edge + 20:  # too short for the filter
@@ -485,21 +459,18 @@ class _Joint:
             moving = np.abs(v) > slow if edge else np.abs(v) > 4 * self.band.speed_noise
             plain = [np.sign(turning), np.sin(angles[:, 0]), np.cos(angles[:, 0]), moving]
             plain = np.column_stack([*plain, drive, drive[:, 0] < low, drive[:, 0] > high]).astype(float)
-            direction, sin, cos, moving, *y = self._smooth(plain, cutoff_hz).T
+            smooth = self._smooth(plain, cutoff_hz)
+            direction, sin, cos, moving = smooth[:, :4].T
             A = {"inertia": a, "viscous": v, "coulomb": direction, "offset": np.ones(n), "stribeck": np.zeros(n)}
             A |= {"gravity_sin": sin, "gravity_cos": cos}
-            columns = np.column_stack([A[name] for name in _COLUMNS])
-            rates = np.gradient(columns, axis=0) * self.rate
-            slopes = [np.gradient(x) * self.rate for x in y[:3]]
-            table = np.column_stack([columns, rates, *y, *slopes, angles[:, 0], v, direction, moving])
-            inside = np.zeros(n, dtype=bool)
-            inside[edge : n - edge : thin] = True
-            rows.append(table[inside & (moving > 0.9)])
-        x = np.concatenate(rows)
-        p = len(_COLUMNS)
-        A, rates, y, extreme, slopes = np.split(x[:, :-4], np.cumsum([p, p, 3, 2]), axis=1)
-        q, v, direction = x[:, -4:-1].T
-        return [JointTable(A, rates, y[:, k], slopes[:, k], q, v, direction, extreme) for k in range(3)]
+            columns, y = np.column_stack([A[name] for name in _COLUMNS]), smooth[:, 4:7]
+            rates, slope = (np.gradient(x, axis=0) * self.rate for x in (columns, y))
+            inside = np.arange(n)[edge : n - edge : thin]
+            kept = inside[moving[inside] > 0.9]
+            parts.append([x[kept] for x in (columns, rates, y, slope, smooth[:, 7:], angles[:, 0], v, direction)])
+        names = ("columns", "rates", "y", "slope", "extreme", "q", "v", "direction")
+        joined = [np.concatenate(x) for x in zip(*parts, strict=True)] or [np.empty(0)] * len(names)
+        return SimpleNamespace(**dict(zip(names, joined, strict=True)))
 
     def _smooth(self, x, cutoff_hz):
         if math.isinf(cutoff_hz):

@@ -4,12 +4,12 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.columns import same_samples
-from ir50p_lab.identification.doubts import named_outliers, outliers
+from ir50p_lab.identification.doubts import check_outliers
 
 
 def recorded(**columns):
     """Columns of a recording as float arrays: one dimension, one length, finite; `t` increasing. Raises InputError."""
-    arrays = same_samples(columns, {"t": "s", "u": "its own unit", "y": "its own unit"})
+    arrays = same_samples(columns)
     for name, array in arrays.items():
         if array.ndim != 1:
             raise InputError(f"{name} has shape {array.shape}; give one value per sample, shape (n,)")
@@ -32,8 +32,7 @@ def check_time(t):
         yield f"one sample every {period:.4g} s: is t in milliseconds? Then T and L are too: give t/1000"
 
 
-def without_outliers(t, y):
-    """t and y without single samples far from both neighbours, and a sentence about them, in a list."""
-    places = outliers(y)
-    said = named_outliers("y", t, y, places, "left out; look for their cause")
-    return np.delete(t, places), np.delete(y, places), said
+def without_outliers(doubts, t, y):
+    """t and y without single samples far from both neighbours, and a doubt about them."""
+    places = check_outliers(doubts, "y", t, y, "left out; look for their cause")
+    return np.delete(t, places), np.delete(y, places)

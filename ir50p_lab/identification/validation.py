@@ -7,8 +7,9 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.columns import columns_of, sampling_period
+from ir50p_lab.identification.fit_input import finite
 from ir50p_lab.identification.processing import process
-from ir50p_lab.inputs import number, numbers, switch
+from ir50p_lab.inputs import number, switch
 from ir50p_lab.modelling.dynamics import as_theta
 
 
@@ -54,12 +55,9 @@ def nrmse_fit(measured, predicted):
     Args: measured, predicted: (n,) or (n, k). Returns: (rms, fit), numbers or (k,). Raises InputError on shapes that
     differ, numbers that are not finite, or a measured column that never changes.
     """
-    y, p = (numbers(name, x) for name, x in (("measured", measured), ("predicted", predicted)))
+    y, p = finite("measured", measured), finite("predicted", predicted)
     if y.shape != p.shape or y.ndim not in (1, 2) or len(y) < 2:
         raise InputError(f"measured {y.shape} and predicted {p.shape}: give two arrays of one shape, (n,) or (n, k)")
-    for name, x in (("measured", y), ("predicted", p)):
-        if not np.isfinite(x).all():
-            raise InputError(f"{name} holds numbers that are not finite: remove those samples from both")
     spread = np.sqrt(np.mean((y - y.mean(axis=0)) ** 2, axis=0))
     if np.any(spread <= 1e-12 * np.abs(y).max(axis=0)):
         raise InputError("a measured column never changes: the fit has no meaning there; leave that joint out")
@@ -77,9 +75,6 @@ def validate(estimate, recording, q=None, u=None, *, delay=0.0, held=True, sign=
     cutoff_hz=, order=, trim=, max_gap=): as in `process`; sign, g: as in `regressor`.
     Returns: Validation of "u". Raises InputError, IdentificationError as `process` does.
     """
-    for name in ("decimate", "slow", "filter_u"):
-        if name in steps:
-            raise InputError(f"{name} is no step of a validation: every raw u counts; leave it out")
     theta, _ = as_theta(getattr(estimate, "theta", estimate) if not hasattr(estimate, "m") else estimate)
     t, q, u = columns_of(recording, q, u)
     if q.shape[1] != 3:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import numbers, whole
+from ir50p_lab.identification.fit_input import finite
+from ir50p_lab.inputs import whole
 
 
 @dataclass(frozen=True, eq=False)
@@ -13,16 +14,13 @@ class Whiteness:
     """Autocorrelation of residuals, column by column.
 
     lags (m,) samples; correlation (m, k), of samples that far apart; bound: 2.58/sqrt(n), within which 99 in 100 lie
-    if the residuals are white; inside (k,): share that does; p (k,): of the Ljung-Box test, small means not white;
-    independent (k,): number of independent samples that carry as much about a mean as the n there are.
+    if the residuals are white; p (k,): of the Ljung-Box test, small means not white.
     """
 
     lags: np.ndarray
     correlation: np.ndarray
     bound: float
-    inside: np.ndarray
     p: np.ndarray
-    independent: np.ndarray
 
     @property
     def white(self):
@@ -38,12 +36,10 @@ def whiteness(residuals, *, lags=None):
     Args: residuals: (n,) or (n, k), evenly sampled, the mean is taken out; lags: whole number, default min(50, n/5).
     Returns: Whiteness. Raises InputError for fewer than 20 samples, numbers that are not finite, constant residuals.
     """
-    e = numbers("residuals", residuals)
+    e = finite("residuals", residuals)
     e = e[:, None] if e.ndim == 1 else e
     if e.ndim != 2 or len(e) < 20:
         raise InputError(f"residuals have shape {np.shape(residuals)}: give 20 or more, (n,) or (n, k), time first")
-    if not np.isfinite(e).all():
-        raise InputError("residuals hold numbers that are not finite: remove those samples")
     n = len(e)
     lags = min(50, n // 5) if lags is None else whole("lags", lags, 1, n // 2)
     scale = np.abs(e).max(axis=0)
@@ -56,14 +52,4 @@ def whiteness(residuals, *, lags=None):
     m = np.arange(1, lags + 1)
     r = np.array([(e[k:] * e[:-k]).sum(axis=0) for k in m]) / power
     Q = n * (n + 2) * (r**2 / (n - m)[:, None]).sum(axis=0)
-    bound = 2.58 / np.sqrt(n)
-    # positive correlations up to the first that is lost in noise: the rest of the sum is noise too
-    alike = np.cumprod(r > bound, axis=0)
-    return Whiteness(
-        lags=m,
-        correlation=r,
-        bound=float(bound),
-        inside=(np.abs(r) <= bound).mean(axis=0),
-        p=chi2.sf(Q, lags),
-        independent=n / (1 + 2 * (r * alike).sum(axis=0)),
-    )
+    return Whiteness(m, r, float(2.58 / np.sqrt(n)), chi2.sf(Q, lags))

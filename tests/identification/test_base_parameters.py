@@ -239,8 +239,6 @@ def test_an_unclear_rank_is_said(size):
         (np.full((9, 2), np.nan), {}, InputError, "Phi holds nan"),
         (np.ones((3, 2)), {}, InputError, "at least 4"),
         (np.ones((9, 2)), {"names": ["a"]}, InputError, "1 names for 2 columns"),
-        (np.ones((9, 2)), {"tolerance": 0.5}, InputError, "tolerance = 0.5"),
-        (np.ones((9, 2)), {"tolerance": -1e-9}, InputError, "tolerance = -1e-09"),
         (np.zeros((9, 2)), {}, IdentificationError, "no motion"),
     ],
 )

@@ -6,7 +6,6 @@ from arms import random_arm, random_states
 from rounding_noise import NOISE
 from scipy.optimize import minimize, nnls
 
-from ir50p_lab.errors import InputError
 from ir50p_lab.identification import fit, regressor
 from ir50p_lab.identification.parameters import ACTS_ON, NAMES, OFFSETS, ONLY_THESIS, chosen_columns
 from ir50p_lab.modelling import IR50P, mass_matrix
@@ -58,16 +57,14 @@ def test_equals_nonnegative_least_squares_of_lawson_and_hanson(seed, rows):
 
 @pytest.mark.parametrize("seed", range(5))
 def test_nothing_in_the_box_fits_better(seed):
-    # a general optimiser, from the estimate and from elsewhere, with the tie and other bounds
+    # a general optimiser, from the estimate and from elsewhere, with the tie
     Phi, y = poor_data(seed, n=60)
-    limits = {"theta3": (5.0, 9.0), "fv2": (0.0, 150.0), "Tf2": (-1.0, 1.0)}
-    found = fit(Phi, y, method="bounded", l2=0.2, bounds=limits)
+    found = fit(Phi, y, method="bounded", l2=0.2)
     here = [k for k in RIGID[1] if k != 5]
     A = Phi[:, 1, here].copy()
     A[:, here.index(3)] += 0.2 * Phi[:, 1, 5]
     scale = np.linalg.norm(A, axis=0)
-    box = [limits.get(NAMES[k], (None, None) if NAMES[k] in OFFSETS else (0, None)) for k in here]
-    box = [tuple(x if x is None else x * s for x in pair) for pair, s in zip(box, scale, strict=True)]
+    box = [(None, None) if NAMES[k] in OFFSETS else (0, None) for k in here]
     A, b = A / scale, y[:, 1]
 
     def cost(x):
@@ -78,8 +75,6 @@ def test_nothing_in_the_box_fits_better(seed):
     for start in (x, np.full(len(x), 1.0)):
         best = minimize(cost, start, jac=True, bounds=box, method="L-BFGS-B", options={"ftol": 1e-15, "gtol": 1e-9})
         assert cost(x)[0] <= best.fun * (1 + 1e-9)
-    for k, (low, high) in limits.items():
-        assert low - 1e-9 <= found.theta[1, NAMES.index(k)] <= high + 1e-9
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -124,20 +119,3 @@ def test_units_do_not_matter(size):
     Phi, y = poor_data(0)
     a, b = (fit(Phi, k * y, method="bounded") for k in (1.0, size))
     np.testing.assert_allclose(b.theta, size * a.theta, rtol=1e-9 + 1e5 * NOISE, atol=(1e-12 + 1e3 * NOISE) * size)
-
-
-@pytest.mark.parametrize(
-    "bounds",
-    [
-        {"theta1": (2.0, 1.0)},
-        {"theta1": (0.0, 0.0)},
-        {"theta1": (np.nan, 1.0)},
-        {"mass": (0, 1)},
-        {"fv1": (1,)},
-        {"fv1": 3},
-    ],
-)
-def test_bad_bounds(bounds):
-    Phi, y = poor_data(1)
-    with pytest.raises(InputError, match="bounds"):
-        fit(Phi, y, method="bounded", bounds=bounds)

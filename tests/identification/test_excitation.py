@@ -8,7 +8,6 @@ import pytest
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import excitation as module
 from ir50p_lab.identification import load_excitations, optimise_excitation, regressor, regressor_condition
-from ir50p_lab.identification.excitation_kernel import _TURN, slopes
 from ir50p_lab.modelling import IR50P, Arm, forward_kinematics
 from ir50p_lab.signals import fourier, hold, quintic
 from ir50p_lab.signals.fourier import limits_of
@@ -18,27 +17,23 @@ OTHER = Arm(name="other", l=(0.5, 0.3, 0.2), m=(1, 1, 1), lc=(0.1, 0.1, 0.1), q_
 QUICK = {"harmonics": 3, "starts": 1, "iterations": 25, "progress": False}  # from every start to a good optimum
 
 
-def problem(arm=IR50P, rows="joint", table=0.0, columns="rigid", standing=0.0):
-    return module._Problem(arm, 10.0, 4, limits_of(arm, table=table), rows, module._columns(columns), standing)
+def problem(arm=IR50P, table=0.0, standing=0.0):
+    return module._Problem(arm, 10.0, 4, limits_of(arm, table=table), standing)
 
 
-@pytest.mark.parametrize("rows", ["joint", "shared"])
 @pytest.mark.parametrize("seed", range(4))
-def test_kernel_equals_the_regressor_and_numpy(rows, seed):
+def test_value_and_room_by_another_route(seed):
     """Second route: Fourier motion sampled, regressor called, columns scaled, numpy.linalg.cond."""
-    p = problem(rows=rows)
+    p = problem()
     x = p.start(np.random.default_rng(seed))
     a, b, q0 = p.split(x)
     n = module._PER_HARMONIC * 4
     q, qd, qdd = np.swapaxes(
         fourier(a, b, period=10.0, q0=q0, ends="adjust").sample((np.arange(n) + 0.5) * 10 / n), 0, 1
     )
-    Phi = regressor(q, qd, qdd, sign=_TURN)
+    Phi = regressor(q, qd, qdd, sign=module._TURN)
     sets = [[0, 1, 4, 5, 10, 11, 16], [1, 2, 3, 4, 5, 8, 9, 12, 13, 17], [3, 4, 5, 9, 14, 15, 18, 19]]
-    if rows == "shared":
-        parts = [Phi[:, :, sorted({k for s in sets for k in s})].reshape(3 * n, -1)]
-    else:
-        parts = [Phi[:, i, s] for i, s in enumerate(sets)]
+    parts = [Phi[:, i, s] for i, s in enumerate(sets)]
     logs = [np.log(np.linalg.cond(A / np.linalg.norm(A, axis=0))) for A in parts]
     found = p.both(x)
     assert found[0] == pytest.approx(np.mean(logs), abs=1e-6)
@@ -53,8 +48,7 @@ def test_kernel_equals_the_regressor_and_numpy(rows, seed):
 def test_slopes_follow_the_value():
     p = problem()
     x = p.start(np.random.default_rng(0))
-    out = np.empty((12, p.size))
-    slopes(x, *p.fixed, out)
+    out = p.slopes(x)
     rng = np.random.default_rng(1)
     for _ in range(5):
         step = 1e-5 * rng.normal(size=p.size)
@@ -74,9 +68,9 @@ def test_better_than_chance_and_inside_the_limits(arm):
         assert forward_kinematics(arm, rows[:, 0])[:, 2].min() >= 0
         np.testing.assert_allclose(rows[[0, -1], 1:], 0, atol=1e-9)
     assert found.reference.duration == 20.0
-    again = regressor_condition(found.reference, samples=3000)
+    again = regressor_condition(found.reference)
     np.testing.assert_allclose(again, found.condition_after, rtol=0.02)
-    assert "->" in str(found) and len(found.starts) == 1
+    assert len(found.starts) == 1
 
 
 def test_the_same_seed_gives_the_same_motion():
@@ -121,22 +115,17 @@ def test_a_price_on_standing_buys_motion():
     assert max(map(standing_share, motions.values())) < 0.6 * plain
 
 
-def test_shared_rows_and_chosen_columns(capsys):
-    found = optimise_excitation(
-        IR50P, rows="shared", columns=["theta3", "theta4", "fv1", "fc3"], starts=1, iterations=5
-    )
-    assert np.shape(found.condition_after) == () and found.condition_after <= found.condition_before
+def test_a_bar_is_shown(capsys):
+    optimise_excitation(IR50P, starts=1, iterations=5)
     assert "excitation" in capsys.readouterr().err
 
 
 def test_condition_of_motions_that_say_nothing():
     still = quintic([0, 0.5, -1], [0, 0.5, -1], duration=2.0)
     assert np.isinf(regressor_condition(still)).all()
-    assert regressor_condition(quintic([0, 0, -1], [1, 1, 0], duration=2.0), rows="shared") > 5
+    assert (regressor_condition(quintic([0, 0, -1], [1, 1, 0], duration=2.0)) > 5).all()
     with pytest.raises(InputError, match="finite length > 0"):
         regressor_condition(hold([0, 0, 0]))
-    with pytest.raises(InputError, match="rows = 'all'"):
-        regressor_condition(still, rows="all")
 
 
 def test_impossible_limits():
@@ -156,11 +145,6 @@ def test_impossible_limits():
         (IR50P, {"period": 0}, "period = 0"),
         (IR50P, {"harmonics": 1}, "harmonics = 1"),
         (IR50P, {"harmonics": 2.0}, "harmonics"),
-        (IR50P, {"starts": 0}, "starts = 0"),
-        (IR50P, {"iterations": True}, "iterations = True"),
-        (IR50P, {"seed": -1}, "seed = -1"),
-        (IR50P, {"rows": "each"}, "rows = 'each'"),
-        (IR50P, {"columns": ["fv1"]}, "acts on one of the joints"),
         (IR50P, {"max_joint_speed": -1}, "max_joint_speed"),
         (IR50P, {"margin": -1}, "margin = -1"),
         (IR50P, {"standing": -1}, "standing = -1"),

@@ -173,7 +173,7 @@ def test_masked_samples_series_and_several_runs():
     spoilt = np.where(bad, 1e3, q)
     masked = fit_joint(t, np.ma.array(spoilt, mask=bad), u)
     kept = fit_joint(pd.Series(t[~bad]), pd.Series(q[~bad]), pd.Series(u[~bad]))
-    assert masked == kept
+    assert masked == kept == fit_joint(pd.DataFrame({"t": t, "q": q, "u": u})[~bad])
     thirds = [(x[0], x[1], x[2]) for x in zip(*(np.array_split(x, 3) for x in record), strict=True)]
     whole, together = fit_joint(*record), fit_joint([(x - x[0], q, u) for x, q, u in thirds])
     for name, true in zip(NAMES, truth, strict=True):

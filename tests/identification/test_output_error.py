@@ -70,7 +70,7 @@ def test_finds_the_truth_and_breakaway_friction(refined):
     assert (inertial_and_friction >= 0).all() and (found.fs >= found.theta[range(3), [11, 13, 15]]).all()
     for before, after in zip(found.before, found.after, strict=True):
         assert (after.fit > before.fit - 0.3).all()
-    assert "fs" in str(found) and found.evaluations > 50
+    assert "fs" in str(found)
 
 
 def test_predicts_another_run_better_than_the_regression(refined, record):
@@ -87,13 +87,10 @@ def test_predicts_another_run_better_than_the_regression(refined, record):
 def test_the_recorded_reference_does_as_well(record):
     first = identify(record, l2=0.2)
     given, as_recorded = (
-        output_error(
-            first, record, thesis_pid(), motion, stribeck=False, seconds=10, iterations=4, step=0.005, progress=False
-        )
+        output_error(first, record, thesis_pid(), motion, seconds=10, iterations=3, progress=False)
         for motion in (MOTION, None)
     )
     np.testing.assert_allclose(given.after[0].rms, as_recorded.after[0].rms, rtol=0.1)
-    assert np.isnan(given.fs_stderr).all()
 
 
 @pytest.mark.parametrize("breakaway", [1, 2, 3])

@@ -120,7 +120,6 @@ def test_the_same_seed_makes_the_same_motions():
     "options, words",
     [
         ({"recordings": []}, "no recording"),
-        ({"decimate": 2}, "decimate is fixed"),
         ({"delay": -1}, "delay"),
         ({"method": "best"}, "method"),
     ],

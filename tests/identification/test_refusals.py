@@ -49,7 +49,6 @@ BAD = {
     "scale_from_payload": [(ESTIMATE, TH), (TH, ESTIMATE), (None, None)],
     "causal_derivatives": [(NAN_Q, 100.0), (Q, -1.0), (Q, 2.0), ("x", 100.0)],
     "central_derivatives": [(NAN_Q, 100.0), (Q, -1.0), (Q, 2.0), (Q[:2], 100.0)],
-    "read_columns": [("no_such_file.csv",), ("/",), (None,)],
     "process": [(Run(q=NAN_Q),), (Run(t=T[::-1]),), (T,), (Run(q=Q[:5]),), (Run(T[:5], Q[:5], U[:5]),)],
     "identify": [(Run(q=NAN_Q),), (Run(t=T[::-1]),), (Run(T[:5], Q[:5], U[:5]),), (Run(q=0 * Q),), ([],)],
     "fit_joint": [(T, NAN_Q[:, 0], U[:, 0]), (T[::-1], Q[:, 0], U[:, 0]), (T[:5], Q[:5, 0], U[:5, 0]), (T, Q, U)],

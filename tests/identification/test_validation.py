@@ -103,8 +103,6 @@ def test_white_noise_is_white_and_nothing_else_is():
         found = whiteness(e)
         assert found.white.tolist() == [True, False]
         assert found.correlation[0, 1] == pytest.approx(phi, abs=0.06)
-        assert found.independent[1] == pytest.approx(2000 * (1 - phi) / (1 + phi), rel=0.4)
-        assert found.inside[0] > 0.9 and found.independent[0] > 1500
 
 
 def test_ljung_box_by_hand():
@@ -123,8 +121,6 @@ def test_ljung_box_by_hand():
 
 def test_bad_input():
     record = analytic(rate=50.0)
-    with pytest.raises(InputError, match="decimate is no step of a validation"):
-        validate(THETA, record, decimate=2)
     with pytest.raises(InputError, match="three joints"):
         validate(THETA, record.t, record.q[:, :2], record.u[:, :2])
     with pytest.raises(InputError, match="theta with shape"):
@@ -152,7 +148,7 @@ def test_bad_columns(y, p, words):
     "e, lags, words",
     [
         (np.zeros(5), None, "20 or more"),
-        (np.full(50, np.inf), None, "not finite"),
+        (np.full(50, np.inf), None, "residuals holds inf at index 0"),
         (np.ones(50), None, "constant"),
         (np.random.default_rng(0).normal(size=50), 40, "lags = 40"),
         (np.random.default_rng(0).normal(size=50), True, "lags = True"),
