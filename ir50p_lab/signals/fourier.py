@@ -191,7 +191,7 @@ def limits_of(arm, *, max_joint_speed=None, table=0.0, margin=0.03):
     if max_joint_speed is None:
         speed = np.full(3, 2.0) if arm.actuators is None else 0.5 * arm.actuators.no_load_speed
     else:
-        speed = np.array(per_joint("max_joint_speed", max_joint_speed, unit="rad/s", positive=True))
+        speed = np.array(per_joint("max_joint_speed", max_joint_speed, "> 0", unit="rad/s"))
     return np.array(arm.q_min) + margin, np.array(arm.q_max) - margin, speed, table
 
 

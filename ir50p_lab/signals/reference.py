@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite, numbers, vector3
+from ir50p_lab.inputs import first_not_finite, number, numbers, vector3
 
 
 class Reference:
@@ -76,11 +76,10 @@ def pose(name, value, *, unit="rad"):
     return tuple(vector3(name, value, unit=unit).tolist())
 
 
-def per_joint(name, value, *, unit, positive=False):
-    """Like `pose`, but one number counts for all three joints; each must be > 0 if `positive`."""
+def per_joint(name, value, rule="finite", *, unit=""):
+    """Three numbers that keep the `rule` of `number`, one per joint, as a tuple; a single one counts for all joints."""
     array = numbers(name, value, unit=unit)
-    values = pose(name, np.broadcast_to(array, 3) if array.ndim == 0 else array, unit=unit)
-    if positive and min(values) <= 0:
-        joint = int(np.argmin(values)) + 1
-        raise InputError(f"{name} of joint {joint} is {values[joint - 1]} {unit}; it must be > 0")
-    return values
+    if array.shape not in ((), (3,)):
+        raise InputError(f"{name} has shape {array.shape}; give one number, or one per joint, (3,) ({unit})")
+    joints = enumerate(np.broadcast_to(array, 3).tolist(), start=1)
+    return tuple(number(f"{name} of joint {joint}", x, rule, unit=unit) for joint, x in joints)

@@ -81,8 +81,8 @@ def trapezoid(q0, q1, *, v_max, a_max, start=0.0, synchronise=True):
     return Trapezoid(
         q0=pose("q0", q0),
         q1=pose("q1", q1),
-        v_max=per_joint("v_max", v_max, unit="rad/s", positive=True),
-        a_max=per_joint("a_max", a_max, unit="rad/s^2", positive=True),
+        v_max=per_joint("v_max", v_max, "> 0", unit="rad/s"),
+        a_max=per_joint("a_max", a_max, "> 0", unit="rad/s^2"),
         start=seconds("start", start),
         synchronise=bool(synchronise),
     )

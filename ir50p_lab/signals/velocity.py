@@ -70,8 +70,8 @@ class VelocityKalman:
     def __init__(self, period=0.01, *, noise=ONE_COUNT, change=10.0, model="velocity"):
         self.period = number("period", period, "> 0", unit="s")
         self.model = choice("model", model, ("velocity", "acceleration"))
-        self.noise = per_joint("noise", noise, unit="rad", positive=True)
-        self.change = per_joint("change", change, unit="rad/s^2", positive=True)
+        self.noise = per_joint("noise", noise, "> 0", unit="rad")
+        self.change = per_joint("change", change, "> 0", unit="rad/s^2")
         self.gain = np.zeros((3, 3))
         size = 2 if model == "velocity" else 3
         for i in range(3):

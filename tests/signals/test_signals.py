@@ -204,7 +204,7 @@ def test_references_are_frozen_values(target):
         (lambda: through([A, B, C], durations=[1]), "1 durations for 2 pieces"),
         (lambda: through([A, B, C], durations=[1, 0]), "durations[1]"),
         (lambda: trapezoid(A, B, v_max=0, a_max=1), "v_max of joint 1"),
-        (lambda: trapezoid(A, B, v_max=1, a_max=(1, -2, 1)), "a_max of joint 2 is -2.0 rad/s^2"),
+        (lambda: trapezoid(A, B, v_max=1, a_max=(1, -2, 1)), "a_max of joint 2 = -2.0 rad/s^2"),
         (lambda: trapezoid(A, B, v_max=1, a_max=math.inf), "finite"),
         (lambda: trapezoid(A, B, v_max=(1, 1), a_max=1), "v_max has shape (2,)"),
         (lambda: sinusoid(math.nan, 1), "amplitude"),
