@@ -11,7 +11,6 @@ from ir50p_lab.identification.excitation_kernel import BOUNDS, evaluate, slopes
 from ir50p_lab.identification.parameters import ACTS_ON, chosen_columns
 from ir50p_lab.inputs import check_arm, choice, number, switch, whole
 from ir50p_lab.signals.fourier import Fourier, at_rest, fourier, limits_of
-from ir50p_lab.signals.reference import seconds
 
 _PER_HARMONIC = 32  # points of the grid per period of the fastest harmonic
 _HIDDEN = 1 / math.cos(math.pi / _PER_HARMONIC) - 1  # of half the range: what may hide between the points
@@ -101,7 +100,7 @@ def optimise_excitation(
     table, margin = number("table", table, unit="m"), number("margin", margin, ">= 0", unit="rad")
     whole("periods", periods, 1, 10**6)
     switch("progress", progress)
-    period = seconds("period", period, positive=True)
+    period = number("period", period, "> 0", unit="s")
     picked = _columns(columns)
     limits = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
     problem = _Problem(arm, period, harmonics, limits, rows, picked, float(standing))

@@ -27,9 +27,7 @@ class Reference:
     def __call__(self, t):
         """(q, qd, qdd) at the time `t`, s: three arrays (3,). Raises InputError if t is not one finite number."""
         if type(t) is not float or not math.isfinite(t):  # else nothing to check, a hundred times a second
-            if np.ndim(t) or isinstance(t, (str, bytes)):
-                raise InputError(f"t = {t!r}: give one time in s; for an array of times use target.sample(t)")
-            t = seconds("t", t)
+            t = number("t", t, unit="s", hint="for an array of times use target.sample(t)")
         q, qd, qdd = self._rows(np.array([t]))[0]
         return q, qd, qdd
 
@@ -41,29 +39,10 @@ class Reference:
         """
         return self._rows(time_vector("t", t))
 
-    def _rows(self, t):
-        raise NotImplementedError(f"{type(self).__name__} must define _rows(t): times (n,) -> array (n, 3, 3)")
-
-
-def seconds(name, value, *, positive=False):
-    """Return `value` as a float in s; InputError unless it is a finite number (and > 0 if `positive`)."""
-    try:
-        number = math.nan if isinstance(value, (str, bytes)) or np.ndim(value) else float(value)
-    except (TypeError, ValueError):
-        number = math.nan
-    if not math.isfinite(number):
-        raise InputError(f"{name} = {value!r}: give one finite number of seconds")
-    if positive and number <= 0:
-        raise InputError(f"{name} = {number} s must be > 0: a motion takes time (for a sudden change use steps)")
-    return number
-
 
 def time_vector(name, value):
     """Return `value` as a float array (n,) in s; InputError on another shape or a number that is not finite."""
-    try:
-        t = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must hold times in s; got {value!r}") from None
+    t = numbers(name, value, unit="s")
     if t.ndim != 1:
         raise InputError(f"{name} has shape {t.shape}; give times in s of shape (n,)")
     if not np.isfinite(t).all():
