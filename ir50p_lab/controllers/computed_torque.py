@@ -21,7 +21,8 @@ class ComputedTorque(ModelController):
       +-smooth rad/s: measured velocity changes sign with every bit of noise, and the compensation would chatter
       (friction_sign="measured" shows it);
     - delay: s from a sample to the moment its command acts; error and reference are led ahead by as much;
-    - integral with anti-windup (it rests while its joint is limited), limits, `set_gains` without a jump of u.
+    - integral with anti-windup (it rests while its joint is limited), limits, `set_gains` without a jump of u: what
+      would be the jump fades in.
 
     Args:
         model: Arm, theta or Estimate. In PWM counts if it is an Estimate in PWM, or if limit_pwm is given; else N m.

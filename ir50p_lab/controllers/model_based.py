@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.controllers import law
-from ir50p_lab.controllers.base import unit_of
+from ir50p_lab.controllers.base import gains, unit_of
 from ir50p_lab.controllers.gains import GainController
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import choice, number
@@ -54,7 +54,7 @@ class ModelController(GainController):
         p[law.RATE_OF_ANGLE] = choice("velocity", velocity, ("error", "angle")) == "angle"
         p[law.SIGN_OF_MEASURED] = choice("friction_sign", friction_sign, ("reference", "measured")) == "measured"
         p[law.REFERENCE_VELOCITY] = choice("model_velocity", model_velocity, ("measured", "reference")) == "reference"
-        self.set_gains(kp, ki, kd)
+        self.set_gains(gains("kp", kp), gains("ki", ki), gains("kd", kd))
 
     def header(self):
         """Lines for the head of a recording: gains, filters, delay, and the model as 20 numbers a joint."""

@@ -1,7 +1,7 @@
 """The independent-joint PID as it runs on a computer: sampled, filtered, limited, without windup or bumps (2.3)."""
 
 from ir50p_lab.controllers import law
-from ir50p_lab.controllers.base import unit_of
+from ir50p_lab.controllers.base import gains, unit_of
 from ir50p_lab.controllers.gains import GainController
 from ir50p_lab.inputs import choice, switch
 
@@ -16,7 +16,8 @@ class PID(GainController):
       form (2.3), to see the kick;
     - anti-windup: the integral rests while the command is limited and the error would push it further;
     - limits: |u| <= limit, and the applied value is what `step` returns;
-    - bumpless: `set_gains` changes gains in the middle of a run without a jump of u;
+    - bumpless: `set_gains` changes gains in the middle of a run without a jump of u, the integral takes up the
+      difference;
     - a late cycle is integrated over its true length;
     - position_filter_hz filters the measured q itself, before everything else, as the thesis does (4.1.3): less noise
       in u, and a lag of 1/(2 pi position_filter_hz) s that makes the loop swing. Off unless asked for.
@@ -52,4 +53,4 @@ class PID(GainController):
         on = choice("derivative_on", derivative_on, ("measurement", "error"))
         self.parameters[law.RATE_OF_ANGLE] = on == "measurement"
         self.parameters[law.ANTI_WINDUP] = switch("anti_windup", anti_windup)
-        self.set_gains(kp, ki, kd)
+        self.set_gains(gains("kp", kp), gains("ki", ki), gains("kd", kd))

@@ -177,6 +177,8 @@ def test_the_thesis_gains_are_unstable_at_10_ms(arm, at_home, at_set_point):
         (lambda: PID(kp=(1, -1, 1)), ["kp", "-1", ">= 0"]),
         (lambda: PID(kp=(1, np.nan, 1)), ["kp", "nan"]),
         (lambda: PID(kp=(1, 1)), ["kp", "(2,)"]),
+        (lambda: PID(kp=None), ["kp", "nan"]),
+        (lambda: PID(kp=1, kd=None), ["kd", "nan"]),
         (lambda: PID(kp=(1, 1, 1), period=0), ["period = 0"]),
         (lambda: PID(kp=(1, 1, 1), filter_hz=-1), ["filter_hz = -1"]),
         (lambda: PID(kp=(1, 1, 1), limit=0), ["limit of joint 1 = 0"]),
