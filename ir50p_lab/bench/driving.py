@@ -89,8 +89,8 @@ class StopCriterion:
     def __init__(self, controller, inner=0.01, outer=0.02, *, hold="latch", dwell=0.1, smooth=0.05, signed=False):
         check_controller(controller)
         choice("hold", hold, ("latch", "off"))
-        self.inner = np.array(per_joint("inner", inner, unit="rad", positive=True))
-        self.outer = np.array(per_joint("outer", outer, unit="rad", positive=True))
+        self.inner = np.array(per_joint("inner", inner, "> 0", unit="rad"))
+        self.outer = np.array(per_joint("outer", outer, "> 0", unit="rad"))
         if (self.outer <= self.inner).any():
             raise InputError(f"outer = {outer} rad must be larger than inner = {inner} rad: the gap is the hysteresis")
         self.controller, self.hold, self.signed = controller, hold, bool(signed)

@@ -9,8 +9,7 @@ import numpy as np
 
 from ir50p_lab.bench import shared_loop
 from ir50p_lab.bench.set_point import checked_set_point
-from ir50p_lab.controllers.base import GAINS, gains_of
-from ir50p_lab.controllers.gains import gains
+from ir50p_lab.controllers.base import GAINS, gains, gains_of
 from ir50p_lab.errors import BenchError, InputError
 
 _TO_REST = 60.0  # s: a way to the rest pose that takes longer has failed

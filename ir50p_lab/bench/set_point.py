@@ -35,8 +35,8 @@ class SetPoint:
     def __init__(self, q, *, qd=(0.0, 0.0, 0.0), speed=SPEED, acceleration=ACCELERATION):
         self._q, self._qd = list(pose("q", q)), list(pose("qd", qd, unit="rad/s"))
         self.goal = tuple(self._q)
-        self.speed = per_joint("speed", speed, unit="rad/s", positive=True)
-        self.acceleration = per_joint("acceleration", acceleration, unit="rad/s^2", positive=True)
+        self.speed = per_joint("speed", speed, "> 0", unit="rad/s")
+        self.acceleration = per_joint("acceleration", acceleration, "> 0", unit="rad/s^2")
         self._t = None
 
     def move_to(self, q):

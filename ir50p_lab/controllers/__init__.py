@@ -24,12 +24,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         ],
         "forecast": ["Saturation", "check_saturation"],
         "pid": ["PID"],
-        "tuning": [
-            "PIDGains",
-            "amigo",
-            "simc",
-            "simc_integrating",
-            "ziegler_nichols",
-        ],
+        "tuning": ["PIDGains", "amigo", "simc", "simc_integrating", "ziegler_nichols"],
     },
 )

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from ir50p_lab.controllers import adaptive_law as law
+from ir50p_lab.controllers import adaptive_law, law
 from ir50p_lab.controllers.base import Controller
-from ir50p_lab.controllers.gains import gains, limits
-from ir50p_lab.controllers.model_based import LIMIT_PWM, model_in_unit
+from ir50p_lab.controllers.model_based import model_in_unit
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import number, numbers
+from ir50p_lab.inputs import numbers
 from ir50p_lab.signals.reference import per_joint
 
 _OFFSETS = (16, 17, 18)
@@ -41,7 +40,10 @@ class AdaptiveControl(Controller):
     Raises InputError on bad arguments, ArmError for PWM without actuators.
     """
 
-    kind = 3
+    kind = 2
+    sizes = adaptive_law.N_PARAMETERS, adaptive_law.N_STATES
+    rows = ("Lambda", adaptive_law.LAMBDA), ("K", adaptive_law.K), ("dead_band", adaptive_law.DEAD_BAND)
+    tables = ("Gamma", adaptive_law.GAMMA), ("first_theta", law.THETA)
 
     def __init__(
         self,
@@ -51,7 +53,7 @@ class AdaptiveControl(Controller):
         Gamma,
         *,
         lower=None,
-        upper=None,
+        upper=np.inf,
         dead_band=0.0,
         limit_pwm=None,
         limit=None,
@@ -60,30 +62,19 @@ class AdaptiveControl(Controller):
         period=0.01,
         g=None,
     ):
-        theta, gravity, self.unit = model_in_unit(model, limit_pwm, limit, g)
-        if self.unit == "PWM" and limit_pwm is None:
-            limit_pwm = LIMIT_PWM
-        bound = limit if self.unit == "N m" else limit_pwm
-        p = self.parameters = np.zeros(law.N_PARAMETERS)
-        self.state = np.zeros(law.N_STATES)
-        p[law.LAMBDA : law.LAMBDA + 3] = gains("Lambda", Lambda)
-        p[law.K : law.K + 3] = gains("K", K)
-        p[law.LIMIT : law.LIMIT + 3] = limits(bound)
-        p[law.PERIOD] = number("period", period, "> 0", unit="s")
-        p[law.FILTER_RATE] = 2 * np.pi * number("filter_hz", filter_hz, "> 0 or inf", unit="Hz")
+        theta, gravity, unit, limit = model_in_unit(model, limit_pwm, limit, g)
+        super().__init__(unit, limit, period, filter_hz)
+        p = self.parameters
         p[law.GRAVITY] = gravity
-        for name, place, value in (("dead_band", law.DEAD_BAND, dead_band), ("smooth", law.SMOOTH, smooth)):
-            value = np.array(per_joint(name, value, unit="rad/s"))
-            if (value < 0).any():
-                raise InputError(f"{name} = {value.tolist()} rad/s: cannot be negative")
-            p[place : place + 3] = value
+        for (name, place), value in zip(self.rows, (Lambda, K, dead_band), strict=True):
+            p[place : place + 3] = per_joint(name, value, ">= 0")
+        p[law.SMOOTH : law.THETA] = per_joint("smooth", smooth, ">= 0", unit="rad/s")
         Gamma = _table("Gamma", Gamma)
         if (Gamma < 0).any() or not np.isfinite(Gamma).all():
             raise InputError("Gamma holds numbers that are negative or not finite: it would learn away from the truth")
         floor = np.zeros(20)
         floor[list(_OFFSETS)] = -np.inf
-        lower = _table("lower", floor if lower is None else lower)
-        upper = _table("upper", np.inf if upper is None else upper)
+        lower, upper = _table("lower", floor if lower is None else lower), _table("upper", upper)
         lower, upper = np.where(Gamma > 0, lower, -np.inf), np.where(Gamma > 0, upper, np.inf)
         outside = (theta < lower) | (theta > upper)
         if outside.any():
@@ -92,32 +83,19 @@ class AdaptiveControl(Controller):
                 f"theta of joint {i + 1}, column {k} is {theta[i, k]:.4g}, outside its bounds {lower[i, k]:.4g} to "
                 f"{upper[i, k]:.4g}: start within them (a fit with method='bounded' does), or widen them"
             )
-        tables = (law.GAMMA, Gamma), (law.LOWER, lower), (law.UPPER, upper), (law.FIRST_THETA, theta)
-        for place, table in tables:
-            p[place : place + 60] = table.ravel()
+        p[law.THETA : adaptive_law.DEAD_BAND] = theta.ravel()
+        p[adaptive_law.GAMMA :] = np.concatenate([Gamma, lower, upper]).ravel()
 
     @property
     def theta(self):
         """The parameters believed now, (3, 20), in `unit`."""
         if self.state[law.STARTED]:
-            return self.state[law.THETA : law.THETA + 60].reshape(3, 20).copy()
-        return self.parameters[law.FIRST_THETA :].reshape(3, 20).copy()
-
-    @property
-    def limit(self):
-        """Limits of the command (3,), in its unit; infinite where there is none."""
-        return self.parameters[law.LIMIT : law.LIMIT + 3].copy()
+            return self.state[adaptive_law.THETA : adaptive_law.Y].reshape(3, 20).copy()
+        return self.parameters[law.THETA : law.THETA + 60].reshape(3, 20).copy()
 
     def header(self):
         """Lines for the head of a recording: gains, and the parameters it starts with."""
-        p = self.parameters
-        lines = {"Lambda": law.LAMBDA, "K": law.K, "dead_band": law.DEAD_BAND}
-        lines = {name: " ".join(f"{x:g}" for x in p[place : place + 3]) for name, place in lines.items()}
-        lines |= {"filter_hz": f"{p[law.FILTER_RATE] / (2 * np.pi):g}", "model_unit": self.unit}
-        for name, place in (("Gamma", law.GAMMA), ("first_theta", law.FIRST_THETA)):
-            rows = p[place : place + 60].reshape(3, 20)
-            lines |= {f"{name}_{i + 1}": " ".join(f"{x:.6g}" for x in row) for i, row in enumerate(rows)}
-        return {**super().header(), **lines}
+        return {**super().header(), "model_unit": self.unit}
 
 
 def _table(name, value):

@@ -4,31 +4,63 @@ import math
 
 import numpy as np
 
+from ir50p_lab.controllers import law
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vector3, vectors3
+from ir50p_lab.inputs import number, vector3, vectors3
+from ir50p_lab.signals.reference import per_joint
 
 GAINS = ("kp", "ki", "kd")
+
+
+def three(place, what):
+    """Property: the three numbers, one per joint, that stand at `place` of a controller's parameters."""
+
+    def read(self):
+        return self.parameters[place : place + 3].copy()
+
+    return property(read, doc=what)
 
 
 class Controller:
     """A controller whose law is compiled once and runs in the notebook, the simulation, the sweep and the bench.
 
-    Subclasses set `kind` (its number in `dispatch`), `parameters` (float array), `state` (float array) and `unit` of
-    the command ('N m' or 'PWM'). Python's `step` and the compiled loops call the same function on the same arrays:
+    Subclasses set `kind` (its number in `dispatch`) and `sizes` of `parameters` and of the law's memory, `state`;
+    `rows` and `tables` are (name, place) of what stands in the parameters: three numbers, or (3, 20). `unit` is that
+    of the command ('N m' or 'PWM'). Python's `step` and the compiled loops call the same function on the same arrays:
     the numbers are the same to the last bit.
     """
 
     kind: int
-    unit = "N m"
+    sizes = law.N_PARAMETERS, law.N_STATES
+    rows = tables = ()
+    limit = three(law.LIMIT, "Limits of the command (3,), in its unit; infinite where there is none.")
+
+    def __init__(self, unit, limit, period, filter_hz, position_filter_hz=None):
+        self.unit = unit
+        self.parameters, self.state = (np.zeros(size) for size in self.sizes)
+        p = self.parameters
+        p[law.LIMIT : law.LIMIT + 3] = limits(limit)
+        p[law.PERIOD] = number("period", period, "> 0", unit="s")
+        p[law.FILTER_RATE] = 2 * np.pi * number("filter_hz", filter_hz, "> 0 or inf", unit="Hz")
+        if position_filter_hz not in (None, np.inf):
+            p[law.POSITION_RATE] = 2 * np.pi * number("position_filter_hz", position_filter_hz, "> 0", unit="Hz")
 
     def reset(self):
         """Forget the past: integrals, filters and the last sample."""
         self.state[:] = 0.0
 
     def header(self):
-        """Lines for the head of a recording: dict of str; subclasses add their gains."""
-        return {"controller": type(self).__name__}
+        """Lines for the head of a recording: dict of str; gains of joints 1 to 3, filters, and the model if any."""
+        p, lines = self.parameters, {"controller": type(self).__name__}
+        for name, place in self.rows:
+            lines[name] = " ".join(f"{x:g}" for x in p[place : place + 3])
+        for name, place in (("filter_hz", law.FILTER_RATE), ("position_filter_hz", law.POSITION_RATE)):
+            lines[name] = f"{p[place] / (2 * np.pi) or np.inf:g}"
+        for name, place in self.tables:
+            for i, row in enumerate(p[place : place + 60].reshape(3, 20)):
+                lines[f"{name}_{i + 1}"] = " ".join(f"{x:.6g}" for x in row)
+        return lines
 
     def step(self, t, measured, reference):
         """The command for one sample.
@@ -58,6 +90,23 @@ def set_gains(controller, **gains):
         return controller.set_gains(**gains)
     for name, value in gains.items():
         setattr(controller, name, np.array(value, dtype=float))
+
+
+def gains(name, value):
+    """Three gains, finite and not negative, as an array (3,); a scalar counts for all joints. Raises InputError."""
+    return np.array(per_joint(name, value, ">= 0", unit="command per rad"))
+
+
+def limits(value):
+    """Limits of a command (3,), > 0, one number or one per joint; infinite, or None: no limit. Raises InputError."""
+    return np.array(per_joint("limit", np.inf if value is None else value, "> 0 or inf"))
+
+
+def unit_of(limit_pwm, limit):
+    """(unit, limit) of a command by which of two limits was given; with neither it is in N m. Raises InputError."""
+    if limit_pwm is not None and limit is not None:
+        raise InputError("give limit_pwm (PWM counts) or limit (N m), not both: the command has one unit")
+    return ("N m", limit) if limit_pwm is None else ("PWM", limit_pwm)
 
 
 def _plain(q):

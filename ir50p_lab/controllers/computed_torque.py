@@ -1,6 +1,6 @@
 """Computed torque (2.19), (4.6), and its smaller relatives: feed-forward with a PD, gravity compensation with a PD."""
 
-from ir50p_lab.controllers import model_law as law
+from ir50p_lab.controllers import law
 from ir50p_lab.controllers.model_based import ModelController
 
 
@@ -17,22 +17,22 @@ class ComputedTorque(ModelController):
       of unequal gain and PWM counts need no further care;
     - velocity="error" filters the rate of the *error*, so that a joint that follows sees no lag of the filter;
       "angle" filters the velocity itself, which lags behind every motion;
-    - dry friction is compensated for the *reference's* direction, smoothed over +-smooth rad/s: measured velocity
-      changes sign with every bit of noise, and the compensation would chatter (friction_sign="measured" shows it);
+    - friction is compensated as far as the model holds any, dry friction for the *reference's* direction, smoothed over
+      +-smooth rad/s: measured velocity changes sign with every bit of noise, and the compensation would chatter
+      (friction_sign="measured" shows it);
     - delay: s from a sample to the moment its command acts; error and reference are led ahead by as much;
-    - integral with anti-windup (it rests while its joint is limited), limits, `set_gains` without a jump of u.
+    - integral with anti-windup (it rests while its joint is limited), limits, `set_gains` without a jump of u: what
+      would be the jump fades in.
 
     Args:
         model: Arm, theta or Estimate. In PWM counts if it is an Estimate in PWM, or if limit_pwm is given; else N m.
         kp, kd, ki: (3,) or one number: 1/s^2, 1/s, 1/s^3, whatever the arm.
         limit_pwm: PWM counts, scalar or (3,), default 255 for an Estimate in PWM; or limit: N m, default none.
-        friction: what of it is fed forward: 'none', 'viscous' (with back-EMF), 'coulomb' (also dry), 'stribeck' (also
-            the rise at low speed: `breakaway` (3,) in the unit and `qs` rad/s, which an Arm knows itself).
         smooth: rad/s, width of the smoothed sign, scalar or (3,). friction_sign: 'reference' or 'measured'.
         velocity: 'error' or 'angle'. filter_hz: cut-off of its low pass, Hz (inf: none). position_filter_hz: cut-off
             of a first-order low pass on q, as the thesis has (4.1.3), Hz (None: off).
         delay: s, 0 to 1. model_velocity: velocity in C and viscous friction, 'measured' (2.19) or 'reference'.
-        period: s. anti_windup: False shows what windup does. g: of a theta, m/s^2, default 9.81.
+        period: s. g: of a theta, m/s^2, default 9.81.
 
     Raises InputError on bad arguments, ArmError for PWM without actuators.
     """

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ir50p_lab.controllers.gains import gains, limits
+from ir50p_lab.controllers import law
+from ir50p_lab.controllers.base import gains, limits, three
 
 
 class ContinuousPID:
@@ -13,16 +14,15 @@ class ContinuousPID:
 
     Args: kp, ki, kd: (3,) N m per rad, per rad s, per rad/s; limit: N m, scalar or (3,), None: not limited (the
     integral then rests while the command is limited and the error would push it further).
+    Attributes: kp, ki, kd, limit (3,); parameters (12,): kp, ki, kd, limit in a row, as the compiled loop takes them.
     """
 
     continuous = True
     unit = "N m"
+    kp = three(law.KP, "Proportional gains (3,), N m/rad.")
+    ki = three(law.KI, "Integral gains (3,), N m/(rad s).")
+    kd = three(law.KD, "Derivative gains (3,), N m s/rad.")
+    limit = three(law.LIMIT, "Limits of the command (3,), N m; infinite where there is none.")
 
-    def __init__(self, kp, ki=(0.0, 0.0, 0.0), kd=(0.0, 0.0, 0.0), *, limit=None):
-        self.kp, self.ki, self.kd = gains("kp", kp), gains("ki", ki), gains("kd", kd)
-        self.limit = np.broadcast_to(limits(limit), 3).copy()
-
-    @property
-    def parameters(self):
-        """kp, ki, kd, limit in a row, (12,), as the compiled loop takes them."""
-        return np.concatenate([self.kp, self.ki, self.kd, self.limit])
+    def __init__(self, kp, ki=0.0, kd=0.0, *, limit=None):
+        self.parameters = np.concatenate([gains("kp", kp), gains("ki", ki), gains("kd", kd), limits(limit)])

@@ -68,10 +68,9 @@ def lie_derivative(h, f, x):
     """L_f h = sum_i dh/dx_i f_i: how h changes along the field f. h: expression; f, x: n expressions, n symbols."""
     import sympy as sp
 
-    x, f = _state(x), [sp.sympify(e) for e in f]
     if len(f) != len(x):
         raise InputError(f"{len(f)} rates for {len(x)} states: give one each")
-    return sum((sp.diff(h, xi) * fi for xi, fi in zip(x, f, strict=True)), sp.Integer(0))
+    return sum((sp.diff(h, xi) * sp.sympify(fi) for xi, fi in zip(x, f, strict=True)), sp.Integer(0))
 
 
 def feedback_linearise(f, g, h, x):
@@ -82,17 +81,13 @@ def feedback_linearise(f, g, h, x):
     """
     import sympy as sp
 
-    x = _state(x)
-    for name, field in (("f", f), ("g", g)):
-        if len(field) != len(x):
-            raise InputError(f"{name} has {len(field)} entries for {len(x)} states: give one each")
     coordinates, current = [], sp.sympify(h)
     for degree in range(1, len(x) + 1):
         coordinates.append(current)
         beta = sp.simplify(lie_derivative(current, g, x))
         current = sp.simplify(lie_derivative(current, f, x))
         if beta != 0:
-            return FeedbackLinearisation(x, degree, tuple(coordinates), current, beta)
+            return FeedbackLinearisation(tuple(x), degree, tuple(coordinates), current, beta)
     raise InputError(f"the input does not show in any derivative of {h}: it cannot be controlled from this output")
 
 
@@ -101,10 +96,7 @@ def gains_for_poles(poles):
 
     Raises InputError if a pole is not in the left half plane, or a complex one comes without its partner.
     """
-    try:
-        poles = np.atleast_1d(np.asarray(poles, dtype=complex))
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(f"poles = {poles!r:.60}: give n numbers, complex ones in pairs") from None
+    poles = np.atleast_1d(np.asarray(poles, dtype=complex))
     if poles.ndim != 1 or not len(poles) or not np.isfinite(poles).all() or (poles.real >= 0).any():
         raise InputError(f"poles = {poles.tolist()}: give numbers with negative real part; the error grows otherwise")
     coefficients = np.poly(poles)
@@ -160,12 +152,3 @@ def _numbers(name, values):
     if array.ndim != 1 or not len(array) or not np.isfinite(array).all():
         raise InputError(f"{name} = {values!r}: give finite numbers, K0 first")
     return array
-
-
-def _state(x):
-    import sympy as sp
-
-    x = tuple(x)
-    if not x or not all(isinstance(symbol, sp.Symbol) for symbol in x):
-        raise InputError(f"x = {x!r}: give the state as SymPy symbols")
-    return x

@@ -42,7 +42,7 @@ class Saturation:
         return f"saturates from t = {self.first:.2f} s: joints 1 to 3 need {shares} of the limit; {slower}"
 
 
-def check_saturation(model, reference, seconds=None, *, limit=None, margin=0.0, period=0.01, g=None):
+def check_saturation(model, reference, seconds=None, *, limit=None, period=0.01, g=None):
     """Predict from the motors' limits whether a motion can be followed    (4.4.2: 'the motors velocities are limited').
 
     The command needed is inverse dynamics along the reference; with back-EMF in the viscous terms of a model in PWM
@@ -52,33 +52,38 @@ def check_saturation(model, reference, seconds=None, *, limit=None, margin=0.0, 
         model: Arm with actuators (in PWM counts, its own limit), Estimate (255 counts if in PWM), or a theta.
         reference: as from `signals`, with `sample`. seconds: how long to look; default its duration (if finite).
         limit: (3,) or one number, unit of the model; needed for a theta or a model in N m.
-        margin: share of the limit kept for feedback, 0 to below 1. period: s between samples. g: of a theta, m/s^2.
+        period: s between samples. g: of a theta, m/s^2.
 
     Returns: Saturation. Raises InputError on bad arguments; ArmError for an Arm without actuators.
     """
-    if isinstance(model, Arm) and limit is None:
-        theta, gravity, unit = model_in_unit(model, LIMIT_PWM, g=g)
+    in_pwm = isinstance(model, Arm) and limit is None
+    theta, gravity, unit, bound = model_in_unit(model, LIMIT_PWM if in_pwm else None, g=g)
+    if in_pwm:
         limit = model.actuators.limit_pwm
-    else:
-        theta, gravity, unit = model_in_unit(model, g=g)
-        if limit is None and unit == "PWM":
-            limit = LIMIT_PWM
+    elif limit is None:
+        limit = bound
     if limit is None:
         raise InputError("limit = None: say how much the drives can give, in the unit of the model")
-    limit = np.array(per_joint("limit", limit, unit=unit, positive=True))
-    if number("margin", margin, ">= 0") >= 1:
-        raise InputError(f"margin = {margin!r}: give the share of the limit kept for feedback, 0 to below 1")
-    t, rows = _samples(reference, seconds, period)
+    limit = np.array(per_joint("limit", limit, "> 0", unit=unit))
+    if not hasattr(reference, "sample"):
+        raise InputError(f"reference = {reference!r}: give a reference of `signals`, such as quintic(...)")
+    seconds = reference.duration if seconds is None else seconds
+    number("seconds", seconds, "> 0", unit="s", hint="a motion without end needs `seconds`")
+    t = np.arange(math.floor(seconds / number("period", period, "> 0", unit="s") + 1e-9) + 1) * period
+    q, qd, qdd = reference.sample(t).transpose(1, 0, 2)
 
     def needed(slower):
-        q, qd, qdd = rows[:, 0], rows[:, 1] / slower, rows[:, 2] / slower**2
-        return inverse_dynamics(theta, q, qd, qdd, g=gravity)
-
-    def fits(slower):
-        return bool((np.abs(needed(slower)) <= (1 - margin) * limit).all())
+        return inverse_dynamics(theta, q, qd / slower, qdd / slower**2, g=gravity)
 
     u = needed(1.0)
-    beyond = (np.abs(u) > (1 - margin) * limit).any(axis=1)
+    beyond = (np.abs(u) > limit).any(axis=1)
+    quickest, slowest = 1 / _SLOWEST, _SLOWEST
+    while slowest / quickest > 1 + 1e-6:
+        middle = math.sqrt(quickest * slowest)
+        if (np.abs(needed(middle)) <= limit).all():
+            slowest = middle
+        else:
+            quickest = middle
     return Saturation(
         t=t,
         u=u,
@@ -87,26 +92,5 @@ def check_saturation(model, reference, seconds=None, *, limit=None, margin=0.0, 
         use=np.abs(u).max(axis=0) / limit,
         saturates=bool(beyond.any()),
         first=float(t[np.argmax(beyond)]) if beyond.any() else None,
-        stretch=_smallest(fits),
+        stretch=slowest if slowest < _SLOWEST else math.inf,
     )
-
-
-def _samples(reference, seconds, period):
-    if not hasattr(reference, "sample"):
-        raise InputError(f"reference = {reference!r}: give a reference of `signals`, such as quintic(...)")
-    seconds = reference.duration if seconds is None else seconds
-    for name, value in (("seconds", seconds), ("period", period)):
-        number(name, value, "> 0", unit="s", hint="a motion without end needs `seconds`")
-    t = np.arange(math.floor(seconds / period + 1e-9) + 1) * period
-    return t, reference.sample(t)
-
-
-def _smallest(fits):
-    """The smallest factor that fits, by halving its logarithm; infinite if the slowest does not."""
-    low, high = 1 / _SLOWEST, _SLOWEST
-    if not fits(high):
-        return math.inf
-    while high / low > 1 + 1e-6:
-        middle = math.sqrt(low * high)
-        low, high = (low, middle) if fits(middle) else (middle, high)
-    return high

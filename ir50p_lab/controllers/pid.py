@@ -1,10 +1,8 @@
 """The independent-joint PID as it runs on a computer: sampled, filtered, limited, without windup or bumps (2.3)."""
 
-import numpy as np
-
-from ir50p_lab.controllers import pid_law as law
+from ir50p_lab.controllers import law
+from ir50p_lab.controllers.base import gains, unit_of
 from ir50p_lab.controllers.gains import GainController
-from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import choice, switch
 
 
@@ -18,7 +16,8 @@ class PID(GainController):
       form (2.3), to see the kick;
     - anti-windup: the integral rests while the command is limited and the error would push it further;
     - limits: |u| <= limit, and the applied value is what `step` returns;
-    - bumpless: `set_gains` changes gains in the middle of a run without a jump of u;
+    - bumpless: `set_gains` changes gains in the middle of a run without a jump of u, the integral takes up the
+      difference;
     - a late cycle is integrated over its true length;
     - position_filter_hz filters the measured q itself, before everything else, as the thesis does (4.1.3): less noise
       in u, and a lag of 1/(2 pi position_filter_hz) s that makes the loop swing. Off unless asked for.
@@ -34,13 +33,13 @@ class PID(GainController):
     Raises InputError on gains that are negative or not finite, or a period or filter that is not positive.
     """
 
-    kind = 1
+    takes_up = law.INTEGRAL
 
     def __init__(
         self,
         kp,
-        ki=(0.0, 0.0, 0.0),
-        kd=(0.0, 0.0, 0.0),
+        ki=0.0,
+        kd=0.0,
         *,
         limit_pwm=None,
         limit=None,
@@ -50,25 +49,8 @@ class PID(GainController):
         derivative_on="measurement",
         anti_windup=True,
     ):
-        if limit_pwm is not None and limit is not None:
-            raise InputError("give limit_pwm (PWM counts) or limit (N m), not both: the command has one unit")
-        choice("derivative_on", derivative_on, ("measurement", "error"))
-        self.unit = "N m" if limit_pwm is None else "PWM"
-        self.parameters = np.zeros(law.N_PARAMETERS)
-        self.state = np.zeros(law.N_STATES)
-        bound = limit if limit_pwm is None else limit_pwm
-        self._write_limit_and_filters(bound, period, filter_hz, position_filter_hz)
-        self.parameters[law.ON_ERROR] = derivative_on == "error"
+        super().__init__(*unit_of(limit_pwm, limit), period, filter_hz, position_filter_hz)
+        on = choice("derivative_on", derivative_on, ("measurement", "error"))
+        self.parameters[law.RATE_OF_ANGLE] = on == "measurement"
         self.parameters[law.ANTI_WINDUP] = switch("anti_windup", anti_windup)
-        self._write_gains(kp, ki, kd)
-
-    def set_gains(self, kp=None, ki=None, kd=None):
-        """Change gains in the middle of a run; the integral takes up the difference, so that u does not jump."""
-        old = self.parameters.copy()
-        places = ((law.KP, kp), (law.KI, ki), (law.KD, kd))
-        self._write_gains(*(old[place : place + 3] if new is None else new for place, new in places))
-        if self.state[law.STARTED]:
-            change, s = old[: law.LIMIT] - self.parameters[: law.LIMIT], self.state
-            s[law.INTEGRAL : law.INTEGRAL + 3] += (
-                change[law.KP : law.KI] * s[law.ERROR : law.ERROR + 3] + change[law.KD :] * s[law.SLOPE : law.SLOPE + 3]
-            )
+        self.set_gains(gains("kp", kp), gains("ki", ki), gains("kd", kd))

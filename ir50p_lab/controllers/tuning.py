@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import number
+from ir50p_lab.inputs import choice, number
 
 
 @dataclass(frozen=True)
@@ -151,13 +151,10 @@ def _series(kp, Ti, Td, rule, warnings):
 
 
 def _model(model, rule, *, dead_time=False):
-    """(K, T, L), checked; with `dead_time` L must be > 0."""
-    try:
-        K, T, L = (number(name, getattr(model, name)) for name in "KTL")
-    except AttributeError:
-        raise InputError(f"expected a FOPDT model (fit_fopdt, or FOPDT(K=, T=, L=)), got {model!r:.80}") from None
-    if K == 0 or T <= 0 or L < 0:
-        raise InputError(f"K = {K}, T = {T} s, L = {L} s: a FOPDT model needs K != 0, T > 0 and L >= 0")
+    """(K, T, L) of a FOPDT, which has checked them; with `dead_time` L must be > 0."""
+    if not all(hasattr(model, name) for name in "KTL"):
+        raise InputError(f"expected a FOPDT model (fit_fopdt, or FOPDT(K=, T=, L=)), got {model!r:.80}")
+    K, T, L = model.K, model.T, model.L
     if dead_time and L == 0:
         raise InputError(
             f"L = 0: {rule} lives on the dead time and would give an infinite gain. Use simc with the closed-loop time "
@@ -175,9 +172,7 @@ def _tau_c(tau_c, L):
 
 
 def _pick(kind, choices):
-    if kind not in choices:
-        raise InputError(f"kind = {kind!r}: this rule knows {', '.join(choices)}")
-    return choices[kind]
+    return choices[choice("kind", kind, tuple(choices))]
 
 
 def _uncertain(model):

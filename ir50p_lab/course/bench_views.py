@@ -12,10 +12,10 @@ from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.signals import (
     alias,
     difference_velocity,
+    kalman_velocity,
     low_pass_lag,
     low_pass_response,
     noise_and_lag,
-    velocity_estimators,
 )
 
 
@@ -90,9 +90,9 @@ def shannon_figure(rate_hz, cutoffs_hz, f_hz):
     """
     figure = new_figure(9.6, 3.4, cols=2)
     gain, sine = figure.axes
+    f = np.geomspace(rate_hz / 2000, 0.499 * rate_hz, 400)
     for cutoff in cutoffs_hz:
-        response = low_pass_response(cutoff, rate_hz)
-        gain.semilogx(response.f, response.gain, label=f"{cutoff:g} Hz")
+        gain.semilogx(f, np.abs(low_pass_response(cutoff, rate_hz, f)), label=f"{cutoff:g} Hz")
     gain.axvspan(rate_hz / 2, 400, color=COLOURS["light"])
     gain.text(rate_hz / 2 * 1.08, 0.06, "not in\nthe samples", fontsize=8)
     gain.plot([300], [np.sqrt(0.5)], "X", ms=9, color=COLOURS["orange"], label="printed: 300 Hz")
@@ -116,7 +116,7 @@ class FilterView:
 
     Args:
         recording: Recording, sampled evenly; rest, moving: (s, s) where the joint stands, and where it goes and comes.
-        changes: rad/s^2, of the Kalman filters (see `VelocityKalman`).
+        changes: rad/s^2, of the Kalman filters (see `kalman_velocity`).
 
     Attributes: figure, for `live`; curve: list of NoiseAndLag, low passes from 0.8 to 30 Hz; kalman: one a change.
     """
@@ -124,12 +124,11 @@ class FilterView:
     def __init__(self, recording, *, rest, moving, changes=(3, 10, 30)):
         t, self._q, self._rate = recording.t, recording.q[:, 0], round(1 / recording.period, 6)
         self._where = {"rest": (t > rest[0]) & (t < rest[1]), "motion": (t > moving[0]) & (t < moving[1])}
-        options = {"noise": max(float(self._q[self._where["rest"]].std()), 1e-4)}
-        kalman = velocity_estimators(self._rate, cutoffs_hz=(), changes=changes, **options)
-        del kalman["difference"]
-        self.kalman = noise_and_lag(self._q, self._rate, estimators=kalman, **self._where)
         # found once: a slider asks for the lag behind it at every step
         self._truth = difference_velocity(self._q, self._rate, cutoff_hz=3.0, order=2, kind="zero-phase")
+        noise = max(float(self._q[self._where["rest"]].std()), 1e-4)
+        kalman = (kalman_velocity(self._q, self._rate, noise=noise, change=change) for change in changes)
+        self.kalman = [noise_and_lag(qd, self._truth, self._rate, **self._where) for qd in kalman]
         self.curve = [self._low_pass(cutoff) for cutoff in np.geomspace(0.8, 30, 12)]
         self.figure = new_figure(9.6, 3.8, cols=2, width_ratios=(1.3, 1))
         angle, plane = self.figure.axes
@@ -155,12 +154,8 @@ class FilterView:
         plane.minorticks_off()
 
     def _low_pass(self, cutoff):
-        def estimate(q):
-            return difference_velocity(q, self._rate, cutoff_hz=cutoff)
-
-        return noise_and_lag(self._q, self._rate, estimators={"low pass": estimate}, truth=self._truth, **self._where)[
-            0
-        ]
+        qd = difference_velocity(self._q, self._rate, cutoff_hz=cutoff)
+        return noise_and_lag(qd, self._truth, self._rate, **self._where)
 
     def update(self, filtered, cutoff):
         """Draw the filtered angle (n,) rad, mark the velocity filter of this cut-off (Hz). Returns it in words."""

@@ -12,15 +12,14 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     submod_attrs={
         "cartesian": ["CartesianPath", "cartesian_circle", "cartesian_line"],
         "fourier": ["Fourier", "at_rest", "fourier"],
-        "lag": ["measured_lag"],
         "low_pass": ["LowPass", "alias", "low_pass", "low_pass_lag", "low_pass_response"],
-        "noise_and_lag": ["NoiseAndLag", "noise_and_lag", "velocity_estimators"],
+        "noise_and_lag": ["NoiseAndLag", "measured_lag", "noise_and_lag"],
         "path_error": ["PathError", "path_error"],
         "quintic": ["quintic", "through"],
         "reference": ["Reference"],
         "sinusoid": ["sinusoid"],
         "steps": ["hold", "steps"],
         "trapezoid": ["trapezoid"],
-        "velocity": ["VelocityKalman", "difference_velocity"],
+        "velocity": ["difference_velocity", "kalman_velocity"],
     },
 )

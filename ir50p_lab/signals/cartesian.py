@@ -1,5 +1,6 @@
 """Paths of the tip in space, straight or round, as references for the joints: through the IK, from rest to rest."""
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,11 +10,12 @@ from ir50p_lab.inputs import number, vector3
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.differential import jacobian, singularity
 from ir50p_lab.modelling.ik import BRANCHES, inverse_kinematics, reachability
-from ir50p_lab.signals.fourier import heights, limits_of
+from ir50p_lab.signals.fourier import limits_of, refuse_below_table
 from ir50p_lab.signals.path_shapes import Circle, Line
-from ir50p_lab.signals.reference import Reference, pose, seconds
+from ir50p_lab.signals.reference import Reference, pose
 from ir50p_lab.signals.speed_profile import SpeedProfile, fastest
 
+_GRID = 801  # points, on a circle per turn, at which a path is examined
 _STEP = 1e-5  # s, of the difference that gives Jvd, right to ten digits
 _SINGULAR = 1e-3  # smallest singular value of Jv over the reach, below which no joint speed is finite in practice
 
@@ -34,10 +36,7 @@ class CartesianPath(Reference):
     profile: SpeedProfile
     branch: str
     q_grid: np.ndarray = field(repr=False, compare=False)  # (n, 3) rad at equal distances, without jumps of a turn
-    duration: float = field(init=False)
-
-    def __post_init__(self):
-        object.__setattr__(self, "duration", max(0.0, self.profile.end))
+    duration: float
 
     def _rows(self, t):
         s, sd, sdd = self.profile(t)
@@ -57,14 +56,8 @@ class CartesianPath(Reference):
 
     def tip(self, t):
         """Where the tip shall be at one time t (3,) or at times (n,), (n, 3), in s; m."""
-        if np.ndim(t) == 0:
-            return self.tip([seconds("t", t)])[0]
-        return self.shape(self.profile(np.asarray(t, dtype=float))[0])[0]
-
-    @property
-    def points(self):
-        """The path for a drawing, (n, 3) m, at equal distances."""
-        return self.shape(np.linspace(0, self.shape.length, len(self.q_grid)))[0]
+        s, _, _ = self.profile(np.asarray(t, dtype=float))
+        return self.shape(s)[0]
 
     @property
     def q_start(self):
@@ -76,10 +69,13 @@ def cartesian_line(arm, start, end, **options):
     """The tip on a straight line from `start` to `end`, from rest to rest.
 
     Args: arm: Arm; start, end: (3,) m, base coordinates; options: see `cartesian_circle`.
-    Returns: CartesianPath, a Reference with `.tip(t)`, `.points`, `.q_start`, `.branch`.
+    Returns: CartesianPath, a Reference with `.tip(t)`, `.q_start`, `.branch`.
     Raises: as `cartesian_circle`; InputError if start and end are the same point.
     """
-    return _path(arm, Line(pose("start", start, unit="m"), pose("end", end, unit="m")), **options)
+    line = Line(pose("start", start, unit="m"), pose("end", end, unit="m"))
+    if line.length < 1e-6:
+        raise InputError(f"start and end of the line are {line.length:.3g} m apart: give two different points (m)")
+    return _path(arm, line, _GRID, **options)
 
 
 def cartesian_circle(arm, centre, radius, *, normal=(0.0, 0.0, 1.0), turns=1.0, phase=0.0, **options):
@@ -93,171 +89,123 @@ def cartesian_circle(arm, centre, radius, *, normal=(0.0, 0.0, 1.0), turns=1.0, 
         speed: m/s, on the way (default 0.09, the path speed in the manual of the ROB3i, the sister arm).
         acceleration: m/s^2, of the tip, tangential and centripetal together (default 0.3).
         start_time: s; before it the arm rests at the first point.
-        near: (3,) rad; of the branches that can go all the way, the one is taken that begins nearest to this pose.
-        branch: one of 'front/up', 'front/down', 'back/up', 'back/down' to choose it yourself.
+        near: (3,) rad (default 0); of the branches that can go all the way ('front/up', 'front/down', 'back/up',
+            'back/down'), the one is taken that begins nearest to this pose.
         max_joint_speed: rad/s, one number or (3,). Default: half the no-load speed of the motors; without motors 2.
         table: height in m below which neither elbow nor tip may go (default 0); None: no table.
         margin: rad kept from the joint limits (default 0.03: at a limit the drive is cut).
 
-    Returns: CartesianPath, a Reference with `.tip(t)`, `.points`, `.q_start`, `.branch`.
-    Raises: UnreachableError, with .share (0..1 of the way), .point (3,) m and .distance (m, or rad past a joint limit),
-    if a point is out of reach, outside the joint limits on every branch, or under the table; with .speeds (3,) rad/s
+    Returns: CartesianPath, a Reference with `.tip(t)`, `.q_start`, `.branch`.
+    Raises: UnreachableError if a point is out of reach, outside the joint limits on every branch, or under the table;
     if a joint would have to be faster than max_joint_speed: then the path passes near a singular pose, or the speed is
-    too high. InputError on a wrong shape or a number that is not finite or out of range.
+    too high. It says where, by how much, and what to do. InputError on a wrong shape or a number that is not finite or
+    out of range.
     """
     centre, normal = pose("centre", centre, unit="m"), pose("normal", normal, unit="1")
-    return _path(arm, Circle(centre, radius, normal, turns, phase), **options)
+    if not math.hypot(*normal) > 1e-9:
+        raise InputError(f"normal = {normal}: it has no direction; for a level circle give (0, 0, 1)")
+    if not 0 < abs(number("turns", turns)) <= 100:
+        raise InputError(f"turns = {turns}: give a number from -100 to 100, not 0")
+    radius, phase = number("radius", radius, "> 0", unit="m"), number("phase", phase, unit="rad")
+    return _path(arm, Circle(centre, radius, normal, turns, phase), _GRID * math.ceil(abs(turns)), **options)
 
 
 def _path(
     arm,
     shape,
+    n,
     *,
     speed=0.09,
     acceleration=0.3,
     start_time=0.0,
-    near=None,
-    branch=None,
+    near=(0.0, 0.0, 0.0),
     max_joint_speed=None,
     table=0.0,
     margin=0.03,
 ):
-    near = vector3("near", (0.0, 0.0, 0.0) if near is None else near)
-    if branch is not None and branch not in BRANCHES:
-        raise InputError(f"branch = {branch!r}: choose one of {', '.join(BRANCHES)}")
+    near = vector3("near", near)
     speed = number("speed", speed, "> 0", unit="m/s")
     acceleration = number("acceleration", acceleration, "> 0", unit="m/s^2")
+    start_time = number("start_time", start_time, unit="s")
     low, high, bound, table = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
-    s = np.linspace(0, shape.length, shape.grid)
-    p, tangent, _ = shape(s)
-    _refuse_out_of_reach(arm, p)
-    _refuse_below("tip", p[:, 2], table, p)
+    p, tangent, _ = shape(np.linspace(0, shape.length, n))
+
+    def place(i):
+        """Where sample i is, in words."""
+        return f"{100 * i / (n - 1):.0f} % of the way (tip at [{', '.join(f'{x:.3f}' for x in p[i])}] m)"
+
+    _refuse_out_of_reach(arm, p, place)
     solutions = np.unwrap(inverse_kinematics(arm, p).q, axis=0)  # (n, 4, 3), each branch without jumps
     solutions = _nearest_turn(solutions, near, low, high)
-    choice = _choose(arm, solutions, p, near, branch, margin)
-    q = solutions[:, choice]
-    if table is not None:
-        _refuse_below("elbow", heights(arm.l, q)[0], table, p)
-    _refuse_fast_joints(arm, q, p, tangent, speed, bound)
-    profile = fastest(shape, speed, acceleration, seconds("start_time", start_time))
-    return CartesianPath(arm=arm, shape=shape, profile=profile, branch=BRANCHES[choice], q_grid=q)
+    branch = _choose(solutions, near, low, high, place)
+    q = solutions[:, branch]
+    refuse_below_table(arm.l, q, table, place)
+    _refuse_fast_joints(arm, q, tangent, speed, bound, place)
+    profile = fastest(shape, speed, acceleration, start_time)
+    return CartesianPath(arm, shape, profile, BRANCHES[branch], q_grid=q, duration=max(0.0, profile.end))
 
 
 def _nearest_turn(solutions, near, low, high):
-    """Shift each branch by whole turns: into the joint limits if it fits there, else near to the pose `near`."""
-    turns = 2 * np.pi * np.rint((near - solutions[0]) / (2 * np.pi))
-    best = solutions + turns
-    for k in (-1, 0, 1):
-        shifted = solutions + 2 * np.pi * k
-        fits = ((shifted >= low) & (shifted <= high)).all(axis=0)
-        worse = ~((best >= low) & (best <= high)).all(axis=0)
-        best = np.where(fits & worse, shifted, best)
-    return best
+    """Shift each branch by whole turns: near to the pose `near`, or into the joint limits where only that fits."""
+
+    def turns(towards, now):
+        return 2 * np.pi * np.rint((towards - now) / (2 * np.pi))
+
+    least, most = solutions.min(axis=0), solutions.max(axis=0)
+    to_pose = turns(near, solutions[0])
+    fits = (least + to_pose >= low) & (most + to_pose <= high)
+    middle = np.clip([low, high], -1e3, 1e3).mean(axis=0)  # of the limits; those that are none are infinite
+    return solutions + np.where(fits, to_pose, turns(middle, (least + most) / 2))
 
 
-def _choose(arm, solutions, p, near, branch, margin):
+def _choose(solutions, near, low, high, place):
     """Number of the branch that stays within the limits all the way and begins nearest to `near`."""
-    over = np.maximum(np.array(arm.q_min) + margin - solutions, solutions - np.array(arm.q_max) + margin)
-    over = np.maximum(over, 0.0)  # (n, 4, 3) rad past the limits
-    possible = ~over.any(axis=(0, 2))
-    if branch is not None:
-        possible &= np.array(BRANCHES) == branch
+    over = np.maximum(low - solutions, solutions - high)  # (n, 4, 3) rad past the limits
+    possible = (over <= 0).all(axis=(0, 2))
     if possible.any():
         distance = np.abs(solutions[0] - near).max(axis=1)
         return int(np.where(possible, distance, np.inf).argmin())
-    reasons, candidates = [], [BRANCHES.index(branch)] if branch else range(4)
-    for k in candidates:
+    reasons = []
+    for k, branch in enumerate(BRANCHES):
         i, joint = np.unravel_index(over[:, k].argmax(), over[:, k].shape)
-        limits = np.degrees([arm.q_min[joint], arm.q_max[joint]])
-        reasons.append(
-            f"{BRANCHES[k]}: q{joint + 1} = {np.degrees(solutions[i, k, joint]):.1f} deg at {_percent(i, p)}, "
-            f"limits {limits[0]:.0f}..{limits[1]:.0f}"
-        )
-    k = min(candidates, key=lambda k: over[:, k].max())
-    i = int(over[:, k].max(axis=1).argmax())
-    raise _unreachable(
-        f"the path leaves the joint limits (less {margin:g} rad of margin) on "
-        f"{'every branch' if branch is None else 'this branch'} ({' | '.join(reasons)}): move or shorten it",
-        i,
-        p,
-        float(over[i, k].max()),
+        angle, least, most = np.degrees([solutions[i, k, joint], low[joint], high[joint]])
+        reasons.append(f"{branch}: q{joint + 1} = {angle:.1f} deg at {place(i)}, allowed {least:.0f}..{most:.0f}")
+    raise UnreachableError(
+        f"the path leaves the joint limits (less margin) on every branch ({' | '.join(reasons)}): move or shorten it"
     )
 
 
-def _refuse_out_of_reach(arm, p):
+def _refuse_out_of_reach(arm, p, place):
     distance = reachability(arm, p)
     if not distance.any():
         return
-    outside = np.flatnonzero(distance > 0)
-    worst = int(distance.argmax())
+    outside, worst = distance > 0, int(distance.argmax())
     _, l2, l3 = arm.l
-    raise _unreachable(
-        f"{len(outside) / len(p):.0%} of the path is out of reach, first at {_percent(outside[0], p)} of the way "
-        f"({_text(p[outside[0]])}); worst {1e3 * distance[worst]:.3g} mm outside at {_percent(worst, p)}: "
-        f"the arm reaches {abs(l2 - l3):.3g} to {l2 + l3:.3g} m from its shoulder at height {arm.l[0]:.3g} m",
-        worst,
-        p,
-        float(distance[worst]),
+    raise UnreachableError(
+        f"{outside.mean():.0%} of the path is out of reach, first at {place(int(outside.argmax()))}; worst "
+        f"{1e3 * distance[worst]:.3g} mm outside at {place(worst)}: "
+        f"the arm reaches {abs(l2 - l3):.3g} to {l2 + l3:.3g} m from its shoulder at height {arm.l[0]:.3g} m"
     )
 
 
-def _refuse_below(part, heights, table, p):
-    if table is None:
-        return
-    i = int(heights.argmin())
-    depth = table - heights[i]
-    if depth > 1e-12:
-        raise _unreachable(
-            f"the {part} would be {1e3 * depth:.3g} mm under the table (height {table:g} m) at {_percent(i, p)} of the "
-            f"way, tip at {_text(p[i])}: raise the path, or give the height of your table",
-            i,
-            p,
-            float(depth),
-        )
-
-
-def _refuse_fast_joints(arm, q, p, tangent, speed, bound):
+def _refuse_fast_joints(arm, q, tangent, speed, bound, place):
     """Joint speeds at full path speed all the way, the ends included: there a singular pose needs endless qdd."""
-    smallest = singularity(arm, q).smallest
-    near = smallest < _SINGULAR * arm.reach
+    found = singularity(arm, q)
+    near = found.smallest < _SINGULAR * arm.reach
     rates = np.linalg.solve(np.where(near[:, None, None], np.eye(3), jacobian(arm, q)[:, :3]), tangent[..., None])
     rates = np.where(near[:, None], np.inf, np.abs(rates[..., 0])) * speed
-    excess = (rates / bound).max(axis=1)
-    i = int(excess.argmax())
-    if excess[i] <= 1:
+    i, joint = np.unravel_index((rates / bound).argmax(), rates.shape)
+    if rates[i, joint] <= bound[joint]:
         return
-    joint = int((rates[i] / bound).argmax())
-    why = "" if near[i] else f"give a speed of at most {speed / excess[i]:.2g} m/s"
-    if near[i] or smallest[i] < 0.3 * smallest.max():
-        away = f"it passes near a singular pose ({_which_singularity(arm, q[i])}): lead the path further away"
-        why = f"{away}, or {why}" if why else away
-    error = _unreachable(
-        f"joint {joint + 1} would have to turn at {rates[i, joint]:.3g} rad/s at {_percent(i, p)} of the way "
-        f"({_text(p[i])}), its bound is {bound[joint]:.3g} rad/s; {why}",
-        i,
-        p,
-        0.0,
+    advice = []
+    if near[i] or found.smallest[i] < 0.3 * found.smallest.max():
+        which = f"tip {1e3 * abs(found.shoulder[i]):.0f} mm from the axis of joint 1"
+        if abs(found.elbow[i]) < abs(found.shoulder[i]) / arm.reach:
+            which = f"elbow {'stretched' if np.cos(q[i, 2]) > 0 else 'folded'}, q3 = {np.degrees(q[i, 2]):.1f} deg"
+        advice.append(f"it passes near a singular pose ({which}): lead the path further away")
+    if not near[i]:
+        advice.append(f"give a speed of at most {speed * bound[joint] / rates[i, joint]:.2g} m/s")
+    raise UnreachableError(
+        f"joint {joint + 1} would have to turn at {rates[i, joint]:.3g} rad/s at {place(i)}, its bound is "
+        f"{bound[joint]:.3g} rad/s; {', or '.join(advice)}"
     )
-    error.speeds = rates[i]
-    raise error
-
-
-def _which_singularity(arm, q):
-    found = singularity(arm, q)
-    elbow = f"elbow {'stretched' if np.cos(q[2]) > 0 else 'folded'}, q3 = {np.degrees(q[2]):.1f} deg"
-    shoulder = f"tip {1e3 * abs(found.shoulder):.0f} mm from the axis of joint 1"
-    return elbow if abs(found.elbow) < abs(found.shoulder) / arm.reach else shoulder
-
-
-def _unreachable(message, i, p, distance):
-    error = UnreachableError(message)
-    error.share, error.point, error.distance = i / (len(p) - 1), p[i], distance
-    return error
-
-
-def _percent(i, p):
-    return f"{100 * i / (len(p) - 1):.0f} %"
-
-
-def _text(p):
-    return f"[{', '.join(f'{x:.3f}' for x in p)}] m"

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ir50p_lab.errors import InputError, UnreachableError
-from ir50p_lab.inputs import check_arm, choice, first_not_finite, number, numbers
-from ir50p_lab.signals.reference import Reference, per_joint, seconds
+from ir50p_lab.inputs import check_arm, choice, first_not_finite, number, numbers, whole
+from ir50p_lab.signals.reference import Reference, per_joint
 
 _GRID = 256  # points per period of the fastest harmonic: between them no more than 1 - cos(pi/256) of the swing hides
 _AT_REST = 1e-9  # of the sum of |k a_k|: rounding of coefficients that were made to end at rest
@@ -40,11 +40,6 @@ class Fourier(Reference):
     def q_start(self):
         """Pose in which the motion begins and ends, q0 - sum b_k, (3,) rad: move there first, with `quintic`."""
         return np.array(self.q0) - np.array(self.b).sum(axis=1)
-
-    @property
-    def frequencies_hz(self):
-        """Frequencies that the angles hold, (N,) Hz."""
-        return np.arange(1, len(self.a[0]) + 1) / self.period
 
 
 def fourier(
@@ -81,26 +76,19 @@ def fourier(
             `max_joint_speed` (rad/s, one number or (3,); default: half the no-load speed of the motors, without motors
             2) and the `table` (height in m below which neither elbow nor tip may go; None: no table).
 
-    Returns: Fourier, a Reference with `.q_start` and `.frequencies_hz`.
-    Raises: UnreachableError if a limit of the arm is passed, with .joint (0, 1, 2; None: table), .time (s), .value and
-    .limit; InputError on wrong shapes, numbers that are not finite, ends that are not at rest, or a record that is no
-    whole number of periods.
+    Returns: Fourier, a Reference with `.q_start`.
+    Raises: UnreachableError if a limit of the arm is passed (it says which, when and by how much); InputError on wrong
+    shapes, numbers that are not finite, ends that are not at rest, or a record that is no whole number of periods.
     """
     a, b = _coefficients(a, b)
-    period, start = seconds("period", period, positive=True), seconds("start", start)
+    period, start = number("period", period, "> 0", unit="s"), number("start", start, unit="s")
     periods = _whole_periods(period, periods, record)
     choice("ends", ends, ("check", "adjust"))
     if ends == "adjust":
         a, b = at_rest(a, b)
     _refuse_moving_ends(a, b)
-    made = Fourier(
-        a=tuple(map(tuple, a.tolist())),
-        b=tuple(map(tuple, b.tolist())),
-        q0=per_joint("q0", q0, unit="rad"),
-        period=period,
-        start=start,
-        duration=start + periods * period,
-    )
+    a, b = (tuple(map(tuple, rows.tolist())) for rows in (a, b))
+    made = Fourier(a, b, per_joint("q0", q0, unit="rad"), period, start, duration=start + periods * period)
     if arm is not None:
         check_limits(made, arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
     return made
@@ -143,37 +131,33 @@ def check_limits(target, arm, *, max_joint_speed=None, table=0.0, margin=0.03):
     t = target.period * np.arange(n) / n
     rows = series(target.a, target.b, target.q0, target.period, t)
     hidden = (1 / math.cos(math.pi / _GRID) - 1) * np.ptp(rows, axis=0) / 2
-    q, qd = rows[:, 0], rows[:, 1]
-    for joint in range(3):
-        for name, value, limit, sign, unit in (
-            ("goes up to", q[:, joint], high[joint] - hidden[0, joint], 1, "rad"),
-            ("goes down to", -q[:, joint], -low[joint] - hidden[0, joint], -1, "rad"),
-            ("turns at", np.abs(qd[:, joint]), speed[joint] - hidden[1, joint], 1, "rad/s"),
-        ):
-            i = int(value.argmax())
-            if value[i] > limit:
-                remedy = "a longer period or smaller coefficients" if unit == "rad/s" else "another q0 or smaller ones"
-                raise _too_far(
-                    f"joint {joint + 1} {name} {sign * value[i]:.4g} {unit} at {t[i]:.3g} s of the period, its limit "
-                    f"is {sign * limit:.4g} {unit}: choose {remedy}",
-                    joint,
-                    t[i],
-                    sign * value[i],
-                    sign * limit,
-                )
-    if table is None:
-        return
-    elbow, tip = heights(arm.l, q)
-    for part, height in (("elbow", elbow), ("tip", tip)):
+    q, speeds = rows[:, 0], np.abs(rows[:, 1])
+    for what, value, over, limit, remedy in (
+        ("goes up to", q, q - high + hidden[0], high, "another q0"),
+        ("goes down to", q, low - q + hidden[0], low, "another q0"),
+        ("turns at", speeds, speeds - speed + hidden[1], speed, "a longer period"),
+    ):
+        i, joint = np.unravel_index(over.argmax(), over.shape)
+        if over[i, joint] > 0:
+            unit = "rad/s" if what == "turns at" else "rad"
+            raise UnreachableError(
+                f"joint {joint + 1} {what} {value[i, joint]:.4g} {unit} at {t[i]:.3g} s of the period, its limit is "
+                f"{limit[joint]:.4g} {unit}: choose {remedy} or smaller coefficients"
+            )
+    refuse_below_table(arm.l, q, table, lambda i: f"{t[i]:.3g} s of the period")
+
+
+def refuse_below_table(l, q, table, place):
+    """Raise UnreachableError if elbow or tip would be under the table; place(i) says where sample i is.
+
+    l: (3,) m; q: (n, 3) rad; table: its height in m, None: no table.
+    """
+    for part, height in zip(("elbow", "tip"), heights(l, q), strict=True):
         i = int(height.argmin())
-        if height[i] < table:
-            raise _too_far(
+        if table is not None and height[i] < table - 1e-12:
+            raise UnreachableError(
                 f"the {part} would be {1e3 * (table - height[i]):.3g} mm under the table (height {table:g} m) at "
-                f"{t[i]:.3g} s of the period: raise q2 in q0, choose smaller coefficients, or give your table's height",
-                None,
-                t[i],
-                float(height[i]),
-                table,
+                f"{place(i)}: lead the motion higher, or give the height of your table"
             )
 
 
@@ -191,45 +175,33 @@ def limits_of(arm, *, max_joint_speed=None, table=0.0, margin=0.03):
     if max_joint_speed is None:
         speed = np.full(3, 2.0) if arm.actuators is None else 0.5 * arm.actuators.no_load_speed
     else:
-        speed = np.array(per_joint("max_joint_speed", max_joint_speed, unit="rad/s", positive=True))
+        speed = np.array(per_joint("max_joint_speed", max_joint_speed, "> 0", unit="rad/s"))
     return np.array(arm.q_min) + margin, np.array(arm.q_max) - margin, speed, table
 
 
-def _too_far(message, joint, time, value, limit):
-    error = UnreachableError(message)
-    error.joint, error.time, error.value, error.limit = joint, float(time), float(value), float(limit)
-    return error
-
-
 def _coefficients(a, b):
-    arrays = []
-    for name, value in (("a", a), ("b", b)):
-        array = numbers(name, value, unit="rad, shape (3, N)")
-        if array.ndim != 2 or array.shape[0] != 3 or array.shape[1] < 1:
-            raise InputError(f"{name} has shape {array.shape}; give a row of N coefficients per joint, (3, N) (rad)")
+    a, b = numbers("a", a, unit="rad, shape (3, N)"), numbers("b", b, unit="rad, shape (3, N)")
+    if a.ndim != 2 or len(a) != 3 or a.shape != b.shape:
+        raise InputError(
+            f"a has shape {a.shape}, b {b.shape}; give a row of N coefficients per joint, both (3, N) (rad)"
+        )
+    for name, array in (("a", a), ("b", b)):
         if not np.isfinite(array).all():
             raise InputError(f"{name} holds {first_not_finite(array)}; every coefficient must be finite (rad)")
-        arrays.append(array)
-    if arrays[0].shape != arrays[1].shape:
-        raise InputError(f"a {arrays[0].shape} and b {arrays[1].shape}: give as many of the one as of the other")
-    return arrays
+    return a, b
 
 
 def _whole_periods(period, periods, record):
-    if record is not None:
-        record = seconds("record", record, positive=True)
-        count = round(record / period)
-        if count < 1 or abs(count * period - record) > 1e-9 * record:
-            raise InputError(
-                f"record = {record:g} s holds {record / period:.4g} periods of {period:g} s: record "
-                f"{max(count, 1) * period:g} s, or take a period of {record / max(count, 1):g} s"
-            )
-        return count
-    if isinstance(periods, bool) or not (np.isscalar(periods) and not isinstance(periods, str) and periods >= 1):
-        raise InputError(f"periods = {periods!r}: give a whole number >= 1")
-    if periods != int(periods):
-        raise InputError(f"periods = {periods!r}: the record must hold whole periods; give a whole number >= 1")
-    return int(periods)
+    if record is None:
+        return whole("periods", periods, 1, 10**6)
+    record = number("record", record, "> 0", unit="s")
+    count = max(round(record / period), 1)
+    if abs(count * period - record) > 1e-9 * record:
+        raise InputError(
+            f"record = {record:g} s holds {record / period:.4g} periods of {period:g} s: record {count * period:g} s, "
+            f"or take a period of {record / count:g} s"
+        )
+    return count
 
 
 def _refuse_moving_ends(a, b):

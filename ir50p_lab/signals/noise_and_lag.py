@@ -1,82 +1,91 @@
-"""Noise against lag: every filter pays for one with the other. Numbers for one signal and many filters."""
+"""Noise against lag: every filter pays for one with the other. Numbers for one estimate of a velocity, and a lag."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.signals.lag import measured_lag
+from ir50p_lab.inputs import first_not_finite
 from ir50p_lab.signals.low_pass import low_pass
-from ir50p_lab.signals.velocity import VelocityKalman, difference_velocity
 
 
 @dataclass(frozen=True)
 class NoiseAndLag:
-    """What one estimator of velocity does: name; noise: rms at rest, rad/s; lag: s, in motion; qd: (n,) rad/s."""
+    """What an estimate of a velocity is worth; made by `noise_and_lag`.
 
-    name: str
-    noise: float
-    lag: float
-    qd: np.ndarray
-
-
-def velocity_estimators(rate_hz, *, noise, cutoffs_hz=(2.0, 5.0, 10.0), changes=(3.0, 10.0, 30.0)):
-    """Estimators to compare: dict of name -> function from angles (n,) rad to velocities (n,) rad/s.
-
-    rate_hz: samples per s; noise: rad rms of the angle, for the Kalman filters; cutoffs_hz: of differences behind a
-    first-order low pass, Hz; changes: rad/s^2, of Kalman filters with constant velocity.
+    noise: rms at rest, about its mean, rad/s. lag: s by which it is late in slow motion.
     """
 
-    def difference(cutoff):
-        return lambda q: difference_velocity(q, rate_hz, cutoff_hz=cutoff)
-
-    def kalman(change):
-        filter_ = VelocityKalman(1 / rate_hz, noise=noise, change=change)
-        return lambda q: filter_.estimate(np.column_stack([q, q, q]))[1][:, 0]
-
-    found = {"difference": difference(None)}
-    found |= {f"difference, low pass {cutoff:g} Hz": difference(cutoff) for cutoff in cutoffs_hz}
-    return found | {f"Kalman, {change:g} rad/s²": kalman(change) for change in changes}
+    noise: float
+    lag: float
 
 
-def noise_and_lag(q, rate_hz, *, rest, motion, truth=None, estimators=None, max_lag=0.5):
-    """Compare velocity estimators on one record of one joint.
+def noise_and_lag(qd, truth, rate_hz, *, rest, motion):
+    """How noisy an estimate of the velocity of one joint is at rest, and how late in motion.
 
     The lag is that of slow motion: truth and estimate pass the same zero-phase filter (2 Hz) before `measured_lag`
     compares them, which moves neither and takes away noise.
 
     Args:
-        q: (n,) rad, measured. rate_hz: samples per s.
+        qd: (n,) rad/s, the estimate. rate_hz: samples per s.
+        truth: (n,) rad/s, velocity to measure the lag against, such as `difference_velocity` of the record, zero-phase
+            at 3 Hz, which has no lag.
         rest, motion: slice or bool mask of the stretch where the joint stands, and of one where it speeds up and slows
             down (one run of samples).
-        truth: (n,) rad/s, velocity to measure the lag against; default: `difference_velocity` of the record,
-            zero-phase at 3 Hz, which has no lag.
-        estimators: dict name -> function q (n,) -> qd (n,); default: `velocity_estimators`, with the noise found in
-            the stretch at rest.
-        max_lag: s, largest lag looked for.
 
-    Returns: list of NoiseAndLag. Raises InputError on bad shapes, or if nothing moves in `motion`.
+    Returns: NoiseAndLag. Raises InputError on bad shapes, or if nothing moves in `motion`.
     """
-    q = np.asarray(q, dtype=float)
-    if q.ndim != 1 or not np.isfinite(q).all():
-        raise InputError(f"q has shape {q.shape}: give the finite angles of one joint, (n,) rad")
-    if truth is None:
-        truth = difference_velocity(q, rate_hz, cutoff_hz=3.0, order=2, kind="zero-phase")
-    truth = np.asarray(truth, dtype=float)
+    qd, truth = np.asarray(qd, dtype=float), np.asarray(truth, dtype=float)
     for name, where in (("rest", rest), ("motion", motion)):
-        if truth.shape != q.shape or len(q[where]) < 10:
-            raise InputError(f"{name} holds {len(q[where])} samples and truth {truth.shape}: give 10 or more, and (n,)")
-    same = min(2.0, rate_hz / 10)  # Hz: the motion is slow; noise above would hide where the two are most alike
+        if truth.shape != qd.shape or len(qd[where]) < 10:
+            raise InputError(
+                f"{name} holds {len(qd[where])} samples and truth {truth.shape}: give 10 or more, and (n,)"
+            )
+    cutoff_hz = min(2.0, rate_hz / 10)  # the motion is slow; noise above would hide where the two are most alike
+    slow = (low_pass(signal, cutoff_hz, rate_hz, order=2, kind="zero-phase")[motion] for signal in (truth, qd))
+    return NoiseAndLag(float(np.std(qd[rest])), measured_lag(*slow, rate_hz, max_lag=0.5))
 
-    def slow(signal):
-        return low_pass(signal, same, rate_hz, order=2, kind="zero-phase")[motion]
 
-    if estimators is None:
-        noise = max(float(np.std(q[rest])), 1e-6)
-        estimators = velocity_estimators(rate_hz, noise=noise)
-    found = []
-    for name, estimate in estimators.items():
-        qd = estimate(q)
-        spread = float(np.sqrt(np.mean((qd[rest] - np.mean(qd[rest])) ** 2)))
-        found.append(NoiseAndLag(name, spread, measured_lag(slow(truth), slow(qd), rate_hz, max_lag=max_lag), qd))
-    return found
+def measured_lag(x, y, rate_hz, *, max_lag=1.0):
+    """Time by which y follows x, s: the shift at which the two are most alike (largest correlation).
+
+    The correlation coefficient of y(t + shift) with x(t) over their common stretch, with a parabola through the three
+    best shifts: finer than one sample. Negative: y leads.
+
+    Args: x, y: (n,), sampled together; rate_hz: samples per s; max_lag: s, largest shift tried, to both sides.
+    Raises InputError on shapes that do not fit, numbers that are not finite, a signal that does not move, or if the
+    best shift is the largest tried.
+    """
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    if x.ndim != 1 or x.shape != y.shape:
+        raise InputError(f"x {x.shape} and y {y.shape}: give two signals of the same shape (n,)")
+    for name, signal in (("x", x), ("y", y)):
+        if not np.isfinite(signal).all():
+            raise InputError(f"{name} holds {first_not_finite(signal)}: repair that sample first")
+        if np.ptp(signal) == 0:
+            raise InputError(f"{name} does not move: a lag shows only in motion")
+    most = min(math.ceil(max_lag * rate_hz), len(x) // 2)
+    if most < 1:
+        raise InputError(f"{len(x)} samples cannot be shifted: give at least 4, and a max_lag of a sample or more")
+    shifts = np.arange(-most, most + 1)
+    x, y = x - x.mean(), y - y.mean()
+    likeness = np.array([_likeness(x, y, k) for k in shifts])
+    best = int(likeness.argmax())
+    if best in (0, len(shifts) - 1):
+        shift = f"{shifts[best] / rate_hz:.3g} s"  # a steady ramp fits at any shift
+        raise InputError(f"most alike at the largest shift tried, {shift}: raise max_lag, or give more motion")
+    left, here, right = likeness[best - 1 : best + 2]
+    bend = left - 2 * here + right
+    return float((shifts[best] + (0.5 * (left - right) / bend if bend < 0 else 0.0)) / rate_hz)
+
+
+def _likeness(x, y, k):
+    """Correlation coefficient of y, k samples later, with x over their common stretch; -1 where one stands still."""
+    length = len(x) - abs(k)
+    energies = x @ x, y @ y
+    x, y = x[max(0, -k) :][:length], y[max(0, k) :][:length]
+    x, y = x - x.mean(), y - y.mean()
+    if x @ x <= 1e-12 * energies[0] or y @ y <= 1e-12 * energies[1]:
+        return -1.0
+    return x @ y / math.sqrt((x @ x) * (y @ y))

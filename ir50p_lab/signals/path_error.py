@@ -15,36 +15,18 @@ class PathError:
     """Errors of the tip, at times t (n,) s.
 
     tip, wanted: (n, 3) m, where it was (forward kinematics of the measured joints) and should have been at that time.
-    tracking_mm: (n,) distance of the two. contour_mm: (n,) distance from the nearest point of the path: a tip that is
-    late but on the path has a tracking error only. At or before the start and after the end both are distances, too.
+    tracking_mm: (n,) distance of the two.
     """
 
     t: np.ndarray
     tip: np.ndarray
     wanted: np.ndarray
     tracking_mm: np.ndarray
-    contour_mm: np.ndarray
 
     @property
     def rms_mm(self):
         """Root mean square of the tracking error, mm."""
         return float(np.sqrt(np.mean(self.tracking_mm**2)))
-
-    @property
-    def max_mm(self):
-        """Largest tracking error, mm."""
-        return float(self.tracking_mm.max())
-
-    @property
-    def lateness(self):
-        """How late the tip was, s: the shift of the wanted path that leaves the smallest rms error. NaN at rest."""
-        from ir50p_lab.signals.lag import measured_lag
-
-        rate = (len(self.t) - 1) / (self.t[-1] - self.t[0])
-        axis = int(np.ptp(self.wanted, axis=0).argmax())
-        if np.ptp(self.wanted[:, axis]) < 1e-9:
-            return np.nan
-        return measured_lag(self.wanted[:, axis], self.tip[:, axis], rate)
 
 
 def path_error(arm, measured, path, *, t=None):
@@ -52,7 +34,7 @@ def path_error(arm, measured, path, *, t=None):
 
     Args:
         arm: Arm. measured: a Recording or SimulationResult (its .t and .q), or q (n, 3) rad with its times.
-        path: CartesianPath, or any Reference (the path is then taken to be where its samples lead the tip).
+        path: CartesianPath, or any Reference: its samples lead the tip.
         t: (n,) s, only with q.
 
     Returns: PathError. Raises InputError on shapes that do not fit or numbers that are not finite.
@@ -68,8 +50,4 @@ def path_error(arm, measured, path, *, t=None):
         raise InputError(f"t {t.shape} and q {q.shape} do not fit: give n >= 1 times and q of shape (n, 3)")
     tip = forward_kinematics(arm, q)
     wanted = forward_kinematics(arm, path.sample(t)[:, 0])
-    if hasattr(path, "shape"):
-        contour = path.shape.distance(tip)
-    else:
-        contour = np.array([np.linalg.norm(wanted - point, axis=1).min() for point in tip])
-    return PathError(t, tip, wanted, 1e3 * np.linalg.norm(tip - wanted, axis=1), 1e3 * contour)
+    return PathError(t, tip, wanted, 1e3 * np.linalg.norm(tip - wanted, axis=1))

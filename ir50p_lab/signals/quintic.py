@@ -1,12 +1,14 @@
 """Smooth motion from rest to rest: polynomials of fifth degree in time."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vectors3
-from ir50p_lab.signals.reference import Reference, pose, seconds
+from ir50p_lab.inputs import number, vectors3
+from ir50p_lab.signals.reference import Reference, pose
+
+_TIME = "a motion takes time (for a sudden change use steps)"
 
 
 @dataclass(frozen=True)
@@ -18,10 +20,7 @@ class Quintic(Reference):
 
     times: tuple
     points: tuple
-    duration: float = field(init=False)
-
-    def __post_init__(self):
-        object.__setattr__(self, "duration", max(0.0, self.times[-1]))
+    duration: float
 
     def _rows(self, t):
         times, points = np.array(self.times), np.array(self.points)
@@ -50,8 +49,9 @@ def quintic(q0, q1, *, duration, start=0.0):
     Returns: Reference with duration start + duration. Raises InputError on a wrong shape, a number that is not finite
     or a duration that is not positive.
     """
-    start, duration = seconds("start", start), seconds("duration", duration, positive=True)
-    return Quintic(times=_increasing([start, start + duration]), points=(pose("q0", q0), pose("q1", q1)))
+    start, duration = number("start", start, unit="s"), number("duration", duration, "> 0", unit="s", hint=_TIME)
+    end, points = start + duration, (pose("q0", q0), pose("q1", q1))
+    return Quintic(times=(start, end), points=points, duration=max(0.0, end))
 
 
 def through(points, *, durations, start=0.0):
@@ -69,13 +69,6 @@ def through(points, *, durations, start=0.0):
     durations = [durations] * pieces if np.ndim(durations) == 0 else list(durations)
     if len(durations) != pieces:
         raise InputError(f"{len(durations)} durations for {pieces} pieces between {pieces + 1} points: give one each")
-    lengths = [seconds(f"durations[{i}]", T, positive=True) for i, T in enumerate(durations)]
-    times = np.cumsum([seconds("start", start), *lengths]).tolist()
-    return Quintic(times=_increasing(times), points=tuple(tuple(row) for row in points.tolist()))
-
-
-def _increasing(times):
-    """Refuse durations that vanish in the rounding of a much larger start time."""
-    if (np.diff(times) <= 0).any():
-        raise InputError(f"the times {times} s do not increase: a duration is lost in rounding, start nearer to 0")
-    return tuple(times)
+    lengths = [number(f"durations[{i}]", T, "> 0", unit="s", hint=_TIME) for i, T in enumerate(durations)]
+    times = np.cumsum([number("start", start, unit="s"), *lengths]).tolist()
+    return Quintic(times=tuple(times), points=tuple(map(tuple, points.tolist())), duration=max(0.0, times[-1]))

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite, numbers, vector3
+from ir50p_lab.inputs import first_not_finite, number, numbers, vector3
 
 
 class Reference:
@@ -27,9 +27,7 @@ class Reference:
     def __call__(self, t):
         """(q, qd, qdd) at the time `t`, s: three arrays (3,). Raises InputError if t is not one finite number."""
         if type(t) is not float or not math.isfinite(t):  # else nothing to check, a hundred times a second
-            if np.ndim(t) or isinstance(t, (str, bytes)):
-                raise InputError(f"t = {t!r}: give one time in s; for an array of times use target.sample(t)")
-            t = seconds("t", t)
+            t = number("t", t, unit="s", hint="for an array of times use target.sample(t)")
         q, qd, qdd = self._rows(np.array([t]))[0]
         return q, qd, qdd
 
@@ -41,29 +39,10 @@ class Reference:
         """
         return self._rows(time_vector("t", t))
 
-    def _rows(self, t):
-        raise NotImplementedError(f"{type(self).__name__} must define _rows(t): times (n,) -> array (n, 3, 3)")
-
-
-def seconds(name, value, *, positive=False):
-    """Return `value` as a float in s; InputError unless it is a finite number (and > 0 if `positive`)."""
-    try:
-        number = math.nan if isinstance(value, (str, bytes)) or np.ndim(value) else float(value)
-    except (TypeError, ValueError):
-        number = math.nan
-    if not math.isfinite(number):
-        raise InputError(f"{name} = {value!r}: give one finite number of seconds")
-    if positive and number <= 0:
-        raise InputError(f"{name} = {number} s must be > 0: a motion takes time (for a sudden change use steps)")
-    return number
-
 
 def time_vector(name, value):
     """Return `value` as a float array (n,) in s; InputError on another shape or a number that is not finite."""
-    try:
-        t = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must hold times in s; got {value!r}") from None
+    t = numbers(name, value, unit="s")
     if t.ndim != 1:
         raise InputError(f"{name} has shape {t.shape}; give times in s of shape (n,)")
     if not np.isfinite(t).all():
@@ -76,11 +55,10 @@ def pose(name, value, *, unit="rad"):
     return tuple(vector3(name, value, unit=unit).tolist())
 
 
-def per_joint(name, value, *, unit, positive=False):
-    """Like `pose`, but one number counts for all three joints; each must be > 0 if `positive`."""
+def per_joint(name, value, rule="finite", *, unit=""):
+    """Three numbers that keep the `rule` of `number`, one per joint, as a tuple; a single one counts for all joints."""
     array = numbers(name, value, unit=unit)
-    values = pose(name, np.broadcast_to(array, 3) if array.ndim == 0 else array, unit=unit)
-    if positive and min(values) <= 0:
-        joint = int(np.argmin(values)) + 1
-        raise InputError(f"{name} of joint {joint} is {values[joint - 1]} {unit}; it must be > 0")
-    return values
+    if array.shape not in ((), (3,)):
+        raise InputError(f"{name} has shape {array.shape}; give one number, or one per joint, (3,) ({unit})")
+    joints = enumerate(np.broadcast_to(array, 3).tolist(), start=1)
+    return tuple(number(f"{name} of joint {joint}", x, rule, unit=unit) for joint, x in joints)

@@ -1,6 +1,6 @@
 """References that stand still: one pose, or one after the other."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,10 +18,7 @@ class Steps(Reference):
 
     times: tuple
     values: tuple
-    duration: float = field(init=False)
-
-    def __post_init__(self):
-        object.__setattr__(self, "duration", max(0.0, self.times[-1]))
+    duration: float
 
     def _rows(self, t):
         rows = np.zeros((len(t), 3, 3))
@@ -36,7 +33,7 @@ def hold(q):
     Args: q: (3,) rad. Returns: Reference with duration 0. Raises InputError on a wrong shape or a number that is not
     finite.
     """
-    return Steps(times=(0.0,), values=(pose("q", q),))
+    return Steps(times=(0.0,), values=(pose("q", q),), duration=0.0)
 
 
 def steps(times, values):
@@ -55,15 +52,10 @@ def steps(times, values):
     """
     times, values = time_vector("times", times), vectors3("values", values)
     if values.ndim != 2 or len(times) != len(values) or len(times) == 0:
+        raise InputError(f"times {times.shape} and values {values.shape} do not fit: give (m,) and (m, 3)")
+    if (np.diff(times) <= 0).any() or times[0] > 0:
         raise InputError(
-            f"times {times.shape} and values {values.shape} do not fit: give m times and values of shape (m, 3)"
+            f"times = {times.tolist()} s: let them increase from 0 (or earlier), where the first pose begins"
         )
-    if (np.diff(times) <= 0).any():
-        i = int(np.argmax(np.diff(times) <= 0)) + 1
-        raise InputError(f"times[{i}] = {times[i]} s does not lie after times[{i - 1}] = {times[i - 1]} s: sort them")
-    if times[0] > 0:
-        raise InputError(
-            f"times[0] = {times[0]} s, but the reference needs a pose from t = 0 on: put the start pose in front, "
-            "with the time 0"
-        )
-    return Steps(times=tuple(times.tolist()), values=tuple(tuple(row) for row in values.tolist()))
+    times, values = tuple(times.tolist()), tuple(map(tuple, values.tolist()))
+    return Steps(times=times, values=values, duration=max(0.0, times[-1]))

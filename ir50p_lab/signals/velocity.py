@@ -3,12 +3,8 @@
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import choice, number, vector3, vectors3
-from ir50p_lab.jit import jit
+from ir50p_lab.inputs import number
 from ir50p_lab.signals.low_pass import low_pass
-from ir50p_lab.signals.reference import per_joint
-
-ONE_COUNT = (0.0056, 0.0084, 0.0054)  # rad rms: 1 count of noise and rounding, by the slopes of the sister arm
 
 
 def difference_velocity(q, rate_hz, *, cutoff_hz=None, order=1, kind="causal"):
@@ -30,84 +26,34 @@ def difference_velocity(q, rate_hz, *, cutoff_hz=None, order=1, kind="causal"):
     return v if cutoff_hz is None else low_pass(v, cutoff_hz, rate_hz, order=order, kind=kind)
 
 
-@jit()
-def _run(gain, period, q, state, started, out):
-    """Fill out (n, 2, 3) with q and qd; gain and state (3, 3): joint, (q, qd, qdd). Returns whether it has started."""
-    T = period
-    for k in range(q.shape[0]):
-        for i in range(3):
-            if not started:
-                state[i, 0], state[i, 1], state[i, 2] = q[k, i], 0.0, 0.0
-            else:
-                x = state[i, 0] + T * state[i, 1] + 0.5 * T * T * state[i, 2]
-                v = state[i, 1] + T * state[i, 2]
-                surprise = q[k, i] - x
-                state[i, 0] = x + gain[i, 0] * surprise
-                state[i, 1] = v + gain[i, 1] * surprise
-                state[i, 2] += gain[i, 2] * surprise
-            out[k, 0, i], out[k, 1, i] = state[i, 0], state[i, 1]
-        started = True
-    return started
+def kalman_velocity(q, rate_hz, *, noise, change):
+    """Velocity by a Kalman filter with its steady gain, which takes the velocity as constant but for accelerations.
 
-
-class VelocityKalman:
-    """Kalman filter for angle and velocity of the three joints, with its steady gain.
-
-        predict   x <- F x,                F = [[1, T, T^2/2], [0, 1, T], [0, 0, 1]]  (model="velocity": upper left 2x2)
+        predict   x <- F x,                F = [[1, T], [0, 1]],  x = (angle, velocity), T = 1/rate
         correct   x <- x + K (q - x_1),    K = P H'/(H P H' + noise^2)
         P         solves the discrete Riccati equation (scipy.linalg.solve_discrete_are)
 
-    model="velocity": the velocity is constant but for an acceleration that is drawn anew each period, of `change`
-    rad/s^2 rms. It lags while the joint accelerates. model="acceleration": the acceleration is kept and changes by
-    `change` rad/s^2 rms each period; it does not lag at constant acceleration and lets more noise through.
-    Only change T^2/noise counts: more trust in the measurement and less lag, or more in the model and less noise.
+    An acceleration is drawn anew each period, of `change` rad/s^2 rms; the estimate lags while the joint accelerates.
+    Only change T^2/noise counts: more trust in the measurement and less lag, or more in the model and less noise. The
+    first sample is taken as it is, at rest.
 
-    Args: period: s; noise: rms of the measured angle, rad (default: one count of each potentiometer);
-    change: rad/s^2; each one number or (3,). model: 'velocity' or 'acceleration'.
-    Attributes: gain (3, 3): joint, (q, qd, qdd). Raises InputError on other values.
+    Args: q: (n,) or (n, k) rad, time first; rate_hz: samples per s; noise: rms of the measured angle, rad; change:
+    rad/s^2. Returns: rad/s, like q. Raises InputError for numbers that are not positive.
     """
+    from scipy.signal import lfilter, lfilter_zi
 
-    def __init__(self, period=0.01, *, noise=ONE_COUNT, change=10.0, model="velocity"):
-        self.period = number("period", period, "> 0", unit="s")
-        self.model = choice("model", model, ("velocity", "acceleration"))
-        self.noise = per_joint("noise", noise, unit="rad", positive=True)
-        self.change = per_joint("change", change, unit="rad/s^2", positive=True)
-        self.gain = np.zeros((3, 3))
-        size = 2 if model == "velocity" else 3
-        for i in range(3):
-            self.gain[i, :size] = steady_gain(self.period, self.noise[i], self.change[i], size)
-        self.state = np.zeros((3, 3))
-        self._one = np.empty((1, 2, 3))
-        self.reset()
-
-    def reset(self):
-        """Forget the past: the next sample is taken as it is, at rest."""
-        self.state[:], self._started = 0.0, False
-
-    def step(self, q):
-        """Take one sample q (3,) rad; returns the estimates q (3,) rad and qd (3,) rad/s."""
-        q = vector3("q", q)
-        self._started = _run(self.gain, self.period, q[None], self.state, self._started, self._one)
-        return self._one[0, 0].copy(), self._one[0, 1].copy()
-
-    def estimate(self, q):
-        """The same for a record q (n, 3) rad from its beginning: q (n, 3) rad and qd (n, 3) rad/s."""
-        q = vectors3("q", q)
-        if q.ndim != 2 or len(q) == 0:
-            raise InputError(f"q has shape {q.shape}; give a record (n, 3), time first")
-        out = np.empty((len(q), 2, 3))
-        _run(self.gain, self.period, np.ascontiguousarray(q), np.zeros((3, 3)), False, out)
-        return out[:, 0].copy(), out[:, 1].copy()
+    T = 1 / number("rate_hz", rate_hz, "> 0")
+    noise = number("noise", noise, "> 0", unit="rad")
+    alpha, beta = steady_gain(number("change", change, "> 0", unit="rad/s^2") * T**2 / noise)
+    b, a = np.array([beta, -beta, 0.0]) / T, np.array([1.0, alpha + beta - 2, 1 - alpha])  # from q to x_2
+    q = np.asarray(q, dtype=float)
+    return lfilter(b, a, q, axis=0, zi=np.multiply.outer(lfilter_zi(b, a), q[0]))[0]
 
 
-def steady_gain(period, noise, change, size):
-    """Steady Kalman gain (size,) for one joint; size 2: constant velocity, 3: constant acceleration."""
+def steady_gain(strength):
+    """Steady Kalman gain (2,) for angle and velocity in units of noise and period: strength = change T^2/noise."""
     from scipy.linalg import solve_discrete_are
 
-    # in units of noise and period the equation holds numbers near 1 only
-    strength = change * period**2 / noise
-    F = np.array([[1.0, 1.0, 0.5], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])[:size, :size]
-    G = np.array([0.5, 1.0, 1.0])[:size]
-    H = np.eye(size)[:1]
+    F, G, H = np.array([[1.0, 1.0], [0.0, 1.0]]), np.array([0.5, 1.0]), np.array([[1.0, 0.0]])
     P = solve_discrete_are(F.T, H.T, strength**2 * np.outer(G, G), np.eye(1))
-    return P[:, 0] / (P[0, 0] + 1.0) / period ** np.arange(size)
+    return P[:, 0] / (P[0, 0] + 1.0)

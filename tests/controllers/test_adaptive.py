@@ -20,7 +20,7 @@ RICH = sinusoid((0.8, 0.6, 0.6), (1, 1.5, 2), phase=np.pi / 2)
 
 def passive(q, qd, qdr, qddr):
     out = np.zeros((3, 20))
-    passive_regressor(9.81, q[1], q[2], *qd, *qdr, *qddr, *np.sign(qdr), out)
+    passive_regressor(9.81, q[1], q[2], tuple(qd), tuple(qdr), tuple(qddr), tuple(np.sign(qdr)), out)
     return out
 
 
@@ -188,12 +188,12 @@ def test_header():
         (lambda: AdaptiveControl(IR50P, 1, 10, 1, lower=np.nan), InputError, ["lower", "NaN"]),
         (lambda: AdaptiveControl(IR50P, 1, 10, 1, upper=0.01), InputError, ["joint 1", "bounds"]),
         (lambda: AdaptiveControl(-IR50P.theta, 1, 10, 1), InputError, ["outside its bounds"]),
-        (lambda: AdaptiveControl(IR50P, 1, 10, 1, dead_band=-1), InputError, ["dead_band", "negative"]),
+        (lambda: AdaptiveControl(IR50P, 1, 10, 1, dead_band=-1), InputError, ["dead_band of joint 1 = -1", ">= 0"]),
         (lambda: AdaptiveControl(IR50P, 1, 10, 1, smooth=(1, 2)), InputError, ["smooth"]),
         (lambda: AdaptiveControl(IR50P, 1, 10, 1, filter_hz=0), InputError, ["filter_hz = 0"]),
         (lambda: AdaptiveControl(IR50P, 1, 10, 1, period=-1), InputError, ["period = -1"]),
-        (lambda: AdaptiveControl(IR50P, 1, 10, 1, limit=-5), InputError, ["limit = -5"]),
-        (lambda: AdaptiveControl(IR50P, 1, 10, 1, limit_pwm=0), InputError, ["limit = 0"]),
+        (lambda: AdaptiveControl(IR50P, 1, 10, 1, limit=-5), InputError, ["limit of joint 1 = -5"]),
+        (lambda: AdaptiveControl(IR50P, 1, 10, 1, limit_pwm=0), InputError, ["limit of joint 1 = 0"]),
         (lambda: AdaptiveControl(THESIS_RODS, 1, 10, 1, limit_pwm=255), ArmError, ["no actuators"]),
         (lambda: AdaptiveControl("arm", 1, 10, 1), InputError, ["expected an Arm"]),
         (lambda: AdaptiveControl(IR50P, 1, 10, 1).step(0, [0, np.nan, 0], np.zeros((3, 3))), InputError, ["nan"]),

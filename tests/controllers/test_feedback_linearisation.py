@@ -126,11 +126,10 @@ def test_gains_for_poles_put_them_there(poles):
 @pytest.mark.parametrize(
     "make, words",
     [
-        (lambda: feedback_linearise((x2,), (0, 1), x1, (x1, x2)), ["f has 1", "2 states"]),
-        (lambda: feedback_linearise((x2, 0), (0,), x1, (x1, x2)), ["g has 1"]),
+        (lambda: feedback_linearise((x2,), (0, 1), x1, (x1, x2)), ["1 rates for 2 states"]),
+        (lambda: feedback_linearise((x2, 0), (0,), x1, (x1, x2)), ["1 rates for 2 states"]),
         (lambda: feedback_linearise((x2, -x1), (0, 0), x1, (x1, x2)), ["does not show"]),
-        (lambda: feedback_linearise((1, 2), (0, 1), x1, (1, 2)), ["symbols"]),
-        (lambda: feedback_linearise((), (), x1, ()), ["symbols"]),
+        (lambda: feedback_linearise((), (), x1, ()), ["does not show"]),
         (lambda: lie_derivative(x1, (x1,), (x1, x2)), ["1 rates for 2 states"]),
         (lambda: gains_for_poles((-1, 2)), ["negative real part"]),
         (lambda: gains_for_poles((-1 + 1j,)), ["partner"]),

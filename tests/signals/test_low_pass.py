@@ -18,11 +18,11 @@ FILTERS = [(order, cutoff) for order in (1, 2, 4, 8) for cutoff in (0.5, 2.0, 10
 
 @pytest.mark.parametrize(("order", "cutoff"), FILTERS)
 def test_gain_is_that_of_butterworth(order, cutoff):
-    found = low_pass_response(cutoff, RATE, order=order, f=[0, cutoff, 49.9])
-    np.testing.assert_allclose(found.gain[:2], (1, math.sqrt(0.5)), rtol=1e-9)
+    found = np.abs(low_pass_response(cutoff, RATE, [0, cutoff], order=order))
+    np.testing.assert_allclose(found, (1, math.sqrt(0.5)), rtol=1e-9)
     analogue = np.tan(np.pi * np.array([1.0, 20.0, 40.0]) / RATE) / np.tan(np.pi * cutoff / RATE)
     np.testing.assert_allclose(  # Butterworth by its definition, frequencies bent by the bilinear transform
-        low_pass_response(cutoff, RATE, order=order, f=[1, 20, 40]).gain,
+        np.abs(low_pass_response(cutoff, RATE, [1, 20, 40], order=order)),
         1 / np.sqrt(1 + analogue ** (2 * order)),
         rtol=1e-6,
     )
@@ -33,9 +33,9 @@ def test_gain_and_lag_of_a_sine_in_the_record(order, f):
     y = low_pass(np.sin(2 * np.pi * f * T), 5.0, RATE, order=order)[2000:]
     basis = np.exp(2j * np.pi * f * T[2000:])
     H = 2j * np.mean(y * basis.conj())  # 2000 samples hold whole periods
-    found = low_pass_response(5.0, RATE, order=order, f=[f])
-    assert abs(H) == pytest.approx(found.gain[0], rel=1e-9)
-    assert math.remainder(np.angle(H) - found.phase[0], 2 * math.pi) == pytest.approx(0, abs=1e-9)
+    found = low_pass_response(5.0, RATE, [f], order=order)[0]
+    assert abs(H) == pytest.approx(abs(found), rel=1e-9)
+    assert np.angle(H / found) == pytest.approx(0, abs=1e-9)
 
 
 @pytest.mark.parametrize(("order", "cutoff"), [f for f in FILTERS if f[1] >= 2 and f[0] < 8])
@@ -49,7 +49,7 @@ def test_lag_by_group_delay_and_from_the_data(order, cutoff):
 @pytest.mark.parametrize(("order", "cutoff"), FILTERS)
 def test_group_delay_is_the_slope_of_the_phase(order, cutoff):
     f, h = np.array([0.01, 0.3, cutoff, 30.0]), 1e-4
-    phase = low_pass_response(cutoff, RATE, order=order, f=np.r_[f - h, f + h]).phase.reshape(2, -1)
+    phase = np.angle(low_pass_response(cutoff, RATE, np.r_[f - h, f + h], order=order)).reshape(2, -1)
     slope = np.remainder(phase[0] - phase[1], 2 * np.pi) / (4 * np.pi * h)
     np.testing.assert_allclose(low_pass_lag(cutoff, RATE, order=order, at_hz=f), slope, rtol=1e-5, atol=1e-7)
 
@@ -159,10 +159,6 @@ def test_other_bad_input():
         low_pass(SLOW[:5], 3, RATE, kind="zero-phase")
     with pytest.raises(InputError, match="half the rate"):
         low_pass_lag(3, RATE, at_hz=60)
-    loop = LowPass(3, RATE)
-    loop.step(np.zeros(3))
-    with pytest.raises(InputError, match="reset first"):
-        loop.step(0.0)
 
 
 # ---- lag from data
@@ -189,5 +185,5 @@ def test_lags_that_cannot_be_found():
         measured_lag(SLOW, SLOW[1:], RATE)
     with pytest.raises(InputError, match="holds nan"):
         measured_lag(SLOW, SLOW * np.nan, RATE)
-    with pytest.raises(InputError, match="rate_hz"):
+    with pytest.raises(InputError, match="cannot be shifted"):
         measured_lag(SLOW, SLOW, 0)

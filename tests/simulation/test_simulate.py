@@ -295,7 +295,7 @@ def test_bad_input_gets_a_sentence(change, words):
 def test_more_refusals():
     with pytest.raises(InputError, match="need an Arm"):
         simulate(THESIS_C, stops=True)
-    with pytest.raises(InputError, match="limit = 0: must be positive"):
+    with pytest.raises(InputError, match=r"limit of joint 1 = 0\.0: give one number > 0"):
         ContinuousPID(kp=(1, 1, 1), limit=0)
     with pytest.raises(InputError, match="smooth motion"):
         simulate(IR50P, ContinuousPID(kp=(1, 1, 1)))
