@@ -24,7 +24,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "ball.find": ["Ball", "Balls", "find_balls"],
         "board_pose": ["BoardPose", "board_points", "board_pose"],
         "processing.canny": ["CannySteps", "canny_steps"],
-        "ball.colour": ["RED", "Colour", "learn_colour", "learn_from_patch"],
+        "ball.colour": ["RED", "Colour", "learn_colour"],
         "hand_eye": ["HandEye", "camera_from_board", "hand_eye"],
         "processing.hough": ["circle_hough", "circle_votes", "strongest"],
         "processing.hsv": ["HUE_SCALES", "hue_distance", "hue_in", "rgb_to_hsv", "threshold"],

@@ -6,6 +6,7 @@ import numpy as np
 
 from ir50p_lab.errors import ImageError, InputError
 from ir50p_lab.inputs import number
+from ir50p_lab.vision.checks import coordinates
 from ir50p_lab.vision.image import check_image
 
 HALF_CIRCLE = 90  # OpenCV's hue is degrees/2: 0..179
@@ -48,6 +49,11 @@ class Colour:
         return min(self.hue, 360 - self.hue) < self.tolerance + 1
 
     @property
+    def centre(self):
+        """The hue in pictures of `hsv_of`, degrees."""
+        return (240.0 - self.hue) % 360.0 if self.swaps else self.hue
+
+    @property
     def is_red(self):
         """Whether the hue is within 20 degrees of red, 0."""
         return min(self.hue, 360 - self.hue) <= 20
@@ -57,10 +63,9 @@ class Colour:
 
         saturation: a stricter least saturation, 0..1.
         """
-        hue = (240.0 - self.hue) % 360.0 if self.swaps else self.hue
         s = max(self.saturation, saturation or 0.0)
-        low = (max(0, round((hue - self.tolerance) / 2)), round(255 * s), round(255 * self.value))
-        return low, (min(179, round((hue + self.tolerance) / 2)), 255, 255)
+        low = (max(0, round((self.centre - self.tolerance) / 2)), round(255 * s), round(255 * self.value))
+        return low, (min(179, round((self.centre + self.tolerance) / 2)), 255, 255)
 
     @property
     def overexposed_bounds(self):
@@ -70,8 +75,8 @@ class Colour:
         """
         if not self.swaps or self.hue < 180:
             return None
-        hue = (240.0 - self.hue) % 360.0
-        low, high = (hue + self.tolerance) / 2, (hue + self.tolerance + _PINK) / 2
+        low = (self.centre + self.tolerance) / 2
+        high = low + _PINK / 2
         return (round(low), round(255 * self.looser.saturation), _CLIPPED), (min(179, round(high)), 255, 255)
 
     @property
@@ -109,10 +114,7 @@ def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
     """
     image = check_image(image)
     height, width = image.shape[:2]
-    try:
-        x, y = (float(v) for v in xy)
-    except (TypeError, ValueError):
-        raise InputError(f"xy = {xy!r}: give the pixel (x, y) of a click") from None
+    x, y = coordinates("xy", xy, 2)
     if not (-0.5 <= x < width - 0.5 and -0.5 <= y < height - 0.5):
         raise InputError(f"({x:g}, {y:g}) lies outside the picture of {width}x{height} pixels")
     radius = height / 12 if radius is None else number("radius", radius, "> 0", unit="px")
@@ -135,14 +137,6 @@ def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
         return colour
     between = (np.percentile(hsv[around, 1], 90) + np.percentile(hsv[own, 1], 10)) / 510
     return replace(colour, saturation=max(colour.saturation, min(float(between), _MOST_SATURATION)))
-
-
-def learn_from_patch(patch, *, name="the colour learnt"):
-    """Learn a Colour from a sample: a picture that shows nothing but the thing.
-
-    patch: RGB uint8 (h, w, 3). Returns: Colour. Raises ImageError for a bad picture, or one without a colour.
-    """
-    return _colour_of(check_image(patch).reshape(-1, 3), name)
 
 
 def _colour_of(pixels, name):

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import ImageError, InputError
+from ir50p_lab.inputs import number
 from ir50p_lab.jit import says_that_it_compiles
 from ir50p_lab.vision.ball.classifier import score
-from ir50p_lab.vision.ball.colour import RED, Colour, learn_from_patch
+from ir50p_lab.vision.ball.colour import RED, Colour
 from ir50p_lab.vision.ball.evidence import objection
 from ir50p_lab.vision.ball.features import median
 from ir50p_lab.vision.ball.fit import view_of
@@ -81,7 +82,7 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
 
     Args:
         image: RGB, uint8, (height, width, 3).
-        colour: Colour, or a patch (RGB picture of nothing but the ball) to learn it from.
+        colour: Colour.
         camera: Pinhole or Calibration, if known: then the projected centre is exact, and distortion is allowed for.
             Without it a usual webcam is assumed, with its axis in the middle of the picture.
         least_radius: of the balls sought, pixels; smaller things are left out.
@@ -91,8 +92,9 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     of another size than the camera's.
     """
     image = check_image(image)
-    colour = _as_colour(colour)
-    least_radius = _check_radius(least_radius)
+    if not isinstance(colour, Colour):
+        raise InputError(f"colour = {colour!r:.60}: give RED or another Colour (learn_colour makes one from a click)")
+    least_radius = number("least_radius", least_radius, "> 0", unit="px")
     if image.shape[0] * image.shape[1] < 2:
         raise ImageError("a picture of one pixel shows no ball: take a larger one")
     if camera is not None:
@@ -225,17 +227,3 @@ def _hue(disc):
         hues.append(median(hue[dark]))
     hues.append(median(hue[clear]) if clear.mean() >= _ENOUGH else 0.0)
     return float(min(hues))
-
-
-def _as_colour(colour):
-    if isinstance(colour, Colour):
-        return colour
-    if isinstance(colour, np.ndarray):
-        return learn_from_patch(colour)
-    raise InputError(f"colour = {colour!r}: give RED, a Colour (learn_colour makes one from a click), or a patch")
-
-
-def _check_radius(radius):
-    if not isinstance(radius, int | float | np.number) or not 2 <= radius < np.inf:
-        raise InputError(f"least_radius = {radius!r}: give pixels, at least 2")
-    return float(radius)
