@@ -12,7 +12,7 @@ from ir50p_lab.vision.ball.features import RAYS, median
 from ir50p_lab.vision.ball.find import decide, least_score
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.measure import measure
-from ir50p_lab.vision.rendering.render import scene_truth
+from tests.support.scene_truth import scene_truth
 from tests.targets.ball_examples import BALL, NEARLY, NOTHING, behind, crowded_examples, examples, painted
 from tests.targets.crowded_scene import crowded_scene
 from tests.targets.train_ball_classifier import gradient, logit, start
