@@ -37,22 +37,20 @@ def find_charuco(grey, board):
             raise NotUsable(Reason.WRONG_BOARD, f"{len(ids)} markers, but not where this board has them{fits}")
         _refuse_unreadable(grey)
         raise NotUsable(Reason.CROPPED, f"{count} corners of the board seen, {_FEWEST} needed: show more of it")
-    xy, points = corners, board.points[index, :2]
-    side = _spacing(points, xy, board.square)
-    gap = (board.square - board.marker) / 2 / board.square  # the markers' own corners must stay out of the window
-    half = int(np.clip(min(0.3, gap) * side - 1, 2, 20))
-    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-4)
-    start = np.ascontiguousarray(xy.reshape(-1, 1, 2), dtype=np.float32)
-    xy = cv2.cornerSubPix(grey, start, (half, half), (-1, -1), stop)[:, 0].astype(float)
+    points = board.points[index, :2]
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     if spread[1] < 1.2 * board.square:
         raise NotUsable(Reason.CROPPED, f"the {count} corners seen lie on a line: show more of the board")
+    side = _spacing(points, corners, board.square)
+    gap = (board.square - board.marker) / 2 / board.square  # the markers' own corners must stay out of the window
+    half = int(np.clip(min(0.3, gap) * side - 1, 2, 20))
+    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-4)
+    start = np.ascontiguousarray(corners.reshape(-1, 1, 2), dtype=np.float32)
+    xy = cv2.cornerSubPix(grey, start, (half, half), (-1, -1), stop)[:, 0].astype(float)
     rise = slope_rise(grey, xy, side)
     if rise > SOFT_SLOPE * side:
         raise NotUsable(Reason.BLURRED, f"edges are {rise:.0f} px wide, squares {side:.0f} px: focus, hold still")
-    H = homography(points, xy)
-    off = np.linalg.norm(apply(H, points) - xy, axis=1)
-    if np.median(off) > 0.15 * side:
+    if _off_plane(points, xy) > 0.15 * side:
         fits = _other_board(grey, board)
         raise NotUsable(Reason.WRONG_BOARD, f"its corners are not where this board has them{fits}")
     return BoardCorners(xy, index, np.nan, rise, "ChArUco")
@@ -112,7 +110,8 @@ def _other_board(grey, board):
                 with contextlib.suppress(CalibrationError):  # too small, or more markers than the dictionary has
                     other = replace(board, pattern=pattern, legacy=legacy)
                     xy, index, _ = _detect(grey, other)
-                    if len(index) > most and _lies_well(other.points[index, :2], xy):
+                    size = np.linalg.norm(np.ptp(xy, axis=0)) if len(xy) else 0.0
+                    if len(index) > most and _off_plane(other.points[index, :2], xy) < 0.02 * size:
                         best, most = other, len(index)
     if best is None:
         return ""
@@ -138,19 +137,14 @@ def _other_markers(grey, board):
     return " that can be read: if the board is in view, focus, hold still, or come nearer"
 
 
-def _lies_well(points, xy):
-    """Whether corners xy (n, 2) px are where a flat board has them, points (n, 2)."""
+def _off_plane(points, xy):
+    """Median distance, px, of corners xy (n, 2) from where a flat board has them, points (n, 2)."""
     H = homography(points, xy)
-    if H is None:
-        return False
-    size = np.linalg.norm(np.ptp(xy, axis=0))
-    return bool(np.median(np.linalg.norm(apply(H, points) - xy, axis=1)) < 0.02 * size)
+    return np.inf if H is None else float(np.median(np.linalg.norm(apply(H, points) - xy, axis=1)))
 
 
 def _spacing(points, xy, square):
     """Median side of a square, px, from the scale of the map from board to picture."""
     H = homography(points, xy)
-    if H is None:
-        raise NotUsable(Reason.CROPPED, "the corners seen lie on a line: show more of the board")
     sides = [np.linalg.norm(apply(H, points + step) - apply(H, points), axis=1) for step in np.eye(2) * square]
     return float(np.median(np.minimum(*sides)))

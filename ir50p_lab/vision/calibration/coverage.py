@@ -91,7 +91,7 @@ def next_view(calibration):
     were test the model, too. Raises CalibrationError if the calibration holds no views.
     """
     _need_views(calibration)
-    B = _columns_of(calibration)
+    B = Model(calibration.model).columns
     camera = np.array([*calibration.values.values(), 0, 0, 0])
     seen = CornerSets([v.points for v in calibration.views], [v.corners for v in calibration.views], calibration.size)
     poses = np.array([np.concatenate(rvec_tvec(v.T_cam_board)) for v in calibration.views])
@@ -146,12 +146,6 @@ def _cells(xy, size):
 def _need_views(calibration):
     if not calibration.views:
         raise CalibrationError("this calibration holds no views: it was read from a file of another program")
-
-
-def _columns_of(calibration):
-    terms = tuple(t for t in ("k1", "k2", "k3") if t in calibration.model)
-    model = Model((*terms, "p") if "p1" in calibration.model else terms)
-    return model.columns
 
 
 def _candidates(calibration, points):
