@@ -1,6 +1,7 @@
 """Pictures as arrays: read, check, write. Always uint8, (height, width, 3), in the order red, green, blue."""
 
 import os
+import re
 import zlib
 from pathlib import Path
 
@@ -133,16 +134,15 @@ def list_images(folder):
     files = [p for p in folder.iterdir() if not p.name.startswith(".")]
     paths = [p for p in files if p.suffix.lower() in READ]
     if not paths:
-        heic = any(p.suffix.lower() in (".heic", ".heif") for p in files)
-        hint = "; save the HEIC pictures of a phone as JPEG" if heic else ""
-        raise ImageError(f"{folder} holds no picture ({len(files)} other files): they end in {', '.join(READ)}{hint}")
+        raise ImageError(
+            f"{folder} holds no picture ({len(files)} other files): they end in {', '.join(READ)}; save HEIC pictures "
+            "of a phone as JPEG"
+        )
     return sorted(paths, key=_by_number)
 
 
 def _by_number(path):
-    parts = "".join(c if c.isdigit() else " " for c in path.name).split()
-    words = "".join(" " if c.isdigit() else c for c in path.name.lower()).split()
-    return words[:1], [int(part) for part in parts if part.isdecimal()], path.name
+    return [int(part) if part.isdecimal() else part for part in re.split("([0-9]+)", path.name.lower())]
 
 
 def _marked(data):

@@ -126,14 +126,7 @@ class TablePlane:
 
     def to_image(self, points):
         """Where points (n, 3) or (3,) m of the table appear: (n, 2) or (2,) px."""
-        import cv2
-
-        points = np.asarray(points, dtype=float)
-        rvec, tvec = rvec_tvec(self.T_cam_table)
-        found = cv2.projectPoints(points.reshape(-1, 1, 3), rvec, tvec, self.pinhole.K, self.pinhole.distortion)[0][
-            :, 0
-        ]
-        return found[0] if points.ndim == 1 else found
+        return self.pinhole.project(self.T_cam_table, points)
 
     def covariance(self, xy, height=0.0, *, sigma_px=0.3, sigma_height=0.0):
         """Covariance of the places, (n, 2, 2) m^2, to first order: of pixel, height, and camera and pose together.

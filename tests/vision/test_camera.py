@@ -273,9 +273,7 @@ def test_refusals():
         RenderedCamera(period=0)
     with pytest.raises(InputError, match="Scene"):
         RenderedCamera("bench")
-    found = RenderedCamera()
-    with pytest.raises(CameraError, match="no picture was read"):
-        _ = found.truth
+    assert RenderedCamera().truth is None
 
 
 def test_looking_for_a_webcam_prints_nothing(capfd, monkeypatch):

@@ -1,6 +1,5 @@
 """Pictures from files instead of a camera."""
 
-import contextlib
 import time
 from pathlib import Path
 
@@ -21,24 +20,18 @@ class PictureFolder(Camera):
         self.paths = [path] if path.is_file() else list_images(path)
         self.name, self._loop, self._next = f"folder {path}" if path.is_dir() else f"picture {path}", loop, 0
         self._closed, self._opened = False, time.monotonic()
-        self.size = self._first_size()
-        self.simulated = not any(_is_photograph(one) for one in self.paths)
-
-    def _first_size(self):
-        problems = []
-        for path in self.paths:
+        self.size, self.simulated, problems = None, True, []
+        for one in self.paths:
             try:
-                height, width = load_image(path).shape[:2]
+                self.size = self.size or load_image(one).shape[1::-1]
+                self.simulated = self.simulated and is_rendered(one)
             except ImageError as error:
                 problems.append(str(error))
-            else:
-                return width, height
-        if len(problems) == 1:
-            raise ImageError(problems[0])
-        raise ImageError(
-            f"none of the {len(problems)} pictures of {self.name} can be used. The first: {problems[0]}. (To calibrate "
-            "with grey ones, give calibrate the folder.)"
-        )
+        if self.size is None:
+            raise ImageError(
+                f"none of the {len(problems)} pictures of {self.name} can be used. The first: {problems[0]}. (To "
+                "calibrate with grey ones, give calibrate the folder.)"
+            )
 
     def __len__(self):
         return len(self.paths)
@@ -69,10 +62,3 @@ class PictureFolder(Camera):
     def close(self):
         """No more pictures."""
         self._closed = True
-
-
-def _is_photograph(path):
-    """Whether a file holds a picture that was not rendered; what cannot be read is none."""
-    with contextlib.suppress(ImageError):
-        return not is_rendered(path) and load_image(path) is not None
-    return False

@@ -14,7 +14,8 @@ class RenderedCamera(Camera):
     scene: Scene, or a function of t (s) that gives one; default `bench_scene()`. seed: of the noise, another for each
     picture. period: s between pictures; t counts pictures, not the clock.
     What is in it can change between pictures: `camera.scene = ...`.
-    `truth` is that of the last picture: for tests, and plots that say so; nothing that looks at pictures may use it.
+    `truth` is that of the last picture, None before it: for tests, and plots that say so; nothing that looks at
+    pictures may use it.
     """
 
     simulated = True
@@ -23,7 +24,7 @@ class RenderedCamera(Camera):
         self.scene = bench_scene() if scene is None else scene
         self.seed = whole("seed", seed, 0, 2**62)
         self.period = number("period", period, "> 0", unit="s", hint="the time between two pictures")
-        self._count, self._truth, self._closed = 0, None, False
+        self._count, self.truth, self._closed = 0, None, False
         self.name = "rendered camera"
         self.size = self._now().pinhole.size
 
@@ -37,16 +38,9 @@ class RenderedCamera(Camera):
         """Draw the scene as it is now: a Frame; its truth is in `camera.truth`."""
         if self._closed:
             raise CameraError("the rendered camera is closed: open it again with open_camera('rendered')")
-        image, self._truth = render_scene(self._now(), seed=self.seed + self._count)
+        image, self.truth = render_scene(self._now(), seed=self.seed + self._count)
         self._count += 1
         return Frame(image=image, t=(self._count - 1) * self.period, simulated=True, source=self.name)
-
-    @property
-    def truth(self):
-        """Truth of the last picture. Raises CameraError before the first."""
-        if self._truth is None:
-            raise CameraError("no picture was read yet, so there is no truth of it: call camera.read() first")
-        return self._truth
 
     def close(self):
         """No more pictures."""
