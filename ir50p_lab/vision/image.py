@@ -24,12 +24,9 @@ def check_image(image, name="image"):
     Raises ImageError, naming what it is instead and what to do, for None, an empty array, one channel, four channels,
     or numbers that are not bytes.
     """
-    if image is None:
-        raise ImageError(f"{name} is None: the picture was not read (a wrong path?); load_image(path) says why")
     if not isinstance(image, np.ndarray):
-        raise ImageError(
-            f"{name} is a {type(image).__name__}: give an array (height, width, 3); load_image reads files"
-        )
+        what = "None" if image is None else f"a {type(image).__name__}"
+        raise ImageError(f"{name} is {what}: give an array (height, width, 3); load_image reads files")
     if image.size == 0:
         raise ImageError(f"{name} is empty (shape {image.shape}): the camera or the file gave no picture")
     if image.ndim == 2 or (image.ndim == 3 and image.shape[2] == 1):
@@ -37,12 +34,11 @@ def check_image(image, name="image"):
             f"{name} has one channel (shape {image.shape}): a grey picture holds no colour to look for. Give the "
             "colour picture (height, width, 3)"
         )
-    if image.ndim != 3 or image.shape[2] != 3:
-        hint = ": drop the fourth channel, image[..., :3]" if image.ndim == 3 and image.shape[2] == 4 else ""
-        raise ImageError(f"{name} has shape {image.shape}: give (height, width, 3), red green blue{hint}")
-    if image.dtype != np.uint8:
-        hint = ": scale it, (255 * image).astype('uint8')" if image.dtype.kind == "f" else ""
-        raise ImageError(f"{name} holds {image.dtype} numbers: give bytes 0..255 (uint8){hint}")
+    if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8:
+        raise ImageError(
+            f"{name} holds {image.dtype} numbers of shape {image.shape}: give bytes 0..255 (uint8), (height, width, "
+            "3), red green blue. Drop a fourth channel, image[..., :3]; scale what ends at 1, (255 * image).astype('uint8')"
+        )
     return image
 
 

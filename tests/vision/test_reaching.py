@@ -212,7 +212,7 @@ def test_a_ball_that_cannot_be_gripped_is_not_reached_for():
     with bench, Reacher(bench, locator, rest=False) as reacher:
         before = bench.plant.q_true
         with pytest.raises(UnreachableError, match="out of reach"):
-            reacher.pick_and_place((0.36, 0.15))
+            reacher.pick()
         assert np.abs(bench.plant.q_true - before).max() < 0.05
 
 
@@ -233,15 +233,6 @@ def test_the_budget_is_what_reaching_measures():
     assert world.simulated
 
 
-def test_a_ball_is_picked_and_placed():
-    bench, world, locator = rig((0.42, -0.12, 0.03), 3)
-    with bench, Reacher(bench, locator) as reacher:
-        reacher.pick_and_place((0.36, 0.15))
-        assert not world.held
-        assert np.linalg.norm(world.balls_true[0, :2] - (0.36, 0.15)) < 0.015
-    assert np.abs(bench.plant.q_true - rest_pose(IR50P)).max() < 0.1
-
-
 def test_a_ball_is_picked_seen_in_the_grip_and_put():
     bench, world, locator = rig((0.42, -0.12, 0.03), 3)
     with bench, Reacher(bench, locator) as reacher:
@@ -254,16 +245,17 @@ def test_a_ball_is_picked_seen_in_the_grip_and_put():
         assert world.held
         reacher.put((0.36, 0.15))
         assert not world.held
-    assert np.linalg.norm(world.balls_true[0, :2] - (0.36, 0.15)) < 0.015
+        assert np.linalg.norm(world.balls_true[0, :2] - (0.36, 0.15)) < 0.015
+    assert np.abs(bench.plant.q_true - rest_pose(IR50P)).max() < 0.1
 
 
 def test_a_place_out_of_reach_is_refused_before_anything_moves():
     bench, _, locator = rig()
     with bench, Reacher(bench, locator, rest=False) as reacher:
         with pytest.raises(UnreachableError):
-            reacher.pick_and_place((0.9, 0.0))
+            reacher.put((0.9, 0.0))
         with pytest.raises(InputError, match="place"):
-            reacher.pick_and_place((0.3, 0.0, 0.1))
+            reacher.put((0.3, 0.0, 0.1))
 
 
 def followed(seconds=8.0, age=0.0, **options):
@@ -452,14 +444,10 @@ def test_bad_arguments_of_reaching_are_refused():
         reach_pose(IR50P, np.zeros((2, 3)))
     with pytest.raises(InputError, match="simulated arm"):
         RenderedBench(object())
-    with bench, Reacher(bench, rest=False) as reacher:
-        with pytest.raises(InputError, match="no locator"):
-            reacher.look()
     with bench, Reacher(bench, locator, rest=False) as reacher, pytest.raises(InputError, match="looks"):
         reacher.reach(looks=0)
     for task, name in (
         (lambda r: r.reach(height="a"), "height"),
-        (lambda r: r.pick_and_place("ab"), "place"),
         (lambda r: r.put("ab"), "place"),
         (lambda r: r.pick(contact=np.nan), "contact"),
         (lambda r: r.follow_ball(1.0, lead=np.nan), "lead"),

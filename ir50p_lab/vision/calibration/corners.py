@@ -34,13 +34,11 @@ _ROUGH = 0.08  # the same, that no board shows
 class BoardCorners:
     """Corners found in one picture.
 
-    xy: (n, 2) pixels; index: (n,) places in `board.points`; noise: px rms about a smooth grid, NaN if unknown;
-    rise: width of an edge from dark to light, px; finder: which of OpenCV's finders found them.
+    xy: (n, 2) pixels; index: (n,) places in `board.points`; rise: width of an edge from dark to light, px; finder: which of OpenCV's finders found them.
     """
 
     xy: np.ndarray
     index: np.ndarray
-    noise: float
     rise: float
     finder: str
 
@@ -72,7 +70,7 @@ def find_checkerboard(grey, pattern, other=None):
     best = in_order(best, grey, pattern)
     rise = refuse_soft(grey, best)
     columns, rows = pattern
-    return BoardCorners(best.reshape(-1, 2).astype(float), np.arange(columns * rows), noise, rise, finder)
+    return BoardCorners(best.reshape(-1, 2).astype(float), np.arange(columns * rows), rise, finder)
 
 
 def _found_slowly(grey, small, factor, pattern):
