@@ -37,7 +37,7 @@ def check_image(image, name="image"):
     if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8:
         raise ImageError(
             f"{name} holds {image.dtype} numbers of shape {image.shape}: give bytes 0..255 (uint8), (height, width, "
-            "3), red green blue. Drop a fourth channel, image[..., :3]; scale what ends at 1, (255 * image).astype('uint8')"
+            "3), red green blue. Drop a fourth channel, image[..., :3]; scale 0..1, (255 * image).astype('uint8')"
         )
     return image
 

@@ -115,8 +115,7 @@ def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=No
     everything, inverse = np.unique(np.concatenate(points), axis=0, return_inverse=True)
     places = np.split(inverse.ravel(), np.cumsum([len(p) for p in points])[:-1])
     found = [
-        (f"view {i + 1}", i, BoardCorners(xy, place, np.nan, "given"))
-        for i, (xy, place) in enumerate(zip(pixels, places, strict=True))
+        (f"view {i + 1}", i, BoardCorners(xy, place)) for i, (xy, place) in enumerate(zip(pixels, places, strict=True))
     ]
     return _calibrate(found, size, _board_like(everything), everything, options, [])
 
@@ -148,8 +147,6 @@ def _calibrate(found, size, board, points, options, rejected):
             corners=one.xy,
             residuals=residuals,
             T_cam_board=transform(pose[:3], pose[3:]),
-            rise=one.rise,
-            finder=one.finder,
         )
         for (name, index, one), residuals, pose in zip(found, best.residuals, best.poses, strict=True)
     )

@@ -53,7 +53,7 @@ def find_charuco(grey, board):
     if _off_plane(points, xy) > 0.15 * side:
         fits = _other_board(grey, board)
         raise NotUsable(Reason.WRONG_BOARD, f"its corners are not where this board has them{fits}")
-    return BoardCorners(xy, index, rise, "ChArUco")
+    return BoardCorners(xy, index)
 
 
 def _refuse_unreadable(grey):

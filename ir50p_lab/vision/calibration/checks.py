@@ -175,16 +175,13 @@ def about_lens(calibration):
         if abs(value) < 2 * error:
             found.append(f"{name} = {value:.2g} +- {error:.2g} cannot be told from zero: it means nothing by itself")
     w, h = calibration.size
-    K, (k1, k2, _, _, k3) = calibration.K, calibration.distortion
-    ends = (np.array([[0, 0], [w, 0], [0, h], [w, h]]) - K[:2, 2]) / (K[0, 0], K[1, 1])
-    r2 = np.linspace(0, 1.2 * np.linalg.norm(ends, axis=1).max(), 200) ** 2
-    falling = 1 + 3 * k1 * r2 + 5 * k2 * r2**2 + 7 * k3 * r2**3 <= 0
-    if falling.any():
-        radius = K[0, 0] * np.sqrt(r2[falling][0])
-        distorted = radius * (1 + k1 * r2[falling][0] + k2 * r2[falling][0] ** 2 + k3 * r2[falling][0] ** 3)
-        if distorted < np.linalg.norm(ends * (K[0, 0], K[1, 1]), axis=1).max():
+    pinhole, K = calibration.pinhole, calibration.K
+    ends = np.array([[0, 0], [w, 0], [0, h], [w, h]]) - K[:2, 2]
+    if np.isfinite(pinhole.widest):
+        farthest = K[0, 0] * pinhole.distort((pinhole.widest, 0.0))[0]
+        if farthest < np.linalg.norm(ends, axis=1).max():
             found.append(
-                f"the lens model folds back {distorted:.0f} px from the centre: no ray reaches the picture beyond; "
+                f"the lens model folds back {farthest:.0f} px from the centre: no ray reaches the picture beyond; "
                 "take views with the board in the corners"
             )
     return found

@@ -34,13 +34,11 @@ _ROUGH = 0.08  # the same, that no board shows
 class BoardCorners:
     """Corners found in one picture.
 
-    xy: (n, 2) pixels; index: (n,) places in `board.points`; rise: width of an edge from dark to light, px; finder: which of OpenCV's finders found them.
+    xy: (n, 2) pixels; index: (n,) places in `board.points`.
     """
 
     xy: np.ndarray
     index: np.ndarray
-    rise: float
-    finder: str
 
 
 def find_checkerboard(grey, pattern, other=None):
@@ -59,31 +57,29 @@ def find_checkerboard(grey, pattern, other=None):
     small, factor = reduced(grey, _SEARCHED)
     if other is not None:
         _refuse_other(grey, small, factor, other, pattern)
-    best, finder = _examined(grey, _classic(small, pattern), factor, pattern), "classic"
+    best = _examined(grey, _classic(small, pattern), factor, pattern)
     if best is None:
-        best, finder = _found_slowly(grey, small, factor, pattern)
-    noise, side = roughness(best), np.median(spacing(best))
-    if finder == "classic" and noise > (_UNEVEN_SMALL if side < _SMALL else _UNEVEN) * side:
-        other = _by_sb(grey, small, factor, pattern)
-        if other is not None and roughness(other) < noise:
-            best, finder, noise = other, "SB", roughness(other)
-    best = in_order(best, grey, pattern)
-    rise = refuse_soft(grey, best)
+        best = _found_slowly(grey, small, factor, pattern)
+    else:
+        noise, side = roughness(best), np.median(spacing(best))
+        if noise > (_UNEVEN_SMALL if side < _SMALL else _UNEVEN) * side:
+            smoother = _by_sb(grey, small, factor, pattern)
+            if smoother is not None and roughness(smoother) < noise:
+                best = smoother
+    refuse_soft(grey, best)
     columns, rows = pattern
-    return BoardCorners(best.reshape(-1, 2).astype(float), np.arange(columns * rows), rise, finder)
+    return BoardCorners(in_order(best, grey, pattern).reshape(-1, 2).astype(float), np.arange(columns * rows))
 
 
 def _found_slowly(grey, small, factor, pattern):
-    """(grid, finder) where `findChessboardCorners` finds none. Raises NotUsable with the Reason."""
+    """The grid where `findChessboardCorners` finds none. Raises NotUsable with the Reason."""
     try:
-        return _piece_together(grey, small, factor, pattern), "pieced together"
+        return _piece_together(grey, small, factor, pattern)
     except NotUsable as why:
-        if why.whole:
-            raise
-        grid = _examined(grey, _sb(small, pattern), factor, pattern)
+        grid = None if why.whole else _examined(grey, _sb(small, pattern), factor, pattern)
         if grid is None:
             raise
-        return grid, "SB"
+        return grid
 
 
 def _by_sb(grey, small, factor, pattern):
@@ -219,7 +215,7 @@ def slope_rise(grey, xy, side):
 
 
 def refuse_soft(grey, grid):
-    """Width of the edges, px. Raises NotUsable if they run into each other."""
+    """Raise NotUsable if the edges run into each other."""
     nearest = float(np.median(spacing(grid)))
     rise, limit = edge_rise(grey, grid), _SOFT * nearest
     if rise >= _UNKNOWN:
@@ -230,7 +226,6 @@ def refuse_soft(grey, grid):
             f"edges are {rise:.1f} px wide, squares only {nearest:.0f} px: focus, hold board and camera still, or come "
             "nearer",
         )
-    return rise
 
 
 def _piece_together(grey, small, factor, pattern):

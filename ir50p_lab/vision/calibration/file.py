@@ -18,6 +18,7 @@ _DEEPEST = 1000  # lists within lists: a calibration has five
 
 _LONGEST = 2000  # characters of one text in such a file: OpenCV takes 4096 bytes
 _DETAILS = tuple("covariance sigma sag stderr stderr_corners stderr_views model warnings board views rejected".split())
+_OF_VIEW = tuple(one.name for one in fields(View))
 
 
 def _checked(path):
@@ -167,7 +168,7 @@ def _details(file):
         "model": tuple(found["model"]),
         "warnings": tuple(found["warnings"]),
         "board": Charuco(**board) if "marker" in board else Checkerboard(**board),
-        "views": tuple(View(**{name: _array(value) for name, value in one.items()}) for one in found["views"]),
+        "views": tuple(View(**{name: _array(one[name]) for name in _OF_VIEW}) for one in found["views"]),
         "rejected": tuple(Rejected(**one | {"reason": Reason(one["reason"])}) for one in found["rejected"]),
     }
 
