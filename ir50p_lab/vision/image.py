@@ -84,10 +84,8 @@ def _bytes(path):
     except FileNotFoundError:
         beside = "" if path.parent.is_dir() else f", nor the folder {path.parent}"
         raise ImageError(f"there is no file {path}{beside}: check the name (here is {Path.cwd()})") from None
-    except ValueError:
-        raise ImageError(f"{str(path)!r} is no path (it holds a null byte): check the name") from None
-    except OSError as error:
-        raise ImageError(f"{path} cannot be read ({error.strerror}): check the rights of the file") from None
+    except (OSError, ValueError) as error:  # no right to, or a null byte in the name
+        raise ImageError(f"{path} cannot be read ({error}): check its name and its rights") from None
     if not data:
         raise ImageError(f"{path} is empty (0 bytes): copy or take the picture again")
     return data

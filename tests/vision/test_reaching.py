@@ -37,7 +37,11 @@ OVER = np.array([0.0, 0.0, 0.06])
 def rig(ball=(0.40, 0.10, 0.03), seed=0, **options):
     bench = SimulatedBench(IR50P, seed=seed, q0=rest_pose(IR50P), record_to=False, calibration=calibrated(seed))
     world = RenderedBench(bench, ball, seed=seed)
-    return bench, world, QuickLocator(world, TablePlane(world.pinhole, world.T_cam_world), seed=seed, **options)
+    return (
+        bench,
+        world,
+        QuickLocator(world, TablePlane(world.scene.pinhole, world.scene.T_cam_world), seed=seed, **options),
+    )
 
 
 # ---- where the arm can go
@@ -346,7 +350,7 @@ def test_the_tracker_knows_where_a_ball_will_be():
 
 def test_the_rendered_camera_sees_ball_and_marker_where_they_are():
     bench, world, _ = rig((0.42, 0.08, 0.03))
-    locator = BallLocator(world, TablePlane(world.pinhole, world.T_cam_world))
+    locator = BallLocator(world, TablePlane(world.scene.pinhole, world.scene.T_cam_world))
     seen = locator.look()
     assert seen.simulated
     assert np.linalg.norm(seen.position - world.balls_true[0]) < 1.5e-3
@@ -354,7 +358,7 @@ def test_the_rendered_camera_sees_ball_and_marker_where_they_are():
     bench.plant.place(q)
     again = locator.look()
     marker = locator.find_marker(again.image, IR50P, q + 0.005)
-    expected = world.pinhole.project(world.T_cam_world, locator.marker_place(IR50P, q))
+    expected = world.scene.pinhole.project(world.scene.T_cam_world, locator.marker_place(IR50P, q))
     assert np.linalg.norm(marker - expected) < 1.0
     e, covariance = locator.joint_errors(IR50P, q - [0.004, -0.003, 0.0], marker, [0.006, 0.006, 0.004])
     after = forward_kinematics(IR50P, q - [0.004, -0.003, 0.0] + e) - forward_kinematics(IR50P, q)
@@ -366,7 +370,7 @@ def test_the_rendered_camera_sees_ball_and_marker_where_they_are():
 
 def test_a_picture_of_another_size_than_the_calibration_is_refused():
     _, world, _ = rig()
-    small = TablePlane(world.pinhole.scaled((320, 240)), world.T_cam_world)
+    small = TablePlane(world.scene.pinhole.scaled((320, 240)), world.scene.T_cam_world)
     with pytest.raises(CalibrationError, match="320x240, not 640x480"):
         BallLocator(world, small).look()
 
@@ -435,12 +439,12 @@ def test_the_loop_goes_on_while_the_eye_looks():
 def test_a_locator_of_bad_numbers_is_refused(change):
     _, world, _ = rig()
     with pytest.raises(InputError):
-        BallLocator(world, TablePlane(world.pinhole, world.T_cam_world), **change)
+        BallLocator(world, TablePlane(world.scene.pinhole, world.scene.T_cam_world), **change)
 
 
 def test_bad_arguments_of_reaching_are_refused():
     bench, _, locator = rig()
-    with pytest.raises(InputError, match="one point"):
+    with pytest.raises(InputError, match="three numbers"):
         reach_pose(IR50P, np.zeros((2, 3)))
     with pytest.raises(InputError, match="simulated arm"):
         RenderedBench(object())

@@ -257,7 +257,7 @@ REFUSED = [
     (lambda: bench_scene(pinhole=np.eye(3)), "Pinhole"),
     (lambda: bench_scene(T_cam_world=np.zeros((4, 4))), "rigid"),
     (lambda: render_scene(bench_scene("ball")), "none of the objects"),
-    (lambda: render_scene(bench_scene(pinhole=Pinhole.simple(300, distortion=(-0.9, 0)))), "folds over"),
+    (lambda: render_scene(bench_scene(pinhole=Pinhole.simple(300, distortion=(-0.9, 0)))), "sends no ray"),
 ]
 
 

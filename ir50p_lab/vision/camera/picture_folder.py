@@ -23,10 +23,12 @@ class PictureFolder(Camera):
         self.size, self.simulated, problems = None, True, []
         for one in self.paths:
             try:
-                self.size = self.size or load_image(one).shape[1::-1]
-                self.simulated = self.simulated and is_rendered(one)
+                size = load_image(one).shape[1::-1]
             except ImageError as error:
                 problems.append(str(error))
+                continue
+            self.size = self.size or size
+            self.simulated = self.simulated and is_rendered(one)
         if self.size is None:
             raise ImageError(
                 f"none of the {len(problems)} pictures of {self.name} can be used. The first: {problems[0]}. (To "

@@ -1,12 +1,12 @@
 """Can the arm reach it, in which pose, and on which way: smooth, and clear of the table and of the ball."""
 
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
-from ir50p_lab.errors import InputError, UnreachableError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.errors import UnreachableError
+from ir50p_lab.inputs import vector3
 from ir50p_lab.modelling.chain import forward_kinematics, frames
 from ir50p_lab.modelling.ik import inverse_kinematics, reachability
 from ir50p_lab.signals.cartesian import cartesian_line
@@ -58,9 +58,7 @@ def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
     Raises: UnreachableError, with .distance (m) and .nearest (3,) m, the nearest point that the arm does reach, if p
     is outside the workspace, outside the joint limits, or if the elbow would be under the table.
     """
-    p = vectors3("p", p, unit="m")
-    if p.shape != (3,):
-        raise InputError(f"p has shape {p.shape}; give one point, (3,) m")
+    p = vector3("p", p, unit="m")
     if why := _refusal(arm, p):
         nearest = nearest_reachable(arm, p)
         distance = float(np.linalg.norm(nearest - p))
@@ -81,7 +79,7 @@ def within_reach(arm, p, tolerance=ALMOST):
     A ball is seen to some tenths of a millimetre: that must not decide between a reach and a refusal.
     Raises UnreachableError as `reach_pose`.
     """
-    p = vectors3("p", p, unit="m")
+    p = vector3("p", p, unit="m")
     try:
         reach_pose(arm, p)
     except UnreachableError as error:
@@ -101,15 +99,14 @@ def nearest_reachable(arm, p):
     low, high = np.array(arm.q_min) + MARGIN, np.array(arm.q_max) - MARGIN
     p = np.array([p[0], p[1], max(p[2], 0.0)])  # from under the table the way leads up first
     heading = np.clip(np.arctan2(p[1], p[0]), low[0], high[0])
-    best, best_miss = None, np.inf
-    for share2 in (0.1, 0.5, 0.9):
-        for share3 in (0.1, 0.5, 0.9):
-            start = [heading, *(low[1:] + np.array([share2, share3]) * (high - low)[1:])]
-            found = least_squares(lambda q: forward_kinematics(arm, q) - p, start, bounds=(low, high), xtol=1e-10)
-            miss = np.linalg.norm(found.fun)
-            if miss < best_miss - 1e-9 and _elbow(arm, found.x) > 0:
-                best, best_miss = found.x, miss
-    return forward_kinematics(arm, low if best is None else best)
+    best, best_miss = low, np.inf
+    for shares in product((0.1, 0.5, 0.9), repeat=2):
+        start = [heading, *(low[1:] + shares * (high - low)[1:])]
+        found = least_squares(lambda q: forward_kinematics(arm, q) - p, start, bounds=(low, high), xtol=1e-10)
+        miss = np.linalg.norm(found.fun)
+        if miss < best_miss - 1e-9 and _elbow(arm, found.x) > 0:
+            best, best_miss = found.x, miss
+    return forward_kinematics(arm, best)
 
 
 def plan(arm, q, p, *, speed=_SPEED, lift=_LIFT, clear=CLEAR):
@@ -122,7 +119,7 @@ def plan(arm, q, p, *, speed=_SPEED, lift=_LIFT, clear=CLEAR):
     begins or ends lower).
     Returns: Plan, a Reference. Raises UnreachableError as `reach_pose`.
     """
-    q = vectors3("q", q)
+    q = vector3("q", q)
     goal = reach_pose(arm, p, q)
     above = None
     for share in (1.0, 0.5, 0.25) if lift > 0 else ():
@@ -131,12 +128,11 @@ def plan(arm, q, p, *, speed=_SPEED, lift=_LIFT, clear=CLEAR):
         except UnreachableError:
             continue
         break
-    pieces = []
-    if above is not None:
-        pieces += [_over(arm, q, above, speed, clear), _down(arm, above, goal, p, speed)]
+    if above is None:
+        pieces = (_over(arm, q, goal, speed, min(clear, p[2])),)
     else:
-        pieces.append(_over(arm, q, goal, speed, min(clear, p[2])))
-    return Plan(arm=arm, pieces=tuple(pieces), goal=goal, target=p)
+        pieces = _over(arm, q, above, speed, clear), _down(arm, above, goal, p, speed)
+    return Plan(arm=arm, pieces=pieces, goal=goal, target=p)
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,8 +165,7 @@ class Plan(Reference):
     @property
     def lowest(self):
         """Lowest height of tip and elbow on the way, m."""
-        q = self.sample(np.linspace(0, self.duration, 200))[:, 0]
-        return float(frames(self.arm, q)[:, 2:, 2, 3].min())
+        return _lowest(self.arm, self.sample(np.linspace(0, self.duration, 200))[:, 0])
 
 
 def _over(arm, q, goal, speed, clear):

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
-from ir50p_lab.vision.pinhole import undistort_xy
+from ir50p_lab.vision.pinhole import Pinhole
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,28 +46,14 @@ def grid_rays(pinhole):
 
 def rays_through(pinhole, px, py):
     """Rays through pixels px, py: arrays of one shape, in parts of a pixel."""
-    x, y = _normalised(pinhole.K, pinhole.distortion, px, py)
+    x, y = np.moveaxis(pinhole.undistort_points(np.stack([px, py], axis=-1)), -1, 0)
     return Rays(x, y, x * x + y * y + 1, px, py)
 
 
 @functools.lru_cache(maxsize=8)
 def _grid(K, distortion, size):
-    K, distortion = np.frombuffer(K).reshape(3, 3), np.frombuffer(distortion)
+    pinhole = Pinhole(np.frombuffer(K).reshape(3, 3), np.frombuffer(distortion), size)
     px, py = np.meshgrid(np.arange(size[0], dtype=float), np.arange(size[1], dtype=float))
-    x, y = (a.astype(np.float32) for a in _normalised(K, distortion, px, py))
-    rays = Rays(x, y, x * x + y * y + 1, px.astype(np.float32), py.astype(np.float32))
-    for array in (rays.x, rays.y, rays.length2, rays.px, rays.py):
-        array.setflags(write=False)
-    return rays
-
-
-def _normalised(K, distortion, px, py):
-    y = (py - K[1, 2]) / K[1, 1]
-    x = (px - K[0, 2] - K[0, 1] * y) / K[0, 0]
-    x, y = undistort_xy(distortion, x, y)
-    if not np.isfinite(x).all():
-        raise InputError(
-            f"the distortion {distortion.tolist()} folds over within the picture: some pixels get no ray, so there is "
-            "no picture. Use smaller coefficients or a narrower picture"
-        )
-    return x, y
+    exact = rays_through(pinhole, px, py)
+    x, y, px, py = (array.astype(np.float32) for array in (exact.x, exact.y, px, py))
+    return Rays(x, y, x * x + y * y + 1, px, py)

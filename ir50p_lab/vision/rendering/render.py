@@ -3,7 +3,6 @@
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.vision.pinhole import distort_xy
 from ir50p_lab.vision.rendering.board_print import black
 from ir50p_lab.vision.rendering.colours import light_of
 from ir50p_lab.vision.rendering.light import highlight, irradiance
@@ -59,8 +58,7 @@ class RayTracer:
         pinhole = self.scene.pinhole
         if (np.hypot(corners[:, 0], corners[:, 1]) >= pinhole.widest * corners[:, 2]).any():
             return None
-        x, y = distort_xy(pinhole.distortion, corners[:, 0] / corners[:, 2], corners[:, 1] / corners[:, 2])
-        xy = np.stack([x, y], axis=-1) @ pinhole.K[:2, :2].T + pinhole.K[:2, 2]
+        xy = pinhole.to_pixels(pinhole.distort(corners[:, :2] / corners[:, 2:]))
         low, high = xy.min(axis=0), xy.max(axis=0)
         pad = 3 + 0.05 * (high - low)
         return (*(low - pad), *(high + pad))

@@ -5,20 +5,15 @@ import numpy as np
 
 def expose(light, sensor, rng):
     """Bytes (h, w, 3) of light (h, w, 3): exposure, noise, tone curve, JPEG."""
+    import cv2
+
     light = light * np.float32(sensor.exposure)
     if sensor.read_noise > 0 or sensor.shot_noise > 0:
         light = np.minimum(light, 1.0)  # full wells
         sigma = np.sqrt(sensor.read_noise**2 + sensor.shot_noise**2 * np.maximum(light, 0))
         light = light + sigma * rng.standard_normal(light.shape, dtype=np.float32)
     image = sensor.developed(light)
-    if sensor.jpeg is not None:
-        image = through_jpeg(image, sensor.jpeg)
+    if sensor.jpeg is not None:  # colour at half the resolution, as cameras save it
+        _, data = cv2.imencode(".jpg", image[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, int(sensor.jpeg)])
+        image = np.ascontiguousarray(cv2.imdecode(data, cv2.IMREAD_COLOR)[..., ::-1])
     return image
-
-
-def through_jpeg(image, quality):
-    """The picture after saving as JPEG of this quality (colour at half the resolution, as cameras do)."""
-    import cv2
-
-    _, data = cv2.imencode(".jpg", image[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, int(quality)])
-    return np.ascontiguousarray(cv2.imdecode(data, cv2.IMREAD_COLOR)[..., ::-1])
