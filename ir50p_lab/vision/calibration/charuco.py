@@ -6,15 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.corners import SOFT_SLOPE, BoardCorners, part_of_a_checkerboard, slope_rise
-from ir50p_lab.vision.calibration.grid import apply, homography, spacing
+from ir50p_lab.vision.calibration.corners import SOFT_SLOPE, BoardCorners, slope_rise
+from ir50p_lab.vision.calibration.grid import apply, homography
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 
 _FEWEST = 8  # corners that a view needs; six of them are spent on the pose
-_SEARCHED = 640  # px; squares without markers are searched in a picture reduced to this
-_BLURS = (0, 3, 6)  # px; markers smoothed away leave a checkerboard of black and grey
-_UNREADABLE = 0.09  # width of an edge in squares: a marker's cells have 0.08 to 0.12 of a square
-_SHARP = 2.4  # px; an edge's width from which on a picture may be blurred
 
 
 def find_charuco(grey, board):
@@ -28,15 +24,15 @@ def find_charuco(grey, board):
     corners, index, ids = _detect(grey, board)
     count = len(index)
     if len(ids) == 0:
-        _refuse_unreadable(grey)
         raise NotUsable(Reason.NO_BOARD, f"no marker of {board.dictionary} in it{_other_markers(grey, board)}")
     if count < _FEWEST:
         known = np.isin(ids, board.opencv().getIds()).mean()
         if known < 0.5 or (len(ids) > 6 and count == 0):
             fits = _other_board(grey, board)
             raise NotUsable(Reason.WRONG_BOARD, f"{len(ids)} markers, but not where this board has them{fits}")
-        _refuse_unreadable(grey)
-        raise NotUsable(Reason.CROPPED, f"{count} corners of the board seen, {_FEWEST} needed: show more of it")
+        raise NotUsable(
+            Reason.CROPPED, f"{count} corners of the board seen, {_FEWEST} needed: show more of it, or focus"
+        )
     points = board.points[index, :2]
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     if spread[1] < 1.2 * board.square:
@@ -54,38 +50,6 @@ def find_charuco(grey, board):
         fits = _other_board(grey, board)
         raise NotUsable(Reason.WRONG_BOARD, f"its corners are not where this board has them{fits}")
     return BoardCorners(xy, index)
-
-
-def _refuse_unreadable(grey):
-    """Raises NotUsable if there is a checkerboard that is too blurred for markers to be read."""
-    import cv2
-
-    shrink = max(1.0, max(grey.shape) / _SEARCHED)
-    small = cv2.resize(grey, None, fx=1 / shrink, fy=1 / shrink, interpolation=cv2.INTER_AREA)
-    if shrink * _softest(small) < _SHARP:
-        return
-    for blur in _BLURS:
-        grid = part_of_a_checkerboard(cv2.GaussianBlur(small, (0, 0), blur) if blur else small)
-        if grid is None:
-            continue
-        side = float(np.median(spacing(grid)))
-        rise = slope_rise(small, grid.reshape(-1, 2), side)
-        if rise > _UNREADABLE * side:
-            raise NotUsable(
-                Reason.BLURRED,
-                f"edges are {shrink * rise:.0f} px wide, squares {shrink * side:.0f} px, so no marker can be read: "
-                "focus, hold still, or come nearer",
-            )
-        return
-
-
-def _softest(grey):
-    """Width of the steepest edges of a picture, px, from 10 to 90 % of the step between its dark and light parts."""
-    import cv2
-
-    slope = np.hypot(cv2.Sobel(grey, cv2.CV_32F, 1, 0), cv2.Sobel(grey, cv2.CV_32F, 0, 1)) / 8
-    low, high = np.percentile(grey, [1, 99])
-    return 0.8 * float(high - low) / max(float(np.percentile(slope, 99.9)), 1e-6)
 
 
 def _detect(grey, board):

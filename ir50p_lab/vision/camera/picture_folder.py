@@ -9,16 +9,16 @@ from ir50p_lab.vision.image import is_rendered, list_images, load_image
 
 
 class PictureFolder(Camera):
-    """The pictures of a folder, or one picture, in the order of their names; after the last, CameraError unless `loop`.
+    """The pictures of a folder, or one picture, in the order of their names; after the last, CameraError.
 
     Raises ImageError for a missing folder, and one without a colour picture; `read` raises it for a file that is none,
     and goes on with the next one then. Attributes: paths: of all its files; simulated: no photograph is among them.
     """
 
-    def __init__(self, path, *, loop=False):
+    def __init__(self, path):
         path = Path(path)
         self.paths = [path] if path.is_file() else list_images(path)
-        self.name, self._loop, self._next = f"folder {path}" if path.is_dir() else f"picture {path}", loop, 0
+        self.name, self._next = f"folder {path}" if path.is_dir() else f"picture {path}", 0
         self._closed, self._opened = False, time.monotonic()
         self.size, self.simulated, problems = None, True, []
         for one in self.paths:
@@ -39,7 +39,7 @@ class PictureFolder(Camera):
         return len(self.paths)
 
     def __iter__(self):
-        while self._loop or self._next < len(self.paths):
+        while self._next < len(self.paths):
             yield self.read()
 
     def read(self):
@@ -47,11 +47,7 @@ class PictureFolder(Camera):
         if self._closed:
             raise CameraError(f"{self.name} is closed: open it again")
         if self._next >= len(self.paths):
-            if not self._loop:
-                raise CameraError(
-                    f"{self.name} has no more than {len(self.paths)} pictures: open it again, or with loop=True"
-                )
-            self._next = 0
+            raise CameraError(f"{self.name} has no more than {len(self.paths)} pictures: open it again")
         path = self.paths[self._next]
         self._next += 1
         return Frame(
