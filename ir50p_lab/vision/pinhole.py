@@ -172,13 +172,11 @@ def _frozen(array):
 
 def _check_K(K):
     K = numbers("K", K, unit="px").copy()
-    if K.shape != (3, 3) or not np.isfinite(K).all():
-        raise InputError(f"K = {K.tolist()}: give the finite 3x3 matrix [[fx, skew, cx], [0, fy, cy], [0, 0, 1]]")
-    if (K[2, 0] or K[2, 1]) and not (K[0, 2] or K[1, 2]):
-        raise InputError(f"K has cx, cy = {K[2, 0]:g}, {K[2, 1]:g} in its last row, as MATLAB prints it: give K.T")
-    if K[1, 0] or K[2, 0] or K[2, 1] or K[2, 2] != 1 or K[0, 0] <= 0 or K[1, 1] <= 0:
+    good = K.shape == (3, 3) and np.isfinite(K).all() and not np.tril(K, -1).any() and (np.diag(K) > 0).all()
+    if not good or K[2, 2] != 1:
         raise InputError(
-            f"K = {K.tolist()} is no intrinsic matrix: [[fx, skew, cx], [0, fy, cy], [0, 0, 1]], fx, fy > 0"
+            f"K = {K.tolist()} is no intrinsic matrix: give the finite 3x3 matrix [[fx, skew, cx], [0, fy, cy], "
+            "[0, 0, 1]], fx, fy > 0 (MATLAB prints it transposed: K.T)"
         )
     return K
 

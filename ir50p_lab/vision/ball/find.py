@@ -105,8 +105,16 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     for guess, most in ((guess_circles, _TRIED), (guess_closer, _TRIED_CLOSER)):
         guesses, count = guess(image, colour, least_radius)
         regions, tried = regions + count, tried + len(guesses)
-        for place in guesses[:most, :3]:
-            _measure(image, place, view, colour, camera, least_radius, measured, rejected)
+        for x, y, r in guesses[:most, :3].tolist():
+            if any(np.hypot(x - m.outline.x, y - m.outline.y) + abs(r - m.outline.r) < 0.3 * r for m in measured):
+                continue  # an earlier guess led to the same outline
+            found = measure(image, (x, y, r), view, colour, camera)
+            if isinstance(found, str):
+                rejected.append(((x, y, r), found))
+            elif why := rejection_reason(found, least_radius, colour):
+                rejected.append((_place(found), why))
+            else:
+                measured.append(found)
         balls, objections = decide(measured)
         if balls:
             break
@@ -119,20 +127,6 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         return Balls(balls, rejected=rejected)
     (x, y, r), why = rejected[0]
     return Balls(reason=f"the likeliest thing, at ({x:.0f}, {y:.0f}) with radius {r:.0f}: {why}", rejected=rejected)
-
-
-def _measure(image, place, view, colour, camera, least_radius, measured, rejected):
-    """Measure at a guess (x, y, r): add to `measured` what may be a ball, else to `rejected` ((x, y, r), why)."""
-    x, y, r = map(float, place)
-    if any(np.hypot(x - m.outline.x, y - m.outline.y) + abs(r - m.outline.r) < 0.3 * r for m in measured):
-        return  # an earlier guess led to the same outline
-    found = measure(image, (x, y, r), view, colour, camera)
-    if isinstance(found, str):
-        rejected.append(((x, y, r), found))
-    elif why := rejection_reason(found, least_radius, colour):
-        rejected.append((_place(found), why))
-    else:
-        measured.append(found)
 
 
 def decide(measured):

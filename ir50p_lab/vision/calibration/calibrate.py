@@ -9,19 +9,9 @@ import numpy as np
 from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.inputs import number, switch
 from ir50p_lab.vision.board_pose import transform
+from ir50p_lab.vision.calibration import checks
 from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.charuco import find_charuco
-from ir50p_lab.vision.calibration.checks import (
-    about_camera,
-    about_lens,
-    about_views,
-    bent_board,
-    free_aspect,
-    lacking_terms,
-    outlier_view,
-    sag_size,
-    two_cameras,
-)
 from ir50p_lab.vision.calibration.corners import BoardCorners, find_checkerboard
 from ir50p_lab.vision.calibration.fit import LENS, NAMES, CornerSets, Model, fit, start
 from ir50p_lab.vision.calibration.models import choose, in_percent, total_covariance
@@ -127,7 +117,7 @@ def _calibrate(found, size, board, points, options, rejected):
     model = Model(("k1", "k2"), aspect)
     rough = fit(corners, model, start(corners))
     for _ in range(max(1, len(found) // 4)):
-        outlier = outlier_view(corners, rough)
+        outlier = checks.outlier_view(corners, rough)
         if outlier is None:
             break
         worst, rms, usual = outlier
@@ -138,7 +128,7 @@ def _calibrate(found, size, board, points, options, rejected):
         rough = fit(corners, model, start(corners))
     best, evidence, tried, said = _best(corners, rough, wanted, aspect, bend)
     if not any("was prescribed" in text for text in said):  # else what is prescribed explains the residuals
-        said = two_cameras(corners, best) + said
+        said = checks.two_cameras(corners, best) + said
     views = tuple(
         View(
             name=name,
@@ -171,7 +161,9 @@ def _calibrate(found, size, board, points, options, rejected):
     lost = len(rejected) / (len(rejected) + len(views))
     if lost > 0.5:
         said.append(f"{len(rejected)} of {len(rejected) + len(views)} pictures were of no use: see `rejected`")
-    return replace(result, warnings=(*said, *about_lens(result), *about_camera(result), *about_views(result)))
+    return replace(
+        result, warnings=(*said, *checks.about_lens(result), *checks.about_camera(result), *checks.about_views(result))
+    )
 
 
 def _best(corners, rough, wanted, aspect, bend):
@@ -188,11 +180,11 @@ def _best(corners, rough, wanted, aspect, bend):
     lacking, wide = None, best  # the fit with what a prescribed lens lacks: a lens can look like a bent board
     try:
         if wanted is not None:
-            lacking, wide = lacking_terms(corners, best, guess)
-        shape = bent_board(corners, wide)
+            lacking, wide = checks.lacking_terms(corners, best, guess)
+        shape = checks.bent_board(corners, wide)
         if shape.kept and bend is None:
             best, evidence, tried = estimate(True)
-            lacking, wide = (None, best) if wanted is None else lacking_terms(corners, best, guess)
+            lacking, wide = (None, best) if wanted is None else checks.lacking_terms(corners, best, guess)
     except CalibrationError:
         shape = None
         said.append("the views are too few or too much alike to test whether the board is bent")
@@ -206,15 +198,15 @@ def _best(corners, rough, wanted, aspect, bend):
     if shape is not None and shape.kept and bend is False:
         said.append("bend=False was prescribed, but the corners say that the board is bent: leave bend=None")
     elif shape is not None and shape.kept:
-        size = 1000 * sag_size(corners, best.camera[9:])
-        error = 1000 * sag_size(corners, best.stderr[9:]) / np.sqrt(3)
+        size = 1000 * checks.sag_size(corners, best.camera[9:])
+        error = 1000 * checks.sag_size(corners, best.stderr[9:]) / np.sqrt(3)
         said.append(
             f"the board is bent by {size:.2g} +- {error:.1g} mm: its shape was estimated with the camera. Glue it to "
             "glass or a plate and repeat"
         )
     evidence = (*evidence, shape) if shape is not None else evidence
     if aspect:
-        question, free = free_aspect(corners, wide)
+        question, free = checks.free_aspect(corners, wide)
         evidence = (*evidence, question)
         if question.kept:
             ratio = free.camera[0] / free.camera[1]

@@ -223,8 +223,7 @@ def about_views(calibration):
     found, views = [], calibration.views
     if len(views) < 8:
         found.append(f"{len(views)} views are few: 10 to 20 make the standard errors themselves trustworthy")
-    normals = np.array([v.T_cam_board[:2, 2] for v in views])
-    tilted = normals[np.linalg.norm(normals, axis=1) > np.sin(_TILTED)]
+    tilted = np.array([v.T_cam_board[:2, 2] for v in views if v.tilt > _TILTED])
     if len(tilted) < 3:
         found.append(
             f"too few tilts: {len(tilted)} of {len(views)} views are tilted by more than 15 degrees. A board that "

@@ -175,9 +175,7 @@ def refine(grey, grid):
 
     h, w = grey.shape
     if not ((grid >= 0) & (grid <= (w - 1, h - 1))).all():
-        raise NotUsable(
-            Reason.CROPPED, f"corners beyond the {_sides(grid, grey)} of the picture: move the board into view"
-        )
+        raise NotUsable(Reason.CROPPED, "corners beyond the edge of the picture: move the board into view")
     part, side = np.where(next_to_margin(grid, grey), _WINDOW / 2, _WINDOW), spacing(grid)
     half = np.clip(np.round(part * side), *_WINDOW_PX).astype(int).ravel()
     smooth = cv2.GaussianBlur(grey, (0, 0), float(np.clip(_BLUR * np.median(side), 0.2, _BLUR_PX)))
@@ -243,7 +241,7 @@ def _piece_together(grey, small, factor, pattern):
     columns, rows = _named_like(grid, pattern)
     raise NotUsable(
         Reason.CROPPED,
-        f"{columns}x{rows} of {pattern[0]}x{pattern[1]} corners, then the picture ends at its {_sides(grid, grey)}: "
+        f"{columns}x{rows} of {pattern[0]}x{pattern[1]} corners, then the picture ends at its {' and '.join(sorted(outside))}: "
         "move the board into view, or use a ChArUco board",
         seen=(columns, rows),
     )
@@ -287,20 +285,6 @@ def _part_of_it(shape, outside, pattern):
         all(n == m or (n < m and is_cut) for n, m, is_cut in zip(shape, turned, cut, strict=True))
         for turned in (pattern, pattern[::-1])
     )
-
-
-def _sides(grid, grey):
-    """Which sides of the picture a grid comes near."""
-    h, w = grey.shape
-    reach = 2 * float(np.max(spacing(grid)))
-    xy = grid.reshape(-1, 2)
-    near = {
-        "left": xy[:, 0].min() < reach,
-        "right": xy[:, 0].max() > w - reach,
-        "top": xy[:, 1].min() < reach,
-        "bottom": xy[:, 1].max() > h - reach,
-    }
-    return " and ".join(side for side, is_near in near.items() if is_near) or "edge"
 
 
 def _largest_by_sb(grey):
