@@ -135,10 +135,10 @@ class BallLocator:
             off = (xy - self.marker_pixel(arm, q + e)) / self.sigma_px
             e = e + np.linalg.lstsq(A, np.concatenate([off, -e / sigma_q]), rcond=None)[0]
         if (np.abs(e) > _SPIKE * sigma_q).any():
+            off = np.linalg.norm(xy - self.marker_pixel(arm, q))
             raise VisionError(
-                f"the hand is seen {np.linalg.norm(xy - self.marker_pixel(arm, q)):.0f} px from where the potentiometers "
-                "put it, more than they can be off: was something else taken for the marker, did the camera move, or is "
-                "the arm's calibration wrong?"
+                f"the hand is seen {off:.0f} px from where the potentiometers put it, more than they can be off: was "
+                "something else taken for the marker, did the camera move, or is the arm's calibration wrong?"
             )
         half = np.linalg.solve(np.linalg.qr(A)[1], np.eye(3))
         return e, half @ half.T
