@@ -203,7 +203,7 @@ def test_next_view_keeps_its_promise(calibration):
             [more.stderr_corners[n] / more.stderr[n] if more.stderr[n] == more.stderr[n] else 0 for n in more.stderr]
         )
         V = more.covariance * np.outer(scale, scale) if scale.any() else V
-        return np.sqrt((direction_stderr(more, grid, V) ** 2).mean())
+        return np.sqrt((direction_stderr(replace(more, covariance=V), grid) ** 2).mean())
 
     assert abs(doubt(advised) / following.after - 1) < 0.25
     assert doubt(advised) < doubt(old[0])

@@ -453,7 +453,6 @@ def test_bad_arguments_of_reaching_are_refused():
     for task, name in (
         (lambda r: r.reach(height="a"), "height"),
         (lambda r: r.put("ab"), "place"),
-        (lambda r: r.pick(contact=np.nan), "contact"),
         (lambda r: r.follow_ball(1.0, lead=np.nan), "lead"),
     ):
         with bench, Reacher(bench, locator, rest=False) as reacher, pytest.raises(InputError, match=name):

@@ -60,12 +60,12 @@ def coverage(calibration):
     return Coverage(counts, float(np.mean(counts > 0)), float(min(reach, 1.0)))
 
 
-def direction_stderr(calibration, xy, covariance=None):
+def direction_stderr(calibration, xy):
     """How uncertain the ray of each pixel (n, 2) is, (n,) px: standard error of where its fixed ray falls.
 
     nan if the calibration holds no covariance, as a file of another program.
     """
-    V = calibration.covariance if covariance is None else covariance
+    V = calibration.covariance
     J = _ray_jacobian(calibration, np.asarray(xy, dtype=float))
     return np.sqrt(np.einsum("nij,jk,nik->n", J, V, J))
 

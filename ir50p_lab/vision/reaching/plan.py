@@ -16,7 +16,7 @@ from ir50p_lab.signals.reference import Reference
 MARGIN = 0.03  # rad kept from the joint limits: at a limit the drive is cut
 CLEAR = 0.08  # m that the tip keeps above the table on its way: over a ball of 60 mm
 ALMOST = 1e-3  # m out of reach that does not matter: the nearest point will do
-_LIFT = 0.08  # m above the goal from which the last piece leads straight down
+LIFT = 0.08  # m above the goal from which the last piece leads straight down
 _SPEED = 0.5  # rad/s of the fastest joint: joint 2 follows that against gravity
 _PEAK = 1.875  # a quintic's largest speed over its mean
 
@@ -109,14 +109,13 @@ def nearest_reachable(arm, p):
     return forward_kinematics(arm, best)
 
 
-def plan(arm, q, p, *, speed=_SPEED, lift=_LIFT, clear=CLEAR):
+def plan(arm, q, p, *, lift=LIFT):
     """The way of the tip from the pose q to the point p: over it in joint space, then straight down.
 
     Where the direct way over comes too low it rises first.
 
-    Args: arm: Arm; q: (3,) rad, where it stands; p: (3,) m. speed: rad/s of the fastest joint. lift: m above p where
-    the last piece begins; 0 goes there directly. clear: m that tip and elbow keep above the table (less where the way
-    begins or ends lower).
+    Args: arm: Arm; q: (3,) rad, where it stands; p: (3,) m; lift: m above p where the last piece begins; 0 goes there
+    directly.
     Returns: Plan, a Reference. Raises UnreachableError as `reach_pose`.
     """
     q = vector3("q", q)
@@ -129,9 +128,9 @@ def plan(arm, q, p, *, speed=_SPEED, lift=_LIFT, clear=CLEAR):
             continue
         break
     if above is None:
-        pieces = (_over(arm, q, goal, speed, min(clear, p[2])),)
+        pieces = (_over(arm, q, goal, min(CLEAR, p[2])),)
     else:
-        pieces = _over(arm, q, above, speed, clear), _down(arm, above, goal, p, speed)
+        pieces = _over(arm, q, above, CLEAR), _down(arm, above, goal, p)
     return Plan(arm=arm, pieces=pieces, goal=goal, target=p)
 
 
@@ -168,21 +167,21 @@ class Plan(Reference):
         return _lowest(self.arm, self.sample(np.linspace(0, self.duration, 200))[:, 0])
 
 
-def _over(arm, q, goal, speed, clear):
+def _over(arm, q, goal, clear):
     """From pose to pose: directly if that stays clear, else first up, then round, then down."""
     from ir50p_lab.bench.rest import rest_pose
 
     ends = min(_lowest(arm, q[None]), _lowest(arm, goal[None]))
-    direct = quintic(q, goal, duration=_time(q, goal, speed))
+    direct = quintic(q, goal, duration=_time(q, goal))
     way = direct.sample(np.linspace(0, direct.duration, 60))[:, 0]
     if _lowest(arm, way) >= min(clear, ends) - 1e-3:
         return direct
     high = rest_pose(arm)
     corners = [q, np.array([q[0], high[1], q[2]]), np.array([goal[0], high[1], goal[2]]), goal]
-    return through(corners, durations=[_time(a, b, speed) for a, b in pairwise(corners)])
+    return through(corners, durations=[_time(a, b) for a, b in pairwise(corners)])
 
 
-def _down(arm, above, goal, p, speed):
+def _down(arm, above, goal, p):
     """The last piece: straight for the tip where the joints can follow, else straight for the joints."""
     start = forward_kinematics(arm, above)
     try:
@@ -191,11 +190,11 @@ def _down(arm, above, goal, p, speed):
             return line
     except UnreachableError:
         pass
-    return quintic(above, goal, duration=_time(above, goal, speed))
+    return quintic(above, goal, duration=_time(above, goal))
 
 
-def _time(a, b, speed):
-    return max(0.3, _PEAK * float(np.abs(b - a).max()) / speed)
+def _time(a, b):
+    return max(0.3, _PEAK * float(np.abs(b - a).max()) / _SPEED)
 
 
 def _lowest(arm, q):

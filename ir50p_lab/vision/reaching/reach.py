@@ -159,31 +159,29 @@ class Reacher(Mover):
                 notes.append(str(error))
         return ball, marker, q, "; ".join(notes)
 
-    def pick(self, *, contact=0.0, looks=2):
-        """Reach, go down, close the gripper, go up again.
+    def pick(self):
+        """Reach, go down, close the gripper about the ball's middle, go up again.
 
-        contact: m of the tip over the ball's centre when gripping; 0: the fingers close about its middle. That the arm
-        reaches down there is tested before anything moves.
+        That the arm reaches down there is tested before anything moves.
         Returns: Reached, of the reach. Raises as `reach`. Whether the ball came along only another look can tell.
         """
-        contact = number("contact", contact, unit="m")
-        reach_pose(self.arm, self._sure(self.look()).position + np.array([0.0, 0.0, contact]))
+        reach_pose(self.arm, self._sure(self.look()).position)
         self.grip(False, 0.1)
-        found = self.reach(looks=looks)
-        self.move_to(found.ball + np.array([0.0, 0.0, contact]), lift=0.0)
+        found = self.reach()
+        self.move_to(found.ball, lift=0.0)
         self.grip(True)
-        self.move_to(found.ball + np.array([0.0, 0.0, HEIGHT + contact]), lift=0.0)
+        self.move_to(found.ball + np.array([0.0, 0.0, HEIGHT]), lift=0.0)
         return found
 
-    def put(self, place, *, contact=0.0):
-        """Carry what the gripper holds to `place` (2,) m on the table, open, go up. contact: that of `pick`.
+    def put(self, place):
+        """Carry what the gripper holds to `place` (2,) m on the table, open, go up.
 
         Raises InputError for a place that is none, UnreachableError before anything moves.
         """
         place = numbers("place", place, unit="m")
         if place.shape != (2,) or not np.isfinite(place).all():
             raise InputError(f"place = {place.tolist()}: give x, y on the table, m")
-        down = np.array([*place, self.locator.radius + number("contact", contact, unit="m")])
+        down = np.array([*place, self.locator.radius])
         up = down + np.array([0.0, 0.0, HEIGHT])
         reach_pose(self.arm, up)
         self.move_to(down, lift=HEIGHT)
