@@ -38,18 +38,15 @@ def decode(data):
     return image, None
 
 
-def quarter_turns(data):
-    """By how many quarter turns to the right a phone turned this JPEG upright (its EXIF orientation), 0 to 3."""
-    head = data[data.find(b"Exif\0\0", 0, 65536) + 6 :] if b"Exif\0\0" in data[:65536] else b""
-    order = "little" if head[:2] == b"II" else "big"
+def quarter_turns(path):
+    """By how many quarter turns to the right a phone turned this picture upright (its EXIF orientation), 0 to 3."""
+    from PIL import Image
 
-    def number(at, size):
-        return int.from_bytes(head[at : at + size], order)
-
-    first = number(4, 4)
-    entries = (first + 2 + 12 * k for k in range(number(first, 2)))
-    orientation = next((number(at + 8, 2) for at in entries if number(at, 2) == _ORIENTATION), 1)
-    return {6: 1, 3: 2, 8: 3}.get(orientation, 0)
+    try:
+        with Image.open(path) as picture:
+            return {6: 1, 3: 2, 8: 3}.get(picture.getexif().get(_ORIENTATION), 0)
+    except OSError:  # a kind that OpenCV reads and Pillow does not
+        return 0
 
 
 def _cut_off(data):

@@ -7,7 +7,7 @@ import pytest
 from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 
 from ir50p_lab.vision import RED, Ball, Colour, find_balls, learn_colour
-from ir50p_lab.vision.ball.classifier import LAYERS, WEIGHTS, score
+from ir50p_lab.vision.ball.classifier import WEIGHTS, score
 from ir50p_lab.vision.ball.features import RAYS, median
 from ir50p_lab.vision.ball.find import decide, least_score
 from ir50p_lab.vision.ball.fit import view_of
@@ -15,7 +15,7 @@ from ir50p_lab.vision.ball.measure import measure
 from tests.support.scene_truth import scene_truth
 from tests.targets.ball_examples import BALL, NEARLY, NOTHING, behind, crowded_examples, examples, painted
 from tests.targets.crowded_scene import crowded_scene
-from tests.targets.train_ball_classifier import gradient, logit, start
+from tests.targets.train_ball_classifier import LAYERS, gradient, logit, start
 
 RNG = np.random.default_rng(3)
 

@@ -28,6 +28,7 @@ from ir50p_lab.vision.camera import webcam
 from ir50p_lab.vision.reaching.budget import error_budget
 from ir50p_lab.vision.reaching.plan import ALMOST, MARGIN, nearest_reachable, within_reach
 from ir50p_lab.vision.reaching.result import BallTracker
+from tests.support.places import places_in
 from tests.targets.vision_setup import calibrated
 
 cv2.setNumThreads(1)
@@ -64,7 +65,7 @@ def oracle_distance(p, n=30):
 
 
 def test_refusals_and_distances_are_those_of_an_independent_search():
-    balls = work_area(IR50P).draw(np.random.default_rng(1), 60) + OVER
+    balls = places_in(work_area(IR50P), np.random.default_rng(1), 60) + OVER
     refused = 0
     for p in balls:
         distance = oracle_distance(p)
@@ -118,7 +119,7 @@ def test_a_hair_out_of_reach_counts_as_the_nearest_point():
 def test_plans_arrive_are_smooth_and_stay_clear():
     rng = np.random.default_rng(2)
     q = rest_pose(IR50P)
-    for p in work_area(IR50P).draw(rng, 15) + OVER:
+    for p in places_in(work_area(IR50P), rng, 15) + OVER:
         try:
             way = plan(IR50P, q, p)
         except UnreachableError:
@@ -138,7 +139,7 @@ def test_the_work_area_of_another_arm_follows_its_reach():
     area = work_area(IR50P)
     assert 0.1 < area.r_min < 0.25
     assert 0.5 < area.r_max < 0.6
-    places = area.draw(np.random.default_rng(0), 500)
+    places = places_in(area, np.random.default_rng(0), 500)
     r = np.hypot(*places[:, :2].T)
     assert area.r_min <= r.min() < r.max() <= area.r_max
     assert np.abs(np.arctan2(places[:, 1], places[:, 0])).max() <= area.angle
@@ -151,7 +152,7 @@ def test_the_work_area_of_another_arm_follows_its_reach():
 def misses(looks):
     found = []
     for seed in range(6):
-        ball = work_area(IR50P).draw(np.random.default_rng([seed, 3]), 40)
+        ball = places_in(work_area(IR50P), np.random.default_rng([seed, 3]), 40)
         ball = next(p for p in ball if oracle_distance(p + OVER) < 3e-3 and np.hypot(*p[:2]) < 0.5)
         bench, world, locator = rig(ball, seed)
         with bench:

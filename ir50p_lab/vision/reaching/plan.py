@@ -32,12 +32,6 @@ class WorkArea:
     r_max: float
     angle: float
 
-    def draw(self, rng, n, height=0.03):
-        """n places, evenly spread over the area, (n, 3) m at `height`."""
-        r = np.sqrt(rng.uniform(self.r_min**2, self.r_max**2, n))
-        a = rng.uniform(-self.angle, self.angle, n)
-        return np.column_stack([r * np.cos(a), r * np.sin(a), np.full(n, float(height))])
-
 
 def work_area(arm, height=0.09, *, angle=0.52):
     """The area of this arm for goals at `height` m: from its inner to 30 mm past its outer edge.

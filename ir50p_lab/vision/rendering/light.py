@@ -8,10 +8,10 @@ _BOUNCE = 0.55  # what a table sends up of the light from everywhere, times its 
 _BOUNCE_DIRECT = 0.35  # of direct light: their own shadow lies around them
 
 
-def irradiance(scene, C, X, N, table_colour):
+def irradiance(scene, X, N, table_colour):
     """Light (n, 3) on points X (3, n) in world coordinates with normals N (3, n), and highlights' directions.
 
-    C: (3,) the camera. Returns light (n, 3) and a list of (colour (3,), strength (n,), towards (3, n)) per lamp.
+    Returns light (n, 3) and a list of (colour (3,), strength (n,), towards (3, n)) per lamp.
     """
     light = np.zeros((X.shape[1], 3), dtype=np.float32)
     up, direct = 0.5 * (1 + N[2]), []

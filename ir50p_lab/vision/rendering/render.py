@@ -135,7 +135,7 @@ class RayTracer:
         X = np.stack([depth * x, depth * y, depth])
         N = self.R.T @ shape.normal(X)
         world = self.R.T @ (X - self.t[:, None])
-        light, direct = irradiance(self.scene, self.C, world, N, self.table_colour)
+        light, direct = irradiance(self.scene, world, N, self.table_colour)
         detail = 0
         if isinstance(thing, Board):
             u, v, front = shape.print_coordinates(X)
