@@ -22,10 +22,8 @@ _TRIED, _TRIED_CLOSER = 14, 10  # guesses measured; the closer look is only for 
 
 _LEAST_ODDS = 1.8  # log odds that a ball needs: well above 0, as a false alarm is worse than a miss
 _SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more
-_CLEAR, _MORE_HIDDEN = (
-    0.75,
-    5.0,
-)  # share of the outline below which the end of a rod can, and what is missing costs, times its share
+# share of the outline below which the end of a rod can, and what is missing costs, times its share
+_CLEAR, _MORE_HIDDEN = 0.75, 5.0
 _SURE, _BY_SUPPORT = 0.9975, 5.0  # score beyond which only the edge tells outlines apart; what its share counts
 # The outline of a ball leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and of a pixel.
 _MOST_BUMPS = 0.010, 0.45

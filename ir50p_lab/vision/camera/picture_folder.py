@@ -19,7 +19,7 @@ class PictureFolder(Camera):
         path = Path(path)
         self.paths = [path] if path.is_file() else list_images(path)
         self.name, self._next = f"folder {path}" if path.is_dir() else f"picture {path}", 0
-        self._closed, self._opened = False, time.monotonic()
+        self._opened = time.monotonic()
         self.size, self.simulated, problems = None, True, []
         for one in self.paths:
             try:
@@ -44,7 +44,7 @@ class PictureFolder(Camera):
 
     def read(self):
         """The next Frame. Raises CameraError after the last picture, ImageError for a file that is none."""
-        if self._closed:
+        if self.closed:
             raise CameraError(f"{self.name} is closed: open it again")
         if self._next >= len(self.paths):
             raise CameraError(f"{self.name} has no more than {len(self.paths)} pictures: open it again")
@@ -56,7 +56,3 @@ class PictureFolder(Camera):
             simulated=is_rendered(path),
             source=path.name,
         )
-
-    def close(self):
-        """No more pictures."""
-        self._closed = True

@@ -24,18 +24,14 @@ class RenderedCamera(Camera):
     def __init__(self, scene=None, *, seed=0):
         self.scene = bench_scene() if scene is None else scene
         self.seed = whole("seed", seed, 0, 2**62)
-        self._count, self.truth, self._closed = 0, None, False
+        self._count, self.truth = 0, None
         self.name = "rendered camera"
         self.size = self.scene.pinhole.size
 
     def read(self):
         """Draw the scene as it is now: a Frame; its truth is in `camera.truth`."""
-        if self._closed:
+        if self.closed:
             raise CameraError("the rendered camera is closed: open it again with open_camera('rendered')")
         image, self.truth = render_scene(self.scene, seed=self.seed + self._count)
         self._count += 1
         return Frame(image=image, t=(self._count - 1) * _PERIOD, simulated=True, source=self.name)
-
-    def close(self):
-        """No more pictures."""
-        self._closed = True
