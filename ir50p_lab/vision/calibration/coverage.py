@@ -127,11 +127,11 @@ def next_view(calibration):
     columns, rows = calibration.board.pattern
     outline = xy[[0, columns - 1, columns * rows - 1, columns * (rows - 1)]]
     text = (
-        f"take one with the board {place}, {tilt}: the direction of a pixel would then be known to "
-        f"{after:.2f} px in place of {before:.2f} px"
-        + f", and {new} empty cell{'s' * (new > 1)} of the map filled"
-        * (new > 0)
+        f"take one with the board {place}, {tilt}: the direction of a pixel would then be known to {after:.2f} px in "
+        f"place of {before:.2f} px"
     )
+    if new:
+        text += f", and {new} empty cell{'s' * (new > 1)} of the map filled"
     return NextView(outline, text, before, after, new, tuple(words for words, _ in tried))
 
 

@@ -73,9 +73,7 @@ def sphere_rim(pinhole, centre, radius, n=256):
     """Outline (n, 2) pixels of a sphere: the circle where rays from the camera touch it, projected."""
     D = np.linalg.norm(centre)
     axis = centre / D
-    side = np.cross(axis, (1.0, 0.0, 0.0) if abs(axis[0]) < 0.6 else (0.0, 1.0, 0.0))
-    side /= np.linalg.norm(side)
-    up = np.cross(axis, side)
+    side, up = np.linalg.svd(axis[None])[2][1:]  # across it
     a = np.arange(n)[:, None] * (2 * np.pi / n)
     rim = centre - radius**2 / D * axis + radius * np.sqrt(1 - (radius / D) ** 2) * (np.cos(a) * side + np.sin(a) * up)
     return pinhole.project(np.eye(4), rim)
@@ -83,10 +81,9 @@ def sphere_rim(pinhole, centre, radius, n=256):
 
 def _area_and_centre(rim):
     """Area and centre of area of a polygon (n, 2)."""
-    middle = rim.mean(axis=0)
-    a = rim - middle
-    b = np.roll(a, -1, axis=0)
-    c = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    area = c.sum() / 2
-    x, y = middle + ((a + b) * c[:, None]).sum(axis=0) / (6 * area)
-    return abs(area), float(x), float(y)
+    import cv2
+
+    middle = rim.mean(axis=0)  # OpenCV's polygons are in single precision
+    moments = cv2.moments((rim - middle).astype(np.float32))
+    x, y = middle + np.array([moments["m10"], moments["m01"]]) / moments["m00"]
+    return moments["m00"], float(x), float(y)
