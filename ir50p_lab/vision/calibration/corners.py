@@ -241,7 +241,7 @@ def _piece_together(grey, small, factor, pattern):
     columns, rows = _named_like(grid, pattern)
     raise NotUsable(
         Reason.CROPPED,
-        f"{columns}x{rows} of {pattern[0]}x{pattern[1]} corners, then the picture ends ({', '.join(sorted(outside))}): "
+        f"{columns}x{rows} of {pattern[0]}x{pattern[1]} corners, then the picture ends: "
         "move the board into view, or use a ChArUco board",
         seen=(columns, rows),
     )
