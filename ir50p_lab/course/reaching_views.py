@@ -144,7 +144,7 @@ def height_figure(plane, arm, ball, xy):
 
     def update(height_mm):
         place = plane.to_table(xy, height_mm / 1e3)
-        off = 1e3 * float((place - ball[:2]) @ away)
+        off = round(1e3 * float((place - ball[:2]) @ away), 3) + 0.0  # mm; rounding is no -0.0
         mark.set_data([off], [height_mm])
         level.set_ydata([height_mm, height_mm])
         ax.set_title(f"Read at height {height_mm:.0f} mm, the ball is {off:+.1f} mm off")

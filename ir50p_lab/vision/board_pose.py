@@ -23,10 +23,7 @@ class BoardPose:
                   follows an error of the camera's own numbers
     rms           of the distances between corners and model                              px
     residuals     seen minus model                                                        (n, 2) px
-    other_rms     rms of the other pose that IPPE offers for a flat board, inf if none    px
     ============= ======================================================================= =====================
-
-    A flat board seen from far has two poses that explain it almost alike; `other_rms` close to `rms` says so.
     """
 
     T_cam_board: np.ndarray
@@ -34,7 +31,6 @@ class BoardPose:
     by_camera: np.ndarray = field(repr=False)
     rms: float
     residuals: np.ndarray = field(repr=False)
-    other_rms: float
 
     @property
     def stderr(self):
@@ -90,8 +86,7 @@ def board_pose(camera, corners, points):
         seen, jacobian = cv2.projectPoints(points, rvec, tvec, K, distortion)
         off = corners - seen.reshape(-1, 2)
         tried.append((float(np.sqrt((off**2).sum(axis=1).mean())), rvec, tvec, off, jacobian))
-    tried.sort(key=lambda one: one[0])
-    rms, rvec, tvec, off, jacobian = tried[0]
+    rms, rvec, tvec, off, jacobian = min(tried, key=lambda one: one[0])
     if rms > _WORST_RMS:
         raise CalibrationError(
             f"the corners miss the board by {rms:.3g} px rms: is it a board of this pattern and square size, seen by "
@@ -107,7 +102,6 @@ def board_pose(camera, corners, points):
         by_camera=-np.linalg.solve(R, Q.T @ own),
         rms=rms,
         residuals=off,
-        other_rms=tried[1][0] if len(tried) > 1 else np.inf,
     )
 
 

@@ -1,6 +1,7 @@
 """Pictures as arrays: read, check, write. Always uint8, (height, width, 3), in the order red, green, blue."""
 
 import os
+import re
 import zlib
 from pathlib import Path
 
@@ -23,12 +24,9 @@ def check_image(image, name="image"):
     Raises ImageError, naming what it is instead and what to do, for None, an empty array, one channel, four channels,
     or numbers that are not bytes.
     """
-    if image is None:
-        raise ImageError(f"{name} is None: the picture was not read (a wrong path?); load_image(path) says why")
     if not isinstance(image, np.ndarray):
-        raise ImageError(
-            f"{name} is a {type(image).__name__}: give an array (height, width, 3); load_image reads files"
-        )
+        what = "None" if image is None else f"a {type(image).__name__}"
+        raise ImageError(f"{name} is {what}: give an array (height, width, 3); load_image reads files")
     if image.size == 0:
         raise ImageError(f"{name} is empty (shape {image.shape}): the camera or the file gave no picture")
     if image.ndim == 2 or (image.ndim == 3 and image.shape[2] == 1):
@@ -36,12 +34,11 @@ def check_image(image, name="image"):
             f"{name} has one channel (shape {image.shape}): a grey picture holds no colour to look for. Give the "
             "colour picture (height, width, 3)"
         )
-    if image.ndim != 3 or image.shape[2] != 3:
-        hint = ": drop the fourth channel, image[..., :3]" if image.ndim == 3 and image.shape[2] == 4 else ""
-        raise ImageError(f"{name} has shape {image.shape}: give (height, width, 3), red green blue{hint}")
-    if image.dtype != np.uint8:
-        hint = ": scale it, (255 * image).astype('uint8')" if image.dtype.kind == "f" else ""
-        raise ImageError(f"{name} holds {image.dtype} numbers: give bytes 0..255 (uint8){hint}")
+    if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8:
+        raise ImageError(
+            f"{name} holds {image.dtype} numbers of shape {image.shape}: give bytes 0..255 (uint8), (height, width, "
+            "3), red green blue. Drop a fourth channel, image[..., :3]; scale 0..1, (255 * image).astype('uint8')"
+        )
     return image
 
 
@@ -87,10 +84,8 @@ def _bytes(path):
     except FileNotFoundError:
         beside = "" if path.parent.is_dir() else f", nor the folder {path.parent}"
         raise ImageError(f"there is no file {path}{beside}: check the name (here is {Path.cwd()})") from None
-    except ValueError:
-        raise ImageError(f"{str(path)!r} is no path (it holds a null byte): check the name") from None
-    except OSError as error:
-        raise ImageError(f"{path} cannot be read ({error.strerror}): check the rights of the file") from None
+    except (OSError, ValueError) as error:  # no right to, or a null byte in the name
+        raise ImageError(f"{path} cannot be read ({error}): check its name and its rights") from None
     if not data:
         raise ImageError(f"{path} is empty (0 bytes): copy or take the picture again")
     return data
@@ -133,16 +128,15 @@ def list_images(folder):
     files = [p for p in folder.iterdir() if not p.name.startswith(".")]
     paths = [p for p in files if p.suffix.lower() in READ]
     if not paths:
-        heic = any(p.suffix.lower() in (".heic", ".heif") for p in files)
-        hint = "; save the HEIC pictures of a phone as JPEG" if heic else ""
-        raise ImageError(f"{folder} holds no picture ({len(files)} other files): they end in {', '.join(READ)}{hint}")
+        raise ImageError(
+            f"{folder} holds no picture ({len(files)} other files): they end in {', '.join(READ)}; save HEIC pictures "
+            "of a phone as JPEG"
+        )
     return sorted(paths, key=_by_number)
 
 
 def _by_number(path):
-    parts = "".join(c if c.isdigit() else " " for c in path.name).split()
-    words = "".join(" " if c.isdigit() else c for c in path.name.lower()).split()
-    return words[:1], [int(part) for part in parts if part.isdecimal()], path.name
+    return [int(part) if part.isdecimal() else part for part in re.split("([0-9]+)", path.name.lower())]
 
 
 def _marked(data):

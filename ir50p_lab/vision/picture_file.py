@@ -25,7 +25,11 @@ def decode(data):
         except cv2.error:  # sizes beyond what OpenCV takes
             image = None
     if image is None:
-        return None, _what_instead(data)
+        return None, (
+            f"is no picture that OpenCV can read (it starts with {data[:8]!r}): damaged, a video, a camera's raw, or a "
+            "HEIC picture of a phone? Save it as JPEG or PNG (iPhone: Settings, Camera, Formats, 'Most Compatible' "
+            "takes JPEGs from then on)"
+        )
     damage = [line for line in said if "Corrupt JPEG" in line and "extraneous" not in line]  # those are harmless
     if damage:
         return None, f"is damaged ({damage[0].strip()}): copy or take the picture again"
@@ -34,18 +38,15 @@ def decode(data):
     return image, None
 
 
-def quarter_turns(data):
-    """By how many quarter turns to the right a phone turned this JPEG upright (its EXIF orientation), 0 to 3."""
-    head = data[data.find(b"Exif\0\0", 0, 65536) + 6 :] if b"Exif\0\0" in data[:65536] else b""
-    order = "little" if head[:2] == b"II" else "big"
+def quarter_turns(path):
+    """By how many quarter turns to the right a phone turned this picture upright (its EXIF orientation), 0 to 3."""
+    from PIL import Image
 
-    def number(at, size):
-        return int.from_bytes(head[at : at + size], order)
-
-    first = number(4, 4)
-    entries = (first + 2 + 12 * k for k in range(number(first, 2)))
-    orientation = next((number(at + 8, 2) for at in entries if number(at, 2) == _ORIENTATION), 1)
-    return {6: 1, 3: 2, 8: 3}.get(orientation, 0)
+    try:
+        with Image.open(path) as picture:
+            return {6: 1, 3: 2, 8: 3}.get(picture.getexif().get(_ORIENTATION), 0)
+    except OSError:  # a kind that OpenCV reads and Pillow does not
+        return 0
 
 
 def _cut_off(data):
@@ -62,17 +63,3 @@ def _cut_off(data):
     elif data.startswith(b"RIFF") and data[8:12] == b"WEBP":
         size = int.from_bytes(data[4:8], "little") + 8
     return f"{size} bytes long, {len(data)} here" if size is not None and size > len(data) else None
-
-
-def _what_instead(data):
-    kind = data[4:12]
-    if kind.startswith(b"ftyp") and kind[4:] in (b"heic", b"heix", b"hevc", b"mif1", b"msf1", b"heim", b"heis"):
-        return (
-            "is a HEIC picture of a phone: save it as JPEG (iPhone: Settings, Camera, Formats, 'Most Compatible' takes "
-            "JPEGs from then on)"
-        )
-    if kind.startswith(b"ftyp"):
-        return "is a video, or of a kind that OpenCV does not know: save the picture as JPEG or PNG"
-    if data.startswith((_PNG, b"\xff\xd8", b"BM", b"II*\0", b"MM\0*", b"RIFF", b"GIF8")):
-        return "is damaged, or of a kind that OpenCV does not know (a camera's raw?): save it again as JPEG or PNG"
-    return f"is no picture (starts with {data[:8]!r}): give a JPEG or PNG file"

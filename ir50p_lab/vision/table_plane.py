@@ -8,7 +8,6 @@ from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transf
 from ir50p_lab.vision.checks import check_picture_size, point_list, rigid
 from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
 
-_STEPS = 4  # of the outline's correction: each gains a factor (radius / distance)^2, some 500
 _SMALL = 1e-3  # standard deviations: steps of derivatives
 _SLANT = 0.02  # rad above the plane; a ray flatter than this meets it anywhere
 
@@ -96,68 +95,48 @@ class TablePlane:
         R, t = self.T_cam_table[:3, :3], self.T_cam_table[:3, 3]
         return np.column_stack([R[:, 0], R[:, 1], t + number("height", height, unit="m") * R[:, 2]])
 
-    def to_table(self, xy, height=0.0, *, radius=None):
+    def to_table(self, xy, height=0.0):
         """Places (n, 2) m on the plane at `height` m for pixels (n, 2); a single pixel (2,) gives (2,).
 
         Args:
-            xy: px, centre of the top-left pixel (0, 0); distorted, as in the picture.
+            xy: px, centre of the top-left pixel (0, 0); distorted, as in the picture. Of a ball, where its centre is
+            seen, as `find_balls` gives it: the middle of its outline lies a little farther from that of the picture.
             height: m above the table; a ball of radius r on the table has its centre at height r. Read at height 0
             it seems farther away, by r times the tangent of the camera's angle from the vertical.
-            radius: m; then xy is the centre of the outline of a ball with this radius, which lies a little farther
-            from the middle of the picture than the image of its centre, and that is put right.
 
         Raises InputError on bad pixels; VisionError for a pixel whose line of sight does not meet the plane.
         """
         points, height = point_list("xy", xy, 2), number("height", height, unit="m")
-        if radius is not None:
-            number("radius", radius, "> 0", unit="m", hint="of the ball")
-        x_n, toward = self.pinhole.undistort_points(points), self.T_cam_table[2]
-        found = self._cut(x_n, height, points)
-        for _ in range(_STEPS if radius is not None else 0):
-            # outline's centre = sphere's centre / (1 - (r/z)^2) on the plane one unit ahead
-            z = found @ toward[:2] + height * toward[2] + toward[3]
-            found = self._cut(x_n * (1.0 - (radius / z) ** 2)[:, None], height, points)
+        found = self._cut(self.pinhole.undistort_points(points), height, points)
         return found[0] if np.ndim(xy) == 1 else found
 
-    def to_points(self, xy, height=0.0, *, radius=None):
+    def to_points(self, xy, height=0.0):
         """The same with the height as third coordinate: (n, 3) or (3,) m, table coordinates."""
-        place = self.to_table(xy, height, radius=radius)
+        place = self.to_table(xy, height)
         return np.concatenate([place, np.full((*place.shape[:-1], 1), float(height))], axis=-1)
 
     def to_image(self, points):
         """Where points (n, 3) or (3,) m of the table appear: (n, 2) or (2,) px."""
-        import cv2
+        return self.pinhole.project(self.T_cam_table, points)
 
-        points = np.asarray(points, dtype=float)
-        rvec, tvec = rvec_tvec(self.T_cam_table)
-        found = cv2.projectPoints(points.reshape(-1, 1, 3), rvec, tvec, self.pinhole.K, self.pinhole.distortion)[0][
-            :, 0
-        ]
-        return found[0] if points.ndim == 1 else found
+    def covariance(self, xy, height=0.0, *, sigma_px=0.3):
+        """Covariance of the places, (n, 2, 2) m^2, to first order: of the pixel, and of camera and pose together.
 
-    def covariance(self, xy, height=0.0, *, sigma_px=0.3, sigma_height=0.0):
-        """Covariance of the places, (n, 2, 2) m^2, to first order: of pixel, height, and camera and pose together.
+            J J^T sigma_px^2 + sum of d d^T, J = d place / d pixel, d a change by one of the `variations`
 
-            J_px J_px^T sigma_px^2 + J_h J_h^T sigma_h^2 + sum of d d^T, d a change by one of the `variations`
-
-        Args: sigma_px: standard error of each pixel coordinate; sigma_height: m, of the height.
+        Args: sigma_px: standard error of each pixel coordinate.
         """
-        points, height = point_list("xy", xy, 2), number("height", height, unit="m")
-
-        def slope(*step):
-            step = np.array(step)
-            forth, back = (self.to_table(points + way * step[:2], height + way * step[2]) for way in (1, -1))
-            return (forth - back) / (2 * step.sum())
-
-        changes = [sigma_px * slope(1e-2, 0, 0), sigma_px * slope(0, 1e-2, 0), sigma_height * slope(0, 0, 1e-5)]
+        points, changes = point_list("xy", xy, 2), []
+        for step in 1e-2 * np.eye(2):
+            forth, back = self.to_table(points + step, height), self.to_table(points - step, height)
+            changes.append(sigma_px * (forth - back) / 2e-2)
         here = self.to_table(points, height)
         changes += [(one.to_table(points, height) - here) / _SMALL for one in self.variations(_SMALL)]
         return sum(change[:, :, None] * change[:, None] for change in changes)
 
-    def standard_error(self, xy, height=0.0, *, sigma_px=0.3, sigma_height=0.0):
+    def standard_error(self, xy, height=0.0, *, sigma_px=0.3):
         """Standard errors of x and y, (n, 2) m ((2,) for one pixel); see `covariance`."""
-        both = self.covariance(xy, height, sigma_px=sigma_px, sigma_height=sigma_height)
-        found = np.sqrt(np.diagonal(both, axis1=1, axis2=2))
+        found = np.sqrt(np.diagonal(self.covariance(xy, height, sigma_px=sigma_px), axis1=1, axis2=2))
         return found[0] if np.ndim(xy) == 1 else found
 
     def variations(self, part=1.0):

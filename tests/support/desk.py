@@ -1,13 +1,14 @@
-"""What random scenes have and no notebook draws: boxes, windows, table tops, a webcam's mosaic, sharpening, colours."""
+"""What random scenes have and no notebook draws: boxes, bent boards, windows, table tops, blur, a webcam's sensor."""
 
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 
+from ir50p_lab.vision.rendering.board_print import print_range
 from ir50p_lab.vision.rendering.colours import to_bytes
-from ir50p_lab.vision.rendering.light import smooth
-from ir50p_lab.vision.rendering.scene import Lamp, Sensor, SolidThing, Sun
+from ir50p_lab.vision.rendering.scene import Board, Lamp, Lens, Sensor, SolidThing, Sun
+from ir50p_lab.vision.rendering.shadow import smooth
 from ir50p_lab.vision.rendering.surface import noise
 
 
@@ -115,17 +116,126 @@ def _outside(points, margin, X, Y):
 
 
 @dataclass(frozen=True, kw_only=True)
+class BentBoard(Board):
+    """bend: 1/m, curvature about the board's y axis through its middle: the print bulges towards the viewer for bend > 0;
+    arc length along x is kept, as paper does."""
+
+    bend: float = 0.0
+
+    def shape(self, T_cam_world):
+        if self.bend == 0:
+            return super().shape(T_cam_world)
+        return BentSheetShape(T_cam_world @ self.T_world_board, *print_range(self), self.bend)
+
+
+class BentSheetShape:
+    """A printed sheet, bent about its y axis: T_cam_sheet (4, 4), x and y ranges of the print, curvature `bend`.
+
+    A point of the print (u, v) lies at x = middle + sin(bend u') / bend, y = v, z = (1 - cos(bend u')) / bend with
+    u' = u - middle: z points away from the viewer, so the middle bulges towards him for bend > 0.
+    """
+
+    def __init__(self, T_cam_sheet, x, y, bend):
+        self.R, self.t = T_cam_sheet[:3, :3], T_cam_sheet[:3, 3]
+        self.x, self.y, self.bend, self.middle = x, y, float(bend), (x[0] + x[1]) / 2
+
+    def place(self, u, v):
+        """Sheet coordinates (n, 3) of the points u, v (n,) of the print."""
+        angle = self.bend * (u - self.middle)
+        return np.stack([self.middle + np.sin(angle) / self.bend, v, (1 - np.cos(angle)) / self.bend], axis=-1)
+
+    def bounds(self):
+        """Points (n, 3) along its rim, in camera coordinates."""
+        u, v = np.meshgrid(np.linspace(*self.x, 9), np.array(self.y))
+        return self.place(u.ravel(), v.ravel()) @ self.R.T + self.t
+
+    def depth(self, rays):
+        """Depth Z of the hit, inf where there is none."""
+        origin, k = -self.R.T @ self.t, self.bend / 2
+        ox, oz = origin[0] - self.middle, origin[2]
+        dx, dy, dz = (rays.x * self.R[0, i] + rays.y * self.R[1, i] + self.R[2, i] for i in range(3))
+        # z = bend/2 (x'^2 + z^2) on the cylinder; the root that becomes the plane's for bend -> 0, without cancelling
+        A, B, C = k * (dx * dx + dz * dz), 2 * k * (ox * dx + oz * dz) - dz, k * (ox * ox + oz * oz) - oz
+        with np.errstate(invalid="ignore", divide="ignore"):
+            t = -2 * C / (B + np.sign(B) * np.sqrt(B * B - 4 * A * C))
+            u, v = self.unroll(ox + t * dx, oz + t * dz), origin[1] + t * dy
+            hit = (t > 0) & (u >= self.x[0]) & (u <= self.x[1]) & (v >= self.y[0]) & (v <= self.y[1])
+        return np.where(hit, t, np.inf)
+
+    def unroll(self, x, z):
+        """Print coordinate u of sheet coordinates x (from the middle) and z."""
+        return self.middle + np.arctan2(self.bend * x, 1 - self.bend * z) / self.bend
+
+    def print_coordinates(self, X):
+        """Coordinates u, v of the print at the points X (3, n), and whether its front is seen (n,)."""
+        local = self.R.T @ (X - self.t[:, None])
+        x, z = local[0] - self.middle, local[2]
+        front = np.sum(self.R @ np.stack([-self.bend * x, 0 * x, 1 - self.bend * z]) * X, axis=0) > 0
+        return self.unroll(x, z), local[1], front
+
+    def normal(self, X):
+        """Normals (3, n) on the side of the camera."""
+        local = self.R.T @ (X - self.t[:, None])
+        n = self.R @ np.stack([-self.bend * (local[0] - self.middle), 0 * local[0], 1 - self.bend * local[2]])
+        return -n * np.sign(np.sum(n * X, axis=0))
+
+
+@dataclass(frozen=True, kw_only=True)
 class WindowSun(Sun):
     """edge: None, or (angle, offset m, width m): light only on one side of a line on the table, as beside a window."""
 
     edge: tuple | None = None
 
-    def strength_at(self, X):
-        if self.edge is None:
-            return self.strength
-        angle, offset, width = self.edge
-        along = (np.cos(angle) * X[0] + np.sin(angle) * X[1] - offset) / width
-        return self.strength * smooth(along + 0.5)
+    def direction(self, X):
+        towards, strength, softness = super().direction(X)
+        if self.edge is not None:
+            angle, offset, width = self.edge
+            along = (np.cos(angle) * X[0] + np.sin(angle) * X[1] - offset) / width
+            strength = strength * smooth(along + 0.5)
+        return towards, strength, softness
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShakenLens(Lens):
+    """Blur besides: `defocus` diameter of the disc and `motion` (dx, dy), pixels."""
+
+    defocus: float = 0.0
+    motion: tuple = (0.0, 0.0)
+
+    def through(self, light):
+        if self.defocus > 0:
+            light = cv2.filter2D(light, -1, disc(self.defocus), borderType=cv2.BORDER_REPLICATE)
+        if np.hypot(*self.motion) > 0:
+            light = cv2.filter2D(light, -1, streak(*self.motion), borderType=cv2.BORDER_REPLICATE)
+        return super().through(light)
+
+
+SPAN = 16  # sub-steps per pixel of the kernels
+
+
+def disc(diameter):
+    """Kernel of a disc of this diameter, pixels, sum 1: a point out of focus."""
+    n = int(np.ceil(diameter / 2 + 0.5))
+    sub = (np.arange((2 * n + 1) * SPAN) + 0.5) / SPAN - n - 0.5
+    radius = max(diameter / 2, 1 / SPAN)  # at least the four places around the middle
+    inside = (sub[:, None] ** 2 + sub[None, :] ** 2 <= radius**2).astype(float)
+    kernel = inside.reshape(2 * n + 1, SPAN, 2 * n + 1, SPAN).sum(axis=(1, 3))
+    return (kernel / kernel.sum()).astype(np.float32)
+
+
+def streak(dx, dy):
+    """Kernel of a straight move by (dx, dy) pixels while the shutter is open, sum 1, centred."""
+    n = int(np.ceil(max(abs(dx), abs(dy)) / 2 + 1))
+    kernel = np.zeros((2 * n + 1, 2 * n + 1))
+    steps = max(2, int(SPAN * np.hypot(dx, dy)))
+    along = (np.arange(steps) + 0.5) / steps - 0.5
+    x, y = along * dx + n, along * dy + n
+    i, j = np.floor(y).astype(int), np.floor(x).astype(int)
+    fy, fx = y - i, x - j
+    for di, wy in ((0, 1 - fy), (1, fy)):
+        for dj, wx in ((0, 1 - fx), (1, fx)):
+            np.add.at(kernel, (i + di, j + dj), wy * wx)
+    return (kernel / kernel.sum()).astype(np.float32)
 
 
 def cloth(table, u, v, seed):
@@ -161,8 +271,15 @@ class WebcamSensor(Sensor):
         if self.saturation != 1:
             grey = light @ np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
             light = grey[..., None] + np.float32(self.saturation) * (light - grey[..., None])
-        image = to_bytes(light, self.gamma)
+        image = to_bytes(light)
         return sharpen(image, self.sharpen) if self.sharpen > 0 else image
+
+
+class LinearSensor(Sensor):
+    """Bytes are proportional to light."""
+
+    def developed(self, light):
+        return np.rint(np.clip(light * np.asarray(self.balance, dtype=np.float32), 0, 1) * 255).astype(np.uint8)
 
 
 def mosaic(light):

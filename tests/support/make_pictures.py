@@ -8,7 +8,8 @@ import numpy as np
 
 from ir50p_lab.vision.calibration.rendered import board_poses, board_scene
 from ir50p_lab.vision.image import save_image
-from ir50p_lab.vision.rendering import Board, Lens, SceneBall, Sensor, bench_camera, bench_scene, pose, render_scene
+from ir50p_lab.vision.rendering import Board, SceneBall, Sensor, bench_camera, bench_scene, pose, render_scene
+from tests.support.desk import BentBoard, ShakenLens
 from tests.support.random_scene import random_scene
 
 FOLDER = Path(__file__).parents[2] / "data"
@@ -37,7 +38,7 @@ def main(folder=FOLDER, only=None):
 def recipes():
     """name -> (Scene, seed): a good set with six useless pictures among them, a bent board, the table; random scenes."""
     camera, _ = bench_camera()
-    good, bent = board_poses(camera, 14, seed=1), Board(bend=0.3)
+    good, bent = board_poses(camera, 14, seed=1), BentBoard(bend=0.3)
     found = {f"calibration/flat/board_{k + 1:02}": (_held(camera, T), 1000 + k) for k, T in enumerate(good)}
     found |= {f"calibration/flat/{name}": recipe for name, recipe in _useless(camera, good).items()}
     for k, T in enumerate(board_poses(camera, 10, 2, bent)):
@@ -60,7 +61,7 @@ def _useless(camera, poses):
     aside[0, 3] += 0.45 * aside[2, 3]
     return {
         "cropped": (_held(camera, aside), 40),
-        "blurred": (_held(camera, poses[5], lens=Lens(motion=(26, 12))), 40),
+        "blurred": (_held(camera, poses[5], lens=ShakenLens(motion=(26, 12))), 40),
         "duplicate": (_held(camera, poses[2]), 41),
         "wrong_board": (_held(camera, poses[6], Board(pattern=(8, 5))), 40),
         "other_size": (_held(camera.scaled((320, 240)), poses[7]), 40),

@@ -15,7 +15,7 @@ class QuickLocator(BallLocator):
         self.no_ball = ""
 
     def _pixel(self, p):
-        return self.camera.pinhole.project(self.camera.T_cam_world, p) + self.rng.normal(0, self.noise, 2)
+        return self.camera.scene.pinhole.project(self.camera.scene.T_cam_world, p) + self.rng.normal(0, self.noise, 2)
 
     def look(self):
         if self.no_ball:

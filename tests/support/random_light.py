@@ -3,10 +3,9 @@
 import numpy as np
 
 from ir50p_lab.vision.rendering.rays import rays_through
-from ir50p_lab.vision.rendering.render import RayTracer
-from ir50p_lab.vision.rendering.scene import Lamp, Lens, Sky, Sun
-from ir50p_lab.vision.rendering.shadow import table_light
-from tests.support.desk import WebcamSensor, WindowSun
+from ir50p_lab.vision.rendering.render import RayTracer, table_light
+from ir50p_lab.vision.rendering.scene import Lamp, Sky, Sun
+from tests.support.desk import ShakenLens, WebcamSensor, WindowSun
 
 
 def warm(amount):
@@ -60,7 +59,7 @@ def random_lens(rng, radius, size):
     if rng.random() < 0.25:
         length, angle = rng.uniform(0, most), rng.uniform(0, np.pi)
         motion = (length * np.cos(angle), length * np.sin(angle))
-    return Lens(
+    return ShakenLens(
         defocus=rng.uniform(0, most) if rng.random() < 0.4 else 0.0,
         motion=motion,
         sigma=rng.uniform(0.35, 0.9),

@@ -11,10 +11,10 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.vision.pinhole import Pinhole
 from ir50p_lab.vision.rendering.places import look_at
-from ir50p_lab.vision.rendering.render import scene_truth
 from ir50p_lab.vision.rendering.scene import Scene, SceneBall
 from tests.support.random_light import random_lens, random_lights, random_sensor
 from tests.support.random_things import distractor, hider, random_red, random_table
+from tests.support.scene_truth import scene_truth
 
 KINDS = {
     "ball": "one red ball, at least 60 % visible, with or without distractors",

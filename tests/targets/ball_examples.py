@@ -16,6 +16,7 @@ from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.measure import measure
 from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
 from tests.support.random_scene import random_scene
+from tests.support.scene_truth import scene_truth
 from tests.targets.crowded_scene import crowded_scene
 
 LEAST_RADIUS = 6.0
@@ -33,7 +34,7 @@ def _kept(name, draw, seed, folder):
     if folder and stem.with_suffix(".npy").exists():
         return np.ascontiguousarray(cv2.imread(f"{stem}.png")[..., ::-1]), np.load(stem.with_suffix(".npy"))
     image, truth = render_scene(draw(), seed=seed)
-    balls = np.array([(b.x, b.y, b.radius, b.visible) for b in truth.red_balls]).reshape(-1, 4)
+    balls = np.array([(b.x, b.y, b.radius, b.visible) for b in scene_truth(truth.scene).red_balls]).reshape(-1, 4)
     if folder:
         cv2.imwrite(f"{stem}.png", image[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 1])
         np.save(stem.with_suffix(".npy"), balls)

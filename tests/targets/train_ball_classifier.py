@@ -18,10 +18,11 @@ import time
 
 import numpy as np
 
-from ir50p_lab.vision.ball.classifier import FAR, LAYERS, NEAR, WEIGHTS, around
+from ir50p_lab.vision.ball.classifier import FAR, NEAR, WEIGHTS, around
 from ir50p_lab.vision.ball.features import RAYS
 from tests.targets.ball_examples import NEARLY, crowded_examples, examples
 
+LAYERS = ("w1", "b1", "w2", "b2", "w3", "b3", "w4", "b4")
 FIRST = 100
 CROWDED = 110_000  # first seed of crowded scenes
 WIDTHS = (56, 56, 40)  # of the layers

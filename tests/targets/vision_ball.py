@@ -12,6 +12,7 @@ import numpy as np
 
 from ir50p_lab.vision import find_balls, render_scene
 from tests.support.random_scene import random_scene
+from tests.support.scene_truth import scene_truth
 from tests.targets.in_parallel import mapped
 from tests.targets.rows import Row
 
@@ -25,7 +26,7 @@ def one_ball(seed):
     errors, wrong = np.full(2, np.nan), 0
     for way, camera in enumerate((None, truth.pinhole)):
         found = find_balls(image, camera=camera)
-        for true in truth.red_balls:
+        for true in scene_truth(truth.scene).red_balls:
             near = [b for b in found if np.hypot(b.x - true.x, b.y - true.y) < true.radius / 3]
             if near and true.visible >= 0.6:
                 errors[way] = np.hypot(near[0].x - true.x, near[0].y - true.y)

@@ -6,7 +6,8 @@ import numpy as np
 
 from ir50p_lab.vision import Checkerboard, Pinhole, calibrate, calibrate_corners
 from ir50p_lab.vision.calibration.rendered import board_pictures, board_poses
-from ir50p_lab.vision.rendering import Board, Lens, Sensor
+from ir50p_lab.vision.rendering import Sensor
+from tests.support.desk import BentBoard, ShakenLens
 from tests.targets.rows import Row
 
 JOINT = 16.25  # chi-square of 4 numbers that 99.73 % stay below: what 3 standard errors are for one
@@ -36,7 +37,7 @@ def rendered_set(seed, count):
     """(camera, pictures) of a random camera, lens blur, noise and JPEG."""
     rng = np.random.default_rng([7, seed])
     camera = random_camera(rng)
-    lens = Lens(sigma=rng.uniform(0.4, 0.9), defocus=rng.choice([0.0, rng.uniform(0, 2.5)]))
+    lens = ShakenLens(sigma=rng.uniform(0.4, 0.9), defocus=rng.choice([0.0, rng.uniform(0, 2.5)]))
     sensor = Sensor(
         exposure=rng.uniform(0.6, 1.1), shot_noise=rng.uniform(0.005, 0.03), jpeg=int(rng.choice([80, 90, 95]))
     )
@@ -103,7 +104,7 @@ def bent_row(quick):
     seen, count = 0, 2 if quick else 10
     for seed in range(count):
         camera = random_camera(np.random.default_rng([9, seed]))
-        board = Board(bend=0.0 if seed % 2 else 0.12)  # 0.6 mm over 20 cm
+        board = BentBoard(bend=0.0 if seed % 2 else 0.12)  # 0.6 mm over 20 cm
         images, _ = board_pictures(camera, 8, seed=500 + seed, board=board)
         calibration = calibrate(images, progress=False)
         seen += (calibration.sag is not None) == (seed % 2 == 0)

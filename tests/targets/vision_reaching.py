@@ -10,6 +10,7 @@ from ir50p_lab.vision import BallLocator, RenderedBench, reach, reach_pose, work
 from ir50p_lab.vision.reaching.budget import error_budget
 from ir50p_lab.vision.reaching.plan import MARGIN
 from ir50p_lab.vision.reaching.reach import HEIGHT
+from tests.support.places import places_in
 from tests.targets.in_parallel import mapped
 from tests.targets.rows import Row
 from tests.targets.vision_setup import calibrated, own_plane
@@ -58,7 +59,7 @@ def one_reach(task):
 def rows(*, quick=False):
     """The table of targets."""
     n = 10 if quick else 200
-    balls = work_area(IR50P).draw(np.random.default_rng(11), n)
+    balls = places_in(work_area(IR50P), np.random.default_rng(11), n)
     results = mapped(one_reach, [(ball, seed) for seed, ball in enumerate(balls)], "balls reached for")
     possible = np.array([oracle_reaches(ball + OVER) for ball in balls])
     reached = np.array([isinstance(one, tuple) for one in results])

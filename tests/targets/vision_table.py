@@ -5,6 +5,7 @@ import numpy as np
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.vision import BallLocator, render_scene, work_area
 from ir50p_lab.vision.rendering import SceneBall, bench_scene
+from tests.support.places import places_in
 from tests.targets.rows import Row
 from tests.targets.vision_setup import own_calibration, own_plane
 
@@ -26,7 +27,7 @@ def found(place, seed):
 
 def over_the_table(n, seed=2):
     """Errors (n, 2) m of n balls drawn over the work area."""
-    places = work_area(IR50P).draw(np.random.default_rng(seed), n)[:, :2]
+    places = places_in(work_area(IR50P), np.random.default_rng(seed), n)[:, :2]
     return np.array([found(place, k) - place for k, place in enumerate(places)])
 
 

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 
-from ir50p_lab.vision import RED, Ball, Colour, find_balls
-from ir50p_lab.vision.ball.classifier import LAYERS, WEIGHTS, score
+from ir50p_lab.vision import RED, Ball, Colour, find_balls, learn_colour
+from ir50p_lab.vision.ball.classifier import WEIGHTS, score
 from ir50p_lab.vision.ball.features import RAYS, median
 from ir50p_lab.vision.ball.find import decide, least_score
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.measure import measure
-from ir50p_lab.vision.rendering.render import scene_truth
+from tests.support.scene_truth import scene_truth
 from tests.targets.ball_examples import BALL, NEARLY, NOTHING, behind, crowded_examples, examples, painted
 from tests.targets.crowded_scene import crowded_scene
-from tests.targets.train_ball_classifier import gradient, logit, start
+from tests.targets.train_ball_classifier import LAYERS, gradient, logit, start
 
 RNG = np.random.default_rng(3)
 
@@ -75,8 +75,7 @@ def test_guess_too_small_or_too_large(radius):
 def test_any_colour(paint):
     """The classifier has seen red balls only: shape and shading count, not the hue."""
     picture = photograph(add_ball(empty(), 700, (300, 200), 30, colour=paint))
-    patch = picture[190:211, 290:311]
-    assert find_balls(picture, patch)[0].score > 0.9
+    assert find_balls(picture, learn_colour(picture, (300, 200)))[0].score > 0.9
 
 
 def test_overexposed():

@@ -291,15 +291,5 @@ def test_a_charuco_too_blurred_for_its_markers_is_told_to_focus(pattern, blur, s
     noise = np.random.default_rng(blur).normal(0, 3, (round(480 * scale), round(640 * scale)))
     sharp = cv2.resize(charuco_picture(Charuco(pattern), WARP), noise.shape[::-1], interpolation=cv2.INTER_AREA)
     soft = cv2.GaussianBlur(sharp, (0, 0), blur * scale)
-    with pytest.raises(NotUsable, match="focus") as caught:
+    with pytest.raises(NotUsable, match="focus"):
         find_charuco(np.clip(20 + 0.7 * soft + noise, 0, 255).astype(np.uint8), Charuco(pattern))
-    assert caught.value.reason is Reason.BLURRED
-
-
-@pytest.mark.parametrize("blur", [0, 8])
-def test_where_there_is_no_charuco_blur_is_not_the_reason(blur):
-    grey = np.random.default_rng(4).integers(0, 255, (60, 80), dtype=np.uint8)
-    grey = cv2.GaussianBlur(cv2.resize(grey, (640, 480), interpolation=cv2.INTER_NEAREST), (0, 0), blur + 0.1)
-    with pytest.raises(NotUsable) as caught:
-        find_charuco(grey, Charuco((9, 6)))
-    assert caught.value.reason is Reason.NO_BOARD

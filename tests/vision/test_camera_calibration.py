@@ -105,7 +105,7 @@ def test_lens_by_evidence(model):
     ("evidence", "words"),
     [
         (("k3", 0.046, 2.8, False, 0.01), "k3: dropped (such an improvement by chance: 4.6 %; the limit is 1 %)"),
-        (("p", 1e-9, 90.0, True, 0.05), "p1 and p2: kept (such an improvement by chance: less than 0.01 %; the limit is 5 %)"),
+        (("p1 and p2", 1e-9, 90.0, True, 0.05), "p1 and p2: kept (such an improvement by chance: less than 0.01 %; the limit is 5 %)"),
         (("bent board", 2e-4, 9.0, False, 1e-3, "too little"), "bent board: no (such an improvement by chance: 0.02 %; the limit is 0.1 %; but too little)"),
     ],
 )  # fmt: skip

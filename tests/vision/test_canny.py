@@ -68,5 +68,3 @@ def test_bad_arguments():
         gaussian_kernel(5, 0)
     with pytest.raises(InputError, match="odd size"):
         convolve(GREY, np.ones((2, 2)))
-    with pytest.raises(InputError, match="too small"):
-        convolve(GREY[:2, :2], np.ones((5, 5)))

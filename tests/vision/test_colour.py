@@ -8,7 +8,7 @@ import pytest
 from drawn_balls import add_ball, empty, photograph
 
 from ir50p_lab.errors import ImageError, InputError
-from ir50p_lab.vision import RED, Colour, hue_distance, hue_in, learn_colour, learn_from_patch, rgb_to_hsv, threshold
+from ir50p_lab.vision import RED, Colour, hue_distance, hue_in, learn_colour, rgb_to_hsv, threshold
 
 RNG = np.random.default_rng(0)
 SAMPLE = RNG.integers(0, 256, (60, 80, 3), dtype=np.uint8)
@@ -96,17 +96,11 @@ def test_a_saturated_thing_on_a_paler_one_of_its_hue():
     assert (wood.mask(shown)[(far > 36) | (far < 20)] > 0).mean() > 0.98
 
 
-def test_patch_and_click_agree():
-    shown = picture()
-    a, b = learn_colour(shown, (200, 200)), learn_from_patch(shown[185:215, 185:215])
-    assert hue_distance(a.hue, b.hue) < 3
-
-
 def test_no_colour_there():
     with pytest.raises(ImageError, match="grey"):
         learn_colour(picture(), (600, 400))
     with pytest.raises(ImageError, match="one channel"):
-        learn_from_patch(np.zeros((5, 5), np.uint8))
+        learn_colour(np.zeros((5, 5), np.uint8), (2, 2))
 
 
 @pytest.mark.parametrize("xy", [(-3, 5), (640, 5), (5, 480), "here", (1,), None])
@@ -137,12 +131,6 @@ def test_bad_arrays():
         rgb_to_hsv([1, 2])
     with pytest.raises(InputError, match="outside"):
         rgb_to_hsv([1, 2, 300])
-
-
-@pytest.mark.parametrize("radius", [0, -5, np.nan, np.inf, "a"])
-def test_radius_that_is_none(radius):
-    with pytest.raises(InputError, match="radius"):
-        learn_colour(picture(), (200, 200), radius=radius)
 
 
 @pytest.mark.parametrize("part", [0.9, 0.95])

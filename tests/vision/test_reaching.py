@@ -28,6 +28,7 @@ from ir50p_lab.vision.camera import webcam
 from ir50p_lab.vision.reaching.budget import error_budget
 from ir50p_lab.vision.reaching.plan import ALMOST, MARGIN, nearest_reachable, within_reach
 from ir50p_lab.vision.reaching.result import BallTracker
+from tests.support.places import places_in
 from tests.targets.vision_setup import calibrated
 
 cv2.setNumThreads(1)
@@ -37,7 +38,11 @@ OVER = np.array([0.0, 0.0, 0.06])
 def rig(ball=(0.40, 0.10, 0.03), seed=0, **options):
     bench = SimulatedBench(IR50P, seed=seed, q0=rest_pose(IR50P), record_to=False, calibration=calibrated(seed))
     world = RenderedBench(bench, ball, seed=seed)
-    return bench, world, QuickLocator(world, TablePlane(world.pinhole, world.T_cam_world), seed=seed, **options)
+    return (
+        bench,
+        world,
+        QuickLocator(world, TablePlane(world.scene.pinhole, world.scene.T_cam_world), seed=seed, **options),
+    )
 
 
 # ---- where the arm can go
@@ -60,7 +65,7 @@ def oracle_distance(p, n=30):
 
 
 def test_refusals_and_distances_are_those_of_an_independent_search():
-    balls = work_area(IR50P).draw(np.random.default_rng(1), 60) + OVER
+    balls = places_in(work_area(IR50P), np.random.default_rng(1), 60) + OVER
     refused = 0
     for p in balls:
         distance = oracle_distance(p)
@@ -114,7 +119,7 @@ def test_a_hair_out_of_reach_counts_as_the_nearest_point():
 def test_plans_arrive_are_smooth_and_stay_clear():
     rng = np.random.default_rng(2)
     q = rest_pose(IR50P)
-    for p in work_area(IR50P).draw(rng, 15) + OVER:
+    for p in places_in(work_area(IR50P), rng, 15) + OVER:
         try:
             way = plan(IR50P, q, p)
         except UnreachableError:
@@ -134,7 +139,7 @@ def test_the_work_area_of_another_arm_follows_its_reach():
     area = work_area(IR50P)
     assert 0.1 < area.r_min < 0.25
     assert 0.5 < area.r_max < 0.6
-    places = area.draw(np.random.default_rng(0), 500)
+    places = places_in(area, np.random.default_rng(0), 500)
     r = np.hypot(*places[:, :2].T)
     assert area.r_min <= r.min() < r.max() <= area.r_max
     assert np.abs(np.arctan2(places[:, 1], places[:, 0])).max() <= area.angle
@@ -147,7 +152,7 @@ def test_the_work_area_of_another_arm_follows_its_reach():
 def misses(looks):
     found = []
     for seed in range(6):
-        ball = work_area(IR50P).draw(np.random.default_rng([seed, 3]), 40)
+        ball = places_in(work_area(IR50P), np.random.default_rng([seed, 3]), 40)
         ball = next(p for p in ball if oracle_distance(p + OVER) < 3e-3 and np.hypot(*p[:2]) < 0.5)
         bench, world, locator = rig(ball, seed)
         with bench:
@@ -212,7 +217,7 @@ def test_a_ball_that_cannot_be_gripped_is_not_reached_for():
     with bench, Reacher(bench, locator, rest=False) as reacher:
         before = bench.plant.q_true
         with pytest.raises(UnreachableError, match="out of reach"):
-            reacher.pick_and_place((0.36, 0.15))
+            reacher.pick()
         assert np.abs(bench.plant.q_true - before).max() < 0.05
 
 
@@ -233,15 +238,6 @@ def test_the_budget_is_what_reaching_measures():
     assert world.simulated
 
 
-def test_a_ball_is_picked_and_placed():
-    bench, world, locator = rig((0.42, -0.12, 0.03), 3)
-    with bench, Reacher(bench, locator) as reacher:
-        reacher.pick_and_place((0.36, 0.15))
-        assert not world.held
-        assert np.linalg.norm(world.balls_true[0, :2] - (0.36, 0.15)) < 0.015
-    assert np.abs(bench.plant.q_true - rest_pose(IR50P)).max() < 0.1
-
-
 def test_a_ball_is_picked_seen_in_the_grip_and_put():
     bench, world, locator = rig((0.42, -0.12, 0.03), 3)
     with bench, Reacher(bench, locator) as reacher:
@@ -254,16 +250,17 @@ def test_a_ball_is_picked_seen_in_the_grip_and_put():
         assert world.held
         reacher.put((0.36, 0.15))
         assert not world.held
-    assert np.linalg.norm(world.balls_true[0, :2] - (0.36, 0.15)) < 0.015
+        assert np.linalg.norm(world.balls_true[0, :2] - (0.36, 0.15)) < 0.015
+    assert np.abs(bench.plant.q_true - rest_pose(IR50P)).max() < 0.1
 
 
 def test_a_place_out_of_reach_is_refused_before_anything_moves():
     bench, _, locator = rig()
     with bench, Reacher(bench, locator, rest=False) as reacher:
         with pytest.raises(UnreachableError):
-            reacher.pick_and_place((0.9, 0.0))
+            reacher.put((0.9, 0.0))
         with pytest.raises(InputError, match="place"):
-            reacher.pick_and_place((0.3, 0.0, 0.1))
+            reacher.put((0.3, 0.0, 0.1))
 
 
 def followed(seconds=8.0, age=0.0, **options):
@@ -354,7 +351,7 @@ def test_the_tracker_knows_where_a_ball_will_be():
 
 def test_the_rendered_camera_sees_ball_and_marker_where_they_are():
     bench, world, _ = rig((0.42, 0.08, 0.03))
-    locator = BallLocator(world, TablePlane(world.pinhole, world.T_cam_world))
+    locator = BallLocator(world, TablePlane(world.scene.pinhole, world.scene.T_cam_world))
     seen = locator.look()
     assert seen.simulated
     assert np.linalg.norm(seen.position - world.balls_true[0]) < 1.5e-3
@@ -362,7 +359,7 @@ def test_the_rendered_camera_sees_ball_and_marker_where_they_are():
     bench.plant.place(q)
     again = locator.look()
     marker = locator.find_marker(again.image, IR50P, q + 0.005)
-    expected = world.pinhole.project(world.T_cam_world, locator.marker_place(IR50P, q))
+    expected = world.scene.pinhole.project(world.scene.T_cam_world, locator.marker_place(IR50P, q))
     assert np.linalg.norm(marker - expected) < 1.0
     e, covariance = locator.joint_errors(IR50P, q - [0.004, -0.003, 0.0], marker, [0.006, 0.006, 0.004])
     after = forward_kinematics(IR50P, q - [0.004, -0.003, 0.0] + e) - forward_kinematics(IR50P, q)
@@ -374,7 +371,7 @@ def test_the_rendered_camera_sees_ball_and_marker_where_they_are():
 
 def test_a_picture_of_another_size_than_the_calibration_is_refused():
     _, world, _ = rig()
-    small = TablePlane(world.pinhole.scaled((320, 240)), world.T_cam_world)
+    small = TablePlane(world.scene.pinhole.scaled((320, 240)), world.scene.T_cam_world)
     with pytest.raises(CalibrationError, match="320x240, not 640x480"):
         BallLocator(world, small).look()
 
@@ -443,25 +440,20 @@ def test_the_loop_goes_on_while_the_eye_looks():
 def test_a_locator_of_bad_numbers_is_refused(change):
     _, world, _ = rig()
     with pytest.raises(InputError):
-        BallLocator(world, TablePlane(world.pinhole, world.T_cam_world), **change)
+        BallLocator(world, TablePlane(world.scene.pinhole, world.scene.T_cam_world), **change)
 
 
 def test_bad_arguments_of_reaching_are_refused():
     bench, _, locator = rig()
-    with pytest.raises(InputError, match="one point"):
+    with pytest.raises(InputError, match="three numbers"):
         reach_pose(IR50P, np.zeros((2, 3)))
     with pytest.raises(InputError, match="simulated arm"):
         RenderedBench(object())
-    with bench, Reacher(bench, rest=False) as reacher:
-        with pytest.raises(InputError, match="no locator"):
-            reacher.look()
     with bench, Reacher(bench, locator, rest=False) as reacher, pytest.raises(InputError, match="looks"):
         reacher.reach(looks=0)
     for task, name in (
         (lambda r: r.reach(height="a"), "height"),
-        (lambda r: r.pick_and_place("ab"), "place"),
         (lambda r: r.put("ab"), "place"),
-        (lambda r: r.pick(contact=np.nan), "contact"),
         (lambda r: r.follow_ball(1.0, lead=np.nan), "lead"),
     ):
         with bench, Reacher(bench, locator, rest=False) as reacher, pytest.raises(InputError, match=name):

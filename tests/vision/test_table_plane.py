@@ -82,31 +82,6 @@ def test_leaving_the_distortion_in_costs_millimetres():
     assert np.linalg.norm(without.to_table(xy) - PLACES, axis=1).max() > 0.003
 
 
-def outline_centre(T, centre, radius, n=20000):
-    """Centre of the outline of a sphere without distortion, from its rim points: no formula of the module."""
-    c = T[:3, :3] @ centre + T[:3, 3]
-    d = np.linalg.norm(c)
-    u = np.cross(c, [1, 0, 0]) / np.linalg.norm(np.cross(c, [1, 0, 0]))
-    v = np.cross(c, u) / d
-    t = np.linspace(0, 2 * np.pi, n, endpoint=False)[:, None]
-    rim = c * (1 - radius**2 / d**2) + radius * np.sqrt(1 - radius**2 / d**2) * (np.cos(t) * u + np.sin(t) * v)
-    xy = (rim[:, :2] / rim[:, 2:]) @ CAMERA.K[:2, :2].T + CAMERA.K[:2, 2]
-    return np.array(cv2.fitEllipse(xy.astype(np.float32))[0])
-
-
-def test_the_outline_of_a_ball_is_not_centred_on_the_image_of_its_centre():
-    bare = Pinhole(CAMERA.K)
-    plane = TablePlane(bare, POSE)
-    seen = np.array([outline_centre(POSE, p, 0.03) for p in lifted(0.03)])
-    centre = bare.project(POSE, lifted(0.03))
-    shift = np.linalg.norm(seen - centre, axis=1)
-    assert 0.1 < shift.max() < 1.0  # px
-    corrected = np.linalg.norm(plane.to_table(seen, 0.03, radius=0.03) - PLACES, axis=1)
-    plain = np.linalg.norm(plane.to_table(seen, 0.03) - PLACES, axis=1)
-    assert corrected.max() < 5e-5  # fitEllipse works in single precision
-    assert plain.max() > 5 * corrected.max()
-
-
 # ---- standard errors
 
 
@@ -122,10 +97,10 @@ def test_standard_errors_are_those_of_random_trials():
         fx, fy, cx, cy, *distortion = own + spread * rng.normal(size=9)
         wrong = Pinhole([[fx, 0, cx], [0, fy, cy], [0, 0, 1]], distortion)
         plane = TablePlane.from_board(wrong, corners + rng.normal(0, 0.2, corners.shape), points)
-        found.append(plane.to_table(at + rng.normal(0, 0.4, at.shape), 0.03 + rng.normal(0, 0.001)))
+        found.append(plane.to_table(at + rng.normal(0, 0.4, at.shape), 0.03))
     noisy = corners + rng.normal(0, 0.2, corners.shape)
     plane = TablePlane.from_board(CAMERA, noisy, points, camera_covariance=np.diag(spread**2))
-    predicted = plane.standard_error(at, 0.03, sigma_px=0.4, sigma_height=0.001)
+    predicted = plane.standard_error(at, 0.03, sigma_px=0.4)
     assert np.allclose(np.std(found, axis=0) / predicted, 1.0, atol=0.2)
 
 
@@ -184,20 +159,6 @@ def test_the_board_gives_the_pose_back_and_its_scatter_is_as_predicted():
     assert np.allclose(np.std(found, axis=0) / pose.stderr, 1.0, atol=0.25)
 
 
-def test_the_other_pose_of_a_flat_board_is_reported():
-    board = board_points(T_table_board=np.eye(4))
-    facing = np.eye(4)
-    facing[:3, 3] = (-0.1, -0.06, 3.0)  # far and almost frontal: hardly any perspective
-    facing[:3, :3] = cv2.Rodrigues(np.array([0.25, 0.0, 0.0]))[0]
-    noisy = CAMERA.project(facing, board) + np.random.default_rng(4).normal(0, 0.2, (54, 2))
-    far = board_pose(CAMERA, noisy, board)
-    near = board_pose(
-        CAMERA, CAMERA.project(POSE, board_points(T_table_board=LYING)), board_points(T_table_board=LYING)
-    )
-    assert far.other_rms < 2 * far.rms
-    assert near.other_rms > 100 * near.rms
-
-
 def test_transforms_invert():
     T = transform([0.3, -0.2, 0.5], [1, 2, 3])
     assert np.allclose(inverse_transform(T) @ T, np.eye(4))
@@ -250,7 +211,6 @@ def test_a_plane_of_bad_numbers_is_refused(change, match):
         ([1, 2, 3], {}, "shape"),
         ("red", {}, "px"),
         ([1, 2], {"height": np.nan}, "height"),
-        ([1, 2], {"radius": -1.0}, "radius"),
     ],
 )
 def test_bad_pixels_are_refused(xy, options, match):

@@ -15,7 +15,6 @@ from ir50p_lab.vision.ball.evidence import beyond
 from ir50p_lab.vision.ball.features import RADII, RAYS, median
 
 WEIGHTS = Path(__file__).with_name("classifier.npz")
-LAYERS = ("w1", "b1", "w2", "b2", "w3", "b3", "w4", "b4")
 NEAR, FAR = (-1, 0, 1), (-4, -2, 0, 2, 4)  # rays that the first and the second layer look at
 _JUST_OUTSIDE = 9  # among RADII
 

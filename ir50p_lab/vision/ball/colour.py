@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ir50p_lab.errors import ImageError, InputError
-from ir50p_lab.inputs import number
+from ir50p_lab.vision.checks import coordinates
 from ir50p_lab.vision.image import check_image
 
 HALF_CIRCLE = 90  # OpenCV's hue is degrees/2: 0..179
@@ -48,6 +48,11 @@ class Colour:
         return min(self.hue, 360 - self.hue) < self.tolerance + 1
 
     @property
+    def centre(self):
+        """The hue in pictures of `hsv_of`, degrees."""
+        return (240.0 - self.hue) % 360.0 if self.swaps else self.hue
+
+    @property
     def is_red(self):
         """Whether the hue is within 20 degrees of red, 0."""
         return min(self.hue, 360 - self.hue) <= 20
@@ -57,10 +62,9 @@ class Colour:
 
         saturation: a stricter least saturation, 0..1.
         """
-        hue = (240.0 - self.hue) % 360.0 if self.swaps else self.hue
         s = max(self.saturation, saturation or 0.0)
-        low = (max(0, round((hue - self.tolerance) / 2)), round(255 * s), round(255 * self.value))
-        return low, (min(179, round((hue + self.tolerance) / 2)), 255, 255)
+        low = (max(0, round((self.centre - self.tolerance) / 2)), round(255 * s), round(255 * self.value))
+        return low, (min(179, round((self.centre + self.tolerance) / 2)), 255, 255)
 
     @property
     def overexposed_bounds(self):
@@ -70,8 +74,8 @@ class Colour:
         """
         if not self.swaps or self.hue < 180:
             return None
-        hue = (240.0 - self.hue) % 360.0
-        low, high = (hue + self.tolerance) / 2, (hue + self.tolerance + _PINK) / 2
+        low = (self.centre + self.tolerance) / 2
+        high = low + _PINK / 2
         return (round(low), round(255 * self.looser.saturation), _CLIPPED), (min(179, round(high)), 255, 255)
 
     @property
@@ -95,31 +99,28 @@ class Colour:
 RED = Colour(hue=355.0, tolerance=20.0, name="red")  # 335 to 15 degrees: both ends of the scale
 
 
-def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
+def learn_colour(image, xy):
     """Learn a Colour from a click: the pixels around it that are like it.
 
-    A small disc around the pixel gives a first hue and saturation; then every pixel within `radius` counts whose hue
-    is near and which is hardly paler, so that shade and light of the same thing are in. If a twentieth of what lies
-    around it has the hue but is paler (an orange ball on wood), the least saturation is half way between.
+    A small disc around the pixel gives a first hue and saturation; then every pixel within a twelfth of the picture's
+    height counts whose hue is near and which is hardly paler, so that shade and light of the same thing are in. If a
+    twentieth of what lies around it has the hue but is paler (an orange ball on wood), the least saturation is half
+    way between.
 
-    Args: image: RGB uint8 (h, w, 3); xy: (x, y) pixel of the click; radius: of the neighbourhood, pixels, by default
-        a twelfth of the picture's height; name: for messages.
+    Args: image: RGB uint8 (h, w, 3); xy: (x, y) pixel of the click.
     Returns: Colour. Raises InputError for a place outside the picture, ImageError where the thing is grey, white or
     black: then its colour tells nothing.
     """
     image = check_image(image)
     height, width = image.shape[:2]
-    try:
-        x, y = (float(v) for v in xy)
-    except (TypeError, ValueError):
-        raise InputError(f"xy = {xy!r}: give the pixel (x, y) of a click") from None
+    x, y = coordinates("xy", xy, 2)
     if not (-0.5 <= x < width - 0.5 and -0.5 <= y < height - 0.5):
         raise InputError(f"({x:g}, {y:g}) lies outside the picture of {width}x{height} pixels")
-    radius = height / 12 if radius is None else number("radius", radius, "> 0", unit="px")
+    radius = height / 12
     rows, cols = np.mgrid[:height, :width]
     far = np.hypot(cols - x, rows - y)
     middle = image[far <= max(1.5, radius / 8)]
-    seed = _colour_of(middle, name)
+    seed = _colour_of(middle)
     near = image[far <= max(3.0, radius)]
     hsv = seed.hsv_of(near[None])[0].astype(float)
     low, high = replace(seed, saturation=_LEAST_SATURATION).bounds()
@@ -128,7 +129,7 @@ def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
     own = alike & ~pale
     if own.sum() < 8:
         return seed
-    colour = _colour_of(near[own], name)
+    colour = _colour_of(near[own])
     ring = far[far <= max(3.0, radius)] > 0.75 * radius
     around = ring & alike & pale
     if around.sum() < max(8, ring.sum() / 20):
@@ -137,15 +138,7 @@ def learn_colour(image, xy, *, radius=None, name="the colour learnt"):
     return replace(colour, saturation=max(colour.saturation, min(float(between), _MOST_SATURATION)))
 
 
-def learn_from_patch(patch, *, name="the colour learnt"):
-    """Learn a Colour from a sample: a picture that shows nothing but the thing.
-
-    patch: RGB uint8 (h, w, 3). Returns: Colour. Raises ImageError for a bad picture, or one without a colour.
-    """
-    return _colour_of(check_image(patch).reshape(-1, 3), name)
-
-
-def _colour_of(pixels, name):
+def _colour_of(pixels):
     """Colour of pixels (n, 3): circular mean of the hue, weighted by chroma; ranges from their spread."""
     import cv2
 
@@ -167,5 +160,5 @@ def _colour_of(pixels, name):
         hue=mean % 360.0,
         tolerance=min(max(1.6 * spread, _LEAST_TOLERANCE), 30.0),
         saturation=min(max(0.55 * least, _LEAST_SATURATION), 0.40),
-        name=name,
+        name="the colour learnt",
     )

@@ -1,6 +1,5 @@
 """The outline of a ball to sub-pixel: along rays from its middle, where the colour changes most."""
 
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -16,33 +15,12 @@ def slope_kernel(sigma):
     return (kernel / np.abs(kernel).sum()).astype(np.float32)
 
 
-@dataclass(frozen=True)
-class RaySamples:
-    """Samples of a picture along rays from (x, y), one ray a row.
+def cast(image, x, y, radii, relative, directions):
+    """Sample the picture along rays from (x, y), one ray a row: at `relative` (m,) times `radii` (n,) or (1,) pixels.
 
-    cos, sin (n,): directions; rho (n, m): distance of the samples from (x, y), pixels; rgb (n, m, 3) uint8;
+    directions: cos and sin (n,) of the rays. Returns: distances rho (n, m) from (x, y), pixels; rgb (n, m, 3) uint8;
     within (n, m): the sample lies in the picture.
     """
-
-    x: float
-    y: float
-    cos: np.ndarray
-    sin: np.ndarray
-    rho: np.ndarray
-    rgb: np.ndarray
-    within: np.ndarray
-
-
-@dataclass(frozen=True)
-class Edge:
-    """Where each ray leaves the ball: rho (n,) pixels; height (n,): of the step, in units of the ball's contrast."""
-
-    rho: np.ndarray
-    height: np.ndarray
-
-
-def cast(image, x, y, radii, relative, directions):
-    """Sample the picture along rays: at `relative` (m,) times `radii` (n,) or (1,) pixels. Returns: RaySamples."""
     import cv2
 
     cos, sin = directions
@@ -53,7 +31,7 @@ def cast(image, x, y, radii, relative, directions):
     height, width = image.shape[:2]
     rgb = cv2.remap(image, px, py, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     within = (px >= -0.5) & (px <= width - 0.5) & (py >= -0.5) & (py <= height - 0.5)
-    return RaySamples(x, y, cos, sin, rho, rgb, within)
+    return rho, rgb, within
 
 
 @cache
@@ -63,7 +41,8 @@ def directions(n):
     return np.cos(angle), np.sin(angle)
 
 
-def contrast_axis(rays, inner, outer):
+@jit()
+def contrast_axis(rgb, within, inner, outer):
     """The direction in RGB that tells ball from surroundings best (Fisher): weights (3,), step between them = 1.
 
     inner, outer: the first `inner` samples of a ray lie well inside, those from `outer` on well outside. Shading
@@ -71,22 +50,6 @@ def contrast_axis(rays, inner, outer):
     Returns: weights float32, the level half way between the means (in units of the step), distance of the means over
     their spread (0: nothing tells them apart).
     """
-    return _fisher(rays.rgb, rays.within, inner, outer)
-
-
-def find_edges(rays, weights, expected, width, sigma):
-    """The strongest fall of contrast along each ray, near where it is expected, to a fraction of a sample.
-
-    weights (3,): of `contrast_axis`; expected: index of the sample where the edge should be; width: in samples, how
-    fast a peak loses weight away from it; sigma: of the smoothing, in samples. Returns: Edge.
-    """
-    at, height = _steepest(rays.rgb, rays.within, weights, slope_kernel(sigma), float(expected), float(width))
-    first, second = rays.rho[:, 0], rays.rho[:, 1]
-    return Edge(first + at * (second - first), height)
-
-
-@jit()
-def _fisher(rgb, within, inner, outer):
     n, m = within.shape
     count, mean, scatter = np.zeros(2), np.zeros((2, 3)), np.zeros((3, 3))
     for side in range(2):
@@ -123,7 +86,13 @@ def _fisher(rgb, within, inner, outer):
 
 
 @jit()
-def _steepest(rgb, within, weights, kernel, expected, width):
+def find_edges(rho, rgb, within, weights, kernel, expected, width):
+    """The strongest fall of contrast along each ray, near where it is expected, to a fraction of a sample.
+
+    weights (3,): of `contrast_axis`; kernel: of `slope_kernel`; expected: index of the sample where the edge should
+    be; width: in samples, how fast a peak loses weight away from it; both floats.
+    Returns: distance (n,) of the edge, pixels; height (n,) of its step, in units of the ball's contrast.
+    """
     n, m = within.shape
     at, height = np.zeros(n), np.zeros(n)
     half = len(kernel) // 2
@@ -143,6 +112,6 @@ def _steepest(rgb, within, weights, kernel, expected, width):
                 best, peak = weighed, k
         bend = slope[peak - 1] - 2 * slope[peak] + slope[peak + 1]
         shift = 0.5 * (slope[peak - 1] - slope[peak + 1]) / bend if bend < -1e-9 else 0.0
-        at[i] = peak + min(max(shift, -0.5), 0.5)
+        at[i] = rho[i, 0] + (peak + min(max(shift, -0.5), 0.5)) * (rho[i, 1] - rho[i, 0])
         height[i] = 2 * slope[peak] if within[i, peak + 1] else 0.0
     return at, height

@@ -1,59 +1,46 @@
 """What speaks against a ball, in words: the classifier decides, this says why.
 
-Each term is a weight times something measured, about 1 where it alone makes a ball doubtful.
+Each objection has a weight times something measured, about 1 where it alone makes a ball doubtful.
 """
 
 from math import log
 
 import numpy as np
 
-# what is measured, its weight, and what to say if it is the strongest objection
-TERMS = (
-    ("missing", 1.8, "{0:.0%} of the circle show no edge"),
-    ("unseen", 4.3, "{0:.0%} of the circle lie outside the picture"),
-    ("beyond", 5.6, "the colour goes on beyond {0:.0%} of the circle"),
-    ("hollow", 5.5, "{0:.0%} of the disc have another colour"),
-    ("bumps", 3.7, "the outline is not round: waves of {1:.2f} pixels on a radius of {2:.0f}"),
-    ("oval", 1.0, "the outline is oval"),
-    ("alike", 2.35, "it hardly stands out from its surroundings"),
-    ("through", 1.4, "{0:.0%} of the part that is missing look like the background: nothing hides it"),
-    ("broken", 0.4, "the outline is broken in {0:.0f} places more than one thing in front could do"),
-    ("texture", 0.2, "the edges around it are those of a texture"),
-    ("small", 2.9, "it is small, radius {2:.1f} pixels, and what is seen of it is not enough"),
-    ("ragged", 1.95, "its edges scatter about a circle"),
-)
-NOTHING_SPECIAL = "taken together, edge and shading are not those of a ball"
 _WELL_APART = 5.5  # standard deviations between ball and surroundings, usual for a ball
 
 
-def evidence(found, others=()):
-    """Name -> (amount, weighed) of each term for a Measured; others: Balls that may touch it."""
-    o = found.outline
-    pixels = 0.3 + 0.01 * o.r
-    amounts = {
-        "missing": max(found.seen - found.support, 0.0),
-        "unseen": 1 - found.seen,
-        "beyond": beyond(found, others),
-        "hollow": 1 - found.fill,
-        "bumps": found.bumps * o.r / pixels,
-        "oval": found.oval * o.r / (0.4 + 0.06 * o.r),
-        "alike": max(log(_WELL_APART / max(found.apart, 0.2)), 0.0),
-        "through": found.through,
-        "broken": max(found.gaps - 1, 0),
-        "texture": max(found.step - 0.9, 0.0),
-        "small": max(min(-log(o.r / 20), 2.0), 0.0),
-        "ragged": found.ragged * o.r / pixels,
-    }
-    return {name: (amounts[name], weight * amounts[name]) for name, weight, _ in TERMS}
-
-
 def objection(found, others=()):
-    """The strongest objection to a Measured, as a text."""
-    terms = evidence(found, others)
-    worst = max(terms, key=lambda name: terms[name][1])
-    text = next(text for name, _, text in TERMS if name == worst) if terms[worst][1] > 0.3 else NOTHING_SPECIAL
+    """The strongest objection to a Measured, as a text; others: Balls that may touch it."""
     o = found.outline
-    return text.format(terms[worst][0], found.bumps * o.r, o.r)
+    waves, pixels = found.bumps * o.r, 0.3 + 0.01 * o.r
+    missing, outside, colourless = max(found.seen - found.support, 0.0), 1 - found.seen, 1 - found.fill
+    goes_on = beyond(found, others)
+    said = (
+        (1.8 * missing, f"{missing:.0%} of the circle show no edge"),
+        (4.3 * outside, f"{outside:.0%} of the circle lie outside the picture"),
+        (5.6 * goes_on, f"the colour goes on beyond {goes_on:.0%} of the circle"),
+        (5.5 * colourless, f"{colourless:.0%} of the disc have another colour"),
+        (3.7 * waves / pixels, f"the outline is not round: waves of {waves:.2f} pixels on a radius of {o.r:.0f}"),
+        (found.oval * o.r / (0.4 + 0.06 * o.r), "the outline is oval"),
+        (2.35 * log(_WELL_APART / max(found.apart, 0.2)), "it hardly stands out from its surroundings"),
+        (
+            1.4 * found.through,
+            f"{found.through:.0%} of the part that is missing look like the background: nothing hides it",
+        ),
+        (
+            0.4 * (found.gaps - 1),
+            f"the outline is broken in {found.gaps - 1} places more than one thing in front could do",
+        ),
+        (0.2 * (found.step - 0.9), "the edges around it are those of a texture"),
+        (
+            2.9 * min(-log(o.r / 20), 2.0),
+            f"it is small, radius {o.r:.1f} pixels, and what is seen of it is not enough",
+        ),
+        (1.95 * found.ragged * o.r / pixels, "its edges scatter about a circle"),
+    )
+    weight, text = max(said, key=lambda one: one[0])
+    return text if weight > 0.3 else "taken together, edge and shading are not those of a ball"
 
 
 def beyond(found, others=()):

@@ -19,20 +19,19 @@ def look(image, outline, weights, middle, colour):
     red ball looks orange there. Samples outside the picture are 0.
     """
     unit = directions(RAYS)
-    rays = cast(image, outline.x, outline.y, outline.radii(*unit), RADII, unit)
-    hsv = colour.hsv_of(rays.rgb).astype(np.float32)
+    _, rgb, within = cast(image, outline.x, outline.y, outline.radii(*unit), RADII, unit)
+    hsv = colour.hsv_of(rgb).astype(np.float32)
     value = np.log(hsv[:, :, 2] + 4)
-    centre = (240.0 - colour.hue) % 360.0 if colour.swaps else colour.hue
-    hue = np.abs((2 * hsv[:, :, 0] - np.float32(centre) + 180) % 360 - 180) / np.float32(colour.tolerance)
+    hue = np.abs((2 * hsv[:, :, 0] - np.float32(colour.centre) + 180) % 360 - 180) / np.float32(colour.tolerance)
     sure = np.minimum(hsv[:, :, 1] * hsv[:, :, 2] / 6000, 1)  # noise makes the hue of grey and of black
     seen = np.empty((RAYS, len(RADII), CHANNELS), np.float32)
-    seen[:, :, 0] = np.minimum(np.maximum(rays.rgb @ weights - np.float32(middle), -1.5), 1.5)
+    seen[:, :, 0] = np.minimum(np.maximum(rgb @ weights - np.float32(middle), -1.5), 1.5)
     seen[:, :, 1] = np.minimum(np.maximum(value - median(value[:, :6]), -1.5), 1.5)
     seen[:, :, 2] = np.minimum(hue, 3) * sure
     seen[:, :, 3] = np.minimum(hsv[:, :, 1] / np.float32(255 * max(colour.saturation, 0.05)), 3)
     seen[:, :, 4] = np.minimum(np.maximum((hsv[:, :, 2] - _BRIGHT) / (_WHITE - _BRIGHT), 0), 1)
     seen[:, :, 5] = 1
-    return seen * rays.within[:, :, None]
+    return seen * within[:, :, None]
 
 
 def median(values):

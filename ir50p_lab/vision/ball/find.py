@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import ImageError, InputError
+from ir50p_lab.inputs import number
 from ir50p_lab.jit import says_that_it_compiles
 from ir50p_lab.vision.ball.classifier import score
-from ir50p_lab.vision.ball.colour import RED, Colour, learn_from_patch
+from ir50p_lab.vision.ball.colour import RED, Colour
 from ir50p_lab.vision.ball.evidence import objection
 from ir50p_lab.vision.ball.features import median
 from ir50p_lab.vision.ball.fit import view_of
@@ -21,10 +22,8 @@ _TRIED, _TRIED_CLOSER = 14, 10  # guesses measured; the closer look is only for 
 
 _LEAST_ODDS = 1.8  # log odds that a ball needs: well above 0, as a false alarm is worse than a miss
 _SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more
-_CLEAR, _MORE_HIDDEN = (
-    0.75,
-    5.0,
-)  # share of the outline below which the end of a rod can, and what is missing costs, times its share
+# share of the outline below which the end of a rod can, and what is missing costs, times its share
+_CLEAR, _MORE_HIDDEN = 0.75, 5.0
 _SURE, _BY_SUPPORT = 0.9975, 5.0  # score beyond which only the edge tells outlines apart; what its share counts
 # The outline of a ball leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and of a pixel.
 _MOST_BUMPS = 0.010, 0.45
@@ -81,7 +80,7 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
 
     Args:
         image: RGB, uint8, (height, width, 3).
-        colour: Colour, or a patch (RGB picture of nothing but the ball) to learn it from.
+        colour: Colour.
         camera: Pinhole or Calibration, if known: then the projected centre is exact, and distortion is allowed for.
             Without it a usual webcam is assumed, with its axis in the middle of the picture.
         least_radius: of the balls sought, pixels; smaller things are left out.
@@ -91,8 +90,9 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     of another size than the camera's.
     """
     image = check_image(image)
-    colour = _as_colour(colour)
-    least_radius = _check_radius(least_radius)
+    if not isinstance(colour, Colour):
+        raise InputError(f"colour = {colour!r:.60}: give RED or another Colour (learn_colour makes one from a click)")
+    least_radius = number("least_radius", least_radius, "> 0", unit="px")
     if image.shape[0] * image.shape[1] < 2:
         raise ImageError("a picture of one pixel shows no ball: take a larger one")
     if camera is not None:
@@ -103,8 +103,16 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     for guess, most in ((guess_circles, _TRIED), (guess_closer, _TRIED_CLOSER)):
         guesses, count = guess(image, colour, least_radius)
         regions, tried = regions + count, tried + len(guesses)
-        for place in guesses[:most, :3]:
-            _measure(image, place, view, colour, camera, least_radius, measured, rejected)
+        for x, y, r in guesses[:most, :3].tolist():
+            if any(np.hypot(x - m.outline.x, y - m.outline.y) + abs(r - m.outline.r) < 0.3 * r for m in measured):
+                continue  # an earlier guess led to the same outline
+            found = measure(image, (x, y, r), view, colour, camera)
+            if isinstance(found, str):
+                rejected.append(((x, y, r), found))
+            elif why := rejection_reason(found, least_radius, colour):
+                rejected.append((_place(found), why))
+            else:
+                measured.append(found)
         balls, objections = decide(measured)
         if balls:
             break
@@ -117,20 +125,6 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         return Balls(balls, rejected=rejected)
     (x, y, r), why = rejected[0]
     return Balls(reason=f"the likeliest thing, at ({x:.0f}, {y:.0f}) with radius {r:.0f}: {why}", rejected=rejected)
-
-
-def _measure(image, place, view, colour, camera, least_radius, measured, rejected):
-    """Measure at a guess (x, y, r): add to `measured` what may be a ball, else to `rejected` ((x, y, r), why)."""
-    x, y, r = map(float, place)
-    if any(np.hypot(x - m.outline.x, y - m.outline.y) + abs(r - m.outline.r) < 0.3 * r for m in measured):
-        return  # an earlier guess led to the same outline
-    found = measure(image, (x, y, r), view, colour, camera)
-    if isinstance(found, str):
-        rejected.append(((x, y, r), found))
-    elif why := rejection_reason(found, least_radius, colour):
-        rejected.append((_place(found), why))
-    else:
-        measured.append(found)
 
 
 def decide(measured):
@@ -225,17 +219,3 @@ def _hue(disc):
         hues.append(median(hue[dark]))
     hues.append(median(hue[clear]) if clear.mean() >= _ENOUGH else 0.0)
     return float(min(hues))
-
-
-def _as_colour(colour):
-    if isinstance(colour, Colour):
-        return colour
-    if isinstance(colour, np.ndarray):
-        return learn_from_patch(colour)
-    raise InputError(f"colour = {colour!r}: give RED, a Colour (learn_colour makes one from a click), or a patch")
-
-
-def _check_radius(radius):
-    if not isinstance(radius, int | float | np.number) or not 2 <= radius < np.inf:
-        raise InputError(f"least_radius = {radius!r}: give pixels, at least 2")
-    return float(radius)

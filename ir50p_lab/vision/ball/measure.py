@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.vision.ball.edge import cast, contrast_axis, directions, find_edges
+from ir50p_lab.vision.ball.edge import cast, contrast_axis, directions, find_edges, slope_kernel
 from ir50p_lab.vision.ball.features import RAYS, look, median
 from ir50p_lab.vision.ball.fit import Outline, fit_outline
 
@@ -56,73 +56,83 @@ class Measured:
     edges: np.ndarray
 
 
+class NoBallError(Exception):
+    """Why there is no ball at a guess."""
+
+
 def measure(image, guess, view, colour, camera=None):
     """Measure the ball at a guess (x, y, r); camera: Pinhole, whose lens may distort. Returns: Measured, or why not."""
+    try:
+        return _fine(image, *_coarse(image, guess, view), view, colour, camera)
+    except NoBallError as why:
+        return str(why)
+
+
+def _coarse(image, guess, view):
+    """Outline around a guess that may be a third off, and the unit vectors (cos, sin) of the rays to look along."""
     x, y, r = guess
     unit = directions(int(np.clip(8 * round(r / 4), 48, 96)))
-    for turn in range(2):
+    for width in (0.4, 0.25):
         steps = int(np.clip(r, 8, 18))
-        pace = 0.7 * r / steps  # pixels
         relative = 1 + np.linspace(-0.7, 0.7, 2 * steps + 1, dtype=np.float32)
         rays = cast(image, x, y, np.float32([r]), relative, unit)
-        weights, _, apart = contrast_axis(rays, round(0.8 * steps), round(1.3 * steps))
-        if apart == 0:
-            return "it looks like its surroundings"
-        edge = find_edges(
-            rays, weights, steps, (0.4 if turn == 0 else 0.25) * steps, max(0.9, round(_smooth(r) / pace, 1))
-        )
-        strong = edge.height > _EDGE
-        if strong.sum() < 8:
-            return "no edge around it"
-        edges = x + edge.rho[strong] * unit[0][strong], y + edge.rho[strong] * unit[1][strong]
-        fit = fit_outline(*edges, view, (x, y, r))
-        if fit is None:  # the guess may have been too large or too small for edges that agree well
-            fit = fit_outline(*edges, view, (x, y, float(median(edge.rho[strong]))))
-        if fit is None:
-            return "its edges lie on no circle"
-        found = fit
+        sigma = max(0.9, round(_smooth(r) * steps / (0.7 * r), 1))
+        _, rho, height = _edges(rays, round(0.8 * steps), round(1.3 * steps), steps, width * steps, sigma)
+        strong = height > _EDGE
+        edges = x + rho[strong] * unit[0][strong], y + rho[strong] * unit[1][strong]
+        found = fit_outline(*edges, view, (x, y, r))
+        if found is None:  # the guess may have been too large or too small for edges that agree well
+            found = fit_outline(*edges, view, (x, y, float(median(rho[strong]))))
+        if found is None:
+            raise NoBallError("its edges lie on no circle")
         moved = np.hypot(found.x - x, found.y - y) + abs(found.r - r)
         x, y, r = found.x, found.y, found.r
         if moved < 0.06 * r:
             break
-    return _fine(image, found, view, colour, unit, camera)
+    return found, unit
 
 
-def _fine(image, outline, view, colour, unit, camera):
+def _edges(rays, inner, outer, expected, width, sigma):
+    """(contrast of `contrast_axis`, distances and heights of the edges along the rays of `cast`)."""
+    rho, rgb, within = rays
+    contrast = contrast_axis(rgb, within, inner, outer)
+    if contrast[2] == 0:
+        raise NoBallError("it looks like its surroundings")
+    at, height = find_edges(rho, rgb, within, contrast[0], slope_kernel(sigma), float(expected), width)
+    if (height > _EDGE).sum() < 8:
+        raise NoBallError("no edge around it")
+    return contrast, at, height
+
+
+def _fine(image, outline, unit, view, colour, camera):
     """Look again, finely, along the outline found: the last digits, and the evidence."""
     x, y, r = outline.x, outline.y, outline.r
     if r < 3:
-        return "too small"
+        raise NoBallError("too small")
     half = max(4.5, 0.16 * r)  # pixels searched on either side
     pace = max(0.5, half / 14)
     steps = int(np.ceil(half / pace))
-    radii = outline.radii(*unit)
     relative = 1 + np.arange(-steps, steps + 1, dtype=np.float32) * np.float32(pace / r)
-    rays = cast(image, x, y, radii, relative, unit)
-    clear = max(2, steps // 3)
-    weights, middle, apart = contrast_axis(rays, steps - clear + 1, steps + clear)
-    if apart == 0:
-        return "it looks like its surroundings"
-    edge = find_edges(rays, weights, steps, 0.6 * steps, max(1.2, round(_smooth(r) / pace, 1)))
-    strong = edge.height > _EDGE
-    if strong.sum() < 8:
-        return "no edge around it"
-    ex, ey = x + edge.rho * unit[0], y + edge.rho * unit[1]
-    fit = fit_outline(ex[strong], ey[strong], view, (x, y, r), noise=0.2)
-    if fit is None:
-        return "its edges lie on no circle"
-    outline = fit
+    rays = cast(image, x, y, outline.radii(*unit), relative, unit)
+    clear, sigma = max(2, steps // 3), max(1.2, round(_smooth(r) / pace, 1))
+    contrast, rho, height = _edges(rays, steps - clear + 1, steps + clear, steps, 0.6 * steps, sigma)
+    weights, middle, apart = contrast
+    strong = height > _EDGE
+    ex, ey = x + rho * unit[0], y + rho * unit[1]
+    outline = fit_outline(ex[strong], ey[strong], view, (x, y, r), noise=0.2)
+    if outline is None:
+        raise NoBallError("its edges lie on no circle")
     off = outline.distances(ex, ey)
     on = strong & (np.abs(off) < max(1.2, 0.05 * outline.r))
     if on.sum() < 8:
-        return "its edges lie on no circle"
+        raise NoBallError("its edges lie on no circle")
     if on.mean() < LEAST_SUPPORT:
-        return f"an edge on {on.mean():.0%} of the circle only"
-    seen = rays.within[:, steps]
+        raise NoBallError(f"an edge on {on.mean():.0%} of the circle only")
+    seen = rays[2][:, steps]
     inside, outside, rgb, hsv = _colours(image, outline, colour, unit)
     fill = float((inside[on] @ _AREA).mean())
     if fill < LEAST_FILL:
-        return f"hollow, or another colour: {fill:.0%} of the disc have the colour"
+        raise NoBallError(f"hollow, or another colour: {fill:.0%} of the disc have the colour")
     missing = ~on & seen
     outside &= rgb[:, 12:] @ weights > middle + 0.05
     beyond = missing & inside[:, -1] & outside[:, 0] & outside[:, 1]
@@ -136,10 +146,10 @@ def _fine(image, outline, view, colour, unit, camera):
         apart=apart,
         through=_shown_through(rgb, on, missing & ~beyond, inside),
         gaps=_gaps(missing),
-        step=float(np.median(edge.height[on])),
+        step=float(np.median(height[on])),
         paint=_paint(hsv[inside], colour),
         samples=look(image, outline, weights, middle, colour),
-        edges=_along(on, off / (0.3 + 0.01 * outline.r), edge.height, beyond),
+        edges=_along(on, off / (0.3 + 0.01 * outline.r), height, beyond),
         **dict(zip(("bumps", "oval", "ragged"), _waves(off[on], unit[0][on], unit[1][on], outline.r), strict=True)),
     )
 
@@ -209,16 +219,16 @@ def _colours(image, outline, colour, unit):
     rim = 1.5 / r
     inner = np.append(np.linspace(0.1, 0.85, 11), max(0.5, 0.97 - rim))
     relative = np.concatenate([inner, 1.03 + rim + np.array([0.0, 0.04, 0.12, 0.22])]).astype(np.float32)
-    rays = cast(image, outline.x, outline.y, outline.radii(*unit), relative, unit)
-    hsv = colour.hsv_of(rays.rgb)
-    alike = (cv2.inRange(hsv, *colour.bounds()) > 0) & rays.within
+    _, rgb, within = cast(image, outline.x, outline.y, outline.radii(*unit), relative, unit)
+    hsv = colour.hsv_of(rgb)
+    alike = (cv2.inRange(hsv, *colour.bounds()) > 0) & within
     bright = (hsv[:, :12, 2] > 200) & (hsv[:, :12, 1] < 255 * colour.saturation)
-    inside = (cv2.inRange(hsv[:, :12], *colour.looser.bounds()) > 0) & rays.within[:, :12]  # it may lie in the shade
+    inside = (cv2.inRange(hsv[:, :12], *colour.looser.bounds()) > 0) & within[:, :12]  # it may lie in the shade
     if pink := colour.overexposed_bounds:
-        inside = inside | (cv2.inRange(hsv[:, :12], *pink) > 0) & rays.within[:, :12]
+        inside = inside | (cv2.inRange(hsv[:, :12], *pink) > 0) & within[:, :12]
     if (bright @ inner).mean() < 0.35 * inner.sum():  # a highlight is a part of the disc
         inside = inside | bright
-    return inside, alike[:, 12:], rays.rgb, hsv[:, :12]
+    return inside, alike[:, 12:], rgb, hsv[:, :12]
 
 
 def _paint(hsv, colour):
@@ -229,8 +239,7 @@ def _paint(hsv, colour):
     if not len(hsv):
         return 0.0, 0.0, 0.0
     hsv = hsv.astype(float)
-    centre = (240.0 - colour.hue) % 360.0 if colour.swaps else colour.hue
-    off = (2.0 * hsv[:, 0] - centre + 180) % 360 - 180
+    off = (2.0 * hsv[:, 0] - colour.centre + 180) % 360 - 180
     return (
         float(median(-off if colour.swaps else off)),
         float(median(hsv[:, 1])) / 255,

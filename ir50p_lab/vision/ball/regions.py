@@ -86,14 +86,33 @@ def _circles_of(found_in, least_radius):
     return np.array(found).reshape(-1, 4), regions
 
 
+def _opened(mask):
+    import cv2
+
+    return cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
+
+
 def _closed(mask):
     import cv2
 
     return cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
 
 
+def _halves(hsv, mask):
+    """Six parts of a mask: above and below Otsu's threshold of hue, saturation and value in it."""
+    import cv2
+
+    found = []
+    for channel in range(3):
+        values = np.ascontiguousarray(hsv[:, :, channel])
+        middle, _ = cv2.threshold(values[mask > 0], 0, 255, cv2.THRESH_OTSU)
+        upper = cv2.bitwise_and(cv2.compare(values, middle, cv2.CMP_GT), mask)
+        found += [upper, cv2.subtract(mask, upper)]
+    return found
+
+
 def split(hsv, colour):
-    """Parts of the largest regions of the colour, (h, w) uint8: above and below Otsu's threshold of each channel."""
+    """Parts of the largest regions of the colour, each split on its own, (h, w) uint8."""
     import cv2
 
     mask = cv2.inRange(hsv, *colour.bounds())
@@ -106,14 +125,9 @@ def split(hsv, colour):
             continue
         box = np.s_[y : y + h, x : x + w]
         here = np.where(labels[box] == label, np.uint8(255), np.uint8(0))
-        for channel in range(3):
-            values = np.ascontiguousarray(hsv[box][:, :, channel])
-            middle, _ = cv2.threshold(values[here > 0], 0, 255, cv2.THRESH_OTSU)
-            upper = cv2.bitwise_and(cv2.compare(values, middle, cv2.CMP_GT), here)
-            found[2 * channel][box] |= upper
-            found[2 * channel + 1][box] |= cv2.subtract(here, upper)
-    kernel = np.ones((3, 3), np.uint8)
-    return [cv2.morphologyEx(part, cv2.MORPH_OPEN, kernel) for part in found]
+        for part, half in zip(found, _halves(hsv[box], here), strict=True):
+            part[box] |= half
+    return [_opened(part) for part in found]
 
 
 def _ranked(circles, image):
@@ -148,18 +162,10 @@ def masks(hsv, colour):
     """Pictures (h, w) uint8, 255 where the colour is: from loose to strict, and parts of it if there is much of it."""
     import cv2
 
-    kernel = np.ones((3, 3), np.uint8)
     loose = cv2.inRange(hsv, *colour.bounds())
-    strict = [cv2.inRange(hsv, *colour.bounds(s)) for s in STRICTNESS[1:]]
-    found = [cv2.morphologyEx(mask, cv2.MORPH_OPEN, kernel) for mask in (loose, *strict)]
-    many = cv2.countNonZero(found[0])
-    if many > _MUCH * loose.size:
-        for channel in range(3):  # Otsu's threshold in hue, saturation and value of what has the colour
-            values = hsv[:, :, channel]
-            middle, _ = cv2.threshold(values[loose > 0], 0, 255, cv2.THRESH_OTSU)
-            upper = cv2.bitwise_and(cv2.compare(values, middle, cv2.CMP_GT), loose)
-            for part in (upper, cv2.subtract(loose, upper)):
-                found.append(cv2.morphologyEx(part, cv2.MORPH_OPEN, kernel))
+    found = [_opened(loose), *(_opened(cv2.inRange(hsv, *colour.bounds(s))) for s in STRICTNESS[1:])]
+    if cv2.countNonZero(found[0]) > _MUCH * loose.size:
+        found += [_opened(part) for part in _halves(hsv, loose)]
     return found
 
 

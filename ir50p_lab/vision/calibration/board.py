@@ -59,11 +59,9 @@ class Charuco(Checkerboard):
             raise CalibrationError(f"marker = {self.marker} m must be smaller than a square, {self.square} m")
         import cv2
 
-        names = [name for name in dir(cv2.aruco) if name.startswith("DICT_")]
-        for name in names:
-            if type(self.dictionary) is int and getattr(cv2.aruco, name) == self.dictionary:
-                object.__setattr__(self, "dictionary", name)
-        if self.dictionary not in names:
+        names = {getattr(cv2.aruco, name): name for name in dir(cv2.aruco) if name.startswith("DICT_")}
+        object.__setattr__(self, "dictionary", names.get(self.dictionary, self.dictionary))
+        if self.dictionary not in names.values():
             raise CalibrationError(f"cv2.aruco has no dictionary {self.dictionary!r}; one is 'DICT_5X5_100'")
 
     def opencv(self):

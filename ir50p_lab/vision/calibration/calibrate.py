@@ -9,21 +9,11 @@ import numpy as np
 from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.inputs import number, switch
 from ir50p_lab.vision.board_pose import transform
+from ir50p_lab.vision.calibration import checks
 from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.charuco import find_charuco
-from ir50p_lab.vision.calibration.checks import (
-    about_camera,
-    about_lens,
-    about_views,
-    bent_board,
-    free_aspect,
-    lacking_terms,
-    outlier_view,
-    sag_size,
-    two_cameras,
-)
 from ir50p_lab.vision.calibration.corners import BoardCorners, find_checkerboard
-from ir50p_lab.vision.calibration.fit import NAMES, CornerSets, Model, fit, start
+from ir50p_lab.vision.calibration.fit import LENS, NAMES, CornerSets, Model, fit, start
 from ir50p_lab.vision.calibration.models import choose, in_percent, total_covariance
 from ir50p_lab.vision.calibration.pictures import common_size, pictures_of, with_bar
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
@@ -67,24 +57,21 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, as
         raise InputError(f"board = {board!r}: give a Checkerboard or a Charuco")
     options = _options(lens, aspect, bend)
     pictures = pictures_of(images, progress)
-    found, rejected, seen = {}, [], Counter()
+    found, rejected, seen = [], [], Counter()
     size = common_size(pictures)
     for picture in with_bar(pictures, progress):
         try:
             other = seen.most_common(1)[0][0] if seen and not found else None
-            found[picture.index] = picture, _corners_in(picture, board, size, other)
+            found.append((picture.name, picture.index, _corners_in(picture, board, size, other)))
         except NotUsable as why:
-            rejected.append(
-                (Rejected(picture.name, picture.index, why.reason, why.detail), None if why.whole else why.seen)
-            )
+            rejected.append((Rejected(picture.name, picture.index, why.reason, why.detail), why))
             if why.seen is not None:
                 seen[why.seen] += 1
-    rejected = [_covered_or_other(one, parts, board, bool(found)) for one, parts in rejected]
-    rejected += _drop_duplicates(found, size, board)
+    rejected = [_covered_or_other(one, why, board, bool(found)) for one, why in rejected]
+    found = _without_duplicates(found, size, board, rejected)
     if len(found) < _FEWEST:
         raise CalibrationError(_why_too_few(len(found), rejected, seen, board))
-    names = {i: (picture.name, i) for i, (picture, _) in found.items()}
-    return _calibrate(names, {i: corners for i, (_, corners) in found.items()}, size, board, options, rejected)
+    return _calibrate(found, size, board, board.points, options, rejected)
 
 
 def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=None, bend=None):
@@ -98,11 +85,7 @@ def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=No
     Returns: Calibration. Raises CalibrationError as `calibrate`, InputError for shapes that do not fit, or NaN.
     """
     options, size = _options(lens, aspect, bend), picture_size(size)
-    if (
-        not (np.iterable(image_points) and np.iterable(object_points))
-        or isinstance(image_points, str)
-        or len(object_points) == 0
-    ):
+    if not np.iterable(image_points) or not np.iterable(object_points) or len(object_points) == 0:
         raise InputError("object_points and image_points: give lists with the points of each view, (n, 3) and (n, 2)")
     pixels = [point_list("image_points", one, 2) for one in image_points]
     if np.ndim(object_points[0]) < 2:
@@ -114,59 +97,48 @@ def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=No
         raise CalibrationError(f"{len(pixels)} views: at least {_FEWEST} are needed, 10 to 20 are good")
     if any(np.ptp(p[:, 2]) > 0 for p in points):
         raise InputError("object_points must lie in the plane z = 0 of the board")
-    for i, xy in enumerate(pixels):
-        outside = ((xy < -1.5) | (xy > np.array(size) + 0.5)).any(axis=1)  # one pixel over the edge
-        if outside.any():
-            x, y = xy[outside][0]
-            raise InputError(
-                f"view {i + 1} has a corner at ({x:.0f}, {y:.0f}), outside the picture of size = {size}: give its "
-                "(width, height)"
-            )
+    outside = [xy for xy in np.concatenate(pixels) if (xy < -1.5).any() or (xy > np.array(size) + 0.5).any()]
+    if outside:
+        raise InputError(
+            f"a corner at {outside[0].round()} lies outside pictures of size = {size}: give (width, height)"
+        )
     everything, inverse = np.unique(np.concatenate(points), axis=0, return_inverse=True)
-    board = _board_like(everything)
     places = np.split(inverse.ravel(), np.cumsum([len(p) for p in points])[:-1])
-    corners = {
-        i: BoardCorners(xy, place, np.nan, np.nan, "given")
-        for i, (xy, place) in enumerate(zip(pixels, places, strict=True))
-    }
-    names = {i: (f"view {i + 1}", i) for i in corners}
-    return _calibrate(names, corners, size, board, options, [], everything)
+    found = [
+        (f"view {i + 1}", i, BoardCorners(xy, place)) for i, (xy, place) in enumerate(zip(pixels, places, strict=True))
+    ]
+    return _calibrate(found, size, _board_like(everything), everything, options, [])
 
 
-def _calibrate(names, found, size, board, options, rejected, points=None):
-    """From corners by picture to a Calibration: outlier views out, lens chosen, bend of the board tested."""
-    points = board.points if points is None else points
+def _calibrate(found, size, board, points, options, rejected):
+    """From (name, index, BoardCorners) to a Calibration: outlier views out, lens chosen, bend of the board tested."""
     wanted, aspect, bend = options
-    keys = list(found)
-    corners = CornerSets([points[found[i].index] for i in keys], [found[i].xy for i in keys], size)
-    guess, rejected = start(corners), list(rejected)
+    corners = CornerSets([points[one.index] for _, _, one in found], [one.xy for _, _, one in found], size)
     model = Model(("k1", "k2"), aspect)
-    rough = fit(corners, model, guess)
-    for _ in range(max(1, len(keys) // 4)):
-        outlier = outlier_view(corners, rough)
+    rough = fit(corners, model, start(corners))
+    for _ in range(max(1, len(found) // 4)):
+        outlier = checks.outlier_view(corners, rough)
         if outlier is None:
             break
         worst, rms, usual = outlier
-        name, index = names[keys[worst]]
+        name, index, _ = found.pop(worst)
         detail = f"its corners are {rms:.2g} px off the model, those of the other views {usual:.2g} px"
         rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
-        corners, keys = corners.without(worst), [k for n, k in enumerate(keys) if n != worst]
+        corners = corners.without(worst)
         rough = fit(corners, model, start(corners))
     best, evidence, tried, said = _best(corners, rough, wanted, aspect, bend)
     if not any("was prescribed" in text for text in said):  # else what is prescribed explains the residuals
-        said = two_cameras(corners, best) + said
+        said = checks.two_cameras(corners, best) + said
     views = tuple(
         View(
-            name=names[key][0],
-            index=names[key][1],
-            points=points[found[key].index],
-            corners=found[key].xy,
-            residuals=best.residuals[n],
-            T_cam_board=transform(best.poses[n, :3], best.poses[n, 3:]),
-            rise=found[key].rise,
-            finder=found[key].finder,
+            name=name,
+            index=index,
+            points=points[one.index],
+            corners=one.xy,
+            residuals=residuals,
+            T_cam_board=transform(pose[:3], pose[3:]),
         )
-        for n, key in enumerate(keys)
+        for (name, index, one), residuals, pose in zip(found, best.residuals, best.poses, strict=True)
     )
     total = total_covariance(best, tried)
     result = Calibration(
@@ -189,7 +161,9 @@ def _calibrate(names, found, size, board, options, rejected, points=None):
     lost = len(rejected) / (len(rejected) + len(views))
     if lost > 0.5:
         said.append(f"{len(rejected)} of {len(rejected) + len(views)} pictures were of no use: see `rejected`")
-    return replace(result, warnings=(*said, *about_lens(result), *about_camera(result), *about_views(result)))
+    return replace(
+        result, warnings=(*said, *checks.about_lens(result), *checks.about_camera(result), *checks.about_views(result))
+    )
 
 
 def _best(corners, rough, wanted, aspect, bend):
@@ -206,11 +180,11 @@ def _best(corners, rough, wanted, aspect, bend):
     lacking, wide = None, best  # the fit with what a prescribed lens lacks: a lens can look like a bent board
     try:
         if wanted is not None:
-            lacking, wide = lacking_terms(corners, best, guess)
-        shape = bent_board(corners, wide)
+            lacking, wide = checks.lacking_terms(corners, best, guess)
+        shape = checks.bent_board(corners, wide)
         if shape.kept and bend is None:
             best, evidence, tried = estimate(True)
-            lacking, wide = (None, best) if wanted is None else lacking_terms(corners, best, guess)
+            lacking, wide = (None, best) if wanted is None else checks.lacking_terms(corners, best, guess)
     except CalibrationError:
         shape = None
         said.append("the views are too few or too much alike to test whether the board is bent")
@@ -224,15 +198,15 @@ def _best(corners, rough, wanted, aspect, bend):
     if shape is not None and shape.kept and bend is False:
         said.append("bend=False was prescribed, but the corners say that the board is bent: leave bend=None")
     elif shape is not None and shape.kept:
-        size = 1000 * sag_size(corners, best.camera[9:])
-        error = 1000 * sag_size(corners, best.stderr[9:]) / np.sqrt(3)
+        size = 1000 * checks.sag_size(corners, best.camera[9:])
+        error = 1000 * checks.sag_size(corners, best.stderr[9:]) / np.sqrt(3)
         said.append(
             f"the board is bent by {size:.2g} +- {error:.1g} mm: its shape was estimated with the camera. Glue it to "
             "glass or a plate and repeat"
         )
     evidence = (*evidence, shape) if shape is not None else evidence
     if aspect:
-        question, free = free_aspect(corners, wide)
+        question, free = checks.free_aspect(corners, wide)
         evidence = (*evidence, question)
         if question.kept:
             ratio = free.camera[0] / free.camera[1]
@@ -249,24 +223,19 @@ def _named(covariance, fitted):
 
 
 def _options(lens, aspect, bend):
-    """(terms, aspect, bend), checked. Raises InputError."""
+    """(coefficients of the lens, aspect, bend), checked. Raises InputError."""
     if aspect is not None:
         aspect = number("aspect", aspect, "> 0", hint="fx/fy, 1 for square pixels, or None to estimate it")
     if bend is not None and switch("bend", bend):
         raise InputError(
             "bend = True: give None to test for a bend and estimate it, or False to take the board for flat"
         )
-    return _terms(lens), aspect, None if bend is None else False
-
-
-def _terms(lens):
-    """Terms of the ladder for coefficient names, None for None. Raises InputError for unknown names."""
-    if lens is None:
-        return None
-    names = [lens] if isinstance(lens, str) or not np.iterable(lens) else list(lens)
-    if not all(isinstance(name, str) and name in NAMES[4:] for name in names):
-        raise InputError(f"lens = {lens!r}: give coefficients out of {NAMES[4:]}, or None to let the data choose")
-    return tuple(dict.fromkeys("p" if name in ("p1", "p2") else name for name in names))
+    if lens is not None:
+        names = [lens] if isinstance(lens, str) or not np.iterable(lens) else list(lens)
+        if any(name not in LENS for name in names):
+            raise InputError(f"lens = {lens!r}: give coefficients out of {LENS}, or None to let the data choose")
+        lens = tuple(name for name in LENS if name in names)
+    return lens, aspect, bend
 
 
 def _board_like(points):
@@ -296,37 +265,32 @@ def _corners_in(picture, board, size, other):
         raise NotUsable(Reason.NO_BOARD, f"OpenCV finds no corners in it: {' '.join(str(error).split())}") from error
 
 
-def _covered_or_other(one, seen, board, others_fit):
+def _covered_or_other(one, why, board, others_fit):
     """A part of the pattern, where other pictures show all of it, is the same board half covered: CROPPED."""
-    if one.reason is not Reason.WRONG_BOARD or seen is None or not others_fit:
-        return one
-    if all(a <= b for a, b in zip(sorted(seen), sorted(board.pattern), strict=True)):
-        return replace(
-            one,
-            reason=Reason.CROPPED,
-            detail=f"only {seen[0]}x{seen[1]} of its corners show: is part of it covered, or in glare?",
-        )
+    if one.reason is Reason.WRONG_BOARD and why.seen is not None and not why.whole and others_fit:
+        if all(a <= b for a, b in zip(sorted(why.seen), sorted(board.pattern), strict=True)):
+            columns, rows = why.seen
+            detail = f"only {columns}x{rows} of its corners show: is part of it covered, or in glare?"
+            return replace(one, reason=Reason.CROPPED, detail=detail)
     return one
 
 
-def _drop_duplicates(found, size, board):
-    """Take out of `found` the views in which the board is where it was before; a list of Rejected."""
-    dropped, kept = [], []
-    limit = _SAME * float(np.hypot(*size)) if size else 0.0
-    places, names = np.full((len(found), len(board.points), 2), np.nan), [picture.name for picture, _ in found.values()]
-    for k, (key, (picture, corners)) in enumerate(list(found.items())):
+def _without_duplicates(found, size, board, rejected):
+    """The views in which the board is not where it was before; the others go to `rejected`."""
+    kept = []
+    places = np.full((len(found), len(board.points), 2), np.nan)
+    for k, (name, index, corners) in enumerate(found):
         places[k, corners.index] = corners.xy
         moved = np.linalg.norm(places[kept] - places[k], axis=2)
-        common, still = np.isfinite(moved).sum(axis=1), (moved < limit).sum(axis=1)
+        common, still = np.isfinite(moved).sum(axis=1), (moved < _SAME * np.hypot(*size)).sum(axis=1)
         same = np.flatnonzero((common >= _COMMON * len(corners.index)) & (still > common / 2))
         if len(same):
-            least, name = np.nanmedian(moved[same[0]]), names[kept[same[0]]]
-            detail = f"the board is where it was in {name}, {least:.2f} px away: move it between pictures"
-            dropped.append(Rejected(picture.name, picture.index, Reason.DUPLICATE, detail))
-            del found[key]
+            least, first = np.nanmedian(moved[same[0]]), found[kept[same[0]]][0]
+            detail = f"the board is where it was in {first}, {least:.2f} px away: move it between pictures"
+            rejected.append(Rejected(name, index, Reason.DUPLICATE, detail))
         else:
             kept.append(k)
-    return dropped
+    return [found[k] for k in kept]
 
 
 def _why_too_few(count, rejected, seen, board):

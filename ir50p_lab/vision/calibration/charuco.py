@@ -6,15 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.corners import SOFT_SLOPE, BoardCorners, part_of_a_checkerboard, slope_rise
-from ir50p_lab.vision.calibration.grid import apply, homography, spacing
+from ir50p_lab.vision.calibration.corners import SOFT_SLOPE, BoardCorners, slope_rise
+from ir50p_lab.vision.calibration.grid import apply, homography
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 
 _FEWEST = 8  # corners that a view needs; six of them are spent on the pose
-_SEARCHED = 640  # px; squares without markers are searched in a picture reduced to this
-_BLURS = (0, 3, 6)  # px; markers smoothed away leave a checkerboard of black and grey
-_UNREADABLE = 0.09  # width of an edge in squares: a marker's cells have 0.08 to 0.12 of a square
-_SHARP = 2.4  # px; an edge's width from which on a picture may be blurred
 
 
 def find_charuco(grey, board):
@@ -28,66 +24,32 @@ def find_charuco(grey, board):
     corners, index, ids = _detect(grey, board)
     count = len(index)
     if len(ids) == 0:
-        _refuse_unreadable(grey)
         raise NotUsable(Reason.NO_BOARD, f"no marker of {board.dictionary} in it{_other_markers(grey, board)}")
     if count < _FEWEST:
         known = np.isin(ids, board.opencv().getIds()).mean()
         if known < 0.5 or (len(ids) > 6 and count == 0):
             fits = _other_board(grey, board)
             raise NotUsable(Reason.WRONG_BOARD, f"{len(ids)} markers, but not where this board has them{fits}")
-        _refuse_unreadable(grey)
-        raise NotUsable(Reason.CROPPED, f"{count} corners of the board seen, {_FEWEST} needed: show more of it")
-    xy, points = corners, board.points[index, :2]
-    side = _spacing(points, xy, board.square)
-    gap = (board.square - board.marker) / 2 / board.square  # the markers' own corners must stay out of the window
-    half = int(np.clip(min(0.3, gap) * side - 1, 2, 20))
-    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-4)
-    start = np.ascontiguousarray(xy.reshape(-1, 1, 2), dtype=np.float32)
-    xy = cv2.cornerSubPix(grey, start, (half, half), (-1, -1), stop)[:, 0].astype(float)
+        raise NotUsable(
+            Reason.CROPPED, f"{count} corners of the board seen, {_FEWEST} needed: show more of it, or focus"
+        )
+    points = board.points[index, :2]
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     if spread[1] < 1.2 * board.square:
         raise NotUsable(Reason.CROPPED, f"the {count} corners seen lie on a line: show more of the board")
+    side = _spacing(points, corners, board.square)
+    gap = (board.square - board.marker) / 2 / board.square  # the markers' own corners must stay out of the window
+    half = int(np.clip(min(0.3, gap) * side - 1, 2, 20))
+    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-4)
+    start = np.ascontiguousarray(corners.reshape(-1, 1, 2), dtype=np.float32)
+    xy = cv2.cornerSubPix(grey, start, (half, half), (-1, -1), stop)[:, 0].astype(float)
     rise = slope_rise(grey, xy, side)
     if rise > SOFT_SLOPE * side:
         raise NotUsable(Reason.BLURRED, f"edges are {rise:.0f} px wide, squares {side:.0f} px: focus, hold still")
-    H = homography(points, xy)
-    off = np.linalg.norm(apply(H, points) - xy, axis=1)
-    if np.median(off) > 0.15 * side:
+    if _off_plane(points, xy) > 0.15 * side:
         fits = _other_board(grey, board)
         raise NotUsable(Reason.WRONG_BOARD, f"its corners are not where this board has them{fits}")
-    return BoardCorners(xy, index, np.nan, rise, "ChArUco")
-
-
-def _refuse_unreadable(grey):
-    """Raises NotUsable if there is a checkerboard that is too blurred for markers to be read."""
-    import cv2
-
-    shrink = max(1.0, max(grey.shape) / _SEARCHED)
-    small = cv2.resize(grey, None, fx=1 / shrink, fy=1 / shrink, interpolation=cv2.INTER_AREA)
-    if shrink * _softest(small) < _SHARP:
-        return
-    for blur in _BLURS:
-        grid = part_of_a_checkerboard(cv2.GaussianBlur(small, (0, 0), blur) if blur else small)
-        if grid is None:
-            continue
-        side = float(np.median(spacing(grid)))
-        rise = slope_rise(small, grid.reshape(-1, 2), side)
-        if rise > _UNREADABLE * side:
-            raise NotUsable(
-                Reason.BLURRED,
-                f"edges are {shrink * rise:.0f} px wide, squares {shrink * side:.0f} px, so no marker can be read: "
-                "focus, hold still, or come nearer",
-            )
-        return
-
-
-def _softest(grey):
-    """Width of the steepest edges of a picture, px, from 10 to 90 % of the step between its dark and light parts."""
-    import cv2
-
-    slope = np.hypot(cv2.Sobel(grey, cv2.CV_32F, 1, 0), cv2.Sobel(grey, cv2.CV_32F, 0, 1)) / 8
-    low, high = np.percentile(grey, [1, 99])
-    return 0.8 * float(high - low) / max(float(np.percentile(slope, 99.9)), 1e-6)
+    return BoardCorners(xy, index)
 
 
 def _detect(grey, board):
@@ -112,7 +74,8 @@ def _other_board(grey, board):
                 with contextlib.suppress(CalibrationError):  # too small, or more markers than the dictionary has
                     other = replace(board, pattern=pattern, legacy=legacy)
                     xy, index, _ = _detect(grey, other)
-                    if len(index) > most and _lies_well(other.points[index, :2], xy):
+                    size = np.linalg.norm(np.ptp(xy, axis=0)) if len(xy) else 0.0
+                    if len(index) > most and _off_plane(other.points[index, :2], xy) < 0.02 * size:
                         best, most = other, len(index)
     if best is None:
         return ""
@@ -138,19 +101,14 @@ def _other_markers(grey, board):
     return " that can be read: if the board is in view, focus, hold still, or come nearer"
 
 
-def _lies_well(points, xy):
-    """Whether corners xy (n, 2) px are where a flat board has them, points (n, 2)."""
+def _off_plane(points, xy):
+    """Median distance, px, of corners xy (n, 2) from where a flat board has them, points (n, 2)."""
     H = homography(points, xy)
-    if H is None:
-        return False
-    size = np.linalg.norm(np.ptp(xy, axis=0))
-    return bool(np.median(np.linalg.norm(apply(H, points) - xy, axis=1)) < 0.02 * size)
+    return np.inf if H is None else float(np.median(np.linalg.norm(apply(H, points) - xy, axis=1)))
 
 
 def _spacing(points, xy, square):
     """Median side of a square, px, from the scale of the map from board to picture."""
     H = homography(points, xy)
-    if H is None:
-        raise NotUsable(Reason.CROPPED, "the corners seen lie on a line: show more of the board")
     sides = [np.linalg.norm(apply(H, points + step) - apply(H, points), axis=1) for step in np.eye(2) * square]
     return float(np.median(np.minimum(*sides)))

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.fit import LADDER, Model, fit, focal_steps
-from ir50p_lab.vision.calibration.models import Evidence, choose, compare, contrast_of, in_words
+from ir50p_lab.vision.calibration.fit import LENS, Model, fit, focal_steps
+from ir50p_lab.vision.calibration.models import Evidence, choose, compare, contrast_of
 
 _TILTED = np.deg2rad(15)
 _LIMIT = 1e-3  # chance below which a bend, another ratio fx/fy, or a lens with more terms is believed
@@ -22,10 +22,10 @@ def outlier_view(corners, rough):
     one that needs its k3.
     """
     suspect = _worst_view(corners, rough)
-    if suspect is None or rough.model.terms == LADDER:
+    if suspect is None or rough.model.lens == LENS:
         return suspect
     try:
-        full = fit(corners, Model(LADDER, rough.model.aspect), (rough.camera, rough.poses))
+        full = fit(corners, Model(LENS, rough.model.aspect), (rough.camera, rough.poses))
     except CalibrationError:
         return suspect
     return _worst_view(corners, full)
@@ -89,7 +89,7 @@ def two_cameras(corners, best):
     parts, total = heaps[np.argmin(within)], _scatter(steps, weights)
     if min(within) > _LEFT * total or total - min(within) < (_SIGMAS * best.sigma) ** 2:
         return []
-    model = Model(tuple(term for term in best.model.terms if term in ("k1", "k2")), best.model.aspect)
+    model = Model(tuple(name for name in best.model.lens if name in ("k1", "k2")), best.model.aspect)
     try:
         each = [fit(corners.only(part), model, (best.camera, best.poses[part])) for part in parts]
     except CalibrationError:
@@ -114,13 +114,13 @@ def lacking_terms(corners, held, guess):
     """
     model = held.model
     chosen, _, _ = choose(corners, guess, model.aspect, model.bent)
-    lacking = tuple(term for term in chosen.model.terms if term not in model.terms)
+    lacking = tuple(name for name in chosen.model.lens if name not in model.lens)
     if not lacking:
         return None, held
-    free = fit(corners, Model((*model.terms, *lacking), model.aspect, model.bent), (chosen.camera, chosen.poses))
-    p_value, gain = compare(held, free, np.vstack([contrast_of(term) for term in lacking]))
+    free = fit(corners, Model((*model.lens, *lacking), model.aspect, model.bent), (chosen.camera, chosen.poses))
+    p_value, gain = compare(held, free, contrast_of(lacking))
     clear, why = _clear(p_value, held, free)
-    return Evidence(f"lens lacks {in_words(*lacking)}", p_value, gain, clear, _LIMIT, why), free if clear else held
+    return Evidence(f"lens lacks {' and '.join(lacking)}", p_value, gain, clear, _LIMIT, why), free if clear else held
 
 
 def bent_board(corners, flat):
@@ -129,7 +129,7 @@ def bent_board(corners, flat):
     A bend moves the same corners of the board in every view, as far as it is tilted; three numbers describe it to
     second order. Raises CalibrationError if the views cannot tell them from the camera.
     """
-    bent = fit(corners, Model(flat.model.terms, flat.model.aspect, True), (flat.camera, flat.poses))
+    bent = fit(corners, Model(flat.model.lens, flat.model.aspect, True), (flat.camera, flat.poses))
     p_value, gain = compare(flat, bent, np.eye(12)[9:])
     size, error = sag_size(corners, bent.camera[9:]), sag_size(corners, bent.stderr[9:]) / np.sqrt(3)
     clear, why = _clear(p_value, flat, bent)
@@ -160,7 +160,7 @@ def sag_size(corners, b):
 
 def free_aspect(corners, held):
     """(Evidence, CameraFit with fx and fy free): whether the prescribed ratio fx/fy contradicts the corners."""
-    free = fit(corners, Model(held.model.terms, None, held.model.bent), (held.camera, held.poses))
+    free = fit(corners, Model(held.model.lens, None, held.model.bent), (held.camera, held.poses))
     contrast = np.zeros(12)
     contrast[:2] = 1, -held.model.aspect
     p_value, gain = compare(held, free, contrast)
@@ -175,16 +175,13 @@ def about_lens(calibration):
         if abs(value) < 2 * error:
             found.append(f"{name} = {value:.2g} +- {error:.2g} cannot be told from zero: it means nothing by itself")
     w, h = calibration.size
-    K, (k1, k2, _, _, k3) = calibration.K, calibration.distortion
-    ends = (np.array([[0, 0], [w, 0], [0, h], [w, h]]) - K[:2, 2]) / (K[0, 0], K[1, 1])
-    r2 = np.linspace(0, 1.2 * np.linalg.norm(ends, axis=1).max(), 200) ** 2
-    falling = 1 + 3 * k1 * r2 + 5 * k2 * r2**2 + 7 * k3 * r2**3 <= 0
-    if falling.any():
-        radius = K[0, 0] * np.sqrt(r2[falling][0])
-        distorted = radius * (1 + k1 * r2[falling][0] + k2 * r2[falling][0] ** 2 + k3 * r2[falling][0] ** 3)
-        if distorted < np.linalg.norm(ends * (K[0, 0], K[1, 1]), axis=1).max():
+    pinhole, K = calibration.pinhole, calibration.K
+    ends = np.array([[0, 0], [w, 0], [0, h], [w, h]]) - K[:2, 2]
+    if np.isfinite(pinhole.widest):
+        farthest = K[0, 0] * pinhole.distort((pinhole.widest, 0.0))[0]
+        if farthest < np.linalg.norm(ends, axis=1).max():
             found.append(
-                f"the lens model folds back {distorted:.0f} px from the centre: no ray reaches the picture beyond; "
+                f"the lens model folds back {farthest:.0f} px from the centre: no ray reaches the picture beyond; "
                 "take views with the board in the corners"
             )
     return found
@@ -226,8 +223,7 @@ def about_views(calibration):
     found, views = [], calibration.views
     if len(views) < 8:
         found.append(f"{len(views)} views are few: 10 to 20 make the standard errors themselves trustworthy")
-    normals = np.array([v.T_cam_board[:2, 2] for v in views])
-    tilted = normals[np.linalg.norm(normals, axis=1) > np.sin(_TILTED)]
+    tilted = np.array([v.T_cam_board[:2, 2] for v in views if v.tilt > _TILTED])
     if len(tilted) < 3:
         found.append(
             f"too few tilts: {len(tilted)} of {len(views)} views are tilted by more than 15 degrees. A board that "

@@ -34,15 +34,11 @@ _ROUGH = 0.08  # the same, that no board shows
 class BoardCorners:
     """Corners found in one picture.
 
-    xy: (n, 2) pixels; index: (n,) places in `board.points`; noise: px rms about a smooth grid, NaN if unknown;
-    rise: width of an edge from dark to light, px; finder: which of OpenCV's finders found them.
+    xy: (n, 2) pixels; index: (n,) places in `board.points`.
     """
 
     xy: np.ndarray
     index: np.ndarray
-    noise: float
-    rise: float
-    finder: str
 
 
 def find_checkerboard(grey, pattern, other=None):
@@ -61,31 +57,29 @@ def find_checkerboard(grey, pattern, other=None):
     small, factor = reduced(grey, _SEARCHED)
     if other is not None:
         _refuse_other(grey, small, factor, other, pattern)
-    best, finder = _examined(grey, _classic(small, pattern), factor, pattern), "classic"
+    best = _examined(grey, _classic(small, pattern), factor, pattern)
     if best is None:
-        best, finder = _found_slowly(grey, small, factor, pattern)
-    noise, side = roughness(best), np.median(spacing(best))
-    if finder == "classic" and noise > (_UNEVEN_SMALL if side < _SMALL else _UNEVEN) * side:
-        other = _by_sb(grey, small, factor, pattern)
-        if other is not None and roughness(other) < noise:
-            best, finder, noise = other, "SB", roughness(other)
-    best = in_order(best, grey, pattern)
-    rise = refuse_soft(grey, best)
+        best = _found_slowly(grey, small, factor, pattern)
+    else:
+        noise, side = roughness(best), np.median(spacing(best))
+        if noise > (_UNEVEN_SMALL if side < _SMALL else _UNEVEN) * side:
+            smoother = _by_sb(grey, small, factor, pattern)
+            if smoother is not None and roughness(smoother) < noise:
+                best = smoother
+    refuse_soft(grey, best)
     columns, rows = pattern
-    return BoardCorners(best.reshape(-1, 2).astype(float), np.arange(columns * rows), noise, rise, finder)
+    return BoardCorners(in_order(best, grey, pattern).reshape(-1, 2).astype(float), np.arange(columns * rows))
 
 
 def _found_slowly(grey, small, factor, pattern):
-    """(grid, finder) where `findChessboardCorners` finds none. Raises NotUsable with the Reason."""
+    """The grid where `findChessboardCorners` finds none. Raises NotUsable with the Reason."""
     try:
-        return _piece_together(grey, small, factor, pattern), "pieced together"
+        return _piece_together(grey, small, factor, pattern)
     except NotUsable as why:
-        if why.whole:
-            raise
-        grid = _examined(grey, _sb(small, pattern), factor, pattern)
+        grid = None if why.whole else _examined(grey, _sb(small, pattern), factor, pattern)
         if grid is None:
             raise
-        return grid, "SB"
+        return grid
 
 
 def _by_sb(grey, small, factor, pattern):
@@ -181,9 +175,7 @@ def refine(grey, grid):
 
     h, w = grey.shape
     if not ((grid >= 0) & (grid <= (w - 1, h - 1))).all():
-        raise NotUsable(
-            Reason.CROPPED, f"corners beyond the {_sides(grid, grey)} of the picture: move the board into view"
-        )
+        raise NotUsable(Reason.CROPPED, "corners beyond the edge of the picture: move the board into view")
     part, side = np.where(next_to_margin(grid, grey), _WINDOW / 2, _WINDOW), spacing(grid)
     half = np.clip(np.round(part * side), *_WINDOW_PX).astype(int).ravel()
     smooth = cv2.GaussianBlur(grey, (0, 0), float(np.clip(_BLUR * np.median(side), 0.2, _BLUR_PX)))
@@ -221,7 +213,7 @@ def slope_rise(grey, xy, side):
 
 
 def refuse_soft(grey, grid):
-    """Width of the edges, px. Raises NotUsable if they run into each other."""
+    """Raise NotUsable if the edges run into each other."""
     nearest = float(np.median(spacing(grid)))
     rise, limit = edge_rise(grey, grid), _SOFT * nearest
     if rise >= _UNKNOWN:
@@ -232,7 +224,6 @@ def refuse_soft(grey, grid):
             f"edges are {rise:.1f} px wide, squares only {nearest:.0f} px: focus, hold board and camera still, or come "
             "nearer",
         )
-    return rise
 
 
 def _piece_together(grey, small, factor, pattern):
@@ -250,7 +241,7 @@ def _piece_together(grey, small, factor, pattern):
     columns, rows = _named_like(grid, pattern)
     raise NotUsable(
         Reason.CROPPED,
-        f"{columns}x{rows} of {pattern[0]}x{pattern[1]} corners, then the picture ends at its {_sides(grid, grey)}: "
+        f"{columns}x{rows} of {pattern[0]}x{pattern[1]} corners, then the picture ends: "
         "move the board into view, or use a ChArUco board",
         seen=(columns, rows),
     )
@@ -294,20 +285,6 @@ def _part_of_it(shape, outside, pattern):
         all(n == m or (n < m and is_cut) for n, m, is_cut in zip(shape, turned, cut, strict=True))
         for turned in (pattern, pattern[::-1])
     )
-
-
-def _sides(grid, grey):
-    """Which sides of the picture a grid comes near."""
-    h, w = grey.shape
-    reach = 2 * float(np.max(spacing(grid)))
-    xy = grid.reshape(-1, 2)
-    near = {
-        "left": xy[:, 0].min() < reach,
-        "right": xy[:, 0].max() > w - reach,
-        "top": xy[:, 1].min() < reach,
-        "bottom": xy[:, 1].max() > h - reach,
-    }
-    return " and ".join(side for side, is_near in near.items() if is_near) or "edge"
 
 
 def _largest_by_sb(grey):

@@ -60,12 +60,12 @@ def coverage(calibration):
     return Coverage(counts, float(np.mean(counts > 0)), float(min(reach, 1.0)))
 
 
-def direction_stderr(calibration, xy, covariance=None):
+def direction_stderr(calibration, xy):
     """How uncertain the ray of each pixel (n, 2) is, (n,) px: standard error of where its fixed ray falls.
 
     nan if the calibration holds no covariance, as a file of another program.
     """
-    V = calibration.covariance if covariance is None else covariance
+    V = calibration.covariance
     J = _ray_jacobian(calibration, np.asarray(xy, dtype=float))
     return np.sqrt(np.einsum("nij,jk,nik->n", J, V, J))
 
@@ -91,7 +91,7 @@ def next_view(calibration):
     were test the model, too. Raises CalibrationError if the calibration holds no views.
     """
     _need_views(calibration)
-    B = _columns_of(calibration)
+    B = Model(calibration.model).columns
     camera = np.array([*calibration.values.values(), 0, 0, 0])
     seen = CornerSets([v.points for v in calibration.views], [v.corners for v in calibration.views], calibration.size)
     poses = np.array([np.concatenate(rvec_tvec(v.T_cam_board)) for v in calibration.views])
@@ -127,11 +127,11 @@ def next_view(calibration):
     columns, rows = calibration.board.pattern
     outline = xy[[0, columns - 1, columns * rows - 1, columns * (rows - 1)]]
     text = (
-        f"take one with the board {place}, {tilt}: the direction of a pixel would then be known to "
-        f"{after:.2f} px in place of {before:.2f} px"
-        + f", and {new} empty cell{'s' * (new > 1)} of the map filled"
-        * (new > 0)
+        f"take one with the board {place}, {tilt}: the direction of a pixel would then be known to {after:.2f} px in "
+        f"place of {before:.2f} px"
     )
+    if new:
+        text += f", and {new} empty cell{'s' * (new > 1)} of the map filled"
     return NextView(outline, text, before, after, new, tuple(words for words, _ in tried))
 
 
@@ -146,12 +146,6 @@ def _cells(xy, size):
 def _need_views(calibration):
     if not calibration.views:
         raise CalibrationError("this calibration holds no views: it was read from a file of another program")
-
-
-def _columns_of(calibration):
-    terms = tuple(t for t in ("k1", "k2", "k3") if t in calibration.model)
-    model = Model((*terms, "p") if "p1" in calibration.model else terms)
-    return model.columns
 
 
 def _candidates(calibration, points):

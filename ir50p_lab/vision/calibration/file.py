@@ -18,6 +18,7 @@ _DEEPEST = 1000  # lists within lists: a calibration has five
 
 _LONGEST = 2000  # characters of one text in such a file: OpenCV takes 4096 bytes
 _DETAILS = tuple("covariance sigma sag stderr stderr_corners stderr_views model warnings board views rejected".split())
+_OF_VIEW = tuple(one.name for one in fields(View))
 
 
 def _checked(path):
@@ -37,22 +38,17 @@ def save(calibration, path):
     path = _checked(path)
     # written in memory: OpenCV does not open paths with letters beyond ASCII everywhere, and says nothing
     file = cv2.FileStorage(path.suffix.lower() or ".yml", cv2.FileStorage_WRITE | cv2.FileStorage_MEMORY)
-    width, height = calibration.size
     file.writeComment(
-        "camera calibration of the IR50P lab book; lengths in metres, angles in radians, pixel (0, 0) "
-        "is the centre of the top left one"
+        "camera calibration of the IR50P lab book: m, rad; pixel (0, 0) is the centre of the top left one"
     )
-    for name, value in (
-        ("image_width", width),
-        ("image_height", height),
-        ("camera_matrix", calibration.K),
-        ("distortion_coefficients", calibration.distortion.reshape(-1, 1)),
-        ("avg_reprojection_error", calibration.rms),
-        ("board_width", calibration.board.pattern[0]),
-        ("board_height", calibration.board.pattern[1]),
-        ("square_size", calibration.board.square),
-    ):
-        file.write(name, value)
+    file.write("image_width", calibration.size[0])
+    file.write("image_height", calibration.size[1])
+    file.write("camera_matrix", calibration.K)
+    file.write("distortion_coefficients", calibration.distortion.reshape(-1, 1))
+    file.write("avg_reprojection_error", calibration.rms)
+    file.write("board_width", calibration.board.pattern[0])
+    file.write("board_height", calibration.board.pattern[1])
+    file.write("square_size", calibration.board.square)
     text = json.dumps({name: _plain(getattr(calibration, name)) for name in _DETAILS})
     file.startWriteStruct("details", cv2.FileNode_SEQ)
     for start in range(0, len(text), _LONGEST):
@@ -167,7 +163,7 @@ def _details(file):
         "model": tuple(found["model"]),
         "warnings": tuple(found["warnings"]),
         "board": Charuco(**board) if "marker" in board else Checkerboard(**board),
-        "views": tuple(View(**{name: _array(value) for name, value in one.items()}) for one in found["views"]),
+        "views": tuple(View(**{name: _array(one[name]) for name in _OF_VIEW}) for one in found["views"]),
         "rejected": tuple(Rejected(**one | {"reason": Reason(one["reason"])}) for one in found["rejected"]),
     }
 

@@ -12,8 +12,7 @@ import numpy as np
 from ir50p_lab.errors import CalibrationError
 
 NAMES = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
-_LENS = {"k1": (4,), "k2": (5,), "p": (6, 7), "k3": (8,)}
-LADDER = tuple(_LENS)  # terms of the lens model: p stands for the pair p1, p2
+LENS = NAMES[4:]
 # Of what the camera's numbers do to the corners, a board's pose can hide all but this share: then no view shows them.
 # Squared pixels, thus rounding is 1e-15; four views that are nearly one leave 1e-10.
 _SHOWN = 1e-12
@@ -22,9 +21,9 @@ _ROUNDING = 1e-10  # pixels: less than this no fit can mend, and corners without
 
 @dataclass(frozen=True)
 class Model:
-    """What is estimated: terms of the lens (of LADDER), aspect (None: fx and fy free, or fx/fy), bent board or flat."""
+    """What is estimated: coefficients of the lens, aspect (None: fx and fy free, or fx/fy), bent board or flat."""
 
-    terms: tuple = LADDER
+    lens: tuple = LENS
     aspect: float | None = None
     bent: bool = False
 
@@ -32,17 +31,12 @@ class Model:
     def columns(self):
         """B (12, free): the nine numbers of the camera and three of the board's shape from the free parameters."""
         keep = [0, 2, 3] if self.aspect else [0, 1, 2, 3]
-        keep += [i for term in LADDER if term in self.terms for i in _LENS[term]]
+        keep += [i for i, name in enumerate(NAMES) if name in self.lens]
         keep += [9, 10, 11] if self.bent else []
         B = np.eye(12)[:, keep]
         if self.aspect:
             B[1, 0] = 1 / self.aspect
         return B
-
-    @property
-    def lens(self):
-        """Names of the distortion coefficients, such as ("k1", "k2")."""
-        return tuple(NAMES[i] for term in LADDER if term in self.terms for i in _LENS[term])
 
 
 @dataclass(frozen=True, eq=False)

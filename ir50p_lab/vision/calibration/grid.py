@@ -170,13 +170,12 @@ def is_checkerboard(grid, grey):
     Near the corner, and far out in the same squares: a grid that skips every other column passes only the first.
     """
     swing = abs(contrast(grid, grey))
-    out, along = np.gradient(grid, axis=1), np.gradient(grid, axis=0)
-    places, out, along = (a.reshape(-1, 2) for a in (grid, out, along))
+    places, out, along = _steps(grid)
     levels = sample(grey, places + 0.3 * (out + along))
     dark, light = np.nanpercentile(levels, (5, 95)) if np.isfinite(levels).any() else (0, 0)
     if swing < max(8, 0.4 * (light - dark)):
         return False
-    near, *far = _crossings_at(((0.3, 0.3), (0.7, 0.3), (0.3, 0.7)), places, out, along, grey, swing)
+    near, *far = _in_squares(grid, grey, swing)
     known = np.isfinite(near)
     if known.mean() < 0.7 or (near[known] != 0).mean() < 0.85:
         return False
@@ -188,17 +187,21 @@ def is_checkerboard(grid, grey):
 
 def next_to_margin(grid, grey):
     """Corners (rows, columns), bool, beside squares that are cut narrow: something else begins within 0.7 squares."""
-    swing = abs(contrast(grid, grey))
-    out, along = np.gradient(grid, axis=1), np.gradient(grid, axis=0)
-    places, out, along = (a.reshape(-1, 2) for a in (grid, out, along))
-    near, *far = _crossings_at(((0.3, 0.3), (0.7, 0.3), (0.3, 0.7)), places, out, along, grey, swing)
+    near, *far = _in_squares(grid, grey, abs(contrast(grid, grey)))
     return ((near != 0) & ((far[0] != near) | (far[1] != near))).reshape(grid.shape[:2])
 
 
-def _crossings_at(parts, places, out, along, grey, swing):
-    """`_crossings` at several distances, each (part of `out`, part of `along`), in one go: (len(parts), n)."""
-    out, along = (np.concatenate([part[k] * step for part in parts]) for k, step in enumerate((out, along)))
-    return _crossings(np.tile(places, (len(parts), 1)), out, along, grey, swing).reshape(len(parts), -1)
+def _steps(grid):
+    """Corners (n, 2) of a grid, and the way to the next one along its rows and down its columns."""
+    return (a.reshape(-1, 2) for a in (grid, np.gradient(grid, axis=1), np.gradient(grid, axis=0)))
+
+
+def _in_squares(grid, grey, swing):
+    """`_crossings` (3, n) of the corners of a grid: near the corner, and far out along the rows and the columns."""
+    places, out, along = _steps(grid)
+    out = np.concatenate([0.3 * out, 0.7 * out, 0.3 * out])
+    along = np.concatenate([0.3 * along, 0.3 * along, 0.7 * along])
+    return _crossings(np.tile(places, (3, 1)), out, along, grey, swing).reshape(3, -1)
 
 
 def _crossings(places, out, along, grey, swing):

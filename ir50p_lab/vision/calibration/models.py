@@ -4,18 +4,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.vision.calibration.fit import LADDER, NAMES, Model, fit
+from ir50p_lab.vision.calibration.fit import LENS, NAMES, Model, fit
 
-# p-value below which a term stays; k3 must earn its place: it is the term that runs wild beyond the outermost corner
-_LIMIT = {"k3": 0.01, "p": 0.05, "k2": 0.05, "k1": 0.05}
-_NAMED = {"p": ("p1", "p2")}
+# Coefficients in the order in which they are given up, and the p-value below which they stay; k3 must earn its place:
+# it is the term that runs wild beyond the outermost corner
+_LIMIT = {"k3": 0.01, "p1 and p2": 0.05, "k2": 0.05, "k1": 0.05}
 
 
 @dataclass(frozen=True)
 class Evidence:
     """One question put to the data: does the term help more than chance would?
 
-    term: "k1", "k2", "p" (p1 and p2), "k3", "bent board", "fx/fy free" or "lens lacks k1"; p_value: chance of such an
+    term: "k1", "k2", "p1 and p2", "k3", "bent board", "fx/fy free" or "lens lacks k1"; p_value: chance of such an
     improvement if it were not needed, the larger of an F test of the sums of squares (corners independent) and of a
     Wald test with the covariance by views; gain: of the corrected Akaike criterion AICc, by which models are weighted,
     not chosen; kept: bool; limit: of the p-value, to be kept it must be below; why: what else decided, if anything.
@@ -32,14 +32,9 @@ class Evidence:
         verdict = ("dropped", "kept") if self.term in _LIMIT else ("no", "yes")
         but = f"; but {self.why}" if self.why else ""
         return (
-            f"{in_words(self.term)}: {verdict[self.kept]} (such an improvement by "
+            f"{self.term}: {verdict[self.kept]} (such an improvement by "
             f"chance: {in_percent(self.p_value)}; the limit is {100 * self.limit:g} %{but})"
         )
-
-
-def in_words(*terms):
-    """Terms of the lens by their coefficients: "k1 and p1 and p2"."""
-    return " and ".join(name for term in terms for name in _NAMED.get(term, (term,)))
 
 
 def in_percent(chance):
@@ -69,9 +64,9 @@ def compare(small, large, contrast):
     return float(by_chance), float(aicc(small) - aicc(large))
 
 
-def contrast_of(term):
-    """Rows (q, 12) that pick the coefficients of a term of the lens out of `CameraFit.camera`."""
-    return np.eye(12)[[NAMES.index(name) for name in _NAMED.get(term, (term,))]]
+def contrast_of(names):
+    """Rows (q, 12) that pick these numbers out of `CameraFit.camera`."""
+    return np.eye(12)[[NAMES.index(name) for name in names]]
 
 
 def choose(corners, guess, aspect=None, bent=False):
@@ -82,20 +77,19 @@ def choose(corners, guess, aspect=None, bent=False):
 
     Args: corners: CornerSets; guess: as for `fit`; aspect: fx/fy if it is known; bent: estimate the board's shape, too.
     """
-    terms, evidence = LADDER, []
-    best = fit(corners, Model(terms, aspect, bent), guess)
+    best, evidence = fit(corners, Model(LENS, aspect, bent), guess), []
     tried = [best]
-    for term in ("k3", "p", "k2", "k1"):
-        if (term == "k2" and "k3" in terms) or (term == "k1" and "k2" in terms):
+    for term, limit in _LIMIT.items():
+        lens, names = best.model.lens, term.split(" and ")
+        if (term == "k2" and "k3" in lens) or (term == "k1" and "k2" in lens):
             continue
-        fewer = tuple(t for t in terms if t != term)
-        smaller = fit(corners, Model(fewer, aspect, bent), (best.camera, best.poses))
+        fewer = Model(tuple(name for name in lens if name not in names), aspect, bent)
+        smaller = fit(corners, fewer, (best.camera, best.poses))
         tried.append(smaller)
-        p_value, gain = compare(smaller, best, contrast_of(term))
-        keep = p_value < _LIMIT[term]
-        evidence.append(Evidence(term, p_value, gain, keep, _LIMIT[term]))
-        if not keep:
-            best, terms = smaller, fewer
+        p_value, gain = compare(smaller, best, contrast_of(names))
+        evidence.append(Evidence(term, p_value, gain, p_value < limit, limit))
+        if p_value >= limit:
+            best = smaller
     return best, tuple(evidence), tuple(tried)
 
 

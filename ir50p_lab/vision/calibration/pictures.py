@@ -74,7 +74,7 @@ def _picture(index, one):
     if isinstance(one, str | Path):
         try:
             image = to_grey(load_image(one, allow_grey=True))  # a third of the memory: twenty of 12 Mpixel are 240 MB
-            return Picture(Path(one).name, index, image, turns=quarter_turns(Path(one).read_bytes()))
+            return Picture(Path(one).name, index, image, turns=quarter_turns(one))
         except ImageError as error:
             return Picture(Path(one).name, index, None, str(error))
     name = getattr(one, "name", None) or f"picture {index + 1}"

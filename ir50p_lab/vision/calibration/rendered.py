@@ -7,12 +7,13 @@ from ir50p_lab.vision.pinhole import as_pinhole
 from ir50p_lab.vision.rendering import Board, Lens, Scene, Sensor, Sky, Sun, bench_camera, render_scene
 
 _WINDOW = (0.36, 0.92)  # part of the picture's width that the board fills
+_TILTS_DEG = (8, 42)
 
 
-def board_poses(pinhole, count, seed=0, board=None, tilts_deg=(8, 42)):
+def board_poses(pinhole, count, seed=0, board=None):
     """T_cam_board (count, 4, 4): a board all over the picture, tilted in all directions, fully in view.
 
-    pinhole: Pinhole or Calibration; seed: of the generator; board: rendering.Board; tilts_deg: smallest, largest tilt.
+    pinhole: Pinhole or Calibration; seed: of the generator; board: rendering.Board.
     Raises InputError if no such poses are found.
     """
     import cv2
@@ -25,7 +26,7 @@ def board_poses(pinhole, count, seed=0, board=None, tilts_deg=(8, 42)):
     middle = np.array([(columns - 1) / 2, (rows - 1) / 2, 0.0]) * s
     w, h = pinhole.size
     for _ in range(400 * count):
-        tilt, about, spin = np.deg2rad(rng.uniform(*tilts_deg)), rng.uniform(0, 2 * np.pi), rng.normal(0, 0.25)
+        tilt, about, spin = np.deg2rad(rng.uniform(*_TILTS_DEG)), rng.uniform(0, 2 * np.pi), rng.normal(0, 0.25)
         R = cv2.Rodrigues(tilt * np.array([np.cos(about), np.sin(about), 0]))[0] @ cv2.Rodrigues((0, 0, spin))[0]
         width = rng.uniform(*_WINDOW) * w
         aim = pinhole.to_normalised(np.array([rng.uniform(0.12, 0.88) * w, rng.uniform(0.12, 0.88) * h]))
@@ -63,7 +64,7 @@ def board_scene(pinhole, T_cam_board, board=None, lens=None, sensor=None):
     )
 
 
-def board_pictures(pinhole, count, seed=0, *, board=None, lens=None, sensor=None, tilts_deg=(8, 42)):
+def board_pictures(pinhole, count, seed=0, *, board=None, lens=None, sensor=None):
     """`count` rendered pictures (h, w, 3) of a board in different poses, and their SceneTruth: (list, list).
 
     Args: pinhole: Pinhole of the camera to be found; seed: of poses and noise; board: rendering.Board (bent, ChArUco);
@@ -71,6 +72,6 @@ def board_pictures(pinhole, count, seed=0, *, board=None, lens=None, sensor=None
     """
     pairs = [
         render_scene(board_scene(pinhole, T, board, lens, sensor), seed=1000 * seed + k)
-        for k, T in enumerate(board_poses(pinhole, count, seed, board, tilts_deg))
+        for k, T in enumerate(board_poses(pinhole, count, seed, board))
     ]
     return [image for image, _ in pairs], [truth for _, truth in pairs]

@@ -10,8 +10,7 @@ class View:
     """One picture of the board that was used.
 
     name, index: as in `Rejected`; points (n, 3) m on the board; corners (n, 2) px as found; residuals (n, 2) px, found
-    minus model; rms: of their lengths, px; T_cam_board (4, 4) takes board to camera coordinates; rise: width of an
-    edge, px; finder: who found the corners.
+    minus model; rms: of their lengths, px; T_cam_board (4, 4) takes board to camera coordinates.
     """
 
     name: str
@@ -20,8 +19,6 @@ class View:
     corners: np.ndarray = field(repr=False)
     residuals: np.ndarray = field(repr=False)
     T_cam_board: np.ndarray = field(repr=False)
-    rise: float = np.nan
-    finder: str = ""
 
     @property
     def rms(self):

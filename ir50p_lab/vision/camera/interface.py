@@ -27,17 +27,18 @@ class Frame:
 class Camera:
     """A source of pictures: `with open_camera() as camera: frame = camera.read()`; also `for frame in camera:`.
 
-    Attributes: name; simulated: whether its pictures are rendered; size: (width, height) pixels.
+    Attributes: name; simulated: whether its pictures are rendered; size: (width, height) pixels; closed.
     """
 
-    name, simulated, size = "camera", False, (0, 0)
+    name, simulated, size, closed = "camera", False, (0, 0), False
 
     def read(self):
         """The next Frame. Raises CameraError if the camera is closed, was unplugged, or has no more pictures."""
         raise NotImplementedError
 
     def close(self):
-        """Let go of the camera; twice does no harm."""
+        """Let go of the camera: no more pictures; twice does no harm."""
+        self.closed = True
 
     def __iter__(self):
         while True:

@@ -9,66 +9,51 @@ from ir50p_lab.vision.camera import webcam
 from ir50p_lab.vision.camera.picture_folder import PictureFolder
 from ir50p_lab.vision.camera.rendered_camera import RenderedCamera
 from ir50p_lab.vision.camera.webcam import TO_RENDERED, VARIABLE, Webcam
-from ir50p_lab.vision.rendering.scene import Scene
 
 TO_WEBCAM = f"for a webcam: open_camera(0) or {VARIABLE}=0"
 
 
-def open_camera(source=None, **options):
+def open_camera(source=None, *, size=(640, 480)):
     """Find the camera, open it and say in one line which it is, why, and how to get the other.
 
     The first of these that says something: the argument `source`, the environment variable IR50P_CAMERA, a webcam that
     is plugged in, the rendered bench.
 
     Args:
-        source: a number (of the webcam), 'rendered', 'folder:PATH', the path of a folder or picture, a Scene, or a
-        function of t that gives one; None looks for a webcam. options: those of the camera that is taken (`scene`,
-        `seed`, `period` of RenderedCamera, `loop` of PictureFolder, `size` of Webcam); the others take no notice of
-        them, so that a cell runs with any camera.
+        source: a number (of the webcam), 'rendered', 'folder:PATH', or the path of a folder or picture; None looks for
+        a webcam. size: (width, height) asked of a webcam; other cameras have the size of their pictures.
 
     Returns: Camera, for `with open_camera() as camera:`; it is open already.
     Raises: CameraError if the webcam asked for is not there, ImageError for a missing or empty folder, InputError for
-    a `source` that is none of the above or an unknown option. A webcam that was only looked for never raises.
+    a `source` that is none of the above. A webcam that was only looked for never raises.
     """
-    unknown = set(options) - {"scene", "seed", "period", "loop", "size"}
-    if unknown:
-        raise InputError(f"open_camera has no option {', '.join(sorted(unknown))}: scene, seed, period, loop, size")
     variable = os.environ.get(VARIABLE, "").strip()
     if source is not None:
-        shown = f"{source!r}" if isinstance(source, str | int | os.PathLike) else type(source).__name__
-        return _asked_for(source, f"open_camera({shown})", options)
+        return _asked_for(source, size, f"asked for by open_camera({source!r})")
     if variable:
-        return _asked_for(variable, f"{VARIABLE}={variable}", options)
+        return _asked_for(variable, size, f"asked for by {VARIABLE}={variable}")
     try:
         if not webcam.webcam_present():
             raise CameraError("no webcam found")
-        camera = Webcam(0, **_only(options, "size"))
+        camera = Webcam(0, size=size)
     except (CameraError, ImageError) as error:
         why = str(error).split(";")[0].split(":")[0]
-        return _say(RenderedCamera(**_only(options, "scene", "seed", "period")), why, TO_WEBCAM)
+        return _say(RenderedCamera(), why, TO_WEBCAM)
     return _say(camera, "a webcam is plugged in and answers", TO_RENDERED)
 
 
-def _asked_for(source, reason, options):
-    reason = f"asked for by {reason}"
-    if isinstance(source, Scene) or callable(source):
-        options = options | {"scene": source}
-        source = "rendered"
+def _asked_for(source, size, reason):
     if isinstance(source, int | np.integer) and not isinstance(source, bool) and source >= 0:
-        return _say(Webcam(int(source), **_only(options, "size")), reason, TO_RENDERED)
+        source = str(source)
     if not isinstance(source, str | os.PathLike) or not str(source):
         raise InputError(f"source = {source!r}: give the number of a webcam, 'rendered', 'folder:PATH' or a path")
     source = os.fspath(source)
     if source.isdecimal():
-        return _say(Webcam(int(source), **_only(options, "size")), reason, TO_RENDERED)
+        return _say(Webcam(int(source), size=size), reason, TO_RENDERED)
     if source.lower() == "rendered":
-        return _say(RenderedCamera(**_only(options, "scene", "seed", "period")), reason, TO_WEBCAM)
+        return _say(RenderedCamera(), reason, TO_WEBCAM)
     path = source[len("folder:") :] if source.lower().startswith("folder:") else source
-    return _say(PictureFolder(path, **_only(options, "loop")), reason, TO_WEBCAM)
-
-
-def _only(options, *names):
-    return {name: value for name, value in options.items() if name in names}
+    return _say(PictureFolder(path), reason, TO_WEBCAM)
 
 
 def _say(camera, reason, other):

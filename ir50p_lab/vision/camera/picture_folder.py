@@ -1,6 +1,5 @@
 """Pictures from files instead of a camera."""
 
-import contextlib
 import time
 from pathlib import Path
 
@@ -10,53 +9,45 @@ from ir50p_lab.vision.image import is_rendered, list_images, load_image
 
 
 class PictureFolder(Camera):
-    """The pictures of a folder, or one picture, in the order of their names; after the last, CameraError unless `loop`.
+    """The pictures of a folder, or one picture, in the order of their names; after the last, CameraError.
 
     Raises ImageError for a missing folder, and one without a colour picture; `read` raises it for a file that is none,
     and goes on with the next one then. Attributes: paths: of all its files; simulated: no photograph is among them.
     """
 
-    def __init__(self, path, *, loop=False):
+    def __init__(self, path):
         path = Path(path)
         self.paths = [path] if path.is_file() else list_images(path)
-        self.name, self._loop, self._next = f"folder {path}" if path.is_dir() else f"picture {path}", loop, 0
-        self._closed, self._opened = False, time.monotonic()
-        self.size = self._first_size()
-        self.simulated = not any(_is_photograph(one) for one in self.paths)
-
-    def _first_size(self):
-        problems = []
-        for path in self.paths:
+        self.name, self._next = f"folder {path}" if path.is_dir() else f"picture {path}", 0
+        self._opened = time.monotonic()
+        self.size, self.simulated, problems = None, True, []
+        for one in self.paths:
             try:
-                height, width = load_image(path).shape[:2]
+                size = load_image(one).shape[1::-1]
             except ImageError as error:
                 problems.append(str(error))
-            else:
-                return width, height
-        if len(problems) == 1:
-            raise ImageError(problems[0])
-        raise ImageError(
-            f"none of the {len(problems)} pictures of {self.name} can be used. The first: {problems[0]}. (To calibrate "
-            "with grey ones, give calibrate the folder.)"
-        )
+                continue
+            self.size = self.size or size
+            self.simulated = self.simulated and is_rendered(one)
+        if self.size is None:
+            raise ImageError(
+                f"none of the {len(problems)} pictures of {self.name} can be used. The first: {problems[0]}. (To "
+                "calibrate with grey ones, give calibrate the folder.)"
+            )
 
     def __len__(self):
         return len(self.paths)
 
     def __iter__(self):
-        while self._loop or self._next < len(self.paths):
+        while self._next < len(self.paths):
             yield self.read()
 
     def read(self):
         """The next Frame. Raises CameraError after the last picture, ImageError for a file that is none."""
-        if self._closed:
+        if self.closed:
             raise CameraError(f"{self.name} is closed: open it again")
         if self._next >= len(self.paths):
-            if not self._loop:
-                raise CameraError(
-                    f"{self.name} has no more than {len(self.paths)} pictures: open it again, or with loop=True"
-                )
-            self._next = 0
+            raise CameraError(f"{self.name} has no more than {len(self.paths)} pictures: open it again")
         path = self.paths[self._next]
         self._next += 1
         return Frame(
@@ -65,14 +56,3 @@ class PictureFolder(Camera):
             simulated=is_rendered(path),
             source=path.name,
         )
-
-    def close(self):
-        """No more pictures."""
-        self._closed = True
-
-
-def _is_photograph(path):
-    """Whether a file holds a picture that was not rendered; what cannot be read is none."""
-    with contextlib.suppress(ImageError):
-        return not is_rendered(path) and load_image(path) is not None
-    return False

@@ -1,53 +1,37 @@
 """The rendered bench as a camera: a scene that can be changed between pictures, with the truth kept beside."""
 
-from ir50p_lab.errors import CameraError, InputError
-from ir50p_lab.inputs import number, whole
+from ir50p_lab.errors import CameraError
+from ir50p_lab.inputs import whole
 from ir50p_lab.vision.camera.interface import Camera, Frame
 from ir50p_lab.vision.rendering.places import bench_scene
 from ir50p_lab.vision.rendering.render import render_scene
-from ir50p_lab.vision.rendering.scene import Scene
+
+_PERIOD = 1 / 30  # s
 
 
 class RenderedCamera(Camera):
     """Pictures of a Scene, drawn when read: the bench without a bench. Its pictures say so (`Frame.simulated`).
 
-    scene: Scene, or a function of t (s) that gives one; default `bench_scene()`. seed: of the noise, another for each
-    picture. period: s between pictures; t counts pictures, not the clock.
+    scene: Scene, default `bench_scene()`. seed: of the noise, another for each picture. Times count pictures, 30 a
+    second, not the clock.
     What is in it can change between pictures: `camera.scene = ...`.
-    `truth` is that of the last picture: for tests, and plots that say so; nothing that looks at pictures may use it.
+    `truth` is that of the last picture, None before it: for tests, and plots that say so; nothing that looks at
+    pictures may use it.
     """
 
     simulated = True
 
-    def __init__(self, scene=None, *, seed=0, period=1 / 30):
+    def __init__(self, scene=None, *, seed=0):
         self.scene = bench_scene() if scene is None else scene
         self.seed = whole("seed", seed, 0, 2**62)
-        self.period = number("period", period, "> 0", unit="s", hint="the time between two pictures")
-        self._count, self._truth, self._closed = 0, None, False
+        self._count, self.truth = 0, None
         self.name = "rendered camera"
-        self.size = self._now().pinhole.size
-
-    def _now(self):
-        scene = self.scene(self._count * self.period) if callable(self.scene) else self.scene
-        if not isinstance(scene, Scene):
-            raise InputError(f"the rendered camera needs a Scene, or a function of t that gives one, not {scene!r:.60}")
-        return scene
+        self.size = self.scene.pinhole.size
 
     def read(self):
         """Draw the scene as it is now: a Frame; its truth is in `camera.truth`."""
-        if self._closed:
+        if self.closed:
             raise CameraError("the rendered camera is closed: open it again with open_camera('rendered')")
-        image, self._truth = render_scene(self._now(), seed=self.seed + self._count)
+        image, self.truth = render_scene(self.scene, seed=self.seed + self._count)
         self._count += 1
-        return Frame(image=image, t=(self._count - 1) * self.period, simulated=True, source=self.name)
-
-    @property
-    def truth(self):
-        """Truth of the last picture. Raises CameraError before the first."""
-        if self._truth is None:
-            raise CameraError("no picture was read yet, so there is no truth of it: call camera.read() first")
-        return self._truth
-
-    def close(self):
-        """No more pictures."""
-        self._closed = True
+        return Frame(image=image, t=(self._count - 1) * _PERIOD, simulated=True, source=self.name)

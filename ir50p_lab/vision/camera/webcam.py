@@ -19,8 +19,8 @@ LOST_AFTER = 3  # s without a picture: the webcam is unplugged
 class Webcam(Camera):
     """A webcam by its number, 0 for the first; size: (width, height) asked for, the camera may give another.
 
-    A driver keeps a few old pictures: `read(fresh=True)`, the default, throws those away that were waiting, so that the
-    picture is of now. Raises CameraError if there is none of that number, it is busy, or gives no picture.
+    A driver keeps a few old pictures: `read` throws those away that were waiting, so that the picture is of now.
+    Raises CameraError if there is none of that number, it is busy, or gives no picture.
     capture: what takes the pictures, default cv2.VideoCapture (tests pass one without hardware).
     """
 
@@ -86,12 +86,11 @@ class Webcam(Camera):
 
     _patience = LOST_AFTER
 
-    def read(self, *, fresh=True):
-        """The next Frame; fresh: not one that was waiting. Raises CameraError when closed or unplugged."""
+    def read(self):
+        """The next Frame, not one that was waiting. Raises CameraError when closed or unplugged."""
         if self._capture is None:
             raise CameraError(f"{self.name} is closed: open it again with open_camera({self._index})")
-        if fresh:
-            self._throw_away_waiting()
+        self._throw_away_waiting()
         image = self._grab()
         return Frame(image=image, t=time.monotonic() - self._opened, simulated=False, source=self.name)
 

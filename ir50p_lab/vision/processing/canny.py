@@ -7,8 +7,6 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.vision.processing.smoothing import convolve
 
-SOBEL = np.array([[-1, 0, 1], [-2, 0, 2], [-1, 0, 1]])  # weighs differences along x; transposed: along y
-
 
 @dataclass(frozen=True)
 class CannySteps:
@@ -44,11 +42,10 @@ def canny_steps(grey, low, high, *, kernel=None):
 
 def gradient(grey):
     """Derivatives (gx, gy) along x and y, int (h, w), by Sobel's kernels; the border is repeated."""
-    wide = np.pad(np.asarray(grey).astype(int), 1, mode="edge")
-    # a correlation is a convolution with the kernel turned
-    gx = np.rint(convolve(wide, SOBEL[::-1, ::-1]))[1:-1, 1:-1]
-    gy = np.rint(convolve(wide, SOBEL.T[::-1, ::-1]))[1:-1, 1:-1]
-    return gx.astype(int), gy.astype(int)
+    from scipy import ndimage
+
+    grey = np.asarray(grey).astype(int)
+    return tuple(ndimage.sobel(grey, axis, mode="nearest") for axis in (1, 0))
 
 
 def crest(gx, gy, strength):

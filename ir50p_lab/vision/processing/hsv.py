@@ -19,13 +19,9 @@ def rgb_to_hsv(rgb):
         raise InputError(f"rgb has shape {rgb.shape}: give red, green, blue, 0..255, in the last axis")
     if not ((rgb >= 0) & (rgb <= 1)).all():
         raise InputError("rgb holds a number outside 0..255")
-    r, g, b = np.moveaxis(rgb, -1, 0)
-    value = rgb.max(axis=-1)
-    chroma = value - rgb.min(axis=-1)
-    safe = np.where(chroma > 0, chroma, 1)
-    hue = np.select([value == r, value == g], [(g - b) / safe % 6, (b - r) / safe + 2], (r - g) / safe + 4)
-    saturation = chroma / np.where(value > 0, value, 1)
-    return np.stack([np.where(chroma > 0, 60 * hue, 0.0), saturation, value], axis=-1)
+    from matplotlib.colors import rgb_to_hsv as hsv_of
+
+    return hsv_of(rgb) * (360, 1, 1)
 
 
 def hue_in(scale, hue_deg):

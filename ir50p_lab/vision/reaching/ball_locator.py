@@ -103,6 +103,11 @@ class BallLocator:
         """Pixel (2,) where it should then be seen."""
         return self.to_image(self.marker_place(arm, q))
 
+    def marker_jacobian(self, arm, q, step=1e-5):
+        """d pixel / d q (2, 3), px/rad, of the marker with the arm at q (3,) rad: by differences."""
+        ends = [(self.marker_pixel(arm, q + d), self.marker_pixel(arm, q - d)) for d in step * np.eye(3)]
+        return np.column_stack([(forth - back) / (2 * step) for forth, back in ends])
+
     def find_marker(self, image, arm, q):
         """Pixel (2,) of the marker on the hand, searched near where q (3,) rad puts it; None if it is not seen."""
         if self.marker is None:
@@ -124,20 +129,16 @@ class BallLocator:
         Returns: e (3,) rad, its covariance (3, 3). If the picture contradicts q by more than 5 sigma: VisionError.
         """
         q, sigma_q = vectors3("q", q), vectors3("sigma_q", sigma_q)
-
-        def seen(e):
-            return self.marker_pixel(arm, q + e)
-
-        e, h = np.zeros(3), 1e-5
+        e = np.zeros(3)
         for _ in range(4):  # Gauss-Newton; errors of 20 mrad are almost linear
-            J = np.column_stack([(seen(e + h * u) - seen(e - h * u)) / (2 * h) for u in np.eye(3)])
-            A = np.vstack([J / self.sigma_px, np.diag(1 / sigma_q)])
-            e = e + np.linalg.lstsq(A, np.concatenate([(xy - seen(e)) / self.sigma_px, -e / sigma_q]), rcond=None)[0]
+            A = np.vstack([self.marker_jacobian(arm, q + e) / self.sigma_px, np.diag(1 / sigma_q)])
+            off = (xy - self.marker_pixel(arm, q + e)) / self.sigma_px
+            e = e + np.linalg.lstsq(A, np.concatenate([off, -e / sigma_q]), rcond=None)[0]
         if (np.abs(e) > _SPIKE * sigma_q).any():
+            off = np.linalg.norm(xy - self.marker_pixel(arm, q))
             raise VisionError(
-                f"the hand is seen {np.linalg.norm(xy - seen(np.zeros(3))):.0f} px from where the potentiometers put "
-                "it, more than they can be off: was something else taken for the marker, did the camera move, or is "
-                "the arm's calibration wrong?"
+                f"the hand is seen {off:.0f} px from where the potentiometers put it, more than they can be off: was "
+                "something else taken for the marker, did the camera move, or is the arm's calibration wrong?"
             )
         half = np.linalg.solve(np.linalg.qr(A)[1], np.eye(3))
         return e, half @ half.T

@@ -56,7 +56,7 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
     """
     J, P = jacobian(arm, q)[:3], np.diag(np.square(sigma_q))
     hand, tip = locator.marker_place(arm, q), forward_kinematics(arm, q)
-    H = np.column_stack([_slope(lambda d, u=u: locator.marker_pixel(arm, q + d * u)) for u in np.eye(3)])
+    H = locator.marker_jacobian(arm, q)
     G = np.linalg.solve(H @ P @ H.T + locator.sigma_px**2 * np.eye(2), H @ P).T
     left = np.eye(3) - G @ H
 
@@ -87,11 +87,6 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
             Cause("standing still: friction, play of gears", rest, rest),
         )
     )
-
-
-def _slope(function, step=1e-5):
-    """Derivative at 0 by differences."""
-    return (function(step) - function(-step)) / (2 * step)
 
 
 def _rms(matrix):

@@ -5,7 +5,7 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.dynamics import gravity
-from ir50p_lab.vision.reaching.plan import CLEAR, plan
+from ir50p_lab.vision.reaching.plan import LIFT, plan
 
 _LONGEST = 3600.0  # s, of one session
 _SETTLE, _WINDOW, _WINDOWS = 0.6, 0.4, 15  # s until the arm stands, s of counts to average, how often
@@ -123,9 +123,9 @@ class Mover:
             self._set = shown[k]
             self._cycle((self._set, rows[k, 1], rows[k, 2]))
 
-    def move_to(self, p, *, lift=0.08, speed=0.5, clear=CLEAR):
+    def move_to(self, p, *, lift=LIFT):
         """Move the tip to p (3,) m on a way clear of the table, and settle. Returns the Plan."""
-        way = plan(self.arm, self.q, p, lift=lift, speed=speed, clear=clear)
+        way = plan(self.arm, self.q, p, lift=lift)
         self.move_along(way)
         self.settle(way.goal)
         return way

@@ -1,12 +1,12 @@
 """Can the arm reach it, in which pose, and on which way: smooth, and clear of the table and of the ball."""
 
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
-from ir50p_lab.errors import InputError, UnreachableError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.errors import UnreachableError
+from ir50p_lab.inputs import vector3
 from ir50p_lab.modelling.chain import forward_kinematics, frames
 from ir50p_lab.modelling.ik import inverse_kinematics, reachability
 from ir50p_lab.signals.cartesian import cartesian_line
@@ -16,7 +16,7 @@ from ir50p_lab.signals.reference import Reference
 MARGIN = 0.03  # rad kept from the joint limits: at a limit the drive is cut
 CLEAR = 0.08  # m that the tip keeps above the table on its way: over a ball of 60 mm
 ALMOST = 1e-3  # m out of reach that does not matter: the nearest point will do
-_LIFT = 0.08  # m above the goal from which the last piece leads straight down
+LIFT = 0.08  # m above the goal from which the last piece leads straight down
 _SPEED = 0.5  # rad/s of the fastest joint: joint 2 follows that against gravity
 _PEAK = 1.875  # a quintic's largest speed over its mean
 
@@ -31,12 +31,6 @@ class WorkArea:
     r_min: float
     r_max: float
     angle: float
-
-    def draw(self, rng, n, height=0.03):
-        """n places, evenly spread over the area, (n, 3) m at `height`."""
-        r = np.sqrt(rng.uniform(self.r_min**2, self.r_max**2, n))
-        a = rng.uniform(-self.angle, self.angle, n)
-        return np.column_stack([r * np.cos(a), r * np.sin(a), np.full(n, float(height))])
 
 
 def work_area(arm, height=0.09, *, angle=0.52):
@@ -58,9 +52,7 @@ def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
     Raises: UnreachableError, with .distance (m) and .nearest (3,) m, the nearest point that the arm does reach, if p
     is outside the workspace, outside the joint limits, or if the elbow would be under the table.
     """
-    p = vectors3("p", p, unit="m")
-    if p.shape != (3,):
-        raise InputError(f"p has shape {p.shape}; give one point, (3,) m")
+    p = vector3("p", p, unit="m")
     if why := _refusal(arm, p):
         nearest = nearest_reachable(arm, p)
         distance = float(np.linalg.norm(nearest - p))
@@ -81,7 +73,7 @@ def within_reach(arm, p, tolerance=ALMOST):
     A ball is seen to some tenths of a millimetre: that must not decide between a reach and a refusal.
     Raises UnreachableError as `reach_pose`.
     """
-    p = vectors3("p", p, unit="m")
+    p = vector3("p", p, unit="m")
     try:
         reach_pose(arm, p)
     except UnreachableError as error:
@@ -101,28 +93,26 @@ def nearest_reachable(arm, p):
     low, high = np.array(arm.q_min) + MARGIN, np.array(arm.q_max) - MARGIN
     p = np.array([p[0], p[1], max(p[2], 0.0)])  # from under the table the way leads up first
     heading = np.clip(np.arctan2(p[1], p[0]), low[0], high[0])
-    best, best_miss = None, np.inf
-    for share2 in (0.1, 0.5, 0.9):
-        for share3 in (0.1, 0.5, 0.9):
-            start = [heading, *(low[1:] + np.array([share2, share3]) * (high - low)[1:])]
-            found = least_squares(lambda q: forward_kinematics(arm, q) - p, start, bounds=(low, high), xtol=1e-10)
-            miss = np.linalg.norm(found.fun)
-            if miss < best_miss - 1e-9 and _elbow(arm, found.x) > 0:
-                best, best_miss = found.x, miss
-    return forward_kinematics(arm, low if best is None else best)
+    best, best_miss = low, np.inf
+    for shares in product((0.1, 0.5, 0.9), repeat=2):
+        start = [heading, *(low[1:] + shares * (high - low)[1:])]
+        found = least_squares(lambda q: forward_kinematics(arm, q) - p, start, bounds=(low, high), xtol=1e-10)
+        miss = np.linalg.norm(found.fun)
+        if miss < best_miss - 1e-9 and _elbow(arm, found.x) > 0:
+            best, best_miss = found.x, miss
+    return forward_kinematics(arm, best)
 
 
-def plan(arm, q, p, *, speed=_SPEED, lift=_LIFT, clear=CLEAR):
+def plan(arm, q, p, *, lift=LIFT):
     """The way of the tip from the pose q to the point p: over it in joint space, then straight down.
 
     Where the direct way over comes too low it rises first.
 
-    Args: arm: Arm; q: (3,) rad, where it stands; p: (3,) m. speed: rad/s of the fastest joint. lift: m above p where
-    the last piece begins; 0 goes there directly. clear: m that tip and elbow keep above the table (less where the way
-    begins or ends lower).
+    Args: arm: Arm; q: (3,) rad, where it stands; p: (3,) m; lift: m above p where the last piece begins; 0 goes there
+    directly.
     Returns: Plan, a Reference. Raises UnreachableError as `reach_pose`.
     """
-    q = vectors3("q", q)
+    q = vector3("q", q)
     goal = reach_pose(arm, p, q)
     above = None
     for share in (1.0, 0.5, 0.25) if lift > 0 else ():
@@ -131,12 +121,11 @@ def plan(arm, q, p, *, speed=_SPEED, lift=_LIFT, clear=CLEAR):
         except UnreachableError:
             continue
         break
-    pieces = []
-    if above is not None:
-        pieces += [_over(arm, q, above, speed, clear), _down(arm, above, goal, p, speed)]
+    if above is None:
+        pieces = (_over(arm, q, goal, min(CLEAR, p[2])),)
     else:
-        pieces.append(_over(arm, q, goal, speed, min(clear, p[2])))
-    return Plan(arm=arm, pieces=tuple(pieces), goal=goal, target=p)
+        pieces = _over(arm, q, above, CLEAR), _down(arm, above, goal, p)
+    return Plan(arm=arm, pieces=pieces, goal=goal, target=p)
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,25 +158,24 @@ class Plan(Reference):
     @property
     def lowest(self):
         """Lowest height of tip and elbow on the way, m."""
-        q = self.sample(np.linspace(0, self.duration, 200))[:, 0]
-        return float(frames(self.arm, q)[:, 2:, 2, 3].min())
+        return _lowest(self.arm, self.sample(np.linspace(0, self.duration, 200))[:, 0])
 
 
-def _over(arm, q, goal, speed, clear):
+def _over(arm, q, goal, clear):
     """From pose to pose: directly if that stays clear, else first up, then round, then down."""
     from ir50p_lab.bench.rest import rest_pose
 
     ends = min(_lowest(arm, q[None]), _lowest(arm, goal[None]))
-    direct = quintic(q, goal, duration=_time(q, goal, speed))
+    direct = quintic(q, goal, duration=_time(q, goal))
     way = direct.sample(np.linspace(0, direct.duration, 60))[:, 0]
     if _lowest(arm, way) >= min(clear, ends) - 1e-3:
         return direct
     high = rest_pose(arm)
     corners = [q, np.array([q[0], high[1], q[2]]), np.array([goal[0], high[1], goal[2]]), goal]
-    return through(corners, durations=[_time(a, b, speed) for a, b in pairwise(corners)])
+    return through(corners, durations=[_time(a, b) for a, b in pairwise(corners)])
 
 
-def _down(arm, above, goal, p, speed):
+def _down(arm, above, goal, p):
     """The last piece: straight for the tip where the joints can follow, else straight for the joints."""
     start = forward_kinematics(arm, above)
     try:
@@ -196,11 +184,11 @@ def _down(arm, above, goal, p, speed):
             return line
     except UnreachableError:
         pass
-    return quintic(above, goal, duration=_time(above, goal, speed))
+    return quintic(above, goal, duration=_time(above, goal))
 
 
-def _time(a, b, speed):
-    return max(0.3, _PEAK * float(np.abs(b - a).max()) / speed)
+def _time(a, b):
+    return max(0.3, _PEAK * float(np.abs(b - a).max()) / _SPEED)
 
 
 def _lowest(arm, q):

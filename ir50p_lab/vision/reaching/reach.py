@@ -1,7 +1,7 @@
 """Reaching for what the camera sees: look, plan, move, look again and correct; pick and place; follow."""
 
 import contextlib
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 
 import numpy as np
 
@@ -31,20 +31,20 @@ class Reacher(Mover):
     and the picture is worked on, the loop goes on in this thread and the eye works in another.
 
     Args:
-        bench: an open bench. locator: BallLocator, or None for moving only; one of rendered pictures raises
-        CameraError for a real arm. controller: default `reaching_controller(arm)`.
+        bench: an open bench. locator: BallLocator; one of rendered pictures raises CameraError for a real arm.
+        controller: default `reaching_controller(arm)`.
         sigma_q: (3,) rad, how far the potentiometers may be off after that; default 0.7 counts if the calibration of
         the bench was measured (what a straight line leaves of a bent characteristic), 2.5 if it is a nominal one.
         rest: go to the rest pose at the end.
 
-    Methods: reach, pick, put, pick_and_place, follow_ball, look, move_to, move_along, hold. Attributes: q: (3,) rad,
+    Methods: reach, pick, put, follow_ball, look, move_to, move_along, hold. Attributes: q: (3,) rad,
     best estimate.
     """
 
-    def __init__(self, bench, locator=None, *, controller=None, sigma_q=None, rest=True):
+    def __init__(self, bench, locator, *, controller=None, sigma_q=None, rest=True):
         super().__init__(bench, controller=controller, rest=rest)
         self.locator, self._pool = locator, None
-        self._refuse_drawn(getattr(getattr(locator, "camera", None), "simulated", False))
+        self._refuse_drawn(getattr(locator.camera, "simulated", False))
         if sigma_q is None:
             measured = bench.calibration.stderr_slope is not None
             sigma_q = (_COUNTS if measured else _COUNTS_NOMINAL) / np.abs(bench.calibration.slope)
@@ -62,14 +62,17 @@ class Reacher(Mover):
 
     def look(self):
         """Let the eye look while the loop goes on. Returns Seen."""
-        if self.locator is None:
-            raise InputError("this Reacher has no locator: give Reacher(bench, locator)")
-        if self.bench.simulated and not getattr(self.bench, "realtime", False):
-            return self._see()
-        job = self._pool.submit(self._see)
+        job = self._look()
         while not job.done():
             self.hold(self.bench.period)
         return job.result()
+
+    def _look(self):
+        """A Future of Seen: by another thread where the clock runs on meanwhile, else done at once."""
+        job = self._pool.submit(self._see)
+        if self.bench.simulated and not getattr(self.bench, "realtime", False):
+            wait([job])
+        return job
 
     def _see(self):
         seen = self.locator.look()
@@ -156,52 +159,34 @@ class Reacher(Mover):
                 notes.append(str(error))
         return ball, marker, q, "; ".join(notes)
 
-    def pick(self, *, contact=0.0, looks=2):
-        """Reach, go down, close the gripper, go up again.
+    def pick(self):
+        """Reach, go down, close the gripper about the ball's middle, go up again.
 
-        contact: m of the tip over the ball's centre when gripping; 0: the fingers close about its middle. That the arm
-        reaches down there is tested before anything moves.
+        That the arm reaches down there is tested before anything moves.
         Returns: Reached, of the reach. Raises as `reach`. Whether the ball came along only another look can tell.
         """
-        contact = number("contact", contact, unit="m")
-        reach_pose(self.arm, self._sure(self.look()).position + np.array([0.0, 0.0, contact]))
+        reach_pose(self.arm, self._sure(self.look()).position)
         self.grip(False, 0.1)
-        found = self.reach(looks=looks)
-        self.move_to(found.ball + np.array([0.0, 0.0, contact]), lift=0.0)
+        found = self.reach()
+        self.move_to(found.ball, lift=0.0)
         self.grip(True)
-        self.move_to(found.ball + np.array([0.0, 0.0, HEIGHT + contact]), lift=0.0)
+        self.move_to(found.ball + np.array([0.0, 0.0, HEIGHT]), lift=0.0)
         return found
 
-    def put(self, place, *, contact=0.0):
-        """Carry what the gripper holds to `place` (2,) m on the table, open, go up. contact: that of `pick`.
+    def put(self, place):
+        """Carry what the gripper holds to `place` (2,) m on the table, open, go up.
 
         Raises InputError for a place that is none, UnreachableError before anything moves.
         """
-        down, up = self._over_place(place, contact)
-        self.move_to(down, lift=HEIGHT)
-        self.grip(False)
-        self.move_to(up, lift=0.0)
-
-    def pick_and_place(self, place, *, contact=0.0, looks=2):
-        """`pick` and `put`: the ball to `place` (2,) m on the table; both are tested before anything moves.
-
-        The arm reaches less far down there than over the ball.
-        Returns: Reached, of the reach. Raises as `pick` and `put`.
-        """
-        self._over_place(place, contact)
-        found = self.pick(contact=contact, looks=looks)
-        self.put(place, contact=contact)
-        return found
-
-    def _over_place(self, place, contact):
-        """Where the tip puts a ball down at `place` (2,) m, and HEIGHT above it: both (3,) m, both within reach."""
         place = numbers("place", place, unit="m")
         if place.shape != (2,) or not np.isfinite(place).all():
             raise InputError(f"place = {place.tolist()}: give x, y on the table, m")
-        down = np.array([*place, self.locator.radius + number("contact", contact, unit="m")])
+        down = np.array([*place, self.locator.radius])
         up = down + np.array([0.0, 0.0, HEIGHT])
-        reach_pose(self.arm, up), reach_pose(self.arm, down)
-        return down, up
+        reach_pose(self.arm, up)
+        self.move_to(down, lift=HEIGHT)
+        self.grip(False)
+        self.move_to(up, lift=0.0)
 
     def follow_ball(self, seconds, *, height=0.10, every=0.1, lead=None):
         """Keep the tip over a moving ball: a look every `every` s, position and velocity filtered, aimed ahead.
@@ -225,15 +210,13 @@ class Reacher(Mover):
         tracker, log, point = BallTracker(), [], SetPoint(self._set, speed=0.6, acceleration=3.0)
         begin = next_look = last_seen = self._last.t
         job = self._frozen = None
-        live = not self.bench.simulated or getattr(self.bench, "realtime", False)
         while self._last.t - begin < seconds:
             t = self._last.t
             if job is None and t >= next_look:
                 next_look = t + every
-                job = (t, self._pool.submit(self._see)) if live else (t, self._see())
-            if job is not None and (not live or job[1].done()):
-                taken, seen = job[0], job[1].result() if live else job[1]
-                job = None
+                taken, job = t, self._look()
+            if job is not None and job.done():
+                seen, job = job.result(), None
                 if seen:
                     tracker.update(taken, seen.position[:2])
                     last_seen = t

@@ -26,7 +26,7 @@ class RenderedBench(Camera):
         table, light, distractors; its red balls are replaced. marker: whether the wrist carries a green ball.
 
     `read()` gives a Frame of this moment. Its time is that of the simulation: it counts the periods in which the bench
-    was driven. `balls_true`, `T_cam_world`, `pinhole` are the truth, for tests and for drawings that say so. The
+    was driven. `balls_true`, and the camera in `scene`, are the truth, for tests and for drawings that say so. The
     fingers hold a ball when they close with the tip within 12 mm of its centre.
     """
 
@@ -80,22 +80,10 @@ class RenderedBench(Camera):
         """Whether the gripper holds a ball."""
         return self._held is not None
 
-    @property
-    def pinhole(self):
-        """The true camera (what a calibration should find)."""
-        return self.scene.pinhole
-
-    @property
-    def T_cam_world(self):
-        """Where it truly stands (world is the base frame of the arm)."""
-        return np.asarray(self.scene.T_cam_world)
-
     def read(self):
         """A picture of this moment: Frame."""
         balls = tuple(SceneBall(position=tuple(p), radius=self.radius) for p in self.balls_true)
-        others = tuple(
-            thing for thing in self.scene.objects if not isinstance(thing, SceneBall) or thing.colour != "red"
-        )
+        others = (one for one in self.scene.objects if getattr(one, "colour", None) != "red")
         hand = ()
         arm, q = self.bench.arm, self.bench.plant.q_true
         if self.marker:

@@ -77,13 +77,11 @@ class FollowLog:
 
 
 class BallTracker:
-    """Position and velocity of a rolling ball from looks at irregular times: an alpha-beta filter.
+    """Position and velocity of a rolling ball from looks at irregular times: an alpha-beta filter."""
 
-    alpha, beta: share of the surprise that goes into position and velocity.
-    """
+    alpha, beta = 0.7, 0.25  # shares of the surprise that go into position and velocity
 
-    def __init__(self, alpha=0.7, beta=0.25):
-        self.alpha, self.beta = alpha, beta
+    def __init__(self):
         self.position, self.velocity, self._t = None, np.zeros(2), 0.0
 
     def update(self, t, xy):

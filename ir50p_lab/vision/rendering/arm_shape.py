@@ -22,22 +22,18 @@ def arm_sticks(q, arm=None, *, opening=0.07):
     base, shoulder, elbow, tip = (T[i, :3, 3] for i in range(4))
     along, sideways = T[3, :3, 0], T[2, :3, 2]
     wrist = tip - along * min(GRIP + FORE, 0.5 * np.linalg.norm(tip - elbow))
-    fingers = [
-        _stick(wrist + s * sideways * opening / 2, tip + s * sideways * opening / 2, FINGER, JOINT) for s in (-1, 1)
-    ]
+    aside = sideways * opening / 2
     return (
         _stick(base, shoulder, BASE, PAINT),
         _stick(shoulder - sideways * SHOULDER, shoulder + sideways * SHOULDER, SHOULDER, JOINT),
         _stick(shoulder, elbow, UPPER, PAINT),
         _stick(elbow - sideways * UPPER, elbow + sideways * UPPER, 1.15 * UPPER, JOINT),
         _stick(elbow, wrist, FORE, PAINT),
-        _stick(wrist - sideways * opening / 2, wrist + sideways * opening / 2, 1.3 * FINGER, JOINT),
-        *fingers,
+        _stick(wrist - aside, wrist + aside, 1.3 * FINGER, JOINT),
+        _stick(wrist - aside, tip - aside, FINGER, JOINT),
+        _stick(wrist + aside, tip + aside, FINGER, JOINT),
     )
 
 
 def _stick(start, end, radius, colour):
-    return Stick(
-        start=tuple(np.asarray(start).tolist()), end=tuple(np.asarray(end).tolist()), radius=radius, colour=colour,
-        gloss=0.15,
-    )  # fmt: skip
+    return Stick(start=tuple(start), end=tuple(end), radius=radius, colour=colour, gloss=0.15)

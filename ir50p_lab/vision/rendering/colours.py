@@ -6,6 +6,7 @@ import functools
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import numbers
 
 COLOURS = {  # paints, not light: measured from nothing, chosen to look like toy balls and tape
     "red": (200, 30, 40),
@@ -30,10 +31,7 @@ def light_of(colour):
         if colour not in COLOURS:
             raise InputError(f"colour {colour!r} is not known: give (r, g, b) or one of {', '.join(COLOURS)}")
         colour = COLOURS[colour]
-    try:
-        rgb = np.asarray(colour, dtype=float)
-    except (TypeError, ValueError):
-        rgb = np.empty(0)
+    rgb = numbers("colour", colour, unit="red, green, blue, 0..255")
     if rgb.shape != (3,) or not ((rgb >= 0) & (rgb <= 255)).all():
         raise InputError(f"colour {colour!r}: give (r, g, b), three numbers 0..255, or one of {', '.join(COLOURS)}")
     return to_linear(rgb / 255)
@@ -59,10 +57,8 @@ def to_srgb(light):
     return np.where(light <= 0.0031308, light * 12.92, 1.055 * np.maximum(light, 0) ** (1 / 2.4) - 0.055)
 
 
-def to_bytes(light, gamma=True):
+def to_bytes(light):
     """uint8 of light (...), clipped at 0 and 1."""
-    if not gamma:
-        return np.rint(np.clip(light, 0, 1) * 255).astype(np.uint8)
     # square root first: equal steps of the table are then about equal steps of the result, also in the dark
     index = np.sqrt(np.clip(light, 0, 1)) * np.float32(_STEPS - 1) + np.float32(0.5)
     return _root_table()[index.astype(np.uint16)]

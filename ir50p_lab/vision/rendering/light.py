@@ -1,17 +1,17 @@
-"""Light on surfaces: from everywhere, from the sun, from lamps; shadows on the table, soft as the source is wide."""
+"""Light on surfaces: from everywhere, from the sun, from lamps."""
 
 import numpy as np
 
-from ir50p_lab.vision.rendering.scene import Sky, Sun
+from ir50p_lab.vision.rendering.scene import Sky
 
 _BOUNCE = 0.55  # what a table sends up of the light from everywhere, times its colour; things shade it
 _BOUNCE_DIRECT = 0.35  # of direct light: their own shadow lies around them
 
 
-def irradiance(scene, C, X, N, table_colour):
+def irradiance(scene, X, N, table_colour):
     """Light (n, 3) on points X (3, n) in world coordinates with normals N (3, n), and highlights' directions.
 
-    C: (3,) the camera. Returns light (n, 3) and a list of (colour (3,), strength (n,), towards (3, n)) per lamp.
+    Returns light (n, 3) and a list of (colour (3,), strength (n,), towards (3, n)) per lamp.
     """
     light = np.zeros((X.shape[1], 3), dtype=np.float32)
     up, direct = 0.5 * (1 + N[2]), []
@@ -20,28 +20,12 @@ def irradiance(scene, C, X, N, table_colour):
         if isinstance(source, Sky):
             light += source.strength * (up[:, None] * colour + (1 - up)[:, None] * colour * _BOUNCE * table_colour)
             continue
-        towards, strength, _ = direction(source, X)
+        towards, strength, _ = source.direction(X)
         light += (np.maximum(np.sum(N * towards, axis=0), 0) * strength)[:, None] * colour
         ground = (1 - up) * np.maximum(towards[2], 0) * strength * _BOUNCE_DIRECT
         light += ground[:, None] * colour * table_colour
         direct.append((colour, strength, towards))
     return light, direct
-
-
-def direction(source, X):
-    """Direction (3, n) or (3, 1) to a Sun or Lamp from X (3, n), its strength there, and its half width in rad."""
-    if isinstance(source, Sun):
-        L = np.asarray(source.towards, dtype=float)
-        return (L / np.linalg.norm(L)).astype(X.dtype)[:, None], source.strength_at(X), source.softness
-    v = np.asarray(source.position, dtype=X.dtype)[:, None] - X
-    r = np.sqrt(np.sum(v * v, axis=0))
-    return v / r, source.strength / r**2, source.size / max(source.position[2], 1e-3)
-
-
-def smooth(x):
-    """0 for x <= 0, 1 for x >= 1, with a smooth step between."""
-    x = np.clip(x, 0, 1)
-    return x * x * (3 - 2 * x)
 
 
 def highlight(ball, N, V, direct):

@@ -5,15 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
-from ir50p_lab.vision.pinhole import undistort_xy
+from ir50p_lab.vision.pinhole import Pinhole
 
 
 @dataclass(frozen=True, eq=False)
 class Rays:
     """Directions (x, y, 1) in camera coordinates: x, y arrays of one shape, with the pixels px, py they go through.
 
-    length2 = x^2 + y^2 + 1. On a grid (`grid` true) the shape is that of the picture.
+    length2 = x^2 + y^2 + 1. On a grid the shape is that of the picture.
     """
 
     x: np.ndarray
@@ -21,23 +20,23 @@ class Rays:
     length2: np.ndarray
     px: np.ndarray
     py: np.ndarray
-    grid: bool
 
     def near(self, box):
         """Index of the rays whose pixel is in the box (x0, y0, x1, y1); None is everywhere."""
         if box is None:
             return (Ellipsis,)
         x0, y0, x1, y1 = box
-        if self.grid:
-            h, w = self.x.shape
-            return slice(_clip(np.floor(y0), h), _clip(np.ceil(y1) + 1, h)), slice(
-                _clip(np.floor(x0), w), _clip(np.ceil(x1) + 1, w)
+        if self.x.ndim == 2:
+            (top, bottom), (left, right) = (
+                np.clip((np.floor(low), np.ceil(high) + 1), 0, n).astype(int)
+                for low, high, n in zip(box[1::-1], box[:1:-1], self.x.shape, strict=True)
             )
+            return slice(top, bottom), slice(left, right)
         return (np.flatnonzero((self.px >= x0) & (self.px <= x1) & (self.py >= y0) & (self.py <= y1)),)
 
     def at(self, index):
         """The rays of an index."""
-        return Rays(self.x[index], self.y[index], self.length2[index], self.px[index], self.py[index], self.grid)
+        return Rays(self.x[index], self.y[index], self.length2[index], self.px[index], self.py[index])
 
 
 def grid_rays(pinhole):
@@ -47,32 +46,14 @@ def grid_rays(pinhole):
 
 def rays_through(pinhole, px, py):
     """Rays through pixels px, py: arrays of one shape, in parts of a pixel."""
-    x, y = _normalised(pinhole.K, pinhole.distortion, px, py)
-    return Rays(x, y, x * x + y * y + 1, px, py, False)
+    x, y = np.moveaxis(pinhole.undistort_points(np.stack([px, py], axis=-1)), -1, 0)
+    return Rays(x, y, x * x + y * y + 1, px, py)
 
 
 @functools.lru_cache(maxsize=8)
 def _grid(K, distortion, size):
-    K, distortion = np.frombuffer(K).reshape(3, 3), np.frombuffer(distortion)
+    pinhole = Pinhole(np.frombuffer(K).reshape(3, 3), np.frombuffer(distortion), size)
     px, py = np.meshgrid(np.arange(size[0], dtype=float), np.arange(size[1], dtype=float))
-    x, y = (a.astype(np.float32) for a in _normalised(K, distortion, px, py))
-    rays = Rays(x, y, x * x + y * y + 1, px.astype(np.float32), py.astype(np.float32), True)
-    for array in (rays.x, rays.y, rays.length2, rays.px, rays.py):
-        array.setflags(write=False)
-    return rays
-
-
-def _normalised(K, distortion, px, py):
-    y = (py - K[1, 2]) / K[1, 1]
-    x = (px - K[0, 2] - K[0, 1] * y) / K[0, 0]
-    x, y = undistort_xy(distortion, x, y)
-    if not np.isfinite(x).all():
-        raise InputError(
-            f"the distortion {distortion.tolist()} folds over within the picture: some pixels get no ray, so there is "
-            "no picture. Use smaller coefficients or a narrower picture"
-        )
-    return x, y
-
-
-def _clip(value, top):
-    return int(min(max(value, 0), top))
+    exact = rays_through(pinhole, px, py)
+    x, y, px, py = (array.astype(np.float32) for array in (exact.x, exact.y, px, py))
+    return Rays(x, y, x * x + y * y + 1, px, py)

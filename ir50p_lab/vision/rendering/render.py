@@ -3,17 +3,14 @@
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.vision.pinhole import distort_xy
-from ir50p_lab.vision.rendering.board_print import black, print_range
+from ir50p_lab.vision.rendering.board_print import black
 from ir50p_lab.vision.rendering.colours import light_of
 from ir50p_lab.vision.rendering.light import highlight, irradiance
 from ir50p_lab.vision.rendering.rays import grid_rays, rays_through
-from ir50p_lab.vision.rendering.scene import Board, Scene, SceneBall, SolidThing, Stick
-from ir50p_lab.vision.rendering.sensor import blur, expose
-from ir50p_lab.vision.rendering.shadow import table_light
-from ir50p_lab.vision.rendering.shapes import SheetShape, SphereShape, StickShape
+from ir50p_lab.vision.rendering.scene import Board, Scene, SceneBall, Sky
+from ir50p_lab.vision.rendering.sensor import expose
 from ir50p_lab.vision.rendering.surface import room_light, table_albedo
-from ir50p_lab.vision.rendering.truth import SceneTruth, ball_truth, board_truth
+from ir50p_lab.vision.rendering.truth import SceneTruth, ball_truth
 
 ROOM, TABLE = 0, 1  # owners of pixels; things follow
 _DETAILS = 64  # codes per owner: faces, squares, patches
@@ -33,14 +30,11 @@ def render_scene(scene, seed=0):
     if not isinstance(scene, Scene):
         raise InputError(f"render_scene draws a Scene, not {type(scene).__name__}: build one, or take bench_scene()")
     picture = RayTracer(scene)
-    light = blur(picture.light(), scene.lens)
+    light = scene.lens.through(picture.light())
     image = expose(light, scene.sensor, np.random.default_rng([int(seed), 0]))
-    return image, picture.truth(int(seed))
-
-
-def scene_truth(scene, seed=0):
-    """The SceneTruth of a scene without drawing it."""
-    return RayTracer(scene).truth(int(seed))
+    balls = (ball_truth(scene.pinhole, picture.T, thing) for thing in picture.things if isinstance(thing, SceneBall))
+    truth = SceneTruth(balls=tuple(balls), pinhole=scene.pinhole, T_cam_world=picture.T, scene=scene, seed=int(seed))
+    return image, truth
 
 
 class RayTracer:
@@ -52,20 +46,10 @@ class RayTracer:
         self.C = -self.R.T @ self.t
         self._c, self._r = self.C.tolist(), self.R.tolist()  # plain floats keep float32 arrays what they are
         self.things = (*scene.objects, *scene.arm)
-        self.shapes = [self._shape(thing) for thing in self.things]
+        self.shapes = [thing.shape(self.T) for thing in self.things]
         self.boxes = [self._pixel_box(shape.bounds()) for shape in self.shapes]
         table = scene.table
         self.table_colour = light_of(table.colour if table else "grey").astype(np.float32)
-
-    def _shape(self, thing):
-        if isinstance(thing, SceneBall):
-            return SphereShape(self.R @ np.asarray(thing.position, dtype=float) + self.t, thing.radius)
-        if isinstance(thing, Stick):
-            ends = (self.R @ np.asarray(p, dtype=float) + self.t for p in (thing.start, thing.end))
-            return StickShape(*ends, thing.radius)
-        if isinstance(thing, Board):
-            return SheetShape(self.T @ thing.T_world_board, *print_range(thing), thing.bend)
-        return thing.shape(self.T)
 
     def _pixel_box(self, corners):
         """Pixels (x0, y0, x1, y1) around points (n, 3); None where some are beside or behind the camera."""
@@ -74,8 +58,7 @@ class RayTracer:
         pinhole = self.scene.pinhole
         if (np.hypot(corners[:, 0], corners[:, 1]) >= pinhole.widest * corners[:, 2]).any():
             return None
-        x, y = distort_xy(pinhole.distortion, corners[:, 0] / corners[:, 2], corners[:, 1] / corners[:, 2])
-        xy = np.stack([x, y], axis=-1) @ pinhole.K[:2, :2].T + pinhole.K[:2, 2]
+        xy = pinhole.to_pixels(pinhole.distort(corners[:, :2] / corners[:, 2:]))
         low, high = xy.min(axis=0), xy.max(axis=0)
         pad = 3 + 0.05 * (high - low)
         return (*(low - pad), *(high + pad))
@@ -152,7 +135,7 @@ class RayTracer:
         X = np.stack([depth * x, depth * y, depth])
         N = self.R.T @ shape.normal(X)
         world = self.R.T @ (X - self.t[:, None])
-        light, direct = irradiance(self.scene, self.C, world, N, self.table_colour)
+        light, direct = irradiance(self.scene, world, N, self.table_colour)
         detail = 0
         if isinstance(thing, Board):
             u, v, front = shape.print_coordinates(X)
@@ -161,7 +144,7 @@ class RayTracer:
             albedo = np.where(dark[:, None], light_of(thing.black), light_of(thing.white))
         else:
             albedo = light_of(thing.colour)
-        if isinstance(thing, SolidThing):
+        if hasattr(shape, "faces"):
             detail = shape.faces(X)
         light = light * albedo
         if getattr(thing, "gloss", 0) > 0:
@@ -169,30 +152,24 @@ class RayTracer:
             light = light + highlight(thing, N, V / np.sqrt(np.sum(V * V, axis=0)), direct)
         return light, detail
 
-    def truth(self, seed):
-        """The SceneTruth of this picture."""
-        scene, w, h = self.scene, *self.scene.pinhole.size
 
-        def seen(number):
-            def look(px, py):
-                inside = (px >= -0.5) & (px <= w - 0.5) & (py >= -0.5) & (py <= h - 0.5)
-                rays = rays_through(scene.pinhole, px[inside], py[inside])
-                inside[inside] = self.first_hits(rays)[1] == number + 2
-                return inside
-
-            return look
-
-        balls = tuple(
-            ball_truth(scene.pinhole, self.T, thing, seen(i))
-            for i, thing in enumerate(self.things)
-            if isinstance(thing, SceneBall)
-        )
-        boards = tuple(
-            board_truth(scene.pinhole, self.T, thing, self.shapes[i], seen(i))
-            for i, thing in enumerate(self.things)
-            if isinstance(thing, Board)
-        )
-        return SceneTruth(balls=balls, boards=boards, pinhole=scene.pinhole, T_cam_world=self.T, scene=scene, seed=seed)
+def table_light(scene, X, Y):
+    """Light (n, 3) on the table at X, Y (n,) m: every light, less what the things keep from it."""
+    light = np.zeros((len(X), 3), dtype=np.float32)
+    P = np.stack([X, Y, np.zeros_like(X)])
+    for source in scene.lights:
+        if isinstance(source, Sky):
+            part = np.full(len(X), 1, dtype=np.float32)
+            for thing in (*scene.objects, *scene.arm):
+                thing.dim_sky(part, X, Y)
+            part = source.strength * part
+        else:
+            towards, strength, softness = source.direction(P)
+            part = np.broadcast_to(strength * towards[2], X.shape).astype(np.float32)
+            for thing in (*scene.objects, *scene.arm):
+                thing.shade(part, source, softness, X, Y)
+        light += part[:, None] * np.asarray(source.colour, dtype=np.float32)
+    return light
 
 
 def _spread(n):

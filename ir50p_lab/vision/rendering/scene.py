@@ -12,11 +12,28 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.vision.checks import rigid
 from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
+from ir50p_lab.vision.rendering.board_print import print_range
 from ir50p_lab.vision.rendering.colours import to_bytes
+from ir50p_lab.vision.rendering.shadow import shadow, under_ball, under_stick
+from ir50p_lab.vision.rendering.shapes import SheetShape, SphereShape, StickShape
+
+
+class SolidThing:
+    """Whatever rays can meet above the table; a subclass has a colour, a shape, and says what light it takes."""
+
+    def shape(self, T_cam_world):
+        """Where rays meet it, in camera coordinates: as in `shapes`; with `faces(X)`, if edges between faces show."""
+        raise NotImplementedError
+
+    def dim_sky(self, open_sky, X, Y):
+        """Take off `open_sky` (n,), in place, what the places X, Y (n,) m of the table lose of the sky."""
+
+    def shade(self, part, source, softness, X, Y):
+        """The same of a Sun or Lamp, whose half width is `softness` rad."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class SceneBall:
+class SceneBall(SolidThing):
     """A ball: centre (3,) m, radius m, colour name or (r, g, b).
 
     gloss: strength of the highlight, 0 matt (felt, foam) to 1 (lacquer); shininess: exponent, large is a small spot.
@@ -32,30 +49,44 @@ class SceneBall:
         vectors3("position", self.position, unit="m")
         number("radius", self.radius, "> 0", unit="m")
 
+    def shape(self, T_cam_world):
+        """A sphere."""
+        return SphereShape(_moved(T_cam_world, self.position), self.radius)
+
+    def dim_sky(self, open_sky, X, Y):
+        """By the part of the hemisphere that it fills."""
+        under_ball(open_sky, self, X, Y)
+
+    def shade(self, part, source, softness, X, Y):
+        """A round shadow."""
+        centre = np.asarray(self.position, dtype=X.dtype)
+        shadow(part, centre, centre, self.radius, source, softness, X, Y)
+
 
 @dataclass(frozen=True, kw_only=True)
-class Board:
-    """A checkerboard or ChArUco board, T_world_board (4, 4), bent if asked.
+class Board(SolidThing):
+    """A flat checkerboard or ChArUco board, T_world_board (4, 4).
 
     Board coordinates: the origin is the first inner corner, x along the `pattern[0]` corners of a row, y along the
     rows, z away from the viewer of the print, as OpenCV's corner finders see it (a view from the front looks along +z).
 
     pattern: inner corners (columns, rows), both >= 2. square: m. border: white rim around the squares, m.
-    bend: 1/m, curvature about the board's y axis through its middle: the print bulges towards the viewer for bend > 0;
-    arc length along x is kept, as paper does. kind: 'checkerboard' or 'charuco' (marker: side of a marker, m;
-    dictionary: cv2.aruco name).
+    kind: 'checkerboard' or 'charuco' (marker: side of a marker, m; dictionary: cv2.aruco name).
     """
 
     T_world_board: np.ndarray = field(default_factory=lambda: np.diag([1.0, -1.0, -1.0, 1.0]))
     pattern: tuple = (9, 6)
     square: float = 0.025
     border: float = 0.025
-    bend: float = 0.0
     kind: str = "checkerboard"
     marker: float = 0.018
     dictionary: str = "DICT_5X5_100"
     white: tuple = (238, 238, 236)
     black: tuple = (28, 28, 30)
+
+    def shape(self, T_cam_world):
+        """A sheet."""
+        return SheetShape(T_cam_world @ self.T_world_board, *print_range(self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +105,7 @@ class Patch:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stick:
+class Stick(SolidThing):
     """A round stick with round ends from `start` to `end` (3,) m: link of an arm, finger, pen."""
 
     start: tuple
@@ -84,14 +115,18 @@ class Stick:
     gloss: float = 0.0
     shininess: float = 30.0
 
+    def shape(self, T_cam_world):
+        """A cylinder with round ends."""
+        return StickShape(_moved(T_cam_world, self.start), _moved(T_cam_world, self.end), self.radius)
 
-class SolidThing:
-    """Any other thing on the table: a subclass has a colour, and says where rays meet it and what light it takes.
+    def dim_sky(self, open_sky, X, Y):
+        """By the part of the hemisphere that it fills."""
+        under_stick(open_sky, self, X, Y)
 
-    `shape(T_cam_world)` gives a shape as in `shapes`, with `faces(X)`, the number of the face at X (3, n), besides;
-    `dim_sky(open_sky, X, Y)` and `shade(part, source, softness, X, Y)` take off, in place, what the places X, Y (n,) m
-    of the table lose of the sky and of a Sun or Lamp.
-    """
+    def shade(self, part, source, softness, X, Y):
+        """A long shadow."""
+        ends = np.array([self.start, self.end], dtype=float)
+        shadow(part, *ends, self.radius, source, softness, X, Y)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,9 +165,16 @@ class Sun:
     strength: float = 0.6
     softness: float = 0.02
 
-    def strength_at(self, X):
-        """Strength at the places X (3, n)."""
-        return self.strength
+    near = False
+
+    def seen_from(self, p):
+        """Direction (3,) to it from the place p (3,) m; its length tells nothing."""
+        return np.asarray(self.towards, dtype=float)
+
+    def direction(self, X):
+        """Unit directions (3, 1) to it from X (3, n) m, its strength there, and its half width in rad."""
+        L = self.seen_from(X)
+        return (L / np.linalg.norm(L)).astype(X.dtype)[:, None], self.strength, self.softness
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,23 +186,44 @@ class Lamp:
     strength: float = 0.6
     size: float = 0.05
 
+    near = True
+
+    def seen_from(self, p):
+        """Vector (3,) to it from the place p (3,) m."""
+        return np.asarray(self.position) - p
+
+    def direction(self, X):
+        """Unit directions (3, n) to it from X (3, n) m, its strength there (n,), and its half width in rad."""
+        v = np.asarray(self.position, dtype=X.dtype)[:, None] - X
+        r = np.sqrt(np.sum(v * v, axis=0))
+        return v / r, self.strength / r**2, self.size / max(self.position[2], 1e-3)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Lens:
-    """Blur: `defocus` diameter of the disc and `motion` (dx, dy), pixels; `sigma` of a Gauss; vignetting 0..1."""
+    """sigma: of a blur, pixels; vignetting: share of the light that is lost in the corners, 0..1."""
 
-    defocus: float = 0.0
-    motion: tuple = (0.0, 0.0)
     sigma: float = 0.5
     vignetting: float = 0.15
+
+    def through(self, light):
+        """Light (h, w, 3) on the sensor of light (h, w, 3) of a sharp picture."""
+        import cv2
+
+        if self.sigma > 0:
+            light = cv2.GaussianBlur(light, (0, 0), self.sigma, borderType=cv2.BORDER_REPLICATE)
+        h, w = light.shape[:2]
+        y, x = np.arange(h)[:, None] - (h - 1) / 2, np.arange(w)[None, :] - (w - 1) / 2
+        r2 = (x * x + y * y) / (w * w / 4 + h * h / 4)
+        return light * (1 - self.vignetting * r2).astype(np.float32)[..., None]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sensor:
-    """From light to bytes: exposure, white balance (3,), noise, gamma, JPEG.
+    """From light to bytes: exposure, white balance (3,), noise, JPEG.
 
     read_noise and shot_noise are standard deviations at black and (on top) at white, parts of full scale.
-    jpeg: quality 1..100, or None. gamma: False keeps bytes proportional to light.
+    jpeg: quality 1..100, or None.
     """
 
     exposure: float = 1.0
@@ -168,18 +231,17 @@ class Sensor:
     read_noise: float = 0.003
     shot_noise: float = 0.012
     jpeg: int | None = 92
-    gamma: bool = True
 
     def developed(self, light):
         """Bytes (h, w, 3) of what the sensor measured, light (h, w, 3)."""
-        return to_bytes(light * np.asarray(self.balance, dtype=np.float32), self.gamma)
+        return to_bytes(light * np.asarray(self.balance, dtype=np.float32))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scene:
     """Everything `render_scene` needs, but for the seed of the noise.
 
-    pinhole: the camera. T_cam_world (4, 4): where it is. objects: SceneBall, Board, Stick, SolidThing in any number;
+    pinhole: the camera. T_cam_world (4, 4): where it is. objects: SceneBall, Board, Stick or another SolidThing;
     patches: on the table, later ones over earlier ones; lights: Sky, Sun, Lamp. arm: tuple of Stick (`arm_sticks`),
     kept apart so that it can be posed. texture_seed: of the table's grain and of the room.
     """
@@ -205,9 +267,8 @@ class Scene:
                     raise InputError(f"{part!r:.60} is none of the {field_name} of a Scene: give {names}")
 
 
-_PARTS = {
-    "objects": (SceneBall, Board, Stick, SolidThing),
-    "patches": (Patch,),
-    "arm": (Stick,),
-    "lights": (Sky, Sun, Lamp),
-}
+_PARTS = {"objects": (SolidThing,), "patches": (Patch,), "arm": (Stick,), "lights": (Sky, Sun, Lamp)}
+
+
+def _moved(T, p):
+    return T[:3, :3] @ np.asarray(p, dtype=float) + T[:3, 3]

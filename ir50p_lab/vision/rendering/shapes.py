@@ -67,59 +67,34 @@ class StickShape:
 
 
 class SheetShape:
-    """A printed sheet, bent about its y axis: T_cam_sheet (4, 4), x and y ranges of the print, curvature `bend`.
+    """A flat printed sheet: T_cam_sheet (4, 4), x and y ranges of the print; its z points away from the viewer."""
 
-    A point of the print (u, v) lies at x = middle + sin(bend u') / bend, y = v, z = (1 - cos(bend u')) / bend with
-    u' = u - middle: z points away from the viewer, so the middle bulges towards him for bend > 0.
-    """
-
-    def __init__(self, T_cam_sheet, x, y, bend=0.0):
-        self.R, self.t = T_cam_sheet[:3, :3], T_cam_sheet[:3, 3]
-        self.x, self.y, self.bend, self.middle = x, y, float(bend), (x[0] + x[1]) / 2
-
-    def place(self, u, v):
-        """Sheet coordinates (n, 3) of the points u, v (n,) of the print."""
-        angle = self.bend * (u - self.middle)
-        if self.bend == 0:
-            return np.stack([u, v, np.zeros_like(u)], axis=-1)
-        return np.stack([self.middle + np.sin(angle) / self.bend, v, (1 - np.cos(angle)) / self.bend], axis=-1)
+    def __init__(self, T_cam_sheet, x, y):
+        self.R, self.t, self.x, self.y = T_cam_sheet[:3, :3], T_cam_sheet[:3, 3], x, y
 
     def bounds(self):
-        """Points (n, 3) along its rim, in camera coordinates."""
-        u, v = np.meshgrid(np.linspace(*self.x, 9), np.array(self.y))
-        return self.place(u.ravel(), v.ravel()) @ self.R.T + self.t
+        """Its corners (4, 3)."""
+        u, v = np.meshgrid(self.x, self.y)
+        return np.stack([u.ravel(), v.ravel(), np.zeros(4)], axis=1) @ self.R.T + self.t
 
     def depth(self, rays):
         """Depth Z of the hit, inf where there is none."""
-        origin, k = -self.R.T @ self.t, self.bend / 2
-        ox, oz = origin[0] - self.middle, origin[2]
+        origin = -self.R.T @ self.t
         dx, dy, dz = (rays.x * self.R[0, i] + rays.y * self.R[1, i] + self.R[2, i] for i in range(3))
-        # z = bend/2 (x'^2 + z^2) on the cylinder; the root that becomes the plane's for bend -> 0, without cancelling
-        A, B, C = k * (dx * dx + dz * dz), 2 * k * (ox * dx + oz * dz) - dz, k * (ox * ox + oz * oz) - oz
         with np.errstate(invalid="ignore", divide="ignore"):
-            t = -2 * C / (B + np.sign(B) * np.sqrt(B * B - 4 * A * C))
-            u, v = self.unroll(ox + t * dx, oz + t * dz), origin[1] + t * dy
+            t = -origin[2] / dz
+            u, v = origin[0] + t * dx, origin[1] + t * dy
             hit = (t > 0) & (u >= self.x[0]) & (u <= self.x[1]) & (v >= self.y[0]) & (v <= self.y[1])
         return np.where(hit, t, np.inf)
-
-    def unroll(self, x, z):
-        """Print coordinate u of sheet coordinates x (from the middle) and z."""
-        if self.bend == 0:
-            return self.middle + x
-        return self.middle + np.arctan2(self.bend * x, 1 - self.bend * z) / self.bend
 
     def print_coordinates(self, X):
         """Coordinates u, v of the print at the points X (3, n), and whether its front is seen (n,)."""
         local = self.R.T @ (X - self.t[:, None])
-        x, z = local[0] - self.middle, local[2]
-        front = np.sum(self.R @ np.stack([-self.bend * x, 0 * x, 1 - self.bend * z]) * X, axis=0) > 0
-        return self.unroll(x, z), local[1], front
+        return local[0], local[1], self.R[:, 2] @ X > 0
 
     def normal(self, X):
         """Normals (3, n) on the side of the camera."""
-        local = self.R.T @ (X - self.t[:, None])
-        n = self.R @ np.stack([-self.bend * (local[0] - self.middle), 0 * local[0], 1 - self.bend * local[2]])
-        return -n * np.sign(np.sum(n * X, axis=0))
+        return -self.R[:, 2:] * np.sign(self.R[:, 2] @ X)
 
 
 def _cube(centre, half):
