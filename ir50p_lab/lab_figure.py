@@ -1,6 +1,5 @@
 """What every figure of the package has: one look, and a picture of itself in a notebook without pyplot."""
 
-import functools
 import io
 from pathlib import Path
 
@@ -24,12 +23,7 @@ COLOURS = {
 
 def figure_style():
     """The style as matplotlib parameters, for `matplotlib.rc_context(figure_style())`; changes nothing itself."""
-    return dict(_style_sheet())
-
-
-@functools.cache
-def _style_sheet():
-    return matplotlib.rc_params_from_file(Path(__file__).with_suffix(".mplstyle"), use_default_template=False)
+    return dict(matplotlib.rc_params_from_file(Path(__file__).with_suffix(".mplstyle"), use_default_template=False))
 
 
 class LabFigure(Figure):
