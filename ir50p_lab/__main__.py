@@ -8,13 +8,12 @@ import os
 import sys
 
 if sys.version_info < (3, 11):
-    sys.stderr.write(
+    sys.exit(
         "The IR50P lab book needs Python 3.11 or newer; this is Python %d.%d.%d (%s).\n"
         "Get a newer one from https://www.python.org/downloads/ and start it by its own name, "
-        "for example: python3.13 -m ir50p_lab (Windows: py -3.13 -m ir50p_lab)\n"
+        "for example: python3.13 -m ir50p_lab (Windows: py -3.13 -m ir50p_lab)"
         % (sys.version_info[0], sys.version_info[1], sys.version_info[2], sys.executable)
     )
-    sys.exit(1)
 
 if not __package__:  # started as a folder, `python3 /path/to/ir50p_lab`: that folder is not where imports begin
     sys.path[0] = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))

@@ -4,26 +4,30 @@ import os
 import time
 
 
-def take_lock(file, *, wait):
-    """Lock an open file; True when taken. It falls by itself when every process that holds the file open has ended.
+def take_lock(file, busy=""):
+    """Lock an open file. It falls by itself when every process that holds the file open has ended.
 
-    wait: for whoever holds it, or give False. Raises: OSError where there are no locks (network drives).
+    busy: printed once while another one holds it. Where there are no locks (some network drives) it goes on without.
     """
-    if os.name == "nt":
-        import msvcrt
+    while not _try_lock(file):
+        if busy:
+            print(busy)
+        busy = ""
+        time.sleep(0.02)
 
-        while True:
-            try:
-                msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-                return True
-            except OSError:
-                if not wait:
-                    return False
-                time.sleep(1)
-    import fcntl
 
+def _try_lock(file):
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
-        return True
-    except BlockingIOError:
+        if os.name == "nt":
+            import msvcrt
+
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (BlockingIOError, PermissionError):
         return False
+    except OSError:
+        return True
+    return True

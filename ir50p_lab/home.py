@@ -18,15 +18,7 @@ def home():
 
 def replace_text(path, text):
     """Write a file in one step: a crash leaves the old or the new one, whole. Raises OSError."""
-    scratch = None
-    try:
-        with tempfile.NamedTemporaryFile(
-            "w", encoding="utf-8", dir=path.parent, prefix=f".{path.stem}-", suffix=".tmp", delete=False
-        ) as file:
-            scratch = Path(file.name)
-            file.write(text)
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".", ignore_cleanup_errors=True) as folder:
+        scratch = Path(folder, path.name)
+        scratch.write_text(text, encoding="utf-8")
         os.replace(scratch, path)
-    except OSError:
-        if scratch is not None:
-            scratch.unlink(missing_ok=True)
-        raise

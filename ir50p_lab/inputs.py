@@ -61,18 +61,15 @@ def whole(name, value, least, most):
 
 
 def choice(name, value, choices):
-    """`value`, one of some texts. Raises InputError naming them all."""
-    if not isinstance(value, str) or value not in choices:
-        *first, last = map(repr, choices)
-        raise InputError(f"{name} = {value!r:.60}: choose {', '.join(first)} or {last}")
+    """`value`, one of some texts (or of True and False). Raises InputError naming them all."""
+    if not isinstance(value, (str, bool, np.bool_)) or value not in choices:
+        raise InputError(f"{name} = {value!r:.60}: choose {' or '.join(map(repr, choices))}")
     return value
 
 
 def switch(name, value):
     """`value` as True or False; nothing else counts as one. Raises InputError."""
-    if not isinstance(value, (bool, np.bool_)):
-        raise InputError(f"{name} = {value!r:.60}: give True or False")
-    return bool(value)
+    return bool(choice(name, value, (True, False)))
 
 
 def first_not_finite(array):

@@ -73,8 +73,7 @@ def _no_other_process():
     """
     cache_folder().mkdir(parents=True, exist_ok=True)
     with open(cache_folder() / "lock", "a") as file:
-        with contextlib.suppress(OSError):  # some network drives have no locks: go on without
-            take_lock(file, wait=True)
+        take_lock(file)
         yield
 
 
@@ -85,8 +84,7 @@ class _Once(event.Listener):
         self._line = line
 
     def on_start(self, _):
-        if self._line:
-            print(self._line, flush=True)
+        print(self._line, end="", flush=True)
         self._line = ""
 
     def on_end(self, _):
@@ -98,7 +96,7 @@ def says_that_it_compiles(function):
 
     @functools.wraps(function)
     def wrapper(*args, **options):
-        with event.install_listener("numba:compile", _Once(f"{function.__name__} is compiled, once: up to 30 s...")):
+        with event.install_listener("numba:compile", _Once(f"{function.__name__} is compiled, once: up to 30 s...\n")):
             return function(*args, **options)
 
     return wrapper

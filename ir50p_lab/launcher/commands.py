@@ -21,6 +21,7 @@ Further arguments go to JupyterLab, to pytest (paths count from the project's fo
   py -m ir50p_lab targets vision --quick    (or identification, computed_torque; without a name all of them)
 """
 
+import argparse
 import os
 import signal
 import subprocess
@@ -30,28 +31,34 @@ from pathlib import Path
 
 from ir50p_lab.launcher import doctor, inventory, update
 from ir50p_lab.launcher.environment import LOCK, TEST_LOCK, Environment
-from ir50p_lab.launcher.problems import COMMAND, SetUpError, from_os_error
+from ir50p_lab.launcher.problems import COMMAND, SetUpError, from_error
 
 ROOT = Path(__file__).resolve().parents[2]
 
-COMMANDS = ("lab", "test", "targets", "setup", "doctor", "bench-test", "export", "report", "update")
+#: What runs in the environment, with the arguments that follow.
+_MODULES = {
+    "lab": "jupyterlab",
+    "test": "tests",
+    "targets": "tests.targets",
+    "bench-test": "ir50p_lab.bench.bench_test",
+    "export": "ir50p_lab.publishing",
+    "report": "ir50p_lab.publishing.report",
+}
 
 
 def main(arguments, root=ROOT):
     """Run the command line; return the exit code."""
     for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="replace")  # paths may have letters that the console does not
-    for name in ("SIGTERM", "SIGHUP"):
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), _stop)
+        stream.reconfigure(errors="replace", line_buffering=True)  # paths may have letters that the console does not
+    for number in {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}:  # Windows has no SIGHUP
+        signal.signal(number, _stop)
     try:
-        return _run(list(arguments), Path(root))
+        return _run(arguments, Path(root))
     except SetUpError as problem:
         print(problem, file=sys.stderr)
         return 1
-    except OSError as error:
-        print(from_os_error(error, root), file=sys.stderr)
+    except (OSError, ImportError) as error:
+        print(from_error(error, root), file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print(f"\nStopped. Run '{COMMAND}' again whenever you like: it takes up what is missing.", file=sys.stderr)
@@ -62,69 +69,82 @@ def _run(arguments, root):
     if arguments[:1] in (["-h"], ["--help"], ["help"]):
         print(__doc__, end="")
         return 0
-    here = _take_flag(arguments, "--here")
-    arm = _take_value(arguments, "--arm")
-    command = arguments.pop(0) if arguments and arguments[0] in COMMANDS else "lab"
-    if command == "lab" and arguments and not arguments[0].startswith("-") and not Path(arguments[0]).exists():
+    if not (root / LOCK).is_file():
+        raise SetUpError(
+            f"{root} is not the project's folder: it has no {LOCK}. Run '{COMMAND}' in the folder that was cloned or "
+            "unpacked."
+        )
+    options, arguments = _options(arguments)
+    command = arguments.pop(0) if arguments[:1] and arguments[0] in (*_MODULES, "setup", "doctor", "update") else "lab"
+    file = command == "lab" and bool(arguments) and not arguments[0].startswith("-")
+    if file and not Path(arguments[0]).exists():
         raise SetUpError(f"There is neither a command nor a file '{arguments[0]}'. Try '{COMMAND} --help'.")
     environment = Environment(root)
     if command == "doctor":
-        return doctor.report(environment, here=here)
+        return doctor.report(environment, here=options.here)
     if command == "setup":
-        return _setup(arguments, environment, here)
+        return _setup(arguments, environment, options.here)
     if command == "update":
         return update.take_over(arguments, root)
-    tests = command in ("test", "targets")  # both need the test tools
-    if here:
-        _check_here(environment.root, TEST_LOCK if tests else LOCK)
-        python, variables = sys.executable, dict(os.environ)
-    else:
-        environment.ensure(tests=tests)
-        python, variables = str(environment.python), environment.variables()
-    if arm is not None:
-        if not Path(arm).is_file():
-            raise SetUpError(f"There is no arm file '{arm}'. Write one with Arm.save, or give its path.")
-        variables["IR50P_ARM"] = str(Path(arm).resolve())
+    tests = command in ("test", "targets")
+    python, variables = _ready(environment, options.here, tests=tests)
+    if options.arm is not None:
+        if not Path(options.arm).is_file():
+            raise SetUpError(f"There is no arm file '{options.arm}'. Write one with Arm.save, or give its path.")
+        variables["IR50P_ARM"] = str(Path(options.arm).resolve())
     if tests:
         with tempfile.TemporaryDirectory() as home:  # neither the student's results are used nor others left behind
-            variables["IR50P_HOME"] = home
-            module = "tests" if command == "test" else "tests.targets"
-            return _attend([python, "-m", module, *arguments], variables, environment.root)
-    modules = {
-        "bench-test": "ir50p_lab.bench.bench_test",
-        "export": "ir50p_lab.publishing",
-        "report": "ir50p_lab.publishing.report",
-    }
-    if command in modules:
-        return _attend([python, "-m", modules[command], *arguments], variables)
-    code = _attend([python, *_lab_command(environment.root, arguments)], variables)
-    return 0 if code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
+            start = [python, "-m", _MODULES[command], *arguments]
+            return _attend(start, variables | {"IR50P_HOME": home}, environment.root)
+    if command == "lab":
+        notebooks = [] if file else [str(environment.root / "notebooks")]
+        arguments = [*notebooks, *arguments, "--allow-root"]  # containers run as root; JupyterLab would only refuse
+        print(
+            "Opening JupyterLab. If no browser opens, copy the address http://... below into one; Ctrl-C here ends it."
+        )
+    code = _attend([python, "-P", "-m", _MODULES[command], *arguments], variables)
+    return 0 if command == "lab" and code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
+
+
+def _options(arguments):
+    """--here and --arm, and what is left of the arguments."""
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
+    parser.add_argument("--here", action="store_true")
+    parser.add_argument("--arm")
+    try:
+        return parser.parse_known_args(arguments)
+    except argparse.ArgumentError:
+        raise SetUpError(f"--arm needs a file after it. Try '{COMMAND} --help'.") from None
 
 
 def _setup(arguments, environment, here):
-    rebuild, tests = _take_flag(arguments, "--rebuild"), _take_flag(arguments, "--tests")
-    if arguments:
-        raise SetUpError(f"setup does not know '{arguments[0]}'. Try '{COMMAND} --help'.")
-    if here:
-        _check_here(environment.root, TEST_LOCK if tests else LOCK)
-    else:
-        environment.ensure(tests=tests, rebuild=rebuild)
+    for unknown in set(arguments) - {"--rebuild", "--tests"}:
+        raise SetUpError(f"setup does not know '{unknown}'. Try '{COMMAND} --help'.")
+    _ready(environment, here, tests="--tests" in arguments, rebuild="--rebuild" in arguments)
     print("Everything is in place." if here else f"Ready: {environment.folder}")
     return 0
 
 
-def _lab_command(root, arguments):
-    """JupyterLab on notebooks/, or on the file or folder given as the first argument."""
-    target = [] if arguments and not arguments[0].startswith("-") else [str(root / "notebooks")]
-    if hasattr(os, "geteuid") and os.geteuid() == 0 and "--allow-root" not in arguments:
-        arguments = [*arguments, "--allow-root"]  # containers run as root; JupyterLab would only refuse
-    print("Opening JupyterLab. If no browser opens, copy the address http://... below into one; Ctrl-C here ends it.")
-    return ["-P", "-m", "jupyterlab", *target, *arguments]
+def _ready(environment, here, *, tests, rebuild=False):
+    """Make .venv ready, or see that this Python has what the lock asks for, in whatever version: Python, variables."""
+    if not here:
+        environment.ensure(tests=tests, rebuild=rebuild)
+        return str(environment.python), environment.variables()
+    lock = environment.root / (TEST_LOCK if tests else LOCK)
+    pip = f"{'py' if os.name == 'nt' else sys.executable} -m pip install"
+    missing = [package["name"] for package in inventory.packages(lock) if package["installed"] is None]
+    steps = [f"{pip} -r {lock}"] if missing else []
+    if inventory.installed_version("ir50p-lab") is None:
+        missing.append("ir50p-lab")
+        steps.append(f"{pip} --no-deps --no-build-isolation -e {environment.root}")
+    if missing:
+        names = ", ".join(missing[:6]) + (f" and {len(missing) - 6} more" if len(missing) > 6 else "")
+        raise SetUpError(f"This Python ({sys.executable}) lacks {names}. Install with: {' && '.join(steps)}")
+    return sys.executable, dict(os.environ)
 
 
 def _attend(command, variables, folder=None):
     """Run a program to its end. Ctrl-C is for it to answer: it sits at the same terminal."""
-    sys.stdout.flush()
     child = subprocess.Popen(command, env=variables, cwd=folder)
     while True:
         try:
@@ -136,44 +156,9 @@ def _attend(command, variables, folder=None):
             continue
 
 
-def _check_here(root, lock):
-    """Raise SetUpError unless the running Python has the packages of the lock, in whatever version."""
-    found = inventory.packages(root / lock)
-    missing = [package["name"] for package in found if package["installed"] is None]
-    project = inventory.installed_version("ir50p-lab") is None
-    if not missing and not project:
-        return
-    python = "py" if os.name == "nt" else sys.executable
-    steps = [f"{python} -m pip install -r {root / lock}"] if missing else []
-    if project:
-        missing.append("ir50p-lab")
-        steps.append(f"{python} -m pip install --no-deps --no-build-isolation -e {root}")
-    names = ", ".join(missing[:6]) + (f" and {len(missing) - 6} more" if len(missing) > 6 else "")
-    raise SetUpError(f"This Python ({sys.executable}) lacks {names}. Install with: {' && '.join(steps)}")
-
-
 class _TerminatedError(KeyboardInterrupt):
     """The launcher itself was asked to end (SIGTERM, terminal closed)."""
 
 
 def _stop(signum, frame):
     raise _TerminatedError
-
-
-def _take_flag(arguments, name):
-    if name not in arguments:
-        return False
-    arguments.remove(name)
-    return True
-
-
-def _take_value(arguments, name):
-    arguments[:] = [part for a in arguments for part in (a.split("=", 1) if a.startswith(f"{name}=") else [a])]
-    if name not in arguments:
-        return None
-    place = arguments.index(name)
-    _, *value = arguments[place : place + 2]
-    if not value:
-        raise SetUpError(f"{name} needs a file after it. Try '{COMMAND} --help'.")
-    del arguments[place : place + 2]
-    return value[0]

@@ -17,33 +17,29 @@ def report(environment, *, here=False):
     root = environment.root
     _line("Python", f"{platform.python_version()}, {platform.architecture()[0]} ({sys.executable})")
     _line("System", f"{platform.platform()} {platform.machine()}")
-    _line("Project", str(root))
-    if not (root / LOCK).is_file():
-        return _verdict([f"this is not the project's folder: {LOCK} is missing"], "Run it where it was unpacked")
-    faults, cure = [], f"Run '{COMMAND} setup --rebuild'"
-    state = environment.state()
-    if here:
-        cure = f"'{COMMAND} --here' prints the command that installs it"
-    else:
-        _line("Environment", f"{environment.folder}: {state.reason}")
-    found = None
-    if here or state.ready:
+    _line("Project", root)
+    fault, cure = "", f"'{COMMAND} --here' prints the command that installs it"
+    if not here:
+        fault = environment.fault()
+        cure = f"Run '{COMMAND}' to set up" if fault else f"Run '{COMMAND} setup --rebuild'"
+        _line("Environment", f"{environment.folder}: {fault or 'ready'}")
+    found, faults = None, [f"the environment is {fault}"]
+    if not fault:
         found, error = environment.look_inside(sys.executable if here else None)
-        faults += _packages(found, root, here) if found else [f"the environment does not answer ({error})"]
-    else:
-        faults.append(f"the environment is {state.reason}")
-        cure = f"Run '{COMMAND}' to set up"
+        faults = _packages(found, root, here) if found else [f"the environment does not answer ({error})"]
     free = shutil.disk_usage(root).free / 1e9
     _line("Free disk", f"{free:.1f} GB")
-    if free < NEEDED_GB and not state.ready and not here:
+    if free < NEEDED_GB and fault:
         faults.append(f"the set-up needs {NEEDED_GB:.0f} GB of disk, {free:.1f} GB are free")
     arm = os.environ.get("IR50P_ARM")
     if arm:
         _line("Arm", f"{arm} (from IR50P_ARM)")
         if not Path(arm).is_file():
             faults.append(f"IR50P_ARM names a file that does not exist ({arm})")
-    _ports(found)
-    return _verdict(faults, cure)
+    _ports(found and found["ports"])
+    verdict = f"not ready: {'; '.join(faults)}. {cure}." if faults else f"ready. Open the lab book with '{COMMAND}'."
+    print(f"Verdict: {verdict}")
+    return 1 if faults else 0
 
 
 def _line(title, text):
@@ -76,8 +72,7 @@ def _packages(found, root, here):
     return [fault for fault, holds in faults.items() if holds]
 
 
-def _ports(found):
-    ports = found and found["ports"]
+def _ports(ports):
     if ports is None:
         _line("Serial ports", "not looked at (pyserial comes with the set-up)")
         return
@@ -85,18 +80,10 @@ def _ports(found):
     if not usb:
         _line("Serial ports", "no USB board" + (f" ({len(ports)} ports without USB id)" if ports else ""))
     for port in usb:
-        allowed = os.name == "nt" or os.access(port["device"], os.R_OK | os.W_OK)
-        advice = "" if allowed else f", no permission: {permission_remedy(port['device'])}"
+        text = f"{port['device']} {port['vid']:04X}:{port['pid']:04X} {port['description']}"
         board = board_name(port["vid"], port["pid"])
-        known = f" ({board})" if board else ""
-        _line(
-            "Serial ports", f"{port['device']} {port['vid']:04X}:{port['pid']:04X} {port['description']}{known}{advice}"
-        )
-
-
-def _verdict(faults, cure):
-    if faults:
-        print(f"Verdict: not ready: {'; '.join(faults)}. {cure}.")
-        return 1
-    print(f"Verdict: ready. Open the lab book with '{COMMAND}'.")
-    return 0
+        if board:
+            text += f" ({board})"
+        if os.name != "nt" and not os.access(port["device"], os.R_OK | os.W_OK):
+            text += f", no permission: {permission_remedy(port['device'])}"
+        _line("Serial ports", text)

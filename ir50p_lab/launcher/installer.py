@@ -6,25 +6,22 @@ uv reads neither pip.conf nor PIP_*, so what they say is translated for it.
 import ast
 import os
 import subprocess
+import sys
 
 from ir50p_lab.launcher import problems
 
-#: pip's settings as options of uv; each may have several values, between blanks.
-_OPTIONS = {
-    "index-url": "--default-index",
-    "extra-index-url": "--index",
-    "find-links": "--find-links",
-    "trusted-host": "--allow-insecure-host",
-}
-_FLAGS = {"no-index": "--no-index", "no-cache-dir": "--no-cache"}
+#: pip's settings as options of uv, one for each of their values.
+_OPTIONS = {"index-url": "--default-index", "extra-index-url": "--index", "find-links": "--find-links"}
 #: pip's settings as environment variables of uv.
 _VARIABLES = {
-    "cert": ("SSL_CERT_FILE",),
-    "client-cert": ("SSL_CLIENT_CERT",),
-    "proxy": ("HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY"),
-    "timeout": ("UV_HTTP_TIMEOUT",),
-    "default-timeout": ("UV_HTTP_TIMEOUT",),
-    "retries": ("UV_HTTP_RETRIES",),
+    "trusted-host": ["UV_INSECURE_HOST"],
+    "no-cache-dir": ["UV_NO_CACHE"],
+    "cert": ["SSL_CERT_FILE"],
+    "client-cert": ["SSL_CLIENT_CERT"],
+    "proxy": ["HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY"],
+    "timeout": ["UV_HTTP_TIMEOUT"],
+    "default-timeout": ["UV_HTTP_TIMEOUT"],
+    "retries": ["UV_HTTP_RETRIES"],
 }
 #: pip's settings that do not touch what is installed, or that the set-up makes itself.
 _WITHOUT_MEANING = set(
@@ -45,50 +42,46 @@ def for_uv(listing):
     options, variables = ["--index-strategy", "unsafe-best-match"], {}  # as pip: all indexes are equal
     for name, value in settings.items():
         if name in _OPTIONS:
-            options += [part for address in value.split() for part in (_OPTIONS[name], address)]
+            options += [f"{_OPTIONS[name]}={address}" for address in value.split()]
         elif name in _VARIABLES:
-            variables |= dict.fromkeys(_VARIABLES[name], value)
-        elif name in _FLAGS:
-            options += [_FLAGS[name]] if _is_true(value) else []
+            variables |= dict.fromkeys(_VARIABLES[name], " ".join(value.split()))
+        elif name == "no-index":
+            options += ["--no-index"] if value.lower() in ("1", "true", "yes", "on", "y", "t") else []
         elif name not in _WITHOUT_MEANING and value:
             return None
     return options, variables
 
 
 class Installer:
-    """Installs into the environment of `python`; `lock` is a file descriptor that every installer holds open."""
+    """Runs what installs into the `environment`; all of it holds the file `lock` open."""
 
-    def __init__(self, python, variables, *, folder, log, lock, stream):
-        self._python = [str(python), "-P", "-m"]
-        self._variables = variables | {"PIP_USER": "0", "PYTHONIOENCODING": "utf-8", "PYTHONUNBUFFERED": "1"}
-        self._folder, self._log, self._stream = folder, log, stream
-        # An installer inherits the lock: after a 'kill -9' of the launcher the next set-up waits until it has ended.
-        self._pass_fds = () if lock is None or os.name == "nt" else (lock,)
+    def __init__(self, environment, lock):
+        self._environment = environment
+        self._python = [str(environment.python), "-P", "-m"]
         self._install = [*self._python, "pip", "install", "--disable-pip-version-check", "--no-color", "-vv"]
+        utf8 = {"PYTHONIOENCODING": "utf-8", "PYTHONUNBUFFERED": "1"}
+        self._variables = environment.variables() | utf8 | {"PIP_USER": "0"}
+        # It inherits the lock: after a 'kill -9' of the launcher the next set-up waits until it has ended.
+        self._pass_fds = () if os.name == "nt" else (lock.fileno(),)
 
     def fetch_uv(self, requirement):
-        """Put uv there, to be used if it can do what pip is told to do; False if none fits this machine."""
-        code, output = self._run([*self._install, "--only-binary", ":all:", requirement])
-        if code:
-            error = problems.from_output(output, code, self._folder, self._log)
-            if isinstance(error, problems.NoWheelError):
-                return False
-            raise error
-        translated = for_uv(self._run([*self._python, "pip", "config", "list"])[1])
+        """Put uv there, and use it if it fits this machine and can do what pip is told to do. Raises SetUpError."""
+        try:
+            self.install("--only-binary", ":all:", requirement)
+        except problems.NoWheelError:
+            return
+        translated = for_uv(self.run([*self._python, "pip", "config", "list"]))
         if translated is not None:
             options, variables = translated
             self._install = [*self._python, "uv", "pip", "install", "--python", self._python[0], *options]
             self._variables |= variables
-        return True
 
     def install(self, *arguments):
         """Install with uv, or pip. Raises SetUpError."""
-        code, output = self._run([*self._install, *arguments])
-        if code:
-            raise problems.from_output(output, code, self._folder, self._log)
+        self.run([*self._install, *arguments])
 
-    def _run(self, command):
-        """Run to the end, each line shown on a terminal for as long as it is the last; (exit code, output)."""
+    def run(self, command):
+        """Run to the end, the last line shown on a terminal; return the output. Raises SetUpError."""
         child = subprocess.Popen(
             command,
             env=self._variables,
@@ -99,34 +92,31 @@ class Installer:
             errors="replace",
             pass_fds=self._pass_fds,
         )
-        output = []
+        output = ""
         try:
             for line in child.stdout:
-                output.append(line)
-                self._show(line.strip())
-            return child.wait(), "".join(output)
+                output += line
+                _show(line.strip())
         finally:
-            self._show("")
+            _show("")
             _end(child)
-            with open(self._log, "a", encoding="utf-8") as log:
-                log.write("".join([f"{command}\n", *output]))
-
-    def _show(self, text):
-        if self._stream.isatty():
-            self._stream.write(f"\r{'':78}\r{text[:78]}")
-            self._stream.flush()
+            with open(self._environment.log, "a", encoding="utf-8") as log:
+                log.write(f"{command}\n{output}")
+        if child.returncode:
+            raise problems.from_output(output, child.returncode, self._environment.root, self._environment.log)
+        return output
 
 
-def _is_true(value):
-    return value.lower() in ("1", "true", "yes", "on", "y", "t")
+def _show(text):
+    if sys.stdout.isatty():
+        print(f"\r{'':78}\r{text[:78]}", end="", flush=True)
 
 
 def _end(child):
-    """Leave no installer behind that would go on writing after an interruption."""
+    """Wait; after an interruption leave no installer behind that would go on writing."""
     child.stdout.close()
-    if child.poll() is None:
-        try:
-            child.wait(timeout=3)  # a Ctrl-C reached it too: let it tidy up
-        except (subprocess.TimeoutExpired, KeyboardInterrupt):
-            child.kill()
+    try:
+        child.wait(timeout=3)  # a Ctrl-C reached it too: let it tidy up
+    except (subprocess.TimeoutExpired, KeyboardInterrupt):
+        child.kill()
     child.wait()

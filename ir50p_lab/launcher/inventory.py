@@ -74,43 +74,31 @@ def _try_import(name, broken):
 
 
 def serial_ports():
-    """Serial ports with USB vendor and product, or None when pyserial is not there to look."""
+    """Serial ports as pyserial describes them (device, vid, pid...), or None when it is not there to look."""
     try:
         from serial.tools import list_ports
     except ImportError:
         return None
-    return [
-        {"device": port.device, "vid": port.vid, "pid": port.pid, "description": port.description or ""}
-        for port in sorted(list_ports.comports())
-    ]
+    return [vars(port) for port in sorted(list_ports.comports())]
 
 
 def _applies(marker):
     """Whether an environment marker ('sys_platform == "win32"') holds here; without packaging: assume so."""
-    if not marker:
-        return True
-    try:
-        from packaging.markers import Marker
-    except ImportError:
-        try:
-            from pip._vendor.packaging.markers import Marker
-        except ImportError:
-            return True
-    return Marker(marker).evaluate()
-
-
-def collect(lock):
-    """Everything at once, ready for JSON."""
-    return {
-        "python": platform.python_version(),
-        "project": installed_version("ir50p-lab"),
-        "packages": packages(lock),
-        "broken": broken_imports(direct_dependencies(Path(lock).parent)),
-        "ports": serial_ports(),
-    }
+    if marker:
+        for library in ("packaging", "pip._vendor.packaging"):
+            with contextlib.suppress(ImportError):
+                return importlib.import_module(f"{library}.markers").Marker(marker).evaluate()
+    return True
 
 
 if __name__ == "__main__":
+    lock = Path(sys.argv[1])
     with contextlib.redirect_stdout(sys.stderr):  # whatever an import prints
-        found = collect(sys.argv[1])
+        found = {
+            "python": platform.python_version(),
+            "project": installed_version("ir50p-lab"),
+            "packages": packages(lock),
+            "broken": broken_imports(direct_dependencies(lock.parent)),
+            "ports": serial_ports(),
+        }
     json.dump(found, sys.stdout)

@@ -1,78 +1,62 @@
 """Every way the set-up can fail, as one line that says what to do next."""
 
-import errno
 import os
 import platform
 import re
-import sys
+import sysconfig
 
 COMMAND = "py -m ir50p_lab" if os.name == "nt" else "python3 -m ir50p_lab"
 _PYTHON = "py" if os.name == "nt" else "python3"
-
-#: What pip and uv say when there is no package for this machine; one group names the package.
+_AGAIN = f"then run '{COMMAND}' again"
+_NO_NETWORK = (
+    f" (for example HTTPS_PROXY=http://proxy:3128), {_AGAIN}. Without any network: README.md, section 'Offline'."
+)
+_IN_USE = "Close JupyterLab and all that runs Python from .venv; that may be all. " if os.name == "nt" else ""
+#: Signs of a problem in what the system, pip or uv say, and what to do then. The order matters: a full disk also shows
+#: as a broken connection.
+_PROBLEMS = {
+    r"No space left on device|\[Errno 28\]|Disk quota exceeded|\[WinError 112\]|not enough space on the": (
+        "The disk is full: {folder} could not be written. Free about 2 GB (emptying the recycle bin helps, and so does "
+        f"'{_PYTHON} -m pip cache purge'), {_AGAIN}; the set-up starts afresh by itself."
+    ),
+    r"\[WinError 206\]|Windows Long Path support|File name too long|\[Errno 36\]": (
+        "The path {folder} is too long for this system: move the project to a short one, such as C:\\ir50p, "
+        f"and run '{COMMAND}' there."
+    ),
+    r"No module named '?ensurepip|ModuleNotFoundError: .*\b(venv|ensurepip)|ensurepip is not\s+available": (
+        "This Python came without its modules 'venv' and 'ensurepip', which make the project's own environment. "
+        f"Debian, Ubuntu: 'sudo apt install python{sysconfig.get_python_version()}-venv', {_AGAIN}. "
+        "Elsewhere: install Python from https://www.python.org/downloads/"
+    ),
+    r"ProxyError|[Tt]unnel (connection failed|error)|Cannot connect to proxy|407 Proxy": (
+        f"Download failed: the proxy refused the connection. Check the address in HTTPS_PROXY{_NO_NETWORK}"
+    ),
+    r"CERTIFICATE_VERIFY_FAILED|SSLError|SSLCertVerificationError|invalid peer certificate": (
+        "Download failed: the download server's certificate was not accepted. Check the clock of this machine; behind "
+        f"a proxy that opens traffic, set PIP_CERT to its certificate file{_NO_NETWORK}"
+    ),
+    r"connection broken by|NewConnectionError|ConnectTimeout|ReadTimeout|ConnectionResetError|ProtocolError"
+    r"|IncompleteRead|Name or service not known|Temporary failure in name resolution|getaddrinfo failed"
+    r"|Network is unreachable|Max retries exceeded|Could not fetch URL|HTTPError|HTTP error"
+    r"|Failed to fetch|error sending request|tcp connect error": (
+        "Download failed: no connection to the download server. Check the network; behind a proxy set HTTPS_PROXY"
+        f"{_NO_NETWORK}"
+    ),
+    r"has an invalid wheel|BadZipFile|Wheel .* is invalid|invalid package format|zip file": (
+        f"A downloaded package is damaged. Run '{_PYTHON} -m pip cache purge', then '{COMMAND}' again "
+        "(offline: copy the wheel folder once more)."
+    ),
+    r"\[Errno (1|13|30)\]|Permission denied|\[WinError 5\]|Access is denied|Read-only file system": (
+        f"No permission to write in {{folder}}. {_IN_USE}Move the project into your home folder (or ask its owner for "
+        f"write permission), then run '{COMMAND}' there."
+    ),
+}
+#: What pip and uv say when there is no package for this machine, as with a missing connection; one group names it.
 _NO_WHEEL = (
     r"No matching distribution found for ([^\s;]+)"
     r"|(?:not found in the (?:provided package locations|package registry)|there is no version of|has no wheels with)"
     r"[^.]*? you require ([^\s,;]+)"
 )
-#: What they say when ... The order matters: a full disk also shows as a broken connection, a missing connection also as
-#: a missing package.
-_SIGNS = {
-    "disk_full": r"No space left on device|\[Errno 28\]|Disk quota exceeded|\[WinError 112\]|not enough space on the",
-    "path_too_long": r"\[WinError 206\]|Windows Long Path support|File name too long|\[Errno 36\]",
-    "no_ensurepip": r"ensurepip is not available|No module named '?ensurepip",
-    "proxy": r"ProxyError|[Tt]unnel (connection failed|error)|Cannot connect to proxy|407 Proxy",
-    "certificate": r"CERTIFICATE_VERIFY_FAILED|SSLError|SSLCertVerificationError|invalid peer certificate",
-    "network": (
-        r"connection broken by|NewConnectionError|ConnectTimeout|ReadTimeout|ConnectionResetError|ProtocolError"
-        r"|IncompleteRead|Name or service not known|Temporary failure in name resolution|getaddrinfo failed"
-        r"|Network is unreachable|Max retries exceeded|Could not fetch URL|HTTPError|HTTP error"
-        r"|Failed to fetch|error sending request|tcp connect error"
-    ),
-    "no_wheel": _NO_WHEEL,
-    "damaged": r"has an invalid wheel|BadZipFile|Wheel .* is invalid|invalid package format|zip file",
-    "no_permission": (
-        r"\[Errno 13\]|Permission denied|\[WinError 5\]|Access is denied|Read-only file system|\[Errno 30\]"
-    ),
-}
-_LINUX_PYTHON = f"python{sys.version_info.major}.{sys.version_info.minor}"
-_AGAIN = f"then run '{COMMAND}' again"
-_NO_NETWORK = (
-    f" (for example HTTPS_PROXY=http://proxy:3128), {_AGAIN}. Without any network: README.md, section 'Offline'."
-)
-#: ... and what to do then.
-_ADVICE = {
-    "disk_full": (
-        "The disk is full: {folder} could not be written. Free about 2 GB (emptying the recycle bin helps, and so does "
-        f"'{_PYTHON} -m pip cache purge'), {_AGAIN}; the set-up starts afresh by itself."
-    ),
-    "path_too_long": (
-        "The path {folder} is too long for this system: move the project to a short one, such as C:\\ir50p, "
-        f"and run '{COMMAND}' there."
-    ),
-    "no_ensurepip": (
-        f"This Python came without its module '{{module}}', which makes the project's own environment. Debian, Ubuntu: "
-        f"'sudo apt install {_LINUX_PYTHON}-venv', {_AGAIN}. "
-        "Elsewhere: install Python from https://www.python.org/downloads/"
-    ),
-    "proxy": f"Download failed: the proxy refused the connection. Check the address in HTTPS_PROXY{_NO_NETWORK}",
-    "certificate": (
-        "Download failed: the download server's certificate was not accepted. Check the clock of this machine; behind "
-        f"a proxy that opens traffic, set PIP_CERT to its certificate file{_NO_NETWORK}"
-    ),
-    "network": (
-        "Download failed: no connection to the download server. Check the network; behind a proxy set HTTPS_PROXY"
-        f"{_NO_NETWORK}"
-    ),
-    "damaged": (
-        f"A downloaded package is damaged. Run '{_PYTHON} -m pip cache purge', then '{COMMAND}' again "
-        "(offline: copy the wheel folder once more)."
-    ),
-    "no_permission": (
-        "No permission to write in {folder}. Move the project into your home folder (or ask its owner for write "
-        f"permission), then run '{COMMAND}' there."
-    ),
-}
 
 
 class SetUpError(Exception):
@@ -83,35 +67,33 @@ class NoWheelError(SetUpError):
     """The index or the wheel folder answered, but has no file that fits this machine."""
 
 
-def problem(kind, folder, module="ensurepip"):
-    """Return the SetUpError of one of the kinds above."""
-    return SetUpError(_ADVICE[kind].format(folder=folder, module=module))
-
-
-def from_os_error(error, folder):
-    """Turn an OSError of the launcher itself into a SetUpError."""
-    if error.errno in (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)):
-        return problem("disk_full", folder)
-    if error.errno in (errno.EACCES, errno.EPERM, errno.EROFS):
-        return problem("no_permission", folder)
-    return SetUpError(f"The operating system refused: {error}. Put that right, {_AGAIN}.")
+def from_error(error, folder):
+    """Turn an OSError or ImportError of the launcher itself into a SetUpError."""
+    return _known(f"{type(error).__name__}: {error}", folder) or SetUpError(
+        f"The operating system refused: {error}. Put that right, {_AGAIN}."
+    )
 
 
 def from_output(output, code, folder, log):
     """Turn what a failed installer or venv printed into a SetUpError."""
     # an index that lacks a package says so with 404; the next one may have it
     output = "".join(line for line in output.splitlines(keepends=True) if "404 Client Error" not in line)
-    for kind, sign in _SIGNS.items():
-        found = re.search(sign, output, re.DOTALL)
-        if found and kind == "no_wheel":
-            return _no_wheel(found[1] or found[2])
-        if found:
-            return problem(kind, folder)
+    known = _known(output, folder)
+    missing = re.search(_NO_WHEEL, output)
+    if known or missing:
+        return known or _no_wheel(missing[1] or missing[2])
     if code < 0:
         return SetUpError(
             f"The installer was ended by signal {-code} (often: out of memory). Close other programs, {_AGAIN}."
         )
     return SetUpError(f"The set-up failed: {_last_error(output)}. All that was printed is in {log}; {_AGAIN}.")
+
+
+def _known(text, folder):
+    for sign, advice in _PROBLEMS.items():
+        if re.search(sign, text):
+            return SetUpError(advice.format(folder=folder))
+    return None
 
 
 def _no_wheel(requirement):

@@ -18,23 +18,23 @@ def take_over(arguments, root):
 
     Raises SetUpError if there is no course in the folder, or if it is this one.
     """
-    if len(arguments) != 1:
-        raise SetUpError(f"update needs the folder of the older course: {COMMAND} update FOLDER")
-    old = Path(arguments[0]).expanduser().resolve()
-    if not (old / "notebooks").is_dir() or old == root.resolve():
-        raise SetUpError(f"'{old}' holds no older copy of the course: give the folder that has 'notebooks' in it.")
+    old = Path(*arguments).expanduser().resolve()
+    if not arguments or not (old / "notebooks").is_dir() or old == root.resolve():
+        raise SetUpError(
+            f"'{old}' holds no older copy of the course: {COMMAND} update FOLDER (it has 'notebooks' in it)"
+        )
     home = Path(os.environ.get("IR50P_HOME") or root / "notebooks").expanduser()
     for name in _OWN:
         for place in (old / "notebooks" / name, old / name):
             if place.exists():
                 _copy(place, home / name)
-    kept, edited = home / "old", []
+    edited = []
     known = set((root / _KNOWN).read_text(encoding="utf-8").split())
     for path in sorted((old / "notebooks").glob("*.ipynb")):
-        _copy(path, kept / path.name)
+        _copy(path, home / "old" / path.name)
         if notebook_hash(path) not in known:
             edited.append(path.name)
-    print(f"Notebooks of the older course: {kept}")
+    print(f"Notebooks of the older course: {home / 'old'}")
     print(f"You had changed: {', '.join(edited) or 'none of them'}")
     if (old / "notebooks" / "03_dynamics.ipynb").exists():
         print(f"Notebooks have new numbers: 02 is 02 and 03 now, {_NUMBERS}.")
@@ -53,13 +53,12 @@ def notebook_hash(path):
 
 def _copy(source, target):
     """Copy a file or folder; what is there already stays and is named."""
+    source, target = Path(source), Path(target)
     if source.is_dir():
-        for path in sorted(path for path in source.rglob("*") if path.is_file() and "__pycache__" not in path.parts):
-            _copy(path, target / path.relative_to(source))
-        return
-    if target.exists():
-        if target.read_bytes() != source.read_bytes():
-            print(f"Left as it is here: {target} (the older one: {source})")
-        return
-    target.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copy2(source, target)
+        ignore = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(source, target, ignore=ignore, copy_function=_copy, dirs_exist_ok=True)
+    elif not target.exists():
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(source, target)
+    elif target.read_bytes() != source.read_bytes():
+        print(f"Left as it is here: {target} (the older one: {source})")

@@ -6,10 +6,11 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+import nbclient
 import nbformat
+from nbclient.exceptions import CellExecutionError
 from nbconvert import HTMLExporter
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
-from nbconvert.preprocessors import CellExecutionError, ExecutePreprocessor
 from pygments.formatters import HtmlFormatter
 
 from ir50p_lab.errors import InputError, LabError
@@ -81,9 +82,8 @@ def export(notebook, folder=".", *, run=True, pdf=True):
 
 
 def _run(nb, notebook):
-    processor = ExecutePreprocessor(timeout=600, kernel_name="python3", store_widget_state=True)
     try:
-        processor.preprocess(nb, {"metadata": {"path": str(notebook.resolve().parent)}})
+        nbclient.execute(nb, cwd=str(notebook.resolve().parent), timeout=600, kernel_name="python3")
     except CellExecutionError as error:
         raise LabError(f"{notebook} does not run: {error}") from None
 
@@ -108,15 +108,9 @@ def _print(browser, page, path):
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "page.html"
         source.write_text(page, encoding="utf-8")
-        options = [
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            f"--user-data-dir={folder}/profile",
-            "--no-pdf-header-footer",
-        ]
-        command = [browser, *options, f"--print-to-pdf={path.resolve()}", source.as_uri()]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+        options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/profile"]
+        target = ["--no-pdf-header-footer", f"--print-to-pdf={path.resolve()}", source.as_uri()]
+        done = subprocess.run([browser, *options, *target], capture_output=True, text=True, timeout=120)
     if not path.is_file():
         raise LabError(
             f"{browser} wrote no PDF: {done.stderr[-500:]}; use --no-pdf and print the HTML page from a browser"

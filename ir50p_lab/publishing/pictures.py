@@ -1,7 +1,6 @@
 """What a page shows in the place of widgets: the pictures they hold, or the 3-D arm without a kernel."""
 
 import base64
-import io
 import json
 import re
 
@@ -81,16 +80,11 @@ def _chart(samples, settings):
     figure = new_figure(9, 3.2, cols=len(panels))
     for ax, panel in zip(figure.axes, panels, strict=True):
         for line in panel["lines"]:
-            style = {
-                "color": line["colour"],
-                "linestyle": "--" if line.get("dash") else "-",
-                "label": line.get("label"),
-            }
-            ax.plot(rows[:, 0], rows[:, line["column"]], **style)
+            dashes = "--" if line.get("dash") else "-"
+            ax.plot(rows[:, 0], rows[:, line["column"]], dashes, color=line["colour"], label=line.get("label"))
             if line.get("level") is not None:
                 ax.axhline(line["level"], color=line["colour"], linestyle="--", linewidth=1)
         ax.set(xlabel="time [s]", ylabel=panel["ylabel"], title=panel["title"], ylim=panel.get("ylim"))
         ax.legend(fontsize=8, frameon=False)
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=150)
-    return base64.b64encode(stream.getvalue()).decode("ascii")
+    png, _ = figure._repr_png_()  # as a notebook shows it
+    return base64.b64encode(png).decode("ascii")

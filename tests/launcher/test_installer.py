@@ -8,7 +8,7 @@ import pytest
 
 from ir50p_lab.launcher.installer import for_uv
 
-AS_PIP = ("--index-strategy", "unsafe-best-match")
+AS_PIP = ["--index-strategy", "unsafe-best-match"]
 
 
 def listed(folder, config="", **variables):
@@ -25,14 +25,13 @@ def test_what_pip_prints_is_translated(tmp_path):
     options, variables = for_uv(
         listed(tmp_path, config, PIP_FIND_LINKS="wheels more", PIP_NO_INDEX="0", PIP_CERT="/b.pem")
     )
-    assert options[:2] == list(AS_PIP)
-    pairs = list(zip(options[2::2], options[3::2], strict=True))
-    assert sorted(pairs) == [
-        ("--default-index", "https://a/simple"),
-        ("--find-links", "more"),
-        ("--find-links", "wheels"),
-        ("--index", "https://b"),
-        ("--index", "https://c"),
+    assert options[:2] == AS_PIP
+    assert sorted(options[2:]) == [
+        "--default-index=https://a/simple",
+        "--find-links=more",
+        "--find-links=wheels",
+        "--index=https://b",
+        "--index=https://c",
     ]
     assert variables == {"SSL_CERT_FILE": "/b.pem"}  # a variable is stronger than a file
 
@@ -41,7 +40,9 @@ def test_what_pip_prints_is_translated(tmp_path):
     ("line", "options", "variables"),
     [
         (":env:.no-index='1'", ["--no-index"], {}),
-        (":env:.trusted-host='mirror:8080'", ["--allow-insecure-host", "mirror:8080"], {}),
+        (":env:.no-index='false'", [], {}),
+        (":env:.trusted-host='mirror:8080\\nother'", [], {"UV_INSECURE_HOST": "mirror:8080 other"}),
+        ("global.no-cache-dir='off'", [], {"UV_NO_CACHE": "off"}),
         (
             "global.proxy='http://p:3128'",
             [],

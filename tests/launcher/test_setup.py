@@ -1,5 +1,7 @@
 """The set-up from end to end: first time, again, with the test tools. After changes and interruptions: hostile_setups.py."""
 
+import errno
+import fcntl
 import json
 import os
 import subprocess
@@ -7,7 +9,7 @@ import sys
 
 import pytest
 
-from ir50p_lab.launcher import environment as environment_module
+from ir50p_lab.file_lock import take_lock
 from ir50p_lab.launcher.environment import Environment
 from ir50p_lab.launcher.problems import SetUpError
 
@@ -44,30 +46,29 @@ def test_test_tools_are_added_in_place_and_stay(tested):
 
 def test_states_that_need_a_rebuild(made, monkeypatch):
     made_here = Environment(made.root)
-    assert made_here.state().ready
+    assert made_here.fault() == ""
     stamp = made.stamp.read_text()
     without_tests = json.loads(stamp) | {"environment-test.txt": None}
     try:
         made.stamp.write_text(json.dumps(without_tests))
-        assert made_here.state().ready
-        assert made_here.state(tests=True).reason == "without the test tools"
-        assert not made_here.state(tests=True).rebuild
+        assert made_here.fault() == ""  # the test tools alone are no reason to build it again
+        assert made_here.fault(tests=True) == "without the tools of environment-test.txt"
         for damage in ("", "[]", "{}", stamp[: len(stamp) // 2]):
             made.stamp.write_text(damage)
-            assert made_here.state().reason.startswith("half made"), damage
+            assert made_here.fault().startswith("half made"), damage
         made.stamp.write_text(json.dumps(json.loads(stamp) | {"root": "/elsewhere"}))
-        assert made_here.state().reason == "made for another folder (/elsewhere)"
+        assert made_here.fault() == "made for another folder (/elsewhere)"
         made.stamp.write_text(json.dumps(json.loads(stamp) | {"environment.txt": "old"}))
-        assert made_here.state().reason == "out of date (environment.txt has changed)"
+        assert made_here.fault() == "out of date (environment.txt has changed)"
         made.stamp.write_text(json.dumps(json.loads(stamp) | {"python": "3.10"}))
-        assert made_here.state().reason.startswith("made with Python 3.10")
+        assert made_here.fault().startswith("made with Python 3.10")
         made.stamp.write_text(json.dumps(json.loads(stamp) | {"environment-test.txt": "old"}))
-        assert made_here.state().ready
-        assert made_here.state(tests=True).reason == "behind environment-test.txt"
+        assert made_here.fault() == ""
+        assert made_here.fault(tests=True) == "without the tools of environment-test.txt"
     finally:
         made.stamp.write_text(stamp)
     monkeypatch.setattr(made_here, "python", made.root / "gone")
-    assert made_here.state().reason == "broken (its Python does not start)"
+    assert made_here.fault() == "broken (its Python does not start)"
 
 
 def test_line_ends_of_a_checkout_do_not_matter(made):
@@ -75,7 +76,7 @@ def test_line_ends_of_a_checkout_do_not_matter(made):
     text = lock.read_bytes()
     try:
         lock.write_bytes(text.replace(b"\n", b"\r\n"))
-        assert Environment(made.root).state().ready
+        assert Environment(made.root).fault() == ""
     finally:
         lock.write_bytes(text)
 
@@ -90,19 +91,20 @@ def test_variables_of_other_pythons_do_not_leak_in(made, monkeypatch):
     assert variables["JUPYTER_PREFER_ENV_PATH"] == "1"
 
 
-def test_drives_without_locks_are_set_up_all_the_same(project, monkeypatch):
-    def no_locks(file, *, wait):
-        raise OSError("no locks available")
+def test_drives_without_locks_are_set_up_all_the_same(tmp_path, monkeypatch):
+    def no_locks(descriptor, operation):
+        raise OSError(errno.ENOLCK, "no locks available")
 
-    monkeypatch.setattr(environment_module, "take_lock", no_locks)
-    with Environment(project.root)._only_one(sys.stdout) as lock:
-        assert lock is None
+    monkeypatch.setattr(fcntl, "flock", no_locks)
+    with open(tmp_path / "lock", "a") as file:
+        take_lock(file)  # comes back
 
 
-def test_an_error_while_building_releases_the_lock(project):
+def test_an_error_while_building_releases_the_lock(project, monkeypatch):
     environment = Environment(project.root)
-    with pytest.raises(SetUpError, match="stop"), environment._only_one(sys.stdout):
-        raise SetUpError("stop")
+    monkeypatch.setattr(environment, "_build", lambda *arguments: (_ for _ in ()).throw(SetUpError("stop")))
+    with pytest.raises(SetUpError, match="stop"):
+        environment.ensure()
     code = "import fcntl, sys; fcntl.flock(open(sys.argv[1], 'a'), fcntl.LOCK_EX | fcntl.LOCK_NB)"
     command = [sys.executable, "-c", code, str(project.venv / "ir50p_lab-setup.lock")]
     assert subprocess.run(command).returncode == 0
