@@ -15,9 +15,8 @@ from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, conv
 from ir50p_lab.controllers.base import Controller
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import check_arm, check_controller, check_reference
+from ir50p_lab.inputs import check_controller, check_reference
 from ir50p_lab.jit import jit
-from ir50p_lab.modelling.named_arms import load_arm
 
 _BLOCK = 1000  # samples between two looks at the disk and at Ctrl-C in a compiled run
 _KEPT = 100_000  # cycles of truth: a live run may last for hours
@@ -110,11 +109,10 @@ class SimulatedBench(Bench):
         record_to=None,
         name=None,
     ):
-        arm = load_arm() if arm is None else check_arm(arm)
-        self.plant = SimulatedArm(arm, unit, seed, q0=q0)
+        super().__init__(arm, calibration, period=period, record_to=record_to)
+        self.plant = SimulatedArm(self.arm, unit, seed, q0=q0)
         noise = "" if self.plant.noise_seed is None else f", noise {self.plant.noise_seed}"
-        name = name or f"simulated {arm.name}, unit {self.plant.seed}{noise}"
-        super().__init__(arm, calibration or self.plant.nominal, period=period, record_to=record_to, name=name)
+        self.name = name or f"simulated {self.arm.name}, unit {self.plant.seed}{noise}"
         self._steps = round(self.period / STEP)
         if abs(self._steps * STEP - self.period) > 1e-9:
             raise InputError(f"period = {period} s: the simulated bench needs whole milliseconds")
@@ -128,9 +126,6 @@ class SimulatedBench(Bench):
         return f"simulated-unit-{self.plant.seed}"
 
     # ---- what Bench asks for
-
-    def _open(self):
-        pass
 
     def _begin(self):
         self._queue[:], self._acting, self._cycle = 0.0, np.zeros(JOINTS), 0
@@ -166,7 +161,6 @@ class SimulatedBench(Bench):
 
     def _send(self, pwm, gripper):
         self._acting = pwm
-        return pwm
 
     def _cut(self):
         self._queue[:] = 0.0
