@@ -92,7 +92,7 @@ class ThreadRun(LiveRun):
             self.error = error
         finally:
             self._bench.realtime = realtime
-            self._memory.enter(shared_loop.ENDED)
+            self._memory.status.phase = shared_loop.ENDED
 
     @property
     def alive(self):
@@ -113,9 +113,6 @@ class ThreadRun(LiveRun):
         if not self.is_here():
             self._thread.join(timeout)
         return not self._thread.is_alive()
-
-    def _take_back(self):
-        """Nothing to do: the bench never left this process."""
 
     def give_up(self):
         """The loop hangs in its controller and gives no more commands; cut from here."""
