@@ -289,7 +289,7 @@ def test_metrics_of_an_answer_known_in_closed_form():
     assert first.overshoot == pytest.approx(peak, abs=1e-3) == third.overshoot
     assert (second.overshoot, second.error) == pytest.approx((max(0.0, 0.5 * (1 + peak) - 0.6), 0.1), abs=1e-3)
     assert (first.start, first.final, first.error, first.swing) == pytest.approx((0, 1, 0, 0), abs=1e-4)
-    assert first.saturated == 0.001 and first.u_std == pytest.approx(np.std(255 * np.exp(-step_answer().t)))
+    assert first.u_std == pytest.approx(np.std(255 * np.exp(-step_answer().t)))
 
 
 def test_between_keeps_times_and_says_that_it_is_a_part():
@@ -329,7 +329,7 @@ def test_representations():
     recording = step_answer()
     assert repr(recording) == "<Recording: simulated IR50P, 9.99 s, 1000 samples, simulated>"
     html = recording._repr_html_()
-    assert "simulated IR50P" in html and html.count("<tr>") == 4
+    assert "simulated IR50P" in html and html.count("<tr") == 4
 
 
 def test_events_in_the_middle_of_a_run_survive(tmp_path):
