@@ -230,18 +230,25 @@ class Bench:
             self.live_run = None
 
     def _cycles(self, cycles, reference, record, header):
+        with self._running(reference, record, header) as run:
+            while (sample := self._next_sample(run, cycles)) is not None:
+                yield sample
+                if run.fault is not None:  # drive() has raised it, and the loop's body caught it
+                    raise run.fault
+
+    @contextlib.contextmanager
+    def _running(self, reference, record, header):
+        """A Run from its beginning to its end; an error cuts the drive first."""
         self._end_run()  # of a loop that was left by break
         run = self._run = Run(self._start_recorder(header) if record else None, reference)
         self._pwm = np.zeros(JOINTS)
         try:
             self._begin()
-            if (guard := self._make_guard()) is not None:  # compiles before the clock starts
-                guard.check(Sample(0.0, np.zeros(JOINTS), np.zeros(JOINTS), 0), self._pwm)
-            run.guard, run.pace = self._make_guard(), self._make_pace()
-            while (sample := self._next_sample(run, cycles)) is not None:
-                yield sample
-                if run.fault is not None:  # drive() has raised it, and the loop's body caught it
-                    raise run.fault
+            run.guard = self._make_guard()
+            if run.guard is not None:  # compiles before the clock starts; so long after it, it has forgotten this
+                run.guard.check(Sample(-math.inf, np.zeros(JOINTS), np.zeros(JOINTS), 0), self._pwm)
+            run.pace = self._make_pace()
+            yield run
         except GeneratorExit:  # the loop was left by break
             raise
         except BaseException as error:

@@ -39,16 +39,8 @@ def fit_calibration(q, counts, *, arm="", source="measured"):
         _refuse_swapped(*np.moveaxis(np.array(pairs), 1, 0))
     fits = [_line(joint, *pair) for joint, pair in enumerate(pairs, 1)]
     slope, zero, stderr_slope, stderr_zero, points, remarks = zip(*fits, strict=True)
-    return JointCalibration(
-        slope=slope,
-        zero=zero,
-        stderr_slope=stderr_slope,
-        stderr_zero=stderr_zero,
-        source=source,
-        arm=getattr(arm, "name", arm),
-        points=points,
-        remarks=sum(remarks, ()),
-    )
+    arm = getattr(arm, "name", arm)
+    return JointCalibration(slope, zero, stderr_slope, stderr_zero, source, arm, points, sum(remarks, ()))
 
 
 def _three(name, value):

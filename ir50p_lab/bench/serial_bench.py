@@ -41,11 +41,11 @@ class SerialBench(Bench):
 
     kind = "board"
 
-    def __init__(self, port, *, arm=None, calibration=None, clock=None, period=0.01, record_to=None, announce=print):
+    def __init__(self, port, *, calibration=None, clock=None, announce=print, **options):
         named = isinstance(port, str | os.PathLike) and str(port)
         if not (named or hasattr(port, "write")):
             raise InputError(f"port = {port!r}: give the name of a serial port, or an open port")
-        super().__init__(arm, calibration, period=period, record_to=record_to)
+        super().__init__(calibration=calibration, **options)
         self.port = os.fspath(port) if named else getattr(port, "name", None) or "a given port"
         self.name = f"board on {self.port} for {self.arm.name}"
         self._given = None if named else port
