@@ -9,7 +9,7 @@ import numpy as np
 from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, CountedPace, Pace, warm_up
 from ir50p_lab.bench.recorder import Recorder, header_of
-from ir50p_lab.bench.rest import rest_pose, way_to_rest
+from ir50p_lab.bench.rest import way_to_rest
 from ir50p_lab.bench.runaway import RunawayGuard
 from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.errors import BenchError, InputError, LabError, PauseError
@@ -437,8 +437,3 @@ class Bench:
     def q(self):
         """The pose (3,) rad that was measured last; None before the first run."""
         return None if self._last is None else self._last.q
-
-    @property
-    def rest_pose(self):
-        """The pose (3,) rad where the arm is let go."""
-        return rest_pose(self.arm)

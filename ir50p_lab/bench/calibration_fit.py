@@ -7,7 +7,6 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import first_not_finite, numbers
 
 _FULL = 1023.0
-_WRAP = 300.0  # counts: no two neighbouring points of a sound potentiometer jump back by so much
 
 
 def fit_calibration(q, counts, *, arm="", source="measured"):
@@ -27,16 +26,14 @@ def fit_calibration(q, counts, *, arm="", source="measured"):
 
     Returns: JointCalibration with standard errors, points and residuals; its
     `remarks` name what looks wrong: a bow that a line cannot follow (F test against a cubic), a point that lies far
-    off, a negative slope, few points, a narrow range, a reading at the end of the track.
+    off, few points, a narrow range, a reading at the end of the track.
     Raises: InputError for what no line fits: fewer than 3 points, angles in degrees, counts outside 0..1023, a reading
-    that does not change or does not follow its angle, a potentiometer that wraps, cables of two joints swapped.
+    that does not change or does not follow its angle (a potentiometer that wraps, cables of two joints swapped).
     """
     pairs = [
         _checked(joint, *pair)
         for joint, pair in enumerate(zip(_three("q", q), _three("counts", counts), strict=True), 1)
     ]
-    if len({len(angles) for angles, _ in pairs}) == 1:
-        _refuse_swapped(*np.moveaxis(np.array(pairs), 1, 0))
     fits = [_line(joint, *pair) for joint, pair in enumerate(pairs, 1)]
     slope, zero, stderr_slope, stderr_zero, points, remarks = zip(*fits, strict=True)
     arm = getattr(arm, "name", arm)
@@ -76,27 +73,14 @@ def _checked(joint, q, counts):
     return q, counts
 
 
-def _refuse_swapped(q, counts):
-    """The readings (3, m) of one joint follow the angle (3, m) of another and not its own."""
-    r2 = np.corrcoef(q, counts)[:3, 3:] ** 2  # [angle, reading]
-    for j in range(3):
-        i = int(r2[:, j].argmax())
-        if i != j and r2[i, j] > 0.9 and r2[j, j] < 0.5:
-            raise InputError(
-                f"the counts of joint {j + 1} follow the angle of joint {i + 1} (correlation squared {r2[i, j]:.2f}) "
-                f"and not their own ({r2[j, j]:.2f}): the cables of joints {j + 1} and {i + 1} are swapped"
-            )
-
-
 def _line(joint, q, counts):
     """(slope, zero, stderr_slope, stderr_zero, points, remarks) of one joint."""
-    _refuse_wrap(joint, q, counts)
     (b, a), cov = np.polyfit(counts, q, 1, cov=True)
     r2 = np.corrcoef(q, counts)[0, 1] ** 2
     if r2 < 0.5:
         raise InputError(
-            f"joint {joint}: the counts do not follow the angle (correlation squared {r2:.2f}): check that angles and "
-            "counts are of the same poses and the same joint, and the potentiometer's coupling"
+            f"joint {joint}: the counts do not follow the angle (correlation squared {r2:.2f}): are they of the same "
+            "poses and the same joint, are cables swapped, is the gap of its track in the travel? bench-test finds out"
         )
     slope, zero = 1 / b, -a / b
     # errors of a and b carried over to first order
@@ -106,27 +90,8 @@ def _line(joint, q, counts):
     return float(slope), float(zero), *errors, (tuple(q.tolist()), tuple(counts.tolist())), remarks
 
 
-def _refuse_wrap(joint, q, counts):
-    order = np.argsort(q, kind="stable")
-    steps = np.diff(counts[order])
-    against = -np.sign(np.median(np.sign(steps))) * steps
-    i = int(against.argmax())
-    if against[i] > _WRAP:
-        left, right = np.degrees(q[order[i : i + 2]])
-        raise InputError(
-            f"joint {joint}: the counts jump from {counts[order[i]]:.0f} to {counts[order[i + 1]]:.0f} between "
-            f"{left:.0f} and {right:.0f} deg: the potentiometer passes the gap of its track there. Loosen its "
-            "coupling, turn it so that the gap lies outside the travel, and calibrate again"
-        )
-
-
 def _remarks(q, counts, slope, zero, stderr_slope):
     residual = q - (counts - zero) / slope
-    if slope < 0:
-        yield (
-            "the counts fall where the angle rises: swap the two outer wires of the potentiometer and calibrate again "
-            "(driven as it is, the joint would run away)"
-        )
     if len(q) < 6:
         yield f"only {len(q)} points: a bow or a misread point would not show; measure 10"
     if np.ptp(q) < 0.5:

@@ -117,7 +117,7 @@ class Link:
     def _send(self, kind, pwm, gripper):
         self._seq = (self._seq + 1) % 256
         self.statistics.commands += 1
-        self._transport.write(protocol.encode(protocol.Command(self._seq, kind, pwm, gripper)))
+        self._transport.write(protocol.encode_command(self._seq, kind, pwm, gripper))
         return self._seq
 
     def _note(self, reply):

@@ -61,15 +61,6 @@ COMMAND_SIZE = _COMMAND.size + _CRC.size
 REPLY_SIZE = _STATE.size + _CRC.size
 
 
-class Command(NamedTuple):
-    """Computer to board. seq 0..255; type HELLO, NAME, DRIVE or STOP; pwm three whole numbers, -255..255."""
-
-    seq: int
-    type: int
-    pwm: tuple = (0, 0, 0)
-    gripper: bool = False
-
-
 class State(NamedTuple):
     """Board to computer. counts (3,) quarters of a count; status: see the bits above; the last two wrap at 65536."""
 
@@ -96,9 +87,11 @@ class Identity(NamedTuple):
     reset_cause: int
 
 
-def encode(command):
-    """Bytes of a Command, with check. Raises struct.error for numbers that do not fit."""
-    seq, kind, pwm, gripper = command
+def encode_command(seq, kind, pwm=(0, 0, 0), gripper=False):
+    """Bytes of a command, with check; seq 0..255; kind HELLO, NAME, DRIVE or STOP; pwm three whole numbers, -255..255.
+
+    Raises struct.error for numbers that do not fit.
+    """
     return with_check(_COMMAND.pack(COMMAND_SYNC, seq, kind, *map(int, pwm), GRIPPER if gripper else 0))
 
 

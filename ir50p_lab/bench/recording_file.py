@@ -141,9 +141,6 @@ def _read_columns(line, place):
     missing = [column for column in _REQUIRED if column not in names]
     if missing:
         raise RecordingError(f"{place}: no column {', '.join(missing)} in {line.strip()[:60]!r}; {need}")
-    doubled = [column for column in COLUMNS if names.count(column) > 1]
-    if doubled:
-        raise RecordingError(f"{place}: column {doubled[0]} stands there twice; keep one of them")
     for group in _GROUPS:
         there = [column for column in group if column in names]
         if len(there) in (1, 2):

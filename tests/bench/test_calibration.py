@@ -104,8 +104,7 @@ def test_a_negative_slope_is_warned_of(scale):
     q, counts = experiment()
     counts[:, 2] = 512 - scale * (counts[:, 2] - 512) / 1.6
     with pytest.warns(SuspiciousArmWarning, match="joint 3.*negative.*run away"):
-        found = fit_calibration(q, counts)
-    assert any("joint 3: the counts fall" in text for text in found.remarks)
+        fit_calibration(q, counts)
 
 
 def test_narrow_and_rough_data_are_remarked():
@@ -118,7 +117,7 @@ def test_narrow_and_rough_data_are_remarked():
 def test_a_wrapping_potentiometer_is_refused():
     q, counts = experiment()
     counts[:, 0] = (counts[:, 0] + 400) % 1024
-    with pytest.raises(InputError, match=r"joint 1: the counts jump from .* the gap of its track"):
+    with pytest.raises(InputError, match=r"joint 1: the counts do not follow .* the gap of its track"):
         fit_calibration(q, counts)
 
 

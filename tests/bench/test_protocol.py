@@ -6,12 +6,12 @@ import zlib
 from pathlib import Path
 
 import pytest
-from board_frames import CommandParser, encode_reply
+from board_frames import Command, CommandParser, encode, encode_reply
 from hypothesis import given
 from hypothesis import strategies as st
 
 from ir50p_lab.bench import protocol
-from ir50p_lab.bench.protocol import DRIVE, HELLO, NAME, STOP, Command, FrameParser, Identity, State, encode
+from ir50p_lab.bench.protocol import DRIVE, HELLO, NAME, STOP, FrameParser, Identity, State
 from tests.emulator.noise import noisy_stream, true_frames
 
 HEADER = Path(protocol.__file__).parent / "firmware/ir50p_board/protocol.h"

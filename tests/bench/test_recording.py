@@ -252,7 +252,6 @@ WRONG = [
     ("0,1,1,1\n0.01,1,1,1\n", r"line 1: no column t, q1, q2, q3"),
     ("t,q1,q2\n0,1,1\n", r"line 1: no column q3"),
     ("t,q1,q2,q3,u1,u2\n0,1,1,1,5,5\n", r"of u1, u2, u3 only u1, u2"),
-    ("t,q1,q2,q3,q3\n0,1,1,1,1\n", r"column q3 stands there twice"),
     ("", r"ends before its first sample"),
     ("# ir50p_lab recording: 1\n# period", r"ends before its first sample"),
     ("t,q1,q2,q3\n0,1,1,1\n".encode("utf-16"), r"UTF-16"),

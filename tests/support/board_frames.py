@@ -1,7 +1,23 @@
 """The board's side of the wire in Python: what a stand-in for the board hears and says."""
 
+from typing import NamedTuple
+
 from ir50p_lab.bench import protocol
-from ir50p_lab.bench.protocol import COMMAND_SYNC, LIMIT_PWM, REPLY_SYNC, Command, FrameParser, State, with_check
+from ir50p_lab.bench.protocol import COMMAND_SYNC, LIMIT_PWM, REPLY_SYNC, FrameParser, State, encode_command, with_check
+
+
+class Command(NamedTuple):
+    """Computer to board. seq 0..255; type HELLO, NAME, DRIVE or STOP; pwm three whole numbers, -255..255."""
+
+    seq: int
+    type: int
+    pwm: tuple = (0, 0, 0)
+    gripper: bool = False
+
+
+def encode(command):
+    """Bytes of a Command, as the computer sends it."""
+    return encode_command(*command)
 
 
 def encode_reply(frame):

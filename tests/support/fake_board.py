@@ -3,10 +3,10 @@
 import errno
 
 import numpy as np
-from board_frames import CommandParser, encode_reply
+from board_frames import Command, CommandParser, encode_reply
 
 from ir50p_lab.bench import protocol
-from ir50p_lab.bench.protocol import Command, Identity, State
+from ir50p_lab.bench.protocol import Identity, State
 
 ANSWER = 0.0008  # s from a command to its answer
 SPEED = 0.004  # rad/s per PWM count: joints that turn as fast as they are driven, and stop at once
