@@ -320,7 +320,7 @@ def test_plot_without_reference_without_u_without_samples():
     for what in (Recording.plot, Recording.metrics):
         with pytest.raises(RecordingError, match="no sample"):
             what(Recording.from_arrays([], np.zeros((0, 3))))
-    with pytest.raises(InputError, match="shape"):
+    with pytest.raises(ValueError, match="shape"):
         Recording.from_arrays([0.0, 0.1], np.zeros((3, 3)))
 
 
