@@ -33,7 +33,7 @@ def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest
     if reference is not None:
         check_reference(reference)
         checked_reference(bench.arm, 0.0, reference(0.0))
-    bench._number_of_cycles(1.0 if seconds is None else seconds)
+    bench._number_of_cycles(1.0 if seconds is None else seconds)  # it is open, and no other loop has it
     if bench._run is not None:
         raise BenchError("a run in a cell has the arm: end its loop first")
     cargo = _packed(controller, reference)

@@ -30,26 +30,16 @@ def summarise(recording):
     """List of three JointSummary of a Recording; RecordingError if it has no sample."""
     if not len(recording):
         raise RecordingError("the recording has no sample: run the bench first")
-    t, q, u, r = recording.t, recording.q, recording.u, recording.reference
-    last = t > t[-1] - min(1.0, 0.5 * (t[-1] - t[0])) - 1e-9
-    late = t > t[-1] - min(5.0, 0.5 * (t[-1] - t[0])) - 1e-9
-    found = []
-    for j in range(3):
-        y, known = q[:, j], r[np.isfinite(r[:, j]), j]
-        target, final = known[-1] if known.size else math.nan, y[last].mean()
-        way = target - y[0]
-        found.append(
-            JointSummary(
-                joint=j + 1,
-                start=float(y[0]),
-                final=float(final),
-                error=float(target - final),
-                overshoot=max(0.0, float(((y - target) * np.sign(way)).max())) if abs(way) > 0 else math.nan,
-                swing=float(np.ptp(y[late])),
-                u_std=float(u[:, j].std()),
-            )
-        )
-    return found
+    t, q, r = recording.t, recording.q, recording.reference
+    final = q[t > t[-1] - min(1.0, 0.5 * (t[-1] - t[0])) - 1e-9].mean(axis=0)
+    swing = np.ptp(q[t > t[-1] - min(5.0, 0.5 * (t[-1] - t[0])) - 1e-9], axis=0)
+    known = r[np.isfinite(r).all(axis=1)]
+    target = known[-1] if len(known) else np.full(3, np.nan)
+    way = target - q[0]
+    beyond = np.maximum(0.0, ((q - target) * np.sign(way)).max(axis=0))
+    overshoot = np.where(way == 0.0, np.nan, beyond)
+    columns = (q[0], final, target - final, overshoot, swing, recording.u.std(axis=0))
+    return [JointSummary(joint, *row) for joint, row in enumerate(np.transpose(columns).tolist(), 1)]
 
 
 def plot(recording):
