@@ -36,7 +36,7 @@ class LinkStatistics:
     bad_replies: int = 0
     bad_commands: int = 0
     watchdog_trips: int = 0
-    round_trips: deque = field(default_factory=lambda: deque(maxlen=1000))
+    round_trips: deque = field(default_factory=lambda: deque(maxlen=1000), repr=False)
 
     @property
     def round_trip(self):
