@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vectors3
+from ir50p_lab.inputs import number, vector3, whole
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,20 +55,16 @@ class ArmInstance:
     bow_spread: float = 0.5
 
     def __post_init__(self):
+        rules = dict.fromkeys(("pot_shift", "pot_bow", "table"), "finite")
+        rules |= dict.fromkeys(("motor_gain", "pot_slope"), "> 0")
         for field in fields(self):
-            value, size = getattr(self, field.name), np.size(field.default)
-            value = vectors3(f"unit {field.name}", value) if size == 3 else np.asarray(value, dtype=float)
-            if value.size != size or not np.isfinite(value).all():
-                raise InputError(f"unit {field.name} = {value.tolist()}: give {size} finite number(s)")
-            signed = field.name in ("pot_shift", "pot_bow", "table")
-            if not signed and (value < 0).any():
-                raise InputError(f"unit {field.name} = {value.tolist()}: must not be negative")
-            if field.name in ("motor_gain", "pot_slope") and (value == 0).any():
-                raise InputError(f"unit {field.name} = {value.tolist()}: must be positive")
-            if size == 3:
-                object.__setattr__(self, field.name, tuple(value.tolist()))
-        if self.delay != int(self.delay) or self.delay > 100:
-            raise InputError(f"unit delay = {self.delay}: give whole periods, 0 to 100")
+            name, value, rule = f"unit {field.name}", getattr(self, field.name), rules.get(field.name, ">= 0")
+            if np.size(field.default) == 3:
+                value = tuple(number(name, one, rule) for one in vector3(name, value))
+                object.__setattr__(self, field.name, value)
+            else:
+                number(name, value, rule)
+        whole("unit delay", self.delay, 0, 100)
 
     def drawn(self, seed):
         """The copy number `seed` of the series: spread 0, its own values (even distribution)."""

@@ -1,10 +1,7 @@
 """`bench.start(controller, reference)`: the loop of the lesson in the background."""
 
 import contextlib
-import math
 import threading
-
-import numpy as np
 
 from ir50p_lab.bench import shared_loop
 from ir50p_lab.bench.live_loop import live_loop
@@ -32,15 +29,11 @@ def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest
     Returns: LiveRun. Raises BenchError if the bench is closed or busy, InputError for bad arguments, and what opening
     the port raises.
     """
-    if seconds is not None and not (isinstance(seconds, int | float | np.number) and 0 < seconds < math.inf):
-        raise InputError(f"seconds = {seconds!r}: give how long to run, in seconds, > 0, or None: until stopped")
     check_controller(controller)
     if reference is not None:
         check_reference(reference)
         checked_reference(bench.arm, 0.0, reference(0.0))
-    bench._take_back()
-    if not bench.is_open:
-        raise BenchError("the bench is closed: open it with connect() and start before it is closed")
+    bench._number_of_cycles(1.0 if seconds is None else seconds)  # it is open, and no other loop has it
     if bench._run is not None:
         raise BenchError("a run in a cell has the arm: end its loop first")
     cargo = _packed(controller, reference)
@@ -92,7 +85,7 @@ class ThreadRun(LiveRun):
             self.error = error
         finally:
             self._bench.realtime = realtime
-            self._memory.enter(shared_loop.ENDED)
+            self._memory.status.phase = shared_loop.ENDED
 
     @property
     def alive(self):
@@ -113,9 +106,6 @@ class ThreadRun(LiveRun):
         if not self.is_here():
             self._thread.join(timeout)
         return not self._thread.is_alive()
-
-    def _take_back(self):
-        """Nothing to do: the bench never left this process."""
 
     def give_up(self):
         """The loop hangs in its controller and gives no more commands; cut from here."""

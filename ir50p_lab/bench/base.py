@@ -1,19 +1,20 @@
 """What every bench promises: one loop, whether a board, a simulated arm or a recording answers."""
 
-import abc
 import contextlib
 import math
 from typing import NamedTuple
 
 import numpy as np
 
+from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, CountedPace, Pace, warm_up
 from ir50p_lab.bench.recorder import Recorder, header_of
-from ir50p_lab.bench.rest import rest_pose, way_to_rest
+from ir50p_lab.bench.rest import way_to_rest
 from ir50p_lab.bench.runaway import RunawayGuard
 from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.errors import BenchError, InputError, LabError, PauseError
 from ir50p_lab.inputs import check_arm, check_controller, check_reference
+from ir50p_lab.modelling.named_arms import load_arm
 
 JOINTS = 3
 LIMIT_PWM = 255
@@ -47,7 +48,7 @@ class Run:
         self.trips = 0
 
 
-class Bench(abc.ABC):
+class Bench:
     """The arm on the bench, opened with `connect()`; `with` guarantees that the drive ends.
 
     ============================ ====================================================================================
@@ -63,7 +64,7 @@ class Bench(abc.ABC):
     rest pose, where it stays without drive, and then lets go; leaving it by an error or Ctrl-C cuts the drive at once,
     and the arm sinks as gravity has it.
 
-    Subclasses supply `_open`, `_begin`, `_measure`, `_send`, `_cut` and `_close`.
+    Subclasses supply `_measure` and, where there is something to do, `_open`, `_begin`, `_send`, `_cut` and `_close`.
 
     Attributes: arm: Arm (limits, kinematics); calibration: counts to rad; period: s; simulated: bool; name: str;
     bench_id: which bench it is, on which results are measured, as 'board-0a1b2c' or 'simulated-unit-0' (None: nobody
@@ -77,17 +78,20 @@ class Bench(abc.ABC):
     answers = True  # whether drive moves the arm
     bench_id = None
     guarded = True  # whether a runaway is cut; off only while the motors have no supply
-    own_process = False  # whether a loop in the background gets a process of its own
+    own_process = False  # whether a loop in the background gets a process of its own, by `_arguments()`, its keywords
 
-    def __init__(self, arm, calibration, *, period=0.01, record_to=None, name=None):
-        """record_to: folder for recordings (default: recordings/ in the student's folder), False for none on disk."""
-        arm = check_arm(arm)
+    def __init__(self, arm=None, calibration=None, *, period=0.01, record_to=None, name=None):
+        """arm: default `load_arm()`; calibration: default the nominal one.
+
+        record_to: folder for recordings (default: recordings/ in the student's folder), False for none on disk.
+        """
+        arm = load_arm() if arm is None else check_arm(arm)
         if not (isinstance(period, int | float | np.number) and 0.001 <= period <= 1.0):
             raise InputError(f"period = {period!r} s: give 0.001 to 1 s (the thesis samples every 0.01 s)")
-        self.arm, self.calibration, self.period = arm, calibration, float(period)
+        self.arm, self.calibration, self.period = arm, calibration or nominal_calibration(arm), float(period)
         self.name = name or f"{self.kind} {arm.name}"
         self.recording = None
-        self._record_to = record_to
+        self.record_to = record_to
         self.is_open, self._clock = False, Clock
         self._pwm, self._gripper = np.zeros(JOINTS), False
         self._last = self._run = None
@@ -97,30 +101,24 @@ class Bench(abc.ABC):
 
     # ---- what a subclass supplies
 
-    @abc.abstractmethod
     def _open(self):
         """Get hold of the arm; no drive yet."""
 
-    @abc.abstractmethod
     def _begin(self):
         """A run begins: its time is zero now."""
 
-    @abc.abstractmethod
     def _measure(self, cycle, drive):
         """Measure in this cycle of the run; drive: keep the present command alive, else drive nothing.
 
         Returns: t (s), counts (3,), and whether the watchdog had cut the drive before, so that it is off now.
         """
 
-    @abc.abstractmethod
     def _send(self, pwm, gripper):
-        """Send the command: pwm (3,) whole numbers within the limit, gripper bool. Returns what was applied."""
+        """Send the command: pwm (3,) whole numbers within the limit, gripper bool."""
 
-    @abc.abstractmethod
     def _cut(self):
         """Drive off at once; must work in any state and never raise."""
 
-    @abc.abstractmethod
     def _close(self):
         """Give everything free; must work in any state."""
 
@@ -135,10 +133,6 @@ class Bench(abc.ABC):
     def _make_pace(self):
         """What says when the cycles of a run are due: CountedPace, or Pace on a bench that follows the clock."""
         return CountedPace()
-
-    def _missed(self, cycle):
-        """How many cycles came late so far."""
-        return self._run.pace.missed
 
     def _statistics(self, run):
         """What a recording says at its end about how the run went: dict; nothing where time is a counter."""
@@ -156,10 +150,6 @@ class Bench(abc.ABC):
         if not self.guarded or self.arm.actuators is None:
             return None
         return RunawayGuard(self.arm, self.calibration, self.period)
-
-    def _arguments(self):
-        """Keyword arguments that make the same bench in another process; needed if `own_process`."""
-        raise NotImplementedError(f"{type(self).__name__} has own_process, so it must define _arguments()")
 
     # ---- the contract
 
@@ -240,18 +230,25 @@ class Bench(abc.ABC):
             self.live_run = None
 
     def _cycles(self, cycles, reference, record, header):
+        with self._running(reference, record, header) as run:
+            while (sample := self._next_sample(run, cycles)) is not None:
+                yield sample
+                if run.fault is not None:  # drive() has raised it, and the loop's body caught it
+                    raise run.fault
+
+    @contextlib.contextmanager
+    def _running(self, reference, record, header):
+        """A Run from its beginning to its end; an error cuts the drive first."""
         self._end_run()  # of a loop that was left by break
         run = self._run = Run(self._start_recorder(header) if record else None, reference)
         self._pwm = np.zeros(JOINTS)
         try:
             self._begin()
-            if (guard := self._make_guard()) is not None:  # compiles before the clock starts
-                guard.check(Sample(0.0, np.zeros(JOINTS), np.zeros(JOINTS), 0), self._pwm)
-            run.guard, run.pace = self._make_guard(), self._make_pace()
-            while (sample := self._next_sample(run, cycles)) is not None:
-                yield sample
-                if run.fault is not None:  # drive() has raised it, and the loop's body caught it
-                    raise run.fault
+            run.guard = self._make_guard()
+            if run.guard is not None:  # compiles before the clock starts; so long after it, it has forgotten this
+                run.guard.check(Sample(-math.inf, np.zeros(JOINTS), np.zeros(JOINTS), 0), self._pwm)
+            run.pace = self._make_pace()
+            yield run
         except GeneratorExit:  # the loop was left by break
             raise
         except BaseException as error:
@@ -281,7 +278,7 @@ class Bench(abc.ABC):
             if tripped:  # commands were lost on the wire
                 self._resume(run, WATCHDOG)
                 continue
-            sample = run.row = self._last = Sample(t, self._radians(counts), counts, self._missed(cycle))
+            sample = run.row = self._last = Sample(t, self._radians(counts), counts, pace.missed)
             if run.guard is not None:
                 run.guard.check(sample, self._pwm)
             if run.reference is None:
@@ -301,7 +298,7 @@ class Bench(abc.ABC):
         self._pwm = np.zeros(JOINTS)
         with contextlib.suppress(BenchError) if ended else contextlib.nullcontext():
             t, counts, _ = self._measure(pace.cycle, drive=False)
-            self._last = run.row = Sample(t, self._radians(counts), counts, self._missed(pace.cycle))
+            self._last = run.row = Sample(t, self._radians(counts), counts, pace.missed)
         if ended:
             self.cut()
             run.fault = PauseError(
@@ -335,7 +332,7 @@ class Bench(abc.ABC):
 
     def _start_recorder(self, header):
         head = self.head() | {name: str(value) for name, value in header.items()}
-        recorder = Recorder(head, folder=self._record_to)
+        recorder = Recorder(head, folder=self.record_to)
         self.recording = recorder.recording
         return recorder
 
@@ -381,8 +378,9 @@ class Bench(abc.ABC):
             self._gripper = bool(gripper)
         if reference is not None:
             run.aim = reference
-        self._pwm = self._send(command, self._gripper)
-        return self._pwm
+        self._send(command, self._gripper)
+        self._pwm = command
+        return command
 
     def _command_of(self, pwm):
         """`pwm` in whole counts, within the limit and not beyond the ends of the travel; else cut and raise."""
@@ -439,8 +437,3 @@ class Bench(abc.ABC):
     def q(self):
         """The pose (3,) rad that was measured last; None before the first run."""
         return None if self._last is None else self._last.q
-
-    @property
-    def rest_pose(self):
-        """The pose (3,) rad where the arm is let go."""
-        return rest_pose(self.arm)

@@ -84,46 +84,44 @@ class SimulatedPerson(Person):
 def bench_test(bench, person, *, joints=(1, 2, 3), say=print):
     """Test these joints of an open bench; its drive is cut at the end. Returns the Findings, in order.
 
-    A step that ends in a BenchError (a broken wire, a runaway, a lost board) is a Finding that says so.
+    A step returns a sentence and its numbers, or ends in a BenchError: what is wrong, a broken wire, a runaway...
     """
     findings = []
 
-    def found(finding):
+    def found(step, joint, action, *arguments):
+        try:
+            finding = Finding(step, joint, True, *action(*arguments))
+        except BenchError as error:
+            finding = Finding(step, joint, False, str(error))
         findings.append(finding)
-        say(f"{'ok    ' if finding.passed else 'WRONG '} {finding.step}: {finding.text}")
-        return finding.passed
+        say(f"{'ok    ' if finding.passed else 'WRONG '} {step}: {finding.text}")
+        return finding
 
     try:
         person.ask("Motor supply off")
         person.lay_down()
-        found(_guarded("noise", 0, _noise, bench))
-        sound = {}
+        found("noise", 0, _noise, bench)
+        sound, driven = {}, {}
         for joint in joints:
             person.ask(
                 f"During the next {person.turn:.0f} s turn joint {joint} by hand: {UP[joint - 1]} to its end, slowly "
                 "to the other end, and back. Nothing else may move"
             )
-            sound[joint] = found(_guarded("potentiometer", joint, _potentiometer, bench, person, joint - 1))
+            sound[joint] = found("potentiometer", joint, _potentiometer, bench, person, joint - 1).passed
         person.lay_down()
         person.ask("Motor supply on, limit at 1 A, a hand on the emergency stop")
         for joint in joints:
-            if not sound[joint]:
-                found(Finding("drive", joint, False, f"joint {joint} was not driven: its potentiometer first"))
-                continue
-            found(_guarded("drive", joint, _drive, bench, joint - 1))
-        driven = {finding.joint: finding for finding in findings if finding.step == "drive" and finding.passed}
-        if 1 in driven:
-            found(_guarded("watchdog", 1, _watchdog, bench, driven[1].values))
+            driven[joint] = found("drive", joint, _drive, bench, joint - 1, sound[joint])
+        if 1 in driven and driven[1].passed:
+            found("watchdog", 1, _watchdog, bench, driven[1].values)
     finally:
         bench.cut()
     return findings
 
 
-def _guarded(step, joint, action, *arguments):
-    try:
-        return action(*arguments)
-    except BenchError as error:
-        return Finding(step, joint, False, str(error))
+def _require(right, text):
+    if not right:
+        raise BenchError(text)
 
 
 def _rest(bench, seconds=1.0):
@@ -135,12 +133,10 @@ def _rest(bench, seconds=1.0):
 def _noise(bench):
     counts = _rest(bench)
     rms = counts.std(axis=0)
-    worst = int(rms.argmax())
-    text = f"{rms.round(2).tolist()} counts rms at rest"
-    if rms[worst] > STEADY:
-        text += f"; joint {worst + 1} is not steady: look at the grounds and the 100 nF, and that nothing moves"
-    values = {"noise_counts": rms.round(3).tolist(), "counts_at_rest": counts.mean(axis=0).round(2).tolist()}
-    return Finding("noise", 0, bool(rms[worst] <= STEADY), text, values)
+    worst, text = rms.argmax(), f"{rms.round(2).tolist()} counts rms at rest"
+    remedy = f"; joint {worst + 1} is not steady: look at the grounds and the 100 nF, and that nothing moves"
+    _require(rms[worst] <= STEADY, text + remedy)
+    return text, {"noise_counts": rms.round(3).tolist(), "counts_at_rest": counts.mean(axis=0).round(2).tolist()}
 
 
 def _potentiometer(bench, person, joint):
@@ -153,56 +149,51 @@ def _potentiometer(bench, person, joint):
     finally:
         bench.guarded = True
     counts = np.array(counts, dtype=float)
-    own, span = counts[:, joint], np.ptp(counts, axis=0)
-    low, high, name = own.min(), own.max(), f"joint {joint + 1}"
+    own, span, name = counts[:, joint], np.ptp(counts, axis=0), f"joint {joint + 1}"
+    other, shaft = span.argmax(), "turn its potentiometer's shaft"
+    _require(
+        span[other] >= TRAVEL,
+        f"no number changed by {TRAVEL:.0f} counts: is the potentiometer coupled to {name}, and does it have 5 V?",
+    )
+    _require(other == joint, f"{name} moved the number of joint {other + 1}: swap the wires at A{joint} and A{other}")
+    jumped = np.abs(np.diff(own)).max() > JUMP
+    _require(not jumped, f"the number of {name} jumped: a gap of the track is within the travel; {shaft}")
+    low, high = own.min(), own.max()
+    reads = f"{name} reads {low:.0f} to {high:.0f}"
+    _require(low >= ENDS[0] and high <= ENDS[1], f"{reads}, 20 to 1003 are free: {shaft}")
     middle = own[len(own) // 10 : -len(own) // 7]  # it may have begun, and may end, at one of the ends
-    other = int(span.argmax())
-    wrong = None
-    if span[other] < TRAVEL:
-        wrong = (
-            f"no number changed by {TRAVEL:.0f} counts: is the potentiometer coupled to {name}, and does it have 5 V?"
-        )
-    elif other != joint:
-        wrong = f"{name} moved the number of joint {other + 1}: swap the wires at A{joint} and A{other}"
-    elif np.abs(np.diff(own)).max() > JUMP:
-        wrong = f"the number of {name} jumped: a gap of the track is within the travel; turn its potentiometer's shaft"
-    elif low < ENDS[0] or high > ENDS[1]:
-        wrong = f"{name} reads {low:.0f} to {high:.0f}, 20 to 1003 are free: turn its potentiometer's shaft"
-    elif middle.argmax() > middle.argmin():
-        wrong = f"the number of {name} falls when it moves {UP[joint]}: swap the two ends of its potentiometer"
-    text = wrong or f"{name} reads {low:.0f} to {high:.0f} counts, rising when it moves {UP[joint]}"
-    return Finding("potentiometer", joint + 1, wrong is None, text, {"low_counts": low, "high_counts": high})
+    falls = middle.argmax() > middle.argmin()
+    moves = f"when it moves {UP[joint]}"
+    _require(not falls, f"the number of {name} falls {moves}: swap the two ends of its potentiometer")
+    return f"{reads} counts, rising {moves}", {"low_counts": low, "high_counts": high}
 
 
-def _drive(bench, joint):
+def _drive(bench, joint, sound):
     """Push the joint away from its nearer end, then back.
 
     Swapped motor wires press a joint that lies at an end against it: then only the other push frees it.
     """
+    name = f"joint {joint + 1}"
+    _require(sound, f"{name} was not driven: its potentiometer first")
     first = 1 if _rest(bench)[-10:, joint].mean() < 512 else -1
     values = {}
     for sign in (first, -first):
         pwm, moved = _push(bench, joint, sign, outwards=sign != first and not values)
-        other = int(np.abs(moved).argmax())
         if pwm is None:
             continue
-        if not values and other != joint:
-            text = f"the drive of joint {joint + 1} moved joint {other + 1}: their two bridges are swapped"
-            return Finding("drive", joint + 1, False, text, values)
-        if not values and moved[joint] * sign < 0:
-            text = f"PWM {pwm:+d} moved joint {joint + 1} by {moved[joint]:+.0f} counts: swap its two motor wires"
-            return Finding("drive", joint + 1, False, text, values)
+        if not values:
+            other = np.abs(moved).argmax()
+            _require(other == joint, f"the drive of {name} moved joint {other + 1}: their two bridges are swapped")
+            wrong = f"PWM {pwm:+d} moved {name} by {moved[joint]:+.0f} counts: swap its two motor wires"
+            _require(moved[joint] * sign > 0, wrong)
         values["breakaway_up_pwm" if sign > 0 else "breakaway_down_pwm"] = pwm
-    if not values:
-        text = (
-            f"joint {joint + 1} did not move, neither way, up to {HIGHEST_PWM} PWM counts: has its motor no supply "
-            "(current limit, ENABLE at 5 V, fuse), or does something block it?"
-        )
-        return Finding("drive", joint + 1, False, text)
-    shown = " and ".join(f"{pwm:+d}" for pwm in values.values())
-    return Finding(
-        "drive", joint + 1, True, f"joint {joint + 1} breaks away at {shown} PWM counts, as commanded", values
+    _require(
+        values,
+        f"{name} did not move, neither way, up to {HIGHEST_PWM} PWM counts: has its motor no supply (current limit, "
+        "ENABLE at 5 V, fuse), or does something block it?",
     )
+    shown = " and ".join(f"{pwm:+d}" for pwm in values.values())
+    return f"{name} breaks away at {shown} PWM counts, as commanded", values
 
 
 def _push(bench, joint, sign, *, outwards):
@@ -238,9 +229,9 @@ def _push(bench, joint, sign, *, outwards):
 def _watchdog(bench, values):
     """Keep joint 1 moving, then say nothing: the board must brake by itself."""
     if bench.simulated:
-        return Finding("watchdog", 1, True, "the simulated arm has no board, and no watchdog to test")
-    sign = -1 if "breakaway_up_pwm" not in values else 1
-    pwm = sign * (20 + abs(values.get("breakaway_up_pwm", values.get("breakaway_down_pwm"))))
+        return "the simulated arm has no board, and no watchdog to test", {}
+    breakaway = values.get("breakaway_up_pwm") or values["breakaway_down_pwm"]
+    pwm = breakaway + 20 * np.sign(breakaway)
     trips, places = bench.statistics.watchdog_trips, []
     for sample in bench.run(1.2, record=False):
         places.append((sample.t, sample.counts[0]))
@@ -254,7 +245,8 @@ def _watchdog(bench, values):
     still = np.ptp(after) < MOVED
     text = f"after {SILENCE:g} s without a command the board had cut the drive {tripped} times"
     text += ", and joint 1 stood" if still else ", but joint 1 went on: switch off, and load the sketch again"
-    return Finding("watchdog", 1, bool(tripped == 1 and still), text)
+    _require(tripped == 1 and still, text)
+    return text, {}
 
 
 def write_report(bench, findings):

@@ -10,7 +10,6 @@ from ir50p_lab.errors import InputError, SuspiciousArmWarning
 from ir50p_lab.inputs import check_arm, vector3
 
 _PLAUSIBLE = (20.0, 1023 / np.radians(60))  # counts/rad: a potentiometer of many turns; of 60 deg over the full range
-_HEADS = ("joint", "counts/rad", "counts at q = 0", "rms residual", "points")
 
 
 @dataclass(frozen=True)
@@ -45,17 +44,10 @@ class JointCalibration:
     remarks: tuple = ()
 
     def __post_init__(self):
-        for name, unit in (
-            ("slope", "counts/rad"),
-            ("zero", "counts"),
-            ("stderr_slope", "counts/rad"),
-            ("stderr_zero", "counts"),
-        ):
-            value = getattr(self, name)
-            if value is None and name.startswith("stderr"):
-                continue
-            array = vector3(name, value, unit=unit)
-            if name.startswith("stderr") and (array < 0).any():
+        known = [name for name in ("stderr_slope", "stderr_zero") if getattr(self, name) is not None]
+        for name in ("slope", "zero", *known):
+            array = vector3(name, getattr(self, name), unit="counts/rad" if "slope" in name else "counts")
+            if name in known and (array < 0).any():
                 raise InputError(f"{name} = {array.tolist()}: a standard error cannot be negative")
             object.__setattr__(self, name, tuple(array.tolist()))
         if 0.0 in self.slope:
@@ -119,29 +111,29 @@ class JointCalibration:
 
     def table(self):
         """Slopes, zeros, standard errors and residuals as text, then the remarks."""
-        line = "{:>5} {:>17} {:>17} {:>13} {:>6}".format
-        lines = [line(*_HEADS), *(line(*row) for row in self._cells())]
-        return "\n".join([*lines, f"source: {self.source}", *self.remarks])
+        return "\n".join([self._frame().to_string(index=False), f"source: {self.source}", *self.remarks])
 
     def _repr_html_(self):
         """The table, as a notebook shows it."""
         from html import escape
 
-        rows = ["".join(f"<th>{cell}</th>" for cell in _HEADS)]
-        rows += ["".join(f"<td>{cell}</td>" for cell in row) for row in self._cells()]
-        remarks = "".join(f"<li>{escape(text)}</li>" for text in self.remarks)
-        body = "".join(f"<tr>{row}</tr>" for row in rows)
-        return f"<table>{body}</table><p>source: {escape(self.source)}</p>" + (f"<ul>{remarks}</ul>" if remarks else "")
+        below = "".join(f"<p>{escape(text)}</p>" for text in (f"source: {self.source}", *self.remarks))
+        return self._frame().to_html(index=False) + below
 
-    def _cells(self):
-        for i in range(3):
-            cells = [str(i + 1)]
-            for values, errors in ((self.slope, self.stderr_slope), (self.zero, self.stderr_zero)):
-                measured = errors is not None and (errors[i] > 0)
-                cells.append(f"{values[i]:.2f}" + (f" ± {errors[i]:.2f}" if measured else ""))
-            residual = self.residuals[i] if self.points else np.empty(0)
-            rms = f"{np.degrees(np.sqrt(np.mean(residual**2))):.2f} deg" if residual.size else "not measured"
-            yield [*cells, rms, str(residual.size)]
+    def _frame(self):
+        import pandas as pd
+
+        columns = {"joint": [1, 2, 3]}
+        for name, values, errors in (
+            ("counts/rad", self.slope, self.stderr_slope),
+            ("counts at q = 0", self.zero, self.stderr_zero),
+        ):
+            pairs = zip(values, errors or (0.0, 0.0, 0.0), strict=True)
+            columns[name] = [f"{value:.2f}" + (f" ± {error:.2f}" if error else "") for value, error in pairs]
+        residuals = self.residuals or [np.empty(0)] * 3
+        rms = [np.degrees(np.sqrt(np.mean(one**2))) if one.size else np.nan for one in residuals]
+        columns["rms residual"] = [f"{x:.2f} deg" if x == x else "not measured" for x in rms]
+        return pd.DataFrame(columns | {"points": [one.size for one in residuals]})
 
 
 # Bench data of an older ROB3 (public repository eurobtec/rob3): counts of a 10-bit converter per rad of axes 1-3.

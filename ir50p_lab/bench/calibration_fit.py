@@ -4,165 +4,94 @@ import numpy as np
 
 from ir50p_lab.bench.calibration import JointCalibration
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import choice, first_not_finite, numbers
+from ir50p_lab.inputs import first_not_finite, numbers
 
 _FULL = 1023.0
-_WRAP = 300.0  # counts: no two neighbouring points of a sound potentiometer jump back by so much
 
 
-def fit_calibration(q, counts, *, angles="read", arm="", source="measured"):
+def fit_calibration(q, counts, *, arm="", source="measured"):
     """Fit counts = zero + slope q to an experiment: the joint stands at angles q, the converter shows counts (4.1.2).
 
     Which of the two carries the error decides how to fit. A protractor is read to about half a degree, which is one or
-    two counts; counts are averaged to a fraction of one. So the angle is the uncertain number:
-
-    - angles="read": the joint stood somewhere and its angle was read. Then q is regressed on counts,
-      q = a + b counts, and slope = 1/b, zero = -a/b. The usual way round (counts on q) would take the errors of q for
-      a wider spread of angles and make the slope too small, by the factor var(q)/(var(q) + var(error));
-    - angles="set": the joint was moved to marks of the protractor. Then the error lies between mark and joint, no
-      longer in the list of marks, and counts are regressed on q.
-
-    With ten points over a wide range the two differ by less than their standard errors; with a narrow one they do not.
+    two counts; counts are averaged to a fraction of one. So the angle is the uncertain number, and q is regressed on
+    counts: q = a + b counts, slope = 1/b, zero = -a/b. The usual way round (counts on q) would take the errors of q for
+    a wider spread of angles and make the slope too small, by the factor var(q)/(var(q) + var(error)). With ten points
+    over a wide range the two differ by less than their standard errors; with a narrow one they do not.
 
     Args:
         q, counts: (m, 3), m poses of the whole arm; or three lists of different lengths, one experiment per joint (to
             measure one joint anew take those of the others from `points` of the last calibration). Angles in rad,
             counts of the 10-bit converter.
-        angles: "read" or "set", see above.
         arm: Arm or its name, saved with it. source: kept with it (who measured, when).
 
     Returns: JointCalibration with standard errors, points and residuals; its
     `remarks` name what looks wrong: a bow that a line cannot follow (F test against a cubic), a point that lies far
-    off, a negative slope, few points, a narrow range, a reading at the end of the track.
+    off, few points, a narrow range, a reading at the end of the track.
     Raises: InputError for what no line fits: fewer than 3 points, angles in degrees, counts outside 0..1023, a reading
-    that does not change or does not follow its angle, a potentiometer that wraps, cables of two joints swapped.
+    that does not change or does not follow its angle (a potentiometer that wraps, cables of two joints swapped).
     """
-    choice("angles", angles, ("read", "set"))
-    q, counts = _three("q", q), _three("counts", counts)
-    if all(len(x) == len(q[0]) for x in (*q, *counts)):
-        _refuse_swapped(np.array(q), np.array(counts))
-    fits = [_line(i + 1, *_pair(i + 1, q[i], counts[i]), angles) for i in range(3)]
+    pairs = [
+        _checked(joint, *pair)
+        for joint, pair in enumerate(zip(_three("q", q), _three("counts", counts), strict=True), 1)
+    ]
+    fits = [_line(joint, *pair) for joint, pair in enumerate(pairs, 1)]
     slope, zero, stderr_slope, stderr_zero, points, remarks = zip(*fits, strict=True)
-    return JointCalibration(
-        slope=slope,
-        zero=zero,
-        stderr_slope=stderr_slope,
-        stderr_zero=stderr_zero,
-        source=source,
-        arm=getattr(arm, "name", arm),
-        points=points,
-        remarks=sum(remarks, ()),
-    )
+    arm = getattr(arm, "name", arm)
+    return JointCalibration(slope, zero, stderr_slope, stderr_zero, source, arm, points, sum(remarks, ()))
 
 
 def _three(name, value):
     """Three arrays, from (m, 3) or from three lists."""
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        array = None
-    if array is not None and array.ndim == 2 and array.shape[1] == 3:
-        return list(array.T)
-    if array is not None and array.ndim == 1:
-        raise InputError(f"{name} has shape {array.shape}: one joint only? Give three lists, one per joint")
-    if not hasattr(value, "__len__") or len(value) != 3 or (array is not None and array.ndim > 2):
-        shape = "" if array is None else f" has shape {array.shape}"
-        raise InputError(f"{name}{shape}: give (m, 3), one row per pose, or three lists, one per joint")
-    return list(value)
+    rows = [numbers(name, row) for row in value] if np.iterable(value) else []
+    if rows and all(row.shape == (3,) for row in rows):
+        return np.array(rows).T
+    if len(rows) != 3 or any(row.ndim != 1 for row in rows):
+        raise InputError(f"{name}: one joint only? Give (m, 3), one row per pose, or three lists, one per joint")
+    return rows
 
 
-def _pair(joint, q, counts):
-    """Two arrays (m,) of one joint; InputError if they are none, not finite or out of range."""
-    pair = []
-    for name, value in (("q", q), ("counts", counts)):
-        array = numbers(f"joint {joint}: {name}", value)
-        if array.ndim != 1:
-            raise InputError(f"joint {joint}: {name} has shape {array.shape}; give (m,)")
-        if not np.isfinite(array).all():
-            raise InputError(f"joint {joint}: {name} holds {first_not_finite(array)}: leave that point out")
-        pair.append(array)
-    q, counts = pair
+def _checked(joint, q, counts):
+    """The two arrays (m,) of one joint; InputError if no line can be made of them."""
     if len(q) != len(counts):
         raise InputError(f"joint {joint}: {len(q)} angles but {len(counts)} counts; they belong together in pairs")
     if len(q) < 3:
         raise InputError(f"joint {joint}: {len(q)} points; two make a line, a third shows its error: measure 10 or so")
-    if np.abs(q).max() > 2 * np.pi:
-        raise InputError(
-            f"joint {joint}: q holds {q[np.abs(q).argmax()]:g} rad, more than a turn: in degrees? Use np.radians"
-        )
-    if counts.min() < 0 or counts.max() > _FULL:
-        bad = counts.min() if counts.min() < 0 else counts.max()
-        raise InputError(f"joint {joint}: counts holds {bad:g}; the 10-bit converter gives 0 to {_FULL:.0f}")
-    return q, counts
-
-
-def _refuse_swapped(q, counts):
-    """The readings of one joint follow the angle of another and not its own."""
-    if (
-        q.shape[1] < 3
-        or not np.isfinite([q, counts]).all()
-        or (np.ptp(q, axis=1) == 0).any()
-        or (np.ptp(counts, axis=1) == 0).any()
-    ):
-        return
-    r2 = np.corrcoef(q, counts)[:3, 3:] ** 2  # [angle, reading]
-    for j in range(3):
-        i = int(r2[:, j].argmax())
-        if i != j and r2[i, j] > 0.9 and r2[j, j] < 0.5:
-            raise InputError(
-                f"the counts of joint {j + 1} follow the angle of joint {i + 1} (correlation squared {r2[i, j]:.2f}) "
-                f"and not their own ({r2[j, j]:.2f}): the cables of joints {j + 1} and {i + 1} are swapped"
-            )
-
-
-def _line(joint, q, counts, angles):
-    """(slope, zero, stderr_slope, stderr_zero, points, remarks) of one joint."""
     for name, values, unit in (("q", q, "rad"), ("counts", counts, "counts")):
+        if not np.isfinite(values).all():
+            raise InputError(f"joint {joint}: {name} holds {first_not_finite(values)}: leave that point out")
         if np.ptp(values) == 0:
             raise InputError(
                 f"joint {joint}: every {name} is {values[0]:g} {unit}: nothing moved. Is this the potentiometer of "
                 "that joint, and is it connected?"
             )
-    _refuse_wrap(joint, q, counts)
-    x, y = (counts, q) if angles == "read" else (q, counts)
-    (b, a), cov = np.polyfit(x, y, 1, cov=True)
+    farthest = q[np.abs(q).argmax()]
+    if abs(farthest) > 2 * np.pi:
+        raise InputError(f"joint {joint}: q holds {farthest:g} rad, more than a turn: in degrees? Use np.radians")
+    bad = counts[(counts < 0) | (counts > _FULL)]
+    if bad.size:
+        raise InputError(f"joint {joint}: counts holds {bad[0]:g}; the 10-bit converter gives 0 to {_FULL:.0f}")
+    return q, counts
+
+
+def _line(joint, q, counts):
+    """(slope, zero, stderr_slope, stderr_zero, points, remarks) of one joint."""
+    (b, a), cov = np.polyfit(counts, q, 1, cov=True)
     r2 = np.corrcoef(q, counts)[0, 1] ** 2
     if r2 < 0.5:
         raise InputError(
-            f"joint {joint}: the counts do not follow the angle (correlation squared {r2:.2f}): check that angles and "
-            "counts are of the same poses and the same joint, and the potentiometer's coupling"
+            f"joint {joint}: the counts do not follow the angle (correlation squared {r2:.2f}): are they of the same "
+            "poses and the same joint, are cables swapped, is the gap of its track in the travel? bench-test finds out"
         )
-    if angles == "read":  # errors carried over to first order
-        slope, zero = 1 / b, -a / b
-        variances = cov[0, 0] / b**4, (cov[1, 1] + zero**2 * cov[0, 0] + 2 * zero * cov[0, 1]) / b**2
-    else:
-        slope, zero, variances = b, a, (cov[0, 0], cov[1, 1])
+    slope, zero = 1 / b, -a / b
+    # errors of a and b carried over to first order
+    variances = cov[0, 0] / b**4, (cov[1, 1] + zero**2 * cov[0, 0] + 2 * zero * cov[0, 1]) / b**2
     errors = [float(np.sqrt(max(0.0, v))) for v in variances]
     remarks = tuple(f"joint {joint}: {text}" for text in _remarks(q, counts, slope, zero, errors[0]))
     return float(slope), float(zero), *errors, (tuple(q.tolist()), tuple(counts.tolist())), remarks
 
 
-def _refuse_wrap(joint, q, counts):
-    order = np.argsort(q, kind="stable")
-    steps = np.diff(counts[order])
-    against = -np.sign(np.median(np.sign(steps))) * steps
-    i = int(against.argmax())
-    if against[i] > _WRAP:
-        left, right = np.degrees(q[order[i : i + 2]])
-        raise InputError(
-            f"joint {joint}: the counts jump from {counts[order[i]]:.0f} to {counts[order[i + 1]]:.0f} between "
-            f"{left:.0f} and {right:.0f} deg: the potentiometer passes the gap of its track there. Loosen its "
-            "coupling, turn it so that the gap lies outside the travel, and calibrate again"
-        )
-
-
 def _remarks(q, counts, slope, zero, stderr_slope):
     residual = q - (counts - zero) / slope
-    if slope < 0:
-        yield (
-            "the counts fall where the angle rises: swap the two outer wires of the potentiometer and calibrate again "
-            "(driven as it is, the joint would run away)"
-        )
     if len(q) < 6:
         yield f"only {len(q)} points: a bow or a misread point would not show; measure 10"
     if np.ptp(q) < 0.5:

@@ -31,28 +31,25 @@ def connect(port=None, *, arm=None, calibration=None, period=0.01, record_to=Non
     board that was only looked for never raises: the line says why it was not taken.
     """
     common = {"arm": arm, "calibration": calibration, "period": period, "record_to": record_to}
-    variable = os.environ.get(VARIABLE, "").strip()
-    if port is not None:
-        return _asked_for(port, f"connect({port!r})", common, simulated)
-    if variable:
-        return _asked_for(variable, f"{VARIABLE}={variable}", common, simulated)
-    return _look_for_a_board(common, simulated)
-
-
-def _asked_for(wish, reason, common, simulated):
+    wish, reason = port, f"asked for by connect({port!r})"
+    if port is None:
+        wish = os.environ.get(VARIABLE, "").strip()
+        reason = f"asked for by {VARIABLE}={wish}"
+        if not wish:
+            return _look_for_a_board(common, simulated)
     if not isinstance(wish, str | os.PathLike) or not str(wish):
         raise InputError(f"port = {wish!r}: give 'simulated', 'replay:FILE' or the name of a serial port")
     wish = os.fspath(wish)
     if wish.lower() == "simulated":
-        return _say(_simulated(common, simulated), f"asked for by {reason}", _TO_BOARD)
+        return _say(_simulated(common, simulated), reason, _TO_BOARD)
     if wish.lower().startswith("replay:"):
         from ir50p_lab.bench.replay import ReplayBench
 
         options = {name: common[name] for name in ("arm", "record_to")} | {"realtime": simulated.get("realtime", False)}
         bench = ReplayBench(wish[len("replay:") :], **options)
-        return _say(bench.open(), f"asked for by {reason}", _TO_BOARD)
+        return _say(bench.open(), reason, _TO_BOARD)
     try:
-        return _say_board(_serial(wish, common), f"asked for by {reason}")
+        return _say_board(_serial(wish, common), reason)
     except PortError as error:
         raise PortError(f"{error}. To go on without a board: connect('simulated')") from None
 

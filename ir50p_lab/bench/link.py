@@ -1,9 +1,9 @@
 """Question and answer with the board: sequence numbers, repeats when nothing comes, no answer taken for another's."""
 
+import math
+import statistics
 from collections import deque
-from typing import NamedTuple
-
-import numpy as np
+from dataclasses import dataclass, field
 
 from ir50p_lab.bench import protocol
 from ir50p_lab.errors import BoardLostError
@@ -20,22 +20,28 @@ REPEAT = 0.004  # s without an answer until the question is asked again
 HEARD = 80  # first bytes kept to tell what it is that does not answer
 
 
-class LinkStatistics(NamedTuple):
-    """What happened on the wire since the bench was opened.
+@dataclass
+class LinkStatistics:
+    """What has happened on the wire since the bench was opened.
 
     commands: sent; repeats: of which again, because no answer came; stale: answers that came too late to count;
     bad_replies, bad_commands: damaged frames, dropped by the computer and by the board (its counter, which begins at
     its start and wraps at 65536); watchdog_trips: times that the board cut the drive because no command came for
-    100 ms; round_trip: median of the last 1000, s (nan: none yet).
+    100 ms; round_trips: the last 1000, s.
     """
 
-    commands: int
-    repeats: int
-    stale: int
-    bad_replies: int
-    bad_commands: int
-    watchdog_trips: int
-    round_trip: float
+    commands: int = 0
+    repeats: int = 0
+    stale: int = 0
+    bad_replies: int = 0
+    bad_commands: int = 0
+    watchdog_trips: int = 0
+    round_trips: deque = field(default_factory=lambda: deque(maxlen=1000), repr=False)
+
+    @property
+    def round_trip(self):
+        """Median of the last 1000 round trips, s; nan: none yet."""
+        return statistics.median(self.round_trips) if self.round_trips else math.nan
 
 
 class Link:
@@ -43,19 +49,16 @@ class Link:
 
     transport: what serial.Serial offers: timeout, read(n), write(bytes), in_waiting, reset_input_buffer(), close().
     clock: now() and sleep(s).
+    Attributes: statistics: LinkStatistics up to now; heard: the first bytes that came since `forget`.
     """
 
     def __init__(self, transport, clock):
         self._transport, self._clock = transport, clock
         if transport.timeout != READ_TIMEOUT:
             transport.timeout = READ_TIMEOUT
-        self._parser = protocol.FrameParser("replies")
-        self._seq, self._told = 0, None
-        self._commands = self._repeats = self._stale = self._trips = 0
-        self._tripped = False
-        self._last = None  # the last State
-        self._round_trips = deque(maxlen=1000)
-        self.heard = bytearray()
+        self._parser = protocol.FrameParser()
+        self._seq, self._told, self._tripped = 0, None, False
+        self.statistics, self.heard = LinkStatistics(), bytearray()
 
     def ask(self, kind, pwm=(0, 0, 0), gripper=False, *, patience, repeat=REPEAT):
         """Send a command and wait for its answer; ask again every `repeat` s without one, `patience` s in all.
@@ -69,7 +72,7 @@ class Link:
         sent, stalled = {}, False
         start = now = self._clock.now()
         while now < start + patience:
-            self._repeats += bool(sent)
+            self.statistics.repeats += bool(sent)
             seq = self._send(kind, pwm, gripper)
             sent[seq] = now
             size, next_try = protocol.REPLY_SIZE, now + repeat
@@ -80,12 +83,13 @@ class Link:
                     stalled, start, next_try = True, now, now + repeat
                 self.heard += data[: HEARD - len(self.heard)]
                 replies = self._parser.feed(data)
+                self.statistics.bad_replies = self._parser.bad
                 for reply in replies:
                     self._note(reply)
                     if isinstance(reply, wanted) and reply.seq in sent:
-                        self._round_trips.append(now - sent[reply.seq])
+                        self.statistics.round_trips.append(now - sent[reply.seq])
                         return reply, sent[reply.seq]
-                    self._stale += reply.seq != self._told
+                    self.statistics.stale += reply.seq != self._told
                 if not (replies and len(data) == protocol.REPLY_SIZE):  # part of a frame, or of noise, has come
                     size = max(1, self._transport.in_waiting)
         raise BoardLostError(f"no answer for {patience * 1000:.0f} ms")
@@ -110,28 +114,15 @@ class Link:
         """Give the port free."""
         self._transport.close()
 
-    @property
-    def statistics(self):
-        """LinkStatistics up to now."""
-        return LinkStatistics(
-            commands=self._commands,
-            repeats=self._repeats,
-            stale=self._stale,
-            bad_replies=self._parser.bad,
-            bad_commands=self._last.bad_frames if self._last else 0,
-            watchdog_trips=self._trips,
-            round_trip=float(np.median(self._round_trips)) if self._round_trips else float("nan"),
-        )
-
     def _send(self, kind, pwm, gripper):
         self._seq = (self._seq + 1) % 256
-        self._commands += 1
-        self._transport.write(protocol.encode(protocol.Command(self._seq, kind, pwm, gripper)))
+        self.statistics.commands += 1
+        self._transport.write(protocol.encode_command(self._seq, kind, pwm, gripper))
         return self._seq
 
     def _note(self, reply):
         if isinstance(reply, protocol.State):
-            self._last = reply
+            self.statistics.bad_commands = reply.bad_frames
             tripped = bool(reply.status & protocol.WATCHDOG_TRIPPED)
-            self._trips += tripped and not self._tripped  # it is said until a stop is answered
+            self.statistics.watchdog_trips += tripped and not self._tripped  # it is said until a stop is answered
             self._tripped = tripped

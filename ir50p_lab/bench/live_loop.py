@@ -1,6 +1,7 @@
 """The loop in the background, the same on every bench: cycles of measure, obey, command, tell."""
 
 import contextlib
+import math
 import time
 
 import numpy as np
@@ -8,11 +9,13 @@ import numpy as np
 from ir50p_lab.bench import shared_loop
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.rest import way_to_rest
-from ir50p_lab.bench.set_point import LeadIn, SetPoint, led_in
+from ir50p_lab.bench.set_point import SPEED, SetPoint
 from ir50p_lab.controllers.base import set_gains
 from ir50p_lab.errors import BenchError
+from ir50p_lab.signals.quintic import quintic
 
 _DAY = 86400.0  # s: the longest run "until stopped"
+_THERE = math.radians(0.25)  # nearer than this a lead-in would only waste time: about the noise of the potentiometers
 
 
 def live_loop(bench, controller, reference, memory, *, seconds, lead_in, rest, orphaned=lambda: False):
@@ -33,13 +36,13 @@ def live_loop(bench, controller, reference, memory, *, seconds, lead_in, rest, o
         target = _Target(bench, reference, lead_in)
         q = loop.run(controller, target, seconds, header=_header(controller))
         if rest and bench.kind != "replay" and not memory.orders().cut and q is not None:
-            memory.enter(shared_loop.RETURNING)
+            memory.status.phase = shared_loop.RETURNING
             pid, way = way_to_rest(bench.arm, q, bench.period)
             loop.run(pid, _Target(bench, way, lead_in=False), way.duration + 0.5, header=None)
     finally:
         bench.cut()
         bench._last = None  # closing the bench moves nothing: the arm is at rest, or was cut on purpose
-        memory.enter(shared_loop.ENDED)
+        memory.status.phase = shared_loop.ENDED
 
 
 class _Loop:
@@ -70,7 +73,8 @@ class _Loop:
                 if seconds is not None and t - target.begins > target.lead + seconds - 0.5 * bench.period:
                     break
                 if not returning:
-                    memory.enter(shared_loop.LEADING if t - target.begins < target.lead else shared_loop.RUNNING)
+                    leading = t - target.begins < target.lead
+                    memory.status.phase = shared_loop.LEADING if leading else shared_loop.RUNNING
                     if orders.gains_number != gains_number:
                         gains_number = orders.gains_number
                         gains = {"kp": orders.gains[:3], "ki": orders.gains[3:6], "kd": orders.gains[6:]}
@@ -87,24 +91,26 @@ class _Loop:
                 bench.cut()  # before the run is closed, whose recording takes a moment
         if sample is None:
             return None
-        self.t0, self.missed0 = self.t0 + sample.t + bench.period, memory.missed
+        self.t0, self.missed0 = self.t0 + sample.t + bench.period, int(memory.status.missed)
         return sample.q
 
 
 class _Target:
-    """The reference, with a lead-in, until a set point takes over.
+    """The reference, with a way to it in front, until a set point takes over: the target starts where the arm stands.
 
     begins: t of its first call, s; lead: how long the way to the reference takes, s.
     """
 
     def __init__(self, bench, reference, lead_in):
         self.bench, self.reference, self.lead_in = bench, reference, lead_in
-        self.begins, self.lead = None, 0.0
+        self.begins, self.lead, self._way = None, 0.0, None
 
     def __call__(self, t):
         if self.begins is None:
             self._begin(t)
-        return self.reference(t - self.begins)
+        t = t - self.begins
+        leading = self._way is not None and t < self.lead
+        return self._way(t) if leading else self.reference(t - self.lead)
 
     def _begin(self, t):
         """Start at this time, from the pose just measured."""
@@ -113,15 +119,18 @@ class _Target:
         if self.reference is None:
             self.reference = SetPoint(here)
         elif self.lead_in:
-            self.reference = led_in(here, self.reference)
-        self.lead = self.reference.lead if isinstance(self.reference, LeadIn) else 0.0
+            goal = np.asarray(self.reference(0.0)[0], dtype=float)
+            distance = float(np.abs(goal - here).max())
+            if distance > _THERE:
+                self.lead = max(0.3, 1.875 * distance / SPEED)  # a quintic's peak is 15/8 of its mean
+                self._way = quintic(here, goal, duration=self.lead)
 
     def move_to(self, t, goal):
         """A set point takes over from where the reference is, moving as it moves."""
         if not isinstance(self.reference, SetPoint):
             q, qd, _ = self(t)
-            self.reference = SetPoint(q, qd=qd)
-            self.reference(t - self.begins)
+            self.reference, self._way = SetPoint(q, qd=qd), None
+            self(t)  # its time begins now
         self.reference.move_to(goal)
 
 

@@ -1,6 +1,5 @@
 """The handle of a loop in the background: how it is tuned, stopped, cut and watched, whatever it runs in."""
 
-import abc
 import math
 import threading
 from dataclasses import dataclass
@@ -57,7 +56,7 @@ class LiveSamples:
     trips: np.ndarray
 
 
-class LiveRun(abc.ABC):
+class LiveRun:
     """A loop in the background: made by `bench.start`.
 
     ================================ ==========================================================================
@@ -70,9 +69,10 @@ class LiveRun(abc.ABC):
     join(timeout)                    wait for the end; raises what ended it early
     alive, phase, error, recording   whether it runs; what it does; what went wrong or None; the file
     ================================ ==========================================================================
-    """
 
-    recording = None  # the Recording, as far as it is written; None if there is none on disk
+    Subclasses supply `alive`, `recording`, `begin()`: start, the first cycle follows; `wait(timeout)`: for the end, at
+    most `timeout` s, returns whether it came; `give_up()`: cut the drive of a loop that does not obey.
+    """
 
     def __init__(self, bench, controller, cargo, options, memory):
         """cargo: controller and reference as bytes; options: of `live_loop`; memory: the SharedLoop."""
@@ -81,39 +81,17 @@ class LiveRun(abc.ABC):
         self._gains = gains_of(controller)
         self._lock = threading.Lock()  # orders may come from several widgets' threads
 
-    # ---- what a subclass supplies
-
-    @property
-    @abc.abstractmethod
-    def alive(self):
-        """Whether the loop still runs, on its way to the rest pose included."""
-
-    @abc.abstractmethod
-    def begin(self):
-        """Start; the first cycle follows. Raises what kept it from that."""
-
-    @abc.abstractmethod
-    def wait(self, timeout):
-        """Wait for the end, at most `timeout` s. Returns whether it came."""
-
-    @abc.abstractmethod
-    def give_up(self):
-        """Cut the drive of a loop that does not obey."""
-
     def is_here(self):
         """Whether the caller is the loop itself."""
         return False
 
-    @abc.abstractmethod
     def _take_back(self):
         """Have the port again, if the loop had it."""
-
-    # ---- orders and looks
 
     @property
     def phase(self):
         """What it does: 'starting', 'leading in', 'running', 'moving to the rest pose' or 'ended'."""
-        return shared_loop.PHASES[self._memory.phase] if self.alive else shared_loop.PHASES[-1]
+        return shared_loop.PHASES[self._memory.status.phase] if self.alive else shared_loop.PHASES[-1]
 
     @property
     def gains(self):
@@ -129,7 +107,7 @@ class LiveRun(abc.ABC):
         }
         with self._lock:
             self._gains.update(wanted)
-            self._memory.order(gains=tuple(np.concatenate([self._gains[name] for name in GAINS]).tolist()))
+            self._memory.order(gains=np.concatenate([self._gains[name] for name in GAINS]))
 
     def set_point(self, q):
         """Go to q (3,) rad at limited speed; None (or NaN) leaves a joint where its reference is.
@@ -138,7 +116,7 @@ class LiveRun(abc.ABC):
         """
         goal = checked_set_point(self._bench.arm, q)
         with self._lock:
-            self._memory.order(set_point=tuple(goal.tolist()))
+            self._memory.order(set_point=goal)
 
     def give_back(self):
         """The bench is wanted in this process again. Raises BenchError while the loop runs."""
@@ -173,22 +151,19 @@ class LiveRun(abc.ABC):
     def recent(self, seconds):
         """The samples of the last `seconds`, at most 80 s: LiveSamples."""
         rows = self._memory.latest(1 + math.ceil(seconds / self._bench.period))
-        if len(rows):
-            rows = rows[rows[:, 0] >= rows[-1, 0] - seconds]
-        tripped = np.flatnonzero(np.diff(rows[:, 12])) + 1
-        return LiveSamples(rows[:, 0], rows[:, 1:4], rows[:, 4:7], rows[:, 7:10], rows[tripped, 0])
+        rows = rows[rows["t"] >= rows["t"].max(initial=0.0) - seconds]
+        tripped = np.flatnonzero(np.diff(rows["trips"])) + 1
+        return LiveSamples(rows["t"], rows["q"], rows["u"], rows["r"], rows["t"][tripped])
 
     def statistics(self):
         """How well the loop keeps time: LoopStatistics."""
-        memory = self._memory
-        rows = memory.latest(shared_loop.CAPACITY)
+        status, rows = self._memory.status, self._memory.latest(shared_loop.CAPACITY)
+        counts = int(status.samples), int(status.missed), int(status.trips)
         if len(rows) < 2:
-            return LoopStatistics(memory.samples, memory.missed, memory.trips)
-        in_a_row = np.diff(rows[:, -1]) == 1
-        periods, busy = np.diff(rows[:, 10])[in_a_row], rows[:, 11]
+            return LoopStatistics(*counts)
+        periods = np.diff(rows["measured"])[np.diff(rows["number"]) == 1]
         p50, p99 = np.percentile(periods, (50, 99))
-        counts = memory.samples, memory.missed, memory.trips
-        return LoopStatistics(*counts, p50, p99, periods.max(), float(np.median(busy)))
+        return LoopStatistics(*counts, p50, p99, periods.max(), float(np.median(rows["busy"])))
 
     def __repr__(self):
         return f"<LiveRun: {self.phase}; {self.statistics()}>"

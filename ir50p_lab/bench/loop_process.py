@@ -12,9 +12,7 @@ import pickle
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
-import time
 import traceback
 from pathlib import Path
 
@@ -24,9 +22,7 @@ from ir50p_lab.bench.recording import Recording
 from ir50p_lab.bench.shared_loop import SharedLoop
 from ir50p_lab.errors import BenchError, LabError
 
-_READY_WITHIN = 60.0  # s: a cold start imports and compiles
-_OPEN_WITHIN = 20.0  # s: a board that restarts when its port is opened
-_GO = "go"
+_OPENED_WITHIN = 80.0  # s: a cold start imports and compiles, and a board restarts when its port is opened
 _PACKAGE_ROOT = str(Path(__file__).resolve().parents[2])
 _START = f"import sys; sys.path.insert(0, {_PACKAGE_ROOT!r}); from ir50p_lab.bench.loop_process import main; main()"
 
@@ -36,8 +32,8 @@ class ProcessRun(LiveRun):
 
     def __init__(self, bench, controller, cargo, options):
         super().__init__(bench, controller, cargo, options, SharedLoop.shared())
-        self._process, self._path, self._said, self._words = None, None, tempfile.TemporaryFile(), ""
-        self._ended, self._heard, self._stages = threading.Event(), threading.Condition(), set()
+        self._process, self._path, self._stage = None, None, None  # the last stage the child has told of
+        self._told, self._ended = threading.Event(), threading.Event()
 
     def begin(self):
         """Start the child; back when it has the port and its first cycle follows. Raises what kept it from that."""
@@ -46,72 +42,47 @@ class ProcessRun(LiveRun):
         options = {"start_new_session": True, "pass_fds": self._memory.file_descriptors}
         if os.name == "nt":  # either way: Ctrl-C and the notebook's interrupt button are not for the child
             options = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
-        self._process = subprocess.Popen(
-            [sys.executable, "-c", _START],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._said,
-            **options,
-        )
-        threading.Thread(target=self._listen, name="bench loop's messages", daemon=True).start()
+        bench = cloudpickle.dumps((type(self._bench), self._bench._arguments()))
+        work = (sys.path, self._memory.address, os.getpid(), bench, self._cargo, self._options)
+        command = [sys.executable, "-c", _START]
+        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **options)
         try:
-            bench = cloudpickle.dumps((type(self._bench), self._bench._arguments()))
-            with contextlib.suppress(BrokenPipeError):  # it has died: the messages say why
-                _send(self._process.stdin, (sys.path, self._memory.address, os.getpid()))
-                _send(self._process.stdin, (bench, self._cargo, self._options))
-            self._await("ready", _READY_WITHIN)
             self._bench._close()  # the port is the child's from here on
-            with contextlib.suppress(BrokenPipeError):
-                _send(self._process.stdin, _GO)
-            self._await("opened", _OPEN_WITHIN)
+            threading.Thread(target=self._listen, name="bench loop's messages", daemon=True).start()
+            with contextlib.suppress(BrokenPipeError):  # it has died
+                _send(self._process.stdin, work)
+            self._told.wait(_OPENED_WITHIN)
+            if self._stage is None:
+                why = "ended too soon: what it printed says why" if self._ended.is_set() else "does not open the bench"
+                raise self.error or BenchError(f"the loop's process {why}")
         except BaseException:
             self.give_up()
             raise
 
-    def _await(self, stage, timeout):
-        with self._heard:
-            came = self._heard.wait_for(lambda: stage in self._stages or self._ended.is_set(), timeout)
-        if stage in self._stages:
-            return
-        raise self.error or BenchError(
-            f"the loop's process was not {stage} within {timeout:.0f} s"
-            if not came
-            else f"the loop's process ended before it was {stage}{self._words}"
-        )
-
     def _listen(self):
         """Hear what the child says until it is gone."""
-        with contextlib.suppress(EOFError, OSError, pickle.UnpicklingError):
+        with contextlib.suppress(Exception):  # EOFError when it is gone; whatever the error of a stranger raises here
             while True:
                 stage, content = pickle.load(self._process.stdout)
                 if stage == "failed":
-                    self.error = _error_from(content)
-                elif stage == "recording":
+                    self.error = pickle.loads(content)
+                    break
+                if stage == "recording":
                     self._path = content
-                with self._heard:
-                    self._stages.add(stage)
-                    self._heard.notify_all()
+                self._stage = stage
+                self._told.set()
         code = self._process.wait()
-        self._words = self._last_words()
-        self._said.close()
         self._memory.handed_over()
-        if self.error is None and "done" not in self._stages and "opened" in self._stages:
+        if self.error is None and self._stage not in (None, "done"):
             self.error = BenchError(
                 f"the process of the loop has died (exit code {code}): the board has cut the drive 0.1 s after its "
-                f"last command{self._words}"
+                "last command"
             )
         with contextlib.suppress(OSError):
             self._process.stdin.close()
         self._process.stdout.close()
-        with self._heard:
-            self._ended.set()
-            self._heard.notify_all()
-
-    def _last_words(self):
-        """The end of what it printed: where Python's own complaints are."""
-        self._said.seek(0)
-        said = self._said.read()[-1500:].decode("utf-8", "replace").strip()
-        return f"; it said: {said}" if said else ""
+        self._ended.set()
+        self._told.set()
 
     @property
     def pid(self):
@@ -144,13 +115,6 @@ class ProcessRun(LiveRun):
             self._bench._open()
 
 
-def _error_from(content):
-    try:
-        return pickle.loads(content["error"])
-    except Exception:
-        return BenchError(f"the loop in the background failed: {content['text']}")
-
-
 def _send(pipe, message):
     pickle.dump(message, pipe)
     pipe.flush()
@@ -161,38 +125,28 @@ def _send(pipe, message):
 
 def main():
     """What the child does, from its first to its last moment."""
-    orders = os.fdopen(os.dup(0), "rb")
-    answers = os.fdopen(os.dup(1), "wb")
+    orders, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a controller prints must not get among the answers
-    path, address, parent = pickle.load(orders)
-    sys.path[:] = path
+    sys.path[:], address, *work = pickle.load(orders)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    memory = None
+    memory = SharedLoop.attach(address)
     try:
-        memory = SharedLoop.attach(address)
-        _serve(orders, answers, memory, parent)
+        _serve(orders, answers, memory, *work)
         _send(answers, ("done", None))
     except BaseException as error:
-        if memory is not None:
-            memory.enter(shared_loop.ENDED)
+        memory.status.phase = shared_loop.ENDED
         with contextlib.suppress(OSError):
             _send(answers, ("failed", _packed_error(error)))
-    finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
 
 
-def _serve(orders, answers, memory, parent):
+def _serve(orders, answers, memory, parent, bench, cargo, options):
     import cloudpickle
 
     from ir50p_lab.bench.live_loop import live_loop
     from ir50p_lab.bench.pace import warm_up
 
-    bench, cargo, options = pickle.load(orders)
     (kind, arguments), (controller, reference) = cloudpickle.loads(bench), cloudpickle.loads(cargo)
     warm_up(controller, reference)
-    _send(answers, ("ready", None))
-    pickle.load(orders)  # the word to go; EOFError if nobody is there to give it
     left_alone = threading.Event()
     threading.Thread(target=_watch, args=(orders, left_alone), daemon=True).start()
 
@@ -222,19 +176,20 @@ def _serve(orders, answers, memory, parent):
 def _watch(orders, left_alone):
     """The parent never writes again: reading ends when it is gone."""
     with contextlib.suppress(OSError):
-        while os.read(orders.fileno(), 1):
-            time.sleep(0.01)
+        orders.read()
     left_alone.set()
 
 
 def _packed_error(error):
-    text = "".join(traceback.format_exception_only(error)).strip()
-    if not isinstance(error, LabError):
-        with contextlib.suppress(Exception):
-            error.add_note("in the loop's process:\n" + "".join(traceback.format_tb(error.__traceback__)[-3:]))
+    """The error as bytes that the parent can read; a BenchError with its text where it cannot be sent."""
     import cloudpickle
 
+    if not isinstance(error, LabError):
+        error.add_note("in the loop's process:\n" + "".join(traceback.format_tb(error.__traceback__)[-3:]))
     try:
-        return {"error": cloudpickle.dumps(error), "text": text}
+        packed = cloudpickle.dumps(error)
+        pickle.loads(packed)
     except Exception:
-        return {"error": b"", "text": text}
+        text = "".join(traceback.format_exception_only(error)).strip()
+        packed = pickle.dumps(BenchError(f"the loop in the background failed: {text}"))
+    return packed

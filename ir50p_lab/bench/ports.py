@@ -48,26 +48,19 @@ def open_port(device, baud):
 
 def port_error(device, error):
     """The PortError for what pyserial raised when opening `device`: what is wrong and what to do."""
-    text = str(error)
-    number = getattr(error, "errno", None)
-    if number in (errno.EBUSY, errno.EAGAIN) or "lock port" in text:
-        return PortError(f"{device} is busy: another program holds it. {_busy_remedy(device)}")
-    if number in (errno.EACCES, errno.EPERM) or "PermissionError" in text:
-        if sys.platform == "win32":  # which reports a port in use as 'access denied'
-            return PortError(f"{device} is busy: another program holds it. {_busy_remedy(device)}")
+    text, number = str(error), getattr(error, "errno", None)
+    # Windows reports a port in use as 'access denied', without a number
+    if number in (errno.EBUSY, errno.EAGAIN) or "lock port" in text or "PermissionError" in text:
+        holder = f" ('fuser -v {device}' names it; ModemManager lets go after half a minute)"
+        return PortError(
+            f"{device} is busy: another program holds it{holder if sys.platform.startswith('linux') else ''}. Close "
+            "the Arduino IDE's monitor and shut down other notebooks' kernels, then try again"
+        )
+    if number in (errno.EACCES, errno.EPERM):
         return PortError(f"no permission to open {device}: {permission_remedy(device)}")
     if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV) or "FileNotFoundError" in text:
         return PortError(f"{device} does not exist: {_missing_remedy()}")
     return PortError(f"{device} does not open ({text}): is it a serial port? {_missing_remedy()}")
-
-
-def _busy_remedy(device):
-    if sys.platform.startswith("linux"):
-        return (
-            "Close the Arduino IDE's monitor and other notebooks' kernels ('fuser -v "
-            f"{device}' names the program; ModemManager lets go after half a minute)"
-        )
-    return "Close the Arduino IDE's monitor and shut down other notebooks' kernels, then try again"
 
 
 def _missing_remedy():

@@ -61,15 +61,6 @@ COMMAND_SIZE = _COMMAND.size + _CRC.size
 REPLY_SIZE = _STATE.size + _CRC.size
 
 
-class Command(NamedTuple):
-    """Computer to board. seq 0..255; type HELLO, NAME, DRIVE or STOP; pwm three whole numbers, -255..255."""
-
-    seq: int
-    type: int
-    pwm: tuple = (0, 0, 0)
-    gripper: bool = False
-
-
 class State(NamedTuple):
     """Board to computer. counts (3,) quarters of a count; status: see the bits above; the last two wrap at 65536."""
 
@@ -96,33 +87,17 @@ class Identity(NamedTuple):
     reset_cause: int
 
 
-def encode(frame):
-    """Bytes of a Command, a State or an Identity, with check. Raises struct.error for numbers that do not fit."""
-    if isinstance(frame, Command):
-        data = _COMMAND.pack(COMMAND_SYNC, frame.seq, frame.type, *frame.pwm, GRIPPER if frame.gripper else 0)
-    elif isinstance(frame, State):
-        seq, counts, *rest = frame
-        data = _STATE.pack(REPLY_SYNC, seq, STATE, *counts, *rest)
-    else:
-        seq, protocol, firmware, board_id, *rest = frame
-        number = board_id.to_bytes(3, "little")
-        data = _IDENTITY.pack(REPLY_SYNC, seq, IDENTITY, MAGIC, protocol, *firmware, number, *rest)
-    return data + _CRC.pack(zlib.crc32(data))
+def encode_command(seq, kind, pwm=(0, 0, 0), gripper=False):
+    """Bytes of a command, with check; seq 0..255; kind HELLO, NAME, DRIVE or STOP; pwm three whole numbers, -255..255.
 
-
-def decode_command(data):
-    """The Command in COMMAND_SIZE bytes, or None if they are none."""
-    sync, seq, kind, *pwm, flags = _COMMAND.unpack_from(data)
-    if sync != COMMAND_SYNC or kind not in (HELLO, NAME, DRIVE, STOP) or flags > GRIPPER:
-        return None
-    if not all(-LIMIT_PWM <= u <= LIMIT_PWM for u in pwm) or not _check(data):
-        return None
-    return Command(seq, kind, tuple(pwm), bool(flags))
+    Raises struct.error for numbers that do not fit.
+    """
+    return with_check(_COMMAND.pack(COMMAND_SYNC, seq, kind, *map(int, pwm), GRIPPER if gripper else 0))
 
 
 def decode_reply(data):
     """The State or Identity in REPLY_SIZE bytes, or None if they are neither."""
-    if data[0] != REPLY_SYNC or data[2] not in (STATE, IDENTITY) or not _check(data):
+    if data[0] != REPLY_SYNC or data[2] not in (STATE, IDENTITY) or with_check(data[: -_CRC.size]) != data:
         return None
     if data[2] == STATE:
         _, seq, _, *counts, status, bad_frames, clock_ms = _STATE.unpack_from(data)
@@ -134,41 +109,36 @@ def decode_reply(data):
     return Identity(seq, protocol, (major, minor), board_id, *rest) if magic == MAGIC else None
 
 
-def _check(data):
-    return zlib.crc32(data[: -_CRC.size]) == _CRC.unpack_from(data, len(data) - _CRC.size)[0]
+def with_check(data):
+    """The bytes of a frame and its CRC-32."""
+    return data + _CRC.pack(zlib.crc32(data))
 
 
 class FrameParser:
-    """Finds frames in a stream of bytes, in pieces of any size; drops and counts what is none.
+    """Finds replies in a stream of bytes, in pieces of any size; drops and counts what is none.
 
     After a bad frame it goes on one byte behind its sync byte, so no good frame is lost to the noise before it.
     Attribute `bad`: how often a sync byte was not the start of a valid frame.
     """
 
-    def __init__(self, side="replies"):
-        """side: "replies" (what the computer receives) or "commands" (what the board receives)."""
-        layouts = {
-            "replies": (REPLY_SYNC, REPLY_SIZE, decode_reply),
-            "commands": (COMMAND_SYNC, COMMAND_SIZE, decode_command),
-        }
-        sync, self._size, self._decode = layouts[side]
-        self._sync = bytes([sync])
-        self._buffer = b""
-        self.bad = 0
+    sync, size, decode = bytes([REPLY_SYNC]), REPLY_SIZE, staticmethod(decode_reply)
+
+    def __init__(self):
+        self._buffer, self.bad = b"", 0
 
     def feed(self, data):
         """Take more bytes. Returns the frames that are complete with them, oldest first."""
-        buffer, size, frames = self._buffer + data, self._size, []
-        start = buffer.find(self._sync)
+        buffer, size, frames = self._buffer + data, self.size, []
+        start = buffer.find(self.sync)
         while 0 <= start <= len(buffer) - size:
-            frame = self._decode(buffer[start : start + size])
+            frame = self.decode(buffer[start : start + size])
             if frame is None:
                 self.bad += 1
                 start += 1
             else:
                 frames.append(frame)
                 start += size
-            start = buffer.find(self._sync, start)
+            start = buffer.find(self.sync, start)
         self._buffer = buffer[start:] if start >= 0 else b""
         return frames
 

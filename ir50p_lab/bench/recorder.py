@@ -32,7 +32,7 @@ class Recorder:
     """
 
     def __init__(self, head, folder=None):
-        self._rows, self._file, self._size = array("d"), None, 0
+        self._rows, self._file = array("d"), None
         head = {"date": datetime.now().astimezone().isoformat(timespec="seconds"), **head}
         self.path = None if folder is False else self._create(head, folder)
         self.recording = Recording(self._rows, head, path=self.path)
@@ -58,7 +58,11 @@ class Recorder:
                 f"cannot record in {folder.absolute()}: {error.strerror}; {_ELSEWHERE}, or record=False for none"
             ) from None
         self.path = path
-        self._put(head_text(head).encode("ascii"))
+        try:
+            self._put(head_text(head).encode("ascii"))
+        except RecordingError:  # the head is of use only as a whole
+            path.unlink(missing_ok=True)
+            raise
         return path
 
     def write(self, sample, pwm, reference, gripper):
@@ -91,26 +95,18 @@ class Recorder:
             self._put(event_text(t, text).encode("ascii"))
 
     def _put(self, data):
-        written = 0
         try:
-            while written < len(data):  # in parts if the disk is nearly full, or a signal came
-                written += os.write(self._file, data[written:])
+            while data:  # in parts if the disk is nearly full, or a signal came
+                data = data[os.write(self._file, data) :]
         except OSError as error:
-            if self._size:  # the head is of use only as a whole
-                self._size += data.rfind(b"\n", 0, written) + 1
             self._give_up(error)
-        self._size += len(data)
 
     def _give_up(self, error):
         """Leave a file of whole lines and say what happened."""
-        try:
-            os.ftruncate(self._file, self._size)
-        except OSError:
-            pass  # then its last line is cut off; loading leaves that out
         os.close(self._file)
         self._file = None
-        if not self._size:  # not even the head
-            self.path.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # else its last line is cut off; loading leaves that out
+            os.truncate(self.path, self.path.read_bytes().rfind(b"\n") + 1)
         raise RecordingError(
             f"the recording {self.path} cannot be written on: {error.strerror}. What was recorded before "
             f"is safe in it; the run ends here. Make room, or {_ELSEWHERE}"

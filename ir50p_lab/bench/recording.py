@@ -10,7 +10,7 @@ import numpy as np
 from ir50p_lab.bench import recording_file
 from ir50p_lab.bench.recording_file import COLUMNS, COUNTS, GRIPPER, MISSED, Q, R, T, U
 from ir50p_lab.bench.recording_plot import plot, summarise
-from ir50p_lab.errors import InputError, RecordingError
+from ir50p_lab.errors import RecordingError
 
 
 class RecordingWarning(UserWarning):
@@ -37,7 +37,8 @@ class Recording:
 
     def __init__(self, table, header=None, *, path=None, notes=(), events=()):
         """table: (n, 15) array as `recording_file.COLUMNS`, or the growing array('d') of a Recorder."""
-        self._rows, self._cache = table, None
+        self._rows = table if isinstance(table, array) else array("d", np.asarray(table, dtype=float).tobytes())
+        self._cache = None
         self.header, self.path, self.notes = dict(header or {}), path, tuple(notes)
         self.events = list(events)
 
@@ -48,12 +49,7 @@ class Recording:
         parts = ((T, t), (Q, q), (COUNTS, counts), (U, u), (R, reference), (GRIPPER, gripper), (MISSED, missed))
         for place, values in parts:
             if values is not None:
-                try:
-                    table[:, place] = values
-                except ValueError:
-                    raise InputError(
-                        f"shape {np.shape(values)} beside {len(t)} times: give t (n,), q, counts, u, reference (n, 3)"
-                    ) from None
+                table[:, place] = values  # NumPy refuses another shape
         return cls(table, header)
 
     @classmethod
@@ -88,16 +84,12 @@ class Recording:
     @property
     def _table(self):
         if self._cache is None or len(self._cache) != len(self):
-            if isinstance(self._rows, array):  # a copy, for an array that is looked at cannot grow
-                table = np.frombuffer(self._rows.tobytes()).reshape(-1, len(COLUMNS))
-            else:
-                table = np.array(self._rows, dtype=float)
-            table.setflags(write=False)
-            self._cache = table
+            # a copy, for an array that is looked at cannot grow; read-only
+            self._cache = np.frombuffer(self._rows.tobytes()).reshape(-1, len(COLUMNS))
         return self._cache
 
     def __len__(self):
-        return len(self._rows) // len(COLUMNS) if isinstance(self._rows, array) else len(self._rows)
+        return len(self._rows) // len(COLUMNS)
 
     t = property(lambda self: self._table[:, T], doc="Times (n,) s.")
     q = property(lambda self: self._table[:, Q], doc="Measured angles (n, 3) rad.")
@@ -139,10 +131,8 @@ class Recording:
 
     def recent(self, seconds):
         """The last `seconds` as a Recording of its own; cheap while the run goes on."""
-        rows, count = self._rows, 1 + math.ceil(seconds / float(self.header.get("period_s", 0.01)))
-        if isinstance(rows, array):
-            rows = np.frombuffer(rows[-count * len(COLUMNS) :].tobytes()).reshape(-1, len(COLUMNS))
-        return Recording(rows[-count:], self.header)
+        count = 1 + math.ceil(seconds / float(self.header.get("period_s", 0.01)))
+        return Recording(self._rows[-count * len(COLUMNS) :], self.header)
 
     def metrics(self):
         """How each joint did: list of three JointSummary. Raises RecordingError if there is no sample."""
@@ -170,10 +160,8 @@ class Recording:
         head = f"<p>{escape(repr(self)[1:-1])}</p>" + "".join(f"<p>{escape(note)}</p>" for note in self.notes)
         if not len(self):
             return head
-        names = ("joint", "start [rad]", "final [rad]", "error [rad]", "overshoot [rad]", "swing [rad]", "std(u) [PWM]")
-        rows = ["".join(f"<th>{name}</th>" for name in names)]
-        for one in self.metrics():
-            angles = (one.start, one.final, one.error, one.overshoot, one.swing)
-            cells = [str(one.joint), *(f"{x:.3f}" for x in angles), f"{one.u_std:.0f}"]
-            rows.append("".join(f"<td>{'-' if cell == 'nan' else cell}</td>" for cell in cells))
-        return head + "<table>" + "".join(f"<tr>{row}</tr>" for row in rows) + "</table>"
+        import pandas as pd
+
+        units = {name: f"{name} [rad]" for name in ("start", "final", "error", "overshoot", "swing")}
+        table = pd.DataFrame(self.metrics()).rename(columns=units | {"u_std": "std(u) [PWM]"})
+        return head + table.to_html(index=False, float_format="{:.3f}".format, na_rep="-")

@@ -7,27 +7,26 @@ t, q1, q2, q3; they may be separated by ';' or tabs, and have decimal commas the
 
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 
 from ir50p_lab.errors import RecordingError
 
 FORMAT = "ir50p_lab recording"
-COLUMNS = ("t", "q1", "q2", "q3", "counts1", "counts2", "counts3", "u1", "u2", "u3", "r1", "r2", "r3")
-COLUMNS += ("gripper", "missed")
-T, Q, COUNTS, U, R, GRIPPER, MISSED = 0, slice(1, 4), slice(4, 7), slice(7, 10), slice(10, 13), 13, 14
-_ROW = "%.6f,%.6f,%.6f,%.6f,%g,%g,%g,%g,%g,%g,%.6f,%.6f,%.6f,%d,%d\n"
-_CELLS = _ROW.strip().split(",")
-_REQUIRED = COLUMNS[:4]
 _GROUPS = (("counts1", "counts2", "counts3"), ("u1", "u2", "u3"), ("r1", "r2", "r3"))
+_REQUIRED = ("t", "q1", "q2", "q3")
+COLUMNS = (*_REQUIRED, *sum(_GROUPS, ()), "gripper", "missed")
+T, Q, COUNTS, U, R, GRIPPER, MISSED = 0, slice(1, 4), slice(4, 7), slice(7, 10), slice(10, 13), 13, 14
+_CELLS = 4 * ("%.6f",) + 6 * ("%g",) + 3 * ("%.6f",) + 2 * ("%d",)
+_ROW = ",".join(_CELLS) + "\n"
 _EVENT = re.compile(r"[ \"]*#\W*event: (-?[\d.]+) s: (.*)")
 _UNITS = "t s; q rad; counts of the 10-bit converter; u PWM counts; r (reference) rad; gripper 1 closed; missed cycles"
 
 
 def head_text(header):
     """The lines before the first sample. header: dict of str."""
-    lines = [f"# {FORMAT}: 1", f"# units: {_UNITS}"]
-    return "\n".join(lines) + "\n" + told_text(header) + ",".join(COLUMNS) + "\n"
+    return told_text({FORMAT: 1, "units": _UNITS} | header) + ",".join(COLUMNS) + "\n"
 
 
 def told_text(header):
@@ -37,21 +36,23 @@ def told_text(header):
 
 def rows_text(table, events=()):
     """The lines of samples. table: (n, 15), columns as COLUMNS, NaN where not known; events: [(t, text), ...]."""
-    if events:
-        places = np.searchsorted(table[:, T], [t for t, _ in events], side="left")
-        parts, begin = [], 0
-        for (t, text), end in zip(events, places, strict=True):
-            parts += [rows_text(table[begin:end]), event_text(t, text)]
-            begin = end
-        return "".join([*parts, rows_text(table[begin:])])
-    if not np.isnan(table).any():
-        return "".join([_ROW % tuple(row) for row in table.tolist()])
-    return "".join(map(row_text, table.tolist()))
+    lines = [row_text(row) for row in table.tolist()]
+    places = np.searchsorted(table[:, T], [t for t, _ in events], side="left")
+    for place, event in reversed(list(zip(places, events, strict=True))):
+        lines.insert(place, event_text(*event))
+    return "".join(lines)
 
 
 def row_text(row):
     """The line of one sample: 15 numbers as COLUMNS, NaN where not known."""
-    return ",".join(["" if x != x else form % x for form, x in zip(_CELLS, row, strict=True)]) + "\n"
+    if not math.isnan(sum(row)):
+        return _ROW % tuple(row)
+    return ",".join(["" if math.isnan(x) else form % x for form, x in zip(_CELLS, row, strict=True)]) + "\n"
+
+
+def event_text(t, text):
+    """The line that says what was changed at t (s) in the middle of a run."""
+    return f"# event: {t:.3f} s: {_one_line(text)}\n"
 
 
 def _one_line(value):
@@ -76,15 +77,36 @@ def read(path):
     Raises RecordingError that names the file, the line, what is wrong there, and the remedy.
     """
     try:
-        with open(path, "rb") as file:
-            data = file.read()
+        data = Path(path).read_bytes()
     except OSError as error:
         raise RecordingError(f"cannot read the recording {path}: {error.strerror}; check the path") from None
-    return parse(data, str(path))
+    text = _text(data, path)
+    ended, lines = text.endswith(("\n", "\r")), text.splitlines()
+    first = next((k for k, line in enumerate(lines) if _bare(line)[:1] not in ("", "#")), len(lines))
+    if first == len(lines) or (first == len(lines) - 1 and not ended):
+        raise RecordingError(f"{path} ends before its first sample: the run was stopped as it began; record again")
+    header = _read_header(lines[:first], 1, path)
+    delimiter, places = _read_columns(lines[first], f"{path}, line {first + 1}")
+    width, notes = lines[first].count(delimiter) + 1, ()
+    if not ended and (FORMAT in header or lines[-1].count(delimiter) + 1 != width):
+        notes = (f"its last line ({len(lines)}) is not complete and was left out: the program stopped as it wrote",)
+        lines.pop()
+    rows, numbers, events = [], [], []
+    for number, line in enumerate(lines[first + 1 :], first + 2):
+        place = f"{path}, line {number}"
+        if found := _EVENT.match(line):
+            events.append((_number(found[1], place), _as_written(found[2].rstrip(';,\t" '), place)))
+        elif line.lstrip(' "').startswith("#"):  # statistics, which stand at the end
+            header |= _read_header([line], number, path)
+        elif line.strip(" ;,\t"):  # else an empty line of a spreadsheet
+            rows.append(_read_row(line, place, delimiter, places, width))
+            numbers.append(number)
+    table = np.array(rows).reshape(-1, len(COLUMNS))
+    _check(table, numbers, path)
+    return {key: value for key, value in header.items() if key not in (FORMAT, "units")}, table, notes, tuple(events)
 
 
-def parse(data, name):
-    """The same from the bytes of a file; name: for messages."""
+def _text(data, name):
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         raise RecordingError(f"{name} is UTF-16 text: save it as plain CSV (not 'Unicode text')")
     try:
@@ -93,131 +115,71 @@ def parse(data, name):
         text = data.decode("latin-1")
     if "\0" in text:
         raise RecordingError(f"{name} is no text file; a recording is a CSV file")
-    lines = text.splitlines()
-    header, first = _read_header(lines, name)
-    ours = FORMAT in header
-    if first == len(lines) or (first == len(lines) - 1 and not text.endswith("\n")):
-        raise RecordingError(f"{name} ends before its first sample: the run was stopped as it began; record again")
-    delimiter, places = _read_columns(lines[first], first + 1, name)
-    notes, body = [], lines[first + 1 :]
-    width = lines[first].count(delimiter) + 1
-    if body and not text.endswith(("\n", "\r")) and (ours or body[-1].count(delimiter) + 1 != width):
-        notes.append(f"its last line ({len(lines)}) is not complete and was left out: the program stopped as it wrote")
-        body = body[:-1]
-    table = _read_rows(body, first + 2, name, delimiter, places, width)
-    header.pop(FORMAT, None), header.pop("units", None)
-    events = tuple(_events(body, first + 2, name))
-    told = [line for line in body if line.lstrip(' "').startswith("#") and not _EVENT.match(line)]
-    header.update(_read_header(told, name)[0])  # statistics, which stand at the end
-    return header, table, tuple(notes), events
+    return text
 
 
-def event_text(t, text):
-    """The line that says what was changed at t (s) in the middle of a run."""
-    return f"# event: {t:.3f} s: {_one_line(text)}\n"
+def _bare(line):
+    """A line without what spreadsheets pad and quote it with."""
+    return line.strip().rstrip(";,\t").strip('"')
 
 
-def _events(lines, number, name):
-    for k, line in enumerate(lines):
-        found = _EVENT.match(line)
-        place = f"{name}, line {number + k}"
-        if found and not _is_number(found[1]):
-            raise RecordingError(f"{place}: {found[1]} s is no time; repair or delete that line")
-        if found:
-            yield float(found[1]), _as_written(found[2].rstrip(';,\t" '), place)
-
-
-def _read_header(lines, name):
-    """Header and the index of the line behind it."""
+def _read_header(lines, number, name):
+    """{key: value} of lines `# key: value`, the first of which has this number."""
     header = {}
-    for k, line in enumerate(lines):
-        line = line.strip().rstrip(";,\t").strip('"')  # spreadsheets pad and quote
-        if line and not line.startswith("#"):
-            return header, k
-        key, colon, value = line.lstrip("# ").partition(":")
+    for k, line in enumerate(lines, number):
+        key, colon, value = _bare(line).lstrip("# ").partition(":")
         if colon:
-            header[key.strip()] = _as_written(value.strip(), f"{name}, line {k + 1}")
-    return header, len(lines)
+            header[key.strip()] = _as_written(value.strip(), f"{name}, line {k}")
+    return header
 
 
-def _read_columns(line, number, name):
+def _read_columns(line, place):
     """Delimiter, and the column of the file for each of COLUMNS (None: not there)."""
     delimiter = next((d for d in ";\t" if d in line), ",")
     names = [cell.strip().strip('"').lower() for cell in line.split(delimiter)]
     need = "the first line after the '#' lines names the columns: t,q1,q2,q3 at least, then u1,u2,u3 and others"
     missing = [column for column in _REQUIRED if column not in names]
     if missing:
-        raise RecordingError(f"{name}, line {number}: no column {', '.join(missing)} in {line.strip()[:60]!r}; {need}")
-    doubled = next((column for column in COLUMNS if names.count(column) > 1), None)
-    if doubled:
-        raise RecordingError(f"{name}, line {number}: column {doubled} stands there twice; keep one of them")
+        raise RecordingError(f"{place}: no column {', '.join(missing)} in {line.strip()[:60]!r}; {need}")
     for group in _GROUPS:
         there = [column for column in group if column in names]
-        if there and len(there) < 3:
-            raise RecordingError(
-                f"{name}, line {number}: of {', '.join(group)} only {', '.join(there)}; give all three"
-            )
+        if len(there) in (1, 2):
+            raise RecordingError(f"{place}: of {', '.join(group)} only {', '.join(there)}; give all three")
     return delimiter, [names.index(column) if column in names else None for column in COLUMNS]
 
 
-def _read_rows(lines, number, name, delimiter, places, width):
-    table = np.full((len(lines), len(COLUMNS)), np.nan)
-    decimal_comma = delimiter != ","
-    n, numbers = 0, []
-    for k, line in enumerate(lines):
-        if not line.strip(" ;,\t") or line.lstrip(' "').startswith("#"):
-            continue  # an empty line of a spreadsheet; an event
-        cells = line.replace(",", ".").split(delimiter) if decimal_comma else line.split(",")
-        if len(cells) != width:
-            hint = "decimal commas need ';' between the columns" if len(cells) > width else "the line is cut off"
-            raise RecordingError(
-                f"{name}, line {number + k}: {len(cells)} values for {width} columns ({hint}); "
-                "repair or delete that line"
-            )
-        try:
-            table[n] = [
-                math.nan if place is None or not cells[place].strip() else float(cells[place]) for place in places
-            ]
-        except ValueError:
-            bad = next(p for p in places if p is not None and cells[p].strip() and not _is_number(cells[p]))
-            raise RecordingError(
-                f"{name}, line {number + k}: {cells[bad].strip()!r} is no number; repair or delete that line"
-            ) from None
-        n += 1
-        numbers.append(number + k)
-    table = table[:n]
-    _check(table, numbers, name)
-    return table
+def _read_row(line, place, delimiter, places, width):
+    cells = line.split(delimiter)
+    if len(cells) != width:
+        hint = "decimal commas need ';' between the columns" if len(cells) > width else "the line is cut off"
+        raise RecordingError(f"{place}: {len(cells)} values for {width} columns ({hint}); repair or delete that line")
+    return [math.nan if k is None else _number(cells[k], place) for k in places]
 
 
-def _is_number(cell):
+def _number(cell, place):
+    """A cell as a number, with a decimal point or comma; NaN for an empty one."""
     try:
-        float(cell)
+        return float(cell.replace(",", ".").strip() or "nan")
     except ValueError:
-        return False
-    return True
+        raise RecordingError(f"{place}: {cell.strip()!r} is no number; repair or delete that line") from None
 
 
 def _check(table, numbers, name):
     """Raise RecordingError for the first line whose values cannot be."""
-
-    def refuse(bad, column, why):
-        if bad.any():
-            row = int(np.argmax(bad.reshape(len(table), -1).any(axis=1)))
-            value = np.atleast_2d(table[row, column]).ravel()[int(np.argmax(np.atleast_1d(bad[row])))]
-            raise RecordingError(f"{name}, line {numbers[row]}: {why.format(f'{value:g}')}")
-
     if not len(table):
         return
-    t = table[:, T]
-    repair = "; repair or delete that line"
-    refuse(~np.isfinite(table[:, : Q.stop]), slice(0, Q.stop), "t or an angle is missing or not finite ({})" + repair)
-    refuse(np.isinf(table), slice(None), "a value is infinite" + repair)
-    refuse(np.r_[False, np.diff(t) <= 0], T, "t = {} s is not later than the line before; sort by t, each time once")
-    if len(t) > 1 and np.median(np.diff(t)) > 1.0:
-        raise RecordingError(
-            f"{name}: steps of {np.median(np.diff(t)):g} s; t is in seconds, was it ms? Divide by 1000"
-        )
-    refuse(np.abs(table[:, Q]) > 10.0, Q, "an angle of {} rad; angles are in rad, were they degrees? Times pi/180")
-    refuse((table[:, COUNTS] < 0) | (table[:, COUNTS] > 1023), COUNTS, "{} counts; the converter gives 0..1023")
-    refuse(np.abs(table[:, U]) > 255, U, "u = {}; PWM counts are -255..255: record what was sent, after limits")
+    steps, repair = np.diff(table[:, :1], axis=0, prepend=-math.inf), "; repair or delete that line"
+    for columns, bad, why in (
+        (slice(0, Q.stop), ~np.isfinite(table[:, : Q.stop]), "t or an angle is missing or not finite ({:g})" + repair),
+        (slice(None), np.isinf(table), "a value is infinite" + repair),
+        (slice(0, 1), steps <= 0, "t = {:g} s is not later than the line before; sort by t, each time once"),
+        (Q, np.abs(table[:, Q]) > 10.0, "an angle of {:g} rad; angles are in rad, were they degrees? Times pi/180"),
+        (COUNTS, np.abs(table[:, COUNTS] - 511.5) > 511.5, "{:g} counts; the converter gives 0..1023"),
+        (U, np.abs(table[:, U]) > 255, "u = {:g}; PWM counts are -255..255: record what was sent, after limits"),
+    ):
+        if bad.any():
+            row, column = np.argwhere(bad)[0]
+            raise RecordingError(f"{name}, line {numbers[row]}: {why.format(table[row, columns][column])}")
+    step = np.median(steps[1:]) if len(steps) > 1 else 0.0
+    if step > 1.0:
+        raise RecordingError(f"{name}: steps of {step:g} s; t is in seconds, was it ms? Divide by 1000")

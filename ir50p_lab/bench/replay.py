@@ -7,11 +7,9 @@ import time
 import numpy as np
 
 from ir50p_lab.bench.base import Bench
-from ir50p_lab.bench.calibration import JointCalibration, nominal_calibration
+from ir50p_lab.bench.calibration import JointCalibration
 from ir50p_lab.bench.recording import Recording
 from ir50p_lab.errors import InputError, RecordingError
-from ir50p_lab.inputs import check_arm
-from ir50p_lab.modelling.named_arms import load_arm
 
 
 class ReplayBench(Bench):
@@ -40,16 +38,14 @@ class ReplayBench(Bench):
             raise InputError(f"recording = {recording!r:.60}: give a Recording, or the path of one")
         if not len(recording):
             raise RecordingError(f"{recording!r} has no sample to replay: choose another recording")
-        arm = load_arm() if arm is None else check_arm(arm)
         self.original, self.simulated, self.realtime = recording, recording.simulated, realtime
-        period = recording.period
+        origin = recording.path.name if recording.path else recording.header.get("bench", "data")
         super().__init__(
             arm,
-            _calibration(recording, arm),
-            period=period if math.isfinite(period) else 0.01,  # one sample of unknown origin
+            _calibration(recording.header),
+            period=recording.period if math.isfinite(recording.period) else 0.01,  # one sample of unknown origin
             record_to=False if record_to is None else record_to,
-            name=name
-            or f"replay of {recording.path.name if recording.path else recording.header.get('bench', 'data')}",
+            name=name or f"replay of {origin}",
         )
         counts, known = recording.counts, np.isfinite(recording.counts)
         self._counts = np.where(known, counts, self.calibration.counts(recording.q))
@@ -57,9 +53,6 @@ class ReplayBench(Bench):
         self._k, self._started = 0, 0.0
         told = recording.header.get("bench_id", "none")
         self.bench_id = None if told == "none" else told
-
-    def _open(self):
-        pass
 
     def _begin(self):
         self._started = time.perf_counter()
@@ -74,22 +67,11 @@ class ReplayBench(Bench):
         self._k, t = cycle, self.original.t
         if self.realtime:
             time.sleep(max(0.0, self._started + t[cycle] - t[0] - time.perf_counter()))
+        self._run.pace.missed = int(self._late[cycle])
         return float(t[cycle]), self._counts[cycle], False
-
-    def _missed(self, cycle):
-        return int(self._late[cycle])
 
     def _radians(self, counts):
         return self.original.q[self._k]
-
-    def _send(self, pwm, gripper):
-        return pwm
-
-    def _cut(self):
-        pass
-
-    def _close(self):
-        pass
 
     def _make_guard(self):
         return None  # the arm moved by another command
@@ -106,13 +88,10 @@ class ReplayBench(Bench):
 _TOLD = ("bench", "date", "seed", "firmware", "controller", "note")
 
 
-def _calibration(recording, arm):
-    """The calibration in the head of the recording, else the nominal one of the arm."""
-    head = recording.header
+def _calibration(head):
+    """The JointCalibration in the head of a recording; None if there is none."""
     try:
         slope, zero = (tuple(float(x) for x in head[key].split()) for key in ("counts_per_rad", "counts_at_zero"))
-    except (KeyError, ValueError):
-        return nominal_calibration(arm)
-    if len(slope) != 3 or len(zero) != 3:
-        return nominal_calibration(arm)
-    return JointCalibration(slope=slope, zero=zero, source=head.get("calibration", "of the recording"))
+        return JointCalibration(slope=slope, zero=zero, source=head.get("calibration", "of the recording"))
+    except (KeyError, ValueError):  # an InputError is one, too
+        return None

@@ -8,19 +8,17 @@ import numpy as np
 
 from ir50p_lab.bench import protocol
 from ir50p_lab.bench.base import Bench
-from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.link import PORT_ERRORS, Link
 from ir50p_lab.bench.pace import Clock, Pace, load_controllers
 from ir50p_lab.bench.ports import open_port
 from ir50p_lab.bench.result_files import own_calibration
 from ir50p_lab.errors import BoardError, BoardLostError, InputError
-from ir50p_lab.inputs import check_arm
 
 BOOT_LOADER = 2.0  # s; the Mega's own lasts 1 to 2 s, and 8 s if it hears anything meanwhile: so we keep silent
 HANDSHAKE = 2.0  # s; then nobody is there
 LOST_AFTER = 0.5  # s without answer; the board has cut the drive after 0.1 s, a busy computer may come back
 _BROKEN = protocol.BROKEN_COUNTS
-FIRMWARE = "ir50p_lab/bench/firmware"
+_REMEDY = "put the sketch of ir50p_lab/bench/firmware on the board (its README shows how)"
 
 
 class SerialBench(Bench):
@@ -43,21 +41,13 @@ class SerialBench(Bench):
 
     kind = "board"
 
-    def __init__(self, port, *, arm=None, calibration=None, clock=None, period=0.01, record_to=None, announce=print):
-        from ir50p_lab.modelling.named_arms import load_arm
-
+    def __init__(self, port, *, calibration=None, clock=None, announce=print, **options):
         named = isinstance(port, str | os.PathLike) and str(port)
         if not (named or hasattr(port, "write")):
             raise InputError(f"port = {port!r}: give the name of a serial port, or an open port")
-        arm = load_arm() if arm is None else check_arm(arm)
+        super().__init__(calibration=calibration, **options)
         self.port = os.fspath(port) if named else getattr(port, "name", None) or "a given port"
-        super().__init__(
-            arm,
-            calibration or nominal_calibration(arm),
-            period=period,
-            record_to=record_to,
-            name=f"board on {self.port} for {arm.name}",
-        )
+        self.name = f"board on {self.port} for {self.arm.name}"
         self._given = None if named else port
         self._calibrated = calibration is not None
         self._clock, self._announce = clock or Clock, announce
@@ -92,7 +82,7 @@ class SerialBench(Bench):
         return Pace(self._clock, self.period)
 
     def _measure(self, cycle, drive):
-        kind, command = (protocol.DRIVE, self._command()) if drive else (protocol.STOP, (0, 0, 0))
+        kind, command = (protocol.DRIVE, self._pwm) if drive else (protocol.STOP, (0, 0, 0))
         try:
             state, sent = self._link.ask(kind, command, self._gripper, patience=LOST_AFTER)
         except BoardLostError:
@@ -113,11 +103,10 @@ class SerialBench(Bench):
 
     def _send(self, pwm, gripper):
         try:
-            self._link.tell(protocol.DRIVE, tuple(int(u) for u in pwm), gripper)
+            self._link.tell(protocol.DRIVE, pwm, gripper)
         except PORT_ERRORS as error:
             self.cut()
             raise self._lost(f"is gone ({error})") from error
-        return pwm
 
     def _cut(self):
         if self._link is not None:
@@ -140,20 +129,15 @@ class SerialBench(Bench):
         return self._given is None
 
     def _arguments(self):
-        return {
-            "port": self.port,
-            "arm": self.arm,
-            "calibration": self.calibration,
-            "period": self.period,
-            "record_to": self._record_to,
-        }
+        named = ("port", "arm", "calibration", "period", "record_to")
+        return {name: getattr(self, name) for name in named}
 
     # ---- more than the contract asks for
 
     @property
     def firmware(self):
         """Version of the board's firmware, as '1.1'; the bench must have been open."""
-        return ".".join(map(str, self.identity.firmware))
+        return _dotted(self.identity.firmware)
 
     @property
     def bench_id(self):
@@ -184,14 +168,10 @@ class SerialBench(Bench):
     def _statistics(self, run):
         if self._link is None:
             return super()._statistics(run)
-        known = self._link.statistics._asdict()
         names = ("commands", "repeats", "stale", "bad_replies", "bad_commands")
-        return super()._statistics(run) | {name: known[name] for name in names}
+        return super()._statistics(run) | {name: getattr(self._link.statistics, name) for name in names}
 
     # ---- the rest
-
-    def _command(self):
-        return tuple(int(u) for u in self._pwm)
 
     def _shake_hands(self, patience, kind=protocol.HELLO, pwm=(0, 0, 0)):
         """Say hello until the board says who it is. Raises BoardError, with the remedy, if it is not ours."""
@@ -204,17 +184,14 @@ class SerialBench(Bench):
         except PORT_ERRORS as error:
             raise BoardError(f"{self.port} went away while we said hello ({error}): is the cable firm?") from error
         if identity.protocol != protocol.VERSION:
-            raise BoardError(
-                f"{self.port}: the board's firmware speaks protocol {identity.protocol}, this lab book "
-                f"{protocol.VERSION}: put the sketch of {FIRMWARE} on the board (its README shows how)"
+            other = f"speaks protocol {identity.protocol}, this lab book {protocol.VERSION}"
+        elif identity.firmware < protocol.MINIMUM_FIRMWARE:
+            other = (
+                f"is {_dotted(identity.firmware)}, this lab book needs {_dotted(protocol.MINIMUM_FIRMWARE)} or newer"
             )
-        if identity.firmware < protocol.MINIMUM_FIRMWARE:
-            found, needed = (".".join(map(str, v)) for v in (identity.firmware, protocol.MINIMUM_FIRMWARE))
-            raise BoardError(
-                f"{self.port}: the board's firmware is {found}, this lab book needs {needed} or newer: put the sketch "
-                f"of {FIRMWARE} on the board (its README shows how)"
-            )
-        return identity
+        else:
+            return identity
+        raise BoardError(f"{self.port}: the board's firmware {other}: {_REMEDY}")
 
     def _lost(self, what):
         return BoardLostError(
@@ -234,6 +211,10 @@ class SerialBench(Bench):
         )
 
 
+def _dotted(version):
+    return ".".join(map(str, version))
+
+
 def _opening_resets(transport):
     """Whether opening this port pulls the board's reset line: it does on a board, not on a pseudo-terminal."""
     try:
@@ -245,9 +226,8 @@ def _opening_resets(transport):
 
 def _who_is_it(heard):
     """What to say about a device that does not answer our hello, from the bytes it sent."""
-    remedy = f"put the sketch of {FIRMWARE} on the board (its README shows how)"
     if not heard:
-        return f"nothing answers. Is it a Mega 2560? Then {remedy}, or press its reset button if that is done"
+        return f"nothing answers. Is it a Mega 2560? Then {_REMEDY}, or press its reset button if that is done"
     text = all(32 <= byte < 127 or byte in b"\r\n\t" for byte in heard)
     shown = repr(heard[:24].decode("ascii")) if text else heard[:12].hex(" ")
-    return f"what answers is not our firmware (it sent {shown}). If it is the bench's board, {remedy}"
+    return f"what answers is not our firmware (it sent {shown}). If it is the bench's board, {_REMEDY}"

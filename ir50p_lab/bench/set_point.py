@@ -1,21 +1,18 @@
-"""References for live work: a set point that a hand moves, and the way from where the arm stands to a reference."""
+"""A set point that a hand moves; and what is asked of every reference and set point before the arm is driven there."""
 
 import math
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import numbers, vectors3
 from ir50p_lab.modelling.chain import frames
-from ir50p_lab.signals.quintic import quintic
-from ir50p_lab.signals.reference import Reference, per_joint, pose
+from ir50p_lab.signals.reference import per_joint, pose
 
 SPEED = 0.8  # rad/s: with the arm stretched the tip moves at 0.7 m/s
 ACCELERATION = 3.0  # rad/s^2: full speed after a quarter of a second
 FARTHEST = 2.0  # rad from the measured pose: no drive is asked to close such a gap at once
 NOISE = 0.05  # rad; an arm that stands at an end of its travel may be measured so far beyond it
-_THERE = math.radians(0.25)  # nearer than this a lead-in would only waste time: about the noise of the potentiometers
 
 
 class SetPoint:
@@ -41,10 +38,8 @@ class SetPoint:
 
     def move_to(self, q):
         """From now on go to q (3,) rad; NaN leaves a joint's goal as it is. Raises InputError on anything else."""
-        q = numbers("set point", q, unit="rad")
-        if q.shape != (3,) or np.isinf(q).any():
-            raise InputError(f"set point {q.tolist()}: give one angle per joint, (3,) rad")
-        self.goal = tuple(float(new) if new == new else old for new, old in zip(q, self.goal, strict=True))
+        q = _angles(q)
+        self.goal = tuple(np.where(np.isnan(q), self.goal, q).tolist())
 
     def __call__(self, t):
         """(q, qd, qdd) at the time t, s: three arrays (3,)."""
@@ -72,44 +67,6 @@ class SetPoint:
         self._q[i] = self.goal[i] if there else self._q[i] + new * dt
         self._qd[i] = new
         return (new - v) / dt
-
-
-@dataclass(frozen=True)
-class LeadIn(Reference):
-    """First a quintic from q0 to where `reference` begins, then the reference itself; made by `led_in`.
-
-    q0: (3,) rad; reference: called with its own time, from 0; lead: s, how long the way there takes.
-    """
-
-    q0: tuple
-    reference: object
-    lead: float
-    duration: float = field(init=False)
-
-    def __post_init__(self):
-        object.__setattr__(self, "duration", self.lead + getattr(self.reference, "duration", math.inf))
-        way = quintic(self.q0, np.asarray(self.reference(0.0)[0]), duration=self.lead)
-        object.__setattr__(self, "_way", way)
-
-    def __call__(self, t):
-        """(q, qd, qdd) at the time t, s."""
-        return self._way(t) if t < self.lead else self.reference(t - self.lead)
-
-    def _rows(self, t):
-        return np.array([self(float(moment)) for moment in t]).reshape(-1, 3, 3)
-
-
-def led_in(q, reference, *, speed=SPEED):
-    """`reference` with a way in front that starts at the pose q, at rest: the target starts where the arm stands.
-
-    Args: q: (3,) rad, measured; reference: target(t) -> (q, qd, qdd); speed: rad/s, of the fastest joint, at most.
-    Returns: LeadIn; or `reference` itself if it starts within a quarter of a degree of q.
-    """
-    q = pose("q", q)
-    distance = float(np.abs(np.asarray(reference(0.0)[0]) - q).max())
-    if distance <= _THERE:
-        return reference
-    return LeadIn(q, reference, max(0.3, 1.875 * distance / speed))  # a quintic's peak is 15/8 of its mean
 
 
 def checked_reference(arm, t, value, q=None):
@@ -151,9 +108,7 @@ def checked_set_point(arm, q):
 
     The limits of the joints are checked always, the table (elbow and tip must stay above it) when no joint is NaN.
     """
-    q = numbers("set point", [np.nan if value is None else value for value in q] if np.ndim(q) == 1 else q, unit="rad")
-    if q.shape != (3,) or np.isinf(q).any():
-        raise InputError(f"set point {q.tolist()}: give one angle per joint, (3,) rad")
+    q = _angles(q)
     for i in range(3):
         if not (np.isnan(q[i]) or arm.q_min[i] <= q[i] <= arm.q_max[i]):
             low, high = math.degrees(arm.q_min[i]), math.degrees(arm.q_max[i])
@@ -168,4 +123,12 @@ def checked_set_point(arm, q):
                 f"the set point ({', '.join(f'{x:.0f}' for x in np.degrees(q))}) deg lies {-100 * height:.0f} cm below "
                 "the table: raise joint 2 or joint 3"
             )
+    return q
+
+
+def _angles(q):
+    """Three angles, NaN (or None) for 'leave this joint', as an array; InputError."""
+    q = numbers("set point", q, unit="rad")  # None becomes NaN
+    if q.shape != (3,) or np.isinf(q).any():
+        raise InputError(f"set point {q.tolist()}: give one angle per joint, (3,) rad")
     return q

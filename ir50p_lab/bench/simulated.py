@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.bench.arm_instance import UNIT
-from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Run, Sample
+from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Sample
 from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.runaway import watch_step
@@ -15,9 +15,8 @@ from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, conv
 from ir50p_lab.controllers.base import Controller
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import check_arm, check_controller, check_reference
+from ir50p_lab.inputs import check_controller, check_reference
 from ir50p_lab.jit import jit
-from ir50p_lab.modelling.named_arms import load_arm
 
 _BLOCK = 1000  # samples between two looks at the disk and at Ctrl-C in a compiled run
 _KEPT = 100_000  # cycles of truth: a live run may last for hours
@@ -86,9 +85,9 @@ class SimulatedBench(Bench):
     Args:
         arm: Arm with actuators; default `load_arm()`. unit: table of what is not ideal; seed: which copy of it, and
         the noise, counted from IR50P_UNIT (IR50P_SEED: other noise). q0: (3,) rad, where the arm stands when first
-        opened (default zero). realtime: pace the cycles by the clock. period: s, whole milliseconds.
-        calibration: default the nominal one, from which the unit differs a little, as a real one does.
-        record_to: folder for recordings, or False for none on disk.
+        opened (default zero). realtime: pace the cycles by the clock. name: default by arm and seed. options:
+        calibration: default the nominal one, from which the unit differs a little, as a real one does; period: s, whole
+        milliseconds; record_to: folder for recordings, or False for none on disk.
 
     Attributes: plant: the SimulatedArm; truth: Truth of the last run, for tests and for plots that say so.
     Raises: ArmError without actuators, InputError for a period or q0 that is not possible.
@@ -97,29 +96,16 @@ class SimulatedBench(Bench):
     kind = "simulated"
     simulated = True
 
-    def __init__(
-        self,
-        arm=None,
-        *,
-        unit=UNIT,
-        seed=0,
-        q0=None,
-        realtime=False,
-        period=0.01,
-        calibration=None,
-        record_to=None,
-        name=None,
-    ):
-        arm = load_arm() if arm is None else check_arm(arm)
-        self.plant = SimulatedArm(arm, unit, seed, q0=q0)
+    def __init__(self, arm=None, *, unit=UNIT, seed=0, q0=None, realtime=False, name=None, **options):
+        super().__init__(arm, **options)
+        self.plant = SimulatedArm(self.arm, unit, seed, q0=q0)
         noise = "" if self.plant.noise_seed is None else f", noise {self.plant.noise_seed}"
-        name = name or f"simulated {arm.name}, unit {self.plant.seed}{noise}"
-        super().__init__(arm, calibration or self.plant.nominal, period=period, record_to=record_to, name=name)
+        self.name = name or f"simulated {self.arm.name}, unit {self.plant.seed}{noise}"
         self._steps = round(self.period / STEP)
         if abs(self._steps * STEP - self.period) > 1e-9:
-            raise InputError(f"period = {period} s: the simulated bench needs whole milliseconds")
+            raise InputError(f"period = {self.period} s: the simulated bench needs whole milliseconds")
         self.realtime = realtime
-        self._queue = np.zeros((int(self.plant.unit.delay), JOINTS))
+        self._queue = np.zeros((self.plant.unit.delay, JOINTS))
         self._truth, self._cycle, self._acting = deque(maxlen=_KEPT), 0, np.zeros(JOINTS)
 
     @property
@@ -128,9 +114,6 @@ class SimulatedBench(Bench):
         return f"simulated-unit-{self.plant.seed}"
 
     # ---- what Bench asks for
-
-    def _open(self):
-        pass
 
     def _begin(self):
         self._queue[:], self._acting, self._cycle = 0.0, np.zeros(JOINTS), 0
@@ -166,7 +149,6 @@ class SimulatedBench(Bench):
 
     def _send(self, pwm, gripper):
         self._acting = pwm
-        return pwm
 
     def _cut(self):
         self._queue[:] = 0.0
@@ -192,19 +174,9 @@ class SimulatedBench(Bench):
         check_reference(reference, sampled=True)
         controller.reset()
         cycles = self._number_of_cycles(seconds)
-        self._end_run()  # of a loop that was left by break
-        run = self._run = Run(self._start_recorder({**header_of(controller), **header}) if record else None, reference)
-        self._pwm = np.zeros(JOINTS)
-        try:
-            self._begin()
-            run.guard = self._make_guard()
+        with self._running(reference, record, header_of(controller) | header) as run:
             for first in range(0, cycles, _BLOCK):
                 self._block(controller, run, np.arange(first, min(first + _BLOCK, cycles)))
-        except BaseException:
-            self.cut()
-            raise
-        finally:
-            self._end_run()
         return self.recording if record else None
 
     def _block(self, controller, run, k):
@@ -225,6 +197,8 @@ class SimulatedBench(Bench):
         if run.recorder is not None and done:
             run.recorder.write_block(t[:done], rows[:, 3:6], rows[:, :3], rows[:, 6:9], r[:done, 0], self._gripper, 0)
         self._truth.append((t[:done], rows[:, 9:12], rows[:, 12:15]))
+        if done:
+            self._last = Sample(float(t[done - 1]), rows[-1, 3:6].copy(), rows[-1, :3].copy(), 0)
         run.guard.judge(alarm, t[min(done, len(t) - 1)])
         if done < len(t):
             checked_reference(self.arm, t[done], r[done], out[done, 3:6])
@@ -232,7 +206,6 @@ class SimulatedBench(Bench):
                 f"the command of the controller at t = {t[done]:.6g} s is not finite; the drive has been cut. Check "
                 "the reference, and reset the controller"
             )
-        self._last = Sample(float(t[-1]), rows[-1, 3:6].copy(), rows[-1, :3].copy(), 0)
 
     @property
     def truth(self):

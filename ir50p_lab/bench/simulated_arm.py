@@ -20,16 +20,16 @@ STEP = 0.001  # s; Moreau's step is of first order, and 1 ms is far below the ti
 HIGHEST_COUNT = 1023.0
 _SETTLE = 2e-4  # rad a link sinks within the play per step: 2 mrad take 10 ms
 
-# places in the array of the unit's numbers: three values each, then one
-GAIN, DEAD, PLAY, SLOPE, ZERO, BOW, LOW, SPAN, DRAG, N_UNIT = 0, 3, 6, 9, 12, 15, 18, 21, 24, 25
+# rows of the array of the unit's numbers, (9, 3): a number for each joint
+GAIN, DEAD, PLAY, SLOPE, ZERO, BOW, LOW, SPAN, DRAG = range(9)
 
 
 @jit()
 def _at_motor(n, w, i, pwm):
     """What the motor of joint i sees of a command: supply saturation, dead zone, its own gain."""
-    top = n[LIMIT + i] / w[GAIN + i]
+    top = n[LIMIT + i] / w[GAIN, i]
     pwm = min(max(pwm, -top), top)
-    return w[GAIN + i] * pwm if abs(pwm) >= w[DEAD + i] else 0.0
+    return w[GAIN, i] * pwm if abs(pwm) >= w[DEAD, i] else 0.0
 
 
 @jit()
@@ -47,10 +47,10 @@ def advance_unit(theta, n, w, x, joint, pwm, steps):
     u1, u2, u3 = _at_motor(n, w, 0, pwm[0]), _at_motor(n, w, 1, pwm[1]), _at_motor(n, w, 2, pwm[2])
     # gravity presses the teeth of joints 2 and 3 together; only where it is small do they have play
     g2, g3 = cf.gravity_torques(theta, n[GRAVITY], math.cos(q2), math.cos(q2 + q3))
-    side2 = -cf.sign(g2) if abs(g2) > w[DRAG] else 0.0
-    side3 = -cf.sign(g3) if abs(g3) > w[DRAG] else 0.0
+    side2 = -cf.sign(g2) if abs(g2) > w[DRAG, 1] else 0.0
+    side3 = -cf.sign(g3) if abs(g3) > w[DRAG, 2] else 0.0
     j1, j2, j3 = joint[0], joint[1], joint[2]
-    p1, p2, p3 = w[PLAY], w[PLAY + 1], w[PLAY + 2]
+    p1, p2, p3 = w[PLAY, 0], w[PLAY, 1], w[PLAY, 2]
     for _ in range(steps):
         q1, q2, q3, a, b, c = dry_step(theta, n, q1, q2, q3, a, b, c, u1, u2, u3, STEP)
         j1, j2, j3 = _in_play(j1, q1, p1, 0.0), _in_play(j2, q2, p2, side2), _in_play(j3, q3, p3, side3)
@@ -63,8 +63,8 @@ def advance_unit(theta, n, w, x, joint, pwm, steps):
 def read_pots(w, joint, noise, counts):
     """What a converter without steps would read at the links (3,) rad: a bowed line and noise (3,) counts."""
     for i in range(3):
-        along = (joint[i] - w[LOW + i]) / w[SPAN + i]
-        counts[i] = w[ZERO + i] + w[SLOPE + i] * joint[i] + 4 * w[BOW + i] * along * (1 - along) + noise[i]
+        along = (joint[i] - w[LOW, i]) / w[SPAN, i]
+        counts[i] = w[ZERO, i] + w[SLOPE, i] * joint[i] + 4 * w[BOW, i] * along * (1 - along) + noise[i]
 
 
 @jit()
@@ -117,23 +117,13 @@ class SimulatedArm:
         self.place(self._start() if q0 is None else q0)
 
     def _unit_numbers(self):
-        unit, w = self.unit, np.zeros(N_UNIT)
+        unit = self.unit
         low, high = (np.clip(limit, -np.pi, np.pi) for limit in (self.arm.q_min, self.arm.q_max))
         middle = 0.5 * (low + high)
         slope = np.array(self.nominal.slope) * unit.pot_slope
-        for place, values in (
-            (GAIN, unit.motor_gain),
-            (DEAD, unit.dead_zone),
-            (PLAY, 0.5 * np.array(unit.backlash)),
-            (SLOPE, slope),
-            (ZERO, self.nominal.counts(middle) - slope * middle + unit.pot_shift),
-            (BOW, unit.pot_bow),
-            (LOW, low),
-            (SPAN, high - low),
-        ):
-            w[place : place + 3] = values
-        w[DRAG] = unit.link_drag
-        return w
+        zero = self.nominal.counts(middle) - slope * middle + unit.pot_shift
+        play, drag = 0.5 * np.array(unit.backlash), np.full(3, unit.link_drag)
+        return np.array([unit.motor_gain, unit.dead_zone, play, slope, zero, unit.pot_bow, low, high - low, drag])
 
     def _start(self):
         return np.zeros(3) if self._why_not(np.zeros(3)) is None else rest_pose(self.arm)

@@ -15,6 +15,7 @@ import pytest
 from file_bench import FileBench, lines
 
 from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import BenchError, InputError, PortError
 from ir50p_lab.modelling import IR50P
@@ -269,7 +270,7 @@ def test_a_reference_that_raises_in_the_run_cuts():
 
 def test_stop_goes_to_the_rest_pose_first():
     bench = SimulatedBench(IR50P, seed=0, record_to=False)
-    bench.plant = SimulatedBench(IR50P, seed=0, q0=bench.rest_pose + np.array([0.02, -0.05, 0.05])).plant
+    bench.plant = SimulatedBench(IR50P, seed=0, q0=rest_pose(IR50P) + np.array([0.02, -0.05, 0.05])).plant
     with bench:
         run = bench.start(pid(), None)
         until(lambda: run.statistics().cycles > 5)
@@ -277,7 +278,7 @@ def test_stop_goes_to_the_rest_pose_first():
         until(lambda: run.phase == "moving to the rest pose")
         run.stop()
         assert not run.alive and run.error is None
-        assert np.abs(run.recent(0.1).q[-1] - bench.rest_pose).max() < 0.1
+        assert np.abs(run.recent(0.1).q[-1] - rest_pose(IR50P)).max() < 0.1
 
 
 def test_gains_reach_the_loop_and_u_does_not_jump():

@@ -29,23 +29,19 @@ def test_exact_data_give_the_exact_line(seed):
     rng = np.random.default_rng(seed)
     slope, zero = rng.uniform(50, 190, 3), rng.uniform(450, 560, 3)
     q = rng.uniform(-1.5, 1.5, (8, 3))
-    for angles in ("read", "set"):
-        found = fit_calibration(q, zero + slope * q, angles=angles)
-        np.testing.assert_allclose(found.slope, slope, rtol=1e-9)
-        np.testing.assert_allclose(found.zero, zero, rtol=1e-9)
-        np.testing.assert_allclose(found.radians(found.counts(q)), q, atol=1e-12)
+    found = fit_calibration(q, zero + slope * q)
+    np.testing.assert_allclose(found.slope, slope, rtol=1e-9)
+    np.testing.assert_allclose(found.zero, zero, rtol=1e-9)
+    np.testing.assert_allclose(found.radians(found.counts(q)), q, atol=1e-12)
 
 
 def test_the_line_is_that_of_polyfit():
     q, counts = experiment()
-    read, put = fit_calibration(q, counts), fit_calibration(q, counts, angles="set")
+    read = fit_calibration(q, counts)
     for i in range(3):
         (b, a), cov = np.polyfit(counts[:, i], q[:, i], 1, cov=True)
         assert read.slope[i] == pytest.approx(1 / b) and read.zero[i] == pytest.approx(-a / b)
         assert read.stderr_slope[i] == pytest.approx(math.sqrt(cov[0, 0]) / b**2, rel=1e-6)
-        (b, a), cov = np.polyfit(q[:, i], counts[:, i], 1, cov=True)
-        assert put.slope[i] == pytest.approx(b) and put.zero[i] == pytest.approx(a)
-        assert put.stderr_zero[i] == pytest.approx(math.sqrt(cov[1, 1]), rel=1e-6)
 
 
 def test_standard_errors_are_the_spread_of_many_experiments():
@@ -61,7 +57,9 @@ def test_errors_of_the_protractor_make_the_usual_regression_too_flat():
     span, error = 0.1, 0.05  # narrow and rough, to see it well
     data = [experiment(seed, m=40, error=error, span=span) for seed in range(60)]
     with_counts = np.mean([fit_calibration(*d).slope for d in data], axis=0)
-    usual = np.mean([fit_calibration(*d, angles="set").slope for d in data], axis=0)
+    usual = np.mean(
+        [[np.polyfit(q, c, 1)[0] for q, c in zip(*map(np.transpose, d), strict=True)] for d in data], axis=0
+    )
     np.testing.assert_allclose(with_counts, TRUTH.slope, rtol=0.02)
     variance = np.var(np.linspace(-1, 1, 40)) * (span * (HIGH - LOW) / 2) ** 2
     np.testing.assert_allclose(usual / TRUTH.slope, variance / (variance + error**2), rtol=0.03)
@@ -106,8 +104,7 @@ def test_a_negative_slope_is_warned_of(scale):
     q, counts = experiment()
     counts[:, 2] = 512 - scale * (counts[:, 2] - 512) / 1.6
     with pytest.warns(SuspiciousArmWarning, match="joint 3.*negative.*run away"):
-        found = fit_calibration(q, counts)
-    assert any("joint 3: the counts fall" in text for text in found.remarks)
+        fit_calibration(q, counts)
 
 
 def test_narrow_and_rough_data_are_remarked():
@@ -120,7 +117,7 @@ def test_narrow_and_rough_data_are_remarked():
 def test_a_wrapping_potentiometer_is_refused():
     q, counts = experiment()
     counts[:, 0] = (counts[:, 0] + 400) % 1024
-    with pytest.raises(InputError, match=r"joint 1: the counts jump from .* the gap of its track"):
+    with pytest.raises(InputError, match=r"joint 1: the counts do not follow .* the gap of its track"):
         fit_calibration(q, counts)
 
 
@@ -164,12 +161,6 @@ def _put(array, place, value):
 def test_what_no_line_fits_is_refused(change, match):
     with pytest.raises(InputError, match=match):
         fit_calibration(*spoilt(change))
-
-
-def test_bad_options():
-    q, counts = experiment()
-    with pytest.raises(InputError, match="angles"):
-        fit_calibration(q, counts, angles="guessed")
 
 
 @pytest.mark.parametrize(
@@ -228,7 +219,7 @@ def test_broken_files(tmp_path, text, match):
 def test_tables_and_header():
     found = fit_calibration(*experiment(), source="<me>")
     assert found.table().count("±") == 6 and "12" in found.table()
-    assert found._repr_html_().count("<tr>") == 4 and "&lt;me&gt;" in found._repr_html_()
+    assert found._repr_html_().count("<tr") == 4 and "&lt;me&gt;" in found._repr_html_()
     assert "not measured" in TRUTH.table()
     assert set(found.header()) == {"counts_per_rad", "counts_at_zero", "calibration"}
     assert TRUTH.residuals == []

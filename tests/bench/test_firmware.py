@@ -3,7 +3,7 @@
 import pytest
 
 from ir50p_lab.bench import protocol
-from ir50p_lab.bench.protocol import DRIVE, Command, Identity, encode
+from ir50p_lab.bench.protocol import DRIVE, Identity, encode_command
 from tests.emulator.build import firmware
 from tests.emulator.mega import Mega
 from tests.emulator.talk import Talk
@@ -258,7 +258,7 @@ def test_a_computer_that_is_only_slow_does_not_trip_it(board, talk):
 
 def test_bad_frames_do_not_feed_it(board, talk):
     _, last = drive_for(board, talk, 0.1, 120, 120, 120)
-    good = encode(Command(9, DRIVE, (120, 120, 120)))
+    good = encode_command(9, DRIVE, (120, 120, 120))
     for k in range(30):
         damaged = bytearray(good)
         damaged[1 + k % (len(good) - 1)] ^= 1 << k % 8
@@ -322,7 +322,7 @@ def test_the_hardware_watchdog_resets_even_with_interrupts_off(board, talk):
 
 def test_it_counts_bad_frames_and_its_clock_runs(board, talk):
     first = talk.drive(0, 0, 0)
-    board.write(encode(Command(0, DRIVE, (300, 0, 0))))
+    board.write(encode_command(0, DRIVE, (300, 0, 0)))
     board.sleep(0.1)
     second = talk.drive(0, 0, 0)
     assert second.bad_frames - first.bad_frames == 1

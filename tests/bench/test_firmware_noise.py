@@ -2,6 +2,8 @@
 
 import random
 
+from board_frames import CommandParser
+
 from ir50p_lab.bench.protocol import COMMAND_SIZE, FrameParser
 from tests.bench.test_protocol import random_command
 from tests.emulator.noise import noisy_stream, true_frames
@@ -24,7 +26,7 @@ def pour(board, stream):
 def test_200_000_bytes_of_noise_and_no_false_frame():
     stream, valid = noisy_stream(random_command, 200_000, seed=2027)
     stream += bytes(COMMAND_SIZE)  # ends what is unfinished
-    python = FrameParser("commands")
+    python = CommandParser()
     expected = [frame.seq for frame in python.feed(stream)]
     assert len(expected) == len(true_frames(stream, valid, COMMAND_SIZE)) > 200
     board = VirtualBoard()

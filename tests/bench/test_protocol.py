@@ -6,11 +6,12 @@ import zlib
 from pathlib import Path
 
 import pytest
+from board_frames import Command, CommandParser, encode, encode_reply
 from hypothesis import given
 from hypothesis import strategies as st
 
 from ir50p_lab.bench import protocol
-from ir50p_lab.bench.protocol import DRIVE, HELLO, NAME, STOP, Command, FrameParser, Identity, State, encode
+from ir50p_lab.bench.protocol import DRIVE, HELLO, NAME, STOP, FrameParser, Identity, State
 from tests.emulator.noise import noisy_stream, true_frames
 
 HEADER = Path(protocol.__file__).parent / "firmware/ir50p_board/protocol.h"
@@ -38,14 +39,16 @@ def random_command(rng):
 
 def random_reply(rng):
     if rng.random() < 0.2:
-        return encode(
+        return encode_reply(
             Identity(rng.randrange(256), 1, (1, rng.randrange(9)), rng.randrange(1 << 24), rng.randrange(65536), 0)
         )
     counts = tuple(rng.randrange(protocol.MAX_COUNTS + 1) for _ in range(3))
-    return encode(State(rng.randrange(256), counts, rng.randrange(64), rng.randrange(65536), rng.randrange(65536)))
+    return encode_reply(
+        State(rng.randrange(256), counts, rng.randrange(64), rng.randrange(65536), rng.randrange(65536))
+    )
 
 
-SIDES = [("commands", random_command, protocol.COMMAND_SIZE), ("replies", random_reply, protocol.REPLY_SIZE)]
+SIDES = [(CommandParser, random_command, protocol.COMMAND_SIZE), (FrameParser, random_reply, protocol.REPLY_SIZE)]
 
 
 def test_the_sketch_has_the_same_numbers_as_python():
@@ -82,26 +85,26 @@ def test_the_layout_in_bytes():
 
 @given(commands)
 def test_commands_survive_the_wire(command):
-    assert FrameParser("commands").feed(encode(command)) == [command]
+    assert CommandParser().feed(encode(command)) == [command]
 
 
 @given(st.one_of(states, identities))
 def test_replies_survive_the_wire(reply):
-    assert FrameParser("replies").feed(encode(reply)) == [reply]
+    assert FrameParser().feed(encode_reply(reply)) == [reply]
 
 
 @pytest.mark.parametrize(
     "command", [Command(0, DRIVE, (256, 0, 0)), Command(0, ord("X")), Command(0, DRIVE, (0, 0, -999))]
 )
 def test_a_right_check_does_not_excuse_wrong_numbers(command):
-    parser = FrameParser("commands")
+    parser = CommandParser()
     assert parser.feed(encode(command)) == []
     assert parser.bad == 1
 
 
 @pytest.mark.parametrize("reply", [State(0, (4093, 0, 0), 0, 0, 0), State(0, (0, 0, 0), 64, 0, 0)])
 def test_a_reply_out_of_range_is_none(reply):
-    assert FrameParser().feed(encode(reply)) == []
+    assert FrameParser().feed(encode_reply(reply)) == []
 
 
 def test_numbers_that_do_not_fit_are_refused():
@@ -114,7 +117,7 @@ def test_numbers_that_do_not_fit_are_refused():
 @pytest.mark.parametrize(("side", "make", "size"), SIDES)
 def test_every_damage_of_up_to_two_bits_is_found(side, make, size):
     frame = make(random.Random(1))
-    number, decode = int.from_bytes(frame, "little"), FrameParser(side)._decode
+    number, decode = int.from_bytes(frame, "little"), side.decode
     assert decode(frame) is not None
     for i in range(8 * size):
         for j in range(i + 1):
@@ -125,7 +128,7 @@ def test_every_damage_of_up_to_two_bits_is_found(side, make, size):
 @pytest.mark.parametrize(("side", "make", "size"), SIDES)
 def test_pieces_of_any_size_give_the_same(side, make, size):
     stream, _ = noisy_stream(make, 20_000, seed=3)
-    whole, pieces, rng = FrameParser(side), FrameParser(side), random.Random(4)
+    whole, pieces, rng = side(), side(), random.Random(4)
     found, place = [], 0
     while place < len(stream):
         step = rng.randrange(1, 40)
@@ -139,13 +142,13 @@ def test_pieces_of_any_size_give_the_same(side, make, size):
 def test_a_good_frame_right_after_noise_is_not_lost(side, make, size):
     frame, rng = make(random.Random(5)), random.Random(6)
     for _ in range(300):
-        parser = FrameParser(side)
+        parser = side()
         parser.feed(frame[: rng.randrange(size)] + rng.randbytes(rng.randrange(20)))
         assert len(parser.feed(frame)) >= 1
 
 
 def test_reset_forgets_the_unfinished_frame():
-    parser, frame = FrameParser("commands"), encode(Command(1, STOP))
+    parser, frame = CommandParser(), encode(Command(1, STOP))
     parser.feed(frame[:5])
     parser.reset()
     assert parser.feed(frame[5:]) == []
@@ -154,19 +157,20 @@ def test_reset_forgets_the_unfinished_frame():
 @pytest.mark.parametrize(("side", "make", "size"), SIDES)
 def test_a_million_bytes_of_noise_and_no_false_frame(side, make, size):
     stream, valid = noisy_stream(make, 1_000_000, seed=2026)
-    parser, encoded = FrameParser(side), []
+    parser, encoded = side(), []
     begin = time.perf_counter()
     for place in range(0, len(stream), 4096):
         encoded += parser.feed(stream[place : place + 4096])
     seconds = time.perf_counter() - begin
-    assert [encode(frame) for frame in encoded] == true_frames(stream, valid, size)  # none false, none missed
+    encode_again = encode if side is CommandParser else encode_reply
+    assert [encode_again(frame) for frame in encoded] == true_frames(stream, valid, size)  # none false, none missed
     assert len(encoded) > 1000
     assert parser.bad > 10_000
     assert seconds < 5  # the line would take 20 s
 
 
-@pytest.mark.parametrize("side", ["commands", "replies"])
+@pytest.mark.parametrize("side", [CommandParser, FrameParser])
 def test_a_million_random_bytes_hold_no_frame(side):
-    parser = FrameParser(side)
+    parser = side()
     assert parser.feed(random.Random(7).randbytes(1_000_000)) == []
     assert parser.bad > 3000

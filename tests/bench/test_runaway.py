@@ -59,7 +59,7 @@ def test_the_compiled_loop_is_guarded_by_the_same_code():
     ran = {}
     for compiled in (True, False):
         bench = SimulatedBench(record_to=False).open()
-        bench.plant._w[SLOPE] *= -1
+        bench.plant._w[SLOPE, 0] *= -1
         pid = PID(**GAINS, limit_pwm=255)
         with pytest.raises(RunawayError, match="joint 1 ran") as error:
             if compiled:

@@ -1,11 +1,14 @@
 """A set point that a hand moves: limited speed and acceleration, no overshoot, whatever the hand does."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ir50p_lab.bench.set_point import LeadIn, SetPoint, checked_set_point, led_in
+from ir50p_lab.bench.live_loop import _Target
+from ir50p_lab.bench.set_point import SetPoint, checked_set_point
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold, sinusoid
@@ -66,16 +69,18 @@ def test_it_takes_over_a_motion():
         target.move_to([np.inf, 0, 0])
 
 
-def test_led_in_starts_at_the_pose_and_ends_on_the_reference():
+def test_a_target_is_led_in_from_the_pose_and_ends_on_the_reference():
     swing = sinusoid(0.3, 2.0, offset=0.5, phase=np.pi / 2)
-    target = led_in([0.0, 0.1, 0.2], swing)
-    assert isinstance(target, LeadIn)
-    np.testing.assert_allclose(target(0.0)[0], [0.0, 0.1, 0.2])
+    standing = SimpleNamespace(arm=IR50P, q=np.array([0.0, 0.1, 0.2]))
+    target = _Target(standing, swing, lead_in=True)
+    np.testing.assert_allclose(target(7.0)[0], standing.q)
     for t in (0.0, 0.7):
-        np.testing.assert_allclose(target(target.lead + t), swing(t), atol=1e-12)
-    rows = target.sample(np.linspace(0, target.lead, 500))
-    assert np.abs(rows[:, 1]).max() == pytest.approx(0.8, rel=0.01)
-    assert led_in([0.5, 0.5, 0.5], hold([0.5, 0.5, 0.503])).values == ((0.5, 0.5, 0.503),)
+        np.testing.assert_allclose(target(7.0 + target.lead + t), swing(t), atol=1e-12)
+    speeds = [np.abs(target(7.0 + t)[1]).max() for t in np.linspace(0, target.lead, 500)]
+    assert max(speeds) == pytest.approx(0.8, rel=0.01)
+    there = _Target(standing, hold([0.0, 0.1, 0.203]), lead_in=True)
+    np.testing.assert_array_equal(there(0.0)[0], (0.0, 0.1, 0.203))
+    assert there.lead == 0
 
 
 def test_set_points_are_checked_against_travel_and_table():

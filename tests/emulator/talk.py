@@ -1,6 +1,6 @@
 """A minimal computer side for tests of the board: one command, one reply."""
 
-from ir50p_lab.bench.protocol import DRIVE, HELLO, REPLY_SIZE, STOP, Command, FrameParser, encode
+from ir50p_lab.bench.protocol import DRIVE, HELLO, REPLY_SIZE, STOP, FrameParser, encode_command
 
 
 class Talk:
@@ -12,7 +12,7 @@ class Talk:
     def ask(self, kind, pwm=(0, 0, 0), gripper=False):
         """Send a command; returns the reply to it, or None if none came within the port's timeout."""
         self.seq = (self.seq + 1) % 256
-        self.port.write(encode(Command(self.seq, kind, tuple(pwm), gripper)))
+        self.port.write(encode_command(self.seq, kind, pwm, gripper))
         return next((reply for reply in self.replies() if reply.seq == self.seq), None)
 
     def replies(self):

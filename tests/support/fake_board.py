@@ -3,9 +3,10 @@
 import errno
 
 import numpy as np
+from board_frames import Command, CommandParser, encode_reply
 
 from ir50p_lab.bench import protocol
-from ir50p_lab.bench.protocol import Command, FrameParser, Identity, State, encode
+from ir50p_lab.bench.protocol import Identity, State
 
 ANSWER = 0.0008  # s from a command to its answer
 SPEED = 0.004  # rad/s per PWM count: joints that turn as fast as they are driven, and stop at once
@@ -29,7 +30,7 @@ class FakeBoard:
         self.identity, self.answer_after, self.board_id = {}, ANSWER, protocol.NO_ID
         self.on_command = self.on_answer = lambda n, data: data
         self.commands, self.writes, self.answers, self.trips, self.hellos = [], 0, 0, 0, 0
-        self._parser = FrameParser("commands")
+        self._parser = CommandParser()
         self._out, self._inbox = [], b""  # (when, bytes) on their way; bytes that have come
         self._greeted = self._tripped = self._watched = False
         self._fed, self._started, self.boot, self.reset_cause = self.t, self.t, 1, 0
@@ -124,7 +125,7 @@ class FakeBoard:
         self._reply(State(command.seq, tuple(int(c) for c in counts), status, self._parser.bad % 65536, clock_ms))
 
     def _reply(self, frame):
-        data = self.on_answer(self.answers, encode(frame))
+        data = self.on_answer(self.answers, encode_reply(frame))
         self.answers += 1
         if data:
             self.say(data)

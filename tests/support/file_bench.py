@@ -24,7 +24,7 @@ class FileBench(Bench):
         self.path, self.busy, self._file, self._q = path, busy, None, np.array([0.1, 0.2, -0.3])
 
     def _arguments(self):
-        return {"path": self.path, "busy": self.busy, "record_to": self._record_to}
+        return {"path": self.path, "busy": self.busy, "record_to": self.record_to}
 
     def _open(self):
         if self.busy and os.path.exists(self.path):
