@@ -331,7 +331,7 @@ def test_same_function_tells_apart():
 
 
 def test_refusals_say_what_to_do(inline):
-    with pytest.raises(InputError, match="choose 'in-line', 'general' or 'thesis'"):
+    with pytest.raises(InputError, match="choose 'in-line' or 'general' or 'thesis'"):
         derive(links="bent")
     with pytest.raises(InputError, match="'lc4' is no parameter"):
         inline.numeric({"lc4": 1})
