@@ -155,7 +155,7 @@ def test_other_right_ones_pass(stage, edits, remark):
         ("PID", f"{REST}\n        return np.clip(push + self.integral,", "self.integral, d = grown, push - self.kp * error\n"
          "        return np.clip(push - d + np.clip(grown + d, -self.limit, self.limit),", "it winds up: after 10 s"),
         ("PID", "kd=0, limit_pwm=255, period=0.01", "limit_pwm=255, period=0.01, kd=0", "in this order"),
-        ("PID", "qd_wanted, qdd_wanted = ", "qdd_wanted, qd_wanted = ", "takes the acceleration"),
+        ("PID", "qd_wanted, qdd_wanted = ", "qdd_wanted, qd_wanted = ", "the wanted acceleration"),
         ("PID", f"{SPEED}\n        self.last = q\n        push = self.kp * error + self.kd * (qd_wanted - self.speed)",
          SPEED.replace("((q", "(qd_wanted - (q") + "\n        self.last = q\n        "
          "push = self.kp * error + self.kd * self.speed", "goes through the filter, too"),

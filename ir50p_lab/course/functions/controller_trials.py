@@ -190,8 +190,7 @@ def _integral(cls):
         (push + _KI * memory, "ki is in it twice, before and after adding up"),
         (push + _PERIOD * memory, "the period is in it twice: an area has one width"),
         (push + _KI * _PERIOD * (2 * total - e), "it adds up the sum of two errors: their mean is half of that"),
-        (push + _KI * (e.T * np.arange(len(e)) * _PERIOD).T, "error times t is no sum: each error counts for one "
-         "period, and those before stay"),
+        (push + _KI * (e.T * np.arange(len(e)) * _PERIOD).T, "error times t is no sum: one error is in it, not all"),
         (push + _KI * np.cumsum(q, axis=0) * _PERIOD, "it adds up the angle, not what is missing"),
         (push + _KP * memory, "kp multiplies all: here ki is a gain of its own, not a share of kp"),
         (push + _KP * area, "the integral has the gain kp: it has its own, ki"),
@@ -249,9 +248,7 @@ def _windup(cls):
         raise Failed(f"P and I together push with {most:.0f} counts, 255 are allowed: limit their sum")
     if (least := min(run[250:-500].min() for run in runs)) < 250:
         if most < 250:
-            raise Failed(
-                f"its memory stops too early: with 1 rad missing it never pushes with more than {most:.0f} counts"
-            )
+            raise Failed(f"its memory stops too early: with 1 rad missing it pushes with {most:.0f} counts at most")
         raise Failed(
             f"while the error stays at 1 rad, its push falls back from the limit to {least:.0f}: rest the integral "
             "there, do not throw it away"
@@ -333,8 +330,7 @@ def _damping(cls):
         *((d(_filtered(np.diff(q, axis=0, prepend=start) / _PERIOD, exact)), f"at the first sample it believes that "
            f"the arm has come from {place} in one period: what is the speed when there is no angle before?")
           for start, place in ((0 * q[:1], "zero"), (wanted[None], "its target"))),
-        (d(_filtered(from_first, exact)), "the last angle stays the first one: is it brought up to date in every "
-         "step?"),
+        (d(_filtered(from_first, exact)), "the last angle stays the first one: is it renewed in every step?"),
         (d(_filtered(slope, 1 - np.exp(-hz * _PERIOD))), "its filter is six times too slow: filter_hz counts whole "
          "turns a second, and a turn has 2 pi"),
         (d(_filtered(slope, 1 - exact)), "the two shares of the filter are swapped"),
@@ -342,25 +338,20 @@ def _damping(cls):
         (d(exact * slope), "its filter keeps nothing: the speed of the last sample is where it goes on from"),
         (np.degrees(right), "D is 57 times too strong: everything here is rad, no degrees anywhere"),
         (_KD * (wanted - q), "D looks at how far away the arm is: it is to look at how fast it moves"),
-        (-_KD * speed, f"the target is to move at {_SPEED} rad/s, and D brakes that, too: the reference says which "
-         "speed is wanted"),
-        (right + _KD * (_ACCELERATION - _SPEED), "D takes the acceleration that is wanted for the speed: look at the "
-         "rows of the reference"),
+        (-_KD * speed, f"D brakes the {_SPEED} rad/s that are asked for: the reference says which speed is wanted"),
+        (right + _KD * (_ACCELERATION - _SPEED), "D takes the wanted acceleration for the speed: which row is it?"),
         (_KD * _filtered(np.vstack([0 * q[:1], _SPEED - slope[1:]]), exact), "the speed that is wanted goes through "
          "the filter, too: that one is exact, only the measured one trembles"),
         (_KP * right, "kp multiplies D as well: kd is a gain of its own"),
         *((_KI * _PERIOD * (np.cumsum(right, axis=0) - late * right), "D goes into the memory, and into the push only "
            "through ki: it is a part of the push, as P is") for late in (0, 1)),
-        (d(0 * slope), "the arm's speed stays 0 in it: is the last angle kept for the next step, and used before it is "
-         "written over?"),
+        (d(0 * slope), "the arm's speed stays 0 in it: is the last angle kept, and used before it is written over?"),
         (0 * right, "kd does nothing: is it a part of the push?"),
     )  # fmt: skip
     otherwise = "D is not kd times the filtered speed, against the motion"
     share = np.mean((d(0.0) - u[1]) / _KD / slope[1])
     if np.allclose(u, d(_filtered(slope, share)), atol=1e-6):
-        otherwise = (
-            f"its filter takes {share:.2f} of each new speed; filter_hz 8 and a period of 0.02 s ask for another"
-        )
+        otherwise = f"its filter takes {share:.2f} of each new speed: filter_hz 8 and period 0.02 s ask for another"
     return _expect(u, right, slips, otherwise)
 
 
