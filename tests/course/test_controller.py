@@ -41,6 +41,7 @@ def made(text):
 GROWN = "grown = self.integral + self.ki * error * self.period"
 ADD = "self.integral = self.integral + self.ki * error * self.period"
 WINDS = "winds_up = (np.abs(push) > self.limit) & (push * error > 0)"
+REST = "self.integral = np.where(winds_up, self.integral, grown)"
 SPEED = "self.speed = self.speed + self.share * ((q - self.last) / self.period - self.speed)"
 TRAPEZOID = (
     "self.integral = self.integral + self.ki * (error + self.before) / 2 * self.period\n        self.before = error"
@@ -59,6 +60,11 @@ FORGET = "self.integral = np.zeros(3)\n"
         ("PID.pi", [("self.ki * error", "error"), ("+ self.integral", "+ self.ki * self.integral")], ""),
         ("PID.limits", [("np.where(winds_up, self.integral, grown)", "np.clip(grown, -self.limit, self.limit)")], ""),
         ("PID.limits", [(WINDS, "winds_up = np.abs(push) > self.limit")], ""),
+        ("PID.limits", [("np.where(winds_up, self.integral, grown)",
+          "grown + (np.clip(push, -self.limit, self.limit) - push) / 0.5 * self.period")], ""),
+        ("PID", [("+ self.kd * (qd_wanted - self.speed)",
+          "+ (0 if self.last is None else self.kd * (qd_wanted - self.speed))"),
+          ("        self.last = q\n", ""), ("        return", "        self.last = q\n        return")], ""),
         ("PID", [("1 - np.exp(-2 * np.pi * filter_hz * period)",
           "period / (period + 1 / (2 * np.pi * filter_hz))")], "another share"),
     ],
@@ -78,9 +84,24 @@ def test_other_right_ones_pass(stage, edits, remark):
         ("PID.p", "q_wanted - q", "np.degrees(q_wanted - q)", "57 times"),
         ("PID.p", "q_wanted - q", "q_wanted", "wherever the arm is"),
         ("PID.p", "q_wanted - q", "abs(q_wanted - q)", "both sides"),
-        ("PID.p", "self.kp * error", "400 * error", "with [400., 400., 400.] counts, where kp is [40., 60., 80.]"),
+        ("PID.p", "self.kp * error", "400 * error", "with [400., 400., 400.] counts, where kp is 50"),
         ("PID.p", "self.kp * error", "-self.kp * (q - q_wanted)", "a tuple cannot be calculated with"),
-        ("PID.p", "self.kp * error", "np.sum(self.kp * error)", "shape ()"),
+        ("PID.p", "self.kp * error", "np.sum(self.kp * error)", "one number"),
+        ("PID.p", "self.kp * error", "[0, (self.kp * error)[1], 40]", "joint 2 is right, the rest is not"),
+        ("PID.p", "error = q_wanted - q", "q_wanted -= q\n        error = q_wanted", "changes the reference"),
+        ("PID.p", "error = q_wanted - q", "q -= q_wanted\n        error = -q", "changes q"),
+        ("PID.p", "self.kp * error", "np.trunc(self.kp * error)", "cuts off"),
+        ("PID.p", "self.kp * error", "self.kp * q_wanted - q", "only one of the two angles"),
+        ("PID.p", "q_wanted - q", "reference[:, 0] - q", "a column of the reference"),
+        ("PID.pi", "self.ki * error", "error", "ki is not used"),
+        ("PID.pi", "self.ki * error", "self.ki * q", "adds up the angle"),
+        ("PID.pi", "error + self.integral", "error + self.ki * self.integral", "ki is in it twice"),
+        ("PID.pi", "error + self.integral", "error + self.integral * self.period", "the period is in it twice"),
+        ("PID.pi", ADD, "self.integral = self.ki * error * t", "error times t is no sum"),
+        ("PID.pi", ADD, ADD.replace("error", "(error + getattr(self, 'before', 0))") + "\n        self.before = error",
+         "the sum of two errors"),
+        ("PID.pi", "return self.kp * error + self.integral",
+         "self.integral = self.integral + self.kp * error\n        return self.integral", "adds up the whole push"),
         ("PID.p", "        return self.kp * error", "        push = self.kp * error", "`return`"),
         ("PID.p", '    unit = "PWM"\n', "", "unit"),
         ("PID.p", "self.kp = kp", "self.gain = kp\n        self.kp = 0", "with [0., 0., 0.] counts"),
@@ -120,6 +141,34 @@ def test_other_right_ones_pass(stage, edits, remark):
          "        return np.clip(self.kp * error, -self.limit, self.limit) + self.integral", "limit their sum"),
         ("PID.limits", "np.where(winds_up, self.integral, grown)", "np.where(winds_up, 0, grown)", "falls back"),
         ("PID.limits", "np.where(winds_up, self", "np.where(np.any(winds_up), self", "joint by joint"),
+        ("PID.limits", "-self.limit, self.limit)", "self.limit, -self.limit)", "its lower bound comes first"),
+        ("PID.limits", "np.where(winds_up, self.integral, grown)", "np.clip(grown, -self.limit / 2, self.limit / 2)",
+         "stops too early"),
+        ("PID.limits", WINDS, "winds_up = (push > self.limit) & (error > 0)", "winds up downwards"),
+        ("PID.limits", WINDS, WINDS.replace("push", "(self.kp * error)"), "it winds up: after 10 s at its limit"),
+        ("PID.limits", f"{REST}\n        return np.clip(self.kp * error + self.integral,", "self.integral = grown\n"
+         "        return np.clip(self.kp * error + np.clip(grown, -self.limit, self.limit),", "it winds up: after 10 s"),
+        ("PID.limits", f"grown\n        {WINDS}\n        {REST}\n"
+         "        return np.clip(self.kp * error + self.integral, -self.limit, self.limit)",
+         f"self.integral\n        {WINDS}\n        {REST}\n"
+         "        return np.where(np.abs(push) > self.limit, np.sign(error) * self.limit, push)", "jumps from 255 to -255"),
+        ("PID", f"{REST}\n        return np.clip(push + self.integral,", "self.integral, d = grown, push - self.kp * error\n"
+         "        return np.clip(push - d + np.clip(grown + d, -self.limit, self.limit),", "it winds up: after 10 s"),
+        ("PID", "kd=0, limit_pwm=255, period=0.01", "limit_pwm=255, period=0.01, kd=0", "in this order"),
+        ("PID", "qd_wanted, qdd_wanted = ", "qdd_wanted, qd_wanted = ", "the wanted acceleration"),
+        ("PID", f"{SPEED}\n        self.last = q\n        push = self.kp * error + self.kd * (qd_wanted - self.speed)",
+         SPEED.replace("((q", "(qd_wanted - (q") + "\n        self.last = q\n        "
+         "push = self.kp * error + self.kd * self.speed", "goes through the filter, too"),
+        ("PID", "1 - np.exp(-2 * np.pi * filter_hz * period)", "0.47", "takes 0.47 of each new speed"),
+        ("PID", " + self.kd * (qd_wanted - self.speed)\n        grown = self.integral + self.ki * error",
+         "\n        grown = self.integral + self.ki * (error + self.kd * (qd_wanted - self.speed))", "only through ki"),
+        ("PID", "(q - self.last)", "(q[1] - self.last[1])", "joint 2 is right, the rest is not"),
+        ("PID", "if self.last is not None:\n    ",
+         "if self.last is None:\n            self.last = q_wanted\n        if True:\n    ", "come from its target"),
+        ("PID", "self.kp * error + self.kd * (qd_wanted - self.speed)",
+         "self.kp * (error + self.kd * (qd_wanted - self.speed))", "kp multiplies D"),
+        ("PID", "np.clip(push + self.integral, -self.limit, self.limit)", "np.clip(self.kp * error + self.integral, "
+         "-self.limit, self.limit) + np.clip(push - self.kp * error, -self.limit, self.limit)", "limit the sum"),
         ("PID", "qd_wanted - self.speed", "qd_wanted + self.speed", "along with the motion"),
         ("PID", SPEED, "self.speed = (q - self.last) / self.period", "not filtered"),
         ("PID", "(q - self.last) / self.period", "(q - self.last)", "no speed yet"),
@@ -229,10 +278,35 @@ def test_a_loan_of_a_stage_never_takes_the_place_of_the_whole(capsys):
 @pytest.mark.parametrize(
     ("stage", "old", "new", "line", "reason"),
     [
-        ("PID.p", "q_wanted - q", "q_wanted[0] - q[0]", "`return self.kp * error`", "three belong"),
+        ("PID.p", "self.kp * error", "[self.kp[i] * error[i] for i in range(3)]", "`return [self", "`self.kp` is 50"),
+        (
+            "PID.pi",
+            "self.ki * error * self.period",
+            "self.ki * self.period * error",
+            "`self.integral = ",
+            "a tuple: three",
+        ),
+        ("PID.pi", "self.integral = np.zeros(3)", "integral = np.zeros(3)", "`self.integral = ", "are two: without"),
+        ("PID.pi", ADD, ADD.replace("self.integral", "integral"), "`integral = integral", "are two: without"),
         ("PID.p", "self.kp = kp", "self.kp = float(kp)", "`self.kp = float(kp)`", "one a joint"),
         ("PID.pi", "self.integral = self.integral + self", "self.integral += self", "`self.integral += self", "whole"),
         ("PID.limits", WINDS, "winds_up = np.abs(push) > self.limit and push * error > 0", "`winds_up =", "np.where"),
+        (
+            "PID.limits",
+            WINDS,
+            "winds_up = np.abs(push) > self.limit & push * error > 0",
+            "`winds_up =",
+            "needs brackets",
+        ),
+        (
+            "PID",
+            "self.kd * (qd_wanted - self.speed)",
+            "-self.kd * (self.speed - qd_wanted)",
+            "`push = ",
+            "a tuple cannot",
+        ),
+        ("PID", "self.last is not None", "self.last", "`if self.last:`", "`is` asks"),
+        ("PID", "self.last is not None", "self.last != None", "`if self.last != None:`", "`is` asks"),
         ("PID", "if self.last is not None:", "if True:", "`self.speed = ", "in the first step self.last is still None"),
     ],
 )
@@ -243,3 +317,15 @@ def test_a_class_that_stops_is_told_the_line(stage, old, new, line, reason, caps
     check(stage, cell(text, "PID"))
     said = capsys.readouterr().out
     assert f"it stops in {line}" in said and reason in said.split("Python says")[0], said
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("self.kp * error", "kp * error", "it uses `kp` by itself"),
+        ("step(self, ", "step(", "it uses `self` where it is no"),
+    ],
+)
+def test_a_forgotten_self_is_told(old, new, words, capsys):
+    check("PID.p", cell(edited("PID.p", (old, new)), "PID"))
+    assert words in capsys.readouterr().out

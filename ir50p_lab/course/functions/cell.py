@@ -68,7 +68,7 @@ def take(thing, name, earlier):
         elif one in _BACK_DOORS:
             raise CannotTake(f"it uses `{one}`: your robot stands on plain functions and NumPy alone")
         elif one not in _GIVEN and not hasattr(builtins, one):
-            raise CannotTake(_stranger(one, getattr(thing, "__globals__", None) or _globals_of_class(thing)))
+            raise CannotTake(_stranger(one, getattr(thing, "__globals__", None) or _globals_of_class(thing), text))
     for node in wanted:
         _refuse_imports(node)
         _refuse_changes(node)
@@ -129,7 +129,11 @@ def _looked_up(code, name):
     return any(step.opname in kinds and step.argval == name for step in dis.get_instructions(code))
 
 
-def _stranger(name, notebook):
+def _stranger(name, notebook, text):
+    if name == "self":
+        return "it uses `self` where it is no argument: each function of a class begins with it"
+    if re.search(rf"\bself\.{name}\b", text):
+        return f"it uses `{name}` by itself: only what stands in `self` lasts from one function of a class to the next"
     value = notebook.get(name)
     if value is None and name not in notebook:
         return f"it uses `{name}`, which is defined nowhere"

@@ -137,8 +137,8 @@ TASKS = (
     _stage("PID.limits", ("kp", "ki", "limit_pwm", "period"), _LimitedPI, _LOAN_LIMITS,
            "the same within its limits, the integral resting while the push can grow no further",
            ("np.clip(push, -limit, limit) limits what is returned. What does the integral do meanwhile?",
-            "Calculate first what the push would be with the grown integral. Beyond the limit, and the error pushing "
-            "further: keep the old one. np.where(condition, old, new) decides for three joints at once."),
+            "What would the push be with the grown integral, before you clip it? Beyond the limit, "
+            "and the error pushing further: keep the old one. np.where(condition, old, new) decides for all joints."),
            *trials.PUSH, *trials.MEMORY, *trials.LIMITS, trials.gains("kp", "ki")),
     _stage("PID", ("kp", "ki", "kd", "limit_pwm", "period", "filter_hz"), PID, _LOAN_PID,
            "the whole controller: P, I within limits, and D against the filtered speed",

@@ -26,9 +26,10 @@ _REASONS = (  # kind of error, what its message holds, the usual reason
         "truth value",
         "`if` asks one question, here are three joints: np.where decides for each, np.all or np.any for all together",
     ),
-    ("TypeError", "multiply sequence by", "one number times a tuple: three belong there, or an array"),
     ("TypeError", "real number, not 'tuple'", "it is three numbers, one a joint, and is read as one"),
     ("TypeError", "'tuple'", "a tuple cannot be calculated with: `np.array` makes an array of it"),
+    ("TypeError", "multiply sequence by", "one number times a tuple: three belong there, or an array for the tuple"),
+    ("TypeError", "bitwise_and", "`&` comes before `>` and `<`: each condition needs brackets of its own"),
     ("UFuncTypeError", "Cannot cast ufunc", "an array of whole numbers takes no fractions: np.zeros makes another"),
     ("ValueError", "inhomogeneous", "rows of different lengths make no array"),
     ("ValueError", "array element with a sequence", "a whole array is put where one number belongs"),
@@ -48,11 +49,10 @@ _REASONS = (  # kind of error, what its message holds, the usual reason
 
 def why_it_stops(error):
     """A sentence on an error: the line, the usual reason, what did not fit together, and Python's own words."""
-    line, operands, empty = _where(error)
+    line, operands, memory = _where(error)
     said = f"Python says {type(error).__name__}: {error}"
-    reason = next((why for kind, part, why in _REASONS if kind == type(error).__name__ and part in str(error)), "")
-    if empty and "NoneType" in str(error):
-        reason = f"in the first step {empty} is still None. Is it asked first, `if {empty} is not None:`?"
+    usual = (why for kind, part, why in _REASONS if kind == type(error).__name__ and part in str(error))
+    reason = memory or next(usual, "")
     if isinstance(error, LabError):
         reason = "an earlier function is given what it cannot take: are its arguments in their order?"
     if line.startswith("raise"):
@@ -69,29 +69,38 @@ def ended(says):
 
 
 def _where(error):
-    """The student's line, the two operands that do not go together, and what of `self` is None there."""
+    """The student's line, the two operands that do not go together, and what is wrong with its memory."""
     for frame, number in reversed(list(traceback.walk_tb(error.__traceback__))):
         file = frame.f_code.co_filename
         if file.startswith(ROOM):
             line = linecache.getline(file, number).strip()
-            return line, _operands(line, frame), _empty(line, frame)
+            return line, _operands(line, frame), _memory(error, line, frame)
     return "", "", ""
 
 
-def _empty(line, frame):
-    """What the controller remembers, if it is None and stands in the line."""
-    memory = getattr(frame.f_locals.get("self"), "__dict__", {})
-    names = (f"self.{name}" for name, value in memory.items() if value is None)
-    return next((name for name in names if re.search(rf"{name}\b", line)), "")
+def _memory(error, line, frame):
+    """A mistake with what a class remembers: still None, left without `self`, or asked for as a whole; or ""."""
+    me, text, says = frame.f_locals.get("self"), "".join(linecache.getlines(frame.f_code.co_filename)), str(error)
+    empty = (f"self.{name}" for name, value in getattr(me, "__dict__", {}).items() if value is None)
+    if "NoneType" in says and (one := next((one for one in empty if re.search(rf"{one}\b", line)), "")):
+        return f"in the first step {one} is still None. Is it asked first, `if {one} is not None:`?"
+    name = next(iter(re.findall(r"'(\w+)'", says)[-1:]), "")
+    again = isinstance(error, UnboundLocalError) and hasattr(me, name) and line.startswith(name)
+    if again or (getattr(error, "obj", text) is me and re.search(rf"(?m)^\s+{name} = ", text)):
+        return f"`{name}` and `self.{name}` are two: without `self.` it is forgotten when its function ends"
+    asked = re.search(r"(self\.\w+)( [!=]= None|:| and| or)", line)
+    if "truth value" in says and asked and re.search(rf"{asked[1]}\b.*=.*\bNone", text):
+        return "three numbers are neither true nor false, nor `==` None: `is` asks whether there is anything yet"
+    return ""
 
 
 def _operands(line, frame):
     try:
-        operations = [node for node in ast.walk(ast.parse(line)) if _is_operation(node)]
+        operations = [node for node in ast.walk(ast.parse(line)) if _parts(node)]
     except SyntaxError:  # a part of a longer line
         return ""
     for node in reversed(operations):
-        parts = node.args if isinstance(node, ast.Call) else (node.left, node.right)
+        parts = _parts(node)
         try:
             named = [_named(one, frame) for one in parts]
         except Exception:  # the one that fails lies deeper
@@ -103,8 +112,13 @@ def _operands(line, frame):
     return ""
 
 
-def _is_operation(node):
-    return isinstance(node, ast.BinOp) or (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute))
+def _parts(node):
+    """What an operation is made of: two operands, arguments, or what is in front of square brackets; else ()."""
+    if isinstance(node, ast.BinOp):
+        return node.left, node.right
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+        return node.args
+    return (node.value,) if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Load) else ()
 
 
 def _value(node, frame):
