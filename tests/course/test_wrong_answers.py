@@ -104,6 +104,62 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
         ("reach", "np.max(np.abs(q - q_now))", "np.sum(np.abs(q - q_now))", "adds up the turns of the three joints"),
         ("reach", "np.max(np.abs(q - q_now))", "max(q - q_now)", "with their sign"),
         ("rot_z", "[s, c, 0.0]", "[-s, c, 0.0]", "row 2, column 1 has the wrong sign"),
+        (
+            "rot_z",
+            "[c, -s, 0.0], [s, c, 0.0]",
+            "[c, np.cos(angle + 90), 0.0], [s, np.sin(angle + 90), 0.0]",
+            "how many rad are a quarter turn",
+        ),
+        ("rot_z", "-s", "...", r"dots still stand in `return np.array\(\[\[c, ..., 0.0"),
+        ("dh_matrix", "return turn_z(theta) @ shift(0, 0, d) @", "return", "theta and d do nothing"),
+        ("dh_matrix", "shift(0, 0, d) @ shift(a, 0, 0)", "(shift(0, 0, d) + shift(a, 0, 0))", "matrices are added"),
+        ("dh_matrix", "@ shift(0, 0, d)", "@ shift(a, 0, 0)", "d does nothing in it and a counts twice"),
+        ("dh_matrix", "turn_x(alpha)", "turn_x(alpha) * [1, 1, 1, 0]", "is a turn put into zeros"),
+        (
+            "dh_matrix",
+            "turn_z(theta) @ shift(0, 0, d) @ shift(a, 0, 0) @ turn_x(alpha)",
+            "turn_x(theta) @ shift(a, 0, d) @ turn_z(alpha)",
+            "theta turns about x and alpha about z",
+        ),
+        ("forward_kinematics", "frames(q, l)", "frames(l, q)", "q and l have changed places"),
+        ("forward_kinematics", "frames(q, l)[3]", "np.linalg.multi_dot(frames(q, l))", "multiplied once more"),
+        ("forward_kinematics", "frames(q, l)[3][:3, 3]", "frames(q, l)[:, :3, 3].sum(0)", "are added up"),
+        (
+            "forward_kinematics",
+            "[:3, 3]",
+            "[:3, :3].T @ frames(q, l)[3][:3, 3]",
+            "turned by the frame's axes once more",
+        ),
+        ("forward_kinematics", "[:3, 3]", "[:3, 3] - frames(q, l)[1][:3, 3]", "counted from the shoulder"),
+        ("forward_kinematics", "[:3, 3]", "[:3][3]", "row and column stand in one bracket"),
+        ("reach", "[2:, 2, 3]", "[2:, 3, 2]", "another number than their heights"),
+        ("reach", "    return best", "    return min([q] if smallest < 9 else [], key=len)", "of nothing"),
+        ("reach", "best = q\n", "best = q - q_now\n", "it returns the turn from q_now"),
+        ("reach", "frames(q, l)", "frames(q_now, l)", "the heights are those of the arm as it stands now"),
+        (
+            "reach",
+            "if inside and",
+            "if not (inside and above_the_table):\n            return None\n        if",
+            "ends the search",
+        ),
+        ("reach", REACH_LIMITS, "np.any((q >= limits[0]) & (q <= limits[1]))", "one joint within its limits is enough"),
+        ("jacobian", "T[joint][:3, 2]", "T[link - 1][:3, 2]", "the axis of the link's last one"),
+        ("jacobian", "    return J", "    return np.roll(J * (np.arange(3) < link - 1), 1, axis=1)", "column number 0"),
+        ("jacobian", "range(link)", "range(link - 1, link)", "the link's own joint alone"),
+        ("jacobian", "range(link)", "range(link, 3)", "the joints after the link move it"),
+        (
+            "jacobian",
+            "    return J",
+            "    J[:3, :link] /= np.linalg.norm(J[:3, :link], axis=0)\n    return J",
+            "has length 1",
+        ),
+        ("jacobian", "    return J", "    J[1] *= -1\n    return J", "row 2 has the wrong sign, the rest is right"),
+        (
+            "jacobian",
+            "    return J",
+            "    J[3:, :link] = np.cumsum(J[3:, :link], axis=1)\n    return J",
+            "added up from column to column",
+        ),
         ("dh_matrix", "T[:3, 3] = [x", "T[3, :3] = [x", "stands in the bottom row"),
         ("jacobian", "axis = T[joint]", "axis = T[joint + 1]", "axis of joint k is taken from frame k, one too far"),
         (
@@ -158,6 +214,67 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
 )
 def test_a_usual_mistake_has_its_sentence(name, old, new, words, capsys):
     said = told(capsys, name, (old, new))
+    assert re.search(words, said), said
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "words"),
+    [
+        ("frames", "q[k], d, a, alpha", "d, a, alpha, q[k]", "arguments of `dh_matrix` stand in another order"),
+        ("frames", "d, a, alpha = ", "a, d, alpha = ", "d and a have changed places in every row"),
+        ("frames", "range(len(q))", "range(1, len(q))", "the loop leaves out the first"),
+        ("frames", "q[k]", "q[k - 1]", "q is read one place too early"),
+        ("frames", "table[k]", "table[0]", "number 1 of table is taken each time"),
+        ("frames", "T[-1] @ step", "(dh_matrix(q[k - 1], *table[k - 1]) if k else T[0]) @ step", "back two links only"),
+        ("inverse_kinematics", "out = np.hypot(x, y)", "out = x", "x alone counts, not the distance: look at out"),
+        ("inverse_kinematics", "/ (2 * l2 * l3)", "/ (l2 * l3)", r"a factor is missing \(2\): look at the cosine"),
+        ("inverse_kinematics", "np.array(poses)", "np.array(poses).astype(int)", "its angles are whole numbers"),
+        (
+            "inverse_kinematics",
+            "in [-bend, bend]:",
+            "in [-bend, bend][: 2 * (bend < 2.44)]:",
+            r"bends by 2.\d rad or more",
+        ),
+        (
+            "inverse_kinematics",
+            "poses.append([waist + np.pi, np.arctan2(up, -out) - beta, q3])\n    p",
+            "if abs(cosine) > 1 + 1e-9:\n            return []\n    p",
+            "two poses a place, all on one side",
+        ),
+        (
+            "inverse_kinematics",
+            "np.arctan2(l3 * np.sin(q3), l2 + l3 * np.cos(q3))",
+            "np.arctan2(l2 * np.sin(q3), l3 + l2 * np.cos(q3))",
+            "the elbow is right, in the shoulder l2 and l3",
+        ),
+        ("damped_step", "+ damping**2 * np.eye(3)", "+ damping**2", "a factor is missing .the identity.: look at A"),
+        ("damped_step", "J.T @ e", "e", "a factor of a matrix product is missing: look at dq"),
+        ("damped_step", "J.T @ J", "J @ J", "a transpose is missing: look at A"),
+        ("damped_step", "np.linalg.solve(A, J.T @ e)", "J.T @ e / A", "`/` divides entry by entry"),
+        ("damped_step", "forward_kinematics(q, l)", "forward_kinematics(l, q)", "arguments 1 and 2 of `forward_kin"),
+        ("damped_step", "frames(q, l)", "frames(p, l)", "`p` stands where something else belongs: look at T"),
+        ("damped_step", "e = p - tip", "e = p", "it steps by p itself"),
+        ("damped_step", "np.eye(3)", "np.diag(np.diag(J.T @ J))", "multiplied with the diagonal"),
+        ("damped_step", "np.linalg.solve(A, J.T @ e)", "J.T @ e / np.diag(A)", "each joint steps as if it were alone"),
+        (
+            "damped_step",
+            "return q + dq",
+            "return q + np.linalg.solve(J.T @ J, J.T @ e) + damping**2",
+            "added to the turn",
+        ),
+        ("damped_step", "np.linalg.solve(A, J.T @ e)", "np.linalg.lstsq(J, e, rcond=damping)[0]", "`rcond`"),
+        ("damped_step", "solve(A, J.T @ e)", "solve(J.T @ e, A)", "a row where a matrix belongs: in `solve` it comes"),
+        (
+            "damped_step",
+            "return q + dq",
+            "return q + dq if np.linalg.norm(e) < 2e-3 or np.linalg.norm(dq) < 1e-4 "
+            "else damped_step(q + dq, p, l, damping)",
+            "it is at the place already",
+        ),
+    ],
+)
+def test_a_mistake_in_the_form_the_notebook_leads_to(name, old, new, words, capsys):
+    said = told(capsys, name, (old, new), text=task(name).routes[0])
     assert re.search(words, said), said
 
 
