@@ -121,6 +121,8 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
             "turn_x(theta) @ shift(a, 0, d) @ turn_z(alpha)",
             "theta turns about x and alpha about z",
         ),
+        ("forward_kinematics", "[3]", "[2]", "the place of the elbow, not that of the tip"),
+        ("damped_step", "T[3]", "T[2]", "the elbow is taken for the tip"),
         ("forward_kinematics", "frames(q, l)", "frames(l, q)", "q and l have changed places"),
         ("forward_kinematics", "frames(q, l)[3]", "np.linalg.multi_dot(frames(q, l))", "multiplied once more"),
         ("forward_kinematics", "frames(q, l)[3][:3, 3]", "frames(q, l)[:, :3, 3].sum(0)", "are added up"),
@@ -451,6 +453,14 @@ TOO_MANY_ROWS = """def damped_step(q, p, l, damping):
     J = jacobian(frames(q, l), 3, forward_kinematics(q, l))
     return q + J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(6), p - forward_kinematics(q, l))"""
 ALL_ROWS = TOO_MANY_ROWS.replace("p - forward_kinematics(q, l))", "np.append(p - forward_kinematics(q, l), [0, 0, 0]))")
+OUT_OF_ITS_LIST = """def reach(p, l, q_now, limits):
+    poses = inverse_kinematics(p, l).tolist()
+    for q in poses:
+        if np.any(q < limits[0]) or np.any(q > limits[1]) or np.any(frames(q, l)[2:, 2, 3] < -1e-9):
+            poses.remove(q)
+    if not poses:
+        return None
+    return np.array(min(poses, key=lambda q: np.max(np.abs(q - q_now))))"""
 UNTIL_IT_IS_THERE = """def damped_step(q, p, l, damping):
     for _ in range(100):
         e = p - forward_kinematics(q, l)
@@ -482,6 +492,8 @@ ELBOW_KEPT = """def inverse_kinematics(p, l):
             "R = np.eye(3)\n\n\ndef rot_z(angle):\n    R[0, 0] += angle\n    return R",
             "it changes `R`, made once",
         ),
+        ("reach", OUT_OF_ITS_LIST, "makes it skip the next one"),
+        ("reach", "def reach(p, l, q_now, limits):\n    return by_course(p)", "it calls `by_course`, the course's own"),
         ("damped_step", UNTIL_IT_IS_THERE, "it is at the place already"),
         ("damped_step", ALL_ROWS, "the hand must not turn, either"),
         (
@@ -492,7 +504,7 @@ ELBOW_KEPT = """def inverse_kinematics(p, l):
     ],
 )
 def test_other_ways_to_be_wrong_have_theirs(name, text, words, capsys):
-    said = told(capsys, name, text=text, notebook={"my_robot": my_robot})
+    said = told(capsys, name, text=text, notebook={"my_robot": my_robot, "by_course": task("frames").right})
     assert re.search(words, said) and "gufunc" not in said, said
 
 

@@ -137,6 +137,8 @@ def _stranger(name, notebook):
     module = (getattr(value, "__module__", None) or getattr(value, "__name__", "")).partition(".")[0]
     if module == "numpy" or module == "math":
         return f"it uses `{name}` from another cell: write `np.{name}`, which is always there"
+    if callable(value) and module == "ir50p_lab":
+        return f"it calls `{name}`, the course's own: write that part yourself, with your earlier functions"
     if callable(value) or hasattr(value, "__file__"):
         return f"it uses `{name}` of the notebook: put it into the same cell, or write that part yourself"
     return f"it uses `{name}`, a variable of the notebook: a function takes what it needs as arguments"

@@ -454,6 +454,14 @@ def _none_if_one_is_refused(p, l, q_now, limits):
     return reach(p, l, q_now, limits) if all_in else None
 
 
+def _removed_in_the_loop(p, l, q_now, limits):
+    rows = inverse_kinematics(p, l).tolist()
+    for q in rows:
+        if not (within(q, limits) and above_table(q, l)):
+            rows.remove(q)
+    return min(rows, key=lambda q: np.abs(q - q_now).max(), default=None)
+
+
 def _the_last_allowed(p, l, q_now, limits):
     allowed = [q for q in inverse_kinematics(p, l) if within(q, limits) and above_table(q, l)]
     return allowed[-1] if allowed else None
@@ -513,6 +521,8 @@ REACH = Task(
                  lambda x, m: ((x >= m[0]) & (x <= m[1])).any()),
         Mistake(lambda p, l, q, m: _chosen(p, l, q, m, allowed=lambda x: within(x, m) and above_table(q, l)),
                 "the heights are those of the arm as it stands now, not those of the pose"),
+        Mistake(_removed_in_the_loop,
+                "a row that is taken out of the list the loop walks along makes it skip the next one"),
         Mistake(_none_if_one_is_refused, "one pose that is refused ends the search: the others may be allowed"),
         Mistake(lambda p, l, q, m: (lambda x: None if x is None else x - q)(reach(p, l, q, m)),
                 "it returns the turn from q_now, not the pose"),

@@ -333,6 +333,7 @@ FORWARD_KINEMATICS = Task(
         Mistake(
             lambda q, l: np.linalg.inv(frames(q, l)[3])[:3, 3], "that is the base as the tip sees it: no inverse here"
         ),
+        Mistake(lambda q, l: frames(q, l)[2, :3, 3], "it is the place of the elbow, not that of the tip"),
         Mistake(lambda q, l: forward_kinematics(q, l) - [0, 0, l[0]], "the height is counted from the shoulder"),
         Mistake(
             lambda q, l: np.linalg.multi_dot(frames(q, l))[:3, 3],

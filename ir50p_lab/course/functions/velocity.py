@@ -267,6 +267,7 @@ DAMPED_STEP = Task(
                 lambda J, e, d: np.linalg.solve(J.T @ J, J.T @ e) + d**2),
         _solved("the damping only strikes out weak directions (`rcond`): inside the matrix it shortens the step in all",
                 lambda J, e, d: np.linalg.lstsq(J, e, rcond=d)[0]),
+        Mistake(lambda q, p, l, d: damped_step(q, p, l * [1, 1, 0], d), "the elbow is taken for the tip"),
         Mistake(lambda q, p, l, d: damped_step(q, p + forward_kinematics(q, l), l, d),
                 "it steps by p itself: how far is p from the tip?"),
         Mistake(lambda q, p, l, d: np.angle(np.exp(1j * damped_step(q, p, l, d))),
