@@ -203,14 +203,15 @@ def frames(q, l):
 
 def _links(q, l, alphas=(1, 0, -1), step=dh_matrix):
     a1, a2, a3 = np.pi / 2 * np.array(alphas)
-    return step(q[0], l[0], 0, a1), step(q[1], 0, l[1], a2), step(q[2], 0, l[2], a3)
+    q1, q2, q3 = np.moveaxis(np.asarray(q), -1, 0)
+    return step(q1, l[0], 0, a1), step(q2, 0, l[1], a2), step(q3, 0, l[2], a3)
 
 
 def _chain(*links):
-    out = [np.eye(4)]
+    out = [np.broadcast_to(np.eye(4), links[0].shape)]
     for link in links:
         out.append(out[-1] @ link)
-    return np.array(out)
+    return np.stack(out, axis=-3)
 
 
 def _frames_symptom(cases, returned, expected):
