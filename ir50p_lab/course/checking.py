@@ -42,8 +42,9 @@ def check(name, answer=...):
         source = take(answer, wanted.function, wanted.leans_on)
     except CannotTake as reason:
         return _show("wrong", name, f"not yet: {ended(str(reason))}")
-    if has_dots(source.text):
-        return _show("open", name, f"not written yet. It returns {wanted.asks}.")
+    if dots := has_dots(source.text):
+        where = f": dots still stand in `{dots[0]}`" if dots[0].strip(".") else ""
+        return _show("open", name, f"not written yet{where}. It returns {wanted.asks}.")
     verdict = grade(wanted, _in_its_own_room(source, wanted))
     if verdict.state == "right" and folder.was_lent(name) and is_copy(source.text, wanted.loan):
         return _show("open", name, "right, but it is the course's, as it was lent: it stays a loan. Write it your way.")

@@ -104,6 +104,64 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
         ("reach", "np.max(np.abs(q - q_now))", "np.sum(np.abs(q - q_now))", "adds up the turns of the three joints"),
         ("reach", "np.max(np.abs(q - q_now))", "max(q - q_now)", "with their sign"),
         ("rot_z", "[s, c, 0.0]", "[-s, c, 0.0]", "row 2, column 1 has the wrong sign"),
+        (
+            "rot_z",
+            "[c, -s, 0.0], [s, c, 0.0]",
+            "[c, np.cos(angle + 90), 0.0], [s, np.sin(angle + 90), 0.0]",
+            "how many rad are a quarter turn",
+        ),
+        ("rot_z", "-s", "...", r"dots still stand in `return np.array\(\[\[c, ..., 0.0"),
+        ("dh_matrix", "return turn_z(theta) @ shift(0, 0, d) @", "return", "theta and d do nothing"),
+        ("dh_matrix", "shift(0, 0, d) @ shift(a, 0, 0)", "(shift(0, 0, d) + shift(a, 0, 0))", "matrices are added"),
+        ("dh_matrix", "@ shift(0, 0, d)", "@ shift(a, 0, 0)", "d does nothing in it and a counts twice"),
+        ("dh_matrix", "turn_x(alpha)", "turn_x(alpha) * [1, 1, 1, 0]", "is a turn put into zeros"),
+        (
+            "dh_matrix",
+            "turn_z(theta) @ shift(0, 0, d) @ shift(a, 0, 0) @ turn_x(alpha)",
+            "turn_x(theta) @ shift(a, 0, d) @ turn_z(alpha)",
+            "theta turns about x and alpha about z",
+        ),
+        ("forward_kinematics", "[3]", "[2]", "the place of the elbow, not that of the tip"),
+        ("damped_step", "T[3]", "T[2]", "the elbow is taken for the tip"),
+        ("forward_kinematics", "frames(q, l)", "frames(l, q)", "q and l have changed places"),
+        ("forward_kinematics", "frames(q, l)[3]", "np.linalg.multi_dot(frames(q, l))", "multiplied once more"),
+        ("forward_kinematics", "frames(q, l)[3][:3, 3]", "frames(q, l)[:, :3, 3].sum(0)", "are added up"),
+        (
+            "forward_kinematics",
+            "[:3, 3]",
+            "[:3, :3].T @ frames(q, l)[3][:3, 3]",
+            "turned by the frame's axes once more",
+        ),
+        ("forward_kinematics", "[:3, 3]", "[:3, 3] - frames(q, l)[1][:3, 3]", "counted from the shoulder"),
+        ("forward_kinematics", "[:3, 3]", "[:3][3]", "row and column stand in one bracket"),
+        ("reach", "[2:, 2, 3]", "[2:, 3, 2]", "another number than their heights"),
+        ("reach", "    return best", "    return min([q] if smallest < 9 else [], key=len)", "of nothing"),
+        ("reach", "best = q\n", "best = q - q_now\n", "it returns the turn from q_now"),
+        ("reach", "frames(q, l)", "frames(q_now, l)", "the heights are those of the arm as it stands now"),
+        (
+            "reach",
+            "if inside and",
+            "if not (inside and above_the_table):\n            return None\n        if",
+            "ends the search",
+        ),
+        ("reach", REACH_LIMITS, "np.any((q >= limits[0]) & (q <= limits[1]))", "one joint within its limits is enough"),
+        ("jacobian", "T[joint][:3, 2]", "T[link - 1][:3, 2]", "the axis of the link's last one"),
+        ("jacobian", "    return J", "    return np.roll(J * (np.arange(3) < link - 1), 1, axis=1)", "column number 0"),
+        ("jacobian", "range(link)", "range(link - 1, link)", "the link's own joint alone"),
+        ("jacobian", "range(link)", "range(link, 3)", "the joints after the link move it"),
+        (
+            "jacobian",
+            "    return J",
+            "    J[:3] /= np.maximum(np.linalg.norm(J[:3], axis=0), 1e-12)\n    return J",
+            "has length 1",
+        ),
+        ("jacobian", "    return J", "    J[1] *= -1\n    return J", "row 2 has the wrong sign, the rest is right"),
+        (
+            "jacobian",
+            "    return J",
+            "    J[3:, :link] = np.cumsum(J[3:, :link], axis=1)\n    return J",
+            "added up from column to column",
+        ),
         ("dh_matrix", "T[:3, 3] = [x", "T[3, :3] = [x", "stands in the bottom row"),
         ("jacobian", "axis = T[joint]", "axis = T[joint + 1]", "axis of joint k is taken from frame k, one too far"),
         (
@@ -164,6 +222,60 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
 )
 def test_a_usual_mistake_has_its_sentence(name, old, new, words, capsys):
     said = told(capsys, name, (old, new))
+    assert re.search(words, said), said
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "words"),
+    [
+        ("frames", "q[k], d, a, alpha", "d, a, alpha, q[k]", "arguments of `dh_matrix` stand in another order"),
+        ("frames", "d, a, alpha = ", "a, d, alpha = ", "d and a have changed places in every row"),
+        ("frames", "range(len(q))", "range(1, len(q))", "the loop leaves out the first"),
+        ("frames", "q[k]", "q[k - 1]", "q is read one place too early"),
+        ("frames", "table[k]", "table[0]", "number 1 of table is taken each time"),
+        ("frames", "T[-1] @ step", "(dh_matrix(q[k - 1], *table[k - 1]) if k else T[0]) @ step", "back two links only"),
+        ("inverse_kinematics", "out = np.hypot(x, y)", "out = x", "x alone counts, not the distance: look at out"),
+        ("inverse_kinematics", "/ (2 * l2 * l3)", "/ (l2 * l3)", r"a factor is missing \(2\): look at the cosine"),
+        ("inverse_kinematics", "np.array(poses)", "np.array(poses).astype(int)", "its angles are whole numbers"),
+        (
+            "inverse_kinematics",
+            "in [-bend, bend]:",
+            "in [-bend, bend][: 2 * (bend < 2.44)]:",
+            r"bends by 2.\d rad or more",
+        ),
+        (
+            "inverse_kinematics",
+            "poses.append([waist + np.pi, np.arctan2(up, -out) - beta, q3])\n    p",
+            "if abs(cosine) > 1 + 1e-9:\n            return []\n    p",
+            "two poses a place, all on one side",
+        ),
+        (
+            "inverse_kinematics",
+            "np.arctan2(l3 * np.sin(q3), l2 + l3 * np.cos(q3))",
+            "np.arctan2(l2 * np.sin(q3), l3 + l2 * np.cos(q3))",
+            "the elbow is right, in the shoulder l2 and l3",
+        ),
+        ("damped_step", "+ damping**2 * np.eye(3)", "+ damping**2", "a factor is missing .the identity.: look at A"),
+        ("damped_step", "J.T @ e", "e", "a factor of a matrix product is missing: look at dq"),
+        ("damped_step", "J.T @ J", "J @ J", "a transpose is missing: look at A"),
+        ("damped_step", "np.linalg.solve(A, J.T @ e)", "J.T @ e / A", "`/` divides entry by entry"),
+        ("damped_step", "forward_kinematics(q, l)", "forward_kinematics(l, q)", "arguments 1 and 2 of `forward_kin"),
+        ("damped_step", "frames(q, l)", "frames(p, l)", "`p` stands where something else belongs: look at T"),
+        ("damped_step", "e = p - tip", "e = p", "it steps by p itself"),
+        ("damped_step", "np.eye(3)", "np.diag(np.diag(J.T @ J))", "multiplied with the diagonal"),
+        ("damped_step", "np.linalg.solve(A, J.T @ e)", "J.T @ e / np.diag(A)", "each joint steps as if it were alone"),
+        (
+            "damped_step",
+            "return q + dq",
+            "return q + np.linalg.solve(J.T @ J, J.T @ e) + damping**2",
+            "added to the turn",
+        ),
+        ("damped_step", "np.linalg.solve(A, J.T @ e)", "np.linalg.lstsq(J, e, rcond=damping)[0]", "`rcond`"),
+        ("damped_step", "solve(A, J.T @ e)", "solve(J.T @ e, A)", "a row where a matrix belongs: in `solve` it comes"),
+    ],
+)
+def test_a_mistake_in_the_form_the_notebook_leads_to(name, old, new, words, capsys):
+    said = told(capsys, name, (old, new), text=task(name).routes[0])
     assert re.search(words, said), said
 
 
@@ -363,6 +475,22 @@ TOO_MANY_ROWS = """def damped_step(q, p, l, damping):
     J = jacobian(frames(q, l), 3, forward_kinematics(q, l))
     return q + J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(6), p - forward_kinematics(q, l))"""
 ALL_ROWS = TOO_MANY_ROWS.replace("p - forward_kinematics(q, l))", "np.append(p - forward_kinematics(q, l), [0, 0, 0]))")
+OUT_OF_ITS_LIST = """def reach(p, l, q_now, limits):
+    poses = inverse_kinematics(p, l).tolist()
+    for q in poses:
+        if np.any(q < limits[0]) or np.any(q > limits[1]) or np.any(frames(q, l)[2:, 2, 3] < -1e-9):
+            poses.remove(q)
+    if not poses:
+        return None
+    return np.array(min(poses, key=lambda q: np.max(np.abs(q - q_now))))"""
+UNTIL_IT_IS_THERE = """def damped_step(q, p, l, damping):
+    for _ in range(100):
+        e = p - forward_kinematics(q, l)
+        if np.linalg.norm(e) < 2e-3:
+            break
+        J = jacobian(frames(q, l), 3, forward_kinematics(q, l))[:3]
+        q = q + np.linalg.solve(J.T @ J + damping**2 * np.eye(3), J.T @ e)
+    return q"""
 ELBOW_KEPT = """def inverse_kinematics(p, l):
     q1, out, up = np.arctan2(p[1], p[0]), np.hypot(p[0], p[1]), p[2] - l[0]
     c = (out**2 + up**2 - l[1]**2 - l[2]**2) / (2 * l[1] * l[2])
@@ -386,6 +514,9 @@ ELBOW_KEPT = """def inverse_kinematics(p, l):
             "R = np.eye(3)\n\n\ndef rot_z(angle):\n    R[0, 0] += angle\n    return R",
             "it changes `R`, made once",
         ),
+        ("reach", OUT_OF_ITS_LIST, "makes it skip the next one"),
+        ("reach", "def reach(p, l, q_now, limits):\n    return by_course(p)", "it calls `by_course`, the course's own"),
+        ("damped_step", UNTIL_IT_IS_THERE, "it is at the place already"),
         ("damped_step", ALL_ROWS, "the hand must not turn, either"),
         (
             "inverse_kinematics",
@@ -395,7 +526,7 @@ ELBOW_KEPT = """def inverse_kinematics(p, l):
     ],
 )
 def test_other_ways_to_be_wrong_have_theirs(name, text, words, capsys):
-    said = told(capsys, name, text=text, notebook={"my_robot": my_robot})
+    said = told(capsys, name, text=text, notebook={"my_robot": my_robot, "by_course": task("frames").right})
     assert re.search(words, said) and "gufunc" not in said, said
 
 

@@ -54,7 +54,7 @@ def take(thing, name, earlier):
         raise CannotTake(f"the cell has to define `{name}`, with `def {name}(...)`")
     wanted, calls, queue = [], set(), [name]
     while queue:
-        one = queue.pop()
+        one = queue.pop(0)
         if one in offered:
             if offered[one] not in wanted:
                 wanted.append(offered[one])
@@ -114,12 +114,13 @@ def _definitions(tree):
 
 def _globals_of(node):
     """Names that a definition looks up outside itself, as the compiler sees them."""
-    names, codes = set(), [compile(ast.Module([node], []), "cell", "exec")]
+    names, codes = {}, [compile(ast.Module([node], []), "cell", "exec")]
     while codes:
         code = codes.pop()
         codes += [constant for constant in code.co_consts if hasattr(constant, "co_names")]
-        names |= {name for name in code.co_names if _looked_up(code, name)}
-    return names - {getattr(node, "name", None), "__name__", "__module__", "__qualname__"}
+        names |= {name: None for name in code.co_names if _looked_up(code, name)}
+    own = {getattr(node, "name", None), "__name__", "__module__", "__qualname__"}
+    return [name for name in names if name not in own]
 
 
 def _looked_up(code, name):
@@ -140,6 +141,8 @@ def _stranger(name, notebook, text):
     module = (getattr(value, "__module__", None) or getattr(value, "__name__", "")).partition(".")[0]
     if module == "numpy" or module == "math":
         return f"it uses `{name}` from another cell: write `np.{name}`, which is always there"
+    if callable(value) and module == "ir50p_lab":
+        return f"it calls `{name}`, the course's own: write that part yourself, with your earlier functions"
     if callable(value) or hasattr(value, "__file__"):
         return f"it uses `{name}` of the notebook: put it into the same cell, or write that part yourself"
     return f"it uses `{name}`, a variable of the notebook: a function takes what it needs as arguments"
@@ -184,11 +187,11 @@ def _leads_out(path):
 
 
 def has_dots(text):
-    """Tell whether dots still stand where the answer should be (those of `a[..., 0]` do not count)."""
+    """The lines in which dots still stand where the answer should be (those of `a[..., 0]` do not count)."""
     tree = ast.parse(text)
     indices = {id(one) for node in ast.walk(tree) if isinstance(node, ast.Subscript) for one in ast.walk(node.slice)}
     dots = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and node.value is ...]
-    return any(id(node) not in indices for node in dots)
+    return [text.splitlines()[node.lineno - 1].strip() for node in dots if id(node) not in indices]
 
 
 def is_copy(text, other):

@@ -118,6 +118,8 @@ def of_results(task):
             yield Mistake(_result(task, lambda y, i=i: y[:i]), says)
             yield Mistake(_result(task, lambda y, i=i: y[i]), f"it returns number {i + 1} of {shape[0]} alone")
             yield Mistake(_result(task, lambda y, i=i: np.delete(y, i, 0)), f"number {i + 1} of {shape[0]} is missing")
+            for says, change in _OF_PARTS if len(shape) == 2 else ():
+                yield Mistake(_result(task, _on_rows(_on_part(i, change))), says.format(f"row {i + 1}"))
             for j in range(i):
                 change = _on_rows(_swapped(i, j))
                 yield Mistake(_result(task, change), f"rows {j + 1} and {i + 1} have changed places")

@@ -60,6 +60,8 @@ def grade(task, function):
         if says := read(task, cases, returned, expected):
             if read in (_common, _symptom):
                 bad = _shown_by(read, says, task, cases, returned, expected, bad)
+            if read is _symptom and guess:
+                says = f"{guess}; {says}"
             break
     by_count = f"it is right for {sum(good)} of {len(good)} inputs: try the one below with pencil and paper"
     visible = (_example(task, cases[k], expected[k], returned[k]) for k in bad)
@@ -68,8 +70,8 @@ def grade(task, function):
 
 def _known(task, function, cases, returned, expected, bad):
     """The sentence of the mistake that gives these answers, or ""; and one that says too little, or ""."""
-    stopped = [one for one in returned if isinstance(one, Failed)]
-    if 2 * len(stopped) >= len(cases) or all(one is None for one in returned):  # nothing to compare
+    stopped = sum(isinstance(one, Failed) for one in returned)
+    if stopped == len(bad) or 2 * stopped >= len(cases) or all(one is None for one in returned):  # nothing to compare
         return "", ""
     order = [*bad, *sorted(set(range(len(cases))) - set(bad))]
     both = pairs(task) if any(map(_has_numbers, returned)) else ()
@@ -141,7 +143,9 @@ def _call(task, function, case):
     except KeyboardInterrupt:
         raise Failed("it was stopped: does a loop in it never end?", _given(task, case)) from None
     except Exception as error:
-        return Failed(why_it_stops(error), _given(task, case))
+        stopped = Failed(why_it_stops(error), _given(task, case))
+        stopped.__cause__ = error
+        return stopped
     if not all(_untouched(one, other) for one, other in zip(case, given, strict=True)):
         raise Failed("it changes what it was given: work on a copy (`np.array(x)` makes one)", _given(task, case))
     return result
@@ -159,12 +163,12 @@ def _agrees(task, returned, expected):
 
 
 def _is_slip(task, slip, case, returned):
-    """Tell whether a slip gives the same answer, or stops where this one stops."""
+    """Tell whether a slip gives the same answer, or stops as this one does."""
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
             wrong = slip.wrong(*copy.deepcopy(case))
-    except Exception:
-        return isinstance(returned, Failed)
+    except Exception as error:
+        return isinstance(returned, Failed) and type(returned.__cause__) is type(error)
     return _agrees(task, returned, wrong)
 
 
@@ -198,8 +202,9 @@ def _mostly(task, cases, returned, expected):
         if not all(_is_slip(task, slip, cases[k], returned[k]) for k in right):
             continue
         share = sum(returned[k] is not None and _is_slip(task, slip, cases[k], returned[k]) for k in wrong)
-        if share >= max(3, len(wrong) / 3):
-            return f"{slip.says} (that explains {share} of {len(wrong)} wrong answers; something else is wrong, too)"
+        if share >= max(3, len(wrong) / 2):
+            says = slip.says.removesuffix(", the rest is right")
+            return f"{says} (that explains {share} of {len(wrong)} wrong answers; something else is wrong, too)"
     return ""
 
 

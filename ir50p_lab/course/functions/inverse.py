@@ -88,18 +88,23 @@ def _poses_symptom(cases, returned, expected):
         edge = all(len(expected[k]) for k in undefined)
         where = "on the very edge, by a rounding error of the place" if edge else "out of reach"
         return f"it returns nan {where}: a root of less than nothing, an arccos of more than 1"
+    directions = np.exp(1j * np.concatenate(answers))[..., None]
+    if len(np.unique(directions)) > 1 and np.isclose(directions, np.exp(1j * np.arange(-6, 7))).any(axis=-1).all():
+        return "its angles are whole numbers: an array of integers cuts off what is put into it"
     says = next(filter(None, map(_missing_pose, answers, cases, expected)), "")
     far = [k for k, one in enumerate(expected) if len(one) == 0 and len(answers[k])]
     if says or far:
         return says or "a place out of reach gets poses: no pose means no row, an empty array"
     refused = [k for k in range(len(cases)) if len(expected[k]) and not len(answers[k])]
-    if refused and all(_straight(expected[k]) for k in refused):
+    inside = [k for k, one in enumerate(expected) if len(one) and not _straight(one)]
+    if says := _fewer(*([many[k] for k in inside] for many in (answers, cases, expected))):
+        return says
+    if refused:
         return (
             f"{len(refused)} places on the very edge, where the arm is stretched, count as out of reach: there "
             "rounding makes r a hair too large; allow r 1e-9 m"
         )
-    inside = [k for k, one in enumerate(expected) if len(one) and not _straight(one)]
-    return _fewer([answers[k] for k in inside], [cases[k] for k in inside], refused)
+    return ""
 
 
 def _whole_turns(poses):
@@ -137,6 +142,8 @@ _BENDS = (  # what becomes of waist w, shoulder s and elbow e; g: angle between 
      lambda w, s, e, g: (w, s + g(e), e)),
     ("the slope of r is not in the shoulder{}", lambda w, s, e, g: (w, -g(e), e)),
     ("the slope of r has the wrong sign{}: what is it for a high place?", lambda w, s, e, g: (w, -s - 2 * g(e), e)),
+    ("the elbow is right, in the shoulder l2 and l3 have changed places{}: which corner of the triangle is it?",
+     lambda w, s, e, g: (w, s + 2 * g(e) - e, e)),
     ("the shoulder has the wrong sign{}: positive lifts", lambda w, s, e, g: (w, -s, e)),
     ("the shoulder is counted from the vertical{}: it is 0 lying flat", lambda w, s, e, g: (w, np.pi / 2 - s, e)),
     ("the shoulder is half a turn off{}", lambda w, s, e, g: (w, s + np.pi, e)),
@@ -193,9 +200,15 @@ def _missing_pose(rows, case, right):
     return ""
 
 
-def _fewer(answers, cases, refused):
+def _fewer(answers, cases, expected):
     """Which poses of a place within reach are left out."""
-    if refused:
+    bends = [np.abs(one[:, 2]).max() for one in expected]
+    if refused := [bend for bend, one in zip(bends, answers, strict=True) if not len(one)]:
+        if min(refused) > max([2.0, *(bend for bend, one in zip(bends, answers, strict=True) if len(one))]):
+            return (
+                f"places get no pose where the elbow bends by {min(refused):.1f} rad or more: too near the shoulder, "
+                "or are limits asked? Those come later, in `reach`"
+            )
         return "a place within reach gets no pose"
     single = [np.unique(np.round(one, 6), axis=0) for one in answers]
     if any(len(one) < len(other) for one, other in zip(single, answers, strict=True)):
@@ -210,6 +223,8 @@ def _fewer(answers, cases, refused):
         return "two poses a place, all on one side: the waist may also turn its back, and the arm bends over"
     if counts == {3}:
         return "three poses a place: two elbows facing it, two with the back to it"
+    if counts <= {4}:
+        return ""
     return "some places get fewer poses than others: are some struck out? Limits come later, in `reach`"
 
 
@@ -235,6 +250,26 @@ _LOAN = """def inverse_kinematics(p, l):
     return np.array(poses)"""
 
 
+_BY_THE_TRIANGLE = """def inverse_kinematics(p, l):
+    x, y, z = p
+    l1, l2, l3 = l
+    waist = np.arctan2(y, x)
+    out = np.hypot(x, y)
+    up = z - l1
+    r = np.hypot(out, up)
+    if r > l2 + l3 + 1e-9 or r < abs(l2 - l3) - 1e-9:
+        return np.empty((0, 3))
+    cosine = (l2**2 + l3**2 - r**2) / (2 * l2 * l3)
+    bend = np.pi - np.arccos(np.clip(cosine, -1, 1))
+    poses = []
+    for q3 in [-bend, bend]:
+        beta = np.arctan2(l3 * np.sin(q3), l2 + l3 * np.cos(q3))
+        poses.append([waist, np.arctan2(up, out) - beta, q3])
+        poses.append([waist + np.pi, np.arctan2(up, -out) - beta, q3])
+    poses = np.array(poses)
+    return np.arctan2(np.sin(poses), np.cos(poses))"""
+
+
 INVERSE_KINEMATICS = Task(
     name="inverse_kinematics",
     notebook="02",
@@ -246,6 +281,7 @@ INVERSE_KINEMATICS = Task(
     same=same_poses,
     loan=_LOAN,
     parts=("q1", "q2", "q3"),
+    routes=(_BY_THE_TRIANGLE,),
     slips=(
         Mistake(lambda p, l: _bent(p, l, lambda w, s, e, g: (w, np.pi - s - 2 * g(e), e), _WHERE[1][1]),
                 "with its back to the place the arm has the shoulder of the one that faces it: there the place lies "
@@ -413,6 +449,19 @@ def _only_the_nearest(p, l, q_now, limits):
     return nearest if nearest is not None and within(nearest, limits) and above_table(nearest, l) else None
 
 
+def _none_if_one_is_refused(p, l, q_now, limits):
+    all_in = all(within(q, limits) and above_table(q, l) for q in inverse_kinematics(p, l))
+    return reach(p, l, q_now, limits) if all_in else None
+
+
+def _removed_in_the_loop(p, l, q_now, limits):
+    rows = inverse_kinematics(p, l).tolist()
+    for q in rows:
+        if not (within(q, limits) and above_table(q, l)):
+            rows.remove(q)
+    return min(rows, key=lambda q: np.abs(q - q_now).max(), default=None)
+
+
 def _the_last_allowed(p, l, q_now, limits):
     allowed = [q for q in inverse_kinematics(p, l) if within(q, limits) and above_table(q, l)]
     return allowed[-1] if allowed else None
@@ -466,7 +515,17 @@ REACH = Task(
                 "then compare"),
         _allowed("neither limits nor table are asked: what is nearest may be forbidden", lambda x, m: True, ()),
         _allowed("the limits are not asked: the nearest pose may be forbidden", lambda x, m: True),
-        _allowed("the table is not asked: an elbow or tip may end below z = 0", within, ()),
+        _allowed("elbow or tip may end below z = 0: is the table not asked, or another number than their heights?",
+                 within, ()),
+        _allowed("one joint within its limits is enough in it: all have to be",
+                 lambda x, m: ((x >= m[0]) & (x <= m[1])).any()),
+        Mistake(lambda p, l, q, m: _chosen(p, l, q, m, allowed=lambda x: within(x, m) and above_table(q, l)),
+                "the heights are those of the arm as it stands now, not those of the pose"),
+        Mistake(_removed_in_the_loop,
+                "a row that is taken out of the list the loop walks along makes it skip the next one"),
+        Mistake(_none_if_one_is_refused, "one pose that is refused ends the search: the others may be allowed"),
+        Mistake(lambda p, l, q, m: (lambda x: None if x is None else x - q)(reach(p, l, q, m)),
+                "it returns the turn from q_now, not the pose"),
         _allowed("the tip stays above the table, the elbow does not: it counts, too", within, (3,)),
         _allowed("the elbow stays above the table, the tip does not: it counts, too", within, (2,)),
         *(

@@ -1,26 +1,13 @@
 """The functions of 00 and 01: turning about z, the DH matrix, the frames of the arm, its tip."""
 
-from functools import lru_cache
-
 import numpy as np
 
 from ir50p_lab import modelling
 from ir50p_lab.course.functions.task import Mistake, Task
-from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.pose import homogeneous, rot_x, rot_y
 
 _TURNS = {"x": rot_x, "y": rot_y, "z": modelling.rot_z}
 _LENGTHS = np.array([[0.285, 0.2, 0.372], [0.3, 0.25, 0.15], [0.0, 1.0, 0.8]])
-
-
-@lru_cache(maxsize=16)
-def _arm(l):
-    return Arm(l=l, m=(1, 1, 1), lc=(l[0] / 2, l[1] / 2, l[2] / 2))
-
-
-def arm_of(l):
-    """An arm with these lengths, for the course's own functions."""
-    return _arm(tuple(float(x) for x in l))
 
 
 def some_arms(count, seed):
@@ -71,6 +58,8 @@ ROT_Z = Task(
         Mistake(lambda a: rot_z(a).T,
                 "it turns the wrong way round: a quarter turn takes (1, 0, 0) to (0, -1, 0), to the "
                 "right. Which way is counter-clockwise seen from above?"),
+        Mistake(lambda a: np.column_stack([rot_z(a)[:, 0], rot_z(a + 90)[:, 0], [0, 0, 1]]),
+                "column 2 is turned on by 90, and here that is 90 rad: how many rad are a quarter turn?"),
     ),
     symptom=_rot_z_symptom,
     hints=(
@@ -186,6 +175,16 @@ def dh_matrix(theta, d, a, alpha):
                 "d comes after the tilt: the joint lifts along its own axis, before the link tilts it"),
         Mistake(lambda t, d, a, f: turn_z(t) @ shift(a, 0, d).T @ turn_x(f),
                 "a shift stands in the bottom row: what a point is moved by belongs into the last column"),
+        Mistake(lambda t, d, a, f: turn_x(t) @ shift(a, 0, d) @ turn_z(f),
+                "theta turns about x and alpha about z: they have changed axes"),
+        Mistake(lambda t, d, a, f: shift(a, 0, 0) @ turn_x(f),
+                "theta and d do nothing in it: is what they make left out of the product, or written over?"),
+        Mistake(lambda t, d, a, f: dh_matrix(t, d, a, f) @ np.diag([1, 1, 1, 0]),
+                "the 1 at the lower right is 0, and both shifts are lost with it: is a turn put into zeros?"),
+        Mistake(lambda t, d, a, f: turn_z(t) @ (shift(0, 0, d) + shift(a, 0, 0)) @ turn_x(f),
+                "two matrices are added: one motion after another is a product"),
+        Mistake(lambda t, d, a, f: dh_matrix(t, 0, 2 * a, f), "d does nothing in it and a counts twice"),
+        Mistake(lambda t, d, a, f: dh_matrix(t, 2 * d, 0, f), "a does nothing in it and d counts twice"),
         *_other_motions(),
     ),
     symptom=_dh_symptom,
@@ -199,19 +198,20 @@ def dh_matrix(theta, d, a, alpha):
 # ---------------------------------------------------------------------------------------------------------- frames
 def frames(q, l):
     """Transforms of frames 0 to 3 as seen from the base, (4, 4, 4)    (1.14)-(1.19)."""
-    return np.array(modelling.frames(arm_of(l), q))
+    return _chain(*_links(q, l))  # any lengths: a mistake may hand over others
 
 
-def _links(q, l, alphas=(1, 0, -1)):
+def _links(q, l, alphas=(1, 0, -1), step=dh_matrix):
     a1, a2, a3 = np.pi / 2 * np.array(alphas)
-    return dh_matrix(q[0], l[0], 0, a1), dh_matrix(q[1], 0, l[1], a2), dh_matrix(q[2], 0, l[2], a3)
+    q1, q2, q3 = np.moveaxis(np.asarray(q), -1, 0)
+    return step(q1, l[0], 0, a1), step(q2, 0, l[1], a2), step(q3, 0, l[2], a3)
 
 
 def _chain(*links):
-    out = [np.eye(4)]
+    out = [np.broadcast_to(np.eye(4), links[0].shape)]
     for link in links:
         out.append(out[-1] @ link)
-    return np.array(out)
+    return np.stack(out, axis=-3)
 
 
 def _frames_symptom(cases, returned, expected):
@@ -235,6 +235,20 @@ def _frames_symptom(cases, returned, expected):
     return "not every turn in it keeps right angles and lengths: are the links multiplied with `@`?"
 
 
+_BY_TABLE = """def chain(q, table):
+    T = [np.eye(4)]
+    for k in range(len(q)):
+        d, a, alpha = table[k]
+        step = dh_matrix(q[k], d, a, alpha)
+        T.append(T[-1] @ step)
+    return np.array(T)
+
+
+def frames(q, l):
+    table = [[l[0], 0, np.pi / 2], [0, l[1], 0], [0, l[2], -np.pi / 2]]
+    return chain(q, table)"""
+
+
 FRAMES = Task(
     name="frames",
     notebook="01",
@@ -243,6 +257,7 @@ FRAMES = Task(
     right=frames,
     cases=lambda: some_arms(7, 3),
     leans_on=("dh_matrix", "rot_z"),
+    routes=(_BY_TABLE,),
     loan="""def frames(q, l):
     A1 = dh_matrix(q[0], l[0], 0, np.pi / 2)
     A2 = dh_matrix(q[1], 0, l[1], 0)
@@ -258,6 +273,10 @@ FRAMES = Task(
         Mistake(lambda q, l: np.array(_links(q, l)),
                 "there are three, each seen from the link before it: the base comes "
                 "first, and the others are seen from the base"),
+        Mistake(lambda q, l: np.array([*frames(q, l)[:3], _chain(*_links(q, l)[1:])[2]]),
+                "frame 3 goes back two links only: the first is missing in it"),
+        Mistake(lambda q, l: _chain(*_links(q, l, step=lambda t, d, a, f: dh_matrix(t, a, d, f))),
+                "d and a have changed places in every row: in the table, or where it is read?"),
         *(
             Mistake(lambda q, l, alphas=alphas: _chain(*_links(q, l, alphas)), says)
             for says, alphas in (
@@ -314,6 +333,23 @@ FORWARD_KINEMATICS = Task(
         ),
         Mistake(
             lambda q, l: np.linalg.inv(frames(q, l)[3])[:3, 3], "that is the base as the tip sees it: no inverse here"
+        ),
+        Mistake(lambda q, l: frames(q, l)[2, :3, 3], "it is the place of the elbow, not that of the tip"),
+        Mistake(lambda q, l: forward_kinematics(q, l) - [0, 0, l[0]], "the height is counted from the shoulder"),
+        Mistake(
+            lambda q, l: np.linalg.multi_dot(frames(q, l))[:3, 3],
+            "the frames are multiplied once more: each is seen from the base already",
+        ),
+        Mistake(
+            lambda q, l: frames(q, l)[:, :3, 3].sum(axis=0),
+            "the places of the frames are added up: each is counted from the base already",
+        ),
+        *(
+            Mistake(
+                lambda q, l, turn=turn: turn(frames(q, l)[3, :3, :3]) @ forward_kinematics(q, l),
+                "the place is turned by the frame's axes once more: it is in those of the base already",
+            )
+            for turn in (np.asarray, np.transpose)
         ),
     ),
     hints=(

@@ -41,6 +41,8 @@ _REASONS = (  # kind of error, what its message holds, the usual reason
     ("ZeroDivisionError", "", "a division by zero"),
     ("ValueError", "math domain error", "a root of less than nothing, or an arccos of more than 1"),
     ("LinAlgError", "ingular", "the matrix has no inverse there: the arm is stretched, a direction is lost"),
+    ("LinAlgError", "at least two-dim", "`np.linalg` is given a row where a matrix belongs: in `solve` it comes first"),
+    ("ValueError", "empty", "the smallest or largest of nothing: what is to come back where the list is empty?"),
     ("LinAlgError", "square", "only a square matrix has an inverse"),
     ("UnboundLocalError", "", "a name is used before it gets its value: is that only set inside an `if` or a loop?"),
     ("RecursionError", "", "it calls itself without an end"),
@@ -55,6 +57,8 @@ def why_it_stops(error):
     reason = memory or next(usual, "")
     if isinstance(error, LabError):
         reason = "an earlier function is given what it cannot take: are its arguments in their order?"
+    if isinstance(error, IndexError) and re.search(r"\[[^]]*:[^]]*\]\[", line):
+        reason = "a slice leaves rows, and the next bracket counts rows again: row and column stand in one bracket"
     if line.startswith("raise"):
         reason = "it is asked for an answer there, too, not for an error"
     place = f" in `{line}`" if line else ""
@@ -128,4 +132,6 @@ def _value(node, frame):
 def _named(node, frame):
     value = _value(node, frame)
     kind = f"has the shape {value.shape}" if isinstance(value, np.ndarray) else f"is {str(value)[:30]}"
+    if isinstance(value, list):
+        kind = f"is a list of {len(value)}"
     return f"`{ast.unparse(node)}` {kind}"

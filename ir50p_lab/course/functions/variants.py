@@ -27,8 +27,7 @@ _NAMED = re.compile(
     r"|`(?P<quoted>[\w ]+)`(?= (?:is|has|counts|stands))"
 )
 
-
-_SAY_LITTLE = ("something else", "the condition is not asked")
+_SAYS_LITTLE = re.compile("the condition is not asked|^something stands|something else belongs$")
 _LETTER = 2  # characters: l2, l3, q1
 _MANY_NAMES = 14  # exchanging each for each of more takes seconds
 
@@ -59,13 +58,15 @@ def in_words_of(function, says):
 
     def kept(match):
         name = (match["named"] or match["place"] or match["quoted"]).replace(" ", "_")
-        if name in known:
+        if name in known or name.isdigit():
             return match[0]
         lost.append(not match["place"])
         return "something" if match["quoted"] else ""
 
     words = _NAMED.sub(kept, says)
-    return words, not any(lost) and not any(one in words for one in _SAY_LITTLE)
+    if _SAYS_LITTLE.search(words):
+        return "", False
+    return words, not any(lost)
 
 
 @cache
@@ -142,7 +143,7 @@ def _place(statement):
     match statement:
         case ast.Assign(targets=[target]):
             name = next(one.id for one in ast.walk(target) if isinstance(one, ast.Name))
-            place = re.sub(r"^(?=.*_|[a-z]{3})", "the ", name).replace("_", " ")
+            place = re.sub(r"^(?!out$)(?=.*_|[a-z]{3})", "the ", name).replace("_", " ")
         case ast.If():
             place = "the condition"
         case ast.For():
@@ -170,6 +171,9 @@ def _changes(node, local, last):
             ):
                 yield words, _parsed(f"range({start}, {stop.format(ast.unparse(count))})")
         case ast.Call(func=function, args=args):
+            for turned in (args[1:] + args[:1], args[-1:] + args[:-1]) if len(args) > 2 else ():
+                words = f"the arguments of `{ast.unparse(function)}` stand in another order than it takes them"
+                yield words, ast.Call(function, turned, [])
             for k in range(len(args) - 1):
                 swapped = [*args[:k], args[k + 1], args[k], *args[k + 2 :]]
                 words = f"arguments {k + 1} and {k + 2} of `{ast.unparse(function)}` have changed places"
@@ -199,6 +203,8 @@ def _changes(node, local, last):
             for words, op in (("late: the first round needs number 0", ast.Add()), ("early", ast.Sub())):
                 moved = ast.BinOp(k, op, ast.Constant(1))
                 yield f"{ast.unparse(value)} is read one place too {words}", ast.Subscript(value, moved, node.ctx)
+            words = f"number 1 of {ast.unparse(value)} is taken each time"
+            yield words, ast.Subscript(value, ast.Constant(0), node.ctx)
         case ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.Lt() | ast.LtE() as op], comparators=[right]):
             other = ast.LtE() if isinstance(op, ast.Gt | ast.GtE) else ast.GtE()
             yield "a comparison is the wrong way round", ast.Compare(left, [other], [right])
