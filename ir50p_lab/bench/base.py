@@ -281,11 +281,12 @@ class Bench:
             sample = run.row = self._last = Sample(t, self._radians(counts), counts, pace.missed)
             if run.guard is not None:
                 run.guard.check(sample, self._pwm)
+            given = sample._replace(q=sample.q.copy())  # who writes into it changes no recording
             if run.reference is None:
-                return sample
+                return given
             rows = checked_reference(self.arm, t, run.reference(t), sample.q if self.answers else None)
-            run.aim = rows[0]
-            return sample._replace(reference=rows)
+            run.aim = rows[0].copy()
+            return given._replace(reference=rows)
 
     def _resume(self, run, silence):
         """The drive was cut in this silence, s: say so and measure, driving nothing; too long a one ends the run."""

@@ -12,7 +12,7 @@ from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.runaway import watch_step
 from ir50p_lab.bench.set_point import FARTHEST, NOISE, checked_reference
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, convert, read_pots
-from ir50p_lab.controllers.base import Controller
+from ir50p_lab.controllers.base import is_compiled
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import check_controller, check_reference
@@ -168,7 +168,7 @@ class SimulatedBench(Bench):
 
         The numbers are those of the loop in Python, to the last bit. Returns the Recording (None with record=False).
         """
-        if self.realtime or not isinstance(controller, Controller):
+        if self.realtime or not is_compiled(controller):
             return super().follow(controller, reference, seconds, record=record, **header)
         check_controller(controller)
         check_reference(reference, sampled=True)

@@ -15,7 +15,7 @@ import numpy as np
 
 from ir50p_lab.bench.arm_instance import ArmInstance
 from ir50p_lab.bench.simulated import SimulatedBench
-from ir50p_lab.controllers.base import Controller
+from ir50p_lab.controllers.base import is_compiled
 from ir50p_lab.controllers.pid import PID
 from ir50p_lab.course import lab_book
 from ir50p_lab.errors import LabError
@@ -224,7 +224,7 @@ def twin_of(controller, arm=None):
     Built from its gains `kp`, `ki`, `kd`; both see the same angles of a practice run, noise included, and have to
     send the same commands within a thousandth of a count.
     """
-    if isinstance(controller, Controller):
+    if is_compiled(controller):
         return controller
     try:
         twin = PID(controller.kp, controller.ki, controller.kd, limit_pwm=255)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.controllers.base import Controller
+from ir50p_lab.controllers.base import Controller, is_compiled
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.columns import columns_of, sampling_period
@@ -59,7 +59,7 @@ class ClosedLoopRun:
         period = sampling_period(t)
         if np.abs(np.diff(t) - period).max() > 0.1 * period:
             raise InputError("the times are uneven or have gaps: a loop is compared without; cut with between(t0, t1)")
-        if not isinstance(controller, Controller):
+        if not is_compiled(controller):
             raise InputError(f"controller is a {type(controller).__name__}: give the PID (or other) of the run")
         if number("delay", delay, ">= 0", unit="s") >= 1:
             raise InputError(f"delay = {delay!r} s: give 0 to below 1 s")

@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 
-from ir50p_lab.controllers.base import Controller
+from ir50p_lab.controllers.base import Controller, is_compiled
 from ir50p_lab.errors import InputError, UnstableLoopWarning
 from ir50p_lab.inputs import number, vector3
 from ir50p_lab.signals.steps import hold
@@ -70,7 +70,7 @@ def simulate(
         fine = _sample(target, np.linspace(0, t[-1], 2 * steps * (len(t) - 1) + 1))
         x = np.concatenate([x, np.zeros(3)])
         continuous_loop(plant.theta, plant.numbers, controller.parameters, fine, x, step, steps, q, qd, u)
-    elif controller is None or isinstance(controller, Controller):
+    elif controller is None or is_compiled(controller):
         from ir50p_lab.simulation.loops import sampled_loop
 
         kind, p, s = 0, np.zeros(1), np.zeros(1)
@@ -105,7 +105,7 @@ def _python_loop(plant, controller, t, r, x, step, steps, q, qd, u):
 
     for k in range(len(t)):
         q[k], qd[k] = x[:3], x[3:]
-        command = controller.step(t[k], q[k].copy(), r[k])
+        command = controller.step(t[k], q[k].copy(), r[k].copy())
         command = vector3(f"the controller's command at t = {t[k]:.6g} s", command, unit="u")
         u[k] = np.clip(command, -plant.limit, plant.limit)
         if k + 1 < len(t):

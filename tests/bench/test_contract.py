@@ -335,6 +335,17 @@ class TestContract:
             assert record.header["simulated"] == str(bench.simulated).lower()
         assert bench.recording.path.parent == rig.folder
 
+    def test_who_writes_into_a_sample_changes_no_recording(self, rig):
+        bench = rig.bench().open()
+        seen = []
+        for sample in bench.run(0.05, reference=hold(REST)):
+            seen.append(sample.q.copy())
+            sample.reference[0] -= sample.q
+            sample.q[:] = 9.0
+            bench.drive([0, 0, 0])
+        np.testing.assert_allclose(bench.recording.q, seen, atol=1e-6)
+        np.testing.assert_allclose(bench.recording.reference, np.tile(REST, (len(seen), 1)), atol=1e-9)
+
     def test_a_run_without_recording(self, rig):
         bench = rig.bench().open()
         list(bench.run(0.05, record=False))

@@ -130,6 +130,24 @@ def test_a_python_controller_gives_the_same_run():
     np.testing.assert_allclose(ours.u, theirs.u, atol=1e-8)
 
 
+def test_a_step_of_ones_own_runs_and_may_write_into_what_it_gets():
+    """Not the compiled law of the class it is made from, whether in a class or put into an object."""
+
+    class Half(PID):
+        def step(self, t, measured, reference):
+            u = 0.5 * super().step(t, measured, reference)
+            reference[0] -= measured
+            return u
+
+    gains = {"kp": (50, 50, 50), "kd": (5, 5, 5)}
+    own, half = PID(**gains), simulate(SMOOTH, Half(**gains), SET_POINT, duration=1)
+    plain = own.step
+    own.step = lambda *sample: 0.5 * plain(*sample)
+    np.testing.assert_array_equal(simulate(SMOOTH, own, SET_POINT, duration=1).u, half.u)
+    np.testing.assert_allclose(half.u[0], 0.5 * simulate(SMOOTH, PID(**gains), SET_POINT, duration=1).u[0])
+    np.testing.assert_allclose(half.error[0], SET_POINT)
+
+
 def test_python_controllers_are_reset_too():
     class Counting(PythonPID):
         resets = 0
