@@ -96,7 +96,10 @@ def gains_for_poles(poles):
 
     Raises InputError if a pole is not in the left half plane, or a complex one comes without its partner.
     """
-    poles = np.atleast_1d(np.asarray(poles, dtype=complex))
+    try:
+        poles = np.atleast_1d(np.asarray(poles, dtype=complex))
+    except (TypeError, ValueError):
+        raise InputError(f"poles = {poles!r:.60}: give numbers with negative real part") from None
     if poles.ndim != 1 or not len(poles) or not np.isfinite(poles).all() or (poles.real >= 0).any():
         raise InputError(f"poles = {poles.tolist()}: give numbers with negative real part; the error grows otherwise")
     coefficients = np.poly(poles)

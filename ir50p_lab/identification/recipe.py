@@ -59,9 +59,9 @@ def identify(
     Args:
         recordings: a Recording (t, q, u), or a list of them: other motions, or another load of work for the same arm.
         l2: upper arm, m, or None. delay: s from a sample to the moment its u acts. slow: rad/s.
-        method: "bounded", or another of `fit`; rows, g, unit (of u): as in `fit`, `regressor`; steps: cutoff_hz= (Hz,
-        above what the joints move at), order=, held=, trim=, max_gap= of `process`; anyway: go on where the data are
-        refused.
+        method: "bounded", or another of `fit` that needs neither weights nor instruments; rows, g, unit (of u): as in
+        `fit`, `regressor`; steps: cutoff_hz= (Hz, above what the joints move at), order=, held=, trim=, max_gap= of
+        `process`; anyway: go on where the data are refused.
 
     Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by some per
     cent, at this length of record more than the standard errors, which do not know it: where the parameters themselves

@@ -154,7 +154,8 @@ def _nearest_turn(solutions, near, low, high):
     least, most = solutions.min(axis=0), solutions.max(axis=0)
     to_pose = turns(near, solutions[0])
     fits = (least + to_pose >= low) & (most + to_pose <= high)
-    middle = np.clip([low, high], -1e3, 1e3).mean(axis=0)  # of the limits; those that are none are infinite
+    around = near - 2 * np.pi, near + 2 * np.pi  # in place of limits that are infinite
+    middle = np.clip([low, high], *around).mean(axis=0)
     return solutions + np.where(fits, to_pose, turns(middle, (least + most) / 2))
 
 

@@ -57,6 +57,8 @@ def pose(name, value, *, unit="rad"):
 
 def per_joint(name, value, rule="finite", *, unit=""):
     """Three numbers that keep the `rule` of `number`, one per joint, as a tuple; a single one counts for all joints."""
+    if isinstance(value, (str, bytes, bool)):
+        number(name, value, rule, unit=unit)  # says that these are none
     array = numbers(name, value, unit=unit)
     if array.shape not in ((), (3,)):
         raise InputError(f"{name} has shape {array.shape}; give one number, or one per joint, (3,) ({unit})")

@@ -21,7 +21,7 @@ _BAND = 0.02
 def pid_batch(theta, n, kp, ki, kd, limit, period, filter_rate, r, x0, h, steps, out):
     """Run LANES sampled PIDs; kp, ki, kd (3, LANES); r (samples, 3, 3); x0 (6,); out (7, 3, LANES) as METRICS.
 
-    The law is that of `pid_step` (derivative on the measurement, anti-windup), written over lanes; the motion is that
+    The law is that of `law_step` (derivative on the measurement, anti-windup), written over lanes; the motion is that
     of `rk4_step`. Every loop over the lanes is free of branches: the compiler turns it into vector instructions.
     """
     samples = r.shape[0]

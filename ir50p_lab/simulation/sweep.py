@@ -76,11 +76,14 @@ def sweep(run, cases, *, executor=None, progress=True, save_to=None):
             for future in as_completed(waiting):
                 take(future)
         finally:  # after an interrupt: keep what is there, and do not begin the rest
-            for future in list(waiting):
-                if not future.cancel() and future.done():
-                    take(future)
-            if executor is None:
-                pool.shutdown(wait=False)
+            begun = [future for future in list(waiting) if not future.cancel()]
+            try:
+                for future in begun:
+                    if future.done():
+                        take(future)
+            finally:
+                if executor is None:
+                    pool.shutdown(wait=False)
     failures.sort(key=lambda failure: failure.index)
     return SweepResult(cases=cases, results=results, failures=failures)
 
