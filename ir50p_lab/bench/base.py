@@ -281,7 +281,7 @@ class Bench:
             sample = run.row = self._last = Sample(t, self._radians(counts), counts, pace.missed)
             if run.guard is not None:
                 run.guard.check(sample, self._pwm)
-            given = sample._replace(q=sample.q.copy())  # who writes into it changes no recording
+            given = sample._replace(q=sample.q.copy(), counts=sample.counts.copy())  # may be written into
             if run.reference is None:
                 return given
             rows = checked_reference(self.arm, t, run.reference(t), sample.q if self.answers else None)
@@ -381,7 +381,7 @@ class Bench:
             run.aim = reference
         self._send(command, self._gripper)
         self._pwm = command
-        return command
+        return command.copy()
 
     def _command_of(self, pwm):
         """`pwm` in whole counts, within the limit and not beyond the ends of the travel; else cut and raise."""

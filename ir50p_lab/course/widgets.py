@@ -106,10 +106,7 @@ class LivePanel(widgets.VBox):
                 self.controls[name].value = value
         finally:
             self._quiet.on = False
-        self._changed()
-        if self._drawer != threading.get_ident():
-            with self._drawing:  # by another thread: wait for it
-                pass
+        self._draw_latest(wait=self._drawer != threading.get_ident())
         if self.error is not None:
             raise self.error
 
@@ -131,11 +128,14 @@ class LivePanel(widgets.VBox):
             self._draw(self.values)
 
     def _changed(self):
+        if not getattr(self._quiet, "on", False):
+            self._draw_latest(wait=False)
+
+    def _draw_latest(self, wait):
         """Draw the latest values. If a drawing is under way, its thread draws them next: there is no queue."""
-        if getattr(self._quiet, "on", False):
-            return
         self._wanted = self.values
-        while self._wanted is not None and self._drawing.acquire(blocking=False):
+        while (wait or self._wanted is not None) and self._drawing.acquire(blocking=wait):
+            wait = False
             try:
                 self._drawer = threading.get_ident()
                 values, self._wanted = self._wanted, None

@@ -172,17 +172,20 @@ def test_judged_is_what_the_commands_do_not_what_the_first_arm_remembers(tmp_pat
     """A controller that finds the judge's arm and rewrites where it has been has sent its commands all the same."""
     monkeypatch.setenv("IR50P_HOME", str(tmp_path))
 
+    forged = []
+
     class Forger(Mine):
         def step(self, t, q, reference):
             if t > 9.98:
+                forged.append(t)
                 for bench in gc.get_objects():
                     if type(bench) is SimulatedBench:
                         for _, angles, _ in bench._truth:
                             angles[:] = reference[0]
-            return np.zeros(3)
+            return super().step(t, q, reference)
 
     found = jury.contest(Forger(), "forged")
-    assert not found.won
+    assert forged and not found.won and not found.fault
     kept = lab_book.read()["contest"][0]
     assert kept["arm"] == IR50P.name and kept["score"] == found.value
     with pytest.raises(ValueError, match="read-only"):

@@ -235,7 +235,7 @@ def test_a_usual_mistake_has_its_sentence(name, old, new, words, capsys):
         ("frames", "table[k]", "table[0]", "number 1 of table is taken each time"),
         ("frames", "T[-1] @ step", "(dh_matrix(q[k - 1], *table[k - 1]) if k else T[0]) @ step", "back two links only"),
         ("inverse_kinematics", "out = np.hypot(x, y)", "out = x", "x alone counts, not the distance: look at out"),
-        ("inverse_kinematics", "/ (2 * l2 * l3)", "/ (l2 * l3)", r"a factor is missing \(2\): look at the cosine"),
+        ("inverse_kinematics", "/ (2 * l2 * l3)", "/ (l2 * l3)", "a factor is missing: look at the cosine"),
         ("inverse_kinematics", "np.array(poses)", "np.array(poses).astype(int)", "its angles are whole numbers"),
         (
             "inverse_kinematics",

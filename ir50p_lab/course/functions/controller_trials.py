@@ -86,7 +86,7 @@ def _expect(u, right, slips, otherwise):
         if np.allclose(u, wrong, atol=1e-6, rtol=1e-6):
             raise Failed(says, example)
     joints = " and ".join(str(j + 1) for j in np.flatnonzero(good.all(axis=0)))
-    raise Failed(f"joint {joints} is right, the rest is not: {otherwise}" if slips and joints else otherwise, example)
+    raise Failed(f"{otherwise}; joint {joints} is right" if slips and joints else otherwise, example)
 
 
 # --------------------------------------------------------------------------------------------------------- P
@@ -260,7 +260,11 @@ def _windup(cls):
                 "its memory has a limit, and far too late: 255 is counts, your memory is in rad s. Multiply by ki "
                 "before you add up"
             )
-        way = "" if winds.all() else " upwards" if winds[0] else " downwards"
+        joints = " and ".join(str(joint + 1) for joint in np.flatnonzero(winds))
+        way = "" if winds.all() else f" in joint {joints}"
+        for sign, word in ((1, "upwards"), (-1, "downwards")):
+            if (winds == (_WAYS == sign)).all():
+                way = f" when it pushes {word}"
         raise Failed(
             f"it winds up{way}: after 10 s at its limit it pushes on for {_PERIOD * soon[winds].max():.1f} s against "
             "an error of other sign, after 20 s for longer. What does the integral do while the motor can give no more?"
@@ -315,9 +319,9 @@ def _damping(cls):
     def d(speed):
         return _KD * (_SPEED - speed)
 
-    begins = np.allclose(u[0], d(0.0), atol=1e-6) or np.allclose(u[0], 0, atol=1e-6)  # no speed yet: D may wait
+    first = int(u.any() and np.allclose(u[0], 0, atol=1e-6))  # there is no speed yet: D may wait
     for speed, says in rights:
-        if begins and np.allclose(u[1:], d(speed)[1:], atol=1e-6):
+        if np.allclose(u[first:], d(speed)[first:], atol=1e-6):
             return says
     speed, from_first = rights[0][0], (q - q[0]) / _PERIOD
     right, along = d(speed), "D pushes along with the motion: it has to act against it"
@@ -350,9 +354,10 @@ def _damping(cls):
     )  # fmt: skip
     otherwise = "D is not kd times the filtered speed, against the motion"
     share = np.mean((d(0.0) - u[1]) / _KD / slope[1])
-    if np.allclose(u, d(_filtered(slope, share)), atol=1e-6):
+    if np.allclose(u[first:], d(_filtered(slope, share))[first:], atol=1e-6):
         otherwise = f"its filter takes {share:.2f} of each new speed: filter_hz 8 and period 0.02 s ask for another"
-    return _expect(u, right, slips, otherwise)
+    slips = [(wrong[first:], says) for wrong, says in slips]
+    return _expect(u[first:], right[first:], slips, otherwise)
 
 
 def _kick(cls):

@@ -60,7 +60,10 @@ def pairs(task):
     """Yield Mistakes: two at once, one of the task's own or a result misplaced, and an argument misread."""
     for first in (*task.slips, *of_results(task)):
         for second in _of_arguments(replace(task, right=first.wrong)):
-            yield Mistake(second.wrong, f"two things at once: {ended(first.says)} And {second.says}")
+            yield Mistake(
+                second.wrong,
+                f"two things at once: {ended(first.says.removesuffix(', the rest is right'))} And {second.says}",
+            )
 
 
 def _of_arguments(task):

@@ -13,6 +13,7 @@ ROOM = "<my_robot"  # the file name of what is tried begins so
 
 _REASONS = (  # kind of error, what its message holds, the usual reason
     ("TypeError", "NoneType", "something in it is None: does a helper lack its `return`?"),
+    ("AttributeError", "NoneType", "something in it is None: does a helper lack its `return`?"),
     ("ValueError", "has 0, gufunc", "a single number or None stands in a matrix product: does a helper lack `return`?"),
     ("TypeError", "bitwise_xor", "`^` is no power in Python; `**` is"),
     ("TypeError", "'^'", "`^` is no power in Python; `**` is"),
@@ -57,7 +58,7 @@ def why_it_stops(error):
     reason = memory or next(usual, "")
     if isinstance(error, LabError):
         reason = "an earlier function is given what it cannot take: are its arguments in their order?"
-    if isinstance(error, IndexError) and re.search(r"\[[^]]*:[^]]*\]\[", line):
+    if isinstance(error, IndexError) and re.search(r"\[[^],]*:[^],]*\]\[", line) and "size 0" not in str(error):
         reason = "a slice leaves rows, and the next bracket counts rows again: row and column stand in one bracket"
     if line.startswith("raise"):
         reason = "it is asked for an answer there, too, not for an error"
@@ -84,7 +85,9 @@ def _where(error):
 
 def _memory(error, line, frame):
     """A mistake with what a class remembers: still None, left without `self`, or asked for as a whole; or ""."""
-    me, text, says = frame.f_locals.get("self"), "".join(linecache.getlines(frame.f_code.co_filename)), str(error)
+    if "self" not in frame.f_locals:
+        return ""
+    me, text, says = frame.f_locals["self"], "".join(linecache.getlines(frame.f_code.co_filename)), str(error)
     empty = (f"self.{name}" for name, value in getattr(me, "__dict__", {}).items() if value is None)
     if "NoneType" in says and (one := next((one for one in empty if re.search(rf"{one}\b", line)), "")):
         return f"in the first step {one} is still None. Is it asked first, `if {one} is not None:`?"
@@ -94,7 +97,7 @@ def _memory(error, line, frame):
         return f"`{name}` and `self.{name}` are two: without `self.` it is forgotten when its function ends"
     asked = re.search(r"(self\.\w+)( [!=]= None|:| and| or)", line)
     if "truth value" in says and asked and re.search(rf"{asked[1]}\b.*=.*\bNone", text):
-        return "three numbers are neither true nor false, nor `==` None: `is` asks whether there is anything yet"
+        return "a question about three numbers has three answers; `is None` asks whether there is anything yet"
     return ""
 
 
