@@ -48,8 +48,9 @@ _MODULES = {
 
 def main(arguments, root=ROOT):
     """Run the command line; return the exit code."""
-    for stream in (sys.stdout, sys.stderr):
-        stream.reconfigure(errors="replace", line_buffering=True)  # paths may have letters that the console does not
+    for stream in filter(None, (sys.stdout, sys.stderr)):  # pythonw has none
+        if hasattr(stream, "reconfigure"):  # paths may have letters that the console does not
+            stream.reconfigure(errors="replace", line_buffering=True)
     for number in {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}:  # Windows has no SIGHUP
         signal.signal(number, _stop)
     try:

@@ -37,7 +37,7 @@ def for_uv(listing):
     for section in ("global.", "install.", ":env:."):  # what comes later is stronger
         for line in listing.splitlines():
             name, _, value = line.partition("=")
-            if name.startswith(section):
+            if name.startswith(section) and ast.literal_eval(value):  # to pip an empty one is not set
                 settings[name.removeprefix(section)] = ast.literal_eval(value)
     options, variables = ["--index-strategy", "unsafe-best-match"], {}  # as pip: all indexes are equal
     for name, value in settings.items():
@@ -47,7 +47,7 @@ def for_uv(listing):
             variables |= dict.fromkeys(_VARIABLES[name], " ".join(value.split()))
         elif name == "no-index":
             options += ["--no-index"] if value.lower() in ("1", "true", "yes", "on", "y", "t") else []
-        elif name not in _WITHOUT_MEANING and value:
+        elif name not in _WITHOUT_MEANING:
             return None
     return options, variables
 
@@ -108,7 +108,7 @@ class Installer:
 
 
 def _show(text):
-    if sys.stdout.isatty():
+    if sys.stdout and sys.stdout.isatty():  # pythonw has none
         print(f"\r{'':78}\r{text[:78]}", end="", flush=True)
 
 

@@ -15,7 +15,7 @@ _IN_USE = "Close JupyterLab and all that runs Python from .venv; that may be all
 #: Signs of a problem in what the system, pip or uv say, and what to do then. The order matters: a full disk also shows
 #: as a broken connection.
 _PROBLEMS = {
-    r"No space left on device|\[Errno 28\]|Disk quota exceeded|\[WinError 112\]|not enough space on the": (
+    r"No space left on device|\[Errno 28\]|Dis[ck] quota exceeded|\[WinError 112\]|not enough space on the": (
         "The disk is full: {folder} could not be written. Free about 2 GB (emptying the recycle bin helps, and so does "
         f"'{_PYTHON} -m pip cache purge'), {_AGAIN}; the set-up starts afresh by itself."
     ),
@@ -50,6 +50,9 @@ _PROBLEMS = {
         f"No permission to write in {{folder}}. {_IN_USE}Move the project into your home folder (or ask its owner for "
         f"write permission), then run '{COMMAND}' there."
     ),
+    r"\[Errno 17\]|\[WinError 183\]": (
+        f"A file, or a link that leads nowhere, is in the place of a folder: {{file}}. Remove or rename it, {_AGAIN}."
+    ),
 }
 #: What pip and uv say when there is no package for this machine, as with a missing connection; one group names it.
 _NO_WHEEL = (
@@ -69,7 +72,11 @@ class NoWheelError(SetUpError):
 
 def from_error(error, folder):
     """Turn an OSError or ImportError of the launcher itself into a SetUpError."""
-    return _known(f"{type(error).__name__}: {error}", folder) or SetUpError(
+    text, file = str(error), getattr(error, "filename", None)
+    if getattr(error, "errno", None) is not None:  # without the path: that may have any words in it
+        windows = getattr(error, "winerror", None)
+        text = f"[WinError {windows}] {error.strerror}" if windows else f"[Errno {error.errno}] {error.strerror}"
+    return _known(f"{type(error).__name__}: {text}", folder, file or ".venv") or SetUpError(
         f"The operating system refused: {error}. Put that right, {_AGAIN}."
     )
 
@@ -89,10 +96,10 @@ def from_output(output, code, folder, log):
     return SetUpError(f"The set-up failed: {_last_error(output)}. All that was printed is in {log}; {_AGAIN}.")
 
 
-def _known(text, folder):
+def _known(text, folder, file=".venv"):
     for sign, advice in _PROBLEMS.items():
         if re.search(sign, text):
-            return SetUpError(advice.format(folder=folder))
+            return SetUpError(advice.format(folder=folder, file=file))
     return None
 
 

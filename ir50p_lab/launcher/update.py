@@ -53,10 +53,9 @@ def notebook_hash(path):
 
 def _copy(source, target):
     """Copy a file or folder; what is there already stays and is named."""
-    source, target = Path(source), Path(target)
-    if source.is_dir():
-        ignore = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(source, target, ignore=ignore, copy_function=_copy, dirs_exist_ok=True)
+    if source.is_dir():  # not copytree: it copies the folders' permissions too, and a dangling link stops it
+        for path in sorted(path for path in source.rglob("*") if path.is_file() and "__pycache__" not in path.parts):
+            _copy(path, target / path.relative_to(source))
     elif not target.exists():
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(source, target)

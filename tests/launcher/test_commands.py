@@ -1,5 +1,6 @@
 """The command line: what is started, where, with which arguments. Stand-ins take the place of JupyterLab and pytest."""
 
+import io
 import json
 import os
 import signal
@@ -9,7 +10,7 @@ from pathlib import Path
 import pytest
 from mini_project import PROJECT, one_line
 
-from ir50p_lab.launcher import commands, inventory
+from ir50p_lab.launcher import commands, installer, inventory
 
 
 def told(done):
@@ -160,6 +161,15 @@ def test_errors_of_the_system_and_ctrl_c_end_in_one_line(made, monkeypatch, caps
         monkeypatch.setattr(commands, "Environment", lambda root, error=error: (_ for _ in ()).throw(error))
         assert commands.main(["setup"], root=made.root) == code
         assert capsys.readouterr().err.strip().startswith(text)
+
+
+def test_without_streams_as_under_pythonw(monkeypatch):
+    monkeypatch.setattr(sys, "stdout", None)
+    monkeypatch.setattr(sys, "stderr", None)
+    assert commands.main(["--help"]) == 0
+    installer._show("a line")
+    monkeypatch.setattr(sys, "stdout", io.StringIO())  # has no reconfigure
+    assert commands.main(["--help"]) == 0
 
 
 def test_the_launcher_imports_the_standard_library_only():

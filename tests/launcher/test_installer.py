@@ -50,6 +50,8 @@ def test_what_pip_prints_is_translated(tmp_path):
         ),
         ("global.timeout='60'", [], {"UV_HTTP_TIMEOUT": "60"}),
         ("install.user='true'", [], {}),
+        (":env:.no-cache-dir=''", [], {}),
+        ("global.timeout='60'\n:env:.timeout=''", [], {"UV_HTTP_TIMEOUT": "60"}),
         ("download.dest='x'", [], {}),  # for another command
     ],
 )

@@ -148,7 +148,13 @@ def test_project_without_its_lock_file(project):
 def test_a_file_in_the_place_of_the_environment(project):
     project.venv.write_text("")
     line = one_line(project.run("setup"))
-    assert line.startswith("The operating system refused: ") and f"File exists: '{project.venv}'" in line
+    assert f"in the place of a folder: {project.venv}. Remove or rename it" in line
+
+
+def test_words_in_a_path_are_no_sign_of_a_problem():
+    for name in ("zip file", "HTTPError"):
+        error = OSError(errno.EIO, os.strerror(errno.EIO), f"/home/{name}/lab")
+        assert "refused" in str(problems.from_error(error, Path("lab")))
 
 
 # -- what the programs print -----------------------------------------------------------------------------------------------
@@ -157,6 +163,7 @@ PRINTED = [
     # pip 23 to 26, one or two lines each of what it prints
     ("ERROR: Could not install packages due to an OSError: [Errno 28] No space left on device", "The disk is full"),
     ("OSError: [Errno 122] Disk quota exceeded: '/home/s/lab/.venv/lib'", "The disk is full"),
+    ("OSError: [Errno 69] Disc quota exceeded: '/Users/s/lab/.venv/lib'", "The disk is full"),
     ("OSError: [WinError 112] There is not enough space on the disk", "The disk is full"),
     ("ERROR: Could not install packages due to an OSError: [Errno 13] Permission denied: '/lab'", "No permission"),
     ("ERROR: [WinError 5] Access is denied: 'C:\\\\lab\\\\.venv\\\\Scripts\\\\python.exe'", "No permission"),

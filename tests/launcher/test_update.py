@@ -1,6 +1,7 @@
 """What a student has in an older copy of the course is taken over; nothing is overwritten, edited notebooks are named."""
 
 import json
+import os
 import shutil
 
 import pytest
@@ -43,6 +44,18 @@ def test_what_is_there_already_stays(old, tmp_path, capsys):
     take_over([str(old)], ROOT)
     assert mine.read_text() == "newer\n"
     assert f"Left as it is here: {mine}" in capsys.readouterr().out
+
+
+@pytest.mark.skipif(os.name == "nt", reason="permission bits and links of POSIX")
+def test_from_a_copy_that_is_read_only_with_a_dangling_link(old, tmp_path):
+    (old / "notebooks" / "my_robot" / "gone.py").symlink_to("nowhere")
+    (old / "notebooks" / "my_robot").chmod(0o555)
+    try:
+        take_over([str(old)], ROOT)
+    finally:
+        (old / "notebooks" / "my_robot").chmod(0o755)
+    assert (tmp_path / "home" / "my_robot" / "_rot_z.py").exists()
+    assert (tmp_path / "home" / "my_robot").stat().st_mode & 0o200
 
 
 @pytest.mark.parametrize("arguments", [[], ["nowhere"], [str(ROOT)]])
