@@ -7,6 +7,7 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import first_not_finite, numbers
 
 _FULL = 1023.0
+_STEP_BACK = 300.0  # counts between two neighbouring angles: more than a misread angle, less than a wrap makes
 
 
 def fit_calibration(q, counts, *, arm="", source="measured"):
@@ -77,10 +78,12 @@ def _line(joint, q, counts):
     """(slope, zero, stderr_slope, stderr_zero, points, remarks) of one joint."""
     (b, a), cov = np.polyfit(counts, q, 1, cov=True)
     r2 = np.corrcoef(q, counts)[0, 1] ** 2
-    if r2 < 0.5:
+    back = -(np.sign(b) * np.diff(counts[np.argsort(q)])).min()
+    if r2 < 0.5 or back > _STEP_BACK:
         raise InputError(
-            f"joint {joint}: the counts do not follow the angle (correlation squared {r2:.2f}): are they of the same "
-            "poses and the same joint, are cables swapped, is the gap of its track in the travel? bench-test finds out"
+            f"joint {joint}: the counts do not follow the angle (correlation squared {r2:.2f}, largest step back "
+            f"{max(back, 0.0):.0f} counts): are they of the same poses and the same joint, are cables swapped, is the "
+            "gap of its track in the travel? bench-test finds out"
         )
     slope, zero = 1 / b, -a / b
     # errors of a and b carried over to first order

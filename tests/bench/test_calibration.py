@@ -114,9 +114,10 @@ def test_narrow_and_rough_data_are_remarked():
     assert "end of the converter" in " ".join(fit_calibration(q, counts - counts.min(axis=0)).remarks)
 
 
-def test_a_wrapping_potentiometer_is_refused():
+@pytest.mark.parametrize(("joint", "offset", "sign"), [(1, 400, 1), (1, 270, 1), (1, 230, 1), (1, 230, -1)])
+def test_a_wrapping_potentiometer_is_refused(joint, offset, sign):
     q, counts = experiment()
-    counts[:, 0] = (counts[:, 0] + 400) % 1024
+    counts[:, 0] = (512 + sign * (counts[:, 0] - 512) + sign * offset) % 1024
     with pytest.raises(InputError, match=r"joint 1: the counts do not follow .* the gap of its track"):
         fit_calibration(q, counts)
 
