@@ -12,6 +12,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import traceback
 from pathlib import Path
@@ -33,6 +34,7 @@ class ProcessRun(LiveRun):
     def __init__(self, bench, controller, cargo, options):
         super().__init__(bench, controller, cargo, options, SharedLoop.shared())
         self._process, self._path, self._stage = None, None, None  # the last stage the child has told of
+        self._said, self._words = None, ""  # the file of what the child prints, and the end of it
         self._told, self._ended = threading.Event(), threading.Event()
 
     def begin(self):
@@ -45,7 +47,8 @@ class ProcessRun(LiveRun):
         bench = cloudpickle.dumps((type(self._bench), self._bench._arguments()))
         work = (sys.path, self._memory.address, os.getpid(), bench, self._cargo, self._options)
         command = [sys.executable, "-c", _START]
-        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **options)
+        self._said, pipe = tempfile.TemporaryFile(), subprocess.PIPE
+        self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=self._said, **options)
         try:
             self._bench._close()  # the port is the child's from here on
             threading.Thread(target=self._listen, name="bench loop's messages", daemon=True).start()
@@ -53,7 +56,7 @@ class ProcessRun(LiveRun):
                 _send(self._process.stdin, work)
             self._told.wait(_OPENED_WITHIN)
             if self._stage is None:
-                why = "ended too soon: what it printed says why" if self._ended.is_set() else "does not open the bench"
+                why = f"ended too soon{self._words}" if self._ended.is_set() else "does not open the bench"
                 raise self.error or BenchError(f"the loop's process {why}")
         except BaseException:
             self.give_up()
@@ -72,17 +75,25 @@ class ProcessRun(LiveRun):
                 self._stage = stage
                 self._told.set()
         code = self._process.wait()
+        self._words = self._last_words()
         self._memory.handed_over()
         if self.error is None and self._stage not in (None, "done"):
             self.error = BenchError(
                 f"the process of the loop has died (exit code {code}): the board has cut the drive 0.1 s after its "
-                "last command"
+                f"last command{self._words}"
             )
         with contextlib.suppress(OSError):
             self._process.stdin.close()
         self._process.stdout.close()
         self._ended.set()
         self._told.set()
+
+    def _last_words(self):
+        """The end of what it printed: where Python's own complaints are."""
+        with self._said as said:
+            said.seek(max(0, said.seek(0, os.SEEK_END) - 1500))
+            words = said.read().decode("utf-8", "replace").strip()
+        return f"; it said: {words}" if words else ""
 
     @property
     def pid(self):

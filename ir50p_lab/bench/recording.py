@@ -10,7 +10,7 @@ import numpy as np
 from ir50p_lab.bench import recording_file
 from ir50p_lab.bench.recording_file import COLUMNS, COUNTS, GRIPPER, MISSED, Q, R, T, U
 from ir50p_lab.bench.recording_plot import plot, summarise
-from ir50p_lab.errors import RecordingError
+from ir50p_lab.errors import InputError, RecordingError
 
 
 class RecordingWarning(UserWarning):
@@ -49,7 +49,12 @@ class Recording:
         parts = ((T, t), (Q, q), (COUNTS, counts), (U, u), (R, reference), (GRIPPER, gripper), (MISSED, missed))
         for place, values in parts:
             if values is not None:
-                table[:, place] = values  # NumPy refuses another shape
+                try:
+                    table[:, place] = values
+                except ValueError:
+                    raise InputError(
+                        f"shape {np.shape(values)} beside {len(t)} times: give t (n,), q, counts, u, reference (n, 3)"
+                    ) from None
         return cls(table, header)
 
     @classmethod

@@ -141,6 +141,9 @@ def _read_columns(line, place):
     missing = [column for column in _REQUIRED if column not in names]
     if missing:
         raise RecordingError(f"{place}: no column {', '.join(missing)} in {line.strip()[:60]!r}; {need}")
+    for column in COLUMNS:
+        if names.count(column) > 1:
+            raise RecordingError(f"{place}: column {column} stands there twice; keep one of them")
     for group in _GROUPS:
         there = [column for column in group if column in names]
         if len(there) in (1, 2):
@@ -168,7 +171,8 @@ def _check(table, numbers, name):
     """Raise RecordingError for the first line whose values cannot be."""
     if not len(table):
         return
-    steps, repair = np.diff(table[:, :1], axis=0, prepend=-math.inf), "; repair or delete that line"
+    with np.errstate(invalid="ignore"):  # two infinite times
+        steps, repair = np.diff(table[:, :1], axis=0, prepend=-math.inf), "; repair or delete that line"
     for columns, bad, why in (
         (slice(0, Q.stop), ~np.isfinite(table[:, : Q.stop]), "t or an angle is missing or not finite ({:g})" + repair),
         (slice(None), np.isinf(table), "a value is infinite" + repair),

@@ -3,6 +3,7 @@
 import contextlib
 import os
 import secrets
+from dataclasses import replace
 
 import numpy as np
 
@@ -160,10 +161,11 @@ class SerialBench(Bench):
 
     @property
     def statistics(self):
-        """What happened on the wire since the bench was opened: LinkStatistics."""
+        """What happened on the wire since the bench was opened, up to now: LinkStatistics."""
         if self._link is None:
             raise BoardError("the bench is closed: its statistics are gone")
-        return self._link.statistics
+        now = self._link.statistics
+        return replace(now, round_trips=now.round_trips.copy())
 
     def _statistics(self, run):
         if self._link is None:

@@ -1,5 +1,7 @@
 """The bytes of a picture file: decoded, or the reason why they are none."""
 
+import warnings
+
 import numpy as np
 
 from ir50p_lab.vision.console import captured
@@ -43,9 +45,9 @@ def quarter_turns(path):
     from PIL import Image
 
     try:
-        with Image.open(path) as picture:
+        with warnings.catch_warnings(action="ignore"), Image.open(path) as picture:
             return {6: 1, 3: 2, 8: 3}.get(picture.getexif().get(_ORIENTATION), 0)
-    except OSError:  # a kind that OpenCV reads and Pillow does not
+    except Exception:  # a kind that OpenCV reads and Pillow does not, a broken EXIF, a size that Pillow refuses
         return 0
 
 

@@ -360,6 +360,26 @@ def test_a_killed_loop_is_noticed(commands):
         assert not run.alive
 
 
+def test_the_last_words_of_a_loop_that_dies_are_told(commands):
+    class Dying:
+        def step(self, t, measured, reference):
+            if t > 0.02:
+                os.write(2, b"x" * 3000 + b"Segmentation fault")
+                os._exit(3)
+            return np.zeros(3)
+
+    with FileBench(commands) as bench:
+        run = bench.start(Dying(), lambda t: (np.zeros(3),) * 3, lead_in=False, rest=False)
+        with pytest.raises(BenchError, match=r"has died \(exit code 3\).*; it said: x{1482}Segmentation fault$"):
+            run.join(10)
+
+
+def test_the_last_words_of_a_loop_that_does_not_begin_are_told(commands, monkeypatch):
+    monkeypatch.setattr("ir50p_lab.bench.loop_process._START", "raise SystemExit('no memory')")
+    with FileBench(commands) as bench, pytest.raises(BenchError, match="ended too soon; it said: no memory"):
+        bench.start(pid(), None)
+
+
 def test_a_controller_that_hangs_is_killed_by_cut(commands):
     class Hanging:
         def step(self, t, measured, reference):

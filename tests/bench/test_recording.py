@@ -252,6 +252,8 @@ WRONG = [
     ("0,1,1,1\n0.01,1,1,1\n", r"line 1: no column t, q1, q2, q3"),
     ("t,q1,q2\n0,1,1\n", r"line 1: no column q3"),
     ("t,q1,q2,q3,u1,u2\n0,1,1,1,5,5\n", r"of u1, u2, u3 only u1, u2"),
+    ("t,q1,q2,q3,Q1\n0,1,1,1,5\n", r"line 1: column q1 stands there twice; keep one of them"),
+    ("t,q1,q2,q3\n0,1,1,1\ninf,1,1,1\ninf,1,1,1\n", r"line 3: t or an angle is missing or not finite \(inf\)"),
     ("", r"ends before its first sample"),
     ("# ir50p_lab recording: 1\n# period", r"ends before its first sample"),
     ("t,q1,q2,q3\n0,1,1,1\n".encode("utf-16"), r"UTF-16"),
@@ -320,7 +322,7 @@ def test_plot_without_reference_without_u_without_samples():
     for what in (Recording.plot, Recording.metrics):
         with pytest.raises(RecordingError, match="no sample"):
             what(Recording.from_arrays([], np.zeros((0, 3))))
-    with pytest.raises(ValueError, match="shape"):
+    with pytest.raises(InputError, match=r"shape \(3, 3\) beside 2 times"):
         Recording.from_arrays([0.0, 0.1], np.zeros((3, 3)))
 
 

@@ -256,6 +256,16 @@ def test_one_frame_in_five_is_hit_and_the_run_goes_on(board, where, fault):
     assert board.trips == statistics.watchdog_trips == 0
 
 
+def test_statistics_are_those_of_the_moment_they_were_asked_for(board):
+    bench = bench_of(board).open()
+    before = bench.statistics
+    told = before.commands, len(before.round_trips)
+    for _ in bench.run(0.05):
+        bench.drive((0, 0, 0))
+    assert (before.commands, len(before.round_trips)) == told
+    assert bench.statistics.commands > told[0] and len(bench.statistics.round_trips) > told[1]
+
+
 def test_noise_never_becomes_a_sample(board):
     """Replies are damaged at random; what is taken is what the potentiometers read."""
     rng = np.random.default_rng(4)

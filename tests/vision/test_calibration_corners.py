@@ -204,6 +204,13 @@ def test_charuco_corners_by_number_also_where_part_is_out_of_view(shift):
     assert len(corners.xy) == 54 if shift == (0, 0) else 8 <= len(corners.xy) < 54
 
 
+def test_charuco_corners_that_no_map_fits_are_cropped(monkeypatch):
+    monkeypatch.setattr("ir50p_lab.vision.calibration.charuco.homography", lambda points, xy: None)
+    with pytest.raises(NotUsable, match="lie on a line") as caught:
+        find_charuco(charuco_picture(Charuco((9, 6)), WARP), Charuco((9, 6)))
+    assert caught.value.reason is Reason.CROPPED
+
+
 @pytest.mark.parametrize(
     ("board", "image", "reason"),
     [

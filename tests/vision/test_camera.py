@@ -5,8 +5,17 @@ import numpy as np
 import pytest
 
 from ir50p_lab.errors import CalibrationError, CameraError, ImageError, InputError
-from ir50p_lab.vision import Frame, PictureFolder, RenderedCamera, Webcam, calibrate, open_camera, save_image
-from ir50p_lab.vision.camera import webcam
+from ir50p_lab.vision import (
+    Frame,
+    PictureFolder,
+    RenderedCamera,
+    Webcam,
+    calibrate,
+    load_image,
+    open_camera,
+    save_image,
+)
+from ir50p_lab.vision.camera import picture_folder, webcam
 from ir50p_lab.vision.rendering import SceneBall, bench_scene
 
 
@@ -111,6 +120,16 @@ def test_folder_of_rendered_pictures_says_so(tmp_path, capsys):
     save_image(tmp_path / "a.png", np.zeros((6, 8, 3), np.uint8), rendered=True)
     found = open_camera(tmp_path)
     assert found.simulated and found.read().simulated and ", rendered" in capsys.readouterr().out
+
+
+def test_a_folder_is_opened_without_reading_all_of_it(folder, monkeypatch):
+    decoded = []
+    monkeypatch.setattr(picture_folder, "load_image", lambda path: decoded.append(path.name) or load_image(path))
+    assert not PictureFolder(folder).simulated and decoded == ["view1.png"]
+    for i in (1, 2):
+        save_image(folder / f"view{i}.png", np.zeros((6, 8, 3), np.uint8), rendered=True)
+    decoded.clear()
+    assert not PictureFolder(folder).simulated and decoded == ["view1.png", "view10.png"]
 
 
 def test_bad_folders_and_files(tmp_path, folder):

@@ -57,6 +57,26 @@ def test_a_calibration_sees_what_the_sensor_saw_however_the_phone_was_held(tmp_p
     assert all(np.abs(one.astype(int) - found[0]).max() < 12 for one in found)
 
 
+@pytest.mark.parametrize(
+    "fault", [SyntaxError("not a TIFF file"), struct.error("unpack"), IndexError(), Image.DecompressionBombError()]
+)
+def test_a_broken_exif_is_that_of_a_camera_held_upright(tmp_path, picture, monkeypatch, fault):
+    def getexif(self):
+        raise fault
+
+    Image.fromarray(picture).save(tmp_path / "a.jpg")
+    monkeypatch.setattr(Image.Image, "getexif", getexif)
+    monkeypatch.setattr("PIL.JpegImagePlugin.JpegImageFile.getexif", getexif, raising=False)
+    assert [one.turns for one in pictures_of(tmp_path)] == [0]
+
+
+def test_a_picture_too_large_for_pillow_is_taken_in_silence(tmp_path, picture, monkeypatch):
+    Image.fromarray(picture).save(tmp_path / "a.jpg")
+    for limit in (2000, 1000):  # of 2400 pixels: a warning, an error
+        monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", limit)
+        assert [one.turns for one in pictures_of(tmp_path)] == [0]
+
+
 def kinds(picture, folder):
     """file -> largest mean difference from `picture` after reading."""
     image = Image.fromarray(picture)

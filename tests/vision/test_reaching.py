@@ -25,9 +25,11 @@ from ir50p_lab.vision import (
     work_area,
 )
 from ir50p_lab.vision.camera import webcam
+from ir50p_lab.vision.reaching import rendered_bench
 from ir50p_lab.vision.reaching.budget import error_budget
 from ir50p_lab.vision.reaching.plan import ALMOST, MARGIN, nearest_reachable, within_reach
 from ir50p_lab.vision.reaching.result import BallTracker
+from ir50p_lab.vision.rendering import SceneBall, Stick, bench_scene
 from tests.support.places import places_in
 from tests.targets.vision_setup import calibrated
 
@@ -441,6 +443,15 @@ def test_a_locator_of_bad_numbers_is_refused(change):
     _, world, _ = rig()
     with pytest.raises(InputError):
         BallLocator(world, TablePlane(world.scene.pinhole, world.scene.T_cam_world), **change)
+
+
+def test_red_things_that_are_no_balls_stay_on_the_table(monkeypatch):
+    seen = []
+    monkeypatch.setattr(rendered_bench, "render_scene", lambda scene, seed: seen.append(scene) or (None, None))
+    things = Stick(start=(0.3, 0, 0.01), end=(0.4, 0, 0.01), colour="red"), SceneBall(colour="blue")
+    scene = replace(bench_scene(), objects=(*things, SceneBall(position=(0.5, 0.1, 0.03))))
+    RenderedBench(rig()[0], (0.40, 0.10, 0.03), scene=scene, marker=False).read()
+    assert seen[0].objects == (SceneBall(position=(0.40, 0.10, 0.03)), *things)
 
 
 def test_bad_arguments_of_reaching_are_refused():

@@ -110,5 +110,7 @@ def _off_plane(points, xy):
 def _spacing(points, xy, square):
     """Median side of a square, px, from the scale of the map from board to picture."""
     H = homography(points, xy)
+    if H is None:
+        raise NotUsable(Reason.CROPPED, "the corners seen lie on a line: show more of the board")
     sides = [np.linalg.norm(apply(H, points + step) - apply(H, points), axis=1) for step in np.eye(2) * square]
     return float(np.median(np.minimum(*sides)))

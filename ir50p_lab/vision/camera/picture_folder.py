@@ -23,12 +23,16 @@ class PictureFolder(Camera):
         self.size, self.simulated, problems = None, True, []
         for one in self.paths:
             try:
+                if self.size and is_rendered(one):
+                    continue  # one more of them changes nothing
                 size = load_image(one).shape[1::-1]
             except ImageError as error:
                 problems.append(str(error))
                 continue
             self.size = self.size or size
-            self.simulated = self.simulated and is_rendered(one)
+            self.simulated = is_rendered(one)
+            if not self.simulated:
+                break
         if self.size is None:
             raise ImageError(
                 f"none of the {len(problems)} pictures of {self.name} can be used. The first: {problems[0]}. (To "

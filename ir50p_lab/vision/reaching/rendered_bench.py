@@ -83,7 +83,7 @@ class RenderedBench(Camera):
     def read(self):
         """A picture of this moment: Frame."""
         balls = tuple(SceneBall(position=tuple(p), radius=self.radius) for p in self.balls_true)
-        others = (one for one in self.scene.objects if getattr(one, "colour", None) != "red")
+        others = (one for one in self.scene.objects if not (isinstance(one, SceneBall) and one.colour == "red"))
         hand = ()
         arm, q = self.bench.arm, self.bench.plant.q_true
         if self.marker:
