@@ -32,11 +32,15 @@ def as_theta(arm, g=None):
             )
         return arm.theta.copy(), arm.g
     g = STANDARD_GRAVITY if g is None else number("g", g, ">= 0", unit="m/s^2", hint="the base z axis points up")
-    theta = np.array(numbers("arm or theta", arm, unit="SI or PWM"), order="C")
-    if theta.shape not in ((3, 20), (20,)):
+    try:
+        shape = np.shape(arm)
+    except ValueError:  # rows of different lengths
+        shape = None
+    if shape not in ((3, 20), (20,)):
         raise InputError(
-            f"expected an Arm, or theta with shape (3, 20) or (20,), got {type(arm).__name__} of shape {theta.shape}"
+            f"expected an Arm, or theta with shape (3, 20) or (20,), got {type(arm).__name__} of shape {shape}"
         )
+    theta = np.array(numbers("theta", arm, unit="SI or PWM"), order="C")
     if not np.isfinite(theta).all():
         raise InputError("theta holds a number that is not finite; identify again or drop that parameter (set it to 0)")
     return np.tile(theta, (3, 1)) if theta.ndim == 1 else theta, g
