@@ -73,16 +73,23 @@ def sliders_of(controller, arm, practice):
             for part, value in gains.items():
                 setattr(controller, part, np.array(value, dtype=float))
         try:
-            runs = [contest.drive(pid, contest.PRACTICE[0], arm)]
-            practice.show(runs[0])
-            runs += [contest.drive(pid, seed, arm) for seed in contest.PRACTICE[1:]]
+            shown = contest.drive(pid, contest.PRACTICE[0], arm)
         except LabError as cut:
             return f"the bench cut the drive: {cut}"
-        found = contest.score_of(runs)
-        term, joint = found.decides
-        sets = (f"({', '.join(f'{x:g}' for x in row)})" for row in gains.values())
-        said = f"score on all three practice arms {found.value:.2f}: {term} of joint {joint} decides"
-        return f"{said}\nkp, ki, kd = {', '.join(sets)}"
+        practice.show(shown)
+
+        def judged():
+            try:
+                runs = [shown, *(contest.drive(pid, seed, arm) for seed in contest.PRACTICE[1:])]
+            except LabError as cut:
+                return f"the bench cut the drive: {cut}"
+            found = contest.score_of(runs)
+            term, joint = found.decides
+            sets = (f"({', '.join(f'{x:g}' for x in row)})" for row in gains.values())
+            said = f"score on all three practice arms {found.value:.2f}: {term} of joint {joint} decides"
+            return f"{said}\nkp, ki, kd = {', '.join(sets)}"
+
+        return judged
 
     if compiled:
         return update, "the sliders set your gains; the compiled PID runs, it sent the same commands as your class"

@@ -91,7 +91,7 @@ class GainMap:
         bar.solids.set_zorder(0.6)
         self.map.grid(False)
         self.map.set(xlabel="Kp [PWM/rad]", ylabel="Kd [PWM s/rad]", title=title)
-        (self._mark,) = self.map.plot([], [], "o", ms=9, mfc="none", mec=COLOURS["orange"], mew=2.5)
+        (self._mark,) = self.map.plot([], [], "o", ms=9, mfc="none", mec=COLOURS["orange"], mew=2.5, zorder=9)
         self._side.axhline(target, **SETPOINT, label="target")
         self._side.set(xlim=(0, duration), ylim=sorted((-0.1 * target, 1.3 * target)))
         self._side.set(xlabel="time [s]", ylabel="angle [rad]")

@@ -37,7 +37,8 @@ def live(figure, update, **controls):
     Args:
         figure: a matplotlib Figure, best from `figures.new_figure`; not one of pyplot.
         update: changes artists in place (`line.set_data(...)`); gets every control by its name. May print or
-            return a text: it appears in the line under the figure.
+            return a text: it appears in the line under the figure. If the text takes time, return a function
+            that returns it: it is called once the picture is on its way.
         controls: name=(min, max, step, start) or name=slider(...), name=[choices] or {label: choice} for a
             menu, name=True/False for a checkbox.
 
@@ -73,7 +74,9 @@ class LivePanel(widgets.VBox):
 
         said = io.StringIO()
         with DRAWING:
-            self._call_update(self._start, said)  # directly: an error belongs in the cell
+            words = self._call(said, update, **self._start)  # directly: an error belongs in the cell
+            self._call(said, words)
+            _legends_below_curves(figure)
             self._painter = Painter(figure)
             pixels = round(figure.bbox.width)
             self.image = Canvas(value=self._painter.png(), width=f"{pixels}px")
@@ -145,11 +148,14 @@ class LivePanel(widgets.VBox):
                 self._drawer = None
                 self._drawing.release()
 
-    def _call_update(self, values, said):
-        """Call `update`; what it prints or returns as text, and a warning of an unstable loop, go into `said`."""
+    def _call(self, said, function, **values):
+        """Call `function`, if it is one, and return its answer.
+
+        What it prints, an answer that is a text, and the warning of an unstable loop go into `said`.
+        """
         with contextlib.redirect_stdout(said), warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", UnstableLoopWarning)
-            answer = self._update(**values)
+            answer = function(**values) if callable(function) else None
             if isinstance(answer, str):
                 print(answer)
         for text in dict.fromkeys(str(w.message) for w in caught if issubclass(w.category, UnstableLoopWarning)):
@@ -159,13 +165,15 @@ class LivePanel(widgets.VBox):
             if not issubclass(w.category, UnstableLoopWarning) and place not in self._warned:
                 self._warned.add(place)
                 warnings.warn_explicit(w.message, w.category, w.filename, w.lineno)
+        return answer
 
     def _draw(self, values):
         said = io.StringIO()
         with DRAWING:
             try:
-                self._call_update(values, said)
+                words = self._call(said, self._update, **values)
                 self.image.value = self._painter.png()
+                self._call(said, words)
                 self.error = None
             except Exception as error:
                 self.error = error
@@ -183,6 +191,12 @@ class LivePanel(widgets.VBox):
         if data is not None:
             data["image/png"] = base64.b64encode(self.image.value).decode("ascii")
         return bundle
+
+
+def _legends_below_curves(figure):
+    """Legends below what moves: drawn each time, they would cost as much as all curves."""
+    for legend in filter(None, [ax.get_legend() for ax in figure.axes]):
+        legend.set_zorder(min(legend.get_zorder(), 1.9))  # lines: 2, a grid at most 1.5
 
 
 def _as_html(said):

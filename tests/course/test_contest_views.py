@@ -35,7 +35,7 @@ def test_sliders_move_the_students_gains():
     said = {}
     for kind in (student, Half, lambda **gains: PID(**gains, limit_pwm=255)):
         update, words = contest_views.sliders_of(kind(kp=(300,) * 3, ki=(50,) * 3, kd=(40,) * 3), IR50P, view)
-        said[words] = update(**GAINS), view.recording.u.copy()
+        said[words] = update(**GAINS)(), view.recording.u.copy()
     compiled, own = said
     assert "compiled PID runs" in compiled and "your Python runs" in own
     assert f"practice arms {contest.score(Half(900, 800, 5), arm=IR50P).value:.2f}" in said[own][0]

@@ -190,6 +190,42 @@ def test_prints_and_texts_of_update_appear_under_the_figure(capsys):
     assert capsys.readouterr().out == "", "they would end in the log where nobody looks"
 
 
+def test_words_that_take_time_come_after_the_picture():
+    pictures = []
+
+    def words(height):
+        pictures.append(LivePanel.panels and next(iter(LivePanel.panels)).image.value)
+        return f"it is {height:g}"
+
+    panel = line_panel(lambda height: lambda: words(height))
+    before = panel.image.value
+    panel.controls["height"].value = 5.0
+    assert pictures[-1] == panel.image.value != before
+    assert panel.status.value == "it is 5"
+    for value in (6.0, 2.0):
+        panel.set(height=value)
+    assert panel.status.value == "it is 2"
+
+
+def test_an_error_in_the_words_is_shown_beside_the_new_picture():
+    panel = line_panel(lambda height: height and (lambda: 1 / 0))
+    before = panel.image.value
+    panel.controls["height"].value = 5.0
+    assert "ZeroDivisionError" in panel.status.value
+    assert panel.image.value != before
+
+
+def test_a_legend_lies_below_what_moves():
+    figure = new_figure(3, 2)
+    (line,) = figure.axes[0].plot([0, 1], [0, 1], label="moves")
+    legend = figure.axes[0].legend()
+    panel = live(figure, lambda height: line.set_ydata([0, height]), height=(0, 10, 1, 1))
+    assert legend.get_zorder() > 1.5  # the grid
+    panel.set(height=5)
+    assert line.get_animated()
+    assert not legend.get_animated()
+
+
 def test_the_warning_of_an_unstable_loop_appears_under_the_figure_once():
     def update(gain):
         for _ in range(3):
