@@ -76,7 +76,7 @@ class LivePanel(widgets.VBox):
         with DRAWING:
             words = self._call(said, update, **self._start)  # directly: an error belongs in the cell
             self._call(said, words)
-            _legends_below_curves(figure)
+            _words_below_curves(figure)
             self._painter = Painter(figure)
             pixels = round(figure.bbox.width)
             self.image = Canvas(value=self._painter.png(), width=f"{pixels}px")
@@ -193,10 +193,12 @@ class LivePanel(widgets.VBox):
         return bundle
 
 
-def _legends_below_curves(figure):
-    """Legends below what moves: drawn each time, they would cost as much as all curves."""
-    for legend in filter(None, [ax.get_legend() for ax in figure.axes]):
-        legend.set_zorder(min(legend.get_zorder(), 1.9))  # lines: 2, a grid at most 1.5
+def _words_below_curves(figure):
+    """Titles and legends below what moves: drawn each time, they would cost as much as all curves."""
+    for ax in figure.axes:
+        title = ax.title if ax.get_title() else None  # matplotlib calls an empty one stale for ever
+        for words in filter(None, (title, ax.get_legend())):
+            words.set_zorder(min(words.get_zorder(), 1.9))  # lines: 2, a grid at most 1.5
 
 
 def _as_html(said):

@@ -215,8 +215,9 @@ def test_an_error_in_the_words_is_shown_beside_the_new_picture():
     assert panel.image.value != before
 
 
-def test_a_legend_lies_below_what_moves():
+def test_title_and_legend_lie_below_what_moves():
     figure = new_figure(3, 2)
+    figure.axes[0].set_title("stands still")
     (line,) = figure.axes[0].plot([0, 1], [0, 1], label="moves")
     legend = figure.axes[0].legend()
     panel = live(figure, lambda height: line.set_ydata([0, height]), height=(0, 10, 1, 1))
@@ -224,6 +225,7 @@ def test_a_legend_lies_below_what_moves():
     panel.set(height=5)
     assert line.get_animated()
     assert not legend.get_animated()
+    assert not figure.axes[0].title.get_animated()
 
 
 def test_the_warning_of_an_unstable_loop_appears_under_the_figure_once():
