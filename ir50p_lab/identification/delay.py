@@ -21,8 +21,8 @@ class DelayEstimate:
     """What `estimate_delay` found.
 
     delay: s, median of the joints; stderr: s, the larger of what the joints and what stretches of the record differ by.
-    per_joint (k,) s. delays (m,) s: those tried; rms (m, k): residual of the best model with each. flat (k, 2) s: from
-    where to where the residual is within 1 % of the smallest. warnings: tuple of str.
+    per_joint (k,) s. delays (m,) s: those tried; rms (m, k): residual of the best model with each.
+    warnings: tuple of str.
     """
 
     delay: float
@@ -30,7 +30,6 @@ class DelayEstimate:
     per_joint: np.ndarray
     delays: np.ndarray
     rms: np.ndarray
-    flat: np.ndarray
     warnings: tuple
 
 
@@ -65,42 +64,34 @@ def estimate_delay(recording, q=None, u=None, *, longest=0.15, cutoff_hz=3.0, sl
             f"{fewest} samples of a joint are faster than slow = {slow} rad/s; {_FEWEST} are needed: record steps of "
             "the set point for a minute, or give a smaller slow"
         )
-    spaces = [_space(motion, joint) for joint in range(joints)]
-    left = np.empty((len(delays), len(motion), joints))
-    for m, delay in enumerate(delays):
-        shifted = process(t, q, u, delay=float(delay), **options)
-        for joint, Q in enumerate(spaces):
-            y = np.where(motion.use[:, joint], shifted.u[:, joint], 0.0)
-            left[m, :, joint] = y - Q @ (Q.T @ y)
-    power = (left**2).sum(axis=1)
-    rms = np.sqrt(power / motion.use.sum(axis=0))
-    per_joint = np.array([_least(delays, power[:, j]) for j in range(joints)])
-    parts = np.array_split(left**2, _BLOCKS, axis=1)
-    by_block = [np.median([_least(delays, part[:, :, j].sum(axis=1)) for j in range(joints)]) for part in parts]
+    driven = [process(t, q, u, delay=float(delay), **options).u for delay in delays]
+    left = [_left(motion, driven, joint) ** 2 for joint in range(joints)]
+    per_joint = np.array([_least(delays, one.sum(axis=0)) for one in left])
+    parts = zip(*(np.array_split(one, _BLOCKS) for one in left), strict=True)
+    by_block = [np.median([_least(delays, one.sum(axis=0)) for one in part]) for part in parts]
     stderr = max(np.std(by_block, ddof=1) / np.sqrt(_BLOCKS), np.std(per_joint) / np.sqrt(joints), 0.3 * step)
-    flat = np.array([delays[np.flatnonzero(rms[:, j] <= _FLAT * rms[:, j].min())[[0, -1]]] for j in range(joints)])
-    found = float(np.median(per_joint))
+    rms = np.sqrt(np.column_stack([one.mean(axis=0) for one in left]))
     return DelayEstimate(
-        delay=found,
+        delay=float(np.median(per_joint)),
         stderr=float(stderr),
         per_joint=per_joint,
         delays=delays,
         rms=rms,
-        flat=flat,
-        warnings=tuple(_doubts(found, per_joint, flat, delays, step)),
+        warnings=tuple(_doubts(per_joint, delays, rms)),
     )
 
 
-def _space(motion, joint):
-    """Orthonormal basis (n, p) of what the model of one joint can express, 0 where it is not to be used."""
+def _left(motion, driven, joint):
+    """What the model of one joint leaves of each u in `driven`, (m, len(driven)), of the samples to be used."""
+    use = motion.use[:, joint]
     if motion.q.shape[1] == 3:
-        A = regressor(motion.q, motion.qd, motion.qdd)[:, joint, RIGID_ON[joint]]
+        A = regressor(motion.q, motion.qd, motion.qdd)[use, joint][:, RIGID_ON[joint]]
     else:
-        v = motion.qd[:, 0]
-        A = np.column_stack([motion.qdd[:, 0], v, np.sign(v), np.ones_like(v)])
-    A = np.where(motion.use[:, joint, None], A, 0.0)
-    U, s, _ = np.linalg.svd(A / np.maximum(np.linalg.norm(A, axis=0), 1e-300), full_matrices=False)
-    return U[:, s > 1e-9 * s[0]]
+        v = motion.qd[use, 0]
+        A = np.column_stack([motion.qdd[use, 0], v, np.sign(v), np.ones_like(v)])
+    y = np.column_stack([u[use, joint] for u in driven])
+    A = A / np.maximum(np.linalg.norm(A, axis=0), 1e-300)
+    return y - A @ np.linalg.lstsq(A, y, rcond=1e-9)[0]
 
 
 def _least(delays, power):
@@ -113,7 +104,8 @@ def _least(delays, power):
     return float(delays[m] + (0.5 * (before - after) / bend if bend > 0 else 0.0) * (delays[1] - delays[0]))
 
 
-def _doubts(found, per_joint, flat, delays, step):
+def _doubts(per_joint, delays, rms):
+    step = delays[1]
     if (per_joint >= delays[-1]).any():
         yield f"the best delay is the largest tried, {delays[-1]:.3g} s: this record does not show it, or raise longest"
     if np.ptp(per_joint) > 2.5 * step:
@@ -122,9 +114,6 @@ def _doubts(found, per_joint, flat, delays, step):
             f"the joints disagree ({each} s): backlash, dead zone and stiction look like delay too; record steps of "
             "the set point, and trust the smallest"
         )
-    wide = np.diff(flat, axis=1).ravel()
-    if (wide > 3.5 * step).any():
-        yield (
-            f"the residual is flat within 1 % over {wide.max():.2g} s: the record hardly depends on the delay; record "
-            "steps of the set point, where u jumps"
-        )
+    flat = [np.ptp(np.flatnonzero(one <= _FLAT * one.min())) * step for one in rms.T]
+    if max(flat) > 3.5 * step:
+        yield f"the residual is flat within 1 % over {max(flat):.2g} s: record steps of the set point, where u jumps"

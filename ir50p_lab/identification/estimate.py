@@ -52,20 +52,16 @@ class Estimate:
     @property
     def verdict(self):
         """What the data say and what they do not, as a tuple of sentences: the warnings last."""
-        sentences = []
-        for row in range(1 if self.rows == "shared" else 3):
-            who = "all joints" if self.rows == "shared" else f"joint {row + 1}"
-            number = len(self.columns[row])
-            rms = ", ".join(f"{x:.3g}" for x in (self.sigma if self.rows == "shared" else self.sigma[[row]]))
+        sentences, shared = [], self.rows == "shared"
+        for row in range(1 if shared else 3):
+            who = "all joints" if shared else f"joint {row + 1}"
+            rms = ", ".join(f"{x:.3g}" for x in (self.sigma if shared else self.sigma[[row]]))
             sentences.append(
-                f"{who}: {number} parameters from {len(self.residuals)} samples, residual {rms} {self.unit} rms, "
-                f"condition {self.condition[row]:.3g}"
+                f"{who}: {len(self.columns[row])} parameters from {len(self.residuals)} samples, residual {rms} "
+                f"{self.unit} rms, condition {self.condition[row]:.3g}"
             )
-            unsure = [
-                f"{name} = {self.theta[row, k]:.3g} +- {self.stderr[row, k]:.2g}"
-                for k, name in enumerate(NAMES)
-                if name in self.columns[row] and abs(self.theta[row, k]) < 2 * self.stderr[row, k]
-            ]
+            values = zip(NAMES, self.theta[row], self.stderr[row], strict=True)
+            unsure = [f"{name} = {x:.3g} +- {stderr:.2g}" for name, x, stderr in values if abs(x) < 2 * stderr < np.inf]
             if unsure:
                 sentences.append(f"{who}: cannot be told from zero: {', '.join(unsure)}")
         return (*sentences, *self.warnings)
@@ -87,12 +83,12 @@ def impossible_values(theta, stderr, rows):
     found = []
     for row in range(1 if rows == "shared" else 3):
         who = "" if rows == "shared" else f"joint {row + 1}: "
-        for k, name in enumerate(NAMES):
-            if name not in FREE_OF_SIGN and theta[row, k] < -2 * stderr[row, k]:
-                found.append(
-                    f"{who}{name} = {theta[row, k]:.3g} +- {stderr[row, k]:.2g} is negative, which is hardly possible: "
-                    "the signals are biased (noise, delay) or the model lacks something; or use method='bounded'"
-                )
+        found += [
+            f"{who}{name} = {x:.3g} +- {error:.2g} is negative, which is hardly possible: the signals are biased "
+            "(noise, delay) or the model lacks something; or use method='bounded'"
+            for name, x, error in zip(NAMES, theta[row], stderr[row], strict=True)
+            if name not in FREE_OF_SIGN and x < -2 * error
+        ]
     return found
 
 

@@ -6,18 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.doubts import Doubts, check_outliers
-from ir50p_lab.identification.first_order import Record
-from ir50p_lab.identification.response_fit import respond
-from ir50p_lab.identification.second_order import fit_second_order
-from ir50p_lab.identification.step_record import check_time, jumps_of, recorded, without_outliers
-from ir50p_lab.inputs import number
+from ir50p_lab.identification.response_fit import NOISE, best_fit, likeness, respond, standard_errors
+from ir50p_lab.identification.second_order import second_order_of
+from ir50p_lab.identification.step_record import StepRecord, jumps_of, recorded
 
-_FEWEST = 8  # samples from the first change of u on: twice the number of parameters
 _RESPONSE = 15.0  # least F value for "y follows u": a search over T and L in pure noise stays below it
 _SHAPE = 0.05  # largest share of the variance of y that may be left and not be white: 20-40 % of overshoot
 _BENDS = 9.0  # least F value for "the response bends towards a final value": three standard errors
-_SETTLED = 3.0  # time constants after which a response has visibly bent: no need to compare with a ramp that bends in
 _ENOUGH = 20  # samples of a response, five for each parameter, from which on its shape can be judged
 _SEEN = 0.99  # sampling periods: a time constant or dead time below is not seen
 _SLOWEST = 10.0  # a time constant longer than this many records cannot be told from infinity
@@ -31,7 +26,7 @@ class FOPDT:
     field                      meaning                                              unit
     ========================== ==================================================== ==========
     K, T, L                    gain, time constant, dead time                       y/u, s, s
-    K_stderr ... L_stderr      standard errors (nan: not fitted; 0: was given)      y/u, s, s
+    K_stderr ... L_stderr      standard errors (nan: not fitted)                    y/u, s, s
     y0                         output at rest, before u changes                     y
     rms                        residual, root mean square                           y
     correlation                of neighbouring residuals: 0 for white noise, -1..1
@@ -70,7 +65,7 @@ class FOPDT:
         return self.y0 + self.K / self.T * out
 
 
-def fit_fopdt(t, u, y, *, dead_time=None, u_before=None, anyway=False):
+def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     """Fit K, T and L of a first-order plus dead time model to a recording    (2.21)
 
     T dy/dt + y = y0 + K [u(t - L) - u_before], solved exactly for an input held between samples (zero-order hold), with
@@ -86,9 +81,7 @@ def fit_fopdt(t, u, y, *, dead_time=None, u_before=None, anyway=False):
 
     Args:
         t: (n,) s, increasing. u: (n,), input; u[k] acts from t[k] to t[k + 1]. y: (n,), output, any unit.
-        dead_time: s; fit K and T only, with this L (0 for a plant without any).
         u_before: input at rest before t[0]; give it if u has its new value already in the first sample.
-
         anyway: go on where the data are refused and a model can be had; the reason is then in `warnings`.
 
     Returns: FOPDT. K is negative where y answers a step up by going down. `warnings` tells of a response that is not
@@ -102,89 +95,88 @@ def fit_fopdt(t, u, y, *, dead_time=None, u_before=None, anyway=False):
         joint: K and T have no value) or ever faster. Each says what to do next.
         InputError: NaN, shapes or lengths that do not fit, time that does not increase.
     """
-    t, u, y = recorded(t=t, u=u, y=y)
-    if dead_time is not None:
-        number("dead_time", dead_time, ">= 0", unit="s", hint="or None to fit it")
-    if u_before is not None:
-        number("u_before", u_before, hint="the input at rest before t[0]")
-    times, jumps = jumps_of(t, u, u_before)
-    doubts = Doubts(anyway)
-    doubts += check_time(t)
-    check_outliers(doubts, "u", t, u)
-    _refuse_silent(t, y, times)
-    whole = t, u, y
-    t, y = without_outliers(doubts, t, y)
-    record = Record(t, y, times, jumps, dead_time)
-    fit = record.fit_first_order()
-    _wrong_shape(doubts, record, fit, whole, u_before)
-    _unsettled(doubts, record, fit)
-    if fit.a <= 0:
+    record = StepRecord(t, u, y, u_before, anyway)
+    doubts, period = record.doubts, record.period
+    (a, L), (b, y0), e = _first_order(record)
+    _check_shape(record, a, L, b, e)
+    if a <= 0:
         raise IdentificationError("no first-order model is near this response, not even with anyway=True")
-    T, L = record.unit / fit.a, record.unit * fit.L
-    K_stderr, T_stderr, L_stderr = record.stderr(fit)
-    period = float(np.median(np.diff(t)))
-    _warn(doubts, record, fit, T, L, L_stderr, period)
-    if T < _SEEN * period:
-        T_stderr = L_stderr = math.inf
-    if dead_time is None and L < _SEEN * period:
-        L_stderr = max(L_stderr, period)
-    rms = record.y_unit * math.sqrt(fit.rss / len(t))
+
+    def response(p):
+        return p[0] / p[1] * record.respond(1 / p[1], p[2])
+
+    found = np.array([b / a, 1 / a, L])
+    units = record.gain, record.unit, record.unit
+    errors = standard_errors(response, found, np.maximum(np.abs(found), 1e-3 * period), e) * units
+    _warn(record, 1 / a, L, errors[2] / record.unit, *likeness(e))
+    if a * period > 1 / _SEEN:
+        errors[1:] = math.inf
+    if L < _SEEN * period:
+        errors[2] = max(errors[2], period * record.unit)
     return FOPDT(
-        K=record.slope(fit) * T,
-        T=T,
-        L=L,
-        K_stderr=K_stderr,
-        T_stderr=T_stderr,
-        L_stderr=L_stderr,
-        y0=float(record.y_unit * fit.y0 + y[0]),
-        rms=rms,
-        correlation=fit.correlation,
+        **dict(zip(("K", "T", "L"), (found * units).tolist(), strict=True)),
+        **dict(zip(("K_stderr", "T_stderr", "L_stderr"), errors.tolist(), strict=True)),
+        y0=float(record.y_unit * y0 + record.y_first),
+        rms=record.y_unit * float(np.sqrt(np.mean(e**2))),
+        correlation=likeness(e)[0],
         warnings=tuple(doubts),
     )
 
 
-def _refuse_silent(t, y, times):
-    if not len(times):
-        raise IdentificationError(
-            "u never changes, so the recording holds no step response: record some samples before the step too, or "
-            "give the input at rest as u_before="
-        )
-    if np.ptp(y) <= 1e-12 * np.abs(y).max():
-        raise IdentificationError(
-            f"y stays at {y[0]:.6g}: nothing answers to u; check the sensor, the power and that the step is larger "
-            "than the friction"
-        )
-    after = int((t >= times[0]).sum())
-    if after < _FEWEST:
-        raise IdentificationError(
-            f"only {after} samples from the first change of u (t = {times[0]:.6g} s) on; at least {_FEWEST} are "
-            "needed: record for longer after the step, or sample faster"
-        )
+def _first_order(record):
+    """(a, L), (b, y0) and residuals of y = y0 + b x, x' = v(t - L) - a x: 1/T is a, K/T is b.
+
+    The rate a is fitted, not T, because 0 (the plant integrates) and below (it grows) are then points like any other.
+    """
+    latest = max(0.9 - 4 * record.period, 0.1)
+    dead_times = np.r_[np.geomspace(0.3 * record.period, latest, 24), np.linspace(0, latest, 50)]
+    rates = np.r_[-30.0, -10.0, -3.0, -1.0, -0.3, 0.0, np.geomspace(0.1, 3 / record.period, 24)]
+    starts = [[(a, L) for L in dead_times] for a in rates]
+    bounds = (-40.0, 0.0), (30 / record.period, latest + 0.05)
+    return best_fit(lambda p: _columns(record, *p), record.y, starts, bounds)
 
 
-def _wrong_shape(doubts, record, fit, whole, u_before):
-    """Where y does not follow u at all, or in a way that no FOPDT model has."""
-    F, explained = record.f_value(fit, record.total, 3), 100 * (1 - fit.rss / record.total)
-    plain_F = F * fit.inflation**2
-    if plain_F >= _RESPONSE and fit.shape > _SHAPE * record.total and fit.correlation > 0.5:
+def _columns(record, a, L):
+    return np.column_stack([record.respond(a, L), np.ones_like(record.t)])
+
+
+def _check_shape(record, a, L, b, e):
+    """Refuse where y does not follow u at all, in a way that no FOPDT model has, or without end."""
+    doubts, n, rss, total = record.doubts, len(e), e @ e, np.sum((record.y - record.y.mean()) ** 2)
+    correlation, inflation = likeness(e)
+
+    def F(more, parameters):  # how much better the model is than one with fewer parameters, that leaves `more`
+        return (more - rss) / parameters / (max(rss, n * NOISE**2) / (n - 4))
+
+    follows, explained = F(total, 3), 100 * (1 - rss / total)
+    not_white = rss - np.sum(np.diff(e, 2) ** 2) / 6 * n / (n - 2)  # second differences pass only the white noise
+    if follows >= _RESPONSE and not_white > _SHAPE * total and correlation > 0.5:
         doubts.refuse(
             f"the response has not the shape of the model, which explains {explained:.0f} % of the variance of y, and "
-            f"what is left is not white (neighbours correlate by {fit.correlation:.2f}). A response that overshoots or "
-            f"swings needs a second-order model{_second_order(whole, u_before, fit)} (a closed loop does this: open "
-            "it); or y drifts, or moved before the step: start from rest and make a larger step; or the drive has a "
-            "dead zone or a limited rate"
+            f"what is left is not white (neighbours correlate by {correlation:.2f}). A response that overshoots or "
+            f"swings needs a second-order model{_second_order(record)} (a closed loop does this: open it); or y "
+            "drifts, or moved before the step: start from rest; or the drive has a dead zone or a limited rate"
         )
-    elif plain_F < _RESPONSE or (F < _RESPONSE and explained < 50):
+    elif follows < _RESPONSE or (follows / inflation**2 < _RESPONSE and explained < 50):
         doubts.refuse(
             f"y does not follow u: the model explains {explained:.1f} % of its variance, no more than noise or drift "
-            f"can (F = {F:.1f}, needed {_RESPONSE:.0f}); make a larger step, or average several recordings"
+            "can; make a larger step, or average several recordings"
         )
+    ramp = best_fit(lambda p: _columns(record, 0.0, *p), record.y, [[(k / 50,)] for k in range(45)], (0.0, 0.95))[2]
+    if a * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / inflation**2 > _BENDS:
+        return
+    doubts.refuse(
+        "the response runs on like a ramp, or ever faster: within this record the plant integrates (the position of a "
+        "joint does, under constant torque) or is unstable. K and T have no value of their own, only K/T, about "
+        f"{b * record.gain / record.unit:.4g} y/u per s, has. Fit the velocity instead (differentiate and smooth y) "
+        "and tune with simc_integrating; stabilise a plant that grows; or, if it is only slow, record for longer"
+    )
 
 
-def _second_order(whole, u_before, fit):
-    """What `fit_second_order` makes of it, where that is much better."""
+def _second_order(record):
+    """What `fit_second_order` makes of it."""
     try:
-        found = fit_second_order(*whole, u_before=u_before)
+        found = second_order_of(record)
     except IdentificationError:
         return ""
     return (
@@ -193,61 +185,34 @@ def _second_order(whole, u_before, fit):
     )
 
 
-def _unsettled(doubts, record, fit):
-    """Where 1/T cannot be told from zero, or is negative."""
-    lived = fit.a * (1 - fit.L)  # length of the response in time constants
-    bend = record.f_value(fit, record.ramp_rss(), 1)
-    settles = lived > 1 / _SLOWEST and bend > _BENDS
-    if settles and lived > _SETTLED:
-        return
-    joint = record.fit_joint()  # the same number of parameters, so the sums of squares compare
-    if settles and fit.rss < joint.rss:
-        return
-    if fit.a < 0 and bend > _BENDS and fit.rss < joint.rss:
-        raise IdentificationError(
-            f"the response grows ever faster, by a factor e every {-record.unit / fit.a:.4g} s: the plant is unstable "
-            "and has no FOPDT model; stabilise it with a controller and identify it in closed loop"
-        )
-    doubts.refuse(
-        "the response runs on like a ramp: within this record the plant integrates (the position of a joint does, "
-        f"under constant torque). K and T have no value of their own, only K/T, about {record.slope(fit):.4g} y/u per "
-        "s, has. Fit the velocity instead (differentiate and smooth y) and tune with simc_integrating; or, if the "
-        "plant is only slow, record for longer"
-    )
-
-
-def _warn(doubts, record, fit, T, L, L_stderr, period):
+def _warn(record, T, L, L_stderr, correlation, inflation):
     """What is to be minded about a fit that is not refused."""
-    watched = record.unit * (1 - fit.L)
+    doubts, period = record.doubts, record.period
     if T < _SEEN * period:
         doubts.add(
-            f"the time constant is not identifiable: about {T / period:.2f} of the sampling period of {period:.3g} s, "
-            "the response is over between two samples and T and L cannot be told apart; K holds. Sample at least five "
-            "times in one time constant"
+            f"the time constant is not identifiable: about {T / period:.2f} of the sampling period, so that T and L "
+            "cannot be told apart; K holds. Sample at least five times in one time constant"
         )
-    elif not record.known and L < _SEEN * period:
+    elif L < _SEEN * period:
         doubts.add(
-            f"the dead time is not identifiable: about {L / period:.2f} of the sampling period of {period:.3g} s (when "
-            "within a period was u applied, and y read?); K and T hold. Give it if you know it, dead_time=0 for a "
-            "plant without; or sample faster. Rules that divide by L (Ziegler-Nichols, AMIGO) have no meaning here"
+            f"the dead time is not identifiable: about {L / period:.2f} of the sampling period (when within it was u "
+            "applied, and y read?); K and T hold. Rules that divide by L (Ziegler-Nichols, AMIGO) have no meaning here"
         )
-    elif not record.known and L < 2 * L_stderr:
-        doubts.add(
-            f"dead time {L:.3g} s is less than two standard errors ({L_stderr:.3g} s): it cannot be told from none"
-        )
-    seen = int((record.t >= fit.L).sum())
+    elif L < 2 * L_stderr:
+        doubts.add(f"dead time {L * record.unit:.3g} s is less than two standard errors: it cannot be told from none")
+    seen = int((record.t >= L).sum())
     if seen < _ENOUGH:
         doubts.add(
             f"only {seen} samples of the response: too few to see whether a first-order model is right (dead zone, "
             "limited rate, overshoot); record longer, or sample faster"
         )
-    if T > watched:
+    if T > 1 - L:
         doubts.add(
-            f"not settled: T = {T:.4g} s is longer than the {watched:.4g} s of response recorded; K and T rest on the "
-            "model being exact, record at least 3 T"
+            f"not settled: T = {T * record.unit:.4g} s is longer than the {(1 - L) * record.unit:.4g} s of response "
+            "recorded; K and T rest on the model being exact, record at least 3 T"
         )
-    if fit.inflation > 1:
+    if inflation > 1:
         doubts.add(
-            f"residuals are not white (correlation of neighbours {fit.correlation:.2f}): standard errors were widened "
-            f"by {fit.inflation:.1f}; drift, a filter in the sensor, or a plant that is not quite of first order"
+            f"residuals are not white (correlation of neighbours {correlation:.2f}): standard errors were widened by "
+            f"{inflation:.1f}; drift, a filter in the sensor, or a plant that is not quite of first order"
         )

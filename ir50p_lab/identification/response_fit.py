@@ -34,12 +34,6 @@ def respond(t, jump_times, jumps, a, L, out):
         out[i] = x
 
 
-def solve(A, y):
-    """Least squares A c = y: c and the residuals A c - y."""
-    c = np.linalg.lstsq(A, y, rcond=None)[0]
-    return c, A @ c - y
-
-
 def best_fit(columns, y, starts, bounds):
     """Least squares y = columns(p) c over p, and over c, exactly for each p.
 
@@ -48,8 +42,10 @@ def best_fit(columns, y, starts, bounds):
     """
     from scipy.optimize import least_squares
 
-    def residuals(p):
-        return solve(columns(p), y)[1]
+    def solved(p):
+        A = columns(p)
+        c = np.linalg.lstsq(A, y, rcond=None)[0]
+        return c, A @ c - y
 
     def cost(A):  # the quick way, for comparing: y less its projection, in normal equations
         b = A.T @ y
@@ -58,11 +54,11 @@ def best_fit(columns, y, starts, bounds):
     costs = np.array([[cost(columns(p)) for p in row] for row in starts])
     exact = {"x_scale": "jac", "ftol": 1e-12, "xtol": 1e-11, "gtol": 1e-14}
     fits = [
-        least_squares(residuals, np.clip(starts[k][costs[k].argmin()], *bounds), bounds=bounds, **exact)
+        least_squares(lambda p: solved(p)[1], np.clip(starts[k][costs[k].argmin()], *bounds), bounds=bounds, **exact)
         for k in costs.min(axis=1).argsort()[:_STARTS]
     ]
     best = min(fits, key=lambda fit: fit.cost)
-    return best.x, *solve(columns(best.x), y)
+    return best.x, *solved(best.x)
 
 
 def likeness(e):

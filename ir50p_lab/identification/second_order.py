@@ -7,13 +7,13 @@ from functools import partial
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError
-from ir50p_lab.identification.doubts import Doubts
 from ir50p_lab.identification.response_fit import best_fit, respond, standard_errors
-from ir50p_lab.identification.step_record import check_time, jumps_of, recorded, without_outliers
+from ir50p_lab.identification.step_record import StepRecord, jumps_of, recorded
 
 _BETTER = 12.0  # least F value of a zero
 _DAMPING = (0.02, 10.0)
 _GRID = (0.1, 0.35, 0.8, 2.0)
+_NAMES = ("K", "w", "damping", "L", "zero")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,51 +68,52 @@ def fit_second_order(t, u, y, *, u_before=None):
     Returns: SecondOrderModel. Raises: InputError as `fit_fopdt` does; IdentificationError if u never changes, or the
     model explains less than half of the variance of y.
     """
-    t, u, y = recorded(t=t, u=u, y=y)
-    times, jumps = jumps_of(t, u, u_before)
-    if not len(times):
-        raise IdentificationError("u never changes, so the recording holds no step response: give u_before=")
-    doubts = Doubts()
-    doubts += check_time(t)
-    t, y = without_outliers(doubts, t, y)
-    unit, period, spread = t[-1] - times[0], float(np.median(np.diff(t))), float(np.std(y))
+    return second_order_of(StepRecord(t, u, y, u_before))
+
+
+def second_order_of(record):
+    """`fit_second_order` of a StepRecord."""
+    t, y, period, n = record.t, record.y, record.period, len(record.t)
     starts = [
-        [(np.log(w), damping, L) for damping in _GRID for L in (0.0, 3 * period, 0.1 * unit)]
-        for w in np.geomspace(3 / unit, 0.5 / period, 10)
+        [(np.log(w), damping, L) for damping in _GRID for L in (0.0, 3 * period, 0.1)]
+        for w in np.geomspace(3, 0.5 / period, 10)
     ]
-    bounds = ([math.log(0.1 / unit), _DAMPING[0], 0.0], [math.log(3 / period), _DAMPING[1], 0.5 * unit])
+    bounds = ([math.log(0.1), _DAMPING[0], 0.0], [math.log(3 / period), _DAMPING[1], 0.5])
+
+    def basis(log_w, damping, L):
+        return _basis(t, record.times, record.jumps, math.exp(log_w), damping, L)
 
     def columns(p, zeros):
-        return np.column_stack([np.ones_like(t), _basis(t, times, jumps, math.exp(p[0]), *p[1:])[:, : 1 + zeros]])
+        return np.column_stack([np.ones_like(t), basis(*p)[:, : 1 + zeros]])
 
-    without, with_zero = (best_fit(partial(columns, zeros=m), y / spread, starts, bounds) for m in (0, 1))
+    without, with_zero = (best_fit(partial(columns, zeros=m), y, starts, bounds) for m in (0, 1))
     rss, less = (float(fit[2] @ fit[2]) for fit in (without, with_zero))
-    zeros = int((rss - less) / max(less, 1e-14 * len(t)) * (len(t) - 6) > _BETTER)
+    zeros = int((rss - less) / max(less, 1e-14 * n) * (n - 6) > _BETTER)
     p, c, e = with_zero if zeros else without
-    c, e = c * spread, e * spread
-    explained = 1 - np.mean(e**2) / spread**2
+    explained = 1 - np.mean(e**2) / np.var(y)
     if explained < 0.5:
         raise IdentificationError(
             f"a second-order model explains {100 * explained:.0f} % of the variance of y: y does not follow u in this "
             "way; start from rest and make a larger step"
         )
-    K, zero = float(c[1]), float(c[2] / c[1]) if zeros else 0.0
-    w, damping, L = math.exp(p[0]), float(p[1]), float(p[2])
-    found = np.array([K, w, damping, L, zero][: 4 + zeros])
+    w, doubts = math.exp(p[0]), tuple(record.doubts)
+    found = np.array([c[1], w, p[1], p[2], c[2] / c[1] if zeros else 0.0])
 
     def response(p):
-        return _basis(t, times, jumps, *p[1:4]) @ [p[0], p[0] * p[4] if zeros else 0.0] / spread
+        return basis(math.log(p[1]), *p[2:4]) @ [p[0], p[0] * p[4] if zeros else 0.0]
 
+    found = found[: 4 + zeros]
     sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / w, 1e-3 / w][: 4 + zeros])
-    errors = [*standard_errors(response, found, sizes, e / spread), 0.0]
+    errors = standard_errors(response, found, sizes, e)
     if w * period > 1:
-        doubts.add(f"w = {w:.3g} rad/s is {w * period:.2g} rad a sample: not identifiable, sample faster")
-    rms = float(np.sqrt(np.mean(e**2)))
+        doubts += (f"w is {w * period:.2g} rad a sample: not identifiable, sample faster",)
+    units = np.array([record.gain, 1 / record.unit, 1.0, record.unit, record.unit])[: 4 + zeros]
+    values = dict(zip(_NAMES, (found * units).tolist(), strict=False))
+    values |= {f"{name}_stderr": x for name, x in zip(_NAMES, (errors * units).tolist(), strict=False)}
     return SecondOrderModel(
-        **{"K": K, "w": w, "damping": damping, "L": L, "zero": zero},
-        **{f"{name}_stderr": float(x) for name, x in zip(("K", "w", "damping", "L", "zero"), errors, strict=False)},
-        y0=float(c[0]),
-        rms=rms,
-        fit=100 * (1 - rms / spread),
-        warnings=tuple(doubts),
+        **{"zero": 0.0, "zero_stderr": 0.0} | values,
+        y0=float(c[0] * record.y_unit + record.y_first),
+        rms=float(np.sqrt(np.mean(e**2))) * record.y_unit,
+        fit=float(100 * (1 - np.sqrt(np.mean(e**2)) / np.std(y))),
+        warnings=doubts,
     )

@@ -13,6 +13,7 @@ from ir50p_lab.identification.columns import columns_of, joined, runs, sampling_
 from ir50p_lab.identification.joint_doubts import check_model, check_motion
 from ir50p_lab.identification.processing import process
 from ir50p_lab.identification.regression import LeastSquares, least_squares
+from ir50p_lab.identification.response_fit import best_fit
 from ir50p_lab.identification.spectrum import spectrum
 from ir50p_lab.inputs import number, switch
 from ir50p_lab.signals.low_pass import low_pass
@@ -90,11 +91,6 @@ class JointFit:
     stribeck_stderr: float = math.nan
     stribeck_speed_stderr: float = math.nan
 
-    @property
-    def time_constant(self):
-        """inertia/viscous, s: how fast the joint answers (nan unless both are positive)."""
-        return self.inertia / self.viscous if self.inertia > 0 and self.viscous > 0 else math.nan
-
 
 def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, delay=0.0, held=None, anyway=False):
     """Inertia, viscous and Coulomb friction and offset of one joint from a recording of it    (2.48, one joint)
@@ -155,7 +151,7 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
         found = _at_agreeing_cutoff(doubts, joint, found, held, cutoff_hz is not None)
         found = _with_other_fits_in_errors(joint, found, held)
     check_model(doubts, found, band, period)
-    if "inertia" in terms and found.value("inertia") < 0 and not found.lost("inertia"):
+    if "inertia" in terms and found.value("inertia")[0] < 0 and not found.lost("inertia"):
         found = joint.fit(found.cutoff_hz, found.held, without=("inertia",))
     values = {name: float(x) for name, x in zip(found.names, found.x, strict=True)}
     errors = {f"{name}_stderr": float(s) for name, s in zip(found.names, found.stderr, strict=True)}
@@ -229,9 +225,7 @@ def _at_agreeing_cutoff(doubts, joint, first, held, given):
             break
     if here is first:
         return first
-    each = ", ".join(
-        f"{one.value(name):.4g} +- {one.value(name, 'stderr'):.2g} at {one.cutoff_hz:.3g} Hz" for one in (before, here)
-    )
+    each = ", ".join("{:.4g} +- {:.2g} at {:.3g} Hz".format(*one.value(name), one.cutoff_hz) for one in (before, here))
     doubts.add(
         f"{name} depends on the cut-off: {each}. A rigid joint with this friction does not explain the fast part of "
         "the motion (flexibility, backlash, a late u); give a lower cutoff_hz and compare"
@@ -284,11 +278,10 @@ class Found:
     slope: np.ndarray
     A: np.ndarray
 
-    def value(self, name, kind="x"):
-        """Of a parameter, x or stderr; 0 and inf where it is not in the model."""
-        if name in self.names:
-            return float(getattr(self, kind)[self.names.index(name)])
-        return 0.0 if kind == "x" else math.inf
+    def value(self, name):
+        """x and stderr of a parameter; 0 and inf where it is not in the model."""
+        known = dict(zip(self.names, zip(self.x.tolist(), self.stderr.tolist(), strict=True), strict=True))
+        return known.get(name, (0.0, math.inf))
 
     def beside(self, columns):
         """The same parameters beside more columns: x, stderr; of the last column value and error; the rms left."""
@@ -339,7 +332,7 @@ class Found:
 
     def lost(self, name):
         """Whether the parameter was asked for and the data do not hold it."""
-        return name in self.names and math.isinf(self.value(name, "stderr"))
+        return name in self.names and math.isinf(self.value(name)[1])
 
 
 def _named(columns, names):
@@ -349,7 +342,7 @@ def _named(columns, names):
 
 @dataclass(frozen=True)
 class _Joint:
-    """Evenly sampled runs of one joint: q, v, and u in three ways (held, measured, measured and smoothed)."""
+    """Evenly sampled runs of one joint: q, v, and u in two ways (held, measured)."""
 
     segments: list
     rate: float
@@ -360,13 +353,8 @@ class _Joint:
     @classmethod
     def of(cls, t, q, u, v, period, band, delay, terms):
         columns = q if v is None else np.hstack([q, v])
-        # taking u between two samples, as for a held one, takes noise from it: a fair comparison does so too
-        padded = np.pad(u, ((1, 1), (0, 0)), mode="edge")
-        smooth = (padded[:-2] + 6 * padded[1:-1] + padded[2:]) / 8
-        ways = []
-        for drive, held in ((u, True), (u, False), (smooth, False)):
-            drives = np.repeat(drive, columns.shape[1], axis=1)
-            ways.append(process(t, columns, drives, cutoff_hz=None, trim=0.0, delay=delay, held=held))
+        drives = np.repeat(u, columns.shape[1], axis=1)
+        ways = [process(t, columns, drives, cutoff_hz=None, trim=0.0, delay=delay, held=held) for held in (True, False)]
         segments = []
         for segment in np.unique(ways[0].segment):
             here = ways[0].segment == segment
@@ -391,8 +379,8 @@ class _Joint:
             names = [name for name in names if name != "inertia"]
         solve = self._with_stribeck if "stribeck" in names else self._solve
         if held is None:
-            as_held, fair = (solve(table, k, cutoff_hz, names) for k in (0, 2))
-            held = fair.left.rms >= _CLEARLY * as_held.left.rms
+            as_held, measured = (solve(table, way, cutoff_hz, names) for way in (0, 1))
+            held = measured.left.rms >= _CLEARLY * as_held.left.rms
         return solve(table, 0 if held else 1, cutoff_hz, names)
 
     def _solve(self, table, way, cutoff_hz, names, columns=None):
@@ -406,42 +394,27 @@ class _Joint:
         return Found((*names, *out), x, stderr, left, cutoff_hz, way == 0, table, *u, held_by_data)
 
     def _with_stribeck(self, table, way, cutoff_hz, names):
-        """Least squares over all parameters, for each Stribeck speed; its error from the slope of the column in it."""
-        from scipy.optimize import minimize_scalar
-
+        """Least squares over all parameters and the Stribeck speed; its error from the slope of the column in it."""
         place = names.index("stribeck")
 
         def columns(log_speed):
-            share = (table.v / math.exp(log_speed)) ** 2
-            peak = table.direction * np.exp(-share)
             A = _named(table.columns, names)
-            A[:, place] = peak
-            return A, peak * 2 * share
+            A[:, place] = table.direction * np.exp(-((table.v / np.exp(log_speed)) ** 2))
+            return A
 
-        def left(log_speed):
-            A = columns(log_speed)[0]
-            e = table.y[:, way] - A @ np.linalg.lstsq(A, table.y[:, way], rcond=None)[0]
-            return float(e @ e)
-
-        low, high = np.log(np.array(_PEAK) * self.band.speed)
-        grid = np.linspace(low, high, 12)
-        at = grid[int(np.argmin([left(x) for x in grid]))]
-        width = grid[1] - grid[0]
-        best = minimize_scalar(left, bounds=(at - width, at + width), method="bounded").x
-        A, slope = columns(best)
-        size = self._solve(table, way, cutoff_hz, names, A).value("stribeck")
-        more = np.column_stack([A, size * slope])
-        found = self._solve(table, way, cutoff_hz, [*names, "stribeck_speed"], more)
-        k, speed = found.names.index("stribeck_speed"), math.exp(best)
-        x, stderr = found.x.copy(), found.stderr.copy()
-        x[k], stderr[k] = speed, speed * stderr[k]
-        return replace(found, x=x, stderr=stderr)
+        bounds = np.log(np.multiply(_PEAK, self.band.speed))
+        starts = [[(start,)] for start in np.linspace(*bounds, 12)]
+        (best,), c, _ = best_fit(lambda p: columns(*p), table.y[:, way], starts, bounds)
+        A, speed = columns(best), math.exp(best)
+        slope = c[place] * A[:, place] * 2 * table.v**2 / speed**3
+        found = self._solve(table, way, cutoff_hz, [*names, "stribeck_speed"], np.column_stack([A, slope]))
+        return replace(found, x=np.where(np.equal(found.names, "stribeck_speed"), speed, found.x))
 
     def table(self, cutoff_hz, slower=1.0):
         """What goes into the regression, all through the same low pass.
 
-        columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 3), u in each way, and its slope
-        (m, 3); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its largest value; q (m,)
+        columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 2), u in each way, and its slope
+        (m, 2); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its largest value; q (m,)
         rad; v (m,) rad/s; direction (m,).
         """
         slow = slower * max(4 * self.band.speed_noise, _DEAD * self.band.speed)
@@ -463,11 +436,11 @@ class _Joint:
             direction, sin, cos, moving = smooth[:, :4].T
             A = {"inertia": a, "viscous": v, "coulomb": direction, "offset": np.ones(n), "stribeck": np.zeros(n)}
             A |= {"gravity_sin": sin, "gravity_cos": cos}
-            columns, y = np.column_stack([A[name] for name in _COLUMNS]), smooth[:, 4:7]
+            columns, y = np.column_stack([A[name] for name in _COLUMNS]), smooth[:, 4:6]
             rates, slope = (np.gradient(x, axis=0) * self.rate for x in (columns, y))
             inside = np.arange(n)[edge : n - edge : thin]
             kept = inside[moving[inside] > 0.9]
-            parts.append([x[kept] for x in (columns, rates, y, slope, smooth[:, 7:], angles[:, 0], v, direction)])
+            parts.append([x[kept] for x in (columns, rates, y, slope, smooth[:, 6:], angles[:, 0], v, direction)])
         names = ("columns", "rates", "y", "slope", "extreme", "q", "v", "direction")
         joined = [np.concatenate(x) for x in zip(*parts, strict=True)] or [np.empty(0)] * len(names)
         return SimpleNamespace(**dict(zip(names, joined, strict=True)))

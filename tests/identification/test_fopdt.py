@@ -154,13 +154,6 @@ def test_coloured_noise_widens_the_standard_errors_and_is_named():
     assert (inside(model, narrow)[:2] <= 37).all()
 
 
-def test_a_known_dead_time_is_kept():
-    y = 1.0 - lag(SINCE, 0.3) + noise(1, 0.01)
-    found = fit_fopdt(T_S, STEP, y, dead_time=0)
-    assert found.L == 0.0 and found.L_stderr == 0.0
-    assert abs(found.K + 1) < 3 * found.K_stderr and abs(found.T - 0.3) < 3 * found.T_stderr
-
-
 def test_a_slow_plant_is_accepted_and_flagged():
     """T longer than what was recorded of it (3.4 s), but the bend is seen."""
     for T, flagged in ((2.0, False), (3.0, False), (4.0, True), (8.0, True)):
@@ -196,7 +189,7 @@ def test_an_integrating_joint_is_refused_and_the_remedy_works(tau, size, in_unit
     position = SINCE - tau * lag(SINCE, tau)
     refused("integrates", T_S, STEP, in_units(position / position.max() + noise(3, size)))
     if 0.02 < tau < 3:
-        found = fit_fopdt(T_S, STEP, lag(SINCE, tau) + noise(4, size), dead_time=0)
+        found = fit_fopdt(T_S, STEP, lag(SINCE, tau) + noise(4, size))
         assert found.T == pytest.approx(tau, rel=0.2 if size else 1e-6)
 
 
@@ -214,7 +207,6 @@ def test_dead_time_below_the_period_is_said_to_be_not_identifiable(share, size, 
     found = fit_fopdt(T_S, STEP, y)
     assert "dead time is not identifiable" in " ".join(found.warnings) and found.L_stderr >= 0.99 * PERIOD
     assert found.T == pytest.approx(0.2, rel=0.1)
-    assert share or not fit_fopdt(T_S, STEP, y, dead_time=0).warnings
 
 
 @pytest.mark.parametrize("share", [0.001, 0.1, 0.5, 0.8])
@@ -320,7 +312,7 @@ def test_bad_columns_get_a_sentence(n):
         fit_fopdt(t[:1], u[:1], y[:1])
     with pytest.raises(InputError, match="numbers"):
         fit_fopdt(t, u, ["a"] * n)
-    for options in ({"dead_time": -1.0}, {"dead_time": math.nan}, {"u_before": math.inf}, {"u_before": "0"}):
+    for options in ({"u_before": math.nan}, {"u_before": math.inf}, {"u_before": "0"}):
         with pytest.raises(InputError):
             fit_fopdt(t, u, y, **options)
 

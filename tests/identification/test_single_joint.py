@@ -8,7 +8,7 @@ import pytest
 from scipy.signal import lfilter
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification import JointFit, fit_joint, least_squares
+from ir50p_lab.identification import fit_joint, least_squares
 from ir50p_lab.jit import jit
 from ir50p_lab.signals import trapezoid
 
@@ -70,7 +70,6 @@ def test_parameters_are_found_again(machine, seed):
     check(found, machine, 0.03)
     assert found.fit > 94 and found.unidentifiable == () and found.warnings == ()
     assert all(type(value) is float for value in dataclasses.astuple(found)[:12])
-    assert found.time_constant == found.inertia / found.viscous
 
 
 def test_exact_data_give_exact_parameters():
@@ -483,7 +482,6 @@ def test_bad_arguments():
     refused("2 columns", t, np.column_stack([q, q]), np.column_stack([u, u]), error=InputError)
     for option, value in (("held", 1), ("cutoff_hz", 25), ("cutoff_hz", -1), ("delay", -1), ("delay", np.nan)):
         refused(option, t, q, u, error=InputError, **{option: value})
-    assert np.isnan(JointFit(**{**dataclasses.asdict(fit_joint(t, q, u)), "viscous": -1.0}).time_constant)
 
 
 # --- the regression behind it
