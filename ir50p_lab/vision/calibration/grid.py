@@ -111,28 +111,6 @@ def grow(grid, grey):
     return grid, outside
 
 
-def is_whole(grid, grey):
-    """Whether a board ends all round a grid: a rim of whole squares beyond its corners, then no more."""
-    swing = abs(contrast(grid, grey))
-    for quarter_turns in range(4):
-        turned = _turn(grid, quarter_turns)
-        out = _next_column(turned) - turned[:, -1]
-        middle, step = (turned[1:, -1] + turned[:-1, -1]) / 2, (out[1:] + out[:-1]) / 2
-        signs = (-1.0) ** np.arange(len(middle))
-        rim, beyond = (sample(grey, middle + far * step) for far in (0.5, 1.45))
-        steps = signs[1:] * np.diff(rim)
-        if (
-            not np.all(np.isfinite(rim))
-            or np.median(np.abs(steps)) < 0.6 * swing
-            or abs(np.sign(steps).sum()) < len(steps)
-        ):
-            return False
-        beyond = beyond[np.isfinite(beyond)]
-        if len(beyond) > 1 and np.ptp(beyond) > 0.15 * swing:  # something goes on there, or covers it
-            return False
-    return True
-
-
 def _turn(grid, quarter_turns):
     return np.rot90(grid, quarter_turns, axes=(0, 1))
 
