@@ -112,7 +112,7 @@ def _calibrate(found, size, board, points, options, rejected):
     """From (name, index, BoardCorners) to a Calibration: outlier views out, lens chosen, bend of the board tested."""
     wanted, aspect, bend = options
     corners = CornerSets([points[one.index] for _, _, one in found], [one.xy for _, _, one in found], size)
-    model = Model(("k1", "k2"), aspect)
+    model = Model(LENS, aspect)
     rough = fit(corners, model, start(corners))
     for _ in range(max(1, len(found) // 4)):
         outlier = checks.outlier_view(corners, rough)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.fit import LENS, Model, fit, focal_steps
+from ir50p_lab.vision.calibration.fit import Model, fit, focal_steps
 from ir50p_lab.vision.calibration.models import Evidence, choose, compare, contrast_of
 
 _TILTED = np.deg2rad(15)
@@ -15,28 +15,13 @@ _LEFT, _SIGMAS, _APART = 0.2, 5.0, 0.03
 _ROUGH = 0.7  # px rms, of pictures up to 1280 px wide
 
 
-def outlier_view(corners, rough):
+def outlier_view(corners, fitted):
     """(number of the view that fits worst, its rms, usual rms, px) if it does not belong to the others, else None.
 
-    rough: CameraFit with k1 and k2. What is off that is judged again by the full lens: a view far out may be the only
-    one that needs its k3.
-    """
-    suspect = _worst_view(corners, rough)
-    if suspect is None or rough.model.lens == LENS:
-        return suspect
-    try:
-        full = fit(corners, Model(LENS, rough.model.aspect), (rough.camera, rough.poses))
-    except CalibrationError:
-        return suspect
-    return _worst_view(corners, full)
-
-
-def _worst_view(corners, fitted):
-    """The same by one CameraFit.
-
-    It must be three times worse than the median view, and eight times the usual scatter of views above it. A view that
-    is far off pulls the camera along and spoils the others, too: if they fit twice as well without the worst, it is
-    judged by the camera that they make without it.
+    fitted: CameraFit with the full lens: a view far out may be the only one that needs its k3. The view must be three
+    times worse than the median view, and eight times the usual scatter of views above it. A view that is far off pulls
+    the camera along and spoils the others, too: if they fit twice as well without the worst, it is judged by the camera
+    that they make without it.
     """
     rms = fitted.view_rms
     if len(rms) < 5:

@@ -188,9 +188,7 @@ def _grown(grey, small, factor, pattern):
     """The grid from a part of it that was found and grown, if it becomes the whole board; else NotUsable says why."""
     grid = part_of_a_checkerboard(small)
     if grid is None:
-        raise NotUsable(
-            Reason.NO_BOARD, "nothing like a checkerboard: focus, more light, less glare, the whole board in view"
-        )
+        raise NotUsable(Reason.NO_BOARD, "nothing like a checkerboard: more light, less glare, the whole board in view")
     grid = refine(grey, enlarged(grid, factor))
     refuse_soft(grey, grid)
     grid, outside = grow(grid, grey)
@@ -221,29 +219,47 @@ def _check_whole(grid, outside, pattern):
 
 
 def part_of_a_checkerboard(grey):
-    """The grid around the first part by its saddles that becomes 4x3 or more and is smooth; or None.
-
-    In the picture at its size, or reduced, which takes out noise and blur.
-    """
+    """A grid found anywhere in a picture, at its size or reduced, by its saddles or by SB; or None."""
     import cv2
 
-    for less in (1, 2, 4):
-        h, w = grey.shape
-        if min(h, w) >= 60 * less:
-            small = cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
-            for part in itertools.islice(parts_by_saddles(small), 20):
-                grid, _ = grow(refine(small, part), small)
-                smooth = roughness(grid) < _ROUGH / 2 * np.median(spacing(grid))
-                if smooth and grid.shape[0] * grid.shape[1] >= 12 and is_checkerboard(grid, small):
+    for find, scales in ((_grown_from_saddles, (1, 2, 4)), (_largest_by_sb, (2, 4))):
+        for less in scales:
+            h, w = grey.shape
+            if min(h, w) >= 60 * less:
+                small = cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
+                grid = find(small)
+                if grid is not None:
                     return enlarged(grid, less)
     return None
 
 
+def _grown_from_saddles(grey):
+    """The grid around the first part by its saddles that becomes 4x3 or more and is smooth, or None."""
+    for part in itertools.islice(parts_by_saddles(grey), 20):
+        grid, _ = grow(refine(grey, part), grey)
+        smooth = roughness(grid) < _ROUGH / 2 * np.median(spacing(grid))
+        if smooth and grid.shape[0] * grid.shape[1] >= 12 and is_checkerboard(grid, grey):
+            return grid
+    return None
+
+
 def _part_of_it(shape, outside, pattern):
-    """Whether a grid (rows, columns) can be part of the pattern: whole one way, and cut off or covered the other."""
+    """Whether a grid (rows, columns) can be part of the pattern: cut off by the picture, or covered one way."""
     cut = bool(outside & {"top", "bottom"}), bool(outside & {"left", "right"})
     return any(
         all(n <= m for n, m in zip(shape, turned, strict=True))
-        and sum(n < m and not is_cut for n, m, is_cut in zip(shape, turned, cut, strict=True)) <= 1
+        and sum(n < m and not is_cut for n, m, is_cut in zip(shape, turned, cut, strict=True)) <= (not outside)
         for turned in (pattern, pattern[::-1])
     )
+
+
+def _largest_by_sb(grey):
+    """The largest grid (rows, columns, 2) around 3x3 corners that `findChessboardCornersSB` finds, or None."""
+    import cv2
+
+    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_LARGER
+    found, corners, meta = cv2.findChessboardCornersSBWithMeta(grey, (3, 3), flags)
+    if not found:
+        return None
+    grid = corners.reshape(*meta.shape, 2).astype(float)
+    return grid if is_checkerboard(grid, grey) else None

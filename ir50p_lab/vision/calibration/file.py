@@ -1,31 +1,20 @@
 """A calibration as a file: YAML that cv2.FileStorage reads, with the names that OpenCV's own sample uses."""
 
 import json
-import re
-from dataclasses import fields, is_dataclass
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
-from ir50p_lab.errors import CalibrationError, InputError
+from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.fit import NAMES
 from ir50p_lab.vision.calibration.reasons import Reason, Rejected
 from ir50p_lab.vision.calibration.view import View
 from ir50p_lab.vision.checks import check_picture_size, picture_size
 
-_DEEPEST = 1000  # lists within lists: a calibration has five
-
 _LONGEST = 2000  # characters of one text in such a file: OpenCV takes 4096 bytes
-_DETAILS = tuple("covariance sigma sag stderr stderr_corners stderr_views model warnings board views rejected".split())
-_OF_VIEW = tuple(one.name for one in fields(View))
-
-
-def _checked(path):
-    """A Path. Raises InputError for what names no file."""
-    if not isinstance(path, (str, Path)):
-        raise InputError(f"path = {path!r:.60}: give the name of a file, such as 'camera.yml'")
-    return Path(path)
+_BASICS = ("K", "distortion", "rms", "size", "evidence")  # under OpenCV's names; evidence is not kept
 
 
 def save(calibration, path):
@@ -35,7 +24,7 @@ def save(calibration, path):
     """
     import cv2
 
-    path = _checked(path)
+    path = Path(path)
     # written in memory: OpenCV does not open paths with letters beyond ASCII everywhere, and says nothing
     file = cv2.FileStorage(path.suffix.lower() or ".yml", cv2.FileStorage_WRITE | cv2.FileStorage_MEMORY)
     file.writeComment(
@@ -49,7 +38,8 @@ def save(calibration, path):
     file.write("board_width", calibration.board.pattern[0])
     file.write("board_height", calibration.board.pattern[1])
     file.write("square_size", calibration.board.square)
-    text = json.dumps({name: _plain(getattr(calibration, name)) for name in _DETAILS})
+    details = {name: value for name, value in asdict(calibration).items() if name not in _BASICS}
+    text = json.dumps(details, default=np.ndarray.tolist)
     file.startWriteStruct("details", cv2.FileNode_SEQ)
     for start in range(0, len(text), _LONGEST):
         file.write("", text[start : start + _LONGEST])
@@ -66,7 +56,7 @@ def load(cls, path, size=None):
     """Read a Calibration, of class `cls`, as `save` or a program with OpenCV's names wrote it; see Calibration.load."""
     import cv2
 
-    path = _checked(path)
+    path = Path(path)
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
@@ -75,8 +65,6 @@ def load(cls, path, size=None):
         raise CalibrationError(f"{path} cannot be read: {error}") from None
     if not text.lstrip().startswith(("%YAML", "<?xml", "{")):  # as ROS writes camera_info; OpenCV wants a first line
         text = "%YAML:1.0\n---\n" + text
-    if _too_deep(text):
-        raise CalibrationError(f"{path} is no calibration: it holds {_DEEPEST} lists within lists")
     try:
         file = cv2.FileStorage(text, cv2.FileStorage_READ | cv2.FileStorage_MEMORY)
         values = _basics(file)
@@ -94,25 +82,6 @@ def load(cls, path, size=None):
     if size is not None:
         check_picture_size(calibration, picture_size(size))
     return calibration
-
-
-def _too_deep(text):
-    """Whether brackets, XML elements or the dashes of YAML are nested so deeply that OpenCV would crash the process."""
-    depth = 0
-    for opening in re.finditer(rf"[\[{{]|<\w|(?:-\s+){{{_DEEPEST}}}|([\]}}]|</|/>)", text):
-        depth += -1 if opening[1] else _DEEPEST if opening[0][0] == "-" else 1
-        if depth >= _DEEPEST:
-            return True
-    return False
-
-
-def _plain(value):
-    """What JSON can hold of a field: arrays as lists, data classes as dicts."""
-    if is_dataclass(value):
-        return {one.name: _plain(getattr(value, one.name)) for one in fields(value)}
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return [_plain(one) for one in value] if isinstance(value, tuple) else value
 
 
 def _basics(file):
@@ -163,7 +132,7 @@ def _details(file):
         "model": tuple(found["model"]),
         "warnings": tuple(found["warnings"]),
         "board": Charuco(**board) if "marker" in board else Checkerboard(**board),
-        "views": tuple(View(**{name: _array(one[name]) for name in _OF_VIEW}) for one in found["views"]),
+        "views": tuple(View(**{name: _array(value) for name, value in one.items()}) for one in found["views"]),
         "rejected": tuple(Rejected(**one | {"reason": Reason(one["reason"])}) for one in found["rejected"]),
     }
 
