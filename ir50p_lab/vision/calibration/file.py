@@ -63,8 +63,6 @@ def load(cls, path, size=None):
         raise CalibrationError(f"there is no file {path}: calibrate the camera first, and save") from None
     except (OSError, UnicodeDecodeError) as error:
         raise CalibrationError(f"{path} cannot be read: {error}") from None
-    if not text.lstrip().startswith(("%YAML", "<?xml", "{")):  # as ROS writes camera_info; OpenCV wants a first line
-        text = "%YAML:1.0\n---\n" + text
     try:
         file = cv2.FileStorage(text, cv2.FileStorage_READ | cv2.FileStorage_MEMORY)
         values = _basics(file)
@@ -86,13 +84,12 @@ def load(cls, path, size=None):
 
 def _basics(file):
     """K, distortion, rms and size, or None if the file lacks them."""
-    lens = file.getNode("distortion_model").string()
-    if file.getNode("fisheye_model").real() or lens in ("equidistant", "fisheye"):
+    if file.getNode("fisheye_model").real():
         raise CalibrationError(
-            "a calibration with a fisheye lens (fisheye_model, or distortion_model equidistant): this package knows "
-            "pinholes with k1, k2, p1, p2, k3 only. Calibrate the camera here, with the board where the lens bends less"
+            "a calibration with a fisheye lens (fisheye_model): this package knows pinholes with k1, k2, p1, p2, k3 "
+            "only. Calibrate the camera here, with the board where the lens bends less"
         )
-    K, d = (_matrix(file.getNode(name)) for name in ("camera_matrix", "distortion_coefficients"))
+    K, d = (file.getNode(name).mat() for name in ("camera_matrix", "distortion_coefficients"))
     width, height = file.getNode("image_width").real(), file.getNode("image_height").real()
     if K is None or d is None or K.shape != (3, 3) or not width or not height:
         return None
@@ -106,16 +103,6 @@ def _basics(file):
         "rms": float("nan") if rms.empty() else rms.real(),
         "size": (int(width), int(height)),
     }
-
-
-def _matrix(node):
-    """A matrix as OpenCV writes it, or as ROS does: rows, cols and data, without saying that it is one."""
-    data = node.getNode("data") if node.isMap() else None
-    if data is None or not data.isSeq() or node.getNode("dt").isString():
-        return node.mat()
-    shape = [int(node.getNode(name).real()) for name in ("rows", "cols")]
-    numbers = np.array([data.at(i).real() for i in range(data.size())])
-    return numbers.reshape(shape) if numbers.size == np.prod(shape) else None
 
 
 def _details(file):

@@ -19,14 +19,9 @@ def apply(H, points):
 
 def spacing(grid):
     """Distance (rows, columns) of each corner of a grid (rows, columns, 2) to its nearest neighbour, pixels."""
-    along = np.linalg.norm(np.diff(grid, axis=1), axis=2)
-    down = np.linalg.norm(np.diff(grid, axis=0), axis=2)
-    nearest = np.full(grid.shape[:2], np.inf)
-    nearest[:, :-1] = np.minimum(nearest[:, :-1], along)
-    nearest[:, 1:] = np.minimum(nearest[:, 1:], along)
-    nearest[:-1] = np.minimum(nearest[:-1], down)
-    nearest[1:] = np.minimum(nearest[1:], down)
-    return nearest
+    along = np.pad(np.linalg.norm(np.diff(grid, axis=1), axis=2), ((0, 0), (1, 1)), constant_values=np.inf)
+    down = np.pad(np.linalg.norm(np.diff(grid, axis=0), axis=2), ((1, 1), (0, 0)), constant_values=np.inf)
+    return np.min([along[:, :-1], along[:, 1:], down[:-1], down[1:]], axis=0)
 
 
 def roughness(grid):
