@@ -92,8 +92,8 @@ def hand_eye(arm, q, T_cam_board):
     if odd or rms > _WORST:
         raise CalibrationError(
             f"arm and camera disagree by {1e3 * rms:.0f} mm rms, most in pose {worst} (counted from 0): leave it out "
-            "of q and of the views, or take it again; or are the views in another order, did the board slip in the gripper, "
-            "or did the camera move?"
+            "of q and of the views, or take it again; or are the views in another order, did the board slip in the "
+            "gripper, or did the camera move?"
         )
     return found
 

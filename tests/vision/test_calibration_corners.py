@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from board_pictures import SIZE, look, paint, project
 
-from ir50p_lab.errors import CalibrationError
+from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.vision import Charuco, Checkerboard, Reason, calibrate
 from ir50p_lab.vision.calibration.charuco import find_charuco
 from ir50p_lab.vision.calibration.corners import find_checkerboard
@@ -235,7 +235,6 @@ def test_charuco_reasons(board, image, reason):
         (lambda: Charuco((3, 2)), "at least 3x3"),
         (lambda: find_checkerboard(np.zeros((480, 640), np.uint8), (3, 2)), "at least 3x3"),
         (lambda: Checkerboard((9.5, 6)), "inner corners"),
-        (lambda: Checkerboard((9, 6), 0), "positive length"),
         (lambda: Charuco((9, 6), 0.02, 0.025), "smaller than a square"),
         (lambda: Charuco((9, 6), dictionary="DICT_9X9"), "no dictionary"),
         (lambda: Charuco((9, 6), dictionary=999), "no dictionary 999"),
@@ -245,6 +244,11 @@ def test_charuco_reasons(board, image, reason):
 def test_boards_that_cannot_be(make, match):
     with pytest.raises(CalibrationError, match=match):
         make()
+
+
+def test_a_square_of_no_size():
+    with pytest.raises(InputError, match="positive length"):
+        Checkerboard((9, 6), 0)
 
 
 @pytest.mark.parametrize(

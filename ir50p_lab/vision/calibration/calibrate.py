@@ -159,9 +159,7 @@ def _calibrate(found, size, board, points, options, rejected):
     lost = len(rejected) / (len(rejected) + len(views))
     if lost > 0.5:
         said.append(f"{len(rejected)} of {len(rejected) + len(views)} pictures were of no use: see `rejected`")
-    return replace(
-        result, warnings=(*said, *checks.about_lens(result), *checks.about_camera(result), *checks.about_views(result))
-    )
+    return replace(result, warnings=(*said, *checks.doubts(result)))
 
 
 def _best(corners, rough, wanted, aspect, bend):

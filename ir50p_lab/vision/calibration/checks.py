@@ -152,8 +152,12 @@ def free_aspect(corners, held):
     return Evidence("fx/fy free", p_value, gain, bool(p_value < _LIMIT), _LIMIT), free
 
 
-def about_lens(calibration):
-    """Sentences about coefficients that mean nothing, and about a lens that folds back."""
+def doubts(calibration):
+    """What to mind although the corners fit, as sentences.
+
+    Coefficients that mean nothing, and a lens that folds back; focal lengths and a centre that a camera hardly has;
+    views that are too few, too much alike, or leave part of the picture empty.
+    """
     found = []
     for name in calibration.model:
         value, error = calibration.values[name], max(calibration.stderr_corners[name], calibration.stderr_views[name])
@@ -169,12 +173,6 @@ def about_lens(calibration):
                 f"the lens model folds back {farthest:.0f} px from the centre: no ray reaches the picture beyond; "
                 "take views with the board in the corners"
             )
-    return found
-
-
-def about_camera(calibration):
-    """Sentences about corners that do not fit, and focal lengths and a centre that a camera hardly has."""
-    found, (w, h), K = [], calibration.size, calibration.K
     if calibration.rms > _ROUGH * max(1, w / 1280):
         found.append(
             f"rms {calibration.rms:.2g} px is more than corners err (0.05 to 0.5 px): is it a fisheye, which this "
@@ -200,12 +198,7 @@ def about_camera(calibration):
     relative = max(calibration.stderr["fx"] / K[0, 0], calibration.stderr["fy"] / K[1, 1])
     if relative > 0.01:
         found.append(f"the focal length is known to {100 * relative:.1f} % only: tilt the board more, take more views")
-    return found
-
-
-def about_views(calibration):
-    """Sentences about views that are too few, too much alike, or leave part of the picture empty."""
-    found, views = [], calibration.views
+    views = calibration.views
     if len(views) < 8:
         found.append(f"{len(views)} views are few: 10 to 20 make the standard errors themselves trustworthy")
     tilted = np.array([v.T_cam_board[:2, 2] for v in views if v.tilt > _TILTED])
