@@ -1,6 +1,7 @@
 """A calibration as a file: YAML that cv2.FileStorage reads, with the names that OpenCV's own sample uses."""
 
 import json
+import re
 from dataclasses import asdict
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from ir50p_lab.vision.calibration.reasons import Reason, Rejected
 from ir50p_lab.vision.calibration.view import View
 from ir50p_lab.vision.checks import check_picture_size, picture_size
 
+_DEEPEST = 1000  # lists within lists: a calibration has five
 _LONGEST = 2000  # characters of one text in such a file: OpenCV takes 4096 bytes
 _BASICS = ("K", "distortion", "rms", "size", "evidence")  # under OpenCV's names; evidence is not kept
 
@@ -63,6 +65,8 @@ def load(cls, path, size=None):
         raise CalibrationError(f"there is no file {path}: calibrate the camera first, and save") from None
     except (OSError, UnicodeDecodeError) as error:
         raise CalibrationError(f"{path} cannot be read: {error}") from None
+    if _too_deep(text):
+        raise CalibrationError(f"{path} is no calibration: it holds {_DEEPEST} lists within lists")
     try:
         file = cv2.FileStorage(text, cv2.FileStorage_READ | cv2.FileStorage_MEMORY)
         values = _basics(file)
@@ -80,6 +84,16 @@ def load(cls, path, size=None):
     if size is not None:
         check_picture_size(calibration, picture_size(size))
     return calibration
+
+
+def _too_deep(text):
+    """Whether brackets, XML elements or the dashes of YAML are nested so deeply that OpenCV would crash the process."""
+    depth = 0
+    for opening in re.finditer(rf"[\[{{]|<\w|(?:-\s+){{{_DEEPEST}}}|([\]}}]|</|/>)", text):
+        depth += -1 if opening[1] else _DEEPEST if opening[0][0] == "-" else 1
+        if depth >= _DEEPEST:
+            return True
+    return False
 
 
 def _basics(file):
