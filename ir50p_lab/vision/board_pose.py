@@ -46,7 +46,7 @@ def board_points(pattern=(9, 6), square=0.025, T_table_board=None):
     Args: pattern: corners along a row, and rows; square: m; T_table_board: (4, 4) where the board lies. Default: print
     upwards, its first corner at the origin, rows along x, further rows towards -y: diag(1, -1, -1, 1). The identity
     gives the corners in board coordinates, for `board_pose` of a board in the hand.
-    Raises CalibrationError for a pattern or a square that no board has.
+    Raises CalibrationError for a pattern, InputError for a square that no board has.
     """
     grid = Checkerboard(pattern, square).points
     lies = np.diag([1.0, -1.0, -1.0, 1.0]) if T_table_board is None else T_table_board
@@ -74,20 +74,15 @@ def board_pose(camera, corners, points):
     if spread[1] < 1e-6 * spread[0] or spread[2] > 1e-6 * spread[0]:
         raise InputError("the points must lie in one plane, but not on one line: use the whole board")
     K, distortion = camera.K, camera.distortion
-    found, rvecs, tvecs, _ = cv2.solvePnPGeneric(points, corners, K, distortion, flags=cv2.SOLVEPNP_IPPE)
-    candidates = [
-        cv2.solvePnPRefineLM(points, corners, K, distortion, rvec.copy(), tvec.copy())
-        for rvec, tvec in zip(rvecs, tvecs, strict=True)
-    ]
-    if not found or not np.isfinite(candidates).all():
-        raise CalibrationError("no pose explains these corners: are they all there, and in the order of the points?")
+    _, rvecs, tvecs, _ = cv2.solvePnPGeneric(points, corners, K, distortion, flags=cv2.SOLVEPNP_IPPE)
     tried = []
-    for rvec, tvec in candidates:
+    for guess in zip(rvecs, tvecs, strict=True):
+        rvec, tvec = cv2.solvePnPRefineLM(points, corners, K, distortion, *guess)
         seen, jacobian = cv2.projectPoints(points, rvec, tvec, K, distortion)
         off = corners - seen.reshape(-1, 2)
         tried.append((float(np.sqrt((off**2).sum(axis=1).mean())), rvec, tvec, off, jacobian))
     rms, rvec, tvec, off, jacobian = min(tried, key=lambda one: one[0])
-    if rms > _WORST_RMS:
+    if not rms <= _WORST_RMS:
         raise CalibrationError(
             f"the corners miss the board by {rms:.3g} px rms: is it a board of this pattern and square size, seen by "
             "this camera at this picture size, and are the corners in the order of the points?"

@@ -72,7 +72,7 @@ def hand_eye(arm, q, T_cam_board):
 
     Args: arm: Arm; q: (n, 3) rad, n >= 4; T_cam_board: n poses, each BoardPose or (4, 4).
     Returns: HandEye. Raises CalibrationError for too few poses, turns about one axis only, poses given the wrong way
-    round, or that do not belong to these q, naming single ones; InputError for wrong shapes.
+    round, or that do not belong to these q, naming the worst; InputError for wrong shapes.
     """
     T_tool = tool_poses(check_arm(arm), q)
     if not isinstance(T_cam_board, list | tuple | np.ndarray) or len(T_cam_board) != len(T_tool):
@@ -87,17 +87,13 @@ def hand_eye(arm, q, T_cam_board):
         raise CalibrationError(
             "the views look inverted: T_cam_board takes board to camera coordinates; give inverse_transform(...)"
         )
-    odd, others = _odd_poses(T_tool, T_cam)
-    if odd and others < rms / 2:
+    worst = int(np.argmax(found.errors))
+    odd = found.errors[worst] > max(_ODD, _ODD_TIMES * np.median(found.errors))
+    if odd or rms > _WORST:
         raise CalibrationError(
-            f"poses that do not belong to the others (counted from 0): {', '.join(map(str, odd))}; with them "
-            f"{1e3 * rms:.0f} mm rms are left, without {1e3 * others:.0f} mm. Leave them out of q and of the views, or "
-            "take them again"
-        )
-    if rms > _WORST:
-        raise CalibrationError(
-            f"arm and camera disagree by {1e3 * rms:.0f} mm rms: do the views belong to these q, in this order, did "
-            "the board slip in the gripper, or did the camera move?"
+            f"arm and camera disagree by {1e3 * rms:.0f} mm rms, most in pose {worst} (counted from 0): leave it out "
+            "of q and of the views, or take it again; or are the views in another order, did the board slip in the "
+            "gripper, or did the camera move?"
         )
     return found
 
@@ -118,24 +114,6 @@ def _solve(T_base_tool, T_cam_board):
     ours, seen = T_base_tool @ T_tool_board, T_base_cam @ T_cam_board
     turn = Rotation.from_matrix(ours[:, :3, :3].transpose(0, 2, 1) @ seen[:, :3, :3]).magnitude()
     return HandEye(T_base_cam, T_tool_board, turn, np.linalg.norm(ours[:, :3, 3] - seen[:, :3, 3], axis=1))
-
-
-def _odd_poses(T_base_tool, T_cam_board):
-    """(numbers of up to a quarter of the poses that do not belong to the others, rms m of the others).
-
-    A wrong pose pulls the camera towards itself, and the others off: so the worst goes out, and the rest is fitted anew
-    until no pose sticks out and little is left. No numbers if that takes more than a quarter.
-    """
-    kept = list(range(len(T_base_tool)))
-    for _ in range(max(1, len(kept) // 4) + 1):
-        off = _solve(T_base_tool[kept], T_cam_board[kept]).errors
-        rms, worst = np.sqrt(np.mean(off**2)), int(np.argmax(off))
-        if rms < _WORST and off[worst] < max(_ODD, _ODD_TIMES * np.median(off)):
-            return sorted(set(range(len(T_base_tool))) - set(kept)), rms
-        if len(kept) <= _FEWEST:
-            break
-        del kept[worst]
-    return [], np.inf
 
 
 def _refuse_poor_poses(T_tool):

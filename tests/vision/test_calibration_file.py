@@ -78,49 +78,36 @@ def test_another_size_is_refused(calibration, tmp_path):
         Calibration.load(path, size=(320, 240))
 
 
-ROS = """image_width: 640
+OTHER = """%YAML:1.0
+---
+image_width: 640
 image_height: 480
-camera_name: cam
-camera_matrix:
-  rows: 3
-  cols: 3
-  data: [650, 0, 320, 0, 651, 240, 0, 0, 1]
-distortion_model: plumb_bob
-distortion_coefficients:
-  rows: 1
-  cols: 5
-  data: [-0.2, 0.1, 0.001, 0, 0]
+camera_matrix: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [650, 0, 320, 0, 651, 240, 0, 0, 1]
+distortion_coefficients: !!opencv-matrix
+   rows: 1
+   cols: 5
+   dt: d
+   data: [-0.2, 0.1, 0.001, 0, 0]
 """
-
-
-def test_what_ros_writes_is_read(tmp_path):
-    path = tmp_path / "camera_info.yaml"
-    path.write_text(ROS)
-    found = Calibration.load(path, size=SIZE)
-    assert (found.fx, found.fy, found.cx, found.cy) == (650, 651, 320, 240)
-    assert found.distortion.tolist() == [-0.2, 0.1, 0.001, 0, 0]
-    path.write_text(ROS.replace("cols: 5", "cols: 4"))
-    with pytest.raises(CalibrationError, match="no calibration"):
-        Calibration.load(path)
 
 
 def test_a_fisheye_is_refused(calibration, tmp_path):
     path = calibration.save(tmp_path / "camera.yml")
     ours = path.read_text()
-    for text in (
-        ours.replace("image_width", "fisheye_model: 1\nimage_width", 1),
-        ROS.replace("plumb_bob", "equidistant"),
-    ):
-        path.write_text(text)
-        with pytest.raises(CalibrationError, match="fisheye"):
-            Calibration.load(path)
+    path.write_text(ours.replace("image_width", "fisheye_model: 1\nimage_width", 1))
+    with pytest.raises(CalibrationError, match="fisheye"):
+        Calibration.load(path)
     path.write_text(ours.replace("image_width", "fisheye_model: 0\nimage_width", 1))
     assert Calibration.load(path).fx == calibration.fx
 
 
 def test_without_standard_errors_nothing_is_said_to_be_exact(calibration, tmp_path):
-    path = tmp_path / "camera_info.yaml"
-    path.write_text(ROS)
+    path = tmp_path / "other.yml"
+    path.write_text(OTHER)
     found = Calibration.load(path)
     assert np.isnan(direction_stderr(found, np.array([[3.0, 4.0]]))).all()
     assert any("no standard errors" in text for text in found.warnings)
@@ -131,14 +118,10 @@ def test_without_standard_errors_nothing_is_said_to_be_exact(calibration, tmp_pa
     assert not calibration.warnings[0].startswith("the file holds no") and np.isfinite(calibration.covariance).all()
 
 
-@pytest.mark.parametrize("path", [None, 5, ["camera.yml"]])
-def test_what_names_no_file(calibration, path, tmp_path):
-    with pytest.raises(InputError, match="path = "):
-        calibration.save(path)
-    with pytest.raises(InputError, match="path = "):
-        Calibration.load(path)
+@pytest.mark.parametrize("size", [5, ["camera.yml"], "640x480"])
+def test_what_is_no_size(calibration, size, tmp_path):
     with pytest.raises(InputError, match="size = "):
-        Calibration.load(calibration.save(tmp_path / "camera.yml"), size=path or "640x480")
+        Calibration.load(calibration.save(tmp_path / "camera.yml"), size=size)
 
 
 def test_a_calibration_in_place_of_a_pinhole(calibration):

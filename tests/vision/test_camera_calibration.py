@@ -298,11 +298,11 @@ def test_stretched_pictures_are_noticed(views):
 def test_a_lens_that_folds_back_is_noticed():
     from dataclasses import replace
 
-    from ir50p_lab.vision.calibration.checks import about_lens
+    from ir50p_lab.vision.calibration.checks import doubts
 
     found = calibrate_corners(POINTS, corner_sets(POINTS, 8, seed=2), SIZE, lens=("k1",))
     folded = replace(found, distortion=np.array([-1.5, 0, 0, 0, 0]))
-    assert any("folds back" in text for text in about_lens(folded))
+    assert any("folds back" in text for text in doubts(folded))
 
 
 def test_views_know_their_poses(calibration, views):

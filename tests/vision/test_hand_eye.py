@@ -123,19 +123,19 @@ def test_inverted_views_are_refused_however_few_the_poses(n, seed):
 
 
 @pytest.mark.parametrize("n", [5, 15, 25])
-def test_single_wrong_views_are_named(n):
+def test_the_worst_of_wrong_views_is_named(n):
     """One of 15 shifts the camera by centimetres."""
     q, corners = views(25, 3, 0.1)
     shown = measured(q, seed=3)[:n]
     T = [pose.T_cam_board for pose in seen(corners)][:n]
-    with pytest.raises(CalibrationError, match=r"do not belong to the others \(counted from 0\): 2;"):
+    with pytest.raises(CalibrationError, match=r"most in pose 2 \(counted from 0\)"):
         hand_eye(IR50P, shown, [*T[:2], T[3], *T[3:]])
     if n > 8:
-        with pytest.raises(CalibrationError, match=r"from 0\): 1, 4;"):
+        with pytest.raises(CalibrationError, match=r"most in pose [14] "):
             hand_eye(IR50P, shown, [T[0], T[4], T[2], T[3], T[1], *T[5:]])
         slipped = T[1].copy()
         slipped[0, 3] += 0.05
-        with pytest.raises(CalibrationError, match=r"from 0\): 1;"):
+        with pytest.raises(CalibrationError, match=r"most in pose 1 "):
             hand_eye(IR50P, shown, [T[0], slipped, *T[2:]])
 
 

@@ -104,10 +104,16 @@ def test_standard_errors_are_those_of_random_trials():
     assert np.allclose(np.std(found, axis=0) / predicted, 1.0, atol=0.2)
 
 
-@pytest.mark.parametrize("board", [(9,), ((9.5, 6),), ((9, 1),), ((9, 6), 0), ((9, 6), np.nan), ((9, 6), "25 mm")])
+@pytest.mark.parametrize("board", [(9,), ((9.5, 6),), ((9, 1),)])
 def test_a_board_that_cannot_be_is_refused(board):
-    with pytest.raises(CalibrationError, match=r"inner corners|positive length"):
+    with pytest.raises(CalibrationError, match="inner corners"):
         board_points(*board)
+
+
+@pytest.mark.parametrize("square", [0, np.nan, "25 mm"])
+def test_a_square_that_cannot_be_is_refused(square):
+    with pytest.raises(InputError, match="positive length"):
+        board_points((9, 6), square)
 
 
 def test_variations_spread_as_the_covariance_says():

@@ -5,6 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
+from ir50p_lab.inputs import number
+
+_LENGTH = "a positive length, such as 0.025"
 
 
 @dataclass(frozen=True)
@@ -17,7 +20,7 @@ class Checkerboard:
     turned by half a turn, and the frame is that nearer to the top left of the picture.
 
     A wrong square size changes nothing but the scale of the distances: K and the distortion stay the same.
-    Raises CalibrationError for a pattern below 3x3 or a size that is not positive.
+    Raises CalibrationError for a pattern below 3x3, InputError for a size that is not positive.
     """
 
     pattern: tuple = (9, 6)
@@ -25,7 +28,7 @@ class Checkerboard:
 
     def __post_init__(self):
         object.__setattr__(self, "pattern", check_pattern(self.pattern))
-        object.__setattr__(self, "square", check_length("square", self.square))
+        object.__setattr__(self, "square", number("square", self.square, "> 0", unit="m", hint=_LENGTH))
 
     @property
     def points(self):
@@ -54,7 +57,7 @@ class Charuco(Checkerboard):
 
     def __post_init__(self):
         super().__post_init__()
-        object.__setattr__(self, "marker", check_length("marker", self.marker))
+        object.__setattr__(self, "marker", number("marker", self.marker, "> 0", unit="m", hint=_LENGTH))
         if self.marker >= self.square:
             raise CalibrationError(f"marker = {self.marker} m must be smaller than a square, {self.square} m")
         import cv2
@@ -85,25 +88,10 @@ class Charuco(Checkerboard):
 
 def check_pattern(pattern):
     """(columns, rows) as ints. Raises CalibrationError for what cannot be a board."""
-    try:
-        columns, rows = (int(n) for n in pattern)
-        whole = (columns, rows) == tuple(pattern)
-    except (TypeError, ValueError):
-        whole, columns, rows = False, 0, 0
-    if not whole or min(columns, rows) < 3:
+    whole = np.shape(pattern) == (2,) and all(isinstance(n, int | np.integer) for n in pattern)
+    if not whole or min(pattern) < 3:
         raise CalibrationError(
             f"pattern = {pattern!r}: give (columns, rows) of inner corners (where four squares meet), at least 3x3; a "
             "board of 10x7 squares has (9, 6)"
         )
-    return columns, rows
-
-
-def check_length(name, value):
-    """A length in metres as float. Raises CalibrationError if it is not a positive number."""
-    try:
-        length = float(value)
-    except (TypeError, ValueError):
-        length = np.nan
-    if not (np.isfinite(length) and length > 0):
-        raise CalibrationError(f"{name} = {value!r}: give a positive length in metres, such as 0.025")
-    return length
+    return int(pattern[0]), int(pattern[1])

@@ -61,13 +61,11 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, as
     size = common_size(pictures)
     for picture in with_bar(pictures, progress):
         try:
-            other = seen.most_common(1)[0][0] if seen and not found else None
+            other = max(filter(None, seen), key=seen.get, default=None) if not found else None
             found.append((picture.name, picture.index, _corners_in(picture, board, size, other)))
         except NotUsable as why:
-            rejected.append((Rejected(picture.name, picture.index, why.reason, why.detail), why))
-            if why.seen is not None:
-                seen[why.seen] += 1
-    rejected = [_covered_or_other(one, why, board, bool(found)) for one, why in rejected]
+            rejected.append(Rejected(picture.name, picture.index, why.reason, why.detail))
+            seen[why.seen] += 1
     found = _without_duplicates(found, size, board, rejected)
     if len(found) < _FEWEST:
         raise CalibrationError(_why_too_few(len(found), rejected, seen, board))
@@ -114,7 +112,7 @@ def _calibrate(found, size, board, points, options, rejected):
     """From (name, index, BoardCorners) to a Calibration: outlier views out, lens chosen, bend of the board tested."""
     wanted, aspect, bend = options
     corners = CornerSets([points[one.index] for _, _, one in found], [one.xy for _, _, one in found], size)
-    model = Model(("k1", "k2"), aspect)
+    model = Model(LENS, aspect)
     rough = fit(corners, model, start(corners))
     for _ in range(max(1, len(found) // 4)):
         outlier = checks.outlier_view(corners, rough)
@@ -161,9 +159,7 @@ def _calibrate(found, size, board, points, options, rejected):
     lost = len(rejected) / (len(rejected) + len(views))
     if lost > 0.5:
         said.append(f"{len(rejected)} of {len(rejected) + len(views)} pictures were of no use: see `rejected`")
-    return replace(
-        result, warnings=(*said, *checks.about_lens(result), *checks.about_camera(result), *checks.about_views(result))
-    )
+    return replace(result, warnings=(*said, *checks.doubts(result)))
 
 
 def _best(corners, rough, wanted, aspect, bend):
@@ -265,16 +261,6 @@ def _corners_in(picture, board, size, other):
         raise NotUsable(Reason.NO_BOARD, f"OpenCV finds no corners in it: {' '.join(str(error).split())}") from error
 
 
-def _covered_or_other(one, why, board, others_fit):
-    """A part of the pattern, where other pictures show all of it, is the same board half covered: CROPPED."""
-    if one.reason is Reason.WRONG_BOARD and why.seen is not None and not why.whole and others_fit:
-        if all(a <= b for a, b in zip(sorted(why.seen), sorted(board.pattern), strict=True)):
-            columns, rows = why.seen
-            detail = f"only {columns}x{rows} of its corners show: is part of it covered, or in glare?"
-            return replace(one, reason=Reason.CROPPED, detail=detail)
-    return one
-
-
 def _without_duplicates(found, size, board, rejected):
     """The views in which the board is not where it was before; the others go to `rejected`."""
     kept = []
@@ -298,9 +284,9 @@ def _why_too_few(count, rejected, seen, board):
     message = f"{count} usable pictures of a {board}, at least {_FEWEST} are needed, 10 to 20 are good"
     if rejected:
         message += "; the others: " + ", ".join(f"{n} {reason}" for reason, n in reasons.most_common())
-    likely = [parts for parts, n in seen.most_common(1) if n >= 1]
-    if likely and reasons.get(Reason.WRONG_BOARD):
-        message += f". They seem to show a board with {likely[0][0]}x{likely[0][1]} inner corners: pattern={likely[0]}"
+    likely, often = max(((parts, n) for parts, n in seen.items() if parts), key=lambda one: one[1], default=(None, 0))
+    if likely and (reasons.get(Reason.WRONG_BOARD) or often >= _FEWEST):
+        message += f". They seem to show a board with {likely[0]}x{likely[1]} inner corners: pattern={likely}"
     elif rejected:
         message += f". The first: {Path(rejected[0].name).name}: {rejected[0].detail}"
     return message

@@ -1,16 +1,16 @@
 """Corners of a ChArUco board: the markers say which corner is which, so that part of the board is enough."""
 
-import contextlib
-from dataclasses import replace
-
 import numpy as np
 
-from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.corners import SOFT_SLOPE, BoardCorners, slope_rise
 from ir50p_lab.vision.calibration.grid import apply, homography
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 
 _FEWEST = 8  # corners that a view needs; six of them are spent on the pose
+_OTHER = "swap columns and rows, count inner corners (one less than squares each way), or try legacy=True"
+_UNREAD = (
+    "focus, hold still, come nearer, switch the mirroring of the camera off, or name the dictionary that was printed"
+)
 
 
 def find_charuco(grey, board):
@@ -24,12 +24,11 @@ def find_charuco(grey, board):
     corners, index, ids = _detect(grey, board)
     count = len(index)
     if len(ids) == 0:
-        raise NotUsable(Reason.NO_BOARD, f"no marker of {board.dictionary} in it{_other_markers(grey, board)}")
+        raise NotUsable(Reason.NO_BOARD, f"no marker of {board.dictionary} in it: {_UNREAD}")
     if count < _FEWEST:
         known = np.isin(ids, board.opencv().getIds()).mean()
         if known < 0.5 or (len(ids) > 6 and count == 0):
-            fits = _other_board(grey, board)
-            raise NotUsable(Reason.WRONG_BOARD, f"{len(ids)} markers, but not where this board has them{fits}")
+            raise NotUsable(Reason.WRONG_BOARD, f"{len(ids)} markers, but not where this board has them: {_OTHER}")
         raise NotUsable(
             Reason.CROPPED, f"{count} corners of the board seen, {_FEWEST} needed: show more of it, or focus"
         )
@@ -47,8 +46,7 @@ def find_charuco(grey, board):
     if rise > SOFT_SLOPE * side:
         raise NotUsable(Reason.BLURRED, f"edges are {rise:.0f} px wide, squares {side:.0f} px: focus, hold still")
     if _off_plane(points, xy) > 0.15 * side:
-        fits = _other_board(grey, board)
-        raise NotUsable(Reason.WRONG_BOARD, f"its corners are not where this board has them{fits}")
+        raise NotUsable(Reason.WRONG_BOARD, f"its corners are not where this board has them: {_OTHER}")
     return BoardCorners(xy, index)
 
 
@@ -62,43 +60,6 @@ def _detect(grey, board):
     corners, index, _, ids = detector.detectBoard(grey)
     xy = np.empty((0, 2)) if corners is None else corners.reshape(-1, 2).astype(float)
     return xy, *(np.empty(0, dtype=int) if one is None else one.ravel() for one in (index, ids))
-
-
-def _other_board(grey, board):
-    """In words which board these markers fit: columns and rows swapped, squares counted, the older layout; or ''."""
-    columns, rows = board.pattern
-    best, most = None, _FEWEST - 1
-    for less in (0, 1, -1):
-        for pattern in ((columns - less, rows - less), (rows - less, columns - less)):
-            for legacy in (board.legacy, not board.legacy):
-                with contextlib.suppress(CalibrationError):  # too small, or more markers than the dictionary has
-                    other = replace(board, pattern=pattern, legacy=legacy)
-                    xy, index, _ = _detect(grey, other)
-                    size = np.linalg.norm(np.ptp(xy, axis=0)) if len(xy) else 0.0
-                    if len(index) > most and _off_plane(other.points[index, :2], xy) < 0.02 * size:
-                        best, most = other, len(index)
-    if best is None:
-        return ""
-    legacy = ", legacy=True" if best.legacy else ""
-    return f"; they fit a board with pattern={best.pattern}{legacy} (inner corners: one less than squares each way)"
-
-
-def _other_markers(grey, board):
-    """In words what markers there are instead: mirrored ones, or those of another dictionary; or what to do."""
-    import cv2
-
-    def seen(picture, dictionary):
-        known = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
-        ids = cv2.aruco.ArucoDetector(known).detectMarkers(picture)[1]
-        return 0 if ids is None else len(ids)
-
-    if seen(np.ascontiguousarray(grey[:, ::-1]), board.dictionary) > 3:
-        return ", but mirrored: switch the mirroring of the camera off"
-    families = ("DICT_4X4_1000", "DICT_5X5_1000", "DICT_6X6_1000", "DICT_7X7_1000", "DICT_ARUCO_ORIGINAL")
-    count, family = max((seen(grey, family), family) for family in families)
-    if count > 3:
-        return f", but {count} of {family} or a smaller one of this family"
-    return " that can be read: if the board is in view, focus, hold still, or come nearer"
 
 
 def _off_plane(points, xy):

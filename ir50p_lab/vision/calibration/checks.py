@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.fit import LENS, Model, fit, focal_steps
+from ir50p_lab.vision.calibration.fit import Model, fit, focal_steps
 from ir50p_lab.vision.calibration.models import Evidence, choose, compare, contrast_of
 
 _TILTED = np.deg2rad(15)
@@ -15,28 +15,13 @@ _LEFT, _SIGMAS, _APART = 0.2, 5.0, 0.03
 _ROUGH = 0.7  # px rms, of pictures up to 1280 px wide
 
 
-def outlier_view(corners, rough):
+def outlier_view(corners, fitted):
     """(number of the view that fits worst, its rms, usual rms, px) if it does not belong to the others, else None.
 
-    rough: CameraFit with k1 and k2. What is off that is judged again by the full lens: a view far out may be the only
-    one that needs its k3.
-    """
-    suspect = _worst_view(corners, rough)
-    if suspect is None or rough.model.lens == LENS:
-        return suspect
-    try:
-        full = fit(corners, Model(LENS, rough.model.aspect), (rough.camera, rough.poses))
-    except CalibrationError:
-        return suspect
-    return _worst_view(corners, full)
-
-
-def _worst_view(corners, fitted):
-    """The same by one CameraFit.
-
-    It must be three times worse than the median view, and eight times the usual scatter of views above it. A view that
-    is far off pulls the camera along and spoils the others, too: if they fit twice as well without the worst, it is
-    judged by the camera that they make without it.
+    fitted: CameraFit with the full lens: a view far out may be the only one that needs its k3. The view must be three
+    times worse than the median view, and eight times the usual scatter of views above it. A view that is far off pulls
+    the camera along and spoils the others, too: if they fit twice as well without the worst, it is judged by the camera
+    that they make without it.
     """
     rms = fitted.view_rms
     if len(rms) < 5:
@@ -167,8 +152,12 @@ def free_aspect(corners, held):
     return Evidence("fx/fy free", p_value, gain, bool(p_value < _LIMIT), _LIMIT), free
 
 
-def about_lens(calibration):
-    """Sentences about coefficients that mean nothing, and about a lens that folds back."""
+def doubts(calibration):
+    """What to mind although the corners fit, as sentences.
+
+    Coefficients that mean nothing, and a lens that folds back; focal lengths and a centre that a camera hardly has;
+    views that are too few, too much alike, or leave part of the picture empty.
+    """
     found = []
     for name in calibration.model:
         value, error = calibration.values[name], max(calibration.stderr_corners[name], calibration.stderr_views[name])
@@ -184,12 +173,6 @@ def about_lens(calibration):
                 f"the lens model folds back {farthest:.0f} px from the centre: no ray reaches the picture beyond; "
                 "take views with the board in the corners"
             )
-    return found
-
-
-def about_camera(calibration):
-    """Sentences about corners that do not fit, and focal lengths and a centre that a camera hardly has."""
-    found, (w, h), K = [], calibration.size, calibration.K
     if calibration.rms > _ROUGH * max(1, w / 1280):
         found.append(
             f"rms {calibration.rms:.2g} px is more than corners err (0.05 to 0.5 px): is it a fisheye, which this "
@@ -215,12 +198,7 @@ def about_camera(calibration):
     relative = max(calibration.stderr["fx"] / K[0, 0], calibration.stderr["fy"] / K[1, 1])
     if relative > 0.01:
         found.append(f"the focal length is known to {100 * relative:.1f} % only: tilt the board more, take more views")
-    return found
-
-
-def about_views(calibration):
-    """Sentences about views that are too few, too much alike, or leave part of the picture empty."""
-    found, views = [], calibration.views
+    views = calibration.views
     if len(views) < 8:
         found.append(f"{len(views)} views are few: 10 to 20 make the standard errors themselves trustworthy")
     tilted = np.array([v.T_cam_board[:2, 2] for v in views if v.tilt > _TILTED])

@@ -10,7 +10,6 @@ from ir50p_lab.vision.calibration.grid import (
     grow,
     in_order,
     is_checkerboard,
-    is_whole,
     next_to_margin,
     roughness,
     spacing,
@@ -55,49 +54,27 @@ def find_checkerboard(grey, pattern, other=None):
     """
     pattern = check_pattern(pattern)
     small, factor = reduced(grey, _SEARCHED)
-    if other is not None:
-        _refuse_other(grey, small, factor, other, pattern)
-    best = _examined(grey, _classic(small, pattern), factor, pattern)
+    for wanted in filter(None, (other, pattern)):
+        best = _classic(grey, small, factor, wanted)
+        if best is not None:
+            larger, _ = grow(best, grey)
+            _check_whole(larger, set(), pattern)
     if best is None:
-        best = _found_slowly(grey, small, factor, pattern)
+        try:
+            best = _grown(grey, small, factor, pattern)
+        except NotUsable as why:
+            best = None if why.seen else _sb(grey, small, factor, pattern)
+            if best is None:
+                raise
     else:
         noise, side = roughness(best), np.median(spacing(best))
         if noise > (_UNEVEN_SMALL if side < _SMALL else _UNEVEN) * side:
-            smoother = _by_sb(grey, small, factor, pattern)
+            smoother = _sb(grey, small, factor, pattern, refined=False)
             if smoother is not None and roughness(smoother) < noise:
                 best = smoother
     refuse_soft(grey, best)
     columns, rows = pattern
     return BoardCorners(in_order(best, grey, pattern).reshape(-1, 2).astype(float), np.arange(columns * rows))
-
-
-def _found_slowly(grey, small, factor, pattern):
-    """The grid where `findChessboardCorners` finds none. Raises NotUsable with the Reason."""
-    try:
-        return _piece_together(grey, small, factor, pattern)
-    except NotUsable as why:
-        grid = None if why.whole else _examined(grey, _sb(small, pattern), factor, pattern)
-        if grid is None:
-            raise
-        return grid
-
-
-def _by_sb(grey, small, factor, pattern):
-    """Corners by SB of a board that is known to be there: its own in a picture at its size; or None."""
-    grid = _sb(small, pattern)
-    if grid is not None and factor > 1:
-        grid = refine(grey, enlarged(grid, factor))
-    return grid if grid is not None and is_checkerboard(grid, grey) else None
-
-
-def _refuse_other(grey, small, factor, other, pattern):
-    """Raise NotUsable if the picture shows all of that other board, and no more."""
-    grid = _classic(small, other)
-    if grid is None:
-        return
-    grid = refine(grey, enlarged(grid, factor))
-    if is_checkerboard(grid, grey) and grow(grid, grey)[0].shape == grid.shape:
-        raise wrong_board(grid, pattern, whole=_is_other(grid, grey, pattern))
 
 
 def reduced(grey, longest):
@@ -116,54 +93,35 @@ def enlarged(xy, factor):
     return (xy + 0.5) * factor - 0.5
 
 
-def _classic(grey, pattern):
-    """Grid (rows, columns, 2) by `findChessboardCorners`, or None."""
+def _classic(grey, small, factor, pattern):
+    """Grid (rows, columns, 2) by `findChessboardCorners`, refined, or None."""
     import cv2
 
     flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE
-    found, corners = cv2.findChessboardCorners(grey, pattern, None, flags)
-    return corners.reshape(pattern[1], pattern[0], 2) if found else None
+    return _examined(grey, cv2.findChessboardCorners(small, pattern, None, flags), factor, pattern)
 
 
-def _sb(grey, pattern):
-    """The same by `findChessboardCornersSB`; without ACCURACY: slower, and no better than what refines them here."""
+def _sb(grey, small, factor, pattern, refined=True):
+    """The same by `findChessboardCornersSB`; without ACCURACY: slower, and no better than what refines them here.
+
+    refined False: its own corners, which lie on a smoother grid, if they were found in the picture at its size.
+    """
     import cv2
 
-    found, corners = cv2.findChessboardCornersSB(
-        grey, pattern, flags=cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE
-    )
-    return corners.reshape(pattern[1], pattern[0], 2) if found else None
+    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE
+    found = cv2.findChessboardCornersSB(small, pattern, flags=flags)
+    return _examined(grey, found, factor, pattern, refined or factor > 1)
 
 
-def _examined(grey, found, factor, pattern):
-    """Refined corners of a grid; None if it is no checkerboard. Raises NotUsable if the board goes on beyond it."""
-    if found is None:
+def _examined(grey, result, factor, pattern, refined=True):
+    """Corners of what a finder of OpenCV gave; None if it is no checkerboard."""
+    found, corners = result
+    if not found:
         return None
-    grid = refine(grey, enlarged(found, factor))
-    if roughness(grid) > _ROUGH * np.median(spacing(grid)) or not is_checkerboard(grid, grey):
-        return None
-    larger, _ = grow(grid, grey)
-    if larger.shape != grid.shape:
-        raise wrong_board(larger, pattern, whole=True)
-    return grid
-
-
-def wrong_board(grid, pattern, edge="", whole=False):
-    """NotUsable for a board that has other corners than the pattern says; whole: it is seen to end all round."""
-    seen = _named_like(grid, pattern)
-    return NotUsable(
-        Reason.WRONG_BOARD,
-        f"it seems to have {edge}{seen[0]}x{seen[1]} inner corners, not {pattern[0]}x{pattern[1]}: "
-        f"give pattern=({seen[0]}, {seen[1]}) if this is the board",
-        seen=seen,
-        whole=whole,
-    )
-
-
-def _named_like(grid, pattern):
-    """(columns, rows) of a grid, the longer side where the pattern has it."""
-    short, long = sorted(grid.shape[:2])
-    return (long, short) if pattern[0] >= pattern[1] else (short, long)
+    grid = enlarged(corners.reshape(pattern[1], pattern[0], 2), factor)
+    grid = refine(grey, grid) if refined else grid
+    rough = roughness(grid) > _ROUGH * np.median(spacing(grid))
+    return None if rough or not is_checkerboard(grid, grey) else grid
 
 
 def refine(grey, grid):
@@ -226,24 +184,37 @@ def refuse_soft(grey, grid):
         )
 
 
-def _piece_together(grey, small, factor, pattern):
-    """The grid from a part that was found and grown, if it becomes the whole board; else NotUsable says why not."""
+def _grown(grey, small, factor, pattern):
+    """The grid from a part of it that was found and grown, if it becomes the whole board; else NotUsable says why."""
     grid = part_of_a_checkerboard(small)
     if grid is None:
         raise NotUsable(Reason.NO_BOARD, "nothing like a checkerboard: more light, less glare, the whole board in view")
     grid = refine(grey, enlarged(grid, factor))
     refuse_soft(grey, grid)
     grid, outside = grow(grid, grey)
+    _check_whole(grid, outside, pattern)
+    return refine(grey, grid if grid.shape[:2] == (pattern[1], pattern[0]) else np.rot90(grid))
+
+
+def _check_whole(grid, outside, pattern):
+    """Raise NotUsable if a grid is not all of the pattern: of another board, or cropped."""
     if sorted(grid.shape[:2]) == sorted(pattern):
-        return refine(grey, grid if grid.shape[:2] == (pattern[1], pattern[0]) else np.rot90(grid))
+        return
+    short, long = sorted(grid.shape[:2])
+    seen = (long, short) if pattern[0] >= pattern[1] else (short, long)  # the longer side where the pattern has it
+    shown = f"{seen[0]}x{seen[1]}"
     if not _part_of_it(grid.shape[:2], outside, pattern):
-        raise wrong_board(grid, pattern, "at least " if outside else "", _is_other(grid, grey, pattern))
-    columns, rows = _named_like(grid, pattern)
+        raise NotUsable(
+            Reason.WRONG_BOARD,
+            f"it seems to have {'at least ' * bool(outside)}{shown} inner corners, not {pattern[0]}x{pattern[1]}: "
+            f"give pattern=({seen[0]}, {seen[1]}) if this is the board",
+            seen=seen,
+        )
+    cause = "then the picture ends" if outside else "is the rest covered, or in glare?"
     raise NotUsable(
         Reason.CROPPED,
-        f"{columns}x{rows} of {pattern[0]}x{pattern[1]} corners, then the picture ends: "
-        "move the board into view, or use a ChArUco board",
-        seen=(columns, rows),
+        f"{shown} of {pattern[0]}x{pattern[1]} corners, {cause}: move the board into view, or use a ChArUco board",
+        seen=seen,
     )
 
 
@@ -272,17 +243,12 @@ def _grown_from_saddles(grey):
     return None
 
 
-def _is_other(grid, grey, pattern):
-    """Whether a grid is surely no part of the pattern: larger one way, or its board is seen to end all round."""
-    larger = any(n > m for n, m in zip(sorted(grid.shape[:2]), sorted(pattern), strict=True))
-    return larger or is_whole(grid, grey)
-
-
 def _part_of_it(shape, outside, pattern):
-    """Whether a grid (rows, columns) can be part of the pattern: whole each way, or cut off by the picture."""
+    """Whether a grid (rows, columns) can be part of the pattern: cut off by the picture, or covered one way."""
     cut = bool(outside & {"top", "bottom"}), bool(outside & {"left", "right"})
     return any(
-        all(n == m or (n < m and is_cut) for n, m, is_cut in zip(shape, turned, cut, strict=True))
+        all(n <= m for n, m in zip(shape, turned, strict=True))
+        and sum(n < m and not is_cut for n, m, is_cut in zip(shape, turned, cut, strict=True)) <= (not outside)
         for turned in (pattern, pattern[::-1])
     )
 

@@ -2,12 +2,12 @@
 
 import json
 import re
-from dataclasses import fields, is_dataclass
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
-from ir50p_lab.errors import CalibrationError, InputError
+from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.fit import NAMES
 from ir50p_lab.vision.calibration.reasons import Reason, Rejected
@@ -15,17 +15,8 @@ from ir50p_lab.vision.calibration.view import View
 from ir50p_lab.vision.checks import check_picture_size, picture_size
 
 _DEEPEST = 1000  # lists within lists: a calibration has five
-
 _LONGEST = 2000  # characters of one text in such a file: OpenCV takes 4096 bytes
-_DETAILS = tuple("covariance sigma sag stderr stderr_corners stderr_views model warnings board views rejected".split())
-_OF_VIEW = tuple(one.name for one in fields(View))
-
-
-def _checked(path):
-    """A Path. Raises InputError for what names no file."""
-    if not isinstance(path, (str, Path)):
-        raise InputError(f"path = {path!r:.60}: give the name of a file, such as 'camera.yml'")
-    return Path(path)
+_BASICS = ("K", "distortion", "rms", "size", "evidence")  # under OpenCV's names; evidence is not kept
 
 
 def save(calibration, path):
@@ -35,7 +26,7 @@ def save(calibration, path):
     """
     import cv2
 
-    path = _checked(path)
+    path = Path(path)
     # written in memory: OpenCV does not open paths with letters beyond ASCII everywhere, and says nothing
     file = cv2.FileStorage(path.suffix.lower() or ".yml", cv2.FileStorage_WRITE | cv2.FileStorage_MEMORY)
     file.writeComment(
@@ -49,7 +40,8 @@ def save(calibration, path):
     file.write("board_width", calibration.board.pattern[0])
     file.write("board_height", calibration.board.pattern[1])
     file.write("square_size", calibration.board.square)
-    text = json.dumps({name: _plain(getattr(calibration, name)) for name in _DETAILS})
+    details = {name: value for name, value in asdict(calibration).items() if name not in _BASICS}
+    text = json.dumps(details, default=np.ndarray.tolist)
     file.startWriteStruct("details", cv2.FileNode_SEQ)
     for start in range(0, len(text), _LONGEST):
         file.write("", text[start : start + _LONGEST])
@@ -66,15 +58,13 @@ def load(cls, path, size=None):
     """Read a Calibration, of class `cls`, as `save` or a program with OpenCV's names wrote it; see Calibration.load."""
     import cv2
 
-    path = _checked(path)
+    path = Path(path)
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
         raise CalibrationError(f"there is no file {path}: calibrate the camera first, and save") from None
     except (OSError, UnicodeDecodeError) as error:
         raise CalibrationError(f"{path} cannot be read: {error}") from None
-    if not text.lstrip().startswith(("%YAML", "<?xml", "{")):  # as ROS writes camera_info; OpenCV wants a first line
-        text = "%YAML:1.0\n---\n" + text
     if _too_deep(text):
         raise CalibrationError(f"{path} is no calibration: it holds {_DEEPEST} lists within lists")
     try:
@@ -106,24 +96,14 @@ def _too_deep(text):
     return False
 
 
-def _plain(value):
-    """What JSON can hold of a field: arrays as lists, data classes as dicts."""
-    if is_dataclass(value):
-        return {one.name: _plain(getattr(value, one.name)) for one in fields(value)}
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return [_plain(one) for one in value] if isinstance(value, tuple) else value
-
-
 def _basics(file):
     """K, distortion, rms and size, or None if the file lacks them."""
-    lens = file.getNode("distortion_model").string()
-    if file.getNode("fisheye_model").real() or lens in ("equidistant", "fisheye"):
+    if file.getNode("fisheye_model").real():
         raise CalibrationError(
-            "a calibration with a fisheye lens (fisheye_model, or distortion_model equidistant): this package knows "
-            "pinholes with k1, k2, p1, p2, k3 only. Calibrate the camera here, with the board where the lens bends less"
+            "a calibration with a fisheye lens (fisheye_model): this package knows pinholes with k1, k2, p1, p2, k3 "
+            "only. Calibrate the camera here, with the board where the lens bends less"
         )
-    K, d = (_matrix(file.getNode(name)) for name in ("camera_matrix", "distortion_coefficients"))
+    K, d = (file.getNode(name).mat() for name in ("camera_matrix", "distortion_coefficients"))
     width, height = file.getNode("image_width").real(), file.getNode("image_height").real()
     if K is None or d is None or K.shape != (3, 3) or not width or not height:
         return None
@@ -137,16 +117,6 @@ def _basics(file):
         "rms": float("nan") if rms.empty() else rms.real(),
         "size": (int(width), int(height)),
     }
-
-
-def _matrix(node):
-    """A matrix as OpenCV writes it, or as ROS does: rows, cols and data, without saying that it is one."""
-    data = node.getNode("data") if node.isMap() else None
-    if data is None or not data.isSeq() or node.getNode("dt").isString():
-        return node.mat()
-    shape = [int(node.getNode(name).real()) for name in ("rows", "cols")]
-    numbers = np.array([data.at(i).real() for i in range(data.size())])
-    return numbers.reshape(shape) if numbers.size == np.prod(shape) else None
 
 
 def _details(file):
@@ -163,7 +133,7 @@ def _details(file):
         "model": tuple(found["model"]),
         "warnings": tuple(found["warnings"]),
         "board": Charuco(**board) if "marker" in board else Checkerboard(**board),
-        "views": tuple(View(**{name: _array(one[name]) for name in _OF_VIEW}) for one in found["views"]),
+        "views": tuple(View(**{name: _array(value) for name, value in one.items()}) for one in found["views"]),
         "rejected": tuple(Rejected(**one | {"reason": Reason(one["reason"])}) for one in found["rejected"]),
     }
 

@@ -215,10 +215,7 @@ def fit(corners, model, guess, steps=50):
 
 def _within(model, camera):
     """A camera (12,) with zeros where the model has nothing to estimate, and its aspect."""
-    B = model.columns
-    used = np.flatnonzero(B.any(axis=1))
-    inside = np.zeros(12)
-    inside[used] = camera[used]
+    inside = np.where(model.columns.any(axis=1), camera, 0.0)
     if model.aspect:
         f = np.sqrt(camera[0] * camera[1] * model.aspect)
         inside[:2] = f, f / model.aspect

@@ -19,14 +19,9 @@ def apply(H, points):
 
 def spacing(grid):
     """Distance (rows, columns) of each corner of a grid (rows, columns, 2) to its nearest neighbour, pixels."""
-    along = np.linalg.norm(np.diff(grid, axis=1), axis=2)
-    down = np.linalg.norm(np.diff(grid, axis=0), axis=2)
-    nearest = np.full(grid.shape[:2], np.inf)
-    nearest[:, :-1] = np.minimum(nearest[:, :-1], along)
-    nearest[:, 1:] = np.minimum(nearest[:, 1:], along)
-    nearest[:-1] = np.minimum(nearest[:-1], down)
-    nearest[1:] = np.minimum(nearest[1:], down)
-    return nearest
+    along = np.pad(np.linalg.norm(np.diff(grid, axis=1), axis=2), ((0, 0), (1, 1)), constant_values=np.inf)
+    down = np.pad(np.linalg.norm(np.diff(grid, axis=0), axis=2), ((1, 1), (0, 0)), constant_values=np.inf)
+    return np.min([along[:, :-1], along[:, 1:], down[:-1], down[1:]], axis=0)
 
 
 def roughness(grid):
@@ -109,28 +104,6 @@ def grow(grid, grey):
             turned = np.concatenate([turned, _settled(following, turned[:, -1], grey)[:, None]], axis=1)
         grid = _turn(turned, -quarter_turns)
     return grid, outside
-
-
-def is_whole(grid, grey):
-    """Whether a board ends all round a grid: a rim of whole squares beyond its corners, then no more."""
-    swing = abs(contrast(grid, grey))
-    for quarter_turns in range(4):
-        turned = _turn(grid, quarter_turns)
-        out = _next_column(turned) - turned[:, -1]
-        middle, step = (turned[1:, -1] + turned[:-1, -1]) / 2, (out[1:] + out[:-1]) / 2
-        signs = (-1.0) ** np.arange(len(middle))
-        rim, beyond = (sample(grey, middle + far * step) for far in (0.5, 1.45))
-        steps = signs[1:] * np.diff(rim)
-        if (
-            not np.all(np.isfinite(rim))
-            or np.median(np.abs(steps)) < 0.6 * swing
-            or abs(np.sign(steps).sum()) < len(steps)
-        ):
-            return False
-        beyond = beyond[np.isfinite(beyond)]
-        if len(beyond) > 1 and np.ptp(beyond) > 0.15 * swing:  # something goes on there, or covers it
-            return False
-    return True
 
 
 def _turn(grid, quarter_turns):

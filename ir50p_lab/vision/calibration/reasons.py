@@ -40,9 +40,9 @@ class Rejected:
 class NotUsable(Exception):  # noqa: N818 - inside the package: becomes a Rejected
     """Raised where a picture turns out not to be usable, with Reason and detail.
 
-    seen: (columns, rows) of a board in it; whole: that one is no part of a larger board.
+    seen: (columns, rows) of the board in it, if it is another one or a part.
     """
 
-    def __init__(self, reason, detail, seen=None, whole=False):
+    def __init__(self, reason, detail, seen=None):
         super().__init__(f"{reason}: {detail}")
-        self.reason, self.detail, self.seen, self.whole = reason, detail, seen, whole
+        self.reason, self.detail, self.seen = reason, detail, seen

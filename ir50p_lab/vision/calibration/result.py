@@ -91,7 +91,7 @@ class Calibration:
 
     @classmethod
     def load(cls, path, size=None):
-        """Read such a file, or one that OpenCV's calibration sample or ROS (camera_info) wrote; no fisheyes.
+        """Read such a file, or one that OpenCV's calibration sample wrote; no fisheyes.
 
         size: (width, height) of the pictures it is for. Raises CalibrationError for a file that is missing or no
         calibration, and for one of another picture size.
