@@ -5,6 +5,7 @@ from math import sqrt
 import numpy as np
 
 from ir50p_lab.jit import jit
+from ir50p_lab.vision.ball.fit import fit_circle
 
 STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
 _MUCH = 0.05  # of the picture: if more has the colour, the table may have it, and the mask is split further
@@ -206,9 +207,9 @@ def circles_in(points, shape, least_radius):
     inside = ((p > 0.5) & (p < (width - 1.5, height - 1.5))).all(axis=1)  # the border of the picture is no outline
     if inside.sum() < 6:
         return []
-    x, y, r = _kasa(p[inside])
+    x, y, r = fit_circle(p[inside])
     off = np.hypot(p[inside, 0] - x, p[inside, 1] - y) - r
-    if r < max(height, width) and np.sqrt(np.mean(off**2)) < max(_ROUND * r, 0.5) and inside.mean() > 0.4:
+    if 0 < r < max(height, width) and np.sqrt(np.mean(off**2)) < max(_ROUND * r, 0.5) and inside.mean() > 0.4:
         return [(x, y, r, 1.0)]
     # the outline runs around its region: where it bends the other way the circle is a bay, not a ball
     turn = 1 if cv2.contourArea(p.astype(np.float32), True) < 0 else -1
@@ -236,7 +237,7 @@ def _best_circle(p, usable, step, least_radius, most_radius, turn):
     far = np.hypot(p[:, 0] - x, p[:, 1] - y) - r
     used = np.abs(far) < max(1.5, 0.10 * r)
     points = p[(np.abs(far) < max(0.9, 0.06 * r)) & usable]
-    if len(points) >= 5 and np.isfinite(circle := _kasa(points)).all():
+    if len(points) >= 5 and (circle := fit_circle(points))[2] > 0:
         x, y, r = circle
     return x, y, r, share, used
 
@@ -277,44 +278,12 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
     return bx, by, br, bs
 
 
-@jit()
-def _kasa(p):
-    """Algebraic circle through points (n, 2): least squares of x^2 + y^2 = a x + b y + c; r = inf on a line."""
-    mx, my = p[:, 0].mean(), p[:, 1].mean()
-    xx = xy = yy = xz = yz = z = 0.0
-    for x, y in p - np.array([mx, my]):
-        square = x * x + y * y
-        xx += x * x
-        xy += x * y
-        yy += y * y
-        xz += x * square
-        yz += y * square
-        z += square
-    det = xx * yy - xy * xy
-    if det <= 1e-12 * (xx + yy) ** 2:
-        return mx, my, np.inf
-    a, b = (yy * xz - xy * yz) / det, (xx * yz - xy * xz) / det
-    return mx + a / 2, my + b / 2, sqrt(z / len(p) + (a * a + b * b) / 4)
-
-
 def _different(circles):
     """Drop circles that another, with a larger share, already tells."""
     order = np.argsort(-circles[:, 3] * np.minimum(circles[:, 2], 20) ** 0.5, kind="stable")
-    circles = np.ascontiguousarray(circles[order])
-    return circles[_new(circles)]
-
-
-@jit()
-def _new(circles):
-    """Which circles (n, 4) differ from those before them, (n,) bool."""
-    new = np.ones(len(circles), np.bool_)
-    for i in range(len(circles)):
-        x, y, r = circles[i, 0], circles[i, 1], circles[i, 2]
-        for k in range(i):
-            if not new[k]:
-                continue
-            ox, oy, o = circles[k, 0], circles[k, 1], circles[k, 2]
-            if sqrt((x - ox) ** 2 + (y - oy) ** 2) + abs(r - o) <= 0.25 * max(r, o):
-                new[i] = False
-                break
-    return new
+    x, y, r, _ = circles[order].T[:, :, None]
+    alike = np.hypot(x - x.T, y - y.T) + np.abs(r - r.T) <= 0.25 * np.maximum(r, r.T)
+    new = np.zeros(len(circles), bool)
+    for i, others in enumerate(alike):
+        new[i] = not (others & new).any()
+    return circles[order][new]
