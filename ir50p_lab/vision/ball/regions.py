@@ -2,6 +2,7 @@
 
 from math import sqrt
 
+import cv2
 import numpy as np
 
 from ir50p_lab.jit import jit
@@ -34,8 +35,6 @@ def guess_closer(image, colour, least_radius):
     Noise breaks up the colour of a dark ball, highlights and glare punch holes; a ball of ten pixels is lost in the
     halved picture; one before a thing of nearly its colour shows only when the two are told apart.
     """
-    import cv2
-
     shrink = 1 if max(image.shape) < 480 else 2
     found, regions, loose = [np.empty((0, 4))], 0, colour.looser
     for scale, sigma in ((1, 1.2), (shrink, 1.5), (2 * shrink, 1.2)):
@@ -51,8 +50,6 @@ def guess_closer(image, colour, least_radius):
 
 
 def _smaller(image, shrink):
-    import cv2
-
     height, width = image.shape[:2]
     size = max(width // shrink, 1), max(height // shrink, 1)
     return image if shrink == 1 else cv2.resize(image, size, interpolation=cv2.INTER_AREA)
@@ -68,8 +65,6 @@ def _unscaled(circles, image, small):
 
 def _circles_of(found_in, least_radius):
     """Circles (n, 4) in the outlines of masks, and the largest number of regions in one of them."""
-    import cv2
-
     least = max(1.5, 0.7 * least_radius)
     found, regions = [], 0
     for mask in found_in:
@@ -88,21 +83,15 @@ def _circles_of(found_in, least_radius):
 
 
 def _opened(mask):
-    import cv2
-
     return cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
 
 
 def _closed(mask):
-    import cv2
-
     return cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
 
 
 def _halves(hsv, mask):
     """Six parts of a mask: above and below Otsu's threshold of hue, saturation and value in it."""
-    import cv2
-
     found = []
     for channel in range(3):
         values = np.ascontiguousarray(hsv[:, :, channel])
@@ -114,8 +103,6 @@ def _halves(hsv, mask):
 
 def split(hsv, colour):
     """Parts of the largest regions of the colour, each split on its own, (h, w) uint8."""
-    import cv2
-
     mask = cv2.inRange(hsv, *colour.bounds())
     _, labels, stats, _ = cv2.connectedComponentsWithStats(mask)
     order = np.argsort(-stats[1:, cv2.CC_STAT_AREA], kind="stable")[:_SPLIT] + 1
@@ -161,8 +148,6 @@ def _ranked(circles, image):
 
 def masks(hsv, colour):
     """Pictures (h, w) uint8, 255 where the colour is: from loose to strict, and parts of it if there is much of it."""
-    import cv2
-
     loose = cv2.inRange(hsv, *colour.bounds())
     found = [_opened(loose), *(_opened(cv2.inRange(hsv, *colour.bounds(s))) for s in STRICTNESS[1:])]
     if cv2.countNonZero(found[0]) > _MUCH * loose.size:
@@ -172,8 +157,6 @@ def masks(hsv, colour):
 
 def _inscribed(mask, least_radius):
     """Circles that fit into the mask best, at most six: a ball with tape beside it is its widest part."""
-    import cv2
-
     left, above, width, height = cv2.boundingRect(mask)
     left, above = max(left - 1, 0), max(above - 1, 0)
     part = mask[above : above + height + 2, left : left + width + 2]  # with a rim of 0, but at the picture's border
@@ -198,8 +181,6 @@ def circles_in(points, shape, least_radius):
     Three points some way apart on the outline make a circle; the one with most of its length along the outline wins,
     its points go, and the search goes on with the rest.
     """
-    import cv2
-
     height, width = shape
     n = len(points)
     m = min(n, 48 + n // 4, 160)
@@ -213,40 +194,28 @@ def circles_in(points, shape, least_radius):
         return [(x, y, r, 1.0)]
     # the outline runs around its region: where it bends the other way the circle is a bay, not a ball
     turn = 1 if cv2.contourArea(p.astype(np.float32), True) < 0 else -1
+    apart = np.array(sorted({max(2, m // k) for k in (16, 9, 5, 3)} | ({4, 8, 16, 32} if m > 100 else set())))
     left, found = inside.copy(), []
     for _ in range(_CIRCLES):
-        if left.sum() < 6:
-            break
-        best = _best_circle(p, left, n / m, least_radius, 0.75 * max(height, width), turn)
-        if best is None:
-            break
-        x, y, r, share, used = best
+        x, y, r, share = _vote(p, left, apart, n / m, least_radius, 0.75 * max(height, width), turn)
         if share < 0.22:
             break
+        off = np.abs(np.hypot(p[:, 0] - x, p[:, 1] - y) - r)
+        points = p[(off < max(0.9, 0.06 * r)) & left]
+        left &= off >= max(1.5, 0.10 * r)
+        if len(points) >= 5 and (circle := fit_circle(points))[2] > 0:
+            x, y, r = circle
         found.append((x, y, r, min(share, 0.89)))
-        left &= ~used
+        if left.sum() < 6:
+            break
     return found
-
-
-def _best_circle(p, usable, step, least_radius, most_radius, turn):
-    m = len(p)
-    apart = sorted({max(2, m // k) for k in (16, 9, 5, 3)} | ({4, 8, 16, 32} if m > 100 else set()))
-    x, y, r, share = _vote(p, usable, np.array(apart), step, least_radius, most_radius, turn)
-    if r == 0:
-        return None
-    far = np.hypot(p[:, 0] - x, p[:, 1] - y) - r
-    used = np.abs(far) < max(1.5, 0.10 * r)
-    points = p[(np.abs(far) < max(0.9, 0.06 * r)) & usable]
-    if len(points) >= 5 and (circle := fit_circle(points))[2] > 0:
-        x, y, r = circle
-    return x, y, r, share, used
 
 
 @jit()
 def _vote(p, usable, apart, step, least_radius, most_radius, turn):
     """The circle (x, y, r) through three points (i, i + d, i + 2 d) near which most of the outline lies, and its share.
 
-    r = 0 if there is none.
+    share = 0 if there is none.
     """
     m, best = len(p), 0.0
     bx = by = br = bs = 0.0
