@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from ir50p_lab.vision.rendering.board_print import print_range
-from ir50p_lab.vision.rendering.colours import to_bytes
-from ir50p_lab.vision.rendering.scene import Board, Lamp, Lens, Sensor, SolidThing, Sun
+from ir50p_lab.vision.rendering.colours import light_of, to_bytes
+from ir50p_lab.vision.rendering.scene import Lamp, Lens, Sensor, SolidThing, Sun
 from ir50p_lab.vision.rendering.shadow import smooth
 from ir50p_lab.vision.rendering.surface import noise
+from tests.support.drawn_board import Board, print_range
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,6 +22,9 @@ class Box(SolidThing):
 
     def shape(self, T_cam_world):
         return BoxShape(T_cam_world @ self.T_world_box, self.size)
+
+    def paint(self, shape, X):
+        return light_of(self.colour), shape.faces(X)
 
     def dim_sky(self, open_sky, X, Y):
         _beside_wall(open_sky, self._corners(), X, Y)

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ir50p_lab.vision.calibration.rendered import board_poses, board_scene
+from ir50p_lab.vision.calibration.rendered import board_poses
 from ir50p_lab.vision.image import save_image
-from ir50p_lab.vision.rendering import Board, SceneBall, Sensor, bench_camera, bench_scene, pose, render_scene
+from ir50p_lab.vision.rendering import SceneBall, Sensor, bench_camera, bench_scene, pose, render_scene
 from tests.support.desk import BentBoard, ShakenLens
+from tests.support.drawn_board import Board, board_scene
 from tests.support.random_scene import random_scene
 
 FOLDER = Path(__file__).parents[2] / "data"
@@ -36,13 +37,16 @@ def main(folder=FOLDER, only=None):
 
 
 def recipes():
-    """name -> (Scene, seed): a good set with six useless pictures among them, a bent board, the table; random scenes."""
+    """name -> (Scene, seed): a good set with six useless pictures among them, a bent board, one with markers, the table; random scenes."""
     camera, _ = bench_camera()
     good, bent = board_poses(camera, 14, seed=1), BentBoard(bend=0.3)
     found = {f"calibration/flat/board_{k + 1:02}": (_held(camera, T), 1000 + k) for k, T in enumerate(good)}
     found |= {f"calibration/flat/{name}": recipe for name, recipe in _useless(camera, good).items()}
     for k, T in enumerate(board_poses(camera, 10, 2, bent)):
         found[f"calibration/bent/board_{k + 1:02}"] = _held(camera, T, bent), 2000 + k
+    marked = Board(kind="charuco")
+    for k, T in enumerate(board_poses(camera, 7, 4, marked)):
+        found[f"calibration/charuco/board_{k + 1:02}"] = _held(camera, T, marked), 4000 + k
     lying = Board(T_world_board=pose((*BOARD_AT, 0.0)) @ np.diag([1.0, -1.0, -1.0, 1.0]))
     balls = [SceneBall(position=(x, y, 0.03)) for x, y in TABLE_4_8]
     found["calibration/table/board"] = bench_scene(lying, sensor=_SENSOR), 31

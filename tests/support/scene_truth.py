@@ -8,8 +8,9 @@ from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.pinhole import distort_xy
 from ir50p_lab.vision.rendering.rays import rays_through
 from ir50p_lab.vision.rendering.render import RayTracer
-from ir50p_lab.vision.rendering.scene import Board, SceneBall
+from ir50p_lab.vision.rendering.scene import SceneBall
 from ir50p_lab.vision.rendering.truth import BallTruth, SceneTruth, ball_truth, sphere_rim
+from tests.support.drawn_board import Board
 
 RINGS = 24
 
@@ -47,7 +48,7 @@ class SeenTruth(SceneTruth):
         return tuple(sorted(found, key=lambda ball: -ball.visible * ball.radius**2))
 
 
-def scene_truth(scene, seed=0):
+def scene_truth(scene):
     """SeenTruth of a Scene."""
     tracer, pinhole = RayTracer(scene), scene.pinhole
     w, h = pinhole.size
@@ -82,9 +83,7 @@ def scene_truth(scene, seed=0):
                     corners=corners, inside=inside, object_points=flat, T_cam_board=tracer.T @ thing.T_world_board
                 )
             )
-    return SeenTruth(
-        balls=tuple(balls), boards=tuple(boards), pinhole=pinhole, T_cam_world=tracer.T, scene=scene, seed=seed
-    )
+    return SeenTruth(balls=tuple(balls), boards=tuple(boards), pinhole=pinhole, scene=scene)
 
 
 def spread_over(pinhole, T_cam_world, thing, ball):

@@ -5,9 +5,10 @@ import time
 import numpy as np
 
 from ir50p_lab.vision import Checkerboard, Pinhole, calibrate, calibrate_corners
-from ir50p_lab.vision.calibration.rendered import board_pictures, board_poses
+from ir50p_lab.vision.calibration.rendered import board_poses
 from ir50p_lab.vision.rendering import Sensor
 from tests.support.desk import BentBoard, ShakenLens
+from tests.support.drawn_board import board_pictures
 from tests.targets.rows import Row
 
 JOINT = 16.25  # chi-square of 4 numbers that 99.73 % stay below: what 3 standard errors are for one

@@ -7,8 +7,8 @@ import numpy as np
 from ir50p_lab.bench import SimulatedBench, fit_calibration
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.vision import TablePlane, calibrate, render_scene
-from ir50p_lab.vision.calibration.rendered import board_pictures
-from ir50p_lab.vision.rendering import Board, bench_camera, bench_scene
+from ir50p_lab.vision.rendering import bench_camera, bench_scene
+from tests.support.drawn_board import Board, board_pictures
 
 T_BASE_BOARD = np.array([[1, 0, 0, 0.28], [0, -1, 0, 0.065], [0, 0, -1, 0.0], [0, 0, 0, 1.0]])  # middle of the area
 

@@ -22,9 +22,10 @@ from ir50p_lab.vision import (
     row_camera_matrix,
     to_rows,
 )
-from ir50p_lab.vision.calibration.rendered import board_pictures, board_poses
+from ir50p_lab.vision.calibration.rendered import board_poses
 from ir50p_lab.vision.pinhole import as_pinhole
 from ir50p_lab.vision.rendering import Scene, bench_camera
+from tests.support.drawn_board import Board, board_pictures
 from tests.support.scene_truth import scene_truth
 
 POINTS = Checkerboard().points
@@ -237,8 +238,6 @@ def test_rendered_set_gives_its_camera_back():
 
 
 def test_charuco_set_gives_its_camera_back():
-    from ir50p_lab.vision.rendering import Board
-
     camera, _ = bench_camera()
     printed = Board(kind="charuco")
     images, _ = board_pictures(camera, 6, seed=7, board=printed)

@@ -10,7 +10,6 @@ import pytest
 from ir50p_lab.errors import InputError
 from ir50p_lab.vision import Charuco, Pinhole
 from ir50p_lab.vision.rendering import (
-    Board,
     Lens,
     Patch,
     SceneBall,
@@ -26,6 +25,7 @@ from ir50p_lab.vision.rendering.colours import to_bytes, to_linear, to_srgb
 from ir50p_lab.vision.rendering.render import table_light
 from ir50p_lab.vision.rendering.sensor import expose
 from tests.support.desk import TEXTURES, BentBoard, BentSheetShape, Box, LinearSensor, disc, mosaic, streak
+from tests.support.drawn_board import Board
 from tests.support.random_scene import SIZES, random_scene
 from tests.support.scene_truth import scene_truth
 

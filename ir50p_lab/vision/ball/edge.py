@@ -2,6 +2,7 @@
 
 from functools import cache
 
+import cv2
 import numpy as np
 
 from ir50p_lab.jit import jit
@@ -21,8 +22,6 @@ def cast(image, x, y, radii, relative, directions):
     directions: cos and sin (n,) of the rays. Returns: distances rho (n, m) from (x, y), pixels; rgb (n, m, 3) uint8;
     within (n, m): the sample lies in the picture.
     """
-    import cv2
-
     cos, sin = directions
     rho = np.multiply.outer(np.broadcast_to(radii, cos.shape), relative).astype(np.float32)
     px, py = rho * cos[:, None], rho * sin[:, None]

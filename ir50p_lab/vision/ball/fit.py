@@ -11,7 +11,7 @@ the picture of the centre: that lies nearer to the principal point, by about kap
 """
 
 from dataclasses import dataclass
-from math import hypot, sqrt
+from math import sqrt
 
 import numpy as np
 
@@ -82,47 +82,40 @@ def fit_outline(x, y, view, start, *, noise=0.25, rounds=6):
     return Outline(*found, cone, kappa, view) if found[2] > 0 else None
 
 
+def fit_circle(points):
+    """The algebraic circle (x, y, r) through points (n, 2): a camera far away; r = 0 on a line."""
+    x, y = np.ascontiguousarray(points.T)
+    return _solve(x, y, np.ones(len(x)), 0.0, 0.0, 1.0, 0.0)[0]
+
+
 def _floats(values):
     return np.ascontiguousarray(values, dtype=np.float64)
 
 
 @jit()
 def _lift(square, kappa):
-    return 2 * square / (sqrt(1 + kappa * square) + 1)
+    return 2 * square / (np.sqrt(1 + kappa * square) + 1)
 
 
 @jit()
 def _distances(x, y, a, b, c, cx, cy, aspect, kappa):
-    off = np.empty(len(x))
-    for i in range(len(x)):
-        X, Y = x[i] - cx, (y[i] - cy) * aspect
-        square = X * X + Y * Y
-        root = sqrt(1 + kappa * square)
-        off[i] = (_lift(square, kappa) - a * X - b * Y - c) / max(hypot(2 * X / root - a, 2 * Y / root - b), 1e-9)
-    return off
+    X, Y = x - cx, (y - cy) * aspect
+    square = X * X + Y * Y
+    root = np.sqrt(1 + kappa * square)
+    slope = np.maximum(np.hypot(2 * X / root - a, 2 * Y / root - b), 1e-9)
+    return (_lift(square, kappa) - a * X - b * Y - c) / slope
 
 
 @jit()
 def _solve(x, y, w, cx, cy, aspect, kappa):
     """Weighted linear least squares for the cone: (x, y, r), (a, b, c); r = 0 where it is degenerate."""
     nothing = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    n, total, mx, my, ml = len(x), 0.0, 0.0, 0.0, 0.0
-    for i in range(n):
-        X, Y = x[i] - cx, (y[i] - cy) * aspect
-        total += w[i]
-        mx += w[i] * X
-        my += w[i] * Y
-        ml += w[i] * _lift(X * X + Y * Y, kappa)
-    mx, my, ml = mx / total, my / total, ml / total
-    xx = xy = yy = xl = yl = 0.0
-    for i in range(n):
-        X, Y = x[i] - cx, (y[i] - cy) * aspect
-        dx, dy, dl = X - mx, Y - my, _lift(X * X + Y * Y, kappa) - ml
-        xx += w[i] * dx * dx
-        xy += w[i] * dx * dy
-        yy += w[i] * dy * dy
-        xl += w[i] * dx * dl
-        yl += w[i] * dy * dl
+    X, Y, total = x - cx, (y - cy) * aspect, np.sum(w)
+    L = _lift(X * X + Y * Y, kappa)
+    mx, my, ml = np.sum(w * X) / total, np.sum(w * Y) / total, np.sum(w * L) / total
+    X, Y, L = X - mx, Y - my, L - ml
+    xx, xy, yy = np.sum(w * X * X), np.sum(w * X * Y), np.sum(w * Y * Y)
+    xl, yl = np.sum(w * X * L), np.sum(w * Y * L)
     det = xx * yy - xy * xy
     if not det > 1e-9 * (xx + yy) ** 2:
         return nothing
@@ -143,15 +136,11 @@ def _solve(x, y, w, cx, cy, aspect, kappa):
 @jit()
 def _robust(x, y, cx, cy, aspect, nominal, spread, x0, y0, r0, noise, rounds):
     """Iterated reweighting: ((x, y, r), (a, b, c), kappa); r = 0 where no curve fits."""
-    n = len(x)
-    off = np.empty(n)
-    for i in range(n):
-        off[i] = hypot(x[i] - x0, y[i] - y0) - r0
+    off = np.hypot(x - x0, y - y0) - r0
     found, cone, kappa = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), nominal
-    scale, w = max(0.12 * r0, 2.0), np.empty(n)
+    scale = max(0.12 * r0, 2.0)
     for k in range(rounds):
-        for i in range(n):
-            w[i] = max(1 - (off[i] / scale) ** 2, 0.0) ** 2
+        w = np.maximum(1 - (off / scale) ** 2, 0.0) ** 2
         if np.sum(w > 0) < 8:
             return (0.0, 0.0, 0.0), cone, kappa
         if k >= rounds - 2 and spread > 0 and r0 > _LARGE_ENOUGH:

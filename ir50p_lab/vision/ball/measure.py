@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from ir50p_lab.errors import InputError
@@ -213,8 +214,6 @@ def _shown_through(rgb, on, missing, inside):
 
 def _colours(image, outline, colour, unit):
     """Which samples have the ball's colour: inside (n, 12), highlights included, and just outside (n, 4); their rgb."""
-    import cv2
-
     r = outline.r
     rim = 1.5 / r
     inner = np.append(np.linspace(0.1, 0.85, 11), max(0.5, 0.97 - rim))

@@ -2,9 +2,11 @@
 
 from math import sqrt
 
+import cv2
 import numpy as np
 
 from ir50p_lab.jit import jit
+from ir50p_lab.vision.ball.fit import fit_circle
 
 STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
 _MUCH = 0.05  # of the picture: if more has the colour, the table may have it, and the mask is split further
@@ -33,8 +35,6 @@ def guess_closer(image, colour, least_radius):
     Noise breaks up the colour of a dark ball, highlights and glare punch holes; a ball of ten pixels is lost in the
     halved picture; one before a thing of nearly its colour shows only when the two are told apart.
     """
-    import cv2
-
     shrink = 1 if max(image.shape) < 480 else 2
     found, regions, loose = [np.empty((0, 4))], 0, colour.looser
     for scale, sigma in ((1, 1.2), (shrink, 1.5), (2 * shrink, 1.2)):
@@ -50,8 +50,6 @@ def guess_closer(image, colour, least_radius):
 
 
 def _smaller(image, shrink):
-    import cv2
-
     height, width = image.shape[:2]
     size = max(width // shrink, 1), max(height // shrink, 1)
     return image if shrink == 1 else cv2.resize(image, size, interpolation=cv2.INTER_AREA)
@@ -67,8 +65,6 @@ def _unscaled(circles, image, small):
 
 def _circles_of(found_in, least_radius):
     """Circles (n, 4) in the outlines of masks, and the largest number of regions in one of them."""
-    import cv2
-
     least = max(1.5, 0.7 * least_radius)
     found, regions = [], 0
     for mask in found_in:
@@ -87,21 +83,15 @@ def _circles_of(found_in, least_radius):
 
 
 def _opened(mask):
-    import cv2
-
     return cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
 
 
 def _closed(mask):
-    import cv2
-
     return cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
 
 
 def _halves(hsv, mask):
     """Six parts of a mask: above and below Otsu's threshold of hue, saturation and value in it."""
-    import cv2
-
     found = []
     for channel in range(3):
         values = np.ascontiguousarray(hsv[:, :, channel])
@@ -113,8 +103,6 @@ def _halves(hsv, mask):
 
 def split(hsv, colour):
     """Parts of the largest regions of the colour, each split on its own, (h, w) uint8."""
-    import cv2
-
     mask = cv2.inRange(hsv, *colour.bounds())
     _, labels, stats, _ = cv2.connectedComponentsWithStats(mask)
     order = np.argsort(-stats[1:, cv2.CC_STAT_AREA], kind="stable")[:_SPLIT] + 1
@@ -160,8 +148,6 @@ def _ranked(circles, image):
 
 def masks(hsv, colour):
     """Pictures (h, w) uint8, 255 where the colour is: from loose to strict, and parts of it if there is much of it."""
-    import cv2
-
     loose = cv2.inRange(hsv, *colour.bounds())
     found = [_opened(loose), *(_opened(cv2.inRange(hsv, *colour.bounds(s))) for s in STRICTNESS[1:])]
     if cv2.countNonZero(found[0]) > _MUCH * loose.size:
@@ -171,8 +157,6 @@ def masks(hsv, colour):
 
 def _inscribed(mask, least_radius):
     """Circles that fit into the mask best, at most six: a ball with tape beside it is its widest part."""
-    import cv2
-
     left, above, width, height = cv2.boundingRect(mask)
     left, above = max(left - 1, 0), max(above - 1, 0)
     part = mask[above : above + height + 2, left : left + width + 2]  # with a rim of 0, but at the picture's border
@@ -197,8 +181,6 @@ def circles_in(points, shape, least_radius):
     Three points some way apart on the outline make a circle; the one with most of its length along the outline wins,
     its points go, and the search goes on with the rest.
     """
-    import cv2
-
     height, width = shape
     n = len(points)
     m = min(n, 48 + n // 4, 160)
@@ -206,46 +188,34 @@ def circles_in(points, shape, least_radius):
     inside = ((p > 0.5) & (p < (width - 1.5, height - 1.5))).all(axis=1)  # the border of the picture is no outline
     if inside.sum() < 6:
         return []
-    x, y, r = _kasa(p[inside])
+    x, y, r = fit_circle(p[inside])
     off = np.hypot(p[inside, 0] - x, p[inside, 1] - y) - r
-    if r < max(height, width) and np.sqrt(np.mean(off**2)) < max(_ROUND * r, 0.5) and inside.mean() > 0.4:
+    if 0 < r < max(height, width) and np.sqrt(np.mean(off**2)) < max(_ROUND * r, 0.5) and inside.mean() > 0.4:
         return [(x, y, r, 1.0)]
     # the outline runs around its region: where it bends the other way the circle is a bay, not a ball
     turn = 1 if cv2.contourArea(p.astype(np.float32), True) < 0 else -1
+    apart = np.array(sorted({max(2, m // k) for k in (16, 9, 5, 3)} | ({4, 8, 16, 32} if m > 100 else set())))
     left, found = inside.copy(), []
     for _ in range(_CIRCLES):
-        if left.sum() < 6:
-            break
-        best = _best_circle(p, left, n / m, least_radius, 0.75 * max(height, width), turn)
-        if best is None:
-            break
-        x, y, r, share, used = best
+        x, y, r, share = _vote(p, left, apart, n / m, least_radius, 0.75 * max(height, width), turn)
         if share < 0.22:
             break
+        off = np.abs(np.hypot(p[:, 0] - x, p[:, 1] - y) - r)
+        points = p[(off < max(0.9, 0.06 * r)) & left]
+        left &= off >= max(1.5, 0.10 * r)
+        if len(points) >= 5 and (circle := fit_circle(points))[2] > 0:
+            x, y, r = circle
         found.append((x, y, r, min(share, 0.89)))
-        left &= ~used
+        if left.sum() < 6:
+            break
     return found
-
-
-def _best_circle(p, usable, step, least_radius, most_radius, turn):
-    m = len(p)
-    apart = sorted({max(2, m // k) for k in (16, 9, 5, 3)} | ({4, 8, 16, 32} if m > 100 else set()))
-    x, y, r, share = _vote(p, usable, np.array(apart), step, least_radius, most_radius, turn)
-    if r == 0:
-        return None
-    far = np.hypot(p[:, 0] - x, p[:, 1] - y) - r
-    used = np.abs(far) < max(1.5, 0.10 * r)
-    points = p[(np.abs(far) < max(0.9, 0.06 * r)) & usable]
-    if len(points) >= 5 and np.isfinite(circle := _kasa(points)).all():
-        x, y, r = circle
-    return x, y, r, share, used
 
 
 @jit()
 def _vote(p, usable, apart, step, least_radius, most_radius, turn):
     """The circle (x, y, r) through three points (i, i + d, i + 2 d) near which most of the outline lies, and its share.
 
-    r = 0 if there is none.
+    share = 0 if there is none.
     """
     m, best = len(p), 0.0
     bx = by = br = bs = 0.0
@@ -277,44 +247,12 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
     return bx, by, br, bs
 
 
-@jit()
-def _kasa(p):
-    """Algebraic circle through points (n, 2): least squares of x^2 + y^2 = a x + b y + c; r = inf on a line."""
-    mx, my = p[:, 0].mean(), p[:, 1].mean()
-    xx = xy = yy = xz = yz = z = 0.0
-    for x, y in p - np.array([mx, my]):
-        square = x * x + y * y
-        xx += x * x
-        xy += x * y
-        yy += y * y
-        xz += x * square
-        yz += y * square
-        z += square
-    det = xx * yy - xy * xy
-    if det <= 1e-12 * (xx + yy) ** 2:
-        return mx, my, np.inf
-    a, b = (yy * xz - xy * yz) / det, (xx * yz - xy * xz) / det
-    return mx + a / 2, my + b / 2, sqrt(z / len(p) + (a * a + b * b) / 4)
-
-
 def _different(circles):
     """Drop circles that another, with a larger share, already tells."""
     order = np.argsort(-circles[:, 3] * np.minimum(circles[:, 2], 20) ** 0.5, kind="stable")
-    circles = np.ascontiguousarray(circles[order])
-    return circles[_new(circles)]
-
-
-@jit()
-def _new(circles):
-    """Which circles (n, 4) differ from those before them, (n,) bool."""
-    new = np.ones(len(circles), np.bool_)
-    for i in range(len(circles)):
-        x, y, r = circles[i, 0], circles[i, 1], circles[i, 2]
-        for k in range(i):
-            if not new[k]:
-                continue
-            ox, oy, o = circles[k, 0], circles[k, 1], circles[k, 2]
-            if sqrt((x - ox) ** 2 + (y - oy) ** 2) + abs(r - o) <= 0.25 * max(r, o):
-                new[i] = False
-                break
-    return new
+    x, y, r, _ = circles[order].T[:, :, None]
+    alike = np.hypot(x - x.T, y - y.T) + np.abs(r - r.T) <= 0.25 * np.maximum(r, r.T)
+    new = np.zeros(len(circles), bool)
+    for i, others in enumerate(alike):
+        new[i] = not (others & new).any()
+    return circles[order][new]

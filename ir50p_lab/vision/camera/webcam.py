@@ -60,13 +60,11 @@ class Webcam(Camera):
         while True:
             ok, image = self._ask("read")
             if ok and image is not None and image.size:
-                if image.ndim == 2 or image.shape[2] == 1:
-                    raise ImageError(f"{self.name} gives one channel (an infrared camera?): take a colour camera")
-                if image.shape[2] not in (3, 4) or image.dtype != np.uint8:
-                    raise ImageError(
-                        f"{self.name} gives {image.shape[2]} channels of {image.dtype}: set it to colour pictures of "
-                        "8 bits, or take another camera"
-                    )
+                channels = 1 if image.ndim == 2 else image.shape[2]
+                if channels not in (3, 4) or image.dtype != np.uint8:
+                    kind = "one channel (an infrared camera?)" if channels == 1 else f"{channels} channels"
+                    what = f"{self.name} gives {kind} of {image.dtype}"
+                    raise ImageError(f"{what}: set it to colour pictures of 8 bits, or take another camera")
                 return np.ascontiguousarray(image[..., 2::-1])  # from blue, green, red
             if not self._capture.isOpened() or time.monotonic() - began > self._patience:
                 raise CameraError(

@@ -43,20 +43,12 @@ class Reacher(Mover):
 
     def __init__(self, bench, locator, *, controller=None, sigma_q=None, rest=True):
         super().__init__(bench, controller=controller, rest=rest)
-        self.locator, self._pool = locator, None
+        self.locator, self._pool = locator, ThreadPoolExecutor(1)
         self._refuse_drawn(getattr(locator.camera, "simulated", False))
         if sigma_q is None:
             measured = bench.calibration.stderr_slope is not None
             sigma_q = (_COUNTS if measured else _COUNTS_NOMINAL) / np.abs(bench.calibration.slope)
         self.sigma_q = vectors3("sigma_q", sigma_q)
-
-    def __enter__(self):
-        self._pool = ThreadPoolExecutor(1)
-        return super().__enter__()
-
-    def __exit__(self, kind, error, traceback):
-        self._pool.shutdown(wait=False)
-        super().__exit__(kind, error, traceback)
 
     # ---- looking
 

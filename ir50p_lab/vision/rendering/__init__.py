@@ -6,7 +6,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
         "arm_shape": ["arm_sticks"],
-        "scene": ["Board", "Lamp", "Lens", "Patch", "Scene", "SceneBall", "Sensor", "Sky", "Stick", "Sun", "Tabletop"],
+        "scene": ["Lamp", "Lens", "Patch", "Scene", "SceneBall", "Sensor", "Sky", "Stick", "Sun", "Tabletop"],
         "places": ["bench_camera", "bench_scene", "look_at", "pose"],
         "render": ["render_scene"],
         "truth": ["BallTruth", "SceneTruth"],

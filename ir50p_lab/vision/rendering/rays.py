@@ -10,9 +10,9 @@ from ir50p_lab.vision.pinhole import Pinhole
 
 @dataclass(frozen=True, eq=False)
 class Rays:
-    """Directions (x, y, 1) in camera coordinates: x, y arrays of one shape, with the pixels px, py they go through.
+    """Directions (x, y, 1) in camera coordinates: x, y (n,), with the pixels px, py (n,) they go through.
 
-    length2 = x^2 + y^2 + 1. On a grid the shape is that of the picture.
+    length2 = x^2 + y^2 + 1.
     """
 
     x: np.ndarray
@@ -24,15 +24,9 @@ class Rays:
     def near(self, box):
         """Index of the rays whose pixel is in the box (x0, y0, x1, y1); None is everywhere."""
         if box is None:
-            return (Ellipsis,)
+            return slice(None)
         x0, y0, x1, y1 = box
-        if self.x.ndim == 2:
-            (top, bottom), (left, right) = (
-                np.clip((np.floor(low), np.ceil(high) + 1), 0, n).astype(int)
-                for low, high, n in zip(box[1::-1], box[:1:-1], self.x.shape, strict=True)
-            )
-            return slice(top, bottom), slice(left, right)
-        return (np.flatnonzero((self.px >= x0) & (self.px <= x1) & (self.py >= y0) & (self.py <= y1)),)
+        return np.flatnonzero((self.px >= x0) & (self.px <= x1) & (self.py >= y0) & (self.py <= y1))
 
     def at(self, index):
         """The rays of an index."""
@@ -40,12 +34,12 @@ class Rays:
 
 
 def grid_rays(pinhole):
-    """Rays through the middle of every pixel of the picture (kept for the next picture of the same camera)."""
+    """Rays through the middle of every pixel of the picture, row by row (kept for the next one of the same camera)."""
     return _grid(pinhole.K.tobytes(), pinhole.distortion.tobytes(), pinhole.size)
 
 
 def rays_through(pinhole, px, py):
-    """Rays through pixels px, py: arrays of one shape, in parts of a pixel."""
+    """Rays through pixels px, py (n,), in parts of a pixel."""
     x, y = np.moveaxis(pinhole.undistort_points(np.stack([px, py], axis=-1)), -1, 0)
     return Rays(x, y, x * x + y * y + 1, px, py)
 
@@ -53,7 +47,7 @@ def rays_through(pinhole, px, py):
 @functools.lru_cache(maxsize=8)
 def _grid(K, distortion, size):
     pinhole = Pinhole(np.frombuffer(K).reshape(3, 3), np.frombuffer(distortion), size)
-    px, py = np.meshgrid(np.arange(size[0], dtype=float), np.arange(size[1], dtype=float))
+    py, px = (axis.ravel().astype(float) for axis in np.indices(size[::-1]))
     exact = rays_through(pinhole, px, py)
     x, y, px, py = (array.astype(np.float32) for array in (exact.x, exact.y, px, py))
     return Rays(x, y, x * x + y * y + 1, px, py)

@@ -3,11 +3,10 @@
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.vision.rendering.board_print import black
 from ir50p_lab.vision.rendering.colours import light_of
 from ir50p_lab.vision.rendering.light import highlight, irradiance
 from ir50p_lab.vision.rendering.rays import grid_rays, rays_through
-from ir50p_lab.vision.rendering.scene import Board, Scene, SceneBall, Sky
+from ir50p_lab.vision.rendering.scene import Scene, SceneBall, Sky
 from ir50p_lab.vision.rendering.sensor import expose
 from ir50p_lab.vision.rendering.surface import room_light, table_albedo
 from ir50p_lab.vision.rendering.truth import SceneTruth, ball_truth
@@ -33,7 +32,7 @@ def render_scene(scene, seed=0):
     light = scene.lens.through(picture.light())
     image = expose(light, scene.sensor, np.random.default_rng([int(seed), 0]))
     balls = (ball_truth(scene.pinhole, picture.T, thing) for thing in picture.things if isinstance(thing, SceneBall))
-    truth = SceneTruth(balls=tuple(balls), pinhole=scene.pinhole, T_cam_world=picture.T, scene=scene, seed=int(seed))
+    truth = SceneTruth(balls=tuple(balls), pinhole=scene.pinhole, scene=scene)
     return image, truth
 
 
@@ -65,17 +64,14 @@ class RayTracer:
 
     def light(self):
         """Light (h, w, 3) float32 of the sharp picture."""
+        import cv2
+
         rays = grid_rays(self.scene.pinhole)
         light, code = self.trace(rays)
         w, h = self.scene.pinhole.size
-        light, code = light.reshape(h, w, 3), code.reshape(h, w)
-        edge = np.zeros((h, w), dtype=bool)
-        across, down = code[:, 1:] != code[:, :-1], code[1:] != code[:-1]
-        edge[:, 1:] |= across
-        edge[:, :-1] |= across
-        edge[1:] |= down
-        edge[:-1] |= down
-        y, x = np.nonzero(edge)
+        light, code = light.reshape(h, w, 3), code.reshape(h, w).astype(np.float32)
+        cross = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
+        y, x = np.nonzero(cv2.dilate(code, cross) != cv2.erode(code, cross))  # beside another code: an edge
         dx, dy = _spread(_SUB)
         for part in np.array_split(np.arange(len(x)), max(1, len(x) // 8000)):
             px, py = (x[part, None] + dx).ravel(), (y[part, None] + dy).ravel()
@@ -111,8 +107,8 @@ class RayTracer:
 
     def trace(self, rays):
         """Light (n, 3) float32 along the rays, and a code (n,) that changes where an edge is."""
-        depth, owner = (a.ravel() for a in self.first_hits(rays))
-        x, y = rays.x.ravel(), rays.y.ravel()
+        depth, owner = self.first_hits(rays)
+        x, y = rays.x, rays.y
         light = np.empty((len(x), 3), dtype=np.float32)
         code = owner.astype(np.int32) * _DETAILS
         scene = self.scene
@@ -136,16 +132,7 @@ class RayTracer:
         N = self.R.T @ shape.normal(X)
         world = self.R.T @ (X - self.t[:, None])
         light, direct = irradiance(self.scene, world, N, self.table_colour)
-        detail = 0
-        if isinstance(thing, Board):
-            u, v, front = shape.print_coordinates(X)
-            dark = black(thing, u, v) & front
-            detail = np.where(front, dark, 2)
-            albedo = np.where(dark[:, None], light_of(thing.black), light_of(thing.white))
-        else:
-            albedo = light_of(thing.colour)
-        if hasattr(shape, "faces"):
-            detail = shape.faces(X)
+        albedo, detail = thing.paint(shape, X)
         light = light * albedo
         if getattr(thing, "gloss", 0) > 0:
             V = self.C[:, None] - world

@@ -4,7 +4,7 @@ Lengths in m in world coordinates: the base frame of the arm, table at z = 0 (as
 Colours are (red, green, blue) 0..255 as on the screen: what the surface would show in full white light.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,18 +12,21 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.vision.checks import rigid
 from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
-from ir50p_lab.vision.rendering.board_print import print_range
-from ir50p_lab.vision.rendering.colours import to_bytes
-from ir50p_lab.vision.rendering.shadow import shadow, under_ball, under_stick
-from ir50p_lab.vision.rendering.shapes import SheetShape, SphereShape, StickShape
+from ir50p_lab.vision.rendering.colours import light_of, to_bytes
+from ir50p_lab.vision.rendering.shadow import dim_sky, shadow
+from ir50p_lab.vision.rendering.shapes import RoundShape
 
 
 class SolidThing:
     """Whatever rays can meet above the table; a subclass has a colour, a shape, and says what light it takes."""
 
     def shape(self, T_cam_world):
-        """Where rays meet it, in camera coordinates: as in `shapes`; with `faces(X)`, if edges between faces show."""
+        """Where rays meet it, in camera coordinates: as in `shapes`."""
         raise NotImplementedError
+
+    def paint(self, shape, X):
+        """Linear colour (3,) or (n, 3) at X (3, n) in camera coordinates, and a code, (n,) where edges run across."""
+        return light_of(self.colour), 0
 
     def dim_sky(self, open_sky, X, Y):
         """Take off `open_sky` (n,), in place, what the places X, Y (n,) m of the table lose of the sky."""
@@ -32,8 +35,25 @@ class SolidThing:
         """The same of a Sun or Lamp, whose half width is `softness` rad."""
 
 
+class RoundThing(SolidThing):
+    """A ball or a stick with round ends; it has `ends`, two places (3,) m, and a radius."""
+
+    def shape(self, T_cam_world):
+        """A cylinder with round ends."""
+        a, b = np.asarray(self.ends, dtype=float) @ T_cam_world[:3, :3].T + T_cam_world[:3, 3]
+        return RoundShape(a, b, self.radius)
+
+    def dim_sky(self, open_sky, X, Y):
+        """By the part of the hemisphere that it fills."""
+        dim_sky(open_sky, *np.asarray(self.ends, dtype=X.dtype), self.radius, X, Y)
+
+    def shade(self, part, source, softness, X, Y):
+        """A round or long shadow."""
+        shadow(part, *np.asarray(self.ends, dtype=X.dtype), self.radius, source, softness, X, Y)
+
+
 @dataclass(frozen=True, kw_only=True)
-class SceneBall(SolidThing):
+class SceneBall(RoundThing):
     """A ball: centre (3,) m, radius m, colour name or (r, g, b).
 
     gloss: strength of the highlight, 0 matt (felt, foam) to 1 (lacquer); shininess: exponent, large is a small spot.
@@ -49,44 +69,7 @@ class SceneBall(SolidThing):
         vectors3("position", self.position, unit="m")
         number("radius", self.radius, "> 0", unit="m")
 
-    def shape(self, T_cam_world):
-        """A sphere."""
-        return SphereShape(_moved(T_cam_world, self.position), self.radius)
-
-    def dim_sky(self, open_sky, X, Y):
-        """By the part of the hemisphere that it fills."""
-        under_ball(open_sky, self, X, Y)
-
-    def shade(self, part, source, softness, X, Y):
-        """A round shadow."""
-        centre = np.asarray(self.position, dtype=X.dtype)
-        shadow(part, centre, centre, self.radius, source, softness, X, Y)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Board(SolidThing):
-    """A flat checkerboard or ChArUco board, T_world_board (4, 4).
-
-    Board coordinates: the origin is the first inner corner, x along the `pattern[0]` corners of a row, y along the
-    rows, z away from the viewer of the print, as OpenCV's corner finders see it (a view from the front looks along +z).
-
-    pattern: inner corners (columns, rows), both >= 2. square: m. border: white rim around the squares, m.
-    kind: 'checkerboard' or 'charuco' (marker: side of a marker, m; dictionary: cv2.aruco name).
-    """
-
-    T_world_board: np.ndarray = field(default_factory=lambda: np.diag([1.0, -1.0, -1.0, 1.0]))
-    pattern: tuple = (9, 6)
-    square: float = 0.025
-    border: float = 0.025
-    kind: str = "checkerboard"
-    marker: float = 0.018
-    dictionary: str = "DICT_5X5_100"
-    white: tuple = (238, 238, 236)
-    black: tuple = (28, 28, 30)
-
-    def shape(self, T_cam_world):
-        """A sheet."""
-        return SheetShape(T_cam_world @ self.T_world_board, *print_range(self))
+    ends = property(lambda self: (self.position, self.position), doc="Its middle, twice.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,7 +88,7 @@ class Patch:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stick(SolidThing):
+class Stick(RoundThing):
     """A round stick with round ends from `start` to `end` (3,) m: link of an arm, finger, pen."""
 
     start: tuple
@@ -115,18 +98,7 @@ class Stick(SolidThing):
     gloss: float = 0.0
     shininess: float = 30.0
 
-    def shape(self, T_cam_world):
-        """A cylinder with round ends."""
-        return StickShape(_moved(T_cam_world, self.start), _moved(T_cam_world, self.end), self.radius)
-
-    def dim_sky(self, open_sky, X, Y):
-        """By the part of the hemisphere that it fills."""
-        under_stick(open_sky, self, X, Y)
-
-    def shade(self, part, source, softness, X, Y):
-        """A long shadow."""
-        ends = np.array([self.start, self.end], dtype=float)
-        shadow(part, *ends, self.radius, source, softness, X, Y)
+    ends = property(lambda self: (self.start, self.end), doc="Middles of its round ends.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -241,7 +213,7 @@ class Sensor:
 class Scene:
     """Everything `render_scene` needs, but for the seed of the noise.
 
-    pinhole: the camera. T_cam_world (4, 4): where it is. objects: SceneBall, Board, Stick or another SolidThing;
+    pinhole: the camera. T_cam_world (4, 4): where it is. objects: SceneBall, Stick or another SolidThing;
     patches: on the table, later ones over earlier ones; lights: Sky, Sun, Lamp. arm: tuple of Stick (`arm_sticks`),
     kept apart so that it can be posed. texture_seed: of the table's grain and of the room.
     """
@@ -268,7 +240,3 @@ class Scene:
 
 
 _PARTS = {"objects": (SolidThing,), "patches": (Patch,), "arm": (Stick,), "lights": (Sky, Sun, Lamp)}
-
-
-def _moved(T, p):
-    return T[:3, :3] @ np.asarray(p, dtype=float) + T[:3, 3]

@@ -9,28 +9,22 @@ def smooth(x):
     return x * x * (3 - 2 * x)
 
 
-def under_ball(open_sky, ball, X, Y):
-    """The part of the sky that a ball hides from a point of the table: h r^2 / D^3, D the distance to its centre."""
-    x, y, h = ball.position
-    near = np.flatnonzero((np.abs(X - x) < 6 * ball.radius) & (np.abs(Y - y) < 6 * ball.radius))
-    D2 = (X[near] - x) ** 2 + (Y[near] - y) ** 2 + h * h
-    open_sky[near] *= 1 - np.minimum(max(h, 0) * ball.radius**2 / D2**1.5, 1)
+def dim_sky(open_sky, a, b, radius, X, Y):
+    """Take off `open_sky` (n,), in place, what a stick with round ends a, b (3,) m hides of the sky from X, Y (n,).
 
-
-def under_stick(open_sky, stick, X, Y):
-    """The part of the sky that a long cylinder hides: h r / D^2, D the distance to its axis."""
-    a, b = np.asarray(stick.start, dtype=float), np.asarray(stick.end, dtype=float)
-    if min(a[2], b[2]) > 8 * stick.radius:
+    Of a cylinder h r / D^2, D the distance to its axis at height h; of a ball, a stick of no length, h r^2 / D^3.
+    """
+    if min(a[2], b[2]) > 8 * radius:
         return
-    far = 6 * stick.radius
-    low, high = np.minimum(a, b) - far, np.maximum(a, b) + far
+    low, high = np.minimum(a, b) - 6 * radius, np.maximum(a, b) + 6 * radius
     near = np.flatnonzero((X > low[0]) & (X < high[0]) & (Y > low[1]) & (Y < high[1]))
     P = np.stack([X[near], Y[near], np.zeros(len(near), dtype=X.dtype)])
     axis = b - a
     w = np.clip(axis @ (P - a[:, None]) / max(axis @ axis, 1e-12), 0, 1)
     nearest = a[:, None] + axis[:, None] * w
-    D2 = np.maximum(np.sum((nearest - P) ** 2, axis=0), stick.radius**2)
-    open_sky[near] *= 1 - np.clip(nearest[2] * stick.radius / D2, 0, 1)
+    D = np.sqrt(np.maximum(np.sum((nearest - P) ** 2, axis=0), radius**2))
+    hidden = nearest[2] * radius / D**2 if axis.any() else nearest[2] * radius**2 / D**3
+    open_sky[near] *= 1 - np.clip(hidden, 0, 1)
 
 
 def shadow(part, a, b, radius, source, softness, X, Y):

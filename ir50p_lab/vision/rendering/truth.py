@@ -34,14 +34,11 @@ class BallTruth:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SceneTruth:
-    """Of one rendered picture: balls in the order of the scene, camera, scene, seed. Always `simulated`."""
+    """Of one rendered picture: balls in the order of the scene, camera, scene."""
 
     balls: tuple
     pinhole: Pinhole
-    T_cam_world: np.ndarray
     scene: object
-    seed: int
-    simulated: bool = True
 
     @property
     def red_balls(self):
