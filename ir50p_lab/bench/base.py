@@ -193,7 +193,7 @@ class Bench:
 
     def cut(self):
         """Drive off at once; a run in a cell goes on without it until the next `drive`, one in the background ends."""
-        if self.live_run is not None and not self.live_run.is_here():
+        if self.live_run is not None:
             self.live_run.cut()
         self._pwm = np.zeros(JOINTS)
         self._cut()

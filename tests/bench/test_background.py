@@ -375,7 +375,7 @@ def test_the_last_words_of_a_loop_that_dies_are_told(commands):
 
 
 def test_the_last_words_of_a_loop_that_does_not_begin_are_told(commands, monkeypatch):
-    monkeypatch.setattr("ir50p_lab.bench.loop_process._START", "raise SystemExit('no memory')")
+    monkeypatch.setattr("ir50p_lab.bench.loop_process.START", "raise SystemExit('no memory')")
     with FileBench(commands) as bench, pytest.raises(BenchError, match="ended too soon; it said: no memory"):
         bench.start(pid(), None)
 
