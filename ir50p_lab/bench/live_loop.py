@@ -115,7 +115,7 @@ class _Target:
     def _begin(self, t):
         """Start at this time, from the pose just measured."""
         self.begins, arm = t, self.bench.arm
-        here = np.clip(self.bench.q, arm.q_min, arm.q_max)
+        here = np.clip(self.bench._last.q, arm.q_min, arm.q_max)
         if self.reference is None:
             self.reference = SetPoint(here)
         elif self.lead_in:

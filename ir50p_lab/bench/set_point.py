@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import numbers, vectors3
+from ir50p_lab.inputs import numbers, vector3
 from ir50p_lab.modelling.chain import frames
-from ir50p_lab.signals.reference import per_joint, pose
+from ir50p_lab.signals.reference import per_joint
 
 SPEED = 0.8  # rad/s: with the arm stretched the tip moves at 0.7 m/s
 ACCELERATION = 3.0  # rad/s^2: full speed after a quarter of a second
@@ -30,43 +30,32 @@ class SetPoint:
     duration = math.inf
 
     def __init__(self, q, *, qd=(0.0, 0.0, 0.0), speed=SPEED, acceleration=ACCELERATION):
-        self._q, self._qd = list(pose("q", q)), list(pose("qd", qd, unit="rad/s"))
-        self.goal = tuple(self._q)
-        self.speed = per_joint("speed", speed, "> 0", unit="rad/s")
-        self.acceleration = per_joint("acceleration", acceleration, "> 0", unit="rad/s^2")
-        self._t = None
+        self._q, self._qd = vector3("q", q).copy(), vector3("qd", qd, unit="rad/s").copy()
+        self.goal, self._t = self._q, None
+        self.speed = np.array(per_joint("speed", speed, "> 0", unit="rad/s"))
+        self.acceleration = np.array(per_joint("acceleration", acceleration, "> 0", unit="rad/s^2"))
 
     def move_to(self, q):
         """From now on go to q (3,) rad; NaN leaves a joint's goal as it is. Raises InputError on anything else."""
         q = _angles(q)
-        self.goal = tuple(np.where(np.isnan(q), self.goal, q).tolist())
+        self.goal = np.where(np.isnan(q), self.goal, q)
 
     def __call__(self, t):
         """(q, qd, qdd) at the time t, s: three arrays (3,)."""
         dt = 0.0 if self._t is None else min(max(t - self._t, 0.0), 0.25)  # after a pause: go on, do not jump
         self._t = t
-        qdd = [0.0, 0.0, 0.0]
-        if dt > 0.0:
-            for i in range(3):
-                qdd[i] = self._advance(i, dt)
-        return np.array(self._q), np.array(self._qd), np.array(qdd)
-
-    def _advance(self, i, dt):
-        """One step of joint i; returns its acceleration."""
-        way, v, a = self.goal[i] - self._q[i], self._qd[i], self.acceleration[i]
-        if way == 0.0 and v == 0.0:
-            return 0.0
+        if dt == 0.0:
+            return self._q.copy(), self._qd.copy(), np.zeros(3)
+        way, before, at = self.goal - self._q, self._qd, self.acceleration * dt
         # the speed from which n steps, each slower by a dt than the one before, end exactly at the goal
-        at = a * dt
-        steps = abs(way) / (at * dt)
-        n = max(1, math.ceil(0.5 * (math.sqrt(1 + 8 * steps) - 1) - 1e-9))
+        steps = np.abs(way) / (at * dt)
+        n = np.maximum(1, np.ceil(0.5 * (np.sqrt(1 + 8 * steps) - 1) - 1e-9))
         braking = at * (steps / n + 0.5 * (n - 1))
-        wanted = math.copysign(min(braking, self.speed[i]), way)
-        new = min(max(wanted, v - at), v + at)
-        there = abs(way - new * dt) < 1e-12  # but for rounding; the next step takes the rest of the speed
-        self._q[i] = self.goal[i] if there else self._q[i] + new * dt
-        self._qd[i] = new
-        return (new - v) / dt
+        wanted = np.copysign(np.minimum(braking, self.speed), way)
+        self._qd = np.clip(wanted, before - at, before + at)
+        there = np.abs(way - self._qd * dt) < 1e-12  # but for rounding; the next step takes the rest of the speed
+        self._q = np.where(there, self.goal, self._q + self._qd * dt)
+        return self._q.copy(), self._qd.copy(), (self._qd - before) / dt
 
 
 def checked_reference(arm, t, value, q=None):
@@ -117,7 +106,7 @@ def checked_set_point(arm, q):
                 f"{low:.0f} to {high:.0f} deg"
             )
     if not np.isnan(q).any():
-        height = float(frames(arm, vectors3("set point", q))[2:, 2, 3].min())
+        height = float(frames(arm, q)[2:, 2, 3].min())
         if height < 0.0:
             raise InputError(
                 f"the set point ({', '.join(f'{x:.0f}' for x in np.degrees(q))}) deg lies {-100 * height:.0f} cm below "

@@ -11,7 +11,7 @@ from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.runaway import watch_step
 from ir50p_lab.bench.set_point import FARTHEST, NOISE, checked_reference
-from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, convert, read_pots
+from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, read_pots
 from ir50p_lab.controllers.base import is_compiled
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
@@ -47,7 +47,6 @@ def _compiled_cycles(
                 command[i] = acting
             advance_unit(theta, n, w, x, joint, command, steps)
         read_pots(w, joint, noise[k], counts)
-        convert(counts)
         for i in range(3):
             q[i] = (counts[i] - zero[i]) / slope[i]
             out[k, i], out[k, 3 + i] = counts[i], q[i]
