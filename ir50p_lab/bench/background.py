@@ -125,7 +125,7 @@ class LiveRun:
     stop()                           end it in order: to the rest pose, then let go
     cut()                            drive off within a cycle, and the loop ends; the arm sinks
     set_gains(kp=, ki=, kd=)         from the next cycle on, without a bump; what is left out stays
-    set_point([q1, q2, q3])          go there from where the reference is, at limited speed; rad, None: leave it
+    set_point([q1, q2, q3])          go there from where the reference is, at limited speed; rad
     recent(10)                       the last 10 s: .t .q .u .reference
     statistics()                     cycles, late ones, periods
     join(timeout)                    wait for the end; raises what ended it early
@@ -257,7 +257,7 @@ class LiveRun:
             self._memory.order(gains=np.concatenate([self._gains[name] for name in GAINS]))
 
     def set_point(self, q):
-        """Go to q (3,) rad at limited speed; None (or NaN) leaves a joint where its reference is.
+        """Go to q (3,) rad at limited speed, from where the reference is.
 
         Raises InputError if q is outside the joint limits or below the table.
         """

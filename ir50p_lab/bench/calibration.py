@@ -132,12 +132,8 @@ class JointCalibration:
         except (InputError, TypeError) as error:
             raise InputError(f"{path}: {error}") from None
 
-    def table(self):
-        """Slopes, zeros, standard errors and residuals as text, then the remarks."""
-        return "\n".join([self._frame().to_string(index=False), f"source: {self.source}", *self.remarks])
-
     def _repr_html_(self):
-        """The table, as a notebook shows it."""
+        """Slopes, zeros, standard errors and residuals as a table, then the remarks, as a notebook shows it."""
         from html import escape
 
         below = "".join(f"<p>{escape(text)}</p>" for text in (f"source: {self.source}", *self.remarks))

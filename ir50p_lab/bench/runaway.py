@@ -111,11 +111,9 @@ def _still(w, i, dt, q, gravity, rise, supported):
     payload = PAYLOAD * n[GRAVITY] * n[FORCE_SCALE + i] * max(0.0, s * rise[i])
     excess = abs(u) - max(0.0, s * gravity[i]) - payload - BREAKAWAY * n[FS + i]
     at_end = (s < 0 and q[i] < n[Q_MIN + i] + END) or (s > 0 and q[i] > n[Q_MAX + i] - END)
-    if excess <= 0 or at_end or supported:
-        still[0, i], still[1, i], still[2, i], still[3, i] = 0.0, 0.0, q[i], 0.0
-        return False
-    if abs(q[i] - still[2, i]) > w.noise[i]:
-        still[0, i], still[1, i], still[2, i], still[3, i] = 0.0, 0.0, q[i], 1.0
+    idle = excess <= 0 or at_end or supported
+    if idle or abs(q[i] - still[2, i]) > w.noise[i]:
+        still[0, i], still[1, i], still[2, i], still[3, i] = 0.0, 0.0, q[i], 0.0 if idle else 1.0
         return False
     still[0, i] += min(1.0, dt / w.lag[i]) * (excess / n[FV + i] - still[0, i])
     still[1, i] += still[0, i] * dt

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import numbers, vector3
+from ir50p_lab.inputs import vector3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.signals.reference import per_joint
 
@@ -36,9 +36,8 @@ class SetPoint:
         self.acceleration = np.array(per_joint("acceleration", acceleration, "> 0", unit="rad/s^2"))
 
     def move_to(self, q):
-        """From now on go to q (3,) rad; NaN leaves a joint's goal as it is. Raises InputError on anything else."""
-        q = _angles(q)
-        self.goal = np.where(np.isnan(q), self.goal, q)
+        """From now on go to q (3,) rad. Raises InputError on anything else."""
+        self.goal = vector3("set point", q)
 
     def __call__(self, t):
         """(q, qd, qdd) at the time t, s: three arrays (3,)."""
@@ -93,31 +92,18 @@ def checked_reference(arm, t, value, q=None):
 
 
 def checked_set_point(arm, q):
-    """A set point (3,) rad as an array, NaN for 'leave this joint'; InputError if the arm must not go there.
-
-    The limits of the joints are checked always, the table (elbow and tip must stay above it) when no joint is NaN.
-    """
-    q = _angles(q)
-    for i in range(3):
-        if not (np.isnan(q[i]) or arm.q_min[i] <= q[i] <= arm.q_max[i]):
-            low, high = math.degrees(arm.q_min[i]), math.degrees(arm.q_max[i])
+    """A set point q (3,) rad as an array; InputError if it is beyond the travel of the arm or below the table."""
+    q = vector3("set point", q)
+    for joint, (angle, low, high) in enumerate(np.degrees([q, arm.q_min, arm.q_max]).T, 1):
+        if not low <= angle <= high:
             raise InputError(
-                f"set point of joint {i + 1} is {q[i]:.3f} rad = {math.degrees(q[i]):.1f} deg; the arm's travel is "
+                f"set point of joint {joint} is {np.radians(angle):.3f} rad = {angle:.1f} deg; the arm's travel is "
                 f"{low:.0f} to {high:.0f} deg"
             )
-    if not np.isnan(q).any():
-        height = float(frames(arm, q)[2:, 2, 3].min())
-        if height < 0.0:
-            raise InputError(
-                f"the set point ({', '.join(f'{x:.0f}' for x in np.degrees(q))}) deg lies {-100 * height:.0f} cm below "
-                "the table: raise joint 2 or joint 3"
-            )
-    return q
-
-
-def _angles(q):
-    """Three angles, NaN (or None) for 'leave this joint', as an array; InputError."""
-    q = numbers("set point", q, unit="rad")  # None becomes NaN
-    if q.shape != (3,) or np.isinf(q).any():
-        raise InputError(f"set point {q.tolist()}: give one angle per joint, (3,) rad")
+    height = float(frames(arm, q)[2:, 2, 3].min())
+    if height < 0.0:
+        raise InputError(
+            f"the set point ({', '.join(f'{x:.0f}' for x in np.degrees(q))}) deg lies {-100 * height:.0f} cm below "
+            "the table: raise joint 2 or joint 3"
+        )
     return q

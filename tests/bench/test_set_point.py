@@ -85,7 +85,7 @@ def test_a_target_is_led_in_from_the_pose_and_ends_on_the_reference():
 
 
 def test_set_points_are_checked_against_travel_and_table():
-    np.testing.assert_array_equal(checked_set_point(IR50P, [0.1, None, 0.2]), [0.1, np.nan, 0.2])
-    for bad in ([0, 0], [0, 0, np.inf], 3.0):
+    np.testing.assert_array_equal(checked_set_point(IR50P, [0.1, 0.3, 0.2]), [0.1, 0.3, 0.2])
+    for bad in ([0, 0], [0, 0, np.inf], [0.1, None, 0.2], 3.0):
         with pytest.raises(InputError):
             checked_set_point(IR50P, bad)
