@@ -202,6 +202,7 @@ class LiveRun:
                 self._stage = stage
                 self._told.set()
         code = self._process.wait()
+        self._memory.handed_over()
         with self._said as said:  # where Python's own complaints are
             said.seek(max(0, said.seek(0, os.SEEK_END) - 1500))
             words = said.read().decode("utf-8", "replace").strip()

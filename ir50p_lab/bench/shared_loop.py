@@ -73,6 +73,11 @@ class SharedLoop:
             return cls(mmap.mmap(-1, _SIZE, tagname=address))
         return cls(mmap.mmap(int(address), _SIZE))
 
+    def handed_over(self):
+        """The child has it: the file descriptor is no longer needed here."""
+        if self._file is not None:
+            self._file.close()
+
     # ---- the notebook's side
 
     def order(self, **changes):
