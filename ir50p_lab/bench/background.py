@@ -15,6 +15,7 @@ import tempfile
 import threading
 from dataclasses import dataclass
 
+import cloudpickle
 import numpy as np
 
 from ir50p_lab.bench import loop_process, shared_loop
@@ -55,26 +56,19 @@ def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest
     bench._number_of_cycles(1.0 if seconds is None else seconds)  # it is open, and no other loop has it
     if bench._run is not None:
         raise BenchError("a run in a cell has the arm: end its loop first")
-    cargo = _packed(controller, reference)
+    try:
+        cargo = cloudpickle.dumps((controller, reference))  # whoever defined them
+    except Exception as error:
+        raise InputError(
+            f"controller or reference cannot be sent to the loop in the background ({error}): let them hold numbers "
+            "and functions only, no files, widgets or benches"
+        ) from None
     run = bench.live_run = LiveRun(bench, controller, {"seconds": seconds, "lead_in": lead_in, "rest": rest})
     if bench.own_process:
         run._begin_process(cargo)
     else:
         run._begin_thread(cargo)
     return run
-
-
-def _packed(controller, reference):
-    """Controller and reference as bytes, whoever defined them."""
-    import cloudpickle
-
-    try:
-        return cloudpickle.dumps((controller, reference))
-    except Exception as error:
-        raise InputError(
-            f"controller or reference cannot be sent to the loop in the background ({error}): let them hold numbers "
-            "and functions only, no files, widgets or benches"
-        ) from None
 
 
 @dataclass(frozen=True)
@@ -166,8 +160,6 @@ class LiveRun:
 
     def _begin_process(self, cargo):
         """Start the child; back when it has the port and its first cycle follows. Raises what kept it from that."""
-        import cloudpickle
-
         options = {"start_new_session": True, "pass_fds": self._memory.file_descriptors}
         if os.name == "nt":  # either way: Ctrl-C and the notebook's interrupt button are not for the child
             options = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
@@ -250,9 +242,8 @@ class LiveRun:
         """Change gains from the next cycle on; the command does not jump. Raises InputError for bad gains."""
         if not self._gains:
             raise InputError("this controller has no gains kp, ki, kd: there is nothing to change live")
-        wanted = {
-            name: gains(name, value) for name, value in zip(GAINS, (kp, ki, kd), strict=True) if value is not None
-        }
+        given = {name: value for name, value in zip(GAINS, (kp, ki, kd), strict=True) if value is not None}
+        wanted = {name: gains(name, value) for name, value in given.items()}
         with self._lock:
             self._gains.update(wanted)
             self._memory.order(gains=np.concatenate([self._gains[name] for name in GAINS]))
