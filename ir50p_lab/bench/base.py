@@ -422,3 +422,8 @@ class Bench:
         for sample in self.run(reference.duration + 0.5, record=False):
             self.drive(controller.step(sample.t, sample.q, reference(sample.t)))
         self.cut()
+
+    @property
+    def q(self):
+        """The pose (3,) rad that was measured last; None before the first run."""
+        return None if self._last is None else self._last.q

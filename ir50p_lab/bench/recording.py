@@ -130,6 +130,11 @@ class Recording:
         events = [event for event in self.events if t0 <= event[0] <= t1]
         return Recording(table[(table[:, T] >= t0) & (table[:, T] <= t1)], header, notes=self.notes, events=events)
 
+    def recent(self, seconds):
+        """The last `seconds` as a Recording of its own; cheap while the run goes on."""
+        count = 1 + math.ceil(seconds / float(self.header.get("period_s", 0.01)))
+        return Recording(self._rows[-count * len(COLUMNS) :], self.header)
+
     def metrics(self):
         """How each joint did: list of three JointSummary. Raises RecordingError if there is no sample."""
         return summarise(self)
