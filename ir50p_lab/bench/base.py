@@ -164,10 +164,7 @@ class Bench:
         return self.open()
 
     def __exit__(self, kind, error, traceback):
-        if error is None:
-            self.close()
-        else:
-            self.abort()
+        self.close() if error is None else self.abort()
 
     def close(self):
         """Go to the rest pose, let go, and give the port free. May be called twice."""
@@ -193,7 +190,7 @@ class Bench:
 
     def cut(self):
         """Drive off at once; a run in a cell goes on without it until the next `drive`, one in the background ends."""
-        if self.live_run is not None and not self.live_run.is_here():
+        if self.live_run is not None:
             self.live_run.cut()
         self._pwm = np.zeros(JOINTS)
         self._cut()
@@ -218,16 +215,12 @@ class Bench:
     def _number_of_cycles(self, seconds):
         if not (isinstance(seconds, int | float | np.number) and math.isfinite(seconds) and seconds > 0):
             raise InputError(f"seconds = {seconds!r}: give how long to run, in seconds, > 0")
-        self._take_back()
+        if self.live_run is not None and not self.live_run.is_here():
+            self.live_run.give_back()  # BenchError while it runs
+            self.live_run = None
         if not self.is_open:
             raise BenchError("the bench is closed: open it with `with connect() as bench:` and run inside the block")
         return max(1, round(seconds / self.period))
-
-    def _take_back(self):
-        """Have the arm back from a loop in the background that is over; BenchError if it is not."""
-        if self.live_run is not None and not self.live_run.is_here():
-            self.live_run.give_back()
-            self.live_run = None
 
     def _cycles(self, cycles, reference, record, header):
         with self._running(reference, record, header) as run:
@@ -295,7 +288,7 @@ class Bench:
         pace.catch_up()
         run.trips, self.trips = run.trips + 1, self.trips + 1
         said, ended = f"the drive was cut: no command for {silence:.2f} s", silence > LONGEST_PAUSE
-        self._note_at(when, said + "; the run was ended" * ended)
+        self.note(said + "; the run was ended" * ended, when)
         self._pwm = np.zeros(JOINTS)
         with contextlib.suppress(BenchError) if ended else contextlib.nullcontext():
             t, counts, _ = self._measure(pace.cycle, drive=False)
@@ -399,14 +392,10 @@ class Bench:
             limited.append(0.0 if out else min(max(float(round(u)), -LIMIT_PWM), LIMIT_PWM))
         return np.array(limited)
 
-    def note(self, text):
-        """Write into the recording what has just been changed (gains, a payload): it stands between the samples."""
-        if self._last is not None:
-            self._note_at(self._last.t, text)
-
-    def _note_at(self, t, text):
-        if self._run is not None and self._run.recorder is not None:
-            self._run.recorder.event(t, text)
+    def note(self, text, t=None):
+        """Write into the recording what has just been changed (gains, a payload); t: s, default the last sample's."""
+        if self._run is not None and self._run.recorder is not None and self._last is not None:
+            self._run.recorder.event(self._last.t if t is None else t, text)
 
     def follow(self, controller, reference, seconds, *, record=True, **header):
         """Run `controller` on `reference` for `seconds`; the loop of the lesson in one call.

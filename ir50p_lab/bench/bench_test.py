@@ -40,45 +40,35 @@ class Finding:
 
 
 class Person:
-    """Whoever stands at the bench: is told what to do next, and presses Enter. turn: s to turn a joint by hand."""
+    """Whoever stands at the bench: is told what to do next, and presses Enter.
 
-    turn = 20.0
+    plant: a SimulatedArm, whose joints a simulated person turns and which it lays down. turn: s that takes.
+    """
+
+    def __init__(self, plant=None):
+        self._plant, self.turn = plant, 20.0 if plant is None else 2.0
 
     def ask(self, text):
         """Wait until the person has done what `text` says."""
-        input(f"{text}. Then press Enter. ")
+        if self._plant is None:
+            input(f"{text}. Then press Enter. ")
+        else:
+            print(f"{text}: done by the simulated person")
 
     def at(self, joint, share):
-        """Nothing: a person turns the joint; called at each sample with the share 0..1 of the time that is over."""
+        """Simulated, at the share 0..1 of the time: `joint` (0 to 2) to its upper end, its lower end, and back."""
+        if self._plant is not None:
+            q, arm = rest_pose(self._plant.arm).copy(), self._plant.arm
+            low, high = np.clip(arm.q_min[joint], -np.pi, np.pi), np.clip(arm.q_max[joint], -np.pi, np.pi)
+            q[joint] = np.interp(share, [0, 0.25, 0.75, 1], [q[joint], high, low, q[joint]])
+            with contextlib.suppress(InputError):  # the table stops the hand, too
+                self._plant.place(q)
 
     def lay_down(self):
         """Wait until the arm lies where it stays without drive."""
         self.ask("Lay the arm down so that it stays by itself, something soft under it")
-
-
-class SimulatedPerson(Person):
-    """Turns the joints of a SimulatedArm, and lays it down."""
-
-    turn = 2.0
-
-    def __init__(self, plant):
-        self._plant, self._rest = plant, rest_pose(plant.arm)
-
-    def ask(self, text):
-        """Say what a person would be asked."""
-        print(f"{text}: done by the simulated person")
-
-    def at(self, joint, share):
-        """Turn `joint` (0 to 2) to its upper end, its lower end, and back; the table stops the hand, too."""
-        q, arm = self._rest.copy(), self._plant.arm
-        low, high = np.clip(arm.q_min[joint], -np.pi, np.pi), np.clip(arm.q_max[joint], -np.pi, np.pi)
-        q[joint] = np.interp(share, [0, 0.25, 0.75, 1], [q[joint], high, low, q[joint]])
-        with contextlib.suppress(InputError):
-            self._plant.place(q)
-
-    def lay_down(self):
-        """Put the arm into its rest pose."""
-        self._plant.place(self._rest)
+        if self._plant is not None:
+            self._plant.place(rest_pose(self._plant.arm))
 
 
 def bench_test(bench, person, *, joints=(1, 2, 3), say=print):
@@ -283,7 +273,7 @@ def main(arguments=None):
             raise InputError("a recording has no motors to test: give the port of a board, or 'simulated'")
         if not bench.simulated:
             print(f"Firmware {bench.firmware}, bench {bench.give_id()}")
-        person = SimulatedPerson(bench.plant) if bench.simulated else Person()
+        person = Person(bench.plant if bench.simulated else None)
         findings = bench_test(bench, person, joints=joints)
         path = write_report(bench, findings)
     finally:

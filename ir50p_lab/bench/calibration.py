@@ -1,14 +1,17 @@
 """From counts of the converter to joint angles: a straight line per joint, from an experiment (4.1.2)."""
 
+import tomllib
 import warnings
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
-from ir50p_lab.bench.calibration_file import read_calibration, write_calibration
 from ir50p_lab.errors import InputError, SuspiciousArmWarning
-from ir50p_lab.inputs import check_arm, vector3
+from ir50p_lab.inputs import check_arm, numbers, vector3
 
+_HEAD = "counts = zero + slope q, joints 1 to 3: counts of the 10-bit converter, slope in counts/rad, q in rad"
+_JOINTS = ("joint1", "joint2", "joint3")
 _PLAUSIBLE = (20.0, 1023 / np.radians(60))  # counts/rad: a potentiometer of many turns; of 60 deg over the full range
 
 
@@ -102,19 +105,35 @@ class JointCalibration:
 
     def save(self, path):
         """Write it as a readable file (TOML). Returns the Path. Raises InputError if it cannot be written."""
-        return write_calibration(self, path)
+        import tomlkit
+
+        document = tomlkit.document().add(tomlkit.comment(_HEAD))
+        for name in ("arm", "source", "slope", "zero", "stderr_slope", "stderr_zero", "remarks"):
+            if (value := getattr(self, name)) is not None:
+                document[name] = list(value) if isinstance(value, tuple) else value
+        points = [{"q": list(q), "counts": list(counts)} for q, counts in self.points]
+        document.update(zip(_JOINTS, points, strict=False))
+        path = Path(path)
+        try:
+            path.write_text(tomlkit.dumps(document), encoding="utf-8")
+        except OSError as error:
+            raise InputError(f"cannot write the calibration to {path}: {error.strerror}; give another path") from None
+        return path
 
     @classmethod
     def load(cls, path):
         """Read a file that `save` wrote (or a person). Raises InputError that names the file and what is wrong."""
-        return read_calibration(cls, path)
-
-    def table(self):
-        """Slopes, zeros, standard errors and residuals as text, then the remarks."""
-        return "\n".join([self._frame().to_string(index=False), f"source: {self.source}", *self.remarks])
+        try:
+            return cls(**_fields(tomllib.loads(Path(path).read_text(encoding="utf-8"))))
+        except OSError as error:
+            raise InputError(f"cannot read {path}: {error.strerror}; check it, or calibrate (notebook 10)") from None
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+            raise InputError(f"{path} is not a TOML file: {error}. Write one with JointCalibration.save") from None
+        except (InputError, TypeError) as error:
+            raise InputError(f"{path}: {error}") from None
 
     def _repr_html_(self):
-        """The table, as a notebook shows it."""
+        """Slopes, zeros, standard errors and residuals as a table, then the remarks, as a notebook shows it."""
         from html import escape
 
         below = "".join(f"<p>{escape(text)}</p>" for text in (f"source: {self.source}", *self.remarks))
@@ -134,6 +153,30 @@ class JointCalibration:
         rms = [np.degrees(np.sqrt(np.mean(one**2))) if one.size else np.nan for one in residuals]
         columns["rms residual"] = [f"{x:.2f} deg" if x == x else "not measured" for x in rms]
         return pd.DataFrame(columns | {"points": [one.size for one in residuals]})
+
+
+def _fields(data):
+    """The arguments of a JointCalibration in what stands in a file."""
+    remarks = data.pop("remarks", [])
+    texts = [data.get("arm", ""), data.get("source", "")]
+    if not isinstance(remarks, list) or not all(isinstance(text, str) for text in texts + remarks):
+        raise InputError("arm and source must be text in quotes, remarks a list of such texts")
+    measured = [data.pop(name, None) for name in _JOINTS]
+    points = ()
+    if any(measured):
+        points = tuple(_pairs(*named) for named in zip(_JOINTS, measured, strict=True))
+    return data | {"remarks": tuple(remarks), "points": points}
+
+
+def _pairs(name, table):
+    if table is None:
+        return (), ()
+    if not isinstance(table, dict) or not {"q", "counts"} <= set(table):
+        raise InputError(f"[{name}] must hold two lists of numbers, q (rad) and counts")
+    q, counts = (numbers(f"{key} of [{name}]", table[key]) for key in ("q", "counts"))
+    if q.ndim != 1 or q.shape != counts.shape:
+        raise InputError(f"[{name}] holds angles {q.shape} but counts {counts.shape}: they belong together in pairs")
+    return tuple(q.tolist()), tuple(counts.tolist())
 
 
 # Bench data of an older ROB3 (public repository eurobtec/rob3): counts of a 10-bit converter per rad of axes 1-3.

@@ -4,7 +4,7 @@ import numpy as np
 
 from ir50p_lab.bench.calibration import JointCalibration
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import first_not_finite, numbers
+from ir50p_lab.inputs import vectors3
 
 _FULL = 1023.0
 _STEP_BACK = 300.0  # counts between two neighbouring angles: more than a misread angle, less than a wrap makes
@@ -20,9 +20,7 @@ def fit_calibration(q, counts, *, arm="", source="measured"):
     over a wide range the two differ by less than their standard errors; with a narrow one they do not.
 
     Args:
-        q, counts: (m, 3), m poses of the whole arm; or three lists of different lengths, one experiment per joint (to
-            measure one joint anew take those of the others from `points` of the last calibration). Angles in rad,
-            counts of the 10-bit converter.
+        q, counts: (m, 3), m poses of the whole arm. Angles in rad, counts of the 10-bit converter.
         arm: Arm or its name, saved with it. source: kept with it (who measured, when).
 
     Returns: JointCalibration with standard errors, points and residuals; its
@@ -31,51 +29,31 @@ def fit_calibration(q, counts, *, arm="", source="measured"):
     Raises: InputError for what no line fits: fewer than 3 points, angles in degrees, counts outside 0..1023, a reading
     that does not change or does not follow its angle (a potentiometer that wraps, cables of two joints swapped).
     """
-    pairs = [
-        _checked(joint, *pair)
-        for joint, pair in enumerate(zip(_three("q", q), _three("counts", counts), strict=True), 1)
-    ]
-    fits = [_line(joint, *pair) for joint, pair in enumerate(pairs, 1)]
+    q, counts = vectors3("q", q), vectors3("counts", counts, unit="counts")
+    if q.ndim != 2 or len(q) < 3:
+        raise InputError(f"q has shape {q.shape}: give a row per pose; two make a line, a third shows its error")
+    if q.shape != counts.shape:
+        raise InputError(f"{len(q)} angles but {counts.shape} counts; they belong together in pairs")
+    if np.abs(q).max() > 2 * np.pi:
+        raise InputError(f"q holds {np.abs(q).max():g} rad, more than a turn: in degrees? Use np.radians")
+    if counts.min() < 0 or counts.max() > _FULL:
+        raise InputError(
+            f"counts are {counts.min():g} to {counts.max():g}; the 10-bit converter gives 0 to {_FULL:.0f}"
+        )
+    fits = [_line(joint, *pair) for joint, pair in enumerate(zip(q.T, counts.T, strict=True), 1)]
     slope, zero, stderr_slope, stderr_zero, points, remarks = zip(*fits, strict=True)
     arm = getattr(arm, "name", arm)
     return JointCalibration(slope, zero, stderr_slope, stderr_zero, source, arm, points, sum(remarks, ()))
 
 
-def _three(name, value):
-    """Three arrays, from (m, 3) or from three lists."""
-    rows = [numbers(name, row) for row in value] if np.iterable(value) else []
-    if rows and all(row.shape == (3,) for row in rows):
-        return np.array(rows).T
-    if len(rows) != 3 or any(row.ndim != 1 for row in rows):
-        raise InputError(f"{name}: one joint only? Give (m, 3), one row per pose, or three lists, one per joint")
-    return rows
-
-
-def _checked(joint, q, counts):
-    """The two arrays (m,) of one joint; InputError if no line can be made of them."""
-    if len(q) != len(counts):
-        raise InputError(f"joint {joint}: {len(q)} angles but {len(counts)} counts; they belong together in pairs")
-    if len(q) < 3:
-        raise InputError(f"joint {joint}: {len(q)} points; two make a line, a third shows its error: measure 10 or so")
-    for name, values, unit in (("q", q, "rad"), ("counts", counts, "counts")):
-        if not np.isfinite(values).all():
-            raise InputError(f"joint {joint}: {name} holds {first_not_finite(values)}: leave that point out")
-        if np.ptp(values) == 0:
-            raise InputError(
-                f"joint {joint}: every {name} is {values[0]:g} {unit}: nothing moved. Is this the potentiometer of "
-                "that joint, and is it connected?"
-            )
-    farthest = q[np.abs(q).argmax()]
-    if abs(farthest) > 2 * np.pi:
-        raise InputError(f"joint {joint}: q holds {farthest:g} rad, more than a turn: in degrees? Use np.radians")
-    bad = counts[(counts < 0) | (counts > _FULL)]
-    if bad.size:
-        raise InputError(f"joint {joint}: counts holds {bad[0]:g}; the 10-bit converter gives 0 to {_FULL:.0f}")
-    return q, counts
-
-
 def _line(joint, q, counts):
     """(slope, zero, stderr_slope, stderr_zero, points, remarks) of one joint."""
+    for name, values in (("angle", q), ("reading", counts)):
+        if np.ptp(values) == 0:
+            raise InputError(
+                f"joint {joint}: every {name} is {values[0]:g}: nothing moved. Is this the potentiometer "
+                "of that joint, and is it connected?"
+            )
     (b, a), cov = np.polyfit(counts, q, 1, cov=True)
     r2 = np.corrcoef(q, counts)[0, 1] ** 2
     back = -(np.sign(b) * np.diff(counts[np.argsort(q)])).min()

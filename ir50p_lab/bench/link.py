@@ -1,7 +1,5 @@
 """Question and answer with the board: sequence numbers, repeats when nothing comes, no answer taken for another's."""
 
-import math
-import statistics
 from collections import deque
 from dataclasses import dataclass, field
 
@@ -37,11 +35,6 @@ class LinkStatistics:
     bad_commands: int = 0
     watchdog_trips: int = 0
     round_trips: deque = field(default_factory=lambda: deque(maxlen=1000), repr=False)
-
-    @property
-    def round_trip(self):
-        """Median of the last 1000 round trips, s; nan: none yet."""
-        return statistics.median(self.round_trips) if self.round_trips else math.nan
 
 
 class Link:

@@ -34,7 +34,8 @@ def live_loop(bench, controller, reference, memory, *, seconds, lead_in, rest, o
         if hasattr(controller, "reset"):
             controller.reset()
         target = _Target(bench, reference, lead_in)
-        q = loop.run(controller, target, seconds, header=_header(controller))
+        header = {"controller": type(controller).__name__, "loop": "in the background; gains and set point may change"}
+        q = loop.run(controller, target, seconds, header=header | header_of(controller))
         if rest and bench.kind != "replay" and not memory.orders().cut and q is not None:
             memory.status.phase = shared_loop.RETURNING
             pid, way = way_to_rest(bench.arm, q, bench.period)
@@ -115,7 +116,7 @@ class _Target:
     def _begin(self, t):
         """Start at this time, from the pose just measured."""
         self.begins, arm = t, self.bench.arm
-        here = np.clip(self.bench.q, arm.q_min, arm.q_max)
+        here = np.clip(self.bench._last.q, arm.q_min, arm.q_max)
         if self.reference is None:
             self.reference = SetPoint(here)
         elif self.lead_in:
@@ -132,8 +133,3 @@ class _Target:
             self.reference, self._way = SetPoint(q, qd=qd), None
             self(t)  # its time begins now
         self.reference.move_to(goal)
-
-
-def _header(controller):
-    lines = {"controller": type(controller).__name__, "loop": "in the background; gains and set point may change"}
-    return lines | header_of(controller)

@@ -81,9 +81,7 @@ class Pace:
         """Wait for the next cycle. Returns its number."""
         self.begins_anew()
         self.cycle += 1
-        skipped = max(0, int((self._clock.now() - self.start) / self._period - self.cycle))
-        self.missed += skipped
-        self.cycle += skipped
+        self.catch_up()
         due = self.start + self.cycle * self._period
         early = due - self._clock.now()
         if early > 0:

@@ -19,10 +19,9 @@ def list_ports():
     """All serial ports of this computer, those of a Mega 2560 first, then chips of its clones, then the others."""
     from serial.tools import list_ports
 
-    found = sorted(list_ports.comports())
-    rank = {port.device: 0 if (port.vid, port.pid) in BOARDS else 1 for port in found}
+    found = sorted(list_ports.comports(), key=lambda port: ((port.vid, port.pid) not in BOARDS, port))
     ports = [Port(port.device, board_name(port.vid, port.pid)) for port in found]
-    return sorted(ports, key=lambda port: (port.board is None, rank[port.device]))
+    return sorted(ports, key=lambda port: port.board is None)
 
 
 def open_port(device, baud):

@@ -5,6 +5,7 @@ import math
 import os
 from array import array
 from datetime import datetime
+from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -45,14 +46,11 @@ class Recorder:
         begun = datetime.fromisoformat(head["date"]).strftime("%Y-%m-%d_%H%M%S")
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            run = 1
-            while True:  # several runs in one second get numbers
+            for run in count(1):  # several runs in one second get numbers
                 path = folder / f"{begun}_{kind}_{run}.csv"
-                try:
+                with contextlib.suppress(FileExistsError):
                     self._file = os.open(path, _FLAGS, 0o666)
                     break
-                except FileExistsError:
-                    run += 1
         except OSError as error:
             raise RecordingError(
                 f"cannot record in {folder.absolute()}: {error.strerror}; {_ELSEWHERE}, or record=False for none"
@@ -98,19 +96,15 @@ class Recorder:
         try:
             while data:  # in parts if the disk is nearly full, or a signal came
                 data = data[os.write(self._file, data) :]
-        except OSError as error:
-            self._give_up(error)
-
-    def _give_up(self, error):
-        """Leave a file of whole lines and say what happened."""
-        os.close(self._file)
-        self._file = None
-        with contextlib.suppress(OSError):  # else its last line is cut off; loading leaves that out
-            os.truncate(self.path, self.path.read_bytes().rfind(b"\n") + 1)
-        raise RecordingError(
-            f"the recording {self.path} cannot be written on: {error.strerror}. What was recorded before "
-            f"is safe in it; the run ends here. Make room, or {_ELSEWHERE}"
-        ) from None
+        except OSError as error:  # leave a file of whole lines
+            os.close(self._file)
+            self._file = None
+            with contextlib.suppress(OSError):  # else its last line is cut off; loading leaves that out
+                os.truncate(self.path, self.path.read_bytes().rfind(b"\n") + 1)
+            raise RecordingError(
+                f"the recording {self.path} cannot be written on: {error.strerror}. What was recorded before "
+                f"is safe in it; the run ends here. Make room, or {_ELSEWHERE}"
+            ) from None
 
     def close(self, statistics=None):
         """End the recording; statistics: dict of numbers about the run for its head. May be called twice."""

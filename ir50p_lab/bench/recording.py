@@ -65,16 +65,12 @@ class Recording:
         line was cut off and left out.
         """
         header, table, notes, events = recording_file.read(path)
-        for note in notes:
-            warnings.warn(f"{path}: {note}", RecordingWarning, stacklevel=2)
         loaded = cls(table, header, path=Path(path), notes=notes, events=events)
-        told = loaded._told_period()
-        if "period_s" in header and len(loaded) > 1 and told != loaded.period:
-            doubt = (
-                f"period_s = {header['period_s']} does not fit its times: their step of {loaded.period:.4g} s is taken"
-            )
-            loaded.notes += (doubt,)
-            warnings.warn(f"{path}: {doubt}", RecordingWarning, stacklevel=2)
+        if "period_s" in header and len(loaded) > 1 and loaded._told_period() != loaded.period:
+            said = f"period_s = {header['period_s']} does not fit its times"
+            loaded.notes += (f"{said}: their step of {loaded.period:.4g} s is taken",)
+        for note in loaded.notes:
+            warnings.warn(f"{path}: {note}", RecordingWarning, stacklevel=2)
         return loaded
 
     def save(self, path):

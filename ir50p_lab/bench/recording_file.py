@@ -82,25 +82,30 @@ def read(path):
         raise RecordingError(f"cannot read the recording {path}: {error.strerror}; check the path") from None
     text = _text(data, path)
     ended, lines = text.endswith(("\n", "\r")), text.splitlines()
-    first = next((k for k, line in enumerate(lines) if _bare(line)[:1] not in ("", "#")), len(lines))
-    if first == len(lines) or (first == len(lines) - 1 and not ended):
-        raise RecordingError(f"{path} ends before its first sample: the run was stopped as it began; record again")
-    header = _read_header(lines[:first], 1, path)
-    delimiter, places = _read_columns(lines[first], f"{path}, line {first + 1}")
-    width, notes = lines[first].count(delimiter) + 1, ()
-    if not ended and (FORMAT in header or lines[-1].count(delimiter) + 1 != width):
-        notes = (f"its last line ({len(lines)}) is not complete and was left out: the program stopped as it wrote",)
-        lines.pop()
-    rows, numbers, events = [], [], []
-    for number, line in enumerate(lines[first + 1 :], first + 2):
+    header, rows, numbers, events, notes = {}, [], [], [], ()
+    delimiter = width = places = None
+    for number, line in enumerate(lines, 1):
         place = f"{path}, line {number}"
+        bare = line.strip().rstrip(";,\t").strip('" ')  # without what spreadsheets pad and quote it with
+        if number == len(lines) and not ended:  # cut off, unless another program has left out the end of the line
+            if places is None:
+                break
+            if FORMAT in header or line.count(delimiter) + 1 != width:
+                notes = (f"its last line ({number}) is not complete and was left out: the program stopped as it wrote",)
+                break
         if found := _EVENT.match(line):
             events.append((_number(found[1], place), _as_written(found[2].rstrip(';,\t" '), place)))
-        elif line.lstrip(' "').startswith("#"):  # statistics, which stand at the end
-            header |= _read_header([line], number, path)
-        elif line.strip(" ;,\t"):  # else an empty line of a spreadsheet
+        elif bare.startswith("#"):  # at the end stand statistics
+            key, colon, value = bare.lstrip("# ").partition(":")
+            header |= {key.strip(): _as_written(value.strip(), place)} if colon else {}
+        elif bare and places is None:
+            delimiter, places = _read_columns(line, place)
+            width = line.count(delimiter) + 1
+        elif bare:  # else an empty line of a spreadsheet
             rows.append(_read_row(line, place, delimiter, places, width))
             numbers.append(number)
+    if places is None:
+        raise RecordingError(f"{path} ends before its first sample: the run was stopped as it began; record again")
     table = np.array(rows).reshape(-1, len(COLUMNS))
     _check(table, numbers, path)
     return {key: value for key, value in header.items() if key not in (FORMAT, "units")}, table, notes, tuple(events)
@@ -116,21 +121,6 @@ def _text(data, name):
     if "\0" in text:
         raise RecordingError(f"{name} is no text file; a recording is a CSV file")
     return text
-
-
-def _bare(line):
-    """A line without what spreadsheets pad and quote it with."""
-    return line.strip().rstrip(";,\t").strip('"')
-
-
-def _read_header(lines, number, name):
-    """{key: value} of lines `# key: value`, the first of which has this number."""
-    header = {}
-    for k, line in enumerate(lines, number):
-        key, colon, value = _bare(line).lstrip("# ").partition(":")
-        if colon:
-            header[key.strip()] = _as_written(value.strip(), f"{name}, line {k}")
-    return header
 
 
 def _read_columns(line, place):

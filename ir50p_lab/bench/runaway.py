@@ -76,21 +76,10 @@ def make_watch(arm, calibration, period):
     pull = np.array([0.0, *cf.gravity_torques(plant.theta, plant.numbers[GRAVITY], 1.0, 1.0)])
     load = PAYLOAD * plant.numbers[GRAVITY] * reach / arm.actuators.gain
     n = max(1, round(BLOCK / period))
-    return Watch(
-        theta=plant.theta,
-        numbers=plant.numbers,
-        lag=inertia / damping,
-        top=FAST * (limit + np.abs(pull) + load) / damping,
-        noise=NOISE / np.abs(np.array(calibration.slope)),
-        now=np.zeros(2, dtype=np.int64),
-        clock=np.zeros(KEPT),
-        q=np.zeros((KEPT, 3)),
-        drive=np.zeros((KEPT, 3)),
-        block=np.zeros((n, 3)),
-        t=np.zeros(n),
-        u=np.zeros(3),
-        still=np.zeros((4, 3)),
-    )
+    top, noise = FAST * (limit + np.abs(pull) + load) / damping, NOISE / np.abs(np.array(calibration.slope))
+    known = (plant.theta, plant.numbers, inertia / damping, top, noise)
+    now, clock, block = np.zeros(2, dtype=np.int64), np.zeros(KEPT), np.zeros((n, 3))
+    return Watch(*known, now, clock, *np.zeros((2, KEPT, 3)), block, np.zeros(n), np.zeros(3), np.zeros((4, 3)))
 
 
 @jit()
@@ -122,11 +111,9 @@ def _still(w, i, dt, q, gravity, rise, supported):
     payload = PAYLOAD * n[GRAVITY] * n[FORCE_SCALE + i] * max(0.0, s * rise[i])
     excess = abs(u) - max(0.0, s * gravity[i]) - payload - BREAKAWAY * n[FS + i]
     at_end = (s < 0 and q[i] < n[Q_MIN + i] + END) or (s > 0 and q[i] > n[Q_MAX + i] - END)
-    if excess <= 0 or at_end or supported:
-        still[0, i], still[1, i], still[2, i], still[3, i] = 0.0, 0.0, q[i], 0.0
-        return False
-    if abs(q[i] - still[2, i]) > w.noise[i]:
-        still[0, i], still[1, i], still[2, i], still[3, i] = 0.0, 0.0, q[i], 1.0
+    idle = excess <= 0 or at_end or supported
+    if idle or abs(q[i] - still[2, i]) > w.noise[i]:
+        still[0, i], still[1, i], still[2, i], still[3, i] = 0.0, 0.0, q[i], 0.0 if idle else 1.0
         return False
     still[0, i] += min(1.0, dt / w.lag[i]) * (excess / n[FV + i] - still[0, i])
     still[1, i] += still[0, i] * dt

@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import numbers, vectors3
+from ir50p_lab.inputs import vector3
 from ir50p_lab.modelling.chain import frames
-from ir50p_lab.signals.reference import per_joint, pose
+from ir50p_lab.signals.reference import per_joint
 
 SPEED = 0.8  # rad/s: with the arm stretched the tip moves at 0.7 m/s
 ACCELERATION = 3.0  # rad/s^2: full speed after a quarter of a second
@@ -30,43 +30,31 @@ class SetPoint:
     duration = math.inf
 
     def __init__(self, q, *, qd=(0.0, 0.0, 0.0), speed=SPEED, acceleration=ACCELERATION):
-        self._q, self._qd = list(pose("q", q)), list(pose("qd", qd, unit="rad/s"))
-        self.goal = tuple(self._q)
-        self.speed = per_joint("speed", speed, "> 0", unit="rad/s")
-        self.acceleration = per_joint("acceleration", acceleration, "> 0", unit="rad/s^2")
-        self._t = None
+        self._q, self._qd = vector3("q", q).copy(), vector3("qd", qd, unit="rad/s").copy()
+        self.goal, self._t = self._q, None
+        self.speed = np.array(per_joint("speed", speed, "> 0", unit="rad/s"))
+        self.acceleration = np.array(per_joint("acceleration", acceleration, "> 0", unit="rad/s^2"))
 
     def move_to(self, q):
-        """From now on go to q (3,) rad; NaN leaves a joint's goal as it is. Raises InputError on anything else."""
-        q = _angles(q)
-        self.goal = tuple(np.where(np.isnan(q), self.goal, q).tolist())
+        """From now on go to q (3,) rad. Raises InputError on anything else."""
+        self.goal = vector3("set point", q)
 
     def __call__(self, t):
         """(q, qd, qdd) at the time t, s: three arrays (3,)."""
         dt = 0.0 if self._t is None else min(max(t - self._t, 0.0), 0.25)  # after a pause: go on, do not jump
         self._t = t
-        qdd = [0.0, 0.0, 0.0]
-        if dt > 0.0:
-            for i in range(3):
-                qdd[i] = self._advance(i, dt)
-        return np.array(self._q), np.array(self._qd), np.array(qdd)
-
-    def _advance(self, i, dt):
-        """One step of joint i; returns its acceleration."""
-        way, v, a = self.goal[i] - self._q[i], self._qd[i], self.acceleration[i]
-        if way == 0.0 and v == 0.0:
-            return 0.0
+        if dt == 0.0:
+            return self._q.copy(), self._qd.copy(), np.zeros(3)
+        way, before, at = self.goal - self._q, self._qd, self.acceleration * dt
         # the speed from which n steps, each slower by a dt than the one before, end exactly at the goal
-        at = a * dt
-        steps = abs(way) / (at * dt)
-        n = max(1, math.ceil(0.5 * (math.sqrt(1 + 8 * steps) - 1) - 1e-9))
+        steps = np.abs(way) / (at * dt)
+        n = np.maximum(1, np.ceil(0.5 * (np.sqrt(1 + 8 * steps) - 1) - 1e-9))
         braking = at * (steps / n + 0.5 * (n - 1))
-        wanted = math.copysign(min(braking, self.speed[i]), way)
-        new = min(max(wanted, v - at), v + at)
-        there = abs(way - new * dt) < 1e-12  # but for rounding; the next step takes the rest of the speed
-        self._q[i] = self.goal[i] if there else self._q[i] + new * dt
-        self._qd[i] = new
-        return (new - v) / dt
+        wanted = np.copysign(np.minimum(braking, self.speed), way)
+        self._qd = np.clip(wanted, before - at, before + at)
+        there = np.abs(way - self._qd * dt) < 1e-12  # but for rounding; the next step takes the rest of the speed
+        self._q = np.where(there, self.goal, self._q + self._qd * dt)
+        return self._q.copy(), self._qd.copy(), (self._qd - before) / dt
 
 
 def checked_reference(arm, t, value, q=None):
@@ -104,31 +92,18 @@ def checked_reference(arm, t, value, q=None):
 
 
 def checked_set_point(arm, q):
-    """A set point (3,) rad as an array, NaN for 'leave this joint'; InputError if the arm must not go there.
-
-    The limits of the joints are checked always, the table (elbow and tip must stay above it) when no joint is NaN.
-    """
-    q = _angles(q)
-    for i in range(3):
-        if not (np.isnan(q[i]) or arm.q_min[i] <= q[i] <= arm.q_max[i]):
-            low, high = math.degrees(arm.q_min[i]), math.degrees(arm.q_max[i])
+    """A set point q (3,) rad as an array; InputError if it is beyond the travel of the arm or below the table."""
+    q = vector3("set point", q)
+    for joint, (angle, low, high) in enumerate(np.degrees([q, arm.q_min, arm.q_max]).T, 1):
+        if not low <= angle <= high:
             raise InputError(
-                f"set point of joint {i + 1} is {q[i]:.3f} rad = {math.degrees(q[i]):.1f} deg; the arm's travel is "
+                f"set point of joint {joint} is {np.radians(angle):.3f} rad = {angle:.1f} deg; the arm's travel is "
                 f"{low:.0f} to {high:.0f} deg"
             )
-    if not np.isnan(q).any():
-        height = float(frames(arm, vectors3("set point", q))[2:, 2, 3].min())
-        if height < 0.0:
-            raise InputError(
-                f"the set point ({', '.join(f'{x:.0f}' for x in np.degrees(q))}) deg lies {-100 * height:.0f} cm below "
-                "the table: raise joint 2 or joint 3"
-            )
-    return q
-
-
-def _angles(q):
-    """Three angles, NaN (or None) for 'leave this joint', as an array; InputError."""
-    q = numbers("set point", q, unit="rad")  # None becomes NaN
-    if q.shape != (3,) or np.isinf(q).any():
-        raise InputError(f"set point {q.tolist()}: give one angle per joint, (3,) rad")
+    height = float(frames(arm, q)[2:, 2, 3].min())
+    if height < 0.0:
+        raise InputError(
+            f"the set point ({', '.join(f'{x:.0f}' for x in np.degrees(q))}) deg lies {-100 * height:.0f} cm below "
+            "the table: raise joint 2 or joint 3"
+        )
     return q

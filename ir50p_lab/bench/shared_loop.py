@@ -21,7 +21,7 @@ STARTING, LEADING, RUNNING, RETURNING, ENDED = range(5)
 PHASES = ("starting", "leading in", "running", "moving to the rest pose", "ended")
 CAPACITY = 8192  # samples: 82 s at 100 Hz
 
-_GAINS, _SET_POINT = ("gains", "f8", 9), ("set_point", "f8", 3)  # kp, ki, kd; rad, NaN: leave that joint's goal
+_GAINS, _SET_POINT = ("gains", "f8", 9), ("set_point", "f8", 3)  # kp, ki, kd; rad
 _ORDERS = np.dtype(
     [("stop", "?"), ("cut", "?"), ("gains_number", "i8"), _GAINS, ("set_point_number", "i8"), _SET_POINT]
 )

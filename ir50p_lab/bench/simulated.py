@@ -11,7 +11,7 @@ from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.runaway import watch_step
 from ir50p_lab.bench.set_point import FARTHEST, NOISE, checked_reference
-from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, convert, read_pots
+from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, read_pots
 from ir50p_lab.controllers.base import is_compiled
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
@@ -21,6 +21,18 @@ from ir50p_lab.jit import jit
 _BLOCK = 1000  # samples between two looks at the disk and at Ctrl-C in a compiled run
 _KEPT = 100_000  # cycles of truth: a live run may last for hours
 _SINK = 3.0  # s without drive after which an arm that was let go lies still
+
+
+@jit()
+def _delayed(queue, pwm, acting):
+    """Write the command that acts now into acting (3,): that of as many periods ago as the queue holds, (delay, 3)."""
+    delay = queue.shape[0]
+    for i in range(3):
+        acting[i] = queue[0, i] if delay > 0 else pwm[i]
+        for j in range(delay - 1):
+            queue[j, i] = queue[j + 1, i]
+        if delay > 0:
+            queue[delay - 1, i] = pwm[i]
 
 
 @jit()
@@ -34,20 +46,11 @@ def _compiled_cycles(
     finite.
     """
     counts, q, command = np.empty(3), np.empty(3), np.empty(3)
-    delay = queue.shape[0]
     for k in range(t.size):
         if t[k] > 0.0:  # the first cycle of a run measures at once
-            for i in range(3):
-                acting = pwm[i]
-                if delay > 0:
-                    acting = queue[0, i]
-                    for j in range(delay - 1):
-                        queue[j, i] = queue[j + 1, i]
-                    queue[delay - 1, i] = pwm[i]
-                command[i] = acting
+            _delayed(queue, pwm, command)
             advance_unit(theta, n, w, x, joint, command, steps)
         read_pots(w, joint, noise[k], counts)
-        convert(counts)
         for i in range(3):
             q[i] = (counts[i] - zero[i]) / slope[i]
             out[k, i], out[k, 3 + i] = counts[i], q[i]
@@ -127,25 +130,18 @@ class SimulatedBench(Bench):
 
     def _measure(self, cycle, drive):
         """Time is counted in periods; left alone for longer than the board's watchdog allows, the arm has no drive."""
+        acting = np.empty(JOINTS)
         for late in range(cycle - self._cycle):
             if self.realtime and late * self.period >= WATCHDOG:
                 self._cut()
-            self.plant.advance(self._delayed(), self.period)
+            _delayed(self._queue, self._acting, acting)
+            self.plant.advance(acting, self.period)
         self._cycle = cycle
         if not drive:
             self._cut()
         t = cycle * self.period
         self._truth.append((t, self.plant.q_true, self.plant.qd_true))
         return t, self.plant.counts(), False
-
-    def _delayed(self):
-        """The command that acts now: the one of `delay` periods ago."""
-        if not len(self._queue):
-            return self._acting
-        acting = self._queue[0].copy()
-        self._queue[:-1] = self._queue[1:]
-        self._queue[-1] = self._acting
-        return acting
 
     def _send(self, pwm, gripper):
         self._acting = pwm

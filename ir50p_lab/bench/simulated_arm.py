@@ -13,7 +13,7 @@ from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.chain import forward_kinematics
-from ir50p_lab.simulation.plant import FC, FS, FV, GRAVITY, LIMIT, make_plant
+from ir50p_lab.simulation.plant import FC, FS, GRAVITY, LIMIT, make_plant
 from ir50p_lab.simulation.steps import dry_step
 
 STEP = 0.001  # s; Moreau's step is of first order, and 1 ms is far below the time constants of the drives
@@ -61,17 +61,11 @@ def advance_unit(theta, n, w, x, joint, pwm, steps):
 
 @jit()
 def read_pots(w, joint, noise, counts):
-    """What a converter without steps would read at the links (3,) rad: a bowed line and noise (3,) counts."""
+    """What a 10-bit converter reads at the links (3,) rad, 0..1023: a bowed line and noise (3,) counts."""
     for i in range(3):
         along = (joint[i] - w[LOW, i]) / w[SPAN, i]
-        counts[i] = w[ZERO, i] + w[SLOPE, i] * joint[i] + 4 * w[BOW, i] * along * (1 - along) + noise[i]
-
-
-@jit()
-def convert(counts):
-    """10-bit conversion in place: whole counts, 0..1023."""
-    for i in range(3):
-        counts[i] = min(max(np.rint(counts[i]), 0.0), HIGHEST_COUNT)
+        voltage = w[ZERO, i] + w[SLOPE, i] * joint[i] + 4 * w[BOW, i] * along * (1 - along) + noise[i]
+        counts[i] = min(max(np.rint(voltage), 0.0), HIGHEST_COUNT)
 
 
 class SimulatedArm:
@@ -107,14 +101,17 @@ class SimulatedArm:
         for place in (FC, FS):
             self._numbers[place : place + 3] *= self.unit.friction
         self._numbers[LIMIT : LIMIT + 3] *= self.unit.motor_gain
-        self._coasting = self._numbers.copy()  # bridges open: no current, so no back-EMF brakes
-        self._coasting[FV : FV + 3] = np.array(arm.friction.fv) / arm.actuators.gain
         self._w = self._unit_numbers()
         noise = [self.seed, 1] if self.noise_seed is None else [self.seed, 1, self.noise_seed]
         self._rng = np.random.default_rng(noise)
         self._noise, self._used = np.empty((0, 3)), 0
         self._x, self._joint, self._late = np.zeros(6), np.zeros(3), 0.0
-        self.place(self._start() if q0 is None else q0)
+        try:
+            self.place(np.zeros(3) if q0 is None else q0)
+        except InputError:
+            if q0 is not None:
+                raise
+            self.place(rest_pose(arm))
 
     def _unit_numbers(self):
         unit = self.unit
@@ -125,47 +122,29 @@ class SimulatedArm:
         play, drag = 0.5 * np.array(unit.backlash), np.full(3, unit.link_drag)
         return np.array([unit.motor_gain, unit.dead_zone, play, slope, zero, unit.pot_bow, low, high - low, drag])
 
-    def _start(self):
-        return np.zeros(3) if self._why_not(np.zeros(3)) is None else rest_pose(self.arm)
-
-    def _why_not(self, q):
-        for i in range(3):
-            if not self.arm.q_min[i] <= q[i] <= self.arm.q_max[i]:
-                return f"joint {i + 1} = {q[i]:.4g} rad is outside {self.arm.q_min[i]:.4g}..{self.arm.q_max[i]:.4g} rad"
-        height = forward_kinematics(self.arm, q)[2]
-        if height < self.unit.table - 1e-9:
-            return f"the tip would be at height {height:.4g} m, below the table at {self.unit.table:g} m"
-        return None
-
     def place(self, q):
         """Put the arm at rest at q (3,) rad, as by hand. Raises InputError if it cannot be there."""
-        q = vector3("q0", q)
-        if why := self._why_not(q):
-            raise InputError(f"the arm cannot stand at q0 = {q.tolist()} rad: {why}")
+        q, no = vector3("q0", q), "the arm cannot stand at q0"
+        for joint, (angle, low, high) in enumerate(zip(q, self.arm.q_min, self.arm.q_max, strict=True), 1):
+            if not low <= angle <= high:
+                raise InputError(f"{no}: joint {joint} = {angle:.4g} rad is outside {low:.4g}..{high:.4g} rad")
+        height = forward_kinematics(self.arm, q)[2]
+        if height < self.unit.table - 1e-9:
+            raise InputError(f"{no}: the tip would be at {height:.4g} m, below the table at {self.unit.table:g} m")
         self._x[:3], self._x[3:], self._joint[:] = q, 0.0, q
 
-    def advance(self, pwm, seconds, *, enabled=True):
-        """Let `seconds` pass with pwm (3,) counts at the bridges; remainders of the 1 ms steps are kept for later.
-
-        enabled: False leaves the motors open (a board without power): they coast instead of braking.
-        """
+    def advance(self, pwm, seconds):
+        """Let `seconds` pass with pwm (3,) counts at the bridges; remainders of the 1 ms steps are kept for later."""
         self._late += seconds
         steps = int(self._late / STEP + 1e-6)
         self._late -= steps * STEP
-        numbers = self._numbers if enabled else self._coasting
-        command = np.asarray(pwm, dtype=float) if enabled else np.zeros(3)
-        advance_unit(self._theta, numbers, self._w, self._x, self._joint, command, steps)
-
-    def voltage_counts(self):
-        """The potentiometers now, with noise but before conversion: (3,) in counts, for a converter of one's own."""
-        counts = np.empty(3)
-        read_pots(self._w, self._joint, self._next_noise(1)[0], counts)
-        return counts
+        command = np.asarray(pwm, dtype=float)
+        advance_unit(self._theta, self._numbers, self._w, self._x, self._joint, command, steps)
 
     def counts(self):
         """What the 10-bit converter reads now: (3,) whole counts. Each call takes the next noise of the seed."""
-        counts = self.voltage_counts()
-        convert(counts)
+        counts = np.empty(3)
+        read_pots(self._w, self._joint, self._next_noise(1)[0], counts)
         return counts
 
     def _next_noise(self, n):

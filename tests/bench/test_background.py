@@ -1,6 +1,5 @@
 """The loop in the background: gains, set points and stops reach it; nothing that dies leaves the drive on."""
 
-import math
 import os
 import signal
 import subprocess
@@ -130,7 +129,7 @@ def test_a_loop_in_the_background_has_the_bench(holding):
 def test_a_set_point_moves_the_reference_smoothly(holding):
     _, run = holding
     start = run.recent(10).reference[-1]
-    run.set_point([None, 0.35, math.nan])
+    run.set_point([start[0], 0.35, start[2]])
     until(lambda: run.recent(0.01).reference[-1][1] == 0.35)
     r = run.recent(80).reference
     np.testing.assert_array_equal(r[-1, [0, 2]], start[[0, 2]])
@@ -375,7 +374,7 @@ def test_the_last_words_of_a_loop_that_dies_are_told(commands):
 
 
 def test_the_last_words_of_a_loop_that_does_not_begin_are_told(commands, monkeypatch):
-    monkeypatch.setattr("ir50p_lab.bench.loop_process._START", "raise SystemExit('no memory')")
+    monkeypatch.setattr("ir50p_lab.bench.loop_process.START", "raise SystemExit('no memory')")
     with FileBench(commands) as bench, pytest.raises(BenchError, match="ended too soon; it said: no memory"):
         bench.start(pid(), None)
 

@@ -6,7 +6,7 @@ import pytest
 from faulty_arm import FaultyArm
 
 from ir50p_lab.bench import SerialBench, SimulatedBench
-from ir50p_lab.bench.bench_test import SimulatedPerson, bench_test, main, write_report
+from ir50p_lab.bench.bench_test import Person, bench_test, main, write_report
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.bench.simulated_arm import SimulatedArm
 from ir50p_lab.modelling import IR50P
@@ -23,7 +23,7 @@ def board_test(joint=0, fault=None, joints=(1, 2, 3)):
     arm = SimulatedArm(IR50P, q0=rest_pose(IR50P))
     board = VirtualBoard(FaultyArm(arm, joint, fault))
     bench = SerialBench(board, arm=IR50P, clock=board, record_to=False).open()
-    findings = bench_test(bench, SimulatedPerson(arm), joints=joints, say=lambda text: None)
+    findings = bench_test(bench, Person(arm), joints=joints, say=lambda text: None)
     return findings, bench, board
 
 
@@ -79,4 +79,4 @@ def test_the_command_on_the_simulated_arm(tmp_path, capsys):
 
 def test_a_simulated_arm_of_another_unit_is_tested_too():
     bench = SimulatedBench(seed=7, record_to=False).open()
-    assert all(finding.passed for finding in bench_test(bench, SimulatedPerson(bench.plant), say=lambda text: None))
+    assert all(finding.passed for finding in bench_test(bench, Person(bench.plant), say=lambda text: None))

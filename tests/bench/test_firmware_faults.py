@@ -125,4 +125,4 @@ def test_the_age_of_a_sample(board):
     bench = bench_of(board).open()
     t = [sample.t for sample in bench.run(1.0)]
     np.testing.assert_allclose(np.diff(t), 0.01, atol=1e-4)
-    assert bench.statistics.round_trip < 0.0015
+    assert np.median(bench.statistics.round_trips) < 0.0015

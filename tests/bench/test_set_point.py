@@ -71,9 +71,10 @@ def test_it_takes_over_a_motion():
 
 def test_a_target_is_led_in_from_the_pose_and_ends_on_the_reference():
     swing = sinusoid(0.3, 2.0, offset=0.5, phase=np.pi / 2)
-    standing = SimpleNamespace(arm=IR50P, q=np.array([0.0, 0.1, 0.2]))
+    here = np.array([0.0, 0.1, 0.2])
+    standing = SimpleNamespace(arm=IR50P, _last=SimpleNamespace(q=here))
     target = _Target(standing, swing, lead_in=True)
-    np.testing.assert_allclose(target(7.0)[0], standing.q)
+    np.testing.assert_allclose(target(7.0)[0], here)
     for t in (0.0, 0.7):
         np.testing.assert_allclose(target(7.0 + target.lead + t), swing(t), atol=1e-12)
     speeds = [np.abs(target(7.0 + t)[1]).max() for t in np.linspace(0, target.lead, 500)]
@@ -84,7 +85,7 @@ def test_a_target_is_led_in_from_the_pose_and_ends_on_the_reference():
 
 
 def test_set_points_are_checked_against_travel_and_table():
-    np.testing.assert_array_equal(checked_set_point(IR50P, [0.1, None, 0.2]), [0.1, np.nan, 0.2])
-    for bad in ([0, 0], [0, 0, np.inf], 3.0):
+    np.testing.assert_array_equal(checked_set_point(IR50P, [0.1, 0.3, 0.2]), [0.1, 0.3, 0.2])
+    for bad in ([0, 0], [0, 0, np.inf], [0.1, None, 0.2], 3.0):
         with pytest.raises(InputError):
             checked_set_point(IR50P, bad)

@@ -45,4 +45,4 @@ def calibrated(seed):
             counts.append(np.mean([plant.counts()[joint] for _ in range(50)]))
         points.append((angles, counts))
     q, counts = zip(*points, strict=True)
-    return fit_calibration(q, counts, arm=IR50P)
+    return fit_calibration(np.transpose(q), np.transpose(counts), arm=IR50P)
