@@ -120,13 +120,7 @@ def _in_symbols(row, names, known):
 
 
 def _symbol(size, known):
-    """A positive coefficient as a whole number, a power of a known one, or a product of two; else its digits."""
-    candidates = {"": 1.0}
-    powers = known | {f"{name}^2": value**2 for name, value in known.items()}
-    candidates |= powers | {f"1/{name}": 1 / value for name, value in powers.items()}
-    candidates |= {f"{a} {b}": powers[a] * powers[b] for a in known for b in known if a < b}
-    candidates |= {f"{k} {name}".strip(): k * value for k in (2, 3, 4) for name, value in list(candidates.items())}
-    for text, value in candidates.items():
-        if abs(size - value) < 1e-6 * abs(value):
-            return text
-    return f"{size:.4g}"
+    """A positive coefficient as a known number or its square; else its digits."""
+    candidates = {"": 1.0} | known | {f"{name}^2": value**2 for name, value in known.items()}
+    found = [text for text, value in candidates.items() if abs(size - value) < 1e-6 * abs(value)]
+    return found[0] if found else f"{size:.4g}"

@@ -8,10 +8,11 @@ from ir50p_lab.controllers.base import Controller, is_compiled
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.columns import columns_of, sampling_period
-from ir50p_lab.inputs import number, vectors3
+from ir50p_lab.inputs import check_reference, number
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
 from ir50p_lab.simulation.plant import DRY, FS, QS, make_plant
+from ir50p_lab.simulation.simulate import sampled
 from ir50p_lab.simulation.steps import advance
 
 _STILL = 5  # first samples, of which the mean is the start: the arm has hardly moved by then
@@ -61,14 +62,12 @@ class ClosedLoopRun:
             raise InputError("the times are uneven or have gaps: a loop is compared without; cut with between(t0, t1)")
         if not is_compiled(controller):
             raise InputError(f"controller is a {type(controller).__name__}: give the PID (or other) of the run")
-        if number("delay", delay, ">= 0", unit="s") >= 1:
-            raise InputError(f"delay = {delay!r} s: give 0 to below 1 s")
+        late = round(number("delay", delay, ">= 0", unit="s") / period)
         if number("seconds", seconds, "> 0 or inf", unit="s") < 2:
             raise InputError(f"seconds = {seconds!r}: give 2 s or more of each recording")
-        rows = _rows(recording, reference, t, period)
         some = slice(int(min(len(t), np.round(seconds / period))))
-        start, late = q[:_STILL].mean(axis=0), round(delay / period)
-        return cls(t[some], q[some], u[some], rows[some], start, period, controller, late)
+        rows = _recorded_reference(recording, period) if reference is None else _sampled(reference, t)
+        return cls(t[some], q[some], u[some], rows[some], q[:_STILL].mean(axis=0), period, controller, late)
 
     def simulate(self, theta, fs=None, qs=None, *, step=0.001):
         """q and u (PWM), (m, 3) each, of the loop with this model; fs, qs (3,): breakaway and Stribeck speed."""
@@ -86,23 +85,17 @@ class ClosedLoopRun:
         return q, u
 
 
-def _rows(recording, reference, t, period):
-    if reference is None:
-        angles = getattr(recording, "reference", None)
-        if angles is None:
-            raise InputError("the recording holds no reference: give reference=, the motion that was asked for")
-        angles = vectors3("reference of the recording", angles, unit="rad")
-        qd = np.gradient(angles, period, axis=0)
-        return np.ascontiguousarray(np.stack([angles, qd, np.gradient(qd, period, axis=0)], axis=1))
-    if hasattr(reference, "sample"):
-        rows = np.ascontiguousarray(reference.sample(t), dtype=float)
-    elif callable(reference):
-        rows = np.array([np.stack(reference(time)) for time in t], dtype=float)
-    else:
-        raise InputError(f"reference is a {type(reference).__name__}: give a motion, or None for the recorded one")
-    if rows.shape != (len(t), 3, 3) or not np.isfinite(rows).all():
-        raise InputError(f"the reference gives {rows.shape} or numbers that are not finite; need ({len(t)}, 3, 3)")
-    return rows
+def _recorded_reference(recording, period):
+    angles = getattr(recording, "reference", None)
+    if angles is None:
+        raise InputError("the recording holds no reference: give reference=, the motion that was asked for")
+    qd = np.gradient(angles, period, axis=0)
+    return np.ascontiguousarray(np.stack([angles, qd, np.gradient(qd, period, axis=0)], axis=1))
+
+
+def _sampled(reference, t):
+    check_reference(reference, sampled=True)
+    return sampled(reference, t)
 
 
 def runs_of(recordings, controller, references=None, **options):

@@ -96,9 +96,9 @@ def process(
         for name, options in {"thesis": {"derivatives": "causal", "cutoff_hz": 3}, "zero-phase": {}}.items():
             motion = process(recording, **options)
 
-    What happens, in this order: the record is split where a step of time is above 3.5 times the median; uneven samples are put on an even grid of the
-    median period (cubic spline for q); q is filtered and differentiated; u is taken at the instant it acted; the ends,
-    where a filter has only one side, are cut off; samples near zero speed are marked.
+    What happens, in this order: the record is split where a step of time is above 3.5 times the median; uneven samples
+    are put on an even grid of the median period (cubic spline for q); q is filtered and differentiated; u is taken at
+    the instant it acted; the ends, where a filter has only one side, are cut off; samples near zero speed are marked.
 
     Args:
         recording: anything with t (n,), q (n, k) and u (n, k), as `Recording`; or t itself, then q and u as arrays,
