@@ -46,10 +46,10 @@ class BaseParameters:
 
 
 def base_parameters(Phi, *, names=None, known=None):
-    """Which combinations of parameters the regressor Phi can tell apart, by QR and by SVD.
+    """Which combinations of parameters the regressor Phi can tell apart, by QR.
 
     Columns are scaled to length 1 and taken in order: one that is a combination of kept columns before it (less than
-    1e-8 sticks out) joins their groups. The singular values must give the same rank.
+    1e-8 sticks out) joins their groups. How clear the rank is, the singular values show.
 
     Args:
         Phi: (n, 3, p), (n, k, p) or (m, p), from exact motion rich enough to excite everything (random states do);
@@ -57,8 +57,7 @@ def base_parameters(Phi, *, names=None, known=None):
         names: of the p columns; default the 20 parameters, or p1, p2, ...
         known: numbers that may appear in the groups, {"l2": 0.2}: 0.04 is then written l2^2.
 
-    Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if QR and SVD disagree on the
-        rank: the motion lies between excited and not excited.
+    Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if there is no motion.
     """
     A, names = _checked(Phi, names)
     length = np.linalg.norm(A, axis=0)
@@ -67,13 +66,6 @@ def base_parameters(Phi, *, names=None, known=None):
     R = r_factor(scaled)
     kept = independent_columns(R, DEPENDENT)
     s = np.linalg.svd(R, compute_uv=False)
-    by_svd = int(np.sum(s > DEPENDENT * s[0]))
-    if by_svd != len(kept):
-        near = ", ".join(f"{x:.1e}" for x in s[max(min(by_svd, len(kept)) - 1, 0) :][:4])
-        raise IdentificationError(
-            f"the rank is not clear: {len(kept)} columns stick out of the others by more than {DEPENDENT:g}, but "
-            f"{by_svd} singular values are above it, of {near}: use richer or exact motion"
-        )
     weights = np.linalg.lstsq(R[:, kept], R, rcond=None)[0]  # column k = kept columns @ weights[:, k]
     weights[np.abs(weights) < DEPENDENT] = 0.0
     columns = seen[kept]

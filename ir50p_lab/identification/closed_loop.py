@@ -66,7 +66,11 @@ class ClosedLoopRun:
         if number("seconds", seconds, "> 0 or inf", unit="s") < 2:
             raise InputError(f"seconds = {seconds!r}: give 2 s or more of each recording")
         some = slice(int(min(len(t), np.round(seconds / period))))
-        rows = _recorded_reference(recording, period) if reference is None else _sampled(reference, t)
+        if reference is None:
+            rows = _recorded_reference(recording, period)
+        else:
+            check_reference(reference, sampled=True)
+            rows = sampled(reference, t)
         return cls(t[some], q[some], u[some], rows[some], q[:_STILL].mean(axis=0), period, controller, late)
 
     def simulate(self, theta, fs=None, qs=None, *, step=0.001):
@@ -91,11 +95,6 @@ def _recorded_reference(recording, period):
         raise InputError("the recording holds no reference: give reference=, the motion that was asked for")
     qd = np.gradient(angles, period, axis=0)
     return np.ascontiguousarray(np.stack([angles, qd, np.gradient(qd, period, axis=0)], axis=1))
-
-
-def _sampled(reference, t):
-    check_reference(reference, sampled=True)
-    return sampled(reference, t)
 
 
 def runs_of(recordings, controller, references=None, **options):
