@@ -90,15 +90,14 @@ def _checked(Phi, names):
         raise InputError(f"Phi has shape {A.shape}; give (n, 3, p) or (m, p)")
     A = A.reshape(-1, A.shape[-1])
     p = A.shape[1]
-    if names is None:
-        names = NAMES if p == len(NAMES) else [f"p{k + 1}" for k in range(p)]
+    names = tuple(names or (NAMES if p == len(NAMES) else (f"p{k + 1}" for k in range(p))))
     if len(names) != p:
         raise InputError(f"{len(names)} names for {p} columns: give one for each")
     if len(A) < 2 * p:
         raise InputError(f"Phi has {len(A)} rows for {p} columns: give at least {2 * p}, from random states")
     if not A.any():
         raise IdentificationError("Phi is zero throughout: there is no motion in it")
-    return A, tuple(names)
+    return A, names
 
 
 def _in_symbols(row, names, known):

@@ -73,7 +73,7 @@ def fit(
     Z = _checked_instruments(instruments, Phi) if method == "iv" else None
     chosen = chosen_columns(columns)
     theta, stderr, covariance = np.zeros((3, 20)), np.full((3, 20), np.nan), np.zeros((3, 20, 20))
-    condition, freedom, names, lost, notes = np.zeros(3), np.zeros(3), [(), (), ()], [], []
+    condition, freedom, lost, notes = np.zeros(3), np.zeros(3), [], []
     for joints in [[0, 1, 2]] if rows == "shared" else [[0], [1], [2]]:
         who = "" if rows == "shared" else f"joint {joints[0] + 1}: "
         here, ties, fitted = _acting(joints, chosen, l2)
@@ -101,7 +101,6 @@ def fit(
             covariance[j][np.ix_(here, here)] = spread
             condition[j] = problem.condition
             freedom[j] = count / max(count - len(x), 1.0)
-            names[j] = tuple(NAMES[k] for k, known in zip(here, found, strict=True) if known)
         lost += [who + NAMES[k] for k, known in zip(here, found, strict=True) if not known]
         notes += [*problem.notes, *problem.hardly_told_apart(), *solution.notes]
     residuals = y - np.einsum("nij,ij->ni", Phi, theta)
@@ -113,7 +112,7 @@ def fit(
         residuals=residuals,
         sigma=np.sqrt(np.sum(used * residuals**2, axis=0) / used.sum(axis=0) * freedom),
         correlation=lag_one(residuals * used),
-        columns=tuple(names),
+        columns=tuple(tuple(NAMES[k] for k in np.flatnonzero(np.isfinite(row))) for row in stderr),
         unidentifiable=tuple(lost),
         warnings=(*notes, *impossible_values(theta, stderr, rows), *indefinite_mass(theta)),
         unit=unit,

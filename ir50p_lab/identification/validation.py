@@ -94,14 +94,11 @@ def validate(
     motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, order=order, held=False, trim=trim)
     predicted = np.einsum("nij,ij->ni", regressor(motion.q, motion.qd, motion.qdd, g=g, sign=sign), theta)
     acts = acting_times(t, number("delay", delay, ">= 0", unit="s"), switch("held", held) and derivatives == BACKWARD)
-    kept, found = [], []
-    for segment in np.unique(motion.segment):
-        here = motion.segment == segment
-        inside = (acts >= motion.t[here][0]) & (acts <= motion.t[here][-1])
-        kept.append(np.flatnonzero(inside))
-        found.append(np.column_stack([np.interp(acts[inside], motion.t[here], p) for p in predicted[here].T]))
-    kept = np.concatenate(kept)
-    return compared(t[kept], u[kept], np.concatenate(found), "u")
+    after = np.searchsorted(motion.t, acts).clip(1, len(motion) - 1)
+    inside = (acts >= motion.t[after - 1]) & (acts <= motion.t[after])
+    inside &= motion.segment[after] == motion.segment[after - 1]
+    found = np.column_stack([np.interp(acts[inside], motion.t, p) for p in predicted.T])
+    return compared(t[inside], u[inside], found, "u")
 
 
 def compared(t, measured, predicted, of):

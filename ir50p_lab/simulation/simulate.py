@@ -77,7 +77,7 @@ def simulate(
         if controller is not None:
             controller.reset()
             kind, p, s = controller.kind, controller.parameters, controller.state
-        sampled_loop(plant.theta, plant.numbers, kind, p, s, t, r, x, step, steps, q, qd, u)
+        sampled_loop(plant.theta, plant.numbers, kind, p, s, t, r, x, 0, step, steps, q, qd, u)
     else:
         if hasattr(controller, "reset"):
             controller.reset()
