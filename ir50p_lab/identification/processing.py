@@ -24,6 +24,7 @@ class Motion:
     u             (m, k)   command or torque that belongs to these instants, in its own unit
     use           (m, k)   bool: whether the sample of that joint is to be used (False: too near to zero speed)
     segment       (m,)     int: which run without a gap
+    rate_hz       float    samples per s
     notes         tuple    of str: gaps, and what was left out
     ============= ======== ============================================================================
     """
@@ -35,6 +36,7 @@ class Motion:
     u: np.ndarray
     use: np.ndarray
     segment: np.ndarray
+    rate_hz: float
     notes: tuple
 
     def __len__(self):
@@ -162,7 +164,7 @@ def process(
             f"{cutoff_hz} Hz, {trim:.3g} s cut off at both ends): record longer, or give a higher cut-off or less trim"
         )
     t, q, qd, qdd, u, segment = (np.concatenate(x) for x in zip(*pieces, strict=True))
-    return Motion(t, q, qd, qdd, u, np.abs(qd) >= slow, segment, tuple(notes))
+    return Motion(t, q, qd, qdd, u, np.abs(qd) >= slow, segment, 1 / period, tuple(notes))
 
 
 def acting_times(t, delay, held):

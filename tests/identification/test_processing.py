@@ -68,7 +68,7 @@ def test_a_linear_law_survives_processing(rate, cutoff, filter_u):
     motion = process(recorded(rate), cutoff_hz=cutoff, filter_u=filter_u, held=False)
     predicted = 3 * motion.qdd + 2 * motion.qd + motion.q
     assert np.abs(motion.u - predicted).max() < 0.01 * np.ptp(motion.u) * (100 / rate if rate < 100 else 1)
-    assert motion.use.all()
+    assert motion.rate_hz == pytest.approx(rate) and motion.use.all()
     np.testing.assert_allclose(np.diff(motion.t), 1 / rate, rtol=1e-6)
 
 
