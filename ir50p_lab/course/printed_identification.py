@@ -6,8 +6,8 @@ Parts that the source has lost (the beginnings of U1 and U2, the columns 6 to 9)
 
 import numpy as np
 
-from ir50p_lab.identification import general_parameters, general_regressor, regressor
-from ir50p_lab.modelling import gravity, inverse_dynamics
+from ir50p_lab.identification import regressor
+from ir50p_lab.modelling import derive, gravity, inverse_dynamics
 
 
 def regressor_2_51(q, qd, qdd):
@@ -49,14 +49,16 @@ def torque_2_48(arm, q, qd, qdd):
 
 
 def torque_in_symbols(arm, q, qd, qdd):
-    """Torque without dry friction, in N m, from the symbolic derivation of the general arm: the independent route.
+    """Torque without dry friction, in N m, from the symbolic derivation: the independent route.
 
     Args: arm: Arm with motors; q, qd, qdd: (n, 3). Returns: (n, 3).
     """
-    com = (0, 0, arm.lc[0]), (arm.lc[1], 0, 0), (arm.lc[2], 0, 0)
-    links = [(arm.m[i], com[i], np.diag([arm.Ixx[i], arm.Iyy[i], arm.Izz[i]])) for i in range(3)]
-    pi = general_parameters(links, rotors=arm.actuators.reflected_inertia)
-    return general_regressor(q, qd, qdd, l2=arm.l[1], g=arm.g)[:, :, : len(pi)] @ pi + qd * np.array(arm.friction.fv)
+    import sympy
+
+    model = derive()
+    symbols = [list(model.q), list(model.qd), list(model.qdd), list(model.symbols.values())]
+    tau = sympy.lambdify(symbols, list(model.tau), "numpy", cse=True)(q.T, qd.T, qdd.T, model.values(arm))
+    return np.column_stack(tau) + qd * np.array(arm.friction.fv)
 
 
 def recursive_2_46(Phi, y, P):

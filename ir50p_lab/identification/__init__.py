@@ -18,7 +18,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "instruments": ["fit_with_instruments"],
         "output_error": ["OutputError", "output_error"],
         "fopdt": ["FOPDT", "fit_fopdt"],
-        "general_arm": ["general_parameters", "general_regressor"],
+        "general_arm": ["general_regressor"],
         "payload": ["Scale", "payload_change", "scale_from_payload"],
         "processing": ["Motion", "causal_derivatives", "central_derivatives", "process"],
         "recipe": ["Identified", "identify"],

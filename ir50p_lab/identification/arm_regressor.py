@@ -62,27 +62,27 @@ def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
 
     Returns: (3, 20) or (n, 3, 20). Raises InputError on wrong shapes, numbers that are not finite, a bad g or sign.
     """
-    arrays = {name: vectors3(name, value, unit="SI") for name, value in (("q", q), ("qd", qd), ("qdd", qdd))}
-    if isinstance(sign, (np.ndarray, list, tuple)):
-        arrays["sign"] = vectors3("sign", sign, unit="-1 to 1")
-    shape = arrays["q"].shape
-    if len(shape) > 2 or any(x.shape != shape for x in arrays.values()):
-        shapes = ", ".join(f"{name} {x.shape}" for name, x in arrays.items())
+    q, qd, qdd = (vectors3(name, value, unit="SI") for name, value in (("q", q), ("qd", qd), ("qdd", qdd)))
+    if q.ndim > 2 or qd.shape != q.shape or qdd.shape != q.shape:
+        shapes = f"q {q.shape}, qd {qd.shape}, qdd {qdd.shape}"
         raise InputError(f"shapes do not fit: {shapes}; give all (3,), or all (n, 3) with the same n")
     g = number("g", g, ">= 0", unit="m/s^2", hint="the base z axis points up")
-    rows = {name: np.ascontiguousarray(x).reshape(-1, 3) for name, x in arrays.items()}
-    out = np.zeros((len(rows["q"]), 3, 20))
-    _fill(g, rows["q"], rows["qd"], rows["qdd"], _direction(sign, rows), out)
-    return out[0] if len(shape) == 1 else out
+    rows = [np.ascontiguousarray(x).reshape(-1, 3) for x in (q, qd, qdd, _direction(sign, qd))]
+    out = np.zeros((len(rows[0]), 3, 20))
+    _fill(g, *rows, out)
+    return out[0] if q.ndim == 1 else out
 
 
-def _direction(sign, rows):
+def _direction(sign, qd):
     if sign is None:
-        return np.sign(rows["qd"])
-    if "sign" in rows:
-        largest = np.abs(rows["sign"]).max(initial=0.0)
-        if largest > 1:
-            raise InputError(f"sign holds {largest:g}: a direction lies in -1 to 1; for a velocity give np.sign(qd)")
-        return rows["sign"]
-    sign = number("sign", sign, "> 0", unit="rad/s", hint="a speed for tanh(qd/speed), or None, or an array")
-    return np.tanh(rows["qd"] / sign)
+        return np.sign(qd)
+    if not isinstance(sign, (np.ndarray, list, tuple)):
+        return np.tanh(qd / number("sign", sign, "> 0", unit="rad/s", hint="a speed for tanh(qd/speed), or an array"))
+    sign = vectors3("sign", sign, unit="-1 to 1")
+    largest = np.abs(sign).max(initial=0.0)
+    if sign.shape != qd.shape or largest > 1:
+        raise InputError(
+            f"sign has shape {sign.shape} and holds {largest:g}: give the shape of q, {qd.shape}; a direction lies in "
+            "-1 to 1, for a velocity give np.sign(qd)"
+        )
+    return sign

@@ -46,10 +46,10 @@ class BaseParameters:
 
 
 def base_parameters(Phi, *, names=None, known=None):
-    """Which combinations of parameters the regressor Phi can tell apart, by QR and by SVD.
+    """Which combinations of parameters the regressor Phi can tell apart, by QR.
 
     Columns are scaled to length 1 and taken in order: one that is a combination of kept columns before it (less than
-    1e-8 sticks out) joins their groups. The singular values must give the same rank.
+    1e-8 sticks out) joins their groups. How clear the rank is, the singular values show.
 
     Args:
         Phi: (n, 3, p), (n, k, p) or (m, p), from exact motion rich enough to excite everything (random states do);
@@ -57,8 +57,7 @@ def base_parameters(Phi, *, names=None, known=None):
         names: of the p columns; default the 20 parameters, or p1, p2, ...
         known: numbers that may appear in the groups, {"l2": 0.2}: 0.04 is then written l2^2.
 
-    Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if QR and SVD disagree on the
-        rank: the motion lies between excited and not excited.
+    Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if there is no motion.
     """
     A, names = _checked(Phi, names)
     length = np.linalg.norm(A, axis=0)
@@ -67,13 +66,6 @@ def base_parameters(Phi, *, names=None, known=None):
     R = r_factor(scaled)
     kept = independent_columns(R, DEPENDENT)
     s = np.linalg.svd(R, compute_uv=False)
-    by_svd = int(np.sum(s > DEPENDENT * s[0]))
-    if by_svd != len(kept):
-        near = ", ".join(f"{x:.1e}" for x in s[max(min(by_svd, len(kept)) - 1, 0) :][:4])
-        raise IdentificationError(
-            f"the rank is not clear: {len(kept)} columns stick out of the others by more than {DEPENDENT:g}, but "
-            f"{by_svd} singular values are above it, of {near}: use richer or exact motion"
-        )
     weights = np.linalg.lstsq(R[:, kept], R, rcond=None)[0]  # column k = kept columns @ weights[:, k]
     weights[np.abs(weights) < DEPENDENT] = 0.0
     columns = seen[kept]
@@ -98,15 +90,14 @@ def _checked(Phi, names):
         raise InputError(f"Phi has shape {A.shape}; give (n, 3, p) or (m, p)")
     A = A.reshape(-1, A.shape[-1])
     p = A.shape[1]
-    if names is None:
-        names = NAMES if p == len(NAMES) else [f"p{k + 1}" for k in range(p)]
+    names = tuple(names or (NAMES if p == len(NAMES) else (f"p{k + 1}" for k in range(p))))
     if len(names) != p:
         raise InputError(f"{len(names)} names for {p} columns: give one for each")
     if len(A) < 2 * p:
         raise InputError(f"Phi has {len(A)} rows for {p} columns: give at least {2 * p}, from random states")
     if not A.any():
         raise IdentificationError("Phi is zero throughout: there is no motion in it")
-    return A, tuple(names)
+    return A, names
 
 
 def _in_symbols(row, names, known):
@@ -120,13 +111,7 @@ def _in_symbols(row, names, known):
 
 
 def _symbol(size, known):
-    """A positive coefficient as a whole number, a power of a known one, or a product of two; else its digits."""
-    candidates = {"": 1.0}
-    powers = known | {f"{name}^2": value**2 for name, value in known.items()}
-    candidates |= powers | {f"1/{name}": 1 / value for name, value in powers.items()}
-    candidates |= {f"{a} {b}": powers[a] * powers[b] for a in known for b in known if a < b}
-    candidates |= {f"{k} {name}".strip(): k * value for k in (2, 3, 4) for name, value in list(candidates.items())}
-    for text, value in candidates.items():
-        if abs(size - value) < 1e-6 * abs(value):
-            return text
-    return f"{size:.4g}"
+    """A positive coefficient as a known number or its square; else its digits."""
+    candidates = {"": 1.0} | known | {f"{name}^2": value**2 for name, value in known.items()}
+    found = [text for text, value in candidates.items() if abs(size - value) < 1e-6 * abs(value)]
+    return found[0] if found else f"{size:.4g}"

@@ -5,36 +5,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.controllers.base import Controller, is_compiled
-from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.columns import columns_of, sampling_period
-from ir50p_lab.inputs import number, vectors3
-from ir50p_lab.jit import jit
+from ir50p_lab.inputs import check_reference, number, vectors3
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
-from ir50p_lab.simulation.plant import DRY, FS, QS, make_plant
-from ir50p_lab.simulation.steps import advance
+from ir50p_lab.simulation.loops import sampled_loop
+from ir50p_lab.simulation.plant import DRY, FS, LIMIT, QS, make_plant
+from ir50p_lab.simulation.simulate import sampled
 
 _STILL = 5  # first samples, of which the mean is the start: the arm has hardly moved by then
 _LIMIT = 255.0  # PWM counts, of |u|
-
-
-@jit(nogil=True)
-def delayed_loop(theta, n, kind, p, s, t, r, x, limit, late, h, steps, q, u):
-    """Measure, compute, send; each command acts `late` periods after its sample, before the first nothing is driven.
-
-    theta, n: plant; kind, p, s: controller; t (m,) s; r (m, 3, 3); x (6,) state, changed; limit: of |u|; fills q, u
-    (m, 3).
-    """
-    measured, command, acting = np.empty(3), np.empty(3), np.zeros(3)
-    for k in range(t.size):
-        for i in range(3):
-            measured[i] = q[k, i] = x[i]
-        control_step(kind, p, s, t[k], measured, r[k], command)
-        for i in range(3):
-            u[k, i] = min(max(command[i], -limit), limit)
-            acting[i] = u[k - late, i] if k >= late else 0.0
-        if k + 1 < t.size:
-            advance(theta, n, x, acting, h, steps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,48 +41,40 @@ class ClosedLoopRun:
             raise InputError("the times are uneven or have gaps: a loop is compared without; cut with between(t0, t1)")
         if not is_compiled(controller):
             raise InputError(f"controller is a {type(controller).__name__}: give the PID (or other) of the run")
-        if number("delay", delay, ">= 0", unit="s") >= 1:
-            raise InputError(f"delay = {delay!r} s: give 0 to below 1 s")
+        late = round(number("delay", delay, ">= 0", unit="s") / period)
         if number("seconds", seconds, "> 0 or inf", unit="s") < 2:
             raise InputError(f"seconds = {seconds!r}: give 2 s or more of each recording")
-        rows = _rows(recording, reference, t, period)
         some = slice(int(min(len(t), np.round(seconds / period))))
-        start, late = q[:_STILL].mean(axis=0), round(delay / period)
-        return cls(t[some], q[some], u[some], rows[some], start, period, controller, late)
+        if reference is None:
+            rows = _recorded_reference(recording, period)
+        else:
+            check_reference(reference, sampled=True)
+            rows = sampled(reference, t)
+        return cls(t[some], q[some], u[some], rows[some], q[:_STILL].mean(axis=0), period, controller, late)
 
     def simulate(self, theta, fs=None, qs=None, *, step=0.001):
         """q and u (PWM), (m, 3) each, of the loop with this model; fs, qs (3,): breakaway and Stribeck speed."""
         plant = make_plant(theta, unit="PWM", g=STANDARD_GRAVITY)
         numbers = plant.numbers.copy()
+        numbers[LIMIT : LIMIT + 3] = _LIMIT
         if fs is not None:
             numbers[FS : FS + 3], numbers[QS : QS + 3] = fs, qs
             numbers[DRY] = 1.0
-        state = np.zeros_like(self.controller.state)
-        x, q, u = np.r_[self.start, 0.0, 0.0, 0.0], np.empty_like(self.q), np.empty_like(self.u)
+        law = self.controller.kind, self.controller.parameters, np.zeros_like(self.controller.state)
+        x, (q, qd, u) = np.r_[self.start, 0.0, 0.0, 0.0], np.empty((3, *self.q.shape))
         steps = max(1, round(self.period / step))
-        law = (self.controller.kind, self.controller.parameters, state)
         h = self.period / steps
-        delayed_loop(plant.theta, numbers, *law, self.t, self.r, x, _LIMIT, self.late, h, steps, q, u)
+        sampled_loop(plant.theta, numbers, *law, self.t, self.r, x, self.late, h, steps, q, qd, u)
         return q, u
 
 
-def _rows(recording, reference, t, period):
-    if reference is None:
-        angles = getattr(recording, "reference", None)
-        if angles is None:
-            raise InputError("the recording holds no reference: give reference=, the motion that was asked for")
-        angles = vectors3("reference of the recording", angles, unit="rad")
-        qd = np.gradient(angles, period, axis=0)
-        return np.ascontiguousarray(np.stack([angles, qd, np.gradient(qd, period, axis=0)], axis=1))
-    if hasattr(reference, "sample"):
-        rows = np.ascontiguousarray(reference.sample(t), dtype=float)
-    elif callable(reference):
-        rows = np.array([np.stack(reference(time)) for time in t], dtype=float)
-    else:
-        raise InputError(f"reference is a {type(reference).__name__}: give a motion, or None for the recorded one")
-    if rows.shape != (len(t), 3, 3) or not np.isfinite(rows).all():
-        raise InputError(f"the reference gives {rows.shape} or numbers that are not finite; need ({len(t)}, 3, 3)")
-    return rows
+def _recorded_reference(recording, period):
+    angles = getattr(recording, "reference", None)
+    if angles is None:
+        raise InputError("the recording holds no reference: give reference=, the motion that was asked for")
+    angles = vectors3("reference of the recording", angles)
+    qd = np.gradient(angles, period, axis=0)
+    return np.ascontiguousarray(np.stack([angles, qd, np.gradient(qd, period, axis=0)], axis=1))
 
 
 def runs_of(recordings, controller, references=None, **options):

@@ -25,15 +25,13 @@ class Excitation:
 
     reference: Fourier, ready for a bench (`q_start` first); before: the plain motion to compare with, random
     coefficients as large as the limits allow. condition_before, condition_after: (3,), one per joint, of the columns
-    scaled to length 1. starts: what each start ended with, geometric mean of
-    the condition numbers times the price of standing.
+    scaled to length 1.
     """
 
     reference: Fourier
     before: Fourier
     condition_before: np.ndarray
     condition_after: np.ndarray
-    starts: tuple
 
 
 def regressor_condition(reference):
@@ -46,26 +44,20 @@ def regressor_condition(reference):
     if not (math.isfinite(length) and length > 0):
         raise InputError(f"the reference lasts {length} s: give a motion of finite length > 0, such as `fourier`")
     t = getattr(reference, "start", 0.0) + length * (np.arange(500) + 0.5) / 500
-    Phi = regressor(*np.swapaxes(reference.sample(t), 0, 1))
-    return np.array([_condition(Phi[:, joint, columns]) for joint, columns in enumerate(RIGID_ON)])
+    return _conditions(regressor(*np.swapaxes(reference.sample(t), 0, 1))[None])[0]
 
 
-def _condition(A):
-    size = np.linalg.norm(A, axis=0)
-    return float("inf") if (size == 0).any() else float(np.linalg.cond(A / size))
-
-
-def _log_conditions(Phi):
-    """Logarithm of the condition number of each joint's columns, scaled to length 1: (m, 3) for (m, n, 3, 20)."""
-    logs = []
+def _conditions(Phi):
+    """Condition number of each joint's columns, scaled to length 1: (m, 3) for (m, n, 3, 20); inf from _WORST on."""
+    found = np.empty((len(Phi), 3))
     for joint, columns in enumerate(RIGID_ON):
         A = Phi[:, :, joint, columns]
         G = np.swapaxes(A, 1, 2) @ A
         size = np.sqrt(np.einsum("mpp->mp", G))
         size[size == 0] = np.inf
         values = np.linalg.eigvalsh(G / (size[:, :, None] * size[:, None, :]))
-        logs.append(0.5 * np.log(np.minimum(values[:, -1] / np.maximum(values[:, 0], 1e-300), _WORST**2)))
-    return np.column_stack(logs)
+        found[:, joint] = np.sqrt(values[:, -1] / np.maximum(values[:, 0], 1e-300))
+    return np.where(found < _WORST, found, np.inf)
 
 
 def optimise_excitation(
@@ -106,15 +98,12 @@ def optimise_excitation(
         raise InputError(f"{arm.name} has no joint limits: give q_min and q_max, dataclasses.replace(arm, q_min=...)")
     whole("harmonics", harmonics, 2, 12)
     whole("periods", periods, 1, 10**6)
-    whole("starts", starts, 1, 10**4)
-    whole("iterations", iterations, 1, 10**5)
-    whole("seed", seed, 0, 2**63)
     number("standing", standing, ">= 0", hint="the price of time near standstill")
     number("period", period, "> 0", unit="s")
     limits = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
     problem = _Problem(arm, period, harmonics, limits, standing)
     generator = np.random.default_rng(seed)
-    best, plain, ends = None, None, []
+    first, found = [], []
     from tqdm.auto import tqdm
 
     with tqdm(total=starts * iterations, disable=not progress, unit="step", desc="excitation") as bar:
@@ -122,27 +111,24 @@ def optimise_excitation(
             x = problem.start(generator)
             if x is None:
                 continue
-            plain = x if plain is None else plain
-            found = problem.improve(x, iterations, bar.update)
+            first.append(x)
+            found.append(problem.improve(x, iterations, bar.update))
             bar.update((start + 1) * iterations - bar.n)
-            ends.append(math.exp(problem.value(found)))
-            bar.set_postfix_str(f"condition {min(ends):.3g}")
-            if best is None or problem.value(found) < problem.value(best):
-                best = found
-    if best is None:
+            bar.set_postfix_str(f"condition {math.exp(min(value for value, _ in found)):.3g}")
+    if not found:
         raise IdentificationError(
             f"no motion was found inside the limits in {starts} starts: widen the joint limits, lower the table "
             f"({table}), take less margin ({margin} rad), or give another seed"
         )
+    best = min(found, key=lambda pair: pair[0])[1]
     options = {"period": period, "periods": periods, "arm": arm, "max_joint_speed": max_joint_speed}
     options |= {"table": table, "margin": margin, "ends": "adjust"}  # rounding only
-    reference, before = (fourier(a, b, q0=q0, **options) for a, b, q0 in map(problem.split, (best, plain)))
+    reference, before = (fourier(a, b, q0=q0, **options) for a, b, q0 in map(problem.split, (best, first[0])))
     return Excitation(
         reference=reference,
         before=before,
         condition_before=regressor_condition(before),
         condition_after=regressor_condition(reference),
-        starts=tuple(ends),
     )
 
 
@@ -192,7 +178,8 @@ class _Problem:
         q, qd, qdd = np.moveaxis(motions, 2, 0)
         Phi = regressor(*(rows.reshape(-1, 3) for rows in (q, qd, qdd)), sign=_TURN)
         still = np.mean(1 / (1 + (qd / _SLOW) ** 2), axis=(1, 2))
-        cost = _log_conditions(Phi.reshape(*q.shape[:2], 3, 20)).mean(axis=1) + self.standing * still
+        conditions = _conditions(Phi.reshape(*q.shape[:2], 3, 20))
+        cost = np.log(np.minimum(conditions, _WORST)).mean(axis=1) + self.standing * still
         low, high = q.min(axis=1), q.max(axis=1)
         more = _HIDDEN / 2 * (high - low)
         fast = np.abs(qd).max(axis=1) * (1 + _HIDDEN)
@@ -217,36 +204,25 @@ class _Problem:
         return float(self.both(x)[0])
 
     def improve(self, x, iterations, step):
-        """SLSQP from x; the best point inside the bounds that was visited."""
+        """SLSQP from x: (value, point) of the best point inside the bounds that was visited."""
         from scipy.optimize import minimize
 
         best = [self.value(x), x]
 
         def seen(x):
             step(1)
-            x = self._inside(x)
-            if x is not None and self.value(x) < best[0]:
-                best[:] = [self.value(x), x]
+            for share in (1.0, 0.999, 0.99, 0.97, 0.94):  # a little less of a motion that is just outside
+                less = np.r_[x[:3], share * x[3:]]
+                value, *room = self.both(less)
+                if min(room) >= 0:
+                    best[:] = min(best, [value, less], key=lambda pair: pair[0])
+                    return
 
         room = {"type": "ineq", "fun": lambda x: self.both(x)[1:] - 1e-6, "jac": lambda x: self.slopes(x)[1:]}
-        minimize(
-            self.value,
-            x,
-            jac=lambda x: self.slopes(x)[0],
-            constraints=[room],
-            method="SLSQP",
-            callback=seen,
-            options={"maxiter": iterations, "ftol": 1e-5},
-        )
-        return best[1]
-
-    def _inside(self, x):
-        """x, or a little less of its motion where it is just outside the bounds; None if it is far outside."""
-        for share in (1.0, 0.999, 0.99, 0.97, 0.94):
-            less = np.r_[x[:3], share * x[3:]]
-            if (self.both(less)[1:] >= 0).all():
-                return less
-        return None
+        options = {"maxiter": iterations, "ftol": 1e-5}
+        slope = {"jac": lambda x: self.slopes(x)[0]}
+        minimize(self.value, x, **slope, constraints=[room], method="SLSQP", callback=seen, options=options)
+        return best
 
     def split(self, x):
         """(a, b, q0) of the point x."""

@@ -69,15 +69,16 @@ def fit(
     Phi, y = checked_data(Phi, y)
     used = np.ones(y.shape) if use is None else _checked_use(use, y)
     root_weights = used * np.sqrt(_checked_weights(weights, y)) if method == "weighted" else used
+    all_alike = (root_weights == 1).all()
     Z = _checked_instruments(instruments, Phi) if method == "iv" else None
     chosen = chosen_columns(columns)
     theta, stderr, covariance = np.zeros((3, 20)), np.full((3, 20), np.nan), np.zeros((3, 20, 20))
-    condition, freedom, names, lost, notes = np.zeros(3), np.zeros(3), [(), (), ()], [], []
+    condition, freedom, lost, notes = np.zeros(3), np.zeros(3), [], []
     for joints in [[0, 1, 2]] if rows == "shared" else [[0], [1], [2]]:
         who = "" if rows == "shared" else f"joint {joints[0] + 1}: "
         here, ties, fitted = _acting(joints, chosen, l2)
         # rows of zeros say nothing, and leave the others at their place in time
-        A = _columns(Phi[:, joints] * root_weights[:, joints, None], here, ties)
+        A = _columns(Phi, joints, here, ties, None if all_alike else root_weights)
         problem = prepare(who, fitted, A, (y * root_weights)[:, joints].ravel(), len(y))
         back = ties[:, [fitted.index(name) for name in problem.names]]
         if method == "huber":
@@ -87,7 +88,7 @@ def fit(
         elif method == "bounded":
             solution = estimators.bounded(problem)
         elif method == "iv":
-            solution = estimators.instrumental_variables(problem, _columns(Z[:, joints], here, back))
+            solution = estimators.instrumental_variables(problem, _columns(Z, joints, here, back))
         else:
             solution = estimators.plain(problem)
         x, spread = parameters_of(problem, solution)
@@ -100,7 +101,6 @@ def fit(
             covariance[j][np.ix_(here, here)] = spread
             condition[j] = problem.condition
             freedom[j] = count / max(count - len(x), 1.0)
-            names[j] = tuple(NAMES[k] for k, known in zip(here, found, strict=True) if known)
         lost += [who + NAMES[k] for k, known in zip(here, found, strict=True) if not known]
         notes += [*problem.notes, *problem.hardly_told_apart(), *solution.notes]
     residuals = y - np.einsum("nij,ij->ni", Phi, theta)
@@ -112,7 +112,7 @@ def fit(
         residuals=residuals,
         sigma=np.sqrt(np.sum(used * residuals**2, axis=0) / used.sum(axis=0) * freedom),
         correlation=lag_one(residuals * used),
-        columns=tuple(names),
+        columns=tuple(tuple(NAMES[k] for k in np.flatnonzero(np.isfinite(row))) for row in stderr),
         unidentifiable=tuple(lost),
         warnings=(*notes, *impossible_values(theta, stderr, rows), *indefinite_mass(theta)),
         unit=unit,
@@ -133,9 +133,13 @@ def _acting(joints, chosen, l2):
     return here, ties[:, kept], [NAMES[here[k]] for k in kept]
 
 
-def _columns(Phi, here, ties):
-    """Phi (n, k, 20) of some joints as rows, sample by sample, in the parameters behind the ties: (n k, p)."""
-    return product(Phi[:, :, here].reshape(-1, len(here)), ties)
+def _columns(Phi, joints, here, ties, weights=None):
+    """Phi (n, 3, 20) of some joints as rows, sample by sample, in the parameters behind the ties: (n k, p)."""
+    A = Phi[:, joints[0] : joints[-1] + 1, here]
+    if weights is not None:
+        A *= weights[:, joints, None]
+    A = A.reshape(-1, len(here))
+    return A if np.array_equal(ties, np.eye(len(here))) else product(A, ties)
 
 
 def _checked_weights(weights, y):

@@ -25,35 +25,6 @@ _KEPT = (
 GENERAL_NAMES = (*_KEPT, *_FRICTION)
 
 
-def general_parameters(links, *, rotors=(0.0, 0.0, 0.0)):
-    """The 33 inertial parameters, in the order of GENERAL_NAMES, of three links.
-
-    Args:
-        links: three of (m, com (3,), inertia (3, 3)): kg, m from the joint, kg m^2 about the centre of mass, both in
-            the link frame; inertia as a matrix, [[Ixx, -Ixy, -Ixz], ...] (1.104 corrected).
-        rotors: j1, j2, j3, kg m^2.
-
-    Returns: (33,). XY, XZ, YZ are products of inertia with the sign of (1.104): the matrix holds -XY.
-    Raises InputError on shapes.
-    """
-    found = {f"j{i + 1}": float(x) for i, x in enumerate(vectors3("rotors", rotors, unit="kg m^2"))}
-    if not isinstance(links, (list, tuple)) or [len(x) for x in links if isinstance(x, (list, tuple))] != [3, 3, 3]:
-        raise InputError(f"links = {links!r:.60}: give three of (m, com, inertia)")
-    for i, (m, com, inertia) in enumerate(links, start=1):
-        com, inertia = vectors3(f"com of link {i}", com, unit="m"), vectors3(f"inertia of link {i}", inertia, unit="SI")
-        if com.shape != (3,) or inertia.shape != (3, 3) or not np.allclose(inertia, inertia.T, rtol=1e-9, atol=0):
-            raise InputError(
-                f"link {i}: give com (3,) and a symmetric inertia (3, 3); got {com.shape}, {inertia.shape}"
-            )
-        about_joint = inertia + m * (com @ com * np.eye(3) - np.outer(com, com))
-        found |= {f"m{i}": float(m)} | {f"m{axis}{i}": float(m * x) for axis, x in zip("xyz", com, strict=True)}
-        for a, letter in enumerate("XYZ"):
-            found[f"{letter}{letter}{i}"] = float(about_joint[a, a])
-            for b in range(a + 1, 3):
-                found[f"{letter}{'XYZ'[b]}{i}"] = float(-about_joint[a, b])
-    return np.array([found[name] for name in _KEPT])
-
-
 def general_regressor(q, qd, qdd, *, l2, g=STANDARD_GRAVITY):
     """Phi of the general arm: tau = Phi pi, pi = (33 inertial, 9 friction parameters) as GENERAL_NAMES.
 
@@ -72,9 +43,9 @@ def general_regressor(q, qd, qdd, *, l2, g=STANDARD_GRAVITY):
             values = [numbers.get(parameter, 0.0) for parameter in model.symbols]
             for joint, tau in enumerate(torque(q.T, qd.T, qdd.T, values)):
                 out[:, joint, k] += sign * tau
-    for joint in range(3):
+    for joint, speed in enumerate(qd.T):
         first = len(_KEPT) + 3 * joint
-        out[:, joint, first : first + 3] = np.column_stack([qd[:, joint], np.sign(qd[:, joint]), np.ones(len(q))])
+        out[:, joint, first : first + 3] = np.column_stack([speed, np.sign(speed), np.ones(len(q))])
     return out
 
 

@@ -58,10 +58,8 @@ def scale_from_payload(without, loaded, *, mass, l2, at):
             raise InputError(f"{name} was fitted with rows='shared': each motor has its own gain; fit rows='joint'")
     K, stderr, notes = np.full(3, np.nan), np.full(3, np.inf), []
     for j in range(3):
-        here = [
-            k for k in np.flatnonzero(change) if np.isfinite(without.stderr[j, k]) and np.isfinite(loaded.stderr[j, k])
-        ]
-        if not here:
+        here = np.flatnonzero(change * np.isfinite(without.stderr[j]) * np.isfinite(loaded.stderr[j]))
+        if not len(here):
             continue
         moved = (loaded.theta - without.theta)[j, here]
         total = (without.covariance + loaded.covariance)[j][np.ix_(here, here)]
@@ -84,9 +82,6 @@ def scale_from_payload(without, loaded, *, mass, l2, at):
             )
     if np.isnan(K).all():
         raise IdentificationError(f"a payload of {mass:g} kg does not show in any joint: {'; '.join(notes)}")
-    known = np.nan_to_num(K)
-    theta = known[:, None] * without.theta
-    spread = np.hypot(
-        known[:, None] * without.stderr, without.theta * np.where(np.isfinite(stderr), stderr, 0)[:, None]
-    )
-    return Scale(K=K, stderr=stderr, theta=theta, theta_stderr=spread, warnings=tuple(notes))
+    known, unsure = np.nan_to_num(K)[:, None], np.where(np.isfinite(stderr), stderr, 0)[:, None]
+    spread = np.hypot(known * without.stderr, unsure * without.theta)
+    return Scale(K=K, stderr=stderr, theta=known * without.theta, theta_stderr=spread, warnings=tuple(notes))

@@ -63,7 +63,7 @@ class Problem:
             index = s[0] / s[direction]
             if index > _CLOSE and len(members) > 1:
                 found.append(
-                    f"{self.who}{_join(self.names[k] for k in members)} are hardly told apart (condition index "
+                    f"{self.who}{', '.join(self.names[k] for k in members)} are hardly told apart (condition index "
                     f"{index:.0f}): a combination of them is known, not each. Excite the joints more"
                 )
         return found
@@ -82,7 +82,7 @@ def prepare(who, names, A, y, n, tolerance=DEPENDENT):
     length = np.sqrt(np.einsum("np,np->p", A, A))
     seen = length > 1e-12 * length.max(initial=0.0)
     lost = [name for name, here in zip(names, seen, strict=True) if not here]
-    notes = [f"{who}{_join(lost)} cannot be found: nothing in the data excites it"] if lost else []
+    notes = [f"{who}{', '.join(lost)} cannot be found: nothing in the data excites it"] if lost else []
     names = [name for name, here in zip(names, seen, strict=True) if here]
     if not names:
         raise IdentificationError(
@@ -114,9 +114,6 @@ def _groups_in_words(who, names, R, kept):
         largest = np.abs(weights).max()
         parts = [(names[j], w) for j, w in zip(kept, weights, strict=True) if abs(w) > 1e-7 * largest]
         stands = "; ".join(f"{name} stands for {name} {w:+.4g} {names[k]}" for name, w in parts)
-        sentences.append(f"{who}{names[k]} cannot be told apart from {_join(name for name, _ in parts)}: {stands}")
+        others = ", ".join(name for name, _ in parts)
+        sentences.append(f"{who}{names[k]} cannot be told apart from {others}: {stands}")
     return sentences
-
-
-def _join(names):
-    return ", ".join(names)

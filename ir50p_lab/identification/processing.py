@@ -7,9 +7,10 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.columns import columns_of, runs, sampling_period
-from ir50p_lab.inputs import choice, number, numbers, switch, whole
+from ir50p_lab.inputs import choice, number, numbers, switch
 from ir50p_lab.signals.low_pass import low_pass
 
+BACKWARD = "zero-phase"
 _LATE = 2.0  # a filter of this many time constants (1/(2 pi cutoff)) on either side is cut off by default
 
 
@@ -23,8 +24,8 @@ class Motion:
     u             (m, k)   command or torque that belongs to these instants, in its own unit
     use           (m, k)   bool: whether the sample of that joint is to be used (False: too near to zero speed)
     segment       (m,)     int: which run without a gap
-    rate_hz       float    samples per s of what is left (after decimation)
-    notes         tuple    of str: what was done, and what was left out
+    rate_hz       float    samples per s
+    notes         tuple    of str: gaps, and what was left out
     ============= ======== ============================================================================
     """
 
@@ -67,11 +68,7 @@ def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=4):
     no filter; order: 1..8 (it counts twice). Returns: q, qd, qdd like q; at the two ends the neighbour's derivatives.
     Raises InputError as `low_pass` does.
     """
-    q = (
-        np.array(q, dtype=float)
-        if cutoff_hz is None
-        else low_pass(q, cutoff_hz, rate_hz, order=order, kind="zero-phase")
-    )
+    q = np.asarray(q, dtype=float) if cutoff_hz is None else low_pass(q, cutoff_hz, rate_hz, order=order, kind=BACKWARD)
     if len(q) < 3:
         raise InputError(f"q has {len(q)} samples: central differences need three or more")
     qd, qdd = np.empty_like(q), np.empty_like(q)
@@ -87,25 +84,23 @@ def process(
     q=None,
     u=None,
     *,
-    derivatives="zero-phase",
+    derivatives=BACKWARD,
     cutoff_hz=1.5,
     order=4,
     filter_u=False,
     delay=0.0,
     held=True,
-    decimate=1,
     slow=0.0,
     trim=None,
-    max_gap=None,
 ):
     """Make a recording ready for a regression.
 
         for name, options in {"thesis": {"derivatives": "causal", "cutoff_hz": 3}, "zero-phase": {}}.items():
             motion = process(recording, **options)
 
-    What happens, in this order: the record is split where time has gaps; uneven samples are put on an even grid of the
-    median period (cubic spline for q); q is filtered and differentiated; u is taken at the instant it acted; the ends,
-    where a filter has only one side, are cut off; samples are thinned out; samples near zero speed are marked.
+    What happens, in this order: the record is split where a step of time is above 3.5 times the median; uneven samples
+    are put on an even grid of the median period (cubic spline for q); q is filtered and differentiated; u is taken at
+    the instant it acted; the ends, where a filter has only one side, are cut off; samples near zero speed are marked.
 
     Args:
         recording: anything with t (n,), q (n, k) and u (n, k), as `Recording`; or t itself, then q and u as arrays,
@@ -117,88 +112,77 @@ def process(
         held: True: u is held from its sample to the next, as a bench does; what then acts around the instant t_k is the
             mean of u_k-1 and u_k. False: u is a measurement at t_k. "causal" takes u as it stands, as the thesis does,
             shifted by the delay only.
-        decimate: keep every n-th sample: neighbours of a filtered signal say the same twice.
         slow: rad/s, one number or one per joint; below it sgn(qd) is noise and a joint may stick: `use` is False there.
         trim: s cut off at both ends of each run without a gap; default 2/(2 pi cutoff_hz).
-        max_gap: s, larger steps of time split the record; default 3.5 times the median step.
 
     Returns: Motion. Raises: InputError on bad arguments, NaN, or times that do not increase; IdentificationError if
     nothing is left.
     """
     t, q, u = columns_of(recording, q, u)
     period = sampling_period(t)
-    rate = 1 / period
-    choice("derivatives", derivatives, ("zero-phase", "causal"))
-    switch("held", held)
-    whole("decimate", decimate, 1, 10**6)
+    causal = choice("derivatives", derivatives, (BACKWARD, "causal")) == "causal"
     number("delay", delay, ">= 0", unit="s")
-    slow = _thresholds(slow, q.shape[1])
-    if cutoff_hz is None and derivatives == "causal":
+    slow = numbers("slow", slow, unit="rad/s")
+    if slow.shape not in ((), q.shape[1:]) or not (slow >= 0).all():
+        raise InputError(f"slow = {slow} rad/s: give one number >= 0, or one for each of {q.shape[1]} joint(s)")
+    if cutoff_hz is None and causal:
         raise InputError("cutoff_hz = None: the causal way needs its filter; give 1.5 to 10 Hz")
     if trim is None:
         trim = 0.0 if cutoff_hz is None else _LATE / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
     number("trim", trim, ">= 0", unit="s")
+    acts = acting_times(t, delay, switch("held", held) and not causal)
+
+    def smooth(x):
+        if cutoff_hz is None:
+            return x
+        return low_pass(x, cutoff_hz, 1 / period, order=1 if causal else order, kind=derivatives)
+
+    def differentiated(q):
+        if causal:
+            return causal_derivatives(q, 1 / period, cutoff_hz=cutoff_hz)
+        return central_derivatives(q, 1 / period, cutoff_hz=cutoff_hz, order=order)
+
     notes, pieces = [], []
-    parts = runs(t, 3.5 * period if max_gap is None else number("max_gap", max_gap, "> 0", unit="s"))
+    parts = runs(t, 3.5 * period)
     if len(parts) > 1:
         notes.append(f"{len(parts) - 1} gap(s) in time: {len(parts)} runs, each filtered by itself")
-    backward = 0 if cutoff_hz is None or derivatives == "causal" else 3 * (2 * math.ceil(order / 2) + 1) + 1
-    shortest = max(8, backward, math.ceil(2 * trim * rate) + 4)
-    uneven = False
+    backward = 0 if cutoff_hz is None or causal else 3 * (2 * math.ceil(order / 2) + 1) + 1
+    shortest = max(8, backward, math.ceil(2 * trim / period) + 4)
     for k, (first, last) in enumerate(parts):
         if last - first < shortest:
             notes.append(f"{last - first} samples from {t[first]:.4g} s on left out: too short a run")
             continue
-        piece, spread = _piece(
-            t[first:last], q[first:last], u[first:last], period, derivatives, cutoff_hz, order, filter_u, delay, held
-        )
-        uneven |= spread
-        grid = piece[0]
-        keep = np.flatnonzero((grid >= grid[0] + max(trim, delay) - 1e-9) & (grid <= grid[-1] - trim + 1e-9))
-        keep = keep[(keep > 0) & (keep < len(grid) - 1)][:: int(decimate)]
-        pieces.append([x[keep] for x in piece] + [np.full(len(keep), k)])
+        here = slice(first, last)
+        grid, even_q, even_u = _on_even_steps(t[here], q[here], u[here], acts[here], period)
+        piece = grid, *differentiated(even_q), smooth(even_u) if filter_u else even_u
+        keep = (grid >= grid[0] + max(trim, delay) - 1e-9) & (grid <= grid[-1] - trim + 1e-9)
+        keep[[0, -1]] = False  # their derivatives are the neighbours'
+        pieces.append([x[keep] for x in piece] + [np.full(keep.sum(), k)])
     if sum(len(piece[0]) for piece in pieces) < 2:
         raise IdentificationError(
             f"nothing is left of {len(t)} samples: every run without a gap is shorter than {shortest} samples (filter "
             f"{cutoff_hz} Hz, {trim:.3g} s cut off at both ends): record longer, or give a higher cut-off or less trim"
         )
-    if uneven:
-        notes.append(f"times are uneven: interpolated onto steps of {period:.4g} s")
     t, q, qd, qdd, u, segment = (np.concatenate(x) for x in zip(*pieces, strict=True))
-    use = np.abs(qd) >= slow
-    if not use.all():
-        notes.append(f"{100 * (1 - use.mean()):.0f} % of the samples are slower than asked for and not to be used")
-    return Motion(t, q, qd, qdd, u, use, segment, rate / int(decimate), tuple(notes))
+    return Motion(t, q, qd, qdd, u, np.abs(qd) >= slow, segment, 1 / period, tuple(notes))
 
 
-def _piece(t, q, u, period, derivatives, cutoff_hz, order, filter_u, delay, held):
-    """One run without gaps: [t, q, qd, qdd, u] on an even grid, and whether it had to be interpolated."""
+def acting_times(t, delay, held):
+    """When each u acts, (n,) s: `delay` after its sample, and where it is held, in the middle of the time until the
+    next.
+    """
+    return t + delay + 0.5 * held * np.diff(t, append=t[-1] + sampling_period(t))
+
+
+def _on_even_steps(t, q, u, acts, period):
+    """One run without gaps on an even grid of time: grid, q, u."""
     grid = t[0] + period * np.arange(math.floor((t[-1] - t[0]) / period + 1e-6) + 1)
-    uneven = len(grid) != len(t) or np.abs(t - grid).max() > 0.02 * period
-    if uneven:
+    if len(grid) == len(t) and np.abs(t - grid).max() <= 0.02 * period:
+        grid = t
+    else:
         from scipy.interpolate import make_interp_spline
 
         q = make_interp_spline(t, q, k=3, axis=0)(np.minimum(grid, t[-1]))
-    else:
-        grid = t
-    acts = t + delay
-    if held and derivatives == "zero-phase":
-        acts = acts + 0.5 * np.diff(t, append=t[-1] + period)
-    if uneven or not np.array_equal(acts, grid):
+    if not np.array_equal(acts, grid):
         u = np.column_stack([np.interp(grid, acts, column) for column in u.T])
-    rate = 1 / period
-    if derivatives == "causal":
-        states = causal_derivatives(q, rate, cutoff_hz=cutoff_hz)
-        u = low_pass(u, cutoff_hz, rate) if filter_u else u
-    else:
-        states = central_derivatives(q, rate, cutoff_hz=cutoff_hz, order=order)
-        if filter_u and cutoff_hz is not None:
-            u = low_pass(u, cutoff_hz, rate, order=order, kind="zero-phase")
-    return [grid, *states, u], uneven
-
-
-def _thresholds(slow, joints):
-    slow = np.asarray(numbers("slow", slow, unit="rad/s"))
-    if slow.shape not in ((), (joints,)) or not (slow >= 0).all():
-        raise InputError(f"slow = {slow} rad/s: give one number >= 0, or one for each of {joints} joint(s)")
-    return slow
+    return grid, q, u

@@ -12,10 +12,11 @@ from ir50p_lab.identification.estimate import Estimate
 from ir50p_lab.identification.fitting import fit
 from ir50p_lab.identification.processing import process
 from ir50p_lab.identification.validation import validate
+from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
 
-# What `identify` and `score` have in common: the cut-off is low because this arm moves below 1 Hz and one count of its
-# potentiometers is 5 to 8 mrad; a joint turns over within +-0.05 rad/s, where sgn(qd) would jump at the wrong moment.
-STEPS = {"cutoff_hz": 1.2, "order": 4}
+# The cut-off is low because this arm moves below 1 Hz and one count of its potentiometers is 5 to 8 mrad; a joint turns
+# over within +-0.05 rad/s, where sgn(qd) would jump at the wrong moment.
+CUTOFF_HZ = 1.2
 TURN = 0.05  # rad/s
 
 
@@ -25,7 +26,7 @@ class Identified(Estimate):
 
     delay: float = 0.0
     steps: dict = None
-    g: float = 9.81
+    g: float = STANDARD_GRAVITY
 
     def score(self, recording, q=None, u=None):
         """Validation of "u" on another recording    (Table 4.4), processed as the training was."""
@@ -39,11 +40,12 @@ def identify(
     delay=0.02,
     slow=0.05,
     method="bounded",
-    rows="joint",
-    g=9.81,
+    cutoff_hz=CUTOFF_HZ,
+    held=True,
+    trim=None,
+    g=STANDARD_GRAVITY,
     unit="PWM",
     anyway=False,
-    **steps,
 ):
     """Identify the arm from one or several recordings: the recipe of the course in one call.
 
@@ -59,9 +61,9 @@ def identify(
     Args:
         recordings: a Recording (t, q, u), or a list of them: other motions, or another load of work for the same arm.
         l2: upper arm, m, or None. delay: s from a sample to the moment its u acts. slow: rad/s.
-        method: "bounded", or another of `fit` that needs neither weights nor instruments; rows, g, unit (of u): as in
-        `fit`, `regressor`; steps: cutoff_hz= (Hz, above what the joints move at), order=, held=, trim=, max_gap= of
-        `process`; anyway: go on where the data are refused.
+        method: "bounded", or another of `fit` that needs neither weights nor instruments.
+        cutoff_hz: Hz, above what the joints move at; held, trim: as in `process`; g: as in `regressor`; unit: of u.
+        anyway: go on where the data are refused.
 
     Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by some per
     cent, at this length of record more than the standard errors, which do not know it: where the parameters themselves
@@ -71,24 +73,21 @@ def identify(
     Raises: InputError, IdentificationError as `process` and `fit` do, and if a joint is constant, its angle wrapped or
     clipped. Angles that look like degrees, and a u that is often at its limit, are in `warnings`.
     """
-    steps = {**STEPS, **steps}
     recordings = list(recordings) if isinstance(recordings, (list, tuple)) else [recordings]
     if not recordings:
         raise InputError("no recording given: give one, or a list of them")
-    Phi, y, use, notes = [], [], [], []
+    steps = {"cutoff_hz": cutoff_hz, "held": held, "trim": trim}
+    notes, parts = [], []
     for recording in recordings:
         notes += _looked_at(recording, anyway)
         motion = process(recording, delay=delay, slow=slow, **steps)
         if motion.q.shape[1] != 3:
             raise InputError(f"q has {motion.q.shape[1]} columns: give all three joints, or take fit_joint for one")
-        Phi.append(regressor(motion.q, motion.qd, motion.qdd, g=g, sign=TURN))
-        y.append(motion.u)
-        use.append(motion.use)
-    Phi, y, use = map(np.concatenate, (Phi, y, use))
-    found = fit(Phi, y, method=method, rows=rows, l2=l2, use=use, unit=unit)
-    values = {name: getattr(found, name) for name in Estimate.__dataclass_fields__}
-    values["warnings"] = (*notes, *found.warnings)
-    return Identified(**values, delay=float(delay), steps=steps, g=float(g))
+        parts.append((regressor(motion.q, motion.qd, motion.qdd, g=g, sign=TURN), motion.u, motion.use))
+    Phi, y, use = map(np.concatenate, zip(*parts, strict=True))
+    found = vars(fit(Phi, y, method=method, l2=l2, use=use, unit=unit))
+    warnings = *notes, *found["warnings"]
+    return Identified(**{**found, "warnings": warnings}, delay=float(delay), steps=steps, g=float(g))
 
 
 def _looked_at(recording, anyway):

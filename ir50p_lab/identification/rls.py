@@ -18,7 +18,7 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.fit_input import checked_data
 from ir50p_lab.identification.parameters import ACTS_ON, chosen_columns
-from ir50p_lab.inputs import choice, number
+from ir50p_lab.inputs import choice, number, numbers
 from ir50p_lab.jit import jit
 
 _fast = jit(fastmath={"reassoc", "contract", "nsz", "arcp"})  # sums in any order: several products at once
@@ -40,6 +40,9 @@ def ud_row(theta, V, D, h, y, K):
         f = h[j]
         for i in range(j):
             f += row[i] * h[i]
+        if f == 0.0:  # a column that is not chosen, or says nothing here
+            K[j] = 0.0
+            continue
         v = D[j] * f
         new_alpha = alpha + f * v
         new_inverse = 1.0 / new_alpha
@@ -57,25 +60,24 @@ def ud_row(theta, V, D, h, y, K):
 
 
 @jit()
-def _run(theta, V, D, columns, counts, forgetting, largest, Phi, y, history):
+def _run(theta, V, D, chosen, forgetting, largest, Phi, y, history):
     """Samples Phi (n, 3, 20) and y (n, 3) into the state of one shared filter or of three, one per joint.
 
-    theta (k, p), V (k, p, p), D (k, p): k = 1 or 3 filters, of which the first counts[k] entries are in use for the
-    columns[k] of Phi. Forgetting divides D, but never beyond `largest`. Writes theta into history (n, k, p), if it has
-    any rows.
+    theta (k, 20), V (k, 20, 20), D (k, 20), chosen (k, 20): k = 1 or 3 filters; a column that is not chosen counts as
+    zero, which leaves its entries alone. Forgetting divides D, but never beyond `largest`. Writes theta into history
+    (n, k, 20), if it has any rows.
     """
-    filters = theta.shape[0]
-    h, K = np.empty(theta.shape[1]), np.empty(theta.shape[1])
+    filters, p = theta.shape
+    h, K = np.empty(p), np.empty(p)
     for k in range(len(y)):
         for i in range(3):
             part = i if filters == 3 else 0
-            p = counts[part]
             if forgetting < 1.0 and (filters == 3 or i == 0):
                 for j in range(p):
                     D[part, j] = min(D[part, j] / forgetting, largest)
             for j in range(p):
-                h[j] = Phi[k, i, columns[part, j]]
-            ud_row(theta[part, :p], V[part], D[part], h, y[k, i], K)
+                h[j] = Phi[k, i, j] if chosen[part, j] else 0.0
+            ud_row(theta[part], V[part], D[part], h, y[k, i], K)
         if len(history):
             history[k] = theta
 
@@ -101,62 +103,45 @@ class RLS:
     """
 
     def __init__(self, *, rows="joint", columns="rigid", P0=1e8, forgetting=1.0):
-        choice("rows", rows, ("joint", "shared"))
+        shared = choice("rows", rows, ("joint", "shared")) == "shared"
         P0 = number("P0", P0, "> 0", hint="1e8 says that nothing is known")
         forgetting = number("forgetting", forgetting, "> 0", hint="1 forgets nothing, 0.999 recalls 1000 samples")
         if forgetting > 1:
             raise InputError(
                 f"forgetting = {forgetting} must be in (0, 1]: 1 forgets nothing, 0.999 recalls 1000 samples"
             )
-        chosen = chosen_columns(columns)
         self.rows, self.P0, self.forgetting, self.samples = rows, P0, forgetting, 0
-        self._members = [chosen] if rows == "shared" else [sorted(set(chosen) & set(acts)) for acts in ACTS_ON]
-        p = max(map(len, self._members))
-        k = len(self._members)
-        self._columns, self._counts = np.zeros((k, p), dtype=np.int64), np.zeros(k, dtype=np.int64)
-        self._theta, self._V, self._D = np.zeros((k, p)), np.tile(np.eye(p), (k, 1, 1)), np.full((k, p), P0)
-        for part, members in enumerate(self._members):
-            self._counts[part] = len(members)
-            self._columns[part, : len(members)] = members
+        acting = [range(20)] if shared else ACTS_ON
+        self._chosen = np.array([np.isin(range(20), chosen_columns(columns)) & np.isin(range(20), on) for on in acting])
+        k = len(acting)
+        self._theta, self._V, self._D = np.zeros((k, 20)), np.tile(np.eye(20), (k, 1, 1)), np.full((k, 20), P0)
 
     def step(self, Phi, y):
         """Take one sample, Phi (3, 20) and y (3,); returns theta (3, 20). Raises InputError, state unchanged."""
-        if np.shape(y) != (3,):
-            raise InputError(f"y has shape {np.shape(y)}; a step takes one sample, (3,); for many use run(Phi, y)")
-        return self.run(np.asarray(Phi)[None], np.asarray(y)[None], history=False)
+        y = numbers("y", y)
+        if y.shape != (3,):
+            raise InputError(f"y has shape {y.shape}; a step takes one sample, (3,); for many use run(Phi, y)")
+        return self.run(numbers("Phi", Phi)[None], y[None], history=False)
 
     def run(self, Phi, y, *, history=True):
         """Take n samples, Phi (n, 3, 20) and y (n, 3); returns theta after each, (n, 3, 20).
 
         history=False returns only the last theta, (3, 20): for very long data. Raises InputError, state unchanged.
         """
-        Phi, y = checked_data(Phi, y)
+        Phi, y = map(np.ascontiguousarray, checked_data(Phi, y))
         states = np.empty((len(y) if history else 0, *self._theta.shape))
-        state = self._theta, self._V, self._D, self._columns, self._counts
-        _run(*state, self.forgetting, self.P0, np.ascontiguousarray(Phi), np.ascontiguousarray(y), states)
+        _run(self._theta, self._V, self._D, self._chosen, self.forgetting, self.P0, Phi, y, states)
         self.samples += len(y)
-        return self._spread(states) if history else self.theta
+        return np.tile(states, (1, 3 // len(self._theta), 1)) if history else self.theta
 
     @property
     def theta(self):
         """The parameters now, (3, 20)."""
-        return self._spread(self._theta[None])[0]
+        return np.tile(self._theta, (3 // len(self._theta), 1))
 
     @property
     def P(self):
         """U D U^T now: (3, 20, 20), or (20, 20) if shared; 0 for columns left out."""
-        P = np.zeros((len(self._members), 20, 20))
-        for part, members in enumerate(self._members):
-            p = len(members)
-            U = self._V[part, :p, :p].T
-            P[part][np.ix_(members, members)] = U * self._D[part, :p] @ U.T
+        P = np.swapaxes(self._V, 1, 2) * self._D[:, None] @ self._V
+        P *= self._chosen[:, :, None] & self._chosen[:, None]
         return P[0] if self.rows == "shared" else P
-
-    def _spread(self, states):
-        """(n, k, p) as (n, 3, 20)."""
-        theta = np.zeros((len(states), 3, 20))
-        for part, members in enumerate(self._members):
-            where = slice(None) if self.rows == "shared" else part
-            values = states[:, part, : len(members)]
-            theta[:, where, members] = values[:, None, :] if self.rows == "shared" else values
-        return theta

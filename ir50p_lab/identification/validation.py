@@ -6,11 +6,11 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.arm_regressor import regressor
-from ir50p_lab.identification.columns import columns_of, sampling_period
+from ir50p_lab.identification.columns import columns_of
 from ir50p_lab.identification.fit_input import finite
-from ir50p_lab.identification.processing import process
+from ir50p_lab.identification.processing import BACKWARD, acting_times, process
 from ir50p_lab.inputs import number, switch
-from ir50p_lab.modelling.dynamics import as_theta
+from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -20,7 +20,6 @@ class Validation:
     ========== ================================================================================== ======
     rms        of measured - predicted; unit of u, or rad for q                                   (3,)
     fit        100 (1 - |measured - predicted|/|measured - mean|) %, the fit of Table 4.4         (3,)
-    spread     standard deviation of what was measured: rms/(1 - fit/100)                         (3,)
     t          of the samples compared, s                                                         (n,)
     measured   u of the recording as it stands, or q                                              (n, 3)
     predicted  by the model                                                                       (n, 3)
@@ -30,7 +29,6 @@ class Validation:
 
     rms: np.ndarray
     fit: np.ndarray
-    spread: np.ndarray
     t: np.ndarray
     measured: np.ndarray
     predicted: np.ndarray
@@ -65,39 +63,45 @@ def nrmse_fit(measured, predicted):
     return rms, 100 * (1 - rms / spread)
 
 
-def validate(estimate, recording, q=None, u=None, *, delay=0.0, held=True, sign=None, g=9.81, **steps):
+def validate(
+    estimate,
+    recording,
+    q=None,
+    u=None,
+    *,
+    derivatives=BACKWARD,
+    cutoff_hz=1.5,
+    order=4,
+    delay=0.0,
+    held=True,
+    trim=None,
+    sign=None,
+    g=STANDARD_GRAVITY,
+):
     """Predict the u of another recording from its angles, one sample at a time    (4.5), Table 4.4.
 
     The u of the recording is taken raw, as it was sent. The prediction is made from q, qd and qdd as `process` finds
     them, and read at the time at which each u acted: its sample + delay (+ half a period while it is held).
 
-    Args: estimate: Estimate or theta (3, 20); recording, or t, q, u; delay, held, and further steps (derivatives=,
-    cutoff_hz=, order=, trim=, max_gap=): as in `process`; sign, g: as in `regressor`.
+    Args: estimate: Estimate or theta (3, 20); recording, or t, q, u; derivatives, cutoff_hz, order, delay, held, trim:
+    as in `process`; sign, g: as in `regressor`.
     Returns: Validation of "u". Raises InputError, IdentificationError as `process` does.
     """
-    theta, _ = as_theta(getattr(estimate, "theta", estimate) if not hasattr(estimate, "m") else estimate)
+    theta, _ = as_theta(estimate if hasattr(estimate, "m") else getattr(estimate, "theta", estimate))
     t, q, u = columns_of(recording, q, u)
     if q.shape[1] != 3:
         raise InputError(f"q has {q.shape[1]} columns: validation needs the three joints, (n, 3)")
-    motion = process(t, q, u, held=False, **steps)
-    Phi = regressor(motion.q, motion.qd, motion.qdd, g=g, sign=sign)
-    predicted = np.einsum("nij,ij->ni", Phi, theta)
-    later = switch("held", held) and steps.get("derivatives", "zero-phase") == "zero-phase"
-    acts = t + number("delay", delay, ">= 0", unit="s")
-    if later:
-        acts = acts + 0.5 * np.diff(t, append=t[-1] + sampling_period(t))
-    kept, found = [], []
-    for segment in np.unique(motion.segment):
-        here = motion.segment == segment
-        inside = (acts >= motion.t[here][0]) & (acts <= motion.t[here][-1])
-        kept.append(np.flatnonzero(inside))
-        found.append(np.column_stack([np.interp(acts[inside], motion.t[here], p) for p in predicted[here].T]))
-    kept = np.concatenate(kept)
-    return compared(t[kept], u[kept], np.concatenate(found), "u")
+    motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, order=order, held=False, trim=trim)
+    predicted = np.einsum("nij,ij->ni", regressor(motion.q, motion.qd, motion.qdd, g=g, sign=sign), theta)
+    acts = acting_times(t, number("delay", delay, ">= 0", unit="s"), switch("held", held) and derivatives == BACKWARD)
+    after = np.searchsorted(motion.t, acts).clip(1, len(motion) - 1)
+    inside = (acts >= motion.t[after - 1]) & (acts <= motion.t[after])
+    inside &= motion.segment[after] == motion.segment[after - 1]
+    found = np.column_stack([np.interp(acts[inside], motion.t, p) for p in predicted.T])
+    return compared(t[inside], u[inside], found, "u")
 
 
 def compared(t, measured, predicted, of):
     """Validation of "u" or "q", (n, 3) each."""
     rms, fit = nrmse_fit(measured, predicted)
-    spread = measured.std(axis=0)
-    return Validation(rms=rms, fit=fit, spread=spread, t=t, measured=measured, predicted=predicted, of=of)
+    return Validation(rms=rms, fit=fit, t=t, measured=measured, predicted=predicted, of=of)

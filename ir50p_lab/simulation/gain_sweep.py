@@ -10,7 +10,7 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import numbers, vector3
 from ir50p_lab.simulation.batch import LANES, METRICS, pid_batch
 from ir50p_lab.simulation.plant import make_plant
-from ir50p_lab.simulation.simulate import _sample, _target, _times
+from ir50p_lab.simulation.simulate import _target, _times, sampled
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def sweep_gains(
     if not (bound > 0).all() or not filter_hz > 0:
         raise InputError(f"limit {bound.tolist()} and filter_hz {filter_hz} must be positive")
     rate = 2 * np.pi * filter_hz
-    r = _sample(_target(reference, q0), t)
+    r = sampled(_target(reference, q0), t)
     x0 = np.concatenate([q0, np.zeros(3)])
     jobs = [slice(i, i + LANES) for i in range(0, len(kp), LANES)]
     pool = executor or ThreadPoolExecutor(os.cpu_count())

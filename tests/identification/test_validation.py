@@ -54,7 +54,7 @@ def test_the_right_model_scores_and_a_wrong_one_does_not():
     record = analytic()
     found = validate(THETA, record, cutoff_hz=8.0, held=False)
     assert (found.fit > 98).all() and found.of == "u" and "fit" in str(found)
-    np.testing.assert_allclose(found.spread, found.rms / (1 - found.fit / 100))
+    np.testing.assert_allclose(found.measured.std(axis=0), found.rms / (1 - found.fit / 100))
     np.testing.assert_array_equal(found.measured, record.u[np.searchsorted(record.t, found.t)])  # raw, all of them
     np.testing.assert_array_equal(found.residuals, found.measured - found.predicted)
     np.testing.assert_array_equal(
@@ -117,6 +117,12 @@ def test_ljung_box_by_hand():
 
 
 # --- refusals
+
+
+@pytest.mark.parametrize("step", [{"slow": 0.05}, {"filter_u": True}, {"decimate": 3}])
+def test_steps_that_do_not_apply_to_raw_commands_are_refused(step):
+    with pytest.raises(TypeError, match=next(iter(step))):
+        validate(THETA, analytic(rate=50.0), **step)
 
 
 def test_bad_input():

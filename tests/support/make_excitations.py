@@ -61,9 +61,10 @@ def simulate_identification(reference, arm, controller, *, noise=5.0):
     start = reference.sample(np.zeros(1))[0, 0]
     run = simulate(arm, controller, reference, duration=2 * reference.period, q0=start, unit="PWM")
     found = validate(arm.theta_pwm, run.t, run.q, run.u, sign=0.05, cutoff_hz=1.2)
+    spread = found.measured.std(axis=0)
     return SimulatedIdentification(
-        fit=100 * (1 - np.hypot(found.rms, noise) / found.spread),
-        spread=found.spread,
+        fit=100 * (1 - np.hypot(found.rms, noise) / spread),
+        spread=spread,
         q=run.q,
         room=np.minimum(run.q - arm.q_min, np.array(arm.q_max) - run.q).min(axis=0),
         height=float(np.min(heights(arm.l, run.q))),
