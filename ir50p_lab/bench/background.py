@@ -9,8 +9,8 @@ from ir50p_lab.bench.live_run import LiveRun
 from ir50p_lab.bench.pace import warm_up
 from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.bench.shared_loop import SharedLoop
+from ir50p_lab.controllers.base import check_controller, check_reference
 from ir50p_lab.errors import BenchError, InputError
-from ir50p_lab.inputs import check_controller, check_reference
 
 
 def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest=True):
