@@ -9,25 +9,21 @@ def take_lock(file, busy=""):
 
     busy: printed once while another one holds it. Where there are no locks (some network drives) it goes on without.
     """
-    while not _try_lock(file):
-        if busy:
-            print(busy)
-        busy = ""
-        time.sleep(0.02)
+    if os.name == "nt":
+        import msvcrt
 
+        lock, how = msvcrt.locking, (file.fileno(), msvcrt.LK_NBLCK, 1)
+    else:
+        import fcntl
 
-def _try_lock(file):
-    try:
-        if os.name == "nt":
-            import msvcrt
-
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        else:
-            import fcntl
-
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except (BlockingIOError, PermissionError):
-        return False
-    except OSError:
-        return True
-    return True
+        lock, how = fcntl.flock, (file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    while True:
+        try:
+            return lock(*how)
+        except (BlockingIOError, PermissionError):
+            if busy:
+                print(busy)
+            busy = ""
+            time.sleep(0.02)
+        except OSError:
+            return None

@@ -83,19 +83,3 @@ def check_arm(arm):
     if not hasattr(type(arm), "theta_pwm"):  # not isinstance: this module is below the arm's
         raise InputError(f"arm = {arm!r:.60}: give an Arm, such as IR50P or load_arm()")
     return arm
-
-
-def check_controller(controller):
-    """Raise InputError if it has no step()."""
-    if not callable(getattr(controller, "step", None)):
-        raise InputError(
-            f"controller = {controller!r:.60}: give a controller with step(t, measured, reference), such as PID(...)"
-        )
-
-
-def check_reference(reference, *, sampled=False):
-    """Raise InputError if it is no function; sampled: what only has `sample(times)` is enough."""
-    if not (callable(reference) or (sampled and hasattr(reference, "sample"))):
-        raise InputError(
-            f"reference = {reference!r:.60}: give a function of time, target(t) -> (q, qd, qdd), such as hold([...])"
-        )

@@ -77,26 +77,18 @@ def _no_other_process():
         yield
 
 
-class _Once(event.Listener):
-    """Prints a line when the first function is compiled; code that lies in the cache is not."""
-
-    def __init__(self, line):
-        self._line = line
-
-    def on_start(self, _):
-        print(self._line, end="", flush=True)
-        self._line = ""
-
-    def on_end(self, _):
-        pass
-
-
 def says_that_it_compiles(function):
-    """Decorator: a call that compiles says so, for it may take half a minute."""
+    """Decorator: a call that compiles says so, for it may take half a minute. Code that lies in the cache is not."""
+
+    class Saying(event.RecordingListener):
+        def on_start(self, compilation):
+            if not self.buffer:
+                print(f"{function.__name__} is compiled, once: up to 30 s...", flush=True)
+            super().on_start(compilation)
 
     @functools.wraps(function)
     def wrapper(*args, **options):
-        with event.install_listener("numba:compile", _Once(f"{function.__name__} is compiled, once: up to 30 s...\n")):
+        with event.install_listener("numba:compile", Saying()):
             return function(*args, **options)
 
     return wrapper

@@ -24,9 +24,8 @@ from ir50p_lab.bench.pace import warm_up
 from ir50p_lab.bench.recording import Recording
 from ir50p_lab.bench.set_point import checked_reference, checked_set_point
 from ir50p_lab.bench.shared_loop import SharedLoop
-from ir50p_lab.controllers.base import GAINS, gains, gains_of
+from ir50p_lab.controllers.base import GAINS, check_controller, check_reference, gains, gains_of
 from ir50p_lab.errors import BenchError, InputError
-from ir50p_lab.inputs import check_controller, check_reference
 
 _TO_REST = 60.0  # s: a way to the rest pose that takes longer has failed
 _OBEYED = 0.25  # s: a loop that has not taken the order to cut by then hangs

@@ -12,8 +12,9 @@ from ir50p_lab.bench.recorder import Recorder, header_of
 from ir50p_lab.bench.rest import way_to_rest
 from ir50p_lab.bench.runaway import RunawayGuard
 from ir50p_lab.bench.set_point import checked_reference
+from ir50p_lab.controllers.base import check_controller, check_reference
 from ir50p_lab.errors import BenchError, InputError, LabError, PauseError
-from ir50p_lab.inputs import check_arm, check_controller, check_reference
+from ir50p_lab.inputs import check_arm
 from ir50p_lab.modelling.named_arms import load_arm
 
 JOINTS = 3

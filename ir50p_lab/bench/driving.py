@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
+from ir50p_lab.controllers.base import check_controller
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import check_controller, choice, number, numbers
+from ir50p_lab.inputs import choice, number, numbers
 from ir50p_lab.signals.reference import per_joint
 
 LIMIT_PWM = 255

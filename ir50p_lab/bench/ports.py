@@ -5,7 +5,7 @@ import sys
 from typing import NamedTuple
 
 from ir50p_lab.errors import PortError
-from ir50p_lab.launcher.boards import BOARDS, board_name, permission_remedy
+from ir50p_lab.launcher.boards import board_name, permission_remedy
 
 
 class Port(NamedTuple):
@@ -19,9 +19,8 @@ def list_ports():
     """All serial ports of this computer, those of a Mega 2560 first, then chips of its clones, then the others."""
     from serial.tools import list_ports
 
-    found = sorted(list_ports.comports(), key=lambda port: ((port.vid, port.pid) not in BOARDS, port))
-    ports = [Port(port.device, board_name(port.vid, port.pid)) for port in found]
-    return sorted(ports, key=lambda port: port.board is None)
+    ports = [Port(port.device, board_name(port.vid, port.pid)) for port in sorted(list_ports.comports())]
+    return sorted(ports, key=lambda port: (port.board is None, "chip" in str(port.board)))
 
 
 def open_port(device, baud):

@@ -12,10 +12,9 @@ from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.runaway import watch_step
 from ir50p_lab.bench.set_point import FARTHEST, NOISE, checked_reference
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, read_pots
-from ir50p_lab.controllers.base import is_compiled
+from ir50p_lab.controllers.base import check_controller, check_reference, is_compiled
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import check_controller, check_reference
 from ir50p_lab.jit import jit
 
 _BLOCK = 1000  # samples between two looks at the disk and at Ctrl-C in a compiled run

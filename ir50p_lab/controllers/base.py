@@ -125,3 +125,19 @@ def _plain_rows(reference):
     if rows.shape != (3, 3):
         raise InputError(f"reference has shape {rows.shape}; give (q, qd, qdd), three vectors of shape (3,)")
     return np.ascontiguousarray(rows)
+
+
+def check_controller(controller):
+    """Raise InputError if it has no step()."""
+    if not callable(getattr(controller, "step", None)):
+        raise InputError(
+            f"controller = {controller!r:.60}: give a controller with step(t, measured, reference), such as PID(...)"
+        )
+
+
+def check_reference(reference, *, sampled=False):
+    """Raise InputError if it is no function; sampled: what only has `sample(times)` is enough."""
+    if not (callable(reference) or (sampled and hasattr(reference, "sample"))):
+        raise InputError(
+            f"reference = {reference!r:.60}: give a function of time, target(t) -> (q, qd, qdd), such as hold([...])"
+        )

@@ -15,11 +15,10 @@ import numpy as np
 
 from ir50p_lab.bench.arm_instance import ArmInstance
 from ir50p_lab.bench.simulated import SimulatedBench
-from ir50p_lab.controllers.base import is_compiled
+from ir50p_lab.controllers.base import check_controller, is_compiled
 from ir50p_lab.controllers.pid import PID
 from ir50p_lab.course import lab_book
 from ir50p_lab.errors import LabError
-from ir50p_lab.inputs import check_controller
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.modelling.named_arms import load_arm
 from ir50p_lab.signals import steps

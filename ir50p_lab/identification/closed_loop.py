@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.controllers.base import Controller, is_compiled
+from ir50p_lab.controllers.base import Controller, check_reference, is_compiled
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.columns import columns_of, sampling_period
-from ir50p_lab.inputs import check_reference, number, vectors3
+from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
 from ir50p_lab.simulation.loops import sampled_loop
 from ir50p_lab.simulation.plant import DRY, FS, LIMIT, QS, make_plant

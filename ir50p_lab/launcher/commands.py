@@ -44,6 +44,8 @@ _MODULES = {
     "export": "ir50p_lab.publishing",
     "report": "ir50p_lab.publishing.report",
 }
+#: What asks the launcher to end: `kill`, and a terminal that is closed (not on Windows).
+_ENDS = {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
 
 
 def main(arguments, root=ROOT):
@@ -51,11 +53,11 @@ def main(arguments, root=ROOT):
     for stream in filter(None, (sys.stdout, sys.stderr)):  # pythonw has none
         if hasattr(stream, "reconfigure"):  # paths may have letters that the console does not
             stream.reconfigure(errors="replace", line_buffering=True)
-    for number in {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}:  # Windows has no SIGHUP
-        signal.signal(number, _stop)
+    for number in _ENDS:
+        signal.signal(number, signal.default_int_handler)  # as Ctrl-C
     try:
         return _run(arguments, Path(root))
-    except SetUpError as problem:
+    except (SetUpError, argparse.ArgumentError) as problem:
         print(problem, file=sys.stderr)
         return 1
     except (OSError, ImportError) as error:
@@ -75,7 +77,10 @@ def _run(arguments, root):
             f"{root} is not the project's folder: it has no {LOCK}. Run '{COMMAND}' in the folder that was cloned or "
             "unpacked."
         )
-    options, arguments = _options(arguments)
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
+    parser.add_argument("--here", action="store_true")
+    parser.add_argument("--arm", metavar="FILE")
+    options, arguments = parser.parse_known_args(arguments)
     command = arguments.pop(0) if arguments[:1] and arguments[0] in (*_MODULES, "setup", "doctor", "update") else "lab"
     file = command == "lab" and bool(arguments) and not arguments[0].startswith("-")
     if file and not Path(arguments[0]).exists():
@@ -107,17 +112,6 @@ def _run(arguments, root):
     return 0 if command == "lab" and code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
 
 
-def _options(arguments):
-    """--here and --arm, and what is left of the arguments."""
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
-    parser.add_argument("--here", action="store_true")
-    parser.add_argument("--arm")
-    try:
-        return parser.parse_known_args(arguments)
-    except argparse.ArgumentError:
-        raise SetUpError(f"--arm needs a file after it. Try '{COMMAND} --help'.") from None
-
-
 def _setup(arguments, environment, here):
     for unknown in set(arguments) - {"--rebuild", "--tests"}:
         raise SetUpError(f"setup does not know '{unknown}'. Try '{COMMAND} --help'.")
@@ -132,34 +126,23 @@ def _ready(environment, here, *, tests, rebuild=False):
         environment.ensure(tests=tests, rebuild=rebuild)
         return str(environment.python), environment.variables()
     lock = environment.root / (TEST_LOCK if tests else LOCK)
-    pip = f"{'py' if os.name == 'nt' else sys.executable} -m pip install"
-    missing = [package["name"] for package in inventory.packages(lock) if package["installed"] is None]
-    steps = [f"{pip} -r {lock}"] if missing else []
-    if inventory.installed_version("ir50p-lab") is None:
-        missing.append("ir50p-lab")
-        steps.append(f"{pip} --no-deps --no-build-isolation -e {environment.root}")
+    installed = {package["name"]: package["installed"] for package in inventory.packages(lock)}
+    installed["ir50p-lab"] = inventory.installed_version("ir50p-lab")
+    missing = [name for name, version in installed.items() if version is None]
     if missing:
-        names = ", ".join(missing[:6]) + (f" and {len(missing) - 6} more" if len(missing) > 6 else "")
-        raise SetUpError(f"This Python ({sys.executable}) lacks {names}. Install with: {' && '.join(steps)}")
+        pip = f"{'py' if os.name == 'nt' else sys.executable} -m pip install"
+        raise SetUpError(
+            f"This Python ({sys.executable}) lacks {', '.join(missing)}. Install with: {pip} -r {lock} && "
+            f"{pip} --no-deps --no-build-isolation -e {environment.root}"
+        )
     return sys.executable, dict(os.environ)
 
 
 def _attend(command, variables, folder=None):
     """Run a program to its end. Ctrl-C is for it to answer: it sits at the same terminal."""
+    signal.signal(signal.SIGINT, lambda *_: None)  # not SIG_IGN, which the program would inherit
     child = subprocess.Popen(command, env=variables, cwd=folder)
-    while True:
-        try:
-            code = child.wait()
-            return code if code >= 0 else 128 - code  # ended by a signal: as a shell counts it
-        except _TerminatedError:
-            child.terminate()
-        except KeyboardInterrupt:
-            continue
-
-
-class _TerminatedError(KeyboardInterrupt):
-    """The launcher itself was asked to end (SIGTERM, terminal closed)."""
-
-
-def _stop(signum, frame):
-    raise _TerminatedError
+    for number in _ENDS:
+        signal.signal(number, lambda *_: child.terminate())
+    code = child.wait()
+    return code if code >= 0 else 128 - code  # ended by a signal: as a shell counts it

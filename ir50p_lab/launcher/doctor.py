@@ -4,12 +4,14 @@ import os
 import platform
 import shutil
 import sys
-from pathlib import Path
 
 from ir50p_lab.launcher.boards import board_name, permission_remedy
-from ir50p_lab.launcher.environment import LOCK, NEEDED_GB
+from ir50p_lab.launcher.environment import LOCK
 from ir50p_lab.launcher.inventory import direct_dependencies
 from ir50p_lab.launcher.problems import COMMAND
+
+#: Space that .venv and uv's cache take, GB (measured on Linux: see README.md).
+NEEDED_GB = 2.0
 
 
 def report(environment, *, here=False):
@@ -31,11 +33,6 @@ def report(environment, *, here=False):
     _line("Free disk", f"{free:.1f} GB")
     if free < NEEDED_GB and fault:
         faults.append(f"the set-up needs {NEEDED_GB:.0f} GB of disk, {free:.1f} GB are free")
-    arm = os.environ.get("IR50P_ARM")
-    if arm:
-        _line("Arm", f"{arm} (from IR50P_ARM)")
-        if not Path(arm).is_file():
-            faults.append(f"IR50P_ARM names a file that does not exist ({arm})")
     _ports(found and found["ports"])
     verdict = f"not ready: {'; '.join(faults)}. {cure}." if faults else f"ready. Open the lab book with '{COMMAND}'."
     print(f"Verdict: {verdict}")
@@ -49,20 +46,18 @@ def _line(title, text):
 def _packages(found, root, here):
     """Compare what is installed with the lock, and say what cannot be imported; return the faults."""
     wanted = found["packages"]
-    missing = [package for package in wanted if package["installed"] is None]
-    other = [package for package in wanted if package["installed"] not in (None, package["wanted"])]
+    missing = [p for p in wanted if p["installed"] is None]
+    other = [p for p in wanted if p["installed"] not in (None, p["wanted"])]
     same = len(wanted) - len(missing) - len(other)
     _line("Packages", f"{same} of {len(wanted)} as in {LOCK} (Python {found['python']})")
     direct = direct_dependencies(root)
     key = [f"{p['name']} {p['installed']}" for p in wanted if p["name"] in direct and p["installed"]]
-    for i in range(0, len(key), 5):
-        _line("", ", ".join(key[i : i + 5]))
-    for package in missing:
-        _line("", f"missing: {package['name']} {package['wanted']}")
-    for package in other:
-        _line("", f"differs: {package['name']} {package['installed']}, the lock has {package['wanted']}")
-    for name, why in found["broken"].items():
-        _line("", f"broken: import {name}: {why}")
+    lines = [", ".join(key[i : i + 5]) for i in range(0, len(key), 5)]
+    lines += [f"missing: {p['name']} {p['wanted']}" for p in missing]
+    lines += [f"differs: {p['name']} {p['installed']}, the lock has {p['wanted']}" for p in other]
+    lines += [f"broken: import {name}: {why}" for name, why in found["broken"].items()]
+    for line in lines:
+        _line("", line)
     faults = {
         f"{len(missing)} packages are missing": missing,
         f"{len(other)} packages differ from the lock": other and not here,  # a hub brings its own versions

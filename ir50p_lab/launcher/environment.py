@@ -4,7 +4,6 @@ The set-up writes its stamp last and removes it first. A .venv without a valid s
 interrupted it, and is emptied and built again.
 """
 
-import hashlib
 import importlib
 import json
 import os
@@ -23,8 +22,6 @@ from ir50p_lab.launcher.problems import COMMAND, SetUpError
 
 LOCK = "environment.txt"
 TEST_LOCK = "environment-test.txt"
-#: Space that .venv and uv's cache take, GB (measured on Linux: see README.md).
-NEEDED_GB = 2.0
 
 _BUSY = "ir50p_lab-setup.lock"
 _NOT_MADE = "not made yet"
@@ -114,9 +111,6 @@ class Environment:
             print(f"Set-up of {self.folder}: takes a minute or two, once. Ctrl-C stops it safely.")
         else:
             print(f"The folder .venv is {fault}: building it again.")
-        free = shutil.disk_usage(self.root).free / 1e9
-        if free < NEEDED_GB:
-            print(f"Only {free:.1f} GB are free; the set-up may need {NEEDED_GB:.0f} GB.")
         importlib.import_module("ensurepip")  # without it venv fails half way and does not say why
         importlib.import_module("venv")
         self._empty()
@@ -129,7 +123,10 @@ class Environment:
         installer.install("--no-deps", "--no-build-isolation", "--editable", str(self.root))
         print("[4/4] check: everything is imported once")
         self._check()
-        self._quieten_jupyter()
+        # Spare the student JupyterLab's question about news from the web at its first start.
+        shutil.copytree(
+            Path(__file__).with_name("labconfig"), self.folder / "etc/jupyter/labconfig", dirs_exist_ok=True
+        )
 
     def _install_lock(self, step, installer, lock_file):
         print(step, lock_file)
@@ -162,13 +159,6 @@ class Environment:
         for name, why in broken.items():
             print(f"Careful: {name} cannot be used ({why}). '{COMMAND} doctor' says more.")
 
-    def _quieten_jupyter(self):
-        """Spare the student JupyterLab's question about news from the web at its first start."""
-        settings = self.folder / "etc" / "jupyter" / "labconfig" / "page_config.json"
-        settings.parent.mkdir(parents=True, exist_ok=True)
-        disabled = {"@jupyterlab/apputils-extension:announcements": True}
-        settings.write_text(json.dumps({"disabledExtensions": disabled}), encoding="utf-8")
-
     # -- looking -------------------------------------------------------------------------------------------------------
 
     def _ready_stamp(self, tests):
@@ -176,13 +166,10 @@ class Environment:
         return {
             "root": str(self.root),
             "python": sysconfig.get_python_version(),
-            LOCK: self._digest(LOCK),
-            TEST_LOCK: self._digest(TEST_LOCK) if tests else None,
+            # as text: line ends may differ between checkouts
+            LOCK: (self.root / LOCK).read_text("utf-8"),
+            TEST_LOCK: (self.root / TEST_LOCK).read_text("utf-8") if tests else None,
         }
-
-    def _digest(self, lock_file):
-        text = (self.root / lock_file).read_text("utf-8")  # as text: line ends may differ between checkouts
-        return hashlib.sha256(text.encode()).hexdigest()
 
     def _python_starts(self):
         try:

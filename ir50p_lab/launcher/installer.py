@@ -1,34 +1,16 @@
 """Packages into .venv: pip puts uv there and uv does the rest; pip does all of it where uv cannot.
 
-uv reads neither pip.conf nor PIP_*, so what they say is translated for it.
+uv reads neither pip.conf nor PIP_*, so what they say is translated for it, by pip_settings.toml.
 """
 
 import ast
 import os
 import subprocess
 import sys
+import tomllib
+from pathlib import Path
 
 from ir50p_lab.launcher import problems
-
-#: pip's settings as options of uv, one for each of their values.
-_OPTIONS = {"index-url": "--default-index", "extra-index-url": "--index", "find-links": "--find-links"}
-#: pip's settings as environment variables of uv.
-_VARIABLES = {
-    "trusted-host": ["UV_INSECURE_HOST"],
-    "no-cache-dir": ["UV_NO_CACHE"],
-    "cert": ["SSL_CERT_FILE"],
-    "client-cert": ["SSL_CLIENT_CERT"],
-    "proxy": ["HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY"],
-    "timeout": ["UV_HTTP_TIMEOUT"],
-    "default-timeout": ["UV_HTTP_TIMEOUT"],
-    "retries": ["UV_HTTP_RETRIES"],
-}
-#: pip's settings that do not touch what is installed, or that the set-up makes itself.
-_WITHOUT_MEANING = set(
-    "break-system-packages cache-dir config-file disable-pip-version-check log no-color no-compile no-input "
-    "no-python-version-warning no-warn-script-location only-binary prefer-binary progress-bar quiet "
-    "require-virtualenv require-venv root-user-action user verbose".split()
-)
 
 
 def for_uv(listing):
@@ -39,15 +21,16 @@ def for_uv(listing):
             name, _, value = line.partition("=")
             if name.startswith(section) and ast.literal_eval(value):  # to pip an empty one is not set
                 settings[name.removeprefix(section)] = ast.literal_eval(value)
+    table = tomllib.loads(Path(__file__).with_name("pip_settings.toml").read_text("utf-8"))
     options, variables = ["--index-strategy", "unsafe-best-match"], {}  # as pip: all indexes are equal
     for name, value in settings.items():
-        if name in _OPTIONS:
-            options += [f"{_OPTIONS[name]}={address}" for address in value.split()]
-        elif name in _VARIABLES:
-            variables |= dict.fromkeys(_VARIABLES[name], " ".join(value.split()))
+        if name in table["options"]:
+            options += [f"{table['options'][name]}={address}" for address in value.split()]
+        elif name in table["variables"]:
+            variables |= dict.fromkeys(table["variables"][name], " ".join(value.split()))
         elif name == "no-index":
             options += ["--no-index"] if value.lower() in ("1", "true", "yes", "on", "y", "t") else []
-        elif name not in _WITHOUT_MEANING:
+        elif name not in table["without_meaning"]["names"]:
             return None
     return options, variables
 

@@ -28,12 +28,11 @@ def take_over(arguments, root):
         for place in (old / "notebooks" / name, old / name):
             if place.exists():
                 _copy(place, home / name)
-    edited = []
-    known = set((root / _KNOWN).read_text(encoding="utf-8").split())
-    for path in sorted((old / "notebooks").glob("*.ipynb")):
+    notebooks = sorted((old / "notebooks").glob("*.ipynb"))
+    for path in notebooks:
         _copy(path, home / "old" / path.name)
-        if notebook_hash(path) not in known:
-            edited.append(path.name)
+    known = (root / _KNOWN).read_text(encoding="utf-8").split()
+    edited = [path.name for path in notebooks if notebook_hash(path) not in known]
     print(f"Notebooks of the older course: {home / 'old'}")
     print(f"You had changed: {', '.join(edited) or 'none of them'}")
     if (old / "notebooks" / "03_dynamics.ipynb").exists():

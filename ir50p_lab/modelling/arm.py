@@ -71,8 +71,7 @@ class Arm:
             if values.shape != (3,) or np.isnan(values).any():
                 raise ArmError(f"{name} = {getattr(self, name)!r}: give three angles in rad (inf for no limit)")
             object.__setattr__(self, name, tuple(values.tolist()))
-        g = number("g", self.g, ">= 0", unit="m/s^2", hint="the base z axis points up")
-        object.__setattr__(self, "g", g)
+        object.__setattr__(self, "g", number("g", self.g, ">= 0", unit="m/s^2", hint="the base z axis points up"))
         self._refuse_impossible()
         for text in self.suspicions:
             warnings.warn(f"{self.name}: {text}", SuspiciousArmWarning, stacklevel=3)

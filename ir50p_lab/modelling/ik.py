@@ -100,10 +100,7 @@ def _branches(l, four, p, q):
         side, elbow = 1.0 if k < 2 else -1.0, -1.0 if k % 2 == 0 else 1.0
         q3 = elbow * bend
         q2 = math.atan2(z, side * delta) - math.atan2(l3 * math.sin(q3), l2 + l3 * math.cos(q3))
-        if q2 > math.pi:
-            q2 -= 2 * math.pi
-        elif q2 <= -math.pi:
-            q2 += 2 * math.pi
+        q2 -= 2 * math.pi * math.ceil(q2 / (2 * math.pi) - 0.5)  # into (-pi, pi]
         q[k, 0], q[k, 1], q[k, 2] = math.atan2(side * p[1], side * p[0]), q2, q3
 
 

@@ -12,9 +12,9 @@ from ir50p_lab.bench import ports as port_list
 from ir50p_lab.bench.ports import Port
 from ir50p_lab.bench.result_files import add
 from ir50p_lab.errors import BoardError, InputError, PortError, RecordingError
-from ir50p_lab.launcher.boards import MEGA
 from ir50p_lab.modelling import IR50P
 
+MEGA = "Arduino Mega 2560"
 CLONE = "CH340 chip, as on clones of the Mega"
 
 

@@ -18,7 +18,6 @@ from ir50p_lab.bench.ports import Port
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import BenchError, InputError
-from ir50p_lab.launcher.boards import MEGA
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold
 
@@ -389,6 +388,6 @@ class TestContract:
 def plugged_in(monkeypatch, board):
     """Let the computer find this board on a serial port, with a clock of its own."""
     finder = import_module("ir50p_lab.bench.connect")
-    monkeypatch.setattr(finder, "list_ports", lambda: [Port("/dev/ttyACM7", MEGA)])
+    monkeypatch.setattr(finder, "list_ports", lambda: [Port("/dev/ttyACM7", "Arduino Mega 2560")])
     monkeypatch.setattr(serial_bench, "open_port", lambda name, baud: board)
     monkeypatch.setattr(serial_bench, "Clock", board)

@@ -14,7 +14,6 @@ import pytest
 from mini_project import PROJECT, one_line
 
 from ir50p_lab.launcher import commands, problems
-from ir50p_lab.launcher import environment as environment_module
 from ir50p_lab.launcher.environment import Environment
 from ir50p_lab.launcher.problems import SetUpError
 
@@ -127,14 +126,6 @@ def test_disk_full_while_the_launcher_writes(project, monkeypatch, capsys):
     monkeypatch.setattr(Environment, "_empty", full)
     assert commands.main(["setup"], root=project.root) == 1
     assert capsys.readouterr().err.startswith("The disk is full")
-
-
-def test_little_space_is_said_before_the_download(project, monkeypatch, capsys):
-    monkeypatch.setattr(environment_module.shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(9, 8, 5e8))
-    monkeypatch.setattr(Environment, "_empty", lambda self: (_ for _ in ()).throw(SetUpError("enough seen")))
-    with pytest.raises(SetUpError, match="enough seen"):
-        Environment(project.root).ensure()
-    assert "Only 0.5 GB are free; the set-up may need 2 GB." in capsys.readouterr().out
 
 
 # -- the wrong folder ------------------------------------------------------------------------------------------------------
