@@ -227,7 +227,7 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
         ("forward_kinematics", "frames(q, l)[3]", "dh_matrix(q[2], 0, l[2], 0)", "as frame 2 sees it, at the elbow"),
         ("inverse_kinematics", "[1, -1]", "[-1]", "all with their back to it"),
         ("reach", REACH_LIMITS, "all(limits[0, 0] <= a <= limits[0, 1] for a in q)", "read as columns"),
-        ("reach", "frames(q, l)", "frames((q := np.clip(q, *limits)), l)", "stands exactly on a limit"),
+        ("reach", REACH_LIMITS, "len(q := np.clip(q, *limits))", "stands exactly on a limit"),
         ("reach", "best = q\n", "return q\n", "the first allowed pose wins"),
         ("jacobian", "origin = T[joint]", "origin = T[link]", "the link's own frame"),
         ("jacobian", "range(link)", "range(3)", "all three joints move every link"),
