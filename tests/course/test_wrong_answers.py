@@ -218,6 +218,30 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
             "np.arctan2(l2 * np.sin(q3), l3 + l2 * np.cos(q3))",
             "have changed places",
         ),
+        ("rot_z", "np.cos(angle), np.sin(angle)", "np.cos(angle), np.sqrt(1 - np.cos(angle)**2)", "without its sign"),
+        ("rot_z", "[c, -s, 0.0], [s, c, 0.0]", "[c, -s, 0.0], [-s, c, 0.0]", r"column 1 has the wrong sign\.\s"),
+        ("rot_z", "[c, -s, 0.0], [s, c, 0.0], [0", "[c, 0, s], [0, 1, 0], [-s, 0, c]][:3] or [[0", "leaves y alone"),
+        ("dh_matrix", "turn_x(alpha)", "turn_x(theta)", "alpha does nothing in it, and theta turns twice"),
+        ("dh_matrix", "T[:3, 3] = [x", "T[:3, 3] == [x", "compares and puts nothing anywhere"),
+        ("frames", "[l[0], 0, np.pi", "[0, l[0], np.pi", "d and a have changed places in row 1 alone"),
+        ("forward_kinematics", "frames(q, l)[3]", "dh_matrix(q[2], 0, l[2], 0)", "as frame 2 sees it, at the elbow"),
+        ("inverse_kinematics", "[1, -1]", "[-1]", "all with their back to it"),
+        ("reach", REACH_LIMITS, "all(limits[0, 0] <= a <= limits[0, 1] for a in q)", "read as columns"),
+        ("reach", REACH_LIMITS, "len(q := np.clip(q, *limits))", "stands exactly on a limit"),
+        ("reach", "best = q\n", "return q\n", "the first allowed pose wins"),
+        ("jacobian", "origin = T[joint]", "origin = T[link]", "the link's own frame"),
+        ("jacobian", "range(link)", "range(3)", "all three joints move every link"),
+        ("jacobian", "    return J", "    J[3:] = 0\n    return J", "lower three rows are never filled"),
+        ("jacobian", "    return J", "    J[3:] = T[:3, :3, 2].T\n    return J", "in the lower rows all three joints"),
+        ("damped_step", "+ damping**2", "- damping**2", "subtracted on the diagonal"),
+        ("damped_step", "J.T @ np.linalg.solve(A, p - tip)", "J.T @ (p - tip) / 2", "follows the transpose alone"),
+        (
+            "damped_step",
+            "J.T @ np.linalg.solve(A, p - tip)",
+            "damping * np.linalg.solve(J, p - tip)",
+            "only multiplies the plain step",
+        ),
+        ("damped_step", "    T = ", "    damping = 0.03\n    T = ", "`damping = 0.03` overwrites what came in"),
     ],
 )
 def test_a_usual_mistake_has_its_sentence(name, old, new, words, capsys):
@@ -256,7 +280,7 @@ def test_a_usual_mistake_has_its_sentence(name, old, new, words, capsys):
             "the elbow is right, in the shoulder l2 and l3",
         ),
         ("damped_step", "+ damping**2 * np.eye(3)", "+ damping**2", "a factor is missing .the identity.: look at A"),
-        ("damped_step", "J.T @ e", "e", "a factor of a matrix product is missing: look at dq"),
+        ("damped_step", "J.T @ e", "e", "the right side is what is missing, untouched"),
         ("damped_step", "J.T @ J", "J @ J", "a transpose is missing: look at A"),
         ("damped_step", "np.linalg.solve(A, J.T @ e)", "J.T @ e / A", "`/` divides entry by entry"),
         ("damped_step", "forward_kinematics(q, l)", "forward_kinematics(l, q)", "arguments 1 and 2 of `forward_kin"),
@@ -296,6 +320,13 @@ def test_integers_that_cut_off_are_named_everywhere(name, capsys):
 def test_whatever_comes_back_is_no_error(name, value, capsys):
     arguments = ", ".join(task(name).signature)
     assert "not" in told(capsys, name, text=f"def {name}({arguments}):\n    x = {value}\n    return x")
+
+
+def test_an_empty_list_out_of_reach_and_a_numeric_jacobian_are_right(capsys):
+    assert "right, and yours" in told(capsys, "inverse_kinematics", ("return np.empty((0, 3))", "return []"))
+    step = "((np.cos(1e-6) - 1) * np.cross(axis, np.cross(lever, axis)) + np.sin(1e-6) * np.cross(axis, lever)) / 1e-6"
+    text = task("jacobian").loan.replace("np.cross(axis, lever)", step)
+    assert "right, and yours" in told(capsys, "jacobian", text=text)
 
 
 def test_a_number_of_the_edge_is_a_nanometre(capsys):
@@ -353,6 +384,14 @@ def test_ways_round_the_task_are_refused(line, words, capsys):
     before = np.allclose
     assert words in told(capsys, "rot_z", text=HAND.format(line))
     assert np.allclose is before
+
+
+def test_what_is_not_written_in_the_cell_is_refused(monkeypatch, capsys):
+    monkeypatch.setattr(np, "allclose", np.allclose)  # to put it back
+    patched = "np.allclose = lambda *a, **k: True\n\n\ndef rot_z(angle):\n    return np.eye(3)"
+    assert "changes or opens `np.allclose`" in told(capsys, "rot_z", text=patched)
+    assert "the course's own" in told(capsys, "rot_z", text="from ir50p_lab.modelling import rot_z")
+    assert "right, and yours" not in told(capsys, "rot_z", text="def rot_z(angle):\n    return np.eye(3) + angle")
 
 
 def test_a_loan_pasted_back_stays_a_loan(capsys):
@@ -475,6 +514,16 @@ TOO_MANY_ROWS = """def damped_step(q, p, l, damping):
     J = jacobian(frames(q, l), 3, forward_kinematics(q, l))
     return q + J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(6), p - forward_kinematics(q, l))"""
 ALL_ROWS = TOO_MANY_ROWS.replace("p - forward_kinematics(q, l))", "np.append(p - forward_kinematics(q, l), [0, 0, 0]))")
+ONE_ARRAY = """def dh_matrix(theta, d, a, alpha):
+    joint = link = np.eye(4)
+    joint[:3, :3] = rot_z(theta)
+    link[:3, 3] = [a, 0, d]
+    return joint @ link"""
+EMPTIED = (
+    task("inverse_kinematics")
+    .loan.replace("    poses = []\n", "")
+    .replace("        distance", "        poses = []\n        distance")
+)
 OUT_OF_ITS_LIST = """def reach(p, l, q_now, limits):
     poses = inverse_kinematics(p, l).tolist()
     for q in poses:
@@ -506,6 +555,8 @@ ELBOW_KEPT = """def inverse_kinematics(p, l):
     ("name", "text", "words"),
     [
         ("dh_matrix", CLOSED, "row 3, column 4 holds a"),
+        ("dh_matrix", ONE_ARRAY, "joint and link are names of one array"),
+        ("inverse_kinematics", EMPTIED, "is the list emptied in each round"),
         ("damped_step", TOO_MANY_ROWS, r"shape \(6, 6\); `p - forward_kinematics\(q, l\)` has the shape \(3,\)"),
         ("inverse_kinematics", ELBOW_KEPT, "do not fit together in the poses with their back"),
         ("rot_z", "def rot_z(angle):\n    return my_robot.rot_z(angle)", "the function you are about to write"),

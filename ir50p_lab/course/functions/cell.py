@@ -10,6 +10,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from ir50p_lab.course.functions.catalogue import ORDER
+from ir50p_lab.course.functions.stops import ROOM
 
 _GIVEN = {"np": "import numpy as np", "numpy": "import numpy", "math": "import math"}
 _ALLOWED = {"numpy", "math", "cmath", "collections", "dataclasses", "functools", "itertools", "operator", "typing"}
@@ -45,6 +46,8 @@ def take(thing, name, earlier):
     """
     thing = inspect.unwrap(thing)
     called = getattr(thing, "__name__", "?")
+    if str(getattr(thing, "__module__", "")).startswith("ir50p_lab"):
+        raise CannotTake(f"this `{called}` is the course's own: write yours, with `def {name}(...)`")
     if called not in (name, "<lambda>"):
         raise CannotTake(f"the function has to be called `{name}`, yours is called `{called}`")
     text = re.sub(rf"\bmy_robot\.(?!{name}\b)(\w+)", r"\1", _cell_text(thing))
@@ -71,6 +74,8 @@ def take(thing, name, earlier):
             raise CannotTake(_stranger(one, getattr(thing, "__globals__", None) or _globals_of_class(thing), text))
     for node in wanted:
         _refuse_imports(node)
+    patches = [one for one in tree.body if re.match(r"(np|numpy|math)\.\w+ = ", ast.unparse(one))]
+    for node in [*wanted, *patches]:
         _refuse_changes(node)
     wanted.sort(key=lambda node: node.lineno)
     return Source(name, "\n\n\n".join(_lines(text, node) for node in wanted), tuple(sorted(calls)))
@@ -192,6 +197,24 @@ def has_dots(text):
     indices = {id(one) for node in ast.walk(tree) if isinstance(node, ast.Subscript) for one in ast.walk(node.slice)}
     dots = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and node.value is ...]
     return [text.splitlines()[node.lineno - 1].strip() for node in dots if id(node) not in indices]
+
+
+def written_wrong(function):
+    """What a function's own lines tell: an argument overwritten, `==` for `=`, one array under many names; or ""."""
+    code = _code_of(inspect.unwrap(function))
+    file, given = getattr(code, "co_filename", ""), code.co_varnames[: code.co_argcount] if code else ()
+    tree = ast.parse("".join(linecache.getlines(file)) if file.startswith(ROOM) else "")
+    for one in [part for function in ast.walk(tree) if isinstance(function, ast.FunctionDef) for part in function.body]:
+        match one:
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant()) if name in given:
+                return f"`{ast.unparse(one)}` overwrites what came in"
+            case ast.Expr(value=ast.Compare(ops=[ast.Eq()])):
+                return f"`{ast.unparse(one)}` compares and puts nothing anywhere: two equal signs are a question"
+            case ast.Assign(value=ast.Call() | ast.List(), targets=[_, _, *_] as names):
+                filled = [ast.unparse(name) for name in names if f"\n    {ast.unparse(name)}[" in ast.unparse(tree)]
+                if len(filled) > 1:
+                    return f"{' and '.join(filled)} are names of one array: what is put into one changes all"
+    return ""
 
 
 def is_copy(text, other):

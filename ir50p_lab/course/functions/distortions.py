@@ -11,6 +11,7 @@ from ir50p_lab.course.functions.task import Mistake
 _MANY = 6  # longer ones are runs: no part of them has a meaning of its own
 _OF_NUMBERS = (
     ("{} counts with the wrong sign", np.negative),
+    ("{} counts without its sign: is it lost in a root, or by `abs`?", np.abs),
     ("{} does nothing in it: is it used?", np.zeros_like),
     ("{} hardly counts: it comes in radians already, is it converted once more?", np.radians),
     ("{} counts far too much: it is in radians already, is it made into degrees?", np.degrees),

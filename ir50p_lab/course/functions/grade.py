@@ -10,6 +10,7 @@ from itertools import chain
 
 import numpy as np
 
+from ir50p_lab.course.functions.cell import written_wrong
 from ir50p_lab.course.functions.distortions import distortions, entries, of_results, pairs
 from ir50p_lab.course.functions.stops import why_it_stops
 from ir50p_lab.course.functions.task import Failed, is_run, shown
@@ -70,6 +71,8 @@ def grade(task, function):
 
 def _known(task, function, cases, returned, expected, bad):
     """The sentence of the mistake that gives these answers, or ""; and one that says too little, or ""."""
+    if says := written_wrong(function):
+        return says, ""
     stopped = sum(isinstance(one, Failed) for one in returned)
     if stopped == len(bad) or 2 * stopped >= len(cases) or all(one is None for one in returned):  # nothing to compare
         return "", ""
@@ -84,7 +87,10 @@ def _known(task, function, cases, returned, expected, bad):
         words, complete = in_words_of(function, slip.says)
         where = "" if stopped or task.same else entries(task, cases, returned, expected)
         if where:
-            return f"{where}: {words.partition(': look at')[0]}" if complete else where, ""
+            words = words.partition(": look at")[0] if complete else ""
+            if where.count("wrong sign") == 1 and words.endswith("wrong sign"):  # its use is wrong, not the number
+                words = ""
+            return f"{where}: {words}" if words else where, ""
         return (words, "") if complete else ("", words)
     return "", ""
 
@@ -146,8 +152,10 @@ def _call(task, function, case):
         stopped = Failed(why_it_stops(error), _given(task, case))
         stopped.__cause__ = error
         return stopped
-    if not all(_untouched(one, other) for one, other in zip(case, given, strict=True)):
-        raise Failed("it changes what it was given: work on a copy (`np.array(x)` makes one)", _given(task, case))
+    for name, one, other in zip(task.signature, case, given, strict=True):
+        if not _untouched(one, other):
+            says = f"it changes what it was given, `{name}`: work on a copy (`np.array(x)` makes one)"
+            raise Failed(says, _given(task, case))
     return result
 
 
@@ -177,7 +185,7 @@ def _grade_form(task, cases, returned, expected):
     for case, one, other in zip(cases, returned, expected, strict=True):
         if task.form is not None and (says := task.form(one)):
             return Grade("wrong", says, _example(task, case, other, one))
-        if isinstance(other, np.ndarray) and not isinstance(one, np.ndarray):
+        if np.size(one) and isinstance(other, np.ndarray) and not isinstance(one, np.ndarray):
             kind = type(one).__name__
             return Grade(
                 "wrong",

@@ -218,6 +218,8 @@ def _fewer(answers, cases, expected):
         return "one pose a place: a cosine leaves two arms, and the waist may turn its back"
     if counts == {2}:
         waists = [one[:, 0] - np.arctan2(p[1], p[0]) for one, (p, _) in zip(single, cases, strict=False)]
+        if all((np.cos(waist) < 0).all() for waist in waists):
+            return "two poses a place, all with their back to it: is the list emptied in each round, or one side lost?"
         if any(np.ptp(np.sign(np.cos(waist))) > 0 for waist in waists):
             return "two poses a place, one facing it and one with its back to it: the elbow has two ways in each"
         return "two poses a place, all on one side: the waist may also turn its back, and the arm bends over"
@@ -293,7 +295,7 @@ INVERSE_KINEMATICS = Task(
         ),
         *(
             Mistake(lambda p, l, shortest=shortest, longest=longest: _never_refused(p, l, shortest, longest),
-                    f"places too {says} get poses: nobody reaches them")
+                    f"places too {says} get poses: nobody reaches them. Does a clip hide that?")
             for says, shortest, longest in (
                 ("near the shoulder (r < |l2 - l3|)", lambda l: abs(l[1] - l[2]), lambda l: np.inf),
                 ("far away (r > l2 + l3)", lambda l: 0.0, lambda l: l[1] + l[2]),
@@ -394,8 +396,8 @@ def _reach_symptom(cases, returned, expected):
     refused = [k for k in there if returned[k] is None]
     if refused and all(cases[k][0][2] == 0 for k in refused):
         return (
-            f"{len(refused)} places exactly on the table, z = 0, are refused: they are allowed, and rounding may put "
-            "the tip a hair below; allow it 1e-9 m"
+            f"places exactly on the table, z = 0, are refused ({len(refused)} here): they are allowed, and rounding "
+            "may put the tip a hair below; allow it 1e-9 m"
         )
     if refused:
         return (
@@ -413,9 +415,10 @@ def _reach_symptom(cases, returned, expected):
             return f"it returns {shown(one)}: the pose itself is asked for, three angles"
         off = np.linalg.norm(forward_kinematics(q, l) - p)
         if not off < 1e-5:
+            cut = ". It stands exactly on a limit: cut to the limits, a pose is another one"
             return (
                 "it returns a pose that is none of those of your inverse_kinematics: its tip is "
-                f"{1000 * off:.0f} mm beside the place"
+                f"{1000 * off:.0f} mm beside the place{cut if np.isclose(q, limits).any() else ''}"
             )
         if not within(q, limits):
             joint = int(np.argmax((q < limits[0]) | (q > limits[1])))
@@ -462,9 +465,9 @@ def _removed_in_the_loop(p, l, q_now, limits):
     return min(rows, key=lambda q: np.abs(q - q_now).max(), default=None)
 
 
-def _the_last_allowed(p, l, q_now, limits):
+def _one_allowed(p, l, q_now, limits, number):
     allowed = [q for q in inverse_kinematics(p, l) if within(q, limits) and above_table(q, l)]
-    return allowed[-1] if allowed else None
+    return allowed[number] if allowed else None
 
 
 REACH = Task(
@@ -502,11 +505,11 @@ REACH = Task(
                 ("compares the angles, not how far they are from q_now", lambda x, q: np.abs(x).max()),
             )
         ),
-        Mistake(
-            _the_last_allowed,
-            "the last allowed pose wins: is its largest turn compared with the smallest so far, and is that kept up to "
-            "date?",
-        ),
+        Mistake(lambda *case: _one_allowed(*case, 0),
+                "the first allowed pose wins: is its largest turn compared with those of the others?"),
+        Mistake(lambda *case: _one_allowed(*case, -1),
+                "the last allowed pose wins: is its largest turn compared with the smallest so far, and is that kept "
+                "up to date?"),
         *(_turned(f"only the turn of joint {j + 1} is compared", lambda x, q, j=j: abs(x[j] - q[j])) for j in range(3)),
         _turned("a turn counts as the short way round, through an end stop: a joint turns straight from angle to angle",
                 lambda x, q: np.abs(np.angle(np.exp(1j * (x - q)))).max()),
@@ -533,9 +536,13 @@ REACH = Task(
                      lambda x, m, j=j: within(np.delete(x, j), np.delete(m, j, axis=1)))
             for j in range(3)
         ),
-        _allowed(
-            "the two rows of `limits` are read as columns: the first row holds the lower ones, the second the upper",
-            lambda x, m: all(m[k, 0] <= x[k] <= m[k, 1] for k in range(2)),
+        *(
+            _allowed("the two rows of `limits` are read as columns: the first row holds the lower ones, the second the "
+                     "upper", columns)
+            for columns in (
+                lambda x, m: all(m[k, 0] <= x[k] <= m[k, 1] for k in range(2)),
+                lambda x, m: (m[0, 0] <= x).all() and (x <= m[0, 1]).all(),
+            )
         ),
         _allowed("only the upper limits are asked", lambda x, m: (x <= m[1]).all()),
         _allowed("only the lower limits are asked", lambda x, m: (x >= m[0]).all()),

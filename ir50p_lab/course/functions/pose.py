@@ -30,7 +30,9 @@ def _angles():
 def _rot_z_symptom(cases, returned, expected):
     R = np.array(returned, dtype=float)
     if not (np.allclose(R[:, 2], [0, 0, 1]) and np.allclose(R[:, :, 2], [0, 0, 1])):
-        return "a turn about z leaves z alone, yours does not: what has the third row, the third column to be?"
+        kept = [axis for axis, e in zip("xy", np.eye(3), strict=False) if np.allclose(R @ e, e)]
+        yours = f"leaves {kept[0]} alone" if len(kept) == 1 else "does not"
+        return f"a turn about z leaves z alone, yours {yours}: what has the third row, the third column to be?"
     lengths = np.linalg.norm(R[:, :, :2], axis=1)
     if not np.allclose(lengths, 1):
         return f"it stretches: what was 1 long becomes up to {lengths.max():.2f} long. Where do x and y axis go?"
@@ -177,6 +179,8 @@ def dh_matrix(theta, d, a, alpha):
                 "a shift stands in the bottom row: what a point is moved by belongs into the last column"),
         Mistake(lambda t, d, a, f: turn_x(t) @ shift(a, 0, d) @ turn_z(f),
                 "theta turns about x and alpha about z: they have changed axes"),
+        Mistake(lambda t, d, a, f: dh_matrix(t, d, a, t),
+                "alpha does nothing in it, and theta turns twice, about z and about x"),
         Mistake(lambda t, d, a, f: shift(a, 0, 0) @ turn_x(f),
                 "theta and d do nothing in it: is what they make left out of the product, or written over?"),
         Mistake(lambda t, d, a, f: dh_matrix(t, d, a, f) @ np.diag([1, 1, 1, 0]),
@@ -205,6 +209,11 @@ def _links(q, l, alphas=(1, 0, -1), step=dh_matrix):
     a1, a2, a3 = np.pi / 2 * np.array(alphas)
     q1, q2, q3 = np.moveaxis(np.asarray(q), -1, 0)
     return step(q1, l[0], 0, a1), step(q2, 0, l[1], a2), step(q3, 0, l[2], a3)
+
+
+def _lying(q, l):
+    """The links with d and a exchanged."""
+    return _links(q, l, step=lambda t, d, a, f: dh_matrix(t, a, d, f))
 
 
 def _chain(*links):
@@ -275,8 +284,11 @@ FRAMES = Task(
                 "first, and the others are seen from the base"),
         Mistake(lambda q, l: np.array([*frames(q, l)[:3], _chain(*_links(q, l)[1:])[2]]),
                 "frame 3 goes back two links only: the first is missing in it"),
-        Mistake(lambda q, l: _chain(*_links(q, l, step=lambda t, d, a, f: dh_matrix(t, a, d, f))),
-                "d and a have changed places in every row: in the table, or where it is read?"),
+        *(
+            Mistake(lambda q, l, rows=rows: _chain(*((_lying if k in rows else _links)(q, l)[k] for k in range(3))),
+                    f"d and a have changed places in {where}: in the table, or where it is read?")
+            for where, rows in (("every row", range(3)), *((f"row {k + 1} alone", (k,)) for k in range(3)))
+        ),
         *(
             Mistake(lambda q, l, alphas=alphas: _chain(*_links(q, l, alphas)), says)
             for says, alphas in (
@@ -335,6 +347,13 @@ FORWARD_KINEMATICS = Task(
             lambda q, l: np.linalg.inv(frames(q, l)[3])[:3, 3], "that is the base as the tip sees it: no inverse here"
         ),
         Mistake(lambda q, l: frames(q, l)[2, :3, 3], "it is the place of the elbow, not that of the tip"),
+        *(
+            Mistake(
+                lambda q, l, k=k: np.linalg.solve(frames(q, l)[k], frames(q, l)[3])[:3, 3],
+                f"it is the tip as frame {k} sees it, at the {where} of the arm: the base has to see it",
+            )
+            for k, where in ((2, "elbow"), (1, "shoulder"))
+        ),
         Mistake(lambda q, l: forward_kinematics(q, l) - [0, 0, l[0]], "the height is counted from the shoulder"),
         Mistake(
             lambda q, l: np.linalg.multi_dot(frames(q, l))[:3, 3],

@@ -64,6 +64,7 @@ JACOBIAN = Task(
     name="jacobian",
     notebook="03",
     signature=("T", "link", "point"),
+    tolerance=1e-5,  # as for damped_step
     asks="the matrix (6, 3) of a point (base coordinates) carried by link 1, 2 or 3: velocity above, turning below, "
     "one column a joint, from the four frames T",
     right=jacobian,
@@ -97,6 +98,14 @@ JACOBIAN = Task(
                 "there are three columns always: joints that do not carry the link get zeros"),
         Mistake(lambda T, k, p: _columns(T, k, p, across=lambda z, _: np.cross(z, p)),
                 "the levers all start at the base: each starts at its own joint"),
+        Mistake(lambda T, k, p: _columns(T, k, p, across=lambda z, _: np.cross(z, p - T[k][:3, 3])),
+                "the levers all start in the link's own frame, T[link]: each starts at its own joint"),
+        Mistake(lambda T, k, p: jacobian(T, 3, p),
+                "all three joints move every link: link 2 moves with joint 3, which comes after it"),
+        Mistake(lambda T, k, p: np.vstack([jacobian(T, k, p)[:3], jacobian(T, 3, p)[3:]]),
+                "the velocity is right, but in the lower rows all three joints turn every link: which ones carry it?"),
+        Mistake(lambda T, k, p: np.vstack([jacobian(T, k, p)[:3], np.zeros((3, 3))]),
+                "the lower three rows are never filled: about which axis does each joint turn the link?"),
         Mistake(
             lambda T, k, p: _columns(T, k, p, across=lambda z, lever: np.cross(lever, z)),
             "the velocities point backwards: the factors of the cross product have changed places, or the lever goes "
@@ -191,7 +200,7 @@ def _step_symptom(cases, returned, expected):
 
 def _along(cases, returned, expected):
     """A step with another damping, or one with another length than the damped or the plain one."""
-    mine, damped, plain, added = [], [], [], []
+    mine, damped, plain, turned, added = [], [], [], [], []
     for (q, p, l, _), one, right in zip(cases, returned, expected, strict=True):
         J, missing = jacobian(frames(q, l), 3, forward_kinematics(q, l))[:3], p - forward_kinematics(q, l)
         left = J.T @ (missing - J @ (one - q))
@@ -199,6 +208,7 @@ def _along(cases, returned, expected):
         mine.append(one - q)
         damped.append(right - q)
         plain.append(np.linalg.pinv(J) @ missing)
+        turned.append(J.T @ missing)
         added.append(number if np.allclose(number * (one - q), left, atol=1e-6) else np.nan)
     if np.isfinite(added).all():
         return f"{added[0]:.3g} is added on the diagonal where the damping is {cases[0][3]:g}: look at the formula"
@@ -208,6 +218,10 @@ def _along(cases, returned, expected):
             "it is the step without damping, made shorter or longer: the damping belongs inside, into what is solved, "
             "where it acts on the lost direction most",
             plain,
+        ),
+        (
+            "it follows the transpose alone: is an equation solved? The step is too short or too long",
+            turned,
         ),
     ):
         if all(np.allclose(np.cross(a, b), 0, atol=1e-6) and a @ b > 0 for a, b in zip(mine, steps, strict=True)):
@@ -247,8 +261,12 @@ DAMPED_STEP = Task(
     routes=(_BY_NORMAL_EQUATIONS,),
     slips=(
         _changed("the step is made into degrees before it is added: all is rad here", lambda dq, d: np.degrees(dq)),
-        _solved("it follows the transpose alone, without solving: the right side, but far too short or too long",
-                lambda J, e, d: J.T @ e),
+        _solved("the damping is subtracted on the diagonal: does that make a step shorter?",
+                lambda J, e, d: J.T @ np.linalg.solve(J @ J.T - d**2 * np.eye(3), e)),
+        _solved("the matrix is J' J, but the right side is what is missing, untouched: joints here, metres there",
+                lambda J, e, d: np.linalg.solve(J.T @ J + d**2 * np.eye(3), e)),
+        _solved("the damping only multiplies the plain step: it belongs inside, into what is solved",
+                lambda J, e, d: d * np.linalg.solve(J, e)),
         _solved("the transpose comes before the solving: it belongs behind, to bring the answer to the joints",
                 lambda J, e, d: np.linalg.solve(J @ J.T + d**2 * np.eye(3), J.T @ e)),
         _solved("the damping is added to J itself: that changes where the step leads, instead of shortening it",
