@@ -145,5 +145,6 @@ TASKS = (
            ("Speed: how far the angle has moved since the last step, by the period. The first step knows none.",
             "First-order filter: at each sample the speed moves a share 1 - exp(-2 pi filter_hz period) of the way "
             "to the new one. Three memories now; reset has to know them all."),
-           *trials.PUSH, *trials.MEMORY, *trials.LIMITS, *trials.DAMPING, trials.gains("kp", "ki", "kd")),
+           *trials.SPEED, *trials.PUSH, *trials.MEMORY, *trials.LIMITS, *trials.DAMPING,
+           trials.gains("kp", "ki", "kd")),
 )  # fmt: skip

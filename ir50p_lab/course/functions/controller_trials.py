@@ -57,13 +57,21 @@ def _run(pid, q, wanted=0.0, speed=0.0):
                 raise Failed(
                     f"it changes {name} that it was given: `-=` and the like write into what is another's", what()
                 )
-        if says := no_numbers(command, np.zeros(3)):
-            says = says.replace(
-                "an array of shape (); expected is (3,)", "one number: three are asked for, one a joint"
-            )
+        if says := _no_push(command) or no_numbers(command, np.zeros(3)):
             raise Failed(says.replace("it returns", "step returns"), what())
         commands[k] = command
     return commands
+
+
+def _no_push(command):
+    """What is wrong with the form of a push, if it is one of the usual mistakes; else ""."""
+    if command is None:
+        return "it returns nothing: what is printed or kept does not reach the motors, what `return` gives back does"
+    if np.shape(command) == ():
+        return "it returns one number: three are asked for, one a joint. Are the joints added up, or two left out?"
+    if np.shape(command) == (3, 3):
+        return "it returns three rows of three: is the whole reference taken where its first row is asked for?"
+    return ""
 
 
 def _motion(count=40):
@@ -113,6 +121,13 @@ def _push(cls, kp):
         (gain * q, aimless),
         (np.maximum(gain * e, 0), "it cannot push downwards: a push has two directions"),
         (gain * (_SPEED - q), "the speed that is wanted is taken for the angle: the reference has three rows"),
+        (gain * e + _SPEED, "the wanted speed is added to the push: P knows angles only"),
+        (gain * (e + _SPEED), "the wanted speed is added to what is missing: P knows angles only"),
+        ((gain * e).T[::-1].T, "joints 1 and 3 have changed places"),
+        ((gain * e.T[::-1].T), "joints 1 and 3 have changed places"),
+        ((np.arange(len(e)) * _PERIOD * (gain * e).T).T, "the push grows with t: what is missing now asks for the same "
+         "push at any time"),
+        (gain * (e + 0.01 * np.cumsum(e, axis=0)), "kp multiplies the memory: that has a gain of its own, ki"),
         (gain * (column - q), "it reads a column of the reference: the angles of all three joints stand in a row"),
         (gain * e**2, "the error is squared: twice as far is twice the push, and an error has a sign"),
         (gain * np.abs(e), "it pushes the same way on both sides of the target: an error has a sign"),
@@ -123,13 +138,35 @@ def _push(cls, kp):
         (np.cumsum(gain * e, axis=0), "it adds up the whole push: remembered is the error's area, nothing of P"),
         (0 * e - 255, "it sends -255 whatever is missing: if there is a np.clip, its lower bound comes first"),
     )  # fmt: skip
-    says = "the push is not proportional to what is missing"
     u = _run(_make(cls, kp=kp), q, wanted, speed=_SPEED)
+    _expect(u, gain * e, slips, _push_symptom(cls, kp, q, wanted, u))
+
+
+def _push_symptom(cls, kp, q, wanted, u):
+    """What is seen of a push that is not kp times the error, and no known mistake."""
+    e, gain = wanted - q, np.ones(3) * kp
+    if not u.any():
+        far = _run(_make(cls, kp=kp), 4 * q, 4 * wanted)
+        whole = np.allclose(far, gain * np.trunc(4 * e))
+        return (
+            "the error is cut to whole radians: is it kept in an array of whole numbers?"
+            if whole
+            else "it sends 0 whatever is missing: where does kp times the error go?"
+        )
+    if np.allclose(u, _run(_make(cls, kp=tuple(2 * gain) if np.ndim(kp) else 2 * kp), q, wanted, _SPEED)):
+        return "kp does nothing: with twice the kp it pushes the same. Is a number written in its place?"
+    still = ~u.any(axis=0)
+    if still.any() and np.allclose(u[:, ~still], (gain * e)[:, ~still]):
+        joints = " and ".join(str(joint + 1) for joint in np.flatnonzero(still))
+        return f"joint {joints} gets no push: is one joint meant, or a loop left at its first turn?"
     if np.allclose(u, (found := u[0] / e[0] + 0.0) * e):
-        says = f"for each rad that is missing it pushes with {shown(found)} counts, where kp is {shown(kp)}"
-    elif np.allclose(u - gain * e, more := u[0] - gain * e[0]):
-        says = f"at its target, where nothing is missing, it pushes with {shown(more)} counts"
-    _expect(u, gain * e, slips, says)
+        divides = ": it divides by kp" if np.allclose(found * gain, 1) else ""
+        return f"for each rad that is missing it pushes with {shown(found)} counts, where kp is {shown(kp)}{divides}"
+    if np.allclose(u - gain * e, more := u[0] - gain * e[0]):
+        return f"at its target, where nothing is missing, it pushes with {shown(more)} counts"
+    if np.allclose(u[0], gain * e[0]):
+        return "the first push is right, the later ones are not: does `step` change something in `self`?"
+    return "the push is not proportional to what is missing"
 
 
 def gains(*names):
@@ -183,7 +220,8 @@ def _integral(cls):
         (push + _KI * total, "the period is missing in it: the memory is a sum of areas, and an area has a width"),
         (push + _KI * total * 0.01, "0.01 s is written into it: it was made with another period"),
         (push - memory, "the integral pulls away from the target: look at the sign of what you add up"),
-        (push + _KI * _PERIOD * e, "it does not remember: only the newest error is in its integral"),
+        (push + _KI * _PERIOD * e, "it does not remember: only the newest error is in its integral. Is the new sum "
+         "put back into `self`, and does it stay there?"),
         (push, "ki does nothing: does the memory grow, or rest where it need not?"),
         (push + _KI * total / _PERIOD, "it divides by the period: the sum is one of areas, error x period"),
         (push + _KI * np.cumsum(np.abs(e), axis=0) * _PERIOD, "its memory can only grow: an error has a sign"),
@@ -195,11 +233,27 @@ def _integral(cls):
         (push + _KP * memory, "kp multiplies all: here ki is a gain of its own, not a share of kp"),
         (push + _KP * area, "the integral has the gain kp: it has its own, ki"),
         (push + np.cumsum(memory, axis=0) * _PERIOD, "it is summed up twice: one memory is enough"),
+        (push + _KI * (total.T / np.maximum(np.arange(len(e)), 1)).T, "its memory is divided by the time: a mean of "
+         "the errors, where their area is asked for"),
+        (_gathering_its_push(e), "it adds up the push: what is remembered is the error's area"),
         (push + _KI * total.sum(axis=1, keepdims=True) * _PERIOD, "all joints share one sum: each remembers its own"),
     )  # fmt: skip
     taken, strip = shown(np.diff((u - push) / _KI, axis=0)[-1]), shown(e[-1] * _PERIOD)
+    held = (u - push) / _KI
+    kept = np.sum(held[:-1] * (held[1:] - e[1:] * _PERIOD)) / max(np.sum(held[:-1] ** 2), 1e-9)
+    if np.allclose(held[1:], kept * held[:-1] + e[1:] * _PERIOD):
+        slips += ((u, f"its memory keeps only {100 * kept:.3g} % of itself from step to step: it has to keep all"),)
     otherwise = f"P is right, the memory is not: its last step takes in {taken} rad s, where error x period is {strip}"
     return _expect(u, push + memory, slips, otherwise)
+
+
+def _gathering_its_push(e):
+    """Commands (n, 3) of a PI whose memory takes in the whole push in place of the error."""
+    memory, out = np.zeros(3), []
+    for one in e:
+        out.append(_KP * one + _KI * memory)
+        memory = memory + out[-1] * _PERIOD
+    return np.array(out)
 
 
 def _again(cls, forgotten, **settings):
@@ -219,8 +273,8 @@ def _limit(cls):
     e = _constant(0.1, 1.0) * [1.0, -1.0, 0.01]
     right, free = np.clip(400 * e, -100, 100), 400 * e
     slips = (
-        (free, "it has no limit: it asks for 400 counts where 100 are allowed. If there is a np.clip, is what it gives "
-         "used? It changes nothing by itself"),
+        (free, "it has no limit: it asks for 400 counts where 100 are allowed. If there is a np.clip, is it the push "
+         "that is cut, and is what it gives used?"),
         (free / 4, "one joint at its limit weakens the others: each joint has a limit of its own"),
         (np.minimum(free, 100), "it is limited upwards only: the limit holds on both sides"),
         (np.clip(free, -255, 255), "255 is written into it: it was made with another limit_pwm"),
@@ -260,6 +314,8 @@ def _windup(cls):
                 "its memory has a limit, and far too late: 255 is counts, your memory is in rad s. Multiply by ki "
                 "before you add up"
             )
+        if says := _wrong_rest(cls):
+            raise Failed(says)
         joints = " and ".join(str(joint + 1) for joint in np.flatnonzero(winds))
         way = "" if winds.all() else f" in joint {joints}"
         for sign, word in ((1, "upwards"), (-1, "downwards")):
@@ -277,6 +333,30 @@ def _windup(cls):
         )
     if full[-1].max() > -200:
         raise Failed("once at its limit it never lets go: an error that leads back from the limit has to count")
+
+
+def _wrong_rest(cls):
+    """The sentence for a memory that rests at the wrong time, or never; "" if it is none of these."""
+    q, wanted = 6 * _motion(150)[0], 6 * _motion(150)[1] + 2.0  # a memory that has a limit of its own meets it
+    u = _run(_make(cls, kp=_KP, ki=10 * _KI, period=_PERIOD), q, wanted)
+    for says, rests in (
+        ("its memory never rests. If it asks whether the push is beyond the limit: before that push is cut?",
+         lambda p, m, e, q: np.zeros(3, bool)),
+        ("whether the push is beyond the limit is asked of P alone: P and memory together are sent",
+         lambda p, m, e, q: (np.abs(p) > 255) & (p * e > 0)),
+        ("whether the push is beyond the limit is asked of the memory alone: P and memory together are sent",
+         lambda p, m, e, q: (np.abs(m) > 255) & (m * e > 0)),
+        ("the way it pushes is compared with the angle: it is the error that shows whether it pushes on",
+         lambda p, m, e, q: (np.abs(p + m) > 255) & ((p + m) * q > 0)),
+    ):  # fmt: skip
+        memory, out = np.zeros(3), []
+        for angle, error in zip(q, wanted - q, strict=True):
+            grown = memory + 10 * _KI * error * _PERIOD
+            memory = np.where(rests(_KP * error, grown, error, angle), memory, grown)
+            out.append(np.clip(_KP * error + memory, -255, 255))
+        if np.allclose(u, out):
+            return says
+    return ""
 
 
 def _joint_by_joint(cls):
@@ -349,6 +429,8 @@ def _damping(cls):
         (_KP * right, "kp multiplies D as well: kd is a gain of its own"),
         *((_KI * _PERIOD * (np.cumsum(right, axis=0) - late * right), "D goes into the memory, and into the push only "
            "through ki: it is a part of the push, as P is") for late in (0, 1)),
+        (d(_filtered(np.vstack([0 * q[:1], (q[1:] - wanted) / _PERIOD]), exact)), "its last angle is the one that was "
+         "wanted: keep the measured one"),
         (d(0 * slope), "the arm's speed stays 0 in it: is the last angle kept, and used before it is written over?"),
         (0 * right, "kd does nothing: is it a part of the push?"),
     )  # fmt: skip
@@ -372,6 +454,17 @@ def _kick(cls):
         )
 
 
+def _gain_of_d(cls):
+    moving = np.linspace(0, 0.1, 20)[:, None] * _WAYS
+    for name in ("kp", "ki"):
+        still, moved = (_run(_make(cls, **({"kp": 0.0} | {name: 20.0})), q, q) for q in (0 * moving + 0.1, moving))
+        if np.abs(still).max() < 1e-6 < np.abs(moved).max():
+            raise Failed(
+                f"kd is 0, nothing is missing, the arm moves, and with {name} = 20 it pushes: {name} multiplies D. "
+                "Which number does self.kd hold, and where does it stand?"
+            )
+
+
 def _order(cls):
     settings = {"kp": 10.0, "ki": 20.0, "kd": 30.0, "limit_pwm": 40.0, "period": 0.05, "filter_hz": 6.0}
     q, wanted = _motion(6)
@@ -379,6 +472,17 @@ def _order(cls):
     own = ", ".join(inspect.signature(cls).parameters)
     says = f"it takes ({own}); it will be made with ({', '.join(settings)}), in this order"
     _expect(by_place, _run(_make(cls, **settings), q, wanted), (), says)
+
+
+def _rest_with_d(cls):
+    """P beyond the limit, D brings the push back within it: the memory has to go on."""
+    error, settings = _constant(1, 1.0), {"kp": 300.0, "ki": 20.0, "kd": 400.0, "period": _PERIOD}
+    u = _run(_make(cls, **settings), 0 * error, error, speed=-0.5)
+    if (u[-1] - u[1] < 0.5 * settings["ki"] * (len(u) - 2) * _PERIOD).any():
+        raise Failed(
+            f"P alone is beyond the limit, D brings the push back to {u[1].max():.0f} counts, and the memory rests all "
+            "the same: what does it ask before it rests, and does D count in it?"
+        )
 
 
 def _limit_with_d(cls):
@@ -398,12 +502,14 @@ def tried_by(*probes):
 
 
 PUSH = (_unit, lambda cls: _push(cls, 50), lambda cls: _push(cls, tuple(_KP.tolist())))
-MEMORY = (_integral, _shared, lambda cls: _again(cls, "the integral", ki=200.0))
+MEMORY = (_shared, _integral, lambda cls: _again(cls, "the integral", ki=200.0))
 LIMITS = (_limit, _windup, _joint_by_joint)
+SPEED = (_gain_of_d,)
 DAMPING = (
     _order,
     _kick,
     _damping,
     _limit_with_d,
+    _rest_with_d,
     lambda cls: _again(cls, "the last angle or the filter's speed", kd=20.0),
 )

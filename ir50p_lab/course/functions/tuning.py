@@ -120,15 +120,8 @@ def _four(returned):
 
 @lru_cache(maxsize=1)
 def _otherwise():
-    """{figures of a case: (rise times, settling times) by other readings}: these are right as well.
-
-    Other readings: crossings between two samples, other measures of the noise.
-    """
-    bands = [lambda way, last, k=k, size=size: max(0.02 * abs(way), k * size(last)) for k in (3, 4) for size in _SIZES]
-    return {
-        repr(step_metrics(*case)): ([_between_samples(*case)], [_figures(*case, band=band)[2] for band in bands])
-        for case in _cases()
-    }
+    """{figures of a case: its rise time with crossings between two samples}: that is right as well."""
+    return {repr(step_metrics(*case)): [_between_samples(*case)] for case in _cases()}
 
 
 def _between_samples(t, q, target):
@@ -157,8 +150,7 @@ def _same(returned, expected):
 
 def _readings(expected):
     """What is right for each of the four numbers, the definition's own first."""
-    rises, settlings = _otherwise().get(repr(expected), ((), ()))
-    return [expected[0], *rises], [expected[1]], [expected[2], *settlings], [expected[3]]
+    return [expected[0], *_otherwise().get(repr(expected), ())], *([one] for one in expected[1:])
 
 
 def _symptom(cases, returned, expected):
@@ -281,6 +273,9 @@ STEP_METRICS = Task(
         ),
         Mistake(lambda t, q, target: _figures(t, np.r_[0.0, q[1:]], target),
                 "every step begins at 0 rad: look at the first sample for where this one begins"),
+        Mistake(lambda t, q, target: (np.nan if target < q[0] else _figures(t, q, target)[0],
+                                      *_figures(t, q, target)[1:]),
+                "steps downwards never rise with you: the way there is negative, and so is what is done of it"),
         _slip("the rise time is negative: which of the two marks does the joint pass first?", rise=lambda a, b: a - b),
         *(
             _slip(f"the rise time goes {marks}, not from 10 to 90 % of the way", low=low, high=high)
@@ -302,6 +297,18 @@ STEP_METRICS = Task(
         _slip("the band is too wide: 4 standard deviations of the noise are asked for, and the difference of two "
               "samples has the noise of both",
               band=lambda way, last: max(0.02 * abs(way), 4 * np.std(np.diff(last)))),
+        *(
+            _slip("a slow swing widens the band: noise is what *neighbours* differ by, here the whole scatter is taken",
+                  band=lambda way, last, k=k: max(0.02 * abs(way), k * np.std(last)))
+            for k in (4, 3)
+        ),
+        *(
+            _slip(f"the band is {k} standard deviations of the noise wide, 4 are asked for: a single sample is soon "
+                  "beyond it", band=lambda way, last, k=k: max(0.02 * abs(way), k * _noise(last)))
+            for k in (1, 2, 3)
+        ),
+        _slip("the narrower of both bands is taken; asked is the wider",
+              band=lambda way, last: min(0.02 * abs(way), 4 * _noise(last))),
         _slip("the band is 2 % and the noise together; asked is the wider of the two",
               band=lambda way, last: 0.02 * abs(way) + 4 * _noise(last)),
         *(
@@ -325,13 +332,19 @@ STEP_METRICS = Task(
               settling=lambda t, outside: np.nan if outside[-1] else t[np.flatnonzero(outside)[-1]] - t[0]),
         _slip("the rest error has the other sign: what is missing is positive, the target less where it is",
               rest=lambda q, target, last: np.mean(last) - target),
-        _slip("the rest error has lost its sign: short and too far are not the same",
-              rest=lambda q, target, last: abs(target - np.mean(last))),
+        *(
+            _slip("the rest error has lost its sign: short and too far are not the same", rest=rest)
+            for rest in (lambda q, target, last: abs(target - np.mean(last)),
+                         lambda q, target, last: np.mean(np.abs(target - last)))
+        ),
         _slip("the rest error rests on the very last sample, which trembles: take the mean of the last second",
               rest=lambda q, target, last: target - q[-1]),
         _slip("the rest error and the noise are those of the last half second: a whole second is asked for", tail=0.5),
-        _slip("the last second is taken as the last hundred samples: not every computer is that quick; ask the clock",
-              samples=100),
+        *(
+            _slip("the last second is taken as a number of samples: not every computer is that quick; ask the clock",
+                  samples=samples)
+            for samples in (100, 101, 99)
+        ),
     ),
     symptom=_symptom,
     hints=(
