@@ -132,7 +132,7 @@ def test_other_right_ones_pass(stage, edits, remark):
          "is what it gives used"),
         ("PID", "        self.last = q\n", "        self.last = q if self.last is None else self.last\n", "stays the first"),
         ("PID.limits", "-self.limit, self.limit)", "0, self.limit)", "cannot push downwards"),
-        ("PID.p", "return self.kp * error", "return self.kp * error * [1, 0, 1]", "joint 2 gets no push"),
+        ("PID.p", "return self.kp * error", "return self.kp * error * [1, 0, 1]", "no push reaches joint 2"),
         ("PID.p", "error = q_wanted - q", "error = reference - q", "the whole reference"),
         ("PID.p", "return self.kp * error", "print(self.kp * error)", "step returns nothing: what is printed"),
         ("PID.p", "self.kp * error", "error / self.kp", "it divides by kp"),

@@ -158,7 +158,7 @@ def _push_symptom(cls, kp, q, wanted, u):
     still = ~u.any(axis=0)
     if still.any() and np.allclose(u[:, ~still], (gain * e)[:, ~still]):
         joints = " and ".join(str(joint + 1) for joint in np.flatnonzero(still))
-        return f"joint {joints} gets no push: is one joint meant, or a loop left at its first turn?"
+        return f"no push reaches joint {joints} (is one joint meant, or a loop left at its first turn?)"
     if np.allclose(u, (found := u[0] / e[0] + 0.0) * e):
         divides = ": it divides by kp" if np.allclose(found * gain, 1) else ""
         return f"for each rad that is missing it pushes with {shown(found)} counts, where kp is {shown(kp)}{divides}"
