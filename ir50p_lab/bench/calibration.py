@@ -163,7 +163,7 @@ def _fields(data):
         raise InputError("arm and source must be text in quotes, remarks a list of such texts")
     measured = [data.pop(name, None) for name in _JOINTS]
     points = ()
-    if any(measured):
+    if any(one is not None for one in measured):
         points = tuple(_pairs(*named) for named in zip(_JOINTS, measured, strict=True))
     return data | {"remarks": tuple(remarks), "points": points}
 

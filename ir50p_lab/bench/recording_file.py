@@ -86,7 +86,7 @@ def read(path):
     delimiter = width = places = None
     for number, line in enumerate(lines, 1):
         place = f"{path}, line {number}"
-        bare = line.strip().rstrip(";,\t").strip('" ')  # without what spreadsheets pad and quote it with
+        bare = line.strip().rstrip(';,\t" ').lstrip('" ')  # without what spreadsheets pad and quote it with
         if number == len(lines) and not ended:  # cut off, unless another program has left out the end of the line
             if places is None:
                 break

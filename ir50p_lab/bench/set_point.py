@@ -37,7 +37,7 @@ class SetPoint:
 
     def move_to(self, q):
         """From now on go to q (3,) rad. Raises InputError on anything else."""
-        self.goal = vector3("set point", q)
+        self.goal = vector3("set point", q).copy()
 
     def __call__(self, t):
         """(q, qd, qdd) at the time t, s: three arrays (3,)."""

@@ -123,6 +123,7 @@ class SimulatedBench(Bench):
         if self.realtime:
             load_controllers()
             self.plant.advance(self._acting, 0.0)
+            _delayed(self._queue, self._acting, np.empty(JOINTS))  # compiled before the clock starts
 
     def _make_pace(self):
         return Pace(self._clock, self.period) if self.realtime else super()._make_pace()

@@ -148,7 +148,7 @@ class LivePanel(widgets.VBox):
                 self._drawer = None
                 self._drawing.release()
 
-    def _call(self, said, function, **values):
+    def _call(self, said, function, /, **values):
         """Call `function`, if it is one, and return its answer.
 
         What it prints, an answer that is a text, and the warning of an unstable loop go into `said`.

@@ -4,6 +4,7 @@ import os
 import platform
 import shutil
 import sys
+from pathlib import Path
 
 from ir50p_lab.launcher.boards import board_name, permission_remedy
 from ir50p_lab.launcher.environment import LOCK
@@ -33,6 +34,11 @@ def report(environment, *, here=False):
     _line("Free disk", f"{free:.1f} GB")
     if free < NEEDED_GB and fault:
         faults.append(f"the set-up needs {NEEDED_GB:.0f} GB of disk, {free:.1f} GB are free")
+    arm = os.environ.get("IR50P_ARM")
+    if arm:
+        _line("Arm", f"{arm} (from IR50P_ARM)")
+        if not Path(arm).is_file():
+            faults.append(f"IR50P_ARM names a file that does not exist ({arm})")
     _ports(found and found["ports"])
     verdict = f"not ready: {'; '.join(faults)}. {cure}." if faults else f"ready. Open the lab book with '{COMMAND}'."
     print(f"Verdict: {verdict}")

@@ -4,6 +4,7 @@ The set-up writes its stamp last and removes it first. A .venv without a valid s
 interrupted it, and is emptied and built again.
 """
 
+import hashlib
 import importlib
 import json
 import os
@@ -166,10 +167,13 @@ class Environment:
         return {
             "root": str(self.root),
             "python": sysconfig.get_python_version(),
-            # as text: line ends may differ between checkouts
-            LOCK: (self.root / LOCK).read_text("utf-8"),
-            TEST_LOCK: (self.root / TEST_LOCK).read_text("utf-8") if tests else None,
+            LOCK: self._digest(LOCK),
+            TEST_LOCK: self._digest(TEST_LOCK) if tests else None,
         }
+
+    def _digest(self, lock_file):
+        text = (self.root / lock_file).read_text("utf-8")  # as text: line ends may differ between checkouts
+        return hashlib.sha256(text.encode()).hexdigest()
 
     def _python_starts(self):
         try:

@@ -1,5 +1,9 @@
 """A program that pauses in its loop: what the arm does meanwhile, what is said, and what the recording keeps of it."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from benches import CLOCKED, GAINS
@@ -162,3 +166,19 @@ def test_time_that_is_a_counter_knows_no_pauses(tmp_path):
     bench = Simulated(tmp_path, REST).bench().open()
     bench.follow(PID(**GAINS, limit_pwm=255), hold(REST), 0.1)
     assert "watchdog_trips" not in bench.recording.header
+
+
+def test_with_cold_caches_all_is_compiled_before_the_clock_starts(tmp_path):
+    """A run whose functions were never compiled on this machine misses nothing: the arm's drive is not cut."""
+    program = """
+from ir50p_lab.bench import SimulatedBench
+
+with SimulatedBench(realtime=True) as bench:
+    for sample in bench.run(0.3):
+        bench.drive([0, 0, 0])
+print(bench.recording.header["watchdog_trips"])
+"""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "IR50P_HOME": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split()[-1] == "0"

@@ -80,10 +80,10 @@ class Pushed:
     def __getattr__(self, name):
         return getattr(self._plant, name)
 
-    def advance(self, pwm, seconds, **options):
+    def advance(self, pwm, seconds):
         self._t += seconds
         self._plant._numbers[TF : TF + 3] = self._offset - self._push(self._t)
-        self._plant.advance(pwm, seconds, **options)
+        self._plant.advance(pwm, seconds)
 
 
 @pytest.mark.parametrize("arm", [IR50P, IR50P_WEAK_SHOULDER], ids=lambda arm: arm.name)

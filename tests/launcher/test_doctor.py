@@ -108,6 +108,14 @@ def test_serial_ports(made):
     assert "no USB board (1 ports without USB id)" in report(made, FOUND | {"ports": ports[3:]})[1]
 
 
+def test_arm_file_that_is_not_there(made, monkeypatch):
+    monkeypatch.setenv("IR50P_ARM", "nowhere.toml")
+    code, text, last = report(made)
+    assert code == 1
+    assert "nowhere.toml (from IR50P_ARM)" in text
+    assert "IR50P_ARM names a file that does not exist (nowhere.toml)" in last
+
+
 def test_little_disk_matters_before_the_setup_only(made, project, monkeypatch):
     monkeypatch.setattr(doctor.shutil, "disk_usage", lambda path: SimpleNamespace(free=3e8))
     assert "the set-up needs 2 GB of disk, 0.3 GB are free" in report(project)[2]

@@ -19,7 +19,7 @@ class FaultyArm:
     def __getattr__(self, name):
         return getattr(self._plant, name)
 
-    def advance(self, pwm, seconds, **options):
+    def advance(self, pwm, seconds):
         pwm, j, k = np.array(pwm, dtype=float), self._joint, self._neighbour
         if self._fault == "motor":
             pwm[j] *= -1
@@ -27,7 +27,7 @@ class FaultyArm:
             pwm[j] = 0.0
         elif self._fault == "bridges":
             pwm[[j, k]] = pwm[[k, j]]
-        self._plant.advance(pwm, seconds, **options)
+        self._plant.advance(pwm, seconds)
 
     def counts(self):
         counts, j, k = self._plant.counts(), self._joint, self._neighbour
