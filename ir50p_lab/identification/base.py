@@ -46,10 +46,10 @@ class BaseParameters:
 
 
 def base_parameters(Phi, *, names=None, known=None):
-    """Which combinations of parameters the regressor Phi can tell apart, by QR.
+    """Which combinations of parameters the regressor Phi can tell apart, by QR and by SVD.
 
     Columns are scaled to length 1 and taken in order: one that is a combination of kept columns before it (less than
-    1e-8 sticks out) joins their groups. How clear the rank is, the singular values show.
+    1e-8 sticks out) joins their groups. The singular values must give the same rank.
 
     Args:
         Phi: (n, 3, p), (n, k, p) or (m, p), from exact motion rich enough to excite everything (random states do);
@@ -57,7 +57,8 @@ def base_parameters(Phi, *, names=None, known=None):
         names: of the p columns; default the 20 parameters, or p1, p2, ...
         known: numbers that may appear in the groups, {"l2": 0.2}: 0.04 is then written l2^2.
 
-    Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if there is no motion.
+    Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if QR and SVD disagree on the
+        rank: the motion lies between excited and not excited.
     """
     A, names = _checked(Phi, names)
     length = np.linalg.norm(A, axis=0)
@@ -66,6 +67,12 @@ def base_parameters(Phi, *, names=None, known=None):
     R = r_factor(scaled)
     kept = independent_columns(R, DEPENDENT)
     s = np.linalg.svd(R, compute_uv=False)
+    by_svd = int(np.sum(s > DEPENDENT * s[0]))
+    if by_svd != len(kept):
+        raise IdentificationError(
+            f"the rank is not clear: {len(kept)} columns stick out of the others by more than {DEPENDENT:g}, but "
+            f"{by_svd} singular values are above it: use richer or exact motion"
+        )
     weights = np.linalg.lstsq(R[:, kept], R, rcond=None)[0]  # column k = kept columns @ weights[:, k]
     weights[np.abs(weights) < DEPENDENT] = 0.0
     columns = seen[kept]
@@ -90,14 +97,15 @@ def _checked(Phi, names):
         raise InputError(f"Phi has shape {A.shape}; give (n, 3, p) or (m, p)")
     A = A.reshape(-1, A.shape[-1])
     p = A.shape[1]
-    names = tuple(names or (NAMES if p == len(NAMES) else (f"p{k + 1}" for k in range(p))))
+    if names is None:
+        names = NAMES if p == len(NAMES) else [f"p{k + 1}" for k in range(p)]
     if len(names) != p:
         raise InputError(f"{len(names)} names for {p} columns: give one for each")
     if len(A) < 2 * p:
         raise InputError(f"Phi has {len(A)} rows for {p} columns: give at least {2 * p}, from random states")
     if not A.any():
         raise IdentificationError("Phi is zero throughout: there is no motion in it")
-    return A, names
+    return A, tuple(names)
 
 
 def _in_symbols(row, names, known):

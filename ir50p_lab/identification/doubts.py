@@ -215,6 +215,12 @@ def check_clipped_drive(doubts, u, found):
                 f"u was clipped: it stays at its {name} value, {limit:.6g}, where the motion needs "
                 f"{limit + sign * excess.max():.4g}: widen the range that is recorded, or drive less"
             )
+    share = float((extreme.max(axis=1) > 0.5).mean())
+    if share > 0.1 and rms > 0.08 * np.std(found.y):
+        doubts.add(
+            f"u is at its largest or smallest value in {100 * share:.0f} % of the record and the model does not "
+            "explain it well: was it clipped in the recording? Widen the range that is recorded"
+        )
 
 
 def check_speed(doubts, fastest):

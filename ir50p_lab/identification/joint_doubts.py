@@ -78,7 +78,7 @@ def _check_friction(doubts, found):
             + ("the offset: the joint turns to one side only" if one_side else "viscous friction: one speed only")
             + f"; record {_MORE['coulomb']}"
         )
-    negative = [name for name, (x, stderr) in known.items() if x < -3 * stderr]
+    negative = [name for name, (x, stderr) in known.items() if x < -3 * stderr and name != "stribeck"]
     if {"viscous", "coulomb"} <= set(negative):
         doubts.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
     for name, (x, stderr) in known.items():

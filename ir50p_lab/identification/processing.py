@@ -68,7 +68,7 @@ def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=4):
     no filter; order: 1..8 (it counts twice). Returns: q, qd, qdd like q; at the two ends the neighbour's derivatives.
     Raises InputError as `low_pass` does.
     """
-    q = np.asarray(q, dtype=float) if cutoff_hz is None else low_pass(q, cutoff_hz, rate_hz, order=order, kind=BACKWARD)
+    q = np.array(q, dtype=float) if cutoff_hz is None else low_pass(q, cutoff_hz, rate_hz, order=order, kind=BACKWARD)
     if len(q) < 3:
         raise InputError(f"q has {len(q)} samples: central differences need three or more")
     qd, qdd = np.empty_like(q), np.empty_like(q)

@@ -122,7 +122,7 @@ def board_scene(pinhole, T_cam_board, board=None, lens=None, sensor=None):
 def board_pictures(pinhole, count, seed=0, *, board=None, lens=None, sensor=None):
     """`count` rendered pictures (h, w, 3) of a board in different poses, and their SceneTruth: (list, list).
 
-    Args: pinhole: Pinhole of the camera to be found; seed: of poses and noise; board: rendering.Board (bent, ChArUco);
+    Args: pinhole: Pinhole of the camera to be found; seed: of poses and noise; board: Board (bent, ChArUco);
     lens, sensor: rendering.Lens and Sensor (blur, noise, JPEG).
     """
     pairs = [

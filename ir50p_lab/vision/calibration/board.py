@@ -88,10 +88,14 @@ class Charuco(Checkerboard):
 
 def check_pattern(pattern):
     """(columns, rows) as ints. Raises CalibrationError for what cannot be a board."""
-    whole = np.shape(pattern) == (2,) and all(isinstance(n, int | np.integer) for n in pattern)
-    if not whole or min(pattern) < 3:
+    try:
+        columns, rows = (int(n) for n in pattern)
+        whole = (columns, rows) == tuple(pattern)
+    except (TypeError, ValueError):
+        whole, columns, rows = False, 0, 0
+    if not whole or min(columns, rows) < 3:
         raise CalibrationError(
             f"pattern = {pattern!r}: give (columns, rows) of inner corners (where four squares meet), at least 3x3; a "
             "board of 10x7 squares has (9, 6)"
         )
-    return int(pattern[0]), int(pattern[1])
+    return columns, rows

@@ -66,6 +66,7 @@ def find_checkerboard(grey, pattern, other=None):
             best = None if why.seen else _sb(grey, small, factor, pattern)
             if best is None:
                 raise
+            _check_whole(grow(best, grey)[0], set(), pattern)
     else:
         noise, side = roughness(best), np.median(spacing(best))
         if noise > (_UNEVEN_SMALL if side < _SMALL else _UNEVEN) * side:
@@ -210,7 +211,9 @@ def _check_whole(grid, outside, pattern):
             f"give pattern=({seen[0]}, {seen[1]}) if this is the board",
             seen=seen,
         )
-    cause = "then the picture ends" if outside else "is the rest covered, or in glare?"
+    cause = "then the picture ends"
+    if not outside:
+        cause = f"is the rest covered, or in glare (or this the whole board: give pattern=({seen[0]}, {seen[1]}))?"
     raise NotUsable(
         Reason.CROPPED,
         f"{shown} of {pattern[0]}x{pattern[1]} corners, {cause}: move the board into view, or use a ChArUco board",
