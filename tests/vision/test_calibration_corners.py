@@ -307,11 +307,9 @@ def test_a_charuco_too_blurred_for_its_markers_is_told_to_focus(pattern, blur, s
 
 
 def test_a_larger_board_that_only_the_slow_finder_sees_is_not_taken_for_the_pattern(monkeypatch):
-    cell = 40
-    squares = np.indices((9, 12)).sum(axis=0) % 2 * 255  # 11x8 inner corners
-    board = np.kron(squares, np.ones((cell, cell))).astype(np.uint8)
-    grey = np.pad(board, 2 * cell, constant_values=255)
+    squares = 40 + 180 * (np.indices((8, 11)).sum(axis=0) % 2)  # 10x7 inner corners
+    board = np.pad(np.kron(squares, np.ones((40, 40))).astype(np.uint8), 60, constant_values=220)
     monkeypatch.setattr(cv2, "findChessboardCorners", lambda *args: (False, None))
     monkeypatch.setattr("ir50p_lab.vision.calibration.corners.part_of_a_checkerboard", lambda grey: None)
-    with pytest.raises(NotUsable, match="11x8"):
-        find_checkerboard(grey, (8, 6))
+    with pytest.raises(NotUsable, match="10x7"):
+        find_checkerboard(cv2.GaussianBlur(board, (0, 0), 1.0), (9, 6))
