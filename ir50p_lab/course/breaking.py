@@ -47,8 +47,8 @@ CASES = {
     "C": Case(
         "sampling",
         "The command goes from limit to limit, and changes every 10 ms at most. What would a quicker clock do?",
-        "each push is held for a whole sample, and is right for the beginning of it only: at its end the joint has "
-        "been turned round, and the next push is larger, up to the limit.",
+        "each push answers to the speed of the last sample and is held for the whole next one: it turns the joint "
+        "round, and the next push is larger, up to the limit.",
     ),
     "D": Case(
         "delay",

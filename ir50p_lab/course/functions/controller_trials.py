@@ -502,7 +502,7 @@ def tried_by(*probes):
 
 
 PUSH = (_unit, lambda cls: _push(cls, 50), lambda cls: _push(cls, tuple(_KP.tolist())))
-MEMORY = (_shared, _integral, lambda cls: _again(cls, "the integral", ki=200.0))
+MEMORY = (_shared, _integral, lambda cls: _again(cls, "the integral, or the last error if it keeps one,", ki=200.0))
 LIMITS = (_limit, _windup, _joint_by_joint)
 SPEED = (_gain_of_d,)
 DAMPING = (
