@@ -179,6 +179,11 @@ PRINTED = [
         "package locations and you require granite==2.0, we can conclude that your requirements are unsatisfiable.",
         "no ready-made package granite==2.0",
     ),
+    (  # its lines may break anywhere
+        "error: No solution found when resolving dependencies\n  cause: Because granite was not found in the provided\n"
+        "         package locations and\n         you require granite==2.0, we can conclude that they are not.",
+        "no ready-made package granite==2.0",
+    ),
     ("error: Failed to fetch: http://a/\n cause: tcp connect error\n cause: Connection refused", "no connection to"),
     ("error: Failed to fetch: https://a/\n cause: tunnel error: failed to create", "the proxy refused"),
     ("error: Failed to fetch: https://a/\n cause: invalid peer certificate: UnknownIssuer", "certificate"),

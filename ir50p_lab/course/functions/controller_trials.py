@@ -315,7 +315,7 @@ def _windup(cls):
                 "before you add up"
             )
         if says := _wrong_rest(cls):
-            raise Failed(says)
+            raise Failed(f"it winds up: {says}")
         joints = " and ".join(str(joint + 1) for joint in np.flatnonzero(winds))
         way = "" if winds.all() else f" in joint {joints}"
         for sign, word in ((1, "upwards"), (-1, "downwards")):
