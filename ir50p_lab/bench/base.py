@@ -165,7 +165,10 @@ class Bench:
         return self.open()
 
     def __exit__(self, kind, error, traceback):
-        self.close() if error is None else self.abort()
+        if error is None:
+            self.close()
+        else:
+            self.abort()
 
     def close(self):
         """Go to the rest pose, let go, and give the port free. May be called twice."""

@@ -33,7 +33,7 @@ def fit_calibration(q, counts, *, arm="", source="measured"):
     if q.ndim != 2 or len(q) < 3:
         raise InputError(f"q has shape {q.shape}: give a row per pose; two make a line, a third shows its error")
     if q.shape != counts.shape:
-        raise InputError(f"{len(q)} angles but {counts.shape} counts; they belong together in pairs")
+        raise InputError(f"{len(q)} poses but counts of the shape {counts.shape}; they belong together in pairs")
     if np.abs(q).max() > 2 * np.pi:
         raise InputError(f"q holds {np.abs(q).max():g} rad, more than a turn: in degrees? Use np.radians")
     if counts.min() < 0 or counts.max() > _FULL:

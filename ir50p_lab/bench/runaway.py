@@ -76,10 +76,21 @@ def make_watch(arm, calibration, period):
     pull = np.array([0.0, *cf.gravity_torques(plant.theta, plant.numbers[GRAVITY], 1.0, 1.0)])
     load = PAYLOAD * plant.numbers[GRAVITY] * reach / arm.actuators.gain
     n = max(1, round(BLOCK / period))
-    top, noise = FAST * (limit + np.abs(pull) + load) / damping, NOISE / np.abs(np.array(calibration.slope))
-    known = (plant.theta, plant.numbers, inertia / damping, top, noise)
-    now, clock, block = np.zeros(2, dtype=np.int64), np.zeros(KEPT), np.zeros((n, 3))
-    return Watch(*known, now, clock, *np.zeros((2, KEPT, 3)), block, np.zeros(n), np.zeros(3), np.zeros((4, 3)))
+    return Watch(
+        theta=plant.theta,
+        numbers=plant.numbers,
+        lag=inertia / damping,
+        top=FAST * (limit + np.abs(pull) + load) / damping,
+        noise=NOISE / np.abs(np.array(calibration.slope)),
+        now=np.zeros(2, dtype=np.int64),
+        clock=np.zeros(KEPT),
+        q=np.zeros((KEPT, 3)),
+        drive=np.zeros((KEPT, 3)),
+        block=np.zeros((n, 3)),
+        t=np.zeros(n),
+        u=np.zeros(3),
+        still=np.zeros((4, 3)),
+    )
 
 
 @jit()
