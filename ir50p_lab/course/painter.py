@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.spines import Spine
+from matplotlib.text import Text
 
 # Widget callbacks may run in threads beside the cell's; matplotlib is shared by all of them.
 DRAWING = threading.RLock()
@@ -87,6 +88,7 @@ def _parts(parent):
     framed = getattr(parent, "axison", True) and not hasattr(parent, "get_proj")  # 3-D axes have no spines
     fixed = (Axis, Axes) if framed else (Axis, Axes, Spine)
     found = [part for part in parent.get_children() if part is not parent.patch and not isinstance(part, fixed)]
+    found = [part for part in found if not isinstance(part, Text) or part.get_text()]  # an empty one is stale for ever
     return sorted(found, key=lambda artist: artist.get_zorder())
 
 

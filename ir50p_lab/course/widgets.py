@@ -196,8 +196,7 @@ class LivePanel(widgets.VBox):
 def _words_below_curves(figure):
     """Titles and legends below what moves: drawn each time, they would cost as much as all curves."""
     for ax in figure.axes:
-        title = ax.title if ax.get_title() else None  # matplotlib calls an empty one stale for ever
-        for words in filter(None, (title, ax.get_legend())):
+        for words in filter(None, (ax.title, ax.get_legend())):
             words.set_zorder(min(words.get_zorder(), 1.9))  # lines: 2, a grid at most 1.5
 
 
