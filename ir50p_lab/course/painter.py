@@ -69,15 +69,12 @@ class Painter:
 
 
 def encode_png(image):
-    """PNG file of an image (height, width, 3 or 4) uint8, without its opacity.
-
-    Three times as fast as by Pillow: run lengths suit drawings.
-    """
+    """PNG file of an image (height, width, 3 or 4) uint8, without its opacity; some times as fast as by Pillow."""
     import cv2
 
     to_bgr = cv2.COLOR_RGBA2BGR if image.shape[2] == 4 else cv2.COLOR_RGB2BGR
-    options = (cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_RLE)
-    options += (cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_UP)
+    options = (cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_DEFAULT)
+    options += (cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_NONE)
     return cv2.imencode(".png", cv2.cvtColor(image, to_bgr), options)[1].tobytes()
 
 
