@@ -448,6 +448,7 @@ def test_bad_arguments_of_reaching_are_refused():
     with bench, Reacher(bench, locator, rest=False) as reacher, pytest.raises(InputError, match="looks"):
         reacher.reach(looks=0)
     for task, name in (
+        (lambda r: r.reach(height="a"), "height"),
         (lambda r: r.put("ab"), "place"),
         (lambda r: r.follow_ball(1.0, lead=np.nan), "lead"),
     ):

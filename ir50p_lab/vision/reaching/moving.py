@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ir50p_lab.errors import BenchError
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.dynamics import gravity
 from ir50p_lab.vision.reaching.plan import LIFT, plan
@@ -74,7 +75,9 @@ class Mover:
         self._u = self.bench.drive(u, reference=rows[0], gripper=self._gripper)
 
     def _cycle(self, rows):
-        self._last = next(self._samples)
+        self._last = next(self._samples, None)
+        if self._last is None:
+            raise BenchError("the run of this bench is over (a replay ends, and so does a day): begin a new one")
         self._drive(rows)
         return self._last
 

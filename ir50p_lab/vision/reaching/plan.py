@@ -103,7 +103,7 @@ def nearest_reachable(arm, p):
 def plan(arm, q, p, *, lift=LIFT):
     """The way of the tip from the pose q to the point p: over it, then down. Where that comes too low it rises first.
 
-    All pieces are straight for the joints; the last one, of 8 cm, leads the tip to p within 4 mm of a plumb line.
+    All pieces are straight for the joints; the last one keeps the tip of the IR50P within 4 mm of a plumb line.
 
     Args: arm: Arm; q: (3,) rad, where it stands; p: (3,) m; lift: m above p where the last piece begins; 0 goes there
     directly.

@@ -14,8 +14,6 @@ from ir50p_lab.vision.reaching.plan import plan, reach_pose, within_reach
 from ir50p_lab.vision.reaching.result import BallTracker, FollowLog, Look, Reached
 
 HEIGHT = 0.06  # m of the tip over the ball's centre: 30 mm over its top
-_OVER = np.array([0.0, 0.0, HEIGHT])
-_FOLLOWING = 0.10  # m of the tip over the centre of a ball that rolls
 _COUNTS, _COUNTS_NOMINAL = 0.7, 2.5  # what potentiometers are off by, counts (assumed: a good wire-wound one)
 _MOVED = 0.008  # m between two looks: then the ball has moved, and only the second counts
 _LOST = 0.5  # s without a look that shows the ball: from then on nobody knows where it rolls
@@ -82,8 +80,8 @@ class Reacher(Mover):
 
     # ---- tasks
 
-    def reach(self, *, looks=2):
-        """Put the tip over the ball, 60 mm above its centre; look again from there and correct.
+    def reach(self, *, height=HEIGHT, looks=2):
+        """Put the tip over the ball, `height` m above its centre; look again from there and correct.
 
         looks: 1: one look, then potentiometers alone; 2: after arriving the camera sees where ball and hand really
         are, and the hand is moved by the difference. A goal less than 1 mm out of reach counts as the nearest point
@@ -92,8 +90,9 @@ class Reacher(Mover):
         is seen, with the reason.
         """
         looks, records = whole("looks", looks, 1, 3), []
+        over = np.array([0.0, 0.0, number("height", height, unit="m")])
         ball = self._sure(self.look()).position
-        goal = within_reach(self.arm, ball + _OVER)
+        goal = within_reach(self.arm, ball + over)
         self.move_along(plan(self.arm, self.q, goal))
         for again in reversed(range(looks)):
             q = self.settle(reach_pose(self.arm, goal, self.q))
@@ -101,14 +100,14 @@ class Reacher(Mover):
             if again:
                 ball, marker, q = self._look_again(ball, q, notes)
                 try:
-                    goal = within_reach(self.arm, ball + _OVER)
+                    goal = within_reach(self.arm, ball + over)
                 except UnreachableError as error:  # a ball that has rolled away must not let the arm fall
                     notes.append(f"the ball is out of reach now, by {1e3 * error.distance:.0f} mm: the arm stays")
             records.append(Look(marker, self.errors.copy(), "; ".join(notes), stood))
         simulated = self.bench.simulated and hasattr(self.bench, "plant")
         return Reached(
             ball=ball,
-            goal=ball + _OVER,
+            goal=ball + over,
             tip=forward_kinematics(self.arm, q),
             q=q,
             looks=tuple(records),
@@ -153,7 +152,7 @@ class Reacher(Mover):
         found = self.reach()
         self.move_to(found.ball, lift=0.0)
         self.grip(True)
-        self.move_to(found.ball + _OVER, lift=0.0)
+        self.move_to(found.goal, lift=0.0)
         return found
 
     def put(self, place):
@@ -162,14 +161,14 @@ class Reacher(Mover):
         Raises InputError for a place that is none, UnreachableError before anything moves.
         """
         down = np.array([*coordinates("place", place, 2, "m"), self.locator.radius])
-        up = down + _OVER
+        up = down + np.array([0.0, 0.0, HEIGHT])
         reach_pose(self.arm, up)
         self.move_to(down, lift=HEIGHT)
         self.grip(False)
         self.move_to(up, lift=0.0)
 
-    def follow_ball(self, seconds, *, every=0.1, lead=None):
-        """Keep the tip 0.1 m over a moving ball: a look every `every` s, position and velocity filtered, aimed ahead.
+    def follow_ball(self, seconds, *, height=0.10, every=0.1, lead=None):
+        """Keep the tip over a moving ball: a look every `every` s, position and velocity filtered, aimed ahead.
 
         First a planned way to where the ball is seen, clear of the table; `seconds` count from there.
         lead: s that the aim lies ahead: as much as camera and arm together are late. More puts the tip before the
@@ -182,11 +181,11 @@ class Reacher(Mover):
         from ir50p_lab.bench.set_point import SetPoint
 
         seconds, every = number("seconds", seconds, "> 0", unit="s"), number("every", every, ">= 0", unit="s")
-        seen = self._sure(self.look())
+        height, seen = number("height", height, unit="m"), self._sure(self.look())
         if lead is None:
             lead = _ARM_LAG if seen.simulated else _ARM_LAG + _CAMERA_LAG
         lead = number("lead", lead, unit="s")
-        self.move_along(plan(self.arm, self.q, seen.position + np.array([0.0, 0.0, _FOLLOWING])))
+        self.move_along(plan(self.arm, self.q, seen.position + np.array([0.0, 0.0, height])))
         tracker, log, point = BallTracker(), [], SetPoint(self._set, speed=0.6, acceleration=3.0)
         begin = next_look = last_seen = self._last.t
         job = self._frozen = None
@@ -203,7 +202,7 @@ class Reacher(Mover):
             if t - last_seen > _LOST:
                 tracker = BallTracker()
             if tracker.position is not None:
-                aim = np.array([*tracker.at(t + lead), self.locator.radius + _FOLLOWING])
+                aim = np.array([*tracker.at(t + lead), self.locator.radius + height])
                 with contextlib.suppress(ValueError):  # UnreachableError: wait
                     point.move_to(reach_pose(self.arm, aim, self.q) - self.errors)
             rows = point(t)
@@ -216,7 +215,7 @@ class Reacher(Mover):
         return FollowLog(*(np.array(column) for column in zip(*log, strict=True)), lead=lead)
 
 
-def reach(bench, locator, *, looks=2, **options):
+def reach(bench, locator, *, height=HEIGHT, looks=2, **options):
     """One reach on an open bench, and back to rest: `Reacher` in one call; options: of Reacher."""
     with Reacher(bench, locator, **options) as reacher:
-        return reacher.reach(looks=looks)
+        return reacher.reach(height=height, looks=looks)
