@@ -157,7 +157,7 @@ def way_figure(way, ball=None, radius=0.03):
     """A Plan from the side: radius and height of the tip, ball and clearance. Returns: LabFigure."""
     figure = new_figure(9.0, 3.6, cols=2, width_ratios=(1.1, 1))
     side, over = figure.axes
-    p = way.points
+    p = way.tips
     view = SideView(side, way.arm, colour=COLOURS["blue"])
     view.update(way.goal)
     side.plot(np.hypot(p[:, 0], p[:, 1]), p[:, 2], color=COLOURS["green"], linewidth=2)
@@ -198,15 +198,12 @@ def budget_figure(budget, measured=()):
     """Causes of error as bars, after one look and after two; measured: rms mm of each as dashed lines. LabFigure."""
     figure = new_figure(9.0, 3.6)
     (ax,) = figure.axes
-    names = [cause.name for cause in budget.causes] + ["all together"]
-    first, second = ([1e3 * getattr(c, k) for c in budget.causes] for k in ("first", "second"))
-    rows = np.arange(len(names))[::-1]
-    total = [1e3 * value for value in budget.total]
-    ax.barh(rows + 0.19, [*first, total[0]], 0.36, color=COLOURS["sky"], label="one look")
-    ax.barh(rows - 0.19, [*second, total[1]], 0.36, color=COLOURS["blue"], label="two looks")
+    rows, total = np.arange(len(budget))[::-1], 1e3 * budget.to_numpy()[-1]
+    for up, looks, colour in ((0.19, "one look", "sky"), (-0.19, "two looks", "blue")):
+        ax.barh(rows + up, 1e3 * budget[looks], 0.36, color=COLOURS[colour], label=looks)
     for value in measured:
         ax.axvline(1e3 * value, **SETPOINT)
-    ax.set_yticks(rows, names)
+    ax.set_yticks(rows, budget.index)
     ax.set(xlabel="rms at the tip [mm]", title=f"The second look takes {total[0]:.1f} mm down to {total[1]:.1f} mm")
     ax.legend(fontsize=8)
     return figure

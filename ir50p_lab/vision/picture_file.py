@@ -6,7 +6,6 @@ import numpy as np
 
 from ir50p_lab.vision.console import captured
 
-_PNG = b"\x89PNG\r\n\x1a\n"
 _GREY_AND_ALPHA = 4  # colour type of a PNG
 _ORIENTATION = 0x0112  # tag of EXIF
 
@@ -19,23 +18,21 @@ def decode(data):
     """
     import cv2
 
-    if why := _cut_off(data):
-        return None, f"is cut off ({why}): copy or take the picture again"
     with captured() as said:  # the decoder of JPEG says of damage nowhere else
         try:
             image = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_ANYCOLOR | cv2.IMREAD_ANYDEPTH)
-        except cv2.error:  # sizes beyond what OpenCV takes
+        except cv2.error:  # an empty file, sizes beyond what OpenCV takes
             image = None
     if image is None:
         return None, (
-            f"is no picture that OpenCV can read (it starts with {data[:8]!r}): damaged, a video, a camera's raw, or a "
-            "HEIC picture of a phone? Save it as JPEG or PNG (iPhone: Settings, Camera, Formats, 'Most Compatible' "
-            "takes JPEGs from then on)"
+            f"is no picture that OpenCV can read ({len(data)} bytes, the first {data[:8]!r}): cut off or damaged (copy "
+            "or take it again), a video, a camera's raw, or a HEIC picture of a phone? Save it as JPEG or PNG (iPhone: "
+            "Settings, Camera, Formats, 'Most Compatible' takes JPEGs from then on)"
         )
     damage = [line for line in said if "Corrupt JPEG" in line and "extraneous" not in line]  # those are harmless
     if damage:
         return None, f"is damaged ({damage[0].strip()}): copy or take the picture again"
-    if data.startswith(_PNG) and data[25] == _GREY_AND_ALPHA:
+    if data.startswith(b"\x89PNG") and data[25] == _GREY_AND_ALPHA:
         image = np.ascontiguousarray(image[..., 0])
     return image, None
 
@@ -49,19 +46,3 @@ def quarter_turns(path):
             return {6: 1, 3: 2, 8: 3}.get(picture.getexif().get(_ORIENTATION), 0)
     except Exception:  # a kind that OpenCV reads and Pillow does not, a broken EXIF, a size that Pillow refuses
         return 0
-
-
-def _cut_off(data):
-    """Why the data of a picture end too early, or None: OpenCV would fill the rest with grey and say nothing."""
-    if data.startswith(b"\xff\xd8"):
-        # the picture proper starts at the last 'start of scan'; an earlier 'end of image' is that of a thumbnail
-        scan = data.rfind(b"\xff\xda")
-        return None if scan > 0 and data.find(b"\xff\xd9", scan) > 0 else "JPEG without its end"
-    if data.startswith(_PNG):
-        return None if b"IEND" in data[-4096:] else "PNG without its end"
-    size = None
-    if data.startswith(b"BM") and len(data) >= 6:
-        size = int.from_bytes(data[2:6], "little")
-    elif data.startswith(b"RIFF") and data[8:12] == b"WEBP":
-        size = int.from_bytes(data[4:8], "little") + 8
-    return f"{size} bytes long, {len(data)} here" if size is not None and size > len(data) else None

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from matplotlib.text import Text
 from quick_locator import QuickLocator
@@ -14,7 +15,6 @@ from ir50p_lab.modelling import IR50P
 from ir50p_lab.vision import RenderedBench, Seen, TablePlane, plan, reach
 from ir50p_lab.vision.board_pose import board_points, inverse_transform, transform
 from ir50p_lab.vision.hand_eye import HandEye, tool_poses
-from ir50p_lab.vision.reaching.budget import Budget, Cause
 from ir50p_lab.vision.reaching.result import FollowLog
 from ir50p_lab.vision.rendering import bench_camera
 
@@ -75,7 +75,7 @@ def test_tip_and_budget_and_residuals_show_their_numbers():
     assert "second look" in text
     alone = views.tip_figure(IR50P, bench.recording, replace(done, looks=done.looks[-1:]))
     assert "look" not in text_of(alone) and "by the camera" not in text_of(alone)
-    budget = Budget((Cause("marker", 3e-3, 1e-3), Cause("camera", 4e-3, 0.0)))
+    budget = pd.DataFrame({"one look": [3e-3, 4e-3, 5e-3], "two looks": [1e-3, 0.0, 1e-3]}, ["marker", "camera", "all"])
     assert "takes 5.0 mm down to 1.0 mm" in text_of(views.budget_figure(budget, (5e-3, 1e-3)))
     found = HandEye(T_BASE_CAM, np.eye(4), np.full(4, 2e-3), np.full(4, 1e-3))
     text = text_of(views.residual_figure(found))

@@ -72,7 +72,7 @@ def rows(*, quick=False):
     slope = np.array(calibrated(UNITS[0]).slope)
     poses = [reach_pose(IR50P, ball + OVER) for ball in balls[possible][:20]]
     budgets = [error_budget(IR50P, locator, q, sigma_q=BENT / slope, slope=slope) for q in poses]
-    predicted = 1e-3 * _rms([budget.total[1] for budget in budgets])
+    predicted = 1e-3 * _rms([budget.loc["all together", "two looks"] for budget in budgets])
     parts = {name: _predicted(budgets, name) for name in ("ball", "hand", "standing")}
     return [
         Row(f"balls reached, of {n} in the work area", f">= {wanted:.0f}", f"{reached.sum()}", "-", reached.sum() >= wanted),
@@ -95,7 +95,7 @@ def rows(*, quick=False):
 def _predicted(budgets, part):
     """What the budgets say of one part, rms mm: the ball's place, where the hand is believed, standing still."""
     words = {"ball": ("ball in", "camera"), "hand": ("marker", "potentiometers"), "standing": ("standing",)}[part]
-    return _rms([np.sqrt(sum(c.second**2 for c in one.causes if c.name.startswith(words))) for one in budgets])
+    return _rms([np.linalg.norm(one["two looks"][one.index.str.startswith(words)]) for one in budgets])
 
 
 def _rms(values):

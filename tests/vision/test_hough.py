@@ -56,5 +56,5 @@ def test_bad_arguments():
         circle_votes([1, 2, 3], (9, 9), 3)
     with pytest.raises(InputError, match="radius"):
         circle_votes([(1, 2)], (9, 9), 0)
-    with pytest.raises(InputError, match="shape"):
+    with pytest.raises(InputError, match="nan"):
         circle_votes([(np.nan, 2)], (9, 9), 3)

@@ -21,7 +21,7 @@ def picture():
     [
         (None, "is None"),
         ([[1, 2]], "is a list"),
-        (np.empty((0, 5, 3), np.uint8), "is empty"),
+        (np.empty((0, 5, 3), np.uint8), r"shape \(0, 5, 3\)"),
         (np.zeros((4, 5), np.uint8), "one channel"),
         (np.zeros((4, 5, 1), np.uint8), "one channel"),
         (np.zeros((4, 5, 4), np.uint8), "fourth channel"),
@@ -77,14 +77,14 @@ def test_only_some_files_can_be_marked(tmp_path, picture):
 
 
 def test_refused_files(tmp_path, picture):
-    with pytest.raises(ImageError, match="nor the folder"):
+    with pytest.raises(ImageError, match="there is no file"):
         load_image(tmp_path / "no" / "a.png")
     with pytest.raises(ImageError, match="is a folder"):
         load_image(tmp_path)
-    with pytest.raises(ImageError, match="path = None"):
+    with pytest.raises(ImageError, match=r"None cannot be read .*: give the path of a picture file"):
         load_image(None)
     (tmp_path / "empty.png").touch()
-    with pytest.raises(ImageError, match="is empty"):
+    with pytest.raises(ImageError, match="0 bytes"):
         load_image(tmp_path / "empty.png")
     (tmp_path / "text.png").write_text("this is no picture at all")
     with pytest.raises(ImageError, match="is no picture"):
@@ -96,7 +96,7 @@ def test_refused_files(tmp_path, picture):
     cv2.imwrite(str(tmp_path / "deep.png"), picture.astype(np.uint16))
     with pytest.raises(ImageError, match="16 bits"):
         load_image(tmp_path / "deep.png")
-    with pytest.raises(ImageError, match="does not end in"):
+    with pytest.raises(ImageError, match=r"xyz.* cannot be written"):
         save_image(tmp_path / "a.xyz", picture)
     with pytest.raises(ImageError, match="cannot be written"):
         save_image(tmp_path / "no" / "a.png", picture)

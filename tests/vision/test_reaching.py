@@ -25,11 +25,9 @@ from ir50p_lab.vision import (
     work_area,
 )
 from ir50p_lab.vision.camera import webcam
-from ir50p_lab.vision.reaching import rendered_bench
 from ir50p_lab.vision.reaching.budget import error_budget
 from ir50p_lab.vision.reaching.plan import ALMOST, MARGIN, nearest_reachable, within_reach
 from ir50p_lab.vision.reaching.result import BallTracker
-from ir50p_lab.vision.rendering import SceneBall, Stick, bench_scene
 from tests.support.places import places_in
 from tests.targets.vision_setup import calibrated
 
@@ -134,6 +132,8 @@ def test_plans_arrive_are_smooth_and_stay_clear():
         assert heights.min() > p[2] - 1e-6
         assert way.lowest == pytest.approx(heights.min(), abs=1e-3)
         assert np.abs(np.diff(rows[:, 0], axis=0)).max() < 0.7 * (t[1] - t[0])  # no jump: 0.5 rad/s, and the line
+        tips = forward_kinematics(IR50P, rows[t > way.times[-2], 0])
+        assert np.linalg.norm(tips[:, :2] - p[:2], axis=1).max() < 4e-3  # it comes from above
         q = way.goal  # the next one from there, low over the table: it must go up first
 
 
@@ -160,7 +160,6 @@ def misses(looks):
         with bench:
             done = reach(bench, locator, looks=looks, rest=False)
         found.append(np.linalg.norm(done.tip_true - world.balls_true[0] - OVER))
-        assert done.plan.lowest > 0.05
     return np.array(found)
 
 
@@ -224,7 +223,7 @@ def test_a_ball_that_cannot_be_gripped_is_not_reached_for():
 
 
 def test_the_budget_is_what_reaching_measures():
-    _, world, locator = rig()
+    _, _, locator = rig()
     budget = error_budget(
         IR50P,
         locator,
@@ -232,26 +231,24 @@ def test_the_budget_is_what_reaching_measures():
         sigma_q=0.5 / np.array([189, 122, 192.0]),
         slope=(189, 122, 192),
     )
-    first, second = budget.total
+    first, second = budget.loc["all together"]
     assert second < first
     measured = np.sqrt(np.mean(misses(2) ** 2))
     assert 0.5 < measured / second < 1.6
-    assert "all together" in budget.table()
-    assert world.simulated
+    assert second**2 == pytest.approx((budget["two looks"][:-1] ** 2).sum())
 
 
 def test_a_ball_is_picked_seen_in_the_grip_and_put():
     bench, world, locator = rig((0.42, -0.12, 0.03), 3)
     with bench, Reacher(bench, locator) as reacher:
         found = reacher.pick()
-        assert world.held
         assert np.linalg.norm(found.ball - (0.42, -0.12, 0.03)) < 2e-3
         assert world.balls_true[0, 2] > 0.07
         with pytest.raises(UnreachableError):
             reacher.put((0.9, 0.0))
-        assert world.held
+        assert world.balls_true[0, 2] > 0.07
         reacher.put((0.36, 0.15))
-        assert not world.held
+        assert world.balls_true[0, 2] == 0.03
         assert np.linalg.norm(world.balls_true[0, :2] - (0.36, 0.15)) < 0.015
     assert np.abs(bench.plant.q_true - rest_pose(IR50P)).max() < 0.1
 
@@ -363,10 +360,9 @@ def test_the_rendered_camera_sees_ball_and_marker_where_they_are():
     marker = locator.find_marker(again.image, IR50P, q + 0.005)
     expected = world.scene.pinhole.project(world.scene.T_cam_world, locator.marker_place(IR50P, q))
     assert np.linalg.norm(marker - expected) < 1.0
-    e, covariance = locator.joint_errors(IR50P, q - [0.004, -0.003, 0.0], marker, [0.006, 0.006, 0.004])
+    e = locator.joint_errors(IR50P, q - [0.004, -0.003, 0.0], marker, [0.006, 0.006, 0.004])
     after = forward_kinematics(IR50P, q - [0.004, -0.003, 0.0] + e) - forward_kinematics(IR50P, q)
     assert np.linalg.norm(after) < 2.5e-3
-    assert (np.diag(covariance) < np.square([0.006, 0.006, 0.004])).all()
     with pytest.raises(VisionError, match="potentiometers put it"):
         locator.joint_errors(IR50P, q + np.array([0.08, 0, 0]), marker, [0.006, 0.006, 0.004])
 
@@ -398,10 +394,10 @@ class Real:
 
 def test_a_real_arm_is_given_no_rendered_camera(monkeypatch, capsys):
     monkeypatch.setattr(webcam, "webcam_present", lambda: False)
-    monkeypatch.delenv("IR50P_CAMERA", raising=False)
-    for source in (None, "rendered"):
+    for source in ("", "rendered"):
+        monkeypatch.setenv("IR50P_CAMERA", source)
         with pytest.raises(CameraError, match="plug a webcam in"):
-            camera_over(Real(), source=source)
+            camera_over(Real())
 
 
 def test_a_real_arm_does_not_reach_for_a_rendered_ball():
@@ -436,22 +432,11 @@ def test_the_loop_goes_on_while_the_eye_looks():
         bench.realtime = False
 
 
-@pytest.mark.parametrize(
-    "change", [{"radius": 0}, {"sigma_px": -1}, {"T_base_table": np.eye(3)}, {"marker_at": (1, 2)}]
-)
+@pytest.mark.parametrize("change", [{"radius": 0}, {"T_base_table": np.eye(3)}, {"marker_at": (1, 2)}])
 def test_a_locator_of_bad_numbers_is_refused(change):
     _, world, _ = rig()
     with pytest.raises(InputError):
         BallLocator(world, TablePlane(world.scene.pinhole, world.scene.T_cam_world), **change)
-
-
-def test_red_things_that_are_no_balls_stay_on_the_table(monkeypatch):
-    seen = []
-    monkeypatch.setattr(rendered_bench, "render_scene", lambda scene, seed: seen.append(scene) or (None, None))
-    things = Stick(start=(0.3, 0, 0.01), end=(0.4, 0, 0.01), colour="red"), SceneBall(colour="blue")
-    scene = replace(bench_scene(), objects=(*things, SceneBall(position=(0.5, 0.1, 0.03))))
-    RenderedBench(rig()[0], (0.40, 0.10, 0.03), scene=scene, marker=False).read()
-    assert seen[0].objects == (SceneBall(position=(0.40, 0.10, 0.03)), *things)
 
 
 def test_bad_arguments_of_reaching_are_refused():

@@ -9,13 +9,12 @@ from ir50p_lab.vision.image import save_image
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Frame:
-    """One picture: image (h, w, 3) uint8, red green blue; t seconds since the camera was opened; where it came from.
+    """One picture: image (h, w, 3) uint8, red green blue; where it came from.
 
     simulated: rendered, not photographed. source: name of the camera, or of the file.
     """
 
     image: np.ndarray
-    t: float
     simulated: bool
     source: str
 
@@ -41,8 +40,7 @@ class Camera:
         self.closed = True
 
     def __iter__(self):
-        while True:
-            yield self.read()
+        return iter(self.read, None)
 
     def __enter__(self):
         return self

@@ -2,9 +2,7 @@
 
 import os
 
-import numpy as np
-
-from ir50p_lab.errors import CameraError, ImageError, InputError
+from ir50p_lab.errors import CameraError, ImageError
 from ir50p_lab.vision.camera import webcam
 from ir50p_lab.vision.camera.picture_folder import PictureFolder
 from ir50p_lab.vision.camera.rendered_camera import RenderedCamera
@@ -24,12 +22,12 @@ def open_camera(source=None, *, size=(640, 480)):
         a webcam. size: (width, height) asked of a webcam; other cameras have the size of their pictures.
 
     Returns: Camera, for `with open_camera() as camera:`; it is open already.
-    Raises: CameraError if the webcam asked for is not there, ImageError for a missing or empty folder, InputError for
-    a `source` that is none of the above. A webcam that was only looked for never raises.
+    Raises: CameraError if the webcam asked for is not there, ImageError for a missing or empty folder, or a path that
+    is none. A webcam that was only looked for never raises.
     """
     variable = os.environ.get(VARIABLE, "").strip()
     if source is not None:
-        return _asked_for(source, size, f"asked for by open_camera({source!r})")
+        return _asked_for(str(source), size, f"asked for by open_camera({source!r})")
     if variable:
         return _asked_for(variable, size, f"asked for by {VARIABLE}={variable}")
     try:
@@ -43,11 +41,6 @@ def open_camera(source=None, *, size=(640, 480)):
 
 
 def _asked_for(source, size, reason):
-    if isinstance(source, int | np.integer) and not isinstance(source, bool) and source >= 0:
-        source = str(source)
-    if not isinstance(source, str | os.PathLike) or not str(source):
-        raise InputError(f"source = {source!r}: give the number of a webcam, 'rendered', 'folder:PATH' or a path")
-    source = os.fspath(source)
     if source.isdecimal():
         return _say(Webcam(int(source), size=size), reason, TO_RENDERED)
     if source.lower() == "rendered":

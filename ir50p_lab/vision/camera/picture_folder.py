@@ -1,6 +1,5 @@
 """Pictures from files instead of a camera."""
 
-import time
 from pathlib import Path
 
 from ir50p_lab.errors import CameraError, ImageError
@@ -19,12 +18,9 @@ class PictureFolder(Camera):
         path = Path(path)
         self.paths = [path] if path.is_file() else list_images(path)
         self.name, self._next = f"folder {path}" if path.is_dir() else f"picture {path}", 0
-        self._opened = time.monotonic()
         self.size, self.simulated, problems = None, True, []
         for one in self.paths:
             try:
-                if self.size and is_rendered(one):
-                    continue  # one more of them changes nothing
                 size = load_image(one).shape[1::-1]
             except ImageError as error:
                 problems.append(str(error))
@@ -39,9 +35,6 @@ class PictureFolder(Camera):
                 "calibrate with grey ones, give calibrate the folder.)"
             )
 
-    def __len__(self):
-        return len(self.paths)
-
     def __iter__(self):
         while self._next < len(self.paths):
             yield self.read()
@@ -54,9 +47,4 @@ class PictureFolder(Camera):
             raise CameraError(f"{self.name} has no more than {len(self.paths)} pictures: open it again")
         path = self.paths[self._next]
         self._next += 1
-        return Frame(
-            image=load_image(path),
-            t=time.monotonic() - self._opened,
-            simulated=is_rendered(path),
-            source=path.name,
-        )
+        return Frame(image=load_image(path), simulated=is_rendered(path), source=path.name)

@@ -12,13 +12,11 @@ from ir50p_lab.vision.processing.smoothing import convolve
 class CannySteps:
     """What each step leaves, all (h, w).
 
-    smoothed: 1; gx, gy, strength = |gx| + |gy|: 2; thin: strength where it is a crest across the edge, else 0: 3;
+    smoothed: 1; strength = |gx| + |gy|: 2; thin: strength where it is a crest across the edge, else 0: 3;
     edges: bool, what is strong, or hangs on something strong: 4.
     """
 
     smoothed: np.ndarray
-    gx: np.ndarray
-    gy: np.ndarray
     strength: np.ndarray
     thin: np.ndarray
     edges: np.ndarray
@@ -31,49 +29,39 @@ def canny_steps(grey, low, high, *, kernel=None):
     KERNEL_3_2, or None for a picture that is smooth already.
     The same decisions as cv2.Canny(smoothed, low, high), pixel by pixel. Raises InputError for low > high.
     """
+    from scipy import ndimage
+
     if not 0 <= low <= high:
         raise InputError(f"thresholds low = {low}, high = {high}: give 0 <= low <= high")
     smoothed = np.asarray(grey) if kernel is None else np.rint(convolve(grey, kernel)).astype(np.uint8)
-    gx, gy = gradient(smoothed)
+    gx, gy = (ndimage.sobel(smoothed.astype(int), axis, mode="nearest") for axis in (1, 0))  # the border is repeated
     strength = np.abs(gx) + np.abs(gy)
     thin = crest(gx, gy, strength)
-    return CannySteps(smoothed, gx, gy, strength, thin, hysteresis(thin, low, high))
-
-
-def gradient(grey):
-    """Derivatives (gx, gy) along x and y, int (h, w), by Sobel's kernels; the border is repeated."""
-    from scipy import ndimage
-
-    grey = np.asarray(grey).astype(int)
-    return tuple(ndimage.sobel(grey, axis, mode="nearest") for axis in (1, 0))
+    return CannySteps(smoothed, strength, thin, hysteresis(thin, low, high))
 
 
 def crest(gx, gy, strength):
     """Non-maximum suppression: strength where no neighbour across the edge is stronger, else 0.
 
-    Across: the gradient's direction, rounded to one of four. Of two equal neighbours one stays.
+    Across: the gradient's direction, rounded to one of four. Of two equal neighbours, left and right or above and
+    below, one stays.
     """
     wide = np.pad(strength, 1)
     ax, ay = np.abs(gx), np.abs(gy)
     # slopes below tan 22.5 degrees are level, above tan 67.5 upright; in integers, as OpenCV computes them
     level = (ay << 15) < ax * 13573
     upright = (ay << 15) > ax * 13573 + (ax << 16)
+    falling = (gx < 0) == (gy < 0)
 
     def neighbour(dy, dx):
         return wide[1 + dy : wide.shape[0] - 1 + dy, 1 + dx : wide.shape[1] - 1 + dx]
 
-    along = np.where((gx < 0) != (gy < 0), -1, 1)
-    falling = np.where(along == 1, neighbour(-1, -1), neighbour(-1, 1))
-    rising = np.where(along == 1, neighbour(1, 1), neighbour(1, -1))
-    stays = np.where(
-        level,
-        (strength > neighbour(0, -1)) & (strength >= neighbour(0, 1)),
-        np.where(
-            upright,
-            (strength > neighbour(-1, 0)) & (strength >= neighbour(1, 0)),
-            (strength > falling) & (strength > rising),
-        ),
-    )
+    def across(side):
+        neighbours = [neighbour(0, side), neighbour(side, 0), neighbour(side, side)]
+        return np.select([level, upright, falling], neighbours, neighbour(side, -side))
+
+    before, after = across(-1), across(1)
+    stays = (strength > before) & ((strength > after) | ((level | upright) & (strength == after)))
     return np.where(stays, strength, 0)
 
 
@@ -81,8 +69,5 @@ def hysteresis(thin, low, high):
     """True where thin > high, and where thin > low and a chain of such pixels leads to one of those."""
     from scipy import ndimage
 
-    pieces, n = ndimage.label(thin > low, structure=np.ones((3, 3)))
-    strong = np.zeros(n + 1, bool)
-    strong[pieces[thin > high]] = True
-    strong[0] = False
-    return strong[pieces]
+    pieces, _ = ndimage.label(thin > low, structure=np.ones((3, 3)))
+    return np.isin(pieces, pieces[thin > high])

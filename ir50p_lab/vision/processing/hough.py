@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import number
+from ir50p_lab.vision.checks import point_list
 
 
 def circle_votes(points, shape, radius, *, width=1.0):
@@ -10,20 +11,14 @@ def circle_votes(points, shape, radius, *, width=1.0):
 
     Args: points (n, 2): x, y of edge pixels; shape: (h, w); radius > 0 and width of the drawn line, pixels.
     """
-    points = np.asarray(points, dtype=float)
-    if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
-        raise InputError(f"points has shape {points.shape}: give (n, 2), x and y of edge pixels")
-    if not 0 < radius < np.inf:
-        raise InputError(f"radius = {radius!r}: give a positive number of pixels")
-    height, width_px = shape[:2]
-    votes = np.zeros((height, width_px), int)
-    reach = int(np.ceil(radius + width))
+    points = point_list("points", points, 2)
+    reach = int(np.ceil(number("radius", radius, "> 0", unit="px") + width))
     dy, dx = np.mgrid[-reach : reach + 1, -reach : reach + 1]
     on = np.abs(np.hypot(dx, dy) - radius) < width / 2
-    dx, dy = dx[on], dy[on]
+    votes = np.zeros(shape[:2], int)
     for x, y in np.rint(points).astype(int):
-        a, b = x + dx, y + dy
-        inside = (a >= 0) & (a < width_px) & (b >= 0) & (b < height)
+        a, b = x + dx[on], y + dy[on]
+        inside = (a >= 0) & (a < shape[1]) & (b >= 0) & (b < shape[0])
         votes[b[inside], a[inside]] += 1
     return votes
 

@@ -3,6 +3,8 @@
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import choice
+from ir50p_lab.vision.checks import coordinates
 
 HUE_SCALES = {"degrees": 360.0, "OpenCV": 180.0, "8 bit": 255.0, "MATLAB": 1.0}
 """What a full turn of hue is called: OpenCV halves degrees to fit a byte, MATLAB has 0..1, 3.1.3 'scaled to 8 bit'."""
@@ -12,23 +14,20 @@ def rgb_to_hsv(rgb):
     """Hue (degrees, 0 <= h < 360), saturation and value (0..1) of colours (..., 3) of bytes: (..., 3) float.
 
     V is the largest of r, g, b; S = (V - smallest)/V; the hue is the angle on the colour circle, red 0, green 120,
-    blue 240, in between by the middle one. Grey has no hue: 0 by convention. Raises InputError for another shape.
+    blue 240, in between by the middle one. Grey has no hue: 0 by convention. Raises InputError for another shape, and
+    for numbers that are no bytes.
     """
-    rgb = np.asarray(rgb, dtype=float) / 255
-    if rgb.ndim == 0 or rgb.shape[-1] != 3:
-        raise InputError(f"rgb has shape {rgb.shape}: give red, green, blue, 0..255, in the last axis")
-    if not ((rgb >= 0) & (rgb <= 1)).all():
-        raise InputError("rgb holds a number outside 0..255")
     from matplotlib.colors import rgb_to_hsv as hsv_of
 
-    return hsv_of(rgb) * (360, 1, 1)
+    rgb = coordinates("rgb", rgb, 3, "0..255")
+    if rgb.min(initial=0) < 0 or rgb.max(initial=0) > 255:
+        raise InputError("rgb holds a number outside 0..255")
+    return hsv_of(rgb / 255) * (360, 1, 1)
 
 
 def hue_in(scale, hue_deg):
     """A hue in another scale: one of HUE_SCALES. Raises InputError for an unknown one."""
-    if scale not in HUE_SCALES:
-        raise InputError(f"scale {scale!r}: give one of {', '.join(HUE_SCALES)}")
-    return np.asarray(hue_deg, dtype=float) / 360.0 * HUE_SCALES[scale]
+    return np.asarray(hue_deg, dtype=float) / 360.0 * HUE_SCALES[choice("scale", scale, tuple(HUE_SCALES))]
 
 
 def hue_distance(a_deg, b_deg):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import number
 
 KERNEL_3_2 = (
     np.array(
@@ -21,12 +22,10 @@ KERNEL_3_2.setflags(write=False)
 
 def gaussian_kernel(size, sigma):
     """exp(-(x^2 + y^2)/(2 sigma^2)) on `size` x `size` pixels, divided by its sum. size: odd; sigma > 0, pixels."""
-    if not isinstance(size, int | np.integer) or size < 1 or size % 2 == 0:
+    if size % 2 != 1:
         raise InputError(f"size = {size!r}: a kernel has a middle, give an odd number of pixels")
-    if not 0 < sigma < np.inf:
-        raise InputError(f"sigma = {sigma!r}: give a positive number of pixels")
     x = np.arange(size) - size // 2
-    kernel = np.exp(-(x[:, None] ** 2 + x**2) / (2 * sigma**2))
+    kernel = np.exp(-(x[:, None] ** 2 + x**2) / (2 * number("sigma", sigma, "> 0", unit="px") ** 2))
     return kernel / kernel.sum()
 
 

@@ -4,13 +4,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ir50p_lab.errors import InputError, VisionError
-from ir50p_lab.inputs import number, vectors3
+from ir50p_lab.errors import VisionError
+from ir50p_lab.inputs import number, vector3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.ball.colour import RED, Colour
 from ir50p_lab.vision.ball.find import find_balls
 from ir50p_lab.vision.board_pose import inverse_transform, moved
-from ir50p_lab.vision.checks import check_picture_size, rigid
+from ir50p_lab.vision.checks import rigid
 
 GREEN = Colour(hue=135.0, tolerance=35.0, name="green")  # of the marker on the hand
 MARKER_AT = (-0.042, 0.0, 0.0)  # m, tool coordinates: between the fingers, before the end of the forearm
@@ -45,48 +45,37 @@ class BallLocator:
         plane: TablePlane of that camera. T_base_table: (4, 4), table coordinates to those of the base; default the
         identity: the board was laid out in base coordinates. (The thesis calls the table's frame 'world', and never
         writes this transform down.)
-        radius: m, of the ball. colour: Colour of the ball; marker: Colour of the small ball on the hand, or None if
-        there is none; marker_at: (3,) m, its centre in tool coordinates (frame 3: origin at the tip, x along the
-        forearm). sigma_px: px, standard error of a centre.
+        radius: m, of the ball. colour: Colour of the ball. marker_at: (3,) m, centre of the small ball on the hand in
+        tool coordinates (frame 3: origin at the tip, x along the forearm).
+
+    Attributes: marker: Colour of the small ball on the hand, GREEN; sigma_px: px, standard error of a centre.
     """
 
-    def __init__(
-        self,
-        camera,
-        plane,
-        *,
-        T_base_table=None,
-        radius=0.03,
-        colour=RED,
-        marker=GREEN,
-        marker_at=MARKER_AT,
-        sigma_px=0.3,
-    ):
-        self.marker_at = vectors3("marker_at", marker_at, unit="m")
-        self.camera, self.plane, self.colour, self.marker = camera, plane, colour, marker
+    marker, sigma_px = GREEN, 0.3
+
+    def __init__(self, camera, plane, *, T_base_table=None, radius=0.03, colour=RED, marker_at=MARKER_AT):
+        self.camera, self.plane, self.colour = camera, plane, colour
         self.T_base_table = np.eye(4) if T_base_table is None else rigid("T_base_table", T_base_table)
         self.radius = number("radius", radius, "> 0", unit="m")
-        self.sigma_px = number("sigma_px", sigma_px, "> 0", unit="px")
-        self.T_cam_base = plane.T_cam_table @ inverse_transform(self.T_base_table)
+        self.marker_at = vector3("marker_at", marker_at, unit="m")
 
     def look(self):
         """Take a picture; where is the best ball? Returns Seen, false if none is seen."""
         frame = self.camera.read()
-        return self.seen_in(frame.image, bool(getattr(frame, "simulated", False)))
+        return self.seen_in(frame.image, frame.simulated)
 
     def seen_in(self, image, simulated=False):
         """The same for a picture that is there already (RGB).
 
         Raises CalibrationError if the picture is of another size than the calibration.
         """
-        check_picture_size(self.plane.pinhole, image.shape[1::-1])
         balls = find_balls(image, self.colour, camera=self.plane.pinhole)
         if not balls:
             return Seen(None, None, None, image, simulated, balls.reason)
         xy = [balls[0].x, balls[0].y]
         try:
             place = self.plane.to_points(xy, self.radius)
-        except (InputError, VisionError) as error:
+        except VisionError as error:
             return Seen(None, None, balls[0], image, simulated, str(error))
         stderr = self.plane.standard_error(xy, self.radius, sigma_px=self.sigma_px)
         return Seen(moved(self.T_base_table, place), stderr, balls[0], image, simulated)
@@ -110,8 +99,6 @@ class BallLocator:
 
     def find_marker(self, image, arm, q):
         """Pixel (2,) of the marker on the hand, searched near where q (3,) rad puts it; None if it is not seen."""
-        if self.marker is None:
-            return None
         expected = self.marker_pixel(arm, q)
         for one in find_balls(image, self.marker, camera=self.plane.pinhole, least_radius=4.0):
             if np.hypot(one.x - expected[0], one.y - expected[1]) < _MARKER_NEAR:
@@ -126,10 +113,9 @@ class BallLocator:
         One pixel is two equations for three joints; the third comes from how far each potentiometer is believed to be
         off. The hand's distance to the camera stays as uncertain as they leave it.
         Args: arm: Arm; q: (3,) rad; xy: (2,) px; sigma_q: (3,) rad.
-        Returns: e (3,) rad, its covariance (3, 3). If the picture contradicts q by more than 5 sigma: VisionError.
+        Returns: e (3,) rad. If the picture contradicts q by more than 5 sigma: VisionError.
         """
-        q, sigma_q = vectors3("q", q), vectors3("sigma_q", sigma_q)
-        e = np.zeros(3)
+        e, sigma_q = np.zeros(3), vector3("sigma_q", sigma_q)
         for _ in range(4):  # Gauss-Newton; errors of 20 mrad are almost linear
             A = np.vstack([self.marker_jacobian(arm, q + e) / self.sigma_px, np.diag(1 / sigma_q)])
             off = (xy - self.marker_pixel(arm, q + e)) / self.sigma_px
@@ -140,5 +126,4 @@ class BallLocator:
                 f"the hand is seen {off:.0f} px from where the potentiometers put it, more than they can be off: was "
                 "something else taken for the marker, did the camera move, or is the arm's calibration wrong?"
             )
-        half = np.linalg.solve(np.linalg.qr(A)[1], np.eye(3))
-        return e, half @ half.T
+        return e

@@ -1,7 +1,5 @@
 """Where the millimetres go: the error of a reach, cause by cause, after one look and after two."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ir50p_lab.modelling.chain import forward_kinematics
@@ -11,34 +9,6 @@ from ir50p_lab.vision.reaching.moving import ACCEPTED
 from ir50p_lab.vision.table_plane import TablePlane
 
 _READINGS = 100  # counts averaged at rest
-
-
-@dataclass(frozen=True)
-class Cause:
-    """One cause of error: its name, and rms distance at the tip after one look and after two, m."""
-
-    name: str
-    first: float
-    second: float
-
-
-@dataclass(frozen=True)
-class Budget:
-    """Causes of error of a reach; independent, so squares add."""
-
-    causes: tuple
-
-    @property
-    def total(self):
-        """(first, second): rms distance of the true tip to where it should be, m."""
-        return tuple(float(np.sqrt(sum(getattr(c, look) ** 2 for c in self.causes))) for look in ("first", "second"))
-
-    def table(self):
-        """As text, mm."""
-        rows = [*self.causes, Cause("all together", *self.total)]
-        lines = [f"{'cause':<38} {'one look':>9} {'two looks':>10}"]
-        lines += [f"{c.name:<38} {1e3 * c.first:>6.2f} mm {1e3 * c.second:>7.2f} mm" for c in rows]
-        return "\n".join(lines)
 
 
 def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_marker_px=0.15, noise=1.0):
@@ -52,8 +22,11 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
     Args: arm: Arm; locator: BallLocator, its plane with covariances; q: (3,) rad, pose over the ball; sigma_q: (3,)
     rad, of the potentiometers' smooth errors; slope: (3,) counts/rad; sigma_ball_px, sigma_marker_px: px, of found
     centres; noise: counts rms of a reading before rounding.
-    Returns: Budget.
+    Returns: pandas.DataFrame of rms distances at the tip, m, one row a cause, columns "one look" and "two looks". The
+    causes are independent, so squares add; the last row is "all together".
     """
+    import pandas as pd
+
     J, P = jacobian(arm, q)[:3], np.diag(np.square(sigma_q))
     hand, tip = locator.marker_place(arm, q), forward_kinematics(arm, q)
     H = locator.marker_jacobian(arm, q)
@@ -73,20 +46,18 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
     both_off = ball_off + J @ G @ np.array([h for _, h in shifts]).reshape(-1, 2).T
     reading = np.diag(np.sqrt(noise**2 + 1 / 12) / np.sqrt(_READINGS) / np.abs(slope))
     rest = ACCEPTED * np.sqrt(0.6)  # evenly spread over a ball of that radius
-    return Budget(
-        (
-            Cause("ball in the picture", pixel, pixel / np.sqrt(2)),
-            Cause("camera: its numbers, where it stands", _rms(ball_off), _rms(both_off)),
-            Cause("marker in the picture", 0.0, _rms(sigma_marker_px * J @ G)),
-            Cause("potentiometers: bent, off, mis-scaled", _rms(J * sigma_q), _rms(J @ left * sigma_q)),
-            Cause(
-                "potentiometers: noise, rounding",
-                _rms(J @ reading),
-                np.hypot(_rms(J @ reading), _rms(J @ G @ H @ reading)),
-            ),
-            Cause("standing still: friction, play of gears", rest, rest),
-        )
-    )
+    noisy = _rms(J @ reading)
+    causes = {
+        "ball in the picture": (pixel, pixel / np.sqrt(2)),
+        "camera: its numbers, where it stands": (_rms(ball_off), _rms(both_off)),
+        "marker in the picture": (0.0, _rms(sigma_marker_px * J @ G)),
+        "potentiometers: bent, off, mis-scaled": (_rms(J * sigma_q), _rms(J @ left * sigma_q)),
+        "potentiometers: noise, rounding": (noisy, np.hypot(noisy, _rms(J @ G @ H @ reading))),
+        "standing still: friction, play of gears": (rest, rest),
+    }
+    budget = pd.DataFrame.from_dict(causes, orient="index", columns=["one look", "two looks"])
+    budget.loc["all together"] = np.sqrt((budget**2).sum())
+    return budget
 
 
 def _rms(matrix):

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
+from ir50p_lab.errors import BenchError
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.dynamics import gravity
 from ir50p_lab.vision.reaching.plan import LIFT, plan
 
-_LONGEST = 3600.0  # s, of one session
+_DAY = 86400.0  # s: the longest session
 _SETTLE, _WINDOW, _WINDOWS = 0.6, 0.4, 15  # s until the arm stands, s of counts to average, how often
 SETTLED, _RESTING = 1e-3, 2e-3  # m at the tip, by averaged counts: near enough; no longer moving
 ACCEPTED = 1.5e-3  # m at the tip, by a second of counts with the command frozen: there it stays
@@ -38,7 +38,8 @@ class Mover:
         real arm, of which a model must have been measured first.
         rest: go to the rest pose at the end.
 
-    Attributes: q: (3,) rad, best estimate of its set point; errors: (3,) rad, what the potentiometers are off by here.
+    Attributes: q: (3,) rad, best estimate of its set point; errors: (3,) rad, what the potentiometers are off by here:
+    they show q - errors.
     """
 
     def __init__(self, bench, *, controller=None, rest=True):
@@ -54,7 +55,7 @@ class Mover:
     def __enter__(self):
         if hasattr(self.controller, "reset"):
             self.controller.reset()
-        self._samples = self.bench.run(_LONGEST)
+        self._samples = self.bench.run(_DAY)
         self._last = next(self._samples)
         self._set = np.array(self._last.q)  # where the potentiometers shall be
         self._drive((self._set, np.zeros(3), np.zeros(3)))
@@ -76,24 +77,14 @@ class Mover:
     def _cycle(self, rows):
         self._last = next(self._samples, None)
         if self._last is None:
-            raise InputError(f"the session has lasted {_LONGEST:g} s: begin a new one")
+            raise BenchError("the run of this bench is over (a replay ends, and so does a day): begin a new one")
         self._drive(rows)
         return self._last
-
-    # ---- angles: of the potentiometers, and of the arm
-
-    def true(self, shown):
-        """Best estimate of the arm's angles for those of the potentiometers, (3,) rad."""
-        return shown + self.errors
-
-    def shown(self, q):
-        """What the potentiometers shall show for angles (3,) or (n, 3) of the arm, rad."""
-        return q - self.errors
 
     @property
     def q(self):
         """Best estimate of where the arm's set point is, (3,) rad."""
-        return self.true(self._set)
+        return self._set + self.errors
 
     # ---- motions
 
@@ -114,7 +105,7 @@ class Mover:
         period, seconds = self.bench.period, max(reference.duration, 0.3)
         t = np.arange(0.0, seconds + period, period)
         rows = reference.sample(t)
-        shown = self.shown(rows[:, 0])
+        shown = rows[:, 0] - self.errors
         # the set point may be off the start by trims of the last stand: fade them out
         shown += np.maximum(0.0, 1.0 - t / max(0.3, 0.5 * seconds))[:, None] * (self._set - shown[0])
         k = 0
@@ -138,7 +129,7 @@ class Mover:
         averaged, which takes noise and rounding of one reading down to a tenth.
         Returns: the measured angles (3,) rad, averaged, corrected.
         """
-        wanted = self.shown(goal)
+        wanted = goal - self.errors
         self._set, self._frozen = wanted.copy(), None
         last = self.hold(_SETTLE)
         for _ in range(_WINDOWS):
@@ -155,7 +146,7 @@ class Mover:
             if self._tip_size(goal, wanted - last) < ACCEPTED:
                 break
             self._frozen = None  # it slid on, or the window had flattered it
-        return self.true(last)
+        return last + self.errors
 
     def _holding(self, q):
         """A command under which a resting arm stays at rest, (3,): what it was lately, near what the weight needs.

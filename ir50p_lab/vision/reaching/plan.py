@@ -1,6 +1,7 @@
 """Can the arm reach it, in which pose, and on which way: smooth, and clear of the table and of the ball."""
 
-from dataclasses import dataclass, field
+import contextlib
+from dataclasses import dataclass
 from itertools import pairwise, product
 
 import numpy as np
@@ -9,14 +10,14 @@ from ir50p_lab.errors import UnreachableError
 from ir50p_lab.inputs import vector3
 from ir50p_lab.modelling.chain import forward_kinematics, frames
 from ir50p_lab.modelling.ik import inverse_kinematics, reachability
-from ir50p_lab.signals.cartesian import cartesian_line
-from ir50p_lab.signals.quintic import quintic, through
-from ir50p_lab.signals.reference import Reference
+from ir50p_lab.signals.quintic import Quintic, through
 
 MARGIN = 0.03  # rad kept from the joint limits: at a limit the drive is cut
 CLEAR = 0.08  # m that the tip keeps above the table on its way: over a ball of 60 mm
 ALMOST = 1e-3  # m out of reach that does not matter: the nearest point will do
-LIFT = 0.08  # m above the goal from which the last piece leads straight down
+LIFT = 0.08  # m above the goal from which the last piece leads down
+_HEIGHT = 0.09  # m of the tip over a ball on the table
+_ANGLE = 0.52  # rad to both sides of x that the work area spans at most
 _SPEED = 0.5  # rad/s of the fastest joint: joint 2 follows that against gravity
 _PEAK = 1.875  # a quintic's largest speed over its mean
 
@@ -33,16 +34,16 @@ class WorkArea:
     angle: float
 
 
-def work_area(arm, height=0.09, *, angle=0.52):
-    """The area of this arm for goals at `height` m: from its inner to 30 mm past its outer edge.
+def work_area(arm):
+    """The area of this arm with the tip 90 mm above the table: from its inner to 30 mm past its outer edge.
 
     Raises UnreachableError if the arm reaches no point of that height.
     """
     radii = np.arange(0.02, sum(arm.l) + 0.01, 0.005)
-    near = [r for r in radii if not _refusal(arm, np.array([r, 0.0, height]))]
+    near = [r for r in radii if not _refusal(arm, np.array([r, 0.0, _HEIGHT]))]
     if not near:
-        raise UnreachableError(f"no point at height {height:g} m is within reach of {arm.name}")
-    return WorkArea(float(near[0]), float(near[-1] + 0.03), float(min(angle, arm.q_max[0], -arm.q_min[0])))
+        raise UnreachableError(f"no point at height {_HEIGHT} m is within reach of {arm.name}")
+    return WorkArea(float(near[0]), float(near[-1] + 0.03), float(min(_ANGLE, arm.q_max[0], -arm.q_min[0])))
 
 
 def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
@@ -67,17 +68,16 @@ def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
     return solutions.q[np.where(_allowed(arm, solutions.q), distance, np.inf).argmin()]
 
 
-def within_reach(arm, p, tolerance=ALMOST):
-    """p (3,) m, or the nearest point that the arm reaches, if that is no farther than `tolerance` m.
+def within_reach(arm, p):
+    """p (3,) m, or the nearest point that the arm reaches, if that is no farther than 1 mm.
 
     A ball is seen to some tenths of a millimetre: that must not decide between a reach and a refusal.
     Raises UnreachableError as `reach_pose`.
     """
-    p = vector3("p", p, unit="m")
     try:
         reach_pose(arm, p)
     except UnreachableError as error:
-        if not 0 < error.distance <= tolerance:
+        if not 0 < error.distance <= ALMOST:
             raise
         return p + (error.nearest - p) * (1 + 1e-6 / error.distance)  # 1 um inside
     return p
@@ -92,21 +92,18 @@ def nearest_reachable(arm, p):
 
     low, high = np.array(arm.q_min) + MARGIN, np.array(arm.q_max) - MARGIN
     p = np.array([p[0], p[1], max(p[2], 0.0)])  # from under the table the way leads up first
-    heading = np.clip(np.arctan2(p[1], p[0]), low[0], high[0])
-    best, best_miss = low, np.inf
+    heading, found = np.clip(np.arctan2(p[1], p[0]), low[0], high[0]), []
     for shares in product((0.1, 0.5, 0.9), repeat=2):
         start = [heading, *(low[1:] + shares * (high - low)[1:])]
-        found = least_squares(lambda q: forward_kinematics(arm, q) - p, start, bounds=(low, high), xtol=1e-10)
-        miss = np.linalg.norm(found.fun)
-        if miss < best_miss - 1e-9 and _elbow(arm, found.x) > 0:
-            best, best_miss = found.x, miss
-    return forward_kinematics(arm, best)
+        found.append(least_squares(lambda q: forward_kinematics(arm, q) - p, start, bounds=(low, high), xtol=1e-10))
+    best = min(found, key=lambda one: (_elbow(arm, one.x) <= 0, one.cost))
+    return forward_kinematics(arm, best.x)
 
 
 def plan(arm, q, p, *, lift=LIFT):
-    """The way of the tip from the pose q to the point p: over it in joint space, then straight down.
+    """The way of the tip from the pose q to the point p: over it, then down. Where that comes too low it rises first.
 
-    Where the direct way over comes too low it rises first.
+    All pieces are straight for the joints; the last one keeps the tip of the IR50P within 4 mm of a plumb line.
 
     Args: arm: Arm; q: (3,) rad, where it stands; p: (3,) m; lift: m above p where the last piece begins; 0 goes there
     directly.
@@ -114,44 +111,29 @@ def plan(arm, q, p, *, lift=LIFT):
     """
     q = vector3("q", q)
     goal = reach_pose(arm, p, q)
-    above = None
+    way = _clear(arm, q, goal, min(CLEAR, p[2]))
     for share in (1.0, 0.5, 0.25) if lift > 0 else ():
-        try:
+        with contextlib.suppress(UnreachableError):
             above = reach_pose(arm, p + np.array([0.0, 0.0, share * lift]), goal)
-        except UnreachableError:
-            continue
-        break
-    if above is None:
-        pieces = (_over(arm, q, goal, min(CLEAR, p[2])),)
-    else:
-        pieces = _over(arm, q, above, CLEAR), _down(arm, above, goal, p)
-    return Plan(arm=arm, pieces=pieces, goal=goal, target=p)
+            way = [*_clear(arm, q, above, CLEAR), goal]
+            break
+    pieces = through(way, durations=[_time(a, b) for a, b in pairwise(way)])
+    return Plan(pieces.times, pieces.points, pieces.duration, arm)
 
 
-@dataclass(frozen=True, eq=False)
-class Plan(Reference):
-    """References one after the other, as one; made by `plan`. goal: (3,) rad, last pose; target: (3,) m."""
+@dataclass(frozen=True)
+class Plan(Quintic):
+    """What `plan` returns: poses one after the other, with rest at each."""
 
-    arm: object
-    pieces: tuple
-    goal: np.ndarray
-    target: np.ndarray
-    duration: float = field(init=False)
-
-    def __post_init__(self):
-        object.__setattr__(self, "duration", sum(piece.duration for piece in self.pieces))
-
-    def _rows(self, t):
-        rows = np.empty((len(t), 3, 3))
-        start = 0.0
-        for k, piece in enumerate(self.pieces):
-            now = t >= start if k else np.ones(len(t), dtype=bool)
-            rows[now] = piece.sample(t[now] - start) if now.any() else 0.0
-            start += piece.duration
-        return rows
+    arm: object = None
 
     @property
-    def points(self):
+    def goal(self):
+        """Last pose, (3,) rad."""
+        return np.array(self.points[-1])
+
+    @property
+    def tips(self):
         """The way of the tip for a drawing, (n, 3) m."""
         return forward_kinematics(self.arm, self.sample(np.linspace(0, self.duration, 200))[:, 0])
 
@@ -161,30 +143,15 @@ class Plan(Reference):
         return _lowest(self.arm, self.sample(np.linspace(0, self.duration, 200))[:, 0])
 
 
-def _over(arm, q, goal, clear):
-    """From pose to pose: directly if that stays clear, else first up, then round, then down."""
+def _clear(arm, q, goal, clear):
+    """Poses from q to the goal: directly if that stays clear, else first up, then round, then down."""
     from ir50p_lab.bench.rest import rest_pose
 
-    ends = min(_lowest(arm, q[None]), _lowest(arm, goal[None]))
-    direct = quintic(q, goal, duration=_time(q, goal))
-    way = direct.sample(np.linspace(0, direct.duration, 60))[:, 0]
-    if _lowest(arm, way) >= min(clear, ends) - 1e-3:
-        return direct
+    ends = _lowest(arm, np.array([q, goal]))
+    if _lowest(arm, np.linspace(q, goal, 60)) >= min(clear, ends) - 1e-3:
+        return [q, goal]
     high = rest_pose(arm)
-    corners = [q, np.array([q[0], high[1], q[2]]), np.array([goal[0], high[1], goal[2]]), goal]
-    return through(corners, durations=[_time(a, b) for a, b in pairwise(corners)])
-
-
-def _down(arm, above, goal, p):
-    """The last piece: straight for the tip where the joints can follow, else straight for the joints."""
-    start = forward_kinematics(arm, above)
-    try:
-        line = cartesian_line(arm, start, p, near=above, margin=0.0)
-        if np.abs(line.q_grid[-1] - goal).max() < 1e-6:
-            return line
-    except UnreachableError:
-        pass
-    return quintic(above, goal, duration=_time(above, goal))
+    return [q, np.array([q[0], high[1], q[2]]), np.array([goal[0], high[1], goal[2]]), goal]
 
 
 def _time(a, b):
@@ -208,8 +175,7 @@ def _refusal(arm, p):
     """Why the arm cannot go there, or ''."""
     if p[2] < 0:
         return f"it lies {-1e3 * p[2]:.0f} mm under the table"
-    outside = float(reachability(arm, p))
-    if outside > 0:
+    if reachability(arm, p) > 0:
         return "it is out of reach of the stretched or folded arm"
     solutions = inverse_kinematics(arm, p)
     if _allowed(arm, solutions.q).any():

@@ -5,9 +5,10 @@ from concurrent.futures import ThreadPoolExecutor, wait
 
 import numpy as np
 
-from ir50p_lab.errors import CameraError, InputError, UnreachableError, VisionError
-from ir50p_lab.inputs import number, numbers, vectors3, whole
+from ir50p_lab.errors import CameraError, UnreachableError, VisionError
+from ir50p_lab.inputs import number, whole
 from ir50p_lab.modelling.chain import forward_kinematics
+from ir50p_lab.vision.checks import coordinates
 from ir50p_lab.vision.reaching.moving import Mover
 from ir50p_lab.vision.reaching.plan import plan, reach_pose, within_reach
 from ir50p_lab.vision.reaching.result import BallTracker, FollowLog, Look, Reached
@@ -32,23 +33,21 @@ class Reacher(Mover):
 
     Args:
         bench: an open bench. locator: BallLocator; one of rendered pictures raises CameraError for a real arm.
-        controller: default `reaching_controller(arm)`.
-        sigma_q: (3,) rad, how far the potentiometers may be off after that; default 0.7 counts if the calibration of
-        the bench was measured (what a straight line leaves of a bent characteristic), 2.5 if it is a nominal one.
-        rest: go to the rest pose at the end.
+        controller: default `reaching_controller(arm)`. rest: go to the rest pose at the end.
 
-    Methods: reach, pick, put, follow_ball, look, move_to, move_along, hold. Attributes: q: (3,) rad,
-    best estimate.
+    How far the potentiometers are believed to be off, after the calibration of the bench: 0.7 counts if that was
+    measured (what a straight line leaves of a bent characteristic), 2.5 if it is a nominal one.
+
+    Methods: reach, pick, put, follow_ball, look, move_to, move_along, hold. Attributes: q: (3,) rad, best estimate;
+    sigma_q: (3,) rad, that belief.
     """
 
-    def __init__(self, bench, locator, *, controller=None, sigma_q=None, rest=True):
+    def __init__(self, bench, locator, *, controller=None, rest=True):
         super().__init__(bench, controller=controller, rest=rest)
         self.locator, self._pool = locator, ThreadPoolExecutor(1)
         self._refuse_drawn(getattr(locator.camera, "simulated", False))
-        if sigma_q is None:
-            measured = bench.calibration.stderr_slope is not None
-            sigma_q = (_COUNTS if measured else _COUNTS_NOMINAL) / np.abs(bench.calibration.slope)
-        self.sigma_q = vectors3("sigma_q", sigma_q)
+        measured = bench.calibration.stderr_slope is not None
+        self.sigma_q = (_COUNTS if measured else _COUNTS_NOMINAL) / np.abs(bench.calibration.slope)
 
     # ---- looking
 
@@ -90,49 +89,39 @@ class Reacher(Mover):
         Returns: Reached. Raises UnreachableError (.distance, .nearest) before anything moves; VisionError if no ball
         is seen, with the reason.
         """
-        looks = whole("looks", looks, 1, 3)
-        height, begin = number("height", height, unit="m"), self._last.t
-        seen = self._sure(self.look())
-        ball, records, over = seen.position, [], np.array([0.0, 0.0, height])
+        looks, records = whole("looks", looks, 1, 3), []
+        over = np.array([0.0, 0.0, number("height", height, unit="m")])
+        ball = self._sure(self.look()).position
         goal = within_reach(self.arm, ball + over)
-        first = plan(self.arm, self.q, goal)
-        self.move_along(first)
-        for k in range(looks):
+        self.move_along(plan(self.arm, self.q, goal))
+        for again in reversed(range(looks)):
             q = self.settle(reach_pose(self.arm, goal, self.q))
-            tip, marker, note, stood = forward_kinematics(self.arm, q), None, "", self._last.t
-            if k + 1 < looks:
-                ball, marker, q, note = self._look_again(ball, q)
-                tip = forward_kinematics(self.arm, q)
-            then, refusal = self._next_goal(goal, ball + over)
-            note = "; ".join(text for text in (note, refusal) if text)
-            records.append(Look(ball, goal, tip, marker, self.errors.copy(), note, stood))
-            goal = then
+            marker, notes, stood = None, [], self._last.t
+            if again:
+                ball, marker, q = self._look_again(ball, q, notes)
+                try:
+                    goal = within_reach(self.arm, ball + over)
+                except UnreachableError as error:  # a ball that has rolled away must not let the arm fall
+                    notes.append(f"the ball is out of reach now, by {1e3 * error.distance:.0f} mm: the arm stays")
+            records.append(Look(marker, self.errors.copy(), "; ".join(notes), stood))
+        simulated = self.bench.simulated and hasattr(self.bench, "plant")
         return Reached(
             ball=ball,
             goal=ball + over,
-            tip=tip,
+            tip=forward_kinematics(self.arm, q),
             q=q,
             looks=tuple(records),
-            plan=first,
-            seconds=self._last.t - begin,
-            tip_true=self.bench.plant.tip_true if self.bench.simulated and hasattr(self.bench, "plant") else None,
+            tip_true=self.bench.plant.tip_true if simulated else None,
         )
-
-    def _next_goal(self, goal, wanted):
-        """(where to go after another look, note): a ball that has rolled out of reach must not let the arm fall."""
-        try:
-            return within_reach(self.arm, wanted), ""
-        except UnreachableError as error:
-            return goal, f"the ball is out of reach now, by {1e3 * error.distance:.0f} mm: the arm stays"
 
     def _sure(self, seen):
         if not seen:
             raise VisionError(f"no ball to reach for: {seen.reason}")
         return seen
 
-    def _look_again(self, ball, q):
-        """Ball and hand once more: (ball, marker or None, corrected q, note)."""
-        seen, notes = self.look(), []
+    def _look_again(self, ball, q, notes):
+        """Ball and hand once more: (ball, marker or None, corrected q); what went otherwise is added to the notes."""
+        seen = self.look()
         if not seen:
             notes.append(f"the ball is not seen from here ({seen.reason}): its first place counts")
         elif np.linalg.norm(seen.position - ball) > _MOVED:
@@ -143,13 +132,14 @@ class Reacher(Mover):
         marker = self.locator.find_marker(seen.image, self.arm, q)
         if marker is None:
             notes.append("the marker on the hand is not seen: potentiometers alone")
-        else:
-            try:
-                e, _ = self.locator.joint_errors(self.arm, q, marker, self.sigma_q)
-                self.errors, q = self.errors + e, q + e
-            except VisionError as error:
-                notes.append(str(error))
-        return ball, marker, q, "; ".join(notes)
+            return ball, None, q
+        try:
+            e = self.locator.joint_errors(self.arm, q, marker, self.sigma_q)
+        except VisionError as error:
+            notes.append(str(error))
+            return ball, marker, q
+        self.errors = self.errors + e
+        return ball, marker, q + e
 
     def pick(self):
         """Reach, go down, close the gripper about the ball's middle, go up again.
@@ -162,7 +152,7 @@ class Reacher(Mover):
         found = self.reach()
         self.move_to(found.ball, lift=0.0)
         self.grip(True)
-        self.move_to(found.ball + np.array([0.0, 0.0, HEIGHT]), lift=0.0)
+        self.move_to(found.goal, lift=0.0)
         return found
 
     def put(self, place):
@@ -170,10 +160,7 @@ class Reacher(Mover):
 
         Raises InputError for a place that is none, UnreachableError before anything moves.
         """
-        place = numbers("place", place, unit="m")
-        if place.shape != (2,) or not np.isfinite(place).all():
-            raise InputError(f"place = {place.tolist()}: give x, y on the table, m")
-        down = np.array([*place, self.locator.radius])
+        down = np.array([*coordinates("place", place, 2, "m"), self.locator.radius])
         up = down + np.array([0.0, 0.0, HEIGHT])
         reach_pose(self.arm, up)
         self.move_to(down, lift=HEIGHT)
@@ -217,19 +204,18 @@ class Reacher(Mover):
             if tracker.position is not None:
                 aim = np.array([*tracker.at(t + lead), self.locator.radius + height])
                 with contextlib.suppress(ValueError):  # UnreachableError: wait
-                    point.move_to(self.shown(reach_pose(self.arm, aim, self.q)))
+                    point.move_to(reach_pose(self.arm, aim, self.q) - self.errors)
             rows = point(t)
             self._set = rows[0]
             self._cycle(rows)
             t = self._last.t  # of the readings that this cycle has brought
-            tip = forward_kinematics(self.arm, self.true(self._last.q))
+            tip = forward_kinematics(self.arm, self._last.q + self.errors)
             log.append((t - begin, tip, tracker.at(t), tracker.velocity))
         self.hold(0.3)
         return FollowLog(*(np.array(column) for column in zip(*log, strict=True)), lead=lead)
 
 
-def reach(bench, locator, **options):
-    """One reach on an open bench, and back to rest: `Reacher` in one call; options of Reacher and of `reach`."""
-    how = {name: options.pop(name) for name in ("height", "looks") if name in options}
+def reach(bench, locator, *, height=HEIGHT, looks=2, **options):
+    """One reach on an open bench, and back to rest: `Reacher` in one call; options: of Reacher."""
     with Reacher(bench, locator, **options) as reacher:
-        return reacher.reach(**how)
+        return reacher.reach(height=height, looks=looks)

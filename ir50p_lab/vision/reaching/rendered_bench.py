@@ -10,10 +10,11 @@ from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.board_pose import moved
 from ir50p_lab.vision.camera.interface import Camera, Frame
 from ir50p_lab.vision.reaching.ball_locator import MARKER_AT
-from ir50p_lab.vision.rendering import SceneBall, bench_scene, render_scene
+from ir50p_lab.vision.rendering import SceneBall, bench_camera, bench_scene, render_scene
 from ir50p_lab.vision.rendering.arm_shape import arm_sticks
 
-MARKER = 0.012  # m, radius of the green ball on the wrist: 10 px in the default camera (assumed)
+_RADIUS = 0.03  # m, of the balls
+_MARKER = 0.012  # m, radius of the green ball on the wrist: 10 px in the default camera (assumed)
 _GRIP = 0.012  # m that the tip may miss the ball's centre by when the fingers close, and they hold it (assumed)
 
 
@@ -22,22 +23,21 @@ class RenderedBench(Camera):
 
     Args:
         bench: a SimulatedBench. balls: (n, 3) or (3,) m, where they lie; or a function of time, t s -> (3,) m, for one
-        that rolls. seed: of the noise of the pictures. scene: Scene to start from (default `bench_scene`): camera,
-        table, light, distractors; its red balls are replaced. marker: whether the wrist carries a green ball.
+        that rolls. seed: of the noise of the pictures; small: pictures of half the width and height.
 
-    `read()` gives a Frame of this moment. Its time is that of the simulation: it counts the periods in which the bench
-    was driven. `balls_true`, and the camera in `scene`, are the truth, for tests and for drawings that say so. The
-    fingers hold a ball when they close with the tip within 12 mm of its centre.
+    `read()` gives a Frame of this moment. Time is that of the simulation, `t` s: it counts the periods in which the
+    bench was driven. `balls_true`, and the camera in `scene` (that of the bench without balls), are the truth, for
+    tests and for drawings that say so. The fingers hold a ball when they close with the tip within 12 mm of its centre.
     """
 
     name, simulated = "rendered camera over the simulated arm", True
 
-    def __init__(self, bench, balls=(0.40, 0.0, 0.03), *, seed=0, scene=None, marker=True, radius=0.03):
+    def __init__(self, bench, balls=(0.40, 0.0, 0.03), *, seed=0, small=False):
         if not hasattr(bench, "plant"):
             raise InputError("a rendered camera sees a simulated arm only: for a real one use open_camera()")
-        self.bench, self.radius, self.seed, self.marker = bench, radius, int(seed), marker
-        self.scene = bench_scene() if scene is None else scene
-        self.size = self.scene.pinhole.size
+        pinhole, _ = bench_camera()
+        self.scene = bench_scene(pinhole=pinhole.scaled((320, 240)) if small else pinhole, objects=())
+        self.bench, self.seed, self.size = bench, int(seed), self.scene.pinhole.size
         self._rolling = balls if callable(balls) else None
         self._lying = None if callable(balls) else np.atleast_2d(vectors3("balls", balls, unit="m")).copy()
         self.t, self.pictures = 0.0, 0
@@ -61,7 +61,7 @@ class RenderedBench(Camera):
     def _leave(self):
         if self._held is not None:
             number, _ = self._held
-            self._lying[number] = [*self.balls_true[number, :2], self.radius]  # it drops, and stays
+            self._lying[number] = [*self.balls_true[number, :2], _RADIUS]  # it drops, and stays
             self._held = None
 
     @property
@@ -75,53 +75,42 @@ class RenderedBench(Camera):
             balls[number] = self.bench.plant.tip_true + offset
         return balls
 
-    @property
-    def held(self):
-        """Whether the gripper holds a ball."""
-        return self._held is not None
-
     def read(self):
         """A picture of this moment: Frame."""
-        balls = tuple(SceneBall(position=tuple(p), radius=self.radius) for p in self.balls_true)
-        others = (one for one in self.scene.objects if not (isinstance(one, SceneBall) and one.colour == "red"))
-        hand = ()
         arm, q = self.bench.arm, self.bench.plant.q_true
-        if self.marker:
-            place = moved(frames(arm, q)[3], np.array(MARKER_AT))
-            hand = (SceneBall(position=tuple(place), radius=MARKER, colour=(25, 150, 60), gloss=0.1),)
-        opening = 0.06 if self._closed else 0.07
-        scene = replace(self.scene, objects=(*balls, *hand, *others), arm=arm_sticks(q, arm, opening=opening))
+        balls = [SceneBall(position=tuple(p), radius=_RADIUS) for p in self.balls_true]
+        place = tuple(moved(frames(arm, q)[3], np.array(MARKER_AT)))
+        marker = SceneBall(position=place, radius=_MARKER, colour=(25, 150, 60), gloss=0.1)
+        sticks = arm_sticks(q, arm, opening=0.06 if self._closed else 0.07)
         self.pictures += 1
+        scene = replace(self.scene, objects=(*balls, marker), arm=sticks)
         image, _ = render_scene(scene, seed=1000 * self.seed + self.pictures)
-        return Frame(image=image, t=self.t, simulated=True, source=self.name)
+        return Frame(image=image, simulated=True, source=self.name)
 
     def close(self):
         """Give the bench its own voice back."""
         self.bench._send = self._send
 
 
-def camera_over(bench, balls=(0.40, 0.0, 0.03), *, source=None, small=False, **options):
-    """The camera for a bench: rendered over a simulated arm, else `open_camera(source)`; one line says which.
+def camera_over(bench, balls=(0.40, 0.0, 0.03), *, small=False):
+    """The camera for a bench: rendered over a simulated arm, else `open_camera()`; one line says which.
 
     balls: where balls lie in a rendered picture (a real camera sees yours); small: pictures of half the width and
-    height, for what must be quick; options: of RenderedBench.
+    height, for what must be quick.
     Raises CameraError for a real arm if there is no webcam: it would reach for a ball that was only drawn.
     """
     from ir50p_lab.vision.camera.opening import open_camera
 
-    if not hasattr(bench, "plant"):
-        camera = open_camera(source, **({"size": (320, 240)} if small else {}))
-        if camera.simulated and not bench.simulated:
-            camera.close()
-            raise CameraError(
-                "a real arm needs a camera that sees it: plug a webcam in, close the program that has it, or take the "
-                "simulated arm, connect('simulated')"
-            )
+    if hasattr(bench, "plant"):
+        camera = RenderedBench(bench, balls, small=small)
+        width, height = camera.size
+        print(f"Camera: {camera.name}, {width}x{height}, rendered (a simulated arm is seen by no webcam)")
         return camera
-    if small:
-        scene = options.get("scene") or bench_scene()
-        width, height = scene.pinhole.size
-        options["scene"] = replace(scene, pinhole=scene.pinhole.scaled((width // 2, height // 2)))
-    camera = RenderedBench(bench, balls, **options)
-    print(f"Camera: {camera.name}, {camera.size[0]}x{camera.size[1]}, rendered (a simulated arm is seen by no webcam)")
+    camera = open_camera(size=(320, 240)) if small else open_camera()
+    if camera.simulated and not bench.simulated:
+        camera.close()
+        raise CameraError(
+            "a real arm needs a camera that sees it: plug a webcam in, close the program that has it, or take the "
+            "simulated arm, connect('simulated')"
+        )
     return camera

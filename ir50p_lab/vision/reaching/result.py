@@ -1,24 +1,22 @@
 """What a reach leaves behind: its looks, how it ended, where a followed ball was."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """One look of a reach: where the ball is, where the hand is by potentiometers and (if seen) by the camera, m.
+    """One stand of a reach; at all but the last the camera has looked again.
 
-    t: s, when the arm stood there, of the clock of the run; before the last goal the camera looks again then.
+    marker: (2,) px on the hand, None if it was not seen; joint_errors: (3,) rad, what the potentiometers are off by;
+    note: what went otherwise than planned; t: s, when the arm stood there, of the clock of the run.
     """
 
-    ball: np.ndarray
-    goal: np.ndarray
-    tip: np.ndarray
     marker: np.ndarray | None
     joint_errors: np.ndarray
-    note: str = ""
-    t: float = np.nan
+    note: str
+    t: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +28,7 @@ class Reached:
     goal       where the tip was to go: over the ball                                               (3,) m
     tip        where it is: potentiometers, averaged, with the camera's correction                  (3,) m
     q          the joint angles of that                                                             (3,) rad
-    looks      the looks, a tuple of Look; the way of the first: `.plan`
-    seconds    how long it took                                                                     s
+    looks      the looks, a tuple of Look
     tip_true   where the tip really is: of a simulated arm only, else None. Nothing here uses it.   (3,) m
     ========== ==================================================================================== ============
     """
@@ -41,8 +38,6 @@ class Reached:
     tip: np.ndarray
     q: np.ndarray
     looks: tuple
-    plan: object = field(repr=False)
-    seconds: float
     tip_true: np.ndarray | None
 
     @property
