@@ -6,19 +6,19 @@ import cv2
 import numpy as np
 
 from ir50p_lab.vision.rendering.colours import light_of, to_bytes
-from ir50p_lab.vision.rendering.scene import Lamp, Lens, Sensor, SolidThing, Sun
+from ir50p_lab.vision.rendering.scene import Lamp, Lens, RoundThing, Sensor, Sun, Tabletop
 from ir50p_lab.vision.rendering.shadow import smooth
 from ir50p_lab.vision.rendering.surface import noise
 from tests.support.drawn_board import Board, print_range
 
 
 @dataclass(frozen=True, kw_only=True)
-class Box(SolidThing):
+class Box(RoundThing):
     """A box (book, carton, card): middle T_world_box (4, 4), size (3,) m, colour."""
 
     T_world_box: np.ndarray
     size: tuple = (0.06, 0.04, 0.03)
-    colour: str | tuple = "brown"
+    colour: str | tuple = (120, 65, 40)
 
     def shape(self, T_cam_world):
         return BoxShape(T_cam_world @ self.T_world_box, self.size)
@@ -241,21 +241,39 @@ def streak(dx, dy):
     return (kernel / kernel.sum()).astype(np.float32)
 
 
-def cloth(table, u, v, seed):
-    return 0.5 * noise("rough", seed, 40 * u, 40 * v) + 0.5 * noise("soft", seed, 12 * u, 12 * v), None
+def plain(seed, u, v):
+    return 0.25 * noise("soft", seed, 10 * u, 10 * v)
 
 
-def speckle(table, u, v, seed):
-    return noise("rough", seed, 30 * u, 30 * v), None
+def cloth(seed, u, v):
+    return 0.5 * noise("rough", seed, 40 * u, 40 * v) + 0.5 * noise("soft", seed, 12 * u, 12 * v)
 
 
-def tiles(table, u, v, seed):
-    """Four grains wide, with joints between them."""
-    joint = (np.mod(u / 4, 1) < 0.03) | (np.mod(v / 4, 1) < 0.03)
-    return 0.3 * noise("rough", seed, 20 * u, 20 * v), np.where(joint, 1 - 0.6 * table.contrast, 1)
+def speckle(seed, u, v):
+    return noise("rough", seed, 30 * u, 30 * v)
 
 
-TEXTURES = {"plain": "plain", "wood": "wood", "cloth": cloth, "speckle": speckle, "tiles": tiles}
+def tiles(seed, u, v):
+    return 0.3 * noise("rough", seed, 20 * u, 20 * v)
+
+
+TEXTURES = {"plain": plain, "wood": None, "cloth": cloth, "speckle": speckle, "tiles": tiles}
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeskTable(Tabletop):
+    """A table of another texture than wood: a function of TEXTURES; tiles are four grains wide, with joints between them."""
+
+    texture: object = None
+
+    def grained(self, u, v, seed):
+        if self.texture is None:
+            return super().grained(u, v, seed)
+        shade = 1 + np.float32(0.9 * self.contrast) * self.texture(seed, u, v)
+        if self.texture is not tiles:
+            return shade, 0
+        joint = (np.mod(u / 4, 1) < 0.03) | (np.mod(v / 4, 1) < 0.03)
+        return np.where(joint, (1 - 0.6 * self.contrast) * shade, shade), joint
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,16 +7,17 @@ import numpy as np
 
 from ir50p_lab.vision.calibration.board import Charuco
 from ir50p_lab.vision.calibration.rendered import board_poses
-from ir50p_lab.vision.rendering import Lens, Scene, Sensor, Sky, Sun, bench_camera, render_scene
+from ir50p_lab.vision.rendering import Lens, Scene, Sensor, Sky, Sun, Tabletop, bench_camera, render_scene
 from ir50p_lab.vision.rendering.colours import light_of
-from ir50p_lab.vision.rendering.scene import SolidThing
+from ir50p_lab.vision.rendering.scene import RoundThing
 
+NO_TABLE = Tabletop(colour="grey", x=(0, 0), y=(0, 0))
 _PER_SQUARE = 350  # pixels: of a marker 252 where it has 0.72 of a square, whole ones for each of its 7 cells
 
 
 @dataclass(frozen=True, kw_only=True)
-class Board(SolidThing):
-    """A flat checkerboard or ChArUco board, T_world_board (4, 4).
+class Board(RoundThing):
+    """A flat checkerboard or ChArUco board without a shadow, T_world_board (4, 4).
 
     Board coordinates: the origin is the first inner corner, x along the `pattern[0]` corners of a row, y along the
     rows, z away from the viewer of the print, as OpenCV's corner finders see it (a view from the front looks along +z).
@@ -42,6 +43,12 @@ class Board(SolidThing):
         u, v, front = shape.print_coordinates(X)
         dark = black(self, u, v) & front
         return np.where(dark[:, None], light_of(self.black), light_of(self.white)), np.where(front, dark, 2)
+
+    def dim_sky(self, open_sky, X, Y):
+        pass
+
+    def shade(self, part, source, softness, X, Y):
+        pass
 
 
 class SheetShape:
@@ -112,7 +119,7 @@ def board_scene(pinhole, T_cam_board, board=None, lens=None, sensor=None):
         pinhole=pinhole,
         T_cam_world=T_cam_world,
         objects=(replace(board or Board(), T_world_board=T_world_cam @ T_cam_board),),
-        table=None,
+        table=NO_TABLE,
         lights=(Sky(strength=0.4), Sun(towards=tuple(towards), strength=0.5)),
         lens=lens or Lens(),
         sensor=sensor or Sensor(),

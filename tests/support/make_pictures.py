@@ -12,6 +12,7 @@ from ir50p_lab.vision.rendering import SceneBall, Sensor, bench_camera, bench_sc
 from tests.support.desk import BentBoard, ShakenLens
 from tests.support.drawn_board import Board, board_scene
 from tests.support.random_scene import random_scene
+from tests.support.scene_truth import scene_truth
 
 FOLDER = Path(__file__).parents[2] / "data"
 TABLE_4_8 = ((0.4, -0.1), (0.3, 0.3), (0.5, 0.0), (0.4, 0.2))  # real places of the ball in the thesis, m
@@ -30,7 +31,7 @@ def main(folder=FOLDER, only=None):
             image, truth = render_scene(scene, seed=seed)
             save_image(path, image, rendered=True, quality=92)
             if name.startswith("scenes/"):
-                ball = truth.red_balls[0]
+                ball = scene_truth(truth.scene).red_balls[0]
                 truths[path.name] = {"x": round(ball.x, 3), "y": round(ball.y, 3), "radius": round(ball.radius, 3)}
     if truths:
         (Path(folder) / "scenes" / "truth.json").write_text(json.dumps(truths, indent=1) + "\n", "utf-8")

@@ -35,7 +35,7 @@ _TRIES = 200
 def random_scene(seed, kind="ball"):
     """Scene number `seed` of one of the KINDS: the same for the same seed (and the same version of NumPy).
 
-    Returns a Scene; its red balls have colours of their own (`random_red`): `is_red` of a BallTruth tells them.
+    Returns a Scene; its red balls have colours of their own (`random_red`): `is_red` of a SeenBall tells them.
     Raises InputError for an unknown kind.
     """
     if kind not in KINDS:
@@ -115,8 +115,10 @@ def _see(rng, pinhole, ball):
     eye = centre + distance * np.array(
         [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
     )
-    T = look_at(eye, centre, roll=np.radians(rng.normal(0, 5)))  # hand-held, or a stand that is not level
-    T[:3] = _turn((0.0, 0.0, 1.0), ray) @ T[:3]
+    T = look_at(eye, centre)
+    roll = np.radians(rng.normal(0, 5))  # hand-held, or a stand that is not level
+    c, s = np.cos(roll), np.sin(roll)
+    T[:3] = _turn((0.0, 0.0, 1.0), ray) @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) @ T[:3]
     return T
 
 

@@ -5,8 +5,8 @@ import colorsys
 import numpy as np
 
 from ir50p_lab.vision.rendering.places import pose
-from ir50p_lab.vision.rendering.scene import Patch, SceneBall, Stick, Tabletop
-from tests.support.desk import TEXTURES, Box
+from ir50p_lab.vision.rendering.scene import Patch, SceneBall, Stick
+from tests.support.desk import TEXTURES, Box, DeskTable
 
 # Tables: light wood, dark wood, white laminate, grey, black, green cutting mat, blue cloth, reddish wood (the hardest)
 TABLES = (
@@ -56,7 +56,7 @@ def random_table(rng, position):
     """A table under the ball; one in five ends close behind it, so that the room is seen."""
     x, y = position[:2]
     ends = rng.uniform(0.15, 0.4, 4) if rng.random() < 0.2 else rng.uniform(0.5, 3.0, 4)
-    return Tabletop(
+    return DeskTable(
         texture=TEXTURES[str(rng.choice(list(TEXTURES), p=[0.25, 0.3, 0.2, 0.15, 0.1]))],
         colour=TABLES[rng.integers(len(TABLES))],
         contrast=rng.uniform(0.03, 0.5),

@@ -1,5 +1,6 @@
 """What a picture will show, without drawing it: how much of each ball is seen, which corners of each board are."""
 
+import colorsys
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -20,6 +21,14 @@ class SeenBall(BallTruth):
     """visible: part 0..1 of its image that is in the picture and not hidden; 0 beside or behind the camera."""
 
     visible: float
+
+    @property
+    def is_red(self):
+        """Whether its paint, name or (r, g, b) 0..255, is what the detector of red balls has to find."""
+        if isinstance(self.colour, str):
+            return self.colour == "red"
+        hue, saturation, value = colorsys.rgb_to_hsv(*(c / 255 for c in self.colour))
+        return (hue * 360 <= 9 or hue * 360 >= 349) and saturation >= 0.7 and value >= 0.4
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -13,7 +13,7 @@ from ir50p_lab.vision import RED, Colour, render_scene
 from ir50p_lab.vision.ball.classifier import measures, rays_of
 from ir50p_lab.vision.ball.find import rejection_reason
 from ir50p_lab.vision.ball.fit import view_of
-from ir50p_lab.vision.ball.measure import measure
+from ir50p_lab.vision.ball.measure import NoBallError, measure
 from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
 from tests.support.random_scene import random_scene
 from tests.support.scene_truth import scene_truth
@@ -66,14 +66,17 @@ def crowded_examples(seed, kind, *, copies=2, folder=None):
 
 
 def _guesses(image, most):
-    return np.concatenate([guess(image, RED, LEAST_RADIUS)[0][:most, :3] for guess in (guess_circles, guess_closer)])
+    return np.concatenate([guess(image, RED, LEAST_RADIUS)[:most, :3] for guess in (guess_circles, guess_closer)])
 
 
 def _look(image, guesses, balls, colour):
     view, known, found = view_of(image.shape), [], []
     for guess in guesses:
-        m = measure(image, tuple(guess), view, colour)
-        if isinstance(m, str) or rejection_reason(m, LEAST_RADIUS):
+        try:
+            m = measure(image, tuple(guess), view, colour)
+        except NoBallError:
+            continue
+        if rejection_reason(m, LEAST_RADIUS):
             continue
         o = m.outline
         if any(np.hypot(o.x - x, o.y - y) + abs(o.r - r) < 0.05 * r for x, y, r in known):

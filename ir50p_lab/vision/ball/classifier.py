@@ -71,32 +71,27 @@ def around(layer):
 
 @cache
 def _networks():
-    """All networks side by side, the scales of the inputs folded into their first layers."""
+    """The weights of all networks side by side, and the scales of their inputs."""
     with np.load(WEIGHTS) as file:
-        net = {name: file[name].astype(np.float32) for name in file.files}
-    w1 = net["w1"].reshape(len(net["w1"]), len(NEAR), -1, net["w1"].shape[2]) / net["ray_std"][:, None]
-    b1 = net["b1"] - np.einsum("knij,i->kj", w1, net["ray_mean"])
-    count, _, channels, wide = w1.shape
-    w3 = net["w3"].copy()
-    w3[:, -len(net["number_std"]) :] /= net["number_std"][:, None]
-    b3 = net["b3"] - net["number_mean"] @ w3[:, -len(net["number_mean"]) :]
-    first = w1.reshape(count, len(NEAR) * channels, wide)
-    return first, b1[:, None], net["w2"], net["b2"][:, None], w3, b3[:, None], net["w4"][:, :, None], net["b4"]
+        return {name: file[name].astype(np.float32) for name in file.files}
 
 
 def score(found, others=None):
     """Score 0..1 of each Measured in a list; others: for each the Balls that may touch it. Returns: (n,)."""
     others = others or [()] * len(found)
-    w1, b1, w2, b2, w3, b3, w4, b4 = _networks()
+    net = _networks()
     rays = np.stack([rays_of(m, o) for m, o in zip(found, others, strict=True)])
     numbers = np.stack([measures(m, o) for m, o in zip(found, others, strict=True)])
-    n, count = len(found), len(w2)
+    rays = (rays - net["ray_mean"]) / net["ray_std"]
+    numbers = (numbers - net["number_mean"]) / net["number_std"]
+    n, count = len(found), len(net["w2"])
     # a product for each candidate and network: so small ones stay on one thread, which a busy computer has to spare
     x1 = rays.take(around(NEAR), axis=1).reshape(n, 1, RAYS, -1)
-    h1 = np.maximum(x1 @ w1 + b1, 0)
+    h1 = np.maximum(x1 @ net["w1"] + net["b1"][:, None], 0)
     x2 = h1.take(around(FAR), axis=2).reshape(n, count, RAYS, -1)
-    h2 = np.maximum(x2 @ w2 + b2, 0)
+    h2 = np.maximum(x2 @ net["w2"] + net["b2"][:, None], 0)
     numbers = np.broadcast_to(numbers[:, None], (n, count, numbers.shape[1]))
     pooled = np.concatenate([h2.mean(axis=2), h2.max(axis=2), numbers], axis=2)[:, :, None]
-    h3 = np.maximum(pooled @ w3 + b3, 0)
-    return 1 / (1 + np.exp(-((h3 @ w4)[:, :, 0, 0].mean(axis=1) + b4.mean())))
+    h3 = np.maximum(pooled @ net["w3"] + net["b3"][:, None], 0)
+    odds = (h3 @ net["w4"][:, :, None])[:, :, 0, 0] + net["b4"]
+    return 1 / (1 + np.exp(-odds.mean(axis=1)))

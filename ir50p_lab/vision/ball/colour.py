@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+import cv2
 import numpy as np
 
 from ir50p_lab.errors import ImageError, InputError
@@ -52,11 +53,6 @@ class Colour:
         """The hue in pictures of `hsv_of`, degrees."""
         return (240.0 - self.hue) % 360.0 if self.swaps else self.hue
 
-    @property
-    def is_red(self):
-        """Whether the hue is within 20 degrees of red, 0."""
-        return min(self.hue, 360 - self.hue) <= 20
-
     def bounds(self, saturation=None):
         """Lower and upper bound for cv2.inRange, in OpenCV's scale (0..179, 0..255, 0..255), of `hsv_of(image)`.
 
@@ -66,17 +62,18 @@ class Colour:
         low = (max(0, round((self.centre - self.tolerance) / 2)), round(255 * s), round(255 * self.value))
         return low, (min(179, round((self.centre + self.tolerance) / 2)), 255, 255)
 
-    @property
-    def overexposed_bounds(self):
-        """As `bounds`, of the pink that too much light makes of a red: red is clipped, blue is not. None for others.
+    def loose_mask(self, hsv):
+        """255 where an HSV picture of `hsv_of` has the colour as dim or glaring light shows it: (h, w) uint8.
 
-        A red with more green than blue (hue above 0) turns orange and yellow: that is left to what is not overexposed.
+        Too much light makes a red pink: red is clipped, blue is not. A red with more green than blue (hue above 0)
+        turns orange and yellow: that is left to what is not overexposed.
         """
-        if not self.swaps or self.hue < 180:
-            return None
-        low = (self.centre + self.tolerance) / 2
-        high = low + _PINK / 2
-        return (round(low), round(255 * self.looser.saturation), _CLIPPED), (min(179, round(high)), 255, 255)
+        low, high = self.looser.bounds()
+        found = cv2.inRange(hsv, low, high)
+        if self.swaps and self.hue > 180:
+            pink = cv2.inRange(hsv, (high[0], low[1], _CLIPPED), (min(179, high[0] + _PINK // 2), 255, 255))
+            found = cv2.bitwise_or(found, pink)
+        return found
 
     @property
     def looser(self):
@@ -85,14 +82,10 @@ class Colour:
 
     def hsv_of(self, image):
         """HSV of an RGB picture, in OpenCV's scale; with red and blue exchanged for a colour at the seam."""
-        import cv2
-
         return cv2.cvtColor(image, cv2.COLOR_BGR2HSV if self.swaps else cv2.COLOR_RGB2HSV)
 
     def mask(self, image, saturation=None):
         """255 where the picture (RGB uint8, (h, w, 3)) has this colour, else 0: (h, w) uint8."""
-        import cv2
-
         return cv2.inRange(self.hsv_of(check_image(image)), *self.bounds(saturation))
 
 
@@ -140,8 +133,6 @@ def learn_colour(image, xy):
 
 def _colour_of(pixels):
     """Colour of pixels (n, 3): circular mean of the hue, weighted by chroma; ranges from their spread."""
-    import cv2
-
     bgr = np.ascontiguousarray(pixels[None, :, ::-1])
     hue, saturation, value = cv2.cvtColor(bgr, cv2.COLOR_BGR2HSV)[0].astype(float).T
     chroma = saturation * value

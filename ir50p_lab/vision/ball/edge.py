@@ -5,8 +5,6 @@ from functools import cache
 import cv2
 import numpy as np
 
-from ir50p_lab.jit import jit
-
 
 @cache
 def slope_kernel(sigma):
@@ -40,7 +38,6 @@ def directions(n):
     return np.cos(angle), np.sin(angle)
 
 
-@jit()
 def contrast_axis(rgb, within, inner, outer):
     """The direction in RGB that tells ball from surroundings best (Fisher): weights (3,), step between them = 1.
 
@@ -49,68 +46,36 @@ def contrast_axis(rgb, within, inner, outer):
     Returns: weights float32, the level half way between the means (in units of the step), distance of the means over
     their spread (0: nothing tells them apart).
     """
-    n, m = within.shape
-    count, mean, scatter = np.zeros(2), np.zeros((2, 3)), np.zeros((3, 3))
-    for side in range(2):
-        low, high = (0, inner) if side == 0 else (outer, m)
-        square = np.zeros((3, 3))
-        for i in range(n):
-            for k in range(low, high):
-                if within[i, k]:
-                    count[side] += 1
-                    for a in range(3):
-                        mean[side, a] += rgb[i, k, a]
-                        for b in range(a + 1):
-                            square[a, b] += float(rgb[i, k, a]) * rgb[i, k, b]
-        if count[side] < 12:
-            return np.zeros(3, np.float32), 0.0, 0.0
-        for a in range(3):
-            mean[side, a] /= count[side]
-            for b in range(a + 1):
-                scatter[a, b] += 0.5 * (square[a, b] / count[side] - mean[side, a] * mean[side, b])
-    for a in range(3):
-        scatter[a, a] += 64.0  # of noise and compression: eight levels
-        for b in range(a):
-            scatter[b, a] = scatter[a, b]
-    d = mean[0] - mean[1]
-    # the 3 x 3 system scatter w = d by cross products (Cramer)
-    p, q, r = np.cross(scatter[1], scatter[2]), np.cross(scatter[2], scatter[0]), np.cross(scatter[0], scatter[1])
-    det = scatter[0, 0] * p[0] + scatter[0, 1] * p[1] + scatter[0, 2] * p[2]
-    w = (p * d[0] + q * d[1] + r * d[2]) / det
-    apart = w[0] * d[0] + w[1] * d[1] + w[2] * d[2]  # squared Mahalanobis distance
+    parts = slice(inner), slice(outer, None)
+    sides = [rgb[:, part].reshape(-1, 3).compress(within[:, part].ravel(), axis=0) for part in parts]
+    if min(map(len, sides)) < 12:
+        return np.zeros(3, np.float32), 0.0, 0.0
+    scaled = cv2.COVAR_NORMAL | cv2.COVAR_ROWS | cv2.COVAR_SCALE
+    (covariance, inside), (around, outside) = (cv2.calcCovarMatrix(side, None, scaled) for side in sides)
+    scatter = 0.5 * (covariance + around) + 64.0 * np.eye(3)  # of noise and compression: eight levels
+    step = (inside - outside)[0]
+    w = np.linalg.solve(scatter, step)
+    apart = float(w @ step)  # squared Mahalanobis distance
     if not apart > 1e-6:
         return np.zeros(3, np.float32), 0.0, 0.0
-    middle = 0.5 * np.sum(w * (mean[0] + mean[1])) / apart
-    return (w / apart).astype(np.float32), middle, np.sqrt(apart)
+    w = (w / apart).astype(np.float32)
+    return w, 0.5 * float(w @ (inside + outside)[0]), apart**0.5
 
 
-@jit()
 def find_edges(rho, rgb, within, weights, kernel, expected, width):
     """The strongest fall of contrast along each ray, near where it is expected, to a fraction of a sample.
 
     weights (3,): of `contrast_axis`; kernel: of `slope_kernel`; expected: index of the sample where the edge should
-    be; width: in samples, how fast a peak loses weight away from it; both floats.
+    be; width: in samples, how fast a peak loses weight away from it.
     Returns: distance (n,) of the edge, pixels; height (n,) of its step, in units of the ball's contrast.
     """
-    n, m = within.shape
-    at, height = np.zeros(n), np.zeros(n)
-    half = len(kernel) // 2
-    profile, slope = np.empty(m), np.empty(m)
-    for i in range(n):
-        for k in range(m):
-            profile[k] = weights[0] * rgb[i, k, 0] + weights[1] * rgb[i, k, 1] + weights[2] * rgb[i, k, 2]
-        best, peak = -np.inf, 0
-        for k in range(m):
-            total = 0.0
-            for j in range(-half, half + 1):
-                total += kernel[half + j] * profile[min(max(k + j, 0), m - 1)]
-            slope[k] = total
-        for k in range(1, m - 1):
-            weighed = slope[k] / (1 + ((k - expected) / width) ** 2)
-            if weighed > best:
-                best, peak = weighed, k
-        bend = slope[peak - 1] - 2 * slope[peak] + slope[peak + 1]
-        shift = 0.5 * (slope[peak - 1] - slope[peak + 1]) / bend if bend < -1e-9 else 0.0
-        at[i] = rho[i, 0] + (peak + min(max(shift, -0.5), 0.5)) * (rho[i, 1] - rho[i, 0])
-        height[i] = 2 * slope[peak] if within[i, peak + 1] else 0.0
-    return at, height
+    profile = cv2.transform(rgb.astype(np.float32), weights[None])
+    slope = cv2.filter2D(profile, -1, kernel[None], borderType=cv2.BORDER_REPLICATE)
+    near = 1 + ((np.arange(slope.shape[1]) - expected) / width) ** 2
+    peak = 1 + np.argmax((slope / near)[:, 1:-1], axis=1)
+    ray = np.arange(len(slope))
+    before, top, after = slope[ray, peak - 1], slope[ray, peak], slope[ray, peak + 1]
+    bend = before - 2 * top + after
+    shift = np.where(bend < 0, np.clip(0.5 * (before - after) / np.minimum(bend, -1e-9), -0.5, 0.5), 0)
+    at = rho[:, 0] + (peak + shift) * (rho[:, 1] - rho[:, 0])
+    return at, 2 * top * within[ray, peak + 1]

@@ -24,11 +24,7 @@ def objection(found, others=()):
         (3.7 * waves / pixels, f"the outline is not round: waves of {waves:.2f} pixels on a radius of {o.r:.0f}"),
         (found.oval * o.r / (0.4 + 0.06 * o.r), "the outline is oval"),
         (2.35 * log(_WELL_APART / max(found.apart, 0.2)), "it hardly stands out from its surroundings"),
-        (1.4 * found.through, f"{found.through:.0%} of what is missing look like the background: nothing hides it"),
-        (0.4 * (found.gaps - 1), f"the outline is broken in {found.gaps} places: one thing in front breaks it in one"),
-        (0.2 * (found.step - 0.9), "the edges around it are those of a texture"),
         (2.9 * min(-log(o.r / 20), 2.0), f"it is small, radius {o.r:.1f} pixels, and what is seen is not enough"),
-        (1.95 * found.ragged * o.r / pixels, "its edges scatter about a circle"),
     )
     weight, text = max(said, key=lambda one: one[0])
     return text if weight > 0.3 else "taken together, edge and shading are not those of a ball"

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.errors import ImageError, InputError
+from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import number
 from ir50p_lab.jit import says_that_it_compiles
 from ir50p_lab.vision.ball.classifier import score
@@ -12,7 +12,7 @@ from ir50p_lab.vision.ball.colour import RED, Colour
 from ir50p_lab.vision.ball.evidence import objection
 from ir50p_lab.vision.ball.features import median
 from ir50p_lab.vision.ball.fit import view_of
-from ir50p_lab.vision.ball.measure import measure
+from ir50p_lab.vision.ball.measure import NoBallError, measure
 from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
 from ir50p_lab.vision.checks import check_picture_size
 from ir50p_lab.vision.image import check_image
@@ -30,6 +30,7 @@ _MOST_BUMPS = 0.010, 0.45
 _MOST_HUE = 0.9  # of the disc, distance from the colour's hue over its tolerance
 _COMPRESSED = 0.3  # overexposure from which on a hue is not to be trusted: tone curves bend before they clip
 _LEAST_VALUE = 0.2
+_REDS = 20  # degrees from red, 0, of the hues that skin and brown are mistaken for
 _GLARE = 0.95  # value from which on a disc is overexposed, and its paint is not to be told
 _SKIN, _BROWN = (5.0, 0.5), (8.0, 0.72, 0.45)  # degrees towards orange; then least saturation, value
 _ENOUGH = 0.1  # of the disc that is not overexposed: less tells nothing of the hue
@@ -93,36 +94,37 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     if not isinstance(colour, Colour):
         raise InputError(f"colour = {colour!r:.60}: give RED or another Colour (learn_colour makes one from a click)")
     least_radius = number("least_radius", least_radius, "> 0", unit="px")
-    if image.shape[0] * image.shape[1] < 2:
-        raise ImageError("a picture of one pixel shows no ball: take a larger one")
     if camera is not None:
         camera = as_pinhole(camera)
         check_picture_size(camera, image.shape[1::-1])
     view = view_of(image.shape, camera)
-    measured, rejected, regions, tried = [], [], 0, 0
+    measured, rejected, outlines = [], [], []
     for guess, most in ((guess_circles, _TRIED), (guess_closer, _TRIED_CLOSER)):
-        guesses, count = guess(image, colour, least_radius)
-        regions, tried = regions + count, tried + len(guesses)
-        for x, y, r in guesses[:most, :3].tolist():
-            if any(np.hypot(x - m.outline.x, y - m.outline.y) + abs(r - m.outline.r) < 0.3 * r for m in measured):
+        tries = 0
+        for x, y, r, _ in guess(image, colour, least_radius).tolist():
+            if any(np.hypot(x - o.x, y - o.y) + abs(r - o.r) < 0.3 * r for o in outlines):
                 continue  # an earlier guess led to the same outline
-            found = measure(image, (x, y, r), view, colour, camera)
-            if isinstance(found, str):
-                rejected.append(((x, y, r), found))
-            elif why := rejection_reason(found, least_radius, colour):
+            if tries == most:
+                break
+            tries += 1
+            try:
+                found = measure(image, (x, y, r), view, colour, camera)
+            except NoBallError as why:
+                rejected.append(((x, y, r), str(why)))
+                continue
+            outlines.append(found.outline)
+            if why := rejection_reason(found, least_radius, colour):
                 rejected.append((_place(found), why))
             else:
                 measured.append(found)
         balls, objections = decide(measured)
         if balls:
             break
-    if not regions:
-        return Balls(reason=f"nothing in the picture is {colour.name}, or it is smaller than {least_radius:g} pixels")
-    if not tried:
-        return Balls(reason=f"what is {colour.name} has no round outline")
     rejected = (*objections, *rejected)
-    if balls or not rejected:
+    if balls:
         return Balls(balls, rejected=rejected)
+    if not rejected:
+        return Balls(reason=f"nothing {colour.name} and round is seen, of {least_radius:g} pixels or more in radius")
     (x, y, r), why = rejected[0]
     return Balls(reason=f"the likeliest thing, at ({x:.0f}, {y:.0f}) with radius {r:.0f}: {why}", rejected=rejected)
 
@@ -198,7 +200,7 @@ def _other_paint(paint, colour):
     warm, saturation, value = paint
     if value < _LEAST_VALUE:
         return f"nearly black: value {value:.2f}, a colour has at least {_LEAST_VALUE}"
-    if not colour.is_red:
+    if min(colour.hue, 360 - colour.hue) > _REDS:
         return ""
     if warm > _SKIN[0] and saturation < _SKIN[1] and value < _GLARE:
         return f"skin, or another pale orange: saturation {saturation:.2f}, a red as warm has at least {_SKIN[1]}"

@@ -9,44 +9,50 @@ from ir50p_lab.jit import jit
 from ir50p_lab.vision.ball.fit import fit_circle
 
 STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
-_MUCH = 0.05  # of the picture: if more has the colour, the table may have it, and the mask is split further
 _LARGEST = 10  # regions looked at in each mask
 _ROUND = 0.07  # rms over radius of an outline that is a circle as a whole
-_SPLIT = 6  # regions told into parts
-_SURE = 14  # so few guesses are all measured, in whatever order
+_MARGIN = 16  # pixels around what has the colour
 _CIRCLES = 4  # of one outline: balls that touch share one
 
 
 def guess_circles(image, colour, least_radius):
     """First guesses (n, 4): x, y, r in pixels of the picture, and the share of the circle that was an arc.
 
-    A large picture is halved first: it costs a quarter, and noise goes. Returns also the number of regions of this
-    colour, for a reason where nothing is found.
+    A large picture is halved first: it costs a quarter, and noise goes.
     """
-    shrink = 1 if max(image.shape) < 480 else 2
-    small = _smaller(image, shrink)
-    circles, regions = _circles_of(masks(colour.hsv_of(small), colour), least_radius / shrink)
-    return _ranked(_unscaled(circles, image, small), image), regions
+    small = _smaller(image, _shrink(image))
+    hsv = colour.hsv_of(small)
+    masks = [_opened(cv2.inRange(hsv, *colour.bounds(s))) for s in STRICTNESS]
+    circles = _circles_of(masks, least_radius / _shrink(image))
+    return _different(_unscaled(circles, image, small))
 
 
 def guess_closer(image, colour, least_radius):
     """Further guesses, as `guess_circles`, where those led to no ball: smoothed at three scales, in a looser colour.
 
     Noise breaks up the colour of a dark ball, highlights and glare punch holes; a ball of ten pixels is lost in the
-    halved picture; one before a thing of nearly its colour shows only when the two are told apart.
+    halved picture; one before a thing of nearly its colour shows only when the two are told apart. Searched is the part
+    of the picture that has pixels of the colour.
     """
-    shrink = 1 if max(image.shape) < 480 else 2
-    found, regions, loose = [np.empty((0, 4))], 0, colour.looser
+    shrink, loose = _shrink(image), colour.looser
+    left, above, width, height = cv2.boundingRect(colour.loose_mask(colour.hsv_of(_smaller(image, shrink))))
+    if not width:
+        return np.empty((0, 4))
+    x, y = corner = [max(shrink * one - _MARGIN, 0) // 4 * 4 for one in (left, above)]
+    part = image[y : shrink * (above + height) + _MARGIN, x : shrink * (left + width) + _MARGIN]
+    found = [np.empty((0, 4))]
     for scale, sigma in ((1, 1.2), (shrink, 1.5), (2 * shrink, 1.2)):
-        small = cv2.GaussianBlur(_smaller(image, scale), (0, 0), sigma)
-        hsv = loose.hsv_of(small)
-        plain = [_closed(cv2.inRange(hsv, *loose.bounds(s))) for s in STRICTNESS[:2]]
-        if pink := colour.overexposed_bounds:
-            plain.append(_closed(cv2.bitwise_or(cv2.inRange(hsv, *pink), plain[0])))
-        circles, count = _circles_of([*plain, *split(hsv, loose)], least_radius / scale)
-        regions = max(regions, count)
-        found.append(_unscaled(circles, image, small))
-    return _ranked(np.concatenate(found), image), regions
+        small = cv2.GaussianBlur(_smaller(part, scale), (0, 0), sigma)
+        hsv = colour.hsv_of(small)
+        mask, strict = colour.loose_mask(hsv), cv2.inRange(hsv, *loose.bounds(STRICTNESS[1]))
+        if mask.any():
+            circles = _circles_of([_closed(mask), _closed(strict), *_halves(hsv, mask)], least_radius / scale)
+            found.append(_unscaled(circles, part, small) + np.array([*corner, 0, 0]))
+    return _different(np.concatenate(found))
+
+
+def _shrink(image):
+    return 1 if max(image.shape) < 480 else 2
 
 
 def _smaller(image, shrink):
@@ -64,22 +70,15 @@ def _unscaled(circles, image, small):
 
 
 def _circles_of(found_in, least_radius):
-    """Circles (n, 4) in the outlines of masks, and the largest number of regions in one of them."""
+    """Circles (n, 4) in the outlines of masks."""
     least = max(1.5, 0.7 * least_radius)
-    found, regions = [], 0
+    found = []
     for mask in found_in:
         contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
         large = [c[:, 0] for c in contours if len(c) >= max(8, 4 * least)]
-        large = sorted(large, key=len, reverse=True)[:_LARGEST]
-        regions = max(regions, len(large))
-        irregular = False
-        for contour in large:
-            circles = circles_in(contour.astype(float), mask.shape, least)
-            irregular = irregular or not circles or circles[0][3] < 0.9
-            found += circles
-        if irregular:
-            found += _inscribed(mask, least)
-    return np.array(found).reshape(-1, 4), regions
+        for contour in sorted(large, key=len, reverse=True)[:_LARGEST]:
+            found += circles_in(contour.astype(float), mask.shape, least)
+    return np.array(found).reshape(-1, 4)
 
 
 def _opened(mask):
@@ -97,82 +96,8 @@ def _halves(hsv, mask):
         values = np.ascontiguousarray(hsv[:, :, channel])
         middle, _ = cv2.threshold(values[mask > 0], 0, 255, cv2.THRESH_OTSU)
         upper = cv2.bitwise_and(cv2.compare(values, middle, cv2.CMP_GT), mask)
-        found += [upper, cv2.subtract(mask, upper)]
+        found += [_opened(upper), _opened(cv2.subtract(mask, upper))]
     return found
-
-
-def split(hsv, colour):
-    """Parts of the largest regions of the colour, each split on its own, (h, w) uint8."""
-    mask = cv2.inRange(hsv, *colour.bounds())
-    _, labels, stats, _ = cv2.connectedComponentsWithStats(mask)
-    order = np.argsort(-stats[1:, cv2.CC_STAT_AREA], kind="stable")[:_SPLIT] + 1
-    found = [np.zeros_like(mask) for _ in range(6)]
-    for label in order:
-        x, y, w, h, area = stats[label]
-        if area < 60:
-            continue
-        box = np.s_[y : y + h, x : x + w]
-        here = np.where(labels[box] == label, np.uint8(255), np.uint8(0))
-        for part, half in zip(found, _halves(hsv[box], here), strict=True):
-            part[box] |= half
-    return [_opened(part) for part in found]
-
-
-def _ranked(circles, image):
-    """Different circles, first those with a step of colour around them, whatever its direction in RGB."""
-    circles = _different(circles)
-    if len(circles) <= _SURE:
-        return circles
-    angle = np.arange(32) * (2 * np.pi / 32)
-    x, y, r, share = circles.T[:, :, None]
-    ring = []
-    for relative in (0.75, 0.88, 1.15, 1.3):
-        col = np.rint(x + relative * r * np.cos(angle)).astype(int)
-        row = np.rint(y + relative * r * np.sin(angle)).astype(int)
-        within = (col >= 0) & (row >= 0) & (col < image.shape[1]) & (row < image.shape[0])
-        rgb = image[np.clip(row, 0, image.shape[0] - 1), np.clip(col, 0, image.shape[1] - 1)]
-        ring.append((rgb.astype(np.float32), within))
-    step = (ring[0][0] + ring[1][0] - ring[2][0] - ring[3][0]) / 2
-    seen = ring[1][1] & ring[2][1]
-    inside = seen.any(axis=1)
-    circles, step, seen, share = circles[inside], step[inside], seen[inside], share[inside, 0]
-    step[~seen] = np.nan
-    along = np.nanmedian(step, axis=1, keepdims=True)
-    along /= np.linalg.norm(along, axis=2, keepdims=True) + 1e-6
-    height = -np.sort(-(step * along).sum(axis=2), axis=1)  # highest first, what lies outside the picture last
-    part = seen.mean(axis=1)
-    height[np.arange(len(angle)) >= 0.63 * len(angle) * part[:, None]] = np.nan  # a third may be hidden
-    promise = np.sqrt(part) * np.nanmean(height, axis=1) / (np.nanstd(height, axis=1) + 10) + share
-    return circles[np.argsort(-promise, kind="stable")]
-
-
-def masks(hsv, colour):
-    """Pictures (h, w) uint8, 255 where the colour is: from loose to strict, and parts of it if there is much of it."""
-    loose = cv2.inRange(hsv, *colour.bounds())
-    found = [_opened(loose), *(_opened(cv2.inRange(hsv, *colour.bounds(s))) for s in STRICTNESS[1:])]
-    if cv2.countNonZero(found[0]) > _MUCH * loose.size:
-        found += [_opened(part) for part in _halves(hsv, loose)]
-    return found
-
-
-def _inscribed(mask, least_radius):
-    """Circles that fit into the mask best, at most six: a ball with tape beside it is its widest part."""
-    left, above, width, height = cv2.boundingRect(mask)
-    left, above = max(left - 1, 0), max(above - 1, 0)
-    part = mask[above : above + height + 2, left : left + width + 2]  # with a rim of 0, but at the picture's border
-    bordered = cv2.copyMakeBorder(part, 1, 1, 1, 1, cv2.BORDER_REPLICATE)
-    depth = cv2.distanceTransform(bordered, cv2.DIST_L2, 3)[1:-1, 1:-1]
-    top = cv2.dilate(depth, np.ones((7, 7), np.uint8))
-    y, x = np.nonzero((depth >= top) & (depth > least_radius) & (depth < max(mask.shape)))
-    order = np.argsort(-depth[y, x], kind="stable")[:30]
-    found = []
-    for i in order:
-        r = float(depth[y[i], x[i]])
-        if all(np.hypot(x[i] - c[0], y[i] - c[1]) > 0.7 * c[2] for c in found):
-            found.append((float(x[i]), float(y[i]), r, 0.3))
-        if len(found) == 6:
-            break
-    return [(x + left, y + above, r, share) for x, y, r, share in found]
 
 
 def circles_in(points, shape, least_radius):
@@ -248,7 +173,7 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
 
 
 def _different(circles):
-    """Drop circles that another, with a larger share, already tells."""
+    """The circles, those with the largest share of a large circle first, but for those that another already tells."""
     order = np.argsort(-circles[:, 3] * np.minimum(circles[:, 2], 20) ** 0.5, kind="stable")
     x, y, r, _ = circles[order].T[:, :, None]
     alike = np.hypot(x - x.T, y - y.T) + np.abs(r - r.T) <= 0.25 * np.maximum(r, r.T)

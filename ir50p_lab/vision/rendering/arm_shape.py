@@ -10,14 +10,13 @@ PAINT, JOINT = (212, 208, 200), (70, 72, 76)
 GRIP = 0.06  # length of the fingers; the tip of the kinematic chain is between their ends
 
 
-def arm_sticks(q, arm=None, *, opening=0.07):
+def arm_sticks(q, arm, *, opening=0.07):
     """The arm at q (3,) rad as Sticks: column, links, wrist and two fingers `opening` m apart, in base coordinates.
 
-    arm: Arm, default `load_arm()`. Raises InputError for a wrong q.
+    arm: Arm. Raises InputError for a wrong q.
     """
-    from ir50p_lab.modelling import frames, load_arm
+    from ir50p_lab.modelling import frames
 
-    arm = load_arm() if arm is None else arm
     T = frames(arm, q)
     base, shoulder, elbow, tip = (T[i, :3, 3] for i in range(4))
     along, sideways = T[3, :3, 0], T[2, :3, 2]

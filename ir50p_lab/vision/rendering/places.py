@@ -2,42 +2,32 @@
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.vision.board_pose import transform
 from ir50p_lab.vision.pinhole import Pinhole
-from ir50p_lab.vision.rendering.scene import Lamp, Scene, SceneBall, Sky, Sun, Tabletop
+from ir50p_lab.vision.rendering.scene import Scene, SceneBall
 
 # Assumed: an ordinary VGA webcam (thesis intro 5.3: 640x480) with 49 deg across: f = 320 / tan(24.5 deg) = 700 px.
 # Nobody's pixels are exactly square, nor is a lens exactly over the middle; the barrel distortion is that of a cheap
 # plastic lens (k1 = -0.12 moves the corner of the picture by 20 px).
-K_BENCH = ((702.0, 0.0, 323.5), (0.0, 699.0, 236.0), (0.0, 0.0, 1.0))
-DISTORTION_BENCH = (-0.12, 0.08, 0.0008, -0.0006, 0.0)
+# One for all scenes: `grid_rays` keeps its rays.
+_PINHOLE = Pinhole([[702.0, 0.0, 323.5], [0.0, 699.0, 236.0], [0.0, 0.0, 1.0]], (-0.12, 0.08, 0.0008, -0.0006, 0.0))
 # Assumed: on a stand across the table from the arm, whose stretched tip reaches x = 0.57 m and so cannot hit it. Tilted
 # by about 45 deg, it sees the whole work area, and a ball of radius 30 mm is 24 px large (thesis 4.5.1: 18 px).
 CAMERA_BENCH = (1.0, 0.05, 0.62)
 LOOKS_AT_BENCH = (0.40, 0.0, 0.0)
 
 
-def look_at(position, target, roll=0.0):
+def look_at(position, target):
     """T_cam_world (4, 4) of a camera at `position` (3,) m that looks at `target` (3,) m, picture upright.
 
-    roll: rad, turns the camera clockwise about its axis (so the picture turns counter-clockwise).
-    Raises InputError if it would look straight up or down (then no direction is 'upright': move the target a little).
+    Not straight up or down: then no direction is upright.
     """
-    position, target = vectors3("position", position, unit="m"), vectors3("target", target, unit="m")
-    z = target - position
-    right = np.cross(z, (0.0, 0.0, 1.0))
-    if np.linalg.norm(right) <= 1e-9 * np.linalg.norm(z) or not z.any():
-        raise InputError(
-            f"a camera at {position.tolist()} looking at {target.tolist()} looks straight up or down, so 'upright' "
-            "means nothing: move the target 1 mm aside, or build T_cam_world by hand"
-        )
+    z = np.subtract(target, position)
     z = z / np.linalg.norm(z)
-    x = right / np.linalg.norm(right)
-    y = np.cross(z, x)
-    c, s = np.cos(roll), np.sin(roll)
-    R = np.stack([c * x + s * y, c * y - s * x, z])
+    x = np.cross(z, (0.0, 0.0, 1.0))
+    x = x / np.linalg.norm(x)
+    R = np.stack([x, np.cross(z, x), z])
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = R, -R @ position
     return T
@@ -50,17 +40,11 @@ def pose(position, rotation_vector=(0.0, 0.0, 0.0)):
 
 def bench_camera():
     """(Pinhole, T_cam_world) of the webcam on its stand across the table from the arm: the shared default."""
-    return Pinhole(K_BENCH, DISTORTION_BENCH, (640, 480)), look_at(CAMERA_BENCH, LOOKS_AT_BENCH)
+    return _PINHOLE, look_at(CAMERA_BENCH, LOOKS_AT_BENCH)
 
 
 def bench_scene(*objects, **changes):
     """The default bench with these objects (default: one red ball); `changes` are fields of Scene."""
     pinhole, T_cam_world = bench_camera()
-    scene = {
-        "pinhole": pinhole,
-        "T_cam_world": T_cam_world,
-        "objects": objects or (SceneBall(),),
-        "table": Tabletop(),
-        "lights": (Sky(), Sun(towards=(0.4, 0.5, 1.0)), Lamp(position=(0.2, -0.6, 0.8), strength=0.25)),
-    }
+    scene = {"pinhole": pinhole, "T_cam_world": T_cam_world, "objects": objects or (SceneBall(),)}
     return Scene(**(scene | changes))

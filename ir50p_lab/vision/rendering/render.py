@@ -2,11 +2,10 @@
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
 from ir50p_lab.vision.rendering.colours import light_of
 from ir50p_lab.vision.rendering.light import highlight, irradiance
 from ir50p_lab.vision.rendering.rays import grid_rays, rays_through
-from ir50p_lab.vision.rendering.scene import Scene, SceneBall, Sky
+from ir50p_lab.vision.rendering.scene import SceneBall, Sky
 from ir50p_lab.vision.rendering.sensor import expose
 from ir50p_lab.vision.rendering.surface import room_light, table_albedo
 from ir50p_lab.vision.rendering.truth import SceneTruth, ball_truth
@@ -26,8 +25,6 @@ def render_scene(scene, seed=0):
     Args: scene: Scene; seed: of the noise. Returns: image (h, w, 3) uint8, red green blue; SceneTruth.
     Raises InputError for things that cannot be drawn.
     """
-    if not isinstance(scene, Scene):
-        raise InputError(f"render_scene draws a Scene, not {type(scene).__name__}: build one, or take bench_scene()")
     picture = RayTracer(scene)
     light = scene.lens.through(picture.light())
     image = expose(light, scene.sensor, np.random.default_rng([int(seed), 0]))
@@ -46,21 +43,7 @@ class RayTracer:
         self._c, self._r = self.C.tolist(), self.R.tolist()  # plain floats keep float32 arrays what they are
         self.things = (*scene.objects, *scene.arm)
         self.shapes = [thing.shape(self.T) for thing in self.things]
-        self.boxes = [self._pixel_box(shape.bounds()) for shape in self.shapes]
-        table = scene.table
-        self.table_colour = light_of(table.colour if table else "grey").astype(np.float32)
-
-    def _pixel_box(self, corners):
-        """Pixels (x0, y0, x1, y1) around points (n, 3); None where some are beside or behind the camera."""
-        if (corners[:, 2] <= 0.05 * np.abs(corners).max()).any():
-            return None
-        pinhole = self.scene.pinhole
-        if (np.hypot(corners[:, 0], corners[:, 1]) >= pinhole.widest * corners[:, 2]).any():
-            return None
-        xy = pinhole.to_pixels(pinhole.distort(corners[:, :2] / corners[:, 2:]))
-        low, high = xy.min(axis=0), xy.max(axis=0)
-        pad = 3 + 0.05 * (high - low)
-        return (*(low - pad), *(high + pad))
+        self.table_colour = light_of(scene.table.colour).astype(np.float32)
 
     def light(self):
         """Light (h, w, 3) float32 of the sharp picture."""
@@ -84,16 +67,14 @@ class RayTracer:
         owner = np.zeros(rays.x.shape, dtype=np.int16)
         depth = np.full(rays.x.shape, np.inf, dtype=rays.x.dtype)
         table = self.scene.table
-        if table is not None:
-            down = rays.x * self._r[0][2] + rays.y * self._r[1][2] + self._r[2][2]
-            with np.errstate(divide="ignore"):
-                t = -self._c[2] / down
+        down = rays.x * self._r[0][2] + rays.y * self._r[1][2] + self._r[2][2]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t = -self._c[2] / down
             X, Y = self._table_xy(rays.x, rays.y, t)
-            with np.errstate(invalid="ignore"):
-                hit = (t > 0) & (X > table.x[0]) & (X < table.x[1]) & (Y > table.y[0]) & (Y < table.y[1])
-            owner[hit], depth[hit] = TABLE, t[hit]
-        for number, (shape, box) in enumerate(zip(self.shapes, self.boxes, strict=True)):
-            index = rays.near(box)
+            hit = (t > 0) & (X > table.x[0]) & (X < table.x[1]) & (Y > table.y[0]) & (Y < table.y[1])
+        owner[hit], depth[hit] = TABLE, t[hit]
+        for number, shape in enumerate(self.shapes):
+            index = rays.near(shape.bounds())
             t = shape.depth(rays.at(index))
             nearer = t < depth[index] * _ON_TOP
             depth[index] = np.where(nearer, t, depth[index])
@@ -102,8 +83,7 @@ class RayTracer:
 
     def _table_xy(self, x, y, t):
         (c1, c2, _), (r1, r2, r3) = self._c, self._r
-        with np.errstate(invalid="ignore"):
-            return (c1 + t * (r1[0] * x + r2[0] * y + r3[0]), c2 + t * (r1[1] * x + r2[1] * y + r3[1]))
+        return c1 + t * (r1[0] * x + r2[0] * y + r3[0]), c2 + t * (r1[1] * x + r2[1] * y + r3[1])
 
     def trace(self, rays):
         """Light (n, 3) float32 along the rays, and a code (n,) that changes where an edge is."""

@@ -15,14 +15,16 @@ from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
 from ir50p_lab.vision.rendering.colours import light_of, to_bytes
 from ir50p_lab.vision.rendering.shadow import dim_sky, shadow
 from ir50p_lab.vision.rendering.shapes import RoundShape
+from ir50p_lab.vision.rendering.surface import noise
 
 
-class SolidThing:
-    """Whatever rays can meet above the table; a subclass has a colour, a shape, and says what light it takes."""
+class RoundThing:
+    """A ball or a stick with round ends; it has `ends`, two places (3,) m, and a radius."""
 
     def shape(self, T_cam_world):
-        """Where rays meet it, in camera coordinates: as in `shapes`."""
-        raise NotImplementedError
+        """Where rays meet it, in camera coordinates: a cylinder with round ends."""
+        a, b = np.asarray(self.ends, dtype=float) @ T_cam_world[:3, :3].T + T_cam_world[:3, 3]
+        return RoundShape(a, b, self.radius)
 
     def paint(self, shape, X):
         """Linear colour (3,) or (n, 3) at X (3, n) in camera coordinates, and a code, (n,) where edges run across."""
@@ -30,25 +32,10 @@ class SolidThing:
 
     def dim_sky(self, open_sky, X, Y):
         """Take off `open_sky` (n,), in place, what the places X, Y (n,) m of the table lose of the sky."""
-
-    def shade(self, part, source, softness, X, Y):
-        """The same of a Sun or Lamp, whose half width is `softness` rad."""
-
-
-class RoundThing(SolidThing):
-    """A ball or a stick with round ends; it has `ends`, two places (3,) m, and a radius."""
-
-    def shape(self, T_cam_world):
-        """A cylinder with round ends."""
-        a, b = np.asarray(self.ends, dtype=float) @ T_cam_world[:3, :3].T + T_cam_world[:3, 3]
-        return RoundShape(a, b, self.radius)
-
-    def dim_sky(self, open_sky, X, Y):
-        """By the part of the hemisphere that it fills."""
         dim_sky(open_sky, *np.asarray(self.ends, dtype=X.dtype), self.radius, X, Y)
 
     def shade(self, part, source, softness, X, Y):
-        """A round or long shadow."""
+        """The same of a Sun or Lamp, whose half width is `softness` rad: a round or long shadow."""
         shadow(part, *np.asarray(self.ends, dtype=X.dtype), self.radius, source, softness, X, Y)
 
 
@@ -103,14 +90,11 @@ class Stick(RoundThing):
 
 @dataclass(frozen=True, kw_only=True)
 class Tabletop:
-    """The table: texture 'plain' or 'wood', its colour, contrast 0..1, grain size m.
+    """A wooden table: its colour, contrast 0..1 of the grain, size m of the grain.
 
-    texture may be a function of (table, u, v, seed), with coordinates (n,) in grains along and across it, that gives
-    the brightness (n,), 0 on average, and None or how much of the light the places keep (n,), 1 but for joints.
     x, y: (from, to) m of its edges; beyond them the camera sees the room (colour `room`), blurred.
     """
 
-    texture: object = "wood"
     colour: str | tuple = (176, 148, 112)
     contrast: float = 0.18
     grain: float = 0.03
@@ -118,6 +102,11 @@ class Tabletop:
     x: tuple = (-0.6, 1.1)
     y: tuple = (-0.8, 0.8)
     room: str | tuple = (120, 118, 115)
+
+    def grained(self, u, v, seed):
+        """Brightness (n,) at u, v (n,) in grains along and across it, 1 on average; and a code (n,), as of `paint`."""
+        wood = 0.6 * noise("soft", seed, 2 * u, 24 * v) + 0.4 * noise("rough", seed, 3 * u, 60 * v)
+        return 1 + np.float32(0.9 * self.contrast) * wood, 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,8 +126,6 @@ class Sun:
     strength: float = 0.6
     softness: float = 0.02
 
-    near = False
-
     def seen_from(self, p):
         """Direction (3,) to it from the place p (3,) m; its length tells nothing."""
         return np.asarray(self.towards, dtype=float)
@@ -157,8 +144,6 @@ class Lamp:
     colour: tuple = (1.0, 0.85, 0.65)
     strength: float = 0.6
     size: float = 0.05
-
-    near = True
 
     def seen_from(self, p):
         """Vector (3,) to it from the place p (3,) m."""
@@ -213,7 +198,7 @@ class Sensor:
 class Scene:
     """Everything `render_scene` needs, but for the seed of the noise.
 
-    pinhole: the camera. T_cam_world (4, 4): where it is. objects: SceneBall, Stick or another SolidThing;
+    pinhole: the camera. T_cam_world (4, 4): where it is. objects: SceneBall or Stick;
     patches: on the table, later ones over earlier ones; lights: Sky, Sun, Lamp. arm: tuple of Stick (`arm_sticks`),
     kept apart so that it can be posed. texture_seed: of the table's grain and of the room.
     """
@@ -223,8 +208,8 @@ class Scene:
     objects: tuple = ()
     patches: tuple = ()
     arm: tuple = ()
-    table: Tabletop | None = Tabletop()
-    lights: tuple = (Sky(), Sun())
+    table: Tabletop = Tabletop()
+    lights: tuple = (Sky(), Sun(towards=(0.4, 0.5, 1.0)), Lamp(position=(0.2, -0.6, 0.8), strength=0.25))
     lens: Lens = Lens()
     sensor: Sensor = Sensor()
     texture_seed: int = 0
@@ -232,11 +217,6 @@ class Scene:
     def __post_init__(self):
         object.__setattr__(self, "pinhole", as_pinhole(self.pinhole))
         object.__setattr__(self, "T_cam_world", rigid("T_cam_world", self.T_cam_world))
-        for field_name, kinds in _PARTS.items():
-            for part in getattr(self, field_name):
-                if not isinstance(part, kinds):
-                    names = ", ".join(kind.__name__ for kind in kinds)
-                    raise InputError(f"{part!r:.60} is none of the {field_name} of a Scene: give {names}")
-
-
-_PARTS = {"objects": (SolidThing,), "patches": (Patch,), "arm": (Stick,), "lights": (Sky, Sun, Lamp)}
+        for part in self.objects:
+            if not isinstance(part, RoundThing):
+                raise InputError(f"{part!r:.60} is none of the objects of a Scene: give SceneBall, Stick")

@@ -8,10 +8,9 @@ def expose(light, sensor, rng):
     import cv2
 
     light = light * np.float32(sensor.exposure)
-    if sensor.read_noise > 0 or sensor.shot_noise > 0:
-        light = np.minimum(light, 1.0)  # full wells
-        sigma = np.sqrt(sensor.read_noise**2 + sensor.shot_noise**2 * np.maximum(light, 0))
-        light = light + sigma * rng.standard_normal(light.shape, dtype=np.float32)
+    light = np.minimum(light, 1.0)  # full wells
+    sigma = np.sqrt(sensor.read_noise**2 + sensor.shot_noise**2 * np.maximum(light, 0))
+    light = light + sigma * rng.standard_normal(light.shape, dtype=np.float32)
     image = sensor.developed(light)
     if sensor.jpeg is not None:  # colour at half the resolution, as cameras save it
         _, data = cv2.imencode(".jpg", image[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, int(sensor.jpeg)])

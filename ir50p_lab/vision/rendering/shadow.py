@@ -56,9 +56,7 @@ def _near_shadow(points, radius, source, softness, X, Y):
         if L[2] <= radius:  # a lamp as low as the thing: its shadow has no end
             return np.arange(len(X))
         foot = p[:2] - L[:2] / L[2] * max(p[2], 0)
-        stretch = 1 + np.hypot(L[0], L[1]) / L[2]
-        if source.near:
-            stretch *= 1.5 * (1 + max(p[2], 0) / L[2])
+        stretch = 1.5 * (1 + np.hypot(L[0], L[1]) / L[2]) * (1 + max(p[2], 0) / L[2])
         half = (radius + softness * (abs(p[2]) + radius) * stretch * 2) * stretch
         low, high = np.minimum(low, foot - half), np.maximum(high, foot + half)
     return np.flatnonzero((X >= low[0]) & (X <= high[0]) & (Y >= low[1]) & (Y <= high[1]))

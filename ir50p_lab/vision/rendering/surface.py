@@ -12,13 +12,10 @@ _TILE = 512
 
 def table_albedo(table, patches, X, Y, seed):
     """Linear colours (n, 3) of the table at X, Y (n,) m and a code (n,) of what lies there (for edges)."""
-    brightness, kept = _texture(table, X, Y, seed)
-    shade = 1 + np.float32(0.9 * table.contrast) * brightness
+    c, s = np.cos(table.angle), np.sin(table.angle)
+    shade, edges = table.grained((c * X + s * Y) / table.grain, (c * Y - s * X) / table.grain, seed)
     albedo = np.clip(shade[:, None], 0.1, 1.9) * light_of(table.colour).astype(np.float32)
-    code = np.zeros(X.shape, dtype=np.int16)
-    if kept is not None:
-        albedo *= kept[:, None]
-        code[kept < 1] = 1
+    code = np.full(X.shape, edges, dtype=np.int16)
     for number, patch in enumerate(patches):
         reach = 0.75 * np.float32(np.hypot(*patch.size))
         x, y = X - np.float32(patch.position[0]), Y - np.float32(patch.position[1])
@@ -44,22 +41,9 @@ def _inside(patch, x, y):
     raise InputError(f"outline {patch.outline!r} of a patch: give 'rectangle' or 'blob'")
 
 
-def _texture(table, X, Y, seed):
-    """Brightness (n,) around 0, standard deviation about 1, of the texture, and what its joints keep of the light."""
-    c, s = np.cos(table.angle), np.sin(table.angle)
-    u, v = (c * X + s * Y) / table.grain, (c * Y - s * X) / table.grain
-    if table.texture == "plain":
-        return 0.25 * noise("soft", seed, 10 * u, 10 * v), None
-    if table.texture == "wood":
-        return 0.6 * noise("soft", seed, 2 * u, 24 * v) + 0.4 * noise("rough", seed, 3 * u, 60 * v), None
-    if callable(table.texture):
-        return table.texture(table, u, v, seed)
-    raise InputError(f"texture {table.texture!r} of the table: give 'plain', 'wood' or a function")
-
-
 def room_light(table, rays_x, rays_y, seed):
     """Linear colours (n, 3) of the room behind the table: broad blurred areas, by direction x, y of the rays."""
-    colour = light_of(table.room if table is not None else (120, 118, 115)).astype(np.float32)
+    colour = light_of(table.room).astype(np.float32)
     areas = [noise("broad", seed + 11 * i, 220 * rays_x + 60 * i, 220 * rays_y) for i in range(3)]
     # mostly light and dark, a little colour
     tint = np.exp(np.stack([0.4 * areas[0] + 0.12 * a for a in (areas[1], 0.3 * areas[2], -areas[1])], axis=-1))

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.vision.pinhole import Pinhole
-from ir50p_lab.vision.rendering.colours import is_red
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,11 +25,6 @@ class BallTruth:
     position: tuple
     colour: str | tuple
 
-    @property
-    def is_red(self):
-        """Whether its paint is what the detector of red balls has to find."""
-        return is_red(self.colour)
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SceneTruth:
@@ -42,8 +36,8 @@ class SceneTruth:
 
     @property
     def red_balls(self):
-        """The red balls, largest first."""
-        return tuple(sorted((ball for ball in self.balls if ball.is_red), key=lambda ball: -ball.radius))
+        """Those of the colour "red", largest first."""
+        return tuple(sorted((ball for ball in self.balls if ball.colour == "red"), key=lambda ball: -ball.radius))
 
 
 def ball_truth(pinhole, T_cam_world, ball):
@@ -56,13 +50,7 @@ def ball_truth(pinhole, T_cam_world, ball):
         area, outline_x, outline_y = _area_and_centre(sphere_rim(pinhole, centre, ball.radius))
         radius = float(np.sqrt(area / np.pi))
     return BallTruth(
-        x=x,
-        y=y,
-        radius=radius,
-        outline_x=outline_x,
-        outline_y=outline_y,
-        position=tuple(map(float, ball.position)),
-        colour=ball.colour,
+        x=x, y=y, radius=radius, outline_x=outline_x, outline_y=outline_y, position=ball.position, colour=ball.colour
     )
 
 
