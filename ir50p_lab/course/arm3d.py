@@ -7,6 +7,7 @@ from ir50p_lab.course.style import COLOURS
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import frames
+from ir50p_lab.modelling.differential import jacobian
 
 _AXIS_COLOURS = (COLOURS["orange"], COLOURS["green"], COLOURS["blue"])  # x, y, z
 _LINK_COLOURS = ("#8C8C8C", COLOURS["blue"], COLOURS["orange"])  # column, upper arm, forearm
@@ -50,11 +51,6 @@ class FrameView:
             gap = np.full(3, np.nan)
             self.axes[k].set_data_3d(*np.column_stack([origin, end, gap, end + 0.22 * self._length * R[:, k]]))
         self.title.set_position_3d(origin - 0.2 * self._length * R.sum(axis=1))
-
-    def set_visible(self, visible):
-        """Show or hide the frame."""
-        for artist in (*self.axes, self.title):
-            artist.set_visible(visible)
 
 
 class ArmView:
@@ -106,7 +102,10 @@ class ArmView:
         if q.shape != (3,):
             raise InputError(f"a view shows one pose: q has shape {q.shape}, give (3,)")
         self.q = q
-        T = frames(self.arm, q)
+        self.place(frames(self.arm, q))
+
+    def place(self, T):
+        """Move the parts to T (4, 4, 4), the transforms of frames 0 to 3 to the base, right or wrong."""
         corners = T[:, :3, 3]
         parts = []
         for k, pair in enumerate(self._links):
@@ -115,11 +114,12 @@ class ArmView:
         for k, pair in enumerate(self._hubs):  # two halves of the shoulder's and of the elbow's axle
             middle, axis = corners[1 + k // 2], T[1, :3, 2]
             parts.append((pair, np.array([middle, middle + half * (-1) ** k * axis])))
-        self._place(parts)
+        self._order(parts)
         self._tip.set_data_3d(*corners[3:].T)
         self._shadow.set_data_3d(corners[1:, 0], corners[1:, 1], np.zeros(3))
         for k, view in self._frames.items():
-            view.update(T[k])
+            if np.isfinite(T[k]).all():
+                view.update(T[k])
 
     def trail(self, points):
         """Draw a path of the tip. points: (n, 3) m; an empty list removes it."""
@@ -133,15 +133,24 @@ class ArmView:
         self._target.set_data_3d(*points.T)
         self._target.set_visible(p is not None)
 
-    def set_visible(self, visible):
-        """Show or hide the arm and its frames (not its target and trail)."""
-        pairs = [artist for pair in (*self._links, *self._hubs) for artist in pair]
-        for artist in (*pairs, self._tip, self._shadow):
-            artist.set_visible(visible)
-        for view in self._frames.values():
-            view.set_visible(visible)
+    def ellipsoids(self, names):
+        """Draw the "velocity ellipsoid" and the "force ellipsoid" at the tip, each if it is named.
 
-    def _place(self, parts):
+        At a singular pose that of the forces has no end and is left out.
+        """
+        J = jacobian(self.arm, self.q)[:3]
+        shapes = {"velocity ellipsoid": (0.25 * J, COLOURS["sky"])}
+        if abs(np.linalg.det(J)) > 1e-4:
+            shapes["force ellipsoid"] = (0.025 * np.linalg.inv(J).T, COLOURS["purple"])
+        turn, tilt = np.linspace(0, 2 * np.pi, 41), np.linspace(0, np.pi, 21)[:, None]
+        ball = np.array([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt) + 0 * turn])
+        for row, name in enumerate(name for name in shapes if name in names):
+            matrix, colour = shapes[name]
+            surface = np.tensordot(matrix, ball, 1) + self.points[3][:, None, None]
+            self.ax.plot_surface(*surface, color=colour, alpha=0.35, linewidth=0)
+            self.ax.text2D(0.02, 0.88 - 0.06 * row, name, transform=self.ax.transAxes, color=colour)
+
+    def _order(self, parts):
         """Set the ends of each part and draw the far ones first."""
         azimuth, elevation = np.radians([self.ax.azim, self.ax.elev])
         to_eye = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])

@@ -32,7 +32,7 @@ class Painter:
             FigureCanvasAgg(figure)
         figure.canvas.draw()  # runs the layout engine
         figure.set_layout_engine("none")
-        self._background = None
+        self._background = self._empty = None
 
     def forget(self):
         """Draw the background anew next time."""
@@ -42,7 +42,9 @@ class Painter:
         """The figure as it is now: (height, width, 4) uint8, valid until the next call."""
         figure, canvas = self.figure, self.figure.canvas
         groups = [_parts(one) for one in (*sorted(figure.axes, key=lambda ax: ax.get_zorder()), figure)]
-        if self._background is None or figure.stale:
+        empty = sum(_is_empty(artist) for parts in groups for artist in parts)
+        if self._background is None or figure.stale or empty != self._empty:
+            self._empty = empty
             for parts in groups:
                 _animate(parts)
             canvas.draw()
@@ -85,16 +87,23 @@ def _parts(parent):
     framed = getattr(parent, "axison", True) and not hasattr(parent, "get_proj")  # 3-D axes have no spines
     fixed = (Axis, Axes) if framed else (Axis, Axes, Spine)
     found = [part for part in parent.get_children() if part is not parent.patch and not isinstance(part, fixed)]
-    found = [part for part in found if not isinstance(part, Text) or part.get_text()]  # an empty one is stale for ever
     return sorted(found, key=lambda artist: artist.get_zorder())
 
 
+def _is_empty(artist):
+    return isinstance(artist, Text) and not artist.get_text()
+
+
 def _animate(parts):
-    """Let the lowest artist that has changed move, and what lies above it; nothing if that would cover a grid."""
-    first = next((k for k, artist in enumerate(parts) if artist.get_animated() or artist.stale), len(parts))
+    """Let the lowest artist that has changed move, and what lies above it; nothing if that would cover a grid.
+
+    Empty texts move too: they are stale for ever. They let nothing else move.
+    """
+    changed = (k for k, one in enumerate(parts) if not _is_empty(one) and (one.get_animated() or one.stale))
+    first = next(changed, len(parts))
     covers = first < len(parts) and parts[first].get_zorder() < _grid_height(parts[first].axes)
     for k, artist in enumerate(parts):
-        artist.set_animated(k >= first and not covers)
+        artist.set_animated(_is_empty(artist) or (k >= first and not covers))
 
 
 def _grid_height(axes):

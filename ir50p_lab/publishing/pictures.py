@@ -7,11 +7,11 @@ import re
 import nbformat
 import numpy as np
 
-from ir50p_lab.course.live_arm.view import bundle_text
+from ir50p_lab.course.live_arm.view import BUNDLE
 from ir50p_lab.course.style import new_figure
 
 _VIEW = "application/vnd.jupyter.widget-view+json"
-_SHOWN = ("lengths", "limits", "q", "options", "layers", "things", "poses", "shape")  # of LiveArm's state
+_SHOWN = ("options", "q", "layers", "poses", "shape")  # of LiveArm's state
 
 
 def plain_outputs(outputs, widgets, *, live):
@@ -40,7 +40,7 @@ def _parts(model_id, widgets, still, live):
     if model is None:
         return
     state, buffers = model["state"], {tuple(one["path"]): one["data"] for one in model.get("buffers", ())}
-    if "lengths" in state and "digest" in state:
+    if "poses" in state and "shape" in state:
         yield _arm(state, buffers, still) if live else _image(still)
     elif state.get("settings", {}).get("panels"):
         samples = np.frombuffer(base64.b64decode(buffers.get(("samples",), "")), "<f4")
@@ -64,7 +64,7 @@ def _arm(state, buffers, still):
 
 def live_arm_script():
     """The script that brings the views of a page to life."""
-    bundle = bundle_text()
+    bundle = BUNDLE.read_text(encoding="utf-8")
     mount = re.search(r"(\w+) as mount\b", bundle)[1]
     bundle = re.sub(r"export\s*\{[^}]*\};?", "", bundle).replace("</script", "<\\/script")
     start = (

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from ir50p_lab.course.live_arm import LiveArm
-from ir50p_lab.course.live_arm.view import bundle_text
+from ir50p_lab.course.live_arm.view import BUNDLE
 from ir50p_lab.modelling import IR50P, forward_kinematics, frames
 
-SHOWN = ("lengths", "limits", "q", "options", "layers", "things", "poses", "shape")
+SHOWN = ("options", "q", "layers", "poses", "shape")
 
 
 @pytest.fixture
@@ -19,7 +19,7 @@ def views(page, tmp_path):
     for k in range(20):
         view = LiveArm(IR50P, [0.1 * k - 1, 0.8, -1.2], height=300)
         states.append({name: view.get_state()[name] for name in SHOWN} | {"track": ""})
-    (tmp_path / "live_arm.js").write_text(bundle_text(), encoding="utf-8")
+    (tmp_path / "live_arm.js").write_bytes(BUNDLE.read_bytes())
     script = (
         "import * as code from './live_arm.js'; window.code = code;"
         f"for (const state of {json.dumps(states)}) {{"

@@ -85,15 +85,11 @@ def test_two_runs_share_a_clock_and_what_is_unknown_is_left_out(run):
     assert table[-1, 0] == pytest.approx(run.t[-1]) and table[-1, first["q"]] == pytest.approx(3)
 
 
-@pytest.mark.parametrize("runs", [[], [1, 2, 3]])
-def test_one_or_two_runs(runs):
-    with pytest.raises(InputError, match="one or two runs"):
-        pack(runs, [""] * len(runs))
-
-
-def test_a_single_sample_is_no_motion():
-    with pytest.raises(InputError, match="less than two samples"):
-        pack([SimpleNamespace(t=np.zeros(1), q=np.zeros((1, 3)))], [""])
+@pytest.mark.parametrize(("runs", "samples", "labels"), [(3, 5, 3), (1, 1, 1), (2, 5, 1)])
+def test_one_or_two_runs_that_have_a_motion(runs, samples, labels):
+    run = SimpleNamespace(t=np.arange(samples), q=np.zeros((samples, 3)))
+    with pytest.raises(InputError, match="one or two runs of two samples"):
+        pack([run] * runs, [""] * labels)
 
 
 def test_the_students_function_moves_the_arm_and_its_errors_are_shown(heard):
@@ -113,7 +109,7 @@ def test_the_students_function_moves_the_arm_and_its_errors_are_shown(heard):
     assert view.q == [0.1, 0.2, 0.3] and "KeyError: 2" in answers[2]["error"]
 
 
-def test_any_frames_draw_the_arm_wrong_ones_too(heard):
+def test_any_frames_draw_the_arm_wrong_ones_too(heard, monkeypatch):
     def wrong(q):
         T = frames(IR50P, q).copy()
         T[2, :3, 3] += 0.3
@@ -122,11 +118,12 @@ def test_any_frames_draw_the_arm_wrong_ones_too(heard):
 
     view = LiveArm(IR50P, [0, 0.5, -1], frames=wrong)
     view._handle_custom_msg({"frames": [0.4, 0.5, -1]}, [])
-    assert ({"posed": True}, None) in heard
+    assert ({"posed": True}, []) in heard
     np.testing.assert_allclose(view.poses[1], frames(IR50P, [0.4, 0.5, -1])[1])
     assert view.poses[3][0][0] is None  # what JSON has for NaN
-    with pytest.raises(InputError, match=r"\(4, 4, 4\)"):
-        view.draw(np.eye(4))
+    monkeypatch.setattr(view, "_frames", lambda q: np.eye(4))
+    view._handle_custom_msg({"frames": [0.4, 0.5, -1]}, [])
+    assert "(4,4,4)" in heard[-1][0]["error"]
 
 
 def test_a_saved_notebook_of_twenty_views_has_less_than_a_megabyte(run):
@@ -140,25 +137,25 @@ def still(view):
     return np.asarray(Image.open(io.BytesIO(base64.b64decode(data["image/png"]))).convert("RGB")).astype(int)
 
 
-def coloured(picture, colour):
-    """Share of the pixels that are nearly of a colour."""
-    return (np.abs(picture - colour).max(axis=-1) < 12).mean()
-
-
 def test_the_still_picture_shows_pose_frames_and_ellipsoids():
     view = LiveArm(IR50P, [0, 0.5, -1])
     first = still(view)
     view.q = [1, 0.5, -1]
     assert (first != still(view)).any(axis=-1).mean() > 0.01
-    forearm = (213, 94, 0)
     own = still(LiveArm(IR50P, [0, 0.5, -1], frames=lambda q: frames(IR50P, -q)))
-    assert coloured(first, forearm) > 0.002 > coloured(own, forearm)  # links of frames have one colour
+    mirrored = still(LiveArm(IR50P, [0, -0.5, 1], badge="yours"))
+    assert differ(own, mirrored) < 0.001 < 0.01 < differ(own, first)
     axes = still(LiveArm(IR50P, [0, 0.5, -1], frames=lambda q: frames(IR50P, -q), layers=["frames"]))
     assert (axes != own).any(axis=-1).mean() > 0.01
     both = ["velocity ellipsoid", "force ellipsoid"]
     bent, stretched = (still(LiveArm(IR50P, q, layers=both)) for q in ([0, 0.5, -1], [0, 0.5, 0]))
     assert bluish(bent) > bluish(first) + 0.002
     assert pink(bent) > 0.005 > 0.001 > pink(stretched)  # stretched out, the forces have no end
+
+
+def differ(one, other):
+    """Share of the pixels that differ by more than the smoothing of edges."""
+    return (np.abs(one - other) > 60).any(axis=-1).mean()
 
 
 def bluish(picture):
@@ -213,7 +210,7 @@ def until(true, seconds=10):
 
 
 def test_importing_the_view_costs_no_bundle():
-    code = "import ir50p_lab.course.live_arm.view as v; assert v.Bundle.shared is None"
+    code = "import ir50p_lab.course.live_arm.view as v; assert v.shared_bundle.cache_info().currsize == 0"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 

@@ -2,7 +2,7 @@
 
 import base64
 import gzip
-import hashlib
+import json
 import threading
 import weakref
 from functools import cache
@@ -16,18 +16,11 @@ import traitlets
 from ir50p_lab.course.badge import badge_of
 from ir50p_lab.course.live_arm.still import still_png
 from ir50p_lab.course.live_arm.track import pack
-from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import check_arm, vectors3
 
-_FOLDER = Path(__file__).parent
-_WINDOW = 10.0  # s of a live run that are shown
+BUNDLE = Path(__file__).parent / "static" / "live_arm.js"  # the script that draws, as built by npm
 LAYERS = ("table", "shadow", "ghost", "trail")
-
-
-@cache
-def bundle_text():
-    """The script that draws, as built by npm."""
-    return (_FOLDER / "static" / "live_arm.js").read_text(encoding="utf-8")
+_WINDOW = 10.0  # s of a live run that are shown
 
 
 class Bundle(anywidget.AnyWidget):
@@ -35,14 +28,12 @@ class Bundle(anywidget.AnyWidget):
 
     _esm = "export default {};"
     packed = traitlets.Bytes().tag(sync=True)
-    shared = None
 
-    @classmethod
-    def get(cls):
-        """The one of this kernel."""
-        if cls.shared is None or cls.shared.comm is None:
-            cls.shared = cls(packed=gzip.compress(bundle_text().encode(), 9, mtime=0))
-        return cls.shared
+
+@cache
+def shared_bundle():
+    """The one of this kernel."""
+    return Bundle(packed=gzip.compress(BUNDLE.read_bytes(), 9, mtime=0))
 
 
 class LiveArm(anywidget.AnyWidget):
@@ -59,18 +50,14 @@ class LiveArm(anywidget.AnyWidget):
         height: CSS pixels; sliders: of the joints; readout: where the tip is, in numbers (the menu has a switch too).
 
     Attributes: q, list of rad, in both directions; layers.
-    `play(run)` shows a motion, `draw(T)` an arm by its frames. Raises InputError for what cannot be drawn.
+    `play(run)` shows a motion. Raises InputError for what cannot be drawn.
     """
 
-    _esm = _FOLDER / "loader.js"
+    _esm = BUNDLE.parents[1] / "loader.js"
     bundle = traitlets.Instance(ipywidgets.Widget).tag(sync=True, **ipywidgets.widget_serialization)
-    digest = traitlets.Unicode().tag(sync=True)
-    lengths = traitlets.List().tag(sync=True)
-    limits = traitlets.List().tag(sync=True)
-    q = traitlets.List().tag(sync=True)
     options = traitlets.Dict().tag(sync=True)
+    q = traitlets.List().tag(sync=True)
     layers = traitlets.List().tag(sync=True)
-    things = traitlets.Dict().tag(sync=True)
     poses = traitlets.List().tag(sync=True)
     track = traitlets.Bytes(b"").tag(sync=True)
     shape = traitlets.Dict().tag(sync=True)
@@ -79,44 +66,28 @@ class LiveArm(anywidget.AnyWidget):
                  board=None, camera=None, height=420, sliders=True, readout=True):  # fmt: skip
         self.arm, self._on_drag, self._frames = check_arm(arm), on_drag, frames
         self._stop = threading.Event()
-        things = {}
-        if ball is not None:
-            things["ball"] = {"p": vectors3("ball", ball[0]).tolist(), "radius": float(ball[1])}
-        if board is not None:
-            things["board"] = {"T": _rows(board[0]), "square": float(board[1]), "pattern": list(board[2])}
-        if camera is not None:
-            K, T, size = camera
-            things["camera"] = {"K": np.asarray(K, dtype=float).tolist(), "T": _rows(T), "size": list(size)}
+        things = {"ball": ball, "board": board, "camera": camera}
+        things = {name: thing for name, thing in things.items() if thing is not None}
+        options = {
+            "lengths": arm.l,
+            "limits": np.clip([arm.q_min, arm.q_max], -np.pi, np.pi).T,
+            "badge": badge or badge_of(on_drag or frames),
+            "drag": "browser" if on_drag is None else "kernel",
+            "frames": frames is not None,
+            "height": height,
+            "sliders": sliders,
+            "readout": readout,
+            "things": things,
+        }
         super().__init__(
-            bundle=Bundle.get(),
-            digest=hashlib.sha256(bundle_text().encode()).hexdigest()[:16],
-            lengths=list(arm.l),
-            limits=np.column_stack([np.clip(arm.q_min, -np.pi, None), np.clip(arm.q_max, None, np.pi)]).tolist(),
+            bundle=shared_bundle(),
+            options=json.loads(json.dumps(options, default=lambda array: array.tolist())),
             q=vectors3("q", q).tolist(),
-            options={
-                "badge": badge or badge_of(on_drag or frames),
-                "drag": "browser" if on_drag is None else "kernel",
-                "frames": None if frames is None else "function",
-                "height": int(height),
-                "sliders": bool(sliders),
-                "readout": bool(readout),
-                "speed": 1.0,
-                "loop": False,
-            },
             layers=[*layers, *things],
-            things=things,
         )
         if frames is not None:
             self._pose(self.q)
         self.on_msg(self._heard)
-
-    def draw(self, T):
-        """Draw the arm by T (4, 4, 4): transforms of frames 0 to 3 to the base, right or wrong."""
-        T = np.asarray(T, dtype=float)
-        if T.shape != (4, 4, 4):
-            raise InputError(f"frames of shape {T.shape}: give (4, 4, 4), the transforms of frames 0 to 3")
-        self.options = self.options | {"frames": self.options["frames"] or "given"}
-        self.poses = [[[float(v) if np.isfinite(v) else None for v in row] for row in one] for one in T]
 
     def play(self, *runs, labels=None, speed=1.0, loop=False):
         """Show a motion, or two side by side, with a bar to play, pause and scrub, and curves over time.
@@ -127,7 +98,7 @@ class LiveArm(anywidget.AnyWidget):
         Returns: the view. Raises InputError for runs that cannot be shown.
         """
         self._stop.set()
-        self.options = self.options | {"speed": float(speed), "loop": bool(loop)}
+        self.options = self.options | {"speed": speed, "loop": loop}
         if hasattr(runs[0], "is_open") or hasattr(runs[0], "alive"):
             self._stop = threading.Event()
             threading.Thread(target=_feed, args=(weakref.ref(self), runs[0], self._stop), daemon=True).start()
@@ -140,28 +111,28 @@ class LiveArm(anywidget.AnyWidget):
         self.q = [float(v) for v in runs[0].q[0]]
         self.track = rows
 
+    def _pose(self, q):
+        T = np.asarray(self._frames(np.array(q)), dtype=float)
+        self.poses = np.where(np.isfinite(T), T, None).reshape(4, 4, 4).tolist()
+
     def _heard(self, _, message, __):
         """What the browser asks for. Errors of the student's function are shown under the arm."""
-        if "frames" in message:
-            self._pose(message["frames"])
-            self.send({"posed": True})
-        elif "drag" in message:
-            answer = {"dragged": None}
-            try:
-                q = self._on_drag(np.array(message["drag"]), np.array(message["q"]))
-                answer["dragged"] = None if q is None else vectors3("q", q).tolist()
-                self.q = answer["dragged"] or self.q
-            except Exception as error:
-                answer["error"] = f"{type(error).__name__}: {error}"
-            self.send(answer)
-        elif "picture" in message:
-            self.send({"picture": True}, buffers=[still_png(self)])
-
-    def _pose(self, q):
+        answer, buffers = {}, []
         try:
-            self.draw(self._frames(np.array(q)))
+            if "frames" in message:
+                answer["posed"] = True
+                self._pose(message["frames"])
+            elif "drag" in message:
+                answer["dragged"] = None
+                q = self._on_drag(np.array(message["drag"]), np.array(message["q"]))
+                if q is not None:
+                    self.q = answer["dragged"] = vectors3("q", q).tolist()
+            else:
+                answer["picture"] = True
+                buffers = [still_png(self)]
         except Exception as error:
-            self.send({"dragged": None, "error": f"{type(error).__name__}: {error}"})
+            answer["error"] = f"{type(error).__name__}: {error}"
+        self.send(answer, buffers=buffers)
 
     def _repr_mimebundle_(self, **kwargs):
         """The widget, and the picture of this moment for viewers without one."""
@@ -169,26 +140,18 @@ class LiveArm(anywidget.AnyWidget):
         return {"image/png": base64.b64encode(still_png(self)).decode("ascii"), **data}, metadata
 
 
-def _rows(T):
-    return np.asarray(T, dtype=float).reshape(4, 4).tolist()
-
-
 def _feed(view, source, stop):
     """Send the last samples of a bench or of a loop in the background; when a run has ended, the whole of it."""
-    is_bench = hasattr(source, "is_open")
     words = "live" + (", simulated" if getattr(source, "simulated", False) else "")
-    shown, ended = None, True
-    while not stop.wait(0.04) and view() is not None:
-        over = not (source.is_open if is_bench else source.alive)
-        run = (source.live_run or source.recording) if is_bench else source
-        samples = None if run is None else run.recent(_WINDOW)
+    shown, fresh, alive = None, False, True
+    while alive and not stop.wait(0.04) and view() is not None:
+        alive = getattr(source, "is_open", None) or getattr(source, "alive", False)
+        run = getattr(source, "live_run", source) or source.recording
+        samples = run.recent(_WINDOW) if run is not None else None
         if samples is not None and len(samples.t) > 1 and samples.t[-1] != shown:
-            shown, ended = samples.t[-1], False
+            shown, fresh = samples.t[-1], True
             rows, shape = pack([samples], [""])
             view().send({"live": shape | {"source": words}}, buffers=[rows])
-        if not ended and (over or not getattr(run, "alive", True)):
-            ended, whole = True, getattr(run, "recording", run)
-            if whole is not None and len(whole) > 1:
-                view()._show([whole], [""])
-        if over:
-            return
+        if fresh and not getattr(run, "alive", alive):
+            fresh = False
+            view()._show([getattr(run, "recording", run)], [""])

@@ -1,5 +1,5 @@
 // LiveArm in the browser: an anywidget's render, and mount() for a page without a kernel.
-// State (see __init__.py): lengths, limits, q, options, layers, things, poses, track, shape.
+// State (see view.py): options, q, layers, poses, track, shape.
 import { Matrix4, Mesh, MeshBasicMaterial, PerspectiveCamera, Plane, Raycaster, Group, SphereGeometry, Vector2, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Curves } from "./curves.js";
@@ -16,9 +16,9 @@ const EVERY = 33; // ms between two messages to the kernel
 class View {
   constructor(model, el) {
     this.model = model;
-    this.l = model.get("lengths");
-    this.limits = model.get("limits");
     this.options = model.get("options");
+    this.l = this.options.lengths;
+    this.limits = this.options.limits;
     this.size = this.l[1] + this.l[2];
     this.q = [...model.get("q")];
     this.on = new Set(model.get("layers"));
@@ -37,7 +37,7 @@ class View {
 
   makeScene() {
     this.scene = makeScene(this.size);
-    this.layers = new Layers(this.scene, { lengths: this.l, limits: this.limits }, this.model.get("things"));
+    this.layers = new Layers(this.scene, this.options);
     this.robot = new Robot(this.l);
     this.ghost = new Robot(this.l, { upper: "#8a8f98", fore: "#8a8f98", opacity: 0.3 });
     this.second = new Robot(this.l, { upper: COLOURS.second, fore: COLOURS.second });
@@ -137,7 +137,7 @@ class View {
   // Move to q; tell: the kernel is to hear of it.
   pose(q, tell = false) {
     this.q = q;
-    if (this.options.frames === "function") this.ask({ frames: q });
+    if (this.options.frames) this.ask({ frames: q });
     if (tell) {
       this.write();
       this.tell();
@@ -239,13 +239,12 @@ class View {
 
   message(message, buffers) {
     if (message.live) this.live(new Track(buffers[0], message.live));
+    if (message.live) return;
+    this.error = message.error ?? null;
     if (message.posed) this.answered("frames");
-    if ("dragged" in message) {
-      this.answered("drag");
-      this.error = message.error ?? null;
-      if (message.error) this.say(message.error);
-      else this.followed(message.dragged, "kernel");
-    }
+    if ("dragged" in message) this.answered("drag");
+    if (message.error) this.say(message.error);
+    else if ("dragged" in message) this.followed(message.dragged, "kernel");
   }
 
   resize() {
@@ -350,8 +349,8 @@ class View {
     this.pause();
     this.take(bytes?.byteLength ? new Track(bytes, shape) : null);
     if (!this.track) return;
-    this.rate = this.options.speed;
-    this.again = this.options.loop;
+    this.rate = this.model.get("options").speed;
+    this.again = this.model.get("options").loop;
     this.seek(this.track.start);
   }
 

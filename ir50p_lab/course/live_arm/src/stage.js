@@ -97,7 +97,7 @@ function thin(points, colour, dashed = false) {
 
 const matrixOf = (rows) => new Matrix4().set(...rows.flat());
 
-function checkerboard({ T, square, pattern: [columns, rows] }) {
+function checkerboard([T, square, [columns, rows]]) {
   const canvas = document.createElement("canvas"), pen = canvas.getContext("2d");
   Object.assign(canvas, { width: 40 * (columns + 1), height: 40 * (rows + 1) });
   for (let i = 0; i <= columns; i++) {
@@ -113,7 +113,7 @@ function checkerboard({ T, square, pattern: [columns, rows] }) {
 }
 
 // K (3, 3), size [width, height] in pixels, T: camera to base coordinates.
-function frustum({ T, K, size: [width, height] }, reach) {
+function frustum([K, T, [width, height]], reach) {
   const depth = 0.25 * reach, corner = (u, v) => [((u - K[0][2]) / K[0][0]) * depth, ((v - K[1][2]) / K[1][1]) * depth, depth];
   const corners = [corner(0, 0), corner(width, 0), corner(width, height), corner(0, height)];
   const edges = corners.flatMap((point, i) => [[0, 0, 0], point, point, corners[(i + 1) % 4]]);
@@ -136,7 +136,7 @@ function workspace(l, [, second, third]) {
 
 // All layers by name: Object3D each. Only what can be shown is there.
 export class Layers {
-  constructor(scene, { lengths, limits }, things) {
+  constructor(scene, { lengths, limits, things }) {
     const reach = lengths[1] + lengths[2];
     this.lengths = lengths;
     const table = new Group(), top = new Mesh(new CircleGeometry(1.12 * reach, 96), new MeshBasicMaterial({ color: "#eef1f4", side: DoubleSide }));
@@ -158,7 +158,7 @@ export class Layers {
       "velocity ellipsoid": this.velocity, "force ellipsoid": this.force, workspace: this.space,
     };
     if (things.ball) {
-      const { p, radius } = things.ball;
+      const [p, radius] = things.ball;
       this.all.ball = new Mesh(new SphereGeometry(radius, 32, 24), new MeshPhongMaterial({ color: COLOURS.ball, shininess: 60 }));
       this.all.ball.position.set(...p);
     }
