@@ -59,7 +59,7 @@ class ArmInstance:
         rules |= dict.fromkeys(("motor_gain", "pot_slope"), "> 0")
         for field in fields(self):
             name, value, rule = f"unit {field.name}", getattr(self, field.name), rules.get(field.name, ">= 0")
-            if np.size(field.default) == 3:
+            if field.type is tuple:
                 value = tuple(number(name, one, rule) for one in vector3(name, value))
                 object.__setattr__(self, field.name, value)
             else:
@@ -68,8 +68,6 @@ class ArmInstance:
 
     def drawn(self, seed):
         """The copy number `seed` of the series: spread 0, its own values (even distribution)."""
-        if self.spread == 0:
-            return self
         even = np.random.default_rng([int(seed), 0]).uniform(-self.spread, self.spread, (5, 3))
         return replace(
             self,

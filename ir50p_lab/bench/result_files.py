@@ -67,7 +67,7 @@ def add(kind, suffix, write, **about):
     Raises InputError if it cannot be written.
     """
     number = 1 + max((int(one.name.rpartition("-")[2]) for one in every() if one.kind == kind), default=0)
-    name, now = f"{kind}-{number}", datetime.now().astimezone().isoformat()
+    name, now = f"{kind}-{number}", _now()
     result = Result(name=name, kind=kind, made=now, chosen=now, withdrawn=False, file=f"{name}{suffix}", **about)
     try:
         folder().mkdir(parents=True, exist_ok=True)
@@ -78,19 +78,17 @@ def add(kind, suffix, write, **about):
     return result
 
 
-def change(name, **fields):
-    """Change the description of a result: Result. Raises InputError for a name that is none."""
+def change(name, *, withdrawn):
+    """Withdraw a result, or let it count from now on, whatever is newer. Raises InputError for a name that is none."""
     known = {one.name: one for one in every()}
     if name not in known:
         raise InputError(f"there is no result {name!r}: {', '.join(known) or 'none at all'}")
-    result = replace(known[name], **fields)
-    _describe(result)
-    return result
+    chosen = known[name].chosen if withdrawn else _now()
+    _describe(replace(known[name], withdrawn=withdrawn, chosen=chosen))
 
 
-def choose(name):
-    """From now on this result counts, whatever is newer: Result. Raises InputError for a name that is none."""
-    return change(name, chosen=datetime.now().astimezone().isoformat(), withdrawn=False)
+def _now():
+    return datetime.now().astimezone().isoformat()
 
 
 def _describe(result):
