@@ -3,8 +3,8 @@
 import math
 import warnings
 from array import array
+from collections import namedtuple
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -17,21 +17,13 @@ class RecordingWarning(UserWarning):
     """Something of a recording was left out when it was loaded."""
 
 
-class JointSummary(NamedTuple):
+class JointSummary(namedtuple("JointSummary", "joint start final error overshoot swing u_std")):
     """How one joint did in a run; angles in rad, u in PWM counts; NaN where the recording has no reference or u.
 
     joint: 1, 2, 3; start, final: angle first, and mean of the last second; error: last reference - final;
     overshoot: how far the angle went beyond the last reference, seen from the start; swing: largest minus smallest
     angle in the last 5 s (or the last half of a short run): hunting shows here; u_std: of the command, PWM counts.
     """
-
-    joint: int
-    start: float
-    final: float
-    error: float
-    overshoot: float
-    swing: float
-    u_std: float
 
 
 class Recording:
@@ -72,13 +64,9 @@ class Recording:
         line was cut off and left out.
         """
         header, table, notes, events = recording_file.read(path)
-        loaded = cls(table, header, path=Path(path), notes=notes, events=events)
-        if "period_s" in header and len(loaded) > 1 and loaded._told_period() != loaded.period:
-            said = f"period_s = {header['period_s']} does not fit its times"
-            loaded.notes += (f"{said}: their step of {loaded.period:.4g} s is taken",)
-        for note in loaded.notes:
+        for note in notes:
             warnings.warn(f"{path}: {note}", RecordingWarning, stacklevel=2)
-        return loaded
+        return cls(table, header, path=Path(path), notes=notes, events=events)
 
     def save(self, path):
         """Write the recording to `path` (CSV, as a bench writes it). Returns the path. Raises OSError if it cannot."""

@@ -1,34 +1,23 @@
 """The student's results as files: what was measured, when, on which bench; and the newest that counts for a bench."""
 
 import json
-from dataclasses import asdict, dataclass, replace
+from collections import namedtuple
+from dataclasses import replace
 from datetime import datetime
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.home import home, replace_text
 
+_FIELDS = "name kind made chosen arm bench bench_id unit seed simulated withdrawn file"
 
-@dataclass(frozen=True, kw_only=True)
-class Result:
+
+class Result(namedtuple("Result", _FIELDS)):
     """One result: a description NAME.json in `results/` of the student's folder, and the file that it names.
 
     name: such as 'model-2'; kind: 'calibration', 'model' or 'camera'; made, chosen: ISO times, chosen is the later one
     if an older result was taken again; arm, bench: names; bench_id: of the bench it was measured on; unit, seed: of a
     simulated arm, else ''; simulated: bool; withdrawn: bool; file: name of the file with the numbers.
     """
-
-    name: str
-    kind: str
-    made: str
-    chosen: str
-    arm: str
-    bench: str
-    bench_id: str
-    unit: str
-    seed: str
-    simulated: bool
-    withdrawn: bool
-    file: str
 
     @property
     def path(self):
@@ -84,7 +73,7 @@ def change(name, *, withdrawn):
     if name not in known:
         raise InputError(f"there is no result {name!r}: {', '.join(known) or 'none at all'}")
     chosen = known[name].chosen if withdrawn else _now()
-    _describe(replace(known[name], withdrawn=withdrawn, chosen=chosen))
+    _describe(known[name]._replace(withdrawn=withdrawn, chosen=chosen))
 
 
 def _now():
@@ -92,7 +81,7 @@ def _now():
 
 
 def _describe(result):
-    replace_text(folder() / f"{result.name}.json", json.dumps(asdict(result), indent=1) + "\n")
+    replace_text(folder() / f"{result.name}.json", json.dumps(result._asdict(), indent=1) + "\n")
 
 
 def own_calibration(bench):
