@@ -1,8 +1,8 @@
 """`python3 -m ir50p_lab bench-test`: the first power-on, joint by joint, with small drives; writes what it found.
 
 Steps: noise at rest; each potentiometer turned by hand from end to end; each joint pushed by a drive that rises until
-it moves, first away from the nearer end, then back; the board's watchdog. A joint whose potentiometer is not right is
-not driven. The person at the bench is asked before each step; behind the simulated arm stands a simulated person.
+it moves, first away from the nearer end, then back. A joint whose potentiometer is not right is not driven. The person
+at the bench is asked before each step; behind the simulated arm stands a simulated person.
 """
 
 import argparse
@@ -23,7 +23,6 @@ MOVED = 8.0  # counts a joint must move to have moved: 40 to 65 mrad
 STEADY = 3.0  # counts rms at rest
 JUMP = 40.0  # counts from one sample to the next: no hand turns so fast, only a gap in the track does
 TRAVEL = 100.0  # counts that a joint turned from end to end must change at least
-SILENCE = 0.3  # s without a command; the board cuts after 0.1 s, the run goes on until 0.5 s
 UP = ("counter-clockwise seen from above", "up", "up")
 
 
@@ -83,7 +82,7 @@ def bench_test(bench, person, *, joints=(1, 2, 3), say=print):
         person.ask("Motor supply off")
         person.lay_down()
         found("noise", 0, _noise, bench)
-        sound, driven = {}, {}
+        sound = {}
         for joint in joints:
             person.ask(
                 f"During the next {person.turn:.0f} s turn joint {joint} by hand: {UP[joint - 1]} to its end, slowly "
@@ -93,9 +92,7 @@ def bench_test(bench, person, *, joints=(1, 2, 3), say=print):
         person.lay_down()
         person.ask("Motor supply on, limit at 1 A, a hand on the emergency stop")
         for joint in joints:
-            driven[joint] = found("drive", joint, _drive, bench, joint - 1, sound[joint])
-        if 1 in driven and driven[1].passed:
-            found("watchdog", 1, _watchdog, bench, driven[1].values)
+            found("drive", joint, _drive, bench, joint - 1, sound[joint])
     finally:
         bench.cut()
     return findings
@@ -156,7 +153,7 @@ def _drive(bench, joint, sound):
     first = 1 if _rest(bench)[-10:, joint].mean() < 512 else -1
     values = {}
     for sign in (first, -first):
-        pwm, moved = _push(bench, joint, sign, outwards=sign != first and not values)
+        pwm, moved = _push(bench, joint, sign)
         if pwm is None:
             continue
         other = np.abs(moved).argmax()
@@ -170,16 +167,15 @@ def _drive(bench, joint, sound):
     return f"{name} breaks away at {shown} PWM counts, as commanded", values
 
 
-def _push(bench, joint, sign, *, outwards):
-    """Raise the drive of a joint until something moves; outwards: also at an end of its travel, against the stop.
+def _push(bench, joint, sign):
+    """Raise the drive of a joint until something moves; at an end of its travel also against the stop.
 
     Returns: PWM counts (None: nothing moved, up to the highest or until the guard took it for stuck), change (3,)
     counts.
     """
     before = _rest(bench, 0.6)[-10:].mean(axis=0)
-    recent, pwm, travel = [], None, bench._travel
-    if outwards:
-        bench._travel = ((-np.inf, np.inf),) * 3
+    recent, pwm = [], None
+    travel, bench._travel = bench._travel, ((-np.inf, np.inf),) * 3
     try:
         for k, sample in enumerate(bench.run((STEPS + 1) * STEP_CYCLES * bench.period, record=False)):
             recent = [*recent[-4:], sample.counts]
@@ -194,28 +190,6 @@ def _push(bench, joint, sign, *, outwards):
         bench._travel = travel
         bench.cut()
     return None, None
-
-
-def _watchdog(bench, values):
-    """Keep joint 1 moving, then say nothing: the board must brake by itself."""
-    if bench.simulated:
-        return "the simulated arm has no board, and no watchdog to test", {}
-    breakaway = values.get("breakaway_up_pwm") or values["breakaway_down_pwm"]
-    trips, after, silent = bench.statistics.watchdog_trips, [], False
-    for sample in bench.run(1.2, record=False):
-        if sample.t < 0.5:
-            bench.drive([breakaway + 20 * np.sign(breakaway), 0, 0])
-        elif silent:
-            after.append(sample.counts[0])
-        else:
-            silent = True
-            bench._clock.sleep(SILENCE)
-            bench.cut()  # else the next frame repeats the command
-    tripped, still = bench.statistics.watchdog_trips - trips, np.ptp(after) < MOVED
-    text = f"after {SILENCE:g} s without a command the board had cut the drive {tripped} times"
-    text += ", and joint 1 stood" if still else ", but joint 1 went on: switch off, and load the sketch again"
-    _require(tripped == 1 and still, text)
-    return text, {}
 
 
 def write_report(bench, findings):

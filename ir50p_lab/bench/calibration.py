@@ -9,11 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import InputError, SuspiciousArmWarning
-from ir50p_lab.inputs import check_arm, numbers, vector3, vectors3
+from ir50p_lab.inputs import check_arm, vector3, vectors3
 
 _HEAD = "# counts = zero + slope q: counts of the 10-bit converter, slope in counts/rad, q in rad, joints 1 to 3\n"
 _JOINTS = ("joint1", "joint2", "joint3")
-_PLAUSIBLE = (20.0, 1023 / np.radians(60))  # counts/rad: a potentiometer of many turns; of 60 deg over the full range
 _FULL = 1023.0
 _STEP_BACK = 300.0  # counts between two neighbouring angles: more than a misread angle, less than a wrap makes
 
@@ -36,8 +35,8 @@ class JointCalibration:
     Counts are those of a 10-bit converter, 0..1023. Make one with `fit_calibration`, keep it with
     `course.save_result`: then `connect()` takes it for the bench it was measured on.
 
-    Raises InputError if a number is not finite or a slope is 0. Warns SuspiciousArmWarning for a negative slope (then
-    the joint runs away from its set point) and for one that no potentiometer has.
+    Raises InputError if a number is not finite or a slope is 0. Warns SuspiciousArmWarning for a negative slope: then
+    the joint runs away from its set point.
     """
 
     slope: tuple
@@ -58,11 +57,9 @@ class JointCalibration:
             said = f"slope of joint {joint} is {slope:.4g} counts/rad"
             if slope == 0:
                 raise InputError(f"{said}: is the potentiometer connected, and does it turn with the joint?")
-            why = f"{_PLAUSIBLE[0]:.0f} to {_PLAUSIBLE[1]:.0f} is usual. Were the angles in degrees? Give rad"
             if slope < 0:
-                why = "negative: swap the outer wires of its potentiometer, or the joint will run away when driven"
-            if not _PLAUSIBLE[0] <= slope <= _PLAUSIBLE[1]:
-                warnings.warn(f"{said}; {why}", SuspiciousArmWarning, stacklevel=3)
+                said += ", negative: swap the outer wires of its potentiometer, or the joint will run away when driven"
+                warnings.warn(said, SuspiciousArmWarning, stacklevel=3)
 
     def radians(self, counts):
         """Angles of counts; both (3,) or (n, 3)."""
@@ -101,11 +98,11 @@ class JointCalibration:
         """Read a file that `save` wrote (or a person). Raises InputError that names the file and what is wrong."""
         try:
             data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-            points = tuple(_pairs(data.pop(name, {})) for name in _JOINTS)
-            data["remarks"] = tuple(data.get("remarks", ()))
-            return cls(points=points if any(q for q, _ in points) else (), **data)
-        except (OSError, ValueError, TypeError, AttributeError, RecursionError) as error:
-            raise InputError(f"{path} is no calibration: {error}. Calibrate again (notebook 10)") from None
+            points = tuple(_pairs(**data.pop(name)) for name in _JOINTS if name in data)
+            return cls(points=points, remarks=tuple(data.pop("remarks", ())), **data)
+        except (OSError, ValueError, TypeError, RecursionError) as error:
+            said = f"{path} is no calibration ({error})"
+            raise InputError(f"{said}: results(withdraw={Path(path).stem!r}), and calibrate again") from None
 
     def _repr_html_(self):
         """Slopes, zeros, standard errors and residuals as a table, then the remarks, as a notebook shows it."""
@@ -123,17 +120,14 @@ class JointCalibration:
 
 
 def _with_errors(values, errors):
-    if errors is None:
-        return [f"{value:.2f}" for value in values]
-    return [f"{value:.2f} ± {error:.2f}" for value, error in zip(values, errors, strict=True)]
+    return [f"{value:.2f} ± {error:.2f}" for value, error in zip(values, errors or (0, 0, 0), strict=True)]
 
 
-def _pairs(table):
-    """What was measured at one joint, from its table in a file: angles and counts."""
-    q, counts = (numbers(name, table.get(name, ())) for name in ("q", "counts"))
-    if q.ndim != 1 or q.shape != counts.shape:
-        raise InputError(f"q {q.shape} and counts {counts.shape} of a joint must be two lists of numbers, in pairs")
-    return tuple(q.tolist()), tuple(counts.tolist())
+def _pairs(q, counts):
+    """What was measured at one joint, from its table in a file."""
+    if np.shape(q) != np.shape(counts):
+        raise InputError(f"{len(q)} angles q but {len(counts)} counts of a joint: they belong together in pairs")
+    return tuple(q), tuple(counts)
 
 
 # Bench data of an older ROB3 (public repository eurobtec/rob3): counts of a 10-bit converter per rad of axes 1-3.
@@ -205,15 +199,13 @@ def _line(joint, q, counts):
     # errors of a and b carried over to first order
     variances = cov[0, 0] / b**4, (cov[1, 1] + zero**2 * cov[0, 0] + 2 * zero * cov[0, 1]) / b**2
     errors = [float(np.sqrt(max(0.0, v))) for v in variances]
-    remarks = tuple(f"joint {joint}: {text}" for text in _remarks(q, counts, slope, zero, errors[0]))
+    remarks = tuple(f"joint {joint}: {text}" for text in _remarks(q, counts, slope, zero))
     return float(slope), float(zero), *errors, (tuple(q.tolist()), tuple(counts.tolist())), remarks
 
 
-def _remarks(q, counts, slope, zero, stderr_slope):
+def _remarks(q, counts, slope, zero):
     if np.ptp(q) < 0.5:
         yield f"the angles span {np.degrees(np.ptp(q)):.0f} deg only: use the whole travel"
-    if stderr_slope > 0.02 * abs(slope):
-        yield f"the slope is known to {100 * stderr_slope / abs(slope):.0f} % only"
     if counts.min() <= 2 or counts.max() >= _FULL - 2:
         yield "a reading lies at the end of the converter's range: the potentiometer may turn on without it"
     if len(q) < 6:

@@ -62,7 +62,7 @@ def mean_voltage(duty, direction=1, *, supply=12.0, wiring="sign-magnitude"):
 class StopCriterion:
     """Stops driving a joint that has arrived, around any controller; each joint on its own (Figure 4.7 corrected).
 
-    A joint stops when its |e| has been below `inner` for `dwell` seconds, and goes on when |e| exceeds `outer`
+    A joint stops when its |e| is below `inner`, and goes on when |e| exceeds `outer`
     (hysteresis: noise at one bound would switch it on and off). e is the error behind a first-order low pass. While its
     reference moves a joint is always driven. The thesis stops where e < 0.01, with its sign: every joint above its set
     point counts as arrived, however far away it is (signed=True shows it).
@@ -78,14 +78,14 @@ class StopCriterion:
     Args:
         controller: object with step(t, measured, reference) -> u (3,).
         inner, outer: rad, one number or (3,), 0 < inner < outer.
-        hold: 'latch' or 'off'. dwell: s. smooth: time constant of the low pass for e and u, s; 0: none.
-        signed: the thesis' criterion, e < inner with the sign and without hysteresis or dwell; to see what it does.
+        hold: 'latch' or 'off'. smooth: time constant of the low pass for e and u, s; 0: none.
+        signed: the thesis' criterion, e < inner with the sign and without hysteresis; to see what it does.
 
     Attributes: stopped: (3,) bool; unit, controller: of the controller inside.
     Raises InputError on other values.
     """
 
-    def __init__(self, controller, inner=0.01, outer=0.02, *, hold="latch", dwell=0.1, smooth=0.05, signed=False):
+    def __init__(self, controller, inner=0.01, outer=0.02, *, hold="latch", smooth=0.05, signed=False):
         check_controller(controller)
         self.controller, self.unit = controller, getattr(controller, "unit", "N m")
         self.inner = np.array(per_joint("inner", inner, "> 0", unit="rad"))
@@ -93,7 +93,7 @@ class StopCriterion:
         if (self.outer <= self.inner).any():
             raise InputError(f"outer = {outer} rad must be larger than inner = {inner} rad: the gap is the hysteresis")
         self.hold, self.signed = choice("hold", hold, ("latch", "off")), signed
-        self.dwell, self.smooth = dwell, smooth
+        self.smooth = smooth
         self.reset()
 
     def reset(self):
@@ -102,7 +102,6 @@ class StopCriterion:
             self.controller.reset()
         self.stopped = np.zeros(3, dtype=bool)
         self._t, self._e, self._u = -math.inf, np.zeros(3), np.zeros(3)
-        self._since = np.full(3, np.inf)
 
     def step(self, t, measured, reference):
         """The command for one sample, (3,); see `Controller.step`."""
@@ -110,22 +109,16 @@ class StopCriterion:
         blend = 1.0 - math.exp(-max(0.0, t - self._t) / max(self.smooth, 1e-9))
         self._t = t
         self._e += blend * (rows[0] - measured - self._e)
-        self._decide(t, moving=rows[1] != 0)
+        far, moving = np.abs(self._e), rows[1] != 0
+        self.stopped = ((far < self.inner) | (self.stopped & (far <= self.outer))) & ~moving
+        if self.signed:
+            self.stopped = self._e < self.inner
         rows[0, self.stopped], rows[1:, self.stopped] = np.asarray(measured)[self.stopped], 0.0
         u = np.array(self.controller.step(t, measured, rows), dtype=float)
         going = ~self.stopped
         self._u[going] += blend * (u[going] - self._u[going])
         u[self.stopped] = self._u[self.stopped] if self.hold == "latch" else 0.0
         return u
-
-    def _decide(self, t, moving):
-        if self.signed:
-            self.stopped = self._e < self.inner
-            return
-        size = np.abs(self._e)
-        self._since = np.where((size < self.inner) & ~moving, np.minimum(self._since, t), np.inf)
-        arrived = t - self._since >= self.dwell - 1e-9
-        self.stopped = (self.stopped & (size <= self.outer) & ~moving) | arrived
 
 
 def _finite(name, value):

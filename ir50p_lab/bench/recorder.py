@@ -54,11 +54,7 @@ class Recorder:
             raise RecordingError(
                 f"cannot record in {folder.absolute()}: {error.strerror}; {_ELSEWHERE}, or record=False for none"
             ) from None
-        try:
-            self._put(head_text(head))
-        except RecordingError:  # the head is of use only as a whole
-            self.path.unlink(missing_ok=True)
-            raise
+        self._put(head_text(head))
 
     def write(self, sample, pwm, reference, gripper):
         """Record one cycle: the Sample, the command (3,) PWM counts, reference (3,) rad or None, gripper bool.

@@ -103,17 +103,14 @@ class Recording:
 
         Where most cycles came late or were left out their times say nothing of it.
         """
-        told = self._told_period()
+        try:
+            told = float(self.header["period_s"])
+        except (KeyError, ValueError):
+            told = math.nan
         if len(self) < 2 or (told > 0 and self.missed[-1] > 0.5 * len(self)):
             return told
         step = float(np.median(np.diff(self.t)))
         return told if abs(told - step) <= 0.2 * step else step
-
-    def _told_period(self):
-        try:
-            return float(self.header["period_s"])
-        except (KeyError, ValueError):
-            return math.nan
 
     def between(self, t0, t1):
         """The samples with t0 <= t <= t1 (s), as a Recording of its own; times stay as they are."""

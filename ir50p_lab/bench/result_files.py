@@ -36,7 +36,7 @@ def folder():
 def every():
     """All Results, the one chosen last at the end. Raises InputError for a description that is none."""
     found = []
-    for path in folder().glob("*-*.json"):
+    for path in {*folder().glob("*-*.json")} - {*folder().glob("bench-test-*.json")}:  # reports of `bench_test`
         try:
             found.append(Result(**json.loads(path.read_text(encoding="utf-8"))))
         except (OSError, ValueError, TypeError, RecursionError) as error:
@@ -91,8 +91,5 @@ def own_calibration(bench):
     found = newest("calibration", bench.bench_id, bench.arm.name) if bench.bench_id else None
     if found is None:
         return None
-    try:
-        calibration = JointCalibration.load(found.path)
-    except InputError as error:
-        raise InputError(f"{error}. To do without it: results(withdraw={found.name!r})") from None
+    calibration = JointCalibration.load(found.path)
     return replace(calibration, source=f"yours, {found.name} ({calibration.source})")
