@@ -120,7 +120,7 @@ class JointCalibration:
 
 
 def _with_errors(values, errors):
-    return [f"{value:.2f} ± {error:.2f}" for value, error in zip(values, errors or (0, 0, 0), strict=True)]
+    return [f"{value:.2f} ± {error:.2f}" for value, error in zip(values, errors or (np.nan,) * 3, strict=True)]
 
 
 def _pairs(q, counts):

@@ -50,7 +50,6 @@ class ReplayBench(Bench):
         counts = recording.counts
         self._counts = np.where(np.isfinite(counts), counts, self.calibration.counts(recording.q))
         self._late = np.nan_to_num(recording.missed).astype(int)
-        self._k, self._started = 0, 0.0
         told = recording.header.get("bench_id", "none")
         self.bench_id = None if told == "none" else told
 
@@ -64,14 +63,15 @@ class ReplayBench(Bench):
             print(f"The recording ends at t = {self.original.t[-1]:.2f} s, and with it this run.")
 
     def _measure(self, cycle, drive):
-        self._k, t = cycle, self.original.t
+        t = self.original.t
+        self._q = self.original.q[cycle]
         if self.realtime:
             time.sleep(max(0.0, self._started + t[cycle] - t[0] - time.perf_counter()))
         self._run.pace.missed = int(self._late[cycle])
         return float(t[cycle]), self._counts[cycle], False
 
     def _radians(self, counts):
-        return self.original.q[self._k]
+        return self._q  # as it was recorded
 
     def _header(self):
         told = {f"original_{key}": value for key, value in self.original.header.items() if key in _TOLD}
