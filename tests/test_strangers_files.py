@@ -18,8 +18,6 @@ ROWS = "t,q1,q2,q3\n0,0,0,0\n0.01,0,0,0\n"
     ("load", "text", "error"),
     [
         (Recording.load, ROWS + "# event: 1.2.3 s: x\n", RecordingError),
-        (Recording.load, r"# note: \U00110000" + "\n" + ROWS, RecordingError),
-        (Recording.load, ROWS + r"# event: 1 s: \Uffffffff" + "\n", RecordingError),
         (JointCalibration.load, "slope = [1, 1, 1]\nzero = [0, 0, 0]\nremarks = 5", InputError),
         (JointCalibration.load, "slope = " + "[" * MANY, InputError),
         (load_arm, "l = " + "[" * MANY, ArmError),

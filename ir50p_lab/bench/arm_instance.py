@@ -47,34 +47,27 @@ class ArmInstance:
 
     # --- how much copies differ: 1 as below, 0 not at all
     spread: float = 1.0
-    # Half widths. Assumed: usual tolerances of small DC motors, greased gears and hand-mounted potentiometers.
-    gain_spread: float = 0.03
-    friction_spread: float = 0.05
+    # Half widths of the potentiometers, mounted by hand. Assumed; likewise 3 % of the motors, 5 % of the greased gears.
     slope_spread: float = 0.01
     shift_spread: float = 3.0
     bow_spread: float = 0.5
 
     def __post_init__(self):
-        rules = dict.fromkeys(("pot_shift", "pot_bow", "table"), "finite")
-        rules |= dict.fromkeys(("motor_gain", "pot_slope"), "> 0")
         for field in fields(self):
-            name, value, rule = f"unit {field.name}", getattr(self, field.name), rules.get(field.name, ">= 0")
-            if np.size(field.default) == 3:
-                value = tuple(number(name, one, rule) for one in vector3(name, value))
-                object.__setattr__(self, field.name, value)
+            name, value = f"unit {field.name}", getattr(self, field.name)
+            if field.type is tuple:
+                object.__setattr__(self, field.name, tuple(vector3(name, value, unit="its unit").tolist()))
             else:
-                number(name, value, rule)
+                number(name, value)
         whole("unit delay", self.delay, 0, 100)
 
     def drawn(self, seed):
         """The copy number `seed` of the series: spread 0, its own values (even distribution)."""
-        if self.spread == 0:
-            return self
         even = np.random.default_rng([int(seed), 0]).uniform(-self.spread, self.spread, (5, 3))
         return replace(
             self,
-            motor_gain=self.motor_gain * (1 + self.gain_spread * even[0]),
-            friction=self.friction * (1 + self.friction_spread * even[1]),
+            motor_gain=self.motor_gain * (1 + 0.03 * even[0]),
+            friction=self.friction * (1 + 0.05 * even[1]),
             pot_slope=self.pot_slope * (1 + self.slope_spread * even[2]),
             pot_shift=self.pot_shift + self.shift_spread * even[3],
             pot_bow=self.pot_bow + self.bow_spread * even[4],

@@ -1,15 +1,15 @@
 """`python3 -m ir50p_lab bench-test`: the first power-on, joint by joint, with small drives; writes what it found.
 
 Steps: noise at rest; each potentiometer turned by hand from end to end; each joint pushed by a drive that rises until
-it moves, first away from the nearer end, then back; the board's watchdog. A joint whose potentiometer is not right is
-not driven. The person at the bench is asked before each step; behind the simulated arm stands a simulated person.
+it moves, first away from the nearer end, then back. A joint whose potentiometer is not right is not driven. The person
+at the bench is asked before each step; behind the simulated arm stands a simulated person.
 """
 
 import argparse
 import contextlib
 import datetime
 import json
-from dataclasses import asdict, dataclass, field
+from collections import namedtuple
 
 import numpy as np
 
@@ -18,25 +18,16 @@ from ir50p_lab.errors import BenchError, InputError, RunawayError
 from ir50p_lab.home import home, replace_text
 
 STEP_PWM, STEP_CYCLES = 3, 5  # the drive rises by 3 counts every five samples
-HIGHEST_PWM = 150
+STEPS = 50  # to 150 counts at most
 MOVED = 8.0  # counts a joint must move to have moved: 40 to 65 mrad
 STEADY = 3.0  # counts rms at rest
 JUMP = 40.0  # counts from one sample to the next: no hand turns so fast, only a gap in the track does
-ENDS = (20.0, 1003.0)  # counts; nearer to the ends of the scale the board's limits are near
 TRAVEL = 100.0  # counts that a joint turned from end to end must change at least
-SILENCE = 0.3  # s without a command; the board cuts after 0.1 s, the run goes on until 0.5 s
 UP = ("counter-clockwise seen from above", "up", "up")
 
 
-@dataclass(frozen=True)
-class Finding:
+class Finding(namedtuple("Finding", "step joint passed text values")):
     """What a step found. joint: 1 to 3, 0: all; passed: bool; text: a sentence; values: numbers by name."""
-
-    step: str
-    joint: int
-    passed: bool
-    text: str
-    values: dict = field(default_factory=dict)
 
 
 class Person:
@@ -59,7 +50,7 @@ class Person:
         """Simulated, at the share 0..1 of the time: `joint` (0 to 2) to its upper end, its lower end, and back."""
         if self._plant is not None:
             q, arm = rest_pose(self._plant.arm).copy(), self._plant.arm
-            low, high = np.clip(arm.q_min[joint], -np.pi, np.pi), np.clip(arm.q_max[joint], -np.pi, np.pi)
+            low, high = np.clip((arm.q_min[joint], arm.q_max[joint]), -np.pi, np.pi)
             q[joint] = np.interp(share, [0, 0.25, 0.75, 1], [q[joint], high, low, q[joint]])
             with contextlib.suppress(InputError):  # the table stops the hand, too
                 self._plant.place(q)
@@ -82,7 +73,7 @@ def bench_test(bench, person, *, joints=(1, 2, 3), say=print):
         try:
             finding = Finding(step, joint, True, *action(*arguments))
         except BenchError as error:
-            finding = Finding(step, joint, False, str(error))
+            finding = Finding(step, joint, False, str(error), {})
         findings.append(finding)
         say(f"{'ok    ' if finding.passed else 'WRONG '} {step}: {finding.text}")
         return finding
@@ -91,7 +82,7 @@ def bench_test(bench, person, *, joints=(1, 2, 3), say=print):
         person.ask("Motor supply off")
         person.lay_down()
         found("noise", 0, _noise, bench)
-        sound, driven = {}, {}
+        sound = {}
         for joint in joints:
             person.ask(
                 f"During the next {person.turn:.0f} s turn joint {joint} by hand: {UP[joint - 1]} to its end, slowly "
@@ -101,9 +92,7 @@ def bench_test(bench, person, *, joints=(1, 2, 3), say=print):
         person.lay_down()
         person.ask("Motor supply on, limit at 1 A, a hand on the emergency stop")
         for joint in joints:
-            driven[joint] = found("drive", joint, _drive, bench, joint - 1, sound[joint])
-        if 1 in driven and driven[1].passed:
-            found("watchdog", 1, _watchdog, bench, driven[1].values)
+            found("drive", joint, _drive, bench, joint - 1, sound[joint])
     finally:
         bench.cut()
     return findings
@@ -140,22 +129,18 @@ def _potentiometer(bench, person, joint):
         bench.guarded = True
     counts = np.array(counts, dtype=float)
     own, span, name = counts[:, joint], np.ptp(counts, axis=0), f"joint {joint + 1}"
-    other, shaft = span.argmax(), "turn its potentiometer's shaft"
-    _require(
-        span[other] >= TRAVEL,
-        f"no number changed by {TRAVEL:.0f} counts: is the potentiometer coupled to {name}, and does it have 5 V?",
-    )
-    _require(other == joint, f"{name} moved the number of joint {other + 1}: swap the wires at A{joint} and A{other}")
-    jumped = np.abs(np.diff(own)).max() > JUMP
-    _require(not jumped, f"the number of {name} jumped: a gap of the track is within the travel; {shaft}")
-    low, high = own.min(), own.max()
-    reads = f"{name} reads {low:.0f} to {high:.0f}"
-    _require(low >= ENDS[0] and high <= ENDS[1], f"{reads}, 20 to 1003 are free: {shaft}")
+    low, high, other = own.min(), own.max(), span.argmax()
     middle = own[len(own) // 10 : -len(own) // 7]  # it may have begun, and may end, at one of the ends
-    falls = middle.argmax() > middle.argmin()
-    moves = f"when it moves {UP[joint]}"
-    _require(not falls, f"the number of {name} falls {moves}: swap the two ends of its potentiometer")
-    return f"{reads} counts, rising {moves}", {"low_counts": low, "high_counts": high}
+    reads, shaft = f"{name} reads {low:.0f} to {high:.0f}", "turn its potentiometer's shaft"
+    for right, wrong in (
+        (span[other] >= TRAVEL, f"no number changed much: is the potentiometer coupled to {name}, with 5 V?"),
+        (other == joint, f"{name} moved the number of joint {other + 1}: swap the wires at A{joint} and A{other}"),
+        (np.abs(np.diff(own)).max() <= JUMP, f"{name} jumped: a gap of the track is within the travel; {shaft}"),
+        (low >= 20 and high <= 1003, f"{reads}, 20 to 1003 are free: {shaft}"),
+        (middle.argmax() < middle.argmin(), f"{name} falls going {UP[joint]}: swap the two ends of its potentiometer"),
+    ):
+        _require(right, wrong)
+    return f"{reads} counts, rising when it moves {UP[joint]}", {"low_counts": low, "high_counts": high}
 
 
 def _drive(bench, joint, sound):
@@ -168,89 +153,54 @@ def _drive(bench, joint, sound):
     first = 1 if _rest(bench)[-10:, joint].mean() < 512 else -1
     values = {}
     for sign in (first, -first):
-        pwm, moved = _push(bench, joint, sign, outwards=sign != first and not values)
+        pwm, moved = _push(bench, joint, sign)
         if pwm is None:
             continue
-        if not values:
-            other = np.abs(moved).argmax()
-            _require(other == joint, f"the drive of {name} moved joint {other + 1}: their two bridges are swapped")
-            wrong = f"PWM {pwm:+d} moved {name} by {moved[joint]:+.0f} counts: swap its two motor wires"
-            _require(moved[joint] * sign > 0, wrong)
+        other = np.abs(moved).argmax()
+        _require(other == joint, f"the drive of {name} moved joint {other + 1}: their two bridges are swapped")
+        wrong = f"PWM {pwm:+d} moved {name} by {moved[joint]:+.0f} counts: swap its two motor wires"
+        _require(moved[joint] * sign > 0, wrong)
         values["breakaway_up_pwm" if sign > 0 else "breakaway_down_pwm"] = pwm
-    _require(
-        values,
-        f"{name} did not move, neither way, up to {HIGHEST_PWM} PWM counts: has its motor no supply (current limit, "
-        "ENABLE at 5 V, fuse), or does something block it?",
-    )
+    stuck = "did not move either way: has its motor no supply (current limit, ENABLE at 5 V, fuse), or is it blocked?"
+    _require(values, f"{name} {stuck}")
     shown = " and ".join(f"{pwm:+d}" for pwm in values.values())
     return f"{name} breaks away at {shown} PWM counts, as commanded", values
 
 
-def _push(bench, joint, sign, *, outwards):
-    """Raise the drive of a joint until something moves; outwards: also at an end of its travel, against the stop.
+def _push(bench, joint, sign):
+    """Raise the drive of a joint until something moves; at an end of its travel also against the stop.
 
     Returns: PWM counts (None: nothing moved, up to the highest or until the guard took it for stuck), change (3,)
     counts.
     """
     before = _rest(bench, 0.6)[-10:].mean(axis=0)
-    recent, pwm, moved = [], 0, np.zeros(3)
-    steps = HIGHEST_PWM // STEP_PWM
-    travel = bench._travel
-    if outwards:
-        bench._travel = ((-np.inf, np.inf),) * 3
+    recent, pwm = [], None
+    travel, bench._travel = bench._travel, ((-np.inf, np.inf),) * 3
     try:
-        for k, sample in enumerate(bench.run((steps + 1) * STEP_CYCLES * bench.period, record=False)):
+        for k, sample in enumerate(bench.run((STEPS + 1) * STEP_CYCLES * bench.period, record=False)):
             recent = [*recent[-4:], sample.counts]
             moved = np.mean(recent, axis=0) - before
             if np.abs(moved).max() > MOVED:
-                break
-            pwm = min(k // STEP_CYCLES + 1, steps) * STEP_PWM * sign
+                return pwm, moved
+            pwm = min(k // STEP_CYCLES + 1, STEPS) * STEP_PWM * sign
             bench.drive([pwm if j == joint else 0 for j in range(3)])
-        else:
-            pwm = None
     except RunawayError:  # what moves is seen here before the guard sees it: this joint stood still
-        pwm = None
+        pass
     finally:
         bench._travel = travel
         bench.cut()
-    return pwm, moved
-
-
-def _watchdog(bench, values):
-    """Keep joint 1 moving, then say nothing: the board must brake by itself."""
-    if bench.simulated:
-        return "the simulated arm has no board, and no watchdog to test", {}
-    breakaway = values.get("breakaway_up_pwm") or values["breakaway_down_pwm"]
-    pwm = breakaway + 20 * np.sign(breakaway)
-    trips, places = bench.statistics.watchdog_trips, []
-    for sample in bench.run(1.2, record=False):
-        places.append((sample.t, sample.counts[0]))
-        if sample.t < 0.5:
-            bench.drive([pwm, 0, 0])
-        elif len(places) > 2 and places[-2][0] < 0.5:
-            bench._clock.sleep(SILENCE)
-            bench.cut()  # else the next frame repeats the command
-    tripped = bench.statistics.watchdog_trips - trips
-    after = [counts for t, counts in places if t > 0.5 + SILENCE]
-    still = np.ptp(after) < MOVED
-    text = f"after {SILENCE:g} s without a command the board had cut the drive {tripped} times"
-    text += ", and joint 1 stood" if still else ", but joint 1 went on: switch off, and load the sketch again"
-    _require(tripped == 1 and still, text)
-    return text, {}
+    return None, None
 
 
 def write_report(bench, findings):
     """Write what was found into the student's folder results/; returns its path."""
     date = datetime.datetime.now().astimezone()
-    report = {
+    report = bench.head() | {
         "what": "bench-test",
-        "bench": bench.name,
-        "bench_id": bench.bench_id,
         "date": date.isoformat(timespec="seconds"),
         "simulated": bench.simulated,
-        "firmware": getattr(bench, "firmware", None),
         "passed": all(finding.passed for finding in findings),
-        "findings": [asdict(finding) for finding in findings],
+        "findings": [finding._asdict() for finding in findings],
     }
     path = home() / "results" / f"bench-test-{bench.bench_id}-{date:%Y%m%d-%H%M%S}.json"
     path.parent.mkdir(parents=True, exist_ok=True)

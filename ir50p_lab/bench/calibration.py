@@ -2,17 +2,19 @@
 
 import tomllib
 import warnings
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from html import escape
 from pathlib import Path
 
 import numpy as np
 
 from ir50p_lab.errors import InputError, SuspiciousArmWarning
-from ir50p_lab.inputs import check_arm, numbers, vector3
+from ir50p_lab.inputs import check_arm, vector3, vectors3
 
-_HEAD = "counts = zero + slope q, joints 1 to 3: counts of the 10-bit converter, slope in counts/rad, q in rad"
+_HEAD = "# counts = zero + slope q: counts of the 10-bit converter, slope in counts/rad, q in rad, joints 1 to 3\n"
 _JOINTS = ("joint1", "joint2", "joint3")
-_PLAUSIBLE = (20.0, 1023 / np.radians(60))  # counts/rad: a potentiometer of many turns; of 60 deg over the full range
+_FULL = 1023.0
+_STEP_BACK = 300.0  # counts between two neighbouring angles: more than a misread angle, less than a wrap makes
 
 
 @dataclass(frozen=True)
@@ -33,8 +35,8 @@ class JointCalibration:
     Counts are those of a 10-bit converter, 0..1023. Make one with `fit_calibration`, keep it with
     `course.save_result`: then `connect()` takes it for the bench it was measured on.
 
-    Raises InputError if a number is not finite, a slope is 0 or a standard error negative. Warns SuspiciousArmWarning
-    for a negative slope (then the joint runs away from its set point) and for one that no potentiometer has.
+    Raises InputError if a number is not finite or a slope is 0. Warns SuspiciousArmWarning for a negative slope: then
+    the joint runs away from its set point.
     """
 
     slope: tuple
@@ -47,53 +49,31 @@ class JointCalibration:
     remarks: tuple = ()
 
     def __post_init__(self):
-        known = [name for name in ("stderr_slope", "stderr_zero") if getattr(self, name) is not None]
-        for name in ("slope", "zero", *known):
-            array = vector3(name, getattr(self, name), unit="counts/rad" if "slope" in name else "counts")
-            if name in known and (array < 0).any():
-                raise InputError(f"{name} = {array.tolist()}: a standard error cannot be negative")
-            object.__setattr__(self, name, tuple(array.tolist()))
-        if 0.0 in self.slope:
-            raise InputError(
-                f"slope of joint {self.slope.index(0.0) + 1} is 0 counts/rad: counts would say nothing about the "
-                "angle; is the potentiometer connected and turning with the joint?"
-            )
-        object.__setattr__(self, "_slope", np.array(self.slope))
-        object.__setattr__(self, "_zero", np.array(self.zero))
-        for text in self._suspicions():
-            warnings.warn(text, SuspiciousArmWarning, stacklevel=3)
-
-    def _suspicions(self):
+        for name in ("slope", "zero", "stderr_slope", "stderr_zero"):
+            if (value := getattr(self, name)) is not None:
+                unit = "counts/rad" if "slope" in name else "counts"
+                object.__setattr__(self, name, tuple(vector3(name, value, unit=unit).tolist()))
         for joint, slope in enumerate(self.slope, 1):
+            said = f"slope of joint {joint} is {slope:.4g} counts/rad"
+            if slope == 0:
+                raise InputError(f"{said}: is the potentiometer connected, and does it turn with the joint?")
             if slope < 0:
-                yield (
-                    f"joint {joint}: slope = {slope:.4g} counts/rad is negative. The controllers and the board want "
-                    "counts that rise with q: swap the two outer wires of the potentiometer and calibrate again; "
-                    "driven as it is, the joint would run away"
-                )
-            elif not _PLAUSIBLE[0] <= slope <= _PLAUSIBLE[1]:
-                yield (
-                    f"joint {joint}: slope = {slope:.4g} counts/rad; {_PLAUSIBLE[0]:.0f} to {_PLAUSIBLE[1]:.0f} is "
-                    "usual (the sister arm has 122 to 192). Were the angles in degrees? Give rad"
-                )
+                said += ", negative: swap the outer wires of its potentiometer, or the joint will run away when driven"
+                warnings.warn(said, SuspiciousArmWarning, stacklevel=3)
 
     def radians(self, counts):
         """Angles of counts; both (3,) or (n, 3)."""
-        return (np.asarray(counts, dtype=float) - self._zero) / self._slope
+        return (np.asarray(counts, dtype=float) - self.zero) / self.slope
 
     def counts(self, q):
         """Counts at angles; both (3,) or (n, 3), not rounded."""
-        return self._zero + self._slope * np.asarray(q, dtype=float)
+        return self.zero + np.multiply(self.slope, q)
 
     @property
     def residuals(self):
-        """For each joint with points, measured angle minus angle of the counts, (m,) rad; a list of three arrays."""
-        if not self.points:
-            return []
-        return [
-            np.array(q) - (np.array(counts) - zero) / slope
-            for (q, counts), slope, zero in zip(self.points, self.slope, self.zero, strict=True)
-        ]
+        """For each joint with points, measured angle minus angle of the counts, (m,) rad; a list of arrays."""
+        lines = zip(self.points, self.slope, self.zero, strict=False)
+        return [np.array(q) - (np.array(counts) - zero) / slope for (q, counts), slope, zero in lines]
 
     def header(self):
         """Lines for the head of a recording."""
@@ -104,95 +84,154 @@ class JointCalibration:
         }
 
     def save(self, path):
-        """Write it as a readable file (TOML). Returns the Path. Raises InputError if it cannot be written."""
+        """Write it as a readable file (TOML). Returns the Path. Raises OSError if it cannot be written."""
         import tomlkit
 
-        document = tomlkit.document().add(tomlkit.comment(_HEAD))
-        for name in ("arm", "source", "slope", "zero", "stderr_slope", "stderr_zero", "remarks"):
-            if (value := getattr(self, name)) is not None:
-                document[name] = list(value) if isinstance(value, tuple) else value
-        points = [{"q": list(q), "counts": list(counts)} for q, counts in self.points]
-        document.update(zip(_JOINTS, points, strict=False))
-        path = Path(path)
-        try:
-            path.write_text(tomlkit.dumps(document), encoding="utf-8")
-        except OSError as error:
-            raise InputError(f"cannot write the calibration to {path}: {error.strerror}; give another path") from None
-        return path
+        data = {name: value for name, value in asdict(self).items() if name != "points" and value is not None}
+        for name, (q, counts) in zip(_JOINTS, self.points, strict=False):
+            data[name] = {"q": q, "counts": counts}
+        Path(path).write_text(_HEAD + tomlkit.dumps(data), encoding="utf-8")
+        return Path(path)
 
     @classmethod
     def load(cls, path):
         """Read a file that `save` wrote (or a person). Raises InputError that names the file and what is wrong."""
         try:
-            return cls(**_fields(tomllib.loads(Path(path).read_text(encoding="utf-8"))))
-        except OSError as error:
-            raise InputError(f"cannot read {path}: {error.strerror}; check it, or calibrate (notebook 10)") from None
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-            raise InputError(f"{path} is not a TOML file: {error}. Write one with JointCalibration.save") from None
-        except (InputError, TypeError) as error:
-            raise InputError(f"{path}: {error}") from None
+            data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+            points = tuple(_pairs(**data.pop(name)) for name in _JOINTS if name in data)
+            return cls(points=points, remarks=tuple(data.pop("remarks", ())), **data)
+        except (OSError, ValueError, TypeError, RecursionError) as error:
+            said = f"{path} is no calibration ({error})"
+            raise InputError(f"{said}: results(withdraw={Path(path).stem!r}), and calibrate again") from None
 
     def _repr_html_(self):
         """Slopes, zeros, standard errors and residuals as a table, then the remarks, as a notebook shows it."""
-        from html import escape
-
-        below = "".join(f"<p>{escape(text)}</p>" for text in (f"source: {self.source}", *self.remarks))
-        return self._frame().to_html(index=False) + below
-
-    def _frame(self):
         import pandas as pd
 
-        columns = {"joint": [1, 2, 3]}
-        for name, values, errors in (
-            ("counts/rad", self.slope, self.stderr_slope),
-            ("counts at q = 0", self.zero, self.stderr_zero),
-        ):
-            pairs = zip(values, errors or (0.0, 0.0, 0.0), strict=True)
-            columns[name] = [f"{value:.2f}" + (f" ± {error:.2f}" if error else "") for value, error in pairs]
-        residuals = self.residuals or [np.empty(0)] * 3
-        rms = [np.degrees(np.sqrt(np.mean(one**2))) if one.size else np.nan for one in residuals]
-        columns["rms residual"] = [f"{x:.2f} deg" if x == x else "not measured" for x in rms]
-        return pd.DataFrame(columns | {"points": [one.size for one in residuals]})
+        columns = {
+            "joint": (1, 2, 3),
+            "counts/rad": _with_errors(self.slope, self.stderr_slope),
+            "counts at q = 0": _with_errors(self.zero, self.stderr_zero),
+            "rms residual": [f"{np.degrees(np.sqrt(np.mean(one**2))):.2f} deg" for one in self.residuals]
+            or "not measured",
+        }
+        below = "".join(f"<p>{escape(str(text))}</p>" for text in (f"source: {self.source}", *self.remarks))
+        return pd.DataFrame(columns).to_html(index=False) + below
 
 
-def _fields(data):
-    """The arguments of a JointCalibration in what stands in a file."""
-    remarks = data.pop("remarks", [])
-    texts = [data.get("arm", ""), data.get("source", "")]
-    if not isinstance(remarks, list) or not all(isinstance(text, str) for text in texts + remarks):
-        raise InputError("arm and source must be text in quotes, remarks a list of such texts")
-    measured = [data.pop(name, None) for name in _JOINTS]
-    points = ()
-    if any(one is not None for one in measured):
-        points = tuple(_pairs(*named) for named in zip(_JOINTS, measured, strict=True))
-    return data | {"remarks": tuple(remarks), "points": points}
+def _with_errors(values, errors):
+    return [f"{value:.2f} ± {error:.2f}" for value, error in zip(values, errors or (np.nan,) * 3, strict=True)]
 
 
-def _pairs(name, table):
-    if table is None:
-        return (), ()
-    if not isinstance(table, dict) or not {"q", "counts"} <= set(table):
-        raise InputError(f"[{name}] must hold two lists of numbers, q (rad) and counts")
-    q, counts = (numbers(f"{key} of [{name}]", table[key]) for key in ("q", "counts"))
-    if q.ndim != 1 or q.shape != counts.shape:
-        raise InputError(f"[{name}] holds angles {q.shape} but counts {counts.shape}: they belong together in pairs")
-    return tuple(q.tolist()), tuple(counts.tolist())
+def _pairs(q, counts):
+    """What was measured at one joint, from its table in a file."""
+    if np.shape(q) != np.shape(counts):
+        raise InputError(f"{len(q)} angles q but {len(counts)} counts of a joint: they belong together in pairs")
+    return tuple(q), tuple(counts)
 
 
 # Bench data of an older ROB3 (public repository eurobtec/rob3): counts of a 10-bit converter per rad of axes 1-3.
 _SISTER_SLOPE = np.array([189.1, 122.1, 191.7])
-_LOWEST, _MIDDLE, _HIGHEST = 20.0, 512.0, 1003.0  # counts; beyond, a potentiometer is at the end of its track
+_LOWEST, _MIDDLE = 21.0, 512.0  # counts; below the lowest a potentiometer is at the end of its track
 
 
 def nominal_calibration(arm):
     """What potentiometers of this arm would read, before anyone has measured them.
 
-    Slopes of the sister arm, smaller where the travel of a joint would not fit into 20..1003 counts; the middle of the
+    Slopes of the sister arm, smaller where the travel of a joint would not fit into 21..1003 counts; the middle of the
     travel reads 512. A joint without limits is taken to turn from -pi to pi.
     Args: arm: Arm. Returns: JointCalibration, without standard errors.
     """
     arm = check_arm(arm)
-    low, high = (np.clip(limit, -np.pi, np.pi) for limit in (arm.q_min, arm.q_max))
-    slope = np.minimum(_SISTER_SLOPE, 2 * min(_MIDDLE - _LOWEST, _HIGHEST - _MIDDLE) / (high - low))
-    zero = _MIDDLE - slope * 0.5 * (low + high)
-    return JointCalibration(slope=tuple(slope.tolist()), zero=tuple(zero.tolist()), source="nominal, not measured")
+    low, high = np.clip((arm.q_min, arm.q_max), -np.pi, np.pi)
+    slope = np.minimum(_SISTER_SLOPE, 2 * (_MIDDLE - _LOWEST) / (high - low))
+    return JointCalibration(slope, _MIDDLE - slope * 0.5 * (low + high), source="nominal, not measured")
+
+
+def fit_calibration(q, counts, *, arm="", source="measured"):
+    """Fit counts = zero + slope q to an experiment: the joint stands at angles q, the converter shows counts (4.1.2).
+
+    Which of the two carries the error decides how to fit. A protractor is read to about half a degree, which is one or
+    two counts; counts are averaged to a fraction of one. So the angle is the uncertain number, and q is regressed on
+    counts: q = a + b counts, slope = 1/b, zero = -a/b. The usual way round (counts on q) would take the errors of q for
+    a wider spread of angles and make the slope too small, by the factor var(q)/(var(q) + var(error)). With ten points
+    over a wide range the two differ by less than their standard errors; with a narrow one they do not.
+
+    Args:
+        q, counts: (m, 3), m poses of the whole arm. Angles in rad, counts of the 10-bit converter.
+        arm: Arm or its name, saved with it. source: kept with it (who measured, when).
+
+    Returns: JointCalibration with standard errors, points and residuals; its
+    `remarks` name what looks wrong: a bow that a line cannot follow (F test against a cubic), a point that lies far
+    off, few points, a narrow range, a reading at the end of the track.
+    Raises: InputError for what no line fits: fewer than 3 points, angles in degrees, counts outside 0..1023, a reading
+    that does not change or does not follow its angle (a potentiometer that wraps, cables of two joints swapped).
+    """
+    q, counts = vectors3("q", q), vectors3("counts", counts, unit="counts")
+    if q.ndim != 2 or q.shape != counts.shape or len(q) < 3:
+        said = f"q has shape {q.shape}, counts have {counts.shape}"
+        raise InputError(f"{said}: give a row per pose, in pairs; two make a line, a third shows its error")
+    if np.abs(q).max() > 2 * np.pi:
+        raise InputError(f"q holds {np.abs(q).max():g} rad, more than a turn: in degrees? Use np.radians")
+    if counts.min() < 0 or counts.max() > _FULL:
+        raise InputError(f"counts are {counts.min():g} to {counts.max():g}; the 10-bit converter gives 0 to 1023")
+    fits = [_line(joint, *pair) for joint, pair in enumerate(zip(q.T, counts.T, strict=True), 1)]
+    slope, zero, stderr_slope, stderr_zero, points, remarks = zip(*fits, strict=True)
+    arm = getattr(arm, "name", arm)
+    return JointCalibration(slope, zero, stderr_slope, stderr_zero, source, arm, points, sum(remarks, ()))
+
+
+def _line(joint, q, counts):
+    """(slope, zero, stderr_slope, stderr_zero, points, remarks) of one joint."""
+    if np.ptp(q) == 0 or np.ptp(counts) == 0:
+        said = f"joint {joint}: all angles or all readings are the same: nothing moved"
+        raise InputError(f"{said}. Is this the potentiometer of that joint, and is it connected?")
+    (b, a), cov = np.polyfit(counts, q, 1, cov=True)
+    r2 = np.corrcoef(q, counts)[0, 1] ** 2
+    back = -(np.sign(b) * np.diff(counts[np.argsort(q)])).min()
+    if r2 < 0.5 or back > _STEP_BACK:
+        raise InputError(
+            f"joint {joint}: the counts do not follow the angle (correlation squared {r2:.2f}, largest step back "
+            f"{max(back, 0.0):.0f} counts): are they of the same poses and the same joint, are cables swapped, is the "
+            "gap of its track in the travel? bench-test finds out"
+        )
+    slope, zero = 1 / b, -a / b
+    # errors of a and b carried over to first order
+    variances = cov[0, 0] / b**4, (cov[1, 1] + zero**2 * cov[0, 0] + 2 * zero * cov[0, 1]) / b**2
+    errors = [float(np.sqrt(max(0.0, v))) for v in variances]
+    remarks = tuple(f"joint {joint}: {text}" for text in _remarks(q, counts, slope, zero))
+    return float(slope), float(zero), *errors, (tuple(q.tolist()), tuple(counts.tolist())), remarks
+
+
+def _remarks(q, counts, slope, zero):
+    if np.ptp(q) < 0.5:
+        yield f"the angles span {np.degrees(np.ptp(q)):.0f} deg only: use the whole travel"
+    if counts.min() <= 2 or counts.max() >= _FULL - 2:
+        yield "a reading lies at the end of the converter's range: the potentiometer may turn on without it"
+    if len(q) < 6:
+        yield f"only {len(q)} points: a bow or a misread point would not show; measure 10"
+        return
+    off = q - (counts - zero) / slope
+    powers = np.vander((counts - counts.mean()) / np.ptp(counts), 4)
+    line, bend = powers[:, 2:], powers[:, :2]
+    alone = [_beyond_noise(line, one, q, 1e-3 / len(q)) for one in np.eye(len(q))]  # a column that frees one point
+    if max(alone) > 1:
+        far = np.argmax(alone)
+        yield (
+            f"point {far + 1} (q = {np.degrees(q[far]):.1f} deg, {counts[far]:.1f} counts) lies "
+            f"{np.degrees(abs(off[far])):.1f} deg off the line, far more than the others: misread?"
+        )
+    elif _beyond_noise(line, bend, q, 0.01) > 1:
+        bow = np.abs(powers @ np.linalg.lstsq(powers, off)[0]).max()
+        yield f"the line leaves a bow of {np.degrees(bow):.1f} deg that is no noise: angles there are that much off"
+
+
+def _beyond_noise(columns, more, y, chance):
+    """What `more` columns explain of y beside `columns`, over what noise reaches with this chance (F test)."""
+    from scipy.special import fdtri
+
+    both = np.column_stack([columns, more])
+    without, left = (((y - A @ np.linalg.lstsq(A, y)[0]) ** 2).sum() for A in (columns, both))
+    free, added = len(y) - both.shape[1], both.shape[1] - columns.shape[1]
+    F = (without - left) / added / max(left / free, 1e-12)  # 1e-6 rad are rounding
+    return F / fdtri(added, free, 1 - chance)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ir50p_lab.controllers.base import check_controller
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import choice, number, numbers
+from ir50p_lab.inputs import choice, numbers
 from ir50p_lab.signals.reference import per_joint
 
 LIMIT_PWM = 255
@@ -54,17 +54,15 @@ def mean_voltage(duty, direction=1, *, supply=12.0, wiring="sign-magnitude"):
     duty = _finite("duty", duty)
     if ((duty < 0) | (duty > LIMIT_PWM)).any():
         raise InputError(f"duty = {duty.tolist()}: analogWrite takes 0 to {LIMIT_PWM} counts")
-    if wiring == "sign-magnitude":
+    if choice("wiring", wiring, ("sign-magnitude", "locked anti-phase")) == "sign-magnitude":
         return supply * np.asarray(direction) * duty / LIMIT_PWM
-    if wiring == "locked anti-phase":
-        return supply * (2 * duty / LIMIT_PWM - 1)
-    raise InputError(f"wiring = {wiring!r}: choose 'sign-magnitude' or 'locked anti-phase'")
+    return supply * (2 * duty / LIMIT_PWM - 1)
 
 
 class StopCriterion:
     """Stops driving a joint that has arrived, around any controller; each joint on its own (Figure 4.7 corrected).
 
-    A joint stops when its |e| has been below `inner` for `dwell` seconds, and goes on when |e| exceeds `outer`
+    A joint stops when its |e| is below `inner`, and goes on when |e| exceeds `outer`
     (hysteresis: noise at one bound would switch it on and off). e is the error behind a first-order low pass. While its
     reference moves a joint is always driven. The thesis stops where e < 0.01, with its sign: every joint above its set
     point counts as arrived, however far away it is (signed=True shows it).
@@ -80,69 +78,47 @@ class StopCriterion:
     Args:
         controller: object with step(t, measured, reference) -> u (3,).
         inner, outer: rad, one number or (3,), 0 < inner < outer.
-        hold: 'latch' or 'off'. dwell: s, >= 0. smooth: time constant of the low pass for e and u, s, >= 0.
-        signed: the thesis' criterion, e < inner with the sign and without hysteresis or dwell; to see what it does.
+        hold: 'latch' or 'off'. smooth: time constant of the low pass for e and u, s; 0: none.
+        signed: the thesis' criterion, e < inner with the sign and without hysteresis; to see what it does.
 
     Attributes: stopped: (3,) bool; unit, controller: of the controller inside.
     Raises InputError on other values.
     """
 
-    def __init__(self, controller, inner=0.01, outer=0.02, *, hold="latch", dwell=0.1, smooth=0.05, signed=False):
+    def __init__(self, controller, inner=0.01, outer=0.02, *, hold="latch", smooth=0.05, signed=False):
         check_controller(controller)
-        choice("hold", hold, ("latch", "off"))
+        self.controller, self.unit = controller, getattr(controller, "unit", "N m")
         self.inner = np.array(per_joint("inner", inner, "> 0", unit="rad"))
         self.outer = np.array(per_joint("outer", outer, "> 0", unit="rad"))
         if (self.outer <= self.inner).any():
             raise InputError(f"outer = {outer} rad must be larger than inner = {inner} rad: the gap is the hysteresis")
-        self.controller, self.hold, self.signed = controller, hold, bool(signed)
-        self.dwell, self.smooth = number("dwell", dwell, ">= 0", unit="s"), number("smooth", smooth, ">= 0", unit="s")
-        self._forget()
-
-    @property
-    def unit(self):
-        """Unit of the command, that of the controller inside."""
-        return getattr(self.controller, "unit", "N m")
+        self.hold, self.signed = choice("hold", hold, ("latch", "off")), signed
+        self.smooth = smooth
+        self.reset()
 
     def reset(self):
         """Forget the past, of the controller inside too."""
         if hasattr(self.controller, "reset"):
             self.controller.reset()
-        self._forget()
-
-    def _forget(self):
         self.stopped = np.zeros(3, dtype=bool)
-        self._t, self._e, self._u = None, np.zeros(3), np.zeros(3)
-        self._since = np.full(3, np.inf)
-
-    def set_gains(self, **gains):
-        """Change the gains of the controller inside, as its own `set_gains` does."""
-        self.controller.set_gains(**gains)
+        self._t, self._e, self._u = -math.inf, np.zeros(3), np.zeros(3)
 
     def step(self, t, measured, reference):
         """The command for one sample, (3,); see `Controller.step`."""
         rows = np.array(reference, dtype=float)
-        e = rows[0] - measured
-        blend = 1.0
-        if self._t is not None and self.smooth > 0:
-            blend = 1.0 - math.exp(-max(0.0, t - self._t) / self.smooth)
+        blend = 1.0 - math.exp(-max(0.0, t - self._t) / max(self.smooth, 1e-9))
         self._t = t
-        self._e += blend * (e - self._e)
-        self._decide(t, moving=rows[1] != 0)
+        self._e += blend * (rows[0] - measured - self._e)
+        far, moving = np.abs(self._e), rows[1] != 0
+        self.stopped = ((far < self.inner) | (self.stopped & (far <= self.outer))) & ~moving
+        if self.signed:
+            self.stopped = self._e < self.inner
         rows[0, self.stopped], rows[1:, self.stopped] = np.asarray(measured)[self.stopped], 0.0
         u = np.array(self.controller.step(t, measured, rows), dtype=float)
         going = ~self.stopped
         self._u[going] += blend * (u[going] - self._u[going])
         u[self.stopped] = self._u[self.stopped] if self.hold == "latch" else 0.0
         return u
-
-    def _decide(self, t, moving):
-        if self.signed:
-            self.stopped = self._e < self.inner
-            return
-        size = np.abs(self._e)
-        self._since = np.where((size < self.inner) & ~moving, np.minimum(self._since, t), np.inf)
-        arrived = t - self._since >= self.dwell - 1e-9
-        self.stopped = (self.stopped & (size <= self.outer) & ~moving) | arrived
 
 
 def _finite(name, value):

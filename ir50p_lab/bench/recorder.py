@@ -8,16 +8,14 @@ from datetime import datetime
 from itertools import count
 from pathlib import Path
 
-import numpy as np
-
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.recording_file import COLUMNS, event_text, head_text, row_text, rows_text, told_text
+from ir50p_lab.bench.recording_file import event_text, head_text, row_text, rows_text, table_of, told_text
 from ir50p_lab.controllers.base import gains_of
 from ir50p_lab.errors import InputError, RecordingError
 from ir50p_lab.home import home
 
 _FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINARY", 0)
-_NAN3 = (math.nan,) * 3
+_ELSEWHERE = "choose another folder with record_to=... or the environment variable IR50P_HOME"
 
 
 class Recorder:
@@ -33,13 +31,14 @@ class Recorder:
     """
 
     def __init__(self, head, folder=None):
-        self._rows, self._file = array("d"), None
-        head = {"date": datetime.now().astimezone().isoformat(timespec="seconds"), **head}
-        self.path = None if folder is False else self._create(head, folder)
+        now = datetime.now().astimezone()
+        head = {"date": now.isoformat(timespec="seconds"), **head}
+        self._rows, self._file, self.path = array("d"), None, None
+        if folder is not False:
+            self._create(Path(folder or os.environ.get("IR50P_RECORDINGS") or home() / "recordings"), head)
         self.recording = Recording(self._rows, head, path=self.path)
 
-    def _create(self, head, folder):
-        folder = Path(folder or os.environ.get("IR50P_RECORDINGS") or home() / "recordings")
+    def _create(self, folder, head):
         kind = head.get("kind", "arm")
         if head.get("simulated") == "true" and "simulated" not in kind:
             kind += "_simulated"
@@ -47,21 +46,15 @@ class Recorder:
         try:
             folder.mkdir(parents=True, exist_ok=True)
             for run in count(1):  # several runs in one second get numbers
-                path = folder / f"{begun}_{kind}_{run}.csv"
+                self.path = folder / f"{begun}_{kind}_{run}.csv"
                 with contextlib.suppress(FileExistsError):
-                    self._file = os.open(path, _FLAGS, 0o666)
+                    self._file = os.open(self.path, _FLAGS, 0o666)
                     break
         except OSError as error:
             raise RecordingError(
                 f"cannot record in {folder.absolute()}: {error.strerror}; {_ELSEWHERE}, or record=False for none"
             ) from None
-        self.path = path
-        try:
-            self._put(head_text(head).encode("ascii"))
-        except RecordingError:  # the head is of use only as a whole
-            path.unlink(missing_ok=True)
-            raise
-        return path
+        self._put(head_text(head))
 
     def write(self, sample, pwm, reference, gripper):
         """Record one cycle: the Sample, the command (3,) PWM counts, reference (3,) rad or None, gripper bool.
@@ -70,29 +63,28 @@ class Recorder:
         for a reference that is not three numbers.
         """
         t, q, counts, missed = sample[:4]
-        r = _NAN3 if reference is None else _three(reference)
+        r = (math.nan,) * 3 if reference is None else _three(reference)
         row = (t, *q.tolist(), *counts.tolist(), *pwm.tolist(), *r, gripper, missed)
         self._rows.extend(row)
-        if self._file is not None:
-            self._put(row_text(row).encode())
+        self._put(row_text(row))
 
     def write_block(self, t, q, counts, u, r=None, gripper=False, missed=0):
         """Record many cycles at once, for compiled runs: arrays (n,), (n, 3)... as in Recording; r may be None."""
-        table = np.empty((len(t), len(COLUMNS)))
-        table[:, 0], table[:, 1:4], table[:, 4:7], table[:, 7:10] = t, q, counts, u
-        table[:, 10:13] = math.nan if r is None else r
-        table[:, 13], table[:, 14] = gripper, missed
+        table = table_of(t, q, counts, u, r, gripper, missed)
         self._rows.frombytes(table.tobytes())
         if self._file is not None:
-            self._put(rows_text(table).encode())
+            self._put(rows_text(table))
 
     def event(self, t, text):
         """Record that something was changed at t, s: a line between the samples, which spreadsheets show as text."""
         self.recording.events.append((t, text))
-        if self._file is not None:
-            self._put(event_text(t, text).encode("ascii"))
+        self._put(event_text(t, text))
 
-    def _put(self, data):
+    def _put(self, text):
+        """Hand it to the operating system; nothing without a file."""
+        if self._file is None:
+            return
+        data = text.encode("utf-8", "backslashreplace")
         try:
             while data:  # in parts if the disk is nearly full, or a signal came
                 data = data[os.write(self._file, data) :]
@@ -110,15 +102,11 @@ class Recorder:
         """End the recording; statistics: dict of numbers about the run for its head. May be called twice."""
         told = {name: str(value) for name, value in (statistics or {}).items()}
         self.recording.header.update(told)
-        if self._file is not None and told:
-            with contextlib.suppress(RecordingError):  # a full disk: the samples are there
-                self._put(told_text(told).encode("ascii"))
-        file, self._file = self._file, None
-        if file is not None:
-            os.close(file)
-
-
-_ELSEWHERE = "choose another folder with record_to=... or the environment variable IR50P_HOME"
+        with contextlib.suppress(RecordingError):  # a full disk: the samples are there
+            self._put(told_text(told))
+        if self._file is not None:
+            os.close(self._file)
+            self._file = None
 
 
 def _three(reference):

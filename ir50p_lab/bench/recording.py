@@ -3,18 +3,27 @@
 import math
 import warnings
 from array import array
+from collections import namedtuple
 from pathlib import Path
 
 import numpy as np
 
 from ir50p_lab.bench import recording_file
-from ir50p_lab.bench.recording_file import COLUMNS, COUNTS, GRIPPER, MISSED, Q, R, T, U
-from ir50p_lab.bench.recording_plot import plot, summarise
-from ir50p_lab.errors import InputError, RecordingError
+from ir50p_lab.bench.recording_file import COLUMNS, COUNTS, GRIPPER, MISSED, Q, R, T, U, table_of
+from ir50p_lab.errors import RecordingError
 
 
 class RecordingWarning(UserWarning):
     """Something of a recording was left out when it was loaded."""
+
+
+class JointSummary(namedtuple("JointSummary", "joint start final error overshoot swing u_std")):
+    """How one joint did in a run; angles in rad, u in PWM counts; NaN where the recording has no reference or u.
+
+    joint: 1, 2, 3; start, final: angle first, and mean of the last second; error: last reference - final;
+    overshoot: how far the angle went beyond the last reference, seen from the start; swing: largest minus smallest
+    angle in the last 5 s (or the last half of a short run): hunting shows here; u_std: of the command, PWM counts.
+    """
 
 
 class Recording:
@@ -43,19 +52,9 @@ class Recording:
         self.events = list(events)
 
     @classmethod
-    def from_arrays(cls, t, q, *, counts=None, u=None, reference=None, gripper=None, missed=None, header=None):
-        """A recording from arrays, shapes as in the table above; what is left out is not known (NaN)."""
-        table = np.full((len(t), len(COLUMNS)), np.nan)
-        parts = ((T, t), (Q, q), (COUNTS, counts), (U, u), (R, reference), (GRIPPER, gripper), (MISSED, missed))
-        for place, values in parts:
-            if values is not None:
-                try:
-                    table[:, place] = values
-                except ValueError:
-                    raise InputError(
-                        f"shape {np.shape(values)} beside {len(t)} times: give t (n,), q, counts, u, reference (n, 3)"
-                    ) from None
-        return cls(table, header)
+    def from_arrays(cls, t, q, *, header=None, **known):
+        """A recording from arrays with names and shapes as in the table above; what is left out is not known (NaN)."""
+        return cls(table_of(t, q, **known), header)
 
     @classmethod
     def load(cls, path):
@@ -65,21 +64,14 @@ class Recording:
         line was cut off and left out.
         """
         header, table, notes, events = recording_file.read(path)
-        loaded = cls(table, header, path=Path(path), notes=notes, events=events)
-        if "period_s" in header and len(loaded) > 1 and loaded._told_period() != loaded.period:
-            said = f"period_s = {header['period_s']} does not fit its times"
-            loaded.notes += (f"{said}: their step of {loaded.period:.4g} s is taken",)
-        for note in loaded.notes:
+        for note in notes:
             warnings.warn(f"{path}: {note}", RecordingWarning, stacklevel=2)
-        return loaded
+        return cls(table, header, path=Path(path), notes=notes, events=events)
 
     def save(self, path):
-        """Write the recording to `path` (CSV, as a bench writes it). Returns the path."""
-        try:
-            text = recording_file.head_text(self.header) + recording_file.rows_text(self._table, self.events)
-            Path(path).write_bytes(text.encode("ascii"))
-        except OSError as error:
-            raise RecordingError(f"cannot write {path}: {error.strerror}; choose another place") from None
+        """Write the recording to `path` (CSV, as a bench writes it). Returns the path. Raises OSError if it cannot."""
+        text = recording_file.head_text(self.header) + recording_file.rows_text(self._table, self.events)
+        Path(path).write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
         return Path(path)
 
     @property
@@ -111,17 +103,14 @@ class Recording:
 
         Where most cycles came late or were left out their times say nothing of it.
         """
-        told = self._told_period()
+        try:
+            told = float(self.header["period_s"])
+        except (KeyError, ValueError):
+            told = math.nan
         if len(self) < 2 or (told > 0 and self.missed[-1] > 0.5 * len(self)):
             return told
         step = float(np.median(np.diff(self.t)))
         return told if abs(told - step) <= 0.2 * step else step
-
-    def _told_period(self):
-        try:
-            return float(self.header["period_s"])
-        except (KeyError, ValueError):
-            return math.nan
 
     def between(self, t0, t1):
         """The samples with t0 <= t <= t1 (s), as a Recording of its own; times stay as they are."""
@@ -137,32 +126,59 @@ class Recording:
 
     def metrics(self):
         """How each joint did: list of three JointSummary. Raises RecordingError if there is no sample."""
-        return summarise(self)
+        if not len(self):
+            raise RecordingError("the recording has no sample: run the bench first")
+        t, q, r = self.t, self.q, self.reference
+        final = q[t > t[-1] - min(1.0, 0.5 * (t[-1] - t[0])) - 1e-9].mean(axis=0)
+        swing = np.ptp(q[t > t[-1] - min(5.0, 0.5 * (t[-1] - t[0])) - 1e-9], axis=0)
+        known = r[np.isfinite(r).all(axis=1)]
+        target = known[-1] if len(known) else np.full(3, np.nan)
+        way = target - q[0]
+        beyond = np.maximum(0.0, ((q - target) * np.sign(way)).max(axis=0))
+        overshoot = np.where(way == 0.0, np.nan, beyond)
+        columns = (q[0], final, target - final, overshoot, swing, self.u.std(axis=0))
+        return [JointSummary(joint, *row) for joint, row in enumerate(np.transpose(columns).tolist(), 1)]
 
     def plot(self):
         """Angles (measured: line; set point: dashed) and PWM over time, per joint: a matplotlib Figure.
 
         A notebook shows it at the end of a cell. Raises RecordingError if there is no sample.
         """
-        return plot(self)
+        import matplotlib
+
+        from ir50p_lab.lab_figure import COLOURS, LabFigure, figure_style
+
+        dark, grey = COLOURS["dark"], "#666666"
+        with matplotlib.rc_context(figure_style()):
+            figure = LabFigure(figsize=(9.0, 4.8), layout="constrained")
+            axes = figure.subplots(2, 3, sharex=True, sharey="row", height_ratios=(3, 2))
+        known = np.isfinite(self.reference).any()
+        for j, joint in enumerate(self.metrics()):
+            above, below = axes[:, j]
+            colour = COLOURS[("blue", "orange", "green")[j]]
+            above.plot(self.t, self.q[:, j], color=colour, lw=1.4, label="angle")
+            if known:
+                above.step(self.t, self.reference[:, j], where="post", color=dark, ls="--", lw=1.2, label="set point")
+            below.step(self.t, self.u[:, j], where="post", color=colour, lw=0.8)
+            below.vlines([t for t, _ in self.events], -275, 275, color=grey, ls=":", lw=1.0, label="event")
+            off = "" if math.isnan(joint.error) else f" ends {1000 * abs(joint.error):.0f} mrad off"
+            above.set_title(f"joint {j + 1}{off}", fontsize=10.5, color=dark)
+            below.set(ylim=(-275, 275), yticks=(-255, 0, 255), xlabel="t [s]")
+        axes[0, 0].set_ylabel("angle [rad]")
+        axes[1, 0].set_ylabel("u [PWM counts]")
+        axes[0, 0].legend(fontsize=9)
+        if self.events:
+            axes[1, 0].legend(fontsize=9)
+        origin = [self.header.get("bench", "recording of unknown origin"), "simulated, not measured" * self.simulated]
+        origin.append(self.header.get("date", "")[:16].replace("T", " "))
+        figure.suptitle("   |   ".join(filter(None, origin)), fontsize=10, color=grey, parse_math=False)
+        return figure
 
     def __repr__(self):
-        n = len(self)
-        seconds = f"{self._table[-1, T] - self._table[0, T]:.2f} s, " if n else ""
-        return (
-            f"<Recording: {self.header.get('bench', 'of unknown origin')}, {seconds}{n} samples"
-            f"{', simulated' if self.simulated else ''}{f', {self.path}' if self.path else ''}>"
-        )
-
-    def _repr_html_(self):
-        """The same with a line per joint, as a notebook shows it."""
-        from html import escape
-
-        head = f"<p>{escape(repr(self)[1:-1])}</p>" + "".join(f"<p>{escape(note)}</p>" for note in self.notes)
-        if not len(self):
-            return head
-        import pandas as pd
-
-        units = {name: f"{name} [rad]" for name in ("start", "final", "error", "overshoot", "swing")}
-        table = pd.DataFrame(self.metrics()).rename(columns=units | {"u_std": "std(u) [PWM]"})
-        return head + table.to_html(index=False, float_format="{:.3f}".format, na_rep="-")
+        seconds = np.ptp(self.t) if len(self) else 0.0
+        said = [self.header.get("bench", "of unknown origin"), f"{seconds:.2f} s", f"{len(self)} samples"]
+        if self.simulated:
+            said.append("simulated")
+        if self.path:
+            said.append(str(self.path))
+        return f"<Recording: {', '.join(said)}>"

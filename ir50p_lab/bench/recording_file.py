@@ -7,6 +7,7 @@ t, q1, q2, q3; they may be separated by ';' or tabs, and have decimal commas the
 
 import math
 import re
+from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,14 @@ _EVENT = re.compile(r"[ \"]*#\W*event: (-?[\d.]+) s: (.*)")
 _UNITS = "t s; q rad; counts of the 10-bit converter; u PWM counts; r (reference) rad; gripper 1 closed; missed cycles"
 
 
+def table_of(t, q, counts=math.nan, u=math.nan, reference=math.nan, gripper=math.nan, missed=math.nan):
+    """Samples as a table (n, 15), columns as COLUMNS, of arrays (n,) and (n, 3); NaN for what is not known."""
+    table = np.empty((len(t), len(COLUMNS)))
+    table[:, T], table[:, Q], table[:, COUNTS], table[:, U] = t, q, counts, u
+    table[:, R], table[:, GRIPPER], table[:, MISSED] = reference, gripper, missed
+    return table
+
+
 def head_text(header):
     """The lines before the first sample. header: dict of str."""
     return told_text({FORMAT: 1, "units": _UNITS} | header) + ",".join(COLUMNS) + "\n"
@@ -36,11 +45,9 @@ def told_text(header):
 
 def rows_text(table, events=()):
     """The lines of samples. table: (n, 15), columns as COLUMNS, NaN where not known; events: [(t, text), ...]."""
-    lines = [row_text(row) for row in table.tolist()]
-    places = np.searchsorted(table[:, T], [t for t, _ in events], side="left")
-    for place, event in reversed(list(zip(places, events, strict=True))):
-        lines.insert(place, event_text(*event))
-    return "".join(lines)
+    noted = [(t, 0, event_text(t, text)) for t, text in events]
+    lines = [(row[T], 1, row_text(row)) for row in table.tolist()]
+    return "".join(line for *_, line in sorted(noted + lines, key=itemgetter(0, 1)))
 
 
 def row_text(row):
@@ -56,17 +63,7 @@ def event_text(t, text):
 
 
 def _one_line(value):
-    """A header value in plain ASCII on one line; `_as_written` brings other letters back."""
-    text = re.sub(r"\\(?=[xuU])", r"\\x5c", " ".join(str(value).split()))
-    return text.encode("ascii", "backslashreplace").decode("ascii")
-
-
-def _as_written(text, place):
-    escapes = r"\\(?:x([0-9a-f]{2})|u([0-9a-f]{4})|U([0-9a-f]{8}))"
-    try:
-        return re.sub(escapes, lambda found: chr(int(found[1] or found[2] or found[3], 16)), text)
-    except (ValueError, OverflowError):
-        raise RecordingError(f"{place}: an escape in {text:.60} stands for no letter; repair or delete it") from None
+    return " ".join(str(value).split())
 
 
 def read(path):
@@ -77,32 +74,29 @@ def read(path):
     Raises RecordingError that names the file, the line, what is wrong there, and the remedy.
     """
     try:
-        data = Path(path).read_bytes()
+        data = Path(path).read_bytes().rstrip(b"\0")  # a power cut can leave zeros at the end
     except OSError as error:
         raise RecordingError(f"cannot read the recording {path}: {error.strerror}; check the path") from None
-    text = _text(data, path)
-    ended, lines = text.endswith(("\n", "\r")), text.splitlines()
-    header, rows, numbers, events, notes = {}, [], [], [], ()
-    delimiter = width = places = None
+    text = data.decode("utf-8-sig", "replace")
+    if "\0" in text:
+        raise RecordingError(f"{path} is no text file; a recording is a plain CSV file (UTF-8, not UTF-16)")
+    lines, header, rows, numbers, events, notes = text.splitlines(), {}, [], [], [], ()
+    if FORMAT in text and not text.endswith(("\n", "\r")):
+        notes = (f"its last line ({len(lines)}) is not complete and was left out: the program stopped as it wrote",)
+        lines.pop()
+    places = None
     for number, line in enumerate(lines, 1):
         place = f"{path}, line {number}"
         bare = line.strip().rstrip(';,\t" ').lstrip('" ')  # without what spreadsheets pad and quote it with
-        if number == len(lines) and not ended:  # cut off, unless another program has left out the end of the line
-            if places is None:
-                break
-            if FORMAT in header or line.count(delimiter) + 1 != width:
-                notes = (f"its last line ({number}) is not complete and was left out: the program stopped as it wrote",)
-                break
         if found := _EVENT.match(line):
-            events.append((_number(found[1], place), _as_written(found[2].rstrip(';,\t" '), place)))
+            events.append((_number(found[1], place), found[2].rstrip(';,\t" ')))
         elif bare.startswith("#"):  # at the end stand statistics
             key, colon, value = bare.lstrip("# ").partition(":")
-            header |= {key.strip(): _as_written(value.strip(), place)} if colon else {}
+            header |= {key.strip(): value.strip()} if colon else {}
         elif bare and places is None:
-            delimiter, places = _read_columns(line, place)
-            width = line.count(delimiter) + 1
+            delimiter, width, places = _read_columns(line, place)
         elif bare:  # else an empty line of a spreadsheet
-            rows.append(_read_row(line, place, delimiter, places, width))
+            rows.append(_read_row(line, place, delimiter, width, places))
             numbers.append(number)
     if places is None:
         raise RecordingError(f"{path} ends before its first sample: the run was stopped as it began; record again")
@@ -111,37 +105,22 @@ def read(path):
     return {key: value for key, value in header.items() if key not in (FORMAT, "units")}, table, notes, tuple(events)
 
 
-def _text(data, name):
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        raise RecordingError(f"{name} is UTF-16 text: save it as plain CSV (not 'Unicode text')")
-    try:
-        text = data.rstrip(b"\0").decode("utf-8-sig")  # a power cut can leave zeros at the end
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")
-    if "\0" in text:
-        raise RecordingError(f"{name} is no text file; a recording is a CSV file")
-    return text
-
-
 def _read_columns(line, place):
-    """Delimiter, and the column of the file for each of COLUMNS (None: not there)."""
+    """Delimiter, number of columns, and the place of each of COLUMNS in the lines of the file (None: not there)."""
     delimiter = next((d for d in ";\t" if d in line), ",")
     names = [cell.strip().strip('"').lower() for cell in line.split(delimiter)]
-    need = "the first line after the '#' lines names the columns: t,q1,q2,q3 at least, then u1,u2,u3 and others"
-    missing = [column for column in _REQUIRED if column not in names]
+    needed = [*_REQUIRED, *(name for group in _GROUPS if set(group) & set(names) for name in group)]
+    missing = [name for name in needed if name not in names]
     if missing:
+        need = "the first line after the '#' lines names the columns: t,q1,q2,q3, and all three of u1,u2,u3 or others"
         raise RecordingError(f"{place}: no column {', '.join(missing)} in {line.strip()[:60]!r}; {need}")
-    for column in COLUMNS:
-        if names.count(column) > 1:
-            raise RecordingError(f"{place}: column {column} stands there twice; keep one of them")
-    for group in _GROUPS:
-        there = [column for column in group if column in names]
-        if len(there) in (1, 2):
-            raise RecordingError(f"{place}: of {', '.join(group)} only {', '.join(there)}; give all three")
-    return delimiter, [names.index(column) if column in names else None for column in COLUMNS]
+    for name in COLUMNS:
+        if names.count(name) > 1:
+            raise RecordingError(f"{place}: column {name} stands there twice; keep one of them")
+    return delimiter, len(names), [names.index(name) if name in names else None for name in COLUMNS]
 
 
-def _read_row(line, place, delimiter, places, width):
+def _read_row(line, place, delimiter, width, places):
     cells = line.split(delimiter)
     if len(cells) != width:
         hint = "decimal commas need ';' between the columns" if len(cells) > width else "the line is cut off"
@@ -159,14 +138,12 @@ def _number(cell, place):
 
 def _check(table, numbers, name):
     """Raise RecordingError for the first line whose values cannot be."""
-    if not len(table):
-        return
-    with np.errstate(invalid="ignore"):  # two infinite times
-        steps, repair = np.diff(table[:, :1], axis=0, prepend=-math.inf), "; repair or delete that line"
+    t, repair = table[:, T], "; repair or delete that line"
+    late = np.append(False, t[1:] <= t[:-1])[:, np.newaxis]
     for columns, bad, why in (
         (slice(0, Q.stop), ~np.isfinite(table[:, : Q.stop]), "t or an angle is missing or not finite ({:g})" + repair),
         (slice(None), np.isinf(table), "a value is infinite" + repair),
-        (slice(0, 1), steps <= 0, "t = {:g} s is not later than the line before; sort by t, each time once"),
+        (slice(0, 1), late, "t = {:g} s is not later than the line before; sort by t, each time once"),
         (Q, np.abs(table[:, Q]) > 10.0, "an angle of {:g} rad; angles are in rad, were they degrees? Times pi/180"),
         (COUNTS, np.abs(table[:, COUNTS] - 511.5) > 511.5, "{:g} counts; the converter gives 0..1023"),
         (U, np.abs(table[:, U]) > 255, "u = {:g}; PWM counts are -255..255: record what was sent, after limits"),
@@ -174,6 +151,6 @@ def _check(table, numbers, name):
         if bad.any():
             row, column = np.argwhere(bad)[0]
             raise RecordingError(f"{name}, line {numbers[row]}: {why.format(table[row, columns][column])}")
-    step = np.median(steps[1:]) if len(steps) > 1 else 0.0
+    step = np.median(np.diff(t)) if len(t) > 1 else 0.0
     if step > 1.0:
         raise RecordingError(f"{name}: steps of {step:g} s; t is in seconds, was it ms? Divide by 1000")

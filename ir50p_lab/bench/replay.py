@@ -29,7 +29,7 @@ class ReplayBench(Bench):
     """
 
     kind = "replay"
-    answers = False
+    answers = guarded = False  # the arm moved by another command
 
     def __init__(self, recording, *, arm=None, realtime=False, record_to=None, name=None):
         if isinstance(recording, str | os.PathLike):
@@ -47,10 +47,9 @@ class ReplayBench(Bench):
             record_to=False if record_to is None else record_to,
             name=name or f"replay of {origin}",
         )
-        counts, known = recording.counts, np.isfinite(recording.counts)
-        self._counts = np.where(known, counts, self.calibration.counts(recording.q))
+        counts = recording.counts
+        self._counts = np.where(np.isfinite(counts), counts, self.calibration.counts(recording.q))
         self._late = np.nan_to_num(recording.missed).astype(int)
-        self._k, self._started = 0, 0.0
         told = recording.header.get("bench_id", "none")
         self.bench_id = None if told == "none" else told
 
@@ -64,22 +63,19 @@ class ReplayBench(Bench):
             print(f"The recording ends at t = {self.original.t[-1]:.2f} s, and with it this run.")
 
     def _measure(self, cycle, drive):
-        self._k, t = cycle, self.original.t
+        t = self.original.t
+        self._q = self.original.q[cycle]
         if self.realtime:
             time.sleep(max(0.0, self._started + t[cycle] - t[0] - time.perf_counter()))
         self._run.pace.missed = int(self._late[cycle])
         return float(t[cycle]), self._counts[cycle], False
 
     def _radians(self, counts):
-        return self.original.q[self._k]
-
-    def _make_guard(self):
-        return None  # the arm moved by another command
+        return self._q  # as it was recorded
 
     def _header(self):
-        return {f"original_{key}": value for key, value in self.original.header.items() if key in _TOLD} | {
-            "original": str(self.original.path or "in memory")
-        }
+        told = {f"original_{key}": value for key, value in self.original.header.items() if key in _TOLD}
+        return told | {"original": str(self.original.path or "in memory")}
 
     def go_to_rest(self):
         """Nothing: a recording cannot move."""
@@ -91,7 +87,7 @@ _TOLD = ("bench", "date", "seed", "firmware", "controller", "note")
 def _calibration(head):
     """The JointCalibration in the head of a recording; None if there is none."""
     try:
-        slope, zero = (tuple(float(x) for x in head[key].split()) for key in ("counts_per_rad", "counts_at_zero"))
-        return JointCalibration(slope=slope, zero=zero, source=head.get("calibration", "of the recording"))
+        slope, zero = head["counts_per_rad"].split(), head["counts_at_zero"].split()
+        return JointCalibration(slope, zero, source=head.get("calibration", "of the recording"))
     except (KeyError, ValueError):  # an InputError is one, too
         return None

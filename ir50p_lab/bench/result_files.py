@@ -1,34 +1,23 @@
 """The student's results as files: what was measured, when, on which bench; and the newest that counts for a bench."""
 
 import json
-from dataclasses import asdict, dataclass, replace
+from collections import namedtuple
+from dataclasses import replace
 from datetime import datetime
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.home import home, replace_text
 
+_FIELDS = "name kind made chosen arm bench bench_id unit seed simulated withdrawn file"
 
-@dataclass(frozen=True, kw_only=True)
-class Result:
+
+class Result(namedtuple("Result", _FIELDS)):
     """One result: a description NAME.json in `results/` of the student's folder, and the file that it names.
 
     name: such as 'model-2'; kind: 'calibration', 'model' or 'camera'; made, chosen: ISO times, chosen is the later one
     if an older result was taken again; arm, bench: names; bench_id: of the bench it was measured on; unit, seed: of a
     simulated arm, else ''; simulated: bool; withdrawn: bool; file: name of the file with the numbers.
     """
-
-    name: str
-    kind: str
-    made: str
-    chosen: str
-    arm: str
-    bench: str
-    bench_id: str
-    unit: str
-    seed: str
-    simulated: bool
-    withdrawn: bool
-    file: str
 
     @property
     def path(self):
@@ -47,7 +36,7 @@ def folder():
 def every():
     """All Results, the one chosen last at the end. Raises InputError for a description that is none."""
     found = []
-    for path in folder().glob("*-*.json"):
+    for path in {*folder().glob("*-*.json")} - {*folder().glob("bench-test-*.json")}:  # reports of `bench_test`
         try:
             found.append(Result(**json.loads(path.read_text(encoding="utf-8"))))
         except (OSError, ValueError, TypeError, RecursionError) as error:
@@ -67,7 +56,7 @@ def add(kind, suffix, write, **about):
     Raises InputError if it cannot be written.
     """
     number = 1 + max((int(one.name.rpartition("-")[2]) for one in every() if one.kind == kind), default=0)
-    name, now = f"{kind}-{number}", datetime.now().astimezone().isoformat()
+    name, now = f"{kind}-{number}", _now()
     result = Result(name=name, kind=kind, made=now, chosen=now, withdrawn=False, file=f"{name}{suffix}", **about)
     try:
         folder().mkdir(parents=True, exist_ok=True)
@@ -78,23 +67,21 @@ def add(kind, suffix, write, **about):
     return result
 
 
-def change(name, **fields):
-    """Change the description of a result: Result. Raises InputError for a name that is none."""
+def change(name, *, withdrawn):
+    """Withdraw a result, or let it count from now on, whatever is newer. Raises InputError for a name that is none."""
     known = {one.name: one for one in every()}
     if name not in known:
         raise InputError(f"there is no result {name!r}: {', '.join(known) or 'none at all'}")
-    result = replace(known[name], **fields)
-    _describe(result)
-    return result
+    chosen = known[name].chosen if withdrawn else _now()
+    _describe(known[name]._replace(withdrawn=withdrawn, chosen=chosen))
 
 
-def choose(name):
-    """From now on this result counts, whatever is newer: Result. Raises InputError for a name that is none."""
-    return change(name, chosen=datetime.now().astimezone().isoformat(), withdrawn=False)
+def _now():
+    return datetime.now().astimezone().isoformat()
 
 
 def _describe(result):
-    replace_text(folder() / f"{result.name}.json", json.dumps(asdict(result), indent=1) + "\n")
+    replace_text(folder() / f"{result.name}.json", json.dumps(result._asdict(), indent=1) + "\n")
 
 
 def own_calibration(bench):
@@ -104,8 +91,5 @@ def own_calibration(bench):
     found = newest("calibration", bench.bench_id, bench.arm.name) if bench.bench_id else None
     if found is None:
         return None
-    try:
-        calibration = JointCalibration.load(found.path)
-    except InputError as error:
-        raise InputError(f"{error}. To do without it: results(withdraw={found.name!r})") from None
+    calibration = JointCalibration.load(found.path)
     return replace(calibration, source=f"yours, {found.name} ({calibration.source})")

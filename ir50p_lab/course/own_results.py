@@ -70,7 +70,7 @@ def results(*, choose=None, withdraw=None):
     import pandas as pd
 
     if choose is not None:
-        result_files.choose(choose)
+        result_files.change(choose, withdrawn=False)
     if withdraw is not None:
         result_files.change(withdraw, withdrawn=True)
     rows = []
