@@ -1,8 +1,8 @@
 """`python3 -m ir50p_lab bench-test`: the first power-on, joint by joint, with small drives; writes what it found.
 
 Steps: noise at rest; each potentiometer turned by hand from end to end; each joint pushed by a drive that rises until
-it moves, first away from the nearer end, then back. A joint whose potentiometer is not right is not driven. The person
-at the bench is asked before each step; behind the simulated arm stands a simulated person.
+it moves, first away from the nearer end, then back; the board's watchdog. A joint whose potentiometer is not right is
+not driven. The person at the bench is asked before each step; behind the simulated arm stands a simulated person.
 """
 
 import argparse
@@ -23,6 +23,7 @@ MOVED = 8.0  # counts a joint must move to have moved: 40 to 65 mrad
 STEADY = 3.0  # counts rms at rest
 JUMP = 40.0  # counts from one sample to the next: no hand turns so fast, only a gap in the track does
 TRAVEL = 100.0  # counts that a joint turned from end to end must change at least
+SILENCE = 0.3  # s without a command; the board cuts after 0.1 s, the run goes on until 0.5 s
 UP = ("counter-clockwise seen from above", "up", "up")
 
 
@@ -82,7 +83,7 @@ def bench_test(bench, person, *, joints=(1, 2, 3), say=print):
         person.ask("Motor supply off")
         person.lay_down()
         found("noise", 0, _noise, bench)
-        sound = {}
+        sound, driven = {}, {}
         for joint in joints:
             person.ask(
                 f"During the next {person.turn:.0f} s turn joint {joint} by hand: {UP[joint - 1]} to its end, slowly "
@@ -92,7 +93,9 @@ def bench_test(bench, person, *, joints=(1, 2, 3), say=print):
         person.lay_down()
         person.ask("Motor supply on, limit at 1 A, a hand on the emergency stop")
         for joint in joints:
-            found("drive", joint, _drive, bench, joint - 1, sound[joint])
+            driven[joint] = found("drive", joint, _drive, bench, joint - 1, sound[joint])
+        if 1 in driven and driven[1].passed:
+            found("watchdog", 1, _watchdog, bench, driven[1].values)
     finally:
         bench.cut()
     return findings
@@ -190,6 +193,29 @@ def _push(bench, joint, sign):
         bench._travel = travel
         bench.cut()
     return None, None
+
+
+def _watchdog(bench, values):
+    """Keep joint 1 moving, then say nothing: the board must brake by itself."""
+    if bench.simulated:
+        return "the simulated arm has no board, and no watchdog to test", {}
+    breakaway = values.get("breakaway_up_pwm") or values["breakaway_down_pwm"]
+    pwm = breakaway + 20 * np.sign(breakaway)
+    trips, places = bench.statistics.watchdog_trips, []
+    for sample in bench.run(1.2, record=False):
+        places.append((sample.t, sample.counts[0]))
+        if sample.t < 0.5:
+            bench.drive([pwm, 0, 0])
+        elif len(places) > 2 and places[-2][0] < 0.5:
+            bench._clock.sleep(SILENCE)
+            bench.cut()  # else the next frame repeats the command
+    tripped = bench.statistics.watchdog_trips - trips
+    after = [counts for t, counts in places if t > 0.5 + SILENCE]
+    still = np.ptp(after) < MOVED
+    text = f"after {SILENCE:g} s without a command the board had cut the drive {tripped} times"
+    text += ", and joint 1 stood" if still else ", but joint 1 went on: switch off, and load the sketch again"
+    _require(tripped == 1 and still, text)
+    return text, {}
 
 
 def write_report(bench, findings):

@@ -30,11 +30,13 @@ def board_test(joint=0, fault=None, joints=(1, 2, 3)):
 def test_a_sound_bench_passes_and_its_report_says_what_it_is():
     findings, bench, board = board_test()
     assert [(f.step, f.joint) for f in findings if not f.passed] == []
-    assert len(findings) == 7
+    assert len(findings) == 8
     assert not any(board.pins().pwm)
     friction = [f.values for f in findings if f.step == "drive"]
     assert 36 <= friction[0]["breakaway_up_pwm"] <= 60  # breaks away at 36 and 4 of offset, seen a little later
     assert -60 <= friction[0]["breakaway_down_pwm"] <= -32
+    watchdog = findings[-1]
+    assert "cut the drive 1 times" in watchdog.text
     bench.give_id()
     report = json.loads(write_report(bench, findings).read_text())
     assert (report["bench_id"], report["simulated"], report["passed"]) == (bench.bench_id, False, True)
