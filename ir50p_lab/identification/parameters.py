@@ -25,6 +25,7 @@ For an in-line arm (`Arm.theta`), masses and inertias in kg, m; times 1/K_i in P
 """
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import number
 
 NAMES = (*(f"theta{k}" for k in range(1, 11)), *"fv1 fc1 fv2 fc2 fv3 fc3 Tf1 Tf2 Tf3 j3".split())
 OFFSETS = ("Tf1", "Tf2", "Tf3")
@@ -55,3 +56,10 @@ def chosen_columns(columns):
             f"{', '.join(NAMES)}"
         )
     return sorted(map(NAMES.index, set(names)))
+
+
+def metres(name, value):
+    """`value` as a float > 0. Raises InputError, also for a length beyond any arm's."""
+    if number(name, value, "> 0", unit="m") > 10:
+        raise InputError(f"{name} = {value} m is longer than 10 m: is it in millimetres? Give metres")
+    return float(value)

@@ -12,7 +12,7 @@ import pytest
 
 from ir50p_lab.identification import RLS, fit, regressor
 from ir50p_lab.identification.parameters import NAMES
-from ir50p_lab.identification.qr import r_factor
+from ir50p_lab.identification.regression import r_factor
 from ir50p_lab.modelling import IR50P
 
 N = 11_000  # 110 s at 100 Hz, as the thesis
