@@ -26,7 +26,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "regression": ["LeastSquares", "least_squares"],
         "rls": ["RLS"],
         "single_joint": ["JointFit", "fit_joint"],
-        "validation": ["Validation", "nrmse_fit", "validate"],
-        "whiteness": ["Whiteness", "whiteness"],
+        "validation": ["Validation", "Whiteness", "nrmse_fit", "validate", "whiteness"],
     },
 )

@@ -12,7 +12,6 @@ from ir50p_lab.identification.estimate import Estimate
 from ir50p_lab.identification.fitting import fit
 from ir50p_lab.identification.processing import process
 from ir50p_lab.identification.validation import validate
-from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
 
 # The cut-off is low because this arm moves below 1 Hz and one count of its potentiometers is 5 to 8 mrad; a joint turns
 # over within +-0.05 rad/s, where sgn(qd) would jump at the wrong moment.
@@ -26,11 +25,10 @@ class Identified(Estimate):
 
     delay: float = 0.0
     steps: dict = None
-    g: float = STANDARD_GRAVITY
 
     def score(self, recording, q=None, u=None):
         """Validation of "u" on another recording    (Table 4.4), processed as the training was."""
-        return validate(self, recording, q, u, delay=self.delay, sign=TURN, g=self.g, **self.steps)
+        return validate(self, recording, q, u, delay=self.delay, sign=TURN, **self.steps)
 
 
 def identify(
@@ -42,8 +40,6 @@ def identify(
     method="bounded",
     cutoff_hz=CUTOFF_HZ,
     held=True,
-    trim=None,
-    g=STANDARD_GRAVITY,
     unit="PWM",
     anyway=False,
 ):
@@ -62,7 +58,7 @@ def identify(
         recordings: a Recording (t, q, u), or a list of them: other motions, or another load of work for the same arm.
         l2: upper arm, m, or None. delay: s from a sample to the moment its u acts. slow: rad/s.
         method: "bounded", or another of `fit` that needs neither weights nor instruments.
-        cutoff_hz: Hz, above what the joints move at; held, trim: as in `process`; g: as in `regressor`; unit: of u.
+        cutoff_hz: Hz, above what the joints move at; held: as in `process`; unit: of u.
         anyway: go on where the data are refused.
 
     Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by some per
@@ -76,18 +72,18 @@ def identify(
     recordings = list(recordings) if isinstance(recordings, (list, tuple)) else [recordings]
     if not recordings:
         raise InputError("no recording given: give one, or a list of them")
-    steps = {"cutoff_hz": cutoff_hz, "held": held, "trim": trim}
+    steps = {"cutoff_hz": cutoff_hz, "held": held}
     notes, parts = [], []
     for recording in recordings:
         notes += _looked_at(recording, anyway)
         motion = process(recording, delay=delay, slow=slow, **steps)
         if motion.q.shape[1] != 3:
             raise InputError(f"q has {motion.q.shape[1]} columns: give all three joints, or take fit_joint for one")
-        parts.append((regressor(motion.q, motion.qd, motion.qdd, g=g, sign=TURN), motion.u, motion.use))
+        parts.append((regressor(motion.q, motion.qd, motion.qdd, sign=TURN), motion.u, motion.use))
     Phi, y, use = map(np.concatenate, zip(*parts, strict=True))
-    found = vars(fit(Phi, y, method=method, l2=l2, use=use, unit=unit))
-    warnings = *notes, *found["warnings"]
-    return Identified(**{**found, "warnings": warnings}, delay=float(delay), steps=steps, g=float(g))
+    found = fit(Phi, y, method=method, l2=l2, use=use, unit=unit)
+    fields = vars(found) | {"warnings": (*notes, *found.warnings)}
+    return Identified(**fields, delay=float(delay), steps=steps)
 
 
 def _looked_at(recording, anyway):
