@@ -58,9 +58,6 @@ def huber(problem):
         )
     e = y - Q @ z
     inside = np.abs(e) <= limit
-    cut = 1 - inside[counts.ravel()].mean()
-    if cut > 0.3:
-        problem.notes.append(f"{problem.who}{cut:.0%} of the samples lie beyond the threshold")
     return problem.estimate(z, residuals=np.clip(e, -limit, limit), derivative=Q.T @ (inside[:, None] * Q))
 
 

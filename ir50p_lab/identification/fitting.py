@@ -6,7 +6,7 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import estimators
 from ir50p_lab.identification.estimate import Estimate, impossible_values, indefinite_mass
 from ir50p_lab.identification.fit_input import checked_data, finite
-from ir50p_lab.identification.parameters import ACTS_ON, NAMES, chosen_columns, metres
+from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, NAMES, metres
 from ir50p_lab.identification.regression import Problem, product
 from ir50p_lab.inputs import choice, number, vectors3
 
@@ -46,7 +46,7 @@ def fit(
         Phi: (n, 3, 20) as `regressor` returns; y: (n, 3), in `unit`.
         rows: "joint": each joint its own parameters, right for motors of unequal gain. "shared": one theta for all,
             as the thesis: right for torque, or for equal motors (2.47 corrected).
-        columns: "rigid" (all but theta7 and theta8, which no rigid body has), "thesis" (all 20), or names.
+        columns: "rigid" (all but theta7 and theta8, which no rigid body has), "thesis" (all 20).
         l2: length of the upper arm, m: ties theta6 = l2 theta4, as for every in-line arm.
         use: (n, 3) bool: samples of a joint that count, as `Motion.use`; default all.
 
@@ -59,6 +59,7 @@ def fit(
     choice("unit", unit, ("PWM", "N m"))
     choice("method", method, METHODS)
     choice("rows", rows, ("joint", "shared"))
+    choice("columns", columns, tuple(COLUMNS))
     number("strength", strength, "> 0")
     if l2 is not None:
         metres("l2", l2)
@@ -66,12 +67,11 @@ def fit(
     used = np.ones(y.shape) if use is None else _checked_use(use, y)
     share = used * np.sqrt(_checked_weights(weights, y)) if method == "weighted" else used
     Z = _checked_instruments(instruments, Phi) if method == "iv" else None
-    chosen = chosen_columns(columns)
     theta, stderr, covariance = np.zeros((3, 20)), np.full((3, 20), np.nan), np.zeros((3, 20, 20))
     condition, freedom, lost, notes = np.zeros(3), np.zeros(3), [], []
     for joints in [slice(0, 3)] if rows == "shared" else [slice(j, j + 1) for j in range(3)]:
         who = "" if rows == "shared" else f"joint {joints.stop}: "
-        here, ties, names = _acting(joints, chosen, l2)
+        here, ties, names = _acting(joints, COLUMNS[columns], l2)
         A, b = product(_equations(Phi, share, joints, here), ties), (y * share)[:, joints].ravel()
         problem = Problem(A, b, names, len(y), who=who)
         ties = ties[:, problem.kept]
@@ -113,10 +113,8 @@ def fit(
 def _acting(joints, chosen, l2):
     """Columns that act on some joints; theta[columns] = ties beta, where l2 makes beta shorter; names of beta."""
     here = [k for k in chosen if any(k in acting for acting in ACTS_ON[joints])]
-    if not here:
-        raise InputError(f"no column chosen acts on joint {joints.stop}: add one, or fit rows='shared'")
     ties, kept = np.eye(len(here)), list(range(len(here)))
-    if l2 is not None and _THETA4 in here and _THETA6 in here:
+    if l2 is not None and _THETA4 in here:
         ties[here.index(_THETA6), here.index(_THETA4)] = l2
         kept.remove(here.index(_THETA6))
     return here, ties[:, kept], [NAMES[here[k]] for k in kept]

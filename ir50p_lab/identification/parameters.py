@@ -39,23 +39,7 @@ ACTS_ON = (
     (3, 4, 5, 7, 9, 14, 15, 18, 19),
 )
 RIGID_ON = tuple([k for k in acting if NAMES[k] not in ONLY_THESIS] for acting in ACTS_ON)  # without theta7, theta8
-
-
-def chosen_columns(columns):
-    """Indices of the columns to fit, increasing.
-
-    Args: columns: "rigid" (all but theta7, theta8), "thesis" (all 20), or a list of names.
-    Raises InputError for anything else, or nothing chosen.
-    """
-    sets = {"rigid": [name for name in NAMES if name not in ONLY_THESIS], "thesis": NAMES}
-    names = sets.get(columns, [columns]) if isinstance(columns, str) else list(columns)
-    unknown = [name for name in names if name not in NAMES]
-    if unknown or not names:
-        raise InputError(
-            f"columns = {columns!r:.60}: {unknown} is no column; choose 'rigid', 'thesis', or give a list of names of "
-            f"{', '.join(NAMES)}"
-        )
-    return sorted(map(NAMES.index, set(names)))
+COLUMNS = {"rigid": [k for k in range(20) if NAMES[k] not in ONLY_THESIS], "thesis": list(range(20))}
 
 
 def metres(name, value):

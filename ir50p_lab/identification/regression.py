@@ -107,7 +107,7 @@ class Problem:
         if len(A) < 2 * len(names):
             raise IdentificationError(
                 f"{who}{len(A)} equations for {len(names)} parameters: record at least {2 * len(names)} "
-                "samples, better some seconds of rich motion, or fit fewer columns"
+                "samples, better some seconds of rich motion"
             )
         length = np.linalg.norm(A, axis=0)
         if not length.any():

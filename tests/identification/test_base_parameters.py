@@ -255,5 +255,3 @@ def test_bad_input_of_the_general_arm():
     for l2 in (0.0, -0.2, np.nan):
         with pytest.raises(InputError, match="l2 ="):
             general_regressor(z, z, z, l2=l2)
-    with pytest.raises(InputError, match="g = -1"):
-        general_regressor(z, z, z, l2=0.2, g=-1)

@@ -88,7 +88,7 @@ def test_motions_come_back_as_they_were(tmp_path):
     (tmp_path / "bad.json").write_text("{}")
     with pytest.raises(InputError, match="no file of excitations"):
         load_excitations(tmp_path / "bad.json")
-    with pytest.raises(InputError, match="cannot read"):
+    with pytest.raises(InputError, match="no file of excitations"):
         load_excitations(tmp_path / "none.json")
 
 
