@@ -1,11 +1,12 @@
 """What a fit found: the 20 parameters per joint, how sure they are, and what the data cannot say."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ir50p_lab.identification.fit_input import blocks
 from ir50p_lab.identification.parameters import FREE_OF_SIGN, NAMES
+from ir50p_lab.identification.validation import validate
 from ir50p_lab.modelling.dynamics import mass_matrix
 
 
@@ -27,6 +28,7 @@ class Estimate:
     warnings       what to mind about this fit, as sentences                                        tuple of str
     unit           of y: "PWM" or "N m"
     method, rows   how it was fitted; rows: "joint" or "shared"
+    steps          how the signals were processed, for `validate`: known to `identify`                 dict
     ============== ================================================================================ ==============
     """
 
@@ -42,10 +44,15 @@ class Estimate:
     unit: str = "PWM"
     method: str = "ls"
     rows: str = "joint"
+    steps: dict = field(default_factory=dict)
 
     def predict(self, Phi):
         """Torque or PWM counts Phi theta, (n, 3), of a regressor (n, 3, 20). Raises InputError on another shape."""
         return np.einsum("nij,ij->ni", blocks("Phi", Phi), self.theta)
+
+    def score(self, recording, q=None, u=None):
+        """Validation of "u" on another recording    (Table 4.4), processed with `steps`, as the training was."""
+        return validate(self, recording, q, u, **self.steps)
 
     @property
     def verdict(self):

@@ -34,17 +34,14 @@ class Excitation:
     condition_after: np.ndarray
 
 
-def regressor_condition(reference):
-    """Condition number of the regressor along one period of a motion, its columns scaled to length 1: (3,), per joint.
+def regressor_condition(motion):
+    """Condition number of the regressor along one period of a Fourier motion, its columns scaled to length 1: (3,).
 
-    1 is best: every parameter is seen apart from the others. 100: of some combination the data say 100 times less.
-    reference: Fourier, or any Reference with a finite duration > 0. Raises InputError.
+    One per joint. 1 is best: every parameter is seen apart from the others. 100: of some combination the data say 100
+    times less.
     """
-    length = getattr(reference, "period", None) or getattr(reference, "duration", 0.0)
-    if not (math.isfinite(length) and length > 0):
-        raise InputError(f"the reference lasts {length} s: give a motion of finite length > 0, such as `fourier`")
-    t = getattr(reference, "start", 0.0) + length * (np.arange(500) + 0.5) / 500
-    return _conditions(regressor(*np.swapaxes(reference.sample(t), 0, 1))[None])[0]
+    t = motion.start + motion.period * (np.arange(500) + 0.5) / 500
+    return _conditions(regressor(*np.swapaxes(motion.sample(t), 0, 1))[None])[0]
 
 
 def _conditions(Phi):
@@ -97,10 +94,6 @@ def optimise_excitation(
     if not np.isfinite([*arm.q_min, *arm.q_max]).all():
         raise InputError(f"{arm.name} has no joint limits: give q_min and q_max, dataclasses.replace(arm, q_min=...)")
     whole("harmonics", harmonics, 2, 12)
-    whole("periods", periods, 1, 10**6)
-    whole("starts", starts, 1, 10**4)
-    whole("iterations", iterations, 1, 10**5)
-    whole("seed", seed, 0, 2**63)
     number("standing", standing, ">= 0", hint="the price of time near standstill")
     number("period", period, "> 0", unit="s")
     limits = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
@@ -109,15 +102,11 @@ def optimise_excitation(
     first, found = [], []
     from tqdm.auto import tqdm
 
-    with tqdm(total=starts * iterations, disable=not progress, unit="step", desc="excitation") as bar:
-        for start in range(starts):
-            x = problem.start(generator)
-            if x is None:
-                continue
+    for _ in tqdm(range(starts), disable=not progress, unit="start", desc="excitation"):
+        x = problem.start(generator)
+        if x is not None:
             first.append(x)
-            found.append(problem.improve(x, iterations, bar.update))
-            bar.update((start + 1) * iterations - bar.n)
-            bar.set_postfix_str(f"condition {math.exp(min(value for value, _ in found)):.3g}")
+            found.append(problem.improve(x, iterations))
     if not found:
         raise IdentificationError(
             f"no motion was found inside the limits in {starts} starts: widen the joint limits, lower the table "
@@ -185,8 +174,8 @@ class _Problem:
         cost = np.log(np.minimum(conditions, _WORST)).mean(axis=1) + self.standing * still
         low, high = q.min(axis=1), q.max(axis=1)
         more = _HIDDEN / 2 * (high - low)
-        fast = np.abs(qd).max(axis=1) * (1 + _HIDDEN)
-        joints = np.stack([self.high - high - more, low - more - self.low, self.speed - fast], axis=2)
+        speed = self.speed - np.abs(qd).max(axis=1) * (1 + _HIDDEN)
+        joints = np.stack([self.high - high - more, low - more - self.low, speed], axis=2)
         over = [height.reshape(len(x), -1).min(axis=1) for height in heights(self.l, q.reshape(-1, 3))]
         table = -np.inf if self.table is None else self.table + _HIDDEN * (self.l[1] + self.l[2])
         over = np.minimum(np.column_stack(over) - table, 1e3)
@@ -203,17 +192,13 @@ class _Problem:
             self._last = x.copy(), np.column_stack(ahead - here) / _STEP  # rows in one piece: SLSQP reads no others
         return self._last[1]
 
-    def value(self, x):
-        return float(self.both(x)[0])
-
-    def improve(self, x, iterations, step):
+    def improve(self, x, iterations):
         """SLSQP from x: (value, point) of the best point inside the bounds that was visited."""
         from scipy.optimize import minimize
 
-        best = [self.value(x), x]
+        best = [self.both(x)[0], x]
 
         def seen(x):
-            step(1)
             for share in (1.0, 0.999, 0.99, 0.97, 0.94):  # a little less of a motion that is just outside
                 less = np.r_[x[:3], share * x[3:]]
                 value, *room = self.both(less)
@@ -221,10 +206,15 @@ class _Problem:
                     best[:] = min(best, [value, less], key=lambda pair: pair[0])
                     return
 
-        room = {"type": "ineq", "fun": lambda x: self.both(x)[1:] - 1e-6, "jac": lambda x: self.slopes(x)[1:]}
-        options = {"maxiter": iterations, "ftol": 1e-5}
-        slope = {"jac": lambda x: self.slopes(x)[0]}
-        minimize(self.value, x, **slope, constraints=[room], method="SLSQP", callback=seen, options=options)
+        minimize(
+            lambda x: self.both(x)[0],
+            x,
+            jac=lambda x: self.slopes(x)[0],
+            constraints={"type": "ineq", "fun": lambda x: self.both(x)[1:] - 1e-6, "jac": lambda x: self.slopes(x)[1:]},
+            method="SLSQP",
+            callback=seen,
+            options={"maxiter": iterations, "ftol": 1e-5},
+        )
         return best
 
     def split(self, x):

@@ -16,9 +16,9 @@ from ir50p_lab.identification import (
     load_excitations,
     process,
     regressor,
-    regressor_condition,
     validate,
 )
+from ir50p_lab.identification.excitation import regressor_condition
 from ir50p_lab.modelling import IR50P
 from tests.support.make_excitations import make_excitations, save_excitations, simulate_identification
 
