@@ -10,7 +10,6 @@ from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, NAMES, metres
 from ir50p_lab.identification.regression import Problem, product
 from ir50p_lab.inputs import choice, number, vectors3
 
-METHODS = ("ls", "weighted", "huber", "ridge", "bounded", "iv")
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 
 
@@ -57,7 +56,7 @@ def fit(
         cannot settle.
     """
     choice("unit", unit, ("PWM", "N m"))
-    choice("method", method, METHODS)
+    choice("method", method, ("ls", "weighted", "huber", "ridge", "bounded", "iv"))
     choice("rows", rows, ("joint", "shared"))
     choice("columns", columns, tuple(COLUMNS))
     number("strength", strength, "> 0")

@@ -61,14 +61,12 @@ def least_squares(A, y, *, names=None, tolerance=DEPENDENT):
     Raises: InputError on shapes and numbers that are not finite; IdentificationError if A is zero, or has fewer than
     twice as many rows as columns.
     """
-    masks = [np.ma.getmaskarray(x) for x in (A, y) if np.ma.isMaskedArray(x)]
+    given = A, y
     A, y = numbers("A", A), numbers("y", y)
     if A.ndim not in (2, 3) or A.shape[:-1] != y.shape or not A.size:
         raise InputError(f"A has shape {A.shape}, y {y.shape}: give (n, p) and (n,), or (n, k, p) and (n, k)")
-    if masks:
-        keep = ~np.any([mask.reshape(len(y), -1).any(axis=1) for mask in masks], axis=0)
-        A, y = A[keep], y[keep]
-    A, y = finite("A", A), finite("y", y)
+    masked = np.any([np.ma.getmaskarray(x).reshape(len(y), -1).any(axis=1) for x in given], axis=0)
+    A, y = finite("A", A[~masked]), finite("y", y[~masked])
     p = A.shape[-1]
     names = [f"x{k + 1}" for k in range(p)] if names is None else list(names)
     if len(names) != p:
