@@ -47,14 +47,8 @@ def regressor_condition(motion):
 
 def _conditions(Phi):
     """Condition number of each joint's columns, scaled to length 1: (3,) for (n, 3, 20); inf from _WORST on."""
-    found = np.empty(3)
-    for joint, columns in enumerate(RIGID_ON):
-        A = Phi[:, joint, columns]
-        G = A.T @ A
-        size = np.sqrt(np.diag(G))
-        size[size == 0] = np.inf
-        values = np.linalg.eigvalsh(G / np.outer(size, size))
-        found[joint] = np.sqrt(values[-1] / max(values[0], 1e-300))
+    parts = [Phi[:, joint, columns] for joint, columns in enumerate(RIGID_ON)]
+    found = np.array([np.linalg.cond(A / np.maximum(np.linalg.norm(A, axis=0), 1e-300)) for A in parts])
     return np.where(found < _WORST, found, np.inf)
 
 

@@ -79,9 +79,8 @@ def fit(
         elif method == "ridge":
             x, spread = estimators.ridge(problem, strength)
         else:
-            x, spread = {"huber": estimators.huber, "bounded": estimators.bounded}.get(method, estimators.plain)(
-                problem
-            )
+            others = {"huber": estimators.huber, "bounded": estimators.bounded}
+            x, spread = others.get(method, estimators.plain)(problem)
         found = ties.any(axis=1)
         spread = ties @ spread @ ties.T
         count = used[:, joints].sum()

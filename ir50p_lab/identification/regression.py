@@ -77,13 +77,14 @@ def least_squares(A, y, *, names=None, tolerance=DEPENDENT):
     x[kept], covariance[np.ix_(kept, kept)] = problem.estimate(problem.Qty)
     stderr[kept] = np.sqrt(np.diag(covariance))[kept]
     e = (y - A @ x).reshape(len(y), -1)
+    power = np.maximum(np.sum(e**2, axis=0), 1e-300)
     return LeastSquares(
         x=x,
         stderr=stderr,
         covariance=covariance,
         residuals=e.reshape(y.shape),
         rms=math.sqrt(np.mean(e**2)),
-        correlation=float(np.mean(_neighbours(e))),
+        correlation=float(np.mean(np.sum(e[1:] * e[:-1], axis=0) / power)),
         independent=float(independent_samples(e)),
         condition=problem.condition,
         dropped=tuple(problem.lost),
@@ -217,9 +218,3 @@ def independent_samples(residuals):
     """Independent samples in residuals (n, k): twice the cosine coefficients that hold half of their power."""
     power = np.cumsum(np.sum(fft.dct(residuals, axis=0) ** 2, axis=1))
     return max(2 * np.searchsorted(power, power[-1] / 2), 1)
-
-
-def _neighbours(residuals):
-    """Correlation of neighbouring residuals, (k,) for (n, k): 0 for white noise, near 1 after a low-pass."""
-    power = np.sum(residuals**2, axis=0)
-    return np.sum(residuals[1:] * residuals[:-1], axis=0) / np.maximum(power, 1e-300)

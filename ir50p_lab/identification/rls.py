@@ -72,8 +72,7 @@ def _run(theta, V, D, forgetting, largest, Phi, y, history):
         for i in range(3):
             part = min(i, filters - 1)
             if forgetting < 1.0 and part == i:
-                for j in range(p):
-                    D[part, j] = min(D[part, j] / forgetting, largest)
+                D[part] = np.minimum(D[part] / forgetting, largest)
             ud_row(theta[part], V[part], D[part], Phi[k, i], y[k, i], K)
         if len(history):
             history[k] = theta
@@ -109,7 +108,7 @@ class RLS:
             )
         self.P0, self.forgetting = P0, float(forgetting)
         acting = [range(20)] if shared else ACTS_ON
-        chosen = np.array([np.isin(range(20), COLUMNS[columns]) & np.isin(range(20), on) for on in acting])
+        chosen = np.array([[j in on and j in COLUMNS[columns] for j in range(20)] for on in acting])
         k = len(acting)
         self._theta, self._V, self._D = np.zeros((k, 20)), np.tile(np.eye(20), (k, 1, 1)), P0 * chosen
 
