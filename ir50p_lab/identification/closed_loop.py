@@ -72,4 +72,5 @@ def runs_of(recordings, controller, references=None, **options):
         references = [references] * len(recordings)
     if not recordings or len(references) != len(recordings):
         raise InputError(f"{len(recordings)} recordings and {len(references)} references: give one for each")
-    return [ClosedLoopRun(*pair, **options) for pair in zip(recordings, references, strict=True)]
+    pairs = zip(recordings, references, strict=True)
+    return [ClosedLoopRun(recording, controller, reference, **options) for recording, reference in pairs]

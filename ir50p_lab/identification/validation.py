@@ -73,6 +73,7 @@ def validate(
     cutoff_hz=1.5,
     delay=0.0,
     held=True,
+    trim=None,
     sign=None,
 ):
     """Predict the u of another recording from its angles, one sample at a time    (4.5), Table 4.4.
@@ -80,7 +81,7 @@ def validate(
     The u of the recording is taken raw, as it was sent. The prediction is made from q, qd and qdd as `process` finds
     them, and read at the time at which each u acted: its sample + delay (+ half a period while it is held).
 
-    Args: estimate: Estimate or theta (3, 20); recording, or t, q, u; derivatives, cutoff_hz, delay, held: as in
+    Args: estimate: Estimate or theta (3, 20); recording, or t, q, u; derivatives, cutoff_hz, delay, held, trim: as in
     `process`; sign: as in `regressor`.
     Returns: Validation of "u". Raises InputError, IdentificationError as `process` does.
     """
@@ -88,7 +89,7 @@ def validate(
     t, q, u = columns_of(recording, q, u)
     if q.shape[1] != 3:
         raise InputError(f"q has {q.shape[1]} columns: validation needs the three joints, (n, 3)")
-    motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, held=False)
+    motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, held=False, trim=trim)
     predicted = np.einsum("nij,ij->ni", regressor(motion.q, motion.qd, motion.qdd, sign=sign), theta)
     acts = acting_times(t, number("delay", delay, ">= 0", unit="s"), held and derivatives == BACKWARD)
     after = np.searchsorted(motion.t, acts).clip(1, len(motion) - 1)
