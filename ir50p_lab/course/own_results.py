@@ -136,13 +136,13 @@ def _read(found):
         from ir50p_lab.vision import Calibration
 
         return Calibration.load(found.path)
-    from ir50p_lab.identification.recipe import Identified
+    from ir50p_lab.identification import Estimate
 
     try:
         listed = json.loads(found.path.read_text(encoding="utf-8"))
-        arrays = {one.name for one in dataclasses.fields(Identified) if one.type is np.ndarray}
+        arrays = {one.name for one in dataclasses.fields(Estimate) if one.type is np.ndarray}
         fields = {name: np.array(value) if name in arrays else value for name, value in listed.items()}
-        return Identified(**{name: _tuples(value) for name, value in fields.items()})
+        return Estimate(**{name: _tuples(value) for name, value in fields.items()})
     except (OSError, ValueError, TypeError, RecursionError) as error:
         raise InputError(f"{found.path} is no model ({error!r:.80}): results(withdraw={found.name!r})") from None
 

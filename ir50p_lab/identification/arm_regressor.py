@@ -64,8 +64,7 @@ def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
     """
     q, qd, qdd = (vectors3(name, value, unit="SI") for name, value in (("q", q), ("qd", qd), ("qdd", qdd)))
     if q.ndim > 2 or qd.shape != q.shape or qdd.shape != q.shape:
-        shapes = f"q {q.shape}, qd {qd.shape}, qdd {qdd.shape}"
-        raise InputError(f"shapes do not fit: {shapes}; give all (3,), or all (n, 3) with the same n")
+        raise InputError(f"q {q.shape}, qd {qd.shape}, qdd {qdd.shape}: give all (3,), or all (n, 3) with the same n")
     g = number("g", g, ">= 0", unit="m/s^2", hint="the base z axis points up")
     rows = [np.ascontiguousarray(x).reshape(-1, 3) for x in (q, qd, qdd, _direction(sign, qd))]
     out = np.zeros((len(rows[0]), 3, 20))
@@ -76,13 +75,9 @@ def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
 def _direction(sign, qd):
     if sign is None:
         return np.sign(qd)
-    if not isinstance(sign, (np.ndarray, list, tuple)):
+    if np.ndim(sign) == 0:
         return np.tanh(qd / number("sign", sign, "> 0", unit="rad/s", hint="a speed for tanh(qd/speed), or an array"))
     sign = vectors3("sign", sign, unit="-1 to 1")
-    largest = np.abs(sign).max(initial=0.0)
-    if sign.shape != qd.shape or largest > 1:
-        raise InputError(
-            f"sign has shape {sign.shape} and holds {largest:g}: give the shape of q, {qd.shape}; a direction lies in "
-            "-1 to 1, for a velocity give np.sign(qd)"
-        )
+    if sign.shape != qd.shape or np.abs(sign).max(initial=0.0) > 1:
+        raise InputError(f"sign {sign.shape}: give the shape of q, {qd.shape}, and numbers from -1 to 1: np.sign(qd)")
     return sign

@@ -7,8 +7,7 @@ import numpy as np
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.fit_input import finite
 from ir50p_lab.identification.parameters import NAMES
-from ir50p_lab.identification.problem import DEPENDENT
-from ir50p_lab.identification.qr import independent_columns, r_factor
+from ir50p_lab.identification.regression import independent_columns, r_factor
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -26,7 +25,6 @@ class BaseParameters:
     groups          the base parameters in symbols, one string each                                rank
     singular_values of Phi with columns scaled to length 1, largest first: the drop after `rank`   (p,)
                     shows how clear the rank is
-    condition       of the kept columns, scaled to length 1
     =============== ============================================================================== =========
     """
 
@@ -37,19 +35,18 @@ class BaseParameters:
     unseen: tuple
     groups: tuple
     singular_values: np.ndarray
-    condition: float
 
     def __str__(self):
-        head = f"{self.rank} base parameters of {len(self.names)}, condition {self.condition:.3g}"
+        head = f"{self.rank} base parameters of {len(self.names)}"
         unseen = [f"without effect: {', '.join(self.unseen)}"] if self.unseen else []
         return "\n".join([head, *(f"  {k + 1:2}  {group}" for k, group in enumerate(self.groups)), *unseen])
 
 
 def base_parameters(Phi, *, names=None, known=None):
-    """Which combinations of parameters the regressor Phi can tell apart, by QR and by SVD.
+    """Which combinations of parameters the regressor Phi can tell apart, by QR.
 
     Columns are scaled to length 1 and taken in order: one that is a combination of kept columns before it (less than
-    1e-8 sticks out) joins their groups. The singular values must give the same rank.
+    1e-8 sticks out) joins their groups. The singular values show whether the rank is clear.
 
     Args:
         Phi: (n, 3, p), (n, k, p) or (m, p), from exact motion rich enough to excite everything (random states do);
@@ -57,69 +54,54 @@ def base_parameters(Phi, *, names=None, known=None):
         names: of the p columns; default the 20 parameters, or p1, p2, ...
         known: numbers that may appear in the groups, {"l2": 0.2}: 0.04 is then written l2^2.
 
-    Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if QR and SVD disagree on the
-        rank: the motion lies between excited and not excited.
+    Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if Phi is zero.
     """
     A, names = _checked(Phi, names)
     length = np.linalg.norm(A, axis=0)
     seen = np.flatnonzero(length > 1e-14 * length.max())
-    scaled = A[:, seen] / length[seen]
-    R = r_factor(scaled)
-    kept = independent_columns(R, DEPENDENT)
-    s = np.linalg.svd(R, compute_uv=False)
-    by_svd = int(np.sum(s > DEPENDENT * s[0]))
-    if by_svd != len(kept):
-        raise IdentificationError(
-            f"the rank is not clear: {len(kept)} columns stick out of the others by more than {DEPENDENT:g}, but "
-            f"{by_svd} singular values are above it: use richer or exact motion"
-        )
-    weights = np.linalg.lstsq(R[:, kept], R, rcond=None)[0]  # column k = kept columns @ weights[:, k]
-    weights[np.abs(weights) < DEPENDENT] = 0.0
+    R = r_factor(A[:, seen] / length[seen])
+    kept, weights = independent_columns(R)
     columns = seen[kept]
     matrix = np.zeros((len(kept), len(names)))
     matrix[:, seen] = weights * length[seen] / length[columns][:, None]
-    matrix[np.arange(len(kept))[:, None], columns] = np.eye(len(kept))
+    matrix[:, columns] = np.eye(len(kept))
     return BaseParameters(
         rank=len(kept),
         columns=columns,
         matrix=matrix,
         names=names,
         unseen=tuple(name for k, name in enumerate(names) if k not in seen),
-        groups=tuple(_in_symbols(row, names, known or {}) for row in matrix),
-        singular_values=s,
-        condition=float(np.linalg.cond(R[:, kept])),
+        groups=tuple(_in_symbols(row, k, names, known or {}) for k, row in zip(columns, matrix, strict=True)),
+        singular_values=np.linalg.svd(R, compute_uv=False),
     )
 
 
 def _checked(Phi, names):
     A = finite("Phi", Phi)
-    if A.ndim not in (2, 3) or not A.size:
-        raise InputError(f"Phi has shape {A.shape}; give (n, 3, p) or (m, p)")
+    if A.ndim not in (2, 3) or not 0 < 2 * A.shape[-1] ** 2 <= A.size:
+        raise InputError(f"Phi has shape {A.shape}; give (n, 3, p) or (m, p), from random states, of 2 p rows at least")
     A = A.reshape(-1, A.shape[-1])
     p = A.shape[1]
     if names is None:
         names = NAMES if p == len(NAMES) else [f"p{k + 1}" for k in range(p)]
     if len(names) != p:
         raise InputError(f"{len(names)} names for {p} columns: give one for each")
-    if len(A) < 2 * p:
-        raise InputError(f"Phi has {len(A)} rows for {p} columns: give at least {2 * p}, from random states")
     if not A.any():
         raise IdentificationError("Phi is zero throughout: there is no motion in it")
     return A, tuple(names)
 
 
-def _in_symbols(row, names, known):
-    """A sum like 'XX2 - YY2 - l2^2 m3' from its coefficients, that of the kept column 1 and first."""
-    first = next(k for k in range(len(row)) if row[k] == 1.0)
-    text = names[first]
-    for k in [k for k in np.flatnonzero(row) if k != first]:
-        size = _symbol(abs(row[k]), known)
-        text += (" - " if row[k] < 0 else " + ") + (f"{size} " if size else "") + names[k]
+def _in_symbols(row, kept, names, known):
+    """A sum like 'XX2 - YY2 - l2^2 m3' from its coefficients, that of the kept column first."""
+    text = names[kept]
+    for k in np.flatnonzero(row):
+        if k != kept:
+            text += f" {'+' if row[k] > 0 else '-'} {_symbol(abs(row[k]), known)}{names[k]}"
     return text
 
 
 def _symbol(size, known):
     """A positive coefficient as a known number or its square; else its digits."""
-    candidates = {"": 1.0} | known | {f"{name}^2": value**2 for name, value in known.items()}
+    candidates = {"": 1.0} | {f"{name} ": x for name, x in known.items()} | {f"{n}^2 ": x**2 for n, x in known.items()}
     found = [text for text, value in candidates.items() if abs(size - value) < 1e-6 * abs(value)]
-    return found[0] if found else f"{size:.4g}"
+    return found[0] if found else f"{size:.4g} "

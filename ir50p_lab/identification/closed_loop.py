@@ -1,10 +1,8 @@
 """The closed loop of a run, simulated with a model in place of the arm: what output-error fits compare with."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ir50p_lab.controllers.base import Controller, check_reference, is_compiled
+from ir50p_lab.controllers.base import check_reference, is_compiled
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.inputs import number, vectors3
@@ -17,40 +15,30 @@ _STILL = 5  # first samples, of which the mean is the start: the arm has hardly 
 _LIMIT = 255.0  # PWM counts, of |u|
 
 
-@dataclass(frozen=True, eq=False)
 class ClosedLoopRun:
-    """A recording with what is needed to repeat it in simulation: t (m,), q, u (m, 3), rows r (m, 3, 3), start (3,)."""
+    """A recording with what is needed to repeat it in simulation; arguments as in `output_error`.
 
-    t: np.ndarray
-    q: np.ndarray
-    u: np.ndarray
-    r: np.ndarray
-    start: np.ndarray
-    period: float
-    controller: Controller
-    late: int
+    Attributes: t (m,), q, u (m, 3), the reference r (m, 3, 3), the pose at the start (3,), period, s.
+    """
 
-    @classmethod
-    def of(cls, recording, controller, reference=None, *, delay=0.0, seconds=np.inf):
-        """Checked, from a recording, its controller and its reference; see `output_error` for the arguments."""
+    def __init__(self, recording, controller, reference=None, *, delay=0.0, seconds=np.inf):
         t, q, u = columns_of(recording)
-        if q.shape[1] != 3 or len(t) < 50:
-            raise InputError(f"{len(t)} samples of {q.shape[1]} joint(s): give 50 or more of all three joints")
         period = sampling_period(t)
+        n = int(min(len(t), np.round(number("seconds", seconds, "> 0 or inf", unit="s") / period)))
+        if q.shape[1] != 3 or n < 50:
+            raise InputError(f"{n} samples of {q.shape[1]} joint(s): give 50 or more of all three joints")
         if np.abs(np.diff(t) - period).max() > 0.1 * period:
             raise InputError("the times are uneven or have gaps: a loop is compared without; cut with between(t0, t1)")
         if not is_compiled(controller):
             raise InputError(f"controller is a {type(controller).__name__}: give the PID (or other) of the run")
-        late = round(number("delay", delay, ">= 0", unit="s") / period)
-        if number("seconds", seconds, "> 0 or inf", unit="s") < 2:
-            raise InputError(f"seconds = {seconds!r}: give 2 s or more of each recording")
-        some = slice(int(min(len(t), np.round(seconds / period))))
         if reference is None:
             rows = _recorded_reference(recording, period)
         else:
             check_reference(reference, sampled=True)
             rows = sampled(reference, t)
-        return cls(t[some], q[some], u[some], rows[some], q[:_STILL].mean(axis=0), period, controller, late)
+        self.t, self.q, self.u, self.r = (x[:n] for x in (t, q, u, rows))
+        self.start, self.period, self.controller = q[:_STILL].mean(axis=0), period, controller
+        self.late = round(number("delay", delay, ">= 0", unit="s") / period)
 
     def simulate(self, theta, fs=None, qs=None, *, step=0.001):
         """q and u (PWM), (m, 3) each, of the loop with this model; fs, qs (3,): breakaway and Stribeck speed."""
@@ -78,11 +66,11 @@ def _recorded_reference(recording, period):
 
 
 def runs_of(recordings, controller, references=None, **options):
-    """ClosedLoopRuns of a recording or a list; a motion for all or each; options as of `ClosedLoopRun.of`."""
+    """ClosedLoopRuns of a recording or a list; a motion for all or each; options as of `ClosedLoopRun`."""
     recordings = list(recordings) if isinstance(recordings, (list, tuple)) else [recordings]
     if not isinstance(references, (list, tuple)):
         references = [references] * len(recordings)
     if not recordings or len(references) != len(recordings):
         raise InputError(f"{len(recordings)} recordings and {len(references)} references: give one for each")
     pairs = zip(recordings, references, strict=True)
-    return [ClosedLoopRun.of(recording, controller, reference, **options) for recording, reference in pairs]
+    return [ClosedLoopRun(recording, controller, reference, **options) for recording, reference in pairs]

@@ -1,11 +1,12 @@
 """What a fit found: the 20 parameters per joint, how sure they are, and what the data cannot say."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ir50p_lab.identification.fit_input import blocks
 from ir50p_lab.identification.parameters import FREE_OF_SIGN, NAMES
+from ir50p_lab.identification.validation import validate
 from ir50p_lab.modelling.dynamics import mass_matrix
 
 
@@ -22,12 +23,12 @@ class Estimate:
     condition      of the joint's columns, each scaled to length 1                                  (3,)
     residuals      y - Phi theta                                                                    (n, 3) unit
     sigma          root mean square of the residuals, for the degrees of freedom left               (3,) unit
-    correlation    of neighbouring residuals: 0 for white noise                                     (3,)
     columns        names of the parameters that were fitted, one tuple per joint                    3 tuples
     unidentifiable what the data cannot carry, as "joint 2: theta8"                                 tuple of str
     warnings       what to mind about this fit, as sentences                                        tuple of str
     unit           of y: "PWM" or "N m"
     method, rows   how it was fitted; rows: "joint" or "shared"
+    steps          how the signals were processed, for `validate`: known to `identify`                 dict
     ============== ================================================================================ ==============
     """
 
@@ -37,28 +38,30 @@ class Estimate:
     condition: np.ndarray
     residuals: np.ndarray
     sigma: np.ndarray
-    correlation: np.ndarray
     columns: tuple
     unidentifiable: tuple
     warnings: tuple
     unit: str = "PWM"
     method: str = "ls"
     rows: str = "joint"
+    steps: dict = field(default_factory=dict)
 
     def predict(self, Phi):
         """Torque or PWM counts Phi theta, (n, 3), of a regressor (n, 3, 20). Raises InputError on another shape."""
         return np.einsum("nij,ij->ni", blocks("Phi", Phi), self.theta)
 
+    def score(self, recording, q=None, u=None):
+        """Validation of "u" on another recording    (Table 4.4), processed with `steps`, as the training was."""
+        return validate(self, recording, q, u, **self.steps)
+
     @property
     def verdict(self):
         """What the data say and what they do not, as a tuple of sentences: the warnings last."""
-        sentences, shared = [], self.rows == "shared"
-        for row in range(1 if shared else 3):
-            who = "all joints" if shared else f"joint {row + 1}"
-            rms = ", ".join(f"{x:.3g}" for x in (self.sigma if shared else self.sigma[[row]]))
+        sentences = []
+        for row, who in _rows(self.rows).items():
             sentences.append(
-                f"{who}: {len(self.columns[row])} parameters from {len(self.residuals)} samples, residual {rms} "
-                f"{self.unit} rms, condition {self.condition[row]:.3g}"
+                f"{who}: {len(self.columns[row])} parameters from {len(self.residuals)} samples, residual "
+                f"{self.sigma[row]:.3g} {self.unit} rms, condition {self.condition[row]:.3g}"
             )
             values = zip(NAMES, self.theta[row], self.stderr[row], strict=True)
             unsure = [f"{name} = {x:.3g} +- {stderr:.2g}" for name, x, stderr in values if abs(x) < 2 * stderr < np.inf]
@@ -67,29 +70,27 @@ class Estimate:
         return (*sentences, *self.warnings)
 
     def __str__(self):
-        who = ("all", "", "") if self.rows == "shared" else (1, 2, 3)
         lines = [f"parameters in {self.unit} and SI units, method {self.method}, rows {self.rows}"]
-        for row in range(1 if self.rows == "shared" else 3):
-            lines += [
-                f"  {who[row]}  {name:8}{self.theta[row, k]:12.4g} +- {self.stderr[row, k]:.2g}"
-                for k, name in enumerate(NAMES)
-                if name in self.columns[row]
-            ]
+        for row, who in _rows(self.rows).items():
+            values = zip(NAMES, self.theta[row], self.stderr[row], strict=True)
+            lines += [f"  {who}  {name:8}{x:12.4g} +- {s:.2g}" for name, x, s in values if np.isfinite(s)]
         return "\n".join([*lines, *self.verdict])
+
+
+def _rows(rows):
+    """Which rows of theta differ, and words for them."""
+    return {0: "all joints"} if rows == "shared" else {row: f"joint {row + 1}" for row in range(3)}
 
 
 def impossible_values(theta, stderr, rows):
     """Sentences about inertial and friction parameters below zero by more than two standard errors."""
-    found = []
-    for row in range(1 if rows == "shared" else 3):
-        who = "" if rows == "shared" else f"joint {row + 1}: "
-        found += [
-            f"{who}{name} = {x:.3g} +- {error:.2g} is negative, which is hardly possible: the signals are biased "
-            "(noise, delay) or the model lacks something; or use method='bounded'"
-            for name, x, error in zip(NAMES, theta[row], stderr[row], strict=True)
-            if name not in FREE_OF_SIGN and x < -2 * error
-        ]
-    return found
+    return [
+        f"{who}: {name} = {x:.3g} +- {error:.2g} is negative, which is hardly possible: the signals are biased "
+        "(noise, delay) or the model lacks something; or use method='bounded'"
+        for row, who in _rows(rows).items()
+        for name, x, error in zip(NAMES, theta[row], stderr[row], strict=True)
+        if name not in FREE_OF_SIGN and x < -2 * error
+    ]
 
 
 def indefinite_mass(theta):
@@ -103,10 +104,10 @@ def indefinite_mass(theta):
     M = mass_matrix(theta, np.column_stack([0 * q2, q2, q3]))
     if not M[:, range(3), range(3)].any(axis=0).all():
         return []  # a joint was fitted without its inertia: nothing to say
-    worst = np.min([np.linalg.det(M[:, :k, :k]) / np.abs(M[:, :k, :k]).max((1, 2)) ** k for k in (1, 2, 3)], axis=0)
-    k = int(np.argmin(worst))
-    if not worst[k] <= 0:
+    wrong = np.any([np.linalg.det(M[:, :k, :k]) <= 0 for k in (1, 2, 3)], axis=0)
+    if not wrong.any():
         return []
+    k = int(np.argmax(wrong))
     return [
         f"the mass matrix of these parameters is not positive definite at q2 = {q2[k]:.2f}, q3 = {q3[k]:.2f} rad: "
         "a computed-torque controller would push the wrong way there. Use method='bounded' or richer data"

@@ -1,5 +1,6 @@
 """Motions from which the parameters can be told apart: Fourier series with the condition number made small."""
 
+import functools
 import math
 from dataclasses import dataclass
 
@@ -9,7 +10,7 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.parameters import RIGID_ON
 from ir50p_lab.inputs import check_arm, number, whole
-from ir50p_lab.signals.fourier import Fourier, at_rest, fourier, heights, limits_of, series
+from ir50p_lab.signals.fourier import Fourier, fourier, heights, limits_of, series
 
 _PER_HARMONIC = 32  # points of the grid per period of the fastest harmonic
 _HIDDEN = 1 / math.cos(math.pi / _PER_HARMONIC) - 1  # of half the range: what may hide between the points
@@ -34,29 +35,20 @@ class Excitation:
     condition_after: np.ndarray
 
 
-def regressor_condition(reference):
-    """Condition number of the regressor along one period of a motion, its columns scaled to length 1: (3,), per joint.
+def regressor_condition(motion):
+    """Condition number of the regressor along one period of a Fourier motion, its columns scaled to length 1: (3,).
 
-    1 is best: every parameter is seen apart from the others. 100: of some combination the data say 100 times less.
-    reference: Fourier, or any Reference with a finite duration > 0. Raises InputError.
+    One per joint. 1 is best: every parameter is seen apart from the others. 100: of some combination the data say 100
+    times less.
     """
-    length = getattr(reference, "period", None) or getattr(reference, "duration", 0.0)
-    if not (math.isfinite(length) and length > 0):
-        raise InputError(f"the reference lasts {length} s: give a motion of finite length > 0, such as `fourier`")
-    t = getattr(reference, "start", 0.0) + length * (np.arange(500) + 0.5) / 500
-    return _conditions(regressor(*np.swapaxes(reference.sample(t), 0, 1))[None])[0]
+    t = motion.start + motion.period * (np.arange(500) + 0.5) / 500
+    return _conditions(regressor(*np.swapaxes(motion.sample(t), 0, 1)))
 
 
 def _conditions(Phi):
-    """Condition number of each joint's columns, scaled to length 1: (m, 3) for (m, n, 3, 20); inf from _WORST on."""
-    found = np.empty((len(Phi), 3))
-    for joint, columns in enumerate(RIGID_ON):
-        A = Phi[:, :, joint, columns]
-        G = np.swapaxes(A, 1, 2) @ A
-        size = np.sqrt(np.einsum("mpp->mp", G))
-        size[size == 0] = np.inf
-        values = np.linalg.eigvalsh(G / (size[:, :, None] * size[:, None, :]))
-        found[:, joint] = np.sqrt(values[:, -1] / np.maximum(values[:, 0], 1e-300))
+    """Condition number of each joint's columns, scaled to length 1: (3,) for (n, 3, 20); inf from _WORST on."""
+    parts = [Phi[:, joint, columns] for joint, columns in enumerate(RIGID_ON)]
+    found = np.array([np.linalg.cond(A / np.maximum(np.linalg.norm(A, axis=0), 1e-300)) for A in parts])
     return np.where(found < _WORST, found, np.inf)
 
 
@@ -97,10 +89,6 @@ def optimise_excitation(
     if not np.isfinite([*arm.q_min, *arm.q_max]).all():
         raise InputError(f"{arm.name} has no joint limits: give q_min and q_max, dataclasses.replace(arm, q_min=...)")
     whole("harmonics", harmonics, 2, 12)
-    whole("periods", periods, 1, 10**6)
-    whole("starts", starts, 1, 10**4)
-    whole("iterations", iterations, 1, 10**5)
-    whole("seed", seed, 0, 2**63)
     number("standing", standing, ">= 0", hint="the price of time near standstill")
     number("period", period, "> 0", unit="s")
     limits = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
@@ -109,15 +97,11 @@ def optimise_excitation(
     first, found = [], []
     from tqdm.auto import tqdm
 
-    with tqdm(total=starts * iterations, disable=not progress, unit="step", desc="excitation") as bar:
-        for start in range(starts):
-            x = problem.start(generator)
-            if x is None:
-                continue
+    for _ in tqdm(range(starts), disable=not progress, unit="start", desc="excitation"):
+        x = problem.start(generator)
+        if x is not None:
             first.append(x)
-            found.append(problem.improve(x, iterations, bar.update))
-            bar.update((start + 1) * iterations - bar.n)
-            bar.set_postfix_str(f"condition {math.exp(min(value for value, _ in found)):.3g}")
+            found.append(problem.improve(x, iterations))
     if not found:
         raise IdentificationError(
             f"no motion was found inside the limits in {starts} starts: widen the joint limits, lower the table "
@@ -145,86 +129,62 @@ class _Problem:
         self.Za, self.Zb = _null_space(k), _null_space(k**2)  # (N, N - 1)
         n = _PER_HARMONIC * harmonics
         self.period, self.t = period, (np.arange(n) + 0.5) / n * period
-        self.size = 3 + 6 * (harmonics - 1)
-        self._last = None
 
     def start(self, generator, tries=50):
         """Random coefficients, as large as the limits allow; None if not even the mean pose is allowed."""
+        decay = np.tile(np.arange(1, self.Za.shape[1] + 1), 2)
         for _ in range(tries):
             q0 = self.low + (self.high - self.low) * generator.uniform(0.3, 0.7, 3)
-            a, b = at_rest(*generator.normal(size=(2, 3, len(self.Za))) / np.arange(1, len(self.Za) + 1))
-            free = np.hstack([a @ self.Za, b @ self.Zb])
-            if (self.both(np.r_[q0, 0 * free.ravel()])[1:] < 0).any():
-                continue
-            for joint in range(3):
-                free[joint] *= self._largest(q0, free, joint)
-            if np.abs(free).max(axis=1).min() > 1e-3:
-                return np.r_[q0, free.ravel()]
+            free = generator.normal(size=(3, len(decay))) / decay
+            free *= (self.high - self.low)[:, None] / np.abs(free).sum(axis=1, keepdims=True)
+            for size in np.geomspace(1, 0.03, 40):
+                x = np.r_[q0, size * free.ravel()]
+                if (self.evaluate(x)[1:] >= 0).all():
+                    return x
         return None
 
-    def _largest(self, q0, free, joint):
-        """Factor for the coefficients of one joint at which a bound is met; joints that follow stand still."""
-        moving = np.where(np.arange(3)[:, None] <= joint, free, 0.0)
-        inside, outside = 0.0, 4.0
-        for _ in range(30):
-            moving[joint] = 0.5 * (inside + outside) * free[joint]
-            fits = (self.both(np.r_[q0, moving.ravel()])[1:] >= 0).all()
-            inside, outside = (0.5 * (inside + outside), outside) if fits else (inside, 0.5 * (inside + outside))
-        return inside
-
     def evaluate(self, x):
-        """For m points x (m, size): mean log condition with the price of standing, then the room left at each bound.
+        """Mean log condition with the price of standing, then the room left at each bound, >= 0 inside: (12,).
 
-        Returns (m, 12): room (>= 0 inside) per joint above, below and in speed; then of elbow and tip over the table.
+        Room per joint above, below and in speed; then of elbow and tip over the table.
         """
-        motions = [series(*self.split(one), self.period, self.t) for one in x]
-        q, qd, qdd = np.moveaxis(motions, 2, 0)
-        Phi = regressor(*(rows.reshape(-1, 3) for rows in (q, qd, qdd)), sign=_TURN)
-        still = np.mean(1 / (1 + (qd / _SLOW) ** 2), axis=(1, 2))
-        conditions = _conditions(Phi.reshape(*q.shape[:2], 3, 20))
-        cost = np.log(np.minimum(conditions, _WORST)).mean(axis=1) + self.standing * still
-        low, high = q.min(axis=1), q.max(axis=1)
-        more = _HIDDEN / 2 * (high - low)
-        fast = np.abs(qd).max(axis=1) * (1 + _HIDDEN)
-        joints = np.stack([self.high - high - more, low - more - self.low, self.speed - fast], axis=2)
-        over = [height.reshape(len(x), -1).min(axis=1) for height in heights(self.l, q.reshape(-1, 3))]
+        q, qd, qdd = np.swapaxes(series(*self.split(x), self.period, self.t), 0, 1)
+        still = np.mean(1 / (1 + (qd / _SLOW) ** 2))
+        conditions = _conditions(regressor(q, qd, qdd, sign=_TURN))
+        cost = np.log(np.minimum(conditions, _WORST)).mean() + self.standing * still
+        more = _HIDDEN / 2 * np.ptp(q, axis=0)
+        speed = self.speed - np.abs(qd).max(axis=0) * (1 + _HIDDEN)
+        joints = [self.high - q.max(axis=0) - more, q.min(axis=0) - more - self.low, speed]
         table = -np.inf if self.table is None else self.table + _HIDDEN * (self.l[1] + self.l[2])
-        over = np.minimum(np.column_stack(over) - table, 1e3)
-        return np.column_stack([cost, joints.reshape(len(x), 9), over])
+        over = [min(height.min() - table, 1e3) for height in heights(self.l, q)]
+        return np.r_[cost, np.transpose(joints).ravel(), over]
 
-    def both(self, x):
-        """`evaluate` of one point x (size,): (12,)."""
-        return self.evaluate(x[None])[0]
-
-    def slopes(self, x):
-        """Derivatives of `both` by differences: (12, size)."""
-        if self._last is None or not np.array_equal(self._last[0], x):
-            here, ahead = self.both(x), self.evaluate(x + _STEP * np.eye(self.size))
-            self._last = x.copy(), np.column_stack(ahead - here) / _STEP  # rows in one piece: SLSQP reads no others
-        return self._last[1]
-
-    def value(self, x):
-        return float(self.both(x)[0])
-
-    def improve(self, x, iterations, step):
+    def improve(self, x, iterations):
         """SLSQP from x: (value, point) of the best point inside the bounds that was visited."""
         from scipy.optimize import minimize
 
-        best = [self.value(x), x]
+        best = [self.evaluate(x)[0], x]
 
         def seen(x):
-            step(1)
             for share in (1.0, 0.999, 0.99, 0.97, 0.94):  # a little less of a motion that is just outside
                 less = np.r_[x[:3], share * x[3:]]
-                value, *room = self.both(less)
+                value, *room = self.evaluate(less)
                 if min(room) >= 0:
                     best[:] = min(best, [value, less], key=lambda pair: pair[0])
                     return
 
-        room = {"type": "ineq", "fun": lambda x: self.both(x)[1:] - 1e-6, "jac": lambda x: self.slopes(x)[1:]}
-        options = {"maxiter": iterations, "ftol": 1e-5}
-        slope = {"jac": lambda x: self.slopes(x)[0]}
-        minimize(self.value, x, **slope, constraints=[room], method="SLSQP", callback=seen, options=options)
+        @functools.lru_cache(2 * len(x))
+        def known(x):
+            return self.evaluate(np.frombuffer(x))
+
+        minimize(
+            lambda x: known(x.tobytes())[0],
+            x,
+            constraints={"type": "ineq", "fun": lambda x: known(x.tobytes())[1:] - 1e-6},
+            method="SLSQP",
+            callback=seen,
+            options={"maxiter": iterations, "ftol": 1e-5, "eps": _STEP},
+        )
         return best
 
     def split(self, x):

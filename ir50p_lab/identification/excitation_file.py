@@ -18,7 +18,5 @@ def load_excitations(path=DATA):
     try:
         rows = json.loads(Path(path).read_text(encoding="ascii"))["motions"]
         return {name: fourier(**row) for name, row in rows.items()}
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}; give a file such as {DATA.name}") from None
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise InputError(f"{path} is no file of excitations ({error!r:.80}): look at {DATA.name}") from None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise InputError(f"{path} is no file of excitations such as {DATA.name}: {error!r:.80}") from None

@@ -11,7 +11,8 @@ import numpy as np
 import sympy
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import number, vectors3
+from ir50p_lab.identification.parameters import metres
+from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
 from ir50p_lab.modelling.symbolic import derive
 
@@ -25,22 +26,21 @@ _KEPT = (
 GENERAL_NAMES = (*_KEPT, *_FRICTION)
 
 
-def general_regressor(q, qd, qdd, *, l2, g=STANDARD_GRAVITY):
+def general_regressor(q, qd, qdd, *, l2):
     """Phi of the general arm: tau = Phi pi, pi = (33 inertial, 9 friction parameters) as GENERAL_NAMES.
 
-    Args: q, qd, qdd: (n, 3), rad, rad/s, rad/s^2; l2: upper arm, m; g: m/s^2.
-    Returns: (n, 3, 42). Raises InputError on shapes, numbers that are not finite, l2 <= 0 or g < 0.
+    Args: q, qd, qdd: (n, 3), rad, rad/s, rad/s^2; l2: upper arm, m.
+    Returns: (n, 3, 42). Raises InputError on shapes, numbers that are not finite, l2 <= 0.
     """
     q, qd, qdd = (vectors3(name, x, unit="SI") for name, x in (("q", q), ("qd", qd), ("qdd", qdd)))
     if q.ndim != 2 or q.shape != qd.shape or q.shape != qdd.shape:
         raise InputError(f"q {q.shape}, qd {qd.shape}, qdd {qdd.shape}: give all (n, 3)")
-    l2, g = number("l2", l2, "> 0", unit="m"), number("g", g, ">= 0", unit="m/s^2")
     model, torque = _torque()
+    known = {"l2": metres("l2", l2), "g": STANDARD_GRAVITY}
     out = np.zeros((len(q), 3, len(GENERAL_NAMES)))
     for k, name in enumerate(_KEPT):
         for sign, numbers in unit_parameters(name):
-            numbers = {"l2": l2, "g": g, **numbers}
-            values = [numbers.get(parameter, 0.0) for parameter in model.symbols]
+            values = [(known | numbers).get(parameter, 0.0) for parameter in model.symbols]
             for joint, tau in enumerate(torque(q.T, qd.T, qdd.T, values)):
                 out[:, joint, k] += sign * tau
     for joint, speed in enumerate(qd.T):

@@ -31,7 +31,6 @@ def fit_with_instruments(
     delay=0.02,
     cutoff_hz=3.0,
     slow=0.1,
-    columns="rigid",
     l2=None,
 ):
     """Estimate with standard errors that hold for noisy angles, too: to be believed, where `identify` is to be used.
@@ -45,7 +44,7 @@ def fit_with_instruments(
     Args: first: Estimate or theta (3, 20) with which the loop is simulated, from `identify` or `output_error`;
     recordings, controller, references, delay: as in `output_error`, evenly sampled. cutoff_hz: of both sides, Hz.
     slow: rad/s, simulated speed below which samples of a joint, and those 0.3/cutoff_hz seconds around, are left out.
-    columns, l2: as in `fit`.
+    l2: as in `fit`.
     Returns: Estimate of method "iv". Raises: InputError, IdentificationError as `fit` does.
     """
     theta, _ = as_theta(getattr(first, "theta", first))
@@ -55,7 +54,7 @@ def fit_with_instruments(
     dry = getattr(first, "fs", None), getattr(first, "qs", None)
     parts = [_filtered(run, (theta, *dry), float(delay), cutoff_hz, slow) for run in runs]
     Phi, Z, u, use = map(np.concatenate, zip(*parts, strict=True))
-    return fit(Phi, u, method="iv", instruments=Z, use=use, columns=columns, l2=l2)
+    return fit(Phi, u, method="iv", instruments=Z, use=use, l2=l2)
 
 
 def _filtered(run, model, delay, cutoff_hz, slow):
@@ -63,24 +62,19 @@ def _filtered(run, model, delay, cutoff_hz, slow):
     from scipy.ndimage import binary_erosion
 
     rate = 1 / run.period
-    simulated, _ = run.simulate(*model)
     measured = process(run.t, run.q, run.u, cutoff_hz=None, trim=0.0, delay=delay)
     first = round((measured.t[0] - run.t[0]) * rate)
-    clean = simulated[first : first + len(measured)]
+    clean = run.simulate(*model)[0][first : first + len(measured)]
     speed = central_derivatives(clean, rate, cutoff_hz=None)[1]
-    direction = np.sign(speed)
 
     def smooth(x):
-        flat = x.reshape(len(x), -1)
-        return low_pass(flat, cutoff_hz, rate, order=_ORDER, kind="zero-phase").reshape(x.shape)
+        return low_pass(x.reshape(len(x), -1), cutoff_hz, rate, order=_ORDER, kind="zero-phase").reshape(x.shape)
 
     def columns(q):
-        return smooth(
-            regressor(*central_derivatives(q, rate, cutoff_hz=_WIDER * cutoff_hz, order=_ORDER), sign=direction)
-        )
+        motion = central_derivatives(q, rate, cutoff_hz=_WIDER * cutoff_hz, order=_ORDER)
+        return smooth(regressor(*motion, sign=np.sign(speed)))
 
     around = np.ones((2 * round(_AROUND * rate / cutoff_hz) + 1, 1), dtype=bool)
     moving = binary_erosion(smooth((np.abs(speed) > slow).astype(float)) > 0.95, around, border_value=1)
     edge = int(np.ceil(rate / cutoff_hz))
-    inside = slice(edge, len(measured) - edge)
-    return columns(measured.q)[inside], columns(clean)[inside], smooth(measured.u)[inside], moving[inside]
+    return [x[edge:-edge] for x in (columns(measured.q), columns(clean), smooth(measured.u), moving)]

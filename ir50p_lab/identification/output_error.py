@@ -7,10 +7,9 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.closed_loop import ClosedLoopRun, runs_of
-from ir50p_lab.identification.parameters import ACTS_ON, FREE_OF_SIGN, NAMES, RIGID_ON
+from ir50p_lab.identification.parameters import ACTS_ON, FREE_OF_SIGN, NAMES, RIGID_ON, metres
 from ir50p_lab.identification.regression import least_squares
 from ir50p_lab.identification.validation import compared
-from ir50p_lab.inputs import number, whole
 from ir50p_lab.modelling.dynamics import as_theta
 
 _STEP = 0.02  # of a parameter's scale, for differences: stiction makes the output jump on smaller ones
@@ -45,7 +44,7 @@ class OutputError:
 
     def score(self, recording, controller, reference=None):
         """Simulate the loop of another recording: (Validation of "q", Validation of "u")."""
-        run = ClosedLoopRun.of(recording, controller, reference, delay=self.delay)
+        run = ClosedLoopRun(recording, controller, reference, delay=self.delay)
         q, u = run.simulate(self.theta, self.fs, self.qs)
         return compared(run.t, run.q, q, "q"), compared(run.t, run.u, u, "u")
 
@@ -83,9 +82,6 @@ def output_error(
     theta, _ = as_theta(getattr(estimate, "theta", estimate))
     if getattr(estimate, "unit", "PWM") != "PWM":
         raise InputError(f"the estimate is in {estimate.unit}: the loop is simulated in PWM counts")
-    if l2 is not None:
-        number("l2", l2, "> 0", unit="m")
-    whole("iterations", iterations, 1, 10**4)
     runs = runs_of(recordings, controller, references, delay=delay, seconds=seconds)
     search = _Search(estimate, theta, l2)
     from scipy.optimize import least_squares as minimise
@@ -124,14 +120,13 @@ def output_error(
     if found.status == 0:
         notes.append(f"not settled after {iterations} steps: give more, or a better first estimate")
     theta, fs, qs = search.model(found.x)
-    stderr, fs_stderr, qs_stderr = search.errors(spread)
     return OutputError(
         theta=theta,
-        stderr=stderr,
+        stderr=search.spread_out(np.full((3, 20), np.nan), spread.stderr),
         fs=fs,
         qs=qs,
-        fs_stderr=fs_stderr,
-        qs_stderr=qs_stderr,
+        fs_stderr=search.breakaway_error(spread),
+        qs_stderr=spread.stderr[-3:],
         delay=float(delay),
         warnings=tuple(notes),
     )
@@ -144,9 +139,10 @@ class _Search:
         columns = getattr(estimate, "columns", [[NAMES[k] for k in rigid] for rigid in RIGID_ON])
         tied = [] if l2 is None else [(1, _THETA6), (2, _THETA6)]  # the waist has no theta4
         entries = [(j, k) for j in range(3) for k in ACTS_ON[j] if NAMES[k] in columns[j] and (j, k) not in tied]
-        self.theta, self.l2, self.places = theta, l2, tuple(np.transpose(entries))
+        self.theta, self.places = theta, tuple(np.transpose(entries))
+        self.l2 = None if l2 is None else metres("l2", l2)
         self.names = [f"joint {j + 1}: {NAMES[k]}" for j, k in entries]
-        self.names += [f"joint {j + 1}: {what}" for what in ("fs - fc", "qs") for j in range(3)]
+        self.names += [f"joint {j}: {what}" for what in ("fs - fc", "qs") for j in (1, 2, 3)]
         x0, stderr = theta[self.places], getattr(estimate, "stderr", np.zeros((3, 20)))[self.places]
         known = np.where(np.isfinite(stderr), stderr, 0.0)
         scale = np.maximum.reduce([0.3 * np.abs(x0), 3 * known, 1e-3 * np.abs(theta).max(axis=1)[self.places[0]]])
@@ -159,11 +155,11 @@ class _Search:
 
     def model(self, x):
         """(theta, fs, qs) of the numbers x."""
-        theta = self._spread_out(self.theta, x)
-        theta[_COULOMB] = np.maximum(theta[_COULOMB], 0.0)
+        theta = self.spread_out(self.theta, x)
         return theta, theta[_COULOMB] + x[-6:-3], x[-3:]
 
-    def _spread_out(self, theta, x):
+    def spread_out(self, theta, x):
+        """A copy of theta (3, 20) with the entries of x in it."""
         theta = theta.copy()
         theta[self.places] = x[:-6]
         if self.l2 is not None:
@@ -174,16 +170,12 @@ class _Search:
         """Steps for differences: small beside the scale, and inside the bounds on both sides."""
         return np.maximum(np.minimum(_STEP * self.scale, 0.5 * (x - self.bounds[0])), 1e-4 * _STEP * self.scale)
 
-    def errors(self, spread):
-        """Standard errors in the shape of (theta, fs, qs), from LeastSquares."""
-        joints, columns = self.places
-        sums = np.zeros((3, len(self.names)))  # fs = fc + x
-        sums[:, -6:-3] = np.eye(3)
-        sums[:, :-6] = [(joints == j) & (columns == k) for j, k in zip(*_COULOMB, strict=True)]
-        fs = np.sqrt(np.diag(sums @ spread.covariance @ sums.T))
-        unknown = (sums[:, np.isinf(spread.stderr)] != 0).any(axis=1)
-        theta = self._spread_out(np.full((3, 20), np.nan), spread.stderr)
-        return theta, np.where(unknown, np.inf, fs), spread.stderr[-3:]
+    def breakaway_error(self, spread):
+        """Standard errors of fs = fc + (fs - fc), (3,), from LeastSquares; inf where the data hold not both."""
+        parts = [[name in (f"joint {j}: fc{j}", f"joint {j}: fs - fc") for name in self.names] for j in (1, 2, 3)]
+        sums = np.array(parts, dtype=float)
+        unknown = sums @ np.isinf(spread.stderr) > 0
+        return np.where(unknown, np.inf, np.sqrt(np.diag(sums @ spread.covariance @ sums.T)))
 
 
 def _weights(measured, model):

@@ -25,6 +25,7 @@ For an in-line arm (`Arm.theta`), masses and inertias in kg, m; times 1/K_i in P
 """
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import number
 
 NAMES = (*(f"theta{k}" for k in range(1, 11)), *"fv1 fc1 fv2 fc2 fv3 fc3 Tf1 Tf2 Tf3 j3".split())
 OFFSETS = ("Tf1", "Tf2", "Tf3")
@@ -38,20 +39,11 @@ ACTS_ON = (
     (3, 4, 5, 7, 9, 14, 15, 18, 19),
 )
 RIGID_ON = tuple([k for k in acting if NAMES[k] not in ONLY_THESIS] for acting in ACTS_ON)  # without theta7, theta8
+COLUMNS = {"rigid": [k for k in range(20) if NAMES[k] not in ONLY_THESIS], "thesis": list(range(20))}
 
 
-def chosen_columns(columns):
-    """Indices of the columns to fit, increasing.
-
-    Args: columns: "rigid" (all but theta7, theta8), "thesis" (all 20), or a list of names.
-    Raises InputError for anything else, or nothing chosen.
-    """
-    sets = {"rigid": [name for name in NAMES if name not in ONLY_THESIS], "thesis": NAMES}
-    names = sets.get(columns, [columns]) if isinstance(columns, str) else list(columns)
-    unknown = [name for name in names if name not in NAMES]
-    if unknown or not names:
-        raise InputError(
-            f"columns = {columns!r:.60}: {unknown} is no column; choose 'rigid', 'thesis', or give a list of names of "
-            f"{', '.join(NAMES)}"
-        )
-    return sorted(map(NAMES.index, set(names)))
+def metres(name, value):
+    """`value` as a float > 0. Raises InputError, also for a length beyond any arm's."""
+    if number(name, value, "> 0", unit="m") > 10:
+        raise InputError(f"{name} = {value} m is longer than 10 m: is it in millimetres? Give metres")
+    return float(value)

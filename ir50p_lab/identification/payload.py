@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.parameters import NAMES
+from ir50p_lab.identification.parameters import NAMES, metres
 from ir50p_lab.inputs import number
 
 _CHANGED = ("theta2", "theta3", "theta4", "theta5", "theta6")
@@ -34,9 +34,7 @@ def payload_change(mass, *, l2, at):
 
     mass: kg; l2: upper arm, m; at: m from the elbow (the arm's l3 at the flange). Raises InputError.
     """
-    for name, value, unit in (("mass", mass, "kg"), ("l2", l2, "m"), ("at", at, "m")):
-        if number(name, value, "> 0", unit=unit) >= 100:
-            raise InputError(f"{name} = {value!r} {unit}: give a number above 0 and below 100")
+    mass, l2, at = number("mass", mass, "> 0", unit="kg"), metres("l2", l2), metres("at", at)
     change = dict(zip(_CHANGED, (mass * l2**2, mass * l2, mass * at, mass * at**2, mass * at * l2), strict=True))
     return np.array([change.get(name, 0.0) for name in NAMES])
 
@@ -52,10 +50,11 @@ def scale_from_payload(without, loaded, *, mass, l2, at):
     """
     change = payload_change(mass, l2=l2, at=at)
     for name, estimate in (("without", without), ("loaded", loaded)):
-        if not hasattr(estimate, "covariance") or np.shape(estimate.covariance) != (3, 20, 20):
-            raise InputError(f"{name} is a {type(estimate).__name__}: give an Estimate, of fit or identify")
-        if getattr(estimate, "rows", "joint") != "joint":
-            raise InputError(f"{name} was fitted with rows='shared': each motor has its own gain; fit rows='joint'")
+        if getattr(estimate, "rows", None) != "joint":
+            raise InputError(
+                f"{name} is a {type(estimate).__name__}: give an Estimate, of fit with rows='joint' or identify: each "
+                "motor has its own gain"
+            )
     K, stderr, notes = np.full(3, np.nan), np.full(3, np.inf), []
     for j in range(3):
         here = np.flatnonzero(change * np.isfinite(without.stderr[j]) * np.isfinite(loaded.stderr[j]))

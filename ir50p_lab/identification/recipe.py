@@ -1,6 +1,6 @@
 """The whole way from recordings to a model, in one function: process, fit with physical bounds, say how sure."""
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,29 +8,13 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.columns import columns_of
 from ir50p_lab.identification.doubts import Doubts, check_signals
-from ir50p_lab.identification.estimate import Estimate
 from ir50p_lab.identification.fitting import fit
 from ir50p_lab.identification.processing import process
-from ir50p_lab.identification.validation import validate
-from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
 
 # The cut-off is low because this arm moves below 1 Hz and one count of its potentiometers is 5 to 8 mrad; a joint turns
 # over within +-0.05 rad/s, where sgn(qd) would jump at the wrong moment.
 CUTOFF_HZ = 1.2
 TURN = 0.05  # rad/s
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Identified(Estimate):
-    """An Estimate with the steps by which it was found: `score(recording)` judges it on another one in the same way."""
-
-    delay: float = 0.0
-    steps: dict = None
-    g: float = STANDARD_GRAVITY
-
-    def score(self, recording, q=None, u=None):
-        """Validation of "u" on another recording    (Table 4.4), processed as the training was."""
-        return validate(self, recording, q, u, delay=self.delay, sign=TURN, g=self.g, **self.steps)
 
 
 def identify(
@@ -42,8 +26,6 @@ def identify(
     method="bounded",
     cutoff_hz=CUTOFF_HZ,
     held=True,
-    trim=None,
-    g=STANDARD_GRAVITY,
     unit="PWM",
     anyway=False,
 ):
@@ -62,32 +44,31 @@ def identify(
         recordings: a Recording (t, q, u), or a list of them: other motions, or another load of work for the same arm.
         l2: upper arm, m, or None. delay: s from a sample to the moment its u acts. slow: rad/s.
         method: "bounded", or another of `fit` that needs neither weights nor instruments.
-        cutoff_hz: Hz, above what the joints move at; held, trim: as in `process`; g: as in `regressor`; unit: of u.
+        cutoff_hz: Hz, above what the joints move at; held: as in `process`; unit: of u.
         anyway: go on where the data are refused.
 
     Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by some per
     cent, at this length of record more than the standard errors, which do not know it: where the parameters themselves
     matter, go on with `fit_with_instruments`; where Stribeck friction does, with `output_error`.
 
-    Returns: Identified, an Estimate that can `score` other recordings.
+    Returns: Estimate, whose `score` processes other recordings in the same way.
     Raises: InputError, IdentificationError as `process` and `fit` do, and if a joint is constant, its angle wrapped or
     clipped. Angles that look like degrees, and a u that is often at its limit, are in `warnings`.
     """
     recordings = list(recordings) if isinstance(recordings, (list, tuple)) else [recordings]
     if not recordings:
         raise InputError("no recording given: give one, or a list of them")
-    steps = {"cutoff_hz": cutoff_hz, "held": held, "trim": trim}
+    steps = {"cutoff_hz": cutoff_hz, "delay": delay, "held": held}
     notes, parts = [], []
     for recording in recordings:
         notes += _looked_at(recording, anyway)
-        motion = process(recording, delay=delay, slow=slow, **steps)
+        motion = process(recording, slow=slow, **steps)
         if motion.q.shape[1] != 3:
             raise InputError(f"q has {motion.q.shape[1]} columns: give all three joints, or take fit_joint for one")
-        parts.append((regressor(motion.q, motion.qd, motion.qdd, g=g, sign=TURN), motion.u, motion.use))
+        parts.append((regressor(motion.q, motion.qd, motion.qdd, sign=TURN), motion.u, motion.use))
     Phi, y, use = map(np.concatenate, zip(*parts, strict=True))
-    found = vars(fit(Phi, y, method=method, l2=l2, use=use, unit=unit))
-    warnings = *notes, *found["warnings"]
-    return Identified(**{**found, "warnings": warnings}, delay=float(delay), steps=steps, g=float(g))
+    found = fit(Phi, y, method=method, l2=l2, use=use, unit=unit)
+    return replace(found, warnings=(*notes, *found.warnings), steps={**steps, "sign": TURN})
 
 
 def _looked_at(recording, anyway):

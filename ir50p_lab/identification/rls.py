@@ -17,7 +17,7 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.fit_input import checked_data
-from ir50p_lab.identification.parameters import ACTS_ON, chosen_columns
+from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS
 from ir50p_lab.inputs import choice, number, numbers
 from ir50p_lab.jit import jit
 
@@ -40,7 +40,7 @@ def ud_row(theta, V, D, h, y, K):
         f = h[j]
         for i in range(j):
             f += row[i] * h[i]
-        if f == 0.0:  # a column that is not chosen, or says nothing here
+        if f == 0.0 or D[j] == 0.0:  # a column that says nothing here, or is not chosen
             K[j] = 0.0
             continue
         v = D[j] * f
@@ -60,24 +60,20 @@ def ud_row(theta, V, D, h, y, K):
 
 
 @jit()
-def _run(theta, V, D, chosen, forgetting, largest, Phi, y, history):
+def _run(theta, V, D, forgetting, largest, Phi, y, history):
     """Samples Phi (n, 3, 20) and y (n, 3) into the state of one shared filter or of three, one per joint.
 
-    theta (k, 20), V (k, 20, 20), D (k, 20), chosen (k, 20): k = 1 or 3 filters; a column that is not chosen counts as
-    zero, which leaves its entries alone. Forgetting divides D, but never beyond `largest`. Writes theta into history
-    (n, k, 20), if it has any rows.
+    theta (k, 20), V (k, 20, 20), D (k, 20): k = 1 or 3 filters; a column with D = 0 is not part of it. Forgetting
+    divides D, but never beyond `largest`. Writes theta into history (n, k, 20), if it has any rows.
     """
     filters, p = theta.shape
-    h, K = np.empty(p), np.empty(p)
+    K = np.empty(p)
     for k in range(len(y)):
         for i in range(3):
-            part = i if filters == 3 else 0
-            if forgetting < 1.0 and (filters == 3 or i == 0):
-                for j in range(p):
-                    D[part, j] = min(D[part, j] / forgetting, largest)
-            for j in range(p):
-                h[j] = Phi[k, i, j] if chosen[part, j] else 0.0
-            ud_row(theta[part], V[part], D[part], h, y[k, i], K)
+            part = min(i, filters - 1)
+            if forgetting < 1.0 and part == i:
+                D[part] = np.minimum(D[part] / forgetting, largest)
+            ud_row(theta[part], V[part], D[part], Phi[k, i], y[k, i], K)
         if len(history):
             history[k] = theta
 
@@ -97,31 +93,28 @@ class RLS:
             P0, so that directions without excitation do not blow up.
 
     Attributes: theta (3, 20), 0 for columns left out; P (3, 20, 20), or (20, 20) if shared: with forgetting 1 and
-    white residuals of variance s^2 the covariance of theta is s^2 P; samples: how many steps it has seen.
+    white residuals of variance s^2 the covariance of theta is s^2 P.
 
     Raises InputError on bad arguments.
     """
 
     def __init__(self, *, rows="joint", columns="rigid", P0=1e8, forgetting=1.0):
         shared = choice("rows", rows, ("joint", "shared")) == "shared"
+        choice("columns", columns, tuple(COLUMNS))
         P0 = number("P0", P0, "> 0", hint="1e8 says that nothing is known")
-        forgetting = number("forgetting", forgetting, "> 0", hint="1 forgets nothing, 0.999 recalls 1000 samples")
-        if forgetting > 1:
+        if number("forgetting", forgetting, "> 0") > 1:
             raise InputError(
-                f"forgetting = {forgetting} must be in (0, 1]: 1 forgets nothing, 0.999 recalls 1000 samples"
+                f"forgetting = {forgetting}: give at most 1, which forgets nothing; 0.999 recalls 1000 samples"
             )
-        self.rows, self.P0, self.forgetting, self.samples = rows, P0, forgetting, 0
+        self.P0, self.forgetting = P0, float(forgetting)
         acting = [range(20)] if shared else ACTS_ON
-        self._chosen = np.array([np.isin(range(20), chosen_columns(columns)) & np.isin(range(20), on) for on in acting])
+        chosen = np.array([[j in on and j in COLUMNS[columns] for j in range(20)] for on in acting])
         k = len(acting)
-        self._theta, self._V, self._D = np.zeros((k, 20)), np.tile(np.eye(20), (k, 1, 1)), np.full((k, 20), P0)
+        self._theta, self._V, self._D = np.zeros((k, 20)), np.tile(np.eye(20), (k, 1, 1)), P0 * chosen
 
     def step(self, Phi, y):
         """Take one sample, Phi (3, 20) and y (3,); returns theta (3, 20). Raises InputError, state unchanged."""
-        y = numbers("y", y)
-        if y.shape != (3,):
-            raise InputError(f"y has shape {y.shape}; a step takes one sample, (3,); for many use run(Phi, y)")
-        return self.run(numbers("Phi", Phi)[None], y[None], history=False)
+        return self.run(numbers("Phi", Phi)[None], numbers("y", y)[None], history=False)
 
     def run(self, Phi, y, *, history=True):
         """Take n samples, Phi (n, 3, 20) and y (n, 3); returns theta after each, (n, 3, 20).
@@ -130,8 +123,7 @@ class RLS:
         """
         Phi, y = map(np.ascontiguousarray, checked_data(Phi, y))
         states = np.empty((len(y) if history else 0, *self._theta.shape))
-        _run(self._theta, self._V, self._D, self._chosen, self.forgetting, self.P0, Phi, y, states)
-        self.samples += len(y)
+        _run(self._theta, self._V, self._D, self.forgetting, self.P0, Phi, y, states)
         return np.tile(states, (1, 3 // len(self._theta), 1)) if history else self.theta
 
     @property
@@ -143,5 +135,4 @@ class RLS:
     def P(self):
         """U D U^T now: (3, 20, 20), or (20, 20) if shared; 0 for columns left out."""
         P = np.swapaxes(self._V, 1, 2) * self._D[:, None] @ self._V
-        P *= self._chosen[:, :, None] & self._chosen[:, None]
-        return P[0] if self.rows == "shared" else P
+        return P[0] if len(P) == 1 else P

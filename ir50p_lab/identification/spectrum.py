@@ -22,14 +22,13 @@ class Spectrum:
 
     cutoff_hz: of the low pass for a regression, the highest that noise allows, Hz. lowest_hz: that keeps 99 % of the
     velocity's power. sign_cutoff_hz: higher, for the speed whose sign is taken: a smooth speed turns too late or too
-    early. noise: rms of the angle, rad (white part). speed: rad/s rms of the motion; speed_noise: rad/s rms;
-    acceleration_share: noise power over power of the acceleration; all three below cutoff_hz.
+    early. speed: rad/s rms of the motion; speed_noise: rad/s rms; acceleration_share: noise power over power of the
+    acceleration; all three below cutoff_hz.
     """
 
     cutoff_hz: float
     lowest_hz: float
     sign_cutoff_hz: float
-    noise: float
     speed_noise: float
     acceleration_share: float
     speed: float
@@ -80,7 +79,6 @@ def spectrum(pieces, rate_hz, cutoff_hz=None):
         cutoff_hz=float(cutoff_hz),
         lowest_hz=float(f[min(lowest, len(f) - 1)]),
         sign_cutoff_hz=max(float(f[sign_at]), float(cutoff_hz)),
-        noise=math.sqrt(floor * rate_hz / 2),
         speed_noise=math.sqrt(speed_noise[at]),
         acceleration_share=float(min(share[at], 1e6)),
         speed=math.hypot(math.sqrt(speed[at]), steady),

@@ -1,4 +1,4 @@
-"""How good an identified model is on data it has not seen: as Table 4.4 on raw PWM."""
+"""How good a model is on data it has not seen, as Table 4.4 on raw PWM; and whether what it leaves is white."""
 
 from dataclasses import dataclass
 
@@ -9,8 +9,8 @@ from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.columns import columns_of
 from ir50p_lab.identification.fit_input import finite
 from ir50p_lab.identification.processing import BACKWARD, acting_times, process
-from ir50p_lab.inputs import number, switch
-from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta
+from ir50p_lab.inputs import number
+from ir50p_lab.modelling.dynamics import as_theta
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -71,29 +71,27 @@ def validate(
     *,
     derivatives=BACKWARD,
     cutoff_hz=1.5,
-    order=4,
     delay=0.0,
     held=True,
     trim=None,
     sign=None,
-    g=STANDARD_GRAVITY,
 ):
     """Predict the u of another recording from its angles, one sample at a time    (4.5), Table 4.4.
 
     The u of the recording is taken raw, as it was sent. The prediction is made from q, qd and qdd as `process` finds
     them, and read at the time at which each u acted: its sample + delay (+ half a period while it is held).
 
-    Args: estimate: Estimate or theta (3, 20); recording, or t, q, u; derivatives, cutoff_hz, order, delay, held, trim:
-    as in `process`; sign, g: as in `regressor`.
+    Args: estimate: Estimate or theta (3, 20); recording, or t, q, u; derivatives, cutoff_hz, delay, held, trim: as in
+    `process`; sign: as in `regressor`.
     Returns: Validation of "u". Raises InputError, IdentificationError as `process` does.
     """
-    theta, _ = as_theta(estimate if hasattr(estimate, "m") else getattr(estimate, "theta", estimate))
+    theta, _ = as_theta(getattr(estimate, "theta", estimate))
     t, q, u = columns_of(recording, q, u)
     if q.shape[1] != 3:
         raise InputError(f"q has {q.shape[1]} columns: validation needs the three joints, (n, 3)")
-    motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, order=order, held=False, trim=trim)
-    predicted = np.einsum("nij,ij->ni", regressor(motion.q, motion.qd, motion.qdd, g=g, sign=sign), theta)
-    acts = acting_times(t, number("delay", delay, ">= 0", unit="s"), switch("held", held) and derivatives == BACKWARD)
+    motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, held=False, trim=trim)
+    predicted = np.einsum("nij,ij->ni", regressor(motion.q, motion.qd, motion.qdd, sign=sign), theta)
+    acts = acting_times(t, number("delay", delay, ">= 0", unit="s"), held and derivatives == BACKWARD)
     after = np.searchsorted(motion.t, acts).clip(1, len(motion) - 1)
     inside = (acts >= motion.t[after - 1]) & (acts <= motion.t[after])
     inside &= motion.segment[after] == motion.segment[after - 1]
@@ -105,3 +103,34 @@ def compared(t, measured, predicted, of):
     """Validation of "u" or "q", (n, 3) each."""
     rms, fit = nrmse_fit(measured, predicted)
     return Validation(rms=rms, fit=fit, t=t, measured=measured, predicted=predicted, of=of)
+
+
+@dataclass(frozen=True, eq=False)
+class Whiteness:
+    """Autocorrelation of residuals, column by column.
+
+    lags (m,) samples; correlation (m, k), of samples that far apart; bound: 2.58/sqrt(n), within which 99 in 100 lie
+    if the residuals are white: what a good model leaves is noise that no past sample could have told.
+    """
+
+    lags: np.ndarray
+    correlation: np.ndarray
+    bound: float
+
+
+def whiteness(residuals):
+    """Autocorrelation r_m = sum e_k e_k+m/sum e_k^2 of residuals, for the first min(50, n/5) lags.
+
+    Args: residuals: (n,) or (n, k), evenly sampled, the mean is taken out. Returns: Whiteness. Raises InputError for
+    fewer than 20 samples, numbers that are not finite, constant residuals.
+    """
+    e = finite("residuals", residuals)
+    e = e[:, None] if e.ndim == 1 else e
+    if e.ndim != 2 or len(e) < 20:
+        raise InputError(f"residuals have shape {np.shape(residuals)}: give 20 or more, (n,) or (n, k), time first")
+    if (np.ptp(e, axis=0) <= 1e-12 * np.abs(e).max(axis=0)).any():
+        raise InputError("a column of residuals is constant: there is nothing to correlate")
+    e = e - e.mean(axis=0)
+    lags = np.arange(1, min(50, len(e) // 5) + 1)
+    r = np.array([(e[m:] * e[:-m]).sum(axis=0) for m in lags]) / (e**2).sum(axis=0)
+    return Whiteness(lags, r, float(2.58 / np.sqrt(len(e))))

@@ -23,9 +23,7 @@ SWING = sinusoid((0.8, 0.4, 0.3), (0.5, 0.8, 1.0), offset=(0.0, 0.8, -0.8))
 def estimate(theta, unit="PWM"):
     """A fit that found `theta` exactly."""
     nothing = {"stderr": theta, "covariance": theta, "condition": ZERO, "residuals": ZERO, "sigma": ZERO}
-    return Estimate(
-        theta=theta, correlation=ZERO, columns=((),) * 3, unidentifiable=(), warnings=(), unit=unit, **nothing
-    )
+    return Estimate(theta=theta, columns=((),) * 3, unidentifiable=(), warnings=(), unit=unit, **nothing)
 
 
 def step(controller, q=ZERO, reference=(ZERO, ZERO, ZERO), t=0.0):

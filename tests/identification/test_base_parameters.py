@@ -47,7 +47,7 @@ def test_thesis_regressor_has_rank_20(Phi):
     base = base_parameters(Phi)
     assert base.rank == 20
     assert base.groups == base.names == NAMES
-    assert base.condition < 10
+    assert base.singular_values[0] < 10 * base.singular_values[-1]
     assert base.unseen == ()
     check_invariant(Phi, base)
 
@@ -231,16 +231,6 @@ def test_coefficients_in_symbols():
     assert base.groups == ("a + l2 c + 3 e + 0.1235 g", "b + l2^2 d - 0.875 f + g h")
 
 
-@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
-def test_an_unclear_rank_is_said(size):
-    # each column sticks out of the others a little above the tolerance, all together far less
-    rng = np.random.default_rng(0)
-    A = rng.normal(size=(200, 3))
-    near = A @ [1, 1, 1] + 1.5e-8 * np.linalg.norm(A @ [1, 1, 1]) * rng.normal(size=200) / np.sqrt(200)
-    with pytest.raises(IdentificationError, match="the rank is not clear"):
-        base_parameters(size * np.column_stack([A, near]))
-
-
 @pytest.mark.parametrize(
     ("Phi", "options", "error", "message"),
     [
@@ -248,7 +238,7 @@ def test_an_unclear_rank_is_said(size):
         (np.zeros((0, 3)), {}, InputError, r"shape \(0, 3\)"),
         ("abc", {}, InputError, "must hold numbers"),
         (np.full((9, 2), np.nan), {}, InputError, "Phi holds nan"),
-        (np.ones((3, 2)), {}, InputError, "at least 4"),
+        (np.ones((3, 2)), {}, InputError, "2 p rows at least"),
         (np.ones((9, 2)), {"names": ["a"]}, InputError, "1 names for 2 columns"),
         (np.zeros((9, 2)), {}, IdentificationError, "no motion"),
     ],
@@ -265,5 +255,3 @@ def test_bad_input_of_the_general_arm():
     for l2 in (0.0, -0.2, np.nan):
         with pytest.raises(InputError, match="l2 ="):
             general_regressor(z, z, z, l2=l2)
-    with pytest.raises(InputError, match="g = -1"):
-        general_regressor(z, z, z, l2=0.2, g=-1)

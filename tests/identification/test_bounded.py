@@ -7,10 +7,10 @@ from rounding_noise import NOISE
 from scipy.optimize import minimize, nnls
 
 from ir50p_lab.identification import fit, regressor
-from ir50p_lab.identification.parameters import ACTS_ON, NAMES, OFFSETS, ONLY_THESIS, chosen_columns
+from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, NAMES, OFFSETS, ONLY_THESIS
 from ir50p_lab.modelling import IR50P, mass_matrix
 
-RIGID = [sorted(set(acts) & set(chosen_columns("rigid"))) for acts in ACTS_ON]
+RIGID = [sorted(set(acts) & set(COLUMNS["rigid"])) for acts in ACTS_ON]
 BOUNDED = [k for k, name in enumerate(NAMES) if name not in (*OFFSETS, *ONLY_THESIS)]
 
 
@@ -43,9 +43,7 @@ def test_equals_nonnegative_least_squares_of_lawson_and_hanson(seed, rows):
     # another algorithm: offsets as differences of two non-negative numbers
     Phi, y = poor_data(seed)
     found = fit(Phi, y, method="bounded", rows=rows)
-    for joints, here in (
-        [([0, 1, 2], chosen_columns("rigid"))] if rows == "shared" else [([j], RIGID[j]) for j in range(3)]
-    ):
+    for joints, here in [([0, 1, 2], COLUMNS["rigid"])] if rows == "shared" else [([j], RIGID[j]) for j in range(3)]:
         A, b = Phi[:, joints][:, :, here].reshape(-1, len(here)), y[:, joints].ravel()
         offsets = [here.index(NAMES.index(name)) for name in OFFSETS if NAMES.index(name) in here]
         x, _ = nnls(np.hstack([A, -A[:, offsets]]), b)

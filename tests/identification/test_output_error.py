@@ -45,14 +45,14 @@ def refined(record):
 def test_the_loop_is_that_of_simulate_and_of_the_bench(record):
     pid = PID(kp=(289, 225, 270), ki=(50, 10, 50), kd=(40, 30, 30), limit_pwm=255)
     again = simulate(TRUE, pid, MOTION, duration=5.0, q0=MOTION.q_start, unit="PWM")
-    run = ClosedLoopRun.of(type("R", (), {"t": again.t, "q": again.q, "u": again.u}), pid, MOTION)
+    run = ClosedLoopRun(type("R", (), {"t": again.t, "q": again.q, "u": again.u}), pid, MOTION)
     run.start[:] = MOTION.q_start
     q, u = run.simulate(TRUE)
     np.testing.assert_allclose(q, again.q, atol=1e-12)
     np.testing.assert_allclose(u, again.u, atol=1e-9)
     # the bench, with its delay, rounding and friction, but for the noise of its sensors
     quiet = recorded(noise=0.0, seconds=10.0)
-    run = ClosedLoopRun.of(quiet, thesis_pid(), MOTION, delay=0.02)
+    run = ClosedLoopRun(quiet, thesis_pid(), MOTION, delay=0.02)
     q, u = run.simulate(TRUE, FS, np.full(3, 0.05))
     assert np.abs(q - quiet.q).max() < 0.02 and np.sqrt(np.mean((q - quiet.q) ** 2)) < 0.006
 
@@ -68,7 +68,7 @@ def test_finds_the_truth_and_breakaway_friction(refined, record):
     assert found.theta[0, 5] > 0  # the waist's own
     inertial_and_friction = np.delete(found.theta, [16, 17, 18], axis=1)
     assert (inertial_and_friction >= 0).all() and (found.fs >= found.theta[range(3), [11, 13, 15]]).all()
-    q, u = ClosedLoopRun.of(record, thesis_pid(), MOTION, delay=0.02).simulate(identify(record, l2=0.2).theta)
+    q, u = ClosedLoopRun(record, thesis_pid(), MOTION, delay=0.02).simulate(identify(record, l2=0.2).theta)
     for after, measured, before in zip(
         found.score(record, thesis_pid(), MOTION), (record.q, record.u), (q, u), strict=True
     ):
@@ -81,7 +81,7 @@ def test_predicts_another_run_better_than_the_regression(refined, record):
         other = bench.follow(thesis_pid(), motion, 30)
     q, u = refined.score(other, thesis_pid(), motion)
     assert (q.fit > 95).all() and (u.fit > 92).all()
-    run = ClosedLoopRun.of(other, thesis_pid(), motion, delay=0.02)
+    run = ClosedLoopRun(other, thesis_pid(), motion, delay=0.02)
     before, _ = run.simulate(identify(record, l2=0.2).theta)
     assert q.rms.sum() < nrmse_fit(other.q, before)[0].sum()
 
@@ -127,7 +127,7 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize("options, words", [*BAD, ({"seconds": 0.1}, "2 s or more"), ({"l2": -1}, "l2")])
+@pytest.mark.parametrize("options, words", [*BAD, ({"seconds": 0.1}, "50 or more"), ({"l2": -1}, "l2")])
 def test_bad_arguments(record, options, words):
     given = {"estimate": TRUE, "recordings": record, "controller": thesis_pid(), "references": MOTION, **options}
     if isinstance(given["references"], list):

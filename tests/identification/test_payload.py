@@ -85,5 +85,5 @@ def test_bad_estimates():
     good = estimate(IR50P, 1)
     with pytest.raises(InputError, match="loaded is a ndarray"):
         scale_from_payload(good, good.theta, mass=1, l2=L2, at=L3)
-    with pytest.raises(InputError, match="shared"):
+    with pytest.raises(InputError, match="of fit with rows"):
         scale_from_payload(good, estimate(IR50P, 2, rows="shared"), mass=1, l2=L2, at=L3)

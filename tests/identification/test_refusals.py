@@ -35,7 +35,6 @@ BAD = {
     "base_parameters": [(NAN_PHI,), (PHI[:, :, :0],), ("x",), (0 * PHI,)],
     "estimate_delay": [(Run(q=NAN_Q),), (Run(t=T[::-1]),), (T,), (Run(q=0 * Q),)],
     "optimise_excitation": [(TH,), (None,), ("arm",)],
-    "regressor_condition": [(None,), (3.0,)],
     "load_excitations": [("no_such_file.json",), ("/",)],
     "fit": [(NAN_PHI, Y), (PHI, Y[:5]), (PHI[:3], Y[:3]), (0 * PHI, Y), ("x", Y)],
     "least_squares": [(NAN_PHI, Y), (PHI, Y[:5]), (0 * PHI, Y), (PHI[0, :, :2], "x")],
