@@ -29,7 +29,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from ir50p_lab.launcher import doctor, inventory, update
+from ir50p_lab.launcher import doctor, inventory
 from ir50p_lab.launcher.environment import LOCK, TEST_LOCK, Environment
 from ir50p_lab.launcher.problems import COMMAND, SetUpError, from_error
 
@@ -43,6 +43,7 @@ _MODULES = {
     "bench-test": "ir50p_lab.bench.bench_test",
     "export": "ir50p_lab.publishing",
     "report": "ir50p_lab.publishing.report",
+    "update": "ir50p_lab.course.update",
 }
 #: What asks the launcher to end: `kill`, and a terminal that is closed (not on Windows).
 _ENDS = {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
@@ -81,7 +82,7 @@ def _run(arguments, root):
     parser.add_argument("--here", action="store_true")
     parser.add_argument("--arm", metavar="FILE")
     options, arguments = parser.parse_known_args(arguments)
-    command = arguments.pop(0) if arguments[:1] and arguments[0] in (*_MODULES, "setup", "doctor", "update") else "lab"
+    command = arguments.pop(0) if arguments[:1] and arguments[0] in (*_MODULES, "setup", "doctor") else "lab"
     file = command == "lab" and bool(arguments) and not arguments[0].startswith("-")
     if file and not Path(arguments[0]).exists():
         raise SetUpError(f"There is neither a command nor a file '{arguments[0]}'. Try '{COMMAND} --help'.")
@@ -90,8 +91,6 @@ def _run(arguments, root):
         return doctor.report(environment, here=options.here)
     if command == "setup":
         return _setup(arguments, environment, options.here)
-    if command == "update":
-        return update.take_over(arguments, root)
     tests = command in ("test", "targets")
     python, variables = _ready(environment, options.here, tests=tests)
     if options.arm is not None:
