@@ -198,6 +198,7 @@ PRINTED = [
     ("error: Failed to fetch: https://a/\n cause: invalid peer certificate: UnknownIssuer", "certificate"),
     ("cause: Because six==1.17.0 has an invalid package format and you require six", "A downloaded package is damaged"),
     ("error: failed to write\n  cause: No space left on device (os error 28)", "The disk is full"),
+    ("ModuleNotFoundError: No module named 'ir50p_lab'", "plain letters only"),
     ("", "no output"),
 ]
 
@@ -232,11 +233,3 @@ def test_environment_that_cannot_be_emptied(project, monkeypatch, capsys):
     monkeypatch.setattr(shutil, "rmtree", lambda path: (_ for _ in ()).throw(PermissionError(13, "no")))
     assert commands.main(["setup"], root=project.root) == 1
     assert capsys.readouterr().err.startswith("No permission")
-
-
-def test_path_that_python_cannot_read(project, monkeypatch):
-    environment = Environment(project.root)
-    monkeypatch.setattr(environment, "python", shutil.which("false"))
-    (project.venv).mkdir()
-    with pytest.raises(SetUpError, match="plain letters"):
-        environment._check()
