@@ -14,7 +14,7 @@ from pathlib import Path
 import numba
 from numba.core import event
 
-from ir50p_lab.file_lock import take_lock
+from ir50p_lab.launcher.file_lock import take_lock
 
 _PACKAGE = Path(__file__).parent
 

@@ -90,7 +90,11 @@ def _run(arguments, root):
     if command == "doctor":
         return doctor.report(environment, here=options.here)
     if command == "setup":
-        return _setup(arguments, environment, options.here)
+        for unknown in set(arguments) - {"--rebuild", "--tests"}:
+            raise SetUpError(f"setup does not know '{unknown}'. Try '{COMMAND} --help'.")
+        _ready(environment, options.here, tests="--tests" in arguments, rebuild="--rebuild" in arguments)
+        print("Everything is in place." if options.here else f"Ready: {environment.folder}")
+        return 0
     tests = command in ("test", "targets")
     python, variables = _ready(environment, options.here, tests=tests)
     if options.arm is not None:
@@ -109,14 +113,6 @@ def _run(arguments, root):
         )
     code = _attend([python, "-P", "-m", _MODULES[command], *arguments], variables)
     return 0 if command == "lab" and code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
-
-
-def _setup(arguments, environment, here):
-    for unknown in set(arguments) - {"--rebuild", "--tests"}:
-        raise SetUpError(f"setup does not know '{unknown}'. Try '{COMMAND} --help'.")
-    _ready(environment, here, tests="--tests" in arguments, rebuild="--rebuild" in arguments)
-    print("Everything is in place." if here else f"Ready: {environment.folder}")
-    return 0
 
 
 def _ready(environment, here, *, tests, rebuild=False):

@@ -14,8 +14,8 @@ import sys
 import sysconfig
 from pathlib import Path
 
-from ir50p_lab.file_lock import take_lock
 from ir50p_lab.launcher import inventory
+from ir50p_lab.launcher.file_lock import take_lock
 from ir50p_lab.launcher.installer import Installer
 from ir50p_lab.launcher.problems import COMMAND
 

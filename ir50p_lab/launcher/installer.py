@@ -42,8 +42,8 @@ class Installer:
         self._environment = environment
         self._python = [str(environment.python), "-P", "-m"]
         self._install = [*self._python, "pip", "install", "--disable-pip-version-check", "--no-color", "-vv"]
-        utf8 = {"PYTHONIOENCODING": "utf-8", "PYTHONUNBUFFERED": "1"}
-        self._variables = environment.variables() | utf8 | {"PIP_USER": "0"}
+        own = {"PYTHONIOENCODING": "utf-8", "PYTHONUNBUFFERED": "1", "PIP_USER": "0"}
+        self._variables = environment.variables() | own
         # It inherits the lock: after a 'kill -9' of the launcher the next set-up waits until it has ended.
         self._pass_fds = () if os.name == "nt" else (lock.fileno(),)
 
