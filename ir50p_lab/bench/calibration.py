@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import InputError, SuspiciousArmWarning
-from ir50p_lab.inputs import check_arm, numbers, vector3
+from ir50p_lab.inputs import numbers, vector3
+from ir50p_lab.modelling.chain import lengths
 
 _HEAD = "counts = zero + slope q, joints 1 to 3: counts of the 10-bit converter, slope in counts/rad, q in rad"
 _JOINTS = ("joint1", "joint2", "joint3")
@@ -191,7 +192,7 @@ def nominal_calibration(arm):
     travel reads 512. A joint without limits is taken to turn from -pi to pi.
     Args: arm: Arm. Returns: JointCalibration, without standard errors.
     """
-    arm = check_arm(arm)
+    lengths(arm)  # refuses what is no Arm
     low, high = (np.clip(limit, -np.pi, np.pi) for limit in (arm.q_min, arm.q_max))
     slope = np.minimum(_SISTER_SLOPE, 2 * min(_MIDDLE - _LOWEST, _HIGHEST - _MIDDLE) / (high - low))
     zero = _MIDDLE - slope * 0.5 * (low + high)

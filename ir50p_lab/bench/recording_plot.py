@@ -46,20 +46,20 @@ def plot(recording):
     """Angles and PWM of a Recording, one column per joint; RecordingError if it has no sample."""
     import matplotlib
 
-    from ir50p_lab.lab_figure import COLOURS, LabFigure, figure_style
+    from ir50p_lab.lab_figure import LabFigure, figure_style
 
-    dark, grey = COLOURS["dark"], "#666666"
+    dark, grey = "#333333", "#666666"
     joints = recording.metrics()
     with matplotlib.rc_context(figure_style()):
         figure = LabFigure(figsize=(9.0, 4.8), layout="constrained")
+        colours = matplotlib.rcParams["axes.prop_cycle"].by_key()["color"]
         axes = figure.subplots(2, 3, sharex=True, sharey="row", height_ratios=(3, 2))
     t, known = recording.t, np.isfinite(recording.reference).any()
     for j, (above, below) in enumerate(axes.T):
-        colour = COLOURS[("blue", "orange", "green")[j]]
-        above.plot(t, recording.q[:, j], color=colour, linewidth=1.4, label="angle")
+        above.plot(t, recording.q[:, j], color=colours[j], linewidth=1.4, label="angle")
         if known:
             above.step(t, recording.reference[:, j], where="post", color=dark, ls="--", lw=1.2, label="set point")
-        below.step(t, recording.u[:, j], where="post", color=colour, linewidth=0.8)
+        below.step(t, recording.u[:, j], where="post", color=colours[j], linewidth=0.8)
         for when, _ in recording.events:
             below.axvline(when, color=grey, ls=":", lw=1.0, label="event")
         off = joints[j].error

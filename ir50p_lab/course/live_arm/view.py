@@ -17,7 +17,8 @@ from ir50p_lab.course.badge import badge_of
 from ir50p_lab.course.live_arm.still import still_png
 from ir50p_lab.course.live_arm.track import pack
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import check_arm, vectors3
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling.chain import lengths
 
 _FOLDER = Path(__file__).parent
 _WINDOW = 10.0  # s of a live run that are shown
@@ -77,7 +78,7 @@ class LiveArm(anywidget.AnyWidget):
 
     def __init__(self, arm, q=(0.0, 0.0, 0.0), *, on_drag=None, frames=None, badge=None, layers=LAYERS, ball=None,
                  board=None, camera=None, height=420, sliders=True, readout=True):  # fmt: skip
-        self.arm, self._on_drag, self._frames = check_arm(arm), on_drag, frames
+        self.arm, self._on_drag, self._frames = arm, on_drag, frames
         self._stop = threading.Event()
         things = {}
         if ball is not None:
@@ -90,7 +91,7 @@ class LiveArm(anywidget.AnyWidget):
         super().__init__(
             bundle=Bundle.get(),
             digest=hashlib.sha256(bundle_text().encode()).hexdigest()[:16],
-            lengths=list(arm.l),
+            lengths=lengths(arm).tolist(),  # refuses what is no Arm
             limits=np.column_stack([np.clip(arm.q_min, -np.pi, None), np.clip(arm.q_max, None, np.pi)]).tolist(),
             q=vectors3("q", q).tolist(),
             options={
