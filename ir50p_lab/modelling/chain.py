@@ -36,7 +36,7 @@ def lengths(arm):
     try:
         return arm.lengths
     except AttributeError:
-        raise InputError(f"arm = {arm!r:.60}: give an Arm, such as IR50P or load_arm(); theta has no lengths") from None
+        raise InputError(f"arm = {arm!r:.60}: give an Arm, such as load_arm(), no {type(arm).__name__}") from None
 
 
 def dh_table(arm, q):
