@@ -1,7 +1,6 @@
 """Where everything of the student's lies: progress, results, recordings."""
 
 import os
-import tempfile
 from pathlib import Path
 
 VARIABLE = "IR50P_HOME"
@@ -9,16 +8,12 @@ PROJECT = Path(__file__).parents[1]
 
 
 def home():
-    """The student's folder: $IR50P_HOME, else notebooks/ of the project, else the working one. It may not exist yet."""
-    if os.environ.get(VARIABLE):
-        return Path(os.environ[VARIABLE]).expanduser().absolute()
-    notebooks = PROJECT / "notebooks"
-    return notebooks if notebooks.is_dir() else Path.cwd()
+    """The student's folder: $IR50P_HOME, else notebooks/ of the project. It may not exist yet."""
+    return Path(os.environ.get(VARIABLE) or PROJECT / "notebooks").expanduser().absolute()
 
 
 def replace_text(path, text):
     """Write a file in one step: a crash leaves the old or the new one, whole. Raises OSError."""
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".", ignore_cleanup_errors=True) as folder:
-        scratch = Path(folder, path.name)
-        scratch.write_text(text, encoding="utf-8")
-        os.replace(scratch, path)
+    scratch = path.with_name(f".{path.name}.{os.getpid()}")
+    scratch.write_text(text, encoding="utf-8")
+    os.replace(scratch, path)

@@ -16,10 +16,7 @@ def vectors3(name, value, *, unit="rad"):
     if array.ndim == 0 or array.shape[-1] != 3:
         raise InputError(f"{name} has shape {array.shape}; give shape (3,), or (n, 3) with one row per sample ({unit})")
     if not np.isfinite(array).all():
-        raise InputError(
-            f"{name} holds {first_not_finite(array)}; every number must be finite ({unit}): "
-            "remove or repair that sample"
-        )
+        raise InputError(f"{name} holds {first_not_finite(array)}; every number must be finite ({unit}): repair it")
     return array
 
 
@@ -42,8 +39,7 @@ def numbers(name, value, *, unit="its unit"):
 def number(name, value, rule="finite", *, unit="", hint=""):
     """`value` as a float. rule: "finite", ">= 0", "> 0", or "> 0 or inf". Raises InputError, ending with `hint`."""
     try:
-        single = not isinstance(value, (str, bytes, bool)) and np.ndim(value) == 0
-        x = float(value) if single else math.nan
+        x = math.nan if isinstance(value, (str, bytes, bool)) or np.ndim(value) > 0 else float(value)
     except (TypeError, ValueError, OverflowError):
         x = math.nan
     fits = {"finite": math.isfinite(x), ">= 0": 0 <= x < math.inf, "> 0": 0 < x < math.inf, "> 0 or inf": x > 0}
@@ -76,10 +72,3 @@ def first_not_finite(array):
     """Describe the first NaN or infinity of `array`, with its place."""
     place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
     return f"{array[place]} at index {place if len(place) > 1 else place[0]}"
-
-
-def check_arm(arm):
-    """Return `arm`. Raises InputError if it is no Arm."""
-    if not hasattr(type(arm), "theta_pwm"):  # not isinstance: this module is below the arm's
-        raise InputError(f"arm = {arm!r:.60}: give an Arm, such as IR50P or load_arm()")
-    return arm

@@ -1,20 +1,15 @@
-"""`jit`, `gufunc`: numba's njit and guvectorize, with a cache on disk that notices when any compiled file changed.
+"""`jit`: numba's njit, with a cache on disk that notices when any compiled file changed.
 
 numba checks only the file of the function itself: machine code that has inlined a function of another, since changed
 file would be used on, silently. Here the folder of the cache is named by a hash of all compiled files.
 """
 
-import contextlib
 import functools
 import hashlib
 import os
-import re
 from pathlib import Path
 
 import numba
-from numba.core import event
-
-from ir50p_lab.file_lock import take_lock
 
 _PACKAGE = Path(__file__).parent
 
@@ -25,13 +20,11 @@ def cache_folder():
 
     $NUMBA_CACHE_DIR goes before both.
     """
-    sources = {str(p.relative_to(_PACKAGE)): p.read_bytes() for p in sorted(_PACKAGE.rglob("*.py"))}
-    compiled = {name: text for name, text in sources.items() if b"@jit(" in text or b"@kernel(" in text}
-    name = f"ir50p_lab-{hashlib.sha1(repr(compiled).encode()).hexdigest()[:16]}"
+    sources = [path.read_bytes() for path in sorted(_PACKAGE.rglob("*.py"))]
+    compiled = b"".join(text for text in sources if b"@jit(" in text or b"@kernel(" in text)
     own = _PACKAGE / "__pycache__"
-    writable = os.access(own if own.exists() else _PACKAGE, os.W_OK)
-    base = own if writable else Path.home() / ".cache"
-    return Path(numba.config.CACHE_DIR or base, name)
+    base = own if os.access(own, os.W_OK) else Path.home() / ".cache"
+    return Path(numba.config.CACHE_DIR or base, f"ir50p_lab-{hashlib.sha1(compiled).hexdigest()[:16]}")
 
 
 def jit(**options):
@@ -39,56 +32,13 @@ def jit(**options):
 
     Division by zero gives inf or NaN as in NumPy: the caller checks results once, not every operation.
     """
-
-    def decorate(function):
-        with _own_cache():
-            return numba.njit(cache=True, error_model="numpy", **options)(function)
-
-    return decorate
+    return functools.partial(with_cache, numba.njit(cache=True, error_model="numpy", **options))
 
 
-def gufunc(function, layout):
-    """A NumPy generalised ufunc of floats with this layout, such as "(n),(n)->(n)", compiled and kept on disk."""
-    operands = [dims.split(",") if dims else [] for dims in re.findall(r"\((.*?)\)", layout)]
-    types = [f"f8[{','.join(':' * len(dims))}]" if dims else "f8" for dims in operands]
-    with _own_cache(), _no_other_process():
-        compiled = numba.guvectorize([f"void({', '.join(types)})"], layout, nopython=True, cache=True)(function)
-    return compiled.ufunc  # NumPy's own: without numba's look at the arguments
-
-
-@contextlib.contextmanager
-def _own_cache():
+def with_cache(decorator, function):
+    """Decorate a function by a decorator of numba's that shall keep its machine code in `cache_folder()`."""
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())
     try:
-        yield
+        return decorator(function)
     finally:
         numba.config.CACHE_DIR = before
-
-
-@contextlib.contextmanager
-def _no_other_process():
-    """While a ufunc is compiled or loaded.
-
-    numba keeps its two halves in two files that must come from one process. Of a mixture it calls the null pointer.
-    """
-    cache_folder().mkdir(parents=True, exist_ok=True)
-    with open(cache_folder() / "lock", "a") as file:
-        take_lock(file)
-        yield
-
-
-def says_that_it_compiles(function):
-    """Decorator: a call that compiles says so, for it may take half a minute. Code that lies in the cache is not."""
-
-    class Saying(event.RecordingListener):
-        def on_start(self, compilation):
-            if not self.buffer:
-                print(f"{function.__name__} is compiled, once: up to 30 s...", flush=True)
-            super().on_start(compilation)
-
-    @functools.wraps(function)
-    def wrapper(*args, **options):
-        with event.install_listener("numba:compile", Saying()):
-            return function(*args, **options)
-
-    return wrapper

@@ -7,19 +7,6 @@ import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-# Okabe and Ito (2008): told apart with every common kind of colour blindness. Joints 1, 2, 3 take the first three.
-COLOURS = {
-    "blue": "#0072B2",
-    "orange": "#D55E00",
-    "green": "#009E73",
-    "purple": "#CC79A7",
-    "amber": "#E69F00",
-    "sky": "#56B4E9",
-    "dark": "#333333",
-    "grey": "#999999",
-    "light": "#DDDDDD",
-}
-
 
 def figure_style():
     """The style as matplotlib parameters, for `matplotlib.rc_context(figure_style())`; changes nothing itself."""
@@ -36,11 +23,6 @@ class LabFigure(Figure):
     def _repr_png_(self):
         """PNG at twice the pixels (sharp on dense screens), and the size to show it at."""
         width, height = self.bbox.size
-        shown_at = self.dpi
         stream = io.BytesIO()
-        try:
-            self.dpi = 2 * shown_at
-            self.canvas.print_png(stream)  # draws it once; savefig draws a figure with a layout twice
-        finally:
-            self.dpi = shown_at
+        self.savefig(stream, dpi=2 * self.dpi)
         return stream.getvalue(), {"width": round(width), "height": round(height)}

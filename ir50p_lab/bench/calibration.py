@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import InputError, SuspiciousArmWarning
-from ir50p_lab.inputs import check_arm, vector3, vectors3
+from ir50p_lab.inputs import vector3, vectors3
+from ir50p_lab.modelling.chain import lengths
 
 _HEAD = "# counts = zero + slope q: counts of the 10-bit converter, slope in counts/rad, q in rad, joints 1 to 3\n"
 _JOINTS = ("joint1", "joint2", "joint3")
@@ -142,7 +143,7 @@ def nominal_calibration(arm):
     travel reads 512. A joint without limits is taken to turn from -pi to pi.
     Args: arm: Arm. Returns: JointCalibration, without standard errors.
     """
-    arm = check_arm(arm)
+    lengths(arm)  # refuses what is no Arm
     low, high = np.clip((arm.q_min, arm.q_max), -np.pi, np.pi)
     slope = np.minimum(_SISTER_SLOPE, 2 * (_MIDDLE - _LOWEST) / (high - low))
     return JointCalibration(slope, _MIDDLE - slope * 0.5 * (low + high), source="nominal, not measured")

@@ -146,20 +146,20 @@ class Recording:
         """
         import matplotlib
 
-        from ir50p_lab.lab_figure import COLOURS, LabFigure, figure_style
+        from ir50p_lab.lab_figure import LabFigure, figure_style
 
-        dark, grey = COLOURS["dark"], "#666666"
+        dark, grey = "#333333", "#666666"
         with matplotlib.rc_context(figure_style()):
             figure = LabFigure(figsize=(9.0, 4.8), layout="constrained")
+            colours = matplotlib.rcParams["axes.prop_cycle"].by_key()["color"]
             axes = figure.subplots(2, 3, sharex=True, sharey="row", height_ratios=(3, 2))
         known = np.isfinite(self.reference).any()
         for j, joint in enumerate(self.metrics()):
             above, below = axes[:, j]
-            colour = COLOURS[("blue", "orange", "green")[j]]
-            above.plot(self.t, self.q[:, j], color=colour, lw=1.4, label="angle")
+            above.plot(self.t, self.q[:, j], color=colours[j], lw=1.4, label="angle")
             if known:
                 above.step(self.t, self.reference[:, j], where="post", color=dark, ls="--", lw=1.2, label="set point")
-            below.step(self.t, self.u[:, j], where="post", color=colour, lw=0.8)
+            below.step(self.t, self.u[:, j], where="post", color=colours[j], lw=0.8)
             below.vlines([t for t, _ in self.events], -275, 275, color=grey, ls=":", lw=1.0, label="event")
             off = "" if math.isnan(joint.error) else f" ends {1000 * abs(joint.error):.0f} mrad off"
             above.set_title(f"joint {j + 1}{off}", fontsize=10.5, color=dark)

@@ -3,8 +3,20 @@
 import matplotlib
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.lab_figure import COLOURS, LabFigure, figure_style
+from ir50p_lab.lab_figure import LabFigure, figure_style
 
+# Okabe and Ito (2008): told apart with every common kind of colour blindness. Joints 1, 2, 3 take the first three.
+COLOURS = {
+    "blue": "#0072B2",
+    "orange": "#D55E00",
+    "green": "#009E73",
+    "purple": "#CC79A7",
+    "amber": "#E69F00",
+    "sky": "#56B4E9",
+    "dark": "#333333",
+    "grey": "#999999",
+    "light": "#DDDDDD",
+}
 JOINTS = (COLOURS["blue"], COLOURS["orange"], COLOURS["green"])
 SETPOINT = {"color": COLOURS["dark"], "linestyle": "--", "linewidth": 1.2}
 

@@ -9,7 +9,8 @@ import numpy as np
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.parameters import RIGID_ON
-from ir50p_lab.inputs import check_arm, number, whole
+from ir50p_lab.inputs import number, whole
+from ir50p_lab.modelling.chain import lengths
 from ir50p_lab.signals.fourier import Fourier, fourier, heights, limits_of, series
 
 _PER_HARMONIC = 32  # points of the grid per period of the fastest harmonic
@@ -85,7 +86,7 @@ def optimise_excitation(
 
     Returns: Excitation. Raises: InputError on bad arguments; IdentificationError if no motion fits the limits.
     """
-    check_arm(arm)
+    lengths(arm)  # refuses what is no Arm
     if not np.isfinite([*arm.q_min, *arm.q_max]).all():
         raise InputError(f"{arm.name} has no joint limits: give q_min and q_max, dataclasses.replace(arm, q_min=...)")
     whole("harmonics", harmonics, 2, 12)

@@ -1,6 +1,5 @@
 """USB ids of the boards that fit the bench, and who may open a serial port. Standard library only."""
 
-import sys
 import tomllib
 from pathlib import Path
 
@@ -12,12 +11,5 @@ def board_name(vid, pid):
 
 
 def permission_remedy(device):
-    """What to do when this user may not open the serial port `device`, on this operating system."""
-    if sys.platform.startswith("linux"):
-        return (
-            f"'sudo usermod -aG dialout $USER' (on Arch: uucp; 'ls -l {device}' names the group), then log out and in "
-            "again, or restart, to make it count"
-        )
-    if sys.platform == "darwin":
-        return f"'ls -l {device}' shows who may; on a managed Mac ask its administrator for access to serial devices"
-    return "close the program that holds it (Arduino IDE, another notebook): Windows reports a busy port this way"
+    """What to do when this user may not open the serial port `device` (Windows calls that busy)."""
+    return f"'ls -l {device}' shows who may; on Linux 'sudo usermod -aG dialout $USER' (on Arch: uucp), then restart"

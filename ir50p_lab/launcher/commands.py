@@ -29,7 +29,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from ir50p_lab.launcher import doctor, inventory, update
+from ir50p_lab.launcher import doctor, inventory
 from ir50p_lab.launcher.environment import LOCK, TEST_LOCK, Environment
 from ir50p_lab.launcher.problems import COMMAND, SetUpError, from_error
 
@@ -43,6 +43,7 @@ _MODULES = {
     "bench-test": "ir50p_lab.bench.bench_test",
     "export": "ir50p_lab.publishing",
     "report": "ir50p_lab.publishing.report",
+    "update": "ir50p_lab.course.update",
 }
 #: What asks the launcher to end: `kill`, and a terminal that is closed (not on Windows).
 _ENDS = {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
@@ -81,7 +82,7 @@ def _run(arguments, root):
     parser.add_argument("--here", action="store_true")
     parser.add_argument("--arm", metavar="FILE")
     options, arguments = parser.parse_known_args(arguments)
-    command = arguments.pop(0) if arguments[:1] and arguments[0] in (*_MODULES, "setup", "doctor", "update") else "lab"
+    command = arguments.pop(0) if arguments[:1] and arguments[0] in (*_MODULES, "setup", "doctor") else "lab"
     file = command == "lab" and bool(arguments) and not arguments[0].startswith("-")
     if file and not Path(arguments[0]).exists():
         raise SetUpError(f"There is neither a command nor a file '{arguments[0]}'. Try '{COMMAND} --help'.")
@@ -89,9 +90,11 @@ def _run(arguments, root):
     if command == "doctor":
         return doctor.report(environment, here=options.here)
     if command == "setup":
-        return _setup(arguments, environment, options.here)
-    if command == "update":
-        return update.take_over(arguments, root)
+        for unknown in set(arguments) - {"--rebuild", "--tests"}:
+            raise SetUpError(f"setup does not know '{unknown}'. Try '{COMMAND} --help'.")
+        _ready(environment, options.here, tests="--tests" in arguments, rebuild="--rebuild" in arguments)
+        print("Everything is in place." if options.here else f"Ready: {environment.folder}")
+        return 0
     tests = command in ("test", "targets")
     python, variables = _ready(environment, options.here, tests=tests)
     if options.arm is not None:
@@ -110,14 +113,6 @@ def _run(arguments, root):
         )
     code = _attend([python, "-P", "-m", _MODULES[command], *arguments], variables)
     return 0 if command == "lab" and code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
-
-
-def _setup(arguments, environment, here):
-    for unknown in set(arguments) - {"--rebuild", "--tests"}:
-        raise SetUpError(f"setup does not know '{unknown}'. Try '{COMMAND} --help'.")
-    _ready(environment, here, tests="--tests" in arguments, rebuild="--rebuild" in arguments)
-    print("Everything is in place." if here else f"Ready: {environment.folder}")
-    return 0
 
 
 def _ready(environment, here, *, tests, rebuild=False):

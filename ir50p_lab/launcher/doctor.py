@@ -8,11 +8,7 @@ from pathlib import Path
 
 from ir50p_lab.launcher.boards import board_name, permission_remedy
 from ir50p_lab.launcher.environment import LOCK
-from ir50p_lab.launcher.inventory import direct_dependencies
 from ir50p_lab.launcher.problems import COMMAND
-
-#: Space that .venv and uv's cache take, GB (measured on Linux: see README.md).
-NEEDED_GB = 2.0
 
 
 def report(environment, *, here=False):
@@ -29,17 +25,14 @@ def report(environment, *, here=False):
     found, faults = None, [f"the environment is {fault}"]
     if not fault:
         found, error = environment.look_inside(sys.executable if here else None)
-        faults = _packages(found, root, here) if found else [f"the environment does not answer ({error})"]
-    free = shutil.disk_usage(root).free / 1e9
-    _line("Free disk", f"{free:.1f} GB")
-    if free < NEEDED_GB and fault:
-        faults.append(f"the set-up needs {NEEDED_GB:.0f} GB of disk, {free:.1f} GB are free")
+        faults = _packages(found, here) if found else [f"the environment does not answer ({error})"]
+    _line("Free disk", f"{shutil.disk_usage(root).free / 1e9:.1f} GB (the set-up needs 2)")
     arm = os.environ.get("IR50P_ARM")
     if arm:
         _line("Arm", f"{arm} (from IR50P_ARM)")
         if not Path(arm).is_file():
             faults.append(f"IR50P_ARM names a file that does not exist ({arm})")
-    _ports(found and found["ports"])
+    _ports(found["ports"] if found else None)
     verdict = f"not ready: {'; '.join(faults)}. {cure}." if faults else f"ready. Open the lab book with '{COMMAND}'."
     print(f"Verdict: {verdict}")
     return 1 if faults else 0
@@ -49,17 +42,14 @@ def _line(title, text):
     print(f"{title:<14}{text}")
 
 
-def _packages(found, root, here):
+def _packages(found, here):
     """Compare what is installed with the lock, and say what cannot be imported; return the faults."""
     wanted = found["packages"]
     missing = [p for p in wanted if p["installed"] is None]
     other = [p for p in wanted if p["installed"] not in (None, p["wanted"])]
     same = len(wanted) - len(missing) - len(other)
     _line("Packages", f"{same} of {len(wanted)} as in {LOCK} (Python {found['python']})")
-    direct = direct_dependencies(root)
-    key = [f"{p['name']} {p['installed']}" for p in wanted if p["name"] in direct and p["installed"]]
-    lines = [", ".join(key[i : i + 5]) for i in range(0, len(key), 5)]
-    lines += [f"missing: {p['name']} {p['wanted']}" for p in missing]
+    lines = [f"missing: {p['name']} {p['wanted']}" for p in missing]
     lines += [f"differs: {p['name']} {p['installed']}, the lock has {p['wanted']}" for p in other]
     lines += [f"broken: import {name}: {why}" for name, why in found["broken"].items()]
     for line in lines:
@@ -74,12 +64,9 @@ def _packages(found, root, here):
 
 
 def _ports(ports):
-    if ports is None:
-        _line("Serial ports", "not looked at (pyserial comes with the set-up)")
-        return
-    usb = [port for port in ports if port["vid"] is not None]
+    usb = [port for port in ports or [] if port["vid"] is not None]
     if not usb:
-        _line("Serial ports", "no USB board" + (f" ({len(ports)} ports without USB id)" if ports else ""))
+        _line("Serial ports", "not looked at (pyserial comes with the set-up)" if ports is None else "no USB board")
     for port in usb:
         text = f"{port['device']} {port['vid']:04X}:{port['pid']:04X} {port['description']}"
         board = board_name(port["vid"], port["pid"])

@@ -4,7 +4,6 @@ The set-up writes its stamp last and removes it first. A .venv without a valid s
 interrupted it, and is emptied and built again.
 """
 
-import hashlib
 import importlib
 import json
 import os
@@ -13,13 +12,12 @@ import shutil
 import subprocess
 import sys
 import sysconfig
-import time
 from pathlib import Path
 
-from ir50p_lab.file_lock import take_lock
 from ir50p_lab.launcher import inventory
+from ir50p_lab.launcher.file_lock import take_lock
 from ir50p_lab.launcher.installer import Installer
-from ir50p_lab.launcher.problems import COMMAND, SetUpError
+from ir50p_lab.launcher.problems import COMMAND
 
 LOCK = "environment.txt"
 TEST_LOCK = "environment-test.txt"
@@ -46,22 +44,22 @@ class Environment:
         """Why .venv, or its test tools, cannot be used as it is; "" if it is ready. Changes nothing."""
         if not any(self.folder.glob("*")):
             return _NOT_MADE
+        ready = self._ready_stamp(tests=True)
         try:
             stamp = json.loads(self._stamp.read_text("utf-8"))
-        except (OSError, ValueError):
-            stamp = None
-        if not stamp:
+            reasons = {
+                "root": f"made for another folder ({stamp['root']})",
+                "python": f"made with Python {stamp['python']}, this is {ready['python']}",
+                LOCK: f"out of date ({LOCK} has changed)",
+            }
+        except (OSError, ValueError, LookupError, TypeError):
             return "half made (a set-up was interrupted)"
-        ready = self._ready_stamp(tests=True)
-        reasons = {
-            "root": f"made for another folder ({stamp['root']})",
-            "python": f"made with Python {stamp['python']}, this is {ready['python']}",
-            LOCK: f"out of date ({LOCK} has changed)",
-        }
         for name, reason in reasons.items():
             if stamp[name] != ready[name]:
                 return reason
-        if not self._python_starts():
+        try:
+            self._run([self.python, "-c", ""]).check_returncode()
+        except (OSError, subprocess.CalledProcessError):
             return "broken (its Python does not start)"
         return f"without the tools of {TEST_LOCK}" if tests and stamp[TEST_LOCK] != ready[TEST_LOCK] else ""
 
@@ -73,7 +71,6 @@ class Environment:
         self.folder.mkdir(exist_ok=True)
         with open(self.folder / _BUSY, "a") as lock:
             take_lock(lock, "Another set-up is at work in this folder: waiting for it to end (Ctrl-C to give up).")
-            started = time.monotonic()
             if rebuild or self.fault():  # again: another set-up may just have finished
                 self._build(fault, Installer(self, lock), TEST_LOCK if tests else LOCK)
             elif self.fault(tests=tests):
@@ -82,7 +79,7 @@ class Environment:
             else:
                 return
             self._stamp.write_text(json.dumps(self._ready_stamp(tests), indent=1), encoding="utf-8")
-            print(f"Set-up finished in {time.monotonic() - started:.0f} s.")
+            print("Set-up finished.")
 
     def variables(self):
         """Environment variables for programs that run inside .venv.
@@ -108,10 +105,9 @@ class Environment:
     # -- building ------------------------------------------------------------------------------------------------------
 
     def _build(self, fault, installer, lock_file):
-        if fault in ("", _NOT_MADE):
-            print(f"Set-up of {self.folder}: takes a minute or two, once. Ctrl-C stops it safely.")
-        else:
+        if fault not in ("", _NOT_MADE):
             print(f"The folder .venv is {fault}: building it again.")
+        print(f"Set-up of {self.folder}: takes a minute or two, once. Ctrl-C stops it safely.")
         importlib.import_module("ensurepip")  # without it venv fails half way and does not say why
         importlib.import_module("venv")
         self._empty()
@@ -123,15 +119,17 @@ class Environment:
         # Editable, so that notebooks anywhere import the package as it is here; the build tool is in the lock.
         installer.install("--no-deps", "--no-build-isolation", "--editable", str(self.root))
         print("[4/4] check: everything is imported once")
-        self._check()
+        installer.run([str(self.python), "-P", "-c", "import ir50p_lab"])  # from anywhere
+        found, error = self.look_inside()
+        for name, why in (found["broken"] if found else {"the set-up's last step": error}).items():
+            print(f"Careful: {name} cannot be used ({why}). '{COMMAND} doctor' says more.")
         # Spare the student JupyterLab's question about news from the web at its first start.
-        shutil.copytree(
-            Path(__file__).with_name("labconfig"), self.folder / "etc/jupyter/labconfig", dirs_exist_ok=True
-        )
+        labconfig = self.folder / "etc/jupyter/labconfig"
+        shutil.copytree(Path(__file__).with_name("labconfig"), labconfig, dirs_exist_ok=True)
 
     def _install_lock(self, step, installer, lock_file):
         print(step, lock_file)
-        text = (self.root / lock_file).read_text("utf-8")
+        text = self._text(lock_file)
         uv = re.search(r"^uv==\S+", text, re.MULTILINE)[0]
         installer.fetch_uv(uv)
         rest = self.folder / lock_file
@@ -148,18 +146,6 @@ class Environment:
             elif entry.name != _BUSY:
                 entry.unlink()
 
-    def _check(self):
-        """The package and all it needs must be importable from anywhere."""
-        if self._run([self.python, "-P", "-c", "import ir50p_lab"]).returncode:
-            raise SetUpError(
-                f"The path {self.root} has letters that this Python cannot read when it starts. Move the project to a "
-                f"folder whose path has plain letters only (or use Python 3.13 or newer), then run '{COMMAND}' again."
-            )
-        found, error = self.look_inside()
-        broken = {"the set-up's last step": error} if found is None else found["broken"]
-        for name, why in broken.items():
-            print(f"Careful: {name} cannot be used ({why}). '{COMMAND} doctor' says more.")
-
     # -- looking -------------------------------------------------------------------------------------------------------
 
     def _ready_stamp(self, tests):
@@ -167,19 +153,12 @@ class Environment:
         return {
             "root": str(self.root),
             "python": sysconfig.get_python_version(),
-            LOCK: self._digest(LOCK),
-            TEST_LOCK: self._digest(TEST_LOCK) if tests else None,
+            LOCK: self._text(LOCK),
+            TEST_LOCK: self._text(TEST_LOCK) if tests else None,
         }
 
-    def _digest(self, lock_file):
-        text = (self.root / lock_file).read_text("utf-8")  # as text: line ends may differ between checkouts
-        return hashlib.sha256(text.encode()).hexdigest()
-
-    def _python_starts(self):
-        try:
-            return self._run([self.python, "-c", ""]).returncode == 0
-        except OSError:
-            return False
+    def _text(self, lock_file):
+        return (self.root / lock_file).read_text("utf-8")  # line ends may differ between checkouts
 
     def _run(self, command):
         """Run a Python to its end, with nothing of another Python around it."""

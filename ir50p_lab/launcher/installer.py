@@ -42,8 +42,8 @@ class Installer:
         self._environment = environment
         self._python = [str(environment.python), "-P", "-m"]
         self._install = [*self._python, "pip", "install", "--disable-pip-version-check", "--no-color", "-vv"]
-        utf8 = {"PYTHONIOENCODING": "utf-8", "PYTHONUNBUFFERED": "1"}
-        self._variables = environment.variables() | utf8 | {"PIP_USER": "0"}
+        own = {"PYTHONIOENCODING": "utf-8", "PYTHONUNBUFFERED": "1", "PIP_USER": "0"}
+        self._variables = environment.variables() | own
         # It inherits the lock: after a 'kill -9' of the launcher the next set-up waits until it has ended.
         self._pass_fds = () if os.name == "nt" else (lock.fileno(),)
 
@@ -65,7 +65,8 @@ class Installer:
 
     def run(self, command):
         """Run to the end, the last line shown on a terminal; return the output. Raises SetUpError."""
-        child = subprocess.Popen(
+        output = ""
+        with subprocess.Popen(
             command,
             env=self._variables,
             stdin=subprocess.DEVNULL,
@@ -74,17 +75,18 @@ class Installer:
             encoding="utf-8",
             errors="replace",
             pass_fds=self._pass_fds,
-        )
-        output = ""
-        try:
-            for line in child.stdout:
-                output += line
-                _show(line.strip())
-        finally:
-            _show("")
-            _end(child)
-            with open(self._environment.log, "a", encoding="utf-8") as log:
-                log.write(f"{command}\n{output}")
+        ) as child:
+            try:
+                for line in child.stdout:
+                    output += line
+                    _show(line.strip())
+            except BaseException:  # an interruption: leave no installer behind that would go on writing
+                child.kill()
+                raise
+            finally:
+                _show("")
+        with open(self._environment.log, "a", encoding="utf-8") as log:
+            log.write(f"{command}\n{output}")
         if child.returncode:
             raise problems.from_output(output, child.returncode, self._environment.root, self._environment.log)
         return output
@@ -93,13 +95,3 @@ class Installer:
 def _show(text):
     if sys.stdout and sys.stdout.isatty():  # pythonw has none
         print(f"\r{'':78}\r{text[:78]}", end="", flush=True)
-
-
-def _end(child):
-    """Wait; after an interruption leave no installer behind that would go on writing."""
-    child.stdout.close()
-    try:
-        child.wait(timeout=3)  # a Ctrl-C reached it too: let it tidy up
-    except (subprocess.TimeoutExpired, KeyboardInterrupt):
-        child.kill()
-    child.wait()

@@ -6,7 +6,6 @@ bytecode of what the course uses, so that the first notebook need not.
 
 import contextlib
 import importlib.metadata
-import importlib.util
 import json
 import pkgutil
 import platform
@@ -54,9 +53,8 @@ def broken_imports(distributions):
         for name, sources in importlib.metadata.packages_distributions().items()
         if set(sources) & set(distributions) and not name.startswith("_")
     ]
-    names += [name for name in _STARTED if importlib.util.find_spec(name.partition(".")[0])]
     broken = {}
-    for name in names:
+    for name in [*names, *_STARTED]:
         _try_import(name, broken)
     for module in pkgutil.walk_packages(_try_import("ir50p_lab", broken), "ir50p_lab."):
         if not module.name.endswith("__main__"):
@@ -83,12 +81,12 @@ def serial_ports():
 
 
 def _applies(marker):
-    """Whether an environment marker ('sys_platform == "win32"') holds here; without packaging: assume so."""
-    if marker:
-        for library in ("packaging", "pip._vendor.packaging"):
-            with contextlib.suppress(ImportError):
-                return importlib.import_module(f"{library}.markers").Marker(marker).evaluate()
-    return True
+    """Whether an environment marker ('sys_platform == "win32"') holds here; without pip to ask: assume so."""
+    try:
+        from pip._vendor.packaging.markers import Marker
+    except ImportError:
+        return True
+    return not marker or Marker(marker).evaluate()
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ from pathlib import Path
 
 _PYTHON = "py" if os.name == "nt" else "python3"
 COMMAND = f"{_PYTHON} -m ir50p_lab"
-_AGAIN = f"then run '{COMMAND}' again"
 
 
 class SetUpError(Exception):
@@ -25,7 +24,7 @@ def from_error(error, folder):
     text = str(error).partition(": ")[0]  # without the path: that may have any words in it
     file = getattr(error, "filename", None) or ".venv"
     return _known(f"{type(error).__name__}: {text}", folder, file) or SetUpError(
-        f"The operating system refused: {error}. Put that right, {_AGAIN}."
+        f"The operating system refused: {error}. Put that right, then run '{COMMAND}' again."
     )
 
 
@@ -33,25 +32,16 @@ def from_output(output, code, folder, log):
     """Turn what a failed installer or venv printed into a SetUpError."""
     # an index that lacks a package says so with 404; the next one may have it
     lines = [line.strip() for line in output.splitlines() if line.strip() and "404 Client Error" not in line]
-    known = _known("\n".join(lines), folder)
-    if known:
-        return known
-    if code < 0:
-        return SetUpError(
-            f"The installer was ended by signal {-code} (often: out of memory). Close other programs, {_AGAIN}."
-        )
     errors = [line for line in lines if re.match(r"(ERROR|error|Error|\w*Error):", line)]
     said = re.sub(r"^(ERROR|error|Error): *", "", (errors or lines or ["no output"])[-1]).rstrip(".")
-    return SetUpError(f"The set-up failed: {said}. All that was printed is in {log}; {_AGAIN}.")
+    return _known("\n".join([*lines, f"exit code {code}"]), folder) or SetUpError(
+        f"The set-up failed: {said}. All that was printed is in {log}; then run '{COMMAND}' again."
+    )
 
 
 def _known(text, folder, file=".venv"):
     """The error for the first problem of the table that shows in the text, or None."""
-    table = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
-    without_index = os.environ.get("PIP_NO_INDEX", "").lower() not in ("", "0", "false", "no", "off")
-    no_wheel = table["no_wheel"]
-    no_wheel["advice"] = no_wheel["offline" if without_index else "online"]
-    for problem in (*table["problem"], no_wheel):
+    for problem in tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))["problem"]:
         found = re.search("|".join(problem["signs"]), text)
         if found:
             advice = problem["advice"].format(
@@ -60,13 +50,9 @@ def _known(text, folder, file=".venv"):
                 name=found[found.lastindex or 0],
                 python=_PYTHON,
                 command=COMMAND,
-                again=_AGAIN,
                 version=sysconfig.get_python_version(),
-                close="Close JupyterLab and all that runs Python from .venv; that may be all. "
-                if os.name == "nt"
-                else "",
                 machine=f"Python {platform.python_version()} on {platform.system()} {platform.machine()}",
-                wheels=os.environ.get("PIP_FIND_LINKS", "PIP_FIND_LINKS is not set"),
+                wheels=os.environ.get("PIP_FIND_LINKS", "find-links of pip.conf"),
             )
-            return NoWheelError(advice) if problem is no_wheel else SetUpError(advice)
+            return NoWheelError(advice) if "no_wheel" in problem else SetUpError(advice)
     return None

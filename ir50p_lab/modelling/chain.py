@@ -36,9 +36,7 @@ def lengths(arm):
     try:
         return arm.lengths
     except AttributeError:
-        raise InputError(
-            f"kinematics needs an Arm (its lengths), got {type(arm).__name__}; theta holds no column height"
-        ) from None
+        raise InputError(f"arm = {arm!r:.60}: give an Arm, such as load_arm(), no {type(arm).__name__}") from None
 
 
 def dh_table(arm, q):

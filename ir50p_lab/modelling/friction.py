@@ -40,15 +40,9 @@ class Friction:
         for joint, (fv, fc, fs, qs) in enumerate(zip(self.fv, self.fc, self.fs, self.qs, strict=True), start=1):
             for name, value in (("fv", fv), ("fc", fc)):
                 if value < 0:
-                    raise ArmError(
-                        f"friction {name} of joint {joint} is {value}; it must be >= 0: "
-                        "friction takes energy out of the arm, a negative coefficient would feed it"
-                    )
+                    raise ArmError(f"friction {name} of joint {joint} is {value}: it must be >= 0, as it takes energy")
             if fs < fc:
-                raise ArmError(
-                    f"breakaway torque fs = {fs} N m of joint {joint} is below its Coulomb torque fc = {fc} N m; "
-                    "give fs >= fc"
-                )
+                raise ArmError(f"breakaway torque fs = {fs} N m of joint {joint} is below its Coulomb torque, {fc} N m")
             if qs <= 0:
                 raise ArmError(f"Stribeck velocity qs = {qs} rad/s of joint {joint} must be > 0")
 

@@ -1,11 +1,13 @@
 """One state or many: functions of one state as NumPy's generalised ufuncs, and the sentence for what they refuse."""
 
+import re
 from functools import cache
 
 import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
+from ir50p_lab.launcher.file_lock import take_lock
 
 NOT_FINITE = "the result is not finite: the numbers are too large"
 
@@ -18,15 +20,24 @@ def kernel(layout):
     """
 
     def decorate(function):
-        @cache
-        def ufunc():
-            from ir50p_lab.jit import gufunc  # numba takes a while: not at import
-
-            return gufunc(function, layout)
-
-        return ufunc
+        return cache(lambda: _compiled(function, layout))
 
     return decorate
+
+
+def _compiled(function, layout):
+    import numba  # takes a while: not at import
+
+    from ir50p_lab.jit import cache_folder, with_cache
+
+    operands = [dims.split(",") if dims else [] for dims in re.findall(r"\((.*?)\)", layout)]
+    types = [f"f8[{','.join(':' * len(dims))}]" if dims else "f8" for dims in operands]
+    decorator = numba.guvectorize([f"void({', '.join(types)})"], layout, nopython=True, cache=True)
+    cache_folder().mkdir(parents=True, exist_ok=True)
+    with open(cache_folder() / "lock", "a") as file:
+        # numba keeps the two halves in two files that must come from one process; of a mixture it calls a null pointer
+        take_lock(file)
+        return with_cache(decorator, function).ufunc  # NumPy's own: without numba's look at the arguments
 
 
 def evaluate(kernel, constants, check=None, /, **vectors):

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ir50p_lab.errors import InputError, UnreachableError
-from ir50p_lab.inputs import check_arm, choice, first_not_finite, number, numbers, whole
+from ir50p_lab.inputs import choice, first_not_finite, number, numbers, whole
+from ir50p_lab.modelling.chain import lengths
 from ir50p_lab.signals.reference import Reference, per_joint
 
 _GRID = 256  # points per period of the fastest harmonic: between them no more than 1 - cos(pi/256) of the swing hides
@@ -125,7 +126,7 @@ def check_limits(target, arm, *, max_joint_speed=None, table=0.0, margin=0.03):
     Looked at on 256 points per period of the fastest harmonic. A trigonometric polynomial of degree N can exceed its
     largest value on such a grid by no more than 1/cos(pi/256) - 1 of half its range (Bernstein): that is added.
     """
-    check_arm(arm)
+    lengths(arm)  # refuses what is no Arm
     low, high, speed, table = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
     n = _GRID * len(target.a[0])
     t = target.period * np.arange(n) / n

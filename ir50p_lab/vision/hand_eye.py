@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError
-from ir50p_lab.inputs import check_arm, vectors3
+from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.board_pose import BoardPose, inverse_transform, transform
 from ir50p_lab.vision.checks import rigid
@@ -74,7 +74,7 @@ def hand_eye(arm, q, T_cam_board):
     Returns: HandEye. Raises CalibrationError for too few poses, turns about one axis only, poses given the wrong way
     round, or that do not belong to these q, naming the worst; InputError for wrong shapes.
     """
-    T_tool = tool_poses(check_arm(arm), q)
+    T_tool = tool_poses(arm, q)
     if not isinstance(T_cam_board, list | tuple | np.ndarray) or len(T_cam_board) != len(T_tool):
         raise InputError(f"T_cam_board must be a list of poses, each BoardPose or (4, 4), one of each of {len(T_tool)}")
     poses = [one.T_cam_board if isinstance(one, BoardPose) else one for one in T_cam_board]

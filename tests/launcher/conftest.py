@@ -24,7 +24,7 @@ def wheels(tmp_path_factory):
     folder = tmp_path_factory.mktemp("wheels")
     repack(folder, "flit-core")
     repack(folder, "uv")
-    stand_ins = {"jupyterlab/__main__.py": STAND_IN, "jupyterlab/labapp.py": ""}
+    stand_ins = {"jupyterlab/__main__.py": STAND_IN, "jupyterlab/labapp.py": "", "ipykernel/kernelapp.py": ""}
     write_wheel(folder, "pebble", {"pebble.py": "weight = 3\n"} | stand_ins)
     write_wheel(folder, "pebble_test", {"pebble_test.py": "weight = 3\n", "pytest/__main__.py": STAND_IN})
     return folder

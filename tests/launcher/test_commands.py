@@ -36,18 +36,6 @@ def test_further_arguments_go_to_jupyter(made):
     assert start["argv"] == ["notebooks", "--no-browser", "--allow-root"]
 
 
-def test_started_as_a_folder_from_elsewhere(made, tmp_path):
-    (tmp_path / "errors.py").write_text("raise RuntimeError('a file of the student was imported')")
-    package = made.root / "ir50p_lab"
-    made_command = made.command
-    made.command = lambda *arguments: [sys.executable, str(package), *arguments]
-    try:
-        start = told(made.run(cwd=tmp_path))
-    finally:
-        made.command = made_command
-    assert start["argv"][0] == str(made.root / "notebooks")
-
-
 @pytest.mark.parametrize(("command", "module"), [("test", "tests"), ("targets", "tests.targets")])
 def test_tests_and_targets_run_in_the_project_with_the_test_tools(tested, tmp_path, command, module):
     folder = tested.root / module.replace(".", "/")

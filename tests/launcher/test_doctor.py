@@ -4,7 +4,6 @@ import contextlib
 import io
 import platform
 import sys
-from types import SimpleNamespace
 
 import pytest
 from mini_project import one_line
@@ -35,7 +34,7 @@ def test_before_the_setup_it_says_so_and_makes_nothing(project):
 def test_ready(made):
     done = made.run("doctor", variables={"IR50P_ARM": None})
     assert done.returncode == 0, done.stdout
-    for text in ("System ", "Project ", ".venv: ready", "2 of 2 as in environment.txt", "pebble 1.0", "GB"):
+    for text in ("System ", "Project ", ".venv: ready", "2 of 2 as in environment.txt", "GB"):
         assert text in done.stdout
     assert done.stdout.splitlines()[-1] == "Verdict: ready. Open the lab book with 'python3 -m ir50p_lab'."
 
@@ -105,7 +104,7 @@ def test_serial_ports(made):
     assert "/dev/null 2A03:0042 Arduino (www.arduino.org) (Arduino Mega 2560)\n" in text
     assert "/dev/not-there 1A86:7523 USB serial (CH340 chip, as on clones of the Mega), no permission: " in text
     assert "ttyS0" not in text
-    assert "no USB board (1 ports without USB id)" in report(made, FOUND | {"ports": ports[3:]})[1]
+    assert "no USB board" in report(made, FOUND | {"ports": ports[3:]})[1]
 
 
 def test_arm_file_that_is_not_there(made, monkeypatch):
@@ -114,12 +113,6 @@ def test_arm_file_that_is_not_there(made, monkeypatch):
     assert code == 1
     assert "nowhere.toml (from IR50P_ARM)" in text
     assert "IR50P_ARM names a file that does not exist (nowhere.toml)" in last
-
-
-def test_little_disk_matters_before_the_setup_only(made, project, monkeypatch):
-    monkeypatch.setattr(doctor.shutil, "disk_usage", lambda path: SimpleNamespace(free=3e8))
-    assert "the set-up needs 2 GB of disk, 0.3 GB are free" in report(project)[2]
-    assert report(made)[0] == 0
 
 
 def test_not_the_projects_folder(project):
@@ -141,9 +134,8 @@ def test_packages_of_a_lock_file(tmp_path):
     ]
 
 
-def test_markers_with_pips_packaging_and_with_none(monkeypatch):
-    monkeypatch.setitem(sys.modules, "packaging.markers", None)
-    assert inventory._applies("python_version >= '3'")
+def test_markers_with_pip_and_without(monkeypatch):
+    assert inventory._applies(None) and inventory._applies("python_version >= '3'")
     assert not inventory._applies("python_version < '3'")
     monkeypatch.setitem(sys.modules, "pip._vendor.packaging.markers", None)
     assert inventory._applies("python_version < '3'")  # nobody to ask: assume it applies

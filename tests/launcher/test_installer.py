@@ -15,7 +15,8 @@ def listed(folder, config="", **variables):
     """What `pip config list` prints of a configuration file and variables."""
     (folder / "pip.conf").write_text(config)
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PIP_")}
-    environment |= {"PIP_CONFIG_FILE": str(folder / "pip.conf"), "HOME": str(folder)} | variables
+    environment |= {"PIP_CONFIG_FILE": str(folder / "pip.conf"), "HOME": str(folder), "XDG_CONFIG_DIRS": str(folder)}
+    environment |= variables
     command = [sys.executable, "-m", "pip", "config", "list"]
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
 

@@ -9,8 +9,8 @@ import sys
 
 import pytest
 
-from ir50p_lab.file_lock import take_lock
 from ir50p_lab.launcher.environment import Environment
+from ir50p_lab.launcher.file_lock import take_lock
 from ir50p_lab.launcher.problems import SetUpError
 
 IMPORT_BOTH = "import pebble, ir50p_lab; print(ir50p_lab.__file__)"

@@ -1,12 +1,14 @@
 """Balls drawn by another route than the renderer: found, measured, and not seen where there are none."""
 
 import cv2
+import numba
 import numpy as np
 import pytest
 from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 
 from ir50p_lab.errors import CalibrationError, ImageError, InputError
 from ir50p_lab.vision import RED, Ball, Colour, Pinhole, find_balls, learn_colour, render_scene
+from ir50p_lab.vision.ball.find import says_that_it_compiles
 from ir50p_lab.vision.rendering import SceneBall, bench_scene
 from tests.support.random_scene import random_scene
 from tests.support.scene_truth import scene_truth
@@ -260,3 +262,15 @@ def test_a_colour_learnt_by_a_click_holds_in_other_light(seed):
 
 def _middle(seed):
     return np.array((310.0, 230.0)) + np.random.default_rng(seed).uniform(-60, 60, 2)
+
+
+def test_the_first_call_says_that_it_compiles_and_no_other(capsys):
+    twice = numba.njit(lambda x: 2 * x)
+
+    @says_that_it_compiles
+    def seek(x):
+        return twice(x)
+
+    assert seek(1) == 2 and capsys.readouterr().out.count("seek is compiled, once") == 1
+    assert seek(2) == 4 and capsys.readouterr().out == ""
+    assert find_balls.__wrapped__  # it wears this

@@ -16,7 +16,8 @@ import traitlets
 from ir50p_lab.course.badge import badge_of
 from ir50p_lab.course.live_arm.still import still_png
 from ir50p_lab.course.live_arm.track import pack
-from ir50p_lab.inputs import check_arm, vectors3
+from ir50p_lab.inputs import vectors3
+from ir50p_lab.modelling.chain import lengths
 
 BUNDLE = Path(__file__).parent / "static" / "live_arm.js"  # the script that draws, as built by npm
 LAYERS = ("table", "shadow", "ghost", "trail")
@@ -64,12 +65,12 @@ class LiveArm(anywidget.AnyWidget):
 
     def __init__(self, arm, q=(0.0, 0.0, 0.0), *, on_drag=None, frames=None, badge=None, layers=LAYERS, ball=None,
                  board=None, camera=None, height=420, sliders=True, readout=True):  # fmt: skip
-        self.arm, self._on_drag, self._frames = check_arm(arm), on_drag, frames
+        self.arm, self._on_drag, self._frames = arm, on_drag, frames
         self._stop = threading.Event()
         things = {"ball": ball, "board": board, "camera": camera}
         things = {name: thing for name, thing in things.items() if thing is not None}
         options = {
-            "lengths": arm.l,
+            "lengths": lengths(arm),  # refuses what is no Arm
             "limits": np.clip([arm.q_min, arm.q_max], -np.pi, np.pi).T,
             "badge": badge or badge_of(on_drag or frames),
             "drag": "browser" if on_drag is None else "kernel",

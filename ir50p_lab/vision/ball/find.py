@@ -1,12 +1,13 @@
 """Find balls of one colour in a picture: where, how large, how sure; or why there is none."""
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
+from numba.core import event
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import number
-from ir50p_lab.jit import says_that_it_compiles
 from ir50p_lab.vision.ball.classifier import score
 from ir50p_lab.vision.ball.colour import RED, Colour
 from ir50p_lab.vision.ball.evidence import objection
@@ -67,6 +68,23 @@ class Balls(list):
 
     def __repr__(self):
         return super().__repr__() if self or not self.reason else f"Balls([], reason={self.reason!r})"
+
+
+def says_that_it_compiles(function):
+    """Decorator: a call that compiles says so, for it may take half a minute. Code that lies in the cache is not."""
+
+    class Saying(event.RecordingListener):
+        def on_start(self, compilation):
+            if not self.buffer:
+                print(f"{function.__name__} is compiled, once: up to 30 s...", flush=True)
+            super().on_start(compilation)
+
+    @functools.wraps(function)
+    def wrapper(*args, **options):
+        with event.install_listener("numba:compile", Saying()):
+            return function(*args, **options)
+
+    return wrapper
 
 
 @says_that_it_compiles

@@ -1,43 +1,40 @@
-"""Taking over what is the student's from an older copy of the course: nothing of it is changed or overwritten."""
+"""`python -m ir50p_lab.course.update FOLDER`: take over what is the student's from an older copy of the course."""
 
 import hashlib
 import json
-import os
 import shutil
+import sys
 from pathlib import Path
 
-from ir50p_lab.launcher.problems import COMMAND, SetUpError
+from ir50p_lab.errors import InputError, LabError
+from ir50p_lab.home import PROJECT, home
 
 _OWN = ("my_robot", "results", "recordings", "progress.json")
-_KNOWN = "data/notebook_hashes.txt"  # of every notebook that ever shipped
+_KNOWN = PROJECT / "data/notebook_hashes.txt"  # of every notebook that ever shipped
 _NUMBERS = "03 is 04 now, 04 is 06, 05 is 08, 06 is 10, 07 is 12, 08 is 14, 09 is 16, 10 is 17, 11 is 18"
 
 
-def take_over(arguments, root):
+def take_over(folder):
     """Copy progress, results, recordings and `my_robot` of the course in the folder named; its notebooks go to old/.
 
-    Raises SetUpError if there is no course in the folder, or if it is this one.
+    Nothing is changed or overwritten. Raises InputError if there is no course in the folder, or if it is this one.
     """
-    old = Path(*arguments).expanduser().resolve()
-    if not arguments or not (old / "notebooks").is_dir() or old == root.resolve():
-        raise SetUpError(
-            f"'{old}' holds no older copy of the course: {COMMAND} update FOLDER (it has 'notebooks' in it)"
-        )
-    home = Path(os.environ.get("IR50P_HOME") or root / "notebooks").expanduser()
+    old = Path(folder).expanduser().resolve()
+    if not (old / "notebooks").is_dir() or old == PROJECT.resolve():
+        raise InputError(f"'{old}' holds no older copy of the course: give its folder (it has 'notebooks' in it)")
     for name in _OWN:
         for place in (old / "notebooks" / name, old / name):
             if place.exists():
-                _copy(place, home / name)
+                _copy(place, home() / name)
     notebooks = sorted((old / "notebooks").glob("*.ipynb"))
     for path in notebooks:
-        _copy(path, home / "old" / path.name)
-    known = (root / _KNOWN).read_text(encoding="utf-8").split()
+        _copy(path, home() / "old" / path.name)
+    known = _KNOWN.read_text(encoding="utf-8").split()
     edited = [path.name for path in notebooks if notebook_hash(path) not in known]
-    print(f"Notebooks of the older course: {home / 'old'}")
+    print(f"Notebooks of the older course: {home() / 'old'}")
     print(f"You had changed: {', '.join(edited) or 'none of them'}")
     if (old / "notebooks" / "03_dynamics.ipynb").exists():
         print(f"Notebooks have new numbers: 02 is 02 and 03 now, {_NUMBERS}.")
-    return 0
 
 
 def notebook_hash(path):
@@ -60,3 +57,10 @@ def _copy(source, target):
         shutil.copy2(source, target)
     elif target.read_bytes() != source.read_bytes():
         print(f"Left as it is here: {target} (the older one: {source})")
+
+
+if __name__ == "__main__":
+    try:
+        take_over(" ".join(sys.argv[1:]))
+    except (LabError, OSError) as problem:
+        sys.exit(str(problem))

@@ -1,4 +1,4 @@
-"""`take_lock`: one process at a time, with the standard library only (the launcher needs it before any package)."""
+"""`take_lock`: one process at a time, with the standard library only (it is needed before any package is there)."""
 
 import os
 import time

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ir50p_lab.launcher.update import notebook_hash
+from ir50p_lab.course.update import notebook_hash
 
 ROOT = Path(__file__).parents[2]
 
