@@ -1,10 +1,12 @@
 """What may be wrong with a calibration although it fits: each question with its answer as a sentence, or none."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.fit import Model, fit, focal_steps
-from ir50p_lab.vision.calibration.models import Evidence, choose, compare, contrast_of
+from ir50p_lab.vision.calibration.models import ask, choose, contrast_of
 
 _TILTED = np.deg2rad(15)
 _LIMIT = 1e-3  # chance below which a bend, another ratio fx/fy, or a lens with more terms is believed
@@ -33,7 +35,7 @@ def outlier_view(corners, fitted):
     if rms[worst] < 2 * np.median(others):
         return None
     try:
-        alone = fit(corners.without(worst), fitted.model, (fitted.camera, np.delete(fitted.poses, worst, axis=0)))
+        alone = fit(corners.only([i for i in range(len(rms)) if i != worst]), fitted.model, (fitted.camera, np.delete(fitted.poses, worst, axis=0)))
     except CalibrationError:
         return None
     off = _seen_by(alone.camera, corners, worst, fitted.poses[worst])
@@ -95,17 +97,20 @@ def _scatter(values, weights):
 def lacking_terms(corners, held, guess):
     """(Evidence or None, CameraFit with them): whether a prescribed lens lacks terms that the corners ask for.
 
-    None, and the fit that was held, if the lens that the corners would choose has no others.
+    None, and the fit that was held, if the lens that the corners would choose has no others, or they cannot say.
     """
     model = held.model
-    chosen, _, _ = choose(corners, guess, model.aspect, model.bent)
+    try:
+        chosen, _, _ = choose(corners, guess, model.aspect, model.bent)
+    except CalibrationError:
+        return None, held
     lacking = tuple(name for name in chosen.model.lens if name not in model.lens)
     if not lacking:
         return None, held
-    free = fit(corners, Model((*model.lens, *lacking), model.aspect, model.bent), (chosen.camera, chosen.poses))
-    p_value, gain = compare(held, free, contrast_of(lacking))
-    clear, why = _clear(p_value, held, free)
-    return Evidence(f"lens lacks {' and '.join(lacking)}", p_value, gain, clear, _LIMIT, why), free if clear else held
+    wide = fit(corners, Model((*model.lens, *lacking), model.aspect, model.bent), (chosen.camera, chosen.poses))
+    question, _, _ = ask(f"lens lacks {' and '.join(lacking)}", wide, contrast_of(lacking), _LIMIT)
+    question = _clear(question, held, wide)
+    return question, wide if question.kept else held
 
 
 def bent_board(corners, flat):
@@ -115,41 +120,40 @@ def bent_board(corners, flat):
     second order. Raises CalibrationError if the views cannot tell them from the camera.
     """
     bent = fit(corners, Model(flat.model.lens, flat.model.aspect, True), (flat.camera, flat.poses))
-    p_value, gain = compare(flat, bent, np.eye(12)[9:])
+    question = _clear(ask("bent board", bent, np.eye(12)[9:], _LIMIT)[0], flat, bent)
     size, error = sag_size(corners, bent.camera[9:]), sag_size(corners, bent.stderr[9:]) / np.sqrt(3)
-    clear, why = _clear(p_value, flat, bent)
-    if clear and (gain <= 15 or size <= 4 * error):
-        clear, why = False, f"the {1000 * size:.2g} mm of sag are too little beside their error, {1000 * error:.1g} mm"
-    return Evidence("bent board", p_value, gain, clear, _LIMIT, why)
+    if question.kept and (question.gain <= 15 or size <= 4 * error):
+        why = f"the {1000 * size:.2g} mm of sag are too little beside their error, {1000 * error:.1g} mm"
+        return replace(question, kept=False, why=why)
+    return question
 
 
-def _clear(p_value, small, large):
-    """(bool, why): whether chance is out of the question: by the p-value, or as a third of the sum of squares is gone.
+def _clear(question, small, large):
+    """The Evidence, kept also where a third of the sum of squares is gone.
 
     With few views the p-value by views can hardly fall below the limit, whatever the corners say.
     """
     gone = 1 - large.cost / small.cost
-    if p_value < _LIMIT or gone < _GONE:
-        return bool(p_value < _LIMIT), ""
-    return True, f"{100 * gone:.0f} % of the squared residuals are gone"
+    if question.kept or gone < _GONE:
+        return question
+    return replace(question, kept=True, why=f"{100 * gone:.0f} % of the squared residuals are gone")
 
 
 def sag_size(corners, b):
     """Largest height of the board over the plane nearest to it, m, for the shape b (3,)."""
-    points, index = np.unique(np.concatenate(corners.points)[:, :2].round(9), axis=0, return_index=True)
-    z = np.concatenate(corners.shapes)[index] @ np.asarray(b)
+    points, index = np.unique(corners.all_points[:, :2].round(9), axis=0, return_index=True)
+    z = corners.shapes[index] @ np.asarray(b)
     plane = np.column_stack([points, np.ones(len(points))])
     z = z - plane @ np.linalg.lstsq(plane, z, rcond=None)[0]
     return float(np.ptp(z))
 
 
 def free_aspect(corners, held):
-    """(Evidence, CameraFit with fx and fy free): whether the prescribed ratio fx/fy contradicts the corners."""
+    """(Evidence, fx/fy): whether the prescribed ratio of the focal lengths contradicts the corners."""
     free = fit(corners, Model(held.model.lens, None, held.model.bent), (held.camera, held.poses))
     contrast = np.zeros(12)
     contrast[:2] = 1, -held.model.aspect
-    p_value, gain = compare(held, free, contrast)
-    return Evidence("fx/fy free", p_value, gain, bool(p_value < _LIMIT), _LIMIT), free
+    return ask("fx/fy free", free, contrast, _LIMIT)[0], free.camera[0] / free.camera[1]
 
 
 def doubts(calibration):
