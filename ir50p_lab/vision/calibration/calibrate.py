@@ -17,8 +17,7 @@ from ir50p_lab.vision.calibration.fit import LENS, NAMES, CornerSets, Model, fit
 from ir50p_lab.vision.calibration.models import choose, in_percent, total_covariance
 from ir50p_lab.vision.calibration.pictures import common_size, pictures_of, with_bar
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
-from ir50p_lab.vision.calibration.result import Calibration
-from ir50p_lab.vision.calibration.view import View
+from ir50p_lab.vision.calibration.result import Calibration, View
 from ir50p_lab.vision.checks import picture_size, point_list
 
 _FEWEST = 3

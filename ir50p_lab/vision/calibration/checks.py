@@ -35,7 +35,11 @@ def outlier_view(corners, fitted):
     if rms[worst] < 2 * np.median(others):
         return None
     try:
-        alone = fit(corners.only([i for i in range(len(rms)) if i != worst]), fitted.model, (fitted.camera, np.delete(fitted.poses, worst, axis=0)))
+        alone = fit(
+            corners.only([i for i in range(len(rms)) if i != worst]),
+            fitted.model,
+            (fitted.camera, np.delete(fitted.poses, worst, axis=0)),
+        )
     except CalibrationError:
         return None
     off = _seen_by(alone.camera, corners, worst, fitted.poses[worst])
