@@ -116,7 +116,7 @@ class TablePlane:
         return self.pinhole.project(self.T_cam_table, points)
 
     def standard_error(self, xy, height=0.0, *, sigma_px=0.3):
-        """Standard errors of x and y, (n, 2) m ((2,) for one pixel), of pixel, camera and pose together, to first order.
+        """Standard errors of x and y, (n, 2) m ((2,) for one pixel), of pixel, camera and pose, to first order.
 
         Args: sigma_px: standard error of each pixel coordinate.
         """
