@@ -186,11 +186,10 @@ def _best(corners, guess, wanted, aspect, bend):
         shape = None
         said.append("the views are too few or too much alike to test whether the board is bent")
     if best.model.bent:
-        size = 1000 * checks.sag_size(corners, best.camera[9:])
-        error = 1000 * checks.sag_size(corners, best.stderr[9:]) / np.sqrt(3)
+        size, error = checks.sag(corners, best)
         said.append(
-            f"the board is bent by {size:.2g} +- {error:.1g} mm: its shape was estimated with the camera. Glue it to "
-            "glass or a plate and repeat"
+            f"the board is bent by {1e3 * size:.2g} +- {1e3 * error:.1g} mm: its shape was estimated with the camera. "
+            "Glue it to glass or a plate and repeat"
         )
     doubted = [("lens", best.model.lens, wide.model.lens, lacking)]
     if bend is False:

@@ -130,7 +130,7 @@ def bent_board(corners, flat):
     """
     bent = fit(corners, Model(flat.model.lens, flat.model.aspect, True), (flat.camera, flat.poses))
     question = _clear(ask("bent board", bent, np.eye(12)[9:], _LIMIT)[0], flat, bent)
-    size, error = sag_size(corners, bent.camera[9:]), sag_size(corners, bent.stderr[9:]) / np.sqrt(3)
+    size, error = sag(corners, bent)
     if question.kept and (question.gain <= 15 or size <= 4 * error):
         why = f"the {1000 * size:.2g} mm of sag are too little beside their error, {1000 * error:.1g} mm"
         return replace(question, kept=False, why=why)
@@ -148,13 +148,14 @@ def _clear(question, small, large):
     return replace(question, kept=True, why=f"{100 * gone:.0f} % of the squared residuals are gone")
 
 
-def sag_size(corners, b):
-    """Largest height of the board over the plane nearest to it, m, for the shape b (3,)."""
+def sag(corners, bent):
+    """(largest height of the board over the plane nearest to it, its standard error), m, for a CameraFit."""
     points, index = np.unique(corners.all_points[:, :2].round(9), axis=0, return_index=True)
-    z = corners.shapes[index] @ np.asarray(b)
     plane = np.column_stack([points, np.ones(len(points))])
-    z = z - plane @ np.linalg.lstsq(plane, z, rcond=None)[0]
-    return float(np.ptp(z))
+    z = corners.shapes[index] @ np.column_stack([bent.camera[9:], bent.stderr[9:]])
+    z -= plane @ np.linalg.lstsq(plane, z, rcond=None)[0]
+    size, error = np.ptp(z, axis=0)
+    return float(size), float(error / np.sqrt(3))
 
 
 def free_aspect(corners, held):

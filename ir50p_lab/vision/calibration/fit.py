@@ -16,6 +16,7 @@ LENS = NAMES[4:]
 # Of what the camera's numbers do to the corners, a board's pose can hide all but this share: then no view shows them.
 # Squared pixels, thus rounding is 1e-15; four views that are nearly one leave 1e-10.
 _SHOWN = 1e-12
+_UNDETERMINED = "the views leave the camera undetermined: tilt the board in different directions"
 _ROUNDING = 1e-10  # pixels: less than this no fit can mend, and corners without noise leave less
 
 
@@ -149,7 +150,7 @@ def start(corners):
     poses = np.hstack([np.array(rvecs).reshape(-1, 3), np.array(tvecs).reshape(-1, 3)])
     camera = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *d.ravel()[:5], 0, 0, 0])
     if not np.isfinite(camera).all() or not np.isfinite(poses).all():
-        raise CalibrationError("OpenCV finds no camera for these views: tilt the board in different directions")
+        raise CalibrationError(_UNDETERMINED)
     return camera, poses
 
 
@@ -262,7 +263,7 @@ def solve(S, g, damping=0.0):
     except np.linalg.LinAlgError:
         x = np.full_like(g, np.inf)
     if not np.isfinite(x).all():
-        raise CalibrationError("the views leave the camera undetermined: tilt the board in different directions")
+        raise CalibrationError(_UNDETERMINED)
     return x / scale
 
 
@@ -272,7 +273,7 @@ def _with_covariance(corners, model, camera, poses, views):
     total = S.sum(axis=0)
     scale = np.linalg.norm((views[1] @ B).reshape(-1, B.shape[1]), axis=0)
     if not np.linalg.eigvalsh(total / np.outer(scale, scale))[0] > _SHOWN:
-        raise CalibrationError("the views leave the camera undetermined: tilt the board in different directions")
+        raise CalibrationError(_UNDETERMINED)
     residuals = tuple(e[: 2 * len(p)].reshape(-1, 2) for e, p in zip(views[0], corners.points, strict=True))
     fit = CameraFit(camera, poses, residuals, np.zeros((12, 12)), np.zeros((12, 12)), model)
     if 2 * fit.points <= fit.parameters:
