@@ -16,7 +16,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "image": ["check_image", "is_rendered", "list_images", "load_image", "save_image", "to_grey"],
         "calibration.calibrate": ["calibrate", "calibrate_corners"],
         "calibration.board": ["Charuco", "Checkerboard"],
-        "calibration.conventions": ["column_camera_matrix", "from_matlab", "row_camera_matrix", "to_rows"],
+        "calibration.conventions": ["column_camera_matrix", "row_camera_matrix", "to_rows"],
         "calibration.coverage": ["direction_stderr"],
         "calibration.reasons": ["Reason", "Rejected"],
         "calibration.result": ["Calibration"],

@@ -22,7 +22,6 @@ class BoardPose:
     by_camera     d(rvec, tvec) / d(fx, fy, cx, cy, k1, k2, p1, p2, k3): how the pose     (6, 9)
                   follows an error of the camera's own numbers
     rms           of the distances between corners and model                              px
-    residuals     seen minus model                                                        (n, 2) px
     ============= ======================================================================= =====================
     """
 
@@ -30,12 +29,6 @@ class BoardPose:
     covariance: np.ndarray = field(repr=False)
     by_camera: np.ndarray = field(repr=False)
     rms: float
-    residuals: np.ndarray = field(repr=False)
-
-    @property
-    def stderr(self):
-        """Standard errors of (rvec, tvec), (6,) rad and m; the camera's own numbers taken as exact."""
-        return np.sqrt(np.diag(self.covariance))
 
 
 def board_points(pattern=(9, 6), square=0.025, T_table_board=None):
@@ -96,7 +89,6 @@ def board_pose(camera, corners, points):
         covariance=variance * half @ half.T,
         by_camera=-np.linalg.solve(R, Q.T @ own),
         rms=rms,
-        residuals=off,
     )
 
 

@@ -16,6 +16,11 @@ _LEVER = 0.3  # m; a turn of 1 rad counts like a shift of 0.3 m
 _WORST = 0.03  # m rms; of poses that belong together 5 mm are left, of others 60 and more
 _ODD, _ODD_TIMES = 0.02, 4.0  # m, and times the median pose: a pose that is farther off does not belong to the others
 
+_CAUSES = (
+    "are the views inverted (T_cam_board takes board to camera coordinates) or in another order, did the board slip in "
+    "the gripper, or did the camera move?"
+)
+
 
 @dataclass(frozen=True, eq=False)
 class HandEye:
@@ -39,22 +44,16 @@ class HandEye:
         """(rotation rad, translation m), rms over the poses."""
         return tuple(float(np.sqrt(np.mean(e**2))) for e in (self.rotation_error, self.translation_error))
 
-    @property
-    def errors(self):
-        """Of each pose rotation and translation in one number, (n,) m: 1 rad counts like 0.3 m."""
-        return np.hypot(self.translation_error, _LEVER * self.rotation_error)
 
-
-def camera_from_board(pose, T_base_board):
+def camera_from_board(T_cam_board, T_base_board):
     """T_base_cam (4, 4) from one view of a board whose place in the base frame is known.
 
         T_base_cam = T_base_board T_cam_board^-1
 
-    Args: pose: BoardPose or T_cam_board (4, 4); T_base_board: (4, 4), z of a lying board points down (see
-    `board_points`). Raises InputError for matrices that are no rigid transforms.
+    Args: T_cam_board: (4, 4); T_base_board: (4, 4), z of a lying board points down (see `board_points`).
+    Raises InputError for matrices that are no rigid transforms.
     """
-    T_cam_board = rigid("T_cam_board", pose.T_cam_board if isinstance(pose, BoardPose) else pose)
-    return rigid("T_base_board", T_base_board) @ inverse_transform(T_cam_board)
+    return rigid("T_base_board", T_base_board) @ inverse_transform(rigid("T_cam_board", T_cam_board))
 
 
 def tool_poses(arm, q):
@@ -74,46 +73,33 @@ def hand_eye(arm, q, T_cam_board):
     Returns: HandEye. Raises CalibrationError for too few poses, turns about one axis only, poses given the wrong way
     round, or that do not belong to these q, naming the worst; InputError for wrong shapes.
     """
+    import cv2
+    from scipy.spatial.transform import Rotation
+
     T_tool = tool_poses(arm, q)
     if not isinstance(T_cam_board, list | tuple | np.ndarray) or len(T_cam_board) != len(T_tool):
         raise InputError(f"T_cam_board must be a list of poses, each BoardPose or (4, 4), one of each of {len(T_tool)}")
     poses = [one.T_cam_board if isinstance(one, BoardPose) else one for one in T_cam_board]
     T_cam = np.array([rigid(f"T_cam_board[{i}]", T) for i, T in enumerate(poses)])
     _refuse_poor_poses(T_tool)
-    found = _solve(T_tool, T_cam)
-    rms = np.sqrt(np.mean(found.errors**2))
-    back = _solve(T_tool, np.array([inverse_transform(T) for T in T_cam]))
-    if np.sqrt(np.mean(back.errors**2)) < rms / 3:
-        raise CalibrationError(
-            "the views look inverted: T_cam_board takes board to camera coordinates; give inverse_transform(...)"
-        )
-    worst = int(np.argmax(found.errors))
-    odd = found.errors[worst] > max(_ODD, _ODD_TIMES * np.median(found.errors))
-    if odd or rms > _WORST:
-        raise CalibrationError(
-            f"arm and camera disagree by {1e3 * rms:.0f} mm rms, most in pose {worst} (counted from 0): leave it out "
-            "of q and of the views, or take it again; or are the views in another order, did the board slip in the "
-            "gripper, or did the camera move?"
-        )
-    return found
-
-
-def _solve(T_base_tool, T_cam_board):
-    """HandEye by the method of Shah; errors are infinite where no camera explains the poses."""
-    import cv2
-    from scipy.spatial.transform import Rotation
-
-    poses = [part for T in (T_cam_board, T_base_tool) for part in (T[:, :3, :3], T[:, :3, 3])]
+    poses = [part for T in (T_cam, T_tool) for part in (T[:, :3, :3], T[:, :3, 3])]
     try:
         found = cv2.calibrateRobotWorldHandEye(*poses, method=cv2.CALIB_ROBOT_WORLD_HAND_EYE_SHAH)
         back = [transform(Rotation.from_matrix(R).as_rotvec(), t) for R, t in (found[:2], found[2:])]
     except (cv2.error, ValueError):
-        nothing = np.full(len(T_base_tool), np.inf)
-        return HandEye(np.eye(4), np.eye(4), nothing, nothing)
+        raise CalibrationError(f"no camera explains these poses: {_CAUSES}") from None
     T_tool_board, T_base_cam = map(inverse_transform, back)
-    ours, seen = T_base_tool @ T_tool_board, T_base_cam @ T_cam_board
+    ours, seen = T_tool @ T_tool_board, T_base_cam @ T_cam
     turn = Rotation.from_matrix(ours[:, :3, :3].transpose(0, 2, 1) @ seen[:, :3, :3]).magnitude()
-    return HandEye(T_base_cam, T_tool_board, turn, np.linalg.norm(ours[:, :3, 3] - seen[:, :3, 3], axis=1))
+    shift = np.linalg.norm(ours[:, :3, 3] - seen[:, :3, 3], axis=1)
+    errors = np.hypot(shift, _LEVER * turn)
+    rms, worst = np.sqrt(np.mean(errors**2)), int(np.argmax(errors))
+    if rms > _WORST or errors[worst] > max(_ODD, _ODD_TIMES * np.median(errors)):
+        raise CalibrationError(
+            f"arm and camera disagree by {1e3 * rms:.0f} mm rms, most in pose {worst} (counted from 0): leave it out "
+            f"of q and of the views, or take it again; or {_CAUSES}"
+        )
+    return HandEye(T_base_cam, T_tool_board, turn, shift)
 
 
 def _refuse_poor_poses(T_tool):

@@ -4,7 +4,7 @@ import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError, VisionError
 from ir50p_lab.inputs import number
-from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transform, rvec_tvec, transform
+from ir50p_lab.vision.board_pose import BoardPose, board_points, board_pose, inverse_transform, rvec_tvec, transform
 from ir50p_lab.vision.checks import check_picture_size, point_list, rigid
 from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
 
@@ -23,53 +23,38 @@ class TablePlane:
     must go, and with it Z, which is known, not found. In its row notation H^T = [r1; r2; t + h r3].
 
     Args:
-        camera: Pinhole or Calibration. T_cam_table: (4, 4), takes coordinates of the table (z up, 0 on its surface) to
-        those of the camera (z forward, y down).
-        pose_covariance: (6, 6) of (rvec, tvec) of T_cam_table, rad and m; default 0: exactly known.
-        camera_covariance: (9, 9) of (fx, fy, cx, cy, k1, k2, p1, p2, k3); default that of the Calibration, or 0
-        (a Pinhole, or a Calibration from a file without standard errors, counts as exactly known).
-        pose_by_camera: (6, 9), how the pose follows errors of the camera's numbers; `from_board` knows.
+        camera: Pinhole or Calibration, whose covariance counts (a Pinhole is exactly known).
+        T_cam_table: (4, 4), takes coordinates of the table (z up, 0 on its surface) to those of the camera (z forward,
+        y down), exactly known; or a BoardPose with its errors.
 
     Attributes: camera; T_cam_table; rms: px, of the board it was made from, or None; centre: (3,) m, of the lens.
     Raises InputError if T_cam_table is no rigid transform, a shape is wrong, or the camera lies below the table.
     """
 
-    def __init__(
-        self, camera, T_cam_table, *, pose_covariance=None, camera_covariance=None, pose_by_camera=None, rms=None
-    ):
-        self.camera, self.rms = camera, rms
-        self.T_cam_table = rigid("T_cam_table", T_cam_table).copy()
-        self.pinhole = as_pinhole(camera)
+    def __init__(self, camera, T_cam_table):
+        self.camera, self.pinhole = camera, as_pinhole(camera)
+        pose = T_cam_table
+        if not isinstance(pose, BoardPose):
+            pose = BoardPose(rigid("T_cam_table", pose).copy(), np.zeros((6, 6)), np.zeros((6, 9)), rms=None)
+        self._pose, self.T_cam_table, self.rms = pose, pose.T_cam_board, pose.rms
         self.centre = inverse_transform(self.T_cam_table)[:3, 3]
         if self.centre[2] <= 0:
             raise InputError(
                 f"the camera would be {-self.centre[2]:.3g} m below the table: T_cam_table takes table to camera "
                 "coordinates (is it inverted?), and z of the table points up (is the board's first corner right?)"
             )
-        known = covariance_of(camera) if camera_covariance is None else camera_covariance
-        self._camera_covariance = np.asarray(known, dtype=float)
-        self._pose_covariance = np.zeros((6, 6)) if pose_covariance is None else np.asarray(pose_covariance, float)
-        self._by_camera = np.zeros((6, 9)) if pose_by_camera is None else np.asarray(pose_by_camera, float)
 
     @classmethod
-    def from_board(cls, camera, corners, points, *, camera_covariance=None):
+    def from_board(cls, camera, corners, points):
         """The plane from a board that lies at a known place on the table.
 
         Args: camera: Pinhole or Calibration; corners: (n, 2) px, as found; points: (n, 3) m, the same corners in table
-        coordinates (`board_points`); camera_covariance: as above.
+        coordinates (`board_points`).
         The standard errors then hold the scatter of the corners, and that an error of the camera's own numbers
         shifts this pose with it: most of it cancels near the board.
         Raises as `board_pose`.
         """
-        pose = board_pose(camera, corners, points)
-        return cls(
-            camera,
-            pose.T_cam_board,
-            pose_covariance=pose.covariance,
-            camera_covariance=camera_covariance,
-            pose_by_camera=pose.by_camera,
-            rms=pose.rms,
-        )
+        return cls(camera, board_pose(camera, corners, points))
 
     @classmethod
     def from_picture(cls, camera, image, pattern=(9, 6), square=0.025, T_table_board=None):
@@ -107,7 +92,18 @@ class TablePlane:
         Raises InputError on bad pixels; VisionError for a pixel whose line of sight does not meet the plane.
         """
         points, height = point_list("xy", xy, 2), number("height", height, unit="m")
-        found = self._cut(self.pinhole.undistort_points(points), height, points)
+        sight = np.column_stack([self.pinhole.undistort_points(points), np.ones(len(points))])
+        R, t = self.T_cam_table[:3, :3], self.T_cam_table[:3, 3]
+        down = -(sight @ R)[:, 2] / np.linalg.norm(sight, axis=1)  # of the line of sight, towards the table
+        above = -R[:, 2] @ t - height  # of the lens, over the plane
+        lost = (down * np.sign(above) < _SLANT) | (above == 0)
+        if lost.any():
+            raise VisionError(
+                f"the pixel {np.round(points[lost][0], 1).tolist()} looks past the plane at height {height:g} m: it "
+                "lies at or above the horizon, so no place on the table belongs to it"
+            )
+        X = np.linalg.solve(self.homography(height), sight.T)
+        found = (X[:2] / X[2]).T
         return found[0] if np.ndim(xy) == 1 else found
 
     def to_points(self, xy, height=0.0):
@@ -119,10 +115,8 @@ class TablePlane:
         """Where points (n, 3) or (3,) m of the table appear: (n, 2) or (2,) px."""
         return self.pinhole.project(self.T_cam_table, points)
 
-    def covariance(self, xy, height=0.0, *, sigma_px=0.3):
-        """Covariance of the places, (n, 2, 2) m^2, to first order: of the pixel, and of camera and pose together.
-
-            J J^T sigma_px^2 + sum of d d^T, J = d place / d pixel, d a change by one of the `variations`
+    def standard_error(self, xy, height=0.0, *, sigma_px=0.3):
+        """Standard errors of x and y, (n, 2) m ((2,) for one pixel), of pixel, camera and pose, to first order.
 
         Args: sigma_px: standard error of each pixel coordinate.
         """
@@ -132,11 +126,7 @@ class TablePlane:
             changes.append(sigma_px * (forth - back) / 2e-2)
         here = self.to_table(points, height)
         changes += [(one.to_table(points, height) - here) / _SMALL for one in self.variations(_SMALL)]
-        return sum(change[:, :, None] * change[:, None] for change in changes)
-
-    def standard_error(self, xy, height=0.0, *, sigma_px=0.3):
-        """Standard errors of x and y, (n, 2) m ((2,) for one pixel); see `covariance`."""
-        found = np.sqrt(np.diagonal(self.covariance(xy, height, sigma_px=sigma_px), axis1=1, axis2=2))
+        found = np.sqrt(np.square(changes).sum(axis=0))
         return found[0] if np.ndim(xy) == 1 else found
 
     def variations(self, part=1.0):
@@ -145,11 +135,10 @@ class TablePlane:
         Whatever is computed from the plane spreads by the root of the summed squares of its changes: a list of
         TablePlane, empty if everything is exactly known.
         """
-        cross = self._by_camera @ self._camera_covariance
-        P = np.block([
-            [self._camera_covariance, cross.T],
-            [cross, self._pose_covariance + cross @ self._by_camera.T],
-        ])  # fmt: skip
+        camera, by_camera = _covariance_of(self.camera), self._pose.by_camera
+        both = np.vstack([np.eye(9), by_camera])
+        P = both @ camera @ both.T
+        P[9:, 9:] += self._pose.covariance
         scale = np.sqrt(np.where(np.diag(P) > 0, np.diag(P), 1.0))  # px, 1, rad and m: alike before the eigenvectors
         sizes, directions = np.linalg.eigh(P / np.outer(scale, scale))
         found = []
@@ -163,22 +152,8 @@ class TablePlane:
             found.append(TablePlane(Pinhole(K, distortion), transform(pose[:3], pose[3:])))
         return found
 
-    def _cut(self, x_n, height, points):
-        R, t = self.T_cam_table[:3, :3], self.T_cam_table[:3, 3]
-        sight = np.column_stack([x_n, np.ones(len(x_n))])
-        down = -(sight @ R)[:, 2] / np.linalg.norm(sight, axis=1)  # of the line of sight, towards the table
-        above = -R[:, 2] @ t - height  # of the lens, over the plane
-        lost = (down * np.sign(above) < _SLANT) | (above == 0)
-        if lost.any():
-            raise VisionError(
-                f"the pixel {np.round(points[lost][0], 1).tolist()} looks past the plane at height {height:g} m: it "
-                "lies at or above the horizon, so no place on the table belongs to it"
-            )
-        X = np.linalg.solve(self.homography(height), sight.T)
-        return (X[:2] / X[2]).T
 
-
-def covariance_of(camera):
+def _covariance_of(camera):
     """Covariance (9, 9) of (fx, fy, cx, cy, k1, k2, p1, p2, k3) that a Calibration holds; zeros where it has none."""
     known = getattr(camera, "covariance", None)
     return np.zeros((9, 9)) if known is None or not np.isfinite(known).all() else known

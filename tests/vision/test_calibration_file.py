@@ -13,12 +13,10 @@ from ir50p_lab.vision import (
     Charuco,
     Checkerboard,
     Pinhole,
-    TablePlane,
     calibrate,
     calibrate_corners,
     column_camera_matrix,
     direction_stderr,
-    from_matlab,
     row_camera_matrix,
     to_rows,
 )
@@ -57,66 +55,12 @@ def test_opencv_reads_it(calibration, tmp_path):
     assert (file.getNode("image_width").real(), file.getNode("image_height").real()) == SIZE
 
 
-def test_what_opencv_writes_is_read(tmp_path):
-    path = tmp_path / "out_camera_data.yml"
-    file = cv2.FileStorage(str(path), cv2.FileStorage_WRITE)
-    file.write("image_width", 640)
-    file.write("image_height", 480)
-    file.write("camera_matrix", np.array([[535.0, 0, 342], [0, 535, 235], [0, 0, 1]]))
-    file.write("distortion_coefficients", np.array([-0.27, -0.04, 0.002, 0.0, 0.24])[:, None])
-    file.release()
-    found = Calibration.load(path)
-    assert found.fx == 535 and found.distortion[4] == 0.24 and found.size == SIZE and np.isnan(found.stderr["fx"])
-    with pytest.raises(CalibrationError, match="no views"):
-        found.next_view()
-
-
 def test_another_size_is_refused(calibration, tmp_path):
     path = calibration.save(tmp_path / "camera.yml")
     with pytest.raises(CalibrationError, match="640x480, not 1280x720"):
         Calibration.load(path, size=(1280, 720))
     with pytest.raises(CalibrationError, match="calibrate it at the new one"):
         Calibration.load(path, size=(320, 240))
-
-
-OTHER = """%YAML:1.0
----
-image_width: 640
-image_height: 480
-camera_matrix: !!opencv-matrix
-   rows: 3
-   cols: 3
-   dt: d
-   data: [650, 0, 320, 0, 651, 240, 0, 0, 1]
-distortion_coefficients: !!opencv-matrix
-   rows: 1
-   cols: 5
-   dt: d
-   data: [-0.2, 0.1, 0.001, 0, 0]
-"""
-
-
-def test_a_fisheye_is_refused(calibration, tmp_path):
-    path = calibration.save(tmp_path / "camera.yml")
-    ours = path.read_text()
-    path.write_text(ours.replace("image_width", "fisheye_model: 1\nimage_width", 1))
-    with pytest.raises(CalibrationError, match="fisheye"):
-        Calibration.load(path)
-    path.write_text(ours.replace("image_width", "fisheye_model: 0\nimage_width", 1))
-    assert Calibration.load(path).fx == calibration.fx
-
-
-def test_without_standard_errors_nothing_is_said_to_be_exact(calibration, tmp_path):
-    path = tmp_path / "other.yml"
-    path.write_text(OTHER)
-    found = Calibration.load(path)
-    assert np.isnan(direction_stderr(found, np.array([[3.0, 4.0]]))).all()
-    assert any("no standard errors" in text for text in found.warnings)
-    again = Calibration.load(found.save(tmp_path / "again.yml"))
-    assert again.warnings == found.warnings and np.isnan(again.covariance).all()
-    plane = TablePlane(found, bench_camera()[1])
-    assert np.isfinite(plane.standard_error((320, 240), 0.03)).all() and plane.variations() == []
-    assert not calibration.warnings[0].startswith("the file holds no") and np.isfinite(calibration.covariance).all()
 
 
 @pytest.mark.parametrize("size", [5, ["camera.yml"], "640x480"])
@@ -156,7 +100,7 @@ def test_files_that_cannot_be(calibration, tmp_path):
 
 def test_damaged_numbers_are_refused(calibration, tmp_path):
     path = calibration.save(tmp_path / "camera.yml")
-    path.write_text(path.read_text().replace("image_width: 640", "image_width: -640"))
+    path.write_text(path.read_text().replace('\\"size\\": [640', '\\"size\\": [-640'))
     with pytest.raises(CalibrationError, match="damaged"):
         Calibration.load(path)
 
@@ -212,14 +156,6 @@ def test_rows_and_columns_are_transposes():
     X = np.array([0.4, -0.1, 0.03])
     w = np.append(X, 1) @ rows
     assert np.allclose(w[:2] / w[2], Pinhole(camera.K).project(T, X))
-
-
-def test_matlab_counts_from_one():
-    camera, T = bench_camera()
-    K_row, R_row, t_row = to_rows(camera.K, T)
-    K_row[2, :2] += 1
-    K, T_again = from_matlab(K_row, R_row, t_row)
-    assert np.allclose(K, camera.K) and np.allclose(T_again, T)
 
 
 def test_rendered_set_gives_its_camera_back():

@@ -17,8 +17,7 @@ from ir50p_lab.vision.calibration.fit import LENS, NAMES, CornerSets, Model, fit
 from ir50p_lab.vision.calibration.models import choose, in_percent, total_covariance
 from ir50p_lab.vision.calibration.pictures import common_size, pictures_of, with_bar
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
-from ir50p_lab.vision.calibration.result import Calibration
-from ir50p_lab.vision.calibration.view import View
+from ir50p_lab.vision.calibration.result import Calibration, View
 from ir50p_lab.vision.checks import picture_size, point_list
 
 _FEWEST = 3
@@ -122,9 +121,9 @@ def _calibrate(found, size, board, points, options, rejected):
         name, index, _ = found.pop(worst)
         detail = f"its corners are {rms:.2g} px off the model, those of the other views {usual:.2g} px"
         rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
-        corners = corners.without(worst)
+        corners = corners.only([i for i in range(len(corners)) if i != worst])
         rough = fit(corners, model, start(corners))
-    best, evidence, tried, said = _best(corners, rough, wanted, aspect, bend)
+    best, evidence, tried, said = _best(corners, (rough.camera, rough.poses), wanted, aspect, bend)
     if not any("was prescribed" in text for text in said):  # else what is prescribed explains the residuals
         said = checks.two_cameras(corners, best) + said
     views = tuple(
@@ -162,54 +161,49 @@ def _calibrate(found, size, board, points, options, rejected):
     return replace(result, warnings=(*said, *checks.doubts(result)))
 
 
-def _best(corners, rough, wanted, aspect, bend):
-    """(CameraFit, evidence, fits tried, warnings): lens as the data say or as asked for, board flat or bent, aspect."""
-    guess, said = (rough.camera, rough.poses), []
+def _best(corners, guess, wanted, aspect, bend):
+    """(CameraFit, evidence, models tried, warnings): lens as the data say or as asked for, board flat or bent, aspect.
+
+    Whether the board is bent is asked with all that the lens needs: what a prescribed lens lacks looks like a bend.
+    """
+    said = []
 
     def estimate(bent):
         if wanted is None:
-            return choose(corners, guess, aspect, bent)
-        one = fit(corners, Model(wanted, aspect, bent), guess)
-        return one, (), (one,)
+            best, evidence, tried = choose(corners, guess, aspect, bent)
+            return best, best, None, evidence, tried
+        held = fit(corners, Model(wanted, aspect, bent), guess)
+        lacking, wide = checks.lacking_terms(corners, held, guess)
+        return held, wide, lacking, (lacking,) if lacking else (), ((held.camera, 0.0),)
 
-    best, evidence, tried = estimate(False)
-    lacking, wide = None, best  # the fit with what a prescribed lens lacks: a lens can look like a bent board
+    best, wide, lacking, evidence, tried = estimate(bent=False)
     try:
-        if wanted is not None:
-            lacking, wide = checks.lacking_terms(corners, best, guess)
         shape = checks.bent_board(corners, wide)
         if shape.kept and bend is None:
-            best, evidence, tried = estimate(True)
-            lacking, wide = (None, best) if wanted is None else checks.lacking_terms(corners, best, guess)
+            best, wide, lacking, evidence, tried = estimate(bent=True)
+        evidence += (shape,)
     except CalibrationError:
         shape = None
         said.append("the views are too few or too much alike to test whether the board is bent")
-    if lacking is not None:
-        evidence = (*evidence, lacking)
-        if lacking.kept:
-            said.append(
-                f"lens = {best.model.lens} was prescribed, but the corners say {wide.model.lens} (by "
-                f"chance: {in_percent(lacking.p_value)}): leave lens=None"
-            )
-    if shape is not None and shape.kept and bend is False:
-        said.append("bend=False was prescribed, but the corners say that the board is bent: leave bend=None")
-    elif shape is not None and shape.kept:
-        size = 1000 * checks.sag_size(corners, best.camera[9:])
-        error = 1000 * checks.sag_size(corners, best.stderr[9:]) / np.sqrt(3)
+    if best.model.bent:
+        size, error = checks.sag(corners, best)
         said.append(
-            f"the board is bent by {size:.2g} +- {error:.1g} mm: its shape was estimated with the camera. Glue it to "
-            "glass or a plate and repeat"
+            f"the board is bent by {1e3 * size:.2g} +- {1e3 * error:.1g} mm: its shape was estimated with the camera. "
+            "Glue it to glass or a plate and repeat"
         )
-    evidence = (*evidence, shape) if shape is not None else evidence
+    doubted = [("lens", best.model.lens, wide.model.lens, lacking)]
+    if bend is False:
+        doubted.append(("bend", False, "that the board is bent", shape))
     if aspect:
-        question, free = checks.free_aspect(corners, wide)
-        evidence = (*evidence, question)
-        if question.kept:
-            ratio = free.camera[0] / free.camera[1]
-            said.append(
-                f"aspect = {aspect:g} was prescribed, but the corners say fx/fy = {ratio:.4f} (by "
-                f"chance: {in_percent(question.p_value)}): leave aspect=None"
-            )
+        question, ratio = checks.free_aspect(corners, wide)
+        evidence += (question,)
+        doubted.append(("aspect", aspect, f"fx/fy = {ratio:.4f}", question))
+    said += [
+        f"{name} = {value} was prescribed, but the corners say {says} (by chance: {in_percent(question.p_value)}): "
+        f"leave {name}=None"
+        for name, value, says, question in doubted
+        if question is not None and question.kept
+    ]
     return best, evidence, tried, said
 
 

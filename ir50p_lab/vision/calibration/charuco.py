@@ -33,10 +33,11 @@ def find_charuco(grey, board):
             Reason.CROPPED, f"{count} corners of the board seen, {_FEWEST} needed: show more of it, or focus"
         )
     points = board.points[index, :2]
-    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    if spread[1] < 1.2 * board.square:
+    H = homography(points, corners)
+    if H is None or np.linalg.svd(points - points.mean(axis=0), compute_uv=False)[1] < 1.2 * board.square:
         raise NotUsable(Reason.CROPPED, f"the {count} corners seen lie on a line: show more of the board")
-    side = _spacing(points, corners, board.square)
+    steps = [apply(H, points + step) - apply(H, points) for step in np.eye(2) * board.square]
+    side = float(np.median(np.linalg.norm(steps, axis=2).min(axis=0)))
     gap = (board.square - board.marker) / 2 / board.square  # the markers' own corners must stay out of the window
     half = int(np.clip(min(0.3, gap) * side - 1, 2, 20))
     stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-4)
@@ -45,7 +46,8 @@ def find_charuco(grey, board):
     rise = slope_rise(grey, xy, side)
     if rise > SOFT_SLOPE * side:
         raise NotUsable(Reason.BLURRED, f"edges are {rise:.0f} px wide, squares {side:.0f} px: focus, hold still")
-    if _off_plane(points, xy) > 0.15 * side:
+    H = homography(points, xy)
+    if H is None or np.median(np.linalg.norm(apply(H, points) - xy, axis=1)) > 0.15 * side:
         raise NotUsable(Reason.WRONG_BOARD, f"its corners are not where this board has them: {_OTHER}")
     return BoardCorners(xy, index)
 
@@ -60,18 +62,3 @@ def _detect(grey, board):
     corners, index, _, ids = detector.detectBoard(grey)
     xy = np.empty((0, 2)) if corners is None else corners.reshape(-1, 2).astype(float)
     return xy, *(np.empty(0, dtype=int) if one is None else one.ravel() for one in (index, ids))
-
-
-def _off_plane(points, xy):
-    """Median distance, px, of corners xy (n, 2) from where a flat board has them, points (n, 2)."""
-    H = homography(points, xy)
-    return np.inf if H is None else float(np.median(np.linalg.norm(apply(H, points) - xy, axis=1)))
-
-
-def _spacing(points, xy, square):
-    """Median side of a square, px, from the scale of the map from board to picture."""
-    H = homography(points, xy)
-    if H is None:
-        raise NotUsable(Reason.CROPPED, "the corners seen lie on a line: show more of the board")
-    sides = [np.linalg.norm(apply(H, points + step) - apply(H, points), axis=1) for step in np.eye(2) * square]
-    return float(np.median(np.minimum(*sides)))

@@ -1,10 +1,12 @@
 """What may be wrong with a calibration although it fits: each question with its answer as a sentence, or none."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.fit import Model, fit, focal_steps
-from ir50p_lab.vision.calibration.models import Evidence, choose, compare, contrast_of
+from ir50p_lab.vision.calibration.models import ask, choose, contrast_of
 
 _TILTED = np.deg2rad(15)
 _LIMIT = 1e-3  # chance below which a bend, another ratio fx/fy, or a lens with more terms is believed
@@ -12,7 +14,13 @@ _GONE = 0.33  # part of the sum of squares: 2 mm of sag make 0.39 of it or more,
 _SQUARE = 0.01  # difference of fx and fy that sensors have without anything being wrong
 # Two cameras: of the scatter is left in two heaps; sigmas of what is gone; relative step of fx between them
 _LEFT, _SIGMAS, _APART = 0.2, 5.0, 0.03
-_ROUGH = 0.7  # px rms, of pictures up to 1280 px wide
+_ROUGH = 0.7  # px rms, of pictures up to 1280 px wide; corners err by 0.05 to 0.5
+_STRETCHED = {
+    False: "Rare in a webcam: was the picture stretched (4:3 to 16:9), or is the board bent or stretched (paper)? "
+    "Measure its squares both ways, use a flat plate",
+    True: "The board is bent; if it or the picture is stretched as well, that cannot be separated from fx/fy, and both "
+    "focal lengths may be off by as much. Use a flat plate, or aspect=1 for square pixels",
+}
 
 
 def outlier_view(corners, fitted):
@@ -33,7 +41,11 @@ def outlier_view(corners, fitted):
     if rms[worst] < 2 * np.median(others):
         return None
     try:
-        alone = fit(corners.without(worst), fitted.model, (fitted.camera, np.delete(fitted.poses, worst, axis=0)))
+        alone = fit(
+            corners.only([i for i in range(len(rms)) if i != worst]),
+            fitted.model,
+            (fitted.camera, np.delete(fitted.poses, worst, axis=0)),
+        )
     except CalibrationError:
         return None
     off = _seen_by(alone.camera, corners, worst, fitted.poses[worst])
@@ -79,9 +91,8 @@ def two_cameras(corners, best):
         each = [fit(corners.only(part), model, (best.camera, best.poses[part])) for part in parts]
     except CalibrationError:
         return []
-    focal, error = np.array([one.camera[0] for one in each]), np.array([one.stderr[0] for one in each])
-    apart = np.ptp(np.log(focal))
-    if apart < max(_APART, 3 * np.hypot(*(error / focal))):
+    focal, error = np.array([(one.camera[0], one.stderr[0]) for one in each]).T
+    if np.ptp(np.log(focal)) < max(_APART, 3 * np.hypot(*(error / focal))):
         return []
     told = " and ".join(f"{len(part)} with fx = {f:.0f} px" for part, f in zip(parts, focal, strict=True))
     return [f"these seem to be pictures of two cameras, or the zoom was changed: {told}. Calibrate them apart"]
@@ -95,17 +106,20 @@ def _scatter(values, weights):
 def lacking_terms(corners, held, guess):
     """(Evidence or None, CameraFit with them): whether a prescribed lens lacks terms that the corners ask for.
 
-    None, and the fit that was held, if the lens that the corners would choose has no others.
+    None, and the fit that was held, if the lens that the corners would choose has no others, or they cannot say.
     """
     model = held.model
-    chosen, _, _ = choose(corners, guess, model.aspect, model.bent)
+    try:
+        chosen, _, _ = choose(corners, guess, model.aspect, model.bent)
+    except CalibrationError:
+        return None, held
     lacking = tuple(name for name in chosen.model.lens if name not in model.lens)
     if not lacking:
         return None, held
-    free = fit(corners, Model((*model.lens, *lacking), model.aspect, model.bent), (chosen.camera, chosen.poses))
-    p_value, gain = compare(held, free, contrast_of(lacking))
-    clear, why = _clear(p_value, held, free)
-    return Evidence(f"lens lacks {' and '.join(lacking)}", p_value, gain, clear, _LIMIT, why), free if clear else held
+    wide = fit(corners, Model((*model.lens, *lacking), model.aspect, model.bent), (chosen.camera, chosen.poses))
+    question, _, _ = ask(f"lens lacks {' and '.join(lacking)}", wide, contrast_of(lacking), _LIMIT)
+    question = _clear(question, held, wide)
+    return question, wide if question.kept else held
 
 
 def bent_board(corners, flat):
@@ -115,111 +129,83 @@ def bent_board(corners, flat):
     second order. Raises CalibrationError if the views cannot tell them from the camera.
     """
     bent = fit(corners, Model(flat.model.lens, flat.model.aspect, True), (flat.camera, flat.poses))
-    p_value, gain = compare(flat, bent, np.eye(12)[9:])
-    size, error = sag_size(corners, bent.camera[9:]), sag_size(corners, bent.stderr[9:]) / np.sqrt(3)
-    clear, why = _clear(p_value, flat, bent)
-    if clear and (gain <= 15 or size <= 4 * error):
-        clear, why = False, f"the {1000 * size:.2g} mm of sag are too little beside their error, {1000 * error:.1g} mm"
-    return Evidence("bent board", p_value, gain, clear, _LIMIT, why)
+    question = _clear(ask("bent board", bent, np.eye(12)[9:], _LIMIT)[0], flat, bent)
+    size, error = sag(corners, bent)
+    if question.kept and (question.gain <= 15 or size <= 4 * error):
+        why = f"the {1000 * size:.2g} mm of sag are too little beside their error, {1000 * error:.1g} mm"
+        return replace(question, kept=False, why=why)
+    return question
 
 
-def _clear(p_value, small, large):
-    """(bool, why): whether chance is out of the question: by the p-value, or as a third of the sum of squares is gone.
+def _clear(question, small, large):
+    """The Evidence, kept also where a third of the sum of squares is gone.
 
     With few views the p-value by views can hardly fall below the limit, whatever the corners say.
     """
     gone = 1 - large.cost / small.cost
-    if p_value < _LIMIT or gone < _GONE:
-        return bool(p_value < _LIMIT), ""
-    return True, f"{100 * gone:.0f} % of the squared residuals are gone"
+    if question.kept or gone < _GONE:
+        return question
+    return replace(question, kept=True, why=f"{100 * gone:.0f} % of the squared residuals are gone")
 
 
-def sag_size(corners, b):
-    """Largest height of the board over the plane nearest to it, m, for the shape b (3,)."""
-    points, index = np.unique(np.concatenate(corners.points)[:, :2].round(9), axis=0, return_index=True)
-    z = np.concatenate(corners.shapes)[index] @ np.asarray(b)
+def sag(corners, bent):
+    """(largest height of the board over the plane nearest to it, its standard error), m, for a CameraFit."""
+    points, index = np.unique(corners.all_points[:, :2].round(9), axis=0, return_index=True)
     plane = np.column_stack([points, np.ones(len(points))])
-    z = z - plane @ np.linalg.lstsq(plane, z, rcond=None)[0]
-    return float(np.ptp(z))
+    z = corners.shapes[index] @ np.column_stack([bent.camera[9:], bent.stderr[9:]])
+    z -= plane @ np.linalg.lstsq(plane, z, rcond=None)[0]
+    size, error = np.ptp(z, axis=0)
+    return float(size), float(error / np.sqrt(3))
 
 
 def free_aspect(corners, held):
-    """(Evidence, CameraFit with fx and fy free): whether the prescribed ratio fx/fy contradicts the corners."""
+    """(Evidence, fx/fy): whether the prescribed ratio of the focal lengths contradicts the corners."""
     free = fit(corners, Model(held.model.lens, None, held.model.bent), (held.camera, held.poses))
     contrast = np.zeros(12)
     contrast[:2] = 1, -held.model.aspect
-    p_value, gain = compare(held, free, contrast)
-    return Evidence("fx/fy free", p_value, gain, bool(p_value < _LIMIT), _LIMIT), free
+    return ask("fx/fy free", free, contrast, _LIMIT)[0], free.camera[0] / free.camera[1]
 
 
 def doubts(calibration):
-    """What to mind although the corners fit, as sentences.
+    """What to mind although the corners fit, sentence by sentence.
 
     Coefficients that mean nothing, and a lens that folds back; focal lengths and a centre that a camera hardly has;
     views that are too few, too much alike, or leave part of the picture empty.
     """
-    found = []
+    (w, h), K, views, pinhole = calibration.size, calibration.K, calibration.views, calibration.pinhole
     for name in calibration.model:
         value, error = calibration.values[name], max(calibration.stderr_corners[name], calibration.stderr_views[name])
         if abs(value) < 2 * error:
-            found.append(f"{name} = {value:.2g} +- {error:.2g} cannot be told from zero: it means nothing by itself")
-    w, h = calibration.size
-    pinhole, K = calibration.pinhole, calibration.K
+            yield f"{name} = {value:.2g} +- {error:.2g} cannot be told from zero: it means nothing by itself"
     ends = np.array([[0, 0], [w, 0], [0, h], [w, h]]) - K[:2, 2]
-    if np.isfinite(pinhole.widest):
-        farthest = K[0, 0] * pinhole.distort((pinhole.widest, 0.0))[0]
-        if farthest < np.linalg.norm(ends, axis=1).max():
-            found.append(
-                f"the lens model folds back {farthest:.0f} px from the centre: no ray reaches the picture beyond; "
-                "take views with the board in the corners"
-            )
+    farthest = K[0, 0] * pinhole.distort((min(pinhole.widest, 1e3), 0.0))[0]
+    if np.isfinite(pinhole.widest) and farthest < np.linalg.norm(ends, axis=1).max():
+        yield f"the lens model folds back {farthest:.0f} px from the centre: hold the board in the corners, too"
     if calibration.rms > _ROUGH * max(1, w / 1280):
-        found.append(
-            f"rms {calibration.rms:.2g} px is more than corners err (0.05 to 0.5 px): is it a fisheye, which this "
-            "model does not describe, or did focus or zoom change between pictures?"
-        )
+        yield f"rms {calibration.rms:.2g} px is more than corners err: a fisheye, or did focus or zoom change?"
     ratio = K[0, 0] / K[1, 1]
     slope = np.array([1 / K[0, 0], -1 / K[1, 1]])  # fx and fy err together: their ratio is known far better than they
     error = ratio * float(np.sqrt(max(slope @ calibration.covariance[:2, :2] @ slope, 0.0)))
     if abs(ratio - 1) > max(_SQUARE, 3 * error):
-        found.append(
-            f"fx/fy = {ratio:.3f} +- {error:.1g}: pixels are not square. Rare in a webcam: was the picture stretched "
-            "(4:3 to 16:9)? "
-            + (
-                "The board is bent; if it is stretched as well, that cannot be separated from fx/fy, and both focal "
-                "lengths may be off by as much. Use a flat plate, or aspect=1 for square pixels"
-                if calibration.sag is not None
-                else "Or is the board bent or stretched (paper): measure its squares both ways, use a flat plate"
-            )
-        )
+        yield f"fx/fy = {ratio:.3f} +- {error:.1g}: pixels are not square. {_STRETCHED[calibration.sag is not None]}"
     off = np.abs(K[:2, 2] - [(w - 1) / 2, (h - 1) / 2]) / (w, h)
     if off.max() > 0.15:
-        found.append(f"the centre ({K[0, 2]:.0f}, {K[1, 2]:.0f}) is far from the middle: were the pictures cropped?")
+        yield f"the centre ({K[0, 2]:.0f}, {K[1, 2]:.0f}) is far from the middle: were the pictures cropped?"
     relative = max(calibration.stderr["fx"] / K[0, 0], calibration.stderr["fy"] / K[1, 1])
     if relative > 0.01:
-        found.append(f"the focal length is known to {100 * relative:.1f} % only: tilt the board more, take more views")
-    views = calibration.views
+        yield f"the focal length is known to {100 * relative:.1f} % only: tilt the board more, take more views"
     if len(views) < 8:
-        found.append(f"{len(views)} views are few: 10 to 20 make the standard errors themselves trustworthy")
+        yield f"{len(views)} views are few: 10 to 20 make the standard errors themselves trustworthy"
     tilted = np.array([v.T_cam_board[:2, 2] for v in views if v.tilt > _TILTED])
     if len(tilted) < 3:
-        found.append(
-            f"too few tilts: {len(tilted)} of {len(views)} views are tilted by more than 15 degrees. A board that "
-            "faces the camera cannot tell focal length from distance"
-        )
+        yield f"too few tilts: {len(tilted)} of {len(views)} views by more than 15 degrees; only they tell focal length"
     elif (s := np.linalg.svd(tilted / np.linalg.norm(tilted, axis=1, keepdims=True), compute_uv=False))[1] < 0.3 * s[0]:
-        found.append("all tilts are about one axis: tilt the board up or down as well as left or right")
+        yield "all tilts are about one axis: tilt the board up or down as well as left or right"
     distance = float(np.median([np.linalg.norm(v.T_cam_board[:3, 3]) for v in views]))
     if not 0.04 < distance < 15:
-        found.append(
-            f"squares of {calibration.board.square:g} m put the board {distance:.3g} m away: is square in metres? (It "
-            "scales the distances; K and the distortion do not depend on it)"
-        )
+        yield f"the board seems {distance:.3g} m away: is square in metres? K and distortion do not depend on it"
     cover = calibration.coverage
     if cover.share < 0.5:
-        found.append(f"corners fill {100 * cover.share:.0f} % of the picture only: {calibration.next_view().text}")
+        yield f"corners fill {100 * cover.share:.0f} % of the picture only: {calibration.next_view().text}"
     elif cover.reach < 0.6:
-        found.append(
-            f"no corner beyond {100 * cover.reach:.0f} % of the way to the picture's corners: the lens there is a guess"
-        )
-    return found
+        yield f"no corner beyond {100 * cover.reach:.0f} % of the way to the picture's: the lens there is a guess"

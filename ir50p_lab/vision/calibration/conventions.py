@@ -27,12 +27,3 @@ def to_rows(K, T_cam_world):
     """
     T = np.asarray(T_cam_world)
     return np.asarray(K).T.copy(), T[:3, :3].T.copy(), T[:3, 3].copy()
-
-
-def from_matlab(K_row, R_row, t_row):
-    """(K, T_cam_world) in column form, pixels from 0, of what MATLAB gives: rows, and pixels counted from 1."""
-    K = np.array(K_row, dtype=float).T
-    K[:2, 2] -= 1
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = np.asarray(R_row).T, np.ravel(t_row)
-    return K, T

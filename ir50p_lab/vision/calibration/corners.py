@@ -24,7 +24,8 @@ _SOFT = 0.55  # rise of an edge from dark to light, in squares, at which neighbo
 _UNKNOWN = 100  # what OpenCV says for the rise where squares are too small for it to follow an edge
 SOFT_SLOPE = 0.45  # the same limit for `slope_rise`: waves of that length, all that blur leaves, have 0.5
 _UNEVEN = 0.03  # scatter about a smooth grid, in squares, from which on a slower finder is asked, too
-_UNEVEN_SMALL, _SMALL = 0.01, 22  # the same for squares smaller than so many px, which leave little for a window
+_UNEVEN_SMALL, _SMALL = 0.0115, 22  # the same for squares smaller than so many px, which leave little for a window
+_RIM, _TINY = 0.8, 14  # squares around the corners in which the slower finder searches then; of so many px or more
 _BLUR, _BLUR_PX = 0.05, 1.0  # in squares, at most so many px: noise and compression go, corners stay where they are
 _ROUGH = 0.08  # the same, that no board shows
 
@@ -70,9 +71,7 @@ def find_checkerboard(grey, pattern, other=None):
     else:
         noise, side = roughness(best), np.median(spacing(best))
         if noise > (_UNEVEN_SMALL if side < _SMALL else _UNEVEN) * side:
-            smoother = _sb(grey, small, factor, pattern, refined=False)
-            if smoother is not None and roughness(smoother) < noise:
-                best = smoother
+            best = _smoother(grey, small, factor, pattern, best)
     refuse_soft(grey, best)
     columns, rows = pattern
     return BoardCorners(in_order(best, grey, pattern).reshape(-1, 2).astype(float), np.arange(columns * rows))
@@ -102,16 +101,35 @@ def _classic(grey, small, factor, pattern):
     return _examined(grey, cv2.findChessboardCorners(small, pattern, None, flags), factor, pattern)
 
 
-def _sb(grey, small, factor, pattern, refined=True):
-    """The same by `findChessboardCornersSB`; without ACCURACY: slower, and no better than what refines them here.
+def _sb(grey, small, factor, pattern):
+    """The same by `findChessboardCornersSB`; without ACCURACY: slower, and no better than what refines them here."""
+    import cv2
 
-    refined False: its own corners, which lie on a smoother grid, if they were found in the picture at its size.
+    return _examined(grey, cv2.findChessboardCornersSB(small, pattern, flags=_thorough()), factor, pattern)
+
+
+def _thorough():
+    import cv2
+
+    return cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE
+
+
+def _smoother(grey, small, factor, pattern, grid):
+    """The corners of SB itself around a grid that was found, if they lie more smoothly, else the grid.
+
+    It is asked without the surroundings, three times as quick; where squares are tiny it needs them.
     """
     import cv2
 
-    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE
-    found = cv2.findChessboardCornersSB(small, pattern, flags=flags)
-    return _examined(grey, found, factor, pattern, refined or factor > 1)
+    inside, side = (grid + 0.5) / factor - 0.5, np.median(spacing(grid)) / factor
+    window, flags, start = small, _thorough(), np.zeros(2, dtype=int)
+    if side > _TINY:
+        start = np.maximum(inside.min(axis=(0, 1)) - _RIM * side, 0).astype(int)
+        right, bottom = np.ceil(inside.max(axis=(0, 1)) + _RIM * side).astype(int) + 1
+        window, flags = np.ascontiguousarray(small[start[1] : bottom, start[0] : right]), 0
+    found, corners = cv2.findChessboardCornersSB(window, pattern, flags=flags)
+    other = _examined(grey, (found, corners + np.float32(start) if found else None), factor, pattern, factor > 1)
+    return other if other is not None and roughness(other) < roughness(grid) else grid
 
 
 def _examined(grey, result, factor, pattern, refined=True):
@@ -260,8 +278,7 @@ def _largest_by_sb(grey):
     """The largest grid (rows, columns, 2) around 3x3 corners that `findChessboardCornersSB` finds, or None."""
     import cv2
 
-    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_LARGER
-    found, corners, meta = cv2.findChessboardCornersSBWithMeta(grey, (3, 3), flags)
+    found, corners, meta = cv2.findChessboardCornersSBWithMeta(grey, (3, 3), _thorough() | cv2.CALIB_CB_LARGER)
     if not found:
         return None
     grid = corners.reshape(*meta.shape, 2).astype(float)

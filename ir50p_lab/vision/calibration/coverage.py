@@ -1,11 +1,12 @@
 """Where in the picture the board was seen, and where to hold it next so that the camera becomes surer."""
 
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.board_pose import rvec_tvec, transform
+from ir50p_lab.vision.board_pose import rvec_tvec
 from ir50p_lab.vision.calibration.fit import CornerSets, Model, project, reduce, solve
 
 _CELLS = (6, 8)  # rows, columns of the coverage map
@@ -40,34 +41,34 @@ class NextView:
     text: str
     before: float
     after: float
-    new: int = 0
-    tried: tuple = field(default=(), repr=False)
+    new: int
+    tried: tuple = field(repr=False)
 
     def __str__(self):
         return self.text
 
 
 def coverage(calibration):
-    """Coverage of a Calibration. Raises CalibrationError if it holds no views (a file of another program)."""
-    _need_views(calibration)
+    """Coverage of a Calibration."""
     w, h = calibration.size
     xy = np.concatenate([view.corners for view in calibration.views])
-    counts = np.zeros(_CELLS, dtype=int)
-    np.add.at(counts, _cells(xy, calibration.size), 1)
-    centre = calibration.K[:2, 2]
+    counts, centre = _counts(xy, calibration.size), calibration.K[:2, 2]
     ends = np.array([[0, 0], [w - 1, 0], [0, h - 1], [w - 1, h - 1]])
     reach = np.linalg.norm(xy - centre, axis=1).max() / np.linalg.norm(ends - centre, axis=1).max()
     return Coverage(counts, float(np.mean(counts > 0)), float(min(reach, 1.0)))
 
 
-def direction_stderr(calibration, xy):
-    """How uncertain the ray of each pixel (n, 2) is, (n,) px: standard error of where its fixed ray falls.
+def _counts(xy, size):
+    """How many of the pixels (n, 2) lie in each cell of the coverage map, (6, 8)."""
+    (w, h), (x, y) = size, xy.T
+    ranges = (-0.5, h - 0.5), (-0.5, w - 0.5)
+    return np.histogram2d(np.clip(y, *ranges[0]), np.clip(x, *ranges[1]), _CELLS, ranges)[0].astype(int)
 
-    nan if the calibration holds no covariance, as a file of another program.
-    """
-    V = calibration.covariance
+
+def direction_stderr(calibration, xy):
+    """How uncertain the ray of each pixel (n, 2) is, (n,) px: standard error of where its fixed ray falls."""
     J = _ray_jacobian(calibration, np.asarray(xy, dtype=float))
-    return np.sqrt(np.einsum("nij,jk,nik->n", J, V, J))
+    return np.sqrt(np.einsum("nij,jk,nik->n", J, calibration.covariance, J))
 
 
 def _ray_jacobian(calibration, xy):
@@ -88,9 +89,8 @@ def next_view(calibration):
     Corners are taken to be as noisy as those so far. The measure is the standard error of a pixel's direction, mean
     over the picture. It trusts the lens model, for which one corner of the picture is as good as another; so of the
     poses that bring nearly the most the one counts that fills most empty cells of the coverage map: corners where none
-    were test the model, too. Raises CalibrationError if the calibration holds no views.
+    were test the model, too. Raises CalibrationError if the board fits into the picture nowhere.
     """
-    _need_views(calibration)
     B = Model(calibration.model).columns
     camera = np.array([*calibration.values.values(), 0, 0, 0])
     seen = CornerSets([v.points for v in calibration.views], [v.corners for v in calibration.views], calibration.size)
@@ -98,25 +98,22 @@ def next_view(calibration):
     S = reduce(B, *project(seen, camera, poses))[0].sum(axis=0)
     w, h = calibration.size
     grid = np.stack(np.meshgrid((np.arange(8) + 0.5) * w / 8, (np.arange(6) + 0.5) * h / 6), axis=-1).reshape(-1, 2)
-    sigma2 = calibration.sigma**2
     J = _ray_jacobian(calibration, grid) @ B[:9]
 
     def doubt(information):
-        V = sigma2 * solve(information, np.eye(len(information)))
+        V = calibration.sigma**2 * solve(information, np.eye(len(information)))
         return float(np.sqrt(np.einsum("nij,jk,nik->n", J, V, J).mean()))
 
     points = calibration.board.points
-    places, tilts, transforms = zip(*_candidates(calibration, points), strict=True)
-    count = len(transforms)
-    trial = CornerSets([points] * count, [points[:, :2]] * count, calibration.size)
-    views = project(trial, camera, np.array([np.concatenate(rvec_tvec(T)) for T in transforms]))
-    information, seen_at = reduce(B, *views)[0], points[:, :2] - views[0].reshape(count, -1, 2)
-    counts, tried = calibration.coverage.counts, []
-    for place, tilt, gained, xy in zip(places, tilts, information, seen_at, strict=True):
-        if (xy < 2).any() or (xy > np.array([w, h]) - 3).any():
-            continue
-        cells = set(zip(*_cells(xy, calibration.size), strict=True))
-        tried.append(((place, tilt, doubt(S + gained), sum(not counts[cell] for cell in cells)), xy))
+    places, tilts, poses = zip(*_candidates(calibration, points), strict=True)
+    trial = CornerSets([points] * len(poses), [points[:, :2]] * len(poses), calibration.size)
+    views = project(trial, camera, np.array(poses))
+    seen_at = points[:, :2] - views[0].reshape(len(poses), -1, 2)
+    empty, tried = calibration.coverage.counts == 0, []
+    for place, tilt, gained, xy in zip(places, tilts, reduce(B, *views)[0], seen_at, strict=True):
+        if (xy > 2).all() and (xy < np.array([w, h]) - 3).all():
+            new = int((empty & (_counts(xy, calibration.size) > 0)).sum())
+            tried.append(((place, tilt, doubt(S + gained), new), xy))
     if not tried:
         raise CalibrationError("no pose of the board was found that would fit into the picture")
     before = doubt(S)
@@ -135,21 +132,8 @@ def next_view(calibration):
     return NextView(outline, text, before, after, new, tuple(words for words, _ in tried))
 
 
-def _cells(xy, size):
-    """Cell (row, column) of the coverage map for pixels (n, 2), as two arrays (n,)."""
-    (w, h), (rows, columns) = size, _CELLS
-    i = np.clip((xy[:, 1] + 0.5) / h * rows, 0, rows - 1).astype(int)
-    j = np.clip((xy[:, 0] + 0.5) / w * columns, 0, columns - 1).astype(int)
-    return i, j
-
-
-def _need_views(calibration):
-    if not calibration.views:
-        raise CalibrationError("this calibration holds no views: it was read from a file of another program")
-
-
 def _candidates(calibration, points):
-    """(words for the place, words for the tilt, T_cam_board) of boards that fill about a third of the picture."""
+    """(words for the place, words for the tilt, pose (6,)) of boards that fill about a third of the picture."""
     import cv2
 
     w, h = calibration.size
@@ -162,11 +146,10 @@ def _candidates(calibration, points):
         "its upper side tilted away": (-1, 0),
         "its lower side tilted away": (1, 0),
     }
-    for row, y in zip(("top", "middle", "bottom"), (0.27, 0.5, 0.73), strict=True):
-        for column, x in zip(("left", "centre", "right"), (0.27, 0.5, 0.73), strict=True):
-            place = {"middle centre": "in the middle"}.get(f"{row} {column}", f"at the {row} {column}")
-            for words, axis in tilts.items():
-                turn = np.array([*axis, 0.0]) * _TILT
-                R = cv2.Rodrigues(turn)[0]
-                aim = Z * np.linalg.solve(calibration.K, [x * w, y * h, 1.0])
-                yield place, words, transform(turn, aim - R @ ((points.min(axis=0) + points.max(axis=0)) / 2))
+    rows, columns = {"top": 0.27, "middle": 0.5, "bottom": 0.73}, {"left": 0.27, "centre": 0.5, "right": 0.73}
+    for row, column, (words, axis) in product(rows, columns, tilts.items()):
+        place = "in the middle" if (row, column) == ("middle", "centre") else f"at the {row} {column}"
+        turn = np.array([*axis, 0.0]) * _TILT
+        aim = Z * np.linalg.solve(calibration.K, [columns[column] * w, rows[row] * h, 1.0])
+        middle = cv2.Rodrigues(turn)[0] @ ((points.min(axis=0) + points.max(axis=0)) / 2)
+        yield place, words, np.concatenate([turn, aim - middle])

@@ -16,6 +16,7 @@ LENS = NAMES[4:]
 # Of what the camera's numbers do to the corners, a board's pose can hide all but this share: then no view shows them.
 # Squared pixels, thus rounding is 1e-15; four views that are nearly one leave 1e-10.
 _SHOWN = 1e-12
+_UNDETERMINED = "the views leave the camera undetermined: tilt the board in different directions"
 _ROUNDING = 1e-10  # pixels: less than this no fit can mend, and corners without noise leave less
 
 
@@ -99,27 +100,24 @@ class CameraFit:
 class CornerSets:
     """What was seen: points (n, 3) m on the board and pixels (n, 2), one array of each per view; the picture's size.
 
-    shapes: three ways (n, 3) in which the board can bend (along x, as a saddle, along y), each 1 at half the board's
-    size from its middle. Its height is z = shapes @ b, with b in metres, positive into the board.
+    shapes: three ways (N, 3) in which the board can bend (along x, as a saddle, along y), each 1 at half the board's
+    size from its middle, for the points of all views. Its height is z = shapes @ b, with b in metres, positive into
+    the board. places: (view, number within the view) of each of these points, two arrays (N,).
     """
 
     def __init__(self, points, pixels, size):
         self.points = [np.ascontiguousarray(p, dtype=float) for p in points]
         self.pixels = [np.ascontiguousarray(p, dtype=float) for p in pixels]
         self.size = size
-        full = np.concatenate(self.points)
+        self.all_points = full = np.concatenate(self.points)
         middle, half = (full.min(axis=0) + full.max(axis=0)) / 2, np.ptp(full[:, :2], axis=0).max() / 2
-        self.shapes = []
-        for p in self.points:
-            x, y = ((p - middle) / half)[:, :2].T
-            self.shapes.append(np.column_stack([x * x, x * y, y * y]))
+        x, y = ((full - middle) / half)[:, :2].T
+        self.shapes = np.column_stack([x * x, x * y, y * y])
+        counts = [len(p) for p in self.points]
+        self.places = np.repeat(np.arange(len(counts)), counts), np.concatenate([np.arange(n) for n in counts])
 
     def __len__(self):
         return len(self.points)
-
-    def without(self, view):
-        """The same without one view."""
-        return self.only([i for i in range(len(self)) if i != view])
 
     def only(self, views):
         """The same with these views."""
@@ -152,30 +150,47 @@ def start(corners):
     poses = np.hstack([np.array(rvecs).reshape(-1, 3), np.array(tvecs).reshape(-1, 3)])
     camera = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *d.ravel()[:5], 0, 0, 0])
     if not np.isfinite(camera).all() or not np.isfinite(poses).all():
-        raise CalibrationError("OpenCV finds no camera for these views: tilt the board in different directions")
+        raise CalibrationError(_UNDETERMINED)
     return camera, poses
 
 
 def project(corners, camera, poses):
-    """Residuals of all views (v, 2n), and Jacobians of the model by the camera (v, 2n, 12) and pose (v, 2n, 6).
+    """Residuals of all views (v, 2n), and Jacobians of the model by the camera (v, 2n, 12) and the step of a pose.
 
-    x and y of a corner alternate; views with fewer corners than the fullest are filled up with zeros.
+    The step of a pose, (v, 2n, 6), is a turn of the board about its origin and a shift, both along the axes of the
+    camera. x and y of a corner alternate; views with fewer corners than the fullest are filled up with zeros.
     """
     import cv2
+    from scipy.spatial.transform import Rotation
 
     K = np.array([[camera[0], 0, camera[2]], [0, camera[1], camera[3]], [0, 0, 1]])
-    shape = len(poses), 2 * max(map(len, corners.points))
-    error, by_camera, by_pose = np.zeros(shape), np.zeros((*shape, 12)), np.zeros((*shape, 6))
-    views = zip(corners.points, corners.pixels, corners.shapes, poses, strict=True)
-    for view, (points, pixels, shapes, pose) in enumerate(views):
-        bent = points + np.outer(shapes @ camera[9:], (0.0, 0.0, 1.0))
-        seen, J = cv2.projectPoints(bent, pose[:3], pose[3:], K, camera[4:9])
-        by_height = J[:, 3:6] @ cv2.Rodrigues(pose[:3])[0][:, 2:]  # a point that rises moves as the board does along z
-        n = 2 * len(points)
-        error[view, :n] = (pixels - seen[:, 0]).ravel()
-        by_camera[view, :n] = np.hstack([J[:, 6:15], by_height * np.repeat(shapes, 2, axis=0)])
-        by_pose[view, :n] = J[:, :6]
-    return error, by_camera, by_pose
+    view, _ = corners.places
+    R = Rotation.from_rotvec(poses[:, :3]).as_matrix()[view]
+    bent = corners.all_points + np.outer(corners.shapes @ camera[9:], (0.0, 0.0, 1.0))
+    turned = np.einsum("nij,nj->ni", R, bent)
+    seen, J = cv2.projectPoints(turned + poses[view, 3:], np.zeros(3), np.zeros(3), K, camera[4:9])
+    J = J.reshape(len(view), 2, -1)
+    by_shift = J[..., 3:6]
+    by_height = by_shift @ R[:, :, 2:]  # a point that rises moves as the board does along its z
+    parts = (
+        np.concatenate(corners.pixels)[..., None] - seen.transpose(0, 2, 1),
+        np.concatenate([J[..., 6:15], by_height * corners.shapes[:, None]], axis=2),
+        np.concatenate([np.cross(turned[:, None], by_shift), by_shift], axis=2),
+    )
+    most, filled = max(map(len, corners.points)), []
+    for part in parts:
+        each = np.zeros((len(poses), most, 2, part.shape[2]))
+        each[corners.places] = part
+        filled.append(each.reshape(len(poses), 2 * most, -1))
+    return filled[0][..., 0], filled[1], filled[2]
+
+
+def moved_by(poses, step):
+    """Poses (v, 6) after a step (v, 6), as `project` means it."""
+    from scipy.spatial.transform import Rotation
+
+    turned = Rotation.from_rotvec(step[:, :3]) * Rotation.from_rotvec(poses[:, :3])
+    return np.hstack([turned.as_rotvec(), poses[:, 3:] + step[:, 3:]])
 
 
 def fit(corners, model, guess, steps=50):
@@ -196,7 +211,7 @@ def fit(corners, model, guess, steps=50):
             S, g, own, following = reduce(B, *views)
             while True:
                 step = solve(S.sum(axis=0), g.sum(axis=0)[:, None], damping)[:, 0]
-                new_camera, new_poses = camera + B @ step, poses + own - following @ step
+                new_camera, new_poses = camera + B @ step, moved_by(poses, own - following @ step)
                 new_views = project(corners, new_camera, new_poses)
                 new_cost = _cost(new_camera, new_views)
                 if new_cost <= cost * (1 + 1e-12) + nothing or damping > 1e6:
@@ -248,7 +263,7 @@ def solve(S, g, damping=0.0):
     except np.linalg.LinAlgError:
         x = np.full_like(g, np.inf)
     if not np.isfinite(x).all():
-        raise CalibrationError("the views leave the camera undetermined: tilt the board in different directions")
+        raise CalibrationError(_UNDETERMINED)
     return x / scale
 
 
@@ -258,7 +273,7 @@ def _with_covariance(corners, model, camera, poses, views):
     total = S.sum(axis=0)
     scale = np.linalg.norm((views[1] @ B).reshape(-1, B.shape[1]), axis=0)
     if not np.linalg.eigvalsh(total / np.outer(scale, scale))[0] > _SHOWN:
-        raise CalibrationError("the views leave the camera undetermined: tilt the board in different directions")
+        raise CalibrationError(_UNDETERMINED)
     residuals = tuple(e[: 2 * len(p)].reshape(-1, 2) for e, p in zip(views[0], corners.points, strict=True))
     fit = CameraFit(camera, poses, residuals, np.zeros((12, 12)), np.zeros((12, 12)), model)
     if 2 * fit.points <= fit.parameters:

@@ -42,26 +42,35 @@ def in_percent(chance):
     return f"{100 * chance:.2g} %" if chance >= 1e-4 else "less than 0.01 %"
 
 
-def aicc(fitted):
-    """Akaike's criterion with the correction for small samples: smaller is better."""
-    n, p = 2 * fitted.points, fitted.parameters + 1
-    return n * np.log(max(fitted.cost, 1e-300) / n) + 2 * p * n / max(n - p - 1, 1)
+def aicc(fitted, cost=None, fewer=0):
+    """Akaike's criterion with the correction for small samples: smaller is better.
+
+    cost, fewer: sum of squares, and number of parameters less, of a model inside the one that was fitted.
+    """
+    n, p = 2 * fitted.points, fitted.parameters + 1 - fewer
+    return n * np.log(max(fitted.cost if cost is None else cost, 1e-300) / n) + 2 * p * n / max(n - p - 1, 1)
 
 
-def compare(small, large, contrast):
-    """(p-value, AICc gain) of what `large` leaves free and `small` does not: contrast (q, 12) @ camera = 0."""
+def ask(term, fitted, contrast, limit):
+    """(Evidence, camera (12,) without the term, its AICc): does a fit need what contrast (q, 12) @ camera = 0 denies?
+
+    To first order: what the fit without it would find follows from the covariance.
+    """
     from scipy.special import fdtrc  # chance that an F-distributed number is larger
 
     C = np.atleast_2d(contrast)
-    q, free, views = len(C), 2 * large.points - large.parameters, len(large.poses)
-    F = max(small.cost - large.cost, 0.0) / q / max(large.cost / free, 1e-300)
-    by_chance = fdtrc(q, free, F)
-    V, theta = C @ large.by_views @ C.T, C @ large.camera
+    theta, q, views = C @ fitted.camera, len(C), len(fitted.poses)
+    to_term = fitted.by_corners @ C.T
+    pull = np.linalg.solve(C @ to_term, theta)
+    by_chance = fdtrc(q, 2 * fitted.points - fitted.parameters, theta @ pull / q)
+    V = C @ fitted.by_views @ C.T
     scale = np.sqrt(np.diag(V))
     if views > q + 1 and (scale > 0).all() and np.linalg.cond(V / np.outer(scale, scale)) < 1e12:
         W = theta @ np.linalg.solve(V, theta) / q * (views - q) / (views - 1)
         by_chance = max(by_chance, fdtrc(q, views - q, W))
-    return float(by_chance), float(aicc(small) - aicc(large))
+    score = aicc(fitted, fitted.cost + fitted.sigma**2 * theta @ pull, q)
+    question = Evidence(term, float(by_chance), float(score - aicc(fitted)), bool(by_chance < limit), limit)
+    return question, fitted.camera - to_term @ pull, score
 
 
 def contrast_of(names):
@@ -70,26 +79,27 @@ def contrast_of(names):
 
 
 def choose(corners, guess, aspect=None, bent=False):
-    """The simplest lens that the corners do not object to: (CameraFit, evidence, all fits that were tried).
+    """The simplest lens that the corners do not object to: (CameraFit, evidence, models that were tried).
 
     From the full model k1, k2, p1, p2, k3 the terms are dropped one after the other, k3 first, as long as the data can
     do without: backwards, because a lens bends light more than it is regular. k2 stays if k3 does, k1 if k2 does.
 
     Args: corners: CornerSets; guess: as for `fit`; aspect: fx/fy if it is known; bent: estimate the board's shape, too.
+    Of each model that was tried the camera (12,) and AICc.
     """
     best, evidence = fit(corners, Model(LENS, aspect, bent), guess), []
-    tried = [best]
+    tried = [(best.camera, aicc(best))]
     for term, limit in _LIMIT.items():
         lens, names = best.model.lens, term.split(" and ")
         if (term == "k2" and "k3" in lens) or (term == "k1" and "k2" in lens):
             continue
-        fewer = Model(tuple(name for name in lens if name not in names), aspect, bent)
-        smaller = fit(corners, fewer, (best.camera, best.poses))
-        tried.append(smaller)
-        p_value, gain = compare(smaller, best, contrast_of(names))
-        evidence.append(Evidence(term, p_value, gain, p_value < limit, limit))
-        if p_value >= limit:
-            best = smaller
+        question, camera, score = ask(term, best, contrast_of(names), limit)
+        if not question.kept:
+            fewer = Model(tuple(name for name in lens if name not in names), aspect, bent)
+            best = fit(corners, fewer, (best.camera, best.poses))
+            camera, score = best.camera, aicc(best)
+        evidence.append(question)
+        tried.append((camera, score))
     return best, tuple(evidence), tuple(tried)
 
 
@@ -107,9 +117,9 @@ def total_covariance(best, tried):
     np.divide(np.sqrt(np.diag(by_views)), own, out=factor, where=own > 0)
     factor = np.maximum(factor, 1.0)
     total = by_corners * np.outer(factor, factor)
-    scores = np.array([aicc(other) for other in tried])
-    weights = np.exp(-0.5 * (scores - scores.min()))
-    for other, weight in zip(tried, weights / weights.sum(), strict=True):
-        move = np.where(own > 0, other.camera[:9] - best.camera[:9], 0.0)
+    cameras, scores = zip(*tried, strict=True)
+    weights = np.exp(-0.5 * (np.array(scores) - min(scores)))
+    for camera, weight in zip(cameras, weights / weights.sum(), strict=True):
+        move = np.where(own > 0, camera[:9] - best.camera[:9], 0.0)
         total = total + weight * np.outer(move, move)
     return total

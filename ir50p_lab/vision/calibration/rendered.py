@@ -3,6 +3,7 @@
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.vision.board_pose import moved
 from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.pinhole import as_pinhole
 
@@ -20,27 +21,19 @@ def board_poses(pinhole, count, seed=0, board=None):
 
     pinhole = as_pinhole(pinhole)
     board, rng, poses = board or Checkerboard(), np.random.default_rng(seed), []
-    columns, rows = board.pattern
-    s = board.square
-    outline = s * np.array([[-1.0, -1], [columns, -1], [columns, rows], [-1, rows]])
-    middle = np.array([(columns - 1) / 2, (rows - 1) / 2, 0.0]) * s
-    w, h = pinhole.size
+    (columns, rows), s, (w, h) = board.pattern, board.square, pinhole.size
+    outline = s * np.array([[-1.0, -1, 0], [columns, -1, 0], [columns, rows, 0], [-1, rows, 0]])
     for _ in range(400 * count):
         tilt, about, spin = np.deg2rad(rng.uniform(*_TILTS_DEG)), rng.uniform(0, 2 * np.pi), rng.normal(0, 0.25)
         R = cv2.Rodrigues(tilt * np.array([np.cos(about), np.sin(about), 0]))[0] @ cv2.Rodrigues((0, 0, spin))[0]
-        width = rng.uniform(*_WINDOW) * w
+        Z = pinhole.fx * columns * s / (rng.uniform(*_WINDOW) * w)
         aim = pinhole.to_normalised(np.array([rng.uniform(0.12, 0.88) * w, rng.uniform(0.12, 0.88) * h]))
         T = np.eye(4)
-        Z = pinhole.fx * columns * s / width
-        T[:3, :3], T[:3, 3] = R, np.array([*aim, 1.0]) * Z - R @ middle
-        corners = np.column_stack([outline, np.zeros(4)]) @ R.T + T[:3, 3]
-        if corners[:, 2].min() < 0.3 * Z:
-            continue
-        xy = pinhole.project(T, np.column_stack([outline, np.zeros(4)]))
-        if (xy > 2).all() and (xy < np.array([w, h]) - 3).all():
-            poses.append(T)
+        T[:3, :3], T[:3, 3] = R, np.array([*aim, 1.0]) * Z - R @ outline.mean(axis=0)
+        if moved(T, outline)[:, 2].min() > 0.3 * Z:
+            xy = pinhole.project(T, outline)
+            if (xy > 2).all() and (xy < np.array([w, h]) - 3).all():
+                poses.append(T)
         if len(poses) == count:
             return np.array(poses)
-    raise InputError(
-        f"{len(poses)} of {count} poses found in which the whole board is in view: a smaller board, or fewer"
-    )
+    raise InputError(f"{len(poses)} of {count} poses found with the whole board in view: a smaller board, or fewer")

@@ -11,6 +11,32 @@ from ir50p_lab.vision.pinhole import Pinhole
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class View:
+    """One picture of the board that was used.
+
+    name, index: as in `Rejected`; points (n, 3) m on the board; corners (n, 2) px as found; residuals (n, 2) px, found
+    minus model; rms: of their lengths, px; T_cam_board (4, 4) takes board to camera coordinates.
+    """
+
+    name: str
+    index: int
+    points: np.ndarray = field(repr=False)
+    corners: np.ndarray = field(repr=False)
+    residuals: np.ndarray = field(repr=False)
+    T_cam_board: np.ndarray = field(repr=False)
+
+    @property
+    def rms(self):
+        """Root mean square distance between found and model corners, px."""
+        return float(np.sqrt((self.residuals**2).sum(axis=1).mean()))
+
+    @property
+    def tilt(self):
+        """Angle between the board and the plane of the picture, rad."""
+        return float(np.arccos(np.clip(abs(self.T_cam_board[2, 2]), 0, 1)))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Calibration:
     """A calibrated camera; what takes a camera takes it in place of a Pinhole (`pinhole.as_pinhole`).
 
@@ -24,7 +50,6 @@ class Calibration:
     stderr         standard error of "fx", "fy", "cx", "cy", "k1"...: the larger of two routes, and the     dict
                    doubt about the model; nan where not estimated
     covariance     of fx, fy, cx, cy, k1, k2, p1, p2, k3 with those standard errors; 0 where not estimated  (9, 9)
-                   (all nan: not known, from a file that holds none)
     views          View of each picture used                                                                tuple
     rejected       Rejected: each picture not used, with a reason                                           tuple
     warnings       what to mind, as sentences                                                               tuple
@@ -86,17 +111,17 @@ class Calibration:
         return next_view(self)
 
     def save(self, path):
-        """Write a YAML file that cv2.FileStorage (and OpenCV's samples) read. Returns the path."""
+        """Write a JSON file, in which cv2.FileStorage (and OpenCV's samples) find the camera. Returns the path."""
         return save(self, path)
 
     @classmethod
     def load(cls, path, size=None):
-        """Read such a file, or one that OpenCV's calibration sample wrote; no fisheyes.
+        """Read such a file.
 
         size: (width, height) of the pictures it is for. Raises CalibrationError for a file that is missing or no
         calibration, and for one of another picture size.
         """
-        return load(cls, path, size)
+        return load(cls, View, path, size)
 
     def __str__(self):
         lines = [

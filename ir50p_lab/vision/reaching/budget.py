@@ -37,7 +37,7 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
     ball = moved(to_table, np.array([*tip[:2], locator.radius]))
     xy = locator.plane.to_image(ball)
     exact = TablePlane(locator.plane.pinhole, locator.plane.T_cam_table)
-    pixel = float(np.sqrt(np.trace(exact.covariance(xy, ball[2], sigma_px=sigma_ball_px)[0])))
+    pixel = float(np.linalg.norm(exact.standard_error(xy, ball[2], sigma_px=sigma_ball_px)))
     shifts = [  # one standard deviation in each direction of what is wrong with the camera: ball m, hand px
         (one.to_table(xy, ball[2]) - ball[:2], one.to_image(moved(to_table, hand)) - locator.to_image(hand))
         for one in locator.plane.variations()
