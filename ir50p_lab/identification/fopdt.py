@@ -6,9 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.response_fit import NOISE, best_fit, likeness, respond, standard_errors
+from ir50p_lab.identification.response_fit import (
+    NOISE,
+    StepRecord,
+    best_fit,
+    by_name,
+    jumps_of,
+    likeness,
+    recorded,
+    respond,
+    standard_errors,
+)
 from ir50p_lab.identification.second_order import second_order_of
-from ir50p_lab.identification.step_record import StepRecord, jumps_of, recorded
 
 _RESPONSE = 15.0  # least F value for "y follows u": a search over T and L in pure noise stays below it
 _SHAPE = 0.05  # largest share of the variance of y that may be left and not be white: 20-40 % of overshoot
@@ -114,8 +123,7 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     if L < _SEEN * period:
         errors[2] = max(errors[2], period * record.unit)
     return FOPDT(
-        **dict(zip(("K", "T", "L"), (found * units).tolist(), strict=True)),
-        **dict(zip(("K_stderr", "T_stderr", "L_stderr"), errors.tolist(), strict=True)),
+        **by_name("KTL", found * units, errors),
         y0=float(record.y_unit * y0 + record.y_first),
         rms=record.y_unit * float(np.sqrt(np.mean(e**2))),
         correlation=likeness(e)[0],

@@ -11,6 +11,7 @@ from ir50p_lab.inputs import choice, number, numbers, switch
 from ir50p_lab.signals.low_pass import low_pass
 
 BACKWARD = "zero-phase"
+_ORDER = 4  # of the zero-phase filter; it counts twice
 _LATE = 2.0  # a filter of this many time constants (1/(2 pi cutoff)) on either side is cut off by default
 
 
@@ -59,7 +60,7 @@ def causal_derivatives(q, rate_hz, *, cutoff_hz=3.0):
     return q, qd, np.diff(qd, axis=0, prepend=qd[:1]) * rate_hz
 
 
-def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=4):
+def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=_ORDER):
     """Without lag, for finished records: a Butterworth filter forward and backward, then central differences.
 
         qd[k] = (q[k+1] - q[k-1]) rate/2,    qdd[k] = (q[k+1] - 2 q[k] + q[k-1]) rate^2
@@ -86,7 +87,6 @@ def process(
     *,
     derivatives=BACKWARD,
     cutoff_hz=1.5,
-    order=4,
     filter_u=False,
     delay=0.0,
     held=True,
@@ -106,7 +106,7 @@ def process(
         recording: anything with t (n,), q (n, k) and u (n, k), as `Recording`; or t itself, then q and u as arrays,
             (n,) or (n, k).
         derivatives: "zero-phase" (`central_derivatives`) or "causal" (`causal_derivatives`).
-        cutoff_hz, order: of the low pass; order for "zero-phase" only, "causal" is of first order.
+        cutoff_hz: of the low pass, of order 4 for "zero-phase", which may be None, and 1 for "causal".
         filter_u: pass u through the same filter as q.
         delay: s from a sample to the moment its u acts (`estimate_delay`).
         held: True: u is held from its sample to the next, as a bench does; what then acts around the instant t_k is the
@@ -125,28 +125,17 @@ def process(
     slow = numbers("slow", slow, unit="rad/s")
     if slow.shape not in ((), q.shape[1:]) or not (slow >= 0).all():
         raise InputError(f"slow = {slow} rad/s: give one number >= 0, or one for each of {q.shape[1]} joint(s)")
-    if cutoff_hz is None and causal:
-        raise InputError("cutoff_hz = None: the causal way needs its filter; give 1.5 to 10 Hz")
+    derive = causal_derivatives if causal else central_derivatives
+    unfiltered = cutoff_hz is None and not causal
     if trim is None:
-        trim = 0.0 if cutoff_hz is None else _LATE / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
+        trim = 0.0 if unfiltered else _LATE / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
     number("trim", trim, ">= 0", unit="s")
     acts = acting_times(t, delay, switch("held", held) and not causal)
-
-    def smooth(x):
-        if cutoff_hz is None:
-            return x
-        return low_pass(x, cutoff_hz, 1 / period, order=1 if causal else order, kind=derivatives)
-
-    def differentiated(q):
-        if causal:
-            return causal_derivatives(q, 1 / period, cutoff_hz=cutoff_hz)
-        return central_derivatives(q, 1 / period, cutoff_hz=cutoff_hz, order=order)
-
     notes, pieces = [], []
     parts = runs(t, 3.5 * period)
     if len(parts) > 1:
         notes.append(f"{len(parts) - 1} gap(s) in time: {len(parts)} runs, each filtered by itself")
-    backward = 0 if cutoff_hz is None or causal else 3 * (2 * math.ceil(order / 2) + 1) + 1
+    backward = 0 if unfiltered or causal else 3 * (_ORDER + 1) + 1  # as `low_pass` needs
     shortest = max(8, backward, math.ceil(2 * trim / period) + 4)
     for k, (first, last) in enumerate(parts):
         if last - first < shortest:
@@ -154,7 +143,9 @@ def process(
             continue
         here = slice(first, last)
         grid, even_q, even_u = _on_even_steps(t[here], q[here], u[here], acts[here], period)
-        piece = grid, *differentiated(even_q), smooth(even_u) if filter_u else even_u
+        piece = [grid, *derive(even_q, 1 / period, cutoff_hz=cutoff_hz), even_u]
+        if filter_u:
+            piece[-1] = derive(even_u, 1 / period, cutoff_hz=cutoff_hz)[0]
         keep = (grid >= grid[0] + max(trim, delay) - 1e-9) & (grid <= grid[-1] - trim + 1e-9)
         keep[[0, -1]] = False  # their derivatives are the neighbours'
         pieces.append([x[keep] for x in piece] + [np.full(keep.sum(), k)])

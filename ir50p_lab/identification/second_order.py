@@ -7,8 +7,15 @@ from functools import partial
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError
-from ir50p_lab.identification.response_fit import best_fit, respond, standard_errors
-from ir50p_lab.identification.step_record import StepRecord, jumps_of, recorded
+from ir50p_lab.identification.response_fit import (
+    StepRecord,
+    best_fit,
+    by_name,
+    jumps_of,
+    recorded,
+    respond,
+    standard_errors,
+)
 
 _BETTER = 12.0  # least F value of a zero
 _DAMPING = (0.02, 10.0)
@@ -108,10 +115,8 @@ def second_order_of(record):
     if w * period > 1:
         doubts += (f"w is {w * period:.2g} rad a sample: not identifiable, sample faster",)
     units = np.array([record.gain, 1 / record.unit, 1.0, record.unit, record.unit])[: 4 + zeros]
-    values = dict(zip(_NAMES, (found * units).tolist(), strict=False))
-    values |= {f"{name}_stderr": x for name, x in zip(_NAMES, (errors * units).tolist(), strict=False)}
     return SecondOrderModel(
-        **{"zero": 0.0, "zero_stderr": 0.0} | values,
+        **by_name(_NAMES[: 4 + zeros], found * units, errors * units),
         y0=float(c[0] * record.y_unit + record.y_first),
         rms=float(np.sqrt(np.mean(e**2))) * record.y_unit,
         fit=float(100 * (1 - np.sqrt(np.mean(e**2)) / np.std(y))),

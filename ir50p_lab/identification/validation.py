@@ -71,7 +71,6 @@ def validate(
     *,
     derivatives=BACKWARD,
     cutoff_hz=1.5,
-    order=4,
     delay=0.0,
     held=True,
     trim=None,
@@ -83,7 +82,7 @@ def validate(
     The u of the recording is taken raw, as it was sent. The prediction is made from q, qd and qdd as `process` finds
     them, and read at the time at which each u acted: its sample + delay (+ half a period while it is held).
 
-    Args: estimate: Estimate or theta (3, 20); recording, or t, q, u; derivatives, cutoff_hz, order, delay, held, trim:
+    Args: estimate: Estimate or theta (3, 20); recording, or t, q, u; derivatives, cutoff_hz, delay, held, trim:
     as in `process`; sign, g: as in `regressor`.
     Returns: Validation of "u". Raises InputError, IdentificationError as `process` does.
     """
@@ -91,7 +90,7 @@ def validate(
     t, q, u = columns_of(recording, q, u)
     if q.shape[1] != 3:
         raise InputError(f"q has {q.shape[1]} columns: validation needs the three joints, (n, 3)")
-    motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, order=order, held=False, trim=trim)
+    motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, held=False, trim=trim)
     predicted = np.einsum("nij,ij->ni", regressor(motion.q, motion.qd, motion.qdd, g=g, sign=sign), theta)
     acts = acting_times(t, number("delay", delay, ">= 0", unit="s"), switch("held", held) and derivatives == BACKWARD)
     after = np.searchsorted(motion.t, acts).clip(1, len(motion) - 1)
