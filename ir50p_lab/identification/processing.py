@@ -26,7 +26,6 @@ class Motion:
     use           (m, k)   bool: whether the sample of that joint is to be used (False: too near to zero speed)
     segment       (m,)     int: which run without a gap
     rate_hz       float    samples per s
-    notes         tuple    of str: gaps, and what was left out
     ============= ======== ============================================================================
     """
 
@@ -38,7 +37,6 @@ class Motion:
     use: np.ndarray
     segment: np.ndarray
     rate_hz: float
-    notes: tuple
 
     def __len__(self):
         return len(self.t)
@@ -131,15 +129,11 @@ def process(
         trim = 0.0 if unfiltered else _LATE / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
     number("trim", trim, ">= 0", unit="s")
     acts = acting_times(t, delay, switch("held", held) and not causal)
-    notes, pieces = [], []
-    parts = runs(t, 3.5 * period)
-    if len(parts) > 1:
-        notes.append(f"{len(parts) - 1} gap(s) in time: {len(parts)} runs, each filtered by itself")
+    pieces = []
     backward = 0 if unfiltered or causal else 3 * (_ORDER + 1) + 1  # as `low_pass` needs
     shortest = max(8, backward, math.ceil(2 * trim / period) + 4)
-    for k, (first, last) in enumerate(parts):
+    for k, (first, last) in enumerate(runs(t, 3.5 * period)):
         if last - first < shortest:
-            notes.append(f"{last - first} samples from {t[first]:.4g} s on left out: too short a run")
             continue
         here = slice(first, last)
         grid, even_q, even_u = _on_even_steps(t[here], q[here], u[here], acts[here], period)
@@ -150,12 +144,10 @@ def process(
         keep[[0, -1]] = False  # their derivatives are the neighbours'
         pieces.append([x[keep] for x in piece] + [np.full(keep.sum(), k)])
     if sum(len(piece[0]) for piece in pieces) < 2:
-        raise IdentificationError(
-            f"nothing is left of {len(t)} samples: every run without a gap is shorter than {shortest} samples (filter "
-            f"{cutoff_hz} Hz, {trim:.3g} s cut off at both ends): record longer, or give a higher cut-off or less trim"
-        )
+        said = f"nothing is left: each run without a gap is shorter than {shortest} samples"
+        raise IdentificationError(f"{said} (filter and trim take them): record longer, or give a higher cutoff_hz")
     t, q, qd, qdd, u, segment = (np.concatenate(x) for x in zip(*pieces, strict=True))
-    return Motion(t, q, qd, qdd, u, np.abs(qd) >= slow, segment, 1 / period, tuple(notes))
+    return Motion(t, q, qd, qdd, u, np.abs(qd) >= slow, segment, 1 / period)
 
 
 def acting_times(t, delay, held):

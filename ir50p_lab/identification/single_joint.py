@@ -126,9 +126,8 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     t, q, u, v = _columns(t, q, u, qd, drop=anyway)
     new = checks.check_signals(doubts, t, q, u)
     t, q, u, v = (x if x is None else x[new] for x in (t, q, u, v))
-    period = sampling_period(t)
     if v is not None:
-        checks.check_measured_speed(doubts, t, q, v, period)
+        checks.check_measured_speed(doubts, t, q, v)
     plain = v is not None and "inertia" not in names and cutoff_hz in (None, math.inf)
     joint = _Joint.of(t, q, u, v, names, delay, None if plain else cutoff_hz)
     checks.check_motion(doubts, joint.band)
@@ -137,7 +136,7 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     if not plain:
         found = _at_agreeing_cutoff(doubts, joint, found, cutoff_hz is not None)
         found = _with_other_fits_in_errors(joint, found, held is None)
-    checks.check_model(doubts, found, joint.band, period)
+    checks.check_model(doubts, found, joint.band, 1 / joint.rate)
     if found.value("inertia")[0] < 0:
         found = joint.fit(found.cutoff_hz, found.held, without="inertia")
     return JointFit(
@@ -193,10 +192,8 @@ def _at_agreeing_cutoff(doubts, joint, first, given):
         return first
     here, lower, name = doubtful
     each = ", ".join("{:.4g} +- {:.2g} at {:.3g} Hz".format(*one.value(name), one.cutoff_hz) for one in (here, lower))
-    doubts.add(
-        f"{name} depends on the cut-off: {each}. A rigid joint with this friction does not explain the fast part of "
-        "the motion (flexibility, backlash, a late u); give a lower cutoff_hz and compare"
-    )
+    said = f"{name} depends on the cut-off: {each} (flexibility, backlash, a late u)"
+    doubts.add(f"{said}: no rigid joint explains the fast part of the motion; compare with a lower cutoff_hz")
     return first if given else lower
 
 
@@ -224,7 +221,7 @@ def _with_other_fits_in_errors(joint, found, any_instant):
 class Found:
     """A fit at one cut-off: names, x and stderr (p,); the LeastSquares of A (m, r), the columns that the data hold.
 
-    y (m,): u of the samples in the regression, slope: its rate of change; table: their motion, as of `_Joint.table`.
+    y (m,): u of the samples in the regression; table: their motion, as of `_Joint.table`.
     """
 
     names: tuple
@@ -235,13 +232,12 @@ class Found:
     held: bool
     table: SimpleNamespace
     y: np.ndarray
-    slope: np.ndarray
     A: np.ndarray
 
     def value(self, name):
-        """x and stderr of a parameter; 0 and inf where it is not in the model."""
-        known = dict(zip(self.names, zip(self.x.tolist(), self.stderr.tolist(), strict=True), strict=True))
-        return known.get(name, (0.0, math.inf))
+        """x and stderr of a parameter; 0 and inf where the data do not hold it, 0 and nan if it was not asked for."""
+        known = by_name(self.names, self.x, self.stderr)
+        return known.get(name, 0.0), known.get(f"{name}_stderr", math.nan)
 
     def beside(self, columns):
         """The same parameters beside more columns: x, stderr; of the last column value and error; the rms left."""
@@ -288,10 +284,6 @@ class Found:
         judged = [name in _JUDGED for name in self.names]
         return [(x, np.where(judged, stderr, np.inf))]
 
-    def lost(self, name):
-        """Whether the parameter was asked for and the data do not hold it."""
-        return name in self.names and math.isinf(self.value(name)[1])
-
 
 def _named(columns, names):
     """Those of the columns (m, 7) that have these names."""
@@ -310,8 +302,7 @@ class _Joint:
     @classmethod
     def of(cls, t, q, u, v, terms, delay, cutoff_hz):
         angles = np.column_stack([q] if v is None else [q, v])
-        drives = np.repeat(u[:, None], angles.shape[1], axis=1)
-        motion = process(t, angles, drives, cutoff_hz=None, trim=0.0, delay=delay)
+        motion = process(t, angles, angles, cutoff_hz=None, trim=0.0, delay=delay)  # u: in two ways, below
         rate = motion.rate_hz
         if cutoff_hz is not None and number("cutoff_hz", cutoff_hz, "> 0", unit="Hz") >= rate / 2:
             raise InputError(f"cutoff_hz = {cutoff_hz!r}: give a number between 0 and half the rate, {rate / 2:.4g} Hz")
@@ -336,10 +327,7 @@ class _Joint:
         if fewest is not None and (m < least or m * fewest.cutoff_hz / cutoff_hz < 0.5 * len(fewest.y)):
             return None
         if m < least:
-            raise IdentificationError(
-                f"only {m} independent samples are in motion, away from gaps and the ends of the record; at least "
-                f"{least} are needed: record longer, with more motion"
-            )
+            raise IdentificationError(f"only {m} of {least} independent samples are in motion: record more of it")
         names = [name for name in self.terms if name != without]
         if self.band.acceleration_share > _ALL_NOISE:
             names = [name for name in names if name != "inertia"]
@@ -355,9 +343,8 @@ class _Joint:
         left = least_squares(A, table.y[:, way], names=names, tolerance=_OWN_SHARE)
         out = [name for name in self.terms if name not in names]  # left out: 0 +- inf
         x, stderr = np.r_[left.x, np.zeros(len(out))], np.r_[left.stderr, np.full(len(out), np.inf)]
-        u = table.y[:, way], table.slope[:, way]
         held_by_data = A[:, np.isfinite(left.stderr)]
-        return Found((*names, *out), x, stderr, left, cutoff_hz, way == 0, table, *u, held_by_data)
+        return Found((*names, *out), x, stderr, left, cutoff_hz, way == 0, table, table.y[:, way], held_by_data)
 
     def _with_stribeck(self, table, way, cutoff_hz, names):
         """Least squares over all parameters and the Stribeck speed; its error from the slope of the column in it."""
@@ -379,15 +366,15 @@ class _Joint:
     def table(self, cutoff_hz, slower=1.0):
         """What goes into the regression, all through the same low pass.
 
-        columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 2), u in each way, and its slope
-        (m, 2); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its largest value; q (m,)
-        rad; v (m,) rad/s; direction (m,).
+        columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 2): u in each way; extreme (m, 2):
+        share of a sample's surroundings in which u has its smallest, its largest value; q (m,) rad; v (m,) rad/s;
+        direction (m,).
         """
         slow = slower * max(4 * self.band.speed_noise, _DEAD * self.band.speed)
         every = np.concatenate([u[:, 0] for _, u in self.segments])
         low, high = every.min() + 1e-3 * np.ptp(every), every.max() - 1e-3 * np.ptp(every)
-        edge = 0 if math.isinf(cutoff_hz) else math.ceil(self.rate / cutoff_hz / 2)
-        thin = 1 if math.isinf(cutoff_hz) else max(1, int(self.rate / cutoff_hz / _OWN))
+        edge = math.ceil(self.rate / cutoff_hz / 2)
+        thin = max(1, int(self.rate / cutoff_hz / _OWN))
         parts = []
         for angles, drive in self.segments:
             n = len(drive)
@@ -401,12 +388,12 @@ class _Joint:
             smooth = self._smooth(plain, cutoff_hz)
             direction, sin, cos, moving = smooth[:, :4].T
             columns = np.column_stack([np.ones(n), sin, cos, v, direction, np.zeros(n), a])  # as in _COLUMNS
-            y = smooth[:, 4:6]
-            rates, slope = (np.gradient(x, axis=0) * self.rate for x in (columns, y))
-            inside = np.arange(n)[edge : n - edge : thin]
-            kept = inside[moving[inside] > 0.9]
-            parts.append([x[kept] for x in (columns, rates, y, slope, smooth[:, 6:], angles[:, 0], v, direction)])
-        names = ("columns", "rates", "y", "slope", "extreme", "q", "v", "direction")
+            rates = np.gradient(columns, axis=0) * self.rate
+            kept = np.arange(n)[edge : n - edge : thin]
+            kept = kept[moving[kept] > 0.9]
+            whole = columns, rates, smooth[:, 4:6], smooth[:, 6:], angles[:, 0], v, direction
+            parts.append([x[kept] for x in whole])
+        names = ("columns", "rates", "y", "extreme", "q", "v", "direction")
         joined = [np.concatenate(x) for x in zip(*parts, strict=True)] or [np.empty(0)] * len(names)
         return SimpleNamespace(**dict(zip(names, joined, strict=True)))
 
