@@ -279,7 +279,7 @@ def _check_shape(record, a, L, b, e):
     if follows >= _RESPONSE and not_white > _SHAPE * total and correlation > 0.5:
         doubts.refuse(
             f"the response has not the shape of the model ({explained:.0f} % explained). If it overshoots or swings, "
-            "take a second-order model: fit_second_order(t, u, y). Else y drifts, or the drive has a dead zone or limited rate"
+            "take a second-order model: fit_second_order(t, u, y); else y drifts, or a dead zone or rate limit acts"
         )
     elif follows < _RESPONSE or (follows / inflation**2 < _RESPONSE and explained < 50):
         doubts.refuse(f"y does not follow u, which explains {explained:.1f} % of its variance: make a larger step")
