@@ -58,8 +58,9 @@ def estimate_delay(recording, q=None, u=None, *, cutoff_hz=3.0, slow=0.1):
     motion = process(t, q, u, **options)
     fewest = int(motion.use.sum(axis=0).min())
     if fewest < _FEWEST:
-        said = f"{fewest} samples of a joint are faster than slow = {slow} rad/s, not {_FEWEST}"
-        raise IdentificationError(f"{said}: record steps of the set point for a minute, or give a smaller slow")
+        raise IdentificationError(
+            f"only {fewest} samples are faster than slow = {slow} rad/s: record steps for a minute"
+        )
     driven = [process(t, q, u, delay=float(delay), **options).u for delay in delays]
     left = [_left(motion, driven, joint) ** 2 for joint in range(joints)]
     per_joint = np.array([_least(delays, one.sum(axis=0)) for one in left])
@@ -69,7 +70,7 @@ def estimate_delay(recording, q=None, u=None, *, cutoff_hz=3.0, slow=0.1):
     rms = np.sqrt(np.column_stack([one.mean(axis=0) for one in left]))
     flat = max(np.ptp(np.flatnonzero(one <= _FLAT * one.min())) * step for one in rms.T)
     unsure, warnings = max(np.ptp(per_joint), flat), ()
-    if unsure > 2.5 * step or (per_joint >= delays[-1]).any():
+    if unsure > 3 * step or (per_joint >= delays[-1]).any():
         warnings = (f"this record tells the delay only within {unsure:.2g} s: record steps, where u jumps",)
     return DelayEstimate(
         delay=float(np.median(per_joint)),

@@ -173,10 +173,7 @@ def check_measured_speed(doubts, t, q, v):
 def check_motion(doubts, band):
     """A motion that is not faster than the noise of its own angle."""
     if band.speed < _MOTION * band.speed_noise or band.speed == 0:
-        noise = f"{band.speed_noise:.2g} rad/s of the noise of its angle"
-        doubts.refuse(
-            f"not exciting: the joint moves at {band.speed:.2g} rad/s rms beside {noise}; move further, faster"
-        )
+        doubts.refuse(f"not exciting: {band.speed:.2g} rad/s, noise alone {band.speed_noise:.2g} rad/s; move faster")
 
 
 def check_clipped_drive(doubts, u, found):
@@ -216,7 +213,13 @@ def check_model(doubts, found, band, period):
     if fastest > _FAST:
         doubts.add(f"the joint reaches {fastest:.3g} rad/s: is q in degrees?")
     with_gravity = n * found.beside(table.columns[:, 1:3])[-1] ** 2
-    _check_explained(doubts, left.independent, min(with_gravity, missed) / total)
+    explained = 1 - min(with_gravity, missed) / total
+    F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
+    if explained < _EXPLAINED or (F < _F and explained < 0.5):
+        share = f"{100 * max(explained, 0):.1f} % of its variance (F = {F:.1f}, needed {_F:.0f})"
+        doubts.refuse(f"u does not belong to this motion, which explains {share}: same joint and clock? A spring?")
+    elif F < _F:
+        doubts.add(f"only {left.independent:.0f} independent samples (F = {F:.1f}): record longer, with more reversals")
     _check_friction(doubts, found)
     if "inertia" in found.names:
         _check_inertia(doubts, found, band, period)
@@ -228,28 +231,14 @@ def check_model(doubts, found, band, period):
         share = 100 * (1 - with_gravity / missed)
         doubts.add(f"{share:.0f} % of what is left of u go with sin q and cos q: add terms=(..., 'gravity')")
     if left.correlation > 0.9 and missed > _MISSING**2 * total:
-        said = f"residuals are far from white (neighbours correlate by {left.correlation:.2f})"
-        doubts.add(f"{said}: something is missing in the model (backlash, Stribeck friction, delay, a spring)")
-
-
-def _check_explained(doubts, independent, unexplained):
-    """A motion that has nothing to do with u, not even by way of gravity."""
-    explained = 1 - unexplained
-    F = explained / 5 / max(unexplained / max(independent - 6, 1), 1e-300)
-    if explained < _EXPLAINED or (F < _F and explained < 0.5):
-        share = f"{100 * max(explained, 0):.1f} % of its variance (F = {F:.1f}, needed {_F:.0f})"
-        doubts.refuse(f"u does not belong to this motion, which explains {share}: same joint and clock? A spring?")
-    elif F < _F:
-        doubts.add(f"only {independent:.0f} independent samples (F = {F:.1f}): record longer, with more reversals")
+        doubts.add(f"residuals are far from white ({left.correlation:.2f}): something is missing (backlash, a spring)")
 
 
 def _check_friction(doubts, found):
     """Friction that gives energy, drowns in its error, or cannot be told apart."""
     known = {name: found.value(name) for name in _MORE if math.isfinite(found.value(name)[1])}
     if math.isinf(found.value("coulomb")[1]):
-        one_side = np.ptp(np.sign(found.table.direction)) == 0
-        other = "the offset: the joint turns to one side only" if one_side else "viscous friction: one speed only"
-        doubts.add(f"Coulomb friction cannot be told from {other}; record {_MORE['coulomb']}")
+        doubts.add(f"Coulomb friction cannot be told: one side only, or one speed only; record {_MORE['coulomb']}")
     negative = [name for name, (x, stderr) in known.items() if x < -3 * stderr and name != "stribeck"]
     if {"viscous", "coulomb"} <= set(negative):
         doubts.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
@@ -272,8 +261,7 @@ def _check_inertia(doubts, found, band, period):
     elif stderr > 0.5 * J:
         doubts.add(f"inertia {J:.3g} +- {stderr:.2g}: this motion hardly shows it; record faster reversals")
     elif band.acceleration_share > 0.03:
-        share = 100 * band.acceleration_share
-        doubts.add(f"inertia: about {share:.0f} % too small by noise; move faster, or give a lower cutoff_hz")
+        doubts.add(f"inertia: {100 * band.acceleration_share:.0f} % too small by noise; move faster, or filter more")
     b = found.value("viscous")[0]
     if 0 < J < b * period:
         doubts.add(f"the time constant {J / b:.3g} s is below the sampling period of {period:.3g} s: sample faster")

@@ -7,11 +7,12 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.columns import columns_of, runs, sampling_period
-from ir50p_lab.inputs import choice, number, numbers, switch
+from ir50p_lab.inputs import choice, number, switch
 from ir50p_lab.signals.low_pass import low_pass
 
 BACKWARD = "zero-phase"
 _ORDER = 4  # of the zero-phase filter; it counts twice
+_SHORTEST = 16  # samples of a run: it needs as many to run backward
 _LATE = 2.0  # a filter of this many time constants (1/(2 pi cutoff)) on either side is cut off by default
 
 
@@ -110,7 +111,7 @@ def process(
         held: True: u is held from its sample to the next, as a bench does; what then acts around the instant t_k is the
             mean of u_k-1 and u_k. False: u is a measurement at t_k. "causal" takes u as it stands, as the thesis does,
             shifted by the delay only.
-        slow: rad/s, one number or one per joint; below it sgn(qd) is noise and a joint may stick: `use` is False there.
+        slow: rad/s; below it sgn(qd) is noise and a joint may stick: `use` is False there.
         trim: s cut off at both ends of each run without a gap; default 2/(2 pi cutoff_hz).
 
     Returns: Motion. Raises: InputError on bad arguments, NaN, or times that do not increase; IdentificationError if
@@ -120,18 +121,14 @@ def process(
     period = sampling_period(t)
     causal = choice("derivatives", derivatives, (BACKWARD, "causal")) == "causal"
     number("delay", delay, ">= 0", unit="s")
-    slow = numbers("slow", slow, unit="rad/s")
-    if slow.shape not in ((), q.shape[1:]) or not (slow >= 0).all():
-        raise InputError(f"slow = {slow} rad/s: give one number >= 0, or one for each of {q.shape[1]} joint(s)")
+    number("slow", slow, ">= 0", unit="rad/s")
     derive = causal_derivatives if causal else central_derivatives
-    unfiltered = cutoff_hz is None and not causal
-    if trim is None:
-        trim = 0.0 if unfiltered else _LATE / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
-    number("trim", trim, ">= 0", unit="s")
+    if trim is None and (causal or cutoff_hz is not None):
+        trim = _LATE / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
+    trim = number("trim", trim or 0.0, ">= 0", unit="s")
     acts = acting_times(t, delay, switch("held", held) and not causal)
     pieces = []
-    backward = 0 if unfiltered or causal else 3 * (_ORDER + 1) + 1  # as `low_pass` needs
-    shortest = max(8, backward, math.ceil(2 * trim / period) + 4)
+    shortest = max(_SHORTEST, math.ceil(2 * trim / period) + 4)
     for k, (first, last) in enumerate(runs(t, 3.5 * period)):
         if last - first < shortest:
             continue

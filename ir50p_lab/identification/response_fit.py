@@ -179,9 +179,8 @@ class FOPDT:
     warnings: tuple = ()
 
     def __post_init__(self):
-        for name, value, good in (("K", self.K, self.K != 0), ("T", self.T, self.T > 0), ("L", self.L, self.L >= 0)):
-            if not (math.isfinite(value) and good):
-                raise InputError(f"{name} = {value}: a FOPDT model needs finite K != 0, T > 0 s and L >= 0 s")
+        if not (math.isfinite(self.K + self.T + self.L) and self.K != 0 and self.T > 0 and self.L >= 0):
+            raise InputError(f"K, T, L = {self.K}, {self.T}, {self.L}: give finite K != 0, T > 0 s and L >= 0 s")
 
     def response(self, t, u, *, u_before=None):
         """Output of the model for the input u(t), exact between the samples.
@@ -190,9 +189,8 @@ class FOPDT:
         Returns: (n,), in units of y. Raises InputError on wrong shapes or numbers that are not finite.
         """
         t, u = same_samples({"t": t, "u": u}, most=1)
-        times, jumps = jumps_of(t, u, u_before)
         out = np.empty(len(t))
-        respond(t, times, jumps, 1 / self.T, float(self.L), out)
+        respond(t, *jumps_of(t, u, u_before), 1 / self.T, float(self.L), out)
         return self.y0 + self.K / self.T * out
 
 
@@ -222,7 +220,7 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
 
     Raises:
         IdentificationError: u never changes; y does not change or does not follow u; fewer than 8 samples after the
-        change; y swings (then with what `fit_second_order` finds) or drifts; y runs on like a ramp (an integrating
+        change; y swings (then take `fit_second_order`) or drifts; y runs on like a ramp (an integrating
         joint: K and T have no value) or ever faster. Each says what to do next.
         InputError: NaN, shapes or lengths that do not fit, time that does not increase.
     """
@@ -317,7 +315,7 @@ class SecondOrderModel:
     """G(s) = K (zero s + 1) exp(-L s)/((s/w)^2 + 2 damping s/w + 1)
 
     K: y/u; w: rad/s; damping: 1; zero: s, 0 without one, < 0 starts the wrong way; L: s; each with a standard error
-    ..._stderr (0: not fitted); y0: output at rest; rms: of the residual; fit: 100 (1 - |e|/|y - mean y|) %.
+    ..._stderr (0: not fitted); y0: output at rest; fit: 100 (1 - |e|/|y - mean y|) %.
     """
 
     K: float
@@ -331,7 +329,6 @@ class SecondOrderModel:
     zero_stderr: float = 0.0
     L_stderr: float = math.nan
     y0: float = 0.0
-    rms: float = math.nan
     fit: float = math.nan
     warnings: tuple = ()
 
@@ -366,10 +363,8 @@ def fit_second_order(t, u, y, *, u_before=None):
     """
     record = StepRecord(t, u, y, u_before)
     t, y, period, n = record.t, record.y, record.period, len(record.t)
-    starts = [
-        [(np.log(w), damping, L) for damping in _GRID for L in (0.0, 3 * period, 0.1)]
-        for w in np.geomspace(3, 0.5 / period, 10)
-    ]
+    shapes = [(damping, L) for damping in _GRID for L in (0.0, 3 * period, 0.1)]
+    starts = [[(math.log(w), *shape) for shape in shapes] for w in np.geomspace(3, 0.5 / period, 10)]
     bounds = ([math.log(0.1), _DAMPING[0], 0.0], [math.log(3 / period), _DAMPING[1], 0.5])
 
     def basis(log_w, damping, L):
@@ -399,7 +394,6 @@ def fit_second_order(t, u, y, *, u_before=None):
     return SecondOrderModel(
         **by_name(_NAMES[: len(found)], found * units, errors * units),
         y0=float(c[0] * record.y_unit + record.y_first),
-        rms=float(np.sqrt(np.mean(e**2))) * record.y_unit,
         fit=float(100 * (1 - np.sqrt(np.mean(e**2)) / np.std(y))),
         warnings=tuple(record.doubts),
     )

@@ -121,8 +121,7 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     """
     names = _names_of(terms)
     doubts = checks.Doubts(switch("anyway", anyway))
-    if held is not None:
-        switch("held", held)
+    held = held if held is None else switch("held", held)
     t, q, u, v = _columns(t, q, u, qd, drop=anyway)
     new = checks.check_signals(doubts, t, q, u)
     t, q, u, v = (x if x is None else x[new] for x in (t, q, u, v))
@@ -285,11 +284,6 @@ class Found:
         return [(x, np.where(judged, stderr, np.inf))]
 
 
-def _named(columns, names):
-    """Those of the columns (m, 7) that have these names."""
-    return columns[:, [_COLUMNS.index(name) for name in names]]
-
-
 @dataclass(frozen=True)
 class _Joint:
     """Evenly sampled runs of one joint, [(q or q and qd (n, 1 or 2), u held and u measured (n, 2))]; their Spectrum."""
@@ -328,30 +322,27 @@ class _Joint:
             return None
         if m < least:
             raise IdentificationError(f"only {m} of {least} independent samples are in motion: record more of it")
-        names = [name for name in self.terms if name != without]
-        if self.band.acceleration_share > _ALL_NOISE:
-            names = [name for name in names if name != "inertia"]
-        solve = self._with_stribeck if "stribeck" in names else self._solve
+        out = {without, "inertia"} if self.band.acceleration_share > _ALL_NOISE else {without}
+        A = table.columns[:, [_COLUMNS.index(name) for name in self.terms]]
+        A[:, [name in out for name in self.terms]] = 0.0  # an empty column: 0 +- inf
+        solve = self._with_stribeck if "stribeck" in self.terms else self._solve
         if held is None:
-            as_held, measured = (solve(table, way, cutoff_hz, names) for way in (0, 1))
+            as_held, measured = (solve(table, way, cutoff_hz, A) for way in (0, 1))
             held = measured.left.rms >= _CLEARLY * as_held.left.rms
-        return solve(table, 0 if held else 1, cutoff_hz, names)
+        return solve(table, 0 if held else 1, cutoff_hz, A)
 
-    def _solve(self, table, way, cutoff_hz, names, columns=None):
-        """Found for u taken in this way; columns: instead of those of these names."""
-        A = _named(table.columns, names) if columns is None else columns
-        left = least_squares(A, table.y[:, way], names=names, tolerance=_OWN_SHARE)
-        out = [name for name in self.terms if name not in names]  # left out: 0 +- inf
-        x, stderr = np.r_[left.x, np.zeros(len(out))], np.r_[left.stderr, np.full(len(out), np.inf)]
+    def _solve(self, table, way, cutoff_hz, A, more=()):
+        """Found for u taken in this way; A: columns of the terms and of `more` names."""
+        y = table.y[:, way]
+        left = least_squares(A, y, tolerance=_OWN_SHARE)
         held_by_data = A[:, np.isfinite(left.stderr)]
-        return Found((*names, *out), x, stderr, left, cutoff_hz, way == 0, table, table.y[:, way], held_by_data)
+        return Found((*self.terms, *more), left.x, left.stderr, left, cutoff_hz, way == 0, table, y, held_by_data)
 
-    def _with_stribeck(self, table, way, cutoff_hz, names):
+    def _with_stribeck(self, table, way, cutoff_hz, A):
         """Least squares over all parameters and the Stribeck speed; its error from the slope of the column in it."""
-        place = names.index("stribeck")
+        place = self.terms.index("stribeck")
 
         def columns(log_speed):
-            A = _named(table.columns, names)
             A[:, place] = table.direction * np.exp(-((table.v / np.exp(log_speed)) ** 2))
             return A
 
@@ -360,7 +351,7 @@ class _Joint:
         (best,), c, _ = best_fit(lambda p: columns(*p), table.y[:, way], starts, bounds)
         A, speed = columns(best), math.exp(best)
         slope = c[place] * A[:, place] * 2 * table.v**2 / speed**3
-        found = self._solve(table, way, cutoff_hz, [*names, "stribeck_speed"], np.column_stack([A, slope]))
+        found = self._solve(table, way, cutoff_hz, np.column_stack([A, slope]), ["stribeck_speed"])
         return replace(found, x=np.where(np.equal(found.names, "stribeck_speed"), speed, found.x))
 
     def table(self, cutoff_hz, slower=1.0):
