@@ -58,9 +58,7 @@ def estimate_delay(recording, q=None, u=None, *, cutoff_hz=3.0, slow=0.1):
     motion = process(t, q, u, **options)
     fewest = int(motion.use.sum(axis=0).min())
     if fewest < _FEWEST:
-        raise IdentificationError(
-            f"only {fewest} samples are faster than slow = {slow} rad/s: record steps for a minute"
-        )
+        raise IdentificationError(f"only {fewest} samples faster than slow = {slow} rad/s: record steps for a minute")
     driven = [process(t, q, u, delay=float(delay), **options).u for delay in delays]
     left = [_left(motion, driven, joint) ** 2 for joint in range(joints)]
     per_joint = np.array([_least(delays, one.sum(axis=0)) for one in left])
