@@ -14,9 +14,8 @@ def columns_of(recording, q=None, u=None, qd=None, *, drop=False):
     are no numbers. Raises InputError on shapes that do not fit, NaN, or times that do not increase, naming the first.
     """
     if q is None and u is None and hasattr(recording, "q"):
-        given = {"t": recording.t, "q": recording.q, "u": recording.u}
-    else:
-        given = {"t": recording, "q": q, "u": u} | ({} if qd is None else {"qd": qd})
+        recording, q, u = recording.t, recording.q, recording.u
+    given = {"t": recording, "q": q, "u": u} | ({} if qd is None else {"qd": qd})
     t, *rest = same_samples(given, drop)
     rest = [np.ascontiguousarray(x.reshape(len(t), -1)) for x in rest]
     for name, array in zip(list(given)[2:], rest[1:], strict=True):
