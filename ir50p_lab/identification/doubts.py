@@ -265,7 +265,8 @@ def _check_inertia(doubts, found, band, period):
     b = found.value("viscous")[0]
     if 0 < J < b * period:
         doubts.add(f"the time constant {J / b:.3g} s is below the sampling period of {period:.3g} s: sample faster")
-    delay, sigma, rms = found.beside_delay[2:]  # negative for a u behind a low pass
+    lag = found.beside(found.table.slopes[:, 1 - found.held])  # u behind a low pass: what went in is u + lag du/dt
+    delay, sigma, rms = min(found.beside_delay[2:], lag[2:], key=lambda one: one[2])
     if rms < 0.9 * found.left.rms and abs(delay) > max(5 * sigma, 0.3 * period):
         if delay > 0:
             doubts.add(f"u seems to act about {delay:.2g} s after it was recorded: inertia too large; give delay=")

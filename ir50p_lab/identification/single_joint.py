@@ -357,9 +357,9 @@ class _Joint:
     def table(self, cutoff_hz, slower=1.0):
         """What goes into the regression, all through the same low pass.
 
-        columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 2): u in each way; extreme (m, 2):
-        share of a sample's surroundings in which u has its smallest, its largest value; q (m,) rad; v (m,) rad/s;
-        direction (m,).
+        columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 2): u in each way, and its slopes
+        (m, 2); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its largest value; q (m,)
+        rad; v (m,) rad/s; direction (m,).
         """
         slow = slower * max(4 * self.band.speed_noise, _DEAD * self.band.speed)
         every = np.concatenate([u[:, 0] for _, u in self.segments])
@@ -379,12 +379,12 @@ class _Joint:
             smooth = self._smooth(plain, cutoff_hz)
             direction, sin, cos, moving = smooth[:, :4].T
             columns = np.column_stack([np.ones(n), sin, cos, v, direction, np.zeros(n), a])  # as in _COLUMNS
-            rates = np.gradient(columns, axis=0) * self.rate
+            rates, slopes = (np.gradient(x, axis=0) * self.rate for x in (columns, smooth[:, 4:6]))
             kept = np.arange(n)[edge : n - edge : thin]
             kept = kept[moving[kept] > 0.9]
-            whole = columns, rates, smooth[:, 4:6], smooth[:, 6:], angles[:, 0], v, direction
+            whole = columns, rates, smooth[:, 4:6], slopes, smooth[:, 6:], angles[:, 0], v, direction
             parts.append([x[kept] for x in whole])
-        names = ("columns", "rates", "y", "extreme", "q", "v", "direction")
+        names = ("columns", "rates", "y", "slopes", "extreme", "q", "v", "direction")
         joined = [np.concatenate(x) for x in zip(*parts, strict=True)] or [np.empty(0)] * len(names)
         return SimpleNamespace(**dict(zip(names, joined, strict=True)))
 
