@@ -9,10 +9,10 @@ from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.identification.parameters import RIGID_ON
 from ir50p_lab.identification.processing import process
-from ir50p_lab.inputs import number
 
 _FLAT = 1.01  # a residual this near to the smallest does not speak against a delay
 _FEWEST = 200  # samples in motion, of each joint
+_LONGEST = 0.15  # s
 _BLOCKS = 6  # stretches of the record that are compared for the standard error
 
 
@@ -33,7 +33,7 @@ class DelayEstimate:
     warnings: tuple
 
 
-def estimate_delay(recording, q=None, u=None, *, longest=0.15, cutoff_hz=3.0, slow=0.1):
+def estimate_delay(recording, q=None, u=None, *, cutoff_hz=3.0, slow=0.1):
     """Delay from a sample to the moment its u acts: the one with which the best model leaves the smallest residual.
 
     For each delay that is tried, u is shifted, the model is fitted anew (three joints: the rigid arm with friction; one
@@ -43,8 +43,8 @@ def estimate_delay(recording, q=None, u=None, *, longest=0.15, cutoff_hz=3.0, sl
     within one or two periods, for there u jumps and the joint answers; from a Fourier excitation it is off by up to ten
     periods, for there a delay looks like a little more inertia and friction. Backlash and a dead zone look like delay.
 
-    Args: recording, or t, q, u: as in `process`. longest: s, largest delay tried, from 0 on by whole periods.
-    cutoff_hz, slow: as in `process`; slow leaves out where a joint may stick.
+    Args: recording, or t, q, u: as in `process`. cutoff_hz, slow: as in `process`; slow leaves out where a joint may
+    stick. Delays from 0 to 0.15 s are tried, by whole periods.
 
     Returns: DelayEstimate. Raises: InputError on bad arguments; IdentificationError if too little motion is left.
     """
@@ -53,17 +53,12 @@ def estimate_delay(recording, q=None, u=None, *, longest=0.15, cutoff_hz=3.0, sl
     if joints not in (1, 3):
         raise InputError(f"q has {joints} columns: give one joint, or all three")
     step = sampling_period(t)
-    delays = step * np.arange(int(number("longest", longest, "> 0", unit="s") / step + 1e-9) + 1)
-    if len(delays) < 4:
-        raise InputError(f"longest = {longest} s holds {len(delays)} delays of {step:g} s: give 4 or more to compare")
-    options = {"cutoff_hz": cutoff_hz, "slow": slow, "filter_u": True, "trim": max(longest, 0.5)}
+    delays = step * np.arange(max(int(_LONGEST / step + 1e-9), 3) + 1)
+    options = {"cutoff_hz": cutoff_hz, "slow": slow, "filter_u": True, "trim": max(delays[-1], 0.5)}
     motion = process(t, q, u, **options)
     fewest = int(motion.use.sum(axis=0).min())
     if fewest < _FEWEST:
-        raise IdentificationError(
-            f"{fewest} samples of a joint are faster than slow = {slow} rad/s; {_FEWEST} are needed: record steps of "
-            "the set point for a minute, or give a smaller slow"
-        )
+        raise IdentificationError(f"only {fewest} samples faster than slow = {slow} rad/s: record steps for a minute")
     driven = [process(t, q, u, delay=float(delay), **options).u for delay in delays]
     left = [_left(motion, driven, joint) ** 2 for joint in range(joints)]
     per_joint = np.array([_least(delays, one.sum(axis=0)) for one in left])
@@ -71,13 +66,17 @@ def estimate_delay(recording, q=None, u=None, *, longest=0.15, cutoff_hz=3.0, sl
     by_block = [np.median([_least(delays, one.sum(axis=0)) for one in part]) for part in parts]
     stderr = max(np.std(by_block, ddof=1) / np.sqrt(_BLOCKS), np.std(per_joint) / np.sqrt(joints), 0.3 * step)
     rms = np.sqrt(np.column_stack([one.mean(axis=0) for one in left]))
+    flat = max(np.ptp(np.flatnonzero(one <= _FLAT * one.min())) * step for one in rms.T)
+    unsure, warnings = max(np.ptp(per_joint), flat), ()
+    if unsure > 3 * step or (per_joint >= delays[-1]).any():
+        warnings = (f"this record tells the delay only within {unsure:.2g} s: record steps, where u jumps",)
     return DelayEstimate(
         delay=float(np.median(per_joint)),
         stderr=float(stderr),
         per_joint=per_joint,
         delays=delays,
         rms=rms,
-        warnings=tuple(_doubts(per_joint, delays, rms)),
+        warnings=warnings,
     )
 
 
@@ -102,18 +101,3 @@ def _least(delays, power):
     before, here, after = power[m - 1 : m + 2]
     bend = before - 2 * here + after
     return float(delays[m] + (0.5 * (before - after) / bend if bend > 0 else 0.0) * (delays[1] - delays[0]))
-
-
-def _doubts(per_joint, delays, rms):
-    step = delays[1]
-    if (per_joint >= delays[-1]).any():
-        yield f"the best delay is the largest tried, {delays[-1]:.3g} s: this record does not show it, or raise longest"
-    if np.ptp(per_joint) > 2.5 * step:
-        each = ", ".join(f"{x:.3g}" for x in per_joint)
-        yield (
-            f"the joints disagree ({each} s): backlash, dead zone and stiction look like delay too; record steps of "
-            "the set point, and trust the smallest"
-        )
-    flat = [np.ptp(np.flatnonzero(one <= _FLAT * one.min())) * step for one in rms.T]
-    if max(flat) > 3.5 * step:
-        yield f"the residual is flat within 1 % over {max(flat):.2g} s: record steps of the set point, where u jumps"

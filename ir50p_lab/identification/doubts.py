@@ -9,7 +9,6 @@ from ir50p_lab.identification.columns import quantum_of, runs, sampling_period
 
 FEWEST = 40  # samples, ten for each of four parameters
 _TURNS = 6 * math.pi  # rad: further than joints go, and a third of a radian in degrees
-_FAST = 60.0  # rad/s: faster than joints are, and a slow joint in degrees
 _SLOW_CLOCK = 0.15  # s: nobody samples a joint so slowly, many write milliseconds
 _STAYS = 5  # samples at one value that look like more than chance
 _BROKEN = 3.5  # samples: noise breaks a stay into pieces this near to each other
@@ -17,7 +16,21 @@ _ABRUPT = 0.2  # of the rms speed, with which a joint runs into the end of its s
 _JUMP = 5.0  # times the largest usual step, by which a frozen angle jumps when it is alive again
 _SPIKE = 0.05  # of the range, and 12 times the bends around it: one sample this far from both neighbours is an outlier
 _LEAST = 3  # quanta, of an outlier: fewer are the flicker of a coarse signal
+_MOTION = 3.0  # least speed over that of the noise
+_FAST = 60.0  # rad/s: faster than joints are, and a slow joint in degrees
 _LEVELS = 16  # an input of so few levels is switched, not clipped
+# Measured on three machines, 3 seeds, limits at 30 to 90 %: clipped 0.02 of the range or more and 1.0 or more; a drive
+# that saturates, 0.67 at most. `reach`: how far these samples lie outside the ones the model was fitted to.
+_EXCESS, _BEYOND = 0.01, 0.85
+_EXPLAINED = 0.02  # least share of the variance of u that the motion explains
+_F = 8.0  # least F value of a motion that has to do with u
+_POOR = 0.5  # fit: below, the standard errors hold for a model that does not
+_MISSING = 0.1  # of the spread of u, that may be left and be alike over time
+_MORE = {
+    "viscous": "several speeds that differ more",
+    "coulomb": "slow motion to both sides beside fast one",
+    "stribeck": "crawling motion to both sides",
+}
 
 
 class Doubts(list):
@@ -41,15 +54,10 @@ def check_signals(doubts, t, q, u):
     """What is wrong with q (n,) and u (n,) at the times t (n,) before any model; True for samples that are new."""
     new = np.ones(len(t), dtype=bool)
     if len(t) < FEWEST:
-        doubts.refuse(
-            f"{len(t)} samples are too short a record; record {FEWEST} or more, over several reversals of the motion"
-        )
+        doubts.refuse(f"{len(t)} samples are too short a record; record {FEWEST} or more, over several reversals")
     for name, x in (("q", q), ("u", u)):
         if np.ptp(x) <= 1e-12 * np.abs(x).max():
-            raise IdentificationError(
-                f"{doubts.who}{name} is constant at {x[0]:.6g} in the whole record: check sensor and power, and "
-                "drive harder than the breakaway friction, to both sides"
-            )
+            raise IdentificationError(f"{doubts.who}{name} is constant at {x[0]:.6g}: check sensor, power and friction")
         check_outliers(doubts, name, t, x)
     if len(np.unique(q)) < 3:
         doubts.refuse(f"q takes only {len(np.unique(q))} values: no motion can be seen; use a finer sensor")
@@ -68,29 +76,23 @@ def check_signals(doubts, t, q, u):
 
 def _whole_turns(doubts, t, q):
     """Angles that jump by a whole turn between neighbours (2 pi rad, or 360 degrees)."""
-    step = np.diff(q)
-    usual = 1.4826 * np.median(np.abs(step)) + 1e-12
-    for turn, remedy in ((2 * math.pi, "np.unwrap(q)"), (360.0, "np.unwrap(np.radians(q))")):
-        jumps = t[1:][(np.abs(np.abs(step) - turn) < 0.1 * turn) & (np.abs(step) > 10 * usual)]
+    step = np.abs(np.diff(q))
+    for turn in (2 * math.pi, 360.0):
+        jumps = t[1:][(np.abs(step - turn) < 0.1 * turn) & (step > 15 * np.median(step))]
         if len(jumps):
-            doubts.refuse(
-                f"q jumps by {turn:.4g} at t = {jumps[0]:.6g} s ({len(jumps)} time(s)): a whole turn was wrapped; use "
-                f"{remedy}"
-            )
+            remedy = f"use np.unwrap(q, period={turn:.6g})"
+            doubts.refuse(f"q jumps by {turn:.4g} at t = {jumps[0]:.6g} s: a whole turn was wrapped; {remedy}")
 
 
 def _repeated_angles(doubts, q):
     """Samples in which q is new, where it is renewed more slowly than rows are written; else all."""
     steps = np.abs(np.diff(q))
     new = np.flatnonzero(steps > 0)
-    every = (len(q) - 1) / max(len(new), 1)
+    every = (len(q) - 1) / len(new)
     regular = np.mean(np.abs(np.diff(new) - every) < 0.6) >= 0.7  # or it stood still now and then
     if every < 1.9 or np.median(steps[new]) < 4 * quantum_of(q) or not regular:  # small: the steps of a coarse sensor
         return np.ones(len(q), dtype=bool)
-    doubts.add(
-        f"q is new only in every {every:.3g}th row: its sensor is slower than the file; only the rows in which it "
-        "changes were used"
-    )
+    doubts.add(f"q is new only in every {every:.3g}th row (a slow sensor): the others were left out")
     return np.r_[True, steps > 0]
 
 
@@ -102,91 +104,76 @@ def _frozen_angle(doubts, t, q):
     stood = np.diff(moved, prepend=-1) - 1  # samples without change before each move
     frozen = np.flatnonzero((stood >= _STAYS) & (steps[moved] > _JUMP * usual))
     if len(frozen):
-        k = moved[frozen[0]]
-        doubts.refuse(
-            f"q stands for {stood[frozen[0]] + 1} samples and jumps by {q[k + 1] - q[k]:.3g} rad at t = {t[k + 1]:.6g} "
-            f"s ({len(frozen)} time(s)): the sensor or link hung. Leave these samples out; a gap in time is understood"
-        )
+        where = f"t = {t[moved[frozen[0]] + 1]:.6g} s ({len(frozen)} time(s))"
+        doubts.refuse(f"q stands still and jumps at {where}: the sensor or link hung; leave these samples out")
 
 
 def _clipped_angle(doubts, t, q):
-    """A q that runs into its largest or smallest value, stays there, and comes out of it as suddenly.
-
-    A joint that comes to rest slows down first: over the last m samples it is no faster than it lost over the m
-    before. One that is cut off loses its speed at once, and regains it at once.
-    """
-    quantum = quantum_of(q)
-    noise = float(np.median(np.abs(np.diff(q, 2)))) / 0.6745 / math.sqrt(6)
-    period = sampling_period(t)
-    rms = math.sqrt(np.mean(np.diff(q) ** 2)) / period
-    for sign, name in ((1, "largest"), (-1, "smallest")):
-        x = sign * q
+    """A q that runs into its largest or smallest value, stays there, and comes out of it as suddenly."""
+    for name, x in (("largest", q), ("smallest", -q)):
         places = np.flatnonzero(x >= x.max() - 1e-9 * np.ptp(x))
-        lost, height = 0, 0.0
-        for first, last in runs(places.astype(float), _BROKEN) if len(places) >= _STAYS else ():
-            begin, end = places[first], places[last - 1] + 1
-            m = max(3, (end - begin) // 8)
-            if last - first < _STAYS or begin < 2 * m or end + 2 * m > len(q):
-                continue
-            near, far = (
-                [_slope(t, x, begin - (k + 1) * m, begin - k * m), -_slope(t, x, end + k * m, end + (k + 1) * m)]
-                for k in (0, 1)
-            )
-            hidden = sum(near) / 2 * (t[end - 1] - t[begin]) / 4
-            unsure = (2 * quantum + 8 * noise / math.sqrt(m)) / ((m - 1) * period)
-            if (
-                sum(near) > 3 * max(sum(far) - sum(near), 0.0) + unsure
-                and min(near) > _ABRUPT * rms
-                and 2 * quantum + 1e-4 * np.ptp(q) < hidden < 3 * np.ptp(q)  # more is a rest, not a hidden swing
-            ):
-                lost, height = lost + last - first, max(height, hidden)
-        if lost:
-            doubts.refuse(
-                f"q was clipped: it runs into its {name} value, {sign * x.max():.6g} rad, without slowing down, stays "
-                f"for {lost} samples and leaves it as fast (about {height:.2g} rad are missing). The sensor ends, "
-                "or the joint hits a stop: record again within the range, or cut these stretches out"
-            )
+        stays = [(places[a], places[b - 1] + 1) for a, b in runs(places.astype(float), _BROKEN) if b - a >= _STAYS]
+        missing = max([_cut_off(t, x, *stay) for stay in stays], default=0.0)
+        if missing > 0:
+            where = f"{name} value, {q[places[0]]:.6g} rad (about {missing:.2g} rad are missing)"
+            doubts.refuse(f"q was clipped at its {where}: record within the range, or cut these stretches out")
 
 
-def _slope(t, x, first, last):
-    """Slope of a straight line through x[first:last]."""
-    t, x = t[first:last] - t[first:last].mean(), x[first:last]
+def _cut_off(t, x, begin, end):
+    """Height, rad, of the swing above x[begin:end], a stay at the largest value; 0 if the joint comes to rest there.
+
+    One that comes to rest slows down: over the last m samples it is no faster than it lost over the m before. One that
+    is cut off loses its speed at once, and regains it at once.
+    """
+    m = max(3, (end - begin) // 8)
+    if begin < 2 * m or end + 2 * m > len(x):
+        return 0.0
+    near, far = (np.array([_slope(t, x, begin - k * m, m), -_slope(t, x, end + (k - 1) * m, m)]) for k in (1, 2))
+    step, period, quantum = np.diff(x), sampling_period(t), quantum_of(x)
+    noise = float(np.median(np.abs(np.diff(step)))) / 0.6745 / math.sqrt(6)
+    unsure = (2 * quantum + 8 * noise / math.sqrt(m)) / ((m - 1) * period)
+    sudden = near.sum() > 3 * max((far - near).sum(), 0.0) + unsure
+    fast = near.min() > _ABRUPT * math.sqrt(np.mean(step**2)) / period
+    height = near.mean() * (t[end - 1] - t[begin]) / 4
+    seen = 2 * quantum + 1e-4 * np.ptp(x) < height < 3 * np.ptp(x)  # more is a rest, not a hidden swing
+    return height if sudden and fast and seen else 0.0
+
+
+def _slope(t, x, first, m):
+    """Slope of a straight line through m samples of x from `first` on."""
+    t, x = t[first : first + m] - t[first : first + m].mean(), x[first : first + m]
     return float(t @ x / (t @ t))
 
 
-def outliers(x):
-    """Indices of samples of x (n,) that are far from both neighbours, which agree, where nothing around is so rough.
+def check_outliers(doubts, name, t, x, remedy="leave these samples out"):
+    """A doubt about samples of x (n,) that are far from both neighbours, which agree. Returns their indices.
 
     Lost counts, bad bytes; not torque ripple, where all neighbours are far from each other.
     """
-    if len(x) < 5:
-        return np.empty(0, dtype=int)
     from scipy.ndimage import median_filter
 
     low, high = np.quantile(x, (0.02, 0.98))
     off = np.abs(x[1:-1] - (x[:-2] + x[2:]) / 2)
-    around = np.maximum(median_filter(off, 41, mode="nearest"), np.median(off))
-    alone = (off > np.maximum(max(_SPIKE * (high - low), _LEAST * quantum_of(x)), 12 * around)) & (
-        np.abs(x[2:] - x[:-2]) < 0.4 * off
-    )
-    return np.flatnonzero(alone) + 1
-
-
-def check_outliers(doubts, name, t, x, remedy="leave these samples out, they pull at every parameter"):
-    """A doubt about outliers of the signal `name`. Returns their indices."""
-    places = outliers(x)
+    around = np.maximum(median_filter(off, 41, mode="nearest"), np.median(off)) if len(off) else off
+    far = off > np.maximum(max(_SPIKE * (high - low), _LEAST * quantum_of(x)), 12 * around)
+    places = np.flatnonzero(far & (np.abs(x[2:] - x[:-2]) < 0.4 * off)) + 1
     if len(places):
         k = places[0]
-        doubts.add(
-            f"{name} has {len(places)} outlier(s), the first at t = {t[k]:.6g} s ({x[k]:.4g} between {x[k - 1]:.4g} "
-            f"and {x[k + 1]:.4g}): {remedy}"
-        )
+        doubts.add(f"{name} has {len(places)} outlier(s), the first at t = {t[k]:.6g} s, {x[k]:.4g}: {remedy}")
     return places
 
 
-# Measured on three machines, 3 seeds, limits at 30 to 90 %: clipped 0.02 of the range or more and 1.0 or more; a drive
-# that saturates, 0.67 at most. `reach`: how far these samples lie outside the ones the model was fitted to.
-_EXCESS, _BEYOND = 0.01, 0.85
+def check_measured_speed(doubts, t, q, v):
+    """A qd that is not the rate of q: another unit, another joint."""
+    factor = float(np.gradient(q, t) @ v / max(v @ v, 1e-300))
+    if not 0.9 < factor < 1.1:
+        doubts.add(f"the angle changes at {factor:.3g} times qd: is qd in rad/s and q in rad, of the same joint?")
+
+
+def check_motion(doubts, band):
+    """A motion that is not faster than the noise of its own angle."""
+    if band.speed < _MOTION * band.speed_noise or band.speed == 0:
+        doubts.refuse(f"not exciting: {band.speed:.2g} rad/s, noise alone {band.speed_noise:.2g} rad/s; move faster")
 
 
 def check_clipped_drive(doubts, u, found):
@@ -195,35 +182,93 @@ def check_clipped_drive(doubts, u, found):
     The model of the other samples is compared with those where u has its largest or smallest value. A drive that
     really saturates, or a switched input, is fine: there the motion needs no more than what was recorded.
     """
-    extreme, A = found.table.extreme, found.A
+    extreme, A = found.table.extreme, found.A / np.linalg.norm(found.A, axis=0)
     plain = extreme.max(axis=1) < 0.02
     if len(np.unique(u)) <= _LEVELS or plain.sum() < FEWEST // 2:
         return
     Q, R = np.linalg.qr(A[plain])
-    if np.linalg.cond(R / np.maximum(np.linalg.norm(R, axis=0), 1e-300)) > 1e6:  # too little motion is left to tell
+    if np.linalg.cond(R) > 1e6:  # too little motion is left to tell
         return
     left = found.y - A @ np.linalg.solve(R, Q.T @ found.y[plain])
     rms = math.sqrt(np.mean(left[plain] ** 2))
-    for side, (name, limit, sign) in enumerate((("smallest", u.min(), -1), ("largest", u.max(), 1))):
-        cut = np.flatnonzero(extreme[:, side] > 0.5)
-        if len(cut) < 3:
+    for name, limit, sign, share in zip(("smallest", "largest"), (u.min(), u.max()), (-1, 1), extreme.T, strict=True):
+        cut = share > 0.5
+        if cut.sum() < 3:
             continue
         excess = -sign * left[cut]
         reach = math.sqrt(plain.sum() * np.mean(np.sum(np.linalg.solve(R.T, A[cut].T) ** 2, axis=0)))
         if excess.mean() > max(_EXCESS * np.ptp(u), _BEYOND * rms * reach):
-            doubts.refuse(
-                f"u was clipped: it stays at its {name} value, {limit:.6g}, where the motion needs "
-                f"{limit + sign * excess.max():.4g}: widen the range that is recorded, or drive less"
-            )
+            needed = f"{limit:.6g}, where the motion needs {limit + sign * excess.max():.4g}"
+            doubts.refuse(f"u was clipped at its {name} value, {needed}: record a wider range, or drive less")
     share = float((extreme.max(axis=1) > 0.5).mean())
     if share > 0.1 and rms > 0.08 * np.std(found.y):
-        doubts.add(
-            f"u is at its largest or smallest value in {100 * share:.0f} % of the record and the model does not "
-            "explain it well: was it clipped in the recording? Widen the range that is recorded"
-        )
+        doubts.add(f"u is at its limits in {100 * share:.0f} % of the record, which is not explained: was it clipped?")
 
 
-def check_speed(doubts, fastest):
-    """A joint faster than joints are."""
+def check_model(doubts, found, band, period):
+    """All that the fit itself shows."""
+    table, left, n = found.table, found.left, len(found.y)
+    total, missed = max(n * np.var(found.y), 1e-300), n * left.rms**2
+    fastest = np.abs(table.v).max()
     if fastest > _FAST:
         doubts.add(f"the joint reaches {fastest:.3g} rad/s: is q in degrees?")
+    with_gravity = n * found.beside(table.columns[:, 1:3])[-1] ** 2
+    explained = 1 - min(with_gravity, missed) / total
+    F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
+    if explained < _EXPLAINED or (F < _F and explained < 0.5):
+        share = f"{100 * max(explained, 0):.1f} % of its variance (F = {F:.1f}, needed {_F:.0f})"
+        doubts.refuse(f"u does not belong to this motion, which explains {share}: same joint and clock? A spring?")
+    elif F < _F:
+        doubts.add(f"only {left.independent:.0f} independent samples (F = {F:.1f}): record longer, with more reversals")
+    _check_friction(doubts, found)
+    if "inertia" in found.names:
+        _check_inertia(doubts, found, band, period)
+    fit = 1 - math.sqrt(missed / total)
+    if fit < _POOR:
+        doubts.add(f"the model explains little of u (fit {100 * fit:.0f} %): do not use it yet; look at q, u and load")
+    gravity = "gravity_sin" not in found.names and np.ptp(table.q) > 0.2
+    if gravity and with_gravity < 0.5 * missed and missed > 1e-4 * total:
+        share = 100 * (1 - with_gravity / missed)
+        doubts.add(f"{share:.0f} % of what is left of u go with sin q and cos q: add terms=(..., 'gravity')")
+    if left.correlation > 0.9 and missed > _MISSING**2 * total:
+        doubts.add(f"residuals are far from white ({left.correlation:.2f}): something is missing (backlash, a spring)")
+
+
+def _check_friction(doubts, found):
+    """Friction that gives energy, drowns in its error, or cannot be told apart."""
+    known = {name: found.value(name) for name in _MORE if math.isfinite(found.value(name)[1])}
+    if math.isinf(found.value("coulomb")[1]):
+        doubts.add(f"Coulomb friction cannot be told: one side only, or one speed only; record {_MORE['coulomb']}")
+    negative = [name for name, (x, stderr) in known.items() if x < -3 * stderr and name != "stribeck"]
+    if {"viscous", "coulomb"} <= set(negative):
+        doubts.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
+    for name, (x, stderr) in known.items():
+        said = f"{name.replace('coulomb', 'Coulomb')} friction {{}} ({x:.3g} +- {stderr:.2g}); record {_MORE[name]}"
+        if name in negative:
+            doubts.add(said.format("is negative, but no brake gives energy; is u late (delay=)?"))
+        elif stderr > 0.5 * abs(x):
+            doubts.add(said.format("drowns in its error"))
+
+
+def _check_inertia(doubts, found, band, period):
+    """An inertia that is not there, is biased, or is mixed up with a delay of u."""
+    J, stderr = found.value("inertia")
+    if math.isinf(stderr):
+        doubts.add("inertia: the acceleration is noise or nothing here; record faster reversals, or a finer angle")
+        return
+    if J < 0:
+        doubts.add(f"inertia {J:.3g} +- {stderr:.2g} was left out: negative by wrong timing (delay=) or sign of u")
+    elif stderr > 0.5 * J:
+        doubts.add(f"inertia {J:.3g} +- {stderr:.2g}: this motion hardly shows it; record faster reversals")
+    elif band.acceleration_share > 0.03:
+        doubts.add(f"inertia: {100 * band.acceleration_share:.0f} % too small by noise; move faster, or filter more")
+    b = found.value("viscous")[0]
+    if 0 < J < b * period:
+        doubts.add(f"the time constant {J / b:.3g} s is below the sampling period of {period:.3g} s: sample faster")
+    lag = found.beside(found.table.slopes[:, 1 - found.held])  # u behind a low pass: what went in is u + lag du/dt
+    delay, sigma, rms = min(found.beside_delay[2:], lag[2:], key=lambda one: one[2])
+    if rms < 0.9 * found.left.rms and abs(delay) > max(5 * sigma, 0.3 * period):
+        if delay > 0:
+            doubts.add(f"u seems to act about {delay:.2g} s after it was recorded: inertia too large; give delay=")
+        else:
+            doubts.add(f"q seems to be recorded {-delay:.2g} s before u (or u is filtered): inertia too small")

@@ -7,10 +7,12 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.columns import columns_of, runs, sampling_period
-from ir50p_lab.inputs import choice, number, numbers, switch
+from ir50p_lab.inputs import choice, number, switch
 from ir50p_lab.signals.low_pass import low_pass
 
 BACKWARD = "zero-phase"
+_ORDER = 4  # of the zero-phase filter; it counts twice
+_SHORTEST = 16  # samples of a run: it needs as many to run backward
 _LATE = 2.0  # a filter of this many time constants (1/(2 pi cutoff)) on either side is cut off by default
 
 
@@ -25,7 +27,6 @@ class Motion:
     use           (m, k)   bool: whether the sample of that joint is to be used (False: too near to zero speed)
     segment       (m,)     int: which run without a gap
     rate_hz       float    samples per s
-    notes         tuple    of str: gaps, and what was left out
     ============= ======== ============================================================================
     """
 
@@ -37,7 +38,6 @@ class Motion:
     use: np.ndarray
     segment: np.ndarray
     rate_hz: float
-    notes: tuple
 
     def __len__(self):
         return len(self.t)
@@ -59,7 +59,7 @@ def causal_derivatives(q, rate_hz, *, cutoff_hz=3.0):
     return q, qd, np.diff(qd, axis=0, prepend=qd[:1]) * rate_hz
 
 
-def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=4):
+def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=_ORDER):
     """Without lag, for finished records: a Butterworth filter forward and backward, then central differences.
 
         qd[k] = (q[k+1] - q[k-1]) rate/2,    qdd[k] = (q[k+1] - 2 q[k] + q[k-1]) rate^2
@@ -86,7 +86,6 @@ def process(
     *,
     derivatives=BACKWARD,
     cutoff_hz=1.5,
-    order=4,
     filter_u=False,
     delay=0.0,
     held=True,
@@ -106,13 +105,13 @@ def process(
         recording: anything with t (n,), q (n, k) and u (n, k), as `Recording`; or t itself, then q and u as arrays,
             (n,) or (n, k).
         derivatives: "zero-phase" (`central_derivatives`) or "causal" (`causal_derivatives`).
-        cutoff_hz, order: of the low pass; order for "zero-phase" only, "causal" is of first order.
+        cutoff_hz: of the low pass, of order 4 for "zero-phase", which may be None, and 1 for "causal".
         filter_u: pass u through the same filter as q.
         delay: s from a sample to the moment its u acts (`estimate_delay`).
         held: True: u is held from its sample to the next, as a bench does; what then acts around the instant t_k is the
             mean of u_k-1 and u_k. False: u is a measurement at t_k. "causal" takes u as it stands, as the thesis does,
             shifted by the delay only.
-        slow: rad/s, one number or one per joint; below it sgn(qd) is noise and a joint may stick: `use` is False there.
+        slow: rad/s; below it sgn(qd) is noise and a joint may stick: `use` is False there.
         trim: s cut off at both ends of each run without a gap; default 2/(2 pi cutoff_hz).
 
     Returns: Motion. Raises: InputError on bad arguments, NaN, or times that do not increase; IdentificationError if
@@ -122,49 +121,30 @@ def process(
     period = sampling_period(t)
     causal = choice("derivatives", derivatives, (BACKWARD, "causal")) == "causal"
     number("delay", delay, ">= 0", unit="s")
-    slow = numbers("slow", slow, unit="rad/s")
-    if slow.shape not in ((), q.shape[1:]) or not (slow >= 0).all():
-        raise InputError(f"slow = {slow} rad/s: give one number >= 0, or one for each of {q.shape[1]} joint(s)")
-    if cutoff_hz is None and causal:
-        raise InputError("cutoff_hz = None: the causal way needs its filter; give 1.5 to 10 Hz")
-    if trim is None:
-        trim = 0.0 if cutoff_hz is None else _LATE / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
-    number("trim", trim, ">= 0", unit="s")
+    number("slow", slow, ">= 0", unit="rad/s")
+    derive = causal_derivatives if causal else central_derivatives
+    if trim is None and (causal or cutoff_hz is not None):
+        trim = _LATE / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
+    trim = number("trim", trim or 0.0, ">= 0", unit="s")
     acts = acting_times(t, delay, switch("held", held) and not causal)
-
-    def smooth(x):
-        if cutoff_hz is None:
-            return x
-        return low_pass(x, cutoff_hz, 1 / period, order=1 if causal else order, kind=derivatives)
-
-    def differentiated(q):
-        if causal:
-            return causal_derivatives(q, 1 / period, cutoff_hz=cutoff_hz)
-        return central_derivatives(q, 1 / period, cutoff_hz=cutoff_hz, order=order)
-
-    notes, pieces = [], []
-    parts = runs(t, 3.5 * period)
-    if len(parts) > 1:
-        notes.append(f"{len(parts) - 1} gap(s) in time: {len(parts)} runs, each filtered by itself")
-    backward = 0 if cutoff_hz is None or causal else 3 * (2 * math.ceil(order / 2) + 1) + 1
-    shortest = max(8, backward, math.ceil(2 * trim / period) + 4)
-    for k, (first, last) in enumerate(parts):
+    pieces = []
+    shortest = max(_SHORTEST, math.ceil(2 * trim / period) + 4)
+    for k, (first, last) in enumerate(runs(t, 3.5 * period)):
         if last - first < shortest:
-            notes.append(f"{last - first} samples from {t[first]:.4g} s on left out: too short a run")
             continue
         here = slice(first, last)
         grid, even_q, even_u = _on_even_steps(t[here], q[here], u[here], acts[here], period)
-        piece = grid, *differentiated(even_q), smooth(even_u) if filter_u else even_u
+        piece = [grid, *derive(even_q, 1 / period, cutoff_hz=cutoff_hz), even_u]
+        if filter_u:
+            piece[-1] = derive(even_u, 1 / period, cutoff_hz=cutoff_hz)[0]
         keep = (grid >= grid[0] + max(trim, delay) - 1e-9) & (grid <= grid[-1] - trim + 1e-9)
         keep[[0, -1]] = False  # their derivatives are the neighbours'
         pieces.append([x[keep] for x in piece] + [np.full(keep.sum(), k)])
     if sum(len(piece[0]) for piece in pieces) < 2:
-        raise IdentificationError(
-            f"nothing is left of {len(t)} samples: every run without a gap is shorter than {shortest} samples (filter "
-            f"{cutoff_hz} Hz, {trim:.3g} s cut off at both ends): record longer, or give a higher cut-off or less trim"
-        )
+        said = f"nothing is left: each run without a gap is shorter than {shortest} samples"
+        raise IdentificationError(f"{said} (filter and trim take them): record longer, or give a higher cutoff_hz")
     t, q, qd, qdd, u, segment = (np.concatenate(x) for x in zip(*pieces, strict=True))
-    return Motion(t, q, qd, qdd, u, np.abs(qd) >= slow, segment, 1 / period, tuple(notes))
+    return Motion(t, q, qd, qdd, u, np.abs(qd) >= slow, segment, 1 / period)
 
 
 def acting_times(t, delay, held):

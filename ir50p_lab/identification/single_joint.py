@@ -3,17 +3,17 @@
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import doubts as checks
-from ir50p_lab.identification.columns import columns_of, joined, runs, sampling_period
-from ir50p_lab.identification.joint_doubts import check_model, check_motion
-from ir50p_lab.identification.processing import process
+from ir50p_lab.identification.columns import columns_of, sampling_period
+from ir50p_lab.identification.processing import acting_times, process
 from ir50p_lab.identification.regression import LeastSquares, least_squares
-from ir50p_lab.identification.response_fit import best_fit
+from ir50p_lab.identification.response_fit import best_fit, by_name
 from ir50p_lab.identification.spectrum import spectrum
 from ir50p_lab.inputs import number, switch
 from ir50p_lab.signals.low_pass import low_pass
@@ -32,6 +32,7 @@ _MATTERS = 0.1  # of the value: a change smaller than this is only put into the 
 _JUDGED = ("inertia", "viscous", "coulomb")  # by these
 _POLYNOMIAL = 6  # degree of a force of the position
 _EXACT = 2e-3  # of a parameter: differences and interpolation are no better
+_BETWEEN = 100  # periods put between two recordings that are fitted together
 _PEAK = (0.02, 1.0)  # of the rms speed: where the Stribeck speed is looked for
 
 
@@ -56,40 +57,35 @@ class JointFit:
                             value is then 0; nan: not asked for
     rms                     of the residual                                      u
     fit                     100 (1 - |u - u_model|/|u - mean u|)                 %
-    correlation             of neighbouring residuals: 0 for white noise
     cutoff_hz               of the low pass on q and u; inf: none                Hz
-    delay, held             as used                                              s, bool
+    held                    as used                                              bool
     samples                 used in the regression
-    unidentifiable          names of parameters that the data do not hold
     warnings                tuple of str: what to mind about this fit
     ======================= ==================================================== ================
     """
 
-    inertia: float
-    viscous: float
-    coulomb: float
-    offset: float
-    inertia_stderr: float
-    viscous_stderr: float
-    coulomb_stderr: float
-    offset_stderr: float
-    rms: float
-    fit: float
-    correlation: float
-    cutoff_hz: float
-    delay: float
-    held: bool
-    samples: int
-    unidentifiable: tuple = ()
-    warnings: tuple = ()
+    inertia: float = 0.0
+    viscous: float = 0.0
+    coulomb: float = 0.0
+    offset: float = 0.0
     gravity_sin: float = 0.0
     gravity_cos: float = 0.0
     stribeck: float = 0.0
     stribeck_speed: float = math.nan
+    inertia_stderr: float = math.nan
+    viscous_stderr: float = math.nan
+    coulomb_stderr: float = math.nan
+    offset_stderr: float = math.nan
     gravity_sin_stderr: float = math.nan
     gravity_cos_stderr: float = math.nan
     stribeck_stderr: float = math.nan
     stribeck_speed_stderr: float = math.nan
+    rms: float
+    fit: float
+    cutoff_hz: float
+    held: bool
+    samples: int
+    warnings: tuple
 
 
 def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, delay=0.0, held=None, anyway=False):
@@ -123,57 +119,53 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     clipped or hung beyond doubt, angles jump by whole turns, or all friction is negative. Other doubts are in
     `warnings`, each with a number: what is without a warning is right within three standard errors.
     """
-    terms = _checked_terms(terms)
+    names = _names_of(terms)
     doubts = checks.Doubts(switch("anyway", anyway))
-    if isinstance(t, (list, tuple)) and q is None and u is None:
-        t, q, u = joined(t)
-        v = None
-    else:
-        t, q, u, *v = columns_of(t, q, u, qd, drop=anyway)
-        v = v[0] if v else None
-    if q.shape[1] != 1:
-        raise InputError(f"q has {q.shape[1]} columns: fit_joint takes one joint; give q[:, i] and u[:, i]")
-    if held is not None:
-        switch("held", held)
-    new = checks.check_signals(doubts, t, q[:, 0], u[:, 0])
+    held = held if held is None else switch("held", held)
+    t, q, u, v = _columns(t, q, u, qd, drop=anyway)
+    new = checks.check_signals(doubts, t, q, u)
     t, q, u, v = (x if x is None else x[new] for x in (t, q, u, v))
-    period = sampling_period(t)
     if v is not None:
-        _check_measured_speed(doubts, t, q[:, 0], v[:, 0], period)
-    plain = v is not None and "inertia" not in terms and (cutoff_hz is None or cutoff_hz == math.inf)
-    angle = q[:, 0] if v is None else np.cumsum(v[:, 0]) * period
-    band = _band(t, angle, period, None if plain else cutoff_hz)
-    joint = _Joint.of(t, q, u, v, period, band, delay, terms)
-    check_motion(doubts, band)
-    found = joint.fit(math.inf if plain else band.cutoff_hz, held)
-    checks.check_clipped_drive(doubts, u[:, 0], found)
+        checks.check_measured_speed(doubts, t, q, v)
+    plain = v is not None and "inertia" not in names and cutoff_hz in (None, math.inf)
+    joint = _Joint.of(t, q, u, v, names, delay, None if plain else cutoff_hz)
+    checks.check_motion(doubts, joint.band)
+    found = joint.fit(math.inf if plain else joint.band.cutoff_hz, held)
+    checks.check_clipped_drive(doubts, u, found)
     if not plain:
-        found = _at_agreeing_cutoff(doubts, joint, found, held, cutoff_hz is not None)
-        found = _with_other_fits_in_errors(joint, found, held)
-    check_model(doubts, found, band, period)
-    if "inertia" in terms and found.value("inertia")[0] < 0 and not found.lost("inertia"):
-        found = joint.fit(found.cutoff_hz, found.held, without=("inertia",))
-    values = {name: float(x) for name, x in zip(found.names, found.x, strict=True)}
-    errors = {f"{name}_stderr": float(s) for name, s in zip(found.names, found.stderr, strict=True)}
-    missing = {name: 0.0 for name in TERMS[:4] if name not in values}
-    errors |= {f"{name}_stderr": math.nan for name in missing}
+        found = _at_agreeing_cutoff(doubts, joint, found, cutoff_hz is not None)
+        found = _with_other_fits_in_errors(joint, found, held is None)
+    checks.check_model(doubts, found, joint.band, 1 / joint.rate)
+    if found.value("inertia")[0] < 0:
+        found = joint.fit(found.cutoff_hz, found.held, without="inertia")
     return JointFit(
-        **missing,
-        **values,
-        **errors,
+        **by_name(found.names, found.x, found.stderr),
         rms=found.left.rms,
         fit=float(100 * (1 - found.left.rms / np.std(found.y))),
-        correlation=found.left.correlation,
         cutoff_hz=found.cutoff_hz,
-        delay=float(delay),
         held=found.held,
         samples=len(found.y),
-        unidentifiable=tuple(name for name in found.names if found.lost(name)),
         warnings=tuple(doubts),
     )
 
 
-def _checked_terms(terms):
+def _columns(t, q=None, u=None, qd=None, *, drop=False):
+    """t, q, u, qd (n,), qd None if not given; of several recordings one after the other, with gaps between."""
+    if isinstance(t, (list, tuple)) and len(t) and q is None and u is None:
+        parts, end = [], 0.0
+        for one in t:
+            t, q, u, _ = _columns(*one, drop=drop) if isinstance(one, (list, tuple)) else _columns(one, drop=drop)
+            parts.append((t - t[0] + end, q, u))
+            end = parts[-1][0][-1] + _BETWEEN * sampling_period(t)
+        return *map(np.concatenate, zip(*parts, strict=True)), None
+    t, q, u, *v = columns_of(t, q, u, qd, drop=drop)
+    if q.shape[1] != 1:
+        raise InputError(f"q has {q.shape[1]} columns: fit_joint takes one joint; give q[:, i] and u[:, i]")
+    return t, q[:, 0], u[:, 0], v[0][:, 0] if v else None
+
+
+def _names_of(terms):
+    """Names of the columns that these terms ask for, in the order of _COLUMNS."""
     terms = (terms,) if isinstance(terms, str) else tuple(terms)
     if not terms or not set(terms) <= set(TERMS):
         raise InputError(f"terms = {terms!r}: give some of {', '.join(TERMS)}")
@@ -181,81 +173,45 @@ def _checked_terms(terms):
     return tuple(name for name in _COLUMNS if name in columns | set(terms))
 
 
-def _check_measured_speed(doubts, t, q, v, period):
-    """A qd that is not the rate of q: another unit, another joint."""
-    steps = np.diff(t) < 1.5 * period
-    rate, between = (np.diff(q) / np.diff(t))[steps], ((v[1:] + v[:-1]) / 2)[steps]
-    factor = float(rate @ between / max(between @ between, 1e-300))
-    if not 0.9 < factor < 1.1:
-        doubts.add(
-            f"the angle changes at {factor:.3g} times qd: is qd in rad/s and q in rad, of the same joint? Viscous "
-            "friction comes out in the unit of qd"
-        )
-
-
-def _band(t, q, period, cutoff_hz):
-    """Spectrum of the runs without a gap."""
-    pieces = []
-    for first, last in runs(t, 3.5 * period):
-        grid = t[first] + period * np.arange(math.floor((t[last - 1] - t[first]) / period + 1e-6) + 1)
-        pieces.append(np.interp(grid, t[first:last], q[first:last]))
-    if cutoff_hz is not None and number("cutoff_hz", cutoff_hz, "> 0", unit="Hz") >= 0.5 / period:
-        raise InputError(f"cutoff_hz = {cutoff_hz!r}: give a number between 0 and half the rate, {0.5 / period:.4g} Hz")
-    return spectrum(pieces, 1 / period, cutoff_hz)
-
-
-def _at_agreeing_cutoff(doubts, joint, first, held, given):
+def _at_agreeing_cutoff(doubts, joint, first, given):
     """The fit at the highest cut-off whose parameters agree with those at half of it; else a doubt.
 
     first: Found at the highest; given: keep it, and only compare.
     """
-    here = first
-    while here.cutoff_hz > 2 * joint.band.lowest_hz:
-        lower = joint.fit(here.cutoff_hz / 2, held, fewest=first)
-        if lower is None:
-            break
-        moved = np.where(np.isfinite(here.stderr) & np.isfinite(lower.stderr), np.abs(here.x - lower.x), 0.0)
+    fits = [first, *joint.lower(first)]
+    doubtful = None
+    for here, lower in pairwise(fits[:2] if given else fits):
+        moved = np.where(np.isfinite(here.stderr + lower.stderr), np.abs(here.x - lower.x), 0.0)
         wrong = moved > np.maximum(_AGREE * here.stderr, _MATTERS * np.abs(lower.x))
         wrong &= [name in _JUDGED for name in here.names]
         if not wrong.any():
             return here if here is first else lower
-        name = here.names[int(np.argmax(np.where(wrong, moved / here.stderr, 0.0)))]
-        here, before = lower, here
-        if given:
-            break
-    if here is first:
+        doubtful = here, lower, here.names[int(np.argmax(np.where(wrong, moved / here.stderr, 0.0)))]
+    if doubtful is None:
         return first
-    each = ", ".join("{:.4g} +- {:.2g} at {:.3g} Hz".format(*one.value(name), one.cutoff_hz) for one in (before, here))
-    doubts.add(
-        f"{name} depends on the cut-off: {each}. A rigid joint with this friction does not explain the fast part of "
-        "the motion (flexibility, backlash, a late u); give a lower cutoff_hz and compare"
-    )
-    return first if given else here
+    here, lower, name = doubtful
+    each = ", ".join("{:.4g} +- {:.2g} at {:.3g} Hz".format(*one.value(name), one.cutoff_hz) for one in (here, lower))
+    said = f"{name} depends on the cut-off: {each} (flexibility, backlash, a late u)"
+    doubts.add(f"{said}: no rigid joint explains the fast part of the motion; compare with a lower cutoff_hz")
+    return first if given else lower
 
 
-def _with_other_fits_in_errors(joint, found, held):
+def _with_other_fits_in_errors(joint, found, any_instant):
     """The same, its standard errors widened by what fits that are as good a choice change beyond their own errors.
 
     Lower cut-offs: flexibility, backlash. Twice the least speed: sticking, coarse angles. Any force of the position:
-    gravity, ripple. If `held` was not given, a u that acts at another instant: by half a period, if the data do not
-    tell.
+    gravity, ripple. With any_instant, a u that acts at another one: by half a period, if the data do not tell.
     """
-    lower = []
-    cutoff_hz = found.cutoff_hz / 2
-    while cutoff_hz > joint.band.lowest_hz:
-        lower.append(joint.fit(cutoff_hz, found.held, fewest=found))
-        cutoff_hz /= 2
-    lower = [one for one in lower if one is not None]
+    lower = joint.lower(found)
     faster = joint.fit(found.cutoff_hz, found.held, fewest=found, slower=2.0)
     pairs = [(other.x, other.stderr) for other in (*lower, faster) if other is not None]
-    pairs += found.of_position()
     moved = np.zeros(len(found.x))
-    for x, stderr in pairs:
+    for x, stderr in pairs + found.of_position():
         beyond = np.where(np.isfinite(found.stderr + stderr), (found.x - x) ** 2 - stderr**2, 0.0)
         moved = np.maximum(moved, np.sqrt(np.clip(beyond, 0.0, None)))
     late = 0.0
-    if held is None:
-        told = (lower or [found])[-1].tells_delay  # where the jerk has least noise
+    if any_instant:
+        told = [found, *lower][-1].tells_delay  # where the jerk has least noise
         late = found.moved_by_delay(0.5 / joint.rate, told)
     return replace(found, stderr=np.sqrt(found.stderr**2 + moved**2 + late**2 + (_EXACT * found.x) ** 2))
 
@@ -264,7 +220,7 @@ def _with_other_fits_in_errors(joint, found, held):
 class Found:
     """A fit at one cut-off: names, x and stderr (p,); the LeastSquares of A (m, r), the columns that the data hold.
 
-    y (m,): u of the samples in the regression, slope: its rate of change; table: their motion, as of `_Joint.table`.
+    y (m,): u of the samples in the regression; table: their motion, as of `_Joint.table`.
     """
 
     names: tuple
@@ -275,13 +231,12 @@ class Found:
     held: bool
     table: SimpleNamespace
     y: np.ndarray
-    slope: np.ndarray
     A: np.ndarray
 
     def value(self, name):
-        """x and stderr of a parameter; 0 and inf where it is not in the model."""
-        known = dict(zip(self.names, zip(self.x.tolist(), self.stderr.tolist(), strict=True), strict=True))
-        return known.get(name, (0.0, math.inf))
+        """x and stderr of a parameter; 0 and inf where the data do not hold it, 0 and nan if it was not asked for."""
+        known = by_name(self.names, self.x, self.stderr)
+        return known.get(name, 0.0), known.get(f"{name}_stderr", math.nan)
 
     def beside(self, columns):
         """The same parameters beside more columns: x, stderr; of the last column value and error; the rms left."""
@@ -312,10 +267,8 @@ class Found:
     def moved_by_delay(self, unsure, told):
         """(p,) by which a delay moves the parameters, that is 0 +- unsure s before and, if told, known better now."""
         delay, sigma = self.beside_delay[2:4]
-        size = unsure
-        if told:
-            share = unsure**2 / (unsure**2 + sigma**2)
-            size = math.sqrt((share * delay) ** 2 + share * sigma**2)
+        share = unsure**2 / (unsure**2 + sigma**2)
+        size = math.sqrt((share * delay) ** 2 + share * sigma**2) if told else unsure
         moved = np.zeros(len(self.x))
         moved[np.isfinite(self.stderr)] = size * np.linalg.lstsq(self.A, self._late_column, rcond=None)[0]
         return moved
@@ -330,75 +283,66 @@ class Found:
         judged = [name in _JUDGED for name in self.names]
         return [(x, np.where(judged, stderr, np.inf))]
 
-    def lost(self, name):
-        """Whether the parameter was asked for and the data do not hold it."""
-        return name in self.names and math.isinf(self.value(name)[1])
-
-
-def _named(columns, names):
-    """Those of the columns (m, 7) that have these names."""
-    return columns[:, [_COLUMNS.index(name) for name in names]]
-
 
 @dataclass(frozen=True)
 class _Joint:
-    """Evenly sampled runs of one joint: q, v, and u in two ways (held, measured)."""
+    """Evenly sampled runs of one joint, [(q or q and qd (n, 1 or 2), u held and u measured (n, 2))]; their Spectrum."""
 
     segments: list
     rate: float
     band: object
     terms: tuple
-    n: int
 
     @classmethod
-    def of(cls, t, q, u, v, period, band, delay, terms):
-        columns = q if v is None else np.hstack([q, v])
-        drives = np.repeat(u, columns.shape[1], axis=1)
-        ways = [process(t, columns, drives, cutoff_hz=None, trim=0.0, delay=delay, held=held) for held in (True, False)]
-        segments = []
-        for segment in np.unique(ways[0].segment):
-            here = ways[0].segment == segment
-            drives = np.column_stack([way.u[here, 0] for way in ways])
-            segments.append((ways[0].q[here], drives))
-        return cls(segments, 1 / period, band, terms, len(t))
+    def of(cls, t, q, u, v, terms, delay, cutoff_hz):
+        angles = np.column_stack([q] if v is None else [q, v])
+        motion = process(t, angles, angles, cutoff_hz=None, trim=0.0, delay=delay)  # u: in two ways, below
+        rate = motion.rate_hz
+        if cutoff_hz is not None and number("cutoff_hz", cutoff_hz, "> 0", unit="Hz") >= rate / 2:
+            raise InputError(f"cutoff_hz = {cutoff_hz!r}: give a number between 0 and half the rate, {rate / 2:.4g} Hz")
+        drives = np.column_stack([np.interp(motion.t, acting_times(t, delay, held), u) for held in (True, False)])
+        edges = np.flatnonzero(np.diff(motion.segment)) + 1
+        segments = list(zip(np.split(motion.q, edges), np.split(drives, edges), strict=True))
+        pieces = [x[:, 0] if v is None else np.cumsum(x[:, 1]) / rate for x, _ in segments]
+        return cls(segments, rate, spectrum(pieces, rate, cutoff_hz), terms)
 
-    def fit(self, cutoff_hz, held=None, *, without=(), fewest=None, slower=1.0):
+    def lower(self, found):
+        """Fits at half of its cut-off, a quarter and so on, as long as motion and samples last."""
+        fits, cutoff_hz = [], found.cutoff_hz / 2
+        while cutoff_hz > self.band.lowest_hz:
+            fits.append(self.fit(cutoff_hz, found.held, fewest=found))
+            cutoff_hz /= 2
+        return [one for one in fits if one is not None]
+
+    def fit(self, cutoff_hz, held=None, *, without=None, fewest=None, slower=1.0):
         """Found at this cut-off, of motion `slower` times as fast; None if not half of the time of `fewest` is left."""
         table = self.table(cutoff_hz, slower)
-        m = len(table.q)
-        enough = m >= checks.FEWEST // 2
-        if fewest is not None and not (enough and m * fewest.cutoff_hz / cutoff_hz >= 0.5 * len(fewest.y)):
+        m, least = len(table.q), checks.FEWEST // 2
+        if fewest is not None and (m < least or m * fewest.cutoff_hz / cutoff_hz < 0.5 * len(fewest.y)):
             return None
-        if not enough:
-            raise IdentificationError(
-                f"only {m} of {self.n} samples are in motion and far enough from standstill, gaps and the ends of the "
-                f"record; at least {checks.FEWEST // 2} independent ones are needed: record longer, with more motion"
-            )
-        names = [name for name in self.terms if name not in without]
-        if self.band.acceleration_share > _ALL_NOISE:
-            names = [name for name in names if name != "inertia"]
-        solve = self._with_stribeck if "stribeck" in names else self._solve
+        if m < least:
+            raise IdentificationError(f"only {m} of {least} independent samples are in motion: record more of it")
+        out = {without, "inertia"} if self.band.acceleration_share > _ALL_NOISE else {without}
+        A = table.columns[:, [_COLUMNS.index(name) for name in self.terms]]
+        A[:, [name in out for name in self.terms]] = 0.0  # an empty column: 0 +- inf
+        solve = self._with_stribeck if "stribeck" in self.terms else self._solve
         if held is None:
-            as_held, measured = (solve(table, way, cutoff_hz, names) for way in (0, 1))
+            as_held, measured = (solve(table, way, cutoff_hz, A) for way in (0, 1))
             held = measured.left.rms >= _CLEARLY * as_held.left.rms
-        return solve(table, 0 if held else 1, cutoff_hz, names)
+        return solve(table, 0 if held else 1, cutoff_hz, A)
 
-    def _solve(self, table, way, cutoff_hz, names, columns=None):
-        """Found for u taken in this way; columns: instead of those of these names."""
-        A = _named(table.columns, names) if columns is None else columns
-        left = least_squares(A, table.y[:, way], names=names, tolerance=_OWN_SHARE)
-        out = [name for name in self.terms if name not in names]  # left out: 0 +- inf
-        x, stderr = np.r_[left.x, np.zeros(len(out))], np.r_[left.stderr, np.full(len(out), np.inf)]
-        u = table.y[:, way], table.slope[:, way]
+    def _solve(self, table, way, cutoff_hz, A, more=()):
+        """Found for u taken in this way; A: columns of the terms and of `more` names."""
+        y = table.y[:, way]
+        left = least_squares(A, y, tolerance=_OWN_SHARE)
         held_by_data = A[:, np.isfinite(left.stderr)]
-        return Found((*names, *out), x, stderr, left, cutoff_hz, way == 0, table, *u, held_by_data)
+        return Found((*self.terms, *more), left.x, left.stderr, left, cutoff_hz, way == 0, table, y, held_by_data)
 
-    def _with_stribeck(self, table, way, cutoff_hz, names):
+    def _with_stribeck(self, table, way, cutoff_hz, A):
         """Least squares over all parameters and the Stribeck speed; its error from the slope of the column in it."""
-        place = names.index("stribeck")
+        place = self.terms.index("stribeck")
 
         def columns(log_speed):
-            A = _named(table.columns, names)
             A[:, place] = table.direction * np.exp(-((table.v / np.exp(log_speed)) ** 2))
             return A
 
@@ -407,21 +351,21 @@ class _Joint:
         (best,), c, _ = best_fit(lambda p: columns(*p), table.y[:, way], starts, bounds)
         A, speed = columns(best), math.exp(best)
         slope = c[place] * A[:, place] * 2 * table.v**2 / speed**3
-        found = self._solve(table, way, cutoff_hz, [*names, "stribeck_speed"], np.column_stack([A, slope]))
+        found = self._solve(table, way, cutoff_hz, np.column_stack([A, slope]), ["stribeck_speed"])
         return replace(found, x=np.where(np.equal(found.names, "stribeck_speed"), speed, found.x))
 
     def table(self, cutoff_hz, slower=1.0):
         """What goes into the regression, all through the same low pass.
 
-        columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 2), u in each way, and its slope
+        columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 2): u in each way, and its slopes
         (m, 2); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its largest value; q (m,)
         rad; v (m,) rad/s; direction (m,).
         """
         slow = slower * max(4 * self.band.speed_noise, _DEAD * self.band.speed)
         every = np.concatenate([u[:, 0] for _, u in self.segments])
         low, high = every.min() + 1e-3 * np.ptp(every), every.max() - 1e-3 * np.ptp(every)
-        edge = 0 if math.isinf(cutoff_hz) else math.ceil(self.rate / cutoff_hz / 2)
-        thin = 1 if math.isinf(cutoff_hz) else max(1, int(self.rate / cutoff_hz / _OWN))
+        edge = math.ceil(self.rate / cutoff_hz / 2)
+        thin = max(1, int(self.rate / cutoff_hz / _OWN))
         parts = []
         for angles, drive in self.segments:
             n = len(drive)
@@ -434,14 +378,13 @@ class _Joint:
             plain = np.column_stack([*plain, drive, drive[:, 0] < low, drive[:, 0] > high]).astype(float)
             smooth = self._smooth(plain, cutoff_hz)
             direction, sin, cos, moving = smooth[:, :4].T
-            A = {"inertia": a, "viscous": v, "coulomb": direction, "offset": np.ones(n), "stribeck": np.zeros(n)}
-            A |= {"gravity_sin": sin, "gravity_cos": cos}
-            columns, y = np.column_stack([A[name] for name in _COLUMNS]), smooth[:, 4:6]
-            rates, slope = (np.gradient(x, axis=0) * self.rate for x in (columns, y))
-            inside = np.arange(n)[edge : n - edge : thin]
-            kept = inside[moving[inside] > 0.9]
-            parts.append([x[kept] for x in (columns, rates, y, slope, smooth[:, 6:], angles[:, 0], v, direction)])
-        names = ("columns", "rates", "y", "slope", "extreme", "q", "v", "direction")
+            columns = np.column_stack([np.ones(n), sin, cos, v, direction, np.zeros(n), a])  # as in _COLUMNS
+            rates, slopes = (np.gradient(x, axis=0) * self.rate for x in (columns, smooth[:, 4:6]))
+            kept = np.arange(n)[edge : n - edge : thin]
+            kept = kept[moving[kept] > 0.9]
+            whole = columns, rates, smooth[:, 4:6], slopes, smooth[:, 6:], angles[:, 0], v, direction
+            parts.append([x[kept] for x in whole])
+        names = ("columns", "rates", "y", "slopes", "extreme", "q", "v", "direction")
         joined = [np.concatenate(x) for x in zip(*parts, strict=True)] or [np.empty(0)] * len(names)
         return SimpleNamespace(**dict(zip(names, joined, strict=True)))
 

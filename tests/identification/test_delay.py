@@ -59,12 +59,6 @@ def test_bad_input():
     t = np.arange(3000) * 0.01
     q = np.sin(t)[:, None] * [1.0, 1.0, 1.0]
     good = SimpleNamespace(t=t, q=q, u=q)
-    for options, words in (
-        ({"longest": 0}, "longest = 0"),
-        ({"longest": 0.02}, "give 4 or more"),
-    ):
-        with pytest.raises(InputError, match=words):
-            estimate_delay(good, **options)
     with pytest.raises(InputError, match="one joint, or all three"):
         estimate_delay(t, q[:, :2], q[:, :2])
     for slow in (2.0, 10.0):

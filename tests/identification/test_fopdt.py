@@ -243,7 +243,7 @@ def test_a_second_order_model_is_offered_and_right(zero, seed):
         (K * w**2 * np.array([zero, 1.0] if zero else [1.0]), [1, 2 * damping * w, w**2]), np.ones(len(T_S)), T_S
     )[1]
     y = 1 + np.r_[np.zeros(20), response[:-20]] + noise(seed, 0.003 * abs(K))
-    with pytest.raises(IdentificationError, match=r"fit_second_order\(t, u, y\) has K"):
+    with pytest.raises(IdentificationError, match=r"fit_second_order\(t, u, y\)"):
         fit_fopdt(T_S, STEP, y)
     found = fit_second_order(T_S, STEP, y)
     for name, true in (("K", K), ("w", w), ("damping", damping), ("zero", zero)):
