@@ -70,8 +70,7 @@ class Bench:
     Attributes: arm: Arm (limits, kinematics); calibration: counts to rad; period: s; simulated: bool; name: str;
     bench_id: which bench it is, on which results are measured, as 'board-0a1b2c' or 'simulated-unit-0' (None: nobody
     knows, or the board has none yet); is_open: whether the arm is in hand; live_run: the LiveRun that has the arm, or
-    had it last; recording: Recording of the last run (None before); trips: how often the drive
-    was cut because the program sent no command.
+    had it last; recording: Recording of the last run (None before).
     """
 
     kind = "bench"
@@ -79,7 +78,6 @@ class Bench:
     answers = True  # whether drive moves the arm
     bench_id = None
     guarded = True  # whether a runaway is cut; off only while the motors have no supply
-    own_process = False  # whether a loop in the background gets a process of its own, by `_arguments()`, its keywords
 
     def __init__(self, arm=None, calibration=None, *, period=0.01, record_to=None, name=None):
         """arm: default `load_arm()`; calibration: default the nominal one.
@@ -96,7 +94,6 @@ class Bench:
         self.is_open, self._clock = False, Clock
         self._pwm, self._gripper = np.zeros(JOINTS), False
         self._last = self._run = None
-        self.trips = 0
         self.live_run = None
         self._travel = tuple(zip(arm.q_min, arm.q_max, strict=True))
 
@@ -151,6 +148,10 @@ class Bench:
         if not self.guarded or self.arm.actuators is None:
             return None
         return RunawayGuard(self.arm, self.calibration, self.period)
+
+    def _arguments(self):
+        """Keywords with which a process of its own makes this bench for its loops in the background; None: a thread."""
+        return None
 
     # ---- the contract
 
@@ -290,7 +291,7 @@ class Bench:
         self._write_row(run)
         pace, when = run.pace, run.pace.cut_at(silence)
         pace.catch_up()
-        run.trips, self.trips = run.trips + 1, self.trips + 1
+        run.trips += 1
         said, ended = f"the drive was cut: no command for {silence:.2f} s", silence > LONGEST_PAUSE
         self.note(said + "; the run was ended" * ended, when)
         self._pwm = np.zeros(JOINTS)
@@ -339,13 +340,19 @@ class Bench:
         if run is None:
             return
         try:
-            self._write_row(run)
+            self._end_recording(run)
         except BaseException:  # a full disk; nobody may hear of it while a generator is closed
             self.cut()
             raise
+
+    def _end_recording(self, run):
+        """What comes in this run from now on is not recorded."""
+        try:
+            self._write_row(run)
         finally:
-            if run.recorder is not None:
-                run.recorder.close(self._statistics(run))
+            recorder, run.recorder = run.recorder, None
+            if recorder is not None:
+                recorder.close(self._statistics(run))
 
     def drive(self, pwm, *, gripper=None, reference=None):
         """Send PWM counts to the three joints; they hold until the next call.
@@ -426,8 +433,3 @@ class Bench:
         for sample in self.run(reference.duration + 0.5, record=False):
             self.drive(controller.step(sample.t, sample.q, reference(sample.t)))
         self.cut()
-
-    @property
-    def q(self):
-        """The pose (3,) rad that was measured last; None before the first run."""
-        return None if self._last is None else self._last.q

@@ -124,14 +124,10 @@ class SerialBench(Bench):
     def _header(self):
         return {"port": self.port, "firmware": self.firmware, "protocol": str(self.identity.protocol)}
 
-    @property
-    def own_process(self):
-        """A loop in the background runs in a process of its own, unless the port was given open."""
-        return self._given is None
-
     def _arguments(self):
-        named = ("port", "arm", "calibration", "period", "record_to")
-        return {name: getattr(self, name) for name in named}
+        if self._given is not None:  # an open port cannot be handed on
+            return None
+        return {name: getattr(self, name) for name in ("port", "arm", "calibration", "period", "record_to")}
 
     # ---- more than the contract asks for
 

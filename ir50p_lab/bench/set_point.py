@@ -23,15 +23,15 @@ class SetPoint:
     remembers where it is.
 
     Args: q, qd: (3,) rad and rad/s, where it starts, moving; speed: rad/s, acceleration: rad/s^2, one number or (3,).
-    Attributes: goal: (3,) rad, where it is going; set it with `move_to`.
+    Attributes: q, goal: (3,) rad, where it is, and where it is going; set that with `move_to`.
     Raises InputError on wrong shapes, numbers that are not finite or limits that are not positive.
     """
 
     duration = math.inf
 
     def __init__(self, q, *, qd=(0.0, 0.0, 0.0), speed=SPEED, acceleration=ACCELERATION):
-        self._q, self._qd = vector3("q", q).copy(), vector3("qd", qd, unit="rad/s").copy()
-        self.goal, self._t = self._q, None
+        self.q, self._qd = vector3("q", q).copy(), vector3("qd", qd, unit="rad/s").copy()
+        self.goal, self._t = self.q, None
         self.speed = np.array(per_joint("speed", speed, "> 0", unit="rad/s"))
         self.acceleration = np.array(per_joint("acceleration", acceleration, "> 0", unit="rad/s^2"))
 
@@ -44,8 +44,8 @@ class SetPoint:
         dt = 0.0 if self._t is None else min(max(t - self._t, 0.0), 0.25)  # after a pause: go on, do not jump
         self._t = t
         if dt == 0.0:
-            return self._q.copy(), self._qd.copy(), np.zeros(3)
-        way, before, at = self.goal - self._q, self._qd, self.acceleration * dt
+            return self.q.copy(), self._qd.copy(), np.zeros(3)
+        way, before, at = self.goal - self.q, self._qd, self.acceleration * dt
         # the speed from which n steps, each slower by a dt than the one before, end exactly at the goal
         steps = np.abs(way) / (at * dt)
         n = np.maximum(1, np.ceil(0.5 * (np.sqrt(1 + 8 * steps) - 1) - 1e-9))
@@ -53,8 +53,8 @@ class SetPoint:
         wanted = np.copysign(np.minimum(braking, self.speed), way)
         self._qd = np.clip(wanted, before - at, before + at)
         there = np.abs(way - self._qd * dt) < 1e-12  # but for rounding; the next step takes the rest of the speed
-        self._q = np.where(there, self.goal, self._q + self._qd * dt)
-        return self._q.copy(), self._qd.copy(), (self._qd - before) / dt
+        self.q = np.where(there, self.goal, self.q + self._qd * dt)
+        return self.q.copy(), self._qd.copy(), (self._qd - before) / dt
 
 
 def checked_reference(arm, t, value, q=None):
