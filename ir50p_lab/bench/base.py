@@ -243,8 +243,6 @@ class Bench:
         try:
             self._begin()
             run.guard = self._make_guard()
-            if run.guard is not None:  # compiles before the clock starts; so long after it, it has forgotten this
-                run.guard.check(Sample(-math.inf, np.zeros(JOINTS), np.zeros(JOINTS), 0), self._pwm)
             run.pace = self._make_pace()
             yield run
         except GeneratorExit:  # the loop was left by break

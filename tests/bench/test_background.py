@@ -168,8 +168,9 @@ def test_after_it_the_bench_is_here_again(bench):
         times.append(sample.t)
         bench.drive([0, 0, 0])
     for t in (run.recent(80).t, np.array(times)):
-        periods = np.floor(t / 0.01 + 0.01)  # a busy machine leaves some out, none comes twice or too late
-        assert set(periods) <= {0, 1, 2, 3, 4} and periods[0] == 0 and (np.diff(periods) > 0).all()
+        periods = np.floor(t / 0.01 + 0.01)  # a busy machine leaves some out, none comes twice
+        assert periods[0] == 0 and (np.diff(periods) > 0).all()
+    assert periods[-1] <= 4  # nor too late
     for _ in bench.run(0.05):
         with pytest.raises(BenchError, match="in a cell"):
             bench.start(pid(), None)
