@@ -48,8 +48,8 @@ class Watch(NamedTuple):
     """What the check knows. Constants first: theta (3, 20) and numbers (33,) of the arm in PWM counts; lag (3,) s of
     the speed behind the drive; top (3,) rad/s: too fast; noise (3,) rad.
 
-    Then what it remembers: now (2,): samples in the block, blocks kept; block (n, 7): t, q and command of the present
-    one; past (KEPT, 7): of the last blocks, the command 0 where its sign changed, else the smallest. still (4, 3):
+    Then what it remembers: now (2,): samples in the block, blocks kept; block (n, 7): t, q and command of the last
+    samples; past (KEPT, 7): of the last blocks, the command 0 where its sign changed, else the smallest. still (4, 3):
     speed and way of the loaded joint, rad/s and rad, the angle it began at, and whether the joint has moved since.
     """
 
@@ -62,6 +62,14 @@ class Watch(NamedTuple):
     block: np.ndarray
     past: np.ndarray
     still: np.ndarray
+
+
+@jit()
+def push(rows, new):
+    """Move the rows of an array (n, k) up by one place, and put `new` (k,) last."""
+    for i in range(rows.shape[0]):
+        for j in range(new.size):
+            rows[i, j] = rows[i + 1, j] if i + 1 < rows.shape[0] else new[j]
 
 
 @jit()
@@ -93,7 +101,7 @@ def _against(w, i, gravity):
     if after < before - w.noise[i] / (t[2] - t[0]):
         return False
     least = min(n[LIMIT + i], drive[DELAY + 1 :].min())
-    return least + n[FV + i] * way.sum() / (t[-1] - t[0]) + n[FC + i] > HAND * n[LIMIT + i] + s * gravity
+    return least + n[FV + i] * s * (q[0] - q[-1]) / (t[-1] - t[0]) + n[FC + i] > HAND * n[LIMIT + i] + s * gravity
 
 
 @jit()
@@ -130,20 +138,23 @@ def watch_step(w, t, q, u):
 
     Returns: 0, or the alarm: AGAINST, STILL or FAST_ALARM, and 0 to 2 for the joint.
     """
-    block, past, k = w.block, w.past, w.now[0]
-    if not 0 < t - (block[k - 1, 0] if k > 0 else past[-1, 0]) < GAP:
+    k, row = w.now[0], np.empty(7)
+    if not 0 < t - w.block[-1, 0] < GAP:
         k = w.now[1] = 0
-    block[k, 0], block[k, 1:4], block[k, 4:7] = t, q, u
-    w.now[0] = k = (k + 1) % len(block)
+    row[0] = t
+    for i in range(3):
+        row[1 + i], row[4 + i] = q[i], u[i]
+    push(w.block, row)
+    w.now[0] = k = (k + 1) % len(w.block)
     if k > 0:
         return 0
-    past[:-1] = past[1:].copy()
-    past[-1, 0], w.now[1] = t, min(w.now[1] + 1, KEPT)
     for i in range(3):
-        angles, drives = block[:, 1 + i], block[:, 4 + i]
+        angles, drives = w.block[:, 1 + i], w.block[:, 4 + i]
         within = angles.sum() - angles.max() - angles.min()
-        past[-1, 1 + i] = within / (angles.size - 2) if angles.size > 2 else angles.mean()
-        past[-1, 4 + i] = max(drives.min(), 0.0) + min(drives.max(), 0.0)
+        row[1 + i] = within / (angles.size - 2) if angles.size > 2 else angles.mean()
+        row[4 + i] = max(drives.min(), 0.0) + min(drives.max(), 0.0)
+    push(w.past, row)
+    w.now[1] = min(w.now[1] + 1, KEPT)
     return _alarm(w)
 
 

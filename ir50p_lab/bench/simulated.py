@@ -9,7 +9,7 @@ from ir50p_lab.bench.arm_instance import UNIT
 from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Sample
 from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
 from ir50p_lab.bench.recorder import header_of
-from ir50p_lab.bench.runaway import watch_step
+from ir50p_lab.bench.runaway import push, watch_step
 from ir50p_lab.bench.set_point import FARTHEST, NOISE, checked_reference
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, read_pots
 from ir50p_lab.controllers.base import check_reference, is_compiled
@@ -20,14 +20,6 @@ from ir50p_lab.jit import jit
 _BLOCK = 1000  # samples between two looks at the disk and at Ctrl-C in a compiled run
 _KEPT = 100_000  # cycles of truth: a live run may last for hours
 _SINK = 3.0  # s without drive after which an arm that was let go lies still
-
-
-@jit()
-def _delayed(queue, pwm):
-    """Put a command (3,) into the queue (delay + 1, 3). Returns the one that acts now, of `delay` periods before."""
-    queue[:-1] = queue[1:].copy()
-    queue[-1] = pwm
-    return queue[0]
 
 
 @jit()
@@ -43,10 +35,13 @@ def _compiled_cycles(
     counts, q, command = np.empty(3), np.empty(3), np.empty(3)
     for k in range(t.size):
         if t[k] > 0.0:  # the first cycle of a run measures at once
-            advance_unit(theta, n, w, x, joint, _delayed(queue, pwm), steps)
+            push(queue, pwm)
+            advance_unit(theta, n, w, x, joint, queue[0], steps)
         read_pots(w, joint, noise[k], counts)
-        q[:] = (counts - zero) / slope
-        out[k, :3], out[k, 3:6], out[k, 9:12], out[k, 12:] = counts, q, joint, x[3:]
+        for i in range(3):
+            q[i] = (counts[i] - zero[i]) / slope[i]
+            out[k, i], out[k, 3 + i] = counts[i], q[i]
+            out[k, 9 + i], out[k, 12 + i] = joint[i], x[3 + i]
         alarm = watch_step(watch, t[k], q, pwm)
         if alarm > 0:
             return k, alarm
@@ -100,7 +95,7 @@ class SimulatedBench(Bench):
         if abs(self._steps * STEP - self.period) > 1e-9:
             raise InputError(f"period = {self.period} s: the simulated bench needs whole milliseconds")
         self.realtime = realtime
-        self._queue = np.zeros((self.plant.unit.delay + 1, JOINTS))
+        self._queue = np.zeros((self.plant.unit.delay + 1, JOINTS))  # commands; the first of them acts
         self._truth, self._cycle = deque(maxlen=_KEPT), 0
         self.bench_id = f"simulated-unit-{self.plant.seed}"
 
@@ -111,7 +106,8 @@ class SimulatedBench(Bench):
         self._truth.clear()
         if self.realtime:
             load_controllers()
-            self.plant.advance(_delayed(self._queue, self._pwm), 0.0)  # compiled before the clock starts
+            push(self._queue, self._pwm)
+            self.plant.advance(self._pwm, 0.0)  # compiled before the clock starts
 
     def _make_pace(self):
         return Pace(self._clock, self.period) if self.realtime else super()._make_pace()
@@ -121,7 +117,8 @@ class SimulatedBench(Bench):
         for late in range(cycle - self._cycle):
             if self.realtime and late * self.period >= WATCHDOG:
                 self._cut()
-            self.plant.advance(_delayed(self._queue, self._pwm), self.period)
+            push(self._queue, self._pwm)
+            self.plant.advance(self._queue[0], self.period)
         self._cycle = cycle
         if not drive:
             self._cut()
