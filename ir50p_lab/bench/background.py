@@ -86,13 +86,10 @@ class LoopStatistics:
     period_max: float = math.nan
 
     def __str__(self):
-        if not self.cycles:
-            return "no cycle yet"
-        p50, p99, largest = (1e3 * x for x in (self.period_p50, self.period_p99, self.period_max))
-        cuts = f", {self.trips} cuts of the drive by pauses" if self.trips else ""
+        median, most, longest = (1e3 * x for x in (self.period_p50, self.period_p99, self.period_max))
         return (
-            f"{self.cycles} cycles, {self.missed} late{cuts}; period {p50:.2f} ms median, {p99:.2f} ms 99 %, "
-            f"{largest:.2f} ms longest"
+            f"{self.cycles} cycles, {self.missed} late, {self.trips} cuts of the drive by pauses; "
+            f"period {median:.2f} ms median, {most:.2f} ms 99 %, {longest:.2f} ms longest"
         )
 
 

@@ -1,20 +1,19 @@
 """What every bench promises: one loop, whether a board, a simulated arm or a recording answers."""
 
 import contextlib
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from ir50p_lab.bench.calibration import nominal_calibration
-from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, CountedPace, Pace, warm_up
+from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, CountedPace, Pace
 from ir50p_lab.bench.recorder import Recorder, header_of
 from ir50p_lab.bench.rest import way_to_rest
 from ir50p_lab.bench.runaway import RunawayGuard
 from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.controllers.base import check_controller, check_reference
 from ir50p_lab.errors import BenchError, InputError, LabError, PauseError
-from ir50p_lab.inputs import check_arm
+from ir50p_lab.inputs import check_arm, number
 from ir50p_lab.modelling.named_arms import load_arm
 
 JOINTS = 3
@@ -218,8 +217,7 @@ class Bench:
         return self._cycles(self._number_of_cycles(seconds), reference, record, header)
 
     def _number_of_cycles(self, seconds):
-        if not (isinstance(seconds, int | float | np.number) and math.isfinite(seconds) and seconds > 0):
-            raise InputError(f"seconds = {seconds!r}: give how long to run, in seconds, > 0")
+        seconds = number("seconds", seconds, "> 0", unit="s", hint="how long to run")
         if self.live_run is not None and not self.live_run.is_here():
             self.live_run.give_back()  # BenchError while it runs
             self.live_run = None
@@ -389,10 +387,11 @@ class Bench:
         """`pwm` in whole counts, within the limit and not beyond the ends of the travel; else cut and raise."""
         try:
             given = np.asarray(pwm)
-            command = given.astype(float) if given.dtype.kind in "iufO" else np.full(JOINTS, np.nan)
+            command = given.astype(float)
+            usable = given.dtype.kind in "iufO" and command.shape == (JOINTS,) and np.isfinite(command).all()
         except Exception:  # whatever the conversion of a stranger raises
-            command = np.full(JOINTS, np.nan)
-        if command.shape != (JOINTS,) or not np.isfinite(command).all():
+            usable = False
+        if not usable:
             self.cut()
             raise InputError(f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts; the drive has been cut")
         limited = []  # scalars: for three numbers arrays take longer than the arm
@@ -414,7 +413,6 @@ class Bench:
         check_controller(controller)
         check_reference(reference)
         controller.reset() if hasattr(controller, "reset") else None
-        warm_up(controller, reference)
         for sample in self.run(seconds, reference, record=record, **{**header_of(controller), **header}):
             self.drive(controller.step(sample.t, sample.q, sample.reference))
         return self.recording if record else None

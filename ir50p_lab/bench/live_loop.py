@@ -6,7 +6,7 @@ from itertools import islice
 
 import numpy as np
 
-from ir50p_lab.bench.pace import warm_up
+from ir50p_lab.bench.pace import load_controllers
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.rest import way_to_rest
 from ir50p_lab.bench.set_point import SetPoint
@@ -31,7 +31,7 @@ def live_loop(bench, controller, reference, orders, tell, *, orphaned=lambda: Fa
     After the order to cut or an error the drive is off at once; else the arm moves to its rest pose first, which is
     not recorded. Raises what controller, reference or bench raise, and BenchError when orphaned.
     """
-    warm_up(controller, reference)
+    load_controllers()
     loop = _Loop(bench, _Target(bench, reference), orders, tell, orphaned)
     loop.say(STARTING)
     try:

@@ -12,6 +12,7 @@ from ir50p_lab.signals.reference import per_joint
 SPEED = 0.8  # rad/s: with the arm stretched the tip moves at 0.7 m/s
 ACCELERATION = 3.0  # rad/s^2: full speed after a quarter of a second
 FARTHEST = 2.0  # rad from the measured pose: no drive is asked to close such a gap at once
+_UNKNOWN = (math.nan,) * 3  # a pose from which nothing is far, and which widens no travel
 NOISE = 0.05  # rad; an arm that stands at an end of its travel may be measured so far beyond it
 
 
@@ -71,17 +72,14 @@ def checked_reference(arm, t, value, q=None):
         raise InputError(
             f"the reference gives {value!r:.100} at t = {t:.3f} s: give (q, qd, qdd), each (3,) and finite"
         )
-    for i, wanted in enumerate(rows[0].tolist()):
-        low, high = arm.q_min[i], arm.q_max[i]
-        here = None if q is None else float(q[i])
-        if here is not None:
-            low, high = min(low, here - NOISE), max(high, here + NOISE)
+    for i, (wanted, here) in enumerate(zip(rows[0].tolist(), _UNKNOWN if q is None else q.tolist(), strict=True)):
+        low, high = min(arm.q_min[i], here - NOISE), max(arm.q_max[i], here + NOISE)
         if not low - 1e-9 <= wanted <= high + 1e-9:
             raise InputError(
                 f"the reference of joint {i + 1} is {wanted:.4g} rad at t = {t:.3f} s; the arm's travel is "
                 f"{arm.q_min[i]:.2f} to {arm.q_max[i]:.2f} rad. Are these degrees? np.radians makes them rad"
             )
-        if here is not None and abs(wanted - here) > FARTHEST:
+        if abs(wanted - here) > FARTHEST:
             raise InputError(
                 f"the reference of joint {i + 1} is {wanted:.4g} rad at t = {t:.3f} s, {abs(wanted - here):.2f} rad "
                 f"from where the arm is ({here:.2f} rad); {FARTHEST:g} rad is the most. Let it begin where the arm is "
@@ -94,12 +92,13 @@ def checked_reference(arm, t, value, q=None):
 def checked_set_point(arm, q):
     """A set point q (3,) rad as an array; InputError if it is beyond the travel of the arm or below the table."""
     q = vector3("set point", q)
-    for joint, (angle, low, high) in enumerate(np.degrees([q, arm.q_min, arm.q_max]).T, 1):
-        if not low <= angle <= high:
-            raise InputError(
-                f"set point of joint {joint} is {np.radians(angle):.3f} rad = {angle:.1f} deg; the arm's travel is "
-                f"{low:.0f} to {high:.0f} deg"
-            )
+    outside = (q < arm.q_min) | (q > arm.q_max)
+    if outside.any():
+        i = np.argmax(outside)
+        low, high = np.degrees([arm.q_min[i], arm.q_max[i]])
+        raise InputError(
+            f"set point of joint {i + 1} is {q[i]:.3f} rad; the arm's travel is {low:.0f} to {high:.0f} deg"
+        )
     height = float(frames(arm, q)[2:, 2, 3].min())
     if height < 0.0:
         raise InputError(
