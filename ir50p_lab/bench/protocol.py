@@ -57,6 +57,7 @@ _CRC = struct.Struct("<I")
 _COMMAND = struct.Struct("<BBB3hB")
 _STATE = struct.Struct("<BBB3HBHH")
 _IDENTITY = struct.Struct("<BBB2s3B3sHB")
+COMMAND_SIZE = _COMMAND.size + _CRC.size
 REPLY_SIZE = _STATE.size + _CRC.size
 
 

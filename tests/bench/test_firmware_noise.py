@@ -2,9 +2,9 @@
 
 import random
 
-from board_frames import COMMAND_SIZE, CommandParser
+from board_frames import CommandParser
 
-from ir50p_lab.bench.protocol import FrameParser
+from ir50p_lab.bench.protocol import COMMAND_SIZE, FrameParser
 from tests.bench.test_protocol import random_command
 from tests.emulator.noise import noisy_stream, true_frames
 from tests.emulator.talk import Talk

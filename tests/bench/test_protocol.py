@@ -6,7 +6,7 @@ import zlib
 from pathlib import Path
 
 import pytest
-from board_frames import COMMAND_SIZE, LIMIT_ACTIVE, Command, CommandParser, encode, encode_reply
+from board_frames import LIMIT_ACTIVE, Command, CommandParser, encode, encode_reply
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -48,7 +48,7 @@ def random_reply(rng):
     )
 
 
-SIDES = [(CommandParser, random_command, COMMAND_SIZE), (FrameParser, random_reply, protocol.REPLY_SIZE)]
+SIDES = [(CommandParser, random_command, protocol.COMMAND_SIZE), (FrameParser, random_reply, protocol.REPLY_SIZE)]
 
 
 def test_the_sketch_has_the_same_numbers_as_python():

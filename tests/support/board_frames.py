@@ -5,7 +5,6 @@ from typing import NamedTuple
 from ir50p_lab.bench import protocol
 from ir50p_lab.bench.protocol import COMMAND_SYNC, LIMIT_PWM, REPLY_SYNC, FrameParser, State, encode_command, with_check
 
-COMMAND_SIZE = len(encode_command(0, protocol.STOP))
 LIMIT_ACTIVE = (2, 4, 8)  # bits of `status`: joint 1, 2, 3 at an end of its potentiometer, outward drive is cut
 
 
@@ -48,4 +47,4 @@ def decode_command(data):
 class CommandParser(FrameParser):
     """Finds commands in a stream of bytes."""
 
-    sync, size, decode = bytes([COMMAND_SYNC]), COMMAND_SIZE, staticmethod(decode_command)
+    sync, size, decode = bytes([COMMAND_SYNC]), protocol.COMMAND_SIZE, staticmethod(decode_command)
