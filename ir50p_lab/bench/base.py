@@ -387,8 +387,8 @@ class Bench:
         """`pwm` in whole counts, within the limit and not beyond the ends of the travel; else cut and raise."""
         try:
             given = np.asarray(pwm)
-            command = given.astype(float)
-            usable = given.dtype.kind in "iufO" and command.shape == (JOINTS,) and np.isfinite(command).all()
+            command = given.astype(float) if given.dtype.kind in "iufO" else np.full(JOINTS, np.nan)
+            usable = command.shape == (JOINTS,) and np.isfinite(command).all()
         except Exception:  # whatever the conversion of a stranger raises
             usable = False
         if not usable:

@@ -156,25 +156,12 @@ class SimulatedBench(Bench):
     def _block(self, controller, run, k):
         t, reference = k * self.period, run.reference
         rows = reference.sample(t) if hasattr(reference, "sample") else [reference(time) for time in t]
-        r, out, plant = np.ascontiguousarray(rows, dtype=float), np.empty((len(t), 15)), self.plant
+        r, out = np.ascontiguousarray(rows, dtype=float), np.empty((len(t), 15))
         line = (np.array(self.calibration.slope), np.array(self.calibration.zero))
-        low, high = np.array(self._travel).T.copy()
+        fixed = (*self.plant.arrays, *line, *np.array(self._travel).T.copy())
         law = (controller.kind, controller.parameters, controller.state)
-        done, alarm = _compiled_cycles(
-            *plant.arrays,
-            *line,
-            low,
-            high,
-            self._queue,
-            self._pwm,
-            *law,
-            run.guard.watch,
-            t,
-            r,
-            plant.noise(len(t)),
-            self._steps,
-            out,
-        )
+        state, noise = (self._queue, self._pwm, *law, run.guard.watch), self.plant.noise(len(t))
+        done, alarm = _compiled_cycles(*fixed, *state, t, r, noise, self._steps, out)
         rows = out[:done]
         if run.recorder is not None and done:
             run.recorder.write_block(t[:done], rows[:, 3:6], rows[:, :3], rows[:, 6:9], r[:done, 0], self._gripper, 0)
