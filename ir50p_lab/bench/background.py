@@ -14,36 +14,39 @@ import sys
 import tempfile
 import threading
 from dataclasses import dataclass
+from queue import SimpleQueue
 
 import cloudpickle
 import numpy as np
 
-from ir50p_lab.bench import loop_process, shared_loop
-from ir50p_lab.bench.live_loop import live_loop
-from ir50p_lab.bench.pace import warm_up
+from ir50p_lab.bench import loop_process
+from ir50p_lab.bench.live_loop import ENDED, STARTING, live_loop
 from ir50p_lab.bench.recording import Recording
 from ir50p_lab.bench.set_point import checked_reference, checked_set_point
-from ir50p_lab.bench.shared_loop import SharedLoop
-from ir50p_lab.controllers.base import GAINS, check_controller, check_reference, gains, gains_of
+from ir50p_lab.controllers.base import check_controller, check_reference, gains, gains_of
 from ir50p_lab.errors import BenchError, InputError
 
 _TO_REST = 60.0  # s: a way to the rest pose that takes longer has failed
 _OBEYED = 0.25  # s: a loop that has not taken the order to cut by then hangs
-_OPENED_WITHIN = 80.0  # s: a cold start imports and compiles, and a board restarts when its port is opened
+_BEGINS_WITHIN = 80.0  # s: a cold start imports and compiles, and a board restarts when its port is opened
+_KEPT = 8192  # samples: 82 s at 100 Hz
+_THREE = ("f8", 3)
+_SAMPLE = np.dtype(
+    [("t", "f8"), ("q", *_THREE), ("u", *_THREE), ("r", *_THREE), ("clock", "f8"), ("missed", "i8"), ("trips", "i8")]
+)
 
 
-def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest=True):
-    """Run `controller` on `reference` in the background, in real time; the notebook stays free.
+def start(bench, controller, reference=None):
+    """Run `controller` on `reference` in the background, in real time, until stopped; the notebook stays free.
 
-    The same cycles as `for sample in bench.run(...)`. On a simulated or replayed arm they run in a thread, on
-    hardware in a process of their own, which cuts the drive when this one dies; both get copies of controller and
-    reference, which must therefore be sendable (a controller that holds an open file is not).
+    The same cycles as `for sample in bench.run(...)`. If the reference begins elsewhere than the arm stands, the arm
+    first moves there smoothly. On a simulated or replayed arm the loop runs in a thread, on hardware in a process of
+    its own, which cuts the drive when this one dies; both get copies of controller and reference, which must therefore
+    be sendable (a controller that holds an open file is not).
 
     Args:
         bench: open Bench. controller: step(t, measured, reference) -> u.
         reference: target(t) -> (q, qd, qdd); None: hold the pose measured at the start.
-        seconds: of the reference, None: until stopped. lead_in: if the reference begins elsewhere than the arm
-        stands, first move there smoothly. rest: afterwards move to the rest pose before letting go.
 
     Returns: LiveRun. Raises BenchError if the bench is closed or busy, InputError for bad arguments, and what opening
     the port raises.
@@ -52,7 +55,7 @@ def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest
     if reference is not None:
         check_reference(reference)
         checked_reference(bench.arm, 0.0, reference(0.0))
-    bench._number_of_cycles(1.0 if seconds is None else seconds)  # it is open, and no other loop has it
+    bench._number_of_cycles(1.0)  # it is open, and no other loop has it
     if bench._run is not None:
         raise BenchError("a run in a cell has the arm: end its loop first")
     try:
@@ -62,12 +65,9 @@ def start(bench, controller, reference=None, *, seconds=None, lead_in=True, rest
             f"controller or reference cannot be sent to the loop in the background ({error}): let them hold numbers "
             "and functions only, no files, widgets or benches"
         ) from None
-    run = bench.live_run = LiveRun(bench, controller, {"seconds": seconds, "lead_in": lead_in, "rest": rest})
-    if bench.own_process:
-        run._begin_process(cargo)
-    else:
-        run._begin_thread(cargo)
-    return run
+    bench.live_run = LiveRun(bench, controller, cargo)
+    bench.live_run._begin()
+    return bench.live_run
 
 
 @dataclass(frozen=True)
@@ -75,26 +75,21 @@ class LoopStatistics:
     """How well the loop keeps time.
 
     cycles, missed, trips (times the drive was cut because the loop had paused): counts since the start; period_p50,
-    period_p99, period_max: s between measurements; busy_p50: s from having a sample until its command was sent. The
-    times are of the last 80 s at most; NaN before there are any.
+    period_p99, period_max: s between measurements, of the last 80 s at most; NaN before there are any.
     """
 
-    cycles: int
-    missed: int
+    cycles: int = 0
+    missed: int = 0
     trips: int = 0
     period_p50: float = math.nan
     period_p99: float = math.nan
     period_max: float = math.nan
-    busy_p50: float = math.nan
 
     def __str__(self):
-        if not self.cycles:
-            return "no cycle yet"
-        p50, p99, largest = (1e3 * x for x in (self.period_p50, self.period_p99, self.period_max))
-        cuts = f", {self.trips} cuts of the drive by pauses" if self.trips else ""
+        median, most, longest = (1e3 * x for x in (self.period_p50, self.period_p99, self.period_max))
         return (
-            f"{self.cycles} cycles, {self.missed} late{cuts}; period {p50:.2f} ms median, {p99:.2f} ms 99 %, "
-            f"{largest:.2f} ms longest; {1e3 * self.busy_p50:.2f} ms from sample to command"
+            f"{self.cycles} cycles, {self.missed} late, {self.trips} cuts of the drive by pauses; "
+            f"period {median:.2f} ms median, {most:.2f} ms 99 %, {longest:.2f} ms longest"
         )
 
 
@@ -123,97 +118,88 @@ class LiveRun:
     statistics()                     cycles, late ones, periods
     join(timeout)                    wait for the end; raises what ended it early
     alive, phase, error, recording   whether it runs; what it does; what went wrong or None; the file
+    gains                            {'kp': (3,), 'ki': (3,), 'kd': (3,)} as ordered last; empty without any to set
     ================================ ==========================================================================
 
-    A thread of this process runs the loop, or listens to the process that does until it is gone.
+    A thread of this process runs the loop, or listens to the process that does until it is gone. Orders go into a
+    queue; what the loop tells comes back to `_hear`.
     """
 
-    def __init__(self, bench, controller, options):
-        """options: of `live_loop`."""
-        self._bench, self._options = bench, options
-        self._memory = SharedLoop.shared() if bench.own_process else SharedLoop()
-        self.error = None  # the exception that ended the loop
-        self._gains = gains_of(controller)
-        self._lock = threading.Lock()  # orders may come from several widgets' threads
-        self._thread = threading.Thread(target=self._listen if bench.own_process else self._loop, daemon=True)
-        self._process, self._path, self._stage = None, None, None  # the last stage the child has told of
-        self._told, self._words = threading.Event(), ""  # the end of what the child printed
+    def __init__(self, bench, controller, cargo):
+        """cargo: controller and reference, as bytes."""
+        self._bench, self._cargo = bench, cargo
+        self.error, self.gains = None, gains_of(controller)
+        self._orders, self._told, self._begun = SimpleQueue(), {}, threading.Event()
+        self._ring, self._count = np.zeros(_KEPT, _SAMPLE), 0
+        self._thread, self._process = threading.Thread(target=self._work, daemon=True), None
 
-    # ---- the loop as a thread: good enough for an arm that is simulated or replayed
-
-    def _begin_thread(self, cargo):
-        self._copies = pickle.loads(cargo)
-        warm_up(*self._copies)
+    def _begin(self):
+        """Start the loop; back when its first cycle follows. Raises what kept it from that."""
         self._thread.start()
-
-    def _loop(self):
-        realtime, self._bench.realtime = self._bench.realtime, True
         try:
-            live_loop(self._bench, *self._copies, self._memory, **self._options)
-        except BaseException as error:
-            self.error = error
-        finally:
-            self._bench.realtime = realtime
-
-    # ---- the loop as a process
-
-    def _begin_process(self, cargo):
-        """Start the child; back when it has the port and its first cycle follows. Raises what kept it from that."""
-        options = {"start_new_session": True, "pass_fds": self._memory.file_descriptors}
-        if os.name == "nt":  # either way: Ctrl-C and the notebook's interrupt button are not for the child
-            options = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
-        bench = cloudpickle.dumps((type(self._bench), self._bench._arguments()))
-        work = (sys.path, self._memory.address, os.getpid(), bench, cargo, self._options)
-        command = [sys.executable, "-c", loop_process.START]
-        self._said, pipe = tempfile.TemporaryFile(), subprocess.PIPE
-        self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=self._said, **options)
-        try:
-            self._bench._close()  # the port is the child's from here on
-            self._thread.start()
-            with contextlib.suppress(BrokenPipeError):  # it has died
-                loop_process.send(self._process.stdin, work)
-            self._told.wait(_OPENED_WITHIN)
-            if self._stage is None:
-                why = "does not open the bench" if self._process.poll() is None else f"ended too soon{self._words}"
-                raise self.error or BenchError(f"the loop's process {why}")
+            self._begun.wait(_BEGINS_WITHIN)
+            if "phase" not in self._told:
+                raise self.error or BenchError("the loop in the background does not begin")
         except BaseException:
             self._give_up()
             raise
 
-    def _listen(self):
-        """Hear what the child says until it is gone."""
-        with contextlib.suppress(Exception):  # EOFError when it is gone; whatever the error of a stranger raises here
-            while True:
-                stage, content = pickle.load(self._process.stdout)
-                if stage == "failed":
-                    self.error = pickle.loads(content)
-                    break
-                if stage == "recording":
-                    self._path = content
-                self._stage = stage
-                self._told.set()
-        code = self._process.wait()
-        self._memory.handed_over()
-        with self._said as said:  # where Python's own complaints are
+    def _work(self):
+        try:
+            arguments = self._bench._arguments()
+            self._loop_here() if arguments is None else self._loop_in_a_process(arguments)
+        except BaseException as error:
+            self.error = error
+        finally:
+            self._begun.set()
+
+    def _loop_here(self):
+        """In this thread: good enough for an arm that is simulated or replayed."""
+        bench, realtime = self._bench, getattr(self._bench, "realtime", True)
+        bench.realtime = True
+        try:
+            live_loop(bench, *pickle.loads(self._cargo), self._orders, self._hear)
+        finally:
+            bench.realtime = realtime
+
+    def _loop_in_a_process(self, arguments):
+        """Start the child, and listen until it is gone. arguments: of its bench."""
+        options = {"start_new_session": True}
+        if os.name == "nt":  # either way: Ctrl-C and the notebook's interrupt button are not for the child
+            options = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
+        work = (sys.path, cloudpickle.dumps((type(self._bench), arguments)), self._cargo)
+        command, pipe = [sys.executable, "-c", loop_process.START], subprocess.PIPE
+        self._bench._close()  # the port is the child's from here on
+        with tempfile.TemporaryFile() as said:
+            self._process = child = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=said, **options)
+            with contextlib.suppress(OSError):  # it has died
+                pickle.dump(work, child.stdin)
+                child.stdin.flush()
+            threading.Thread(target=loop_process.write_on, args=(self._orders, child.stdin), daemon=True).start()
+            loop_process.read_on(child.stdout, self._hear)
+            code = child.wait()
+            self._orders.put(None)
             said.seek(max(0, said.seek(0, os.SEEK_END) - 1500))
             words = said.read().decode("utf-8", "replace").strip()
-        self._words = f"; it said: {words}" if words else ""
-        if self.error is None and self._stage not in (None, "done"):
-            self.error = BenchError(
-                f"the process of the loop has died (exit code {code}): the board has cut the drive 0.1 s after its "
-                f"last command{self._words}"
+        if "failed" in self._told:
+            raise pickle.loads(self._told["failed"])
+        if "done" not in self._told:
+            raise BenchError(
+                f"the process of the loop has died (exit code {code}): a board cuts the drive 0.1 s after the last "
+                f"command{'; it said: ' * bool(words)}{words}"
             )
-        with contextlib.suppress(OSError):
-            self._process.stdin.close()
-        self._process.stdout.close()
-        self._told.set()
 
-    @property
-    def pid(self):
-        """The number of the child process."""
-        return self._process.pid
+    def _hear(self, name, content):
+        """Keep what the loop tells; see `live_loop`."""
+        if name == "sample":
+            self._ring[self._count % _KEPT] = content
+            self._count += 1
+            return
+        self._told[name] = content
+        if name == "phase":
+            self._begun.set()
 
-    # ---- either way
+    # ---- what it does
 
     @property
     def alive(self):
@@ -221,52 +207,62 @@ class LiveRun:
         return self._thread.is_alive()
 
     @property
+    def phase(self):
+        """What it does: 'starting', 'leading in', 'running', 'moving to the rest pose' or 'ended'."""
+        return self._told.get("phase", STARTING) if self.alive else ENDED
+
+    @property
     def recording(self):
         """The recording: as it grows, or of a child as far as it is on disk; None if it is not recorded there."""
         if self._process is None:
             return self._bench.recording
-        return Recording.load(self._path) if self._path else None
+        path = self._told.get("recording")
+        return Recording.load(path) if path else None
 
-    @property
-    def phase(self):
-        """What it does: 'starting', 'leading in', 'running', 'moving to the rest pose' or 'ended'."""
-        return shared_loop.PHASES[self._memory.status.phase] if self.alive else shared_loop.PHASES[-1]
+    def _latest(self, count):
+        """The last `count` samples at most, oldest first: a copy."""
+        end = self._count  # the loop goes on writing while this is copied: the oldest are left out
+        return self._ring[np.arange(max(0, end - min(count, _KEPT - 64)), end) % _KEPT]
 
-    @property
-    def gains(self):
-        """{'kp': (3,), 'ki': (3,), 'kd': (3,)} as ordered last; empty if the controller has none to set."""
-        return {name: values.copy() for name, values in self._gains.items()}
+    def recent(self, seconds):
+        """The samples of the last `seconds`, at most 80 s: LiveSamples."""
+        rows = self._latest(1 + math.ceil(seconds / self._bench.period))
+        rows = rows[rows["t"] >= rows["t"].max(initial=0.0) - seconds]
+        tripped = np.flatnonzero(np.diff(rows["trips"])) + 1
+        return LiveSamples(rows["t"], rows["q"], rows["u"], rows["r"], rows["t"][tripped])
+
+    def statistics(self):
+        """How well the loop keeps time: LoopStatistics."""
+        rows = self._latest(_KEPT)
+        if len(rows) < 2:
+            return LoopStatistics()
+        periods = np.percentile(np.diff(rows["clock"]), (50, 99, 100))
+        return LoopStatistics(self._count, int(rows["missed"][-1]), int(rows["trips"][-1]), *periods)
+
+    def __repr__(self):
+        return f"<LiveRun: {self.phase}; {self.statistics()}>"
+
+    # ---- orders
 
     def set_gains(self, kp=None, ki=None, kd=None):
         """Change gains from the next cycle on; the command does not jump. Raises InputError for bad gains."""
-        if not self._gains:
+        if not self.gains:
             raise InputError("this controller has no gains kp, ki, kd: there is nothing to change live")
-        given = {name: value for name, value in zip(GAINS, (kp, ki, kd), strict=True) if value is not None}
-        wanted = {name: gains(name, value) for name, value in given.items()}
-        with self._lock:
-            self._gains.update(wanted)
-            self._memory.order(gains=np.concatenate([self._gains[name] for name in GAINS]))
+        given = {"kp": kp, "ki": ki, "kd": kd}
+        wanted = {name: gains(name, value) for name, value in given.items() if value is not None}
+        self.gains = self.gains | wanted
+        self._orders.put(("gains", wanted))
 
     def set_point(self, q):
         """Go to q (3,) rad at limited speed, from where the reference is.
 
         Raises InputError if q is outside the joint limits or below the table.
         """
-        goal = checked_set_point(self._bench.arm, q)
-        with self._lock:
-            self._memory.order(set_point=goal)
-
-    def give_back(self):
-        """The bench is wanted in this process again, with its port. Raises BenchError while the loop runs."""
-        if self.alive:
-            raise BenchError(f"a loop in the background has the arm ({self.phase}): stop() or cut() it first")
-        if self._process is not None and self._bench.is_open:
-            self._bench._open()
+        self._orders.put(("set point", checked_set_point(self._bench.arm, q)))
 
     def stop(self, *, wait=True):
         """End in order: the arm moves to its rest pose and is let go. wait: until that is over."""
-        with self._lock:
-            self._memory.order(stop=True)
+        self._orders.put(("stop", None))
         if wait and not self._wait(_TO_REST):
             self.cut()
 
@@ -274,8 +270,7 @@ class LiveRun:
         """Drive off within one cycle, and the loop ends. The arm sinks. Never raises; may be called at any time."""
         if self.is_here():
             return
-        with self._lock:
-            self._memory.order(cut=True, stop=True)
+        self._orders.put(("cut", None))
         if not self._wait(_OBEYED):
             self._give_up()
 
@@ -288,6 +283,13 @@ class LiveRun:
         if self.error is not None:
             raise self.error
         return ended
+
+    def give_back(self):
+        """The bench is wanted in this process again, with its port. Raises BenchError while the loop runs."""
+        if self.alive:
+            raise BenchError(f"a loop in the background has the arm ({self.phase}): stop() or cut() it first")
+        if self._process is not None and self._bench.is_open:
+            self._bench._open()
 
     def is_here(self):
         """Whether the caller is the loop itself."""
@@ -307,23 +309,3 @@ class LiveRun:
             else:
                 self._process.kill()
                 self._wait(5.0)
-
-    def recent(self, seconds):
-        """The samples of the last `seconds`, at most 80 s: LiveSamples."""
-        rows = self._memory.latest(1 + math.ceil(seconds / self._bench.period))
-        rows = rows[rows["t"] >= rows["t"].max(initial=0.0) - seconds]
-        tripped = np.flatnonzero(np.diff(rows["trips"])) + 1
-        return LiveSamples(rows["t"], rows["q"], rows["u"], rows["r"], rows["t"][tripped])
-
-    def statistics(self):
-        """How well the loop keeps time: LoopStatistics."""
-        status, rows = self._memory.status, self._memory.latest(shared_loop.CAPACITY)
-        counts = int(status.samples), int(status.missed), int(status.trips)
-        if len(rows) < 2:
-            return LoopStatistics(*counts)
-        periods = np.diff(rows["measured"])[np.diff(rows["number"]) == 1]
-        p50, p99 = np.percentile(periods, (50, 99))
-        return LoopStatistics(*counts, p50, p99, periods.max(), float(np.median(rows["busy"])))
-
-    def __repr__(self):
-        return f"<LiveRun: {self.phase}; {self.statistics()}>"

@@ -1,19 +1,19 @@
 """What every bench promises: one loop, whether a board, a simulated arm or a recording answers."""
 
 import contextlib
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from ir50p_lab.bench.calibration import nominal_calibration
-from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, CountedPace, Pace, warm_up
+from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, CountedPace, Pace
 from ir50p_lab.bench.recorder import Recorder, header_of
 from ir50p_lab.bench.rest import way_to_rest
 from ir50p_lab.bench.runaway import RunawayGuard
 from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.controllers.base import check_controller, check_reference
 from ir50p_lab.errors import BenchError, InputError, LabError, PauseError
+from ir50p_lab.inputs import number
 from ir50p_lab.modelling.chain import lengths
 from ir50p_lab.modelling.named_arms import load_arm
 
@@ -70,8 +70,7 @@ class Bench:
     Attributes: arm: Arm (limits, kinematics); calibration: counts to rad; period: s; simulated: bool; name: str;
     bench_id: which bench it is, on which results are measured, as 'board-0a1b2c' or 'simulated-unit-0' (None: nobody
     knows, or the board has none yet); is_open: whether the arm is in hand; live_run: the LiveRun that has the arm, or
-    had it last; recording: Recording of the last run (None before); trips: how often the drive
-    was cut because the program sent no command.
+    had it last; recording: Recording of the last run (None before).
     """
 
     kind = "bench"
@@ -79,7 +78,6 @@ class Bench:
     answers = True  # whether drive moves the arm
     bench_id = None
     guarded = True  # whether a runaway is cut; off only while the motors have no supply
-    own_process = False  # whether a loop in the background gets a process of its own, by `_arguments()`, its keywords
 
     def __init__(self, arm=None, calibration=None, *, period=0.01, record_to=None, name=None):
         """arm: default `load_arm()`; calibration: default the nominal one.
@@ -97,7 +95,6 @@ class Bench:
         self.is_open, self._clock = False, Clock
         self._pwm, self._gripper = np.zeros(JOINTS), False
         self._last = self._run = None
-        self.trips = 0
         self.live_run = None
         self._travel = tuple(zip(arm.q_min, arm.q_max, strict=True))
 
@@ -152,6 +149,10 @@ class Bench:
         if not self.guarded or self.arm.actuators is None:
             return None
         return RunawayGuard(self.arm, self.calibration, self.period)
+
+    def _arguments(self):
+        """Keywords with which a process of its own makes this bench for its loops in the background; None: a thread."""
+        return None
 
     # ---- the contract
 
@@ -218,8 +219,7 @@ class Bench:
         return self._cycles(self._number_of_cycles(seconds), reference, record, header)
 
     def _number_of_cycles(self, seconds):
-        if not (isinstance(seconds, int | float | np.number) and math.isfinite(seconds) and seconds > 0):
-            raise InputError(f"seconds = {seconds!r}: give how long to run, in seconds, > 0")
+        seconds = number("seconds", seconds, "> 0", unit="s", hint="how long to run")
         if self.live_run is not None and not self.live_run.is_here():
             self.live_run.give_back()  # BenchError while it runs
             self.live_run = None
@@ -243,8 +243,6 @@ class Bench:
         try:
             self._begin()
             run.guard = self._make_guard()
-            if run.guard is not None:  # compiles before the clock starts; so long after it, it has forgotten this
-                run.guard.check(Sample(-math.inf, np.zeros(JOINTS), np.zeros(JOINTS), 0), self._pwm)
             run.pace = self._make_pace()
             yield run
         except GeneratorExit:  # the loop was left by break
@@ -291,7 +289,7 @@ class Bench:
         self._write_row(run)
         pace, when = run.pace, run.pace.cut_at(silence)
         pace.catch_up()
-        run.trips, self.trips = run.trips + 1, self.trips + 1
+        run.trips += 1
         said, ended = f"the drive was cut: no command for {silence:.2f} s", silence > LONGEST_PAUSE
         self.note(said + "; the run was ended" * ended, when)
         self._pwm = np.zeros(JOINTS)
@@ -340,13 +338,19 @@ class Bench:
         if run is None:
             return
         try:
-            self._write_row(run)
+            self._end_recording(run)
         except BaseException:  # a full disk; nobody may hear of it while a generator is closed
             self.cut()
             raise
+
+    def _end_recording(self, run):
+        """What comes in this run from now on is not recorded."""
+        try:
+            self._write_row(run)
         finally:
-            if run.recorder is not None:
-                run.recorder.close(self._statistics(run))
+            recorder, run.recorder = run.recorder, None
+            if recorder is not None:
+                recorder.close(self._statistics(run))
 
     def drive(self, pwm, *, gripper=None, reference=None):
         """Send PWM counts to the three joints; they hold until the next call.
@@ -386,9 +390,10 @@ class Bench:
         try:
             given = np.asarray(pwm)
             command = given.astype(float) if given.dtype.kind in "iufO" else np.full(JOINTS, np.nan)
+            usable = command.shape == (JOINTS,) and np.isfinite(command).all()
         except Exception:  # whatever the conversion of a stranger raises
-            command = np.full(JOINTS, np.nan)
-        if command.shape != (JOINTS,) or not np.isfinite(command).all():
+            usable = False
+        if not usable:
             self.cut()
             raise InputError(f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts; the drive has been cut")
         limited = []  # scalars: for three numbers arrays take longer than the arm
@@ -410,7 +415,6 @@ class Bench:
         check_controller(controller)
         check_reference(reference)
         controller.reset() if hasattr(controller, "reset") else None
-        warm_up(controller, reference)
         for sample in self.run(seconds, reference, record=record, **{**header_of(controller), **header}):
             self.drive(controller.step(sample.t, sample.q, sample.reference))
         return self.recording if record else None
@@ -427,8 +431,3 @@ class Bench:
         for sample in self.run(reference.duration + 0.5, record=False):
             self.drive(controller.step(sample.t, sample.q, reference(sample.t)))
         self.cut()
-
-    @property
-    def q(self):
-        """The pose (3,) rad that was measured last; None before the first run."""
-        return None if self._last is None else self._last.q

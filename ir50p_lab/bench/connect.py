@@ -55,22 +55,14 @@ def connect(port=None, *, arm=None, calibration=None, period=0.01, record_to=Non
 
 
 def _look_for_a_board(common, simulated):
-    ports = list_ports()
-    candidates = [port for port in ports if port.board]
     refused = []
-    for port in candidates:
+    for port in list_ports():
         try:
-            bench = _serial(port.device, common)
+            if port.board:
+                return _say_board(_serial(port.device, common), f"{port.board} found and its firmware answers")
         except (PortError, BoardError) as error:
             refused.append(f"{port.board} was not taken: {error}")
-        else:
-            others = "".join(f"; {other.device} not tried" for other in candidates[candidates.index(port) + 1 :])
-            return _say_board(bench, f"{port.board} found and its firmware answers{others}")
-    bench = _simulated(common, simulated)
-    if not refused:
-        others = f" among {len(ports)} serial ports" if len(ports) > 1 else " on the one serial port" if ports else ""
-        refused = [f"no Arduino Mega found{others}"]
-    return _say(bench, "; ".join(refused), _TO_BOARD)
+    return _say(_simulated(common, simulated), "; ".join(refused) or "no Arduino Mega found", _TO_BOARD)
 
 
 def _simulated(common, simulated):

@@ -1,7 +1,6 @@
 """Question and answer with the board: sequence numbers, repeats when nothing comes, no answer taken for another's."""
 
-from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from ir50p_lab.bench import protocol
 from ir50p_lab.errors import BoardLostError
@@ -22,19 +21,16 @@ HEARD = 80  # first bytes kept to tell what it is that does not answer
 class LinkStatistics:
     """What has happened on the wire since the bench was opened.
 
-    commands: sent; repeats: of which again, because no answer came; stale: answers that came too late to count;
-    bad_replies, bad_commands: damaged frames, dropped by the computer and by the board (its counter, which begins at
-    its start and wraps at 65536); watchdog_trips: times that the board cut the drive because no command came for
-    100 ms; round_trips: the last 1000, s.
+    commands: sent; repeats: of which again, because no answer came; bad_replies, bad_commands: damaged frames, dropped
+    by the computer and by the board (its counter, which begins at its start and wraps at 65536); watchdog_trips: times
+    that the board cut the drive because no command came for 100 ms.
     """
 
     commands: int = 0
     repeats: int = 0
-    stale: int = 0
     bad_replies: int = 0
     bad_commands: int = 0
     watchdog_trips: int = 0
-    round_trips: deque = field(default_factory=lambda: deque(maxlen=1000), repr=False)
 
 
 class Link:
@@ -47,10 +43,9 @@ class Link:
 
     def __init__(self, transport, clock):
         self._transport, self._clock = transport, clock
-        if transport.timeout != READ_TIMEOUT:
-            transport.timeout = READ_TIMEOUT
+        transport.timeout = READ_TIMEOUT
         self._parser = protocol.FrameParser()
-        self._seq, self._told, self._tripped = 0, None, False
+        self._seq, self._tripped = 0, False
         self.statistics, self.heard = LinkStatistics(), bytearray()
 
     def ask(self, kind, pwm=(0, 0, 0), gripper=False, *, patience, repeat=REPEAT):
@@ -66,8 +61,7 @@ class Link:
         start = now = self._clock.now()
         while now < start + patience:
             self.statistics.repeats += bool(sent)
-            seq = self._send(kind, pwm, gripper)
-            sent[seq] = now
+            sent[self.tell(kind, pwm, gripper)] = now
             size, next_try = protocol.REPLY_SIZE, now + repeat
             while now < next_try:
                 before, data = now, self._transport.read(size)
@@ -80,21 +74,22 @@ class Link:
                 for reply in replies:
                     self._note(reply)
                     if isinstance(reply, wanted) and reply.seq in sent:
-                        self.statistics.round_trips.append(now - sent[reply.seq])
                         return reply, sent[reply.seq]
-                    self.statistics.stale += reply.seq != self._told
                 if not (replies and len(data) == protocol.REPLY_SIZE):  # part of a frame, or of noise, has come
                     size = max(1, self._transport.in_waiting)
         raise BoardLostError(f"no answer for {patience * 1000:.0f} ms")
 
     def tell(self, kind, pwm, gripper):
-        """Send a command and do not wait; its answer is passed over by the next `ask`."""
-        self._told = self._send(kind, pwm, gripper)
+        """Send a command and do not wait; its answer is passed over by the next `ask`. Returns its number."""
+        self._seq = (self._seq + 1) % 256
+        self.statistics.commands += 1
+        self._transport.write(protocol.encode_command(self._seq, kind, pwm, gripper))
+        return self._seq
 
     def stop(self, gripper=False):
         """Send STOP, three times at once in case one is damaged, until the board says so; within 50 ms."""
         for _ in range(3):
-            self._send(protocol.STOP, (0, 0, 0), gripper)
+            self.tell(protocol.STOP, (0, 0, 0), gripper)
         self.ask(protocol.STOP, (0, 0, 0), gripper, patience=0.05)
 
     def forget(self):
@@ -106,12 +101,6 @@ class Link:
     def close(self):
         """Give the port free."""
         self._transport.close()
-
-    def _send(self, kind, pwm, gripper):
-        self._seq = (self._seq + 1) % 256
-        self.statistics.commands += 1
-        self._transport.write(protocol.encode_command(self._seq, kind, pwm, gripper))
-        return self._seq
 
     def _note(self, reply):
         if isinstance(reply, protocol.State):

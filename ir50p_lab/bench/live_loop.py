@@ -1,135 +1,133 @@
 """The loop in the background, the same on every bench: cycles of measure, obey, command, tell."""
 
 import contextlib
-import math
 import time
+from itertools import islice
 
 import numpy as np
 
-from ir50p_lab.bench import shared_loop
+from ir50p_lab.bench.pace import load_controllers
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.rest import way_to_rest
-from ir50p_lab.bench.set_point import SPEED, SetPoint
-from ir50p_lab.controllers.base import set_gains
+from ir50p_lab.bench.set_point import SetPoint
+from ir50p_lab.controllers.base import gains_of, set_gains
 from ir50p_lab.errors import BenchError
-from ir50p_lab.signals.quintic import quintic
 
-_DAY = 86400.0  # s: the longest run "until stopped"
-_THERE = math.radians(0.25)  # nearer than this a lead-in would only waste time: about the noise of the potentiometers
+STARTING, LEADING, RUNNING = "starting", "leading in", "running"
+RETURNING, ENDED = "moving to the rest pose", "ended"
+_DAY = 86400.0  # s: the longest run
 
 
-def live_loop(bench, controller, reference, memory, *, seconds, lead_in, rest, orphaned=lambda: False):
-    """Run until the orders in `memory` say stop or cut, `seconds` are over, or something fails.
+def live_loop(bench, controller, reference, orders, tell, *, orphaned=lambda: False):
+    """Run until an order says stop or cut, or something fails.
 
     Args:
         bench: open Bench; controller: anything with step(t, measured, reference); reference: target(t) or None, which
-        holds the measured pose; memory: SharedLoop. seconds: of the reference, or None; lead_in, rest: as `start`.
-        orphaned: says in every cycle whether the process that gives the orders has died.
+        holds the measured pose. orders: queue of (name, content): "stop", "cut" (None), "gains" (dict of (3,)),
+        "set point" (3,) rad. tell: takes a name and its content: "phase", "recording" (path or None) and "sample":
+        (t, q, u, reference, s of a true clock, late cycles, trips of the watchdog). orphaned: says in every cycle
+        whether the process that gives the orders has died.
 
-    After the orders' cut or an error the drive is off at once; else the arm moves to its rest pose first.
-    Raises what controller, reference or bench raise, and BenchError when orphaned.
+    After the order to cut or an error the drive is off at once; else the arm moves to its rest pose first, which is
+    not recorded. Raises what controller, reference or bench raise, and BenchError when orphaned.
     """
-    loop = _Loop(bench, memory, orphaned)
+    load_controllers()
+    loop = _Loop(bench, _Target(bench, reference), orders, tell, orphaned)
+    loop.say(STARTING)
     try:
         if hasattr(controller, "reset"):
             controller.reset()
-        target = _Target(bench, reference, lead_in)
         header = {"controller": type(controller).__name__, "loop": "in the background; gains and set point may change"}
-        q = loop.run(controller, target, seconds, header=header | header_of(controller))
-        if rest and bench.kind != "replay" and not memory.orders().cut and q is not None:
-            memory.status.phase = shared_loop.RETURNING
-            pid, way = way_to_rest(bench.arm, q, bench.period)
-            loop.run(pid, _Target(bench, way, lead_in=False), way.duration + 0.5, header=None)
+        with contextlib.closing(bench.run(_DAY, loop.target, **header | header_of(controller))) as samples:
+            if loop.follow(samples, controller) == "stop":
+                bench._end_recording(bench._run)
+                controller, way = way_to_rest(bench.arm, bench._last.q, bench.period)
+                loop.target.take(way, bench._last.t)
+                cycles = round((way.duration + 0.5) / bench.period)
+                loop.follow(islice(samples, cycles), controller, returning=True)
     finally:
         bench.cut()
         bench._last = None  # closing the bench moves nothing: the arm is at rest, or was cut on purpose
-        memory.status.phase = shared_loop.ENDED
+        loop.say(ENDED)
 
 
 class _Loop:
-    """What outlives one run: the time so far and how many orders were obeyed."""
+    """What the parts of a run in the background have in common."""
 
-    def __init__(self, bench, memory, orphaned):
-        self.bench, self.memory, self.orphaned = bench, memory, orphaned
-        self.t0, self.missed0, self.trips0 = 0.0, 0, bench.trips
+    def __init__(self, bench, target, orders, tell, orphaned):
+        self.bench, self.target, self.orders, self.tell, self.orphaned = bench, target, orders, tell, orphaned
+        self.phase = None
 
-    def run(self, controller, target, seconds, *, header):
-        """One run of the bench; header None: the way to the rest pose, neither recorded nor tuned.
+    def say(self, phase):
+        """Tell what the loop does now, and where that is recorded."""
+        if phase != self.phase:
+            self.phase, recording = phase, self.bench.recording
+            self.tell("recording", recording and recording.path and recording.path.absolute())
+            self.tell("phase", phase)
 
-        Returns: the last q (3,), None if there was no sample.
+    def follow(self, samples, controller, *, returning=False):
+        """Drive as long as there are samples; returning: only the order to cut counts. Returns the order that ended it.
+
+        A sample with which it ends is not driven: the command before holds, or has been cut.
         """
-        returning = header is None
-        bench, memory = self.bench, self.memory
-        gains_number = set_point_number = 0
-        sample = None
-        cycles = bench.run(_DAY, target, record=not returning, **(header or {}))
-        with contextlib.closing(cycles):
-            for sample in cycles:
-                woke, t = time.perf_counter(), sample.t
-                if self.orphaned():
-                    raise BenchError("the process that started this loop is gone: the drive has been cut")
-                orders = memory.orders()
-                if orders.cut or (orders.stop and not returning):
-                    break
-                if seconds is not None and t - target.begins > target.lead + seconds - 0.5 * bench.period:
-                    break
+        for sample in samples:
+            woke = time.perf_counter()
+            if self.orphaned():
+                raise BenchError("the process that started this loop is gone: the drive has been cut")
+            while not self.orders.empty():
+                order, content = self.orders.get()
+                if order == "cut":
+                    self.bench.cut()  # before the run is closed, whose recording takes a moment
+                if order == "cut" or (order == "stop" and not returning):
+                    return order
                 if not returning:
-                    leading = t - target.begins < target.lead
-                    memory.status.phase = shared_loop.LEADING if leading else shared_loop.RUNNING
-                    if orders.gains_number != gains_number:
-                        gains_number = orders.gains_number
-                        gains = {"kp": orders.gains[:3], "ki": orders.gains[3:6], "kd": orders.gains[6:]}
-                        set_gains(controller, **gains)
-                        bench.note("; ".join(f"{k} = {' '.join(f'{x:g}' for x in v)}" for k, v in gains.items()))
-                    if orders.set_point_number != set_point_number:
-                        set_point_number = orders.set_point_number
-                        target.move_to(t, orders.set_point)
-                u = bench.drive(controller.step(t, sample.q, sample.reference))
-                busy, late = time.perf_counter() - woke, self.missed0 + sample.missed
-                aim = sample.reference[0]
-                memory.put(self.t0 + t, sample.q, u, aim, woke, busy, late, bench.trips - self.trips0)
-            if memory.orders().cut:
-                bench.cut()  # before the run is closed, whose recording takes a moment
-        if sample is None:
-            return None
-        self.t0, self.missed0 = self.t0 + sample.t + bench.period, int(memory.status.missed)
-        return sample.q
+                    self.change(controller, order, content, sample.t)
+            self.say(RETURNING if returning else LEADING if self.target.leading else RUNNING)
+            u = self.bench.drive(controller.step(sample.t, sample.q, sample.reference))
+            numbers = (three.tolist() for three in (sample.q, u, sample.reference[0]))
+            self.tell("sample", (sample.t, *numbers, woke, sample.missed, self.bench._run.trips))
+        return "over"
+
+    def change(self, controller, order, content, t):
+        """Take new gains or a new set point."""
+        if order == "set point":
+            return self.target.move_to(content, t)
+        set_gains(controller, **content)
+        told = (f"{name} = {' '.join(f'{x:g}' for x in three)}" for name, three in gains_of(controller).items())
+        self.bench.note("; ".join(told))
 
 
 class _Target:
-    """The reference, with a way to it in front, until a set point takes over: the target starts where the arm stands.
+    """What the arm is to follow: a way to the reference from where it stands, the reference, then any set point.
 
-    begins: t of its first call, s; lead: how long the way to the reference takes, s.
+    leading: whether it is still on the way to the reference.
     """
 
-    def __init__(self, bench, reference, lead_in):
-        self.bench, self.reference, self.lead_in = bench, reference, lead_in
-        self.begins, self.lead, self._way = None, 0.0, None
+    def __init__(self, bench, reference):
+        self.bench, self.reference, self.leading = bench, reference, reference is not None
+        self._point, self._begin = None, 0.0
 
     def __call__(self, t):
-        if self.begins is None:
-            self._begin(t)
-        t = t - self.begins
-        leading = self._way is not None and t < self.lead
-        return self._way(t) if leading else self.reference(t - self.lead)
+        if self._point is None:  # the arm has just been measured for the first time
+            arm = self.bench.arm
+            self._point = SetPoint(np.clip(self.bench._last.q, arm.q_min, arm.q_max))
+            if self.leading:
+                self._point.move_to(self.reference(0.0)[0])
+        if self.leading and (self._point.q == self._point.goal).all():
+            self.take(self.reference, t)
+        if self.leading or self.reference is None:
+            return self._point(t)
+        return self.reference(t - self._begin)
 
-    def _begin(self, t):
-        """Start at this time, from the pose just measured."""
-        self.begins, arm = t, self.bench.arm
-        here = np.clip(self.bench._last.q, arm.q_min, arm.q_max)
-        if self.reference is None:
-            self.reference = SetPoint(here)
-        elif self.lead_in:
-            goal = np.asarray(self.reference(0.0)[0], dtype=float)
-            distance = float(np.abs(goal - here).max())
-            if distance > _THERE:
-                self.lead = max(0.3, 1.875 * distance / SPEED)  # a quintic's peak is 15/8 of its mean
-                self._way = quintic(here, goal, duration=self.lead)
+    def take(self, reference, t):
+        """Follow `reference`, whose time begins at t, s, and which begins where the target is now."""
+        self.reference, self.leading, self._begin = reference, False, t
 
-    def move_to(self, t, goal):
-        """A set point takes over from where the reference is, moving as it moves."""
-        if not isinstance(self.reference, SetPoint):
-            q, qd, _ = self(t)
-            self.reference, self._way = SetPoint(q, qd=qd), None
-            self(t)  # its time begins now
-        self.reference.move_to(goal)
+    def move_to(self, q, t):
+        """A set point takes over from where the target is, moving as it moves."""
+        if self.reference is not None and not self.leading:
+            here, speed, _ = self(t)
+            self._point = SetPoint(here, qd=speed)
+            self._point(t)  # its time begins now
+        self.reference, self.leading = None, False
+        self._point.move_to(q)

@@ -1,4 +1,8 @@
-"""The child's side of a loop in the background that has a process of its own; `background` has the parent's."""
+"""The child's side of a loop in the background that has a process of its own; `background` has the parent's.
+
+Two pipes lie between them. On either side a thread writes what comes into a queue, and another reads: neither process
+ever waits for the other.
+"""
 
 import contextlib
 import gc
@@ -9,76 +13,69 @@ import sys
 import threading
 import traceback
 from pathlib import Path
+from queue import SimpleQueue
 
-from ir50p_lab.bench import shared_loop
-from ir50p_lab.bench.shared_loop import SharedLoop
 from ir50p_lab.errors import BenchError, LabError
 
 _PACKAGE_ROOT = str(Path(__file__).resolve().parents[2])
 START = f"import sys; sys.path.insert(0, {_PACKAGE_ROOT!r}); from ir50p_lab.bench.loop_process import main; main()"
 
 
-def send(pipe, message):
-    """Write a message into a pipe, at once."""
-    pickle.dump(message, pipe)
-    pipe.flush()
+def write_on(queue, pipe):
+    """In a thread of its own: write each message of the queue into the pipe, at once, until None comes."""
+    with contextlib.suppress(OSError), pipe:
+        for message in iter(queue.get, None):
+            pickle.dump(message, pipe)
+            pipe.flush()
+
+
+def read_on(pipe, take):
+    """Hand each message (name, content) from the pipe to `take`, until the other side has closed it."""
+    with contextlib.suppress(EOFError, OSError), pipe:
+        while True:
+            take(*pickle.load(pipe))
 
 
 def main():
     """What the child does, from its first to its last moment."""
     orders, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a controller prints must not get among the answers
-    sys.path[:], address, *work = pickle.load(orders)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    memory = SharedLoop.attach(address)
+    sys.path[:], *work = pickle.load(orders)
+    news = SimpleQueue()
+    writer = threading.Thread(target=write_on, args=(news, answers), daemon=True)
+    writer.start()
     try:
-        _serve(orders, answers, memory, *work)
-        send(answers, ("done", None))
+        _serve(orders, news, *work)
+        news.put(("done", True))
     except BaseException as error:
-        memory.status.phase = shared_loop.ENDED
-        with contextlib.suppress(OSError):
-            send(answers, ("failed", _packed_error(error)))
+        news.put(("failed", _packed_error(error)))
+    news.put(None)
+    writer.join()
 
 
-def _serve(orders, answers, memory, parent, bench, cargo, options):
+def _serve(pipe, news, bench, cargo):
     import cloudpickle
 
     from ir50p_lab.bench.live_loop import live_loop
-    from ir50p_lab.bench.pace import warm_up
 
     (kind, arguments), (controller, reference) = cloudpickle.loads(bench), cloudpickle.loads(cargo)
-    warm_up(controller, reference)
-    left_alone = threading.Event()
-    threading.Thread(target=_watch, args=(orders, left_alone), daemon=True).start()
+    parent, orders = os.getppid(), SimpleQueue()
+    reader = threading.Thread(target=read_on, args=(pipe, lambda *order: orders.put(order)), daemon=True)
+    reader.start()
 
     def orphaned():
-        return left_alone.is_set() or (os.name != "nt" and os.getppid() != parent)
+        """The pipe has ended; a fork of the parent may hold it open."""
+        return not reader.is_alive() or os.getppid() != parent
 
-    class TellingBench(kind):
-        """The same bench, which tells where it records."""
-
-        def _start_recorder(self, header):
-            recorder = super()._start_recorder(header)
-            path = recorder.recording.path
-            send(answers, ("recording", None if path is None else os.path.abspath(path)))
-            return recorder
-
-    bench = TellingBench(**arguments)
+    bench = kind(**arguments)
     bench.open()
     try:
         gc.collect()
         gc.freeze()  # what the imports made is never looked through again
-        send(answers, ("opened", None))
-        live_loop(bench, controller, reference, memory, orphaned=orphaned, **options)
+        live_loop(bench, controller, reference, orders, lambda *word: news.put(word), orphaned=orphaned)
     finally:
         bench.abort()
-
-
-def _watch(orders, left_alone):
-    """The parent never writes again: reading ends when it is gone."""
-    with contextlib.suppress(OSError):
-        orders.read()
-    left_alone.set()
 
 
 def _packed_error(error):

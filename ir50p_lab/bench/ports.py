@@ -1,7 +1,6 @@
 """Serial ports: which may be our board, opening one, and what to do when that fails."""
 
 import errno
-import sys
 from typing import NamedTuple
 
 from ir50p_lab.errors import PortError
@@ -49,10 +48,10 @@ def port_error(device, error):
     text, number = str(error), getattr(error, "errno", None)
     # Windows reports a port in use as 'access denied', without a number
     if number in (errno.EBUSY, errno.EAGAIN) or "lock port" in text or "PermissionError" in text:
-        holder = f" ('fuser -v {device}' names it; ModemManager lets go after half a minute)"
         return PortError(
-            f"{device} is busy: another program holds it{holder if sys.platform.startswith('linux') else ''}. Close "
-            "the Arduino IDE's monitor and shut down other notebooks' kernels, then try again"
+            f"{device} is busy: another program holds it (Linux: 'fuser -v {device}' names it; ModemManager lets go "
+            "after half a minute). Close the Arduino IDE's monitor and shut down other notebooks' kernels, then try "
+            "again"
         )
     if number in (errno.EACCES, errno.EPERM):
         return PortError(f"no permission to open {device}: {permission_remedy(device)}")
@@ -63,9 +62,8 @@ def port_error(device, error):
 
 def _missing_remedy():
     here = ", ".join(port.device for port in list_ports()) or "none at all"
-    ways = {"win32": "the Device Manager shows it under 'Ports'", "darwin": "'ls /dev/cu.*' shows it"}
-    look = ways.get(sys.platform, "'dmesg | tail' shows it")
     return (
-        f"ports on this computer: {here}. Plug the board in with a cable that carries data ({look}); clones may need "
-        "the driver of their chip (CH340)"
+        f"ports on this computer: {here}. Plug the board in with a cable that carries data ('dmesg | tail' on Linux, "
+        "'ls /dev/cu.*' on macOS or the Device Manager on Windows shows it); clones may need the driver of their chip "
+        "(CH340)"
     )

@@ -40,7 +40,7 @@ GRIPPER = 1  # the one flag of a command: gripper closed
 
 # bits of `status`
 WATCHDOG_TRIPPED = 1  # no command came for WATCHDOG_MS: the drive was cut, and is so until a stop or a hello
-LIMIT_ACTIVE = (2, 4, 8)  # joint 1, 2, 3: at an end of its potentiometer, outward drive is cut
+# 2, 4, 8: joint 1, 2, 3 is at an end of its potentiometer, outward drive is cut
 HELLO_NEEDED = 16  # the board has (re)started and does not drive before a hello
 HARDWARE_RESET = 32  # its last start was by the hardware watchdog: the sketch had hung
 STATUS_BITS = 63

@@ -3,7 +3,6 @@
 import contextlib
 import os
 import secrets
-from dataclasses import replace
 
 import numpy as np
 
@@ -38,6 +37,8 @@ class SerialBench(Bench):
     Raises, when opened: PortError (missing, busy, not permitted), BoardError (not our board or another firmware).
     In a run: BoardLostError if the cable is pulled or the board resets; it brakes 0.1 s after the last command.
     BoardError if a potentiometer has lost its wire.
+
+    Attributes: statistics: LinkStatistics of the wire since it was opened last; identity: what the board has said.
     """
 
     kind = "board"
@@ -59,6 +60,7 @@ class SerialBench(Bench):
     def _open(self):
         transport = self._given or open_port(self.port, protocol.BAUD)
         self._link = Link(transport, self._clock)
+        self.statistics = self._link.statistics
         try:
             ready = self._clock.now()
             if self._given is None and _opening_resets(transport):
@@ -91,7 +93,12 @@ class SerialBench(Bench):
         except PORT_ERRORS as error:
             raise self._lost(f"is gone ({error})") from error
         if state.status & protocol.HELLO_NEEDED:
-            raise self._reset(state)
+            raise BoardLostError(
+                f"the board on {self.port} has restarted in the middle of the run (somebody pressed its button or "
+                "opened its port, its supply broke down when the motors started, or its program hung and the hardware "
+                "watchdog restarted it): its drive is off. Power the motors from their own supply, not from USB; then "
+                "run again"
+            )
         for joint, counts in enumerate(state.counts):
             if not _BROKEN <= counts <= protocol.MAX_COUNTS - _BROKEN:
                 raise BoardError(
@@ -124,14 +131,10 @@ class SerialBench(Bench):
     def _header(self):
         return {"port": self.port, "firmware": self.firmware, "protocol": str(self.identity.protocol)}
 
-    @property
-    def own_process(self):
-        """A loop in the background runs in a process of its own, unless the port was given open."""
-        return self._given is None
-
     def _arguments(self):
-        named = ("port", "arm", "calibration", "period", "record_to")
-        return {name: getattr(self, name) for name in named}
+        if self._given is not None:  # an open port cannot be handed on
+            return None
+        return {name: getattr(self, name) for name in ("port", "arm", "calibration", "period", "record_to")}
 
     # ---- more than the contract asks for
 
@@ -159,19 +162,8 @@ class SerialBench(Bench):
             self.identity = self._shake_hands(HANDSHAKE, protocol.NAME, number)
         return self.bench_id
 
-    @property
-    def statistics(self):
-        """What happened on the wire since the bench was opened, up to now: LinkStatistics."""
-        if self._link is None:
-            raise BoardError("the bench is closed: its statistics are gone")
-        now = self._link.statistics
-        return replace(now, round_trips=now.round_trips.copy())
-
     def _statistics(self, run):
-        if self._link is None:
-            return super()._statistics(run)
-        names = ("commands", "repeats", "stale", "bad_replies", "bad_commands")
-        return super()._statistics(run) | {name: getattr(self._link.statistics, name) for name in names}
+        return vars(self.statistics) | super()._statistics(run)
 
     # ---- the rest
 
@@ -185,31 +177,18 @@ class SerialBench(Bench):
             raise BoardError(f"{self.port}: {_who_is_it(bytes(link.heard))}") from None
         except PORT_ERRORS as error:
             raise BoardError(f"{self.port} went away while we said hello ({error}): is the cable firm?") from error
-        if identity.protocol != protocol.VERSION:
-            other = f"speaks protocol {identity.protocol}, this lab book {protocol.VERSION}"
-        elif identity.firmware < protocol.MINIMUM_FIRMWARE:
-            other = (
-                f"is {_dotted(identity.firmware)}, this lab book needs {_dotted(protocol.MINIMUM_FIRMWARE)} or newer"
-            )
-        else:
+        if identity.protocol == protocol.VERSION and identity.firmware >= protocol.MINIMUM_FIRMWARE:
             return identity
-        raise BoardError(f"{self.port}: the board's firmware {other}: {_REMEDY}")
+        raise BoardError(
+            f"{self.port}: the board speaks protocol {identity.protocol}, its firmware is "
+            f"{_dotted(identity.firmware)}; this lab book needs protocol {protocol.VERSION} and firmware "
+            f"{_dotted(protocol.MINIMUM_FIRMWARE)} or newer: {_REMEDY}"
+        )
 
     def _lost(self, what):
         return BoardLostError(
             f"the board on {self.port} {what}: it brakes by itself 0.1 s after the last command, then gravity has the "
             "arm. Look at the USB cable and the board's lamp, then open the bench again with connect()"
-        )
-
-    def _reset(self, state):
-        cause = (
-            "its program hung and the hardware watchdog restarted it"
-            if state.status & protocol.HARDWARE_RESET
-            else "somebody pressed its button or opened its port, or its supply broke down when the motors started"
-        )
-        return BoardLostError(
-            f"the board on {self.port} has restarted in the middle of the run ({cause}): its drive is off. Power the "
-            "motors from their own supply, not from USB; then run again"
         )
 
 

@@ -12,6 +12,7 @@ from ir50p_lab.signals.reference import per_joint
 SPEED = 0.8  # rad/s: with the arm stretched the tip moves at 0.7 m/s
 ACCELERATION = 3.0  # rad/s^2: full speed after a quarter of a second
 FARTHEST = 2.0  # rad from the measured pose: no drive is asked to close such a gap at once
+_UNKNOWN = (math.nan,) * 3  # a pose from which nothing is far, and which widens no travel
 NOISE = 0.05  # rad; an arm that stands at an end of its travel may be measured so far beyond it
 
 
@@ -23,15 +24,15 @@ class SetPoint:
     remembers where it is.
 
     Args: q, qd: (3,) rad and rad/s, where it starts, moving; speed: rad/s, acceleration: rad/s^2, one number or (3,).
-    Attributes: goal: (3,) rad, where it is going; set it with `move_to`.
+    Attributes: q, goal: (3,) rad, where it is, and where it is going; set that with `move_to`.
     Raises InputError on wrong shapes, numbers that are not finite or limits that are not positive.
     """
 
     duration = math.inf
 
     def __init__(self, q, *, qd=(0.0, 0.0, 0.0), speed=SPEED, acceleration=ACCELERATION):
-        self._q, self._qd = vector3("q", q).copy(), vector3("qd", qd, unit="rad/s").copy()
-        self.goal, self._t = self._q, None
+        self.q, self._qd = vector3("q", q).copy(), vector3("qd", qd, unit="rad/s").copy()
+        self.goal, self._t = self.q, None
         self.speed = np.array(per_joint("speed", speed, "> 0", unit="rad/s"))
         self.acceleration = np.array(per_joint("acceleration", acceleration, "> 0", unit="rad/s^2"))
 
@@ -44,8 +45,8 @@ class SetPoint:
         dt = 0.0 if self._t is None else min(max(t - self._t, 0.0), 0.25)  # after a pause: go on, do not jump
         self._t = t
         if dt == 0.0:
-            return self._q.copy(), self._qd.copy(), np.zeros(3)
-        way, before, at = self.goal - self._q, self._qd, self.acceleration * dt
+            return self.q.copy(), self._qd.copy(), np.zeros(3)
+        way, before, at = self.goal - self.q, self._qd, self.acceleration * dt
         # the speed from which n steps, each slower by a dt than the one before, end exactly at the goal
         steps = np.abs(way) / (at * dt)
         n = np.maximum(1, np.ceil(0.5 * (np.sqrt(1 + 8 * steps) - 1) - 1e-9))
@@ -53,8 +54,8 @@ class SetPoint:
         wanted = np.copysign(np.minimum(braking, self.speed), way)
         self._qd = np.clip(wanted, before - at, before + at)
         there = np.abs(way - self._qd * dt) < 1e-12  # but for rounding; the next step takes the rest of the speed
-        self._q = np.where(there, self.goal, self._q + self._qd * dt)
-        return self._q.copy(), self._qd.copy(), (self._qd - before) / dt
+        self.q = np.where(there, self.goal, self.q + self._qd * dt)
+        return self.q.copy(), self._qd.copy(), (self._qd - before) / dt
 
 
 def checked_reference(arm, t, value, q=None):
@@ -71,17 +72,14 @@ def checked_reference(arm, t, value, q=None):
         raise InputError(
             f"the reference gives {value!r:.100} at t = {t:.3f} s: give (q, qd, qdd), each (3,) and finite"
         )
-    for i, wanted in enumerate(rows[0].tolist()):
-        low, high = arm.q_min[i], arm.q_max[i]
-        here = None if q is None else float(q[i])
-        if here is not None:
-            low, high = min(low, here - NOISE), max(high, here + NOISE)
+    for i, (wanted, here) in enumerate(zip(rows[0].tolist(), _UNKNOWN if q is None else q.tolist(), strict=True)):
+        low, high = min(arm.q_min[i], here - NOISE), max(arm.q_max[i], here + NOISE)
         if not low - 1e-9 <= wanted <= high + 1e-9:
             raise InputError(
                 f"the reference of joint {i + 1} is {wanted:.4g} rad at t = {t:.3f} s; the arm's travel is "
                 f"{arm.q_min[i]:.2f} to {arm.q_max[i]:.2f} rad. Are these degrees? np.radians makes them rad"
             )
-        if here is not None and abs(wanted - here) > FARTHEST:
+        if abs(wanted - here) > FARTHEST:
             raise InputError(
                 f"the reference of joint {i + 1} is {wanted:.4g} rad at t = {t:.3f} s, {abs(wanted - here):.2f} rad "
                 f"from where the arm is ({here:.2f} rad); {FARTHEST:g} rad is the most. Let it begin where the arm is "
@@ -94,12 +92,13 @@ def checked_reference(arm, t, value, q=None):
 def checked_set_point(arm, q):
     """A set point q (3,) rad as an array; InputError if it is beyond the travel of the arm or below the table."""
     q = vector3("set point", q)
-    for joint, (angle, low, high) in enumerate(np.degrees([q, arm.q_min, arm.q_max]).T, 1):
-        if not low <= angle <= high:
-            raise InputError(
-                f"set point of joint {joint} is {np.radians(angle):.3f} rad = {angle:.1f} deg; the arm's travel is "
-                f"{low:.0f} to {high:.0f} deg"
-            )
+    outside = (q < arm.q_min) | (q > arm.q_max)
+    if outside.any():
+        i = np.argmax(outside)
+        low, high = np.degrees([arm.q_min[i], arm.q_max[i]])
+        raise InputError(
+            f"set point of joint {i + 1} is {q[i]:.3f} rad; the arm's travel is {low:.0f} to {high:.0f} deg"
+        )
     height = float(frames(arm, q)[2:, 2, 3].min())
     if height < 0.0:
         raise InputError(

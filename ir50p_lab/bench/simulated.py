@@ -9,10 +9,10 @@ from ir50p_lab.bench.arm_instance import UNIT
 from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Sample
 from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
 from ir50p_lab.bench.recorder import header_of
-from ir50p_lab.bench.runaway import watch_step
+from ir50p_lab.bench.runaway import push, watch_step
 from ir50p_lab.bench.set_point import FARTHEST, NOISE, checked_reference
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, read_pots
-from ir50p_lab.controllers.base import check_controller, check_reference, is_compiled
+from ir50p_lab.controllers.base import check_reference, is_compiled
 from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
 from ir50p_lab.jit import jit
@@ -20,18 +20,6 @@ from ir50p_lab.jit import jit
 _BLOCK = 1000  # samples between two looks at the disk and at Ctrl-C in a compiled run
 _KEPT = 100_000  # cycles of truth: a live run may last for hours
 _SINK = 3.0  # s without drive after which an arm that was let go lies still
-
-
-@jit()
-def _delayed(queue, pwm, acting):
-    """Write the command that acts now into acting (3,): that of as many periods ago as the queue holds, (delay, 3)."""
-    delay = queue.shape[0]
-    for i in range(3):
-        acting[i] = queue[0, i] if delay > 0 else pwm[i]
-        for j in range(delay - 1):
-            queue[j, i] = queue[j + 1, i]
-        if delay > 0:
-            queue[delay - 1, i] = pwm[i]
 
 
 @jit()
@@ -47,8 +35,8 @@ def _compiled_cycles(
     counts, q, command = np.empty(3), np.empty(3), np.empty(3)
     for k in range(t.size):
         if t[k] > 0.0:  # the first cycle of a run measures at once
-            _delayed(queue, pwm, command)
-            advance_unit(theta, n, w, x, joint, command, steps)
+            push(queue, pwm)
+            advance_unit(theta, n, w, x, joint, queue[0], steps)
         read_pots(w, joint, noise[k], counts)
         for i in range(3):
             q[i] = (counts[i] - zero[i]) / slope[i]
@@ -107,35 +95,30 @@ class SimulatedBench(Bench):
         if abs(self._steps * STEP - self.period) > 1e-9:
             raise InputError(f"period = {self.period} s: the simulated bench needs whole milliseconds")
         self.realtime = realtime
-        self._queue = np.zeros((self.plant.unit.delay, JOINTS))
-        self._truth, self._cycle, self._acting = deque(maxlen=_KEPT), 0, np.zeros(JOINTS)
-
-    @property
-    def bench_id(self):
-        """Which simulated copy of the arm this is, as 'simulated-unit-0'."""
-        return f"simulated-unit-{self.plant.seed}"
+        self._queue = np.zeros((self.plant.unit.delay + 1, JOINTS))  # commands; the first of them acts
+        self._truth, self._cycle = deque(maxlen=_KEPT), 0
+        self.bench_id = f"simulated-unit-{self.plant.seed}"
 
     # ---- what Bench asks for
 
     def _begin(self):
-        self._queue[:], self._acting, self._cycle = 0.0, np.zeros(JOINTS), 0
+        self._queue[:], self._cycle = 0.0, 0
         self._truth.clear()
         if self.realtime:
             load_controllers()
-            self.plant.advance(self._acting, 0.0)
-            _delayed(self._queue, self._acting, np.empty(JOINTS))  # compiled before the clock starts
+            push(self._queue, self._pwm)
+            self.plant.advance(self._pwm, 0.0)  # compiled before the clock starts
 
     def _make_pace(self):
         return Pace(self._clock, self.period) if self.realtime else super()._make_pace()
 
     def _measure(self, cycle, drive):
         """Time is counted in periods; left alone for longer than the board's watchdog allows, the arm has no drive."""
-        acting = np.empty(JOINTS)
         for late in range(cycle - self._cycle):
             if self.realtime and late * self.period >= WATCHDOG:
                 self._cut()
-            _delayed(self._queue, self._acting, acting)
-            self.plant.advance(acting, self.period)
+            push(self._queue, self._pwm)
+            self.plant.advance(self._queue[0], self.period)
         self._cycle = cycle
         if not drive:
             self._cut()
@@ -143,19 +126,15 @@ class SimulatedBench(Bench):
         self._truth.append((t, self.plant.q_true, self.plant.qd_true))
         return t, self.plant.counts(), False
 
-    def _send(self, pwm, gripper):
-        self._acting = pwm
-
     def _cut(self):
-        self._queue[:] = 0.0
-        self._acting = np.zeros(JOINTS)
+        self._queue[:], self._pwm = 0.0, np.zeros(JOINTS)
 
     def _close(self):
         self.plant.advance(np.zeros(JOINTS), _SINK)
 
     def _header(self):
         noise = {} if self.plant.noise_seed is None else {"noise_seed": str(self.plant.noise_seed)}
-        return {"seed": str(self.plant.seed), **noise, "delay_periods": str(len(self._queue))}
+        return {"seed": str(self.plant.seed), **noise, "delay_periods": str(self.plant.unit.delay)}
 
     # ---- and what only a simulation can
 
@@ -166,7 +145,6 @@ class SimulatedBench(Bench):
         """
         if self.realtime or not is_compiled(controller):
             return super().follow(controller, reference, seconds, record=record, **header)
-        check_controller(controller)
         check_reference(reference, sampled=True)
         controller.reset()
         cycles = self._number_of_cycles(seconds)
@@ -177,18 +155,13 @@ class SimulatedBench(Bench):
 
     def _block(self, controller, run, k):
         t, reference = k * self.period, run.reference
-        if hasattr(reference, "sample"):
-            r = np.ascontiguousarray(reference.sample(t), dtype=float)
-        else:
-            r = np.array([np.stack(reference(time)) for time in t], dtype=float)
-        plant, out = self.plant, np.empty((len(t), 15))
-        line, travel = self.calibration, np.array(self._travel)
-        fixed = (np.array(line.slope), np.array(line.zero), travel[:, 0].copy(), travel[:, 1].copy())
+        rows = reference.sample(t) if hasattr(reference, "sample") else [reference(time) for time in t]
+        r, out = np.ascontiguousarray(rows, dtype=float), np.empty((len(t), 15))
+        line = (np.array(self.calibration.slope), np.array(self.calibration.zero))
+        fixed = (*self.plant.arrays, *line, *np.array(self._travel).T.copy())
         law = (controller.kind, controller.parameters, controller.state)
-        arrays = (plant._theta, plant._numbers, plant._w, plant._x, plant._joint)
-        noise = plant._next_noise(len(t))
-        state = (self._queue, self._pwm, *law, run.guard.watch)
-        done, alarm = _compiled_cycles(*arrays, *fixed, *state, t, r, noise, self._steps, out)
+        state, noise = (self._queue, self._pwm, *law, run.guard.watch), self.plant.noise(len(t))
+        done, alarm = _compiled_cycles(*fixed, *state, t, r, noise, self._steps, out)
         rows = out[:done]
         if run.recorder is not None and done:
             run.recorder.write_block(t[:done], rows[:, 3:6], rows[:, :3], rows[:, 6:9], r[:done, 0], self._gripper, 0)
@@ -199,14 +172,11 @@ class SimulatedBench(Bench):
         if done < len(t):
             checked_reference(self.arm, t[done], r[done], out[done, 3:6])
             raise InputError(
-                f"the command of the controller at t = {t[done]:.6g} s is not finite; the drive has been cut. Check "
-                "the reference, and reset the controller"
+                f"the command at t = {t[done]:.6g} s is not finite; the drive has been cut: reset the controller"
             )
 
     @property
     def truth(self):
         """Truth of the last run (of its last 1000 s if it was longer)."""
-        if not self._truth:
-            return Truth(np.empty(0), np.empty((0, 3)), np.empty((0, 3)))
         t, q, qd = zip(*self._truth, strict=True)
         return Truth(np.hstack(t), np.vstack(q), np.vstack(qd))

@@ -8,10 +8,9 @@ from ir50p_lab.bench.arm_instance import UNIT, chosen_copy
 from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import ArmError, InputError
-from ir50p_lab.inputs import vector3
+from ir50p_lab.inputs import check_arm, vector3
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
-from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.simulation.plant import FC, FS, GRAVITY, LIMIT, make_plant
 from ir50p_lab.simulation.steps import dry_step
@@ -86,9 +85,7 @@ class SimulatedArm:
     """
 
     def __init__(self, arm, unit=UNIT, seed=0, *, q0=None):
-        if not isinstance(arm, Arm):
-            raise ArmError(f"a simulated arm needs an Arm (masses, limits, motors), not {type(arm).__name__}")
-        if arm.actuators is None:
+        if check_arm(arm).actuators is None:
             raise ArmError(
                 f"{arm.name} has no actuators, so nobody knows what a PWM count does to it: add [actuators] to its "
                 "file, or Actuators.from_joint_data(...) to the Arm"
@@ -97,15 +94,13 @@ class SimulatedArm:
         self.arm, self.unit = arm, unit.drawn(self.seed)
         self.nominal = nominal_calibration(arm)
         plant = make_plant(arm, unit="PWM", stops=True, table=self.unit.table)
-        self._theta, self._numbers = plant.theta, plant.numbers
-        for place in (FC, FS):
-            self._numbers[place : place + 3] *= self.unit.friction
-        self._numbers[LIMIT : LIMIT + 3] *= self.unit.motor_gain
-        self._w = self._unit_numbers()
+        self._numbers, self._w = plant.numbers, self._unit_numbers()
+        for place, factor in ((FC, self.unit.friction), (FS, self.unit.friction), (LIMIT, self.unit.motor_gain)):
+            self._numbers[place : place + 3] *= factor
         noise = [self.seed, 1] if self.noise_seed is None else [self.seed, 1, self.noise_seed]
         self._rng = np.random.default_rng(noise)
-        self._noise, self._used = np.empty((0, 3)), 0
         self._x, self._joint, self._late = np.zeros(6), np.zeros(3), 0.0
+        self.arrays = plant.theta, self._numbers, self._w, self._x, self._joint  # as the compiled functions take them
         try:
             self.place(np.zeros(3) if q0 is None else q0)
         except InputError:
@@ -138,22 +133,17 @@ class SimulatedArm:
         self._late += seconds
         steps = int(self._late / STEP + 1e-6)
         self._late -= steps * STEP
-        command = np.asarray(pwm, dtype=float)
-        advance_unit(self._theta, self._numbers, self._w, self._x, self._joint, command, steps)
+        advance_unit(*self.arrays, np.asarray(pwm, dtype=float), steps)
 
     def counts(self):
         """What the 10-bit converter reads now: (3,) whole counts. Each call takes the next noise of the seed."""
         counts = np.empty(3)
-        read_pots(self._w, self._joint, self._next_noise(1)[0], counts)
+        read_pots(self._w, self._joint, self.noise(1)[0], counts)
         return counts
 
-    def _next_noise(self, n):
+    def noise(self, n):
         """The next n rows of noise, (n, 3) counts: the same sequence, however it is taken."""
-        while len(self._noise) - self._used < n:
-            fresh = self._rng.normal(0.0, self.unit.noise, (1024, 3))
-            self._noise, self._used = np.concatenate([self._noise[self._used :], fresh]), 0
-        self._used += n
-        return self._noise[self._used - n : self._used]
+        return self._rng.normal(0.0, self.unit.noise, (n, 3))
 
     @property
     def q_true(self):

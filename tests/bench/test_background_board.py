@@ -46,7 +46,7 @@ NOTEBOOK = """
     run = bench.start(Push(), None)
     while run.statistics().cycles < 30:
         time.sleep(0.01)
-    print(run.pid, flush=True)
+    print(run._process.pid, flush=True)
     time.sleep(600)
 """
 

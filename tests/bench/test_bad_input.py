@@ -83,8 +83,6 @@ def test_a_run_refuses(rubbish):
             bench.start(rubbish, hold([0, 0, 0]))
         with pytest.raises(LabError):
             bench.start(PID(kp=(1, 1, 1), limit_pwm=255), rubbish)
-        with pytest.raises(LabError):
-            bench.start(PID(kp=(1, 1, 1), limit_pwm=255), hold([0, 0, 0]), seconds=rubbish)
 
 
 def test_a_misspelt_bench_says_how_to_go_on_without_a_board(monkeypatch):

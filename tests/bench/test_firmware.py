@@ -1,6 +1,7 @@
 """The sketch itself, compiled and run in the emulator: pins, limits, watchdogs."""
 
 import pytest
+from board_frames import LIMIT_ACTIVE
 
 from ir50p_lab.bench import protocol
 from ir50p_lab.bench.protocol import DRIVE, Identity, encode_command
@@ -202,7 +203,7 @@ def test_at_an_end_only_inward_drive(board, talk, joint, counts, outward):
     board.plant.values = values
     board.sleep(0.01)
     status = talk.drive(*command).status
-    assert status == protocol.LIMIT_ACTIVE[joint]
+    assert status == LIMIT_ACTIVE[joint]
     assert board.pins().pwm[joint] == 0
     assert sum(map(bool, board.pins().pwm)) == 2  # the others drive on
     command[joint] *= -1
@@ -226,7 +227,7 @@ def test_a_joint_that_reaches_its_end_is_cut_without_a_new_command(board, talk):
 def test_a_broken_wire_stops_its_joint_both_ways(board, talk, counts, pwm):
     board.plant.values = (counts, 512, 512)
     board.sleep(0.01)
-    assert talk.drive(pwm, 0, 0).status == protocol.LIMIT_ACTIVE[0]
+    assert talk.drive(pwm, 0, 0).status == LIMIT_ACTIVE[0]
     assert board.pins().pwm[0] == 0
 
 

@@ -135,25 +135,6 @@ def test_a_first_step_that_compiles_lets_the_run_begin_when_it_is_done(rig):
     assert bench.recording.u[0].tolist() == [0, 0, 0] and (bench.recording.u[1:] == PUSH).all()
 
 
-def test_controller_and_reference_compile_before_the_clock_starts(rig):
-    bench = rig.bench().open()
-
-    class Compiling:
-        """Takes 9 s for the first step of all its copies."""
-
-        compiled = False
-
-        def step(self, t, measured, reference):
-            if not type(self).compiled:
-                type(self).compiled = True
-                rig.pause(9.0)
-            return PUSH
-
-    recording = bench.follow(Compiling(), hold(REST), 0.5)
-    assert len(recording) == 50 and recording.events == [] and recording.missed[-1] == 0
-    assert (recording.u == PUSH).all()
-
-
 def test_a_period_longer_than_the_watchdog_allows_is_refused(rig):
     bench = rig.bench(period=0.2).open()
     with pytest.raises(InputError, match=r"give 0\.05 s at most"):

@@ -6,7 +6,7 @@ import zlib
 from pathlib import Path
 
 import pytest
-from board_frames import Command, CommandParser, encode, encode_reply
+from board_frames import LIMIT_ACTIVE, Command, CommandParser, encode, encode_reply
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -57,7 +57,7 @@ def test_the_sketch_has_the_same_numbers_as_python():
     assert len(numbers) == 24
     assert {name: int(value) for name, value in numbers.items()} == {name: getattr(protocol, name) for name in numbers}
     lists = dict(re.findall(r"const \w+ (\w+)\[\w+\] = {(.*)};", HEADER.read_text()))
-    assert lists["LIMIT_ACTIVE"] == ", ".join(map(str, protocol.LIMIT_ACTIVE))
+    assert lists["LIMIT_ACTIVE"] == ", ".join(map(str, LIMIT_ACTIVE))
     assert lists["MAGIC"] == ", ".join(f"'{chr(byte)}'" for byte in protocol.MAGIC)
 
 

@@ -73,15 +73,16 @@ def test_a_target_is_led_in_from_the_pose_and_ends_on_the_reference():
     swing = sinusoid(0.3, 2.0, offset=0.5, phase=np.pi / 2)
     here = np.array([0.0, 0.1, 0.2])
     standing = SimpleNamespace(arm=IR50P, _last=SimpleNamespace(q=here))
-    target = _Target(standing, swing, lead_in=True)
-    np.testing.assert_allclose(target(7.0)[0], here)
-    for t in (0.0, 0.7):
-        np.testing.assert_allclose(target(7.0 + target.lead + t), swing(t), atol=1e-12)
-    speeds = [np.abs(target(7.0 + t)[1]).max() for t in np.linspace(0, target.lead, 500)]
-    assert max(speeds) == pytest.approx(0.8, rel=0.01)
-    there = _Target(standing, hold([0.0, 0.1, 0.203]), lead_in=True)
-    np.testing.assert_array_equal(there(0.0)[0], (0.0, 0.1, 0.203))
-    assert there.lead == 0
+    target = _Target(standing, swing)
+    times = 7.0 + np.arange(400) * 0.01
+    rows = np.array([target(t) for t in times])
+    np.testing.assert_allclose(rows[0, 0], here)
+    arrived = np.argmax((rows[:, 0] == swing(0.0)[0]).all(axis=1))
+    assert 0 < arrived < 200 and np.abs(rows[:arrived, 1]).max() == pytest.approx(0.8)
+    assert not target.leading
+    np.testing.assert_allclose(rows[arrived + 1 :], swing.sample(times[: -arrived - 1] - 7.0), atol=1e-9)
+    there = _Target(standing, hold([0.0, 0.1, 0.203]))
+    assert [there(t)[0][2] for t in (0.0, 1.0)] == [0.2, 0.203]
 
 
 def test_set_points_are_checked_against_travel_and_table():

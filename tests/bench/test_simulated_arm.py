@@ -205,7 +205,7 @@ def test_a_seed_gives_the_same_unit_and_noise():
 def test_noise_is_the_same_however_it_is_taken():
     one, many = SimulatedArm(IR50P, seed=2), SimulatedArm(IR50P, seed=2)
     np.testing.assert_array_equal(
-        np.vstack([one._next_noise(1) for _ in range(2500)]), np.vstack([many._next_noise(n) for n in (3, 1500, 997)])
+        np.vstack([one.noise(1) for _ in range(2500)]), np.vstack([many.noise(n) for n in (3, 1500, 997)])
     )
 
 
@@ -228,7 +228,7 @@ def test_an_arm_that_cannot_stand_at_zero_starts_at_rest():
 def test_arms_without_motors_are_refused_with_a_way_out():
     with pytest.raises(ArmError, match=r"no actuators.*from_joint_data"):
         SimulatedArm(THESIS_A)
-    with pytest.raises(ArmError, match="needs an Arm"):
+    with pytest.raises(InputError, match="give an Arm"):
         SimulatedArm(IR50P.theta)
 
 

@@ -99,7 +99,7 @@ def test_a_stopped_loop_in_the_background_drives_nothing_when_it_goes_on(board, 
         run = bench.start(Push(), None)
         while run.alive and run.statistics().cycles < 50:
             time.sleep(0.01)
-        woken = stop_for_two_seconds(run.pid)
+        woken = stop_for_two_seconds(run._process.pid)
         with pytest.raises(PauseError, match=r"no command for 2\.\d s.*new run"):
             run.join(20)
         assert_off_since(board, woken)

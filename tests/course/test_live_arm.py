@@ -170,9 +170,10 @@ def pink(picture):
 
 def test_a_loop_in_the_background_feeds_the_view_and_can_be_played_afterwards(heard, tmp_path, request):
     with SimulatedBench(IR50P, q0=[0, 0.8, -1.2], realtime=True, record_to=tmp_path) as bench:
-        live = bench.start(PID(**PID_OF_TABLES), hold([0.4, 0.8, -1.2]), seconds=2, rest=False)
+        live = bench.start(PID(**PID_OF_TABLES), hold([0.4, 0.8, -1.2]))
         view = LiveArm(IR50P).play(live)
-        live.join(20)
+        live.join(2)
+        live.cut()
     until(lambda: view.track)
     frames_sent = [buffers[0] for message, buffers in heard if "live" in message]
     measured = request.config.getoption("benchmark_enable")  # else a guard only: machines of CI are shared

@@ -75,7 +75,8 @@ def plug_in(names):
 
     sys.modules["ir50p_lab.bench.connect"].list_ports = lambda: [Port("emulated", "Mega 2560")]
     serial_bench.open_port, serial_bench.Clock = open_port, board
-    SerialBench.own_process, SerialBench.realtime = False, True  # in this process: another one has another board
+    SerialBench._arguments = lambda self: None  # loops run in this process: another one has another board
+    SerialBench.realtime = True
     opening.open_camera = lambda source=None, **options: Webcam(seen, names, **options)
     return board
 

@@ -5,6 +5,8 @@ from typing import NamedTuple
 from ir50p_lab.bench import protocol
 from ir50p_lab.bench.protocol import COMMAND_SYNC, LIMIT_PWM, REPLY_SYNC, FrameParser, State, encode_command, with_check
 
+LIMIT_ACTIVE = (2, 4, 8)  # bits of `status`: joint 1, 2, 3 at an end of its potentiometer, outward drive is cut
+
 
 class Command(NamedTuple):
     """Computer to board. seq 0..255; type HELLO, NAME, DRIVE or STOP; pwm three whole numbers, -255..255."""

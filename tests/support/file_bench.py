@@ -17,7 +17,6 @@ class FileBench(Bench):
 
     kind = "file"
     simulated = True
-    own_process = True
 
     def __init__(self, path, *, busy=False, period=0.01, record_to=False):
         super().__init__(IR50P, nominal_calibration(IR50P), period=period, record_to=record_to)
