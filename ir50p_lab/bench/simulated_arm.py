@@ -8,10 +8,10 @@ from ir50p_lab.bench.arm_instance import UNIT, chosen_copy
 from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import ArmError, InputError
-from ir50p_lab.inputs import check_arm, vector3
+from ir50p_lab.inputs import vector3
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
-from ir50p_lab.modelling.chain import forward_kinematics
+from ir50p_lab.modelling.chain import forward_kinematics, lengths
 from ir50p_lab.simulation.plant import FC, FS, GRAVITY, LIMIT, make_plant
 from ir50p_lab.simulation.steps import dry_step
 
@@ -85,7 +85,8 @@ class SimulatedArm:
     """
 
     def __init__(self, arm, unit=UNIT, seed=0, *, q0=None):
-        if check_arm(arm).actuators is None:
+        lengths(arm)  # refuses what is no Arm
+        if arm.actuators is None:
             raise ArmError(
                 f"{arm.name} has no actuators, so nobody knows what a PWM count does to it: add [actuators] to its "
                 "file, or Actuators.from_joint_data(...) to the Arm"
