@@ -1,6 +1,7 @@
 """Where everything of the student's lies: progress, results, recordings."""
 
 import os
+import tempfile
 from pathlib import Path
 
 VARIABLE = "IR50P_HOME"
@@ -14,6 +15,7 @@ def home():
 
 def replace_text(path, text):
     """Write a file in one step: a crash leaves the old or the new one, whole. Raises OSError."""
-    scratch = path.with_name(f".{path.name}.{os.getpid()}")
-    scratch.write_text(text, encoding="utf-8")
-    os.replace(scratch, path)
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".", ignore_cleanup_errors=True) as folder:
+        scratch = Path(folder, path.name)
+        scratch.write_text(text, encoding="utf-8")
+        os.replace(scratch, path)

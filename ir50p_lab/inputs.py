@@ -63,11 +63,6 @@ def choice(name, value, choices):
     return value
 
 
-def switch(name, value):
-    """`value` as True or False; nothing else counts as one. Raises InputError."""
-    return bool(choice(name, value, (True, False)))
-
-
 def first_not_finite(array):
     """Describe the first NaN or infinity of `array`, with its place."""
     place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])

@@ -3,7 +3,7 @@
 from ir50p_lab.controllers import law
 from ir50p_lab.controllers.base import gains, unit_of
 from ir50p_lab.controllers.gains import GainController
-from ir50p_lab.inputs import choice, switch
+from ir50p_lab.inputs import choice
 
 
 class PID(GainController):
@@ -52,5 +52,5 @@ class PID(GainController):
         super().__init__(*unit_of(limit_pwm, limit), period, filter_hz, position_filter_hz)
         on = choice("derivative_on", derivative_on, ("measurement", "error"))
         self.parameters[law.RATE_OF_ANGLE] = on == "measurement"
-        self.parameters[law.ANTI_WINDUP] = switch("anti_windup", anti_windup)
+        self.parameters[law.ANTI_WINDUP] = choice("anti_windup", anti_windup, (True, False))
         self.set_gains(gains("kp", kp), gains("ki", ki), gains("kd", kd))

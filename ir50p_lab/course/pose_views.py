@@ -61,8 +61,7 @@ class Brick:
         colours = [colour for colour in _SIDES for _ in range(2)]
         self._box = Poly3DCollection(self._faces, facecolors=colours, edgecolors="#555555", linewidths=0.8, zorder=5)
         ax.add_collection3d(self._box)
-        self._frame = FrameView(ax, np.eye(4), length=length)
-        self._frame.set_visible(length > 0)
+        self._frame = FrameView(ax, np.eye(4), length=length) if length > 0 else None
         self.update(np.eye(4) if T is None else T)
 
     @property
@@ -74,7 +73,8 @@ class Brick:
         """Move the brick. T: (4, 4), array that takes coordinates of the brick to those of the axes."""
         self._drawn = self._faces @ T[:3, :3].T + T[:3, 3]
         self._box.set_verts(self._drawn)
-        self._frame.update(T)
+        if self._frame is not None:
+            self._frame.update(T)
 
 
 class GimbalView:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.columns import columns_of, runs, sampling_period
-from ir50p_lab.inputs import choice, number, switch
+from ir50p_lab.inputs import choice, number
 from ir50p_lab.signals.low_pass import low_pass
 
 BACKWARD = "zero-phase"
@@ -126,7 +126,7 @@ def process(
     if trim is None and (causal or cutoff_hz is not None):
         trim = _LATE / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
     trim = number("trim", trim or 0.0, ">= 0", unit="s")
-    acts = acting_times(t, delay, switch("held", held) and not causal)
+    acts = acting_times(t, delay, choice("held", held, (True, False)) and not causal)
     pieces = []
     shortest = max(_SHORTEST, math.ceil(2 * trim / period) + 4)
     for k, (first, last) in enumerate(runs(t, 3.5 * period)):

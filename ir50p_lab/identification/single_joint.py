@@ -15,7 +15,7 @@ from ir50p_lab.identification.processing import acting_times, process
 from ir50p_lab.identification.regression import LeastSquares, least_squares
 from ir50p_lab.identification.response_fit import best_fit, by_name
 from ir50p_lab.identification.spectrum import spectrum
-from ir50p_lab.inputs import number, switch
+from ir50p_lab.inputs import choice, number
 from ir50p_lab.signals.low_pass import low_pass
 
 TERMS = ("inertia", "viscous", "coulomb", "offset", "gravity", "stribeck")
@@ -120,8 +120,8 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     `warnings`, each with a number: what is without a warning is right within three standard errors.
     """
     names = _names_of(terms)
-    doubts = checks.Doubts(switch("anyway", anyway))
-    held = held if held is None else switch("held", held)
+    doubts = checks.Doubts(choice("anyway", anyway, (True, False)))
+    held = held if held is None else choice("held", held, (True, False))
     t, q, u, v = _columns(t, q, u, qd, drop=anyway)
     new = checks.check_signals(doubts, t, q, u)
     t, q, u, v = (x if x is None else x[new] for x in (t, q, u, v))

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError
-from ir50p_lab.inputs import number, switch
+from ir50p_lab.inputs import choice, number
 from ir50p_lab.vision.board_pose import transform
 from ir50p_lab.vision.calibration import checks
 from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
@@ -216,7 +216,7 @@ def _options(lens, aspect, bend):
     """(coefficients of the lens, aspect, bend), checked. Raises InputError."""
     if aspect is not None:
         aspect = number("aspect", aspect, "> 0", hint="fx/fy, 1 for square pixels, or None to estimate it")
-    if bend is not None and switch("bend", bend):
+    if bend is not None and choice("bend", bend, (True, False)):
         raise InputError(
             "bend = True: give None to test for a bend and estimate it, or False to take the board for flat"
         )
