@@ -38,7 +38,7 @@ class SerialBench(Bench):
     In a run: BoardLostError if the cable is pulled or the board resets; it brakes 0.1 s after the last command.
     BoardError if a potentiometer has lost its wire.
 
-    Attributes: statistics: LinkStatistics of the wire since it was opened last; identity: what the board has said.
+    Attributes: statistics: of the wire since it was opened last, see `Link`; identity: what the board has said.
     """
 
     kind = "board"
