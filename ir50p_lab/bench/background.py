@@ -22,7 +22,7 @@ import numpy as np
 from ir50p_lab.bench import loop_process
 from ir50p_lab.bench.live_loop import ENDED, STARTING, live_loop
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.set_point import checked_reference, checked_set_point
+from ir50p_lab.bench.set_point import checked_pose, checked_reference
 from ir50p_lab.controllers.base import check_controller, check_reference, gains, gains_of
 from ir50p_lab.errors import BenchError, InputError
 
@@ -237,7 +237,7 @@ class LiveRun:
 
         Raises InputError if q is outside the joint limits or below the table.
         """
-        self._orders.put(("set point", checked_set_point(self._bench.arm, q)))
+        self._orders.put(("set point", checked_pose("set point", self._bench.arm, q)))
 
     def stop(self, *, wait=True):
         """End in order: the arm moves to its rest pose and is let go. wait: until that is over."""

@@ -86,20 +86,18 @@ def checked_reference(arm, t, value, q=None):
     return rows
 
 
-def checked_set_point(arm, q):
-    """A set point q (3,) rad as an array; InputError if it is beyond the travel of the arm or below the table."""
-    q = vector3("set point", q)
+def checked_pose(name, arm, q, table=0.0):
+    """A pose q (3,) rad as an array; InputError if it is beyond the travel of the arm or below the table, m."""
+    q = vector3(name, q)
     outside = (q < arm.q_min) | (q > arm.q_max)
     if outside.any():
         i = np.argmax(outside)
         low, high = np.degrees([arm.q_min[i], arm.q_max[i]])
+        raise InputError(f"{name} of joint {i + 1} is {q[i]:.3f} rad; the arm's travel is {low:.0f} to {high:.0f} deg")
+    height = float(frames(arm, q)[2:, 2, 3].min()) - table
+    if height < -1e-9:
         raise InputError(
-            f"set point of joint {i + 1} is {q[i]:.3f} rad; the arm's travel is {low:.0f} to {high:.0f} deg"
-        )
-    height = float(frames(arm, q)[2:, 2, 3].min())
-    if height < 0.0:
-        raise InputError(
-            f"the set point ({', '.join(f'{x:.0f}' for x in np.degrees(q))}) deg lies {-100 * height:.0f} cm below "
+            f"the {name} ({', '.join(f'{x:.0f}' for x in np.degrees(q))}) deg lies {-100 * height:.0f} cm below "
             "the table: raise joint 2 or joint 3"
         )
     return q

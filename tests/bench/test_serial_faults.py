@@ -134,7 +134,7 @@ def test_silence(board):
     [
         (b"$GPGGA,123519,4807.038,N", "GPGGA,123519"),
         (b"start\r\necho:Marlin 1.1.9\r\n", "Marlin"),
-        (bytes(range(130, 160)), "82 83 84"),
+        (bytes(range(130, 160)), r"\x82\x83\x84"),
         (bytes([protocol.REPLY_SYNC]) * 500, "Z"),
     ],
 )
