@@ -3,7 +3,7 @@
 import pytest
 
 from ir50p_lab.bench import JointCalibration, Recording, SimulatedBench
-from ir50p_lab.bench.set_point import SetPoint, checked_set_point
+from ir50p_lab.bench.set_point import SetPoint, checked_pose
 from ir50p_lab.errors import ArmError, CalibrationError, InputError, RecordingError
 from ir50p_lab.identification import load_excitations
 from ir50p_lab.modelling import IR50P, Arm, load_arm
@@ -49,6 +49,6 @@ def test_a_name_is_no_formula(tmp_path):
 
 
 def test_a_set_point_is_three_numbers():
-    for move in (lambda q: checked_set_point(IR50P, q), SetPoint((0, 0, 0)).move_to):
+    for move in (lambda q: checked_pose("set point", IR50P, q), SetPoint((0, 0, 0)).move_to):
         with pytest.raises(InputError, match="set point"):
             move(["a", 0, 0])

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-from dataclasses import dataclass
+from collections import namedtuple
 from queue import SimpleQueue
 
 import cloudpickle
@@ -22,7 +22,7 @@ import numpy as np
 from ir50p_lab.bench import loop_process
 from ir50p_lab.bench.live_loop import ENDED, STARTING, live_loop
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.set_point import checked_reference, checked_set_point
+from ir50p_lab.bench.set_point import checked_pose, checked_reference
 from ir50p_lab.controllers.base import check_controller, check_reference, gains, gains_of
 from ir50p_lab.errors import BenchError, InputError
 
@@ -30,10 +30,8 @@ _TO_REST = 60.0  # s: a way to the rest pose that takes longer has failed
 _OBEYED = 0.25  # s: a loop that has not taken the order to cut by then hangs
 _BEGINS_WITHIN = 80.0  # s: a cold start imports and compiles, and a board restarts when its port is opened
 _KEPT = 8192  # samples: 82 s at 100 Hz
-_THREE = ("f8", 3)
-_SAMPLE = np.dtype(
-    [("t", "f8"), ("q", *_THREE), ("u", *_THREE), ("r", *_THREE), ("clock", "f8"), ("missed", "i8"), ("trips", "i8")]
-)
+_VECTORS = [(name, "f8", 3) for name in ("q", "u", "reference")]
+_SAMPLE = np.dtype([("t", "f8"), *_VECTORS, ("clock", "f8"), ("missed", "i8"), ("trips", "i8")])
 
 
 def start(bench, controller, reference=None):
@@ -70,20 +68,12 @@ def start(bench, controller, reference=None):
     return bench.live_run
 
 
-@dataclass(frozen=True)
-class LoopStatistics:
+class LoopStatistics(namedtuple("LoopStatistics", "cycles missed trips period_p50 period_p99 period_max")):
     """How well the loop keeps time.
 
     cycles, missed, trips (times the drive was cut because the loop had paused): counts since the start; period_p50,
     period_p99, period_max: s between measurements, of the last 80 s at most; NaN before there are any.
     """
-
-    cycles: int = 0
-    missed: int = 0
-    trips: int = 0
-    period_p50: float = math.nan
-    period_p99: float = math.nan
-    period_max: float = math.nan
 
     def __str__(self):
         median, most, longest = (1e3 * x for x in (self.period_p50, self.period_p99, self.period_max))
@@ -91,19 +81,6 @@ class LoopStatistics:
             f"{self.cycles} cycles, {self.missed} late, {self.trips} cuts of the drive by pauses; "
             f"period {median:.2f} ms median, {most:.2f} ms 99 %, {longest:.2f} ms longest"
         )
-
-
-@dataclass(frozen=True)
-class LiveSamples:
-    """The last samples: t (n,) s, q (n, 3) rad, u (n, 3) PWM counts as sent, reference (n, 3) rad; trips (k,) s, of the
-    samples at which the drive had been cut because the loop had paused.
-    """
-
-    t: np.ndarray
-    q: np.ndarray
-    u: np.ndarray
-    reference: np.ndarray
-    trips: np.ndarray
 
 
 class LiveRun:
@@ -130,7 +107,7 @@ class LiveRun:
         self._bench, self._cargo = bench, cargo
         self.error, self.gains = None, gains_of(controller)
         self._orders, self._told, self._begun = SimpleQueue(), {}, threading.Event()
-        self._ring, self._count = np.zeros(_KEPT, _SAMPLE), 0
+        self._ring, self._count = np.zeros(_KEPT, _SAMPLE).view(np.recarray), 0
         self._thread, self._process = threading.Thread(target=self._work, daemon=True), None
 
     def _begin(self):
@@ -225,19 +202,21 @@ class LiveRun:
         return self._ring[np.arange(max(0, end - min(count, _KEPT - 64)), end) % _KEPT]
 
     def recent(self, seconds):
-        """The samples of the last `seconds`, at most 80 s: LiveSamples."""
+        """The samples of the last `seconds`, at most 80 s.
+
+        Returns: record array, t (n,) s, q (n, 3) rad, u (n, 3) PWM counts as sent, reference (n, 3) rad; trips (n,):
+        how often the drive had been cut by then because the loop had paused.
+        """
         rows = self._latest(1 + math.ceil(seconds / self._bench.period))
-        rows = rows[rows["t"] >= rows["t"].max(initial=0.0) - seconds]
-        tripped = np.flatnonzero(np.diff(rows["trips"])) + 1
-        return LiveSamples(rows["t"], rows["q"], rows["u"], rows["r"], rows["t"][tripped])
+        return rows[rows.t >= rows.t.max(initial=0.0) - seconds]
 
     def statistics(self):
         """How well the loop keeps time: LoopStatistics."""
         rows = self._latest(_KEPT)
         if len(rows) < 2:
-            return LoopStatistics()
-        periods = np.percentile(np.diff(rows["clock"]), (50, 99, 100))
-        return LoopStatistics(self._count, int(rows["missed"][-1]), int(rows["trips"][-1]), *periods)
+            return LoopStatistics(0, 0, 0, math.nan, math.nan, math.nan)
+        periods = np.percentile(np.diff(rows.clock), (50, 99, 100))
+        return LoopStatistics(self._count, int(rows.missed[-1]), int(rows.trips[-1]), *periods)
 
     def __repr__(self):
         return f"<LiveRun: {self.phase}; {self.statistics()}>"
@@ -258,7 +237,7 @@ class LiveRun:
 
         Raises InputError if q is outside the joint limits or below the table.
         """
-        self._orders.put(("set point", checked_set_point(self._bench.arm, q)))
+        self._orders.put(("set point", checked_pose("set point", self._bench.arm, q)))
 
     def stop(self, *, wait=True):
         """End in order: the arm moves to its rest pose and is let go. wait: until that is over."""

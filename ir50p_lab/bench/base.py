@@ -1,7 +1,7 @@
 """What every bench promises: one loop, whether a board, a simulated arm or a recording answers."""
 
 import contextlib
-from typing import NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
@@ -21,19 +21,13 @@ JOINTS = 3
 LIMIT_PWM = 255
 
 
-class Sample(NamedTuple):
+class Sample(namedtuple("Sample", "t q counts missed reference", defaults=(None,))):
     """What the bench says once per period.
 
     t: s since the run began, when it was measured; q: (3,) rad, through the calibration; counts: (3,) counts of the
     10-bit converter (quarters where the board averages); missed: cycles that came late so far in this run; reference:
     (3, 3), what the run's reference asks for at t, rows q, qd, qdd in rad, rad/s, rad/s^2 (None without one).
     """
-
-    t: float
-    q: np.ndarray
-    counts: np.ndarray
-    missed: int
-    reference: np.ndarray | None = None
 
 
 class Run:

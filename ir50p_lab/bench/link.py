@@ -1,6 +1,8 @@
 """Question and answer with the board: sequence numbers, repeats when nothing comes, no answer taken for another's."""
 
-from dataclasses import dataclass
+from types import SimpleNamespace
+
+from serial import SerialTimeoutException
 
 from ir50p_lab.bench import protocol
 from ir50p_lab.errors import BoardLostError
@@ -17,28 +19,15 @@ REPEAT = 0.004  # s without an answer until the question is asked again
 HEARD = 80  # first bytes kept to tell what it is that does not answer
 
 
-@dataclass
-class LinkStatistics:
-    """What has happened on the wire since the bench was opened.
-
-    commands: sent; repeats: of which again, because no answer came; bad_replies, bad_commands: damaged frames, dropped
-    by the computer and by the board (its counter, which begins at its start and wraps at 65536); watchdog_trips: times
-    that the board cut the drive because no command came for 100 ms.
-    """
-
-    commands: int = 0
-    repeats: int = 0
-    bad_replies: int = 0
-    bad_commands: int = 0
-    watchdog_trips: int = 0
-
-
 class Link:
     """The wire to the board, over an open serial port.
 
     transport: what serial.Serial offers: timeout, read(n), write(bytes), in_waiting, reset_input_buffer(), close().
     clock: now() and sleep(s).
-    Attributes: statistics: LinkStatistics up to now; heard: the first bytes that came since `forget`.
+    Attributes: statistics: what has happened on the wire since it was opened. commands: sent; repeats: of which again,
+    because no answer came; bad_replies, bad_commands: damaged frames, dropped by the computer and by the board (its
+    counter, which begins at its start and wraps at 65536); watchdog_trips: times that the board cut the drive because
+    no command came for 100 ms. heard: the first bytes that came since `forget`.
     """
 
     def __init__(self, transport, clock):
@@ -46,7 +35,8 @@ class Link:
         transport.timeout = READ_TIMEOUT
         self._parser = protocol.FrameParser()
         self._seq, self._tripped = 0, False
-        self.statistics, self.heard = LinkStatistics(), bytearray()
+        self.statistics = SimpleNamespace(commands=0, repeats=0, bad_replies=0, bad_commands=0, watchdog_trips=0)
+        self.heard = bytearray()
 
     def ask(self, kind, pwm=(0, 0, 0), gripper=False, *, patience, repeat=REPEAT):
         """Send a command and wait for its answer; ask again every `repeat` s without one, `patience` s in all.
@@ -83,7 +73,11 @@ class Link:
         """Send a command and do not wait; its answer is passed over by the next `ask`. Returns its number."""
         self._seq = (self._seq + 1) % 256
         self.statistics.commands += 1
-        self._transport.write(protocol.encode_command(self._seq, kind, pwm, gripper))
+        frame = protocol.encode_command(self._seq, kind, pwm, gripper)
+        try:
+            self._transport.write(frame)
+        except SerialTimeoutException:  # also if the program was stopped as it wrote; the board has cut meanwhile
+            self._transport.write(frame)
         return self._seq
 
     def stop(self, gripper=False):

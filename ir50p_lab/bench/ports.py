@@ -1,17 +1,14 @@
 """Serial ports: which may be our board, opening one, and what to do when that fails."""
 
 import errno
-from typing import NamedTuple
+from collections import namedtuple
 
 from ir50p_lab.errors import PortError
 from ir50p_lab.launcher.boards import board_name, permission_remedy
 
 
-class Port(NamedTuple):
+class Port(namedtuple("Port", "device board")):
     """A serial port: device name, and the board its USB id stands for (None: none that fits the bench)."""
-
-    device: str
-    board: str | None
 
 
 def list_ports():

@@ -24,7 +24,7 @@ up to 32, and lets one in 4 billion of the rest pass. It costs two bytes, 0.04 m
 
 import struct
 import zlib
-from typing import NamedTuple
+from collections import namedtuple
 
 VERSION = 2
 MINIMUM_FIRMWARE = (1, 1)  # major, minor; what the sketch must at least be
@@ -61,30 +61,17 @@ COMMAND_SIZE = _COMMAND.size + _CRC.size
 REPLY_SIZE = _STATE.size + _CRC.size
 
 
-class State(NamedTuple):
+class State(namedtuple("State", "seq counts status bad_frames clock_ms")):
     """Board to computer. counts (3,) quarters of a count; status: see the bits above; the last two wrap at 65536."""
 
-    seq: int
-    counts: tuple
-    status: int
-    bad_frames: int
-    clock_ms: int
 
-
-class Identity(NamedTuple):
+class Identity(namedtuple("Identity", "seq protocol firmware board_id boot reset_cause")):
     """The board's answer to a hello.
 
     protocol: VERSION; firmware (major, minor); board_id: 24 bits, given once, NO_ID before; boot: number of starts so
     far, differs after each reset, wraps at 65536; reset_cause: the processor's register MCUSR, 0 if a boot loader has
     cleared it.
     """
-
-    seq: int
-    protocol: int
-    firmware: tuple
-    board_id: int
-    boot: int
-    reset_cause: int
 
 
 def encode_command(seq, kind, pwm=(0, 0, 0), gripper=False):

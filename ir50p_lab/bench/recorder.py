@@ -11,8 +11,9 @@ from pathlib import Path
 from ir50p_lab.bench.recording import Recording
 from ir50p_lab.bench.recording_file import event_text, head_text, row_text, rows_text, table_of, told_text
 from ir50p_lab.controllers.base import gains_of
-from ir50p_lab.errors import InputError, RecordingError
+from ir50p_lab.errors import RecordingError
 from ir50p_lab.home import home
+from ir50p_lab.inputs import vector3
 
 _FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINARY", 0)
 _ELSEWHERE = "choose another folder with record_to=... or the environment variable IR50P_HOME"
@@ -63,7 +64,7 @@ class Recorder:
         for a reference that is not three numbers.
         """
         t, q, counts, missed = sample[:4]
-        r = (math.nan,) * 3 if reference is None else _three(reference)
+        r = (math.nan,) * 3 if reference is None else vector3("reference", reference).tolist()
         row = (t, *q.tolist(), *counts.tolist(), *pwm.tolist(), *r, gripper, missed)
         self._rows.extend(row)
         self._put(row_text(row))
@@ -107,14 +108,6 @@ class Recorder:
         if self._file is not None:
             os.close(self._file)
             self._file = None
-
-
-def _three(reference):
-    try:
-        r1, r2, r3 = reference
-        return float(r1), float(r2), float(r3)
-    except (TypeError, ValueError):
-        raise InputError(f"reference = {reference!r}: give the three joint angles, rad (target(t)[0])") from None
 
 
 def header_of(controller):

@@ -18,7 +18,7 @@ and the compiled loop of the simulated arm.
 """
 
 import math
-from typing import NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
@@ -44,24 +44,12 @@ END, TABLE = 0.12, 0.04  # rad from an end of travel, m above the table: there a
 NOISE = 3.0  # counts within which the mean of a block that stands still stays
 
 
-class Watch(NamedTuple):
-    """What the check knows. Constants first: theta (3, 20) and numbers (33,) of the arm in PWM counts; lag (3,) s of
-    the speed behind the drive; top (3,) rad/s: too fast; noise (3,) rad.
-
-    Then what it remembers: now (2,): samples in the block, blocks kept; block (n, 7): t, q and command of the last
-    samples; past (KEPT, 7): of the last blocks, the command 0 where its sign changed, else the smallest. still (4, 3):
-    speed and way of the loaded joint, rad/s and rad, the angle it began at, and whether the joint has moved since.
-    """
-
-    theta: np.ndarray
-    numbers: np.ndarray
-    lag: np.ndarray
-    top: np.ndarray
-    noise: np.ndarray
-    now: np.ndarray
-    block: np.ndarray
-    past: np.ndarray
-    still: np.ndarray
+# What the check knows, arrays. Constants first: theta (3, 20) and numbers (33,) of the arm in PWM counts; lag (3,) s of
+# the speed behind the drive; top (3,) rad/s: too fast; noise (3,) rad.
+# Then what it remembers: now (2,): samples in the block, blocks kept; block (n, 7): t, q and command of the last
+# samples; past (KEPT, 7): of the last blocks, the command 0 where its sign changed, else the smallest. still (4, 3):
+# speed and way of the loaded joint, rad/s and rad, the angle it began at, and whether the joint has moved since.
+Watch = namedtuple("Watch", "theta numbers lag top noise now block past still")
 
 
 @jit()

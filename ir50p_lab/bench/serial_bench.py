@@ -38,7 +38,7 @@ class SerialBench(Bench):
     In a run: BoardLostError if the cable is pulled or the board resets; it brakes 0.1 s after the last command.
     BoardError if a potentiometer has lost its wire.
 
-    Attributes: statistics: LinkStatistics of the wire since it was opened last; identity: what the board has said.
+    Attributes: statistics: of the wire since it was opened last, see `Link`; identity: what the board has said.
     """
 
     kind = "board"
@@ -209,6 +209,4 @@ def _who_is_it(heard):
     """What to say about a device that does not answer our hello, from the bytes it sent."""
     if not heard:
         return f"nothing answers. Is it a Mega 2560? Then {_REMEDY}, or press its reset button if that is done"
-    text = all(32 <= byte < 127 or byte in b"\r\n\t" for byte in heard)
-    shown = repr(heard[:24].decode("ascii")) if text else heard[:12].hex(" ")
-    return f"what answers is not our firmware (it sent {shown}). If it is the bench's board, {_REMEDY}"
+    return f"what answers is not our firmware (it sent {heard[:24]!r}). If it is the bench's board, {_REMEDY}"

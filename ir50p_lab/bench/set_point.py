@@ -7,7 +7,6 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vector3
 from ir50p_lab.modelling.chain import frames
-from ir50p_lab.signals.reference import per_joint
 
 SPEED = 0.8  # rad/s: with the arm stretched the tip moves at 0.7 m/s
 ACCELERATION = 3.0  # rad/s^2: full speed after a quarter of a second
@@ -19,22 +18,20 @@ NOISE = 0.05  # rad; an arm that stands at an end of its travel may be measured 
 class SetPoint:
     """A pose to hold that may be changed at any time; the reference runs after it at limited speed, without overshoot.
 
-    Each joint accelerates with at most `acceleration`, moves with at most `speed` and brakes in time: the steps of
+    Each joint accelerates with at most ACCELERATION, moves with at most SPEED and brakes in time: the steps of
     a slider become a motion that the arm can follow. Call it once per cycle with increasing times, as a loop does: it
     remembers where it is.
 
-    Args: q, qd: (3,) rad and rad/s, where it starts, moving; speed: rad/s, acceleration: rad/s^2, one number or (3,).
+    Args: q, qd: (3,) rad and rad/s, where it starts, moving.
     Attributes: q, goal: (3,) rad, where it is, and where it is going; set that with `move_to`.
-    Raises InputError on wrong shapes, numbers that are not finite or limits that are not positive.
+    Raises InputError on wrong shapes, numbers that are not finite.
     """
 
     duration = math.inf
 
-    def __init__(self, q, *, qd=(0.0, 0.0, 0.0), speed=SPEED, acceleration=ACCELERATION):
+    def __init__(self, q, *, qd=(0.0, 0.0, 0.0)):
         self.q, self._qd = vector3("q", q).copy(), vector3("qd", qd, unit="rad/s").copy()
         self.goal, self._t = self.q, None
-        self.speed = np.array(per_joint("speed", speed, "> 0", unit="rad/s"))
-        self.acceleration = np.array(per_joint("acceleration", acceleration, "> 0", unit="rad/s^2"))
 
     def move_to(self, q):
         """From now on go to q (3,) rad. Raises InputError on anything else."""
@@ -46,12 +43,12 @@ class SetPoint:
         self._t = t
         if dt == 0.0:
             return self.q.copy(), self._qd.copy(), np.zeros(3)
-        way, before, at = self.goal - self.q, self._qd, self.acceleration * dt
+        way, before, at = self.goal - self.q, self._qd, ACCELERATION * dt
         # the speed from which n steps, each slower by a dt than the one before, end exactly at the goal
         steps = np.abs(way) / (at * dt)
         n = np.maximum(1, np.ceil(0.5 * (np.sqrt(1 + 8 * steps) - 1) - 1e-9))
         braking = at * (steps / n + 0.5 * (n - 1))
-        wanted = np.copysign(np.minimum(braking, self.speed), way)
+        wanted = np.copysign(np.minimum(braking, SPEED), way)
         self._qd = np.clip(wanted, before - at, before + at)
         there = np.abs(way - self._qd * dt) < 1e-12  # but for rounding; the next step takes the rest of the speed
         self.q = np.where(there, self.goal, self.q + self._qd * dt)
@@ -89,20 +86,18 @@ def checked_reference(arm, t, value, q=None):
     return rows
 
 
-def checked_set_point(arm, q):
-    """A set point q (3,) rad as an array; InputError if it is beyond the travel of the arm or below the table."""
-    q = vector3("set point", q)
+def checked_pose(name, arm, q, table=0.0):
+    """A pose q (3,) rad as an array; InputError if it is beyond the travel of the arm or below the table, m."""
+    q = vector3(name, q)
     outside = (q < arm.q_min) | (q > arm.q_max)
     if outside.any():
         i = np.argmax(outside)
         low, high = np.degrees([arm.q_min[i], arm.q_max[i]])
+        raise InputError(f"{name} of joint {i + 1} is {q[i]:.3f} rad; the arm's travel is {low:.0f} to {high:.0f} deg")
+    height = float(frames(arm, q)[2:, 2, 3].min()) - table
+    if height < -1e-9:
         raise InputError(
-            f"set point of joint {i + 1} is {q[i]:.3f} rad; the arm's travel is {low:.0f} to {high:.0f} deg"
-        )
-    height = float(frames(arm, q)[2:, 2, 3].min())
-    if height < 0.0:
-        raise InputError(
-            f"the set point ({', '.join(f'{x:.0f}' for x in np.degrees(q))}) deg lies {-100 * height:.0f} cm below "
+            f"the {name} ({', '.join(f'{x:.0f}' for x in np.degrees(q))}) deg lies {-100 * height:.0f} cm below "
             "the table: raise joint 2 or joint 3"
         )
     return q

@@ -1,7 +1,6 @@
 """The simulated bench: the same contract as the board, without one; as fast as the machine or at the arm's pace."""
 
-from collections import deque
-from dataclasses import dataclass
+from collections import deque, namedtuple
 
 import numpy as np
 
@@ -60,13 +59,8 @@ def _compiled_cycles(
     return t.size, 0
 
 
-@dataclass(frozen=True)
-class Truth:
+class Truth(namedtuple("Truth", "t q qd")):
     """What the simulation knows and no student can: t (n,) s; q (n, 3) rad of the links, qd (n, 3) rad/s."""
-
-    t: np.ndarray
-    q: np.ndarray
-    qd: np.ndarray
 
 
 class SimulatedBench(Bench):

@@ -7,8 +7,8 @@ import numpy as np
 from ir50p_lab.bench.arm_instance import UNIT, chosen_copy
 from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.rest import rest_pose
+from ir50p_lab.bench.set_point import checked_pose
 from ir50p_lab.errors import ArmError, InputError
-from ir50p_lab.inputs import vector3
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.chain import forward_kinematics, lengths
@@ -120,13 +120,7 @@ class SimulatedArm:
 
     def place(self, q):
         """Put the arm at rest at q (3,) rad, as by hand. Raises InputError if it cannot be there."""
-        q, no = vector3("q0", q), "the arm cannot stand at q0"
-        for joint, (angle, low, high) in enumerate(zip(q, self.arm.q_min, self.arm.q_max, strict=True), 1):
-            if not low <= angle <= high:
-                raise InputError(f"{no}: joint {joint} = {angle:.4g} rad is outside {low:.4g}..{high:.4g} rad")
-        height = forward_kinematics(self.arm, q)[2]
-        if height < self.unit.table - 1e-9:
-            raise InputError(f"{no}: the tip would be at {height:.4g} m, below the table at {self.unit.table:g} m")
+        q = checked_pose("q0", self.arm, q, self.unit.table)
         self._x[:3], self._x[3:], self._joint[:] = q, 0.0, q
 
     def advance(self, pwm, seconds):

@@ -260,7 +260,8 @@ class BenchPanel(widgets.VBox):
         if run is not None and (alive or self._shown != (run, run.statistics().cycles)):
             samples = run.recent(self._window)
             if samples.t.size:
-                self.scope.show(samples.t, samples.q, samples.reference, samples.u, samples.trips)
+                cuts = samples.t[1:][np.diff(samples.trips) > 0]
+                self.scope.show(samples.t, samples.q, samples.reference, samples.u, cuts)
             self._shown = (run, run.statistics().cycles) if not alive else None
         if count % 10 == 0 or phase != self._phase:
             self._phase = phase

@@ -181,7 +181,7 @@ def test_no_room_even_for_the_head(tmp_path, monkeypatch):
 def test_a_reference_that_is_none_is_refused():
     recorder = Recorder(HEAD, False)
     for wrong in (np.zeros((3, 3)), [1.0, 2.0], 5.0, "abc"):
-        with pytest.raises(InputError, match="three joint angles"):
+        with pytest.raises(InputError, match="reference"):
             fill(recorder, 1, reference=wrong)
     assert len(recorder.recording) == 0
 

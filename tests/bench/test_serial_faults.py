@@ -6,10 +6,11 @@ import os
 
 import numpy as np
 import pytest
+import serial
 from fake_board import FakeBoard
 
 from ir50p_lab.bench import SerialBench, nominal_calibration, ports, protocol, serial_bench
-from ir50p_lab.errors import BoardError, BoardLostError, InputError, PortError
+from ir50p_lab.errors import BoardError, BoardLostError, InputError, PauseError, PortError
 from ir50p_lab.modelling import IR50P
 
 CALIBRATION = nominal_calibration(IR50P)
@@ -134,7 +135,7 @@ def test_silence(board):
     [
         (b"$GPGGA,123519,4807.038,N", "GPGGA,123519"),
         (b"start\r\necho:Marlin 1.1.9\r\n", "Marlin"),
-        (bytes(range(130, 160)), "82 83 84"),
+        (bytes(range(130, 160)), r"\x82\x83\x84"),
         (bytes([protocol.REPLY_SYNC]) * 500, "Z"),
     ],
 )
@@ -378,6 +379,33 @@ def test_cable_pulled_between_two_commands(board):
         for k, _ in enumerate(bench.run(1.0)):
             board.unplugged = k == 30
             bench.drive((50, -50, 50))
+
+
+@pytest.mark.parametrize("nth", [100, 101])  # of a sample's question, or of its command
+def test_a_program_that_was_stopped_as_it_wrote_lost_no_board(board, monkeypatch, nth):
+    """pyserial calls a write timed out that went well before the stop."""
+    write = board.write
+
+    def stopped(data):
+        size = write(data)
+        if board.writes == nth:
+            board.sleep(2.0)
+            raise serial.SerialTimeoutException("Write timeout")
+        return size
+
+    monkeypatch.setattr(board, "write", stopped)
+    with pytest.raises(PauseError, match=r"no command for 2\.0 s"):
+        run(board, 5.0, (30, 0, 0))
+    assert board.trips == 1 and (board.pwm == 0).all()
+
+
+def test_a_port_that_takes_nothing_is_lost(board, monkeypatch):
+    def full(data):
+        board.sleep(1.0)
+        raise serial.SerialTimeoutException("Write timeout")
+
+    text, after, _ = loses(board, lambda: monkeypatch.setattr(board, "write", full))
+    assert "is gone (Write timeout)" in text and after < 12
 
 
 def test_termios_error_of_a_pulled_cable_is_no_stranger(board, monkeypatch):

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ir50p_lab.bench.live_loop import _Target
-from ir50p_lab.bench.set_point import SetPoint, checked_set_point
+from ir50p_lab.bench.set_point import SetPoint, checked_pose
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold, sinusoid
@@ -32,7 +32,7 @@ def test_it_rests_until_told():
 
 
 def test_it_arrives_exactly_and_as_fast_as_the_limits_allow():
-    target = SetPoint([0, 0, 0], speed=0.8, acceleration=3.0)
+    target = SetPoint([0, 0, 0])
     rows = motion(target, np.arange(400) * 0.01, {0: [1.0, -0.2, 0.01]})
     assert (rows[-1, 0] == [1.0, -0.2, 0.01]).all() and not rows[-1, 1:].any()
     arrived = np.argmax(rows[:, 0, 0] == 1.0) * 0.01
@@ -41,7 +41,7 @@ def test_it_arrives_exactly_and_as_fast_as_the_limits_allow():
 
 @given(st.dictionaries(st.integers(0, 200), st.tuples(ANGLES, ANGLES, ANGLES), min_size=1, max_size=8))
 def test_never_too_fast_never_beyond(orders):
-    rows = motion(SetPoint([0, 0, 0], speed=0.8, acceleration=3.0), np.arange(1200) * 0.01, orders)
+    rows = motion(SetPoint([0, 0, 0]), np.arange(1200) * 0.01, orders)
     q, qd, qdd = rows[:, 0], rows[:, 1], rows[:, 2]
     assert np.abs(qd).max() <= 0.8 + 1e-9 and np.abs(qdd).max() <= 3.0 + 1e-9
     np.testing.assert_allclose(np.diff(q, axis=0) / 0.01, qd[1:], atol=1e-9)
@@ -52,7 +52,7 @@ def test_never_too_fast_never_beyond(orders):
 
 
 def test_late_cycles_do_not_make_it_jump():
-    target = SetPoint([0, 0, 0], speed=0.8)
+    target = SetPoint([0, 0, 0])
     target.move_to([2, 0, 0])
     motion(target, np.arange(100) * 0.01)
     before = target(1.0)[0][0]
@@ -86,7 +86,7 @@ def test_a_target_is_led_in_from_the_pose_and_ends_on_the_reference():
 
 
 def test_set_points_are_checked_against_travel_and_table():
-    np.testing.assert_array_equal(checked_set_point(IR50P, [0.1, 0.3, 0.2]), [0.1, 0.3, 0.2])
+    np.testing.assert_array_equal(checked_pose("set point", IR50P, [0.1, 0.3, 0.2]), [0.1, 0.3, 0.2])
     for bad in ([0, 0], [0, 0, np.inf], [0.1, None, 0.2], 3.0):
         with pytest.raises(InputError):
-            checked_set_point(IR50P, bad)
+            checked_pose("set point", IR50P, bad)

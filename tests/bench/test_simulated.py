@@ -261,7 +261,7 @@ def test_what_cannot_be_is_refused():
         SimulatedBench(THESIS_A)
     with pytest.raises(InputError, match="whole milliseconds"):
         SimulatedBench(IR50P, period=0.0105)
-    with pytest.raises(InputError, match="outside"):
+    with pytest.raises(InputError, match="travel"):
         SimulatedBench(IR50P, q0=(0, 5, 0))
 
 

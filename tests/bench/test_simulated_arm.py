@@ -210,7 +210,7 @@ def test_noise_is_the_same_however_it_is_taken():
 
 
 def test_where_it_cannot_stand():
-    with pytest.raises(InputError, match="joint 1 = 3 rad is outside"):
+    with pytest.raises(InputError, match="q0 of joint 1 is 3"):
         SimulatedArm(IR50P, q0=(3, 0, 0))
     with pytest.raises(InputError, match="table"):
         SimulatedArm(IR50P, q0=(0, -0.8, -1.0))
