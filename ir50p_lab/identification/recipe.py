@@ -63,8 +63,6 @@ def identify(
     for recording in recordings:
         notes += _looked_at(recording, anyway)
         motion = process(recording, slow=slow, **steps)
-        if motion.q.shape[1] != 3:
-            raise InputError(f"q has {motion.q.shape[1]} columns: give all three joints, or take fit_joint for one")
         parts.append((regressor(motion.q, motion.qd, motion.qdd, sign=TURN), motion.u, motion.use))
     Phi, y, use = map(np.concatenate, zip(*parts, strict=True))
     found = fit(Phi, y, method=method, l2=l2, use=use, unit=unit)
