@@ -237,7 +237,7 @@ def test_an_unclear_rank_is_said(size):
     rng = np.random.default_rng(0)
     A = rng.normal(size=(200, 3))
     near = A @ [1, 1, 1] + 1.5e-8 * np.linalg.norm(A @ [1, 1, 1]) * rng.normal(size=200) / np.sqrt(200)
-    with pytest.raises(IdentificationError, match="the rank is not clear: 4 columns .* 3 singular values"):
+    with pytest.raises(IdentificationError, match=r"the rank is not clear: 4 columns .* 3 singular values"):
         base_parameters(size * np.column_stack([A, near]))
 
 
