@@ -105,7 +105,7 @@ class Problem:
     def __init__(self, A, y, names, n, *, who="", tolerance=DEPENDENT):
         if len(A) < 2 * len(names):
             raise IdentificationError(
-                f"{who}{len(A)} equations for {len(names)} parameters: record {2 * len(names)} or more"
+                f"{who}{len(A)} equations for {len(names)} parameters: {2 * len(names)} are needed"
             )
         length = np.linalg.norm(A, axis=0)
         if not length.any():
