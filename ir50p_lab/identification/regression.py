@@ -104,9 +104,7 @@ class Problem:
 
     def __init__(self, A, y, names, n, *, who="", tolerance=DEPENDENT):
         if len(A) < 2 * len(names):
-            raise IdentificationError(
-                f"{who}{len(A)} equations for {len(names)} parameters: {2 * len(names)} are needed"
-            )
+            raise IdentificationError(f"{who}{len(A)} equations for {len(names)} parameters, {2 * len(names)} needed")
         length = np.linalg.norm(A, axis=0)
         if not length.any():
             raise IdentificationError(f"{who}the data hold no motion: move the joint and record again")
