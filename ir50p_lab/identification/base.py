@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.fit_input import finite
 from ir50p_lab.identification.parameters import NAMES
-from ir50p_lab.identification.regression import independent_columns, r_factor
+from ir50p_lab.identification.regression import DEPENDENT, independent_columns, r_factor
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -43,10 +43,10 @@ class BaseParameters:
 
 
 def base_parameters(Phi, *, names=None, known=None):
-    """Which combinations of parameters the regressor Phi can tell apart, by QR.
+    """Which combinations of parameters the regressor Phi can tell apart, by QR and by SVD.
 
     Columns are scaled to length 1 and taken in order: one that is a combination of kept columns before it (less than
-    1e-8 sticks out) joins their groups. The singular values show whether the rank is clear.
+    1e-8 sticks out) joins their groups. The singular values must give the same rank.
 
     Args:
         Phi: (n, 3, p), (n, k, p) or (m, p), from exact motion rich enough to excite everything (random states do);
@@ -54,13 +54,18 @@ def base_parameters(Phi, *, names=None, known=None):
         names: of the p columns; default the 20 parameters, or p1, p2, ...
         known: numbers that may appear in the groups, {"l2": 0.2}: 0.04 is then written l2^2.
 
-    Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if Phi is zero.
+    Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if Phi is zero, or if QR and SVD
+    disagree on the rank: the motion lies between excited and not excited.
     """
     A, names = _checked(Phi, names)
     length = np.linalg.norm(A, axis=0)
     seen = np.flatnonzero(length > 1e-14 * length.max())
     R = r_factor(A[:, seen] / length[seen])
     kept, weights = independent_columns(R)
+    s = np.linalg.svd(R, compute_uv=False)
+    if (above := np.sum(s > DEPENDENT * s[0])) != len(kept):
+        said = f"{len(kept)} columns stick out of the others by {DEPENDENT:g}, {above} singular values are above that"
+        raise IdentificationError(f"the rank is not clear: {said}: use richer or exact motion")
     columns = seen[kept]
     matrix = np.zeros((len(kept), len(names)))
     matrix[:, seen] = weights * length[seen] / length[columns][:, None]
@@ -72,7 +77,7 @@ def base_parameters(Phi, *, names=None, known=None):
         names=names,
         unseen=tuple(name for k, name in enumerate(names) if k not in seen),
         groups=tuple(_in_symbols(row, k, names, known or {}) for k, row in zip(columns, matrix, strict=True)),
-        singular_values=np.linalg.svd(R, compute_uv=False),
+        singular_values=s,
     )
 
 

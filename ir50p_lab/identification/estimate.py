@@ -59,10 +59,9 @@ class Estimate:
         """What the data say and what they do not, as a tuple of sentences: the warnings last."""
         sentences = []
         for row, who in _rows(self.rows).items():
-            sentences.append(
-                f"{who}: {len(self.columns[row])} parameters from {len(self.residuals)} samples, residual "
-                f"{self.sigma[row]:.3g} {self.unit} rms, condition {self.condition[row]:.3g}"
-            )
+            counts = f"{len(self.columns[row])} parameters from {len(self.residuals)} samples"
+            left = f"residual {self.sigma[row]:.3g} {self.unit} rms, condition {self.condition[row]:.3g}"
+            sentences.append(f"{who}: {counts}, {left}")
             values = zip(NAMES, self.theta[row], self.stderr[row], strict=True)
             unsure = [f"{name} = {x:.3g} +- {stderr:.2g}" for name, x, stderr in values if abs(x) < 2 * stderr < np.inf]
             if unsure:
@@ -85,8 +84,7 @@ def _rows(rows):
 def impossible_values(theta, stderr, rows):
     """Sentences about inertial and friction parameters below zero by more than two standard errors."""
     return [
-        f"{who}: {name} = {x:.3g} +- {error:.2g} is negative, which is hardly possible: the signals are biased "
-        "(noise, delay) or the model lacks something; or use method='bounded'"
+        f"{who}: {name} = {x:.3g} +- {error:.2g} is hardly possible: noise, a delay? Or use method='bounded'"
         for row, who in _rows(rows).items()
         for name, x, error in zip(NAMES, theta[row], stderr[row], strict=True)
         if name not in FREE_OF_SIGN and x < -2 * error
@@ -108,7 +106,5 @@ def indefinite_mass(theta):
     if not wrong.any():
         return []
     k = int(np.argmax(wrong))
-    return [
-        f"the mass matrix of these parameters is not positive definite at q2 = {q2[k]:.2f}, q3 = {q3[k]:.2f} rad: "
-        "a computed-torque controller would push the wrong way there. Use method='bounded' or richer data"
-    ]
+    where = f"q2 = {q2[k]:.2f}, q3 = {q3[k]:.2f} rad: use method='bounded' or richer data"
+    return [f"the mass matrix of these parameters is not positive definite at {where}"]

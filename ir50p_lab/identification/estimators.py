@@ -25,9 +25,7 @@ def plain(problem):
 def ridge(problem, strength):
     """min |y - A x|^2 + strength |x|^2, columns of A of length 1: biased towards 0, and calmer."""
     R, one = problem.R, np.eye(len(problem.R))
-    problem.notes.append(
-        f"{problem.who}ridge {strength:g} pulls parameters towards 0; standard errors do not hold that bias"
-    )
+    problem.notes.append(f"{problem.who}ridge {strength:g} pulls towards 0; standard errors do not hold that bias")
     x = np.linalg.solve(R.T @ R + strength * one, R.T @ problem.Qty)
     return problem.estimate(R @ x, derivative=one + strength * problem.R_inverse.T @ problem.R_inverse)
 
@@ -53,9 +51,7 @@ def huber(problem):
         if moved <= 1e-10 * np.linalg.norm(z):
             break
     else:
-        raise IdentificationError(
-            f"{problem.who}the robust fit has not settled after {_MOST_STEPS} steps: too few good samples; use 'ls'"
-        )
+        raise IdentificationError(f"{problem.who}the robust fit has not settled: too few good samples; use 'ls'")
     e = y - Q @ z
     inside = np.abs(e) <= limit
     return problem.estimate(z, residuals=np.clip(e, -limit, limit), derivative=Q.T @ (inside[:, None] * Q))
@@ -88,21 +84,15 @@ def instrumental_variables(problem, Z):
     R = r_factor(Z)
     own = np.abs(np.diag(R))
     if own.min() < _NOTHING:
-        raise IdentificationError(
-            f"{problem.who}the instrument of {problem.names[int(own.argmin())]} is zero, or a combination of the "
-            "others: they excite fewer columns"
-        )
+        name = problem.names[int(own.argmin())]
+        raise IdentificationError(f"{problem.who}the instrument of {name} is zero, or a combination of the others")
     Qz = Z @ np.linalg.inv(R)
     derivative = Qz.T @ problem.Q
     smallest = np.linalg.svd(derivative, compute_uv=False)[-1]
     if smallest < _NOTHING:
-        raise IdentificationError(
-            f"{problem.who}instruments and regressors have a correlation of {smallest:.1g} only in some direction: "
-            "take instruments that follow the same motion, such as the regressor of the reference or of a simulation"
-        )
+        said = f"{problem.who}instruments and regressors have a correlation of {smallest:.1g} only in some direction"
+        raise IdentificationError(f"{said}: take instruments that follow the same motion")
     if smallest < _WEAK:
-        problem.notes.append(
-            f"{problem.who}weak instruments (smallest correlation {smallest:.2g}): large, optimistic errors"
-        )
+        problem.notes.append(f"{problem.who}weak instruments (correlation {smallest:.2g}): large, optimistic errors")
     z = np.linalg.solve(derivative, Qz.T @ problem.y)
     return problem.estimate(z, rows=Qz, residuals=problem.y - problem.Q @ z, derivative=derivative)

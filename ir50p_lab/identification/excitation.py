@@ -104,10 +104,8 @@ def optimise_excitation(
             first.append(x)
             found.append(problem.improve(x, iterations))
     if not found:
-        raise IdentificationError(
-            f"no motion was found inside the limits in {starts} starts: widen the joint limits, lower the table "
-            f"({table}), take less margin ({margin} rad), or give another seed"
-        )
+        remedy = f"widen the joint limits, lower the table ({table}), take less margin ({margin} rad) or another seed"
+        raise IdentificationError(f"no motion was found inside the limits in {starts} starts: {remedy}")
     best = min(found, key=lambda pair: pair[0])[1]
     options = {"period": period, "periods": periods, "arm": arm, "max_joint_speed": max_joint_speed}
     options |= {"table": table, "margin": margin, "ends": "adjust"}  # rounding only

@@ -129,10 +129,8 @@ def _equations(Phi, share, joints, here):
 def _checked_weights(weights, y):
     weights = vectors3("weights", weights, unit="1/variance of each measurement")
     if weights.shape not in ((3,), y.shape) or (weights < 0).any():
-        raise InputError(
-            f"weights have shape {weights.shape} and least value {weights.min():g}; "
-            "give (3,) or (n, 3), all >= 0: 1/variance of each measurement"
-        )
+        found = f"weights have shape {weights.shape} and least value {weights.min():g}"
+        raise InputError(f"{found}: give 1/variance of each measurement, (3,) or (n, 3), all >= 0")
     return weights
 
 
@@ -141,17 +139,12 @@ def _checked_use(use, y):
     if use.dtype != bool or use.shape != y.shape:
         raise InputError(f"use has shape {use.shape}, type {use.dtype}: give (n, 3) of True and False, as Motion.use")
     if use.sum(axis=0).min() < 40:
-        raise IdentificationError(
-            f"only {use.sum(axis=0).tolist()} samples of the joints are to be used; give 40 or more of each: record "
-            "longer or faster motion, or leave out fewer near standstill"
-        )
+        raise IdentificationError(f"only {use.sum(axis=0)} samples to be used, 40 are needed: record more motion")
     return use.astype(float)
 
 
 def _checked_instruments(instruments, Phi):
     if np.shape(instruments) != Phi.shape:
-        raise InputError(
-            f"instruments have shape {np.shape(instruments)}, Phi has {Phi.shape}: method='iv' needs the regressor of "
-            "a signal that moves as the arm does but has other noise: the reference, a simulation, a repeated run"
-        )
+        shapes = f"instruments have shape {np.shape(instruments)}, Phi {Phi.shape}"
+        raise InputError(f"{shapes}: method='iv' needs the regressor of the reference, a simulation or a repeated run")
     return finite("instruments", instruments)

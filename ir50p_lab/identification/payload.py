@@ -51,10 +51,7 @@ def scale_from_payload(without, loaded, *, mass, l2, at):
     change = payload_change(mass, l2=l2, at=at)
     for name, estimate in (("without", without), ("loaded", loaded)):
         if getattr(estimate, "rows", None) != "joint":
-            raise InputError(
-                f"{name} is a {type(estimate).__name__}: give an Estimate, of fit with rows='joint' or identify: each "
-                "motor has its own gain"
-            )
+            raise InputError(f"{name} is a {type(estimate).__name__}: give an Estimate, of fit with rows='joint'")
     K, stderr, notes = np.full(3, np.nan), np.full(3, np.inf), []
     for j in range(3):
         here = np.flatnonzero(change * np.isfinite(without.stderr[j]) * np.isfinite(loaded.stderr[j]))
@@ -67,18 +64,14 @@ def scale_from_payload(without, loaded, *, mass, l2, at):
         sigma = 1 / np.sqrt(a @ weights @ a)
         per_count = sigma**2 * (a @ weights @ moved)
         if per_count < _SURE * sigma:
-            notes.append(
-                f"joint {j + 1}: the payload changes theta by {per_count / sigma:.1f} standard errors only: take a "
-                "heavier one, or longer records"
-            )
+            shown = f"the payload changes theta by {per_count / sigma:.1f} standard errors only"
+            notes.append(f"joint {j + 1}: {shown}: take a heavier one, or longer records")
             continue
         K[j], stderr[j] = 1 / per_count, sigma / per_count**2
         left = moved - a * per_count
         if left @ weights @ left > 9 * np.linalg.matrix_rank(weights, hermitian=True):
-            notes.append(
-                f"joint {j + 1}: the parameters change in other proportions than {mass:g} kg at {at:g} m would make "
-                "them: check mass and place, and the standard errors of both fits"
-            )
+            asked = f"proportions than of {mass:g} kg at {at:g} m"
+            notes.append(f"joint {j + 1}: theta changes in other {asked}: check mass, place and both fits")
     if np.isnan(K).all():
         raise IdentificationError(f"a payload of {mass:g} kg does not show in any joint: {'; '.join(notes)}")
     known, unsure = np.nan_to_num(K)[:, None], np.where(np.isfinite(stderr), stderr, 0)[:, None]

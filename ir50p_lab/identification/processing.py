@@ -71,12 +71,9 @@ def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=_ORDER):
     q = np.array(q, dtype=float) if cutoff_hz is None else low_pass(q, cutoff_hz, rate_hz, order=order, kind=BACKWARD)
     if len(q) < 3:
         raise InputError(f"q has {len(q)} samples: central differences need three or more")
-    qd, qdd = np.empty_like(q), np.empty_like(q)
-    qd[1:-1] = (q[2:] - q[:-2]) * (rate_hz / 2)
-    qdd[1:-1] = (q[2:] - 2 * q[1:-1] + q[:-2]) * rate_hz**2
-    for x in (qd, qdd):
-        x[0], x[-1] = x[1], x[-2]
-    return q, qd, qdd
+    inner = np.arange(len(q)).clip(1, len(q) - 2)
+    before, here, after = q[inner - 1], q[inner], q[inner + 1]
+    return q, (after - before) * (rate_hz / 2), (after - 2 * here + before) * rate_hz**2
 
 
 def process(

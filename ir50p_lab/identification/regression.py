@@ -104,15 +104,10 @@ class Problem:
 
     def __init__(self, A, y, names, n, *, who="", tolerance=DEPENDENT):
         if len(A) < 2 * len(names):
-            raise IdentificationError(
-                f"{who}{len(A)} equations for {len(names)} parameters: record at least {2 * len(names)} "
-                "samples, better some seconds of rich motion"
-            )
+            raise IdentificationError(f"{who}{len(A)} equations for {len(names)} parameters, {2 * len(names)} needed")
         length = np.linalg.norm(A, axis=0)
         if not length.any():
-            raise IdentificationError(
-                f"{who}no column is excited: the data hold no motion. Move the joint and record again"
-            )
+            raise IdentificationError(f"{who}the data hold no motion: move the joint and record again")
         A = A / np.where(length > 1e-12 * length.max(), length, np.inf)
         R = r_factor(np.column_stack([A, y]))
         self.kept, weights = independent_columns(R[:, :-1], tolerance)
@@ -142,10 +137,8 @@ class Problem:
         for index, share in zip(indices, variances / variances.sum(axis=0), strict=True):
             members = [name for name, part in zip(self.names, share, strict=True) if part > _SHARE]
             if index > _CLOSE and len(members) > 1:
-                yield (
-                    f"{self.who}{', '.join(members)} are hardly told apart (condition index {index:.0f}): a "
-                    "combination of them is known, not each. Excite the joints more"
-                )
+                apart = f"{', '.join(members)} are hardly told apart (condition index {index:.0f})"
+                yield f"{self.who}{apart}: a combination of them is known, not each. Excite the joints more"
 
     def estimate(self, z, *, rows=None, residuals=None, derivative=None):
         """Parameters of the columns kept, (k,), and their covariance (k, k), for z = R x with columns of length 1.

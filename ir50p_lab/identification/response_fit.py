@@ -275,19 +275,17 @@ def _check_shape(record, a, L, b, e):
     follows, explained = F(total, 3), 100 * (1 - rss / total)
     not_white = rss - np.sum(np.diff(e, 2) ** 2) / 6 * n / (n - 2)  # second differences pass only the white noise
     if follows >= _RESPONSE and not_white > _SHAPE * total and correlation > 0.5:
-        doubts.refuse(
-            f"the response has not the shape of the model ({explained:.0f} % explained). If it overshoots or swings, "
-            "take a second-order model: fit_second_order(t, u, y); else y drifts, or a dead zone or rate limit acts"
-        )
+        remedy = "take a second-order model, fit_second_order(t, u, y); else y drifts, or a dead zone or limit acts"
+        shape = f"the response has not the shape of the model ({explained:.0f} % explained)"
+        doubts.refuse(f"{shape}: if it overshoots or swings, {remedy}")
     elif follows < _RESPONSE or (follows / inflation**2 < _RESPONSE and explained < 50):
         doubts.refuse(f"y does not follow u, which explains {explained:.1f} % of its variance: make a larger step")
     ramp = best_fit(lambda p: record.columns(0.0, *p), record.y, [[(k / 50,)] for k in range(45)], (0.0, 0.95))[2]
     if a * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / inflation**2 > _BENDS:
         return
-    doubts.refuse(
-        "the response runs on like a ramp, or ever faster: the plant integrates (as an angle does), is unstable or too "
-        f"slow; only K/T has a value, {b * record.gain / record.unit:.4g} y/u per s. Fit the velocity, or record longer"
-    )
+    value = f"only K/T has a value, {b * record.gain / record.unit:.4g} y/u per s"
+    said = "the response runs on like a ramp, or ever faster: the plant integrates (as angles do), is unstable or slow"
+    doubts.refuse(f"{said}; {value}: fit the velocity, or record longer")
 
 
 def _warn(record, T, L, L_stderr, correlation, inflation):
@@ -305,9 +303,7 @@ def _warn(record, T, L, L_stderr, correlation, inflation):
     if T > 1 - L:
         doubts.add(f"not settled: T = {T * unit:.4g} s, but {(1 - L) * unit:.4g} s of response recorded; record 3 T")
     if inflation > 1:
-        doubts.add(
-            f"residuals are not white (correlation {correlation:.2f}): standard errors were widened by {inflation:.1f}"
-        )
+        doubts.add(f"residuals are not white (correlation {correlation:.2f}): errors were widened by {inflation:.1f}")
 
 
 @dataclass(frozen=True, kw_only=True)

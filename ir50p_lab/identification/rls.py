@@ -103,9 +103,7 @@ class RLS:
         choice("columns", columns, tuple(COLUMNS))
         P0 = number("P0", P0, "> 0", hint="1e8 says that nothing is known")
         if number("forgetting", forgetting, "> 0") > 1:
-            raise InputError(
-                f"forgetting = {forgetting}: give at most 1, which forgets nothing; 0.999 recalls 1000 samples"
-            )
+            raise InputError(f"forgetting = {forgetting}: give at most 1; 0.999 recalls 1000 samples")
         self.P0, self.forgetting = P0, float(forgetting)
         acting = [range(20)] if shared else ACTS_ON
         chosen = np.array([[j in on and j in COLUMNS[columns] for j in range(20)] for on in acting])

@@ -286,7 +286,10 @@ class Found:
 
 @dataclass(frozen=True)
 class _Joint:
-    """Evenly sampled runs of one joint, [(q or q and qd (n, 1 or 2), u held and u measured (n, 2))]; their Spectrum."""
+    """Evenly sampled runs of one joint, [(q or q and qd (n, 1 or 2), u held and u measured (n, 2))].
+
+    band: what `spectrum` tells of its angle.
+    """
 
     segments: list
     rate: float

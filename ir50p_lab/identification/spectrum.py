@@ -1,7 +1,7 @@
 """What the spectrum of an angle tells: below which frequency it is motion, above which it is noise."""
 
 import math
-from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -16,24 +16,6 @@ _SAW = 0.06  # step^2, a little more than 1/(2 pi^2)
 _HIGHEST = 0.2  # of the rate: above, central differences themselves are wrong by more than a quarter
 
 
-@dataclass(frozen=True)
-class Spectrum:
-    """What the spectrum of an angle tells.
-
-    cutoff_hz: of the low pass for a regression, the highest that noise allows, Hz. lowest_hz: that keeps 99 % of the
-    velocity's power. sign_cutoff_hz: higher, for the speed whose sign is taken: a smooth speed turns too late or too
-    early. speed: rad/s rms of the motion; speed_noise: rad/s rms; acceleration_share: noise power over power of the
-    acceleration; all three below cutoff_hz.
-    """
-
-    cutoff_hz: float
-    lowest_hz: float
-    sign_cutoff_hz: float
-    speed_noise: float
-    acceleration_share: float
-    speed: float
-
-
 def spectrum(pieces, rate_hz, cutoff_hz=None):
     """Choose the cut-off for an angle, or judge a given one. pieces: list of (n,) rad, each evenly sampled at rate_hz.
 
@@ -42,6 +24,11 @@ def spectrum(pieces, rate_hz, cutoff_hz=None):
     acceleration holds at most 0.1 % of noise power (noise in a regressor pulls its parameter towards zero by that
     share), but at least the one that keeps 99 % of the velocity's power, as long as that holds no more than 5 %.
     Steady speed, which the spectrum does not show, counts as motion.
+
+    Returns a namespace. cutoff_hz: of the low pass for a regression, the highest that noise allows, Hz. lowest_hz: that
+    keeps 99 % of the velocity's power. sign_cutoff_hz: higher, for the speed whose sign is taken: a smooth speed turns
+    too late or too early. speed: rad/s rms of the motion; speed_noise: rad/s rms; acceleration_share: noise power over
+    power of the acceleration; all three below cutoff_hz.
     """
     from scipy.signal import welch
 
@@ -75,7 +62,7 @@ def spectrum(pieces, rate_hz, cutoff_hz=None):
     at = min(int(np.searchsorted(f, cutoff_hz)), len(f) - 1)
     good = np.flatnonzero(speed_share[:highest] <= _SIGN)
     sign_at = max(at, int(good[-1]) if len(good) else 0)
-    return Spectrum(
+    return SimpleNamespace(
         cutoff_hz=float(cutoff_hz),
         lowest_hz=float(f[min(lowest, len(f) - 1)]),
         sign_cutoff_hz=max(float(f[sign_at]), float(cutoff_hz)),

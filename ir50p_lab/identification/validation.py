@@ -87,8 +87,6 @@ def validate(
     """
     theta, _ = as_theta(getattr(estimate, "theta", estimate))
     t, q, u = columns_of(recording, q, u)
-    if q.shape[1] != 3:
-        raise InputError(f"q has {q.shape[1]} columns: validation needs the three joints, (n, 3)")
     motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, held=False, trim=trim)
     predicted = np.einsum("nij,ij->ni", regressor(motion.q, motion.qd, motion.qdd, sign=sign), theta)
     acts = acting_times(t, number("delay", delay, ">= 0", unit="s"), held and derivatives == BACKWARD)

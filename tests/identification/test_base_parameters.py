@@ -231,6 +231,16 @@ def test_coefficients_in_symbols():
     assert base.groups == ("a + l2 c + 3 e + 0.1235 g", "b + l2^2 d - 0.875 f + g h")
 
 
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+def test_an_unclear_rank_is_said(size):
+    # each column sticks out of the others a little above the tolerance, all together far less
+    rng = np.random.default_rng(0)
+    A = rng.normal(size=(200, 3))
+    near = A @ [1, 1, 1] + 1.5e-8 * np.linalg.norm(A @ [1, 1, 1]) * rng.normal(size=200) / np.sqrt(200)
+    with pytest.raises(IdentificationError, match=r"the rank is not clear: 4 columns .* 3 singular values"):
+        base_parameters(size * np.column_stack([A, near]))
+
+
 @pytest.mark.parametrize(
     ("Phi", "options", "error", "message"),
     [

@@ -412,7 +412,7 @@ def test_bad_data_are_refused(size):
         ({"l2": 200.0}, "in millimetres"),
         ({"strength": np.nan}, "strength = nan"),
         ({"columns": "all"}, "columns = 'all'"),
-        ({"method": "iv"}, "needs the regressor of a signal"),
+        ({"method": "iv"}, "needs the regressor of the reference"),
         ({"method": "weighted"}, "weights has shape"),
     ],
 )

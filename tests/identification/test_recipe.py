@@ -20,7 +20,14 @@ from ir50p_lab.identification import (
 )
 from ir50p_lab.identification.excitation import regressor_condition
 from ir50p_lab.modelling import IR50P
-from tests.support.make_excitations import make_excitations, save_excitations, simulate_identification
+from ir50p_lab.signals.fourier import heights
+from tests.support.make_excitations import (
+    NOISE,
+    SETTINGS,
+    make_excitations,
+    save_excitations,
+    simulate_identification,
+)
 
 MOTIONS = load_excitations()
 
@@ -80,6 +87,16 @@ def test_the_motions_in_the_file():
     assert all((conditions[name] < 20).all() for name in MOTIONS if name != "plain")
     assert (conditions["plain"] > 1.5 * conditions["training"]).all()
     assert all(motion.duration == 110 for motion in MOTIONS.values())
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_the_motions_in_the_file_keep_the_limits_they_were_made_for(name):
+    motion, top = MOTIONS[name], 0.9 * np.array(IR50P.actuators.no_load_speed)
+    q, qd, _ = np.swapaxes(motion.sample(motion.start + np.linspace(0, motion.period, 5000)), 0, 1)
+    assert (q > np.add(IR50P.q_min, SETTINGS["margin"]) - 1e-3).all()
+    assert (q < np.subtract(IR50P.q_max, SETTINGS["margin"]) + 1e-3).all()
+    assert (np.abs(qd) < top + 1e-3).all()
+    assert np.min(heights(IR50P.l, q)) > SETTINGS["table"] - 1e-3
 
 
 def test_motions_come_back_as_they_were(tmp_path):
@@ -142,10 +159,11 @@ def test_too_little(seconds):
         identify(run("training", seconds=seconds))
 
 
-if os.environ.get("IR50P_SLOW"):  # some minutes: the whole file made again
+if os.environ.get("IR50P_SLOW"):  # a minute
 
-    def test_the_file_is_what_its_command_makes():
-        made = make_excitations(progress=False)
-        assert [*made] == [*MOTIONS]
-        for name, motion in made.items():
-            np.testing.assert_allclose(motion.a, MOTIONS[name].a, rtol=1e-3, atol=1e-4)
+    def test_the_search_of_today_finds_no_better_training_motion():
+        """Of 16 such searches the best was worth 1.4 % over the floor; the motion in the file, best of 200, 2.3 %."""
+        settled = simulate_identification(MOTIONS["training"], IR50P, thesis_pid(), noise=NOISE).worth()
+        made = make_excitations(candidates=8, kept=1, progress=False)["training"]
+        found = simulate_identification(made, IR50P, thesis_pid(), noise=NOISE).worth()
+        assert settled > 2 and found < settled + 0.5
