@@ -124,7 +124,7 @@ def test_steps_that_do_not_apply_to_raw_commands_are_refused(step):
 
 def test_bad_input():
     record = analytic(rate=50.0)
-    with pytest.raises(InputError, match="three joints"):
+    with pytest.raises(InputError, match="q has shape"):
         validate(THETA, record.t, record.q[:, :2], record.u[:, :2])
     with pytest.raises(InputError, match="theta with shape"):
         validate(THETA[:2], record)
