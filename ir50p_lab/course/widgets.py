@@ -16,6 +16,7 @@ import contextlib
 import html
 import io
 import threading
+import time
 import traceback
 import warnings
 import weakref
@@ -173,6 +174,7 @@ class LivePanel(widgets.VBox):
             try:
                 words = self._call(said, self._update, **values)
                 self.image.value = self._painter.png()
+                time.sleep(0.001)  # the thread that sends it takes its turn now, not after Python's usual 5 ms
                 self._call(said, words)
                 self.error = None
             except Exception as error:
