@@ -28,10 +28,7 @@ def walk(arm, q):
             T = T @ dh_matrix(*(row * share))
         walker.update(T)
         joint, motion = divmod(max(int(np.ceil(motions)) - 1, 0), 4)
-        number = rows[joint, motion]
-        size = f"{np.degrees(number):.0f}°" if motion in (0, 3) else f"{number:.3g} m"
-        what = f"{_MOTIONS[motion]} by {size if number else '0: nothing'}"
-        what = f"joint {joint + 1}, motion {motion + 1} of 4: {what}" if motions else "frame 0, at the base"
+        what = f"joint {joint + 1}, motion {motion + 1} of 4: {_MOTIONS[motion]}" if motions else "frame 0, at the base"
         figure.axes[0].set_title(what)
         ends = {0: "What comes first?", 12: "Frame 3 has arrived at the tip."}
         return ends.get(motions, "Done. What comes next?" if motions == int(motions) else "")
