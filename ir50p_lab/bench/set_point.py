@@ -18,19 +18,20 @@ NOISE = 0.05  # rad; an arm that stands at an end of its travel may be measured 
 class SetPoint:
     """A pose to hold that may be changed at any time; the reference runs after it at limited speed, without overshoot.
 
-    Each joint accelerates with at most ACCELERATION, moves with at most SPEED and brakes in time: the steps of
+    Each joint accelerates with at most ACCELERATION, moves with at most `speed` and brakes in time: the steps of
     a slider become a motion that the arm can follow. Call it once per cycle with increasing times, as a loop does: it
     remembers where it is.
 
-    Args: q, qd: (3,) rad and rad/s, where it starts, moving.
+    Args: q, qd: (3,) rad and rad/s, where it starts, moving; speed: rad/s, of each joint.
     Attributes: q, goal: (3,) rad, where it is, and where it is going; set that with `move_to`.
     Raises InputError on wrong shapes, numbers that are not finite.
     """
 
     duration = math.inf
 
-    def __init__(self, q, *, qd=(0.0, 0.0, 0.0)):
+    def __init__(self, q, *, qd=(0.0, 0.0, 0.0), speed=SPEED):
         self.q, self._qd = vector3("q", q).copy(), vector3("qd", qd, unit="rad/s").copy()
+        self.speed = speed
         self.goal, self._t = self.q, None
 
     def move_to(self, q):
@@ -48,7 +49,7 @@ class SetPoint:
         steps = np.abs(way) / (at * dt)
         n = np.maximum(1, np.ceil(0.5 * (np.sqrt(1 + 8 * steps) - 1) - 1e-9))
         braking = at * (steps / n + 0.5 * (n - 1))
-        wanted = np.copysign(np.minimum(braking, SPEED), way)
+        wanted = np.copysign(np.minimum(braking, self.speed), way)
         self._qd = np.clip(wanted, before - at, before + at)
         there = np.abs(way - self._qd * dt) < 1e-12  # but for rounding; the next step takes the rest of the speed
         self.q = np.where(there, self.goal, self.q + self._qd * dt)

@@ -186,7 +186,7 @@ class Reacher(Mover):
             lead = _ARM_LAG if seen.simulated else _ARM_LAG + _CAMERA_LAG
         lead = number("lead", lead, unit="s")
         self.move_along(plan(self.arm, self.q, seen.position + np.array([0.0, 0.0, height])))
-        tracker, log, point = BallTracker(), [], SetPoint(self._set, speed=0.6, acceleration=3.0)
+        tracker, log, point = BallTracker(), [], SetPoint(self._set, speed=0.6)
         begin = next_look = last_seen = self._last.t
         job = self._frozen = None
         while self._last.t - begin < seconds:
