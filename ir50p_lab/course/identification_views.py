@@ -142,7 +142,7 @@ def kept_motion(arm, number=0):
         "standing": 6,
         "margin": 0.2,
         "table": 0.1,
-        "starts": 1,
+        "starts": 4,
         "iterations": 30,
         "progress": False,
     }
