@@ -13,7 +13,9 @@ def columns_of(recording, q=None, u=None, qd=None, *, drop=False):
     themselves, with q and u as arrays, lists or pandas Series. Masked samples are left out, and with `drop` those that
     are no numbers. Raises InputError on shapes that do not fit, NaN, or times that do not increase, naming the first.
     """
-    if q is None and u is None and hasattr(recording, "q"):
+    if (q is None) != (u is None) or (q is not None and hasattr(recording, "q")):
+        raise InputError("give a recording, or t, q and u as arrays: neither both nor a part")
+    if q is None and hasattr(recording, "q"):
         recording, q, u = recording.t, recording.q, recording.u
     given = {"t": recording, "q": q, "u": u} | ({} if qd is None else {"qd": qd})
     t, *rest = same_samples(given, drop)
@@ -41,6 +43,8 @@ def same_samples(given, drop=False, most=2):
         if drop:
             keep &= np.isfinite(array.reshape(n, -1)).all(axis=1)
     arrays = {name: array[keep] for name, array in arrays.items()}
+    if keep.sum() < 2:
+        raise InputError(f"{keep.sum()} of {n} samples are neither masked nor without a number: give at least two")
     for name, array in arrays.items():
         if not np.isfinite(array).all():
             raise InputError(f"{name} holds {first_not_finite(array)}: remove such samples from every column")
@@ -48,7 +52,8 @@ def same_samples(given, drop=False, most=2):
     back = np.flatnonzero(np.diff(t) <= 0) + 1
     if len(back):
         where = f"t[{back[0]}] = {t[back[0]]:.9g} s, {len(back)} such step(s)"
-        raise InputError(f"time runs backwards or stands still ({where}): sort the samples, and remove doubled ones")
+        remedy = "sort the samples, and remove doubled ones; several recordings: give a list of them"
+        raise InputError(f"time runs backwards or stands still ({where}): {remedy}")
     return arrays.values()
 
 
@@ -102,8 +107,10 @@ def runs(t, max_gap):
 
 def _numbers(name, value):
     array = np.ma.getdata(value) if np.ma.isMaskedArray(value) else value
-    if getattr(value, "dtype", np.dtype(float)).kind in "mM":  # dates
-        array = (np.asarray(array) - np.asarray(array)[0]) / np.timedelta64(1, "s")
+    kind = getattr(value, "dtype", np.dtype(float)).kind
+    if kind in "mM":  # dates, of pandas with a time zone too
+        array = np.asarray(array, dtype=f"{kind}8[ns]")
+        array = (array - array[0]) / np.timedelta64(1, "s")
     array = numbers(name, array)
     if array.ndim == 0:
         raise InputError(f"{name} = {value!r:.60} is no array: give t, q and u as arrays, time first, or a recording")

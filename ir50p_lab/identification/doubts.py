@@ -57,7 +57,8 @@ def check_signals(doubts, t, q, u):
         doubts.refuse(f"{len(t)} samples are too short a record; record {FEWEST} or more, over several reversals")
     for name, x in (("q", q), ("u", u)):
         if np.ptp(x) <= 1e-12 * np.abs(x).max():
-            raise IdentificationError(f"{doubts.who}{name} is constant at {x[0]:.6g}: check sensor, power and friction")
+            remedy = "check sensor and power, and drive harder than the breakaway friction, to both sides"
+            raise IdentificationError(f"{doubts.who}{name} is constant at {x[0]:.6g}: {remedy}")
         check_outliers(doubts, name, t, x)
     if len(np.unique(q)) < 3:
         doubts.refuse(f"q takes only {len(np.unique(q))} values: no motion can be seen; use a finer sensor")
@@ -165,7 +166,9 @@ def check_outliers(doubts, name, t, x, remedy="leave these samples out"):
 
 def check_measured_speed(doubts, t, q, v):
     """A qd that is not the rate of q: another unit, another joint."""
-    factor = float(np.gradient(q, t) @ v / max(v @ v, 1e-300))
+    near = np.diff(t) < 1.5 * sampling_period(t)  # not across gaps
+    rate, v = (np.diff(q) / np.diff(t))[near], ((v[1:] + v[:-1]) / 2)[near]
+    factor = float(rate @ v / max(v @ v, 1e-300))
     if not 0.9 < factor < 1.1:
         doubts.add(f"the angle changes at {factor:.3g} times qd: is qd in rad/s and q in rad, of the same joint?")
 
@@ -202,7 +205,7 @@ def check_clipped_drive(doubts, u, found):
             doubts.refuse(f"u was clipped at its {name} value, {needed}: record a wider range, or drive less")
     share = float((extreme.max(axis=1) > 0.5).mean())
     if share > 0.1 and rms > 0.08 * np.std(found.y):
-        doubts.add(f"u is at its limits in {100 * share:.0f} % of the record, which is not explained: was it clipped?")
+        doubts.add(f"u is at its limits in {100 * share:.0f} % of the record, not explained: clipped? Drive less")
 
 
 def check_model(doubts, found, band, period):
@@ -238,7 +241,9 @@ def _check_friction(doubts, found):
     """Friction that gives energy, drowns in its error, or cannot be told apart."""
     known = {name: found.value(name) for name in _MORE if math.isfinite(found.value(name)[1])}
     if math.isinf(found.value("coulomb")[1]):
-        doubts.add(f"Coulomb friction cannot be told: one side only, or one speed only; record {_MORE['coulomb']}")
+        one_side = np.ptp(np.sign(found.table.direction)) == 0
+        why = "the offset: the joint turns to one side only" if one_side else "viscous friction: one speed only"
+        doubts.add(f"Coulomb friction cannot be told from {why}; record {_MORE['coulomb']}")
     negative = [name for name, (x, stderr) in known.items() if x < -3 * stderr and name != "stribeck"]
     if {"viscous", "coulomb"} <= set(negative):
         doubts.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
@@ -247,7 +252,7 @@ def _check_friction(doubts, found):
         if name in negative:
             doubts.add(said.format("is negative, but no brake gives energy; is u late (delay=)?"))
         elif stderr > 0.5 * abs(x):
-            doubts.add(said.format("drowns in its error"))
+            doubts.add(said.format("drowns in its error") + ", or leave this term out")
 
 
 def _check_inertia(doubts, found, band, period):
@@ -271,4 +276,5 @@ def _check_inertia(doubts, found, band, period):
         if delay > 0:
             doubts.add(f"u seems to act about {delay:.2g} s after it was recorded: inertia too large; give delay=")
         else:
-            doubts.add(f"q seems to be recorded {-delay:.2g} s before u (or u is filtered): inertia too small")
+            early = f"q seems to be recorded {-delay:.2g} s before u (or u is filtered)"
+            doubts.add(f"{early}: inertia too small; shift one of them")

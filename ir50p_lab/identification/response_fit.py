@@ -95,7 +95,10 @@ def standard_errors(response, p, sizes, e):
     J = np.column_stack([np.ones_like(e), *J])
     length = np.linalg.norm(J, axis=0)
     spread = math.sqrt(e @ e / (len(e) - J.shape[1])) * likeness(e)[1]
-    return (spread * np.linalg.norm(np.linalg.pinv(J / length), axis=1) / length)[1:]
+    seen = length > 0  # what the response does not depend on at all has no error: it is not known
+    errors = np.full(len(length), np.inf)
+    errors[seen] = spread * np.linalg.norm(np.linalg.pinv(J[:, seen] / length[seen]), axis=1) / length[seen]
+    return errors[1:]
 
 
 def by_name(names, values, errors):
@@ -279,13 +282,14 @@ def _check_shape(record, a, L, b, e):
         shape = f"the response has not the shape of the model ({explained:.0f} % explained)"
         doubts.refuse(f"{shape}: if it overshoots or swings, {remedy}")
     elif follows < _RESPONSE or (follows / inflation**2 < _RESPONSE and explained < 50):
-        doubts.refuse(f"y does not follow u, which explains {explained:.1f} % of its variance: make a larger step")
+        explains = f"y does not follow u, which explains {explained:.1f} % of its variance"
+        doubts.refuse(f"{explains}: make a larger step, or average several recordings")
     ramp = best_fit(lambda p: record.columns(0.0, *p), record.y, [[(k / 50,)] for k in range(45)], (0.0, 0.95))[2]
     if a * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / inflation**2 > _BENDS:
         return
     value = f"only K/T has a value, {b * record.gain / record.unit:.4g} y/u per s"
     said = "the response runs on like a ramp, or ever faster: the plant integrates (as angles do), is unstable or slow"
-    doubts.refuse(f"{said}; {value}: fit the velocity, or record longer")
+    doubts.refuse(f"{said}; {value}: fit the velocity and tune with simc_integrating, or record longer")
 
 
 def _warn(record, T, L, L_stderr, correlation, inflation):

@@ -152,12 +152,15 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
 def _columns(t, q=None, u=None, qd=None, *, drop=False):
     """t, q, u, qd (n,), qd None if not given; of several recordings one after the other, with gaps between."""
     if isinstance(t, (list, tuple)) and len(t) and q is None and u is None:
+        if qd is not None:
+            raise InputError("qd= beside several recordings: give each as (t, q, u, qd)")
         parts, end = [], 0.0
         for one in t:
-            t, q, u, _ = _columns(*one, drop=drop) if isinstance(one, (list, tuple)) else _columns(one, drop=drop)
-            parts.append((t - t[0] + end, q, u))
+            t, *rest = _columns(*one, drop=drop) if isinstance(one, (list, tuple)) else _columns(one, drop=drop)
+            parts.append((t - t[0] + end, *rest))
             end = parts[-1][0][-1] + _BETWEEN * sampling_period(t)
-        return *map(np.concatenate, zip(*parts, strict=True)), None
+        *columns, v = zip(*parts, strict=True)
+        return *map(np.concatenate, columns), None if any(one is None for one in v) else np.concatenate(v)
     t, q, u, *v = columns_of(t, q, u, qd, drop=drop)
     if q.shape[1] != 1:
         raise InputError(f"q has {q.shape[1]} columns: fit_joint takes one joint; give q[:, i] and u[:, i]")

@@ -11,5 +11,6 @@ def board_name(vid, pid):
 
 
 def permission_remedy(device):
-    """What to do when this user may not open the serial port `device` (Windows calls that busy)."""
-    return f"'ls -l {device}' shows who may; on Linux 'sudo usermod -aG dialout $USER' (on Arch: uucp), then restart"
+    """What to do when this user may not open the serial port `device`."""
+    linux = "on Linux 'sudo usermod -aG dialout $USER' (on Arch: uucp), then log out and in again"
+    return f"'ls -l {device}' shows who may; {linux}; on a managed Mac ask its administrator"

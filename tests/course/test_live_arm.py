@@ -13,6 +13,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from ipywidgets import Widget
 from ipywidgets.embed import dependency_state, embed_data
 from PIL import Image
 
@@ -123,7 +124,7 @@ def test_any_frames_draw_the_arm_wrong_ones_too(heard, monkeypatch):
     assert view.poses[3][0][0] is None  # what JSON has for NaN
     monkeypatch.setattr(view, "_frames", lambda q: np.eye(4))
     view._handle_custom_msg({"frames": [0.4, 0.5, -1]}, [])
-    assert "(4,4,4)" in heard[-1][0]["error"]
+    assert "(4, 4, 4)" in heard[-1][0]["error"]
 
 
 def test_a_saved_notebook_of_twenty_views_has_less_than_a_megabyte(run):
@@ -211,7 +212,7 @@ def until(true, seconds=10):
 
 
 def test_importing_the_view_costs_no_bundle():
-    code = "import ir50p_lab.course.live_arm.view as v; assert v.shared_bundle.cache_info().currsize == 0"
+    code = "import ir50p_lab.course.live_arm.view as v; assert v.Bundle.shared is None"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
@@ -220,6 +221,23 @@ def test_a_panel_of_poses_has_the_picture_of_its_arm():
     data = panel._repr_mimebundle_()
     assert "application/vnd.jupyter.widget-view+json" in data
     assert Image.open(io.BytesIO(base64.b64decode(data["image/png"]))).width > 400
+
+
+@pytest.mark.parametrize("wrong", [None, np.zeros((3, 4, 4)), np.zeros((4, 16))])
+def test_frames_of_another_shape_are_named_at_once(wrong):
+    with pytest.raises(InputError, match=r"give \(4, 4, 4\)"):
+        LiveArm(IR50P, frames=lambda q: wrong)
+
+
+@pytest.mark.parametrize("p", [(np.nan, 0, 0), (0.1, 0), "a"])
+def test_a_ball_nowhere_is_refused(p):
+    with pytest.raises(InputError, match="ball"):
+        LiveArm(IR50P, ball=(p, 0.03))
+
+
+def test_a_layer_of_a_thing_that_is_not_there_shows_nothing_and_a_closed_bundle_is_made_again():
+    Widget.close_all()
+    assert still(LiveArm(IR50P, layers=["ball"])).any()
 
 
 def test_an_arm_without_motors_can_be_shown():

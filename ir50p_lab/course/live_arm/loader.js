@@ -1,12 +1,12 @@
 // Fetches the bundle from the one widget that holds it and runs it, once for a page however many views it has.
 const load = async (model) => {
+  const holder = await model.widget_manager.get_model(model.get("bundle").slice("IPY_MODEL_".length));
   const bundles = (globalThis.ir50pLiveArm ??= {});
-  bundles[model.get("bundle")] ??= (async () => {
-    const holder = await model.widget_manager.get_model(model.get("bundle").slice("IPY_MODEL_".length));
+  bundles[holder.get("digest")] ??= (async () => {
     const unpacked = new Blob([holder.get("packed")]).stream().pipeThrough(new DecompressionStream("gzip"));
     const script = new Blob([await new Response(unpacked).text()], { type: "text/javascript" });
     return import(URL.createObjectURL(script));
   })();
-  return bundles[model.get("bundle")];
+  return bundles[holder.get("digest")];
 };
 export default { render: async (view) => (await load(view.model)).render(view) };

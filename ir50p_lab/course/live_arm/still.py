@@ -18,7 +18,7 @@ def still_png(view):
             rows = np.frombuffer(view.track, "<f4").reshape(-1, view.shape["columns"])
             first = view.shape["runs"][0]["q"]
             arm.trail(forward_kinematics(view.arm, rows[:, first : first + 3]))
-        if "ball" in view.layers:
+        if "ball" in view.options["things"]:
             ax.scatter(*view.options["things"]["ball"][0], s=230, color="#C8102E")
         if view.poses:
             if "frames" in view.layers:

@@ -2,10 +2,10 @@
 
 import base64
 import gzip
+import hashlib
 import json
 import threading
 import weakref
-from functools import cache
 from pathlib import Path
 
 import anywidget
@@ -16,6 +16,7 @@ import traitlets
 from ir50p_lab.course.badge import badge_of
 from ir50p_lab.course.live_arm.still import still_png
 from ir50p_lab.course.live_arm.track import pack
+from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import lengths
 
@@ -29,12 +30,16 @@ class Bundle(anywidget.AnyWidget):
 
     _esm = "export default {};"
     packed = traitlets.Bytes().tag(sync=True)
+    digest = traitlets.Unicode().tag(sync=True)
+    shared = None
 
-
-@cache
-def shared_bundle():
-    """The one of this kernel."""
-    return Bundle(packed=gzip.compress(BUNDLE.read_bytes(), 9, mtime=0))
+    @classmethod
+    def get(cls):
+        """The one of this kernel."""
+        if cls.shared is None or cls.shared.comm is None:
+            script = BUNDLE.read_bytes()
+            cls.shared = cls(packed=gzip.compress(script, 9, mtime=0), digest=hashlib.sha256(script).hexdigest())
+        return cls.shared
 
 
 class LiveArm(anywidget.AnyWidget):
@@ -51,7 +56,7 @@ class LiveArm(anywidget.AnyWidget):
         height: CSS pixels; sliders: of the joints; readout: where the tip is, in numbers (the menu has a switch too).
 
     Attributes: q, list of rad, in both directions; layers.
-    `play(run)` shows a motion. Raises InputError for what cannot be drawn.
+    `play(run)` shows a motion. Raises InputError for what cannot be drawn, and what `frames` raises at first.
     """
 
     _esm = BUNDLE.parents[1] / "loader.js"
@@ -67,6 +72,7 @@ class LiveArm(anywidget.AnyWidget):
                  board=None, camera=None, height=420, sliders=True, readout=True):  # fmt: skip
         self.arm, self._on_drag, self._frames = arm, on_drag, frames
         self._stop = threading.Event()
+        ball = None if ball is None else (vectors3("ball", ball[0], unit="m"), float(ball[1]))
         things = {"ball": ball, "board": board, "camera": camera}
         things = {name: thing for name, thing in things.items() if thing is not None}
         options = {
@@ -81,7 +87,7 @@ class LiveArm(anywidget.AnyWidget):
             "things": things,
         }
         super().__init__(
-            bundle=shared_bundle(),
+            bundle=Bundle.get(),
             options=json.loads(json.dumps(options, default=lambda array: array.tolist())),
             q=vectors3("q", q).tolist(),
             layers=[*layers, *things],
@@ -114,7 +120,9 @@ class LiveArm(anywidget.AnyWidget):
 
     def _pose(self, q):
         T = np.asarray(self._frames(np.array(q)), dtype=float)
-        self.poses = np.where(np.isfinite(T), T, None).reshape(4, 4, 4).tolist()
+        if T.shape != (4, 4, 4):
+            raise InputError(f"frames of shape {T.shape}: give (4, 4, 4), the transforms of frames 0 to 3")
+        self.poses = np.where(np.isfinite(T), T, None).tolist()
 
     def _heard(self, _, message, __):
         """What the browser asks for. Errors of the student's function are shown under the arm."""

@@ -63,8 +63,8 @@ def load(calibration_class, view_class, path, size=None):
         calibration.pinhole  # noqa: B018 - refuses numbers that are no camera
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise CalibrationError(
-            f"{path} is no calibration that this package saved, or damaged ({type(error).__name__}). A camera from "
-            "elsewhere is a Pinhole(K, distortion, size)"
+            f"{path} is no calibration that this version saved, or damaged ({type(error).__name__}): calibrate again; "
+            "a camera known from elsewhere is a Pinhole(K, distortion, size)"
         ) from None
     if size is not None:
         check_picture_size(calibration, picture_size(size))
