@@ -282,6 +282,7 @@ class LiveRun:
 
     def _give_up(self):
         """The loop does not obey: cut from here; a child is ended, and the board cuts 0.1 s after its last frame."""
+        self._orders.put(("cut", None))  # for a loop that has not begun yet
         with contextlib.suppress(Exception):
             if self._process is None:
                 self._bench._cut()

@@ -413,11 +413,11 @@ class Bench:
             self.drive(controller.step(sample.t, sample.q, sample.reference))
         return self.recording if record else None
 
-    def start(self, controller, reference, **options):
+    def start(self, controller, reference=None):
         """Run `controller` on `reference` in the background; see `bench.background`. Returns its handle."""
         from ir50p_lab.bench.background import start
 
-        return start(self, controller, reference, **options)
+        return start(self, controller, reference)
 
     def go_to_rest(self):
         """Move to the rest pose, where the arm stays when let go; not recorded."""

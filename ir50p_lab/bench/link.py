@@ -73,11 +73,11 @@ class Link:
         """Send a command and do not wait; its answer is passed over by the next `ask`. Returns its number."""
         self._seq = (self._seq + 1) % 256
         self.statistics.commands += 1
-        frame = protocol.encode_command(self._seq, kind, pwm, gripper)
         try:
-            self._transport.write(frame)
-        except SerialTimeoutException:  # also if the program was stopped as it wrote; the board has cut meanwhile
-            self._transport.write(frame)
+            self._transport.write(protocol.encode_command(self._seq, kind, pwm, gripper))
+        except SerialTimeoutException:  # also if the program was stopped as it wrote; what it meant to drive is old
+            kind = protocol.STOP if kind == protocol.DRIVE else kind
+            self._transport.write(protocol.encode_command(self._seq, kind, (0, 0, 0), gripper))
         return self._seq
 
     def stop(self, gripper=False):

@@ -2,7 +2,7 @@
 
 import contextlib
 import time
-from itertools import islice
+from itertools import takewhile
 
 import numpy as np
 
@@ -32,6 +32,7 @@ def live_loop(bench, controller, reference, orders, tell, *, orphaned=lambda: Fa
     not recorded. Raises what controller, reference or bench raise, and BenchError when orphaned.
     """
     load_controllers()
+    way_to_rest(bench.arm, np.zeros(3), bench.period)[1](0.0)  # compiled now: at the end the arm cannot wait for it
     loop = _Loop(bench, _Target(bench, reference), orders, tell, orphaned)
     loop.say(STARTING)
     try:
@@ -39,12 +40,12 @@ def live_loop(bench, controller, reference, orders, tell, *, orphaned=lambda: Fa
             controller.reset()
         header = {"controller": type(controller).__name__, "loop": "in the background; gains and set point may change"}
         with contextlib.closing(bench.run(_DAY, loop.target, **header | header_of(controller))) as samples:
-            if loop.follow(samples, controller) == "stop":
+            if loop.follow(samples, controller) == "stop" and bench.answers:
                 bench._end_recording(bench._run)
                 controller, way = way_to_rest(bench.arm, bench._last.q, bench.period)
                 loop.target.take(way, bench._last.t)
-                cycles = round((way.duration + 0.5) / bench.period)
-                loop.follow(islice(samples, cycles), controller, returning=True)
+                end = bench._last.t + way.duration + 0.5
+                loop.follow(takewhile(lambda sample: sample.t < end, samples), controller, returning=True)
     finally:
         bench.cut()
         bench._last = None  # closing the bench moves nothing: the arm is at rest, or was cut on purpose

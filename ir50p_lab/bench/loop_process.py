@@ -31,7 +31,7 @@ def write_on(queue, pipe):
 
 def read_on(pipe, take):
     """Hand each message (name, content) from the pipe to `take`, until the other side has closed it."""
-    with contextlib.suppress(EOFError, OSError), pipe:
+    with contextlib.suppress(EOFError, OSError, pickle.UnpicklingError), pipe:
         while True:
             take(*pickle.load(pipe))
 

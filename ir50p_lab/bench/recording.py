@@ -10,7 +10,7 @@ import numpy as np
 
 from ir50p_lab.bench import recording_file
 from ir50p_lab.bench.recording_file import COLUMNS, COUNTS, GRIPPER, MISSED, Q, R, T, U, table_of
-from ir50p_lab.errors import RecordingError
+from ir50p_lab.errors import InputError, RecordingError
 
 
 class RecordingWarning(UserWarning):
@@ -53,8 +53,14 @@ class Recording:
 
     @classmethod
     def from_arrays(cls, t, q, *, header=None, **known):
-        """A recording from arrays with names and shapes as in the table above; what is left out is not known (NaN)."""
-        return cls(table_of(t, q, **known), header)
+        """A recording from arrays with names and shapes as in the table above; what is left out is not known (NaN).
+
+        Raises InputError for shapes that do not fit each other.
+        """
+        try:
+            return cls(table_of(t, q, **known), header)
+        except ValueError as error:
+            raise InputError(f"t (n,), q, counts, u, reference (n, 3) of one length are needed: {error}") from None
 
     @classmethod
     def load(cls, path):

@@ -63,7 +63,14 @@ def event_text(t, text):
 
 
 def _one_line(value):
-    return " ".join(str(value).split())
+    """A value as text, in which nothing looks like an escape of `_as_written`."""
+    return re.sub(r"\\(?=[xuU])", r"\\x5c", " ".join(str(value).split()))
+
+
+def _as_written(text):
+    """A value as it was; in older files the letters beyond ASCII are escapes, too."""
+    escape = r"\\(?:x([0-9a-f]{2})|u([0-9a-f]{4})|U(000[0-9a-f]{5}))"
+    return re.sub(escape, lambda found: chr(int(found[1] or found[2] or found[3], 16)), text.strip())
 
 
 def read(path):
@@ -77,22 +84,26 @@ def read(path):
         data = Path(path).read_bytes().rstrip(b"\0")  # a power cut can leave zeros at the end
     except OSError as error:
         raise RecordingError(f"cannot read the recording {path}: {error.strerror}; check the path") from None
-    text = data.decode("utf-8-sig", "replace")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
     if "\0" in text:
         raise RecordingError(f"{path} is no text file; a recording is a plain CSV file (UTF-8, not UTF-16)")
     lines, header, rows, numbers, events, notes = text.splitlines(), {}, [], [], [], ()
-    if FORMAT in text and not text.endswith(("\n", "\r")):
-        notes = (f"its last line ({len(lines)}) is not complete and was left out: the program stopped as it wrote",)
-        lines.pop()
-    places = None
+    cut = not text.endswith(("\n", "\r"))
+    delimiter = width = places = None
     for number, line in enumerate(lines, 1):
         place = f"{path}, line {number}"
         bare = line.strip().rstrip(';,\t" ').lstrip('" ')  # without what spreadsheets pad and quote it with
+        if cut and number == len(lines) and (FORMAT in header or (places and line.count(delimiter) + 1 != width)):
+            notes = (f"its last line ({number}) is not complete and was left out: the program stopped as it wrote",)
+            break
         if found := _EVENT.match(line):
-            events.append((_number(found[1], place), found[2].rstrip(';,\t" ')))
+            events.append((_number(found[1], place), _as_written(found[2].rstrip(';,\t" '))))
         elif bare.startswith("#"):  # at the end stand statistics
             key, colon, value = bare.lstrip("# ").partition(":")
-            header |= {key.strip(): value.strip()} if colon else {}
+            header |= {key.strip(): _as_written(value)} if colon else {}
         elif bare and places is None:
             delimiter, width, places = _read_columns(line, place)
         elif bare:  # else an empty line of a spreadsheet

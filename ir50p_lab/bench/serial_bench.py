@@ -93,11 +93,12 @@ class SerialBench(Bench):
         except PORT_ERRORS as error:
             raise self._lost(f"is gone ({error})") from error
         if state.status & protocol.HELLO_NEEDED:
+            cause = "somebody pressed its button or opened its port, or its supply broke down when the motors started"
+            if state.status & protocol.HARDWARE_RESET:
+                cause = "its program hung and the hardware watchdog restarted it"
             raise BoardLostError(
-                f"the board on {self.port} has restarted in the middle of the run (somebody pressed its button or "
-                "opened its port, its supply broke down when the motors started, or its program hung and the hardware "
-                "watchdog restarted it): its drive is off. Power the motors from their own supply, not from USB; then "
-                "run again"
+                f"the board on {self.port} has restarted in the middle of the run ({cause}): its drive is off. Power "
+                "the motors from their own supply, not from USB; then run again"
             )
         for joint, counts in enumerate(state.counts):
             if not _BROKEN <= counts <= protocol.MAX_COUNTS - _BROKEN:

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from file_bench import FileBench, lines
 
-from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.bench import SimulatedBench, background, rest
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import BenchError, InputError, PortError
@@ -228,6 +228,29 @@ def test_an_error_of_the_reference_in_the_run_cuts_too(bench):
     with pytest.raises(InputError):
         run.join(10)
     assert not run.alive
+
+
+def test_an_interrupt_while_it_starts_leaves_nothing_driving(bench, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(threading.Event, "wait", lambda event, timeout=None, wait=threading.Event.wait: (
+        interrupted() if timeout == background._BEGINS_WITHIN else wait(event, timeout)))  # fmt: skip
+    with pytest.raises(KeyboardInterrupt):
+        bench.start(pid())
+    until(lambda: not bench.live_run.alive, 60)
+
+
+def test_the_way_to_rest_takes_no_compiling_and_ends_by_the_clock(tmp_path, monkeypatch):
+    """Made in the middle of a run, it must be there before the watchdog cuts; cycles left out do not prolong it."""
+    with SimulatedBench(IR50P, q0=(0.1, 0.2, -0.3), record_to=tmp_path) as bench:
+        run = bench.start(pid())
+        until(lambda: run.phase == "running")
+        started = time.monotonic()
+        run.stop()
+        _, way = rest.way_to_rest(IR50P, np.array([0.1, 0.2, -0.3]), bench.period)
+        assert time.monotonic() - started < way.duration + 3
+        assert run.error is None and np.abs(bench.plant.q_true - rest_pose(IR50P)).max() < 0.15
 
 
 def test_leaving_the_block_by_an_error_cuts_the_loop(bench):

@@ -228,6 +228,29 @@ def test_files_of_other_programs(tmp_path, text):
     assert "unknown origin" in repr(loaded)
 
 
+def test_a_cut_off_last_line_of_another_program_is_left_out_too(tmp_path):
+    with pytest.warns(RecordingWarning, match="last line"):
+        loaded = Recording.load(file_of(tmp_path, "t,q1,q2,q3\n0,1,1,1\n0.01,1,1,1\n0.02,1"))
+    assert loaded.t.tolist() == [0.0, 0.01]
+
+
+@pytest.mark.parametrize("head", [rb"# bench: K\xfcche \u2026 C:\x5cxy", "# bench: Küche … C:\\xy".encode()])
+def test_letters_of_older_and_of_newer_files(tmp_path, head):
+    text = head + b"\n# event: 0.005 s: " + head[9:] + b"\nt,q1,q2,q3\n0,1,1,1\n0.01,1,1,1\n"
+    loaded = Recording.load(file_of(tmp_path, text))
+    assert loaded.header["bench"] == loaded.events[0][1] == "Küche … C:\\xy"
+
+
+def test_letters_of_an_old_windows(tmp_path):
+    loaded = Recording.load(file_of(tmp_path, "# bench: Küche\nt,q1,q2,q3\n0,1,1,1\n0.01,1,1,1\n".encode("latin-1")))
+    assert loaded.header["bench"] == "Küche"
+
+
+def test_arrays_that_do_not_fit_are_refused():
+    with pytest.raises(InputError, match="of one length"):
+        Recording.from_arrays(np.arange(3), np.zeros((4, 3)))
+
+
 def test_angles_alone_are_enough(tmp_path):
     loaded = Recording.load(file_of(tmp_path, "t,q1,q2,q3\n0,1,1,1\n1,1,1,1\n"))
     assert np.isnan(loaded.u).all() and len(loaded.metrics()) == 3

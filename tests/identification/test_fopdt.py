@@ -366,3 +366,12 @@ def test_dates_are_times_and_an_outlier_of_u_is_named(seed):
     assert fit_fopdt(dates, u, y).T == pytest.approx(fit_fopdt(t, u, y).T, rel=1e-6)
     u[rng.integers(150, 300)] = 20.0
     assert "u has 1 outlier" in " ".join(fit_fopdt(t, u, y, anyway=True).warnings)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-3])
+def test_a_response_between_two_samples_has_no_known_time_constant(noise):
+    t = 0.4 * np.arange(25)
+    y = np.where(t > 2.0, 1.0, 0.0) + noise * np.random.default_rng(1).normal(size=len(t))
+    found = fit_fopdt(t, (t >= 2.0).astype(float), y)
+    assert found.K == pytest.approx(1, abs=0.01) and np.isinf(found.T_stderr)
+    assert any("not identifiable" in text for text in found.warnings)

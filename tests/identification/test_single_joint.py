@@ -377,6 +377,46 @@ def refused(words, *record, error=IdentificationError, **options):
 
 
 @machines
+def fast_sweep(rate=20.0, f=2.6):
+    """Motion with less than eight samples a period; its rates; friction alone."""
+    t = np.arange(1200) / rate
+    w = 2 * np.pi * f * np.array([1.0, 0.37])
+    q, qd = np.sin(np.outer(t, w)) @ (0.8, 0.3), np.cos(np.outer(t, w)) @ (0.8 * w[0], 0.3 * w[1])
+    return t, q, 1.2 * qd + 0.6 * np.sign(qd) + 0.01 * np.random.default_rng(0).normal(size=len(t)), qd
+
+
+def test_a_measured_speed_is_believed_at_few_samples_a_period_and_in_several_recordings():
+    t, q, u, qd = fast_sweep()
+    terms = ("viscous", "coulomb")
+    one = fit_joint(t, q, u, qd=qd, terms=terms)
+    two = fit_joint([(t, q, u, qd), (t, q, u, qd)], terms=terms)
+    for found in (one, two):
+        assert found.viscous == pytest.approx(1.2, abs=0.01) and not found.warnings
+    assert any("0.5 times qd" in text for text in fit_joint(t, q, u, qd=2 * qd, terms=terms).warnings)
+    with pytest.raises(InputError, match=r"\(t, q, u, qd\)"):
+        fit_joint([(t, q, u)], qd=qd)
+
+
+def test_what_is_given_wrongly_is_named():
+    t, q, u, _ = fast_sweep()
+    for arguments in ((SimpleNamespace(t=t, q=q, u=u), q, u), (t, q)):
+        with pytest.raises(InputError, match="neither both nor a part"):
+            fit_joint(*arguments)
+    with pytest.raises(InputError, match="give a list of them"):
+        fit_joint(np.r_[t, t], np.r_[q, q], np.r_[u, u])
+    for anyway in (False, True):
+        with pytest.raises(InputError, match="0 of 100 samples"):
+            fit_joint(*[np.ma.masked_all(100)] * 3, anyway=anyway)
+
+
+def test_dates_with_a_time_zone():
+    pandas = pytest.importorskip("pandas")
+    t, q, u, qd = fast_sweep()
+    zoned = pandas.Series(pandas.to_datetime(t, unit="s", utc=True))
+    found = fit_joint(zoned, pandas.Series(q), pandas.Series(u), qd=qd, terms=("viscous", "coulomb"))
+    assert found.viscous == pytest.approx(1.2, abs=0.01)
+
+
 def test_too_short(machine):
     t, q, u = recorded(machine)
     for n in (2, 10, 39):
