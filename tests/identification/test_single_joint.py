@@ -376,7 +376,7 @@ def refused(words, *record, error=IdentificationError, **options):
     assert words in str(caught.value), caught.value
 
 
-def fast_sweep(rate=20.0, f=2.6):
+def fast_sweep(rate=20.0, f=3.0):
     """Motion with less than eight samples a period; its rates; friction alone."""
     t = np.arange(1200) / rate
     w = 2 * np.pi * f * np.array([1.0, 0.37])
