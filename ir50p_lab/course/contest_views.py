@@ -4,7 +4,7 @@ import numpy as np
 
 from ir50p_lab.controllers import PID
 from ir50p_lab.course import contest, lab_book
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
 from ir50p_lab.course.widgets import slider
 from ir50p_lab.errors import LabError
 
@@ -99,8 +99,7 @@ def sliders_of(controller, arm, practice):
 def history(rules=None):
     """All attempts, the best so far as a line; rules: {name: Score}, lines beside them. Returns LabFigure."""
     attempts = lab_book.read()["contest"]
-    figure = new_figure(9.0, 3.6)
-    ax = figure.axes[0]
+    figure, ax = subplots(9.0, 3.6)
     ax.axhspan(0.1, 1, color="#E5F3EC")
     ax.axhline(1.0, **SETPOINT, label="below: won")
     values = np.minimum([one["score"] for one in attempts], 100)

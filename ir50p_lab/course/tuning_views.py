@@ -8,7 +8,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from ir50p_lab.controllers import simc_integrating
-from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure
+from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure, subplots
 from ir50p_lab.identification import FOPDT
 
 _RUNS = ({"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linewidth": 1.2}, {"color": COLOURS["green"]})
@@ -77,8 +77,7 @@ class GainMap:
     """
 
     def __init__(self, kp, kd, values, *, title, label, target, duration):
-        self.figure = new_figure(9.6, 4.0, cols=2, width_ratios=(1.25, 1))
-        self.map, self._side = self.figure.axes
+        self.figure, self.map, self._side = subplots(9.6, 4.0, cols=2, width_ratios=(1.25, 1))
         self._grid = kp, kd
         half_kp, half_kd = (kp[1] - kp[0]) / 2, (kd[1] - kd[0]) / 2
         extent = (kp[0] - half_kp, kp[-1] + half_kp, kd[0] - half_kd, kd[-1] + half_kd)
@@ -125,8 +124,7 @@ class GainMap:
 
 def one_joint(*runs, labels, joint, unit="PWM"):
     """Angle above, command below, of one joint (1, 2, 3) in several runs; the first's target dashed: LabFigure."""
-    figure = new_figure(9.0, 4.0, rows=2, sharex=True)
-    above, below = figure.axes
+    figure, above, below = subplots(9.0, 4.0, rows=2, sharex=True)
     reference = np.asarray(runs[0].reference)
     reference = reference[:, 0] if reference.ndim == 3 else reference
     above.plot(runs[0].t, reference[:, joint - 1], drawstyle="steps-post", label="target", **SETPOINT)
@@ -141,8 +139,7 @@ def one_joint(*runs, labels, joint, unit="PWM"):
 
 def ruler():
     """The four figures of a step, drawn on a made-up one: LabFigure."""
-    figure = new_figure(8.0, 3.4)
-    ax = figure.axes[0]
+    figure, ax = subplots(8.0, 3.4)
     t = np.linspace(0, 5, 501)
     q = 0.97 - 0.97 * np.exp(-1.3 * t) * (np.cos(3 * t) + 0.43 * np.sin(3 * t))
     band = 0.06  # drawn wide, to be seen
@@ -194,8 +191,7 @@ def redraw(figure, run, joint):
 
 def speed_step(t, speed, fitted=None):
     """A measured answer of the speed (n,) rad/s to a jump at 1 s, and what was fitted to it: LabFigure."""
-    figure = new_figure(8.0, 3.0)
-    ax = figure.axes[0]
+    figure, ax = subplots(8.0, 3.0)
     ax.plot(t, speed, ".", color=COLOURS["grey"], label="measured speed of joint 1")
     if fitted is not None:
         ax.plot(t, fitted, color=COLOURS["blue"], label="fitted: gain, time constant, dead time")
@@ -215,9 +211,8 @@ class LocusView:
     """
 
     def __init__(self, gains, continuous, sampled, *, zeros=((), ())):
-        self.figure = new_figure(9.6, 4.2, cols=2)
+        self.figure, left, right = subplots(9.6, 4.2, cols=2)
         self._gains, self._loci = np.asarray(gains), (np.asarray(continuous), np.asarray(sampled))
-        left, right = self.figure.axes
         turn = np.linspace(0, 2 * np.pi, 181)
         right.plot(np.cos(turn), np.sin(turn), **SETPOINT)
         right.set(xlim=(-1.6, 1.4), ylim=(-1.5, 1.5), aspect="equal", title="Sampled: beyond the circle it grows")
