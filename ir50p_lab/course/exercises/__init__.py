@@ -54,7 +54,8 @@ from ir50p_lab.course.exercises._display import Note, show
 from ir50p_lab.course.exercises._exercise import Exercise, Verdict, grade
 from ir50p_lab.course.exercises._functions import Function
 from ir50p_lab.course.exercises._numbers import Number
-from ir50p_lab.course.exercises._progress import ProgressError, read_progress, record
+from ir50p_lab.course.exercises._progress import read_progress, record
+from ir50p_lab.course.student_file import LabBookError
 from ir50p_lab.errors import InputError
 
 __all__ = [
@@ -88,7 +89,7 @@ def check(name: str, answer=...) -> None:
     if verdict.state == "right":
         try:
             record(exercise.name)
-        except ProgressError as error:
+        except LabBookError as error:
             text += f" (Not noted: {error})"
     more = (("one input that fails", verdict.example),) if verdict.example else ()
     show(Note(verdict.state, exercise.name, text, more, open_first=True))
@@ -111,7 +112,7 @@ def progress() -> None:
     """Print all exercises by notebook: done or open."""
     try:
         done, note = read_progress(), ""
-    except ProgressError as error:
+    except LabBookError as error:
         done, note = {}, str(error)
     last = None
     for notebook, one in everything():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -26,6 +28,24 @@ class Mistake:
     wrong: Callable
     says: str
     of_code: bool = False
+
+
+def text_of(*functions):
+    """Functions as a student would write them: their text without the docstring."""
+    texts = (re.sub(r'\n    """.*?"""', "", inspect.getsource(one), count=1, flags=re.DOTALL) for one in functions)
+    return "\n\n".join(texts).rstrip()
+
+
+def mistakes(function, *rows):
+    """Mistakes of a solution. rows: what to say, then the changes of its text that make it, "old -> new"."""
+    found = []
+    for says, *changes in rows:
+        text, names = text_of(function), dict(function.__globals__)
+        for change in changes:
+            text = text.replace(*change.split(" -> "))
+        exec(text, names)
+        found.append(Mistake(names[function.__name__], says))
+    return found
 
 
 @dataclass(frozen=True)
