@@ -1,26 +1,12 @@
-"""Figures of the book: one import for the style, the coordinate frames and the arm in pictures.
+"""The picture of the README: the arm in a working pose, with the frames of its joints.
 
-`python -m ir50p_lab.course.figures docs/arm.png` draws the picture of the README.
+`python -m ir50p_lab.course.figures docs/arm.png` draws it.
 """
 
 import sys
 
-from ir50p_lab.course.arm3d import ArmView, FrameView, SideView, arm_points
-from ir50p_lab.course.style import COLOURS, SETPOINT, LabFigure, figure_style, new_figure, show
-
-__all__ = [
-    "COLOURS",
-    "SETPOINT",
-    "ArmView",
-    "FrameView",
-    "LabFigure",
-    "SideView",
-    "arm_points",
-    "figure_style",
-    "new_figure",
-    "readme_picture",
-    "show",
-]
+from ir50p_lab.course.arm3d import ArmView
+from ir50p_lab.course.style import new_figure
 
 
 def readme_picture():

@@ -68,10 +68,3 @@ def subplots(*size, **options):
     """Figure and axes of `new_figure`, for unpacking: `figure, left, right = subplots(9.0, 3.6, cols=2)`."""
     figure = new_figure(*size, **options)
     return figure, *figure.axes
-
-
-def show(figure):
-    """Display a figure now, in the middle of a cell; at the end of a cell the figure's name alone does it."""
-    from IPython.display import display  # only notebooks have it
-
-    display(figure)

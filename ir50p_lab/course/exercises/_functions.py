@@ -70,8 +70,6 @@ class Function(Kind):
         """Return the state, what to say and an input that fails, by the rules for functions of `my_robot`."""
         task = Task(
             name=exercise.name,
-            notebook="",
-            signature=self._names,
             asks=exercise.task,
             right=self.right,
             loan="",

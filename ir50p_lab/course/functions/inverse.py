@@ -259,8 +259,6 @@ _BY_THE_TRIANGLE = """def inverse_kinematics(p, l):
 
 INVERSE_KINEMATICS = Task(
     name="inverse_kinematics",
-    notebook="02",
-    signature=("p", "l"),
     asks="all poses (n, 3) rad that put the tip on p (m), one a row; no row if p is out of reach",
     right=inverse_kinematics,
     cases=_targets,
@@ -441,8 +439,6 @@ _KEPT = "np.all(pose >= limits[0]) and np.all(pose <= limits[1])"  # within_limi
 
 REACH = Task(
     name="reach",
-    notebook="02",
-    signature=("p", "l", "q_now", "limits"),
     asks="the allowed pose (3,) for p whose largest joint turn from q_now is smallest, elbow and tip not below the "
     "table; None if there is none",
     right=reach,

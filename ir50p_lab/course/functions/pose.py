@@ -49,8 +49,6 @@ def _rot_z_symptom(cases, returned, expected):
 
 ROT_Z = Task(
     name="rot_z",
-    notebook="00_start_here",
-    signature=("angle",),
     asks="the matrix (3, 3) that turns a point about the z axis by `angle` rad, counter-clockwise seen from above",
     right=rot_z,
     cases=_angles,
@@ -128,8 +126,6 @@ def _dh_symptom(cases, returned, expected):
 
 DH_MATRIX = Task(
     name="dh_matrix",
-    notebook="01",
-    signature=("theta", "d", "a", "alpha"),
     asks="the transform (4, 4) of one joint with its link: turn about z, shift along z, shift along x, turn about x",
     right=dh_matrix,
     cases=_rows,
@@ -233,8 +229,6 @@ _EXCHANGED = "l[0], 0 -> 0, l[0]", "0, l[1] -> l[1], 0", "0, l[2] -> l[2], 0"
 
 FRAMES = Task(
     name="frames",
-    notebook="01",
-    signature=("q", "l"),
     asks="the four transforms (4, 4, 4) of frames 0 (base) to 3 (tip), each as the base sees it",
     right=frames,
     cases=lambda: some_arms(7, 3),
@@ -293,8 +287,6 @@ _BY_SINE_AND_COSINE = """def forward_kinematics(q, l):
 
 FORWARD_KINEMATICS = Task(
     name="forward_kinematics",
-    notebook="01",
-    signature=("q", "l"),
     asks="the place of the tip (3,), m",
     right=forward_kinematics,
     cases=lambda: some_arms(8, 5),

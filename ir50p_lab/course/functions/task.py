@@ -36,24 +36,26 @@ def text_of(*functions):
     return "\n\n".join(texts).rstrip()
 
 
+def changed(function, *changes):
+    """The function with its text changed here and there: "old -> new"."""
+    text, names = text_of(function), dict(function.__globals__)
+    for change in changes:
+        text = text.replace(*change.split(" -> "))
+    exec(text, names)
+    return names[function.__name__]
+
+
 def mistakes(function, *rows):
-    """Mistakes of a solution. rows: what to say, then the changes of its text that make it, "old -> new"."""
-    found = []
-    for says, *changes in rows:
-        text, names = text_of(function), dict(function.__globals__)
-        for change in changes:
-            text = text.replace(*change.split(" -> "))
-        exec(text, names)
-        found.append(Mistake(names[function.__name__], says))
-    return found
+    """Mistakes of a solution. rows: what to say, then the changes of its text that make it (see `changed`)."""
+    return [Mistake(changed(function, *changes), says) for says, *changes in rows]
 
 
 @dataclass(frozen=True)
 class Task:
     """A function of `my_robot`.
 
-    name, notebook: of the function, and the notebook that asks for it; signature: its arguments, as in `def`.
-    asks: one line, what it returns; right: the course's own answer, a function of the same arguments.
+    name: of the function; asks: one line, what it returns; right: the course's own answer, a function of the same
+    arguments; signature: their names.
     cases: tuples of arguments, edge cases among them; leans_on: earlier functions it may call.
     slips: mistakes with a sentence of their own, most specific first; the usual ones need none (`distortions`);
     routes: other solutions, as text; parts: names of what stands beside each other in the answer.
@@ -67,8 +69,6 @@ class Task:
     """
 
     name: str
-    notebook: str
-    signature: tuple
     asks: str
     right: Callable
     loan: str
@@ -85,6 +85,11 @@ class Task:
     unit: str = ""
     tried: Callable | None = None
     test: str = ""
+    signature: tuple = ()
+
+    def __post_init__(self):
+        """Take the names of the arguments from the right answer."""
+        object.__setattr__(self, "signature", self.signature or tuple(inspect.signature(self.right).parameters))
 
     @property
     def function(self):

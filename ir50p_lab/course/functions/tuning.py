@@ -172,8 +172,6 @@ _REST = "target - np.mean(last_second)"
 
 STEP_METRICS = Task(
     name="step_metrics",
-    notebook="09_break_it_tune_it",
-    signature=("t", "q", "target"),
     asks="rise time, overshoot, settling time and rest error of a step of one joint: four numbers (s, rad, s, rad)",
     right=step_metrics,
     cases=_cases,

@@ -55,8 +55,6 @@ def _jacobian_symptom(cases, returned, expected):
 
 JACOBIAN = Task(
     name="jacobian",
-    notebook="03",
-    signature=("T", "link", "point"),
     tolerance=1e-5,  # as for damped_step
     asks="the matrix (6, 3) of a point (base coordinates) carried by link 1, 2 or 3: velocity above, turning below, "
     "one column a joint, from the four frames T",
@@ -206,8 +204,6 @@ _BY_NORMAL_EQUATIONS = """def damped_step(q, p, l, damping):
 
 DAMPED_STEP = Task(
     name="damped_step",
-    notebook="03",
-    signature=("q", "p", "l", "damping"),
     asks="the next q (3,) rad after one damped step towards p (m)",
     right=damped_step,
     cases=_steps,
