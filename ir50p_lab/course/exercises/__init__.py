@@ -43,15 +43,11 @@ Rules:
 - `pytest tests/course/test_exercises.py` tries every exercise of every module; read start.py as the example.
 """
 
-from __future__ import annotations
-
 import textwrap
 
-from ir50p_lab.course.exercises._answers import Slip
+from ir50p_lab.course.exercises._answers import Choice, Exercise, Slip, Verdict, grade
 from ir50p_lab.course.exercises._catalogue import everything, find
-from ir50p_lab.course.exercises._choices import Choice
 from ir50p_lab.course.exercises._display import Note, show
-from ir50p_lab.course.exercises._exercise import Exercise, Verdict, grade
 from ir50p_lab.course.exercises._functions import Function
 from ir50p_lab.course.exercises._numbers import Number
 from ir50p_lab.course.exercises._progress import read_progress, record

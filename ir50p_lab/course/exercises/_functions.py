@@ -1,7 +1,5 @@
 """Answers that are functions: tried out on the inputs of the exercise, as the functions of `my_robot` are."""
 
-from __future__ import annotations
-
 import dis
 import functools
 import inspect

@@ -1,7 +1,5 @@
 """The progress file: which exercises are done, as readable JSON."""
 
-from __future__ import annotations
-
 import os
 from datetime import datetime
 from pathlib import Path

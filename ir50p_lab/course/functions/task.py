@@ -1,7 +1,5 @@
 """One function that the student writes: what is asked, on what it is tried, and how it is wrong when it is wrong."""
 
-from __future__ import annotations
-
 import inspect
 import re
 from collections.abc import Callable
