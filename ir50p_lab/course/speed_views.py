@@ -31,10 +31,10 @@ class ColumnsView:
             for k, name in enumerate(_JOINTS)
         ]
 
-    def update(self, q, Jv=None):
-        """Move the arm to q (3,) rad. Jv: columns to draw, (3, 3) m/rad, the course's if not given. Returns: Jv."""
+    def update(self, q):
+        """Move the arm to q (3,) rad. Returns: Jv (3, 3) m/rad."""
         self.view.update(q)
-        tip, Jv = self.view.points[3], jacobian(self.arm, q)[:3] if Jv is None else Jv
+        tip, Jv = self.view.points[3], jacobian(self.arm, q)[:3]
         for k, arrow in enumerate(self.arrows):
             along = self._scale * Jv[:, k]
             head = tip + along
