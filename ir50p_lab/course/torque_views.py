@@ -1,14 +1,13 @@
 """Figures of notebook 14: error dynamics, robustness, tracking beside the reference; and the runs behind them."""
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.identification_views import kept_motion
-from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, figure_style, new_figure, subplots
+from ir50p_lab.course.style import JOINTS, SETPOINT, new_figure, subplots
+from ir50p_lab.course.tuning_views import colour_map
 from ir50p_lab.identification import fit, process, regressor
 from ir50p_lab.simulation import simulate
 
@@ -118,17 +117,10 @@ class RobustnessView:
         self._run = run
         self.rms = np.array([[1e3 * run(s, w).rms_error.max() for w in speeds] for s in scales])
         self.figure, left, right = subplots(9.6, 3.8, cols=2, width_ratios=(1.25, 1))
-        dw, ds = (speeds[1] - speeds[0]) / 2, (scales[1] - scales[0]) / 2
-        extent = (speeds[0] - dw, speeds[-1] + dw, scales[0] - ds, scales[-1] + ds)
-        colours = ScalarMappable(LogNorm(max(self.rms.min(), 1e-3 * self.rms.max()), self.rms.max()), "cividis_r")
-        left.imshow(colours.to_rgba(self.rms, bytes=True), origin="lower", extent=extent, aspect="auto", zorder=0.6)
-        with rc_context(figure_style()):  # its axis goes below the colours: drawn once, not at every step of a slider
-            bar = self.figure.colorbar(colours, ax=left, label="largest RMS error [mrad]")
-        bar.solids.set_zorder(0.6)
-        left.grid(False)
+        norm = LogNorm(max(self.rms.min(), 1e-3 * self.rms.max()), self.rms.max())
+        self._mark = colour_map(left, speeds, scales, self.rms, norm, "largest RMS error [mrad]")
         left.set(xlabel="speed of the loop, sqrt(Kp) [rad/s]", ylabel="model / arm [1]")
         left.set_title("Fast loops hide wrong models")
-        (self._mark,) = left.plot([], [], "o", ms=9, mfc="none", mec=COLOURS["orange"], mew=2.5)
         self._lines = [right.plot([], [], color=c)[0] for c in JOINTS]
         right.set(xlim=(0, duration), ylim=(-error_max, error_max))
         right.set(xlabel="time [s]  -  simulated", ylabel="q - q_ref [mrad]", title="Joints: blue, orange, green")

@@ -67,6 +67,23 @@ def three_columns(panel):
     return panel
 
 
+def colour_map(ax, x, y, values, norm, label):
+    """Colours of values (m, n) over an evenly spaced grid x (n,), y (m,). Returns a ring, to be put on one place.
+
+    Coloured once, and above the axis lines of map and bar: both save time at every redraw under a slider.
+    """
+    half_x, half_y = (x[1] - x[0]) / 2, (y[1] - y[0]) / 2
+    extent = (x[0] - half_x, x[-1] + half_x, y[0] - half_y, y[-1] + half_y)
+    colours = ScalarMappable(norm, "cividis_r")
+    pixels = colours.to_rgba(values, bytes=True)
+    ax.imshow(pixels, origin="lower", extent=extent, aspect="auto", interpolation="nearest", zorder=0.6)
+    with rc_context(figure_style()):
+        bar = ax.figure.colorbar(colours, ax=ax, label=label)
+    bar.solids.set_zorder(0.6)
+    ax.grid(False)
+    return ax.plot([], [], "o", ms=9, mfc="none", mec=COLOURS["orange"], mew=2.5, zorder=9)[0]
+
+
 class GainMap:
     """A figure of merit over (kp, kd) as colours, and beside it the responses of one gain set.
 
@@ -79,18 +96,8 @@ class GainMap:
     def __init__(self, kp, kd, values, *, title, label, target, duration):
         self.figure, self.map, self._side = subplots(9.6, 4.0, cols=2, width_ratios=(1.25, 1))
         self._grid = kp, kd
-        half_kp, half_kd = (kp[1] - kp[0]) / 2, (kd[1] - kd[0]) / 2
-        extent = (kp[0] - half_kp, kp[-1] + half_kp, kd[0] - half_kd, kd[-1] + half_kd)
-        colours = ScalarMappable(Normalize(np.nanmin(values), np.nanmax(values)), "cividis_r")
-        # Coloured once, and above its axis lines: both save time at every redraw under a slider.
-        pixels = colours.to_rgba(values, bytes=True)
-        self.map.imshow(pixels, origin="lower", extent=extent, aspect="auto", interpolation="nearest", zorder=0.6)
-        with rc_context(figure_style()):
-            bar = self.figure.colorbar(colours, ax=self.map, label=label)
-        bar.solids.set_zorder(0.6)
-        self.map.grid(False)
+        self._mark = colour_map(self.map, kp, kd, values, Normalize(np.nanmin(values), np.nanmax(values)), label)
         self.map.set(xlabel="Kp [PWM/rad]", ylabel="Kd [PWM s/rad]", title=title)
-        (self._mark,) = self.map.plot([], [], "o", ms=9, mfc="none", mec=COLOURS["orange"], mew=2.5, zorder=9)
         self._side.axhline(target, **SETPOINT, label="target")
         self._side.set(xlim=(0, duration), ylim=sorted((-0.1 * target, 1.3 * target)))
         self._side.set(xlabel="time [s]", ylabel="angle [rad]")
