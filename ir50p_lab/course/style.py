@@ -65,6 +65,6 @@ def new_figure(width=9.0, height=None, *, rows=1, cols=1, projection=None, share
 
 
 def subplots(*size, **options):
-    """Figure and axes of `new_figure`, for unpacking: `figure, left, right = subplots(9.0, 3.6, cols=2)`."""
+    """Figure and axes of `new_figure`, for unpacking: `figure, left, right = subplots(cols=2)`."""
     figure = new_figure(*size, **options)
     return figure, *figure.axes
