@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.style import COLOURS, new_figure, subplots
+from ir50p_lab.course.style import COLOURS, subplots
 from ir50p_lab.modelling.chain import forward_kinematics, frames
 from ir50p_lab.modelling.ik import inverse_kinematics, reachability
 
@@ -30,9 +30,8 @@ def seen_from_above(arm, p):
     return figure
 
 
-def _plane(figure_or_none=None):
-    figure = figure_or_none or new_figure(7.2, 5.0)
-    ax = figure.axes[0]
+def _plane(height=5.0):
+    figure, ax = subplots(7.2, height)
     ax.set(aspect="equal", xlabel="outwards from the column [m]", ylabel="height [m]")
     return figure, ax
 
@@ -139,7 +138,7 @@ def circles(arm):
 
     Returns: figure; f(out, height) that places them and says how many crossings there are.
     """
-    figure, ax = _plane(new_figure(7.2, 6.4))
+    figure, ax = _plane(6.4)
     _column(ax, arm)
     _, l2, l3 = arm.l
     shoulder = np.array([0.0, arm.l[0]])

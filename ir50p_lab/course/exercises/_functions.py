@@ -33,11 +33,8 @@ class Function(Kind):
     def wanted(self) -> str:
         """What is asked for, in words, without the answer."""
         value = shape_in_words(np.shape(self.right(*self._inputs[0])))
-        return f"a function of ({', '.join(self._names)}) that returns {value}{f' in {self.unit}' * bool(self.unit)}"
-
-    @property
-    def _names(self):
-        return tuple(inspect.signature(self.right).parameters)
+        names = ", ".join(inspect.signature(self.right).parameters)
+        return f"a function of ({names}) that returns {value}{f' in {self.unit}' * bool(self.unit)}"
 
     @property
     def _inputs(self):

@@ -86,8 +86,10 @@ class Task:
     signature: tuple = ()
 
     def __post_init__(self):
-        """Take the names of the arguments from the right answer."""
-        object.__setattr__(self, "signature", self.signature or tuple(inspect.signature(self.right).parameters))
+        """Take the names of the arguments from the right answer; further options are the course's own affair."""
+        found = inspect.signature(self.right).parameters.values()
+        names = tuple(one.name for one in found if one.kind != one.VAR_KEYWORD)
+        object.__setattr__(self, "signature", self.signature or names)
 
     @property
     def function(self):
