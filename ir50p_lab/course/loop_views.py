@@ -87,11 +87,7 @@ def three_loops():
         ax.text(4.15, y + 0.13, f"$u_{joint}$", fontsize=12)
         _wire(ax, (6.5, y), (8.3, y))
         ax.text(7.95, y + 0.13, f"$q_{joint}$", fontsize=12)
-        right, low, left = (
-            8.0 - 0.3 * joint,
-            -0.05 + 0.17 * joint,
-            0.9 + 0.27 * joint,
-        )  # round the arm, each its own way
+        right, low, left = 8.0 - 0.3 * joint, -0.05 + 0.17 * joint, 0.9 + 0.27 * joint  # each its own way round
         way = ((right, y), (right, low), (left, low), (left, y - 0.18), (2.1, y - 0.18))
         _wire(ax, *way, colour=colour)
         ax.plot(right, y, "o", ms=5, color=COLOURS[colour])
