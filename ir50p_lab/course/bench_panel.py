@@ -23,8 +23,6 @@ from ir50p_lab.course.controls import close_all, make_control, slider
 from ir50p_lab.course.scope import Scope
 from ir50p_lab.errors import InputError, LabError
 
-__all__ = ["BenchPanel", "live_panel"]
-
 _UNITS = {"kp": "PWM/rad", "ki": "PWM/(rad s)", "kd": "PWM s/rad"}
 _LEAST = {"kp": 400, "ki": 100, "kd": 100}  # a slider goes at least that far
 _RED = "#c0392b"
@@ -77,22 +75,21 @@ class BenchPanel(widgets.VBox):
     # ---- what it looks like
 
     def _make_buttons(self):
-        wide, tall = widgets.Layout(width="110px", height="44px"), widgets.Layout(width="190px", height="44px")
-        self._start_button = widgets.Button(description="Start", button_style="success", icon="play", layout=wide)
-        self._stop_button = widgets.Button(
-            description="Stop", icon="stop", layout=wide, tooltip="To the rest pose, then let go"
-        )
-        self._cut_button = widgets.Button(
-            description="CUT THE DRIVE",
-            button_style="danger",
-            icon="bolt",
-            layout=tall,
-            style={"font_weight": "bold"},
-            tooltip="Drive off at once; the arm sinks",
-        )
-        self._start_button.on_click(lambda _: self._guarded(self.start, wait=False))
-        self._stop_button.on_click(lambda _: self._guarded(self.stop, wait=False))
-        self._cut_button.on_click(lambda _: self._guarded(self.cut))
+        start, stop = partial(self.start, wait=False), partial(self.stop, wait=False)
+        self._start_button = self._button("Start", "play", start, button_style="success")
+        self._stop_button = self._button("Stop", "stop", stop, tooltip="To the rest pose, then let go")
+        look = {
+            "button_style": "danger",
+            "style": {"font_weight": "bold"},
+            "tooltip": "Drive off at once; the arm sinks",
+        }
+        self._cut_button = self._button("CUT THE DRIVE", "bolt", self.cut, width="190px", **look)
+
+    def _button(self, words, icon, order, *, width="110px", **look):
+        layout = widgets.Layout(width=width, height="44px")
+        button = widgets.Button(description=words, icon=icon, layout=layout, **look)
+        button.on_click(lambda _: self._guarded(order))
+        return button
 
     def _heading(self):
         kind = "simulated arm, no motor moves" if self.bench.simulated else "motors will move"
@@ -103,15 +100,12 @@ class BenchPanel(widgets.VBox):
     def _sliders(self):
         """Set points left, gains right: a row per joint."""
         arm = self.bench.arm
-        blocks = [self._column("Set point [deg]", [self._set_point_slider(arm, i) for i in range(3)])]
+        columns = {"Set point [deg]": [self._set_point_slider(arm, i) for i in range(3)]}
         for name, values in gains_of(self._controller).items():
             rows = [self._gain_slider(name, i, float(values[i])) for i in range(3)]
-            blocks.append(self._column(f"{name.capitalize()} [{_UNITS[name]}]", rows))
+            columns[f"{name.capitalize()} [{_UNITS[name]}]"] = rows
+        blocks = [widgets.VBox([widgets.HTML(f"<b>{title}</b>"), *rows]) for title, rows in columns.items()]
         return widgets.HBox(blocks, layout=widgets.Layout(grid_gap="14px", flex_flow="row wrap"))
-
-    @staticmethod
-    def _column(title, rows):
-        return widgets.VBox([widgets.HTML(f"<b>{title}</b>"), *rows])
 
     def _set_point_slider(self, arm, i):
         low, high = math.ceil(math.degrees(arm.q_min[i])), math.floor(math.degrees(arm.q_max[i]))
@@ -148,21 +142,17 @@ class BenchPanel(widgets.VBox):
                 raise LabError(f"the loop runs already ({self.run.phase})")
             self._cut_wanted, self.error = False, None
             self._say("starting ...")
-            controller = self._tuned_controller()
-            run = self.bench.start(controller, self._reference)
+            if "kp1" in self.controls:
+                set_gains(self._controller, **self._gains())
+            run = self.bench.start(self._controller, self._reference)
             self.run = run
             if self._cut_wanted:
                 run.cut()
             self._say("")
             self._sliders_follow(run)
 
-    def _tuned_controller(self):
-        """The controller with the gains that the sliders show."""
-        if "kp1" in self.controls:
-            set_gains(self._controller, **self._gains())
-        return self._controller
-
     def _gains(self):
+        """The gains that the sliders show."""
         return {name: [self.controls[f"{name}{i}"].value for i in (1, 2, 3)] for name in GAINS}
 
     def _sliders_follow(self, run):

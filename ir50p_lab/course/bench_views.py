@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.bench import UNIT, SimulatedArm
 from ir50p_lab.course.arm3d import ArmView, SideView
 from ir50p_lab.course.simulation_views import Row, Traces
-from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.signals import (
     alias,
@@ -31,8 +31,7 @@ def let_go_figure(arm, recording):
 
     Args: arm: Arm; recording: Recording of a run without drive.
     """
-    figure = new_figure(9.0, 3.8, cols=2, width_ratios=(1, 1.15), note=origin(recording))
-    side, angles = figure.axes
+    figure, side, angles = subplots(9.0, 3.8, cols=2, width_ratios=(1, 1.15), note=origin(recording))
     heading = recording.q[0, 0]
     for sample, colour, label in ((0, "blue", "first sample"), (-1, "orange", "last sample")):
         view = SideView(side, arm, colour=COLOURS[colour], label=label)
@@ -52,8 +51,7 @@ def breakaway_figure(recording, joint, moved_at):
 
     Args: recording: Recording; joint: 0, 1 or 2; moved_at: s.
     """
-    figure = new_figure(9.0, 3.6, rows=2, sharex=True, note=origin(recording))
-    above, below = figure.axes
+    figure, above, below = subplots(9.0, 3.6, rows=2, sharex=True, note=origin(recording))
     above.plot(recording.t, recording.u[:, joint], color=COLOURS["orange"], drawstyle="steps-post")
     below.plot(recording.t, recording.q[:, joint], ".", ms=3, color=COLOURS["grey"])
     for ax in figure.axes:
@@ -88,8 +86,7 @@ def shannon_figure(rate_hz, cutoffs_hz, f_hz):
 
     Args: rate_hz: samples per s; cutoffs_hz: legal ones, Hz; f_hz: of the sine, Hz. Returns: LabFigure.
     """
-    figure = new_figure(9.6, 3.4, cols=2)
-    gain, sine = figure.axes
+    figure, gain, sine = subplots(9.6, 3.4, cols=2)
     f = np.geomspace(rate_hz / 2000, 0.499 * rate_hz, 400)
     for cutoff in cutoffs_hz:
         gain.semilogx(f, np.abs(low_pass_response(cutoff, rate_hz, f)), label=f"{cutoff:g} Hz")
@@ -130,8 +127,7 @@ class FilterView:
         kalman = (kalman_velocity(self._q, self._rate, noise=noise, change=change) for change in changes)
         self.kalman = [noise_and_lag(qd, self._truth, self._rate, **self._where) for qd in kalman]
         self.curve = [self._low_pass(cutoff) for cutoff in np.geomspace(0.8, 30, 12)]
-        self.figure = new_figure(9.6, 3.8, cols=2, width_ratios=(1.3, 1))
-        angle, plane = self.figure.axes
+        self.figure, angle, plane = subplots(9.6, 3.8, cols=2, width_ratios=(1.3, 1))
         self._t = t
         span = (moving[0] + 0.5, moving[0] + 2.5)  # the way there, and the turn
         q = self._q[(t >= span[0]) & (t <= span[1])]
@@ -205,8 +201,7 @@ def path_figure(arm, path, done, before):
 
     Args: arm: Arm; path: CartesianPath; done, before: PathError; the second in thin lines only. Returns: LabFigure.
     """
-    figure = new_figure(9.6, 4.4, projection=["3d", None], cols=2, width_ratios=(1.2, 1))
-    space, over_time = figure.axes
+    figure, space, over_time = subplots(9.6, 4.4, projection=["3d", None], cols=2, width_ratios=(1.2, 1))
     view = ArmView(space, arm, thickness=7)
     view.update(path.sample(np.array([path.duration]))[0, 0])
     view.trail(done.tip)
@@ -227,8 +222,7 @@ def replay_figure(recording, replayed, joint=0):
 
     Args: recording: Recording, with u; replayed: Recording of a ReplayBench; joint: 0, 1 or 2.
     """
-    figure = new_figure(9.0, 3.8, rows=2, sharex=True, note=f"recorded: {origin(recording)}")
-    above, below = figure.axes
+    figure, above, below = subplots(9.0, 3.8, rows=2, sharex=True, note=f"recorded: {origin(recording)}")
     above.plot(recording.t, recording.q[:, joint], color=COLOURS["dark"])
     above.set(ylabel="angle [rad]", title=f"Joint {joint + 1}: the angles are past, the commands are new")
     for run, colour, label in ((replayed, "orange", "would be sent now"), (recording, "blue", "sent then")):

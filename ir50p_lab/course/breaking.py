@@ -7,7 +7,7 @@ Simulated, on the arm of the course; case C on the thesis' own arm, whose gains 
 """
 
 import warnings
-from dataclasses import dataclass
+from collections import namedtuple
 
 import numpy as np
 
@@ -23,14 +23,8 @@ THESIS_KP, THESIS_KD = (25, 200, 200), (10, 40, 40)
 FIRM_KP, FIRM_KI = (1500, 1500, 1500), (300, 2000, 2000)
 
 
-@dataclass(frozen=True)
-class Case:
-    """name: what is wrong; clue: where to look, for whoever names something else; because: what gives it away."""
-
-    name: str
-    clue: str
-    because: str
-
+# name: what is wrong; clue: where to look, for whoever names something else; because: what gives it away
+Case = namedtuple("Case", "name clue because")
 
 CASES = {
     "A": Case(

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.collections import LineCollection
 
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
 from ir50p_lab.course.vision_views import STAMP
 from ir50p_lab.vision import Pinhole
 
@@ -22,8 +22,7 @@ def pinhole_figure(points):
 
     points: {name: (X, Y, Z) m, camera coordinates}; X over Z is drawn, as seen from above.
     """
-    figure = new_figure(7.4, 3.2)
-    ax = figure.axes[0]
+    figure, ax = subplots(7.4, 3.2)
     far = 1.12 * max(1.1, *(Z for _, _, Z in points.values()))
     top = max(max(X, X / Z) for X, _, Z in points.values())
     ax.axhline(0, color=COLOURS["dark"], linewidth=1)
@@ -65,8 +64,7 @@ class DistortionView:
         straight = across + down
         self._rays = pinhole.to_normalised(np.concatenate(straight))
         self._radius = np.linspace(0, np.linalg.norm(self._rays, axis=1).max(), 100)
-        self.figure = new_figure(6.4, 5.0)
-        ax = self.figure.axes[0]
+        self.figure, ax = subplots(6.4, 5.0)
         ax.grid(False)  # it would pass for the grid that is drawn
         ax.add_collection(LineCollection(straight, colors=COLOURS["grey"], linewidths=1))
         self._lines = LineCollection(straight, colors=COLOURS["blue"], linewidths=1.5)
@@ -135,8 +133,7 @@ def estimate_figure(calibration, truth):
     right = dict(zip(calibration.values, (truth.fx, truth.fy, truth.cx, truth.cy, *truth.distortion), strict=True))
     names = [name for name, error in calibration.stderr.items() if np.isfinite(error)]
     off = [(calibration.values[n] - right[n]) / calibration.stderr[n] for n in names]
-    figure = new_figure(8.0, 2.8, note=STAMP)
-    ax = figure.axes[0]
+    figure, ax = subplots(8.0, 2.8, note=STAMP)
     ax.axhspan(-3, 3, color=COLOURS["light"], alpha=0.4)
     ax.axhline(0, color=COLOURS["dark"], linewidth=1)
     ax.errorbar(range(len(names)), off, yerr=1, fmt="o", capsize=4, color=COLOURS["blue"])
@@ -151,8 +148,8 @@ def rms_figure(reports, noise):
 
     reports: {views: (rms, standard error of fx), px}; noise: rms to be expected of many views, px.
     """
-    figure = new_figure(6.4, 3.4)
-    ax, views = figure.axes[0], list(reports)
+    figure, ax = subplots(6.4, 3.4)
+    views = list(reports)
     rms, error = np.transpose(list(reports.values()))
     ax.plot(views, error, "o-", color=COLOURS["orange"])
     ax.plot(views, rms, "s-", color=COLOURS["blue"])
@@ -175,8 +172,7 @@ def rms_figure(reports, noise):
 def residual_figure(images, calibration, view, gain=500):
     """A picture with its residuals as arrows, `gain` times longer, beside those of all views. Returns: LabFigure."""
     one = calibration.views[view]
-    figure = new_figure(9.0, 3.8, cols=2, width_ratios=(1.5, 1), note=STAMP)
-    left, right = figure.axes
+    figure, left, right = subplots(9.0, 3.8, cols=2, width_ratios=(1.5, 1), note=STAMP)
     show_picture(left, images[one.index], f"{one.name}: residuals, {gain} times longer, rms {one.rms:.3f} px")
     arrows = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.006}
     left.quiver(*one.corners.T, *(gain * one.residuals).T, color=COLOURS["orange"], **arrows)
@@ -198,8 +194,7 @@ def coverage_figure(calibration):
     from ir50p_lab.vision import direction_stderr
 
     w, h = calibration.size
-    figure = new_figure(9.4, 3.4, cols=2, note=STAMP)
-    left, right = figure.axes
+    figure, left, right = subplots(9.4, 3.4, cols=2, note=STAMP)
     cover, following = calibration.coverage, calibration.next_view()
     counted = left.imshow(cover.counts, extent=(0, w, h, 0), cmap="Greens", vmin=0)
     figure.colorbar(counted, ax=left, label="corners per cell [-]", shrink=0.75)
@@ -229,9 +224,8 @@ def board_residual_figure(picture, flat, bent):
     Args: picture (h, w, 3); flat, bent: Calibration of the same pictures without and with the shape of the board.
     Returns: LabFigure.
     """
-    figure = new_figure(10.5, 3.1, cols=3, width_ratios=(1.1, 1, 1), note=STAMP)
-    show_picture(figure.axes[0], picture, "One of the pictures")
-    maps = figure.axes[1:]
+    figure, first, *maps = subplots(10.5, 3.1, cols=3, width_ratios=(1.1, 1, 1), note=STAMP)
+    show_picture(first, picture, "One of the pictures")
     for ax, one, name in zip(maps, (flat, bent), ("Board taken for flat", "Bend estimated"), strict=True):
         towards = [_height_direction(one, view) for view in one.views]
         lift = np.mean(
@@ -269,8 +263,7 @@ def table_figure(image, pixels, errors):
 
     Args: image (h, w, 3); pixels (n, 2) of the balls; errors: {name: estimate minus truth (n, 2) m}.
     """
-    figure = new_figure(9.0, 3.7, cols=2, width_ratios=(1.3, 1), note=STAMP)
-    left, right = figure.axes
+    figure, left, right = subplots(9.0, 3.7, cols=2, width_ratios=(1.3, 1), note=STAMP)
     show_picture(left, image, "Balls at the places of Table 4.8")
     left.plot(*np.transpose(pixels), "+", color="white", markersize=12, markeredgewidth=2)
     for (name, error), marker in zip(errors.items(), "xo^", strict=False):

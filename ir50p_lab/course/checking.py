@@ -74,13 +74,13 @@ def _in_its_own_room(source, wanted):
 
 
 def _keep(source, wanted, remark):
-    from ir50p_lab.course.exercises import ProgressError, record
+    from ir50p_lab.course.exercises import record
 
     whole = "." in wanted.name and folder.is_there(wanted.function) and not folder.on_loan(wanted.function)
     try:
         lent = folder.keep(source, wanted)
         record(wanted.name)
-    except (OSError, ProgressError) as error:
+    except (OSError, lab_book.LabBookError) as error:
         return _show("right", wanted.name, f"right, but it could not be kept: {error}")
     more = f" {', '.join(lent)}, which it calls, came along on loan: write your own." if lent else ""
     more += f" Your finished {wanted.function} was put aside, into my_robot/old: check it again last." if whole else ""

@@ -4,11 +4,10 @@ import numpy as np
 
 from ir50p_lab.controllers import PID
 from ir50p_lab.course import contest, lab_book
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.course.widgets import slider
 from ir50p_lab.errors import LabError
 
-_JOINTS = ("blue", "orange", "green")
 _SLIDERS = {"kp": (2000, 10), "ki": (3000, 10), "kd": (60, 0.5)}  # right end, step
 _MARKERS = dict(zip(contest.LIMITS, "osv^D", strict=True))
 
@@ -24,7 +23,7 @@ class Practice:
         given = contest.draw(arm, contest.PRACTICE[0])
         t = np.append(contest.TIMES, contest.END)
         self._q, self._u = [], []
-        for joint, colour in enumerate(_JOINTS):
+        for joint, colour in enumerate(JOINTS):
             above, below = self.figure.axes[joint], self.figure.axes[3 + joint]
             target = np.append(given.poses[:, joint], given.poses[-1, joint])
             above.plot(t, target, drawstyle="steps-post", label="target", **SETPOINT)
@@ -34,8 +33,8 @@ class Practice:
                 xlim=(0, contest.END), ylim=(target.min() - room, target.max() + room), title=f"joint {joint + 1}"
             )
             below.set(ylim=(-275, 275), xlabel="time [s]")
-            self._q += above.plot([], [], color=COLOURS[colour], label="true angle")
-            self._u += below.plot([], [], color=COLOURS[colour], linewidth=0.6, antialiased=False)
+            self._q += above.plot([], [], color=colour, label="true angle")
+            self._u += below.plot([], [], color=colour, linewidth=0.6, antialiased=False)
         self.figure.axes[0].set_ylabel("angle [rad]")
         self.figure.axes[3].set_ylabel("command [PWM]")
         self.figure.axes[0].legend(fontsize=7, loc="best")
@@ -99,8 +98,7 @@ def sliders_of(controller, arm, practice):
 def history(rules=None):
     """All attempts, the best so far as a line; rules: {name: Score}, lines beside them. Returns LabFigure."""
     attempts = lab_book.read()["contest"]
-    figure = new_figure(9.0, 3.6)
-    ax = figure.axes[0]
+    figure, ax = subplots(9.0, 3.6)
     ax.axhspan(0.1, 1, color="#E5F3EC")
     ax.axhline(1.0, **SETPOINT, label="below: won")
     values = np.minimum([one["score"] for one in attempts], 100)

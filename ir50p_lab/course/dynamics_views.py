@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.course.arm3d import SideView
-from ir50p_lab.course.style import SETPOINT, new_figure
+from ir50p_lab.course.style import SETPOINT, subplots
 from ir50p_lab.modelling.dynamics import gravity
 
 
@@ -16,8 +16,7 @@ class GovernorView:
     """
 
     def __init__(self, arm, q):
-        self.figure = new_figure(9.0, 3.8, cols=2, width_ratios=(1, 1.5))
-        plane, self._ax = self.figure.axes
+        self.figure, plane, self._ax = subplots(9.0, 3.8, cols=2, width_ratios=(1, 1.5))
         self._q, self.side = q, SideView(plane, arm)
         top = 1.1 * gravity(arm, np.zeros(3))[1]
         (self.curve,) = self._ax.plot(np.degrees(q[:, 1]), np.zeros(len(q)))

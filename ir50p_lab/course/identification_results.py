@@ -4,7 +4,7 @@ import numpy as np
 
 from ir50p_lab.bench import Recording, SimulatedBench
 from ir50p_lab.course.bench_views import origin
-from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.identification import RLS, fit, process, regressor, validate
 from ir50p_lab.identification.parameters import NAMES
 from ir50p_lab.signals import LowPass
@@ -95,8 +95,7 @@ def estimators_figure(found, fits, joint=0, column=0, truth=None):
 
     Args: found: {name: Estimate}; fits: (n, 3) % on the validation run; truth: the parameter's value, drawn dashed.
     """
-    figure = new_figure(9.6, 1.3 + 0.32 * len(found), cols=2, width_ratios=(1.2, 1))
-    left, right = figure.axes
+    figure, left, right = subplots(9.6, 1.3 + 0.32 * len(found), cols=2, width_ratios=(1.2, 1))
     y = np.arange(len(found))[::-1]
     for k, marker in enumerate("os^"):
         left.plot(np.maximum(fits[:, k], 50), y, marker, ms=7, color=JOINTS[k], label=f"joint {k + 1}")
@@ -119,8 +118,7 @@ def whiteness_figure(tests, joint=1):
 
     Args: tests: {name: Whiteness}, of residuals 10 ms apart; joint: 0, 1, 2.
     """
-    figure = new_figure(9.0, 3.2)
-    ax = figure.axes[0]
+    figure, ax = subplots(9.0, 3.2)
     for (name, test), colour in zip(tests.items(), ("orange", "blue", "green"), strict=False):
         lags = 10 * np.r_[0, test.lags]
         ax.plot(lags, np.r_[1, test.correlation[:, joint]], ".-", ms=4, color=COLOURS[colour], label=name)
@@ -142,8 +140,7 @@ class CutoffView:
         self._valid, self._f, self._span = valid.between(span[0] - 2, span[1] + 2), np.asarray(cutoffs_hz), span
         late = {"causal": 0.0, "zero-phase": delay}
         self.fits = {kind: np.array([self._fit(train, valid, kind, f, late[kind]) for f in self._f]) for kind in late}
-        self.figure = new_figure(9.6, 3.8, cols=2)
-        left, right = self.figure.axes
+        self.figure, left, right = subplots(9.6, 3.8, cols=2)
         self._room = 5.0 if truth is None else 2.2 * np.abs(truth[1]).max()
         if truth is not None:
             left.plot(*truth, color=COLOURS["dark"], ls="--", lw=1)
@@ -235,8 +232,7 @@ class ForgettingView:
         self._rate, self._joint, self._column = parts[0].rate_hz / every, joint, column
         first, second = (len(y) / self._rate for y in self._y)
         self._t = (np.arange(sum(map(len, self._y))) + 1) / self._rate
-        self.figure = new_figure(9.0, 3.4)
-        ax = self.figure.axes[0]
+        self.figure, ax = subplots(9.0, 3.4)
         ax.hlines(levels, [0, first], [first, first + second], color=COLOURS["dark"], ls="--", lw=1.2)
         (self._line,) = ax.plot([], [], color=JOINTS[joint])
         low, high = min(levels), max(levels)

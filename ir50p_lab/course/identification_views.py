@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.bench import SimulatedBench
-from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.identification import load_excitations, optimise_excitation, regressor
 from ir50p_lab.identification.parameters import ACTS_ON, NAMES, ONLY_THESIS
 from ir50p_lab.modelling import IR50P
@@ -196,8 +196,7 @@ class FrequencyView:
 
     def __init__(self, arm, motion, lowest, highest):
         self._arm, self._motion = arm, motion
-        self.figure = new_figure(9.6, 3.8, cols=2)
-        left, right = self.figure.axes
+        self.figure, left, right = subplots(9.6, 3.8, cols=2)
         for level in (-255, 255):
             left.axhline(level, **SETPOINT)
         self._x = (np.arange(300) + 0.5) / 300

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.course.arm3d import SideView
-from ir50p_lab.course.style import COLOURS, new_figure
+from ir50p_lab.course.style import COLOURS, subplots
 from ir50p_lab.modelling.dynamics import mass_matrix
 
 
@@ -22,8 +22,7 @@ class InertiaView:
 
     def __init__(self, arm):
         self.arm = arm
-        self.figure = new_figure(10.0, 3.6, cols=3)
-        self._side, waist, joints = self.figure.axes
+        self.figure, self._side, waist, joints = subplots(10.0, 3.6, cols=3)
         self._view = SideView(self._side, arm)
         self._q2 = np.linspace(-np.pi / 2, np.pi / 2, 91)
         (self._curve,) = waist.plot([], [])

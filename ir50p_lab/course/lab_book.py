@@ -1,15 +1,10 @@
 """The lab book itself: what the student predicted, measured, noted and kept, as readable JSON."""
 
-import json
 import re
 from datetime import datetime
 
 from ir50p_lab import home
-from ir50p_lab.errors import LabError
-
-
-class LabBookError(LabError):
-    """The lab book cannot be read or written; the message says what to do."""
+from ir50p_lab.course.student_file import LabBookError, read_json, write_json, writing
 
 
 def path():
@@ -20,28 +15,16 @@ def path():
 def read():
     """Return {"predictions": {name: ...}, "notes", "figures", "contest": [...], "attempts": {function: [...]}}."""
     empty = {"predictions": {}, "notes": [], "figures": [], "contest": [], "attempts": {}}
-    try:
-        content = json.loads(path().read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        return empty
-    except (OSError, ValueError, RecursionError) as error:
-        raise LabBookError(f"{path()} cannot be read ({error}): rename it, and a new one is begun") from error
-    if not isinstance(content, dict) or not all(
-        isinstance(content.get(key, one), type(one)) for key, one in empty.items()
-    ):
-        raise LabBookError(f"{path()} is no lab book: rename it, and a new one is begun")
-    return {**empty, **content}
+    return read_json(
+        path(), empty, lambda found: all(isinstance(found.get(key, one), type(one)) for key, one in empty.items())
+    )
 
 
 def change(edit):
     """Read the lab book, let `edit(book)` change it, write it in one step; return what edit returned."""
     book = read()
     answer = edit(book)
-    try:
-        path().parent.mkdir(parents=True, exist_ok=True)
-        home.replace_text(path(), json.dumps(book, indent=1, ensure_ascii=False) + "\n")
-    except OSError as error:
-        raise LabBookError(f"{path()} cannot be written ({error}): set {home.VARIABLE} to a folder of yours") from error
+    write_json(path(), book, path().parent)
     return answer
 
 
@@ -108,11 +91,8 @@ def keep(figure, name):
     """Put a matplotlib figure into the lab book as `name`; the report shows the last one of each name."""
     file = f"{re.sub(r'[^a-zA-Z0-9]+', '_', name).strip('_') or 'figure'}.png"
     place = path().parent / "figures" / file
-    try:
-        place.parent.mkdir(parents=True, exist_ok=True)
+    with writing(place, place.parent):
         figure.savefig(place, dpi=120, bbox_inches="tight")
-    except OSError as error:
-        raise LabBookError(f"{place} cannot be written ({error}): set {home.VARIABLE} to a folder of yours") from error
 
     def edit(book):
         book["figures"] = [one for one in book["figures"] if one["file"] != file]

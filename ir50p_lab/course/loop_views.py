@@ -3,15 +3,14 @@
 import numpy as np
 from matplotlib.patches import FancyBboxPatch
 
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, SETPOINT, subplots
 from ir50p_lab.modelling.dynamics import gravity
 
 _ARROW = {"arrowstyle": "-|>", "color": COLOURS["dark"], "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
 
 
 def _sheet(width, height):
-    figure = new_figure(width, height)
-    ax = figure.axes[0]
+    figure, ax = subplots(width, height)
     ax.set(xlim=(0, width), ylim=(0, height), aspect="equal")
     ax.set_axis_off()
     return figure, ax
@@ -88,11 +87,7 @@ def three_loops():
         ax.text(4.15, y + 0.13, f"$u_{joint}$", fontsize=12)
         _wire(ax, (6.5, y), (8.3, y))
         ax.text(7.95, y + 0.13, f"$q_{joint}$", fontsize=12)
-        right, low, left = (
-            8.0 - 0.3 * joint,
-            -0.05 + 0.17 * joint,
-            0.9 + 0.27 * joint,
-        )  # round the arm, each its own way
+        right, low, left = 8.0 - 0.3 * joint, -0.05 + 0.17 * joint, 0.9 + 0.27 * joint  # each its own way round
         way = ((right, y), (right, low), (left, low), (left, y - 0.18), (2.1, y - 0.18))
         _wire(ax, *way, colour=colour)
         ax.plot(right, y, "o", ms=5, color=COLOURS[colour])
@@ -102,8 +97,7 @@ def three_loops():
 
 def weight_over_angle(arm, push):
     """What the shoulder's weight asks for in counts over its angle, elbow straight, and a constant push: LabFigure."""
-    figure = new_figure(7.4, 3.8)
-    ax = figure.axes[0]
+    figure, ax = subplots(7.4, 3.8)
     q2 = np.linspace(arm.q_min[1], arm.q_max[1], 200)
     weight = gravity(arm, np.column_stack([0 * q2, q2, 0 * q2]))[:, 1] / arm.actuators.gain[1]
     low, high = weight + (arm.friction.Tf[1] + np.array([[-1], [1]]) * arm.friction.fs[1]) / arm.actuators.gain[1]
@@ -121,8 +115,7 @@ def weight_over_angle(arm, push):
 
 def ends(pushes, angles, target):
     """Where the shoulder ends under constant pushes: LabFigure."""
-    figure = new_figure(7.4, 3.4)
-    ax = figure.axes[0]
+    figure, ax = subplots(7.4, 3.4)
     ax.plot(pushes, angles, "o", ms=8, label="after 30 s")
     ax.axhline(target, **SETPOINT, label="wanted")
     ax.set(xlabel="constant push [PWM counts]", ylabel="angle of the shoulder [rad]")
@@ -132,8 +125,7 @@ def ends(pushes, angles, target):
 
 def curves(t, lines, labels, ylabel, targets=()):
     """Lines (k, n) over time (n,) s, each with its label; targets: dashed levels. LabFigure."""
-    figure = new_figure(8.6, 3.2)
-    ax = figure.axes[0]
+    figure, ax = subplots(8.6, 3.2)
     for target in targets:
         ax.axhline(target, **SETPOINT)
     for values, label in zip(lines, labels, strict=True):

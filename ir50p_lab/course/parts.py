@@ -1,6 +1,6 @@
 """An arm handed over as plain numbers and arrays, the way the student's own functions take it."""
 
-from dataclasses import dataclass
+from collections import namedtuple
 
 import numpy as np
 
@@ -8,8 +8,7 @@ from ir50p_lab.errors import ArmError
 from ir50p_lab.modelling.arm import Arm
 
 
-@dataclass(frozen=True)
-class Parts:
+class Parts(namedtuple("Parts", "l m lc inertia rotor fv fc fs qs offset gain damping g limits")):
     """The numbers of an arm. Arrays are copies: changing them changes no arm.
 
     ======== ======================================================================= ==================
@@ -30,21 +29,6 @@ class Parts:
     limits   lowest and highest joint angles                                         (2, 3) rad
     ======== ======================================================================= ==================
     """
-
-    l: np.ndarray
-    m: np.ndarray
-    lc: np.ndarray
-    inertia: np.ndarray
-    rotor: np.ndarray
-    fv: np.ndarray
-    fc: np.ndarray
-    fs: np.ndarray
-    qs: np.ndarray
-    offset: np.ndarray
-    gain: np.ndarray
-    damping: np.ndarray
-    g: float
-    limits: np.ndarray
 
 
 def parts(arm: Arm) -> Parts:

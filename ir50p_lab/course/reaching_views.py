@@ -5,7 +5,7 @@ from matplotlib.patches import Circle
 
 from ir50p_lab.course import vision_views
 from ir50p_lab.course.arm3d import ArmView, FrameView, SideView
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
 from ir50p_lab.modelling.chain import forward_kinematics, frames
 
 _XYZ = (COLOURS["orange"], COLOURS["green"], COLOURS["blue"])
@@ -21,8 +21,7 @@ def origin(simulated):
 
 def loop_figure():
     """What passes from picture to motor, box by box (Figure 4.14). Returns: LabFigure."""
-    figure = new_figure(9.0, 2.2)
-    (ax,) = figure.axes
+    figure, ax = subplots(9.0, 2.2)
     ax.set(xlim=(0, 6), ylim=(-0.05, 1.6), title="From the picture to the motors, and round again")
     ax.axis("off")
     boxes = (
@@ -50,8 +49,7 @@ def _arrow(ax, start, end, **style):
 
 def frames_figure(arm, q, T_base_cam, ball=None, T_base_board=None, simulated=True):
     """The frames {0}, {c}, {ob} of Figures 4.15, 4.16 in 3-D, and the board, if its place is given. LabFigure."""
-    figure = new_figure(8.0, 5.0, projection="3d", note=origin(simulated))
-    (ax,) = figure.axes
+    figure, ax = subplots(8.0, 5.0, projection="3d", note=origin(simulated))
     _stage(ax, arm, q, T_base_cam)
     ax.view_init(elev=34, azim=-66)
     FrameView(ax, np.eye(4), "{0}", 0.13)
@@ -123,8 +121,7 @@ def height_figure(plane, arm, ball, xy):
     plane: TablePlane; ball: (3,) m, where it is believed to be; xy: (2,) px.
     `update(height)` (m) moves the reading and returns a sentence.
     """
-    figure = new_figure(7.5, 3.4)
-    (ax,) = figure.axes
+    figure, ax = subplots(7.5, 3.4)
     eye = plane.centre
     away = (ball[:2] - eye[:2]) / np.linalg.norm(ball[:2] - eye[:2])
     slope = (eye[2] - ball[2]) / float((ball[:2] - eye[:2]) @ away)
@@ -155,8 +152,7 @@ def height_figure(plane, arm, ball, xy):
 
 def way_figure(way, ball=None, radius=0.03):
     """A Plan from the side: radius and height of the tip, ball and clearance. Returns: LabFigure."""
-    figure = new_figure(9.0, 3.6, cols=2, width_ratios=(1.1, 1))
-    side, over = figure.axes
+    figure, side, over = subplots(9.0, 3.6, cols=2, width_ratios=(1.1, 1))
     p = way.tips
     view = SideView(side, way.arm, colour=COLOURS["blue"])
     view.update(way.goal)
@@ -196,8 +192,7 @@ def tip_figure(arm, recording, done, simulated=True):
 
 def budget_figure(budget, measured=()):
     """Causes of error as bars, after one look and after two; measured: rms mm of each as dashed lines. LabFigure."""
-    figure = new_figure(9.0, 3.6)
-    (ax,) = figure.axes
+    figure, ax = subplots(9.0, 3.6)
     rows, total = np.arange(len(budget))[::-1], 1e3 * budget.to_numpy()[-1]
     for up, looks, colour in ((0.19, "one look", "sky"), (-0.19, "two looks", "blue")):
         ax.barh(rows + up, 1e3 * budget[looks], 0.36, color=COLOURS[colour], label=looks)
@@ -211,8 +206,7 @@ def budget_figure(budget, measured=()):
 
 def hand_eye_figure():
     """The two ways from the base to a board in the hand: what is measured, what is sought. Returns: LabFigure."""
-    figure = new_figure(7.5, 2.5)
-    (ax,) = figure.axes
+    figure, ax = subplots(7.5, 2.5)
     ax.set(xlim=(0, 6), ylim=(-0.05, 1.9), title="Two ways from the base to the board, equal in every pose")
     ax.axis("off")
     places = {"base": (0.8, 1.35), "tool": (5.2, 1.35), "camera": (0.8, 0.35), "board": (5.2, 0.35)}
@@ -257,8 +251,7 @@ def residual_figure(fit):
 
 def follow_figure(logs, simulated=True):
     """Followed balls: the table from above for the first FollowLog, how far each tip is ahead. Returns: LabFigure."""
-    figure = new_figure(9.5, 4.0, cols=2, width_ratios=(1, 1.6), note=origin(simulated))
-    above, time = figure.axes
+    figure, above, time = subplots(9.5, 4.0, cols=2, width_ratios=(1, 1.6), note=origin(simulated))
     above.plot(*(1e3 * logs[0].ball.T), color="#C8202D", label="ball, as seen")
     settled = logs[0].t > _ARRIVED
     above.plot(*(1e3 * logs[0].tip[settled, :2].T), ".", ms=2, color=COLOURS["blue"], label="tip")

@@ -1,7 +1,7 @@
 """The robot as a picture: which of its functions are the student's."""
 
 from ir50p_lab.course.functions.catalogue import NOTEBOOKS, ORDER
-from ir50p_lab.course.style import COLOURS, new_figure
+from ir50p_lab.course.style import COLOURS, subplots
 
 _PARTS = {  # what of the robot a function makes, notebook by notebook: where its mark stands in the drawing
     "column": (("00", "01"), (0.18, 1.1)),
@@ -20,8 +20,7 @@ def owned(whose):
 
     whose: "yours", "on loan" or "the course's" by the name of each function.
     """
-    figure = new_figure(8.6, 3.9)
-    ax = figure.axes[0]
+    figure, ax = subplots(8.6, 3.9)
     colours = {"yours": COLOURS["green"], "on loan": COLOURS["amber"], "the course's": "#C4C4C4"}
     ax.plot([0, 0, 1.1, 2.9], [0, 1.6, 2.6, 1.9], color="#E4E4E4", linewidth=16, solid_capstyle="round", zorder=1)
     ax.plot([-0.5, 0.5], [0, 0], color="#E4E4E4", linewidth=16, solid_capstyle="round", zorder=1)

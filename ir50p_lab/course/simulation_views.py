@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.course.arm3d import SideView
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
 
 STAMP = "simulated, not measured"
 
@@ -101,8 +101,7 @@ def friction_figure(law, breakaway, speeds, torques):
     Args: law: function of qd (n, 3) rad/s that returns torques (n, 3) N m; breakaway: N m; speeds, torques (n,):
     what was found, rad/s, N m. Returns: LabFigure.
     """
-    figure = new_figure(8.0, 3.2, note=STAMP)
-    ax = figure.axes[0]
+    figure, ax = subplots(8.0, 3.2, note=STAMP)
     v = np.linspace(1e-6, 1.1 * max(speeds), 300)
     ax.plot(v, law(np.outer(v, [1, 0, 0]))[:, 0], label="(1.115)-(1.117)")
     ax.plot(speeds, torques, "o", color=COLOURS["orange"], label="torque that drags the joint")
@@ -118,8 +117,7 @@ def sinking_figure(arm, q, tips):
 
     Args: arm: Arm; q (n, 3) rad, a run in one vertical plane; tips (n, 3) m. Returns: LabFigure.
     """
-    figure = new_figure(5.5, 4.2, note=STAMP)
-    ax = figure.axes[0]
+    figure, ax = subplots(5.5, 4.2, note=STAMP)
     for pose, colour, label in ((q[0], "blue", "let go"), (q[-1], "orange", "in the end")):
         SideView(ax, arm, colour=COLOURS[colour], label=label).update(pose, heading=q[0, 0])
     radius = tips[:, :2] @ np.array([np.cos(q[0, 0]), np.sin(q[0, 0])])

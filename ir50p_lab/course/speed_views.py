@@ -5,7 +5,7 @@ import numpy as np
 from ir50p_lab.course.arm3d import ArmView, SideView
 from ir50p_lab.course.functions import velocity
 from ir50p_lab.course.functions.pose import frames
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.modelling.ik import inverse_kinematics
@@ -47,8 +47,7 @@ class ColumnsView:
 
 def arrows(arm, q, J, scale=0.5):
     """The arm at q and the columns of J (3, 3) m/rad at its tip, an arrow a joint: LabFigure."""
-    figure = new_figure(7.5, 5.0, projection="3d")
-    ax = figure.axes[0]
+    figure, ax = subplots(7.5, 5.0, projection="3d")
     view = ArmView(ax, arm, q)
     tip = view.points[3]
     for joint, colour in enumerate(_JOINTS):
@@ -78,8 +77,7 @@ def arrows_panel(arm):
 
 def axis_and_lever():
     """A point that turns about an axis, two levers from the axis to it, and its one velocity. LabFigure."""
-    figure = new_figure(5.0, 3.2, projection="3d")
-    ax = figure.axes[0]
+    figure, ax = subplots(5.0, 3.2, projection="3d")
     circle = np.linspace(0, 2 * np.pi, 91)
     ax.plot(np.cos(circle), np.sin(circle), 0, color=COLOURS["light"])
     point = np.array([np.cos(-2.2), np.sin(-2.2), 0])
@@ -101,8 +99,7 @@ def axis_and_lever():
 
 def way_out(arm, distances, speeds, limit):
     """The arm from the side near its full reach, and the elbow's speed on the way there: LabFigure."""
-    figure = new_figure(9.5, 4.0, cols=2)
-    plane, ax = figure.axes
+    figure, plane, ax = subplots(9.5, 4.0, cols=2)
     halfway, k = distances[len(distances) // 2], np.argmax(speeds > limit)
     SideView(plane, arm, inverse_kinematics(arm, [halfway, 0, arm.l[0]])["front/up"])
     plane.annotate("", (halfway + 0.13, arm.l[0]), (halfway + 0.02, arm.l[0]), arrowprops={"color": COLOURS["orange"]})
@@ -145,8 +142,7 @@ def where_not(arm, tips, rates, limit):
 
     tips: (n, m, 3) m of a grid of poses; rates: (n, m, 3) rad/s, what each joint needs there at worst.
     """
-    figure = new_figure(6.4, 5.6)
-    ax = figure.axes[0]
+    figure, ax = subplots(6.4, 5.6)
     x, z = tips[..., 0], tips[..., 2]
     ax.contourf(x, z, rates.max(axis=2), levels=[0, limit], colors=["#E6F0F7"])
     for joint, (name, colour) in enumerate(zip(_NAMES, _JOINTS, strict=True)):
@@ -171,8 +167,7 @@ def steps_panel(damped_step, arm, q_start, p, steps=25):
 
     Returns: figure, f(damping, start) -> sentence; start: the elbow's, in degrees, in place of that of q_start.
     """
-    figure = new_figure(9.4, 3.8, cols=2)
-    misses, elbows = figure.axes
+    figure, misses, elbows = subplots(9.4, 3.8, cols=2)
     number = np.arange(steps + 1)
     (miss,) = misses.semilogy(number, np.ones(steps + 1), "o-", ms=4, label="distance of the tip")
     (elbow,) = elbows.plot(number, np.zeros(steps + 1), "o-", ms=4, color=COLOURS["orange"], label="elbow")

@@ -2,14 +2,13 @@
 
 import numpy as np
 
-from ir50p_lab.course.style import COLOURS, new_figure
+from ir50p_lab.course.style import COLOURS, subplots
 from ir50p_lab.modelling.chain import frames
 
 
 def from_above(angle):
     """Two points at distance 1 and where a turn by `angle` (rad) takes them: LabFigure."""
-    figure = new_figure(5.2, 5.0)
-    ax = figure.axes[0]
+    figure, ax = subplots(5.2, 5.0)
     circle = np.linspace(0, 2 * np.pi, 181)
     ax.plot(np.cos(circle), np.sin(circle), color=COLOURS["light"], zorder=1)
     for start, colour, name in ((0.0, "orange", "ahead"), (np.pi / 2, "blue", "to the left")):
@@ -45,8 +44,7 @@ def turned_by(arm, rot_z):
 
 def speed_over_time(run, joint, end=1.4):
     """Speed of one joint (1 to 3) of a simulated run until `end` s, with a line at 63 % of its most: LabFigure."""
-    figure = new_figure(8, 3.4)
-    ax = figure.axes[0]
+    figure, ax = subplots(8, 3.4)
     speed = run.qd[:, joint - 1]
     ax.plot(run.t, speed, label=f"joint {joint}", linewidth=2)
     ax.axhline((1 - np.exp(-1)) * speed.max(), color=COLOURS["dark"], linestyle="--", label="63 % of the top speed")

@@ -64,8 +64,7 @@ def new_figure(width=9.0, height=None, *, rows=1, cols=1, projection=None, share
     return figure
 
 
-def show(figure):
-    """Display a figure now, in the middle of a cell; at the end of a cell the figure's name alone does it."""
-    from IPython.display import display  # only notebooks have it
-
-    display(figure)
+def subplots(*size, **options):
+    """Figure and axes of `new_figure`, for unpacking: `figure, left, right = subplots(cols=2)`."""
+    figure = new_figure(*size, **options)
+    return figure, *figure.axes

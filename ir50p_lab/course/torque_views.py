@@ -1,14 +1,13 @@
 """Figures of notebook 14: error dynamics, robustness, tracking beside the reference; and the runs behind them."""
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.identification_views import kept_motion
-from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, figure_style, new_figure
+from ir50p_lab.course.style import JOINTS, SETPOINT, new_figure, subplots
+from ir50p_lab.course.tuning_views import colour_map
 from ir50p_lab.identification import fit, process, regressor
 from ir50p_lab.simulation import simulate
 
@@ -73,8 +72,7 @@ def pendulum_responses(found, parameters, gain_sets, *, start=0.5, seconds=6.0):
 
 def pendulum_figure(t, angles, labels):
     """Responses of the pendulum with motor lag. t (n,) s; angles (m, n) rad; labels: m texts. Returns: LabFigure."""
-    figure = new_figure(8.0, 3.0)
-    ax = figure.axes[0]
+    figure, ax = subplots(8.0, 3.0)
     for angle, label, colour in zip(angles, labels, JOINTS, strict=False):
         ax.plot(t, angle, color=colour, label=label)
     ax.axhline(0, **SETPOINT)
@@ -91,8 +89,7 @@ class ErrorView:
     """
 
     def __init__(self, size, duration):
-        self.figure = new_figure(9.0, 3.2)
-        ax = self.figure.axes[0]
+        self.figure, ax = subplots(9.0, 3.2)
         ax.axhline(0, **SETPOINT)
         self._lines = [ax.plot([], [], color=c)[0] for c in JOINTS]
         self._dots = [ax.plot([], [], "o", ms=4, color=c, mfc="none")[0] for c in JOINTS]
@@ -119,19 +116,11 @@ class RobustnessView:
     def __init__(self, scales, speeds, run, *, duration, error_max):
         self._run = run
         self.rms = np.array([[1e3 * run(s, w).rms_error.max() for w in speeds] for s in scales])
-        self.figure = new_figure(9.6, 3.8, cols=2, width_ratios=(1.25, 1))
-        left, right = self.figure.axes
-        dw, ds = (speeds[1] - speeds[0]) / 2, (scales[1] - scales[0]) / 2
-        extent = (speeds[0] - dw, speeds[-1] + dw, scales[0] - ds, scales[-1] + ds)
-        colours = ScalarMappable(LogNorm(max(self.rms.min(), 1e-3 * self.rms.max()), self.rms.max()), "cividis_r")
-        left.imshow(colours.to_rgba(self.rms, bytes=True), origin="lower", extent=extent, aspect="auto", zorder=0.6)
-        with rc_context(figure_style()):  # its axis goes below the colours: drawn once, not at every step of a slider
-            bar = self.figure.colorbar(colours, ax=left, label="largest RMS error [mrad]")
-        bar.solids.set_zorder(0.6)
-        left.grid(False)
+        self.figure, left, right = subplots(9.6, 3.8, cols=2, width_ratios=(1.25, 1))
+        norm = LogNorm(max(self.rms.min(), 1e-3 * self.rms.max()), self.rms.max())
+        self._mark = colour_map(left, speeds, scales, self.rms, norm, "largest RMS error [mrad]")
         left.set(xlabel="speed of the loop, sqrt(Kp) [rad/s]", ylabel="model / arm [1]")
         left.set_title("Fast loops hide wrong models")
-        (self._mark,) = left.plot([], [], "o", ms=9, mfc="none", mec=COLOURS["orange"], mew=2.5)
         self._lines = [right.plot([], [], color=c)[0] for c in JOINTS]
         right.set(xlim=(0, duration), ylim=(-error_max, error_max))
         right.set(xlabel="time [s]  -  simulated", ylabel="q - q_ref [mrad]", title="Joints: blue, orange, green")
@@ -190,8 +179,7 @@ def learning_figure(law, arms, reference, seconds, *, column, joint, truth):
     Args: law: function () -> AdaptiveControl; arms: {label: Arm}; reference; seconds; column, joint: of the parameter
     that is drawn; truth: {label: its true value}. Run in Python, so that its belief can be watched.
     """
-    figure = new_figure(9.6, 3.2, cols=2)
-    left, right = figure.axes
+    figure, left, right = subplots(9.6, 3.2, cols=2)
     beliefs = []
     for (label, arm), colour in zip(arms.items(), JOINTS, strict=False):
         watched = _Watched(law(), joint, column)

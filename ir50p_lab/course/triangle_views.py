@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.style import COLOURS, new_figure
+from ir50p_lab.course.style import COLOURS, subplots
 from ir50p_lab.modelling.chain import forward_kinematics, frames
 from ir50p_lab.modelling.ik import inverse_kinematics, reachability
 
@@ -12,8 +12,7 @@ def seen_from_above(arm, p):
 
     For a place behind the column also the line that arctan(y / x) means.
     """
-    figure = new_figure(6.4, 4.2)
-    ax = figure.axes[0]
+    figure, ax = subplots(6.4, 4.2)
     far = 1.15 * arm.reach
     behind = p[0] < 0
     ax.plot(0, 0, "s", color=COLOURS["dark"], ms=13)
@@ -31,9 +30,8 @@ def seen_from_above(arm, p):
     return figure
 
 
-def _plane(figure_or_none=None):
-    figure = figure_or_none or new_figure(7.2, 5.0)
-    ax = figure.axes[0]
+def _plane(height=5.0):
+    figure, ax = subplots(7.2, height)
     ax.set(aspect="equal", xlabel="outwards from the column [m]", ylabel="height [m]")
     return figure, ax
 
@@ -140,7 +138,7 @@ def circles(arm):
 
     Returns: figure; f(out, height) that places them and says how many crossings there are.
     """
-    figure, ax = _plane(new_figure(7.2, 6.4))
+    figure, ax = _plane(6.4)
     _column(ax, arm)
     _, l2, l3 = arm.l
     shoulder = np.array([0.0, arm.l[0]])
@@ -180,8 +178,7 @@ def straight_line(arm, places, q_start, q_end, way=()):
 
     way: for each place the pose that was found, or None; places without one are marked.
     """
-    figure = new_figure(7.2, 5.4)
-    ax = figure.axes[0]
+    figure, ax = subplots(7.2, 5.4)
     path = forward_kinematics(arm, np.linspace(q_start, q_end, 61))
     ax.plot(*places[:, :2].T, "--", color=COLOURS["dark"], label="the straight line")
     ax.plot(*path[:, :2].T, color=COLOURS["blue"], linewidth=2.5, label="the tip, joints turning evenly")
@@ -210,8 +207,7 @@ def allowed_map(arm, allowed, free=None):
 
     free(p): the poses among them that are really free; places that have only others are marked.
     """
-    figure = new_figure(7.6, 5.0)
-    ax = figure.axes[0]
+    figure, ax = subplots(7.6, 5.0)
     side = np.linspace(-arm.reach, arm.reach, 61)
     places = np.array([[x, y, 0.03] for y in side for x in side])
     places = places[reachability(arm, places) == 0]

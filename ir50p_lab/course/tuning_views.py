@@ -8,7 +8,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from ir50p_lab.controllers import simc_integrating
-from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure
+from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure, subplots
 from ir50p_lab.identification import FOPDT
 
 _RUNS = ({"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linewidth": 1.2}, {"color": COLOURS["green"]})
@@ -67,6 +67,23 @@ def three_columns(panel):
     return panel
 
 
+def colour_map(ax, x, y, values, norm, label):
+    """Colours of values (m, n) over an evenly spaced grid x (n,), y (m,). Returns a ring, to be put on one place.
+
+    Coloured once, and above the axis lines of map and bar: both save time at every redraw under a slider.
+    """
+    half_x, half_y = (x[1] - x[0]) / 2, (y[1] - y[0]) / 2
+    extent = (x[0] - half_x, x[-1] + half_x, y[0] - half_y, y[-1] + half_y)
+    colours = ScalarMappable(norm, "cividis_r")
+    pixels = colours.to_rgba(values, bytes=True)
+    ax.imshow(pixels, origin="lower", extent=extent, aspect="auto", interpolation="nearest", zorder=0.6)
+    with rc_context(figure_style()):
+        bar = ax.figure.colorbar(colours, ax=ax, label=label)
+    bar.solids.set_zorder(0.6)
+    ax.grid(False)
+    return ax.plot([], [], "o", ms=9, mfc="none", mec=COLOURS["orange"], mew=2.5, zorder=9)[0]
+
+
 class GainMap:
     """A figure of merit over (kp, kd) as colours, and beside it the responses of one gain set.
 
@@ -77,21 +94,10 @@ class GainMap:
     """
 
     def __init__(self, kp, kd, values, *, title, label, target, duration):
-        self.figure = new_figure(9.6, 4.0, cols=2, width_ratios=(1.25, 1))
-        self.map, self._side = self.figure.axes
+        self.figure, self.map, self._side = subplots(9.6, 4.0, cols=2, width_ratios=(1.25, 1))
         self._grid = kp, kd
-        half_kp, half_kd = (kp[1] - kp[0]) / 2, (kd[1] - kd[0]) / 2
-        extent = (kp[0] - half_kp, kp[-1] + half_kp, kd[0] - half_kd, kd[-1] + half_kd)
-        colours = ScalarMappable(Normalize(np.nanmin(values), np.nanmax(values)), "cividis_r")
-        # Coloured once, and above its axis lines: both save time at every redraw under a slider.
-        pixels = colours.to_rgba(values, bytes=True)
-        self.map.imshow(pixels, origin="lower", extent=extent, aspect="auto", interpolation="nearest", zorder=0.6)
-        with rc_context(figure_style()):
-            bar = self.figure.colorbar(colours, ax=self.map, label=label)
-        bar.solids.set_zorder(0.6)
-        self.map.grid(False)
+        self._mark = colour_map(self.map, kp, kd, values, Normalize(np.nanmin(values), np.nanmax(values)), label)
         self.map.set(xlabel="Kp [PWM/rad]", ylabel="Kd [PWM s/rad]", title=title)
-        (self._mark,) = self.map.plot([], [], "o", ms=9, mfc="none", mec=COLOURS["orange"], mew=2.5, zorder=9)
         self._side.axhline(target, **SETPOINT, label="target")
         self._side.set(xlim=(0, duration), ylim=sorted((-0.1 * target, 1.3 * target)))
         self._side.set(xlabel="time [s]", ylabel="angle [rad]")
@@ -125,8 +131,7 @@ class GainMap:
 
 def one_joint(*runs, labels, joint, unit="PWM"):
     """Angle above, command below, of one joint (1, 2, 3) in several runs; the first's target dashed: LabFigure."""
-    figure = new_figure(9.0, 4.0, rows=2, sharex=True)
-    above, below = figure.axes
+    figure, above, below = subplots(9.0, 4.0, rows=2, sharex=True)
     reference = np.asarray(runs[0].reference)
     reference = reference[:, 0] if reference.ndim == 3 else reference
     above.plot(runs[0].t, reference[:, joint - 1], drawstyle="steps-post", label="target", **SETPOINT)
@@ -141,8 +146,7 @@ def one_joint(*runs, labels, joint, unit="PWM"):
 
 def ruler():
     """The four figures of a step, drawn on a made-up one: LabFigure."""
-    figure = new_figure(8.0, 3.4)
-    ax = figure.axes[0]
+    figure, ax = subplots(8.0, 3.4)
     t = np.linspace(0, 5, 501)
     q = 0.97 - 0.97 * np.exp(-1.3 * t) * (np.cos(3 * t) + 0.43 * np.sin(3 * t))
     band = 0.06  # drawn wide, to be seen
@@ -194,8 +198,7 @@ def redraw(figure, run, joint):
 
 def speed_step(t, speed, fitted=None):
     """A measured answer of the speed (n,) rad/s to a jump at 1 s, and what was fitted to it: LabFigure."""
-    figure = new_figure(8.0, 3.0)
-    ax = figure.axes[0]
+    figure, ax = subplots(8.0, 3.0)
     ax.plot(t, speed, ".", color=COLOURS["grey"], label="measured speed of joint 1")
     if fitted is not None:
         ax.plot(t, fitted, color=COLOURS["blue"], label="fitted: gain, time constant, dead time")
@@ -215,9 +218,8 @@ class LocusView:
     """
 
     def __init__(self, gains, continuous, sampled, *, zeros=((), ())):
-        self.figure = new_figure(9.6, 4.2, cols=2)
+        self.figure, left, right = subplots(9.6, 4.2, cols=2)
         self._gains, self._loci = np.asarray(gains), (np.asarray(continuous), np.asarray(sampled))
-        left, right = self.figure.axes
         turn = np.linspace(0, 2 * np.pi, 181)
         right.plot(np.cos(turn), np.sin(turn), **SETPOINT)
         right.set(xlim=(-1.6, 1.4), ylim=(-1.5, 1.5), aspect="equal", title="Sampled: beyond the circle it grows")

@@ -7,7 +7,7 @@ import numpy as np
 
 from ir50p_lab.course.canvas import Canvas
 from ir50p_lab.course.painter import encode_png
-from ir50p_lab.course.style import COLOURS, new_figure
+from ir50p_lab.course.style import COLOURS, new_figure, subplots
 from ir50p_lab.errors import LabError
 from ir50p_lab.vision import (
     RED,
@@ -49,8 +49,7 @@ def numbers_figure(grey, x, y, n=9, *, title="An image is a matrix of numbers", 
     white: the level shown as white.
     """
     part = grey[y : y + n, x : x + n]
-    figure = new_figure(0.91 + 0.41 * n, 0.71 + 0.41 * n, note=source)
-    ax = figure.axes[0]
+    figure, ax = subplots(0.91 + 0.41 * n, 0.71 + 0.41 * n, note=source)
     show_picture(ax, part, title, vmax=white, extent=(x - 0.5, x + n - 0.5, y + n - 0.5, y - 0.5))
     for row in range(n):
         for col in range(n):
@@ -66,8 +65,7 @@ def colour_solids_figure():
     rgb = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
     rgb = rgb[(rgb == 0).any(axis=1) | (rgb == 255).any(axis=1)]
     hue, saturation, value = rgb_to_hsv(rgb).T
-    figure = new_figure(9.0, 4.2, cols=2, projection="3d")
-    cube, cone = figure.axes
+    figure, cube, cone = subplots(9.0, 4.2, cols=2, projection="3d")
     chroma, angle = saturation * value, np.radians(hue)
     in_cone = np.column_stack([chroma * np.cos(angle), chroma * np.sin(angle), value])
     for ax, points in ((cube, rgb), (cone, in_cone)):
@@ -90,8 +88,7 @@ def ball_hues_figure(image, ball):
     hue, saturation, _ = rgb_to_hsv(image[disc]).T
     turned = (hue + 180) % 360 - 180  # -180..180: red in the middle
     taken = (turned > -20) & (turned < 0) & (saturation > 0.2) & (saturation < 0.8)
-    figure = new_figure(6.4, 3.6, note=STAMP)
-    ax = figure.axes[0]
+    figure, ax = subplots(6.4, 3.6, note=STAMP)
     ax.fill_between([-20, 0], 0.2, 0.8, color=COLOURS["light"], label="4.5.1: 340 to 360 degrees, 0.2 to 0.8")
     ax.plot(turned[~taken], saturation[~taken], ".", ms=4, color=COLOURS["orange"], label="pixels it loses")
     ax.plot(turned[taken], saturation[taken], ".", ms=4, color=COLOURS["blue"], label="pixels it takes")
@@ -110,9 +107,8 @@ class MaskView:
     def __init__(self, image):
         height, width = image.shape[:2]
         self._both = np.concatenate([image, np.zeros_like(image)], axis=1)
-        self.figure = new_figure(2 * width / 100, (height + 26) / 100)
+        self.figure, ax = subplots(2 * width / 100, (height + 26) / 100)
         self.figure.set_layout_engine("none")
-        ax = self.figure.axes[0]
         ax.set_position([0, 0, 1, height / (height + 26)])
         ax.set_axis_off()
         self._shown = ax.imshow(self._both, interpolation="nearest", aspect="auto")
@@ -157,8 +153,7 @@ def votes_figure(points, votes, centre):
 
     points (n, 2): x, y; votes (h, w), as of circle_votes; centre: (x, y), gets a ring.
     """
-    figure = new_figure(8.4, 3.3, cols=2)
-    left, right = figure.axes
+    figure, left, right = subplots(8.4, 3.3, cols=2)
     show_picture(left, np.zeros(votes.shape), "edge points")
     left.plot(*np.asarray(points).T, ".", ms=5, color="white")
     shown = right.imshow(votes, cmap="viridis", interpolation="nearest")
@@ -195,8 +190,7 @@ class ThinLensView:
     def __init__(self, *, f=0.004, pixel=3e-6):
         self._f, self._pixel = f, pixel
         self._alpha = np.geomspace(0.1, 4.0, 300)
-        self.figure = new_figure(10.2, 3.5, cols=3, width_ratios=(1.2, 1, 1.3))
-        self._whole, self._close, curve = self.figure.axes
+        self.figure, self._whole, self._close, curve = subplots(10.2, 3.5, cols=3, width_ratios=(1.2, 1, 1.3))
         far, near = 1000 * f, 1000 * float(image_distance(0.1, f))  # mm behind the lens: the pictures' range
         self._whole.set(xlim=(-2.5, 1.2 * far), ylim=(-2.1, 2.1), aspect="equal", title="Lens and sensor, to scale")
         self._whole.set(xlabel="behind the lens [mm]", ylabel="height [mm]")

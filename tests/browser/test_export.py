@@ -13,7 +13,7 @@ from ir50p_lab.publishing.formulas import mathml
 from ir50p_lab.publishing.pictures import plain_outputs
 
 CELLS = [
-    "from ir50p_lab.course.figures import new_figure\nfigure = new_figure(3, 2)\nfigure",
+    "from ir50p_lab.course.style import new_figure\nfigure = new_figure(3, 2)\nfigure",
     "import ipywidgets\nfrom ir50p_lab.course.widgets import live\nlive(new_figure(3, 2), lambda a: None, a=(0, 1, 0.1, 0))",
     "from ir50p_lab.course.strip_chart import StripChart\n"
     "chart = StripChart(['a'], duration=1, ylim=(0, 1), ylabel='x [m]', title='t')\ndisplay(chart)\n"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.course.clickable import click_sets, data_coordinates
-from ir50p_lab.course.figures import new_figure
+from ir50p_lab.course.style import new_figure
 from ir50p_lab.course.widgets import live, slider
 from ir50p_lab.errors import InputError
 

@@ -10,19 +10,10 @@ import pytest
 from mpl_toolkits.mplot3d import Axes3D
 from PIL import Image
 
-from ir50p_lab.course.figures import (
-    COLOURS,
-    SETPOINT,
-    ArmView,
-    FrameView,
-    SideView,
-    arm_points,
-    figure_style,
-    new_figure,
-    readme_picture,
-    show,
-)
+from ir50p_lab.course.arm3d import ArmView, FrameView, SideView, arm_points
+from ir50p_lab.course.figures import readme_picture
 from ir50p_lab.course.painter import Painter
+from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import IR50P, THESIS_RODS, Arm, forward_kinematics, frames
 
@@ -85,16 +76,6 @@ def test_a_figure_shows_itself_sharp_and_at_its_own_size():
     data, size = figure._repr_png_()
     assert Image.open(io.BytesIO(data)).size == (600, 400)
     assert size == {"width": 300, "height": 200}
-
-
-def test_show_hands_the_figure_to_the_notebook(monkeypatch):
-    import IPython.display
-
-    shown = []
-    monkeypatch.setattr(IPython.display, "display", shown.append)
-    figure = new_figure()
-    show(figure)
-    assert shown == [figure]
 
 
 @pytest.mark.parametrize("arm", ARMS, ids=lambda arm: arm.name)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.course.figures import new_figure
 from ir50p_lab.course.speed_views import ColumnsView, pace
+from ir50p_lab.course.style import new_figure
 from ir50p_lab.modelling import IR50P, THESIS_RODS, forward_kinematics, jacobian
 
 Q = np.array([0.4, 0.9, -1.3])

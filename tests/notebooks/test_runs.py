@@ -66,7 +66,7 @@ def assert_solved(number, tmp_path, source, first=()):
 
 
 BROKEN = """
-from ir50p_lab.course.figures import new_figure
+from ir50p_lab.course.style import new_figure
 from ir50p_lab.course.widgets import live, slider
 figure = new_figure(3, 2)
 line, = figure.axes[0].plot([0, 1], [0, 1])

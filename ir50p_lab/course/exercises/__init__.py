@@ -43,18 +43,15 @@ Rules:
 - `pytest tests/course/test_exercises.py` tries every exercise of every module; read start.py as the example.
 """
 
-from __future__ import annotations
-
 import textwrap
 
-from ir50p_lab.course.exercises._answers import Slip
+from ir50p_lab.course.exercises._answers import Choice, Exercise, Slip, Verdict, grade
 from ir50p_lab.course.exercises._catalogue import everything, find
-from ir50p_lab.course.exercises._choices import Choice
 from ir50p_lab.course.exercises._display import Note, show
-from ir50p_lab.course.exercises._exercise import Exercise, Verdict, grade
 from ir50p_lab.course.exercises._functions import Function
 from ir50p_lab.course.exercises._numbers import Number
-from ir50p_lab.course.exercises._progress import ProgressError, read_progress, record
+from ir50p_lab.course.exercises._progress import read_progress, record
+from ir50p_lab.course.student_file import LabBookError
 from ir50p_lab.errors import InputError
 
 __all__ = [
@@ -88,7 +85,7 @@ def check(name: str, answer=...) -> None:
     if verdict.state == "right":
         try:
             record(exercise.name)
-        except ProgressError as error:
+        except LabBookError as error:
             text += f" (Not noted: {error})"
     more = (("one input that fails", verdict.example),) if verdict.example else ()
     show(Note(verdict.state, exercise.name, text, more, open_first=True))
@@ -111,7 +108,7 @@ def progress() -> None:
     """Print all exercises by notebook: done or open."""
     try:
         done, note = read_progress(), ""
-    except ProgressError as error:
+    except LabBookError as error:
         done, note = {}, str(error)
     last = None
     for notebook, one in everything():

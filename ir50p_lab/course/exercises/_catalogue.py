@@ -1,13 +1,11 @@
 """Where exercises are found: one module a notebook, imported when its prefix is asked for."""
 
-from __future__ import annotations
-
 import difflib
 import importlib
 import pkgutil
 from pathlib import Path
 
-from ir50p_lab.course.exercises._exercise import Exercise
+from ir50p_lab.course.exercises._answers import Exercise
 from ir50p_lab.errors import InputError
 
 _PACKAGE = __name__.rpartition(".")[0]

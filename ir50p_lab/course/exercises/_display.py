@@ -1,7 +1,5 @@
 """How the verdict on an answer looks, in a notebook and as plain text."""
 
-from __future__ import annotations
-
 import html
 import re
 from dataclasses import dataclass

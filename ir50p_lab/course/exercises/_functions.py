@@ -1,7 +1,5 @@
 """Answers that are functions: tried out on the inputs of the exercise, as the functions of `my_robot` are."""
 
-from __future__ import annotations
-
 import dis
 import functools
 import inspect
@@ -35,11 +33,8 @@ class Function(Kind):
     def wanted(self) -> str:
         """What is asked for, in words, without the answer."""
         value = shape_in_words(np.shape(self.right(*self._inputs[0])))
-        return f"a function of ({', '.join(self._names)}) that returns {value}{f' in {self.unit}' * bool(self.unit)}"
-
-    @property
-    def _names(self):
-        return tuple(inspect.signature(self.right).parameters)
+        names = ", ".join(inspect.signature(self.right).parameters)
+        return f"a function of ({names}) that returns {value}{f' in {self.unit}' * bool(self.unit)}"
 
     @property
     def _inputs(self):
@@ -70,8 +65,6 @@ class Function(Kind):
         """Return the state, what to say and an input that fails, by the rules for functions of `my_robot`."""
         task = Task(
             name=exercise.name,
-            notebook="",
-            signature=self._names,
             asks=exercise.task,
             right=self.right,
             loan="",

@@ -1,7 +1,5 @@
 """Answers that are numbers: one, a vector or a matrix."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

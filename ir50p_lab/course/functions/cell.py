@@ -71,7 +71,7 @@ def take(thing, name, earlier):
         elif one in _BACK_DOORS:
             raise CannotTake(f"it uses `{one}`: your robot stands on plain functions and NumPy alone")
         elif one not in _GIVEN and not hasattr(builtins, one):
-            raise CannotTake(_stranger(one, getattr(thing, "__globals__", None) or _globals_of_class(thing), text))
+            raise CannotTake(_stranger(one, getattr(_plain(thing), "__globals__", {}), text))
     for node in wanted:
         _refuse_imports(node)
     patches = [one for one in tree.body if re.match(r"(np|numpy|math)\.\w+ = ", ast.unparse(one))]
@@ -82,23 +82,18 @@ def take(thing, name, earlier):
 
 
 def _cell_text(thing):
-    code = _code_of(thing)
+    code = getattr(_plain(thing), "__code__", None)
     text = "".join(linecache.getlines(code.co_filename)) if code else ""
     if not text:
         raise CannotTake("its text is not to be found: define it in a cell of the notebook, with `def`")
     return text
 
 
-def _code_of(thing):
+def _plain(thing):
+    """The function itself; of a class its first one, or None."""
     if hasattr(thing, "__code__"):
-        return thing.__code__
-    methods = [value for value in vars(thing).values() if hasattr(value, "__code__")]
-    return methods[0].__code__ if methods else None
-
-
-def _globals_of_class(thing):
-    methods = [value for value in vars(thing).values() if hasattr(value, "__globals__")]
-    return methods[0].__globals__ if methods else {}
+        return thing
+    return next((value for value in vars(thing).values() if hasattr(value, "__code__")), None)
 
 
 def _definitions(tree):
@@ -201,7 +196,7 @@ def has_dots(text):
 
 def written_wrong(function):
     """What a function's own lines tell: an argument overwritten, `==` for `=`, one array under many names; or ""."""
-    code = _code_of(inspect.unwrap(function))
+    code = getattr(_plain(inspect.unwrap(function)), "__code__", None)
     file, given = getattr(code, "co_filename", ""), code.co_varnames[: code.co_argcount] if code else ()
     tree = ast.parse("".join(linecache.getlines(file)) if file.startswith(ROOM) else "")
     for one in [part for function in ast.walk(tree) if isinstance(function, ast.FunctionDef) for part in function.body]:

@@ -111,11 +111,9 @@ _LOAN_PID = """class PID:
         return np.clip(push + self.integral, -self.limit, self.limit)"""
 
 
-def _stage(name, signature, right, loan, asks, hints, *parts):
+def _stage(name, right, loan, asks, hints, *parts):
     return Task(
         name=name,
-        notebook="08",
-        signature=signature,
         asks=asks,
         right=right,
         loan=loan,
@@ -126,21 +124,21 @@ def _stage(name, signature, right, loan, asks, hints, *parts):
 
 
 TASKS = (
-    _stage("PID.p", ("kp",), _P, _LOAN_P, "a class whose `step` gives three pushes in PWM counts, kp times the error",
+    _stage("PID.p", _P, _LOAN_P, "a class whose `step` gives three pushes in PWM counts, kp times the error",
            ("How far away is each joint? One line gives three numbers.",
             "The arm is below the target. Should the push be positive or negative? Does yours agree?"),
            *trials.PUSH, trials.gains("kp")),
-    _stage("PID.pi", ("kp", "ki", "period"), _PI, _LOAN_PI, "the same with a memory, `self.integral`, and a `reset`",
+    _stage("PID.pi", _PI, _LOAN_PI, "the same with a memory, `self.integral`, and a `reset`",
            ("In one period the error covers an area: error x period. Where is their sum kept between two steps?",
             "reset() sets the memory to three zeros; __init__ calls it, so that there is one from the beginning."),
            *trials.PUSH, *trials.MEMORY, trials.gains("kp", "ki")),
-    _stage("PID.limits", ("kp", "ki", "limit_pwm", "period"), _LimitedPI, _LOAN_LIMITS,
+    _stage("PID.limits", _LimitedPI, _LOAN_LIMITS,
            "the same within its limits, the integral resting while the push can grow no further",
            ("np.clip(push, -limit, limit) limits what is returned. What does the integral do meanwhile?",
             "What would the push be with the grown integral, before you clip it? Beyond the limit, "
             "and the error pushing further: keep the old one. np.where(condition, old, new) decides for all joints."),
            *trials.PUSH, *trials.MEMORY, *trials.LIMITS, trials.gains("kp", "ki")),
-    _stage("PID", ("kp", "ki", "kd", "limit_pwm", "period", "filter_hz"), PID, _LOAN_PID,
+    _stage("PID", PID, _LOAN_PID,
            "the whole controller: P, I within limits, and D against the filtered speed",
            ("Speed: how far the angle has moved since the last step, by the period. The first step knows none.",
             "First-order filter: at each sample the speed moves a share 1 - exp(-2 pi filter_hz period) of the way "

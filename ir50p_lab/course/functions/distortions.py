@@ -80,7 +80,8 @@ def _of_arguments(task):
         for m in range(k):
             if np.shape(case[k]) == np.shape(case[m]) and not callable(case[k]):
                 says = f"{task.signature[m]} and {task.signature[k]} have changed places"
-                yield Mistake(_exchanged(task, m, k), says)
+                order = [k if one == m else m if one == k else one for one in range(len(case))]
+                yield Mistake(lambda *case, order=order: task.right(*(case[one] for one in order)), says)
 
 
 def _readings(name, value):
@@ -96,7 +97,7 @@ def _readings(name, value):
                 found += [(f"{parts[i]} and {part} have changed places", _swapped(i, j))]
                 for sign, word in ((1, "+"), (-1, "-")):
                     says = f"{part} counts as {part} {word} {parts[i]}: from where is it measured?"
-                    found += [(says, _combined(i, j, sign))]
+                    found += [(says, _on_part([i, j], lambda x, sign=sign: x @ [[1, sign], [0, 1]]))]
     return found
 
 
@@ -133,15 +134,6 @@ def _reading(task, k, change):
     return lambda *case: task.right(*case[:k], change(case[k]), *case[k + 1 :])
 
 
-def _exchanged(task, m, k):
-    def wrong(*case):
-        case = list(case)
-        case[m], case[k] = case[k], case[m]
-        return task.right(*case)
-
-    return wrong
-
-
 def _result(task, change):
     def wrong(*case):
         right = task.right(*case)
@@ -151,6 +143,8 @@ def _result(task, change):
 
 
 def _on_part(j, change):
+    """A change of column j, or of a list of columns."""
+
     def edit(value):
         value = np.array(value, dtype=float)
         value[..., j] = change(value[..., j])
@@ -160,21 +154,7 @@ def _on_part(j, change):
 
 
 def _swapped(i, j):
-    def edit(value):
-        value = np.array(value, dtype=float)
-        value[..., [i, j]] = value[..., [j, i]]
-        return value
-
-    return edit
-
-
-def _combined(i, j, sign):
-    def edit(value):
-        value = np.array(value, dtype=float)
-        value[..., j] += sign * value[..., i]
-        return value
-
-    return edit
+    return _on_part([i, j], lambda x: x[..., ::-1])
 
 
 def _on_rows(change):

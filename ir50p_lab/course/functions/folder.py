@@ -145,7 +145,8 @@ def _small_test(task):
 
 
 def _plain(value):
-    return repr(value.tolist()).join(("array(", ")")) if isinstance(value, np.ndarray) else repr(value)
+    plain = repr(np.asarray(value).tolist())
+    return f"array({plain})" if isinstance(value, np.ndarray) else plain
 
 
 def _write(path, text):

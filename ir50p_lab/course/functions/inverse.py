@@ -3,26 +3,33 @@
 import numpy as np
 
 from ir50p_lab.course.functions.pose import _LENGTHS, forward_kinematics, frames
-from ir50p_lab.course.functions.task import Mistake, Task, shown
+from ir50p_lab.course.functions.task import Mistake, Task, mistakes, shown, text_of
 
-_EDGE = 1e-9  # m: rounding may put a stretched arm's own tip this far outside
 _SAME = 1e-5  # rad: near the stretched arm rounding of the place leaves the elbow uncertain by 3e-8, 2e-6 degrees
 
 
 # ---------------------------------------------------------------------------------------------- inverse_kinematics
 def inverse_kinematics(p, l):
     """All poses that put the tip on p, (n, 3); n = 0 out of reach    (1.60)-(1.73 corrected)."""
-    out, up = np.hypot(p[0], p[1]), p[2] - l[0]
-    r = np.hypot(out, up)
-    if not abs(l[1] - l[2]) - _EDGE <= r <= l[1] + l[2] + _EDGE:
+    x, y, z = p
+    l1, l2, l3 = l
+    height = z - l1
+    r = np.sqrt(x**2 + y**2 + height**2)
+    if r > l2 + l3 + 1e-9 or r < abs(l2 - l3) - 1e-9:
         return np.empty((0, 3))
-    bend = np.arccos(np.clip((r**2 - l[1] ** 2 - l[2] ** 2) / (2 * l[1] * l[2]), -1, 1))
-    poses = [
-        (np.arctan2(side * p[1], side * p[0]), np.arctan2(up, side * out) - _between(elbow, l), elbow)
-        for side in (1, -1)
-        for elbow in (-bend, bend)
-    ]
-    return np.angle(np.exp(1j * np.array(poses)))  # in NumPy: the package's waits a second for numba
+    cosine = (r**2 - l2**2 - l3**2) / (2 * l2 * l3)
+    bend = np.arccos(np.clip(cosine, -1, 1))
+    poses = []
+    for side in [1, -1]:
+        waist = np.arctan2(side * y, side * x)
+        distance_outwards = side * np.hypot(x, y)
+        for elbow in [-bend, bend]:
+            slope = np.arctan2(height, distance_outwards)
+            angle_between = np.arctan2(l3 * np.sin(elbow), l2 + l3 * np.cos(elbow))
+            turn = slope - angle_between
+            shoulder = np.arctan2(np.sin(turn), np.cos(turn))
+            poses.append([waist, shoulder, elbow])
+    return np.array(poses)
 
 
 def _targets():
@@ -230,28 +237,6 @@ def _fewer(answers, cases, expected):
     return "some places get fewer poses than others: are some struck out? Limits come later, in `reach`"
 
 
-_LOAN = """def inverse_kinematics(p, l):
-    x, y, z = p
-    l1, l2, l3 = l
-    height = z - l1
-    r = np.sqrt(x**2 + y**2 + height**2)
-    if r > l2 + l3 + 1e-9 or r < abs(l2 - l3) - 1e-9:
-        return np.empty((0, 3))
-    cosine = (r**2 - l2**2 - l3**2) / (2 * l2 * l3)
-    bend = np.arccos(np.clip(cosine, -1, 1))
-    poses = []
-    for side in [1, -1]:
-        waist = np.arctan2(side * y, side * x)
-        distance_outwards = side * np.hypot(x, y)
-        for elbow in [bend, -bend]:
-            slope = np.arctan2(height, distance_outwards)
-            angle_between = np.arctan2(l3 * np.sin(elbow), l2 + l3 * np.cos(elbow))
-            turn = slope - angle_between
-            shoulder = np.arctan2(np.sin(turn), np.cos(turn))
-            poses.append([waist, shoulder, elbow])
-    return np.array(poses)"""
-
-
 _BY_THE_TRIANGLE = """def inverse_kinematics(p, l):
     x, y, z = p
     l1, l2, l3 = l
@@ -274,14 +259,12 @@ _BY_THE_TRIANGLE = """def inverse_kinematics(p, l):
 
 INVERSE_KINEMATICS = Task(
     name="inverse_kinematics",
-    notebook="02",
-    signature=("p", "l"),
     asks="all poses (n, 3) rad that put the tip on p (m), one a row; no row if p is out of reach",
     right=inverse_kinematics,
     cases=_targets,
     leans_on=("forward_kinematics", "frames", "dh_matrix", "rot_z"),
     same=same_poses,
-    loan=_LOAN,
+    loan=text_of(inverse_kinematics),
     parts=("q1", "q2", "q3"),
     routes=(_BY_THE_TRIANGLE,),
     slips=(
@@ -316,16 +299,17 @@ INVERSE_KINEMATICS = Task(
 # ----------------------------------------------------------------------------------------------------------- reach
 def reach(p, l, q_now, limits):
     """The allowed pose that puts the tip on p with the smallest largest turn from q_now, (3,) or None."""
-    return _chosen(p, l, q_now, limits)
-
-
-def _chosen(p, l, q_now, limits, *, turn=None, allowed=None):
-    turn = turn or (lambda q: np.abs(q - q_now).max())
-    allowed = allowed or (lambda q: within(q, limits) and above_table(q, l))
-    best = [q for q in inverse_kinematics(p, l) if allowed(q)]
-    if not best:
-        return None
-    return min(best, key=turn)
+    best = None
+    smallest = np.inf
+    for pose in inverse_kinematics(p, l):
+        within_limits = np.all(pose >= limits[0]) and np.all(pose <= limits[1])
+        heights = frames(pose, l)[2:, 2, 3]
+        above_table = np.all(heights >= -1e-9)
+        turn = np.max(np.abs(pose - q_now))
+        if within_limits and above_table and turn < smallest:
+            best = pose
+            smallest = turn
+    return best
 
 
 def within(q, limits):
@@ -333,10 +317,14 @@ def within(q, limits):
     return bool((q >= limits[0]).all() and (q <= limits[1]).all())
 
 
-def above_table(q, l, parts=(2, 3)):
+def above_table(q, l):
     """Tell whether elbow and tip (frames 2 and 3) are not below the table."""
-    heights = frames(q, l)[list(parts), 2, 3]
-    return bool((heights >= -1e-9).all())
+    return bool((frames(q, l)[2:, 2, 3] >= -1e-9).all())
+
+
+def allowed(q, l, limits):
+    """Tell whether a pose keeps the limits and stays above the table."""
+    return within(q, limits) and above_table(q, l)
 
 
 def _reach_cases():
@@ -379,8 +367,7 @@ def _reach_cases():
 
 def _has_one_best(p, l, q_now, limits):
     """Tell whether no other allowed pose turns its busiest joint nearly as little, within 0.05 rad."""
-    allowed = [q for q in inverse_kinematics(p, l) if within(q, limits) and above_table(q, l)]
-    turns = sorted(np.abs(q - q_now).max() for q in allowed)
+    turns = sorted(np.abs(q - q_now).max() for q in inverse_kinematics(p, l) if allowed(q, l, limits))
     return len(turns) < 2 or turns[1] - turns[0] > 0.05
 
 
@@ -435,120 +422,95 @@ def _reach_symptom(cases, returned, expected):
     )
 
 
-def _turned(says, turn):
-    """A Mistake that compares the turns in another way."""
-    return Mistake(lambda p, l, q, m: _chosen(p, l, q, m, turn=lambda x: turn(x, q)), says)
-
-
-def _allowed(says, allowed, parts=(2, 3)):
-    """A Mistake that strikes out other poses: what keeps the limits, and which frames have to stay above the table."""
-    return Mistake(
-        lambda p, l, q, m: _chosen(p, l, q, m, allowed=lambda x: allowed(x, m) and above_table(x, l, parts)), says
-    )
-
-
-def _only_the_nearest(p, l, q_now, limits):
-    nearest = _chosen(p, l, q_now, limits, allowed=lambda x: True)
-    return nearest if nearest is not None and within(nearest, limits) and above_table(nearest, l) else None
-
-
-def _none_if_one_is_refused(p, l, q_now, limits):
-    all_in = all(within(q, limits) and above_table(q, l) for q in inverse_kinematics(p, l))
-    return reach(p, l, q_now, limits) if all_in else None
+def _nearest(p, l, q_now):
+    """The pose alone that is nearest, allowed or not, as a list; empty out of reach."""
+    return sorted(inverse_kinematics(p, l), key=lambda q: np.max(np.abs(q - q_now)))[:1]
 
 
 def _removed_in_the_loop(p, l, q_now, limits):
     rows = inverse_kinematics(p, l).tolist()
     for q in rows:
-        if not (within(q, limits) and above_table(q, l)):
+        if not allowed(q, l, limits):
             rows.remove(q)
     return min(rows, key=lambda q: np.abs(q - q_now).max(), default=None)
 
 
-def _one_allowed(p, l, q_now, limits, number):
-    allowed = [q for q in inverse_kinematics(p, l) if within(q, limits) and above_table(q, l)]
-    return allowed[number] if allowed else None
-
+_KEPT = "np.all(pose >= limits[0]) and np.all(pose <= limits[1])"  # within_limits
 
 REACH = Task(
     name="reach",
-    notebook="02",
-    signature=("p", "l", "q_now", "limits"),
     asks="the allowed pose (3,) for p whose largest joint turn from q_now is smallest, elbow and tip not below the "
     "table; None if there is none",
     right=reach,
     cases=_reach_cases,
     leans_on=("inverse_kinematics", "forward_kinematics", "frames", "dh_matrix", "rot_z"),
     same=_same_pose,
-    loan="""def reach(p, l, q_now, limits):
-    best = None
-    smallest = np.inf
-    for pose in inverse_kinematics(p, l):
-        within_limits = np.all(pose >= limits[0]) and np.all(pose <= limits[1])
-        heights = frames(pose, l)[2:, 2, 3]
-        above_table = np.all(heights >= -1e-9)
-        turn = np.max(np.abs(pose - q_now))
-        if within_limits and above_table and turn < smallest:
-            best = pose
-            smallest = turn
-    return best""",
+    loan=text_of(reach),
     parts=("q1", "q2", "q3"),
     slips=(
-        _turned("it takes the allowed pose that is farthest away", lambda x, q: -np.abs(x - q).max()),
-        *(
-            _turned(f"yours {says}; asked for is the pose whose largest turn is smallest", turn)
-            for says, turn in (
-                ("adds up the turns of the three joints", lambda x, q: np.abs(x - q).sum()),
-                ("takes the length, the root of the squares", lambda x, q: np.linalg.norm(x - q)),
-                ("compares the smallest turn of each pose", lambda x, q: np.abs(x - q).min()),
-                ("compares turns with their sign, so that a far one counts as small", lambda x, q: (x - q).max()),
-                ("compares the angles, not how far they are from q_now", lambda x, q: np.abs(x).max()),
-            )
+        *mistakes(
+            reach,
+            ("it takes the allowed pose that is farthest away", "np.max(np -> -np.max(np"),
+            *(
+                (f"yours {says}; asked for is the pose whose largest turn is smallest",
+                 f"np.max(np.abs(pose - q_now)) -> {turn}")
+                for says, turn in (
+                    ("adds up the turns of the three joints", "np.sum(np.abs(pose - q_now))"),
+                    ("takes the length, the root of the squares", "np.linalg.norm(pose - q_now)"),
+                    ("compares the smallest turn of each pose", "np.min(np.abs(pose - q_now))"),
+                    ("compares turns with their sign, so that a far one counts as small", "np.max(pose - q_now)"),
+                    ("compares the angles, not how far they are from q_now", "np.max(np.abs(pose))"),
+                )
+            ),
+            ("the first allowed pose wins: is its largest turn compared with those of the others?",
+             "turn < smallest -> best is None"),
+            ("the last allowed pose wins: is its largest turn compared with the smallest so far, and is that kept "
+             "up to date?", " and turn < smallest -> "),
+            *((f"only the turn of joint {j + 1} is compared", f"pose - q_now -> pose[{j}] - q_now[{j}]")
+              for j in range(3)),
+            ("a turn counts as the short way round, through an end stop: a joint turns straight from angle to angle",
+             "pose - q_now -> np.angle(np.exp(1j * (pose - q_now)))"),
+            ("where the nearest pose is forbidden it gives up, although a farther one is allowed: first strike out, "
+             "then compare", "in inverse_kinematics(p, l) -> in _nearest(p, l, q_now)"),
+            ("neither limits nor table are asked: what is nearest may be forbidden",
+             "within_limits and above_table and -> "),
+            ("the limits are not asked: the nearest pose may be forbidden", "if within_limits and -> if"),
+            ("elbow or tip may end below z = 0: is the table not asked, or another number than their heights?",
+             "and above_table -> "),
+            ("one joint within its limits is enough in it: all have to be",
+             f"{_KEPT} -> ((pose >= limits[0]) & (pose <= limits[1])).any()"),
+            ("the heights are those of the arm as it stands now, not those of the pose",
+             "frames(pose, -> frames(q_now,"),
         ),
-        Mistake(lambda *case: _one_allowed(*case, 0),
-                "the first allowed pose wins: is its largest turn compared with those of the others?"),
-        Mistake(lambda *case: _one_allowed(*case, -1),
-                "the last allowed pose wins: is its largest turn compared with the smallest so far, and is that kept "
-                "up to date?"),
-        *(_turned(f"only the turn of joint {j + 1} is compared", lambda x, q, j=j: abs(x[j] - q[j])) for j in range(3)),
-        _turned("a turn counts as the short way round, through an end stop: a joint turns straight from angle to angle",
-                lambda x, q: np.abs(np.angle(np.exp(1j * (x - q)))).max()),
-        Mistake(_only_the_nearest,
-                "where the nearest pose is forbidden it gives up, although a farther one is allowed: first strike out, "
-                "then compare"),
-        _allowed("neither limits nor table are asked: what is nearest may be forbidden", lambda x, m: True, ()),
-        _allowed("the limits are not asked: the nearest pose may be forbidden", lambda x, m: True),
-        _allowed("elbow or tip may end below z = 0: is the table not asked, or another number than their heights?",
-                 within, ()),
-        _allowed("one joint within its limits is enough in it: all have to be",
-                 lambda x, m: ((x >= m[0]) & (x <= m[1])).any()),
-        Mistake(lambda p, l, q, m: _chosen(p, l, q, m, allowed=lambda x: within(x, m) and above_table(q, l)),
-                "the heights are those of the arm as it stands now, not those of the pose"),
         Mistake(_removed_in_the_loop,
                 "a row that is taken out of the list the loop walks along makes it skip the next one"),
-        Mistake(_none_if_one_is_refused, "one pose that is refused ends the search: the others may be allowed"),
-        Mistake(lambda p, l, q, m: (lambda x: None if x is None else x - q)(reach(p, l, q, m)),
-                "it returns the turn from q_now, not the pose"),
-        _allowed("the tip stays above the table, the elbow does not: it counts, too", within, (3,)),
-        _allowed("the elbow stays above the table, the tip does not: it counts, too", within, (2,)),
-        *(
-            _allowed(f"the limits of joint {j + 1} are not asked",
-                     lambda x, m, j=j: within(np.delete(x, j), np.delete(m, j, axis=1)))
-            for j in range(3)
+        *mistakes(
+            reach,
+            ("one pose that is refused ends the search: the others may be allowed",
+             "return best -> return best if all(allowed(q, l, limits) for q in inverse_kinematics(p, l)) else None"),
+            ("it returns the turn from q_now, not the pose",
+             "return best -> return best if best is None else best - q_now"),
+            ("the tip stays above the table, the elbow does not: it counts, too", "[2:, 2, 3] -> [3, 2, 3]"),
+            ("the elbow stays above the table, the tip does not: it counts, too", "[2:, 2, 3] -> [2, 2, 3]"),
+            *(
+                (f"the limits of joint {j + 1} are not asked",
+                 f"{_KEPT} -> within(np.delete(pose, {j}), np.delete(limits, {j}, axis=1))")
+                for j in range(3)
+            ),
+            *(
+                ("the two rows of `limits` are read as columns: the first row holds the lower ones, the second the "
+                 "upper", f"{_KEPT} -> {columns}")
+                for columns in (
+                    "all(limits[k, 0] <= pose[k] <= limits[k, 1] for k in range(2))",
+                    "np.all(limits[0, 0] <= pose) and np.all(pose <= limits[0, 1])",
+                )
+            ),
+            ("only the upper limits are asked", "np.all(pose >= limits[0]) and -> "),
+            ("only the lower limits are asked", "and np.all(pose <= limits[1]) -> "),
+            ("the upper limits serve as lower ones, too: those are others", "pose >= limits[0] -> -pose <= limits[1]"),
+            ("a joint that stands exactly on its limit is refused: the limits themselves are allowed",
+             "pose >= limits -> pose > limits", "pose <= limits -> pose < limits"),
         ),
-        *(
-            _allowed("the two rows of `limits` are read as columns: the first row holds the lower ones, the second the "
-                     "upper", columns)
-            for columns in (
-                lambda x, m: all(m[k, 0] <= x[k] <= m[k, 1] for k in range(2)),
-                lambda x, m: (m[0, 0] <= x).all() and (x <= m[0, 1]).all(),
-            )
-        ),
-        _allowed("only the upper limits are asked", lambda x, m: (x <= m[1]).all()),
-        _allowed("only the lower limits are asked", lambda x, m: (x >= m[0]).all()),
-        _allowed("the upper limits serve as lower ones, too: those are others", lambda x, m: (np.abs(x) <= m[1]).all()),
-        _allowed("a joint that stands exactly on its limit is refused: the limits themselves are allowed",
-                 lambda x, m: (x > m[0]).all() and (x < m[1]).all()),
     ),
     symptom=_reach_symptom,
     hints=(

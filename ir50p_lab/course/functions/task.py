@@ -1,7 +1,7 @@
 """One function that the student writes: what is asked, on what it is tried, and how it is wrong when it is wrong."""
 
-from __future__ import annotations
-
+import inspect
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -28,12 +28,32 @@ class Mistake:
     of_code: bool = False
 
 
+def text_of(*functions):
+    """Functions as a student would write them: their text without the docstring."""
+    texts = (re.sub(r'\n    """.*?"""', "", inspect.getsource(one), count=1, flags=re.DOTALL) for one in functions)
+    return "\n\n".join(texts).rstrip()
+
+
+def changed(function, *changes):
+    """The function with its text changed here and there: "old -> new"."""
+    text, names = text_of(function), dict(function.__globals__)
+    for change in changes:
+        text = text.replace(*change.split(" -> "))
+    exec(text, names)
+    return names[function.__name__]
+
+
+def mistakes(function, *rows):
+    """Mistakes of a solution. rows: what to say, then the changes of its text that make it (see `changed`)."""
+    return [Mistake(changed(function, *changes), says) for says, *changes in rows]
+
+
 @dataclass(frozen=True)
 class Task:
     """A function of `my_robot`.
 
-    name, notebook: of the function, and the notebook that asks for it; signature: its arguments, as in `def`.
-    asks: one line, what it returns; right: the course's own answer, a function of the same arguments.
+    name: of the function; asks: one line, what it returns; right: the course's own answer, a function of the same
+    arguments; signature: their names.
     cases: tuples of arguments, edge cases among them; leans_on: earlier functions it may call.
     slips: mistakes with a sentence of their own, most specific first; the usual ones need none (`distortions`);
     routes: other solutions, as text; parts: names of what stands beside each other in the answer.
@@ -47,8 +67,6 @@ class Task:
     """
 
     name: str
-    notebook: str
-    signature: tuple
     asks: str
     right: Callable
     loan: str
@@ -65,6 +83,13 @@ class Task:
     unit: str = ""
     tried: Callable | None = None
     test: str = ""
+    signature: tuple = ()
+
+    def __post_init__(self):
+        """Take the names of the arguments from the right answer; further options are the course's own affair."""
+        found = inspect.signature(self.right).parameters.values()
+        names = tuple(one.name for one in found if one.kind != one.VAR_KEYWORD)
+        object.__setattr__(self, "signature", self.signature or names)
 
     @property
     def function(self):

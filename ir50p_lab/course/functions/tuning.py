@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ir50p_lab.course.functions.task import Mistake, Task
+from ir50p_lab.course.functions.task import Task, mistakes, text_of
 
 _NAMES = ("rise time", "overshoot", "settling time", "rest error")
 _TOLERANCE = (1e-3, 1e-5, 0.0105, 3e-4)  # s, rad; with or without the sample on the edge of the last second
@@ -19,61 +19,23 @@ def step_metrics(t, q, target):
     neighbouring samples of the last second differ by, std(diff)/sqrt(2): a slow swing does not widen its own band. With
     3 sigma one sample in 370 is outside and is taken for the end of the step.
     """
-    return _figures(t, q, target)
-
-
-def _figures(
-    t,
-    q,
-    target,
-    *,
-    low=0.1,
-    high=0.9,
-    about=None,
-    rests=None,
-    band=None,
-    over=None,
-    rise=None,
-    settling=None,
-    rest=None,
-    tail=1.0,
-    samples=None,
-):
-    """The figures, each with a place where somebody may err."""
     way = target - q[0]
-    last = q[t >= t[-1] - tail - 1e-9] if samples is None else q[-samples:]
-    about = target if about is None else about(q, last)
+    last_second = q[t >= t[-1] - 1 - 1e-9]
     done = (q - q[0]) / way
-    found = [np.nan, 0.0, np.nan, target - np.mean(last)]
-    if (done >= high).any():
-        begin, end = t[np.argmax(done >= low)], t[np.argmax(done >= high)]
-        found[0] = end - begin if rise is None else rise(begin, end)
-    elif rise is not None:
-        found[0] = rise(np.nan, np.nan)
-    found[1] = max(0.0, np.max(np.sign(way) * (q - about))) if over is None else over(q, target, way)
-    width = max(0.02 * abs(way), 4 * _noise(last)) if band is None else band(way, last)
-    outside = np.abs(q - (about if rests is None else rests(last))) > width
-    found[2] = (settling or _settled)(t, outside) if outside.any() else 0.0
-    if rest is not None:
-        found[3] = rest(q, target, last)
-    return tuple(float(one) for one in found)
-
-
-def _noise(last):
-    return np.std(np.diff(last)) / np.sqrt(2)
-
-
-_SIZES = (_noise, np.std)  # of the noise: by neighbours, or plainly, where a swing widens its own band
-
-
-def _settled(t, outside):
+    rise = np.nan
+    if np.any(done >= 0.9):
+        rise = t[np.argmax(done >= 0.9)] - t[np.argmax(done >= 0.1)]
+    overshoot = max(0, np.max(np.sign(way) * (q - target)))
+    noise = np.std(np.diff(last_second)) / np.sqrt(2)
+    band = max(0.02 * abs(way), 4 * noise)
+    outside = np.abs(q - target) > band
     if outside[-1]:
-        return np.nan
-    return t[np.flatnonzero(outside)[-1] + 1] - t[0]
-
-
-def _first_inside(t, outside):
-    return np.nan if outside.all() else t[np.argmin(outside)] - t[0]
+        settling = np.nan
+    elif np.any(outside):
+        settling = t[np.flatnonzero(outside)[-1] + 1] - t[0]
+    else:
+        settling = 0
+    return rise, overshoot, settling, target - np.mean(last_second)
 
 
 def _second_order(t, start, target, *, speed, damping, noise=0.0, rng=None, stop=None, short=0.0):
@@ -202,151 +164,119 @@ def _from_zero(cases, off):
     return not off[begins == 0].any() and off[(begins != 0) & upwards].any() and off[~upwards].any()
 
 
-def _slip(says, **changes):
-    return Mistake(lambda t, q, target: _figures(t, q, target, **changes), says)
-
-
-def _percent(q, target, way):
-    return 100 * max(0.0, np.max(np.sign(way) * (q - target))) / abs(way)
-
+# parts of the solution that mistakes replace
+_OVER = "max(0, np.max(np.sign(way) * (q - target)))"
+_BAND = "max(0.02 * abs(way), 4 * noise)"
+_LAST = "np.flatnonzero(outside)[-1]"
+_REST = "target - np.mean(last_second)"
 
 STEP_METRICS = Task(
     name="step_metrics",
-    notebook="09_break_it_tune_it",
-    signature=("t", "q", "target"),
     asks="rise time, overshoot, settling time and rest error of a step of one joint: four numbers (s, rad, s, rad)",
     right=step_metrics,
     cases=_cases,
     same=_same,
     parts=_NAMES,
     unit="(s, rad, s, rad)",
-    loan="""def step_metrics(t, q, target):
-    way = target - q[0]
-    done = (q - q[0]) / way
-    rise = np.nan
-    if np.any(done >= 0.9):
-        rise = t[np.argmax(done >= 0.9)] - t[np.argmax(done >= 0.1)]
-    overshoot = max(0, np.max(np.sign(way) * (q - target)))
-    last_second = q[t >= t[-1] - 1 - 1e-9]
-    noise = np.std(np.diff(last_second)) / np.sqrt(2)
-    band = max(0.02 * abs(way), 4 * noise)
-    outside = np.abs(q - target) > band
-    if outside[-1]:
-        settling = np.nan
-    elif np.any(outside):
-        settling = t[np.flatnonzero(outside)[-1] + 1] - t[0]
-    else:
-        settling = 0
-    return rise, overshoot, settling, target - np.mean(last_second)""",
-    slips=(
-        _slip("the overshoot is in percent of the step; here it is an angle, rad", over=_percent),
-        _slip("the overshoot is a part of the step, without unit; here it is an angle, rad",
-              over=lambda q, target, way: _percent(q, target, way) / 100),
-        _slip("steps downwards overshoot by the whole step: beyond the target is *below* it there",
-              over=lambda q, target, way: max(0.0, np.max(q - target))),
-        _slip("a joint that stays short of its target overshoots by less than nothing with you; no overshoot is 0",
-              over=lambda q, target, way: np.max(np.sign(way) * (q - target))),
-        _slip("a joint that never passes its target has an overshoot, too: the largest distance on either side "
-              "counts the start as well",
-              over=lambda q, target, way: np.max(np.abs(q - target))),
-        _slip("overshoot and settling are taken about where the joint ends; asked is about where it should end",
-              about=lambda q, last: np.mean(last)),
-        _slip("overshoot and settling are taken about the last angle; asked is about where it should end",
-              about=lambda q, last: q[-1]),
-        _slip("the band lies about where the joint ends; asked is about the target: a joint beside it has not settled",
-              rests=np.mean),
+    loan=text_of(step_metrics),
+    slips=mistakes(
+        step_metrics,
+        ("the overshoot is in percent of the step; here it is an angle, rad",
+         "overshoot, settling -> 100 * overshoot / abs(way), settling"),
+        ("the overshoot is a part of the step, without unit; here it is an angle, rad",
+         "overshoot, settling -> overshoot / abs(way), settling"),
+        ("steps downwards overshoot by the whole step: beyond the target is *below* it there",
+         "np.sign(way) * (q - target) -> q - target"),
+        ("a joint that stays short of its target overshoots by less than nothing with you; no overshoot is 0",
+         f"{_OVER} -> np.max(np.sign(way) * (q - target))"),
+        ("a joint that never passes its target has an overshoot, too: the largest distance on either side counts the "
+         "start as well", f"{_OVER} -> np.max(np.abs(q - target))"),
+        ("overshoot and settling are taken about where the joint ends; asked is about where it should end",
+         "(q - target) -> (q - np.mean(last_second))"),
+        ("overshoot and settling are taken about the last angle; asked is about where it should end",
+         "(q - target) -> (q - q[-1])"),
+        ("the band lies about where the joint ends; asked is about the target: a joint beside it has not settled",
+         "abs(q - target) -> abs(q - np.mean(last_second))"),
         *(
-            Mistake(
-                lambda t, q, target, k=k, size=size: _figures(
-                    t, q, target, band=lambda way, last: max(0.02 * abs(way), k * size(q))
-                ),
-                "the band is that of the whole run, the step itself counts as noise: take the last second",
-            )
+            ("the band is that of the whole run, the step itself counts as noise: take the last second",
+             f"4 * noise -> {k} * {size}")
             for k in (3, 4)
-            for size in _SIZES
+            for size in ("np.std(np.diff(q)) / np.sqrt(2)", "np.std(q)")
         ),
-        Mistake(
-            lambda t, q, target: _figures(
-                t, q, target, band=lambda way, last: max(0.02 * abs(target), 4 * _noise(last))
-            ),
-            "the band is 2 % of the target: a step to 0 would have none. It is 2 % of the way from the start",
-        ),
-        Mistake(lambda t, q, target: _figures(t, np.r_[0.0, q[1:]], target),
-                "every step begins at 0 rad: look at the first sample for where this one begins"),
-        Mistake(lambda t, q, target: (np.nan if target < q[0] else _figures(t, q, target)[0],
-                                      *_figures(t, q, target)[1:]),
-                "steps downwards never rise with you: the way there is negative, and so is what is done of it"),
-        _slip("the rise time is negative: which of the two marks does the joint pass first?", rise=lambda a, b: a - b),
+        ("the band is 2 % of the target: a step to 0 would have none. It is 2 % of the way from the start",
+         "abs(way) -> abs(target)"),
+        ("every step begins at 0 rad: look at the first sample for where this one begins",
+         "way = target - q[0] -> way = target - (q := np.r_[0.0, q[1:]])[0]"),
+        ("steps downwards never rise with you: the way there is negative, and so is what is done of it",
+         "any(done >= 0.9) -> any(done >= 0.9) and way > 0"),
+        ("the rise time is negative: which of the two marks does the joint pass first?", "return rise -> return -rise"),
         *(
-            _slip(f"the rise time goes {marks}, not from 10 to 90 % of the way", low=low, high=high)
+            (f"the rise time goes {marks}, not from 10 to 90 % of the way",
+             f">= 0.9 -> >= {high}", f">= 0.1 -> >= {low}")
             for marks, low, high in (
-                ("from the start to 90 %", -np.inf, 0.9),
+                ("from the start to 90 %", "-np.inf", 0.9),
                 ("from 10 % to the target itself", 0.1, 1.0),
                 ("from 10 to 95 %", 0.1, 0.95),
                 ("from 5 to 95 %", 0.05, 0.95),
             )
         ),
-        _slip("the overshoot is that of the last sample, not of the farthest one",
-              over=lambda q, target, way: max(0.0, np.sign(way) * (q[-1] - target))),
-        _slip("the rest error is a median; asked is the mean", rest=lambda q, target, last: target - np.median(last)),
-        _slip("the last second begins one sample late: its first sample is included", tail=1 - 1e-6),
-        _slip("where the angle trembles it settles late or never: four standard deviations of the noise widen the band",
-              band=lambda way, last: 0.02 * abs(way)),
-        _slip("the band is 4 standard deviations only: without noise it has no width, and 2 % of the way is allowed",
-              band=lambda way, last: 4 * _noise(last)),
-        _slip("the band is too wide: 4 standard deviations of the noise are asked for, and the difference of two "
-              "samples has the noise of both",
-              band=lambda way, last: max(0.02 * abs(way), 4 * np.std(np.diff(last)))),
+        ("the overshoot is that of the last sample, not of the farthest one",
+         "np.max(np.sign(way) * (q - -> (np.sign(way) * (q[-1] -"),
+        ("the rest error is a median; asked is the mean", "np.mean -> np.median"),
+        ("the last second begins one sample late: its first sample is included", "- 1e-9 -> + 1e-6"),
+        ("where the angle trembles it settles late or never: four standard deviations of the noise widen the band",
+         f"{_BAND} -> 0.02 * abs(way)"),
+        ("the band is 4 standard deviations only: without noise it has no width, and 2 % of the way is allowed",
+         f"{_BAND} -> 4 * noise"),
+        ("the band is too wide: 4 standard deviations of the noise are asked for, and the difference of two samples "
+         "has the noise of both", " / np.sqrt(2) -> "),
         *(
-            _slip("a slow swing widens the band: noise is what *neighbours* differ by, here the whole scatter is taken",
-                  band=lambda way, last, k=k: max(0.02 * abs(way), k * np.std(last)))
+            ("a slow swing widens the band: noise is what *neighbours* differ by, here the whole scatter is taken",
+             f"4 * noise -> {k} * np.std(last_second)")
             for k in (4, 3)
         ),
         *(
-            _slip(f"the band is {k} standard deviations of the noise wide, 4 are asked for: a single sample is soon "
-                  "beyond it", band=lambda way, last, k=k: max(0.02 * abs(way), k * _noise(last)))
+            (f"the band is {k} standard deviations of the noise wide, 4 are asked for: a single sample is soon "
+             "beyond it", f"4 * noise -> {k} * noise")
             for k in (1, 2, 3)
         ),
-        _slip("the narrower of both bands is taken; asked is the wider",
-              band=lambda way, last: min(0.02 * abs(way), 4 * _noise(last))),
-        _slip("the band is 2 % and the noise together; asked is the wider of the two",
-              band=lambda way, last: 0.02 * abs(way) + 4 * _noise(last)),
+        ("the narrower of both bands is taken; asked is the wider", "band = max -> band = min"),
+        ("the band is 2 % and the noise together; asked is the wider of the two",
+         f"{_BAND} -> 0.02 * abs(way) + 4 * noise"),
         *(
-            _slip(f"the band is {percent} % of the way; asked is 2 %",
-                  band=lambda way, last, part=percent / 100: max(part * abs(way), 4 * _noise(last)))
+            (f"the band is {percent} % of the way; asked is 2 %", f"0.02 -> {percent / 100}")
             for percent in (1, 4, 5, 10)
         ),
-        _slip("it counts to the last sample inside; asked is the first after which the joint stays inside",
-              settling=lambda t, outside: np.nan if outside[-1] else t[np.flatnonzero(~outside)[-1]] - t[0]),
-        _slip("the overshoot compares sizes without their sign: a step that passes 0 shows it",
-              over=lambda q, target, way: max(0.0, np.max(np.abs(q)) - abs(target))),
-        _slip("for steps downwards the band has a negative width, so the joint is never inside: how *long* is the way?",
-              band=lambda way, last: max(0.02 * way, 4 * _noise(last))),
-        _slip("it is settled when it is inside for the first time; a joint that swings leaves the band again",
-              settling=_first_inside),
-        _slip("it is settled when it is inside for the first time; a joint that swings leaves the band again",
-              settling=lambda t, outside: np.nan if outside[-1] else _first_inside(t, outside)),
-        Mistake(lambda t, q, target: (_figures(t, q, q[-1])[0], *_figures(t, q, target)[1:]),
-                "the rise goes by where the joint ends: the way is from its first angle to the *target*"),
-        _slip("it counts from the first sample outside, not from the last",
-              settling=lambda t, outside: np.nan if outside[-1] else t[np.argmax(outside) + 1] - t[0]),
-        _slip("a clock that begins at 3 s makes it settle 3 s later: the time counts from where the step begins",
-              settling=lambda t, outside: np.nan if outside[-1] else t[np.flatnonzero(outside)[-1] + 1]),
-        _slip("the settling time ends at the last sample outside; inside is the one after it (a slow clock shows it)",
-              settling=lambda t, outside: np.nan if outside[-1] else t[np.flatnonzero(outside)[-1]] - t[0]),
-        _slip("the rest error has the other sign: what is missing is positive, the target less where it is",
-              rest=lambda q, target, last: np.mean(last) - target),
+        ("it counts to the last sample inside; asked is the first after which the joint stays inside",
+         "(outside)[-1] + 1 -> (~outside)[-1]"),
+        ("the overshoot compares sizes without their sign: a step that passes 0 shows it",
+         "np.max(np.sign(way) * (q - target)) -> np.max(np.abs(q)) - abs(target)"),
+        ("for steps downwards the band has a negative width, so the joint is never inside: how *long* is the way?",
+         "abs(way) -> way"),
+        ("it is settled when it is inside for the first time; a joint that swings leaves the band again",
+         "if outside[-1] -> if np.all(outside)", f"{_LAST} + 1 -> np.argmin(outside)"),
+        ("it is settled when it is inside for the first time; a joint that swings leaves the band again",
+         f"{_LAST} + 1 -> np.argmin(outside)"),
+        ("the rise goes by where the joint ends: the way is from its first angle to the *target*",
+         "(q - q[0]) / way -> (q - q[0]) / (q[-1] - q[0])"),
+        ("it counts from the first sample outside, not from the last", f"{_LAST} -> np.argmax(outside)"),
+        ("a clock that begins at 3 s makes it settle 3 s later: the time counts from where the step begins",
+         " - t[0] -> "),
+        ("the settling time ends at the last sample outside; inside is the one after it (a slow clock shows it)",
+         "[-1] + 1 -> [-1]"),
+        ("the rest error has the other sign: what is missing is positive, the target less where it is",
+         f"{_REST} -> np.mean(last_second) - target"),
         *(
-            _slip("the rest error has lost its sign: short and too far are not the same", rest=rest)
-            for rest in (lambda q, target, last: abs(target - np.mean(last)),
-                         lambda q, target, last: np.mean(np.abs(target - last)))
+            ("the rest error has lost its sign: short and too far are not the same", f"{_REST} -> {rest}")
+            for rest in (f"abs({_REST})", "np.mean(np.abs(target - last_second))")
         ),
-        _slip("the rest error rests on the very last sample, which trembles: take the mean of the last second",
-              rest=lambda q, target, last: target - q[-1]),
-        _slip("the rest error and the noise are those of the last half second: a whole second is asked for", tail=0.5),
+        ("the rest error rests on the very last sample, which trembles: take the mean of the last second",
+         f"{_REST} -> target - q[-1]"),
+        ("the rest error and the noise are those of the last half second: a whole second is asked for",
+         "- 1 - 1e-9 -> - 0.5 - 1e-9"),
         *(
-            _slip("the last second is taken as a number of samples: not every computer is that quick; ask the clock",
-                  samples=samples)
+            ("the last second is taken as a number of samples: not every computer is that quick; ask the clock",
+             f"t >= t[-1] - 1 - 1e-9 -> -{samples}:")
             for samples in (100, 101, 99)
         ),
     ),

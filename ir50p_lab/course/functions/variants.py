@@ -13,14 +13,29 @@ import numpy as np
 
 from ir50p_lab.course.functions.task import Mistake
 
-_PAIRS = {"sin": "cos", "cos": "sin", "arccos": "arcsin", "all": "any", "max": "min"}
-_PAIR_WORDS = {
-    "sin": "sine and cosine have changed places",
-    "cos": "sine and cosine have changed places",
-    "arccos": "arcsin stands where the cosine has to be undone",
-    "all": "one is enough where all are asked for",
-    "max": "the smallest counts, not the largest",
-}
+_OF_NUMPY = (  # functions, what to say, what stands in their place; {0}, {1}: arguments, {all} of them, {call}: itself
+    ("sin", "sine and cosine have changed places", "np.cos({all})"),
+    ("cos", "sine and cosine have changed places", "np.sin({all})"),
+    ("arccos", "arcsin stands where the cosine has to be undone", "np.arcsin({all})"),
+    ("all", "one is enough where all are asked for", "np.any({all})"),
+    ("max", "the smallest counts, not the largest", "np.min({all})"),
+    ("cross", "the factors of the cross product have changed places", "np.cross({1}, {0})"),
+    ("arctan2", "the two arguments of arctan2 have changed places", "np.arctan2({1}, {0})"),
+    ("cross", "a product entry by entry (`*`) stands for the cross product", "({0}) * ({1})"),
+    ("cross", "a sum stands for the cross product", "({0}) + ({1})"),
+    ("cross", "the lever is cut to length 1", "np.cross({0}, ({1}) / np.linalg.norm({1}))"),
+    ("arctan2", "a quotient cannot tell two opposite directions apart", "np.arctan(({0}) / ({1}))"),
+    ("arctan2", "arcsin does not know angles beyond a quarter turn", "np.arcsin(({0}) / np.hypot({0}, {1}))"),
+    ("hypot", "x alone counts, not the distance", "{0}"),
+    ("max", "the sum counts, not the largest", "np.sum({all})"),
+    ("max", "the length (root of squares) counts, not the largest", "np.linalg.norm({all})"),
+    ("abs sqrt sin cos arccos", "{name} is missing", "{0}"),
+    ("arccos arctan2", "an angle is made into degrees before it is used", "np.degrees({call})"),
+    ("solve", "the matrix is multiplied, nothing is solved", "({0}) @ ({1})"),
+    ("solve", "`/` divides entry by entry, nothing is solved", "({1}) / ({0})"),
+    ("eye", "what belongs on the diagonal stands in all entries", "np.ones(2 * ({0},))"),
+    ("eye zeros empty", "an array of integers cuts off what is put into it", "np.{name}({all}, dtype=int)"),
+)
 _OWN_WORDS = ("condition", "loop", "what_it_returns", "half_a_turn", "the_identity", "T1", "T2", "T3")
 _NAMED = re.compile(
     r" \((?:that on )?(?P<named>[\w ]+)\)|: look at (?:the )?(?P<place>[\w ]+)$"
@@ -268,43 +283,11 @@ def _of_operation(left, op, right):
 
 
 def _of_numpy(node, name, args):
-    if name in _PAIRS:
-        yield _PAIR_WORDS[name], ast.Call(_parsed(f"np.{_PAIRS[name]}"), args, node.keywords)
-    if name in ("cross", "arctan2"):
-        words = "the factors of the cross product" if name == "cross" else "the two arguments of arctan2"
-        yield f"{words} have changed places", ast.Call(node.func, args[::-1], [])
-    if name == "cross":
-        yield "a product entry by entry (`*`) stands for the cross product", ast.BinOp(args[0], ast.Mult(), args[1])
-        yield "a sum stands for the cross product", ast.BinOp(*_between(args, ast.Add()))
-        unit = _parsed("({0}) / np.linalg.norm({0})".format(ast.unparse(args[1])))
-        yield "the lever is cut to length 1", ast.Call(node.func, [args[0], unit], [])
-    if name == "arctan2":
-        words = "a quotient cannot tell two opposite directions apart"
-        yield words, ast.Call(_parsed("np.arctan"), [ast.BinOp(*_between(args, ast.Div()))], [])
-        sine = "np.arcsin(({0}) / np.hypot({0}, {1}))".format(*map(ast.unparse, args))
-        yield "arcsin does not know angles beyond a quarter turn", _parsed(sine)
-    if name == "hypot":
-        yield "x alone counts, not the distance", args[0]
-    if name == "max":
-        yield "the sum counts, not the largest", ast.Call(_parsed("np.sum"), args, [])
-        yield "the length (root of squares) counts, not the largest", ast.Call(_parsed("np.linalg.norm"), args, [])
-    if name in ("abs", "sqrt", "sin", "cos", "arccos"):
-        yield f"{name} is missing", args[0]
-    if name in ("arccos", "arctan2"):
-        yield "an angle is made into degrees before it is used", ast.Call(_parsed("np.degrees"), [copy.copy(node)], [])
-    if name == "solve":
-        yield "the matrix is multiplied, nothing is solved", ast.BinOp(*_between(args, ast.MatMult()))
-        yield "`/` divides entry by entry, nothing is solved", ast.BinOp(*_between(args[::-1], ast.Div()))
-    if name == "eye":
-        ones = _parsed(f"np.ones(2 * ({ast.unparse(args[0])},))")
-        yield "what belongs on the diagonal stands in all entries", ones
-    if name in ("eye", "zeros", "empty"):
-        whole = [ast.keyword("dtype", ast.Name("int", ast.Load()))]
-        yield "an array of integers cuts off what is put into it", ast.Call(node.func, args, whole)
-
-
-def _between(args, op):
-    return args[0], op, args[1]
+    texts = [ast.unparse(one) for one in args]
+    for functions, words, other in _OF_NUMPY:
+        if name in functions.split():
+            text = other.format(*texts, name=name, all=", ".join(texts), call=ast.unparse(node))
+            yield words.format(name=name), _parsed(text)
 
 
 def _parsed(text):

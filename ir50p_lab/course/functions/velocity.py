@@ -3,27 +3,20 @@
 import numpy as np
 
 from ir50p_lab.course.functions.pose import _LENGTHS, forward_kinematics, frames
-from ir50p_lab.course.functions.task import Mistake, Task
+from ir50p_lab.course.functions.task import Task, mistakes, text_of
 
 
 # -------------------------------------------------------------------------------------------------------- jacobian
 def jacobian(T, link, point):
     """Velocity and turning of a point carried by a link, per joint speed, (6, 3)    (1.32)-(1.43 corrected)."""
-    return _columns(T, link, point)
-
-
-def _columns(T, link, point, *, axis=None, across=np.cross, turns=0, begins=0):
-    """The Jacobian, with another axis or product; turns, begins: how many frames too far axis and lever are taken."""
     J = np.zeros((6, 3))
     for joint in range(link):
-        z = T[joint + turns][:3, 2] if axis is None else axis
-        J[:3, joint] = across(z, point - T[joint + begins][:3, 3])
-        J[3:, joint] = z
+        axis = T[joint][:3, 2]
+        origin = T[joint][:3, 3]
+        lever = point - origin
+        J[:3, joint] = np.cross(axis, lever)
+        J[3:, joint] = axis
     return J
-
-
-def _unit(vector):
-    return vector / max(np.linalg.norm(vector), 1e-12)
 
 
 def _points():
@@ -62,73 +55,55 @@ def _jacobian_symptom(cases, returned, expected):
 
 JACOBIAN = Task(
     name="jacobian",
-    notebook="03",
-    signature=("T", "link", "point"),
     tolerance=1e-5,  # as for damped_step
     asks="the matrix (6, 3) of a point (base coordinates) carried by link 1, 2 or 3: velocity above, turning below, "
     "one column a joint, from the four frames T",
     right=jacobian,
     cases=_points,
     leans_on=("frames", "dh_matrix", "rot_z"),
-    loan="""def jacobian(T, link, point):
-    J = np.zeros((6, 3))
-    for joint in range(link):
-        axis = T[joint][:3, 2]
-        origin = T[joint][:3, 3]
-        lever = point - origin
-        J[:3, joint] = np.cross(axis, lever)
-        J[3:, joint] = axis
-    return J""",
-    slips=(
+    loan=text_of(jacobian),
+    slips=mistakes(
+        jacobian,
         *(
-            Mistake(
-                lambda T, k, p, turns=turns, begins=begins: _columns(T, k, p, turns=turns, begins=begins),
-                f"{says} taken from frame k, one too far: joint k turns about z of the frame before, and stands at its "
-                "origin; the first column needs T[0]",
-            )
-            for says, turns, begins in (
-                ("the axis of joint k is", 1, 0),
-                ("the lever of joint k is", 0, 1),
-                ("axis and lever of joint k are", 1, 1),
+            (f"{says} taken from frame k, one too far: joint k turns about z of the frame before, and stands at its "
+             "origin; the first column needs T[0]", change)
+            for says, change in (
+                ("the axis of joint k is", "T[joint][:3, 2] -> T[joint + 1][:3, 2]"),
+                ("the lever of joint k is", "T[joint][:3, 3] -> T[joint + 1][:3, 3]"),
+                ("axis and lever of joint k are", "T[joint] -> T[joint + 1]"),
             )
         ),
-        Mistake(lambda T, k, p: _columns(T, k, T[k][:3, 3]), "the end of the link moves in it: `point` is not used"),
-        Mistake(lambda T, k, p: _columns(T, k, T[3][:3, 3]), "it is the tip that moves in it: `point` is not used"),
-        Mistake(lambda T, k, p: jacobian(T, k, p)[:, :k],
-                "there are three columns always: joints that do not carry the link get zeros"),
-        Mistake(lambda T, k, p: _columns(T, k, p, across=lambda z, _: np.cross(z, p)),
-                "the levers all start at the base: each starts at its own joint"),
-        Mistake(lambda T, k, p: _columns(T, k, p, across=lambda z, _: np.cross(z, p - T[k][:3, 3])),
-                "the levers all start in the link's own frame, T[link]: each starts at its own joint"),
-        Mistake(lambda T, k, p: jacobian(T, 3, p),
-                "all three joints move every link: link 2 moves with joint 3, which comes after it"),
-        Mistake(lambda T, k, p: np.vstack([jacobian(T, k, p)[:3], jacobian(T, 3, p)[3:]]),
-                "the velocity is right, but in the lower rows all three joints turn every link: which ones carry it?"),
-        Mistake(lambda T, k, p: np.vstack([jacobian(T, k, p)[:3], np.zeros((3, 3))]),
-                "the lower three rows are never filled: about which axis does each joint turn the link?"),
-        Mistake(
-            lambda T, k, p: _columns(T, k, p, across=lambda z, lever: np.cross(lever, z)),
-            "the velocities point backwards: the factors of the cross product have changed places, or the lever goes "
-            "from the point to the joint",
-        ),
-        Mistake(lambda T, k, p: _columns(T, k, (T[k] @ np.append(p, 1))[:3]),
-                "the point is turned and shifted once more: it is given in base coordinates already"),
-        Mistake(lambda T, k, p: _columns(T, k, p, axis=T[k][:3, 2]),
-                "every joint turns about z of the link's own frame: each has an axis of its own"),
-        Mistake(lambda T, k, p: _columns(T, k, p, axis=T[k - 1][:3, 2]),
-                "every joint turns about the axis of the link's last one: each has an axis of its own"),
-        Mistake(lambda T, k, p: np.roll(jacobian(T, k, p) * (np.arange(3) < k - 1), 1, axis=1),
-                "column 1 is always 0, and what belongs there stands in column 2: is the first column number 0?"),
-        Mistake(lambda T, k, p: jacobian(T, k, p) * (np.arange(3) == k - 1),
-                "the link's own joint alone moves it: those before it carry it, too"),
-        Mistake(lambda T, k, p: _columns(T, 3, p) * (np.arange(3) >= k),
-                "the joints after the link move it, those that carry it do not"),
-        Mistake(lambda T, k, p: np.vstack([jacobian(T, k, p)[:3], np.cumsum(jacobian(T, 3, p)[3:], axis=1)])
-                * (np.arange(3) < k), "the turnings are added up from column to column: each is one joint's own"),
-        Mistake(lambda T, k, p: _columns(T, k, p, across=lambda z, lever: _unit(np.cross(z, lever))),
-                "every velocity has length 1: a longer lever makes it faster"),
-        Mistake(lambda T, k, p: _columns(T, k, p, axis=np.array([0.0, 0, 1])),
-                "every joint turns about the vertical in it: the axes of shoulder and elbow lie flat"),
+        ("the end of the link moves in it: `point` is not used", "point - origin -> T[link][:3, 3] - origin"),
+        ("it is the tip that moves in it: `point` is not used", "point - origin -> T[3][:3, 3] - origin"),
+        ("there are three columns always: joints that do not carry the link get zeros",
+         "return J -> return J[:, :link]"),
+        ("the levers all start at the base: each starts at its own joint", "point - origin -> point"),
+        ("the levers all start in the link's own frame, T[link]: each starts at its own joint",
+         "point - origin -> point - T[link][:3, 3]"),
+        ("all three joints move every link: link 2 moves with joint 3, which comes after it",
+         "range(link) -> range(3)"),
+        ("the velocity is right, but in the lower rows all three joints turn every link: which ones carry it?",
+         "range(link) -> range(3)", "np.cross(axis, lever) -> np.cross(axis, lever) * (joint < link)"),
+        ("the lower three rows are never filled: about which axis does each joint turn the link?", "= axis -> = 0"),
+        ("the velocities point backwards: the factors of the cross product have changed places, or the lever goes from "
+         "the point to the joint", "(axis, lever) -> (lever, axis)"),
+        ("the point is turned and shifted once more: it is given in base coordinates already",
+         "point - origin -> (T[link] @ np.append(point, 1))[:3] - origin"),
+        ("every joint turns about z of the link's own frame: each has an axis of its own",
+         "joint][:3, 2 -> link][:3, 2"),
+        ("every joint turns about the axis of the link's last one: each has an axis of its own",
+         "joint][:3, 2 -> link - 1][:3, 2"),
+        ("column 1 is always 0, and what belongs there stands in column 2: is the first column number 0?",
+         "return J -> return np.roll(J * (np.arange(3) < link - 1), 1, axis=1)"),
+        ("the link's own joint alone moves it: those before it carry it, too",
+         "return J -> return J * (np.arange(3) == link - 1)"),
+        ("the joints after the link move it, those that carry it do not", "range(link) -> range(link, 3)"),
+        ("the turnings are added up from column to column: each is one joint's own",
+         "= axis -> = J[3:, joint - 1] + axis"),
+        ("every velocity has length 1: a longer lever makes it faster",
+         "np.cross(axis, lever) -> np.cross(axis, lever) / max(np.linalg.norm(np.cross(axis, lever)), 1e-12)"),
+        ("every joint turns about the vertical in it: the axes of shoulder and elbow lie flat",
+         "T[joint][:3, 2] -> np.array([0.0, 0, 1])"),
     ),
     symptom=_jacobian_symptom,
     hints=(
@@ -141,26 +116,14 @@ JACOBIAN = Task(
 # ----------------------------------------------------------------------------------------------------- damped_step
 def damped_step(q, p, l, damping):
     """One step of damped least squares towards p, the next q (3,)    (1.56)-(1.59 corrected)."""
-    return _step(q, p, l, damping)
-
-
-def _step(q, p, l, damping, *, solve=None, rows=slice(3), point=None):
     T = frames(q, l)
     tip = T[3][:3, 3]
-    J = jacobian(T, 3, tip if point is None else point)[rows]
-    missing = np.pad(p - tip, (0, len(J) - 3))
-    dq = solve(J, missing, damping) if solve else J.T @ np.linalg.solve(J @ J.T + damping**2 * np.eye(len(J)), missing)
-    return q + dq
-
-
-def _changed(says, change):
-    """A Mistake that changes the step before it is added."""
-    return Mistake(lambda q, p, l, d: q + change(damped_step(q, p, l, d) - q, d), says)
-
-
-def _solved(says, solve):
-    """A Mistake that finds the step in another way."""
-    return Mistake(lambda q, p, l, d: _step(q, p, l, d, solve=solve), says)
+    J = jacobian(T, 3, tip)[:3]
+    missing = p - tip
+    matrix = J @ J.T + damping**2 * np.eye(3)
+    push = np.linalg.solve(matrix, missing)
+    step = J.T @ push
+    return q + step
 
 
 def _steps():
@@ -241,67 +204,50 @@ _BY_NORMAL_EQUATIONS = """def damped_step(q, p, l, damping):
 
 DAMPED_STEP = Task(
     name="damped_step",
-    notebook="03",
-    signature=("q", "p", "l", "damping"),
     asks="the next q (3,) rad after one damped step towards p (m)",
     right=damped_step,
     cases=_steps,
     leans_on=("jacobian", "forward_kinematics", "frames", "dh_matrix", "rot_z"),
     tolerance=1e-5,  # a Jacobian by differences over 1e-6 rad leaves 2e-6
     parts=("q1", "q2", "q3"),
-    loan="""def damped_step(q, p, l, damping):
-    T = frames(q, l)
-    tip = T[3][:3, 3]
-    J = jacobian(T, 3, tip)[:3]
-    missing = p - tip
-    matrix = J @ J.T + damping**2 * np.eye(3)
-    push = np.linalg.solve(matrix, missing)
-    step = J.T @ push
-    return q + step""",
+    loan=text_of(damped_step),
     routes=(_BY_NORMAL_EQUATIONS,),
-    slips=(
-        _changed("the step is made into degrees before it is added: all is rad here", lambda dq, d: np.degrees(dq)),
-        _solved("the damping is subtracted on the diagonal: does that make a step shorter?",
-                lambda J, e, d: J.T @ np.linalg.solve(J @ J.T - d**2 * np.eye(3), e)),
-        _solved("the matrix is J' J, but the right side is what is missing, untouched: joints here, metres there",
-                lambda J, e, d: np.linalg.solve(J.T @ J + d**2 * np.eye(3), e)),
-        _solved("the damping only multiplies the plain step: it belongs inside, into what is solved",
-                lambda J, e, d: d * np.linalg.solve(J, e)),
-        _solved("the transpose comes before the solving: it belongs behind, to bring the answer to the joints",
-                lambda J, e, d: np.linalg.solve(J @ J.T + d**2 * np.eye(3), J.T @ e)),
-        _solved("the damping is added to J itself: that changes where the step leads, instead of shortening it",
-                lambda J, e, d: np.linalg.solve(J + d * np.eye(3), e)),
-        _solved("a number is added to all nine entries of the matrix; the 1 of the formula is the matrix np.eye(3)",
-                lambda J, e, d: J.T @ np.linalg.solve(J @ J.T + d**2, e)),
-        _solved("the answer of solve is added as it is: it is no turn of joints yet, the turned-over matrix is missing",
-                lambda J, e, d: np.linalg.solve(J @ J.T + d**2 * np.eye(3), e)),
-        _solved("`**-1` inverts each entry, not the matrix",
-                lambda J, e, d: J.T @ ((J @ J.T + d**2 * np.eye(3)) ** -1.0 @ e)),
-        _solved("the damping is multiplied with the diagonal of the matrix: the formula has the same for all joints",
-                lambda J, e, d: np.linalg.solve(J.T @ J + d**2 * np.diag(np.diag(J.T @ J)), J.T @ e)),
-        _solved("each joint steps as if it were alone: one joint's formula does not hold for three together",
-                lambda J, e, d: J.T @ e / (np.diag(J.T @ J) + d**2)),
-        _solved("the damping is added to the turn: it belongs inside, into what is solved",
-                lambda J, e, d: np.linalg.solve(J.T @ J, J.T @ e) + d**2),
-        _solved("the damping only strikes out weak directions (`rcond`): inside the matrix it shortens the step in all",
-                lambda J, e, d: np.linalg.lstsq(J, e, rcond=d)[0]),
-        Mistake(lambda q, p, l, d: damped_step(q, p, l * [1, 1, 0], d), "the elbow is taken for the tip"),
-        Mistake(lambda q, p, l, d: damped_step(q, p + forward_kinematics(q, l), l, d),
-                "it steps by p itself: how far is p from the tip?"),
-        Mistake(lambda q, p, l, d: np.angle(np.exp(1j * damped_step(q, p, l, d))),
-                "the angles are wrapped to half a turn: a joint goes where the step leads, leave them as they are"),
-        *(
-            Mistake(lambda q, p, l, d, point=point: _step(q, p, l, d, point=point(p, frames(q, l))),
-                    f"the Jacobian is taken {at}: it is the tip that moves")
-            for at, point in (
-                ("at the place that is wanted", lambda p, T: p),
-                ("at the elbow", lambda p, T: T[2][:3, 3]),
-            )
-        ),
-        Mistake(lambda q, p, l, d: _step(q, p, l, d, rows=slice(6)),
-                "all six rows count in it, so that the hand must not turn, either: a place has three numbers"),
-        Mistake(lambda q, p, l, d: _step(q, p, l, d, rows=slice(3, 6)),
-                "the lower three rows of the Jacobian are used, the turning: a place needs the velocity"),
+    slips=mistakes(
+        damped_step,
+        ("the step is made into degrees before it is added: all is rad here", "q + step -> q + np.degrees(step)"),
+        ("the damping is subtracted on the diagonal: does that make a step shorter?", "J.T + damping -> J.T - damping"),
+        ("the matrix is J' J, but the right side is what is missing, untouched: joints here, metres there",
+         "J @ J.T + -> J.T @ J +", "J.T @ push -> push"),
+        ("the damping only multiplies the plain step: it belongs inside, into what is solved",
+         "J.T @ push -> damping * np.linalg.solve(J, missing)"),
+        ("the transpose comes before the solving: it belongs behind, to bring the answer to the joints",
+         "(matrix, missing) -> (matrix, J.T @ missing)", "J.T @ push -> push"),
+        ("the damping is added to J itself: that changes where the step leads, instead of shortening it",
+         "J.T @ push -> np.linalg.solve(J + damping * np.eye(3), missing)"),
+        ("a number is added to all nine entries of the matrix; the 1 of the formula is the matrix np.eye(3)",
+         "damping**2 * np.eye(3) -> damping**2"),
+        ("the answer of solve is added as it is: it is no turn of joints yet, the turned-over matrix is missing",
+         "J.T @ push -> push"),
+        ("`**-1` inverts each entry, not the matrix", "J.T @ push -> J.T @ (matrix**-1.0 @ missing)"),
+        ("the damping is multiplied with the diagonal of the matrix: the formula has the same for all joints",
+         "J @ J.T + damping**2 * np.eye(3) -> J.T @ J + damping**2 * np.diag(np.diag(J.T @ J))",
+         "(matrix, missing) -> (matrix, J.T @ missing)", "J.T @ push -> push"),
+        ("each joint steps as if it were alone: one joint's formula does not hold for three together",
+         "J.T @ push -> J.T @ missing / (np.diag(J.T @ J) + damping**2)"),
+        ("the damping is added to the turn: it belongs inside, into what is solved",
+         "J.T @ push -> np.linalg.solve(J.T @ J, J.T @ missing) + damping**2"),
+        ("the damping only strikes out weak directions (`rcond`): inside the matrix it shortens the step in all",
+         "J.T @ push -> np.linalg.lstsq(J, missing, rcond=damping)[0]"),
+        ("the elbow is taken for the tip", "frames(q, l) -> frames(q, l * [1, 1, 0])"),
+        ("it steps by p itself: how far is p from the tip?", "p - tip -> p"),
+        ("the angles are wrapped to half a turn: a joint goes where the step leads, leave them as they are",
+         "q + step -> np.angle(np.exp(1j * (q + step)))"),
+        ("the Jacobian is taken at the place that is wanted: it is the tip that moves", "(T, 3, tip) -> (T, 3, p)"),
+        ("the Jacobian is taken at the elbow: it is the tip that moves", "(T, 3, tip) -> (T, 3, T[2][:3, 3])"),
+        ("all six rows count in it, so that the hand must not turn, either: a place has three numbers",
+         "tip)[:3] -> tip)", "p - tip -> np.pad(p - tip, (0, 3))", "np.eye(3) -> np.eye(6)"),
+        ("the lower three rows of the Jacobian are used, the turning: a place needs the velocity",
+         "tip)[:3] -> tip)[3:]"),
     ),
     symptom=_step_symptom,
     hints=(

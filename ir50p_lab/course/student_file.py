@@ -1,0 +1,47 @@
+"""Files of the student's, as readable JSON: whole or not at all, and a remedy where one is damaged."""
+
+import json
+from contextlib import contextmanager
+
+from ir50p_lab import home
+from ir50p_lab.errors import LabError
+
+
+class LabBookError(LabError):
+    """The lab book or the progress cannot be read or written; the message says what to do."""
+
+
+def read_json(path, empty, is_right):
+    """Return the content over `empty`, a dict; `empty` alone where there is no file yet.
+
+    is_right: function of the content. Raises LabBookError where it is not, and for a file that cannot be read.
+    """
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        if is_right(content):
+            return {**empty, **content}
+    except FileNotFoundError:
+        return empty
+    except OSError as error:
+        raise LabBookError(f"{path} cannot be read ({error.strerror})") from error
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        pass  # as if it were not right
+    raise LabBookError(f"{path} is damaged: rename or delete it, and a new one is begun")
+
+
+@contextmanager
+def writing(path, folder):
+    """Make the folder; what goes wrong while a file is written there becomes a LabBookError."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        yield
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        remedy = f"set {home.VARIABLE} to a folder that you may write to"
+        raise LabBookError(f"{path} cannot be written ({reason}): {remedy}") from error
+
+
+def write_json(path, content, folder):
+    """Write a file in one step, the folder as well. Raises LabBookError."""
+    with writing(path, folder):
+        home.replace_text(path, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
