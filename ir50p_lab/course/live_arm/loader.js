@@ -2,11 +2,12 @@
 const load = async (model) => {
   const holder = await model.widget_manager.get_model(model.get("bundle").slice("IPY_MODEL_".length));
   const bundles = (globalThis.ir50pLiveArm ??= {});
-  bundles[holder.get("digest")] ??= (async () => {
-    const unpacked = new Blob([holder.get("packed")]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const packed = holder.get("packed"); // as long as another: the same, of a kernel before
+  bundles[packed.byteLength] ??= (async () => {
+    const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
     const script = new Blob([await new Response(unpacked).text()], { type: "text/javascript" });
     return import(URL.createObjectURL(script));
   })();
-  return bundles[holder.get("digest")];
+  return bundles[packed.byteLength];
 };
 export default { render: async (view) => (await load(view.model)).render(view) };
