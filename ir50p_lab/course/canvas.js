@@ -1,8 +1,15 @@
 // The browser's side of canvas.py. As a data URL a picture is shown two frames earlier than as a blob, which goes
 // through another process of the browser.
+function dataUrl({ buffer, byteOffset, byteLength }) {
+  const bytes = new Uint8Array(buffer, byteOffset, byteLength);
+  let letters = "";
+  for (let k = 0; k < byteLength; k += 0x8000) letters += String.fromCharCode(...bytes.subarray(k, k + 0x8000));
+  return "data:image/png;base64," + btoa(letters);
+}
+
 function render({ model, el }) {
   const img = Object.assign(document.createElement("img"), { alt: model.get("description"), decoding: "sync", draggable: false });
-  const show = () => { img.src = model.get("value"); };
+  const show = () => { img.src = dataUrl(model.get("value")); };
   img.style.cssText = `width:100%;cursor:${model.get("clickable") ? "crosshair" : "default"}`;
   img.addEventListener("click", (event) => {
     const box = img.getBoundingClientRect();

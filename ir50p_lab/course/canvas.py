@@ -1,12 +1,9 @@
 """A picture in the browser that hears clicks."""
 
-from base64 import b64encode
 from pathlib import Path
 
 import anywidget
 import traitlets
-
-__all__ = ["Canvas"]
 
 
 class Canvas(anywidget.AnyWidget):
@@ -16,7 +13,7 @@ class Canvas(anywidget.AnyWidget):
     """
 
     _esm = Path(__file__).with_suffix(".js")
-    value = traitlets.Bytes().tag(sync=True, to_json=lambda png, _: f"data:image/png;base64,{b64encode(png).decode()}")
+    value = traitlets.Bytes().tag(sync=True)
     description = traitlets.Unicode().tag(sync=True)
     clickable = traitlets.Bool().tag(sync=True)
     ratio = traitlets.Float(1.0).tag(sync=True)

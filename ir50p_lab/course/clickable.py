@@ -8,6 +8,7 @@ Everything the mouse does the sliders and number boxes of the panel do as well, 
 
 import contextlib
 
+from ir50p_lab.course.controls import on_scale
 from ir50p_lab.errors import InputError
 
 __all__ = ["click_sets"]
@@ -33,12 +34,7 @@ def click_sets(panel, axes, *, x, y):
         if axes.get_window_extent().contains(*pixel):
             place = zip((x, y), axes.transData.inverted().transform(pixel), strict=True)
             with contextlib.suppress(Exception):  # it is in the status line
-                panel.set(**{name: _on_scale(panel.controls[name], value) for name, value in place})
+                panel.set(**{name: on_scale(panel.controls[name], value) for name, value in place})
 
     panel.image.on_click(clicked)
     return panel
-
-
-def _on_scale(control, value):
-    steps = round((value - control.min) / control.step)
-    return type(control.value)(min(max(control.min + steps * control.step, control.min), control.max))

@@ -152,7 +152,9 @@ class LivePanel(widgets.VBox):
 
     def _show(self):
         if self._painter is None:
-            _words_below_curves(self.figure)
+            for ax in self.figure.axes:  # titles and legends below what moves: above it they are drawn each time
+                for words in filter(None, (ax.title, ax.get_legend())):
+                    words.set_zorder(min(words.get_zorder(), 1.9))  # lines: 2, a grid at most 1.5
             self._painter = Painter(self.figure)
         self.image.value = self._painter.png()
         time.sleep(0.001)  # the thread that sends it takes its turn now, not after Python's usual 5 ms
@@ -173,13 +175,6 @@ class LivePanel(widgets.VBox):
             if old._run[0] and old._run[0] == self._run[0] and old._run != self._run:
                 LivePanel.panels.discard(old)
                 close_all(old)
-
-
-def _words_below_curves(figure):
-    """Titles and legends below what moves: drawn each time, they would cost as much as all curves."""
-    for ax in figure.axes:
-        for words in filter(None, (ax.title, ax.get_legend())):
-            words.set_zorder(min(words.get_zorder(), 1.9))  # lines: 2, a grid at most 1.5
 
 
 def _explain(error):

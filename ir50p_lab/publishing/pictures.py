@@ -41,8 +41,8 @@ def _parts(model_id, widgets, still, live):
         yield _arm(state, buffers, still) if live else _image(still)
     elif str(state.get("value")).startswith("<svg"):  # a chart
         yield state["value"]
-    elif str(state.get("value")).startswith("data:image/"):  # a picture on a canvas
-        yield f'<img src="{state["value"]}">'
+    elif buffers.get(("value",)):
+        yield _image(buffers["value",].replace("\n", ""))
     for child in state.get("children", ()):
         yield from _parts(child.removeprefix("IPY_MODEL_"), widgets, still, live)
 
