@@ -19,7 +19,7 @@ import ipywidgets as widgets
 import numpy as np
 
 from ir50p_lab.controllers.base import GAINS, gains_of, set_gains
-from ir50p_lab.course.controls import close_all, make_control, slider
+from ir50p_lab.course.controls import close_all, make_control, on_scale, slider
 from ir50p_lab.course.scope import Scope
 from ir50p_lab.errors import InputError, LabError
 
@@ -214,9 +214,7 @@ class BenchPanel(widgets.VBox):
         self._quiet.on = True
         try:
             for name, value in values.items():
-                control = self.controls[name]
-                steps = round((value - control.min) / control.step)
-                control.value = min(max(control.min + steps * control.step, control.min), control.max)
+                self.controls[name].value = on_scale(self.controls[name], value)
         finally:
             self._quiet.on = False
 

@@ -8,6 +8,7 @@ Everything the mouse does the sliders and number boxes of the panel do as well, 
 
 import contextlib
 
+from ir50p_lab.course.controls import on_scale
 from ir50p_lab.errors import InputError
 
 __all__ = ["click_sets"]
@@ -28,25 +29,12 @@ def click_sets(panel, axes, *, x, y):
             raise InputError(f"no slider {name!r}; this panel has {', '.join(panel.controls)}")
     panel.image.description = f"A map: a click sets {x} and {y}, as the sliders above do"
 
-    def moved(right, up):
-        if place := data_coordinates(axes, right, up):
-            values = {name: _on_scale(panel.controls[name], v) for name, v in zip((x, y), place, strict=True)}
+    def clicked(right, up):
+        pixel = (right, up) * panel.figure.bbox.size
+        if axes.get_window_extent().contains(*pixel):
+            place = zip((x, y), axes.transData.inverted().transform(pixel), strict=True)
             with contextlib.suppress(Exception):  # it is in the status line
-                panel.set(**values)
+                panel.set(**{name: on_scale(panel.controls[name], value) for name, value in place})
 
-    panel.image.on_click(moved)
+    panel.image.on_click(clicked)
     return panel
-
-
-def data_coordinates(axes, right, up):
-    """Data coordinates (x, y) of a point of the picture, fractions from its lower left; None outside the axes."""
-    width, height = axes.figure.bbox.size
-    pixel = (right * width, up * height)
-    if not axes.get_window_extent().contains(*pixel):
-        return None
-    return tuple(float(v) for v in axes.transData.inverted().transform(pixel))
-
-
-def _on_scale(control, value):
-    steps = round((value - control.min) / control.step)
-    return type(control.value)(min(max(control.min + steps * control.step, control.min), control.max))

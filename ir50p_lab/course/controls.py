@@ -120,6 +120,12 @@ def value_of(control):
     return near if abs(near - value) < 1e-9 * max(1.0, abs(value)) else value
 
 
+def on_scale(control, value):
+    """The value nearest to `value` at which a slider can stand."""
+    steps = round((value - control.min) / control.step)
+    return type(control.value)(min(max(control.min + steps * control.step, control.min), control.max))
+
+
 def refuse_bad_value(name, value, controls):
     """Raise InputError unless `name` is one of the controls and `value` is on its scale."""
     if name not in controls:

@@ -19,8 +19,8 @@ class Painter:
     An artist that has changed once is taken for one that moves: it becomes `animated`, and so does all that lies above
     it in its axes; where a grid lies above it, nothing does, and all is drawn each time. The rest, ticks and grid
     included, is kept as pixels and drawn anew only when matplotlib says that it is stale (a new text in a legend makes
-    it so each time); after a turn of a 3-D view, of which matplotlib says nothing, call `forget()`. The layout is
-    computed once and then held, so that nothing jumps.
+    it so each time); of a turn of a 3-D view it says nothing: set `axes.stale`. The layout is computed once and then
+    held, so that nothing jumps.
 
     Attributes: backgrounds: how often the background was drawn (for tests and measurements).
     """
@@ -33,10 +33,6 @@ class Painter:
         figure.canvas.draw()  # runs the layout engine
         figure.set_layout_engine("none")
         self._background = self._empty = None
-
-    def forget(self):
-        """Draw the background anew next time."""
-        self._background = None
 
     def rgba(self):
         """The figure as it is now: (height, width, 4) uint8, valid until the next call."""

@@ -1,50 +1,33 @@
-"""A live scope: joint angles, set points and PWM of the last seconds on a small canvas, twenty times a second.
-
-The kernel sends the whole window as float32 with every frame: a browser that comes late, or leaves frames out, is
-right again with the next one.
-"""
+"""A live scope: joint angles, set points and PWM of the last seconds, twenty times a second."""
 
 import numpy as np
 
-from ir50p_lab.course.canvas import Canvas
-from ir50p_lab.course.style import COLOURS
+from ir50p_lab.course.chart import Chart
+from ir50p_lab.course.style import COLOURS, JOINTS
 
 __all__ = ["Scope"]
 
-_MOST = 500  # samples in a frame: about two for every pixel column of a joint
+_MOST = 500  # samples in a picture: about two for every pixel column of a joint
 
 
-class Scope(Canvas):
+class Scope(Chart):
     """Three joints side by side: angle with its dashed set point above, PWM below, the last `window` seconds.
 
-    window: s; height: pixels; badge: a word in the corner, such as "simulated". `frames` counts what `show` has sent.
+    window: s; badge: a word in the corner, such as "simulated". `frames` counts what `show` has sent.
     """
 
-    def __init__(self, *, window=10.0, height=360, badge=""):
-        colours, panels = [COLOURS[name] for name in ("blue", "orange", "green")], []
-        for i, colour in enumerate(colours):
-            left, name = 0.35 * i, f"joint {i + 1}" + (f", {badge}" if badge and i == 0 else "")
-            angle = [
-                {"column": 1 + i, "colour": colour, "label": "deg"},
-                {"column": 4 + i, "colour": COLOURS["dark"], "dash": True, "stairs": True},
-            ]
-            drive = [{"column": 7 + i, "colour": colour, "stairs": True}]
-            axes = {"ylabel": "" if i else "angle [deg]", "title": name, "colour": colour}
-            panels.append(axes | {"place": [left, 0, 0.3, 0.58], "lines": angle})
-            axes = {"ylabel": "" if i else "PWM [counts]", "title": "", "colour": colour, "times": True}
-            panels.append(axes | {"place": [left, 0.65, 0.3, 0.35], "lines": drive, "ylim": [-270, 270], "yStep": 255})
-        super().__init__(
-            settings={
-                "window": float(window),
-                "height": int(height),
-                "columns": 10,
-                "panels": panels,
-                "description": f"Angle in degrees with set point (dashed), and PWM in counts, of joints 1 to 3, last "
-                f"{window:g} s {badge}",
-            }
-        )
-        self.layout.width = "100%"
-        self.frames = 0
+    def __init__(self, *, window=10.0, badge=""):
+        panels = []
+        for i, colour in enumerate(JOINTS):
+            left, first = 62 + 323 * i, i == 0
+            title = f"joint {i + 1}, {badge}" if badge and first else f"joint {i + 1}"
+            angle = [(1 + i, colour, "deg", False), (4 + i, COLOURS["dark"], "", True)]
+            above = {"place": (left, 28, 280, 165), "lines": angle, "title": title}
+            below = {"place": (left, 222, 280, 95), "lines": [(7 + i, colour, "", False)], "ylim": (-270, 270)}
+            panels.append(above | {"ylabel": "angle [deg]" * first})
+            panels.append(below | {"ylabel": "PWM [counts]" * first, "xlabel": "time [s]"})
+        words = f"Angle in deg with set point (dashed), PWM in counts, of joints 1 to 3, last {window:g} s {badge}"
+        super().__init__(panels, window=float(window), height=360, description=words)
 
     def show(self, t, q, reference, u, marks=()):
         """Show these samples; what is older than the window is left out.
@@ -52,15 +35,9 @@ class Scope(Canvas):
         Args: t: (n,) s; q, reference: (n, 3) rad; u: (n, 3) PWM counts; marks: times of dotted
             lines, such as cuts of the drive, s.
         """
-        t = np.asarray(t, dtype=float)
-        stride = max(1, -(-len(t) // _MOST))
-        kept = np.arange(len(t))
-        if stride > 1:  # the same samples in every frame, else the picture shimmers
+        rows = np.column_stack([t, np.degrees(q), np.degrees(reference), u])
+        stride = -(-len(rows) // _MOST)
+        if stride > 1:  # the same samples in every picture, else it shimmers
             period = (t[-1] - t[0]) / (len(t) - 1)
-            kept = kept[np.round(t / period).astype(int) % stride == 0]
-        rows = np.empty((len(kept), 10), dtype="<f4")
-        rows[:, 0] = t[kept]
-        rows[:, 1:4], rows[:, 4:7], rows[:, 7:] = np.degrees(q[kept]), np.degrees(reference[kept]), u[kept]
-        self.marks = [float(mark) for mark in marks]
-        self.samples = rows.tobytes()
-        self.frames += 1
+            rows = rows[np.round(rows[:, 0] / period) % stride == 0]
+        self.draw(rows, marks)

@@ -318,7 +318,8 @@ class ClickColour(widgets.VBox):
         self._image, self._source = image, source
         self.status = widgets.HTML()
         self.image_box = Canvas(
-            width="900px", description="Left a picture to click, right the mask of the colour that was clicked"
+            description="Left a picture to click, right the mask of the colour that was clicked",
+            layout={"width": "900px", "max_width": "100%"},
         )
         super().__init__([self.image_box, self.status])
         self._use(colour)

@@ -15,7 +15,6 @@ import base64
 import contextlib
 import html
 import io
-import threading
 import time
 import traceback
 import warnings
@@ -63,33 +62,27 @@ class LivePanel(widgets.VBox):
         if not controls:
             raise InputError("live(figure, update, ...) needs at least one control, such as kp=(0, 10, 0.1, 1)")
         self.figure, self.error, self.drawn, self.updates = figure, None, None, 0
+        self._update, self._painter = update, None
+        self._stale = self._busy = False
         self.controls, rows = {}, []
-        width = max(len(label) for label in (label_of(name, spec) for name, spec in controls.items())) + 2
+        width = max(len(label_of(name, spec)) for name, spec in controls.items()) + 2
         for name, spec in controls.items():
             self.controls[name], row = make_control(name, spec, f"{width}ch", self._changed)
             rows.append(row)
         self._start = self.values
-        self._update, self._warned = update, set()
-        self._drawing, self._drawer, self._wanted = threading.Lock(), None, None
-        self._quiet = threading.local()
-
-        said = io.StringIO()
-        with DRAWING:
-            words = self._call(said, update, **self._start)  # directly: an error belongs in the cell
-            self._call(said, words)
-            _words_below_curves(figure)
-            self._painter = Painter(figure)
-            pixels = round(figure.bbox.width)
-            self.image = Canvas(value=self._painter.png(), width=f"{pixels}px")
-        self.drawn, self.updates = self._start, 1
-        self.status = widgets.HTML(_as_html(said), layout=widgets.Layout(min_height="1.5em", width=f"{pixels}px"))
-        reset = widgets.Button(description="Reset", layout=widgets.Layout(width="80px"))
+        wide = f"{figure.bbox.width:.0f}px"
+        self.image = Canvas(layout={"width": wide, "max_width": "100%"})
+        self.status = widgets.HTML(layout={"min_height": "1.5em", "width": wide})
+        self._changed()
+        if self.error is not None:
+            raise self.error  # in the cell, where it belongs
+        reset = widgets.Button(description="Reset", layout={"width": "80px"})
         reset.on_click(lambda _: self.reset())
         columns = 1 if len(rows) <= 3 else 2
-        grid = widgets.Layout(grid_template_columns="max-content " * columns, grid_gap="0 24px")
+        grid = {"grid_template_columns": "max-content " * columns, "grid_gap": "0 24px"}
         super().__init__([widgets.GridBox([*rows, reset], layout=grid), self.image, self.status])
         self.image.observe(self._sharpen, "ratio")
-        _close_panels_of_earlier_runs(self)
+        self._close_those_of_earlier_runs()
         LivePanel.panels.add(self)
 
     @property
@@ -104,13 +97,14 @@ class LivePanel(widgets.VBox):
         """
         for name, value in values.items():
             refuse_bad_value(name, value, self.controls)
-        self._quiet.on = True
-        try:
-            for name, value in values.items():
-                self.controls[name].value = value
-        finally:
-            self._quiet.on = False
-        self._draw_latest(wait=self._drawer != threading.get_ident())
+        with DRAWING:
+            busy, self._busy = self._busy, True  # one drawing for all of them
+            try:
+                for name, value in values.items():
+                    self.controls[name].value = value
+            finally:
+                self._busy = busy
+            self._changed()
         if self.error is not None:
             raise self.error
 
@@ -123,88 +117,64 @@ class LivePanel(widgets.VBox):
         """As many pixels as the display has."""
         with DRAWING:
             self.figure.set_dpi(self.figure.get_dpi() * change["new"] / change["old"])
-        self.redraw()
-
-    def redraw(self):
-        """Draw everything anew, background included."""
-        with DRAWING:
-            self._painter.forget()
-            self._draw(self.values)
+        self._changed()
 
     def _changed(self):
-        if not getattr(self._quiet, "on", False):
-            self._draw_latest(wait=False)
+        """Draw the latest values, unless another thread has just drawn them; what `update` moves is drawn after it."""
+        self._stale = True
+        with DRAWING:
+            while self._stale and not self._busy:
+                self._stale, self._busy = False, True
+                try:
+                    self._draw()
+                finally:
+                    self._busy = False
 
-    def _draw_latest(self, wait):
-        """Draw the latest values. If a drawing is under way, its thread draws them next: there is no queue."""
-        self._wanted = self.values
-        while (wait or self._wanted is not None) and self._drawing.acquire(blocking=wait):
-            wait = False
-            try:
-                self._drawer = threading.get_ident()
-                values, self._wanted = self._wanted, None
-                if values is not None:
-                    self._draw(values)
-            finally:
-                self._drawer = None
-                self._drawing.release()
-
-    def _call(self, said, function, /, **values):
-        """Call `function`, if it is one, and return its answer.
-
-        What it prints, an answer that is a text, and the warning of an unstable loop go into `said`.
-        """
+    def _draw(self):
+        self.drawn, self.error, said = self.values, None, io.StringIO()
         with contextlib.redirect_stdout(said), warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", UnstableLoopWarning)
-            answer = function(**values) if callable(function) else None
-            if isinstance(answer, str):
-                print(answer)
-        for text in dict.fromkeys(str(w.message) for w in caught if issubclass(w.category, UnstableLoopWarning)):
-            print(text, file=said)
-        for w in caught:  # the others go where warnings go, each once
-            place = (str(w.message), w.category, w.filename, w.lineno)
-            if not issubclass(w.category, UnstableLoopWarning) and place not in self._warned:
-                self._warned.add(place)
-                warnings.warn_explicit(w.message, w.category, w.filename, w.lineno)
-        return answer
-
-    def _draw(self, values):
-        said = io.StringIO()
-        with DRAWING:
             try:
-                words = self._call(said, self._update, **values)
-                self.image.value = self._painter.png()
-                time.sleep(0.001)  # the thread that sends it takes its turn now, not after Python's usual 5 ms
-                self._call(said, words)
-                self.error = None
+                words = self._update(**self.drawn)
+                self._show()
+                words = words() if callable(words) else words
+                if isinstance(words, str):
+                    print(words)
             except Exception as error:
                 self.error = error
-        self.drawn, self.updates = values, self.updates + 1
-        text = _as_html(said)
+        for text in dict.fromkeys(str(warning.message) for warning in caught):
+            print(text, file=said)
+        text = html.escape(said.getvalue().rstrip()).replace("\n", "<br>")
         if self.error is not None:
             text += f'<span style="color:#c0392b">{html.escape(_explain(self.error))}</span>'
-        if text != self.status.value:
-            self.status.value = text
+        self.status.value = text
+        self.updates += 1
+
+    def _show(self):
+        if self._painter is None:
+            for ax in self.figure.axes:  # titles and legends below what moves: above it they are drawn each time
+                for words in filter(None, (ax.title, ax.get_legend())):
+                    words.set_zorder(min(words.get_zorder(), 1.9))  # lines: 2, a grid at most 1.5
+            self._painter = Painter(self.figure)
+        self.image.value = self._painter.png()
+        time.sleep(0.001)  # the thread that sends it takes its turn now, not after Python's usual 5 ms
 
     def _repr_mimebundle_(self, **kwargs):
         """The widget, and the picture of this moment for viewers without widgets (an exported page)."""
-        bundle = super()._repr_mimebundle_(**kwargs)
-        data = bundle[0] if isinstance(bundle, tuple) else bundle
-        if data is not None:
-            data["image/png"] = base64.b64encode(self.image.value).decode("ascii")
-        return bundle
+        picture = base64.b64encode(self.image.value).decode("ascii")
+        return super()._repr_mimebundle_(**kwargs) | {"image/png": picture}
 
-
-def _words_below_curves(figure):
-    """Titles and legends below what moves: drawn each time, they would cost as much as all curves."""
-    for ax in figure.axes:
-        for words in filter(None, (ax.title, ax.get_legend())):
-            words.set_zorder(min(words.get_zorder(), 1.9))  # lines: 2, a grid at most 1.5
-
-
-def _as_html(said):
-    """What was said, for the status line."""
-    return html.escape(said.getvalue().rstrip()).replace("\n", "<br>")
+    def _close_those_of_earlier_runs(self):
+        """A cell that is run again replaces its panels; the old ones would keep their figures for ever."""
+        try:
+            message = get_ipython().get_parent()
+            self._run = message["metadata"]["cellId"], message["header"]["msg_id"]
+        except (NameError, AttributeError, KeyError, TypeError):  # not in a notebook, or a front end without cell ids
+            self._run = None, None
+        for old in list(LivePanel.panels):
+            if old._run[0] and old._run[0] == self._run[0] and old._run != self._run:
+                LivePanel.panels.discard(old)
+                close_all(old)
 
 
 def _explain(error):
@@ -212,18 +182,3 @@ def _explain(error):
     frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename != __file__]
     where = f" (line {frames[0].lineno} in {frames[0].name})" if frames else ""
     return f"{type(error).__name__}: {error}{where}"
-
-
-def _close_panels_of_earlier_runs(panel):
-    """A cell that is run again replaces its panels; the old ones would keep their figures for ever."""
-    try:
-        message = get_ipython().get_parent()
-        panel._run = (message["metadata"]["cellId"], message["header"]["msg_id"])
-    except (NameError, AttributeError, KeyError, TypeError):  # not in a notebook, or a front end without cell ids
-        panel._run = None
-        return
-    cell, run = panel._run
-    for old in list(LivePanel.panels):
-        if old._run and old._run[0] == cell and old._run[1] != run:
-            LivePanel.panels.discard(old)
-            close_all(old)

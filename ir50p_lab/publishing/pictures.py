@@ -1,14 +1,11 @@
 """What a page shows in the place of widgets: the pictures they hold, or the 3-D arm without a kernel."""
 
-import base64
 import json
 import re
 
 import nbformat
-import numpy as np
 
 from ir50p_lab.course.live_arm.view import BUNDLE
-from ir50p_lab.course.style import new_figure
 
 _VIEW = "application/vnd.jupyter.widget-view+json"
 _SHOWN = ("options", "q", "layers", "poses", "shape")  # of LiveArm's state
@@ -42,9 +39,8 @@ def _parts(model_id, widgets, still, live):
     state, buffers = model["state"], {tuple(one["path"]): one["data"] for one in model.get("buffers", ())}
     if "poses" in state and "shape" in state:
         yield _arm(state, buffers, still) if live else _image(still)
-    elif state.get("settings", {}).get("panels"):
-        samples = np.frombuffer(base64.b64decode(buffers.get(("samples",), "")), "<f4")
-        yield _image(_chart(samples, state["settings"]))
+    elif str(state.get("value")).startswith("<svg"):  # a chart
+        yield state["value"]
     elif buffers.get(("value",)):
         yield _image(buffers["value",].replace("\n", ""))
     for child in state.get("children", ()):
@@ -72,19 +68,3 @@ def live_arm_script():
         "JSON.parse(box.querySelector('script').textContent));"
     )
     return f'<script type="module">{bundle}\n{start}</script>'
-
-
-def _chart(samples, settings):
-    """A strip chart or a scope as a picture: base64 of a PNG."""
-    rows, panels = samples.reshape(-1, settings["columns"]), [one for one in settings["panels"] if one["title"]]
-    figure = new_figure(9, 3.2, cols=len(panels))
-    for ax, panel in zip(figure.axes, panels, strict=True):
-        for line in panel["lines"]:
-            dashes = "--" if line.get("dash") else "-"
-            ax.plot(rows[:, 0], rows[:, line["column"]], dashes, color=line["colour"], label=line.get("label"))
-            if line.get("level") is not None:
-                ax.axhline(line["level"], color=line["colour"], linestyle="--", linewidth=1)
-        ax.set(xlabel="time [s]", ylabel=panel["ylabel"], title=panel["title"], ylim=panel.get("ylim"))
-        ax.legend(fontsize=8, frameon=False)
-    png, _ = figure._repr_png_()  # as a notebook shows it
-    return base64.b64encode(png).decode("ascii")

@@ -22,7 +22,7 @@ CELLS = [
     "from ir50p_lab.course.live_arm import LiveArm\nfrom ir50p_lab.modelling import IR50P\nLiveArm(IR50P, [0, 0.5, -1])",
     "import sympy\nsympy.sqrt(sympy.Symbol('x')) / 2",
 ]
-PICTURES = 4  # figure, panel, chart, arm
+PICTURES = 3  # figure, panel, arm; the chart is of lines
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +37,7 @@ def pages(tmp_path_factory):
 def test_a_page_has_as_many_pictures_as_the_notebook_has_figures(pages):
     page = pages[0].read_text(encoding="utf-8")
     assert len(re.findall(r'<img[^>]*src="data:image/png;base64,[A-Za-z0-9+/]{500,}', page)) == PICTURES
+    assert len(re.findall(r'<svg [^>]*aria-label="t: a over 1 s".*?<polyline [^>]*points="[0-9 ]{40,}"', page)) == 1
     assert len(re.findall("<div data-live-arm", page)) == 1 and page.count("<math") == 3
     assert "cost: $5 and $6" in page and "widget-view" not in page
     assert not re.search(r"""(?:src|href)=["']https?:""", page)

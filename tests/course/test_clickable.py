@@ -1,9 +1,8 @@
 """Clicks on a picture: coordinates, sliders that follow, errors in the status line."""
 
-import numpy as np
 import pytest
 
-from ir50p_lab.course.clickable import click_sets, data_coordinates
+from ir50p_lab.course.clickable import click_sets
 from ir50p_lab.course.style import new_figure
 from ir50p_lab.course.widgets import live, slider
 from ir50p_lab.errors import InputError
@@ -25,12 +24,16 @@ def panel():
     return click_sets(made, left, x="kp", y="kd")
 
 
-def click(panel, x, y, axes=None, n=[0]):  # noqa: B006  (a counter: every click is a new event)
+def click_at(panel, right, up):
+    """What the browser sends for a click at a place of the picture, fractions from its lower left."""
+    panel.image._handle_custom_msg({"right": right, "up": up}, [])
+
+
+def click(panel, x, y, axes=None):
     """What the browser sends for a click at data coordinates x, y."""
-    n[0] += 1
     axes = axes or panel.figure.axes[0]
     pixel = axes.transData.transform((x, y)) / panel.figure.bbox.size
-    panel.image.set_state({"clicked": [*pixel.tolist(), n[0]]})
+    click_at(panel, *pixel.tolist())
 
 
 def test_a_click_moves_both_sliders_and_redraws(panel):
@@ -68,16 +71,20 @@ def test_errors_appear_in_the_status_line(panel):
     assert "no seventy-seven" in panel.status.value
     click(panel, 50, 10)
     assert panel.status.value == "" and panel.values["kp"] == 50
-    panel.image.set_state({"clicked": [float("nan"), 0.5, -1]})  # nothing a browser sends; it must not raise either
+    click_at(panel, float("nan"), 0.5)  # nothing a browser sends; it must not raise either
     assert panel.values["kp"] == 50
 
 
 def test_the_corners_of_the_axes(panel):
     axes = panel.figure.axes[0]
     box = axes.get_position()
-    np.testing.assert_allclose(data_coordinates(axes, box.x0 + 1e-9, box.y0 + 1e-9), (0, 1), atol=1e-4)
-    np.testing.assert_allclose(data_coordinates(axes, box.x1 - 1e-9, box.y1 - 1e-9), (100, 1000), rtol=1e-4)
-    assert data_coordinates(axes, 0.999, 0.5) is None
+    click_at(panel, box.x0 + 1e-9, box.y0 + 1e-9)
+    assert panel.values == {"kp": 0, "kd": 1.0}
+    click_at(panel, box.x1 - 1e-9, (box.y0 + box.y1) / 2)
+    assert panel.values == {"kp": 100, "kd": 31.5}  # the middle of 1 to 1000, logarithmic: 31.6
+    updates = panel.updates
+    click_at(panel, 0.999, 0.5)
+    assert panel.updates == updates
 
 
 def test_refusals(panel):
@@ -88,4 +95,4 @@ def test_refusals(panel):
 
 
 def test_the_picture_tells_screen_readers_what_to_do(panel):
-    assert "sliders" in panel.image.description and panel.image.width == "600px"
+    assert "sliders" in panel.image.description and panel.image.layout.width == "600px"

@@ -21,7 +21,7 @@ from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course import live_arm
 from ir50p_lab.course.live_arm import LiveArm
-from ir50p_lab.course.live_arm.track import pack
+from ir50p_lab.course.live_arm.view import pack
 from ir50p_lab.course.live_views import step_through
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import IR50P, forward_kinematics, frames
@@ -106,7 +106,7 @@ def test_the_students_function_moves_the_arm_and_its_errors_are_shown(heard):
         view._handle_custom_msg({"drag": [0.4, 0.1, 0.2], "q": [0, 0.5, -1]}, [])
     np.testing.assert_array_equal(asked[0][0], [0.4, 0.1, 0.2])
     answers = [message for message, _ in heard]
-    assert [answer["dragged"] for answer in answers] == [[0.1, 0.2, 0.3], None, None]
+    assert [answer["drag"] for answer in answers] == [[0.1, 0.2, 0.3], None, None]
     assert view.q == [0.1, 0.2, 0.3] and "KeyError: 2" in answers[2]["error"]
 
 
@@ -119,7 +119,7 @@ def test_any_frames_draw_the_arm_wrong_ones_too(heard, monkeypatch):
 
     view = LiveArm(IR50P, [0, 0.5, -1], frames=wrong)
     view._handle_custom_msg({"frames": [0.4, 0.5, -1]}, [])
-    assert ({"posed": True}, []) in heard
+    assert ({"frames": None}, []) in heard
     np.testing.assert_allclose(view.poses[1], frames(IR50P, [0.4, 0.5, -1])[1])
     assert view.poses[3][0][0] is None  # what JSON has for NaN
     monkeypatch.setattr(view, "_frames", lambda q: np.eye(4))

@@ -156,9 +156,6 @@ def test_background_is_kept_while_only_what_has_moved_before_moves_again():
     painter.rgba()
     painter.rgba()
     assert painter.backgrounds == before + 1
-    painter.forget()
-    painter.rgba()
-    assert painter.backgrounds == before + 2
 
 
 @pytest.mark.parametrize("below", [False, "line"])

@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import charts
 import numpy as np
 import pytest
 
@@ -13,19 +14,22 @@ def chart(**options):
     return StripChart(("a", "b"), duration=10, ylim=(-1, 1), ylabel="x [m]", title="test", **options)
 
 
-def frame(one):
-    return np.frombuffer(one.samples, dtype="<f4").reshape(-1, 3)
+def panel(one):
+    (found,) = charts.panels(one.value)
+    return found
 
 
 def test_what_was_added_is_shown_in_the_end():
     one = chart(levels=(0.1, 0.2))
     for k in range(50):
-        one.add(0.01 * k, (k, -k))
+        one.add(0.1 * k, (k / 50, -k / 50))
     one.flush()
-    np.testing.assert_allclose(frame(one)[:, 0], one.t, atol=1e-6)
-    np.testing.assert_array_equal(frame(one)[:, 1:], one.values)
-    lines = one.settings["panels"][0]["lines"]
-    assert [line["level"] for line in lines] == [0.1, 0.2] and "a, b" in one.settings["description"]
+    for curve, values in zip(panel(one).curves, one.values.T, strict=True):
+        np.testing.assert_allclose(curve.t[:-1], 0.1 * np.arange(50), atol=0.01)  # the last comes twice
+        np.testing.assert_allclose(curve.values[:-1], values, atol=0.002)
+    np.testing.assert_array_equal(one.values[:, 0], np.arange(50) / 50)
+    np.testing.assert_allclose(panel(one).levels, [0.1, 0.2], atol=0.002)
+    assert "test: a, b over 10 s" in one.value and "x [m]" in one.value and "a: 0.98" in panel(one).words
     one.close()
 
 
@@ -43,21 +47,23 @@ def test_at_most_twenty_pictures_a_second(monkeypatch):
 def test_a_long_run_keeps_its_last_point_and_a_bounded_frame():
     one = chart()
     for k in range(5000):
-        one._rows.append((0.01 * k, k, k))
+        one._rows.append((0.01 * k, k / 5000, 0))
     one.flush()
-    assert len(frame(one)) <= 602 and frame(one)[-1, 1] == 4999
+    curve = panel(one).curves[0]
+    assert len(curve.t) <= 602 and curve.values[-1] == pytest.approx(0.9998, abs=0.002)
+    assert curve.t[-1] == pytest.approx(49.99, abs=0.01)
     one.close()
 
 
 def test_nothing_yet():
     one = chart()
     one.flush()
-    assert one.samples == b"" and one.values.shape == (0, 2)
+    assert one.values.shape == (0, 2) and [len(curve.t) for curve in panel(one).curves] == [0, 0]
     one.close()
 
 
 @pytest.mark.parametrize("k", [1, 6])
 def test_a_colour_for_each_curve(k):
     one = StripChart([str(i) for i in range(k)], duration=1, ylim=(0, 1), ylabel="x [m]", title="t")
-    assert len({line["colour"] for line in one.settings["panels"][0]["lines"]}) == k
+    assert len({curve.colour for curve in panel(one).curves}) == k
     one.close()

@@ -166,7 +166,7 @@ def test_a_click_learns_the_colour(bench):
     height, width = image.shape[:2]
     for half in (0, 1):  # in the picture, and at the same place of the mask
         right, up = (blue.x + 0.5 + half * width) / (2 * width), 1 - (blue.y + 0.5) / height
-        panel.image_box.clicked = [right, up, float(half)]
+        panel.image_box._handle_custom_msg({"right": right, "up": up}, [])
         assert np.hypot(panel.balls[0].x - blue.x, panel.balls[0].y - blue.y) < 0.6
     shown = np.asarray(Image.open(io.BytesIO(panel.image_box.value)))
     assert shown.shape[:2] == (height, 2 * width)

@@ -53,7 +53,6 @@ def test_picture_follows_the_slider_and_equals_a_full_drawing():
     moved = shown(panel)
     assert (start != moved).any()
     full = Painter(panel.figure)
-    full.forget()
     np.testing.assert_array_equal(moved, full.rgba()[..., :3])
     panel.controls["height"].value = 0.0
     np.testing.assert_array_equal(shown(panel), start)
@@ -61,7 +60,7 @@ def test_picture_follows_the_slider_and_equals_a_full_drawing():
 
 def test_image_is_as_wide_as_the_figure():
     panel = line_panel()
-    assert panel.image.width == "300px"
+    assert panel.image.layout.width == "300px"
     assert shown(panel).shape == (200, 300, 3)
 
 
@@ -241,7 +240,7 @@ def test_the_warning_of_an_unstable_loop_appears_under_the_figure_once():
     assert panel.status.value == "gain 2<br>joint 1 &lt;swings&gt;"
 
 
-def test_other_warnings_of_update_stay_warnings():
+def test_other_warnings_of_update_appear_there_too():
     def update(gain):
         if gain > 1:
             warnings.warn("something else", RuntimeWarning, stacklevel=1)
@@ -251,8 +250,8 @@ def test_other_warnings_of_update_stay_warnings():
         warnings.simplefilter("default")
         for gain in (2, 3):
             panel.set(gain=gain)
-    assert [str(w.message) for w in caught] == ["something else"]  # once for its place, as everywhere
-    assert "something else" not in panel.status.value
+            assert panel.status.value == "something else"  # anywhere else a notebook would swallow it
+    assert not caught and panel.error is None
 
 
 def test_a_hundred_changes_from_threads_end_with_the_last_value_drawn():
@@ -276,7 +275,7 @@ def test_a_hundred_changes_from_threads_end_with_the_last_value_drawn():
     assert 1 < len(drawn) < 80, "what came in during a drawing was not queued"
 
 
-def test_a_change_during_a_drawing_returns_at_once_and_is_drawn_next():
+def test_of_the_changes_during_a_drawing_only_the_latest_is_drawn_next():
     started, go_on = threading.Event(), threading.Event()
     drawn = []
 
@@ -291,12 +290,18 @@ def test_a_change_during_a_drawing_returns_at_once_and_is_drawn_next():
     drawer = threading.Thread(target=lambda: setattr(control, "value", 1.0))
     drawer.start()
     assert started.wait(10)
+    others = []
     for value in (2.0, 3.0, 4.0):
-        control.value = value  # would hang here if it waited
+        others.append(threading.Thread(target=setattr, args=(control, "value", value)))
+        others[-1].start()
+        while control.value != value:
+            time.sleep(0.001)
     assert drawn == [0.0, 1.0]
     go_on.set()
-    drawer.join(10)
-    assert drawn == [0.0, 1.0, 4.0], "only the latest"
+    for thread in (drawer, *others):
+        thread.join(10)
+        assert not thread.is_alive()
+    assert drawn[2:] in ([4.0], [4.0, 4.0]), "only the latest; twice if its thread was slow to say so"
 
 
 def test_an_interrupt_leaves_the_panel_usable():
@@ -324,12 +329,13 @@ def test_update_may_move_its_own_sliders():
     assert panel.drawn == {"a": 0.9, "b": 0.9}
 
 
-def test_redraw_starts_from_nothing():
+def test_a_denser_display_gets_as_many_more_pixels():
     panel = line_panel()
-    panel.figure.axes[0].get_yticklabels()[0].set_color("red")
-    before = shown(panel)
-    panel.redraw()
-    assert (shown(panel) != before).any()
+    panel.image.set_state({"ratio": 2.0})
+    assert shown(panel).shape == (400, 600, 3) and panel.image.layout.width == "300px"
+    panel.set(height=5)
+    full = Painter(panel.figure)
+    np.testing.assert_array_equal(shown(panel), full.rgba()[..., :3])
 
 
 def test_panel_shows_as_a_widget_and_as_a_picture_where_there_are_none():

@@ -2,11 +2,13 @@
 const load = async (model) => {
   const holder = await model.widget_manager.get_model(model.get("bundle").slice("IPY_MODEL_".length));
   const bundles = (globalThis.ir50pLiveArm ??= {});
-  bundles[holder.get("digest")] ??= (async () => {
-    const unpacked = new Blob([holder.get("packed")]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const packed = holder.get("packed");
+  const check = new Uint8Array(packed.buffer, packed.byteOffset + packed.byteLength - 8).join(); // gzip's: CRC, length
+  bundles[check] ??= (async () => {
+    const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
     const script = new Blob([await new Response(unpacked).text()], { type: "text/javascript" });
     return import(URL.createObjectURL(script));
   })();
-  return bundles[holder.get("digest")];
+  return bundles[check];
 };
 export default { render: async (view) => (await load(view.model)).render(view) };

@@ -2,10 +2,8 @@
 
 import base64
 import gzip
-import hashlib
 import json
 import threading
-import weakref
 from pathlib import Path
 
 import anywidget
@@ -13,32 +11,29 @@ import ipywidgets
 import numpy as np
 import traitlets
 
+from ir50p_lab.course.arm3d import ArmView
 from ir50p_lab.course.badge import badge_of
-from ir50p_lab.course.live_arm.still import still_png
-from ir50p_lab.course.live_arm.track import pack
+from ir50p_lab.course.painter import DRAWING, Painter
+from ir50p_lab.course.style import COLOURS, new_figure
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
-from ir50p_lab.modelling.chain import lengths
+from ir50p_lab.modelling.chain import forward_kinematics, lengths
 
 BUNDLE = Path(__file__).parent / "static" / "live_arm.js"  # the script that draws, as built by npm
-LAYERS = ("table", "shadow", "ghost", "trail")
-_WINDOW = 10.0  # s of a live run that are shown
+_MOST = 600  # rows of a motion: 40 kB in a saved notebook, 20 a second for half a minute; the view interpolates
 
 
-class Bundle(anywidget.AnyWidget):
+class Bundle(ipywidgets.Widget):
     """Holds the script for all views of a notebook, so that a saved notebook has it once."""
 
-    _esm = "export default {};"
     packed = traitlets.Bytes().tag(sync=True)
-    digest = traitlets.Unicode().tag(sync=True)
     shared = None
 
     @classmethod
     def get(cls):
         """The one of this kernel."""
         if cls.shared is None or cls.shared.comm is None:
-            script = BUNDLE.read_bytes()
-            cls.shared = cls(packed=gzip.compress(script, 9, mtime=0), digest=hashlib.sha256(script).hexdigest())
+            cls.shared = cls(packed=gzip.compress(BUNDLE.read_bytes(), 9, mtime=0))
         return cls.shared
 
 
@@ -68,19 +63,18 @@ class LiveArm(anywidget.AnyWidget):
     track = traitlets.Bytes(b"").tag(sync=True)
     shape = traitlets.Dict().tag(sync=True)
 
-    def __init__(self, arm, q=(0.0, 0.0, 0.0), *, on_drag=None, frames=None, badge=None, layers=LAYERS, ball=None,
-                 board=None, camera=None, height=420, sliders=True, readout=True):  # fmt: skip
+    def __init__(self, arm, q=(0.0, 0.0, 0.0), *, on_drag=None, frames=None, badge=None,
+                 layers=("table", "shadow", "ghost", "trail"), ball=None, board=None, camera=None,
+                 height=420, sliders=True, readout=True):  # fmt: skip
         self.arm, self._on_drag, self._frames = arm, on_drag, frames
         self._stop = threading.Event()
         ball = None if ball is None else (vectors3("ball", ball[0], unit="m"), float(ball[1]))
         things = {"ball": ball, "board": board, "camera": camera}
-        things = {name: thing for name, thing in things.items() if thing is not None}
         options = {
             "lengths": lengths(arm),  # refuses what is no Arm
             "limits": np.clip([arm.q_min, arm.q_max], -np.pi, np.pi).T,
             "badge": badge or badge_of(on_drag or frames),
             "drag": "browser" if on_drag is None else "kernel",
-            "frames": frames is not None,
             "height": height,
             "sliders": sliders,
             "readout": readout,
@@ -108,13 +102,14 @@ class LiveArm(anywidget.AnyWidget):
         self.options = self.options | {"speed": speed, "loop": loop}
         if hasattr(runs[0], "is_open") or hasattr(runs[0], "alive"):
             self._stop = threading.Event()
-            threading.Thread(target=_feed, args=(weakref.ref(self), runs[0], self._stop), daemon=True).start()
+            threading.Thread(target=self._follow, args=(runs[0], self._stop), daemon=True).start()
         else:
             self._show(runs, labels or (["first", "second"][: len(runs)] if len(runs) > 1 else [""]))
         return self
 
     def _show(self, runs, labels):
         rows, self.shape = pack(runs, labels)
+        self._shown = runs[0]
         self.q = [float(v) for v in runs[0].q[0]]
         self.track = rows
 
@@ -124,21 +119,37 @@ class LiveArm(anywidget.AnyWidget):
             raise InputError(f"frames of shape {T.shape}: give (4, 4, 4), the transforms of frames 0 to 3")
         self.poses = np.where(np.isfinite(T), T, None).tolist()
 
+    def _follow(self, source, stop):
+        """Send the last samples of a bench or of a loop in the background; when a run has ended, the whole of it."""
+        words = "live, simulated" if getattr(source, "simulated", False) else "live"
+        sent, fresh, alive = None, False, True
+        while alive and not stop.wait(0.04) and self.comm is not None:
+            alive = getattr(source, "is_open", None) or getattr(source, "alive", False)
+            run = getattr(source, "live_run", source) or source.recording
+            samples = run.recent(10.0) if run is not None else None
+            if samples is not None and len(samples.t) > 1 and samples.t[-1] != sent:
+                sent, fresh = samples.t[-1], True
+                rows, shape = pack([samples], [""])
+                self.send({"live": shape | {"source": words}}, buffers=[rows])
+            if fresh and not getattr(run, "alive", alive):
+                fresh = False
+                self._show([getattr(run, "recording", run)], [""])
+
     def _heard(self, _, message, __):
-        """What the browser asks for. Errors of the student's function are shown under the arm."""
-        answer, buffers = {}, []
+        """What the browser asks for: frames, a drag or a picture. The answer bears the names of the question.
+
+        Errors of the student's function are shown under the arm.
+        """
+        answer, buffers = dict.fromkeys(message), []
         try:
             if "frames" in message:
-                answer["posed"] = True
                 self._pose(message["frames"])
-            elif "drag" in message:
-                answer["dragged"] = None
+            elif "picture" in message:
+                buffers = [still_png(self)]
+            else:
                 q = self._on_drag(np.array(message["drag"]), np.array(message["q"]))
                 if q is not None:
-                    self.q = answer["dragged"] = vectors3("q", q).tolist()
-            else:
-                answer["picture"] = True
-                buffers = [still_png(self)]
+                    self.q = answer["drag"] = vectors3("q", q).tolist()
         except Exception as error:
             answer["error"] = f"{type(error).__name__}: {error}"
         self.send(answer, buffers=buffers)
@@ -149,18 +160,48 @@ class LiveArm(anywidget.AnyWidget):
         return {"image/png": base64.b64encode(still_png(self)).decode("ascii"), **data}, metadata
 
 
-def _feed(view, source, stop):
-    """Send the last samples of a bench or of a loop in the background; when a run has ended, the whole of it."""
-    words = "live" + (", simulated" if getattr(source, "simulated", False) else "")
-    shown, fresh, alive = None, False, True
-    while alive and not stop.wait(0.04) and view() is not None:
-        alive = getattr(source, "is_open", None) or getattr(source, "alive", False)
-        run = getattr(source, "live_run", source) or source.recording
-        samples = run.recent(_WINDOW) if run is not None else None
-        if samples is not None and len(samples.t) > 1 and samples.t[-1] != shown:
-            shown, fresh = samples.t[-1], True
-            rows, shape = pack([samples], [""])
-            view().send({"live": shape | {"source": words}}, buffers=[rows])
-        if fresh and not getattr(run, "alive", alive):
-            fresh = False
-            view()._show([getattr(run, "recording", run)], [""])
+def pack(runs, labels):
+    """Rows of one or two runs on a common time, and what stands in their columns.
+
+    Args: runs: each with t (n,) s and q (n, 3) rad; optional reference (n, 3) or (n, 3, 3) rad, u (n, 3), unit,
+    simulated (bool). labels: a name for each.
+    Returns: bytes of float32 (rows, columns), time first; dict for the browser. Raises InputError for runs that
+    cannot be shown.
+    """
+    times = [np.asarray(run.t, dtype=float) for run in runs]
+    if len(runs) > 2 or len(labels) != len(runs) or min(map(len, times)) < 2:
+        raise InputError("give one or two runs of two samples or more, and a label for each")
+    t = np.linspace(min(one[0] for one in times), max(one[-1] for one in times), min(_MOST, max(map(len, times))))
+    columns, places = [t], []
+    for run, time, label in zip(runs, times, labels, strict=True):
+        place = {"label": label, "reference": None, "u": None}
+        held = np.clip(np.searchsorted(time, t + 1e-9, side="right") - 1, 0, len(time) - 1)
+        for name in ("q", "reference", "u"):
+            values = getattr(run, name, None)
+            if values is not None and np.isfinite(values).any():
+                place[name] = len(columns)
+                values = np.reshape(values, (len(time), -1))  # of a reference, angles first
+                columns += [values[held, i] if name == "u" else np.interp(t, time, values[:, i]) for i in range(3)]
+        places.append(place)
+    source = {True: "simulated", False: "measured"}.get(getattr(runs[0], "simulated", None), "")
+    shape = {"columns": len(columns), "runs": places, "unit": getattr(runs[0], "unit", "PWM"), "source": source}
+    return np.column_stack(columns).astype("<f4").tobytes(), shape
+
+
+def still_png(view):
+    """The present pose of a LiveArm, and its path if it plays a run, by matplotlib: bytes of a PNG file."""
+    with DRAWING:
+        figure = new_figure(7.2, 4.6, projection="3d")
+        ax = figure.axes[0]
+        arm = ArmView(ax, view.arm, view.q, frames="frames" in view.layers)
+        if view.track and "trail" in view.layers:
+            arm.trail(forward_kinematics(view.arm, view._shown.q))
+        if view.options["things"]["ball"]:
+            ax.scatter(*view.options["things"]["ball"][0], s=230, color="#C8102E")
+        if view.poses:
+            if "frames" in view.layers:
+                ax.view_init(elev=22, azim=-30)  # no axis hides another
+            arm.place(np.array(view.poses, dtype=float))
+        arm.ellipsoids(view.layers)
+        ax.text2D(0.02, 0.95, view.options["badge"], transform=ax.transAxes, color=COLOURS["dark"], weight="bold")
+        return Painter(figure).png()

@@ -137,7 +137,7 @@ class View {
   // Move to q; tell: the kernel is to hear of it.
   pose(q, tell = false) {
     this.q = q;
-    if (this.options.frames) this.ask({ frames: q });
+    if (this.model.get("poses").length) this.ask({ frames: q });
     if (tell) {
       this.write();
       this.tell();
@@ -148,7 +148,7 @@ class View {
   // Everything that follows from the pose.
   moved() {
     const own = this.model.get("poses");
-    const given = this.options.frames && own.length ? own.map((rows) => new Matrix4().set(...rows.flat())) : null;
+    const given = own.length ? own.map((rows) => new Matrix4().set(...rows.flat())) : null;
     const transforms = given ?? frames(this.l, this.q);
     this.robot.place(transforms);
     this.shade.place(transforms);
@@ -241,10 +241,9 @@ class View {
     if (message.live) this.live(new Track(buffers[0], message.live));
     if (message.live) return;
     this.error = message.error ?? null;
-    if (message.posed) this.answered("frames");
-    if ("dragged" in message) this.answered("drag");
+    for (const kind of ["frames", "drag"]) if (kind in message) this.answered(kind);
     if (message.error) this.say(message.error);
-    else if ("dragged" in message) this.followed(message.dragged, "kernel");
+    else if ("drag" in message) this.followed(message.drag, "kernel");
   }
 
   resize() {
@@ -448,7 +447,7 @@ class View {
 function picture({ model, el }) {
   const image = make("img", { alt: "the arm" }, { style: "max-width: 100%" });
   const show = (message, buffers) => {
-    if (message.picture) image.src = URL.createObjectURL(new Blob([buffers[0]], { type: "image/png" }));
+    if ("picture" in message) image.src = URL.createObjectURL(new Blob([buffers[0]], { type: "image/png" }));
   };
   const ask = () => model.send({ picture: true });
   model.on("msg:custom", show);
