@@ -3,7 +3,6 @@
 import tomllib
 import warnings
 from dataclasses import asdict, dataclass
-from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -105,23 +104,15 @@ class JointCalibration:
             said = f"{path} is no calibration ({error})"
             raise InputError(f"{said}: results(withdraw={Path(path).stem!r}), and calibrate again") from None
 
-    def _repr_html_(self):
-        """Slopes, zeros, standard errors and residuals as a table, then the remarks, as a notebook shows it."""
+    def __repr__(self):
+        """A table of slopes and zeros with their standard errors, and of residuals; then the source and the remarks."""
         import pandas as pd
 
-        columns = {
-            "joint": (1, 2, 3),
-            "counts/rad": _with_errors(self.slope, self.stderr_slope),
-            "counts at q = 0": _with_errors(self.zero, self.stderr_zero),
-            "rms residual": [f"{np.degrees(np.sqrt(np.mean(one**2))):.2f} deg" for one in self.residuals]
-            or "not measured",
-        }
-        below = "".join(f"<p>{escape(str(text))}</p>" for text in (f"source: {self.source}", *self.remarks))
-        return pd.DataFrame(columns).to_html(index=False) + below
-
-
-def _with_errors(values, errors):
-    return [f"{value:.2f} ± {error:.2f}" for value, error in zip(values, errors or (np.nan,) * 3, strict=True)]
+        columns = {"counts/rad": self.slope, "+- counts/rad": self.stderr_slope}
+        columns |= {"counts at q = 0": self.zero, "+- counts": self.stderr_zero}
+        columns["rms residual, deg"] = [np.degrees(np.sqrt(np.mean(one**2))) for one in self.residuals] or None
+        table = pd.DataFrame(columns, index=_JOINTS).to_string(float_format="%.2f")
+        return "\n".join((table, f"source: {self.source}", *self.remarks))
 
 
 def _pairs(q, counts):

@@ -7,7 +7,6 @@ import numpy as np
 from ir50p_lab.controllers.base import check_controller
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import choice, numbers
-from ir50p_lab.signals.reference import per_joint
 
 LIMIT_PWM = 255
 
@@ -18,7 +17,9 @@ def sign_and_magnitude(u):
     Args: u: PWM counts, any shape. Returns: direction (-1, 0 or 1) and duty (0..255), integers of the same shape.
     Raises InputError if a number is not finite.
     """
-    u = _finite("u", u)
+    u = numbers("u", u, unit="PWM counts")
+    if not np.isfinite(u).all():
+        raise InputError(f"u = {u.tolist()}: every number must be finite (PWM counts)")
     duty = np.minimum(np.rint(np.abs(u)), LIMIT_PWM).astype(int)
     return np.sign(u).astype(int) * (duty > 0), duty
 
@@ -40,8 +41,10 @@ def thesis_map(u):
 
     Wrong for a bridge driven by sign and magnitude: u = 0 becomes 127.5, half the supply (`mean_voltage`). It is right
     for locked anti-phase wiring only, where 127.5 is standstill. Here for the check of the thesis, not for driving.
+    u in whole counts, as analogWrite takes them. Raises InputError if a number is not finite.
     """
-    return (np.clip(_finite("u", u), -LIMIT_PWM, LIMIT_PWM) + LIMIT_PWM) / 2
+    direction, duty = sign_and_magnitude(u)
+    return (direction * duty + LIMIT_PWM) / 2
 
 
 def mean_voltage(duty, direction=1, *, supply=12.0, wiring="sign-magnitude"):
@@ -51,9 +54,9 @@ def mean_voltage(duty, direction=1, *, supply=12.0, wiring="sign-magnitude"):
     V duty/255. 'locked anti-phase': duty switches between +supply and -supply: V (2 duty/255 - 1), direction unused.
     Raises InputError for a duty outside 0..255 or another wiring.
     """
-    duty = _finite("duty", duty)
-    if ((duty < 0) | (duty > LIMIT_PWM)).any():
-        raise InputError(f"duty = {duty.tolist()}: analogWrite takes 0 to {LIMIT_PWM} counts")
+    duty = numbers("duty", duty, unit="PWM counts")
+    if not ((duty >= 0) & (duty <= LIMIT_PWM)).all():
+        raise InputError(f"duty = {duty.tolist()}: analogWrite takes 0 to {LIMIT_PWM} PWM counts, finite")
     if choice("wiring", wiring, ("sign-magnitude", "locked anti-phase")) == "sign-magnitude":
         return supply * np.asarray(direction) * duty / LIMIT_PWM
     return supply * (2 * duty / LIMIT_PWM - 1)
@@ -76,24 +79,20 @@ class StopCriterion:
     While a joint is stopped the controller inside sees it on its set point, at rest: its integral waits.
 
     Args:
-        controller: object with step(t, measured, reference) -> u (3,).
-        inner, outer: rad, one number or (3,), 0 < inner < outer.
-        hold: 'latch' or 'off'. smooth: time constant of the low pass for e and u, s; 0: none.
+        controller: object with step(t, measured, reference) -> u (3,). hold: 'latch' or 'off'.
         signed: the thesis' criterion, e < inner with the sign and without hysteresis; to see what it does.
 
-    Attributes: stopped: (3,) bool; unit, controller: of the controller inside.
+    Attributes: stopped: (3,) bool; unit, controller: of the controller inside. To be set: inner, outer: rad, one number
+    or (3,), 0 < inner < outer; smooth: time constant of the low pass for e and u, s, 0: none.
     Raises InputError on other values.
     """
 
-    def __init__(self, controller, inner=0.01, outer=0.02, *, hold="latch", smooth=0.05, signed=False):
+    inner, outer, smooth = 0.01, 0.02, 0.05
+
+    def __init__(self, controller, *, hold="latch", signed=False):
         check_controller(controller)
         self.controller, self.unit = controller, getattr(controller, "unit", "N m")
-        self.inner = np.array(per_joint("inner", inner, "> 0", unit="rad"))
-        self.outer = np.array(per_joint("outer", outer, "> 0", unit="rad"))
-        if (self.outer <= self.inner).any():
-            raise InputError(f"outer = {outer} rad must be larger than inner = {inner} rad: the gap is the hysteresis")
         self.hold, self.signed = choice("hold", hold, ("latch", "off")), signed
-        self.smooth = smooth
         self.reset()
 
     def reset(self):
@@ -119,10 +118,3 @@ class StopCriterion:
         self._u[going] += blend * (u[going] - self._u[going])
         u[self.stopped] = self._u[self.stopped] if self.hold == "latch" else 0.0
         return u
-
-
-def _finite(name, value):
-    array = numbers(name, value, unit="PWM counts")
-    if not np.isfinite(array).all():
-        raise InputError(f"{name} = {value!r}: every number must be finite (PWM counts)")
-    return array
