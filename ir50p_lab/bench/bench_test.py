@@ -91,8 +91,7 @@ def _rest(bench, seconds=1.0):
 
 
 def _noise(bench):
-    counts = _rest(bench)
-    rms = counts.std(axis=0)
+    rms = _rest(bench).std(axis=0)
     worst, text = rms.argmax(), f"{rms.round(2).tolist()} counts rms at rest"
     remedy = f"; joint {worst + 1} is not steady: look at the grounds and the 100 nF, and that nothing moves"
     _require(rms[worst] <= STEADY, text + remedy)

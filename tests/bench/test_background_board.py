@@ -42,7 +42,7 @@ NOTEBOOK = """
         def step(self, t, measured, reference):
             return np.array([30.0, -30.0, 30.0])  # less than breaks a joint away: the held arm is no runaway
 
-    bench = SerialBench({port!r}, arm=IR50P, record_to=False, announce=lambda line: None).open()
+    bench = SerialBench({port!r}, arm=IR50P, record_to=False).open()
     run = bench.start(Push(), None)
     while run.statistics().cycles < 30:
         time.sleep(0.01)
