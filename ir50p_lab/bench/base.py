@@ -295,7 +295,7 @@ class Bench:
         if ended:
             self.cut()
             paused = f"the program sent no command for {silence:.1f} s, from t = {when - WATCHDOG:.2f} s on"
-            remedy = "start a new bench.run(...) without plots or input in its loop, or use bench.start(...)"
+            remedy = "start a new run, without plots or input in its loop, or use bench.start(...)"
             run.fault = PauseError(f"{paused}: the drive was cut after {WATCHDOG:g} s and stays off; {remedy}")
             raise run.fault
         if run.trips == 1:

@@ -100,7 +100,7 @@ class SerialBench(Bench):
         for joint, counts in enumerate(state.counts):
             if not _BROKEN <= counts <= protocol.MAX_COUNTS - _BROKEN:
                 said = f"the potentiometer of joint {joint + 1} reads {counts / protocol.SUBCOUNTS:g} of 0..1023 counts"
-                remedy = "a wire is broken or shorted, the drive is off. Look at its plug and its 5 V"
+                remedy = "only a broken or shorted wire does so; the drive is off. Look at its plug and its 5 V"
                 raise BoardError(f"{said}: {remedy}")
         pace, tripped = self._run.pace, drive and bool(state.status & protocol.WATCHDOG_TRIPPED)
         pace.heard = sent
@@ -182,5 +182,5 @@ class SerialBench(Bench):
         raise BoardError(f"{self.port}: {has}; this lab book needs {needs}: {_REMEDY}")
 
     def _lost(self, what):
-        remedy = "look at the USB cable and the board's lamp, then open the bench again with connect()"
-        return BoardLostError(f"the board on {self.port} {what}: it brakes 0.1 s after the last command; {remedy}")
+        lost = f"the board on {self.port} {what}: it brakes by itself 0.1 s after the last command"
+        return BoardLostError(f"{lost}. Look at the USB cable and the board's lamp, then connect() again")

@@ -57,7 +57,7 @@ def test_a_kill_cuts_the_drive_within_110_ms(board, victim):
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, env=environment) as notebook:
         try:
-            loop = int(notebook.stdout.readline())
+            loop = int(notebook.stdout.readline().split(b"\r")[-1])  # behind the line about the boot loader
             until(lambda: driven(board.changes()[-1].pins))
             os.kill(notebook.pid if victim == "notebook" else loop, signal.SIGKILL)
             cut = board.cut_after_last_command()

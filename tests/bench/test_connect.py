@@ -120,7 +120,7 @@ def test_the_line_about_the_boot_loader_is_wiped_out(computer, capsys):
     computer({"/dev/ttyACM0": (MEGA, board())})
     connect().abort()
     waiting, line = capsys.readouterr().out.split("\r")
-    assert waiting == "/dev/ttyACM0: opening it restarts the board, its boot loader takes 2 s"
+    assert waiting == "/dev/ttyACM0: the board restarts, its boot loader takes 2 s"
     assert len(line) > len(waiting)
 
 
