@@ -11,7 +11,7 @@ from ir50p_lab.vision import Calibration
 
 MANY = 200_000
 CAMERA = "%YAML:1.0\n---\nimage_width: "
-ROWS = "t,q1,q2,q3\n0,0,0,0\n0.01,0,0,0\n"
+ROWS = "t,q1,q2,q3,counts1,counts2,counts3,u1,u2,u3,r1,r2,r3,gripper,missed\n0,0,0,0,,,,,,,,,,,\n"
 
 
 @pytest.mark.parametrize(

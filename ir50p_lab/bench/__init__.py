@@ -8,7 +8,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "base": ["Bench", "Sample"],
         "calibration": ["JointCalibration", "fit_calibration", "nominal_calibration"],
         "connect": ["connect"],
-        "driving": ["StopCriterion", "bridge_inputs", "mean_voltage", "sign_and_magnitude", "thesis_map"],
         "recording": ["Recording"],
         "replay": ["ReplayBench"],
         "serial_bench": ["SerialBench"],

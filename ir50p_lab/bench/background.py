@@ -30,8 +30,7 @@ _TO_REST = 60.0  # s: a way to the rest pose that takes longer has failed
 _OBEYED = 0.25  # s: a loop that has not taken the order to cut by then hangs
 _BEGINS_WITHIN = 80.0  # s: a cold start imports and compiles, and a board restarts when its port is opened
 _KEPT = 8192  # samples: 82 s at 100 Hz
-_VECTORS = [(name, "f8", 3) for name in ("q", "u", "reference")]
-_SAMPLE = np.dtype([("t", "f8"), *_VECTORS, ("clock", "f8"), ("missed", "i8"), ("trips", "i8")])
+_NAMES, _FORMATS = "t q u reference clock missed trips".split(), "f8 3f8 3f8 3f8 f8 i8 i8".split()
 
 
 def start(bench, controller, reference=None):
@@ -59,10 +58,8 @@ def start(bench, controller, reference=None):
     try:
         cargo = cloudpickle.dumps((controller, reference))  # whoever defined them
     except Exception as error:
-        raise InputError(
-            f"controller or reference cannot be sent to the loop in the background ({error}): let them hold numbers "
-            "and functions only, no files, widgets or benches"
-        ) from None
+        said = f"controller or reference cannot be sent to the background ({error})"
+        raise InputError(f"{said}: let them hold no files, widgets or benches") from None
     bench.live_run = LiveRun(bench, controller, cargo)
     bench.live_run._begin()
     return bench.live_run
@@ -76,11 +73,9 @@ class LoopStatistics(namedtuple("LoopStatistics", "cycles missed trips period_p5
     """
 
     def __str__(self):
-        median, most, longest = (1e3 * x for x in (self.period_p50, self.period_p99, self.period_max))
-        return (
-            f"{self.cycles} cycles, {self.missed} late, {self.trips} cuts of the drive by pauses; "
-            f"period {median:.2f} ms median, {most:.2f} ms 99 %, {longest:.2f} ms longest"
-        )
+        median, most, longest = (f"{1e3 * x:.2f} ms" for x in self[3:])
+        counts = f"{self.cycles} cycles, {self.missed} late, {self.trips} cuts of the drive by pauses"
+        return f"{counts}; period {median} median, {most} 99 %, {longest} longest"
 
 
 class LiveRun:
@@ -107,7 +102,7 @@ class LiveRun:
         self._bench, self._cargo = bench, cargo
         self.error, self.gains = None, gains_of(controller)
         self._orders, self._told, self._begun = SimpleQueue(), {}, threading.Event()
-        self._ring, self._count = np.zeros(_KEPT, _SAMPLE).view(np.recarray), 0
+        self._ring, self._count = np.rec.array(None, names=_NAMES, formats=_FORMATS, shape=_KEPT), 0
         self._thread, self._process = threading.Thread(target=self._work, daemon=True), None
 
     def _begin(self):
@@ -161,10 +156,8 @@ class LiveRun:
         if "failed" in self._told:
             raise pickle.loads(self._told["failed"])
         if "done" not in self._told:
-            raise BenchError(
-                f"the process of the loop has died (exit code {code}): a board cuts the drive 0.1 s after the last "
-                f"command{'; it said: ' * bool(words)}{words}"
-            )
+            told = "; it said: " * bool(words) + words
+            raise BenchError(f"the loop's process has died (exit code {code}); a board cuts after 0.1 s{told}")
 
     def _hear(self, name, content):
         """Keep what the loop tells; see `live_loop`."""

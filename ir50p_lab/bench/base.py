@@ -7,18 +7,16 @@ import numpy as np
 
 from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, CountedPace, Pace
+from ir50p_lab.bench.protocol import JOINTS, LIMIT_PWM
 from ir50p_lab.bench.recorder import Recorder, header_of
 from ir50p_lab.bench.rest import way_to_rest
 from ir50p_lab.bench.runaway import RunawayGuard
 from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.controllers.base import check_controller, check_reference
 from ir50p_lab.errors import BenchError, InputError, LabError, PauseError
-from ir50p_lab.inputs import number
+from ir50p_lab.inputs import number, vector3
 from ir50p_lab.modelling.chain import lengths
 from ir50p_lab.modelling.named_arms import load_arm
-
-JOINTS = 3
-LIMIT_PWM = 255
 
 
 class Sample(namedtuple("Sample", "t q counts missed reference", defaults=(None,))):
@@ -33,14 +31,13 @@ class Sample(namedtuple("Sample", "t q counts missed reference", defaults=(None,
 class Run:
     """What belongs to one run.
 
-    pace: Pace or CountedPace; guard: see `Bench._make_guard`; row: the Sample whose command may still come, before
-    its row is written; aim: its reference (3,); trips: of the watchdog; fault: what has ended it.
+    reference: target(t) or None; recorder: Recorder or None; pace: Pace or CountedPace; guard: see `Bench._make_guard`;
+    row: the Sample whose command may still come, before its row is written; aim: its reference (3,); fault: what has
+    ended it; trips: of the watchdog.
     """
 
-    def __init__(self, recorder, reference):
-        self.recorder, self.reference = recorder, reference
-        self.pace = self.guard = self.row = self.aim = self.fault = None
-        self.trips = 0
+    reference = recorder = pace = guard = row = aim = fault = None
+    trips = 0
 
 
 class Bench:
@@ -232,7 +229,12 @@ class Bench:
     def _running(self, reference, record, header):
         """A Run from its beginning to its end; an error cuts the drive first."""
         self._end_run()  # of a loop that was left by break
-        run = self._run = Run(self._start_recorder(header) if record else None, reference)
+        run = self._run = Run()
+        run.reference = reference
+        if record:
+            head = self.head() | {name: str(value) for name, value in header.items()}
+            run.recorder = Recorder(head, folder=self.record_to)
+            self.recording = run.recorder.recording
         self._pwm = np.zeros(JOINTS)
         try:
             self._begin()
@@ -281,7 +283,7 @@ class Bench:
     def _resume(self, run, silence):
         """The drive was cut in this silence, s: say so and measure, driving nothing; too long a one ends the run."""
         self._write_row(run)
-        pace, when = run.pace, run.pace.cut_at(silence)
+        pace, when = run.pace, run.pace.heard - silence + WATCHDOG - run.pace.start
         pace.catch_up()
         run.trips += 1
         said, ended = f"the drive was cut: no command for {silence:.2f} s", silence > LONGEST_PAUSE
@@ -292,12 +294,9 @@ class Bench:
             self._last = run.row = Sample(t, self._radians(counts), counts, pace.missed)
         if ended:
             self.cut()
-            run.fault = PauseError(
-                f"the program sent no command for {silence:.1f} s, from t = {when - WATCHDOG:.2f} s on (a plot or "
-                f"input in the loop, a debugger, a laptop that slept?): the drive was cut after {WATCHDOG:g} s and "
-                "stays off. Start a new run with bench.run(...), and keep what takes long out of its loop, or use "
-                "bench.start(...)"
-            )
+            paused = f"the program sent no command for {silence:.1f} s, from t = {when - WATCHDOG:.2f} s on"
+            remedy = "start a new run, without plots or input in its loop, or use bench.start(...)"
+            run.fault = PauseError(f"{paused}: the drive was cut after {WATCHDOG:g} s and stays off; {remedy}")
             raise run.fault
         if run.trips == 1:
             print(f"At t = {when:.2f} s {said}; the run goes on. Further cuts: bench.recording.events.")
@@ -321,18 +320,11 @@ class Bench:
             **self._header(),
         }
 
-    def _start_recorder(self, header):
-        head = self.head() | {name: str(value) for name, value in header.items()}
-        recorder = Recorder(head, folder=self.record_to)
-        self.recording = recorder.recording
-        return recorder
-
     def _end_run(self):
         run, self._run = self._run, None
-        if run is None:
-            return
         try:
-            self._end_recording(run)
+            if run is not None:
+                self._end_recording(run)
         except BaseException:  # a full disk; nobody may hear of it while a generator is closed
             self.cut()
             raise
@@ -382,14 +374,13 @@ class Bench:
     def _command_of(self, pwm):
         """`pwm` in whole counts, within the limit and not beyond the ends of the travel; else cut and raise."""
         try:
-            given = np.asarray(pwm)
-            command = given.astype(float) if given.dtype.kind in "iufO" else np.full(JOINTS, np.nan)
-            usable = command.shape == (JOINTS,) and np.isfinite(command).all()
+            if np.asarray(pwm).dtype.kind not in "iufO":
+                raise TypeError
+            command = vector3("pwm", pwm)
         except Exception:  # whatever the conversion of a stranger raises
-            usable = False
-        if not usable:
             self.cut()
-            raise InputError(f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts; the drive has been cut")
+            said = f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts; the drive has been cut"
+            raise InputError(said) from None
         limited = []  # scalars: for three numbers arrays take longer than the arm
         for u, q, (low, high) in zip(command.tolist(), self._last.q.tolist(), self._travel, strict=True):
             out = (q <= low and u < 0) or (q >= high and u > 0)

@@ -3,7 +3,6 @@
 import tomllib
 import warnings
 from dataclasses import asdict, dataclass
-from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -78,11 +77,9 @@ class JointCalibration:
 
     def header(self):
         """Lines for the head of a recording."""
-        return {
-            "counts_per_rad": " ".join(f"{x:.6g}" for x in self.slope),
-            "counts_at_zero": " ".join(f"{x:.6g}" for x in self.zero),
-            "calibration": self.source,
-        }
+        lines = {"counts_per_rad": self.slope, "counts_at_zero": self.zero}
+        lines = {name: " ".join(f"{x:.6g}" for x in three) for name, three in lines.items()}
+        return lines | {"calibration": self.source}
 
     def save(self, path):
         """Write it as a readable file (TOML). Returns the Path. Raises OSError if it cannot be written."""
@@ -105,23 +102,15 @@ class JointCalibration:
             said = f"{path} is no calibration ({error})"
             raise InputError(f"{said}: results(withdraw={Path(path).stem!r}), and calibrate again") from None
 
-    def _repr_html_(self):
-        """Slopes, zeros, standard errors and residuals as a table, then the remarks, as a notebook shows it."""
+    def __repr__(self):
+        """A table of slopes and zeros with their standard errors, and of residuals; then the source and the remarks."""
         import pandas as pd
 
-        columns = {
-            "joint": (1, 2, 3),
-            "counts/rad": _with_errors(self.slope, self.stderr_slope),
-            "counts at q = 0": _with_errors(self.zero, self.stderr_zero),
-            "rms residual": [f"{np.degrees(np.sqrt(np.mean(one**2))):.2f} deg" for one in self.residuals]
-            or "not measured",
-        }
-        below = "".join(f"<p>{escape(str(text))}</p>" for text in (f"source: {self.source}", *self.remarks))
-        return pd.DataFrame(columns).to_html(index=False) + below
-
-
-def _with_errors(values, errors):
-    return [f"{value:.2f} ± {error:.2f}" for value, error in zip(values, errors or (np.nan,) * 3, strict=True)]
+        columns = {"counts/rad": self.slope, "+- counts/rad": self.stderr_slope}
+        columns |= {"counts at q = 0": self.zero, "+- counts": self.stderr_zero}
+        columns["rms residual, deg"] = [np.degrees(np.sqrt(np.mean(one**2))) for one in self.residuals] or None
+        table = pd.DataFrame(columns, index=_JOINTS).to_string(float_format="%.2f")
+        return "\n".join((table, f"source: {self.source}", *self.remarks))
 
 
 def _pairs(q, counts):
@@ -170,8 +159,7 @@ def fit_calibration(q, counts, *, arm="", source="measured"):
     """
     q, counts = vectors3("q", q), vectors3("counts", counts, unit="counts")
     if q.ndim != 2 or q.shape != counts.shape or len(q) < 3:
-        said = f"q has shape {q.shape}, counts have {counts.shape}"
-        raise InputError(f"{said}: give a row per pose, in pairs; two make a line, a third shows its error")
+        raise InputError(f"q has shape {q.shape}, counts have {counts.shape}: give a row per pose, in pairs, 3 or more")
     if np.abs(q).max() > 2 * np.pi:
         raise InputError(f"q holds {np.abs(q).max():g} rad, more than a turn: in degrees? Use np.radians")
     if counts.min() < 0 or counts.max() > _FULL:
@@ -185,17 +173,14 @@ def fit_calibration(q, counts, *, arm="", source="measured"):
 def _line(joint, q, counts):
     """(slope, zero, stderr_slope, stderr_zero, points, remarks) of one joint."""
     if np.ptp(q) == 0 or np.ptp(counts) == 0:
-        said = f"joint {joint}: all angles or all readings are the same: nothing moved"
-        raise InputError(f"{said}. Is this the potentiometer of that joint, and is it connected?")
+        raise InputError(f"joint {joint}: nothing moved. Is it the potentiometer of that joint, and is it connected?")
     (b, a), cov = np.polyfit(counts, q, 1, cov=True)
     r2 = np.corrcoef(q, counts)[0, 1] ** 2
     back = -(np.sign(b) * np.diff(counts[np.argsort(q)])).min()
     if r2 < 0.5 or back > _STEP_BACK:
-        raise InputError(
-            f"joint {joint}: the counts do not follow the angle (correlation squared {r2:.2f}, largest step back "
-            f"{max(back, 0.0):.0f} counts): are they of the same poses and the same joint, are cables swapped, is the "
-            "gap of its track in the travel? bench-test finds out"
-        )
+        said = f"correlation squared {r2:.2f}, largest step back {max(back, 0.0):.0f} counts"
+        asked = "other poses, cables swapped, the gap of its track in the travel? bench-test finds out"
+        raise InputError(f"joint {joint}: the counts do not follow the angle ({said}): {asked}")
     slope, zero = 1 / b, -a / b
     # errors of a and b carried over to first order
     variances = cov[0, 0] / b**4, (cov[1, 1] + zero**2 * cov[0, 0] + 2 * zero * cov[0, 1]) / b**2
@@ -218,10 +203,8 @@ def _remarks(q, counts, slope, zero):
     alone = [_beyond_noise(line, one, q, 1e-3 / len(q)) for one in np.eye(len(q))]  # a column that frees one point
     if max(alone) > 1:
         far = np.argmax(alone)
-        yield (
-            f"point {far + 1} (q = {np.degrees(q[far]):.1f} deg, {counts[far]:.1f} counts) lies "
-            f"{np.degrees(abs(off[far])):.1f} deg off the line, far more than the others: misread?"
-        )
+        point = f"point {far + 1} (q = {np.degrees(q[far]):.1f} deg, {counts[far]:.1f} counts)"
+        yield f"{point} lies {np.degrees(abs(off[far])):.1f} deg off the line, far more than the others: misread?"
     elif _beyond_noise(line, bend, q, 0.01) > 1:
         bow = np.abs(powers @ np.linalg.lstsq(powers, off)[0]).max()
         yield f"the line leaves a bow of {np.degrees(bow):.1f} deg that is no noise: angles there are that much off"

@@ -45,13 +45,9 @@ def connect(port=None, *, arm=None, calibration=None, period=0.01, record_to=Non
     if wish.lower().startswith("replay:"):
         from ir50p_lab.bench.replay import ReplayBench
 
-        options = {name: common[name] for name in ("arm", "record_to")} | {"realtime": simulated.get("realtime", False)}
-        bench = ReplayBench(wish[len("replay:") :], **options)
-        return _say(bench.open(), reason, _TO_BOARD)
-    try:
-        return _say_board(_serial(wish, common), reason)
-    except PortError as error:
-        raise PortError(f"{error}. To go on without a board: connect('simulated')") from None
+        options = {"arm": arm, "record_to": record_to or False, "realtime": simulated.get("realtime", False)}
+        return _say(ReplayBench(wish[len("replay:") :], **options).open(), reason, _TO_BOARD)
+    return _board(wish, common, reason)
 
 
 def _look_for_a_board(common, simulated):
@@ -59,7 +55,7 @@ def _look_for_a_board(common, simulated):
     for port in list_ports():
         try:
             if port.board:
-                return _say_board(_serial(port.device, common), f"{port.board} found and its firmware answers")
+                return _board(port.device, common, f"{port.board} found and its firmware answers")
         except (PortError, BoardError) as error:
             refused.append(f"{port.board} was not taken: {error}")
     return _say(_simulated(common, simulated), "; ".join(refused) or "no Arduino Mega found", _TO_BOARD)
@@ -68,20 +64,15 @@ def _look_for_a_board(common, simulated):
 def _simulated(common, simulated):
     from ir50p_lab.bench.simulated import SimulatedBench
 
-    known = {name: common[name] for name in ("arm", "period", "record_to")}
-    bench = SimulatedBench(**known, **simulated)
+    bench = SimulatedBench(**common, **simulated)
     bench.calibration = common["calibration"] or own_calibration(bench) or bench.calibration
     return bench.open()
 
 
-def _serial(device, common):
+def _board(device, common, reason):
     from ir50p_lab.bench.serial_bench import SerialBench
 
-    # the line about the boot loader gives way to the one that says what was chosen
-    return SerialBench(device, **common, announce=lambda line: print(line, end="\r", flush=True)).open()
-
-
-def _say_board(bench, reason):
+    bench = SerialBench(device, **common).open()
     known = bench.bench_id or "without an id: python3 -m ir50p_lab bench-test gives it one"
     return _say(bench, f"{reason}, version {bench.firmware}; {known}", _TO_SIMULATED)
 

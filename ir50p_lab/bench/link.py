@@ -16,7 +16,6 @@ PORT_ERRORS = (OSError, _termios_error)
 STALL = 0.1  # s in one read: the program was stopped, not the board
 READ_TIMEOUT = 0.004  # s; an answer takes 1 ms on the wire and up to 3 ms more through USB
 REPEAT = 0.004  # s without an answer until the question is asked again
-HEARD = 80  # first bytes kept to tell what it is that does not answer
 
 
 class Link:
@@ -27,7 +26,7 @@ class Link:
     Attributes: statistics: what has happened on the wire since it was opened. commands: sent; repeats: of which again,
     because no answer came; bad_replies, bad_commands: damaged frames, dropped by the computer and by the board (its
     counter, which begins at its start and wraps at 65536); watchdog_trips: times that the board cut the drive because
-    no command came for 100 ms. heard: the first bytes that came since `forget`.
+    no command came for 100 ms.
     """
 
     def __init__(self, transport, clock):
@@ -36,7 +35,6 @@ class Link:
         self._parser = protocol.FrameParser()
         self._seq, self._tripped = 0, False
         self.statistics = SimpleNamespace(commands=0, repeats=0, bad_replies=0, bad_commands=0, watchdog_trips=0)
-        self.heard = bytearray()
 
     def ask(self, kind, pwm=(0, 0, 0), gripper=False, *, patience, repeat=REPEAT):
         """Send a command and wait for its answer; ask again every `repeat` s without one, `patience` s in all.
@@ -58,7 +56,6 @@ class Link:
                 now = self._clock.now()
                 if now - before > STALL and not stalled:
                     stalled, start, next_try = True, now, now + repeat
-                self.heard += data[: HEARD - len(self.heard)]
                 replies = self._parser.feed(data)
                 self.statistics.bad_replies = self._parser.bad
                 for reply in replies:
@@ -90,7 +87,6 @@ class Link:
         """Drop all that has come so far and was not read."""
         self._transport.reset_input_buffer()
         self._parser.reset()
-        self.heard.clear()
 
     def close(self):
         """Give the port free."""

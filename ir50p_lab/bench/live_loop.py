@@ -11,29 +11,27 @@ from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.rest import way_to_rest
 from ir50p_lab.bench.set_point import SetPoint
 from ir50p_lab.controllers.base import gains_of, set_gains
-from ir50p_lab.errors import BenchError
 
 STARTING, LEADING, RUNNING = "starting", "leading in", "running"
 RETURNING, ENDED = "moving to the rest pose", "ended"
 _DAY = 86400.0  # s: the longest run
 
 
-def live_loop(bench, controller, reference, orders, tell, *, orphaned=lambda: False):
+def live_loop(bench, controller, reference, orders, tell):
     """Run until an order says stop or cut, or something fails.
 
     Args:
         bench: open Bench; controller: anything with step(t, measured, reference); reference: target(t) or None, which
         holds the measured pose. orders: queue of (name, content): "stop", "cut" (None), "gains" (dict of (3,)),
         "set point" (3,) rad. tell: takes a name and its content: "phase", "recording" (path or None) and "sample":
-        (t, q, u, reference, s of a true clock, late cycles, trips of the watchdog). orphaned: says in every cycle
-        whether the process that gives the orders has died.
+        (t, q, u, reference, s of a true clock, late cycles, trips of the watchdog), once in every cycle.
 
     After the order to cut or an error the drive is off at once; else the arm moves to its rest pose first, which is
-    not recorded. Raises what controller, reference or bench raise, and BenchError when orphaned.
+    not recorded. Raises what controller, reference, bench or `tell` raise.
     """
     load_controllers()
     way_to_rest(bench.arm, np.zeros(3), bench.period)[1](0.0)  # compiled now: at the end the arm cannot wait for it
-    loop = _Loop(bench, _Target(bench, reference), orders, tell, orphaned)
+    loop = _Loop(bench, _Target(bench, reference), orders, tell)
     loop.say(STARTING)
     try:
         if hasattr(controller, "reset"):
@@ -55,8 +53,8 @@ def live_loop(bench, controller, reference, orders, tell, *, orphaned=lambda: Fa
 class _Loop:
     """What the parts of a run in the background have in common."""
 
-    def __init__(self, bench, target, orders, tell, orphaned):
-        self.bench, self.target, self.orders, self.tell, self.orphaned = bench, target, orders, tell, orphaned
+    def __init__(self, bench, target, orders, tell):
+        self.bench, self.target, self.orders, self.tell = bench, target, orders, tell
         self.phase = None
 
     def say(self, phase):
@@ -73,8 +71,6 @@ class _Loop:
         """
         for sample in samples:
             woke = time.perf_counter()
-            if self.orphaned():
-                raise BenchError("the process that started this loop is gone: the drive has been cut")
             while not self.orders.empty():
                 order, content = self.orders.get()
                 if order == "cut":

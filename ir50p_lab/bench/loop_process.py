@@ -64,28 +64,27 @@ def _serve(pipe, news, bench, cargo):
     reader = threading.Thread(target=read_on, args=(pipe, lambda *order: orders.put(order)), daemon=True)
     reader.start()
 
-    def orphaned():
-        """The pipe has ended; a fork of the parent may hold it open."""
-        return not reader.is_alive() or os.getppid() != parent
+    def tell(*word):
+        if not reader.is_alive() or os.getppid() != parent:  # the pipe has ended; a fork of the parent may hold it open
+            raise BenchError("the process that started this loop is gone: the drive has been cut")
+        news.put(word)
 
     bench = kind(**arguments)
     bench.open()
     try:
         gc.collect()
         gc.freeze()  # what the imports made is never looked through again
-        live_loop(bench, controller, reference, orders, lambda *word: news.put(word), orphaned=orphaned)
+        live_loop(bench, controller, reference, orders, tell)
     finally:
         bench.abort()
 
 
 def _packed_error(error):
     """The error as bytes that the parent can read; a BenchError with its text where it cannot be sent."""
-    import cloudpickle
-
     if not isinstance(error, LabError):
         error.add_note("in the loop's process:\n" + "".join(traceback.format_tb(error.__traceback__)[-3:]))
     try:
-        packed = cloudpickle.dumps(error)
+        packed = pickle.dumps(error)
         pickle.loads(packed)
     except Exception:
         text = "".join(traceback.format_exception_only(error)).strip()

@@ -35,10 +35,7 @@ class Clock:
 class CountedPace:
     """The cycles of a run whose time is a counter: nothing is ever late, and no pause matters. As `Pace`."""
 
-    armed, missed = True, 0
-
-    def __init__(self):
-        self.cycle = -1
+    armed, missed, cycle = True, 0, -1
 
     def next_cycle(self):
         """The number of the next cycle."""
@@ -67,10 +64,7 @@ class Pace:
 
     def __init__(self, clock, period):
         if period > 0.5 * WATCHDOG:
-            raise InputError(
-                f"period = {period} s: the drive of an arm that hears nothing for {WATCHDOG:g} s is cut: give "
-                f"{0.5 * WATCHDOG:g} s at most"
-            )
+            raise InputError(f"period = {period} s: a watchdog of {WATCHDOG:g} s: give {0.5 * WATCHDOG:g} s at most")
         self._clock, self._period = clock, period
         self.start = self.heard = clock.now()
         self.cycle, self.missed, self.armed = -1, 0, False
@@ -106,10 +100,6 @@ class Pace:
         now = self._clock.now()
         silence, self.heard = now - self.heard, now
         return silence if self.armed else 0.0
-
-    def cut_at(self, silence):
-        """When the drive was cut in the silence that ends now, s of the run."""
-        return self.heard - silence + WATCHDOG - self.start
 
 
 def load_controllers():

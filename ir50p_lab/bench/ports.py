@@ -45,11 +45,9 @@ def port_error(device, error):
     text, number = str(error), getattr(error, "errno", None)
     # Windows reports a port in use as 'access denied', without a number
     if number in (errno.EBUSY, errno.EAGAIN) or "lock port" in text or "PermissionError" in text:
-        return PortError(
-            f"{device} is busy: another program holds it (Linux: 'fuser -v {device}' names it; ModemManager lets go "
-            "after half a minute). Close the Arduino IDE's monitor and shut down other notebooks' kernels, then try "
-            "again"
-        )
+        names = f"Linux: 'fuser -v {device}' names it; ModemManager lets go after half a minute"
+        remedy = "close the Arduino IDE's monitor and other notebooks' kernels, then try again"
+        return PortError(f"{device} is busy: another program holds it ({names}); {remedy}")
     if number in (errno.EACCES, errno.EPERM):
         return PortError(f"no permission to open {device}: {permission_remedy(device)}")
     if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV) or "FileNotFoundError" in text:
@@ -59,8 +57,6 @@ def port_error(device, error):
 
 def _missing_remedy():
     here = ", ".join(port.device for port in list_ports()) or "none at all"
-    return (
-        f"ports on this computer: {here}. Plug the board in with a cable that carries data ('dmesg | tail' on Linux, "
-        "'ls /dev/cu.*' on macOS or the Device Manager on Windows shows it); clones may need the driver of their chip "
-        "(CH340)"
-    )
+    shows = "'dmesg | tail' on Linux, 'ls /dev/cu.*' on macOS, the Device Manager on Windows"
+    plug = f"plug the board in with a cable that carries data ({shows} show it); clones may need a driver (CH340)"
+    return f"ports on this computer: {here}. Else {plug}. To go on without a board: connect('simulated')"

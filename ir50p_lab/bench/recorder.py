@@ -9,7 +9,7 @@ from itertools import count
 from pathlib import Path
 
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.recording_file import event_text, head_text, row_text, rows_text, table_of, told_text
+from ir50p_lab.bench.recording_file import event_text, head_text, rows_text, table_of, told_text
 from ir50p_lab.controllers.base import gains_of
 from ir50p_lab.errors import RecordingError
 from ir50p_lab.home import home
@@ -23,7 +23,7 @@ class Recorder:
     """One run into one new file; every sample is handed to the operating system before `write` returns.
 
     Args:
-        head: dict of str for the head of the file; "kind" and "simulated" also go into its name.
+        head: dict of str for the head of the file; "kind" also goes into its name.
         folder: where to; None: the folder of the environment variable IR50P_RECORDINGS, else recordings/ in
         the student's folder (IR50P_HOME); False: in memory only. A folder that is missing is made.
 
@@ -40,21 +40,17 @@ class Recorder:
         self.recording = Recording(self._rows, head, path=self.path)
 
     def _create(self, folder, head):
-        kind = head.get("kind", "arm")
-        if head.get("simulated") == "true" and "simulated" not in kind:
-            kind += "_simulated"
         begun = datetime.fromisoformat(head["date"]).strftime("%Y-%m-%d_%H%M%S")
         try:
             folder.mkdir(parents=True, exist_ok=True)
             for run in count(1):  # several runs in one second get numbers
-                self.path = folder / f"{begun}_{kind}_{run}.csv"
+                self.path = folder / f"{begun}_{head.get('kind', 'arm')}_{run}.csv"
                 with contextlib.suppress(FileExistsError):
                     self._file = os.open(self.path, _FLAGS, 0o666)
                     break
         except OSError as error:
-            raise RecordingError(
-                f"cannot record in {folder.absolute()}: {error.strerror}; {_ELSEWHERE}, or record=False for none"
-            ) from None
+            said = f"cannot record in {folder.absolute()}: {error.strerror}"
+            raise RecordingError(f"{said}; {_ELSEWHERE}, or record=False for none") from None
         self._put(head_text(head))
 
     def write(self, sample, pwm, reference, gripper):
@@ -63,14 +59,11 @@ class Recorder:
         Raises RecordingError if the disk takes no more (memory and file keep what was recorded before), InputError
         for a reference that is not three numbers.
         """
-        t, q, counts, missed = sample[:4]
-        r = (math.nan,) * 3 if reference is None else vector3("reference", reference).tolist()
-        row = (t, *q.tolist(), *counts.tolist(), *pwm.tolist(), *r, gripper, missed)
-        self._rows.extend(row)
-        self._put(row_text(row))
+        r = math.nan if reference is None else vector3("reference", reference)
+        self.write_block([sample.t], sample.q, sample.counts, pwm, r, gripper, sample.missed)
 
-    def write_block(self, t, q, counts, u, r=None, gripper=False, missed=0):
-        """Record many cycles at once, for compiled runs: arrays (n,), (n, 3)... as in Recording; r may be None."""
+    def write_block(self, t, q, counts, u, r=math.nan, gripper=False, missed=0):
+        """Record many cycles at once, for compiled runs: arrays (n,), (n, 3)... as in Recording; r may be NaN."""
         table = table_of(t, q, counts, u, r, gripper, missed)
         self._rows.frombytes(table.tobytes())
         if self._file is not None:
@@ -94,10 +87,8 @@ class Recorder:
             self._file = None
             with contextlib.suppress(OSError):  # else its last line is cut off; loading leaves that out
                 os.truncate(self.path, self.path.read_bytes().rfind(b"\n") + 1)
-            raise RecordingError(
-                f"the recording {self.path} cannot be written on: {error.strerror}. What was recorded before "
-                f"is safe in it; the run ends here. Make room, or {_ELSEWHERE}"
-            ) from None
+            said = f"the recording {self.path} cannot be written on: {error.strerror}; what stands in it is safe"
+            raise RecordingError(f"{said}. The run ends here. Make room, or {_ELSEWHERE}") from None
 
     def close(self, statistics=None):
         """End the recording; statistics: dict of numbers about the run for its head. May be called twice."""

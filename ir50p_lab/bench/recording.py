@@ -40,15 +40,15 @@ class Recording:
     ============ ======= =========================================================================
 
     NaN where something is not known. Arrays are read-only. Attributes: header, dict of str (arm, bench, date,
-    calibration, gains...); path: its file or None; notes: what loading left out; events: what was changed in the
-    middle of the run, [(t in s, text), ...].
+    calibration, gains...); path: its file or None; events: what was changed in the middle of the run,
+    [(t in s, text), ...].
     """
 
-    def __init__(self, table, header=None, *, path=None, notes=(), events=()):
+    def __init__(self, table, header=None, *, path=None, events=()):
         """table: (n, 15) array as `recording_file.COLUMNS`, or the growing array('d') of a Recorder."""
         self._rows = table if isinstance(table, array) else array("d", np.asarray(table, dtype=float).tobytes())
         self._cache = None
-        self.header, self.path, self.notes = dict(header or {}), path, tuple(notes)
+        self.header, self.path = dict(header or {}), path
         self.events = list(events)
 
     @classmethod
@@ -64,20 +64,24 @@ class Recording:
 
     @classmethod
     def load(cls, path):
-        """Read a recording; files of other programs need the columns t, q1, q2, q3 and may have u1, u2, u3.
+        """Read a recording.
 
         Raises RecordingError naming file, line, what is wrong and the remedy. Warns (RecordingWarning) if the last
         line was cut off and left out.
         """
-        header, table, notes, events = recording_file.read(path)
-        for note in notes:
-            warnings.warn(f"{path}: {note}", RecordingWarning, stacklevel=2)
-        return cls(table, header, path=Path(path), notes=notes, events=events)
+        header, table, events, cut = recording_file.read(path)
+        if cut:
+            said = f"{path}: its last line ({cut}) is not complete and was left out: the program stopped as it wrote"
+            warnings.warn(said, RecordingWarning, stacklevel=2)
+        return cls(table, header, path=Path(path), events=events)
 
     def save(self, path):
-        """Write the recording to `path` (CSV, as a bench writes it). Returns the path. Raises OSError if it cannot."""
+        """Write the recording to `path` (CSV, as a bench writes it). Returns the path; RecordingError if it cannot."""
         text = recording_file.head_text(self.header) + recording_file.rows_text(self._table, self.events)
-        Path(path).write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
+        try:
+            Path(path).write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
+        except OSError as error:
+            raise RecordingError(f"cannot write {path}: {error.strerror}; give a file in a folder of yours") from None
         return Path(path)
 
     @property
@@ -123,7 +127,7 @@ class Recording:
         table = self._table
         header = {**self.header, "cut": f"{t0:g} to {t1:g} s"}
         events = [event for event in self.events if t0 <= event[0] <= t1]
-        return Recording(table[(table[:, T] >= t0) & (table[:, T] <= t1)], header, notes=self.notes, events=events)
+        return Recording(table[(table[:, T] >= t0) & (table[:, T] <= t1)], header, events=events)
 
     def recent(self, seconds):
         """The last `seconds` as a Recording of its own; cheap while the run goes on."""
@@ -183,8 +187,5 @@ class Recording:
     def __repr__(self):
         seconds = np.ptp(self.t) if len(self) else 0.0
         said = [self.header.get("bench", "of unknown origin"), f"{seconds:.2f} s", f"{len(self)} samples"]
-        if self.simulated:
-            said.append("simulated")
-        if self.path:
-            said.append(str(self.path))
-        return f"<Recording: {', '.join(said)}>"
+        said += ["simulated" * self.simulated, str(self.path or "")]
+        return f"<Recording: {', '.join(filter(None, said))}>"

@@ -1,8 +1,8 @@
 """The file of a recording: lines `# key: value`, a line of column names, one line per sample; a spreadsheet opens it.
 
 t in s; q and r (the reference) in rad; counts of the 10-bit converter; u in PWM counts; gripper 1 closed, 0 open;
-missed: cycles late so far. An empty cell is a value that is not known. Files of other programs need only the columns
-t, q1, q2, q3; they may be separated by ';' or tabs, and have decimal commas then.
+missed: cycles late so far. An empty cell is a value that is not known. Tables of other programs are read by pandas, and
+made a recording by `Recording.from_arrays`.
 """
 
 import math
@@ -15,12 +15,11 @@ import numpy as np
 from ir50p_lab.errors import RecordingError
 
 FORMAT = "ir50p_lab recording"
-_GROUPS = (("counts1", "counts2", "counts3"), ("u1", "u2", "u3"), ("r1", "r2", "r3"))
-_REQUIRED = ("t", "q1", "q2", "q3")
-COLUMNS = (*_REQUIRED, *sum(_GROUPS, ()), "gripper", "missed")
+COLUMNS = tuple("t q1 q2 q3 counts1 counts2 counts3 u1 u2 u3 r1 r2 r3 gripper missed".split())
 T, Q, COUNTS, U, R, GRIPPER, MISSED = 0, slice(1, 4), slice(4, 7), slice(7, 10), slice(10, 13), 13, 14
 _CELLS = 4 * ("%.6f",) + 6 * ("%g",) + 3 * ("%.6f",) + 2 * ("%d",)
 _ROW = ",".join(_CELLS) + "\n"
+_FOREIGN = "read tables of other programs with pandas, and make Recording.from_arrays(t, q, u=u) of their columns"
 _EVENT = re.compile(r"[ \"]*#\W*event: (-?[\d.]+) s: (.*)")
 _UNITS = "t s; q rad; counts of the 10-bit converter; u PWM counts; r (reference) rad; gripper 1 closed; missed cycles"
 
@@ -46,12 +45,11 @@ def told_text(header):
 def rows_text(table, events=()):
     """The lines of samples. table: (n, 15), columns as COLUMNS, NaN where not known; events: [(t, text), ...]."""
     noted = [(t, 0, event_text(t, text)) for t, text in events]
-    lines = [(row[T], 1, row_text(row)) for row in table.tolist()]
+    lines = [(row[T], 1, _row_text(row)) for row in table.tolist()]
     return "".join(line for *_, line in sorted(noted + lines, key=itemgetter(0, 1)))
 
 
-def row_text(row):
-    """The line of one sample: 15 numbers as COLUMNS, NaN where not known."""
+def _row_text(row):
     if not math.isnan(sum(row)):
         return _ROW % tuple(row)
     return ",".join(["" if math.isnan(x) else form % x for form, x in zip(_CELLS, row, strict=True)]) + "\n"
@@ -76,8 +74,8 @@ def _as_written(text):
 def read(path):
     """Read a recording.
 
-    Returns: header (dict of str), table (n, 15) as COLUMNS with NaN where nothing is known, notes (tuple of str),
-    events (tuple of (t, text)).
+    Returns: header (dict of str), table (n, 15) as COLUMNS with NaN where nothing is known, events (tuple of (t,
+    text)), and the number of the last line if it was cut off and left out, else None.
     Raises RecordingError that names the file, the line, what is wrong there, and the remedy.
     """
     try:
@@ -88,61 +86,44 @@ def read(path):
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = data.decode("latin-1")
-    if "\0" in text:
-        raise RecordingError(f"{path} is no text file; a recording is a plain CSV file (UTF-8, not UTF-16)")
-    lines, header, rows, numbers, events, notes = text.splitlines(), {}, [], [], [], ()
-    cut = not text.endswith(("\n", "\r"))
-    delimiter = width = places = None
+    lines, header, rows, numbers, events, cut = text.splitlines(), {}, [], [], [], None
+    named = False
     for number, line in enumerate(lines, 1):
         place = f"{path}, line {number}"
-        bare = line.strip().rstrip(';,\t" ').lstrip('" ')  # without what spreadsheets pad and quote it with
-        if cut and number == len(lines) and (FORMAT in header or (places and line.count(delimiter) + 1 != width)):
-            notes = (f"its last line ({number}) is not complete and was left out: the program stopped as it wrote",)
-            break
-        if found := _EVENT.match(line):
-            events.append((_number(found[1], place), _as_written(found[2].rstrip(';,\t" '))))
+        bare = line.strip(', "\t')  # without what spreadsheets pad and quote it with
+        if number == len(lines) and not text.endswith(("\n", "\r")):
+            cut = number
+        elif found := _EVENT.match(line):
+            events.append((_number(found[1], place), _as_written(found[2].rstrip(', "\t'))))
         elif bare.startswith("#"):  # at the end stand statistics
             key, colon, value = bare.lstrip("# ").partition(":")
             header |= {key.strip(): _as_written(value)} if colon else {}
-        elif bare and places is None:
-            delimiter, width, places = _read_columns(line, place)
+        elif bare and not named:
+            named = bare == ",".join(COLUMNS)
+            if not named:
+                raise RecordingError(f"{place}: {bare[:60]!r} where the columns of a recording stand; {_FOREIGN}")
         elif bare:  # else an empty line of a spreadsheet
-            rows.append(_read_row(line, place, delimiter, width, places))
+            rows.append(_read_row(line, place))
             numbers.append(number)
-    if places is None:
+    if not named:
         raise RecordingError(f"{path} ends before its first sample: the run was stopped as it began; record again")
     table = np.array(rows).reshape(-1, len(COLUMNS))
     _check(table, numbers, path)
-    return {key: value for key, value in header.items() if key not in (FORMAT, "units")}, table, notes, tuple(events)
+    return {key: value for key, value in header.items() if key not in (FORMAT, "units")}, table, tuple(events), cut
 
 
-def _read_columns(line, place):
-    """Delimiter, number of columns, and the place of each of COLUMNS in the lines of the file (None: not there)."""
-    delimiter = next((d for d in ";\t" if d in line), ",")
-    names = [cell.strip().strip('"').lower() for cell in line.split(delimiter)]
-    needed = [*_REQUIRED, *(name for group in _GROUPS if set(group) & set(names) for name in group)]
-    missing = [name for name in needed if name not in names]
-    if missing:
-        need = "the first line after the '#' lines names the columns: t,q1,q2,q3, and all three of u1,u2,u3 or others"
-        raise RecordingError(f"{place}: no column {', '.join(missing)} in {line.strip()[:60]!r}; {need}")
-    for name in COLUMNS:
-        if names.count(name) > 1:
-            raise RecordingError(f"{place}: column {name} stands there twice; keep one of them")
-    return delimiter, len(names), [names.index(name) if name in names else None for name in COLUMNS]
-
-
-def _read_row(line, place, delimiter, width, places):
-    cells = line.split(delimiter)
-    if len(cells) != width:
-        hint = "decimal commas need ';' between the columns" if len(cells) > width else "the line is cut off"
-        raise RecordingError(f"{place}: {len(cells)} values for {width} columns ({hint}); repair or delete that line")
-    return [math.nan if k is None else _number(cells[k], place) for k in places]
+def _read_row(line, place):
+    cells = line.split(",")
+    if len(cells) != len(COLUMNS):
+        said = f"{place}: {len(cells)} values for {len(COLUMNS)} columns"
+        raise RecordingError(f"{said} (cut off, or decimal commas?); repair or delete that line")
+    return [_number(cell, place) for cell in cells]
 
 
 def _number(cell, place):
-    """A cell as a number, with a decimal point or comma; NaN for an empty one."""
+    """A cell as a number; NaN for an empty one."""
     try:
-        return float(cell.replace(",", ".").strip() or "nan")
+        return float(cell.strip() or "nan")
     except ValueError:
         raise RecordingError(f"{place}: {cell.strip()!r} is no number; repair or delete that line") from None
 
@@ -162,6 +143,3 @@ def _check(table, numbers, name):
         if bad.any():
             row, column = np.argwhere(bad)[0]
             raise RecordingError(f"{name}, line {numbers[row]}: {why.format(table[row, columns][column])}")
-    step = np.median(np.diff(t)) if len(t) > 1 else 0.0
-    if step > 1.0:
-        raise RecordingError(f"{name}: steps of {step:g} s; t is in seconds, was it ms? Divide by 1000")

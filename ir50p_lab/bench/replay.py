@@ -31,7 +31,7 @@ class ReplayBench(Bench):
     kind = "replay"
     answers = guarded = False  # the arm moved by another command
 
-    def __init__(self, recording, *, arm=None, realtime=False, record_to=None, name=None):
+    def __init__(self, recording, *, arm=None, realtime=False, record_to=False, name=None):
         if isinstance(recording, str | os.PathLike):
             recording = Recording.load(recording)
         if not isinstance(recording, Recording):
@@ -40,13 +40,9 @@ class ReplayBench(Bench):
             raise RecordingError(f"{recording!r} has no sample to replay: choose another recording")
         self.original, self.simulated, self.realtime = recording, recording.simulated, realtime
         origin = recording.path.name if recording.path else recording.header.get("bench", "data")
-        super().__init__(
-            arm,
-            _calibration(recording.header),
-            period=recording.period if math.isfinite(recording.period) else 0.01,  # one sample of unknown origin
-            record_to=False if record_to is None else record_to,
-            name=name or f"replay of {origin}",
-        )
+        name, calibration = name or f"replay of {origin}", _calibration(recording.header)
+        period = recording.period if math.isfinite(recording.period) else 0.01  # one sample of unknown origin
+        super().__init__(arm, calibration, period=period, record_to=record_to, name=name)
         counts = recording.counts
         self._counts = np.where(np.isfinite(counts), counts, self.calibration.counts(recording.q))
         self._late = np.nan_to_num(recording.missed).astype(int)
@@ -74,14 +70,10 @@ class ReplayBench(Bench):
         return self._q  # as it was recorded
 
     def _header(self):
-        told = {f"original_{key}": value for key, value in self.original.header.items() if key in _TOLD}
-        return told | {"original": str(self.original.path or "in memory")}
+        return {"original": str(self.original.path or "in memory")}
 
     def go_to_rest(self):
         """Nothing: a recording cannot move."""
-
-
-_TOLD = ("bench", "date", "seed", "firmware", "controller", "note")
 
 
 def _calibration(head):

@@ -48,8 +48,8 @@ def way_to_rest(arm, q, period):
 
     goal = rest_pose(arm)
     lifted = np.array([q[0], goal[1], q[2]])
-    poses, durations = [np.array(q), lifted, goal], []
-    for start, end in pairwise(poses):
-        durations.append(max(0.3, 1.875 * np.abs(end - start).max() / _SPEED))  # a quintic's peak is 15/8 of its mean
+    poses = [np.array(q), lifted, goal]
+    # the peak of a quintic's speed is 15/8 of its mean
+    durations = [max(0.3, 1.875 * np.abs(end - start).max() / _SPEED) for start, end in pairwise(poses)]
     pid = PID(kp=(289, 225, 270), ki=(50, 150, 50), kd=(40, 30, 30), limit_pwm=255, period=period)
     return pid, through(poses, durations=durations)

@@ -56,7 +56,7 @@ def add(kind, suffix, write, **about):
     Raises InputError if it cannot be written.
     """
     number = 1 + max((int(one.name.rpartition("-")[2]) for one in every() if one.kind == kind), default=0)
-    name, now = f"{kind}-{number}", _now()
+    name, now = f"{kind}-{number}", datetime.now().astimezone().isoformat()
     result = Result(name=name, kind=kind, made=now, chosen=now, withdrawn=False, file=f"{name}{suffix}", **about)
     try:
         folder().mkdir(parents=True, exist_ok=True)
@@ -72,12 +72,8 @@ def change(name, *, withdrawn):
     known = {one.name: one for one in every()}
     if name not in known:
         raise InputError(f"there is no result {name!r}: {', '.join(known) or 'none at all'}")
-    chosen = known[name].chosen if withdrawn else _now()
+    chosen = known[name].chosen if withdrawn else datetime.now().astimezone().isoformat()
     _describe(known[name]._replace(withdrawn=withdrawn, chosen=chosen))
-
-
-def _now():
-    return datetime.now().astimezone().isoformat()
 
 
 def _describe(result):

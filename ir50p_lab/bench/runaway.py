@@ -159,17 +159,10 @@ class RunawayGuard:
         reach = np.array([0.0, arm.l[1] + arm.l[2], arm.l[2]])
         pull = np.abs([0.0, *cf.gravity_torques(plant.theta, gravity, 1.0, 1.0)])
         load = PAYLOAD * gravity * reach / arm.actuators.gain
-        self.watch = Watch(
-            theta=plant.theta,
-            numbers=plant.numbers,
-            lag=inertia / damping,
-            top=FAST * (plant.limit + pull + load) / damping,
-            noise=NOISE / np.abs(np.array(calibration.slope)),
-            now=np.zeros(2, dtype=np.int64),
-            block=np.zeros((max(1, round(BLOCK / period)), 7)),
-            past=np.zeros((KEPT, 7)),
-            still=np.zeros((4, 3)),
-        )
+        top, noise = FAST * (plant.limit + pull + load) / damping, NOISE / np.abs(np.array(calibration.slope))
+        block, past = np.zeros((max(1, round(BLOCK / period)), 7)), np.zeros((KEPT, 7))
+        memory = np.zeros(2, dtype=np.int64), block, past, np.zeros((4, 3))
+        self.watch = Watch(plant.theta, plant.numbers, inertia / damping, top, noise, *memory)
         watch_step(self.watch, -math.inf, np.zeros(3), np.zeros(3))  # compiles; forgotten at the first sample
 
     def check(self, sample, pwm):
@@ -184,22 +177,14 @@ class RunawayGuard:
         angle, drive = past[-1, 1 + joint], past[-1, 4 + joint]
         back = past[-3 if alarm >= FAST_ALARM else DELAY]
         speed = (angle - back[1 + joint]) / (past[-1, 0] - back[0])
-        found, question = {
-            AGAINST: (
-                f"ran at {speed:+.2f} rad/s against its command of {drive:+.0f} PWM counts and did not slow down",
-                "Are its two motor wires, or the two ends of its potentiometer, swapped? (A hand would need more than "
-                f"{HAND:g} times the motor's torque.)",
-            ),
-            STILL: (
-                f"stood still at {angle:.3f} rad although its command was {drive:+.0f} PWM counts",
-                "Has its potentiometer come loose, has its motor no supply, or does something block it?",
-            ),
-            FAST_ALARM: (
-                f"turned at {speed:+.2f} rad/s, and its motor can only do {self.watch.top[joint] / FAST:.2f} rad/s",
-                "Is a wire or the track of its potentiometer torn, or the supply higher than the arm's actuators.V?",
-            ),
-        }[alarm - joint]
-        raise RunawayError(
-            f"joint {joint + 1} {found}, at t = {t:.2f} s: the drive has been cut. {question} "
-            "`python3 -m ir50p_lab bench-test` finds out"
-        )
+        if alarm >= FAST_ALARM:
+            found = f"turned at {speed:+.2f} rad/s, and its motor can only do {self.watch.top[joint] / FAST:.2f} rad/s"
+            question = "Is a wire or the track of its potentiometer torn, or the supply above the arm's actuators.V?"
+        elif alarm >= STILL:
+            found = f"stood still at {angle:.3f} rad although its command was {drive:+.0f} PWM counts"
+            question = "Has its potentiometer come loose, has its motor no supply, or does something block it?"
+        else:
+            found = f"ran at {speed:+.2f} rad/s against its command of {drive:+.0f} PWM counts and did not slow down"
+            question = "Are its two motor wires, or the two ends of its potentiometer, swapped?"
+        found += f", at t = {t:.2f} s: the drive has been cut"
+        raise RunawayError(f"joint {joint + 1} {found}. {question} `python3 -m ir50p_lab bench-test` finds out")

@@ -29,7 +29,6 @@ class SerialBench(Bench):
         arm: Arm, default `load_arm()`; calibration: default yours, if one was measured on
         this board (`result_files`), else the nominal one.
         clock: object with now() and sleep(s); default the computer's. period: s. record_to: folder, or False.
-        announce: takes the line that says why opening lasts 2 s; default print.
 
     Time is the true time of a measurement. A cycle that begins late is counted in `Sample.missed`, never raised; see
     `Pace`.
@@ -43,7 +42,7 @@ class SerialBench(Bench):
 
     kind = "board"
 
-    def __init__(self, port, *, calibration=None, clock=None, announce=print, **options):
+    def __init__(self, port, *, calibration=None, clock=None, **options):
         named = isinstance(port, str | os.PathLike) and str(port)
         if not (named or hasattr(port, "write")):
             raise InputError(f"port = {port!r}: give the name of a serial port, or an open port")
@@ -52,7 +51,7 @@ class SerialBench(Bench):
         self.name = f"board on {self.port} for {self.arm.name}"
         self._given = None if named else port
         self._calibrated = calibration is not None
-        self._clock, self._announce = clock or Clock, announce
+        self._clock = clock or Clock
         self._link = self.identity = None
 
     # ---- the hooks of Bench
@@ -63,8 +62,8 @@ class SerialBench(Bench):
         self.statistics = self._link.statistics
         try:
             ready = self._clock.now()
-            if self._given is None and _opening_resets(transport):
-                self._announce(f"{self.port}: opening it restarts the board, its boot loader takes {BOOT_LOADER:.0f} s")
+            if self._given is None:  # the next line that is printed takes the place of this one
+                print(f"{self.port}: the board restarts, its boot loader takes {BOOT_LOADER:g} s", end="\r", flush=True)
                 ready += BOOT_LOADER
             load_controllers()
             self._clock.sleep(max(0.0, ready - self._clock.now()))
@@ -96,16 +95,13 @@ class SerialBench(Bench):
             cause = "somebody pressed its button or opened its port, or its supply broke down when the motors started"
             if state.status & protocol.HARDWARE_RESET:
                 cause = "its program hung and the hardware watchdog restarted it"
-            raise BoardLostError(
-                f"the board on {self.port} has restarted in the middle of the run ({cause}): its drive is off. Power "
-                "the motors from their own supply, not from USB; then run again"
-            )
+            said = f"the board on {self.port} has restarted in the middle of the run ({cause}): its drive is off"
+            raise BoardLostError(f"{said}. Power the motors from their own supply, not from USB; then run again")
         for joint, counts in enumerate(state.counts):
             if not _BROKEN <= counts <= protocol.MAX_COUNTS - _BROKEN:
-                raise BoardError(
-                    f"the potentiometer of joint {joint + 1} reads {counts / protocol.SUBCOUNTS:g} of 0..1023 counts, "
-                    "as it does only with a broken or shorted wire: the drive is off. Look at its plug and its 5 V"
-                )
+                said = f"the potentiometer of joint {joint + 1} reads {counts / protocol.SUBCOUNTS:g} of 0..1023 counts"
+                remedy = "only a broken or shorted wire does so; the drive is off. Look at its plug and its 5 V"
+                raise BoardError(f"{said}: {remedy}")
         pace, tripped = self._run.pace, drive and bool(state.status & protocol.WATCHDOG_TRIPPED)
         pace.heard = sent
         return sent - pace.start, np.array(state.counts) / protocol.SUBCOUNTS, tripped
@@ -142,7 +138,7 @@ class SerialBench(Bench):
     @property
     def firmware(self):
         """Version of the board's firmware, as '1.1'; the bench must have been open."""
-        return _dotted(self.identity.firmware)
+        return "{}.{}".format(*self.identity.firmware)
 
     @property
     def bench_id(self):
@@ -175,39 +171,16 @@ class SerialBench(Bench):
             link.forget()
             identity, _ = link.ask(kind, pwm, patience=patience, repeat=min(0.05, patience / 4))
         except BoardLostError:
-            raise BoardError(f"{self.port}: {_who_is_it(bytes(link.heard))}") from None
+            said = f"{self.port}: no firmware of ours answers. Is it a Mega 2560? Then {_REMEDY}"
+            raise BoardError(f"{said}, or press its reset button if that is done") from None
         except PORT_ERRORS as error:
             raise BoardError(f"{self.port} went away while we said hello ({error}): is the cable firm?") from error
         if identity.protocol == protocol.VERSION and identity.firmware >= protocol.MINIMUM_FIRMWARE:
             return identity
-        raise BoardError(
-            f"{self.port}: the board speaks protocol {identity.protocol}, its firmware is "
-            f"{_dotted(identity.firmware)}; this lab book needs protocol {protocol.VERSION} and firmware "
-            f"{_dotted(protocol.MINIMUM_FIRMWARE)} or newer: {_REMEDY}"
-        )
+        has = "the board speaks protocol {}, its firmware is {}.{}".format(identity.protocol, *identity.firmware)
+        needs = "protocol {} and firmware {}.{} or newer".format(protocol.VERSION, *protocol.MINIMUM_FIRMWARE)
+        raise BoardError(f"{self.port}: {has}; this lab book needs {needs}: {_REMEDY}")
 
     def _lost(self, what):
-        return BoardLostError(
-            f"the board on {self.port} {what}: it brakes by itself 0.1 s after the last command, then gravity has the "
-            "arm. Look at the USB cable and the board's lamp, then open the bench again with connect()"
-        )
-
-
-def _dotted(version):
-    return ".".join(map(str, version))
-
-
-def _opening_resets(transport):
-    """Whether opening this port pulls the board's reset line: it does on a board, not on a pseudo-terminal."""
-    try:
-        transport.dtr = True  # as it is since it was opened
-    except (*PORT_ERRORS, ValueError):
-        return False
-    return True
-
-
-def _who_is_it(heard):
-    """What to say about a device that does not answer our hello, from the bytes it sent."""
-    if not heard:
-        return f"nothing answers. Is it a Mega 2560? Then {_REMEDY}, or press its reset button if that is done"
-    return f"what answers is not our firmware (it sent {heard[:24]!r}). If it is the bench's board, {_REMEDY}"
+        lost = f"the board on {self.port} {what}: it brakes by itself 0.1 s after the last command"
+        return BoardLostError(f"{lost}. Look at the USB cable and the board's lamp, then connect() again")

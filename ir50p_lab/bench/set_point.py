@@ -67,23 +67,18 @@ def checked_reference(arm, t, value, q=None):
     except Exception:
         rows = np.empty(0)
     if rows.shape != (3, 3) or not np.isfinite(rows).all():
-        raise InputError(
-            f"the reference gives {value!r:.100} at t = {t:.3f} s: give (q, qd, qdd), each (3,) and finite"
-        )
+        given = f"the reference gives {value!r:.100} at t = {t:.3f} s"
+        raise InputError(f"{given}: give (q, qd, qdd), each (3,) and finite")
     for i, (wanted, here) in enumerate(zip(rows[0].tolist(), _UNKNOWN if q is None else q.tolist(), strict=True)):
-        low, high = min(arm.q_min[i], here - NOISE), max(arm.q_max[i], here + NOISE)
-        if not low - 1e-9 <= wanted <= high + 1e-9:
-            raise InputError(
-                f"the reference of joint {i + 1} is {wanted:.4g} rad at t = {t:.3f} s; the arm's travel is "
-                f"{arm.q_min[i]:.2f} to {arm.q_max[i]:.2f} rad. Are these degrees? np.radians makes them rad"
-            )
-        if abs(wanted - here) > FARTHEST:
-            raise InputError(
-                f"the reference of joint {i + 1} is {wanted:.4g} rad at t = {t:.3f} s, {abs(wanted - here):.2f} rad "
-                f"from where the arm is ({here:.2f} rad); {FARTHEST:g} rad is the most. Let it begin where the arm is "
-                "(quintic from sample.q, or bench.start, which leads in). Are these degrees? np.radians makes them "
-                "rad. If it began near, the arm does not follow: `python3 -m ir50p_lab bench-test` finds out why"
-            )
+        within = min(arm.q_min[i], here - NOISE) - 1e-9 <= wanted <= max(arm.q_max[i], here + NOISE) + 1e-9
+        if within and not abs(wanted - here) > FARTHEST:
+            continue
+        said = f"the reference of joint {i + 1} is {wanted:.4g} rad at t = {t:.3f} s"
+        if not within:
+            said += f"; the arm's travel is {arm.q_min[i]:.2f} to {arm.q_max[i]:.2f} rad"
+            raise InputError(f"{said}. Are these degrees? np.radians makes them rad")
+        said += f", {abs(wanted - here):.2f} rad from where the arm is ({here:.2f} rad); {FARTHEST:g} rad is the most"
+        raise InputError(f"{said} (degrees?): begin there, or by bench.start; if it did, bench-test finds out why")
     return rows
 
 
@@ -97,8 +92,6 @@ def checked_pose(name, arm, q, table=0.0):
         raise InputError(f"{name} of joint {i + 1} is {q[i]:.3f} rad; the arm's travel is {low:.0f} to {high:.0f} deg")
     height = float(frames(arm, q)[2:, 2, 3].min()) - table
     if height < -1e-9:
-        raise InputError(
-            f"the {name} ({', '.join(f'{x:.0f}' for x in np.degrees(q))}) deg lies {-100 * height:.0f} cm below "
-            "the table: raise joint 2 or joint 3"
-        )
+        place = f"{name} {np.degrees(q).round().tolist()} deg"
+        raise InputError(f"{place} lies {-100 * height:.0f} cm below the table: raise joint 2 or joint 3")
     return q

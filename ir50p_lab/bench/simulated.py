@@ -31,16 +31,15 @@ def _compiled_cycles(
     next one the reference is beyond the travel or too far from the arm (see `checked_reference`), or the command not
     finite.
     """
-    counts, q, command = np.empty(3), np.empty(3), np.empty(3)
+    command = np.empty(3)
     for k in range(t.size):
+        counts, q, truth = out[k, :3], out[k, 3:6], out[k, 9:]
         if t[k] > 0.0:  # the first cycle of a run measures at once
             push(queue, pwm)
             advance_unit(theta, n, w, x, joint, queue[0], steps)
         read_pots(w, joint, noise[k], counts)
-        for i in range(3):
-            q[i] = (counts[i] - zero[i]) / slope[i]
-            out[k, i], out[k, 3 + i] = counts[i], q[i]
-            out[k, 9 + i], out[k, 12 + i] = joint[i], x[3 + i]
+        q[:] = (counts - zero) / slope
+        truth[:3], truth[3:] = joint, x[3:]
         alarm = watch_step(watch, t[k], q, pwm)
         if alarm > 0:
             return k, alarm
@@ -165,9 +164,7 @@ class SimulatedBench(Bench):
         run.guard.judge(alarm, t[min(done, len(t) - 1)])
         if done < len(t):
             checked_reference(self.arm, t[done], r[done], out[done, 3:6])
-            raise InputError(
-                f"the command at t = {t[done]:.6g} s is not finite; the drive has been cut: reset the controller"
-            )
+            raise InputError(f"the command at t = {t[done]:.6g} s is not finite (drive cut): reset the controller")
 
     @property
     def truth(self):

@@ -87,10 +87,8 @@ class SimulatedArm:
     def __init__(self, arm, unit=UNIT, seed=0, *, q0=None):
         lengths(arm)  # refuses what is no Arm
         if arm.actuators is None:
-            raise ArmError(
-                f"{arm.name} has no actuators, so nobody knows what a PWM count does to it: add [actuators] to its "
-                "file, or Actuators.from_joint_data(...) to the Arm"
-            )
+            remedy = "add [actuators] to its file, or Actuators.from_joint_data(...) to the Arm"
+            raise ArmError(f"{arm.name} has no actuators, so nobody knows what a PWM count does to it: {remedy}")
         self.seed, self.noise_seed = chosen_copy(seed)
         self.arm, self.unit = arm, unit.drawn(self.seed)
         self.nominal = nominal_calibration(arm)

@@ -42,7 +42,7 @@ NOTEBOOK = """
         def step(self, t, measured, reference):
             return np.array([30.0, -30.0, 30.0])  # less than breaks a joint away: the held arm is no runaway
 
-    bench = SerialBench({port!r}, arm=IR50P, record_to=False, announce=lambda line: None).open()
+    bench = SerialBench({port!r}, arm=IR50P, record_to=False).open()
     run = bench.start(Push(), None)
     while run.statistics().cycles < 30:
         time.sleep(0.01)
@@ -57,7 +57,7 @@ def test_a_kill_cuts_the_drive_within_110_ms(board, victim):
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, env=environment) as notebook:
         try:
-            loop = int(notebook.stdout.readline())
+            loop = int(notebook.stdout.readline().split(b"\r")[-1])  # behind the line about the boot loader
             until(lambda: driven(board.changes()[-1].pins))
             os.kill(notebook.pid if victim == "notebook" else loop, signal.SIGKILL)
             cut = board.cut_after_last_command()

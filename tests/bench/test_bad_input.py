@@ -7,12 +7,8 @@ from ir50p_lab.bench import (
     ReplayBench,
     SerialBench,
     SimulatedBench,
-    bridge_inputs,
     connect,
-    mean_voltage,
     nominal_calibration,
-    sign_and_magnitude,
-    thesis_map,
 )
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import InputError, LabError, PortError
@@ -50,13 +46,6 @@ def test_no_arm_for_a_bench(make, rubbish):
 def test_no_recording(rubbish):
     with pytest.raises(InputError, match=r"give a Recording"):
         ReplayBench(rubbish)
-
-
-@pytest.mark.parametrize("rubbish", ["x", {}, Anything(), float("nan"), [1, None]], ids=repr)
-@pytest.mark.parametrize("function", [bridge_inputs, mean_voltage, sign_and_magnitude, thesis_map])
-def test_no_command(function, rubbish):
-    with pytest.raises(InputError, match=r"PWM counts"):
-        function(rubbish)
 
 
 @pytest.mark.parametrize("period", [None, "0.01", float("nan"), 0.0, -0.01, 2.0], ids=repr)

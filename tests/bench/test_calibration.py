@@ -206,11 +206,15 @@ def test_broken_files(tmp_path, text, match):
     assert "c.toml" in str(caught.value)
 
 
-def test_tables_and_header():
-    found = fit_calibration(*experiment(), source="<me>")
-    html = found._repr_html_()
-    assert html.count("<tr") == 4 and "&lt;me&gt;" in html and html.count("±") == 6 and "12" in html
-    assert "not measured" in TRUTH._repr_html_()
+def test_table_and_header():
+    found = fit_calibration(*experiment(), source="me")
+    table = repr(found).splitlines()
+    assert len(table) == 5 + len(found.remarks) and "source: me" in table
+    slope, error, zero, zero_error, rms = map(float, table[2].split()[1:])  # joint 2
+    assert (slope, error) == pytest.approx((found.slope[1], found.stderr_slope[1]), abs=0.005)
+    assert (zero, zero_error) == pytest.approx((found.zero[1], found.stderr_zero[1]), abs=0.005)
+    assert rms == pytest.approx(np.degrees(found.residuals[1].std()), abs=0.01)
+    assert repr(TRUTH).count("None") == 9 and "nominal, not measured" in repr(TRUTH)
     assert set(found.header()) == {"counts_per_rad", "counts_at_zero", "calibration"}
     assert TRUTH.residuals == []
 

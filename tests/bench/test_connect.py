@@ -120,7 +120,7 @@ def test_the_line_about_the_boot_loader_is_wiped_out(computer, capsys):
     computer({"/dev/ttyACM0": (MEGA, board())})
     connect().abort()
     waiting, line = capsys.readouterr().out.split("\r")
-    assert waiting == "/dev/ttyACM0: opening it restarts the board, its boot loader takes 2 s"
+    assert waiting == "/dev/ttyACM0: the board restarts, its boot loader takes 2 s"
     assert len(line) > len(waiting)
 
 
@@ -136,7 +136,7 @@ def test_of_two_boards_the_first_is_taken(computer, said):
     [
         (PortError("COM3 is busy: another program holds it"), "COM3 is busy"),
         (PortError("no permission to open COM3: 'sudo usermod"), "no permission"),
-        (board(dead=True), "nothing answers"),
+        (board(dead=True), "no firmware of ours answers"),
         (board(identity={"protocol": 9}), "speaks protocol 9"),
     ],
     ids=["busy", "permission", "silent", "version"],
@@ -204,7 +204,7 @@ def test_a_replay(said, monkeypatch, tmp_path):
 
 def test_what_is_asked_for_and_fails_raises(computer, capsys):
     computer({"COM3": (MEGA, board(dead=True))})
-    with pytest.raises(BoardError, match="nothing answers"):
+    with pytest.raises(BoardError, match="no firmware of ours answers"):
         connect("COM3")
     with pytest.raises(PortError, match="COM9 does not exist"):
         connect("COM9")

@@ -8,7 +8,7 @@ import time
 import numpy as np
 import pytest
 
-from ir50p_lab.bench import SerialBench, connect
+from ir50p_lab.bench import SerialBench, connect, serial_bench
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import BoardLostError, PortError
@@ -31,6 +31,7 @@ def bench_of(board, **options):
 
 def test_the_loop_of_the_lesson_and_the_way_to_the_rest_pose(tmp_path, monkeypatch, capsys):
     monkeypatch.delenv("IR50P_ARM", raising=False)
+    monkeypatch.setattr(serial_bench, "BOOT_LOADER", 0.0)  # the emulated board has none, and its arm would sink
     with BoardProcess(tmp_path, plant="simulated") as board:
         monkeypatch.setenv("IR50P_BENCH", board.port)
         pid = PID(kp=(289, 225, 270), ki=(50, 10, 50), kd=(40, 30, 30), limit_pwm=255)

@@ -18,12 +18,14 @@ from ir50p_lab.errors import RecordingError
 WRITER = """
     import os, sys
     import numpy as np
+    from ir50p_lab.bench.base import Sample
     from ir50p_lab.bench.recorder import Recorder
     recorder = Recorder({"kind": "simulated", "simulated": "true", "period_s": "0.01"}, sys.argv[1])
     print(recorder.path, flush=True)
     counts, u = np.array([512.0, 600.25, 234.75]), np.array([-255.0, 0.0, 12.0])
     for k in range(10**9):
-        recorder.write((0.01 * k, np.array([0.5, 0.2, 1e-4 * k % 3]), counts, 0), u, (1.0, 2.0, 3.0), False)
+        sample = Sample(0.01 * k, np.array([0.5, 0.2, 1e-4 * k % 3]), counts, 0)
+        recorder.write(sample, u, (1.0, 2.0, 3.0), False)
         os.write(1, b".")
 """
 

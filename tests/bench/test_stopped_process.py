@@ -23,7 +23,7 @@ NINE_LINES = """
     from ir50p_lab.bench import SerialBench
     from ir50p_lab.modelling import IR50P
 
-    bench = SerialBench({port!r}, arm=IR50P, record_to={folder!r}, announce=lambda line: None).open()
+    bench = SerialBench({port!r}, arm=IR50P, record_to={folder!r}).open()
     try:
         for k, sample in enumerate(bench.run(60)):
             bench.drive([{push}, 0, 0])
@@ -94,7 +94,7 @@ def test_a_stopped_cell_drives_nothing_when_it_goes_on(board, tmp_path):
 
 
 def test_a_stopped_loop_in_the_background_drives_nothing_when_it_goes_on(board, tmp_path):
-    bench = SerialBench(board.port, arm=IR50P, record_to=tmp_path, announce=lambda line: None).open()
+    bench = SerialBench(board.port, arm=IR50P, record_to=tmp_path).open()
     try:
         run = bench.start(Push(), None)
         while run.alive and run.statistics().cycles < 50:

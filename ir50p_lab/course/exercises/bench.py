@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from ir50p_lab.bench import mean_voltage, thesis_map
 from ir50p_lab.course.exercises import Exercise, Number, Slip
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import low_pass_lag
@@ -32,15 +31,15 @@ EXERCISES = (
     Exercise(
         "bench-1",
         "the mean voltage at the motor for 36 PWM counts by sign and magnitude, supply 12 V",
-        Number(mean_voltage(_BREAK, supply=_SUPPLY), unit="V", tolerance=0.006),
+        Number(_SUPPLY * _BREAK / 255, unit="V", tolerance=0.006),
         why="A seventh of the supply before anything moves: that is what friction costs a slow joint.",
         slips=(
             Slip(
-                mean_voltage(thesis_map(_BREAK), supply=_SUPPLY),
+                _SUPPLY * (_BREAK + 255) / 2 / 255,
                 "That is the thesis' map, which gives half the supply at standstill.",
             ),
-            Slip(mean_voltage(_BREAK, supply=24.0), "That is for 24 V; this supply has 12 V."),
-            Slip(mean_voltage(_BREAK, supply=5.0), "5 V is the board's logic; the bridge switches the motors' supply."),
+            Slip(24.0 * _BREAK / 255, "That is for 24 V; this supply has 12 V."),
+            Slip(5.0 * _BREAK / 255, "5 V is the board's logic; the bridge switches the motors' supply."),
             Slip(_SUPPLY * _BREAK / 1023, "1023 is the end of the converter's scale; PWM ends at 255."),
         ),
     ),
