@@ -4,7 +4,6 @@ This file and ``__init__.py`` keep to a syntax that Pythons too old to run the c
 that they answer with a sentence; everything newer is in ``launcher/`` and imported after the gate.
 """
 
-import os
 import sys
 
 if sys.version_info < (3, 11):
@@ -14,9 +13,6 @@ if sys.version_info < (3, 11):
         "for example: python3.13 -m ir50p_lab (Windows: py -3.13 -m ir50p_lab)"
         % (sys.version_info[0], sys.version_info[1], sys.version_info[2], sys.executable)
     )
-
-if not __package__:  # started as a folder, `python3 ir50p_lab`: that folder is not where imports begin
-    sys.path[0] = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 from ir50p_lab.launcher.commands import main
 
