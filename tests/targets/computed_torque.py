@@ -14,6 +14,7 @@ import numpy as np
 from ir50p_lab.controllers import AdaptiveControl, ComputedTorque, FeedForward, GravityPD, check_saturation
 from ir50p_lab.course.printed_control import PARAMETERS_2_1_2, LawWithError, error_2_19, inverse_dynamics_as_printed
 from ir50p_lab.course.torque_views import follow, naive_model, rms, thesis_pid
+from ir50p_lab.errors import InputError
 from ir50p_lab.identification import identify, load_excitations
 from ir50p_lab.modelling import IR50P, THESIS_C
 from ir50p_lab.modelling.named_arms import thesis_theta
@@ -40,8 +41,14 @@ def record(seed, motion):
 
 
 def tracked(controller, seed, target=SWING, seconds=15.0):
-    """(3,) rms of what the bench measured against the reference, mrad, from the first sample on."""
-    return rms(follow(IR50P, controller, target, seconds, seed=seed), target)
+    """(3,) rms of what the bench measured against the reference, mrad, from the first sample on.
+
+    Infinite where the arm strayed 2 rad from the reference, so that the bench cut its drive.
+    """
+    try:
+        return rms(follow(IR50P, controller, target, seconds, seed=seed), target)
+    except InputError:
+        return np.full(3, np.inf)
 
 
 def simulated(controller, target):
