@@ -1,4 +1,4 @@
-"""Curves over time as a picture of lines (SVG), which Python writes in a millisecond: no figure is drawn.
+"""Curves over time as a picture of lines (SVG), which Python writes in some milliseconds: no figure is drawn.
 
 Every picture holds all that is to be seen: a browser that leaves some out is right again with the next one, and a page
 without a kernel keeps the last.
@@ -59,33 +59,34 @@ def _panel(rows, marks, start, end, times, *, place, lines, levels=(), ylim=None
         return width * (t - start) / (end - start)
 
     def y(value):
-        return height * (high - np.clip(value, 2 * low - high, 2 * high - low)) / (high - low)
+        return height * (high - value) / (high - low)
 
     parts = [f'<g transform="translate({left} {top})">', _text(0, -10, "start", (title, _INK))]
-    for value in _ticks(low, high):
-        parts.append(_line(f"M0 {y(value):.1f}h{width}", "#E6E6E6") + _text(-5, y(value) + 4, "end", (value, _INK)))
-    for t in times:
-        parts.append(_line(f"M{x(t):.1f} 0v{height}", "#E6E6E6") + _text(x(t), height + 14, "middle", (t, _INK)))
+    for value, words in _ticks(low, high):
+        parts.append(_line(f"M0 {y(value):.1f}h{width}", "#E6E6E6") + _text(-5, y(value) + 4, "end", (words, _INK)))
+    for t, words in times:
+        parts.append(_line(f"M{x(t):.1f} 0v{height}", "#E6E6E6") + _text(x(t), height + 14, "middle", (words, _INK)))
     parts.append(_line(f"M0 0v{height}h{width}", "#666666"))
     parts.append(_text(width / 2, height + 31, "middle", (xlabel, _INK)))
     parts.append(f'<g transform="translate(-44 {height / 2}) rotate(-90)">{_text(0, 0, "middle", (ylabel, _INK))}</g>')
-    named = [(label, value, colour) for column, colour, label, _ in lines if label for value in rows[-1:, column]]
-    parts.append(_text(width, -10, "end", *((f"{label}: {_said(value)}", colour) for label, value, colour in named)))
+    named = [(f"{label}: {_said(rows[-1, k])}" if len(rows) else label, ink) for k, ink, label, _ in lines if label]
+    parts.append(_text(width, -10, "end", *named))
     parts.append(f'<svg width="{width}" height="{height}">')  # cuts off what lies outside
     parts += [_line(f"M{x(mark):.1f} 0v{height}", "#C0392B", 'stroke-dasharray="2 3"') for mark in marks]
     parts += [_line(f"M0 {y(level):.1f}h{width}", colour, 'stroke-dasharray="6 4"') for level, colour in levels]
     for column, colour, _, dashed in lines:
         seen = rows[np.isfinite(rows[:, column])]
-        tenths = np.round(10 * np.column_stack([x(seen[:, 0]), y(seen[:, column])])).astype(int)
-        path = " ".join(map(str, tenths.ravel().tolist()))
+        points = np.column_stack([x(seen[:, 0]), y(seen[:, column]).clip(-height, 2 * height)])
+        path = " ".join(map(str, np.round(10 * points).astype(int).ravel().tolist()))  # tenths of a pixel
         dashes = 'stroke-dasharray="60 40" ' * dashed
         parts.append(f'<polyline transform="scale(0.1)" stroke="{colour}" stroke-width="16" {dashes}points="{path}"/>')
     return "".join([*parts, "</svg></g>"])
 
 
 def _ticks(low, high):
-    ticks = _LOCATOR.tick_values(low, high)
-    return ticks[(low <= ticks) & (ticks <= high)]
+    """[(value, words)] from low to high."""
+    ticks = _LOCATOR.tick_values(low, high).tolist()
+    return [(tick, _said(tick, ".9g")) for tick in ticks if low <= tick <= high]
 
 
 def _line(path, colour, style=""):
@@ -93,10 +94,10 @@ def _line(path, colour, style=""):
 
 
 def _text(x, y, anchor, *words):
-    """Words in their colours, (text or number, colour) each, one after the other."""
-    spans = "\N{EM SPACE}".join(f'<tspan fill="{colour}">{_said(one)}</tspan>' for one, colour in words)
+    """Words in their colours, (text, colour) each, one after the other."""
+    spans = "\N{EM SPACE}".join(f'<tspan fill="{colour}">{html.escape(text)}</tspan>' for text, colour in words)
     return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{spans}</text>'
 
 
-def _said(one):
-    return html.escape(one if isinstance(one, str) else f"{one + 0.0:.4g}".replace("-", "\N{MINUS SIGN}"))
+def _said(value, style=".4g"):
+    return f"{value + 0.0:{style}}".replace("-", "\N{MINUS SIGN}")

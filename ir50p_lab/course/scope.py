@@ -7,7 +7,7 @@ from ir50p_lab.course.style import COLOURS, JOINTS
 
 __all__ = ["Scope"]
 
-_MOST = 500  # samples in a picture: about two for every pixel column of a joint
+_MOST = 300  # samples in a picture: about one for every pixel column of a joint
 
 
 class Scope(Chart):

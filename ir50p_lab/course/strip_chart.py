@@ -44,7 +44,7 @@ class StripChart(Chart):
 
     def add(self, t, values):
         """One point at t (s); shown at once if the last picture is older than 50 ms."""
-        self._rows.append((t, *values))
+        self._rows.append((float(t), *map(float, values)))
         now = time.monotonic()
         if now - self._shown >= 1 / 20:
             self._shown = now

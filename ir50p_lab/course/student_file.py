@@ -16,17 +16,16 @@ def read_json(path, empty, is_right):
 
     is_right: function of the content. Raises LabBookError where it is not, and for a file that cannot be read.
     """
+    why = "it holds something else"
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         if is_right(content):
             return {**empty, **content}
     except FileNotFoundError:
         return empty
-    except OSError as error:
-        raise LabBookError(f"{path} cannot be read ({error.strerror})") from error
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        pass  # as if it were not right
-    raise LabBookError(f"{path} is damaged: rename or delete it, and a new one is begun")
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        why = getattr(error, "strerror", None) or error
+    raise LabBookError(f"{path} cannot be read ({why}): mend it, or rename it, and a new one is begun")
 
 
 @contextmanager

@@ -7,8 +7,7 @@
     live(figure, update, kp=(0, 300, 1, 100), kd=slider(0, 60, 0.5, 10, label="Kd1", unit="N m s"))
 
 The figure is made once and `update` changes its artists in place; it never calls pyplot. What `update` prints, its
-errors, and the warning of a loop that looks unstable appear in a line under the figure (a notebook would swallow
-them, or heap them up).
+errors, and warnings appear in a line under the figure (a notebook would swallow them, or heap them up).
 """
 
 import base64
@@ -35,7 +34,7 @@ def live(figure, update, **controls):
     """Show `figure` with sliders; each change calls `update(**values)` and redraws.
 
     Args:
-        figure: a matplotlib Figure, best from `figures.new_figure`; not one of pyplot.
+        figure: a matplotlib Figure, best from `style.new_figure`; not one of pyplot.
         update: changes artists in place (`line.set_data(...)`); gets every control by its name. May print or
             return a text: it appears in the line under the figure. If the text takes time, return a function
             that returns it: it is called once the picture is on its way.

@@ -76,6 +76,14 @@ def test_rows_of_a_run_keep_its_motion_within_a_milliradian(run):
     np.testing.assert_allclose(table[:, place["u"] :][:, :3], run.u[held], rtol=1e-6)
 
 
+def test_a_short_run_keeps_its_own_times_and_only_what_is_there_is_a_layer():
+    run = SimpleNamespace(t=[0.0, 1.0, 5.0], q=[[0.0, 0, 0], [1.0, 0, 0], [0.0, 0, 0]])
+    rows, shape = pack([run], ["uneven"])
+    table = np.frombuffer(rows, "<f4").reshape(-1, shape["columns"])
+    np.testing.assert_array_equal(table[:, :2], [[0, 0], [1, 1], [5, 0]])
+    assert LiveArm(IR50P).layers == ["table", "shadow", "ghost", "trail"]
+
+
 def test_two_runs_share_a_clock_and_what_is_unknown_is_left_out(run):
     t = np.linspace(0, 3, 50)
     bare = SimpleNamespace(t=t, q=np.column_stack([t, -t, 0 * t]), reference=np.full((50, 3), np.nan))

@@ -38,7 +38,7 @@ def test_long_windows_are_thinned_always_to_the_same_samples():
     for start in range(5):
         scope.show(*motion(1001, start))
         kept.append(np.round(charts.panels(scope.value)[1].curves[0].t, 2))
-        assert 300 < len(kept[-1]) <= 502
+        assert 150 < len(kept[-1]) <= 302
     for one, next_one in pairwise(kept):
         assert len(np.setdiff1d(next_one, one)) <= 1  # moves on, no flicker between odd and even samples
 
@@ -46,7 +46,7 @@ def test_long_windows_are_thinned_always_to_the_same_samples():
 def test_nothing_to_show_is_no_error():
     scope = Scope()
     scope.show(np.empty(0), np.empty((0, 3)), np.empty((0, 3)), np.empty((0, 3)))
-    assert all(len(curve.t) == 0 for panel in charts.panels(scope.value) for curve in panel.curves)
+    assert [len(curve.t) for panel in charts.panels(scope.value) for curve in panel.curves] == 9 * [0]
 
 
 def test_what_is_unknown_or_beyond_all_bounds_leaves_the_rest():

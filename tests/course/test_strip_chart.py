@@ -67,3 +67,11 @@ def test_a_colour_for_each_curve(k):
     one = StripChart([str(i) for i in range(k)], duration=1, ylim=(0, 1), ylabel="x [m]", title="t")
     assert len({curve.colour for curve in panel(one).curves}) == k
     one.close()
+
+
+def test_names_stand_before_the_first_number_and_late_times_differ():
+    one = StripChart(("height",), duration=4, ylim=(-1, 1), ylabel="x [m]", title="t")
+    assert ">height<" in one.value
+    one.add(123_456.0, [0.5])
+    assert ">height: 0.5<" in one.value
+    assert all(f">{t}<" in one.value for t in range(123_452, 123_457))

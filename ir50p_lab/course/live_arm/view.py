@@ -84,7 +84,7 @@ class LiveArm(anywidget.AnyWidget):
             bundle=Bundle.get(),
             options=json.loads(json.dumps(options, default=lambda array: array.tolist())),
             q=vectors3("q", q).tolist(),
-            layers=[*layers, *things],
+            layers=[*layers, *(name for name, thing in things.items() if thing is not None)],
         )
         if frames is not None:
             self._pose(self.q)
@@ -171,7 +171,8 @@ def pack(runs, labels):
     times = [np.asarray(run.t, dtype=float) for run in runs]
     if len(runs) > 2 or len(labels) != len(runs) or min(map(len, times)) < 2:
         raise InputError("give one or two runs of two samples or more, and a label for each")
-    t = np.linspace(min(one[0] for one in times), max(one[-1] for one in times), min(_MOST, max(map(len, times))))
+    even = np.linspace(min(one[0] for one in times), max(one[-1] for one in times), min(_MOST, max(map(len, times))))
+    t = times[0] if len(runs) == 1 and len(even) == len(times[0]) else even
     columns, places = [t], []
     for run, time, label in zip(runs, times, labels, strict=True):
         place = {"label": label, "reference": None, "u": None}
