@@ -57,9 +57,7 @@ def load_image(path, *, allow_grey=False):
         raise ImageError(f"{path} has {8 * image.itemsize} bits per colour: save it with 8, image // 257 of 16 bits")
     if image.ndim == 2:
         if not allow_grey:
-            raise ImageError(
-                f"{path} has one channel: a grey picture holds no colour to look for; give the colour picture"
-            )
+            raise ImageError(f"{path} has one channel, no colour to look for: give the colour picture")
         return np.repeat(image[:, :, None], 3, axis=2)
     return np.ascontiguousarray(image[..., ::-1])
 

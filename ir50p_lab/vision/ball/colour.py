@@ -1,6 +1,7 @@
 """The colour of a thing as ranges of hue, saturation and value: the default red, or learnt from a picture."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -75,7 +76,7 @@ class Colour:
             found = cv2.bitwise_or(found, pink)
         return found
 
-    @property
+    @cached_property
     def looser(self):
         """The colour as dim or glaring light shows it: darker and paler; for smoothed pictures."""
         return replace(self, saturation=0.7 * self.saturation, value=0.4 * self.value)

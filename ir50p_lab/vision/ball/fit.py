@@ -82,12 +82,6 @@ def fit_outline(x, y, view, start, *, noise=0.25, rounds=6):
     return Outline(*found, cone, kappa, view) if found[2] > 0 else None
 
 
-def fit_circle(points):
-    """The algebraic circle (x, y, r) through points (n, 2): a camera far away; r = 0 on a line."""
-    x, y = np.ascontiguousarray(points.T)
-    return _solve(x, y, np.ones(len(x)), 0.0, 0.0, 1.0, 0.0)[0]
-
-
 def _floats(values):
     return np.ascontiguousarray(values, dtype=np.float64)
 
@@ -131,6 +125,12 @@ def _solve(x, y, w, cx, cy, aspect, kappa):
     if not narrow > 0:
         return nothing
     return (cx + a / 2 / bottom, cy + b / 2 / bottom / aspect, sqrt(square) * narrow**-0.75), (a, b, c)
+
+
+@jit()
+def fit_circle(x, y):
+    """The algebraic circle (x, y, r) through points x, y (n,): a camera far away; r = 0 on a line."""
+    return _solve(x, y, np.ones(len(x)), 0.0, 0.0, 1.0, 0.0)[0]
 
 
 @jit()

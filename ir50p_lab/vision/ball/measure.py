@@ -20,6 +20,7 @@ _AREA = np.append(np.linspace(0.1, 0.85, 11), 0.93)  # of the rings that the sam
 _AREA /= _AREA.sum()
 # Whatever else speaks for it, a ball shows an edge on this much of the circle, and this much of its disc has the colour
 LEAST_SUPPORT, LEAST_FILL = 0.32, 0.40
+_CLEARLY = 0.8  # of the least radius: the first look is that far off at most
 _EDGE = 0.30  # least height of an edge, in units of the contrast between ball and surroundings
 
 
@@ -35,7 +36,7 @@ class Measured:
     gaps: into how many pieces what is missing falls. ragged: rms distance of the edge points from the smooth outline,
     over the radius. step: median height of the edges, over the contrast of the disc and its surroundings.
     apart: of the colours in and out, in standard deviations. through: how much of the missing part looks like what
-    surrounds the ball. paint: of `_paint`. samples (RAYS, radii, channels): of `look`. edges (RAYS, 4): whether there
+    surrounds the ball. paint: of `paint_of`. samples (RAYS, radii, channels): of `look`. edges (RAYS, 4): whether there
     is an edge on the outline, how far off it is (in units of what is usual), its height, and `beyond`.
     """
 
@@ -61,12 +62,16 @@ class NoBallError(Exception):
     """Why there is no ball at a guess."""
 
 
-def measure(image, guess, view, colour, camera=None):
+def measure(image, guess, view, colour, camera=None, least_radius=0.0):
     """Measure the ball at a guess (x, y, r); camera: Pinhole, whose lens may distort.
 
+    least_radius: pixels; what a first look shows to be clearly smaller is not measured further.
     Returns: Measured. Raises NoBallError, which says why not.
     """
-    return _fine(image, *_coarse(image, guess, view), view, colour, camera)
+    outline, unit = _coarse(image, guess, view)
+    if outline.r < max(3.0, _CLEARLY * least_radius):
+        raise NoBallError(f"too small, radius {outline.r:.1f} pixels")
+    return _fine(image, outline, unit, view, colour, camera)
 
 
 def _coarse(image, guess, view):
@@ -108,8 +113,6 @@ def _edges(rays, inner, outer, expected, width, sigma):
 def _fine(image, outline, unit, view, colour, camera):
     """Look again, finely, along the outline found: the last digits, and the evidence."""
     x, y, r = outline.x, outline.y, outline.r
-    if r < 3:
-        raise NoBallError("too small")
     half = max(4.5, 0.16 * r)  # pixels searched on either side
     pace = max(0.5, half / 14)
     steps = int(np.ceil(half / pace))
@@ -146,7 +149,7 @@ def _fine(image, outline, unit, view, colour, camera):
         through=_shown_through(rgb, on, missing & ~beyond, inside),
         gaps=_gaps(missing),
         step=float(np.median(height[on])),
-        paint=_paint(hsv[inside], colour),
+        paint=paint_of(hsv[inside], colour),
         samples=look(image, outline, weights, middle, colour),
         edges=_along(on, off / (0.3 + 0.01 * outline.r), height, beyond),
         **dict(zip(("bumps", "oval", "ragged"), _waves(off[on], unit[0][on], unit[1][on], outline.r), strict=True)),
@@ -226,7 +229,7 @@ def _colours(image, outline, colour, unit):
     return inside, alike[:, 12:], rgb, hsv[:, :12]
 
 
-def _paint(hsv, colour):
+def paint_of(hsv, colour):
     """Of HSV samples (n, 3) of the disc: hue from the colour's towards orange, degrees; saturation; value, 0..1.
 
     The value is that of the lighter part: a ball has one, what is nearly black has none.

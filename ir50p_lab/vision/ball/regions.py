@@ -106,33 +106,45 @@ def circles_in(points, shape, least_radius):
     Three points some way apart on the outline make a circle; the one with most of its length along the outline wins,
     its points go, and the search goes on with the rest.
     """
-    height, width = shape
     n = len(points)
     m = min(n, 48 + n // 4, 160)
     p = points[(np.arange(m) * n) // m]
-    inside = ((p > 0.5) & (p < (width - 1.5, height - 1.5))).all(axis=1)  # the border of the picture is no outline
-    if inside.sum() < 6:
-        return []
-    x, y, r = fit_circle(p[inside])
-    off = np.hypot(p[inside, 0] - x, p[inside, 1] - y) - r
-    if 0 < r < max(height, width) and np.sqrt(np.mean(off**2)) < max(_ROUND * r, 0.5) and inside.mean() > 0.4:
-        return [(x, y, r, 1.0)]
     # the outline runs around its region: where it bends the other way the circle is a bay, not a ball
     turn = 1 if cv2.contourArea(p.astype(np.float32), True) < 0 else -1
     apart = np.array(sorted({max(2, m // k) for k in (16, 9, 5, 3)} | ({4, 8, 16, 32} if m > 100 else set())))
-    left, found = inside.copy(), []
-    for _ in range(_CIRCLES):
-        x, y, r, share = _vote(p, left, apart, n / m, least_radius, 0.75 * max(height, width), turn)
+    return _circles(p, shape, apart, n / m, least_radius, turn).tolist()
+
+
+@jit()
+def _circles(p, shape, apart, step, least_radius, turn):
+    """Circles (k, 4) in the points p (m, 2), every `step`th of an outline: one through all, or those of `_vote`."""
+    height, width = shape
+    px, py = p[:, 0].copy(), p[:, 1].copy()
+    # the border of the picture is no outline
+    usable = (px > 0.5) & (px < width - 1.5) & (py > 0.5) & (py < height - 1.5)
+    found = np.empty((_CIRCLES, 4))
+    if usable.sum() < 6:
+        return found[:0]
+    x, y, r = fit_circle(px[usable], py[usable])
+    off = np.hypot(px[usable] - x, py[usable] - y) - r
+    round_enough = 0 < r < max(height, width) and np.sqrt(np.mean(off**2)) < max(_ROUND * r, 0.5)
+    if round_enough and usable.mean() > 0.4:
+        found[0] = x, y, r, 1.0
+        return found[:1]
+    for k in range(_CIRCLES):
+        x, y, r, share = _vote(p, usable, apart, step, least_radius, 0.75 * max(height, width), turn)
         if share < 0.22:
-            break
-        off = np.abs(np.hypot(p[:, 0] - x, p[:, 1] - y) - r)
-        points = p[(off < max(0.9, 0.06 * r)) & left]
-        left &= off >= max(1.5, 0.10 * r)
-        if len(points) >= 5 and (circle := fit_circle(points))[2] > 0:
-            x, y, r = circle
-        found.append((x, y, r, min(share, 0.89)))
-        if left.sum() < 6:
-            break
+            return found[:k]
+        off = np.abs(np.hypot(px - x, py - y) - r)
+        near = usable & (off < max(0.9, 0.06 * r))
+        usable = usable & (off >= max(1.5, 0.10 * r))
+        if near.sum() >= 5:
+            circle = fit_circle(px[near], py[near])
+            if circle[2] > 0:
+                x, y, r = circle
+        found[k] = x, y, r, min(share, 0.89)
+        if usable.sum() < 6:
+            return found[: k + 1]
     return found
 
 
@@ -143,6 +155,7 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
     share = 0 if there is none.
     """
     m, best = len(p), 0.0
+    left_x, left_y = p[:, 0][usable], p[:, 1][usable]
     bx = by = br = bs = 0.0
     for d in apart:
         for i in range(m):
@@ -159,12 +172,13 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
             if not least_radius <= r <= most_radius:
                 continue
             x, y = p[i, 0] + ux, p[i, 1] + uy
+            if not sqrt(r) > best:
+                continue
             limit, near = max(0.9, 0.06 * r), 0
             low, high = max(r - limit, 0.0) ** 2, (r + limit) ** 2
-            for q in range(m):
-                square = (p[q, 0] - x) ** 2 + (p[q, 1] - y) ** 2
-                if usable[q] and low < square < high:
-                    near += 1
+            for q in range(len(left_x)):
+                square = (left_x[q] - x) ** 2 + (left_y[q] - y) ** 2
+                near += (low < square) & (square < high)  # no branch: several at once
             share = min(near * step / (5.6 * r), 1.0)  # a pixel chain is longer than it counts
             if share * sqrt(r) > best:
                 best = share * sqrt(r)

@@ -96,14 +96,11 @@ def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=No
         raise InputError("object_points must lie in the plane z = 0 of the board")
     outside = [xy for xy in np.concatenate(pixels) if (xy < -1.5).any() or (xy > np.array(size) + 0.5).any()]
     if outside:
-        raise InputError(
-            f"a corner at {outside[0].round()} lies outside pictures of size = {size}: give (width, height)"
-        )
+        raise InputError(f"corner {outside[0].round()} lies outside pictures of size = {size}: give (width, height)")
     everything, inverse = np.unique(np.concatenate(points), axis=0, return_inverse=True)
     places = np.split(inverse.ravel(), np.cumsum([len(p) for p in points])[:-1])
-    found = [
-        (f"view {i + 1}", i, BoardCorners(xy, place)) for i, (xy, place) in enumerate(zip(pixels, places, strict=True))
-    ]
+    corners = map(BoardCorners, pixels, places)
+    found = [(f"view {i + 1}", i, one) for i, one in enumerate(corners)]
     return _calibrate(found, size, _board_like(everything), everything, options, [])
 
 
@@ -217,9 +214,7 @@ def _options(lens, aspect, bend):
     if aspect is not None:
         aspect = number("aspect", aspect, "> 0", hint="fx/fy, 1 for square pixels, or None to estimate it")
     if bend is not None and choice("bend", bend, (True, False)):
-        raise InputError(
-            "bend = True: give None to test for a bend and estimate it, or False to take the board for flat"
-        )
+        raise InputError("bend = True: give None to test for a bend and estimate it, or False for a flat board")
     if lens is not None:
         names = [lens] if isinstance(lens, str) or not np.iterable(lens) else list(lens)
         if any(name not in LENS for name in names):
@@ -246,11 +241,9 @@ def _corners_in(picture, board, size, other):
     import cv2
 
     try:
-        return (
-            find_charuco(picture.image, board)
-            if isinstance(board, Charuco)
-            else find_checkerboard(picture.image, board.pattern, other)
-        )
+        if isinstance(board, Charuco):
+            return find_charuco(picture.image, board)
+        return find_checkerboard(picture.image, board.pattern, other)
     except cv2.error as error:  # one picture must not lose the others
         raise NotUsable(Reason.NO_BOARD, f"OpenCV finds no corners in it: {' '.join(str(error).split())}") from error
 

@@ -6,14 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.vision.calibration.board import check_pattern
-from ir50p_lab.vision.calibration.grid import (
-    grow,
-    in_order,
-    is_checkerboard,
-    next_to_margin,
-    roughness,
-    spacing,
-)
+from ir50p_lab.vision.calibration.grid import grow, in_order, is_checkerboard, next_to_margin, roughness, spacing
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 from ir50p_lab.vision.calibration.saddles import parts_by_saddles
 
@@ -168,12 +161,8 @@ def edge_rise(grey, grid):
     """Mean width of an edge from 10 % to 90 % of its step, px: of the softer of the two directions."""
     import cv2
 
-    rows, columns = grid.shape[:2]
-    xy = grid.reshape(-1, 1, 2).astype(np.float32)
-    rises = [
-        cv2.estimateChessboardSharpness(grey, (columns, rows), xy, vertical=vertical)[0][0]
-        for vertical in (False, True)
-    ]
+    pattern, xy = grid.shape[1::-1], grid.reshape(-1, 1, 2).astype(np.float32)
+    rises = [cv2.estimateChessboardSharpness(grey, pattern, xy, vertical=way)[0][0] for way in (False, True)]
     return float(max(rises))
 
 
