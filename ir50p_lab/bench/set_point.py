@@ -78,7 +78,7 @@ def checked_reference(arm, t, value, q=None):
             said += f"; the arm's travel is {arm.q_min[i]:.2f} to {arm.q_max[i]:.2f} rad"
             raise InputError(f"{said}. Are these degrees? np.radians makes them rad")
         said += f", {abs(wanted - here):.2f} rad from where the arm is ({here:.2f} rad); {FARTHEST:g} rad is the most"
-        raise InputError(f"{said} (degrees?): begin there, or by bench.start; if it did, bench-test finds out why")
+        raise InputError(f"{said}. Degrees? Begin where the arm is, as bench.start does; if it strayed, run bench-test")
     return rows
 
 
