@@ -50,9 +50,9 @@ class Estimate:
         """Torque or PWM counts Phi theta, (n, 3), of a regressor (n, 3, 20). Raises InputError on another shape."""
         return np.einsum("nij,ij->ni", blocks("Phi", Phi), self.theta)
 
-    def score(self, recording):
+    def score(self, recording, q=None, u=None):
         """Validation of "u" on another recording    (Table 4.4), processed with `steps`, as the training was."""
-        return validate(self, recording, **self.steps)
+        return validate(self, recording, q, u, **self.steps)
 
     @property
     def verdict(self):

@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+from ir50p_lab.errors import InputError
 from ir50p_lab.signals.fourier import fourier
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "excitation_ir50p.json"
@@ -12,7 +13,10 @@ def load_excitations(path=DATA):
     """Motions from a file as data/excitation_ir50p.json, which is the default: {name: Fourier}.
 
     That file holds "plain" (random coefficients as large as the limits allow), "training" and "validation 1" to
-    "validation 20" (optimised, tried in simulation).
+    "validation 20" (optimised, tried in simulation). Raises InputError if the file cannot be read or is no such file.
     """
-    rows = json.loads(Path(path).read_text(encoding="ascii"))["motions"]
-    return {name: fourier(**row) for name, row in rows.items()}
+    try:
+        rows = json.loads(Path(path).read_text(encoding="ascii"))["motions"]
+        return {name: fourier(**row) for name, row in rows.items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise InputError(f"{path} is no file of excitations such as {DATA.name}: {error!r:.80}") from None

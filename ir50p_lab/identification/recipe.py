@@ -25,6 +25,7 @@ def identify(
     slow=0.05,
     method="bounded",
     cutoff_hz=CUTOFF_HZ,
+    held=True,
     unit="PWM",
     anyway=False,
 ):
@@ -43,7 +44,7 @@ def identify(
         recordings: a Recording (t, q, u), or a list of them: other motions, or another load of work for the same arm.
         l2: upper arm, m, or None. delay: s from a sample to the moment its u acts. slow: rad/s.
         method: "bounded", or another of `fit` that needs neither weights nor instruments.
-        cutoff_hz: Hz, above what the joints move at; unit: of u.
+        cutoff_hz: Hz, above what the joints move at; held: as in `process`; unit: of u.
         anyway: go on where the data are refused.
 
     Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by some per
@@ -57,7 +58,7 @@ def identify(
     recordings = list(recordings) if isinstance(recordings, (list, tuple)) else [recordings]
     if not recordings:
         raise InputError("no recording given: give one, or a list of them")
-    steps = {"cutoff_hz": cutoff_hz, "delay": delay}
+    steps = {"cutoff_hz": cutoff_hz, "delay": delay, "held": held}
     notes, parts = [], []
     for recording in recordings:
         notes += _looked_at(recording, anyway)

@@ -63,19 +63,31 @@ def nrmse_fit(measured, predicted):
     return rms, 100 * (1 - rms / spread)
 
 
-def validate(estimate, recording, *, derivatives=BACKWARD, cutoff_hz=1.5, delay=0.0, held=True, sign=None):
+def validate(
+    estimate,
+    recording,
+    q=None,
+    u=None,
+    *,
+    derivatives=BACKWARD,
+    cutoff_hz=1.5,
+    delay=0.0,
+    held=True,
+    trim=None,
+    sign=None,
+):
     """Predict the u of another recording from its angles, one sample at a time    (4.5), Table 4.4.
 
     The u of the recording is taken raw, as it was sent. The prediction is made from q, qd and qdd as `process` finds
     them, and read at the time at which each u acted: its sample + delay (+ half a period while it is held).
 
-    Args: estimate: Estimate or theta (3, 20); recording: anything with t, q, u; derivatives, cutoff_hz, delay, held: as
-    in `process`; sign: as in `regressor`.
+    Args: estimate: Estimate or theta (3, 20); recording, or t, q, u; derivatives, cutoff_hz, delay, held, trim: as in
+    `process`; sign: as in `regressor`.
     Returns: Validation of "u". Raises InputError, IdentificationError as `process` does.
     """
     theta, _ = as_theta(getattr(estimate, "theta", estimate))
-    t, q, u = columns_of(recording)
-    motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, held=False)
+    t, q, u = columns_of(recording, q, u)
+    motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, held=False, trim=trim)
     predicted = np.einsum("nij,ij->ni", regressor(motion.q, motion.qd, motion.qdd, sign=sign), theta)
     acts = acting_times(t, number("delay", delay, ">= 0", unit="s"), held and derivatives == BACKWARD)
     after = np.searchsorted(motion.t, acts).clip(1, len(motion) - 1)
@@ -108,12 +120,14 @@ def whiteness(residuals):
     """Autocorrelation r_m = sum e_k e_k+m/sum e_k^2 of residuals, for the first min(50, n/5) lags.
 
     Args: residuals: (n,) or (n, k), evenly sampled, the mean is taken out. Returns: Whiteness. Raises InputError for
-    fewer than 20 samples or numbers that are not finite.
+    fewer than 20 samples, numbers that are not finite, constant residuals.
     """
     e = finite("residuals", residuals)
     e = e[:, None] if e.ndim == 1 else e
     if e.ndim != 2 or len(e) < 20:
         raise InputError(f"residuals have shape {np.shape(residuals)}: give 20 or more, (n,) or (n, k), time first")
+    if (np.ptp(e, axis=0) <= 1e-12 * np.abs(e).max(axis=0)).any():
+        raise InputError("a column of residuals is constant: there is nothing to correlate")
     e = e - e.mean(axis=0)
     lags = np.arange(1, min(50, len(e) // 5) + 1)
     r = np.array([(e[m:] * e[:-m]).sum(axis=0) for m in lags]) / (e**2).sum(axis=0)

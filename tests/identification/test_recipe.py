@@ -102,6 +102,11 @@ def test_the_motions_in_the_file_keep_the_limits_they_were_made_for(name):
 def test_motions_come_back_as_they_were(tmp_path):
     save_excitations(tmp_path / "some.json", {"x": MOTIONS["training"]}, made_by="here")
     assert load_excitations(tmp_path / "some.json") == {"x": MOTIONS["training"]}
+    (tmp_path / "bad.json").write_text("{}")
+    with pytest.raises(InputError, match="no file of excitations"):
+        load_excitations(tmp_path / "bad.json")
+    with pytest.raises(InputError, match="no file of excitations"):
+        load_excitations(tmp_path / "none.json")
 
 
 def test_loading_motions_starts_no_numba():

@@ -125,7 +125,7 @@ def test_steps_that_do_not_apply_to_raw_commands_are_refused(step):
 def test_bad_input():
     record = analytic(rate=50.0)
     with pytest.raises(InputError, match="q has shape"):
-        validate(THETA, SimpleNamespace(t=record.t, q=record.q[:, :2], u=record.u[:, :2]))
+        validate(THETA, record.t, record.q[:, :2], record.u[:, :2])
     with pytest.raises(InputError, match="theta with shape"):
         validate(THETA[:2], record)
     for delay in (-1, np.nan, None):
@@ -152,6 +152,7 @@ def test_bad_columns(y, p, words):
     [
         (np.zeros(5), "20 or more"),
         (np.full(50, np.inf), "residuals holds inf at index 0"),
+        (np.ones(50), "constant"),
     ],
 )
 def test_bad_residuals(e, words):

@@ -60,7 +60,7 @@ def simulate_identification(reference, arm, controller, *, noise=5.0):
     """
     start = reference.sample(np.zeros(1))[0, 0]
     run = simulate(arm, controller, reference, duration=2 * reference.period, q0=start, unit="PWM")
-    found = validate(arm.theta_pwm, run, sign=0.05, cutoff_hz=1.2)
+    found = validate(arm.theta_pwm, run.t, run.q, run.u, sign=0.05, cutoff_hz=1.2)
     spread = found.measured.std(axis=0)
     return SimulatedIdentification(
         fit=100 * (1 - np.hypot(found.rms, noise) / spread),
