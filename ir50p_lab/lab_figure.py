@@ -1,6 +1,5 @@
 """What every figure of the package has: one look, and a picture of itself in a notebook without pyplot."""
 
-import io
 from pathlib import Path
 
 import matplotlib
@@ -22,7 +21,6 @@ class LabFigure(Figure):
 
     def _repr_png_(self):
         """PNG at twice the pixels (sharp on dense screens), and the size to show it at."""
-        width, height = self.bbox.size
-        stream = io.BytesIO()
-        self.savefig(stream, dpi=2 * self.dpi)
-        return stream.getvalue(), {"width": round(width), "height": round(height)}
+        from IPython.core.pylabtools import retina_figure
+
+        return retina_figure(self, bbox_inches=None)

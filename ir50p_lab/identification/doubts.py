@@ -273,8 +273,6 @@ def _check_inertia(doubts, found, band, period):
     lag = found.beside(found.table.slopes[:, 1 - found.held])  # u behind a low pass: what went in is u + lag du/dt
     delay, sigma, rms = min(found.beside_delay[2:], lag[2:], key=lambda one: one[2])
     if rms < 0.9 * found.left.rms and abs(delay) > max(5 * sigma, 0.3 * period):
-        if delay > 0:
-            doubts.add(f"u seems to act about {delay:.2g} s after it was recorded: inertia too large; give delay=")
-        else:
-            early = f"q seems to be recorded {-delay:.2g} s before u (or u is filtered)"
-            doubts.add(f"{early}: inertia too small; shift one of them")
+        late = f"u seems to act about {delay:.2g} s after it was recorded: inertia too large; give delay="
+        early = f"q seems to be recorded {-delay:.2g} s before u, or u is filtered: inertia too small; shift one"
+        doubts.add(late if delay > 0 else early)

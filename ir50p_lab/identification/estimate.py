@@ -100,10 +100,9 @@ def indefinite_mass(theta):
     angles = np.linspace(-np.pi, np.pi, 25)
     q2, q3 = (x.ravel() for x in np.meshgrid(angles, angles))
     M = mass_matrix(theta, np.column_stack([0 * q2, q2, q3]))
-    if not M[:, range(3), range(3)].any(axis=0).all():
-        return []  # a joint was fitted without its inertia: nothing to say
     wrong = np.any([np.linalg.det(M[:, :k, :k]) <= 0 for k in (1, 2, 3)], axis=0)
-    if not wrong.any():
+    without_inertia = not M[:, range(3), range(3)].any(axis=0).all()  # of a joint: then there is nothing to say
+    if without_inertia or not wrong.any():
         return []
     k = int(np.argmax(wrong))
     where = f"q2 = {q2[k]:.2f}, q3 = {q3[k]:.2f} rad: use method='bounded' or richer data"

@@ -95,21 +95,20 @@ def optimise_excitation(
     limits = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
     problem = _Problem(arm, period, harmonics, limits, standing)
     generator = np.random.default_rng(seed)
-    first, found = [], []
+    found = []
     from tqdm.auto import tqdm
 
     for _ in tqdm(range(starts), disable=not progress, unit="start", desc="excitation"):
         x = problem.start(generator)
         if x is not None:
-            first.append(x)
-            found.append(problem.improve(x, iterations))
+            found.append((*problem.improve(x, iterations), x))
     if not found:
         remedy = f"widen the joint limits, lower the table ({table}), take less margin ({margin} rad) or another seed"
         raise IdentificationError(f"no motion was found inside the limits in {starts} starts: {remedy}")
-    best = min(found, key=lambda pair: pair[0])[1]
+    best, first = min(found, key=lambda one: one[0])[1], found[0][2]
     options = {"period": period, "periods": periods, "arm": arm, "max_joint_speed": max_joint_speed}
     options |= {"table": table, "margin": margin, "ends": "adjust"}  # rounding only
-    reference, before = (fourier(a, b, q0=q0, **options) for a, b, q0 in map(problem.split, (best, first[0])))
+    reference, before = (fourier(a, b, q0=q0, **options) for a, b, q0 in map(problem.split, (best, first)))
     return Excitation(
         reference=reference,
         before=before,
@@ -176,14 +175,9 @@ class _Problem:
         def known(x):
             return self.evaluate(np.frombuffer(x))
 
-        minimize(
-            lambda x: known(x.tobytes())[0],
-            x,
-            constraints={"type": "ineq", "fun": lambda x: known(x.tobytes())[1:] - 1e-6},
-            method="SLSQP",
-            callback=seen,
-            options={"maxiter": iterations, "ftol": 1e-5, "eps": _STEP},
-        )
+        inside = {"type": "ineq", "fun": lambda x: known(x.tobytes())[1:] - 1e-6}
+        options = {"maxiter": iterations, "ftol": 1e-5, "eps": _STEP}
+        minimize(lambda x: known(x.tobytes())[0], x, (), "SLSQP", constraints=inside, callback=seen, options=options)
         return best
 
     def split(self, x):

@@ -101,10 +101,8 @@ def output_error(
         parts = [w * (y - model) for w, y, model in zip(weights, measured, simulated(x), strict=True)]
         return np.nan_to_num(np.concatenate(parts), nan=1e3, posinf=1e3, neginf=-1e3).ravel()
 
-    with (
-        tqdm(total=iterations, disable=not progress, unit="step", desc="output error") as bar,
-        ThreadPoolExecutor(2) as pool,
-    ):
+    bar = tqdm(total=iterations, disable=not progress, unit="step", desc="output error")
+    with bar, ThreadPoolExecutor(2) as pool:
 
         def slopes(x):
             moves = np.diag(search.moves(x))
@@ -112,9 +110,8 @@ def output_error(
             bar.update(1)
             return (ahead - behind).T / (2 * moves.diagonal())
 
-        found = minimise(
-            residuals, search.x0, slopes, bounds=search.bounds, x_scale=search.scale, max_nfev=iterations, ftol=1e-4
-        )
+        options = {"x_scale": search.scale, "max_nfev": iterations, "ftol": 1e-4}
+        found = minimise(residuals, search.x0, slopes, bounds=search.bounds, **options)
     spread = least_squares(found.jac.reshape(-1, 6, len(found.x)), found.fun.reshape(-1, 6), names=search.names)
     notes = list(spread.warnings)
     if found.status == 0:

@@ -131,9 +131,8 @@ def process(
             continue
         here = slice(first, last)
         grid, even_q, even_u = _on_even_steps(t[here], q[here], u[here], acts[here], period)
+        even_u = derive(even_u, 1 / period, cutoff_hz=cutoff_hz)[0] if filter_u else even_u
         piece = [grid, *derive(even_q, 1 / period, cutoff_hz=cutoff_hz), even_u]
-        if filter_u:
-            piece[-1] = derive(even_u, 1 / period, cutoff_hz=cutoff_hz)[0]
         keep = (grid >= grid[0] + max(trim, delay) - 1e-9) & (grid <= grid[-1] - trim + 1e-9)
         keep[[0, -1]] = False  # their derivatives are the neighbours'
         pieces.append([x[keep] for x in piece] + [np.full(keep.sum(), k)])

@@ -67,10 +67,8 @@ def best_fit(columns, y, starts, bounds):
 
     costs = np.array([[np.linalg.norm(solved(p)[1]) for p in row] for row in starts])
     exact = {"x_scale": "jac", "ftol": 1e-12, "xtol": 1e-11, "gtol": 1e-14}
-    fits = [
-        least_squares(lambda p: solved(p)[1], np.clip(starts[k][costs[k].argmin()], *bounds), bounds=bounds, **exact)
-        for k in costs.min(axis=1).argsort()[:_STARTS]
-    ]
+    likely = [starts[k][costs[k].argmin()] for k in costs.min(axis=1).argsort()[:_STARTS]]
+    fits = [least_squares(lambda p: solved(p)[1], np.clip(p, *bounds), bounds=bounds, **exact) for p in likely]
     best = min(fits, key=lambda fit: fit.cost)
     return best.x, *solved(best.x)
 

@@ -395,9 +395,7 @@ class _Joint:
         return SimpleNamespace(**dict(zip(names, joined, strict=True)))
 
     def _smooth(self, x, cutoff_hz):
-        if math.isinf(cutoff_hz):
-            return x
-        return low_pass(x, cutoff_hz, self.rate, order=_ORDER, kind="zero-phase")
+        return x if math.isinf(cutoff_hz) else low_pass(x, cutoff_hz, self.rate, order=_ORDER, kind="zero-phase")
 
     def _derivatives(self, angles, cutoff_hz):
         """qd, qdd (n,) behind the low pass, from five points: at 20 samples a second three are 1 % wrong."""

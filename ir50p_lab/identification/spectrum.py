@@ -32,8 +32,7 @@ def spectrum(pieces, rate_hz, cutoff_hz=None):
     """
     from scipy.signal import welch
 
-    longest = max(map(len, pieces))
-    length = min(longest, max(256, sum(map(len, pieces)) // 6))
+    length = min(max(map(len, pieces)), max(256, sum(map(len, pieces)) // 6))
     pieces = [q for q in pieces if len(q) >= length]
     spectra = [welch(q - q.mean(), rate_hz, nperseg=length, detrend="linear") for q in pieces]
     sizes = np.array([len(q) for q in pieces], dtype=float)
