@@ -157,7 +157,10 @@ class LiveRun:
             raise pickle.loads(self._told["failed"])
         if "done" not in self._told:
             told = "; it said: " * bool(words) + words
-            raise BenchError(f"the loop's process has died (exit code {code}); a board cuts after 0.1 s{told}")
+            died = (
+                f"the loop's process has died (exit code {code}): a board cuts its drive 0.1 s later; connect() again"
+            )
+            raise BenchError(died + told)
 
     def _hear(self, name, content):
         """Keep what the loop tells; see `live_loop`."""

@@ -81,10 +81,12 @@ def _serve(pipe, news, bench, cargo):
 
 def _packed_error(error):
     """The error as bytes that the parent can read; a BenchError with its text where it cannot be sent."""
+    import cloudpickle
+
     if not isinstance(error, LabError):
         error.add_note("in the loop's process:\n" + "".join(traceback.format_tb(error.__traceback__)[-3:]))
     try:
-        packed = pickle.dumps(error)
+        packed = cloudpickle.dumps(error)
         pickle.loads(packed)
     except Exception:
         text = "".join(traceback.format_exception_only(error)).strip()

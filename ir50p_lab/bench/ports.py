@@ -46,7 +46,7 @@ def port_error(device, error):
     # Windows reports a port in use as 'access denied', without a number
     if number in (errno.EBUSY, errno.EAGAIN) or "lock port" in text or "PermissionError" in text:
         names = f"Linux: 'fuser -v {device}' names it; ModemManager lets go after half a minute"
-        remedy = "close the Arduino IDE's monitor and other notebooks' kernels, then try again"
+        remedy = "close the Arduino IDE's monitor and other notebooks' kernels, then try again; or connect('simulated')"
         return PortError(f"{device} is busy: another program holds it ({names}); {remedy}")
     if number in (errno.EACCES, errno.EPERM):
         return PortError(f"no permission to open {device}: {permission_remedy(device)}")

@@ -19,7 +19,7 @@ COLUMNS = tuple("t q1 q2 q3 counts1 counts2 counts3 u1 u2 u3 r1 r2 r3 gripper mi
 T, Q, COUNTS, U, R, GRIPPER, MISSED = 0, slice(1, 4), slice(4, 7), slice(7, 10), slice(10, 13), 13, 14
 _CELLS = 4 * ("%.6f",) + 6 * ("%g",) + 3 * ("%.6f",) + 2 * ("%d",)
 _ROW = ",".join(_CELLS) + "\n"
-_FOREIGN = "read tables of other programs with pandas, and make Recording.from_arrays(t, q, u=u) of their columns"
+_FOREIGN = "a spreadsheet has to save it with commas and decimal points; for others: pandas, Recording.from_arrays"
 _EVENT = re.compile(r"[ \"]*#\W*event: (-?[\d.]+) s: (.*)")
 _UNITS = "t s; q rad; counts of the 10-bit converter; u PWM counts; r (reference) rad; gripper 1 closed; missed cycles"
 
@@ -114,10 +114,10 @@ def read(path):
 
 def _read_row(line, place):
     cells = line.split(",")
-    if len(cells) != len(COLUMNS):
+    if len(cells) < len(COLUMNS) or "".join(cells[len(COLUMNS) :]).strip():  # a spreadsheet may add empty ones
         said = f"{place}: {len(cells)} values for {len(COLUMNS)} columns"
         raise RecordingError(f"{said} (cut off, or decimal commas?); repair or delete that line")
-    return [_number(cell, place) for cell in cells]
+    return [_number(cell, place) for cell in cells[: len(COLUMNS)]]
 
 
 def _number(cell, place):

@@ -126,7 +126,7 @@ def test_arrays_of_one_joint():
     assert one.q.shape == (len(one), 1)
     for name in ("q", "qd", "qdd", "u"):
         np.testing.assert_allclose(getattr(one, name)[:, 0], getattr(all_, name)[:, 1], atol=1e-9)
-    with pytest.raises(InputError, match="t must hold numbers"):
+    with pytest.raises(InputError, match="neither both nor a part"):
         process(record, record.q, record.u)
     with pytest.raises(InputError, match="q = None is no array"):
         process(record.t)
