@@ -157,9 +157,7 @@ class LiveRun:
             raise pickle.loads(self._told["failed"])
         if "done" not in self._told:
             told = "; it said: " * bool(words) + words
-            died = (
-                f"the loop's process has died (exit code {code}): a board cuts its drive 0.1 s later; connect() again"
-            )
+            died = f"the loop's process has died (exit code {code}); a board cuts its drive by itself: connect() again"
             raise BenchError(died + told)
 
     def _hear(self, name, content):

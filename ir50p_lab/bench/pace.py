@@ -64,9 +64,7 @@ class Pace:
 
     def __init__(self, clock, period):
         if period > 0.5 * WATCHDOG:
-            raise InputError(
-                f"period = {period} s: give {0.5 * WATCHDOG:g} s at most; the watchdog cuts after {WATCHDOG:g} s"
-            )
+            raise InputError(f"period = {period} s: give {0.5 * WATCHDOG:g} s at most, the watchdog has {WATCHDOG:g} s")
         self._clock, self._period = clock, period
         self.start = self.heard = clock.now()
         self.cycle, self.missed, self.armed = -1, 0, False

@@ -182,5 +182,5 @@ class SerialBench(Bench):
         raise BoardError(f"{self.port}: {has}; this lab book needs {needs}: {_REMEDY}")
 
     def _lost(self, what):
-        lost = f"the board on {self.port} {what}: it brakes by itself 0.1 s after the last command, then gravity has the arm"
-        return BoardLostError(f"{lost}. Look at the USB cable and the board's lamp, then connect() again")
+        brakes = "it brakes by itself 0.1 s after the last command, then gravity has the arm. Look at the USB cable"
+        return BoardLostError(f"the board on {self.port} {what}: {brakes} and the board's lamp, then connect() again")
