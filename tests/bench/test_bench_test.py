@@ -108,6 +108,6 @@ def test_the_command_on_a_simulated_arm(unit, tmp_path, monkeypatch, capsys):
     (path,) = (tmp_path / "results").glob(f"bench-test-simulated-unit-{unit}-*.json")
     report = json.loads(path.read_text())
     assert [f["step"] for f in report["findings"]] == ["noise", "drive", "drive", "drive"]  # no hand, no board
-    assert report["simulated"] == "true" and len(asked) == 7
+    assert report["simulated"] == "true" and len(asked) == 4
     assert str(path) in capsys.readouterr().out
     assert result_files.every() == []  # the report is none of the results that `connect` looks through

@@ -257,7 +257,7 @@ WRONG = [
     (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("0.5", "20")), r"line 5: an angle of 20 rad; .* degrees"),
     (ours(f"0.00,{ROW}", f"inf,{ROW}", f"inf,{ROW}"), r"line 5: t or an angle is missing or not finite \(inf\)"),
     (ours(f"0.00,{ROW}").replace("0.5", "0,5"), r"line 4: 16 values for 15 columns \(.*decimal commas"),
-    ("0,1,1,1\n0.01,1,1,1\n", r"line 1: '0,1,1,1' where the columns .* pandas, and make Recording.from_arrays"),
+    ("0,1,1,1\n0.01,1,1,1\n", r"line 1: '0,1,1,1' where the columns .* pandas, Recording.from_arrays"),
     ("t;q1;q2;q3\n0;1;1;1\n", r"line 1: 't;q1;q2;q3' where the columns"),
     ("", r"ends before its first sample"),
     ("# ir50p_lab recording: 1\n# period", r"ends before its first sample"),
