@@ -35,10 +35,11 @@ def text_of(*functions):
 
 
 def changed(function, *changes):
-    """The function with its text changed here and there: "old -> new"."""
+    """The function with its text changed here and there: "old -> new". Raises ValueError if the old is not there."""
     text, names = text_of(function), dict(function.__globals__)
-    for change in changes:
-        text = text.replace(*change.split(" -> "))
+    for old, new in (change.split(" -> ") for change in changes):
+        text.index(old)  # a change that would change nothing
+        text = text.replace(old, new)
     exec(text, names)
     return names[function.__name__]
 
