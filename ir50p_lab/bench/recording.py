@@ -55,12 +55,14 @@ class Recording:
     def from_arrays(cls, t, q, *, header=None, **known):
         """A recording from arrays with names and shapes as in the table above; what is left out is not known (NaN).
 
-        Raises InputError for shapes that do not fit each other.
+        Raises InputError for shapes that do not fit each other, RecordingError for values that cannot be: degrees, NaN.
         """
         try:
-            return cls(table_of(t, q, **known), header)
+            table = table_of(t, q, **known)
         except ValueError as error:
             raise InputError(f"t (n,), q, counts, u, reference (n, 3) of one length are needed: {error}") from None
+        recording_file.check(table, [f"sample {k}" for k in range(len(table))])
+        return cls(table, header)
 
     @classmethod
     def load(cls, path):
@@ -71,8 +73,7 @@ class Recording:
         """
         header, table, events, cut = recording_file.read(path)
         if cut:
-            said = f"{path}: its last line ({cut}) is not complete and was left out: the program stopped as it wrote"
-            warnings.warn(said, RecordingWarning, stacklevel=2)
+            warnings.warn(f"{path}: its last line ({cut}) is cut off, and was left out", RecordingWarning, stacklevel=2)
         return cls(table, header, path=Path(path), events=events)
 
     def save(self, path):

@@ -86,8 +86,7 @@ def read(path):
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = data.decode("latin-1")
-    lines, header, rows, numbers, events, cut = text.splitlines(), {}, [], [], [], None
-    named = False
+    lines, header, rows, places, events, cut, named = text.splitlines(), {}, [], [], [], None, False
     for number, line in enumerate(lines, 1):
         place = f"{path}, line {number}"
         bare = line.strip(', "\t')  # without what spreadsheets pad and quote it with
@@ -104,11 +103,11 @@ def read(path):
                 raise RecordingError(f"{place}: {bare[:60]!r} where the columns of a recording stand; {_FOREIGN}")
         elif bare:  # else an empty line of a spreadsheet
             rows.append(_read_row(line, place))
-            numbers.append(number)
+            places.append(place)
     if not named:
         raise RecordingError(f"{path} ends before its first sample: the run was stopped as it began; record again")
     table = np.array(rows).reshape(-1, len(COLUMNS))
-    _check(table, numbers, path)
+    check(table, places)
     return {key: value for key, value in header.items() if key not in (FORMAT, "units")}, table, tuple(events), cut
 
 
@@ -128,9 +127,9 @@ def _number(cell, place):
         raise RecordingError(f"{place}: {cell.strip()!r} is no number; repair or delete that line") from None
 
 
-def _check(table, numbers, name):
-    """Raise RecordingError for the first line whose values cannot be."""
-    t, repair = table[:, T], "; repair or delete that line"
+def check(table, places):
+    """Raise RecordingError for the first row (n, 15) whose values cannot be. places: what to call each row."""
+    t, repair = table[:, T], "; repair or delete it"
     late = np.append(False, t[1:] <= t[:-1])[:, np.newaxis]
     for columns, bad, why in (
         (slice(0, Q.stop), ~np.isfinite(table[:, : Q.stop]), "t or an angle is missing or not finite ({:g})" + repair),
@@ -142,4 +141,4 @@ def _check(table, numbers, name):
     ):
         if bad.any():
             row, column = np.argwhere(bad)[0]
-            raise RecordingError(f"{name}, line {numbers[row]}: {why.format(table[row, columns][column])}")
+            raise RecordingError(f"{places[row]}: {why.format(table[row, columns][column])}")

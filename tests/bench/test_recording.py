@@ -245,6 +245,20 @@ def test_arrays_that_do_not_fit_are_refused():
         Recording.from_arrays(np.arange(3), np.zeros((4, 3)))
 
 
+@pytest.mark.parametrize(
+    ("t", "q", "u", "words"),
+    [
+        ([0, 1], [[0, 0, 0], [0, 31, 0]], 0, "sample 1: an angle of 31 rad; angles are in rad, were they degrees"),
+        ([0, 1], [[0, np.nan, 0], [0, 0, 0]], 0, "sample 0: t or an angle is missing"),
+        ([1, 0], np.zeros((2, 3)), 0, "sample 1: t = 0 s is not later"),
+        ([0, 1], np.zeros((2, 3)), 300, "sample 0: u = 300; PWM counts"),
+    ],
+)
+def test_arrays_that_cannot_be_are_refused(t, q, u, words):
+    with pytest.raises(RecordingError, match=words):
+        Recording.from_arrays(t, q, u=u)
+
+
 WRONG = [
     (ours(f"0.00,{ROW}", "0.01,0.5,0.2", f"0.02,{ROW}"), r"line 5: 3 values for 15 columns .*delete that line"),
     (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "6o0"), f"0.02,{ROW}"), r"line 5: '6o0' is no number"),
