@@ -158,10 +158,8 @@ class FilterView:
         found = self._low_pass(cutoff)
         self._line.set_data(self._t, filtered)
         self._ring.set_data([1e3 * found.lag], [found.noise])
-        late = 1e3 * low_pass_lag(cutoff, self._rate)
-        return (
-            f"angle: {late:.0f} ms late; velocity: {1e3 * found.lag:.0f} ms late, {found.noise:.3f} rad/s rms at rest"
-        )
+        late, lag = 1e3 * low_pass_lag(cutoff, self._rate), 1e3 * found.lag
+        return f"angle: {late:.0f} ms late; velocity: {lag:.0f} ms late, {found.noise:.3f} rad/s rms at rest"
 
 
 def one_joint(seconds, *, target, title):

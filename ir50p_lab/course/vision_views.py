@@ -112,7 +112,8 @@ class MaskView:
         ax.set_position([0, 0, 1, height / (height + 26)])
         ax.set_axis_off()
         self._shown = ax.imshow(self._both, interpolation="nearest", aspect="auto")
-        ax.set_title(f"The picture ({STAMP}), and white what lies in the ranges", fontsize=10)
+        # a title of the axes lies above the picture and would be drawn anew with it
+        self.figure.suptitle(f"The picture ({STAMP}), and white what lies in the ranges", fontsize=10, y=0.99)
 
     def update(self, mask):
         """Show a mask (h, w) uint8 of 0 and 255, and say how much of the picture it is."""

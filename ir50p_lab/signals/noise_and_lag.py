@@ -43,8 +43,8 @@ def noise_and_lag(qd, truth, rate_hz, *, rest, motion):
                 f"{name} holds {len(qd[where])} samples and truth {truth.shape}: give 10 or more, and (n,)"
             )
     cutoff_hz = min(2.0, rate_hz / 10)  # the motion is slow; noise above would hide where the two are most alike
-    slow = (low_pass(signal, cutoff_hz, rate_hz, order=2, kind="zero-phase")[motion] for signal in (truth, qd))
-    return NoiseAndLag(float(np.std(qd[rest])), measured_lag(*slow, rate_hz, max_lag=0.5))
+    slow = low_pass(np.column_stack([truth, qd]), cutoff_hz, rate_hz, order=2, kind="zero-phase")[motion]
+    return NoiseAndLag(float(np.std(qd[rest])), measured_lag(*slow.T, rate_hz, max_lag=0.5))
 
 
 def measured_lag(x, y, rate_hz, *, max_lag=1.0):
@@ -70,7 +70,7 @@ def measured_lag(x, y, rate_hz, *, max_lag=1.0):
         raise InputError(f"{len(x)} samples cannot be shifted: give at least 4, and a max_lag of a sample or more")
     shifts = np.arange(-most, most + 1)
     x, y = x - x.mean(), y - y.mean()
-    likeness = np.array([_likeness(x, y, k) for k in shifts])
+    likeness = _likeness(x, y, shifts)
     best = int(likeness.argmax())
     if best in (0, len(shifts) - 1):
         shift = f"{shifts[best] / rate_hz:.3g} s"  # a steady ramp fits at any shift
@@ -80,12 +80,20 @@ def measured_lag(x, y, rate_hz, *, max_lag=1.0):
     return float((shifts[best] + (0.5 * (left - right) / bend if bend < 0 else 0.0)) / rate_hz)
 
 
-def _likeness(x, y, k):
-    """Correlation coefficient of y, k samples later, with x over their common stretch; -1 where one stands still."""
-    length = len(x) - abs(k)
-    energies = x @ x, y @ y
-    x, y = x[max(0, -k) :][:length], y[max(0, k) :][:length]
-    x, y = x - x.mean(), y - y.mean()
-    if x @ x <= 1e-12 * energies[0] or y @ y <= 1e-12 * energies[1]:
-        return -1.0
-    return x @ y / math.sqrt((x @ x) * (y @ y))
+def _likeness(x, y, shifts):
+    """Correlation coefficients (k,) of y, `shifts` samples later, with x over their common stretch; -1 if one rests."""
+    early, late = np.maximum(0, -shifts), np.maximum(0, shifts)
+    in_x, in_y = (early, len(x) - late), (late, len(x) - early)
+    length = len(x) - early - late
+    sum_x, sum_y = _sums(x, *in_x), _sums(y, *in_y)
+    energy_x = _sums(x * x, *in_x) - sum_x**2 / length
+    energy_y = _sums(y * y, *in_y) - sum_y**2 / length
+    common = np.correlate(y, x, "full")[len(x) - 1 + shifts] - sum_x * sum_y / length
+    moves = (energy_x > 1e-12 * (x @ x)) & (energy_y > 1e-12 * (y @ y))
+    return np.where(moves, common / np.sqrt(np.where(moves, energy_x * energy_y, 1.0)), -1.0)
+
+
+def _sums(x, start, stop):
+    """Sums of x[start:stop] for each start and stop."""
+    total = np.concatenate([[0.0], np.cumsum(x)])
+    return total[stop] - total[start]
