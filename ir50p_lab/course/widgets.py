@@ -151,11 +151,11 @@ class LivePanel(widgets.VBox):
 
     def _show(self):
         if self._painter is None:
-            for ax in self.figure.axes:  # words below what moves: above it they are drawn each time
+            for ax in self.figure.axes:  # what stands still, below what moves: above it, it is drawn each time
                 for words in (ax.title, *ax.texts):
                     words.set_zorder(min(words.get_zorder(), 1.9))  # lines: 2, a grid at most 1.5
-                if ax.get_legend() is not None:
-                    ax.get_legend().set_zorder(1.8)  # below a title that changes
+                for frame in filter(None, (ax.get_legend(), *ax.spines.values())):
+                    frame.set_zorder(min(frame.get_zorder(), 1.8))  # below a title that changes
             self._painter = Painter(self.figure)
         self.image.value = self._painter.png()
         time.sleep(0.001)  # the thread that sends it takes its turn now, not after Python's usual 5 ms
