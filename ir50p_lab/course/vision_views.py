@@ -99,26 +99,23 @@ def ball_hues_figure(image, ball):
 
 
 class MaskView:
-    """A picture beside its mask, for sliders: `update(mask)`. Attribute figure, for `live`.
-
-    One artist, pixel for pixel, holds both: that is what keeps a slider step short.
-    """
+    """A picture beside its mask, pixel for pixel, for sliders: `update(mask)`. Attribute figure, for `live`."""
 
     def __init__(self, image):
         height, width = image.shape[:2]
-        self._both = np.concatenate([image, np.zeros_like(image)], axis=1)
-        self.figure, ax = subplots(2 * width / 100, (height + 26) / 100)
+        self.figure, left, right = subplots(2 * width / 100, (height + 26) / 100, cols=2)
         self.figure.set_layout_engine("none")
-        ax.set_position([0, 0, 1, height / (height + 26)])
-        ax.set_axis_off()
-        self._shown = ax.imshow(self._both, interpolation="nearest", aspect="auto")
+        for ax, x in ((left, 0), (right, 0.5)):
+            ax.set_position([x, 0, 0.5, height / (height + 26)])
+            ax.set_axis_off()
+        left.imshow(image, interpolation="nearest", aspect="auto")
+        self._mask = right.imshow(np.zeros_like(image), interpolation="nearest", aspect="auto")
         # a title of the axes lies above the picture and would be drawn anew with it
         self.figure.suptitle(f"The picture ({STAMP}), and white what lies in the ranges", fontsize=10, y=0.99)
 
     def update(self, mask):
         """Show a mask (h, w) uint8 of 0 and 255, and say how much of the picture it is."""
-        self._both[:, mask.shape[1] :] = mask[:, :, None]
-        self._shown.set_data(self._both)
+        self._mask.set_data(np.repeat(mask[:, :, None], 3, axis=2))
         return f"{np.count_nonzero(mask) / mask.size:.2%} of the picture"
 
 
