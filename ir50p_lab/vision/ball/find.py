@@ -8,6 +8,7 @@ from numba.core import event
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import number
+from ir50p_lab.jit import jit
 from ir50p_lab.vision.ball.classifier import score
 from ir50p_lab.vision.ball.colour import RED, Colour
 from ir50p_lab.vision.ball.evidence import objection
@@ -19,7 +20,8 @@ from ir50p_lab.vision.checks import check_picture_size
 from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import as_pinhole
 
-_TRIED, _TRIED_CLOSER = 14, 10  # guesses measured; the closer look is only for pictures that show no ball so far
+# Guesses of which the colour is looked at, and of these measured; the closer look is for pictures that show no ball yet
+_FIRST, _CLOSER = (14, 10), (40, 3)
 
 _LEAST_ODDS = 1.8  # log odds that a ball needs: well above 0, as a false alarm is worse than a miss
 _SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more
@@ -35,8 +37,8 @@ _REDS = 20  # degrees from red, 0, of the hues that skin and brown are mistaken 
 _GLARE = 0.95  # value from which on a disc is overexposed, and its paint is not to be told
 _SKIN, _BROWN = (5.0, 0.5), (8.0, 0.72, 0.45)  # degrees towards orange; then least saturation, value
 # Of a guess, which may be off, and its ball in glare or hidden by a thing of nearly its hue: part of the disc that must
-# have the colour; by how much less its hue is off than noise makes of it; what its paint may be off
-_LEAST_ALIKE, _NOISE, _DOUBT = 0.15, 0.1, (-1.0, 0.01, 0.02)
+# have the colour; by how much less its hue is off than noise makes of it, degrees; what its paint may be off
+_LEAST_ALIKE, _NOISE, _DOUBT = 0.15, 2.0, (-1.0, 0.01, 0.02)
 _ENOUGH = 0.1  # of the disc that is not overexposed: less tells nothing of the hue
 
 
@@ -120,16 +122,16 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         check_picture_size(camera, image.shape[1::-1])
     view = view_of(image.shape, camera)
     measured, rejected, outlines = [], [], []
-    for guess, most in ((guess_circles, _TRIED), (guess_closer, _TRIED_CLOSER)):
+    for guess, (looks, most) in ((guess_circles, _FIRST), (guess_closer, _CLOSER)):
         tries = 0
-        for x, y, r, _ in guess(image, colour, least_radius).tolist():
+        for x, y, r, _ in guess(image, colour, least_radius)[:looks].tolist():
             if any(np.hypot(x - o.x, y - o.y) + abs(r - o.r) < 0.3 * r for o in outlines):
                 continue  # an earlier guess led to the same outline
             if tries == most:
                 break
-            tries += 1
             try:
                 _check_colour(image, (x, y, r), colour)
+                tries += 1
                 found = measure(image, (x, y, r), view, colour, camera, least_radius)
             except NoBallError as why:
                 rejected.append(((x, y, r), str(why)))
@@ -226,11 +228,18 @@ def _check_colour(image, guess, colour):
     alike = colour.loose_mask(hsv) > 0
     if alike.mean() < _LEAST_ALIKE:
         raise NoBallError(f"hollow, or another colour: {alike.mean():.0%} of the disc have the colour")
-    hue = np.abs((2.0 * hsv[:, :, 0] - colour.centre + 180) % 360 - 180) / colour.tolerance
-    clear, purest = hue[hsv[:, :, 2] < 255 * _GLARE], np.sort(hue, axis=None)[int(_LEAST_ALIKE * hue.size)]
-    hue = min(median(clear), purest + _NOISE) if clear.size > _ENOUGH * hue.size else 0.0
-    if why := _other_colour(hue, np.add(paint_of(hsv[alike], colour), _DOUBT), colour):
+    paint = np.add(paint_of(hsv[alike], colour.centre, colour.swaps), _DOUBT)
+    if why := _other_colour(_hue_of_disc(hsv, colour.centre) / colour.tolerance, paint, colour):
         raise NoBallError(why)
+
+
+@jit()
+def _hue_of_disc(hsv, centre):
+    """Distance of a disc's hue (h, w, 3) from a colour's, degrees: the least that noise and glare leave of it."""
+    hue = np.abs((2.0 * hsv[:, :, 0] - centre + 180) % 360 - 180).ravel()
+    clear = hue[hsv[:, :, 2].ravel() < 255 * _GLARE]
+    purest = np.sort(hue)[int(_LEAST_ALIKE * hue.size)]
+    return min(np.median(clear), purest + _NOISE) if clear.size > _ENOUGH * hue.size else 0.0
 
 
 def _other_colour(hue, paint, colour):

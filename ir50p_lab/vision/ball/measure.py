@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.jit import jit
 from ir50p_lab.vision.ball.edge import cast, contrast_axis, directions, find_edges, slope_kernel
 from ir50p_lab.vision.ball.features import RAYS, look, median
 from ir50p_lab.vision.ball.fit import Outline, fit_outline
@@ -149,7 +150,7 @@ def _fine(image, outline, unit, view, colour, camera):
         through=_shown_through(rgb, on, missing & ~beyond, inside),
         gaps=_gaps(missing),
         step=float(np.median(height[on])),
-        paint=paint_of(hsv[inside], colour),
+        paint=paint_of(hsv[inside], colour.centre, colour.swaps),
         samples=look(image, outline, weights, middle, colour),
         edges=_along(on, off / (0.3 + 0.01 * outline.r), height, beyond),
         **dict(zip(("bumps", "oval", "ragged"), _waves(off[on], unit[0][on], unit[1][on], outline.r), strict=True)),
@@ -229,15 +230,12 @@ def _colours(image, outline, colour, unit):
     return inside, alike[:, 12:], rgb, hsv[:, :12]
 
 
-def paint_of(hsv, colour):
+@jit()
+def paint_of(hsv, centre, swaps):
     """Of HSV samples (n, 3) of the disc: hue from the colour's towards orange, degrees; saturation; value, 0..1.
 
-    The value is that of the lighter part: a ball has one, what is nearly black has none.
+    The value is that of the lighter part: a ball has one, what is nearly black has none. centre, swaps: of the Colour.
     """
-    hsv = hsv.astype(float)
-    off = (2.0 * hsv[:, 0] - colour.centre + 180) % 360 - 180
-    return (
-        float(median(-off if colour.swaps else off)),
-        float(median(hsv[:, 1])) / 255,
-        float(np.sort(hsv[:, 2])[int(0.9 * len(hsv))]) / 255,
-    )
+    off = (2.0 * hsv[:, 0] - centre + 180) % 360 - 180
+    warm = np.median(-off if swaps else off)
+    return warm, np.median(hsv[:, 1]) / 255, np.sort(hsv[:, 2])[int(0.9 * len(hsv))] / 255

@@ -9,9 +9,10 @@ from ir50p_lab.jit import jit
 from ir50p_lab.vision.ball.fit import fit_circle
 
 STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
-_LARGEST = 10  # regions looked at in each mask
+_LARGEST, _LARGEST_CLOSER = 10, 5  # regions looked at in each mask
 _ROUND = 0.07  # rms over radius of an outline that is a circle as a whole
 _MARGIN = 16  # pixels around what has the colour
+_SMALL = 40_000  # pixels of a part that is searched at full size, too
 _CIRCLES = 4  # of one outline: balls that touch share one
 
 
@@ -23,16 +24,16 @@ def guess_circles(image, colour, least_radius):
     small = _smaller(image, _shrink(image))
     hsv = colour.hsv_of(small)
     masks = [_opened(cv2.inRange(hsv, *colour.bounds(s))) for s in STRICTNESS]
-    circles = _circles_of(masks, least_radius / _shrink(image))
+    circles = _circles_of(masks, least_radius / _shrink(image), _LARGEST)
     return _different(_unscaled(circles, image, small))
 
 
 def guess_closer(image, colour, least_radius):
-    """Further guesses, as `guess_circles`, where those led to no ball: smoothed at three scales, in a looser colour.
+    """Further guesses, as `guess_circles`, where those led to no ball: smoothed at two or three scales, looser colour.
 
-    Noise breaks up the colour of a dark ball, highlights and glare punch holes; a ball of ten pixels is lost in the
-    halved picture; one before a thing of nearly its colour shows only when the two are told apart. Searched is the part
-    of the picture that has pixels of the colour.
+    Noise breaks up the colour of a dark ball, highlights and glare punch holes; one before a thing of nearly its colour
+    shows only when the two are told apart. Searched is the part of the picture that has pixels of the colour, at full
+    size only if it is small: noise in a large one looks round in places, and to search it takes ten times as long.
     """
     shrink, loose = _shrink(image), colour.looser
     left, above, width, height = cv2.boundingRect(colour.loose_mask(colour.hsv_of(_smaller(image, shrink))))
@@ -40,15 +41,16 @@ def guess_closer(image, colour, least_radius):
         return np.empty((0, 4))
     x, y = corner = [max(shrink * one - _MARGIN, 0) // 4 * 4 for one in (left, above)]
     part = image[y : shrink * (above + height) + _MARGIN, x : shrink * (left + width) + _MARGIN]
-    found = [np.empty((0, 4))]
-    for scale, sigma in ((1, 1.2), (shrink, 1.5), (2 * shrink, 1.2)):
+    found, scales = [np.empty((0, 4))], ((shrink, 1.5), (2 * shrink, 1.2), (1, 1.2))
+    for scale, sigma in scales[: 3 if part.shape[0] * part.shape[1] < _SMALL else 2]:
         small = cv2.GaussianBlur(_smaller(part, scale), (0, 0), sigma)
         hsv = colour.hsv_of(small)
         mask, strict = colour.loose_mask(hsv), cv2.inRange(hsv, *loose.bounds(STRICTNESS[1]))
         if mask.any():
-            circles = _circles_of([_closed(mask), _closed(strict), *_halves(hsv, mask)], least_radius / scale)
+            masks = [_closed(mask), _closed(strict), *_halves(hsv, mask)]
+            circles = _circles_of(masks, least_radius / scale, _LARGEST_CLOSER)
             found.append(_unscaled(circles, part, small) + np.array([*corner, 0, 0]))
-    return _different(np.concatenate(found))
+    return _different(np.concatenate(found), agreement=1)
 
 
 def _shrink(image):
@@ -69,16 +71,16 @@ def _unscaled(circles, image, small):
     return np.column_stack([(x + 0.5) * sx - 0.5, (y + 0.5) * sy - 0.5, (r + 0.5) * (sx + sy) / 2, share])
 
 
-def _circles_of(found_in, least_radius):
-    """Circles (n, 4) in the outlines of masks."""
+def _circles_of(found_in, least_radius, most):
+    """Circles (n, 4) in the outlines of masks, of each the `most` longest."""
     least = max(1.5, 0.7 * least_radius)
-    found = []
+    found = [np.empty((0, 4))]
     for mask in found_in:
         contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
         large = [c[:, 0] for c in contours if len(c) >= max(8, 4 * least)]
-        for contour in sorted(large, key=len, reverse=True)[:_LARGEST]:
-            found += circles_in(contour.astype(float), mask.shape, least)
-    return np.array(found).reshape(-1, 4)
+        longest = sorted(large, key=len, reverse=True)[:most]
+        found += [circles_in(contour.astype(float), mask.shape, least) for contour in longest]
+    return np.concatenate(found)
 
 
 def _opened(mask):
@@ -100,26 +102,22 @@ def _halves(hsv, mask):
     return found
 
 
+@jit()
 def circles_in(points, shape, least_radius):
-    """Circles (x, y, r, share) in a closed outline (n, 2), best first, in its own pixels.
+    """Circles (k, 4), x, y, r, share, in a closed outline (n, 2), best first, in its own pixels.
 
-    Three points some way apart on the outline make a circle; the one with most of its length along the outline wins,
-    its points go, and the search goes on with the rest.
+    One through all points, if it fits. Else three points some way apart on the outline make a circle; the one with most
+    of its length along the outline wins, its points go, and the search goes on with the rest.
     """
     n = len(points)
     m = min(n, 48 + n // 4, 160)
     p = points[(np.arange(m) * n) // m]
-    # the outline runs around its region: where it bends the other way the circle is a bay, not a ball
-    turn = 1 if cv2.contourArea(p.astype(np.float32), True) < 0 else -1
-    apart = np.array(sorted({max(2, m // k) for k in (16, 9, 5, 3)} | ({4, 8, 16, 32} if m > 100 else set())))
-    return _circles(p, shape, apart, n / m, least_radius, turn).tolist()
-
-
-@jit()
-def _circles(p, shape, apart, step, least_radius, turn):
-    """Circles (k, 4) in the points p (m, 2), every `step`th of an outline: one through all, or those of `_vote`."""
-    height, width = shape
     px, py = p[:, 0].copy(), p[:, 1].copy()
+    # the outline runs around its region: where it bends the other way the circle is a bay, not a ball
+    turn = 1 if np.sum(px * np.roll(py, -1) - np.roll(px, -1) * py) < 0 else -1
+    apart = np.maximum(2, m // np.array([16, 9, 5, 3]))
+    apart = np.unique(np.append(apart, [4, 8, 16, 32]) if m > 100 else apart)
+    height, width = shape
     # the border of the picture is no outline
     usable = (px > 0.5) & (px < width - 1.5) & (py > 0.5) & (py < height - 1.5)
     found = np.empty((_CIRCLES, 4))
@@ -132,7 +130,7 @@ def _circles(p, shape, apart, step, least_radius, turn):
         found[0] = x, y, r, 1.0
         return found[:1]
     for k in range(_CIRCLES):
-        x, y, r, share = _vote(p, usable, apart, step, least_radius, 0.75 * max(height, width), turn)
+        x, y, r, share = _vote(p, usable, apart, n / m, least_radius, 0.75 * max(height, width), turn)
         if share < 0.22:
             return found[:k]
         off = np.abs(np.hypot(px - x, py - y) - r)
@@ -186,12 +184,16 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
     return bx, by, br, bs
 
 
-def _different(circles):
-    """The circles, those with the largest share of a large circle first, but for those that another already tells."""
-    order = np.argsort(-circles[:, 3] * np.minimum(circles[:, 2], 20) ** 0.5, kind="stable")
-    x, y, r, _ = circles[order].T[:, :, None]
-    alike = np.hypot(x - x.T, y - y.T) + np.abs(r - r.T) <= 0.25 * np.maximum(r, r.T)
-    new = np.zeros(len(circles), bool)
+def _different(circles, agreement=0):
+    """The circles but for those that a better one already tells.
+
+    Better is a large share of a large circle; with agreement=1 one that many others are like: clutter looks round in
+    one mask, a ball in most of them.
+    """
+    x, y, r, share = circles.T
+    alike = np.hypot(x - x[:, None], y - y[:, None]) + np.abs(r - r[:, None]) <= 0.25 * np.maximum(r, r[:, None])
+    order = np.argsort(-share * np.minimum(r, 20) ** 0.5 * alike.sum(axis=1) ** agreement, kind="stable")
+    alike, new = alike[np.ix_(order, order)], np.zeros(len(circles), bool)
     for i, others in enumerate(alike):
         new[i] = not (others & new).any()
     return circles[order][new]

@@ -30,7 +30,7 @@ class Webcam(Camera):
 
         self.name, self._index = f"webcam {index}", index
         with captured():
-            self._capture = _capture(index)
+            self._capture = cv2.VideoCapture(index)
         if not self._capture.isOpened():
             raise CameraError(
                 f"there is no webcam {index}, or it is in use: plug it in, close the program that has it, or "
@@ -88,9 +88,3 @@ class Webcam(Camera):
 def webcam_present():
     """Whether it is worth asking OpenCV for a webcam: on Linux that is known without opening anything."""
     return os.name != "posix" or not os.path.isdir("/sys/class") or any(Path("/dev").glob("video*"))
-
-
-def _capture(index):
-    import cv2
-
-    return cv2.VideoCapture(index)

@@ -117,7 +117,8 @@ def plan(arm, q, p, *, lift=LIFT):
             above = reach_pose(arm, p + np.array([0.0, 0.0, share * lift]), goal)
             way = [*_clear(arm, q, above, CLEAR), goal]
             break
-    pieces = through(way, durations=[_time(a, b) for a, b in pairwise(way)])
+    durations = [max(0.3, _PEAK * float(np.abs(b - a).max()) / _SPEED) for a, b in pairwise(way)]
+    pieces = through(way, durations=durations)
     return Plan(pieces.times, pieces.points, pieces.duration, arm)
 
 
@@ -152,10 +153,6 @@ def _clear(arm, q, goal, clear):
         return [q, goal]
     high = rest_pose(arm)
     return [q, np.array([q[0], high[1], q[2]]), np.array([goal[0], high[1], goal[2]]), goal]
-
-
-def _time(a, b):
-    return max(0.3, _PEAK * float(np.abs(b - a).max()) / _SPEED)
 
 
 def _lowest(arm, q):
