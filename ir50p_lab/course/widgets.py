@@ -152,7 +152,8 @@ class LivePanel(widgets.VBox):
     def _show(self):
         if self._painter is None:
             for ax in self.figure.axes:  # what stands still, below what moves: above it, it is drawn each time
-                for words in (ax.title, *ax.texts):
+                labels = () if hasattr(ax, "get_proj") else ax.texts  # in space they stand before what is behind them
+                for words in (ax.title, *labels):
                     words.set_zorder(min(words.get_zorder(), 1.9))  # lines: 2, a grid at most 1.5
                 for frame in filter(None, (ax.get_legend(), *ax.spines.values())):
                     frame.set_zorder(min(frame.get_zorder(), 1.8))  # below a title that changes

@@ -38,10 +38,8 @@ def noise_and_lag(qd, truth, rate_hz, *, rest, motion):
     """
     qd, truth = np.asarray(qd, dtype=float), np.asarray(truth, dtype=float)
     for name, where in (("rest", rest), ("motion", motion)):
-        if truth.shape != qd.shape or len(qd[where]) < 10:
-            raise InputError(
-                f"{name} holds {len(qd[where])} samples and truth {truth.shape}: give 10 or more, and (n,)"
-            )
+        if qd.ndim != 1 or truth.shape != qd.shape or len(qd[where]) < 10:
+            raise InputError(f"{name}: {len(qd[where])} samples, truth {truth.shape}: give 10 or more, and (n,)")
     cutoff_hz = min(2.0, rate_hz / 10)  # the motion is slow; noise above would hide where the two are most alike
     slow = low_pass(np.column_stack([truth, qd]), cutoff_hz, rate_hz, order=2, kind="zero-phase")[motion]
     return NoiseAndLag(float(np.std(qd[rest])), measured_lag(*slow.T, rate_hz, max_lag=0.5))
@@ -81,19 +79,17 @@ def measured_lag(x, y, rate_hz, *, max_lag=1.0):
 
 
 def _likeness(x, y, shifts):
-    """Correlation coefficients (k,) of y, `shifts` samples later, with x over their common stretch; -1 if one rests."""
-    early, late = np.maximum(0, -shifts), np.maximum(0, shifts)
-    in_x, in_y = (early, len(x) - late), (late, len(x) - early)
-    length = len(x) - early - late
-    sum_x, sum_y = _sums(x, *in_x), _sums(y, *in_y)
-    energy_x = _sums(x * x, *in_x) - sum_x**2 / length
-    energy_y = _sums(y * y, *in_y) - sum_y**2 / length
-    common = np.correlate(y, x, "full")[len(x) - 1 + shifts] - sum_x * sum_y / length
+    """Correlation coefficients of x and y, `shifts` (-n..n) samples later, where they overlap; -1 if one rests."""
+    length = len(x) - np.abs(shifts)
+    sum_x, energy_x = _moments(x, np.maximum(0, -shifts), length)
+    sum_y, energy_y = _moments(y, np.maximum(0, shifts), length)
+    common = np.correlate(np.pad(y, shifts[-1]), x, "valid") - sum_x * sum_y / length
     moves = (energy_x > 1e-12 * (x @ x)) & (energy_y > 1e-12 * (y @ y))
     return np.where(moves, common / np.sqrt(np.where(moves, energy_x * energy_y, 1.0)), -1.0)
 
 
-def _sums(x, start, stop):
-    """Sums of x[start:stop] for each start and stop."""
-    total = np.concatenate([[0.0], np.cumsum(x)])
-    return total[stop] - total[start]
+def _moments(x, start, length):
+    """Sum, and energy about the mean, of x[start : start + length] for each start and length."""
+    totals = (np.concatenate([[0.0], np.cumsum(one)]) for one in (x, x * x))
+    total, square = (one[start + length] - one[start] for one in totals)
+    return total, square - total**2 / length

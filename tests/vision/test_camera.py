@@ -49,14 +49,14 @@ class FakeCapture:
 
 @pytest.fixture(autouse=True)
 def _no_webcam(monkeypatch):
-    monkeypatch.setattr(webcam, "_capture", lambda index: FakeCapture(opened=False))
+    monkeypatch.setattr(cv2, "VideoCapture", lambda index: FakeCapture(opened=False))
     monkeypatch.setattr(webcam, "webcam_present", lambda: False)
     monkeypatch.delenv(webcam.VARIABLE, raising=False)
 
 
 def plugged_in(monkeypatch, capture):
     """The webcam that this is."""
-    monkeypatch.setattr(webcam, "_capture", lambda index: capture)
+    monkeypatch.setattr(cv2, "VideoCapture", lambda index: capture)
     return Webcam(0)
 
 
@@ -78,7 +78,7 @@ def test_without_a_webcam_the_bench_is_rendered_and_says_so(capsys):
 
 def test_a_webcam_that_answers_is_taken(monkeypatch, capsys):
     monkeypatch.setattr(webcam, "webcam_present", lambda: True)
-    monkeypatch.setattr(webcam, "_capture", lambda index: FakeCapture())
+    monkeypatch.setattr(cv2, "VideoCapture", lambda index: FakeCapture())
     with open_camera() as found:
         frame = found.read()
     assert isinstance(found, Webcam) and not frame.simulated and frame.source == "webcam 0"
@@ -90,7 +90,7 @@ def test_a_webcam_that_answers_is_taken(monkeypatch, capsys):
 def test_a_webcam_that_does_not_answer_gives_way(monkeypatch, capsys):
     monkeypatch.setattr(webcam, "webcam_present", lambda: True)
     for capture, why in ((FakeCapture(opened=False), "no webcam 0"), (FakeCapture(channels=1), "one channel")):
-        monkeypatch.setattr(webcam, "_capture", lambda index, it=capture: it)
+        monkeypatch.setattr(cv2, "VideoCapture", lambda index, it=capture: it)
         with open_camera() as found:
             assert isinstance(found, RenderedCamera)
         assert why in capsys.readouterr().out

@@ -52,7 +52,7 @@ class Colour:
     @property
     def centre(self):
         """The hue in pictures of `hsv_of`, degrees."""
-        return (240.0 - self.hue) % 360.0 if self.swaps else self.hue
+        return float((240.0 - self.hue) % 360.0 if self.swaps else self.hue)
 
     def bounds(self, saturation=None):
         """Lower and upper bound for cv2.inRange, in OpenCV's scale (0..179, 0..255, 0..255), of `hsv_of(image)`.

@@ -21,7 +21,7 @@ from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import as_pinhole
 
 # Guesses of which the colour is looked at, and of these measured; the closer look is for pictures that show no ball yet
-_FIRST, _CLOSER = (14, 10), (40, 3)
+_FIRST, _CLOSER = (14, 14), (40, 3)
 
 _LEAST_ODDS = 1.8  # log odds that a ball needs: well above 0, as a false alarm is worse than a miss
 _SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more

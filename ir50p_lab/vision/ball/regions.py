@@ -32,8 +32,9 @@ def guess_closer(image, colour, least_radius):
     """Further guesses, as `guess_circles`, where those led to no ball: smoothed at two or three scales, looser colour.
 
     Noise breaks up the colour of a dark ball, highlights and glare punch holes; one before a thing of nearly its colour
-    shows only when the two are told apart. Searched is the part of the picture that has pixels of the colour, at full
-    size only if it is small: noise in a large one looks round in places, and to search it takes ten times as long.
+    shows only when the two are told apart. Searched is the part of the picture that has pixels of the colour; a large
+    part of a large picture is not searched at full size: its noise looks round in places, and it takes ten times as
+    long.
     """
     shrink, loose = _shrink(image), colour.looser
     left, above, width, height = cv2.boundingRect(colour.loose_mask(colour.hsv_of(_smaller(image, shrink))))
