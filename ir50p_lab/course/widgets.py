@@ -77,8 +77,7 @@ class LivePanel(widgets.VBox):
             raise self.error  # in the cell, where it belongs
         reset = widgets.Button(description="Reset", layout={"width": "80px"})
         reset.on_click(lambda _: self.reset())
-        columns = 1 if len(rows) <= 3 else 2
-        grid = {"grid_template_columns": "max-content " * columns, "grid_gap": "0 24px"}
+        grid = {"grid_template_columns": "max-content " * (1 if len(rows) <= 3 else 2), "grid_gap": "0 24px"}
         super().__init__([widgets.GridBox([*rows, reset], layout=grid), self.image, self.status])
         self.image.observe(self._sharpen, "ratio")
         self._close_those_of_earlier_runs()
@@ -152,8 +151,7 @@ class LivePanel(widgets.VBox):
     def _show(self):
         if self._painter is None:
             for ax in self.figure.axes:  # what stands still, below what moves: above it, it is drawn each time
-                labels = () if hasattr(ax, "get_proj") else ax.texts  # in space they stand before what is behind them
-                for words in (ax.title, *labels):
+                for words in (ax.title, *(() if hasattr(ax, "get_proj") else ax.texts)):  # in space depth decides
                     words.set_zorder(min(words.get_zorder(), 1.9))  # lines: 2, a grid at most 1.5
                 for frame in filter(None, (ax.get_legend(), *ax.spines.values())):
                     frame.set_zorder(min(frame.get_zorder(), 1.8))  # below a title that changes
@@ -163,8 +161,7 @@ class LivePanel(widgets.VBox):
 
     def _repr_mimebundle_(self, **kwargs):
         """The widget, and the picture of this moment for viewers without widgets (an exported page)."""
-        picture = base64.b64encode(self.image.value).decode("ascii")
-        return super()._repr_mimebundle_(**kwargs) | {"image/png": picture}
+        return super()._repr_mimebundle_(**kwargs) | {"image/png": base64.b64encode(self.image.value).decode("ascii")}
 
     def _close_those_of_earlier_runs(self):
         """A cell that is run again replaces its panels; the old ones would keep their figures for ever."""
