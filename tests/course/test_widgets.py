@@ -214,17 +214,27 @@ def test_an_error_in_the_words_is_shown_beside_the_new_picture():
     assert panel.image.value != before
 
 
-def test_title_and_legend_lie_below_what_moves():
+def test_title_legend_label_and_frame_lie_below_what_moves():
     figure = new_figure(3, 2)
     figure.axes[0].set_title("stands still")
+    label = figure.axes[0].text(0.5, 0.5, "stands still, too")
     (line,) = figure.axes[0].plot([0, 1], [0, 1], label="moves")
     legend = figure.axes[0].legend()
     panel = live(figure, lambda height: line.set_ydata([0, height]), height=(0, 10, 1, 1))
     assert legend.get_zorder() > 1.5  # the grid
     panel.set(height=5)
     assert line.get_animated()
-    assert not legend.get_animated()
-    assert not figure.axes[0].title.get_animated()
+    still = (legend, label, figure.axes[0].title, *figure.axes[0].spines.values())
+    assert not any(part.get_animated() for part in still)
+
+
+def test_labels_in_space_stay_before_what_lies_behind_them():
+    figure = new_figure(3, 2, projection="3d")
+    label = figure.axes[0].text(0, 0, 0, "joint 1", zorder=20)
+    (line,) = figure.axes[0].plot([0, 1], [0, 1], [0, 1])
+    panel = live(figure, lambda height: line.set_data_3d([0, 1], [0, 1], [0, height]), height=(0, 10, 1, 1))
+    panel.set(height=5)
+    assert label.get_zorder() == 20
 
 
 def test_the_warning_of_an_unstable_loop_appears_under_the_figure_once():

@@ -126,3 +126,5 @@ def test_bad_records():
         noise_and_lag(still, still, RATE, rest=slice(0, 50), motion=slice(50, 200))
     with pytest.raises(InputError, match="10 or more"):
         noise_and_lag(still, still, RATE, rest=slice(0, 5), motion=slice(50, 200))
+    with pytest.raises(InputError, match=r"\(n,\)"):
+        noise_and_lag(still[:, None], still[:, None], RATE, rest=slice(0, 50), motion=slice(50, 200))

@@ -89,6 +89,16 @@ def test_balls_that_touch():
     np.testing.assert_allclose(found, [200, 260, 320], atol=1.5)
 
 
+def test_twelve_balls_in_touching_pairs():
+    light = empty()
+    places = [(x + side, y) for x in (110, 320, 530) for y in (140, 340) for side in (-24, 24)]
+    for place in places:
+        add_ball(light, F, place, 24)
+    found = find_balls(photograph(light))
+    assert len(found) == 12
+    assert all(min(np.hypot(b.x - x, b.y - y) for b in found) < 2 for x, y in places)
+
+
 @pytest.mark.parametrize("hidden", ["left", "below", "middle"])
 def test_partly_hidden(hidden):
     light = add_ball(empty(), F, (300, 200), 40)
