@@ -1,4 +1,4 @@
-"""Code lines of the package beside the budget of each folder: ``python tests/code_lines.py``.
+"""Code lines of the package beside the budget of each folder: ``python tests/code_lines.py``. Over budget, it fails.
 
 A code line has code on it: blank lines, comments and docstrings do not count. JavaScript counts, what was built from it
 does not.
@@ -7,6 +7,7 @@ does not.
 import ast
 import io
 import re
+import sys
 import tokenize
 from pathlib import Path
 
@@ -27,6 +28,7 @@ BUDGETS = {
     "publishing": 300,
     "root": 120,
 }
+STILL_OVER = {"course": 9985}  # comes down with its notebooks: until then no lines more than these
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,
@@ -68,15 +70,28 @@ def folder_lines(package=PACKAGE):
     return found
 
 
+def too_large(found):
+    """A sentence for each folder of {folder: code lines} that has more of them than it may."""
+    for folder, lines in found.items():
+        budget = BUDGETS.get(folder, 0)  # a new folder needs a budget first
+        allowed = max(budget, STILL_OVER.get(folder, 0))
+        if lines > allowed:
+            yield f"{folder} has {lines} code lines, {lines - allowed} more than the {allowed} it may have: leave some out"
+
+
 def main():
-    """Print the table."""
+    """Print the table; return 1 if a folder is too large, else 0."""
     found = folder_lines()
     print(f"{'folder':<16}{'lines':>7}{'budget':>8}{'over':>7}")
     for folder, lines in found.items():
-        budget = BUDGETS.get(folder, 0)  # a new folder needs a budget first
+        budget = BUDGETS.get(folder, 0)
         print(f"{folder:<16}{lines:>7}{budget:>8}{max(lines - budget, 0) or '':>7}")
     print(f"{'all':<16}{sum(found.values()):>7}{sum(BUDGETS.values()):>8}")
+    sentences = list(too_large(found))
+    for sentence in sentences:
+        print(sentence, file=sys.stderr)
+    return 1 if sentences else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
