@@ -22,11 +22,18 @@ def test_warnings_as_errors_do_not_break_the_setup(project):
 
 
 def test_pip_does_the_work_where_a_setting_has_no_counterpart(project):
-    (project.root / "constraints.txt").write_text("pebble==1.0\n")
-    done = project.run("setup", variables={"PIP_CONSTRAINT": "constraints.txt"})
+    done = project.run("setup", variables={"PIP_EXISTS_ACTION": "i"})
     assert done.returncode == 0, done.stderr
     assert "-m', 'uv'" not in project.log()
     assert project.python(IMPORT_BOTH).returncode == 0
+
+
+@pytest.mark.parametrize(("version", "code"), [("1.0", 0), ("2.0", 1)])
+def test_uv_keeps_to_a_constraint_of_pip(project, version, code):
+    (project.root / "constraints.txt").write_text(f"pebble=={version}\n")
+    done = project.run("setup", variables={"PIP_CONSTRAINT": "constraints.txt"})
+    assert done.returncode == code, done.stderr
+    assert "-m', 'uv'" in project.log()
 
 
 def test_pip_does_the_work_where_no_uv_fits(project, tmp_path):

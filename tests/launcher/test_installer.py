@@ -42,6 +42,7 @@ def test_what_pip_prints_is_translated(tmp_path):
     [
         (":env:.no-index='1'", ["--no-index"], {}),
         (":env:.no-index='false'", [], {}),
+        (":env:.constraint='a.txt b.txt'", ["--constraints=a.txt", "--constraints=b.txt"], {}),
         (":env:.trusted-host='mirror:8080\\nother'", [], {"UV_INSECURE_HOST": "mirror:8080 other"}),
         ("global.no-cache-dir='off'", [], {"UV_NO_CACHE": "off"}),
         (
@@ -61,5 +62,5 @@ def test_settings(line, options, variables):
 
 
 def test_a_setting_without_counterpart():
-    assert for_uv("global.index-url='https://a'\n:env:.constraint='c.txt'") is None
-    assert for_uv(":env:.constraint=''") is not None
+    assert for_uv("global.index-url='https://a'\n:env:.exists-action='i'") is None
+    assert for_uv(":env:.exists-action=''") is not None
