@@ -1,12 +1,14 @@
 """`jit`: numba's njit, with a cache on disk that notices when any compiled file changed.
 
-numba checks only the file of the function itself: machine code that has inlined a function of another, since changed
-file would be used on, silently. Here the folder of the cache is named by a hash of all compiled files.
+numba checks only the file of the function itself: machine code that has inlined a function or a constant of another,
+since changed file would be used on, silently. Here the folder of the cache is named by a hash of all compiled files and
+of those whose names they import.
 """
 
 import functools
 import hashlib
 import os
+import re
 from pathlib import Path
 
 import numba
@@ -20,8 +22,10 @@ def cache_folder():
 
     $NUMBA_CACHE_DIR goes before both.
     """
-    sources = [path.read_bytes() for path in sorted(_PACKAGE.rglob("*.py"))]
-    compiled = b"".join(text for text in sources if b"@jit(" in text or b"@kernel(" in text)
+    sources = {path: path.read_bytes() for path in sorted(_PACKAGE.rglob("*.py"))}
+    compiled = b"".join(text for text in sources.values() if b"@jit(" in text or b"@kernel(" in text)
+    names = set(re.findall(r"^from ir50p_lab\.(\S+) import", compiled.decode(), re.MULTILINE))
+    compiled += b"".join(sources.get(_PACKAGE / f"{name.replace('.', '/')}.py", b"") for name in sorted(names))
     own = _PACKAGE / "__pycache__"
     base = own if os.access(own, os.W_OK) else Path.home() / ".cache"
     return Path(numba.config.CACHE_DIR or base, f"ir50p_lab-{hashlib.sha1(compiled).hexdigest()[:16]}")

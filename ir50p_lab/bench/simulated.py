@@ -5,8 +5,9 @@ from collections import deque, namedtuple
 import numpy as np
 
 from ir50p_lab.bench.arm_instance import UNIT
-from ir50p_lab.bench.base import JOINTS, LIMIT_PWM, Bench, Sample
+from ir50p_lab.bench.base import Bench, Sample
 from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
+from ir50p_lab.bench.protocol import JOINTS, LIMIT_PWM
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.runaway import push, watch_step
 from ir50p_lab.bench.set_point import FARTHEST, NOISE, checked_reference
@@ -161,7 +162,7 @@ class SimulatedBench(Bench):
         self._truth.append((t[:done], rows[:, 9:12], rows[:, 12:15]))
         if done:
             self._last = Sample(float(t[done - 1]), rows[-1, 3:6].copy(), rows[-1, :3].copy(), 0)
-        run.guard.judge(alarm, t[min(done, len(t) - 1)])
+        run.guard.refuse(alarm, t[min(done, len(t) - 1)])
         if done < len(t):
             checked_reference(self.arm, t[done], r[done], out[done, 3:6])
             raise InputError(f"the command at t = {t[done]:.6g} s is not finite (drive cut): reset the controller")

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numba import njit
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.columns import same_samples
 from ir50p_lab.identification.doubts import Doubts, check_outliers
 from ir50p_lab.inputs import number
+from ir50p_lab.jit import jit
 
 _FEWEST = 8  # samples from the first change of u on: twice the number of parameters
 _NOISE = 1e-7  # residuals below this share of the response are rounding, not noise
@@ -29,7 +29,7 @@ _GRID = (0.1, 0.35, 0.8, 2.0)
 _NAMES = ("K", "w", "damping", "L", "zero")
 
 
-@njit(cache=True)
+@jit()
 def respond(t, jump_times, jumps, a, L, out):
     """x' = v(t - L) - a x from x = 0, exactly, with dead time L of any size (no multiple of a period).
 
