@@ -1,7 +1,7 @@
 """`bench.start(controller, reference)`: the loop of the lesson in the background, and the handle of it.
 
 On hardware it has a process of its own: nothing the notebook does can make it late, and it outlives nobody. The child
-is told over a pipe what to run, opens the port itself and answers over another pipe. It cuts the drive when its parent
+gets over a pipe what to run, opens the port itself and answers over another pipe. It cuts the drive when its parent
 dies, however that dies; if the child itself dies, no more frames come and the board cuts after 100 ms.
 """
 
@@ -101,7 +101,7 @@ class LiveRun:
         """cargo: controller and reference, as bytes."""
         self._bench, self._cargo = bench, cargo
         self.error, self.gains = None, gains_of(controller)
-        self._orders, self._told, self._begun = SimpleQueue(), {}, threading.Event()
+        self._orders, self._reports, self._begun = SimpleQueue(), {}, threading.Event()
         self._ring, self._count = np.rec.array(None, names=_NAMES, formats=_FORMATS, shape=_KEPT), 0
         self._thread, self._process = threading.Thread(target=self._work, daemon=True), None
 
@@ -110,7 +110,7 @@ class LiveRun:
         self._thread.start()
         try:
             self._begun.wait(_BEGINS_WITHIN)
-            if "phase" not in self._told:
+            if "phase" not in self._reports:
                 raise self.error or BenchError("the loop in the background does not begin")
         except BaseException:
             self._give_up()
@@ -153,12 +153,11 @@ class LiveRun:
             self._orders.put(None)
             said.seek(max(0, said.seek(0, os.SEEK_END) - 1500))
             words = said.read().decode("utf-8", "replace").strip()
-        if "failed" in self._told:
-            raise pickle.loads(self._told["failed"])
-        if "done" not in self._told:
-            told = "; it said: " * bool(words) + words
+        if "failed" in self._reports:
+            raise pickle.loads(self._reports["failed"])
+        if "done" not in self._reports:
             died = f"the loop's process has died (exit code {code}); a board cuts its drive by itself: connect() again"
-            raise BenchError(died + told)
+            raise BenchError(died + "; it said: " * bool(words) + words)
 
     def _hear(self, name, content):
         """Keep what the loop tells; see `live_loop`."""
@@ -166,7 +165,7 @@ class LiveRun:
             self._ring[self._count % _KEPT] = content
             self._count += 1
             return
-        self._told[name] = content
+        self._reports[name] = content
         if name == "phase":
             self._begun.set()
 
@@ -180,14 +179,14 @@ class LiveRun:
     @property
     def phase(self):
         """What it does: 'starting', 'leading in', 'running', 'moving to the rest pose' or 'ended'."""
-        return self._told.get("phase", STARTING) if self.alive else ENDED
+        return self._reports.get("phase", STARTING) if self.alive else ENDED
 
     @property
     def recording(self):
         """The recording: as it grows, or of a child as far as it is on disk; None if it is not recorded there."""
         if self._process is None:
             return self._bench.recording
-        path = self._told.get("recording")
+        path = self._reports.get("recording")
         return Recording.load(path) if path else None
 
     def _latest(self, count):

@@ -9,7 +9,7 @@ from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, CountedPace, Pace
 from ir50p_lab.bench.protocol import JOINTS, LIMIT_PWM
 from ir50p_lab.bench.recorder import Recorder, header_of
-from ir50p_lab.bench.rest import way_to_rest
+from ir50p_lab.bench.rest import trajectory_to_rest
 from ir50p_lab.bench.runaway import RunawayGuard
 from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.controllers.base import check_controller, check_reference
@@ -412,7 +412,7 @@ class Bench:
 
     def go_to_rest(self):
         """Move to the rest pose, where the arm stays when let go; not recorded."""
-        controller, reference = way_to_rest(self.arm, self._last.q, self.period)
+        controller, reference = trajectory_to_rest(self.arm, self._last.q, self.period)
         for sample in self.run(reference.duration + 0.5, record=False):
             self.drive(controller.step(sample.t, sample.q, reference(sample.t)))
         self.cut()

@@ -58,8 +58,8 @@ def bench_test(bench):
         _ask(_LAY_DOWN)
         found("noise", 0, _noise)
         for joint in () if bench.simulated else JOINTS:
-            way = f"{UP[joint - 1]} to its end, slowly to the other end, and back"
-            _ask(f"During the next {TURN:.0f} s turn joint {joint} by hand: {way}. Nothing else may move")
+            motion = f"{UP[joint - 1]} to its end, slowly to the other end, and back"
+            _ask(f"During the next {TURN:.0f} s turn joint {joint} by hand: {motion}. Nothing else may move")
             sound[joint] = found("potentiometer", joint, _potentiometer, joint - 1)
         _ask(_LAY_DOWN)
         _ask("Motor supply on, limit at 1 A, a hand on the emergency stop")
@@ -135,7 +135,7 @@ def _drive(bench, joint, sound, breakaway):
         wrong = f"PWM {pwm:+d} moved {name} by {moved[joint]:+.0f} counts: swap its two motor wires"
         _require(moved[joint] * sign > 0, wrong)
         moved_at.append(pwm)
-    stuck = "did not move either way: has its motor no supply (current limit, ENABLE at 5 V, fuse), or is it blocked?"
+    stuck = "moved in no direction: has its motor no supply (current limit, ENABLE at 5 V, fuse), or is it blocked?"
     _require(moved_at, f"{name} {stuck}")
     breakaway[joint] = moved_at
     return f"{name} breaks away at {' and '.join(f'{pwm:+d}' for pwm in moved_at)} PWM counts, as commanded"
@@ -189,10 +189,10 @@ def _watchdog(bench, breakaway):
 def write_report(bench, findings):
     """Write what was found into the student's folder results/; returns its path."""
     date = datetime.datetime.now().astimezone()
-    told = {"date": date.isoformat(timespec="seconds"), "findings": [finding._asdict() for finding in findings]}
+    report = {"date": date.isoformat(timespec="seconds"), "findings": [finding._asdict() for finding in findings]}
     path = folder() / f"bench-test-{bench.bench_id}-{date:%Y%m%d-%H%M%S}.json"
     path.parent.mkdir(parents=True, exist_ok=True)
-    replace_text(path, json.dumps(bench.head() | told, indent=1, ensure_ascii=False) + "\n")
+    replace_text(path, json.dumps(bench.head() | report, indent=1, ensure_ascii=False) + "\n")
     return path
 
 
@@ -211,8 +211,8 @@ def main(arguments=None):
     finally:
         bench.abort()
     wrong = sum(not finding.passed for finding in findings)
-    verdict = f"{wrong} steps failed: begin with the first" if wrong else "Everything is right"
-    print(f"{verdict}. Written to {path}")
+    outcome = f"{wrong} steps failed: begin with the first" if wrong else "Everything is right"
+    print(f"{outcome}. Written to {path}")
     return min(wrong, 1)
 
 

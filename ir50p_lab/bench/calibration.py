@@ -143,7 +143,7 @@ def fit_calibration(q, counts, *, arm="", source="measured"):
 
     Which of the two carries the error decides how to fit. A protractor is read to about half a degree, which is one or
     two counts; counts are averaged to a fraction of one. So the angle is the uncertain number, and q is regressed on
-    counts: q = a + b counts, slope = 1/b, zero = -a/b. The usual way round (counts on q) would take the errors of q for
+    counts: q = a + b counts, slope = 1/b, zero = -a/b. The usual direction (counts on q) would take the errors of q for
     a wider spread of angles and make the slope too small, by the factor var(q)/(var(q) + var(error)). With ten points
     over a wide range the two differ by less than their standard errors; with a narrow one they do not.
 

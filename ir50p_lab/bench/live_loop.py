@@ -8,7 +8,7 @@ import numpy as np
 
 from ir50p_lab.bench.pace import load_controllers
 from ir50p_lab.bench.recorder import header_of
-from ir50p_lab.bench.rest import way_to_rest
+from ir50p_lab.bench.rest import trajectory_to_rest
 from ir50p_lab.bench.set_point import SetPoint
 from ir50p_lab.controllers.base import gains_of, set_gains
 
@@ -30,7 +30,7 @@ def live_loop(bench, controller, reference, orders, tell):
     not recorded. Raises what controller, reference, bench or `tell` raise.
     """
     load_controllers()
-    way_to_rest(bench.arm, np.zeros(3), bench.period)[1](0.0)  # compiled now: at the end the arm cannot wait for it
+    trajectory_to_rest(bench.arm, np.zeros(3), bench.period)[1](0.0)  # compiled now: at the end there is no time
     loop = _Loop(bench, _Target(bench, reference), orders, tell)
     loop.say(STARTING)
     try:
@@ -40,9 +40,9 @@ def live_loop(bench, controller, reference, orders, tell):
         with contextlib.closing(bench.run(_DAY, loop.target, **header | header_of(controller))) as samples:
             if loop.follow(samples, controller) == "stop" and bench.answers:
                 bench._end_recording(bench._run)
-                controller, way = way_to_rest(bench.arm, bench._last.q, bench.period)
-                loop.target.take(way, bench._last.t)
-                end = bench._last.t + way.duration + 0.5
+                controller, trajectory = trajectory_to_rest(bench.arm, bench._last.q, bench.period)
+                loop.target.take(trajectory, bench._last.t)
+                end = bench._last.t + trajectory.duration + 0.5
                 loop.follow(takewhile(lambda sample: sample.t < end, samples), controller, returning=True)
     finally:
         bench.cut()
@@ -90,14 +90,14 @@ class _Loop:
         if order == "set point":
             return self.target.move_to(content, t)
         set_gains(controller, **content)
-        told = (f"{name} = {' '.join(f'{x:g}' for x in three)}" for name, three in gains_of(controller).items())
-        self.bench.note("; ".join(told))
+        gains = (f"{name} = {' '.join(f'{x:g}' for x in three)}" for name, three in gains_of(controller).items())
+        self.bench.note("; ".join(gains))
 
 
 class _Target:
-    """What the arm is to follow: a way to the reference from where it stands, the reference, then any set point.
+    """What the arm is to follow: a trajectory to the reference from where it stands, the reference, then any set point.
 
-    leading: whether it is still on the way to the reference.
+    leading: whether it still follows the first of these.
     """
 
     def __init__(self, bench, reference):

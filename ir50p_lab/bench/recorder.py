@@ -9,7 +9,7 @@ from itertools import count
 from pathlib import Path
 
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.recording_file import event_text, head_text, rows_text, table_of, told_text
+from ir50p_lab.bench.recording_file import event_text, head_text, lines_text, rows_text, table_of
 from ir50p_lab.controllers.base import gains_of
 from ir50p_lab.errors import RecordingError
 from ir50p_lab.home import home
@@ -92,17 +92,17 @@ class Recorder:
 
     def close(self, statistics=None):
         """End the recording; statistics: dict of numbers about the run for its head. May be called twice."""
-        told = {name: str(value) for name, value in (statistics or {}).items()}
-        self.recording.header.update(told)
+        known = {name: str(value) for name, value in (statistics or {}).items()}
+        self.recording.header.update(known)
         with contextlib.suppress(RecordingError):  # a full disk: the samples are there
-            self._put(told_text(told))
+            self._put(lines_text(known))
         if self._file is not None:
             os.close(self._file)
             self._file = None
 
 
 def header_of(controller):
-    """The gains of a controller for the head of a recording, if it tells or keeps them."""
+    """The gains of a controller for the head of a recording, if it gives or keeps them."""
     if hasattr(controller, "header"):
         return controller.header()
     return {name: " ".join(f"{x:g}" for x in values) for name, values in gains_of(controller).items()}

@@ -34,7 +34,7 @@ class Recording:
     q            (n, 3)  rad, measured
     counts       (n, 3)  of the 10-bit converter
     u            (n, 3)  PWM counts that were really sent, held from each sample to the next
-    reference    (n, 3)  rad, what `drive(..., reference=)` was told
+    reference    (n, 3)  rad, what `drive(..., reference=)` was given
     gripper      (n,)    1 closed, 0 open
     missed       (n,)    cycles that came late so far
     ============ ======= =========================================================================
@@ -115,13 +115,13 @@ class Recording:
         Where most cycles came late or were left out their times say nothing of it.
         """
         try:
-            told = float(self.header["period_s"])
+            stated = float(self.header["period_s"])
         except (KeyError, ValueError):
-            told = math.nan
-        if len(self) < 2 or (told > 0 and self.missed[-1] > 0.5 * len(self)):
-            return told
+            stated = math.nan
+        if len(self) < 2 or (stated > 0 and self.missed[-1] > 0.5 * len(self)):
+            return stated
         step = float(np.median(np.diff(self.t)))
-        return told if abs(told - step) <= 0.2 * step else step
+        return stated if abs(stated - step) <= 0.2 * step else step
 
     def between(self, t0, t1):
         """The samples with t0 <= t <= t1 (s), as a Recording of its own; times stay as they are."""
@@ -144,9 +144,9 @@ class Recording:
         swing = np.ptp(q[t > t[-1] - min(5.0, 0.5 * (t[-1] - t[0])) - 1e-9], axis=0)
         known = r[np.isfinite(r).all(axis=1)]
         target = known[-1] if len(known) else np.full(3, np.nan)
-        way = target - q[0]
-        beyond = np.maximum(0.0, ((q - target) * np.sign(way)).max(axis=0))
-        overshoot = np.where(way == 0.0, np.nan, beyond)
+        step = target - q[0]
+        beyond = np.maximum(0.0, ((q - target) * np.sign(step)).max(axis=0))
+        overshoot = np.where(step == 0.0, np.nan, beyond)
         columns = (q[0], final, target - final, overshoot, swing, self.u.std(axis=0))
         return [JointSummary(joint, *row) for joint, row in enumerate(np.transpose(columns).tolist(), 1)]
 

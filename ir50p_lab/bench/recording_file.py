@@ -34,10 +34,10 @@ def table_of(t, q, counts=math.nan, u=math.nan, reference=math.nan, gripper=math
 
 def head_text(header):
     """The lines before the first sample. header: dict of str."""
-    return told_text({FORMAT: 1, "units": _UNITS} | header) + ",".join(COLUMNS) + "\n"
+    return lines_text({FORMAT: 1, "units": _UNITS} | header) + ",".join(COLUMNS) + "\n"
 
 
-def told_text(header):
+def lines_text(header):
     """Lines of the head that are known only at the end of a run, or all of them: dict of str."""
     return "".join(f"# {key}: {_one_line(value)}\n" for key, value in header.items())
 

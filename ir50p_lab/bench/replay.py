@@ -46,8 +46,8 @@ class ReplayBench(Bench):
         counts = recording.counts
         self._counts = np.where(np.isfinite(counts), counts, self.calibration.counts(recording.q))
         self._late = np.nan_to_num(recording.missed).astype(int)
-        told = recording.header.get("bench_id", "none")
-        self.bench_id = None if told == "none" else told
+        bench_id = recording.header.get("bench_id", "none")
+        self.bench_id = None if bench_id == "none" else bench_id
 
     def _begin(self):
         self._started = time.perf_counter()

@@ -1,4 +1,4 @@
-"""Where the arm may be let go, and the way there: without drive an arm sinks until friction or an end stop holds it."""
+"""Where the arm may be let go, and how it gets there: undriven it sinks until friction or an end stop holds it."""
 
 from functools import cache
 from itertools import pairwise
@@ -9,7 +9,7 @@ from ir50p_lab.modelling.chain import frames
 from ir50p_lab.modelling.dynamics import energy, gravity
 
 _MARGIN = 0.03  # rad kept from the end stops: the host and the board cut drive that pushes against them
-_SPEED = 0.5  # rad/s on the way to the rest pose: joint 2 follows it against gravity at 12 V; at 0.8 it lags
+_SPEED = 0.5  # rad/s on the trajectory to the rest pose: joint 2 follows it against gravity at 12 V; at 0.8 it lags
 
 
 @cache
@@ -36,7 +36,7 @@ def rest_pose(arm):
     return pose
 
 
-def way_to_rest(arm, q, period):
+def trajectory_to_rest(arm, q, period):
     """Controller and reference that bring the arm from q (3,) rad to its rest pose: first joint 2, then the others.
 
     Joint 2 lifts the arm off the table before joint 3 folds. The gains are those of Tables 4.1-4.3, but for the

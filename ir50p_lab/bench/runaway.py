@@ -1,6 +1,6 @@
 """Runaway: a joint that does not do what its motor would make it do.
 
-What can be told apart from angle and command alone? Below, u is the command, K the motor's gain, fc dry friction, all
+What do angle and command alone tell? Below, u is the command, K the motor's gain, fc dry friction, all
 from the arm's own numbers, in PWM counts.
 
 against   The joint moves against its command for `WINDOW` and does not slow down. Motor, back-EMF and friction then
@@ -48,7 +48,7 @@ NOISE = 3.0  # counts within which the mean of a block that stands still stays
 # the speed behind the drive; top (3,) rad/s: too fast; noise (3,) rad.
 # Then what it remembers: now (2,): samples in the block, blocks kept; block (n, 7): t, q and command of the last
 # samples; past (KEPT, 7): of the last blocks, the command 0 where its sign changed, else the smallest. still (4, 3):
-# speed and way of the loaded joint, rad/s and rad, the angle it began at, and whether the joint has moved since.
+# speed and travel of the loaded joint, rad/s and rad, the angle it began at, and whether the joint has moved since.
 Watch = namedtuple("Watch", "theta numbers lag top noise now block past still")
 
 
@@ -82,10 +82,10 @@ def _against(w, i, gravity):
     """Whether joint i has moved against its command through the window, without slowing down, too strongly."""
     n, t, q = w.numbers, w.past[DELAY:, 0], w.past[DELAY:, 1 + i]
     s = cf.sign(w.past[0, 4 + i])
-    drive, way = s * w.past[:, 4 + i], s * (q[:-1] - q[1:])
-    if w.now[1] < KEPT or drive.min() <= 0 or way.min() <= 0:
+    drive, travel = s * w.past[:, 4 + i], s * (q[:-1] - q[1:])
+    if w.now[1] < KEPT or drive.min() <= 0 or travel.min() <= 0:
         return False
-    before, after = (way[0] + way[1]) / (t[2] - t[0]), (way[-2] + way[-1]) / (t[-1] - t[-3])
+    before, after = (travel[0] + travel[1]) / (t[2] - t[0]), (travel[-2] + travel[-1]) / (t[-1] - t[-3])
     if after < before - w.noise[i] / (t[2] - t[0]):
         return False
     least = min(n[LIMIT + i], drive[DELAY + 1 :].min())
@@ -95,8 +95,8 @@ def _against(w, i, gravity):
 @jit()
 def _fast(w, i):
     """Whether joint i has turned faster within two blocks than it can."""
-    way, time = abs(w.past[-1, 1 + i] - w.past[-3, 1 + i]), w.past[-1, 0] - w.past[-3, 0]
-    return w.now[1] >= 3 and way > w.top[i] * time + 2 * w.noise[i]
+    travel, time = abs(w.past[-1, 1 + i] - w.past[-3, 1 + i]), w.past[-1, 0] - w.past[-3, 0]
+    return w.now[1] >= 3 and travel > w.top[i] * time + 2 * w.noise[i]
 
 
 @jit()
@@ -167,9 +167,9 @@ class RunawayGuard:
 
     def check(self, sample, pwm):
         """Take the next Sample and the command (3,) PWM counts that acted before it. Raises RunawayError."""
-        self.judge(watch_step(self.watch, sample.t, sample.q, pwm), sample.t)
+        self.refuse(watch_step(self.watch, sample.t, sample.q, pwm), sample.t)
 
-    def judge(self, alarm, t):
+    def refuse(self, alarm, t):
         """Raise the RunawayError that `watch_step` means by `alarm`, of a sample at t s; 0: nothing."""
         if alarm == 0:
             return

@@ -44,14 +44,14 @@ class SetPoint:
         self._t = t
         if dt == 0.0:
             return self.q.copy(), self._qd.copy(), np.zeros(3)
-        way, before, at = self.goal - self.q, self._qd, ACCELERATION * dt
+        distance, before, at = self.goal - self.q, self._qd, ACCELERATION * dt
         # the speed from which n steps, each slower by a dt than the one before, end exactly at the goal
-        steps = np.abs(way) / (at * dt)
+        steps = np.abs(distance) / (at * dt)
         n = np.maximum(1, np.ceil(0.5 * (np.sqrt(1 + 8 * steps) - 1) - 1e-9))
         braking = at * (steps / n + 0.5 * (n - 1))
-        wanted = np.copysign(np.minimum(braking, self.speed), way)
+        wanted = np.copysign(np.minimum(braking, self.speed), distance)
         self._qd = np.clip(wanted, before - at, before + at)
-        there = np.abs(way - self._qd * dt) < 1e-12  # but for rounding; the next step takes the rest of the speed
+        there = np.abs(distance - self._qd * dt) < 1e-12  # but for rounding; the next step takes the rest of the speed
         self.q = np.where(there, self.goal, self.q + self._qd * dt)
         return self.q.copy(), self._qd.copy(), (self._qd - before) / dt
 

@@ -22,7 +22,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "pendulum_with_motor_lag",
             "routh_table",
         ],
-        "forecast": ["Saturation", "check_saturation"],
+        "saturation": ["Saturation", "check_saturation"],
         "pid": ["PID"],
         "tuning": ["PIDGains", "amigo", "simc", "simc_integrating", "ziegler_nichols"],
     },

@@ -28,7 +28,7 @@ class CartesianPath(Reference):
         q = IK(p),  qd = Jv^-1 v,  qdd = Jv^-1 (a - Jvd qd)
 
     arm: Arm; shape: the path by its length s in m; profile: s(t), from rest to rest; branch: the one of the four
-    solutions that is kept all the way; margin: rad kept from the joint limits. Before and after the motion it rests.
+    solutions that is kept throughout; margin: rad kept from the joint limits. Before and after the motion it rests.
     """
 
     arm: Arm
@@ -86,10 +86,10 @@ def cartesian_circle(arm, centre, radius, *, normal=(0.0, 0.0, 1.0), turns=1.0, 
         normal: (3,) axis of the circle, of any length; seen against it the tip goes anticlockwise.
         turns: any number but 0; negative: clockwise.
         phase: rad, where on the circle it begins; 0 lies on the side of the x axis (of z if the normal is along x).
-        speed: m/s, on the way (default 0.09, the path speed in the manual of the ROB3i, the sister arm).
+        speed: m/s, on the path (default 0.09, the path speed in the manual of the ROB3i, the sister arm).
         acceleration: m/s^2, of the tip, tangential and centripetal together (default 0.3).
         start_time: s; before it the arm rests at the first point.
-        near: (3,) rad (default 0); of the branches that can go all the way ('front/up', 'front/down', 'back/up',
+        near: (3,) rad (default 0); of the branches that can go all of it ('front/up', 'front/down', 'back/up',
             'back/down'), the one is taken that begins nearest to this pose.
         max_joint_speed: rad/s, one number or (3,). Default: half the no-load speed of the motors; without motors 2.
         table: height in m below which neither elbow nor tip may go (default 0); None: no table.
@@ -160,7 +160,7 @@ def _nearest_turn(solutions, near, low, high):
 
 
 def _choose(solutions, near, low, high, place):
-    """Number of the branch that stays within the limits all the way and begins nearest to `near`."""
+    """Number of the branch that stays within the limits throughout and begins nearest to `near`."""
     over = np.maximum(low - solutions, solutions - high)  # (n, 4, 3) rad past the limits
     possible = (over <= 0).all(axis=(0, 2))
     if possible.any():
@@ -190,7 +190,7 @@ def _refuse_out_of_reach(arm, p, place):
 
 
 def _refuse_fast_joints(arm, q, tangent, speed, bound, place):
-    """Joint speeds at full path speed all the way, the ends included: there a singular pose needs endless qdd."""
+    """Joint speeds at full path speed throughout, the ends included: there a singular pose needs endless qdd."""
     found = singularity(arm, q)
     near = found.smallest < _SINGULAR * arm.reach
     rates = np.linalg.solve(np.where(near[:, None, None], np.eye(3), jacobian(arm, q)[:, :3]), tangent[..., None])

@@ -38,7 +38,7 @@ class Circle:
 
     @property
     def length(self):
-        """Of the way, m."""
+        """Of the path, m."""
         return 2 * math.pi * self.radius * abs(self.turns)
 
     def __call__(self, s):
@@ -48,8 +48,8 @@ class Circle:
         first = first - (first @ normal) * normal  # towards phase 0
         first /= np.linalg.norm(first)
         second = np.cross(normal, first)
-        way = math.copysign(1.0, self.turns)
-        angle = (self.phase + way * s / self.radius)[..., None]
+        sense = math.copysign(1.0, self.turns)
+        angle = (self.phase + sense * s / self.radius)[..., None]
         out = np.cos(angle) * first + np.sin(angle) * second
-        along = way * (np.cos(angle) * second - np.sin(angle) * first)
+        along = sense * (np.cos(angle) * second - np.sin(angle) * first)
         return np.array(self.centre) + self.radius * out, along, -out / self.radius

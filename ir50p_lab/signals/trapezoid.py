@@ -15,7 +15,7 @@ _NO_DISTANCE = 1e-100  # rad: below it a joint stays, so that limit/distance can
 class Trapezoid(Reference):
     """Trapezoidal velocity; made by `trapezoid`.
 
-    q0, q1: (3,) rad; start: s; T: s, time of the motion itself. In terms of the share of the way (0..1): acceleration a
+    q0, q1: (3,) rad; start: s; T: s, time of the motion itself. In terms of the share of the path: acceleration a
     1/s^2, peak velocity v 1/s.
     """
 
@@ -43,10 +43,10 @@ class Trapezoid(Reference):
 def trapezoid(q0, q1, *, v_max, a_max, start=0.0):
     """Move from rest at `q0` to rest at `q1`: full acceleration, full speed, full braking.
 
-    A joint with way D alone needs D/v_max + v_max/a_max, or 2 sqrt(D/a_max) if D < v_max^2/a_max: then it never
+    A joint with path D alone needs D/v_max + v_max/a_max, or 2 sqrt(D/a_max) if D < v_max^2/a_max: then it never
     reaches v_max and its velocity is a triangle. The acceleration jumps (at a jump the value after it counts).
 
-    All joints share one profile s(t) of the way, q = q0 + (q1 - q0) s(t): they start, change over and arrive together,
+    All joints share one profile s(t) of the path, q = q0 + (q1 - q0) s(t): they start, change over and arrive together,
     and the pose moves on a straight line in joint space. It is the quickest such profile that keeps every limit; where
     one joint is limited by velocity and another by acceleration, it takes longer than the slower of the two alone.
 
@@ -60,11 +60,11 @@ def trapezoid(q0, q1, *, v_max, a_max, start=0.0):
     """
     q0, q1, start = pose("q0", q0), pose("q1", q1), number("start", start, unit="s")
     v_max, a_max = per_joint("v_max", v_max, "> 0", unit="rad/s"), per_joint("a_max", a_max, "> 0", unit="rad/s^2")
-    way = np.abs(np.subtract(q1, q0))
-    moving = way > _NO_DISTANCE
+    distance = np.abs(np.subtract(q1, q0))
+    moving = distance > _NO_DISTANCE
     if not moving.any():
         return Trapezoid(q0, q1, start, a=1.0, v=1.0, T=0.0, duration=max(0.0, start))
-    v, a = (float((limit / way[moving]).min()) for limit in (np.array(v_max)[moving], np.array(a_max)[moving]))
-    v = min(v, math.sqrt(a))  # triangle: the way ends before the limit of velocity is reached
+    v, a = (float((limit / distance[moving]).min()) for limit in (np.array(v_max)[moving], np.array(a_max)[moving]))
+    v = min(v, math.sqrt(a))  # triangle: the path ends before the limit of velocity is reached
     T = 1 / v + v / a
     return Trapezoid(q0, q1, start, a=a, v=v, T=T, duration=max(0.0, start + T))

@@ -10,7 +10,7 @@ from ir50p_lab.inputs import number, vector3
 from ir50p_lab.signals.steps import hold
 from ir50p_lab.simulation.plant import make_plant
 from ir50p_lab.simulation.result import SimulationResult
-from ir50p_lab.simulation.verdict import looks_unstable
+from ir50p_lab.simulation.stability import looks_unstable
 
 
 def simulate(
@@ -49,7 +49,7 @@ def simulate(
     Returns: SimulationResult, sampled every `period`.
     Raises: InputError on bad input, or if the run leaves all bounds (an unstable loop: it says when).
     Warns: UnstableLoopWarning if the run stays finite but looks unstable (`looks_unstable` says how it looks; the
-    result keeps the sentence as `unstable`). Without a controller nothing is judged.
+    result keeps the sentence as `unstable`). Without a controller nothing is looked for.
     """
     steps, t = _times(duration, period, step)
     q0, qd0 = vector3("q0", q0), vector3("qd0", qd0, unit="rad/s")

@@ -92,9 +92,9 @@ class TablePlane:
         Raises InputError on bad pixels; VisionError for a pixel whose line of sight does not meet the plane.
         """
         points, height = point_list("xy", xy, 2), number("height", height, unit="m")
-        sight = np.column_stack([self.pinhole.undistort_points(points), np.ones(len(points))])
+        rays = np.column_stack([self.pinhole.undistort_points(points), np.ones(len(points))])
         R, t = self.T_cam_table[:3, :3], self.T_cam_table[:3, 3]
-        down = -(sight @ R)[:, 2] / np.linalg.norm(sight, axis=1)  # of the line of sight, towards the table
+        down = -(rays @ R)[:, 2] / np.linalg.norm(rays, axis=1)  # of the line of sight, towards the table
         above = -R[:, 2] @ t - height  # of the lens, over the plane
         lost = (down * np.sign(above) < _SLANT) | (above == 0)
         if lost.any():
@@ -102,7 +102,7 @@ class TablePlane:
                 f"the pixel {np.round(points[lost][0], 1).tolist()} looks past the plane at height {height:g} m: it "
                 "lies at or above the horizon, so no place on the table belongs to it"
             )
-        X = np.linalg.solve(self.homography(height), sight.T)
+        X = np.linalg.solve(self.homography(height), rays.T)
         found = (X[:2] / X[2]).T
         return found[0] if np.ndim(xy) == 1 else found
 

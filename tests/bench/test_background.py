@@ -241,15 +241,15 @@ def test_an_interrupt_while_it_starts_leaves_nothing_driving(bench, monkeypatch)
     until(lambda: not bench.live_run.alive, 60)
 
 
-def test_the_way_to_rest_takes_no_compiling_and_ends_by_the_clock(tmp_path, monkeypatch):
+def test_the_trajectory_to_rest_takes_no_compiling_and_ends_by_the_clock(tmp_path, monkeypatch):
     """Made in the middle of a run, it must be there before the watchdog cuts; cycles left out do not prolong it."""
     with SimulatedBench(IR50P, q0=(0.1, 0.2, -0.3), record_to=tmp_path) as bench:
         run = bench.start(pid())
         until(lambda: run.phase == "running")
         started = time.monotonic()
         run.stop()
-        _, way = rest.way_to_rest(IR50P, np.array([0.1, 0.2, -0.3]), bench.period)
-        assert time.monotonic() - started < way.duration + 3
+        _, trajectory = rest.trajectory_to_rest(IR50P, np.array([0.1, 0.2, -0.3]), bench.period)
+        assert time.monotonic() - started < trajectory.duration + 3
         assert run.error is None and np.abs(bench.plant.q_true - rest_pose(IR50P)).max() < 0.15
 
 

@@ -55,7 +55,7 @@ def test_the_naive_model_fails_because_its_inertia_is_negative(unit):
     assert rms(follow(IR50P, law, SWING, 15, seed=seed), SWING).max() < 0.5 * error
 
 
-def test_saturation_is_forecast_from_the_identified_model(unit):
+def test_saturation_is_computed_from_the_identified_model(unit):
     seed, _, model = unit
     goal = (np.pi / 2, np.pi / 2, -np.pi / 3)
     limit = check_saturation(model, quintic((0, 0, 0), goal, duration=1.0)).stretch

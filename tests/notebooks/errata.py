@@ -146,7 +146,7 @@ ERRATA = {
         ("4.5", "C q and G(q qd) once more"),
         ("4.6", "e = q - qd, sign of the reference's velocity for dry friction"),
         ("Figure 4.13", "lag of the filter: the arm runs ahead, the picture lags", r"Figure 4\.13"),
-        ("4.4.2", "too fast a trajectory: said, here forecast"),
+        ("4.4.2", "too fast a trajectory: said, here computed"),
     ],
     "16": [
         ("3.1.3", "hues squeezed into a byte: magenta is 212.5, not 200; orange 21, not 17"),

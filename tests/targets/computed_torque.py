@@ -154,17 +154,17 @@ def rows_bench(seeds):
 
 
 def rows_saturation(model, seed):
-    """Too fast a motion: forecast from the model's limits, then driven."""
-    forecast = check_saturation(model, MOVE)
+    """Too fast a motion: computed from the model's limits, then driven."""
+    found = check_saturation(model, MOVE)
     rows = []
     for share, fits in ((1.3, True), (0.6, False)):
-        duration = share * forecast.stretch * MOVE.duration
+        duration = share * found.stretch * MOVE.duration
         fast = quintic((0, 0, 0), GOAL, duration=duration)
         law = ComputedTorque(model, **TABLES_4_5, model_velocity="reference")
         error = tracked(law, seed, fast, duration).max()
         said = check_saturation(model, fast)
         ok = said.saturates != fits and ((error < 100) == fits)
-        what = f"the quintic in {duration:.1f} s: forecast '{'fits' if not said.saturates else 'saturates'}'"
+        what = f"the quintic in {duration:.1f} s: computed '{'fits' if not said.saturates else 'saturates'}'"
         asked = "follows (< 100)" if fits else "cannot follow (> 100)"
         rows.append(Row(what, asked, f"{error:.0f}", "'motors too limited'", bool(ok)))
     return rows

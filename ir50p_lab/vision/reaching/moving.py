@@ -115,14 +115,14 @@ class Mover:
             self._cycle((self._set, rows[k, 1], rows[k, 2]))
 
     def move_to(self, p, *, lift=LIFT):
-        """Move the tip to p (3,) m on a way clear of the table, and settle. Returns the Plan."""
-        way = plan(self.arm, self.q, p, lift=lift)
-        self.move_along(way)
-        self.settle(way.goal)
-        return way
+        """Move the tip to p (3,) m on a trajectory clear of the table, and settle. Returns the Plan."""
+        trajectory = plan(self.arm, self.q, p, lift=lift)
+        self.move_along(trajectory)
+        self.settle(trajectory.goal)
+        return trajectory
 
     def settle(self, goal):
-        """Stand at the joint angles `goal` (3,) rad: averaged counts say what is missing, and the set point gives way.
+        """Stand at the joint angles `goal` (3,) rad: averaged counts say what is missing, and the set point is moved.
 
         A joint that sticks waits until the integral has built up; pushing the set point by what is missing shortens
         that. Once there, the command is frozen: friction holds the arm, nothing hunts, and a second of counts can be

@@ -1,4 +1,4 @@
-"""Can the arm reach it, in which pose, and on which way: smooth, and clear of the table and of the ball."""
+"""Can the arm reach it, in which pose, and on which trajectory: smooth, and clear of the table and of the ball."""
 
 import contextlib
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from ir50p_lab.modelling.ik import inverse_kinematics, reachability
 from ir50p_lab.signals.quintic import Quintic, through
 
 MARGIN = 0.03  # rad kept from the joint limits: at a limit the drive is cut
-CLEAR = 0.08  # m that the tip keeps above the table on its way: over a ball of 60 mm
+CLEAR = 0.08  # m that the tip keeps above the table on its path: over a ball of 60 mm
 ALMOST = 1e-3  # m out of reach that does not matter: the nearest point will do
 LIFT = 0.08  # m above the goal from which the last piece leads down
 _HEIGHT = 0.09  # m of the tip over a ball on the table
@@ -91,7 +91,7 @@ def nearest_reachable(arm, p):
     from scipy.optimize import least_squares
 
     low, high = np.array(arm.q_min) + MARGIN, np.array(arm.q_max) - MARGIN
-    p = np.array([p[0], p[1], max(p[2], 0.0)])  # from under the table the way leads up first
+    p = np.array([p[0], p[1], max(p[2], 0.0)])  # from under the table the path leads up first
     heading, found = np.clip(np.arctan2(p[1], p[0]), low[0], high[0]), []
     for shares in product((0.1, 0.5, 0.9), repeat=2):
         start = [heading, *(low[1:] + shares * (high - low)[1:])]
@@ -101,7 +101,7 @@ def nearest_reachable(arm, p):
 
 
 def plan(arm, q, p, *, lift=LIFT):
-    """The way of the tip from the pose q to the point p: over it, then down. Where that comes too low it rises first.
+    """The path of the tip from the pose q to the point p: over it, then down. Where that comes too low it rises first.
 
     All pieces are straight for the joints; the last one keeps the tip of the IR50P within 4 mm of a plumb line.
 
@@ -111,14 +111,14 @@ def plan(arm, q, p, *, lift=LIFT):
     """
     q = vector3("q", q)
     goal = reach_pose(arm, p, q)
-    way = _clear(arm, q, goal, min(CLEAR, p[2]))
+    poses = _clear(arm, q, goal, min(CLEAR, p[2]))
     for share in (1.0, 0.5, 0.25) if lift > 0 else ():
         with contextlib.suppress(UnreachableError):
             above = reach_pose(arm, p + np.array([0.0, 0.0, share * lift]), goal)
-            way = [*_clear(arm, q, above, CLEAR), goal]
+            poses = [*_clear(arm, q, above, CLEAR), goal]
             break
-    durations = [max(0.3, _PEAK * float(np.abs(b - a).max()) / _SPEED) for a, b in pairwise(way)]
-    pieces = through(way, durations=durations)
+    durations = [max(0.3, _PEAK * float(np.abs(b - a).max()) / _SPEED) for a, b in pairwise(poses)]
+    pieces = through(poses, durations=durations)
     return Plan(pieces.times, pieces.points, pieces.duration, arm)
 
 
@@ -135,12 +135,12 @@ class Plan(Quintic):
 
     @property
     def tips(self):
-        """The way of the tip for a drawing, (n, 3) m."""
+        """The path of the tip for a drawing, (n, 3) m."""
         return forward_kinematics(self.arm, self.sample(np.linspace(0, self.duration, 200))[:, 0])
 
     @property
     def lowest(self):
-        """Lowest height of tip and elbow on the way, m."""
+        """Lowest height of tip and elbow on the path, m."""
         return _lowest(self.arm, self.sample(np.linspace(0, self.duration, 200))[:, 0])
 
 

@@ -170,7 +170,7 @@ class Reacher(Mover):
     def follow_ball(self, seconds, *, height=0.10, every=0.1, lead=None):
         """Keep the tip over a moving ball: a look every `every` s, position and velocity filtered, aimed ahead.
 
-        First a planned way to where the ball is seen, clear of the table; `seconds` count from there.
+        First a planned trajectory to where the ball is seen, clear of the table; `seconds` count from there.
         lead: s that the aim lies ahead: as much as camera and arm together are late. More puts the tip before the
         ball, less behind it, by the difference times its speed. Default 0.04 s, for the arm, with rendered pictures,
         which show this moment; 0.1 s more with any other camera (assumed of a webcam: if you have measured yours, give

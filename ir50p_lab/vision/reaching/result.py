@@ -66,7 +66,7 @@ class FollowLog:
 
     @property
     def ahead(self):
-        """How far the tip is before the ball along its way, (n,) m: negative behind it, NaN where it stands."""
+        """How far the tip is before the ball along its path, (n,) m: negative behind it, NaN where it stands."""
         along = np.sum((self.tip[:, :2] - self.ball) * self.velocity, axis=1)
         return np.divide(along, self.speed, out=np.full(len(along), np.nan), where=self.speed > 0)
 

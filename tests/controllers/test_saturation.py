@@ -1,4 +1,4 @@
-"""Will the motors follow: the forecast against what the simulated bench then does."""
+"""Will the motors follow: what is computed against what the simulated bench then does."""
 
 import numpy as np
 import pytest
@@ -14,11 +14,11 @@ START, END = (0.0, 0.9, -1.2), (1.2, 0.2, -0.4)
 
 def test_it_is_inverse_dynamics_along_the_motion():
     motion = quintic(START, END, duration=3)
-    forecast = check_saturation(IR50P, motion)
-    rows = motion.sample(forecast.t)
-    np.testing.assert_allclose(forecast.u, inverse_dynamics(IR50P.theta_pwm, *rows.transpose(1, 0, 2)), rtol=1e-12)
-    np.testing.assert_allclose(forecast.use, np.abs(forecast.u).max(axis=0) / 255)
-    assert forecast.unit == "PWM" and forecast.t[-1] == pytest.approx(3) and "fits" in str(forecast)
+    found = check_saturation(IR50P, motion)
+    rows = motion.sample(found.t)
+    np.testing.assert_allclose(found.u, inverse_dynamics(IR50P.theta_pwm, *rows.transpose(1, 0, 2)), rtol=1e-12)
+    np.testing.assert_allclose(found.use, np.abs(found.u).max(axis=0) / 255)
+    assert found.unit == "PWM" and found.t[-1] == pytest.approx(3) and "fits" in str(found)
 
 
 def test_stretch_is_the_border():
@@ -46,9 +46,9 @@ def test_the_bench_follows_what_fits_and_not_what_does_not():
 
 def test_a_load_too_heavy_to_hold_never_fits():
     heavy = 3 * IR50P.theta_pwm
-    forecast = check_saturation(heavy, hold((0, 0, 0)), 1.0, limit=255)
-    assert forecast.stretch == np.inf and forecast.saturates and forecast.first == 0.0
-    assert np.abs(3 * gravity(IR50P.theta_pwm, np.zeros(3))).max() > 255 and "not even slowly" in str(forecast)
+    found = check_saturation(heavy, hold((0, 0, 0)), 1.0, limit=255)
+    assert found.stretch == np.inf and found.saturates and found.first == 0.0
+    assert np.abs(3 * gravity(IR50P.theta_pwm, np.zeros(3))).max() > 255 and "not even slowly" in str(found)
 
 
 def test_limits():

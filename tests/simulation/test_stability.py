@@ -1,4 +1,4 @@
-"""Unstable loops whose numbers stay finite are told, calm ones are not: a warning that cries wolf is not read."""
+"""Unstable loops whose numbers stay finite are warned of, calm ones are not: a warning that cries wolf is not read."""
 
 import warnings
 
@@ -10,7 +10,7 @@ from ir50p_lab.errors import UnstableLoopWarning
 from ir50p_lab.modelling import IR50P, THESIS_A, THESIS_RODS
 from ir50p_lab.signals import sinusoid
 from ir50p_lab.simulation import simulate
-from ir50p_lab.simulation.verdict import looks_unstable
+from ir50p_lab.simulation.stability import looks_unstable
 
 SET_POINT = (np.pi / 2, np.pi / 2, -np.pi / 3)
 SMOOTH = IR50P.without_friction()
@@ -55,7 +55,7 @@ STABLE = {
     "too weak for a fast sine": (
         SMOOTH, lambda: PID(**PWM | {"kp": 2000}), {"reference": sinusoid(amplitude=(1, 1, 1), omega=(6, 6, 6))},
     ),
-    "far away and on its way": (IR50P, lambda: PID(**PWM), {"reference": (100, 0, 0), "duration": 4}),
+    "far away and moving on": (IR50P, lambda: PID(**PWM), {"reference": (100, 0, 0), "duration": 4}),
     "a short run": (SMOOTH, lambda: late(8000), {"duration": 0.3}),
 }  # fmt: skip
 
@@ -66,7 +66,7 @@ def run(arm, controller, options):
 
 
 @pytest.mark.parametrize("case", UNSTABLE)
-def test_unstable_loops_are_told(case):
+def test_unstable_loops_are_warned_of(case):
     with pytest.warns(UnstableLoopWarning, match="from limit to limit") as caught:
         result = run(*UNSTABLE[case])
     assert result.unstable and result.unstable in str(caught[0].message)
@@ -82,7 +82,7 @@ def test_calm_loops_are_left_in_peace(case):
         assert run(*STABLE[case]).unstable == ""
 
 
-def test_an_arm_that_runs_away_is_told():
+def test_an_arm_that_runs_away_is_warned_of():
     class Wrong:
         """The sign slip: it pushes away."""
 
