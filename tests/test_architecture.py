@@ -3,9 +3,25 @@
 import ast
 import collections
 import graphlib
+import sys
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1] / "ir50p_lab"
+#: What each folder builds on, beside the files next to the folders; `launcher` is the standard library's and ours alone.
+MODELS = {"launcher", "modelling", "signals"}
+LAYERS = {
+    "launcher": set(),
+    "signals": {"modelling"},
+    "modelling": {"launcher"},
+    "controllers": MODELS,
+    "simulation": MODELS | {"controllers"},
+    "bench": MODELS | {"controllers", "simulation"},
+    "identification": MODELS | {"controllers", "simulation"},
+    "vision": {"modelling"},
+    "vision.reaching": MODELS | {"controllers", "bench", "vision"},  # the last step, alone
+    "course": MODELS | {"controllers", "simulation", "bench", "identification", "vision", "vision.reaching"},
+    "publishing": MODELS | {"bench", "course"},
+}
 
 
 def modules():
@@ -45,6 +61,34 @@ def test_no_import_circle():
     assert home  # the packages are read as they are written
     graph = {name: set(imports(tree, trees, home)) - {name} for name, tree in trees.items()}
     graphlib.TopologicalSorter(graph).prepare()  # raises CycleError with the circle
+
+
+def layer(module):
+    """The folder that a module belongs to; "" for files beside the folders."""
+    parts = module.split(".")[1:]
+    folders = (".".join(parts[:2]), *parts[:1])
+    return next((name for name in folders if name in LAYERS), "")
+
+
+def test_imports_point_one_way():
+    trees = modules()
+    home = homes(trees)
+    for name, tree in trees.items():
+        above = set(LAYERS) - LAYERS.get(layer(name), set()) - {layer(name)}
+        if name == "ir50p_lab.__main__":
+            above -= {"launcher"}
+        for other in imports(tree, trees, home):
+            assert layer(other) not in above, f"{name} imports {other}"
+
+
+def test_the_launcher_starts_with_the_standard_library_alone():
+    trees = modules()
+    for name in ("ir50p_lab", "ir50p_lab.__main__", *(name for name in trees if layer(name) == "launcher")):
+        for node in trees[name].body:  # what it imports in functions runs in .venv, or is tried
+            if isinstance(node, (ast.Import, ast.ImportFrom)):
+                module = node.module if isinstance(node, ast.ImportFrom) else node.names[0].name
+                own = module.startswith("ir50p_lab.launcher")
+                assert own or module.split(".")[0] in sys.stdlib_module_names, f"{name} imports {module}"
 
 
 def test_no_class_name_twice():
