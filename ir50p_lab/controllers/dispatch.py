@@ -4,7 +4,7 @@ from ir50p_lab.controllers.adaptive_law import adaptive_step
 from ir50p_lab.controllers.law import law_step
 from ir50p_lab.jit import jit
 
-NONE, LAW, ADAPTIVE = 0, 1, 2
+LAW, ADAPTIVE = 1, 2  # 0: no controller
 
 
 @jit()
