@@ -3,6 +3,7 @@
 import ast
 import collections
 import graphlib
+import re
 import sys
 from pathlib import Path
 
@@ -96,3 +97,22 @@ def test_no_class_name_twice():
     counted = collections.Counter(names)
     del counted["PID"]  # the stand-in for the student's class bears the name of the student's
     assert [name for name, count in counted.items() if count > 1] == []
+
+
+def test_every_name_has_a_reader():
+    """Functions, classes and constants that stand in one place only, of package, tests and notebooks, are read nowhere."""
+    places = [
+        *PACKAGE.rglob("*.py"),
+        *PACKAGE.rglob("src/*.js"),
+        *PACKAGE.glob("*/*.js"),
+        *(PACKAGE.parent / "tests").rglob("*.py"),
+    ]
+    places += (PACKAGE.parent / "notebooks").glob("*.ipynb")
+    counted = collections.Counter(word for path in places for word in re.findall(r"\w+", path.read_text("utf-8")))
+    named = set()
+    for tree in modules().values():
+        named |= {node.name for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+        targets = [target for node in tree.body if isinstance(node, ast.Assign) for target in node.targets]
+        named |= {name.id for target in targets for name in ast.walk(target) if isinstance(name, ast.Name)}
+    others = r"__\w+__|_repr_\w+_|inline_math|block_math|latex_environment|turn_y"  # IPython, nbconvert, `variants`
+    assert sorted(name for name in named if counted[name] < 2 and not re.fullmatch(others, name)) == []
