@@ -24,11 +24,17 @@ def circle_votes(points, shape, radius, *, width=1.0):
 
 
 def circle_hough(points, shape, radii, *, width=1.0):
-    """The accumulator (n_radii, h, w), as shares of a full circle: votes over 2 pi r. Memory: n_radii pictures."""
+    """The accumulator (n_radii, h, w), as shares of a full circle: `circle_votes` over 2 pi r width.
+
+    radii: (n_radii,) px, each > 0; points, shape, width as of `circle_votes`. Memory: n_radii pictures.
+    """
     return np.stack([circle_votes(points, shape, r, width=width) / (2 * np.pi * r * width) for r in radii])
 
 
 def strongest(accumulator, radii):
-    """The circle with most votes: x, y, radius, share of the circle."""
+    """The circle with most votes: x, y, radius, px, and the share of it that votes.
+
+    accumulator: (n_radii, h, w) of `circle_hough`, for the same radii (n_radii,) px.
+    """
     k, y, x = np.unravel_index(np.argmax(accumulator), accumulator.shape)
     return int(x), int(y), float(radii[k]), float(accumulator[k, y, x])

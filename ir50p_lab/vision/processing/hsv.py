@@ -26,7 +26,7 @@ def rgb_to_hsv(rgb):
 
 
 def hue_in(scale, hue_deg):
-    """A hue in another scale: one of HUE_SCALES. Raises InputError for an unknown one."""
+    """A hue, hue_deg in degrees, in another scale: one of HUE_SCALES. Raises InputError for an unknown one."""
     return np.asarray(hue_deg, dtype=float) / 360.0 * HUE_SCALES[choice("scale", scale, tuple(HUE_SCALES))]
 
 
