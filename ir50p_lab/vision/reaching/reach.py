@@ -218,7 +218,7 @@ class Reacher(Mover):
 def reach(bench, locator, *, height=HEIGHT, looks=2, **options):
     """One reach on an open bench, and back to rest: `Reacher` in one call.
 
-    bench, locator, options: as of `Reacher`; height m, looks 1 or 2: as of its `reach`, as what is returned and raised.
+    bench, locator, options: as of `Reacher`; height m, looks: as of its `reach`, like what it returns and raises.
     """
     with Reacher(bench, locator, **options) as reacher:
         return reacher.reach(height=height, looks=looks)
