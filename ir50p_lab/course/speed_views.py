@@ -3,6 +3,7 @@
 import numpy as np
 
 from ir50p_lab.course.arm3d import ArmView, SideView
+from ir50p_lab.course.drawings import drawing
 from ir50p_lab.course.functions import velocity
 from ir50p_lab.course.functions.pose import frames
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
@@ -76,25 +77,8 @@ def arrows_panel(arm):
 
 
 def axis_and_lever():
-    """A point that turns about an axis, two levers from the axis to it, and its one velocity. LabFigure."""
-    figure, ax = subplots(5.0, 3.2, projection="3d")
-    circle = np.linspace(0, 2 * np.pi, 91)
-    ax.plot(np.cos(circle), np.sin(circle), 0, color=COLOURS["light"])
-    point = np.array([np.cos(-2.2), np.sin(-2.2), 0])
-    arrows_of = (
-        ((0, 0, -0.3), (0, 0, 1.5), "dark", "axis", (0.08, 0, 0.95)),
-        ((0, 0, 0), point, "blue", "lever", 0.55 * point + [0, 0, -0.2]),
-        ((0, 0, 0.8), point - [0, 0, 0.8], "purple", "another lever", 0.75 * point + [-0.85, -0.45, 0.4]),
-        (point, (-point[1], point[0], 0), "orange", "velocity", (0.25, -1.1, -0.12)),
-    )
-    for start, along, colour, name, place in arrows_of:
-        ax.quiver(*start, *along, color=COLOURS[colour], linewidth=3, arrow_length_ratio=0.12)
-        ax.text(*place, name, color=COLOURS[colour], fontsize=12, weight="bold")
-    ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-0.4, 1.2))
-    ax.set_box_aspect((2, 2, 1.6), zoom=1.4)
-    ax.set_axis_off()
-    ax.view_init(elev=28, azim=-60)
-    return figure
+    """A point that turns about an axis, two levers from the axis to it, and its one velocity: SVG."""
+    return drawing("axis_and_lever")
 
 
 def way_out(arm, distances, speeds, limit):

@@ -1,8 +1,6 @@
 """Figures: the style is local, figures show themselves, and what is drawn is where the kinematics says."""
 
 import io
-import subprocess
-import sys
 
 import matplotlib
 import numpy as np
@@ -11,7 +9,6 @@ from mpl_toolkits.mplot3d import Axes3D
 from PIL import Image
 
 from ir50p_lab.course.arm3d import ArmView, FrameView, SideView, arm_points
-from ir50p_lab.course.figures import readme_picture
 from ir50p_lab.course.painter import Painter
 from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure
 from ir50p_lab.errors import InputError
@@ -189,14 +186,3 @@ def test_a_view_shows_one_finite_pose(q):
     view = ArmView(new_figure(projection="3d").axes[0], IR50P)
     with pytest.raises(InputError):
         view.update(q)
-
-
-def test_readme_picture_says_that_it_is_a_drawing(tmp_path):
-    assert "drawing of the model" in readme_picture().axes[0].get_title()
-    target = tmp_path / "arm.png"
-    command = [sys.executable, "-m", "ir50p_lab.course.figures"]
-    subprocess.run([*command, str(target)], check=True)
-    with Image.open(target) as image:
-        assert image.size == (1200, 810)
-    usage = subprocess.run(command, capture_output=True, text=True)
-    assert usage.returncode != 0 and "FILE.png" in usage.stderr
