@@ -17,11 +17,12 @@ _JOINTS, _NAMES = ("purple", "sky", "amber"), ("waist", "shoulder", "elbow")
 class ColumnsView:
     """The arm in 3-D with three arrows at its tip: the tip velocity that each joint alone would give it.
 
-    Args: ax: 3-D axes; arm: Arm; scale: m of arrow per m/s of tip at 1 rad/s.
+    Args: ax: 3-D axes; arm: Arm; scale: m of arrow per m/s of tip at 1 rad/s; aside: m that the third arrow is moved,
+    where it would lie on the second.
     """
 
-    def __init__(self, ax, arm, scale=0.5):
-        self.arm, self._scale = arm, scale
+    def __init__(self, ax, arm, scale=0.5, aside=0.0):
+        self.arm, self._scale, self._aside = arm, scale, aside
         self.view = ArmView(ax, arm)
         azimuth, elevation = np.radians([ax.azim, ax.elev])
         self._to_eye = [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
@@ -32,31 +33,25 @@ class ColumnsView:
             for k, name in enumerate(_JOINTS)
         ]
 
-    def update(self, q):
-        """Move the arm to q (3,) rad. Returns: Jv (3, 3) m/rad."""
+    def update(self, q, Jv=None):
+        """Move the arm to q (3,) rad. Jv: (3, 3) m/rad, by default the arm's own. Returns it."""
         self.view.update(q)
-        tip, Jv = self.view.points[3], jacobian(self.arm, q)[:3]
+        tip, Jv = self.view.points[3], jacobian(self.arm, q)[:3] if Jv is None else Jv
         for k, arrow in enumerate(self.arrows):
             along = self._scale * Jv[:, k]
-            head = tip + along
+            start = tip + np.array([self._aside * (k == 2), 0, 0])
+            head = start + along
             side = np.cross(along, self._to_eye)
             barbs = [head - 0.15 * along + sign * 0.07 * side for sign in (1, -1)]
             beyond = head + 0.07 * self.arm.reach * Jv[:, k] / max(np.linalg.norm(Jv[:, k]), 1e-9)
-            arrow.set_data_3d(*np.column_stack([tip, head, barbs[0], head, barbs[1], np.full(3, np.nan), beyond]))
+            arrow.set_data_3d(*np.column_stack([start, head, barbs[0], head, barbs[1], np.full(3, np.nan), beyond]))
         return Jv
 
 
-def arrows(arm, q, J, scale=0.5):
+def arrows(arm, q, J):
     """The arm at q and the columns of J (3, 3) m/rad at its tip, an arrow a joint: LabFigure."""
     figure, ax = subplots(7.5, 5.0, projection="3d")
-    view = ArmView(ax, arm, q)
-    tip = view.points[3]
-    for joint, colour in enumerate(_JOINTS):
-        start = tip + np.array([0.02 * (joint == 2), 0, 0])  # arrows 2 and 3 would lie on each other
-        style = {"color": COLOURS[colour], "linewidth": 3, "arrow_length_ratio": 0.15, "zorder": 40}
-        ax.quiver(*start, *(scale * J[:, joint]), **style)
-        head = start + 1.15 * scale * J[:, joint]
-        ax.text(*head, f"{joint + 1}", color=COLOURS[colour], weight="bold", fontsize=12, zorder=41)
+    ColumnsView(ax, arm, aside=0.02).update(q, J)
     ax.set_title("Where the tip goes if joint 1, 2 or 3 turns (arrows drawn at half length)")
     return figure
 

@@ -152,10 +152,10 @@ def _number_forms(kind, right):
     array = np.asarray(right)
     forms = [array, array.tolist(), sympy.sympify(array.tolist()), np.float64(right) if array.ndim == 0 else right]
     if array.ndim == 1:
-        forms += [tuple(array), array[:, None], array[None, :], sympy.Matrix(array), iter(array.tolist())]
-        forms += [[sympy.Float(entry, 30) for entry in array], dict(enumerate(array))]
+        forms += [tuple(array), array[:, None], array[None, :], sympy.Matrix(array)]
+        forms += [[sympy.Float(entry, 30) for entry in array]]
     if array.ndim == 2:
-        forms += [sympy.Matrix(array), [list(row) for row in array], tuple(map(tuple, array)), iter(array)]
+        forms += [sympy.Matrix(array), [list(row) for row in array], tuple(map(tuple, array))]
     if array.ndim == 0:
         forms += [[right], sympy.Float(right, 30)]
     if np.all(array == np.round(array)):

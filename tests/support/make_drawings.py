@@ -13,6 +13,7 @@ from matplotlib.patches import FancyBboxPatch
 from ir50p_lab.course.arm3d import ArmView
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
 from ir50p_lab.modelling import IR50P, forward_kinematics
+from ir50p_lab.vision import rgb_to_hsv
 
 _BOX = {"boxstyle": "round,pad=0.8", "fc": "#EDF3F8", "ec": "#0072B2"}
 _ARROW = {"arrowstyle": "-|>", "color": COLOURS["dark"], "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
@@ -211,6 +212,25 @@ def ruler():
     return figure
 
 
+def colour_solids():
+    """The RGB cube and the HSV cone (Figures 3.3, 3.4), each point in its own colour."""
+    steps = np.linspace(0, 255, 9)
+    rgb = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
+    rgb = rgb[(rgb == 0).any(axis=1) | (rgb == 255).any(axis=1)]
+    hue, saturation, value = rgb_to_hsv(rgb).T
+    figure, cube, cone = subplots(9.0, 4.2, cols=2, projection="3d")
+    chroma, angle = saturation * value, np.radians(hue)
+    in_cone = np.column_stack([chroma * np.cos(angle), chroma * np.sin(angle), value])
+    for ax, points in ((cube, rgb), (cone, in_cone)):
+        ax.scatter(*points.T, c=rgb / 255, s=22, depthshade=False, rasterized=True)
+        ax.set_box_aspect(None, zoom=0.85)  # room for the labels, which the layout does not see
+    cube.set(xticks=(0, 128, 255), yticks=(0, 128, 255), zticks=(0, 128, 255))
+    cone.set(xticks=(-1, 0, 1), yticks=(-1, 0, 1), zticks=(0, 0.5, 1))
+    cube.set(xlabel="R [level]", ylabel="G [level]", zlabel="B [level]", title="RGB: a cube")
+    cone.set(xlabel="S V cos H [1]", ylabel="S V sin H [1]", zlabel="V [1]", title="HSV: a cone, hue is the angle")
+    return figure
+
+
 def readme_picture():
     """The arm of the book in a working pose, with the frames of its joints: LabFigure."""
     figure, arm = new_figure(8.0, 5.4, projection="3d"), IR50P
@@ -225,7 +245,7 @@ def readme_picture():
 
 
 DRAWINGS = {draw.__name__: draw for draw in (picture_to_motors, two_ways_to_the_board, one_loop, three_loops,
-                                             axis_and_lever, ruler)}  # fmt: skip
+                                             axis_and_lever, ruler, colour_solids)}  # fmt: skip
 
 
 def main(arguments=None):

@@ -1,6 +1,5 @@
 """Answers that are numbers: one, a vector or a matrix."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -114,12 +113,8 @@ class Number(Kind):
 def to_floats(answer) -> np.ndarray:
     """Return numbers in any usual form as a float array; Unreadable says what was found instead.
 
-    Lists, tuples, arrays, dicts (their values), SymPy numbers and matrices, and what can be iterated over are all read.
+    Lists, tuples, arrays, SymPy numbers and matrices are all read.
     """
-    if isinstance(answer, dict):
-        answer = list(answer.values())
-    elif not isinstance(answer, str | np.ndarray) and isinstance(answer, Iterable):
-        answer = answer.tolist() if hasattr(answer, "tolist") else list(answer)
     entries = np.array(answer, dtype=object)
     if entries.size == 0:
         raise Unreadable("something empty")

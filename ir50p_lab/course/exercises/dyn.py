@@ -1,5 +1,7 @@
 """Exercises of notebook 04: inertia, holding torque, acceleration, friction, motor voltage."""
 
+from functools import partial
+
 import numpy as np
 
 from ir50p_lab.course.exercises import Exercise, Function, Number
@@ -30,22 +32,13 @@ _LIFT = jacobian(IR50P, _POSE)[2]  # the row of Jv that belongs to z
 
 
 # dyn-3: acceleration of the thesis' arm (slender rods) from its M, C and g.
+def _solved(q, qd, tau, coriolis=1.0, weight=1.0):
+    M, C, g = mass_matrix(THESIS_RODS, q), coriolis_matrix(THESIS_RODS, q, qd), gravity(THESIS_RODS, q)
+    return np.linalg.solve(M, tau - coriolis * C @ qd - weight * g)
+
+
 def _acceleration(q, qd, tau):
-    M, C, g = mass_matrix(THESIS_RODS, q), coriolis_matrix(THESIS_RODS, q, qd), gravity(THESIS_RODS, q)
-    return np.linalg.solve(M, tau - C @ qd - g)
-
-
-def _without_coriolis(q, qd, tau):
-    return np.linalg.solve(mass_matrix(THESIS_RODS, q), tau - gravity(THESIS_RODS, q))
-
-
-def _bias_with_wrong_sign(q, qd, tau):
-    M, C, g = mass_matrix(THESIS_RODS, q), coriolis_matrix(THESIS_RODS, q, qd), gravity(THESIS_RODS, q)
-    return np.linalg.solve(M, tau + C @ qd + g)
-
-
-def _without_gravity(q, qd, tau):
-    return np.linalg.solve(mass_matrix(THESIS_RODS, q), tau - coriolis_matrix(THESIS_RODS, q, qd) @ qd)
+    return _solved(q, qd, tau)
 
 
 def _divided_by_the_diagonal(q, qd, tau):
@@ -101,9 +94,11 @@ EXERCISES = (
         Function(_acceleration, cases=_STATES, unit="rad/s^2", tolerance=1e-6),
         why="These three lines are forward dynamics: every simulation of this course calls them.",
         slips={
-            "The velocities have no effect in it: C qd is missing.": _without_coriolis,
-            "The arm would float: g is missing.": _without_gravity,
-            "C qd and g stand on the side of M qdd in (1.74): they change sign when moved.": _bias_with_wrong_sign,
+            "The velocities have no effect in it: C qd is missing.": partial(_solved, coriolis=0.0),
+            "The arm would float: g is missing.": partial(_solved, weight=0.0),
+            "C qd and g stand on the side of M qdd in (1.74): they change sign when moved.": partial(
+                _solved, coriolis=-1.0, weight=-1.0
+            ),
             "M couples the joints: solve with all of it, not with its diagonal.": _divided_by_the_diagonal,
         },
     ),
