@@ -77,12 +77,9 @@ class BenchPanel(widgets.VBox):
         start, stop = partial(self.start, wait=False), partial(self.stop, wait=False)
         self._start_button = self._button("Start", "play", start, button_style="success")
         self._stop_button = self._button("Stop", "stop", stop, tooltip="To the rest pose, then let go")
-        look = {
-            "button_style": "danger",
-            "style": {"font_weight": "bold"},
-            "tooltip": "Drive off at once; the arm sinks",
-        }
+        look = {"button_style": "danger", "tooltip": "Drive off at once; the arm sinks"}
         self._cut_button = self._button("CUT THE DRIVE", "bolt", self.cut, width="190px", **look)
+        self._cut_button.style.font_weight = "bold"
 
     def _button(self, words, icon, order, *, width="110px", **look):
         layout = widgets.Layout(width=width, height="44px")

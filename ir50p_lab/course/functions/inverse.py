@@ -138,20 +138,15 @@ _WHERE = (  # some of the poses: in words, and what tells them in the solution
 )
 
 
-def _bent():
+def _mistakes():
     """The mistakes of the table; where a sentence leaves room for it, made in some of the poses only, too."""
-    for says, (change,) in table("inverse_kinematics"):
-        pose, _, bent = change.partition("  ->  ")
-        for words, where in _WHERE if "{}" in says else _WHERE[:1]:
-            change = f"{pose} -> {bent} if {where} else {pose}"
-            yield Mistake(wrong_one(inverse_kinematics, [change]), says.format(words))
-
-
-def _never_refused(p, l, shortest, longest):
-    """Poses of the nearest place that can be reached, for places nearer or farther."""
-    from_shoulder = p - [0, 0, l[0]]
-    r = np.linalg.norm(from_shoulder)
-    return inverse_kinematics(p + from_shoulder * (np.clip(r, shortest(l), longest(l)) / r - 1), l)
+    for says, changes in table("inverse_kinematics"):
+        for words, where in _WHERE if "{}" in says else ():
+            pose, bent = changes[0].split("  ->  ")
+            some = f"{pose} -> {bent} if {where} else {pose}"
+            yield Mistake(wrong_one(inverse_kinematics, [some]), says.format(words))
+        if "{}" not in says:
+            yield Mistake(wrong_one(inverse_kinematics, changes), says)
 
 
 def _no_rows(shape):
@@ -240,18 +235,7 @@ INVERSE_KINEMATICS = Task(
     loan=text_of(inverse_kinematics),
     parts=("q1", "q2", "q3"),
     routes=(_BY_THE_TRIANGLE,),
-    slips=(
-        *_bent(),
-        *(
-            Mistake(lambda p, l, shortest=shortest, longest=longest: _never_refused(p, l, shortest, longest),
-                    f"places too {says} get poses: nobody reaches them. Does a clip hide that?")
-            for says, shortest, longest in (
-                ("near the shoulder (r < |l2 - l3|)", lambda l: abs(l[1] - l[2]), lambda l: np.inf),
-                ("far away (r > l2 + l3)", lambda l: 0.0, lambda l: l[1] + l[2]),
-                ("near the shoulder, and those too far away,", lambda l: abs(l[1] - l[2]), lambda l: l[1] + l[2]),
-            )
-        ),
-    ),
+    slips=tuple(_mistakes()),
     symptom=_poses_symptom,
     form=_whole_turns,
     hints=(
