@@ -4,7 +4,7 @@ import inspect
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -73,7 +73,7 @@ class Task:
     """A function of `my_robot`.
 
     name: of the function; asks: one line, what it returns; right: the course's own answer, a function of the same
-    arguments.
+    arguments; signature: their names.
     cases: tuples of arguments, edge cases among them; leans_on: earlier functions it may call.
     slips: mistakes with a sentence of their own, most specific first; the usual ones need none (`distortions`);
     routes: other solutions, as text; parts: names of what stands beside each other in the answer.
@@ -103,12 +103,13 @@ class Task:
     unit: str = ""
     tried: Callable | None = None
     test: str = ""
+    signature: tuple = ()
 
-    @cached_property
-    def signature(self):
-        """Names of the arguments, those of the right answer; further options are the course's own affair."""
+    def __post_init__(self):
+        """Take the names of the arguments from the right answer; further options are the course's own affair."""
         found = inspect.signature(self.right).parameters.values()
-        return tuple(one.name for one in found if one.kind != one.VAR_KEYWORD)
+        names = tuple(one.name for one in found if one.kind != one.VAR_KEYWORD)
+        object.__setattr__(self, "signature", self.signature or names)
 
     @property
     def function(self):
