@@ -4,7 +4,6 @@ import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from ir50p_lab.course.style import COLOURS
-from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.modelling.differential import jacobian
@@ -42,9 +41,6 @@ class FrameView:
 
     def update(self, T):
         """Place the frame. T: (4, 4), takes coordinates of this frame to those of the axes."""
-        T = np.asarray(T, dtype=float)
-        if T.shape != (4, 4) or not np.isfinite(T).all():
-            raise InputError(f"a frame is a finite (4, 4) transform, got shape {T.shape}")
         origin, R = T[:3, 3], T[:3, :3]
         for k in range(3):
             end = origin + self._length * R[:, k]
@@ -98,11 +94,8 @@ class ArmView:
 
     def update(self, q):
         """Move the arm to q (3,) rad."""
-        q = vectors3("q", q)
-        if q.shape != (3,):
-            raise InputError(f"a view shows one pose: q has shape {q.shape}, give (3,)")
-        self.q = q
-        self.place(frames(self.arm, q))
+        self.q = vectors3("q", q)
+        self.place(frames(self.arm, self.q))
 
     def place(self, T):
         """Move the parts to T (4, 4, 4), the transforms of frames 0 to 3 to the base, right or wrong."""

@@ -26,21 +26,20 @@ from ir50p_lab.errors import InputError, LabError
 _UNITS = {"kp": "PWM/rad", "ki": "PWM/(rad s)", "kd": "PWM s/rad"}
 _LEAST = {"kp": 400, "ki": 100, "kd": 100}  # a slider goes at least that far
 _RED = "#c0392b"
+_FRAME = 1 / 25  # s
 
 
-def live_panel(bench, controller, reference=None, *, window=10.0, frames=25):
+def live_panel(bench, controller, reference=None, *, window=10.0):
     """A panel to start, stop and tune `controller` on `bench`.
 
     Args:
         bench: an open bench, whichever. controller: PID, or any controller; one with kp, ki, kd gets sliders for them.
         reference: target(t), until a set point slider is moved; None: hold the pose where the arm stands.
-        window: s that the scope shows. frames: a second.
+        window: s that the scope shows.
 
     Returns: BenchPanel, shown when it is the last line of a cell. A cell that is run again takes over a running loop.
     """
-    if not (math.isfinite(window) and 1 <= window <= 60 and 1 <= frames <= 60):
-        raise InputError(f"window = {window} s, frames = {frames}: give 1 to 60 s and 1 to 60 frames a second")
-    return BenchPanel(bench, controller, reference, window=window, frames=frames)
+    return BenchPanel(bench, controller, reference, window=window)
 
 
 class BenchPanel(widgets.VBox):
@@ -54,9 +53,9 @@ class BenchPanel(widgets.VBox):
 
     panels: ClassVar = weakref.WeakSet()
 
-    def __init__(self, bench, controller, reference, *, window, frames):
+    def __init__(self, bench, controller, reference, *, window):
         self.bench, self.error, self.run = bench, None, None
-        self._controller, self._reference, self._window, self._pause = controller, reference, float(window), 1 / frames
+        self._controller, self._reference, self._window = controller, reference, float(window)
         self._quiet, self._busy, self._cut_wanted = threading.local(), threading.Lock(), False
         self._closed = threading.Event()
         self.controls = {}
@@ -70,7 +69,7 @@ class BenchPanel(widgets.VBox):
         )
         self._take_over()
         BenchPanel.panels.add(self)
-        threading.Thread(target=_pump, args=(weakref.ref(self), self._closed, self._pause), daemon=True).start()
+        threading.Thread(target=_pump, args=(weakref.ref(self), self._closed), daemon=True).start()
 
     # ---- what it looks like
 
@@ -78,12 +77,9 @@ class BenchPanel(widgets.VBox):
         start, stop = partial(self.start, wait=False), partial(self.stop, wait=False)
         self._start_button = self._button("Start", "play", start, button_style="success")
         self._stop_button = self._button("Stop", "stop", stop, tooltip="To the rest pose, then let go")
-        look = {
-            "button_style": "danger",
-            "style": {"font_weight": "bold"},
-            "tooltip": "Drive off at once; the arm sinks",
-        }
+        look = {"button_style": "danger", "tooltip": "Drive off at once; the arm sinks"}
         self._cut_button = self._button("CUT THE DRIVE", "bolt", self.cut, width="190px", **look)
+        self._cut_button.style.font_weight = "bold"
 
     def _button(self, words, icon, order, *, width="110px", **look):
         layout = widgets.Layout(width=width, height="44px")
@@ -288,7 +284,7 @@ class BenchPanel(widgets.VBox):
         close_all(self)
 
 
-def _pump(reference, closed, pause):
+def _pump(reference, closed):
     """Draw frames until the panel is closed or forgotten: absolute deadlines, and no frame twice."""
     due, count = time.monotonic(), 0
     while not closed.is_set():
@@ -303,5 +299,5 @@ def _pump(reference, closed, pause):
         del panel
         count += 1
         now = time.monotonic()
-        due = due + pause if due + pause > now - 4 * pause else now
+        due = due + _FRAME if due + _FRAME > now - 4 * _FRAME else now
         closed.wait(max(0.0, due - now))

@@ -6,8 +6,10 @@
 Simulated, on the arm of the course; case C on the thesis' own arm, whose gains it is about.
 """
 
+import tomllib
 import warnings
 from collections import namedtuple
+from pathlib import Path
 
 import numpy as np
 
@@ -23,42 +25,10 @@ THESIS_KP, THESIS_KD = (25, 200, 200), (10, 40, 40)
 FIRM_KP, FIRM_KI = (1500, 1500, 1500), (300, 2000, 2000)
 
 
-# name: what is wrong; clue: where to look, for whoever names something else; because: what gives it away
-Case = namedtuple("Case", "name clue because")
-
+Case = namedtuple("Case", "name clue because")  # see breaking.toml
 CASES = {
-    "A": Case(
-        "windup",
-        "At the instant in which the joint passes its target: which sign has the command? Which term can that be?",
-        "the joint passes its target, and the command still pushes *on*, for half a second: P has turned round, and "
-        "a memory filled on the way outweighs it.",
-    ),
-    "B": Case(
-        "kick",
-        "Look at the command in the very sample in which the target jumps. What had the *arm* done by then?",
-        "one push to the limit in the instant of the jump, before anything has moved: only the target leaps there.",
-    ),
-    "C": Case(
-        "sampling",
-        "The command goes from limit to limit, and changes every 10 ms at most. What would a quicker clock do?",
-        "each push answers to the speed of the last sample and is held for the whole next one: it turns the joint "
-        "round, and the next push is larger, up to the limit.",
-    ),
-    "D": Case(
-        "delay",
-        "A slow swing that lives on. How far behind the angle does the command come?",
-        "the swing is slow and regular, and the push changes sides too late: it answers to where the joint was.",
-    ),
-    "E": Case(
-        "friction",
-        "Find the seconds in which the joint does not move at all. What does the command do meanwhile?",
-        "the joint stands still, short of its target, while the command creeps up; then it slides, and stands again.",
-    ),
-    "F": Case(
-        "noise",
-        "The arm is where it should be. What does the command look like once it is there?",
-        "the arm rests and the command does not: it answers to angles that are nothing but the converter's trembling.",
-    ),
+    letter: Case(**case)
+    for letter, case in tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")).items()
 }
 
 

@@ -4,17 +4,14 @@ import numpy as np
 from matplotlib.collections import LineCollection
 
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
-from ir50p_lab.course.vision_views import STAMP
+from ir50p_lab.course.vision_views import STAMP, show_picture
 from ir50p_lab.vision import Pinhole
 
 
-def show_picture(ax, image, title=""):
+def bare_picture(ax, image, title=""):
     """A picture without ticks, pixel (0, 0) centred on the origin."""
-    ax.imshow(image, interpolation="antialiased")
-    ax.set(xticks=[], yticks=[])
-    ax.grid(False)
-    ax.spines[:].set_visible(False)
-    ax.set_title(title, fontsize=9)
+    show_picture(ax, image, title, interpolation="antialiased")
+    ax.set_axis_off()
 
 
 def pinhole_figure(points):
@@ -97,8 +94,8 @@ def covered_figure(whole, covered, view):
     Args: whole, covered (h, w, 3); view: View of the covered picture.
     """
     figure = new_figure(9.0, 3.6, cols=2, note=STAMP)
-    show_picture(figure.axes[0], whole, "The whole board: a marker in each white square")
-    show_picture(figure.axes[1], covered, f"The right hidden: {len(view.corners)} corners found")
+    bare_picture(figure.axes[0], whole, "The whole board: a marker in each white square")
+    bare_picture(figure.axes[1], covered, f"The right hidden: {len(view.corners)} corners found")
     figure.axes[1].plot(*view.corners.T, "o", fillstyle="none", color=COLOURS["orange"], markersize=7)
     return figure
 
@@ -116,7 +113,7 @@ def contact_sheet(images, calibration, columns=5):
         if k >= len(images):
             ax.set_visible(False)
             continue
-        show_picture(ax, images[k][::2, ::2] if k not in refused else images[k])
+        bare_picture(ax, images[k][::2, ::2] if k not in refused else images[k])
         if k in used:
             ax.plot(*(used[k].corners.T / 2), ".", color=COLOURS["green"], markersize=2.5)
             ax.plot(*(used[k].corners[0] / 2), "o", color=COLOURS["amber"], markersize=4)
@@ -173,7 +170,7 @@ def residual_figure(images, calibration, view, gain=500):
     """A picture with its residuals as arrows, `gain` times longer, beside those of all views. Returns: LabFigure."""
     one = calibration.views[view]
     figure, left, right = subplots(9.0, 3.8, cols=2, width_ratios=(1.5, 1), note=STAMP)
-    show_picture(left, images[one.index], f"{one.name}: residuals, {gain} times longer, rms {one.rms:.3f} px")
+    bare_picture(left, images[one.index], f"{one.name}: residuals, {gain} times longer, rms {one.rms:.3f} px")
     arrows = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.006}
     left.quiver(*one.corners.T, *(gain * one.residuals).T, color=COLOURS["orange"], **arrows)
     for k, other in enumerate(calibration.views):
@@ -225,7 +222,7 @@ def board_residual_figure(picture, flat, bent):
     Returns: LabFigure.
     """
     figure, first, *maps = subplots(10.5, 3.1, cols=3, width_ratios=(1.1, 1, 1), note=STAMP)
-    show_picture(first, picture, "One of the pictures")
+    bare_picture(first, picture, "One of the pictures")
     for ax, one, name in zip(maps, (flat, bent), ("Board taken for flat", "Bend estimated"), strict=True):
         towards = [_height_direction(one, view) for view in one.views]
         lift = np.mean(
@@ -264,7 +261,7 @@ def table_figure(image, pixels, errors):
     Args: image (h, w, 3); pixels (n, 2) of the balls; errors: {name: estimate minus truth (n, 2) m}.
     """
     figure, left, right = subplots(9.0, 3.7, cols=2, width_ratios=(1.3, 1), note=STAMP)
-    show_picture(left, image, "Balls at the places of Table 4.8")
+    bare_picture(left, image, "Balls at the places of Table 4.8")
     left.plot(*np.transpose(pixels), "+", color="white", markersize=12, markeredgewidth=2)
     for (name, error), marker in zip(errors.items(), "xo^", strict=False):
         right.plot(*(1000 * error).T, marker, fillstyle="none", label=name)

@@ -5,12 +5,12 @@ from matplotlib.patches import Circle
 
 from ir50p_lab.course import vision_views
 from ir50p_lab.course.arm3d import ArmView, FrameView, SideView
+from ir50p_lab.course.drawings import drawing
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
 from ir50p_lab.modelling.chain import forward_kinematics, frames
 
 _XYZ = (COLOURS["orange"], COLOURS["green"], COLOURS["blue"])
 _RENDERED = "rendered picture, simulated arm"
-_BOX = {"boxstyle": "round,pad=0.8", "fc": "#EDF3F8", "ec": "#0072B2"}
 _ARRIVED = 1.5  # s after which a followed ball has been caught up with
 
 
@@ -20,31 +20,8 @@ def origin(simulated):
 
 
 def loop_figure():
-    """What passes from picture to motor, box by box (Figure 4.14). Returns: LabFigure."""
-    figure, ax = subplots(9.0, 2.2)
-    ax.set(xlim=(0, 6), ylim=(-0.05, 1.6), title="From the picture to the motors, and round again")
-    ax.axis("off")
-    boxes = (
-        ("camera", "picture"),
-        ("find_balls", "x, y [px]"),
-        ("TablePlane", "X, Y [m]\non the table"),
-        ("T_base_table", "p [m]\nin the base"),
-        ("IK, plan", "q(t) [rad]"),
-        ("controller", "u [PWM]"),
-    )
-    for k, (name, out) in enumerate(boxes):
-        ax.text(k + 0.5, 1.22, name, ha="center", va="center", fontsize=9.5, bbox=_BOX)
-        ax.text(k + 0.5, 0.88, out, ha="center", va="top", fontsize=8, color=COLOURS["dark"])
-        if k < 5:
-            _arrow(ax, (k + 0.87, 1.22), (k + 1.13, 1.22))
-    _arrow(ax, (5.5, 0.6), (0.5, 0.6), connectionstyle="arc,angleA=-90,angleB=-90,armA=25,armB=25")
-    again = {"ha": "center", "va": "top", "fontsize": 9, "color": COLOURS["dark"]}
-    ax.text(3.0, 0.2, "the camera sees ball and hand: look again", **again)
-    return figure
-
-
-def _arrow(ax, start, end, **style):
-    ax.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0} | style)
+    """What passes from picture to motor, box by box (Figure 4.14). Returns: SVG."""
+    return drawing("picture_to_motors")
 
 
 def frames_figure(arm, q, T_base_cam, ball=None, T_base_board=None, simulated=True):
@@ -205,33 +182,8 @@ def budget_figure(budget, measured=()):
 
 
 def hand_eye_figure():
-    """The two ways from the base to a board in the hand: what is measured, what is sought. Returns: LabFigure."""
-    figure, ax = subplots(7.5, 2.5)
-    ax.set(xlim=(0, 6), ylim=(-0.05, 1.9), title="Two ways from the base to the board, equal in every pose")
-    ax.axis("off")
-    places = {"base": (0.8, 1.35), "tool": (5.2, 1.35), "camera": (0.8, 0.35), "board": (5.2, 0.35)}
-    for name, (x, y) in places.items():
-        ax.text(x, y, name, ha="center", va="center", fontsize=10, bbox=_BOX)
-    known, sought = {"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linestyle": "--"}
-    for a, b, style in (
-        ("base", "tool", known),
-        ("tool", "board", sought),
-        ("base", "camera", sought),
-        ("camera", "board", known),
-    ):
-        (xa, ya), (xb, yb) = places[a], places[b]
-        dx, dy = (0.48, 0.0) if ya == yb else (0.0, -0.24)
-        _arrow(ax, (xa + dx, ya + dy), (xb - dx, yb - dy), lw=1.6, **style)
-    for x, y, text, colour in (
-        (3.0, 1.44, r"$T^{base}_{tool}(q_i)$: potentiometers, in every pose", "blue"),
-        (3.0, 0.44, r"$T^{cam}_{board,i}$: a picture of every pose", "blue"),
-        (0.95, 0.85, r"$T^{base}_{cam}$: sought, constant", "orange"),
-        (5.05, 0.85, r"$T^{tool}_{board}$: unknown, constant", "orange"),
-    ):
-        ha = {0.95: "left", 5.05: "right"}.get(x, "center")
-        va = "center" if y == 0.85 else "bottom"
-        ax.text(x, y, text, ha=ha, va=va, fontsize=10, color=COLOURS[colour])
-    return figure
+    """The two ways from the base to a board in the hand: what is measured, what is sought. Returns: SVG."""
+    return drawing("two_ways_to_the_board")
 
 
 def residual_figure(fit):

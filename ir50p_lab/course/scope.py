@@ -5,8 +5,6 @@ import numpy as np
 from ir50p_lab.course.chart import Chart
 from ir50p_lab.course.style import COLOURS, JOINTS
 
-__all__ = ["Scope"]
-
 _MOST = 300  # samples in a picture: about one for every pixel column of a joint
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ir50p_lab.course.arm3d import ArmView, SideView
+from ir50p_lab.course.drawings import drawing
 from ir50p_lab.course.functions import velocity
 from ir50p_lab.course.functions.pose import frames
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
@@ -16,11 +17,12 @@ _JOINTS, _NAMES = ("purple", "sky", "amber"), ("waist", "shoulder", "elbow")
 class ColumnsView:
     """The arm in 3-D with three arrows at its tip: the tip velocity that each joint alone would give it.
 
-    Args: ax: 3-D axes; arm: Arm; scale: m of arrow per m/s of tip at 1 rad/s.
+    Args: ax: 3-D axes; arm: Arm; scale: m of arrow per m/s of tip at 1 rad/s; aside: m that the third arrow is moved,
+    where it would lie on the second.
     """
 
-    def __init__(self, ax, arm, scale=0.5):
-        self.arm, self._scale = arm, scale
+    def __init__(self, ax, arm, scale=0.5, aside=0.0):
+        self.arm, self._scale, self._aside = arm, scale, aside
         self.view = ArmView(ax, arm)
         azimuth, elevation = np.radians([ax.azim, ax.elev])
         self._to_eye = [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
@@ -31,31 +33,25 @@ class ColumnsView:
             for k, name in enumerate(_JOINTS)
         ]
 
-    def update(self, q):
-        """Move the arm to q (3,) rad. Returns: Jv (3, 3) m/rad."""
+    def update(self, q, Jv=None):
+        """Move the arm to q (3,) rad. Jv: (3, 3) m/rad, by default the arm's own. Returns it."""
         self.view.update(q)
-        tip, Jv = self.view.points[3], jacobian(self.arm, q)[:3]
+        tip, Jv = self.view.points[3], jacobian(self.arm, q)[:3] if Jv is None else Jv
         for k, arrow in enumerate(self.arrows):
             along = self._scale * Jv[:, k]
-            head = tip + along
+            start = tip + np.array([self._aside * (k == 2), 0, 0])
+            head = start + along
             side = np.cross(along, self._to_eye)
             barbs = [head - 0.15 * along + sign * 0.07 * side for sign in (1, -1)]
             beyond = head + 0.07 * self.arm.reach * Jv[:, k] / max(np.linalg.norm(Jv[:, k]), 1e-9)
-            arrow.set_data_3d(*np.column_stack([tip, head, barbs[0], head, barbs[1], np.full(3, np.nan), beyond]))
+            arrow.set_data_3d(*np.column_stack([start, head, barbs[0], head, barbs[1], np.full(3, np.nan), beyond]))
         return Jv
 
 
-def arrows(arm, q, J, scale=0.5):
+def arrows(arm, q, J):
     """The arm at q and the columns of J (3, 3) m/rad at its tip, an arrow a joint: LabFigure."""
     figure, ax = subplots(7.5, 5.0, projection="3d")
-    view = ArmView(ax, arm, q)
-    tip = view.points[3]
-    for joint, colour in enumerate(_JOINTS):
-        start = tip + np.array([0.02 * (joint == 2), 0, 0])  # arrows 2 and 3 would lie on each other
-        style = {"color": COLOURS[colour], "linewidth": 3, "arrow_length_ratio": 0.15, "zorder": 40}
-        ax.quiver(*start, *(scale * J[:, joint]), **style)
-        head = start + 1.15 * scale * J[:, joint]
-        ax.text(*head, f"{joint + 1}", color=COLOURS[colour], weight="bold", fontsize=12, zorder=41)
+    ColumnsView(ax, arm, aside=0.02).update(q, J)
     ax.set_title("Where the tip goes if joint 1, 2 or 3 turns (arrows drawn at half length)")
     return figure
 
@@ -76,25 +72,8 @@ def arrows_panel(arm):
 
 
 def axis_and_lever():
-    """A point that turns about an axis, two levers from the axis to it, and its one velocity. LabFigure."""
-    figure, ax = subplots(5.0, 3.2, projection="3d")
-    circle = np.linspace(0, 2 * np.pi, 91)
-    ax.plot(np.cos(circle), np.sin(circle), 0, color=COLOURS["light"])
-    point = np.array([np.cos(-2.2), np.sin(-2.2), 0])
-    arrows_of = (
-        ((0, 0, -0.3), (0, 0, 1.5), "dark", "axis", (0.08, 0, 0.95)),
-        ((0, 0, 0), point, "blue", "lever", 0.55 * point + [0, 0, -0.2]),
-        ((0, 0, 0.8), point - [0, 0, 0.8], "purple", "another lever", 0.75 * point + [-0.85, -0.45, 0.4]),
-        (point, (-point[1], point[0], 0), "orange", "velocity", (0.25, -1.1, -0.12)),
-    )
-    for start, along, colour, name, place in arrows_of:
-        ax.quiver(*start, *along, color=COLOURS[colour], linewidth=3, arrow_length_ratio=0.12)
-        ax.text(*place, name, color=COLOURS[colour], fontsize=12, weight="bold")
-    ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-0.4, 1.2))
-    ax.set_box_aspect((2, 2, 1.6), zoom=1.4)
-    ax.set_axis_off()
-    ax.view_init(elev=28, azim=-60)
-    return figure
+    """A point that turns about an axis, two levers from the axis to it, and its one velocity: SVG."""
+    return drawing("axis_and_lever")
 
 
 def way_out(arm, distances, speeds, limit):

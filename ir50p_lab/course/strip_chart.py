@@ -10,8 +10,6 @@ import numpy as np
 from ir50p_lab.course.chart import Chart
 from ir50p_lab.course.style import COLOURS
 
-__all__ = ["StripChart"]
-
 _MOST = 600  # points of a curve in a picture
 
 

@@ -2,7 +2,6 @@
 
 import matplotlib
 
-from ir50p_lab.errors import InputError
 from ir50p_lab.lab_figure import LabFigure, figure_style
 
 # Okabe and Ito (2008): told apart with every common kind of colour blindness. Joints 1, 2, 3 take the first three.
@@ -34,11 +33,7 @@ def new_figure(width=9.0, height=None, *, rows=1, cols=1, projection=None, share
 
     Returns: LabFigure. It belongs to nobody but you: pyplot does not know it, nothing shows it twice.
     """
-    if rows < 1 or cols < 1:
-        raise InputError(f"rows={rows}, cols={cols}: a figure needs at least one axes")
     kinds = [projection] * (rows * cols) if projection is None or isinstance(projection, str) else list(projection)
-    if len(kinds) != rows * cols:
-        raise InputError(f"projection lists {len(kinds)} axes, the figure has {rows} x {cols}")
     if height is None:
         height = 5.0 if "3d" in kinds else 1.2 + 2.2 * rows
     with matplotlib.rc_context(figure_style()):

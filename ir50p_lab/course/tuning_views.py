@@ -8,6 +8,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from ir50p_lab.controllers import simc_integrating
+from ir50p_lab.course.drawings import drawing
 from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure, subplots
 from ir50p_lab.identification import FOPDT
 
@@ -145,30 +146,8 @@ def one_joint(*runs, labels, joint, unit="PWM"):
 
 
 def ruler():
-    """The four figures of a step, drawn on a made-up one: LabFigure."""
-    figure, ax = subplots(8.0, 3.4)
-    t = np.linspace(0, 5, 501)
-    q = 0.97 - 0.97 * np.exp(-1.3 * t) * (np.cos(3 * t) + 0.43 * np.sin(3 * t))
-    band = 0.06  # drawn wide, to be seen
-    rise, settled = t[[np.argmax(q > 0.1), np.argmax(q > 0.9)]], t[np.flatnonzero(np.abs(q - 1) > band)[-1] + 1]
-    top = np.argmax(q)
-    ax.axhspan(1 - band, 1 + band, color=COLOURS["light"], label="band about the target")
-    ax.axhline(1, label="target", **SETPOINT)
-    ax.plot(t, q, color=COLOURS["blue"], label="angle")
-    arrow = {"arrowprops": {"arrowstyle": "<->", "color": COLOURS["orange"], "shrinkA": 0, "shrinkB": 0}}
-    for a, b, words, place in (
-        ((rise[0], 0.1), (rise[1], 0.1), "rise time: from 10 % to 90 %", (rise[1] + 0.1, 0.07)),
-        ((0, -0.15), (settled, -0.15), "settling time: from here on it stays in the band", (settled + 0.1, -0.18)),
-        ((t[top], 1), (t[top], q[top]), "overshoot", (t[top] + 0.1, q[top] + 0.05)),
-        ((4.5, q[450]), (4.5, 1), "rest error", (4.1, 0.8)),
-    ):
-        ax.annotate("", a, b, **arrow)
-        ax.text(*place, words, fontsize=9, color=COLOURS["orange"])
-    for x, y in ((rise[0], 0.1), (rise[1], 0.9), (settled, q[np.searchsorted(t, settled)])):
-        ax.plot([x, x], [-0.15 if x == settled else 0.1, y], ":", color=COLOURS["orange"])
-    ax.set(xlim=(0, 5), ylim=(-0.3, 1.35), xlabel="time [s]", ylabel="share of the way [1]")
-    ax.legend(fontsize=8, loc="center right")
-    return figure
+    """The four figures of a step, drawn on a made-up one: SVG."""
+    return drawing("ruler")
 
 
 def rule_in_use(rule):

@@ -6,6 +6,7 @@ import ipywidgets as widgets
 import numpy as np
 
 from ir50p_lab.course.canvas import Canvas
+from ir50p_lab.course.drawings import drawing
 from ir50p_lab.course.painter import encode_png
 from ir50p_lab.course.style import COLOURS, new_figure, subplots
 from ir50p_lab.errors import LabError
@@ -60,22 +61,8 @@ def numbers_figure(grey, x, y, n=9, *, title="An image is a matrix of numbers", 
 
 
 def colour_solids_figure():
-    """The RGB cube and the HSV cone (Figures 3.3, 3.4), each point in its own colour."""
-    steps = np.linspace(0, 255, 9)
-    rgb = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
-    rgb = rgb[(rgb == 0).any(axis=1) | (rgb == 255).any(axis=1)]
-    hue, saturation, value = rgb_to_hsv(rgb).T
-    figure, cube, cone = subplots(9.0, 4.2, cols=2, projection="3d")
-    chroma, angle = saturation * value, np.radians(hue)
-    in_cone = np.column_stack([chroma * np.cos(angle), chroma * np.sin(angle), value])
-    for ax, points in ((cube, rgb), (cone, in_cone)):
-        ax.scatter(*points.T, c=rgb / 255, s=22, depthshade=False)
-        ax.set_box_aspect(None, zoom=0.85)  # room for the labels, which the layout does not see
-    cube.set(xticks=(0, 128, 255), yticks=(0, 128, 255), zticks=(0, 128, 255))
-    cone.set(xticks=(-1, 0, 1), yticks=(-1, 0, 1), zticks=(0, 0.5, 1))
-    cube.set(xlabel="R [level]", ylabel="G [level]", zlabel="B [level]", title="RGB: a cube")
-    cone.set(xlabel="S V cos H [1]", ylabel="S V sin H [1]", zlabel="V [1]", title="HSV: a cone, hue is the angle")
-    return figure
+    """The RGB cube and the HSV cone (Figures 3.3, 3.4), each point in its own colour: SVG."""
+    return drawing("colour_solids")
 
 
 def ball_hues_figure(image, ball):

@@ -26,10 +26,10 @@ def _shape(exercise):
             yield f"{what} is not one line"
     if exercise.task.endswith((".", "?")):
         yield "the task ends in a full stop"
-    for slip in exercise.all_slips:
-        if not 15 <= len(slip.message) <= 260 or slip.message[-1] not in ".?:":
-            yield f"message {slip.message!r} is not one or two sentences"
-    for text in (exercise.task, exercise.hint, exercise.kind.wanted, *(slip.message for slip in exercise.all_slips)):
+    for message in _messages(exercise):
+        if not 15 <= len(message) <= 260 or message[-1] not in ".?:":
+            yield f"message {message!r} is not one or two sentences"
+    for text in (exercise.task, exercise.hint, exercise.kind.wanted, *_messages(exercise)):
         for secret in secrets(exercise):
             if secret in text and secret not in exercise.task:
                 yield f"{text!r} gives the answer away: {secret}"
@@ -49,18 +49,26 @@ def _stubs(exercise):
             yield f"stub {stub!r} is {verdict.state}: {verdict.text}"
 
 
+def _messages(exercise):
+    """What is said to the author's slips and to those that all exercises of the kind know."""
+    return list(exercise.slips | exercise.kind.common_slips)
+
+
 def _slips(exercise):
-    messages = [slip.message for slip in exercise.all_slips]
-    if len(messages) < 3:
-        yield f"only {len(messages)} slips"
-    if len(set(messages)) < len(messages):
-        yield "two slips share a message"
-    for slip in exercise.all_slips:
-        verdict = grade(exercise, wrong_answer(exercise.kind, slip.wrong))
-        if verdict.state != "slip" or not verdict.text.endswith(slip.message):
-            yield f"slip {slip.message!r} is answered by {verdict.state}: {verdict.text}"
-    if isinstance(exercise.kind, Choice) and len(exercise.slips) != len(exercise.kind.options) - 1:
-        yield "a wrong option has no slip"
+    if len(_messages(exercise)) < 3:
+        yield f"only {len(_messages(exercise))} slips"
+    for message, wrong in exercise.slips.items():
+        verdict = grade(exercise, wrong_answer(exercise.kind, wrong))
+        if verdict.state != "slip" or not verdict.text.endswith(message):
+            yield f"slip {message!r} is answered by {verdict.state}: {verdict.text}"
+    for message, wrong in exercise.kind.common_slips.items():  # one of the author's may say more of the same answer
+        verdict = grade(exercise, wrong_answer(exercise.kind, wrong))
+        if verdict.state != "slip" and not exercise.kind.is_right(exercise.kind.read_wrong(wrong)):
+            yield f"slip {message!r} is answered by {verdict.state}: {verdict.text}"
+    if isinstance(exercise.kind, Choice) and {exercise.kind.right, *exercise.slips.values()} != set(
+        exercise.kind.options
+    ):
+        yield "a wrong option has no slip, or the right one is none of them"
 
 
 def _wrong(exercise):
@@ -144,10 +152,10 @@ def _number_forms(kind, right):
     array = np.asarray(right)
     forms = [array, array.tolist(), sympy.sympify(array.tolist()), np.float64(right) if array.ndim == 0 else right]
     if array.ndim == 1:
-        forms += [tuple(array), array[:, None], array[None, :], sympy.Matrix(array), iter(array.tolist())]
-        forms += [[sympy.Float(entry, 30) for entry in array], dict(enumerate(array))]
+        forms += [tuple(array), array[:, None], array[None, :], sympy.Matrix(array)]
+        forms += [[sympy.Float(entry, 30) for entry in array]]
     if array.ndim == 2:
-        forms += [sympy.Matrix(array), [list(row) for row in array], tuple(map(tuple, array)), iter(array)]
+        forms += [sympy.Matrix(array), [list(row) for row in array], tuple(map(tuple, array))]
     if array.ndim == 0:
         forms += [[right], sympy.Float(right, 30)]
     if np.all(array == np.round(array)):

@@ -5,7 +5,6 @@ import pytest
 from ir50p_lab.course.clickable import click_sets
 from ir50p_lab.course.style import new_figure
 from ir50p_lab.course.widgets import live, slider
-from ir50p_lab.errors import InputError
 
 
 @pytest.fixture
@@ -85,13 +84,6 @@ def test_the_corners_of_the_axes(panel):
     updates = panel.updates
     click_at(panel, 0.999, 0.5)
     assert panel.updates == updates
-
-
-def test_refusals(panel):
-    with pytest.raises(InputError, match="no slider 'ki'"):
-        click_sets(panel, panel.figure.axes[0], x="ki", y="kd")
-    with pytest.raises(InputError, match="own figure"):
-        click_sets(panel, new_figure().axes[0], x="kp", y="kd")
 
 
 def test_the_picture_tells_screen_readers_what_to_do(panel):

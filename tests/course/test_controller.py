@@ -6,6 +6,7 @@ import solutions
 from cells import cell
 
 from ir50p_lab.course import check, my_robot
+from ir50p_lab.course.functions import controller_trials as trials
 from ir50p_lab.course.functions import folder
 from ir50p_lab.course.functions.catalogue import STAGES, task
 from ir50p_lab.course.functions.grade import grade
@@ -214,6 +215,14 @@ def test_wrong_ones_are_told_apart(stage, old, new, words):
     verdict = grade(task(stage), made(edited(stage, (old, new))))
     assert verdict.state == "wrong"
     assert words in verdict.says, verdict.says
+
+
+@pytest.mark.parametrize("stage", ALL)
+def test_every_mistake_in_a_table_gets_its_own_sentence(stage):
+    earlier = {"the integral has the gain kp: it has its own, ki"}  # told by what it adds to P where ki is 0
+    for wrong, says in trials._wrong_ones(stage):
+        verdict = grade(task(stage), wrong)
+        assert verdict.state == "wrong" and (says in verdict.says or says in earlier), verdict.says
 
 
 def test_no_reset_a_shared_memory_gains_read_once_and_a_kick():

@@ -1,8 +1,6 @@
 """Figures: the style is local, figures show themselves, and what is drawn is where the kinematics says."""
 
 import io
-import subprocess
-import sys
 
 import matplotlib
 import numpy as np
@@ -11,7 +9,6 @@ from mpl_toolkits.mplot3d import Axes3D
 from PIL import Image
 
 from ir50p_lab.course.arm3d import ArmView, FrameView, SideView, arm_points
-from ir50p_lab.course.figures import readme_picture
 from ir50p_lab.course.painter import Painter
 from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure
 from ir50p_lab.errors import InputError
@@ -35,10 +32,6 @@ def test_axes_come_row_by_row_with_their_projections():
     figure = new_figure(rows=1, cols=2, projection=["3d", None], width_ratios=(2, 1))
     assert [isinstance(ax, Axes3D) for ax in figure.axes] == [True, False]
     assert [isinstance(ax, Axes3D) for ax in new_figure(rows=2, projection="3d").axes] == [True, True]
-    with pytest.raises(InputError, match="lists 1 axes, the figure has 1 x 2"):
-        new_figure(cols=2, projection=["3d"])
-    with pytest.raises(InputError, match="at least one axes"):
-        new_figure(rows=0)
 
 
 def test_shared_x_axes_move_together_and_only_the_lowest_is_labelled():
@@ -178,25 +171,8 @@ def test_a_frame_moves():
     np.testing.assert_allclose(np.column_stack(frame.axes[2].get_data_3d())[1], (1, 2, 3.5))
 
 
-@pytest.mark.parametrize("T", [np.eye(3), np.full((4, 4), np.nan)])
-def test_a_frame_that_is_none_is_refused(T):
-    with pytest.raises(InputError, match="finite"):
-        FrameView(new_figure(projection="3d").axes[0], T)
-
-
-@pytest.mark.parametrize("q", [np.zeros((2, 3)), (0, 0), (0, np.nan, 0)])
+@pytest.mark.parametrize("q", [(0, 0), (0, np.nan, 0)])
 def test_a_view_shows_one_finite_pose(q):
     view = ArmView(new_figure(projection="3d").axes[0], IR50P)
     with pytest.raises(InputError):
         view.update(q)
-
-
-def test_readme_picture_says_that_it_is_a_drawing(tmp_path):
-    assert "drawing of the model" in readme_picture().axes[0].get_title()
-    target = tmp_path / "arm.png"
-    command = [sys.executable, "-m", "ir50p_lab.course.figures"]
-    subprocess.run([*command, str(target)], check=True)
-    with Image.open(target) as image:
-        assert image.size == (1200, 810)
-    usage = subprocess.run(command, capture_output=True, text=True)
-    assert usage.returncode != 0 and "FILE.png" in usage.stderr

@@ -29,8 +29,7 @@ def text_of(figure):
     return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
-def test_loop_and_frames_name_their_parts():
-    assert all(name in text_of(views.loop_figure()) for name in ("find_balls", "T_base_table", "u [PWM]", "look again"))
+def test_frames_name_their_parts():
     board = np.diag([1.0, -1, -1, 1])
     text = text_of(views.frames_figure(IR50P, rest_pose(IR50P), T_BASE_CAM, BALL, board))
     assert all(name in text for name in ("{0}", "{c}", "{ob}", "board", "rendered picture, simulated arm"))
@@ -80,7 +79,6 @@ def test_tip_and_budget_and_residuals_show_their_numbers():
     found = HandEye(T_BASE_CAM, np.eye(4), np.full(4, 2e-3), np.full(4, 1e-3))
     text = text_of(views.residual_figure(found))
     assert "open by 1.0 mm" in text and "open by 2.0 mrad" in text
-    assert all(name in text_of(views.hand_eye_figure()) for name in ("base", "tool", "camera", "board", "sought"))
 
 
 def test_following_shows_how_far_the_tip_is_ahead():

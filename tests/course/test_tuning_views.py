@@ -7,7 +7,7 @@ import pytest
 
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.painter import Painter
-from ir50p_lab.course.tuning_views import GainMap, JointPlots, LocusView, one_joint, rule_in_use, ruler, three_columns
+from ir50p_lab.course.tuning_views import GainMap, JointPlots, LocusView, one_joint, rule_in_use, three_columns
 from ir50p_lab.course.widgets import live
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
@@ -105,11 +105,6 @@ def test_one_joint_shows_each_run_and_the_target_of_the_first(run):
     np.testing.assert_array_equal(first, run.q[:, 1])
     np.testing.assert_array_equal(second, flat.q[:, 1])
     np.testing.assert_array_equal(figure.axes[1].lines[1].get_ydata(), flat.u[:, 1])
-
-
-def test_the_ruler_shows_all_four_figures():
-    said = " ".join(text.get_text() for text in ruler().axes[0].texts)
-    assert all(name in said for name in ("rise time", "settling time", "overshoot", "rest error"))
 
 
 def test_a_rule_that_is_right_is_used_and_any_other_is_not(capsys):

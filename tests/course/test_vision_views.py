@@ -131,10 +131,6 @@ def test_rays_of_the_lens_meet_at_the_image():
     assert np.nanmax(y) == pytest.approx(1.0)
 
 
-def test_colour_solids():
-    views.colour_solids_figure().savefig(io.BytesIO(), format="png")
-
-
 @pytest.mark.parametrize("x", [3.0, 150.0, 316.0])
 @pytest.mark.parametrize("y", [4.0, 230.0])
 def test_labels_of_balls_stay_in_the_picture(x, y):

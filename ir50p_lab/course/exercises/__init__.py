@@ -21,7 +21,7 @@ imported only when an "ik-" exercise is asked for. It defines two names:
         "the joint angles q of the branch front/up for p = (0.3, 0.1, 0.4) m",       # the task, one line
         Number(right, unit="rad", tolerance=1e-3, angle=True),
         why="All four branches put the tip on the same point; the joint limits choose.",
-        slips=(Slip(down, "That is the elbow-down branch: the sign of sin q3 chooses."), ...),
+        slips={"That is the elbow-down branch: the sign of sin q3 chooses.": down, ...},
     )
 
 Kinds of answer (each documents its options):
@@ -32,8 +32,8 @@ Kinds of answer (each documents its options):
 Rules:
 - Compute `right` with the package and with constants of this module (IR50P, not load_arm()): the student's
   variables, or another arm, must not move it. Task and figures in the notebook state the same constants.
-- `Slip(wrong, message)`: `wrong` is a wrong answer, or a function of the right one (np.negative); for a Function
-  the wrong function. Numbers bring common slips along: the sign; degrees (unit="rad"); millimetres (unit="m");
+- `slips`: {what to say: a wrong answer, or a function of the right one (np.negative)}; for a Function the wrong
+  function. Numbers bring common slips along: the sign; degrees (unit="rad"); millimetres (unit="m");
   functions those of `functions/distortions.py`. Name at least three, with different messages, none equal to another
   or to the right answer; a Choice needs a slip for every wrong option. A message says what is wrong and where to
   look, never the answer. The student's answer is repeated in front of it.
@@ -44,8 +44,9 @@ Rules:
 """
 
 import textwrap
+from dataclasses import replace
 
-from ir50p_lab.course.exercises._answers import Choice, Exercise, Slip, Verdict, grade
+from ir50p_lab.course.exercises._answers import Choice, Exercise, grade
 from ir50p_lab.course.exercises._catalogue import everything, find
 from ir50p_lab.course.exercises._display import Note, show
 from ir50p_lab.course.exercises._functions import Function
@@ -59,8 +60,6 @@ __all__ = [
     "Exercise",
     "Function",
     "Number",
-    "Slip",
-    "Verdict",
     "check",
     "exercises",
     "grade",
@@ -80,15 +79,13 @@ def check(name: str, answer=...) -> None:
     except InputError as error:
         show(Note("unknown", "check", str(error)))
         return
-    verdict = grade(exercise, answer)
-    text = verdict.text
-    if verdict.state == "right":
+    note = grade(exercise, answer)
+    if note.state == "right":
         try:
             record(exercise.name)
         except LabBookError as error:
-            text += f" (Not noted: {error})"
-    more = (("one input that fails", verdict.example),) if verdict.example else ()
-    show(Note(verdict.state, exercise.name, text, more, open_first=True))
+            note = replace(note, text=f"{note.text} (Not noted: {error})")
+    show(note)
 
 
 def solution(name: str):

@@ -69,14 +69,14 @@ class Function(Kind):
             right=self.right,
             loan="",
             cases=lambda: self._inputs,
-            slips=tuple(Mistake(slip.wrong, slip.message) for slip in exercise.slips),
+            slips=tuple(Mistake(wrong, message) for message, wrong in exercise.slips.items()),
             tolerance=self.tolerance,
             unit=self.unit,
         )
         found = grade(task, self.read(answer))
         if found.state == "right":
-            return "right", "", ""
-        if found.says in [slip.message for slip in exercise.slips]:
+            return "right", f"right. {exercise.why}"
+        if found.says in exercise.slips:
             return "slip", f"not yet: {found.says}", found.example
         return "wrong", f"not yet: {ended(found.says)} Expected: {self.wanted}. {exercise.hint}", found.example
 

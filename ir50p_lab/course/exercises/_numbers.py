@@ -1,11 +1,10 @@
 """Answers that are numbers: one, a vector or a matrix."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.course.exercises._answers import Kind, NotAnswered, Slip, Unreadable, kind_of
+from ir50p_lab.course.exercises._answers import Kind, NotAnswered, Unreadable, kind_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,12 +51,6 @@ class Number(Kind):
             found = found.reshape(self.right.shape)  # a (3, 1) column is as good as three numbers
         return found
 
-    def check_form(self, found) -> None:
-        """Raise Unreadable if an answer that was read has another shape than the right one."""
-        if found.shape != self.right.shape:
-            flipped = found.ndim == 2 and found.T.shape == self.right.shape
-            raise Unreadable(shape_in_words(found.shape) + " (rows and columns swapped?)" * flipped)
-
     def read_wrong(self, wrong) -> np.ndarray:
         """Return the value of a slip: given as such, or as a function of the right answer."""
         return self.read(wrong(self.solution) if callable(wrong) else wrong)
@@ -76,7 +69,10 @@ class Number(Kind):
         return show_number(found)
 
     def remark(self, found) -> str:
-        """Say how far a wrong answer is right, without giving the answer away."""
+        """Say how far a wrong answer is right, without giving it away. Raises Unreadable for another shape."""
+        if found.shape != self.right.shape:
+            flipped = found.ndim == 2 and found.T.shape == self.right.shape
+            raise Unreadable(shape_in_words(found.shape) + " (rows and columns swapped?)" * flipped)
         near = min(20 * self.tolerance, 0.1 * np.max(np.abs(self.right), initial=0))
         if np.all(self._agreement(found, self.right, near)):
             limit = f"{self.tolerance:.2g}{' ' * bool(self.unit)}{self.unit}"
@@ -87,14 +83,15 @@ class Number(Kind):
         off = [str(list(map(int, i))) for i in np.argwhere(~agrees)]
         return f"Not all of it is wrong; look again at {', '.join('answer' + i for i in off[:4])}."
 
-    def common_slips(self) -> tuple[Slip, ...]:
+    @property
+    def common_slips(self) -> dict:
         """Slips that every exercise of this kind knows: sign, and the unit where it has one."""
-        slips = [Slip(np.negative, "The size is right, the sign is not: which direction counts as positive?")]
+        slips = {"The size is right, the sign is not: which direction counts as positive?": np.negative}
         if self.unit == "rad":
-            slips.append(Slip(np.rad2deg, "That is in degrees; inside the package every angle is in radians."))
+            slips["That is in degrees; inside the package every angle is in radians."] = np.rad2deg
         if self.unit == "m":
-            slips.append(Slip(lambda right: np.multiply(1000, right), "That is in millimetres, not in metres."))
-        return tuple(slip for slip in slips if not self.is_right(self.read_wrong(slip.wrong)))  # the sign of zero
+            slips["That is in millimetres, not in metres."] = lambda right: np.multiply(1000, right)
+        return slips
 
     def _decimals(self) -> str:
         if self.tolerance <= 1e-6:
@@ -116,12 +113,8 @@ class Number(Kind):
 def to_floats(answer) -> np.ndarray:
     """Return numbers in any usual form as a float array; Unreadable says what was found instead.
 
-    Lists, tuples, arrays, dicts (their values), SymPy numbers and matrices, and what can be iterated over are all read.
+    Lists, tuples, arrays, SymPy numbers and matrices are all read.
     """
-    if isinstance(answer, dict):
-        answer = list(answer.values())
-    elif not isinstance(answer, str | np.ndarray) and isinstance(answer, Iterable):
-        answer = answer.tolist() if hasattr(answer, "tolist") else list(answer)
     entries = np.array(answer, dtype=object)
     if entries.size == 0:
         raise Unreadable("something empty")

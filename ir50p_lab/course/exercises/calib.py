@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.exercises import Choice, Exercise, Function, Number, Slip
+from ir50p_lab.course.exercises import Choice, Exercise, Function, Number
 
 NOTEBOOK = "17_camera_calibration"
 
@@ -51,39 +51,30 @@ EXERCISES = (
         "cx, cy = 320, 240, without distortion",
         Number(_pixel(_POINT, _K), unit="px", tolerance=0.05, because="a tenth of a pixel is what a finder resolves"),
         why="Divide by the depth first: that is all of perspective; K only scales and shifts.",
-        slips=(
-            Slip((_K @ _POINT)[:2], "Those are w x and w y: divide by the third entry, the depth."),
-            Slip(
-                _pixel(_POINT, _K) - _K[:2, 2],
-                "That counts from the optical axis: (0, 0) is the picture's corner.",
-            ),
-            Slip(_pixel(_POINT, _K)[::-1], "Those are y and x: a pixel is (column, row) here."),
-            Slip(
-                _K[:2, 2] - (_pixel(_POINT, _K) - _K[:2, 2]),
-                "Mirrored: the virtual image plane is in front of the lens.",
-            ),
-        ),
+        slips={
+            "Those are w x and w y: divide by the third entry, the depth.": (_K @ _POINT)[:2],
+            "That counts from the optical axis: (0, 0) is the picture's corner.": _pixel(_POINT, _K) - _K[:2, 2],
+            "Those are y and x: a pixel is (column, row) here.": _pixel(_POINT, _K)[::-1],
+            "Mirrored: the virtual image plane is in front of the lens.": _K[:2, 2] - (_pixel(_POINT, _K) - _K[:2, 2]),
+        },
     ),
     Exercise(
         "calib-2",
         "distorted (x, y) of the normalised point (x, y) by k1, k2, p1, p2: a function of (x, y, k1, k2, p1, p2)",
         Function(_distort, cases=_LENSES, tolerance=1e-9),
         why="These are the formulas the thesis names and leaves out; k3 r^6 would be the next radial term.",
-        slips=(
-            Slip(_with_r, "The radial terms hold r^2 and r^4, even powers: with r itself the lens would have a cusp."),
-            Slip(
-                lambda x, y, k1, k2, p1, p2: _distort(x, y, k1, k2, p2, p1),
-                "p1 and p2 are swapped: p2 goes with r^2 + 2 x^2 in x.",
+        slips={
+            "The radial terms hold r^2 and r^4, even powers: with r itself the lens would have a cusp.": _with_r,
+            "p1 and p2 are swapped: p2 goes with r^2 + 2 x^2 in x.": (
+                lambda x, y, k1, k2, p1, p2: _distort(x, y, k1, k2, p2, p1)
             ),
-            Slip(
-                lambda x, y, k1, k2, p1, p2: _distort(x, y, k1, k2, 0, 0),
-                "The radial part is right; the tangential one, of a tilted lens, is missing.",
+            "The radial part is right; the tangential one, of a tilted lens, is missing.": (
+                lambda x, y, k1, k2, p1, p2: _distort(x, y, k1, k2, 0, 0)
             ),
-            Slip(
-                lambda x, y, k1, k2, p1, p2: _distort(x, y, k1, k2, p1, p2) - np.array([x, y]),
-                "That is how far the point moves: add where it was.",
+            "That is how far the point moves: add where it was.": (
+                lambda x, y, k1, k2, p1, p2: _distort(x, y, k1, k2, p1, p2) - np.array([x, y])
             ),
-        ),
+        },
     ),
     Exercise(
         "calib-3",
@@ -98,11 +89,11 @@ EXERCISES = (
             },
         ),
         why="Pixels know angles, not metres. The table plane will be 4 % wrong, though: measure the board with care.",
-        slips=(
-            Slip("focal length", "A board twice as large, twice as far away, gives the same picture, and fx."),
-            Slip("distortion", "Distortion acts on x = X/Z: the unit of X and Z has cancelled."),
-            Slip("everything", "Try it: calibrate with another square, and compare K, rms and the poses."),
-        ),
+        slips={
+            "A board twice as large, twice as far away, gives the same picture, and fx.": "focal length",
+            "Distortion acts on x = X/Z: the unit of X and Z has cancelled.": "distortion",
+            "Try it: calibrate with another square, and compare K, rms and the poses.": "everything",
+        },
     ),
     Exercise(
         "calib-4",
@@ -112,17 +103,15 @@ EXERCISES = (
             _shift(_LENS_HEIGHT, _AWAY, _RADIUS), unit="m", tolerance=3e-4, because="a third of a millimetre will do"
         ),
         why="The shift grows with the distance from the camera's foot: no constant offset can repair it.",
-        slips=(
-            Slip(_RADIUS, "The radius is right only if the line of sight falls at 45 degrees: similar triangles."),
-            Slip(
-                _shift(_LENS_HEIGHT, _AWAY, 2 * _RADIUS),
-                "That is the shift of the top of the ball: its centre is one radius above the table.",
+        slips={
+            "The radius is right only if the line of sight falls at 45 degrees: similar triangles.": _RADIUS,
+            "That is the shift of the top of the ball: its centre is one radius above the table.": (
+                _shift(_LENS_HEIGHT, _AWAY, 2 * _RADIUS)
             ),
-            Slip(
-                _RADIUS * _AWAY / _LENS_HEIGHT,
-                "Nearly: the line falls from the lens to the *ball*, over a height of 0.6 m less its radius.",
+            "Nearly: the line falls from the lens to the *ball*, over a height of 0.6 m less its radius.": (
+                _RADIUS * _AWAY / _LENS_HEIGHT
             ),
-            Slip(_RADIUS * (_LENS_HEIGHT - _RADIUS) / _AWAY, "Upside down: a flatter line of sight must miss by more."),
-        ),
+            "Upside down: a flatter line of sight must miss by more.": _RADIUS * (_LENS_HEIGHT - _RADIUS) / _AWAY,
+        },
     ),
 )

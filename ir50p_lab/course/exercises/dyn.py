@@ -1,8 +1,10 @@
 """Exercises of notebook 04: inertia, holding torque, acceleration, friction, motor voltage."""
 
+from functools import partial
+
 import numpy as np
 
-from ir50p_lab.course.exercises import Exercise, Function, Number, Slip
+from ir50p_lab.course.exercises import Exercise, Function, Number
 from ir50p_lab.modelling import (
     IR50P,
     THESIS_RODS,
@@ -30,22 +32,13 @@ _LIFT = jacobian(IR50P, _POSE)[2]  # the row of Jv that belongs to z
 
 
 # dyn-3: acceleration of the thesis' arm (slender rods) from its M, C and g.
+def _solved(q, qd, tau, coriolis=1.0, weight=1.0):
+    M, C, g = mass_matrix(THESIS_RODS, q), coriolis_matrix(THESIS_RODS, q, qd), gravity(THESIS_RODS, q)
+    return np.linalg.solve(M, tau - coriolis * C @ qd - weight * g)
+
+
 def _acceleration(q, qd, tau):
-    M, C, g = mass_matrix(THESIS_RODS, q), coriolis_matrix(THESIS_RODS, q, qd), gravity(THESIS_RODS, q)
-    return np.linalg.solve(M, tau - C @ qd - g)
-
-
-def _without_coriolis(q, qd, tau):
-    return np.linalg.solve(mass_matrix(THESIS_RODS, q), tau - gravity(THESIS_RODS, q))
-
-
-def _bias_with_wrong_sign(q, qd, tau):
-    M, C, g = mass_matrix(THESIS_RODS, q), coriolis_matrix(THESIS_RODS, q, qd), gravity(THESIS_RODS, q)
-    return np.linalg.solve(M, tau + C @ qd + g)
-
-
-def _without_gravity(q, qd, tau):
-    return np.linalg.solve(mass_matrix(THESIS_RODS, q), tau - coriolis_matrix(THESIS_RODS, q, qd) @ qd)
+    return _solved(q, qd, tau)
 
 
 def _divided_by_the_diagonal(q, qd, tau):
@@ -76,58 +69,52 @@ EXERCISES = (
         "the moment of inertia about the elbow of a rod (0.6 kg, 0.4 m) with a hand (0.2 kg, a point) at its end",
         Number(_ROD / 3 + _HAND, unit="kg m^2", tolerance=1e-4),
         why="The hand is a quarter of the mass and half of the inertia: distance counts squared.",
-        slips=(
-            Slip(
-                _ROD / 12 + _HAND, "The rod turns about its end here, not about its middle: Steiner's term is missing."
-            ),
-            Slip(_ROD / 4 + _HAND, "That takes the rod as a point in its middle: its own inertia about it is missing."),
-            Slip(_ROD / 3, "That is the rod alone: the hand turns with it."),
-            Slip(_ROD / 12 + _HAND / 4, "That is about the middle of the rod; the arm turns about the elbow."),
-        ),
+        slips={
+            "The rod turns about its end here, not about its middle: Steiner's term is missing.": _ROD / 12 + _HAND,
+            "That takes the rod as a point in its middle: its own inertia about it is missing.": _ROD / 4 + _HAND,
+            "That is the rod alone: the hand turns with it.": _ROD / 3,
+            "That is about the middle of the rod; the arm turns about the elbow.": _ROD / 12 + _HAND / 4,
+        },
     ),
     Exercise(
         "dyn-2",
         "the three torques that hold the IR50P at q = (0.3, 0.5, -0.7) rad with 0.5 kg at its tip",
         Number(_OWN + _LIFT * _PAYLOAD * IR50P.g, unit="N m", tolerance=1e-3),
         why="Half a kilogram (the maker's payload) adds three quarters of what the links ask of the shoulder.",
-        slips=(
-            Slip(_OWN, "That holds the arm alone: the payload pulls at the tip as well."),
-            Slip(_OWN - _LIFT * _PAYLOAD * IR50P.g, "The payload makes it heavier, not lighter: check its sign."),
-            Slip(_OWN + _LIFT * _PAYLOAD, "The payload entered as a mass; its weight is m g."),
-            Slip(_LIFT * _PAYLOAD * IR50P.g, "That holds the payload alone: the links have weight too."),
-        ),
+        slips={
+            "That holds the arm alone: the payload pulls at the tip as well.": _OWN,
+            "The payload makes it heavier, not lighter: check its sign.": _OWN - _LIFT * _PAYLOAD * IR50P.g,
+            "The payload entered as a mass; its weight is m g.": _OWN + _LIFT * _PAYLOAD,
+            "That holds the payload alone: the links have weight too.": _LIFT * _PAYLOAD * IR50P.g,
+        },
     ),
     Exercise(
         "dyn-3",
         "the acceleration of THESIS_RODS as a function of (q, qd, tau), from M, C and g",
         Function(_acceleration, cases=_STATES, unit="rad/s^2", tolerance=1e-6),
         why="These three lines are forward dynamics: every simulation of this course calls them.",
-        slips=(
-            Slip(_without_coriolis, "The velocities have no effect in it: C qd is missing."),
-            Slip(_without_gravity, "The arm would float: g is missing."),
-            Slip(
-                _bias_with_wrong_sign, "C qd and g stand on the side of M qdd in (1.74): they change sign when moved."
+        slips={
+            "The velocities have no effect in it: C qd is missing.": partial(_solved, coriolis=0.0),
+            "The arm would float: g is missing.": partial(_solved, weight=0.0),
+            "C qd and g stand on the side of M qdd in (1.74): they change sign when moved.": partial(
+                _solved, coriolis=-1.0, weight=-1.0
             ),
-            Slip(_divided_by_the_diagonal, "M couples the joints: solve with all of it, not with its diagonal."),
-        ),
+            "M couples the joints: solve with all of it, not with its diagonal.": _divided_by_the_diagonal,
+        },
     ),
     Exercise(
         "dyn-4",
         "the friction torque at -0.02 rad/s for fv = 2, fc = 0.5, fs = 0.9 and qs = 0.05",
         Number(_RIGHT_FRICTION, unit="N m", tolerance=1e-3),
         why="Below the Stribeck velocity the slower joint needs more torque: this makes it stick and slip.",
-        slips=(
-            Slip(2 * _CREEP - 0.5, "That leaves the Stribeck term out, which matters at this low speed."),
-            Slip(2 * _CREEP - 0.9, "At 0.02 rad/s part of the Stribeck term is gone already: it decays with speed."),
-            Slip(
-                2 * _CREEP - 0.5 - 0.9 * _DECAY,
-                "The Stribeck term starts from fs - fc, so that both together start from fs.",
+        slips={
+            "That leaves the Stribeck term out, which matters at this low speed.": 2 * _CREEP - 0.5,
+            "At 0.02 rad/s part of the Stribeck term is gone already: it decays with speed.": 2 * _CREEP - 0.9,
+            "The Stribeck term starts from fs - fc, so that both together start from fs.": (
+                2 * _CREEP - 0.5 - 0.9 * _DECAY
             ),
-            Slip(
-                2 * _CREEP + 0.5 + 0.4 * _DECAY,
-                "All three parts change sign with the velocity, not only the viscous one.",
-            ),
-        ),
+            "All three parts change sign with the velocity, not only the viscous one.": 2 * _CREEP + 0.5 + 0.4 * _DECAY,
+        },
     ),
     Exercise(
         "dyn-5",
@@ -135,16 +122,13 @@ EXERCISES = (
         "(N = 50, Jm = 8e-5 kg m^2, kt = ke = 0.05, Ra = 4 ohm)",
         Number(_VOLTS, unit="V", tolerance=5e-3),
         why="The gear multiplies the rotor's inertia by N^2: 0.2 kg m^2 here, more than the forearm has.",
-        slips=(
-            Slip(_VOLTS - _BACK_EMF, "The back-EMF ke N qd is missing: a turning motor works against its supply."),
-            Slip(
-                _PER_TORQUE * (_TAU + 50 * 8e-5 * _QDD) + _BACK_EMF,
-                "The rotor's inertia is taken N times, as in the thesis; at the joint it counts N^2 times.",
+        slips={
+            "The back-EMF ke N qd is missing: a turning motor works against its supply.": _VOLTS - _BACK_EMF,
+            "The rotor's inertia is taken N times, as in the thesis; at the joint it counts N^2 times.": (
+                _PER_TORQUE * (_TAU + 50 * 8e-5 * _QDD) + _BACK_EMF
             ),
-            Slip(
-                _TAU + 50 * 8e-5 * _QDD, "That adds torques as (1.120) prints it: the result is in N m, not in volts."
-            ),
-            Slip(_PER_TORQUE * _TAU + _BACK_EMF, "The rotor has to be accelerated too: N^2 Jm qdd is missing."),
-        ),
+            "That adds torques as (1.120) prints it: the result is in N m, not in volts.": _TAU + 50 * 8e-5 * _QDD,
+            "The rotor has to be accelerated too: N^2 Jm qdd is missing.": _PER_TORQUE * _TAU + _BACK_EMF,
+        },
     ),
 )

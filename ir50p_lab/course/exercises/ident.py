@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.exercises import Exercise, Number, Slip
+from ir50p_lab.course.exercises import Exercise, Number
 from ir50p_lab.identification import base_parameters, regressor
 from ir50p_lab.identification.parameters import NAMES, ONLY_THESIS
 from ir50p_lab.modelling import IR50P
@@ -38,21 +38,16 @@ EXERCISES = (
         "the estimate after one step of recursive least squares from theta = 2, P = 0.5, with phi = 3 and y = 9",
         Number(_STEP, tolerance=2e-3),
         why="One sample explains most of itself: the new estimate predicts 8.45 where 9 was measured.",
-        slips=(
-            Slip(
-                _THETA + _P * _PHI / (1 + _PHI / _P * _PHI) * (_Y - _PHI * _THETA),
-                "That has the inverse of P inside the bracket, as (2.44) is printed.",
+        slips={
+            "That has the inverse of P inside the bracket, as (2.44) is printed.": (
+                _THETA + _P * _PHI / (1 + _PHI / _P * _PHI) * (_Y - _PHI * _THETA)
             ),
-            Slip(
-                _THETA - _GAIN * _PHI * _THETA - _GAIN * _Y,
-                "That is the first line of (2.40) as printed: the measurement enters with a plus.",
+            "That is the first line of (2.40) as printed: the measurement enters with a plus.": (
+                _THETA - _GAIN * _PHI * _THETA - _GAIN * _Y
             ),
-            Slip(
-                _THETA + _P * _PHI * (_Y - _PHI * _THETA),
-                "That steps with the old P; the gain divides by 1 + phi P phi.",
-            ),
-            Slip(_THETA + _GAIN * _Y, "The step is by the prediction error y - phi theta, not by y."),
-        ),
+            "That steps with the old P; the gain divides by 1 + phi P phi.": _THETA + _P * _PHI * (_Y - _PHI * _THETA),
+            "The step is by the prediction error y - phi theta, not by y.": _THETA + _GAIN * _Y,
+        },
     ),
     Exercise(
         "ident-2",
@@ -60,12 +55,12 @@ EXERCISES = (
         "joint 1 is clamped",
         Number(_rank_with_joint_1_clamped(), tolerance=0.4, because="it is a whole number"),
         why="Three have no effect, and two pairs act as one each: theta2 with theta9, theta5 with theta10.",
-        slips=(
-            Slip(18, "That is with joint 1 free; clamped, its velocity and acceleration are zero."),
-            Slip(15, "Three columns vanish, right; but of those left some have become the same: compare them."),
-            Slip(14, "The offset Tf1 needs no motion: joint 1 still shows what it pushes with."),
-            Slip(20, "theta7 and theta8 belong to no rigid body; the question is about the other 18."),
-        ),
+        slips={
+            "That is with joint 1 free; clamped, its velocity and acceleration are zero.": 18,
+            "Three columns vanish, right; but of those left some have become the same: compare them.": 15,
+            "The offset Tf1 needs no motion: joint 1 still shows what it pushes with.": 14,
+            "theta7 and theta8 belong to no rigid body; the question is about the other 18.": 20,
+        },
         hint="Put a zero for the velocity and the acceleration of joint 1 into each column; base_parameters counts.",
     ),
     Exercise(
@@ -74,12 +69,12 @@ EXERCISES = (
         "counts and its fit of 63 %",
         Number(_SPREAD, unit="PWM", tolerance=0.6),
         why="All three columns of Table 4.4 give about 125: its fit is this one, and no share of a variance.",
-        slips=(
-            Slip(_RMS / (_FIT / 100), "That divides by the fit; the error is what the fit leaves."),
-            Slip(_RMS / np.sqrt(1 - _FIT / 100), "That takes the fit for a share of the variance (R squared)."),
-            Slip(_RMS * (1 - _FIT / 100), "Upside down: the error is the smaller of the two."),
-            Slip(_RMS * _FIT / 100, "That is smaller than the error; the fit compares the error with the spread."),
-        ),
+        slips={
+            "That divides by the fit; the error is what the fit leaves.": _RMS / (_FIT / 100),
+            "That takes the fit for a share of the variance (R squared).": _RMS / np.sqrt(1 - _FIT / 100),
+            "Upside down: the error is the smaller of the two.": _RMS * (1 - _FIT / 100),
+            "That is smaller than the error; the fit compares the error with the spread.": _RMS * _FIT / 100,
+        },
     ),
     Exercise(
         "ident-4",
@@ -87,12 +82,12 @@ EXERCISES = (
         "when 0.3 kg are put into the gripper, 0.372 m from the joint",
         Number(_K, unit="N m", tolerance=2e-4),
         why="Now every parameter of joint 3 can be had in kg and m: multiply by this.",
-        slips=(
-            Slip(1 / _K, "Upside down: that is in counts per N m."),
-            Slip(_MASS * _L3 * 9.81 / (_AFTER - _BEFORE), "Gravity stands in the regressor already: theta4 is m3 lc3."),
-            Slip(_MASS * _L3 / _AFTER, "That takes the loaded arm alone; only the difference is the payload's."),
-            Slip(_MASS / (_AFTER - _BEFORE), "That lacks the lever: theta4 is mass times distance."),
-            Slip(_MASS * IR50P.l[1] / (_AFTER - _BEFORE), "That is the length of the upper arm; joint 3 carries l3."),
-        ),
+        slips={
+            "Upside down: that is in counts per N m.": 1 / _K,
+            "Gravity stands in the regressor already: theta4 is m3 lc3.": _MASS * _L3 * 9.81 / (_AFTER - _BEFORE),
+            "That takes the loaded arm alone; only the difference is the payload's.": _MASS * _L3 / _AFTER,
+            "That lacks the lever: theta4 is mass times distance.": _MASS / (_AFTER - _BEFORE),
+            "That is the length of the upper arm; joint 3 carries l3.": _MASS * IR50P.l[1] / (_AFTER - _BEFORE),
+        },
     ),
 )

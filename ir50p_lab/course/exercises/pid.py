@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import fsolve
 
-from ir50p_lab.course.exercises import Exercise, Number, Slip
+from ir50p_lab.course.exercises import Exercise, Number
 from ir50p_lab.modelling import THESIS_A, gravity
 
 NOTEBOOK = "08_pid_from_its_parts"
@@ -29,32 +29,27 @@ EXERCISES = (
         "the three errors q_d - q that remain with Kp = (50, 100, 50) N m/rad on THESIS_A at the thesis' set point",
         Number(_ERROR, unit="rad", tolerance=2e-4, because="the error bends the arm: solve, do not take g at q_d"),
         why="Half the Kp leaves more than twice the error: the arm that sags has other weights to carry.",
-        slips=(
-            Slip(
-                gravity(THESIS_A, _SET_POINT) / _KP,
-                "That takes the weight at the set point; the arm rests lower, where its weight is another.",
+        slips={
+            "That takes the weight at the set point; the arm rests lower, where its weight is another.": (
+                gravity(THESIS_A, _SET_POINT) / _KP
             ),
-            Slip(_remaining(np.array([25.0, 200.0, 200.0])), "Those are the errors of the thesis' own gains."),
-            Slip(
-                gravity(THESIS_A, np.zeros(3)) / _KP,
-                "That takes the weight at q = 0; the arm rests near its set point.",
-            ),
-            Slip(_SET_POINT - _ERROR, "Those are the angles reached; the error is set point minus angle."),
-        ),
+            "Those are the errors of the thesis' own gains.": _remaining(np.array([25.0, 200.0, 200.0])),
+            "That takes the weight at q = 0; the arm rests near its set point.": gravity(THESIS_A, np.zeros(3)) / _KP,
+            "Those are the angles reached; the error is set point minus angle.": _SET_POINT - _ERROR,
+        },
     ),
     Exercise(
         "pid-3",
         "the longest stable period of M qdd = -Kd qd, held, for M = 0.25 kg m^2 and Kd = 40 N m s/rad",
         Number(2 * _M3 / _KD3, unit="s", tolerance=2e-5, because="a tenth of a millisecond more would grow already"),
         why="A stiffer damper needs a faster computer: the product Kd T has a limit, set by the inertia.",
-        slips=(
-            Slip(_M3 / _KD3, "At that period the speed is brought to zero in one sample: the best, not the longest."),
-            Slip(2 * _KD3 / _M3, "Upside down: that is a frequency, in 1/s."),
-            Slip(2000 * _M3 / _KD3, "That is in milliseconds; the question asks for seconds."),
-            Slip(
-                np.pi * _M3 / _KD3,
-                "No circle is involved: look for the period at which the factor of one sample reaches -1.",
+        slips={
+            "At that period the speed is brought to zero in one sample: the best, not the longest.": _M3 / _KD3,
+            "Upside down: that is a frequency, in 1/s.": 2 * _KD3 / _M3,
+            "That is in milliseconds; the question asks for seconds.": 2000 * _M3 / _KD3,
+            "No circle is involved: look for the period at which the factor of one sample reaches -1.": (
+                np.pi * _M3 / _KD3
             ),
-        ),
+        },
     ),
 )

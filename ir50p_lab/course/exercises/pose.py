@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.exercises import Exercise, Number, Slip
+from ir50p_lab.course.exercises import Exercise, Number
 from ir50p_lab.modelling import rot_z
 
 NOTEBOOK = "01_pose_and_forward_kinematics"
@@ -24,11 +24,11 @@ EXERCISES = (
         "(20, 90, 35) degrees",
         Number(_FIRST + _THIRD, unit="rad", tolerance=1e-3, angle=True),
         why="At +90 degrees only the sum of the outer angles matters; at -90 degrees it is their difference.",
-        slips=(
-            Slip(_FIRST - _THIRD, "That is the difference, which counts at -90 degrees; try it in the matrix."),
-            Slip(_FIRST, "The third turn got lost: without it the rotation is another one."),
-            Slip(_THIRD, "That is the third turn alone; the first one is still there."),
-        ),
+        slips={
+            "That is the difference, which counts at -90 degrees; try it in the matrix.": _FIRST - _THIRD,
+            "The third turn got lost: without it the rotation is another one.": _FIRST,
+            "That is the third turn alone; the first one is still there.": _THIRD,
+        },
         hint="Multiply the three matrices for a middle angle of 90 degrees and look at what the entries depend on.",
     ),
     Exercise(
@@ -37,11 +37,11 @@ EXERCISES = (
         "turned by 90 degrees about z",
         Number(-_R.T @ _T, **_MILLIMETRE),
         why="It is the last column of the inverse: -R^T t, the way back, measured along the axes of {B}.",
-        slips=(
-            Slip(-_T, "That is -t, still measured along the axes of {A}; the answer wants those of {B}."),
-            Slip(-_R @ _T, "That is -R t; coordinates of {A} go to {B} with the transposed matrix."),
-            Slip(_R.T @ _T, "That points from {A} to {B}; the question is where {A} lies, seen from {B}."),
-            Slip(-rot_z(90.0).T @ _T, "The angle went in as 90 rad; the functions take radians."),
-        ),
+        slips={
+            "That is -t, still measured along the axes of {A}; the answer wants those of {B}.": -_T,
+            "That is -R t; coordinates of {A} go to {B} with the transposed matrix.": -_R @ _T,
+            "That points from {A} to {B}; the question is where {A} lies, seen from {B}.": _R.T @ _T,
+            "The angle went in as 90 rad; the functions take radians.": -rot_z(90.0).T @ _T,
+        },
     ),
 )

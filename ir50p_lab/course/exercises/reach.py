@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.exercises import Choice, Exercise, Function, Number, Slip
+from ir50p_lab.course.exercises import Choice, Exercise, Function, Number
 from ir50p_lab.modelling import IR50P, frames, jacobian
 
 NOTEBOOK = "18_vision_guided_reaching"
@@ -52,36 +52,32 @@ EXERCISES = (
         "(0, -0.8, -0.6, 0.7), (0, 0, 0, 1), and the camera sees it at (0.05, 0.10, 0.80) m",
         Number(_P_BASE, unit="m", tolerance=1e-3, because="a millimetre is less than the arm can do"),
         why="T_base_cam takes camera coordinates to base coordinates: read it from right to left.",
-        slips=(
-            Slip(_T_BASE_CAM[:3, :3] @ _P_CAM, "Turned, not shifted: the camera does not stand in the base."),
-            Slip(_P_CAM + _T_BASE_CAM[:3, 3], "Shifted, not turned: the camera's axes do not point as the base's do."),
-            Slip(
-                _T_BASE_CAM[:3, :3].T @ (_P_CAM - _T_BASE_CAM[:3, 3]),
-                "That is the inverse, T_cam_base: it takes base coordinates to the camera.",
+        slips={
+            "Turned, not shifted: the camera does not stand in the base.": _T_BASE_CAM[:3, :3] @ _P_CAM,
+            "Shifted, not turned: the camera's axes do not point as the base's do.": _P_CAM + _T_BASE_CAM[:3, 3],
+            "That is the inverse, T_cam_base: it takes base coordinates to the camera.": (
+                _T_BASE_CAM[:3, :3].T @ (_P_CAM - _T_BASE_CAM[:3, 3])
             ),
-            Slip(
-                _T_BASE_CAM[:3, :3].T @ _P_CAM + _T_BASE_CAM[:3, 3],
-                "The rotation is transposed: the row form of the thesis beside a matrix in column form.",
+            "The rotation is transposed: the row form of the thesis beside a matrix in column form.": (
+                _T_BASE_CAM[:3, :3].T @ _P_CAM + _T_BASE_CAM[:3, 3]
             ),
-        ),
+        },
     ),
     Exercise(
         "reach-2",
         "by how many metres the IR50P misses the goal (0.56, 0.12, 0.09) m",
         Number(_MISSING, unit="m", tolerance=5e-4, because="half a millimetre shows the right triangle"),
         why="From the shoulder, at height l1, the arm reaches l2 + l3: the rest is missing.",
-        slips=(
-            Slip(
-                float(np.hypot(*_GOAL[:2]) - IR50P.l[1] - IR50P.l[2]),
-                "Measured along the table: but the shoulder stands 285 mm above it.",
+        slips={
+            "Measured along the table: but the shoulder stands 285 mm above it.": (
+                float(np.hypot(*_GOAL[:2]) - IR50P.l[1] - IR50P.l[2])
             ),
-            Slip(
-                float(np.linalg.norm(_GOAL) - IR50P.l[1] - IR50P.l[2]),
-                "Measured from the foot of the column; the arm begins at the shoulder.",
+            "Measured from the foot of the column; the arm begins at the shoulder.": (
+                float(np.linalg.norm(_GOAL) - IR50P.l[1] - IR50P.l[2])
             ),
-            Slip(float(np.linalg.norm(_GOAL - _SHOULDER)), "That is the whole way from the shoulder to the goal."),
-            Slip(0.0, "reach_pose refuses this goal, so something is missing."),
-        ),
+            "That is the whole way from the shoulder to the goal.": float(np.linalg.norm(_GOAL - _SHOULDER)),
+            "reach_pose refuses this goal, so something is missing.": 0.0,
+        },
         hint="Nothing but lengths: the distance from the shoulder to the goal, and what the two links make together.",
     ),
     Exercise(
@@ -92,19 +88,15 @@ EXERCISES = (
             1e3 * _LEVER / _SLOPE, unit="mm", tolerance=0.1, because="a tenth of a millimetre shows the right lever"
         ),
         why="Lever over slope: one count costs millimetres, so single readings are not good enough.",
-        slips=(
-            Slip(1e3 * _LEVER, "That is how far it moves per radian; one count is a small part of one."),
-            Slip(1e3 / _SLOPE, "That is the angle of one count, in mrad: the lever is missing."),
-            Slip(
-                1e3 * (IR50P.l[1] + IR50P.l[2]) / _SLOPE,
-                "That is the lever of the stretched arm; here the elbow is bent.",
+        slips={
+            "That is how far it moves per radian; one count is a small part of one.": 1e3 * _LEVER,
+            "That is the angle of one count, in mrad: the lever is missing.": 1e3 / _SLOPE,
+            "That is the lever of the stretched arm; here the elbow is bent.": 1e3 * (IR50P.l[1] + IR50P.l[2]) / _SLOPE,
+            "That is the lever of joint 3: columns of the Jacobian count joints.": (
+                1e3 * float(np.linalg.norm(jacobian(IR50P, _Q)[:3, 2])) / _SLOPE
             ),
-            Slip(
-                1e3 * float(np.linalg.norm(jacobian(IR50P, _Q)[:3, 2])) / _SLOPE,
-                "That is the lever of joint 3: columns of the Jacobian count joints.",
-            ),
-            Slip(_LEVER / _SLOPE, "That is in metres; asked for are millimetres."),
-        ),
+            "That is in metres; asked for are millimetres.": _LEVER / _SLOPE,
+        },
         hint="The column of joint 2 in jacobian(IR50P, q), its first three rows, and its length.",
     ),
     Exercise(
@@ -118,12 +110,12 @@ EXERCISES = (
             tolerance=5e-4,
         ),
         why="A point of the hand is constant in the hand's frame: T_base_tool does the rest.",
-        slips=(
-            Slip(_tip, "That is the tip itself."),
-            Slip(_beyond, "That lies 42 mm beyond the tip: before it means towards the elbow, x is negative."),
-            Slip(_base_axes, "The 42 mm were taken along the base's x axis; they turn with the forearm."),
-            Slip(_elbow, "That is counted from the elbow: frame 2 instead of frame 3."),
-        ),
+        slips={
+            "That is the tip itself.": _tip,
+            "That lies 42 mm beyond the tip: before it means towards the elbow, x is negative.": _beyond,
+            "The 42 mm were taken along the base's x axis; they turn with the forearm.": _base_axes,
+            "That is counted from the elbow: frame 2 instead of frame 3.": _elbow,
+        },
         hint="frames(IR50P, q)[3] is T_base_tool; its x axis points along the forearm.",
     ),
     Exercise(
@@ -140,12 +132,10 @@ EXERCISES = (
         ),
         why="Turn arm and camera about the column together: every picture of the hand stays the same. A thing that "
         "stays where it is on the table, at a place known in the base frame, does not turn along.",
-        slips=(
-            Slip(
-                "poses", "Turn the arm in all of them by the same angle, and the camera with it: nothing is seen of it."
-            ),
-            Slip("pixels", "Finer pictures of something that does not change: the camera turns along with joint 1."),
-            Slip("second", "It turns about the column along with the first: its place comes from the same joint 1."),
-        ),
+        slips={
+            "Turn the arm in all of them by the same angle, and the camera with it: nothing is seen of it.": "poses",
+            "Finer pictures of something that does not change: the camera turns along with joint 1.": "pixels",
+            "It turns about the column along with the first: its place comes from the same joint 1.": "second",
+        },
     ),
 )

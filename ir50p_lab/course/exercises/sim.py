@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.exercises import Exercise, Function, Number, Slip
+from ir50p_lab.course.exercises import Exercise, Function, Number
 from ir50p_lab.modelling import THESIS_RODS, Actuators, forward_dynamics
 
 NOTEBOOK = "06_simulation_and_friction"
@@ -75,30 +75,28 @@ EXERCISES = (
         "a step of h seconds by the midpoint rule for THESIS_RODS without drive: the new q and qd from (q, qd, h)",
         Function(_midpoint, cases=_STATES, tolerance=1e-7),
         why="Two evaluations make it second order; Runge-Kutta spends four and is fourth order.",
-        slips=(
-            Slip(_euler, "That is Euler's step: it uses the rates at the start, not those half way."),
-            Slip(_half_way, "That stops half way: from the start, go the whole h with the rates found there."),
-            Slip(_old_velocity, "The angles still go with the old velocity: half way there is a velocity too."),
-            Slip(_two_half_steps, "Those are two short Euler steps: start again at (q, qd) with the rates half way."),
-        ),
+        slips={
+            "That is Euler's step: it uses the rates at the start, not those half way.": _euler,
+            "That stops half way: from the start, go the whole h with the rates found there.": _half_way,
+            "The angles still go with the old velocity: half way there is a velocity too.": _old_velocity,
+            "Those are two short Euler steps: start again at (q, qd) with the rates half way.": _two_half_steps,
+        },
     ),
     Exercise(
         "sim-2",
         "where a joint with kp = 2 N m/rad and Coulomb friction 0.1 N m stops, let go at +0.37 rad from its set point",
         Number(_RIGHT_REST, unit="rad", tolerance=1e-3),
         why="Anywhere within fc/kp of the set point it may rest: dry friction leaves an error if nothing integrates.",
-        slips=(
-            Slip(0.0, "Within fc/kp of the set point the controller is too weak to move it: it need not get there."),
-            Slip(
-                _rest(_START, _FC / _KP, _FC / _KP),
-                "Each half swing costs 2 fc/kp: friction moves the centre of the swing by fc/kp.",
+        slips={
+            "Within fc/kp of the set point the controller is too weak to move it: it need not get there.": 0.0,
+            "Each half swing costs 2 fc/kp: friction moves the centre of the swing by fc/kp.": (
+                _rest(_START, _FC / _KP, _FC / _KP)
             ),
-            Slip(_FC / _KP, "That is the edge of the dead band; follow the turning points until one is inside."),
-            Slip(
-                _rest(_START, 2 * _FC / _KP, 2 * _FC / _KP),
-                "There the controller still pushes harder than friction: it swings once more.",
+            "That is the edge of the dead band; follow the turning points until one is inside.": _FC / _KP,
+            "There the controller still pushes harder than friction: it swings once more.": (
+                _rest(_START, 2 * _FC / _KP, 2 * _FC / _KP)
             ),
-        ),
+        },
     ),
     Exercise(
         "sim-3",
@@ -106,31 +104,23 @@ EXERCISES = (
         "against 0.5 N m of friction",
         Number(_speed(_STRONG, _RUBS), unit="rad/s", tolerance=5e-3),
         why="The line from stall to no-load speed moves outwards with the supply; its slope, the back-EMF, stays.",
-        slips=(
-            Slip(_speed(_WEAK, _RUBS), "That is the speed at 12 V: the supply moves both ends of the motor's line."),
-            Slip(2 * _speed(_WEAK, _RUBS), "The stall torque doubles as well: the same friction costs less of it."),
-            Slip(_speed(_STRONG, 0.0), "That is the no-load speed at 24 V: friction is a load."),
-            Slip(_speed(_WEAK, _RUBS / 2), "The torque line is that of 24 V there, the speed still that of 12 V."),
-        ),
+        slips={
+            "That is the speed at 12 V: the supply moves both ends of the motor's line.": _speed(_WEAK, _RUBS),
+            "The stall torque doubles as well: the same friction costs less of it.": 2 * _speed(_WEAK, _RUBS),
+            "That is the no-load speed at 24 V: friction is a load.": _speed(_STRONG, 0.0),
+            "The torque line is that of 24 V there, the speed still that of 12 V.": _speed(_WEAK, _RUBS / 2),
+        },
     ),
     Exercise(
         "sim-4",
         "the shortest quintic over 1.2 rad for a joint of 0.8 kg m^2 (no gravity) and 3 N m",
         Number(np.sqrt(_QUINTIC * _SQUARE), unit="s", tolerance=5e-3),
         why="Twice the torque makes it 1.4 times faster only: time counts squared.",
-        slips=(
-            Slip(_QUINTIC * _SQUARE, "That is the duration squared: the acceleration falls with duration^2."),
-            Slip(
-                np.sqrt(4 * _SQUARE),
-                "So fast is full acceleration, then full braking; a quintic starts and ends softly.",
-            ),
-            Slip(
-                np.sqrt(15 / 8 * _SQUARE), "15/8 belongs to the velocity; the torque asks for the largest acceleration."
-            ),
-            Slip(
-                np.sqrt(_SQUARE),
-                "That takes way/duration^2 for the acceleration; its peak is several times that.",
-            ),
-        ),
+        slips={
+            "That is the duration squared: the acceleration falls with duration^2.": _QUINTIC * _SQUARE,
+            "So fast is full acceleration, then full braking; a quintic starts and ends softly.": np.sqrt(4 * _SQUARE),
+            "15/8 belongs to the velocity; the torque asks for the largest acceleration.": np.sqrt(15 / 8 * _SQUARE),
+            "That takes way/duration^2 for the acceleration; its peak is several times that.": np.sqrt(_SQUARE),
+        },
     ),
 )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.exercises import Exercise, Number, Slip
+from ir50p_lab.course.exercises import Exercise, Number
 from ir50p_lab.modelling import IR50P, mass_matrix
 
 NOTEBOOK = "00_start_here"
@@ -17,23 +17,23 @@ EXERCISES = (
         "the joint angles (90, -45, 30) degrees in radians",
         Number(np.deg2rad([90, -45, 30]), unit="rad", tolerance=1e-3),
         why="Inside the package every angle is in radians; degrees appear only on sliders, named `_deg`.",
-        slips=(
-            Slip([90, -45, 30], "These are still degrees: half a turn is 180 degrees, or pi radians."),
-            Slip(np.array([90, -45, 30]) / 360, "These are turns: a full turn is 2 pi radians, not 1."),
-            Slip(np.deg2rad([90, 45, 30]), "The sign of the second angle got lost: it turns the other way."),
-        ),
+        slips={
+            "These are still degrees: half a turn is 180 degrees, or pi radians.": [90, -45, 30],
+            "These are turns: a full turn is 2 pi radians, not 1.": np.array([90, -45, 30]) / 360,
+            "The sign of the second angle got lost: it turns the other way.": np.deg2rad([90, 45, 30]),
+        },
     ),
     Exercise(
         "start-5",
         "the time constant T of the speed drawn above",
         Number(_T, unit="s", tolerance=0.02, because="a reading from the plot is good to a tick"),
         why="T says how fast a system answers; each motor and each filter of the arm has one.",
-        slips=(
-            Slip(1.74, "That is the top speed; the time constant is a time, read on the other axis."),
-            Slip(1.74 * (1 - np.exp(-1)), "That is the speed at the dashed line; at what time is it reached?"),
-            Slip(1 - np.exp(-1), "That is the share of the top speed; at what time is it reached?"),
-            Slip(3 * _T, "That is when 95 % are reached, three time constants: look where 63 % are."),
-            Slip(_T * np.log(2), "That is the time to half of the top speed: look where 63 % are."),
-        ),
+        slips={
+            "That is the top speed; the time constant is a time, read on the other axis.": 1.74,
+            "That is the speed at the dashed line; at what time is it reached?": 1.74 * (1 - np.exp(-1)),
+            "That is the share of the top speed; at what time is it reached?": 1 - np.exp(-1),
+            "That is when 95 % are reached, three time constants: look where 63 % are.": 3 * _T,
+            "That is the time to half of the top speed: look where 63 % are.": _T * np.log(2),
+        },
     ),
 )

@@ -60,9 +60,7 @@ def written():
 
 @cache
 def task(name):
-    """The Task of a function. Raises InputError for a name that is none, or whose notebook is still to come."""
-    if not is_function(name):
-        raise InputError(f"{name!r} is no function of my_robot; they are {', '.join(ORDER)}")
+    """The Task of a function of `my_robot`. Raises InputError where its notebook is still to come."""
     number = notebook_of(name)
     if number not in _MODULES:
         raise InputError(f"{name} is asked for in notebook {number}, which is still to come")

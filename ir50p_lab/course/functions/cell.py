@@ -162,28 +162,16 @@ def _refuse_imports(node):
 
 
 def _refuse_changes(node):
-    """Nothing outside is changed or looked into: `np.allclose = ...`, `np.__builtins__`, `np.f2py.sys`; `self` may."""
+    """Nothing outside is changed or looked into: `np.allclose = ...`, `np.__builtins__`; `self` may."""
     for one in ast.walk(node):
         if not isinstance(one, ast.Attribute):
             continue
         root = ast.unparse(one).partition(".")[0].partition("[")[0]
-        opens = one.attr.startswith("__") or not isinstance(one.ctx, ast.Load) or _leads_out(ast.unparse(one))
+        opens = one.attr.startswith("__") or not isinstance(one.ctx, ast.Load)
         if root != "self" and opens:
             raise CannotTake(
                 f"it changes or opens `{ast.unparse(one)}`: a function returns its answer and leaves the rest"
             )
-
-
-def _leads_out(path):
-    """Tell whether a dotted name leads from an allowed module to one that is not: `np.f2py.sys`."""
-    root, *names = path.split(".")
-    root = "numpy" if root == "np" else root
-    if root not in _ALLOWED:
-        return False
-    thing = importlib.import_module(root)
-    for name in names:
-        thing = getattr(thing, name, None)
-    return inspect.ismodule(thing) and thing.__name__.partition(".")[0] not in _ALLOWED
 
 
 def has_dots(text):

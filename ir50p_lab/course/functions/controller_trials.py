@@ -1,12 +1,14 @@
 """What a student's PID is put through: runs that show one part of it each, and what a wrong one is told."""
 
 import inspect
+from functools import cache
 
 import numpy as np
 
+from ir50p_lab.course.functions import controller_loans as loans
 from ir50p_lab.course.functions.grade import no_numbers
 from ir50p_lab.course.functions.stops import why_it_stops
-from ir50p_lab.course.functions.task import Failed, shown
+from ir50p_lab.course.functions.task import Failed, changed, shown, table
 
 _KP, _KI, _KD = np.array([40.0, 60.0, 80.0]), np.array([20.0, 30.0, 40.0]), np.array([10.0, 20.0, 30.0])
 _PERIOD = 0.02  # s; not the 0.01 that a student may write down
@@ -97,6 +99,18 @@ def _expect(u, right, slips, otherwise):
     raise Failed(f"{otherwise}; joint {joints} is right" if slips and joints else otherwise, example)
 
 
+def _slips(table_name, commands):
+    """Pairs (commands, sentence): what the mistakes of a table send; commands: function of a class."""
+    return ((commands(wrong), says) for wrong, says in _wrong_ones(table_name))
+
+
+@cache
+def _wrong_ones(name):
+    """Pairs (class, sentence): the mistakes of a table, made in the solution of its stage."""
+    text = {"PID.p": loans.P, "PID.pi": loans.PI, "PID": loans.PID}.get(name, loans.LIMITS)
+    return [(changed(text, changes, {"np": np})["PID"], says) for says, changes in table(name)]
+
+
 # --------------------------------------------------------------------------------------------------------- P
 def _unit(cls):
     if getattr(cls, "unit", None) != "PWM":
@@ -105,41 +119,12 @@ def _unit(cls):
 
 def _push(cls, kp):
     q, wanted = _motion()
-    e, gain = wanted - q, np.ones(3) * kp
-    column = wanted[:, :1] * [1, 0, 0] + [0, _SPEED, _ACCELERATION]
-    aimless = "the reference is not used: it pushes towards zero or away from it, whatever is wanted"
-    bracket = "kp multiplies only one of the two angles: how much is *missing*?"
-    slips = (
-        (-gain * e, "it pushes the wrong way: an arm below its target is pushed further down"),
-        (gain * (wanted + q), "it takes the sum of both angles: at its target the arm would be pushed hardest. How "
-         "much is *missing*?"),
-        (gain * wanted - q, bracket),
-        (wanted - gain * q, bracket),
-        (np.degrees(gain * e), "the push is 57 times too strong: everything here is rad, no degrees anywhere"),
-        (gain * wanted, "q is not used: it pushes the same wherever the arm is"),
-        (-gain * q, aimless),
-        (gain * q, aimless),
-        (np.maximum(gain * e, 0), "it cannot push downwards: a push has two directions"),
-        (gain * (_SPEED - q), "the speed that is wanted is taken for the angle: the reference has three rows"),
-        (gain * e + _SPEED, "the wanted speed is added to the push: P knows angles only"),
-        (gain * (e + _SPEED), "the wanted speed is added to what is missing: P knows angles only"),
-        ((gain * e).T[::-1].T, "joints 1 and 3 have changed places"),
-        ((gain * e.T[::-1].T), "joints 1 and 3 have changed places"),
-        ((np.arange(len(e)) * _PERIOD * (gain * e).T).T, "the push grows with t: what is missing now asks for the same "
-         "push at any time"),
-        (gain * (e + 0.01 * np.cumsum(e, axis=0)), "kp multiplies the memory: that has a gain of its own, ki"),
-        (gain * (column - q), "it reads a column of the reference: the angles of all three joints stand in a row"),
-        (gain * e**2, "the error is squared: twice as far is twice the push, and an error has a sign"),
-        (gain * np.abs(e), "it pushes the same way on both sides of the target: an error has a sign"),
-        (gain * np.sign(e), "it pushes as hard when little is missing as when much is: only the error's sign is used"),
-        *((whole(gain * e), "it rounds, or cuts off: a push need not be a whole number of counts")
-          for whole in (np.round, np.trunc, np.floor)),
-        (gain * e + np.cumsum(e, axis=0) * 0.01, "ki is not used: the sum is added as it is"),
-        (np.cumsum(gain * e, axis=0), "it adds up the whole push: remembered is the error's area, nothing of P"),
-        (0 * e - 255, "it sends -255 whatever is missing: if there is a np.clip, its lower bound comes first"),
-    )  # fmt: skip
-    u = _run(_make(cls, kp=kp), q, wanted, speed=_SPEED)
-    _expect(u, gain * e, slips, _push_symptom(cls, kp, q, wanted, u))
+
+    def push(other):
+        return _run(_make(other, kp=kp), q, wanted, speed=_SPEED)
+
+    u = push(cls)
+    _expect(u, np.ones(3) * kp * (wanted - q), _slips("PID.p", push), _push_symptom(cls, kp, q, wanted, u))
 
 
 def _push_symptom(cls, kp, q, wanted, u):
@@ -179,10 +164,10 @@ def gains(*names):
             raise Failed(f"it has no self.{missing[0]}: the live panel looks there for the gain, and changes it")
         q, wanted = _motion(6)
         for name in names:
-            made, changed = _make(cls, **{"kp": 10.0, name: 20.0}), _make(cls, kp=10.0)
-            setattr(changed, name, np.full(3, 20.0))
+            made, later = _make(cls, **{"kp": 10.0, name: 20.0}), _make(cls, kp=10.0)
+            setattr(later, name, np.full(3, 20.0))
             says = f"self.{name} was changed while it ran, and nothing happened: read the gain in every step"
-            _expect(_run(changed, q, wanted), _run(made, q, wanted), (), says)
+            _expect(_run(later, q, wanted), _run(made, q, wanted), (), says)
 
     return probe
 
@@ -201,7 +186,11 @@ def _integral(cls):
     q, wanted = _motion()
     e = wanted - q
     push, total = _KP * e, np.cumsum(e, axis=0)
-    u = _run(_make(cls, kp=_KP, ki=_KI, period=_PERIOD), q, wanted)
+
+    def commands(other):
+        return _run(_make(other, kp=_KP, ki=_KI, period=_PERIOD), q, wanted)
+
+    u = commands(cls)
     rights = (
         (total, ""),
         (total - e, "Yours adds the newest error one period later than the course's: right, too."),
@@ -215,45 +204,14 @@ def _integral(cls):
         if np.allclose(u, push + _KI * _PERIOD * area, atol=1e-6):
             _run(_make(cls, kp=_KP, ki=tuple(_KI.tolist()), period=_PERIOD), q, wanted)  # does it stop?
             return says
-    area, memory = total * _PERIOD, _KI * _PERIOD * total
-    slips = (
-        (push + _KI * total, "the period is missing in it: the memory is a sum of areas, and an area has a width"),
-        (push + _KI * total * 0.01, "0.01 s is written into it: it was made with another period"),
-        (push - memory, "the integral pulls away from the target: look at the sign of what you add up"),
-        (push + _KI * _PERIOD * e, "it does not remember: only the newest error is in its integral. Is the new sum "
-         "put back into `self`, and does it stay there?"),
-        (push, "ki does nothing: does the memory grow, or rest where it need not?"),
-        (push + _KI * total / _PERIOD, "it divides by the period: the sum is one of areas, error x period"),
-        (push + _KI * np.cumsum(np.abs(e), axis=0) * _PERIOD, "its memory can only grow: an error has a sign"),
-        (push + _KI * memory, "ki is in it twice, before and after adding up"),
-        (push + _PERIOD * memory, "the period is in it twice: an area has one width"),
-        (push + _KI * _PERIOD * (2 * total - e), "it adds up the sum of two errors: their mean is half of that"),
-        (push + _KI * (e.T * np.arange(len(e)) * _PERIOD).T, "error times t is no sum: one error is in it, not all"),
-        (push + _KI * np.cumsum(q, axis=0) * _PERIOD, "it adds up the angle, not what is missing"),
-        (push + _KP * memory, "kp multiplies all: here ki is a gain of its own, not a share of kp"),
-        (push + _KP * area, "the integral has the gain kp: it has its own, ki"),
-        (push + np.cumsum(memory, axis=0) * _PERIOD, "it is summed up twice: one memory is enough"),
-        (push + _KI * (total.T / np.maximum(np.arange(len(e)), 1)).T, "its memory is divided by the time: a mean of "
-         "the errors, where their area is asked for"),
-        (_gathering_its_push(e), "it adds up the push: what is remembered is the error's area"),
-        (push + _KI * total.sum(axis=1, keepdims=True) * _PERIOD, "all joints share one sum: each remembers its own"),
-    )  # fmt: skip
+    memory = _KI * _PERIOD * total
     taken, strip = shown(np.diff((u - push) / _KI, axis=0)[-1]), shown(e[-1] * _PERIOD)
     held = (u - push) / _KI
     kept = np.sum(held[:-1] * (held[1:] - e[1:] * _PERIOD)) / max(np.sum(held[:-1] ** 2), 1e-9)
-    if np.allclose(held[1:], kept * held[:-1] + e[1:] * _PERIOD):
-        slips += ((u, f"its memory keeps only {100 * kept:.3g} % of itself from step to step: it has to keep all"),)
     otherwise = f"P is right, the memory is not: its last step takes in {taken} rad s, where error x period is {strip}"
-    return _expect(u, push + memory, slips, otherwise)
-
-
-def _gathering_its_push(e):
-    """Commands (n, 3) of a PI whose memory takes in the whole push in place of the error."""
-    memory, out = np.zeros(3), []
-    for one in e:
-        out.append(_KP * one + _KI * memory)
-        memory = memory + out[-1] * _PERIOD
-    return np.array(out)
+    if np.allclose(held[1:], kept * held[:-1] + e[1:] * _PERIOD):
+        otherwise = f"its memory keeps only {100 * kept:.3g} % of itself from step to step: it has to keep all"
+    return _expect(u, push + memory, _slips("PID.pi", commands), otherwise)
 
 
 def _again(cls, forgotten, **settings):
@@ -271,18 +229,15 @@ def _again(cls, forgotten, **settings):
 # ---------------------------------------------------------------------------------------------------- limits
 def _limit(cls):
     e = _constant(0.1, 1.0) * [1.0, -1.0, 0.01]
-    right, free = np.clip(400 * e, -100, 100), 400 * e
-    slips = (
-        (free, "it has no limit: it asks for 400 counts where 100 are allowed. If there is a np.clip, is it the push "
-         "that is cut, and is what it gives used?"),
-        (free / 4, "one joint at its limit weakens the others: each joint has a limit of its own"),
-        (np.minimum(free, 100), "it is limited upwards only: the limit holds on both sides"),
-        (np.clip(free, -255, 255), "255 is written into it: it was made with another limit_pwm"),
-    )  # fmt: skip
-    u = _run(_make(cls, kp=400.0, limit_pwm=100), 0 * e, e)
-    slips += ((u, f"where kp times the error is [400, -400, 4] and limit_pwm 100, it sends {shown(u[0])}"),)
-    _expect(u, right, slips, "")
-    _expect(_run(_make(cls, kp=400.0), 0 * e, e), np.clip(free, -255, 255), (), "without limit_pwm the limit is 255")
+
+    def commands(other, **limit):
+        return _run(_make(other, kp=400.0, **limit), 0 * e, e)
+
+    u = commands(cls, limit_pwm=100)
+    otherwise = f"where kp times the error is [400, -400, 4] and limit_pwm 100, it sends {shown(u[0])}"
+    slips = _slips("PID.limits", lambda other: commands(other, limit_pwm=100))
+    _expect(u, np.clip(400 * e, -100, 100), slips, otherwise)
+    _expect(commands(cls), np.clip(400 * e, -255, 255), (), "without limit_pwm the limit is 255")
 
 
 def _held(cls, seconds, kp, period=_PERIOD):
@@ -338,25 +293,12 @@ def _windup(cls):
 def _wrong_rest(cls):
     """The sentence for a memory that rests at the wrong time, or never; "" if it is none of these."""
     q, wanted = 6 * _motion(150)[0], 6 * _motion(150)[1] + 2.0  # a memory that has a limit of its own meets it
-    u = _run(_make(cls, kp=_KP, ki=10 * _KI, period=_PERIOD), q, wanted)
-    for says, rests in (
-        ("its memory never rests. If it asks whether the push is beyond the limit: before that push is cut?",
-         lambda p, m, e, q: np.zeros(3, bool)),
-        ("whether the push is beyond the limit is asked of P alone: P and memory together are sent",
-         lambda p, m, e, q: (np.abs(p) > 255) & (p * e > 0)),
-        ("whether the push is beyond the limit is asked of the memory alone: P and memory together are sent",
-         lambda p, m, e, q: (np.abs(m) > 255) & (m * e > 0)),
-        ("the way it pushes is compared with the angle: it is the error that shows whether it pushes on",
-         lambda p, m, e, q: (np.abs(p + m) > 255) & ((p + m) * q > 0)),
-    ):  # fmt: skip
-        memory, out = np.zeros(3), []
-        for angle, error in zip(q, wanted - q, strict=True):
-            grown = memory + 10 * _KI * error * _PERIOD
-            memory = np.where(rests(_KP * error, grown, error, angle), memory, grown)
-            out.append(np.clip(_KP * error + memory, -255, 255))
-        if np.allclose(u, out):
-            return says
-    return ""
+
+    def commands(other):
+        return _run(_make(other, kp=_KP, ki=10 * _KI, period=_PERIOD), q, wanted)
+
+    u = commands(cls)
+    return next((says for wrong, says in _slips("PID.rest", commands) if np.allclose(u, wrong)), "")
 
 
 def _joint_by_joint(cls):
@@ -385,10 +327,13 @@ def _damping(cls):
     exact, backward, bilinear = 1 - np.exp(-turn), turn / (1 + turn), turn / (1 + turn / 2)
     settings = {"kp": _KP, "ki": _KI, "limit_pwm": 1e6, "period": _PERIOD, "filter_hz": hz}
     wanted = q[0] + 1.0
-    with_d, without = (
-        _run(_make(cls, **settings, **kd), q, wanted, _SPEED) for kd in ({"kd": tuple(_KD.tolist())}, {})
-    )
-    u = with_d - without
+
+    def of_d(other):
+        """What kd adds to the commands."""
+        with_d = _make(other, **settings, kd=tuple(_KD.tolist()))
+        return _run(with_d, q, wanted, _SPEED) - _run(_make(other, **settings), q, wanted, _SPEED)
+
+    u = of_d(cls)
     other = "Yours filters with another share a sample than the course's, of the same cut-off: right, too."
     rights = (
         (_filtered(slope, exact), ""),
@@ -403,43 +348,12 @@ def _damping(cls):
     for speed, says in rights:
         if np.allclose(u[first:], d(speed)[first:], atol=1e-6):
             return says
-    speed, from_first = rights[0][0], (q - q[0]) / _PERIOD
-    right, along = d(speed), "D pushes along with the motion: it has to act against it"
-    slips = (
-        (-right, along),
-        (d(-speed), along),
-        (d(slope), "the speed is not filtered: a potentiometer's trembling goes straight to the motor"),
-        (d(speed * _PERIOD), "the period is missing: the difference of two angles is no speed yet"),
-        (d(speed * _PERIOD / 0.01), "0.01 s is written into it: it was made with another period"),
-        *((d(_filtered(np.diff(q, axis=0, prepend=start) / _PERIOD, exact)), f"at the first sample it believes that "
-           f"the arm has come from {place} in one period: what is the speed when there is no angle before?")
-          for start, place in ((0 * q[:1], "zero"), (wanted[None], "its target"))),
-        (d(_filtered(from_first, exact)), "the last angle stays the first one: is it renewed in every step?"),
-        (d(_filtered(slope, 1 - np.exp(-hz * _PERIOD))), "its filter is six times too slow: filter_hz counts whole "
-         "turns a second, and a turn has 2 pi"),
-        (d(_filtered(slope, 1 - exact)), "the two shares of the filter are swapped"),
-        (right / _KD * _KD[0], "all joints get the kd of joint 1: each has its own"),
-        (d(exact * slope), "its filter keeps nothing: the speed of the last sample is where it goes on from"),
-        (np.degrees(right), "D is 57 times too strong: everything here is rad, no degrees anywhere"),
-        (_KD * (wanted - q), "D looks at how far away the arm is: it is to look at how fast it moves"),
-        (-_KD * speed, f"D brakes the {_SPEED} rad/s that are asked for: the reference says which speed is wanted"),
-        (right + _KD * (_ACCELERATION - _SPEED), "D takes the wanted acceleration for the speed: which row is it?"),
-        (_KD * _filtered(np.vstack([0 * q[:1], _SPEED - slope[1:]]), exact), "the speed that is wanted goes through "
-         "the filter, too: that one is exact, only the measured one trembles"),
-        (_KP * right, "kp multiplies D as well: kd is a gain of its own"),
-        *((_KI * _PERIOD * (np.cumsum(right, axis=0) - late * right), "D goes into the memory, and into the push only "
-           "through ki: it is a part of the push, as P is") for late in (0, 1)),
-        (d(_filtered(np.vstack([0 * q[:1], (q[1:] - wanted) / _PERIOD]), exact)), "its last angle is the one that was "
-         "wanted: keep the measured one"),
-        (d(0 * slope), "the arm's speed stays 0 in it: is the last angle kept, and used before it is written over?"),
-        (0 * right, "kd does nothing: is it a part of the push?"),
-    )  # fmt: skip
     otherwise = "D is not kd times the filtered speed, against the motion"
     share = np.mean((d(0.0) - u[1]) / _KD / slope[1])
     if np.allclose(u[first:], d(_filtered(slope, share))[first:], atol=1e-6):
         otherwise = f"its filter takes {share:.2f} of each new speed: filter_hz 8 and period 0.02 s ask for another"
-    slips = [(wrong[first:], says) for wrong, says in slips]
-    return _expect(u[first:], right[first:], slips, otherwise)
+    slips = ((wrong[first:], says) for wrong, says in _slips("PID", of_d))
+    return _expect(u[first:], d(rights[0][0])[first:], slips, otherwise)
 
 
 def _kick(cls):

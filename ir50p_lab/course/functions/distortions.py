@@ -2,53 +2,21 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
 from ir50p_lab.course.functions.stops import ended
-from ir50p_lab.course.functions.task import Mistake
+from ir50p_lab.course.functions.task import Mistake, table
 
 _MANY = 6  # longer ones are runs: no part of them has a meaning of its own
-_OF_NUMBERS = (
-    ("{} counts with the wrong sign", np.negative),
-    ("{} counts without its sign: is it lost in a root, or by `abs`?", np.abs),
-    ("{} does nothing in it: is it used?", np.zeros_like),
-    ("{} hardly counts: it comes in radians already, is it converted once more?", np.radians),
-    ("{} counts far too much: it is in radians already, is it made into degrees?", np.degrees),
-    ("{} is cut to a whole number", np.trunc),
-    ("{} counts twice", lambda x: 2 * x),
-    ("{} counts by half", lambda x: x / 2),
-    ("{} is taken for millimetres", lambda x: 1000 * x),
-)
-_OF_TABLES = (
-    ("rows and columns of {} have changed places", lambda x: np.swapaxes(x, -1, -2)),
-    ("the turns in {} are read by rows: an axis is a column", lambda x: _with_turn(x, np.swapaxes(x, -1, -2))),
-    ("{} is read in the opposite order, the last for the first", lambda x: x[::-1]),
-    *_OF_NUMBERS[2:4],
-)
-_OF_PARTS = (
-    ("{} has the wrong sign, the rest is right", np.negative),
-    ("{} is always 0, the rest is right", np.zeros_like),
-    ("{} is in degrees: everything here is rad", np.degrees),
-)
-_OF_RESULTS = (
-    ("rows and columns have changed places", lambda y: np.swapaxes(y, -1, -2)),
-    ("everything has the wrong sign", np.negative),
-    ("it goes the way back: its inverse would be right", np.linalg.inv),
-    ("it returns degrees: everything here is rad", np.degrees),
-    ("it returns angles that were turned into radians once more", np.radians),
-    ("it returns thousandths (mm): everything here is in metres", lambda y: 1000 * y),
-    ("it returns twice what is asked for", lambda y: 2 * y),
-    ("it returns half of what is asked for", lambda y: y / 2),
-    ("what it returns stands in the opposite order, the last first", lambda y: y[::-1]),
-    ("the turn in it goes the way back, its place is right", lambda y: _with_turn(y, np.swapaxes(y, -1, -2))),
-    ("it returns the sum of all", lambda y: y.sum(axis=0)),
-    ("it returns the size alone, one number", np.linalg.norm),
-    ("a 1 stands at its end that belongs to a transform", lambda y: np.append(y, 1.0)),
-    ("its last row and column are missing", lambda y: y[..., :-1, :-1]),
-    ("its upper and lower half have changed places", lambda y: np.roll(y, len(y) // 2, axis=0)),
-    ("it is a transform: asked for is the turn in it alone", lambda y: np.pad(y, (0, 1)) + np.diag([0.0] * 3 + [1])),
-)
+
+
+@cache
+def _changes(name):
+    """A table of `mistakes/` with expressions in x: pairs (words, function)."""
+    names = {"np": np, "with_turn": _with_turn}
+    return [(says, eval(f"lambda x: {expression}", names)) for says, (expression,) in table(name)]
 
 
 def distortions(task):
@@ -87,12 +55,12 @@ def _of_arguments(task):
 def _readings(name, value):
     """Pairs (words, change) for one argument."""
     if value.ndim > 1:
-        return [(says.format(name), change) for says, change in _OF_TABLES]
-    found = [(says.format(name), change) for says, change in _OF_NUMBERS]
+        return [(says.format(name), change) for says, change in _changes("of_tables")]
+    found = [(says.format(name), change) for says, change in _changes("of_numbers")]
     if value.ndim == 1 and len(value) <= _MANY:
         parts = [f"{name}[{j}]" for j in range(len(value))]
         for j, part in enumerate(parts):
-            found += [(says.format(part), _on_part(j, change)) for says, change in _OF_NUMBERS]
+            found += [(says.format(part), _on_part(j, change)) for says, change in _changes("of_numbers")]
             for i in range(j):
                 found += [(f"{parts[i]} and {part} have changed places", _swapped(i, j))]
                 for sign, word in ((1, "+"), (-1, "-")):
@@ -103,14 +71,14 @@ def _readings(name, value):
 
 def of_results(task):
     """Yield Mistakes: what is right is returned in another form, place, sign or unit."""
-    for says, change in _OF_RESULTS:
+    for says, change in _changes("of_results"):
         yield Mistake(_result(task, change), says)
     shape = np.shape(next(one for one in (task.right(*case) for case in task.cases()) if one is not None))
     if not shape:
         return
     for j in range(shape[-1]):
         part = task.parts[j] if task.parts else f"column {j + 1}"
-        for says, change in _OF_PARTS:
+        for says, change in _changes("of_parts"):
             yield Mistake(_result(task, _on_part(j, change)), says.format(part))
         for i in range(j):
             other = task.parts[i] if task.parts else f"column {i + 1}"
@@ -123,7 +91,7 @@ def of_results(task):
             yield Mistake(_result(task, lambda y, i=i: y[:i]), says)
             yield Mistake(_result(task, lambda y, i=i: y[i]), f"it returns number {i + 1} of {shape[0]} alone")
             yield Mistake(_result(task, lambda y, i=i: np.delete(y, i, 0)), f"number {i + 1} of {shape[0]} is missing")
-            for says, change in _OF_PARTS if len(shape) == 2 else ():
+            for says, change in _changes("of_parts") if len(shape) == 2 else ():
                 yield Mistake(_result(task, _on_rows(_on_part(i, change))), says.format(f"row {i + 1}"))
             for j in range(i):
                 change = _on_rows(_swapped(i, j))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.course.functions.pose import _LENGTHS, forward_kinematics, frames
-from ir50p_lab.course.functions.task import Mistake, Task, mistakes, shown, text_of
+from ir50p_lab.course.functions.task import Mistake, Task, mistakes, shown, table, text_of, wrong_one
 
 _SAME = 1e-5  # rad: near the stretched arm rounding of the place leaves the elbow uncertain by 3e-8, 2e-6 degrees
 
@@ -127,58 +127,26 @@ def _whole_turns(poses):
     return ""
 
 
-_WHERE = (  # some of the poses: in words, and told from whether it faces the place, q3, p and q1
-    ("", lambda facing, e, p, w: True),
-    (" in the poses with their back to the place", lambda facing, e, p, w: not facing),
-    (" where x < 0", lambda facing, e, p, w: p[0] < 0),
-    (" where y < 0", lambda facing, e, p, w: p[1] < 0),
-    (" wherever it is beyond a quarter turn", lambda facing, e, p, w: abs(w) > np.pi / 2),
-    (" with the elbow up", lambda facing, e, p, w: e < 0),
-    (" with the elbow down", lambda facing, e, p, w: e > 0),
+_WHERE = (  # some of the poses: in words, and what tells them in the solution
+    ("", "True"),
+    (" in the poses with their back to the place", "side < 0"),
+    (" where x < 0", "x < 0"),
+    (" where y < 0", "y < 0"),
+    (" wherever it is beyond a quarter turn", "abs(waist) > np.pi / 2"),
+    (" with the elbow up", "elbow < 0"),
+    (" with the elbow down", "elbow > 0"),
 )
-_BENDS = (  # what becomes of waist w, shoulder s and elbow e; g: angle between upper arm and r for an elbow
-    ("shoulder and elbow do not fit together{}: is it the sign of q3, or that of the angle between r and upper arm?",
-     lambda w, s, e, g: (w, s + 2 * g(e), e)),
-    ("the waist is half a turn off{}: can that which it is taken from tell (x, y) from (-x, -y)?",
-     lambda w, s, e, g: (w + np.pi, s, e)),
-    ("the elbow is the angle inside the triangle{}, or its cosine has the wrong sign: what is it when stretched?",
-     lambda w, s, e, g: (w, s, np.copysign(np.pi - abs(e), e))),
-    ("the elbow is the angle inside the triangle{}, or its cosine has the wrong sign; the shoulder follows it",
-     lambda w, s, e, g: (w, s + g(e) - g(np.copysign(np.pi - abs(e), e)), np.copysign(np.pi - abs(e), e))),
-    ("the shoulder points straight at the place{}: how far is the upper arm from r?",
-     lambda w, s, e, g: (w, s + g(e), e)),
-    ("the slope of r is not in the shoulder{}", lambda w, s, e, g: (w, -g(e), e)),
-    ("the slope of r has the wrong sign{}: what is it for a high place?", lambda w, s, e, g: (w, -s - 2 * g(e), e)),
-    ("the elbow is right, in the shoulder l2 and l3 have changed places{}: which corner of the triangle is it?",
-     lambda w, s, e, g: (w, s + 2 * g(e) - e, e)),
-    ("the shoulder has the wrong sign{}: positive lifts", lambda w, s, e, g: (w, -s, e)),
-    ("the shoulder is counted from the vertical{}: it is 0 lying flat", lambda w, s, e, g: (w, np.pi / 2 - s, e)),
-    ("the shoulder is half a turn off{}", lambda w, s, e, g: (w, s + np.pi, e)),
-    ("the elbow is counted from the horizon{}: it is 0 where the arm is straight", lambda w, s, e, g: (w, s, e + s)),
-    ("the waist has the wrong sign{}", lambda w, s, e, g: (-w, s, e)),
-    ("the waist is counted from the y axis{}: it is 0 along x", lambda w, s, e, g: (np.pi / 2 - w, s, e)),
-)  # fmt: skip
 
 
-def _bent(p, l, bend, where):
-    """The right poses, some of them bent."""
-    poses = inverse_kinematics(p, l)
-    for k, (w, s, e) in enumerate(poses):
-        if where(np.cos(w - np.arctan2(p[1], p[0])) > 0, e, p, w):
-            poses[k] = bend(w, s, e, lambda elbow: _between(elbow, l))
-    return poses
-
-
-def _never_refused(p, l, shortest, longest):
-    """Poses of the nearest place that can be reached, for places nearer or farther."""
-    from_shoulder = p - [0, 0, l[0]]
-    r = np.linalg.norm(from_shoulder)
-    return inverse_kinematics(p + from_shoulder * (np.clip(r, shortest(l), longest(l)) / r - 1), l)
-
-
-def _between(elbow, l):
-    """Angle between the upper arm and the line from shoulder to tip."""
-    return np.arctan2(l[2] * np.sin(elbow), l[1] + l[2] * np.cos(elbow))
+def _mistakes():
+    """The mistakes of the table; where a sentence leaves room for it, made in some of the poses only, too."""
+    for says, changes in table("inverse_kinematics"):
+        for words, where in _WHERE if "{}" in says else ():
+            pose, bent = changes[0].split("  ->  ")
+            some = f"{pose} -> {bent} if {where} else {pose}"
+            yield Mistake(wrong_one(inverse_kinematics, [some]), says.format(words))
+        if "{}" not in says:
+            yield Mistake(wrong_one(inverse_kinematics, changes), says)
 
 
 def _no_rows(shape):
@@ -267,25 +235,7 @@ INVERSE_KINEMATICS = Task(
     loan=text_of(inverse_kinematics),
     parts=("q1", "q2", "q3"),
     routes=(_BY_THE_TRIANGLE,),
-    slips=(
-        Mistake(lambda p, l: _bent(p, l, lambda w, s, e, g: (w, np.pi - s - 2 * g(e), e), _WHERE[1][1]),
-                "with its back to the place the arm has the shoulder of the one that faces it: there the place lies "
-                "behind, at minus the distance"),
-        *(
-            Mistake(lambda p, l, bend=bend, where=where: _bent(p, l, bend, where), says.format(words))
-            for says, bend in _BENDS
-            for words, where in _WHERE
-        ),
-        *(
-            Mistake(lambda p, l, shortest=shortest, longest=longest: _never_refused(p, l, shortest, longest),
-                    f"places too {says} get poses: nobody reaches them. Does a clip hide that?")
-            for says, shortest, longest in (
-                ("near the shoulder (r < |l2 - l3|)", lambda l: abs(l[1] - l[2]), lambda l: np.inf),
-                ("far away (r > l2 + l3)", lambda l: 0.0, lambda l: l[1] + l[2]),
-                ("near the shoulder, and those too far away,", lambda l: abs(l[1] - l[2]), lambda l: l[1] + l[2]),
-            )
-        ),
-    ),
+    slips=tuple(_mistakes()),
     symptom=_poses_symptom,
     form=_whole_turns,
     hints=(
@@ -435,8 +385,6 @@ def _removed_in_the_loop(p, l, q_now, limits):
     return min(rows, key=lambda q: np.abs(q - q_now).max(), default=None)
 
 
-_KEPT = "np.all(pose >= limits[0]) and np.all(pose <= limits[1])"  # within_limits
-
 REACH = Task(
     name="reach",
     asks="the allowed pose (3,) for p whose largest joint turn from q_now is smallest, elbow and tip not below the "
@@ -448,69 +396,9 @@ REACH = Task(
     loan=text_of(reach),
     parts=("q1", "q2", "q3"),
     slips=(
-        *mistakes(
-            reach,
-            ("it takes the allowed pose that is farthest away", "np.max(np -> -np.max(np"),
-            *(
-                (f"yours {says}; asked for is the pose whose largest turn is smallest",
-                 f"np.max(np.abs(pose - q_now)) -> {turn}")
-                for says, turn in (
-                    ("adds up the turns of the three joints", "np.sum(np.abs(pose - q_now))"),
-                    ("takes the length, the root of the squares", "np.linalg.norm(pose - q_now)"),
-                    ("compares the smallest turn of each pose", "np.min(np.abs(pose - q_now))"),
-                    ("compares turns with their sign, so that a far one counts as small", "np.max(pose - q_now)"),
-                    ("compares the angles, not how far they are from q_now", "np.max(np.abs(pose))"),
-                )
-            ),
-            ("the first allowed pose wins: is its largest turn compared with those of the others?",
-             "turn < smallest -> best is None"),
-            ("the last allowed pose wins: is its largest turn compared with the smallest so far, and is that kept "
-             "up to date?", " and turn < smallest -> "),
-            *((f"only the turn of joint {j + 1} is compared", f"pose - q_now -> pose[{j}] - q_now[{j}]")
-              for j in range(3)),
-            ("a turn counts as the short way round, through an end stop: a joint turns straight from angle to angle",
-             "pose - q_now -> np.angle(np.exp(1j * (pose - q_now)))"),
-            ("where the nearest pose is forbidden it gives up, although a farther one is allowed: first strike out, "
-             "then compare", "in inverse_kinematics(p, l) -> in _nearest(p, l, q_now)"),
-            ("neither limits nor table are asked: what is nearest may be forbidden",
-             "within_limits and above_table and -> "),
-            ("the limits are not asked: the nearest pose may be forbidden", "if within_limits and -> if"),
-            ("elbow or tip may end below z = 0: is the table not asked, or another number than their heights?",
-             "and above_table -> "),
-            ("one joint within its limits is enough in it: all have to be",
-             f"{_KEPT} -> ((pose >= limits[0]) & (pose <= limits[1])).any()"),
-            ("the heights are those of the arm as it stands now, not those of the pose",
-             "frames(pose, -> frames(q_now,"),
-        ),
         Mistake(_removed_in_the_loop,
                 "a row that is taken out of the list the loop walks along makes it skip the next one"),
-        *mistakes(
-            reach,
-            ("one pose that is refused ends the search: the others may be allowed",
-             "return best -> return best if all(allowed(q, l, limits) for q in inverse_kinematics(p, l)) else None"),
-            ("it returns the turn from q_now, not the pose",
-             "return best -> return best if best is None else best - q_now"),
-            ("the tip stays above the table, the elbow does not: it counts, too", "[2:, 2, 3] -> [3, 2, 3]"),
-            ("the elbow stays above the table, the tip does not: it counts, too", "[2:, 2, 3] -> [2, 2, 3]"),
-            *(
-                (f"the limits of joint {j + 1} are not asked",
-                 f"{_KEPT} -> within(np.delete(pose, {j}), np.delete(limits, {j}, axis=1))")
-                for j in range(3)
-            ),
-            *(
-                ("the two rows of `limits` are read as columns: the first row holds the lower ones, the second the "
-                 "upper", f"{_KEPT} -> {columns}")
-                for columns in (
-                    "all(limits[k, 0] <= pose[k] <= limits[k, 1] for k in range(2))",
-                    "np.all(limits[0, 0] <= pose) and np.all(pose <= limits[0, 1])",
-                )
-            ),
-            ("only the upper limits are asked", "np.all(pose >= limits[0]) and -> "),
-            ("only the lower limits are asked", "and np.all(pose <= limits[1]) -> "),
-            ("the upper limits serve as lower ones, too: those are others", "pose >= limits[0] -> -pose <= limits[1]"),
-            ("a joint that stands exactly on its limit is refused: the limits themselves are allowed",
-             "pose >= limits -> pose > limits", "pose <= limits -> pose < limits"),
-        ),
+        *mistakes(reach),
     ),
     symptom=_reach_symptom,
     hints=(

@@ -53,13 +53,7 @@ ROT_Z = Task(
     right=rot_z,
     cases=_angles,
     loan=text_of(rot_z),
-    slips=mistakes(
-        rot_z,
-        ("it turns the wrong way round: a quarter turn takes (1, 0, 0) to (0, -1, 0), to the right. Which way is "
-         "counter-clockwise seen from above?", "[c, -s, 0] -> [c, s, 0]", "[s, c, 0] -> [-s, c, 0]"),
-        ("column 2 is turned on by 90, and here that is 90 rad: how many rad are a quarter turn?",
-         "[c, -s, 0] -> [c, np.cos(angle + 90), 0]", "[s, c, 0] -> [s, np.sin(angle + 90), 0]"),
-    ),
+    slips=mistakes(rot_z),
     symptom=_rot_z_symptom,
     hints=(
         "Where does (1, 0, 0) go when the waist turns by the angle? Draw it from above. That is the first column.",
@@ -131,44 +125,7 @@ DH_MATRIX = Task(
     cases=_rows,
     leans_on=("rot_z",),
     loan=text_of(shift, turn_z, turn_x, dh_matrix),
-    slips=mistakes(
-        dh_matrix,
-        ("it hardly turns: theta and alpha come in radians already",
-         "z(theta) -> z(np.radians(theta))", "x(alpha) -> x(np.radians(alpha))"),
-        ("both angles turn the wrong way round", "z(theta) -> z(-theta)", "x(alpha) -> x(-alpha)"),
-        ("the link's motions come before the joint's: walk from the base, first turn and lift at the joint, then go "
-         "along the link", "joint @ link -> turn_x(alpha) @ shift(a, 0, 0) @ joint"),
-        ("the link sticks out before the joint has turned: a is along the x axis *after* theta",
-         "joint @ link -> shift(a, 0, d) @ turn_z(theta) @ turn_x(alpha)"),
-        ("d comes after the tilt: the joint lifts along its own axis, before the link tilts it",
-         "joint @ link -> turn_z(theta) @ link @ shift(0, 0, d)"),
-        ("a shift stands in the bottom row: what a point is moved by belongs into the last column",
-         "joint @ link -> turn_z(theta) @ shift(a, 0, d).T @ turn_x(alpha)"),
-        ("theta turns about x and alpha about z: they have changed axes",
-         "joint @ link -> turn_x(theta) @ shift(a, 0, d) @ turn_z(alpha)"),
-        ("alpha does nothing in it, and theta turns twice, about z and about x", "x(alpha) -> x(theta)"),
-        ("theta and d do nothing in it: is what they make left out of the product, or written over?",
-         "joint @ link -> link"),
-        ("the 1 at the lower right is 0, and both shifts are lost with it: is a turn put into zeros?",
-         "joint @ link -> joint @ link @ np.diag([1, 1, 1, 0])"),
-        ("two matrices are added: one motion after another is a product",
-         "joint @ link -> turn_z(theta) @ (shift(0, 0, d) + shift(a, 0, 0)) @ turn_x(alpha)"),
-        ("d does nothing in it and a counts twice", "0, d -> 0, 0", "shift(a -> shift(2 * a"),
-        ("a does nothing in it and d counts twice", "0, d -> 0, 2 * d", "shift(a -> shift(0"),
-        *(
-            (f"{motion}: which axis is the {whose}'s?", change)
-            for motion, whose, change in (
-                ("theta turns about x", "joint", "z(theta) -> x(theta)"),
-                ("theta turns about y", "joint", "z(theta) -> y(theta)"),
-                ("d shifts along x", "joint", "0, 0, d -> d, 0, 0"),
-                ("d shifts along y", "joint", "0, 0, d -> 0, d, 0"),
-                ("a shifts along y", "link", "a, 0, 0 -> 0, a, 0"),
-                ("a shifts along z", "link", "a, 0, 0 -> 0, 0, a"),
-                ("alpha turns about y", "link", "x(alpha) -> y(alpha)"),
-                ("alpha turns about z", "link", "x(alpha) -> z(alpha)"),
-            )
-        ),
-    ),
+    slips=mistakes(dh_matrix),
     symptom=_dh_symptom,
     hints=(
         "Write four small matrices first, one a motion: your rot_z in a 4 x 4, two shifts, a turn about x.",
@@ -225,8 +182,6 @@ def frames(q, l):
     return chain(q, table)"""
 
 
-_EXCHANGED = "l[0], 0 -> 0, l[0]", "0, l[1] -> l[1], 0", "0, l[2] -> l[2], 0"
-
 FRAMES = Task(
     name="frames",
     asks="the four transforms (4, 4, 4) of frames 0 (base) to 3 (tip), each as the base sees it",
@@ -235,32 +190,7 @@ FRAMES = Task(
     leans_on=("dh_matrix", "rot_z"),
     routes=(_BY_TABLE,),
     loan=text_of(frames),
-    slips=mistakes(
-        frames,
-        ("each link is seen from the link before it, not from the base: chain them", "T1 @ A2 -> A2", "T2 @ A3 -> A3"),
-        ("there are three, each seen from the link before it: the base comes first, and the others are seen from the "
-         "base", "T0, T1, T2, T3 -> A1, A2, A3"),
-        ("frame 3 goes back two links only: the first is missing in it", "T2 @ A3 -> A2 @ A3"),
-        *(
-            (f"d and a have changed places in {where}: in the table, or where it is read?", *_EXCHANGED[rows])
-            for where, rows in (
-                ("every row", slice(3)),
-                ("row 1 alone", slice(1)),
-                ("row 2 alone", slice(1, 2)),
-                ("row 3 alone", slice(2, 3)),
-            )
-        ),
-        ("alpha has the wrong sign in rows 1 and 3: lifting the shoulder lowers the arm",
-         "l[0], 0, np.pi -> l[0], 0, -np.pi", "l[2], -np.pi -> l[2], np.pi"),
-        ("alpha of row 1 has the wrong sign: the shoulder's axis points to the other side",
-         "l[0], 0, np.pi -> l[0], 0, -np.pi"),
-        ("frame 3 stands on its head: the sign of alpha in row 3 (the thesis prints this one, too)",
-         "l[2], -np.pi -> l[2], np.pi"),
-        ("alpha of row 3 is missing: the place is right, the axes of frame 3 are not", "-np.pi / 2 -> 0"),
-        ("alpha of row 1 is missing: the shoulder turns about the vertical", "l[0], 0, np.pi / 2 -> l[0], 0, 0"),
-        ("every alpha is 0: the shoulder turns about the vertical, and the arm stays flat", "np.pi / 2 -> 0"),
-        ("alpha is given in degrees: 90 rad are fourteen turns and a bit", "np.pi / 2 -> 90"),
-    ),
+    slips=mistakes(frames),
     symptom=_frames_symptom,
     hints=(
         "One line a joint: dh_matrix with the row of the arm's table. Then chain them.",
@@ -294,26 +224,7 @@ FORWARD_KINEMATICS = Task(
     parts=("x", "y", "z"),
     routes=(_BY_SINE_AND_COSINE,),
     loan=text_of(forward_kinematics),
-    slips=mistakes(
-        forward_kinematics,
-        ("it returns zeros: the place of the base itself, or a *row* of the transform; the place stands in a column",
-         "tip[:3, 3] -> np.zeros(3)"),
-        ("that is the base as the tip sees it: no inverse here", "= T[3] -> = np.linalg.inv(T[3])"),
-        ("it is the place of the elbow, not that of the tip", "T[3] -> T[2]"),
-        *(
-            (f"it is the tip as frame {k} sees it, at the {where} of the arm: the base has to see it",
-             f"T[3] -> np.linalg.solve(T[{k}], T[3])")
-            for k, where in ((2, "elbow"), (1, "shoulder"))
-        ),
-        ("the height is counted from the shoulder", "tip[:3, 3] -> tip[:3, 3] - [0, 0, l[0]]"),
-        ("the frames are multiplied once more: each is seen from the base already", "T[3] -> np.linalg.multi_dot(T)"),
-        ("the places of the frames are added up: each is counted from the base already", "T[3] -> T.sum(axis=0)"),
-        *(
-            ("the place is turned by the frame's axes once more: it is in those of the base already",
-             f"tip[:3, 3] -> {turn} @ tip[:3, 3]")
-            for turn in ("tip[:3, :3]", "tip[:3, :3].T")
-        ),
-    ),
+    slips=mistakes(forward_kinematics),
     hints=(
         "You have the tip's frame already. What stands where in a transform?",
         "T[3] is 4 x 4; the place is a column.",

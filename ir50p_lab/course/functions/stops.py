@@ -7,55 +7,17 @@ import traceback
 
 import numpy as np
 
+from ir50p_lab.course.functions.task import table
 from ir50p_lab.errors import LabError
 
 ROOM = "<my_robot"  # the file name of what is tried begins so
-
-_REASONS = (  # kind of error, what its message holds, the usual reason
-    ("TypeError", "NoneType", "something in it is None: does a helper lack its `return`?"),
-    ("AttributeError", "NoneType", "something in it is None: does a helper lack its `return`?"),
-    ("ValueError", "has 0, gufunc", "a single number or None stands in a matrix product: does a helper lack `return`?"),
-    ("TypeError", "bitwise_xor", "`^` is no power in Python; `**` is"),
-    ("TypeError", "'^'", "`^` is no power in Python; `**` is"),
-    ("TypeError", "array() takes", "the rows need brackets round them all: one list of lists"),
-    ("TypeError", "dot() takes", "`np.dot` takes two factors: chain them with `@`"),
-    ("TypeError", "converted to Python scalar", "a function of one number (`math`) is given an array: take NumPy's"),
-    ("TypeError", "not callable", "what stands before the brackets is no function: is a `*` or a comma missing?"),
-    ("TypeError", "not subscriptable", "what stands before the square brackets has no parts"),
-    (
-        "ValueError",
-        "truth value",
-        "`if` asks one question, here are three joints: np.where decides for each, np.all or np.any for all together",
-    ),
-    ("TypeError", "real number, not 'tuple'", "it is three numbers, one a joint, and is read as one"),
-    ("TypeError", "'tuple'", "a tuple cannot be calculated with: `np.array` makes an array of it"),
-    ("TypeError", "multiply sequence by", "one number times a tuple: three belong there, or an array for the tuple"),
-    ("TypeError", "bitwise_and", "`&` comes before `>` and `<`: each condition needs brackets of its own"),
-    ("UFuncTypeError", "Cannot cast ufunc", "an array of whole numbers takes no fractions: np.zeros makes another"),
-    ("ValueError", "inhomogeneous", "rows of different lengths make no array"),
-    ("ValueError", "array element with a sequence", "a whole array is put where one number belongs"),
-    ("ValueError", "mismatch in its core dimension", "two arrays in a product do not fit together"),
-    ("ValueError", "not aligned", "two arrays in a product do not fit together"),
-    ("ValueError", "broadcast", "two arrays do not fit together"),
-    ("IndexError", "with size 0", "the array is empty: for this input nothing fits its condition"),
-    ("IndexError", "", "one place too far: places are counted from 0, so the last of n is n - 1"),
-    ("ZeroDivisionError", "", "a division by zero"),
-    ("ValueError", "math domain error", "a root of less than nothing, or an arccos of more than 1"),
-    ("LinAlgError", "ingular", "the matrix has no inverse there: the arm is stretched, a direction is lost"),
-    ("LinAlgError", "at least two-dim", "`np.linalg` is given a row where a matrix belongs: in `solve` it comes first"),
-    ("ValueError", "empty", "the smallest or largest of nothing: what is to come back where the list is empty?"),
-    ("LinAlgError", "square", "only a square matrix has an inverse"),
-    ("UnboundLocalError", "", "a name is used before it gets its value: is that only set inside an `if` or a loop?"),
-    ("RecursionError", "", "it calls itself without an end"),
-)
 
 
 def why_it_stops(error):
     """A sentence on an error: the line, the usual reason, what did not fit together, and Python's own words."""
     line, operands, memory = _where(error)
     said = f"Python says {type(error).__name__}: {error}"
-    usual = (why for kind, part, why in _REASONS if kind == type(error).__name__ and part in str(error))
-    reason = memory or next(usual, "")
+    reason = memory or _usual(error)
     if isinstance(error, LabError):
         reason = "an earlier function is given what it cannot take: are its arguments in their order?"
     if isinstance(error, IndexError) and re.search(r"\[[^],]*:[^],]*\]\[", line) and "size 0" not in str(error):
@@ -66,6 +28,15 @@ def why_it_stops(error):
     if not reason:
         return f"it stops{place}. {said}"
     return f"it stops{place}: {ended(reason + operands)} {said if 'gufunc' not in said else ''}".rstrip()
+
+
+def _usual(error):
+    """The usual reason in plain words, by the kind of an error and by what its message holds; or ""."""
+    for why, signs in table("stops"):
+        for kind, _, part in (sign.partition(": ") for sign in signs):
+            if kind.rstrip(":") == type(error).__name__ and part in str(error):
+                return why
+    return ""
 
 
 def ended(says):

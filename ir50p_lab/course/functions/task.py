@@ -4,10 +4,13 @@ import inspect
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 from numpy import allclose  # bound here: a cell may put another into `np`
 
+_TABLES = Path(__file__).parent / "mistakes"
 _LONG = 12  # numbers: of a longer row the first and last three are shown
 
 
@@ -34,19 +37,35 @@ def text_of(*functions):
     return "\n\n".join(texts).rstrip()
 
 
-def changed(function, *changes):
-    """The function with its text changed here and there: "old -> new". Raises ValueError if the old is not there."""
-    text, names = text_of(function), dict(function.__globals__)
-    for old, new in (change.split(" -> ") for change in changes):
+def changed(text, changes, names):
+    """What a text defines, over `names`, with changes in it: "old -> new". Raises ValueError where no old is."""
+    for old, new in (map(str.strip, change.split("->")) for change in changes):
         text.index(old)  # a change that would change nothing
         text = text.replace(old, new)
+    names = dict(names)
     exec(text, names)
-    return names[function.__name__]
+    return names
 
 
-def mistakes(function, *rows):
-    """Mistakes of a solution. rows: what to say, then the changes of its text that make it (see `changed`)."""
-    return [Mistake(changed(function, *changes), says) for says, *changes in rows]
+@cache
+def table(name):
+    """A table of `mistakes/`, most specific first: pairs (what to say, lines). Of a solution the lines are its changes.
+
+    A paragraph each: the sentence, and indented below it what it is said of.
+    """
+    paragraphs = (_TABLES / f"{name}.txt").read_text(encoding="utf-8").strip().split("\n\n")
+    rows = (paragraph.split("\n    ") for paragraph in paragraphs)
+    return [(says.replace("\n", " "), lines) for says, *lines in rows]
+
+
+def wrong_one(function, changes):
+    """The function with these changes in its text."""
+    return changed(text_of(function), changes, function.__globals__)[function.__name__]
+
+
+def mistakes(function):
+    """The mistakes in the table of a function."""
+    return [Mistake(wrong_one(function, changes), says) for says, changes in table(function.__name__)]
 
 
 @dataclass(frozen=True)

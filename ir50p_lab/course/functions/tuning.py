@@ -164,12 +164,6 @@ def _from_zero(cases, off):
     return not off[begins == 0].any() and off[(begins != 0) & upwards].any() and off[~upwards].any()
 
 
-# parts of the solution that mistakes replace
-_OVER = "max(0, np.max(np.sign(way) * (q - target)))"
-_BAND = "max(0.02 * abs(way), 4 * noise)"
-_LAST = "np.flatnonzero(outside)[-1]"
-_REST = "target - np.mean(last_second)"
-
 STEP_METRICS = Task(
     name="step_metrics",
     asks="rise time, overshoot, settling time and rest error of a step of one joint: four numbers (s, rad, s, rad)",
@@ -179,107 +173,7 @@ STEP_METRICS = Task(
     parts=_NAMES,
     unit="(s, rad, s, rad)",
     loan=text_of(step_metrics),
-    slips=mistakes(
-        step_metrics,
-        ("the overshoot is in percent of the step; here it is an angle, rad",
-         "overshoot, settling -> 100 * overshoot / abs(way), settling"),
-        ("the overshoot is a part of the step, without unit; here it is an angle, rad",
-         "overshoot, settling -> overshoot / abs(way), settling"),
-        ("steps downwards overshoot by the whole step: beyond the target is *below* it there",
-         "np.sign(way) * (q - target) -> q - target"),
-        ("a joint that stays short of its target overshoots by less than nothing with you; no overshoot is 0",
-         f"{_OVER} -> np.max(np.sign(way) * (q - target))"),
-        ("a joint that never passes its target has an overshoot, too: the largest distance on either side counts the "
-         "start as well", f"{_OVER} -> np.max(np.abs(q - target))"),
-        ("overshoot and settling are taken about where the joint ends; asked is about where it should end",
-         "(q - target) -> (q - np.mean(last_second))"),
-        ("overshoot and settling are taken about the last angle; asked is about where it should end",
-         "(q - target) -> (q - q[-1])"),
-        ("the band lies about where the joint ends; asked is about the target: a joint beside it has not settled",
-         "abs(q - target) -> abs(q - np.mean(last_second))"),
-        *(
-            ("the band is that of the whole run, the step itself counts as noise: take the last second",
-             f"4 * noise -> {k} * {size}")
-            for k in (3, 4)
-            for size in ("np.std(np.diff(q)) / np.sqrt(2)", "np.std(q)")
-        ),
-        ("the band is 2 % of the target: a step to 0 would have none. It is 2 % of the way from the start",
-         "abs(way) -> abs(target)"),
-        ("every step begins at 0 rad: look at the first sample for where this one begins",
-         "way = target - q[0] -> way = target - (q := np.r_[0.0, q[1:]])[0]"),
-        ("steps downwards never rise with you: the way there is negative, and so is what is done of it",
-         "any(done >= 0.9) -> any(done >= 0.9) and way > 0"),
-        ("the rise time is negative: which of the two marks does the joint pass first?", "return rise -> return -rise"),
-        *(
-            (f"the rise time goes {marks}, not from 10 to 90 % of the way",
-             f">= 0.9 -> >= {high}", f">= 0.1 -> >= {low}")
-            for marks, low, high in (
-                ("from the start to 90 %", "-np.inf", 0.9),
-                ("from 10 % to the target itself", 0.1, 1.0),
-                ("from 10 to 95 %", 0.1, 0.95),
-                ("from 5 to 95 %", 0.05, 0.95),
-            )
-        ),
-        ("the overshoot is that of the last sample, not of the farthest one",
-         "np.max(np.sign(way) * (q - -> (np.sign(way) * (q[-1] -"),
-        ("the rest error is a median; asked is the mean", "np.mean -> np.median"),
-        ("the last second begins one sample late: its first sample is included", "- 1e-9 -> + 1e-6"),
-        ("where the angle trembles it settles late or never: four standard deviations of the noise widen the band",
-         f"{_BAND} -> 0.02 * abs(way)"),
-        ("the band is 4 standard deviations only: without noise it has no width, and 2 % of the way is allowed",
-         f"{_BAND} -> 4 * noise"),
-        ("the band is too wide: 4 standard deviations of the noise are asked for, and the difference of two samples "
-         "has the noise of both", " / np.sqrt(2) -> "),
-        *(
-            ("a slow swing widens the band: noise is what *neighbours* differ by, here the whole scatter is taken",
-             f"4 * noise -> {k} * np.std(last_second)")
-            for k in (4, 3)
-        ),
-        *(
-            (f"the band is {k} standard deviations of the noise wide, 4 are asked for: a single sample is soon "
-             "beyond it", f"4 * noise -> {k} * noise")
-            for k in (1, 2, 3)
-        ),
-        ("the narrower of both bands is taken; asked is the wider", "band = max -> band = min"),
-        ("the band is 2 % and the noise together; asked is the wider of the two",
-         f"{_BAND} -> 0.02 * abs(way) + 4 * noise"),
-        *(
-            (f"the band is {percent} % of the way; asked is 2 %", f"0.02 -> {percent / 100}")
-            for percent in (1, 4, 5, 10)
-        ),
-        ("it counts to the last sample inside; asked is the first after which the joint stays inside",
-         "(outside)[-1] + 1 -> (~outside)[-1]"),
-        ("the overshoot compares sizes without their sign: a step that passes 0 shows it",
-         "np.max(np.sign(way) * (q - target)) -> np.max(np.abs(q)) - abs(target)"),
-        ("for steps downwards the band has a negative width, so the joint is never inside: how *long* is the way?",
-         "abs(way) -> way"),
-        ("it is settled when it is inside for the first time; a joint that swings leaves the band again",
-         "if outside[-1] -> if np.all(outside)", f"{_LAST} + 1 -> np.argmin(outside)"),
-        ("it is settled when it is inside for the first time; a joint that swings leaves the band again",
-         f"{_LAST} + 1 -> np.argmin(outside)"),
-        ("the rise goes by where the joint ends: the way is from its first angle to the *target*",
-         "(q - q[0]) / way -> (q - q[0]) / (q[-1] - q[0])"),
-        ("it counts from the first sample outside, not from the last", f"{_LAST} -> np.argmax(outside)"),
-        ("a clock that begins at 3 s makes it settle 3 s later: the time counts from where the step begins",
-         " - t[0] -> "),
-        ("the settling time ends at the last sample outside; inside is the one after it (a slow clock shows it)",
-         "[-1] + 1 -> [-1]"),
-        ("the rest error has the other sign: what is missing is positive, the target less where it is",
-         f"{_REST} -> np.mean(last_second) - target"),
-        *(
-            ("the rest error has lost its sign: short and too far are not the same", f"{_REST} -> {rest}")
-            for rest in (f"abs({_REST})", "np.mean(np.abs(target - last_second))")
-        ),
-        ("the rest error rests on the very last sample, which trembles: take the mean of the last second",
-         f"{_REST} -> target - q[-1]"),
-        ("the rest error and the noise are those of the last half second: a whole second is asked for",
-         "- 1 - 1e-9 -> - 0.5 - 1e-9"),
-        *(
-            ("the last second is taken as a number of samples: not every computer is that quick; ask the clock",
-             f"t >= t[-1] - 1 - 1e-9 -> -{samples}:")
-            for samples in (100, 101, 99)
-        ),
-    ),
+    slips=mistakes(step_metrics),
     symptom=_symptom,
     hints=(
         "Begin with done = how much of the way is behind the joint, 0 at the start and 1 at the target: rise time and "

@@ -11,31 +11,9 @@ from functools import cache
 
 import numpy as np
 
-from ir50p_lab.course.functions.task import Mistake
+from ir50p_lab.course.functions.task import Mistake, table
 
-_OF_NUMPY = (  # functions, what to say, what stands in their place; {0}, {1}: arguments, {all} of them, {call}: itself
-    ("sin", "sine and cosine have changed places", "np.cos({all})"),
-    ("cos", "sine and cosine have changed places", "np.sin({all})"),
-    ("arccos", "arcsin stands where the cosine has to be undone", "np.arcsin({all})"),
-    ("all", "one is enough where all are asked for", "np.any({all})"),
-    ("max", "the smallest counts, not the largest", "np.min({all})"),
-    ("cross", "the factors of the cross product have changed places", "np.cross({1}, {0})"),
-    ("arctan2", "the two arguments of arctan2 have changed places", "np.arctan2({1}, {0})"),
-    ("cross", "a product entry by entry (`*`) stands for the cross product", "({0}) * ({1})"),
-    ("cross", "a sum stands for the cross product", "({0}) + ({1})"),
-    ("cross", "the lever is cut to length 1", "np.cross({0}, ({1}) / np.linalg.norm({1}))"),
-    ("arctan2", "a quotient cannot tell two opposite directions apart", "np.arctan(({0}) / ({1}))"),
-    ("arctan2", "arcsin does not know angles beyond a quarter turn", "np.arcsin(({0}) / np.hypot({0}, {1}))"),
-    ("hypot", "x alone counts, not the distance", "{0}"),
-    ("max", "the sum counts, not the largest", "np.sum({all})"),
-    ("max", "the length (root of squares) counts, not the largest", "np.linalg.norm({all})"),
-    ("abs sqrt sin cos arccos", "{name} is missing", "{0}"),
-    ("arccos arctan2", "an angle is made into degrees before it is used", "np.degrees({call})"),
-    ("solve", "the matrix is multiplied, nothing is solved", "({0}) @ ({1})"),
-    ("solve", "`/` divides entry by entry, nothing is solved", "({1}) / ({0})"),
-    ("eye", "what belongs on the diagonal stands in all entries", "np.ones(2 * ({0},))"),
-    ("eye zeros empty", "an array of integers cuts off what is put into it", "np.{name}({all}, dtype=int)"),
-)
+_OPERATIONS = {ast.MatMult: "@", ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 _OWN_WORDS = ("condition", "loop", "what_it_returns", "half_a_turn", "the_identity", "T1", "T2", "T3")
 _NAMED = re.compile(
     r" \((?:that on )?(?P<named>[\w ]+)\)|: look at (?:the )?(?P<place>[\w ]+)$"
@@ -174,19 +152,13 @@ def _changes(node, local, last):
     """Pairs (words, the node in its place)."""
     match node:
         case ast.BinOp(left=left, op=op, right=right) if not (_tiny(left) or _tiny(right)):
-            yield from _of_operation(left, op, right)
+            yield from _of_table(node, _OPERATIONS.get(type(op)), left, right)
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             yield "a minus is missing", operand
         case ast.Call(func=ast.Attribute(attr=name), args=args):
-            yield from _of_numpy(node, name, args)
+            yield from _of_table(node, name, *args)
         case ast.Call(func=ast.Name(id="range"), args=[count]):
-            for words, start, stop in (
-                ("the loop leaves out the first", "1", "{}"),
-                ("the loop ends one too early", "0", "{} - 1"),
-                ("the loop goes one too far", "0", "{} + 1"),
-                ("the loop always runs over all three", "0", "3"),
-            ):
-                yield words, _parsed(f"range({start}, {stop.format(ast.unparse(count))})")
+            yield from _of_table(node, "range", count)
         case ast.Call(func=function, args=args):
             for turned in (args[1:] + args[:1], args[-1:] + args[:-1]) if len(args) > 2 else ():
                 words = f"the arguments of `{ast.unparse(function)}` stand in another order than it takes them"
@@ -250,44 +222,29 @@ def _changes(node, local, last):
         case ast.Name(id=name, ctx=ast.Load()) if name in local:
             for other in sorted(local - {name}) if len(local) < _MANY_NAMES else ():
                 yield f"`{other.replace('_', ' ')}` stands where something else belongs", ast.Name(other, ast.Load())
-            own, words = copy.copy(node), name.replace("_", " ")
-            yield f"`{words}` is transposed once too often", ast.Attribute(own, "T", ast.Load())
-            yield f"`{words}` has the wrong sign", ast.UnaryOp(ast.USub(), own)
-            yield f"`{words}` is made into degrees", ast.Call(_parsed("np.degrees"), [own], [])
-            yield f"`{words}` counts by half", ast.BinOp(own, ast.Div(), ast.Constant(2))
+            yield from _of_table(node, "a name")
 
 
-def _of_operation(left, op, right):
-    match op:
-        case ast.MatMult():
-            yield "matrices are multiplied entry by entry (`*`, not `@`)", ast.BinOp(left, ast.Mult(), right)
-            yield "the factors of a matrix product have changed places", ast.BinOp(right, op, left)
-            yield "matrices are added, not multiplied", ast.BinOp(left, ast.Add(), right)
-            yield "a factor of a matrix product is missing", left
-            yield "a factor of a matrix product is missing", right
-        case ast.Add() | ast.Sub():
-            other = ast.Sub() if isinstance(op, ast.Add) else ast.Add()
-            yield "plus and minus are exchanged", ast.BinOp(left, other, right)
-            yield "the difference is taken the wrong way round", ast.BinOp(right, ast.Sub(), left)
-            yield f"a term is missing ({_subject(right)})", left
-            yield f"a term is missing ({_subject(left)})", right
-        case ast.Mult():
-            yield f"a factor is missing ({_subject(right)})", left
-            yield f"a factor is missing ({_subject(left)})", right
-            yield "it divides where it has to multiply", ast.BinOp(left, ast.Div(), right)
-        case ast.Div():
-            yield "a quotient stands upside down", ast.BinOp(right, op, left)
-            yield "a division is missing", left
-        case ast.Pow():
-            yield "a square is missing", left
+def _of_table(node, step, *parts):
+    """What the table makes of a step: the name of a function of NumPy, an operation, "a name"; a, b: its parts."""
+    own = dict(zip("ab", parts, strict=False)) | {"step": copy.copy(node)}
+    words = {letter: _subject(part) for letter, part in own.items()}
+    words["name"] = words["step"] if isinstance(node, ast.Name) else step
+    for says, changes in table("steps"):
+        for of, other in (change.split("  ->  ") for change in changes):
+            if of == step:
+                yield says.format(**words), _Filled(own).visit(_parsed(other))
 
 
-def _of_numpy(node, name, args):
-    texts = [ast.unparse(one) for one in args]
-    for functions, words, other in _OF_NUMPY:
-        if name in functions.split():
-            text = other.format(*texts, name=name, all=", ".join(texts), call=ast.unparse(node))
-            yield words.format(name=name), _parsed(text)
+class _Filled(ast.NodeTransformer):
+    """Puts nodes in place of names."""
+
+    def __init__(self, nodes):
+        self.nodes = nodes
+
+    def visit_Name(self, node):
+        """The node that a name stands for."""
+        return self.nodes.get(node.id, node)
 
 
 def _parsed(text):

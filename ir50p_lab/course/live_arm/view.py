@@ -46,8 +46,7 @@ class LiveArm(anywidget.AnyWidget):
         in the browser. frames: f(q) -> (4, 4, 4), transforms of frames 0 to 3 to the base: the arm is drawn by them,
         wrong ones too. badge: whose code moves the arm, 'yours' or "the course's"; by default told from them.
         layers: which of table, shadow, ghost, trail, frames, joint axes, velocity ellipsoid, force ellipsoid,
-        workspace, ball, board, camera are shown at first. ball: (p, radius) m; board: (T, square, (columns, rows)),
-        T (4, 4) of the checkerboard's first inner corner; camera: (K, T, (width, height)), T camera to base.
+        workspace, ball are shown at first. ball: (p, radius) m.
         height: CSS pixels; sliders: of the joints; readout: where the tip is, in numbers (the menu has a switch too).
 
     Attributes: q, list of rad, in both directions; layers.
@@ -64,12 +63,11 @@ class LiveArm(anywidget.AnyWidget):
     shape = traitlets.Dict().tag(sync=True)
 
     def __init__(self, arm, q=(0.0, 0.0, 0.0), *, on_drag=None, frames=None, badge=None,
-                 layers=("table", "shadow", "ghost", "trail"), ball=None, board=None, camera=None,
+                 layers=("table", "shadow", "ghost", "trail"), ball=None,
                  height=420, sliders=True, readout=True):  # fmt: skip
         self.arm, self._on_drag, self._frames = arm, on_drag, frames
         self._stop = threading.Event()
         ball = None if ball is None else (vectors3("ball", ball[0], unit="m"), float(ball[1]))
-        things = {"ball": ball, "board": board, "camera": camera}
         options = {
             "lengths": lengths(arm),  # refuses what is no Arm
             "limits": np.clip([arm.q_min, arm.q_max], -np.pi, np.pi).T,
@@ -78,13 +76,13 @@ class LiveArm(anywidget.AnyWidget):
             "height": height,
             "sliders": sliders,
             "readout": readout,
-            "things": things,
+            "ball": ball,
         }
         super().__init__(
             bundle=Bundle.get(),
             options=json.loads(json.dumps(options, default=lambda array: array.tolist())),
             q=vectors3("q", q).tolist(),
-            layers=[*layers, *(name for name, thing in things.items() if thing is not None)],
+            layers=[*layers, *(["ball"] if ball else [])],
         )
         if frames is not None:
             self._pose(self.q)
@@ -197,8 +195,8 @@ def still_png(view):
         arm = ArmView(ax, view.arm, view.q, frames="frames" in view.layers)
         if view.track and "trail" in view.layers:
             arm.trail(forward_kinematics(view.arm, view._shown.q))
-        if view.options["things"]["ball"]:
-            ax.scatter(*view.options["things"]["ball"][0], s=230, color="#C8102E")
+        if view.options["ball"]:
+            ax.scatter(*view.options["ball"][0], s=230, color="#C8102E")
         if view.poses:
             if "frames" in view.layers:
                 ax.view_init(elev=22, azim=-30)  # no axis hides another

@@ -1,9 +1,9 @@
 // What stands around the arm: light, table, and the layers that can be switched on and off.
 import {
-  ArrowHelper, BoxGeometry, BufferGeometry, CanvasTexture, CircleGeometry, Color, DirectionalLight, DoubleSide,
-  Float32BufferAttribute, Group, HemisphereLight, LineBasicMaterial, LineDashedMaterial, LineSegments,
-  Matrix4, Mesh, MeshBasicMaterial, MeshPhongMaterial, PlaneGeometry, PolarGridHelper, Scene, SphereGeometry, Sprite,
-  SRGBColorSpace,  SpriteMaterial, Vector3,
+  ArrowHelper, BufferGeometry, CanvasTexture, CircleGeometry, Color, DirectionalLight, DoubleSide,
+  Float32BufferAttribute, Group, HemisphereLight, LineBasicMaterial, LineDashedMaterial, LineSegments, Matrix4, Mesh,
+  MeshBasicMaterial, MeshPhongMaterial, PolarGridHelper, Scene, SphereGeometry, Sprite, SRGBColorSpace,
+  SpriteMaterial, Vector3,
 } from "three";
 import { Line2 } from "three/addons/lines/Line2.js";
 import { LineGeometry } from "three/addons/lines/LineGeometry.js";
@@ -95,33 +95,6 @@ function thin(points, colour, dashed = false) {
   return dashed ? line.computeLineDistances() : line;
 }
 
-const matrixOf = (rows) => new Matrix4().set(...rows.flat());
-
-function checkerboard([T, square, [columns, rows]]) {
-  const canvas = document.createElement("canvas"), pen = canvas.getContext("2d");
-  Object.assign(canvas, { width: 40 * (columns + 1), height: 40 * (rows + 1) });
-  for (let i = 0; i <= columns; i++) {
-    for (let j = 0; j <= rows; j++) {
-      pen.fillStyle = (i + j) % 2 ? "#ffffff" : "#1b1e22";
-      pen.fillRect(40 * i, 40 * j, 40, 40);
-    }
-  }
-  const sheet = new PlaneGeometry((columns + 1) * square, (rows + 1) * square);
-  sheet.translate(((columns - 1) / 2) * square, ((rows - 1) / 2) * square, 0.001); // the origin is the first inner corner
-  const mesh = new Mesh(sheet, new MeshBasicMaterial({ map: texture(canvas), side: DoubleSide }));
-  return Object.assign(mesh, { matrixAutoUpdate: false, matrix: matrixOf(T) });
-}
-
-// K (3, 3), size [width, height] in pixels, T: camera to base coordinates.
-function frustum([K, T, [width, height]], reach) {
-  const depth = 0.25 * reach, corner = (u, v) => [((u - K[0][2]) / K[0][0]) * depth, ((v - K[1][2]) / K[1][1]) * depth, depth];
-  const corners = [corner(0, 0), corner(width, 0), corner(width, height), corner(0, height)];
-  const edges = corners.flatMap((point, i) => [[0, 0, 0], point, point, corners[(i + 1) % 4]]);
-  const group = Object.assign(new Group(), { matrixAutoUpdate: false, matrix: matrixOf(T) });
-  const body = new Mesh(new BoxGeometry(0.05, 0.035, 0.045).translate(0, 0, -0.024), new MeshPhongMaterial({ color: COLOURS.dark }));
-  return group.add(thin(edges, "#7a3b69"), body);
-}
-
 // The reachable part of the plane of the arm: curves with one joint at an end of its travel, or the arm stretched.
 function workspace(l, [, second, third]) {
   const bends = third[0] < 0 && third[1] > 0 ? [third[0], 0, third[1]] : third, curves = [];
@@ -136,7 +109,7 @@ function workspace(l, [, second, third]) {
 
 // All layers by name: Object3D each. Only what can be shown is there.
 export class Layers {
-  constructor(scene, { lengths, limits, things }) {
+  constructor(scene, { lengths, limits, ball }) {
     const reach = lengths[1] + lengths[2];
     this.lengths = lengths;
     const table = new Group(), top = new Mesh(new CircleGeometry(1.12 * reach, 96), new MeshBasicMaterial({ color: "#eef1f4", side: DoubleSide }));
@@ -157,13 +130,11 @@ export class Layers {
       table, frames: new Group().add(...this.triads), "joint axes": new Group().add(...this.joints),
       "velocity ellipsoid": this.velocity, "force ellipsoid": this.force, workspace: this.space,
     };
-    if (things.ball) {
-      const [p, radius] = things.ball;
+    if (ball) {
+      const [p, radius] = ball;
       this.all.ball = new Mesh(new SphereGeometry(radius, 32, 24), new MeshPhongMaterial({ color: COLOURS.ball, shininess: 60 }));
       this.all.ball.position.set(...p);
     }
-    if (things.board) this.all.board = checkerboard(things.board);
-    if (things.camera) this.all.camera = frustum(things.camera, reach);
     scene.add(...Object.values(this.all));
   }
 
