@@ -13,7 +13,7 @@ from ir50p_lab.vision.calibration import checks
 from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.charuco import find_charuco
 from ir50p_lab.vision.calibration.corners import BoardCorners, find_checkerboard
-from ir50p_lab.vision.calibration.fit import LENS, NAMES, CornerSets, Model, fit, start
+from ir50p_lab.vision.calibration.fit import LENS, NAMES, CornerSets, Model, fit, start, without
 from ir50p_lab.vision.calibration.models import choose, in_percent, total_covariance
 from ir50p_lab.vision.calibration.pictures import common_size, pictures_of, with_bar
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
@@ -118,9 +118,9 @@ def _calibrate(found, size, board, points, options, rejected):
         name, index, _ = found.pop(worst)
         detail = f"its corners are {rms:.2g} px off the model, those of the other views {usual:.2g} px"
         rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
-        corners = corners.only([i for i in range(len(corners)) if i != worst])
-        rough = fit(corners, model, start(corners))
-    best, evidence, tried, said = _best(corners, (rough.camera, rough.poses), wanted, aspect, bend)
+        corners, guess = without(worst, corners, rough)
+        rough = fit(corners, model, guess)
+    best, evidence, tried, said = _best(corners, rough, wanted, bend)
     if not any("was prescribed" in text for text in said):  # else what is prescribed explains the residuals
         said = checks.two_cameras(corners, best) + said
     views = tuple(
@@ -158,26 +158,26 @@ def _calibrate(found, size, board, points, options, rejected):
     return replace(result, warnings=(*said, *checks.doubts(result)))
 
 
-def _best(corners, guess, wanted, aspect, bend):
+def _best(corners, full, wanted, bend):
     """(CameraFit, evidence, models tried, warnings): lens as the data say or as asked for, board flat or bent, aspect.
 
     Whether the board is bent is asked with all that the lens needs: what a prescribed lens lacks looks like a bend.
     """
     said = []
 
-    def estimate(bent):
+    def estimate(full):
+        best, evidence, tried = choose(corners, full)
         if wanted is None:
-            best, evidence, tried = choose(corners, guess, aspect, bent)
             return best, best, None, evidence, tried
-        held = fit(corners, Model(wanted, aspect, bent), guess)
-        lacking, wide = checks.lacking_terms(corners, held, guess)
+        held = fit(corners, full.model.with_lens(wanted), full)
+        lacking, wide = checks.lacking_terms(corners, held, best)
         return held, wide, lacking, (lacking,) if lacking else (), ((held.camera, 0.0),)
 
-    best, wide, lacking, evidence, tried = estimate(bent=False)
+    best, wide, lacking, evidence, tried = estimate(full)
     try:
-        shape = checks.bent_board(corners, wide)
+        shape, bent = checks.bent_board(corners, wide)
         if shape.kept and bend is None:
-            best, wide, lacking, evidence, tried = estimate(bent=True)
+            best, wide, lacking, evidence, tried = estimate(fit(corners, bent.model.with_lens(LENS), bent))
         evidence += (shape,)
     except CalibrationError:
         shape = None
@@ -191,10 +191,10 @@ def _best(corners, guess, wanted, aspect, bend):
     doubted = [("lens", best.model.lens, wide.model.lens, lacking)]
     if bend is False:
         doubted.append(("bend", False, "that the board is bent", shape))
-    if aspect:
+    if full.model.aspect:
         question, ratio = checks.free_aspect(corners, wide)
         evidence += (question,)
-        doubted.append(("aspect", aspect, f"fx/fy = {ratio:.4f}", question))
+        doubted.append(("aspect", full.model.aspect, f"fx/fy = {ratio:.4f}", question))
     said += [
         f"{name} = {value} was prescribed, but the corners say {says} (by chance: {in_percent(question.p_value)}): "
         f"leave {name}=None"

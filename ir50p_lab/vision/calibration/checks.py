@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.fit import Model, fit, focal_steps
-from ir50p_lab.vision.calibration.models import ask, choose, contrast_of
+from ir50p_lab.vision.calibration.fit import Guess, Model, fit, focal_steps, without
+from ir50p_lab.vision.calibration.models import ask, contrast_of
 
 _TILTED = np.deg2rad(15)
 _LIMIT = 1e-3  # chance below which a bend, another ratio fx/fy, or a lens with more terms is believed
@@ -41,11 +41,8 @@ def outlier_view(corners, fitted):
     if rms[worst] < 2 * np.median(others):
         return None
     try:
-        alone = fit(
-            corners.only([i for i in range(len(rms)) if i != worst]),
-            fitted.model,
-            (fitted.camera, np.delete(fitted.poses, worst, axis=0)),
-        )
+        rest, guess = without(worst, corners, fitted)
+        alone = fit(rest, fitted.model, guess)
     except CalibrationError:
         return None
     off = _seen_by(alone.camera, corners, worst, fitted.poses[worst])
@@ -88,7 +85,7 @@ def two_cameras(corners, best):
         return []
     model = Model(tuple(name for name in best.model.lens if name in ("k1", "k2")), best.model.aspect)
     try:
-        each = [fit(corners.only(part), model, (best.camera, best.poses[part])) for part in parts]
+        each = [fit(corners.only(part), model, Guess(best.camera, best.poses[part])) for part in parts]
     except CalibrationError:
         return []
     focal, error = np.array([(one.camera[0], one.stderr[0]) for one in each]).T
@@ -103,38 +100,33 @@ def _scatter(values, weights):
     return float(np.sum(weights * (values - np.average(values, weights=weights)) ** 2))
 
 
-def lacking_terms(corners, held, guess):
+def lacking_terms(corners, held, chosen):
     """(Evidence or None, CameraFit with them): whether a prescribed lens lacks terms that the corners ask for.
 
-    None, and the fit that was held, if the lens that the corners would choose has no others, or they cannot say.
+    chosen: CameraFit with the lens that the corners would choose. None, and the fit that was held, if it has no others.
     """
-    model = held.model
-    try:
-        chosen, _, _ = choose(corners, guess, model.aspect, model.bent)
-    except CalibrationError:
-        return None, held
-    lacking = tuple(name for name in chosen.model.lens if name not in model.lens)
+    lacking = tuple(name for name in chosen.model.lens if name not in held.model.lens)
     if not lacking:
         return None, held
-    wide = fit(corners, Model((*model.lens, *lacking), model.aspect, model.bent), (chosen.camera, chosen.poses))
+    wide = fit(corners, held.model.with_lens((*held.model.lens, *lacking)), chosen)
     question, _, _ = ask(f"lens lacks {' and '.join(lacking)}", wide, contrast_of(lacking), _LIMIT)
     question = _clear(question, held, wide)
     return question, wide if question.kept else held
 
 
 def bent_board(corners, flat):
-    """Evidence whether the same bend of the board shows in all the views.
+    """(Evidence whether the same bend of the board shows in all the views, CameraFit with it).
 
     A bend moves the same corners of the board in every view, as far as it is tilted; three numbers describe it to
     second order. Raises CalibrationError if the views cannot tell them from the camera.
     """
-    bent = fit(corners, Model(flat.model.lens, flat.model.aspect, True), (flat.camera, flat.poses))
+    bent = fit(corners, replace(flat.model, bent=True), flat)
     question = _clear(ask("bent board", bent, np.eye(12)[9:], _LIMIT)[0], flat, bent)
     size, error = sag(corners, bent)
     if question.kept and (question.gain <= 15 or size <= 4 * error):
         why = f"the {1000 * size:.2g} mm of sag are too little beside their error, {1000 * error:.1g} mm"
-        return replace(question, kept=False, why=why)
-    return question
+        question = replace(question, kept=False, why=why)
+    return question, bent
 
 
 def _clear(question, small, large):
@@ -150,9 +142,9 @@ def _clear(question, small, large):
 
 def sag(corners, bent):
     """(largest height of the board over the plane nearest to it, its standard error), m, for a CameraFit."""
-    points, index = np.unique(corners.all_points[:, :2].round(9), axis=0, return_index=True)
-    plane = np.column_stack([points, np.ones(len(points))])
-    z = corners.shapes[index] @ np.column_stack([bent.camera[9:], bent.stderr[9:]])
+    plane, shapes = np.concatenate(corners.points), corners.shapes[corners.there[..., 0, 0] > 0]
+    plane[:, 2] = 1
+    z = shapes @ np.column_stack([bent.camera[9:], bent.stderr[9:]])
     z -= plane @ np.linalg.lstsq(plane, z, rcond=None)[0]
     size, error = np.ptp(z, axis=0)
     return float(size), float(error / np.sqrt(3))
@@ -160,7 +152,7 @@ def sag(corners, bent):
 
 def free_aspect(corners, held):
     """(Evidence, fx/fy): whether the prescribed ratio of the focal lengths contradicts the corners."""
-    free = fit(corners, Model(held.model.lens, None, held.model.bent), (held.camera, held.poses))
+    free = fit(corners, replace(held.model, aspect=None), held)
     contrast = np.zeros(12)
     contrast[:2] = 1, -held.model.aspect
     return ask("fx/fy free", free, contrast, _LIMIT)[0], free.camera[0] / free.camera[1]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.vision.calibration.board import check_pattern
-from ir50p_lab.vision.calibration.grid import grow, in_order, is_checkerboard, next_to_margin, roughness, spacing
+from ir50p_lab.vision.calibration.grid import grow, in_order, is_checkerboard, next_to_margin, roughness, side, spacing
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 from ir50p_lab.vision.calibration.saddles import parts_by_saddles
 
@@ -18,7 +18,7 @@ _UNKNOWN = 100  # what OpenCV says for the rise where squares are too small for 
 SOFT_SLOPE = 0.45  # the same limit for `slope_rise`: waves of that length, all that blur leaves, have 0.5
 _UNEVEN = 0.03  # scatter about a smooth grid, in squares, from which on a slower finder is asked, too
 _UNEVEN_SMALL, _SMALL = 0.0115, 22  # the same for squares smaller than so many px, which leave little for a window
-_RIM, _TINY = 0.8, 14  # squares around the corners in which the slower finder searches then; of so many px or more
+_RIM, _TINY, _RIM_TINY = 0.8, 14, 3  # squares around the corners in which the slower finder searches; below 14 px
 _BLUR, _BLUR_PX = 0.05, 1.0  # in squares, at most so many px: noise and compression go, corners stay where they are
 _ROUGH = 0.08  # the same, that no board shows
 
@@ -62,8 +62,7 @@ def find_checkerboard(grey, pattern, other=None):
                 raise
             _check_whole(grow(best, grey)[0], set(), pattern)
     else:
-        noise, side = roughness(best), np.median(spacing(best))
-        if noise > (_UNEVEN_SMALL if side < _SMALL else _UNEVEN) * side:
+        if roughness(best) > (_UNEVEN_SMALL if side(best) < _SMALL else _UNEVEN):
             best = _smoother(grey, small, factor, pattern, best)
     refuse_soft(grey, best)
     columns, rows = pattern
@@ -110,17 +109,16 @@ def _thorough():
 def _smoother(grey, small, factor, pattern, grid):
     """The corners of SB itself around a grid that was found, if they lie more smoothly, else the grid.
 
-    It is asked without the surroundings, three times as quick; where squares are tiny it needs them.
+    It is asked without the surroundings, three times as quick; where squares are tiny it needs some of them.
     """
     import cv2
 
-    inside, side = (grid + 0.5) / factor - 0.5, np.median(spacing(grid)) / factor
-    window, flags, start = small, _thorough(), np.zeros(2, dtype=int)
-    if side > _TINY:
-        start = np.maximum(inside.min(axis=(0, 1)) - _RIM * side, 0).astype(int)
-        right, bottom = np.ceil(inside.max(axis=(0, 1)) + _RIM * side).astype(int) + 1
-        window, flags = np.ascontiguousarray(small[start[1] : bottom, start[0] : right]), 0
-    found, corners = cv2.findChessboardCornersSB(window, pattern, flags=flags)
+    inside, square = (grid + 0.5) / factor - 0.5, side(grid) / factor
+    rim = square * (_RIM if square > _TINY else _RIM_TINY)
+    start = np.maximum(inside.min(axis=(0, 1)) - rim, 0).astype(int)
+    right, bottom = np.ceil(inside.max(axis=(0, 1)) + rim).astype(int) + 1
+    window = np.ascontiguousarray(small[start[1] : bottom, start[0] : right])
+    found, corners = cv2.findChessboardCornersSB(window, pattern, flags=0)
     other = _examined(grey, (found, corners + np.float32(start) if found else None), factor, pattern, factor > 1)
     return other if other is not None and roughness(other) < roughness(grid) else grid
 
@@ -132,8 +130,7 @@ def _examined(grey, result, factor, pattern, refined=True):
         return None
     grid = enlarged(corners.reshape(pattern[1], pattern[0], 2), factor)
     grid = refine(grey, grid) if refined else grid
-    rough = roughness(grid) > _ROUGH * np.median(spacing(grid))
-    return None if rough or not is_checkerboard(grid, grey) else grid
+    return grid if roughness(grid) <= _ROUGH and is_checkerboard(grid, grey) else None
 
 
 def refine(grey, grid):
@@ -146,9 +143,9 @@ def refine(grey, grid):
     h, w = grey.shape
     if not ((grid >= 0) & (grid <= (w - 1, h - 1))).all():
         raise NotUsable(Reason.CROPPED, "corners beyond the edge of the picture: move the board into view")
-    part, side = np.where(next_to_margin(grid, grey), _WINDOW / 2, _WINDOW), spacing(grid)
-    half = np.clip(np.round(part * side), *_WINDOW_PX).astype(int).ravel()
-    smooth = cv2.GaussianBlur(grey, (0, 0), float(np.clip(_BLUR * np.median(side), 0.2, _BLUR_PX)))
+    part = np.where(next_to_margin(grid, grey), _WINDOW / 2, _WINDOW)
+    half = np.clip(np.round(part * spacing(grid)), *_WINDOW_PX).astype(int).ravel()
+    smooth = cv2.GaussianBlur(grey, (0, 0), float(np.clip(_BLUR * side(grid), 0.2, _BLUR_PX)))
     xy = grid.reshape(-1, 1, 2).astype(np.float32)
     stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 30, 1e-3)
     for size in np.unique(half):
@@ -166,12 +163,12 @@ def edge_rise(grey, grid):
     return float(max(rises))
 
 
-def slope_rise(grey, xy, side):
+def slope_rise(grey, xy, square):
     """Rough width of the edges at corners, px: step of grey levels over the steepest slope, median of the corners."""
     import cv2
 
     gx, gy = cv2.Sobel(grey, cv2.CV_32F, 1, 0) / 8, cv2.Sobel(grey, cv2.CV_32F, 0, 1) / 8
-    slope, reach, widths = np.hypot(gx, gy), max(2, round(0.4 * side)), []
+    slope, reach, widths = np.hypot(gx, gy), max(2, round(0.4 * square)), []
     for x, y in np.round(xy).astype(int):
         window = np.s_[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1]
         widths.append(float(np.ptp(grey[window])) / max(float(slope[window].max()), 1e-6))
@@ -180,7 +177,7 @@ def slope_rise(grey, xy, side):
 
 def refuse_soft(grey, grid):
     """Raise NotUsable if the edges run into each other."""
-    nearest = float(np.median(spacing(grid)))
+    nearest = side(grid)
     rise, limit = edge_rise(grey, grid), _SOFT * nearest
     if rise >= _UNKNOWN:
         rise, limit = slope_rise(grey, grid.reshape(-1, 2), nearest), SOFT_SLOPE * nearest
@@ -247,8 +244,7 @@ def _grown_from_saddles(grey):
     """The grid around the first part by its saddles that becomes 4x3 or more and is smooth, or None."""
     for part in itertools.islice(parts_by_saddles(grey), 20):
         grid, _ = grow(refine(grey, part), grey)
-        smooth = roughness(grid) < _ROUGH / 2 * np.median(spacing(grid))
-        if smooth and grid.shape[0] * grid.shape[1] >= 12 and is_checkerboard(grid, grey):
+        if grid.shape[0] * grid.shape[1] >= 12 and roughness(grid) < _ROUGH / 2 and is_checkerboard(grid, grey):
             return grid
     return None
 
