@@ -203,7 +203,7 @@ def test_evidence_gives_the_reason_for_a_bend_that_is_not_kept():
         z = sag * ((POINTS[:, 0] - 0.1) / 0.1) ** 2
         views.append(corner_sets(np.column_stack([POINTS[:, :2], z]), 13, seed=40)[k])
     corners = CornerSets([POINTS] * 13, views, SIZE)
-    question = bent_board(corners, fit(corners, Model(("k1", "k2")), start(corners)))
+    question, _ = bent_board(corners, fit(corners, Model(("k1", "k2")), start(corners)))
     assert not question.kept and question.p_value < question.limit
     assert "mm of sag are too little beside their error" in str(question)
 

@@ -5,15 +5,16 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.fit import Guess, Model, fit, focal_steps, without
+from ir50p_lab.vision.calibration.fit import Guess, fit, pulls, without
 from ir50p_lab.vision.calibration.models import ask, contrast_of
 
 _TILTED = np.deg2rad(15)
 _LIMIT = 1e-3  # chance below which a bend, another ratio fx/fy, or a lens with more terms is believed
 _GONE = 0.33  # part of the sum of squares: 2 mm of sag make 0.39 of it or more, flat boards in photographs 0.22 or less
-_SQUARE = 0.01  # difference of fx and fy that sensors have without anything being wrong
-# Two cameras: of the scatter is left in two heaps; sigmas of what is gone; relative step of fx between them
-_LEFT, _SIGMAS, _APART = 0.2, 5.0, 0.03
+_SQUARE = 0.0075  # difference of fx and fy that sensors have without anything being wrong
+# Two cameras: by which share they leave fewer squares (0.08 at most in 100 sets of one), by which part of the focal
+# length and how many standard errors they differ
+_FEWER, _APART, _SIGMAS = 0.12, 0.01, 5.0
 _ROUGH = 0.7  # px rms, of pictures up to 1280 px wide; corners err by 0.05 to 0.5
 _STRETCHED = {
     False: "Rare in a webcam: was the picture stretched (4:3 to 16:9), or is the board bent or stretched (paper)? "
@@ -71,33 +72,46 @@ def _seen_by(camera, corners, view, pose):
 def two_cameras(corners, best):
     """A sentence if the views are of two cameras (or the zoom was changed between them), else none: a list.
 
-    Each view alone asks for a focal length of its own. For one camera these scatter about one value; for two they lie
-    in two heaps, and hardly scatter within. Chance parts one heap into two with R = 0.36 of the scatter left within.
+    Two cameras, each with its own views, must leave fewer squares, and differ in focal length or centre. Views of a
+    stretched board ask for different focal lengths as well, by how the board was turned.
     """
-    if len(corners) < 6:
+    parts = _two_heaps(*pulls(corners, best))
+    if not parts or all(_not_square(best.camera, covariance)[0] for covariance in (best.by_corners, best.by_views)):
         return []
-    steps, weights = focal_steps(corners, best)
-    order = np.argsort(steps)
-    heaps = [(order[:k], order[k:]) for k in range(3, len(order) - 2)]
-    within = [sum(_scatter(steps[part], weights[part]) for part in parts) for parts in heaps]
-    parts, total = heaps[np.argmin(within)], _scatter(steps, weights)
-    if min(within) > _LEFT * total or total - min(within) < (_SIGMAS * best.sigma) ** 2:
-        return []
-    model = Model(tuple(name for name in best.model.lens if name in ("k1", "k2")), best.model.aspect)
+    model = best.model.with_lens(name for name in best.model.lens if name in ("k1", "k2"))
     try:
-        each = [fit(corners.only(part), model, Guess(best.camera, best.poses[part])) for part in parts]
+        one, other = (fit(corners.only(part), model, Guess(best.camera, best.poses[part])) for part in parts)
     except CalibrationError:
         return []
-    focal, error = np.array([(one.camera[0], one.stderr[0]) for one in each]).T
-    if np.ptp(np.log(focal)) < max(_APART, 3 * np.hypot(*(error / focal))):
+    apart, error = np.abs(one.camera - other.camera), np.hypot(one.stderr, other.stderr)
+    differ = apart > np.maximum(_APART * best.camera[0], _SIGMAS * error)
+    if one.cost + other.cost > (1 - _FEWER) * best.cost or not differ[[0, 2, 3]].any():
         return []
-    told = " and ".join(f"{len(part)} with fx = {f:.0f} px" for part, f in zip(parts, focal, strict=True))
-    return [f"these seem to be pictures of two cameras, or the zoom was changed: {told}. Calibrate them apart"]
+    told = " and ".join(
+        "{} with fx = {:.0f} px, centre ({:.0f}, {:.0f})".format(len(each.poses), *each.camera[[0, 2, 3]])
+        for each in (one, other)
+    )
+    return [f"these seem to be pictures of two cameras, or zoom or crop was changed: {told}. Calibrate them apart"]
 
 
-def _scatter(values, weights):
-    """Weighted sum of squares about the mean."""
-    return float(np.sum(weights * (values - np.average(values, weights=weights)) ** 2))
+def _two_heaps(S, g):
+    """The views (two arrays) of the two cameras that explain most, each at least three; or none.
+
+    S, g: of `pulls`. As in k-means: a step of the camera for each heap, then each view to the step that suits it.
+    """
+    found, most = (), 0.0
+    for first in (g > 0).T:
+        for _ in range(10):
+            heaps = [np.flatnonzero(first), np.flatnonzero(~first)]
+            if min(map(len, heaps)) < 3:
+                break
+            steps = [np.linalg.solve(S[heap].sum(axis=0), g[heap].sum(axis=0)) for heap in heaps]
+            change = [np.einsum("vij,i,j->v", S, d, d) - 2 * g @ d for d in steps]
+            gain = -float(np.minimum(*change).sum())
+            if gain > most:
+                found, most = heaps, gain
+            first = change[0] < change[1]
+    return found
 
 
 def lacking_terms(corners, held, chosen):
@@ -158,6 +172,14 @@ def free_aspect(corners, held):
     return ask("fx/fy free", free, contrast, _LIMIT)[0], free.camera[0] / free.camera[1]
 
 
+def _not_square(camera, covariance):
+    """(Whether fx/fy differs from 1 by more than chance and sensors do, fx/fy, its standard error)."""
+    fx, fy = camera[:2]
+    slope = np.array([1 / fx, -1 / fy])  # fx and fy err together: their ratio is known far better than they
+    error = fx / fy * float(np.sqrt(max(slope @ covariance[:2, :2] @ slope, 0.0)))
+    return abs(fx / fy - 1) > max(_SQUARE, 3 * error), fx / fy, error
+
+
 def doubts(calibration):
     """What to mind although the corners fit, sentence by sentence.
 
@@ -175,10 +197,8 @@ def doubts(calibration):
         yield f"the lens model folds back {farthest:.0f} px from the centre: hold the board in the corners, too"
     if calibration.rms > _ROUGH * max(1, w / 1280):
         yield f"rms {calibration.rms:.2g} px is more than corners err: a fisheye, or did focus or zoom change?"
-    ratio = K[0, 0] / K[1, 1]
-    slope = np.array([1 / K[0, 0], -1 / K[1, 1]])  # fx and fy err together: their ratio is known far better than they
-    error = ratio * float(np.sqrt(max(slope @ calibration.covariance[:2, :2] @ slope, 0.0)))
-    if abs(ratio - 1) > max(_SQUARE, 3 * error):
+    oblong, ratio, error = _not_square(np.diag(K), calibration.covariance)
+    if oblong:
         yield f"fx/fy = {ratio:.3f} +- {error:.1g}: pixels are not square. {_STRETCHED[calibration.sag is not None]}"
     off = np.abs(K[:2, 2] - [(w - 1) / 2, (h - 1) / 2]) / (w, h)
     if off.max() > 0.15:

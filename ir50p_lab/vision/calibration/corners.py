@@ -57,7 +57,7 @@ def find_checkerboard(grey, pattern, other=None):
         try:
             best = _grown(grey, small, factor, pattern)
         except NotUsable as why:
-            best = None if why.seen else _sb(grey, small, factor, pattern)
+            best = None if why.reason == Reason.CROPPED or why.seen else _sb(grey, small, factor, pattern)
             if best is None:
                 raise
             _check_whole(grow(best, grey)[0], set(), pattern)
@@ -94,16 +94,11 @@ def _classic(grey, small, factor, pattern):
 
 
 def _sb(grey, small, factor, pattern):
-    """The same by `findChessboardCornersSB`; without ACCURACY: slower, and no better than what refines them here."""
+    """The same by `findChessboardCornersSB`; with EXHAUSTIVE or ACCURACY it is slower, and finds no more."""
     import cv2
 
-    return _examined(grey, cv2.findChessboardCornersSB(small, pattern, flags=_thorough()), factor, pattern)
-
-
-def _thorough():
-    import cv2
-
-    return cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE
+    found = cv2.findChessboardCornersSB(small, pattern, flags=cv2.CALIB_CB_NORMALIZE_IMAGE)
+    return _examined(grey, found, factor, pattern)
 
 
 def _smoother(grey, small, factor, pattern, grid):
@@ -263,7 +258,8 @@ def _largest_by_sb(grey):
     """The largest grid (rows, columns, 2) around 3x3 corners that `findChessboardCornersSB` finds, or None."""
     import cv2
 
-    found, corners, meta = cv2.findChessboardCornersSBWithMeta(grey, (3, 3), _thorough() | cv2.CALIB_CB_LARGER)
+    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_LARGER
+    found, corners, meta = cv2.findChessboardCornersSBWithMeta(grey, (3, 3), flags)
     if not found:
         return None
     grid = corners.reshape(*meta.shape, 2).astype(float)

@@ -310,12 +310,13 @@ def _with_covariance(corners, model, camera, poses, views):
     return replace(fit, by_corners=B @ by_corners @ B.T, by_views=by_views)
 
 
-def focal_steps(corners, fitted):
-    """Relative step of the focal lengths that each view alone asks for (v,), and its weight, px^2 (v,).
+def pulls(corners, fitted):
+    """What each view alone says of (log f, cx / f, cy / f): information S (v, 3, 3) and pull g (v, 3), px^2.
 
-    To first order, with the pose of the view free and all else held. Its variance is sigma^2 / weight.
+    To first order, with the pose of the view free and all else held: a step d of the camera changes the sum of squares
+    of a view by d S d - 2 g d.
     """
-    both = np.zeros((12, 1))
-    both[:2, 0] = fitted.camera[:2]
+    both, f = np.zeros((12, 3)), fitted.camera[:2]
+    both[:2, 0], both[2, 1], both[3, 2] = f, *f
     S, g, _, _ = reduce(both, *project(corners, fitted.camera, fitted.poses))
-    return g[:, 0] / S[:, 0, 0], S[:, 0, 0]
+    return S, g
