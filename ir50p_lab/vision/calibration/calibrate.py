@@ -13,7 +13,7 @@ from ir50p_lab.vision.calibration import checks
 from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
 from ir50p_lab.vision.calibration.charuco import find_charuco
 from ir50p_lab.vision.calibration.corners import BoardCorners, find_checkerboard
-from ir50p_lab.vision.calibration.fit import LENS, NAMES, CornerSets, Model, fit, start, without
+from ir50p_lab.vision.calibration.fit import LENS, NAMES, CornerSets, Model, fit, start
 from ir50p_lab.vision.calibration.models import choose, in_percent, total_covariance
 from ir50p_lab.vision.calibration.pictures import common_size, pictures_of, with_bar
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
@@ -109,19 +109,17 @@ def _calibrate(found, size, board, points, options, rejected):
     """From (name, index, BoardCorners) to a Calibration: outlier views out, lens chosen, bend of the board tested."""
     wanted, aspect, bend = options
     corners = CornerSets([points[one.index] for _, _, one in found], [one.xy for _, _, one in found], size)
-    model = Model(LENS, aspect)
-    rough = fit(corners, model, start(corners))
+    full = fit(corners, Model(LENS, aspect), start(corners))
     for _ in range(max(1, len(found) // 4)):
-        outlier = checks.outlier_view(corners, rough)
+        outlier = checks.outlier_view(corners, full)
         if outlier is None:
             break
-        worst, rms, usual = outlier
+        worst, rms, corners, full = outlier
         name, index, _ = found.pop(worst)
+        usual = np.median(full.view_rms)
         detail = f"its corners are {rms:.2g} px off the model, those of the other views {usual:.2g} px"
         rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
-        corners, guess = without(worst, corners, rough)
-        rough = fit(corners, model, guess)
-    best, evidence, tried, said = _best(corners, rough, wanted, bend)
+    best, evidence, tried, said = _best(corners, full, wanted, bend)
     if not any("was prescribed" in text for text in said):  # else what is prescribed explains the residuals
         said = checks.two_cameras(corners, best) + said
     views = tuple(
@@ -167,11 +165,11 @@ def _best(corners, full, wanted, bend):
     said = []
 
     def estimate(full):
-        best, evidence, tried = choose(corners, full)
         if wanted is None:
+            best, evidence, tried = choose(corners, full)
             return best, best, None, evidence, tried
         held = fit(corners, full.model.with_lens(wanted), full)
-        lacking, wide = checks.lacking_terms(corners, held, best)
+        lacking, wide = checks.lacking_terms(corners, held, full)
         return held, wide, lacking, (lacking,) if lacking else (), ((held.camera, 0.0),)
 
     best, wide, lacking, evidence, tried = estimate(full)

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.fit import Guess, fit, pulls, without
-from ir50p_lab.vision.calibration.models import ask, contrast_of
+from ir50p_lab.vision.calibration.fit import Guess, fit, pulls
+from ir50p_lab.vision.calibration.models import ask, choose, contrast_of
 
 _TILTED = np.deg2rad(15)
 _LIMIT = 1e-3  # chance below which a bend, another ratio fx/fy, or a lens with more terms is believed
@@ -25,31 +25,27 @@ _STRETCHED = {
 
 
 def outlier_view(corners, fitted):
-    """(number of the view that fits worst, its rms, usual rms, px) if it does not belong to the others, else None.
+    """(number of the view that fits worst, its rms, px, CornerSets and CameraFit without it), or None if it belongs.
 
     fitted: CameraFit with the full lens: a view far out may be the only one that needs its k3. The view must be three
     times worse than the median view, and eight times the usual scatter of views above it. A view that is far off pulls
-    the camera along and spoils the others, too: if they fit twice as well without the worst, it is judged by the camera
-    that they make without it.
+    the camera along and spoils the others, too: if they fit twice as well without it, it is judged by the camera that
+    they make without it.
     """
     rms = fitted.view_rms
-    if len(rms) < 5:
-        return None
     worst = int(np.argmax(rms))
     others = np.delete(rms, worst)
-    if rms[worst] > _far_off(others):
-        return worst, float(rms[worst]), float(np.median(others))
-    if rms[worst] < 2 * np.median(others):
+    if len(rms) < 5 or rms[worst] < 2 * np.median(others):
         return None
+    kept = np.arange(len(rms)) != worst
+    rest = corners.only(np.flatnonzero(kept))
     try:
-        rest, guess = without(worst, corners, fitted)
-        alone = fit(rest, fitted.model, guess)
+        alone = fit(rest, fitted.model, Guess(fitted.camera, fitted.poses[kept]))
     except CalibrationError:
         return None
     off = _seen_by(alone.camera, corners, worst, fitted.poses[worst])
-    if np.median(alone.view_rms) < 0.5 * np.median(others) and off > _far_off(alone.view_rms):
-        return worst, off, float(np.median(alone.view_rms))
-    return None
+    pulled = np.median(alone.view_rms) < 0.5 * np.median(others) and off > _far_off(alone.view_rms)
+    return (worst, off, rest, alone) if pulled or rms[worst] > _far_off(others) else None
 
 
 def _far_off(rms):
@@ -114,11 +110,15 @@ def _two_heaps(S, g):
     return found
 
 
-def lacking_terms(corners, held, chosen):
+def lacking_terms(corners, held, full):
     """(Evidence or None, CameraFit with them): whether a prescribed lens lacks terms that the corners ask for.
 
-    chosen: CameraFit with the lens that the corners would choose. None, and the fit that was held, if it has no others.
+    None, and the fit that was held, if the lens that the corners would choose has no others, or they cannot say.
     """
+    try:
+        chosen, _, _ = choose(corners, full)
+    except CalibrationError:
+        return None, held
     lacking = tuple(name for name in chosen.model.lens if name not in held.model.lens)
     if not lacking:
         return None, held

@@ -46,8 +46,10 @@ def find_checkerboard(grey, pattern, other=None):
     in its place, looked for first. Returns: BoardCorners, all, in the order of `Checkerboard`.
     Raises NotUsable with the Reason, CalibrationError for a pattern that cannot be.
     """
-    pattern = check_pattern(pattern)
-    small, factor = reduced(grey, _SEARCHED)
+    import cv2
+
+    pattern, factor = check_pattern(pattern), max(1.0, max(grey.shape) / _SEARCHED)
+    small = cv2.resize(grey, None, fx=1 / factor, fy=1 / factor, interpolation=cv2.INTER_AREA)
     for wanted in filter(None, (other, pattern)):
         best = _classic(grey, small, factor, wanted)
         if best is not None:
@@ -61,23 +63,11 @@ def find_checkerboard(grey, pattern, other=None):
             if best is None:
                 raise
             _check_whole(grow(best, grey)[0], set(), pattern)
-    else:
-        if roughness(best) > (_UNEVEN_SMALL if side(best) < _SMALL else _UNEVEN):
-            best = _smoother(grey, small, factor, pattern, best)
+    elif roughness(best) > (_UNEVEN_SMALL if side(best) < _SMALL else _UNEVEN):
+        best = _smoother(grey, small, factor, pattern, best)
     refuse_soft(grey, best)
     columns, rows = pattern
     return BoardCorners(in_order(best, grey, pattern).reshape(-1, 2).astype(float), np.arange(columns * rows))
-
-
-def reduced(grey, longest):
-    """(picture at most `longest` px wide and high, factor by which it is smaller)."""
-    import cv2
-
-    factor = max(grey.shape) / longest
-    if factor <= 1:
-        return grey, 1.0
-    h, w = grey.shape
-    return cv2.resize(grey, (round(w / factor), round(h / factor)), interpolation=cv2.INTER_AREA), factor
 
 
 def enlarged(xy, factor):
@@ -221,26 +211,16 @@ def _check_whole(grid, outside, pattern):
 
 
 def part_of_a_checkerboard(grey):
-    """A grid found anywhere in a picture, at its size or reduced, by its saddles or by SB; or None."""
+    """The grid around the first part by its saddles that becomes 4x3 or more and is smooth, at any scale, or None."""
     import cv2
 
-    for find, scales in ((_grown_from_saddles, (1, 2, 4)), (_largest_by_sb, (2, 4))):
-        for less in scales:
-            h, w = grey.shape
-            if min(h, w) >= 60 * less:
-                small = cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
-                grid = find(small)
-                if grid is not None:
-                    return enlarged(grid, less)
-    return None
-
-
-def _grown_from_saddles(grey):
-    """The grid around the first part by its saddles that becomes 4x3 or more and is smooth, or None."""
-    for part in itertools.islice(parts_by_saddles(grey), 20):
-        grid, _ = grow(refine(grey, part), grey)
-        if grid.shape[0] * grid.shape[1] >= 12 and roughness(grid) < _ROUGH / 2 and is_checkerboard(grid, grey):
-            return grid
+    h, w = grey.shape
+    for less in (less for less in (1, 2, 4) if min(h, w) >= 60 * less):
+        small = cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
+        for part in itertools.islice(parts_by_saddles(small), 20):
+            grid, _ = grow(refine(small, part), small)
+            if grid.size >= 2 * 12 and roughness(grid) < _ROUGH / 2 and is_checkerboard(grid, small):
+                return enlarged(grid, less)
     return None
 
 
@@ -252,15 +232,3 @@ def _part_of_it(shape, outside, pattern):
         and sum(n < m and not is_cut for n, m, is_cut in zip(shape, turned, cut, strict=True)) <= (not outside)
         for turned in (pattern, pattern[::-1])
     )
-
-
-def _largest_by_sb(grey):
-    """The largest grid (rows, columns, 2) around 3x3 corners that `findChessboardCornersSB` finds, or None."""
-    import cv2
-
-    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_LARGER
-    found, corners, meta = cv2.findChessboardCornersSBWithMeta(grey, (3, 3), flags)
-    if not found:
-        return None
-    grid = corners.reshape(*meta.shape, 2).astype(float)
-    return grid if is_checkerboard(grid, grey) else None

@@ -36,10 +36,8 @@ class Model:
     @property
     def columns(self):
         """B (12, free): the nine numbers of the camera and three of the board's shape from the free parameters."""
-        keep = [0, 2, 3] if self.aspect else [0, 1, 2, 3]
-        keep += [i for i, name in enumerate(NAMES) if name in self.lens]
-        keep += [9, 10, 11] if self.bent else []
-        B = np.eye(12)[:, keep]
+        free = [True, not self.aspect, True, True, *(name in self.lens for name in LENS), *[self.bent] * 3]
+        B = np.eye(12)[:, free]
         if self.aspect:
             B[1, 0] = 1 / self.aspect
         return B
@@ -112,7 +110,7 @@ class CameraFit:
 class CornerSets:
     """What was seen: points (n, 3) m on the board and pixels (n, 2), one array of each per view; the picture's size.
 
-    For all views alike, those with fewer corners than the fullest filled up with their first: all_points (v, n, 3) m,
+    For all views alike, those with fewer corners than the fullest filled up with their first ones: all_points (v, n, 3) m,
     seen (v, n, 2) px, there (v, n, 1, 1): 1 for what was seen, 0 for what was filled up; shapes: three ways (v, n, 3)
     in which the board can bend (along x, as a saddle, along y), each 1 at half the board's size from its middle. Its
     height is z = shapes @ b, with b in metres, positive into the board.
@@ -123,12 +121,10 @@ class CornerSets:
         self.pixels = [np.ascontiguousarray(p, dtype=float) for p in pixels]
         self.size = size
         counts = np.array([len(p) for p in self.points])
-        number = np.arange(counts.max())
-        there = number < counts[:, None]
-        self.there = there[..., None, None].astype(float)
-        places = np.where(there, number, 0)
-        self.all_points = full = np.array([p[k] for p, k in zip(self.points, places, strict=True)])
-        self.seen = np.array([xy[k] for xy, k in zip(self.pixels, places, strict=True)])
+        most = counts.max()
+        self.there = (np.arange(most) < counts[:, None])[..., None, None].astype(float)
+        self.all_points = full = np.array([np.resize(p, (most, 3)) for p in self.points])
+        self.seen = np.array([np.resize(xy, (most, 2)) for xy in self.pixels])
         low, high = full.min(axis=(0, 1)), full.max(axis=(0, 1))
         x, y = np.moveaxis((2 * full - low - high) / (high - low)[:2].max(), 2, 0)[:2]
         self.shapes = np.stack([x * x, x * y, y * y], axis=2)
@@ -139,12 +135,6 @@ class CornerSets:
     def only(self, views):
         """The same with these views."""
         return CornerSets([self.points[i] for i in views], [self.pixels[i] for i in views], self.size)
-
-
-def without(view, corners, fitted):
-    """(CornerSets, Guess) without one of the views."""
-    rest = np.delete(np.arange(len(corners)), view)
-    return corners.only(rest), Guess(fitted.camera, fitted.poses[rest])
 
 
 def start(corners):

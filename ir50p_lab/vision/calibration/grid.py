@@ -121,8 +121,6 @@ def grow(grid, grey):
 
 def _next_column(grid):
     """Continue the last three columns of a grid by one (rows, 2): perspective from the cross-ratio, row by row."""
-    if grid.shape[1] < 3:
-        return 2 * grid[:, -1] - grid[:, -2]
     a, b, c = grid[:, -3], grid[:, -2], grid[:, -1]
     ab, bc = (np.maximum(np.hypot(*way.T), 1e-6)[:, None] for way in (b - a, c - b))
     # equally spaced points have the cross-ratio 4/3: (ac * bd) / (bc * ad)

@@ -110,10 +110,8 @@ def total_covariance(best, tried):
     variance).
     """
     by_corners, by_views = best.by_corners[:9, :9], best.by_views[:9, :9]
-    own = np.sqrt(np.diag(by_corners))
-    factor = np.ones(9)
-    np.divide(np.sqrt(np.diag(by_views)), own, out=factor, where=own > 0)
-    factor = np.maximum(factor, 1.0)
+    own = np.diag(by_corners)
+    factor = np.sqrt(np.maximum(own, np.diag(by_views)) / np.where(own > 0, own, 1.0))
     total = by_corners * np.outer(factor, factor)
     cameras, scores = zip(*tried, strict=True)
     weights = np.exp(-0.5 * (np.array(scores) - min(scores)))
