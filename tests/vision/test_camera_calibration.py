@@ -435,6 +435,24 @@ def test_two_cameras_in_one_call_are_noticed(seed, other):
     assert any("two cameras" in text for text in calibrate_corners(POINTS, inside, SIZE).warnings)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_views_of_a_cropped_picture_are_noticed(seed):
+    """The centre is elsewhere in some of the views: a crop to the same size."""
+    views = corner_sets(POINTS, 14, 0.1, seed)
+    for i in range(0, 14, 2):
+        views[i] = views[i] - [50, 40]
+    inside = [xy for xy in views if (xy > 0).all()]
+    assert any("two cameras" in text for text in calibrate_corners(POINTS, inside, SIZE).warnings)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_stretched_board_is_not_taken_for_two_cameras(seed):
+    """Turned boards ask for different focal lengths: what is wrong is said, not something else; 1 % is noticed."""
+    board = POINTS * [1, 1.01 + 0.01 * (seed % 3), 1]
+    warnings = calibrate_corners(POINTS, corner_sets(board, 14, 0.1, seed), SIZE).warnings
+    assert any("not square" in text for text in warnings) and not any("two cameras" in text for text in warnings)
+
+
 @pytest.mark.parametrize("noise", [0.1, 0.5, 1.0])
 def test_one_camera_is_not_taken_for_two(noise):
     for seed in range(3):

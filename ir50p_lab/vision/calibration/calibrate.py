@@ -60,8 +60,7 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, as
     size = common_size(pictures)
     for picture in with_bar(pictures, progress):
         try:
-            other = max(filter(None, seen), key=seen.get, default=None)
-            other = other if seen[other] > len(found) else None
+            other = max((one for one in seen if one and seen[one] > len(found)), key=seen.get, default=None)
             found.append((picture.name, picture.index, _corners_in(picture, board, size, other)))
         except NotUsable as why:
             rejected.append(Rejected(picture.name, picture.index, why.reason, why.detail))

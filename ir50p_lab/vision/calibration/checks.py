@@ -123,8 +123,7 @@ def lacking_terms(corners, held, full):
     if not lacking:
         return None, held
     wide = fit(corners, held.model.with_lens((*held.model.lens, *lacking)), chosen)
-    question, _, _ = ask(f"lens lacks {' and '.join(lacking)}", wide, contrast_of(lacking), _LIMIT)
-    question = _clear(question, held, wide)
+    question = _clear(ask(f"lens lacks {' and '.join(lacking)}", wide, contrast_of(lacking), _LIMIT)[0], held, wide)
     return question, wide if question.kept else held
 
 

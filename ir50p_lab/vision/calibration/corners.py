@@ -51,7 +51,7 @@ def find_checkerboard(grey, pattern, other=None):
     pattern, factor = check_pattern(pattern), max(1.0, max(grey.shape) / _SEARCHED)
     small = cv2.resize(grey, None, fx=1 / factor, fy=1 / factor, interpolation=cv2.INTER_AREA)
     for wanted in filter(None, (other, pattern)):
-        best = _classic(grey, small, factor, wanted)
+        best = _examined(grey, cv2.findChessboardCorners(small, wanted), factor, wanted)
         if best is not None:
             larger, _ = grow(best, grey)
             _check_whole(larger, set(), pattern)
@@ -59,36 +59,22 @@ def find_checkerboard(grey, pattern, other=None):
         try:
             best = _grown(grey, small, factor, pattern)
         except NotUsable as why:
-            best = None if why.reason == Reason.CROPPED or why.seen else _sb(grey, small, factor, pattern)
+            if why.reason == Reason.CROPPED or why.seen:
+                raise
+            by_sb = cv2.findChessboardCornersSB(small, pattern, flags=cv2.CALIB_CB_NORMALIZE_IMAGE)
+            best = _examined(grey, by_sb, factor, pattern)  # EXHAUSTIVE or ACCURACY take longer and find no more
             if best is None:
                 raise
             _check_whole(grow(best, grey)[0], set(), pattern)
     elif roughness(best) > (_UNEVEN_SMALL if side(best) < _SMALL else _UNEVEN):
         best = _smoother(grey, small, factor, pattern, best)
     refuse_soft(grey, best)
-    columns, rows = pattern
-    return BoardCorners(in_order(best, grey, pattern).reshape(-1, 2).astype(float), np.arange(columns * rows))
+    return BoardCorners(in_order(best, grey, pattern).reshape(-1, 2).astype(float), np.arange(best.size // 2))
 
 
 def enlarged(xy, factor):
     """Pixels of a reduced picture in the full one: edges of pixels scale, not their centres."""
     return (xy + 0.5) * factor - 0.5
-
-
-def _classic(grey, small, factor, pattern):
-    """Grid (rows, columns, 2) by `findChessboardCorners`, refined, or None."""
-    import cv2
-
-    flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE
-    return _examined(grey, cv2.findChessboardCorners(small, pattern, None, flags), factor, pattern)
-
-
-def _sb(grey, small, factor, pattern):
-    """The same by `findChessboardCornersSB`; with EXHAUSTIVE or ACCURACY it is slower, and finds no more."""
-    import cv2
-
-    found = cv2.findChessboardCornersSB(small, pattern, flags=cv2.CALIB_CB_NORMALIZE_IMAGE)
-    return _examined(grey, found, factor, pattern)
 
 
 def _smoother(grey, small, factor, pattern, grid):
@@ -139,15 +125,6 @@ def refine(grey, grid):
     return xy.reshape(grid.shape).astype(float)
 
 
-def edge_rise(grey, grid):
-    """Mean width of an edge from 10 % to 90 % of its step, px: of the softer of the two directions."""
-    import cv2
-
-    pattern, xy = grid.shape[1::-1], grid.reshape(-1, 1, 2).astype(np.float32)
-    rises = [cv2.estimateChessboardSharpness(grey, pattern, xy, vertical=way)[0][0] for way in (False, True)]
-    return float(max(rises))
-
-
 def slope_rise(grey, xy, square):
     """Rough width of the edges at corners, px: step of grey levels over the steepest slope, median of the corners."""
     import cv2
@@ -161,9 +138,12 @@ def slope_rise(grey, xy, square):
 
 
 def refuse_soft(grey, grid):
-    """Raise NotUsable if the edges run into each other."""
-    nearest = side(grid)
-    rise, limit = edge_rise(grey, grid), _SOFT * nearest
+    """Raise NotUsable if the edges, from 10 % to 90 % of their step, run into each other in either direction."""
+    import cv2
+
+    nearest, how = side(grid), (grid.shape[1::-1], grid.reshape(-1, 1, 2).astype(np.float32))
+    rises = [cv2.estimateChessboardSharpness(grey, *how, vertical=way)[0][0] for way in (False, True)]
+    rise, limit = max(rises), _SOFT * nearest
     if rise >= _UNKNOWN:
         rise, limit = slope_rise(grey, grid.reshape(-1, 2), nearest), SOFT_SLOPE * nearest
     if rise > limit:

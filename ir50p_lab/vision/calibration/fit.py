@@ -110,7 +110,7 @@ class CameraFit:
 class CornerSets:
     """What was seen: points (n, 3) m on the board and pixels (n, 2), one array of each per view; the picture's size.
 
-    For all views alike, those with fewer corners than the fullest filled up with their first ones: all_points (v, n, 3) m,
+    For all views alike, those with fewer corners than the fullest filled up by repeating them: all_points (v, n, 3) m,
     seen (v, n, 2) px, there (v, n, 1, 1): 1 for what was seen, 0 for what was filled up; shapes: three ways (v, n, 3)
     in which the board can bend (along x, as a saddle, along y), each 1 at half the board's size from its middle. Its
     height is z = shapes @ b, with b in metres, positive into the board.

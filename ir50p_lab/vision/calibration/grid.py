@@ -136,9 +136,8 @@ def _settled(column, before, grey):
     h, w = grey.shape
     inside = ((column >= 0) & (column <= (w - 1, h - 1))).all(axis=1)
     half, settled = int(np.clip(0.25 * step, 2, 20)), column.copy()
-    if inside.any():
-        xy = column[inside][:, None].astype(np.float32)
-        settled[inside] = cv2.cornerSubPix(grey, xy, (half, half), (-1, -1), (3, 20, 1e-2))[:, 0]
+    xy = column[inside][:, None].astype(np.float32)
+    settled[inside] = cv2.cornerSubPix(grey, xy, (half, half), (-1, -1), (3, 20, 1e-2))[:, 0]
     near = np.linalg.norm(settled - column, axis=1) < 0.15 * step
     return np.where(near[:, None], settled, column)
 
@@ -159,16 +158,14 @@ def is_checkerboard(grid, grey):
     known = np.isfinite(near)
     if known.mean() < 0.7 or (near[known] != 0).mean() < 0.85:
         return False
-    inner = np.zeros(grid.shape[:2], dtype=bool)
-    inner[1:-1, 1:-1] = True  # the outermost squares of a board may be cut narrow
-    inner = inner.ravel() & known
-    return bool(inner.any() and np.mean([each[inner] == near[inner] for each in far]) > 0.8)
+    known[[0, -1]] = known[:, [0, -1]] = False  # the outermost squares of a board may be cut narrow
+    return bool(known.any() and np.mean([each[known] == near[known] for each in far]) > 0.8)
 
 
 def next_to_margin(grid, grey):
     """Corners (rows, columns), bool, beside squares that are cut narrow: something else begins within 0.7 squares."""
     near, *far = _in_squares(grid, grey, abs(contrast(grid, grey)))
-    return ((near != 0) & ((far[0] != near) | (far[1] != near))).reshape(grid.shape[:2])
+    return (near != 0) & ((far[0] != near) | (far[1] != near))
 
 
 def _steps(grid):
@@ -186,11 +183,11 @@ def _ways(corners, axis):
 
 
 def _in_squares(grid, grey, swing):
-    """`_crossings` (3, n) of the corners of a grid: near the corner, and far out along the rows and the columns."""
+    """`_crossings` (3, rows, columns) at the corners of a grid: near them, and far out along the rows and columns."""
     places, out, along = _steps(grid)
     out = np.concatenate([0.3 * out, 0.7 * out, 0.3 * out])
     along = np.concatenate([0.3 * along, 0.3 * along, 0.7 * along])
-    return _crossings(np.tile(places, (3, 1)), out, along, grey, swing).reshape(3, -1)
+    return _crossings(np.tile(places, (3, 1)), out, along, grey, swing).reshape(3, *grid.shape[:2])
 
 
 def _crossings(places, out, along, grey, swing):
