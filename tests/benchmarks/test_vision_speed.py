@@ -16,8 +16,7 @@ from ir50p_lab.vision import Checkerboard, calibrate, find_balls, render_scene
 from ir50p_lab.vision.rendering import bench_scene
 
 TARGET = 1.5
-# The aim, missed here (4.2) and on small photographs (4.9 at 320x240); met on larger ones (2.4, 3.2). The bound guards.
-TARGET_CALIBRATION, MOST_CALIBRATION = 4.0, 5.0
+TARGET_CALIBRATION = 4.0  # here and on photographs of 320x240 3.1, on larger ones 2.1
 KERNEL = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
 
 
@@ -88,7 +87,7 @@ def test_calibration_beside_plain_calls(request):
         f"\ncalibrate {1e3 * ours:.0f} ms, OpenCV alone {1e3 * plain:.0f} ms: {ours / plain:.2f} times "
         f"(target {TARGET_CALIBRATION})"
     )
-    assert ours < MOST_CALIBRATION * plain
+    assert ours < TARGET_CALIBRATION * plain
 
 
 def test_ball_beside_the_plain_recipe(request):

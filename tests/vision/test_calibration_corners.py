@@ -309,7 +309,9 @@ def test_a_charuco_too_blurred_for_its_markers_is_told_to_focus(pattern, blur, s
 def test_a_larger_board_that_only_the_slow_finder_sees_is_not_taken_for_the_pattern(monkeypatch):
     squares = 40 + 180 * (np.indices((8, 11)).sum(axis=0) % 2)  # 10x7 inner corners
     board = np.pad(np.kron(squares, np.ones((40, 40))).astype(np.uint8), 60, constant_values=220)
+    part = 99.5 + 40 * np.argwhere(np.ones((6, 9)))[:, None, ::-1]
     monkeypatch.setattr(cv2, "findChessboardCorners", lambda *args: (False, None))
+    monkeypatch.setattr(cv2, "findChessboardCornersSB", lambda *args, **flags: (True, part.astype(np.float32)))
     monkeypatch.setattr("ir50p_lab.vision.calibration.corners.part_of_a_checkerboard", lambda grey: None)
     with pytest.raises(NotUsable, match="10x7"):
         find_checkerboard(cv2.GaussianBlur(board, (0, 0), 1.0), (9, 6))

@@ -203,7 +203,7 @@ def test_evidence_gives_the_reason_for_a_bend_that_is_not_kept():
         z = sag * ((POINTS[:, 0] - 0.1) / 0.1) ** 2
         views.append(corner_sets(np.column_stack([POINTS[:, :2], z]), 13, seed=40)[k])
     corners = CornerSets([POINTS] * 13, views, SIZE)
-    question = bent_board(corners, fit(corners, Model(("k1", "k2")), start(corners)))
+    question, _ = bent_board(corners, fit(corners, Model(("k1", "k2")), start(corners)))
     assert not question.kept and question.p_value < question.limit
     assert "mm of sag are too little beside their error" in str(question)
 
@@ -433,6 +433,24 @@ def test_two_cameras_in_one_call_are_noticed(seed, other):
         views[i] -= (scaled - K)[:2, 2]
     inside = [xy for xy in views if (xy > 0).all() and (xy < np.array(SIZE) - 1).all()]
     assert any("two cameras" in text for text in calibrate_corners(POINTS, inside, SIZE).warnings)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_views_of_a_cropped_picture_are_noticed(seed):
+    """The centre is elsewhere in some of the views: a crop to the same size."""
+    views = corner_sets(POINTS, 14, 0.1, seed)
+    for i in range(0, 14, 2):
+        views[i] = views[i] - [50, 40]
+    inside = [xy for xy in views if (xy > 0).all()]
+    assert any("two cameras" in text for text in calibrate_corners(POINTS, inside, SIZE).warnings)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_stretched_board_is_not_taken_for_two_cameras(seed):
+    """Turned boards ask for different focal lengths: what is wrong is said, not something else; 1 % is noticed."""
+    board = POINTS * [1, 1.01 + 0.01 * (seed % 3), 1]
+    warnings = calibrate_corners(POINTS, corner_sets(board, 14, 0.1, seed), SIZE).warnings
+    assert any("not square" in text for text in warnings) and not any("two cameras" in text for text in warnings)
 
 
 @pytest.mark.parametrize("noise", [0.1, 0.5, 1.0])

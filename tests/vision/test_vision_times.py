@@ -42,6 +42,23 @@ def test_a_wrong_pattern_is_refused_within_three_seconds(pictures, pattern):
     assert time.process_time() - start < 3
 
 
+def test_pictures_without_a_board_are_given_up_about_as_soon_as_by_opencv_alone():
+    rng, pictures = np.random.default_rng(0), []
+    for _ in range(4):
+        picture = np.full((480, 640), 120, np.uint8)
+        for x, y, w, h, grey in rng.integers((0, 0, 10, 10, 20), (640, 480, 160, 160, 235), (120, 5)).tolist():
+            cv2.rectangle(picture, (x, y), (x + w, y + h), grey, -1)
+        noise = rng.normal(0, 4, picture.shape)
+        pictures.append(np.clip(cv2.GaussianBlur(picture, (0, 0), 0.8) + noise, 0, 255).astype(np.uint8))
+
+    def ours():
+        with pytest.raises(CalibrationError, match="4 no board"):
+            calibrate(pictures, progress=False)
+
+    by_us, alone = processor_time(ours, lambda: [cv2.findChessboardCorners(one, (9, 6)) for one in pictures], rounds=2)
+    assert by_us < 4 * alone
+
+
 def browns(count, seed):
     """Paints (r, g, b) at the bounds of red, as skin, wood and sweets have them: noise breaks them up into many parts."""
     rng = np.random.default_rng(seed)

@@ -60,7 +60,7 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, as
     size = common_size(pictures)
     for picture in with_bar(pictures, progress):
         try:
-            other = max(filter(None, seen), key=seen.get, default=None) if not found else None
+            other = max((one for one in seen if one and seen[one] > len(found)), key=seen.get, default=None)
             found.append((picture.name, picture.index, _corners_in(picture, board, size, other)))
         except NotUsable as why:
             rejected.append(Rejected(picture.name, picture.index, why.reason, why.detail))
@@ -108,19 +108,17 @@ def _calibrate(found, size, board, points, options, rejected):
     """From (name, index, BoardCorners) to a Calibration: outlier views out, lens chosen, bend of the board tested."""
     wanted, aspect, bend = options
     corners = CornerSets([points[one.index] for _, _, one in found], [one.xy for _, _, one in found], size)
-    model = Model(LENS, aspect)
-    rough = fit(corners, model, start(corners))
+    full = fit(corners, Model(LENS, aspect), start(corners))
     for _ in range(max(1, len(found) // 4)):
-        outlier = checks.outlier_view(corners, rough)
+        outlier = checks.outlier_view(corners, full)
         if outlier is None:
             break
-        worst, rms, usual = outlier
+        worst, rms, corners, full = outlier
         name, index, _ = found.pop(worst)
+        usual = np.median(full.view_rms)
         detail = f"its corners are {rms:.2g} px off the model, those of the other views {usual:.2g} px"
         rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
-        corners = corners.only([i for i in range(len(corners)) if i != worst])
-        rough = fit(corners, model, start(corners))
-    best, evidence, tried, said = _best(corners, (rough.camera, rough.poses), wanted, aspect, bend)
+    best, evidence, tried, said = _best(corners, full, wanted, bend)
     if not any("was prescribed" in text for text in said):  # else what is prescribed explains the residuals
         said = checks.two_cameras(corners, best) + said
     views = tuple(
@@ -158,26 +156,26 @@ def _calibrate(found, size, board, points, options, rejected):
     return replace(result, warnings=(*said, *checks.doubts(result)))
 
 
-def _best(corners, guess, wanted, aspect, bend):
+def _best(corners, full, wanted, bend):
     """(CameraFit, evidence, models tried, warnings): lens as the data say or as asked for, board flat or bent, aspect.
 
     Whether the board is bent is asked with all that the lens needs: what a prescribed lens lacks looks like a bend.
     """
     said = []
 
-    def estimate(bent):
+    def estimate(full):
         if wanted is None:
-            best, evidence, tried = choose(corners, guess, aspect, bent)
+            best, evidence, tried = choose(corners, full)
             return best, best, None, evidence, tried
-        held = fit(corners, Model(wanted, aspect, bent), guess)
-        lacking, wide = checks.lacking_terms(corners, held, guess)
+        held = fit(corners, full.model.with_lens(wanted), full)
+        lacking, wide = checks.lacking_terms(corners, held, full)
         return held, wide, lacking, (lacking,) if lacking else (), ((held.camera, 0.0),)
 
-    best, wide, lacking, evidence, tried = estimate(bent=False)
+    best, wide, lacking, evidence, tried = estimate(full)
     try:
-        shape = checks.bent_board(corners, wide)
+        shape, bent = checks.bent_board(corners, wide)
         if shape.kept and bend is None:
-            best, wide, lacking, evidence, tried = estimate(bent=True)
+            best, wide, lacking, evidence, tried = estimate(fit(corners, bent.model.with_lens(LENS), bent))
         evidence += (shape,)
     except CalibrationError:
         shape = None
@@ -191,10 +189,10 @@ def _best(corners, guess, wanted, aspect, bend):
     doubted = [("lens", best.model.lens, wide.model.lens, lacking)]
     if bend is False:
         doubted.append(("bend", False, "that the board is bent", shape))
-    if aspect:
+    if full.model.aspect:
         question, ratio = checks.free_aspect(corners, wide)
         evidence += (question,)
-        doubted.append(("aspect", aspect, f"fx/fy = {ratio:.4f}", question))
+        doubted.append(("aspect", full.model.aspect, f"fx/fy = {ratio:.4f}", question))
     said += [
         f"{name} = {value} was prescribed, but the corners say {says} (by chance: {in_percent(question.p_value)}): "
         f"leave {name}=None"

@@ -5,15 +5,16 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.fit import Model, fit, focal_steps
+from ir50p_lab.vision.calibration.fit import Guess, fit, pulls
 from ir50p_lab.vision.calibration.models import ask, choose, contrast_of
 
 _TILTED = np.deg2rad(15)
 _LIMIT = 1e-3  # chance below which a bend, another ratio fx/fy, or a lens with more terms is believed
 _GONE = 0.33  # part of the sum of squares: 2 mm of sag make 0.39 of it or more, flat boards in photographs 0.22 or less
-_SQUARE = 0.01  # difference of fx and fy that sensors have without anything being wrong
-# Two cameras: of the scatter is left in two heaps; sigmas of what is gone; relative step of fx between them
-_LEFT, _SIGMAS, _APART = 0.2, 5.0, 0.03
+_SQUARE = 0.0075  # difference of fx and fy that sensors have without anything being wrong
+# Two cameras: by which share they leave fewer squares (0.08 at most in 100 sets of one), by which part of the focal
+# length and how many standard errors they differ
+_FEWER, _APART, _SIGMAS = 0.12, 0.01, 5.0
 _ROUGH = 0.7  # px rms, of pictures up to 1280 px wide; corners err by 0.05 to 0.5
 _STRETCHED = {
     False: "Rare in a webcam: was the picture stretched (4:3 to 16:9), or is the board bent or stretched (paper)? "
@@ -24,34 +25,27 @@ _STRETCHED = {
 
 
 def outlier_view(corners, fitted):
-    """(number of the view that fits worst, its rms, usual rms, px) if it does not belong to the others, else None.
+    """(number of the view that fits worst, its rms, px, CornerSets and CameraFit without it), or None if it belongs.
 
     fitted: CameraFit with the full lens: a view far out may be the only one that needs its k3. The view must be three
     times worse than the median view, and eight times the usual scatter of views above it. A view that is far off pulls
-    the camera along and spoils the others, too: if they fit twice as well without the worst, it is judged by the camera
-    that they make without it.
+    the camera along and spoils the others, too: if they fit twice as well without it, it is judged by the camera that
+    they make without it.
     """
     rms = fitted.view_rms
-    if len(rms) < 5:
-        return None
     worst = int(np.argmax(rms))
     others = np.delete(rms, worst)
-    if rms[worst] > _far_off(others):
-        return worst, float(rms[worst]), float(np.median(others))
-    if rms[worst] < 2 * np.median(others):
+    if len(rms) < 5 or rms[worst] < 2 * np.median(others):
         return None
+    kept = np.arange(len(rms)) != worst
+    rest = corners.only(np.flatnonzero(kept))
     try:
-        alone = fit(
-            corners.only([i for i in range(len(rms)) if i != worst]),
-            fitted.model,
-            (fitted.camera, np.delete(fitted.poses, worst, axis=0)),
-        )
+        alone = fit(rest, fitted.model, Guess(fitted.camera, fitted.poses[kept]))
     except CalibrationError:
         return None
     off = _seen_by(alone.camera, corners, worst, fitted.poses[worst])
-    if np.median(alone.view_rms) < 0.5 * np.median(others) and off > _far_off(alone.view_rms):
-        return worst, off, float(np.median(alone.view_rms))
-    return None
+    pulled = np.median(alone.view_rms) < 0.5 * np.median(others) and off > _far_off(alone.view_rms)
+    return (worst, off, rest, alone) if pulled or rms[worst] > _far_off(others) else None
 
 
 def _far_off(rms):
@@ -74,67 +68,78 @@ def _seen_by(camera, corners, view, pose):
 def two_cameras(corners, best):
     """A sentence if the views are of two cameras (or the zoom was changed between them), else none: a list.
 
-    Each view alone asks for a focal length of its own. For one camera these scatter about one value; for two they lie
-    in two heaps, and hardly scatter within. Chance parts one heap into two with R = 0.36 of the scatter left within.
+    Two cameras, each with its own views, must leave fewer squares, and differ in focal length or centre. Views of a
+    stretched board ask for different focal lengths as well, by how the board was turned.
     """
-    if len(corners) < 6:
+    parts = _two_heaps(*pulls(corners, best))
+    if not parts or all(_not_square(best.camera, covariance)[0] for covariance in (best.by_corners, best.by_views)):
         return []
-    steps, weights = focal_steps(corners, best)
-    order = np.argsort(steps)
-    heaps = [(order[:k], order[k:]) for k in range(3, len(order) - 2)]
-    within = [sum(_scatter(steps[part], weights[part]) for part in parts) for parts in heaps]
-    parts, total = heaps[np.argmin(within)], _scatter(steps, weights)
-    if min(within) > _LEFT * total or total - min(within) < (_SIGMAS * best.sigma) ** 2:
-        return []
-    model = Model(tuple(name for name in best.model.lens if name in ("k1", "k2")), best.model.aspect)
+    model = best.model.with_lens(name for name in best.model.lens if name in ("k1", "k2"))
     try:
-        each = [fit(corners.only(part), model, (best.camera, best.poses[part])) for part in parts]
+        one, other = (fit(corners.only(part), model, Guess(best.camera, best.poses[part])) for part in parts)
     except CalibrationError:
         return []
-    focal, error = np.array([(one.camera[0], one.stderr[0]) for one in each]).T
-    if np.ptp(np.log(focal)) < max(_APART, 3 * np.hypot(*(error / focal))):
+    apart, error = np.abs(one.camera - other.camera), np.hypot(one.stderr, other.stderr)
+    differ = apart > np.maximum(_APART * best.camera[0], _SIGMAS * error)
+    if one.cost + other.cost > (1 - _FEWER) * best.cost or not differ[[0, 2, 3]].any():
         return []
-    told = " and ".join(f"{len(part)} with fx = {f:.0f} px" for part, f in zip(parts, focal, strict=True))
-    return [f"these seem to be pictures of two cameras, or the zoom was changed: {told}. Calibrate them apart"]
+    told = " and ".join(
+        "{} with fx = {:.0f} px, centre ({:.0f}, {:.0f})".format(len(each.poses), *each.camera[[0, 2, 3]])
+        for each in (one, other)
+    )
+    return [f"these seem to be pictures of two cameras, or zoom or crop was changed: {told}. Calibrate them apart"]
 
 
-def _scatter(values, weights):
-    """Weighted sum of squares about the mean."""
-    return float(np.sum(weights * (values - np.average(values, weights=weights)) ** 2))
+def _two_heaps(S, g):
+    """The views (two arrays) of the two cameras that explain most, each at least three; or none.
+
+    S, g: of `pulls`. As in k-means: a step of the camera for each heap, then each view to the step that suits it.
+    """
+    found, most = (), 0.0
+    for first in (g > 0).T:
+        for _ in range(10):
+            heaps = [np.flatnonzero(first), np.flatnonzero(~first)]
+            if min(map(len, heaps)) < 3:
+                break
+            steps = [np.linalg.solve(S[heap].sum(axis=0), g[heap].sum(axis=0)) for heap in heaps]
+            change = [np.einsum("vij,i,j->v", S, d, d) - 2 * g @ d for d in steps]
+            gain = -float(np.minimum(*change).sum())
+            if gain > most:
+                found, most = heaps, gain
+            first = change[0] < change[1]
+    return found
 
 
-def lacking_terms(corners, held, guess):
+def lacking_terms(corners, held, full):
     """(Evidence or None, CameraFit with them): whether a prescribed lens lacks terms that the corners ask for.
 
     None, and the fit that was held, if the lens that the corners would choose has no others, or they cannot say.
     """
-    model = held.model
     try:
-        chosen, _, _ = choose(corners, guess, model.aspect, model.bent)
+        chosen, _, _ = choose(corners, full)
     except CalibrationError:
         return None, held
-    lacking = tuple(name for name in chosen.model.lens if name not in model.lens)
+    lacking = tuple(name for name in chosen.model.lens if name not in held.model.lens)
     if not lacking:
         return None, held
-    wide = fit(corners, Model((*model.lens, *lacking), model.aspect, model.bent), (chosen.camera, chosen.poses))
-    question, _, _ = ask(f"lens lacks {' and '.join(lacking)}", wide, contrast_of(lacking), _LIMIT)
-    question = _clear(question, held, wide)
+    wide = fit(corners, held.model.with_lens((*held.model.lens, *lacking)), chosen)
+    question = _clear(ask(f"lens lacks {' and '.join(lacking)}", wide, contrast_of(lacking), _LIMIT)[0], held, wide)
     return question, wide if question.kept else held
 
 
 def bent_board(corners, flat):
-    """Evidence whether the same bend of the board shows in all the views.
+    """(Evidence whether the same bend of the board shows in all the views, CameraFit with it).
 
     A bend moves the same corners of the board in every view, as far as it is tilted; three numbers describe it to
     second order. Raises CalibrationError if the views cannot tell them from the camera.
     """
-    bent = fit(corners, Model(flat.model.lens, flat.model.aspect, True), (flat.camera, flat.poses))
+    bent = fit(corners, replace(flat.model, bent=True), flat)
     question = _clear(ask("bent board", bent, np.eye(12)[9:], _LIMIT)[0], flat, bent)
     size, error = sag(corners, bent)
     if question.kept and (question.gain <= 15 or size <= 4 * error):
         why = f"the {1000 * size:.2g} mm of sag are too little beside their error, {1000 * error:.1g} mm"
-        return replace(question, kept=False, why=why)
-    return question
+        question = replace(question, kept=False, why=why)
+    return question, bent
 
 
 def _clear(question, small, large):
@@ -150,9 +155,9 @@ def _clear(question, small, large):
 
 def sag(corners, bent):
     """(largest height of the board over the plane nearest to it, its standard error), m, for a CameraFit."""
-    points, index = np.unique(corners.all_points[:, :2].round(9), axis=0, return_index=True)
-    plane = np.column_stack([points, np.ones(len(points))])
-    z = corners.shapes[index] @ np.column_stack([bent.camera[9:], bent.stderr[9:]])
+    plane, shapes = np.concatenate(corners.points), corners.shapes[corners.there[..., 0, 0] > 0]
+    plane[:, 2] = 1
+    z = shapes @ np.column_stack([bent.camera[9:], bent.stderr[9:]])
     z -= plane @ np.linalg.lstsq(plane, z, rcond=None)[0]
     size, error = np.ptp(z, axis=0)
     return float(size), float(error / np.sqrt(3))
@@ -160,10 +165,18 @@ def sag(corners, bent):
 
 def free_aspect(corners, held):
     """(Evidence, fx/fy): whether the prescribed ratio of the focal lengths contradicts the corners."""
-    free = fit(corners, Model(held.model.lens, None, held.model.bent), (held.camera, held.poses))
+    free = fit(corners, replace(held.model, aspect=None), held)
     contrast = np.zeros(12)
     contrast[:2] = 1, -held.model.aspect
     return ask("fx/fy free", free, contrast, _LIMIT)[0], free.camera[0] / free.camera[1]
+
+
+def _not_square(camera, covariance):
+    """(Whether fx/fy differs from 1 by more than chance and sensors do, fx/fy, its standard error)."""
+    fx, fy = camera[:2]
+    slope = np.array([1 / fx, -1 / fy])  # fx and fy err together: their ratio is known far better than they
+    error = fx / fy * float(np.sqrt(max(slope @ covariance[:2, :2] @ slope, 0.0)))
+    return abs(fx / fy - 1) > max(_SQUARE, 3 * error), fx / fy, error
 
 
 def doubts(calibration):
@@ -183,10 +196,8 @@ def doubts(calibration):
         yield f"the lens model folds back {farthest:.0f} px from the centre: hold the board in the corners, too"
     if calibration.rms > _ROUGH * max(1, w / 1280):
         yield f"rms {calibration.rms:.2g} px is more than corners err: a fisheye, or did focus or zoom change?"
-    ratio = K[0, 0] / K[1, 1]
-    slope = np.array([1 / K[0, 0], -1 / K[1, 1]])  # fx and fy err together: their ratio is known far better than they
-    error = ratio * float(np.sqrt(max(slope @ calibration.covariance[:2, :2] @ slope, 0.0)))
-    if abs(ratio - 1) > max(_SQUARE, 3 * error):
+    oblong, ratio, error = _not_square(np.diag(K), calibration.covariance)
+    if oblong:
         yield f"fx/fy = {ratio:.3f} +- {error:.1g}: pixels are not square. {_STRETCHED[calibration.sag is not None]}"
     off = np.abs(K[:2, 2] - [(w - 1) / 2, (h - 1) / 2]) / (w, h)
     if off.max() > 0.15:

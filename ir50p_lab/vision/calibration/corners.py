@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.vision.calibration.board import check_pattern
-from ir50p_lab.vision.calibration.grid import grow, in_order, is_checkerboard, next_to_margin, roughness, spacing
+from ir50p_lab.vision.calibration.grid import grow, in_order, is_checkerboard, next_to_margin, roughness, side, spacing
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 from ir50p_lab.vision.calibration.saddles import parts_by_saddles
 
@@ -18,7 +18,7 @@ _UNKNOWN = 100  # what OpenCV says for the rise where squares are too small for 
 SOFT_SLOPE = 0.45  # the same limit for `slope_rise`: waves of that length, all that blur leaves, have 0.5
 _UNEVEN = 0.03  # scatter about a smooth grid, in squares, from which on a slower finder is asked, too
 _UNEVEN_SMALL, _SMALL = 0.0115, 22  # the same for squares smaller than so many px, which leave little for a window
-_RIM, _TINY = 0.8, 14  # squares around the corners in which the slower finder searches then; of so many px or more
+_RIM, _TINY, _RIM_TINY = 0.8, 14, 3  # squares around the corners in which the slower finder searches; below 14 px
 _BLUR, _BLUR_PX = 0.05, 1.0  # in squares, at most so many px: noise and compression go, corners stay where they are
 _ROUGH = 0.08  # the same, that no board shows
 
@@ -46,10 +46,12 @@ def find_checkerboard(grey, pattern, other=None):
     in its place, looked for first. Returns: BoardCorners, all, in the order of `Checkerboard`.
     Raises NotUsable with the Reason, CalibrationError for a pattern that cannot be.
     """
-    pattern = check_pattern(pattern)
-    small, factor = reduced(grey, _SEARCHED)
+    import cv2
+
+    pattern, factor = check_pattern(pattern), max(1.0, max(grey.shape) / _SEARCHED)
+    small = cv2.resize(grey, None, fx=1 / factor, fy=1 / factor, interpolation=cv2.INTER_AREA)
     for wanted in filter(None, (other, pattern)):
-        best = _classic(grey, small, factor, wanted)
+        best = _examined(grey, cv2.findChessboardCorners(small, wanted), factor, wanted)
         if best is not None:
             larger, _ = grow(best, grey)
             _check_whole(larger, set(), pattern)
@@ -57,28 +59,17 @@ def find_checkerboard(grey, pattern, other=None):
         try:
             best = _grown(grey, small, factor, pattern)
         except NotUsable as why:
-            best = None if why.seen else _sb(grey, small, factor, pattern)
+            if why.reason == Reason.CROPPED or why.seen:
+                raise
+            by_sb = cv2.findChessboardCornersSB(small, pattern, flags=cv2.CALIB_CB_NORMALIZE_IMAGE)
+            best = _examined(grey, by_sb, factor, pattern)  # EXHAUSTIVE or ACCURACY take longer and find no more
             if best is None:
                 raise
             _check_whole(grow(best, grey)[0], set(), pattern)
-    else:
-        noise, side = roughness(best), np.median(spacing(best))
-        if noise > (_UNEVEN_SMALL if side < _SMALL else _UNEVEN) * side:
-            best = _smoother(grey, small, factor, pattern, best)
+    elif roughness(best) > (_UNEVEN_SMALL if side(best) < _SMALL else _UNEVEN):
+        best = _smoother(grey, small, factor, pattern, best)
     refuse_soft(grey, best)
-    columns, rows = pattern
-    return BoardCorners(in_order(best, grey, pattern).reshape(-1, 2).astype(float), np.arange(columns * rows))
-
-
-def reduced(grey, longest):
-    """(picture at most `longest` px wide and high, factor by which it is smaller)."""
-    import cv2
-
-    factor = max(grey.shape) / longest
-    if factor <= 1:
-        return grey, 1.0
-    h, w = grey.shape
-    return cv2.resize(grey, (round(w / factor), round(h / factor)), interpolation=cv2.INTER_AREA), factor
+    return BoardCorners(in_order(best, grey, pattern).reshape(-1, 2).astype(float), np.arange(best.size // 2))
 
 
 def enlarged(xy, factor):
@@ -86,41 +77,19 @@ def enlarged(xy, factor):
     return (xy + 0.5) * factor - 0.5
 
 
-def _classic(grey, small, factor, pattern):
-    """Grid (rows, columns, 2) by `findChessboardCorners`, refined, or None."""
-    import cv2
-
-    flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE
-    return _examined(grey, cv2.findChessboardCorners(small, pattern, None, flags), factor, pattern)
-
-
-def _sb(grey, small, factor, pattern):
-    """The same by `findChessboardCornersSB`; without ACCURACY: slower, and no better than what refines them here."""
-    import cv2
-
-    return _examined(grey, cv2.findChessboardCornersSB(small, pattern, flags=_thorough()), factor, pattern)
-
-
-def _thorough():
-    import cv2
-
-    return cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE
-
-
 def _smoother(grey, small, factor, pattern, grid):
     """The corners of SB itself around a grid that was found, if they lie more smoothly, else the grid.
 
-    It is asked without the surroundings, three times as quick; where squares are tiny it needs them.
+    It is asked without the surroundings, three times as quick; where squares are tiny it needs some of them.
     """
     import cv2
 
-    inside, side = (grid + 0.5) / factor - 0.5, np.median(spacing(grid)) / factor
-    window, flags, start = small, _thorough(), np.zeros(2, dtype=int)
-    if side > _TINY:
-        start = np.maximum(inside.min(axis=(0, 1)) - _RIM * side, 0).astype(int)
-        right, bottom = np.ceil(inside.max(axis=(0, 1)) + _RIM * side).astype(int) + 1
-        window, flags = np.ascontiguousarray(small[start[1] : bottom, start[0] : right]), 0
-    found, corners = cv2.findChessboardCornersSB(window, pattern, flags=flags)
+    inside, square = (grid + 0.5) / factor - 0.5, side(grid) / factor
+    rim = square * (_RIM if square > _TINY else _RIM_TINY)
+    start = np.maximum(inside.min(axis=(0, 1)) - rim, 0).astype(int)
+    right, bottom = np.ceil(inside.max(axis=(0, 1)) + rim).astype(int) + 1
+    window = np.ascontiguousarray(small[start[1] : bottom, start[0] : right])
+    found, corners = cv2.findChessboardCornersSB(window, pattern, flags=0)
     other = _examined(grey, (found, corners + np.float32(start) if found else None), factor, pattern, factor > 1)
     return other if other is not None and roughness(other) < roughness(grid) else grid
 
@@ -132,8 +101,7 @@ def _examined(grey, result, factor, pattern, refined=True):
         return None
     grid = enlarged(corners.reshape(pattern[1], pattern[0], 2), factor)
     grid = refine(grey, grid) if refined else grid
-    rough = roughness(grid) > _ROUGH * np.median(spacing(grid))
-    return None if rough or not is_checkerboard(grid, grey) else grid
+    return grid if roughness(grid) <= _ROUGH and is_checkerboard(grid, grey) else None
 
 
 def refine(grey, grid):
@@ -146,9 +114,9 @@ def refine(grey, grid):
     h, w = grey.shape
     if not ((grid >= 0) & (grid <= (w - 1, h - 1))).all():
         raise NotUsable(Reason.CROPPED, "corners beyond the edge of the picture: move the board into view")
-    part, side = np.where(next_to_margin(grid, grey), _WINDOW / 2, _WINDOW), spacing(grid)
-    half = np.clip(np.round(part * side), *_WINDOW_PX).astype(int).ravel()
-    smooth = cv2.GaussianBlur(grey, (0, 0), float(np.clip(_BLUR * np.median(side), 0.2, _BLUR_PX)))
+    part = np.where(next_to_margin(grid, grey), _WINDOW / 2, _WINDOW)
+    half = np.clip(np.round(part * spacing(grid)), *_WINDOW_PX).astype(int).ravel()
+    smooth = cv2.GaussianBlur(grey, (0, 0), float(np.clip(_BLUR * side(grid), 0.2, _BLUR_PX)))
     xy = grid.reshape(-1, 1, 2).astype(np.float32)
     stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 30, 1e-3)
     for size in np.unique(half):
@@ -157,21 +125,12 @@ def refine(grey, grid):
     return xy.reshape(grid.shape).astype(float)
 
 
-def edge_rise(grey, grid):
-    """Mean width of an edge from 10 % to 90 % of its step, px: of the softer of the two directions."""
-    import cv2
-
-    pattern, xy = grid.shape[1::-1], grid.reshape(-1, 1, 2).astype(np.float32)
-    rises = [cv2.estimateChessboardSharpness(grey, pattern, xy, vertical=way)[0][0] for way in (False, True)]
-    return float(max(rises))
-
-
-def slope_rise(grey, xy, side):
+def slope_rise(grey, xy, square):
     """Rough width of the edges at corners, px: step of grey levels over the steepest slope, median of the corners."""
     import cv2
 
     gx, gy = cv2.Sobel(grey, cv2.CV_32F, 1, 0) / 8, cv2.Sobel(grey, cv2.CV_32F, 0, 1) / 8
-    slope, reach, widths = np.hypot(gx, gy), max(2, round(0.4 * side)), []
+    slope, reach, widths = np.hypot(gx, gy), max(2, round(0.4 * square)), []
     for x, y in np.round(xy).astype(int):
         window = np.s_[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1]
         widths.append(float(np.ptp(grey[window])) / max(float(slope[window].max()), 1e-6))
@@ -179,9 +138,12 @@ def slope_rise(grey, xy, side):
 
 
 def refuse_soft(grey, grid):
-    """Raise NotUsable if the edges run into each other."""
-    nearest = float(np.median(spacing(grid)))
-    rise, limit = edge_rise(grey, grid), _SOFT * nearest
+    """Raise NotUsable if the edges, from 10 % to 90 % of their step, run into each other in either direction."""
+    import cv2
+
+    nearest, how = side(grid), (grid.shape[1::-1], grid.reshape(-1, 1, 2).astype(np.float32))
+    rises = [cv2.estimateChessboardSharpness(grey, *how, vertical=way)[0][0] for way in (False, True)]
+    rise, limit = max(rises), _SOFT * nearest
     if rise >= _UNKNOWN:
         rise, limit = slope_rise(grey, grid.reshape(-1, 2), nearest), SOFT_SLOPE * nearest
     if rise > limit:
@@ -229,27 +191,16 @@ def _check_whole(grid, outside, pattern):
 
 
 def part_of_a_checkerboard(grey):
-    """A grid found anywhere in a picture, at its size or reduced, by its saddles or by SB; or None."""
+    """The grid around the first part by its saddles that becomes 4x3 or more and is smooth, at any scale, or None."""
     import cv2
 
-    for find, scales in ((_grown_from_saddles, (1, 2, 4)), (_largest_by_sb, (2, 4))):
-        for less in scales:
-            h, w = grey.shape
-            if min(h, w) >= 60 * less:
-                small = cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
-                grid = find(small)
-                if grid is not None:
-                    return enlarged(grid, less)
-    return None
-
-
-def _grown_from_saddles(grey):
-    """The grid around the first part by its saddles that becomes 4x3 or more and is smooth, or None."""
-    for part in itertools.islice(parts_by_saddles(grey), 20):
-        grid, _ = grow(refine(grey, part), grey)
-        smooth = roughness(grid) < _ROUGH / 2 * np.median(spacing(grid))
-        if smooth and grid.shape[0] * grid.shape[1] >= 12 and is_checkerboard(grid, grey):
-            return grid
+    h, w = grey.shape
+    for less in (less for less in (1, 2, 4) if min(h, w) >= 60 * less):
+        small = cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
+        for part in itertools.islice(parts_by_saddles(small), 20):
+            grid, _ = grow(refine(small, part), small)
+            if grid.size >= 2 * 12 and roughness(grid) < _ROUGH / 2 and is_checkerboard(grid, small):
+                return enlarged(grid, less)
     return None
 
 
@@ -261,14 +212,3 @@ def _part_of_it(shape, outside, pattern):
         and sum(n < m and not is_cut for n, m, is_cut in zip(shape, turned, cut, strict=True)) <= (not outside)
         for turned in (pattern, pattern[::-1])
     )
-
-
-def _largest_by_sb(grey):
-    """The largest grid (rows, columns, 2) around 3x3 corners that `findChessboardCornersSB` finds, or None."""
-    import cv2
-
-    found, corners, meta = cv2.findChessboardCornersSBWithMeta(grey, (3, 3), _thorough() | cv2.CALIB_CB_LARGER)
-    if not found:
-        return None
-    grid = corners.reshape(*meta.shape, 2).astype(float)
-    return grid if is_checkerboard(grid, grey) else None

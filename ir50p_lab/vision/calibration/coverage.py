@@ -60,9 +60,9 @@ def coverage(calibration):
 
 def _counts(xy, size):
     """How many of the pixels (n, 2) lie in each cell of the coverage map, (6, 8)."""
-    (w, h), (x, y) = size, xy.T
-    ranges = (-0.5, h - 0.5), (-0.5, w - 0.5)
-    return np.histogram2d(np.clip(y, *ranges[0]), np.clip(x, *ranges[1]), _CELLS, ranges)[0].astype(int)
+    rows, columns = _CELLS
+    x, y = np.clip((xy + 0.5) * (columns, rows) / size, 0, (columns - 1, rows - 1)).astype(int).T
+    return np.bincount(columns * y + x, minlength=rows * columns).reshape(_CELLS)
 
 
 def direction_stderr(calibration, xy):
@@ -101,8 +101,8 @@ def next_view(calibration):
     J = _ray_jacobian(calibration, grid) @ B[:9]
 
     def doubt(information):
-        V = calibration.sigma**2 * solve(information, np.eye(len(information)))
-        return float(np.sqrt(np.einsum("nij,jk,nik->n", J, V, J).mean()))
+        V = calibration.sigma**2 * solve(information, np.broadcast_to(np.eye(len(S)), information.shape))
+        return np.sqrt(np.einsum("nij,...jk,nik->...n", J, V, J).mean(axis=-1))
 
     points = calibration.board.points
     places, tilts, poses = zip(*_candidates(calibration, points), strict=True)
@@ -110,13 +110,13 @@ def next_view(calibration):
     views = project(trial, camera, np.array(poses))
     seen_at = points[:, :2] - views[0].reshape(len(poses), -1, 2)
     empty, tried = calibration.coverage.counts == 0, []
-    for place, tilt, gained, xy in zip(places, tilts, reduce(B, *views)[0], seen_at, strict=True):
+    before, after = float(doubt(S)), doubt(S + reduce(B, *views)[0]).tolist()
+    for place, tilt, surer, xy in zip(places, tilts, after, seen_at, strict=True):
         if (xy > 2).all() and (xy < np.array([w, h]) - 3).all():
             new = int((empty & (_counts(xy, calibration.size) > 0)).sum())
-            tried.append(((place, tilt, doubt(S + gained), new), xy))
+            tried.append(((place, tilt, surer, new), xy))
     if not tried:
         raise CalibrationError("no pose of the board was found that would fit into the picture")
-    before = doubt(S)
     tried.sort(key=lambda one: one[0][2])
     enough = max(before - _NEARLY * (before - tried[0][0][2]), tried[0][0][2])
     good = [one for one in tried if one[0][2] <= enough]

@@ -6,6 +6,7 @@ take every corner for independent, which corners of one picture are not.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,16 +29,25 @@ class Model:
     aspect: float | None = None
     bent: bool = False
 
+    def with_lens(self, names):
+        """The same with these coefficients of the lens."""
+        return replace(self, lens=tuple(names))
+
     @property
     def columns(self):
         """B (12, free): the nine numbers of the camera and three of the board's shape from the free parameters."""
-        keep = [0, 2, 3] if self.aspect else [0, 1, 2, 3]
-        keep += [i for i, name in enumerate(NAMES) if name in self.lens]
-        keep += [9, 10, 11] if self.bent else []
-        B = np.eye(12)[:, keep]
+        free = [True, not self.aspect, True, True, *(name in self.lens for name in LENS), *[self.bent] * 3]
+        B = np.eye(12)[:, free]
         if self.aspect:
             B[1, 0] = 1 / self.aspect
         return B
+
+
+class Guess(NamedTuple):
+    """Where a fit begins: camera and poses as in `CameraFit`."""
+
+    camera: np.ndarray
+    poses: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,21 +110,24 @@ class CameraFit:
 class CornerSets:
     """What was seen: points (n, 3) m on the board and pixels (n, 2), one array of each per view; the picture's size.
 
-    shapes: three ways (N, 3) in which the board can bend (along x, as a saddle, along y), each 1 at half the board's
-    size from its middle, for the points of all views. Its height is z = shapes @ b, with b in metres, positive into
-    the board. places: (view, number within the view) of each of these points, two arrays (N,).
+    For all views alike, those with fewer corners than the fullest filled up by repeating them: all_points (v, n, 3) m,
+    seen (v, n, 2) px, there (v, n, 1, 1): 1 for what was seen, 0 for what was filled up; shapes: three ways (v, n, 3)
+    in which the board can bend (along x, as a saddle, along y), each 1 at half the board's size from its middle. Its
+    height is z = shapes @ b, with b in metres, positive into the board.
     """
 
     def __init__(self, points, pixels, size):
         self.points = [np.ascontiguousarray(p, dtype=float) for p in points]
         self.pixels = [np.ascontiguousarray(p, dtype=float) for p in pixels]
         self.size = size
-        self.all_points = full = np.concatenate(self.points)
-        middle, half = (full.min(axis=0) + full.max(axis=0)) / 2, np.ptp(full[:, :2], axis=0).max() / 2
-        x, y = ((full - middle) / half)[:, :2].T
-        self.shapes = np.column_stack([x * x, x * y, y * y])
-        counts = [len(p) for p in self.points]
-        self.places = np.repeat(np.arange(len(counts)), counts), np.concatenate([np.arange(n) for n in counts])
+        counts = np.array([len(p) for p in self.points])
+        most = counts.max()
+        self.there = (np.arange(most) < counts[:, None])[..., None, None].astype(float)
+        self.all_points = full = np.array([np.resize(p, (most, 3)) for p in self.points])
+        self.seen = np.array([np.resize(xy, (most, 2)) for xy in self.pixels])
+        low, high = full.min(axis=(0, 1)), full.max(axis=(0, 1))
+        x, y = np.moveaxis((2 * full - low - high) / (high - low)[:2].max(), 2, 0)[:2]
+        self.shapes = np.stack([x * x, x * y, y * y], axis=2)
 
     def __len__(self):
         return len(self.points)
@@ -125,7 +138,7 @@ class CornerSets:
 
 
 def start(corners):
-    """First guess (camera (12,), poses (v, 6)) by OpenCV, with two radial terms.
+    """First Guess by OpenCV, with two radial terms.
 
     Raises CalibrationError if the views do not determine a camera at all.
     """
@@ -151,7 +164,7 @@ def start(corners):
     camera = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *d.ravel()[:5], 0, 0, 0])
     if not np.isfinite(camera).all() or not np.isfinite(poses).all():
         raise CalibrationError(_UNDETERMINED)
-    return camera, poses
+    return Guess(camera, poses)
 
 
 def project(corners, camera, poses):
@@ -164,25 +177,22 @@ def project(corners, camera, poses):
     from scipy.spatial.transform import Rotation
 
     K = np.array([[camera[0], 0, camera[2]], [0, camera[1], camera[3]], [0, 0, 1]])
-    view, _ = corners.places
-    R = Rotation.from_rotvec(poses[:, :3]).as_matrix()[view]
-    bent = corners.all_points + np.outer(corners.shapes @ camera[9:], (0.0, 0.0, 1.0))
-    turned = np.einsum("nij,nj->ni", R, bent)
-    seen, J = cv2.projectPoints(turned + poses[view, 3:], np.zeros(3), np.zeros(3), K, camera[4:9])
-    J = J.reshape(len(view), 2, -1)
+    R = Rotation.from_rotvec(poses[:, :3]).as_matrix()
+    bent = corners.all_points + (corners.shapes @ camera[9:])[..., None] * (0.0, 0.0, 1.0)
+    turned = bent @ R.transpose(0, 2, 1)
+    at = (turned + poses[:, None, 3:]).reshape(-1, 3)
+    xy, J = cv2.projectPoints(at, np.zeros(3), np.zeros(3), K, camera[4:9])
+    views, count = turned.shape[:2]
+    J = J.reshape(views, count, 2, -1) * corners.there
     by_shift = J[..., 3:6]
-    by_height = by_shift @ R[:, :, 2:]  # a point that rises moves as the board does along its z
+    by_height = by_shift @ R[:, None, :, 2:]  # a point that rises moves as the board does along its z
     parts = (
-        np.concatenate(corners.pixels)[..., None] - seen.transpose(0, 2, 1),
-        np.concatenate([J[..., 6:15], by_height * corners.shapes[:, None]], axis=2),
-        np.concatenate([np.cross(turned[:, None], by_shift), by_shift], axis=2),
+        (corners.seen - xy.reshape(corners.seen.shape))[..., None] * corners.there,
+        np.concatenate([J[..., 6:15], by_height * corners.shapes[:, :, None]], axis=3),
+        np.concatenate([np.cross(turned[:, :, None], by_shift), by_shift], axis=3),
     )
-    most, filled = max(map(len, corners.points)), []
-    for part in parts:
-        each = np.zeros((len(poses), most, 2, part.shape[2]))
-        each[corners.places] = part
-        filled.append(each.reshape(len(poses), 2 * most, -1))
-    return filled[0][..., 0], filled[1], filled[2]
+    error, by_camera, by_pose = (part.reshape(views, 2 * count, -1) for part in parts)
+    return error[..., 0], by_camera, by_pose
 
 
 def moved_by(poses, step):
@@ -198,11 +208,11 @@ def fit(corners, model, guess, steps=50):
 
     Poses are eliminated view by view (Schur complement), so that a step costs one small system however many views.
 
-    Args: corners: CornerSets; model: Model; guess: (camera (12,), poses (v, 6)). Returns: CameraFit.
+    Args: corners: CornerSets; model: Model; guess: what has camera (12,) and poses (v, 6). Returns: CameraFit.
     Raises CalibrationError if it does not converge, or the views leave a parameter undetermined.
     """
     B = model.columns
-    camera, poses = _within(model, guess[0]), np.array(guess[1], dtype=float)
+    camera, poses = _within(model, guess.camera), guess.poses
     with np.errstate(all="ignore"):
         views = project(corners, camera, poses)
         cost, damping = _cost(camera, views), 1e-6
@@ -290,12 +300,13 @@ def _with_covariance(corners, model, camera, poses, views):
     return replace(fit, by_corners=B @ by_corners @ B.T, by_views=by_views)
 
 
-def focal_steps(corners, fitted):
-    """Relative step of the focal lengths that each view alone asks for (v,), and its weight, px^2 (v,).
+def pulls(corners, fitted):
+    """What each view alone says of (log f, cx / f, cy / f): information S (v, 3, 3) and pull g (v, 3), px^2.
 
-    To first order, with the pose of the view free and all else held. Its variance is sigma^2 / weight.
+    To first order, with the pose of the view free and all else held: a step d of the camera changes the sum of squares
+    of a view by d S d - 2 g d.
     """
-    both = np.zeros((12, 1))
-    both[:2, 0] = fitted.camera[:2]
+    both, f = np.zeros((12, 3)), fitted.camera[:2]
+    both[:2, 0], both[2, 1], both[3, 2] = f, *f
     S, g, _, _ = reduce(both, *project(corners, fitted.camera, fitted.poses))
-    return g[:, 0] / S[:, 0, 0], S[:, 0, 0]
+    return S, g

@@ -1,5 +1,7 @@
 """Corners of a checkerboard as a grid: its order, its spacing, how well it lies, and whether the board goes on."""
 
+from functools import lru_cache
+
 import numpy as np
 
 
@@ -13,35 +15,49 @@ def homography(points, xy):
 
 def apply(H, points):
     """Pixels (n, 2) of plane points (n, 2)."""
-    p = np.column_stack([points, np.ones(len(points))]) @ H.T
+    p = points @ H[:, :2].T + H[:, 2]
     return p[:, :2] / p[:, 2:]
 
 
 def spacing(grid):
     """Distance (rows, columns) of each corner of a grid (rows, columns, 2) to its nearest neighbour, pixels."""
-    along = np.pad(np.linalg.norm(np.diff(grid, axis=1), axis=2), ((0, 0), (1, 1)), constant_values=np.inf)
-    down = np.pad(np.linalg.norm(np.diff(grid, axis=0), axis=2), ((1, 1), (0, 0)), constant_values=np.inf)
-    return np.min([along[:, :-1], along[:, 1:], down[:-1], down[1:]], axis=0)
+    nearest = np.full(grid.shape[:2], np.inf)
+    for across in (nearest, nearest.T):  # the second time, rows are columns
+        along = np.hypot(*np.diff(grid, axis=1).transpose(2, 0, 1))
+        across[:, :-1] = np.minimum(across[:, :-1], along)
+        across[:, 1:] = np.minimum(across[:, 1:], along)
+        grid = grid.swapaxes(0, 1)
+    return nearest
+
+
+def side(grid):
+    """Side of a square, pixels: the median spacing."""
+    ordered = np.sort(spacing(grid), axis=None)  # a tenth of the time of np.median
+    return float(ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2]) / 2
 
 
 def roughness(grid):
-    """How far the corners of a grid (rows, columns, 2) are from a smooth surface, pixels rms.
+    """How far the corners of a grid (rows, columns, 2) are from a smooth surface, rms, in squares.
 
     Smooth: a homography and, on top, polynomials of the third degree, which takes up lens distortion and a bent
     board. What is left is the noise of the corners, without knowing the camera.
     """
-    rows, columns = grid.shape[:2]
-    y, x = np.mgrid[0:rows, 0:columns]
-    plane = np.column_stack([x.ravel(), y.ravel()]).astype(float)
-    xy = grid.reshape(-1, 2)
+    (plane, smooth), xy = _smooth(*grid.shape[:2]), grid.reshape(-1, 2)
     H = homography(plane, xy)
     if H is None:
         return np.inf
-    u, v = (plane[:, 0] / (columns - 1) * 2 - 1, plane[:, 1] / (rows - 1) * 2 - 1)
-    terms = np.column_stack([u**i * v**j for i in range(min(4, columns)) for j in range(min(4, rows)) if i + j <= 3])
     left = xy - apply(H, plane)
-    left -= terms @ np.linalg.lstsq(terms, left, rcond=None)[0]
-    return float(np.sqrt((left**2).sum() / max(len(xy) - terms.shape[1], 1)))
+    left -= smooth @ (smooth.T @ left)
+    return float(np.sqrt((left**2).sum() / max(len(xy) - smooth.shape[1], 1))) / side(grid)
+
+
+@lru_cache
+def _smooth(rows, columns):
+    """Places (n, 2) in a grid of so many corners, and an orthonormal base (n, k) of the polynomials over them."""
+    plane = np.argwhere(np.ones((rows, columns)))[:, ::-1].astype(float)
+    u, v = (plane / (columns - 1, rows - 1) * 2 - 1).T
+    terms = [u**i * v**j for i in range(min(4, columns)) for j in range(min(4, rows)) if i + j <= 3]
+    return plane, np.linalg.qr(np.column_stack(terms))[0]
 
 
 def in_order(grid, grey, pattern):
@@ -61,11 +77,10 @@ def in_order(grid, grey, pattern):
 def contrast(grid, grey):
     """Mean grey level of light minus dark squares if the square inside the first corner is dark; else negative."""
     middle = (grid[:-1, :-1] + grid[1:, :-1] + grid[:-1, 1:] + grid[1:, 1:]) / 4
-    levels = sample(grey, middle.reshape(-1, 2))
-    j, i = np.mgrid[0 : middle.shape[0], 0 : middle.shape[1]]
-    even = ((i + j) % 2 == 0).ravel() & np.isfinite(levels)
-    odd = ((i + j) % 2 == 1).ravel() & np.isfinite(levels)
-    return float(levels[odd].mean() - levels[even].mean()) if even.any() and odd.any() else 0.0
+    levels = sample(grey, middle.reshape(-1, 2)).reshape(middle.shape[:2])
+    even, known = np.indices(levels.shape).sum(axis=0) % 2 == 0, np.isfinite(levels)
+    light, dark = levels[known & ~even], levels[known & even]
+    return float(light.mean() - dark.mean()) if light.size and dark.size else 0.0
 
 
 def sample(grey, xy):
@@ -87,36 +102,27 @@ def grow(grid, grey):
 
     grid: (rows, columns, 2). Returns (grid, set of "left", "right", "top", "bottom").
     """
-    swing = abs(contrast(grid, grey))
-    sides = {"right": 0, "bottom": 1, "left": 2, "top": 3}
-    outside = set()
-    for side, quarter_turns in sides.items():
-        turned = _turn(grid, quarter_turns)
-        while max(turned.shape[:2]) < 60:
-            following = _next_column(turned)
-            out, along = following - turned[:, -1], np.gradient(turned[:, -1], axis=0)
+    swing, outside = abs(contrast(grid, grey)), set()
+    for side in ("right", "bottom", "left", "top"):
+        while max(grid.shape[:2]) < 60:
+            following = _next_column(grid)
+            out, along = following - grid[:, -1], _ways(grid[:, -1], 0)
             found = _crossings(following, 0.3 * out, 0.3 * along, grey, swing)
-            if np.mean(np.isnan(found)) >= 0.2:
+            known = found[np.isfinite(found)]
+            if len(known) <= 0.8 * len(found):
                 outside.add(side)
                 break
-            if np.nanmean(np.abs(found)) < 0.7:
+            if np.abs(known).mean() < 0.7:
                 break
-            turned = np.concatenate([turned, _settled(following, turned[:, -1], grey)[:, None]], axis=1)
-        grid = _turn(turned, -quarter_turns)
+            grid = np.concatenate([grid, _settled(following, grid[:, -1], grey)[:, None]], axis=1)
+        grid = np.rot90(grid)  # the next side is on the right
     return grid, outside
-
-
-def _turn(grid, quarter_turns):
-    return np.rot90(grid, quarter_turns, axes=(0, 1))
 
 
 def _next_column(grid):
     """Continue the last three columns of a grid by one (rows, 2): perspective from the cross-ratio, row by row."""
-    if grid.shape[1] < 3:
-        return 2 * grid[:, -1] - grid[:, -2]
     a, b, c = grid[:, -3], grid[:, -2], grid[:, -1]
-    ab = np.maximum(np.linalg.norm(b - a, axis=1, keepdims=True), 1e-6)
-    bc = np.maximum(np.linalg.norm(c - b, axis=1, keepdims=True), 1e-6)
+    ab, bc = (np.maximum(np.hypot(*way.T), 1e-6)[:, None] for way in (b - a, c - b))
     # equally spaced points have the cross-ratio 4/3: (ac * bd) / (bc * ad)
     cd = bc * (ab + bc) / np.maximum(3 * ab - bc, 0.2 * bc)
     return c + (c - b) / bc * cd
@@ -130,9 +136,8 @@ def _settled(column, before, grey):
     h, w = grey.shape
     inside = ((column >= 0) & (column <= (w - 1, h - 1))).all(axis=1)
     half, settled = int(np.clip(0.25 * step, 2, 20)), column.copy()
-    if inside.any():
-        xy = column[inside][:, None].astype(np.float32)
-        settled[inside] = cv2.cornerSubPix(grey, xy, (half, half), (-1, -1), (3, 20, 1e-2))[:, 0]
+    xy = column[inside][:, None].astype(np.float32)
+    settled[inside] = cv2.cornerSubPix(grey, xy, (half, half), (-1, -1), (3, 20, 1e-2))[:, 0]
     near = np.linalg.norm(settled - column, axis=1) < 0.15 * step
     return np.where(near[:, None], settled, column)
 
@@ -145,36 +150,44 @@ def is_checkerboard(grid, grey):
     swing = abs(contrast(grid, grey))
     places, out, along = _steps(grid)
     levels = sample(grey, places + 0.3 * (out + along))
-    dark, light = np.nanpercentile(levels, (5, 95)) if np.isfinite(levels).any() else (0, 0)
-    if swing < max(8, 0.4 * (light - dark)):
+    levels = np.sort(levels[np.isfinite(levels)])
+    first, last = len(levels) // 20, -1 - len(levels) // 20  # without the twentieth at either end
+    if not levels.size or swing < max(8, 0.4 * (levels[last] - levels[first])):
         return False
     near, *far = _in_squares(grid, grey, swing)
     known = np.isfinite(near)
     if known.mean() < 0.7 or (near[known] != 0).mean() < 0.85:
         return False
-    inner = np.zeros(grid.shape[:2], dtype=bool)
-    inner[1:-1, 1:-1] = True  # the outermost squares of a board may be cut narrow
-    inner = inner.ravel() & known
-    return bool(inner.any() and np.mean([each[inner] == near[inner] for each in far]) > 0.8)
+    known[[0, -1]] = known[:, [0, -1]] = False  # the outermost squares of a board may be cut narrow
+    return bool(known.any() and np.mean([each[known] == near[known] for each in far]) > 0.8)
 
 
 def next_to_margin(grid, grey):
     """Corners (rows, columns), bool, beside squares that are cut narrow: something else begins within 0.7 squares."""
     near, *far = _in_squares(grid, grey, abs(contrast(grid, grey)))
-    return ((near != 0) & ((far[0] != near) | (far[1] != near))).reshape(grid.shape[:2])
+    return (near != 0) & ((far[0] != near) | (far[1] != near))
 
 
 def _steps(grid):
     """Corners (n, 2) of a grid, and the way to the next one along its rows and down its columns."""
-    return (a.reshape(-1, 2) for a in (grid, np.gradient(grid, axis=1), np.gradient(grid, axis=0)))
+    return (a.reshape(-1, 2) for a in (grid, _ways(grid, 1), _ways(grid, 0)))
+
+
+def _ways(corners, axis):
+    """`np.gradient` along an axis, in a fifth of the time."""
+    corners = corners.swapaxes(0, axis)
+    ways = np.empty_like(corners)
+    ways[1:-1] = (corners[2:] - corners[:-2]) / 2
+    ways[0], ways[-1] = corners[1] - corners[0], corners[-1] - corners[-2]
+    return ways.swapaxes(0, axis)
 
 
 def _in_squares(grid, grey, swing):
-    """`_crossings` (3, n) of the corners of a grid: near the corner, and far out along the rows and the columns."""
+    """`_crossings` (3, rows, columns) at the corners of a grid: near them, and far out along the rows and columns."""
     places, out, along = _steps(grid)
     out = np.concatenate([0.3 * out, 0.7 * out, 0.3 * out])
     along = np.concatenate([0.3 * along, 0.3 * along, 0.7 * along])
-    return _crossings(np.tile(places, (3, 1)), out, along, grey, swing).reshape(3, -1)
+    return _crossings(np.tile(places, (3, 1)), out, along, grey, swing).reshape(3, *grid.shape[:2])
 
 
 def _crossings(places, out, along, grey, swing):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.vision.calibration.fit import LENS, NAMES, Model, fit
+from ir50p_lab.vision.calibration.fit import NAMES, fit
 
 # Coefficients in the order in which they are given up, and the p-value below which they stay; k3 must earn its place:
 # it is the term that runs wild beyond the outermost corner
@@ -78,25 +78,23 @@ def contrast_of(names):
     return np.eye(12)[[NAMES.index(name) for name in names]]
 
 
-def choose(corners, guess, aspect=None, bent=False):
+def choose(corners, full):
     """The simplest lens that the corners do not object to: (CameraFit, evidence, models that were tried).
 
     From the full model k1, k2, p1, p2, k3 the terms are dropped one after the other, k3 first, as long as the data can
     do without: backwards, because a lens bends light more than it is regular. k2 stays if k3 does, k1 if k2 does.
 
-    Args: corners: CornerSets; guess: as for `fit`; aspect: fx/fy if it is known; bent: estimate the board's shape, too.
-    Of each model that was tried the camera (12,) and AICc.
+    Args: corners: CornerSets; full: CameraFit with all the terms. Of each model that was tried the camera (12,) and
+    AICc.
     """
-    best, evidence = fit(corners, Model(LENS, aspect, bent), guess), []
-    tried = [(best.camera, aicc(best))]
+    best, evidence, tried = full, [], [(full.camera, aicc(full))]
     for term, limit in _LIMIT.items():
         lens, names = best.model.lens, term.split(" and ")
         if (term == "k2" and "k3" in lens) or (term == "k1" and "k2" in lens):
             continue
         question, camera, score = ask(term, best, contrast_of(names), limit)
         if not question.kept:
-            fewer = Model(tuple(name for name in lens if name not in names), aspect, bent)
-            best = fit(corners, fewer, (best.camera, best.poses))
+            best = fit(corners, best.model.with_lens(name for name in lens if name not in names), best)
             camera, score = best.camera, aicc(best)
         evidence.append(question)
         tried.append((camera, score))
@@ -112,10 +110,8 @@ def total_covariance(best, tried):
     variance).
     """
     by_corners, by_views = best.by_corners[:9, :9], best.by_views[:9, :9]
-    own = np.sqrt(np.diag(by_corners))
-    factor = np.ones(9)
-    np.divide(np.sqrt(np.diag(by_views)), own, out=factor, where=own > 0)
-    factor = np.maximum(factor, 1.0)
+    own = np.diag(by_corners)
+    factor = np.sqrt(np.maximum(own, np.diag(by_views)) / np.where(own > 0, own, 1.0))
     total = by_corners * np.outer(factor, factor)
     cameras, scores = zip(*tried, strict=True)
     weights = np.exp(-0.5 * (np.array(scores) - min(scores)))

@@ -6,6 +6,7 @@ from ir50p_lab.vision.calibration.grid import apply, homography, is_checkerboard
 
 _MOST = 600  # saddles looked at, the steepest ones
 _TRIED = 150  # of them, as the middle of a part
+_NEAR = 60  # saddles around the middle, among which the others are
 _SMALLEST = 7  # px, side of a square; below, saddles of noise make squares, too
 
 
@@ -47,21 +48,20 @@ def _saddles(grey):
 def _around(k, xy, high):
     """The 3x3 saddles around saddle k, alternately high one way and the other, as a grid (3, 3, 2); or None."""
     away = xy - xy[k]
-    distance = np.hypot(*away.T)
-    other = np.cos(2 * (high - high[k])) < 0
-    near = [n for n in np.argsort(distance)[1:25] if other[n]]
-    if not near:
+    nearest = np.argsort(np.hypot(*away.T))[:_NEAR]
+    away, other = away[nearest], np.cos(2 * (high[nearest] - high[k])) < 0
+    near = away[1:25][other[1:25]]
+    if not len(near):
         return None
-    u = away[near[0]]
-    across = [n for n in near if abs(u @ away[n]) < 0.85 * distance[near[0]] * distance[n]]
-    if not across:
+    u, lengths = near[0], np.hypot(*near.T)
+    across = near[np.abs(near @ u) < 0.85 * lengths[0] * lengths]
+    if not len(across):
         return None
-    v = away[across[0]]
+    v = across[0]
     steps = np.array([[j * v + i * u for i in (-1, 0, 1)] for j in (-1, 0, 1)]).reshape(9, 2)
-    off = np.linalg.norm(away[None] - steps[:, None], axis=2)
-    off[np.arange(9) % 2 == 0, :] += np.where(other, np.inf, 0)  # corners and middle: of its own kind
-    off[np.arange(9) % 2 == 1, :] += np.where(other, 0, np.inf)
-    nearest = off.argmin(axis=1)
-    if off.min(axis=1).max() > 0.35 * min(np.hypot(*u), np.hypot(*v)) or len(set(nearest)) < 9:
+    off = np.hypot(*(away - steps[:, None]).transpose(2, 0, 1))
+    off[(np.arange(9) % 2 == 0)[:, None] == other] = np.inf  # corners and middle: of its own kind
+    found = off.argmin(axis=1)
+    if off.min(axis=1).max() > 0.35 * min(np.hypot(*u), np.hypot(*v)) or len(set(found)) < 9:
         return None
-    return xy[nearest].reshape(3, 3, 2)
+    return xy[nearest[found]].reshape(3, 3, 2)
