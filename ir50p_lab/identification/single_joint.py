@@ -30,7 +30,7 @@ _NOISY = 2e-3  # of the power of qd: more of its noise biases a fit that filters
 _ALL_NOISE = 0.3  # noise power over power of the acceleration from which on no inertia is given
 _AGREE = 1.0  # standard errors of inertia and friction at a cut-off, by which half of it may move them
 _FAR = 0.5  # of the inertia: as far from no lower cut-off that is sure of its own
-_HUM = 0.5  # times the misfit: where half the cut-off leaves less, what it takes away was no motion
+_HUM = 0.5  # times the misfit: where a lower cut-off leaves less, what it takes away was no motion
 _MATTERS = 0.1  # of the value: a change smaller than this is only put into the standard error
 _JUDGED = ("inertia", "viscous", "coulomb")  # by these
 _POLYNOMIAL = 6  # degree of a force of the position
@@ -132,19 +132,14 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
         checks.check_measured_speed(doubts, t, q, v)
     plain = v is not None and "inertia" not in names and cutoff_hz in (None, math.inf)
     joint = _Joint.of(t, q, u, v, names, delay, None if plain else cutoff_hz)
-    found = None
-    if plain and (noise := joint.band.unfiltered_noise**2 / np.mean(v**2)) > _NOISY:
-        joint.band.unfiltered_noise = 0.0
-        if cutoff_hz is None:  # a table of speeds in any order looks like noise, but has no slow motion
-            found = joint.fit(joint.band.cutoff_hz, held, fewest=joint.fit(math.inf, held))
-        else:
-            doubts.add(f"noise is {100 * noise:.2g} % of qd's power: friction too small by more; give a cutoff_hz")
-        plain = found is None
-    if not plain:
-        checks.check_motion(doubts, joint.band)
-    found = found or joint.fit(math.inf if plain else joint.band.cutoff_hz, held)
+    if plain and joint.band.unfiltered_noise**2 > _NOISY * np.mean(v**2):
+        joint.band.unfiltered_noise = 0.0  # a table of speeds in any order looks like noise, but has no slow motion
+        smooth = joint.fit(joint.band.cutoff_hz, held, fewest=joint.fit(math.inf, held))
+        plain = smooth is None or cutoff_hz is not None
+    found = joint.fit(math.inf if plain else joint.band.cutoff_hz, held)
     checks.check_clipped_drive(doubts, u, found)
     if not plain:
+        checks.check_motion(doubts, joint.band)
         found = found if cutoff_hz else joint.below_hum(found, held)
         found = _at_agreeing_cutoff(doubts, joint, found, cutoff_hz is not None)
     found = _with_other_fits_in_errors(joint, found, held is None)
@@ -341,14 +336,11 @@ class _Joint:
         return [one for one in fits if one is not None]
 
     def below_hum(self, found, held):
-        """The same, or the fit at half of its cut-off and so on, where that leaves out what looked like motion.
-
-        Hum of the angle is no motion: without it far less of u is left.
-        """
+        """The same, or the fit at a lower cut-off that leaves far less of u: hum of the angle looks like motion."""
         while self.band.lowest_hz > found.cutoff_hz / 2:
             lower = self.fit(found.cutoff_hz / 2, held, fewest=found)
             if lower is None or lower.misfit > _HUM * found.misfit:
-                break
+                return found
             found = lower
         return found
 

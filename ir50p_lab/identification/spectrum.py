@@ -29,8 +29,8 @@ def spectrum(pieces, rate_hz, cutoff_hz=None, *, of_speed=False):
     Returns a namespace. cutoff_hz: of the low pass for a regression, the highest that noise allows, Hz. lowest_hz: that
     keeps 99 % of the velocity's power. sign_cutoff_hz: higher, for the speed whose sign is taken: a smooth speed turns
     too late or too early. speed: rad/s rms of the motion; speed_noise: rad/s rms; acceleration_share: noise power over
-    power of the acceleration; all three below cutoff_hz. unfiltered_noise: of a measured speed without a low pass, rad/s
-    rms: what its spectrum and its bends both show.
+    power of the acceleration; all three below cutoff_hz. unfiltered_noise: of a measured speed without low pass,
+    rad/s rms: what its spectrum and its bends both show.
     """
     from scipy.signal import welch
 
@@ -84,7 +84,7 @@ def _steady_speed(pieces, length, rate_hz):
 
 
 def _bends(pieces):
-    """Noise that the second differences of white noise would show, rms: steady stretches and steps between have none."""
+    """Noise, rms, that would have these second differences: steady stretches and steps between them have none."""
     bends = np.abs(np.concatenate([np.diff(x, 2) for x in pieces]))
     return float(np.median(bends)) / 0.6745 / math.sqrt(6)
 
