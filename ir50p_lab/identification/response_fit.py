@@ -223,12 +223,13 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
 
     Returns: FOPDT. K is negative where y answers a step up by going down. `warnings` tells of a response that is not
     over when the record ends (T longer than it), of T or L below the sampling period (not identifiable, the error is
-    then inf or a period), of correlated residuals, times that look like milliseconds, and single outliers, which are
-    left out.
+    then inf or a period), of correlated residuals, another shape, a drift or a y that was not at rest at first (what
+    these change is in the errors, as are the steps of a coarse sensor), times that look like milliseconds, and single
+    outliers, which are left out.
 
     Raises:
         IdentificationError: u never changes; y does not change or does not follow u; fewer than 8 samples after the
-        change; y swings (then take `fit_second_order`) or drifts; y runs on like a ramp (an integrating
+        change; y swings, so that `fit_second_order` leaves far less of it; y runs on like a ramp (an integrating
         joint: K and T have no value) or ever faster. Each says what to do next.
         InputError: NaN, shapes or lengths that do not fit, time that does not increase.
     """
