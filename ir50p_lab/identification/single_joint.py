@@ -109,7 +109,8 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
         q: (n,) rad. u: (n,), torque, current or command, any unit. Arrays, masked arrays, pandas Series.
         qd: (n,) rad/s, if it was measured too: then q is not differentiated.
         terms: of "inertia", "viscous", "coulomb", "offset", "gravity", "stribeck". Without inertia and with qd nothing
-            needs a filter: ("viscous", "coulomb") is then the plain least squares of a friction sweep, unless qd is noisy.
+            needs a filter: ("viscous", "coulomb") is then the plain least squares of a friction sweep,
+            unless qd is noisy.
         cutoff_hz: of the low pass; inf: none (with qd, without inertia).
         delay: s from a sample to the moment its u acts.
         held: True: u is held from its sample to the next; False: it is a measurement at the instant; None: held,
