@@ -226,9 +226,9 @@ def check_model(doubts, found, band, period):
     _check_friction(doubts, found)
     if "inertia" in found.names:
         _check_inertia(doubts, found, band, period)
-    fit = 1 - math.sqrt(missed / total)
-    if fit < _POOR:
-        doubts.add(f"the model explains little of u (fit {100 * fit:.0f} %): do not use it yet; look at q, u and load")
+    if found.misfit > 1 - _POOR:
+        fit = f"fit {100 * (1 - found.misfit):.0f} %"
+        doubts.add(f"the model explains little of u ({fit}): do not use it yet; look at q, u and load")
     gravity = "gravity_sin" not in found.names and np.ptp(table.q) > 0.2
     if gravity and with_gravity < 0.5 * missed and missed > 1e-4 * total:
         share = 100 * (1 - with_gravity / missed)

@@ -7,11 +7,12 @@ from functools import partial
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.columns import same_samples
+from ir50p_lab.identification.columns import quantum_of, same_samples
 from ir50p_lab.identification.doubts import Doubts, check_outliers
 from ir50p_lab.inputs import number
 from ir50p_lab.jit import jit
 
+_OTHER = 16.0  # least F value of a drift, or of a rest at first that was none
 _FEWEST = 8  # samples from the first change of u on: twice the number of parameters
 _NOISE = 1e-7  # residuals below this share of the response are rounding, not noise
 _STARTS = 3  # rows of the grid whose best points are refined: the sum of squares has kinks and side valleys in L
@@ -19,6 +20,7 @@ _SMALL = 1e-4  # below this a dt, series keep the digits that (1 - exp(-a dt))/a
 _STEP = 1e-6  # of a parameter's size, for differences
 _RESPONSE = 15.0  # least F value for "y follows u": a search over T and L in pure noise stays below it
 _SHAPE = 0.05  # largest share of the variance of y that may be left and not be white: 20-40 % of overshoot
+_SWINGS = 0.5  # of what is left of y: if a second-order model leaves less, it is the one to take
 _BENDS = 9.0  # least F value for "the response bends towards a final value": three standard errors
 _ENOUGH = 20  # samples of a response, five for each parameter, from which on its shape can be judged
 _SEEN = 0.99  # sampling periods: a time constant or dead time below is not seen
@@ -83,16 +85,17 @@ def likeness(e):
     return correlation, math.sqrt((1 + correlation) / (1 - correlation))
 
 
-def standard_errors(response, p, sizes, e):
-    """Of the parameters p of response(p), beside an offset, from residuals e (n,), widened for their likeness.
-
-    sizes: of the parameters, for differences.
-    """
+def jacobian(response, p, sizes):
+    """Columns of response(p) by an offset and by the parameters p, from differences; sizes: of the parameters."""
     here = response(p)
     J = [(response(p + step) - here) / step.sum() for step in np.diag(_STEP * np.abs(sizes))]
-    J = np.column_stack([np.ones_like(e), *J])
+    return np.column_stack([np.ones_like(here), *J])
+
+
+def standard_errors(J, e, inflation):
+    """Of the parameters of a jacobian J without the offset, from residuals e (n,), times inflation."""
     length = np.linalg.norm(J, axis=0)
-    spread = math.sqrt(e @ e / (len(e) - J.shape[1])) * likeness(e)[1]
+    spread = math.sqrt(e @ e / (len(e) - J.shape[1])) * inflation
     seen = length > 0  # what the response does not depend on at all has no error: it is not known
     errors = np.full(len(length), np.inf)
     errors[seen] = spread * np.linalg.norm(np.linalg.pinv(J[:, seen] / length[seen]), axis=1) / length[seen]
@@ -142,6 +145,10 @@ class StepRecord:
         self.t, self.times = (t - times[0]) / self.unit, (times - times[0]) / self.unit
         self.y, self.jumps = (y - y[0]) / self.y_unit, jumps / np.abs(jumps).max()
         self.period = float(np.median(np.diff(self.t)))
+        # the steps of a coarse sensor are independent only where it goes from one to the next, or noise mixes them
+        quantum, power = quantum_of(self.y), np.mean(np.diff(self.y, 2) ** 2) / 6
+        mixed = math.exp(-4 * math.pi**2 * max(power / quantum**2 - 1 / 12, 0.0)) if quantum else 1.0
+        self.coarseness = math.sqrt(len(y) * quantum * mixed / (2 * np.abs(self.jumps).sum()))
 
     def columns(self, a, L):
         """(n, 2): x of x' = v(t - L) - a x, and 1."""
@@ -216,12 +223,13 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
 
     Returns: FOPDT. K is negative where y answers a step up by going down. `warnings` tells of a response that is not
     over when the record ends (T longer than it), of T or L below the sampling period (not identifiable, the error is
-    then inf or a period), of correlated residuals, times that look like milliseconds, and single outliers, which are
-    left out.
+    then inf or a period), of correlated residuals, another shape, a drift or a y that was not at rest at first (what
+    these change is in the errors, as are the steps of a coarse sensor), times that look like milliseconds, and single
+    outliers, which are left out.
 
     Raises:
         IdentificationError: u never changes; y does not change or does not follow u; fewer than 8 samples after the
-        change; y swings (then take `fit_second_order`) or drifts; y runs on like a ramp (an integrating
+        change; y swings, so that `fit_second_order` leaves far less of it; y runs on like a ramp (an integrating
         joint: K and T have no value) or ever faster. Each says what to do next.
         InputError: NaN, shapes or lengths that do not fit, time that does not increase.
     """
@@ -237,8 +245,12 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
 
     found = np.array([b / a, 1 / a, L])
     units = record.gain, record.unit, record.unit
-    errors = standard_errors(response, found, np.maximum(np.abs(found), 1e-3 * period), e) * units
+    J = jacobian(response, found, np.maximum(np.abs(found), 1e-3 * period))
+    errors = standard_errors(J, e, max(likeness(e)[1], record.coarseness)) * units
+    moved, said = _moved_by_other_starts(record, a, J, e)
+    errors = np.hypot(errors, moved * units)
     _warn(record, 1 / a, L, errors[2] / record.unit, *likeness(e))
+    doubts += said
     if a * period > 1 / _SEEN:
         errors[1:] = math.inf
     if L < _SEEN * period:
@@ -275,19 +287,36 @@ def _check_shape(record, a, L, b, e):
 
     follows, explained = F(total, 3), 100 * (1 - rss / total)
     not_white = rss - np.sum(np.diff(e, 2) ** 2) / 6 * n / (n - 2)  # second differences pass only the white noise
-    if follows >= _RESPONSE and not_white > _SHAPE * total and correlation > 0.5:
-        remedy = "take a second-order model, fit_second_order(t, u, y); else y drifts, or a dead zone or limit acts"
-        shape = f"the response has not the shape of the model ({explained:.0f} % explained)"
-        doubts.refuse(f"{shape}: if it overshoots or swings, {remedy}")
+    shape = f"the response has not the shape of the model ({explained:.0f} % explained)"
+    misshapen = follows >= _RESPONSE and not_white > _SHAPE * total and correlation > 0.5
+    if misshapen and np.sum(_second_order(record)[2] ** 2) < _SWINGS * rss:
+        doubts.refuse(f"{shape}, a second-order model leaves far less: take fit_second_order(t, u, y)")
     elif follows < _RESPONSE or (follows / inflation**2 < _RESPONSE and explained < 50):
         explains = f"y does not follow u, which explains {explained:.1f} % of its variance"
         doubts.refuse(f"{explains}: make a larger step, or average several recordings")
+    elif misshapen:
+        doubts.add(f"{shape}: y is disturbed or drifts, or a dead zone or limit acts; do not use it yet")
     ramp = best_fit(lambda p: record.columns(0.0, *p), record.y, [[(k / 50,)] for k in range(45)], (0.0, 0.95))[2]
     if a * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / inflation**2 > _BENDS:
         return
     value = f"only K/T has a value, {b * record.gain / record.unit:.4g} y/u per s"
     said = "the response runs on like a ramp, or ever faster: the plant integrates (as angles do), is unstable or slow"
     doubts.refuse(f"{said}; {value}: fit the velocity and tune with simc_integrating, or record longer")
+
+
+def _moved_by_other_starts(record, a, J, e):
+    """(3,) by which K, T and L move beside a drift, or a rest at first that was none, and sentences about these."""
+    moved, said = np.zeros(3), []
+    others = {"y drifts by": record.t, "y was not at rest at first, but away by": np.exp(-a * (record.t - record.t[0]))}
+    for what, column in others.items() if len(e) >= _ENOUGH and e @ e > len(e) * _NOISE**2 else ():
+        A = np.column_stack([J, column])
+        x = np.linalg.lstsq(A, -e)[0]
+        left = e + A @ x
+        if (e @ e - left @ left) * len(e) > _OTHER * likeness(left)[1] ** 2 * (left @ left):
+            moved = np.hypot(moved, x[1:4])
+            size = f"{100 * abs(x[-1]) * np.ptp(column):.2g} % of its range"
+            said.append(f"{what} {size}: errors were widened; record longer rest before the step")
+    return moved, said
 
 
 def _warn(record, T, L, L_stderr, correlation, inflation):
@@ -350,16 +379,8 @@ def _basis(t, times, jumps, w, damping, L):
     return np.column_stack([plain.real, slope.real])
 
 
-def fit_second_order(t, u, y, *, u_before=None):
-    """Fit K, w, damping, a zero and dead time to a recorded response: where `fit_fopdt` is refused for its shape.
-
-    Least squares over all samples, exact for an input held between samples; the zero is kept where it explains
-    significantly more. Arguments as in `fit_fopdt`.
-
-    Returns: SecondOrderModel. Raises: InputError as `fit_fopdt` does; IdentificationError if u never changes, or the
-    model explains less than half of the variance of y.
-    """
-    record = StepRecord(t, u, y, u_before)
+def _second_order(record):
+    """p = (log w, damping, L), c = (offset, K and perhaps K zero), residuals, and the basis (n, 2) as function of p."""
     t, y, period, n = record.t, record.y, record.period, len(record.t)
     shapes = [(damping, L) for damping in _GRID for L in (0.0, 3 * period, 0.1)]
     starts = [[(math.log(w), *shape) for shape in shapes] for w in np.geomspace(3, 0.5 / period, 10)]
@@ -373,8 +394,23 @@ def fit_second_order(t, u, y, *, u_before=None):
 
     without, with_zero = (best_fit(partial(columns, zeros=m), y, starts, bounds) for m in (0, 1))
     rss, less = (float(fit[2] @ fit[2]) for fit in (without, with_zero))
-    zeros = int((rss - less) / max(less, 1e-14 * n) * (n - 6) > _BETTER)
-    p, c, e = with_zero if zeros else without
+    needed = (rss - less) / max(less, 1e-14 * n) * (n - 6) > _BETTER
+    return *(with_zero if needed else without), basis
+
+
+def fit_second_order(t, u, y, *, u_before=None):
+    """Fit K, w, damping, a zero and dead time to a recorded response: where `fit_fopdt` is refused for its shape.
+
+    Least squares over all samples, exact for an input held between samples; the zero is kept where it explains
+    significantly more. Arguments as in `fit_fopdt`.
+
+    Returns: SecondOrderModel. Raises: InputError as `fit_fopdt` does; IdentificationError if u never changes, or the
+    model explains less than half of the variance of y.
+    """
+    record = StepRecord(t, u, y, u_before)
+    y, period = record.y, record.period
+    p, c, e, basis = _second_order(record)
+    zeros = len(c) - 2
     explained = 1 - np.mean(e**2) / np.var(y)
     if explained < 0.5:
         raise IdentificationError(f"y does not follow u: a second-order model explains {100 * explained:.0f} % of it")
@@ -385,7 +421,7 @@ def fit_second_order(t, u, y, *, u_before=None):
         return basis(math.log(p[1]), *p[2:4])[:, : 1 + zeros] @ [p[0], *p[0] * p[4:]]
 
     sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / w, 1e-3 / w][: len(found)])
-    errors = standard_errors(response, found, sizes, e)
+    errors = standard_errors(jacobian(response, found, sizes), e, max(likeness(e)[1], record.coarseness))
     if w * period > 1:
         record.doubts.add(f"w is {w * period:.2g} rad a sample: not identifiable, sample faster")
     units = np.array([record.gain, 1 / record.unit, 1.0, record.unit, record.unit])[: len(found)]

@@ -26,8 +26,11 @@ _ORDER = 3  # of the low passes, forward and again backward
 _OWN = 4.0  # samples per cut-off period that are kept for the regression: more would say the same again
 _TELLS_DELAY = 0.2  # share of what a delay adds to u that no parameter can add, from which on the data tell it
 _DEAD = 0.1  # of the rms speed, below which a joint may stick and a filtered speed has lost its sign
+_NOISY = 2e-3  # of the power of qd: more of its noise biases a fit that filters nothing
 _ALL_NOISE = 0.3  # noise power over power of the acceleration from which on no inertia is given
 _AGREE = 1.0  # standard errors of inertia and friction at a cut-off, by which half of it may move them
+_FAR = 0.5  # of the inertia: as far from no lower cut-off that is sure of its own
+_HUM = 0.5  # times the misfit: where a lower cut-off leaves less, what it takes away was no motion
 _MATTERS = 0.1  # of the value: a change smaller than this is only put into the standard error
 _JUDGED = ("inertia", "viscous", "coulomb")  # by these
 _POLYNOMIAL = 6  # degree of a force of the position
@@ -106,7 +109,8 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
         q: (n,) rad. u: (n,), torque, current or command, any unit. Arrays, masked arrays, pandas Series.
         qd: (n,) rad/s, if it was measured too: then q is not differentiated.
         terms: of "inertia", "viscous", "coulomb", "offset", "gravity", "stribeck". Without inertia and with qd nothing
-            needs a filter: ("viscous", "coulomb") is then the plain least squares of a friction sweep.
+            needs a filter: ("viscous", "coulomb") is then the plain least squares of a friction sweep,
+            unless qd is noisy.
         cutoff_hz: of the low pass; inf: none (with qd, without inertia).
         delay: s from a sample to the moment its u acts.
         held: True: u is held from its sample to the next; False: it is a measurement at the instant; None: held,
@@ -129,19 +133,24 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
         checks.check_measured_speed(doubts, t, q, v)
     plain = v is not None and "inertia" not in names and cutoff_hz in (None, math.inf)
     joint = _Joint.of(t, q, u, v, names, delay, None if plain else cutoff_hz)
-    checks.check_motion(doubts, joint.band)
+    if plain and joint.band.unfiltered_noise**2 > _NOISY * np.mean(v**2):
+        joint.band.unfiltered_noise = 0.0  # a table of speeds in any order looks like noise, but has no slow motion
+        smooth = joint.fit(joint.band.cutoff_hz, held, fewest=joint.fit(math.inf, held))
+        plain = smooth is None or cutoff_hz is not None
     found = joint.fit(math.inf if plain else joint.band.cutoff_hz, held)
     checks.check_clipped_drive(doubts, u, found)
     if not plain:
+        checks.check_motion(doubts, joint.band)
+        found = found if cutoff_hz else joint.below_hum(found, held)
         found = _at_agreeing_cutoff(doubts, joint, found, cutoff_hz is not None)
-        found = _with_other_fits_in_errors(joint, found, held is None)
+    found = _with_other_fits_in_errors(joint, found, held is None)
     checks.check_model(doubts, found, joint.band, 1 / joint.rate)
     if found.value("inertia")[0] < 0:
         found = joint.fit(found.cutoff_hz, found.held, without="inertia")
     return JointFit(
         **by_name(found.names, found.x, found.stderr),
         rms=found.left.rms,
-        fit=float(100 * (1 - found.left.rms / np.std(found.y))),
+        fit=100 * (1 - found.misfit),
         cutoff_hz=found.cutoff_hz,
         held=found.held,
         samples=len(found.y),
@@ -182,10 +191,12 @@ def _at_agreeing_cutoff(doubts, joint, first, given):
     first: Found at the highest; given: keep it, and only compare.
     """
     fits = [first, *joint.lower(first)]
-    doubtful = None
-    for here, lower in pairwise(fits[:2] if given else fits):
+    values, doubtful = [(one.x, one.stderr) for one in fits], None
+    for k, (here, lower) in enumerate(pairwise(fits[:2] if given else fits)):
         moved = np.where(np.isfinite(here.stderr + lower.stderr), np.abs(here.x - lower.x), 0.0)
         wrong = moved > np.maximum(_AGREE * here.stderr, _MATTERS * np.abs(lower.x))
+        far = [np.abs(here.x - x) > np.maximum(_FAR * np.abs(x), 3 * stderr) for x, stderr in values[k + 1 :]]
+        wrong |= np.any(far, axis=0) & np.equal(here.names, "inertia")
         wrong &= [name in _JUDGED for name in here.names]
         if not wrong.any():
             return here if here is first else lower
@@ -235,6 +246,11 @@ class Found:
     table: SimpleNamespace
     y: np.ndarray
     A: np.ndarray
+
+    @property
+    def misfit(self):
+        """Share of the amplitude of u that is left."""
+        return self.left.rms / float(np.std(self.y))
 
     def value(self, name):
         """x and stderr of a parameter; 0 and inf where the data do not hold it, 0 and nan if it was not asked for."""
@@ -309,16 +325,25 @@ class _Joint:
         drives = np.column_stack([np.interp(motion.t, acting_times(t, delay, held), u) for held in (True, False)])
         edges = np.flatnonzero(np.diff(motion.segment)) + 1
         segments = list(zip(np.split(motion.q, edges), np.split(drives, edges), strict=True))
-        pieces = [x[:, 0] if v is None else np.cumsum(x[:, 1]) / rate for x, _ in segments]
-        return cls(segments, rate, spectrum(pieces, rate, cutoff_hz), terms)
+        pieces = [x[:, -1] for x, _ in segments]
+        return cls(segments, rate, spectrum(pieces, rate, cutoff_hz, of_speed=v is not None), terms)
 
     def lower(self, found):
         """Fits at half of its cut-off, a quarter and so on, as long as motion and samples last."""
         fits, cutoff_hz = [], found.cutoff_hz / 2
-        while cutoff_hz > self.band.lowest_hz:
+        while self.band.lowest_hz < cutoff_hz < math.inf:
             fits.append(self.fit(cutoff_hz, found.held, fewest=found))
             cutoff_hz /= 2
         return [one for one in fits if one is not None]
+
+    def below_hum(self, found, held):
+        """The same, or the fit at a lower cut-off that leaves far less of u: hum of the angle looks like motion."""
+        while self.band.lowest_hz > found.cutoff_hz / 2:
+            lower = self.fit(found.cutoff_hz / 2, held, fewest=found)
+            if lower is None or lower.misfit > _HUM * found.misfit:
+                return found
+            found = lower
+        return found
 
     def fit(self, cutoff_hz, held=None, *, without=None, fewest=None, slower=1.0):
         """Found at this cut-off, of motion `slower` times as fast; None if not half of the time of `fewest` is left."""
@@ -379,7 +404,7 @@ class _Joint:
                 continue
             v, a = self._derivatives(angles, cutoff_hz)
             turning, _ = self._derivatives(angles, max(cutoff_hz, self.band.sign_cutoff_hz))
-            moving = np.abs(v) > slow if edge else np.abs(v) > 4 * self.band.speed_noise
+            moving = np.abs(v) > (slow if edge or slower > 1 else 4 * self.band.unfiltered_noise)
             plain = [np.sign(turning), np.sin(angles[:, 0]), np.cos(angles[:, 0]), moving]
             plain = np.column_stack([*plain, drive, drive[:, 0] < low, drive[:, 0] > high]).astype(float)
             smooth = self._smooth(plain, cutoff_hz)

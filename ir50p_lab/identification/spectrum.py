@@ -16,8 +16,9 @@ _SAW = 0.06  # step^2, a little more than 1/(2 pi^2)
 _HIGHEST = 0.2  # of the rate: above, central differences themselves are wrong by more than a quarter
 
 
-def spectrum(pieces, rate_hz, cutoff_hz=None):
-    """Choose the cut-off for an angle, or judge a given one. pieces: list of (n,) rad, each evenly sampled at rate_hz.
+def spectrum(pieces, rate_hz, cutoff_hz=None, *, of_speed=False):
+    """Choose the cut-off for an angle, or judge a given one. pieces: list of (n,) rad, each evenly sampled at rate_hz;
+    with of_speed a measured speed, rad/s, in place of the angle.
 
     White noise of the sensor is what the spectrum holds between a quarter and half of the rate; the steps of a coarse
     one count as noise too, spread over the frequencies at which they come. The highest cut-off is taken whose
@@ -28,16 +29,19 @@ def spectrum(pieces, rate_hz, cutoff_hz=None):
     Returns a namespace. cutoff_hz: of the low pass for a regression, the highest that noise allows, Hz. lowest_hz: that
     keeps 99 % of the velocity's power. sign_cutoff_hz: higher, for the speed whose sign is taken: a smooth speed turns
     too late or too early. speed: rad/s rms of the motion; speed_noise: rad/s rms; acceleration_share: noise power over
-    power of the acceleration; all three below cutoff_hz.
+    power of the acceleration; all three below cutoff_hz. unfiltered_noise: of a measured speed without low pass,
+    rad/s rms: what its spectrum and its bends both show.
     """
     from scipy.signal import welch
 
     length = min(max(map(len, pieces)), max(256, sum(map(len, pieces)) // 6))
     pieces = [q for q in pieces if len(q) >= length]
-    spectra = [welch(q - q.mean(), rate_hz, nperseg=length, detrend="linear") for q in pieces]
+    detrend = "constant" if of_speed else "linear"
+    spectra = [welch(q - q.mean(), rate_hz, nperseg=length, detrend=detrend) for q in pieces]
     sizes = np.array([len(q) for q in pieces], dtype=float)
     f, power = spectra[0][0][1:], np.average([density for _, density in spectra], axis=0, weights=sizes)[1:]
-    steady = _steady_speed(pieces, length, rate_hz)
+    angles = [np.cumsum(q) / rate_hz for q in pieces] if of_speed else pieces
+    steady = _steady_speed(angles, length, rate_hz)
     step = f[1] - f[0]
     floor = float(np.median(power[f >= rate_hz / 4])) / math.log(2)  # median of a chi-squared with 2 degrees
     floor = max(floor, _coarseness(pieces, rate_hz))
@@ -45,8 +49,9 @@ def spectrum(pieces, rate_hz, cutoff_hz=None):
     above = np.clip(power - floor, 0.0, None)
     # a slow ramp seen in steps is a saw with lines of (step/pi)^2/2: no motion either
     above[(power < 3 * floor) | (power * step < _SAW * quantum_of(np.concatenate(pieces)) ** 2)] = 0.0
-    speed, speed_noise = np.cumsum(w2 * above) * step, np.cumsum(w2) * floor * step
-    noise, motion = np.cumsum(w2**2) * floor, np.cumsum(w2**2 * above)
+    to_speed = np.ones_like(f) if of_speed else w2
+    speed, speed_noise = np.cumsum(to_speed * above) * step, np.cumsum(to_speed) * floor * step
+    noise, motion = np.cumsum(w2 * to_speed) * floor, np.cumsum(w2 * to_speed * above)
     share, speed_share = noise / np.maximum(motion, 1e-12 * noise), speed_noise / np.maximum(speed, 1e-12 * speed_noise)
     highest = int(np.searchsorted(f, _HIGHEST * rate_hz))
     lowest = int(np.searchsorted(speed, _MOTION * speed[-1]))
@@ -66,6 +71,7 @@ def spectrum(pieces, rate_hz, cutoff_hz=None):
         lowest_hz=float(f[min(lowest, len(f) - 1)]),
         sign_cutoff_hz=max(float(f[sign_at]), float(cutoff_hz)),
         speed_noise=math.sqrt(speed_noise[at]),
+        unfiltered_noise=min(math.sqrt(speed_noise[-1]), _bends(pieces)),
         acceleration_share=float(min(share[at], 1e6)),
         speed=math.hypot(math.sqrt(speed[at]), steady),
     )
@@ -75,6 +81,12 @@ def _steady_speed(pieces, length, rate_hz):
     """Root mean square of the mean speeds of stretches of `length` samples, rad/s: what detrending takes away."""
     ends = [q[k * length : (k + 1) * length][[0, -1]] for q in pieces for k in range(len(q) // length)]
     return float(np.sqrt(np.mean(np.diff(ends, axis=1) ** 2))) * rate_hz / max(length - 1, 1)
+
+
+def _bends(pieces):
+    """Noise, rms, that would have these second differences: steady stretches and steps between them have none."""
+    bends = np.abs(np.concatenate([np.diff(x, 2) for x in pieces]))
+    return float(np.median(bends)) / 0.6745 / math.sqrt(6)
 
 
 def _coarseness(pieces, rate_hz):

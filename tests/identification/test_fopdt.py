@@ -375,3 +375,53 @@ def test_a_response_between_two_samples_has_no_known_time_constant(noise):
     found = fit_fopdt(t, (t >= 2.0).astype(float), y)
     assert found.K == pytest.approx(1, abs=0.01) and np.isinf(found.T_stderr)
     assert any("not identifiable" in text for text in found.warnings)
+
+
+def step_record(seed):
+    """400 s at 2 Hz, a step at 30 s, 2 % noise: t, u, the exact response, the noise and the model."""
+    rng = np.random.default_rng(seed)
+    t = 0.5 * np.arange(800)
+    u = np.where(t >= 30, 1.0, 0.0)
+    model = FOPDT(K=rng.uniform(0.5, 3), T=rng.uniform(20, 50), L=rng.uniform(3, 15), y0=20)
+    return t, u, model.response(t, u), 0.02 * model.K * rng.normal(size=len(t)), model
+
+
+def within(found, model, errors=3):
+    return all(
+        abs(getattr(found, name) - getattr(model, name)) <= errors * getattr(found, f"{name}_stderr") for name in "KTL"
+    )
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("share", [0.1, 0.2, 0.4])
+def test_a_drift_and_a_rest_that_was_none_are_in_the_errors_and_named(share, seed):
+    t, u, y, noise, model = step_record(seed)
+    away = {"drifts": t / 400, "not at rest": np.exp(-t / model.T)}
+    for word, shape in away.items():
+        found = fit_fopdt(t, u, y + noise + share * model.K * shape)
+        assert word in " ".join(found.warnings), (word, found)
+        assert within(found, model, 4) or share == 0.4, (word, found)
+    plain = fit_fopdt(t, u, y + noise)
+    assert within(plain, model, 4) and plain.K_stderr < 0.03 * model.K
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("noise", [0.0, 0.01, 0.1])
+def test_a_coarse_sensor_is_in_the_errors(noise, seed):
+    """Ten steps of the sensor in the response: noise that does not mix them, hides nothing and averages nothing."""
+    t, u, y, white, model = step_record(seed)
+    quantum = 0.1 * model.K
+    found = fit_fopdt(t, u, np.round((y + 50 * noise * white) / quantum) * quantum)
+    assert within(found, model, 4) and found.K_stderr < 0.1 * model.K
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_disturbances_that_no_second_order_model_explains_are_a_doubt_no_refusal(seed):
+    rng = np.random.default_rng(seed)
+    t = np.arange(4000.0)
+    u = 0.3 * lfilter([0.03], [1, -0.97], rng.normal(size=len(t)))
+    model = FOPDT(K=-20, T=9, L=4, y0=97)
+    y = model.response(t, u)
+    disturbance = lfilter([1], [1, -0.9], rng.normal(size=len(t)))
+    found = fit_fopdt(t, u, y + 0.35 * np.std(y) / np.std(disturbance) * disturbance)
+    assert within(found, model, 4) and "not the shape" in " ".join(found.warnings)

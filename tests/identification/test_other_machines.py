@@ -232,3 +232,65 @@ def test_short_runs_are_refused_in_our_own_words(n):
         process(t, np.sin(t), np.cos(t), cutoff_hz=20.0)
     except IdentificationError as refusal:
         assert "nothing is left" in str(refusal)
+
+
+# --- what an adversary found
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("noise", [0.05, 0.15, 0.3])
+def test_noise_of_a_measured_speed_biases_neither_friction_nor_inertia(seed, noise):
+    rng = np.random.default_rng(seed)
+    t, q, v, a = sines(rng, 500, 20, 0.8)
+    J, b, c = rng.uniform((0.3, 1, 0.5), (1.5, 5, 2))
+    u = J * a + b * v + c * np.sign(v) + rng.normal(0, 0.05, len(t))
+    qd = v + noise * rng.normal(size=len(t))
+    whole = fit_joint(t, q, u, qd=qd)
+    friction = fit_joint(t, q, u - J * a, qd=qd, terms=("viscous", "coulomb"))
+    for found, names, truth in ((whole, NAMES, (J, b, c)), (friction, NAMES[1:], (b, c))):
+        for name, true in zip(names, truth, strict=True):
+            stderr = getattr(found, f"{name}_stderr")
+            assert abs(getattr(found, name) - true) < 3 * stderr + 0.02 * true and stderr < 0.3 * true, name
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_table_of_speeds_in_any_order_is_not_taken_for_noise(seed):
+    rng = np.random.default_rng(seed)
+    v = rng.uniform(-2, 2, 300)
+    u = 4 * v + 3 * np.sign(v) + rng.normal(0, 0.1, len(v))
+    found = fit_joint(np.arange(300) * 0.1, np.cumsum(v) * 0.1, u, qd=v, terms=("viscous", "coulomb"), held=False)
+    assert np.isinf(found.cutoff_hz)
+    assert abs(found.viscous - 4) < 3 * found.viscous_stderr and abs(found.coulomb - 3) < 3 * found.coulomb_stderr
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("rate, hum", [(150, 1e-3), (200, 1e-3), (200, 2e-3)])
+def test_mains_hum_of_a_potentiometer_is_no_motion(seed, rate, hum):
+    rng = np.random.default_rng(seed)
+    t, q, v, a = sines(rng, rate, 30, 0.8, 0.25)
+    J, b, c = rng.uniform((0.5, 2, 1), (2, 6, 3))
+    u = J * a + b * v + c * np.sign(v) + rng.normal(0, 0.1, len(t))
+    found = fit_joint(t, q + hum * np.sin(2 * np.pi * 50 * t + 1), u)
+    for name, true in zip(NAMES, (J, b, c), strict=True):
+        assert abs(getattr(found, name) - true) < 3 * getattr(found, f"{name}_stderr") + 0.03 * true, name
+    assert found.inertia_stderr < 0.1 * J
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_backlash_before_the_sensor_leaves_the_inertia(seed):
+    """At each reversal the angle steps by the play: at a high cut-off nothing of the inertia is left."""
+    rng = np.random.default_rng(seed)
+    t, q, v, a = sines(rng, 1000, 20, 0.8)
+    J, b, c = rng.uniform((0.5, 2, 1), (2, 6, 3))
+    u = J * a + b * v + c * np.sign(v) + rng.normal(0, 0.1, len(t))
+    found = fit_joint(t, q + 0.005 * np.tanh(v / 0.03), u)
+    assert abs(found.inertia / J - 1) < 0.15 and abs(found.inertia - J) < 4 * found.inertia_stderr
+    assert abs(found.viscous / b - 1) < 0.15 and found.inertia_stderr < 0.2 * J
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_stribeck_friction_that_was_not_asked_for_is_in_the_errors_of_a_sweep(seed):
+    t, q, v, u = sweep(np.random.default_rng(seed), stribeck=(1.0, 1.5, 2.0, 2.5)[seed])
+    found = fit_joint(t, q, u, qd=v, terms=("viscous", "coulomb"), held=False)
+    for name, true in (("viscous", 4), ("coulomb", 3)):
+        assert found.warnings or abs(getattr(found, name) - true) < 3 * getattr(found, f"{name}_stderr"), name
