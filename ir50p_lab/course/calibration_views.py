@@ -199,8 +199,8 @@ def coverage_figure(calibration):
         left.plot(*view.corners.T, ".", color=COLOURS["dark"], markersize=1)
     left.set_title(f"Corners in {100 * cover.share:.0f} % of the cells")
     x, y = np.meshgrid(np.linspace(0, w - 1, 33), np.linspace(0, h - 1, 25))
-    doubt = direction_stderr(calibration, np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
-    filled = right.contourf(x, y, doubt, 8, cmap="Blues")
+    error = direction_stderr(calibration, np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
+    filled = right.contourf(x, y, error, 8, cmap="Blues")
     figure.colorbar(filled, ax=right, label="uncertainty of a pixel's direction [px]", shrink=0.75)
     right.set_title(f"The next view (orange) fills empty cells: {following.new}")
     xy = np.concatenate([view.corners for view in calibration.views]) - calibration.K[:2, 2]

@@ -1,4 +1,4 @@
-"""check(name, answer): what a student wrote is tried, told apart, and kept when it is right."""
+"""check(name, answer): what a student wrote is tried, graded, and kept when it is right."""
 
 import ast
 import hashlib
@@ -45,12 +45,12 @@ def check(name, answer=...):
     if dots := has_dots(source.text):
         where = f": dots still stand in `{dots[0]}`" if dots[0].strip(".") else ""
         return _show("open", name, f"not written yet{where}. It returns {wanted.asks}.")
-    verdict = grade(wanted, _in_its_own_room(source, wanted))
-    if verdict.state == "right" and folder.was_lent(name) and is_copy(source.text, wanted.loan):
+    result = grade(wanted, _in_its_own_room(source, wanted))
+    if result.state == "right" and folder.was_lent(name) and is_copy(source.text, wanted.loan):
         return _show("open", name, "right, but it is the course's, as it was lent: it stays a loan. Write it your way.")
-    if verdict.state == "right":
-        return _keep(source, wanted, verdict.says)
-    return _wrong(source, wanted, verdict)
+    if result.state == "right":
+        return _keep(source, wanted, result.says)
+    return _wrong(source, wanted, result)
 
 
 def reset(name):
@@ -99,7 +99,7 @@ def _beside(source, wanted):
     return [(title, f"# yours\n{source.text}\n\n# the course's, without its checks\n{wanted.loan}")]
 
 
-def _wrong(source, wanted, verdict):
+def _wrong(source, wanted, result):
     mark = hashlib.sha256(ast.dump(ast.parse(source.text)).encode()).hexdigest()[:12]
 
     def edit(book):
@@ -109,8 +109,8 @@ def _wrong(source, wanted, verdict):
         return len(marks)
 
     tries = lab_book.change(edit)
-    says = f"not yet: {ended(verdict.says)}"
-    more = [("one input that fails", verdict.example)] if verdict.example else []
+    says = f"not yet: {ended(result.says)}"
+    more = [("one input that fails", result.example)] if result.example else []
     if tries >= _BEFORE_LOAN and not (folder.is_there(wanted.name) or folder.is_there(wanted.function)):
         folder.lend(wanted, after_tries=True)
         says += (
@@ -122,7 +122,7 @@ def _wrong(source, wanted, verdict):
         more.append(("the lines of a solution, in the wrong order", "\n".join(line.strip() for line in lines)))
     else:
         more += [(f"hint {k + 1}", hint) for k, hint in enumerate(wanted.hints) if hint]
-    return _show("wrong", wanted.name, says, more, open_first=bool(verdict.example))
+    return _show("wrong", wanted.name, says, more, open_first=bool(result.example))
 
 
 def _show(state, name, text, more=(), *, open_first=False):

@@ -1,8 +1,8 @@
 """The contest: a controller drives arms it has not seen, and the worst of five figures is its score.
 
 Each run: a copy of the arm as the series scatters, with noise, a converter of 10 bits, dry friction, play, 30 ms of
-delay and a payload; its potentiometers are calibrated. The arm takes up its weight for 3 s (not judged), makes a large
-step of all joints (4 s) and a small one (3 s). Judged is the true angle, by `step_metrics`' figures and two of our own,
+delay and a payload; its potentiometers are calibrated. The arm takes up its weight for 3 s (not scored), makes a large
+step of all joints (4 s) and a small one (3 s). Scored is the true angle, by `step_metrics`' figures and two of our own,
 each over a limit that a careful hand can keep. The score is the *largest* of these quotients, over joints and runs:
 what is spared in one buys nothing in another. Below 1 is won. Simulated: no number here was measured.
 """
@@ -28,7 +28,7 @@ TIMES, END = (0.0, 3.0, 7.0), 10.0  # s: hold, large step, small step
 LARGE, SMALL = 0.6, 0.15  # rad, each joint's step within 30 % of it, up or down
 PAYLOAD = 0.2  # of the forearm's mass, at most
 BAND = 0.03  # rad: about five counts of the potentiometers
-#: What is judged, and the most of it that wins.
+#: What is scored, and the most of it that wins.
 LIMITS = MappingProxyType({
     "large step": (3.0, "s until it stays within 30 mrad"),
     "small step": (2.0, "s until it stays within 30 mrad"),
@@ -97,8 +97,8 @@ class Score:
             marks = [f"{x:7.3g}{' ' if x < limit else '!'}" if x < end else "  never!" for x in row]
             rows.append(f"{name:12s} {' '.join(marks)} {limit:7.3g} {unit}")
         term, joint = self.decides
-        verdict = "won" if self.won else "lost"
-        rows.append(f"score {self.value:.2f}, {verdict} (below 1 wins); {term} of joint {joint} decides")
+        outcome = "won" if self.won else "lost"
+        rows.append(f"score {self.value:.2f}, {outcome} (below 1 wins); {term} of joint {joint} decides")
         return "\n".join(rows)
 
 
@@ -181,7 +181,7 @@ class _Again:
 def contest(controller, name):
     """Enter the contest: RUNS arms drawn for this attempt only. Prints term by term; keeps the attempt, won or lost.
 
-    controller: any object with `step`; what runs is this object, in Python, not a twin. What is judged is what its
+    controller: any object with `step`; what runs is this object, in Python, not a twin. What is scored is what its
     commands do to a second copy of the same arms. name: what you changed, kept with the attempt and shown in
     `history`. Returns the Score. Raises what the controller raises: that attempt is lost.
     """

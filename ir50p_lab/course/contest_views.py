@@ -77,7 +77,7 @@ def sliders_of(controller, arm, practice):
             return f"the bench cut the drive: {cut}"
         practice.show(shown)
 
-        def judged():
+        def scored():
             try:
                 runs = [shown, *(contest.drive(pid, seed, arm) for seed in contest.PRACTICE[1:])]
             except LabError as cut:
@@ -88,7 +88,7 @@ def sliders_of(controller, arm, practice):
             said = f"score on all three practice arms {found.value:.2f}: {term} of joint {joint} decides"
             return f"{said}\nkp, ki, kd = {', '.join(sets)}"
 
-        return judged
+        return scored
 
     if compiled:
         return update, "the sliders set your gains; the compiled PID runs, it sent the same commands as your class"

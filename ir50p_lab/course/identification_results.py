@@ -18,12 +18,12 @@ def learn(recording, *, rows="joint", columns="rigid", method="ls", l2=None, **s
 
 
 def as_the_thesis(arm, unit, motions, controller, seconds=(110, 60)):
-    """Fit of the thesis' way on a simulated arm, (3,) %: trained on the first motion, validated on the second."""
-    way, runs = {"derivatives": "causal", "cutoff_hz": 3.0}, []
+    """Fit of the thesis' method on a simulated arm, (3,) %: trained on the first motion, validated on the second."""
+    method, runs = {"derivatives": "causal", "cutoff_hz": 3.0}, []
     for motion, length in zip(motions, seconds, strict=True):
         bench = SimulatedBench(arm, unit=unit, q0=motion.q_start, record_to=False).open()
         runs.append(bench.follow(controller, motion, length))
-    return validate(learn(runs[0], rows="shared", columns="thesis", **way), runs[1], **way).fit
+    return validate(learn(runs[0], rows="shared", columns="thesis", **method), runs[1], **method).fit
 
 
 def curved(recording, exponent):

@@ -128,9 +128,9 @@ class FeedbackView:
 
 
 def kept_motion(arm, number=0):
-    """A Fourier motion of 110 s to identify from (number 0), or another one to judge by (1 to 20).
+    """A Fourier motion of 110 s to identify from (number 0), or another one to validate with (1 to 20).
 
-    An optimiser goes another way on another processor, so the IR50P has its motions in data/excitation_ir50p.json. For
+    An optimiser ends elsewhere on another processor, so the IR50P has its motions in data/excitation_ir50p.json. For
     another arm they are optimised here, briefly.
     """
     if arm == IR50P:

@@ -148,6 +148,6 @@ def two_bricks(angle):
     axis = 1.1 * turn / np.linalg.norm(turn)
     figure.axes[3].plot(*np.outer(axis, [-1, 1]), "--", color=COLOURS["dark"], linewidth=1.6, zorder=40)
     for start, colour in zip(0.55 * first.T, ("orange", "green", "blue"), strict=True):
-        way = Rotation.from_rotvec(np.outer(np.linspace(0, 1, 40), turn)).apply(start)
-        figure.axes[3].plot(*way.T, ":o", color=COLOURS[colour], linewidth=2.2, ms=7, markevery=[-1], zorder=40)
+        path = Rotation.from_rotvec(np.outer(np.linspace(0, 1, 40), turn)).apply(start)
+        figure.axes[3].plot(*path.T, ":o", color=COLOURS[colour], linewidth=2.2, ms=7, markevery=[-1], zorder=40)
     return figure

@@ -1,4 +1,4 @@
-"""Figures of notebook 18: loop and frames, the picture beside the arm, a way, a reach over time, the error budget."""
+"""Figures of notebook 18: loop and frames, the picture beside the arm, a path, a reach over time, the error budget."""
 
 import numpy as np
 from matplotlib.patches import Circle
@@ -92,7 +92,7 @@ def pictures_figure(images, titles, simulated=True, marks=()):
     return figure
 
 
-def height_figure(plane, arm, ball, xy):
+def height_figure(plane, ball, xy):
     """For a slider: the line of sight from the side, and where it is read at a height. Returns: figure, update.
 
     plane: TablePlane; ball: (3,) m, where it is believed to be; xy: (2,) px.
@@ -102,10 +102,10 @@ def height_figure(plane, arm, ball, xy):
     eye = plane.centre
     away = (ball[:2] - eye[:2]) / np.linalg.norm(ball[:2] - eye[:2])
     slope = (eye[2] - ball[2]) / float((ball[:2] - eye[:2]) @ away)
-    sight = np.array([-0.25, 0.06])
+    ray = np.array([-0.25, 0.06])
     ax.axhline(0, color=COLOURS["grey"], linewidth=2)
     ax.add_patch(Circle((0, 1e3 * ball[2]), 1e3 * ball[2], fc="#C8202D", ec="none", alpha=0.8))
-    ax.plot(1e3 * sight, 1e3 * (ball[2] - slope * sight), color=COLOURS["dark"], linestyle=":")
+    ax.plot(1e3 * ray, 1e3 * (ball[2] - slope * ray), color=COLOURS["dark"], linestyle=":")
     (level,) = ax.plot([-160, 80], [0, 0], **SETPOINT)
     (mark,) = ax.plot([], [], "X", color=COLOURS["purple"], ms=11, mec="white")
     ax.set(
@@ -127,19 +127,19 @@ def height_figure(plane, arm, ball, xy):
     return figure, update
 
 
-def way_figure(way, ball=None, radius=0.03):
+def trajectory_figure(trajectory, ball=None, radius=0.03):
     """A Plan from the side: radius and height of the tip, ball and clearance. Returns: LabFigure."""
     figure, side, over = subplots(9.0, 3.6, cols=2, width_ratios=(1.1, 1))
-    p = way.tips
-    view = SideView(side, way.arm, colour=COLOURS["blue"])
-    view.update(way.goal)
+    p = trajectory.tips
+    view = SideView(side, trajectory.arm, colour=COLOURS["blue"])
+    view.update(trajectory.goal)
     side.plot(np.hypot(p[:, 0], p[:, 1]), p[:, 2], color=COLOURS["green"], linewidth=2)
     if ball is not None:
         side.add_patch(Circle((np.hypot(*ball[:2]), ball[2]), radius, fc="#C8202D", ec="none"))
-    side.set_title(f"Never below {100 * way.lowest:.0f} cm: over, then down")
-    t = np.linspace(0, way.duration, 300)
+    side.set_title(f"Never below {100 * trajectory.lowest:.0f} cm: over, then down")
+    t = np.linspace(0, trajectory.duration, 300)
     for k, colour in enumerate(_XYZ):
-        over.plot(t, way.sample(t)[:, 1, k], color=colour, label=f"joint {k + 1}")
+        over.plot(t, trajectory.sample(t)[:, 1, k], color=colour, label=f"joint {k + 1}")
     over.set(xlabel="t [s]", ylabel="joint rate [rad/s]", title="Smooth: every piece from rest to rest")
     over.legend(fontsize=8)
     return figure

@@ -173,10 +173,10 @@ def circles(arm):
     return figure, show
 
 
-def straight_line(arm, places, q_start, q_end, way=()):
+def straight_line(arm, places, q_start, q_end, poses=()):
     """From above: a line of places (n, 3) m, and the tip's path when all joints turn evenly instead: LabFigure.
 
-    way: for each place the pose that was found, or None; places without one are marked.
+    poses: for each place the pose that was found, or None; places without one are marked.
     """
     figure, ax = subplots(7.2, 5.4)
     path = forward_kinematics(arm, np.linspace(q_start, q_end, 61))
@@ -184,7 +184,7 @@ def straight_line(arm, places, q_start, q_end, way=()):
     ax.plot(*path[:, :2].T, color=COLOURS["blue"], linewidth=2.5, label="the tip, joints turning evenly")
     beside = 1000 * np.linalg.norm(path[30] - places.mean(axis=0))
     ax.plot(*path[30, :2], "o", color=COLOURS["blue"], ms=9, label=f"halfway, {beside:.0f} mm from the middle")
-    refused = [p[:2] for p, pose in zip(places, way, strict=False) if pose is None]
+    refused = [p[:2] for p, pose in zip(places, poses, strict=False) if pose is None]
     if refused:
         ax.plot(*np.transpose(refused), "x", color=COLOURS["orange"], ms=8, mew=2, label="no pose")
     ax.plot(0, 0, "s", color=COLOURS["dark"], ms=12)

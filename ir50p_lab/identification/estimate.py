@@ -55,7 +55,7 @@ class Estimate:
         return validate(self, recording, q, u, **self.steps)
 
     @property
-    def verdict(self):
+    def summary(self):
         """What the data say and what they do not, as a tuple of sentences: the warnings last."""
         sentences = []
         for row, who in _rows(self.rows).items():
@@ -73,7 +73,7 @@ class Estimate:
         for row, who in _rows(self.rows).items():
             values = zip(NAMES, self.theta[row], self.stderr[row], strict=True)
             lines += [f"  {who}  {name:8}{x:12.4g} +- {s:.2g}" for name, x, s in values if np.isfinite(s)]
-        return "\n".join([*lines, *self.verdict])
+        return "\n".join([*lines, *self.summary])
 
 
 def _rows(rows):

@@ -1,4 +1,4 @@
-"""The whole way from recordings to a model, in one function: process, fit with physical bounds, say how sure."""
+"""From recordings to a model in one function: process, fit with physical bounds, say how sure."""
 
 from dataclasses import replace
 
@@ -6,8 +6,8 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.arm_regressor import regressor
+from ir50p_lab.identification.checks import Warnings, check_signals
 from ir50p_lab.identification.columns import columns_of
-from ir50p_lab.identification.doubts import Doubts, check_signals
 from ir50p_lab.identification.fitting import fit
 from ir50p_lab.identification.processing import process
 
@@ -51,7 +51,7 @@ def identify(
     cent, at this length of record more than the standard errors, which do not know it: where the parameters themselves
     matter, go on with `fit_with_instruments`; where Stribeck friction does, with `output_error`.
 
-    Returns: Estimate, whose `score` processes other recordings in the same way.
+    Returns: Estimate, whose `score` processes other recordings alike.
     Raises: InputError, IdentificationError as `process` and `fit` do, and if a joint is constant, its angle wrapped or
     clipped. Angles that look like degrees, and a u that is often at its limit, are in `warnings`.
     """
@@ -70,14 +70,14 @@ def identify(
 
 
 def _looked_at(recording, anyway):
-    """Doubts about a recording as sentences; what cannot be right is refused, joint by joint."""
+    """Warnings about a recording as sentences; what cannot be right is refused, joint by joint."""
     t, q, u = columns_of(recording)
     notes = []
     for joint in range(q.shape[1]):
-        doubts = Doubts(anyway, f"joint {joint + 1}: ")
-        check_signals(doubts, t, q[:, joint], u[:, joint])
+        warned = Warnings(anyway, f"joint {joint + 1}: ")
+        check_signals(warned, t, q[:, joint], u[:, joint])
         share = 100 * np.isin(u[:, joint], (u[:, joint].min(), u[:, joint].max())).mean()
         if share > 5:
-            doubts.add(f"u is at its largest or smallest value in {share:.0f} %: if clipped, record a wider range")
-        notes += doubts
+            warned.add(f"u is at its largest or smallest value in {share:.0f} %: if clipped, record a wider range")
+        notes += warned
     return notes

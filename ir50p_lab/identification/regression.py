@@ -122,7 +122,7 @@ class Problem:
         self.notes = [self._stands_for(*pair) for pair in zip(self.lost, in_its_unit.T, strict=True)]
         _, s, directions = np.linalg.svd(self.R)
         self.condition = float(s[0] / s[-1])
-        self.notes += self._hardly_told_apart(s[0] / s, (directions / s[:, None]) ** 2)
+        self.notes += self._nearly_dependent(s[0] / s, (directions / s[:, None]) ** 2)
 
     def _stands_for(self, lost, weights):
         """A sentence about a column left out: what the kept ones now stand for."""
@@ -132,7 +132,7 @@ class Problem:
         stands = "; ".join(f"{name} stands for {name} {w:+.4g} {lost}" for name, w in parts)
         return f"{self.who}{lost} cannot be told apart from {', '.join(name for name, _ in parts)}: {stands}"
 
-    def _hardly_told_apart(self, indices, variances):
+    def _nearly_dependent(self, indices, variances):
         """Sentences about columns that are nearly dependent: variance decomposition proportions (Belsley 1980)."""
         for index, share in zip(indices, variances / variances.sum(axis=0), strict=True):
             members = [name for name, part in zip(self.names, share, strict=True) if part > _SHARE]

@@ -7,8 +7,8 @@ from functools import partial
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification.checks import Warnings, check_outliers
 from ir50p_lab.identification.columns import quantum_of, same_samples
-from ir50p_lab.identification.doubts import Doubts, check_outliers
 from ir50p_lab.inputs import number
 from ir50p_lab.jit import jit
 
@@ -118,19 +118,19 @@ def jumps_of(t, u, u_before):
 class StepRecord:
     """t, y (n,), times and jumps (m,) of u without outliers: first change of u at 0, end at 1, ranges of y and u 1.
 
-    unit: s; y_unit, gain (y/u): what these ones are; y_first: y at 0; period: of the samples. doubts: about them.
+    unit: s; y_unit, gain (y/u): what these ones are; y_first: y at 0; period: of the samples. warned: about them.
     """
 
     def __init__(self, t, u, y, u_before, anyway=False):
         t, u, y = same_samples({"t": t, "u": u, "y": y}, most=1)
         times, jumps = jumps_of(t, u, u_before)
-        self.doubts = Doubts(anyway)
+        self.warned = Warnings(anyway)
         steps = np.diff(t)
         period, counted = float(np.median(steps)), np.abs(t - np.rint(t)).max() < 1e-6
         jitter = np.ptp(steps) / period  # of a computer's clock
         if (period >= 1 and counted) or (period >= 5 and 1e-6 < jitter < 1):
-            self.doubts.add(f"one sample every {period:.4g} s: is t in milliseconds? Then T and L are too: give t/1000")
-        check_outliers(self.doubts, "u", t, u)
+            self.warned.add(f"one sample every {period:.4g} s: is t in milliseconds? Then T and L are too: give t/1000")
+        check_outliers(self.warned, "u", t, u)
         if not len(times):
             raise IdentificationError("u never changes: record samples before the step too, or give u_before=")
         if np.ptp(y) <= 1e-12 * np.abs(y).max():
@@ -138,7 +138,7 @@ class StepRecord:
         after = int((t >= times[0]).sum())
         if after < _FEWEST:
             raise IdentificationError(f"only {after} samples from the first change of u on: record {_FEWEST} or more")
-        places = check_outliers(self.doubts, "y", t, y, "left out; look for their cause")
+        places = check_outliers(self.warned, "y", t, y, "left out; look for their cause")
         t, y = np.delete(t, places), np.delete(y, places)
         self.unit, self.y_unit, self.y_first = float(t[-1] - times[0]), float(np.ptp(y)), float(y[0])
         self.gain = self.y_unit / float(np.abs(jumps).max())
@@ -234,7 +234,7 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
         InputError: NaN, shapes or lengths that do not fit, time that does not increase.
     """
     record = StepRecord(t, u, y, u_before, anyway)
-    doubts, period = record.doubts, record.period
+    warned, period = record.warned, record.period
     (a, L), (b, y0), e = _first_order(record)
     _check_shape(record, a, L, b, e)
     if a <= 0:
@@ -250,7 +250,7 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     moved, said = _moved_by_other_starts(record, a, J, e)
     errors = np.hypot(errors, moved * units)
     _warn(record, 1 / a, L, errors[2] / record.unit, *likeness(e))
-    doubts += said
+    warned += said
     if a * period > 1 / _SEEN:
         errors[1:] = math.inf
     if L < _SEEN * period:
@@ -260,7 +260,7 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
         y0=float(record.y_unit * y0 + record.y_first),
         rms=record.y_unit * float(np.sqrt(np.mean(e**2))),
         correlation=likeness(e)[0],
-        warnings=tuple(doubts),
+        warnings=tuple(warned),
     )
 
 
@@ -279,7 +279,7 @@ def _first_order(record):
 
 def _check_shape(record, a, L, b, e):
     """Refuse where y does not follow u at all, in a way that no FOPDT model has, or without end."""
-    doubts, n, rss, total = record.doubts, len(e), e @ e, np.sum((record.y - record.y.mean()) ** 2)
+    warned, n, rss, total = record.warned, len(e), e @ e, np.sum((record.y - record.y.mean()) ** 2)
     correlation, inflation = likeness(e)
 
     def F(more, parameters):  # how much better the model is than one with fewer parameters, that leaves `more`
@@ -290,18 +290,18 @@ def _check_shape(record, a, L, b, e):
     shape = f"the response has not the shape of the model ({explained:.0f} % explained)"
     misshapen = follows >= _RESPONSE and not_white > _SHAPE * total and correlation > 0.5
     if misshapen and np.sum(_second_order(record)[2] ** 2) < _SWINGS * rss:
-        doubts.refuse(f"{shape}, a second-order model leaves far less: take fit_second_order(t, u, y)")
+        warned.refuse(f"{shape}, a second-order model leaves far less: take fit_second_order(t, u, y)")
     elif follows < _RESPONSE or (follows / inflation**2 < _RESPONSE and explained < 50):
         explains = f"y does not follow u, which explains {explained:.1f} % of its variance"
-        doubts.refuse(f"{explains}: make a larger step, or average several recordings")
+        warned.refuse(f"{explains}: make a larger step, or average several recordings")
     elif misshapen:
-        doubts.add(f"{shape}: y is disturbed or drifts, or a dead zone or limit acts; do not use it yet")
+        warned.add(f"{shape}: y is disturbed or drifts, or a dead zone or limit acts; do not use it yet")
     ramp = best_fit(lambda p: record.columns(0.0, *p), record.y, [[(k / 50,)] for k in range(45)], (0.0, 0.95))[2]
     if a * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / inflation**2 > _BENDS:
         return
     value = f"only K/T has a value, {b * record.gain / record.unit:.4g} y/u per s"
     said = "the response runs on like a ramp, or ever faster: the plant integrates (as angles do), is unstable or slow"
-    doubts.refuse(f"{said}; {value}: fit the velocity and tune with simc_integrating, or record longer")
+    warned.refuse(f"{said}; {value}: fit the velocity and tune with simc_integrating, or record longer")
 
 
 def _moved_by_other_starts(record, a, J, e):
@@ -321,20 +321,20 @@ def _moved_by_other_starts(record, a, J, e):
 
 def _warn(record, T, L, L_stderr, correlation, inflation):
     """What is to be minded about a fit that is not refused."""
-    doubts, period, unit = record.doubts, record.period, record.unit
+    warned, period, unit = record.warned, record.period, record.unit
     if T < _SEEN * period:
-        doubts.add(f"the time constant is not identifiable, {T / period:.2f} of the sampling period: sample faster")
+        warned.add(f"the time constant is not identifiable, {T / period:.2f} of the sampling period: sample faster")
     elif L < _SEEN * period:
-        doubts.add(f"the dead time is not identifiable, {L / period:.2f} of a sampling period: use no rule with 1/L")
+        warned.add(f"the dead time is not identifiable, {L / period:.2f} of a sampling period: use no rule with 1/L")
     elif L < 2 * L_stderr:
-        doubts.add(f"dead time {L * unit:.3g} s is less than two standard errors: it cannot be told from none")
+        warned.add(f"dead time {L * unit:.3g} s is less than two standard errors: it cannot be told from none")
     seen = int((record.t >= L).sum())
     if seen < _ENOUGH:
-        doubts.add(f"only {seen} samples of the response: too few to see whether the model is right; sample faster")
+        warned.add(f"only {seen} samples of the response: too few to see whether the model is right; sample faster")
     if T > 1 - L:
-        doubts.add(f"not settled: T = {T * unit:.4g} s, but {(1 - L) * unit:.4g} s of response recorded; record 3 T")
+        warned.add(f"not settled: T = {T * unit:.4g} s, but {(1 - L) * unit:.4g} s of response recorded; record 3 T")
     if inflation > 1:
-        doubts.add(f"residuals are not white (correlation {correlation:.2f}): errors were widened by {inflation:.1f}")
+        warned.add(f"residuals are not white (correlation {correlation:.2f}): errors were widened by {inflation:.1f}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -423,11 +423,11 @@ def fit_second_order(t, u, y, *, u_before=None):
     sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / w, 1e-3 / w][: len(found)])
     errors = standard_errors(jacobian(response, found, sizes), e, max(likeness(e)[1], record.coarseness))
     if w * period > 1:
-        record.doubts.add(f"w is {w * period:.2g} rad a sample: not identifiable, sample faster")
+        record.warned.add(f"w is {w * period:.2g} rad a sample: not identifiable, sample faster")
     units = np.array([record.gain, 1 / record.unit, 1.0, record.unit, record.unit])[: len(found)]
     return SecondOrderModel(
         **by_name(_NAMES[: len(found)], found * units, errors * units),
         y0=float(c[0] * record.y_unit + record.y_first),
         fit=float(100 * (1 - np.sqrt(np.mean(e**2)) / np.std(y))),
-        warnings=tuple(record.doubts),
+        warnings=tuple(record.warned),
     )

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification import doubts as checks
+from ir50p_lab.identification import checks
 from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.identification.processing import acting_times, process
 from ir50p_lab.identification.regression import LeastSquares, least_squares
@@ -32,7 +32,7 @@ _AGREE = 1.0  # standard errors of inertia and friction at a cut-off, by which h
 _FAR = 0.5  # of the inertia: as far from no lower cut-off that is sure of its own
 _HUM = 0.5  # times the misfit: where a lower cut-off leaves less, what it takes away was no motion
 _MATTERS = 0.1  # of the value: a change smaller than this is only put into the standard error
-_JUDGED = ("inertia", "viscous", "coulomb")  # by these
+_COMPARED = ("inertia", "viscous", "coulomb")  # by these
 _POLYNOMIAL = 6  # degree of a force of the position
 _EXACT = 2e-3  # of a parameter: differences and interpolation are no better
 _BETWEEN = 100  # periods put between two recordings that are fitted together
@@ -120,17 +120,17 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     Returns: JointFit.
     Raises: InputError for NaN, times that do not increase, shapes that do not fit. IdentificationError, saying what to
     do next, if the record is too short or constant, the motion drowns in noise or has nothing to do with u, q or u were
-    clipped or hung beyond doubt, angles jump by whole turns, or all friction is negative. Other doubts are in
+    clipped or surely hung, angles jump by whole turns, or all friction is negative. Other flaws are in
     `warnings`, each with a number: what is without a warning is right within three standard errors.
     """
     names = _names_of(terms)
-    doubts = checks.Doubts(choice("anyway", anyway, (True, False)))
+    warned = checks.Warnings(choice("anyway", anyway, (True, False)))
     held = held if held is None else choice("held", held, (True, False))
     t, q, u, v = _columns(t, q, u, qd, drop=anyway)
-    new = checks.check_signals(doubts, t, q, u)
+    new = checks.check_signals(warned, t, q, u)
     t, q, u, v = (x if x is None else x[new] for x in (t, q, u, v))
     if v is not None:
-        checks.check_measured_speed(doubts, t, q, v)
+        checks.check_measured_speed(warned, t, q, v)
     plain = v is not None and "inertia" not in names and cutoff_hz in (None, math.inf)
     joint = _Joint.of(t, q, u, v, names, delay, None if plain else cutoff_hz)
     if plain and joint.band.unfiltered_noise**2 > _NOISY * np.mean(v**2):
@@ -138,13 +138,13 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
         smooth = joint.fit(joint.band.cutoff_hz, held, fewest=joint.fit(math.inf, held))
         plain = smooth is None or cutoff_hz is not None
     found = joint.fit(math.inf if plain else joint.band.cutoff_hz, held)
-    checks.check_clipped_drive(doubts, u, found)
+    checks.check_clipped_drive(warned, u, found)
     if not plain:
-        checks.check_motion(doubts, joint.band)
+        checks.check_motion(warned, joint.band)
         found = found if cutoff_hz else joint.below_hum(found, held)
-        found = _at_agreeing_cutoff(doubts, joint, found, cutoff_hz is not None)
+        found = _at_agreeing_cutoff(warned, joint, found, cutoff_hz is not None)
     found = _with_other_fits_in_errors(joint, found, held is None)
-    checks.check_model(doubts, found, joint.band, 1 / joint.rate)
+    checks.check_model(warned, found, joint.band, 1 / joint.rate)
     if found.value("inertia")[0] < 0:
         found = joint.fit(found.cutoff_hz, found.held, without="inertia")
     return JointFit(
@@ -154,7 +154,7 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
         cutoff_hz=found.cutoff_hz,
         held=found.held,
         samples=len(found.y),
-        warnings=tuple(doubts),
+        warnings=tuple(warned),
     )
 
 
@@ -185,28 +185,28 @@ def _names_of(terms):
     return tuple(name for name in _COLUMNS if name in columns | set(terms))
 
 
-def _at_agreeing_cutoff(doubts, joint, first, given):
-    """The fit at the highest cut-off whose parameters agree with those at half of it; else a doubt.
+def _at_agreeing_cutoff(warned, joint, first, given):
+    """The fit at the highest cut-off whose parameters agree with those at half of it; else a warning.
 
     first: Found at the highest; given: keep it, and only compare.
     """
     fits = [first, *joint.lower(first)]
-    values, doubtful = [(one.x, one.stderr) for one in fits], None
+    values, differing = [(one.x, one.stderr) for one in fits], None
     for k, (here, lower) in enumerate(pairwise(fits[:2] if given else fits)):
         moved = np.where(np.isfinite(here.stderr + lower.stderr), np.abs(here.x - lower.x), 0.0)
         wrong = moved > np.maximum(_AGREE * here.stderr, _MATTERS * np.abs(lower.x))
         far = [np.abs(here.x - x) > np.maximum(_FAR * np.abs(x), 3 * stderr) for x, stderr in values[k + 1 :]]
         wrong |= np.any(far, axis=0) & np.equal(here.names, "inertia")
-        wrong &= [name in _JUDGED for name in here.names]
+        wrong &= [name in _COMPARED for name in here.names]
         if not wrong.any():
             return here if here is first else lower
-        doubtful = here, lower, here.names[int(np.argmax(np.where(wrong, moved / here.stderr, 0.0)))]
-    if doubtful is None:
+        differing = here, lower, here.names[int(np.argmax(np.where(wrong, moved / here.stderr, 0.0)))]
+    if differing is None:
         return first
-    here, lower, name = doubtful
+    here, lower, name = differing
     each = ", ".join("{:.4g} +- {:.2g} at {:.3g} Hz".format(*one.value(name), one.cutoff_hz) for one in (here, lower))
     said = f"{name} depends on the cut-off: {each} (flexibility, backlash, a late u)"
-    doubts.add(f"{said}: no rigid joint explains the fast part of the motion; compare with a lower cutoff_hz")
+    warned.add(f"{said}: no rigid joint explains the fast part of the motion; compare with a lower cutoff_hz")
     return first if given else lower
 
 
@@ -225,8 +225,8 @@ def _with_other_fits_in_errors(joint, found, any_instant):
         moved = np.maximum(moved, np.sqrt(np.clip(beyond, 0.0, None)))
     late = 0.0
     if any_instant:
-        told = [found, *lower][-1].tells_delay  # where the jerk has least noise
-        late = found.moved_by_delay(0.5 / joint.rate, told)
+        seen = [found, *lower][-1].tells_delay  # where the jerk has least noise
+        late = found.moved_by_delay(0.5 / joint.rate, seen)
     return replace(found, stderr=np.sqrt(found.stderr**2 + moved**2 + late**2 + (_EXACT * found.x) ** 2))
 
 
@@ -283,11 +283,11 @@ class Found:
         alone = late - self.A @ np.linalg.lstsq(self.A, late, rcond=None)[0]
         return np.linalg.norm(alone) > _TELLS_DELAY * np.linalg.norm(late)
 
-    def moved_by_delay(self, unsure, told):
-        """(p,) by which a delay moves the parameters, that is 0 +- unsure s before and, if told, known better now."""
+    def moved_by_delay(self, unsure, seen):
+        """(p,) by which a delay moves the parameters, that is 0 +- unsure s before and, if seen, known better now."""
         delay, sigma = self.beside_delay[2:4]
         share = unsure**2 / (unsure**2 + sigma**2)
-        size = math.sqrt((share * delay) ** 2 + share * sigma**2) if told else unsure
+        size = math.sqrt((share * delay) ** 2 + share * sigma**2) if seen else unsure
         moved = np.zeros(len(self.x))
         moved[np.isfinite(self.stderr)] = size * np.linalg.lstsq(self.A, self._late_column, rcond=None)[0]
         return moved
@@ -299,8 +299,8 @@ class Found:
         q = self.table.q - self.table.q.min()
         columns = np.polynomial.legendre.legvander(2 * q / max(np.ptp(q), 1e-300) - 1, _POLYNOMIAL)[:, 1:]
         x, stderr = self.beside(columns)[:2]
-        judged = [name in _JUDGED for name in self.names]
-        return [(x, np.where(judged, stderr, np.inf))]
+        compared = [name in _COMPARED for name in self.names]
+        return [(x, np.where(compared, stderr, np.inf))]
 
 
 @dataclass(frozen=True)
@@ -318,7 +318,7 @@ class _Joint:
     @classmethod
     def of(cls, t, q, u, v, terms, delay, cutoff_hz):
         angles = np.column_stack([q] if v is None else [q, v])
-        motion = process(t, angles, angles, cutoff_hz=None, trim=0.0, delay=delay)  # u: in two ways, below
+        motion = process(t, angles, angles, cutoff_hz=None, trim=0.0, delay=delay)  # u: held and measured, below
         rate = motion.rate_hz
         if cutoff_hz is not None and number("cutoff_hz", cutoff_hz, "> 0", unit="Hz") >= rate / 2:
             raise InputError(f"cutoff_hz = {cutoff_hz!r}: give a number between 0 and half the rate, {rate / 2:.4g} Hz")
@@ -358,18 +358,18 @@ class _Joint:
         A[:, [name in out for name in self.terms]] = 0.0  # an empty column: 0 +- inf
         solve = self._with_stribeck if "stribeck" in self.terms else self._solve
         if held is None:
-            as_held, measured = (solve(table, way, cutoff_hz, A) for way in (0, 1))
+            as_held, measured = (solve(table, column, cutoff_hz, A) for column in (0, 1))
             held = measured.left.rms >= _CLEARLY * as_held.left.rms
         return solve(table, 0 if held else 1, cutoff_hz, A)
 
-    def _solve(self, table, way, cutoff_hz, A, more=()):
-        """Found for u taken in this way; A: columns of the terms and of `more` names."""
-        y = table.y[:, way]
+    def _solve(self, table, column, cutoff_hz, A, more=()):
+        """Found for u of this column of table.y; A: columns of the terms and of `more` names."""
+        y = table.y[:, column]
         left = least_squares(A, y, tolerance=_OWN_SHARE)
         held_by_data = A[:, np.isfinite(left.stderr)]
-        return Found((*self.terms, *more), left.x, left.stderr, left, cutoff_hz, way == 0, table, y, held_by_data)
+        return Found((*self.terms, *more), left.x, left.stderr, left, cutoff_hz, column == 0, table, y, held_by_data)
 
-    def _with_stribeck(self, table, way, cutoff_hz, A):
+    def _with_stribeck(self, table, column, cutoff_hz, A):
         """Least squares over all parameters and the Stribeck speed; its error from the slope of the column in it."""
         place = self.terms.index("stribeck")
 
@@ -379,16 +379,16 @@ class _Joint:
 
         bounds = np.log(np.multiply(_PEAK, self.band.speed))
         starts = [[(start,)] for start in np.linspace(*bounds, 12)]
-        (best,), c, _ = best_fit(lambda p: columns(*p), table.y[:, way], starts, bounds)
+        (best,), c, _ = best_fit(lambda p: columns(*p), table.y[:, column], starts, bounds)
         A, speed = columns(best), math.exp(best)
         slope = c[place] * A[:, place] * 2 * table.v**2 / speed**3
-        found = self._solve(table, way, cutoff_hz, np.column_stack([A, slope]), ["stribeck_speed"])
+        found = self._solve(table, column, cutoff_hz, np.column_stack([A, slope]), ["stribeck_speed"])
         return replace(found, x=np.where(np.equal(found.names, "stribeck_speed"), speed, found.x))
 
     def table(self, cutoff_hz, slower=1.0):
         """What goes into the regression, all through the same low pass.
 
-        columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 2): u in each way, and its slopes
+        columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 2): u held and measured; slopes
         (m, 2); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its largest value; q (m,)
         rad; v (m,) rad/s; direction (m,).
         """

@@ -17,7 +17,7 @@ _HIGHEST = 0.2  # of the rate: above, central differences themselves are wrong b
 
 
 def spectrum(pieces, rate_hz, cutoff_hz=None, *, of_speed=False):
-    """Choose the cut-off for an angle, or judge a given one. pieces: list of (n,) rad, each evenly sampled at rate_hz;
+    """Choose the cut-off for an angle, or check a given one. pieces: list of (n,) rad, each evenly sampled at rate_hz;
     with of_speed a measured speed, rad/s, in place of the angle.
 
     White noise of the sensor is what the spectrum holds between a quarter and half of the rate; the steps of a coarse

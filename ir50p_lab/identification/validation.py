@@ -108,7 +108,7 @@ class Whiteness:
     """Autocorrelation of residuals, column by column.
 
     lags (m,) samples; correlation (m, k), of samples that far apart; bound: 2.58/sqrt(n), within which 99 in 100 lie
-    if the residuals are white: what a good model leaves is noise that no past sample could have told.
+    if the residuals are white: what a good model leaves is noise that no past sample could have predicted.
     """
 
     lags: np.ndarray

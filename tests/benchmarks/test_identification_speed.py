@@ -92,7 +92,7 @@ def our_fit(q, qd, qdd, y):
 
 
 def whole_fit(q, qd, qdd, y, rows):
-    """Regressor and `fit`, with standard errors, diagnostics and verdict."""
+    """Regressor and `fit`, with standard errors, diagnostics and summary."""
     return lambda: fit(regressor(q, qd, qdd), y, rows=rows, columns="thesis")
 
 
@@ -127,7 +127,7 @@ def test_ratio_to_the_peer(request):
     shared, joint = (best_of(whole_fit(*data, rows), 3 * repeats) for rows in ("shared", "joint"))
     print(
         f"\nregressor and fit of {len(data[0])} x 3 x 20: {name} in a loop and lstsq {theirs * 1e3:.0f} ms; "
-        f"ours {ours * 1e3:.1f} ms: {theirs / ours:.0f}x (target 4x); with standard errors and verdict, "
+        f"ours {ours * 1e3:.1f} ms: {theirs / ours:.0f}x (target 4x); with standard errors and summary, "
         f"shared {shared * 1e3:.0f} ms: {theirs / shared:.1f}x, row-wise {joint * 1e3:.0f} ms: {theirs / joint:.1f}x"
     )
     if enabled:

@@ -52,7 +52,7 @@ def test_what_is_seen_is_written_beside_it():
 
 def test_the_height_moves_the_reading():
     xy = CAMERA.project(T_CAM_BASE, BALL)
-    figure, update = views.height_figure(PLANE, IR50P, BALL, xy)
+    figure, update = views.height_figure(PLANE, BALL, xy)
     assert "(400.0, 50.0) mm" in update(30.0) and "+0.0 mm off" in text_of(figure)
     update(0.0)
     (off,) = (float(word) for word in text_of(figure).split() if word.startswith("+"))
@@ -60,8 +60,8 @@ def test_the_height_moves_the_reading():
 
 
 def test_a_way_says_how_low_it_comes():
-    way = plan(IR50P, rest_pose(IR50P), BALL + np.array([0, 0, 0.06]))
-    assert f"Never below {100 * way.lowest:.0f} cm" in text_of(views.way_figure(way, BALL))
+    trajectory = plan(IR50P, rest_pose(IR50P), BALL + np.array([0, 0, 0.06]))
+    assert f"Never below {100 * trajectory.lowest:.0f} cm" in text_of(views.trajectory_figure(trajectory, BALL))
 
 
 def test_tip_and_budget_and_residuals_show_their_numbers():

@@ -287,7 +287,7 @@ def test_poor_excitation_names_what_is_hardly_told_apart():
     found = fit(Phi, y)
     assert found.condition[1] > 30
     assert any(text.startswith("joint 2: ") and "hardly told apart" in text for text in found.warnings)
-    assert any("cannot be told from zero" in text for text in found.verdict)
+    assert any("cannot be told from zero" in text for text in found.summary)
     good = regressor(*motion(10))
     rich = fit(good, torque(good, IR50P.theta_pwm) + np.random.default_rng(0).normal(0, 1, (len(Phi), 3)))
     assert rich.condition.max() < 30
@@ -345,12 +345,12 @@ def test_biased_data_are_called_impossible():
     assert not [text for text in sound.warnings if "hardly told" not in text]
 
 
-def test_verdict_and_text():
+def test_summary_and_text():
     Phi = regressor(*motion(14))
     y = torque(Phi, IR50P.theta_pwm) + np.random.default_rng(0).normal(0, 5, (len(Phi), 3))
     found = fit(Phi, y)
     assert isinstance(found, Estimate)
-    assert found.verdict[0].startswith("joint 1: 7 parameters from 2000 samples, residual ")
+    assert found.summary[0].startswith("joint 1: 7 parameters from 2000 samples, residual ")
     text = str(found)
     assert "parameters in PWM" in text
     assert "theta1" in text

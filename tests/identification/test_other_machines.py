@@ -1,4 +1,4 @@
-"""Recordings of the kinds that industry and hobby make, with known truth: not refused, and right or doubted."""
+"""Recordings of the kinds that industry and hobby make, with known truth: not refused, and right or warned of."""
 
 import numpy as np
 import pytest
@@ -101,7 +101,7 @@ def test_within_three_standard_errors_and_near(machine, seed):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_too_high_a_cutoff_is_told_by_half_of_it(seed):
-    """The default is right; twice the resonance is not, and is doubted."""
+    """The default is right; twice the resonance is not, and a warning says so."""
     record, (J, _, _) = industrial_axis(seed)
     high = fit_joint(*record, cutoff_hz=45.0)
     assert high.inertia < 0.9 * J and "depends on the cut-off" in " ".join(high.warnings)

@@ -123,7 +123,7 @@ def test_next_view_keeps_its_promise(calibration):
     old = [view.corners for view in calibration.views]
     grid = np.stack(np.meshgrid((np.arange(8) + 0.5) * 80, (np.arange(6) + 0.5) * 80), axis=-1).reshape(-1, 2)
 
-    def doubt(extra):
+    def error(extra):
         noisy = extra + np.random.default_rng(1).normal(0, calibration.sigma, (54, 2))
         more = calibrate_corners(POINTS, [*old, noisy], SIZE, lens=calibration.model, bend=False)
         V = np.zeros((9, 9))
@@ -133,8 +133,8 @@ def test_next_view_keeps_its_promise(calibration):
         V = more.covariance * np.outer(scale, scale) if scale.any() else V
         return np.sqrt((direction_stderr(replace(more, covariance=V), grid) ** 2).mean())
 
-    assert abs(doubt(advised) / following.after - 1) < 0.25
-    assert doubt(advised) < doubt(old[0])
+    assert abs(error(advised) / following.after - 1) < 0.25
+    assert error(advised) < error(old[0])
 
 
 def test_next_view_fills_empty_cells_where_it_costs_nothing(calibration):

@@ -298,11 +298,11 @@ def test_stretched_pictures_are_noticed(views):
 def test_a_lens_that_folds_back_is_noticed():
     from dataclasses import replace
 
-    from ir50p_lab.vision.calibration.checks import doubts
+    from ir50p_lab.vision.calibration.checks import warnings_about
 
     found = calibrate_corners(POINTS, corner_sets(POINTS, 8, seed=2), SIZE, lens=("k1",))
     folded = replace(found, distortion=np.array([-1.5, 0, 0, 0, 0]))
-    assert any("folds back" in text for text in doubts(folded))
+    assert any("folds back" in text for text in warnings_about(folded))
 
 
 def test_views_know_their_poses(calibration, views):
@@ -398,7 +398,7 @@ def test_unknown_coefficient(views):
     assert LENS[4] == 0
 
 
-# ---- doubts that good-looking fits leave
+# ---- warnings that good-looking fits leave
 
 
 def stretched(points, bend):

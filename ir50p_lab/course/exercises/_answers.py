@@ -1,4 +1,4 @@
-"""An exercise, the judgement of an answer to it, and what every kind of answer shares; answers that are a choice."""
+"""An exercise, the grade of an answer to it, and what every kind of answer shares; answers that are a choice."""
 
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
@@ -48,7 +48,7 @@ class Kind:
         """Say how far a wrong answer is right, without giving it away. Raises Unreadable where its form is wrong."""
         return ""
 
-    def judge(self, answer, exercise) -> tuple[str, ...]:
+    def grade(self, answer, exercise) -> tuple[str, ...]:
         """Return the state, what to say, and one input that fails, if it is a function's."""
         found = self.read(answer)
         if self.is_right(found):
@@ -114,7 +114,7 @@ def grade(exercise: Exercise, answer) -> Note:
     try:
         if answer is Ellipsis:
             raise NotAnswered
-        state, text, *more = kind.judge(answer, exercise)
+        state, text, *more = kind.grade(answer, exercise)
     except NotAnswered:
         state, text = "open", f"not answered yet. To find: {exercise.task}. Expected: {kind.wanted}."
     except Unreadable as problem:

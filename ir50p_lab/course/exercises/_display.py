@@ -1,4 +1,4 @@
-"""How the verdict on an answer looks, in a notebook and as plain text."""
+"""How the grade of an answer looks, in a notebook and as plain text."""
 
 import html
 import re

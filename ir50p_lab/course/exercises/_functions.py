@@ -61,7 +61,7 @@ class Function(Kind):
 
         return as_array
 
-    def judge(self, answer, exercise):
+    def grade(self, answer, exercise):
         """Return the state, what to say and an input that fails, by the rules for functions of `my_robot`."""
         task = Task(
             name=exercise.name,

@@ -13,7 +13,7 @@ from ir50p_lab.course.functions.task import Failed, changed, shown, table
 _KP, _KI, _KD = np.array([40.0, 60.0, 80.0]), np.array([20.0, 30.0, 40.0]), np.array([10.0, 20.0, 30.0])
 _PERIOD = 0.02  # s; not the 0.01 that a student may write down
 _SPEED, _ACCELERATION = 0.3, 7.0  # rad/s, rad/s^2 in the reference
-_WAYS = np.array([1.0, -1.0, 1.0])  # joint 2 is driven downwards, the others upwards
+_SIGNS = np.array([1.0, -1.0, 1.0])  # joint 2 is driven downwards, the others upwards
 
 
 def _make(cls, **settings):
@@ -242,8 +242,8 @@ def _limit(cls):
 
 def _held(cls, seconds, kp, period=_PERIOD):
     """Commands held at the limit by an error of 1 rad, and for 10 s against one of -1 rad; all as if upwards."""
-    wanted = np.vstack([_constant(seconds, 1.0), _constant(10, -1.0)]) * _WAYS
-    return _WAYS * _run(_make(cls, kp=kp, ki=200.0, period=period), 0 * wanted, wanted)
+    wanted = np.vstack([_constant(seconds, 1.0), _constant(10, -1.0)]) * _SIGNS
+    return _SIGNS * _run(_make(cls, kp=kp, ki=200.0, period=period), 0 * wanted, wanted)
 
 
 def _late(run):
@@ -272,12 +272,12 @@ def _windup(cls):
         if says := _wrong_rest(cls):
             raise Failed(f"it winds up: {says}")
         joints = " and ".join(str(joint + 1) for joint in np.flatnonzero(winds))
-        way = "" if winds.all() else f" in joint {joints}"
+        where = "" if winds.all() else f" in joint {joints}"
         for sign, word in ((1, "upwards"), (-1, "downwards")):
-            if (winds == (_WAYS == sign)).all():
-                way = f" when it pushes {word}"
+            if (winds == (_SIGNS == sign)).all():
+                where = f" when it pushes {word}"
         raise Failed(
-            f"it winds up{way}: after 10 s at its limit it pushes on for {_PERIOD * soon[winds].max():.1f} s against "
+            f"it winds up{where}: after 10 s at its limit it pushes on for {_PERIOD * soon[winds].max():.1f} s against "
             "an error of other sign, after 20 s for longer. What does the integral do while the motor can give no more?"
         )
     full = _held(cls, 3, kp=0.0)
@@ -369,7 +369,7 @@ def _kick(cls):
 
 
 def _gain_of_d(cls):
-    moving = np.linspace(0, 0.1, 20)[:, None] * _WAYS
+    moving = np.linspace(0, 0.1, 20)[:, None] * _SIGNS
     for name in ("kp", "ki"):
         still, moved = (_run(_make(cls, **({"kp": 0.0} | {name: 20.0})), q, q) for q in (0 * moving + 0.1, moving))
         if np.abs(still).max() < 1e-6 < np.abs(moved).max():

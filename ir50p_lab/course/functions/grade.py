@@ -112,9 +112,9 @@ def _outside(function):
 
 def _shown_by(read, says, task, cases, returned, expected, bad):
     """The cases that show by themselves what is said of all, those with the very same numbers first."""
-    told = {k: read(task, *([many[k]] for many in (cases, returned, expected))) for k in bad}
+    says_of = {k: read(task, *([many[k]] for many in (cases, returned, expected))) for k in bad}
     return sorted(
-        (k for k in bad if _without_numbers(told[k]) == _without_numbers(says)), key=lambda k: told[k] != says
+        (k for k in bad if _without_numbers(says_of[k]) == _without_numbers(says)), key=lambda k: says_of[k] != says
     )
 
 

@@ -38,7 +38,7 @@ def step_metrics(t, q, target):
     return rise, overshoot, settling, target - np.mean(last_second)
 
 
-def _second_order(t, start, target, *, speed, damping, noise=0.0, rng=None, stop=None, short=0.0):
+def _second_order(t, start, target, *, speed, damping, noise=0.0, rng=None, short=0.0):
     """A step of a mass, spring and damper, with noise; `short`: the part of the way that stays undone."""
     s = t - t[0]
     end = start + (1 - short) * (target - start)

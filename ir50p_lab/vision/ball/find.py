@@ -34,11 +34,11 @@ _MOST_HUE = 0.9  # of the disc, distance from the colour's hue over its toleranc
 _COMPRESSED = 0.3  # overexposure from which on a hue is not to be trusted: tone curves bend before they clip
 _LEAST_VALUE = 0.2
 _REDS = 20  # degrees from red, 0, of the hues that skin and brown are mistaken for
-_GLARE = 0.95  # value from which on a disc is overexposed, and its paint is not to be told
+_GLARE = 0.95  # value from which on a disc is overexposed, and its paint cannot be seen
 _SKIN, _BROWN = (5.0, 0.5), (8.0, 0.72, 0.45)  # degrees towards orange; then least saturation, value
 # Of a guess, which may be off, and its ball in glare or hidden by a thing of nearly its hue: part of the disc that must
 # have the colour; by how much less its hue is off than noise makes of it, degrees; what its paint may be off
-_LEAST_ALIKE, _NOISE, _DOUBT = 0.15, 2.0, (-1.0, 0.01, 0.02)
+_LEAST_ALIKE, _NOISE, _PAINT_ERROR = 0.15, 2.0, (-1.0, 0.01, 0.02)
 _ENOUGH = 0.1  # of the disc that is not overexposed: less tells nothing of the hue
 
 
@@ -228,7 +228,7 @@ def _check_colour(image, guess, colour):
     alike = colour.loose_mask(hsv) > 0
     if alike.mean() < _LEAST_ALIKE:
         raise NoBallError(f"hollow, or another colour: {alike.mean():.0%} of the disc have the colour")
-    paint = np.add(paint_of(hsv[alike], colour.centre, colour.swaps), _DOUBT)
+    paint = np.add(paint_of(hsv[alike], colour.centre, colour.swaps), _PAINT_ERROR)
     if why := _other_colour(_hue_of_disc(hsv, colour.centre) / colour.tolerance, paint, colour):
         raise NoBallError(why)
 

@@ -153,7 +153,7 @@ def _calibrate(found, size, board, points, options, rejected):
     lost = len(rejected) / (len(rejected) + len(views))
     if lost > 0.5:
         said.append(f"{len(rejected)} of {len(rejected) + len(views)} pictures were of no use: see `rejected`")
-    return replace(result, warnings=(*said, *checks.doubts(result)))
+    return replace(result, warnings=(*said, *checks.warnings_about(result)))
 
 
 def _best(corners, full, wanted, bend):
@@ -186,17 +186,17 @@ def _best(corners, full, wanted, bend):
             f"the board is bent by {1e3 * size:.2g} +- {1e3 * error:.1g} mm: its shape was estimated with the camera. "
             "Glue it to glass or a plate and repeat"
         )
-    doubted = [("lens", best.model.lens, wide.model.lens, lacking)]
+    prescribed = [("lens", best.model.lens, wide.model.lens, lacking)]
     if bend is False:
-        doubted.append(("bend", False, "that the board is bent", shape))
+        prescribed.append(("bend", False, "that the board is bent", shape))
     if full.model.aspect:
         question, ratio = checks.free_aspect(corners, wide)
         evidence += (question,)
-        doubted.append(("aspect", full.model.aspect, f"fx/fy = {ratio:.4f}", question))
+        prescribed.append(("aspect", full.model.aspect, f"fx/fy = {ratio:.4f}", question))
     said += [
         f"{name} = {value} was prescribed, but the corners say {says} (by chance: {in_percent(question.p_value)}): "
         f"leave {name}=None"
-        for name, value, says, question in doubted
+        for name, value, says, question in prescribed
         if question is not None and question.kept
     ]
     return best, evidence, tried, said

@@ -29,7 +29,7 @@ def outlier_view(corners, fitted):
 
     fitted: CameraFit with the full lens: a view far out may be the only one that needs its k3. The view must be three
     times worse than the median view, and eight times the usual scatter of views above it. A view that is far off pulls
-    the camera along and spoils the others, too: if they fit twice as well without it, it is judged by the camera that
+    the camera along and spoils the others, too: if they fit twice as well without it, it is tested by the camera that
     they make without it.
     """
     rms = fitted.view_rms
@@ -55,7 +55,7 @@ def _far_off(rms):
 
 
 def _seen_by(camera, corners, view, pose):
-    """rms, px, of the corners of a view for a camera (12,) that does not know it: only the pose gives way."""
+    """rms, px, of the corners of a view for a camera (12,) that does not know it: only the pose is fitted."""
     import cv2
 
     K = np.array([[camera[0], 0, camera[2]], [0, camera[1], camera[3]], [0, 0, 1]])
@@ -83,11 +83,11 @@ def two_cameras(corners, best):
     differ = apart > np.maximum(_APART * best.camera[0], _SIGMAS * error)
     if one.cost + other.cost > (1 - _FEWER) * best.cost or not differ[[0, 2, 3]].any():
         return []
-    told = " and ".join(
+    groups = " and ".join(
         "{} with fx = {:.0f} px, centre ({:.0f}, {:.0f})".format(len(each.poses), *each.camera[[0, 2, 3]])
         for each in (one, other)
     )
-    return [f"these seem to be pictures of two cameras, or zoom or crop was changed: {told}. Calibrate them apart"]
+    return [f"these seem to be pictures of two cameras, or zoom or crop was changed: {groups}. Calibrate them apart"]
 
 
 def _two_heaps(S, g):
@@ -179,7 +179,7 @@ def _not_square(camera, covariance):
     return abs(fx / fy - 1) > max(_SQUARE, 3 * error), fx / fy, error
 
 
-def doubts(calibration):
+def warnings_about(calibration):
     """What to mind although the corners fit, sentence by sentence.
 
     Coefficients that mean nothing, and a lens that folds back; focal lengths and a centre that a camera hardly has;

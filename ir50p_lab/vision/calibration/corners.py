@@ -142,7 +142,7 @@ def refuse_soft(grey, grid):
     import cv2
 
     nearest, how = side(grid), (grid.shape[1::-1], grid.reshape(-1, 1, 2).astype(np.float32))
-    rises = [cv2.estimateChessboardSharpness(grey, *how, vertical=way)[0][0] for way in (False, True)]
+    rises = [cv2.estimateChessboardSharpness(grey, *how, vertical=vertical)[0][0] for vertical in (False, True)]
     rise, limit = max(rises), _SOFT * nearest
     if rise >= _UNKNOWN:
         rise, limit = slope_rise(grey, grid.reshape(-1, 2), nearest), SOFT_SLOPE * nearest

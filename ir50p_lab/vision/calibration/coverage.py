@@ -100,7 +100,7 @@ def next_view(calibration):
     grid = np.stack(np.meshgrid((np.arange(8) + 0.5) * w / 8, (np.arange(6) + 0.5) * h / 6), axis=-1).reshape(-1, 2)
     J = _ray_jacobian(calibration, grid) @ B[:9]
 
-    def doubt(information):
+    def error(information):
         V = calibration.sigma**2 * solve(information, np.broadcast_to(np.eye(len(S)), information.shape))
         return np.sqrt(np.einsum("nij,...jk,nik->...n", J, V, J).mean(axis=-1))
 
@@ -110,7 +110,7 @@ def next_view(calibration):
     views = project(trial, camera, np.array(poses))
     seen_at = points[:, :2] - views[0].reshape(len(poses), -1, 2)
     empty, tried = calibration.coverage.counts == 0, []
-    before, after = float(doubt(S)), doubt(S + reduce(B, *views)[0]).tolist()
+    before, after = float(error(S)), error(S + reduce(B, *views)[0]).tolist()
     for place, tilt, surer, xy in zip(places, tilts, after, seen_at, strict=True):
         if (xy > 2).all() and (xy < np.array([w, h]) - 3).all():
             new = int((empty & (_counts(xy, calibration.size) > 0)).sum())

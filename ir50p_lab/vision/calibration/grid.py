@@ -106,7 +106,7 @@ def grow(grid, grey):
     for side in ("right", "bottom", "left", "top"):
         while max(grid.shape[:2]) < 60:
             following = _next_column(grid)
-            out, along = following - grid[:, -1], _ways(grid[:, -1], 0)
+            out, along = following - grid[:, -1], _gradient(grid[:, -1], 0)
             found = _crossings(following, 0.3 * out, 0.3 * along, grey, swing)
             known = found[np.isfinite(found)]
             if len(known) <= 0.8 * len(found):
@@ -122,7 +122,7 @@ def grow(grid, grey):
 def _next_column(grid):
     """Continue the last three columns of a grid by one (rows, 2): perspective from the cross-ratio, row by row."""
     a, b, c = grid[:, -3], grid[:, -2], grid[:, -1]
-    ab, bc = (np.maximum(np.hypot(*way.T), 1e-6)[:, None] for way in (b - a, c - b))
+    ab, bc = (np.maximum(np.hypot(*side.T), 1e-6)[:, None] for side in (b - a, c - b))
     # equally spaced points have the cross-ratio 4/3: (ac * bd) / (bc * ad)
     cd = bc * (ab + bc) / np.maximum(3 * ab - bc, 0.2 * bc)
     return c + (c - b) / bc * cd
@@ -169,17 +169,17 @@ def next_to_margin(grid, grey):
 
 
 def _steps(grid):
-    """Corners (n, 2) of a grid, and the way to the next one along its rows and down its columns."""
-    return (a.reshape(-1, 2) for a in (grid, _ways(grid, 1), _ways(grid, 0)))
+    """Corners (n, 2) of a grid, and the step to the next one along its rows and down its columns."""
+    return (a.reshape(-1, 2) for a in (grid, _gradient(grid, 1), _gradient(grid, 0)))
 
 
-def _ways(corners, axis):
+def _gradient(corners, axis):
     """`np.gradient` along an axis, in a fifth of the time."""
     corners = corners.swapaxes(0, axis)
-    ways = np.empty_like(corners)
-    ways[1:-1] = (corners[2:] - corners[:-2]) / 2
-    ways[0], ways[-1] = corners[1] - corners[0], corners[-1] - corners[-2]
-    return ways.swapaxes(0, axis)
+    slopes = np.empty_like(corners)
+    slopes[1:-1] = (corners[2:] - corners[:-2]) / 2
+    slopes[0], slopes[-1] = corners[1] - corners[0], corners[-1] - corners[-2]
+    return slopes.swapaxes(0, axis)
 
 
 def _in_squares(grid, grey, swing):

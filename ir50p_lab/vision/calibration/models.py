@@ -29,10 +29,10 @@ class Evidence:
     why: str = ""
 
     def __str__(self):
-        verdict = ("dropped", "kept") if self.term in _LIMIT else ("no", "yes")
+        answer = ("dropped", "kept") if self.term in _LIMIT else ("no", "yes")
         but = f"; but {self.why}" if self.why else ""
         return (
-            f"{self.term}: {verdict[self.kept]} (such an improvement by "
+            f"{self.term}: {answer[self.kept]} (such an improvement by "
             f"chance: {in_percent(self.p_value)}; the limit is {100 * self.limit:g} %{but})"
         )
 

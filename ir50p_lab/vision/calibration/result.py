@@ -48,7 +48,7 @@ class Calibration:
     distortion     k1, k2, p1, p2, k3 as in `Pinhole`; 0 where the data need no such term                   (5,)
     rms            root mean square distance between corners and model: sqrt(sum |e|^2 / N)                 px
     stderr         standard error of "fx", "fy", "cx", "cy", "k1"...: the larger of two routes, and the     dict
-                   doubt about the model; nan where not estimated
+                   uncertainty of the model; nan where not estimated
     covariance     of fx, fy, cx, cy, k1, k2, p1, p2, k3 with those standard errors; 0 where not estimated  (9, 9)
     views          View of each picture used                                                                tuple
     rejected       Rejected: each picture not used, with a reason                                           tuple

@@ -1,4 +1,4 @@
-"""Whether a recording of a joint can be believed: what is meaningless is refused, every other doubt is a sentence."""
+"""Whether a recording of a joint can be believed: what is meaningless is refused, all else is a warning."""
 
 import math
 
@@ -33,14 +33,14 @@ _MORE = {
 }
 
 
-class Doubts(list):
+class Warnings(list):
     """Sentences; `refuse` raises IdentificationError, with them, unless `anyway`: then it adds its sentence too."""
 
     def __init__(self, anyway=False, who=""):
         self.anyway, self.who = anyway, who
 
     def add(self, sentence):
-        """Another doubt."""
+        """Another warning."""
         self.append(self.who + sentence)
 
     def refuse(self, sentence):
@@ -50,42 +50,42 @@ class Doubts(list):
         self.add(f"gone on anyway: {sentence}")
 
 
-def check_signals(doubts, t, q, u):
+def check_signals(warned, t, q, u):
     """What is wrong with q (n,) and u (n,) at the times t (n,) before any model; True for samples that are new."""
     new = np.ones(len(t), dtype=bool)
     if len(t) < FEWEST:
-        doubts.refuse(f"{len(t)} samples are too short a record; record {FEWEST} or more, over several reversals")
+        warned.refuse(f"{len(t)} samples are too short a record; record {FEWEST} or more, over several reversals")
     for name, x in (("q", q), ("u", u)):
         if np.ptp(x) <= 1e-12 * np.abs(x).max():
             remedy = "check sensor and power, and drive harder than the breakaway friction, to both sides"
-            raise IdentificationError(f"{doubts.who}{name} is constant at {x[0]:.6g}: {remedy}")
-        check_outliers(doubts, name, t, x)
+            raise IdentificationError(f"{warned.who}{name} is constant at {x[0]:.6g}: {remedy}")
+        check_outliers(warned, name, t, x)
     if len(np.unique(q)) < 3:
-        doubts.refuse(f"q takes only {len(np.unique(q))} values: no motion can be seen; use a finer sensor")
+        warned.refuse(f"q takes only {len(np.unique(q))} values: no motion can be seen; use a finer sensor")
     else:
-        _whole_turns(doubts, t, q)
-        new = _repeated_angles(doubts, q)
-        _frozen_angle(doubts, t, q)
-        _clipped_angle(doubts, t, q)
+        _whole_turns(warned, t, q)
+        new = _repeated_angles(warned, q)
+        _frozen_angle(warned, t, q)
+        _clipped_angle(warned, t, q)
     if np.ptp(q) > _TURNS:
-        doubts.add(f"q spans {np.ptp(q):.4g} rad: is it in degrees? Use np.radians(q)")
+        warned.add(f"q spans {np.ptp(q):.4g} rad: is it in degrees? Use np.radians(q)")
     period = sampling_period(t)
     if period > _SLOW_CLOCK:
-        doubts.add(f"one sample every {period:.4g} s: is t in ms or microseconds? Give seconds")
+        warned.add(f"one sample every {period:.4g} s: is t in ms or microseconds? Give seconds")
     return new
 
 
-def _whole_turns(doubts, t, q):
+def _whole_turns(warned, t, q):
     """Angles that jump by a whole turn between neighbours (2 pi rad, or 360 degrees)."""
     step = np.abs(np.diff(q))
     for turn in (2 * math.pi, 360.0):
         jumps = t[1:][(np.abs(step - turn) < 0.1 * turn) & (step > 15 * np.median(step))]
         if len(jumps):
             remedy = f"use np.unwrap(q, period={turn:.6g})"
-            doubts.refuse(f"q jumps by {turn:.4g} at t = {jumps[0]:.6g} s: a whole turn was wrapped; {remedy}")
+            warned.refuse(f"q jumps by {turn:.4g} at t = {jumps[0]:.6g} s: a whole turn was wrapped; {remedy}")
 
 
-def _repeated_angles(doubts, q):
+def _repeated_angles(warned, q):
     """Samples in which q is new, where it is renewed more slowly than rows are written; else all."""
     steps = np.abs(np.diff(q))
     new = np.flatnonzero(steps > 0)
@@ -93,11 +93,11 @@ def _repeated_angles(doubts, q):
     regular = np.mean(np.abs(np.diff(new) - every) < 0.6) >= 0.7  # or it stood still now and then
     if every < 1.9 or np.median(steps[new]) < 4 * quantum_of(q) or not regular:  # small: the steps of a coarse sensor
         return np.ones(len(q), dtype=bool)
-    doubts.add(f"q is new only in every {every:.3g}th row (a slow sensor): the others were left out")
+    warned.add(f"q is new only in every {every:.3g}th row (a slow sensor): the others were left out")
     return np.r_[True, steps > 0]
 
 
-def _frozen_angle(doubts, t, q):
+def _frozen_angle(warned, t, q):
     """A q that stands still for some samples and then jumps within one, as it does where a sensor or a link hangs."""
     steps = np.where(np.diff(t) < 1.5 * sampling_period(t), np.abs(np.diff(q)), 0.0)  # a gap is no jump
     usual = float(np.quantile(steps[steps > 0], 0.98)) if steps.any() else np.inf
@@ -106,10 +106,10 @@ def _frozen_angle(doubts, t, q):
     frozen = np.flatnonzero((stood >= _STAYS) & (steps[moved] > _JUMP * usual))
     if len(frozen):
         where = f"t = {t[moved[frozen[0]] + 1]:.6g} s ({len(frozen)} time(s))"
-        doubts.refuse(f"q stands still and jumps at {where}: the sensor or link hung; leave these samples out")
+        warned.refuse(f"q stands still and jumps at {where}: the sensor or link hung; leave these samples out")
 
 
-def _clipped_angle(doubts, t, q):
+def _clipped_angle(warned, t, q):
     """A q that runs into its largest or smallest value, stays there, and comes out of it as suddenly."""
     for name, x in (("largest", q), ("smallest", -q)):
         places = np.flatnonzero(x >= x.max() - 1e-9 * np.ptp(x))
@@ -117,7 +117,7 @@ def _clipped_angle(doubts, t, q):
         missing = max([_cut_off(t, x, *stay) for stay in stays], default=0.0)
         if missing > 0:
             where = f"{name} value, {q[places[0]]:.6g} rad (about {missing:.2g} rad are missing)"
-            doubts.refuse(f"q was clipped at its {where}: record within the range, or cut these stretches out")
+            warned.refuse(f"q was clipped at its {where}: record within the range, or cut these stretches out")
 
 
 def _cut_off(t, x, begin, end):
@@ -146,8 +146,8 @@ def _slope(t, x, first, m):
     return float(t @ x / (t @ t))
 
 
-def check_outliers(doubts, name, t, x, remedy="leave these samples out"):
-    """A doubt about samples of x (n,) that are far from both neighbours, which agree. Returns their indices.
+def check_outliers(warned, name, t, x, remedy="leave these samples out"):
+    """A warning of samples of x (n,) that are far from both neighbours, which agree. Returns their indices.
 
     Lost counts, bad bytes; not torque ripple, where all neighbours are far from each other.
     """
@@ -160,26 +160,26 @@ def check_outliers(doubts, name, t, x, remedy="leave these samples out"):
     places = np.flatnonzero(far & (np.abs(x[2:] - x[:-2]) < 0.4 * off)) + 1
     if len(places):
         k = places[0]
-        doubts.add(f"{name} has {len(places)} outlier(s), the first at t = {t[k]:.6g} s, {x[k]:.4g}: {remedy}")
+        warned.add(f"{name} has {len(places)} outlier(s), the first at t = {t[k]:.6g} s, {x[k]:.4g}: {remedy}")
     return places
 
 
-def check_measured_speed(doubts, t, q, v):
+def check_measured_speed(warned, t, q, v):
     """A qd that is not the rate of q: another unit, another joint."""
     near = np.diff(t) < 1.5 * sampling_period(t)  # not across gaps
     rate, v = (np.diff(q) / np.diff(t))[near], ((v[1:] + v[:-1]) / 2)[near]
     factor = float(rate @ v / max(v @ v, 1e-300))
     if not 0.9 < factor < 1.1:
-        doubts.add(f"the angle changes at {factor:.3g} times qd: is qd in rad/s and q in rad, of the same joint?")
+        warned.add(f"the angle changes at {factor:.3g} times qd: is qd in rad/s and q in rad, of the same joint?")
 
 
-def check_motion(doubts, band):
+def check_motion(warned, band):
     """A motion that is not faster than the noise of its own angle."""
     if band.speed < _MOTION * band.speed_noise or band.speed == 0:
-        doubts.refuse(f"not exciting: {band.speed:.2g} rad/s, noise alone {band.speed_noise:.2g} rad/s; move faster")
+        warned.refuse(f"not exciting: {band.speed:.2g} rad/s, noise alone {band.speed_noise:.2g} rad/s; move faster")
 
 
-def check_clipped_drive(doubts, u, found):
+def check_clipped_drive(warned, u, found):
     """A u that was cut off in the recording only: the motion shows that more was there.
 
     The model of the other samples is compared with those where u has its largest or smallest value. A drive that
@@ -202,77 +202,77 @@ def check_clipped_drive(doubts, u, found):
         reach = math.sqrt(plain.sum() * np.mean(np.sum(np.linalg.solve(R.T, A[cut].T) ** 2, axis=0)))
         if excess.mean() > max(_EXCESS * np.ptp(u), _BEYOND * rms * reach):
             needed = f"{limit:.6g}, where the motion needs {limit + sign * excess.max():.4g}"
-            doubts.refuse(f"u was clipped at its {name} value, {needed}: record a wider range, or drive less")
+            warned.refuse(f"u was clipped at its {name} value, {needed}: record a wider range, or drive less")
     share = float((extreme.max(axis=1) > 0.5).mean())
     if share > 0.1 and rms > 0.08 * np.std(found.y):
-        doubts.add(f"u is at its limits in {100 * share:.0f} % of the record, not explained: clipped? Drive less")
+        warned.add(f"u is at its limits in {100 * share:.0f} % of the record, not explained: clipped? Drive less")
 
 
-def check_model(doubts, found, band, period):
+def check_model(warned, found, band, period):
     """All that the fit itself shows."""
     table, left, n = found.table, found.left, len(found.y)
     total, missed = max(n * np.var(found.y), 1e-300), n * left.rms**2
     fastest = np.abs(table.v).max()
     if fastest > _FAST:
-        doubts.add(f"the joint reaches {fastest:.3g} rad/s: is q in degrees?")
+        warned.add(f"the joint reaches {fastest:.3g} rad/s: is q in degrees?")
     with_gravity = n * found.beside(table.columns[:, 1:3])[-1] ** 2
     explained = 1 - min(with_gravity, missed) / total
     F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
     if explained < _EXPLAINED or (F < _F and explained < 0.5):
         share = f"{100 * max(explained, 0):.1f} % of its variance (F = {F:.1f}, needed {_F:.0f})"
-        doubts.refuse(f"u does not belong to this motion, which explains {share}: same joint and clock? A spring?")
+        warned.refuse(f"u does not belong to this motion, which explains {share}: same joint and clock? A spring?")
     elif F < _F:
-        doubts.add(f"only {left.independent:.0f} independent samples (F = {F:.1f}): record longer, with more reversals")
-    _check_friction(doubts, found)
+        warned.add(f"only {left.independent:.0f} independent samples (F = {F:.1f}): record longer, with more reversals")
+    _check_friction(warned, found)
     if "inertia" in found.names:
-        _check_inertia(doubts, found, band, period)
+        _check_inertia(warned, found, band, period)
     if found.misfit > 1 - _POOR:
         fit = f"fit {100 * (1 - found.misfit):.0f} %"
-        doubts.add(f"the model explains little of u ({fit}): do not use it yet; look at q, u and load")
+        warned.add(f"the model explains little of u ({fit}): do not use it yet; look at q, u and load")
     gravity = "gravity_sin" not in found.names and np.ptp(table.q) > 0.2
     if gravity and with_gravity < 0.5 * missed and missed > 1e-4 * total:
         share = 100 * (1 - with_gravity / missed)
-        doubts.add(f"{share:.0f} % of what is left of u go with sin q and cos q: add terms=(..., 'gravity')")
+        warned.add(f"{share:.0f} % of what is left of u go with sin q and cos q: add terms=(..., 'gravity')")
     if left.correlation > 0.9 and missed > _MISSING**2 * total:
-        doubts.add(f"residuals are far from white ({left.correlation:.2f}): something is missing (backlash, a spring)")
+        warned.add(f"residuals are far from white ({left.correlation:.2f}): something is missing (backlash, a spring)")
 
 
-def _check_friction(doubts, found):
+def _check_friction(warned, found):
     """Friction that gives energy, drowns in its error, or cannot be told apart."""
     known = {name: found.value(name) for name in _MORE if math.isfinite(found.value(name)[1])}
     if math.isinf(found.value("coulomb")[1]):
         one_side = np.ptp(np.sign(found.table.direction)) == 0
         why = "the offset: the joint turns to one side only" if one_side else "viscous friction: one speed only"
-        doubts.add(f"Coulomb friction cannot be told from {why}; record {_MORE['coulomb']}")
+        warned.add(f"Coulomb friction cannot be told from {why}; record {_MORE['coulomb']}")
     negative = [name for name, (x, stderr) in known.items() if x < -3 * stderr and name != "stribeck"]
     if {"viscous", "coulomb"} <= set(negative):
-        doubts.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
+        warned.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
     for name, (x, stderr) in known.items():
         said = f"{name.replace('coulomb', 'Coulomb')} friction {{}} ({x:.3g} +- {stderr:.2g}); record {_MORE[name]}"
         if name in negative:
-            doubts.add(said.format("is negative, but no brake gives energy; is u late (delay=)?"))
+            warned.add(said.format("is negative, but no brake gives energy; is u late (delay=)?"))
         elif stderr > 0.5 * abs(x):
-            doubts.add(said.format("drowns in its error") + ", or leave this term out")
+            warned.add(said.format("drowns in its error") + ", or leave this term out")
 
 
-def _check_inertia(doubts, found, band, period):
+def _check_inertia(warned, found, band, period):
     """An inertia that is not there, is biased, or is mixed up with a delay of u."""
     J, stderr = found.value("inertia")
     if math.isinf(stderr):
-        doubts.add("inertia: the acceleration is noise or nothing here; record faster reversals, or a finer angle")
+        warned.add("inertia: the acceleration is noise or nothing here; record faster reversals, or a finer angle")
         return
     if J < 0:
-        doubts.add(f"inertia {J:.3g} +- {stderr:.2g} was left out: negative by wrong timing (delay=) or sign of u")
+        warned.add(f"inertia {J:.3g} +- {stderr:.2g} was left out: negative by wrong timing (delay=) or sign of u")
     elif stderr > 0.5 * J:
-        doubts.add(f"inertia {J:.3g} +- {stderr:.2g}: this motion hardly shows it; record faster reversals")
+        warned.add(f"inertia {J:.3g} +- {stderr:.2g}: this motion hardly shows it; record faster reversals")
     elif band.acceleration_share > 0.03:
-        doubts.add(f"inertia: {100 * band.acceleration_share:.0f} % too small by noise; move faster, or filter more")
+        warned.add(f"inertia: {100 * band.acceleration_share:.0f} % too small by noise; move faster, or filter more")
     b = found.value("viscous")[0]
     if 0 < J < b * period:
-        doubts.add(f"the time constant {J / b:.3g} s is below the sampling period of {period:.3g} s: sample faster")
+        warned.add(f"the time constant {J / b:.3g} s is below the sampling period of {period:.3g} s: sample faster")
     lag = found.beside(found.table.slopes[:, 1 - found.held])  # u behind a low pass: what went in is u + lag du/dt
     delay, sigma, rms = min(found.beside_delay[2:], lag[2:], key=lambda one: one[2])
     if rms < 0.9 * found.left.rms and abs(delay) > max(5 * sigma, 0.3 * period):
         late = f"u seems to act about {delay:.2g} s after it was recorded: inertia too large; give delay="
         early = f"q seems to be recorded {-delay:.2g} s before u, or u is filtered: inertia too small; shift one"
-        doubts.add(late if delay > 0 else early)
+        warned.add(late if delay > 0 else early)
