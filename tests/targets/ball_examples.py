@@ -66,7 +66,7 @@ def crowded_examples(seed, kind, *, copies=2, folder=None):
 
 
 def _guesses(image, most):
-    return np.concatenate([guess(image, RED, LEAST_RADIUS)[:most, :3] for guess in (guess_circles, guess_closer)])
+    return np.concatenate([guess(image, RED, LEAST_RADIUS)[:most] for guess in (guess_circles, guess_closer)])
 
 
 def _look(image, guesses, balls, colour):

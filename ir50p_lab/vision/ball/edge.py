@@ -5,6 +5,8 @@ from functools import cache
 import cv2
 import numpy as np
 
+from ir50p_lab.jit import jit
+
 
 @cache
 def slope_kernel(sigma):
@@ -14,20 +16,28 @@ def slope_kernel(sigma):
     return (kernel / np.abs(kernel).sum()).astype(np.float32)
 
 
+@jit()
 def cast(image, x, y, radii, relative, directions):
     """Sample the picture along rays from (x, y), one ray a row: at `relative` (m,) times `radii` (n,) or (1,) pixels.
 
-    directions: cos and sin (n,) of the rays. Returns: distances rho (n, m) from (x, y), pixels; rgb (n, m, 3) uint8;
-    within (n, m): the sample lies in the picture.
+    directions: cos and sin (n,) of the rays. Returns: distances rho (n, m) from (x, y), pixels; rgb (n, m, 3) uint8,
+    bilinear, of the border outside the picture; within (n, m): the sample lies in the picture.
     """
-    cos, sin = directions
-    rho = np.multiply.outer(np.broadcast_to(radii, cos.shape), relative).astype(np.float32)
-    px, py = rho * cos[:, None], rho * sin[:, None]
-    px += np.float32(x)
-    py += np.float32(y)
-    height, width = image.shape[:2]
-    rgb = cv2.remap(image, px, py, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-    within = (px >= -0.5) & (px <= width - 0.5) & (py >= -0.5) & (py <= height - 0.5)
+    height, width, _ = image.shape
+    n, m = len(directions[0]), len(relative)
+    rho, rgb, within = np.empty((n, m)), np.empty((n, m, 3), np.uint8), np.empty((n, m), np.bool_)
+    for i, j in np.ndindex(n, m):
+        rho[i, j] = radii[i % len(radii)] * relative[j]
+        px, py = x + rho[i, j] * directions[0][i], y + rho[i, j] * directions[1][i]
+        within[i, j] = -0.5 <= px <= width - 0.5 and -0.5 <= py <= height - 0.5
+        px, py = min(max(px, 0.0), width - 1.0), min(max(py, 0.0), height - 1.0)
+        left, above = int(px), int(py)
+        right, below = min(left + 1, width - 1), min(above + 1, height - 1)
+        u, v = px - left, py - above
+        for c in range(3):
+            upper = image[above, left, c] * (1 - u) + image[above, right, c] * u
+            lower = image[below, left, c] * (1 - u) + image[below, right, c] * u
+            rgb[i, j, c] = int(upper * (1 - v) + lower * v + 0.5)
     return rho, rgb, within
 
 
@@ -38,6 +48,7 @@ def directions(n):
     return np.cos(angle), np.sin(angle)
 
 
+@jit()
 def contrast_axis(rgb, within, inner, outer):
     """The direction in RGB that tells ball from surroundings best (Fisher): weights (3,), step between them = 1.
 
@@ -46,22 +57,31 @@ def contrast_axis(rgb, within, inner, outer):
     Returns: weights float32, the level half way between the means (in units of the step), distance of the means over
     their spread (0: nothing tells them apart).
     """
-    parts = slice(inner), slice(outer, None)
-    sides = [rgb[:, part].reshape(-1, 3).compress(within[:, part].ravel(), axis=0) for part in parts]
-    if min(map(len, sides)) < 12:
+    count, mean, product = np.zeros(2), np.zeros((2, 3)), np.zeros((2, 3, 3))
+    for i, j in np.ndindex(within.shape):
+        if within[i, j] and not inner <= j < outer:
+            side = int(j >= outer)
+            count[side] += 1
+            for a in range(3):
+                mean[side, a] += rgb[i, j, a]
+                for b in range(3):
+                    product[side, a, b] += rgb[i, j, a] * rgb[i, j, b]
+    if count.min() < 12:
         return np.zeros(3, np.float32), 0.0, 0.0
-    scaled = cv2.COVAR_NORMAL | cv2.COVAR_ROWS | cv2.COVAR_SCALE
-    (covariance, inside), (around, outside) = (cv2.calcCovarMatrix(side, None, scaled) for side in sides)
-    scatter = 0.5 * (covariance + around) + 64.0 * np.eye(3)  # of noise and compression: eight levels
-    step = (inside - outside)[0]
+    scatter = 64.0 * np.eye(3)  # of noise and compression: eight levels
+    for side in range(2):
+        mean[side] /= count[side]
+        scatter += 0.5 * (product[side] / count[side] - np.outer(mean[side], mean[side]))
+    step = mean[0] - mean[1]
     w = np.linalg.solve(scatter, step)
-    apart = float(w @ step)  # squared Mahalanobis distance
+    apart = np.dot(w, step)  # squared Mahalanobis distance
     if not apart > 1e-6:
         return np.zeros(3, np.float32), 0.0, 0.0
-    w = (w / apart).astype(np.float32)
-    return w, 0.5 * float(w @ (inside + outside)[0]), apart**0.5
+    w /= apart
+    return w.astype(np.float32), 0.5 * np.dot(w, mean[0] + mean[1]), np.sqrt(apart)
 
 
+@jit()
 def find_edges(rho, rgb, within, weights, kernel, expected, width):
     """The strongest fall of contrast along each ray, near where it is expected, to a fraction of a sample.
 
@@ -69,13 +89,23 @@ def find_edges(rho, rgb, within, weights, kernel, expected, width):
     be; width: in samples, how fast a peak loses weight away from it.
     Returns: distance (n,) of the edge, pixels; height (n,) of its step, in units of the ball's contrast.
     """
-    profile = cv2.transform(rgb.astype(np.float32), weights[None])
-    slope = cv2.filter2D(profile, -1, kernel[None], borderType=cv2.BORDER_REPLICATE)
-    near = 1 + ((np.arange(slope.shape[1]) - expected) / width) ** 2
-    peak = 1 + np.argmax((slope / near)[:, 1:-1], axis=1)
-    ray = np.arange(len(slope))
-    before, top, after = slope[ray, peak - 1], slope[ray, peak], slope[ray, peak + 1]
-    bend = before - 2 * top + after
-    shift = np.where(bend < 0, np.clip(0.5 * (before - after) / np.minimum(bend, -1e-9), -0.5, 0.5), 0)
-    at = rho[:, 0] + (peak + shift) * (rho[:, 1] - rho[:, 0])
-    return at, 2 * top * within[ray, peak + 1]
+    n, m = within.shape
+    half = len(kernel) // 2
+    at, height = np.empty(n), np.empty(n)
+    profile, slope = np.empty(m + 2 * half, np.float32), np.empty(m, np.float32)
+    near = (1 + ((np.arange(m) - expected) / width) ** 2).astype(np.float32)
+    for i in range(n):
+        for j in range(m):
+            profile[half + j] = rgb[i, j, 0] * weights[0] + rgb[i, j, 1] * weights[1] + rgb[i, j, 2] * weights[2]
+        profile[:half], profile[half + m :] = profile[half], profile[half + m - 1]
+        slope[:] = 0
+        for k in range(len(kernel)):
+            for j in range(m):
+                slope[j] += kernel[k] * profile[k + j]
+        peak = 1 + np.argmax(slope[1:-1] / near[1:-1])
+        before, top, after = slope[peak - 1], slope[peak], slope[peak + 1]
+        bend = before - 2 * top + after
+        shift = min(max(0.5 * (before - after) / bend, -0.5), 0.5) if bend < 0 else 0.0
+        at[i] = rho[i, 0] + (peak + shift) * (rho[i, 1] - rho[i, 0])
+        height[i] = 2 * top * within[i, peak + 1]
+    return at, height

@@ -21,12 +21,12 @@ from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import as_pinhole
 
 # Guesses of which the colour is looked at, and of these measured; the closer look is for pictures that show no ball yet
-_FIRST, _CLOSER = (14, 14), (40, 3)
+_FIRST, _CLOSER = (14, 14), (40, 5)
 
 _LEAST_ODDS = 1.8  # log odds that a ball needs: well above 0, as a false alarm is worse than a miss
 _SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more
 # share of the outline below which the end of a rod can, and what is missing costs, times its share
-_CLEAR, _MORE_HIDDEN = 0.75, 5.0
+_CLEAR, _MORE_HIDDEN = 0.75, 4.0
 _SURE, _BY_SUPPORT = 0.9975, 5.0  # score beyond which only the edge tells outlines apart; what its share counts
 # The outline of a ball leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and of a pixel.
 _MOST_BUMPS = 0.010, 0.45
@@ -35,7 +35,7 @@ _COMPRESSED = 0.3  # overexposure from which on a hue is not to be trusted: tone
 _LEAST_VALUE = 0.2
 _REDS = 20  # degrees from red, 0, of the hues that skin and brown are mistaken for
 _GLARE = 0.95  # value from which on a disc is overexposed, and its paint cannot be seen
-_SKIN, _BROWN = (5.0, 0.5), (8.0, 0.72, 0.45)  # degrees towards orange; then least saturation, value
+_SKIN, _BROWN = (5.0, 0.6), (8.0, 0.72, 0.45)  # degrees towards orange; then least saturation, value
 # Of a guess, which may be off, and its ball in glare or hidden by a thing of nearly its hue: part of the disc that must
 # have the colour; by how much less its hue is off than noise makes of it, degrees; what its paint may be off
 _LEAST_ALIKE, _NOISE, _PAINT_ERROR = 0.15, 2.0, (-1.0, 0.01, 0.02)
@@ -121,10 +121,10 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         camera = as_pinhole(camera)
         check_picture_size(camera, image.shape[1::-1])
     view = view_of(image.shape, camera)
-    measured, rejected, outlines = [], [], []
+    measured, rejected = [], []
     for guess, (looks, most) in ((guess_circles, _FIRST), (guess_closer, _CLOSER)):
-        tries = 0
-        for x, y, r, _ in guess(image, colour, least_radius)[:looks].tolist():
+        tries, outlines = 0, []
+        for x, y, r in guess(image, colour, least_radius)[:looks].tolist():
             if any(np.hypot(x - o.x, y - o.y) + abs(r - o.r) < 0.3 * r for o in outlines):
                 continue  # an earlier guess led to the same outline
             if tries == most:
@@ -239,7 +239,7 @@ def _hue_of_disc(hsv, centre):
     hue = np.abs((2.0 * hsv[:, :, 0] - centre + 180) % 360 - 180).ravel()
     clear = hue[hsv[:, :, 2].ravel() < 255 * _GLARE]
     purest = np.sort(hue)[int(_LEAST_ALIKE * hue.size)]
-    return min(np.median(clear), purest + _NOISE) if clear.size > _ENOUGH * hue.size else 0.0
+    return min(np.median(clear) - _NOISE, purest + _NOISE) if clear.size > _ENOUGH * hue.size else 0.0
 
 
 def _other_colour(hue, paint, colour):

@@ -55,10 +55,8 @@ class Outline:
 
     def radii(self, cos, sin):
         """Distance from (x, y) to the outline along unit directions (cos, sin) (n,), pixels."""
-        t = np.full(len(cos), self.r)
-        for _ in range(3):  # Newton's method
-            t = t - self.distances(self.x + t * cos, self.y + t * sin)
-        return t
+        v = self.view
+        return _radii(cos, sin, self.x, self.y, self.r, *self.cone, v.cx, v.cy, v.aspect, self.kappa)
 
 
 def view_of(shape, camera=None):
@@ -98,6 +96,14 @@ def _distances(x, y, a, b, c, cx, cy, aspect, kappa):
     root = np.sqrt(1 + kappa * square)
     slope = np.maximum(np.hypot(2 * X / root - a, 2 * Y / root - b), 1e-9)
     return (_lift(square, kappa) - a * X - b * Y - c) / slope
+
+
+@jit()
+def _radii(cos, sin, x, y, r, a, b, c, cx, cy, aspect, kappa):
+    t = np.full(len(cos), r)
+    for _ in range(3):  # Newton's method
+        t -= _distances(x + t * cos, y + t * sin, a, b, c, cx, cy, aspect, kappa)
+    return t
 
 
 @jit()

@@ -179,21 +179,21 @@ def _through_the_lens(x, y, outline, view, camera):
     return tuple(map(float, camera.to_pixels(camera.distort(camera.to_normalised(np.array([fit.x, fit.y]))))))
 
 
+@jit()
 def _waves(off, cos, sin, r):
     """rms of the waves 3 to 8 in the distances (n,) around the circle, noise taken off, and of wave 2; over r."""
-    turn = cos + 1j * sin
-    power = turn[:, None] ** np.arange(2, 9)
-    A = np.concatenate([power.real, power.imag], axis=1)
-    n = len(off)
-    gram = A.T @ A
-    gram.flat[:: len(gram) + 1] += 0.04 * n  # an arc cannot tell all waves apart
-    size = np.linalg.solve(gram, A.T @ off)
-    waves = A * size
-    oval = waves[:, 0] + waves[:, 7]
-    bumps = waves.sum(axis=1) - oval
-    left = float(np.mean((off - oval - bumps) ** 2))
+    n, turn = len(off), cos + 1j * sin
+    A = np.empty((14, n))
+    power = turn * turn
+    for k in range(7):
+        A[2 * k], A[2 * k + 1] = power.real, power.imag
+        power = power * turn
+    size = np.linalg.solve(A @ A.T + 0.04 * n * np.eye(14), A @ off)  # an arc cannot tell all waves apart
+    oval = size[:2] @ A[:2]
+    bumps = size[2:] @ A[2:]
+    left = np.mean((off - oval - bumps) ** 2)
     waving = max(np.mean(bumps**2) - left * 12 / n, 0.0)
-    return float(np.sqrt(waving)) / r, float(np.sqrt(np.mean(oval**2))) / r, float(np.sqrt(left)) / r
+    return np.sqrt(waving) / r, np.sqrt(np.mean(oval**2)) / r, np.sqrt(left) / r
 
 
 def _gaps(missing):
@@ -234,8 +234,9 @@ def _colours(image, outline, colour, unit):
 def paint_of(hsv, centre, swaps):
     """Of HSV samples (n, 3) of the disc: hue from the colour's towards orange, degrees; saturation; value, 0..1.
 
-    The value is that of the lighter part: a ball has one, what is nearly black has none. centre, swaps: of the Colour.
+    Saturation is that of the purest fifth, which gloss does not pale; value that of the lightest tenth: a ball has one,
+    what is nearly black has none. centre, swaps: of the Colour.
     """
     off = (2.0 * hsv[:, 0] - centre + 180) % 360 - 180
     warm = np.median(-off if swaps else off)
-    return warm, np.median(hsv[:, 1]) / 255, np.sort(hsv[:, 2])[int(0.9 * len(hsv))] / 255
+    return warm, np.sort(hsv[:, 1])[int(0.8 * len(hsv))] / 255, np.sort(hsv[:, 2])[int(0.9 * len(hsv))] / 255

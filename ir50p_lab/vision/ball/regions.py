@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 
 from ir50p_lab.jit import jit
+from ir50p_lab.vision.ball.edge import cast, contrast_axis, directions
 from ir50p_lab.vision.ball.fit import fit_circle
 
 STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
@@ -13,11 +14,14 @@ _LARGEST, _LARGEST_CLOSER = 10, 5  # regions looked at in each mask
 _ROUND = 0.07  # rms over radius of an outline that is a circle as a whole
 _MARGIN = 16  # pixels around what has the colour
 _SMALL = 40_000  # pixels of a part that is searched at full size, too
+_RAYS, _INSIDE = 32, 4  # samples that tell how a guess stands out: directions, and rings inside
+_RINGS = np.array([0.5, 0.65, 0.8, 0.9, 1.1, 1.2, 1.35, 1.5])  # of the radius
+_LEAST_SHARE = 0.22  # of a circle that an arc must be
 _CIRCLES = 4  # of one outline: balls that touch share one
 
 
 def guess_circles(image, colour, least_radius):
-    """First guesses (n, 4): x, y, r in pixels of the picture, and the share of the circle that was an arc.
+    """First guesses (n, 3): x, y, r in pixels of the picture, best first.
 
     A large picture is halved first: it costs a quarter, and noise goes.
     """
@@ -25,7 +29,7 @@ def guess_circles(image, colour, least_radius):
     hsv = colour.hsv_of(small)
     masks = [_opened(cv2.inRange(hsv, *colour.bounds(s))) for s in STRICTNESS]
     circles = _circles_of(masks, least_radius / _shrink(image), _LARGEST)
-    return _different(_unscaled(circles, image, small))
+    return _different(_unscaled(circles, image, small), image)
 
 
 def guess_closer(image, colour, least_radius):
@@ -39,10 +43,10 @@ def guess_closer(image, colour, least_radius):
     shrink, loose = _shrink(image), colour.looser
     left, above, width, height = cv2.boundingRect(colour.loose_mask(colour.hsv_of(_smaller(image, shrink))))
     if not width:
-        return np.empty((0, 4))
+        return np.empty((0, 3))
     x, y = corner = [max(shrink * one - _MARGIN, 0) // 4 * 4 for one in (left, above)]
     part = image[y : shrink * (above + height) + _MARGIN, x : shrink * (left + width) + _MARGIN]
-    found, scales = [np.empty((0, 4))], ((shrink, 1.5), (2 * shrink, 1.2), (1, 1.2))
+    found, scales = [np.empty((0, 3))], ((shrink, 1.5), (2 * shrink, 1.2), (1, 1.2))
     for scale, sigma in scales[: 3 if part.shape[0] * part.shape[1] < _SMALL else 2]:
         small = cv2.GaussianBlur(_smaller(part, scale), (0, 0), sigma)
         hsv = colour.hsv_of(small)
@@ -50,8 +54,8 @@ def guess_closer(image, colour, least_radius):
         if mask.any():
             masks = [_closed(mask), _closed(strict), *_halves(hsv, mask)]
             circles = _circles_of(masks, least_radius / scale, _LARGEST_CLOSER)
-            found.append(_unscaled(circles, part, small) + np.array([*corner, 0, 0]))
-    return _different(np.concatenate(found), agreement=1)
+            found.append(_unscaled(circles, part, small) + np.array([*corner, 0]))
+    return _different(np.concatenate(found), image)
 
 
 def _shrink(image):
@@ -67,15 +71,15 @@ def _smaller(image, shrink):
 def _unscaled(circles, image, small):
     """Circles of the small copy in pixels of the picture."""
     sx, sy = image.shape[1] / small.shape[1], image.shape[0] / small.shape[0]
-    x, y, r, share = circles.T
+    x, y, r = circles.T
     # an outline runs through the centres of its last pixels
-    return np.column_stack([(x + 0.5) * sx - 0.5, (y + 0.5) * sy - 0.5, (r + 0.5) * (sx + sy) / 2, share])
+    return np.column_stack([(x + 0.5) * sx - 0.5, (y + 0.5) * sy - 0.5, (r + 0.5) * (sx + sy) / 2])
 
 
 def _circles_of(found_in, least_radius, most):
-    """Circles (n, 4) in the outlines of masks, of each the `most` longest."""
+    """Circles (n, 3) in the outlines of masks, of each the `most` longest."""
     least = max(1.5, 0.7 * least_radius)
-    found = [np.empty((0, 4))]
+    found = [np.empty((0, 3))]
     for mask in found_in:
         contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
         large = [c[:, 0] for c in contours if len(c) >= max(8, 4 * least)]
@@ -105,7 +109,7 @@ def _halves(hsv, mask):
 
 @jit()
 def circles_in(points, shape, least_radius):
-    """Circles (k, 4), x, y, r, share, in a closed outline (n, 2), best first, in its own pixels.
+    """Circles (k, 3), x, y, r, in a closed outline (n, 2), best first, in its own pixels.
 
     One through all points, if it fits. Else three points some way apart on the outline make a circle; the one with most
     of its length along the outline wins, its points go, and the search goes on with the rest.
@@ -121,18 +125,18 @@ def circles_in(points, shape, least_radius):
     height, width = shape
     # the border of the picture is no outline
     usable = (px > 0.5) & (px < width - 1.5) & (py > 0.5) & (py < height - 1.5)
-    found = np.empty((_CIRCLES, 4))
+    found = np.empty((_CIRCLES, 3))
     if usable.sum() < 6:
         return found[:0]
     x, y, r = fit_circle(px[usable], py[usable])
     off = np.hypot(px[usable] - x, py[usable] - y) - r
     round_enough = 0 < r < max(height, width) and np.sqrt(np.mean(off**2)) < max(_ROUND * r, 0.5)
     if round_enough and usable.mean() > 0.4:
-        found[0] = x, y, r, 1.0
+        found[0] = x, y, r
         return found[:1]
     for k in range(_CIRCLES):
-        x, y, r, share = _vote(p, usable, apart, n / m, least_radius, 0.75 * max(height, width), turn)
-        if share < 0.22:
+        x, y, r = _vote(p, usable, apart, n / m, least_radius, 0.75 * max(height, width), turn)
+        if r == 0:
             return found[:k]
         off = np.abs(np.hypot(px - x, py - y) - r)
         near = usable & (off < max(0.9, 0.06 * r))
@@ -141,7 +145,7 @@ def circles_in(points, shape, least_radius):
             circle = fit_circle(px[near], py[near])
             if circle[2] > 0:
                 x, y, r = circle
-        found[k] = x, y, r, min(share, 0.89)
+        found[k] = x, y, r
         if usable.sum() < 6:
             return found[: k + 1]
     return found
@@ -149,13 +153,10 @@ def circles_in(points, shape, least_radius):
 
 @jit()
 def _vote(p, usable, apart, step, least_radius, most_radius, turn):
-    """The circle (x, y, r) through three points (i, i + d, i + 2 d) near which most of the outline lies, and its share.
-
-    share = 0 if there is none.
-    """
+    """The circle (x, y, r) through points i, i + d, i + 2 d near which most of the outline lies; r = 0: there is none."""
     m, best = len(p), 0.0
     left_x, left_y = p[:, 0][usable], p[:, 1][usable]
-    bx = by = br = bs = 0.0
+    bx = by = br = 0.0
     for d in apart:
         for i in range(m):
             j, k = (i + d) % m, (i + 2 * d) % m
@@ -179,22 +180,28 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
                 square = (left_x[q] - x) ** 2 + (left_y[q] - y) ** 2
                 near += (low < square) & (square < high)  # no branch: several at once
             share = min(near * step / (5.6 * r), 1.0)  # a pixel chain is longer than it counts
-            if share * sqrt(r) > best:
+            if share >= _LEAST_SHARE and share * sqrt(r) > best:
                 best = share * sqrt(r)
-                bx, by, br, bs = x, y, r, share
-    return bx, by, br, bs
+                bx, by, br = x, y, r
+    return bx, by, br
 
 
-def _different(circles, agreement=0):
-    """The circles but for those that a better one already tells.
-
-    Better is a large share of a large circle; with agreement=1 one that many others are like: clutter looks round in
-    one mask, a ball in most of them.
-    """
-    x, y, r, share = circles.T
+def _different(circles, image):
+    """The circles but for those that a better one already tells; better is what stands out from its surroundings."""
+    x, y, r = circles.T
     alike = np.hypot(x - x[:, None], y - y[:, None]) + np.abs(r - r[:, None]) <= 0.25 * np.maximum(r, r[:, None])
-    order = np.argsort(-share * np.minimum(r, 20) ** 0.5 * alike.sum(axis=1) ** agreement, kind="stable")
+    order = np.argsort(-_contrasts(image, circles, directions(_RAYS)), kind="stable")
     alike, new = alike[np.ix_(order, order)], np.zeros(len(circles), bool)
     for i, others in enumerate(alike):
         new[i] = not (others & new).any()
     return circles[order][new]
+
+
+@jit()
+def _contrasts(image, circles, rays):
+    """By how many standard deviations the colour in each circle (n, 3) differs from that around it, (n,)."""
+    apart = np.empty(len(circles))
+    for k, (x, y, r) in enumerate(circles):
+        _, rgb, within = cast(image, x, y, np.full(1, r), _RINGS, rays)
+        apart[k] = contrast_axis(rgb, within, _INSIDE, _INSIDE)[2]
+    return apart
