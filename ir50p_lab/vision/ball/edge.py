@@ -2,7 +2,6 @@
 
 from functools import cache
 
-import cv2
 import numpy as np
 
 from ir50p_lab.jit import jit

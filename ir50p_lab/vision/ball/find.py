@@ -20,8 +20,7 @@ from ir50p_lab.vision.checks import check_picture_size
 from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import as_pinhole
 
-# Guesses of which the colour is looked at, and of these measured; the closer look is for pictures that show no ball yet
-_FIRST, _CLOSER = (14, 14), (40, 5)
+_GUESSES, _CLOSER = 14, 5  # guesses of which the colour is looked at; measured in the closer look, which takes longer
 
 _LEAST_ODDS = 1.8  # log odds that a ball needs: well above 0, as a false alarm is worse than a miss
 _SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more
@@ -122,9 +121,9 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         check_picture_size(camera, image.shape[1::-1])
     view = view_of(image.shape, camera)
     measured, rejected = [], []
-    for guess, (looks, most) in ((guess_circles, _FIRST), (guess_closer, _CLOSER)):
+    for guess, most in ((guess_circles, _GUESSES), (guess_closer, _CLOSER)):
         tries, outlines = 0, []
-        for x, y, r in guess(image, colour, least_radius)[:looks].tolist():
+        for x, y, r in guess(image, colour, least_radius)[:_GUESSES].tolist():
             if any(np.hypot(x - o.x, y - o.y) + abs(r - o.r) < 0.3 * r for o in outlines):
                 continue  # an earlier guess led to the same outline
             if tries == most:
@@ -222,13 +221,16 @@ def _check_colour(image, guess, colour):
 
     Noise breaks up a thing whose hue is near the bounds of the colour's into many guesses. Raises NoBallError.
     """
-    (x, y), r = np.clip(guess[:2], 0, np.subtract(image.shape[1::-1], 1)), guess[2]
+    (height, width, _), (x, y, r) = image.shape, guess
+    x, y = min(max(x, 0), width - 1), min(max(y, 0), height - 1)
     rows, columns = (slice(max(int(at - 0.7 * r), 0), int(at + 0.7 * r) + 2, 1 + int(r / 8)) for at in (y, x))
     hsv = colour.hsv_of(np.ascontiguousarray(image[rows, columns]))
     alike = colour.loose_mask(hsv) > 0
-    if alike.mean() < _LEAST_ALIKE:
-        raise NoBallError(f"hollow, or another colour: {alike.mean():.0%} of the disc have the colour")
-    paint = np.add(paint_of(hsv[alike], colour.centre, colour.swaps), _PAINT_ERROR)
+    part = np.count_nonzero(alike) / alike.size
+    if part < _LEAST_ALIKE:
+        raise NoBallError(f"hollow, or another colour: {part:.0%} of the disc have the colour")
+    seen = paint_of(hsv[alike], colour.centre, colour.swaps)
+    paint = [one + error for one, error in zip(seen, _PAINT_ERROR, strict=True)]
     if why := _other_colour(_hue_of_disc(hsv, colour.centre) / colour.tolerance, paint, colour):
         raise NoBallError(why)
 

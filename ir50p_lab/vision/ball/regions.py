@@ -153,7 +153,7 @@ def circles_in(points, shape, least_radius):
 
 @jit()
 def _vote(p, usable, apart, step, least_radius, most_radius, turn):
-    """The circle (x, y, r) through points i, i + d, i + 2 d near which most of the outline lies; r = 0: there is none."""
+    """The circle (x, y, r) through points i, i + d, i + 2 d near which most of the outline lies, else r = 0."""
     m, best = len(p), 0.0
     left_x, left_y = p[:, 0][usable], p[:, 1][usable]
     bx = by = br = 0.0
