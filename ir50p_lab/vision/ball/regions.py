@@ -17,6 +17,7 @@ _SMALL = 40_000  # pixels of a part that is searched at full size, too
 _RAYS, _INSIDE = 32, 4  # samples that tell how a guess stands out: directions, and rings inside
 _RINGS = np.array([0.5, 0.65, 0.8, 0.9, 1.1, 1.2, 1.35, 1.5])  # of the radius
 _LEAST_SHARE = 0.22  # of a circle that an arc must be
+_LARGE = 20.0  # pixels: a larger circle is no better: two long, nearly straight lines look like one
 _CIRCLES = 4  # of one outline: balls that touch share one
 
 
@@ -102,7 +103,7 @@ def _halves(hsv, mask):
     for channel in range(3):
         values = np.ascontiguousarray(hsv[:, :, channel])
         middle, _ = cv2.threshold(values[mask > 0], 0, 255, cv2.THRESH_OTSU)
-        upper = cv2.bitwise_and(cv2.compare(values, middle, cv2.CMP_GT), mask)
+        upper = np.where(values > middle, mask, np.uint8(0))
         found += [_opened(upper), _opened(cv2.subtract(mask, upper))]
     return found
 
@@ -172,7 +173,8 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
             if not least_radius <= r <= most_radius:
                 continue
             x, y = p[i, 0] + ux, p[i, 1] + uy
-            if not sqrt(r) > best:
+            size = sqrt(min(r, _LARGE))
+            if not size > best:
                 continue
             limit, near = max(0.9, 0.06 * r), 0
             low, high = max(r - limit, 0.0) ** 2, (r + limit) ** 2
@@ -180,8 +182,8 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
                 square = (left_x[q] - x) ** 2 + (left_y[q] - y) ** 2
                 near += (low < square) & (square < high)  # no branch: several at once
             share = min(near * step / (5.6 * r), 1.0)  # a pixel chain is longer than it counts
-            if share >= _LEAST_SHARE and share * sqrt(r) > best:
-                best = share * sqrt(r)
+            if share >= _LEAST_SHARE and share * size > best:
+                best = share * size
                 bx, by, br = x, y, r
     return bx, by, br
 
