@@ -163,8 +163,8 @@ class CutoffView:
 
     @staticmethod
     def _fit(train, valid, kind, cutoff, delay):
-        steps = {"derivatives": kind, "cutoff_hz": cutoff, "trim": 1.0}
-        return validate(learn(train, delay=delay, slow=0.05, **steps), valid, delay=delay, **steps).fit
+        steps = {"derivatives": kind, "cutoff_hz": cutoff, "delay": delay}
+        return validate(learn(train, slow=0.05, trim=1.0, **steps), valid, **steps).fit
 
     def update(self, cutoff):
         """Draw both accelerations for this cut-off, Hz. Returns the fits in words."""

@@ -129,7 +129,9 @@ def _cut_off(t, x, begin, end):
     m = max(3, (end - begin) // 8)
     if begin < 2 * m or end + 2 * m > len(x):
         return 0.0
-    near, far = (np.array([_slope(t, x, begin - k * m, m), -_slope(t, x, end + (k - 1) * m, m)]) for k in (1, 2))
+    places = [slice(first, first + m) for first in (begin - m, end, begin - 2 * m, end + m)]
+    before, after, *earlier = (np.polyfit(t[part] - t[begin], x[part], 1)[0] for part in places)
+    near, far = np.array([before, -after]), np.array([earlier[0], -earlier[1]])
     step, period, quantum = np.diff(x), sampling_period(t), quantum_of(x)
     noise = float(np.median(np.abs(np.diff(step)))) / 0.6745 / math.sqrt(6)
     unsure = (2 * quantum + 8 * noise / math.sqrt(m)) / ((m - 1) * period)
@@ -138,12 +140,6 @@ def _cut_off(t, x, begin, end):
     height = near.mean() * (t[end - 1] - t[begin]) / 4
     seen = 2 * quantum + 1e-4 * np.ptp(x) < height < 3 * np.ptp(x)  # more is a rest, not a hidden swing
     return height if sudden and fast and seen else 0.0
-
-
-def _slope(t, x, first, m):
-    """Slope of a straight line through m samples of x from `first` on."""
-    t, x = t[first : first + m] - t[first : first + m].mean(), x[first : first + m]
-    return float(t @ x / (t @ t))
 
 
 def check_outliers(warned, name, t, x, remedy="leave these samples out"):

@@ -23,15 +23,7 @@ _AROUND = 0.3
 
 
 def fit_with_instruments(
-    first,
-    recordings,
-    controller,
-    references=None,
-    *,
-    delay=0.02,
-    cutoff_hz=3.0,
-    slow=0.1,
-    l2=None,
+    first, recordings, controller, references=None, *, delay=0.02, cutoff_hz=3.0, slow=0.1, l2=None
 ):
     """Estimate with standard errors that hold for noisy angles, too: to be believed, where `identify` is to be used.
 

@@ -50,16 +50,7 @@ class OutputError:
 
 
 def output_error(
-    estimate,
-    recordings,
-    controller,
-    references=None,
-    *,
-    delay=0.02,
-    l2=None,
-    seconds=30.0,
-    iterations=12,
-    progress=True,
+    estimate, recordings, controller, references=None, *, delay=0.02, l2=None, seconds=30, iterations=12, progress=True
 ):
     """Refine an estimate: least squares on the q and u of the simulated closed loop.
 

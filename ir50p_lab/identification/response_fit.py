@@ -8,11 +8,10 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.checks import Warnings, check_outliers
-from ir50p_lab.identification.columns import quantum_of, same_samples
+from ir50p_lab.identification.columns import same_samples
 from ir50p_lab.inputs import number
 from ir50p_lab.jit import jit
 
-_OTHER = 16.0  # least F value of a drift, or of a rest at first that was none
 _FEWEST = 8  # samples from the first change of u on: twice the number of parameters
 _NOISE = 1e-7  # residuals below this share of the response are rounding, not noise
 _STARTS = 3  # rows of the grid whose best points are refined: the sum of squares has kinks and side valleys in L
@@ -85,17 +84,16 @@ def likeness(e):
     return correlation, math.sqrt((1 + correlation) / (1 - correlation))
 
 
-def jacobian(response, p, sizes):
-    """Columns of response(p) by an offset and by the parameters p, from differences; sizes: of the parameters."""
+def standard_errors(response, p, sizes, e):
+    """Of the parameters p of response(p), beside an offset, from residuals e (n,), widened for their likeness.
+
+    sizes: of the parameters, for differences.
+    """
     here = response(p)
     J = [(response(p + step) - here) / step.sum() for step in np.diag(_STEP * np.abs(sizes))]
-    return np.column_stack([np.ones_like(here), *J])
-
-
-def standard_errors(J, e, inflation):
-    """Of the parameters of a jacobian J without the offset, from residuals e (n,), times inflation."""
+    J = np.column_stack([np.ones_like(e), *J])
     length = np.linalg.norm(J, axis=0)
-    spread = math.sqrt(e @ e / (len(e) - J.shape[1])) * inflation
+    spread = math.sqrt(e @ e / (len(e) - J.shape[1])) * likeness(e)[1]
     seen = length > 0  # what the response does not depend on at all has no error: it is not known
     errors = np.full(len(length), np.inf)
     errors[seen] = spread * np.linalg.norm(np.linalg.pinv(J[:, seen] / length[seen]), axis=1) / length[seen]
@@ -145,10 +143,6 @@ class StepRecord:
         self.t, self.times = (t - times[0]) / self.unit, (times - times[0]) / self.unit
         self.y, self.jumps = (y - y[0]) / self.y_unit, jumps / np.abs(jumps).max()
         self.period = float(np.median(np.diff(self.t)))
-        # the steps of a coarse sensor are independent only where it goes from one to the next, or noise mixes them
-        quantum, power = quantum_of(self.y), np.mean(np.diff(self.y, 2) ** 2) / 6
-        mixed = math.exp(-4 * math.pi**2 * max(power / quantum**2 - 1 / 12, 0.0)) if quantum else 1.0
-        self.coarseness = math.sqrt(len(y) * quantum * mixed / (2 * np.abs(self.jumps).sum()))
 
     def columns(self, a, L):
         """(n, 2): x of x' = v(t - L) - a x, and 1."""
@@ -223,8 +217,7 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
 
     Returns: FOPDT. K is negative where y answers a step up by going down. `warnings` tells of a response that is not
     over when the record ends (T longer than it), of T or L below the sampling period (not identifiable, the error is
-    then inf or a period), of correlated residuals, another shape, a drift or a y that was not at rest at first (what
-    these change is in the errors, as are the steps of a coarse sensor), times that look like milliseconds, and single
+    then inf or a period), of correlated residuals, another shape, times that look like milliseconds, and single
     outliers, which are left out.
 
     Raises:
@@ -245,12 +238,8 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
 
     found = np.array([b / a, 1 / a, L])
     units = record.gain, record.unit, record.unit
-    J = jacobian(response, found, np.maximum(np.abs(found), 1e-3 * period))
-    errors = standard_errors(J, e, max(likeness(e)[1], record.coarseness)) * units
-    moved, said = _moved_by_other_starts(record, a, J, e)
-    errors = np.hypot(errors, moved * units)
+    errors = standard_errors(response, found, np.maximum(np.abs(found), 1e-3 * period), e) * units
     _warn(record, 1 / a, L, errors[2] / record.unit, *likeness(e))
-    warned += said
     if a * period > 1 / _SEEN:
         errors[1:] = math.inf
     if L < _SEEN * period:
@@ -302,21 +291,6 @@ def _check_shape(record, a, L, b, e):
     value = f"only K/T has a value, {b * record.gain / record.unit:.4g} y/u per s"
     said = "the response runs on like a ramp, or ever faster: the plant integrates (as angles do), is unstable or slow"
     warned.refuse(f"{said}; {value}: fit the velocity and tune with simc_integrating, or record longer")
-
-
-def _moved_by_other_starts(record, a, J, e):
-    """(3,) by which K, T and L move beside a drift, or a rest at first that was none, and sentences about these."""
-    moved, said = np.zeros(3), []
-    others = {"y drifts by": record.t, "y was not at rest at first, but away by": np.exp(-a * (record.t - record.t[0]))}
-    for what, column in others.items() if len(e) >= _ENOUGH and e @ e > len(e) * _NOISE**2 else ():
-        A = np.column_stack([J, column])
-        x = np.linalg.lstsq(A, -e)[0]
-        left = e + A @ x
-        if (e @ e - left @ left) * len(e) > _OTHER * likeness(left)[1] ** 2 * (left @ left):
-            moved = np.hypot(moved, x[1:4])
-            size = f"{100 * abs(x[-1]) * np.ptp(column):.2g} % of its range"
-            said.append(f"{what} {size}: errors were widened; record longer rest before the step")
-    return moved, said
 
 
 def _warn(record, T, L, L_stderr, correlation, inflation):
@@ -421,7 +395,7 @@ def fit_second_order(t, u, y, *, u_before=None):
         return basis(math.log(p[1]), *p[2:4])[:, : 1 + zeros] @ [p[0], *p[0] * p[4:]]
 
     sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / w, 1e-3 / w][: len(found)])
-    errors = standard_errors(jacobian(response, found, sizes), e, max(likeness(e)[1], record.coarseness))
+    errors = standard_errors(response, found, sizes, e)
     if w * period > 1:
         record.warned.add(f"w is {w * period:.2g} rad a sample: not identifiable, sample faster")
     units = np.array([record.gain, 1 / record.unit, 1.0, record.unit, record.unit])[: len(found)]

@@ -338,11 +338,10 @@ class _Joint:
 
     def below_hum(self, found, held):
         """The same, or the fit at a lower cut-off that leaves far less of u: hum of the angle looks like motion."""
-        while self.band.lowest_hz > found.cutoff_hz / 2:
+        if self.band.lowest_hz > found.cutoff_hz / 2:
             lower = self.fit(found.cutoff_hz / 2, held, fewest=found)
-            if lower is None or lower.misfit > _HUM * found.misfit:
-                return found
-            found = lower
+            if lower is not None and lower.misfit <= _HUM * found.misfit:
+                return self.below_hum(lower, held)
         return found
 
     def fit(self, cutoff_hz, held=None, *, without=None, fewest=None, slower=1.0):

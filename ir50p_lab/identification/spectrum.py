@@ -36,12 +36,10 @@ def spectrum(pieces, rate_hz, cutoff_hz=None, *, of_speed=False):
 
     length = min(max(map(len, pieces)), max(256, sum(map(len, pieces)) // 6))
     pieces = [q for q in pieces if len(q) >= length]
-    detrend = "constant" if of_speed else "linear"
-    spectra = [welch(q - q.mean(), rate_hz, nperseg=length, detrend=detrend) for q in pieces]
+    spectra = [welch(q - q.mean(), rate_hz, nperseg=length, detrend="linear") for q in pieces]
     sizes = np.array([len(q) for q in pieces], dtype=float)
     f, power = spectra[0][0][1:], np.average([density for _, density in spectra], axis=0, weights=sizes)[1:]
-    angles = [np.cumsum(q) / rate_hz for q in pieces] if of_speed else pieces
-    steady = _steady_speed(angles, length, rate_hz)
+    steady = _steady_speed([np.cumsum(q) / rate_hz for q in pieces] if of_speed else pieces, length, rate_hz)
     step = f[1] - f[0]
     floor = float(np.median(power[f >= rate_hz / 4])) / math.log(2)  # median of a chi-squared with 2 degrees
     floor = max(floor, _coarseness(pieces, rate_hz))

@@ -39,10 +39,6 @@ class Validation:
         """measured - predicted, (n, 3)."""
         return self.measured - self.predicted
 
-    def __str__(self):
-        rms, fit = (" / ".join(f"{x:.3g}" for x in values) for values in (self.rms, self.fit))
-        return f"{self.of}: RMS {rms}, fit {fit} %"
-
 
 def nrmse_fit(measured, predicted):
     """RMS error and fit of each column    (Table 4.4).
@@ -64,30 +60,20 @@ def nrmse_fit(measured, predicted):
 
 
 def validate(
-    estimate,
-    recording,
-    q=None,
-    u=None,
-    *,
-    derivatives=BACKWARD,
-    cutoff_hz=1.5,
-    delay=0.0,
-    held=True,
-    trim=None,
-    sign=None,
+    estimate, recording, q=None, u=None, *, derivatives=BACKWARD, cutoff_hz=1.5, delay=0.0, held=True, sign=None
 ):
     """Predict the u of another recording from its angles, one sample at a time    (4.5), Table 4.4.
 
     The u of the recording is taken raw, as it was sent. The prediction is made from q, qd and qdd as `process` finds
     them, and read at the time at which each u acted: its sample + delay (+ half a period while it is held).
 
-    Args: estimate: Estimate or theta (3, 20); recording, or t, q, u; derivatives, cutoff_hz, delay, held, trim: as in
+    Args: estimate: Estimate or theta (3, 20); recording, or t, q, u; derivatives, cutoff_hz, delay, held: as in
     `process`; sign: as in `regressor`.
     Returns: Validation of "u". Raises InputError, IdentificationError as `process` does.
     """
     theta, _ = as_theta(getattr(estimate, "theta", estimate))
     t, q, u = columns_of(recording, q, u)
-    motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, held=False, trim=trim)
+    motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, held=False)
     predicted = np.einsum("nij,ij->ni", regressor(motion.q, motion.qd, motion.qdd, sign=sign), theta)
     acts = acting_times(t, number("delay", delay, ">= 0", unit="s"), held and derivatives == BACKWARD)
     after = np.searchsorted(motion.t, acts).clip(1, len(motion) - 1)

@@ -393,29 +393,6 @@ def within(found, model, errors=3):
 
 
 @pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("share", [0.1, 0.2, 0.4])
-def test_a_drift_and_a_rest_that_was_none_are_in_the_errors_and_named(share, seed):
-    t, u, y, noise, model = step_record(seed)
-    away = {"drifts": t / 400, "not at rest": np.exp(-t / model.T)}
-    for word, shape in away.items():
-        found = fit_fopdt(t, u, y + noise + share * model.K * shape)
-        assert word in " ".join(found.warnings), (word, found)
-        assert within(found, model, 4) or share == 0.4, (word, found)
-    plain = fit_fopdt(t, u, y + noise)
-    assert within(plain, model, 4) and plain.K_stderr < 0.03 * model.K
-
-
-@pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("noise", [0.0, 0.01, 0.1])
-def test_a_coarse_sensor_is_in_the_errors(noise, seed):
-    """Ten steps of the sensor in the response: noise that does not mix them, hides nothing and averages nothing."""
-    t, u, y, white, model = step_record(seed)
-    quantum = 0.1 * model.K
-    found = fit_fopdt(t, u, np.round((y + 50 * noise * white) / quantum) * quantum)
-    assert within(found, model, 4) and found.K_stderr < 0.1 * model.K
-
-
-@pytest.mark.parametrize("seed", range(6))
 def test_disturbances_that_no_second_order_model_explains_are_a_doubt_no_refusal(seed):
     rng = np.random.default_rng(seed)
     t = np.arange(4000.0)

@@ -65,16 +65,14 @@ def contrast_axis(rgb, within, inner, outer):
                 mean[side, a] += rgb[i, j, a]
                 for b in range(3):
                     product[side, a, b] += rgb[i, j, a] * rgb[i, j, b]
-    if count.min() < 12:
-        return np.zeros(3, np.float32), 0.0, 0.0
     scatter = 64.0 * np.eye(3)  # of noise and compression: eight levels
     for side in range(2):
-        mean[side] /= count[side]
-        scatter += 0.5 * (product[side] / count[side] - np.outer(mean[side], mean[side]))
+        mean[side] /= max(count[side], 1)
+        scatter += 0.5 * (product[side] / max(count[side], 1) - np.outer(mean[side], mean[side]))
     step = mean[0] - mean[1]
     w = np.linalg.solve(scatter, step)
     apart = np.dot(w, step)  # squared Mahalanobis distance
-    if not apart > 1e-6:
+    if count.min() < 12 or not apart > 1e-6:
         return np.zeros(3, np.float32), 0.0, 0.0
     w /= apart
     return w.astype(np.float32), 0.5 * np.dot(w, mean[0] + mean[1]), np.sqrt(apart)
