@@ -191,16 +191,25 @@ def _check_whole(grid, outside, pattern):
 
 
 def part_of_a_checkerboard(grey):
-    """The grid around the first part by its saddles that becomes 4x3 or more and is smooth, at any scale, or None."""
+    """The grid around the first part by its saddles that becomes 4x3 or more and is smooth, at any scale; or None.
+
+    A blurred board has no saddles: SB finds it in a reduced picture.
+    """
     import cv2
 
-    h, w = grey.shape
-    for less in (less for less in (1, 2, 4) if min(h, w) >= 60 * less):
-        small = cv2.resize(grey, (w // less, h // less), interpolation=cv2.INTER_AREA)
+    scales = [less for less in (1, 2, 4) if min(grey.shape) >= 60 * less]
+    reduced = {less: cv2.resize(grey, None, fx=1 / less, fy=1 / less, interpolation=cv2.INTER_AREA) for less in scales}
+    for less, small in reduced.items():
         for part in itertools.islice(parts_by_saddles(small), 20):
             grid, _ = grow(refine(small, part), small)
             if grid.size >= 2 * 12 and roughness(grid) < _ROUGH / 2 and is_checkerboard(grid, small):
                 return enlarged(grid, less)
+    largest = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_LARGER
+    for less in scales[1:]:
+        found, corners, meta = cv2.findChessboardCornersSBWithMeta(reduced[less], (3, 3), largest)
+        grid = corners.reshape(*meta.shape, 2).astype(float) if found else np.zeros((3, 3, 2))
+        if is_checkerboard(grid, reduced[less]):
+            return enlarged(grid, less)
     return None
 
 

@@ -32,8 +32,7 @@ def spacing(grid):
 
 def side(grid):
     """Side of a square, pixels: the median spacing."""
-    ordered = np.sort(spacing(grid), axis=None)  # a tenth of the time of np.median
-    return float(ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2]) / 2
+    return float(np.median(spacing(grid)))
 
 
 def roughness(grid):
@@ -106,7 +105,7 @@ def grow(grid, grey):
     for side in ("right", "bottom", "left", "top"):
         while max(grid.shape[:2]) < 60:
             following = _next_column(grid)
-            out, along = following - grid[:, -1], _gradient(grid[:, -1], 0)
+            out, along = following - grid[:, -1], np.gradient(grid[:, -1], axis=0)
             found = _crossings(following, 0.3 * out, 0.3 * along, grey, swing)
             known = found[np.isfinite(found)]
             if len(known) <= 0.8 * len(found):
@@ -170,16 +169,7 @@ def next_to_margin(grid, grey):
 
 def _steps(grid):
     """Corners (n, 2) of a grid, and the step to the next one along its rows and down its columns."""
-    return (a.reshape(-1, 2) for a in (grid, _gradient(grid, 1), _gradient(grid, 0)))
-
-
-def _gradient(corners, axis):
-    """`np.gradient` along an axis, in a fifth of the time."""
-    corners = corners.swapaxes(0, axis)
-    slopes = np.empty_like(corners)
-    slopes[1:-1] = (corners[2:] - corners[:-2]) / 2
-    slopes[0], slopes[-1] = corners[1] - corners[0], corners[-1] - corners[-2]
-    return slopes.swapaxes(0, axis)
+    return (a.reshape(-1, 2) for a in (grid, np.gradient(grid, axis=1), np.gradient(grid, axis=0)))
 
 
 def _in_squares(grid, grey, swing):
