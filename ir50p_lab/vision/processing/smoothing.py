@@ -6,6 +6,7 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import number
 
 KERNEL_3_2 = np.array([[2, 4, 5, 4, 2], [4, 9, 12, 9, 4], [5, 12, 15, 12, 5], [4, 9, 12, 9, 4], [2, 4, 5, 4, 2]]) / 159
+KERNEL_3_2.setflags(write=False)
 
 
 def gaussian_kernel(size, sigma):
