@@ -30,11 +30,8 @@ def pid_batch(theta, n, kp, ki, kd, limit, period, filter_rate, r, x0, h, steps,
     blend = 1.0 - math.exp(-filter_rate * period)
     out[:] = 0.0
     for i in range(6):
-        for w in range(LANES):
-            x[i, w] = x0[i]
-    for i in range(3):
-        for w in range(LANES):
-            last[i, w] = x0[i]
+        x[i] = x0[i]
+    last[:] = x[:3]
     for sample in range(samples):
         for i in range(3):
             target, target_velocity = r[sample, 0, i], r[sample, 1, i]
@@ -72,6 +69,4 @@ def pid_batch(theta, n, kp, ki, kd, limit, period, filter_rate, r, x0, h, steps,
         for i in range(3, 6):
             for w in range(LANES):
                 x[i, w] = cf.not_denormal(x[i, w])
-    for i in range(3):
-        for w in range(LANES):
-            out[0, i, w] = math.sqrt(out[0, i, w] / samples)
+    out[0] = np.sqrt(out[0] / samples)

@@ -11,7 +11,7 @@ from scipy.signal import lfilter, lsim
 
 from ir50p_lab.errors import IdentificationError, InputError, LabError
 from ir50p_lab.identification import FOPDT, fit_fopdt, fit_second_order
-from ir50p_lab.identification.response_fit import respond
+from ir50p_lab.simulation.first_order_lag import respond
 
 PERIOD = 0.02
 T_S = np.arange(200) * PERIOD  # 4 s
@@ -390,6 +390,19 @@ def within(found, model, errors=3):
     return all(
         abs(getattr(found, name) - getattr(model, name)) <= errors * getattr(found, f"{name}_stderr") for name in "KTL"
     )
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("share", [0.1, 0.2, 0.4])
+def test_a_drift_and_a_rest_that_was_none_are_in_the_errors_and_named(share, seed):
+    t, u, y, noise, model = step_record(seed)
+    away = {"drifts": t / 400, "not at rest": np.exp(-t / model.T)}
+    for word, shape in away.items():
+        found = fit_fopdt(t, u, y + noise + share * model.K * shape)
+        assert word in " ".join(found.warnings), (word, found)
+        assert within(found, model, 4) or share == 0.4, (word, found)
+    plain = fit_fopdt(t, u, y + noise)
+    assert within(plain, model, 4) and plain.K_stderr < 0.03 * model.K
 
 
 @pytest.mark.parametrize("seed", range(6))
