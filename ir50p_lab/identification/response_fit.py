@@ -20,7 +20,7 @@ _RESPONSE = 15.0  # least F value for "y follows u": a search over T and L in pu
 _SHAPE = 0.05  # largest share of the variance of y that may be left and not be white: 20-40 % of overshoot
 _SWINGS = 0.5  # of what is left of y: if a second-order model leaves less, it is the one to take
 _BENDS = 9.0  # least F value for "the response bends towards a final value": three standard errors
-_OTHER = 16.0  # least F value of a drift, or of a rest at first that was none
+_OTHER = 9.0  # least F value of a drift, or of a rest at first that was none: three standard errors
 _ENOUGH = 20  # samples of a response, five for each parameter, from which on its shape can be judged
 _SEEN = 0.99  # sampling periods: a time constant or dead time below is not seen
 _SLOWEST = 10.0  # a time constant longer than this many records cannot be told from infinity
@@ -218,9 +218,8 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     found = np.array([b / a, 1 / a, L])
     units = record.gain, record.unit, record.unit
     J = jacobian(response, found, np.maximum(np.abs(found), 1e-3 * period))
-    errors = standard_errors(J, e) * units
+    errors = np.hypot(standard_errors(J, e), _moved_by_drift_or_start(record, a, J, e)) * units
     _warn(record, 1 / a, L, errors[2] / record.unit, *likeness(e))
-    errors = np.hypot(errors, _moved_by_drift_or_start(record, a, J, e) * units)
     if a * period > 1 / _SEEN:
         errors[1:] = math.inf
     if L < _SEEN * period:
