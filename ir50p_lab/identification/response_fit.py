@@ -8,7 +8,7 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.checks import Warnings, check_outliers
-from ir50p_lab.identification.columns import same_samples
+from ir50p_lab.identification.columns import quantum_of, same_samples
 from ir50p_lab.inputs import number
 from ir50p_lab.simulation.first_order_lag import respond
 
@@ -21,6 +21,7 @@ _SHAPE = 0.05  # largest share of the variance of y that may be left and not be 
 _SWINGS = 0.5  # of what is left of y: if a second-order model leaves less, it is the one to take
 _BENDS = 9.0  # least F value for "the response bends towards a final value": three standard errors
 _OTHER = 9.0  # least F value of a drift, or of a rest at first that was none: three standard errors
+_COARSE = 1 / 60  # of the range of y: a response in fewer steps than these, not mixed by noise, misleads
 _ENOUGH = 20  # samples of a response, five for each parameter, from which on its shape can be judged
 _SEEN = 0.99  # sampling periods: a time constant or dead time below is not seen
 _SLOWEST = 10.0  # a time constant longer than this many records cannot be told from infinity
@@ -265,6 +266,9 @@ def _check_shape(record, a, L, b, e):
         warned.refuse(f"{explains}: make a larger step, or average several recordings")
     elif misshapen:
         warned.add(f"{shape}: y is disturbed or drifts, or a dead zone or limit acts; do not use it yet")
+    quantum = quantum_of(record.y)
+    if quantum > _COARSE and rss < n * (quantum / 2) ** 2:
+        warned.add(f"y takes about {1 / quantum:.0f} steps only: errors are larger than they say; use a finer range")
     ramp = best_fit(lambda p: record.columns(0.0, *p), record.y, [[(k / 50,)] for k in range(45)], (0.0, 0.95))[2]
     if a * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / inflation**2 > _BENDS:
         return

@@ -405,6 +405,18 @@ def test_a_drift_and_a_rest_that_was_none_are_in_the_errors_and_named(share, see
     assert within(plain, model, 4) and plain.K_stderr < 0.03 * model.K
 
 
+@pytest.mark.parametrize(
+    "steps, noise, named", [(10, 0.0, True), (10, 0.02, True), (30, 0.003, True), (300, 0.02, False)]
+)
+def test_a_coarse_sensor_is_named_where_noise_does_not_mix_its_steps(steps, noise, named):
+    for seed in range(6):
+        t, u, y, white, model = step_record(seed)
+        quantum = model.K / steps
+        found = fit_fopdt(t, u, np.round((y + 50 * noise * white) / quantum) * quantum)
+        assert ("steps only" in " ".join(found.warnings)) == named, found
+        assert named or within(found, model, 4)
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_disturbances_that_no_second_order_model_explains_are_a_doubt_no_refusal(seed):
     rng = np.random.default_rng(seed)
