@@ -137,14 +137,14 @@ class BenchPanel(widgets.VBox):
             if self.run is not None and self.run.alive:
                 raise LabError(f"the loop runs already ({self.run.phase})")
             self._cut_wanted, self.error = False, None
-            self._say("starting ...")
+            self.status.value = "starting ..."
             if "kp1" in self.controls:
                 set_gains(self._controller, **self._gains())
             run = self.bench.start(self._controller, self._reference)
             self.run = run
             if self._cut_wanted:
                 run.cut()
-            self._say("")
+            self.status.value = ""
             self._sliders_follow(run)
 
     def _gains(self):
@@ -222,17 +222,13 @@ class BenchPanel(widgets.VBox):
             what(*args, **options)
             if self.error is not None and what in (self._gain_moved, self._set_point_moved):
                 self.error = None
-                self._say("")
+                self.status.value = ""
         except Exception as error:
             self._complain(error)
 
-    def _say(self, text):
-        if self.status.value != text:
-            self.status.value = text
-
     def _complain(self, error):
         self.error = error
-        self._say(f'<span style="color:{_RED}">{html.escape(f"{type(error).__name__}: {error}")}</span>')
+        self.status.value = f'<span style="color:{_RED}">{html.escape(f"{type(error).__name__}: {error}")}</span>'
 
     # ---- the scope's thread
 
@@ -261,8 +257,7 @@ class BenchPanel(widgets.VBox):
             text += f": {html.escape(str(run.statistics()))}"
             if run.error is not None and self.error is not run.error:
                 self._complain(run.error)
-        if self.statistics.value != text:
-            self.statistics.value = text
+        self.statistics.value = text
 
     # ---- one panel after the other
 

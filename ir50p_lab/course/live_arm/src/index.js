@@ -11,7 +11,6 @@ import { KEYS, Layers, makeScene, Trail } from "./stage.js";
 import { contacts, Track } from "./track.js";
 
 const REST = 160; // ms without motion until the fine picture is drawn
-const EVERY = 33; // ms between two messages to the kernel
 
 class View {
   constructor(model, el) {
@@ -123,7 +122,7 @@ class View {
     parts.layers.append(clear);
     this.written = [];
     this.showPlayer = playerBar(parts.player, {
-      toggle: () => (this.playing ? this.pause() : this.play()),
+      toggle: () => this.toggle(),
       seek: (part) => this.seek(this.track.start + part * (this.track.end - this.track.start)),
       speed: (rate) => { this.rate = rate; },
       loop: () => { this.again = !this.again; this.seen && this.tellPlayer(); },
@@ -202,19 +201,16 @@ class View {
     if (next) this.ask(next);
   }
 
+  // As often as the pose changes: the widget's model itself waits until the kernel has dealt with the last message.
   tell() {
-    this.telling ??= setTimeout(() => {
-      this.telling = null;
-      this.told = performance.now();
-      this.model.set("q", [...this.q]);
-      this.model.save_changes();
-    }, Math.max(0, EVERY - (performance.now() - (this.told ?? 0))));
+    this.model.set("q", this.q);
+    this.model.save_changes();
   }
 
   listen() {
     const { model, canvas } = this, { box, stage } = this.parts;
     this.heard = {
-      "change:q": () => { if (!this.dragging && !this.telling && !this.playing) this.pose([...model.get("q")]); },
+      "change:q": () => { if (!this.dragging && !this.playing && model.get("q") !== this.q) this.pose(model.get("q")); },
       "change:poses": () => this.moved(),
       "change:layers": () => { this.on = new Set(model.get("layers")); this.moved(); },
       "change:track": () => this.loadTrack(),
@@ -324,20 +320,16 @@ class View {
   }
 
   key(event) {
-    const offset = this.camera.position.clone().sub(this.controls.target), up = this.camera.up;
-    const aside = new Vector3().crossVectors(up, offset).normalize(), angle = offset.angleTo(up);
-    const turn = { ArrowLeft: -0.06, ArrowRight: 0.06 }[event.key], tilt = { ArrowUp: -0.06, ArrowDown: 0.06 }[event.key];
+    const { controls } = this;
+    const turn = { ArrowLeft: 0.06, ArrowRight: -0.06 }[event.key], tilt = { ArrowUp: 0.06, ArrowDown: -0.06 }[event.key];
     const zoom = { "+": 0.92, "=": 0.92, "-": 1.08 }[event.key];
-    if (turn) offset.applyAxisAngle(up, turn);
-    else if (tilt && angle + tilt > 0.05 && angle + tilt < 3.1) offset.applyAxisAngle(aside, tilt);
-    else if (zoom) offset.multiplyScalar(zoom);
-    else if (event.key === "Home") { this.lookFromStart(); return event.preventDefault(); }
-    else if (event.key === " " && this.track) { this.playing ? this.pause() : this.play(); return event.preventDefault(); }
+    if (turn) controls.rotateLeft(turn);
+    else if (tilt) controls.rotateUp(tilt);
+    else if (zoom) controls.dollyIn(zoom);
+    else if (event.key === "Home") this.lookFromStart();
+    else if (event.key === " " && this.track) this.toggle();
     else return;
     event.preventDefault();
-    this.camera.position.copy(this.controls.target).add(offset);
-    this.controls.update();
-    this.soon();
   }
 
   // ---- motions
@@ -412,6 +404,10 @@ class View {
     requestAnimationFrame(tick);
   }
 
+  toggle() {
+    this.playing ? this.pause() : this.play();
+  }
+
   pause() {
     if (!this.playing) return;
     this.playing = false;
@@ -428,7 +424,6 @@ class View {
   close() {
     this.closed = true;
     clearTimeout(this.fine);
-    clearTimeout(this.telling);
     this.sizes.disconnect();
     this.sight.disconnect();
     window.removeEventListener("beforeprint", this.beforePrint);

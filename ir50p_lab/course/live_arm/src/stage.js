@@ -50,8 +50,7 @@ export function label(text, colour, size) {
 
 // A line of `width` CSS pixels through points, of which the first n can be shown.
 export class Trail {
-  constructor(colour, width = 2.5, most = 3000) {
-    this.points = new Float32Array(3 * most);
+  constructor(colour, width = 2.5) {
     this.material = new LineMaterial({ color: colour, linewidth: width });
     this.line = new Line2(new LineGeometry(), this.material);
     this.line.frustumCulled = false;
@@ -59,7 +58,6 @@ export class Trail {
   }
 
   set(points) { // [[x, y, z], ...] m
-    this.count = Math.min(points.length, this.points.length / 3);
     const flat = points.length > 1 ? points.flat() : [0, 0, 0, 0, 0, 0];
     this.line.geometry.dispose();
     this.line.geometry = new LineGeometry().setPositions(flat);
@@ -148,13 +146,13 @@ export class Layers {
     this.joints.forEach((group, i) => group.matrix.copy(transforms[i]));
     this.space.rotation.z = q[0];
     const J = jacobian(this.lengths, q), at = new Vector3().setFromMatrixPosition(transforms[3]);
-    const size = 0.25, speed = new Matrix4().set(...J.flatMap((row) => [...row, 0]), 0, 0, 0, 1);
+    const speed = new Matrix4().set(...J.flatMap((row) => [...row, 0]), 0, 0, 0, 1);
     // J carries the ball of unit joint rates onto the velocity ellipsoid, its inverse transpose that of unit torques
     // onto the force ellipsoid; at a singular pose the latter has no end
     const singular = Math.abs(speed.determinant()) < 1e-4;
     this.force.scale.setScalar(1);
     this.force.matrix.copy(singular ? new Matrix4().makeScale(0, 0, 0) : speed.clone().invert().transpose());
     this.force.matrix.premultiply(new Matrix4().makeScale(0.025, 0.025, 0.025)).setPosition(at);
-    this.velocity.matrix.copy(speed.premultiply(new Matrix4().makeScale(size, size, size))).setPosition(at);
+    this.velocity.matrix.copy(speed.premultiply(new Matrix4().makeScale(0.25, 0.25, 0.25))).setPosition(at);
   }
 }
