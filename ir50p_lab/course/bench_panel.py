@@ -58,6 +58,7 @@ class BenchPanel(widgets.VBox):
         self._controller, self._reference, self._window = controller, reference, float(window)
         self._quiet, self._busy, self._cut_wanted = threading.local(), threading.Lock(), False
         self._closed = threading.Event()
+        self._shown = self._phase = None  # run and cycle of the last frame of a run that has ended; the phase written
         self.controls = {}
         self.scope = Scope(window=window, badge="simulated" if bench.simulated else bench.kind)
         self.statistics = widgets.HTML(layout=widgets.Layout(min_height="1.4em"))
@@ -246,8 +247,6 @@ class BenchPanel(widgets.VBox):
         if count % 10 == 0 or phase != self._phase:
             self._phase = phase
             self._texts(run, phase, alive)
-
-    _shown, _phase = None, None
 
     def _texts(self, run, phase, alive):
         self._start_button.disabled = alive

@@ -6,7 +6,7 @@ from matplotlib.patches import Circle
 from ir50p_lab.course import vision_views
 from ir50p_lab.course.arm3d import ArmView, FrameView, SideView
 from ir50p_lab.course.drawings import drawing
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
+from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.modelling.chain import forward_kinematics, frames
 
 _XYZ = (COLOURS["orange"], COLOURS["green"], COLOURS["blue"])
@@ -138,7 +138,7 @@ def trajectory_figure(trajectory, ball=None, radius=0.03):
         side.add_patch(Circle((np.hypot(*ball[:2]), ball[2]), radius, fc="#C8202D", ec="none"))
     side.set_title(f"Never below {100 * trajectory.lowest:.0f} cm: over, then down")
     t = np.linspace(0, trajectory.duration, 300)
-    for k, colour in enumerate(_XYZ):
+    for k, colour in enumerate(JOINTS):
         over.plot(t, trajectory.sample(t)[:, 1, k], color=colour, label=f"joint {k + 1}")
     over.set(xlabel="t [s]", ylabel="joint rate [rad/s]", title="Smooth: every piece from rest to rest")
     over.legend(fontsize=8)
