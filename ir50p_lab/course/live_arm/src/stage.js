@@ -29,10 +29,6 @@ export function makeScene(reach) {
   return scene;
 }
 
-function texture(canvas) {
-  return Object.assign(new CanvasTexture(canvas), { colorSpace: SRGBColorSpace, anisotropy: 4 });
-}
-
 // A text that faces the eye; size: its height, m.
 export function label(text, colour, size) {
   const canvas = document.createElement("canvas"), pen = canvas.getContext("2d"), font = "600 44px sans-serif";
@@ -42,7 +38,8 @@ export function label(text, colour, size) {
   Object.assign(pen, { font, textBaseline: "middle", lineWidth: 8, strokeStyle: "#ffffffdd", fillStyle: colour, lineJoin: "round" });
   pen.strokeText(text, 8, 31);
   pen.fillText(text, 8, 31);
-  const sprite = new Sprite(new SpriteMaterial({ map: texture(canvas), depthTest: false, transparent: true }));
+  const map = Object.assign(new CanvasTexture(canvas), { colorSpace: SRGBColorSpace, anisotropy: 4 });
+  const sprite = new Sprite(new SpriteMaterial({ map, depthTest: false, transparent: true }));
   sprite.scale.set((size * canvas.width) / canvas.height, size, 1);
   sprite.renderOrder = 10;
   return sprite;
