@@ -21,6 +21,7 @@ class View {
     this.size = this.l[1] + this.l[2];
     this.q = [...model.get("q")];
     this.on = new Set(model.get("layers"));
+    this.waiting = {}; // kinds of messages under way, and the one to be sent next
     this.parts = layout();
     el.append(this.parts.box);
     this.makeScene();
@@ -188,16 +189,14 @@ class View {
 
   // One message of a kind is under way at most; of those that wait only the last is sent.
   ask(message) {
-    const kind = Object.keys(message)[0];
-    this.waiting ??= {};
-    if (this.waiting[kind]) { this.waiting[kind].next = message; return; }
-    this.waiting[kind] = { next: null };
-    this.model.send(message);
+    const kind = Object.keys(message)[0], underWay = kind in this.waiting;
+    this.waiting[kind] = underWay ? message : null;
+    if (!underWay) this.model.send(message);
   }
 
   answered(kind) {
-    const next = this.waiting?.[kind]?.next;
-    if (this.waiting) this.waiting[kind] = null;
+    const next = this.waiting[kind];
+    delete this.waiting[kind];
     if (next) this.ask(next);
   }
 
@@ -234,8 +233,7 @@ class View {
   }
 
   message(message, buffers) {
-    if (message.live) this.live(new Track(buffers[0], message.live));
-    if (message.live) return;
+    if (message.live) return this.live(new Track(buffers[0], message.live));
     this.error = message.error ?? null;
     for (const kind of ["frames", "drag"]) if (kind in message) this.answered(kind);
     if (message.error) this.say(message.error);
