@@ -98,6 +98,9 @@ def _steps():
 
 
 def _step_symptom(cases, returned, expected):
+    here = [np.asarray(case[0]) for case in cases]
+    if all(np.allclose(one, q) for one, q in zip(returned, here, strict=True)):
+        return "it stays where it is: it returns q unchanged"
     ends = [
         forward_kinematics(np.asarray(one, dtype=float), case[2]) for one, case in zip(returned, cases, strict=True)
     ]
