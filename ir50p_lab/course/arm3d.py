@@ -29,7 +29,6 @@ class FrameView:
 
     def __init__(self, ax, T, name="", length=0.1):
         self._length = length
-        self._name = name
         # each axis is one line: origin, end, a gap, and the letter as a marker (a Text costs twice as much to draw)
         style = {"linewidth": 2.2, "solid_capstyle": "round", "markersize": 7, "markeredgewidth": 0.3, "zorder": 30}
         self.axes = [

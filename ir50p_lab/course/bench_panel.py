@@ -58,6 +58,7 @@ class BenchPanel(widgets.VBox):
         self._controller, self._reference, self._window = controller, reference, float(window)
         self._quiet, self._busy, self._cut_wanted = threading.local(), threading.Lock(), False
         self._closed = threading.Event()
+        self._shown = self._phase = None  # run and cycle of the last frame of a run that has ended; the phase written
         self.controls = {}
         self.scope = Scope(window=window, badge="simulated" if bench.simulated else bench.kind)
         self.statistics = widgets.HTML(layout=widgets.Layout(min_height="1.4em"))
@@ -137,14 +138,14 @@ class BenchPanel(widgets.VBox):
             if self.run is not None and self.run.alive:
                 raise LabError(f"the loop runs already ({self.run.phase})")
             self._cut_wanted, self.error = False, None
-            self._say("starting ...")
+            self.status.value = "starting ..."
             if "kp1" in self.controls:
                 set_gains(self._controller, **self._gains())
             run = self.bench.start(self._controller, self._reference)
             self.run = run
             if self._cut_wanted:
                 run.cut()
-            self._say("")
+            self.status.value = ""
             self._sliders_follow(run)
 
     def _gains(self):
@@ -222,17 +223,13 @@ class BenchPanel(widgets.VBox):
             what(*args, **options)
             if self.error is not None and what in (self._gain_moved, self._set_point_moved):
                 self.error = None
-                self._say("")
+                self.status.value = ""
         except Exception as error:
             self._complain(error)
 
-    def _say(self, text):
-        if self.status.value != text:
-            self.status.value = text
-
     def _complain(self, error):
         self.error = error
-        self._say(f'<span style="color:{_RED}">{html.escape(f"{type(error).__name__}: {error}")}</span>')
+        self.status.value = f'<span style="color:{_RED}">{html.escape(f"{type(error).__name__}: {error}")}</span>'
 
     # ---- the scope's thread
 
@@ -251,8 +248,6 @@ class BenchPanel(widgets.VBox):
             self._phase = phase
             self._texts(run, phase, alive)
 
-    _shown, _phase = None, None
-
     def _texts(self, run, phase, alive):
         self._start_button.disabled = alive
         self._stop_button.disabled = not alive or phase == "moving to the rest pose"
@@ -261,8 +256,7 @@ class BenchPanel(widgets.VBox):
             text += f": {html.escape(str(run.statistics()))}"
             if run.error is not None and self.error is not run.error:
                 self._complain(run.error)
-        if self.statistics.value != text:
-            self.statistics.value = text
+        self.statistics.value = text
 
     # ---- one panel after the other
 

@@ -108,8 +108,11 @@ def _wrong(source, wanted, result):
             marks.append(mark)
         return len(marks)
 
-    tries = lab_book.change(edit)
-    says = f"not yet: {ended(result.says)}"
+    tries, says = 0, f"not yet: {ended(result.says)}"
+    try:
+        tries = lab_book.change(edit)
+    except lab_book.LabBookError as error:
+        says += f" (This try was not counted: {error}.)"
     more = [("one input that fails", result.example)] if result.example else []
     if tries >= _BEFORE_LOAN and not (folder.is_there(wanted.name) or folder.is_there(wanted.function)):
         folder.lend(wanted, after_tries=True)

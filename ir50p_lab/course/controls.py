@@ -44,16 +44,14 @@ def _plain(number):
 
 def make_control(name, spec, label_width, moved):
     """The widget that holds the value, and the row that shows it; `moved()` is called after each change."""
-    style = {"description_width": label_width}
-    if isinstance(spec, bool):
-        control = widgets.Checkbox(value=spec, description=name, indent=False)
-        control.observe(lambda _: moved(), "value")
-        return control, control
-    if isinstance(spec, list | dict):
-        if not spec:
-            raise InputError(f"{name}: an empty menu; give at least one choice")
-        layout = widgets.Layout(width=f"calc({label_width} + 230px)")
-        control = widgets.Dropdown(options=spec, description=name, style=style, layout=layout)
+    style, layout = {"description_width": label_width}, {"width": f"calc({label_width} + 230px)"}
+    if isinstance(spec, list | dict) and not spec:
+        raise InputError(f"{name}: an empty menu; give at least one choice")
+    if isinstance(spec, bool | list | dict):
+        if isinstance(spec, bool):
+            control = widgets.Checkbox(value=spec, description=name, indent=False)
+        else:
+            control = widgets.Dropdown(options=spec, description=name, style=style, layout=layout)
         control.observe(lambda _: moved(), "value")
         return control, control
     if isinstance(spec, tuple) and len(spec) == 4:
@@ -64,18 +62,11 @@ def make_control(name, spec, label_width, moved):
         )
     low, high, step, start = map(_plain, (spec.min, spec.max, spec.step, spec.start))
     whole = all(isinstance(v, int) for v in (low, high, step, start))
-    slider_kind, box_kind = (
-        (widgets.IntSlider, widgets.BoundedIntText) if whole else (widgets.FloatSlider, widgets.BoundedFloatText)
-    )
+    slider_kind = widgets.IntSlider if whole else widgets.FloatSlider
+    box_kind = widgets.BoundedIntText if whole else widgets.BoundedFloatText
     common = {"min": low, "max": high, "step": step, "value": start}
-    control = slider_kind(
-        **common,
-        description=label_of(name, spec),
-        style=style,
-        readout=False,
-        layout=widgets.Layout(width=f"calc({label_width} + 230px)"),
-    )
-    control.box = box_kind(**common, layout=widgets.Layout(width="80px"))
+    control = slider_kind(**common, description=label_of(name, spec), style=style, layout=layout, readout=False)
+    control.box = box_kind(**common, layout={"width": "80px"})
     control.digits = None if whole else _digits(step, low)
     _tie(control, control.box, moved)
     return control, widgets.HBox([control, control.box, widgets.Label(spec.unit)])

@@ -132,18 +132,16 @@ def whiteness_figure(tests, joint=1):
 class CutoffView:
     """Acceleration of joint 1 by two filters, and the fit of the model over their cut-off. Attributes: figure, fits.
 
-    Args: train, valid: Recordings; cutoffs_hz: of the curves; delay: s; span: (s, s) of valid that is drawn; truth:
-    (t, qdd) of joint 1 within the span, if it is known. fits: {"causal" or "zero-phase": (m, 3) %}.
+    Args: train, valid: Recordings; cutoffs_hz: of the curves; delay: s; span: (s, s) of valid that is drawn.
+    fits: {"causal" or "zero-phase": (m, 3) %}.
     """
 
-    def __init__(self, train, valid, cutoffs_hz, *, delay, span, truth=None):
+    def __init__(self, train, valid, cutoffs_hz, *, delay, span):
         self._valid, self._f, self._span = valid.between(span[0] - 2, span[1] + 2), np.asarray(cutoffs_hz), span
         late = {"causal": 0.0, "zero-phase": delay}
         self.fits = {kind: np.array([self._fit(train, valid, kind, f, late[kind]) for f in self._f]) for kind in late}
         self.figure, left, right = subplots(9.6, 3.8, cols=2)
-        self._room = 5.0 if truth is None else 2.2 * np.abs(truth[1]).max()
-        if truth is not None:
-            left.plot(*truth, color=COLOURS["dark"], ls="--", lw=1)
+        self._room = 5.0  # rad/s^2
         self._lines = {
             "causal": left.plot([], [], color=COLOURS["orange"], lw=0.8)[0],
             "zero-phase": left.plot([], [], color=COLOURS["blue"], lw=1.8)[0],

@@ -6,7 +6,7 @@ from matplotlib.patches import Circle
 from ir50p_lab.course import vision_views
 from ir50p_lab.course.arm3d import ArmView, FrameView, SideView
 from ir50p_lab.course.drawings import drawing
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
+from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.modelling.chain import forward_kinematics, frames
 
 _XYZ = (COLOURS["orange"], COLOURS["green"], COLOURS["blue"])
@@ -138,7 +138,7 @@ def trajectory_figure(trajectory, ball=None, radius=0.03):
         side.add_patch(Circle((np.hypot(*ball[:2]), ball[2]), radius, fc="#C8202D", ec="none"))
     side.set_title(f"Never below {100 * trajectory.lowest:.0f} cm: over, then down")
     t = np.linspace(0, trajectory.duration, 300)
-    for k, colour in enumerate(_XYZ):
+    for k, colour in enumerate(JOINTS):
         over.plot(t, trajectory.sample(t)[:, 1, k], color=colour, label=f"joint {k + 1}")
     over.set(xlabel="t [s]", ylabel="joint rate [rad/s]", title="Smooth: every piece from rest to rest")
     over.legend(fontsize=8)
@@ -203,6 +203,8 @@ def residual_figure(fit):
 
 def follow_figure(logs, simulated=True):
     """Followed balls: the table from above for the first FollowLog, how far each tip is ahead. Returns: LabFigure."""
+    import pandas as pd
+
     figure, above, time = subplots(9.5, 4.0, cols=2, width_ratios=(1, 1.6), note=origin(simulated))
     above.plot(*(1e3 * logs[0].ball.T), color="#C8202D", label="ball, as seen")
     settled = logs[0].t > _ARRIVED
@@ -214,7 +216,8 @@ def follow_figure(logs, simulated=True):
         settled = log.t > _ARRIVED
         t, ahead = log.t[settled], 1e3 * log.ahead[settled]
         time.plot(t, ahead, ".", ms=2, color=colour, alpha=0.35)
-        time.plot(t, _smooth(ahead), color=colour, lw=2, label=f"lead {log.lead:g} s")
+        smooth = pd.Series(ahead).rolling(31, center=True, min_periods=1).mean()
+        time.plot(t, smooth, color=colour, lw=2, label=f"lead {log.lead:g} s")
         time.plot(t, 1e3 * log.lead * log.speed[settled], color=colour, lw=1.2, ls="--")
     time.plot([], [], color=COLOURS["dark"], lw=1.2, ls="--", label="lead × speed")
     time.axhline(0, color=COLOURS["dark"], lw=0.8)
@@ -223,13 +226,6 @@ def follow_figure(logs, simulated=True):
     low, high = time.get_ylim()
     time.set_ylim(low, high + 0.15 * (high - low))
     return figure
-
-
-def _smooth(values, n=31):
-    """Mean of n neighbours, fewer at the ends, without those that are NaN."""
-    there, ones = np.isfinite(values), np.ones(min(n, len(values)))
-    number = np.convolve(there, ones, "same")
-    return np.convolve(np.where(there, values, 0.0), ones, "same") / np.maximum(number, 1e-9)
 
 
 def poses_before(arm, camera, T_cam_base, T_tool_board, board, n, rng):

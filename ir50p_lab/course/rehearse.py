@@ -16,10 +16,6 @@ class RehearsalError(LabError):
     """A controller that leaves the joint limits in ten seconds on the simulated arm: it does not go to a real one."""
 
 
-def _unit(controller):
-    return getattr(controller, "unit", "PWM")
-
-
 def rehearse(controller, reference, *, arm=None, show=True, **view):
     """Ten seconds on the simulated arm, from its rest pose, shown; then the same controller, to go on with.
 
@@ -32,13 +28,11 @@ def rehearse(controller, reference, *, arm=None, show=True, **view):
     leave its limits.
     """
     arm = load_arm() if arm is None else arm
-    start = rest_pose(arm)
+    start, unit = rest_pose(arm), getattr(controller, "unit", "PWM")
     with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore", UnstableLoopWarning
-        )  # a loop that swings within the limits is shown, and goes on
+        warnings.simplefilter("ignore", UnstableLoopWarning)  # that swings within the limits is shown, and goes on
         try:
-            run = simulate(arm, controller, reference, duration=_SECONDS, q0=start, unit=_unit(controller))
+            run = simulate(arm, controller, reference, duration=_SECONDS, q0=start, unit=unit)
         except InputError as error:
             raise RehearsalError(f"not for an arm: {error}") from None
     low, high = np.minimum(arm.q_min, start), np.maximum(arm.q_max, start)

@@ -1,4 +1,4 @@
-"""A live scope: joint angles, set points and PWM of the last seconds, twenty times a second."""
+"""A live scope: joint angles, set points and PWM of the last seconds."""
 
 import numpy as np
 

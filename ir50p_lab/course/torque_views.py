@@ -6,7 +6,7 @@ from matplotlib.colors import LogNorm
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.identification_views import kept_motion
-from ir50p_lab.course.style import JOINTS, SETPOINT, new_figure, subplots
+from ir50p_lab.course.style import JOINTS, SETPOINT, joint_columns, subplots
 from ir50p_lab.course.tuning_views import colour_map
 from ir50p_lab.identification import fit, process, regressor
 from ir50p_lab.simulation import simulate
@@ -141,26 +141,16 @@ class TrackingView:
     Attributes: figure. `update(*runs)`: anything with t (n,) s and q (n, 3) rad, one per label.
     """
 
-    def __init__(self, reference, seconds, labels, *, error_max, stamp="simulated"):
-        self.figure = new_figure(9.6, 4.2, rows=2, cols=3, sharex=True)
-        self._reference = reference
-        above, below = self.figure.axes[:3], self.figure.axes[3:]
-        t = np.linspace(0, seconds, 200)
+    def __init__(self, reference, seconds, labels, *, error_max):
+        self._reference, t = reference, np.linspace(0, seconds, 200)
         wanted = reference.sample(t)[:, 0]
-        self._q, self._e = [], []
-        for j in range(3):
-            low, high = wanted[:, j].min(), wanted[:, j].max()
-            room = max(0.35 * (high - low), 0.1)
-            styles = [{"color": c, "lw": 1.5} for c in JOINTS[: len(labels)]]
-            self._q.append([above[j].plot([], [], label=n, **s)[0] for n, s in zip(labels, styles, strict=True)])
-            self._e.append([below[j].plot([], [], **s)[0] for s in styles])
-            above[j].plot(t, wanted[:, j], **SETPOINT)
-            above[j].set(xlim=(0, seconds), ylim=(low - room, high + room), title=f"joint {j + 1}")
-            below[j].set(ylim=(-error_max, error_max), xlabel=f"time [s]  -  {stamp}")
-        above[0].set_ylabel("angle [rad]")
-        below[0].set_ylabel("q - q_ref [mrad]")
-        if len(labels) > 1:
-            above[0].legend(fontsize=8, loc="lower right")
+        ranges = np.stack([wanted.min(axis=0), wanted.max(axis=0)], axis=1)
+        self.figure, self._q, self._e = joint_columns(seconds, ranges, error_max, labels=labels, room=(0.35, 0.1))
+        for j, (above, below) in enumerate(zip(self.figure.axes[:3], self.figure.axes[3:], strict=True)):
+            above.plot(t, wanted[:, j], **SETPOINT)
+            above.set_title(f"joint {j + 1}")
+            below.set_xlabel("time [s]  -  simulated")
+        self.figure.axes[3].set_ylabel("q - q_ref [mrad]")
 
     def update(self, *runs):
         """Draw one run per label, every second sample. Returns the figure."""

@@ -1,6 +1,6 @@
 """Pictures for tuning: angles and commands of the joints, a map of gains with a response beside it, root loci."""
 
-from itertools import pairwise
+from itertools import chain, pairwise
 
 import numpy as np
 from matplotlib import rc_context
@@ -9,7 +9,7 @@ from matplotlib.colors import Normalize
 
 from ir50p_lab.controllers import simc_integrating
 from ir50p_lab.course.drawings import drawing
-from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure, subplots
+from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, joint_columns, subplots
 from ir50p_lab.identification import FOPDT
 
 _RUNS = ({"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linewidth": 1.2}, {"color": COLOURS["green"]})
@@ -25,25 +25,14 @@ class JointPlots:
     """
 
     def __init__(self, target, *, duration, unit, u_max, labels=("",)):
-        self.figure = new_figure(9.6, 4.2, rows=2, cols=3, sharex=True)
-        above, below = self.figure.axes[:3], self.figure.axes[3:]
-        self._q, self._u = [], []
-        for joint in range(3):
-            low, high = sorted((0.0, target[joint]))
-            room = max(0.25 * (high - low), 0.2)
-            above[joint].axhline(target[joint], **SETPOINT)
-            above[joint].set(xlim=(0, duration), ylim=(low - room, high + room))
-            below[joint].set(ylim=(-1.08 * u_max, 1.08 * u_max), xlabel="time [s]")
-            styles = _RUNS[: len(labels)]
-            self._q += [
-                [above[joint].plot([], [], label=label, **s)[0] for label, s in zip(labels, styles, strict=True)]
-            ]
-            self._u += [[below[joint].plot([], [], drawstyle="steps-post", **s)[0] for s in styles]]
-        above[0].set_ylabel("angle [rad]")
-        below[0].set_ylabel(f"command [{unit}]")
-        if len(labels) > 1:
-            above[0].legend(fontsize=8, loc="lower right")
-        self._titles = [ax.set_title("", fontsize=10) for ax in above]
+        ranges = [sorted((0.0, angle)) for angle in target]
+        self.figure, self._q, self._u = joint_columns(duration, ranges, 1.08 * u_max, labels=labels, room=(0.25, 0.2))
+        for ax, angle in zip(self.figure.axes, target, strict=False):
+            ax.axhline(angle, zorder=1.9, **SETPOINT)  # below what moves
+        for curve in chain(*self._u):
+            curve.set_drawstyle("steps-post")
+        self.figure.axes[3].set_ylabel(f"command [{unit}]")
+        self._titles = [ax.set_title("", fontsize=10) for ax in self.figure.axes[:3]]
 
     def update(self, *runs, titles=("joint 1", "joint 2", "joint 3")):
         """Draw one SimulationResult per label. Returns the figure.

@@ -185,3 +185,11 @@ def test_a_damaged_lab_book_is_named(home):
     lab_book.path().write_text("[" * 100000)
     with pytest.raises(lab_book.LabBookError, match="rename it"):
         lab_book.read()
+
+
+def test_a_damaged_lab_book_stops_no_check(home, capsys):
+    lab_book.path().parent.mkdir()
+    lab_book.path().write_text("{")
+    give("rot_z", "def rot_z(angle):\n    return np.eye(3)")
+    out = said(capsys)
+    assert "not yet: angle does nothing in it" in out and "rename it" in out

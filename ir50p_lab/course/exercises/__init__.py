@@ -89,7 +89,7 @@ def check(name: str, answer=...) -> None:
 
 
 def solution(name: str):
-    """Return the right answer of an exercise in usable form: float, array, function, expression or text.
+    """Return the right answer of an exercise in usable form: float, array, function or text.
 
     Raises InputError for an unknown name.
     """

@@ -56,9 +56,8 @@ class Kind:
         for message, wrong in (exercise.slips | self.common_slips).items():
             if self.is_slip(found, self.read_wrong(wrong)):
                 return "slip", f"not yet, found {self.show(found)}. {message}"
-        extra = " ".join(
-            filter(None, (self.remark(found), exercise.hint))
-        )  # after the slips: one may have another shape
+        # only now: the answer of a slip may have another shape, at which `remark` stops
+        extra = " ".join(filter(None, (self.remark(found), exercise.hint)))
         return "wrong", f"not yet, found {self.show(found)}; expected {self.wanted}: {exercise.task}. {extra}"
 
 

@@ -155,6 +155,4 @@ def show_number(found) -> str:
     found = np.asarray(found)
     if found.ndim == 0:
         return f"{found.item():.6g}"
-    if found.size > 20:
-        return shape_in_words(found.shape)
     return f"[{', '.join(map(show_number, found))}]"

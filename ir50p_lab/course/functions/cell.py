@@ -2,6 +2,7 @@
 
 import ast
 import builtins
+import dis
 import importlib
 import inspect
 import linecache
@@ -118,16 +119,11 @@ def _globals_of(node):
     while codes:
         code = codes.pop()
         codes += [constant for constant in code.co_consts if hasattr(constant, "co_names")]
-        names |= {name: None for name in code.co_names if _looked_up(code, name)}
+        names |= {
+            step.argval: None for step in dis.get_instructions(code) if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")
+        }
     own = {getattr(node, "name", None), "__name__", "__module__", "__qualname__"}
     return [name for name in names if name not in own]
-
-
-def _looked_up(code, name):
-    import dis
-
-    kinds = {"LOAD_GLOBAL", "LOAD_NAME"}
-    return any(step.opname in kinds and step.argval == name for step in dis.get_instructions(code))
 
 
 def _stranger(name, notebook, text):

@@ -6,8 +6,7 @@ from functools import cache
 import numpy as np
 
 from ir50p_lab.course.functions import controller_loans as loans
-from ir50p_lab.course.functions.grade import no_numbers
-from ir50p_lab.course.functions.stops import why_it_stops
+from ir50p_lab.course.functions.grade import guarded, no_numbers
 from ir50p_lab.course.functions.task import Failed, changed, shown, table
 
 _KP, _KI, _KD = np.array([40.0, 60.0, 80.0]), np.array([20.0, 30.0, 40.0]), np.array([10.0, 20.0, 30.0])
@@ -22,18 +21,7 @@ def _make(cls, **settings):
     except TypeError:
         names = ", ".join(inspect.signature(cls).parameters)
         raise Failed(f"it is made with PID({', '.join(settings)}); its __init__ takes ({names})") from None
-    return _guarded(lambda: cls(**settings), lambda: f"PID({settings})")
-
-
-def _guarded(do, what=str):
-    """What `do` gives; what: function that names the case, called only when it fails."""
-    try:
-        with np.errstate(all="ignore"):
-            return do()
-    except KeyboardInterrupt:
-        raise Failed("it was stopped: does a loop in it never end?", what()) from None
-    except Exception as error:
-        raise Failed(why_it_stops(error), what()) from None
+    return guarded(lambda: cls(**settings), lambda: f"PID({settings})")
 
 
 def _run(pid, q, wanted=0.0, speed=0.0):
@@ -53,7 +41,7 @@ def _run(pid, q, wanted=0.0, speed=0.0):
             return f"step({k * _PERIOD:.2f}, {shown(q[k])}, reference), reference = {shown(rows[k])}"
 
         given = q[k].copy(), rows[k].copy()
-        command = _guarded(lambda k=k, given=given: pid.step(k * _PERIOD, *given), what)
+        command = guarded(lambda k=k, given=given: pid.step(k * _PERIOD, *given), what)
         for name, now, before in zip(("q", "the reference"), given, (q[k], rows[k]), strict=True):
             if not np.array_equal(now, before):
                 raise Failed(
@@ -221,7 +209,7 @@ def _again(cls, forgotten, **settings):
         raise Failed("it has no `reset`: the second run would begin with the memory of the first")
     q, wanted = _motion(10)
     first = _run(pid, q, wanted)
-    _guarded(pid.reset)
+    guarded(pid.reset)
     says = f"after `reset` it is not as new: {forgotten} of the last run is still there"
     _expect(_run(pid, q, wanted), first, (), says)
 
@@ -382,7 +370,7 @@ def _gain_of_d(cls):
 def _order(cls):
     settings = {"kp": 10.0, "ki": 20.0, "kd": 30.0, "limit_pwm": 40.0, "period": 0.05, "filter_hz": 6.0}
     q, wanted = _motion(6)
-    by_place = _run(_guarded(lambda: cls(*settings.values())), q, wanted)
+    by_place = _run(guarded(lambda: cls(*settings.values())), q, wanted)
     own = ", ".join(inspect.signature(cls).parameters)
     says = f"it takes ({own}); it will be made with ({', '.join(settings)}), in this order"
     _expect(by_place, _run(_make(cls, **settings), q, wanted), (), says)

@@ -144,19 +144,27 @@ def _call(task, function, case):
     """What it returns; Failed, returned as well, where it stops."""
     given = copy.deepcopy(case)
     try:
-        with np.errstate(all="ignore"):
-            result = function(*given)
-    except KeyboardInterrupt:
-        raise Failed("it was stopped: does a loop in it never end?", _given(task, case)) from None
-    except Exception as error:
-        stopped = Failed(why_it_stops(error), _given(task, case))
-        stopped.__cause__ = error
+        result = guarded(lambda: function(*given), lambda: _given(task, case))
+    except Failed as stopped:
+        if isinstance(stopped.__cause__, KeyboardInterrupt):
+            raise
         return stopped
     for name, one, other in zip(task.signature, case, given, strict=True):
         if not _untouched(one, other):
             says = f"it changes what it was given, `{name}`: work on a copy (`np.array(x)` makes one)"
             raise Failed(says, _given(task, case))
     return result
+
+
+def guarded(do, given=str):
+    """What `do` gives; given: function that names the case, called only when it fails. Raises Failed from the error."""
+    try:
+        with np.errstate(all="ignore"):
+            return do()
+    except KeyboardInterrupt as stop:
+        raise Failed("it was stopped: does a loop in it never end?", given()) from stop
+    except Exception as error:
+        raise Failed(why_it_stops(error), given()) from error
 
 
 def _untouched(before, after):

@@ -51,15 +51,9 @@ export class Curves {
   }
 
   range({ lines, least }) {
-    let low = Infinity, high = -Infinity;
-    for (const { column, scale } of lines) {
-      for (let row = 0; row < this.track.rows; row++) {
-        const value = this.track.value(row, column) * scale;
-        if (value < low) low = value;
-        if (value > high) high = value;
-      }
-    }
-    if (!(low <= high)) return [-1, 1];
+    const values = lines.flatMap(({ column, scale }) => this.track.times.map((_, row) => this.track.value(row, column) * scale));
+    const finite = values.filter(Number.isFinite), low = Math.min(...finite), high = Math.max(...finite);
+    if (!finite.length) return [-1, 1];
     const spare = 0.08 * Math.max(high - low, least);
     return [low - spare, high + spare];
   }
@@ -140,7 +134,7 @@ export class Curves {
     pen.beginPath();
     let last = null;
     for (let row = 0; row < this.track.rows; row++) {
-      const x = X(this.track.time(row)), y = Y(this.track.value(row, column) * scale);
+      const x = X(this.track.times[row]), y = Y(this.track.value(row, column) * scale);
       if (stairs && last !== null) pen.lineTo(x, last);
       pen.lineTo(x, y);
       last = y;
@@ -158,8 +152,8 @@ export class Curves {
     for (let row = 0; row + 1 < this.track.rows; row++) {
       const q = [0, 1, 2].map((i) => this.track.value(row, this.track.runs[0].q + i));
       const { stops, table } = contacts(this.lengths, this.limits, q);
-      const from = X(this.track.time(row));
-      if (stops[joint] || table) pen.fillRect(from, y0, X(this.track.time(row + 1)) - from + 0.5, h);
+      const from = X(this.track.times[row]);
+      if (stops[joint] || table) pen.fillRect(from, y0, X(this.track.times[row + 1]) - from + 0.5, h);
     }
   }
 }

@@ -11,7 +11,6 @@ import { KEYS, Layers, makeScene, Trail } from "./stage.js";
 import { contacts, Track } from "./track.js";
 
 const REST = 160; // ms without motion until the fine picture is drawn
-const EVERY = 33; // ms between two messages to the kernel
 
 class View {
   constructor(model, el) {
@@ -22,6 +21,7 @@ class View {
     this.size = this.l[1] + this.l[2];
     this.q = [...model.get("q")];
     this.on = new Set(model.get("layers"));
+    this.waiting = {}; // kinds of messages under way, and the one to be sent next
     this.parts = layout();
     el.append(this.parts.box);
     this.makeScene();
@@ -123,7 +123,7 @@ class View {
     parts.layers.append(clear);
     this.written = [];
     this.showPlayer = playerBar(parts.player, {
-      toggle: () => (this.playing ? this.pause() : this.play()),
+      toggle: () => this.toggle(),
       seek: (part) => this.seek(this.track.start + part * (this.track.end - this.track.start)),
       speed: (rate) => { this.rate = rate; },
       loop: () => { this.again = !this.again; this.seen && this.tellPlayer(); },
@@ -189,32 +189,27 @@ class View {
 
   // One message of a kind is under way at most; of those that wait only the last is sent.
   ask(message) {
-    const kind = Object.keys(message)[0];
-    this.waiting ??= {};
-    if (this.waiting[kind]) { this.waiting[kind].next = message; return; }
-    this.waiting[kind] = { next: null };
-    this.model.send(message);
+    const kind = Object.keys(message)[0], underWay = kind in this.waiting;
+    this.waiting[kind] = underWay ? message : null;
+    if (!underWay) this.model.send(message);
   }
 
   answered(kind) {
-    const next = this.waiting?.[kind]?.next;
-    if (this.waiting) this.waiting[kind] = null;
+    const next = this.waiting[kind];
+    delete this.waiting[kind];
     if (next) this.ask(next);
   }
 
+  // As often as the pose changes: the widget's model itself waits until the kernel has dealt with the last message.
   tell() {
-    this.telling ??= setTimeout(() => {
-      this.telling = null;
-      this.told = performance.now();
-      this.model.set("q", [...this.q]);
-      this.model.save_changes();
-    }, Math.max(0, EVERY - (performance.now() - (this.told ?? 0))));
+    this.model.set("q", this.q);
+    this.model.save_changes();
   }
 
   listen() {
     const { model, canvas } = this, { box, stage } = this.parts;
     this.heard = {
-      "change:q": () => { if (!this.dragging && !this.telling && !this.playing) this.pose([...model.get("q")]); },
+      "change:q": () => { if (!this.dragging && !this.playing && model.get("q") !== this.q) this.pose(model.get("q")); },
       "change:poses": () => this.moved(),
       "change:layers": () => { this.on = new Set(model.get("layers")); this.moved(); },
       "change:track": () => this.loadTrack(),
@@ -238,8 +233,7 @@ class View {
   }
 
   message(message, buffers) {
-    if (message.live) this.live(new Track(buffers[0], message.live));
-    if (message.live) return;
+    if (message.live) return this.live(new Track(buffers[0], message.live));
     this.error = message.error ?? null;
     for (const kind of ["frames", "drag"]) if (kind in message) this.answered(kind);
     if (message.error) this.say(message.error);
@@ -324,20 +318,16 @@ class View {
   }
 
   key(event) {
-    const offset = this.camera.position.clone().sub(this.controls.target), up = this.camera.up;
-    const aside = new Vector3().crossVectors(up, offset).normalize(), angle = offset.angleTo(up);
-    const turn = { ArrowLeft: -0.06, ArrowRight: 0.06 }[event.key], tilt = { ArrowUp: -0.06, ArrowDown: 0.06 }[event.key];
+    const { controls } = this;
+    const turn = { ArrowLeft: 0.06, ArrowRight: -0.06 }[event.key], tilt = { ArrowUp: 0.06, ArrowDown: -0.06 }[event.key];
     const zoom = { "+": 0.92, "=": 0.92, "-": 1.08 }[event.key];
-    if (turn) offset.applyAxisAngle(up, turn);
-    else if (tilt && angle + tilt > 0.05 && angle + tilt < 3.1) offset.applyAxisAngle(aside, tilt);
-    else if (zoom) offset.multiplyScalar(zoom);
-    else if (event.key === "Home") { this.lookFromStart(); return event.preventDefault(); }
-    else if (event.key === " " && this.track) { this.playing ? this.pause() : this.play(); return event.preventDefault(); }
+    if (turn) controls.rotateLeft(turn);
+    else if (tilt) controls.rotateUp(tilt);
+    else if (zoom) controls.dollyIn(zoom);
+    else if (event.key === "Home") this.lookFromStart();
+    else if (event.key === " " && this.track) this.toggle();
     else return;
     event.preventDefault();
-    this.camera.position.copy(this.controls.target).add(offset);
-    this.controls.update();
-    this.soon();
   }
 
   // ---- motions
@@ -412,6 +402,10 @@ class View {
     requestAnimationFrame(tick);
   }
 
+  toggle() {
+    this.playing ? this.pause() : this.play();
+  }
+
   pause() {
     if (!this.playing) return;
     this.playing = false;
@@ -428,7 +422,6 @@ class View {
   close() {
     this.closed = true;
     clearTimeout(this.fine);
-    clearTimeout(this.telling);
     this.sizes.disconnect();
     this.sight.disconnect();
     window.removeEventListener("beforeprint", this.beforePrint);

@@ -29,10 +29,6 @@ export function makeScene(reach) {
   return scene;
 }
 
-function texture(canvas) {
-  return Object.assign(new CanvasTexture(canvas), { colorSpace: SRGBColorSpace, anisotropy: 4 });
-}
-
 // A text that faces the eye; size: its height, m.
 export function label(text, colour, size) {
   const canvas = document.createElement("canvas"), pen = canvas.getContext("2d"), font = "600 44px sans-serif";
@@ -42,7 +38,8 @@ export function label(text, colour, size) {
   Object.assign(pen, { font, textBaseline: "middle", lineWidth: 8, strokeStyle: "#ffffffdd", fillStyle: colour, lineJoin: "round" });
   pen.strokeText(text, 8, 31);
   pen.fillText(text, 8, 31);
-  const sprite = new Sprite(new SpriteMaterial({ map: texture(canvas), depthTest: false, transparent: true }));
+  const map = Object.assign(new CanvasTexture(canvas), { colorSpace: SRGBColorSpace, anisotropy: 4 });
+  const sprite = new Sprite(new SpriteMaterial({ map, depthTest: false, transparent: true }));
   sprite.scale.set((size * canvas.width) / canvas.height, size, 1);
   sprite.renderOrder = 10;
   return sprite;
@@ -50,8 +47,7 @@ export function label(text, colour, size) {
 
 // A line of `width` CSS pixels through points, of which the first n can be shown.
 export class Trail {
-  constructor(colour, width = 2.5, most = 3000) {
-    this.points = new Float32Array(3 * most);
+  constructor(colour, width = 2.5) {
     this.material = new LineMaterial({ color: colour, linewidth: width });
     this.line = new Line2(new LineGeometry(), this.material);
     this.line.frustumCulled = false;
@@ -59,7 +55,6 @@ export class Trail {
   }
 
   set(points) { // [[x, y, z], ...] m
-    this.count = Math.min(points.length, this.points.length / 3);
     const flat = points.length > 1 ? points.flat() : [0, 0, 0, 0, 0, 0];
     this.line.geometry.dispose();
     this.line.geometry = new LineGeometry().setPositions(flat);
@@ -148,13 +143,13 @@ export class Layers {
     this.joints.forEach((group, i) => group.matrix.copy(transforms[i]));
     this.space.rotation.z = q[0];
     const J = jacobian(this.lengths, q), at = new Vector3().setFromMatrixPosition(transforms[3]);
-    const size = 0.25, speed = new Matrix4().set(...J.flatMap((row) => [...row, 0]), 0, 0, 0, 1);
+    const speed = new Matrix4().set(...J.flatMap((row) => [...row, 0]), 0, 0, 0, 1);
     // J carries the ball of unit joint rates onto the velocity ellipsoid, its inverse transpose that of unit torques
     // onto the force ellipsoid; at a singular pose the latter has no end
     const singular = Math.abs(speed.determinant()) < 1e-4;
     this.force.scale.setScalar(1);
     this.force.matrix.copy(singular ? new Matrix4().makeScale(0, 0, 0) : speed.clone().invert().transpose());
     this.force.matrix.premultiply(new Matrix4().makeScale(0.025, 0.025, 0.025)).setPosition(at);
-    this.velocity.matrix.copy(speed.premultiply(new Matrix4().makeScale(size, size, size))).setPosition(at);
+    this.velocity.matrix.copy(speed.premultiply(new Matrix4().makeScale(0.25, 0.25, 0.25))).setPosition(at);
   }
 }

@@ -7,36 +7,20 @@ export class Track {
     // a DataView in a notebook, whose start need not be a multiple of four
     const own = bytes.buffer ? bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) : bytes;
     this.data = new Float32Array(own);
-    Object.assign(this, { columns, runs, unit, source, rows: Math.floor(this.data.length / columns) });
-  }
-
-  time(row) {
-    return this.data[row * this.columns];
-  }
-
-  get start() {
-    return this.time(0);
-  }
-
-  get end() {
-    return this.time(this.rows - 1);
+    const rows = Math.floor(this.data.length / columns);
+    const times = Array.from({ length: rows }, (_, row) => this.data[row * columns]);
+    Object.assign(this, { columns, runs, unit, source, rows, times, start: times[0], end: times.at(-1) });
   }
 
   // The last row at or before t.
   row(t) {
-    let low = 0, high = this.rows - 1;
-    while (high - low > 1) {
-      const middle = (low + high) >> 1;
-      if (this.time(middle) <= t) low = middle;
-      else high = middle;
-    }
-    return t >= this.end ? this.rows - 1 : low;
+    return Math.max(this.times.findLastIndex((time) => time <= t), 0);
   }
 
   // Three columns at time t, linear between the rows.
   at(t, first) {
-    const a = this.row(t), b = Math.min(a + 1, this.rows - 1), span = this.time(b) - this.time(a);
-    const part = span > 0 ? Math.min(Math.max((t - this.time(a)) / span, 0), 1) : 0;
+    const a = this.row(t), b = Math.min(a + 1, this.rows - 1), span = this.times[b] - this.times[a];
+    const part = span > 0 ? Math.min(Math.max((t - this.times[a]) / span, 0), 1) : 0;
     return [0, 1, 2].map((i) => this.value(a, first + i) * (1 - part) + this.value(b, first + i) * part);
   }
 
