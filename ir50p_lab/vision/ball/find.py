@@ -207,7 +207,8 @@ def rejection_reason(found, least_radius, colour=RED):
     r = found.outline.r
     if r < least_radius:
         return f"too small, radius {r:.1f} pixels"
-    if why := _other_colour(_hue(found.samples[:, :6]), found.paint, colour):
+    # along rays that show an edge: where there is none something in front may show its own hue
+    if why := _other_colour(_hue(found.samples[found.edges[:, 0] > 0, :6]), found.paint, colour):
         return why
     part, pixels = _MOST_BUMPS
     rough = max(found.bumps, 0.6 * float(np.hypot(found.bumps, found.ragged)))  # noise alone makes edges scatter
