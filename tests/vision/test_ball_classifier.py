@@ -7,6 +7,7 @@ import pytest
 from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 
 from ir50p_lab.vision import RED, Ball, Colour, find_balls, learn_colour
+from ir50p_lab.vision.ball import find
 from ir50p_lab.vision.ball.classifier import WEIGHTS, score
 from ir50p_lab.vision.ball.features import RAYS, median
 from ir50p_lab.vision.ball.find import decide, least_score
@@ -39,6 +40,16 @@ def test_weights_are_small():
 def test_small_and_half_hidden_must_be_surer():
     assert 0.8 < least_score(30, 1.0) < least_score(7, 1.0) < 0.97
     assert least_score(30, 0.9) < least_score(30, 0.7) < least_score(30, 0.4) < least_score(7, 0.4) < 0.999
+
+
+@pytest.mark.parametrize("surely,first,closer", [(0.6, 0, 0), (0.8, 1, 0), (0.9, 1, 1)])
+def test_the_closer_look_must_be_surer(surely, first, closer, monkeypatch):
+    """It comes where the first saw nothing: there is more often none."""
+    picture = photograph(add_ball(empty(grain=0.05), 700, (300, 200), 40))
+    monkeypatch.setattr(find, "score", lambda found, others=None: np.full(len(found), surely))
+    assert len(find_balls(picture)) == first
+    monkeypatch.setattr(find, "guess_circles", lambda *_: np.empty((0, 3)))
+    assert len(find_balls(picture)) == closer
 
 
 @pytest.mark.parametrize("order", [1, -1])
