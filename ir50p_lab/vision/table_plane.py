@@ -135,8 +135,9 @@ class TablePlane:
         Whatever is computed from the plane spreads by the root of the summed squares of its changes: a list of
         TablePlane, empty if everything is exactly known.
         """
-        camera, by_camera = _covariance_of(self.camera), self._pose.by_camera
-        both = np.vstack([np.eye(9), by_camera])
+        known = getattr(self.camera, "covariance", None)  # (9, 9), of fx, fy, cx, cy, k1, k2, p1, p2, k3
+        camera = np.zeros((9, 9)) if known is None or not np.isfinite(known).all() else known
+        both = np.vstack([np.eye(9), self._pose.by_camera])
         P = both @ camera @ both.T
         P[9:, 9:] += self._pose.covariance
         scale = np.sqrt(np.where(np.diag(P) > 0, np.diag(P), 1.0))  # px, 1, rad and m: alike before the eigenvectors
@@ -151,9 +152,3 @@ class TablePlane:
             pose = np.concatenate(rvec_tvec(self.T_cam_table)) + d[9:]
             found.append(TablePlane(Pinhole(K, distortion), transform(pose[:3], pose[3:])))
         return found
-
-
-def _covariance_of(camera):
-    """Covariance (9, 9) of (fx, fy, cx, cy, k1, k2, p1, p2, k3) that a Calibration holds; zeros where it has none."""
-    known = getattr(camera, "covariance", None)
-    return np.zeros((9, 9)) if known is None or not np.isfinite(known).all() else known

@@ -7,6 +7,7 @@ import pytest
 from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 
 from ir50p_lab.vision import RED, Ball, Colour, find_balls, learn_colour
+from ir50p_lab.vision.ball import find
 from ir50p_lab.vision.ball.classifier import WEIGHTS, score
 from ir50p_lab.vision.ball.features import RAYS, median
 from ir50p_lab.vision.ball.find import decide, least_score
@@ -39,6 +40,16 @@ def test_weights_are_small():
 def test_small_and_half_hidden_must_be_surer():
     assert 0.8 < least_score(30, 1.0) < least_score(7, 1.0) < 0.97
     assert least_score(30, 0.9) < least_score(30, 0.7) < least_score(30, 0.4) < least_score(7, 0.4) < 0.999
+
+
+@pytest.mark.parametrize("surely,first,closer", [(0.5, 0, 0), (0.8, 1, 0), (0.9, 1, 1)])
+def test_the_closer_look_must_be_surer(surely, first, closer, monkeypatch):
+    """It comes where the first saw nothing: there is more often none."""
+    picture = photograph(add_ball(empty(grain=0.05), 700, (300, 200), 40))
+    monkeypatch.setattr(find, "score", lambda found, others=None: np.full(len(found), surely))
+    assert len(find_balls(picture)) == first
+    monkeypatch.setattr(find, "guess_circles", lambda *_: np.empty((0, 3)))
+    assert len(find_balls(picture)) == closer
 
 
 @pytest.mark.parametrize("order", [1, -1])
@@ -78,13 +89,24 @@ def test_any_colour(paint):
     assert find_balls(picture, learn_colour(picture, (300, 200)))[0].score > 0.9
 
 
-def test_overexposed():
+@pytest.mark.parametrize("green,light", [(0.05, 12), (0.05, 16), (0.06, 9)])
+def test_overexposed(green, light):
     """Where red is clipped a red ball looks orange; a thing that is orange where nothing is clipped is none."""
-    picture = photograph(12 * add_ball(empty(grain=0.05), 700, (300, 200), 40, colour=(0.55, 0.05, 0.03)))
+    picture = photograph(light * add_ball(empty(grain=0.05), 700, (300, 200), 40, colour=(0.55, green, 0.03)))
     assert picture[200, 300, 0] == 255 and picture[200, 300, 1] > picture[200, 300, 2] + 40
     assert np.hypot(find_balls(picture)[0].x - 300, find_balls(picture)[0].y - 200) < 0.5
     picture = photograph(add_ball(empty(grain=0.05), 700, (300, 200), 40, colour=(0.55, 0.09, 0.03)))
     assert find_balls(picture) == [] and "another colour" in find_balls(picture).reason
+
+
+@pytest.mark.parametrize("front", [(0.3, 0.2, 0.1), (0.3, 0.28, 0.1), (0.05, 0.2, 0.05)])
+@pytest.mark.parametrize("green,found", [(0.05, True), (0.12, False)])
+def test_overexposed_behind_a_thing_in_good_light(front, green, found):
+    """The hue is that of the ball's own part of the disc, not of what hides the rest."""
+    light = 6 * add_ball(empty(grain=0.05), 700, (300, 200), 40, colour=(0.55, green, 0.03))
+    light = add_polygon(light, [(200, 210), (420, 190), (420, 300), (200, 300)], colour=front)
+    balls = find_balls(photograph(light))
+    assert [np.hypot(ball.x - 300, ball.y - 200) < 1 for ball in balls] == [True] * found
 
 
 @pytest.mark.parametrize("blue,light", [(0.07, 12), (0.10, 6), (0.10, 9)])

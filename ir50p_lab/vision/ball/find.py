@@ -22,7 +22,9 @@ from ir50p_lab.vision.pinhole import as_pinhole
 
 _GUESSES, _CLOSER = 14, 5  # guesses of which the colour is looked at; measured in the closer look, which takes longer
 
-_LEAST_ODDS = 1.8  # log odds that a ball needs: well above 0, as a false alarm is worse than a miss
+# Log odds that a ball needs, in the first look and in the closer one: above 0, as a false alarm is worse than a miss.
+# The closer look comes where the first saw none, most often because there is none.
+_LEAST_ODDS, _LEAST_ODDS_CLOSER = 0.4, 1.8
 _SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more
 # share of the outline below which the end of a rod can, and what is missing costs, times its share
 _CLEAR, _MORE_HIDDEN = 0.75, 4.0
@@ -121,7 +123,8 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         check_picture_size(camera, image.shape[1::-1])
     view = view_of(image.shape, camera)
     measured, rejected = [], []
-    for guess, most in ((guess_circles, _GUESSES), (guess_closer, _CLOSER)):
+    looks = (guess_circles, _GUESSES, _LEAST_ODDS), (guess_closer, _CLOSER, _LEAST_ODDS_CLOSER)
+    for guess, most, least_odds in looks:
         tries, outlines = 0, []
         for x, y, r in guess(image, colour, least_radius)[:_GUESSES].tolist():
             if any(np.hypot(x - o.x, y - o.y) + abs(r - o.r) < 0.3 * r for o in outlines):
@@ -140,7 +143,7 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
                 rejected.append((_place(found), why))
             else:
                 measured.append(found)
-        balls, objections = decide(measured)
+        balls, objections = decide(measured, least_odds)
         if balls:
             break
     rejected = (*objections, *rejected)
@@ -152,7 +155,7 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     return Balls(reason=f"the likeliest thing, at ({x:.0f}, {y:.0f}) with radius {r:.0f}: {why}", rejected=rejected)
 
 
-def decide(measured):
+def decide(measured, least_odds=_LEAST_ODDS_CLOSER):
     """Balls best first, and what was rejected as ((x, y, r), why), best first; balls that touch excuse each other."""
     if not measured:
         return [], []
@@ -163,7 +166,7 @@ def decide(measured):
             found, radius = measured[k], measured[k].outline.r
             if _part_of(balls, found):
                 continue
-            if scores[k] >= least_score(radius, found.support):
+            if scores[k] >= least_score(radius, found.support, least_odds):
                 balls.append(Ball(*found.centre, radius, float(scores[k]), found.support))
             else:
                 objections.append((scores[k], found))
@@ -187,9 +190,9 @@ def _trust(scores, measured):
     return np.log(surest / (1 - surest)) + _BY_SUPPORT * np.array([found.support for found in measured])
 
 
-def least_score(radius, support):
+def least_score(radius, support, least_odds=_LEAST_ODDS_CLOSER):
     """Score that a ball of this radius (pixels) needs if it shows an edge on this share of its outline."""
-    odds = _LEAST_ODDS + _MORE_SMALL * (radius <= _SMALL) + _MORE_HIDDEN * max(_CLEAR - support, 0)
+    odds = least_odds + _MORE_SMALL * (radius <= _SMALL) + _MORE_HIDDEN * max(_CLEAR - support, 0)
     return 1 / (1 + np.exp(-odds))
 
 
@@ -207,7 +210,8 @@ def rejection_reason(found, least_radius, colour=RED):
     r = found.outline.r
     if r < least_radius:
         return f"too small, radius {r:.1f} pixels"
-    if why := _other_colour(_hue(found.samples[:, :6]), found.paint, colour):
+    # along rays that show an edge: where there is none something in front may show its own hue
+    if why := _other_colour(_hue(found.samples[found.edges[:, 0] > 0, :6]), found.paint, colour):
         return why
     part, pixels = _MOST_BUMPS
     rough = max(found.bumps, 0.6 * float(np.hypot(found.bumps, found.ragged)))  # noise alone makes edges scatter

@@ -19,8 +19,9 @@ def _smooth(r):
 
 _AREA = np.append(np.linspace(0.1, 0.85, 11), 0.93)  # of the rings that the samples stand for
 _AREA /= _AREA.sum()
-# Whatever else speaks for it, a ball shows an edge on this much of the circle, and this much of its disc has the colour
-LEAST_SUPPORT, LEAST_FILL = 0.32, 0.40
+# Whatever else speaks for it, a ball shows an edge on this much of the circle, and this much of its disc has the
+# colour: of an overexposed one, which is orange, hardly more than the rim
+LEAST_SUPPORT, LEAST_FILL = 0.32, 0.25
 _CLEARLY = 0.8  # of the least radius: the first look is that far off at most
 _EDGE = 0.30  # least height of an edge, in units of the contrast between ball and surroundings
 
