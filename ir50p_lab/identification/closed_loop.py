@@ -43,16 +43,15 @@ class ClosedLoopRun:
     def simulate(self, theta, fs=None, qs=None, *, step=0.001):
         """q and u (PWM), (m, 3) each, of the loop with this model; fs, qs (3,): breakaway and Stribeck speed."""
         plant = make_plant(theta, unit="PWM", g=STANDARD_GRAVITY)
-        numbers = plant.numbers.copy()
-        numbers[LIMIT : LIMIT + 3] = _LIMIT
+        plant.numbers[LIMIT : LIMIT + 3] = _LIMIT
         if fs is not None:
-            numbers[FS : FS + 3], numbers[QS : QS + 3] = fs, qs
-            numbers[DRY] = 1.0
+            plant.numbers[FS : FS + 3], plant.numbers[QS : QS + 3] = fs, qs
+            plant.numbers[DRY] = 1.0
         law = self.controller.kind, self.controller.parameters, np.zeros_like(self.controller.state)
         x, (q, qd, u) = np.r_[self.start, 0.0, 0.0, 0.0], np.empty((3, *self.q.shape))
         steps = max(1, round(self.period / step))
         h = self.period / steps
-        sampled_loop(plant.theta, numbers, *law, self.t, self.r, x, self.late, h, steps, q, qd, u)
+        sampled_loop(plant.theta, plant.numbers, *law, self.t, self.r, x, self.late, h, steps, q, qd, u)
         return q, u
 
 

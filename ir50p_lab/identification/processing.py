@@ -39,6 +39,9 @@ class Motion:
     segment: np.ndarray
     rate_hz: float
 
+    def __len__(self):
+        return len(self.t)
+
 
 def causal_derivatives(q, rate_hz, *, cutoff_hz=3.0):
     """What the thesis does, as a loop can: a first-order low pass, then the backward difference twice.

@@ -57,9 +57,8 @@ def likeness(e):
     if e @ e <= len(e) * _NOISE**2:
         return 0.0, 1.0
     correlation = float(e[1:] @ e[:-1] / (e @ e))
-    if correlation <= 3 / math.sqrt(len(e)):
-        return correlation, 1.0
-    return correlation, math.sqrt((1 + correlation) / (1 - correlation))
+    significant = correlation > 3 / math.sqrt(len(e))
+    return correlation, math.sqrt((1 + correlation) / (1 - correlation)) if significant else 1.0
 
 
 def jacobian(response, p, sizes):

@@ -76,7 +76,7 @@ def validate(
     motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, held=False)
     predicted = np.einsum("nij,ij->ni", regressor(motion.q, motion.qd, motion.qdd, sign=sign), theta)
     acts = acting_times(t, number("delay", delay, ">= 0", unit="s"), held and derivatives == BACKWARD)
-    after = np.searchsorted(motion.t, acts).clip(1, len(motion.t) - 1)
+    after = np.searchsorted(motion.t, acts).clip(1, len(motion) - 1)
     inside = (acts >= motion.t[after - 1]) & (acts <= motion.t[after])
     inside &= motion.segment[after] == motion.segment[after - 1]
     found = np.column_stack([np.interp(acts[inside], motion.t, p) for p in predicted.T])

@@ -123,7 +123,7 @@ def test_slow_samples_are_marked():
 def test_arrays_of_one_joint():
     record = recorded()
     one, all_ = process(record.t, record.q[:, 1], record.u[:, 1]), process(record)
-    assert one.q.shape == (len(one.t), 1)
+    assert one.q.shape == (len(one), 1)
     for name in ("q", "qd", "qdd", "u"):
         np.testing.assert_allclose(getattr(one, name)[:, 0], getattr(all_, name)[:, 1], atol=1e-9)
     with pytest.raises(InputError, match="neither both nor a part"):
