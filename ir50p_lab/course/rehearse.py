@@ -30,7 +30,7 @@ def rehearse(controller, reference, *, arm=None, show=True, **view):
     arm = load_arm() if arm is None else arm
     start, unit = rest_pose(arm), getattr(controller, "unit", "PWM")
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UnstableLoopWarning)  # that swings within the limits is shown, and goes on
+        warnings.simplefilter("ignore", UnstableLoopWarning)  # one that swings within the limits is shown
         try:
             run = simulate(arm, controller, reference, duration=_SECONDS, q0=start, unit=unit)
         except InputError as error:

@@ -67,7 +67,7 @@ def joint_columns(duration, ranges, largest, *, labels, room):
     Returns: LabFigure; the curves above and those below, [joint][run].
     """
     figure = new_figure(9.6, 4.2, rows=2, cols=3, sharex=True)
-    runs = list(zip(labels, JOINTS, strict=False))
+    runs = list(zip(labels, JOINTS[: len(labels)], strict=True))
     curves = [[ax.plot([], [], color=colour, label=label)[0] for label, colour in runs] for ax in figure.axes]
     for above, below, (low, high) in zip(figure.axes[:3], figure.axes[3:], ranges, strict=True):
         beside = max(room[0] * (high - low), room[1])

@@ -27,7 +27,7 @@ class JointPlots:
     def __init__(self, target, *, duration, unit, u_max, labels=("",)):
         ranges = [sorted((0.0, angle)) for angle in target]
         self.figure, self._q, self._u = joint_columns(duration, ranges, 1.08 * u_max, labels=labels, room=(0.25, 0.2))
-        for ax, angle in zip(self.figure.axes, target, strict=False):
+        for ax, angle in zip(self.figure.axes[:3], target, strict=True):
             ax.axhline(angle, zorder=1.9, **SETPOINT)  # below what moves
         for curve in chain(*self._u):
             curve.set_drawstyle("steps-post")

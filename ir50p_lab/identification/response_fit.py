@@ -280,11 +280,12 @@ def _moved_by_drift_or_start(record, a, J, e):
     """(3,) by which K, T and L move beside a drift, or a rest at first that was none; adds a warning of these."""
     moved = np.zeros(3)
     others = {"y drifts by": record.t, "y was not at rest at first, but away by": np.exp(-a * (record.t - record.t[0]))}
-    for what, column in others.items() if len(e) >= _ENOUGH and e @ e > len(e) * _NOISE**2 else ():
+    for what, column in others.items():
         A = np.column_stack([J, column])
         x = np.linalg.lstsq(A, -e)[0]
         left = e + A @ x
-        if (e @ e - left @ left) * len(e) > _OTHER * likeness(left)[1] ** 2 * (left @ left):
+        spread = max(left @ left, len(e) * _NOISE**2) / (len(e) - A.shape[1]) * likeness(left)[1] ** 2
+        if e @ e - left @ left > _OTHER * spread:
             moved = np.hypot(moved, x[1:4])
             size = f"{100 * abs(x[-1]) * np.ptp(column):.2g} % of its range"
             record.warned.add(f"{what} {size}: errors were widened; record longer rest before the step")
@@ -380,10 +381,9 @@ def fit_second_order(t, u, y, *, u_before=None):
     model explains less than half of the variance of y.
     """
     record = StepRecord(t, u, y, u_before)
-    y, period = record.y, record.period
     p, c, e, basis = _second_order(record)
     zeros = len(c) - 2
-    explained = 1 - np.mean(e**2) / np.var(y)
+    explained = 1 - np.mean(e**2) / np.var(record.y)
     if explained < 0.5:
         raise IdentificationError(f"y does not follow u: a second-order model explains {100 * explained:.0f} % of it")
     w = math.exp(p[0])
@@ -394,12 +394,12 @@ def fit_second_order(t, u, y, *, u_before=None):
 
     sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / w, 1e-3 / w][: len(found)])
     errors = standard_errors(jacobian(response, found, sizes), e)
-    if w * period > 1:
-        record.warned.add(f"w is {w * period:.2g} rad a sample: not identifiable, sample faster")
+    if w * record.period > 1:
+        record.warned.add(f"w is {w * record.period:.2g} rad a sample: not identifiable, sample faster")
     units = np.array([record.gain, 1 / record.unit, 1.0, record.unit, record.unit])[: len(found)]
     return SecondOrderModel(
         **by_name(_NAMES[: len(found)], found * units, errors * units),
         y0=float(c[0] * record.y_unit + record.y_first),
-        fit=float(100 * (1 - np.sqrt(np.mean(e**2)) / np.std(y))),
+        fit=float(100 * (1 - np.sqrt(np.mean(e**2)) / np.std(record.y))),
         warnings=tuple(record.warned),
     )
