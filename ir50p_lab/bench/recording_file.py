@@ -17,8 +17,7 @@ from ir50p_lab.errors import RecordingError
 FORMAT = "ir50p_lab recording"
 COLUMNS = tuple("t q1 q2 q3 counts1 counts2 counts3 u1 u2 u3 r1 r2 r3 gripper missed".split())
 T, Q, COUNTS, U, R, GRIPPER, MISSED = 0, slice(1, 4), slice(4, 7), slice(7, 10), slice(10, 13), 13, 14
-_CELLS = 4 * ("%.6f",) + 6 * ("%g",) + 3 * ("%.6f",) + 2 * ("%d",)
-_ROW = ",".join(_CELLS) + "\n"
+_ROW = ",".join(4 * ("%.6f",) + 6 * ("%g",) + 3 * ("%.6f",) + 2 * ("%.0f",)) + "\n"
 _FOREIGN = "a spreadsheet has to save it with commas and decimal points; for others: pandas, Recording.from_arrays"
 _EVENT = re.compile(r"[ \"]*#\W*event: (-?[\d.]+) s: (.*)")
 _UNITS = "t s; q rad; counts of the 10-bit converter; u PWM counts; r (reference) rad; gripper 1 closed; missed cycles"
@@ -45,14 +44,8 @@ def lines_text(header):
 def rows_text(table, events=()):
     """The lines of samples. table: (n, 15), columns as COLUMNS, NaN where not known; events: [(t, text), ...]."""
     noted = [(t, 0, event_text(t, text)) for t, text in events]
-    lines = [(row[T], 1, _row_text(row)) for row in table.tolist()]
+    lines = [(row[T], 1, (_ROW % tuple(row)).replace("nan", "")) for row in table.tolist()]
     return "".join(line for *_, line in sorted(noted + lines, key=itemgetter(0, 1)))
-
-
-def _row_text(row):
-    if not math.isnan(sum(row)):
-        return _ROW % tuple(row)
-    return ",".join(["" if math.isnan(x) else form % x for form, x in zip(_CELLS, row, strict=True)]) + "\n"
 
 
 def event_text(t, text):
