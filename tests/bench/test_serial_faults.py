@@ -7,7 +7,7 @@ import os
 import numpy as np
 import pytest
 import serial
-from fake_board import FakeBoard
+from fake_board import ANSWER, FakeBoard
 
 from ir50p_lab.bench import SerialBench, nominal_calibration, ports, protocol, serial_bench
 from ir50p_lab.errors import BoardError, BoardLostError, InputError, PauseError, PortError
@@ -277,6 +277,23 @@ def test_noise_never_becomes_a_sample(board):
         taken += 1
     assert taken > 1000  # a cycle whose answer came late leaves out the next
     assert bench.statistics.bad_replies > 1000
+
+
+@pytest.mark.parametrize("late", np.arange(500, 540, 2) / 10_000)
+def test_an_answer_still_on_its_way_when_a_run_begins_is_no_damaged_one(board, late):
+    """A busy computer asks again at the hello; the second answer comes byte by byte, with bytes like a frame's first."""
+    byte = 10 / protocol.BAUD
+
+    def say(data):
+        begins = board.t + (late if board.hellos == 1 else ANSWER)
+        begins = max([begins, *(when + byte for when, _ in board._out)])  # one wire: behind what is on it
+        board._out += [(begins + k * byte, data[k : k + 1]) for k in range(len(data))]
+
+    board.say, board.board_id = say, 0x5A5A5A
+    samples, bench = run(board, 0.1)
+    assert len(samples) >= 9
+    assert bench.statistics.repeats >= 1
+    assert bench.statistics.bad_replies == 0
 
 
 # ---- answers that come late
