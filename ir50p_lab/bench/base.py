@@ -273,7 +273,7 @@ class Bench:
             sample = run.row = self._last = Sample(t, self._radians(counts), counts, pace.missed)
             if run.guard is not None:
                 run.guard.check(sample, self._pwm)
-            given = sample._replace(q=sample.q.copy(), counts=sample.counts.copy())  # may be written into
+            given = Sample(t, sample.q.copy(), counts.copy(), pace.missed)  # may be written into
             if run.reference is None:
                 return given
             rows = checked_reference(self.arm, t, run.reference(t), sample.q if self.answers else None)

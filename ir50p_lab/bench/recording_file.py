@@ -43,9 +43,12 @@ def lines_text(header):
 
 def rows_text(table, events=()):
     """The lines of samples. table: (n, 15), columns as COLUMNS, NaN where not known; events: [(t, text), ...]."""
-    noted = [(t, 0, event_text(t, text)) for t, text in events]
-    lines = [(row[T], 1, (_ROW % tuple(row)).replace("nan", "")) for row in table.tolist()]
-    return "".join(line for *_, line in sorted(noted + lines, key=itemgetter(0, 1)))
+    samples = (_ROW * len(table) % tuple(table.ravel().tolist())).replace("nan", "")
+    if not events:
+        return samples
+    lines = [(t, 1, line) for t, line in zip(table[:, T].tolist(), samples.splitlines(keepends=True), strict=True)]
+    lines += [(t, 0, event_text(t, text)) for t, text in events]
+    return "".join(line for *_, line in sorted(lines, key=itemgetter(0, 1)))
 
 
 def event_text(t, text):

@@ -22,8 +22,8 @@ class Steps(Reference):
 
     def _rows(self, t):
         rows = np.zeros((len(t), 3, 3))
-        piece = np.searchsorted(self.times, t, side="right") - 1
-        rows[:, 0] = np.array(self.values)[np.maximum(piece, 0)]
+        piece = np.array(self.times).searchsorted(t, side="right") - 1
+        rows[:, 0] = np.array(self.values).take(piece, axis=0, mode="clip")
         return rows
 
 
