@@ -214,13 +214,14 @@ def _with_other_fits_in_errors(joint, found, any_instant):
     """The same, its standard errors widened by what fits that are as good a choice change beyond their own errors.
 
     Lower cut-offs: flexibility, backlash. Twice the least speed: sticking, coarse angles. Any force of the position:
-    gravity, ripple. With any_instant, a u that acts at another one: by half a period, if the data do not tell.
+    gravity, ripple. The part of u that a dead zone of the amplifier keeps. With any_instant, a u that acts at another
+    one: by half a period, if the data do not tell.
     """
     lower = joint.lower(found)
     faster = joint.fit(found.cutoff_hz, found.held, fewest=found, slower=2.0)
     pairs = [(other.x, other.stderr) for other in (*lower, faster) if other is not None]
     moved = np.zeros(len(found.x))
-    for x, stderr in pairs + found.of_position():
+    for x, stderr in pairs + found.beside_forces():
         beyond = np.where(np.isfinite(found.stderr + stderr), (found.x - x) ** 2 - stderr**2, 0.0)
         moved = np.maximum(moved, np.sqrt(np.clip(beyond, 0.0, None)))
     late = 0.0
@@ -292,15 +293,15 @@ class Found:
         moved[np.isfinite(self.stderr)] = size * np.linalg.lstsq(self.A, self._late_column, rcond=None)[0]
         return moved
 
-    def of_position(self):
-        """[(x, stderr)] beside a polynomial of q: a force that depends on it; [] if there are too few samples."""
+    def beside_forces(self):
+        """[(x, stderr)] beside a polynomial of q, and the sign of u of a dead zone; [] if there are too few samples."""
         if len(self.y) < 6 * (len(self.x) + _POLYNOMIAL):
             return []
         q = self.table.q - self.table.q.min()
-        columns = np.polynomial.legendre.legvander(2 * q / max(np.ptp(q), 1e-300) - 1, _POLYNOMIAL)[:, 1:]
-        x, stderr = self.beside(columns)[:2]
-        compared = [name in _COMPARED for name in self.names]
-        return [(x, np.where(compared, stderr, np.inf))]
+        of_position = np.polynomial.legendre.legvander(2 * q / max(np.ptp(q), 1e-300) - 1, _POLYNOMIAL)[:, 1:]
+        compared = np.isin(self.names, _COMPARED)
+        fits = [self.beside(columns)[:2] for columns in (of_position, self.table.side)]
+        return [(x, np.where(compared, stderr, np.inf)) for x, stderr in fits]
 
 
 @dataclass(frozen=True)
@@ -388,8 +389,8 @@ class _Joint:
         """What goes into the regression, all through the same low pass.
 
         columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 2): u held and measured; slopes
-        (m, 2); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its largest value; q (m,)
-        rad; v (m,) rad/s; direction (m,).
+        (m, 2); side (m,): sign of u; extreme (m, 2): share of a sample's surroundings in which u has its smallest, its
+        largest value; q (m,) rad; v (m,) rad/s; direction (m,).
         """
         slow = slower * max(4 * self.band.speed_noise, _DEAD * self.band.speed)
         every = np.concatenate([u[:, 0] for _, u in self.segments])
@@ -405,16 +406,16 @@ class _Joint:
             turning, _ = self._derivatives(angles, max(cutoff_hz, self.band.sign_cutoff_hz))
             moving = np.abs(v) > (slow if edge or slower > 1 else 4 * self.band.unfiltered_noise)
             plain = [np.sign(turning), np.sin(angles[:, 0]), np.cos(angles[:, 0]), moving]
-            plain = np.column_stack([*plain, drive, drive[:, 0] < low, drive[:, 0] > high]).astype(float)
-            smooth = self._smooth(plain, cutoff_hz)
+            plain = np.column_stack([*plain, drive, np.sign(drive[:, 0]), drive[:, 0] < low, drive[:, 0] > high])
+            smooth = self._smooth(plain.astype(float), cutoff_hz)
             direction, sin, cos, moving = smooth[:, :4].T
             columns = np.column_stack([np.ones(n), sin, cos, v, direction, np.zeros(n), a])  # as in _COLUMNS
             rates, slopes = (np.gradient(x, axis=0) * self.rate for x in (columns, smooth[:, 4:6]))
             kept = np.arange(n)[edge : n - edge : thin]
             kept = kept[moving[kept] > 0.9]
-            whole = columns, rates, smooth[:, 4:6], slopes, smooth[:, 6:], angles[:, 0], v, direction
+            whole = columns, rates, smooth[:, 4:6], slopes, smooth[:, 6], smooth[:, 7:], angles[:, 0], v, direction
             parts.append([x[kept] for x in whole])
-        names = ("columns", "rates", "y", "slopes", "extreme", "q", "v", "direction")
+        names = ("columns", "rates", "y", "slopes", "side", "extreme", "q", "v", "direction")
         joined = [np.concatenate(x) for x in zip(*parts, strict=True)] or [np.empty(0)] * len(names)
         return SimpleNamespace(**dict(zip(names, joined, strict=True)))
 

@@ -222,6 +222,19 @@ def test_what_other_fits_change_is_in_the_errors(seed):
     assert found.inertia_stderr < 0.1 * J and found.viscous_stderr < 0.1 * b
 
 
+@pytest.mark.parametrize("share", [0.05, 0.07])
+@pytest.mark.parametrize("seed", range(5))
+def test_what_a_dead_zone_of_the_amplifier_changes_is_in_the_errors(seed, share):
+    J, b, size = 0.6, 2.5, 8.0
+    machine = (J, b, 1.2, 0.0), 0.005, 30.0, size, 1e-5
+    t, _, u = recorded(machine, seed)
+    acting = np.sign(u) * np.maximum(np.abs(u) - share * size, 0.0)
+    found = fit_joint(t, angle(machine, acting, seed), u)
+    assert abs(found.inertia - J) <= 3 * found.inertia_stderr + 0.01 * J
+    assert abs(found.viscous - b) <= 3 * found.viscous_stderr + 0.01 * b
+    assert found.inertia_stderr < 0.2 * J and found.viscous_stderr < 0.2 * b
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_the_flicker_of_a_coarse_drive_is_no_outlier_and_masked_samples_are_left_out(seed):
     t, q, u = recorded(MACHINES["industrial arm, 1 kHz, encoder"], seed)
