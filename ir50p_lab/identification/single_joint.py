@@ -100,8 +100,9 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     Samples of a joint that stands are left out (there u may be anything up to the breakaway friction). The cut-off is
     the highest that noise of q allows at which the parameters agree with those at half of it: above, flexibility and
     backlash make a rigid model wrong. Standard errors allow for residuals that are alike, and for what
-    lower cut-offs, twice the least speed, any force of the position and, unless `held` is given, half a period between
-    q and u change (less, or more, where the data tell the delay).
+    lower cut-offs, twice the least speed, any force of the position, a dead zone of the amplifier and, unless `held` is
+    given, half a period between q and u change (less, or more, where the data tell the delay). What a dead zone keeps
+    of u counts as Coulomb friction.
 
     Args:
         t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings
@@ -205,8 +206,7 @@ def _at_agreeing_cutoff(warned, joint, first, given):
         return first
     here, lower, name = differing
     each = ", ".join("{:.4g} +- {:.2g} at {:.3g} Hz".format(*one.value(name), one.cutoff_hz) for one in (here, lower))
-    said = f"{name} depends on the cut-off: {each} (flexibility, backlash, a late u)"
-    warned.add(f"{said}: no rigid joint explains the fast part of the motion; compare with a lower cutoff_hz")
+    warned.add(f"{name} depends on the cut-off: {each} (flexibility, backlash, a late u); try a lower cutoff_hz")
     return first if given else lower
 
 
@@ -294,14 +294,15 @@ class Found:
         return moved
 
     def beside_forces(self):
-        """[(x, stderr)] beside a polynomial of q, and the sign of u of a dead zone; [] if there are too few samples."""
+        """[(x, stderr)] beside a polynomial of q, and the sign of the u fitted; [] if there are too few samples."""
         if len(self.y) < 6 * (len(self.x) + _POLYNOMIAL):
             return []
         q = self.table.q - self.table.q.min()
         of_position = np.polynomial.legendre.legvander(2 * q / max(np.ptp(q), 1e-300) - 1, _POLYNOMIAL)[:, 1:]
-        compared = np.isin(self.names, _COMPARED)
-        fits = [self.beside(columns)[:2] for columns in (of_position, self.table.side)]
-        return [(x, np.where(compared, stderr, np.inf)) for x, stderr in fits]
+        fitted = self.A @ self.left.x[np.isfinite(self.left.stderr)]  # the sign of u itself has its noise
+        fits = (of_position, _COMPARED), (np.sign(fitted), _COMPARED[:2])  # Coulomb friction is like a dead zone
+        pairs = [(*self.beside(columns)[:2], np.isin(self.names, names)) for columns, names in fits]
+        return [(x, np.where(compared, stderr, np.inf)) for x, stderr, compared in pairs]
 
 
 @dataclass(frozen=True)
@@ -389,8 +390,8 @@ class _Joint:
         """What goes into the regression, all through the same low pass.
 
         columns (m, 7), in the order of _COLUMNS, their rates of change (m, 7); y (m, 2): u held and measured; slopes
-        (m, 2); side (m,): sign of u; extreme (m, 2): share of a sample's surroundings in which u has its smallest, its
-        largest value; q (m,) rad; v (m,) rad/s; direction (m,).
+        (m, 2); extreme (m, 2): share of a sample's surroundings in which u has its smallest, its largest value; q (m,)
+        rad; v (m,) rad/s; direction (m,).
         """
         slow = slower * max(4 * self.band.speed_noise, _DEAD * self.band.speed)
         every = np.concatenate([u[:, 0] for _, u in self.segments])
@@ -406,16 +407,16 @@ class _Joint:
             turning, _ = self._derivatives(angles, max(cutoff_hz, self.band.sign_cutoff_hz))
             moving = np.abs(v) > (slow if edge or slower > 1 else 4 * self.band.unfiltered_noise)
             plain = [np.sign(turning), np.sin(angles[:, 0]), np.cos(angles[:, 0]), moving]
-            plain = np.column_stack([*plain, drive, np.sign(drive[:, 0]), drive[:, 0] < low, drive[:, 0] > high])
-            smooth = self._smooth(plain.astype(float), cutoff_hz)
+            plain = np.column_stack([*plain, drive, drive[:, 0] < low, drive[:, 0] > high]).astype(float)
+            smooth = self._smooth(plain, cutoff_hz)
             direction, sin, cos, moving = smooth[:, :4].T
             columns = np.column_stack([np.ones(n), sin, cos, v, direction, np.zeros(n), a])  # as in _COLUMNS
             rates, slopes = (np.gradient(x, axis=0) * self.rate for x in (columns, smooth[:, 4:6]))
             kept = np.arange(n)[edge : n - edge : thin]
             kept = kept[moving[kept] > 0.9]
-            whole = columns, rates, smooth[:, 4:6], slopes, smooth[:, 6], smooth[:, 7:], angles[:, 0], v, direction
+            whole = columns, rates, smooth[:, 4:6], slopes, smooth[:, 6:], angles[:, 0], v, direction
             parts.append([x[kept] for x in whole])
-        names = ("columns", "rates", "y", "slopes", "side", "extreme", "q", "v", "direction")
+        names = ("columns", "rates", "y", "slopes", "extreme", "q", "v", "direction")
         joined = [np.concatenate(x) for x in zip(*parts, strict=True)] or [np.empty(0)] * len(names)
         return SimpleNamespace(**dict(zip(names, joined, strict=True)))
 

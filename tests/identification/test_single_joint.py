@@ -225,8 +225,8 @@ def test_what_other_fits_change_is_in_the_errors(seed):
 @pytest.mark.parametrize("share", [0.05, 0.07])
 @pytest.mark.parametrize("seed", range(5))
 def test_what_a_dead_zone_of_the_amplifier_changes_is_in_the_errors(seed, share):
-    J, b, size = 0.6, 2.5, 8.0
-    machine = (J, b, 1.2, 0.0), 0.005, 30.0, size, 1e-5
+    J, b, c, size = 0.6, 2.5, 1.2, 8.0
+    machine = (J, b, c, 0.0), 0.005, 30.0, size, 1e-5
     t, _, u = recorded(machine, seed)
     acting = np.sign(u) * np.maximum(np.abs(u) - share * size, 0.0)
     found = fit_joint(t, angle(machine, acting, seed), u)
