@@ -67,7 +67,6 @@ class SerialBench(Bench):
                 ready += BOOT_LOADER
             load_controllers()
             self._clock.sleep(max(0.0, ready - self._clock.now()))
-            self._link.forget()  # of the boot loader, or of who had the port before; later it would cut a frame in two
             self.identity = self._shake_hands(HANDSHAKE)
             if not self._calibrated:
                 self.calibration = own_calibration(self) or self.calibration
@@ -167,8 +166,11 @@ class SerialBench(Bench):
 
     def _shake_hands(self, patience, kind=protocol.HELLO, pwm=(0, 0, 0)):
         """Say hello until the board says who it is. Raises BoardError, with the remedy, if it is not ours."""
+        link = self._link
         try:
-            identity, _ = self._link.ask(kind, pwm, patience=patience, repeat=min(0.05, patience / 4))
+            if link.statistics.commands == 0:  # all that came is a boot loader's; later it may be half of an answer
+                link.forget()
+            identity, _ = link.ask(kind, pwm, patience=patience, repeat=min(0.05, patience / 4))
         except BoardLostError:
             said = f"{self.port}: no firmware of ours answers. Is it a Mega 2560? Then {_REMEDY}"
             raise BoardError(f"{said}, or press its reset button if that is done") from None

@@ -296,6 +296,13 @@ def test_an_answer_still_on_its_way_when_a_run_begins_is_no_damaged_one(board, l
     assert bench.statistics.bad_replies == 0
 
 
+def test_a_cable_pulled_before_the_hello(board):
+    board.unplugged = True
+    with pytest.raises(BoardError, match="went away while we said hello"):
+        bench_of(board).open()
+    assert board.closed
+
+
 # ---- answers that come late
 
 
