@@ -27,7 +27,7 @@ def pid(**changes):
     return PID(**{**GAINS, **changes}, limit_pwm=255)
 
 
-def until(condition, timeout=60.0):
+def until(condition, timeout=10.0):
     deadline = time.monotonic() + timeout
     while not condition():
         assert time.monotonic() < deadline, "nothing happened in time"

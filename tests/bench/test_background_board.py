@@ -14,7 +14,7 @@ from tests.emulator.board_process import BoardProcess
 PAUSE = 0.002
 
 
-def until(condition, timeout=60.0):
+def until(condition, timeout=20.0):
     deadline = time.monotonic() + timeout
     while not condition():
         assert time.monotonic() < deadline, "nothing happened in time"

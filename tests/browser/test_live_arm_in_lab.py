@@ -118,7 +118,7 @@ def test_a_wrong_frame_draws_a_wrong_arm(notebook):
     notebook.locator(".la").nth(2).get_by_label("joint 2 in degrees").focus()
     notebook.keyboard.press("ArrowRight")  # asks the kernel for frames
     notebook.wait_for_function(
-        f"(old) => Math.hypot(...{VIEW.format(2)}.tipAt.map((v, i) => v - old[i])) > 1e-3", arg=drawn, timeout=60_000
+        f"(old) => Math.hypot(...{VIEW.format(2)}.tipAt.map((v, i) => v - old[i])) > 1e-3", arg=drawn, timeout=5000
     )
 
 
@@ -127,7 +127,7 @@ def test_two_runs_play_pause_scrub_and_start_again(notebook):
     box = notebook.locator(".la").nth(3)
     picture = pixels(notebook, 3)
     box.get_by_label("play or pause").click()
-    notebook.wait_for_function(f"() => {VIEW.format(3)}.time > 0.5", timeout=60_000)
+    notebook.wait_for_function(f"() => {VIEW.format(3)}.time > 0.5", timeout=10_000)
     assert pixels(notebook, 3) != picture
     box.get_by_label("play or pause").click()
     stopped = notebook.evaluate(f"() => {VIEW.format(3)}.time")
@@ -143,7 +143,7 @@ def test_two_runs_play_pause_scrub_and_start_again(notebook):
     box.get_by_label("speed").select_option("5")
     notebook.evaluate(f"() => {VIEW.format(3)}.seek(3.9)")
     box.get_by_label("play or pause").click()
-    notebook.wait_for_function(f"() => {VIEW.format(3)}.time < 3 && {VIEW.format(3)}.playing", timeout=60_000)  # loop
+    notebook.wait_for_function(f"() => {VIEW.format(3)}.time < 3 && {VIEW.format(3)}.playing", timeout=10_000)  # loop
     box.get_by_label("play or pause").click()
 
 

@@ -40,7 +40,7 @@ def test_twenty_views_are_all_drawn_and_share_one_context(views):
             "const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;"
             "let dark = 0; for (let i = 0; i < data.length; i += 4) dark += data[i] < 100; return dark > 300; }",
             arg=k,
-            timeout=60_000,
+            timeout=20_000,
         )
     figures = views.evaluate("() => code.inspect.figures()")
     assert figures["views"] == 20 and figures["lost"] is False

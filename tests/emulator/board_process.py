@@ -69,7 +69,7 @@ class BoardProcess:
         lines = self.log.read_text().splitlines()
         return [Change(t, seconds, Pins(*pins), received) for t, seconds, pins, received in map(json.loads, lines)]
 
-    def wait_until_off(self, timeout=60.0):
+    def wait_until_off(self, timeout=5.0):
         """The Change after which no bridge drives."""
         until = time.monotonic() + timeout
         while any((last := self.changes()[-1]).pins.pwm):
