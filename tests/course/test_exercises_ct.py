@@ -1,21 +1,9 @@
 """Exercises of notebook 14: right answers by another route."""
 
-import numpy as np
 import pytest
 
-from ir50p_lab.controllers import gains_for_poles
 from ir50p_lab.course.exercises import solution
 from ir50p_lab.modelling import IR50P, inverse_dynamics
-
-
-def test_the_border_by_the_roots():
-    border = solution("ct-1")
-    for K0, stable in ((0.999 * border, True), (1.001 * border, False)):
-        assert (np.roots([1, 4, 6, K0]).real.max() < 0) == stable
-
-
-def test_two_poles():
-    np.testing.assert_allclose(gains_for_poles((-8, -8)), solution("ct-2"))
 
 
 def test_the_error_that_stays_by_simulation():
