@@ -22,59 +22,36 @@ _CIRCLE = np.array([np.cos(_TURN), np.sin(_TURN)])
 _TURN_COLOURS = (COLOURS["purple"], COLOURS["amber"], COLOURS["sky"])  # first, second, third turn
 
 
-def space(cols=1, *, width=None, flat_last=False):
-    """A figure with `cols` equal 3-D axes from -1 to 1, with the grey axes x, y, z of the frame they are drawn in.
-
-    width: inches; flat_last: the last axes are 2-D. Returns: LabFigure.
-    """
-    kinds = ["3d"] * (cols - 1) + [None if flat_last else "3d"]
-    figure = new_figure(width or 4.6 * cols, 4.4, cols=cols, projection=kinds)
-    for ax, kind in zip(figure.axes, kinds, strict=True):
-        if kind == "3d":
-            ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
-            ax.set_box_aspect((1, 1, 1), zoom=1.25)
-            ax.view_init(elev=22, azim=35)
-            ax.set_axis_off()
-            for name, axis in zip("xyz", np.eye(3), strict=True):
-                ax.plot(*np.outer(axis, [0, 1]), color=COLOURS["grey"], linewidth=1.0, zorder=1)
-                ax.text(*1.08 * axis, name, color=COLOURS["grey"], fontsize=10, ha="center")
-    return figure
+def space(ax):
+    """Make 3-D axes equal, from -1 to 1, with the grey axes x, y, z of the frame they are drawn in."""
+    ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
+    ax.set_box_aspect((1, 1, 1), zoom=1.25)
+    ax.view_init(elev=22, azim=35)
+    ax.set_axis_off()
+    for name, axis in zip("xyz", np.eye(3), strict=True):
+        ax.plot(*np.outer(axis, [0, 1]), color=COLOURS["grey"], linewidth=1.0, zorder=1)
+        ax.text(*1.08 * axis, name, color=COLOURS["grey"], fontsize=10, ha="center")
 
 
 class Brick:
-    """A box with three different edges and its frame; `update(T)` moves it.
+    """A box with three different edges; `update(R)` turns it.
 
-    edges: (3,) full lengths along x, y, z; length: of the frame's axes, 0 hides them.
+    edges: (3,) full lengths along x, y, z. Attributes: corners, those drawn, face by face: (6, 4, 3).
     """
 
-    def __init__(self, ax, T=None, *, edges=(0.9, 0.55, 0.2), length=0.75):
-        half = np.asarray(edges, dtype=float) / 2
-        corner = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
-        faces = []
-        for k in range(3):
-            for side in (-1, 1):
-                face = np.empty((4, 3))
-                face[:, k] = side
-                face[:, [(k + 1) % 3, (k + 2) % 3]] = corner
-                faces.append(face * half)
-        self._faces = np.array(faces)
-        colours = [colour for colour in _SIDES for _ in range(2)]
+    def __init__(self, ax, *, edges):
+        around = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+        faces = [np.roll(np.insert(around, 0, side, axis=1), k, axis=1) for k in range(3) for side in (-1, 1)]
+        self._faces = np.array(faces) * np.array(edges) / 2
+        colours = np.repeat(_SIDES, 2)
         self._box = Poly3DCollection(self._faces, facecolors=colours, edgecolors="#555555", linewidths=0.8, zorder=5)
         ax.add_collection3d(self._box)
-        self._frame = FrameView(ax, np.eye(4), length=length) if length > 0 else None
-        self.update(np.eye(4) if T is None else T)
+        self.update(np.eye(3))
 
-    @property
-    def corners(self):
-        """The corners that are drawn, face by face: (6, 4, 3)."""
-        return self._drawn
-
-    def update(self, T):
-        """Move the brick. T: (4, 4), array that takes coordinates of the brick to those of the axes."""
-        self._drawn = self._faces @ T[:3, :3].T + T[:3, 3]
-        self._box.set_verts(self._drawn)
-        if self._frame is not None:
-            self._frame.update(T)
+    def update(self, R):
+        """Turn the brick. R: (3, 3), takes coordinates of the brick to those of the axes."""
+        self.corners = self._faces @ R.T
+        self._box.set_verts(self.corners)
 
 
 class GimbalView:
@@ -83,13 +60,14 @@ class GimbalView:
     The outer ring carries the pivot of the second turn, the inner ring that of the third. At a singularity both
     rings lie in one plane and the first and third pivot in one line: gimbal lock.
 
-    space_ax: 3-D axes from -1 to 1; price_ax: 2-D axes for the gain over the middle angle.
-    `update(sequence, angles)` moves it.
+    `update(sequence, angles)` moves it. Attributes: figure; gain, the largest angle change per turn (rad/rad).
     """
 
-    def __init__(self, space_ax, price_ax):
-        self._middle = np.radians(np.arange(-180, 181, 1.0))
-        self._brick = Brick(space_ax, edges=(0.62, 0.38, 0.14), length=0.0)
+    def __init__(self):
+        self.figure = new_figure(9.6, 4.4, cols=2, projection=["3d", None])
+        space_ax, price_ax = self.figure.axes
+        space(space_ax)
+        self._brick = Brick(space_ax, edges=(0.62, 0.38, 0.14))
         self._pivots, self._rings, self._labels = [], [], []
         for k, colour in enumerate(_TURN_COLOURS):
             style = {"color": colour, "solid_capstyle": "round"}
@@ -104,14 +82,13 @@ class GimbalView:
         price_ax.set(yscale="log", ylim=(0.8, 300), xlim=(-180, 180), xticks=range(-180, 181, 90))
         price_ax.set(xlabel="middle angle [deg]", ylabel="largest angle change per turn [deg/deg]")
         self._title = price_ax.set_title("")
-        self._sequence = self.gain = None
+        self._sequence = None
 
     def update(self, sequence, angles):
-        """Show a sequence at three angles (3,) rad. Sets `gain`, the largest angle change per turn (rad/rad)."""
-        angles = np.asarray(angles, dtype=float)
+        """Show a sequence at three angles (3,) rad."""
         E, lock = rate_matrix(sequence, angles), gimbal_lock(sequence, angles)
         self.gain = float(lock.gain)
-        self._brick.update(homogeneous(rotation_from_angles(sequence, angles)))
+        self._brick.update(rotation_from_angles(sequence, angles))
         for k, (inner, outer) in enumerate(((0.95, 1.15), (0.72, 0.95), (0.15, 0.72))):
             reach = np.array([-outer, -inner, np.nan, inner, outer])
             self._pivots[k].set_data_3d(*np.outer(E[:, k], reach))
@@ -128,21 +105,23 @@ class GimbalView:
         self._dot.set_data([np.degrees(angles[1])], [min(self.gain, 280.0)])
 
     def _draw_price(self, sequence, angles):
-        self._sequence = sequence
-        others = np.tile(angles, (len(self._middle), 1))
-        others[:, 1] = self._middle
-        self._curve.set_data(np.degrees(self._middle), np.minimum(gimbal_lock(sequence, others).gain, 1e4))
+        self._sequence, middle_deg = sequence, np.arange(-180, 181)
+        others = np.tile(angles, (len(middle_deg), 1))
+        others[:, 1] = np.radians(middle_deg)
+        self._curve.set_data(middle_deg, np.minimum(gimbal_lock(sequence, others).gain, 1e4))
         low, high = np.degrees(singular_angles(sequence))
         self._title.set_text(f"{sequence} is singular at {low:.0f} and {high:.0f} deg")
 
 
 def two_bricks(angle):
     """A brick as it lay, turned by `angle` (rad) about x and its own y in either order, the turn between: LabFigure."""
-    figure = space(4, width=11.5)
+    figure = new_figure(11.5, 4.4, cols=4, projection="3d")
     first, second = rot_x(angle) @ rot_y(angle), rot_y(angle) @ rot_x(angle)
     titles = ("as it lay", "first x, then its own y", "first y, then its own x", "the single turn between")
     for ax, R, title in zip(figure.axes, (np.eye(3), first, second, first), titles, strict=True):
-        Brick(ax, homogeneous(R), length=0.55)
+        space(ax)
+        Brick(ax, edges=(0.9, 0.55, 0.2)).update(R)
+        FrameView(ax, homogeneous(R), length=0.55)
         ax.set_title(title)
     turn = Rotation.from_matrix(second @ first.T).as_rotvec()
     axis = 1.1 * turn / np.linalg.norm(turn)

@@ -6,7 +6,7 @@ Only for the 'Thesis check' cells of notebook 14 and their tests. For control us
 from functools import cache
 
 import numpy as np
-from sympy import Matrix
+from sympy import Matrix, Symbol, lambdify, symbols
 
 from ir50p_lab.course import printed_dynamics as printed
 from ir50p_lab.modelling import coriolis_matrix
@@ -78,22 +78,18 @@ class LawWithError:
 
 @cache
 def _compiled():
-    """M, h and g as printed, with the parameters of 2.1.2, as functions of numbers."""
-    import sympy as sp
-
+    """The torque as printed, with the parameters of 2.1.2, as a function of nine numbers: q, qd, qdd."""
     doubled = {name: printed.DM[of] if of else 0 for name, of in printed.TWICE_B.items()}
     a, b, c = printed.qd
-    squares = printed.C1 * sp.Matrix([a**2, b**2, c**2])
-    mixed = [
-        sum(doubled[f"{i}{jk}"] * v for jk, v in (("12", a * b), ("13", a * c), ("23", b * c)) if f"{i}{jk}" in doubled)
-        for i in (1, 2, 3)
-    ]
+    qdd = symbols("qddot1:4", real=True)
+    c2 = Matrix(3, 3, [doubled[f"{i}{jk}"] for i in (1, 2, 3) for jk in (12, 13, 23)])
+    h = printed.C1 * Matrix([a**2, b**2, c**2]) + c2 * Matrix([a * b, a * c, b * c])
     numbers = {printed.g: 9.81}
     for name, values in PARAMETERS_2_1_2.items():
         for link, value in enumerate(values, start=1):
-            numbers[sp.Symbol(f"{name}{link}", real=True)] = value
-    expressions = [x.subs(numbers) for x in (printed.M_LIST, squares + sp.Matrix(mixed), G_2_48)]
-    return [sp.lambdify([*printed.q, *printed.qd], x, "numpy", cse=True) for x in expressions]
+            numbers[Symbol(f"{name}{link}", real=True)] = value
+    torque = (printed.M_LIST * Matrix(qdd) + h + G_2_48).subs(numbers)
+    return lambdify([*printed.q, *printed.qd, *qdd], list(torque), "numpy", cse=True)
 
 
 def inverse_dynamics_as_printed(q, qd, qdd):
@@ -101,5 +97,4 @@ def inverse_dynamics_as_printed(q, qd, qdd):
 
     The matrix c2(q) is lost in the scan; its entries are those printed one by one (2 b_ijk).
     """
-    M, h, G = (np.array(function(*q, *qd), dtype=float) for function in _compiled())
-    return M.reshape(3, 3) @ np.asarray(qdd) + h.ravel() + G.ravel()
+    return np.array(_compiled()(*q, *qd, *qdd))

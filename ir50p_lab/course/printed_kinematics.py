@@ -5,17 +5,12 @@ The remark after 'wrong:' says what is wrong; an equation without one is right a
 """
 
 import numpy as np
-from sympy import Matrix, cos, diff, sin
+from sympy import Matrix, cos, sin
 
-from ir50p_lab.course.printed_pose import T_1_31, l2, l3, q, q1, q2, q3
+from ir50p_lab.course.printed_pose import l2, l3, q1, q2, q3
 
 c1, s1, c2, s2, c23, s23 = cos(q1), sin(q1), cos(q2), sin(q2), cos(q2 + q3), sin(q2 + q3)
 z_hat = Matrix([0, 0, 1])  # (1.32)
-
-
-def t_1_45():
-    """(1.45), position of the tip. Wrong: row 2 repeats the c1 of row 1, as in (1.31)."""
-    return T_1_31()[:3, 3]
 
 
 def columns_1_46_to_1_48():
@@ -24,11 +19,6 @@ def columns_1_46_to_1_48():
     by_q2 = Matrix([-c1 * (l3 * s23 + l2 * s2), -s1 * (l3 * s23 + l2 * s2), l3 * c23 + l2 * c2])
     by_q3 = Matrix([-l3 * s23 * c1, -l3 * s23 * s1, l3 * c23])
     return [by_q1, by_q2, by_q3]
-
-
-def derivatives_of_1_45():
-    """What (1.44) gives for the printed (1.45), column by column."""
-    return [diff(t_1_45(), angle) for angle in q]
 
 
 def J_v_1_49():
@@ -43,11 +33,9 @@ def J_omega_1_37(frames):
     """(1.34), (1.37), (1.50) taken literally: column i is the z axis of frame i, for i = 1 ... n.
 
     Wrong with the frames of Table 1.1: joint i turns about the z axis of frame i-1.
-    frames: (n+1, 4, 4) array, or sequence of SymPy matrices, T^0_0 ... T^0_n.
+    frames: (n+1, 4, 4), T^0_0 ... T^0_n.
     """
-    if isinstance(frames, np.ndarray):
-        return frames[1:, :3, 2].T
-    return Matrix.hstack(*(T[:3, :3] * z_hat for T in frames[1:]))
+    return frames[1:, :3, 2].T
 
 
 def Rot_x_1_51():
@@ -89,16 +77,15 @@ def sin_q3_1_61(cos_q3):
     return np.sqrt(1 + cos_q3)
 
 
-def inverse_kinematics_1_60_to_1_73(l, p, *, z1=None):
+def inverse_kinematics_1_60_to_1_73(l, p):
     """(1.60)-(1.73) taken literally: the one pose they give for a target.
 
     Wrong: arctan where the quadrant counts (1.60), (1.70), (1.73), and acos alone (1.69), which is elbow down.
 
-    l: (3,) m; p: (..., 3) m; z1: m, height above the shoulder (z - l1) unless another reading is given, because
-    the thesis never says what z1 is. Returns: (..., 3) rad.
+    l: (3,) m; p: (..., 3) m. Returns: (..., 3) rad. The thesis never says what z1 is: the height above the shoulder.
     """
     x, y, z = np.moveaxis(np.asarray(p, dtype=float), -1, 0)
-    z1 = z - l[0] if z1 is None else z1
+    z1 = z - l[0]
     delta = np.hypot(x, y)
     cos_alpha = (l[1] ** 2 + l[2] ** 2 - delta**2 - z1**2) / (2 * l[1] * l[2])
     angle_3 = np.arccos(np.clip(-cos_alpha, -1, 1))

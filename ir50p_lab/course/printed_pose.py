@@ -28,9 +28,7 @@ def T_1_11(A, i, j):
 
 def trans_z(d):
     """(1.25), shift by d (m) along z."""
-    T = eye(4)
-    T[2, 3] = d
-    return T
+    return Matrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, d], [0, 0, 0, 1]])
 
 
 def Rot_z(theta):
@@ -41,9 +39,7 @@ def Rot_z(theta):
 
 def trans_x(a):
     """(1.27), shift by a (m) along x."""
-    T = eye(4)
-    T[0, 3] = a
-    return T
+    return Matrix([[1, 0, 0, a], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
 
 
 def Rot_x(alpha):
@@ -87,32 +83,26 @@ def dh(theta, d, a, alpha):
 TABLE_1_1 = ((q1, l1, 0, pi / 2), (q2, 0, l2, 0), (q3, 0, l3, -pi / 2))
 
 
-def table_read_literally(theta_3=0, d_3=0):
+def table_read_literally():
     """The four parameters per joint if the header of Table 1.1 is taken at its word.
 
-    Row i then gives theta and d of joint i-1: those of joint 1 stand in row 2, those of joint 3 (theta_3 in rad,
-    d_3 in m) are nowhere and must be invented, and row 1 describes a joint 0 that does not exist.
+    Row i then gives theta and d of joint i-1: those of joint 1 stand in row 2, those of joint 3 are nowhere and must
+    be invented (0 here), and row 1 describes a joint 0 that does not exist.
     """
-    theta = [row[0] for row in TABLE_1_1[1:]] + [theta_3]
-    d = [row[1] for row in TABLE_1_1[1:]] + [d_3]
-    return tuple((theta[i], d[i], *TABLE_1_1[i][2:]) for i in range(3))
+    below = (*TABLE_1_1[1:], (0, 0))
+    return tuple((*theta_and_d[:2], *row[2:]) for theta_and_d, row in zip(below, TABLE_1_1, strict=True))
 
 
 def T_1_20(table=TABLE_1_1):
     """(1.20). Wrong: ends with [Z_n], so that the last link, a_n and alpha_n, is missing."""
-    T = eye(4)
-    for theta, d, a, alpha in table[:-1]:
-        T = T * Z(theta, d) * X(a, alpha)
-    return T * Z(*table[-1][:2])
+    first, second, (theta, d, _, _) = table
+    return dh(*first) * dh(*second) * Z(theta, d)
 
 
-def T_swapped(table=TABLE_1_1):
+def T_swapped():
     """The product below Table 1.1. Wrong: its last pair is [X_3][Z_3] instead of [Z_3][X_3]."""
-    T = eye(4)
-    for theta, d, a, alpha in table[:-1]:
-        T = T * Z(theta, d) * X(a, alpha)
-    theta, d, a, alpha = table[-1]
-    return T * X(a, alpha) * Z(theta, d)
+    first, second, (theta, d, a, alpha) = TABLE_1_1
+    return dh(*first) * dh(*second) * X(a, alpha) * Z(theta, d)
 
 
 def T_1_30(alpha_2=pi / 2):

@@ -12,10 +12,9 @@ from ir50p_lab.identification import fit, process, regressor
 from ir50p_lab.simulation import simulate
 
 
-def rms(run, reference, since=0.0):
+def rms(run, reference):
     """Root mean square of angle minus reference, (3,) mrad. run: anything with t (n,) s and q (n, 3) rad."""
-    late = run.t >= since
-    return 1e3 * np.sqrt(np.mean((run.q[late] - reference.sample(run.t[late])[:, 0]) ** 2, axis=0))
+    return 1e3 * np.sqrt(np.mean((run.q - reference.sample(run.t)[:, 0]) ** 2, axis=0))
 
 
 def thesis_pid():
@@ -54,19 +53,19 @@ def lateness(t, angle, reference, *, joint):
     return float(later[int(np.argmin(misses))])
 
 
-def pendulum_responses(found, parameters, gain_sets, *, start=0.5, seconds=6.0):
-    """Angle of the example pendulum from `start` rad for each gain set: t (n,), angles (m, n). Oracle: SciPy."""
+def pendulum_responses(found, parameters, gain_sets):
+    """Angle of the example pendulum, let go at 0.5 rad, for each gain set: t (n,) s, angles (m, n). Oracle: SciPy."""
     from scipy.integrate import solve_ivp
 
     a, b, T = parameters.values()
-    t, angles = np.linspace(0, seconds, 400), []
+    t, angles = np.linspace(0, 6, 400), []
     for gains in gain_sets:
         u = found.controller(gains, parameters)
 
         def rate(_, x, u=u):
             return x[1], -a * np.sin(x[0]) - b * x[1] + x[2], (u(x) - x[2]) / T
 
-        angles.append(solve_ivp(rate, (0, seconds), (start, 0.0, 0.0), t_eval=t, rtol=1e-8).y[0])
+        angles.append(solve_ivp(rate, (0, 6), (0.5, 0.0, 0.0), t_eval=t, rtol=1e-8).y[0])
     return t, np.array(angles)
 
 
@@ -99,11 +98,10 @@ class ErrorView:
         ax.set_title("Joints 1, 2, 3: blue, orange, green. Circles: (2.20), solved beforehand")
 
     def update(self, run, t, predicted):
-        """Draw the errors of a run, and those predicted (m, 3) rad for the times t (m,) s. Returns the figure."""
+        """Draw the errors of a run, and those predicted (m, 3) rad for the times t (m,) s."""
         for j in range(3):
             self._lines[j].set_data(run.t, -run.error[:, j])
             self._dots[j].set_data(t, predicted[:, j])
-        return self.figure
 
 
 class RobustnessView:

@@ -185,9 +185,9 @@ class LocusView:
     Attributes: figure. `update(gain)` marks the poles of the nearest gain.
     """
 
-    def __init__(self, gains, continuous, sampled, *, zeros=((), ())):
+    def __init__(self, gains, continuous, sampled, *, zeros):
         self.figure, left, right = subplots(9.6, 4.2, cols=2)
-        self._gains, self._loci = np.asarray(gains), (np.asarray(continuous), np.asarray(sampled))
+        self._gains, self._loci = gains, (continuous, sampled)
         turn = np.linspace(0, 2 * np.pi, 181)
         right.plot(np.cos(turn), np.sin(turn), **SETPOINT)
         right.set(xlim=(-1.6, 1.4), ylim=(-1.5, 1.5), aspect="equal", title="Sampled: beyond the circle it grows")

@@ -3,32 +3,45 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.course.pose_views import Brick, GimbalView, space
-from ir50p_lab.modelling.pose import homogeneous, rot_x, rot_z, rotation_from_angles
+from ir50p_lab.course.pose_views import Brick, GimbalView, space, two_bricks
+from ir50p_lab.course.style import subplots
+from ir50p_lab.modelling.pose import rot_x, rot_y, rot_z, rotation_from_angles
+
+
+def space_axes():
+    _, ax = subplots(4, 4, projection="3d")
+    space(ax)
+    return ax
 
 
 def test_space_has_equal_axes_and_three_names():
-    bare = space(2).axes[1]
+    bare = space_axes()
     assert bare.get_xlim() == bare.get_ylim() == bare.get_zlim() == (-1, 1)
     assert [text.get_text() for text in bare.texts] == ["x", "y", "z"]
-    flat = space(2, flat_last=True).axes
-    assert [ax.name for ax in flat] == ["3d", "rectilinear"]
 
 
-def test_brick_follows_its_transform():
+def test_brick_turns_as_its_matrix():
     edges = (0.8, 0.4, 0.2)
-    brick = Brick(space().axes[0], edges=edges)
+    brick = Brick(space_axes(), edges=edges)
     assert brick.corners.shape == (6, 4, 3)
     np.testing.assert_allclose(np.ptp(brick.corners.reshape(-1, 3), axis=0), edges)
     still = brick.corners.copy()
-    T = homogeneous(rot_z(np.pi / 2) @ rot_x(0.3), (0.1, 0.2, 0.3))
-    brick.update(T)
-    homogeneous_corners = np.concatenate([still, np.ones((6, 4, 1))], axis=-1)
-    np.testing.assert_allclose(brick.corners, (homogeneous_corners @ T.T)[..., :3], atol=1e-15)
+    for face in still:  # each lies flat, on its side of the middle
+        assert sorted(np.ptp(face, axis=0))[0] == 0 and (np.abs(face) == np.array(edges) / 2).all()
+    R = rot_z(np.pi / 2) @ rot_x(0.3)
+    brick.update(R)
+    np.testing.assert_allclose(
+        brick.corners.reshape(-1, 3), [R @ corner for corner in still.reshape(-1, 3)], atol=1e-15
+    )
 
 
-def gimbal():
-    return GimbalView(*space(2, flat_last=True).axes)
+def test_two_orders_end_apart():
+    space_of = two_bricks(np.pi / 2).axes
+    assert len(space_of) == 4 and all(ax.get_xlim() == (-1, 1) for ax in space_of)
+    turns = rot_x(np.pi / 2) @ rot_y(np.pi / 2), rot_y(np.pi / 2) @ rot_x(np.pi / 2)
+    for ax, R in zip(space_of[1:3], turns, strict=True):
+        ends = [np.column_stack(line.get_data_3d())[1] for line in ax.lines[3:6]]  # of the frame, after x, y, z
+        np.testing.assert_allclose(np.array(ends).T, 0.55 * R, atol=1e-12)
 
 
 def drawn(line):
@@ -38,7 +51,7 @@ def drawn(line):
 
 @pytest.mark.parametrize("sequence", ["XYZ", "ZXZ"])
 def test_rings_hold_two_pivots_and_the_brick_has_the_rotation(sequence):
-    view = gimbal()
+    view = GimbalView()
     angles = np.radians([60, 50, 35])
     view.update(sequence, angles)
     first, second, third = (drawn(pivot)[-1] for pivot in view._pivots)
@@ -46,13 +59,13 @@ def test_rings_hold_two_pivots_and_the_brick_has_the_rotation(sequence):
     for ring, pivots in ((outer, (first, second)), (inner, (second, third))):
         normal = np.cross(ring[0], ring[18])
         np.testing.assert_allclose(np.array(pivots) @ normal, 0, atol=1e-12)
-    faces = Brick(space().axes[0], edges=(0.62, 0.38, 0.14))
-    faces.update(homogeneous(rotation_from_angles(sequence, angles)))
+    faces = Brick(space_axes(), edges=(0.62, 0.38, 0.14))
+    faces.update(rotation_from_angles(sequence, angles))
     np.testing.assert_allclose(view._brick.corners, faces.corners)
 
 
 def test_at_the_lock_first_and_third_pivot_are_in_line_and_the_axis_is_lost():
-    view = gimbal()
+    view = GimbalView()
     view.update("XYZ", np.radians([60, 90, 35]))
     first, _, third = (drawn(pivot)[-1] for pivot in view._pivots)
     np.testing.assert_allclose(np.cross(first, third), 0, atol=1e-12)
@@ -66,7 +79,7 @@ def test_at_the_lock_first_and_third_pivot_are_in_line_and_the_axis_is_lost():
 
 
 def test_the_price_belongs_to_the_sequence():
-    view = gimbal()
+    view = GimbalView()
     view.update("XYZ", np.zeros(3))
     middle_deg, gain = view._curve.get_data()
     assert gain[middle_deg == 90] > 1e3 and gain[middle_deg == 0] == pytest.approx(1)

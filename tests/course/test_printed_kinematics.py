@@ -6,7 +6,7 @@ import sympy
 from sympy import Matrix, cos, pi, sin
 
 from ir50p_lab.course import printed_kinematics as printed
-from ir50p_lab.course.printed_pose import l1, l2, l3, q, q1, q2, q3
+from ir50p_lab.course.printed_pose import T_1_31, l1, l2, l3, q, q1, q2, q3
 from ir50p_lab.modelling import IR50P, THESIS_A, forward_kinematics, frames, jacobian
 
 rho = l2 * cos(q2) + l3 * cos(q2 + q3)
@@ -24,12 +24,10 @@ def test_columns_are_the_derivatives_of_the_tip():
 
 
 def test_the_printed_tip_and_its_derivatives_repeat_row_1():
-    t = printed.t_1_45()
+    t = T_1_31()[:3, 3]  # (1.45)
     assert t[1] == t[0] and is_zero(Matrix([t[0] - TIP[0], t[2] - TIP[2]]))
-    for column, angle in zip(printed.derivatives_of_1_45(), q, strict=True):
-        assert is_zero(column - t.diff(angle))
-        assert column[1] == column[0]
-        assert sympy.simplify(column[1] - TIP[1].diff(angle)) != 0
+    for angle in q:
+        assert sympy.simplify((t[1] - TIP[1]).diff(angle)) != 0
 
 
 def test_1_49_is_wrong_in_three_entries():
@@ -52,12 +50,6 @@ def test_axes_taken_from_the_joints_own_frames_are_wrong_for_joints_1_and_3(arm)
     assert [np.allclose(literal[:, k], truth[:, k], atol=1e-8) for k in range(3)] == [False, True, False]
     right = np.array(printed.J_omega_1_54().subs(q1, Q[0]), dtype=float)
     np.testing.assert_allclose(right, truth, atol=1e-8)
-
-
-def test_the_literal_axes_are_the_same_from_symbols_and_from_numbers():
-    symbols = [Matrix(np.round(T, 12)) for T in frames(IR50P, Q)]
-    numbers = printed.J_omega_1_37(frames(IR50P, Q))
-    np.testing.assert_allclose(np.array(printed.J_omega_1_37(symbols), dtype=float), numbers, atol=1e-11)
 
 
 def test_matrices_on_the_way_are_no_rotations_or_give_another_axis():
@@ -111,6 +103,6 @@ def test_literal_inverse_kinematics_finds_front_down_and_no_other_branch(arm):
 def test_the_height_may_be_read_in_another_way():
     p = forward_kinematics(IR50P, (0.3, 0.4, 0.9))
     literal = printed.inverse_kinematics_1_60_to_1_73(IR50P.l, p)
-    other = printed.inverse_kinematics_1_60_to_1_73(IR50P.l, p, z1=p[2])
+    other = printed.inverse_kinematics_1_60_to_1_73(IR50P.l, p + np.array([0, 0, IR50P.l[0]]))  # z1 = z
     np.testing.assert_allclose(forward_kinematics(IR50P, literal), p)
     assert np.linalg.norm(forward_kinematics(IR50P, other) - p) > 0.1

@@ -60,7 +60,6 @@ def test_rms_and_lateness():
     late.t, late.q = t, swing.sample(t - 0.05)[:, 0]
     assert views.lateness(t, late.q[:, 0], swing, joint=0) == pytest.approx(0.05, abs=2e-3)
     np.testing.assert_allclose(views.rms(late, swing), 1e3 * np.sqrt(0.5) * 2 * 0.5 * np.sin(0.05), rtol=0.02)
-    assert (views.rms(late, swing, since=9.9) != views.rms(late, swing)).all()
 
 
 def test_pendulum_and_learning_figures():
@@ -81,7 +80,9 @@ def test_pendulum_and_learning_figures():
 
 
 def test_printed_parameters_are_model_c():
-    np.testing.assert_array_equal(thesis_theta(**printed.PARAMETERS_2_1_2), THESIS_C)
+    given = printed.PARAMETERS_2_1_2
+    np.testing.assert_array_equal(thesis_theta(**given), THESIS_C)
+    assert given["lc"][1] / given["l"][1] == 2.5  # the centre of mass of link 2 is that far out
 
 
 def test_printed_equations_cost_more_than_parameters_20_per_cent_off():

@@ -75,7 +75,7 @@ def test_gain_map_places_its_cells_at_the_gains(run):
 def test_locus_marks_the_poles_of_the_nearest_gain():
     gains = np.array([1.0, 2.0, 4.0])
     continuous = np.array([[-1 + 0j, -2], [-1 + 1j, -1 - 1j], [-1 + 2j, -1 - 2j]])
-    view = LocusView(gains, continuous, np.exp(0.1 * continuous))
+    view = LocusView(gains, continuous, np.exp(0.1 * continuous), zeros=((), ()))
     view.update(2.2)
     left, right = view.figure.axes
     np.testing.assert_array_equal(left.lines[-1].get_ydata(), [1, -1])

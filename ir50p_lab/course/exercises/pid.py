@@ -19,7 +19,6 @@ def _remaining(kp):
 
 _ERROR = _remaining(_KP)
 
-
 # pid-3: a damper that acts with a held command: v[k + 1] = (1 - kd T/M) v[k].
 _M3, _KD3 = 0.25, 40.0  # kg m^2, N m s/rad
 

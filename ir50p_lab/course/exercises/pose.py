@@ -7,8 +7,6 @@ from ir50p_lab.modelling import rot_z
 
 NOTEBOOK = "01_pose_and_forward_kinematics"
 
-_MILLIMETRE = {"unit": "m", "tolerance": 1e-3, "because": "a millimetre is what this arm can resolve"}
-
 # pose-2: at the singular middle angle +90 degrees of the sequence XYZ, R depends on the sum of the outer angles.
 _FIRST, _THIRD = np.deg2rad([20, 35])
 
@@ -35,7 +33,7 @@ EXERCISES = (
         "pose-3",
         "the coordinates in {B} of the origin of {A}, where {B} stands at t = (0.3, 0.1, 0.2) m in {A} and is "
         "turned by 90 degrees about z",
-        Number(-_R.T @ _T, **_MILLIMETRE),
+        Number(-_R.T @ _T, unit="m", tolerance=1e-3, because="a millimetre is what this arm can resolve"),
         why="It is the last column of the inverse: -R^T t, the way back, measured along the axes of {B}.",
         slips={
             "That is -t, still measured along the axes of {A}; the answer wants those of {B}.": -_T,
