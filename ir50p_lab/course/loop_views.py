@@ -1,4 +1,4 @@
-"""Pictures of notebook 08: block diagrams, a push against the weight, where pushes end."""
+"""Pictures of notebook 08: block diagrams, a push against the weight, where pushes end; of 14: curves over time."""
 
 import numpy as np
 

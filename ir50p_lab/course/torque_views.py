@@ -6,6 +6,7 @@ from matplotlib.colors import LogNorm
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.identification_views import kept_motion
+from ir50p_lab.course.loop_views import curves
 from ir50p_lab.course.style import JOINTS, SETPOINT, joint_columns, subplots
 from ir50p_lab.course.tuning_views import colour_map
 from ir50p_lab.identification import fit, process, regressor
@@ -50,7 +51,7 @@ def lateness(t, angle, reference, *, joint):
     """
     later, here = np.arange(-0.2, 0.2, 0.002), (t > 3) & (t < t[-1] - 0.5)
     misses = [np.mean((angle[here] - reference.sample(t[here] - d)[:, 0, joint]) ** 2) for d in later]
-    return float(later[int(np.argmin(misses))])
+    return later[np.argmin(misses)]
 
 
 def pendulum_responses(found, parameters, gain_sets):
@@ -71,13 +72,8 @@ def pendulum_responses(found, parameters, gain_sets):
 
 def pendulum_figure(t, angles, labels):
     """Responses of the pendulum with motor lag. t (n,) s; angles (m, n) rad; labels: m texts. Returns: LabFigure."""
-    figure, ax = subplots(8.0, 3.0)
-    for angle, label, colour in zip(angles, labels, JOINTS, strict=False):
-        ax.plot(t, angle, color=colour, label=label)
-    ax.axhline(0, **SETPOINT)
-    ax.set(ylim=(-2, 2), xlabel="time [s]  -  simulated", ylabel="angle [rad]")
-    ax.set_title("All gains positive, and still the second one grows")
-    ax.legend(fontsize=9)
+    figure = curves(t, angles, labels, "angle [rad]", targets=(0,))
+    figure.axes[0].set(ylim=(-2, 2), title="All gains positive, and still the second one grows")
     return figure
 
 
