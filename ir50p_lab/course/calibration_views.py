@@ -2,6 +2,7 @@
 
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.patches import Circle, Polygon
 
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
 from ir50p_lab.course.vision_views import STAMP, show_picture
@@ -100,25 +101,22 @@ def covered_figure(whole, covered, view):
     return figure
 
 
-def contact_sheet(images, calibration, columns=5):
+def contact_sheet(images, calibration):
     """All pictures, small: corners on those that were used, the reason on the others. Returns: LabFigure.
 
-    images: list of (h, w, 3), in the order given to `calibrate`; calibration: Calibration.
+    images: 5 n pictures (h, w, 3), in the order given to `calibrate`; calibration: Calibration.
     """
-    rows = -(-len(images) // columns)
-    figure = new_figure(9.0, 1.62 * rows + 0.2, rows=rows, cols=columns, note=STAMP)
-    used = {view.index: view for view in calibration.views}
-    refused = {one.index: one for one in calibration.rejected}
-    for k, ax in enumerate(figure.axes):
-        if k >= len(images):
-            ax.set_visible(False)
-            continue
-        bare_picture(ax, images[k][::2, ::2] if k not in refused else images[k])
-        if k in used:
-            ax.plot(*(used[k].corners.T / 2), ".", color=COLOURS["green"], markersize=2.5)
-            ax.plot(*(used[k].corners[0] / 2), "o", color=COLOURS["amber"], markersize=4)
-        elif k in refused:
-            ax.set_title(str(refused[k].reason), fontsize=9, color=COLOURS["orange"], fontweight="bold")
+    rows = len(images) // 5
+    figure = new_figure(9.0, 1.62 * rows + 0.2, rows=rows, cols=5, note=STAMP)
+    for view in calibration.views:
+        ax, corners = figure.axes[view.index], view.corners / 2
+        bare_picture(ax, images[view.index][::2, ::2])
+        ax.plot(*corners.T, ".", color=COLOURS["green"], markersize=2.5)
+        ax.plot(*corners[0], "o", color=COLOURS["amber"], markersize=4)
+    for one in calibration.rejected:
+        ax = figure.axes[one.index]
+        bare_picture(ax, images[one.index])
+        ax.set_title(str(one.reason), fontsize=9, color=COLOURS["orange"], fontweight="bold")
     return figure
 
 
@@ -166,20 +164,17 @@ def rms_figure(reports, noise):
     return figure
 
 
-def residual_figure(images, calibration, view, gain=500):
-    """A picture with its residuals as arrows, `gain` times longer, beside those of all views. Returns: LabFigure."""
-    one = calibration.views[view]
+def residual_figure(images, calibration, view):
+    """A picture with its residuals as arrows, 500 times longer, beside those of all views. Returns: LabFigure."""
+    one, gain = calibration.views[view], 500
     figure, left, right = subplots(9.0, 3.8, cols=2, width_ratios=(1.5, 1), note=STAMP)
     bare_picture(left, images[one.index], f"{one.name}: residuals, {gain} times longer, rms {one.rms:.3f} px")
-    arrows = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.006}
-    left.quiver(*one.corners.T, *(gain * one.residuals).T, color=COLOURS["orange"], **arrows)
-    for k, other in enumerate(calibration.views):
-        style = (
-            {"color": COLOURS["orange"], "markersize": 5} if k == view else {"color": COLOURS["grey"], "markersize": 2}
-        )
-        right.plot(*other.residuals.T, ".", **style)
-    circle = calibration.rms * np.exp(1j * np.linspace(0, 2 * np.pi, 80))
-    right.plot(circle.real, circle.imag, color=COLOURS["dark"], linewidth=1)
+    arrows = {"angles": "xy", "scale_units": "xy", "scale": 1 / gain, "width": 0.006}
+    left.quiver(*one.corners.T, *one.residuals.T, color=COLOURS["orange"], **arrows)
+    every = np.concatenate([other.residuals for other in calibration.views])
+    right.plot(*every.T, ".", color=COLOURS["grey"], markersize=2)
+    right.plot(*one.residuals.T, ".", color=COLOURS["orange"], markersize=5)
+    right.add_patch(Circle((0, 0), calibration.rms, fill=False, edgecolor=COLOURS["dark"], linewidth=1, zorder=3))
     reach = 4 * calibration.rms
     right.set(xlim=(-reach, reach), ylim=(reach, -reach), aspect="equal", xlabel="x [px]", ylabel="y [px]")  # y down
     right.set_title(f"All views: rms {calibration.rms:.3f} px (circle)", fontsize=10)
@@ -203,13 +198,11 @@ def coverage_figure(calibration):
     filled = right.contourf(x, y, error, 8, cmap="Blues")
     figure.colorbar(filled, ax=right, label="uncertainty of a pixel's direction [px]", shrink=0.75)
     right.set_title(f"The next view (orange) fills empty cells: {following.new}")
-    xy = np.concatenate([view.corners for view in calibration.views]) - calibration.K[:2, 2]
-    rim = np.hypot(*xy.T).max() * np.exp(1j * np.linspace(0, 2 * np.pi, 120))
-    rim = np.column_stack([rim.real, rim.imag]) + calibration.K[:2, 2]
-    loop = np.vstack([following.outline, following.outline[:1]])
+    centre = calibration.K[:2, 2]
+    outermost = max(np.linalg.norm(view.corners - centre, axis=1).max() for view in calibration.views)
     for ax in (left, right):
-        ax.plot(*loop.T, color=COLOURS["orange"], linewidth=2)
-        ax.plot(*rim.T, ":", color=COLOURS["dark"], linewidth=1.2)
+        ax.add_patch(Polygon(following.outline, fill=False, edgecolor=COLOURS["orange"], linewidth=2, zorder=2))
+        ax.add_patch(Circle(centre, outermost, fill=False, edgecolor=COLOURS["dark"], linestyle=":", linewidth=1.2))
         ax.set(xlim=(0, w), ylim=(h, 0), aspect="equal", xlabel="x [px]", ylabel="y [px]")
         ax.grid(False)
     return figure
@@ -224,22 +217,10 @@ def board_residual_figure(picture, flat, bent):
     figure, first, *maps = subplots(10.5, 3.1, cols=3, width_ratios=(1.1, 1, 1), note=STAMP)
     bare_picture(first, picture, "One of the pictures")
     for ax, one, name in zip(maps, (flat, bent), ("Board taken for flat", "Bend estimated"), strict=True):
-        towards = [_height_direction(one, view) for view in one.views]
-        lift = np.mean(
-            [(v.residuals * d).sum(axis=1) / (d**2).sum(axis=1) for v, d in zip(one.views, towards, strict=True)],
-            axis=0,
-        )
+        deeper = np.mean([_depths(one, view) for view in one.views], axis=0)
         columns, rows = one.board.pattern
-        size = 1000 * one.board.square
-        height = 1000 * lift.reshape(rows, columns)
-        reach = 1.0
-        drawn = ax.imshow(
-            height,
-            cmap="PuOr",
-            vmin=-reach,
-            vmax=reach,
-            extent=(-0.5 * size, (columns - 0.5) * size, (rows - 0.5) * size, -0.5 * size),
-        )
+        place = 1000 * one.board.square * np.array([-0.5, columns - 0.5, rows - 0.5, -0.5])
+        drawn = ax.imshow(1000 * deeper.reshape(rows, columns), cmap="PuOr", vmin=-1, vmax=1, extent=place)
         ax.set(xlabel="along the board [mm]", ylabel="down the board [mm]")
         ax.set_title(f"{name}: rms {one.rms:.3f} px", fontsize=9)
         ax.grid(False)
@@ -247,12 +228,13 @@ def board_residual_figure(picture, flat, bent):
     return figure
 
 
-def _height_direction(calibration, view):
-    """d pixel / d height (n, 2) px/m at the corners of a view: where a corner goes if the board is deeper there."""
-    step = 1e-4 * np.array([0, 0, 1.0])
+def _depths(calibration, view):
+    """How much deeper (n,) m each corner of a view would have to lie to be seen where it was found."""
+    step = np.array([0, 0, 1e-4])
     there = calibration.pinhole.project(view.T_cam_board, view.points + step)
     back = calibration.pinhole.project(view.T_cam_board, view.points - step)
-    return (there - back) / 2e-4
+    direction = (there - back) / 2e-4  # px/m
+    return (view.residuals * direction).sum(axis=1) / (direction**2).sum(axis=1)
 
 
 def table_figure(image, pixels, errors):
