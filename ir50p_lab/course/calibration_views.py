@@ -18,21 +18,20 @@ def bare_picture(ax, image, title=""):
 def pinhole_figure(points):
     """Rays through a pinhole and where they cut the plane at Z = 1 (the idea of Figure 3.10). Returns: LabFigure.
 
-    points: {name: (X, Y, Z) m, camera coordinates}; X over Z is drawn, as seen from above.
+    points: up to three {name: (X, Y, Z) m, camera coordinates}; X over Z is drawn, as seen from above.
     """
     figure, ax = subplots(7.4, 3.2)
     far = 1.12 * max(1.1, *(Z for _, _, Z in points.values()))
     top = max(max(X, X / Z) for X, _, Z in points.values())
     ax.axhline(0, color=COLOURS["dark"], linewidth=1)
     ax.axvline(1, color=COLOURS["blue"], linewidth=2)
-    colours = [COLOURS[name] for name in ("orange", "green", "purple")]
-    for k, ((name, (X, _, Z)), colour) in enumerate(zip(points.items(), colours, strict=False)):
-        end = max(1.0, Z)
+    for k, (name, (X, _, Z)) in enumerate(points.items()):
+        colour, end = COLOURS[("orange", "green", "purple")[k]], max(1.0, Z)
         if k == 0:  # the similar triangles
             ax.fill([0, 1, 1], [0, 0, X / Z], color=COLOURS["blue"], alpha=0.1)
             ax.fill([0, Z, Z], [0, 0, X], color=colour, alpha=0.2)
             ax.plot([Z, Z], [0, X], color=colour, linewidth=1)
-        ax.plot([0, end], [0, X / Z * end], color=colour, linewidth=1, linestyle=("-", "--", ":")[k % 3])
+        ax.plot([0, end], [0, X / Z * end], color=colour, linewidth=1, linestyle=("-", "--", ":")[k])
         ax.plot(Z, X, "o", color=colour, markersize=8 - 2 * k)
         ax.annotate(name, (Z, X), (-6, 6), textcoords="offset points", ha="right", color=colour, fontweight="bold")
         ax.plot(1, X / Z, "s", color=COLOURS["blue"], markersize=5, zorder=3)
@@ -55,13 +54,11 @@ class DistortionView:
     def __init__(self, pinhole):
         self.pinhole = pinhole
         w, h = pinhole.size
-        x, y = np.linspace(0, w - 1, 41), np.linspace(0, h - 1, 31)
-        across = [np.column_stack([x, np.full_like(x, v)]) for v in np.linspace(0, h - 1, 9)]
-        down = [np.column_stack([np.full_like(y, v), y]) for v in np.linspace(0, w - 1, 12)]
-        self._counts = np.cumsum([len(line) for line in across + down])[:-1]
-        straight = across + down
-        self._rays = pinhole.to_normalised(np.concatenate(straight))
-        self._radius = np.linspace(0, np.linalg.norm(self._rays, axis=1).max(), 100)
+        across = np.meshgrid(np.linspace(0, w - 1, 41), np.linspace(0, h - 1, 9))
+        down = np.meshgrid(np.linspace(0, w - 1, 12), np.linspace(0, h - 1, 41), indexing="ij")
+        straight = np.concatenate([np.stack(across, axis=-1), np.stack(down, axis=-1)])  # (21, 41, 2)
+        self._rays = pinhole.to_normalised(straight)
+        self._radius = np.linspace(0, np.linalg.norm(self._rays, axis=-1).max(), 100)
         self.figure, ax = subplots(6.4, 5.0)
         ax.grid(False)  # it would pass for the grid that is drawn
         ax.add_collection(LineCollection(straight, colors=COLOURS["grey"], linewidths=1))
@@ -75,8 +72,8 @@ class DistortionView:
         """Draw the grid for these coefficients; returns in words what it looks like and how far a point moves."""
         lens = Pinhole(self.pinhole.K, (k1, k2, p1, p2), self.pinhole.size)
         xy = lens.to_pixels(lens.distort(self._rays))
-        self._lines.set_segments(np.split(xy, self._counts))
-        moved = np.linalg.norm(xy - lens.to_pixels(self._rays), axis=1).max()
+        self._lines.set_segments(xy)
+        moved = np.linalg.norm(xy - lens.to_pixels(self._rays), axis=-1).max()
         seen = [radial_shape(k1, k2, self._radius), "wider on one side" * bool(p1 or p2)]
         shape = ", ".join(filter(None, seen)) or "straight"
         return f"{shape}: a point moves by up to {moved:.1f} px"

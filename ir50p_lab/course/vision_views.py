@@ -132,15 +132,12 @@ def votes_figure(points, votes, centre):
     figure, left, right = subplots(8.4, 3.3, cols=2)
     show_picture(left, np.zeros(votes.shape), "edge points")
     left.plot(*np.asarray(points).T, ".", ms=5, color="white")
-    shown = right.imshow(votes, cmap="viridis", interpolation="nearest")
-    right.grid(False)
+    shown = show_picture(right, votes, "most votes at the centre", cmap="viridis", vmin=None, vmax=None)
     figure.colorbar(shown, ax=right, label="votes [1]", shrink=0.85, ticks=range(int(votes.max()) + 1))
     right.plot(*centre, "o", ms=16, mew=1.5, mfc="none", color=COLOURS["orange"])
     for x, y, count in _meetings(votes):
         right.annotate(str(count), (x, y), (9, 7), textcoords="offset points", color="white", fontsize=10)
-    right.set_title("most votes at the centre", fontsize=10)
     for ax in (left, right):
-        ax.tick_params(labelsize=7)
         ax.set(xlabel="x [px]", ylabel="y [px]")
     return figure
 
