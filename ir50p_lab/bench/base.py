@@ -1,6 +1,7 @@
 """What every bench promises: one loop, whether a board, a simulated arm or a recording answers."""
 
 import contextlib
+import math
 from collections import namedtuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from ir50p_lab.bench.runaway import RunawayGuard
 from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.controllers.base import check_controller, check_reference
 from ir50p_lab.errors import BenchError, InputError, LabError, PauseError
-from ir50p_lab.inputs import number, vector3
+from ir50p_lab.inputs import number
 from ir50p_lab.modelling.chain import lengths
 from ir50p_lab.modelling.named_arms import load_arm
 
@@ -374,15 +375,15 @@ class Bench:
     def _command_of(self, pwm):
         """`pwm` in whole counts, within the limit and not beyond the ends of the travel; else cut and raise."""
         try:
-            if np.asarray(pwm).dtype.kind not in "iufO":
+            given = np.asarray(pwm)
+            if given.dtype.kind not in "iufO" or len(given) != JOINTS or not all(map(math.isfinite, given.tolist())):
                 raise TypeError
-            command = vector3("pwm", pwm)
         except Exception:  # whatever the conversion of a stranger raises
             self.cut()
             said = f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts; the drive has been cut"
             raise InputError(said) from None
         limited = []  # scalars: for three numbers arrays take longer than the arm
-        for u, q, (low, high) in zip(command.tolist(), self._last.q.tolist(), self._travel, strict=True):
+        for u, q, (low, high) in zip(given.tolist(), self._last.q.tolist(), self._travel, strict=True):
             out = (q <= low and u < 0) or (q >= high and u > 0)
             limited.append(0.0 if out else min(max(float(round(u)), -LIMIT_PWM), LIMIT_PWM))
         return np.array(limited)

@@ -2,6 +2,7 @@
 
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.patches import Circle, Polygon
 
 from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
 from ir50p_lab.course.vision_views import STAMP, show_picture
@@ -17,21 +18,20 @@ def bare_picture(ax, image, title=""):
 def pinhole_figure(points):
     """Rays through a pinhole and where they cut the plane at Z = 1 (the idea of Figure 3.10). Returns: LabFigure.
 
-    points: {name: (X, Y, Z) m, camera coordinates}; X over Z is drawn, as seen from above.
+    points: up to three {name: (X, Y, Z) m, camera coordinates}; X over Z is drawn, as seen from above.
     """
     figure, ax = subplots(7.4, 3.2)
     far = 1.12 * max(1.1, *(Z for _, _, Z in points.values()))
     top = max(max(X, X / Z) for X, _, Z in points.values())
     ax.axhline(0, color=COLOURS["dark"], linewidth=1)
     ax.axvline(1, color=COLOURS["blue"], linewidth=2)
-    colours = [COLOURS[name] for name in ("orange", "green", "purple")]
-    for k, ((name, (X, _, Z)), colour) in enumerate(zip(points.items(), colours, strict=False)):
-        end = max(1.0, Z)
+    for k, (name, (X, _, Z)) in enumerate(points.items()):
+        colour, end = COLOURS[("orange", "green", "purple")[k]], max(1.0, Z)
         if k == 0:  # the similar triangles
             ax.fill([0, 1, 1], [0, 0, X / Z], color=COLOURS["blue"], alpha=0.1)
             ax.fill([0, Z, Z], [0, 0, X], color=colour, alpha=0.2)
             ax.plot([Z, Z], [0, X], color=colour, linewidth=1)
-        ax.plot([0, end], [0, X / Z * end], color=colour, linewidth=1, linestyle=("-", "--", ":")[k % 3])
+        ax.plot([0, end], [0, X / Z * end], color=colour, linewidth=1, linestyle=("-", "--", ":")[k])
         ax.plot(Z, X, "o", color=colour, markersize=8 - 2 * k)
         ax.annotate(name, (Z, X), (-6, 6), textcoords="offset points", ha="right", color=colour, fontweight="bold")
         ax.plot(1, X / Z, "s", color=COLOURS["blue"], markersize=5, zorder=3)
@@ -54,13 +54,11 @@ class DistortionView:
     def __init__(self, pinhole):
         self.pinhole = pinhole
         w, h = pinhole.size
-        x, y = np.linspace(0, w - 1, 41), np.linspace(0, h - 1, 31)
-        across = [np.column_stack([x, np.full_like(x, v)]) for v in np.linspace(0, h - 1, 9)]
-        down = [np.column_stack([np.full_like(y, v), y]) for v in np.linspace(0, w - 1, 12)]
-        self._counts = np.cumsum([len(line) for line in across + down])[:-1]
-        straight = across + down
-        self._rays = pinhole.to_normalised(np.concatenate(straight))
-        self._radius = np.linspace(0, np.linalg.norm(self._rays, axis=1).max(), 100)
+        across = np.meshgrid(np.linspace(0, w - 1, 41), np.linspace(0, h - 1, 9))
+        down = np.meshgrid(np.linspace(0, w - 1, 12), np.linspace(0, h - 1, 41), indexing="ij")
+        straight = np.concatenate([np.stack(across, axis=-1), np.stack(down, axis=-1)])  # (21, 41, 2)
+        self._rays = pinhole.to_normalised(straight)
+        self._radius = np.linspace(0, np.linalg.norm(self._rays, axis=-1).max(), 100)
         self.figure, ax = subplots(6.4, 5.0)
         ax.grid(False)  # it would pass for the grid that is drawn
         ax.add_collection(LineCollection(straight, colors=COLOURS["grey"], linewidths=1))
@@ -74,8 +72,8 @@ class DistortionView:
         """Draw the grid for these coefficients; returns in words what it looks like and how far a point moves."""
         lens = Pinhole(self.pinhole.K, (k1, k2, p1, p2), self.pinhole.size)
         xy = lens.to_pixels(lens.distort(self._rays))
-        self._lines.set_segments(np.split(xy, self._counts))
-        moved = np.linalg.norm(xy - lens.to_pixels(self._rays), axis=1).max()
+        self._lines.set_segments(xy)
+        moved = np.linalg.norm(xy - lens.to_pixels(self._rays), axis=-1).max()
         seen = [radial_shape(k1, k2, self._radius), "wider on one side" * bool(p1 or p2)]
         shape = ", ".join(filter(None, seen)) or "straight"
         return f"{shape}: a point moves by up to {moved:.1f} px"
@@ -100,25 +98,22 @@ def covered_figure(whole, covered, view):
     return figure
 
 
-def contact_sheet(images, calibration, columns=5):
+def contact_sheet(images, calibration):
     """All pictures, small: corners on those that were used, the reason on the others. Returns: LabFigure.
 
-    images: list of (h, w, 3), in the order given to `calibrate`; calibration: Calibration.
+    images: 5 n pictures (h, w, 3), in the order given to `calibrate`; calibration: Calibration.
     """
-    rows = -(-len(images) // columns)
-    figure = new_figure(9.0, 1.62 * rows + 0.2, rows=rows, cols=columns, note=STAMP)
-    used = {view.index: view for view in calibration.views}
-    refused = {one.index: one for one in calibration.rejected}
-    for k, ax in enumerate(figure.axes):
-        if k >= len(images):
-            ax.set_visible(False)
-            continue
-        bare_picture(ax, images[k][::2, ::2] if k not in refused else images[k])
-        if k in used:
-            ax.plot(*(used[k].corners.T / 2), ".", color=COLOURS["green"], markersize=2.5)
-            ax.plot(*(used[k].corners[0] / 2), "o", color=COLOURS["amber"], markersize=4)
-        elif k in refused:
-            ax.set_title(str(refused[k].reason), fontsize=9, color=COLOURS["orange"], fontweight="bold")
+    rows = len(images) // 5
+    figure = new_figure(9.0, 1.62 * rows + 0.2, rows=rows, cols=5, note=STAMP)
+    for view in calibration.views:
+        ax, corners = figure.axes[view.index], view.corners / 2
+        bare_picture(ax, images[view.index][::2, ::2])
+        ax.plot(*corners.T, ".", color=COLOURS["green"], markersize=2.5)
+        ax.plot(*corners[0], "o", color=COLOURS["amber"], markersize=4)
+    for one in calibration.rejected:
+        ax = figure.axes[one.index]
+        bare_picture(ax, images[one.index])
+        ax.set_title(str(one.reason), fontsize=9, color=COLOURS["orange"], fontweight="bold")
     return figure
 
 
@@ -166,20 +161,17 @@ def rms_figure(reports, noise):
     return figure
 
 
-def residual_figure(images, calibration, view, gain=500):
-    """A picture with its residuals as arrows, `gain` times longer, beside those of all views. Returns: LabFigure."""
-    one = calibration.views[view]
+def residual_figure(images, calibration, view):
+    """A picture with its residuals as arrows, 500 times longer, beside those of all views. Returns: LabFigure."""
+    one, gain = calibration.views[view], 500
     figure, left, right = subplots(9.0, 3.8, cols=2, width_ratios=(1.5, 1), note=STAMP)
     bare_picture(left, images[one.index], f"{one.name}: residuals, {gain} times longer, rms {one.rms:.3f} px")
-    arrows = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.006}
-    left.quiver(*one.corners.T, *(gain * one.residuals).T, color=COLOURS["orange"], **arrows)
-    for k, other in enumerate(calibration.views):
-        style = (
-            {"color": COLOURS["orange"], "markersize": 5} if k == view else {"color": COLOURS["grey"], "markersize": 2}
-        )
-        right.plot(*other.residuals.T, ".", **style)
-    circle = calibration.rms * np.exp(1j * np.linspace(0, 2 * np.pi, 80))
-    right.plot(circle.real, circle.imag, color=COLOURS["dark"], linewidth=1)
+    arrows = {"angles": "xy", "scale_units": "xy", "scale": 1 / gain, "width": 0.006}
+    left.quiver(*one.corners.T, *one.residuals.T, color=COLOURS["orange"], **arrows)
+    every = np.concatenate([other.residuals for other in calibration.views])
+    right.plot(*every.T, ".", color=COLOURS["grey"], markersize=2)
+    right.plot(*one.residuals.T, ".", color=COLOURS["orange"], markersize=5)
+    right.add_patch(Circle((0, 0), calibration.rms, fill=False, edgecolor=COLOURS["dark"], linewidth=1, zorder=3))
     reach = 4 * calibration.rms
     right.set(xlim=(-reach, reach), ylim=(reach, -reach), aspect="equal", xlabel="x [px]", ylabel="y [px]")  # y down
     right.set_title(f"All views: rms {calibration.rms:.3f} px (circle)", fontsize=10)
@@ -203,13 +195,11 @@ def coverage_figure(calibration):
     filled = right.contourf(x, y, error, 8, cmap="Blues")
     figure.colorbar(filled, ax=right, label="uncertainty of a pixel's direction [px]", shrink=0.75)
     right.set_title(f"The next view (orange) fills empty cells: {following.new}")
-    xy = np.concatenate([view.corners for view in calibration.views]) - calibration.K[:2, 2]
-    rim = np.hypot(*xy.T).max() * np.exp(1j * np.linspace(0, 2 * np.pi, 120))
-    rim = np.column_stack([rim.real, rim.imag]) + calibration.K[:2, 2]
-    loop = np.vstack([following.outline, following.outline[:1]])
+    centre = calibration.K[:2, 2]
+    outermost = max(np.linalg.norm(view.corners - centre, axis=1).max() for view in calibration.views)
     for ax in (left, right):
-        ax.plot(*loop.T, color=COLOURS["orange"], linewidth=2)
-        ax.plot(*rim.T, ":", color=COLOURS["dark"], linewidth=1.2)
+        ax.add_patch(Polygon(following.outline, fill=False, edgecolor=COLOURS["orange"], linewidth=2, zorder=2))
+        ax.add_patch(Circle(centre, outermost, fill=False, edgecolor=COLOURS["dark"], linestyle=":", linewidth=1.2))
         ax.set(xlim=(0, w), ylim=(h, 0), aspect="equal", xlabel="x [px]", ylabel="y [px]")
         ax.grid(False)
     return figure
@@ -224,22 +214,10 @@ def board_residual_figure(picture, flat, bent):
     figure, first, *maps = subplots(10.5, 3.1, cols=3, width_ratios=(1.1, 1, 1), note=STAMP)
     bare_picture(first, picture, "One of the pictures")
     for ax, one, name in zip(maps, (flat, bent), ("Board taken for flat", "Bend estimated"), strict=True):
-        towards = [_height_direction(one, view) for view in one.views]
-        lift = np.mean(
-            [(v.residuals * d).sum(axis=1) / (d**2).sum(axis=1) for v, d in zip(one.views, towards, strict=True)],
-            axis=0,
-        )
+        deeper = np.mean([_depths(one, view) for view in one.views], axis=0)
         columns, rows = one.board.pattern
-        size = 1000 * one.board.square
-        height = 1000 * lift.reshape(rows, columns)
-        reach = 1.0
-        drawn = ax.imshow(
-            height,
-            cmap="PuOr",
-            vmin=-reach,
-            vmax=reach,
-            extent=(-0.5 * size, (columns - 0.5) * size, (rows - 0.5) * size, -0.5 * size),
-        )
+        place = 1000 * one.board.square * np.array([-0.5, columns - 0.5, rows - 0.5, -0.5])
+        drawn = ax.imshow(1000 * deeper.reshape(rows, columns), cmap="PuOr", vmin=-1, vmax=1, extent=place)
         ax.set(xlabel="along the board [mm]", ylabel="down the board [mm]")
         ax.set_title(f"{name}: rms {one.rms:.3f} px", fontsize=9)
         ax.grid(False)
@@ -247,12 +225,13 @@ def board_residual_figure(picture, flat, bent):
     return figure
 
 
-def _height_direction(calibration, view):
-    """d pixel / d height (n, 2) px/m at the corners of a view: where a corner goes if the board is deeper there."""
-    step = 1e-4 * np.array([0, 0, 1.0])
+def _depths(calibration, view):
+    """How much deeper (n,) m each corner of a view would have to lie to be seen where it was found."""
+    step = np.array([0, 0, 1e-4])
     there = calibration.pinhole.project(view.T_cam_board, view.points + step)
     back = calibration.pinhole.project(view.T_cam_board, view.points - step)
-    return (there - back) / 2e-4
+    direction = (there - back) / 2e-4  # px/m
+    return (view.residuals * direction).sum(axis=1) / (direction**2).sum(axis=1)
 
 
 def table_figure(image, pixels, errors):

@@ -1,10 +1,43 @@
-"""A picture of notebook 04 that moves: the spinning arm as a governor."""
+"""Pictures of notebook 04 that move: what the joints have to move, and the spinning arm as a governor."""
 
 import numpy as np
 
 from ir50p_lab.course.arm3d import SideView
-from ir50p_lab.course.style import SETPOINT, subplots
-from ir50p_lab.modelling.dynamics import gravity
+from ir50p_lab.course.style import COLOURS, SETPOINT, subplots
+from ir50p_lab.modelling.dynamics import gravity, mass_matrix
+
+
+class InertiaView:
+    """The arm from the side, M11 over q2, and the velocities (qd2, qd3) that cost 1 J: 1/2 qd^T M qd = 1, an ellipse.
+
+    Args: arm: Arm. `update(q)` moves all three. Attributes: figure, to be shown with `live`.
+    """
+
+    def __init__(self, arm):
+        self.arm = arm
+        self.figure, self._side, waist, joints = subplots(10.0, 3.6, cols=3)
+        self._view = SideView(self._side, arm)
+        (self._curve,) = waist.plot([], [])
+        (self._dot,) = waist.plot([], [], "o", color=COLOURS["orange"], ms=8)
+        (self._ellipse,) = joints.plot([], [], color=COLOURS["green"])
+        M = mass_matrix(arm, np.linspace([0, 0, -np.pi], [0, 0, np.pi], 181))
+        fastest = 1.05 * np.sqrt(2 / np.linalg.eigvalsh(M[:, 1:, 1:])[:, 0].min())
+        waist.set(xlim=(-90, 90), ylim=(0, 1.08 * M[:, 0, 0].max()), xticks=range(-90, 91, 45), box_aspect=1)
+        waist.set(xlabel="q2 [deg]", ylabel="M11 [kg m²]", title="What joint 1 has to turn")
+        joints.set(xlim=(-fastest, fastest), ylim=(-fastest, fastest), aspect="equal")
+        joints.set(xlabel="shoulder [rad/s]", ylabel="elbow [rad/s]", title="These speeds cost 1 J")
+
+    def update(self, q):
+        """Move to q (3,) rad."""
+        M = mass_matrix(self.arm, q)
+        self._view.update(q)
+        self._side.set_title(f"M22 = {M[1, 1]:.3f}, M23 = {M[1, 2]:.3f} kg m²")
+        poses = np.linspace([0, -np.pi / 2, q[2]], [0, np.pi / 2, q[2]], 91)
+        self._curve.set_data(np.degrees(poses[:, 1]), mass_matrix(self.arm, poses)[:, 0, 0])
+        self._dot.set_data([np.degrees(q[1])], [M[0, 0]])
+        turn = np.linspace(0, 2 * np.pi, 121)
+        circle = np.sqrt(2) * np.stack([np.cos(turn), np.sin(turn)])
+        self._ellipse.set_data(np.linalg.solve(np.linalg.cholesky(M[1:, 1:]).T, circle))
 
 
 class GovernorView:

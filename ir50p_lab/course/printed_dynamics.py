@@ -5,7 +5,7 @@ The remark after 'wrong:' says what is wrong; an equation without one is right a
 `derive(links="thesis")`, so that printed and derived formulas can be compared at once.
 """
 
-from sympy import Matrix, Rational, cos, diag, exp, eye, sign, sin, symbols, zeros
+from sympy import Matrix, Rational, cos, diag, eye, sin, symbols, zeros
 
 from ir50p_lab.modelling.symbolic import same_function
 
@@ -104,7 +104,6 @@ def h_1_95(M):
 
 _p = Matrix([x, y, z])
 P_HAT = Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-INTEGRAND_1_101 = _p.dot(_p) * eye(3) - _p * _p.T
 INTEGRAND_1_102 = -_p.dot(_p) * eye(3) - _p * _p.T  # wrong: the first minus
 # fmt: off
 INTEGRAND_1_103 = Matrix([[y**2 + z**2, -x * y,       x * z      ],   # wrong: three entries
@@ -120,12 +119,7 @@ TENSOR = Matrix([[Ixx,  -Ixy, -Ixz],                                  # (1.104) 
 MOMENTS_1_105_TO_1_107 = (y**2 + z**2, x + z**2, y**2 + x**2)  # wrong: x for x^2 in Iyy, (1.106)
 
 
-# ---- friction and actuator ----
-
-
-def friction_1_115(velocity, fv, fc, fs, qs):
-    """(1.115) with (1.116). Right."""
-    return fv * velocity + fc * sign(velocity) + (fs - fc) * sign(velocity) * exp(-((velocity / qs) ** 2))
+# ---- actuator ----
 
 
 def input_1_120(tau, qdd, j, G, Tf=0):
@@ -137,11 +131,7 @@ def input_1_120(tau, qdd, j, G, Tf=0):
 
 reach3 = lc3 * c23 + l2 * c2
 P_C1 = Matrix([lc1 * c1, lc1 * s1, 0])  # wrong: the column is vertical, (0, 0, lc1)
-P_C2 = Matrix([c1 * lc2 * c2, s1 * lc2 * c2, l1 + lc2 * s2])  # labelled p_c1 again
-P_C3 = Matrix([c1 * reach3, s1 * reach3, l1 + lc3 * s23 + l2 * s2])
 # fmt: off
-JV_1 = Matrix([[-lc1 * s1, 0, 0], [lc1 * c1, 0, 0], [0, 0, 0]])
-JV_2 = Matrix([[-s1 * lc2 * c2, -c1 * lc2 * s2, 0], [c1 * lc2 * c2, -s1 * lc2 * s2, 0], [0, lc2 * c2, 0]])
 JV_3 = Matrix([[-s1 * reach3, -c1 * (lc3 * s23 + l2 * s2), -c1 * lc3 * s23],
                [c1 * reach3,  -s1 * (lc3 * s23 + l2 * s2), -s1 * lc3 * c23],   # wrong: c23 for s23 (the scan?)
                [0,            reach3,                      lc3 * c23      ]])
@@ -160,9 +150,7 @@ I_N3 = Matrix([[Izz3,  -Ixy3, -Ixz3],                      # wrong: the diagonal
 
 # ---- a. mass matrix: the three summands and the list ----
 
-SUMMAND_1_FIRST = diag(m1 * lc1 + Izz1, 0, 0)              # wrong: lc1 not squared; right in the next line
-SUMMAND_1 = diag(m1 * lc1**2 + Izz1, 0, 0)
-SUMMAND_2_FIRST = Matrix([[m2 * lc2**2 * c2**2 + Izz2, Iyz2, 0], [Iyz2, m2 * lc2**2 + Iyy2, 0], [0, 0, 0]])
+SUMMAND_1_FIRST = diag(m1 * lc1 + Izz1, 0, 0)              # wrong: lc1 not squared; right in the thesis' next line
 SUMMAND_2 = Matrix([[m2 * lc2**2 * c2 + Izz2, Iyz2,               0],   # wrong: c2 not squared, Iyz2 lost in (2,1)
                     [0,                       m2 * lc2**2 + Iyy2, 0],
                     [0,                       0,                  0]])

@@ -3,20 +3,19 @@
 import numpy as np
 from matplotlib.patches import Circle
 
-from ir50p_lab.course import vision_views
 from ir50p_lab.course.arm3d import ArmView, FrameView, SideView
 from ir50p_lab.course.drawings import drawing
 from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
+from ir50p_lab.course.vision_views import show_picture
 from ir50p_lab.modelling.chain import forward_kinematics, frames
 
 _XYZ = (COLOURS["orange"], COLOURS["green"], COLOURS["blue"])
-_RENDERED = "rendered picture, simulated arm"
 _ARRIVED = 1.5  # s after which a followed ball has been caught up with
 
 
 def origin(simulated):
     """Where picture and arm are from, for the note in a figure."""
-    return _RENDERED if simulated else "photograph, real arm"
+    return "rendered picture, simulated arm" if simulated else "photograph, real arm"
 
 
 def loop_figure():
@@ -24,23 +23,21 @@ def loop_figure():
     return drawing("picture_to_motors")
 
 
-def frames_figure(arm, q, T_base_cam, ball=None, T_base_board=None, simulated=True):
-    """The frames {0}, {c}, {ob} of Figures 4.15, 4.16 in 3-D, and the board, if its place is given. LabFigure."""
+def frames_figure(arm, q, T_base_cam, ball, T_base_board, simulated):
+    """The frames {0}, {c}, {ob} of Figures 4.15, 4.16 in 3-D, and the board of 9x6 corners. Returns: LabFigure."""
     figure, ax = subplots(8.0, 5.0, projection="3d", note=origin(simulated))
     _stage(ax, arm, q, T_base_cam)
     ax.view_init(elev=34, azim=-66)
     FrameView(ax, np.eye(4), "{0}", 0.13)
     FrameView(ax, T_base_cam, "{c}", 0.18)
-    if T_base_board is not None:
-        rim = 0.025 * np.array([[-1, -1], [9, -1], [9, 6], [-1, 6], [-1, -1]])  # of the board of 9x6 corners
-        rim = np.column_stack([rim, np.zeros(5)]) @ T_base_board[:3, :3].T + T_base_board[:3, 3]
-        ax.plot(*rim.T, color=COLOURS["grey"], linewidth=1.2)
-        ax.text(*rim[1], "  board", fontsize=8, color=COLOURS["dark"])
-    if ball is not None:
-        T = np.eye(4)
-        T[:3, 3] = ball
-        FrameView(ax, T, "{ob}", 0.1)
-        ax.plot(*np.column_stack([T_base_cam[:3, 3], ball]), color=COLOURS["grey"], linewidth=1, linestyle=":")
+    rim = 0.025 * np.array([[-1, -1, 0], [9, -1, 0], [9, 6, 0], [-1, 6, 0], [-1, -1, 0]])
+    rim = rim @ T_base_board[:3, :3].T + T_base_board[:3, 3]
+    ax.plot(*rim.T, color=COLOURS["grey"], linewidth=1.2)
+    ax.text(*rim[1], "  board", fontsize=8, color=COLOURS["dark"])
+    T_base_ball = np.eye(4)
+    T_base_ball[:3, 3] = ball
+    FrameView(ax, T_base_ball, "{ob}", 0.1)
+    ax.plot(*np.column_stack([T_base_cam[:3, 3], ball]), color=COLOURS["grey"], linewidth=1, linestyle=":")
     ax.set_title("Base {0}, camera {c}, ball {ob}: one transform takes the camera's numbers to the arm's")
     return figure
 
@@ -64,31 +61,21 @@ def seen_figure(seen, arm, q, T_base_cam, marker=None):
     """
     figure = new_figure(9.5, 4.4, cols=2, projection=[None, "3d"], width_ratios=(1.25, 1), note=origin(seen.simulated))
     picture, space = figure.axes
-    vision_views.show_picture(picture, seen.image)
+    show_picture(picture, seen.image)
     picture.set(xlabel="x [px]", ylabel="y [px]")
-    if seen:
-        x, y, r = seen.ball.x, seen.ball.y, seen.ball.radius
-        picture.add_patch(Circle((x, y), r, fill=False, ec=COLOURS["sky"], lw=2))
-        picture.plot([x], [y], "+", color="white", ms=9, mew=1.5)
-        p, s = 1e3 * seen.position, 1e3 * seen.stderr
-        picture.set_title(f"Ball at ({x:.1f}, {y:.1f}) px, radius {r:.1f} px")
     if marker is not None:
         picture.plot(*marker, "s", mfc="none", mec=COLOURS["amber"], ms=12, mew=2)
     view = _stage(space, arm, q, T_base_cam)
     FrameView(space, T_base_cam, "{c}", 0.15)
     if seen:
+        x, y, r = seen.ball.x, seen.ball.y, seen.ball.radius
+        picture.add_patch(Circle((x, y), r, fill=False, ec=COLOURS["sky"], lw=2))
+        picture.plot(x, y, "+", color="white", ms=9, mew=1.5)
+        picture.set_title(f"Ball at ({x:.1f}, {y:.1f}) px, radius {r:.1f} px")
         view.target(seen.position)
         space.plot(*np.column_stack([T_base_cam[:3, 3], seen.position]), color=COLOURS["grey"], lw=1, ls=":")
+        p, s = 1e3 * seen.position, 1e3 * seen.stderr
         space.set_title(f"({p[0]:.0f}, {p[1]:.0f}, {p[2]:.0f}) mm, ± {s[0]:.1f}, {s[1]:.1f} mm")
-    return figure
-
-
-def pictures_figure(images, titles, simulated=True, marks=()):
-    """Pictures side by side. images: RGB; titles: one each; marks: (2,) px or None for each. Returns: LabFigure."""
-    figure = vision_views.pictures_figure(*zip(titles, images, strict=True), width=9.5, source=origin(simulated))
-    for ax, mark in zip(figure.axes, marks, strict=False):
-        if mark is not None:
-            ax.plot(*mark, "+", color="white", ms=13, mew=2)
     return figure
 
 
@@ -108,13 +95,8 @@ def height_figure(plane, ball, xy):
     ax.plot(1e3 * ray, 1e3 * (ball[2] - slope * ray), color=COLOURS["dark"], linestyle=":")
     (level,) = ax.plot([-160, 80], [0, 0], **SETPOINT)
     (mark,) = ax.plot([], [], "X", color=COLOURS["purple"], ms=11, mec="white")
-    ax.set(
-        xlim=(-160, 80),
-        ylim=(-12, 110),
-        aspect="equal",
-        xlabel="away from the camera, horizontally [mm]",
-        ylabel="height [mm]",
-    )
+    ax.set(xlim=(-160, 80), ylim=(-12, 110), aspect="equal")
+    ax.set(xlabel="away from the camera, horizontally [mm]", ylabel="height [mm]")
 
     def update(height_mm):
         place = plane.to_table(xy, height_mm / 1e3)
@@ -127,15 +109,14 @@ def height_figure(plane, ball, xy):
     return figure, update
 
 
-def trajectory_figure(trajectory, ball=None, radius=0.03):
-    """A Plan from the side: radius and height of the tip, ball and clearance. Returns: LabFigure."""
+def trajectory_figure(trajectory, ball):
+    """A Plan from the side: radius and height of the tip, a ball of 30 mm, clearance. Returns: LabFigure."""
     figure, side, over = subplots(9.0, 3.6, cols=2, width_ratios=(1.1, 1))
     p = trajectory.tips
     view = SideView(side, trajectory.arm, colour=COLOURS["blue"])
     view.update(trajectory.goal)
     side.plot(np.hypot(p[:, 0], p[:, 1]), p[:, 2], color=COLOURS["green"], linewidth=2)
-    if ball is not None:
-        side.add_patch(Circle((np.hypot(*ball[:2]), ball[2]), radius, fc="#C8202D", ec="none"))
+    side.add_patch(Circle((np.hypot(*ball[:2]), ball[2]), 0.03, fc="#C8202D", ec="none"))
     side.set_title(f"Never below {100 * trajectory.lowest:.0f} cm: over, then down")
     t = np.linspace(0, trajectory.duration, 300)
     for k, colour in enumerate(JOINTS):
@@ -145,20 +126,21 @@ def trajectory_figure(trajectory, ball=None, radius=0.03):
     return figure
 
 
-def tip_figure(arm, recording, done, simulated=True):
-    """X, Y, Z of the tip over time, by potentiometers, with the goal dashed (Figure 4.20). Returns: LabFigure."""
-    figure = new_figure(9.0, 4.6, rows=3, sharex=True, note=origin(simulated).split(", ")[1])
+def tip_figure(arm, recording, done, simulated):
+    """X, Y, Z of the tip over time, by potentiometers, with the goal dashed (Figure 4.20). Returns: LabFigure.
+
+    done: of a reach with two looks.
+    """
+    figure = new_figure(9.0, 4.6, rows=3, sharex=True, note="simulated arm" if simulated else "real arm")
     t, p = recording.t, forward_kinematics(arm, recording.q)
+    second = done.looks[0].t
     for ax, k, name, colour in zip(figure.axes, range(3), "XYZ", _XYZ, strict=True):
         ax.plot(t, 1e3 * p[:, k], color=colour, linewidth=1)
         ax.axhline(1e3 * done.goal[k], **SETPOINT)
         ax.set_ylabel(f"{name} [mm]")
-        for look in done.looks[:-1]:
-            ax.axvline(look.t, color=COLOURS["grey"], linewidth=1)
+        ax.axvline(second, color=COLOURS["grey"], linewidth=1)
     first = figure.axes[0]
-    for number, look in enumerate(done.looks[:-1]):
-        name = f"{('second', 'third')[number]} look "
-        first.text(look.t, 0.06, name, transform=first.get_xaxis_transform(), ha="right", fontsize=9)
+    first.text(second, 0.06, "second look ", transform=first.get_xaxis_transform(), ha="right", fontsize=9)
     beside = np.linalg.norm(p[t > t[-1] - 0.5].mean(axis=0) - done.goal)
     title = f"By potentiometers {1e3 * beside:.0f} mm beside the goal at the end"
     camera = f", by the camera {1e3 * done.miss:.1f} mm" if any(look.marker is not None for look in done.looks) else ""
@@ -193,15 +175,12 @@ def residual_figure(fit):
     for ax, what, values, unit in zip(figure.axes, ("Place", "Turn"), (place, turn), ("mm", "mrad"), strict=True):
         ax.bar(np.arange(len(values)), values, color=COLOURS["blue"])
         rms = np.sqrt(np.mean(np.square(values)))
-        ax.set(
-            xlabel="pose [number]",
-            ylabel=f"left over [{unit}]",
-            title=f"{what}: the loop stays open by {rms:.1f} {unit}",
-        )
+        ax.set(xlabel="pose [number]", ylabel=f"left over [{unit}]")
+        ax.set_title(f"{what}: the loop stays open by {rms:.1f} {unit}")
     return figure
 
 
-def follow_figure(logs, simulated=True):
+def follow_figure(logs, simulated):
     """Followed balls: the table from above for the first FollowLog, how far each tip is ahead. Returns: LabFigure."""
     import pandas as pd
 
@@ -212,7 +191,7 @@ def follow_figure(logs, simulated=True):
     above.set(xlabel="x [mm]", ylabel="y [mm]", title=f"From above, lead {logs[0].lead:g} s")
     above.set_aspect("equal", adjustable="datalim")
     above.legend(fontsize=8)
-    for log, colour in zip(logs, (COLOURS["blue"], COLOURS["orange"], COLOURS["green"]), strict=False):
+    for log, colour in zip(logs, (COLOURS["blue"], COLOURS["orange"]), strict=True):
         settled = log.t > _ARRIVED
         t, ahead = log.t[settled], 1e3 * log.ahead[settled]
         time.plot(t, ahead, ".", ms=2, color=colour, alpha=0.35)
@@ -228,14 +207,13 @@ def follow_figure(logs, simulated=True):
     return figure
 
 
-def poses_before(arm, camera, T_cam_base, T_tool_board, board, n, rng):
+def poses_before(arm, pinhole, T_cam_base, T_tool_board, board, n, rng):
     """n joint poses (n, 3) rad that hold a board, its print to the camera, fully into the picture.
 
-    camera: Calibration or Pinhole; T_tool_board: (4, 4); board: (m, 3) m; rng: numpy generator.
+    pinhole: Pinhole; T_tool_board: (4, 4); board: (m, 3) m; rng: numpy generator.
     """
-    pinhole, kept = getattr(camera, "pinhole", camera), []
+    kept = []
     low, high = (np.clip(limit, -np.pi, np.pi) for limit in (arm.q_min, arm.q_max))
-    size = np.array(pinhole.size)
     for _ in range(20000):
         q = rng.uniform(low, high)
         T = T_cam_base @ frames(arm, q)[3] @ T_tool_board
@@ -243,7 +221,7 @@ def poses_before(arm, camera, T_cam_base, T_tool_board, board, n, rng):
         if X[:, 2].min() < 0.25 or T[2, 2] < 0.3 or (np.abs(X[:, :2]) > X[:, 2:]).any():
             continue
         xy = pinhole.project(np.eye(4), X)
-        if (xy > 5).all() and (xy < size - 6).all():
+        if (xy > 5).all() and (xy < np.array(pinhole.size) - 6).all():
             kept.append(q)
         if len(kept) == n:
             break

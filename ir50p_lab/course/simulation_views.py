@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.course.arm3d import SideView
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
+from ir50p_lab.course.style import COLOURS, SETPOINT, subplots
+from ir50p_lab.modelling.friction import friction_torque
 
 STAMP = "simulated, not measured"
 
@@ -39,18 +40,17 @@ class Traces:
 
     def __init__(self, xlabel, xlim, *rows, title="", note=STAMP):
         height = 1.4 + (2.0 if len(rows) == 1 else 1.5 * len(rows))
-        self.figure = new_figure(9.0, height, rows=len(rows), sharex=True)
-        self.axes, self.lines = self.figure.axes, []
+        self.figure, *self.axes = subplots(9.0, height, rows=len(rows), sharex=True)
+        self.lines = []
         for ax, row in zip(self.axes, rows, strict=True):
             styles = (row.style,) * len(row.curves) if isinstance(row.style, str) else row.style
-            lines = [
-                ax.plot([], [], style, markersize=3, label=name)[0]
-                for name, style in zip(row.curves, styles, strict=True)
-            ]
-            self.lines += lines
-            for k, level in enumerate(row.levels):
-                own = {"color": lines[k].get_color()} if len(row.levels) == len(lines) > 1 else {}
-                ax.axhline(level, **{**SETPOINT, **own})
+            for name, style in zip(row.curves, styles, strict=True):
+                self.lines += ax.plot([], [], style, markersize=3, label=name)
+            colours = [line.get_color() for line in ax.lines]
+            if len(row.levels) != len(colours) or len(colours) == 1:
+                colours = [SETPOINT["color"]] * len(row.levels)
+            for level, colour in zip(row.levels, colours, strict=True):
+                ax.axhline(level, **SETPOINT | {"color": colour})
             ax.set(xlim=xlim, ylim=row.ylim, ylabel=row.ylabel)
             if any(row.curves):
                 ax.legend(loc=row.legend, ncols=sum(map(bool, row.curves)), fontsize=9)
@@ -82,10 +82,9 @@ def order_figure(steps, errors):
 
     Args: steps (n,) s; errors: {method: errors (n,) rad}. Returns: LabFigure, {method: slope}.
     """
-    figure = new_figure(8.0, 3.4, note=STAMP)
-    ax, slopes = figure.axes[0], {}
+    figure, ax = subplots(8.0, 3.4, note=STAMP)
+    slopes = {name: float(np.polyfit(np.log(steps), np.log(error), 1)[0]) for name, error in errors.items()}
     for name, error in errors.items():
-        slopes[name] = float(np.polyfit(np.log(steps), np.log(error), 1)[0])
         ax.loglog(1000 * np.asarray(steps), error, "o-", label=f"{name}: slope {slopes[name]:.2f}")
     ax.set(xlabel="step h [ms]", ylabel="error of q at the end [rad]")
     ax.set_title("Half the step: half the error, or a sixteenth of it")
@@ -95,17 +94,16 @@ def order_figure(steps, errors):
     return figure, slopes
 
 
-def friction_figure(law, breakaway, speeds, torques):
-    """Friction found by dragging joint 1 (dots) on the curve of a law: Figure 1.9.
+def friction_figure(friction, speeds, torques):
+    """Friction found by dragging joint 1 (dots) on the curve of its law: Figure 1.9.
 
-    Args: law: function of qd (n, 3) rad/s that returns torques (n, 3) N m; breakaway: N m; speeds, torques (n,):
-    what was found, rad/s, N m. Returns: LabFigure.
+    Args: friction: Friction; speeds, torques (n,): what was found, rad/s, N m. Returns: LabFigure.
     """
     figure, ax = subplots(8.0, 3.2, note=STAMP)
     v = np.linspace(1e-6, 1.1 * max(speeds), 300)
-    ax.plot(v, law(np.outer(v, [1, 0, 0]))[:, 0], label="(1.115)-(1.117)")
+    ax.plot(v, friction_torque(friction, np.outer(v, [1, 0, 0]))[:, 0], label="(1.115)-(1.117)")
     ax.plot(speeds, torques, "o", color=COLOURS["orange"], label="torque that drags the joint")
-    ax.plot([0, 0], [0, breakaway], color=COLOURS["green"], linewidth=5, label="at rest: any torque up to fs")
+    ax.plot([0, 0], [0, friction.fs[0]], color=COLOURS["green"], linewidth=5, label="at rest: any torque up to fs")
     ax.set(ylim=(0, None), xlabel="joint velocity [rad/s]", ylabel="friction torque [N m]")
     ax.set_title("Figure 1.9, found by dragging a joint")
     ax.legend()
@@ -123,10 +121,8 @@ def sinking_figure(arm, q, tips):
     radius = tips[:, :2] @ np.array([np.cos(q[0, 0]), np.sin(q[0, 0])])
     ax.plot(radius, tips[:, 2], color=COLOURS["grey"], linewidth=1)
     height = tips[-1, 2]
-    found = (
-        "the tip comes to lie on the table" if height < 1e-3 else f"the tip ends {100 * height:.1f} cm above the table"
-    )
-    ax.set_title(f"Without drive {found}", fontsize=11)
+    end = "comes to lie on the table" if height < 1e-3 else f"ends {100 * height:.1f} cm above the table"
+    ax.set_title(f"Without drive the tip {end}", fontsize=11)
     ax.legend(loc="upper left", fontsize=8, frameon=False)
     return figure
 
@@ -134,16 +130,16 @@ def sinking_figure(arm, q, tips):
 def chatter_figure(naive, stuck):
     """Creep and chatter of the shoulder where sgn() stands for dry friction, beside a step that sticks.
 
-    Args: naive, stuck: (t (n,) s, change of angle (n,) rad, velocity (n,) rad/s). Returns: LabFigure.
+    Args: naive (n, 6): change of q and qd every ms, rad, rad/s; stuck: SimulationResult. Returns: LabFigure.
     """
-    figure = new_figure(9.0, 3.0, cols=2, note=STAMP)
-    for k, (ax, label) in enumerate(zip(figure.axes, ("angle, change [rad]", "velocity [rad/s]"), strict=True)):
-        ax.plot(naive[0], naive[1 + k], color=COLOURS["orange"], label="sgn() in Runge-Kutta")
-        ax.plot(stuck[0], stuck[1 + k], color=COLOURS["blue"], linewidth=2.5, label="a step that sticks")
-        ax.set(xlabel="t [s]", ylabel=f"shoulder {label}")
-    figure.axes[0].set(xlim=(0, naive[0][-1]), title="sgn() creeps...")
-    figure.axes[1].set(xlim=(0, 0.04), title="...because it chatters")
-    figure.axes[0].legend()
+    figure, *both = subplots(9.0, 3.0, cols=2, note=STAMP)
+    for ax, mine, kept in zip(both, (naive[:, 1], naive[:, 4]), (stuck.q - stuck.q[0], stuck.qd), strict=True):
+        ax.plot(0.001 * np.arange(len(naive)), mine, color=COLOURS["orange"], label="sgn() in Runge-Kutta")
+        ax.plot(stuck.t, kept[:, 1], color=COLOURS["blue"], linewidth=2.5, label="a step that sticks")
+        ax.set_xlabel("t [s]")
+    both[0].set(xlim=(0, 0.001 * len(naive) - 0.001), title="sgn() creeps...", ylabel="shoulder angle, change [rad]")
+    both[1].set(xlim=(0, 0.04), title="...because it chatters", ylabel="shoulder velocity [rad/s]")
+    both[0].legend()
     return figure
 
 

@@ -4,6 +4,7 @@ import html
 
 import ipywidgets as widgets
 import numpy as np
+from matplotlib.colors import to_rgba_array
 
 from ir50p_lab.course.canvas import Canvas
 from ir50p_lab.course.drawings import drawing
@@ -33,11 +34,11 @@ def show_picture(ax, picture, title="", **options):
     return artist
 
 
-def pictures_figure(*titled, width=9.6, height=None, source=STAMP):
+def pictures_figure(*titled, width=9.6, source=STAMP):
     """Pictures side by side: each (title, picture). source: where they are from, in words. Returns: LabFigure."""
-    shape = titled[0][1].shape
-    each = width / len(titled)
-    figure = new_figure(width, height or min(0.55 + each * shape[0] / shape[1], 5.2), cols=len(titled), note=source)
+    rows, columns = titled[0][1].shape[:2]
+    height = 0.55 + width / len(titled) * rows / columns
+    figure = new_figure(width, min(height, 5.2), cols=len(titled), note=source)
     for ax, (title, picture) in zip(figure.axes, titled, strict=True):
         show_picture(ax, picture, title)
     figure.axes[0].set(xlabel="x [px]", ylabel="y [px]")
@@ -89,41 +90,31 @@ class MaskView:
     """A picture beside its mask, pixel for pixel, for sliders: `update(mask)`. Attribute figure, for `live`."""
 
     def __init__(self, image):
+        self._image = image
         height, width = image.shape[:2]
-        self.figure, left, right = subplots(2 * width / 100, (height + 26) / 100, cols=2)
+        self.figure, ax = subplots(2 * width / 100, (height + 26) / 100)
         self.figure.set_layout_engine("none")
-        for ax, x in ((left, 0), (right, 0.5)):
-            ax.set_position([x, 0, 0.5, height / (height + 26)])
-            ax.set_axis_off()
-        left.imshow(image, interpolation="nearest", aspect="auto")
-        self._mask = right.imshow(np.zeros_like(image), interpolation="nearest", aspect="auto")
+        ax.set_position([0, 0, 1, height / (height + 26)])
+        ax.set_axis_off()
+        self._shown = ax.imshow(np.hstack([image, image]), interpolation="nearest", aspect="auto")
         # a title of the axes lies above the picture and would be drawn anew with it
         self.figure.suptitle(f"The picture ({STAMP}), and white what lies in the ranges", fontsize=10, y=0.99)
 
     def update(self, mask):
-        """Show a mask (h, w) uint8 of 0 and 255, and say how much of the picture it is."""
-        self._mask.set_data(np.repeat(mask[:, :, None], 3, axis=2))
-        return f"{np.count_nonzero(mask) / mask.size:.2%} of the picture"
-
-
-def mask_between(hsv, hue_low, hue_high, s_low, s_high, v_low):
-    """255 where a picture in HSV (degrees, 0..1, 0..1; (h, w, 3)) lies in the ranges; hue_low > hue_high wraps."""
-    hue, saturation, value = hsv[..., 0], hsv[..., 1], hsv[..., 2]
-    near = (hue - hue_low) % 360 <= (hue_high - hue_low) % 360
-    return 255 * (near & (saturation >= s_low) & (saturation <= s_high) & (value >= v_low)).astype(np.uint8)
+        """Show a mask (h, w) of booleans, and say how much of the picture it is."""
+        white = np.repeat(255 * mask[:, :, None].astype(np.uint8), 3, axis=2)
+        self._shown.set_data(np.hstack([self._image, white]))
+        return f"{mask.mean():.2%} of the picture"
 
 
 def canny_figure(steps, low, high):
     """The four steps of Canny, from CannySteps; crests in classes by the thresholds low and high: LabFigure."""
     figure = new_figure(9.6, 2.9, cols=4, note=STAMP)
-    strength = 255 * steps.strength / max(steps.strength.max(), 1)
-    crests = np.zeros((*steps.thin.shape, 3), np.uint8)
-    for least, colour in ((1, "#444444"), (low + 1, COLOURS["sky"]), (high + 1, "#FFFFFF")):
-        crests[steps.thin >= least] = [int(colour[k : k + 2], 16) for k in (1, 3, 5)]
+    colours = to_rgba_array(["black", "#444444", COLOURS["sky"], "white"])[:, :3]
     panels = (
         ("1 smoothed", steps.smoothed),
-        ("2 strength of the slope", strength),
-        ("3 crests: weak blue, strong white", crests),
+        ("2 strength of the slope", 255 * steps.strength / steps.strength.max()),
+        ("3 crests: weak blue, strong white", colours[np.digitize(steps.thin, (1, low + 1, high + 1))]),
         ("4 edges", 255 * steps.edges),
     )
     for ax, (name, picture) in zip(figure.axes, panels, strict=True):
@@ -141,15 +132,12 @@ def votes_figure(points, votes, centre):
     figure, left, right = subplots(8.4, 3.3, cols=2)
     show_picture(left, np.zeros(votes.shape), "edge points")
     left.plot(*np.asarray(points).T, ".", ms=5, color="white")
-    shown = right.imshow(votes, cmap="viridis", interpolation="nearest")
-    right.grid(False)
+    shown = show_picture(right, votes, "most votes at the centre", cmap="viridis", vmin=None, vmax=None)
     figure.colorbar(shown, ax=right, label="votes [1]", shrink=0.85, ticks=range(int(votes.max()) + 1))
     right.plot(*centre, "o", ms=16, mew=1.5, mfc="none", color=COLOURS["orange"])
     for x, y, count in _meetings(votes):
         right.annotate(str(count), (x, y), (9, 7), textcoords="offset points", color="white", fontsize=10)
-    right.set_title("most votes at the centre", fontsize=10)
     for ax in (left, right):
-        ax.tick_params(labelsize=7)
         ax.set(xlabel="x [px]", ylabel="y [px]")
     return figure
 
@@ -172,7 +160,7 @@ class ThinLensView:
     f: m; pixel: size of a pixel, m. Attribute figure; `update(focused_at, object_at, aperture_mm)`.
     """
 
-    def __init__(self, *, f=0.004, pixel=3e-6):
+    def __init__(self, *, f, pixel):
         self._f, self._pixel = f, pixel
         self._alpha = np.geomspace(0.1, 4.0, 300)
         self.figure, self._whole, self._close, curve = subplots(10.2, 3.5, cols=3, width_ratios=(1.2, 1, 1.3))
@@ -185,12 +173,11 @@ class ThinLensView:
         self._rays, self._sensors = [], []
         for ax in (self._whole, self._close):
             self._sensors += ax.plot([], [], color=COLOURS["grey"], linewidth=3)
-            pair = [ax.plot([], [], color=COLOURS[name], linewidth=w)[0] for name, w in (("blue", 1.6), ("orange", 1))]
-            self._rays.append(pair)
+            in_focus = ax.plot([], [], color=COLOURS["blue"], linewidth=1.6)
+            self._rays.append(in_focus + ax.plot([], [], color=COLOURS["orange"], linewidth=1))
         (self._disc,) = self._close.plot([], [], color=COLOURS["orange"], linewidth=5, solid_capstyle="butt")
-        style = {"fontsize": 8, "color": COLOURS["dark"]}
-        self._whole.text(0, -1.98, "lens", ha="center", **style)
-        self._whole.text(far, -1.98, "sensor", ha="center", **style)
+        self._whole.text(0, -1.98, "lens", ha="center", fontsize=8, color=COLOURS["dark"])
+        self._whole.text(far, -1.98, "sensor", ha="center", fontsize=8, color=COLOURS["dark"])
         self._whole.text(-2.4, 1.72, "point in focus", fontsize=8, color=COLOURS["blue"])
         self._whole.text(0.5, 1.72, "object", fontsize=8, color=COLOURS["orange"])
         (self._curve,) = curve.loglog([], [], color=COLOURS["dark"])
@@ -206,10 +193,6 @@ class ThinLensView:
         for ax in self.figure.axes:
             ax.title.set_fontsize(10)
 
-    def blur_pixels(self, alpha, focused_at, aperture):
-        """Diameter of the blur, pixels, of points at alpha m."""
-        return blur_diameter(alpha, focused_at, self._f, aperture) / self._pixel
-
     def update(self, focused_at, object_at, aperture_mm):
         """Draw focus and object (m) and aperture (mm). Returns the blur, and where it stays below a pixel, in words."""
         aperture = aperture_mm / 1000
@@ -220,32 +203,32 @@ class ThinLensView:
         self._stop.set_data([0, 0, np.nan, 0, 0], [-1.65, -half, np.nan, half, 1.65])
         for k, alpha in enumerate((focused_at, object_at)):
             self._rays[0][k].set_data(*self._bundle(alpha, aperture, (-2.5, 0.0, sensor)))
-            x, y = self._bundle(alpha, aperture, (*self._close.get_xlim(),))
+            x, y = self._bundle(alpha, aperture, self._close.get_xlim())
             self._rays[1][k].set_data(x, 1000 * y)
         disc = 1e6 * rays_on_sensor(object_at, focused_at, self._f, aperture)
         self._disc.set_data([sensor, sensor], [disc.min(), disc.max()])
-        blur = self.blur_pixels(self._alpha, focused_at, aperture)
+        blur = blur_diameter(self._alpha, focused_at, self._f, aperture) / self._pixel
         self._curve.set_data(self._alpha, np.maximum(blur, 1e-3))
-        own = float(self.blur_pixels(object_at, focused_at, aperture))
+        own = float(blur_diameter(object_at, focused_at, self._f, aperture)) / self._pixel
         self._mark.set_data([object_at], [max(own, 0.05)])
         self._sharp.set_data([focused_at], [0.05])
         sharp = self._alpha[blur < 1]
         where = f"from {sharp.min():.2f} to {sharp.max():.2f} m" if len(sharp) else "nowhere"
         return f"blur of the object {own:.1f} px; below one pixel {where}"
 
-    def _bundle(self, alpha, aperture, places, n=5):
-        """Rays of a point at alpha m, at `places` (mm behind the lens): one line with gaps, x and y in mm."""
-        h = np.linspace(-500 * aperture, 500 * aperture, n)[:, None]
+    def _bundle(self, alpha, aperture, places):
+        """Five rays of a point at alpha m, at `places` (mm behind the lens): one line with gaps, x and y in mm."""
+        h = np.linspace(-500 * aperture, 500 * aperture, 5)[:, None]
         x = np.array([*places, np.nan])
         slope = np.where(x <= 0, h / (1000 * alpha), h / (1000 * alpha) - h / (1000 * self._f))
-        return np.tile(x, n), (h + slope * x).ravel()
+        return np.tile(x, 5), (h + slope * x).ravel()
 
 
-def balls_figure(image, balls, title, *, source=STAMP):
-    """A picture with the balls found, ranked, and dashed what had the colour and was no ball: LabFigure."""
-    figure = pictures_figure((title, image), width=7.2, source=source)
+def balls_figure(image, balls, title):
+    """A picture with the Balls found, ranked, and dashed what had the colour and was no ball: LabFigure."""
+    figure = pictures_figure((title, image), width=7.2)
     ax, (height, width) = figure.axes[0], image.shape[:2]
-    for (x, y, radius), _ in getattr(balls, "rejected", ()):
+    for (x, y, radius), _ in balls.rejected:
         _circle(ax, x, y, radius, COLOURS["sky"], rim=0, linestyle="--")
     for rank, ball in enumerate(balls, start=1):
         _circle(ax, ball.x, ball.y, ball.radius, COLOURS["blue"])
@@ -259,28 +242,24 @@ def balls_figure(image, balls, title, *, source=STAMP):
     return figure
 
 
-def sheet_figure(seen, *, columns=4, source=STAMP):
-    """Pictures, small, each with the ball found and how far it is off; dashed where one was missed: LabFigure.
+def sheet_figure(seen):
+    """Eight pictures, small, each with the ball found and how far it is off; dashed where one was missed: LabFigure.
 
     seen: list of (picture, balls found, (x, y, radius) of the true ball).
     """
-    rows = -(-len(seen) // columns)
-    figure = new_figure(9.6, 2.05 * rows + 0.2, rows=rows, cols=columns, note=source)
-    for ax in figure.axes:
-        ax.set_axis_off()
-    for ax, (picture, found, target) in zip(figure.axes, seen, strict=False):
+    figure = new_figure(9.6, 4.3, rows=2, cols=4, note=STAMP)
+    for ax, (picture, found, (x, y, radius)) in zip(figure.axes, seen, strict=True):
         height, width = picture.shape[:2]
+        ax.set_axis_off()
         ax.imshow(picture[::2, ::2], extent=(-0.5, width - 0.5, height - 0.5, -0.5))
-        x, y, radius = target
-        off = [np.hypot(ball.x - x, ball.y - y) for ball in found[:1]]
         for ball in found:
             _circle(ax, ball.x, ball.y, ball.radius, COLOURS["blue"])
-        if not found:
+        if found:
+            ax.set_title(f"{np.hypot(found[0].x - x, found[0].y - y):.2f} px off", fontsize=9, color=COLOURS["dark"])
+        else:
             _circle(ax, x, y, 1.5 * radius, COLOURS["orange"], linestyle="--")
+            ax.set_title("missed", fontsize=9, color=COLOURS["orange"])
         ax.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
-        ax.set_title(
-            f"{off[0]:.2f} px off" if off else "missed", fontsize=9, color=COLOURS["dark" if off else "orange"]
-        )
     return figure
 
 
@@ -299,15 +278,15 @@ class ClickColour(widgets.VBox):
     `click(x, y)` does from Python what the mouse does.
     """
 
-    def __init__(self, image, colour=RED, *, source=STAMP):
-        self._image, self._source = image, source
+    def __init__(self, image):
+        self._image = image
         self.status = widgets.HTML()
         self.image_box = Canvas(
             description="Left a picture to click, right the mask of the colour that was clicked",
             layout={"width": "900px", "max_width": "100%"},
         )
         super().__init__([self.image_box, self.status])
-        self._use(colour)
+        self._use(RED)
         self.image_box.on_click(self._clicked)
 
     def click(self, x, y):
@@ -332,12 +311,10 @@ class ClickColour(widgets.VBox):
             cv2.circle(left, centre, radius, (255, 255, 255), 3, cv2.LINE_AA, 4)
             cv2.circle(left, centre, radius, (0, 114, 178), 1, cv2.LINE_AA, 4)
         right = cv2.cvtColor(mask, cv2.COLOR_GRAY2RGB)
-        cv2.rectangle(
-            right, (0, 0), (mask.shape[1] - 1, mask.shape[0] - 1), (153, 153, 153), 3
-        )  # white on a white page
-        self.image_box.value = encode_png(np.concatenate([left, right], axis=1))
+        right[[0, 1, -2, -1]] = right[:, [0, 1, -2, -1]] = 153  # a frame: it may be white on a white page
+        self.image_box.value = encode_png(np.hstack([left, right]))
         found = f"{len(self.balls)} ball{'s' * (len(self.balls) != 1)}" if self.balls else self.balls.reason
         self.status.value = html.escape(
             f"hue {colour.hue:.0f} ± {colour.tolerance:.0f} degrees, saturation from {colour.saturation:.2f}: {found} "
-            f"({self._source})"
+            f"({STAMP})"
         )

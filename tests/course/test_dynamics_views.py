@@ -1,12 +1,28 @@
-"""The governor of notebook 04 settles where its torque curve says."""
+"""Moving pictures of notebook 04: inertia over the pose, and the governor that settles where its torque curve says."""
 
 import numpy as np
 import pytest
 
-from ir50p_lab.course.dynamics_views import GovernorView
-from ir50p_lab.modelling import IR50P, THESIS_RODS, inverse_dynamics
+from ir50p_lab.course.dynamics_views import GovernorView, InertiaView
+from ir50p_lab.modelling import IR50P, THESIS_RODS, inverse_dynamics, mass_matrix
 
 HANG = np.linspace([0, -np.pi / 2, 0], [0, 0, 0], 181)
+
+
+def test_inertia_view_shows_the_pose():
+    view = InertiaView(IR50P)
+    q = np.array([0.4, 0.5, -1.0])
+    view.update(q)
+    M = mass_matrix(IR50P, q)
+    side, waist, joints = view.figure.axes
+    dot, loop = waist.lines[1], joints.lines[0]
+    assert np.allclose(dot.get_xydata(), [[np.degrees(0.5), M[0, 0]]])
+    assert np.allclose(np.interp(dot.get_xdata(), *waist.lines[0].get_data()), M[0, 0], rtol=1e-3)
+    assert np.allclose(0.5 * np.einsum("ni,ij,nj->n", loop.get_xydata(), M[1:, 1:], loop.get_xydata()), 1.0)
+    assert f"{M[1, 1]:.3f}" in side.get_title()
+    for ax in view.figure.axes:  # nothing runs out of its axes
+        assert ax.get_xlabel() and ax.get_ylabel()
+    assert np.abs(loop.get_xydata()).max() < joints.get_xlim()[1] and M[0, 0] < waist.get_ylim()[1]
 
 
 @pytest.mark.parametrize("arm", [IR50P, THESIS_RODS], ids=lambda arm: arm.name)

@@ -9,7 +9,6 @@ from scipy.integrate import solve_ivp
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.exercises import solution
 from ir50p_lab.modelling import IR50P, THESIS_RODS, Friction, forward_dynamics, mass_matrix
-from ir50p_lab.signals import quintic
 from ir50p_lab.simulation import simulate
 
 BRAKE = 1e4  # N m: holds the other joints
@@ -39,19 +38,6 @@ def test_joint_with_coulomb_friction_stops_there():
     run = simulate(only_joint_1(0.1), pid, (0, 0, 0), q0=(0.37, 0, 0), duration=20, period=1e-4, step=1e-4)
     assert (run.qd[-1] == 0).all()
     assert run.q[-1, 0] == pytest.approx(solution("sim-2"), abs=5e-4)
-
-
-def test_steady_speed_at_full_supply():
-    arm = only_joint_1(0.5, actuators=replace(IR50P.actuators, V=24.0))
-    run = simulate(arm, PID(kp=(1e5, 0, 0), limit_pwm=255), (100, 0, 0), duration=5)
-    assert (run.u[:, 0] == 255).all()
-    assert run.qd[-1, 0] == pytest.approx(solution("sim-3"), rel=1e-6)
-
-
-def test_shortest_quintic_needs_just_that_torque():
-    t = np.linspace(0, solution("sim-4"), 20001)
-    rows = quintic((0, 0, 0), (1.2, 0, 0), duration=solution("sim-4")).sample(t)
-    assert 0.8 * np.abs(rows[:, 2, 0]).max() == pytest.approx(3.0, rel=1e-6)
 
 
 def test_the_joint_of_sim_2_would_move_any_mass_to_the_same_place():

@@ -15,16 +15,17 @@ from ir50p_lab.course.simulation_views import (
     turning_points,
 )
 from ir50p_lab.course.style import COLOURS
-from ir50p_lab.modelling import IR50P, forward_kinematics
+from ir50p_lab.modelling import IR50P, Friction, forward_kinematics
+from ir50p_lab.simulation import simulate
 
 T = np.linspace(0, 1, 11)
 RUN = np.column_stack([np.full(5, 0.4), np.linspace(1.2, -0.8, 5), np.linspace(-0.5, 0.4, 5)])
 FIGURES = {
     "traces": lambda: Traces("t [s]", (0, 1), Row("q [rad]", (0, 1))).figure,
     "order": lambda: order_figure([0.1, 0.2], {"A": [1e-3, 2e-3]})[0],
-    "friction": lambda: friction_figure(lambda qd: qd, 0.1, [0.5, 1.0], [0.5, 1.0]),
+    "friction": lambda: friction_figure(Friction(fc=(0.5, 0, 0), fs=(0.9, 0, 0)), [0.5, 1.0], [0.5, 1.0]),
     "sinking": lambda: sinking_figure(IR50P, RUN, forward_kinematics(IR50P, RUN)),
-    "chatter": lambda: chatter_figure((T, T, T), (T, 0 * T, 0 * T)),
+    "chatter": lambda: chatter_figure(np.ones((11, 6)), simulate(IR50P, q0=RUN[0], duration=0.05)),
 }
 
 

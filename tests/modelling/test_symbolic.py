@@ -135,6 +135,7 @@ def test_tau_equals_sympys_lagrange_route(model):
 def test_mass_matrix_is_symmetric_and_free_of_q1(model):
     assert model.M == model.M.T
     assert model.q[0] not in model.M.free_symbols | model.g.free_symbols | model.C.free_symbols
+    assert model.q[1] not in model.M[1:, 1:].free_symbols  # shoulder and elbow are parallel
 
 
 def test_m_dot_minus_2c_is_skew_exactly(model):
@@ -163,6 +164,7 @@ def test_c_qd_is_the_sorted_sum_of_christoffel_symbols(model):
 
 def test_gravity_is_the_gradient_of_the_potential(model):
     assert same_function(model.g, sympy.Matrix([model.potential.diff(q) for q in model.q]))
+    assert not model.g.free_symbols & {*model.qd}
 
 
 def test_forms_of_the_errata(inline):

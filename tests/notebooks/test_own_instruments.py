@@ -65,8 +65,9 @@ def test_calibration_of_a_webcam(board, monkeypatch):
     pressed = []
     monkeypatch.setattr("builtins.input", pressed.append)
     monkeypatch.setattr(ir50p_lab.vision, "open_camera", lambda number: PictureFolder(PICTURES))
-    source = cell("17", "camera-yours").replace("my_square = None", "my_square = 0.025")
-    exec(source, {"calibrate": calibrate, "save_result": save_result})
+    names = {"calibrate": calibrate, "save_result": save_result}
+    exec(cell("17", "camera-yours").replace("my_square = None", "my_square = 0.025"), names)
+    exec(cell("17", "camera-yours-kept"), names)
     kept = newest_result("camera", opened(board))
     assert len(pressed) == 20 and not kept.simulated
     assert Calibration.load(kept.path).rms < 0.15

@@ -31,6 +31,9 @@ def test_scales_of_hue():
     assert hue_in("8 bit", 120) == 85 and hue_in("8 bit", 240) == 170
     assert hue_in("8 bit", 300) == 212.5 and round(float(hue_in("8 bit", 30))) == 21
     assert hue_in("OpenCV", 300) == 150 and hue_in("MATLAB", 90) == 0.25
+    pure = np.uint8([[(0, 255, 0), (0, 0, 255), (255, 0, 255), (255, 128, 0)]])
+    ours = np.round(hue_in("OpenCV", rgb_to_hsv(pure)[..., 0]))
+    np.testing.assert_array_equal(ours, cv2.cvtColor(pure, cv2.COLOR_RGB2HSV)[..., 0])
     with pytest.raises(InputError, match="scale"):
         hue_in("radians", 10)
 

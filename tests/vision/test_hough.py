@@ -17,11 +17,13 @@ def test_four_points_meet_in_the_centre():
     assert np.hypot(x.mean() - 50, y.mean() - 40) < 1
 
 
-def test_a_point_draws_a_circle_around_itself():
-    votes = circle_votes([(20, 30)], (60, 60), 10)
+@pytest.mark.parametrize("radius", [5, 10, 18])
+def test_a_point_draws_a_circle_around_itself(radius):
+    """Over all radii: a cone, as below (3.3)."""
+    votes = circle_votes([(20, 30)], (60, 60), radius)
     y, x = np.nonzero(votes)
-    assert np.abs(np.hypot(x - 20, y - 30) - 10).max() < 0.5
-    assert votes.sum() == pytest.approx(2 * np.pi * 10, rel=0.15)
+    assert np.abs(np.hypot(x - 20, y - 30) - radius).max() < 0.5
+    assert votes.sum() == pytest.approx(2 * np.pi * radius, rel=0.15)
 
 
 def test_unknown_radius_among_noise():
