@@ -74,7 +74,7 @@ def pendulum_figure(t, angles, labels):
     """Responses of the pendulum with motor lag. t (n,) s; angles (m, n) rad; labels: m texts. Returns: LabFigure."""
     figure = curves(t, angles, labels, "angle [rad]", targets=(0,))
     title = "All gains positive, and still the second one grows"
-    figure.axes[0].set(ylim=(-2, 2), xlabel="t [s]  -  simulated", title=title)
+    figure.axes[0].set(ylim=(-2, 2), xlabel="time [s]  -  simulated", title=title)
     return figure
 
 
