@@ -12,14 +12,6 @@ _AXIS_COLOURS = (COLOURS["orange"], COLOURS["green"], COLOURS["blue"])  # x, y, 
 _LINK_COLOURS = ("#8C8C8C", COLOURS["blue"], COLOURS["orange"])  # column, upper arm, forearm
 
 
-def arm_points(arm, q):
-    """The corners of the arm: foot of the column, shoulder, elbow, tip.
-
-    Args: arm: Arm; q: (3,) or (n, 3) rad. Returns: (4, 3) or (n, 4, 3) m, base coordinates.
-    """
-    return frames(arm, q)[..., :3, 3]
-
-
 class FrameView:
     """A coordinate frame in 3-D axes: x orange, y green, z blue; `update(T)` moves it.
 
@@ -55,41 +47,28 @@ class ArmView:
         ax: 3-D axes (`new_figure(projection="3d")`). arm: Arm.
         q: (3,) rad, first pose. frames: also draw frames 0 to 3 (True), or those listed, such as (0, 3).
         thickness: of the links, points.
+
+    Attributes: q; points: what is drawn, foot, shoulder, elbow and tip, (4, 3) m.
     """
 
     def __init__(self, ax, arm, q=(0.0, 0.0, 0.0), *, frames=False, thickness=10.0):
         self.ax, self.arm, self.q = ax, arm, None
         _stage(ax, arm)
 
-        def line(width, colour, **more):
-            more = {"solid_capstyle": "round"} | more
-            return ax.plot([0, 0], [0, 0], [0, 0], linewidth=width, color=colour, **more)[0]
+        def line(width, colour, cap="round", **more):
+            return ax.plot([], [], [], linewidth=width, color=colour, solid_capstyle=cap, **more)[0]
 
-        # each part is an outline and a fill, both kept; `update` orders the parts by depth
-        self._links = []
-        for colour, width, cap in zip(_LINK_COLOURS, (1.25, 1.0, 0.8), ("butt", "round", "round"), strict=True):
-            style = {"solid_capstyle": cap}
-            outline = line(width * thickness + 2.0, "#222222", **style)
-            self._links.append((outline, line(width * thickness, colour, **style)))
-        hub = {"solid_capstyle": "butt"}
-        self._hubs = [
-            (line(1.45 * thickness + 2, "#222222", **hub), line(1.45 * thickness, "#C8C8C8", **hub)) for _ in range(4)
-        ]
+        def part(colour, width, cap="butt"):  # outline and fill; `update` orders the parts by depth
+            return line(width * thickness + 2, "#222222", cap), line(width * thickness, colour, cap)
+
+        widths, caps = (1.25, 1.0, 0.8), ("butt", "round", "round")
+        self._links = [part(*link) for link in zip(_LINK_COLOURS, widths, caps, strict=True)]
+        self._hubs = [part("#C8C8C8", 1.45) for _ in range(4)]
         self._shadow = line(0.6 * thickness, "#000000", alpha=0.10, zorder=2, solid_joinstyle="round")
         numbers = range(4) if frames is True else frames or ()
         self._frames = {k: FrameView(ax, np.eye(4), str(k), 0.28 * arm.reach) for k in numbers}
         self._tip = ax.plot([0], [0], [0], "o", ms=0.75 * thickness, color=COLOURS["dark"])[0]
-        self._trail = ax.plot([], [], [], "-", color=COLOURS["green"], linewidth=1.6, zorder=3)[0]
-        self._target = ax.plot([], [], [], "X", color=COLOURS["purple"], ms=10, mec="white", zorder=25)[0]
-        self.trail([])
-        self.target(None)
         self.update(q)
-
-    @property
-    def points(self):
-        """What is drawn: foot, shoulder, elbow and tip, (4, 3) m."""
-        ends = [np.column_stack(fill.get_data_3d()) for _, fill in self._links]
-        return np.vstack([ends[0][:1], *(end[1:] for end in ends)])
 
     def update(self, q):
         """Move the arm to q (3,) rad."""
@@ -98,10 +77,8 @@ class ArmView:
 
     def place(self, T):
         """Move the parts to T (4, 4, 4), the transforms of frames 0 to 3 to the base, right or wrong."""
-        corners = T[:, :3, 3]
-        parts = []
-        for k, pair in enumerate(self._links):
-            parts.append((pair, corners[k : k + 2]))
+        self.points = corners = T[:, :3, 3]
+        parts = [(pair, corners[k : k + 2]) for k, pair in enumerate(self._links)]
         half = 0.08 * self.arm.reach
         for k, pair in enumerate(self._hubs):  # two halves of the shoulder's and of the elbow's axle
             middle, axis = corners[1 + k // 2], T[1, :3, 2]
@@ -114,16 +91,8 @@ class ArmView:
                 view.update(T[k])
 
     def trail(self, points):
-        """Draw a path of the tip. points: (n, 3) m; an empty list removes it."""
-        points = np.asarray(points, dtype=float).reshape(-1, 3)
-        self._trail.set_data_3d(*points.T)
-        self._trail.set_visible(len(points) > 0)
-
-    def target(self, p=None):
-        """Mark a point p (3,) m; None removes the mark."""
-        points = np.empty((0, 3)) if p is None else vectors3("p", p, unit="m").reshape(1, 3)
-        self._target.set_data_3d(*points.T)
-        self._target.set_visible(p is not None)
+        """Draw a path of the tip. points: (n, 3) m."""
+        self.ax.plot(*points.T, "-", color=COLOURS["green"], linewidth=1.6, zorder=3)
 
     def ellipsoids(self, names):
         """Draw the "velocity ellipsoid" and the "force ellipsoid" at the tip, each if it is named.
@@ -175,6 +144,7 @@ class SideView:
     front and back solutions of one target share a plane.
 
     Args: ax: 2-D axes; arm: Arm; colour: of the links; label: for the legend.
+    Attributes: points: what is drawn, shoulder, elbow, tip as (radius, height), (3, 2) m.
     """
 
     def __init__(self, ax, arm, q=(0.0, 0.0, 0.0), *, colour=COLOURS["blue"], label=None):
@@ -185,18 +155,14 @@ class SideView:
         self._tip = ax.plot([], [], "o", color=COLOURS["dark"], ms=6, zorder=5)[0]
         self.update(q)
 
-    @property
-    def points(self):
-        """What is drawn: shoulder, elbow, tip as (radius, height), (3, 2) m."""
-        return np.column_stack(self._line.get_data())
-
     def update(self, q, heading=None):
         """Move the arm to q (3,) rad."""
-        corners = arm_points(self.arm, q)
+        corners = frames(self.arm, q)[:, :3, 3]
         heading = q[0] if heading is None else heading
         radius = corners[:, :2] @ np.array([np.cos(heading), np.sin(heading)])
-        self._line.set_data(radius[1:], corners[1:, 2])
-        self._tip.set_data(radius[3:], corners[3:, 2])
+        self.points = np.column_stack([radius, corners[:, 2]])[1:]
+        self._line.set_data(*self.points.T)
+        self._tip.set_data(*self.points[2:].T)
 
 
 def _side_stage(ax, arm):

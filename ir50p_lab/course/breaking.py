@@ -8,7 +8,6 @@ Simulated, on the arm of the course; case C on the thesis' own arm, whose gains 
 
 import tomllib
 import warnings
-from collections import namedtuple
 from pathlib import Path
 
 import numpy as np
@@ -23,13 +22,8 @@ NAMES = ("delay", "friction", "kick", "noise", "sampling", "weak motor", "windup
 THESIS_TARGET = (np.pi / 2, np.pi / 2, -np.pi / 3)
 THESIS_KP, THESIS_KD = (25, 200, 200), (10, 40, 40)
 FIRM_KP, FIRM_KI = (1500, 1500, 1500), (300, 2000, 2000)
-
-
-Case = namedtuple("Case", "name clue because")  # see breaking.toml
-CASES = {
-    letter: Case(**case)
-    for letter, case in tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")).items()
-}
+# name, clue, because
+CASES = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
 class Late:
@@ -115,10 +109,10 @@ def name_it(letter, name=...):
     case = _case(letter)
     if name is ...:
         print(f"{letter}: put one of these in place of the dots: {', '.join(NAMES)}.")
-    elif name == case.name:
-        print(f"{letter}, {name}: yes, {case.because}")
+    elif name == case["name"]:
+        print(f"{letter}, {name}: yes, {case['because']}")
     elif name in NAMES:
-        print(f"{letter}, {name}: not this one. {case.clue}")
+        print(f"{letter}, {name}: not this one. {case['clue']}")
     else:
         print(f"{letter}: {name!r} is none of them: {', '.join(NAMES)}.")
 

@@ -1,4 +1,4 @@
-"""The controls of a live figure: sliders with a number box, menus, checkboxes."""
+"""The controls of a live figure: sliders with a number box, and menus."""
 
 import threading
 from dataclasses import dataclass
@@ -37,37 +37,21 @@ def label_of(name, spec):
     return spec.label if isinstance(spec, Slider) and spec.label else name
 
 
-def _plain(number):
-    """NumPy scalars as Python numbers."""
-    return number.item() if hasattr(number, "item") and getattr(number, "ndim", 0) == 0 else number
-
-
 def make_control(name, spec, label_width, moved):
     """The widget that holds the value, and the row that shows it; `moved()` is called after each change."""
     style, layout = {"description_width": label_width}, {"width": f"calc({label_width} + 230px)"}
-    if isinstance(spec, list | dict) and not spec:
-        raise InputError(f"{name}: an empty menu; give at least one choice")
-    if isinstance(spec, bool | list | dict):
-        if isinstance(spec, bool):
-            control = widgets.Checkbox(value=spec, description=name, indent=False)
-        else:
-            control = widgets.Dropdown(options=spec, description=name, style=style, layout=layout)
+    if isinstance(spec, list | dict):
+        control = widgets.Dropdown(options=spec, description=name, style=style, layout=layout)
         control.observe(lambda _: moved(), "value")
         return control, control
-    if isinstance(spec, tuple) and len(spec) == 4:
-        spec = Slider(*spec)
     if not isinstance(spec, Slider):
-        raise InputError(
-            f"{name}={spec!r}: give (min, max, step, start), slider(...), a list of choices, or True/False"
-        )
-    low, high, step, start = map(_plain, (spec.min, spec.max, spec.step, spec.start))
-    whole = all(isinstance(v, int) for v in (low, high, step, start))
+        spec = Slider(*spec)
+    common = {"min": spec.min, "max": spec.max, "step": spec.step, "value": spec.start}
+    whole = all(isinstance(v, int) for v in common.values())
     slider_kind = widgets.IntSlider if whole else widgets.FloatSlider
     box_kind = widgets.BoundedIntText if whole else widgets.BoundedFloatText
-    common = {"min": low, "max": high, "step": step, "value": start}
     control = slider_kind(**common, description=label_of(name, spec), style=style, layout=layout, readout=False)
     control.box = box_kind(**common, layout={"width": "80px"})
-    control.digits = None if whole else _digits(step, low)
     _tie(control, control.box, moved)
     return control, widgets.HBox([control, control.box, widgets.Label(spec.unit)])
 
@@ -90,36 +74,15 @@ def _tie(control, box, moved):
     box.observe(typed, "value")
 
 
-def _digits(*numbers):
-    """Decimals that are enough to write these numbers."""
-    return max((len(f"{abs(v):.10f}".rstrip("0").partition(".")[2]) for v in numbers), default=0)
-
-
 def value_of(control):
-    """The value of a control, without the rounding noise of the browser's steps (1.0599999 for 1.06).
-
-    A number typed into the box is kept as it is, however fine.
-    """
-    value, digits = control.value, getattr(control, "digits", None)
-    if digits is None:
-        return value
-    near = round(value, digits)
-    return near if abs(near - value) < 1e-9 * max(1.0, abs(value)) else value
+    """The value of a control, without the rounding noise of the browser's steps (1.0599999999999998 for 1.06)."""
+    return round(control.value, 9) if isinstance(control, widgets.FloatSlider) else control.value
 
 
 def on_scale(control, value):
     """The value nearest to `value` at which a slider can stand."""
     steps = round((value - control.min) / control.step)
     return type(control.value)(min(max(control.min + steps * control.step, control.min), control.max))
-
-
-def refuse_bad_value(name, value, controls):
-    """Raise InputError unless `name` is one of the controls and `value` is on its scale."""
-    if name not in controls:
-        raise InputError(f"no control {name!r}; this panel has {', '.join(controls)}")
-    control = controls[name]
-    if hasattr(control, "min") and not control.min <= value <= control.max:
-        raise InputError(f"{name} = {value} is off its slider ({control.min} to {control.max})")
 
 
 def close_all(widget):

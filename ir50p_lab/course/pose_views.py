@@ -101,16 +101,13 @@ class GimbalView:
         self._lost_label.set_position_3d(1.2 * lock.lost_axis * np.sign(lock.lost_axis[2] or 1))
         self._lost_label.set_text(("lost" if lock.sine < 1e-9 else "hard") if near else "")
         if sequence != self._sequence:
-            self._draw_price(sequence, angles)
+            self._sequence, middle_deg = sequence, np.arange(-180, 181)
+            others = np.tile(angles, (len(middle_deg), 1))
+            others[:, 1] = np.radians(middle_deg)
+            self._curve.set_data(middle_deg, np.minimum(gimbal_lock(sequence, others).gain, 1e4))
+            low, high = np.degrees(singular_angles(sequence))
+            self._title.set_text(f"{sequence} is singular at {low:.0f} and {high:.0f} deg")
         self._dot.set_data([np.degrees(angles[1])], [min(self.gain, 280.0)])
-
-    def _draw_price(self, sequence, angles):
-        self._sequence, middle_deg = sequence, np.arange(-180, 181)
-        others = np.tile(angles, (len(middle_deg), 1))
-        others[:, 1] = np.radians(middle_deg)
-        self._curve.set_data(middle_deg, np.minimum(gimbal_lock(sequence, others).gain, 1e4))
-        low, high = np.degrees(singular_angles(sequence))
-        self._title.set_text(f"{sequence} is singular at {low:.0f} and {high:.0f} deg")
 
 
 def two_bricks(angle):

@@ -51,7 +51,6 @@ def _stage(ax, arm, q, T_base_cam):
     ax.set_box_aspect((reach + 0.4, 1.2 * reach, top), zoom=1.25)
     ax.view_init(elev=24, azim=-58)
     view.update(q)
-    return view
 
 
 def seen_figure(seen, arm, q, T_base_cam, marker=None):
@@ -65,14 +64,14 @@ def seen_figure(seen, arm, q, T_base_cam, marker=None):
     picture.set(xlabel="x [px]", ylabel="y [px]")
     if marker is not None:
         picture.plot(*marker, "s", mfc="none", mec=COLOURS["amber"], ms=12, mew=2)
-    view = _stage(space, arm, q, T_base_cam)
+    _stage(space, arm, q, T_base_cam)
     FrameView(space, T_base_cam, "{c}", 0.15)
     if seen:
         x, y, r = seen.ball.x, seen.ball.y, seen.ball.radius
         picture.add_patch(Circle((x, y), r, fill=False, ec=COLOURS["sky"], lw=2))
         picture.plot(x, y, "+", color="white", ms=9, mew=1.5)
         picture.set_title(f"Ball at ({x:.1f}, {y:.1f}) px, radius {r:.1f} px")
-        view.target(seen.position)
+        space.plot(*seen.position[:, None], "X", color=COLOURS["purple"], ms=10, mec="white", zorder=25)
         space.plot(*np.column_stack([T_base_cam[:3, 3], seen.position]), color=COLOURS["grey"], lw=1, ls=":")
         p, s = 1e3 * seen.position, 1e3 * seen.stderr
         space.set_title(f"({p[0]:.0f}, {p[1]:.0f}, {p[2]:.0f}) mm, ± {s[0]:.1f}, {s[1]:.1f} mm")

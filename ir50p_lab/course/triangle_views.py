@@ -30,9 +30,12 @@ def seen_from_above(arm, p):
     return figure
 
 
-def _plane(height=5.0):
+def _plane(arm, height=5.0):
+    """The vertical plane of the arm, with column and ground."""
     figure, ax = subplots(7.2, height)
     ax.set(aspect="equal", xlabel="outwards from the column [m]", ylabel="height [m]")
+    ax.plot([0, 0], [0, arm.l[0]], color=COLOURS["grey"], linewidth=10, solid_capstyle="butt")
+    ax.axhline(0, color=COLOURS["dark"], linewidth=1)
     return figure, ax
 
 
@@ -42,15 +45,9 @@ def _corners(arm, q):
     return T[1:, [0, 2], 3]
 
 
-def _draw(ax, points, colour, alpha=1.0, label=None):
-    style = {"solid_capstyle": "round", "alpha": alpha, "color": COLOURS[colour]}
-    ax.plot(*points.T, linewidth=6, label=label, **style)
-    ax.plot(*points.T, "o", color="white", mec=COLOURS[colour], ms=8, mew=2, alpha=alpha)
-
-
-def _column(ax, arm):
-    ax.plot([0, 0], [0, arm.l[0]], color=COLOURS["grey"], linewidth=10, solid_capstyle="butt")
-    ax.axhline(0, color=COLOURS["dark"], linewidth=1)
+def _draw(ax, points, colour, label=None):
+    ax.plot(*points.T, linewidth=6, label=label, color=COLOURS[colour], solid_capstyle="round")
+    ax.plot(*points.T, "o", color="white", mec=COLOURS[colour], ms=8, mew=2)
 
 
 def _arc(ax, centre, start, end, radius, colour, text, out=1.35, *, arrow=True):
@@ -68,8 +65,7 @@ def _arc(ax, centre, start, end, radius, colour, text, out=1.35, *, arrow=True):
 
 def side_view(arm, p):
     """The triangle of shoulder, elbow and place, with its three lengths, the inner angle and q3 (Figure 1.8)."""
-    figure, ax = _plane()
-    _column(ax, arm)
+    figure, ax = _plane(arm)
     points = _corners(arm, inverse_kinematics(arm, p)["front/up"])
     shoulder, elbow, tip = points
     _draw(ax, points, "blue")
@@ -99,8 +95,7 @@ def triangles(arm, p, *, back=False):
     With r, its slope gamma, the angle beta between r and either upper arm (Figure 1.8), both q3, and for the upper
     elbow the perpendicular from the tip onto the upper arm, prolonged.
     """
-    figure, ax = _plane()
-    _column(ax, arm)
+    figure, ax = _plane(arm)
     answers, waist = inverse_kinematics(arm, p), "back" if back else "front"
     for branch, colour, name in ((f"{waist}/up", "blue", "one elbow"), (f"{waist}/down", "orange", "the other")):
         points = _corners(arm, answers[branch])
@@ -138,8 +133,7 @@ def circles(arm):
 
     Returns: figure; f(out, height) that places them and says how many crossings there are.
     """
-    figure, ax = _plane(6.4)
-    _column(ax, arm)
+    figure, ax = _plane(arm, 6.4)
     _, l2, l3 = arm.l
     shoulder = np.array([0.0, arm.l[0]])
     turn = np.linspace(0, 2 * np.pi, 181)

@@ -23,9 +23,9 @@ from typing import ClassVar
 import ipywidgets as widgets
 
 from ir50p_lab.course.canvas import Canvas
-from ir50p_lab.course.controls import Slider, close_all, label_of, make_control, refuse_bad_value, slider, value_of
+from ir50p_lab.course.controls import Slider, close_all, label_of, make_control, slider, value_of
 from ir50p_lab.course.painter import DRAWING, Painter
-from ir50p_lab.errors import InputError, UnstableLoopWarning
+from ir50p_lab.errors import UnstableLoopWarning
 
 __all__ = ["LivePanel", "Slider", "live", "slider"]
 
@@ -38,8 +38,8 @@ def live(figure, update, **controls):
         update: changes artists in place (`line.set_data(...)`); gets every control by its name. May print or
             return a text: it appears in the line under the figure. If the text takes time, return a function
             that returns it: it is called once the picture is on its way.
-        controls: name=(min, max, step, start) or name=slider(...), name=[choices] or {label: choice} for a
-            menu, name=True/False for a checkbox.
+        controls: at least one; name=(min, max, step, start) or name=slider(...), name=[choices] or {label: choice}
+            for a menu.
 
     Returns: LivePanel, shown when it is the last line of a cell.
     Raises InputError for a control that makes no sense, and whatever the first `update` raises.
@@ -58,8 +58,6 @@ class LivePanel(widgets.VBox):
     panels: ClassVar = weakref.WeakSet()
 
     def __init__(self, figure, update, controls):
-        if not controls:
-            raise InputError("live(figure, update, ...) needs at least one control, such as kp=(0, 10, 0.1, 1)")
         self.figure, self.error, self.drawn, self.updates = figure, None, None, 0
         self._update, self._painter = update, None
         self._stale = self._busy = False
@@ -89,12 +87,7 @@ class LivePanel(widgets.VBox):
         return {name: value_of(control) for name, control in self.controls.items()}
 
     def set(self, **values):
-        """Move controls from Python, redraw once, and raise what `update` raises.
-
-        Raises InputError for an unknown name or a value off the scale.
-        """
-        for name, value in values.items():
-            refuse_bad_value(name, value, self.controls)
+        """Move controls from Python, redraw once, and raise what `update` raises."""
         with DRAWING:
             busy, self._busy = self._busy, True  # one drawing for all of them
             try:

@@ -67,15 +67,15 @@ def test_friction_waits_and_noise_chatters():
 
 
 def test_names(capsys):
-    names = [case.name for case in CASES.values()]
+    names = [case["name"] for case in CASES.values()]
     assert len(set(names)) == len(names) == len(NAMES) - 1 and set(names) < set(NAMES)  # one name is of no case
     for letter, case in CASES.items():
-        name_it(letter, case.name)
+        name_it(letter, case["name"])
         assert "yes" in capsys.readouterr().out
-        for other in set(NAMES) - {case.name}:
+        for other in set(NAMES) - {case["name"]}:
             name_it(letter, other)
             said = capsys.readouterr().out
-            assert case.clue in said and case.name not in said  # a hint, not the answer
+            assert case["clue"] in said and case["name"] not in said  # a hint, not the answer
     name_it("A")
     assert "in place of the dots" in capsys.readouterr().out
     name_it("A", "bad luck")

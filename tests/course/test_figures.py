@@ -8,7 +8,7 @@ import pytest
 from mpl_toolkits.mplot3d import Axes3D
 from PIL import Image
 
-from ir50p_lab.course.arm3d import ArmView, FrameView, SideView, arm_points
+from ir50p_lab.course.arm3d import ArmView, FrameView, SideView
 from ir50p_lab.course.painter import Painter
 from ir50p_lab.course.style import COLOURS, SETPOINT, figure_style, new_figure
 from ir50p_lab.errors import InputError
@@ -77,19 +77,16 @@ def test_the_arm_is_drawn_where_forward_kinematics_says(arm, q):
     view = ArmView(new_figure(projection="3d").axes[0], arm, frames=True)
     view.update(q)
     l1, l2, l3 = arm.l
-    foot, shoulder, elbow, tip = view.points
+    ends = [np.column_stack(fill.get_data_3d()) for _, fill in view._links]
+    foot, shoulder, elbow, tip = ends[0][0], *(end[1] for end in ends)
     np.testing.assert_allclose(foot, 0, atol=1e-12)
     np.testing.assert_allclose(shoulder, [0, 0, l1], atol=1e-12)
     np.testing.assert_allclose(tip, forward_kinematics(arm, q), atol=1e-12)
     assert np.linalg.norm(elbow - shoulder) == pytest.approx(l2)
     assert np.linalg.norm(tip - elbow) == pytest.approx(l3)
-    np.testing.assert_allclose(arm_points(arm, q), view.points, atol=1e-12)
+    np.testing.assert_allclose([foot, shoulder, elbow, tip], view.points, atol=1e-12)
     shadow = np.column_stack(view._shadow.get_data_3d())
     np.testing.assert_allclose(shadow[-1], [*tip[:2], 0], atol=1e-12)
-
-
-def test_many_poses_have_many_corners():
-    assert arm_points(IR50P, np.zeros((5, 3))).shape == (5, 4, 3)
 
 
 def test_frames_of_the_view_are_those_of_the_arm():
@@ -133,18 +130,13 @@ def test_nearer_parts_cover_farther_ones():
         assert outline.get_zorder() < fill.get_zorder()
 
 
-def test_target_and_trail_appear_and_go():
+def test_a_trail_appears():
     figure = new_figure(3, 2, projection="3d")
     view = ArmView(figure.axes[0], IR50P)
     painter = Painter(figure)
     bare = painter.rgba().copy()
-    view.target((0.3, 0.2, 0.4))
-    view.trail([(0, 0.3, 0.1), (0.3, 0.3, 0.5)])
-    np.testing.assert_allclose(np.ravel(view._target.get_data_3d()), (0.3, 0.2, 0.4))
+    view.trail(np.array([(0, 0.3, 0.1), (0.3, 0.3, 0.5)]))
     assert (painter.rgba() != bare).sum() > 100
-    view.target()
-    view.trail([])
-    np.testing.assert_array_equal(painter.rgba(), bare)
 
 
 @pytest.mark.parametrize("arm", ARMS, ids=lambda arm: arm.name)
@@ -154,6 +146,7 @@ def test_the_side_view_is_the_arm_seen_from_the_side(arm, q):
     side.update(q)
     tip = forward_kinematics(arm, q)
     c2, s2 = np.cos(q[1]), np.sin(q[1])
+    np.testing.assert_array_equal(side.points, np.column_stack(side._line.get_data()))
     np.testing.assert_allclose(side.points[0], (0, arm.l[0]), atol=1e-12)
     np.testing.assert_allclose(side.points[1], (arm.l[1] * c2, arm.l[0] + arm.l[1] * s2), atol=1e-12)
     assert side.points[2, 1] == pytest.approx(tip[2])
