@@ -32,11 +32,6 @@ def slider(min, max, step, start, *, label=None, unit=""):
     return Slider(min, max, step, start, label, unit)
 
 
-def label_of(name, spec):
-    """The text beside a control."""
-    return spec.label if isinstance(spec, Slider) and spec.label else name
-
-
 def make_control(name, spec, label_width, moved):
     """The widget that holds the value, and the row that shows it; `moved()` is called after each change."""
     style, layout = {"description_width": label_width}, {"width": f"calc({label_width} + 230px)"}
@@ -50,7 +45,7 @@ def make_control(name, spec, label_width, moved):
     whole = all(isinstance(v, int) for v in common.values())
     slider_kind = widgets.IntSlider if whole else widgets.FloatSlider
     box_kind = widgets.BoundedIntText if whole else widgets.BoundedFloatText
-    control = slider_kind(**common, description=label_of(name, spec), style=style, layout=layout, readout=False)
+    control = slider_kind(**common, description=spec.label or name, style=style, layout=layout, readout=False)
     control.box = box_kind(**common, layout={"width": "80px"})
     _tie(control, control.box, moved)
     return control, widgets.HBox([control, control.box, widgets.Label(spec.unit)])

@@ -73,16 +73,13 @@ def results(*, choose=None, withdraw=None):
         result_files.change(choose, withdrawn=False)
     if withdraw is not None:
         result_files.change(withdraw, withdrawn=True)
-    rows = []
-    for one in result_files.every():
-        counts = one == result_files.newest(one.kind, one.bench_id, one.arm)
-        state = "withdrawn" if one.withdrawn else "counts" if counts else ""
-        origin = "simulated" if one.simulated else "real"
-        rows.append(
-            (one.name, state, one.made[:16].replace("T", " "), one.bench, one.bench_id, origin, one.unit, one.seed)
-        )
-    names = ("name", "state", "made", "bench", "bench_id", "arm is", "unit", "seed")
-    return pd.DataFrame(rows, columns=names).set_index("name")
+    found = result_files.every()
+    table = pd.DataFrame(found, columns=result_files.Result._fields, dtype=object).set_index("name")
+    counts = [one == result_files.newest(one.kind, one.bench_id, one.arm) for one in found]
+    table["state"] = np.where(table.withdrawn, "withdrawn", np.where(counts, "counts", ""))
+    table["made"] = table.made.str[:16].str.replace("T", " ")
+    table["arm is"] = np.where(table.simulated, "simulated", "real")
+    return table[["state", "made", "bench", "bench_id", "arm is", "unit", "seed"]]
 
 
 def arm_that_answers(*needs, **options):

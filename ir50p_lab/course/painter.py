@@ -1,11 +1,10 @@
-"""Fast redrawing of a matplotlib figure: what stands still is drawn once, what moves each time (blitting)."""
+"""Fast redrawing of a LabFigure: what stands still is drawn once, what moves each time (blitting)."""
 
 import threading
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.spines import Spine
 from matplotlib.text import Text
 
@@ -28,8 +27,6 @@ class Painter:
     def __init__(self, figure):
         self.figure = figure
         self.backgrounds = 0
-        if not isinstance(figure.canvas, FigureCanvasAgg):
-            FigureCanvasAgg(figure)
         figure.canvas.draw()  # runs the layout engine
         figure.set_layout_engine("none")
         self._background = self._empty = None

@@ -17,12 +17,13 @@ _JOINTS, _NAMES = ("purple", "sky", "amber"), ("waist", "shoulder", "elbow")
 class ColumnsView:
     """The arm in 3-D with three arrows at its tip: the tip velocity that each joint alone would give it.
 
-    Args: ax: 3-D axes; arm: Arm; scale: m of arrow per m/s of tip at 1 rad/s; aside: m that the third arrow is moved,
-    where it would lie on the second.
+    Half a metre of arrow stands for 1 m/s of the tip at 1 rad/s.
+
+    Args: ax: 3-D axes; arm: Arm; aside: m that the third arrow is moved, where it would lie on the second.
     """
 
-    def __init__(self, ax, arm, scale=0.5, aside=0.0):
-        self.arm, self._scale, self._aside = arm, scale, aside
+    def __init__(self, ax, arm, aside=0.0):
+        self.arm, self._aside = arm, aside
         self.view = ArmView(ax, arm)
         azimuth, elevation = np.radians([ax.azim, ax.elev])
         self._to_eye = [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
@@ -38,7 +39,7 @@ class ColumnsView:
         self.view.update(q)
         tip, Jv = self.view.points[3], jacobian(self.arm, q)[:3] if Jv is None else Jv
         for k, arrow in enumerate(self.arrows):
-            along = self._scale * Jv[:, k]
+            along = 0.5 * Jv[:, k]
             start = tip + np.array([self._aside * (k == 2), 0, 0])
             head = start + along
             side = np.cross(along, self._to_eye)

@@ -23,7 +23,7 @@ from typing import ClassVar
 import ipywidgets as widgets
 
 from ir50p_lab.course.canvas import Canvas
-from ir50p_lab.course.controls import Slider, close_all, label_of, make_control, slider, value_of
+from ir50p_lab.course.controls import Slider, close_all, make_control, slider, value_of
 from ir50p_lab.course.painter import DRAWING, Painter
 from ir50p_lab.errors import UnstableLoopWarning
 
@@ -34,7 +34,7 @@ def live(figure, update, **controls):
     """Show `figure` with sliders; each change calls `update(**values)` and redraws.
 
     Args:
-        figure: a matplotlib Figure, best from `style.new_figure`; not one of pyplot.
+        figure: LabFigure, from `style.new_figure`.
         update: changes artists in place (`line.set_data(...)`); gets every control by its name. May print or
             return a text: it appears in the line under the figure. If the text takes time, return a function
             that returns it: it is called once the picture is on its way.
@@ -62,7 +62,7 @@ class LivePanel(widgets.VBox):
         self._update, self._painter = update, None
         self._stale = self._busy = False
         self.controls, rows = {}, []
-        width = max(len(label_of(name, spec)) for name, spec in controls.items()) + 2
+        width = max(len(getattr(spec, "label", None) or name) for name, spec in controls.items()) + 2
         for name, spec in controls.items():
             self.controls[name], row = make_control(name, spec, f"{width}ch", self._changed)
             rows.append(row)

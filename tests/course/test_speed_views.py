@@ -12,7 +12,7 @@ Q = np.array([0.4, 0.9, -1.3])
 
 @pytest.mark.parametrize("arm", [IR50P, THESIS_RODS], ids=lambda arm: arm.name)
 def test_arrows_point_where_the_tip_goes(arm):
-    columns = ColumnsView(new_figure(projection="3d").axes[0], arm, scale=0.5)
+    columns = ColumnsView(new_figure(projection="3d").axes[0], arm)
     Jv = columns.update(Q)
     tip = forward_kinematics(arm, Q)
     for k, arrow in enumerate(columns.arrows):
