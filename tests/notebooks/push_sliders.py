@@ -9,8 +9,7 @@ def _push():
         if hasattr(control, "min"):
             middle = type(control.value)((control.min + control.max) / 2)
             return [control.min, middle, control.max]
-        options = getattr(control, "_options_full", None)
-        return [False, True] if options is None else [value for _, value in options]
+        return [value for _, value in control._options_full]
 
     report = []
     for panel in sorted(LivePanel.panels, key=lambda panel: panel.model_id):
