@@ -17,6 +17,8 @@ from ir50p_lab.signals import (
     noise_and_lag,
 )
 
+JOINT_LABELS = ("joint 1", "joint 2", "joint 3")
+
 
 def origin(recording):
     """Where a recording is from, in two words: 'simulated arm', 'the real arm' or 'origin unknown'."""
@@ -38,8 +40,7 @@ def let_go_figure(arm, recording):
     side.legend(loc="upper left", fontsize=8, frameon=False)
     fallen = forward_kinematics(arm, recording.q[0])[2] - forward_kinematics(arm, recording.q[-1])[2]
     side.set_title(f"Nobody drives: the tip falls {100 * fallen:.0f} cm" if fallen > 0.02 else "It stays")
-    for joint in range(3):
-        angles.plot(recording.t, recording.q[:, joint], color=JOINTS[joint], label=f"joint {joint + 1}")
+    angles.plot(recording.t, recording.q, label=JOINT_LABELS)
     angles.set(xlabel="t [s]", ylabel="angle [rad]", title="What the potentiometers say")
     angles.legend(fontsize=8)
     return figure

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.bench import Recording, SimulatedBench
-from ir50p_lab.course.bench_views import origin
+from ir50p_lab.course.bench_views import JOINT_LABELS, origin
 from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.identification import RLS, fit, process, regressor, validate
 from ir50p_lab.signals import LowPass
@@ -70,22 +70,26 @@ class OnlineSignals:
         return regressor(here[:3], qd, qdd) * use[:, None], here[3:] * use
 
 
+def _fits_by_joint(ax, fits, names, **line):
+    """Fits (n, 3) in %, from top to bottom, one name for each."""
+    y = np.arange(len(names))[::-1]
+    ax.set_prop_cycle(color=JOINTS, marker=["o", "s", "^"])
+    ax.plot(fits, y, ms=7, label=JOINT_LABELS, **line)
+    ax.set_yticks(y, names)
+    ax.set_xlabel("fit on raw PWM of the validation run [%]")
+    ax.legend(fontsize=8, loc="lower left")
+
+
 def ablation_figure(names, fits, best=None):
     """Fits of the three joints, line by line of a table. Returns: LabFigure.
 
-    Args: names: n texts; fits: (n, 3) %; best: (3,) %, what no theta passes, drawn dashed.
+    Args: names: n texts; fits: (n, 3) %; best: (3,) %, what no theta passes, drawn dotted.
     """
-    figure = new_figure(9.6, 1.3 + 0.36 * len(names))
-    ax, y = figure.axes[0], np.arange(len(names))[::-1]
-    for joint, marker in enumerate("os^"):
-        values = np.asarray(fits)[:, joint]
-        ax.plot(values, y, marker, ms=7, ls="-", lw=0.8, color=JOINTS[joint], label=f"joint {joint + 1}")
-        if best is not None:
-            ax.axvline(best[joint], color=JOINTS[joint], ls=":", lw=1.2)
-    ax.set_yticks(y, names)
-    ax.set(xlabel="fit on raw PWM of the validation run [%]", xlim=(min(50, np.min(fits) - 3), 101))
-    ax.set_title("Most is won by better signals; dotted: true parameters")
-    ax.legend(fontsize=8, loc="lower left")
+    figure, ax = subplots(9.6, 1.3 + 0.36 * len(names))
+    _fits_by_joint(ax, fits, names, lw=0.8)
+    for value, colour in zip(() if best is None else best, JOINTS, strict=False):
+        ax.axvline(value, color=colour, ls=":", lw=1.2)
+    ax.set(xlim=(min(50, np.min(fits) - 3), 101), title="Most is won by better signals; dotted: true parameters")
     return figure
 
 
@@ -95,22 +99,18 @@ def estimators_figure(found, fits, truth=None):
     Args: found: {name: Estimate}; fits: (n, 3) % on the validation run; truth: the parameter's value, drawn dashed.
     """
     figure, left, right = subplots(9.6, 1.3 + 0.32 * len(found), cols=2, width_ratios=(1.2, 1))
-    y = np.arange(len(found))[::-1]
-    for k, marker in enumerate("os^"):
-        left.plot(np.maximum(fits[:, k], 50), y, marker, ms=7, color=JOINTS[k], label=f"joint {k + 1}")
+    _fits_by_joint(left, np.maximum(fits, 50), list(found), ls="")
+    left.set(xlim=(49, 101), title="What each cure does for the fit")
     values = [one.theta[0, 0] for one in found.values()]
     errors = [3 * one.stderr[0, 0] for one in found.values()]
-    right.errorbar(values, y, xerr=errors, fmt="o", color=JOINTS[0], capsize=3)
+    right.errorbar(values, left.get_yticks(), xerr=errors, fmt="o", color=JOINTS[0], capsize=3)
     if truth is not None:
         right.axvline(truth, **SETPOINT)
-    left.set_yticks(y, list(found))
-    right.set_yticks(y, [""] * len(found))
+    right.set_yticks(left.get_yticks(), [""] * len(found))
     right.set_ylim(left.get_ylim())
-    left.set(xlim=(49, 101), xlabel="fit on raw PWM of the validation run [%]", title="What each cure does for the fit")
     right.set(
         xlabel="theta1 of joint 1, ± 3 standard errors [PWM, SI]", title="No error bar knows a bias; dashed: true"
     )
-    left.legend(fontsize=8, loc="lower left")
     return figure
 
 
@@ -142,19 +142,18 @@ class CutoffView:
         late = {"causal": 0.0, "zero-phase": delay}
         self.fits = {kind: np.array([self._fit(train, valid, kind, f, late[kind]) for f in self._f]) for kind in late}
         self.figure, left, right = subplots(9.6, 3.8, cols=2)
-        self._room = 5.0  # rad/s^2
         self._lines = {
             "causal": left.plot([], [], color=COLOURS["orange"], lw=0.8)[0],
             "zero-phase": left.plot([], [], color=COLOURS["blue"], lw=1.8)[0],
         }
-        left.set(xlim=span, ylim=(-self._room, self._room), xlabel=f"t [s]  -  {origin(valid)}")
+        left.set(xlim=span, ylim=(-5, 5), xlabel=f"t [s]  -  {origin(valid)}")
         left.set(ylabel="acceleration of joint 1 [rad/s²]", title="Orange: causal; blue: zero-phase")
         # a legend would be drawn anew at every step of the slider
-        for joint in range(3):
-            for kind, style in (("causal", "--"), ("zero-phase", "-")):
-                right.semilogx(self._f, self.fits[kind][:, joint], style, color=JOINTS[joint])
-            label = {"color": JOINTS[joint], "fontsize": 9, "transform": right.transAxes}
-            right.text(0.03, 0.18 - 0.07 * joint, f"joint {joint + 1}", **label)
+        for kind, style in (("causal", "--"), ("zero-phase", "-")):
+            right.set_prop_cycle(color=JOINTS)
+            right.semilogx(self._f, self.fits[kind], style)
+        for k, (label, colour) in enumerate(zip(JOINT_LABELS, JOINTS, strict=True)):
+            right.text(0.03, 0.18 - 0.07 * k, label, color=colour, fontsize=9, transform=right.transAxes)
         self._mark = right.axvline(self._f[0], color=COLOURS["dark"], lw=1)
         right.set(xlabel="cut-off [Hz]", ylabel="fit [%]", ylim=(0, 100), title="Dashed: causal, line: zero-phase")
         right.set_xticks([0.5, 1, 2, 5, 10, 20], ["0.5", "1", "2", "5", "10", "20"])
@@ -171,7 +170,7 @@ class CutoffView:
         for kind, line in self._lines.items():
             motion = process(self._valid, derivatives=kind, cutoff_hz=cutoff, trim=1.0)
             shown = (motion.t >= self._span[0]) & (motion.t <= self._span[1])
-            line.set_data(motion.t[shown], motion.qdd[shown, 0].clip(-1.1 * self._room, 1.1 * self._room))
+            line.set_data(motion.t[shown], motion.qdd[shown, 0].clip(-5.5, 5.5))
             values = [np.interp(np.log(cutoff), np.log(self._f), column) for column in self.fits[kind].T]
             said.append(f"{kind}: fit " + " / ".join(f"{x:.0f}" for x in values) + " %")
         self._mark.set_xdata([cutoff, cutoff])
@@ -185,9 +184,7 @@ def delay_figure(found, true=None):
     """
     figure = new_figure(9.6, 3.2, cols=len(found))
     for ax, (name, estimate) in zip(figure.axes, found.items(), strict=True):
-        for joint in range(3):
-            share = estimate.rms[:, joint] / estimate.rms[:, joint].min()
-            ax.plot(1000 * estimate.delays, share, color=JOINTS[joint], label=f"joint {joint + 1}")
+        ax.plot(1000 * estimate.delays, estimate.rms / estimate.rms.min(axis=0), label=JOINT_LABELS)
         if true is not None:
             ax.axvline(1000 * true, **SETPOINT)
         ax.set(xlabel="delay assumed [ms]", ylim=(0.99, 1.2))

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.course.bench_views import JOINT_LABELS
 from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.identification import load_excitations, optimise_excitation, regressor
 from ir50p_lab.identification.parameters import ACTS_ON, NAMES, ONLY_THESIS
@@ -137,8 +138,7 @@ def excitation_figure(excitation):
     for ax, (motion, condition), name in zip(figure.axes, found, ("Random", "Optimised"), strict=True):
         t = np.linspace(0, motion.period, 400)
         rows = motion.sample(motion.start + t)
-        for joint in range(3):
-            ax.plot(t, rows[:, 0, joint], color=JOINTS[joint], label=f"joint {joint + 1}")
+        ax.plot(t, rows[:, 0], label=JOINT_LABELS)
         numbers = ", ".join(f"{x:.3g}" for x in condition)
         ax.set(xlabel="time [s]", title=f"{name}: condition numbers {numbers}")
     figure.axes[0].set_ylabel("angle [rad]")
@@ -177,8 +177,7 @@ class FrequencyView:
         self.figure, left, right = subplots(9.6, 3.8, cols=2)
         for level in (-255, 255):
             left.axhline(level, **SETPOINT)
-        self._x = (np.arange(300) + 0.5) / 300
-        self._u = [left.plot([], [], color=colour, lw=1.3)[0] for colour in JOINTS]
+        self._u = left.plot((np.arange(300) + 0.5) / 300, np.zeros((300, 3)), lw=1.3)
         left.set(xlim=(0, 1), ylim=(-450, 450), xlabel="part of the period [1]", ylabel="command needed [PWM]")
         left.set_title("Dashed: all the motors have")
         f = np.geomspace(0.02, 0.3, 40)
@@ -196,8 +195,8 @@ class FrequencyView:
     def update(self, frequency):
         """Draw for this frequency, Hz. Returns what to mind, in words."""
         percent, u = relative_errors(self._arm, self._motion, frequency)
-        for joint, line in enumerate(self._u):
-            line.set_data(self._x, u[:, joint])
+        for line, values in zip(self._u, u.T, strict=True):
+            line.set_ydata(values)
         self._mark.set_xdata([frequency, frequency])
         inertia = ", ".join(f"{x:.1f}" for x in percent[:3])
         most = np.abs(u).max()
