@@ -62,7 +62,6 @@ class BenchPanel(widgets.VBox):
         self.scope = Scope(window=_WINDOW, badge="simulated" if bench.simulated else bench.kind)
         self.statistics = widgets.HTML(layout=widgets.Layout(min_height="1.4em"))
         self.status = widgets.HTML(layout=widgets.Layout(min_height="1.4em"))
-        self._make_buttons()
         super().__init__(
             [self._heading(), self._sliders(), self.scope, self.statistics, self.status],
             layout=widgets.Layout(width="100%", max_width="1060px"),
@@ -73,14 +72,6 @@ class BenchPanel(widgets.VBox):
 
     # ---- what it looks like
 
-    def _make_buttons(self):
-        start, stop = partial(self.start, wait=False), partial(self.stop, wait=False)
-        self._start_button = self._button("Start", "play", start, button_style="success")
-        self._stop_button = self._button("Stop", "stop", stop, tooltip="To the rest pose, then let go")
-        look = {"button_style": "danger", "tooltip": "Drive off at once; the arm sinks"}
-        self._cut_button = self._button("CUT THE DRIVE", "bolt", self.cut, width="190px", **look)
-        self._cut_button.style.font_weight = "bold"
-
     def _button(self, words, icon, order, *, width="110px", **look):
         layout = widgets.Layout(width=width, height="44px")
         button = widgets.Button(description=words, icon=icon, layout=layout, **look)
@@ -88,6 +79,12 @@ class BenchPanel(widgets.VBox):
         return button
 
     def _heading(self):
+        start, stop = partial(self.start, wait=False), partial(self.stop, wait=False)
+        self._start_button = self._button("Start", "play", start, button_style="success")
+        self._stop_button = self._button("Stop", "stop", stop, tooltip="To the rest pose, then let go")
+        look = {"button_style": "danger", "tooltip": "Drive off at once; the arm sinks"}
+        self._cut_button = self._button("CUT THE DRIVE", "bolt", self.cut, width="190px", **look)
+        self._cut_button.style.font_weight = "bold"
         kind = "simulated arm, no motor moves" if self.bench.simulated else "motors will move"
         title = widgets.HTML(f"<b>{html.escape(self.bench.name)}</b><br>{kind}")
         row = [self._start_button, self._stop_button, self._cut_button, title]
