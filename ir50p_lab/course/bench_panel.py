@@ -26,20 +26,19 @@ from ir50p_lab.errors import InputError, LabError
 _UNITS = {"kp": "PWM/rad", "ki": "PWM/(rad s)", "kd": "PWM s/rad"}
 _LEAST = {"kp": 400, "ki": 100, "kd": 100}  # a slider goes at least that far
 _RED = "#c0392b"
-_FRAME = 1 / 25  # s
+_FRAME, _WINDOW = 1 / 25, 10.0  # s, of the scope
 
 
-def live_panel(bench, controller, reference=None, *, window=10.0):
+def live_panel(bench, controller, reference=None):
     """A panel to start, stop and tune `controller` on `bench`.
 
     Args:
         bench: an open bench, whichever. controller: PID, or any controller; one with kp, ki, kd gets sliders for them.
         reference: target(t), until a set point slider is moved; None: hold the pose where the arm stands.
-        window: s that the scope shows.
 
     Returns: BenchPanel, shown when it is the last line of a cell. A cell that is run again takes over a running loop.
     """
-    return BenchPanel(bench, controller, reference, window=window)
+    return BenchPanel(bench, controller, reference)
 
 
 class BenchPanel(widgets.VBox):
@@ -53,17 +52,16 @@ class BenchPanel(widgets.VBox):
 
     panels: ClassVar = weakref.WeakSet()
 
-    def __init__(self, bench, controller, reference, *, window):
+    def __init__(self, bench, controller, reference):
         self.bench, self.error, self.run = bench, None, None
-        self._controller, self._reference, self._window = controller, reference, float(window)
+        self._controller, self._reference = controller, reference
         self._quiet, self._busy, self._cut_wanted = threading.local(), threading.Lock(), False
         self._closed = threading.Event()
         self._shown = self._phase = None  # run and cycle of the last frame of a run that has ended; the phase written
         self.controls = {}
-        self.scope = Scope(window=window, badge="simulated" if bench.simulated else bench.kind)
+        self.scope = Scope(window=_WINDOW, badge="simulated" if bench.simulated else bench.kind)
         self.statistics = widgets.HTML(layout=widgets.Layout(min_height="1.4em"))
         self.status = widgets.HTML(layout=widgets.Layout(min_height="1.4em"))
-        self._make_buttons()
         super().__init__(
             [self._heading(), self._sliders(), self.scope, self.statistics, self.status],
             layout=widgets.Layout(width="100%", max_width="1060px"),
@@ -74,14 +72,6 @@ class BenchPanel(widgets.VBox):
 
     # ---- what it looks like
 
-    def _make_buttons(self):
-        start, stop = partial(self.start, wait=False), partial(self.stop, wait=False)
-        self._start_button = self._button("Start", "play", start, button_style="success")
-        self._stop_button = self._button("Stop", "stop", stop, tooltip="To the rest pose, then let go")
-        look = {"button_style": "danger", "tooltip": "Drive off at once; the arm sinks"}
-        self._cut_button = self._button("CUT THE DRIVE", "bolt", self.cut, width="190px", **look)
-        self._cut_button.style.font_weight = "bold"
-
     def _button(self, words, icon, order, *, width="110px", **look):
         layout = widgets.Layout(width=width, height="44px")
         button = widgets.Button(description=words, icon=icon, layout=layout, **look)
@@ -89,30 +79,35 @@ class BenchPanel(widgets.VBox):
         return button
 
     def _heading(self):
+        start, stop = partial(self.start, wait=False), partial(self.stop, wait=False)
+        self._start_button = self._button("Start", "play", start, button_style="success")
+        self._stop_button = self._button("Stop", "stop", stop, tooltip="To the rest pose, then let go")
+        look = {"button_style": "danger", "tooltip": "Drive off at once; the arm sinks"}
+        self._cut_button = self._button("CUT THE DRIVE", "bolt", self.cut, width="190px", **look)
+        self._cut_button.style.font_weight = "bold"
         kind = "simulated arm, no motor moves" if self.bench.simulated else "motors will move"
-        self.title = widgets.HTML(f"<b>{html.escape(self.bench.name)}</b><br>{kind}")
-        row = [self._start_button, self._stop_button, self._cut_button, self.title]
+        title = widgets.HTML(f"<b>{html.escape(self.bench.name)}</b><br>{kind}")
+        row = [self._start_button, self._stop_button, self._cut_button, title]
         return widgets.HBox(row, layout=widgets.Layout(align_items="center", grid_gap="8px", margin="4px 0"))
 
     def _sliders(self):
         """Set points left, gains right: a row per joint."""
-        arm = self.bench.arm
-        columns = {"Set point [deg]": [self._set_point_slider(arm, i) for i in range(3)]}
-        for name, values in gains_of(self._controller).items():
-            rows = [self._gain_slider(name, i, float(values[i])) for i in range(3)]
-            columns[f"{name.capitalize()} [{_UNITS[name]}]"] = rows
-        blocks = [widgets.VBox([widgets.HTML(f"<b>{title}</b>"), *rows]) for title, rows in columns.items()]
-        return widgets.HBox(blocks, layout=widgets.Layout(grid_gap="14px", flex_flow="row wrap"))
-
-    def _set_point_slider(self, arm, i):
-        low, high = math.ceil(math.degrees(arm.q_min[i])), math.floor(math.degrees(arm.q_max[i]))
         # whole degrees: the browser sends back a fraction that it was told with rounding noise, and that late echo
         # would undo a set() which follows start() at once
-        return self._slider(f"q{i + 1}", (low, high, 1, min(max(0, low), high)), self._set_point_moved, 150)
-
-    def _gain_slider(self, name, i, value):
-        high = max(_LEAST[name], 50 * math.ceil(2 * value / 50))
-        return self._slider(f"{name}{i + 1}", (0.0, float(high), 0.5, value), self._gain_moved, 110)
+        arm, points = self.bench.arm, []
+        for i in range(3):
+            low, high = math.ceil(math.degrees(arm.q_min[i])), math.floor(math.degrees(arm.q_max[i]))
+            numbers = low, high, 1, min(max(0, low), high)
+            points.append(self._slider(f"q{i + 1}", numbers, self._set_point_moved, 150))
+        columns = {"Set point [deg]": points}
+        for name, values in gains_of(self._controller).items():
+            highs = [max(_LEAST[name], 50 * math.ceil(2 * value / 50)) for value in values]
+            columns[f"{name.capitalize()} [{_UNITS[name]}]"] = [
+                self._slider(f"{name}{i + 1}", (0.0, float(highs[i]), 0.5, float(values[i])), self._gain_moved, 110)
+                for i in range(3)
+            ]
+        blocks = [widgets.VBox([widgets.HTML(f"<b>{title}</b>"), *rows]) for title, rows in columns.items()]
+        return widgets.HBox(blocks, layout=widgets.Layout(grid_gap="14px", flex_flow="row wrap"))
 
     def _slider(self, name, numbers, moved, width):
         label = name if name[0] == "q" else name.capitalize()
@@ -239,7 +234,7 @@ class BenchPanel(widgets.VBox):
         alive = run is not None and run.alive
         phase = run.phase if run is not None else "not started"
         if run is not None and (alive or self._shown != (run, run.statistics().cycles)):
-            samples = run.recent(self._window)
+            samples = run.recent(_WINDOW)
             if samples.t.size:
                 cuts = samples.t[1:][np.diff(samples.trips) > 0]
                 self.scope.show(samples.t, samples.q, samples.reference, samples.u, cuts)

@@ -6,7 +6,6 @@ import numpy as np
 
 from ir50p_lab.bench import UNIT, SimulatedArm
 from ir50p_lab.course.arm3d import ArmView, SideView
-from ir50p_lab.course.simulation_views import Row, Traces
 from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.signals import (
@@ -17,6 +16,8 @@ from ir50p_lab.signals import (
     low_pass_response,
     noise_and_lag,
 )
+
+JOINT_LABELS = ("joint 1", "joint 2", "joint 3")
 
 
 def origin(recording):
@@ -39,25 +40,20 @@ def let_go_figure(arm, recording):
     side.legend(loc="upper left", fontsize=8, frameon=False)
     fallen = forward_kinematics(arm, recording.q[0])[2] - forward_kinematics(arm, recording.q[-1])[2]
     side.set_title(f"Nobody drives: the tip falls {100 * fallen:.0f} cm" if fallen > 0.02 else "It stays")
-    for joint in range(3):
-        angles.plot(recording.t, recording.q[:, joint], color=JOINTS[joint], label=f"joint {joint + 1}")
+    angles.plot(recording.t, recording.q, label=JOINT_LABELS)
     angles.set(xlabel="t [s]", ylabel="angle [rad]", title="What the potentiometers say")
     angles.legend(fontsize=8)
     return figure
 
 
-def breakaway_figure(recording, joint, moved_at):
-    """A ramp of PWM counts and the angle that answers, with the moment it moves. Returns: LabFigure.
-
-    Args: recording: Recording; joint: 0, 1 or 2; moved_at: s.
-    """
+def breakaway_figure(recording):
+    """A ramp of PWM counts at joint 1 and the angle that answers, up to the moment it moves. Returns: LabFigure."""
     figure, above, below = subplots(9.0, 3.6, rows=2, sharex=True, note=origin(recording))
-    above.plot(recording.t, recording.u[:, joint], color=COLOURS["orange"], drawstyle="steps-post")
-    below.plot(recording.t, recording.q[:, joint], ".", ms=3, color=COLOURS["grey"])
+    above.plot(recording.t, recording.u[:, 0], color=COLOURS["orange"], drawstyle="steps-post")
+    below.plot(recording.t, recording.q[:, 0], ".", ms=3, color=COLOURS["grey"])
     for ax in figure.axes:
-        ax.axvline(moved_at, **SETPOINT)
-    pwm = recording.u[np.searchsorted(recording.t, moved_at - 1e-9), joint]
-    above.set(ylabel="command [PWM]", title=f"Joint {joint + 1} stays put until about {pwm:.0f} counts")
+        ax.axvline(recording.t[-1], **SETPOINT)
+    above.set(ylabel="command [PWM]", title=f"Joint 1 stays put until about {recording.u[-1, 0]:.0f} counts")
     below.set(ylabel="angle [rad]", xlabel="t [s]")
     return figure
 
@@ -71,12 +67,11 @@ def residual_figure(calibration):
     for joint, (ax, residual) in enumerate(zip(figure.axes, calibration.residuals, strict=True)):
         q = np.array(calibration.points[joint][0])
         counts = residual * calibration.slope[joint]
-        bow = np.polynomial.Polynomial.fit(q, counts, 2)
-        x = np.linspace(q.min(), q.max(), 100)
+        x, bow = np.polynomial.Polynomial.fit(q, counts, 2).linspace()
         ax.axhline(0, **SETPOINT)
-        ax.plot(x, bow(x), color=COLOURS["orange"], linewidth=1.5)
+        ax.plot(x, bow, color=COLOURS["orange"], linewidth=1.5)
         ax.plot(q, counts, "o", ms=4, color=COLOURS["grey"])
-        ax.set(xlabel="angle [rad]", ylim=(-2.2, 2.2), title=f"joint {joint + 1}: bowed by {np.ptp(bow(x)):.1f} counts")
+        ax.set(xlabel="angle [rad]", ylim=(-2.2, 2.2), title=f"joint {joint + 1}: bowed by {np.ptp(bow):.1f} counts")
     figure.axes[0].set_ylabel("angle read - line [counts]")
     return figure
 
@@ -96,15 +91,11 @@ def shannon_figure(rate_hz, cutoffs_hz, f_hz):
     gain.set(xlim=(0.2, 400), ylim=(0, 1.05), xlabel="frequency [Hz]", ylabel="gain [1]")
     gain.set_title(f"Samples end at {rate_hz / 2:g} Hz")
     gain.legend(fontsize=8, loc="lower left")
-    seen = float(alias(f_hz, rate_hz))
     t, k = np.linspace(0, 0.2, 4001), np.arange(0, 0.2 + 1e-9, 1 / rate_hz)
     sine.plot(t, np.sin(2 * np.pi * f_hz * t), color=COLOURS["light"], linewidth=0.8)
     sine.plot(k, np.sin(2 * np.pi * f_hz * k), "o-", ms=4, color=COLOURS["blue"], linewidth=1)
-    sine.set(
-        xlabel="t [s]",
-        ylabel="signal [counts]",
-        title=f"{f_hz:g} Hz, sampled at {rate_hz:g} Hz: looks like {seen:g} Hz",
-    )
+    sine.set(xlabel="t [s]", ylabel="signal [counts]")
+    sine.set_title(f"{f_hz:g} Hz, sampled at {rate_hz:g} Hz: looks like {alias(f_hz, rate_hz):g} Hz")
     return figure
 
 
@@ -113,18 +104,18 @@ class FilterView:
 
     Args:
         recording: Recording, sampled evenly; rest, moving: (s, s) where the joint stands, and where it goes and comes.
-        changes: rad/s^2, of the Kalman filters (see `kalman_velocity`).
 
-    Attributes: figure, for `live`; curve: list of NoiseAndLag, low passes from 0.8 to 30 Hz; kalman: one a change.
+    Attributes: figure, for `live`; curve: list of NoiseAndLag, low passes from 0.8 to 30 Hz; kalman: three filters, for
+    joints that are accelerated by 3, 10 and 30 rad/s^2.
     """
 
-    def __init__(self, recording, *, rest, moving, changes=(3, 10, 30)):
+    def __init__(self, recording, *, rest, moving):
         t, self._q, self._rate = recording.t, recording.q[:, 0], round(1 / recording.period, 6)
         self._where = {"rest": (t > rest[0]) & (t < rest[1]), "motion": (t > moving[0]) & (t < moving[1])}
         # found once: a slider asks for the lag behind it at every step
         self._truth = difference_velocity(self._q, self._rate, cutoff_hz=3.0, order=2, kind="zero-phase")
         noise = max(float(self._q[self._where["rest"]].std()), 1e-4)
-        kalman = (kalman_velocity(self._q, self._rate, noise=noise, change=change) for change in changes)
+        kalman = (kalman_velocity(self._q, self._rate, noise=noise, change=change) for change in (3, 10, 30))
         self.kalman = [noise_and_lag(qd, self._truth, self._rate, **self._where) for qd in kalman]
         self.curve = [self._low_pass(cutoff) for cutoff in np.geomspace(0.8, 30, 12)]
         self.figure, angle, plane = subplots(9.6, 3.8, cols=2, width_ratios=(1.3, 1))
@@ -136,13 +127,14 @@ class FilterView:
         room = 0.08 * np.ptp(q)
         angle.set(xlim=span, ylim=(q.min() - room, q.max() + room), ylabel="angle of joint 1 [rad]")
         angle.set(xlabel=f"t [s]  -  {origin(recording)}", title="Dots: measured, line: filtered")
-        for found, style, label in ((self.curve, "-", "low pass"), (self.kalman, "s", "Kalman")):
-            colour = COLOURS["blue" if label == "low pass" else "orange"]
+        for found, style, colour in ((self.curve, "-", "blue"), (self.kalman, "s", "orange")):
             x, y = [1e3 * one.lag for one in found], [one.noise for one in found]
-            plane.loglog(x, y, style, color=colour)
-            # a legend would be drawn anew at every step of the slider
-            side, shift = ("left", 1.12) if label == "low pass" else ("right", 0.88)
-            plane.text(shift * x[-1], y[-1], label, color=colour, va="center", ha=side)
+            plane.loglog(x, y, style, color=COLOURS[colour])
+        # texts, for a legend would be drawn anew at every step of the slider
+        plane.text(
+            1e3 * 1.12 * self.curve[-1].lag, self.curve[-1].noise, "low pass", color=COLOURS["blue"], va="center"
+        )
+        plane.text(0.88 * x[-1], y[-1], "Kalman", color=COLOURS["orange"], va="center", ha="right")
         (self._ring,) = plane.plot([], [], "o", ms=10, mfc="none", mec=COLOURS["blue"], mew=2.5)
         plane.set(xlabel="lag [ms]", ylabel="noise of the velocity [rad/s]", title="Less noise costs lag")
         plane.set_xticks([5, 10, 20, 50, 100, 200], ["5", "10", "20", "50", "100", "200"])
@@ -160,12 +152,6 @@ class FilterView:
         self._ring.set_data([1e3 * found.lag], [found.noise])
         late, lag = 1e3 * low_pass_lag(cutoff, self._rate), 1e3 * found.lag
         return f"angle: {late:.0f} ms late; velocity: {lag:.0f} ms late, {found.noise:.3f} rad/s rms at rest"
-
-
-def one_joint(seconds, *, target, title):
-    """Angle and command of joint 1 of a simulated run: Traces; `update(t, q, u)` draws (n,) s, rad, PWM counts."""
-    angle = Row("angle of joint 1 [rad]", tuple(sorted((-0.05 * target, 1.25 * target))), levels=(target,))
-    return Traces("time [s]", (0, seconds), angle, Row("command [PWM]", (-275, 275)), title=title)
 
 
 def stop_figure(goal, as_printed, let_go, held):
@@ -215,29 +201,28 @@ def path_figure(arm, path, done, before):
     return figure
 
 
-def replay_figure(recording, replayed, joint=0):
-    """What was sent then, and what other gains would send for the same angles. Returns: LabFigure.
+def replay_figure(recording, replayed):
+    """What was sent to joint 1 then, and what other gains would send for the same angles. Returns: LabFigure.
 
-    Args: recording: Recording, with u; replayed: Recording of a ReplayBench; joint: 0, 1 or 2.
+    Args: recording: Recording, with u; replayed: Recording of a ReplayBench.
     """
     figure, above, below = subplots(9.0, 3.8, rows=2, sharex=True, note=f"recorded: {origin(recording)}")
-    above.plot(recording.t, recording.q[:, joint], color=COLOURS["dark"])
-    above.set(ylabel="angle [rad]", title=f"Joint {joint + 1}: the angles are past, the commands are new")
+    above.plot(recording.t, recording.q[:, 0], color=COLOURS["dark"])
+    above.set(ylabel="angle [rad]", title="Joint 1: the angles are past, the commands are new")
     for run, colour, label in ((replayed, "orange", "would be sent now"), (recording, "blue", "sent then")):
-        below.plot(run.t, run.u[:, joint], color=COLOURS[colour], drawstyle="steps-post", lw=1, label=label)
+        below.plot(run.t, run.u[:, 0], color=COLOURS[colour], drawstyle="steps-post", lw=1, label=label)
     below.set(xlabel="t [s]", ylabel="command [PWM counts]", ylim=(-275, 275))
     below.legend(fontsize=8)
     return figure
 
 
-def calibrate_by_hand(arm, *, points=61, seed=0):
+def calibrate_by_hand(arm, points=61):
     """The calibration experiment on a simulated arm: a hand moves it through its travel, a protractor gives the angle.
 
     The protractor is read to half a degree, the counts are means of 16; the table is taken away, so that the whole
-    travel is free. Args: arm: Arm; points: how many; seed: of the unit.
-    Returns: angles read (points, 3) rad, counts (points, 3), true slopes of this unit (3,) counts/rad.
+    travel is free. Returns: angles read (points, 3) rad, counts (points, 3), true slopes of this unit (3,) counts/rad.
     """
-    held = SimulatedArm(arm, replace(UNIT, table=-9.0), seed=seed)
+    held = SimulatedArm(arm, replace(UNIT, table=-9.0), seed=0)
     low, high = np.clip([arm.q_min, arm.q_max], -np.pi, np.pi)
     angles, counts = [], []
     for pose in np.linspace(0.97 * low, 0.97 * high, points):

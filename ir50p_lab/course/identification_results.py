@@ -3,18 +3,17 @@
 import numpy as np
 
 from ir50p_lab.bench import Recording, SimulatedBench
-from ir50p_lab.course.bench_views import origin
+from ir50p_lab.course.bench_views import JOINT_LABELS, origin
 from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.identification import RLS, fit, process, regressor, validate
-from ir50p_lab.identification.parameters import NAMES
 from ir50p_lab.signals import LowPass
 
 
-def learn(recording, *, rows="joint", columns="rigid", method="ls", l2=None, **steps):
+def learn(recording, *, rows="joint", columns="rigid", **steps):
     """An Estimate from a recording: `process` with these steps, then `fit` on the samples that are to be used."""
     motion = process(recording, **steps)
     Phi = regressor(motion.q, motion.qd, motion.qdd)
-    return fit(Phi, motion.u, rows=rows, columns=columns, method=method, l2=l2, use=motion.use)
+    return fit(Phi, motion.u, rows=rows, columns=columns, use=motion.use)
 
 
 def as_the_thesis(arm, unit, motions, controller, seconds=(110, 60)):
@@ -50,13 +49,13 @@ class OnlineSignals:
     acceleration are central differences, one sample later. The nonlinear columns see filtered angles, which is exact
     only for slow motion.
 
-    Args: rate_hz; cutoff_hz; delay: whole samples from a measurement to the moment its command acts; slow: rad/s,
-    below which a joint may stand: its row is then 0 = 0.
+    At 100 Hz, with a cut-off of 2 Hz. A command acts two samples after its measurement. Below 0.05 rad/s a joint may
+    stand: its row is then 0 = 0.
     """
 
-    def __init__(self, rate_hz, *, cutoff_hz=2.0, delay=2, slow=0.05):
-        self._filter = LowPass(cutoff_hz, rate_hz, order=2)
-        self._rate, self._slow, self._sent, self._past = rate_hz, slow, [np.zeros(3)] * (delay + 1), []
+    def __init__(self):
+        self._filter = LowPass(2.0, 100, order=2)
+        self._sent, self._past = [np.zeros(3)] * 3, []
 
     def step(self, q, u):
         """q (3,) rad of this sample, and u (3,) that is sent now. Returns Phi (3, 20) and y (3,), first zeros."""
@@ -66,65 +65,67 @@ class OnlineSignals:
         if len(self._past) < 3:
             return np.zeros((3, 20)), np.zeros(3)
         before, here, after = self._past
-        qd, qdd = (after - before)[:3] * self._rate / 2, (after - 2 * here + before)[:3] * self._rate**2
-        use = (np.abs(qd) > self._slow).astype(float)
+        qd, qdd = (after - before)[:3] / 0.02, (after - 2 * here + before)[:3] / 0.01**2
+        use = np.abs(qd) > 0.05
         return regressor(here[:3], qd, qdd) * use[:, None], here[3:] * use
+
+
+def _fits_by_joint(ax, fits, names, **line):
+    """Fits (n, 3) in %, from top to bottom, one name for each."""
+    y = np.arange(len(names))[::-1]
+    ax.set_prop_cycle(color=JOINTS, marker=["o", "s", "^"])
+    ax.plot(fits, y, ms=7, label=JOINT_LABELS, **line)
+    ax.set_yticks(y, names)
+    ax.set_xlabel("fit on raw PWM of the validation run [%]")
+    ax.legend(fontsize=8, loc="lower left")
 
 
 def ablation_figure(names, fits, best=None):
     """Fits of the three joints, line by line of a table. Returns: LabFigure.
 
-    Args: names: n texts; fits: (n, 3) %; best: (3,) %, what no theta passes, drawn dashed.
+    Args: names: n texts; fits: (n, 3) %; best: (3,) %, what no theta passes, drawn dotted.
     """
-    figure = new_figure(9.6, 1.3 + 0.36 * len(names))
-    ax, y = figure.axes[0], np.arange(len(names))[::-1]
-    for joint, marker in enumerate("os^"):
-        values = np.asarray(fits)[:, joint]
-        ax.plot(values, y, marker, ms=7, ls="-", lw=0.8, color=JOINTS[joint], label=f"joint {joint + 1}")
-        if best is not None:
-            ax.axvline(best[joint], color=JOINTS[joint], ls=":", lw=1.2)
-    ax.set_yticks(y, names)
-    ax.set(xlabel="fit on raw PWM of the validation run [%]", xlim=(min(50, np.min(fits) - 3), 101))
-    ax.set_title("Most is won by better signals; dotted: true parameters")
-    ax.legend(fontsize=8, loc="lower left")
+    figure, ax = subplots(9.6, 1.3 + 0.36 * len(names))
+    _fits_by_joint(ax, fits, names, lw=0.8)
+    for value, colour in zip(() if best is None else best, JOINTS, strict=False):
+        ax.axvline(value, color=colour, ls=":", lw=1.2)
+    ax.set(xlim=(min(50, np.min(fits) - 3), 101), title="Most is won by better signals; dotted: true parameters")
     return figure
 
 
-def estimators_figure(found, fits, joint=0, column=0, truth=None):
-    """Fits of several estimates, and one of their parameters with three standard errors. Returns: LabFigure.
+def estimators_figure(found, fits, truth=None):
+    """Fits of several estimates, and their theta1 of joint 1 with three standard errors. Returns: LabFigure.
 
     Args: found: {name: Estimate}; fits: (n, 3) % on the validation run; truth: the parameter's value, drawn dashed.
     """
     figure, left, right = subplots(9.6, 1.3 + 0.32 * len(found), cols=2, width_ratios=(1.2, 1))
-    y = np.arange(len(found))[::-1]
-    for k, marker in enumerate("os^"):
-        left.plot(np.maximum(fits[:, k], 50), y, marker, ms=7, color=JOINTS[k], label=f"joint {k + 1}")
-    values, errors = ([getattr(x, name)[joint, column] for x in found.values()] for name in ("theta", "stderr"))
-    right.errorbar(values, y, xerr=3 * np.array(errors), fmt="o", color=JOINTS[joint], capsize=3)
+    _fits_by_joint(left, np.maximum(fits, 50), list(found), ls="")
+    left.set(xlim=(49, 101), title="What each cure does for the fit")
+    values = [one.theta[0, 0] for one in found.values()]
+    errors = [3 * one.stderr[0, 0] for one in found.values()]
+    right.errorbar(values, left.get_yticks(), xerr=errors, fmt="o", color=JOINTS[0], capsize=3)
     if truth is not None:
         right.axvline(truth, **SETPOINT)
-    left.set_yticks(y, list(found))
-    right.set_yticks(y, [""] * len(found))
+    right.set_yticks(left.get_yticks(), [""] * len(found))
     right.set_ylim(left.get_ylim())
-    left.set(xlim=(49, 101), xlabel="fit on raw PWM of the validation run [%]", title="What each cure does for the fit")
-    right.set(xlabel=f"{NAMES[column]} of joint {joint + 1}, ± 3 standard errors [PWM, SI]")
-    right.set_title("No error bar knows a bias; dashed: true")
-    left.legend(fontsize=8, loc="lower left")
+    right.set(
+        xlabel="theta1 of joint 1, ± 3 standard errors [PWM, SI]", title="No error bar knows a bias; dashed: true"
+    )
     return figure
 
 
-def whiteness_figure(tests, joint=1):
-    """Autocorrelation of the residuals of several models. Returns: LabFigure.
+def whiteness_figure(tests):
+    """Autocorrelation of the residuals of joint 2 for several models. Returns: LabFigure.
 
-    Args: tests: {name: Whiteness}, of residuals 10 ms apart; joint: 0, 1, 2.
+    Args: tests: {name: Whiteness}, of residuals 10 ms apart.
     """
     figure, ax = subplots(9.0, 3.2)
     for (name, test), colour in zip(tests.items(), ("orange", "blue", "green"), strict=False):
         lags = 10 * np.r_[0, test.lags]
-        ax.plot(lags, np.r_[1, test.correlation[:, joint]], ".-", ms=4, color=COLOURS[colour], label=name)
+        ax.plot(lags, np.r_[1, test.correlation[:, 1]], ".-", ms=4, color=COLOURS[colour], label=name)
     ax.axhspan(-test.bound, test.bound, color=COLOURS["grey"], alpha=0.4, lw=0)
     ax.set(xlabel="time between two residuals [ms]", ylabel="their correlation [1]", ylim=(-0.5, 1.05))
-    ax.set_title(f"Joint {joint + 1}: grey, as white noise would be; what is above, a model could still learn")
+    ax.set_title("Joint 2: grey, as white noise would be; what is above, a model could still learn")
     ax.legend(fontsize=8)
     return figure
 
@@ -141,19 +142,18 @@ class CutoffView:
         late = {"causal": 0.0, "zero-phase": delay}
         self.fits = {kind: np.array([self._fit(train, valid, kind, f, late[kind]) for f in self._f]) for kind in late}
         self.figure, left, right = subplots(9.6, 3.8, cols=2)
-        self._room = 5.0  # rad/s^2
         self._lines = {
             "causal": left.plot([], [], color=COLOURS["orange"], lw=0.8)[0],
             "zero-phase": left.plot([], [], color=COLOURS["blue"], lw=1.8)[0],
         }
-        left.set(xlim=span, ylim=(-self._room, self._room), xlabel=f"t [s]  -  {origin(valid)}")
+        left.set(xlim=span, ylim=(-5, 5), xlabel=f"t [s]  -  {origin(valid)}")
         left.set(ylabel="acceleration of joint 1 [rad/s²]", title="Orange: causal; blue: zero-phase")
         # a legend would be drawn anew at every step of the slider
-        for joint in range(3):
-            for kind, style in (("causal", "--"), ("zero-phase", "-")):
-                right.semilogx(self._f, self.fits[kind][:, joint], style, color=JOINTS[joint])
-            label = {"color": JOINTS[joint], "fontsize": 9, "transform": right.transAxes}
-            right.text(0.03, 0.18 - 0.07 * joint, f"joint {joint + 1}", **label)
+        for kind, style in (("causal", "--"), ("zero-phase", "-")):
+            right.set_prop_cycle(color=JOINTS)
+            right.semilogx(self._f, self.fits[kind], style)
+        for k, (label, colour) in enumerate(zip(JOINT_LABELS, JOINTS, strict=True)):
+            right.text(0.03, 0.18 - 0.07 * k, label, color=colour, fontsize=9, transform=right.transAxes)
         self._mark = right.axvline(self._f[0], color=COLOURS["dark"], lw=1)
         right.set(xlabel="cut-off [Hz]", ylabel="fit [%]", ylim=(0, 100), title="Dashed: causal, line: zero-phase")
         right.set_xticks([0.5, 1, 2, 5, 10, 20], ["0.5", "1", "2", "5", "10", "20"])
@@ -170,7 +170,7 @@ class CutoffView:
         for kind, line in self._lines.items():
             motion = process(self._valid, derivatives=kind, cutoff_hz=cutoff, trim=1.0)
             shown = (motion.t >= self._span[0]) & (motion.t <= self._span[1])
-            line.set_data(motion.t[shown], motion.qdd[shown, 0].clip(-1.1 * self._room, 1.1 * self._room))
+            line.set_data(motion.t[shown], motion.qdd[shown, 0].clip(-5.5, 5.5))
             values = [np.interp(np.log(cutoff), np.log(self._f), column) for column in self.fits[kind].T]
             said.append(f"{kind}: fit " + " / ".join(f"{x:.0f}" for x in values) + " %")
         self._mark.set_xdata([cutoff, cutoff])
@@ -184,9 +184,7 @@ def delay_figure(found, true=None):
     """
     figure = new_figure(9.6, 3.2, cols=len(found))
     for ax, (name, estimate) in zip(figure.axes, found.items(), strict=True):
-        for joint in range(3):
-            share = estimate.rms[:, joint] / estimate.rms[:, joint].min()
-            ax.plot(1000 * estimate.delays, share, color=JOINTS[joint], label=f"joint {joint + 1}")
+        ax.plot(1000 * estimate.delays, estimate.rms / estimate.rms.min(axis=0), label=JOINT_LABELS)
         if true is not None:
             ax.axvline(1000 * true, **SETPOINT)
         ax.set(xlabel="delay assumed [ms]", ylim=(0.99, 1.2))
@@ -214,38 +212,34 @@ def validation_figure(naive, best, span):
 
 
 class ForgettingView:
-    """A parameter followed by RLS while the arm gets a payload half way, for any memory. Attributes: figure.
+    """theta4 of joint 3, followed by RLS while the arm gets a payload half way, for any memory. Attributes: figure.
 
-    Args: parts: two Motions, without and with the payload; joint: 0, 1, 2; column: which parameter; levels: its value
-    by least squares on each part; every: how many samples make one step.
+    Args: parts: two Motions, without and with the payload; levels: its value by least squares on each part.
     """
 
-    def __init__(self, parts, *, joint, column, levels, name, every=5):
-        self._Phi, self._y = [], []
+    def __init__(self, parts, levels):
+        self._Phi, self._y, every = [], [], 5
         for part in parts:
-            keep = slice(None, None, every)
-            use = part.use[keep].astype(float)
-            self._Phi.append(regressor(part.q[keep], part.qd[keep], part.qdd[keep]) * use[:, :, None])
-            self._y.append(part.u[keep] * use)
-        self._rate, self._joint, self._column = parts[0].rate_hz / every, joint, column
+            use = part.use[::every]
+            self._Phi.append(regressor(part.q[::every], part.qd[::every], part.qdd[::every]) * use[:, :, None])
+            self._y.append(part.u[::every] * use)
+        self._rate = parts[0].rate_hz / every
         first, second = (len(y) / self._rate for y in self._y)
         self._t = (np.arange(sum(map(len, self._y))) + 1) / self._rate
         self.figure, ax = subplots(9.0, 3.4)
         ax.hlines(levels, [0, first], [first, first + second], color=COLOURS["dark"], ls="--", lw=1.2)
-        (self._line,) = ax.plot([], [], color=JOINTS[joint])
+        (self._line,) = ax.plot([], [], color=JOINTS[2])
         low, high = min(levels), max(levels)
         ax.set(xlim=(0, first + second), ylim=(low - 0.6 * (high - low), high + 0.6 * (high - low)))
-        ax.set(xlabel="time of motion [s]", ylabel=f"{name} of joint {joint + 1} [PWM, SI]")
+        ax.set(xlabel="time of motion [s]", ylabel="theta4 of joint 3 [PWM, SI]")
         ax.set_title("Dashed: least squares before and after the payload")
 
     def run(self, memory):
-        """The parameter after each step, (n,), with a memory of so many seconds (inf: nothing is forgotten)."""
+        """theta4 after each step, (n,), with a memory of so many seconds (inf: nothing is forgotten)."""
         filtered = RLS(forgetting=1 - 1 / (memory * self._rate))
-        states = [filtered.run(Phi, y)[:, self._joint, self._column] for Phi, y in zip(self._Phi, self._y, strict=True)]
-        return np.concatenate(states)
+        return np.concatenate([filtered.run(*part)[:, 2, 3] for part in zip(self._Phi, self._y, strict=True)])
 
     def update(self, memory):
         """Draw for this memory, s. Returns the forgetting factor in words."""
-        followed = self.run(memory)
-        self._line.set_data(self._t, followed)
+        self._line.set_data(self._t, self.run(memory))
         return f"forgetting factor {1 - 1 / (memory * self._rate):.4f} at {self._rate:.0f} samples a second"

@@ -1,10 +1,9 @@
 """Figures of notebook 12, first part: why feedback biases, and what a motion lets one see."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.course.bench_views import JOINT_LABELS
 from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.identification import load_excitations, optimise_excitation, regressor
 from ir50p_lab.identification.parameters import ACTS_ON, NAMES, ONLY_THESIS
@@ -12,7 +11,12 @@ from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals.fourier import series
 
 NOISE_PWM, INDEPENDENT = 8.0, 1100  # assumed: what is left of u, and how many independent samples 110 s hold
-_WATCHED = ((0, "theta1"), (1, "theta9"), (2, "j3"), (1, "theta3"))  # joint, parameter: inertias, and one of gravity
+_WATCHED = (  # joint, parameter, what it is, and its curve
+    (0, "theta1", "inertia of joint 1", JOINTS[0], "-"),
+    (1, "theta9", "inertia of joint 2", JOINTS[1], "-"),
+    (2, "j3", "inertia of joint 3", JOINTS[2], "-"),
+    (1, "theta3", "gravity of joint 2", COLOURS["grey"], "--"),
+)
 
 
 def two_copies(arm, controller, reference, seconds=8):
@@ -46,19 +50,9 @@ def open_loop_figure(closed, again):
     return figure
 
 
-def twice_as_strong(arm):
-    """The arm with all masses, inertias, friction, rotors and motor torques doubled: the same in PWM counts."""
-    double = {name: tuple(2 * np.array(getattr(arm, name))) for name in ("m", "Ixx", "Iyy", "Izz")}
-    friction = {name: tuple(2 * np.array(getattr(arm.friction, name))) for name in ("fv", "fc", "fs", "Tf")}
-    motors = {name: tuple(2 * np.array(getattr(arm.actuators, name))) for name in ("kt", "Jm")}
-    return replace(
-        arm, **double, friction=replace(arm.friction, **friction), actuators=replace(arm.actuators, **motors)
-    )
-
-
-def spoilt(recording, joint=0, n=6000):
-    """t, q and u of one joint as a careless file holds them: halves swapped, numbers missing, degrees."""
-    t, q, u = recording.t[:n], np.degrees(recording.q[:n, joint]), recording.u[:n, joint]
+def spoilt(recording, n=6000):
+    """t, q and u of joint 1 as a careless file holds them: halves swapped, numbers missing, degrees."""
+    t, q, u = recording.t[:n], np.degrees(recording.q[:n, 0]), recording.u[:n, 0]
     q[n // 3 : n // 3 + 80] = np.nan
     order = np.r_[n // 2 : n, : n // 2]
     return t[order], q[order], u[order]
@@ -75,26 +69,21 @@ class FeedbackLoop:
 
     which is b where the set point r moves much, and -1/K, the controller's own slope, where it rests.
 
-    Args: b: rad/s per PWM count; K: PWM counts per rad/s; load: rms of v, rad/s; n samples; seed.
+    Args: b: rad/s per PWM count; K: PWM counts per rad/s.
     """
 
-    def __init__(self, b, K, *, load=0.1, n=250, seed=0):
-        self.b, self.K, self.load = float(b), float(K), float(load)
-        shapes = np.random.default_rng(seed).normal(size=(2, n))
+    def __init__(self, b, K):
+        self.b, self.K = float(b), float(K)
+        shapes = np.random.default_rng(0).normal(size=(2, 250))
         shapes -= shapes.mean(axis=1, keepdims=True)
         shapes[1] -= shapes[0] * (shapes[0] @ shapes[1]) / (shapes[0] @ shapes[0])  # r and v: exactly uncorrelated
         self._r, self._v = shapes / shapes.std(axis=1, keepdims=True)
 
-    def run(self, excitation, *, closed=True):
-        """r, u, y, (n,) each, with a set point of this rms (rad/s). Open loop: the u that r alone would cause."""
-        r, v = excitation * self._r, self.load * self._v
-        u = self.K * (r - closed * v) / (1 + self.b * self.K)
+    def run(self, excitation):
+        """r, u, y, (n,) each, with a set point of this rms and a load of 0.1 (rad/s)."""
+        r, v = excitation * self._r, 0.1 * self._v
+        u = self.K * (r - v) / (1 + self.b * self.K)
         return r, u, self.b * u + v
-
-    def expected(self, excitation):
-        """What least squares of y on u finds in closed loop, rad/s per count."""
-        r, v = excitation**2, self.load**2
-        return (self.b * r - v / self.K) / (r + v)
 
 
 class FeedbackView:
@@ -137,16 +126,9 @@ def kept_motion(arm, number=0):
         return load_excitations()[f"validation {number}" if number else "training"]
     speed = 0.8 * arm.actuators.no_load_speed
     # room at the limits and over the table: the thesis' PID lags and sags
-    options = {
-        "harmonics": 3,
-        "standing": 6,
-        "margin": 0.2,
-        "table": 0.1,
-        "starts": 4,
-        "iterations": 30,
-        "progress": False,
-    }
-    return optimise_excitation(arm, max_joint_speed=speed, seed=number, **options).reference
+    room = {"margin": 0.2, "table": 0.1}
+    search = {"standing": 6, "starts": 4, "iterations": 30, "seed": number, "progress": False}
+    return optimise_excitation(arm, harmonics=3, max_joint_speed=speed, **room, **search).reference
 
 
 def excitation_figure(excitation):
@@ -156,8 +138,7 @@ def excitation_figure(excitation):
     for ax, (motion, condition), name in zip(figure.axes, found, ("Random", "Optimised"), strict=True):
         t = np.linspace(0, motion.period, 400)
         rows = motion.sample(motion.start + t)
-        for joint in range(3):
-            ax.plot(t, rows[:, 0, joint], color=JOINTS[joint], label=f"joint {joint + 1}")
+        ax.plot(t, rows[:, 0], label=JOINT_LABELS)
         numbers = ", ".join(f"{x:.3g}" for x in condition)
         ax.set(xlabel="time [s]", title=f"{name}: condition numbers {numbers}")
     figure.axes[0].set_ylabel("angle [rad]")
@@ -176,55 +157,46 @@ def relative_errors(arm, motion, frequency_hz, samples=300):
     rows = series(motion.a, motion.b, motion.q0, period, t)
     Phi, theta = regressor(rows[:, 0], rows[:, 1], rows[:, 2]), arm.theta_pwm
     percent = []
-    for joint, name in _WATCHED:
+    for joint, name, *_ in _WATCHED:
         columns = [k for k in ACTS_ON[joint] if NAMES[k] not in ONLY_THESIS]
-        A = Phi[:, joint, columns]
-        size = np.linalg.norm(A, axis=0)
-        R = np.linalg.qr(A / size, mode="r")
-        spread = np.linalg.norm(np.linalg.solve(R, np.eye(len(R))), axis=1) / size  # sqrt of the diagonal of (A^T A)^-1
-        k = columns.index(NAMES.index(name))
-        error = NOISE_PWM * spread[k] * np.sqrt(samples / INDEPENDENT)
-        percent.append(100 * error / abs(theta[joint, NAMES.index(name)]))
+        inverse = np.linalg.pinv(Phi[:, joint, columns])  # lengths of its rows: sqrt of the diagonal of (A^T A)^-1
+        k = NAMES.index(name)
+        error = NOISE_PWM * np.linalg.norm(inverse[columns.index(k)]) * np.sqrt(samples / INDEPENDENT)
+        percent.append(100 * error / abs(theta[joint, k]))
     return np.array(percent), np.einsum("nij,ij->ni", Phi, theta)
 
 
 class FrequencyView:
-    """Commands that a motion needs, and how sure it makes the parameters, over its frequency. Attributes: figure.
+    """Commands that a motion needs, and how sure it makes the parameters, over its frequency from 0.02 to 0.3 Hz.
 
-    Args: arm: Arm with motors; motion: Fourier; lowest, highest: Hz.
+    Args: arm: Arm with motors; motion: Fourier. Attributes: figure.
     """
 
-    def __init__(self, arm, motion, lowest, highest):
+    def __init__(self, arm, motion):
         self._arm, self._motion = arm, motion
         self.figure, left, right = subplots(9.6, 3.8, cols=2)
         for level in (-255, 255):
             left.axhline(level, **SETPOINT)
-        self._x = (np.arange(300) + 0.5) / 300
-        self._u = [left.plot([], [], color=colour, lw=1.3)[0] for colour in JOINTS]
+        self._u = left.plot((np.arange(300) + 0.5) / 300, np.zeros((300, 3)), lw=1.3)
         left.set(xlim=(0, 1), ylim=(-450, 450), xlabel="part of the period [1]", ylabel="command needed [PWM]")
         left.set_title("Dashed: all the motors have")
-        f = np.geomspace(lowest, highest, 40)
+        f = np.geomspace(0.02, 0.3, 40)
         errors = np.array([relative_errors(arm, motion, x)[0] for x in f])
-        for k, (joint, name) in enumerate(_WATCHED):
-            style = {"color": COLOURS["grey"], "ls": "--"} if k == 3 else {"color": JOINTS[joint]}
-            what = "gravity" if k == 3 else "inertia"
-            right.loglog(f, errors[:, k], **style)
-            label = f"{what} of joint {joint + 1}: {name}"
-            right.text(
-                0.97, 0.94 - 0.07 * k, label, color=style["color"], fontsize=8, ha="right", transform=right.transAxes
-            )
+        for k, (_, name, what, colour, line) in enumerate(_WATCHED):
+            right.loglog(f, errors[:, k], line, color=colour)
+            place = {"xy": (0.97, 0.94 - 0.07 * k), "xycoords": "axes fraction", "ha": "right"}
+            right.annotate(f"{what}: {name}", color=colour, fontsize=8, **place)
         self._mark = right.axvline(f[0], color=COLOURS["dark"], lw=1)
         right.set(xlabel="lowest frequency of the motion [Hz]", ylabel="standard error [% of the value]")
-        ticks = [x for x in (0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0) if lowest <= x <= highest]
-        right.set_xticks(ticks, [f"{x:g}" for x in ticks])
+        right.set_xticks([0.02, 0.03, 0.05, 0.1, 0.2, 0.3], ["0.02", "0.03", "0.05", "0.1", "0.2", "0.3"])
         right.minorticks_off()
         right.set_title("Twice as fast: inertia four times as sure")
 
     def update(self, frequency):
         """Draw for this frequency, Hz. Returns what to mind, in words."""
         percent, u = relative_errors(self._arm, self._motion, frequency)
-        for joint, line in enumerate(self._u):
-            line.set_data(self._x, u[:, joint])
+        for line, values in zip(self._u, u.T, strict=True):
+            line.set_ydata(values)
         self._mark.set_xdata([frequency, frequency])
         inertia = ", ".join(f"{x:.1f}" for x in percent[:3])
         most = np.abs(u).max()

@@ -41,14 +41,15 @@ def records(excitation):
 
 @pytest.mark.parametrize("excitation", [0.0, 0.03, 0.1, 0.5])
 def test_bias_of_least_squares_in_closed_loop(excitation):
-    loop = views.FeedbackLoop(b=0.01, K=300, load=0.1)
+    loop = views.FeedbackLoop(b=0.01, K=300)
     r, u, y = loop.run(excitation)
     np.testing.assert_allclose(u, loop.K * (r - y))  # the controller
-    assert (u @ y) / (u @ u) == pytest.approx(loop.expected(excitation))
+    expected = (0.01 * excitation**2 - 0.1**2 / 300) / (excitation**2 + 0.1**2)
+    assert (u @ y) / (u @ u) == pytest.approx(expected)
     sampled = np.random.default_rng(1).normal(size=(2, 200_000)) * [[excitation], [0.1]]  # the other route: much data
     u = 300 * (sampled[0] - sampled[1]) / (1 + 0.01 * 300)
     y = 0.01 * u + sampled[1]
-    assert (u @ y) / (u @ u) == pytest.approx(loop.expected(excitation), abs=2e-4)
+    assert (u @ y) / (u @ u) == pytest.approx(expected, abs=2e-4)
 
 
 def test_feedback_view_says_both_slopes():
@@ -84,7 +85,11 @@ def test_payload_is_a_point_mass_at_the_tip():
 
 
 def test_twice_as_strong_takes_the_same_counts():
-    twice = views.twice_as_strong(IR50P)
+    double = {name: tuple(2 * np.array(getattr(IR50P, name))) for name in ("m", "Ixx", "Iyy", "Izz")}
+    friction = {name: tuple(2 * np.array(getattr(IR50P.friction, name))) for name in ("fv", "fc", "fs", "Tf")}
+    motors = {name: tuple(2 * np.array(getattr(IR50P.actuators, name))) for name in ("kt", "Jm")}
+    double["friction"] = replace(IR50P.friction, **friction)
+    twice = replace(IR50P, **double, actuators=replace(IR50P.actuators, **motors))
     np.testing.assert_allclose(twice.theta, 2 * IR50P.theta)
     np.testing.assert_allclose(twice.theta_pwm, IR50P.theta_pwm, rtol=1e-12)
 
@@ -119,7 +124,7 @@ def test_relative_errors_are_those_of_a_covariance(excitation):
 
 
 def test_frequency_view(excitation):
-    view = views.FrequencyView(IR50P, excitation, 0.02, 0.3)
+    view = views.FrequencyView(IR50P, excitation)
     assert "within reach" in view.update(0.03) and "out of reach" in view.update(0.3)
     made = optimise_excitation(IR50P, harmonics=2, starts=1, iterations=2, progress=False)
     assert "condition numbers" in views.excitation_figure(made).axes[1].get_title()
@@ -137,7 +142,7 @@ def test_learn_leaves_out_what_stands(records):
 def test_online_signals_lead_to_the_same_parameters(records):
     """Sample by sample with a causal filter, or afterwards with one that is not late."""
     train, _ = records
-    signals, rls = results.OnlineSignals(100), RLS()
+    signals, rls = results.OnlineSignals(), RLS()
     for q, u in zip(train.q, train.u, strict=True):
         rls.step(*signals.step(q, u))
     late = results.learn(train, delay=0.02, slow=0.05).theta
@@ -160,7 +165,7 @@ def test_forgetting_follows_a_payload(records, excitation):
     parts = [process(run, delay=0.02, slow=0.05) for run in (records[0], loaded)]
     levels = [results.learn(run, delay=0.02, slow=0.05).theta[2, 3] for run in (records[0], loaded)]
     assert levels[1] - levels[0] == pytest.approx(0.3 * IR50P.l[2] / IR50P.actuators.gain[2], rel=0.1)
-    view = results.ForgettingView(parts, joint=2, column=3, levels=levels, name="theta4")
+    view = results.ForgettingView(parts, levels)
     short, long = view.run(10)[-1], view.run(1e4)[-1]
     assert abs(short - levels[1]) < 0.5 * abs(long - levels[1])
     assert "0.9950" in view.update(10)

@@ -44,6 +44,7 @@ def test_calibration_of_a_real_arm(board):
     truth = nominal_calibration(IR50P)
     names = {"np": np, "arm": IR50P, "fit_calibration": fit_calibration, "save_result": save_result}
     names["connect"] = lambda **_: opened(board)
+    exec(cell("10", "bench-yours-hand"), names)
     source = cell("10", "bench-yours")
     exec(source, names)
     assert newest_result("calibration", opened(board)) is None

@@ -37,31 +37,30 @@ def test_there_are_notebooks():
     assert sorted(FOLDER.glob("*.ipynb")) == NOTEBOOKS
 
 
-def test_cells(path, notebook):
-    if is_rewritten(path):
-        return
-    assert max(lines(cell) for cell in cells(notebook, "code")) <= 25
-    assert all(cell.source.strip() for cell in cells(notebook, "code")), "an empty code cell"
-
-
 CLAIM = re.compile(r"^\s*(?:assert |claim\()", re.M)
 SHOWS = re.compile(r"^(?:print|predict|measured|claim|check|live|note|keep|Image)\(|^    print\(|\.progress\(\)", re.M)
 
 
-def test_cells_of_the_lab_book(path, notebook):
-    """One idea a cell: short, at most two claims, and something to be seen; at most six predictions a notebook."""
+def test_cells(notebook):
+    """One idea a cell: short, of lines that need no scrolling, and at most two claims."""
+    for cell in cells(notebook, "code"):
+        assert cell.source.strip(), "an empty code cell"
+        assert lines(cell) <= 15, cell.source
+        assert all(len(line) <= 100 for line in cell.source.splitlines()), cell.source
+        assert len(CLAIM.findall(cell.source)) <= 2, cell.source
+
+
+def test_exercises_of_numbers_are_few(notebook):
+    assert len([name for name in checked(notebook) if name in exercises()]) <= 2
+
+
+def test_predictions(path, notebook):
     if not is_rewritten(path):
         return
-    for cell in cells(notebook, "code"):
-        assert lines(cell) <= 15, cell.source
-        assert all(len(line) <= 120 for line in cell.source.splitlines()), cell.source
-        assert len(CLAIM.findall(cell.source)) <= 2, cell.source
     code = "\n".join(cell.source for cell in cells(notebook, "code"))
     assert 1 <= len(re.findall(r"^predict\(", code, re.M)) <= 6
     for name in re.findall(r'^predict\("([^"]+)", \.\.\.', code, re.M):
         assert f'measured("{name}"' in code, f"{name} is predicted and never measured"
-    exercises_of_numbers = [name for name in checked(notebook) if name in exercises()]
-    assert len(exercises_of_numbers) <= 2
 
 
 def shows_something(source):
