@@ -80,6 +80,15 @@ def on_scale(control, value):
     return type(control.value)(min(max(control.min + steps * control.step, control.min), control.max))
 
 
+def refuse_bad_value(name, value, controls):
+    """Raise InputError unless `name` is one of the controls and `value` is on its scale."""
+    if name not in controls:
+        raise InputError(f"no control {name!r}; this panel has {', '.join(controls)}")
+    control = controls[name]
+    if hasattr(control, "min") and not control.min <= value <= control.max:
+        raise InputError(f"{name} = {value} is off its slider ({control.min} to {control.max})")
+
+
 def close_all(widget):
     """End a widget and those inside it, which the browser and the kernel would keep for ever."""
     for child in getattr(widget, "children", ()):

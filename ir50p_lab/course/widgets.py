@@ -23,7 +23,7 @@ from typing import ClassVar
 import ipywidgets as widgets
 
 from ir50p_lab.course.canvas import Canvas
-from ir50p_lab.course.controls import Slider, close_all, make_control, slider, value_of
+from ir50p_lab.course.controls import Slider, close_all, make_control, refuse_bad_value, slider, value_of
 from ir50p_lab.course.painter import DRAWING, Painter
 from ir50p_lab.errors import UnstableLoopWarning
 
@@ -87,7 +87,12 @@ class LivePanel(widgets.VBox):
         return {name: value_of(control) for name, control in self.controls.items()}
 
     def set(self, **values):
-        """Move controls from Python, redraw once, and raise what `update` raises."""
+        """Move controls from Python, redraw once, and raise what `update` raises.
+
+        Raises InputError for an unknown name or a value off the scale.
+        """
+        for name, value in values.items():
+            refuse_bad_value(name, value, self.controls)
         with DRAWING:
             busy, self._busy = self._busy, True  # one drawing for all of them
             try:

@@ -136,6 +136,15 @@ def test_controls_that_make_no_sense_are_refused(controls, words):
         live(new_figure(1, 1), lambda **_: None, **controls)
 
 
+def test_set_refuses_unknown_names_and_values_off_the_scale():
+    panel = line_panel()
+    with pytest.raises(InputError, match=r"no control 'depth'; this panel has height"):
+        panel.set(depth=1)
+    with pytest.raises(InputError, match=r"height = 11 is off its slider \(-10.* to 10"):
+        panel.set(height=11)
+    assert panel.updates == 1
+
+
 def too_high(height):
     if height > 4:
         raise ValueError(f"<{height}> is too high")
