@@ -66,7 +66,7 @@ def _no_push(command):
 
 def _motion(count=40):
     rng = np.random.default_rng(8)
-    return rng.uniform(-1.0, 1.0, (count, 3)), rng.uniform(-1.0, 1.0, (count, 3))
+    return rng.uniform(-0.75, 0.75, (count, 3)), rng.uniform(-0.75, 0.75, (count, 3))
 
 
 def _constant(seconds, value):
@@ -273,7 +273,7 @@ def _windup(cls):
 
 def _wrong_rest(cls):
     """The sentence for a memory that rests at the wrong time, or never; "" if it is none of these."""
-    q, wanted = 6 * _motion(150)[0], 6 * _motion(150)[1] + 2.0  # a memory that has a limit of its own meets it
+    q, wanted = 4 * _motion(150)[0], 4 * _motion(150)[1] + 2.0  # a memory that has a limit of its own meets it
 
     def commands(other):
         return _run(_make(other, kp=_KP, ki=10 * _KI, period=_PERIOD), q, wanted)

@@ -119,7 +119,7 @@ def _along(cases, returned, expected):
     for (q, p, l, _), one, right in zip(cases, returned, expected, strict=True):
         J, missing = jacobian(frames(q, l), 3, forward_kinematics(q, l))[:3], p - forward_kinematics(q, l)
         left = J.T @ (missing - J @ (one - q))
-        number = left @ (one - q) / ((one - q) @ (one - q))  # on the diagonal
+        number = left @ (one - q) / max((one - q) @ (one - q), 1e-12)  # on the diagonal
         mine.append(one - q)
         damped.append(right - q)
         plain.append(np.linalg.pinv(J) @ missing)
