@@ -66,8 +66,7 @@ class Number:
     def remark(self, found) -> str:
         """Say how far a wrong answer is right, without giving it away. Raises Unreadable for another shape."""
         if found.shape != self.right.shape:
-            flipped = found.ndim == 2 and found.T.shape == self.right.shape
-            raise Unreadable(shape_in_words(found.shape) + " (rows and columns swapped?)" * flipped)
+            raise Unreadable(shape_in_words(found.shape))
         near = min(20 * self.tolerance, 0.1 * np.max(np.abs(self.right), initial=0))
         if np.all(self._agreement(found, self.right, near)):
             limit = f"{self.tolerance:.2g}{' ' * bool(self.unit)}{self.unit}"
