@@ -95,6 +95,9 @@ def _poses_symptom(cases, returned, expected):
         edge = all(len(expected[k]) for k in undefined)
         where = "on the very edge, by a rounding error of the place" if edge else "out of reach"
         return f"it returns nan {where}: a root of less than nothing, an arccos of more than 1"
+    directions = np.exp(1j * np.concatenate(answers))[..., None]
+    if len(np.unique(directions)) > 1 and np.isclose(directions, np.exp(1j * np.arange(-6, 7))).any(axis=-1).all():
+        return "its angles are whole numbers: an array of integers cuts off what is put into it"
     says = next(filter(None, map(_missing_pose, answers, cases, expected)), "")
     far = [k for k, one in enumerate(expected) if len(one) == 0 and len(answers[k])]
     if says or far:
