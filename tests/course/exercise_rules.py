@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 import sympy
 
-from ir50p_lab.course.exercises import Choice, Function, Number, grade
+from ir50p_lab.course.exercises import Function, Number, grade
 
 SEED = 20261121
 
@@ -51,7 +51,11 @@ def _stubs(exercise):
 
 def _messages(exercise):
     """What is said to the author's slips and to those that all exercises of the kind know."""
-    return list(exercise.slips | exercise.kind.common_slips)
+    return list(exercise.slips | _common(exercise.kind))
+
+
+def _common(kind):
+    return kind.common_slips if isinstance(kind, Number) else {}
 
 
 def _slips(exercise):
@@ -61,20 +65,15 @@ def _slips(exercise):
         verdict = grade(exercise, wrong_answer(exercise.kind, wrong))
         if verdict.state != "slip" or not verdict.text.endswith(message):
             yield f"slip {message!r} is answered by {verdict.state}: {verdict.text}"
-    for message, wrong in exercise.kind.common_slips.items():  # one of the author's may say more of the same answer
+    for message, wrong in _common(exercise.kind).items():  # one of the author's may say more of the same answer
         verdict = grade(exercise, wrong_answer(exercise.kind, wrong))
-        if verdict.state != "slip" and not exercise.kind.is_right(exercise.kind.read_wrong(wrong)):
+        if verdict.state not in ("slip", "right"):  # 0 is right with either sign
             yield f"slip {message!r} is answered by {verdict.state}: {verdict.text}"
-    if isinstance(exercise.kind, Choice) and {exercise.kind.right, *exercise.slips.values()} != set(
-        exercise.kind.options
-    ):
-        yield "a wrong option has no slip, or the right one is none of them"
 
 
 def _wrong(exercise):
     verdict = grade(exercise, random_wrong(exercise.kind))
-    generic = "unreadable" if isinstance(exercise.kind, Choice) else "wrong"
-    if verdict.state != generic or exercise.kind.wanted not in verdict.text:
+    if verdict.state != "wrong" or exercise.kind.wanted not in verdict.text:
         yield f"a random wrong answer is {verdict.state}: {verdict.text}"
     for junk in JUNK:
         verdict = grade(exercise, junk)
@@ -139,13 +138,18 @@ def stubs(exercise):
 
     if isinstance(exercise.kind, Function):
         return [..., dots, described]
-    return [...] if isinstance(exercise.kind, Choice) else [..., (..., ...), [..., ..., ...]]
+    return [..., (..., ...), [..., ..., ...]]
 
 
 def right_forms(exercise):
     """Return the right answer in all the forms that must be accepted."""
-    right, kind = exercise.kind.solution, exercise.kind
+    right, kind = solution_of(exercise.kind), exercise.kind
     return [right, *_FORMS[type(kind)](kind, right)]
+
+
+def solution_of(kind):
+    """Return the right answer as `solution` does."""
+    return kind.right if callable(kind.right) else kind.right[()]
 
 
 def _number_forms(kind, right):
@@ -172,18 +176,12 @@ def _function_forms(kind, right):
     ]
 
 
-def _choice_forms(kind, right):
-    return [right.upper(), f" {right}. ", kind.options[right], kind.options[right].capitalize()]
-
-
-_FORMS = {Number: _number_forms, Function: _function_forms, Choice: _choice_forms}
+_FORMS = {Number: _number_forms, Function: _function_forms}
 
 
 def wrong_answer(kind, wrong):
     """Return the student's answer that belongs to a slip."""
-    if isinstance(kind, Function | Choice):
-        return wrong
-    return wrong(kind.solution) if callable(wrong) else wrong
+    return wrong(kind.right[()]) if callable(wrong) and isinstance(kind, Number) else wrong
 
 
 def random_wrong(kind):
@@ -194,18 +192,13 @@ def random_wrong(kind):
         return np.asarray(value) + rng.uniform(3.3, 3.9, np.shape(value)) * (1 + np.abs(value))
 
     if isinstance(kind, Number):
-        return moved(kind.solution)
-    if isinstance(kind, Function):
-        return lambda *args: moved(kind.right(*args))
-    return "none of them"
+        return moved(kind.right)
+    return lambda *args: moved(kind.right(*args))
 
 
 def secrets(exercise):
     """Return texts that no message may contain: the answer, where it is long enough to be recognised."""
-    kind, right = exercise.kind, exercise.kind.solution
-    if isinstance(kind, Number):
-        texts = {f"{abs(x):.{digits}g}" for x in np.ravel(right) for digits in (3, 4, 5)}
-        return {text for text in texts if len(text.replace(".", "").strip("0")) >= 3}
-    if isinstance(kind, Choice):
-        return {kind.options[right]} if len(kind.options[right]) > 5 else set()
-    return set()
+    if not isinstance(exercise.kind, Number):
+        return set()
+    texts = {f"{abs(x):.{digits}g}" for x in np.ravel(exercise.kind.right) for digits in (3, 4, 5)}
+    return {text for text in texts if len(text.replace(".", "").strip("0")) >= 3}

@@ -27,7 +27,6 @@ imported only when an "ik-" exercise is asked for. It defines two names:
 Kinds of answer (each documents its options):
     Number(right, unit=, tolerance=, because=, angle=)   number, vector or matrix
     Function(right, cases, unit=, tolerance=)            tried out on the cases, values compared
-    Choice(right, options)                               a key of {key: wording}, or its wording
 
 Rules:
 - Compute `right` with the package and with constants of this module (IR50P, not load_arm()): the student's
@@ -35,8 +34,8 @@ Rules:
 - `slips`: {what to say: a wrong answer, or a function of the right one (np.negative)}; for a Function the wrong
   function. Numbers bring common slips along: the sign; degrees (unit="rad"); millimetres (unit="m");
   functions those of `functions/distortions.py`. Name at least three, with different messages, none equal to another
-  or to the right answer; a Choice needs a slip for every wrong option. A message says what is wrong and where to
-  look, never the answer. The student's answer is repeated in front of it.
+  or to the right answer. A message says what is wrong and where to look, never the answer. The student's answer is
+  repeated in front of it.
 - `why` is read after a right answer: one line on what it is good for.
 - `hint=` is added to the message for an answer that is wrong in no known way.
 - A function stub in a notebook is `def answer(q): ...`; a stub with several parts may be `(..., ...)`.
@@ -46,7 +45,7 @@ Rules:
 import textwrap
 from dataclasses import replace
 
-from ir50p_lab.course.exercises._answers import Choice, Exercise, grade
+from ir50p_lab.course.exercises._answers import Exercise, grade
 from ir50p_lab.course.exercises._catalogue import everything, find
 from ir50p_lab.course.exercises._display import Note, show
 from ir50p_lab.course.exercises._functions import Function
@@ -56,7 +55,6 @@ from ir50p_lab.course.student_file import LabBookError
 from ir50p_lab.errors import InputError
 
 __all__ = [
-    "Choice",
     "Exercise",
     "Function",
     "Number",
@@ -89,11 +87,12 @@ def check(name: str, answer=...) -> None:
 
 
 def solution(name: str):
-    """Return the right answer of an exercise in usable form: float, array, function or text.
+    """Return the right answer of an exercise: a float, an array (a copy) or a function.
 
     Raises InputError for an unknown name.
     """
-    return find(name).kind.solution
+    right = find(name).kind.right
+    return right if callable(right) else right.copy()[()]
 
 
 def exercises() -> list[str]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.course.exercises._answers import Kind, NotAnswered, Unreadable, kind_of
+from ir50p_lab.course.exercises._answers import NotAnswered, Unreadable, kind_of
 from ir50p_lab.course.exercises._numbers import shape_in_words
 from ir50p_lab.course.functions.grade import grade
 from ir50p_lab.course.functions.stops import ended
@@ -16,7 +16,7 @@ from ir50p_lab.course.functions.task import Mistake, Task
 
 
 @dataclass(frozen=True, eq=False)
-class Function(Kind):
+class Function:
     """A function of numbers or arrays; compared by its values on the cases.
 
     right: the right function; its argument names are the ones the question uses. It returns a number or an array, of

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.course.exercises._answers import Kind, NotAnswered, Unreadable, kind_of
+from ir50p_lab.course.exercises._answers import NotAnswered, Unreadable, kind_of
 
 
 @dataclass(frozen=True, eq=False)
-class Number(Kind):
+class Number:
     """A number or an array of numbers, compared entry by entry.
 
     right: number or array, computed by the package.
@@ -29,11 +29,6 @@ class Number(Kind):
         object.__setattr__(self, "right", np.array(self.right, dtype=float))
 
     @property
-    def solution(self):
-        """The right answer in usable form: a float, or an array."""
-        return self.right.item() if self.right.ndim == 0 else self.right.copy()
-
-    @property
     def wanted(self) -> str:
         """What is asked for, in words, without the answer."""
         return shape_in_words(self.right.shape) + f" in {self.unit}" * bool(self.unit)
@@ -51,28 +46,27 @@ class Number(Kind):
             found = found.reshape(self.right.shape)  # a (3, 1) column is as good as three numbers
         return found
 
-    def read_wrong(self, wrong) -> np.ndarray:
-        """Return the value of a slip: given as such, or as a function of the right answer."""
-        return self.read(wrong(self.solution) if callable(wrong) else wrong)
+    def grade(self, answer, exercise) -> tuple[str, str]:
+        """Return the state and what to say."""
+        found = self.read(answer)
+        if self.agrees(found, self.right):
+            return "right", f"right. {exercise.why}"
+        for message, wrong in (exercise.slips | self.common_slips).items():
+            if self.agrees(found, self.read(wrong(self.right) if callable(wrong) else wrong)):
+                return "slip", f"not yet, found {show_number(found)}. {message}"
+        # only now: the answer of a slip may have another shape, at which `remark` stops
+        extra = " ".join(filter(None, (self.remark(found), exercise.hint)))
+        return "wrong", f"not yet, found {show_number(found)}; expected {self.wanted}: {exercise.task}. {extra}"
 
-    def is_right(self, found) -> bool:
-        """Tell whether an answer that was read agrees with the right one."""
-        return bool(np.all(self._agreement(found, self.right, self.tolerance)))
-
-    def is_slip(self, found, wrong) -> bool:
-        """Tell whether an answer is the wrong value of a slip, with the tolerance grown to its size."""
-        size = np.max(np.abs(wrong), initial=0) / max(np.max(np.abs(self.right), initial=0), 1e-12)
-        return bool(np.all(self._agreement(found, wrong, self.tolerance * max(1.0, size))))
-
-    def show(self, found) -> str:
-        """Print an answer on one line."""
-        return show_number(found)
+    def agrees(self, found, value) -> bool:
+        """Tell whether an answer is the right value or that of a slip, with the tolerance grown to its size."""
+        size = np.max(np.abs(value), initial=0) / max(np.max(np.abs(self.right), initial=0), 1e-12)
+        return bool(np.all(self._agreement(found, value, self.tolerance * max(1.0, size))))
 
     def remark(self, found) -> str:
         """Say how far a wrong answer is right, without giving it away. Raises Unreadable for another shape."""
         if found.shape != self.right.shape:
-            flipped = found.ndim == 2 and found.T.shape == self.right.shape
-            raise Unreadable(shape_in_words(found.shape) + " (rows and columns swapped?)" * flipped)
+            raise Unreadable(shape_in_words(found.shape))
         near = min(20 * self.tolerance, 0.1 * np.max(np.abs(self.right), initial=0))
         if np.all(self._agreement(found, self.right, near)):
             limit = f"{self.tolerance:.2g}{' ' * bool(self.unit)}{self.unit}"
@@ -131,9 +125,7 @@ def _to_float(entry) -> float:
     if getattr(entry, "free_symbols", None):
         names = ", ".join(sorted(map(str, entry.free_symbols)))
         raise Unreadable(f"an expression that still holds the symbol {names}")
-    if isinstance(entry, bool | np.bool_ | str | list | type(None)) or (
-        callable(entry) and not hasattr(entry, "free_symbols")
-    ):
+    if isinstance(entry, bool | np.bool_ | str | list):
         raise Unreadable("rows of different lengths" if isinstance(entry, list) else kind_of(entry))
     try:
         return float(entry)

@@ -257,8 +257,6 @@ def no_numbers(returned, expected):
 
 def _kind(returned):
     """Why something cannot be read as numbers, or ""."""
-    if returned is Ellipsis:
-        return "the dots are still in it"
     if callable(returned):
         return f"it returns the function {getattr(returned, '__name__', '')}, not what that gives: add its arguments"
     try:

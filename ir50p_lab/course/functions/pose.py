@@ -149,8 +149,6 @@ def frames(q, l):
 
 def _frames_symptom(cases, returned, expected):
     T, right = np.array(returned, dtype=float), np.array(expected)
-    if np.allclose(T, T[:, :1]):
-        return "all four are the same: is one array changed again and again, and put into the list each time?"
     if not np.allclose(T[:, 0], np.eye(4)):
         return "the first of the four is the base itself, seen from itself: it does nothing. Yours does"
     if np.allclose(np.linalg.det(T[:, :, :3, :3]), 1):

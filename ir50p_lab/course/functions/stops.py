@@ -8,7 +8,6 @@ import traceback
 import numpy as np
 
 from ir50p_lab.course.functions.task import table
-from ir50p_lab.errors import LabError
 
 ROOM = "<my_robot"  # the file name of what is tried begins so
 
@@ -18,8 +17,6 @@ def why_it_stops(error):
     line, operands, memory = _where(error)
     said = f"Python says {type(error).__name__}: {error}"
     reason = memory or _usual(error)
-    if isinstance(error, LabError):
-        reason = "an earlier function is given what it cannot take: are its arguments in their order?"
     if isinstance(error, IndexError) and re.search(r"\[[^],]*:[^],]*\]\[", line) and "size 0" not in str(error):
         reason = "a slice leaves rows, and the next bracket counts rows again: row and column stand in one bracket"
     if line.startswith("raise"):

@@ -33,9 +33,6 @@ def _points():
 
 def _jacobian_symptom(cases, returned, expected):
     J, right = np.array(returned, dtype=float), np.array(expected)
-    for k, (_, link, _) in enumerate(cases):
-        if np.allclose(J[k][:, :link], right[k][:, :link]) and np.abs(J[k][:, link:]).sum() > 1e-9:
-            return f"link {link} moves with joint {link + 1}, which comes after it: which joints carry a link?"
     if not J[:, 3:].any():
         return "the lower three rows are still zero: about which axis does each joint turn the link?"
     top, bottom = np.allclose(J[:, :3], right[:, :3]), np.allclose(J[:, 3:], right[:, 3:])
@@ -98,9 +95,6 @@ def _steps():
 
 
 def _step_symptom(cases, returned, expected):
-    here = [np.asarray(case[0]) for case in cases]
-    if all(np.allclose(one, q) for one, q in zip(returned, here, strict=True)):
-        return "it stays where it is: it returns q unchanged"
     ends = [
         forward_kinematics(np.asarray(one, dtype=float), case[2]) for one, case in zip(returned, cases, strict=True)
     ]
@@ -125,7 +119,7 @@ def _along(cases, returned, expected):
     for (q, p, l, _), one, right in zip(cases, returned, expected, strict=True):
         J, missing = jacobian(frames(q, l), 3, forward_kinematics(q, l))[:3], p - forward_kinematics(q, l)
         left = J.T @ (missing - J @ (one - q))
-        number = left @ (one - q) / ((one - q) @ (one - q))  # on the diagonal
+        number = left @ (one - q) / max((one - q) @ (one - q), 1e-12)  # on the diagonal
         mine.append(one - q)
         damped.append(right - q)
         plain.append(np.linalg.pinv(J) @ missing)
