@@ -138,6 +138,13 @@ def _symptom(cases, returned, expected):
             off = f"{'1 sample' if abs(samples) < 1.5 else '2 samples'} too {'long' if samples > 0 else 'short'}"
             return f"the {name} is {off}: with which sample does it begin, and with which does it end?"
         step = f"a step from {q[0]:.2f} to {target:.2f} rad"
+        usual = mine / theirs if theirs else 1.0
+        if (
+            usual
+            and abs(np.log10(abs(usual))) > 1.3
+            and np.mean(np.isclose(found[:, k], usual * right[:, k], rtol=1e-3)) > 0.5
+        ):
+            return f"the {name} is {usual:.3g} times what it should be: in which unit is it?"
         if k == 0 and np.isnan(theirs):
             return f"the {name} of {step} that never reaches 90 % of the way is {mine:.3g}: it has none, so nan"
         if np.isnan(theirs):
