@@ -141,7 +141,6 @@ def test_two_runs_play_pause_scrub_and_start_again(notebook):
     assert 1.5 < time < 3
     np.testing.assert_allclose(angles(notebook, 3), wanted, atol=1e-6)
     box.get_by_label("speed").select_option("5")
-    box.get_by_label("play again and again").click()
     notebook.evaluate(f"() => {VIEW.format(3)}.seek(3.9)")
     box.get_by_label("play or pause").click()
     notebook.wait_for_function(f"() => {VIEW.format(3)}.time < 3 && {VIEW.format(3)}.playing", timeout=10_000)  # loop

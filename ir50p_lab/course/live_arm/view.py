@@ -45,8 +45,9 @@ class LiveArm(anywidget.AnyWidget):
         on_drag: f(p, q_now) -> q or None, moves the arm when its tip is dragged to p (3,) m; None: inverse kinematics
         in the browser. frames: f(q) -> (4, 4, 4), transforms of frames 0 to 3 to the base: the arm is drawn by them,
         wrong ones too. badge: whose code moves the arm, 'yours' or "the course's"; by default told from them.
-        layers: which of table, shadow, ghost, trail, frames, velocity ellipsoid, force ellipsoid, ball are shown at
-        first. ball: (p, radius) m. height: CSS pixels; sliders: of the joints.
+        layers: which of table, shadow, ghost, trail, frames, joint axes, velocity ellipsoid, force ellipsoid,
+        workspace, ball are shown at first. ball: (p, radius) m.
+        height: CSS pixels; sliders: of the joints; readout: where the tip is, in numbers (the menu has a switch too).
 
     Attributes: q, list of rad, in both directions; layers.
     `play(run)` shows a motion. Raises InputError for what cannot be drawn, and what `frames` raises at first.
@@ -63,7 +64,7 @@ class LiveArm(anywidget.AnyWidget):
 
     def __init__(self, arm, q=(0.0, 0.0, 0.0), *, on_drag=None, frames=None, badge=None,
                  layers=("table", "shadow", "ghost", "trail"), ball=None,
-                 height=420, sliders=True):  # fmt: skip
+                 height=420, sliders=True, readout=True):  # fmt: skip
         self.arm, self._on_drag, self._frames = arm, on_drag, frames
         self._stop = threading.Event()
         ball = None if ball is None else (vectors3("ball", ball[0], unit="m"), float(ball[1]))
@@ -74,6 +75,7 @@ class LiveArm(anywidget.AnyWidget):
             "drag": "browser" if on_drag is None else "kernel",
             "height": height,
             "sliders": sliders,
+            "readout": readout,
             "ball": ball,
         }
         super().__init__(
@@ -86,14 +88,16 @@ class LiveArm(anywidget.AnyWidget):
             self._pose(self.q)
         self.on_msg(self._heard)
 
-    def play(self, *runs, labels=None):
+    def play(self, *runs, labels=None, speed=1.0, loop=False):
         """Show a motion, or two side by side, with a bar to play, pause and scrub, and curves over time.
 
         Args: runs: SimulationResult, Recording, anything with t and q; or one open Bench or LiveRun, which is
-        followed 25 times a second until it ends and can then be played. labels: a name for each run.
+        followed 25 times a second until it ends and can then be played. labels: a name for each run; speed: times
+        real time; loop: again and again.
         Returns: the view. Raises InputError for runs that cannot be shown.
         """
         self._stop.set()
+        self.options = self.options | {"speed": speed, "loop": loop}
         if hasattr(runs[0], "is_open") or hasattr(runs[0], "alive"):
             self._stop = threading.Event()
             threading.Thread(target=self._follow, args=(runs[0], self._stop), daemon=True).start()

@@ -3,7 +3,7 @@
 import { Matrix4, Mesh, MeshBasicMaterial, PerspectiveCamera, Plane, Raycaster, Group, SphereGeometry, Vector2, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Curves } from "./curves.js";
-import { frames, reach, tip } from "./kinematics.js";
+import { frames, jacobian, reach, tip } from "./kinematics.js";
 import { jointSliders, layout, make, playerBar, showLegend } from "./page.js";
 import * as renderer from "./renderer.js";
 import { COLOURS, Robot } from "./robot.js";
@@ -21,8 +21,6 @@ class View {
     this.size = this.l[1] + this.l[2];
     this.q = [...model.get("q")];
     this.on = new Set(model.get("layers"));
-    this.rate = 1; // of playing, times real time
-    this.again = false;
     this.waiting = {}; // kinds of messages under way, and the one to be sent next
     this.parts = layout();
     el.append(this.parts.box);
@@ -118,7 +116,10 @@ class View {
         this.model.set("layers", [...this.on]);
       });
     }
-    choice("place of the tip", true, (on) => { parts.tip.hidden = !on; });
+    choice("place of the tip", options.readout, (on) => {
+      this.options = { ...this.options, readout: on };
+      this.model.set("options", this.options);
+    });
     parts.layers.append(clear);
     this.written = [];
     this.showPlayer = playerBar(parts.player, {
@@ -164,7 +165,8 @@ class View {
       this.say(touched.join(", "));
     }
     const [x, y, z] = this.tipAt.map((v) => v.toFixed(3).replace("-", "\u2212"));
-    const place = this.parts.tip.hidden ? "" : `, tip at x ${x} m, y ${y} m, z ${z} m`;
+    const { readout } = this.options, place = readout ? `, tip at x ${x} m, y ${y} m, z ${z} m` : "";
+    this.parts.tip.hidden = !readout;
     this.parts.tip.textContent = `tip ${x}, ${y}, ${z} m`;
     this.canvas.setAttribute("aria-label", `the arm in 3-D${place}; arrow keys turn the view`);
     this.showJoints(this.q);
@@ -336,6 +338,8 @@ class View {
     this.pause();
     this.take(bytes?.byteLength ? new Track(bytes, shape) : null);
     if (!this.track) return;
+    this.rate = this.model.get("options").speed;
+    this.again = this.model.get("options").loop;
     this.seek(this.track.start);
   }
 
@@ -380,7 +384,7 @@ class View {
 
   tellPlayer() {
     const { track, time, playing, isLive, rate, again } = this;
-    this.showPlayer({ t: time, start: track.start, end: track.end, playing, live: isLive, rate, again });
+    this.showPlayer({ t: time, start: track.start, end: track.end, playing, live: isLive, rate: rate ?? 1, again });
   }
 
   play() {
@@ -466,4 +470,4 @@ export function mount(el, state) {
   return true;
 }
 
-export const inspect = { figures: renderer.figures, frames: (l, q) => frames(l, q).map((T) => T.clone().transpose().toArray()), reach };
+export const inspect = { figures: renderer.figures, frames: (l, q) => frames(l, q).map((T) => T.clone().transpose().toArray()), jacobian, reach, tip };

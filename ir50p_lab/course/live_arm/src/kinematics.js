@@ -3,15 +3,20 @@ import { Matrix4 } from "three";
 
 // Transforms of frames 0 to 3, coordinates of frame i to the base: four Matrix4. Frame i sits at the far end of link i.
 export function frames([l1, l2, l3], [a, b, c]) {
-  const links = [link(a, l1, 0, Math.PI / 2), link(b, 0, l2, 0), link(c, 0, l3, -Math.PI / 2)];
-  const transforms = [new Matrix4()];
-  for (const one of links) transforms.push(transforms.at(-1).clone().multiply(one));
-  return transforms;
-}
-
-function link(theta, d, a, alpha) {
-  const moved = new Matrix4().makeRotationZ(theta).multiply(new Matrix4().makeTranslation(a, 0, d));
-  return moved.multiply(new Matrix4().makeRotationX(alpha));
+  const ca = Math.cos(a), sa = Math.sin(a);
+  const turned = (angle, x, y, z) => {
+    const cosine = Math.cos(angle), sine = Math.sin(angle);
+    return new Matrix4().set(
+      ca * cosine, -ca * sine, sa, x,
+      sa * cosine, -sa * sine, -ca, y,
+      sine, cosine, 0, z,
+      0, 0, 0, 1,
+    );
+  };
+  const elbow = [l2 * Math.cos(b) * ca, l2 * Math.cos(b) * sa, l1 + l2 * Math.sin(b)];
+  const [x, y, z] = tip([l1, l2, l3], [a, b, c]);
+  const hand = turned(b + c, x, y, z).multiply(new Matrix4().makeRotationX(-Math.PI / 2));
+  return [new Matrix4(), turned(0, 0, 0, l1), turned(b, ...elbow), hand];
 }
 
 // The tip, [x, y, z] in m.

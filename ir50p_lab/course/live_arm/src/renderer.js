@@ -10,6 +10,7 @@ function make() {
   renderer = new WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
   renderer.setPixelRatio(1);
   renderer.setScissorTest(true);
+  renderer.domElement.addEventListener("webglcontextlost", (event) => event.preventDefault());
   renderer.domElement.addEventListener("webglcontextrestored", () => views.forEach((view) => view.soon()));
 }
 
