@@ -24,7 +24,7 @@ def live_loop(bench, controller, reference, orders, tell):
         bench: open Bench; controller: anything with step(t, measured, reference); reference: target(t) or None, which
         holds the measured pose. orders: queue of (name, content): "stop", "cut" (None), "gains" (dict of (3,)),
         "set point" (3,) rad. tell: takes a name and its content: "phase", "recording" (path or None) and "sample":
-        (t, q, u, reference, s of a true clock, late cycles, trips of the watchdog), once in every cycle.
+        (t, q, u, reference, begin of the cycle in s of a true clock, late cycles, trips of the watchdog), once in each.
 
     After the order to cut or an error the drive is off at once; else the arm moves to its rest pose first, which is
     not recorded. Raises what controller, reference, bench or `tell` raise.
@@ -70,7 +70,7 @@ class _Loop:
         A sample with which it ends is not driven: the command before holds, or has been cut.
         """
         for sample in samples:
-            woke = time.perf_counter()
+            began = getattr(self.bench._run.pace, "heard", time.perf_counter())
             while not self.orders.empty():
                 order, content = self.orders.get()
                 if order == "cut":
@@ -82,7 +82,7 @@ class _Loop:
             self.say(RETURNING if returning else LEADING if self.target.leading else RUNNING)
             u = self.bench.drive(controller.step(sample.t, sample.q, sample.reference))
             numbers = (three.tolist() for three in (sample.q, u, sample.reference[0]))
-            self.tell("sample", (sample.t, *numbers, woke, sample.missed, self.bench._run.trips))
+            self.tell("sample", (sample.t, *numbers, began, sample.missed, self.bench._run.trips))
         return "over"
 
     def change(self, controller, order, content, t):
