@@ -1,4 +1,6 @@
-"""Speed of ball detector and calibration beside plain OpenCV, in the same run: `pytest tests/benchmarks -k vision -s`.
+"""Speed of ball detector and calibration beside plain OpenCV, in the same run.
+
+`pytest tests/benchmarks -k vision --benchmark-enable -s`
 
 The recipe is what a detector by colour does with OpenCV alone on the whole 640x480 picture: smooth, HSV, two ranges of
 red, open and close, outlines, enclosing circle; the plain calibration is `findChessboardCorners`, `cornerSubPix` and
@@ -80,7 +82,7 @@ def test_calibration_beside_plain_calls(request):
     pictures = [in_a_room(paint(T, seed=k), T, rng) for k, T in enumerate(poses)]
     found = calibrate(pictures, progress=False)
     assert abs(found.fx - 700) < 3 * found.stderr["fx"] and abs(plain_calibration(pictures) - 700) < 10
-    if request.config.getoption("benchmark_disable"):
+    if not request.config.getoption("benchmark_enable"):
         return  # both do the work: the plain test run is not for times
     ours, plain = fastest(lambda: calibrate(pictures, progress=False), lambda: plain_calibration(pictures), rounds=3)
     print(
@@ -95,7 +97,7 @@ def test_ball_beside_the_plain_recipe(request):
     balls, (centre, _) = find_balls(image), recipe(image)
     assert np.hypot(centre[0] - truth.balls[0].x, centre[1] - truth.balls[0].y) < 3  # both do the work
     assert np.hypot(balls[0].x - truth.balls[0].x, balls[0].y - truth.balls[0].y) < 0.5
-    if request.config.getoption("benchmark_disable"):
+    if not request.config.getoption("benchmark_enable"):
         return
     ours, plain = fastest(lambda: find_balls(image), lambda: recipe(image))
     print(
