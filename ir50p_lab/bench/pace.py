@@ -48,6 +48,7 @@ class CountedPace:
 
     def silence(self):
         """None, s."""
+        self.heard = time.perf_counter()
         return 0.0
 
 

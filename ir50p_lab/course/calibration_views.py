@@ -101,15 +101,17 @@ def covered_figure(whole, covered, view):
 def contact_sheet(images, calibration):
     """All pictures, small: corners on those that were used, the reason on the others. Returns: LabFigure.
 
-    images: 5 n pictures (h, w, 3), in the order given to `calibrate`; calibration: Calibration.
+    images: pictures (h, w, 3), in the order given to `calibrate`; calibration: Calibration.
     """
-    rows = len(images) // 5
+    rows = -(-len(images) // 5)
     figure = new_figure(9.0, 1.62 * rows + 0.2, rows=rows, cols=5, note=STAMP)
     for view in calibration.views:
         ax, corners = figure.axes[view.index], view.corners / 2
         bare_picture(ax, images[view.index][::2, ::2])
         ax.plot(*corners.T, ".", color=COLOURS["green"], markersize=2.5)
         ax.plot(*corners[0], "o", color=COLOURS["amber"], markersize=4)
+    for ax in figure.axes[len(images) :]:
+        ax.set_visible(False)
     for one in calibration.rejected:
         ax = figure.axes[one.index]
         bare_picture(ax, images[one.index])

@@ -35,12 +35,14 @@ def slider(min, max, step, start, *, label=None, unit=""):
 def make_control(name, spec, label_width, moved):
     """The widget that holds the value, and the row that shows it; `moved()` is called after each change."""
     style, layout = {"description_width": label_width}, {"width": f"calc({label_width} + 230px)"}
-    if isinstance(spec, list | dict):
+    if isinstance(spec, list | dict) and spec:
         control = widgets.Dropdown(options=spec, description=name, style=style, layout=layout)
         control.observe(lambda _: moved(), "value")
         return control, control
-    if not isinstance(spec, Slider):
+    if isinstance(spec, tuple) and len(spec) == 4:
         spec = Slider(*spec)
+    if not isinstance(spec, Slider):
+        raise InputError(f"{name}={spec!r}: give (min, max, step, start), slider(...) or a list of choices")
     common = {"min": spec.min, "max": spec.max, "step": spec.step, "value": spec.start}
     whole = all(isinstance(v, int) for v in common.values())
     slider_kind = widgets.IntSlider if whole else widgets.FloatSlider

@@ -25,7 +25,7 @@ import ipywidgets as widgets
 from ir50p_lab.course.canvas import Canvas
 from ir50p_lab.course.controls import Slider, close_all, make_control, refuse_bad_value, slider, value_of
 from ir50p_lab.course.painter import DRAWING, Painter
-from ir50p_lab.errors import UnstableLoopWarning
+from ir50p_lab.errors import InputError, UnstableLoopWarning
 
 __all__ = ["LivePanel", "Slider", "live", "slider"]
 
@@ -58,6 +58,8 @@ class LivePanel(widgets.VBox):
     panels: ClassVar = weakref.WeakSet()
 
     def __init__(self, figure, update, controls):
+        if not controls:
+            raise InputError("live(figure, update, ...) needs at least one control, such as kp=(0, 10, 0.1, 1)")
         self.figure, self.error, self.drawn, self.updates = figure, None, None, 0
         self._update, self._painter = update, None
         self._stale = self._busy = False

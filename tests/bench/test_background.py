@@ -336,6 +336,22 @@ def test_time_is_kept_without_drift():
         run.cut()
 
 
+class Answering(SimulatedBench):
+    """A bench whose answers take 0, 2 and 4 ms, in turn."""
+
+    def _measure(self, cycle, drive):
+        time.sleep(0.002 * (cycle % 3))
+        return super()._measure(cycle, drive)
+
+
+def test_the_period_is_that_of_the_cycles_not_of_the_answers():
+    with Answering(IR50P, record_to=False) as bench:
+        run = bench.start(pid(), None)
+        until(lambda: run.statistics().cycles > 60)
+        assert run.statistics().period_p50 == pytest.approx(0.01, abs=0.001)
+        run.cut()
+
+
 # ---- in a process of its own
 
 

@@ -46,6 +46,7 @@ def test_contact_sheet_names_the_reason(calibration, images):
 
     lost = replace(calibration, views=calibration.views[:4], rejected=(Rejected("x", 4, Reason.BLURRED, "soft"),))
     assert "blurred" in text_of(views.contact_sheet(images, lost))
+    assert "blurred" in text_of(views.contact_sheet([*images, images[0]], lost))  # the last row is not full
 
 
 def test_lens_view_moves_lines_as_the_lens_does():

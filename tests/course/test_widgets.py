@@ -125,6 +125,10 @@ def test_reset_puts_everything_back():
 @pytest.mark.parametrize(
     ("controls", "words"),
     [
+        ({}, "at least one control"),
+        ({"a": (0, 1, 0.1)}, "give \\(min, max, step, start\\)"),
+        ({"a": "text"}, "give \\(min, max, step, start\\)"),
+        ({"a": []}, "give \\(min, max, step, start\\)"),
         ({"a": (1, 0, 0.1, 0.5)}, "min < max"),
         ({"a": (0, 1, 0, 0.5)}, "step > 0"),
         ({"a": (0, 1, 0.1, 2)}, "min <= start <= max"),
