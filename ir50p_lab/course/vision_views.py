@@ -90,20 +90,21 @@ class MaskView:
     """A picture beside its mask, pixel for pixel, for sliders: `update(mask)`. Attribute figure, for `live`."""
 
     def __init__(self, image):
-        self._image = image
         height, width = image.shape[:2]
-        self.figure, ax = subplots(2 * width / 100, (height + 26) / 100)
+        # two pictures, of which one stands still: only the mask is drawn anew
+        self.figure, left, right = subplots(2 * width / 100, (height + 26) / 100, cols=2)
         self.figure.set_layout_engine("none")
-        ax.set_position([0, 0, 1, height / (height + 26)])
-        ax.set_axis_off()
-        self._shown = ax.imshow(np.hstack([image, image]), interpolation="nearest", aspect="auto")
+        for ax, x in ((left, 0), (right, 0.5)):
+            ax.set_position([x, 0, 0.5, height / (height + 26)])
+            ax.set_axis_off()
+        left.imshow(image, interpolation="nearest", aspect="auto")
+        self._mask = right.imshow(np.zeros_like(image), interpolation="nearest", aspect="auto")
         # a title of the axes lies above the picture and would be drawn anew with it
         self.figure.suptitle(f"The picture ({STAMP}), and white what lies in the ranges", fontsize=10, y=0.99)
 
     def update(self, mask):
         """Show a mask (h, w) of booleans, and say how much of the picture it is."""
-        white = np.repeat(255 * mask[:, :, None].astype(np.uint8), 3, axis=2)
-        self._shown.set_data(np.hstack([self._image, white]))
+        self._mask.set_data(np.repeat(255 * mask[:, :, None].astype(np.uint8), 3, axis=2))
         return f"{mask.mean():.2%} of the picture"
 
 
