@@ -6,6 +6,7 @@ import numpy as np
 
 from ir50p_lab.bench import UNIT, SimulatedArm
 from ir50p_lab.course.arm3d import ArmView, SideView
+from ir50p_lab.course.simulation_views import Row, Traces
 from ir50p_lab.course.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.signals import (
@@ -199,6 +200,12 @@ def path_figure(arm, path, done, before):
     over_time.set_title(f"Thin: Tables 4.1-4.3, {before.rms_mm:.0f} mm rms")
     over_time.legend(fontsize=8, loc="center right")
     return figure
+
+
+def one_joint(seconds, *, target, title):
+    """Angle and command of joint 1 of a simulated run: Traces; `update(t, q, u)` draws (n,) s, rad, PWM counts."""
+    angle = Row("angle of joint 1 [rad]", (-0.05 * target, 1.25 * target), levels=(target,))
+    return Traces("time [s]", (0, seconds), angle, Row("command [PWM]", (-275, 275)), title=title)
 
 
 def replay_figure(recording, replayed):

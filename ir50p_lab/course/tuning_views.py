@@ -158,12 +158,6 @@ def rule_in_use(rule):
     return rule if same else course
 
 
-def redraw(figure, run, joint):
-    """Put another run in place of the last one in a figure of `one_joint`, for a slider."""
-    for axes, values in zip(figure.axes, (run.q, run.u), strict=True):
-        axes.lines[-1].set_data(run.t, values[:, joint - 1])
-
-
 def speed_step(t, speed, fitted=None):
     """A measured answer of the speed (n,) rad/s to a jump at 1 s, and what was fitted to it: LabFigure."""
     figure, ax = subplots(8.0, 3.0)

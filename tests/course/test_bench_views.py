@@ -47,6 +47,13 @@ def test_let_go_shows_the_fall_and_its_origin(sinking):
     assert "It stays" in texts(views.let_go_figure(IR50P, still))
 
 
+def test_one_joint_draws_what_it_gets(motion):
+    view = views.one_joint(7, target=0.8, title="t")
+    view.update(motion.t, motion.q[:, 0], motion.u[:, 0])
+    assert np.array_equal(view.lines[0].get_ydata(), motion.q[:, 0])
+    assert "simulated, not measured" in view.axes[-1].get_xlabel()
+
+
 def test_breakaway_names_the_last_command():
     t = np.arange(100) * 0.01
     u = np.column_stack([100 * t, 0 * t, 0 * t])
