@@ -3,6 +3,7 @@
 import tomllib
 import warnings
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -61,9 +62,14 @@ class JointCalibration:
                 said += ", negative: swap the outer wires of its potentiometer, or the joint will run away when driven"
                 warnings.warn(said, SuspiciousArmWarning, stacklevel=3)
 
+    @cached_property
+    def _arrays(self):
+        return np.array(self.zero), np.array(self.slope)
+
     def radians(self, counts):
         """Angles of counts; both (3,) or (n, 3)."""
-        return (np.asarray(counts, dtype=float) - self.zero) / self.slope
+        zero, slope = self._arrays
+        return (np.asarray(counts, dtype=float) - zero) / slope
 
     def counts(self, q):
         """Counts at angles; both (3,) or (n, 3), not rounded."""

@@ -4,14 +4,12 @@ The copies differ in size, light, sharpness, noise, compression, in what hides a
 into some shapes are painted: the classifier is to know a ball, not the renderer.
 """
 
-from pathlib import Path
-
 import cv2
 import numpy as np
 
 from ir50p_lab.vision import RED, Colour, render_scene
 from ir50p_lab.vision.ball.classifier import measures, rays_of
-from ir50p_lab.vision.ball.find import rejection_reason
+from ir50p_lab.vision.ball.find import check_colour, rejection_reason
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.measure import NoBallError, measure
 from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
@@ -24,40 +22,33 @@ BALL, NEARLY, NOTHING, UNCLEAR = 1, 2, 0, -1  # NEARLY: of a ball, the outline a
 _COPIES = {"ball": 4, "no_ball": 3}  # of each scene, changed
 
 
-def scene(seed, kind, folder=None):
-    """Picture of a scene, and its red balls (n, 4): x, y, radius, visible share; kept in `folder` if there is one."""
-    return _kept(f"{kind}_{seed}", lambda: random_scene(seed, kind), seed, folder)
+def scene(seed, kind, draw=random_scene):
+    """Picture of a scene, and its red balls (n, 4): x, y, radius, visible share; draw: function of seed and kind."""
+    image, truth = render_scene(draw(seed, kind), seed=seed)
+    balls = [(b.x, b.y, b.radius, b.visible) for b in scene_truth(truth.scene).red_balls]
+    return image, np.array(balls).reshape(-1, 4)
 
 
-def _kept(name, draw, seed, folder):
-    stem = Path(folder or ".") / name
-    if folder and stem.with_suffix(".npy").exists():
-        return np.ascontiguousarray(cv2.imread(f"{stem}.png")[..., ::-1]), np.load(stem.with_suffix(".npy"))
-    image, truth = render_scene(draw(), seed=seed)
-    balls = np.array([(b.x, b.y, b.radius, b.visible) for b in scene_truth(truth.scene).red_balls]).reshape(-1, 4)
-    if folder:
-        cv2.imwrite(f"{stem}.png", image[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 1])
-        np.save(stem.with_suffix(".npy"), balls)
-    return image, balls
+def examples(seed, kind, *, shapes=True):
+    """Rays (n, 32, channels), measures (n, m) and labels (n,) of one scene and of changed copies of it.
 
-
-def examples(seed, kind, *, folder=None):
-    """Rays (n, 32, channels), measures (n, m) and labels (n,) of one scene and of changed copies of it."""
+    shapes: whether shapes are painted into a scene without a ball, too.
+    """
     rng = np.random.default_rng([seed, kind == "ball", 77])
-    image, balls = scene(seed, kind, folder)
+    image, balls = scene(seed, kind)
     guesses = _guesses(image, most=18)
     found = _look(image, guesses, balls, RED)
-    if kind == "no_ball":
-        found += painted(seed, 0, folder) + painted(seed, 1, folder) + behind(seed, 0, folder) + behind(seed, 1, folder)
     for _ in range(_COPIES[kind]):
         found += _look(*_changed(rng, image, guesses, balls), _another_red(rng))
+    if shapes and kind == "no_ball":
+        found += painted(seed) + behind(seed)
     return found
 
 
-def crowded_examples(seed, kind, *, copies=2, folder=None):
+def crowded_examples(seed, kind, *, copies=2):
     """As `examples`, of a crowded scene: small pictures that show much of what is easily taken for a ball."""
     rng = np.random.default_rng([seed, kind == "ball", 80])
-    image, balls = _kept(f"crowded_{kind}_{seed}", lambda: crowded_scene(seed, kind), seed, folder)
+    image, balls = scene(seed, kind, crowded_scene)
     guesses = _guesses(image, most=30)
     found = _look(image, guesses, balls, RED)
     for _ in range(copies):
@@ -73,10 +64,11 @@ def _look(image, guesses, balls, colour):
     view, known, found = view_of(image.shape), [], []
     for guess in guesses:
         try:
+            check_colour(image, tuple(guess), colour)
             m = measure(image, tuple(guess), view, colour)
         except NoBallError:
             continue
-        if rejection_reason(m, LEAST_RADIUS):
+        if rejection_reason(m, LEAST_RADIUS, colour):
             continue
         o = m.outline
         if any(np.hypot(o.x - x, o.y - y) + abs(o.r - r) < 0.05 * r for x, y, r in known):
@@ -221,10 +213,10 @@ def _blend(image, mask, colour, other, rng):
     image[:] = np.clip(image * (1 - mask) + paint * mask, 0, 255).astype(np.uint8)
 
 
-def painted(seed, turn=0, folder=None):
+def painted(seed, turn=0):
     """Examples of shapes painted into a scene without a ball: discs count as balls, polygons, ovals, rings do not."""
     rng = np.random.default_rng([seed, turn, 78])
-    image, balls = scene(seed, "no_ball", folder)
+    image, balls = scene(seed, "no_ball")
     image, _, balls = _resized(rng, image, np.empty((0, 3)), balls)
     image, guesses, discs = _painted(rng, np.ascontiguousarray(image), count=6)
     return _look(_seen(rng, image), guesses, discs, _another_red(rng))
@@ -285,10 +277,10 @@ def _painted(rng, image, count):
     return image, np.array(guesses).reshape(-1, 3), np.array(discs).reshape(-1, 4)
 
 
-def behind(seed, turn=0, folder=None):
+def behind(seed, turn=0):
     """Examples of balls and of rods with round ends, shaded alike, half behind something: a rod's sides are straight."""
     rng = np.random.default_rng([seed, turn, 79])
-    image, balls = scene(seed, "no_ball", folder)
+    image, balls = scene(seed, "no_ball")
     image, _, balls = _resized(rng, image, np.empty((0, 3)), balls)
     image = np.ascontiguousarray(image)
     height, width = image.shape[:2]

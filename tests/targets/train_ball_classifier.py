@@ -1,40 +1,37 @@
-"""Train the classifier of the ball detector: `python -m tests.targets.train_ball_classifier [--scenes N] [--folder DIR]`.
+"""Train the classifier of the ball detector on: `python -m tests.targets.train_ball_classifier [--scenes N]`.
 
-Scenes 100 to 6149 of the kinds 'ball' and 'no_ball' (no evaluation uses these seeds; every fifth is held out to choose
-the threshold by) and crowded ones from 110000 on are rendered, kept in the folder, and searched; what the search
-proposes in them and in changed copies trains a few small networks, which are written to
-ir50p_lab/vision/ball/classifier.npz. NumPy only, single precision; the same seeds give the same weights on the same machine.
-Rendering and searching take two seconds a scene, training ten minutes a network and 6 GB.
+Scenes from 300000 on of the kinds 'ball' and 'no_ball' (no evaluation uses these seeds) are rendered and searched, every
+fifth pair as crowded ones, too; what the detector proposes in them and in changed copies trains the networks of the
+package further, and they are written to ir50p_lab/vision/ball/classifier.npz. NumPy only, single precision; the same
+seeds give the same weights on the same machine. A pair of scenes takes two seconds of a processor, a network two
+minutes and 5 GB. --anew begins with untrained networks, and trains them for longer.
 
-The weights in the package come from examples collected in several steps: scenes 1200 to 3199 by an earlier order of
-guesses, rods `behind` things in two thirds of the scenes (in half of these what is in front may be a red ball), crowded
-scenes (800 without and 400 with balls) with paler things in front, and 800 and 200 further plain ones from 130000 on.
-One of the four networks saw them for 24 epochs only. Training anew gives others.
+Where the networks began: from nothing, with the examples of an earlier detector in scenes 100 to 6149 (and 130000 to
+130999), in shapes painted into them, and in crowded ones from 110000 on. The weights in the package went on from there
+with 3000 pairs.
 """
 
 import argparse
 import sys
-import time
 
 import numpy as np
 
 from ir50p_lab.vision.ball.classifier import FAR, NEAR, WEIGHTS, around
 from ir50p_lab.vision.ball.features import RAYS
 from tests.targets.ball_examples import NEARLY, crowded_examples, examples
+from tests.targets.in_parallel import mapped
 
 LAYERS = ("w1", "b1", "w2", "b2", "w3", "b3", "w4", "b4")
-FIRST = 100
-CROWDED = 110_000  # first seed of crowded scenes
+FIRST, SCENES = 300_000, 3000
+CROWDED, SHAPES = 5, 6  # of so many pairs one is also drawn crowded, one has shapes painted into it, which takes long
 WIDTHS = (56, 56, 40)  # of the layers
 NETWORKS = 4
-EPOCHS, BATCH, RATE, DECAY = 40, 96, 2.5e-3, 0.2
-EASY, SPARED = (
-    5.0,
-    4,
-)  # log odds beyond which the classifier before is right for sure; of these an epoch sees one in SPARED
+BATCH, DECAY = 96, 0.2
+EPOCHS, RATE = 12, 1e-3
+EPOCHS_ANEW, RATE_ANEW = 40, 2.5e-3
+EASY, SPARED = 5.0, 4  # log odds beyond which the networks are surely right: of these an epoch sees one in SPARED
 NOISE, DROP = 0.25, 0.3  # added to the scaled inputs; share of the pooled features left out, in training
-FALSE_COSTS = 2.0  # a false alarm is worse than a miss
-OF_CROWDED = 2.5  # what a crowded scene counts for
+OF_BALL, OF_CROWDED = 1.4, 2.5  # what a ball counts for, as most of what is proposed is none; what a crowded scene does
 
 
 def logit(rays, numbers, net, keep=1.0):
@@ -88,19 +85,18 @@ def gradient(rays, numbers, labels, weights, net, keep=1.0):
     return grad, loss
 
 
-def train(rays, numbers, labels, weights, easy, rng, report=print):
-    """One network, by Adam with a rate that falls to nothing; examples are mirrored as they come.
+def train(net, rays, numbers, labels, weights, easy, rng, epochs=EPOCHS, top_rate=RATE):
+    """Train a network in place, by Adam with a rate that falls to nothing; examples are mirrored as they come.
 
     easy (n,): examples of which each epoch draws one in SPARED, with as much more weight.
     """
     hard, rest = np.flatnonzero(~easy), np.flatnonzero(easy)
     weights = np.where(easy, SPARED, 1).astype(np.float32) * weights
-    net = start(rng, rays.shape[2], numbers.shape[1])
     first = {name: np.zeros_like(value) for name, value in net.items()}
     second = {name: np.zeros_like(value) for name, value in net.items()}
     batches = (len(hard) + len(rest) // SPARED) // BATCH
-    steps, step = EPOCHS * batches, 0
-    for epoch in range(EPOCHS):
+    steps, step = epochs * batches, 0
+    for epoch in range(epochs):
         drawn, losses = rng.choice(rest, len(rest) // SPARED, replace=False), []
         order = rng.permutation(np.concatenate([hard, drawn]))
         for k in range(batches):
@@ -112,77 +108,64 @@ def train(rays, numbers, labels, weights, easy, rng, report=print):
             grad, loss = gradient(x, y, labels[chosen], weights[chosen], net, keep)
             losses.append(loss)
             step += 1
-            rate = RATE * 0.5 * (1 + np.cos(np.pi * step / steps)) * min(1, step / 200)
+            rate = top_rate * 0.5 * (1 + np.cos(np.pi * step / steps)) * min(1, step / 200)
             for name in LAYERS:
                 first[name] += 0.1 * (grad[name] - first[name])
                 second[name] += 0.001 * (grad[name] ** 2 - second[name])
                 size = np.sqrt(second[name] / (1 - 0.999**step)) + 1e-8
                 net[name] -= np.float32(rate) * (first[name] / (1 - 0.9**step) / size + DECAY * net[name])
-        report(f"epoch {epoch}: loss {np.mean(losses):.4f}")
-    return net
+        print(f"epoch {epoch}: loss {np.mean(losses):.4f}", flush=True)
 
 
-def fit(rays, numbers, labels, scenes, crowded, report=print):
-    """The weights of the classifier from examples (n, ...); scenes (n,): number of the scene; crowded (n,): of such a one."""
-    rays = rays.astype(np.float32)
-    before = odds(rays, numbers) if WEIGHTS.exists() else np.zeros(len(labels))
-    flat = rays.reshape(-1, rays.shape[2])
-    scale = {
-        "ray_mean": flat.mean(axis=0),
-        "ray_std": flat.std(axis=0) + 1e-3,
-        "number_mean": numbers.mean(axis=0),
-        "number_std": numbers.std(axis=0) + 1e-3,
-    }
-    rays = (rays - scale["ray_mean"]) / scale["ray_std"]
-    numbers = ((numbers - scale["number_mean"]) / scale["number_std"]).astype(np.float32)
+def fit(rays, numbers, labels, scenes, crowded, anew=False):
+    """Weights of the classifier from examples (n, ...); scenes (n,): number of the scene; crowded (n,): of such a one."""
+    with np.load(WEIGHTS) as file:
+        net = {name: file[name].astype(np.float32) for name in file.files}
+    rays = (rays.astype(np.float32) - net["ray_mean"]) / net["ray_std"]
+    numbers = ((numbers - net["number_mean"]) / net["number_std"]).astype(np.float32)
+    nets = [{name: net[name][k] for name in LAYERS} for k in range(len(net["w1"]))]
+    before = odds(rays, numbers, nets)
     nearly = labels == NEARLY
     labels = (labels > 0).astype(np.float32)
     easy = np.where(labels == 1, before, -before) > EASY
     # a scene counts once, however much was proposed in it
     count = np.bincount(scenes)[scenes]
     share = np.minimum(np.where(crowded, OF_CROWDED, 1) * 5 / (count + 5), 1)
-    weights = np.where(labels == 1, 1.0, FALSE_COSTS * share).astype(np.float32)
-    weights[nearly] = 0.5
-    nets = [train(rays, numbers, labels, weights, easy, np.random.default_rng([7, k]), report) for k in range(NETWORKS)]
-    return scale | {name: np.stack([net[name] for net in nets]) for name in LAYERS}
+    weights = np.where(labels == 1, OF_BALL, share).astype(np.float32)
+    weights[nearly] = 0.5 * OF_BALL
+    plan = (EPOCHS_ANEW, RATE_ANEW) if anew else (EPOCHS, RATE)
+    if anew:
+        nets = [start(np.random.default_rng([7, k]), rays.shape[2], numbers.shape[1]) for k in range(NETWORKS)]
+    for k, one in enumerate(nets):
+        train(one, rays, numbers, labels, weights, easy, np.random.default_rng([8, k]), *plan)
+    return net | {name: np.stack([one[name] for one in nets]) for name in LAYERS}
 
 
-def odds(rays, numbers):
-    """Log odds (n,) of examples by the classifier in the package: the mean of its networks."""
-    with np.load(WEIGHTS) as file:
-        net = {name: file[name].astype(np.float32) for name in file.files}
-    x = (rays - net["ray_mean"]) / net["ray_std"]
-    y = (numbers - net["number_mean"]) / net["number_std"]
-    each = [{name: net[name][k] for name in LAYERS} for k in range(len(net["w1"]))]
-    parts = [slice(k, k + 1000) for k in range(0, len(x), 1000)]
-    return np.concatenate([np.mean([logit(x[p], y[p], one)[0] for one in each], axis=0) for p in parts])
+def odds(rays, numbers, nets):
+    """Log odds (n,) of scaled examples: the mean of several networks."""
+    parts = [slice(k, k + 1000) for k in range(0, len(rays), 1000)]
+    return np.concatenate([np.mean([logit(rays[p], numbers[p], one)[0] for one in nets], axis=0) for p in parts])
 
 
-def collect(scenes, crowded, folder, report=print):
-    """Examples of that many scenes of each kind: rays, numbers, labels, number of the scene, whether it is crowded."""
-    ways = [(examples, FIRST, scenes), (crowded_examples, CROWDED, crowded)]
-    found, scene, begun = [], 0, time.monotonic()
-    for make, first, many in ways:
-        for seed in range(first, first + many):
-            if make is examples and seed % 5 == 0:
-                continue  # held out
-            for kind in ("ball", "no_ball"):
-                scene += 1
-                found += [(*one, scene, make is crowded_examples) for one in make(seed, kind, folder=folder)]
-            if seed % 50 == 49:
-                report(f"{make.__name__} {seed}: {len(found)} examples, {time.monotonic() - begun:.0f} s", flush=True)
-    return [np.array(part) for part in zip(*found, strict=True)]
+def of_one_seed(seed):
+    """Examples of a pair of scenes, and of a crowded pair: (rays, measures, label, number of the scene, crowded)."""
+    pair, found = seed // 2, []
+    for scene, kind in enumerate(("no_ball", "ball"), start=4 * seed):
+        found += [(*one, scene, False) for one in examples(seed, kind, shapes=pair % SHAPES == 0)]
+        if pair % CROWDED == 0:
+            found += [(*one, scene + 2, True) for one in crowded_examples(seed, kind)]
+    return found
 
 
 def main(arguments):
     """Collect, train, write."""
     parser = argparse.ArgumentParser(prog="python -m tests.targets.train_ball_classifier", description=__doc__)
-    parser.add_argument("--scenes", type=int, default=6050, help="of each kind")
-    parser.add_argument("--crowded", type=int, default=800, help="of each kind")
-    parser.add_argument("--folder", help="where rendered scenes are kept")
+    parser.add_argument("--scenes", type=int, default=SCENES, help="pairs of scenes, with and without a ball")
+    parser.add_argument("--anew", action="store_true", help="begin with untrained networks")
     options = parser.parse_args(arguments)
-    rays, numbers, labels, scenes, crowded = collect(options.scenes, options.crowded, options.folder)
-    parts = fit(rays, numbers, labels, scenes, crowded)
+    found = mapped(of_one_seed, range(FIRST, FIRST + options.scenes), "pairs of scenes")
+    rays, numbers, labels, scenes, crowded = map(np.array, zip(*(one for seed in found for one in seed), strict=True))
+    parts = fit(rays, numbers, labels, np.unique(scenes, return_inverse=True)[1], crowded, options.anew)
     np.savez_compressed(WEIGHTS, **{name: value.astype(np.float16) for name, value in parts.items()})
     print(f"{WEIGHTS}: {WEIGHTS.stat().st_size / 1000:.0f} kB from {len(labels)} examples")
     return 0

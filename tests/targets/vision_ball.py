@@ -1,7 +1,7 @@
 """The ball detector against its targets, on the frozen scenes: `python -m tests.targets.vision --only ball`.
 
-Seeds from 80000 on, on which nothing was tuned: the classifier was trained on 100 to 6149 and from 110000 on
-(tests/targets/train_ball_classifier.py), rules and thresholds were chosen on others below 62000 and from 70000 to 71999.
+Seeds from 80000 on, on which nothing was tuned: the classifier was trained on 100 to 6149 and from 110000 and 300000 on
+(tests/targets/train_ball_classifier.py), rules and thresholds were chosen on others below 80000.
 A scene of kind 'ball' counts as found if a ball is reported within a third of the radius of the true centre; whatever
 else is reported there is a false alarm. A ball that the picture shows nearly black (value below 0.2, in deep shade) has
 no colour to be found by: it is refused on purpose, and counted in a row of its own.

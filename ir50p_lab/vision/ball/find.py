@@ -24,7 +24,7 @@ _GUESSES, _CLOSER = 14, 5  # guesses of which the colour is looked at; measured 
 
 # Log odds that a ball needs, in the first look and in the closer one: above 0, as a false alarm is worse than a miss.
 # The closer look comes where the first saw none, most often because there is none.
-_LEAST_ODDS, _LEAST_ODDS_CLOSER = 0.4, 1.8
+_LEAST_ODDS, _LEAST_ODDS_CLOSER = 0.7, 1.4
 _SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more
 # share of the outline below which the end of a rod can, and what is missing costs, times its share
 _CLEAR, _MORE_HIDDEN = 0.75, 4.0
@@ -132,7 +132,7 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
             if tries == most:
                 break
             try:
-                _check_colour(image, (x, y, r), colour)
+                check_colour(image, (x, y, r), colour)
                 tries += 1
                 found = measure(image, (x, y, r), view, colour, camera, least_radius)
             except NoBallError as why:
@@ -220,7 +220,7 @@ def rejection_reason(found, least_radius, colour=RED):
     return ""
 
 
-def _check_colour(image, guess, colour):
+def check_colour(image, guess, colour):
     """Refuse a guess if the square in its disc has another colour: measuring its outline takes ten times as long.
 
     Noise breaks up a thing whose hue is near the bounds of the colour's into many guesses. Raises NoBallError.
