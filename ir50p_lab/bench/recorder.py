@@ -9,7 +9,7 @@ from itertools import count
 from pathlib import Path
 
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.recording_file import event_text, head_text, lines_text, rows_text, table_of
+from ir50p_lab.bench.recording_file import event_text, head_text, lines_of, lines_text, table_of
 from ir50p_lab.controllers.base import gains_of
 from ir50p_lab.errors import RecordingError
 from ir50p_lab.home import home
@@ -32,8 +32,7 @@ class Recorder:
     """
 
     def __init__(self, head, folder=None):
-        now = datetime.now().astimezone()
-        head = {"date": now.isoformat(timespec="seconds"), **head}
+        head = {"date": datetime.now().astimezone().isoformat(timespec="seconds"), **head}
         self._rows, self._file, self.path = array("d"), None, None
         if folder is not False:
             self._create(Path(folder or os.environ.get("IR50P_RECORDINGS") or home() / "recordings"), head)
@@ -59,15 +58,17 @@ class Recorder:
         Raises RecordingError if the disk takes no more (memory and file keep what was recorded before), InputError
         for a reference that is not three numbers.
         """
-        r = math.nan if reference is None else vector3("reference", reference)
-        self.write_block([sample.t], sample.q, sample.counts, pwm, r, gripper, sample.missed)
+        r = 3 * [math.nan] if reference is None else vector3("reference", reference).tolist()
+        measured = *sample.q.tolist(), *sample.counts.tolist()
+        self._add([sample.t, *measured, *pwm.tolist(), *r, gripper, sample.missed])
 
     def write_block(self, t, q, counts, u, r=math.nan, gripper=False, missed=0):
         """Record many cycles at once, for compiled runs: arrays (n,), (n, 3)... as in Recording; r may be NaN."""
-        table = table_of(t, q, counts, u, r, gripper, missed)
-        self._rows.frombytes(table.tobytes())
-        if self._file is not None:
-            self._put(rows_text(table))
+        self._add(table_of(t, q, counts, u, r, gripper, missed).ravel().tolist())
+
+    def _add(self, values):
+        self._rows.extend(values)
+        self._put(lines_of(values))
 
     def event(self, t, text):
         """Record that something was changed at t, s: a line between the samples, which spreadsheets show as text."""

@@ -41,9 +41,14 @@ def lines_text(header):
     return "".join(f"# {key}: {_one_line(value)}\n" for key, value in header.items())
 
 
+def lines_of(values):
+    """The lines of samples. values: a list, row after row, columns as COLUMNS."""
+    return (_ROW * (len(values) // len(COLUMNS)) % tuple(values)).replace("nan", "")
+
+
 def rows_text(table, events=()):
     """The lines of samples. table: (n, 15), columns as COLUMNS, NaN where not known; events: [(t, text), ...]."""
-    samples = (_ROW * len(table) % tuple(table.ravel().tolist())).replace("nan", "")
+    samples = lines_of(table.ravel().tolist())
     if not events:
         return samples
     lines = [(t, 1, line) for t, line in zip(table[:, T].tolist(), samples.splitlines(keepends=True), strict=True)]
