@@ -272,12 +272,11 @@ class Bench:
             sample = run.row = self._last = Sample(t, self._radians(counts), counts, pace.missed)
             if run.guard is not None:
                 run.guard.check(sample, self._pwm)
-            given = Sample(t, sample.q.copy(), counts.copy(), pace.missed)  # may be written into
-            if run.reference is None:
-                return given
-            rows = checked_reference(self.arm, t, run.reference(t), sample.q if self.answers else None)
-            run.aim = rows[0].copy()
-            return given._replace(reference=rows)
+            rows = None
+            if run.reference is not None:
+                rows = checked_reference(self.arm, t, run.reference(t), sample.q if self.answers else None)
+                run.aim = rows[0].copy()
+            return Sample(t, sample.q.copy(), counts.copy(), pace.missed, rows)  # may be written into
 
     def _resume(self, run, silence):
         """The drive was cut in this silence, s: say so and measure, driving nothing; too long a one ends the run."""

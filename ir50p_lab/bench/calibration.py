@@ -3,7 +3,6 @@
 import tomllib
 import warnings
 from dataclasses import asdict, dataclass
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -62,14 +61,9 @@ class JointCalibration:
                 said += ", negative: swap the outer wires of its potentiometer, or the joint will run away when driven"
                 warnings.warn(said, SuspiciousArmWarning, stacklevel=3)
 
-    @cached_property
-    def _arrays(self):
-        return np.array(self.zero), np.array(self.slope)
-
     def radians(self, counts):
         """Angles of counts; both (3,) or (n, 3)."""
-        zero, slope = self._arrays
-        return (np.asarray(counts, dtype=float) - zero) / slope
+        return (np.asarray(counts, dtype=float) - self.zero) / self.slope
 
     def counts(self, q):
         """Counts at angles; both (3,) or (n, 3), not rounded."""
@@ -84,7 +78,8 @@ class JointCalibration:
     def header(self):
         """Lines for the head of a recording."""
         lines = {"counts_per_rad": self.slope, "counts_at_zero": self.zero}
-        return {name: " ".join(f"{x:.6g}" for x in row) for name, row in lines.items()} | {"calibration": self.source}
+        lines = {name: " ".join(f"{x:.6g}" for x in three) for name, three in lines.items()}
+        return lines | {"calibration": self.source}
 
     def save(self, path):
         """Write it as a readable file (TOML). Returns the Path. Raises OSError if it cannot be written."""

@@ -9,7 +9,7 @@ from itertools import count
 from pathlib import Path
 
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.recording_file import event_text, head_text, lines_of, lines_text, table_of
+from ir50p_lab.bench.recording_file import event_text, head_text, lines_of, lines_text, rows_text, table_of
 from ir50p_lab.controllers.base import gains_of
 from ir50p_lab.errors import RecordingError
 from ir50p_lab.home import home
@@ -59,16 +59,15 @@ class Recorder:
         for a reference that is not three numbers.
         """
         r = 3 * [math.nan] if reference is None else vector3("reference", reference).tolist()
-        measured = *sample.q.tolist(), *sample.counts.tolist()
-        self._add([sample.t, *measured, *pwm.tolist(), *r, gripper, sample.missed])
+        row = [sample.t, *sample.q.tolist(), *sample.counts.tolist(), *pwm.tolist(), *r, gripper, sample.missed]
+        self._rows.extend(row)
+        self._put(lines_of(row))
 
     def write_block(self, t, q, counts, u, r=math.nan, gripper=False, missed=0):
         """Record many cycles at once, for compiled runs: arrays (n,), (n, 3)... as in Recording; r may be NaN."""
-        self._add(table_of(t, q, counts, u, r, gripper, missed).ravel().tolist())
-
-    def _add(self, values):
-        self._rows.extend(values)
-        self._put(lines_of(values))
+        table = table_of(t, q, counts, u, r, gripper, missed)
+        self._rows.frombytes(table.tobytes())
+        self._put(rows_text(table))
 
     def event(self, t, text):
         """Record that something was changed at t, s: a line between the samples, which spreadsheets show as text."""

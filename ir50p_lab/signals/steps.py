@@ -1,7 +1,6 @@
 """References that stand still: one pose, or one after the other."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -21,14 +20,10 @@ class Steps(Reference):
     values: tuple
     duration: float
 
-    @cached_property
-    def _arrays(self):
-        return np.array(self.times), np.array(self.values)
-
     def _rows(self, t):
-        times, values = self._arrays
         rows = np.zeros((len(t), 3, 3))
-        rows[:, 0] = values.take(times.searchsorted(t, side="right") - 1, axis=0, mode="clip")
+        piece = np.array(self.times).searchsorted(t, side="right") - 1
+        rows[:, 0] = np.array(self.values).take(piece, axis=0, mode="clip")
         return rows
 
 
