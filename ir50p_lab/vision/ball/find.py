@@ -24,7 +24,7 @@ _GUESSES, _CLOSER = 14, 5  # guesses of which the colour is looked at; measured 
 
 # Log odds that a ball needs, in the first look and in the closer one: above 0, as a false alarm is worse than a miss.
 # The closer look comes where the first saw none, most often because there is none.
-_LEAST_ODDS, _LEAST_ODDS_CLOSER = 0.7, 1.4
+_LEAST_ODDS, _LEAST_ODDS_CLOSER = 1.0, 1.7
 _SMALL, _MORE_SMALL = 8.0, 1.0  # of so few pixels of radius a box can look like a ball: it needs more
 # share of the outline below which the end of a rod can, and what is missing costs, times its share
 _CLEAR, _MORE_HIDDEN = 0.75, 4.0
