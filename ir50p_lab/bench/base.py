@@ -16,6 +16,7 @@ from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.controllers.base import check_controller, check_reference
 from ir50p_lab.errors import BenchError, InputError, LabError, PauseError
 from ir50p_lab.inputs import number
+from ir50p_lab.modelling.chain import lengths
 from ir50p_lab.modelling.named_arms import load_arm
 
 
@@ -76,6 +77,7 @@ class Bench:
         record_to: folder for recordings (default: recordings/ in the student's folder), False for none on disk.
         """
         arm = load_arm() if arm is None else arm
+        lengths(arm)  # refuses what is no Arm
         if not (isinstance(period, int | float | np.number) and 0.001 <= period <= 1.0):
             raise InputError(f"period = {period!r} s: give 0.001 to 1 s (the thesis samples every 0.01 s)")
         self.arm, self.calibration, self.period = arm, calibration or nominal_calibration(arm), float(period)

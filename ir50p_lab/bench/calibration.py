@@ -78,8 +78,7 @@ class JointCalibration:
     def header(self):
         """Lines for the head of a recording."""
         lines = {"counts_per_rad": self.slope, "counts_at_zero": self.zero}
-        lines = {name: " ".join(f"{x:.6g}" for x in three) for name, three in lines.items()}
-        return lines | {"calibration": self.source}
+        return {name: " ".join(f"{x:.6g}" for x in row) for name, row in lines.items()} | {"calibration": self.source}
 
     def save(self, path):
         """Write it as a readable file (TOML). Returns the Path. Raises OSError if it cannot be written."""

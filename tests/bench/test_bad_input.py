@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.bench import (
+    Recording,
     ReplayBench,
     SerialBench,
     SimulatedBench,
@@ -33,9 +34,18 @@ def test_no_arm(function, rubbish):
         function(rubbish)
 
 
+CALIBRATED = Recording.from_arrays([0.0], np.zeros((1, 3)), header=nominal_calibration(IR50P).header())
+
+
 @pytest.mark.parametrize("rubbish", RUBBISH, ids=repr)
 @pytest.mark.parametrize(
-    "make", [SimulatedBench, lambda arm: SerialBench("COM3", arm=arm)], ids=["simulated", "serial"]
+    "make",
+    [
+        SimulatedBench,
+        lambda arm: SerialBench("COM3", arm=arm),
+        lambda arm: ReplayBench(CALIBRATED, arm=arm),
+    ],
+    ids=["simulated", "serial", "replay"],
 )
 def test_no_arm_for_a_bench(make, rubbish):
     with pytest.raises(InputError, match=r"give an Arm"):
