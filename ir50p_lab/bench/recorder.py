@@ -50,7 +50,7 @@ class Recorder:
         except OSError as error:
             said = f"cannot record in {folder.absolute()}: {error.strerror}"
             raise RecordingError(f"{said}; {_ELSEWHERE}, or record=False for none") from None
-        self._put(head_text(head))
+        self._put(head_text, head)
 
     def write(self, sample, pwm, reference, gripper):
         """Record one cycle: the Sample, the command (3,) PWM counts, reference (3,) rad or None, gripper bool.
@@ -61,24 +61,24 @@ class Recorder:
         r = 3 * [math.nan] if reference is None else vector3("reference", reference).tolist()
         row = [sample.t, *sample.q.tolist(), *sample.counts.tolist(), *pwm.tolist(), *r, gripper, sample.missed]
         self._rows.extend(row)
-        self._put(lines_of(row))
+        self._put(lines_of, row)
 
     def write_block(self, t, q, counts, u, r=math.nan, gripper=False, missed=0):
         """Record many cycles at once, for compiled runs: arrays (n,), (n, 3)... as in Recording; r may be NaN."""
         table = table_of(t, q, counts, u, r, gripper, missed)
         self._rows.frombytes(table.tobytes())
-        self._put(rows_text(table))
+        self._put(rows_text, table)
 
     def event(self, t, text):
         """Record that something was changed at t, s: a line between the samples, which spreadsheets show as text."""
         self.recording.events.append((t, text))
-        self._put(event_text(t, text))
+        self._put(event_text, t, text)
 
-    def _put(self, text):
-        """Hand it to the operating system; nothing without a file."""
+    def _put(self, text_of, *values):
+        """Hand their text to the operating system; without a file there is none."""
         if self._file is None:
             return
-        data = text.encode("utf-8", "backslashreplace")
+        data = text_of(*values).encode("utf-8", "backslashreplace")
         try:
             while data:  # in parts if the disk is nearly full, or a signal came
                 data = data[os.write(self._file, data) :]
@@ -95,7 +95,7 @@ class Recorder:
         known = {name: str(value) for name, value in (statistics or {}).items()}
         self.recording.header.update(known)
         with contextlib.suppress(RecordingError):  # a full disk: the samples are there
-            self._put(lines_text(known))
+            self._put(lines_text, known)
         if self._file is not None:
             os.close(self._file)
             self._file = None
