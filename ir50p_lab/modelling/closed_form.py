@@ -28,14 +28,10 @@ def sincos(x):
         + z * (2.48015872888517045348e-5 + z * (-2.75573141792967388112e-7
         + z * (2.08757008419747316778e-9 + z * -1.13585365213876817300e-11)))))
     # fmt: on
-    quadrant = np.int64(k)
-    if quadrant & 1:
-        s, c = c, s
-    if quadrant & 2:
-        s = -s
-    if (quadrant + 1) & 2:
-        c = -c
-    return s, c
+    quadrant = np.int32(k)
+    odd = (quadrant & 1) != 0
+    s, c = (c if odd else s), (s if odd else c)
+    return (-s if quadrant & 2 else s), (-c if (quadrant + 1) & 2 else c)
 
 
 @jit()
@@ -47,14 +43,14 @@ def not_denormal(x):
 @jit()
 def mass_terms(theta, c2, c3, c23):
     """M(q) as nine scalars by rows, kg m^2 (or PWM s^2/rad): M11 .. M33    (list of 1.5.3a corrected)."""
-    M11 = theta[0, 0] + theta[0, 1] * c2 * c2 + theta[0, 4] * c23 * c23 + 2 * theta[0, 5] * c2 * c23
+    M11 = theta[0, 0] + theta[0, 1] * (c2 * c2) + theta[0, 4] * (c23 * c23) + 2 * theta[0, 5] * (c2 * c23)
     M12 = theta[0, 6] + theta[0, 7]
     M13 = theta[0, 7]
     M21 = theta[1, 6] + theta[1, 7]
-    M22 = theta[1, 1] + theta[1, 4] + 2 * theta[1, 5] * c3 + theta[1, 8] + theta[1, 9]
-    M23 = theta[1, 4] + theta[1, 5] * c3 + theta[1, 9]
+    M22 = theta[1, 1] + theta[1, 4] + theta[1, 8] + theta[1, 9] + 2 * theta[1, 5] * c3
+    M23 = theta[1, 4] + theta[1, 9] + theta[1, 5] * c3
     M31 = theta[2, 7]
-    M32 = theta[2, 4] + theta[2, 5] * c3 + theta[2, 9]
+    M32 = theta[2, 4] + theta[2, 9] + theta[2, 5] * c3
     M33 = theta[2, 4] + theta[2, 9] + theta[2, 19]
     return M11, M12, M13, M21, M22, M23, M31, M32, M33
 
@@ -63,8 +59,8 @@ def mass_terms(theta, c2, c3, c23):
 def coriolis_factors(theta, row, c2, s2, s3, c23, s23):
     """alpha = -dM11/dq2 / 2, beta = -dM11/dq3 / 2, k = -dM23/dq3, from one row of theta    (1.93), (1.96)."""
     t2, t5, t6 = theta[row, 1], theta[row, 4], theta[row, 5]
-    alpha = t2 * s2 * c2 + t5 * s23 * c23 + t6 * (s23 * c2 + c23 * s2)
-    beta = t5 * s23 * c23 + t6 * s23 * c2
+    alpha = t2 * (s2 * c2) + t5 * (s23 * c23) + t6 * (s23 * c2 + c23 * s2)
+    beta = t5 * (s23 * c23) + t6 * (s23 * c2)
     return alpha, beta, t6 * s3
 
 
@@ -130,7 +126,8 @@ def solve_in_line(M, r1, r2, r3):
     """`solve_mass` where the waist is decoupled (M12 = M13 = M21 = M31 = 0): every in-line arm. No branches."""
     M11, _, _, _, M22, M23, _, M32, M33 = M
     minor = M22 * M33 - M23 * M32
-    return r1 / M11, (r2 * M33 - M23 * r3) / minor, (M22 * r3 - r2 * M32) / minor, M11 * minor
+    scale = 1 / minor  # a division takes as long as ten products
+    return r1 / M11, (r2 * M33 - M23 * r3) * scale, (M22 * r3 - r2 * M32) * scale, M11 * minor
 
 
 @jit()

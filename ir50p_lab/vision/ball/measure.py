@@ -17,8 +17,8 @@ def _smooth(r):
     return max(1.2, 0.025 * r)
 
 
-_AREA = np.append(np.linspace(0.1, 0.85, 11), 0.93)  # of the rings that the samples stand for
-_AREA /= _AREA.sum()
+_INNER, _OUTER = np.linspace(0.1, 0.85, 11), np.array([0.0, 0.04, 0.12, 0.22])  # rings in the disc and around it
+_AREA = np.append(_INNER, 0.93) / (_INNER.sum() + 0.93)  # of the rings that the samples stand for
 # Whatever else speaks for it, a ball shows an edge on this much of the circle, and this much of its disc has the
 # colour: of an overexposed one, which is orange, hardly more than the rim
 LEAST_SUPPORT, LEAST_FILL = 0.32, 0.25
@@ -79,10 +79,10 @@ def measure(image, guess, view, colour, camera=None, least_radius=0.0):
 def _coarse(image, guess, view):
     """Outline around a guess that may be a third off, and the unit vectors (cos, sin) of the rays to look along."""
     x, y, r = guess
-    unit = directions(int(np.clip(8 * round(r / 4), 48, 96)))
+    unit = directions(min(max(8 * round(r / 4), 48), 96))
     for width in (0.4, 0.25):
-        steps = int(np.clip(r, 8, 18))
-        relative = 1 + np.linspace(-0.7, 0.7, 2 * steps + 1, dtype=np.float32)
+        steps = int(min(max(r, 8), 18))
+        relative = 1 + np.arange(-steps, steps + 1, dtype=np.float32) * np.float32(0.7 / steps)
         rays = cast(image, x, y, np.float32([r]), relative, unit)
         sigma = max(0.9, round(_smooth(r) * steps / (0.7 * r), 1))
         _, rho, height = _edges(rays, round(0.8 * steps), round(1.3 * steps), steps, width * steps, sigma)
@@ -150,7 +150,7 @@ def _fine(image, outline, unit, view, colour, camera):
         apart=apart,
         through=_shown_through(rgb, on, missing & ~beyond, inside),
         gaps=_gaps(missing),
-        step=float(np.median(height[on])),
+        step=float(median(height[on])),
         paint=paint_of(hsv[inside], colour.centre, colour.swaps),
         samples=look(image, outline, weights, middle, colour),
         edges=_along(on, off / (0.3 + 0.01 * outline.r), height, beyond),
@@ -197,10 +197,11 @@ def _waves(off, cos, sin, r):
     return np.sqrt(waving) / r, np.sqrt(np.mean(oval**2)) / r, np.sqrt(left) / r
 
 
+@jit()
 def _gaps(missing):
     """Number of runs of at least two rays in a circular array of bool (n,)."""
     here = missing & np.roll(missing, 1)
-    return int(np.count_nonzero(here & ~np.roll(here, 1)))
+    return np.sum(here & ~np.roll(here, 1))
 
 
 def _shown_through(rgb, on, missing, inside):
@@ -208,7 +209,7 @@ def _shown_through(rgb, on, missing, inside):
     if missing.sum() < 4:
         return 0.0
     around = rgb[on, 12:].reshape(-1, 3).astype(np.float32)
-    middle = np.median(around, axis=0)
+    middle = np.array([median(channel) for channel in around.T])
     if np.abs(around - middle).mean() > 12:  # of surroundings that vary nothing can be said
         return 0.0
     gone = rgb[missing, :12][~inside[missing]].astype(np.float32)
@@ -219,8 +220,8 @@ def _colours(image, outline, colour, unit):
     """Which samples have the ball's colour: inside (n, 12), highlights included, and just outside (n, 4); their rgb."""
     r = outline.r
     rim = 1.5 / r
-    inner = np.append(np.linspace(0.1, 0.85, 11), max(0.5, 0.97 - rim))
-    relative = np.concatenate([inner, 1.03 + rim + np.array([0.0, 0.04, 0.12, 0.22])]).astype(np.float32)
+    inner = np.append(_INNER, max(0.5, 0.97 - rim))
+    relative = np.concatenate([inner, 1.03 + rim + _OUTER]).astype(np.float32)
     _, rgb, within = cast(image, outline.x, outline.y, outline.radii(*unit), relative, unit)
     hsv = colour.hsv_of(rgb)
     alike = (cv2.inRange(hsv, *colour.bounds()) > 0) & within

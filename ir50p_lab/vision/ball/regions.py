@@ -99,11 +99,10 @@ def _closed(mask):
 
 def _halves(hsv, mask):
     """Six parts of a mask: above and below Otsu's threshold of hue, saturation and value in it."""
-    found = []
+    found, within = [], hsv[mask > 0]
     for channel in range(3):
-        values = np.ascontiguousarray(hsv[:, :, channel])
-        middle, _ = cv2.threshold(values[mask > 0], 0, 255, cv2.THRESH_OTSU)
-        upper = np.where(values > middle, mask, np.uint8(0))
+        middle, _ = cv2.threshold(np.ascontiguousarray(within[:, channel]), 0, 255, cv2.THRESH_OTSU)
+        upper = mask * (cv2.extractChannel(hsv, channel) > middle)
         found += [_opened(upper), _opened(cv2.subtract(mask, upper))]
     return found
 
