@@ -20,7 +20,7 @@ from ir50p_lab.vision.checks import check_picture_size
 from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import as_pinhole
 
-_GUESSES, _CLOSER = 14, 5  # guesses of which the colour is looked at; measured in the closer look, which takes longer
+_GUESSES, _CLOSER = 14, 3  # guesses of which the colour is looked at; measured in the closer look, which takes longer
 
 # Log odds that a ball needs, in the first look and in the closer one: above 0, as a false alarm is worse than a miss.
 # The closer look comes where the first saw none, most often because there is none.

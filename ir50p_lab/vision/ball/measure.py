@@ -161,8 +161,8 @@ def _fine(image, outline, unit, view, colour, camera):
 def _along(on, off, height, beyond):
     """Edges for the classifier, (RAYS, 4) float32."""
     chosen = np.arange(RAYS) * len(on) // RAYS
-    edges = np.column_stack([on, np.clip(off, -4, 4) * on, np.clip(height, 0, 2), beyond])[chosen]
-    return edges.astype(np.float32)
+    off, height = np.minimum(np.maximum(off, -4), 4), np.minimum(np.maximum(height, 0), 2)
+    return np.array([on, off * on, height, beyond], np.float32)[:, chosen].T
 
 
 def _through_the_lens(x, y, outline, view, camera):

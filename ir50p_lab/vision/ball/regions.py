@@ -13,9 +13,10 @@ STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stan
 _LARGEST, _LARGEST_CLOSER = 10, 5  # regions looked at in each mask
 _ROUND = 0.07  # rms over radius of an outline that is a circle as a whole
 _MARGIN = 16  # pixels around what has the colour
-_SMALL = 40_000  # pixels of a part that is searched at full size, too
+_SMALL, _VERY_LARGE = 40_000, 700_000  # pixels of a part that is searched at full size, too; at a quarter of it only
 _RAYS, _INSIDE = 32, 4  # samples that tell how a guess stands out: directions, and rings inside
 _RINGS = np.array([0.5, 0.65, 0.8, 0.9, 1.1, 1.2, 1.35, 1.5])  # of the radius
+_LEAST_APART = 0.9  # standard deviations
 _LEAST_SHARE = 0.22  # of a circle that an arc must be
 _LARGE = 20.0  # pixels: a larger circle is no better: two long, nearly straight lines look like one
 _CIRCLES = 4  # of one outline: balls that touch share one
@@ -38,23 +39,24 @@ def guess_closer(image, colour, least_radius):
 
     Noise breaks up the colour of a dark ball, highlights and glare punch holes; one before a thing of nearly its colour
     shows only when the two are told apart. Searched is the part of the picture that has pixels of the colour; a large
-    part of a large picture is not searched at full size: its noise looks round in places, and it takes ten times as
-    long.
+    part is not searched at full size, and a very large one only at a quarter of it: noise looks round in places, and it
+    takes ten times as long.
     """
-    shrink, loose = _shrink(image), colour.looser
+    shrink = _shrink(image)
     left, above, width, height = cv2.boundingRect(colour.loose_mask(colour.hsv_of(_smaller(image, shrink))))
     if not width:
         return np.empty((0, 3))
     x, y = corner = [max(shrink * one - _MARGIN, 0) // 4 * 4 for one in (left, above)]
     part = image[y : shrink * (above + height) + _MARGIN, x : shrink * (left + width) + _MARGIN]
     found, scales = [np.empty((0, 3))], ((shrink, 1.5), (2 * shrink, 1.2), (1, 1.2))
-    for scale, sigma in scales[: 3 if part.shape[0] * part.shape[1] < _SMALL else 2]:
+    pixels = part.shape[0] * part.shape[1]
+    for scale, sigma in scales[pixels > _VERY_LARGE : 3 if pixels < _SMALL else 2]:
         small = cv2.GaussianBlur(_smaller(part, scale), (0, 0), sigma)
         hsv = colour.hsv_of(small)
-        mask, strict = colour.loose_mask(hsv), cv2.inRange(hsv, *loose.bounds(STRICTNESS[1]))
+        mask = colour.loose_mask(hsv)
         if mask.any():
-            masks = [_closed(mask), _closed(strict), *_halves(hsv, mask)]
-            circles = _circles_of(masks, least_radius / scale, _LARGEST_CLOSER)
+            closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
+            circles = _circles_of([closed, *_halves(hsv, mask)], least_radius / scale, _LARGEST_CLOSER)
             found.append(_unscaled(circles, part, small) + np.array([*corner, 0]))
     return _different(np.concatenate(found), image)
 
@@ -83,9 +85,8 @@ def _circles_of(found_in, least_radius, most):
     found = [np.empty((0, 3))]
     for mask in found_in:
         contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-        large = [c[:, 0] for c in contours if len(c) >= max(8, 4 * least)]
-        longest = sorted(large, key=len, reverse=True)[:most]
-        found += [circles_in(contour.astype(float), mask.shape, least) for contour in longest]
+        longest = sorted((c for c in contours if len(c) >= max(8, 4 * least)), key=len, reverse=True)[:most]
+        found += [circles_in(contour[:, 0].astype(float), mask.shape, least) for contour in longest]
     return np.concatenate(found)
 
 
@@ -93,17 +94,13 @@ def _opened(mask):
     return cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
 
 
-def _closed(mask):
-    return cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
-
-
 def _halves(hsv, mask):
-    """Six parts of a mask: above and below Otsu's threshold of hue, saturation and value in it."""
-    found, within = [], hsv[mask > 0]
-    for channel in range(3):
+    """Four parts of a mask, beyond Otsu's threshold in it: either hue, the more saturated, the darker one."""
+    found, within = [], hsv.reshape(-1, 3).take(np.flatnonzero(mask), axis=0)
+    for channel, sides in ((0, "both"), (1, "upper"), (2, "lower")):
         middle, _ = cv2.threshold(np.ascontiguousarray(within[:, channel]), 0, 255, cv2.THRESH_OTSU)
         upper = mask * (cv2.extractChannel(hsv, channel) > middle)
-        found += [_opened(upper), _opened(cv2.subtract(mask, upper))]
+        found += [_opened(upper)] * (sides != "lower") + [_opened(mask - upper)] * (sides != "upper")
     return found
 
 
@@ -189,9 +186,11 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
 
 def _different(circles, image):
     """The circles but for those that a better one already tells; better is what stands out from its surroundings."""
+    apart = _contrasts(image, circles, directions(_RAYS))
+    circles, apart = circles[apart > _LEAST_APART], apart[apart > _LEAST_APART]
     x, y, r = circles.T
     alike = np.hypot(x - x[:, None], y - y[:, None]) + np.abs(r - r[:, None]) <= 0.25 * np.maximum(r, r[:, None])
-    order = np.argsort(-_contrasts(image, circles, directions(_RAYS)), kind="stable")
+    order = np.argsort(-apart, kind="stable")
     alike, new = alike[np.ix_(order, order)], np.zeros(len(circles), bool)
     for i, others in enumerate(alike):
         new[i] = not (others & new).any()
