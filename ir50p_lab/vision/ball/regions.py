@@ -50,13 +50,13 @@ def guess_closer(image, colour, least_radius):
     part = image[y : shrink * (above + height) + _MARGIN, x : shrink * (left + width) + _MARGIN]
     found, scales = [np.empty((0, 3))], ((shrink, 1.5), (2 * shrink, 1.2), (1, 1.2))
     pixels = part.shape[0] * part.shape[1]
-    for scale, sigma in scales[pixels > _VERY_LARGE : 3 if pixels < _SMALL else 2]:
+    for scale, sigma in scales[pixels > _VERY_LARGE : 3 if pixels < _SMALL and shrink > 1 else 2]:
         small = cv2.GaussianBlur(_smaller(part, scale), (0, 0), sigma)
         hsv = colour.hsv_of(small)
         mask = colour.loose_mask(hsv)
         if mask.any():
             closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
-            circles = _circles_of([closed, *_halves(hsv, mask)], least_radius / scale, _LARGEST_CLOSER)
+            circles = _circles_of([closed, *_halves(hsv, mask, colour)], least_radius / scale, _LARGEST_CLOSER)
             found.append(_unscaled(circles, part, small) + np.array([*corner, 0]))
     return _different(np.concatenate(found), image)
 
@@ -94,10 +94,10 @@ def _opened(mask):
     return cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
 
 
-def _halves(hsv, mask):
-    """Four parts of a mask, beyond Otsu's threshold in it: either hue, the more saturated, the darker one."""
+def _halves(hsv, mask, colour):
+    """Parts of a mask beyond Otsu's threshold in it: more saturated, darker, of either hue; of a red less orange."""
     found, within = [], hsv.reshape(-1, 3).take(np.flatnonzero(mask), axis=0)
-    for channel, sides in ((0, "both"), (1, "upper"), (2, "lower")):
+    for channel, sides in ((0, "upper" if colour.swaps else "both"), (1, "upper"), (2, "lower")):
         middle, _ = cv2.threshold(np.ascontiguousarray(within[:, channel]), 0, 255, cv2.THRESH_OTSU)
         upper = mask * (cv2.extractChannel(hsv, channel) > middle)
         found += [_opened(upper)] * (sides != "lower") + [_opened(mask - upper)] * (sides != "upper")
