@@ -97,10 +97,10 @@ def _opened(mask):
 def _halves(hsv, mask, colour):
     """Parts of a mask beyond Otsu's threshold in it: more saturated, darker, of either hue; of a red less orange."""
     found, within = [], hsv.reshape(-1, 3).take(np.flatnonzero(mask), axis=0)
-    for channel, sides in ((0, "upper" if colour.swaps else "both"), (1, "upper"), (2, "lower")):
+    for channel, sides in ((0, (1,) if colour.swaps else (0, 1)), (1, (1,)), (2, (0,))):  # 1: above the threshold
         middle, _ = cv2.threshold(np.ascontiguousarray(within[:, channel]), 0, 255, cv2.THRESH_OTSU)
-        upper = mask * (cv2.extractChannel(hsv, channel) > middle)
-        found += [_opened(upper)] * (sides != "lower") + [_opened(mask - upper)] * (sides != "upper")
+        above = cv2.extractChannel(hsv, channel) > middle
+        found += [_opened(mask * (above == side)) for side in sides]
     return found
 
 
