@@ -99,13 +99,13 @@ def test_what_has_another_colour_is_hardly_ever_measured(monkeypatch):
     measured = []
     monkeypatch.setattr(find, "measure", lambda *args: measured.append(args) or measure(*args))
     guesses = []
-    for colour in browns(32, seed=3):
+    for colour in browns(64, seed=3):
         guesses += find_balls(seen(colour)).rejected
-    assert len(guesses) > 16 and len(measured) < 16
+    assert len(guesses) > 40 and len(measured) < 0.4 * len(guesses)
 
 
 def test_random_scenes_without_their_ball_take_about_as_long_as_with_it():
-    """Three times is the limit; of a hundred scenes one may take a little longer."""
+    """Three times is the limit; of a hundred scenes one or two take a little longer."""
     ratios = []
     for seed in range(450_000, 450_010):
         scene = random_scene(seed)

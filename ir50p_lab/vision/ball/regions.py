@@ -16,7 +16,7 @@ _MARGIN = 16  # pixels around what has the colour
 _SMALL, _VERY_LARGE = 40_000, 700_000  # pixels of a part that is searched at full size, too; at a quarter of it only
 _RAYS, _INSIDE = 32, 4  # samples that tell how a guess stands out: directions, and rings inside
 _RINGS = np.array([0.5, 0.65, 0.8, 0.9, 1.1, 1.2, 1.35, 1.5])  # of the radius
-_LEAST_APART = 0.9  # standard deviations
+_LEAST_APART = 0.9  # standard deviations from its surroundings: balls were found from guesses of 1.06 on
 _LEAST_SHARE = 0.22  # of a circle that an arc must be
 _LARGE = 20.0  # pixels: a larger circle is no better: two long, nearly straight lines look like one
 _CIRCLES = 4  # of one outline: balls that touch share one
@@ -95,9 +95,12 @@ def _opened(mask):
 
 
 def _halves(hsv, mask, colour):
-    """Parts of a mask beyond Otsu's threshold in it: more saturated, darker, of either hue; of a red less orange."""
+    """Parts of a mask on either side of Otsu's thresholds of hue, saturation and value in it.
+
+    Of a red those that found balls: the less orange, the more saturated, the darker one.
+    """
     found, within = [], hsv.reshape(-1, 3).take(np.flatnonzero(mask), axis=0)
-    for channel, sides in ((0, (1,) if colour.swaps else (0, 1)), (1, (1,)), (2, (0,))):  # 1: above the threshold
+    for channel, sides in enumerate(((1,), (1,), (0,)) if colour.swaps else [(0, 1)] * 3):  # 1: above
         middle, _ = cv2.threshold(np.ascontiguousarray(within[:, channel]), 0, 255, cv2.THRESH_OTSU)
         above = cv2.extractChannel(hsv, channel) > middle
         found += [_opened(mask * (above == side)) for side in sides]
@@ -185,7 +188,7 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
 
 
 def _different(circles, image):
-    """The circles but for those that a better one already tells; better is what stands out from its surroundings."""
+    """The circles that stand out from their surroundings, those that do most first, but for what a better one tells."""
     apart = _contrasts(image, circles, directions(_RAYS))
     circles, apart = circles[apart > _LEAST_APART], apart[apart > _LEAST_APART]
     x, y, r = circles.T
