@@ -21,7 +21,7 @@ from pathlib import Path
 
 import nbformat
 import numpy as np
-from notebook_runner import FOLDER, NOTEBOOKS
+from notebook_runner import FOLDER, NOTEBOOKS, sockets
 from tqdm import tqdm
 
 ENOUGH = 3.0  # standard deviations
@@ -45,9 +45,9 @@ def run(path, unit):
         log.touch()
         os.environ |= {"IR50P_UNIT": str(unit), "IR50P_CLAIMS": str(log), "IR50P_BENCH": "simulated"}
         os.environ |= {"IR50P_HOME": folder, "IR50P_PROGRESS": f"{folder}/progress.json", "IR50P_RECORDINGS": folder}
-        NotebookClient(
-            notebook, timeout=600, allow_errors=True, resources={"metadata": {"path": str(FOLDER)}}
-        ).execute()
+        where = {"metadata": {"path": str(FOLDER)}}
+        with sockets() as config:
+            NotebookClient(notebook, timeout=600, allow_errors=True, resources=where, config=config).execute()
         rooms = defaultdict(list)
         for line in map(json.loads, log.read_text(encoding="utf-8").splitlines()):
             rooms[line["claim"]] += line["room"]

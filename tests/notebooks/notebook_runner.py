@@ -3,10 +3,13 @@
 import json
 import os
 import re
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import nbformat
+from traitlets.config import Config
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "notebooks"
@@ -41,17 +44,25 @@ def run_notebook(notebook, folder=FOLDER, timeout=120, variables=None, push=True
     notebook.cells = [*notebook.cells, nbformat.v4.new_code_cell(last)]
     environment = os.environ | (variables or {})
     environment["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # a debugger's notice on stderr
-    client = NotebookClient(
-        notebook, timeout=timeout, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
-    )
+    where = {"metadata": {"path": str(folder)}}
     try:
-        client.execute(env=environment)
+        with sockets() as config:
+            NotebookClient(notebook, timeout=timeout, kernel_name="python3", resources=where, config=config).execute(
+                env=environment
+            )
     except CellTimeoutError as error:
         return Run(str(error), [], notebook.cells)
     except CellExecutionError:
         return Run(complaint(notebook.cells), [], notebook.cells)
     said = "".join(output.get("text", "") for output in notebook.cells[-1].outputs)
     return Run(complaint(notebook.cells), json.loads(said), notebook.cells[:-1])
+
+
+@contextmanager
+def sockets():
+    """Config of a kernel spoken to through files: a free port may be taken by any program before the kernel binds it."""
+    with TemporaryDirectory() as folder:
+        yield Config({"KernelManager": {"transport": "ipc", "ip": f"{folder}/kernel"} if os.name == "posix" else {}})
 
 
 def complaint(cells):
