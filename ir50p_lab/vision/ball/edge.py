@@ -25,18 +25,20 @@ def cast(image, x, y, radii, relative, directions):
     height, width, _ = image.shape
     n, m = len(directions[0]), len(relative)
     rho, rgb, within = np.empty((n, m)), np.empty((n, m, 3), np.uint8), np.empty((n, m), np.bool_)
-    for i, j in np.ndindex(n, m):
-        rho[i, j] = radii[i % len(radii)] * relative[j]
-        px, py = x + rho[i, j] * directions[0][i], y + rho[i, j] * directions[1][i]
-        within[i, j] = -0.5 <= px <= width - 0.5 and -0.5 <= py <= height - 0.5
-        px, py = min(max(px, 0.0), width - 1.0), min(max(py, 0.0), height - 1.0)
-        left, above = int(px), int(py)
-        right, below = min(left + 1, width - 1), min(above + 1, height - 1)
-        u, v = px - left, py - above
-        for c in range(3):
-            upper = image[above, left, c] * (1 - u) + image[above, right, c] * u
-            lower = image[below, left, c] * (1 - u) + image[below, right, c] * u
-            rgb[i, j, c] = int(upper * (1 - v) + lower * v + 0.5)
+    for i in range(n):
+        radius, cos, sin = radii[i % len(radii)], directions[0][i], directions[1][i]
+        for j in range(m):
+            rho[i, j] = far = radius * relative[j]
+            px, py = x + far * cos, y + far * sin
+            within[i, j] = -0.5 <= px <= width - 0.5 and -0.5 <= py <= height - 0.5
+            px, py = min(max(px, 0.0), width - 1.0), min(max(py, 0.0), height - 1.0)
+            left, above = int(px), int(py)
+            right, below = min(left + 1, width - 1), min(above + 1, height - 1)
+            u, v = px - left, py - above
+            for c in range(3):
+                upper = image[above, left, c] * (1 - u) + image[above, right, c] * u
+                lower = image[below, left, c] * (1 - u) + image[below, right, c] * u
+                rgb[i, j, c] = int(upper * (1 - v) + lower * v + 0.5)
     return rho, rgb, within
 
 
@@ -56,19 +58,19 @@ def contrast_axis(rgb, within, inner, outer):
     Returns: weights float32, the level half way between the means (in units of the step), distance of the means over
     their spread (0: nothing tells them apart).
     """
-    count, mean, product = np.zeros(2), np.zeros((2, 3)), np.zeros((2, 3, 3))
-    for i, j in np.ndindex(within.shape):
-        if within[i, j] and not inner <= j < outer:
-            side = int(j >= outer)
-            count[side] += 1
-            for a in range(3):
-                mean[side, a] += rgb[i, j, a]
-                for b in range(3):
-                    product[side, a, b] += rgb[i, j, a] * rgb[i, j, b]
+    sums = np.zeros((2, 4, 4), np.int64)  # in and around: of the products of 1, r, g, b with each other
+    for i in range(len(within)):
+        for j in range(within.shape[1]):
+            if within[i, j] and not inner <= j < outer:
+                one = (1, np.int64(rgb[i, j, 0]), np.int64(rgb[i, j, 1]), np.int64(rgb[i, j, 2]))
+                for a in range(4):
+                    for b in range(4):
+                        sums[int(j >= outer), a, b] += one[a] * one[b]
+    count, mean = sums[:, 0, 0], np.empty((2, 3))
     scatter = 64.0 * np.eye(3)  # of noise and compression: eight levels
     for side in range(2):
-        mean[side] /= max(count[side], 1)
-        scatter += 0.5 * (product[side] / max(count[side], 1) - np.outer(mean[side], mean[side]))
+        mean[side] = sums[side, 0, 1:] / max(count[side], 1)
+        scatter += 0.5 * (sums[side, 1:, 1:] / max(count[side], 1) - np.outer(mean[side], mean[side]))
     step = mean[0] - mean[1]
     w = np.linalg.solve(scatter, step)
     apart = np.dot(w, step)  # squared Mahalanobis distance
