@@ -12,7 +12,7 @@ from ir50p_lab.vision.ball.classifier import measures, rays_of
 from ir50p_lab.vision.ball.find import check_colour, rejection_reason
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.measure import NoBallError, measure
-from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
+from ir50p_lab.vision.ball.regions import guess_circles, guess_closer, halved
 from tests.support.random_scene import random_scene
 from tests.support.scene_truth import scene_truth
 from tests.targets.crowded_scene import crowded_scene
@@ -57,7 +57,9 @@ def crowded_examples(seed, kind, *, copies=2):
 
 
 def _guesses(image, most):
-    return np.concatenate([guess(image, RED, LEAST_RADIUS)[:most] for guess in (guess_circles, guess_closer)])
+    return np.concatenate(
+        [guess(image, halved(image), RED, LEAST_RADIUS)[:most] for guess in (guess_circles, guess_closer)]
+    )
 
 
 def _look(image, guesses, balls, colour):

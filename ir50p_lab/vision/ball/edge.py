@@ -66,8 +66,7 @@ def contrast_axis(rgb, within, inner, outer):
                 for a in range(4):
                     for b in range(4):
                         sums[int(j >= outer), a, b] += one[a] * one[b]
-    count, mean = sums[:, 0, 0], np.empty((2, 3))
-    scatter = 64.0 * np.eye(3)  # of noise and compression: eight levels
+    count, mean, scatter = sums[:, 0, 0], np.empty((2, 3)), 64.0 * np.eye(3)  # of noise, compression: eight levels
     for side in range(2):
         mean[side] = sums[side, 0, 1:] / max(count[side], 1)
         scatter += 0.5 * (sums[side, 1:, 1:] / max(count[side], 1) - np.outer(mean[side], mean[side]))

@@ -15,7 +15,7 @@ from ir50p_lab.vision.ball.evidence import objection
 from ir50p_lab.vision.ball.features import median
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.measure import NoBallError, measure, paint_of
-from ir50p_lab.vision.ball.regions import guess_circles, guess_closer
+from ir50p_lab.vision.ball.regions import guess_circles, guess_closer, halved
 from ir50p_lab.vision.checks import check_picture_size
 from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import as_pinhole
@@ -121,12 +121,12 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     if camera is not None:
         camera = as_pinhole(camera)
         check_picture_size(camera, image.shape[1::-1])
-    view = view_of(image.shape, camera)
+    view, small = view_of(image.shape, camera), halved(image)
     measured, rejected = [], []
     looks = (guess_circles, _GUESSES, _LEAST_ODDS), (guess_closer, _CLOSER, _LEAST_ODDS_CLOSER)
     for guess, most, least_odds in looks:
         tries, outlines = 0, []
-        for x, y, r in guess(image, colour, least_radius)[:_GUESSES].tolist():
+        for x, y, r in guess(image, small, colour, least_radius)[:_GUESSES].tolist():
             if any(np.hypot(x - o.x, y - o.y) + abs(r - o.r) < 0.3 * r for o in outlines):
                 continue  # an earlier guess led to the same outline
             if tries == most:
