@@ -32,7 +32,7 @@ def guess_circles(image, small, colour, least_radius):
     hsv = colour.hsv_of(small)
     masks = [_opened(cv2.inRange(hsv, *colour.bounds(s))) for s in STRICTNESS]
     circles = _circles_of(masks, least_radius * max(small.shape) / max(image.shape), _LARGEST)
-    return _different(_unscaled(circles, image, small), image)
+    return _different(image, _unscaled(circles, image, small), directions(_RAYS))
 
 
 def guess_closer(image, small, colour, least_radius):
@@ -59,7 +59,7 @@ def guess_closer(image, small, colour, least_radius):
             closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
             circles = _circles_of([closed, *_halves(hsv, mask, colour)], least_radius / scale, _LARGEST_CLOSER)
             found.append(_unscaled(circles, part, small) + np.array([*corner, 0]))
-    return _different(np.concatenate(found), image)
+    return _different(image, np.concatenate(found), directions(_RAYS))
 
 
 def _smaller(image, shrink):
@@ -96,11 +96,11 @@ def _halves(hsv, mask, colour):
 
     Of a red those that found balls: the less orange, the more saturated, the darker one.
     """
-    found, within = [], hsv.reshape(-1, 3).take(np.flatnonzero(mask), axis=0)
-    for channel, sides in enumerate(((1,), (1,), (0,)) if colour.swaps else [(0, 1)] * 3):  # 1: above
-        middle, _ = cv2.threshold(np.ascontiguousarray(within[:, channel]), 0, 255, cv2.THRESH_OTSU)
-        above = cv2.extractChannel(hsv, channel) > middle
-        found += [_opened(mask * (above == side)) for side in sides]
+    found, above, below = [], cv2.THRESH_BINARY, cv2.THRESH_BINARY_INV
+    kinds = ((above,), (above,), (below,)) if colour.swaps else [(below, above)] * 3
+    for plane, sides in zip(cv2.split(hsv), kinds, strict=True):
+        middle, _ = cv2.threshold(plane[mask > 0], 0, 255, cv2.THRESH_OTSU)
+        found += [_opened(cv2.threshold(plane, middle, 255, side)[1] & mask) for side in sides]
     return found
 
 
@@ -184,24 +184,18 @@ def _vote(p, usable, apart, step, least_radius, most_radius, turn):
     return bx, by, br
 
 
-def _different(circles, image):
-    """The circles that stand out from their surroundings, those that do most first, but for what a better one tells."""
-    apart = _contrasts(image, circles, directions(_RAYS))
-    circles, apart = circles[apart > _LEAST_APART], apart[apart > _LEAST_APART]
-    x, y, r = circles.T
-    alike = np.hypot(x - x[:, None], y - y[:, None]) + np.abs(r - r[:, None]) <= 0.25 * np.maximum(r, r[:, None])
-    order = np.argsort(-apart, kind="stable")
-    alike, new = alike[np.ix_(order, order)], np.zeros(len(circles), bool)
-    for i, others in enumerate(alike):
-        new[i] = not (others & new).any()
-    return circles[order][new]
-
-
 @jit()
-def _contrasts(image, circles, rays):
-    """By how many standard deviations the colour in each circle (n, 3) differs from that around it, (n,)."""
-    apart = np.empty(len(circles))
+def _different(image, circles, rays):
+    """The circles (n, 3) that stand out from their surroundings, the most first, but for what a better one tells."""
+    apart, new, count = np.empty(len(circles)), np.empty_like(circles), 0
     for k, (x, y, r) in enumerate(circles):
         _, rgb, within = cast(image, x, y, np.full(1, r), _RINGS, rays)
-        apart[k] = contrast_axis(rgb, within, _INSIDE, _INSIDE)[2]
-    return apart
+        apart[k] = contrast_axis(rgb, within, _INSIDE, _INSIDE)[2]  # in standard deviations
+    for k in np.argsort(-apart, kind="mergesort"):
+        x, y, r = circles[k]
+        better_x, better_y, better_r = new[:count].T
+        alike = np.hypot(x - better_x, y - better_y) + np.abs(r - better_r) <= 0.25 * np.maximum(r, better_r)
+        if apart[k] > _LEAST_APART and not alike.any():
+            new[count] = circles[k]
+            count += 1
+    return new[:count]
