@@ -173,6 +173,25 @@ def test_a_dead_time_lost_in_noise_is_flagged():
     assert told >= 5
 
 
+@pytest.mark.parametrize("flaw", ["an uneven clock", "a coarse sensor"])
+def test_errors_hold_what_does_not_average(flaw):
+    """Hardly any noise. Stamps that are late by up to 0.4 of a period, at the step too; y in 40 to 300 steps."""
+    worst = []
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        T, L = rng.uniform(0.1, 0.6), rng.uniform(0.05, 0.4)
+        t, y = T_S, lag(SINCE - L, T) + noise(seed, 1e-4)
+        if flaw == "an uneven clock":
+            t = t + PERIOD * rng.uniform(0.1, 0.4) * rng.uniform(-1, 1, len(t))
+        else:
+            steps = rng.uniform(40, 300)
+            y = np.round(steps * y + rng.uniform()) / steps
+        found = fit_fopdt(t, STEP, y)
+        off = (found.K - 1) / found.K_stderr, (found.T - T) / found.T_stderr, (found.L - L) / found.L_stderr
+        worst.append(np.abs(off).max())
+    assert np.max(worst) < 4 and np.mean(np.array(worst) > 3) <= 0.05, worst
+
+
 # --- refusals, each at several magnitudes
 
 
