@@ -24,6 +24,7 @@ _LEVELS = 16  # an input of so few levels is switched, not clipped
 _EXCESS, _BEYOND = 0.01, 0.85
 _EXPLAINED = 0.02  # least share of the variance of u that the motion explains
 _F = 8.0  # least F value of a motion that has to do with u
+_BENT, _CLEARLY = 0.3, 4.0  # change of the slope of friction with the speed, over the slope; over its standard error
 _POOR = 0.5  # fit: below, the standard errors hold for a model that does not
 _MISSING = 0.1  # of the spread of u, that may be left and be alike over time
 _MORE = {
@@ -190,6 +191,8 @@ def check_clipped_drive(warned, u, found):
         return
     left = found.y - A @ np.linalg.solve(R, Q.T @ found.y[plain])
     rms = math.sqrt(np.mean(left[plain] ** 2))
+    late = np.column_stack([A, found.late_column])  # a late u needs more than was recorded, too: that is not meant
+    left = found.y - late @ np.linalg.lstsq(late[plain], found.y[plain])[0]
     for name, limit, sign, share in zip(("smallest", "largest"), (u.min(), u.max()), (-1, 1), extreme.T, strict=True):
         cut = share > 0.5
         if cut.sum() < 3:
@@ -240,6 +243,10 @@ def _check_friction(warned, found):
         one_side = np.ptp(np.sign(found.table.direction)) == 0
         why = "the offset: the joint turns to one side only" if one_side else "viscous friction: one speed only"
         warned.add(f"Coulomb friction cannot be told from {why}; record {_MORE['coulomb']}")
+    beside, _, bend, sigma, _ = found.beside(found.table.v * np.abs(found.table.v))
+    slope, slow = found.value("viscous")[0], dict(zip(found.names, beside, strict=True)).get("viscous", 0.0)
+    if abs(bend) > _CLEARLY * sigma and abs(slow - slope) > _BENT * abs(slope):
+        warned.add(f"friction bends: slope {slow:.3g} when slow, {slope:.3g} in the mean; fit slow and fast apart")
     negative = [name for name, (x, stderr) in known.items() if x < -3 * stderr and name != "stribeck"]
     if {"viscous", "coulomb"} <= set(negative):
         warned.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")

@@ -242,8 +242,7 @@ def _first_order(record):
     dead_times = np.r_[np.geomspace(0.3 * record.period, latest, 24), np.linspace(0, latest, 50)]
     rates = np.r_[-30.0, -10.0, -3.0, -1.0, -0.3, 0.0, np.geomspace(0.1, 3 / record.period, 24)]
     starts = [[(a, L) for L in dead_times] for a in rates]
-    bounds = (-40.0, 0.0), (30 / record.period, latest + 0.05)
-    return best_fit(lambda p: record.columns(*p), record.y, starts, bounds)
+    return best_fit(lambda p: record.columns(*p), record.y, starts, ((-40.0, 0.0), (30 / record.period, latest + 0.05)))
 
 
 def _check_shape(record, a, L, b, e):
@@ -352,9 +351,8 @@ def _basis(t, times, jumps, w, damping, L):
     fast, slow = modes = np.empty((2, len(t)), dtype=complex)
     for a, out in zip(poles, modes, strict=True):
         respond(t, times, jumps, a, L, out)
-    plain = w**2 * (fast - slow) / (-2 * root)
-    slope = w**2 * (poles[0] * fast - poles[1] * slow) / (2 * root)
-    return np.column_stack([plain.real, slope.real])
+    plain, slope = slow - fast, poles[0] * fast - poles[1] * slow
+    return (np.column_stack([plain, slope]) * w**2 / (2 * root)).real
 
 
 def _second_order(record):
@@ -372,8 +370,7 @@ def _second_order(record):
 
     without, with_zero = (best_fit(partial(columns, zeros=m), y, starts, bounds) for m in (0, 1))
     rss, less = (float(fit[2] @ fit[2]) for fit in (without, with_zero))
-    needed = (rss - less) / max(less, 1e-14 * n) * (n - 6) > _BETTER
-    return *(with_zero if needed else without), basis
+    return *(with_zero if (rss - less) / max(less, 1e-14 * n) * (n - 6) > _BETTER else without), basis
 
 
 def fit_second_order(t, u, y, *, u_before=None):

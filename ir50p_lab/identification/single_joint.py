@@ -99,10 +99,10 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     q and u pass the same zero-phase low pass, and so does sgn(qd): the equation stays true, only noise is lost.
     Samples of a joint that stands are left out (there u may be anything up to the breakaway friction). The cut-off is
     the highest that noise of q allows at which the parameters agree with those at half of it: above, flexibility and
-    backlash make a rigid model wrong. Standard errors allow for residuals that are alike, and for what
-    lower cut-offs, twice the least speed, any force of the position, a dead zone of the amplifier and, unless `held` is
-    given, half a period between q and u change (less, or more, where the data tell the delay). What a dead zone keeps
-    of u counts as Coulomb friction.
+    backlash make a rigid model wrong. Standard errors allow for residuals that are alike, and for what lower cut-offs,
+    twice the least speed, any force of the position, friction that is no line in the speed, a dead zone of the
+    amplifier and, unless `held` is given, half a period between q and u change (less, or more, where the data tell the
+    delay). What a dead zone keeps of u counts as Coulomb friction.
 
     Args:
         t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings
@@ -214,8 +214,8 @@ def _with_other_fits_in_errors(joint, found, any_instant):
     """The same, its standard errors widened by what fits that are as good a choice change beyond their own errors.
 
     Lower cut-offs: flexibility, backlash. Twice the least speed: sticking, coarse angles. Any force of the position:
-    gravity, ripple. The part of u that a dead zone of the amplifier keeps. With any_instant, a u that acts at another
-    one: by half a period, if the data do not tell.
+    gravity, ripple. The part of u that a dead zone of the amplifier keeps. Friction that is no line in the speed. With
+    any_instant, a u that acts at another one: by half a period, if the data do not tell.
     """
     lower = joint.lower(found)
     faster = joint.fit(found.cutoff_hz, found.held, fewest=found, slower=2.0)
@@ -224,10 +224,8 @@ def _with_other_fits_in_errors(joint, found, any_instant):
     for x, stderr in pairs + found.beside_forces():
         beyond = np.where(np.isfinite(found.stderr + stderr), (found.x - x) ** 2 - stderr**2, 0.0)
         moved = np.maximum(moved, np.sqrt(np.clip(beyond, 0.0, None)))
-    late = 0.0
-    if any_instant:
-        seen = [found, *lower][-1].tells_delay  # where the jerk has least noise
-        late = found.moved_by_delay(0.5 / joint.rate, seen)
+    # of the lowest cut-off the jerk has least noise
+    late = found.moved_by_delay(0.5 / joint.rate, [found, *lower][-1].tells_delay) if any_instant else 0.0
     return replace(found, stderr=np.sqrt(found.stderr**2 + moved**2 + late**2 + (_EXACT * found.x) ** 2))
 
 
@@ -267,7 +265,7 @@ class Found:
         return x, stderr, float(more.x[-1]), float(more.stderr[-1]), more.rms
 
     @cached_property
-    def _late_column(self):
+    def late_column(self):
         """d(A x)/dt: what one second of delay adds to u, without the noise of du/dt."""
         terms = [(x, _COLUMNS.index(name)) for name, x in zip(self.names, self.x, strict=True) if name in _COLUMNS]
         return sum(x * self.table.rates[:, k] for x, k in terms)
@@ -275,12 +273,12 @@ class Found:
     @cached_property
     def beside_delay(self):
         """`beside` a delay of u behind its record, s: u(t) is the model at t + delay, about A x + delay d(A x)/dt."""
-        return self.beside(self._late_column)
+        return self.beside(self.late_column)
 
     @property
     def tells_delay(self):
         """Whether a delay adds to u what no parameter can: in one sinusoid, inertia seen late is viscous friction."""
-        late = self._late_column
+        late = self.late_column
         alone = late - self.A @ np.linalg.lstsq(self.A, late, rcond=None)[0]
         return np.linalg.norm(alone) > _TELLS_DELAY * np.linalg.norm(late)
 
@@ -290,17 +288,21 @@ class Found:
         share = unsure**2 / (unsure**2 + sigma**2)
         size = math.sqrt((share * delay) ** 2 + share * sigma**2) if seen else unsure
         moved = np.zeros(len(self.x))
-        moved[np.isfinite(self.stderr)] = size * np.linalg.lstsq(self.A, self._late_column, rcond=None)[0]
+        moved[np.isfinite(self.stderr)] = size * np.linalg.lstsq(self.A, self.late_column, rcond=None)[0]
         return moved
 
     def beside_forces(self):
-        """[(x, stderr)] beside a polynomial of q, and the sign of the u fitted; [] if there are too few samples."""
+        """[(x, stderr)] beside a polynomial of q, the sign of the u fitted, and friction that bends with the speed.
+
+        [] if there are too few samples.
+        """
         if len(self.y) < 6 * (len(self.x) + _POLYNOMIAL):
             return []
-        q = self.table.q - self.table.q.min()
+        q, v = self.table.q - self.table.q.min(), self.table.v
         of_position = np.polynomial.legendre.legvander(2 * q / max(np.ptp(q), 1e-300) - 1, _POLYNOMIAL)[:, 1:]
         fitted = self.A @ self.left.x[np.isfinite(self.left.stderr)]  # the sign of u itself has its noise
-        fits = (of_position, _COMPARED), (np.sign(fitted), _COMPARED[:2])  # Coulomb friction is like a dead zone
+        # Coulomb friction is like a dead zone; inertia has nothing of friction that bends
+        fits = (of_position, _COMPARED), (np.sign(fitted), _COMPARED[:2]), (v * np.abs(v), _COMPARED[1:])
         pairs = [(*self.beside(columns)[:2], np.isin(self.names, names)) for columns, names in fits]
         return [(x, np.where(compared, stderr, np.inf)) for x, stderr, compared in pairs]
 

@@ -93,6 +93,5 @@ def _coarseness(pieces, rate_hz):
     step = quantum_of(q)
     if step == 0:
         return 0.0
-    path = sum(float(np.abs(np.diff(piece)).sum()) for piece in pieces)
-    steps_per_second = path / step * rate_hz / len(q)
+    steps_per_second = sum(float(np.abs(np.diff(piece)).sum()) for piece in pieces) / step * rate_hz / len(q)
     return step**2 / 12 / min(max(steps_per_second, rate_hz / len(q)), rate_hz / 2)

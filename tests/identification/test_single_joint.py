@@ -235,6 +235,41 @@ def test_what_a_dead_zone_of_the_amplifier_changes_is_in_the_errors(seed, share)
     assert found.inertia_stderr < 0.2 * J and found.viscous_stderr < 0.2 * b
 
 
+@pytest.mark.parametrize("bend", [-0.1, 0.05, 0.2, 0.6])
+@pytest.mark.parametrize("seed", range(6))
+def test_what_friction_that_bends_changes_is_in_the_errors(seed, bend):
+    """`bend` of the viscous friction at the highest speed goes with its square: slope and Coulomb friction at rest.
+
+    Where the slope changes much a warning says so; where friction is a line no error is wider for it.
+    """
+    rng = np.random.default_rng(seed)
+    t = np.arange(0, 20, 0.004)
+    w = rng.uniform(0.8, 6.0, 3)
+    x = w * t[:, None] + rng.uniform(0, 6, 3)
+    q, v, a = np.sin(x).sum(axis=1), np.cos(x) @ w, -np.sin(x) @ w**2
+    J, b, c = rng.uniform(0.1, 3.0, 3)
+    straight = J * a + b * v + c * np.sign(v) + 0.01 * c * rng.normal(size=len(t))
+    bent = straight + bend * b * v * np.abs(v) / np.abs(v).max()
+    plain, found = (fit_joint(t, q, u, held=False) for u in (straight, bent))
+    for name, true in zip(NAMES, (J, b, c), strict=False):
+        assert abs(getattr(found, name) - true) <= 3 * getattr(found, f"{name}_stderr"), name
+        assert getattr(plain, f"{name}_stderr") < 0.05 * true, name
+    assert plain.warnings == () and any("friction bends" in one for one in found.warnings) == (bend > 0.3)
+
+
+@pytest.mark.parametrize("seed", [10, 70, 179, 203])
+def test_a_switched_drive_that_is_late_is_not_clipped(seed):
+    """A few levels with noise on them; q is one to three samples late, and between the outer levels is hardly motion."""
+    rng = np.random.default_rng(seed)
+    period = rng.uniform(0.001, 0.006)
+    machine = (2.0, rng.uniform(3, 20), rng.uniform(3, 14), rng.uniform(-4, 4)), period, 6.0, 1.0, 2e-4
+    u = np.repeat(rng.choice([-50.0, -25.0, 25.0, 50.0], 6), int(1.0 / period))
+    u -= u.mean()
+    q, t, late = angle(machine, u, seed), period * np.arange(len(u)), int(rng.integers(1, 4))
+    found = fit_joint(t[late:], q[:-late], (u + 0.01 * rng.normal(size=len(u)))[late:])
+    assert found.inertia == pytest.approx(2, rel=0.2)
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_the_flicker_of_a_coarse_drive_is_no_outlier_and_masked_samples_are_left_out(seed):
     t, q, u = recorded(MACHINES["industrial arm, 1 kHz, encoder"], seed)
