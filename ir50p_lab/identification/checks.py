@@ -26,6 +26,7 @@ _EXPLAINED = 0.02  # least share of the variance of u that the motion explains
 _F = 8.0  # least F value of a motion that has to do with u
 _BENT, _CLEARLY = 0.3, 4.0  # change of the slope of friction with the speed, over the slope; over its standard error
 _POOR = 0.5  # fit: below, the standard errors hold for a model that does not
+_LATE = (0.9, 5.0, 0.3), (0.99, 8.0, 0.6)  # of the residual, that a delay leaves; its standard errors; in periods
 _MISSING = 0.1  # of the spread of u, that may be left and be alike over time
 _MORE = {
     "viscous": "several speeds that differ more",
@@ -275,7 +276,7 @@ def _check_inertia(warned, found, band, period):
         warned.add(f"the time constant {J / b:.3g} s is below the sampling period of {period:.3g} s: sample faster")
     lag = found.beside(found.table.slopes[:, 1 - found.held])  # u behind a low pass: what went in is u + lag du/dt
     delay, sigma, rms = min(found.beside_delay[2:], lag[2:], key=lambda one: one[2])
-    if rms < 0.9 * found.left.rms and abs(delay) > max(5 * sigma, 0.3 * period):
+    if any(rms < share * found.left.rms and abs(delay) > max(n * sigma, part * period) for share, n, part in _LATE):
         late = f"u seems to act about {delay:.2g} s after it was recorded: inertia too large; give delay="
         early = f"q seems to be recorded {-delay:.2g} s before u, or u is filtered: inertia too small; shift one"
         warned.add(late if delay > 0 else early)

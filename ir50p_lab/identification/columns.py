@@ -95,8 +95,7 @@ def quantum_of(x):
     if not len(steps):
         return 0.0
     step = float(steps.min())
-    repeats = len(values) < len(x) / 2
-    return step if repeats or np.abs(steps / step - np.rint(steps / step)).max() < 0.05 else 0.0
+    return step if len(values) < len(x) / 2 or np.abs(steps / step - np.rint(steps / step)).max() < 0.05 else 0.0
 
 
 def runs(t, max_gap):

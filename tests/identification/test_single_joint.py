@@ -398,6 +398,21 @@ def test_a_delay_is_flagged_and_taken(samples):
     assert fit_joint(*early).warnings
 
 
+def test_a_delay_is_flagged_that_noise_hides():
+    """q three samples late, u with 2 % of noise: of the residual the delay is a few per cent, but 8 standard errors."""
+    told = np.zeros((12, 2))
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        t = np.arange(0, 20, 0.002)
+        u = 40 * sum(np.sin(rng.uniform(1.3, 12.6) * t + rng.uniform(0, 6)) for _ in range(4))
+        q = angle(((2.0, 14.0, 4.0, 0.0), 0.002, 20.0, 1.0, 1e-4), u, seed)
+        u += 0.02 * np.ptp(u) * rng.normal(size=len(u))
+        for k, late in enumerate((0, 3)):
+            warnings = fit_joint(t[late:], q[: len(q) - late], u[late:]).warnings
+            told[seed, k] = any("u seems to act" in one or "before u" in one for one in warnings)
+    assert told[:, 0].sum() <= 1 and told[:, 1].sum() >= 9, told
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_a_filtered_drive_is_flagged(seed):
     rng = np.random.default_rng(seed)
