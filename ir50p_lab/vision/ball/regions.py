@@ -71,9 +71,8 @@ def _smaller(image, shrink):
 def _unscaled(circles, image, small):
     """Circles of the small copy in pixels of the picture."""
     sx, sy = image.shape[1] / small.shape[1], image.shape[0] / small.shape[0]
-    x, y, r = circles.T
     # an outline runs through the centres of its last pixels
-    return np.column_stack([(x + 0.5) * sx - 0.5, (y + 0.5) * sy - 0.5, (r + 0.5) * (sx + sy) / 2])
+    return (circles + 0.5) * (sx, sy, (sx + sy) / 2) - (0.5, 0.5, 0.0)
 
 
 def _circles_of(found_in, least_radius, most):
@@ -82,8 +81,8 @@ def _circles_of(found_in, least_radius, most):
     found = [np.empty((0, 3))]
     for mask in found_in:
         contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-        longest = sorted((c for c in contours if len(c) >= max(8, 4 * least)), key=len, reverse=True)[:most]
-        found += [circles_in(contour[:, 0].astype(float), mask.shape, least) for contour in longest]
+        longest = [c[:, 0].astype(float) for c in sorted(contours, key=len, reverse=True)[:most]]
+        found += [circles_in(points, mask.shape, least) for points in longest if len(points) >= max(8, 4 * least)]
     return np.concatenate(found)
 
 
