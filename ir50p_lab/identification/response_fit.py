@@ -14,7 +14,7 @@ from ir50p_lab.simulation.first_order_lag import respond
 
 _FEWEST = 8  # samples from the first change of u on: twice the number of parameters
 _NOISE = 1e-7  # residuals below this share of the response are rounding, not noise
-_STARTS = 3  # rows of the grid whose best points are refined: the sum of squares has kinks and side valleys in L
+_STARTS = 5  # rows of the grid whose best points are refined: the sum of squares has kinks and side valleys in L
 _STEP = 1e-6  # of a parameter's size, for differences
 _RESPONSE = 15.0  # least F value for "y follows u": a search over T and L in pure noise stays below it
 _SHAPE = 0.05  # largest share of the variance of y that may be left and not be white: 20-40 % of overshoot
@@ -358,8 +358,8 @@ def _basis(t, times, jumps, w, damping, L):
 def _second_order(record):
     """p = (log w, damping, L), c = (offset, K and perhaps K zero), residuals, and the basis (n, 2) as function of p."""
     t, y, period, n = record.t, record.y, record.period, len(record.t)
-    shapes = [(damping, L) for damping in _GRID for L in (0.0, 3 * period, 0.1)]
-    starts = [[(math.log(w), *shape) for shape in shapes] for w in np.geomspace(3, 0.5 / period, 10)]
+    dead_times = np.r_[np.arange(4) * period, np.geomspace(5 * period, 0.45, 9)]
+    starts = [[(math.log(w), d, L) for w in np.geomspace(3, 0.5 / period, 12) for d in _GRID] for L in dead_times]
     bounds = ([math.log(0.1), _DAMPING[0], 0.0], [math.log(3 / period), _DAMPING[1], 0.5])
 
     def basis(log_w, damping, L):

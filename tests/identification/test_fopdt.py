@@ -253,6 +253,26 @@ def test_milliseconds_and_outliers_are_named(seed):
     assert abs(found.T - plain.T) < 2 * plain.T_stderr and abs(found.K - plain.K) < 2 * plain.K_stderr
 
 
+@pytest.mark.parametrize("seed", range(40))
+def test_a_second_order_fit_is_no_worse_than_the_truth(seed):
+    """A zero, also one that starts the wrong way, and a dead time: each can do for the other nearby, not as well.
+
+    Second route: scipy.signal's simulation of the transfer function.
+    """
+    rng = np.random.default_rng(seed)
+    n, dt = int(rng.integers(150, 600)), 10 ** rng.uniform(-3, 0)
+    t = dt * np.arange(n)
+    w, damping = 2 * math.pi * rng.uniform(1, 8) / t[-1], 10 ** rng.uniform(-1.2, 0.4)
+    zero = rng.choice([0.0, rng.uniform(0.2, 2), -rng.uniform(0.2, 1)]) / w
+    begin, late = n // 10, n // 10 + int(rng.uniform(0, 0.05) * n)
+    response = lsim(([w**2 * zero, w**2] if zero else [w**2], [1, 2 * damping * w, w**2]), np.ones(n), t)[1]
+    true = np.r_[np.zeros(late), response[: n - late]]
+    y = true + 10 ** rng.uniform(-4, -1.5) * np.ptp(true) * rng.normal(size=n)
+    u = (np.arange(n) >= begin).astype(float)
+    found = fit_second_order(t, u, y)
+    assert np.std(y - found.response(t, u)) < 1.05 * np.std(y - true)
+
+
 @pytest.mark.parametrize("seed, zero", [(0, 0.0), (1, 0.3), (2, -0.1)])
 def test_a_second_order_model_is_offered_and_right(zero, seed):
     """Second route: scipy.signal's simulation of the transfer function."""
