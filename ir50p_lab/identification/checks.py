@@ -192,7 +192,8 @@ def check_clipped_drive(warned, u, found):
         return
     left = found.y - A @ np.linalg.solve(R, Q.T @ found.y[plain])
     rms = math.sqrt(np.mean(left[plain] ** 2))
-    late = np.column_stack([A, found.late_column])  # a late u needs more than was recorded, too: that is not meant
+    # beside a delay, in any unit of u: where u is late the motion seems to need more of it, too
+    late = np.column_stack([A, found.late_column / np.linalg.norm(found.y)])
     left = found.y - late @ np.linalg.lstsq(late[plain], found.y[plain])[0]
     for name, limit, sign, share in zip(("smallest", "largest"), (u.min(), u.max()), (-1, 1), extreme.T, strict=True):
         cut = share > 0.5
@@ -247,7 +248,7 @@ def _check_friction(warned, found):
     beside, _, bend, sigma, _ = found.beside(found.table.v * np.abs(found.table.v))
     slope, slow = found.value("viscous")[0], dict(zip(found.names, beside, strict=True)).get("viscous", 0.0)
     if abs(bend) > _CLEARLY * sigma and abs(slow - slope) > _BENT * abs(slope):
-        warned.add(f"friction bends: slope {slow:.3g} when slow, {slope:.3g} in the mean; fit slow and fast apart")
+        warned.add(f"friction depends on speed: slope {slow:.3g} at rest, {slope:.3g} in all; fit slow and fast apart")
     negative = [name for name, (x, stderr) in known.items() if x < -3 * stderr and name != "stribeck"]
     if {"viscous", "coulomb"} <= set(negative):
         warned.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")

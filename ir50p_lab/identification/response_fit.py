@@ -218,7 +218,7 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     found = np.array([b / a, 1 / a, L])
     units = record.gain, record.unit, record.unit
     J = jacobian(response, found, np.maximum(np.abs(found), 1e-3 * period))
-    errors = np.hypot(standard_errors(J, e), _moved_by_drift_or_start(record, a, J, e)) * units
+    errors = np.hypot(standard_errors(J, e), _systematic_errors(record, a, J, e)) * units
     _warn(record, 1 / a, L, errors[2] / record.unit, *likeness(e))
     if a * period > 1 / _SEEN:
         errors[1:] = math.inf
@@ -274,8 +274,8 @@ def _check_shape(record, a, L, b, e):
     warned.refuse(f"{said}; {value}: fit the velocity and tune with simc_integrating, or record longer")
 
 
-def _moved_by_drift_or_start(record, a, J, e):
-    """(3,) by which K, T and L move beside a drift, or a rest at first that was none; adds a warning of these.
+def _systematic_errors(record, a, J, e):
+    """(3,) of K, T and L: what they move beside a drift, or a rest at first that was none; adds a warning of these.
 
     An uneven clock is late now and then, perhaps at the step itself: T and L are no surer than its usual jitter. Coarse
     steps of y, not mixed by noise, do not average: half of one remains.

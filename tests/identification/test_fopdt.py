@@ -175,7 +175,7 @@ def test_a_dead_time_lost_in_noise_is_flagged():
 
 @pytest.mark.parametrize("flaw", ["an uneven clock", "a coarse sensor"])
 def test_errors_hold_what_does_not_average(flaw):
-    """Hardly any noise. Stamps that are late by up to 0.4 of a period, at the step too; y in 40 to 300 steps."""
+    """Hardly any noise. Stamps that are off by up to 0.4 of a period, at the step too; y in 40 to 300 steps."""
     worst = []
     for seed in range(60):
         rng = np.random.default_rng(seed)
