@@ -13,6 +13,7 @@ MARKS = {
         "bench/test_board_process.py",
         "bench/test_real_time.py",
         "bench/test_stopped_process.py",
+        "course/test_bench_panel.py",
     ),
     "emulator": (
         "bench/test_background_board.py",
