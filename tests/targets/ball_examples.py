@@ -9,10 +9,10 @@ import numpy as np
 
 from ir50p_lab.vision import RED, Colour, render_scene
 from ir50p_lab.vision.ball.classifier import measures, rays_of
-from ir50p_lab.vision.ball.find import check_colour, rejection_reason
+from ir50p_lab.vision.ball.evidence import NoBallError, check_colour
 from ir50p_lab.vision.ball.fit import view_of
-from ir50p_lab.vision.ball.measure import NoBallError, measure
-from ir50p_lab.vision.ball.regions import guess_circles, guess_closer, halved
+from ir50p_lab.vision.ball.measure import measure
+from ir50p_lab.vision.ball.regions import coarse_hsv, guess_circles, guess_closer
 from tests.support.random_scene import random_scene
 from tests.support.scene_truth import scene_truth
 from tests.targets.crowded_scene import crowded_scene
@@ -58,7 +58,7 @@ def crowded_examples(seed, kind, *, copies=2):
 
 def _guesses(image, most):
     return np.concatenate(
-        [guess(image, halved(image), RED, LEAST_RADIUS)[:most] for guess in (guess_circles, guess_closer)]
+        [guess(image, coarse_hsv(image, RED), RED, LEAST_RADIUS)[:most] for guess in (guess_circles, guess_closer)]
     )
 
 
@@ -67,10 +67,8 @@ def _look(image, guesses, balls, colour):
     for guess in guesses:
         try:
             check_colour(image, tuple(guess), colour)
-            m = measure(image, tuple(guess), view, colour)
+            m = measure(image, tuple(guess), view, colour, least_radius=LEAST_RADIUS)
         except NoBallError:
-            continue
-        if rejection_reason(m, LEAST_RADIUS, colour):
             continue
         o = m.outline
         if any(np.hypot(o.x - x, o.y - y) + abs(o.r - r) < 0.05 * r for x, y, r in known):

@@ -7,8 +7,8 @@ from drawn_balls import add_ball, add_polygon, empty, photograph
 
 from ir50p_lab.vision import RED, find_balls
 from ir50p_lab.vision.ball.edge import cast, contrast_axis, directions, find_edges, slope_kernel
-from ir50p_lab.vision.ball.measure import paint_of
-from ir50p_lab.vision.ball.regions import circles_in, guess_closer, halved
+from ir50p_lab.vision.ball.evidence import paint_of
+from ir50p_lab.vision.ball.regions import circles_in, coarse_hsv, guess_closer
 
 SEEDS = range(6)
 
@@ -84,7 +84,7 @@ def test_the_ball_is_among_the_first_guesses_of_a_cluttered_picture(seed):
     centre = rng.uniform((80, 80), (560, 400))
     add_ball(light, 700, centre, 24)
     picture = photograph(light, seed=seed)
-    guesses = guess_closer(picture, halved(picture), RED, 6.0)
+    guesses = guess_closer(picture, coarse_hsv(picture, RED), RED, 6.0)
     near = [np.hypot(x - centre[0], y - centre[1]) < 8 and abs(r - 24) < 8 for x, y, r in guesses]
     assert len(guesses) > 10 and any(near[:5])
 

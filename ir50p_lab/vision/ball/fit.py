@@ -48,6 +48,11 @@ class Outline:
     kappa: float
     view: PixelGeometry
 
+    @property
+    def circle(self):
+        """(x, y, r)."""
+        return self.x, self.y, self.r
+
     def distances(self, x, y):
         """Signed distance of pixels (n,) to the outline, pixels, outwards positive (first order)."""
         v = self.view

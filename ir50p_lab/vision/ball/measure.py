@@ -8,6 +8,7 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.jit import jit
 from ir50p_lab.vision.ball.edge import cast, contrast_axis, directions, find_edges, slope_kernel
+from ir50p_lab.vision.ball.evidence import NoBallError, hue_of, other_hue, other_paint, paint_of
 from ir50p_lab.vision.ball.features import RAYS, look, median
 from ir50p_lab.vision.ball.fit import Outline, fit_outline
 
@@ -23,6 +24,8 @@ _AREA = np.append(_INNER, 0.93) / (_INNER.sum() + 0.93)  # of the rings that the
 # colour: of an overexposed one, which is orange, hardly more than the rim
 LEAST_SUPPORT, LEAST_FILL = 0.32, 0.25
 _CLEARLY = 0.8  # of the least radius: the first look is that far off at most
+# The outline of a ball leaves a circle by less than a part of the radius (an octagon has 0.023 of it) and of a pixel.
+_MOST_BUMPS = 0.010, 0.45
 _EDGE = 0.30  # least height of an edge, in units of the contrast between ball and surroundings
 
 
@@ -60,20 +63,16 @@ class Measured:
     edges: np.ndarray
 
 
-class NoBallError(Exception):
-    """Why there is no ball at a guess."""
-
-
 def measure(image, guess, view, colour, camera=None, least_radius=0.0):
     """Measure the ball at a guess (x, y, r); camera: Pinhole, whose lens may distort.
 
-    least_radius: pixels; what a first look shows to be clearly smaller is not measured further.
+    least_radius: pixels.
     Returns: Measured. Raises NoBallError, which says why not.
     """
     outline, unit = _coarse(image, guess, view)
     if outline.r < max(3.0, _CLEARLY * least_radius):
         raise NoBallError(f"too small, radius {outline.r:.1f} pixels")
-    return _fine(image, outline, unit, view, colour, camera)
+    return _fine(image, outline, unit, view, colour, camera, least_radius)
 
 
 def _coarse(image, guess, view):
@@ -88,13 +87,12 @@ def _coarse(image, guess, view):
         _, rho, height = _edges(rays, round(0.8 * steps), round(1.3 * steps), steps, width * steps, sigma)
         strong = height > _EDGE
         edges = x + rho[strong] * unit[0][strong], y + rho[strong] * unit[1][strong]
-        found = fit_outline(*edges, view, (x, y, r))
-        if found is None:  # the guess may have been too large or too small for edges that agree well
-            found = fit_outline(*edges, view, (x, y, float(median(rho[strong]))))
-        if found is None:
+        # the guess may be too large or too small for edges that agree well
+        found = fit_outline(*edges, view, (x, y, r)) or fit_outline(*edges, view, (x, y, float(median(rho[strong]))))
+        if not found:
             raise NoBallError("its edges lie on no circle")
         moved = np.hypot(found.x - x, found.y - y) + abs(found.r - r)
-        x, y, r = found.x, found.y, found.r
+        x, y, r = found.circle
         if moved < 0.06 * r:
             break
     return found, unit
@@ -112,9 +110,9 @@ def _edges(rays, inner, outer, expected, width, sigma):
     return contrast, at, height
 
 
-def _fine(image, outline, unit, view, colour, camera):
+def _fine(image, outline, unit, view, colour, camera, least_radius):
     """Look again, finely, along the outline found: the last digits, and the evidence."""
-    x, y, r = outline.x, outline.y, outline.r
+    x, y, r = outline.circle
     half = max(4.5, 0.16 * r)  # pixels searched on either side
     pace = max(0.5, half / 14)
     steps = int(np.ceil(half / pace))
@@ -132,11 +130,22 @@ def _fine(image, outline, unit, view, colour, camera):
     on = strong & (np.abs(off) < max(1.2, 0.05 * outline.r))
     if on.mean() < LEAST_SUPPORT:
         raise NoBallError(f"an edge on {on.mean():.0%} of the circle only")
+    if outline.r < least_radius:
+        raise NoBallError(f"too small, radius {outline.r:.1f} pixels", outline.circle)
+    chosen = np.arange(RAYS) * len(on) // RAYS
+    samples = look(image, outline, weights, middle, colour)
+    # along rays that show an edge: where there is none something in front may show its own hue
+    if why := other_hue(hue_of(samples[on[chosen], :6])):
+        raise NoBallError(why, outline.circle)
     seen = rays[2][:, steps]
     inside, outside, rgb, hsv = _colours(image, outline, colour, unit)
     fill = float((inside[on] @ _AREA).mean())
     if fill < LEAST_FILL:
         raise NoBallError(f"hollow, or another colour: {fill:.0%} of the disc have the colour")
+    paint = paint_of(hsv[inside], colour.centre, colour.swaps)
+    bumps, oval, ragged = _waves(off[on], unit[0][on], unit[1][on], outline.r)
+    if why := other_paint(paint, colour) or _roughness(bumps, ragged, outline.r):
+        raise NoBallError(why, outline.circle)
     missing = ~on & seen
     outside &= rgb[:, 12:] @ weights > middle + 0.05
     beyond = missing & inside[:, -1] & outside[:, 0] & outside[:, 1]
@@ -147,22 +156,31 @@ def _fine(image, outline, unit, view, colour, camera):
         seen=float(seen.mean()),
         beyond=beyond,
         fill=fill,
+        bumps=bumps,
+        oval=oval,
         apart=apart,
         through=_shown_through(rgb, on, missing & ~beyond, inside),
         gaps=_gaps(missing),
+        ragged=ragged,
         step=float(median(height[on])),
-        paint=paint_of(hsv[inside], colour.centre, colour.swaps),
-        samples=look(image, outline, weights, middle, colour),
-        edges=_along(on, off / (0.3 + 0.01 * outline.r), height, beyond),
-        **dict(zip(("bumps", "oval", "ragged"), _waves(off[on], unit[0][on], unit[1][on], outline.r), strict=True)),
+        paint=paint,
+        samples=samples,
+        edges=_along(on, off / (0.3 + 0.01 * outline.r), height, beyond)[chosen],
     )
 
 
+def _roughness(bumps, ragged, r):
+    """Why an outline is not round; "" if it may be."""
+    rough = max(bumps, 0.6 * np.hypot(bumps, ragged))  # noise alone makes edges scatter
+    if rough * r <= _MOST_BUMPS[0] * r + _MOST_BUMPS[1]:
+        return ""
+    return f"not round: its outline leaves a circle by {rough:.1%} of the radius"
+
+
 def _along(on, off, height, beyond):
-    """Edges for the classifier, (RAYS, 4) float32."""
-    chosen = np.arange(RAYS) * len(on) // RAYS
+    """Edges for the classifier, (n, 4) float32."""
     off, height = np.minimum(np.maximum(off, -4), 4), np.minimum(np.maximum(height, 0), 2)
-    return np.array([on, off * on, height, beyond], np.float32)[:, chosen].T
+    return np.array([on, off * on, height, beyond], np.float32).T
 
 
 def _through_the_lens(x, y, outline, view, camera):
@@ -230,15 +248,3 @@ def _colours(image, outline, colour, unit):
     if (bright @ inner).mean() < 0.35 * inner.sum():  # a highlight is a part of the disc
         inside = inside | bright
     return inside, alike[:, 12:], rgb, hsv[:, :12]
-
-
-@jit()
-def paint_of(hsv, centre, swaps):
-    """Of HSV samples (n, 3) of the disc: hue from the colour's towards orange, degrees; saturation; value, 0..1.
-
-    Saturation is that of the purest fifth, which gloss does not pale; value that of the lightest tenth: a ball has one,
-    what is nearly black has none. centre, swaps: of the Colour.
-    """
-    off = (2.0 * hsv[:, 0] - centre + 180) % 360 - 180
-    warm = np.median(-off if swaps else off)
-    return warm, np.sort(hsv[:, 1])[int(0.8 * len(hsv))] / 255, np.sort(hsv[:, 2])[int(0.9 * len(hsv))] / 255

@@ -13,7 +13,7 @@ STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stan
 _LARGEST, _LARGEST_CLOSER = 10, 5  # regions looked at in each mask
 _ROUND = 0.07  # rms over radius of an outline that is a circle as a whole
 _MARGIN = 16  # pixels around what has the colour
-_SMALL, _VERY_LARGE = 40_000, 700_000  # pixels of a part that is searched at full size, too; at a quarter of it only
+_SMALL, _VERY_LARGE = 40_000, 400_000  # pixels of a part that is searched at full size, too; at a quarter of it only
 _RAYS, _INSIDE = 32, 4  # samples that tell how a guess stands out: directions, and rings inside
 _RINGS = np.array([0.5, 0.65, 0.8, 0.9, 1.1, 1.2, 1.35, 1.5])  # of the radius
 _LEAST_APART = 0.9  # standard deviations from its surroundings: balls were found from guesses of 1.06 on
@@ -22,20 +22,19 @@ _LARGE = 20.0  # pixels: a larger circle is no better: two long, nearly straight
 _CIRCLES = 4  # of one outline: balls that touch share one
 
 
-def halved(image):
-    """The picture at half its size if it is large: it costs a quarter, and noise goes."""
-    return image if max(image.shape) < 480 else _smaller(image, 2)
+def coarse_hsv(image, colour):
+    """The picture as `colour.hsv_of`, at half its size if it is large: it costs a quarter, and noise goes."""
+    return colour.hsv_of(_smaller(image, 1 if max(image.shape) < 480 else 2))
 
 
-def guess_circles(image, small, colour, least_radius):
-    """First guesses (n, 3): x, y, r in pixels of the picture, best first. small: of `halved`."""
-    hsv = colour.hsv_of(small)
+def guess_circles(image, hsv, colour, least_radius):
+    """First guesses (n, 3): x, y, r in pixels of the picture, best first. hsv: of `coarse_hsv`."""
     masks = [_opened(cv2.inRange(hsv, *colour.bounds(s))) for s in STRICTNESS]
-    circles = _circles_of(masks, least_radius * max(small.shape) / max(image.shape), _LARGEST)
-    return _different(image, _unscaled(circles, image, small), directions(_RAYS))
+    circles = _circles_of(masks, least_radius * max(hsv.shape) / max(image.shape), _LARGEST)
+    return _different(image, _unscaled(circles, image, hsv), directions(_RAYS))
 
 
-def guess_closer(image, small, colour, least_radius):
+def guess_closer(image, hsv, colour, least_radius):
     """Further guesses, as `guess_circles`, where those led to no ball: smoothed at two or three scales, looser colour.
 
     Noise breaks up the colour of a dark ball, highlights and glare punch holes; one before a thing of nearly its colour
@@ -43,8 +42,8 @@ def guess_closer(image, small, colour, least_radius):
     part is not searched at full size, and a very large one only at a quarter of it: noise looks round in places, and it
     takes ten times as long.
     """
-    shrink = round(max(image.shape) / max(small.shape))
-    left, above, width, height = cv2.boundingRect(colour.loose_mask(colour.hsv_of(small)))
+    shrink = round(max(image.shape) / max(hsv.shape))
+    left, above, width, height = cv2.boundingRect(colour.loose_mask(hsv))
     if not width:
         return np.empty((0, 3))
     x, y = corner = [max(shrink * one - _MARGIN, 0) // 4 * 4 for one in (left, above)]
@@ -63,9 +62,11 @@ def guess_closer(image, small, colour, least_radius):
 
 
 def _smaller(image, shrink):
-    height, width = image.shape[:2]
-    size = max(width // shrink, 1), max(height // shrink, 1)
-    return image if shrink == 1 else cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+    """The picture at a half or a quarter of its size: by halves, which OpenCV is quickest at."""
+    if shrink == 1:
+        return image
+    size = max(image.shape[1] // 2, 1), max(image.shape[0] // 2, 1)
+    return _smaller(cv2.resize(image, size, interpolation=cv2.INTER_AREA), shrink // 2)
 
 
 def _unscaled(circles, image, small):
@@ -95,10 +96,10 @@ def _halves(hsv, mask, colour):
 
     Of a red those that found balls: the less orange, the more saturated, the darker one.
     """
-    found, above, below = [], cv2.THRESH_BINARY, cv2.THRESH_BINARY_INV
+    found, inside, above, below = [], mask > 0, cv2.THRESH_BINARY, cv2.THRESH_BINARY_INV
     kinds = ((above,), (above,), (below,)) if colour.swaps else [(below, above)] * 3
     for plane, sides in zip(cv2.split(hsv), kinds, strict=True):
-        middle, _ = cv2.threshold(plane[mask > 0], 0, 255, cv2.THRESH_OTSU)
+        middle, _ = cv2.threshold(plane[inside], 0, 255, cv2.THRESH_OTSU)
         found += [_opened(cv2.threshold(plane, middle, 255, side)[1] & mask) for side in sides]
     return found
 
