@@ -31,14 +31,16 @@ def _use_widest_registers(_):
 
 
 @jit(nogil=True)
-def pid_batch(theta, n, kp, ki, kd, limit, period, filter_rate, r, x0, h, steps, out):
-    """Run LANES sampled PIDs; kp, ki, kd (3, LANES); r (samples, 3, 3); x0 (6,); out (7, 3, LANES), zeros, as METRICS.
+def pid_batch(theta, n, kp, ki, kd, limit, period, filter_rate, r, x0, h, steps):
+    """Run LANES sampled PIDs; kp, ki, kd (3, LANES); r (samples, 3, 3); x0 (6,). Returns METRICS (7, 3, LANES).
 
     The law is that of `law_step` (derivative on the measurement, anti-windup), written over lanes; the motion is that
     of `rk4_step`. Every loop over the lanes is free of branches: the compiler turns it into vector instructions.
     """
     _use_widest_registers()
     samples = r.shape[0]
+    kp, ki, kd = kp.copy(), ki.copy(), kd.copy()  # of arrays made here the compiler knows that they do not overlap
+    out = np.zeros((len(METRICS), 3, LANES))
     x, u = np.empty((6, LANES)), np.zeros((3, LANES))
     last, velocity, integral = np.empty((3, LANES)), np.zeros((3, LANES)), np.zeros((3, LANES))
     blend = 1.0 - math.exp(-filter_rate * period)
@@ -80,3 +82,4 @@ def pid_batch(theta, n, kp, ki, kd, limit, period, filter_rate, r, x0, h, steps,
             for w in range(LANES):
                 x[i, w] = cf.not_denormal(x[i, w])
     out[0] = np.sqrt(out[0] / samples)
+    return out

@@ -82,13 +82,12 @@ def sweep_gains(
     if not (bound > 0).all() or not filter_hz > 0:
         raise InputError(f"limit {bound.tolist()} and filter_hz {filter_hz} must be positive")
     r = sampled(_target(reference, q0), t)
-    x0 = np.concatenate([q0, np.zeros(3)])
     jobs = [slice(i, i + LANES) for i in range(0, len(kp), LANES)]
     pool = executor or ThreadPoolExecutor(os.cpu_count())
     out = np.empty((len(METRICS), 3, len(kp)))
     try:
         with tqdm(total=len(kp), disable=not progress, unit="sim") as bar:
-            common = (bound, period, 2 * np.pi * filter_hz, r, x0, step, steps)
+            common = (bound, period, 2 * np.pi * filter_hz, r, np.append(q0, np.zeros(3)), step, steps)
             blocks = [
                 pool.submit(run_block, plant.theta, plant.numbers, kp[job], ki[job], kd[job], *common) for job in jobs
             ]
@@ -107,9 +106,7 @@ def sweep_gains(
 def run_block(theta, n, kp, ki, kd, bound, period, rate, r, x0, step, steps):
     """One block of at most LANES gain sets, each (W, 3): returns (7, 3, W). Runs on any worker."""
     lanes = [np.ascontiguousarray(np.resize(gains, (LANES, 3)).T) for gains in (kp, ki, kd)]  # filled up by repeating
-    out = np.zeros((len(METRICS), 3, LANES))
-    pid_batch(theta, n, *lanes, bound, period, rate, r, x0, step, steps, out)
-    return out[:, :, : len(kp)]
+    return pid_batch(theta, n, *lanes, bound, period, rate, r, x0, step, steps)[:, :, : len(kp)]
 
 
 def _gain_sets(**sets):
