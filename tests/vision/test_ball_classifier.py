@@ -59,9 +59,11 @@ def test_of_two_sure_outlines_the_one_with_most_edge(order):
     assert score([ball])[0] > 0.9975
     less = dataclasses.replace(ball, support=0.8 * ball.support, centre=(0.0, 0.0))
     octagon = measured(add_polygon(empty(grain=0.05), circle_corners((300, 200), 40, 8)))
-    (found,), rejected = decide([ball, less, octagon][::order])
+    outlines = [ball, less, octagon][::order]
+    (found,), rejected = decide(outlines, score(outlines))
     assert (found.x, found.y) == ball.centre and found.support == ball.support and not rejected
-    assert decide([octagon])[0] == [] and len(decide([octagon])[1]) == 1
+    balls, (why,) = decide([octagon], score([octagon]))
+    assert balls == [] and "not round" in why[1]
 
 
 def test_turned_and_alone_or_among_others():

@@ -78,6 +78,8 @@ def _networks():
 
 def score(found, others=None):
     """Score 0..1 of each Measured in a list; others: for each the Balls that may touch it. Returns: (n,)."""
+    if not found:
+        return np.empty(0)
     others = others or [()] * len(found)
     net = _networks()
     rays = np.stack([rays_of(m, o) for m, o in zip(found, others, strict=True)])

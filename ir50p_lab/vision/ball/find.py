@@ -108,7 +108,7 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         camera = as_pinhole(camera)
         check_picture_size(camera, image.shape[1::-1])
     view, hsv = view_of(image.shape, camera), coarse_hsv(image, colour)
-    measured, outlines, rejected = [], [], []
+    measured, scores, outlines, rejected = [], [], [], []
     looks = (guess_circles, _GUESSES, _LEAST_ODDS), (guess_closer, _CLOSER, _LEAST_ODDS_CLOSER)
     for guess, most, least_odds in looks:
         tries = 0
@@ -126,7 +126,8 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
                 why, *there = error.args
                 rejected.append((*(there or [(x, y, r)]), why))
                 outlines += there
-        balls, objections = decide(measured, least_odds)
+        scores += score(measured[len(scores) :]).tolist()
+        balls, objections = decide(measured, np.array(scores), least_odds)
         if balls:
             break
     rejected = (*objections, *rejected)
@@ -138,11 +139,8 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     return Balls(reason=f"the likeliest thing, at ({x:.0f}, {y:.0f}) with radius {r:.0f}: {why}", rejected=rejected)
 
 
-def decide(measured, least_odds=_LEAST_ODDS_CLOSER):
+def decide(measured, scores, least_odds=_LEAST_ODDS_CLOSER):
     """Balls best first, and what was rejected as ((x, y, r), why), best first; balls that touch excuse each other."""
-    if not measured:
-        return [], []
-    scores = score(measured)
     for _ in range(2):
         balls, objections = [], []
         for k in np.argsort(-_trust(scores, measured), kind="stable"):

@@ -62,11 +62,9 @@ def guess_closer(image, hsv, colour, least_radius):
 
 
 def _smaller(image, shrink):
-    """The picture at a half or a quarter of its size: by halves, which OpenCV is quickest at."""
-    if shrink == 1:
-        return image
-    size = max(image.shape[1] // 2, 1), max(image.shape[0] // 2, 1)
-    return _smaller(cv2.resize(image, size, interpolation=cv2.INTER_AREA), shrink // 2)
+    height, width = image.shape[:2]
+    size = max(width // shrink, 1), max(height // shrink, 1)
+    return image if shrink == 1 else cv2.resize(image, size, interpolation=cv2.INTER_AREA)
 
 
 def _unscaled(circles, image, small):
