@@ -116,8 +116,7 @@ def _clipped_angle(warned, t, q):
     for name, x in (("largest", q), ("smallest", -q)):
         places = np.flatnonzero(x >= x.max() - 1e-9 * np.ptp(x))
         stays = [(places[a], places[b - 1] + 1) for a, b in runs(places.astype(float), _BROKEN) if b - a >= _STAYS]
-        missing = max([_cut_off(t, x, *stay) for stay in stays], default=0.0)
-        if missing > 0:
+        if (missing := max([_cut_off(t, x, *stay) for stay in stays], default=0.0)) > 0:
             where = f"{name} value, {q[places[0]]:.6g} rad (about {missing:.2g} rad are missing)"
             warned.refuse(f"q was clipped at its {where}: record within the range, or cut these stretches out")
 
@@ -125,21 +124,24 @@ def _clipped_angle(warned, t, q):
 def _cut_off(t, x, begin, end):
     """Height, rad, of the swing above x[begin:end], a stay at the largest value; 0 if the joint comes to rest there.
 
-    One that comes to rest slows down: over the last m samples it is no faster than it lost over the m before. One that
-    is cut off loses its speed at once, and regains it at once.
+    One that comes to rest slows down: over the last m samples it is no faster than it lost over the m before, at one m
+    at least, as brakes are short. One that is cut off loses its speed at once, and regains it at once.
     """
-    m = max(3, (end - begin) // 8)
-    if begin < 2 * m or end + 2 * m > len(x):
-        return 0.0
-    places = [slice(first, first + m) for first in (begin - m, end, begin - 2 * m, end + m)]
-    before, after, *earlier = (np.polyfit(t[part] - t[begin], x[part], 1)[0] for part in places)
-    near, far = np.array([before, -after]), np.array([earlier[0], -earlier[1]])
     step, period, quantum = np.diff(x), sampling_period(t), quantum_of(x)
     noise = float(np.median(np.abs(np.diff(step)))) / 0.6745 / math.sqrt(6)
-    unsure = (2 * quantum + 8 * noise / math.sqrt(m)) / ((m - 1) * period)
-    sudden = near.sum() > 3 * max((far - near).sum(), 0.0) + unsure
-    fast = near.min() > _ABRUPT * math.sqrt(np.mean(step**2)) / period
-    height = near.mean() * (t[end - 1] - t[begin]) / 4
+    widest = max(3, (end - begin) // 8)
+    if begin < 2 * widest or end + 2 * widest > len(x):
+        return 0.0
+    for m in (widest // k for k in (32, 16, 8, 4, 2, 1) if widest >= 3 * k):
+        places = [slice(first, first + m) for first in (begin - m, end, begin - 2 * m, end + m)]
+        before, after, *earlier = (np.polyfit(t[part] - t[begin], x[part], 1)[0] for part in places)
+        near, lost = before - after, earlier[0] - earlier[1] - (before - after)
+        unsure = (2 * quantum + 8 * noise / math.sqrt(m)) / ((m - 1) * period)
+        if near + unsure < 3 * lost:
+            return 0.0
+    sudden = near > 3 * max(lost, 0.0) + unsure
+    fast = min(before, -after) > _ABRUPT * math.sqrt(np.mean(step**2)) / period
+    height = near / 2 * (t[end - 1] - t[begin]) / 4
     seen = 2 * quantum + 1e-4 * np.ptp(x) < height < 3 * np.ptp(x)  # more is a rest, not a hidden swing
     return height if sudden and fast and seen else 0.0
 
@@ -220,20 +222,18 @@ def check_model(warned, found, band, period):
     explained = 1 - min(with_gravity, missed) / total
     F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
     if explained < _EXPLAINED or (F < _F and explained < 0.5):
-        share = f"{100 * max(explained, 0):.1f} % of its variance (F = {F:.1f}, needed {_F:.0f})"
-        warned.refuse(f"u does not belong to this motion, which explains {share}: same joint and clock? A spring?")
+        share = f"{max(explained, 0):.1%} of it (F = {F:.1f} of {_F:.0f}, {left.independent:.0f} independent samples)"
+        warned.refuse(f"u does not belong to this motion, which explains {share}: same joint, clock? A spring? Short?")
     elif F < _F:
         warned.add(f"only {left.independent:.0f} independent samples (F = {F:.1f}): record longer, with more reversals")
     _check_friction(warned, found)
     if "inertia" in found.names:
         _check_inertia(warned, found, band, period)
     if found.misfit > 1 - _POOR:
-        fit = f"fit {100 * (1 - found.misfit):.0f} %"
-        warned.add(f"the model explains little of u ({fit}): do not use it yet; look at q, u and load")
+        warned.add(f"the model explains little of u (fit {1 - found.misfit:.0%}): do not use it; look at q, u and load")
     gravity = "gravity_sin" not in found.names and np.ptp(table.q) > 0.2
     if gravity and with_gravity < 0.5 * missed and missed > 1e-4 * total:
-        share = 100 * (1 - with_gravity / missed)
-        warned.add(f"{share:.0f} % of what is left of u go with sin q and cos q: add terms=(..., 'gravity')")
+        warned.add(f"{1 - with_gravity / missed:.0%} of the rest of u go with sin q, cos q: add terms=(..., 'gravity')")
     if left.correlation > 0.9 and missed > _MISSING**2 * total:
         warned.add(f"residuals are far from white ({left.correlation:.2f}): something is missing (backlash, a spring)")
 

@@ -187,7 +187,9 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     truth 91-97 times in 100 in white noise and up to r = 0.9, 83 times at r = 0.97: slow drift is still worse than it
     says. Where y drifts in a line, or was on its way to rest at first, and that is significant, the errors are widened
     by what it moves, with a warning; by the jitter of an uneven clock and by half a step of a coarse y they are widened
-    without one. Of other errors of the model they know nothing.
+    without one. Of other errors of the model they know nothing. One step cannot tell a drift that is just not
+    significant from a slow end of the response: where T is more than a tenth of the record, it may move K and T by
+    several standard errors. Several steps to both sides tell it.
 
     Args:
         t: (n,) s, increasing. u: (n,), input; u[k] acts from t[k] to t[k + 1]. y: (n,), output, any unit.

@@ -212,6 +212,39 @@ def test_waiting_at_the_turning_point_and_gaps_are_not_refused(seed):
     assert (found.inertia, found.viscous, found.coulomb) == pytest.approx((0.5, 3, 1.5), rel=0.1)
 
 
+def braked_by_friction(rng, rate=1000):
+    """A drive of three levels under dry friction that stops the joint soon where the drive ends: t, q, u, true values.
+
+    With tau = J/b the speed tends to (U - c)/b under the drive U, and to -c/b without it, until it is 0.
+    """
+    b, U = 5.0, 10.0
+    tau, c = rng.uniform(0.06, 0.2), U * rng.uniform(0.5, 0.75)
+    t = np.arange(20 * rate) / rate
+    whole, part = np.divmod(t, rng.uniform(1.0, 2.0))
+    half, driven = part.max(), 0.5 * part.max()
+    s = np.minimum(part, driven)
+    q = (U - c) / b * (s - tau * (1 - np.exp(-s / tau)))
+    v = (U - c) / b * (1 - np.exp(-driven / tau))
+    s = np.clip(part - driven, 0, min(tau * np.log(1 + v * b / c), half - driven))
+    q += (v + c / b) * tau * (1 - np.exp(-s / tau)) - c / b * s
+    there = whole % 2 == 0
+    q = np.where(there, q, q.max() - q)
+    u = np.where(part < driven, np.where(there, U, -U), 0.0)
+    return t, q, u, (b * tau, b, c)
+
+
+@pytest.mark.parametrize("counts", [4096, 20000])
+@pytest.mark.parametrize("seed", range(9))
+def test_a_joint_that_friction_stops_at_its_turning_points_was_not_clipped(counts, seed):
+    """It brakes within an eighth of its rest: a quarter of these were refused."""
+    t, q, u, truth = braked_by_friction(np.random.default_rng([seed, counts]))
+    count = 2 * np.pi / counts
+    found = fit_joint(t, np.round(q / count) * count, u)
+    for name, true in zip(NAMES, truth, strict=True):
+        off = abs(getattr(found, name) - true)
+        assert off < 3 * getattr(found, f"{name}_stderr") + 0.02 * true or found.warnings, name
+
+
 def test_general_least_squares_of_more_equations_a_sample():
     rng = np.random.default_rng(0)
     A = rng.normal(size=(300, 2, 4))
