@@ -71,8 +71,7 @@ def check_signals(warned, t, q, u):
         _clipped_angle(warned, t, q)
     if np.ptp(q) > _TURNS:
         warned.add(f"q spans {np.ptp(q):.4g} rad: is it in degrees? Use np.radians(q)")
-    period = sampling_period(t)
-    if period > _SLOW_CLOCK:
+    if (period := sampling_period(t)) > _SLOW_CLOCK:
         warned.add(f"one sample every {period:.4g} s: is t in ms or microseconds? Give seconds")
     return new
 
@@ -215,8 +214,7 @@ def check_model(warned, found, band, period):
     """All that the fit itself shows."""
     table, left, n = found.table, found.left, len(found.y)
     total, missed = max(n * np.var(found.y), 1e-300), n * left.rms**2
-    fastest = np.abs(table.v).max()
-    if fastest > _FAST:
+    if (fastest := np.abs(table.v).max()) > _FAST:
         warned.add(f"the joint reaches {fastest:.3g} rad/s: is q in degrees?")
     with_gravity = n * found.beside(table.columns[:, 1:3])[-1] ** 2
     explained = 1 - min(with_gravity, missed) / total

@@ -100,9 +100,9 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     Samples of a joint that stands are left out (there u may be anything up to the breakaway friction). The cut-off is
     the highest that noise of q allows at which the parameters agree with those at half of it: above, flexibility and
     backlash make a rigid model wrong. Standard errors allow for residuals that are alike, and for what lower cut-offs,
-    twice the least speed, any force of the position, friction that is no line in the speed, a dead zone of the
-    amplifier and, unless `held` is given, half a period between q and u change (less, or more, where the data tell the
-    delay). What a dead zone keeps of u counts as Coulomb friction.
+    twice the least speed, any force of the position, friction that is no line in the speed, a flexible joint, a dead
+    zone of the amplifier and, unless `held` is given, half a period between q and u change (less, or more, where the
+    data tell the delay). What a dead zone keeps of u counts as Coulomb friction.
 
     Args:
         t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings
@@ -214,18 +214,19 @@ def _with_other_fits_in_errors(joint, found, any_instant):
     """The same, its standard errors widened by what fits that are as good a choice change beyond their own errors.
 
     Lower cut-offs: flexibility, backlash. Twice the least speed: sticking, coarse angles. Any force of the position:
-    gravity, ripple. The part of u that a dead zone of the amplifier keeps. Friction that is no line in the speed. With
-    any_instant, a u that acts at another one: by half a period, if the data do not tell.
+    gravity, ripple. The part of u that a dead zone of the amplifier keeps. Friction that is no line in the speed. Snap:
+    flexibility in slow motion. With any_instant, a u that acts at another one: by half a period, if the data do not
+    tell.
     """
-    lower = joint.lower(found)
+    fits = [found, *joint.lower(found)]
     faster = joint.fit(found.cutoff_hz, found.held, fewest=found, slower=2.0)
-    pairs = [(other.x, other.stderr) for other in (*lower, faster) if other is not None]
+    pairs = [(other.x, other.stderr) for other in (*fits[1:], faster) if other is not None]
     moved = np.zeros(len(found.x))
-    for x, stderr in pairs + found.beside_forces():
+    for x, stderr in pairs + found.beside_forces(fits[-1]):
         beyond = np.where(np.isfinite(found.stderr + stderr), (found.x - x) ** 2 - stderr**2, 0.0)
         moved = np.maximum(moved, np.sqrt(np.clip(beyond, 0.0, None)))
     # of the lowest cut-off the jerk has least noise
-    late = found.moved_by_delay(0.5 / joint.rate, [found, *lower][-1].tells_delay) if any_instant else 0.0
+    late = found.moved_by_delay(0.5 / joint.rate, fits[-1].tells_delay) if any_instant else 0.0
     return replace(found, stderr=np.sqrt(found.stderr**2 + moved**2 + late**2 + (_EXACT * found.x) ** 2))
 
 
@@ -291,10 +292,11 @@ class Found:
         moved[np.isfinite(self.stderr)] = size * np.linalg.lstsq(self.A, self.late_column, rcond=None)[0]
         return moved
 
-    def beside_forces(self):
-        """[(x, stderr)] beside a polynomial of q, the sign of the u fitted, and friction that bends with the speed.
+    def beside_forces(self, lowest):
+        """[(x, stderr)] beside a polynomial of q, the sign of the u fitted, friction that bends with the speed, snap.
 
-        [] if there are too few samples.
+        Snap, the rate of the jerk, is what a flexible joint adds. Only in the `lowest` fit, at the lowest cut-off,
+        it is not all noise. [] if there are too few samples.
         """
         if len(self.y) < 6 * (len(self.x) + _POLYNOMIAL):
             return []
@@ -304,6 +306,7 @@ class Found:
         # Coulomb friction is like a dead zone; inertia has nothing of friction that bends
         fits = (of_position, _COMPARED), (np.sign(fitted), _COMPARED[:2]), (v * np.abs(v), _COMPARED[1:])
         pairs = [(*self.beside(columns)[:2], np.isin(self.names, names)) for columns, names in fits]
+        pairs.append((*lowest.beside(lowest.table.snap)[:2], np.equal(self.names, "inertia")))
         return [(x, np.where(compared, stderr, np.inf)) for x, stderr, compared in pairs]
 
 
@@ -414,11 +417,12 @@ class _Joint:
             direction, sin, cos, moving = smooth[:, :4].T
             columns = np.column_stack([np.ones(n), sin, cos, v, direction, np.zeros(n), a])  # as in _COLUMNS
             rates, slopes = (np.gradient(x, axis=0) * self.rate for x in (columns, smooth[:, 4:6]))
+            snap = np.gradient(rates[:, -1]) * self.rate
             kept = np.arange(n)[edge : n - edge : thin]
             kept = kept[moving[kept] > 0.9]
-            whole = columns, rates, smooth[:, 4:6], slopes, smooth[:, 6:], angles[:, 0], v, direction
+            whole = columns, rates, smooth[:, 4:6], slopes, smooth[:, 6:], angles[:, 0], v, direction, snap
             parts.append([x[kept] for x in whole])
-        names = ("columns", "rates", "y", "slopes", "extreme", "q", "v", "direction")
+        names = ("columns", "rates", "y", "slopes", "extreme", "q", "v", "direction", "snap")
         joined = [np.concatenate(x) for x in zip(*parts, strict=True)] or [np.empty(0)] * len(names)
         return SimpleNamespace(**dict(zip(names, joined, strict=True)))
 
