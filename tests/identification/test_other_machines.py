@@ -261,7 +261,7 @@ def slow_motion_of_a_flexible_joint(rng):
 
 
 def test_a_flexible_joint_in_slow_motion_is_in_the_error_of_the_inertia():
-    """A quarter of these were off by more than three standard errors, without a word."""
+    """A fifth of these were off by more than three standard errors, without a word."""
     off = []
     for seed in range(30):
         *record, J = slow_motion_of_a_flexible_joint(np.random.default_rng([seed, 7]))

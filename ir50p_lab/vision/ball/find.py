@@ -140,7 +140,10 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
 
 
 def decide(measured, scores, least_odds=_LEAST_ODDS_CLOSER):
-    """Balls best first, and what was rejected as ((x, y, r), why), best first; balls that touch excuse each other."""
+    """Balls best first, and what was rejected as ((x, y, r), why), best first; balls that touch excuse each other.
+
+    measured: list of Measured; scores (n,): of `score`; least_odds: that a ball needs.
+    """
     for _ in range(2):
         balls, objections = [], []
         for k in np.argsort(-_trust(scores, measured), kind="stable"):
