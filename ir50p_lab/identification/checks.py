@@ -220,8 +220,8 @@ def check_model(warned, found, band, period):
     explained = 1 - min(with_gravity, missed) / total
     F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
     if explained < _EXPLAINED or (F < _F and explained < 0.5):
-        share = f"{max(explained, 0):.1%} (F = {F:.1f}, needed {_F:.0f}; {left.independent:.0f} independent samples)"
-        warned.refuse(f"u does not belong to this motion, which explains {share}: another joint or clock? Too short?")
+        share = f"{max(explained, 0):.1%} (F = {F:.1f}, needed {_F:.0f}; {left.independent:.0f} samples, too few?)"
+        warned.refuse(f"u does not belong to this motion, which explains {share}: another joint or clock? A spring?")
     elif F < _F:
         warned.add(f"only {left.independent:.0f} independent samples (F = {F:.1f}): record longer, with more reversals")
     _check_friction(warned, found)
