@@ -64,14 +64,12 @@ def scale_from_payload(without, loaded, *, mass, l2, at):
         sigma = 1 / np.sqrt(a @ weights @ a)
         per_count = sigma**2 * (a @ weights @ moved)
         if per_count < _SURE * sigma:
-            shown = f"the payload changes theta by {per_count / sigma:.1f} standard errors only"
-            notes.append(f"joint {j + 1}: {shown}: take a heavier one, or longer records")
+            notes.append(f"joint {j + 1}: it shows by {per_count / sigma:.1f} standard errors only: take a heavier one")
             continue
         K[j], stderr[j] = 1 / per_count, sigma / per_count**2
         left = moved - a * per_count
         if left @ weights @ left > 9 * np.linalg.matrix_rank(weights, hermitian=True):
-            asked = f"proportions than of {mass:g} kg at {at:g} m"
-            notes.append(f"joint {j + 1}: theta changes in other {asked}: check mass, place and both fits")
+            notes.append(f"joint {j + 1}: theta changes in other proportions than by {mass:g} kg at {at:g} m: check")
     if np.isnan(K).all():
         raise IdentificationError(f"a payload of {mass:g} kg does not show in any joint: {'; '.join(notes)}")
     known, unsure = np.nan_to_num(K)[:, None], np.where(np.isfinite(stderr), stderr, 0)[:, None]

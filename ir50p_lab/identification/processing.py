@@ -137,8 +137,7 @@ def process(
         keep[[0, -1]] = False  # their derivatives are the neighbours'
         pieces.append([x[keep] for x in piece] + [np.full(keep.sum(), k)])
     if sum(len(piece[0]) for piece in pieces) < 2:
-        said = f"nothing is left: each run without a gap is shorter than {shortest} samples"
-        raise IdentificationError(f"{said} (filter and trim take them): record longer, or give a higher cutoff_hz")
+        raise IdentificationError(f"nothing is left: no run of {shortest} samples; record longer, or raise cutoff_hz")
     t, q, qd, qdd, u, segment = (np.concatenate(x) for x in zip(*pieces, strict=True))
     return Motion(t, q, qd, qdd, u, np.abs(qd) >= slow, segment, 1 / period)
 

@@ -98,8 +98,8 @@ class StepRecord:
     """
 
     def __init__(self, t, u, y, u_before, anyway=False):
+        times, jumps = jumps_of(*same_samples({"t": t, "u": u}, most=1), u_before)  # a masked y hides no step
         t, u, y = same_samples({"t": t, "u": u, "y": y}, most=1)
-        times, jumps = jumps_of(t, u, u_before)
         self.warned = Warnings(anyway)
         steps = np.diff(t)
         period, counted = float(np.median(steps)), np.abs(t - np.rint(t)).max() < 1e-6
@@ -259,11 +259,10 @@ def _check_shape(record, a, L, b, e):
     not_white = rss - np.sum(np.diff(e, 2) ** 2) / 6 * n / (n - 2)  # second differences pass only the white noise
     shape = f"the response has not the shape of the model ({explained:.0f} % explained)"
     misshapen = follows >= _RESPONSE and not_white > _SHAPE * total and correlation > 0.5
-    if misshapen and np.sum(_second_order(record)[2] ** 2) < _SWINGS * rss:
+    if misshapen and np.sum(_second_order(record)[0][2] ** 2) < _SWINGS * rss:
         warned.refuse(f"{shape}, a second-order model leaves far less: take fit_second_order(t, u, y)")
     elif follows < _RESPONSE or (follows / inflation**2 < _RESPONSE and explained < 50):
-        explains = f"y does not follow u, which explains {explained:.1f} % of its variance"
-        warned.refuse(f"{explains}: make a larger step, or average several recordings")
+        warned.refuse(f"y does not follow u ({explained:.1f} % explained): make a larger step, or average recordings")
     elif misshapen:
         warned.add(f"{shape}: y is disturbed or drifts, or a dead zone or limit acts; do not use it yet")
     if record.quantum > _COARSE and rss < n * (record.quantum / 2) ** 2:
@@ -321,7 +320,7 @@ class SecondOrderModel:
     """G(s) = K (zero s + 1) exp(-L s)/((s/w)^2 + 2 damping s/w + 1)
 
     K: y/u; w: rad/s; damping: 1; zero: s, 0 without one, < 0 starts the wrong way; L: s; each with a standard error
-    ..._stderr (0: not fitted); y0: output at rest; fit: 100 (1 - |e|/|y - mean y|) %.
+    ..._stderr (nan: not fitted); y0: output at rest; fit: 100 (1 - |e|/|y - mean y|) %.
     """
 
     K: float
@@ -332,7 +331,7 @@ class SecondOrderModel:
     K_stderr: float = math.nan
     w_stderr: float = math.nan
     damping_stderr: float = math.nan
-    zero_stderr: float = 0.0
+    zero_stderr: float = math.nan
     L_stderr: float = math.nan
     y0: float = 0.0
     fit: float = math.nan
@@ -358,7 +357,10 @@ def _basis(t, times, jumps, w, damping, L):
 
 
 def _second_order(record):
-    """p = (log w, damping, L), c = (offset, K and perhaps K zero), residuals, and the basis (n, 2) as function of p."""
+    """The fit to take, the one with a zero, and the basis (n, 2) as function of p.
+
+    A fit: p = (log w, damping, L), c = (offset, K and perhaps K zero), residuals.
+    """
     t, y, period, n = record.t, record.y, record.period, len(record.t)
     dead_times = np.r_[np.arange(4) * period, np.geomspace(5 * period, 0.45, 9)]
     starts = [[(math.log(w), d, L) for w in np.geomspace(3, 0.5 / period, 12) for d in _GRID] for L in dead_times]
@@ -372,37 +374,44 @@ def _second_order(record):
 
     without, with_zero = (best_fit(partial(columns, zeros=m), y, starts, bounds) for m in (0, 1))
     rss, less = (float(fit[2] @ fit[2]) for fit in (without, with_zero))
-    return *(with_zero if (rss - less) / max(less, 1e-14 * n) * (n - 6) > _BETTER else without), basis
+    better = (rss - less) / max(less, 1e-14 * n) * (n - 6) > _BETTER
+    return with_zero if better else without, with_zero, basis
 
 
 def fit_second_order(t, u, y, *, u_before=None):
     """Fit K, w, damping, a zero and dead time to a recorded response: where `fit_fopdt` is refused for its shape.
 
     Least squares over all samples, exact for an input held between samples; the zero is kept where it explains
-    significantly more. Arguments as in `fit_fopdt`.
+    significantly more. Where it is not, it is in the errors: what a zero does and a dead time does is nearly the same.
+    Arguments as in `fit_fopdt`.
 
     Returns: SecondOrderModel. Raises: InputError as `fit_fopdt` does; IdentificationError if u never changes, or the
     model explains less than half of the variance of y.
     """
     record = StepRecord(t, u, y, u_before)
-    p, c, e, basis = _second_order(record)
-    zeros = len(c) - 2
+    kept, with_zero, basis = _second_order(record)
+    p, c, e = kept
     explained = 1 - np.mean(e**2) / np.var(record.y)
     if explained < 0.5:
         raise IdentificationError(f"y does not follow u: a second-order model explains {100 * explained:.0f} % of it")
-    w = math.exp(p[0])
-    found = np.array([c[1], w, *p[1:], *c[2:] / c[1]])  # K, w, damping, L and perhaps a zero
+    found, other = (np.array([c[1], math.exp(p[0]), *p[1:], *c[2:] / c[1], 0.0])[:5] for p, c, _ in (kept, with_zero))
+    w = found[1]
 
     def response(p):
-        return basis(math.log(p[1]), *p[2:4])[:, : 1 + zeros] @ [p[0], *p[0] * p[4:]]
+        return basis(math.log(p[1]), *p[2:4]) @ [p[0], p[0] * p[4]]
 
-    sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / w, 1e-3 / w][: len(found)])
-    errors = standard_errors(jacobian(response, found, sizes), e)
+    sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / w, 1e-3 / w])
+    errors = np.abs(found - other)
+    J = jacobian(response, found, sizes)[:, : len(p) + len(c)]
+    errors[: J.shape[1] - 1] = np.hypot(errors[: J.shape[1] - 1], standard_errors(J, e))
+    errors[4] = errors[3:].max()  # one can do for the other
     if w * record.period > 1:
         record.warned.add(f"w is {w * record.period:.2g} rad a sample: not identifiable, sample faster")
-    units = np.array([record.gain, 1 / record.unit, 1.0, record.unit, record.unit])[: len(found)]
+    if found[2] > 1:
+        record.warned.add(f"damping {found[2]:.2g}: the faster of two lags and L are hardly told apart; take fit_fopdt")
+    units = np.array([record.gain, 1 / record.unit, 1.0, record.unit, record.unit])
     return SecondOrderModel(
-        **by_name(_NAMES[: len(found)], found * units, errors * units),
+        **by_name(_NAMES, found * units, errors * units),
         y0=float(c[0] * record.y_unit + record.y_first),
         fit=float(100 * (1 - np.sqrt(np.mean(e**2)) / np.std(record.y))),
         warnings=tuple(record.warned),

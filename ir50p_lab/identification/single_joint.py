@@ -305,6 +305,7 @@ class Found:
         fitted = self.A @ self.left.x[np.isfinite(self.left.stderr)]  # the sign of u itself has its noise
         # Coulomb friction is like a dead zone; inertia has nothing of friction that bends
         fits = (of_position, _COMPARED), (np.sign(fitted), _COMPARED[:2]), (v * np.abs(v), _COMPARED[1:])
+        fits = *fits, (self.table.columns[:, 1:3], (*_COMPARED, "offset"))
         pairs = [(*self.beside(columns)[:2], np.isin(self.names, names)) for columns, names in fits]
         pairs.append((*lowest.beside(lowest.table.snap)[:2], np.equal(self.names, "inertia")))
         return [(x, np.where(compared, stderr, np.inf)) for x, stderr, compared in pairs]
