@@ -50,7 +50,6 @@ def picture_size(size):
 def check_picture_size(camera, size):
     """Raise CalibrationError if a picture of this size, (width, height), is not one of the Calibration or Pinhole."""
     if tuple(size) != tuple(camera.size):
-        raise CalibrationError(
-            f"this calibration is of a camera with pictures of {camera.size[0]}x{camera.size[1]}, not "
-            f"{size[0]}x{size[1]}: set the camera to that size, or calibrate it at the new one"
-        )
+        sizes = "{}x{}, not {}x{}".format(*camera.size, *size)
+        remedy = "set the camera to that size, or calibrate it at the new one"
+        raise CalibrationError(f"this calibration is of a camera with pictures of {sizes}: {remedy}")

@@ -74,10 +74,8 @@ class Charuco(Checkerboard):
         columns, rows = self.pattern
         dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, self.dictionary))
         if (columns + 1) * (rows + 1) // 2 > len(dictionary.bytesList):
-            raise CalibrationError(
-                f"{self.dictionary} has too few markers for a board of {columns + 1}x{rows + 1} squares: "
-                "name a larger dictionary"
-            )
+            size = f"{columns + 1}x{rows + 1} squares"
+            raise CalibrationError(f"{self.dictionary} has too few markers for a board of {size}: name a larger one")
         board = cv2.aruco.CharucoBoard((columns + 1, rows + 1), self.square, self.marker, dictionary)
         board.setLegacyPattern(self.legacy)
         return board

@@ -132,7 +132,7 @@ def _calibrate(found, size, board, points, options, rejected):
         )
         for (name, index, one), residuals, pose in zip(found, best.residuals, best.poses, strict=True)
     )
-    total = total_covariance(best, tried)
+    total = total_covariance(best, tried, full if wanted is None else best)
     result = Calibration(
         K=np.array([[best.camera[0], 0, best.camera[2]], [0, best.camera[1], best.camera[3]], [0, 0, 1.0]]),
         distortion=best.camera[4:9].copy(),

@@ -15,6 +15,7 @@ _SQUARE = 0.0075  # difference of fx and fy that sensors have without anything b
 # Two cameras: by which share they leave fewer squares (0.08 at most in 100 sets of one), by which part of the focal
 # length and how many standard errors they differ
 _FEWER, _APART, _SIGMAS = 0.12, 0.01, 5.0
+_CONTRADICT = 4.0  # standard error by views over that by corners: up to 2.3 for little tilt, 3.4 or more for two zooms
 _ROUGH = 0.7  # px rms, of pictures up to 1280 px wide; corners err by 0.05 to 0.5
 _STRETCHED = {
     False: "Rare in a webcam: was the picture stretched (4:3 to 16:9), or is the board bent or stretched (paper)? "
@@ -203,8 +204,11 @@ def warnings_about(calibration):
     if off.max() > 0.15:
         yield f"the centre ({K[0, 2]:.0f}, {K[1, 2]:.0f}) is far from the middle: were the pictures cropped?"
     relative = max(calibration.stderr["fx"] / K[0, 0], calibration.stderr["fy"] / K[1, 1])
+    apart = max(calibration.stderr_views[f] / calibration.stderr_corners[f] for f in ("fx", "fy"))
     if relative > 0.01:
-        yield f"the focal length is known to {100 * relative:.1f} % only: tilt the board more, take more views"
+        differ = "the views contradict each other: zoom changed, board bent or stretched?"
+        remedy = differ if len(views) >= 8 and apart > _CONTRADICT else "tilt the board more, take more views"
+        yield f"the focal length is known to {100 * relative:.1f} % only: {remedy}"
     if len(views) < 8:
         yield f"{len(views)} views are few: 10 to 20 make the standard errors themselves trustworthy"
     tilted = np.array([v.T_cam_board[:2, 2] for v in views if v.tilt > _TILTED])

@@ -155,11 +155,9 @@ def start(corners):
             flags=flags,
             criteria=(cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 20, 1e-6),  # `fit` goes on from there
         )
-    except cv2.error as error:
-        raise CalibrationError(
-            f"OpenCV finds no camera for these {len(corners)} views ({error.err}): tilt the board in different "
-            "directions by 20 to 45 degrees, and fill the picture"
-        ) from None
+    except cv2.error:
+        remedy = "tilt the board in different directions by 20 to 45 degrees, and fill the picture"
+        raise CalibrationError(f"OpenCV finds no camera for these {len(corners)} views: {remedy}") from None
     poses = np.hstack([np.array(rvecs).reshape(-1, 3), np.array(tvecs).reshape(-1, 3)])
     camera = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *d.ravel()[:5], 0, 0, 0])
     if not np.isfinite(camera).all() or not np.isfinite(poses).all():
@@ -221,7 +219,8 @@ def fit(corners, model, guess, steps=50):
             S, g, own, following = reduce(B, *views)
             while True:
                 step = solve(S.sum(axis=0), g.sum(axis=0)[:, None], damping)[:, 0]
-                new_camera, new_poses = camera + B @ step, moved_by(poses, own - following @ step)
+                part = 1 / max(damping, 1.0)  # the poses overshoot, too
+                new_camera, new_poses = camera + part * (B @ step), moved_by(poses, part * (own - following @ step))
                 new_views = project(corners, new_camera, new_poses)
                 new_cost = _cost(new_camera, new_views)
                 if new_cost <= cost * (1 + 1e-12) + nothing or damping > 1e6:
@@ -287,10 +286,8 @@ def _with_covariance(corners, model, camera, poses, views):
     residuals = tuple(e[: 2 * len(p)].reshape(-1, 2) for e, p in zip(views[0], corners.points, strict=True))
     fit = CameraFit(camera, poses, residuals, np.zeros((12, 12)), np.zeros((12, 12)), model)
     if 2 * fit.points <= fit.parameters:
-        raise CalibrationError(
-            f"{fit.points} corners in {count} views give {2 * fit.points} numbers for {fit.parameters} parameters: "
-            "more views, or a board with more corners"
-        )
+        given = f"{fit.points} corners in {count} views give {2 * fit.points} numbers for {fit.parameters} parameters"
+        raise CalibrationError(f"{given}: more views, or a board with more corners")
     by_corners = fit.sigma**2 * solve(total, np.eye(len(total)))
     by_views = np.zeros((12, 12))
     if count > 3:  # what leaving out a view does, to first order

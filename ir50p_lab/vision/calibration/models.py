@@ -101,17 +101,18 @@ def choose(corners, full):
     return best, tuple(evidence), tuple(tried)
 
 
-def total_covariance(best, tried):
+def total_covariance(best, tried, full):
     """Covariance (9, 9) of the camera's numbers: of the fit itself, and of the choice of the model.
 
     Of each parameter the larger standard error of the two routes counts; the correlations are those by corners. The
-    choice adds the spread of the models that were tried about the chosen one, each with its Akaike weight: where two
-    models are about as likely, the difference between them is uncertainty, too (Burnham and Anderson's unconditional
-    variance).
+    centre is no surer than in full, a CameraFit with p1 and p2, which move it. The choice adds the spread of the models
+    that were tried about the chosen one, each with its Akaike weight: where two models are about as likely, the
+    difference between them is uncertainty, too (Burnham and Anderson's unconditional variance).
     """
-    by_corners, by_views = best.by_corners[:9, :9], best.by_views[:9, :9]
-    own = np.diag(by_corners)
-    factor = np.sqrt(np.maximum(own, np.diag(by_views)) / np.where(own > 0, own, 1.0))
+    by_corners, own = best.by_corners[:9, :9], np.diag(best.by_corners)[:9]
+    errors = best.stderr[:9]
+    errors[2:4] = np.maximum(errors[2:4], full.stderr[2:4])
+    factor = errors / np.sqrt(np.where(own > 0, own, 1.0))
     total = by_corners * np.outer(factor, factor)
     cameras, scores = zip(*tried, strict=True)
     weights = np.exp(-0.5 * (np.array(scores) - min(scores)))

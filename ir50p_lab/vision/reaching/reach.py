@@ -73,10 +73,8 @@ class Reacher(Mover):
     def _refuse_drawn(self, drawn):
         """A real arm would move among real things to where a ball was drawn."""
         if drawn and not self.bench.simulated:
-            raise CameraError(
-                f"{self.bench.name} is a real arm, but the picture is rendered: open a webcam with open_camera(0), or "
-                "take the simulated arm, connect('simulated')"
-            )
+            remedy = "open a webcam with open_camera(0), or take the simulated arm, connect('simulated')"
+            raise CameraError(f"{self.bench.name} is a real arm, but the picture is rendered: {remedy}")
 
     # ---- tasks
 

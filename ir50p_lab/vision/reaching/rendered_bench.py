@@ -109,8 +109,6 @@ def camera_over(bench, balls=(0.40, 0.0, 0.03), *, small=False):
     camera = open_camera(size=(320, 240)) if small else open_camera()
     if camera.simulated and not bench.simulated:
         camera.close()
-        raise CameraError(
-            "a real arm needs a camera that sees it: plug a webcam in, close the program that has it, or take the "
-            "simulated arm, connect('simulated')"
-        )
+        remedy = "plug a webcam in, close the program that has it, or take the simulated arm, connect('simulated')"
+        raise CameraError(f"a real arm needs a camera that sees it: {remedy}")
     return camera
