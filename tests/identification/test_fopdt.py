@@ -292,6 +292,31 @@ def test_a_second_order_model_is_offered_and_right(zero, seed):
     assert fit_fopdt(T_S, STEP, y, anyway=True).warnings[0].startswith("gone on anyway")
 
 
+def test_a_zero_too_small_to_be_kept_is_in_the_errors():
+    """It looks like dead time: in half of these zero or L was off by more, up to 24 standard errors."""
+    wrong = []
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        t, w, damping = np.arange(600) / 600, rng.uniform(20, 50), rng.uniform(0.2, 0.8)
+        zero, late = rng.uniform(-0.4, 0.4) / w, 60 + 3 * (seed % 2)
+        response = lsim(([w**2 * zero, w**2], [1, 2 * damping * w, w**2]), np.ones(600), t)[1]
+        y = np.r_[np.zeros(late), response[: 600 - late]] + 0.02 * rng.normal(size=600)
+        found = fit_second_order(t, (t >= 0.1).astype(float), y)
+        truth = {"K": 1.0, "w": w, "damping": damping, "zero": zero, "L": late / 600 - 0.1}
+        z = [abs(getattr(found, name) - x) / (getattr(found, f"{name}_stderr") + 1e-9) for name, x in truth.items()]
+        wrong.append(max(z) > 3.5)
+    assert sum(wrong) <= 3
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_what_is_masked_in_y_hides_no_step_of_u(seed):
+    t, u, y, noise, model = step_record(seed)
+    mask = np.zeros(len(t), dtype=bool)
+    mask[np.argmax(u != u[0]) - 2 : np.argmax(u != u[0]) + 3] = True
+    found = fit_fopdt(t, u, np.ma.array(y + noise, mask=mask))
+    assert within(found, model, 4), found
+
+
 def test_a_few_samples_do_not_show_whether_the_model_is_right():
     t, u = np.arange(12) * PERIOD, np.full(12, 0.05)
     assert "too few to see" in " ".join(fit_fopdt(t, u, 0.04 * lag(t - 0.03, 0.06), u_before=0).warnings)

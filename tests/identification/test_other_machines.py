@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.signal import lsim
 
 from ir50p_lab.errors import IdentificationError
@@ -269,6 +270,58 @@ def test_a_flexible_joint_in_slow_motion_is_in_the_error_of_the_inertia():
         if not found.warnings:
             off.append(abs(found.inertia - J) / found.inertia_stderr)
     assert len(off) >= 10 and np.mean(np.array(off) > 3) < 0.12, np.round(off, 1)
+
+
+def springy_joint(rng):
+    """A motor with torque ripple that leads its load through a spring along sines: t, its angle, its torque."""
+    t, reference, speed, _ = sines(rng, 500, 15, rng.uniform(0.3, 1), rng.uniform(0.1, 0.2))
+    far, own, damping, b = rng.uniform((0.2, 2 * np.pi * 6, 0.02, 0.3), (0.6, 2 * np.pi * 14, 0.1, 3))
+    c, ripple = b * np.std(speed) * rng.uniform(0.2, 1.5), rng.uniform(0.05, 0.2)
+    mass = far * (1 - far)
+
+    def torque(t, q, v):
+        return 80 * (np.interp(t, *led[:2]) - q) + 14 * (np.interp(t, *led[::2]) - v)
+
+    def rates(t, state):
+        q, v, far_q, far_v = state
+        spring = own**2 * mass * (q - far_q) + 2 * damping * own * mass * (v - far_v)
+        friction = b * v + c * (np.tanh(v / 2e-3) + ripple * np.sin(100 * q))
+        return v, (torque(t, q, v) - friction - spring) / (1 - far), far_v, spring / far
+
+    led, start = (t, reference, speed), [reference[0], speed[0]] * 2
+    q, v = solve_ivp(rates, (0, t[-1]), start, method="LSODA", t_eval=t, rtol=1e-6, atol=1e-8).y[:2]
+    u = torque(t, q, v)
+    return t, q, u + rng.normal(0, 0.03 * np.std(u), len(t))
+
+
+def test_a_flexible_joint_is_not_said_to_be_late():
+    """A delay explains a part of what the spring does, with the wrong remedy: snap explains more of it."""
+    said = [" ".join(fit_joint(*springy_joint(np.random.default_rng([seed, 5]))).warnings) for seed in range(12)]
+    assert not any("seems to act" in text or "before u" in text for text in said)
+    assert any("flexible joint" in text for text in said)
+
+
+def test_gravity_too_weak_to_be_named_is_in_the_error_of_the_offset():
+    """In four of five of these it was not."""
+    wrong = []
+    for seed in range(20):
+        rng = np.random.default_rng([seed, 6])
+        record, truth = fast_arm(seed)
+        size, phase = truth[2] * rng.uniform(0.05, 0.3), rng.uniform(0, 6.28)
+        found = fit_joint(record[0], record[1], record[2] + size * np.sin(record[1] + phase))
+        off = abs(found.offset - 0.1 * truth[2])
+        wrong.append(off > 3.5 * found.offset_stderr and "gravity" not in " ".join(found.warnings))
+    assert sum(wrong) <= 4
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_single_bad_angles_of_a_joint_that_waits_are_outliers_and_no_hung_sensor(seed):
+    rng = np.random.default_rng([seed, 8])
+    t, q, v, a = moves(rng, 200, 20, 1.0, 1.5, 0.8)
+    q = np.round(q / 1e-3) * 1e-3
+    q[rng.choice(np.arange(50, 3950, 10), 4, replace=False)] += rng.choice([-1, 1], 4) * rng.uniform(0.3, 0.8, 4)
+    found = fit_joint(t, q, a + 4 * v + dry(v, 2.0, rng) + rng.normal(0, 0.05, len(t)))
+    assert "q has 4 outlier(s)" in " ".join(found.warnings)
 
 
 def test_general_least_squares_of_more_equations_a_sample():

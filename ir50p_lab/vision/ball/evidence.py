@@ -14,7 +14,7 @@ _LEAST_VALUE = 0.2
 _REDS = 20  # degrees from red, 0, of the hues that skin and brown are mistaken for
 _GLARE = 0.95  # value from which on a disc is overexposed, and its paint cannot be seen
 _SKIN, _BROWN = (5.0, 0.6), (8.0, 0.72, 0.45)  # degrees towards orange; then least saturation, value
-_DARK_BROWN = 12.0, 0.33  # degrees; least value, however saturated
+_DARK_BROWN = 14.0, 0.33  # degrees; least value, however saturated
 # Of a guess, which may be off, and its ball in glare or hidden by a thing of nearly its hue: part of the disc that must
 # have the colour; by how much less its hue is off than noise makes of it, degrees; what its paint may be off
 _LEAST_ALIKE, _NOISE, _PAINT_ERROR = 0.15, 2.0, (-1.0, 0.01, 0.02)
