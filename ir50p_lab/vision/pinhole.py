@@ -171,8 +171,10 @@ def _check_K(K):
     K = numbers("K", K, unit="px").copy()
     good = K.shape == (3, 3) and np.isfinite(K).all() and not np.tril(K, -1).any() and (np.diag(K) > 0).all()
     if not good or K[2, 2] != 1:
-        remedy = "give the finite matrix [[fx, skew, cx], [0, fy, cy], [0, 0, 1]], fx, fy > 0 (MATLAB prints K.T)"
-        raise InputError(f"K = {K.tolist()} is no intrinsic matrix: {remedy}")
+        raise InputError(
+            f"K = {K.tolist()} is no intrinsic matrix: give the finite 3x3 matrix [[fx, skew, cx], [0, fy, cy], "
+            "[0, 0, 1]], fx, fy > 0 (MATLAB prints it transposed: K.T)"
+        )
     return K
 
 

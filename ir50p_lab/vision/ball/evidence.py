@@ -18,7 +18,6 @@ _DARK_BROWN = 14.0, 0.33  # degrees; least value, however saturated
 # Of a guess, which may be off, and its ball in glare or hidden by a thing of nearly its hue: part of the disc that must
 # have the colour; by how much less its hue is off than noise makes of it, degrees; what its paint may be off
 _LEAST_ALIKE, _NOISE, _PAINT_ERROR = 0.15, 2.0, (-1.0, 0.01, 0.02)
-MOST_CORNERED = 0.009  # of the radius: octagons such as traffic signs show 0.01 to 0.02
 _ENOUGH = 0.1  # of the disc that is not overexposed: less tells nothing of the hue
 
 
@@ -118,7 +117,6 @@ def objection(found, others=()):
         (5.6 * goes_on, f"the colour goes on beyond {goes_on:.0%} of the circle"),
         (5.5 * colourless, f"{colourless:.0%} of the disc have another colour"),
         (3.7 * waves / pixels, f"the outline is not round: waves of {waves:.2f} pixels on a radius of {o.r:.0f}"),
-        (found.cornered / MOST_CORNERED, "it has eight corners, as traffic signs have"),
         (found.oval * o.r / (0.4 + 0.06 * o.r), "the outline is oval"),
         (2.35 * log(_WELL_APART / max(found.apart, 0.2)), "it hardly stands out from its surroundings"),
         (2.9 * min(-log(o.r / 20), 2.0), f"it is small, radius {o.r:.1f} pixels, and what is seen is not enough"),

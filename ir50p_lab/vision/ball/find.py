@@ -10,7 +10,7 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import number
 from ir50p_lab.vision.ball.classifier import score
 from ir50p_lab.vision.ball.colour import RED, Colour
-from ir50p_lab.vision.ball.evidence import MOST_CORNERED, NoBallError, check_colour, objection
+from ir50p_lab.vision.ball.evidence import NoBallError, check_colour, objection
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.measure import measure
 from ir50p_lab.vision.ball.regions import coarse_hsv, guess_circles, guess_closer
@@ -150,7 +150,7 @@ def decide(measured, scores, least_odds=_LEAST_ODDS_CLOSER):
             found, radius = measured[k], measured[k].outline.r
             if _part_of(balls, found):
                 continue
-            if scores[k] >= least_score(radius, found.support, least_odds) and found.cornered <= MOST_CORNERED:
+            if scores[k] >= least_score(radius, found.support, least_odds):
                 balls.append(Ball(*found.centre, radius, float(scores[k]), found.support))
             else:
                 objections.append((scores[k], found))

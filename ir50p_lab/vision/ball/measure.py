@@ -36,8 +36,8 @@ class Measured:
     outline; centre (x, y) of the sphere, pixels. support: shows an edge on the outline; seen: lies in the picture.
     beyond (n,) bool: rays without an edge on which the ball's colour goes on outside. fill: of the disc towards the
     edges found that has the colour (or is a highlight).
-    bumps: what the outline has of waves around a circle, three to eight of them, rms over the radius; cornered: the
-    amplitude of eight if they outweigh the others, else 0; oval: two waves (motion makes some).
+    bumps: what the outline has of waves around a circle, three to eight of them, rms over the radius; oval: two waves
+    (motion makes some).
     gaps: into how many pieces what is missing falls. ragged: rms distance of the edge points from the smooth outline,
     over the radius. step: median height of the edges, over the contrast of the disc and its surroundings.
     apart: of the colours in and out, in standard deviations. through: how much of the missing part looks like what
@@ -52,7 +52,6 @@ class Measured:
     beyond: np.ndarray
     fill: float
     bumps: float
-    cornered: float
     oval: float
     apart: float
     through: float
@@ -144,7 +143,7 @@ def _fine(image, outline, unit, view, colour, camera, least_radius):
     if fill < LEAST_FILL:
         raise NoBallError(f"hollow, or another colour: {fill:.0%} of the disc have the colour")
     paint = paint_of(hsv[inside], colour.centre, colour.swaps)
-    bumps, oval, ragged, cornered = _waves(off[on], unit[0][on], unit[1][on], outline.r)
+    bumps, oval, ragged = _waves(off[on], unit[0][on], unit[1][on], outline.r)
     if why := other_paint(paint, colour) or _roughness(bumps, ragged, outline.r):
         raise NoBallError(why, outline.circle)
     missing = ~on & seen
@@ -158,7 +157,6 @@ def _fine(image, outline, unit, view, colour, camera, least_radius):
         beyond=beyond,
         fill=fill,
         bumps=bumps,
-        cornered=cornered,
         oval=oval,
         apart=apart,
         through=_shown_through(rgb, on, missing & ~beyond, inside),
@@ -202,9 +200,7 @@ def _through_the_lens(x, y, outline, view, camera):
 
 @jit()
 def _waves(off, cos, sin, r):
-    """Of the distances (n,) around the circle, over r: rms of the waves 3 to 8, noise taken off, of wave 2, and of what
-    is left; amplitude of wave 8 if it outweighs the others.
-    """
+    """rms of the waves 3 to 8 in the distances (n,) around the circle, noise taken off, and of wave 2; over r."""
     n, turn = len(off), cos + 1j * sin
     A = np.empty((14, n))
     power = turn * turn
@@ -216,9 +212,7 @@ def _waves(off, cos, sin, r):
     bumps = size[2:] @ A[2:]
     left = np.mean((off - oval - bumps) ** 2)
     waving = max(np.mean(bumps**2) - left * 12 / n, 0.0)
-    eight = np.sum(size[12:] ** 2)
-    cornered = np.sqrt(eight) / r if 2 * eight > np.sum(size[2:] ** 2) else 0.0
-    return np.sqrt(waving) / r, np.sqrt(np.mean(oval**2)) / r, np.sqrt(left) / r, cornered
+    return np.sqrt(waving) / r, np.sqrt(np.mean(oval**2)) / r, np.sqrt(left) / r
 
 
 @jit()
