@@ -64,7 +64,7 @@ def base_parameters(Phi, *, names=None, known=None):
     kept, weights = independent_columns(R)
     s = np.linalg.svd(R, compute_uv=False)
     if (above := np.sum(s > DEPENDENT * s[0])) != len(kept):
-        raise IdentificationError(f"the rank is not clear: {len(kept)} columns beside {above} singular values: move on")
+        raise IdentificationError(f"the rank is not clear: {len(kept)} columns but {above} singular values: move more")
     columns = seen[kept]
     matrix = np.zeros((len(kept), len(names)))
     matrix[:, seen] = weights * length[seen] / length[columns][:, None]

@@ -65,9 +65,8 @@ def check_signals(warned, t, q, u):
     else:
         _whole_turns(warned, t, q)
         new = _repeated_angles(warned, q)
-        regular = np.delete(t, places), np.delete(q, places)
-        _frozen_angle(warned, *regular)
-        _clipped_angle(warned, *regular)
+        for look in (_frozen_angle, _clipped_angle):
+            look(warned, np.delete(t, places), np.delete(q, places))
     if np.ptp(q) > _TURNS:
         warned.add(f"q spans {np.ptp(q):.4g} rad: is it in degrees? Use np.radians(q)")
     if (period := sampling_period(t)) > _SLOW_CLOCK:
@@ -115,7 +114,15 @@ def _clipped_angle(warned, t, q):
         stays = [(places[a], places[b - 1] + 1) for a, b in runs(places.astype(float), _BROKEN) if b - a >= _STAYS]
         if (missing := max([_cut_off(t, x, *stay) for stay in stays], default=0.0)) > 0:
             where = f"{name} value, {q[places[0]]:.6g} rad (about {missing:.2g} rad are missing)"
-            warned.refuse(f"q was clipped at its {where}: record within the range, or cut these stretches out")
+            said = f"q was clipped (or stops suddenly) at its {where}: record within the range, or cut these parts out"
+            (warned.add if _stops_suddenly(t, q) else warned.refuse)(said)
+
+
+def _stops_suddenly(t, q):
+    """Whether the joint turns round after a rest elsewhere, too, as if it was clipped there: then that is its way."""
+    still = np.flatnonzero((np.diff(q) == 0) & (q[1:] > q.min()) & (q[1:] < q.max()))
+    rests = [(still[a], still[b - 1] + 2) for a, b in runs(still.astype(float), 1.5) if b - a >= _STAYS - 1]
+    return any(_cut_off(t, sign * q, *rest) > 0 for rest in rests for sign in (1, -1))
 
 
 def _cut_off(t, x, begin, end):
@@ -266,8 +273,7 @@ def _check_inertia(warned, found, band, period):
         warned.add(f"inertia {J:.3g} +- {stderr:.2g}: this motion hardly shows it; record faster reversals")
     elif band.acceleration_share > 0.03:
         warned.add(f"inertia: {100 * band.acceleration_share:.0f} % too small by noise; move faster, or filter more")
-    b = found.value("viscous")[0]
-    if 0 < J < b * period:
+    if 0 < J < (b := found.value("viscous")[0]) * period:
         warned.add(f"the time constant {J / b:.3g} s is below the sampling period of {period:.3g} s: sample faster")
     lag = found.beside(found.table.slopes[:, 1 - found.held])  # u behind a low pass: what went in is u + lag du/dt
     delay, sigma, rms = min(found.beside_delay[2:], lag[2:], key=lambda one: one[2])

@@ -69,7 +69,8 @@ def scale_from_payload(without, loaded, *, mass, l2, at):
         K[j], stderr[j] = 1 / per_count, sigma / per_count**2
         left = moved - a * per_count
         if left @ weights @ left > 9 * np.linalg.matrix_rank(weights, hermitian=True):
-            notes.append(f"joint {j + 1}: theta changes in other proportions than by {mass:g} kg at {at:g} m: check")
+            asked = f"proportions than of {mass:g} kg at {at:g} m"
+            notes.append(f"joint {j + 1}: theta changes in other {asked}: check mass, place and both fits")
     if np.isnan(K).all():
         raise IdentificationError(f"a payload of {mass:g} kg does not show in any joint: {'; '.join(notes)}")
     known, unsure = np.nan_to_num(K)[:, None], np.where(np.isfinite(stderr), stderr, 0)[:, None]

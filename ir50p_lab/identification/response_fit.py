@@ -110,8 +110,7 @@ class StepRecord:
             raise IdentificationError("u never changes: record samples before the step too, or give u_before=")
         if np.ptp(y) <= 1e-12 * np.abs(y).max():
             raise IdentificationError(f"y stays at {y[0]:.6g}: check sensor and power; is the step above the friction?")
-        after = int((t >= times[0]).sum())
-        if after < _FEWEST:
+        if (after := int((t >= times[0]).sum())) < _FEWEST:
             raise IdentificationError(f"only {after} samples from the first change of u on: record {_FEWEST} or more")
         places = check_outliers(self.warned, "y", t, y, "left out; look for their cause")
         t, y = np.delete(t, places), np.delete(y, places)
@@ -306,8 +305,7 @@ def _warn(record, T, L, L_stderr, correlation, inflation):
         warned.add(f"the dead time is not identifiable, {L / period:.2f} of a sampling period: use no rule with 1/L")
     elif L < 2 * L_stderr:
         warned.add(f"dead time {L * unit:.3g} s is less than two standard errors: it cannot be told from none")
-    seen = int((record.t >= L).sum())
-    if seen < _ENOUGH:
+    if (seen := int((record.t >= L).sum())) < _ENOUGH:
         warned.add(f"only {seen} samples of the response: too few to see whether the model is right; sample faster")
     if T > 1 - L:
         warned.add(f"not settled: T = {T * unit:.4g} s, but {(1 - L) * unit:.4g} s of response recorded; record 3 T")
@@ -389,24 +387,22 @@ def fit_second_order(t, u, y, *, u_before=None):
     model explains less than half of the variance of y.
     """
     record = StepRecord(t, u, y, u_before)
-    kept, with_zero, basis = _second_order(record)
-    p, c, e = kept
+    (p, c, e), with_zero, basis = _second_order(record)
     explained = 1 - np.mean(e**2) / np.var(record.y)
     if explained < 0.5:
         raise IdentificationError(f"y does not follow u: a second-order model explains {100 * explained:.0f} % of it")
-    found, other = (np.array([c[1], math.exp(p[0]), *p[1:], *c[2:] / c[1], 0.0])[:5] for p, c, _ in (kept, with_zero))
-    w = found[1]
+    found, other = (np.array([k[1], np.exp(x[0]), *x[1:], *k[2:] / k[1], 0])[:5] for x, k in ((p, c), with_zero[:2]))
 
     def response(p):
         return basis(math.log(p[1]), *p[2:4]) @ [p[0], p[0] * p[4]]
 
-    sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / w, 1e-3 / w])
+    sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / found[1], 1e-3 / found[1]])
     errors = np.abs(found - other)
     J = jacobian(response, found, sizes)[:, : len(p) + len(c)]
     errors[: J.shape[1] - 1] = np.hypot(errors[: J.shape[1] - 1], standard_errors(J, e))
     errors[4] = errors[3:].max()  # one can do for the other
-    if w * record.period > 1:
-        record.warned.add(f"w is {w * record.period:.2g} rad a sample: not identifiable, sample faster")
+    if found[1] * record.period > 1:
+        record.warned.add(f"w is {found[1] * record.period:.2g} rad a sample: not identifiable, sample faster")
     if found[2] > 1:
         record.warned.add(f"damping {found[2]:.2g}: the faster of two lags and L are hardly told apart; take fit_fopdt")
     units = np.array([record.gain, 1 / record.unit, 1.0, record.unit, record.unit])

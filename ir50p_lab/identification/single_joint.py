@@ -293,7 +293,7 @@ class Found:
         return moved
 
     def beside_forces(self, lowest):
-        """[(x, stderr)] beside a polynomial of q, the sign of the u fitted, friction that bends with the speed, snap.
+        """[(x, stderr)] beside a polynomial of q, the sign of the u fitted, friction that bends, gravity, snap.
 
         Snap, the rate of the jerk, is what a flexible joint adds. Only in the `lowest` fit, at the lowest cut-off,
         it is not all noise. [] if there are too few samples.
