@@ -64,7 +64,8 @@ def base_parameters(Phi, *, names=None, known=None):
     kept, weights = independent_columns(R)
     s = np.linalg.svd(R, compute_uv=False)
     if (above := np.sum(s > DEPENDENT * s[0])) != len(kept):
-        raise IdentificationError(f"the rank is not clear: {len(kept)} columns but {above} singular values: move more")
+        said = f"{len(kept)} columns stick out of the others by {DEPENDENT:g}, {above} singular values are above that"
+        raise IdentificationError(f"the rank is not clear: {said}: use richer or exact motion")
     columns = seen[kept]
     matrix = np.zeros((len(kept), len(names)))
     matrix[:, seen] = weights * length[seen] / length[columns][:, None]

@@ -64,7 +64,7 @@ def scale_from_payload(without, loaded, *, mass, l2, at):
         sigma = 1 / np.sqrt(a @ weights @ a)
         per_count = sigma**2 * (a @ weights @ moved)
         if per_count < _SURE * sigma:
-            notes.append(f"joint {j + 1}: it shows by {per_count / sigma:.1f} standard errors only: take a heavier one")
+            notes.append(f"joint {j + 1}: payload shows by {per_count / sigma:.1f} standard errors: take a heavier one")
             continue
         K[j], stderr[j] = 1 / per_count, sigma / per_count**2
         left = moved - a * per_count

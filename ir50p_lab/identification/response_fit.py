@@ -397,9 +397,8 @@ def fit_second_order(t, u, y, *, u_before=None):
         return basis(math.log(p[1]), *p[2:4]) @ [p[0], p[0] * p[4]]
 
     sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / found[1], 1e-3 / found[1]])
-    errors = np.abs(found - other)
     J = jacobian(response, found, sizes)[:, : len(p) + len(c)]
-    errors[: J.shape[1] - 1] = np.hypot(errors[: J.shape[1] - 1], standard_errors(J, e))
+    errors = np.hypot(found - other, np.append(standard_errors(J, e), 0.0)[:5])
     errors[4] = errors[3:].max()  # one can do for the other
     if found[1] * record.period > 1:
         record.warned.add(f"w is {found[1] * record.period:.2g} rad a sample: not identifiable, sample faster")

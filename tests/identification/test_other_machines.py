@@ -325,7 +325,7 @@ def test_a_flexible_joint_is_not_said_to_be_late():
 
 
 def test_gravity_too_weak_to_be_named_is_in_the_error_of_the_offset():
-    """In four of five of these it was not."""
+    """In two of three of these it was not."""
     wrong = []
     for seed in range(20):
         rng = np.random.default_rng([seed, 6])
