@@ -19,8 +19,7 @@ _STEP = 1e-6  # of a parameter's size, for differences
 _RESPONSE = 15.0  # least F value for "y follows u": a search over T and L in pure noise stays below it
 _SHAPE = 0.05  # largest share of the variance of y that may be left and not be white: 20-40 % of overshoot
 _SWINGS = 0.5  # of what is left of y: if a second-order model leaves less, it is the one to take
-_BENDS = 9.0  # least F value for "the response bends towards a final value": three standard errors
-_OTHER = 9.0  # least F value of a drift, or of a rest at first that was none: three standard errors
+_SIGNIFICANT = 9.0  # F value of one more parameter, a bend or a drift, that is surely there: three standard errors
 _COARSE = 1 / 60  # of the range of y: a response in fewer steps than these, not mixed by noise, misleads
 _ENOUGH = 20  # samples of a response, five for each parameter, from which on its shape can be judged
 _SEEN = 0.99  # sampling periods: a time constant or dead time below is not seen
@@ -184,11 +183,11 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     information than their number: where the lag-one correlation r is significant, the errors are widened by
     sqrt((1 + r)/(1 - r)), and a warning says so. Measured over 200 seeds, 500 samples: two standard errors held the
     truth 91-97 times in 100 in white noise and up to r = 0.9, 83 times at r = 0.97: slow drift is still worse than it
-    says. Where y drifts in a line, or was on its way to rest at first, and that is significant, the errors are widened
-    by what it moves, with a warning; by the jitter of an uneven clock and by half a step of a coarse y they are widened
-    without one. Of other errors of the model they know nothing. One step cannot tell a drift that is just not
-    significant from a slow end of the response: where T is more than a tenth of the record, it may move K and T by
-    several standard errors. Several steps to both sides tell it.
+    says. Where y drifts in a line, or was on its way to rest at first, the errors are widened by what it moves, with a
+    warning if it is significant and by a part of it if not; by the jitter of an uneven clock and by half a step of a
+    coarse y they are widened without one. Of other errors of the model they know nothing. One step cannot tell a drift
+    that is not significant from a slow end of the response: it may still move K and T by several standard errors.
+    Several steps to both sides tell it.
 
     Args:
         t: (n,) s, increasing. u: (n,), input; u[k] acts from t[k] to t[k + 1]. y: (n,), output, any unit.
@@ -267,7 +266,7 @@ def _check_shape(record, a, L, b, e):
     if record.quantum > _COARSE and rss < n * (record.quantum / 2) ** 2:
         warned.add(f"y takes about {1 / record.quantum:.0f} steps only: errors were widened; use a finer range")
     ramp = best_fit(lambda p: record.columns(0.0, *p), record.y, [[(k / 50,)] for k in range(45)], (0.0, 0.95))[2]
-    if a * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / inflation**2 > _BENDS:
+    if a * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / inflation**2 > _SIGNIFICANT:
         return
     value = f"only K/T has a value, {b * record.gain / record.unit:.4g} y/u per s"
     said = "the response runs on like a ramp, or ever faster: the plant integrates (as angles do), is unstable or slow"
@@ -275,7 +274,9 @@ def _check_shape(record, a, L, b, e):
 
 
 def _systematic_errors(record, a, J, e):
-    """(3,) of K, T and L: what they move beside a drift, or a rest at first that was none; adds a warning of these.
+    """(3,) of K, T and L: what they move beside a drift, or a rest at first that was none; a warning, if that is sure.
+
+    What is not sure counts in part: noise alone moves them hardly, and much of what moves them more is real.
 
     An uneven clock is late now and then, perhaps at the step itself: T and L are no surer than its usual jitter. Coarse
     steps of y, not mixed by noise, do not average: half of one remains.
@@ -289,8 +290,9 @@ def _systematic_errors(record, a, J, e):
         x = np.linalg.lstsq(A, -e)[0]
         left = e + A @ x
         spread = max(left @ left, len(e) * _NOISE**2) / (len(e) - A.shape[1]) * likeness(left)[1] ** 2
-        if e @ e - left @ left > _OTHER * spread:
-            moved = np.hypot(moved, x[1:4])
+        sure = min((e @ e - left @ left) / (_SIGNIFICANT * spread), 1.0)
+        moved = np.hypot(moved, sure * x[1:4])
+        if sure == 1:
             size = f"{100 * abs(x[-1]) * np.ptp(column):.2g} % of its range"
             record.warned.add(f"{what} {size}: errors were widened; record longer rest before the step")
     return moved
