@@ -46,8 +46,10 @@ def guess_closer(image, hsv, colour, least_radius):
     left, above, width, height = cv2.boundingRect(colour.loose_mask(hsv))
     if not width:
         return np.empty((0, 3))
+    # whole fours: an odd size takes OpenCV ten times as long to halve
     x, y = corner = [max(shrink * one - _MARGIN, 0) // 4 * 4 for one in (left, above)]
-    part = image[y : shrink * (above + height) + _MARGIN, x : shrink * (left + width) + _MARGIN]
+    right, below = (-(-(shrink * one + _MARGIN) // 4) * 4 for one in (left + width, above + height))
+    part = image[y:below, x:right]
     found, scales = [np.empty((0, 3))], ((shrink, 1.5), (2 * shrink, 1.2), (1, 1.2))
     pixels = part.shape[0] * part.shape[1]
     for scale, sigma in scales[pixels > _VERY_LARGE : 3 if pixels < _SMALL and shrink > 1 else 2]:
