@@ -72,7 +72,7 @@ def two_cameras(corners, best):
     Two cameras, each with its own views, must leave fewer squares, and differ in focal length or centre. Views of a
     stretched board ask for different focal lengths as well, by how the board was turned.
     """
-    parts = _two_heaps(*pulls(corners, best))
+    parts = _two_heaps(*pulls(corners, best), _FEWER / 2 * best.cost)
     if not parts or all(_not_square(best.camera, covariance)[0] for covariance in (best.by_corners, best.by_views)):
         return []
     model = best.model.with_lens(name for name in best.model.lens if name in ("k1", "k2"))
@@ -91,12 +91,13 @@ def two_cameras(corners, best):
     return [f"these seem to be pictures of two cameras, or zoom or crop was changed: {groups}. Calibrate them apart"]
 
 
-def _two_heaps(S, g):
+def _two_heaps(S, g, least):
     """The views (two arrays) of the two cameras that explain most, each at least three; or none.
 
-    S, g: of `pulls`. As in k-means: a step of the camera for each heap, then each view to the step that suits it.
+    S, g: of `pulls`; least: px^2 to explain. As in k-means: a step of the camera for each heap, then each view to the
+    step that suits it.
     """
-    found, most = (), 0.0
+    found, most = (), least
     for first in (g > 0).T:
         for _ in range(10):
             heaps = [np.flatnonzero(first), np.flatnonzero(~first)]
