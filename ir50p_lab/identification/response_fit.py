@@ -274,9 +274,10 @@ def _check_shape(record, a, L, b, e):
 
 
 def _systematic_errors(record, a, J, e):
-    """(3,) of K, T and L: what they move beside a drift, or a rest at first that was none; a warning, if that is sure.
+    """(3,) of K, T and L: what they move by beside a drift, or a rest at first that was none.
 
-    What is not sure counts in part: noise alone moves them hardly, and much of what moves them more is real.
+    Where such a flaw is significant it counts in full, and a warning is added; else in the proportion of its F value to
+    a significant one, so that noise alone hardly widens the errors.
 
     An uneven clock is late now and then, perhaps at the step itself: T and L are no surer than its usual jitter. Coarse
     steps of y, not mixed by noise, do not average: half of one remains.
