@@ -45,17 +45,6 @@ class HandEye:
         return tuple(float(np.sqrt(np.mean(e**2))) for e in (self.rotation_error, self.translation_error))
 
 
-def camera_from_board(T_cam_board, T_base_board):
-    """T_base_cam (4, 4) from one view of a board whose place in the base frame is known.
-
-        T_base_cam = T_base_board T_cam_board^-1
-
-    Args: T_cam_board: (4, 4); T_base_board: (4, 4), z of a lying board points down (see `board_points`).
-    Raises InputError for matrices that are no rigid transforms.
-    """
-    return rigid("T_base_board", T_base_board) @ inverse_transform(rigid("T_cam_board", T_cam_board))
-
-
 def tool_poses(arm, q):
     """T_base_tool (n, 4, 4) of joint angles (n, 3) rad: frame 3 of the chain, its x along the forearm."""
     return frames(arm, vectors3("q", q).reshape(-1, 3))[:, 3]

@@ -12,7 +12,7 @@ from ir50p_lab.vision.ball.classifier import measures, rays_of
 from ir50p_lab.vision.ball.evidence import NoBallError, check_colour
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.measure import measure
-from ir50p_lab.vision.ball.regions import coarse_hsv, guess_circles, guess_closer
+from ir50p_lab.vision.ball.regions import coarse, guess_circles, guess_closer
 from tests.support.random_scene import random_scene
 from tests.support.scene_truth import scene_truth
 from tests.targets.crowded_scene import crowded_scene
@@ -58,7 +58,7 @@ def crowded_examples(seed, kind, *, copies=2):
 
 def _guesses(image, most):
     return np.concatenate(
-        [guess(image, coarse_hsv(image, RED), RED, LEAST_RADIUS)[:most] for guess in (guess_circles, guess_closer)]
+        [guess(image, coarse(image, RED), RED, LEAST_RADIUS)[:most] for guess in (guess_circles, guess_closer)]
     )
 
 

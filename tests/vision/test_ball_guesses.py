@@ -8,7 +8,7 @@ from drawn_balls import add_ball, add_polygon, empty, photograph
 from ir50p_lab.vision import RED, find_balls
 from ir50p_lab.vision.ball.edge import cast, contrast_axis, directions, find_edges, slope_kernel
 from ir50p_lab.vision.ball.evidence import paint_of
-from ir50p_lab.vision.ball.regions import circles_in, coarse_hsv, guess_closer
+from ir50p_lab.vision.ball.regions import circles_in, circles_through_three, coarse, guess_closer, vote
 
 SEEDS = range(6)
 
@@ -75,6 +75,22 @@ def test_a_ball_on_a_tape_is_not_lost_to_the_tapes_long_sides(seed):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+def test_votes_kept_from_a_longer_outline_choose_the_same_circle(seed):
+    rng = np.random.default_rng(seed)
+    angle = np.arange(120) * (2 * np.pi / 120)
+    r = 40 + sum(rng.normal(0, 5) * np.cos(k * angle + rng.uniform(0, 6)) for k in range(2, 6))
+    p = np.column_stack([r * np.cos(angle), r * np.sin(angle)]) + 100
+    usable, apart = np.ones(120, bool), np.array([4, 8, 16, 32])
+    kept = circles_through_three(p, usable, apart, 4.0, 150.0, -1)
+    for _ in range(8):
+        x, y, radius = vote(p, usable, kept, 1.0)
+        fresh = circles_through_three(p, usable, apart, 4.0, 150.0, -1)
+        assert (x, y, radius) == vote(p, usable, fresh, 1.0)
+        usable &= np.abs(np.hypot(*(p - (x, y)).T) - radius) > 0.1 * radius
+    assert 0 < usable.sum() < 110
+
+
+@pytest.mark.parametrize("seed", SEEDS)
 def test_the_ball_is_among_the_first_guesses_of_a_cluttered_picture(seed):
     rng = np.random.default_rng(seed)
     light = empty(grain=0.05, seed=seed)
@@ -84,7 +100,7 @@ def test_the_ball_is_among_the_first_guesses_of_a_cluttered_picture(seed):
     centre = rng.uniform((80, 80), (560, 400))
     add_ball(light, 700, centre, 24)
     picture = photograph(light, seed=seed)
-    guesses = guess_closer(picture, coarse_hsv(picture, RED), RED, 6.0)
+    guesses = guess_closer(picture, coarse(picture, RED), RED, 6.0)
     near = [np.hypot(x - centre[0], y - centre[1]) < 8 and abs(r - 24) < 8 for x, y, r in guesses]
     assert len(guesses) > 10 and any(near[:5])
 

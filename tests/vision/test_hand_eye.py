@@ -9,7 +9,7 @@ import pytest
 from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transform, transform
-from ir50p_lab.vision.hand_eye import camera_from_board, hand_eye, tool_poses
+from ir50p_lab.vision.hand_eye import hand_eye, tool_poses
 from ir50p_lab.vision.pinhole import Pinhole
 from ir50p_lab.vision.rendering.places import look_at
 
@@ -63,12 +63,6 @@ def test_exact_poses_give_the_exact_camera():
     assert max(found.rms) < 1e-6
     assert max(far(found.T_base_cam, T_BASE_CAM)) < 1e-6
     assert max(far(found.T_tool_board, T_TOOL_BOARD)) < 1e-6
-
-
-def test_the_board_on_the_table_gives_the_same_camera():
-    T_base_board = np.array([[1, 0, 0, 0.3], [0, -1, 0, 0.1], [0, 0, -1, 0.0], [0, 0, 0, 1.0]])
-    T_cam_board = inverse_transform(T_BASE_CAM) @ T_base_board
-    assert np.allclose(camera_from_board(T_cam_board, T_base_board), T_BASE_CAM, atol=1e-12)
 
 
 def measured(q, *, seed, offset=(0, 0, 0)):

@@ -13,12 +13,12 @@ from ir50p_lab.vision.ball.colour import RED, Colour
 from ir50p_lab.vision.ball.evidence import NoBallError, check_colour, objection
 from ir50p_lab.vision.ball.fit import view_of
 from ir50p_lab.vision.ball.measure import measure
-from ir50p_lab.vision.ball.regions import coarse_hsv, guess_circles, guess_closer
+from ir50p_lab.vision.ball.regions import coarse, guess_circles, guess_closer
 from ir50p_lab.vision.checks import check_picture_size
 from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import as_pinhole
 
-_GUESSES, _CLOSER = 14, 3  # guesses of which the colour is looked at; measured in the closer look, which takes longer
+_GUESSES, _CLOSER = 14, 2  # guesses of which the colour is looked at; measured in the closer look, which takes longer
 
 # Log odds that a ball needs, in the first look and in the closer one: above 0, as a false alarm is worse than a miss.
 # The closer look comes where the first saw none, most often because there is none.
@@ -107,12 +107,12 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     if camera is not None:
         camera = as_pinhole(camera)
         check_picture_size(camera, image.shape[1::-1])
-    view, hsv = view_of(image.shape, camera), coarse_hsv(image, colour)
+    view, seen = view_of(image.shape, camera), coarse(image, colour)
     measured, scores, outlines, rejected = [], [], [], []
     looks = (guess_circles, _GUESSES, _LEAST_ODDS), (guess_closer, _CLOSER, _LEAST_ODDS_CLOSER)
     for guess, most, least_odds in looks:
         tries = 0
-        for x, y, r in guess(image, hsv, colour, least_radius)[:_GUESSES].tolist():
+        for x, y, r in guess(image, seen, colour, least_radius)[:_GUESSES].tolist():
             if any(np.hypot(x - at_x, y - at_y) + abs(r - at_r) < 0.3 * r for at_x, at_y, at_r in outlines):
                 continue  # an earlier guess led here
             if tries == most:

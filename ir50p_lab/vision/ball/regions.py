@@ -12,7 +12,7 @@ from ir50p_lab.vision.ball.fit import fit_circle
 STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
 _LARGEST, _LARGEST_CLOSER = 10, 5  # regions looked at in each mask
 _ROUND = 0.07  # rms over radius of an outline that is a circle as a whole
-_MARGIN = 16  # pixels around what has the colour
+_MARGIN = 8  # pixels of the coarse picture around what has the colour
 _SMALL, _VERY_LARGE = 40_000, 400_000  # pixels of a part that is searched at full size, too; at a quarter of it only
 _RAYS, _INSIDE = 32, 4  # samples that tell how a guess stands out: directions, and rings inside
 _RINGS = np.array([0.5, 0.65, 0.8, 0.9, 1.1, 1.2, 1.35, 1.5])  # of the radius
@@ -22,19 +22,21 @@ _LARGE = 20.0  # pixels: a larger circle is no better: two long, nearly straight
 _CIRCLES = 4  # of one outline: balls that touch share one
 
 
-def coarse_hsv(image, colour):
-    """The picture as `colour.hsv_of`, at half its size if it is large: it costs a quarter, and noise goes."""
-    return colour.hsv_of(_smaller(image, 1 if max(image.shape) < 480 else 2))
+def coarse(image, colour):
+    """The picture, at half its size if it is large, and its `colour.hsv_of`: it costs a quarter, and noise goes."""
+    small = _smaller(image, 1 if max(image.shape) < 480 else 2)
+    return small, colour.hsv_of(small)
 
 
-def guess_circles(image, hsv, colour, least_radius):
-    """First guesses (n, 3): x, y, r in pixels of the picture, best first. hsv: of `coarse_hsv`."""
+def guess_circles(image, seen, colour, least_radius):
+    """First guesses (n, 3): x, y, r in pixels of the picture, best first. seen: of `coarse`."""
+    small, hsv = seen
     masks = [_opened(cv2.inRange(hsv, *colour.bounds(s))) for s in STRICTNESS]
-    circles = _circles_of(masks, least_radius * max(hsv.shape) / max(image.shape), _LARGEST)
-    return _different(image, _unscaled(circles, image, hsv), directions(_RAYS))
+    circles = _circles_of(masks, least_radius * max(small.shape) / max(image.shape), _LARGEST)
+    return _different(image, _unscaled(circles, image, small), directions(_RAYS))
 
 
-def guess_closer(image, hsv, colour, least_radius):
+def guess_closer(image, seen, colour, least_radius):
     """Further guesses, as `guess_circles`, where those led to no ball: smoothed at two or three scales, looser colour.
 
     Noise breaks up the colour of a dark ball, highlights and glare punch holes; one before a thing of nearly its colour
@@ -42,38 +44,36 @@ def guess_closer(image, hsv, colour, least_radius):
     part is not searched at full size, and a very large one only at a quarter of it: noise looks round in places, and it
     takes ten times as long.
     """
-    shrink = round(max(image.shape) / max(hsv.shape))
+    small, hsv = seen
     left, above, width, height = cv2.boundingRect(colour.loose_mask(hsv))
-    if not width:
-        return np.empty((0, 3))
-    # whole fours: an odd size takes OpenCV ten times as long to halve
-    x, y = corner = [max(shrink * one - _MARGIN, 0) // 4 * 4 for one in (left, above)]
-    right, below = (-(-(shrink * one + _MARGIN) // 4) * 4 for one in (left + width, above + height))
-    part = image[y:below, x:right]
-    found, scales = [np.empty((0, 3))], ((shrink, 1.5), (2 * shrink, 1.2), (1, 1.2))
-    pixels = part.shape[0] * part.shape[1]
-    for scale, sigma in scales[pixels > _VERY_LARGE : 3 if pixels < _SMALL and shrink > 1 else 2]:
-        small = cv2.GaussianBlur(_smaller(part, scale), (0, 0), sigma)
-        hsv = colour.hsv_of(small)
+    # whole twos: an odd size takes OpenCV ten times as long to halve
+    x, y = corner = [max(one - _MARGIN, 0) // 2 * 2 for one in (left, above)]
+    right, below = ((one + _MARGIN + 1) // 2 * 2 for one in (left + width, above + height))
+    part, shrink = small[y:below, x:right], round(max(image.shape) / max(small.shape))
+    full = image[shrink * y : shrink * below, shrink * x : shrink * right]
+    scales = (part, shrink, 1.5), (_smaller(part, 2), 2 * shrink, 1.2), (full, 1, 1.2)
+    found, pixels = [np.empty((0, 3))], full.shape[0] * full.shape[1]
+    for copy, scale, sigma in scales[pixels > _VERY_LARGE : 3 if pixels < _SMALL and shrink > 1 else 2]:
+        gauss = cv2.getGaussianKernel(7, sigma)
+        hsv = colour.hsv_of(cv2.sepFilter2D(copy, -1, gauss, gauss))  # a third of the time of GaussianBlur
         mask = colour.loose_mask(hsv)
         if mask.any():
             closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
             circles = _circles_of([closed, *_halves(hsv, mask, colour)], least_radius / scale, _LARGEST_CLOSER)
-            found.append(_unscaled(circles, part, small) + np.array([*corner, 0]))
-    return _different(image, np.concatenate(found), directions(_RAYS))
+            found.append(_unscaled(circles, part, copy) + np.array([*corner, 0]))
+    return _different(image, _unscaled(np.concatenate(found), image, small), directions(_RAYS))
 
 
 def _smaller(image, shrink):
-    height, width = image.shape[:2]
-    size = max(width // shrink, 1), max(height // shrink, 1)
+    size = max(image.shape[1] // shrink, 1), max(image.shape[0] // shrink, 1)
     return image if shrink == 1 else cv2.resize(image, size, interpolation=cv2.INTER_AREA)
 
 
 def _unscaled(circles, image, small):
     """Circles of the small copy in pixels of the picture."""
     sx, sy = image.shape[1] / small.shape[1], image.shape[0] / small.shape[0]
-    # an outline runs through the centres of its last pixels
-    return (circles + 0.5) * (sx, sy, (sx + sy) / 2) - (0.5, 0.5, 0.0)
+    half = np.array([0.5, 0.5, 0.0])
+    return (circles + half) * (sx, sy, (sx + sy) / 2) - half
 
 
 def _circles_of(found_in, least_radius, most):
@@ -84,7 +84,7 @@ def _circles_of(found_in, least_radius, most):
         contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
         longest = [c[:, 0].astype(float) for c in sorted(contours, key=len, reverse=True)[:most]]
         found += [circles_in(points, mask.shape, least) for points in longest if len(points) >= max(8, 4 * least)]
-    return np.concatenate(found)
+    return np.concatenate(found) + np.array([0.0, 0.0, 0.5])  # an outline runs through the centres of its last pixels
 
 
 def _opened(mask):
@@ -127,60 +127,66 @@ def circles_in(points, shape, least_radius):
         return found[:0]
     x, y, r = fit_circle(px[usable], py[usable])
     off = np.hypot(px[usable] - x, py[usable] - y) - r
-    round_enough = 0 < r < max(height, width) and np.sqrt(np.mean(off**2)) < max(_ROUND * r, 0.5)
-    if round_enough and usable.mean() > 0.4:
+    if usable.mean() > 0.4 and 0 < r < max(shape) and np.mean(off**2) < max(_ROUND * r, 0.5) ** 2:
         found[0] = x, y, r
         return found[:1]
+    circles = circles_through_three(p, usable, apart, least_radius, 0.75 * max(shape), turn)
     for k in range(_CIRCLES):
-        x, y, r = _vote(p, usable, apart, n / m, least_radius, 0.75 * max(height, width), turn)
-        if r == 0:
+        x, y, r = vote(p, usable, circles, n / m)
+        if r == 0 or usable.sum() < 6:
             return found[:k]
         off = np.abs(np.hypot(px - x, py - y) - r)
         near = usable & (off < max(0.9, 0.06 * r))
         usable = usable & (off >= max(1.5, 0.10 * r))
-        if near.sum() >= 5:
-            circle = fit_circle(px[near], py[near])
-            if circle[2] > 0:
-                x, y, r = circle
-        found[k] = x, y, r
-        if usable.sum() < 6:
-            return found[: k + 1]
+        refined = fit_circle(px[near], py[near]) if near.sum() >= 5 else (x, y, 0.0)
+        found[k] = refined if refined[2] > 0 else (x, y, r)
     return found
 
 
-@jit(fastmath=("contract", "reassoc"))  # reassoc: counts in many lanes at once
-def _vote(p, usable, apart, step, least_radius, most_radius, turn):
-    """The circle (x, y, r) through points i, i + d, i + 2 d near which most of the outline lies, else r = 0."""
-    m, best = len(p), 0.0
-    left_x, left_y = p[:, 0][usable].astype(np.float32), p[:, 1][usable].astype(np.float32)
-    bx = by = br = 0.0
+@jit(fastmath=("contract",))
+def circles_through_three(p, usable, apart, least_radius, most_radius, turn):
+    """Circles (n, 7) through points i, i + d, i + 2 d of an outline: x, y, r, the most they can get, i, j, k."""
+    m, n = len(p), 0
+    circles = np.empty((m * len(apart), 7))
     for d in apart:
         for i in range(m):
             j, k = i + d - m * (i + d >= m), i + 2 * d - m * (i + 2 * d >= m)  # % takes longer
-            if not (usable[i] and usable[j] and usable[k]):
-                continue
             b0, b1, c0, c1 = p[j, 0] - p[i, 0], p[j, 1] - p[i, 1], p[k, 0] - p[i, 0], p[k, 1] - p[i, 1]
             cross = 2 * (b0 * c1 - b1 * c0)
-            if not turn * cross < -1e-6:
+            if not (turn * cross < -1e-6 and usable[i] and usable[j] and usable[k]):
                 continue
             bb, cc = b0 * b0 + b1 * b1, c0 * c0 + c1 * c1
             ux, uy = (c1 * bb - b1 * cc) / cross, (b0 * cc - c0 * bb) / cross
             r = sqrt(ux * ux + uy * uy)
-            if not least_radius <= r <= most_radius:
-                continue
-            x, y = p[i, 0] + ux, p[i, 1] + uy
-            size = sqrt(min(r, _LARGE))
-            if not size > best:
-                continue
-            limit, near = max(0.9, 0.06 * r), np.float32(0)
-            low, high = np.float32(max(r - limit, 0.0) ** 2), np.float32((r + limit) ** 2)
-            for q in range(len(left_x)):
-                square = (left_x[q] - np.float32(x)) ** 2 + (left_y[q] - np.float32(y)) ** 2
-                near += np.float32(1) if (low < square) & (square < high) else np.float32(0)
-            share = min(near * step / (5.6 * r), 1.0)  # a pixel chain is longer than it counts
-            if share >= _LEAST_SHARE and share * size > best:
-                best = share * size
-                bx, by, br = x, y, r
+            if least_radius <= r <= most_radius:
+                circles[n, :4] = p[i, 0] + ux, p[i, 1] + uy, r, sqrt(min(r, _LARGE))
+                circles[n, 4:] = i, j, k
+                n += 1
+    return circles[:n]
+
+
+@jit(fastmath=("contract", "reassoc"))  # reassoc: counts in many lanes at once
+def vote(p, usable, circles, step):
+    """The circle (x, y, r) near which most of what is left of the outline lies, else r = 0.
+
+    The votes of each are kept in `circles`: later, when less is left, it can get no more.
+    """
+    left_x, left_y = p[:, 0][usable].astype(np.float32), p[:, 1][usable].astype(np.float32)
+    best, bx, by, br = 0.0, 0.0, 0.0, 0.0
+    for n in range(len(circles)):
+        x, y, r = circles[n, 0], circles[n, 1], circles[n, 2]
+        i, j, k = int(circles[n, 4]), int(circles[n, 5]), int(circles[n, 6])
+        if not (circles[n, 3] > best and usable[i] and usable[j] and usable[k]):
+            continue
+        limit, near = max(0.9, 0.06 * r), np.float32(0)
+        low, high = np.float32(max(r - limit, 0.0) ** 2), np.float32((r + limit) ** 2)
+        for q in range(len(left_x)):
+            square = (left_x[q] - np.float32(x)) ** 2 + (left_y[q] - np.float32(y)) ** 2
+            near += np.float32(1) if (low < square) & (square < high) else np.float32(0)
+        share = min(near * step / (5.6 * r), 1.0)  # a pixel chain is longer than it counts
+        circles[n, 3] = share * sqrt(min(r, _LARGE)) * (share >= _LEAST_SHARE)
+        if circles[n, 3] > best:
+            best, bx, by, br = circles[n, 3], x, y, r
     return bx, by, br
 
 
