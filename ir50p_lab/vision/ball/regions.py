@@ -52,7 +52,8 @@ def guess_closer(image, seen, colour, least_radius):
     part, shrink = small[y:below, x:right], round(max(image.shape) / max(small.shape))
     full = image[shrink * y : shrink * below, shrink * x : shrink * right]
     scales = (part, shrink, 1.5), (_smaller(part, 2), 2 * shrink, 1.2), (full, 1, 1.2)
-    found, pixels = [np.empty((0, 3))], full.shape[0] * full.shape[1]
+    pixels = full.shape[0] * full.shape[1]
+    found = [np.empty((0, 3))]
     for copy, scale, sigma in scales[pixels > _VERY_LARGE : 3 if pixels < _SMALL and shrink > 1 else 2]:
         gauss = cv2.getGaussianKernel(7, sigma)
         hsv = colour.hsv_of(cv2.sepFilter2D(copy, -1, gauss, gauss))  # a third of the time of GaussianBlur
@@ -127,7 +128,8 @@ def circles_in(points, shape, least_radius):
         return found[:0]
     x, y, r = fit_circle(px[usable], py[usable])
     off = np.hypot(px[usable] - x, py[usable] - y) - r
-    if usable.mean() > 0.4 and 0 < r < max(shape) and np.mean(off**2) < max(_ROUND * r, 0.5) ** 2:
+    around = np.hypot(px[usable].mean() - x, py[usable].mean() - y) < 0.85 * r  # and no stick that bends a little
+    if around and usable.mean() > 0.4 and r < max(shape) and np.mean(off**2) < max(_ROUND * r, 0.5) ** 2:
         found[0] = x, y, r
         return found[:1]
     circles = circles_through_three(p, usable, apart, least_radius, 0.75 * max(shape), turn)
