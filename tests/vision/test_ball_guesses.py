@@ -74,6 +74,24 @@ def test_a_ball_on_a_tape_is_not_lost_to_the_tapes_long_sides(seed):
     assert min(np.hypot(x - 150, y - 150) + abs(r - radius) for x, y, r in found) < 0.5 * radius
 
 
+def test_a_ball_on_a_stick_that_bends_a_little_is_not_lost_to_the_bend():
+    """The outline of both lies near a large circle, of which it is a small part. Of 30 at least 24 are guessed."""
+    guessed = 0
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        radius, bend = rng.uniform(14, 20), rng.uniform(250, 300)
+        angle = np.linspace(-0.6, 0.6, 9)
+        stick = np.column_stack([bend * np.cos(angle) - bend + 80, bend * np.sin(angle) + 200])
+        centre = stick[rng.integers(3, 6)]
+        mask = np.zeros((400, 640), np.uint8)
+        cv2.polylines(mask, [np.round(stick).astype(np.int32)], False, 255, round(0.5 * radius))
+        cv2.circle(mask, np.round(centre).astype(int).tolist(), round(radius), 255, -1)
+        (outline,), _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+        found = circles_in(outline[:, 0].astype(float), mask.shape, 4.0)
+        guessed += min(np.hypot(x - centre[0], y - centre[1]) + abs(r - radius) for x, y, r in found) < 0.3 * radius
+    assert guessed >= 24
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_votes_kept_from_a_longer_outline_choose_the_same_circle(seed):
     rng = np.random.default_rng(seed)
