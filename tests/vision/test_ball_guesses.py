@@ -75,7 +75,7 @@ def test_a_ball_on_a_tape_is_not_lost_to_the_tapes_long_sides(seed):
 
 
 def test_a_ball_on_a_stick_that_bends_a_little_is_not_lost_to_the_bend():
-    """The outline of both lies near a large circle, of which it is a small part. Of 30 at least 24 are guessed."""
+    """The outline of both lies near a large circle, of which it is a small part. Of 30 at least 28 are guessed."""
     guessed = 0
     for seed in range(30):
         rng = np.random.default_rng(seed)
@@ -89,7 +89,7 @@ def test_a_ball_on_a_stick_that_bends_a_little_is_not_lost_to_the_bend():
         (outline,), _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
         found = circles_in(outline[:, 0].astype(float), mask.shape, 4.0)
         guessed += min(np.hypot(x - centre[0], y - centre[1]) + abs(r - radius) for x, y, r in found) < 0.3 * radius
-    assert guessed >= 24
+    assert guessed >= 28
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -99,11 +99,12 @@ def test_votes_kept_from_a_longer_outline_choose_the_same_circle(seed):
     r = 40 + sum(rng.normal(0, 5) * np.cos(k * angle + rng.uniform(0, 6)) for k in range(2, 6))
     p = np.column_stack([r * np.cos(angle), r * np.sin(angle)]) + 100
     usable, apart = np.ones(120, bool), np.array([4, 8, 16, 32])
+    along = -(np.roll(p, -1, axis=0) - np.roll(p, 1, axis=0))
     kept = circles_through_three(p, usable, apart, 4.0, 150.0, -1)
     for _ in range(8):
-        x, y, radius = vote(p, usable, kept, 1.0)
+        x, y, radius = vote(p, along, usable, kept, 1.0)
         fresh = circles_through_three(p, usable, apart, 4.0, 150.0, -1)
-        assert (x, y, radius) == vote(p, usable, fresh, 1.0)
+        assert (x, y, radius) == vote(p, along, usable, fresh, 1.0)
         usable &= np.abs(np.hypot(*(p - (x, y)).T) - radius) > 0.1 * radius
     assert 0 < usable.sum() < 110
 

@@ -120,9 +120,9 @@ def circles_in(points, shape, least_radius):
     turn = 1 if np.sum(px * np.roll(py, -1) - np.roll(px, -1) * py) < 0 else -1
     apart = np.maximum(2, m // np.array([16, 9, 5, 3]))
     apart = np.unique(np.append(apart, [4, 8, 16, 32]) if m > 100 else apart)
-    height, width = shape
+    along = turn * np.column_stack((np.roll(px, -1) - np.roll(px, 1), np.roll(py, -1) - np.roll(py, 1)))
     # the border of the picture is no outline
-    usable = (px > 0.5) & (px < width - 1.5) & (py > 0.5) & (py < height - 1.5)
+    usable = (px > 0.5) & (px < shape[1] - 1.5) & (py > 0.5) & (py < shape[0] - 1.5)
     found = np.empty((_CIRCLES, 3))
     if usable.sum() < 6:
         return found[:0]
@@ -134,7 +134,7 @@ def circles_in(points, shape, least_radius):
         return found[:1]
     circles = circles_through_three(p, usable, apart, least_radius, 0.75 * max(shape), turn)
     for k in range(_CIRCLES):
-        x, y, r = vote(p, usable, circles, n / m)
+        x, y, r = vote(p, along, usable, circles, n / m)
         if r == 0 or usable.sum() < 6:
             return found[:k]
         off = np.abs(np.hypot(px - x, py - y) - r)
@@ -168,12 +168,14 @@ def circles_through_three(p, usable, apart, least_radius, most_radius, turn):
 
 
 @jit(fastmath=("contract", "reassoc"))  # reassoc: counts in many lanes at once
-def vote(p, usable, circles, step):
-    """The circle (x, y, r) near which most of what is left of the outline lies, else r = 0.
+def vote(p, along, usable, circles, step):
+    """The circle (x, y, r) that most of what is left of the outline runs along, else r = 0.
 
-    The votes of each are kept in `circles`: later, when less is left, it can get no more.
+    along (n, 2): of the outline, against its turn: the far side of a stick runs around a circle the other way. The
+    votes of each are kept in `circles`: later, when less is left, it can get no more.
     """
     left_x, left_y = p[:, 0][usable].astype(np.float32), p[:, 1][usable].astype(np.float32)
+    along_x, along_y = along[:, 0][usable].astype(np.float32), along[:, 1][usable].astype(np.float32)
     best, bx, by, br = 0.0, 0.0, 0.0, 0.0
     for n in range(len(circles)):
         x, y, r = circles[n, 0], circles[n, 1], circles[n, 2]
@@ -183,8 +185,9 @@ def vote(p, usable, circles, step):
         limit, near = max(0.9, 0.06 * r), np.float32(0)
         low, high = np.float32(max(r - limit, 0.0) ** 2), np.float32((r + limit) ** 2)
         for q in range(len(left_x)):
-            square = (left_x[q] - np.float32(x)) ** 2 + (left_y[q] - np.float32(y)) ** 2
-            near += np.float32(1) if (low < square) & (square < high) else np.float32(0)
+            dx, dy = left_x[q] - np.float32(x), left_y[q] - np.float32(y)
+            square, around = dx * dx + dy * dy, dx * along_y[q] < dy * along_x[q]
+            near += np.float32(1) if around & (low < square) & (square < high) else np.float32(0)
         share = min(near * step / (5.6 * r), 1.0)  # a pixel chain is longer than it counts
         circles[n, 3] = share * sqrt(min(r, _LARGE)) * (share >= _LEAST_SHARE)
         if circles[n, 3] > best:
