@@ -171,8 +171,8 @@ def circles_through_three(p, usable, apart, least_radius, most_radius, turn):
 def vote(p, along, usable, circles, step):
     """The circle (x, y, r) that most of what is left of the outline runs along, else r = 0.
 
-    along (n, 2): of the outline, against its turn: the far side of a stick runs around a circle the other way. The
-    votes of each are kept in `circles`: later, when less is left, it can get no more.
+    along (n, 2): direction of the outline at its points. Where it runs around the circle the other way, as on the far
+    side of a stick, it does not count. The votes are kept in `circles`: later, when less is left, one can get no more.
     """
     left_x, left_y = p[:, 0][usable].astype(np.float32), p[:, 1][usable].astype(np.float32)
     along_x, along_y = along[:, 0][usable].astype(np.float32), along[:, 1][usable].astype(np.float32)
