@@ -105,7 +105,7 @@ def test_what_has_another_colour_is_hardly_ever_measured(monkeypatch):
 
 
 def test_random_scenes_without_their_ball_take_about_as_long_as_with_it():
-    """Three times is the limit; of 1,400 scenes none took longer."""
+    """Three times is the limit; of 1,400 scenes one comes to 3.0, the next to 2.9."""
     ratios = []
     for seed in range(450_000, 450_010):
         scene = random_scene(seed)
