@@ -128,7 +128,7 @@ def circles_in(points, shape, least_radius):
         return found[:0]
     x, y, r = fit_circle(px[usable], py[usable])
     off = np.hypot(px[usable] - x, py[usable] - y) - r
-    around = np.hypot(px[usable].mean() - x, py[usable].mean() - y) < 0.85 * r  # and no stick that bends a little
+    around = np.hypot(px[usable].mean() - x, py[usable].mean() - y) < 0.85 * r  # a stick that bends a little is not
     if around and usable.mean() > 0.4 and r < max(shape) and np.mean(off**2) < max(_ROUND * r, 0.5) ** 2:
         found[0] = x, y, r
         return found[:1]
@@ -147,7 +147,10 @@ def circles_in(points, shape, least_radius):
 
 @jit(fastmath=("contract",))
 def circles_through_three(p, usable, apart, least_radius, most_radius, turn):
-    """Circles (n, 7) through points i, i + d, i + 2 d of an outline: x, y, r, the most they can get, i, j, k."""
+    """Circles (n, 7) through points i, j = i + d, k = i + 2 d of an outline: x, y, r, most votes it can get, i, j, k.
+
+    turn: 1 or -1, the way the outline runs around its region (see `circles_in`).
+    """
     m, n = len(p), 0
     circles = np.empty((m * len(apart), 7))
     for d in apart:
@@ -171,8 +174,9 @@ def circles_through_three(p, usable, apart, least_radius, most_radius, turn):
 def vote(p, along, usable, circles, step):
     """The circle (x, y, r) that most of what is left of the outline runs along, else r = 0.
 
-    along (n, 2): direction of the outline at its points. Where it runs around the circle the other way, as on the far
-    side of a stick, it does not count. The votes are kept in `circles`: later, when less is left, one can get no more.
+    along (n, 2): direction of the outline at its points, times its turn. Where it runs around the circle the other way,
+    as on the far side of a stick, it does not count. The votes are kept in `circles`: later, when less of the outline
+    is left, a circle can get no more.
     """
     left_x, left_y = p[:, 0][usable].astype(np.float32), p[:, 1][usable].astype(np.float32)
     along_x, along_y = along[:, 0][usable].astype(np.float32), along[:, 1][usable].astype(np.float32)
