@@ -24,7 +24,6 @@ _OWN_SHARE = 1e-3  # of a column, that must stick out of those before it
 _CLEARLY = 0.95  # of the residual of u held, below which u measured explains the data better
 _ORDER = 3  # of the low passes, forward and again backward
 _OWN = 4.0  # samples per cut-off period that are kept for the regression: more would say the same again
-_TELLS_DELAY = 0.2  # share of what a delay adds to u that no parameter can add, from which on the data tell it
 _DEAD = 0.1  # of the rms speed, below which a joint may stick and a filtered speed has lost its sign
 _NOISY = 2e-3  # of the power of qd: more of its noise biases a fit that filters nothing
 _ALL_NOISE = 0.3  # noise power over power of the acceleration from which on no inertia is given
@@ -136,16 +135,19 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     joint = _Joint.of(t, q, u, v, names, delay, None if plain else cutoff_hz)
     if plain and joint.band.unfiltered_noise**2 > _NOISY * np.mean(v**2):
         joint.band.unfiltered_noise = 0.0  # a table of speeds in any order looks like noise, but has no slow motion
-        smooth = joint.fit(joint.band.cutoff_hz, held, fewest=joint.fit(math.inf, held))
+        smooth = joint.fit(joint.band.cutoff_hz, fewest=joint.fit(math.inf))
         plain = smooth is None or cutoff_hz is not None
-    found = joint.fit(math.inf if plain else joint.band.cutoff_hz, held)
+    found = joint.fit(math.inf if plain else joint.band.cutoff_hz, held is not False)
+    if held is None and _is_measured([found, *joint.lower(found)]):
+        found = joint.fit(found.cutoff_hz, False)
     checks.check_clipped_drive(warned, u, found)
     if not plain:
         checks.check_motion(warned, joint.band)
-        found = found if cutoff_hz else joint.below_hum(found, held)
+        found = found if cutoff_hz else joint.below_hum(found)
         found = _at_agreeing_cutoff(warned, joint, found, cutoff_hz is not None)
-    found = _with_other_fits_in_errors(joint, found, held is None)
-    checks.check_model(warned, found, joint.band, 1 / joint.rate)
+    fits = [found, *joint.lower(found)]
+    found = _with_other_fits_in_errors(joint, found, fits, held is None)
+    checks.check_model(warned, found, fits, joint.band, 1 / joint.rate)
     if found.value("inertia")[0] < 0:
         found = joint.fit(found.cutoff_hz, found.held, without="inertia")
     return JointFit(
@@ -186,6 +188,13 @@ def _names_of(terms):
     return tuple(name for name in _COLUMNS if name in columns | set(terms))
 
 
+def _is_measured(fits):
+    """Whether u measured at the instant leaves clearly less of it than u held at any cut-off: noise may hide it."""
+    left = np.array([[least_squares(one.A, u).rms for u in one.table.y.T] for one in fits])
+    ratios = left[:, 1] / np.maximum(left[:, 0], 1e-300)
+    return ratios.min() < min(_CLEARLY, 1 / ratios.max())
+
+
 def _at_agreeing_cutoff(warned, joint, first, given):
     """The fit at the highest cut-off whose parameters agree with those at half of it; else a warning.
 
@@ -210,7 +219,7 @@ def _at_agreeing_cutoff(warned, joint, first, given):
     return first if given else lower
 
 
-def _with_other_fits_in_errors(joint, found, any_instant):
+def _with_other_fits_in_errors(joint, found, fits, any_instant):
     """The same, its standard errors widened by what fits that are as good a choice change beyond their own errors.
 
     Lower cut-offs: flexibility, backlash. Twice the least speed: sticking, coarse angles. Any force of the position:
@@ -218,16 +227,12 @@ def _with_other_fits_in_errors(joint, found, any_instant):
     flexibility in slow motion. With any_instant, a u that acts at another one: by half a period, if the data do not
     tell.
     """
-    fits = [found, *joint.lower(found)]
     faster = joint.fit(found.cutoff_hz, found.held, fewest=found, slower=2.0)
-    pairs = [(other.x, other.stderr) for other in (*fits[1:], faster) if other is not None]
-    moved = np.zeros(len(found.x))
-    for x, stderr in pairs + found.beside_forces(fits[-1]):
-        beyond = np.where(np.isfinite(found.stderr + stderr), (found.x - x) ** 2 - stderr**2, 0.0)
-        moved = np.maximum(moved, np.sqrt(np.clip(beyond, 0.0, None)))
-    # of the lowest cut-off the jerk has least noise
-    late = found.moved_by_delay(0.5 / joint.rate, fits[-1].tells_delay) if any_instant else 0.0
-    return replace(found, stderr=np.sqrt(found.stderr**2 + moved**2 + late**2 + (_EXACT * found.x) ** 2))
+    pairs = [(one.x, one.stderr) for one in (*fits[1:], faster) if one is not None] + found.beside_forces(fits[-1])
+    beyond = [np.where(np.isfinite(found.stderr + sigma), (found.x - x) ** 2 - sigma**2, 0.0) for x, sigma in pairs]
+    moved = np.max([np.zeros(len(found.x)), *beyond], axis=0)  # squared
+    late = found.moved_by_delay(0.5 / joint.rate, fits[-1]) if any_instant else 0.0
+    return replace(found, stderr=np.sqrt(found.stderr**2 + moved + late**2 + (_EXACT * found.x) ** 2))
 
 
 @dataclass(frozen=True)
@@ -276,18 +281,14 @@ class Found:
         """`beside` a delay of u behind its record, s: u(t) is the model at t + delay, about A x + delay d(A x)/dt."""
         return self.beside(self.late_column)
 
-    @property
-    def tells_delay(self):
-        """Whether a delay adds to u what no parameter can: in one sinusoid, inertia seen late is viscous friction."""
-        late = self.late_column
-        alone = late - self.A @ np.linalg.lstsq(self.A, late, rcond=None)[0]
-        return np.linalg.norm(alone) > _TELLS_DELAY * np.linalg.norm(late)
+    def moved_by_delay(self, unsure, lowest):
+        """(p,) by which a delay moves the parameters: 0 +- unsure s, and what the `lowest` fit tells of it.
 
-    def moved_by_delay(self, unsure, seen):
-        """(p,) by which a delay moves the parameters, that is 0 +- unsure s before and, if seen, known better now."""
-        delay, sigma = self.beside_delay[2:4]
+        At the lowest cut-off the acceleration and its rate have least noise.
+        """
+        delay, sigma = lowest.beside_delay[2:4]
         share = unsure**2 / (unsure**2 + sigma**2)
-        size = math.sqrt((share * delay) ** 2 + share * sigma**2) if seen else unsure
+        size = math.hypot(share * delay, math.sqrt(share) * sigma)
         moved = np.zeros(len(self.x))
         moved[np.isfinite(self.stderr)] = size * np.linalg.lstsq(self.A, self.late_column, rcond=None)[0]
         return moved
@@ -344,15 +345,15 @@ class _Joint:
             cutoff_hz /= 2
         return [one for one in fits if one is not None]
 
-    def below_hum(self, found, held):
+    def below_hum(self, found):
         """The same, or the fit at a lower cut-off that leaves far less of u: hum of the angle looks like motion."""
         if self.band.lowest_hz > found.cutoff_hz / 2:
-            lower = self.fit(found.cutoff_hz / 2, held, fewest=found)
+            lower = self.fit(found.cutoff_hz / 2, found.held, fewest=found)
             if lower is not None and lower.misfit <= _HUM * found.misfit:
-                return self.below_hum(lower, held)
+                return self.below_hum(lower)
         return found
 
-    def fit(self, cutoff_hz, held=None, *, without=None, fewest=None, slower=1.0):
+    def fit(self, cutoff_hz, held=True, *, without=None, fewest=None, slower=1.0):
         """Found at this cut-off, of motion `slower` times as fast; None if not half of the time of `fewest` is left."""
         table = self.table(cutoff_hz, slower)
         m, least = len(table.q), checks.FEWEST // 2
@@ -364,9 +365,6 @@ class _Joint:
         A = table.columns[:, [_COLUMNS.index(name) for name in self.terms]]
         A[:, [name in out for name in self.terms]] = 0.0  # an empty column: 0 +- inf
         solve = self._with_stribeck if "stribeck" in self.terms else self._solve
-        if held is None:
-            as_held, measured = (solve(table, column, cutoff_hz, A) for column in (0, 1))
-            held = measured.left.rms >= _CLEARLY * as_held.left.rms
         return solve(table, 0 if held else 1, cutoff_hz, A)
 
     def _solve(self, table, column, cutoff_hz, A, more=()):
