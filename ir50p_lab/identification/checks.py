@@ -279,7 +279,7 @@ def _check_inertia(warned, found, fits, band, period):
     if springs:
         warned.add("inertia depends on the frequency, as in a flexible joint: try a lower cutoff_hz")
     elif delay > 0:
-        warned.add(f"u seems to act about {delay:.2g} s later than delay= says: inertia too large; add it there")
+        warned.add(f"u seems to act about {delay:.2g} s later than delay= says; add it there (backlash looks alike)")
     elif delay < 0:
         warned.add(f"q seems to be recorded {-delay:.2g} s before u, or u is filtered: inertia too small; shift one")
 
