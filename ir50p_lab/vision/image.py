@@ -108,9 +108,7 @@ def list_images(folder):
         raise ImageError(f"{folder} {what}: give the folder of the pictures (here is {Path.cwd()})")
     paths = [p for p in folder.iterdir() if p.suffix.lower() in _READ and not p.name.startswith(".")]
     if not paths:
-        raise ImageError(
-            f"{folder} holds no picture: they end in {', '.join(_READ)}; save HEIC pictures of a phone as JPEG"
-        )
+        raise ImageError(f"{folder} holds no picture ({', '.join(_READ)}); save HEIC pictures of a phone as JPEG")
     return sorted(paths, key=_by_number)
 
 

@@ -115,8 +115,7 @@ def _calibrate(found, size, board, points, options, rejected):
             break
         worst, rms, corners, full = outlier
         name, index, _ = found.pop(worst)
-        usual = np.median(full.view_rms)
-        detail = f"its corners are {rms:.2g} px off the model, those of the other views {usual:.2g} px"
+        detail = f"its corners are {rms:.2g} px off the model, those of the others {np.median(full.view_rms):.2g} px"
         rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
     best, evidence, tried, said = _best(corners, full, wanted, bend)
     if not any("was prescribed" in text for text in said):  # else what is prescribed explains the residuals
@@ -153,6 +152,9 @@ def _calibrate(found, size, board, points, options, rejected):
     lost = len(rejected) / (len(rejected) + len(views))
     if lost > 0.5:
         said.append(f"{len(rejected)} of {len(rejected) + len(views)} pictures were of no use: see `rejected`")
+    odd = sum(one.reason == Reason.OUTLIER for one in rejected)
+    if odd > 1:
+        said.append(f"{odd} views fit no camera that fits the others: another camera, or zoomed? See `rejected`")
     return replace(result, warnings=(*said, *checks.warnings_about(result)))
 
 
