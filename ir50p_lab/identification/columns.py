@@ -60,8 +60,7 @@ def same_samples(given, drop=False, most=2):
 def sampling_period(t):
     """Sampling period of times (n,) with gaps and jitter, s: near the median step, the one that counts whole steps."""
     dt = np.diff(t)
-    median = float(np.median(dt))
-    steps = np.rint(dt / median)
+    steps = np.rint(dt / np.median(dt))
     near = steps <= 3
     return float(dt[near].sum() / max(steps[near].sum(), 1.0))
 

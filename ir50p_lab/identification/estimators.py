@@ -53,8 +53,7 @@ def huber(problem):
     else:
         raise IdentificationError(f"{problem.who}the robust fit has not settled: too few good samples; use 'ls'")
     e = y - Q @ z
-    inside = np.abs(e) <= limit
-    return problem.estimate(z, residuals=np.clip(e, -limit, limit), derivative=Q.T @ (inside[:, None] * Q))
+    return problem.estimate(z, residuals=np.clip(e, -limit, limit), derivative=Q.T @ (Q * (abs(e) <= limit)[:, None]))
 
 
 def bounded(problem):

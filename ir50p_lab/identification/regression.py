@@ -200,8 +200,7 @@ def long_run_sum(scores, residuals):
     cut-off for noise that was low-passed). Few coefficients make the errors themselves uncertain: they are widened as
     Student's t with B degrees of freedom asks.
     """
-    n = len(scores)
-    B = int(np.clip(independent_samples(residuals) // 4, 4, max(4, 0.4 * n ** (2 / 3))))
+    B = int(np.clip(independent_samples(residuals) // 4, 4, max(4, 0.4 * len(scores) ** (2 / 3))))
     coefficients = fft.dct(scores, axis=0)[1 : B + 1]
     wider = special.stdtrit(B, 0.99865) / 3.0  # three standard errors then hold the truth 997 times in 1000
     return wider**2 * coefficients.T @ coefficients / (2 * B)

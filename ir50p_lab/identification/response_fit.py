@@ -119,6 +119,17 @@ class StepRecord:
         self.y, self.jumps = (y - y[0]) / self.y_unit, jumps / np.abs(jumps).max()
         self.period, self.quantum = float(np.median(np.diff(self.t))), quantum_of(self.y)
 
+    def coarse(self, e):
+        """Half a step of y, with a warning if they are few, if the residuals e (n,) do not mix them; else 0.
+
+        Such errors do not average.
+        """
+        if e @ e >= len(e) * (self.quantum / 2) ** 2:
+            return 0.0
+        if self.quantum > _COARSE:
+            self.warned.add(f"y takes about {1 / self.quantum:.0f} steps only: errors were widened; use a finer range")
+        return self.quantum / 2
+
     def columns(self, a, L):
         """(n, 2): x of x' = v(t - L) - a x, and 1."""
         out = np.ones((2, len(self.t)))
@@ -263,8 +274,6 @@ def _check_shape(record, a, L, b, e):
         warned.refuse(f"y does not follow u ({explained:.1f} % explained): make a larger step, or average recordings")
     elif misshapen:
         warned.add(f"{shape}: y is disturbed or drifts, or a dead zone or limit acts; do not use it yet")
-    if record.quantum > _COARSE and rss < n * (record.quantum / 2) ** 2:
-        warned.add(f"y takes about {1 / record.quantum:.0f} steps only: errors were widened; use a finer range")
     ramp = best_fit(lambda p: record.columns(0.0, *p), record.y, [[(k / 50,)] for k in range(45)], (0.0, 0.95))[2]
     if a * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / inflation**2 > _SIGNIFICANT:
         return
@@ -282,7 +291,7 @@ def _systematic_errors(record, a, J, e):
     An uneven clock is late now and then, perhaps at the step itself: T and L are no surer than its usual jitter. Coarse
     steps of y, not mixed by noise, do not average: half of one remains.
     """
-    coarse = record.quantum / 2 if e @ e < len(e) * (record.quantum / 2) ** 2 else 0.0
+    coarse = record.coarse(e)
     clock = np.median(np.abs(np.diff(record.t) - record.period))
     moved = np.array([coarse, coarse / a + clock, coarse / a + clock])
     others = {"y drifts by": record.t, "y was not at rest at first, but away by": np.exp(-a * (record.t - record.t[0]))}
@@ -402,6 +411,7 @@ def fit_second_order(t, u, y, *, u_before=None):
     sizes = np.maximum(np.abs(found), [0.0, 0.0, 0.0, 1e-3 / found[1], 1e-3 / found[1]])
     J = jacobian(response, found, sizes)[:, : len(p) + len(c)]
     errors = np.hypot(found - other, np.append(standard_errors(J, e), 0.0)[:5])
+    errors = np.hypot(errors, record.coarse(e) * np.array([1, found[1], 1, 1 / found[1], 1 / found[1]]))
     errors[4] = errors[3:].max()  # one can do for the other
     if found[1] * record.period > 1:
         record.warned.add(f"w is {found[1] * record.period:.2g} rad a sample: not identifiable, sample faster")

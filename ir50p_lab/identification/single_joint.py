@@ -135,8 +135,7 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     joint = _Joint.of(t, q, u, v, names, delay, None if plain else cutoff_hz)
     if plain and joint.band.unfiltered_noise**2 > _NOISY * np.mean(v**2):
         joint.band.unfiltered_noise = 0.0  # a table of speeds in any order looks like noise, but has no slow motion
-        smooth = joint.fit(joint.band.cutoff_hz, fewest=joint.fit(math.inf))
-        plain = smooth is None or cutoff_hz is not None
+        plain = cutoff_hz is not None or joint.fit(joint.band.cutoff_hz, fewest=joint.fit(math.inf)) is None
     found = joint.fit(math.inf if plain else joint.band.cutoff_hz, held is not False)
     if held is None and _is_measured([found, *joint.lower(found)]):
         found = joint.fit(found.cutoff_hz, False)

@@ -59,8 +59,7 @@ def spectrum(pieces, rate_hz, cutoff_hz=None, *, of_speed=False):
         needed = min(lowest, int(bearable[-1]) if len(bearable) else highest)
         if steady**2 > speed[-1]:  # sweeps of steady speeds: a filter shorter than the stretches
             needed = lowest = max(needed, _STRETCH)
-        at = min(max(int(good[-1]) if len(good) else 0, needed), highest - 1)
-        cutoff_hz = float(f[at])
+        cutoff_hz = float(f[min(max(int(good[-1]) if len(good) else 0, needed), highest - 1)])
     at = min(int(np.searchsorted(f, cutoff_hz)), len(f) - 1)
     good = np.flatnonzero(speed_share[:highest] <= _SIGN)
     sign_at = max(at, int(good[-1]) if len(good) else 0)
