@@ -25,7 +25,7 @@ _EXPLAINED = 0.02  # least share of the variance of u that the motion explains
 _F = 8.0  # least F value of a motion that has to do with u
 _BENT, _CLEARLY = 0.3, 4.0  # change of the slope of friction with the speed, over the slope; over its standard error
 _POOR = 0.5  # fit: below, the standard errors hold for a model that does not
-_LATE = (0.9, 5.0, 0.5), (0.99, 8.0, 0.6)  # of the residual, that a delay leaves; its standard errors; in periods
+_LATE = (0.9, 5.0, 0.3), (0.99, 8.0, 0.6)  # of the residual, that a delay leaves; its standard errors; in periods
 _MISSING = 0.1  # of the spread of u, that may be left and be alike over time
 _MORE = {
     "viscous": "several speeds that differ more",
@@ -215,8 +215,8 @@ def check_clipped_drive(warned, u, found):
         warned.add(f"u is at its limits in {100 * share:.0f} % of the record, not explained: clipped? Drive less")
 
 
-def check_model(warned, found, fits, band, period):
-    """All that the fit itself shows; fits: the same at its cut-off and lower ones."""
+def check_model(warned, found, fits, band, period, any_instant):
+    """All that the fit itself shows; fits: the same at its cut-off and lower ones; any_instant: u held or measured."""
     table, left, n = found.table, found.left, len(found.y)
     total, missed = max(n * np.var(found.y), 1e-300), n * left.rms**2
     with_gravity = n * found.beside(table.columns[:, 1:3])[-1] ** 2
@@ -229,7 +229,7 @@ def check_model(warned, found, fits, band, period):
         warned.add(f"only {left.independent:.0f} independent samples (F = {F:.1f}): record longer, with more reversals")
     _check_friction(warned, found)
     if "inertia" in found.names:
-        _check_inertia(warned, found, fits, band, period)
+        _check_inertia(warned, found, fits, band, period, any_instant)
     if found.misfit > 1 - _POOR:
         warned.add(f"the model explains little of u (fit {1 - found.misfit:.0%}): do not use it; look at q, u and load")
     gravity = "gravity_sin" not in found.names and np.ptp(table.q) > 0.2
@@ -261,7 +261,7 @@ def _check_friction(warned, found):
             warned.add(said.format("drowns in its error"))
 
 
-def _check_inertia(warned, found, fits, band, period):
+def _check_inertia(warned, found, fits, band, period, any_instant):
     """An inertia that is not there, is biased, or is mixed up with a delay of u."""
     J, stderr = found.value("inertia")
     if math.isinf(stderr):
@@ -275,7 +275,7 @@ def _check_inertia(warned, found, fits, band, period):
         warned.add(f"inertia: {100 * band.acceleration_share:.0f} % too small by noise; move faster, or filter more")
     if 0 < J < (b := found.value("viscous")[0]) * period:
         warned.add(f"the time constant {J / b:.3g} s is below the sampling period of {period:.3g} s: sample faster")
-    _, delay, springs = min(_lateness(one, period) for one in fits)
+    _, delay, springs = min(_lateness(one, period, any_instant) for one in fits)
     if springs:
         warned.add("inertia depends on the frequency, as in a flexible joint: try a lower cutoff_hz")
     elif delay > 0:
@@ -284,13 +284,14 @@ def _check_inertia(warned, found, fits, band, period):
         warned.add(f"q seems to be recorded {-delay:.2g} s before u, or u is filtered: inertia too small; shift one")
 
 
-def _lateness(found, period):
+def _lateness(found, period, any_instant):
     """What a delay of u leaves of the residual, the delay, s, 0 if it is not sure, and whether snap leaves still less.
 
-    At lower cut-offs a delay is seen better: noise of the acceleration hides a part of it, and looks like snap.
+    At lower cut-offs a delay is seen better: noise of the acceleration hides a part of it, and looks like snap. With
+    any_instant half a period is in the errors: less is no delay.
     """
     lag = found.beside(found.table.slopes[:, 1 - found.held])  # u behind a low pass: what went in is u + lag du/dt
     delay, sigma, rms = min(found.beside_delay[2:], lag[2:], key=lambda one: one[2])
     share = rms / max(found.left.rms, 1e-300)
-    sure = any(share < least and abs(delay) > max(n * sigma, part * period) for least, n, part in _LATE)
+    sure = any(share < most and abs(delay) > max(n * sigma, max(k, any_instant / 2) * period) for most, n, k in _LATE)
     return (share, delay, found.beside(found.table.snap)[-1] < rms) if sure else (1.0, 0.0, False)

@@ -146,7 +146,7 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
         found = _at_agreeing_cutoff(warned, joint, found, cutoff_hz is not None)
     fits = [found, *joint.lower(found)]
     found = _with_other_fits_in_errors(joint, found, fits, held is None)
-    checks.check_model(warned, found, fits, joint.band, 1 / joint.rate)
+    checks.check_model(warned, found, fits, joint.band, 1 / joint.rate, held is None)
     if found.value("inertia")[0] < 0:
         found = joint.fit(found.cutoff_hz, found.held, without="inertia")
     return JointFit(
@@ -287,7 +287,7 @@ class Found:
         """
         delay, sigma = lowest.beside_delay[2:4]
         share = unsure**2 / (unsure**2 + sigma**2)
-        size = math.hypot(share * delay, math.sqrt(share) * sigma)
+        size = math.hypot(share * delay, unsure * math.sqrt(1 - share))  # sigma may be inf
         moved = np.zeros(len(self.x))
         moved[np.isfinite(self.stderr)] = size * np.linalg.lstsq(self.A, self.late_column, rcond=None)[0]
         return moved
