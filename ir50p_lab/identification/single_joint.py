@@ -100,8 +100,8 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     the highest that noise of q allows at which the parameters agree with those at half of it: above, flexibility and
     backlash make a rigid model wrong. Standard errors allow for residuals that are alike, and for what lower cut-offs,
     twice the least speed, any force of the position, friction that is no line in the speed, a flexible joint, a dead
-    zone of the amplifier and, unless `held` is given, half a period between q and u change (less, or more, where the
-    data tell the delay). What a dead zone keeps of u counts as Coulomb friction.
+    zone of the amplifier and half a period between q and u change, 0.3 of one if `held` is given (less, or more, where
+    the data tell the delay). What a dead zone keeps of u counts as Coulomb friction.
 
     Args:
         t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings
@@ -183,8 +183,7 @@ def _names_of(terms):
     terms = (terms,) if isinstance(terms, str) else tuple(terms)
     if not terms or not set(terms) <= set(TERMS):
         raise InputError(f"terms = {terms!r}: give some of {', '.join(TERMS)}")
-    columns = {"gravity_sin", "gravity_cos"} if "gravity" in terms else set()
-    return tuple(name for name in _COLUMNS if name in columns | set(terms))
+    return tuple(name for name in _COLUMNS if name.split("_")[0] in terms)
 
 
 def _is_measured(fits):
@@ -223,14 +222,15 @@ def _with_other_fits_in_errors(joint, found, fits, any_instant):
 
     Lower cut-offs: flexibility, backlash. Twice the least speed: sticking, coarse angles. Any force of the position:
     gravity, ripple. The part of u that a dead zone of the amplifier keeps. Friction that is no line in the speed. Snap:
-    flexibility in slow motion. With any_instant, a u that acts at another one: by half a period, if the data do not
-    tell.
+    flexibility in slow motion. A u that acts at another instant: by half a period with any_instant, else by 0.3, from
+    which on a delay is warned of; less if the data tell.
     """
     faster = joint.fit(found.cutoff_hz, found.held, fewest=found, slower=2.0)
     pairs = [(one.x, one.stderr) for one in (*fits[1:], faster) if one is not None] + found.beside_forces(fits[-1])
     beyond = [np.where(np.isfinite(found.stderr + sigma), (found.x - x) ** 2 - sigma**2, 0.0) for x, sigma in pairs]
     moved = np.max([np.zeros(len(found.x)), *beyond], axis=0)  # squared
-    late = found.moved_by_delay(0.5 / joint.rate, fits[-1]) if any_instant else 0.0
+    periods, telling = (0.5, fits[-1:]) if any_instant else (0.3, fits[1:] or fits)
+    late = found.moved_by_delay(periods / joint.rate, telling)
     return replace(found, stderr=np.sqrt(found.stderr**2 + moved + late**2 + (_EXACT * found.x) ** 2))
 
 
@@ -280,12 +280,12 @@ class Found:
         """`beside` a delay of u behind its record, s: u(t) is the model at t + delay, about A x + delay d(A x)/dt."""
         return self.beside(self.late_column)
 
-    def moved_by_delay(self, unsure, lowest):
-        """(p,) by which a delay moves the parameters: 0 +- unsure s, and what the `lowest` fit tells of it.
+    def moved_by_delay(self, unsure, fits):
+        """(p,) by which a delay moves the parameters: 0 +- unsure s, and what the surest of `fits` tells of it.
 
-        At the lowest cut-off the acceleration and its rate have least noise.
+        Noise of the acceleration hides a part of it, least at the lowest cut-off.
         """
-        delay, sigma = lowest.beside_delay[2:4]
+        delay, sigma = min((one.beside_delay[2:4] for one in fits), key=lambda one: one[1])
         share = unsure**2 / (unsure**2 + sigma**2)
         size = math.hypot(share * delay, unsure * math.sqrt(1 - share))  # sigma may be inf
         moved = np.zeros(len(self.x))
