@@ -99,8 +99,7 @@ def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=No
         raise InputError(f"corner {outside[0].round()} lies outside pictures of size = {size}: give (width, height)")
     everything, inverse = np.unique(np.concatenate(points), axis=0, return_inverse=True)
     places = np.split(inverse.ravel(), np.cumsum([len(p) for p in points])[:-1])
-    corners = map(BoardCorners, pixels, places)
-    found = [(f"view {i + 1}", i, one) for i, one in enumerate(corners)]
+    found = [(f"view {i + 1}", i, BoardCorners(*one)) for i, one in enumerate(zip(pixels, places, strict=True))]
     return _calibrate(found, size, _board_like(everything), everything, options, [])
 
 
@@ -149,8 +148,7 @@ def _calibrate(found, size, board, points, options, rejected):
         stderr_corners=_named(best.by_corners, best),
         stderr_views=_named(best.by_views if len(views) > 3 else best.by_corners, best),
     )
-    lost = len(rejected) / (len(rejected) + len(views))
-    if lost > 0.5:
+    if len(rejected) > len(views):
         said.append(f"{len(rejected)} of {len(rejected) + len(views)} pictures were of no use: see `rejected`")
     odd = sum(one.reason == Reason.OUTLIER for one in rejected)
     if odd > 1:

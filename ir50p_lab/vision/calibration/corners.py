@@ -11,6 +11,7 @@ from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 from ir50p_lab.vision.calibration.saddles import parts_by_saddles
 
 _SEARCHED = 1280  # px; corners are searched in a picture reduced to this, and refined in the picture itself
+_SMOOTH = 0.8  # px, against noise, in which the quick finder looks for squares of any shape, and takes long
 _WINDOW = 0.36  # half the refinement window, in squares: larger is more precise until the next edges come in
 _WINDOW_PX = (2, 20)
 _SOFT = 0.55  # rise of an edge from dark to light, in squares, at which neighbouring edges run together
@@ -50,11 +51,11 @@ def find_checkerboard(grey, pattern, other=None):
 
     pattern, factor = check_pattern(pattern), max(1.0, max(grey.shape) / _SEARCHED)
     small = cv2.resize(grey, None, fx=1 / factor, fy=1 / factor, interpolation=cv2.INTER_AREA)
+    smooth = cv2.GaussianBlur(small, (0, 0), _SMOOTH)
     for wanted in filter(None, (other, pattern)):
-        best = _examined(grey, cv2.findChessboardCorners(small, wanted), factor, wanted)
+        best = _examined(grey, cv2.findChessboardCorners(smooth, wanted), factor, wanted)
         if best is not None:
-            larger, _ = grow(best, grey)
-            _check_whole(larger, set(), pattern)
+            _check_whole(grow(best, grey)[0], set(), pattern)
     if best is None:
         try:
             best = _grown(grey, small, factor, pattern)

@@ -79,10 +79,8 @@ def _picture(index, one):
             return Picture(Path(one).name, index, None, str(error))
     name = getattr(one, "name", None) or f"picture {index + 1}"
     array = np.asarray(getattr(one, "image", one))
-    good = (
-        array.dtype == np.uint8 and array.size and (array.ndim == 2 or (array.ndim == 3 and array.shape[2] in (3, 4)))
-    )
-    if not good:
+    shaped = array.ndim == 2 or (array.ndim == 3 and array.shape[2] in (3, 4))
+    if array.dtype != np.uint8 or not array.size or not shaped:
         what = f"{array.dtype} array of shape {array.shape}: give uint8 of shape (h, w, 3), or (h, w)"
         return Picture(str(name), index, None, what)
     if array.ndim == 3:
