@@ -38,10 +38,10 @@ class BoardCorners:
 def find_checkerboard(grey, pattern, other=None):
     """All inner corners of a checkerboard: by OpenCV's finders or its own saddles, refined.
 
-    `findChessboardCorners` is quick; where it sees nothing a grid is grown from the saddles of the picture, then
-    `findChessboardCornersSB` is asked, slow and good at blur; also for uneven corners and small squares, where the
-    smoother grid counts. Corners are refined by `cornerSubPix` with a window from the size of the squares. A board
-    that goes on beyond the pattern is another board, although a finder is content with a part of it.
+    `findChessboardCorners`, on a smoothed copy, is quick; where it sees nothing a grid is grown from the saddles of the
+    picture, then `findChessboardCornersSB` is asked, slow and good at blur; also for uneven corners and small squares,
+    where the smoother grid counts. Corners are refined by `cornerSubPix` with a window from the size of the squares. A
+    board that goes on beyond the pattern is another board, although a finder is content with a part of it.
 
     Args: grey: (h, w) uint8; pattern: (columns, rows); other: (columns, rows) of a board that other pictures showed
     in its place, looked for first. Returns: BoardCorners, all, in the order of `Checkerboard`.
