@@ -62,6 +62,14 @@ def test_order_of_a_board_that_looks_alike_upside_down():
     assert xy[0].sum() < xy[-1].sum()
 
 
+@pytest.mark.parametrize("spin", np.linspace(-3, 3, 9))
+def test_order_of_a_square_board_is_the_same_but_for_half_a_turn(spin):
+    """A quarter turn swaps dark and light. Mixed, the bend of a board in many views averages out."""
+    T = look(0.6, 0.3, 0.5, spin=spin)
+    xy, true = found(T, pattern=(7, 7)), project(T, Checkerboard((7, 7)).points)
+    assert min(np.abs(xy - true).max(), np.abs(xy - true[::-1]).max()) < 1
+
+
 def test_a_large_picture_is_searched_small_and_measured_large():
     T = look(0.55, 0.4, 1.0)
     small = cv2.cvtColor(paint(T, noise=0, over=4), cv2.COLOR_RGB2GRAY)

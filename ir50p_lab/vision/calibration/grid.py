@@ -67,6 +67,8 @@ def in_order(grid, grey, pattern):
     right, down = grid[0, -1] - grid[0, 0], grid[-1, 0] - grid[0, 0]
     if right[0] * down[1] - right[1] * down[0] < 0:
         grid = grid[:, ::-1]
+    if pattern[0] == pattern[1] and contrast(grid, grey) < 0:  # a quarter turn swaps dark and light
+        grid = np.rot90(grid)
     turned = grid[::-1, ::-1]
     if sum(pattern) % 2:  # half a turn swaps dark and light: the colours tell
         return turned if contrast(grid, grey) < 0 else grid
