@@ -11,7 +11,7 @@ from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 from ir50p_lab.vision.calibration.saddles import parts_by_saddles
 
 _SEARCHED = 1280  # px; corners are searched in a picture reduced to this, and refined in the picture itself
-_SMOOTH = 0.8  # px, against noise, in which the quick finder looks for squares of any shape, and takes long
+_SMOOTH = 0.8  # px, of the copy for the quick finder: in a dark picture it would follow every speck of noise
 _WINDOW = 0.36  # half the refinement window, in squares: larger is more precise until the next edges come in
 _WINDOW_PX = (2, 20)
 _SOFT = 0.55  # rise of an edge from dark to light, in squares, at which neighbouring edges run together
