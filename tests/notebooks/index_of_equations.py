@@ -1,7 +1,7 @@
 """Where each numbered equation, table and figure of the thesis is taught: `docs/index_of_equations.md`.
 
-`python tests/notebooks/index_of_equations.py` writes it anew, from `docs/thesis_contents.csv` (what the thesis has, and which
-notebook is its home), the texts of the notebooks, and the docstrings of package and tests. A mention that disappears
+`python tests/notebooks/index_of_equations.py` writes it anew, from `docs/thesis_contents.csv` (what the thesis has, which
+notebook is its home, why it is left out there on purpose), the texts of the notebooks, and the docstrings of package and tests. A mention that disappears
 changes the file, and a test says so.
 """
 
@@ -14,30 +14,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 INDEX = ROOT / "docs" / "index_of_equations.md"
-REASONS = {  # rows of the rewritten notebooks that are left out on purpose
-    "1 History": "origin and definition of the word robot: no part of a lab book",
-    "1.2": "a statement of the problem; 01 asks it as a question",
-    "1.3.1": "a statement of the problem; 03 asks it as a question",
-    "1.4": "a statement of the problem; 02 asks it as a question",
-    "3 Objectives, 6 Outline": "00 shows the list of what will be the student's instead",
-    "Abbreviations": "a folded list at the end of 00",
-    "Notations": "a folded table at the end of 00",
-    "Introduction a-e": "folded in 00, section 1",
-    "2 IR50P/ROB3i, Fig 1": "folded in 00, section 1; drawn by LiveArm",
-    "4 Software": "README, From MATLAB and Simulink",
-    "1.1.2b": "the twelve sequences: A2, section 1",
-    "(1.7) singularity": "A2, section 2",
-    "(energy, Mdot - 2C)": "not in the thesis",
-    "2.1": "a statement of the problem; 08 asks it as a task",
-    "2.1.1a saturation": "08, sections 4 and 5",
-    "ERRATA 2 poses": "tests/modelling",
-    "ERRATA 2 states": "tests/modelling",
-    "2.2.2 non-parametric": "09, section 4: the answer to a step, and to a blow",
-    "2.2.2 tuning": "09, section 4: rules for speed and angle",
-    "sweeps elsewhere": "A2, section 5",
-    "gain map, FOPDT, rules": "09, sections 4 and 6",
-    "kick, windup, delay, friction": "09, section 2",
-}
 
 
 def equations(text):
@@ -105,7 +81,7 @@ def docstring_mentions(folder):
 
 
 def rows():
-    """(thesis, what, home, notebooks, functions, tests) for each row of the contents."""
+    """(thesis, what, home, reason, notebooks, functions, tests) for each row of the contents."""
     in_notebooks, in_package, in_tests = (
         notebook_mentions(),
         docstring_mentions("ir50p_lab"),
@@ -118,7 +94,7 @@ def rows():
                 sorted({p for tag in wanted for p in found.get(tag, [])})
                 for found in (in_notebooks, in_package, in_tests)
             ]
-            yield row["thesis"], row["what"], row["home"], *places
+            yield row["thesis"], row["what"], row["home"], row["left_out_because"], *places
 
 
 def text():
@@ -132,8 +108,7 @@ def text():
         "| thesis | what | home | notebook and section | functions | tests |",
         "|---|---|---|---|---|---|",
     ]
-    for thesis, what, home, *places in rows():
-        reason = REASONS.get(thesis)
+    for thesis, what, home, reason, *places in rows():
         shown = [", ".join(place[:8]) for place in places]
         shown[0] = shown[0] or (f"*{reason}*" if reason else "")
         lines.append(f"| {thesis} | {what} | {home} | " + " | ".join(shown) + " |")

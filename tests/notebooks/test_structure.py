@@ -4,7 +4,6 @@ import ast
 import re
 
 import nbformat
-import pytest
 from notebook_runner import FOLDER, NOTEBOOKS, REWRITTEN
 
 from ir50p_lab.course.exercises import exercises
@@ -41,7 +40,7 @@ CLAIM = re.compile(r"^\s*(?:assert |claim\()", re.M)
 SHOWS = re.compile(r"^(?:print|predict|measured|claim|check|live|note|keep|Image)\(|^    print\(|\.progress\(\)", re.M)
 
 
-def test_cells(notebook):
+def short_cells(path, notebook):
     """One idea a cell: short, of lines that need no scrolling, and at most two claims."""
     for cell in cells(notebook, "code"):
         assert cell.source.strip(), "an empty code cell"
@@ -50,13 +49,11 @@ def test_cells(notebook):
         assert len(CLAIM.findall(cell.source)) <= 2, cell.source
 
 
-def test_exercises_of_numbers_are_few(notebook):
+def exercises_of_numbers_are_few(path, notebook):
     assert len([name for name in checked(notebook) if name in exercises()]) <= 2
 
 
-def test_predictions(path, notebook):
-    if not is_rewritten(path):
-        return
+def predictions(path, notebook):
     code = "\n".join(cell.source for cell in cells(notebook, "code"))
     assert 1 <= len(re.findall(r"^predict\(", code, re.M)) <= 6
     for name in re.findall(r'^predict\("([^"]+)", \.\.\.', code, re.M):
@@ -68,19 +65,15 @@ def shows_something(source):
     return bool(SHOWS.search(source)) or isinstance(last, ast.Expr)
 
 
-def test_code_cells_show_something(path, notebook):
+def code_cells_show_something(path, notebook):
     """Imports, and cells that only define what the next one runs, may be silent."""
-    if not is_rewritten(path):
-        return
     silent = [cell for cell in cells(notebook, "code")[1:] if not shows_something(cell.source)]
     for cell in silent:
         following = notebook.cells[notebook.cells.index(cell) + 1]
         assert following.cell_type == "code" or lines(cell) <= 2, cell.source
 
 
-def test_functions_are_asked_for_in_their_notebook(path, notebook):
-    if not is_rewritten(path):
-        return
+def functions_are_asked_for_in_their_notebook(path, notebook):
     asked = tuple(name for name in checked(notebook) if is_function(name))
     assert asked == tuple(one for name in FUNCTIONS[path.name[:2]] for one in (*STAGES.get(name, ()), name))
     for cell in cells(notebook, "code"):
@@ -100,7 +93,7 @@ def test_no_text_names_a_notebook_that_is_not_there():
             assert (FOLDER / target).exists(), f"{path.name} links to {target}"
 
 
-def test_stored_nothing(notebook):
+def stored_nothing(path, notebook):
     for cell in cells(notebook, "code"):
         assert cell.outputs == [] and cell.execution_count is None
     assert notebook.metadata.kernelspec.name == "python3"
@@ -108,14 +101,14 @@ def test_stored_nothing(notebook):
     assert "widgets" not in notebook.metadata
 
 
-def test_ids(path, notebook):
+def ids(path, notebook):
     ids = [cell.id for cell in notebook.cells]
     assert len(set(ids)) == len(ids)
     assert all(re.fullmatch(r"[a-z]+(-[a-z0-9]+)+", i) for i in ids), "ids are made by hand: pose-07"
     assert len({i.partition("-")[0] for i in ids}) == 1
 
 
-def test_opening(path, notebook):
+def opening(path, notebook):
     first = notebook.cells[0]
     assert first.cell_type == "markdown"
     assert re.match(rf"# {path.name[:2]} · \S", first.source)
@@ -124,25 +117,25 @@ def test_opening(path, notebook):
         assert re.search(part, first.source), f"the opening lacks {part}"
 
 
-def test_closing(notebook):
+def closing(path, notebook):
     last = notebook.cells[-1]
     assert last.cell_type == "markdown"
     assert re.search(r"^## What you know now$", last.source, re.M)
 
 
-def test_arm(path, notebook):
+def arm(path, notebook):
     if path.name.startswith("00"):
         return  # the machine of the course, whatever arm comes later
     assert any("arm = load_arm()" in cell.source for cell in cells(notebook, "code")[:3])
 
 
-def test_something_moves(path, notebook):
+def something_moves(path, notebook):
     if path.name.startswith("A1"):
         return
     assert any(re.search(r"\b(live|LiveArm)\(", cell.source) for cell in cells(notebook, "code"))
 
 
-def test_exercises(path, notebook):
+def exercises_in_order(path, notebook):
     names = checked(notebook)
     assert len(set(names)) == len(names)
     assert all(name in exercises() or is_function(name) for name in names)
@@ -156,8 +149,8 @@ def test_every_exercise_is_asked_somewhere():
     assert sorted(name for name in asked if not is_function(name)) == sorted(exercises())
 
 
-def test_exercises_are_stubs(path, notebook):
-    if is_rewritten(path) or path.name.startswith("A"):
+def exercises_are_stubs(path, notebook):
+    if path.name.startswith("A"):
         return
     for cell in cells(notebook, "code"):
         if re.search(r"^check\(", cell.source, re.M):
@@ -165,7 +158,7 @@ def test_exercises_are_stubs(path, notebook):
             assert lines(cell) <= 6
 
 
-def test_plain_python(notebook):
+def plain_python(path, notebook):
     for cell in cells(notebook, "code"):
         compile(cell.source, cell.id, "exec")  # no magics, no shell
         assert "pyplot" not in cell.source  # figures are objects here, see course/widgets
@@ -173,16 +166,15 @@ def test_plain_python(notebook):
         assert not cell.metadata, "tags and other metadata are not used"
 
 
-def test_figures_have_units(notebook):
+def figures_have_units(path, notebook):
     """Every label of an axis that stands in a notebook names its unit in brackets."""
     for cell in cells(notebook, "code"):
         for label in re.findall(r"""[xyz]label\(?=?\s*["']([^"']*)["']""", cell.source):
             assert re.search(r"\[.+\]", label), f"axis label {label!r} has no [unit]"
 
 
-@pytest.mark.parametrize("stem", sorted({stem for stem, _ in everything()}))
-def test_every_exercise_has_its_notebook(stem):
-    assert (FOLDER / f"{stem}.ipynb").is_file()
+def test_every_exercise_has_its_notebook():
+    assert {stem for stem, _ in everything()} <= {path.stem for path in NOTEBOOKS}
 
 
 def top_level_names(source):
@@ -236,10 +228,32 @@ def lost_names(sources):
     return lost
 
 
-def test_panels_keep_their_names(notebook):
+def panels_keep_their_names(path, notebook):
     sources = [cell.source for cell in cells(notebook, "code")]
     lost = [f"code cell {i}: `{name}` is bound anew in code cell {k}" for i, name, k in lost_names(sources)]
     assert not lost, "the sliders of an earlier panel stop working:\n" + "\n".join(lost)
+
+
+RULES = (
+    short_cells,
+    exercises_of_numbers_are_few,
+    stored_nothing,
+    ids,
+    opening,
+    closing,
+    arm,
+    something_moves,
+    exercises_in_order,
+    plain_python,
+    figures_have_units,
+    panels_keep_their_names,
+)
+RULES_OF_THE_LAB_BOOK = (predictions, code_cells_show_something, functions_are_asked_for_in_their_notebook)
+
+
+def test_a_notebook_keeps_the_rules(path, notebook):
+    for rule in (*RULES, *(RULES_OF_THE_LAB_BOOK if is_rewritten(path) else [exercises_are_stubs])):
+        rule(path, notebook)
 
 
 def test_lost_names_are_found():
