@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from arms import random_arm
 
-from ir50p_lab.errors import ArmError, InputError, LabError, SuspiciousArmWarning
+from ir50p_lab.errors import ArmError, LabError, SuspiciousArmWarning
 from ir50p_lab.modelling import (
     IR50P,
     THESIS_A,
@@ -18,7 +18,6 @@ from ir50p_lab.modelling import (
     friction_torque,
     load_arm,
 )
-from ir50p_lab.modelling.named_arms import thesis_theta
 
 GOOD = {"l": (0.3, 0.2, 0.3), "m": (3, 1, 1), "lc": (0.1, 0.1, 0.1)}
 
@@ -29,17 +28,13 @@ GOOD = {"l": (0.3, 0.2, 0.3), "m": (3, 1, 1), "lc": (0.1, 0.1, 0.1)}
         ({"m": (3, -1, 1)}, ["m2 = -1", "negative"]),
         ({"m": (3, np.nan, 1)}, ["m", "nan"]),
         ({"m": (3, 1)}, ["m", "(2,)"]),
-        ({"m": np.ones((2, 3))}, ["m", "(2, 3)"]),
         ({"l": (0.3, 0, 0.3)}, ["l2 = 0", "> 0"]),
-        ({"l": (-0.3, 0.1, 0.3)}, ["l1 = -0.3"]),
         ({"Ixx": (0, 0, 0.2), "Iyy": (0, 0, 0.01), "Izz": (0, 0, 0.01)}, ["Ixx = 0.2", "link 3", "triangle"]),
         ({"Izz": (0, -0.01, 0)}, ["Izz of link 2", "negative"]),
         ({"lc": (0.1, 90.0, 0.1)}, ["lc2 = 90", "millimetres"]),
         ({"g": -9.81}, ["g = -9.81"]),
-        ({"g": np.nan}, ["g = nan"]),
         ({"q_min": (0, 0, 1), "q_max": (1, 1, 0.5)}, ["joint 3", "q_min = 1", "q_max = 0.5"]),
         ({"q_min": (0, 0)}, ["q_min", "three angles"]),
-        ({"q_max": (0, 0, np.nan)}, ["q_max", "three angles"]),
     ],
 )
 def test_impossible_arms_are_refused_with_the_reason(change, words):
@@ -101,22 +96,6 @@ def test_theta_has_three_equal_rows_and_no_products_of_inertia():
     assert THESIS_C[0, 6] == 0.05
 
 
-def test_theta_of_the_thesis_model_equals_the_arm_where_both_exist():
-    ours = thesis_theta(m=(3, 1, 1), l=(1, 1, 1), lc=(0.5, 0.5, 0.5))
-    np.testing.assert_allclose(ours, THESIS_A.theta, atol=1e-15)
-
-
-def test_default_actuators_are_the_plant_that_lands_near_table_4_4():
-    # Source: the table of assumed 12 V values (back-EMF and gravity in PWM counts rounded to whole counts there)
-    np.testing.assert_allclose(IR50P.actuators.gain, [0.0157, 0.0275, 0.0235], atol=5e-5)
-    np.testing.assert_allclose(IR50P.actuators.back_emf_damping / IR50P.actuators.gain, [102, 232, 196], atol=0.5)
-    np.testing.assert_allclose(IR50P.actuators.reflected_inertia, [0.15, 0.20, 0.12])
-    stretched = (IR50P.theta[0, 2:4].sum() * 9.81, IR50P.theta[0, 3] * 9.81)
-    np.testing.assert_allclose(np.array(stretched) / IR50P.actuators.gain[1:], [138, 57], atol=0.5)
-    np.testing.assert_allclose(np.degrees(IR50P.q_min), [-100, -50, -140])
-    np.testing.assert_allclose(np.degrees(IR50P.q_max), [100, 110, 30])
-
-
 def test_an_arm_without_motors_has_no_pwm():
     with pytest.raises(ArmError, match="no actuators"):
         _ = THESIS_A.theta_pwm
@@ -142,8 +121,6 @@ def test_file_round_trip_is_exact(arm, tmp_path):
         ("l = [1, 2", ["not a TOML file"]),
         ("l = [0.3, 0.2, 0.3]\nm = [1, 1, 1]", ["lacks lc"]),
         ("l = [0.3, 0.2, 0.3]\nm = [1, 1, 1]\nlc = [0.1, 0.1, 0.1]\nmass = 3", ["unknown entry 'mass'", "known: name"]),
-        ("l = [0.3, 0.2, 0.3]\nm = [1, -1, 1]\nlc = [0.1, 0.1, 0.1]", ["m2 = -1"]),
-        ("l = [0.3, 0.2, 0.3]\nm = [1, 1, 1]\nlc = [0.1, 0.1, 0.1]\ng = 'big'", ["big"]),
         ("l = [0.3, 0.2, 0.3]\nm = [1, 1, 1]\nlc = [0.1, 0.1, 0.1]\n[friction]\nfv = [1, 1, -1]", ["fv of joint 3"]),
         ("l = [0.3, 0.2, 0.3]\nm = [1, 1, 1]\nlc = [0.1, 0.1, 0.1]\nfriction = 3", ["must be a table"]),
     ],
@@ -223,31 +200,9 @@ def test_voltage_follows_from_the_motor_equations():
     np.testing.assert_allclose(m.voltage(tau, qd, qdd), Ra * current + ke * N * qd, rtol=1e-12)
 
 
-def test_pwm_counts_and_volts_tell_the_same():
-    m = IR50P.actuators
-    tau, qd = np.array([1.0, -2.0, 0.5]), np.array([0.3, -0.2, 0.5])
-    counts = (tau + m.back_emf_damping * qd) / m.gain
-    np.testing.assert_allclose(counts * m.V / m.limit_pwm, m.voltage(tau, qd), rtol=1e-12)
-
-
 @pytest.mark.parametrize("field", [f.name for f in fields(Actuators)])
 def test_impossible_motors_are_refused(field):
     value = getattr(IR50P.actuators, field)
     bad = -value if np.ndim(value) == 0 else (value[0], -value[1], value[2])
     with pytest.raises(ArmError, match=field):
         replace(IR50P.actuators, **{field: bad})
-
-
-def test_motor_data_from_the_joint_are_checked():
-    good = {
-        "stall_torque": (1, 1, 1),
-        "no_load_speed": (1, 1, 1),
-        "reflected_inertia": (0, 0, 0),
-        "N": (1, 1, 1),
-        "V": 12,
-    }
-    assert (Actuators.from_joint_data(**good).stall_torque == 1).all()
-    with pytest.raises(ArmError, match="no_load_speed"):
-        Actuators.from_joint_data(**{**good, "no_load_speed": (1, 0, 1)})
-    with pytest.raises(InputError, match="nan"):
-        Actuators.from_joint_data(**{**good, "stall_torque": (1, np.nan, 1)})

@@ -8,6 +8,7 @@ from arms import mujoco_model, random_arm, random_states
 from hypothesis import given
 from hypothesis import strategies as st
 
+from ir50p_lab.course.thesis_reference import STATES, reference, same_quantities
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import (
     IR50P,
@@ -24,50 +25,18 @@ from ir50p_lab.modelling import (
     mass_matrix,
 )
 
-# Source: the thesis' models with its equations corrected, evaluated from the symbolic Lagrangian in 20 digits.
-# State: q, qd; then per model M11, M12, M22, M23, M33 (M13 = 0), C qd, and g of joints 2 and 3 (g1 = 0).
-STATES = {
-    1: ((0.3, 0.5, -0.7), (0.4, -0.6, 0.8)),
-    2: ((-1.1, 1.2, 0.9), (1.5, 0.7, -1.3)),
-    3: ((2.0, -0.4, -1.6), (-0.9, 1.1, 2.2)),
-    4: ((0.0, 2.3, -2.0), (0.5, -1.4, 0.3)),
-    5: ((1.57, 0.9, 1.4), (-2.1, 0.2, -0.5)),
-}
-MODELS = {"A": THESIS_A, "B": THESIS_RODS, "C": THESIS_C}
-# fmt: off
-REFERENCE = {
-    "A1": ((2.812910903623, 0, 2.264842187284, 0.632421093642, 0.25), (0.386946108779, -0.003074481791, -0.137695449772), (17.720853962528, 4.807226564311)),
-    "A2": ((0.7949114243, 0, 2.121609968271, 0.560804984135, 0.25), (-0.307075309319, 0.578191754873, 0.298673840577), (2.855824214062, -2.476270143062)),
-    "A3": ((1.470439621813, 0, 1.470800477699, 0.235400238849, 0.25), (-2.652797274224, 4.27783838223, -0.867310725868), (11.512212293489, -2.041200233264)),
-    "A4": ((0.896553827571, 0, 1.083853163453, 0.041926581726, 0.25), (-0.401455623687, -0.414168005606, -0.898078654433), (-5.118326173972, 4.685925479161)),
-    "A5": ((0.929815808503, 0, 1.6699671429, 0.33498357145, 0.25), (0.156544516099, 1.983044137348, 0.49403766303), (5.878906798725, -3.268083884378)),
-    "B1": ((2.207134374451, 0, 2.431508853951, 0.715754426976, 0.333333333333), (0.406371650758, -0.000060797507, -0.140291572054), (17.720853962528, 4.807226564311)),
-    "B2": ((0.077092485263, 0, 2.288276634937, 0.644138317469, 0.333333333333), (-0.431546520548, 0.559806199386, 0.216963611914), (2.855824214062, -2.476270143062)),
-    "B3": ((0.8055672505, 0, 1.637467144365, 0.318733572183, 0.333333333333), (-2.524670534135, 4.279169698378, -0.841768641651), (11.512212293489, -2.041200233264)),
-    "B4": ((0.259603122904, 0, 1.25051983012, 0.12525991506, 0.333333333333), (-0.433541485535, -0.418637261129, -0.892196962002), (-5.118326173972, 4.685925479161)),
-    "B5": ((0.249009365935, 0, 1.836633809567, 0.418316904783, 0.333333333333), (0.242797960871, 1.979397917604, 0.311446941113), (5.878906798725, -3.268083884378)),
-    "C1": ((1.535494326242, 0.05, 0.792968437457, 0.376484218728, 0.3), (0.091698036687, -0.004152882684, -0.033769783431), (10.833586016812, 4.807226564311)),
-    "C2": ((0.965208328415, 0.05, 0.764321993654, 0.362160996827, 0.3), (-0.246668154481, -0.050070354694, -0.136369780678), (0.012040556929, -2.476270143062)),
-    "C3": ((1.112657696463, 0.05, 0.63416009554, 0.29708004777, 0.3), (-0.109426073832, 0.905247509893, -0.112161143054), (4.283725612554, -2.041200233264)),
-    "C4": ((1.129601276467, 0.05, 0.556770632691, 0.258385316345, 0.3), (-0.046003800766, -0.073685994305, -0.165499669052), (0.110608041033, 4.685925479161)),
-    "C5": ((1.040203867113, 0.05, 0.67399342858, 0.31699671429, 0.3), (0.172874609876, 0.044284455911, -0.339410199996), (1.000511767737, -3.268083884378)),
-}
-# fmt: on
 seeds = st.integers(0, 2**32 - 1)
 
 
-@pytest.mark.parametrize("case", REFERENCE)
-def test_reproduces_the_corrected_thesis_models(case):
-    model, (q, qd) = MODELS[case[0]], STATES[int(case[1])]
-    (M11, M12, M22, M23, M33), h, (g2, g3) = REFERENCE[case]
-    np.testing.assert_allclose(
-        mass_matrix(model, q), [[M11, M12, 0], [M12, M22, M23], [0, M23, M33]], atol=1e-12, rtol=0
-    )
-    np.testing.assert_allclose(coriolis_matrix(model, q, qd) @ qd, h, atol=1e-12, rtol=0)
-    np.testing.assert_allclose(gravity(model, q), [0, g2, g3], atol=1e-12, rtol=0)
+@pytest.mark.parametrize(("name", "model"), [("A", THESIS_A), ("B", THESIS_RODS), ("C", THESIS_C)])
+def test_reproduces_the_corrected_thesis_models(name, model):
+    for (q, qd), row in zip(STATES, reference(name), strict=True):
+        M, h, g = mass_matrix(model, q), coriolis_matrix(model, q, qd) @ qd, gravity(model, q)
+        np.testing.assert_allclose(same_quantities(M, h, g), row, atol=1e-12, rtol=0)
+        assert (M == M.T).all() and (M[0, 2], g[0]) == (0, 0)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(5))
 def test_equals_mujoco_on_a_random_arm(seed):
     rng = np.random.default_rng(seed)
     arm = random_arm(rng)
@@ -94,39 +63,6 @@ def test_equals_mujoco_on_a_random_arm(seed):
             np.testing.assert_allclose(K_ours[k], data.energy[1], rtol=1e-12)
     np.testing.assert_allclose(tau, torques, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(found, accelerations, rtol=1e-9, atol=1e-9)
-
-
-@given(seeds)
-def test_mass_matrix_is_symmetric_and_positive(seed):
-    rng = np.random.default_rng(seed)
-    M = mass_matrix(random_arm(rng), random_states(rng, 20)[0])
-    assert (M == np.swapaxes(M, 1, 2)).all()
-    assert (np.linalg.eigvalsh(M) > 0).all()
-
-
-@given(seeds)
-def test_mdot_minus_2c_is_skew_and_power_balances(seed):
-    rng = np.random.default_rng(seed)
-    arm = random_arm(rng, viscous=False)
-    q, qd, qdd = (x[0] for x in random_states(rng, 1))
-    step = 1e-6
-    M_dot = (mass_matrix(arm, q + step * qd) - mass_matrix(arm, q - step * qd)) / (2 * step)
-    N = M_dot - 2 * coriolis_matrix(arm, q, qd)
-    np.testing.assert_allclose(N + N.T, 0, atol=1e-6)
-    ahead, behind = (energy(arm, q + s * qd, qd + s * qdd).total for s in (step, -step))
-    power = qd @ inverse_dynamics(arm, q, qd, qdd)
-    assert (ahead - behind) / (2 * step) == pytest.approx(power, rel=1e-6, abs=1e-5)
-
-
-@given(seeds)
-def test_gravity_is_the_slope_of_the_potential(seed):
-    rng = np.random.default_rng(seed)
-    arm, q, step = random_arm(rng), random_states(rng, 1)[0][0], 1e-6
-    slope = [
-        (energy(arm, q + d, np.zeros(3)).potential - energy(arm, q - d, np.zeros(3)).potential) / (2 * step)
-        for d in step * np.eye(3)
-    ]
-    np.testing.assert_allclose(gravity(arm, q), slope, atol=1e-6)
 
 
 @given(seeds, st.booleans())
@@ -163,11 +99,6 @@ def test_friction_in_theta_opposes_motion_and_is_silent_at_rest():
     f = IR50P.friction
     np.testing.assert_allclose(extra, np.sign(moving) * f.fc + f.Tf, rtol=1e-12)
     np.testing.assert_allclose(bias(IR50P, still, still) - bias(rigid, still, still), f.Tf, rtol=1e-12)
-
-
-def test_moon_gravity_counts():
-    moon = Arm(**{**vars_of(THESIS_RODS), "g": 1.62})
-    np.testing.assert_allclose(gravity(moon, [0, 0.3, 0.2]) * 9.81, gravity(THESIS_RODS, [0, 0.3, 0.2]) * 1.62)
 
 
 def test_a_theta_takes_the_gravity_it_is_given():
@@ -223,17 +154,11 @@ def test_one_state_or_many_as_arrays_lists_or_tuples_of_any_numbers(function, mo
             assert type(found) is np.ndarray and (found == many[k]).all()
 
 
-def test_energy_of_one_state_and_of_many():
-    q, qd, _ = random_states(np.random.default_rng(11), 5)
-    assert energy(IR50P, q[0], qd[0]).total == pytest.approx(energy(IR50P, q, qd).total[0], rel=1e-15)
-
-
 @pytest.mark.parametrize(
     "call, words",
     [
         (lambda: mass_matrix(IR50P, [0, 0]), ["q", "(2,)", "(3,)"]),
         (lambda: gravity(IR50P, [0, np.nan, 0]), ["q", "nan", "index 1"]),
-        (lambda: forward_dynamics(IR50P, np.array([0, np.nan, 0]), np.zeros(3), np.zeros(3)), ["q", "nan"]),
         (lambda: forward_dynamics(IR50P, np.array([np.inf, 0, 0]), np.zeros(3), np.zeros(3)), ["q", "inf"]),
         (lambda: forward_dynamics(IR50P, np.zeros(3), np.zeros(3), np.array([0, 0, np.inf])), ["tau", "inf"]),
         (lambda: inverse_dynamics(IR50P, np.zeros((4, 3)), np.zeros((5, 3)), np.zeros(3)), ["q (4, 3)", "qd (5, 3)"]),
@@ -241,13 +166,10 @@ def test_energy_of_one_state_and_of_many():
             lambda: inverse_dynamics(IR50P, np.full(3, 1e200), np.full(3, 1e200), np.zeros(3)),
             ["not finite", "too large"],
         ),
-        (lambda: inverse_dynamics(IR50P, np.zeros((4, 3)), np.zeros(3), np.full(3, np.nan)), ["qdd", "nan"]),
         (lambda: mass_matrix(np.zeros((3, 19)), np.zeros(3)), ["(3, 19)", "(3, 20)"]),
-        (lambda: mass_matrix(np.full((3, 20), np.nan), np.zeros(3)), ["theta", "not finite"]),
         (lambda: mass_matrix(3.0, np.zeros(3)), ["float", "(3, 20)"]),
         (lambda: mass_matrix(IR50P, ["a", "b", "c"]), ["q", "numbers"]),
         (lambda: gravity(THESIS_C, np.zeros(3), g=-9.81), ["g = -9.81", ">= 0"]),
-        (lambda: gravity(THESIS_C, np.zeros(3), g=np.nan), ["g = nan"]),
         (lambda: energy(IR50P.theta_pwm, np.zeros(3), np.zeros(3)), ["equal rows"]),
         (lambda: forward_dynamics(np.zeros((3, 20)), np.zeros(3), np.zeros(3), np.ones(3)), ["singular"]),
     ],
@@ -257,11 +179,6 @@ def test_bad_input_gets_a_sentence(call, words):
         call()
     for word in words:
         assert word in str(caught.value)
-
-
-def test_one_row_of_theta_counts_for_all_joints():
-    q = np.array([0.1, 0.2, 0.3])
-    assert (mass_matrix(IR50P.theta[0], q) == mass_matrix(IR50P, q)).all()
 
 
 def test_our_sine_and_cosine_are_right_to_the_last_bits():

@@ -1,4 +1,4 @@
-"""Inertia tensors by integration against textbook formulae, random points, MuJoCo and a solid cut in two."""
+"""Inertia tensors by integration against textbook formulae, MuJoCo and the energy of points."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,6 @@ import sympy
 
 from ir50p_lab.errors import ArmError, InputError
 from ir50p_lab.modelling import Arm, Body, cylinder, integrate_solid, rod, rot_x, rot_z, tube
-from ir50p_lab.modelling.inertia import second_moment_tensor
 
 m, a, b, c, R, r, L = sympy.symbols("m a b c R r L", positive=True)
 
@@ -42,19 +41,6 @@ def test_textbook_formulae(make):
     assert list(solid.com) == ([L / 4, 0, 0] if make is cone else [0, 0, 0])
 
 
-def test_monte_carlo_over_a_cone():
-    """The one solid with a centre of mass off its origin: random points in it, no integral."""
-    rng = np.random.default_rng(1)
-    points = rng.uniform([0, -0.3, -0.3], [0.5, 0.3, 0.3], (400_000, 3))
-    inside = points[np.hypot(points[:, 1], points[:, 2]) < 0.3 * (1 - points[:, 0] / 0.5)]
-    centre = inside.mean(axis=0)
-    d = inside - centre
-    tensor = 2.0 * ((d**2).sum() * np.eye(3) - d.T @ d) / len(d)
-    body = cone().body(2.0, R=0.3, L=0.5)
-    assert np.allclose(body.com, centre, atol=1e-3)
-    assert np.allclose(body.inertia, tensor, atol=3e-4)
-
-
 @pytest.mark.parametrize(
     ("solid", "sizes", "geom"),
     [
@@ -71,14 +57,6 @@ def test_equal_to_mujocos_geometry(solid, sizes, geom):
     assert np.allclose(sorted(np.diag(ours.inertia)), sorted(model.body_inertia[1]), rtol=1e-12)
 
 
-def test_a_box_cut_in_two_and_joined_is_the_box():
-    whole = box().body(2.0, a=0.6, b=0.2, c=0.1)
-    half = box().body(1.0, a=0.3, b=0.2, c=0.1)
-    joined = half.moved([-0.15, 0, 0]) + half.moved([0.15, 0, 0])
-    assert joined.mass == whole.mass
-    assert np.allclose(joined.com, 0, atol=1e-16) and np.allclose(joined.inertia, whole.inertia, rtol=1e-13)
-
-
 def test_steiner_agrees_with_the_kinetic_energy_of_points():
     rng = np.random.default_rng(2)
     points, masses = rng.normal(size=(20, 3)), rng.uniform(0.1, 1, 20)
@@ -90,12 +68,6 @@ def test_steiner_agrees_with_the_kinetic_energy_of_points():
     turned = Body(body.mass, turn @ body.com, turn @ body.inertia @ turn.T)
     assert np.isclose(0.5 * omega @ turned.about(pivot) @ omega, kinetic, rtol=1e-13)
     assert np.isclose(body.mass, masses.sum())
-
-
-def test_integrand_is_minus_p_hat_squared():
-    x, y, z = sympy.symbols("x y z")
-    p_hat = sympy.Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    assert sympy.expand(second_moment_tensor((x, y, z)) + p_hat**2) == sympy.zeros(3)
 
 
 def test_own_solid_with_products_of_inertia():
@@ -118,8 +90,6 @@ def test_link_from_a_drawing_becomes_an_arm():
 
 
 def test_refusals_say_what_to_do():
-    with pytest.raises(ArmError, match="triangle inequality"):
-        Body(1.0, inertia=np.diag([1.0, 1.0, 3.0]))
     with pytest.raises(ArmError, match="triangle inequality"):  # hidden by a rotation of the axes
         Body(1.0, inertia=rot_x(0.7) @ np.diag([1.0, 1.0, 2.1]) @ rot_x(0.7).T)
     with pytest.raises(ArmError, match="cannot be negative"):
@@ -130,8 +100,6 @@ def test_refusals_say_what_to_do():
         Body(1.0, inertia=[[1, 0.1, 0], [0, 1, 0], [0, 0, 1]])
     with pytest.raises(InputError, match="give \\(3,\\)"):
         Body(1.0, com=(0, 0))
-    with pytest.raises(InputError, match="finite"):
-        Body(1.0, com=(0, 0, np.nan))
     with pytest.raises(InputError, match="sizes L, R"):
         cylinder().body(1.0, R=0.1)
     with pytest.raises(InputError, match="must be a positive number"):

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from arms import mujoco_model, random_arm
 from rounding_noise import NOISE
-from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
 from ir50p_lab.errors import InputError, UnreachableError
@@ -108,31 +107,6 @@ def test_up_is_above_the_line_for_front_branches_and_below_it_for_back_branches(
     assert (above == [True, False, False, True]).all()
 
 
-def test_half_angle_against_acos():
-    """Near the folded arm with equal links acos (1.69) misses the tip by 1e-8, near the stretched arm they are alike."""
-
-    def by_acos(arm, p):
-        l1, l2, l3 = arm.l
-        delta, z1 = np.hypot(p[0], p[1]), p[2] - l1
-        q3 = -np.arccos(np.clip((delta**2 + z1**2 - l2**2 - l3**2) / (2 * l2 * l3), -1, 1))
-        q2 = np.arctan2(z1, delta) - np.arctan2(l3 * np.sin(q3), l2 + l3 * np.cos(q3))
-        return np.array([np.arctan2(p[1], p[0]), q2, q3])
-
-    def misses(bend):
-        poses = [np.array([q1, 0.3, bend]) for q1 in np.linspace(-1, 1, 20)]
-        tips = [forward_kinematics(THESIS_A, q) for q in poses]
-        ours = [inverse_kinematics(THESIS_A, p)["front/up"] for p in tips]
-        theirs = [by_acos(THESIS_A, p) for p in tips]
-        tip = [max(np.abs(forward_kinematics(THESIS_A, q) - p).max() for q, p in zip(f, tips)) for f in (ours, theirs)]  # noqa: B905
-        return *tip, *(max(abs(q[2] - bend) for q in found) for found in (ours, theirs))
-
-    ours, theirs, *_ = misses(-PI + 1e-8)
-    assert ours < 1e-15 and 1e-9 < theirs < 2e-8  # m, links of 1 m
-    ours, theirs, *angles = misses(-1e-8)
-    assert max(ours, theirs) < 2e-15
-    assert all(1e-9 < angle < 5e-8 for angle in angles)  # rad: the tip does not tell more
-
-
 def test_frames_against_mujoco_and_closed_form():
     rng = np.random.default_rng(1)
     arm = random_arm(rng)
@@ -197,16 +171,6 @@ def test_singular_poses():
     np.testing.assert_allclose(det, np.linalg.det(jacobian(IR50P, q)[:, :3]), atol=1e-15)
     for singular in ([0.3, 0.4, 0.0], [0.3, 0.4, PI], [0.3, PI / 2, 0.0]):
         assert singularity(IR50P, singular).smallest < 1e-15
-
-
-def test_reachability_against_a_search_over_all_poses():
-    rng = np.random.default_rng(6)
-    for p in rng.uniform(-0.9, 0.9, (12, 3)):
-        searches = [
-            minimize(lambda q, p=p: np.sum((forward_kinematics(IR50P, q) - p) ** 2), start, tol=1e-14).fun
-            for start in ([np.arctan2(p[1], p[0]), 0.3, -1.0], [np.arctan2(p[1], p[0]), 1.0, 2.9])
-        ]
-        assert np.sqrt(min(searches)) == pytest.approx(reachability(IR50P, p), abs=2e-4)
 
 
 @pytest.mark.parametrize(

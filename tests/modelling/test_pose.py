@@ -16,7 +16,6 @@ ANGLES = st.tuples(ANGLE, ANGLE, ANGLE)
 COORDINATE = st.floats(-5.0, 5.0)
 VECTOR = st.tuples(COORDINATE, COORDINATE, COORDINATE)
 SEQUENCE = st.sampled_from(pose.SEQUENCES)
-QUARTER = np.pi / 2
 
 REPEATABLE = settings(deadline=None, derandomize=True)  # the first call imports SciPy
 
@@ -43,21 +42,6 @@ def test_elementary_rotations(rot, letter, angle):
     np.testing.assert_allclose(rot(angle), by_hand(letter, angle), atol=1e-15)
 
 
-@pytest.mark.parametrize(
-    ("rot", "moved", "to"),
-    [(pose.rot_x, [0, 1, 0], [0, 0, 1]), (pose.rot_y, [0, 0, 1], [1, 0, 0]), (pose.rot_z, [1, 0, 0], [0, 1, 0])],
-)
-def test_a_quarter_turn_follows_the_right_hand(rot, moved, to):
-    np.testing.assert_allclose(rot(QUARTER) @ moved, to, atol=1e-15)
-
-
-def test_there_are_six_sequences_of_each_kind_and_no_others():
-    letters = [a + b + c for a in "XYZ" for b in "XYZ" for c in "XYZ" if a != b and b != c]
-    assert sorted(pose.SEQUENCES) == sorted(letters)
-    assert sorted(pose.EULERIAN) == sorted(s for s in letters if s[0] == s[2])
-    assert sorted(pose.CARDANIAN) == sorted(s for s in letters if len(set(s)) == 3)
-
-
 @REPEATABLE
 @given(sequence=SEQUENCE, angles=ANGLES)
 def test_rotation_is_the_product_about_moving_axes(sequence, angles):
@@ -77,15 +61,6 @@ def test_angles_of_a_matrix_give_the_matrix_everywhere(sequence, angles):
     low, high = pose.singular_angles(sequence)
     assert low - 1e-12 <= back[1] <= high + 1e-12
     assert np.all(np.abs(back[[0, 2]]) <= np.pi + 1e-12)
-
-
-@REPEATABLE
-@given(sequence=SEQUENCE, outer=st.tuples(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1)), share=st.floats(0.01, 0.99))
-def test_angles_come_back_away_from_singularities(sequence, outer, share):
-    low, high = pose.singular_angles(sequence)
-    angles = np.array([outer[0], low + share * (high - low), outer[1]])
-    back = pose.angles_from_rotation(sequence, product_by_hand(sequence, angles))
-    np.testing.assert_allclose(back, angles, atol=1e-12)
 
 
 @pytest.mark.parametrize("sequence", pose.SEQUENCES)
@@ -144,23 +119,6 @@ def test_at_a_singularity_no_angle_rate_turns_about_the_lost_axis(sequence, end)
     assert abs(lock.lost_axis @ normal) == pytest.approx(1, abs=1e-12)
 
 
-def test_gain_near_the_singularity_is_the_angle_rate_it_predicts():
-    angles = np.array([0.3, np.radians(89.0), -0.2])
-    lock = pose.gimbal_lock("XYZ", angles)
-    turn = 1e-6
-    from scipy.spatial.transform import Rotation
-
-    R = Rotation.from_rotvec(turn * lock.lost_axis).as_matrix() @ product_by_hand("XYZ", angles)
-    change = np.linalg.norm(pose.angles_from_rotation("XYZ", R) - angles)
-    assert change / turn == pytest.approx(lock.gain, rel=1e-3)
-    assert lock.gain > 50
-
-
-def test_defaults_are_the_identity():
-    np.testing.assert_array_equal(pose.homogeneous(), np.eye(4))
-    np.testing.assert_array_equal(pose.homogeneous(t=(1, 2, 3)) @ [0, 0, 0, 1], [1, 2, 3, 1])
-
-
 @pytest.mark.parametrize("leading", [(), (5,), (2, 3), (0,)])
 def test_every_function_keeps_leading_dimensions(leading):
     rng = np.random.default_rng(1)
@@ -188,14 +146,9 @@ def test_every_function_keeps_leading_dimensions(leading):
     ("call", "message"),
     [
         (lambda: pose.rot_x(np.nan), "NaN or infinity"),
-        (lambda: pose.rot_x([0.0, np.inf]), "NaN or infinity"),
         (lambda: pose.rot_y("quarter"), "angle must hold numbers in rad; got 'quarter'"),
-        (lambda: pose.rot_y(1j), "angle must hold numbers in rad; got 1j"),
         (lambda: pose.rotation_from_angles("XYZ", (1, 2)), r"angles has shape \(2,\); give shape \(3,\)"),
-        (lambda: pose.rotation_from_angles("XYZ", (1, 2, np.nan)), "angles holds nan at index 2"),
         (lambda: pose.rotation_from_angles("XXY", (1, 2, 3)), "sequence = 'XXY': choose 'XYX'"),
-        (lambda: pose.rotation_from_angles("xyz", (1, 2, 3)), "sequence = 'xyz': choose 'XYX'"),
-        (lambda: pose.rotation_from_angles(123, (1, 2, 3)), "sequence = 123: choose"),
         (lambda: pose.singular_angles("XYW"), "sequence = 'XYW': choose"),
         (lambda: pose.rate_matrix("ABC", (0, 0, 0)), "sequence = 'ABC': choose"),
         (lambda: pose.angles_from_rotation("ABC", np.eye(3)), "sequence = 'ABC': choose"),
@@ -203,7 +156,6 @@ def test_every_function_keeps_leading_dimensions(leading):
         (lambda: pose.check_rotation(np.diag([1, 1, -1])), "det R is -1.*reflection"),
         (lambda: pose.check_rotation(2 * np.eye(3)), "R\\^T R - I is 3 and det R is 8"),
         (lambda: pose.check_rotation([np.eye(3), np.zeros((3, 3))]), "R is not a rotation.*det R is 0"),
-        (lambda: pose.check_rotation(np.full((3, 3), np.nan)), "all finite"),
         (lambda: pose.homogeneous(np.ones((3, 3))), "not a rotation"),
         (lambda: pose.homogeneous(t=(1, 2)), "t has shape"),
     ],

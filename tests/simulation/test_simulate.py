@@ -78,14 +78,6 @@ def test_tables_2_1_to_2_3_in_continuous_time(arm, rises, settles, errors):
     np.testing.assert_allclose(run.error[-1], gravity(arm, run.q[-1]) / (25, 200, 200), atol=1e-8)
 
 
-def test_integral_action_and_saturation_of_the_thesis_loop():
-    run = simulate(THESIS_A, ContinuousPID(kp=(25, 200, 200), ki=(0, 100, 100), kd=(10, 40, 40)), SET_POINT)
-    assert np.abs(run.error[-1]).max() < 7e-4
-    limited = simulate(THESIS_A, ContinuousPID(kp=(25, 200, 200), kd=(10, 40, 40), limit=50), SET_POINT)
-    overshoot = step_info(limited.q[:, 0], T=limited.t, T_num=len(limited.t))["Overshoot"]
-    assert np.abs(limited.u).max() == 50 and 1.85 < overshoot < 3.15
-
-
 def test_the_continuous_pid_knows_the_velocity_of_its_reference():
     """Joint 1 alone, M11 constant: with e = 0 and the right velocity at the start, only D = 0 could lag behind."""
     upright = {"q0": (0, np.pi / 2, 0), "qd0": (0.5, 0, 0)}
@@ -185,7 +177,7 @@ def test_the_reference_may_be_a_function_an_object_or_three_angles():
 # --- dry friction -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("share", [0.0, 0.9, 0.999])
+@pytest.mark.parametrize("share", [0.0, 0.999])
 def test_below_breakaway_nothing_creeps(share):
     arm = THESIS_RODS
     arm = type(arm)(
@@ -196,15 +188,6 @@ def test_below_breakaway_nothing_creeps(share):
     push = gravity(arm, q0) + share * np.array(arm.friction.fs) * [1, -1, 1]
     run = simulate(arm, Constant(push), q0=q0, duration=10)
     assert np.abs(run.q - q0).max() < 1e-9 and (run.qd == 0).all()
-
-
-@pytest.mark.parametrize("joint", range(3))
-def test_above_breakaway_it_moves(joint):
-    q0 = np.array([0.2, 0.4, -0.3])
-    over = np.zeros(3)
-    over[joint] = 1.01 * IR50P.friction.fs[joint]
-    push = gravity(IR50P, q0) + np.array(IR50P.friction.Tf) + over
-    assert simulate(IR50P, Constant(push), q0=q0, duration=1).q[-1, joint] > q0[joint] + 0.01
 
 
 class Constant:
@@ -227,13 +210,6 @@ def test_sliding_joint_stops_where_the_textbook_says():
     run = simulate(arm, qd0=(1.0, 0, 0), duration=1.5, step=1e-4)
     assert run.q[-1, 0] == pytest.approx(M11 / (2 * 0.5), rel=1e-3)
     assert run.t[np.argmax(run.qd[:, 0] == 0)] == pytest.approx(M11 / 0.5, abs=0.011)
-
-
-def test_dry_step_converges_with_the_first_power_of_the_step():
-    ends = [simulate(IR50P, **START, duration=0.4, period=0.04, step=h).q[-1] for h in (0.002, 0.001, 0.0005, 2e-5)]
-    errors = [np.abs(end - ends[-1]).max() for end in ends[:-1]]
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(1, abs=0.3)
-    assert np.log2(errors[1] / errors[2]) == pytest.approx(1, abs=0.3)
 
 
 def test_friction_only_takes_energy():
@@ -280,23 +256,13 @@ def test_theta_in_pwm_and_the_arm_driven_in_pwm_agree():
         _ = b.energy
 
 
-def test_units_of_the_command():
-    assert simulate(SMOOTH, PID(kp=(1, 1, 1)), SET_POINT, duration=0.1).unit == "N m"
-    assert simulate(SMOOTH, PID(kp=(1, 1, 1), limit_pwm=255), SET_POINT, duration=0.1).unit == "PWM"
-    with pytest.raises(ArmError, match="no actuators"):
-        simulate(THESIS_A, PID(kp=(1, 1, 1), limit_pwm=255), SET_POINT)
-
-
 @pytest.mark.parametrize(
     "change, words",
     [
         ({"duration": -1}, ["duration = -1"]),
         ({"duration": 0.001}, ["0.001", "half a period"]),
-        ({"step": 0}, ["step = 0"]),
         ({"step": 0.003}, ["0.01", "whole number", "0.003"]),
-        ({"period": np.nan}, ["period = nan"]),
         ({"q0": (0, np.nan, 0)}, ["q0", "nan"]),
-        ({"q0": np.zeros((2, 3))}, ["q0", "(2, 3)"]),
         ({"unit": "V"}, ["'V'", "'PWM'"]),
         ({"reference": (0, 0)}, ["reference", "(2,)"]),
         ({"reference": lambda t: (np.zeros(2), np.zeros(2), np.zeros(2))}, ["(1001, 3, 2)"]),
@@ -321,6 +287,8 @@ def test_more_refusals():
         simulate(SMOOTH, Constant([0, np.nan, 0]))
     with pytest.raises(InputError, match="shape"):
         simulate(SMOOTH, Constant([0, 0]))
+    with pytest.raises(ArmError, match="no actuators"):
+        simulate(THESIS_A, PID(kp=(1, 1, 1), limit_pwm=255), SET_POINT)
     with pytest.raises(ArmError, match="negative"):
         theta = SMOOTH.theta.copy()
         theta[:, 10] = -1

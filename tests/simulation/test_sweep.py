@@ -144,11 +144,6 @@ def test_cases_and_results_that_cannot_be_saved_are_refused(tmp_path):
         sweep(lambda case: object(), [1], executor=Inline(), progress=False, save_to=tmp_path / "x.jsonl")
 
 
-def test_progress_is_shown(capsys):
-    sweep(abs, [1, 2, 3], executor=Inline())
-    assert "3/3" in capsys.readouterr().err
-
-
 # --- gain sweeps ------------------------------------------------------------------------------------------
 
 
@@ -171,15 +166,6 @@ def test_equals_single_simulations(unit):
         outside = np.abs(run.error) > 0.02 * np.abs(TARGET)
         last = np.where(outside.any(axis=0), len(run.t) - np.argmax(outside[::-1], axis=0), 0)
         np.testing.assert_allclose(found.settling_time[k], last * 0.01, atol=1e-12)
-
-
-def test_a_theta_takes_the_gravity_it_is_given():
-    options = {"duration": 0.2, "g": 0.0}
-    found = sweep_gains(SMOOTH.theta, TARGET, kp=50, kd=5, progress=False, **options)
-    run = simulate(SMOOTH.theta, PID(kp=(50, 50, 50), kd=(5, 5, 5)), TARGET, **options)
-    np.testing.assert_allclose(found.rms_error[0], run.rms_error, rtol=1e-12)
-    with pytest.raises(InputError, match="carries its own gravity"):
-        sweep_gains(SMOOTH, TARGET, kp=50, g=0.0)
 
 
 def test_runaways_are_marked_not_hidden():
