@@ -281,14 +281,6 @@ def test_bad_arguments(bench):
 # ---- in a thread: a simulated arm
 
 
-def test_a_reference_that_raises_in_the_run_cuts():
-    with SimulatedBench(IR50P, seed=0, record_to=False) as bench:
-        run = bench.start(pid(), lambda t: (np.full(3, 0.1 / (t < 0.05)), np.zeros(3), np.zeros(3)))
-        with pytest.raises(ZeroDivisionError):
-            run.join(10)
-        assert not run.alive
-
-
 def test_stop_goes_to_the_rest_pose_first():
     bench = SimulatedBench(IR50P, seed=0, record_to=False)
     bench.plant = SimulatedBench(IR50P, seed=0, q0=rest_pose(IR50P) + np.array([0.02, -0.05, 0.05])).plant

@@ -78,7 +78,6 @@ def test_a_sound_bench_passes_and_its_report_says_what_it_is(monkeypatch):
     ("fault", "joint", "step", "said"),
     [
         ("motor", 0, "drive", "swap its two motor wires"),
-        ("motor", 1, "drive", "swap its two motor wires"),
         ("motor", 2, "drive", "swap its two motor wires"),
         ("bridges", 0, "drive", "their two bridges are swapped"),
         ("unpowered", 0, "drive", "has its motor no supply"),

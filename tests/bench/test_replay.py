@@ -6,7 +6,7 @@ import pytest
 from ir50p_lab.bench import ReplayBench, SimulatedBench
 from ir50p_lab.bench.recording import Recording
 from ir50p_lab.controllers import PID
-from ir50p_lab.errors import BenchError, InputError, RecordingError
+from ir50p_lab.errors import RecordingError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold
 
@@ -58,25 +58,6 @@ def test_yours_stands_beside_what_was_sent(recording):
     head = bench.recording.header
     assert head["kind"] == "replay" and head["simulated"] == "true"
     assert head["original"] == str(recording.path)
-
-
-def test_drive_limits_and_refuses_as_on_every_bench(recording):
-    with ReplayBench(recording, arm=IR50P) as bench:
-        with pytest.raises(BenchError):
-            bench.drive([0, 0, 0])
-        for _ in bench.run(0.1):
-            assert bench.drive([300.4, -999, 3.6]).tolist() == [255, -255, 4]
-        with pytest.raises(InputError):
-            for _ in bench.run(0.1):
-                bench.drive([np.nan, 0, 0])
-
-
-def test_drive_out_of_the_travel_is_zero_where_the_recording_stands_at_the_end():
-    q = np.tile([IR50P.q_max[0], IR50P.q_min[1], 0.0], (10, 1))
-    with ReplayBench(Recording.from_arrays(0.01 * np.arange(10), q), arm=IR50P) as bench:
-        for _ in bench.run(0.1):
-            assert bench.drive([50, -50, 50]).tolist() == [0, 0, 50]
-            assert bench.drive([-50, 50, 50]).tolist() == [-50, 50, 50]
 
 
 def test_a_run_ends_with_the_recording_and_says_so(recording, capsys):

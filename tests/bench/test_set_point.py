@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ir50p_lab.bench.live_loop import _Target
-from ir50p_lab.bench.set_point import SetPoint, checked_pose
+from ir50p_lab.bench.set_point import SetPoint
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold, sinusoid
@@ -83,10 +83,3 @@ def test_a_target_is_led_in_from_the_pose_and_ends_on_the_reference():
     np.testing.assert_allclose(rows[arrived + 1 :], swing.sample(times[: -arrived - 1] - 7.0), atol=1e-9)
     there = _Target(standing, hold([0.0, 0.1, 0.203]))
     assert [there(t)[0][2] for t in (0.0, 1.0)] == [0.2, 0.203]
-
-
-def test_set_points_are_checked_against_travel_and_table():
-    np.testing.assert_array_equal(checked_pose("set point", IR50P, [0.1, 0.3, 0.2]), [0.1, 0.3, 0.2])
-    for bad in ([0, 0], [0, 0, np.inf], [0.1, None, 0.2], 3.0):
-        with pytest.raises(InputError):
-            checked_pose("set point", IR50P, bad)

@@ -1,10 +1,8 @@
-"""Speed of identification beside Pinocchio, or NumPy, in the same run: `pytest tests/benchmarks --benchmark-enable -s`.
+"""Speed of identification beside NumPy in the same run: `pytest tests/benchmarks --benchmark-enable -s`.
 
 Ratios, not times, are what counts: the machine is the same for both. The targets are printed with the result.
-Pinocchio (`pip install pin`) is the peer if it is installed; it is not needed to run the tests.
 """
 
-import importlib.util
 import time
 
 import numpy as np
@@ -15,7 +13,6 @@ from ir50p_lab.identification.regression import r_factor
 from ir50p_lab.modelling import IR50P
 
 N = 11_000  # 110 s at 100 Hz, as the thesis
-HAVE_PINOCCHIO = importlib.util.find_spec("pinocchio") is not None
 
 
 def measured(n=N):
@@ -26,35 +23,8 @@ def measured(n=N):
     return q, qd, qdd, y
 
 
-def pinocchio_fit(q, qd, qdd, y):
-    """Pinocchio's regressor in a Python loop, friction columns, lstsq of the 15 + 10 columns that are independent."""
-    import pinocchio as pin
-
-    model, parent = pin.Model(), 0
-    turn = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # +90 degrees about x: z1 on the shoulder's axis
-    places = [(np.eye(3), [0, 0, 0]), (turn, [0, 0, IR50P.l[0]]), (np.eye(3), [IR50P.l[1], 0, 0])]
-    for k, (R, p) in enumerate(places):
-        place = pin.SE3(R, np.array(p, dtype=float))
-        parent = model.addJoint(parent, pin.JointModelRZ(), place, f"joint{k + 1}")
-        model.appendBodyToJoint(parent, pin.Inertia(1.0, np.array([0.1, 0, 0]), 0.01 * np.eye(3)), pin.SE3.Identity())
-    data = model.createData()
-    base = [9, 11, 12, 14, 15, 17, 18, 19, 21, 22, 24, 25, 27, 28, 29]  # the 15 of base_parameters
-
-    def run():
-        n = len(q)
-        Phi = np.zeros((n, 3, 25))
-        for k in range(n):
-            Phi[k, :, :15] = pin.computeJointTorqueRegressor(model, data, q[k], qd[k], qdd[k])[:, base]
-        for j in range(3):
-            Phi[:, j, 15 + 3 * j : 18 + 3 * j] = np.column_stack([qd[:, j], np.sign(qd[:, j]), np.ones(n)])
-        Phi[:, 2, 24] = qdd[:, 2]
-        return Phi.reshape(-1, 25) @ np.linalg.lstsq(Phi.reshape(-1, 25), y.ravel(), rcond=None)[0]
-
-    return run
-
-
 def numpy_fit(q, qd, qdd, y):
-    """The same by the book: a NumPy block per sample in a Python loop, then lstsq."""
+    """By the book: a NumPy block per sample in a Python loop, then lstsq."""
 
     def run():
         Phi = np.zeros((len(q), 3, 20))
@@ -113,20 +83,15 @@ def test_both_compute_the_same():
     np.testing.assert_allclose(theta, whole_fit(*data, "shared")().theta[0], rtol=1e-9)
     predicted = regressor(*data[:3]).reshape(-1, 20) @ theta
     np.testing.assert_allclose(predicted, numpy_fit(*data)(), atol=1e-8 * np.abs(predicted).max())
-    if HAVE_PINOCCHIO:  # its 25 columns hold ours but theta7 and theta8, and more: no worse a fit
-        y = data[3].ravel()
-        ours = fit(regressor(*data[:3]), data[3], rows="shared").residuals
-        assert np.linalg.norm(y - pinocchio_fit(*data)()) <= np.linalg.norm(ours) * (1 + 1e-9)
 
 
 def test_ratio_to_the_peer(request):
     enabled = request.config.getoption("benchmark_enable")
     data, repeats = measured(N if enabled else 500), 7 if enabled else 1
-    name, peer = ("Pinocchio", pinocchio_fit) if HAVE_PINOCCHIO else ("NumPy (Pinocchio is not installed)", numpy_fit)
-    theirs, ours = best_of(peer(*data), repeats), best_of(our_fit(*data), 3 * repeats)
+    theirs, ours = best_of(numpy_fit(*data), repeats), best_of(our_fit(*data), 3 * repeats)
     shared, joint = (best_of(whole_fit(*data, rows), 3 * repeats) for rows in ("shared", "joint"))
     print(
-        f"\nregressor and fit of {len(data[0])} x 3 x 20: {name} in a loop and lstsq {theirs * 1e3:.0f} ms; "
+        f"\nregressor and fit of {len(data[0])} x 3 x 20: NumPy in a loop and lstsq {theirs * 1e3:.0f} ms; "
         f"ours {ours * 1e3:.1f} ms: {theirs / ours:.0f}x (target 4x); with standard errors and summary, "
         f"shared {shared * 1e3:.0f} ms: {theirs / shared:.1f}x, row-wise {joint * 1e3:.0f} ms: {theirs / joint:.1f}x"
     )

@@ -1,7 +1,6 @@
 """Exported pages: every picture is there, formulas are drawn, and nothing is fetched from anywhere."""
 
 import re
-from types import SimpleNamespace
 
 import nbformat
 import pytest
@@ -10,7 +9,6 @@ from ir50p_lab.errors import InputError, LabError
 from ir50p_lab.publishing.__main__ import main
 from ir50p_lab.publishing.export import export
 from ir50p_lab.publishing.formulas import mathml
-from ir50p_lab.publishing.pictures import plain_outputs
 
 CELLS = [
     "from ir50p_lab.course.style import new_figure\nfigure = new_figure(3, 2)\nfigure",
@@ -83,12 +81,6 @@ def test_stored_outputs_are_taken_as_they_are(tmp_path):
     nbformat.write(nbformat.v4.new_notebook(cells=[cell]), tmp_path / "stored.ipynb")
     assert main([str(tmp_path / "stored.ipynb"), "--to", str(tmp_path), "--as-it-is", "--no-pdf"]) == 0
     assert "kept as it is" in (tmp_path / "stored.html").read_text(encoding="utf-8")
-
-
-def test_widgets_without_state_leave_their_picture():
-    data = {"image/png": "QUJD", "application/vnd.jupyter.widget-view+json": {"model_id": "gone"}}
-    outputs = plain_outputs([SimpleNamespace(get=dict(data=data).get)], {}, live=True)
-    assert "QUJD" in outputs[0]["data"]["text/html"]
 
 
 @pytest.mark.parametrize("latex", [r"\dot q", r"T^i_j", r"\frac{a}{b}", r"\begin{aligned}a&=b\\c&=d\end{aligned}"])

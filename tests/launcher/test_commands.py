@@ -86,16 +86,7 @@ def test_help_names_both_systems_and_needs_no_environment(project):
     for argument in ("--help", "-h", "help"):
         done = project.run(argument)
         assert done.returncode == 0
-        for command in (
-            "python3 -m ir50p_lab",
-            "py -m ir50p_lab",
-            "test",
-            "targets",
-            "setup",
-            "doctor",
-            "--here",
-            "--arm FILE",
-        ):
+        for command in ("python3 -m ir50p_lab", "py -m ir50p_lab", *"test targets setup doctor --here --arm".split()):
             assert command in done.stdout
     assert not project.venv.exists()
 

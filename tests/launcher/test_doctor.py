@@ -6,7 +6,6 @@ import platform
 import sys
 
 import pytest
-from mini_project import one_line
 
 from ir50p_lab.launcher import doctor, inventory
 from ir50p_lab.launcher.environment import Environment
@@ -115,11 +114,6 @@ def test_arm_file_that_is_not_there(made, monkeypatch):
     assert "IR50P_ARM names a file that does not exist (nowhere.toml)" in last
 
 
-def test_not_the_projects_folder(project):
-    (project.root / "environment.txt").unlink()
-    assert "is not the project's folder: it has no environment.txt" in one_line(project.run("doctor"))
-
-
 # -- the inventory ---------------------------------------------------------------------------------------------------------
 
 
@@ -132,13 +126,6 @@ def test_packages_of_a_lock_file(tmp_path):
         {"name": "pytest", "wanted": "0.1", "installed": pytest.__version__},
         {"name": "no-such-package", "wanted": "2.0", "installed": None},
     ]
-
-
-def test_markers_with_pip_and_without(monkeypatch):
-    assert inventory._applies(None) and inventory._applies("python_version >= '3'")
-    assert not inventory._applies("python_version < '3'")
-    monkeypatch.setitem(sys.modules, "pip._vendor.packaging.markers", None)
-    assert inventory._applies("python_version < '3'")  # nobody to ask: assume it applies
 
 
 def test_serial_ports_as_pyserial_sees_them(monkeypatch):

@@ -41,17 +41,11 @@ def test_what_pip_prints_is_translated(tmp_path):
     ("line", "options", "variables"),
     [
         (":env:.no-index='1'", ["--no-index"], {}),
-        (":env:.no-index='false'", [], {}),
         (":env:.constraint='a.txt b.txt'", ["--constraints=a.txt", "--constraints=b.txt"], {}),
         (":env:.trusted-host='mirror:8080\\nother'", [], {"UV_INSECURE_HOST": "mirror:8080 other"}),
         ("global.no-cache-dir='off'", [], {"UV_NO_CACHE": "off"}),
-        (
-            "global.proxy='http://p:3128'",
-            [],
-            dict.fromkeys(("HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY"), "http://p:3128"),
-        ),
+        ("global.proxy='p:3128'", [], dict.fromkeys(("HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY"), "p:3128")),
         ("global.timeout='60'", [], {"UV_HTTP_TIMEOUT": "60"}),
-        ("install.user='true'", [], {}),
         (":env:.no-cache-dir=''", [], {}),
         ("global.timeout='60'\n:env:.timeout=''", [], {"UV_HTTP_TIMEOUT": "60"}),
         ("download.dest='x'", [], {}),  # for another command

@@ -3,9 +3,7 @@
 import ast
 import ctypes
 import errno
-import glob
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,36 +11,21 @@ from pathlib import Path
 import pytest
 from mini_project import PROJECT, one_line
 
-from ir50p_lab.launcher import commands, problems
+from ir50p_lab.launcher import problems
 from ir50p_lab.launcher.environment import Environment
 from ir50p_lab.launcher.problems import SetUpError
 
 # -- Python too old --------------------------------------------------------------------------------------------------------
 
 
-def old_pythons():
-    """Pythons before 3.11 on this machine: on the path, and those that pyenv keeps."""
-    found = [shutil.which(f"python{version}") for version in ("2.7", "3.6", "3.8", "3.9", "3.10")]
-    found += glob.glob(str(Path.home() / ".pyenv/versions/*/bin/python"))
-    code = "import sys; sys.exit(sys.version_info >= (3, 11))"
-    return [
-        python
-        for python in found
-        if python and subprocess.run([python, "-c", code], capture_output=True).returncode == 0
-    ]
-
-
 def test_too_old_python_says_so_and_where_to_get_a_newer_one():
-    # Where no old Python is installed: this one, calling itself 3.6 before the launcher starts.
+    # This Python calls itself 3.6 before the launcher starts.
     pretend = "import runpy, sys; sys.version_info = (3, 6, 15); runpy.run_module('ir50p_lab', run_name='__main__')"
-    commands = [[sys.executable, "-c", pretend]] + [[python, "-m", "ir50p_lab"] for python in old_pythons()]
-    for command in commands:
-        done = subprocess.run(command, cwd=PROJECT, capture_output=True, encoding="utf-8")
-        assert done.returncode == 1, command
-        first, second = done.stderr.splitlines()
-        assert first.startswith("The IR50P lab book needs Python 3.11 or newer; this is Python ")
-        assert "https://www.python.org/downloads/" in second
-        assert done.stdout == ""
+    done = subprocess.run([sys.executable, "-c", pretend], cwd=PROJECT, capture_output=True, encoding="utf-8")
+    assert done.returncode == 1 and done.stdout == ""
+    first, second = done.stderr.splitlines()
+    assert first.startswith("The IR50P lab book needs Python 3.11 or newer; this is Python ")
+    assert "https://www.python.org/downloads/" in second
 
 
 def test_the_files_before_the_gate_parse_on_old_pythons():
@@ -119,15 +102,6 @@ def test_ready_environment_needs_no_write_permission(made):
     assert done.returncode == 0, done.stderr
 
 
-def test_disk_full_while_the_launcher_writes(project, monkeypatch, capsys):
-    def full(self):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(Environment, "_empty", full)
-    assert commands.main(["setup"], root=project.root) == 1
-    assert capsys.readouterr().err.startswith("The disk is full")
-
-
 # -- the wrong folder ------------------------------------------------------------------------------------------------------
 
 
@@ -154,7 +128,6 @@ PRINTED = [
     # pip 23 to 26, one or two lines each of what it prints
     ("ERROR: Could not install packages due to an OSError: [Errno 28] No space left on device", "The disk is full"),
     ("OSError: [Errno 122] Disk quota exceeded: '/home/s/lab/.venv/lib'", "The disk is full"),
-    ("OSError: [Errno 69] Disc quota exceeded: '/Users/s/lab/.venv/lib'", "The disk is full"),
     ("OSError: [WinError 112] There is not enough space on the disk", "The disk is full"),
     ("ERROR: Could not install packages due to an OSError: [Errno 13] Permission denied: '/lab'", "No permission"),
     ("ERROR: [WinError 5] Access is denied: 'C:\\\\lab\\\\.venv\\\\Scripts\\\\python.exe'", "No permission"),
@@ -179,14 +152,9 @@ PRINTED = [
     ("Collecting six\nERROR: Something nobody has thought of.\n", "Something nobody has thought of. All that"),
     # uv 0.13
     (
-        "error: No solution found when resolving dependencies\n  cause: Because granite was not found in the provided "
-        "package locations and you require granite==2.0, we can conclude that your requirements are unsatisfiable.",
-        "has no granite==2.0 for Python",
-    ),
-    (  # its lines may break anywhere
         "error: No solution found when resolving dependencies\n  cause: Because granite was not found in the provided\n"
         "         package locations and\n         you require granite==2.0, we can conclude that they are not.",
-        "has no granite==2.0 for Python",
+        "has no granite==2.0 for Python",  # its lines may break anywhere
     ),
     (
         "cause: Because basalt==2.0 has no wheels with a matching platform tag (e.g., `manylinux_2_36_x86_64`) and you "
@@ -195,7 +163,6 @@ PRINTED = [
     ),
     ("error: Failed to fetch: http://a/\n cause: tcp connect error\n cause: Connection refused", "no connection to"),
     ("error: Failed to fetch: https://a/\n cause: tunnel error: failed to create", "the proxy refused"),
-    ("error: Failed to fetch: https://a/\n cause: invalid peer certificate: UnknownIssuer", "certificate"),
     ("cause: Because six==1.17.0 has an invalid package format and you require six", "A downloaded package is damaged"),
     ("error: failed to write\n  cause: No space left on device (os error 28)", "The disk is full"),
     ("ModuleNotFoundError: No module named 'ir50p_lab'", "plain letters only"),
@@ -217,19 +184,7 @@ def test_installer_ended_by_a_signal():
 
 @pytest.mark.parametrize(
     ("number", "expected"),
-    [
-        (errno.ENOSPC, "The disk is full"),
-        (errno.EACCES, "No permission"),
-        (errno.EROFS, "No permission"),
-        (errno.EIO, "refused"),
-    ],
+    [(errno.ENOSPC, "The disk is full"), (errno.EACCES, "No permission"), (errno.EIO, "refused")],
 )
 def test_errors_of_the_system(number, expected):
     assert expected in str(problems.from_error(OSError(number, os.strerror(number)), Path("lab")))
-
-
-def test_environment_that_cannot_be_emptied(project, monkeypatch, capsys):
-    (project.venv / "lib").mkdir(parents=True)
-    monkeypatch.setattr(shutil, "rmtree", lambda path: (_ for _ in ()).throw(PermissionError(13, "no")))
-    assert commands.main(["setup"], root=project.root) == 1
-    assert capsys.readouterr().err.startswith("No permission")

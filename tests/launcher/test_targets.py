@@ -40,14 +40,6 @@ def test_all_without_a_name(asked, capsys):
     ]  # fmt: skip
 
 
-def test_names_come_first_and_options_go_to_each(asked):
-    assert targets.main(["vision", "--only", "ball"]) == 0
-    assert targets.main(["vision", "identification", "--quick"]) == 0
-    assert targets.main(["--quick"]) == 0
-    assert asked[:3] == [("vision", "--only", "ball"), ("vision", "--quick"), ("identification", "--quick")]
-    assert asked[3:] == [(name, "--quick") for name in targets.NAMES]
-
-
 def test_unknown_names_run_nothing(asked, capsys):
     assert targets.main(["vision", "vison"]) == 2
     assert asked == []
@@ -67,15 +59,6 @@ def test_what_cannot_be_measured_is_not_met_and_does_not_stop_the_rest(asked, ca
     said = capsys.readouterr()
     assert "no camera" in said.err and "identification: could not be measured" in said.err
     assert "table of vision" in said.out
-
-
-def test_an_option_that_there_is_not(asked):
-    assert targets.main(["vision", "--unknown"]) == 2
-
-
-def test_help_needs_nothing(asked, capsys):
-    assert targets.main(["--help"]) == 0
-    assert asked == [] and "python -m tests.targets" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", targets.NAMES)

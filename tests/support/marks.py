@@ -30,7 +30,6 @@ MARKS = {
         "browser",
         "launcher",
         "bench/test_bench_test.py",
-        "bench/test_make_first_reach.py",
         "bench/test_recorder_killed.py",
         "course/test_figures.py",
         "course/test_functions.py",
