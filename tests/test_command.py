@@ -70,16 +70,6 @@ def two_legs(monkeypatch, tmp_path):
     return tmp_path
 
 
-def test_a_leg_is_run_with_its_variables(monkeypatch, tmp_path):
-    (tmp_path / "test_one.py").write_text(
-        "import os\ndef test_it(): assert 'FAULT' not in os.environ\ndef test_other(): pass\n"
-    )
-    monkeypatch.setattr(everywhere, "ROOT", tmp_path)
-    monkeypatch.setattr(everywhere, "STATE", tmp_path / ".everywhere")
-    result = everywhere.run("faulty", {"FAULT": "1"}, ["-n", "0", "-p", "no:cov"])
-    assert result["failed"] == ["test_one::test_it"] and (result["passed"], result["code"]) == (1, 1)
-
-
 def test_legs_that_passed_are_remembered_until_a_file_changes(two_legs, capsys):
     assert everywhere.main([]) == 1
     rows = [line.split() for line in capsys.readouterr().out.splitlines() if line]

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from ir50p_lab.bench import ArmInstance, Recording, ReplayBench, SimulatedBench
-from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import ArmError, InputError
 from ir50p_lab.modelling import IR50P, THESIS_A, Arm
@@ -75,18 +74,6 @@ def test_a_command_acts_so_many_periods_after_its_sample(delay):
     assert np.argmax(moving) == 3 + delay + 1  # it acts from sample 3 + delay on, so the next one sees motion
 
 
-def test_a_command_holds_until_the_next_and_ends_with_its_run():
-    bench = SimulatedBench(IR50P, unit=ArmInstance(spread=0), q0=(0, np.pi / 2, 0), record_to=False).open()
-    for k, _ in enumerate(bench.run(0.3)):
-        if k == 0:
-            bench.drive([150, 0, 0])
-    np.testing.assert_array_equal(bench.recording.u[:, 0], 150)
-    assert bench.truth.qd[-1, 0] > 0.5
-    for _ in bench.run(1.0):
-        pass
-    assert bench.truth.qd[-1, 0] == 0.0
-
-
 def test_no_drive_further_out_at_the_end_of_the_travel():
     for run in (in_python, SimulatedBench.follow):
         bench = SimulatedBench(IR50P, seed=2, q0=(1.6, 1.5, 0.0), record_to=False).open()
@@ -95,15 +82,6 @@ def test_no_drive_further_out_at_the_end_of_the_travel():
         out = recording.q[:, 0] >= IR50P.q_max[0]
         assert out.any() and (recording.u[out, 0] == 0).all() and (recording.u[~out, 0] > 0).all()
         assert bench.truth.q[:, 0].max() < IR50P.q_max[0] + 0.002
-
-
-def test_in_order_it_ends_in_the_rest_pose_and_stays():
-    with SimulatedBench(IR50P, seed=5, record_to=False) as bench:
-        bench.follow(pid(), TARGET, 2)
-    resting = bench.plant.q_true
-    np.testing.assert_allclose(resting, rest_pose(IR50P), atol=0.1)
-    bench.plant.advance((0, 0, 0), 5.0)
-    np.testing.assert_allclose(bench.plant.q_true, resting, atol=1e-9)
 
 
 def test_by_an_error_it_sinks_from_where_it_was():

@@ -152,18 +152,6 @@ def test_transform_between_any_two_frames(many):
             np.testing.assert_allclose(transform(IR50P, q, i, j), via, atol=1e-14 + 10 * NOISE)
 
 
-def test_jacobian_is_the_derivative_of_the_pose():
-    q, step = np.random.default_rng(4).uniform(-PI, PI, (50, 3)), 1e-6
-    J = jacobian(IR50P, q)
-    for i in range(3):
-        d = step * np.eye(3)[i]
-        dp = (forward_kinematics(IR50P, q + d) - forward_kinematics(IR50P, q - d)) / (2 * step)
-        np.testing.assert_allclose(J[:, :3, i], dp, atol=1e-9)
-        ahead, behind = (frames(IR50P, q + s * d)[:, 3, :3, :3] for s in (1, -1))
-        spin = Rotation.from_matrix(ahead @ np.swapaxes(behind, 1, 2)).as_rotvec() / (2 * step)
-        np.testing.assert_allclose(J[:, 3:, i], spin, atol=1e-9)
-
-
 def test_singular_poses():
     q = np.random.default_rng(5).uniform(-PI, PI, (200, 3))
     s = singularity(IR50P, q)

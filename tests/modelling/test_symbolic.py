@@ -132,17 +132,6 @@ def test_m_dot_minus_2c_is_skew_exactly(model):
     assert not same_function(N, sympy.zeros(3))
 
 
-def test_energy_changes_by_the_power_of_the_torque(model):
-    E = model.kinetic + model.potential
-    dEdt = sum(E.diff(model.q[i]) * model.qd[i] + E.diff(model.qd[i]) * model.qdd[i] for i in range(3))
-    if model.links == "general":  # the exact proof takes seconds here; numbers of 50 digits do
-        numbers = random_numbers(model, 3)
-        numbers |= {s: sympy.Rational(7 * k - 20, 9) for k, s in enumerate([*model.q, *model.qd, *model.qdd])}
-        assert abs((dEdt - model.qd.dot(model.tau)).subs(numbers).evalf(50)) < 1e-40
-    else:
-        assert same_function(dEdt, model.qd.dot(model.tau))
-
-
 def test_c_qd_is_the_sorted_sum_of_christoffel_symbols(model):
     assert same_function(model.C * model.qd, model.h)
     assert model.b(1, 1, 2) == model.b(1, 2, 1)

@@ -10,7 +10,6 @@ from ir50p_lab.errors import UnstableLoopWarning
 from ir50p_lab.modelling import IR50P, THESIS_A, THESIS_RODS
 from ir50p_lab.signals import sinusoid
 from ir50p_lab.simulation import simulate
-from ir50p_lab.simulation.stability import looks_unstable
 
 SET_POINT = (np.pi / 2, np.pi / 2, -np.pi / 3)
 SMOOTH = IR50P.without_friction()
@@ -37,18 +36,15 @@ UNSTABLE = {  # arm, controller, options: each grows when it is not limited
     "held too long": (THESIS_RODS, lambda: PID(**THESIS, limit=330, filter_hz=np.inf), {"duration": 5}),
     "too much kd": (SMOOTH, lambda: PID(**PWM | {"kd": 3200}), {"duration": 6}),
     "too much ki": (SMOOTH, lambda: PID(**PWM, ki=5000), {"duration": 20}),
-    "late, without friction": (SMOOTH, lambda: late(6000), {}),
     "late, with friction": (IR50P, lambda: late(8000), {}),
     "a limit that nobody knows": (SMOOTH.theta_pwm, lambda: late(6000), {}),
 }
 STABLE = {
     "thesis in continuous time": (THESIS_A, lambda: ContinuousPID(**THESIS), {}),
-    "limited for a while": (THESIS_A, lambda: ContinuousPID(**THESIS, limit=50), {}),
     "the tables' gains, sampled fast enough": (
         THESIS_A, lambda: PID(**THESIS, limit=330, period=0.001, filter_hz=np.inf), {"period": 0.001, "duration": 1.5},
     ),
     "no damping: a swing that stays": (THESIS_A, lambda: ContinuousPID(200), {"reference": (0, 0.8, 0.3)}),
-    "IR50P": (IR50P, lambda: PID(**PWM, ki=50), {}),
     "windup": (IR50P, lambda: PID(**PWM, ki=200, anti_windup=False), {"duration": 6}),
     "late but within limits": (SMOOTH, lambda: late(3000), {}),
     "against its stop": (IR50P, lambda: PID(**PWM), {"reference": (3.0, 0, 0), "stops": True}),
@@ -102,18 +98,3 @@ def test_without_a_reference_or_a_controller_nobody_asked_it_to_stay():
     assert abs(away.q[-1, 0]) > 4 * np.pi and away.unstable == ""
     spun = simulate(THESIS_A, qd0=(8.0, 0, 0), duration=10)
     assert abs(spun.q[-1, 0]) > 4 * np.pi and spun.unstable == ""
-
-
-def test_three_jumps_in_the_last_quarter_are_too_many():
-    n = 400
-    t, r, q = np.arange(n) * 0.01, np.zeros((n, 3, 3)), np.zeros((n, 3))
-    u = np.full((n, 3), 255.0)
-    limit = np.full(3, 255.0)
-    u[:300:2] = -255  # early on anything goes
-    u[320:340] = u[360:380, 1] = -255
-    found = looks_unstable(t, r, q, u, limit)
-    assert "joint 2" in found and "4 times" in found  # joints 1 and 3 jump there and back, which is 2
-    r[:, 0] = t[:, None]
-    r[:, 1] = 1.0
-    q[:, :] = r[:, 0]
-    assert looks_unstable(t, r, q, u, limit) == ""  # a moving reference may ask for it
