@@ -2,11 +2,10 @@
 
 from importlib import import_module
 
-import numpy as np
 import pytest
 from fake_board import FakeBoard
 
-from ir50p_lab.bench import JointCalibration, ReplayBench, SerialBench, SimulatedBench, connect, nominal_calibration
+from ir50p_lab.bench import JointCalibration, SerialBench, SimulatedBench, connect, nominal_calibration
 from ir50p_lab.bench import ports as port_list
 from ir50p_lab.bench.ports import Port
 from ir50p_lab.bench.result_files import add
@@ -175,18 +174,6 @@ def test_an_empty_variable_says_nothing(said, monkeypatch):
     assert "no Arduino Mega found" in said()
 
 
-def test_a_replay(said, monkeypatch, tmp_path):
-    with SimulatedBench(record_to=tmp_path) as bench:
-        list(bench.run(0.2))
-    path = bench.recording.path
-    monkeypatch.setenv("IR50P_BENCH", f"replay:{path}")
-    with connect() as again:
-        assert isinstance(again, ReplayBench)
-        q = [sample.q for sample in again.run(0.2)]
-    np.testing.assert_allclose(q, bench.recording.q, atol=1e-6)
-    assert f"IR50P_BENCH=replay:{path}" in said()
-
-
 def test_what_is_asked_for_and_fails_raises(computer, capsys):
     computer({"COM3": (MEGA, board(dead=True))})
     with pytest.raises(BoardError, match="no firmware of ours answers"):
@@ -239,12 +226,6 @@ def test_a_board_takes_only_a_calibration_measured_on_it(computer, said, monkeyp
         assert bench.calibration.zero == zero and "calibration: yours, calibration-3 (on Monday)" in said()
     with connect("simulated") as bench:
         assert bench.calibration.zero == tuple(z + 5 for z in nominal.zero)
-
-
-def test_nothing_but_connect_prints(computer, capsys):
-    with SimulatedBench(record_to=False) as bench:
-        list(bench.run(0.05))
-    assert capsys.readouterr().out == ""
 
 
 # ---- ports

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ir50p_lab.bench.live_loop import _Target
@@ -39,6 +39,7 @@ def test_it_arrives_exactly_and_as_fast_as_the_limits_allow():
     assert arrived == pytest.approx(1.0 / 0.8 + 0.8 / 3.0, abs=0.03)  # the trapezoid's time
 
 
+@settings(max_examples=25)
 @given(st.dictionaries(st.integers(0, 200), st.tuples(ANGLES, ANGLES, ANGLES), min_size=1, max_size=8))
 def test_never_too_fast_never_beyond(orders):
     rows = motion(SetPoint([0, 0, 0]), np.arange(1200) * 0.01, orders)

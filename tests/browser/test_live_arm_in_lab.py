@@ -145,8 +145,3 @@ def test_two_runs_play_pause_scrub_and_start_again(notebook):
     box.get_by_label("play or pause").click()
     notebook.wait_for_function(f"() => {VIEW.format(3)}.time < 3 && {VIEW.format(3)}.playing", timeout=10_000)  # loop
     box.get_by_label("play or pause").click()
-
-
-def test_all_views_share_one_context(notebook):
-    contexts = notebook.evaluate("() => Object.keys(globalThis.ir50pLiveArm).length")
-    assert contexts == 1

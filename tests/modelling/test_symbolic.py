@@ -1,4 +1,4 @@
-"""The symbolic derivation against routes that share nothing with it: SymPy's Lagrange, MuJoCo, numbers of the errata."""
+"""The symbolic derivation against routes that share nothing with it: MuJoCo, numbers of the errata."""
 
 import numpy as np
 import pytest
@@ -35,85 +35,9 @@ def inline():
     return derive()
 
 
-def random_numbers(model, seed):
-    """Random rational parameters, so that SymPy's exact route has no rounding."""
-    rng = np.random.default_rng(seed)
-    return {s: sympy.Rational(int(rng.integers(1, 40)), 16) for s in model.symbols.values()}
-
-
 def random_states(n, seed):
     rng = np.random.default_rng(seed)
     return rng.uniform(-np.pi, np.pi, (n, 3)), rng.normal(0, 2, (n, 3)), rng.normal(0, 5, (n, 3))
-
-
-# ---- the direct Lagrange derivation (1.75)-(1.77) by SymPy's diff: polynomials in cos, sin and the rates, all expanded --
-
-
-_, *GENERATORS = sympy.ring("c1:4, s1:4, v1:4", sympy.QQ)
-COS, SIN, RATES = GENERATORS[:3], GENERATORS[3:6], GENERATORS[6:]
-
-
-def by_angle(polynomial, k):
-    return polynomial.diff(SIN[k]) * COS[k] - polynomial.diff(COS[k]) * SIN[k]
-
-
-@np.vectorize
-def rate(entry):
-    """Time derivative of a function of the angles by the chain rule."""
-    return sum(by_angle(0 * COS[0] + entry, k) * RATES[k] for k in range(3))
-
-
-def rot_z(k):
-    c, s = COS[k], SIN[k]
-    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-
-
-ROT_X_QUARTER = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
-
-
-def lagrange_torque(model, q, qd, qdd, numbers):
-    """d/dt(dL/dqd) - dL/dq in floats, from positions and angular velocities found by differentiation in time."""
-    n = {str(s): sympy.QQ.from_sympy(value) for s, value in numbers.items()}
-    R1 = rot_z(0)
-    R2 = R1 @ ROT_X_QUARTER @ rot_z(1)
-    R3 = R2 @ rot_z(2)
-    shoulder = np.array([0, 0, n["l1"]])
-    elbow = shoulder + R2[:, 0] * n["l2"]
-    rotations, origins = (R1, R2, R3), (np.zeros(3, int), shoulder, elbow)
-    L = 0
-    for i, (R, origin) in enumerate(zip(rotations, origins, strict=True), start=1):
-        if model.links == "general":
-            r = np.array([n[f"{axis}{i}"] for axis in "xyz"])
-        else:
-            column = model.links == "in-line" and i == 1
-            r = np.array([0, 0, n["lc1"]]) if column else np.array([n[f"lc{i}"], 0, 0])
-        xx, yy, zz, xy, xz, yz = (n.get(f"I{pair}{i}", 0) for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
-        inertia = np.array([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]])
-        p = origin + R @ r
-        spin = rate(R) @ R.T  # skew matrix of the angular velocity, base frame
-        w = (R1 if model.links == "thesis" else R).T @ np.array([spin[2, 1], spin[0, 2], spin[1, 0]])
-        L += (n[f"m{i}"] * (rate(p) @ rate(p)) + w @ inertia @ w + n[f"j{i}"] * RATES[i - 1] ** 2) / 2
-        L -= n[f"m{i}"] * n["g"] * p[2]
-    values = [value.evalf(40) for value in (*map(sympy.cos, q), *map(sympy.sin, q), *qd)]
-    state = dict(zip((one.as_expr() for one in GENERATORS), values, strict=True))
-    tau = []
-    for i in range(3):
-        momentum = L.diff(RATES[i])
-        ddt = sum(
-            by_angle(momentum, k) * RATES[k] + momentum.diff(RATES[k]) * sympy.QQ.from_sympy(qdd[k]) for k in range(3)
-        )
-        tau.append((ddt - by_angle(L, i)).as_expr())
-    return [float(one.xreplace(state)) for one in tau]
-
-
-def test_tau_equals_sympys_lagrange_route(model):
-    seed = KINDS.index(model.links)
-    numbers = random_numbers(model, seed)
-    rng = np.random.default_rng(seed + 10)
-    q, qd, qdd = ([sympy.Rational(int(k), 16) for k in rng.integers(-40, 40, 3)] for _ in range(3))
-    state = {**numbers, **dict(zip([*model.q, *model.qd, *model.qdd], [*q, *qd, *qdd], strict=True))}
-    ours = [float(x) for x in model.tau.subs(state).evalf(30)]
-    assert np.allclose(ours, lagrange_torque(model, q, qd, qdd, numbers), rtol=1e-12, atol=1e-12)
 
 
 # ---- properties every mechanical system has -------------------------------------------------------------------------
