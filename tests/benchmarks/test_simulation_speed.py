@@ -3,14 +3,11 @@
 The same arm, friction off, PD with torque limits, 10 s, Runge-Kutta at 1 ms, command held for 10 ms. Ratios count.
 """
 
-import subprocess
-import sys
 import time
 
 import mujoco
 import mujoco.rollout
 import numpy as np
-import pytest
 from arms import mujoco_model, mujoco_xml
 
 from ir50p_lab.controllers import PID
@@ -97,26 +94,4 @@ def test_gain_sets_against_mujoco_rollout(request):
     print(
         f"\ngain sets: ours {n_ours} in {mine:.1f} s = {rate:.0f}/s; mujoco.rollout on 2 threads, one model per gain "
         f"set, {n_peer} in {peer:.1f} s = {peer_rate:.1f}/s: {rate / peer_rate:.0f}x (target 40x)"
-    )
-
-
-@pytest.mark.benchmark(group="10 s of closed loop")
-def test_simulation_with_friction(benchmark):
-    benchmark(lambda: simulate(IR50P, PID(kp=(289, 225, 270), kd=(40, 30, 30), limit_pwm=255), TARGET, stops=True))
-
-
-def test_first_simulation_in_a_fresh_process(request):
-    """Imports, cached code from disk and one simulation: the time is printed."""
-    script = (
-        "import time; start = time.perf_counter()\n"
-        "from ir50p_lab.modelling import IR50P; from ir50p_lab.simulation import simulate\n"
-        "from ir50p_lab.controllers import PID\n"
-        "simulate(IR50P.without_friction(), PID(kp=(50, 50, 50), kd=(5, 5, 5)), (1, 0.5, -0.7))\n"
-        "print(time.perf_counter() - start)"
-    )
-    runs = 6 if request.config.getoption("benchmark_enable") else 1
-    command = [sys.executable, "-c", script]
-    times = [float(subprocess.run(command, capture_output=True, text=True, check=True).stdout) for _ in range(runs)]
-    print(
-        f"\nfirst simulation in a fresh process, quickest of {runs}: {min(times):.2f} s (target with a warm cache 0.8 s)"
     )

@@ -16,11 +16,6 @@ IMPORT_BOTH = "import pebble, ir50p_lab; print(ir50p_lab.__file__)"
 NOTHING_SET = {"PIP_NO_INDEX": None, "PIP_FIND_LINKS": None, "PIP_RETRIES": "0", "PIP_DEFAULT_TIMEOUT": "5"}
 
 
-def test_warnings_as_errors_do_not_break_the_setup(project):
-    done = project.run("setup", variables={"PYTHONWARNINGS": "error"})
-    assert done.returncode == 0, done.stderr
-
-
 def test_pip_does_the_work_where_a_setting_has_no_counterpart(project):
     done = project.run("setup", variables={"PIP_EXISTS_ACTION": "i"})
     assert done.returncode == 0, done.stderr
@@ -65,13 +60,6 @@ def test_rebuild_starts_from_nothing(tested):
     assert "[2/4] packages of environment-test.txt" in done.stdout
     assert not (tested.venv / "debris.txt").exists()
     assert tested.python("import pebble, pebble_test").returncode == 0
-
-
-def test_copied_environment_is_rebuilt(project, made):
-    shutil.copytree(made.venv, project.venv, symlinks=True)
-    done = project.run("setup")
-    assert f"made for another folder ({made.root}): building it again" in done.stdout
-    assert str(project.root) in project.python(IMPORT_BOTH).stdout
 
 
 def test_foreign_or_half_made_environment_is_rebuilt(project):
@@ -177,12 +165,6 @@ def test_no_network(project):
     assert "HTTPS_PROXY=http" in line
     assert "section 'Offline'" in line
     assert project.run("setup").returncode == 0  # with the network back, the next run repairs
-
-
-def test_proxy_that_does_not_answer(project):
-    refused = NOTHING_SET | {"PIP_INDEX_URL": "https://127.0.0.1:9/simple", "PIP_PROXY": "http://127.0.0.1:9"}
-    line = one_line(project.run("setup", variables=refused))
-    assert "the proxy refused the connection. Check the address in HTTPS_PROXY" in line
 
 
 def test_wheel_folder_without_a_package(project):
