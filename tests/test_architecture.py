@@ -23,6 +23,17 @@ LAYERS = {
     "course": MODELS | {"controllers", "simulation", "bench", "identification", "vision", "vision.reaching"},
     "publishing": MODELS | {"bench", "course"},
 }
+#: Rooms of `course` below all subjects, and what each builds on there.
+ROOMS = {
+    "draw": set(),
+    "lab_book": set(),
+    "printed": set(),
+    "robot": {"draw"},
+    "checking": {"lab_book", "robot", "exercises"},
+    "exercises": {"lab_book", "checking"},  # a part of `checking`
+    "live_arm": {"draw", "robot", "checking"},
+}
+SUBJECTS_TOO = {"torque": {"fitting"}}  # what else a subject builds on: the motion that its model is fitted to
 
 
 def modules():
@@ -82,6 +93,24 @@ def test_imports_point_one_way():
             assert layer(other) not in above, f"{name} imports {other}"
 
 
+def test_rooms_of_the_course_build_on_what_lies_below():
+    trees = modules()
+    home = homes(trees)
+    for name, tree in trees.items():
+        if layer(name) == "course" and name != "ir50p_lab.course":
+            room = name.split(".")[2]
+            below = {room} | ROOMS.get(room, set(ROOMS) | SUBJECTS_TOO.get(room, set()))
+            found = {other for other in imports(tree, trees, home) if layer(other) == "course"}
+            assert {other for other in found if other.split(".")[2] not in below} == set(), f"{name} reaches up"
+
+
+def test_no_room_bears_a_public_name():
+    """A folder would hide the function, or the package beside `course`."""
+    rooms = {path.name for path in (PACKAGE / "course").iterdir() if path.is_dir()}
+    taken = {name for package, name in homes(modules()) if package == "ir50p_lab.course"} | set(LAYERS)
+    assert rooms >= set(ROOMS) and rooms & taken == set()
+
+
 def test_the_launcher_starts_with_the_standard_library_alone():
     trees = modules()
     for name in ("ir50p_lab", "ir50p_lab.__main__", *(name for name in trees if layer(name) == "launcher")):
@@ -102,7 +131,12 @@ def test_no_class_name_twice():
 def test_every_name_has_a_reader():
     """Functions, classes and constants that stand in one place only, of package, tests and notebooks, are read nowhere."""
     root = PACKAGE.parent
-    places = [*PACKAGE.rglob("*.py"), *PACKAGE.rglob("*.txt"), *PACKAGE.rglob("src/*.js"), *PACKAGE.glob("*/*.js")]
+    places = [
+        *PACKAGE.rglob("*.py"),
+        *PACKAGE.rglob("*.txt"),
+        *PACKAGE.rglob("src/*.js"),
+        *PACKAGE.glob("course/draw/*.js"),
+    ]
     places += [*(root / "tests").rglob("*.py"), *(root / "notebooks").glob("*.ipynb")]
     counted = collections.Counter(word for path in places for word in re.findall(r"\w+", path.read_text("utf-8")))
     named = set()

@@ -1,17 +1,21 @@
-"""What the notebooks share: figures, live sliders, what students write and predict, claims, what the thesis prints."""
+"""What the notebooks share, in rooms: a room is a subject, and what two subjects need lies below them.
+
+From below: `draw`, `lab_book`, `printed` (the thesis' equations), `robot` (what the student owns), `checking` with
+`exercises`, `live_arm`; on these stand the subjects, from `start` to `reaching`.
+"""
 
 import lazy_loader
 
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
-    submodules=["my_robot"],
     submod_attrs={
-        "checking": ["check", "reset"],
-        "claims": ["ClaimError", "claim"],
-        "lab_book": ["keep", "measured", "note", "predict"],
+        "checking.check": ["check", "reset"],
+        "lab_book.claims": ["ClaimError", "claim"],
+        "lab_book.predictions": ["keep", "measured", "note", "predict"],
+        "lab_book.results": ["arm_that_answers", "load_result", "results", "save_result"],
         "live_arm": ["LiveArm"],
-        "own_results": ["arm_that_answers", "load_result", "results", "save_result"],
-        "parts": ["parts"],
-        "rehearse": ["RehearsalError", "rehearse"],
+        "loops.rehearse": ["RehearsalError", "rehearse"],
+        "robot": ["my_robot"],
+        "robot.parts": ["parts"],
     },
 )

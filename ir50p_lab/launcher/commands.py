@@ -43,7 +43,7 @@ _MODULES = {
     "bench-test": "ir50p_lab.bench.bench_test",
     "export": "ir50p_lab.publishing",
     "report": "ir50p_lab.publishing.report",
-    "update": "ir50p_lab.course.update",
+    "update": "ir50p_lab.course.lab_book.update",
 }
 #: What asks the launcher to end: `kill`, and a terminal that is closed (not on Windows).
 _ENDS = {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}

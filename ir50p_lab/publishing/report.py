@@ -12,9 +12,10 @@ from pathlib import Path
 
 from ir50p_lab.bench import result_files
 from ir50p_lab.course import lab_book, my_robot
-from ir50p_lab.course.exercises import exercises, read_progress
-from ir50p_lab.course.functions import folder
-from ir50p_lab.course.functions.catalogue import ORDER, notebook_of
+from ir50p_lab.course.exercises import exercises
+from ir50p_lab.course.lab_book.progress import read_progress
+from ir50p_lab.course.robot import folder
+from ir50p_lab.course.robot.catalogue import ORDER, notebook_of
 
 _STYLE = """
 body { font: 16px/1.5 sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; color: #222 }

@@ -16,7 +16,7 @@ from ir50p_lab.bench.link import Link
 from ir50p_lab.bench.pace import Clock
 from ir50p_lab.bench.ports import open_port
 from ir50p_lab.controllers import PID
-from ir50p_lab.course.bench_panel import live_panel
+from ir50p_lab.course.at_the_bench.panel import live_panel
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold
 from tests.emulator.board_process import BoardProcess

@@ -11,9 +11,9 @@ from ir50p_lab.publishing.export import export
 from ir50p_lab.publishing.formulas import mathml
 
 CELLS = [
-    "from ir50p_lab.course.style import new_figure\nfigure = new_figure(3, 2)\nfigure",
-    "import ipywidgets\nfrom ir50p_lab.course.widgets import live\nlive(new_figure(3, 2), lambda a: None, a=(0, 1, 0.1, 0))",
-    "from ir50p_lab.course.strip_chart import StripChart\n"
+    "from ir50p_lab.course.draw.style import new_figure\nfigure = new_figure(3, 2)\nfigure",
+    "import ipywidgets\nfrom ir50p_lab.course.draw.widgets import live\nlive(new_figure(3, 2), lambda a: None, a=(0, 1, 0.1, 0))",
+    "from ir50p_lab.course.draw.strip_chart import StripChart\n"
     "chart = StripChart(['a'], duration=1, ylim=(0, 1), ylabel='x [m]', title='t')\ndisplay(chart)\n"
     "[chart.add(k / 10, [k / 10]) for k in range(11)]\nchart.flush()",
     "from tqdm.auto import tqdm\nfor _ in tqdm(range(3)): pass",

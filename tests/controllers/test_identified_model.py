@@ -5,7 +5,7 @@ import pytest
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import ComputedTorque, FeedForward, check_saturation
-from ir50p_lab.course.torque_views import follow, naive_model, rms, thesis_pid, training_run
+from ir50p_lab.course.torque.views import follow, naive_model, rms, thesis_pid, training_run
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import IR50P, mass_matrix

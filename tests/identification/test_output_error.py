@@ -7,7 +7,7 @@ import pytest
 
 from ir50p_lab.bench import ArmInstance, SimulatedBench
 from ir50p_lab.controllers import PID
-from ir50p_lab.course.torque_views import thesis_pid
+from ir50p_lab.course.torque.views import thesis_pid
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification import (
     fit_with_instruments,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.bench import SimulatedBench
-from ir50p_lab.course.torque_views import thesis_pid
+from ir50p_lab.course.torque.views import thesis_pid
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import (
     fit,

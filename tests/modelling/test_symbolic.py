@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sympy
 
-from ir50p_lab.course.thesis_reference import C_NUMBERS, STATES, reference, same_quantities
+from ir50p_lab.course.printed.reference import C_NUMBERS, STATES, reference, same_quantities
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import (
     IR50P,

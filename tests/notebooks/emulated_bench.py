@@ -12,7 +12,7 @@ from ir50p_lab.bench.ports import Port
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.bench.simulated_arm import SimulatedArm
 from ir50p_lab.course import save_result
-from ir50p_lab.course.torque_views import training_run
+from ir50p_lab.course.torque.views import training_run
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import load_arm
 from ir50p_lab.vision import calibrate, camera_over, load_image

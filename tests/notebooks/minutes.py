@@ -11,7 +11,7 @@ from itertools import pairwise
 import nbformat
 from notebook_runner import FOLDER, REWRITTEN, ROOT
 
-from ir50p_lab.course.functions.catalogue import function_of, is_function, task
+from ir50p_lab.course.robot.catalogue import function_of, is_function, task
 
 README = ROOT / "README.md"
 PANEL = re.compile(r"^(?:live|LiveArm|\w*(?:panel|slider)\w*)\(", re.M)

@@ -3,7 +3,7 @@ def _push():
     import hashlib
     import json
 
-    from ir50p_lab.course.widgets import LivePanel
+    from ir50p_lab.course.draw.widgets import LivePanel
 
     def positions(control):
         if hasattr(control, "min"):

@@ -11,7 +11,7 @@ from notebook_runner import FOLDER
 import ir50p_lab.vision
 from ir50p_lab.bench import SerialBench, fit_calibration, nominal_calibration
 from ir50p_lab.course import save_result
-from ir50p_lab.course.own_results import newest_result
+from ir50p_lab.course.lab_book.results import newest_result
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.vision import Calibration, calibrate
 from ir50p_lab.vision.camera.picture_folder import PictureFolder

@@ -7,7 +7,7 @@ import pytest
 import solutions
 from notebook_runner import CHAIN, NOTEBOOKS, REWRITTEN, run_notebook
 
-from ir50p_lab.course.functions.catalogue import function_of, is_function
+from ir50p_lab.course.robot.catalogue import function_of, is_function
 
 
 def code_of(notebook):
@@ -66,8 +66,8 @@ def assert_solved(number, tmp_path, source, first=()):
 
 
 BROKEN = """
-from ir50p_lab.course.style import new_figure
-from ir50p_lab.course.widgets import live, slider
+from ir50p_lab.course.draw.style import new_figure
+from ir50p_lab.course.draw.widgets import live, slider
 figure = new_figure(3, 2)
 line, = figure.axes[0].plot([0, 1], [0, 1])
 def update(k):

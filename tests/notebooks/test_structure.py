@@ -8,8 +8,8 @@ from notebook_runner import FOLDER, NOTEBOOKS, REWRITTEN
 
 from ir50p_lab.course.exercises import exercises
 from ir50p_lab.course.exercises._catalogue import everything
-from ir50p_lab.course.functions.catalogue import NOTEBOOKS as FUNCTIONS
-from ir50p_lab.course.functions.catalogue import STAGES, is_function, task
+from ir50p_lab.course.robot.catalogue import NOTEBOOKS as FUNCTIONS
+from ir50p_lab.course.robot.catalogue import STAGES, is_function, task
 
 
 def cells(notebook, kind):
@@ -161,7 +161,7 @@ def exercises_are_stubs(path, notebook):
 def plain_python(path, notebook):
     for cell in cells(notebook, "code"):
         compile(cell.source, cell.id, "exec")  # no magics, no shell
-        assert "pyplot" not in cell.source  # figures are objects here, see course/widgets
+        assert "pyplot" not in cell.source  # figures are objects here, see course/draw/widgets
         assert "linalg.inv" not in cell.source
         assert not cell.metadata, "tags and other metadata are not used"
 

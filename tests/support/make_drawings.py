@@ -10,8 +10,8 @@ import matplotlib
 import numpy as np
 from matplotlib.patches import FancyBboxPatch
 
-from ir50p_lab.course.arm3d import ArmView
-from ir50p_lab.course.style import COLOURS, SETPOINT, new_figure, subplots
+from ir50p_lab.course.draw.arm3d import ArmView
+from ir50p_lab.course.draw.style import COLOURS, SETPOINT, new_figure, subplots
 from ir50p_lab.modelling import IR50P, forward_kinematics
 from ir50p_lab.vision import rgb_to_hsv
 

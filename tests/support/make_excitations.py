@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from tqdm.auto import tqdm
 
-from ir50p_lab.course.torque_views import thesis_pid
+from ir50p_lab.course.torque.views import thesis_pid
 from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification import optimise_excitation, validate
 from ir50p_lab.identification.excitation_file import DATA

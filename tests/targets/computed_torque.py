@@ -12,8 +12,8 @@ import warnings
 import numpy as np
 
 from ir50p_lab.controllers import AdaptiveControl, ComputedTorque, FeedForward, GravityPD, check_saturation
-from ir50p_lab.course.printed_control import PARAMETERS_2_1_2, LawWithError, error_2_19, inverse_dynamics_as_printed
-from ir50p_lab.course.torque_views import follow, naive_model, rms, thesis_pid
+from ir50p_lab.course.printed.control import PARAMETERS_2_1_2, LawWithError, error_2_19, inverse_dynamics_as_printed
+from ir50p_lab.course.torque.views import follow, naive_model, rms, thesis_pid
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification import identify, load_excitations
 from ir50p_lab.modelling import IR50P, THESIS_C

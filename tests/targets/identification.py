@@ -21,7 +21,7 @@ import numpy as np
 from tqdm.auto import tqdm
 
 from ir50p_lab.bench import ArmInstance, SimulatedBench
-from ir50p_lab.course.torque_views import thesis_pid
+from ir50p_lab.course.torque.views import thesis_pid
 from ir50p_lab.identification import (
     fit,
     fit_with_instruments,

@@ -33,37 +33,28 @@ Rules:
   variables, or another arm, must not move it. Task and figures in the notebook state the same constants.
 - `slips`: {what to say: a wrong answer, or a function of the right one (np.negative)}; for a Function the wrong
   function. Numbers bring common slips along: the sign; degrees (unit="rad"); millimetres (unit="m");
-  functions those of `functions/distortions.py`. Name at least three, with different messages, none equal to another
+  functions those of `checking/distortions.py`. Name at least three, with different messages, none equal to another
   or to the right answer. A message says what is wrong and where to look, never the answer. The student's answer is
   repeated in front of it.
 - `why` is read after a right answer: one line on what it is good for.
 - `hint=` is added to the message for an answer that is wrong in no known way.
 - A function stub in a notebook is `def answer(q): ...`; a stub with several parts may be `(..., ...)`.
-- `pytest tests/course/test_exercises.py` tries every exercise of every module; read start.py as the example.
+- `pytest tests/course/exercises` tries every exercise of every module; read start.py as the example.
 """
 
 import textwrap
 from dataclasses import replace
 
+from ir50p_lab.course.checking.note import Note, show
 from ir50p_lab.course.exercises._answers import Exercise, grade
 from ir50p_lab.course.exercises._catalogue import everything, find
-from ir50p_lab.course.exercises._display import Note, show
 from ir50p_lab.course.exercises._functions import Function
 from ir50p_lab.course.exercises._numbers import Number
-from ir50p_lab.course.exercises._progress import read_progress, record
-from ir50p_lab.course.student_file import LabBookError
+from ir50p_lab.course.lab_book.progress import read_progress, record
+from ir50p_lab.course.lab_book.student_file import LabBookError
 from ir50p_lab.errors import InputError
 
-__all__ = [
-    "Exercise",
-    "Function",
-    "Number",
-    "check",
-    "exercises",
-    "grade",
-    "progress",
-    "solution",
-]
+__all__ = ["Exercise", "Function", "Number", "check", "exercises", "grade", "progress", "solution"]
 
 
 def check(name: str, answer=...) -> None:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-from ir50p_lab.course.exercises._display import Note
+from ir50p_lab.course.checking.note import Note
 
 
 class NotAnswered(Exception):  # noqa: N818  (not an error: the stub)

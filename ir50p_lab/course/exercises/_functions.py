@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ir50p_lab.course.checking.grade import grade
+from ir50p_lab.course.checking.stops import ended
+from ir50p_lab.course.checking.task import Mistake, Task
 from ir50p_lab.course.exercises._answers import NotAnswered, Unreadable, kind_of
 from ir50p_lab.course.exercises._numbers import shape_in_words
-from ir50p_lab.course.functions.grade import grade
-from ir50p_lab.course.functions.stops import ended
-from ir50p_lab.course.functions.task import Mistake, Task
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,10 +11,10 @@ import ipywidgets
 import numpy as np
 import traitlets
 
-from ir50p_lab.course.arm3d import ArmView
-from ir50p_lab.course.badge import badge_of
-from ir50p_lab.course.painter import DRAWING, Painter
-from ir50p_lab.course.style import COLOURS, new_figure
+from ir50p_lab.course.draw.arm3d import ArmView
+from ir50p_lab.course.draw.painter import DRAWING, Painter
+from ir50p_lab.course.draw.style import COLOURS, new_figure
+from ir50p_lab.course.live_arm.badge import badge_of
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import forward_kinematics, lengths

@@ -1,0 +1,1 @@
+"""Notebook 17: the camera calibrated, pixel to table."""

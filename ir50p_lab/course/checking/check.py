@@ -1,0 +1,132 @@
+"""check(name, answer): what a student wrote is tried, graded, and kept when it is right."""
+
+import ast
+import hashlib
+import linecache
+import math
+import random
+import timeit
+
+import numpy as np
+
+from ir50p_lab.course import lab_book
+from ir50p_lab.course.checking.cell import CannotTake, has_dots, is_copy, take
+from ir50p_lab.course.checking.grade import grade
+from ir50p_lab.course.checking.note import Note, show
+from ir50p_lab.course.checking.stops import ROOM, ended
+from ir50p_lab.course.lab_book.progress import record
+from ir50p_lab.course.robot import folder
+from ir50p_lab.course.robot.catalogue import ORDER, is_function, task
+from ir50p_lab.errors import InputError
+
+_BEFORE_SCRAMBLE, _BEFORE_LOAN = 3, 6  # different failing sources
+
+
+def check(name, answer=...):
+    """Say in a sentence what was found in an answer; a function that is right becomes part of `my_robot`.
+
+    name: of a function ("rot_z"), a stage of a class ("PID.p") or an exercise ("start-1"). answer: the function or
+    class itself, or the number.
+    Shows a sentence and returns None; raises nothing, whatever the answer does.
+    """
+    from ir50p_lab.course import exercises
+
+    if not is_function(str(name)):
+        return exercises.check(name, answer)
+    try:
+        wanted = task(name)
+    except InputError as error:
+        return _show("open", name, str(error))
+    folder.work_on(name)
+    if answer is ...:
+        return _show("open", name, f"not written yet: {wanted.asks}")
+    try:
+        source = take(answer, wanted.function, wanted.leans_on)
+    except CannotTake as reason:
+        return _show("wrong", name, f"not yet: {ended(str(reason))}")
+    if dots := has_dots(source.text):
+        where = f": dots still stand in `{dots[0]}`" if dots[0].strip(".") else ""
+        return _show("open", name, f"not written yet{where}. It returns {wanted.asks}.")
+    result = grade(wanted, _in_its_own_room(source, wanted))
+    if result.state == "right" and folder.was_lent(name) and is_copy(source.text, wanted.loan):
+        return _show("open", name, "right, but it is the course's, as it was lent: it stays a loan. Write it your way.")
+    if result.state == "right":
+        return _keep(source, wanted, result.says)
+    return _wrong(source, wanted, result)
+
+
+def reset(name):
+    """Begin a function again: yours goes to my_robot/old, the course's stands in."""
+    if not is_function(str(name)):
+        raise InputError(f"{name!r} is no function of my_robot; they are {', '.join(ORDER)}")
+    folder.put_aside(name)
+    lab_book.change(lambda book: book["attempts"].pop(name, None))
+    print(f"{name}: begun again; what you had is in {folder.folder() / 'old'}")
+
+
+def _in_its_own_room(source, wanted):
+    """The function with NumPy, math and the earlier functions, and nothing of the notebook."""
+    room = {"np": np, "numpy": np, "math": math}
+    for name in source.calls:
+        room[name] = folder.load(name) if folder.is_there(name) else task(name).right
+    file = f"{ROOM} {wanted.name}>"
+    linecache.cache[file] = (len(source.text), None, source.text.splitlines(keepends=True), file)
+    exec(compile(source.text, file, "exec"), room)
+    return room[wanted.function]
+
+
+def _keep(source, wanted, remark):
+    whole = "." in wanted.name and folder.is_there(wanted.function) and not folder.on_loan(wanted.function)
+    try:
+        lent = folder.keep(source, wanted)
+        record(wanted.name)
+    except (OSError, lab_book.LabBookError) as error:
+        return _show("right", wanted.name, f"right, but it could not be kept: {error}")
+    more = f" {', '.join(lent)}, which it calls, came along on loan: write your own." if lent else ""
+    more += f" Your finished {wanted.function} was put aside, into my_robot/old: check it again last." if whole else ""
+    kind = "class" if wanted.tried else "function"
+    text = f"right, and yours: from now on my_robot.{wanted.function} is this {kind}.{more} {remark}".rstrip()
+    return _show("right", wanted.name, text, _beside(source, wanted))
+
+
+def _beside(source, wanted):
+    """Both listings, and both speeds of a function."""
+    title = "yours beside the course's"
+    if wanted.cases is not None:
+        case, both = wanted.cases()[0], (folder.load(wanted.name), wanted.right)
+        speeds = [min(timeit.repeat(lambda f=f: f(*case), number=20, repeat=3)) / 20 * 1e6 for f in both]
+        title += f": {speeds[0]:.0f} and {speeds[1]:.0f} microseconds a call"
+    return [(title, f"# yours\n{source.text}\n\n# the course's, without its checks\n{wanted.loan}")]
+
+
+def _wrong(source, wanted, result):
+    mark = hashlib.sha256(ast.dump(ast.parse(source.text)).encode()).hexdigest()[:12]
+
+    def edit(book):
+        marks = book["attempts"].setdefault(wanted.name, [])
+        if mark not in marks:
+            marks.append(mark)
+        return len(marks)
+
+    tries, says = 0, f"not yet: {ended(result.says)}"
+    try:
+        tries = lab_book.change(edit)
+    except lab_book.LabBookError as error:
+        says += f" (This try was not counted: {error}.)"
+    more = [("one input that fails", result.example)] if result.example else []
+    if tries >= _BEFORE_LOAN and not (folder.is_there(wanted.name) or folder.is_there(wanted.function)):
+        folder.lend(wanted, after_tries=True)
+        says += (
+            f" The course lends you its {wanted.name}, so that you can go on; it is marked as a loan in your report."
+        )
+    elif tries >= _BEFORE_SCRAMBLE:
+        lines = [line for line in wanted.loan.splitlines() if line.strip()]
+        random.Random(wanted.name).shuffle(lines)
+        more.append(("the lines of a solution, in the wrong order", "\n".join(line.strip() for line in lines)))
+    else:
+        more += [(f"hint {k + 1}", hint) for k, hint in enumerate(wanted.hints) if hint]
+    return _show("wrong", wanted.name, says, more, open_first=bool(result.example))
+
+
+def _show(state, name, text, more=(), *, open_first=False):
+    show(Note(state, str(name), text, tuple(more), open_first))

@@ -1,0 +1,183 @@
+"""Right answers spoilt in every usual way: a wrong answer is told by the numbers it shares with one of them."""
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from ir50p_lab.course.checking.stops import ended
+from ir50p_lab.course.checking.task import Mistake, table
+
+_MANY = 6  # longer ones are runs: no part of them has a meaning of its own
+
+
+@cache
+def _changes(name):
+    """A table with expressions in x: pairs (words, function)."""
+    names = {"np": np, "with_turn": _with_turn}
+    return [(says, eval(f"lambda x: {expression}", names)) for says, (expression,) in table(name)]
+
+
+def distortions(task):
+    """Yield Mistakes: results misplaced, arguments misread."""
+    yield from of_results(task)
+    yield from _of_arguments(task)
+
+
+def pairs(task):
+    """Yield Mistakes: two at once, one of the task's own or a result misplaced, and an argument misread."""
+    for first in (*task.slips, *of_results(task)):
+        for second in _of_arguments(replace(task, right=first.wrong)):
+            yield Mistake(
+                second.wrong,
+                f"two things at once: {ended(first.says.removesuffix(', the rest is right'))} And {second.says}",
+            )
+
+
+def _of_arguments(task):
+    case = task.cases()[0]
+    for k, (name, value) in enumerate(zip(task.signature, case, strict=True)):
+        if callable(value) or isinstance(value, str):
+            continue
+        for says, change in _readings(name, np.asarray(value)):
+            yield Mistake(_reading(task, k, change), says)
+        one = f"{name} = {value}" if np.ndim(value) == 0 else f"one {name}"
+        yield Mistake(_reading(task, k, lambda _, value=value: value), f"{one} is built in, whatever comes in")
+    for k in range(len(case)):
+        for m in range(k):
+            if np.shape(case[k]) == np.shape(case[m]) and not callable(case[k]):
+                says = f"{task.signature[m]} and {task.signature[k]} have changed places"
+                order = [k if one == m else m if one == k else one for one in range(len(case))]
+                yield Mistake(lambda *case, order=order: task.right(*(case[one] for one in order)), says)
+
+
+def _readings(name, value):
+    """Pairs (words, change) for one argument."""
+    if value.ndim > 1:
+        return [(says.format(name), change) for says, change in _changes("of_tables")]
+    found = [(says.format(name), change) for says, change in _changes("of_numbers")]
+    if value.ndim == 1 and len(value) <= _MANY:
+        parts = [f"{name}[{j}]" for j in range(len(value))]
+        for j, part in enumerate(parts):
+            found += [(says.format(part), _on_part(j, change)) for says, change in _changes("of_numbers")]
+            for i in range(j):
+                found += [(f"{parts[i]} and {part} have changed places", _swapped(i, j))]
+                for sign, word in ((1, "+"), (-1, "-")):
+                    says = f"{part} counts as {part} {word} {parts[i]}: from where is it measured?"
+                    found += [(says, _on_part([i, j], lambda x, sign=sign: x @ [[1, sign], [0, 1]]))]
+    return found
+
+
+def of_results(task):
+    """Yield Mistakes: what is right is returned in another form, place, sign or unit."""
+    for says, change in _changes("of_results"):
+        yield Mistake(_result(task, change), says)
+    shape = np.shape(next(one for one in (task.right(*case) for case in task.cases()) if one is not None))
+    if not shape:
+        return
+    for j in range(shape[-1]):
+        part = task.parts[j] if task.parts else f"column {j + 1}"
+        for says, change in _changes("of_parts"):
+            yield Mistake(_result(task, _on_part(j, change)), says.format(part))
+        for i in range(j):
+            other = task.parts[i] if task.parts else f"column {i + 1}"
+            yield Mistake(_result(task, _swapped(i, j)), f"{other} and {part} have changed places")
+        yield Mistake(_result(task, lambda y, j=j: y[..., j]), f"it returns {part} alone")
+        yield Mistake(_result(task, lambda y, j=j: np.delete(y, j, axis=-1)), f"{part} is missing")
+    if len(shape) > 1 and task.same is None:
+        for i in range(shape[0]):
+            says = f"it returns the first {i} of {shape[0]} only: are the others left out, or does it return too early?"
+            yield Mistake(_result(task, lambda y, i=i: y[:i]), says)
+            yield Mistake(_result(task, lambda y, i=i: y[i]), f"it returns number {i + 1} of {shape[0]} alone")
+            yield Mistake(_result(task, lambda y, i=i: np.delete(y, i, 0)), f"number {i + 1} of {shape[0]} is missing")
+            for says, change in _changes("of_parts") if len(shape) == 2 else ():
+                yield Mistake(_result(task, _on_rows(_on_part(i, change))), says.format(f"row {i + 1}"))
+            for j in range(i):
+                change = _on_rows(_swapped(i, j))
+                yield Mistake(_result(task, change), f"rows {j + 1} and {i + 1} have changed places")
+
+
+def _reading(task, k, change):
+    return lambda *case: task.right(*case[:k], change(case[k]), *case[k + 1 :])
+
+
+def _result(task, change):
+    def wrong(*case):
+        right = task.right(*case)
+        return right if right is None or np.size(right) == 0 else change(np.asarray(right, dtype=float))
+
+    return wrong
+
+
+def _on_part(j, change):
+    """A change of column j, or of a list of columns."""
+
+    def edit(value):
+        value = np.array(value, dtype=float)
+        value[..., j] = change(value[..., j])
+        return value
+
+    return edit
+
+
+def _swapped(i, j):
+    return _on_part([i, j], lambda x: x[..., ::-1])
+
+
+def _on_rows(change):
+    return lambda value: np.moveaxis(change(np.moveaxis(value, 0, -1)), -1, 0)
+
+
+def _with_turn(y, turned):
+    y = y.copy()
+    y[..., :3, :3] = turned[..., :3, :3]
+    return y
+
+
+# ------------------------------------------------------------------------------------------- what needs no suspicion
+def entries(task, cases, returned, expected):
+    """A sentence on the entries that are wrong, if they are few and always the same; else ""."""
+    shape = np.shape(expected[0])
+    if not shape or any(np.shape(one) != shape for one in (*returned, *expected)):
+        return ""
+    found, right = np.array(returned, dtype=float), np.array(expected, dtype=float)
+    wrong = [place for place in np.ndindex(shape) if not _alike(task, found[:, *place], right[:, *place])]
+    if not 0 < len(wrong) <= min(3, math.prod(shape) // 3):
+        return ""
+    if len(wrong) == 2 and all(_alike(task, found[:, *a], right[:, *b]) for a, b in (wrong, wrong[::-1])):
+        return f"all is right but {_name(task, wrong[0])} and {_name(task, wrong[1])} have changed places"
+    return "all is right but " + "; ".join(_entry(task, place, cases, found, right) for place in wrong)
+
+
+def _entry(task, place, cases, found, right):
+    numbers, name = found[:, *place], _name(task, place)
+    if _alike(task, numbers, -right[:, *place]):
+        return f"{name} has the wrong sign"
+    if _alike(task, np.abs(numbers), np.abs(right[:, *place])):
+        return f"{name} has the right size, but for some inputs the wrong sign"
+    if np.ptp(numbers) == 0:
+        return f"{name} is always {numbers[0]:g}"
+    belonging = {f"what belongs into {_name(task, other)}": right[:, *other] for other in np.ndindex(right.shape[1:])}
+    for what, values in (_arguments(task, cases) | belonging).items():
+        for sign, words in ((1, ""), (-1, "minus ")):
+            if _alike(task, numbers, sign * values):
+                return f"{name} holds {words}{what}"
+    return f"{name} is wrong"
+
+
+def _arguments(task, cases):
+    """{name: its values} of the numbers that come in one by one."""
+    given = zip(task.signature, zip(*cases, strict=True), strict=True)
+    return {name: np.array(values) for name, values in given if np.ndim(values[0]) == 0}
+
+
+def _name(task, place):
+    if task.parts and len(place) == 1:
+        return task.parts[place[0]]
+    words = ("row", "column") if len(place) < 3 else ("number", "row", "column")
+    return ", ".join(f"{word} {k + 1}" for word, k in zip(words, place, strict=False))
+
+
+def _alike(task, a, b):
+    return np.allclose(a, b, atol=task.tolerance, rtol=0)

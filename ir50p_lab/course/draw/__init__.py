@@ -1,0 +1,1 @@
+"""What several subjects draw with: figures, sliders, charts, the arm, pictures."""

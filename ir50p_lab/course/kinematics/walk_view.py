@@ -1,0 +1,70 @@
+"""Pictures of notebook 01: a frame that walks up the arm motion by motion, an arm from a table, two arms compared."""
+
+import numpy as np
+
+from ir50p_lab.course.draw.arm3d import ArmView, FrameView
+from ir50p_lab.course.draw.style import COLOURS, new_figure
+from ir50p_lab.modelling.chain import dh_matrix, dh_table
+
+_MOTIONS = ("turn about z", "shift along z", "shift along x", "turn about x")
+
+
+def walk(arm, q):
+    """A frame that does the twelve motions from the base to the tip, for `live`.
+
+    Args: arm: Arm; q: (3,) rad, in which it stands.
+    Returns: figure; f(motions) that shows so many of the twelve, names the last in the title, and asks for the next.
+    """
+    figure = new_figure(7.5, 5.2, projection="3d")
+    ArmView(figure.axes[0], arm, q, thickness=5)
+    figure.axes[0].view_init(elev=22, azim=-30)  # no axis of the walker hides another
+    walker = FrameView(figure.axes[0], np.eye(4), length=0.3 * arm.reach)
+    rows = dh_table(arm, q)  # theta, d, a, alpha a joint
+
+    def go(motions):
+        shares = np.clip(motions - np.arange(12), 0, 1).reshape(3, 4)
+        T = np.eye(4)
+        for row, share in zip(rows, shares, strict=True):
+            T = T @ dh_matrix(*(row * share))
+        walker.update(T)
+        joint, motion = divmod(max(int(np.ceil(motions)) - 1, 0), 4)
+        what = f"joint {joint + 1}, motion {motion + 1} of 4: {_MOTIONS[motion]}" if motions else "frame 0, at the base"
+        figure.axes[0].set_title(what)
+        ends = {0: "What comes first?", 12: "Frame 3 has arrived at the tip."}
+        return ends.get(motions, "Done. What comes next?" if motions == int(motions) else "")
+
+    return figure, go
+
+
+def chain(q, table, dh_matrix=dh_matrix):
+    """Frames (n + 1, 4, 4), base first, of an arm given by its DH table, rows (d, a, alpha); q: (n,) theta, rad.
+
+    What is still `...` in the table counts as 0.
+    """
+    T = [np.eye(4)]
+    for theta, row in zip(q, table, strict=True):
+        T.append(T[-1] @ dh_matrix(theta, *(0 if one is ... else one for one in row)))
+    return np.array(T)
+
+
+def arm_by_table(table, dh_matrix):
+    """f(q): frames of the `chain` of this table by this `dh_matrix`."""
+    return lambda q: chain(q, table, dh_matrix)
+
+
+def two_views(arms):
+    """Arms from above and from the side, one over the other: LabFigure.
+
+    arms: name -> transforms (n, 4, 4) of its frames, base first.
+    """
+    figure = new_figure(9.6, 4.0, cols=2)
+    for ax, axis, name, title in zip(
+        figure.axes, (1, 2), ("y, to the left", "z, up"), ("from above", "from the right"), strict=True
+    ):
+        for k, (label, T) in enumerate(arms.items()):
+            style = {"linewidth": 7 - 3 * k, "ms": 9 - 2 * k, "mfc": "white", "mew": 2, "solid_capstyle": "round"}
+            ax.plot(T[:, 0, 3], T[:, axis, 3], "-o", color=(COLOURS["sky"], COLOURS["orange"])[k], label=label, **style)
+        ax.set(aspect="equal", adjustable="datalim", xlabel="x, ahead [m]", ylabel=f"{name} [m]", title=title)
+    figure.axes[1].axhline(0, color=COLOURS["grey"], linewidth=1, zorder=0)
+    figure.axes[0].legend(loc="best")
+    return figure

@@ -1,0 +1,42 @@
+"""The progress file: which exercises are done, as readable JSON."""
+
+import os
+from datetime import datetime
+from pathlib import Path
+
+from ir50p_lab import home
+from ir50p_lab.course.lab_book.student_file import read_json, write_json
+
+_VARIABLE = "IR50P_PROGRESS"
+
+
+def progress_path() -> Path:
+    """Return where the progress file lies: $IR50P_PROGRESS, else progress.json in the student's folder."""
+    chosen = os.environ.get(_VARIABLE)
+    return Path(chosen).expanduser() if chosen else home.home() / "progress.json"
+
+
+def _to_read() -> Path:
+    """The progress file; where there is none yet, that of earlier versions in the project's root."""
+    path, old = progress_path(), home.PROJECT / "progress.json"
+    moved = os.environ.get(_VARIABLE) or os.environ.get(home.VARIABLE)
+    return path if moved or path.exists() or not old.exists() else old
+
+
+def read_progress() -> dict[str, str]:
+    """Return {exercise: time of the first right answer}; empty when there is no file yet. Raises LabBookError."""
+    return read_json(_to_read(), {"done": {}}, _is_progress)["done"]
+
+
+def _is_progress(content):
+    return all(isinstance(item, str) for pair in content["done"].items() for item in pair)
+
+
+def record(name: str) -> None:
+    """Note that an exercise is done. The first time stays; the file is replaced in one step. Raises LabBookError."""
+    done = read_progress()
+    if name in done:
+        return
+    done[name] = datetime.now().astimezone().isoformat(timespec="minutes")
+    content = {"about": "IR50P lab book: exercises done, and when", "done": dict(sorted(done.items()))}
+    write_json(progress_path(), content, home.home())

@@ -1,0 +1,66 @@
+"""Whose code moves an arm: told from the function that a view is given."""
+
+import inspect
+import textwrap
+
+from ir50p_lab.course.checking.cell import has_dots
+from ir50p_lab.course.robot import my_robot
+from ir50p_lab.course.robot.catalogue import ORDER
+
+_WEAKEST_FIRST = ("not written yet", "the course's", "on loan", "yours")
+
+
+def badge_of(function):
+    """Say whose code a view runs, the weakest of all that it rests on: one of `_WEAKEST_FIRST`.
+
+    function: what draws or moves the arm, or None: "the course's". What it calls is looked up in the notebook and in
+    `my_robot`; a function or table in which dots still stand is not written yet.
+    """
+    found = set(_owners(function, set()))
+    return next((words for words in _WEAKEST_FIRST if words in found), "the course's")
+
+
+def _owners(thing, seen):
+    """Yield whose the functions and tables are that a function rests on."""
+    thing = getattr(thing, "__func__", thing)  # of a method
+    if id(thing) in seen:
+        return
+    seen.add(id(thing))
+    if isinstance(thing, list | tuple):
+        if any(one is ... for row in thing for one in (row if isinstance(row, list | tuple) else [row])):
+            yield "not written yet"
+    elif inspect.isfunction(thing):
+        yield from _of_function(thing, seen)
+
+
+def _of_function(function, seen):
+    package = (function.__module__ or "").partition(".")[0]
+    reached = [cell.cell_contents for cell in function.__closure__ or ()]
+    if package == "my_robot":
+        yield my_robot.whose(function.__name__)
+        return
+    if package == "ir50p_lab" and function.__qualname__ in ORDER:
+        yield "the course's"
+        return
+    if package != "ir50p_lab":
+        yield "not written yet" if _has_dots(function) else "yours"
+        names = _names(function.__code__)
+        if "my_robot" in names:
+            yield from (my_robot.whose(name) for name in names if name in ORDER)
+        else:
+            reached += [function.__globals__.get(name) for name in names]
+    for one in reached:
+        yield from _owners(one, seen)
+
+
+def _names(code):
+    """All names that a code looks up outside itself, those of functions within it, too."""
+    inner = [one for one in code.co_consts if hasattr(one, "co_names")]
+    return set(code.co_names).union(*map(_names, inner))
+
+
+def _has_dots(function):
+    try:
+        return has_dots(textwrap.dedent(inspect.getsource(function)))
+    except (OSError, SyntaxError):  # typed into a console; a part of a longer line
+        return False

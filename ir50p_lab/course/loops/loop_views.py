@@ -1,0 +1,64 @@
+"""Pictures of notebook 08: block diagrams, a push against the weight, where pushes end."""
+
+import numpy as np
+
+from ir50p_lab.course.draw.drawings import drawing
+from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
+from ir50p_lab.modelling.dynamics import gravity
+
+
+def one_loop():
+    """A joint under its PID: error, three parts, limit, arm, and the way back (Figure 2.1): SVG.
+
+    D is drawn as the class has it: from the speed wanted and the angle measured and filtered, not from the error; the
+    limit tells I when to rest.
+    """
+    return drawing("one_loop")
+
+
+def three_loops():
+    """Three controllers that know nothing of each other, and one arm that couples them (Figure 2.2): SVG."""
+    return drawing("three_loops")
+
+
+def weight_over_angle(arm, push):
+    """What the shoulder's weight asks for in counts over its angle, elbow straight, and a constant push: LabFigure."""
+    figure, ax = subplots(7.4, 3.8)
+    q2 = np.linspace(arm.q_min[1], arm.q_max[1], 200)
+    weight = gravity(arm, np.column_stack([0 * q2, q2, 0 * q2]))[:, 1] / arm.actuators.gain[1]
+    low, high = weight + (arm.friction.Tf[1] + np.array([[-1], [1]]) * arm.friction.fs[1]) / arm.actuators.gain[1]
+    ax.plot(q2, weight, linewidth=2.5, label="weight")
+    ax.fill_between(q2, low, high, color=COLOURS["sky"], alpha=0.3, label="friction holds")
+    ax.axhline(push, color=COLOURS["orange"], linewidth=2.5, label=f"a push of {push} counts")
+    for k in np.flatnonzero(np.diff(np.sign(weight - push))):
+        ax.plot(q2[k], push, "o", ms=9, color=COLOURS["dark"])
+        says = "hanging:\nwould come back" if q2[k] < 0 else "standing:\nwould leave"
+        ax.annotate(says, (q2[k], push), (0, -14), textcoords="offset points", ha="center", va="top", fontsize=9)
+    ax.set(xlabel="angle of the shoulder [rad]", ylabel="push [PWM counts]")
+    ax.legend(loc="lower left")
+    return figure
+
+
+def ends(pushes, angles, target):
+    """Where the shoulder ends under constant pushes: LabFigure."""
+    figure, ax = subplots(7.4, 3.4)
+    ax.plot(pushes, angles, "o", ms=8, label="after 30 s")
+    ax.axhline(target, **SETPOINT, label="wanted")
+    ax.set(xlabel="constant push [PWM counts]", ylabel="angle of the shoulder [rad]")
+    ax.legend(loc="upper left")
+    return figure
+
+
+class Trembling:
+    """A controller that is shown what the simulated bench would show it: whole steps, and a wobble of one (rms)."""
+
+    unit = "PWM"
+
+    def __init__(self, controller):
+        self.controller, self.random = controller, np.random.default_rng(1)
+        self.one = np.array([0.005, 0.008, 0.005])  # rad, a step of each converter
+
+    def step(self, t, q, reference):
+        """Hand on the angles, shaken."""
+        seen = self.one * np.round(q / self.one + self.random.normal(size=3))
+        return self.controller.step(t, seen, reference)

@@ -1,0 +1,168 @@
+"""Pictures for tuning: one joint over time, a map of gains with a response beside it, root loci."""
+
+from itertools import pairwise
+
+import numpy as np
+from matplotlib.colors import Normalize
+
+from ir50p_lab.controllers import simc_integrating
+from ir50p_lab.course.draw.drawings import drawing
+from ir50p_lab.course.draw.style import COLOURS, SETPOINT, colour_map, subplots
+from ir50p_lab.identification import FOPDT
+
+_RUNS = ({"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linewidth": 1.2}, {"color": COLOURS["green"]})
+
+
+def three_columns(panel):
+    """Arrange the sliders of a panel of `live` in three columns, one per joint. Returns the panel."""
+    grid = panel.children[0]
+    grid.layout.grid_template_columns = "max-content " * 3
+    for control in panel.controls.values():
+        control.layout.width = "190px"
+        control.box.layout.width = "64px"
+    return panel
+
+
+class GainMap:
+    """A figure of merit over (kp, kd) as colours, and beside it the responses of one gain set.
+
+    Args: kp (n,), kd (m,): evenly spaced grid; values (m, n); title, label of the colours; duration s and target rad
+    of the responses. Which response is which belongs in the status line: text in a picture is slow to draw.
+
+    Attributes: figure; map, its left axes, where clicks make sense.
+    """
+
+    def __init__(self, kp, kd, values, *, title, label, target, duration):
+        self.figure, self.map, self._side = subplots(9.6, 4.0, cols=2, width_ratios=(1.25, 1))
+        self._grid = kp, kd
+        self._mark = colour_map(self.map, kp, kd, values, Normalize(np.nanmin(values), np.nanmax(values)), label)
+        self.map.set(xlabel="Kp [PWM/rad]", ylabel="Kd [PWM s/rad]", title=title)
+        self._side.axhline(target, **SETPOINT, label="target")
+        self._side.set(xlim=(0, duration), ylim=sorted((-0.1 * target, 1.3 * target)))
+        self._side.set(xlabel="time [s]", ylabel="angle [rad]")
+        self._lines = [
+            self._side.plot([], [], label=label, **style)[0]
+            for label, style in zip(("without friction", "with friction"), _RUNS[:2], strict=True)
+        ]
+        self._side.legend(fontsize=8, loc="lower right")
+
+    def lay_over(self, values, levels, label, *, colour, unit="", at=0.5):
+        """Lines of another figure (m, n) over the same grid, each with value and unit; label: in the legend below.
+
+        at: where along each line its value stands, 0 to 1 (so that those of two figures do not meet).
+        """
+        style = {"colors": COLOURS[colour], "linewidths": 1.4}
+        lines = self.map.contour(*self._grid, values, levels=levels, **style)
+        paths = [path.vertices for path in lines.get_paths() if len(path.vertices)]
+        places = [path[int(at * (len(path) - 1))] for path in paths]
+        for text in self.map.clabel(lines, fontsize=8, fmt=f"%g {unit}", manual=places):
+            text.set_bbox({"facecolor": "white", "linewidth": 0, "pad": 1})
+        self.map.plot([], [], color=COLOURS[colour], label=label)
+        self.figure.legends.clear()
+        self.figure.legend(handles=self.map.lines[1:], fontsize=8, loc="outside lower left", ncols=2)
+
+    def update(self, kp, kd, *responses):
+        """Mark the gain set and draw its responses, pairs (t, angle): the first blue, the second orange."""
+        self._mark.set_data([kp], [kd])
+        for line, (t, angle) in zip(self._lines, responses, strict=False):
+            line.set_data(t, angle)
+
+
+def one_joint(*runs, labels, joint, unit="PWM"):
+    """Angle above, command below, of one joint (1, 2, 3) in several runs; the first's target dashed: LabFigure."""
+    figure, above, below = subplots(9.0, 4.0, rows=2, sharex=True)
+    reference = np.asarray(runs[0].reference)
+    reference = reference[:, 0] if reference.ndim == 3 else reference
+    above.plot(runs[0].t, reference[:, joint - 1], drawstyle="steps-post", label="target", **SETPOINT)
+    for run, label, style in zip(runs, labels, _RUNS, strict=False):
+        above.plot(run.t, run.q[:, joint - 1], label=label, **style)
+        below.plot(run.t, run.u[:, joint - 1], drawstyle="steps-post", label=label, **style)
+    above.set(ylabel=f"angle of joint {joint} [rad]")
+    below.set(xlabel="time [s]", ylabel=f"command [{unit}]")
+    above.legend(fontsize=8, loc="best")
+    return figure
+
+
+def ruler():
+    """The four figures of a step, drawn on a made-up one: SVG."""
+    return drawing("ruler")
+
+
+def rule_in_use(rule):
+    """The student's rule(K, T, L, tau_c), or the course's while that is unwritten; says which, and how they compare."""
+
+    def course(K, T, L, tau_c):
+        gains = simc_integrating(FOPDT(K=K, T=T, L=L), tau_c=tau_c)
+        return gains.kp, gains.ki, gains.kd
+
+    example = {"K": 0.01, "T": 0.2, "L": 0.03, "tau_c": 0.1}
+    try:
+        mine = np.array(rule(**example), dtype=float)
+    except TypeError:
+        print("rule: the course's, until yours is written")
+        return course
+    theirs = np.round(course(**example), 2)
+    same = mine.shape == (3,) and np.allclose(mine, course(**example))
+    print("rule: yours, and right" if same else f"rule: the course's; for {example} yours gives {mine}, not {theirs}")
+    return rule if same else course
+
+
+def speed_step(t, speed, fitted=None):
+    """A measured answer of the speed (n,) rad/s to a jump at 1 s, and what was fitted to it: LabFigure."""
+    figure, ax = subplots(8.0, 3.0)
+    ax.plot(t, speed, ".", color=COLOURS["grey"], label="measured speed of joint 1")
+    if fitted is not None:
+        ax.plot(t, fitted, color=COLOURS["blue"], label="fitted: gain, time constant, dead time")
+    ax.axvline(1.0, label="the counts jump", **SETPOINT)
+    ax.set(xlim=(0.9, 1.8), xlabel="time [s]", ylabel="speed [rad/s]")
+    ax.legend(fontsize=8, loc="lower right")
+    return figure
+
+
+class LocusView:
+    """Root loci of the same loop in continuous time (s plane) and sampled (z plane, with the unit circle).
+
+    Args: gains (n,), increasing; continuous, sampled: poles (n, k) for each gain (rad/s, and 1); zeros: of each of the
+    two loops, where the paths end.
+
+    Attributes: figure. `update(gain)` marks the poles of the nearest gain.
+    """
+
+    def __init__(self, gains, continuous, sampled, *, zeros):
+        self.figure, left, right = subplots(9.6, 4.2, cols=2)
+        self._gains, self._loci = gains, (continuous, sampled)
+        turn = np.linspace(0, 2 * np.pi, 181)
+        right.plot(np.cos(turn), np.sin(turn), **SETPOINT)
+        right.set(xlim=(-1.6, 1.4), ylim=(-1.5, 1.5), aspect="equal", title="Sampled: beyond the circle it grows")
+        right.set(xlabel="Re z [1]", ylabel="Im z [1]")
+        left.axvline(0, **SETPOINT)
+        left.set(title="Continuous: the poles never cross to the right", xlabel="Re s [1/s]", ylabel="Im s [1/s]")
+        self._marks = []
+        for ax, loci, ends in zip((left, right), self._loci, zeros, strict=True):
+            path = _joined(loci)
+            labels = ["path of the poles", *[None] * (path.shape[1] - 1)]
+            ax.plot(path.real, path.imag, color=COLOURS["grey"], linewidth=1, label=labels)
+            ax.plot(loci[0].real, loci[0].imag, "x", color=COLOURS["dark"], label="poles at the least gain")
+            ax.plot(np.real(ends), np.imag(ends), "o", color=COLOURS["dark"], mfc="none", label="zeros")
+            self._marks += ax.plot([], [], "o", color=COLOURS["orange"], ms=7, label="poles at this gain")
+        left.legend(fontsize=8, loc="upper left")
+        size = 1.1 * np.percentile(np.abs(self._loci[0]), 90)
+        left.set(xlim=(-size, 0.25 * size), ylim=(-0.625 * size, 0.625 * size))
+
+    def update(self, gain):
+        """Mark the closed-loop poles of the gain nearest to `gain`."""
+        k = int(np.argmin(np.abs(self._gains - gain)))
+        for mark, loci in zip(self._marks, self._loci, strict=True):
+            mark.set_data(loci[k].real, loci[k].imag)
+
+
+def _joined(loci):
+    """Loci (n, k) with the places where two branches meet between two gains: without them the paths have corners."""
+    rows = [loci[0]]
+    for here, there in pairwise(loci):
+        met = (here.imag == 0) != (there.imag == 0)
+        if met.sum() == 2:
+            place = (here[met].real.mean() + there[met].real.mean()) / 2
+            rows.append(np.where(met, place, (here + there) / 2))
+        rows.append(there)
+    return np.array(rows)

@@ -1,0 +1,1 @@
+"""Notebook 18: reaching for what the camera sees."""

@@ -1,0 +1,161 @@
+"""The folder `my_robot`: a plain Python package of what the student has written, importable without this one."""
+
+import importlib.util
+import shutil
+import sys
+from datetime import datetime
+from pathlib import Path
+
+import cloudpickle
+import numpy as np
+
+from ir50p_lab import home
+from ir50p_lab.course.robot.catalogue import ORDER, function_of
+from ir50p_lab.course.robot.source import Source
+
+_LOAN = "# on loan from the course"
+_SEEN = f"{_LOAN}, after six tries"
+_STAGE = ", stage "
+_PACKAGE = "my_robot"
+_loaded = {"stamp": None}
+_at = {}  # stage of each function that this session works on
+
+
+def folder() -> Path:
+    """Where the student's functions lie: `my_robot` in the student's folder."""
+    return home.home() / "my_robot"
+
+
+def path_of(name) -> Path:
+    """The file of one function, whatever its stage; the underscore keeps module and function apart."""
+    return folder() / f"_{function_of(name)}.py"
+
+
+def is_there(name):
+    """Tell whether a function, or this stage of one, is in the folder, the student's or on loan."""
+    if not path_of(name).exists():
+        return False
+    first = path_of(name).read_text(encoding="utf-8").partition("\n")[0]
+    return first.partition(_STAGE)[2].split(":")[0] == (name if "." in name else "")
+
+
+def on_loan(name):
+    """Tell whether a function in the folder is the course's."""
+    return is_there(name) and path_of(name).read_text(encoding="utf-8").startswith(_LOAN)
+
+
+def work_on(name):
+    """From now on this session uses a function at this stage; all others use it when it is whole."""
+    _at[function_of(name)] = name
+
+
+def at_work(name):
+    """The stage of a function that this session works on, or the function itself."""
+    return _at.get(name, name)
+
+
+def was_lent(name):
+    """Tell whether the course lent a function because it would not come right: now, or before it was begun again."""
+    files = [path_of(name), *(folder() / "old").glob(f"{name}_*.py")]
+    return any(file.exists() and file.read_text(encoding="utf-8").startswith(_SEEN) for file in files)
+
+
+def keep(source, task, *, loan=""):
+    """Write a function with its small test, and the list of what there is. What was there before goes to `old`.
+
+    Functions that it calls and that are not there yet come along on loan. Returns their names. Raises OSError.
+    """
+    from ir50p_lab.course.robot.catalogue import task as find
+
+    folder().mkdir(parents=True, exist_ok=True)
+    lent = []
+    for name in source.calls:
+        if not is_there(name):
+            lent += [name, *lend(find(name))]
+    stage = f"{_STAGE}{task.name}" if "." in task.name else ""
+    head = f"{loan or '# yours'}{stage}: the next you write takes its place\n" if loan or stage else ""
+    text = head + source.module
+    put_aside(source.name, unless=text)
+    _write(path_of(source.name), text)
+    _write(folder() / f"test_{source.name}.py", task.test or _small_test(task))
+    _write(folder() / "__init__.py", _exports())
+    return lent
+
+
+def lend(task, *, after_tries=False):
+    """Write the course's solution of a function, marked as on loan. Returns what else came along."""
+    return keep(Source(task.function, task.loan, _calls(task)), task, loan=_SEEN if after_tries else _LOAN)
+
+
+def put_aside(name, unless=""):
+    """Move a function's file to `old`, with the time in its name; nothing is lost. Raises OSError."""
+    path, name = path_of(name), function_of(name)
+    if not path.exists() or path.read_text(encoding="utf-8") == unless:
+        return
+    old = folder() / "old"
+    old.mkdir(exist_ok=True)
+    shutil.move(path, old / f"{name}_{datetime.now():%Y-%m-%d_%H%M%S_%f}.py")
+    (folder() / f"test_{name}.py").unlink(missing_ok=True)
+    _write(folder() / "__init__.py", _exports())
+
+
+def load(name):
+    """The function from the folder, read again when a file has changed. What is wrong in a file is raised."""
+    files = sorted(folder().glob("_*.py"))
+    stamp = tuple((path.name, path.stat().st_mtime_ns, path.stat().st_size) for path in files)
+    if _loaded["stamp"] != (folder(), stamp):
+        for module in [one for one in sys.modules if one.partition(".")[0] == _PACKAGE]:
+            del sys.modules[module]
+        spec = importlib.util.spec_from_file_location(
+            _PACKAGE, folder() / "__init__.py", submodule_search_locations=[str(folder())]
+        )
+        package = importlib.util.module_from_spec(spec)
+        sys.modules[_PACKAGE] = package
+        spec.loader.exec_module(package)
+        cloudpickle.register_pickle_by_value(package)  # another process has no such module
+        _loaded["stamp"] = (folder(), stamp)
+    return getattr(sys.modules[_PACKAGE], name)
+
+
+def _calls(task):
+    import re
+
+    return tuple(sorted(one for one in task.leans_on if re.search(rf"\b{one}\(", task.loan)))
+
+
+def _exports():
+    names = [name for name in ORDER if path_of(name).exists()]
+    return '"""My robot: the functions I wrote."""\n\n' + "".join(f"from ._{name} import {name}\n" for name in names)
+
+
+def _small_test(task):
+    """A test of one case, in plain numbers."""
+    cases = task.cases()
+    case = cases[min(1, len(cases) - 1)]
+    arguments = ", ".join(_plain(value) for value in case)
+    expected = task.right(*case)
+    return (
+        f"import numpy as np\nfrom numpy import array\n\nfrom my_robot import {task.name}\n\n\n"
+        f"def test_{task.name}():\n    found = {task.name}({arguments})\n"
+        f"    expected = {_plain(expected)}\n"
+        "    found, expected = sorted(np.atleast_2d(found).tolist()), sorted(np.atleast_2d(expected).tolist())\n"
+        "    np.testing.assert_allclose(found, expected, atol=1e-6)\n"
+    )
+
+
+def _plain(value):
+    plain = repr(np.asarray(value).tolist())
+    return f"array({plain})" if isinstance(value, np.ndarray) else plain
+
+
+def _write(path, text):
+    """Write a file in one step; Windows may hold the old one open for a moment."""
+    import time
+
+    for attempt in range(5):
+        try:
+            return home.replace_text(path, text)
+        except PermissionError:
+            if attempt == 4:
+                raise
+            time.sleep(0.05)

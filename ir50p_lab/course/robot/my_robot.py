@@ -1,0 +1,59 @@
+"""my_robot: every function is the student's own where there is one, else the course's stands in.
+
+    from ir50p_lab.course import my_robot
+    my_robot.rot_z(0.5)
+
+A name is looked up each time: a function that was just written, in this notebook or another, is used from then on.
+A class that is written in stages serves at its stage in the notebook that works on it, elsewhere when it is whole.
+`my_robot.whose("rot_z")` says whose it is: "yours", "on loan" or "the course's".
+"""
+
+from ir50p_lab.course.robot import folder
+from ir50p_lab.course.robot.catalogue import ORDER, is_function, task, written
+
+_said = set()
+
+
+def __getattr__(name):
+    if not is_function(name):
+        raise AttributeError(f"my_robot has no {name}; its functions are {', '.join(ORDER)}")
+    stage = folder.at_work(name)
+    function = folder.load(name) if folder.is_there(stage) else task(stage).right
+    _say(name)
+    return function
+
+
+def whose(name):
+    """Say whose function is used: "yours", "on loan" or "the course's"."""
+    stage = folder.at_work(name)
+    if not folder.is_there(stage):
+        return "the course's"
+    return "on loan" if folder.on_loan(stage) else "yours"
+
+
+def done():
+    """Names of the functions that are the student's own, in order."""
+    return tuple(name for name in ORDER if whose(name) == "yours")
+
+
+def progress():
+    """The robot with its parts, coloured by whose they are: LabFigure."""
+    from ir50p_lab.course.robot.robot_view import owned  # matplotlib takes a while: not at import
+
+    return owned({name: whose(name) for name in ORDER})
+
+
+def _say(name):
+    """Say once in a session, and again when it changes, whose function is in use."""
+    if (name, whose(name)) not in _said:
+        _said.add((name, whose(name)))
+        words = {
+            "yours": "yours",
+            "on loan": "on loan from the course",
+            "the course's": "the course's, until you write yours",
+        }
+        print(f"my_robot.{name}: {words[whose(name)]}")
+
+
+def __dir__():
+    return [*written(), "done", "progress", "whose"]

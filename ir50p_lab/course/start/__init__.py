@@ -1,0 +1,1 @@
+"""Notebook 00: one angle, one matrix, and the arm turns."""

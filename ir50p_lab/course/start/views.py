@@ -1,0 +1,56 @@
+"""Pictures of notebook 00: a turn seen from above, the arm turned by the student's function, a speed."""
+
+import numpy as np
+
+from ir50p_lab.course.draw.style import COLOURS, subplots
+from ir50p_lab.modelling.chain import frames
+
+
+def from_above(angle):
+    """Two points at distance 1 and where a turn by `angle` (rad) takes them: LabFigure."""
+    figure, ax = subplots(5.2, 5.0)
+    circle = np.linspace(0, 2 * np.pi, 181)
+    ax.plot(np.cos(circle), np.sin(circle), color=COLOURS["light"], zorder=1)
+    for start, colour, name in ((0.0, "orange", "ahead"), (np.pi / 2, "blue", "to the left")):
+        end = start + angle
+        arc = np.linspace(start, end, 40)
+        ax.plot(0.35 * np.cos(arc), 0.35 * np.sin(arc), color=COLOURS[colour])
+        ax.plot([0, np.cos(start)], [0, np.sin(start)], "--", color=COLOURS[colour], alpha=0.6)
+        ax.plot([0, np.cos(end)], [0, np.sin(end)], color=COLOURS[colour], linewidth=2.5)
+        ax.plot(np.cos(start), np.sin(start), "o", mfc="white", color=COLOURS[colour], ms=9)
+        ax.plot(np.cos(end), np.sin(end), "o", color=COLOURS[colour], ms=11)
+        ax.annotate(name, (np.cos(start), np.sin(start)), (8, 8), textcoords="offset points", color=COLOURS[colour])
+    ax.plot(0, 0, "s", color=COLOURS["dark"], ms=9)
+    ax.annotate("column", (0, 0), (-52, -16), textcoords="offset points")
+    ax.set(xlim=(-1.25, 1.45), ylim=(-1.25, 1.35), aspect="equal", xlabel="x, ahead [m]", ylabel="y, to the left [m]")
+    ax.set_title("From above: the waist turns counter-clockwise")
+    return figure
+
+
+def turned_by(arm, rot_z):
+    """f(q) -> (4, 4, 4): frames of the arm with its waist turned by `rot_z`, right or wrong; the rest is the course's.
+
+    rot_z: f(angle) -> (3, 3); what is still `...` in it counts as 0.
+    """
+
+    def with_own_waist(q):
+        waist, R = np.eye(4), np.asarray(rot_z(q[0]))
+        waist[:3, :3] = np.where(R == ..., 0, R)
+        level = frames(arm, [0.0, q[1], q[2]])
+        return np.array([np.eye(4), *(waist @ T for T in level[1:])])
+
+    return with_own_waist
+
+
+def speed_over_time(run, joint, end=1.4):
+    """Speed of one joint (1 to 3) of a simulated run until `end` s, with a line at 63 % of its most: LabFigure."""
+    figure, ax = subplots(8, 3.4)
+    speed = run.qd[:, joint - 1]
+    ax.plot(run.t, speed, label=f"joint {joint}", linewidth=2)
+    ax.axhline((1 - np.exp(-1)) * speed.max(), color=COLOURS["dark"], linestyle="--", label="63 % of the top speed")
+    ax.set(xlim=(0, end), ylim=(0, None), xlabel="time [s]", ylabel="speed [rad/s]")
+    ax.set_xticks(np.arange(0, end + 0.01, 0.1))
+    ax.set_xticks(np.arange(0, end + 0.01, 0.02), minor=True)
+    ax.set_title("Simulated: a push from rest, and then nothing")
+    ax.legend(loc="lower center")
+    return figure

@@ -1,0 +1,1 @@
+"""Notebooks 14 and 15: computed torque."""

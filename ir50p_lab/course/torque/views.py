@@ -1,0 +1,190 @@
+"""Figures of notebook 14: error dynamics, robustness, tracking beside the reference; and the runs behind them."""
+
+import numpy as np
+from matplotlib.colors import LogNorm
+
+from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.controllers import PID
+from ir50p_lab.course.draw.style import JOINTS, SETPOINT, colour_map, joint_columns, subplots
+from ir50p_lab.course.draw.traces import curves
+from ir50p_lab.course.fitting.views import kept_motion
+from ir50p_lab.identification import fit, process, regressor
+from ir50p_lab.simulation import simulate
+
+
+def rms(run, reference):
+    """Root mean square of angle minus reference, (3,) mrad. run: anything with t (n,) s and q (n, 3) rad."""
+    return 1e3 * np.sqrt(np.mean((run.q - reference.sample(run.t)[:, 0]) ** 2, axis=0))
+
+
+def thesis_pid():
+    """The PID of Tables 4.1-4.3 behind a 3 Hz filter on the angles, in PWM counts."""
+    gains = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30)}
+    return PID(**gains, limit_pwm=255, position_filter_hz=3.0, filter_hz=np.inf)
+
+
+def follow(arm, controller, reference, seconds, *, seed=0):
+    """One run on the simulated bench from the start of the reference, nothing kept on disk: Recording."""
+    bench = SimulatedBench(arm, seed=seed, q0=reference(0.0)[0], record_to=False).open()
+    try:
+        return bench.follow(controller, reference, seconds)
+    finally:
+        bench.abort()  # no way back to the rest pose: it takes longer than the run
+
+
+def training_run(arm, *, seed=0):
+    """A recording to identify from, on the simulated bench: the first motion of notebook 12, thesis' PID."""
+    return follow(arm, thesis_pid(), kept_motion(arm), 110.0, seed=seed)
+
+
+def naive_model(recording):
+    """As the thesis identifies: causal 3 Hz, differences, one theta for all joints, least squares (4.4): Estimate."""
+    motion = process(recording, derivatives="causal", cutoff_hz=3.0)
+    return fit(regressor(motion.q, motion.qd, motion.qdd), motion.u, rows="shared", columns="thesis")
+
+
+def lateness(t, angle, reference, *, joint):
+    """How many seconds later than the reference a joint moves (negative: ahead): the shift that fits best.
+
+    Args: t (n,) s, angle (n,) rad of the joint; reference; joint: 0, 1, 2. The first 3 s do not count.
+    """
+    later, here = np.arange(-0.2, 0.2, 0.002), (t > 3) & (t < t[-1] - 0.5)
+    misses = [np.mean((angle[here] - reference.sample(t[here] - d)[:, 0, joint]) ** 2) for d in later]
+    return later[np.argmin(misses)]
+
+
+def pendulum_responses(found, parameters, gain_sets):
+    """Angle of the example pendulum, let go at 0.5 rad, for each gain set: t (n,) s, angles (m, n). Oracle: SciPy."""
+    from scipy.integrate import solve_ivp
+
+    a, b, T = parameters.values()
+    t, angles = np.linspace(0, 6, 400), []
+    for gains in gain_sets:
+        u = found.controller(gains, parameters)
+
+        def rate(_, x, u=u):
+            return x[1], -a * np.sin(x[0]) - b * x[1] + x[2], (u(x) - x[2]) / T
+
+        angles.append(solve_ivp(rate, (0, 6), (0.5, 0.0, 0.0), t_eval=t, rtol=1e-8).y[0])
+    return t, np.array(angles)
+
+
+def pendulum_figure(t, angles, labels):
+    """Responses of the pendulum with motor lag. t (n,) s; angles (m, n) rad; labels: m texts. Returns: LabFigure."""
+    figure = curves(t, angles, labels, "angle [rad]", targets=(0,))
+    title = "All gains positive, and still the second one grows"
+    figure.axes[0].set(ylim=(-2, 2), xlabel="time [s]  -  simulated", title=title)
+    return figure
+
+
+class ErrorView:
+    """Errors of three joints after a start beside the reference: predicted (dots) and simulated (lines).
+
+    Args: size: rad, of the largest start error; duration: s. Attributes: figure.
+    """
+
+    def __init__(self, size, duration):
+        self.figure, ax = subplots(9.0, 3.2)
+        ax.axhline(0, **SETPOINT)
+        self._lines = [ax.plot([], [], color=c)[0] for c in JOINTS]
+        self._dots = [ax.plot([], [], "o", ms=4, color=c, mfc="none")[0] for c in JOINTS]
+        ax.set(xlim=(0, duration), ylim=(-1.15 * size, 1.15 * size))
+        ax.set(xlabel="time [s]  -  simulated", ylabel="error e = q - q_ref [rad]")
+        # a legend would be drawn anew at every step of a slider
+        ax.set_title("Joints 1, 2, 3: blue, orange, green. Circles: (2.20), solved beforehand")
+
+    def update(self, run, t, predicted):
+        """Draw the errors of a run, and those predicted (m, 3) rad for the times t (m,) s."""
+        for j in range(3):
+            self._lines[j].set_data(run.t, -run.error[:, j])
+            self._dots[j].set_data(t, predicted[:, j])
+
+
+class RobustnessView:
+    """Left: largest RMS error over model scale and loop speed; right: the errors of one choice, joint by joint.
+
+    Args: scales (m,): model over arm; speeds (n,): sqrt(Kp), rad/s; run: function (scale, speed) -> SimulationResult.
+    Attributes: figure; rms (m, n) mrad, the largest of the three joints. `update(scale, speed)` draws one choice.
+    """
+
+    def __init__(self, scales, speeds, run, *, duration, error_max):
+        self._run = run
+        self.rms = np.array([[1e3 * run(s, w).rms_error.max() for w in speeds] for s in scales])
+        self.figure, left, right = subplots(9.6, 3.8, cols=2, width_ratios=(1.25, 1))
+        norm = LogNorm(max(self.rms.min(), 1e-3 * self.rms.max()), self.rms.max())
+        self._mark = colour_map(left, speeds, scales, self.rms, norm, "largest RMS error [mrad]")
+        left.set(xlabel="speed of the loop, sqrt(Kp) [rad/s]", ylabel="model / arm [1]")
+        left.set_title("Fast loops hide wrong models")
+        self._lines = [right.plot([], [], color=c)[0] for c in JOINTS]
+        right.set(xlim=(0, duration), ylim=(-error_max, error_max))
+        right.set(xlabel="time [s]  -  simulated", ylabel="q - q_ref [mrad]", title="Joints: blue, orange, green")
+
+    def update(self, scale, speed):
+        """Draw one choice. Returns the three RMS errors in words."""
+        run = self._run(scale, speed)
+        self._mark.set_data([speed], [scale])
+        for j, line in enumerate(self._lines):
+            line.set_data(run.t, -1e3 * run.error[:, j])
+        return "RMS error: " + " / ".join(f"{x:.3g}" for x in 1e3 * run.rms_error) + " mrad"
+
+
+class TrackingView:
+    """Angles over their reference (dashed) above, tracking errors below, a column per joint (Figure 4.13).
+
+    Args: reference; seconds: of it that are drawn; labels: one for each run; error_max: mrad, of the lower axes.
+    Attributes: figure. `update(*runs)`: anything with t (n,) s and q (n, 3) rad, one per label.
+    """
+
+    def __init__(self, reference, seconds, labels, *, error_max):
+        self._reference, t = reference, np.linspace(0, seconds, 200)
+        wanted = reference.sample(t)[:, 0]
+        ranges = np.stack([wanted.min(axis=0), wanted.max(axis=0)], axis=1)
+        self.figure, self._q, self._e = joint_columns(seconds, ranges, error_max, labels=labels, room=(0.35, 0.1))
+        for j, (above, below) in enumerate(zip(self.figure.axes[:3], self.figure.axes[3:], strict=True)):
+            above.plot(t, wanted[:, j], **SETPOINT)
+            above.set_title(f"joint {j + 1}")
+            below.set_xlabel("time [s]  -  simulated")
+        self.figure.axes[3].set_ylabel("q - q_ref [mrad]")
+
+    def update(self, *runs):
+        """Draw one run per label, every second sample. Returns the figure."""
+        for k, run in enumerate(runs):
+            t, q = run.t[::2], run.q[::2]
+            error = 1e3 * (q - self._reference.sample(t)[:, 0])
+            for j in range(3):
+                self._q[j][k].set_data(t, q[:, j])
+                self._e[j][k].set_data(t, error[:, j])
+        return self.figure
+
+
+def learning_figure(law, arms, reference, seconds, *, column, joint, truth):
+    """An adaptive controller on two arms: its errors, and one parameter over time. Returns: LabFigure, belief (m, n).
+
+    Args: law: function () -> AdaptiveControl; arms: {label: Arm}; reference; seconds; column, joint: of the parameter
+    that is drawn; truth: {label: its true value}. Run in Python, so that its belief can be watched.
+    """
+    figure, left, right = subplots(9.6, 3.2, cols=2)
+    beliefs = []
+    for (label, arm), colour in zip(arms.items(), JOINTS, strict=False):
+        watched = _Watched(law(), joint, column)
+        run = simulate(arm, watched, reference, q0=reference(0.0)[0], duration=seconds)
+        left.plot(run.t, -1e3 * run.error[:, joint], color=colour, lw=1)
+        right.plot(run.t, watched.belief, color=colour, label=label)
+        right.axhline(truth[label], color=colour, ls="--", lw=1)
+        beliefs.append(watched.belief)
+    left.set(xlabel="time [s]  -  simulated", ylabel=f"q - q_ref, joint {joint + 1} [mrad]", title="It gets better")
+    right.set(xlabel="time [s]  -  simulated", ylabel=f"theta{column + 1} [PWM, SI]", title="because it learns")
+    right.legend(fontsize=8)
+    return figure, np.array(beliefs)
+
+
+class _Watched:
+    """A controller, and what it believes after each sample."""
+
+    def __init__(self, law, joint, column):
+        self.law, self.unit, self.limit, self.place, self.belief = law, law.unit, law.limit, (joint, column), []
+
+    def step(self, t, q, reference):
+        u = self.law.step(t, q, reference)
+        self.belief.append(self.law.theta[self.place])
+        return u

@@ -1,0 +1,46 @@
+"""The drawings that never change: what lies in `data/drawings` is what the recipe draws, and notebooks show it."""
+
+import re
+
+import pytest
+from PIL import Image
+
+from ir50p_lab.course.images import views as vision_views
+from ir50p_lab.course.kinematics import speed_views
+from ir50p_lab.course.loops import loop_views, tuning_views
+from ir50p_lab.course.reaching import views as reaching_views
+from ir50p_lab.home import PROJECT
+from tests.support.make_drawings import DRAWINGS, main, readme_picture
+
+FOLDER = PROJECT / "data" / "drawings"
+SHOWN = {
+    reaching_views.loop_figure: ("find_balls", "T_base_table", "u [PWM]", "look again"),
+    reaching_views.hand_eye_figure: ("base", "tool", "camera", "board", "sought"),
+    loop_views.one_loop: ("speed, filtered", "limit", "arm"),
+    loop_views.three_loops: ("controller 1", "controller 3", "one arm"),
+    speed_views.axis_and_lever: ("axis", "lever", "velocity"),
+    vision_views.colour_solids_figure: ("RGB", "HSV", "hue is the angle"),
+    tuning_views.ruler: ("rise time", "settling time", "overshoot", "rest error"),
+}
+
+
+def words(svg):
+    """The texts of a drawing: matplotlib writes each beside its outline."""
+    return re.findall(r"<!-- (.*?) -->", svg, re.DOTALL)
+
+
+@pytest.mark.parametrize("show", SHOWN, ids=lambda show: show.__name__)
+def test_a_drawing_has_its_words(show):
+    said = " ".join(words(show().data))
+    assert all(name in said for name in SHOWN[show])
+
+
+def test_the_files_are_what_the_recipe_draws(tmp_path):
+    main(["--data", str(tmp_path), "--picture", str(tmp_path / "arm.png")])
+    assert sorted(path.stem for path in FOLDER.glob("*")) == sorted(DRAWINGS)
+    for name in DRAWINGS:
+        kept, made = ((folder / f"{name}.svg").read_text(encoding="utf-8") for folder in (FOLDER, tmp_path))
+        assert words(kept) == words(made) and len(kept) < 200_000
+    assert "drawing of the model" in readme_picture().axes[0].get_title()
+    with Image.open(tmp_path / "arm.png") as made, Image.open(PROJECT / "docs" / "arm.png") as kept:
+        assert made.size == kept.size == (1200, 810)

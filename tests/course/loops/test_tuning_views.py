@@ -1,0 +1,103 @@
+"""Pictures for tuning: what is drawn is what was simulated; the same picture for the same numbers."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ir50p_lab.controllers import PID
+from ir50p_lab.course.draw.painter import Painter
+from ir50p_lab.course.draw.traces import JointPlots
+from ir50p_lab.course.draw.widgets import live
+from ir50p_lab.course.loops.tuning_views import GainMap, LocusView, one_joint, rule_in_use, three_columns
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.simulation import simulate
+
+TARGET = np.array([0.8, 0.5, -0.7])
+
+
+@pytest.fixture(scope="module")
+def run():
+    return simulate(IR50P, PID((289, 225, 270), kd=(40, 30, 30), limit_pwm=255), TARGET, duration=2)
+
+
+def test_sliders_in_three_columns(run):
+    view = JointPlots(TARGET, duration=2, unit="PWM", u_max=255)
+    panel = live(view.figure, lambda **gains: view.update(run) and None, **{f"k{i}": (0, 9, 1, 1) for i in range(9)})
+    assert three_columns(panel) is panel
+    assert panel.children[0].layout.grid_template_columns.count("max-content") == 3
+    panel.set(k3=5)
+    assert panel.controls["k3"].box.value == 5
+
+
+def test_gain_map_places_its_cells_at_the_gains(run):
+    kp, kd, values = np.linspace(10, 100, 10), np.linspace(0, 8, 5), np.arange(50.0).reshape(5, 10)
+    view = GainMap(kp, kd, values, title="t", label="s [s]", target=0.8, duration=2)
+    left, right, bottom, top = view.map.images[0].get_extent()
+    assert (left, right) == (5, 105) and (bottom, top) == (-1, 9)  # the centres of the cells are the gains
+    view.lay_over(np.tile(kp, (5, 1)), [35.0], "half", colour="purple")  # a line where kp is 35
+    places = np.concatenate([path.vertices for one in view.map.collections for path in one.get_paths()])
+    assert np.allclose(places[:, 0], 35)
+    assert "half" in [text.get_text() for text in view.figure.legends[0].get_texts()]
+    assert view.map.get_xlim() == (5, 105) and view.map.get_ylim() == (-1, 9)
+    painter = Painter(view.figure)
+    before = painter.png()
+    view.update(50, 4, (run.t, run.q[:, 0]))
+    assert painter.png() != before
+    first = painter.backgrounds
+    view.update(60, 4, (run.t, run.q[:, 1]))
+    painter.png()
+    assert painter.backgrounds == first
+    view.update(50, 4, (run.t, run.q[:, 0]))
+    assert any(np.array_equal(line.get_ydata(), run.q[:, 0]) for line in view.figure.axes[1].lines)
+    assert [50] in [list(line.get_xdata()) for line in view.map.lines]
+
+
+def test_locus_marks_the_poles_of_the_nearest_gain():
+    gains = np.array([1.0, 2.0, 4.0])
+    continuous = np.array([[-1 + 0j, -2], [-1 + 1j, -1 - 1j], [-1 + 2j, -1 - 2j]])
+    view = LocusView(gains, continuous, np.exp(0.1 * continuous), zeros=((), ()))
+    view.update(2.2)
+    left, right = view.figure.axes
+    np.testing.assert_array_equal(left.lines[-1].get_ydata(), [1, -1])
+    np.testing.assert_allclose(right.lines[-1].get_xdata(), np.exp(0.1 * continuous[1]).real)
+
+
+def test_paths_that_meet_have_no_corner_and_zeros_are_marked():
+    gains = np.linspace(1, 4, 8)
+    poles = np.array([np.roots([1, 2, gain / 2]) for gain in gains])  # they meet at -1, at a gain of 2
+    left = LocusView(gains, poles, np.exp(0.1 * poles), zeros=([-3.0], [])).figure.axes[0]
+    paths = [line for line in left.lines if len(line.get_xdata()) > len(gains)]
+    assert len(paths) == 2
+    for path in paths:
+        places = path.get_xdata() + 1j * path.get_ydata()
+        assert np.abs(places + 1).min() < 1e-9
+    (zeros,) = [line for line in left.lines if line.get_label() == "zeros"]
+    np.testing.assert_array_equal(zeros.get_xdata(), [-3.0])
+    assert {"path of the poles", "zeros"} <= {text.get_text() for text in left.get_legend().get_texts()}
+
+
+def test_one_joint_shows_each_run_and_the_target_of_the_first(run):
+    """A simulated run and one with a flat reference, as recordings have it."""
+    flat = SimpleNamespace(t=run.t, q=run.q + 0.1, u=run.u - 5, reference=run.reference[:, 0])
+    figure = one_joint(run, flat, labels=["a", "b"], joint=2)
+    target, first, second = (line.get_ydata() for line in figure.axes[0].lines)
+    np.testing.assert_array_equal(target, run.reference[:, 0, 1])
+    np.testing.assert_array_equal(first, run.q[:, 1])
+    np.testing.assert_array_equal(second, flat.q[:, 1])
+    np.testing.assert_array_equal(figure.axes[1].lines[1].get_ydata(), flat.u[:, 1])
+
+
+def test_a_rule_that_is_right_is_used_and_any_other_is_not(capsys):
+    def rule(K, T, L, tau_c, factor=4):
+        gain, Ti = 1 / (K * (tau_c + L)), factor * (tau_c + L)
+        return gain * (1 + T / Ti), gain / Ti, gain * T
+
+    def unwritten(K, T, L, tau_c):
+        gain, Ti = ..., ...
+        return gain * (1 + T / Ti), gain / Ti, gain * T
+
+    assert rule_in_use(rule) is rule and "yours, and right" in capsys.readouterr().out
+    for other, words in ((unwritten, "until yours is written"), (lambda **o: rule(**o, factor=5), "yours gives")):
+        assert rule_in_use(other)(0.01, 0.2, 0.03, 0.1) == pytest.approx(rule(0.01, 0.2, 0.03, 0.1))
+        assert words in capsys.readouterr().out

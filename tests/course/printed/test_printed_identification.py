@@ -1,0 +1,75 @@
+"""What the thesis prints in 2.2.4: wrong where the list of errors says so, and nowhere else."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ir50p_lab.course.printed.identification import recursive_2_46, regressor_2_51, torque_2_48, torque_in_symbols
+from ir50p_lab.identification import regressor
+from ir50p_lab.modelling import IR50P, THESIS_RODS, Friction, inverse_dynamics
+
+ARM = replace(IR50P, friction=Friction(fv=(0.1, 0.2, 0.3)))
+q, qd, qdd = np.random.default_rng(0).uniform(-2, 2, (3, 50, 3))
+
+
+def wrong_joints(printed, right):
+    return (np.abs(printed - right).max(axis=0) > 1e-9).tolist()
+
+
+def test_the_symbolic_route_agrees_with_the_package():
+    np.testing.assert_allclose(torque_in_symbols(ARM, q, qd, qdd), inverse_dynamics(ARM, q, qd, qdd), atol=1e-12)
+    assert np.allclose(regressor(q, qd, qdd) @ ARM.theta[0], torque_in_symbols(ARM, q, qd, qdd), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("moving", "wrong"),
+    [
+        ((0, 0, 0), [False, True, False]),  # gravity: lc2 for l2
+        ((1, 0, 0), [False, True, True]),  # U3: q1' for its square
+        ((0, 1, 0), [False, True, True]),  # U3: s2 q2' for s3 q2'^2, and in the friction
+        ((0, 0, 1), [False, True, True]),  # U2: no q3'^2; U3: friction
+        ((1, 0, 1), [True, True, True]),  # U1: no l2
+    ],
+)
+def test_2_48_is_wrong_there(moving, wrong):
+    v = qd * moving
+    assert wrong_joints(torque_2_48(ARM, q, v, 0 * q), inverse_dynamics(ARM, q, v, 0 * q)) == wrong
+
+
+def test_2_48_with_a_unit_arm_hides_the_missing_length():
+    v = qd * (1, 0, 1)
+    arm = replace(THESIS_RODS, friction=Friction())
+    assert not wrong_joints(torque_2_48(arm, q, v, 0 * q), inverse_dynamics(arm, q, v, 0 * q))[0]
+
+
+def test_2_51_is_wrong_in_two_columns():
+    difference = np.abs(regressor_2_51(q, qd, qdd) - regressor(q, qd, qdd)).max(axis=0)
+    assert np.argwhere(difference > 1e-9).tolist() == [[0, 1], [0, 4], [1, 1], [1, 4], [2, 4]]
+    unit = np.where(qd == 0, qd, 1.0)  # at q1' = 1 a lost square does not show
+    difference = np.abs(regressor_2_51(q, unit, qdd) - regressor(q, unit, qdd)).max(axis=0)
+    assert np.argwhere(difference > 1e-9).tolist() == [[0, 1], [0, 4]]
+
+
+def test_2_46_as_printed_is_no_least_squares():
+    Phi = regressor(q, qd, qdd)
+    y = Phi @ ARM.theta[0]
+    with_prior = np.linalg.solve(np.eye(20) + np.einsum("nip,niq->pq", Phi, Phi), np.einsum("nip,ni->p", Phi, y))
+    assert np.abs(recursive_2_46(Phi, y, np.eye(20)) - with_prior).max() > 0.05
+
+
+def test_2_37_to_2_40_mix_samples_and_signs():
+    """The sum at t does not go with the inverse at t - 1, and the measurement is added."""
+    Phi = regressor(q, qd, qdd)
+    y = Phi @ ARM.theta[0] + np.random.default_rng(1).normal(size=(50, 3))
+    A, Y = Phi.reshape(-1, 20), y.ravel()
+    old, new = A[:-3].T @ A[:-3], A.T @ A  # P^-1 at t - 1 and t: three equations a sample
+    sum_old, sum_new = A[:-3].T @ Y[:-3], A.T @ Y
+    phi, before, now = Phi[49].T, np.linalg.solve(old, sum_old), np.linalg.solve(new, sum_new)
+    np.testing.assert_allclose(new, old + phi @ phi.T, atol=1e-9)  # (2.36)
+    assert not np.allclose(np.linalg.solve(old, sum_new), now, rtol=1e-3)  # (2.37)
+    np.testing.assert_allclose(sum_old, old @ before, atol=1e-9)
+    assert not np.allclose(sum_new, old @ before)  # (2.39)
+    unlearn, learn = np.linalg.solve(new, phi @ phi.T @ before), np.linalg.solve(new, phi @ y[49])
+    np.testing.assert_allclose(before - unlearn + learn, now, atol=1e-9)
+    assert not np.allclose(before - unlearn - learn, now)  # (2.40), first line

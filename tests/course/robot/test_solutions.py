@@ -1,0 +1,222 @@
+"""The 31 functions that a student writes, composed: each alone against the course's, and together as a robot."""
+
+import numpy as np
+import pytest
+import solutions
+
+from ir50p_lab import modelling
+from ir50p_lab.controllers import PID
+from ir50p_lab.course.robot.parts import parts
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.simulation import simulate
+
+mine = solutions.load()
+arm = parts(IR50P)
+rigid = IR50P.without_friction()
+
+
+def poses(count, seed=0):
+    return np.random.default_rng(seed).uniform(*arm.limits, (count, 3))
+
+
+def mass(q):
+    return mine.mass_matrix(q, arm.l, arm.m, arm.lc, arm.inertia, arm.rotor)
+
+
+def weight(q):
+    return mine.gravity_torque(q, arm.l, arm.m, arm.lc, arm.g)
+
+
+def accelerate(q, qd, torque):
+    return np.linalg.solve(mass(q), torque - mine.velocity_torque(q, qd, mass) - weight(q))
+
+
+def test_every_function_of_the_course_has_a_solution():
+    assert sorted(solutions.ORDER) == sorted(path.stem for path in solutions.FOLDER.glob("*.py"))
+    assert len(solutions.ORDER) == 31
+
+
+@pytest.mark.parametrize("q", poses(5))
+def test_pose_and_jacobian(q):
+    T = mine.frames(q, arm.l)
+    np.testing.assert_allclose(T, np.array(modelling.frames(IR50P, q)), atol=1e-14)
+    np.testing.assert_allclose(mine.forward_kinematics(q, arm.l), modelling.forward_kinematics(IR50P, q), atol=1e-14)
+    np.testing.assert_allclose(mine.jacobian(T, 3, T[3][:3, 3]), modelling.jacobian(IR50P, q), atol=1e-14)
+
+
+@pytest.mark.parametrize("q", poses(20))
+def test_the_way_there_and_back(q):
+    p = mine.forward_kinematics(q, arm.l)
+    found = mine.inverse_kinematics(p, arm.l)
+    assert found.shape == (4, 3)
+    for row in found:
+        np.testing.assert_allclose(mine.forward_kinematics(row, arm.l), p, atol=1e-12)
+    assert np.min(np.max(np.abs(found - q), axis=1)) < 1e-9
+    stretched = mine.forward_kinematics([q[0], q[1], 0], arm.l)
+    assert len(mine.inverse_kinematics(stretched, arm.l)) == 4
+    assert len(mine.inverse_kinematics(1.01 * (stretched - [0, 0, arm.l[0]]) + [0, 0, arm.l[0]], arm.l)) == 0
+
+
+def test_a_drag_in_small_steps_ends_where_the_formula_says():
+    p = np.array([0.42, -0.15, 0.09])
+    q = np.array([0.0, 0.3, -0.6])
+    for _ in range(30):
+        q = mine.damped_step(q, p, arm.l, 0.02)
+    np.testing.assert_allclose(q, mine.reach(p, arm.l, q, arm.limits), atol=1e-6)
+    assert mine.reach([0, 0, -0.2], arm.l, q, arm.limits) is None
+
+
+@pytest.mark.parametrize("q", poses(5))
+def test_equation_of_motion(q):
+    qd = np.array([0.5, -0.8, 1.1])
+    np.testing.assert_allclose(mass(q), modelling.mass_matrix(rigid, q), atol=1e-12)
+    np.testing.assert_allclose(weight(q), modelling.gravity(rigid, q), atol=1e-12)
+    expected = modelling.coriolis_matrix(rigid, q, qd) @ qd
+    np.testing.assert_allclose(mine.velocity_torque(q, qd, mass), expected, atol=1e-8)
+
+
+def test_a_frictionless_fall_is_the_courses():
+    def f(t, x):
+        torque = mine.motor_torque(0, x[3:], arm.gain, arm.damping)
+        return np.concatenate([x[3:], accelerate(x[:3], x[3:], torque)])
+
+    _, x = mine.integrate(f, [0, 0.8, -0.8, 0, 0, 0], 1.0, 0.01)
+    course = simulate(rigid, duration=1.0, q0=[0, 0.8, -0.8], unit="PWM")
+    np.testing.assert_allclose(x[:, :3], course.q, atol=1e-6)
+
+
+def test_a_pid_loop_is_the_courses():
+    gains = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30)}
+    controller = mine.PID(**gains)
+    target = np.array([0.4, 0.6, -0.5])
+    x = np.zeros(6)
+    ends = []
+    for k in range(100):
+        u = controller.step(k * 0.01, x[:3], np.array([target, np.zeros(3), np.zeros(3)]))
+
+        def f(t, x, u=u):
+            return np.concatenate([x[3:], accelerate(x[:3], x[3:], mine.motor_torque(u, x[3:], arm.gain, arm.damping))])
+
+        x = mine.rk4_step(f, 0, x, 0.01)
+        ends.append(x[:3])
+    course = simulate(rigid, PID(**gains, limit_pwm=255), target, duration=1.0)
+    np.testing.assert_allclose(ends, course.q[1:], atol=3e-5)
+    own = simulate(IR50P, mine.PID(**gains), target, duration=2.0)  # the very class in the course's simulation
+    np.testing.assert_allclose(own.q, simulate(IR50P, PID(**gains, limit_pwm=255), target, duration=2.0).q, atol=1e-9)
+
+
+def motion(count=400, seed=1):
+    """A rich motion with its exact derivatives."""
+    t = np.linspace(0, 6, count)[:, None]
+    rng = np.random.default_rng(seed)
+    q, qd, qdd = np.zeros((3, count, 3))
+    for w in (1.3, 2.9, 4.7):
+        a, phase = rng.uniform(0.2, 0.5, 3), rng.uniform(0, 6, 3)
+        q, qd, qdd = (
+            q + a * np.sin(w * t + phase),
+            qd + a * w * np.cos(w * t + phase),
+            qdd - a * w**2 * np.sin(w * t + phase),
+        )
+    return q, qd, qdd
+
+
+def test_identification_finds_the_friction_and_predicts():
+    q, qd, qdd = motion()
+    u = np.array([mine.regressor(*row, np.sign(row[1])) for row in zip(q, qd, qdd, strict=True)])
+    u = np.einsum("nij,ij->ni", u, IR50P.theta_pwm)
+    Y = np.array([mine.regressor(*row, np.sign(row[1])) for row in zip(q, qd, qdd, strict=True)])
+    noisy = u + np.random.default_rng(2).normal(0, 1, u.shape)
+    for joint in range(3):
+        used = np.flatnonzero(np.abs(Y[:, joint]).max(axis=0) > 0)
+        used = used[~np.isin(used, [6, 7, 8 if joint == 2 else 99])]
+        theta, errors = mine.least_squares(Y[:, joint, used], noisy[:, joint])
+        friction = np.isin(used, [11 + 2 * joint])
+        assert np.all(np.abs(theta - IR50P.theta_pwm[joint, used])[friction] < 4 * errors[friction])
+        assert mine.fit_percent(u[:, joint], Y[:, joint, used] @ theta) > 99
+        guess, P = np.zeros(len(used)), 1e8 * np.eye(len(used))
+        for phi, y in zip(Y[:, joint, used], noisy[:, joint], strict=True):
+            guess, P = mine.rls_step(guess, P, phi, y, 1.0)
+        np.testing.assert_allclose(Y[:, joint, used] @ guess, Y[:, joint, used] @ theta, atol=1e-2)
+
+
+def test_computed_torque_and_adaptation_follow_with_a_true_model():
+    def model(q, qd, qdd):
+        return np.einsum("ij,ij->i", mine.regressor(q, qd, qdd, 0 * qd), rigid.theta)
+
+    reference = np.array([[0.3, 0.5, -0.4], [0.1, 0, 0], [0, 0, 0]])
+    q, qd = np.array([0.2, 0.4, -0.5]), np.array([0.0, 0.1, 0.2])
+    kp, kd = np.array([100, 100, 100]), np.array([20, 20, 20])
+    torque = mine.computed_torque(q, qd, reference, model, kp, kd)
+    wanted = kp * (reference[0] - q) + kd * (reference[1] - qd)
+    np.testing.assert_allclose(modelling.forward_dynamics(rigid, q, qd, torque), wanted, atol=1e-9)
+    s = np.array([0.1, -0.2, 0.3])
+    Y = mine.regressor(q, qd, np.zeros(3), np.sign(qd))
+    change = mine.adaptive_step(rigid.theta, Y, s, 2.0, 0.01) - rigid.theta
+    assert np.einsum("ij,ij", change, Y * s[:, None]) < 0  # what is learnt takes the error's power away
+
+
+def test_quintic_friction_filter_line():
+    t = np.linspace(-1, 3, 9)
+    q, qd, qdd = mine.quintic(0.2, 1.0, 2.0, t)
+    assert q[0] == 0.2 and q[-1] == 1.0 and qd[0] == qd[-1] == qdd[0] == qdd[-1] == 0
+    np.testing.assert_allclose(mine.quintic(0.2, 1.0, 2.0, 1.0)[0], 0.6)
+    qd3 = np.array([0.3, -0.01, 0.0])
+    np.testing.assert_allclose(
+        mine.friction_torque(qd3, arm.fv, arm.fc, arm.fs, arm.qs, arm.offset),
+        modelling.friction_torque(IR50P, qd3),
+    )
+    x = np.arange(10.0)
+    slope, offset, covariance = mine.fit_line(x, 2 * x + 1)
+    np.testing.assert_allclose([slope, offset], [2, 1])
+    assert covariance.shape == (2, 2)
+    response = mine.low_pass(np.r_[0, np.ones(99)], 5, 100)
+    assert 0.6 < response[int(100 / (2 * np.pi * 5)) + 1] < 0.8 and response[-1] > 0.999
+
+
+def test_step_metrics_of_a_known_curve():
+    t = np.linspace(0, 10, 1001)
+    rise, overshoot, settling, rest = mine.step_metrics(t, 1 - np.exp(-t), 1.0)
+    np.testing.assert_allclose([rise, settling], [np.log(9), np.log(50)], atol=0.02)
+    assert overshoot == 0 and abs(rest) < 1e-3
+    assert mine.step_metrics(t, 1.2 - 1.2 * np.exp(-t), 1.0)[1] == pytest.approx(0.2, abs=1e-3)
+    assert np.isnan(mine.step_metrics(t, 0.5 * (1 - np.exp(-t)), 1.0)[0])
+
+
+def test_settling_time_of_a_noisy_step_and_of_a_swing():
+    """The median of 400 steps that tremble by 6 mrad is that of the same step without noise, in the same band."""
+    rng, t, way = np.random.default_rng(5), np.arange(0, 6, 0.01), 0.8
+    curve = way * (1 - np.exp(-3 * t) * (np.cos(4 * t) + 0.75 * np.sin(4 * t)))
+    truth = t[np.flatnonzero(np.abs(curve - way) > 4 * 0.006)[-1] + 1]
+    found = [mine.step_metrics(t, curve + rng.normal(0, 0.006, len(t)), way)[2] for _ in range(400)]
+    assert np.median(found) == pytest.approx(truth, abs=0.1)
+    swing = way - 0.5 * np.cos(4 * t)
+    assert np.isnan(mine.step_metrics(t[:580], swing[:580], way)[2])  # it ends on its way through 0.3 rad of error
+
+
+def picture(K, T_base_cam, ball, radius, size=(480, 640)):
+    """A red disc on grey where a camera sees the ball, flat: enough for geometry."""
+    X = np.linalg.solve(T_base_cam, np.r_[ball, 1])[:3]
+    u, v = (K @ (X / X[2]))[:2]
+    rows, columns = np.indices(size)
+    rgb = np.full((*size, 3), 120, dtype=np.uint8)
+    r = K[0, 0] * radius / X[2]
+    rgb[np.hypot(columns - u, rows - v) < r] = (200, 30, 40)
+    return rgb, (u, v), r
+
+
+def test_from_the_picture_to_the_tip():
+    K = np.array([[600, 0, 320], [0, 600, 240], [0, 0, 1.0]])
+    T_base_cam = np.array([[0, -1, 0, 0.35], [-1, 0, 0, 0.0], [0, 0, -1, 1.0], [0, 0, 0, 1.0]])  # looks straight down
+    ball = np.array([0.42, -0.15, 0.03])
+    rgb, pixel, radius = picture(K, T_base_cam, ball, 0.03)
+    table = np.array([[0.2, -0.2], [0.2, 0.2], [0.5, 0.2], [0.5, -0.2]])
+    corners = [picture(K, T_base_cam, np.r_[place, 0.03], 0.03)[1] for place in table]
+    place = mine.homography(np.array(corners), table) @ np.r_[pixel, 1]
+    np.testing.assert_allclose(place[:2] / place[2], ball[:2], atol=1e-9)
+    np.testing.assert_allclose(mine.pixel_to_plane(K, T_base_cam, pixel, 0.03), ball, atol=1e-9)
+    seen = {"K": K, "T_base_cam": T_base_cam, "l": arm.l, "limits": arm.limits, "hue": 0.0, "tolerance": 0.3}
+    q = mine.find_and_reach(rgb, np.zeros(3), **seen, radius=round(radius), above=0.06)
+    np.testing.assert_allclose(mine.forward_kinematics(q, arm.l), ball + np.array([0, 0, 0.06]), atol=0.003)
+    dot = np.full_like(rgb, 120)
+    dot[100, 100] = (200, 30, 40)
+    assert mine.find_and_reach(dot, np.zeros(3), **seen, radius=round(radius), above=0.06) is None

@@ -1,0 +1,109 @@
+"""Figures of notebook 14 and what 2.1.2 prints: what is drawn is what was computed; the misprints are misprints."""
+
+import numpy as np
+import pytest
+
+from ir50p_lab.controllers import (
+    AdaptiveControl,
+    ComputedTorque,
+    feedback_linearise,
+    gains_for_poles,
+    pendulum_with_motor_lag,
+)
+from ir50p_lab.course.printed import control as printed
+from ir50p_lab.course.torque import views
+from ir50p_lab.modelling import IR50P, THESIS_C, THESIS_RODS, inverse_dynamics
+from ir50p_lab.modelling.named_arms import thesis_theta
+from ir50p_lab.signals import quintic, sinusoid
+from ir50p_lab.simulation import simulate
+
+MOVE = quintic((0, 0, 0), (0.5, 0.4, -0.4), duration=1)
+
+
+@pytest.fixture(scope="module")
+def run():
+    return simulate(THESIS_RODS, ComputedTorque(THESIS_RODS, 25, 10), MOVE, q0=(0.1, 0, 0), duration=1)
+
+
+def test_tracking_view_draws_angles_and_errors(run):
+    view = views.TrackingView(MOVE, 1, ("a", "b"), error_max=300)
+    view.update(run, run)
+    for joint in range(3):
+        above, below = view.figure.axes[joint], view.figure.axes[3 + joint]
+        assert any(np.array_equal(line.get_ydata(), run.q[::2, joint]) for line in above.lines)
+        np.testing.assert_allclose(below.lines[1].get_ydata(), -1e3 * run.error[::2, joint], atol=1e-9)
+        assert "[rad]" in view.figure.axes[0].get_ylabel() and "simulated" in below.get_xlabel()
+
+
+def test_error_view_and_robustness_view(run):
+    view = views.ErrorView(0.2, 1)
+    view.update(run, run.t, -run.error)
+    np.testing.assert_allclose(view._lines[0].get_ydata(), -run.error[:, 0])
+
+    def of(scale, speed):
+        return simulate(THESIS_RODS, ComputedTorque(scale * THESIS_RODS.theta, speed**2, 2 * speed), MOVE, duration=1)
+
+    robust = views.RobustnessView(np.array([0.8, 1.0]), np.array([5.0, 10.0]), of, duration=1, error_max=50)
+    assert robust.rms.shape == (2, 2) and robust.rms[0, 0] > robust.rms[0, 1] > robust.rms[1, 1]
+    said = robust.update(0.8, 5.0)
+    assert f"{1e3 * of(0.8, 5.0).rms_error[0]:.3g}" in said
+
+
+def test_rms_and_lateness():
+    swing = sinusoid(0.5, 2.0)
+    t = np.arange(0, 10, 0.01)
+
+    class Late:
+        pass
+
+    late = Late()
+    late.t, late.q = t, swing.sample(t - 0.05)[:, 0]
+    assert views.lateness(t, late.q[:, 0], swing, joint=0) == pytest.approx(0.05, abs=2e-3)
+    np.testing.assert_allclose(views.rms(late, swing), 1e3 * np.sqrt(0.5) * 2 * 0.5 * np.sin(0.05), rtol=0.02)
+
+
+def test_pendulum_and_learning_figures():
+    f, g, h, x, numbers = pendulum_with_motor_lag()
+    t, angles = views.pendulum_responses(feedback_linearise(f, g, h, x), numbers, (gains_for_poles((-4, -5, -6)),))
+    assert angles.shape == (1, len(t)) and abs(angles[0, -1]) < 1e-5
+    assert len(views.pendulum_figure(t, angles, ("good",)).axes[0].lines) == 2
+    figure, belief = views.learning_figure(
+        lambda: AdaptiveControl(IR50P, 4, 60, 0.1, limit_pwm=255, lower=-np.inf),
+        {"arm": IR50P},
+        quintic((0, 0.3, -0.3), (0.3, 0.6, -0.6), duration=1),
+        1.0,
+        column=3,
+        joint=2,
+        truth={"arm": 5.0},
+    )
+    assert belief.shape == (1, 101) and belief[0, -1] != belief[0, 0] and len(figure.axes) == 2
+
+
+def test_printed_parameters_are_model_c():
+    given = printed.PARAMETERS_2_1_2
+    np.testing.assert_array_equal(thesis_theta(**given), THESIS_C)
+    assert given["lc"][1] / given["l"][1] == 2.5  # the centre of mass of link 2 is that far out
+
+
+def test_printed_equations_cost_more_than_parameters_20_per_cent_off():
+    """Numbers: checked numerically with a second program (RMS in mrad)."""
+    gains = (400, 2500, 2500), (40, 100, 100)
+    for target, expected in (
+        (quintic((0, 0, 0), (np.pi / 2, np.pi / 2, -np.pi / 3), duration=5), (0.304, 1.55, 2.04)),
+        (sinusoid((0.8, 0.6, 0.6), (1, 1.5, 2)), (0.734, 3.48, 4.53)),
+    ):
+        law = printed.LawWithError(printed.inverse_dynamics_as_printed, *gains, printed.error_2_19, period=0.01)
+        q, qd, _ = target(0.0)
+        found = 1e3 * simulate(THESIS_C, law, target, q0=q, qd0=qd, duration=15).rms_error
+        np.testing.assert_allclose(found, expected, rtol=0.02)
+
+
+def test_printed_errors_and_right_law_is_computed_torque():
+    q_ref, q = np.array([1.0, 2, 3]), np.array([1.0, 2, 3])
+    assert (printed.error_2_7(q_ref, q) == 2 * q).all() and (printed.error_2_4(q_ref, q) == 0).all()
+    law = printed.LawWithError(lambda *x: inverse_dynamics(THESIS_RODS, *x), 25, 10, printed.error_2_19, period=0.01)
+    same = ComputedTorque(THESIS_RODS, 25, 10, filter_hz=np.inf)
+    runs = [simulate(THESIS_RODS, c, MOVE, q0=(0.1, 0, 0), duration=1) for c in (law, same)]
+    np.testing.assert_allclose(runs[0].q, runs[1].q, atol=1e-3)  # they take the velocity in two ways
+    law.reset()
+    assert law.last is None
