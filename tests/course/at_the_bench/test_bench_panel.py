@@ -12,7 +12,7 @@ from ir50p_lab.controllers import PID
 from ir50p_lab.course.at_the_bench.panel import BenchPanel, live_panel
 from ir50p_lab.errors import InputError, LabError
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.signals import hold, sinusoid
+from ir50p_lab.signals import hold
 
 
 def until(condition, timeout=10.0):
@@ -94,26 +94,6 @@ def test_an_error_of_the_loop_appears_in_the_status_line(bench):
     panel.start()
     until(lambda: "a broken reference" in panel.status.value)
     assert not panel.run.alive and isinstance(panel.error, ZeroDivisionError)
-    panel.close()
-
-
-def test_stop_and_start_again(panel):
-    panel.start()
-    panel.stop(wait=False)
-    until(lambda: panel.run.phase == "moving to the rest pose")
-    panel.cut()
-    first = panel.run
-    panel.start()
-    assert panel.run is not first and panel.run.alive
-
-
-def test_a_controller_without_gains_has_none_to_slide(bench):
-    class Push:
-        def step(self, t, measured, reference):
-            return np.array([20.0, 0.0, 0.0])
-
-    panel = live_panel(bench, Push(), sinusoid(0.1, 2.0))
-    assert sorted(panel.controls) == ["q1", "q2", "q3"]
     panel.close()
 
 

@@ -47,20 +47,6 @@ def test_let_go_shows_the_fall_and_its_origin(sinking):
     assert "It stays" in texts(views.let_go_figure(IR50P, still))
 
 
-def test_one_joint_draws_what_it_gets(motion):
-    view = views.one_joint(7, target=0.8, title="t")
-    view.update(motion.t, motion.q[:, 0], motion.u[:, 0])
-    assert np.array_equal(view.lines[0].get_ydata(), motion.q[:, 0])
-    assert "simulated, not measured" in view.axes[-1].get_xlabel()
-
-
-def test_breakaway_names_the_last_command():
-    t = np.arange(100) * 0.01
-    u = np.column_stack([100 * t, 0 * t, 0 * t])
-    figure = views.breakaway_figure(Recording.from_arrays(t, 0 * u, u=u))
-    assert "about 99 counts" in texts(figure) and "origin unknown" in texts(figure)
-
-
 def test_calibration_by_hand_finds_the_unit_again():
     angles, counts, true_slope = views.calibrate_by_hand(IR50P, points=31)
     fit = fit_calibration(angles, counts, arm=IR50P)
@@ -70,12 +56,6 @@ def test_calibration_by_hand_finds_the_unit_again():
     assert len(figure.axes) == 3
     for joint, ax in enumerate(figure.axes):
         np.testing.assert_allclose(ax.lines[-1].get_ydata(), fit.residuals[joint] * fit.slope[joint])
-
-
-def test_the_fast_sine_is_shown_as_its_samples():
-    figure = views.shannon_figure(100, (1, 3), 295)
-    assert "looks like 5 Hz" in texts(figure)
-    assert max(line.get_xdata().max() for line in figure.axes[0].lines[:2]) < 50
 
 
 def test_filter_view_moves_line_and_ring(motion):
@@ -91,14 +71,6 @@ def test_filter_view_moves_line_and_ring(motion):
     assert said[1].startswith("angle: 53 ms late")  # 1/(2 pi 3 Hz)
 
 
-def test_stop_figure_tells_the_rules_apart(motion):
-    figure = views.stop_figure((0.8, 0, 0), motion, motion, motion)
-    assert len(figure.axes) == 4 and "simulated arm" in texts(figure)
-    labels = [[text.get_text() for text in ax.get_legend().get_texts()] for ax in figure.axes[:2]]
-    assert "as printed" in labels[0][1] and "let go" in labels[1][0]
-    assert figure.axes[3].get_xlim() == (motion.t[-1] - 5, motion.t[-1])
-
-
 def test_path_figure_tells_both_errors():
     path = cartesian_circle(IR50P, (0.45, 0, 0.38), 0.05, normal=(1, 0, 0))
     t = np.linspace(0, path.duration, 200)
@@ -108,9 +80,3 @@ def test_path_figure_tells_both_errors():
     assert "done, 0 mm rms" in texts(figure) and f"{off.rms_mm:.0f} mm rms" in texts(figure)
     curves = [line.get_ydata() for line in figure.axes[1].lines]
     assert np.array_equal(curves[1], exact.tip[:, 0]) and np.array_equal(curves[6], off.tip[:, 2])
-
-
-def test_replay_shows_both_commands(motion):
-    figure = views.replay_figure(motion, motion)
-    assert len(figure.axes[1].lines) == 2
-    assert "recorded: simulated arm" in texts(figure)

@@ -46,23 +46,11 @@ def test_a_click_moves_both_sliders_and_redraws(panel):
     assert panel.values == {"kp": 42, "kd": 100.0}
 
 
-def test_values_stay_on_the_scale(panel):
-    click(panel, 99.9, 999)
-    assert panel.values == {"kp": 100, "kd": 500.0}
-
-
 def test_clicks_beside_the_axes_do_nothing(panel):
     updates = panel.updates
     click(panel, -5, 10)
     click(panel, 0.5, 0.5, axes=panel.figure.axes[1])
     assert panel.updates == updates
-
-
-def test_sliders_still_draw_into_the_picture(panel):
-    before = panel.image.value
-    panel.set(kp=60)
-    assert panel.image.value != before
-    assert panel.image in panel.children and panel.image.clickable
 
 
 def test_errors_appear_in_the_status_line(panel):
@@ -84,7 +72,3 @@ def test_the_corners_of_the_axes(panel):
     updates = panel.updates
     click_at(panel, 0.999, 0.5)
     assert panel.updates == updates
-
-
-def test_the_picture_tells_screen_readers_what_to_do(panel):
-    assert "sliders" in panel.image.description and panel.image.layout.width == "600px"

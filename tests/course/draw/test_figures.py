@@ -5,18 +5,16 @@ import io
 import matplotlib
 import numpy as np
 import pytest
-from mpl_toolkits.mplot3d import Axes3D
 from PIL import Image
 
-from ir50p_lab.course.draw.arm3d import ArmView, FrameView, SideView
-from ir50p_lab.course.draw.painter import Painter
-from ir50p_lab.course.draw.style import COLOURS, SETPOINT, figure_style, new_figure
+from ir50p_lab.course.draw.arm3d import ArmView, SideView
+from ir50p_lab.course.draw.style import figure_style, new_figure
 from ir50p_lab.errors import InputError
-from ir50p_lab.modelling import IR50P, THESIS_RODS, Arm, forward_kinematics, frames
+from ir50p_lab.modelling import IR50P, Arm, forward_kinematics, frames
 
 OTHER = Arm(l=(0.12, 0.35, 0.25), m=(2, 1, 0.5), lc=(0.06, 0.1, 0.1), Ixx=(0.01,) * 3, Iyy=(0.01,) * 3, Izz=(0.01,) * 3)
-ARMS = [IR50P, THESIS_RODS, OTHER]
-POSES = [(0, 0, 0), (0.4, 0.9, -1.3), (-2.0, 2.2, 0.7), (1.0, -0.8, -0.2)]
+ARMS = [IR50P, OTHER]
+POSES = [(0.4, 0.9, -1.3), (-2.0, 2.2, 0.7)]
 
 
 def test_a_new_figure_leaves_matplotlib_as_it_was():
@@ -28,12 +26,6 @@ def test_a_new_figure_leaves_matplotlib_as_it_was():
     assert figure_style()["axes.grid"] is True
 
 
-def test_axes_come_row_by_row_with_their_projections():
-    figure = new_figure(rows=1, cols=2, projection=["3d", None], width_ratios=(2, 1))
-    assert [isinstance(ax, Axes3D) for ax in figure.axes] == [True, False]
-    assert [isinstance(ax, Axes3D) for ax in new_figure(rows=2, projection="3d").axes] == [True, True]
-
-
 def test_shared_x_axes_move_together_and_only_the_lowest_is_labelled():
     figure = new_figure(rows=3, sharex=True)
     figure.axes[0].set_xlim(3, 4)
@@ -41,27 +33,6 @@ def test_shared_x_axes_move_together_and_only_the_lowest_is_labelled():
     assert all(ax.get_xlim() == (3, 4) for ax in figure.axes)
     labels = [[t.get_visible() for t in ax.get_xticklabels()] for ax in figure.axes]
     assert not any(labels[0] + labels[1]) and all(labels[2])
-
-
-def test_lines_take_the_colours_of_the_book_and_the_grid_lies_below():
-    ax = new_figure().axes[0]
-    drawn = [ax.plot([0, 1])[0].get_color() for _ in range(3)]
-    assert drawn == [COLOURS["blue"], COLOURS["orange"], COLOURS["green"]]
-    assert ax.get_axisbelow() is True
-    assert SETPOINT["linestyle"] == "--"
-
-
-def test_colours_are_told_apart_by_their_lightness_or_hue_also_without_red_and_green():
-    # Vienot, Brettel, Mollon 1999: what a dichromat sees, in linear RGB
-    simulate = {
-        "protan": [[0.11238, 0.88762, 0], [0.11238, 0.88762, 0], [0.00401, -0.00401, 1]],
-        "deutan": [[0.29275, 0.70725, 0], [0.29275, 0.70725, 0], [-0.02234, 0.02234, 1]],
-    }
-    first = np.array([matplotlib.colors.to_rgb(COLOURS[n]) for n in ("blue", "orange", "green")])
-    for name, matrix in simulate.items():
-        seen = np.clip(first**2.2 @ np.array(matrix).T, 0, 1) ** (1 / 2.2)
-        distances = [np.linalg.norm(seen[i] - seen[j]) for i in range(3) for j in range(i)]
-        assert min(distances) > 0.2, name
 
 
 def test_a_figure_shows_itself_sharp_and_at_its_own_size():
@@ -100,13 +71,6 @@ def test_frames_of_the_view_are_those_of_the_arm():
             np.testing.assert_allclose((end - origin) / np.linalg.norm(end - origin), T[:3, k], atol=1e-12)
 
 
-def test_some_frames_alone():
-    view = ArmView(new_figure(projection="3d").axes[0], IR50P, (0.4, 0.9, -1.3), frames=(1, 3))
-    assert list(view._frames) == [1, 3]
-    tip = np.column_stack(view._frames[3].axes[0].get_data_3d())[0]
-    np.testing.assert_allclose(tip, forward_kinematics(IR50P, view.q), atol=1e-12)
-
-
 def test_a_metre_is_as_long_on_every_axis_and_the_whole_arm_is_in_the_box():
     for arm in ARMS:
         ax = new_figure(projection="3d").axes[0]
@@ -130,15 +94,6 @@ def test_nearer_parts_cover_farther_ones():
         assert outline.get_zorder() < fill.get_zorder()
 
 
-def test_a_trail_appears():
-    figure = new_figure(3, 2, projection="3d")
-    view = ArmView(figure.axes[0], IR50P)
-    painter = Painter(figure)
-    bare = painter.rgba().copy()
-    view.trail(np.array([(0, 0.3, 0.1), (0.3, 0.3, 0.5)]))
-    assert (painter.rgba() != bare).sum() > 100
-
-
 @pytest.mark.parametrize("arm", ARMS, ids=lambda arm: arm.name)
 @pytest.mark.parametrize("q", POSES)
 def test_the_side_view_is_the_arm_seen_from_the_side(arm, q):
@@ -153,15 +108,6 @@ def test_the_side_view_is_the_arm_seen_from_the_side(arm, q):
     assert abs(side.points[2, 0]) == pytest.approx(np.hypot(*tip[:2]), abs=1e-12)
     side.update(q, heading=q[0] + np.pi)
     assert side.points[1, 0] == pytest.approx(-arm.l[1] * c2), "seen from behind"
-
-
-def test_a_frame_moves():
-    figure = new_figure(3, 3, projection="3d")
-    frame = FrameView(figure.axes[0], np.eye(4), "A", 0.5)
-    T = np.eye(4)
-    T[:3, 3] = (1, 2, 3)
-    frame.update(T)
-    np.testing.assert_allclose(np.column_stack(frame.axes[2].get_data_3d())[1], (1, 2, 3.5))
 
 
 @pytest.mark.parametrize("q", [(0, 0), (0, np.nan, 0)])

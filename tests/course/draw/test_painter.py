@@ -127,20 +127,6 @@ def test_fast_drawing_equals_a_full_one_after_each_kind_of_change(make, change):
     assert_same_pixels(painter)
 
 
-@pytest.mark.parametrize(
-    ("make", "changes"),
-    [(plane_figure, IN_THE_PLANE), (space_figure, IN_SPACE)],
-)
-def test_fast_drawing_equals_a_full_one_after_random_changes(make, changes):
-    painter = Painter(make())
-    rng = np.random.default_rng(3)
-    names = [n for n in changes if n != "removed line"]
-    for _ in range(12):
-        for name in rng.choice(names, size=3, replace=False):
-            changes[name](painter.figure, rng)
-        assert_same_pixels(painter)
-
-
 def test_background_is_kept_while_only_what_has_moved_before_moves_again():
     painter = Painter(plane_figure())
     moving = ("data", "title", "text", "moved patch")
@@ -179,23 +165,6 @@ def test_what_moves_under_a_grid_stays_under_it(below):
         assert_same_pixels(painter)
 
 
-def test_a_picture_that_changes_stays_under_the_grid():
-    figure = new_figure(3, 3)
-    picture = figure.axes[0].imshow(np.eye(5))
-    painter = Painter(figure)
-    rng = np.random.default_rng(7)
-    for _ in range(3):
-        picture.set_data(rng.random((5, 5)))
-        assert_same_pixels(painter)
-
-
-def test_hidden_artists_stay_hidden_and_the_others_are_shown_again():
-    figure = plane_figure()
-    figure.axes[0].lines[0].set_visible(False)
-    Painter(figure).rgba()
-    assert [line.get_visible() for line in figure.axes[0].lines] == [False, True]
-
-
 def test_a_failing_artist_leaves_the_figure_as_it_was():
     figure = plane_figure()
     painter = Painter(figure)
@@ -212,12 +181,6 @@ def test_png_holds_the_pixels(shape):
     image.load()
     assert image.format == "PNG"
     np.testing.assert_array_equal(np.asarray(image), rgb)
-
-
-def test_png_of_a_figure_is_its_drawing():
-    painter = Painter(plane_figure())
-    image = np.asarray(Image.open(io.BytesIO(painter.png())))
-    np.testing.assert_array_equal(image, full_drawing(painter.figure)[..., :3])
 
 
 def test_perspective_lines_keep_their_clipping():

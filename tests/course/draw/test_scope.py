@@ -43,12 +43,6 @@ def test_long_windows_are_thinned_always_to_the_same_samples():
         assert len(np.setdiff1d(next_one, one)) <= 1  # moves on, no flicker between odd and even samples
 
 
-def test_nothing_to_show_is_no_error():
-    scope = Scope()
-    scope.show(np.empty(0), np.empty((0, 3)), np.empty((0, 3)), np.empty((0, 3)))
-    assert [len(curve.t) for panel in charts.panels(scope.value) for curve in panel.curves] == 9 * [0]
-
-
 def test_what_is_unknown_or_beyond_all_bounds_leaves_the_rest():
     scope = Scope(window=5)
     t, q, r, u = motion(200)

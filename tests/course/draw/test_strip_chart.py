@@ -55,20 +55,6 @@ def test_a_long_run_keeps_its_last_point_and_a_bounded_frame():
     one.close()
 
 
-def test_nothing_yet():
-    one = chart()
-    one.flush()
-    assert one.values.shape == (0, 2) and [len(curve.t) for curve in panel(one).curves] == [0, 0]
-    one.close()
-
-
-@pytest.mark.parametrize("k", [1, 6])
-def test_a_colour_for_each_curve(k):
-    one = StripChart([str(i) for i in range(k)], duration=1, ylim=(0, 1), ylabel="x [m]", title="t")
-    assert len({curve.colour for curve in panel(one).curves}) == k
-    one.close()
-
-
 def test_names_stand_before_the_first_number_and_late_times_differ():
     one = StripChart(("height",), duration=4, ylim=(-1, 1), ylabel="x [m]", title="t")
     assert ">height<" in one.value

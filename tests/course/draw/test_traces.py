@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
 
 from ir50p_lab.controllers import PID
-from ir50p_lab.course.draw.style import COLOURS
 from ir50p_lab.course.draw.traces import STAMP, JointPlots, Row, Traces
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
@@ -39,21 +37,6 @@ def test_traces_take_their_curves_in_order():
         view.update(T, T)
 
 
-def test_levels_take_the_colours_of_their_curves():
-    view = Traces("t [s]", (0, 1), Row("q [rad]", (0, 2), ("a", "b"), levels=(0.5, 1.5)))
-    assert [to_hex(line.get_color()) for line in view.axes[0].lines[2:]] == [
-        line.get_color().lower() for line in view.lines
-    ]
-    single = Traces("t [s]", (0, 1), Row("q [rad]", (0, 2), levels=(0.5,)))
-    assert single.axes[0].lines[1].get_color() == COLOURS["dark"]
-
-
-def test_a_law_is_not_called_a_simulation():
-    view = Traces("q2 [deg]", (0, 1), Row("torque [N m]", (0, 2), ("a", "b"), legend="lower left"), note="")
-    assert view.axes[0].get_xlabel() == "q2 [deg]"
-    assert view.axes[0].get_legend()._loc == 3  # matplotlib's number of "lower left"
-
-
 def test_joint_plots_show_the_run(run):
     view = JointPlots(TARGET, duration=2, unit="PWM", u_max=255)
     assert view.update(run) is view.figure
@@ -64,11 +47,3 @@ def test_joint_plots_show_the_run(run):
         assert angle.get_ylim()[0] < min(0, TARGET[joint]) and angle.get_ylim()[1] > max(0, TARGET[joint])
         assert angle.get_title() == f"joint {joint + 1}"
     assert "[PWM]" in view.figure.axes[3].get_ylabel()
-
-
-def test_several_runs_need_as_many_labels(run):
-    view = JointPlots(TARGET, duration=2, unit="PWM", u_max=255, labels=("one", "two"))
-    view.update(run, run, titles=("a", "b", "c"))
-    assert view.figure.axes[1].get_title() == "b"
-    with pytest.raises(ValueError, match=r"longer|shorter"):
-        view.update(run)

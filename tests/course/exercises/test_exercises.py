@@ -1,6 +1,5 @@
 """The exercises: every one of every module, then the framework itself."""
 
-import importlib
 import json
 import os
 import subprocess
@@ -14,13 +13,11 @@ import sympy
 
 from ir50p_lab import home
 from ir50p_lab.course import exercises as package
-from ir50p_lab.course.checking.note import Note
 from ir50p_lab.course.exercises import (
     Exercise,
     Function,
     Number,
     check,
-    exercises,
     grade,
     progress,
     solution,
@@ -57,14 +54,6 @@ def test_exercise(exercise):
     assert exercise_rules.problems(exercise) == []
 
 
-@pytest.mark.parametrize("prefix", prefixes())
-def test_module(prefix):
-    module = importlib.import_module(f"{package.__name__}.{prefix}")
-    names = [exercise.name for exercise in module.EXERCISES]
-    assert names == sorted(names) and all(name.startswith(f"{prefix}-") for name in names)
-    assert module.NOTEBOOK[:2].isdigit()
-
-
 @pytest.mark.parametrize("name", [exercise.name for exercise in ALL])
 def test_check_of_a_solution_is_noted(name, capsys, own_progress):
     assert said(capsys, name).startswith(f"{name}: not answered yet")
@@ -95,7 +84,6 @@ def test_the_rules_find_faults():
 # --- the two kinds of answer
 
 VECTOR = Exercise("x-1", "three numbers", Number([1.0, 2.0, 3.5], unit="m"), "because")
-ANGLES = Exercise("x-2", "two angles", Number([0.1, 3.0], unit="rad", angle=True), "because")
 TYPED = Exercise("x-3", "e", Number(np.e, tolerance=1e-3), "because")
 SQUARE = Exercise("x-3", "the square", Function(lambda x: x**2, cases=[1.5, -2.0, np.float64(3)]), "because")
 WHOLE = Exercise(
@@ -109,23 +97,17 @@ WHOLE = Exercise(
         (VECTOR, None, "found None"),
         (VECTOR, "1 2 3", "found the text '1 2 3'"),
         (VECTOR, True, "found True"),
-        (VECTOR, [True, True, True], "found True"),
         (VECTOR, [1, 2], "found 2 numbers; expected 3 numbers in m"),
         (VECTOR, 4, "found a number; expected 3 numbers"),
         (VECTOR, np.zeros((3, 3)), "found a 3 x 3 matrix"),
         (VECTOR, [1, 2, np.nan], "holds nan"),
-        (VECTOR, [1, 2, np.inf], "infinite"),
         (VECTOR, [1, 2, 3j], "complex"),
         (VECTOR, [1, [2], [3, 4]], "different lengths"),
         (VECTOR, [1, 2, ...], "1 of 3 entries are still"),
         (VECTOR, [1, 2, sympy.Symbol("l3")], "still holds the symbol l3"),
         (VECTOR, np.sin, "the function sin, not what it returns"),
-        (VECTOR, lambda: 1, "found a function"),
-        (VECTOR, object(), "type object"),
         (VECTOR, [], "something empty"),
         (SQUARE, 4, "a value, not a function"),
-        (SQUARE, "x**2", "the text"),
-        (SQUARE, float, "found a class"),
     ],
 )
 def test_a_wrong_form_is_named(exercise, answer, words):
@@ -144,9 +126,6 @@ def test_a_wrong_form_is_named(exercise, answer, words):
         (VECTOR, [1000, 2000, 3500], "slip", "millimetres"),
         (SQUARE, lambda x: x * x, "right", ""),
         (SQUARE, lambda x: x * abs(x), "wrong", "right for 2 of 3 inputs"),
-        (SQUARE, lambda x: -x * x, "wrong", "sign"),
-        (SQUARE, lambda x: np.where(x > 0, x, -x) ** 2, "right", ""),
-        (SQUARE, lambda *x: x[0] ** 2, "right", ""),
         (SQUARE, lambda x, y: x, "wrong", "it takes (x, y); it will be called with (x)"),
         (SQUARE, lambda x: 1 / 0, "wrong", "a division by zero"),
         (SQUARE, lambda x: print(end="") or None, "wrong", "is there a `return`"),
@@ -161,11 +140,6 @@ def test_what_is_said(exercise, answer, state, words):
     verdict = grade(exercise, answer)
     assert verdict.state == state, verdict.text
     assert words in verdict.text
-
-
-@pytest.mark.parametrize("answer", [[1.0001, 2, 3.5], [1.2, 2.2, 3.3]])
-def test_what_is_far_off_is_not_called_close(answer):
-    assert "close" not in grade(VECTOR, answer).text
 
 
 def test_a_student_cannot_change_the_question(capsys):
@@ -190,20 +164,13 @@ def test_an_input_that_fails_is_shown():
 # --- names, solutions
 
 
-def test_names():
-    assert exercises()[0] == "start-1"
-    assert len(set(exercises())) == len(exercises())
-
-
 @pytest.mark.parametrize(
     ("name", "words"),
     [
         ("start-11", "Nearest names: start-1"),
         (("stat-5", "start-5")),
         ("zzzzzz", "There is no exercise 'zzzzzz'. Nearest names: "),
-        ("", "no exercise"),
         (3, "name of the exercise comes first"),
-        ([1, 2], "name of the exercise comes first"),
         ("_numbers-1", "no exercise"),
     ],
 )
@@ -273,11 +240,6 @@ def test_unwritable_place(capsys, tmp_path, monkeypatch):
     assert text.startswith("start-1: right.") and "cannot be written (No such file" in text
 
 
-def test_unreadable_file(capsys, own_progress):
-    own_progress.mkdir()
-    assert "cannot be read" in said(capsys, "start-1", solution("start-1"))
-
-
 def test_failed_swap_leaves_the_old_file(capsys, own_progress, monkeypatch):
     check("start-1", solution("start-1"))
     before = own_progress.read_text()
@@ -311,8 +273,3 @@ def test_progress_of_an_earlier_version_is_taken_over(monkeypatch, tmp_path, cap
 
 
 # --- how it looks
-
-
-def test_note_in_a_notebook():
-    shown = Note("slip", "x-1", "use `R @ v`, not <v>")._repr_html_()
-    assert "<code>R @ v</code>" in shown and "&lt;v&gt;" in shown and shown.count("<div") == 1

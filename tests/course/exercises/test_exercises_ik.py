@@ -33,18 +33,3 @@ def test_every_exercise_is_worked_out_here():
 def test_the_answer_by_hand_is_right(name):
     assert grade(BY_NAME[name], BY_HAND[name]).state == "right"
     np.testing.assert_allclose(solution(name), BY_HAND[name], atol=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("name", "answer", "hint"),
-    [
-        ("ik-1", velocity_by_hand("cos"), "printed"),
-        ("ik-1", np.negative(velocity_by_hand()), "sign"),
-        ("ik-1", np.pi / 180 * np.array(velocity_by_hand()), "converted once too often"),
-        ("ik-1", [0.1, -0.1 * np.sqrt(3), 0.5], "turns"),
-    ],
-)
-def test_a_typical_slip_gets_its_own_message(name, answer, hint):
-    verdict = grade(BY_NAME[name], answer)
-    assert verdict.state == "slip"
-    assert hint in verdict.text

@@ -83,16 +83,6 @@ def test_payload_is_a_point_mass_at_the_tip():
     np.testing.assert_allclose(M[:, 2, 2], 0.3 * l3**2, atol=1e-12)
 
 
-def test_twice_as_strong_takes_the_same_counts():
-    double = {name: tuple(2 * np.array(getattr(IR50P, name))) for name in ("m", "Ixx", "Iyy", "Izz")}
-    friction = {name: tuple(2 * np.array(getattr(IR50P.friction, name))) for name in ("fv", "fc", "fs", "Tf")}
-    motors = {name: tuple(2 * np.array(getattr(IR50P.actuators, name))) for name in ("kt", "Jm")}
-    double["friction"] = replace(IR50P.friction, **friction)
-    twice = replace(IR50P, **double, actuators=replace(IR50P.actuators, **motors))
-    np.testing.assert_allclose(twice.theta, 2 * IR50P.theta)
-    np.testing.assert_allclose(twice.theta_pwm, IR50P.theta_pwm, rtol=1e-12)
-
-
 # ---- excitation
 
 
@@ -168,17 +158,6 @@ def test_forgetting_follows_a_payload(records, excitation):
     short, long = view.run(10)[-1], view.run(1e4)[-1]
     assert abs(short - levels[1]) < 0.5 * abs(long - levels[1])
     assert "0.9950" in view.update(10)
-
-
-def test_hysteresis_is_not_to_blame_but_noise_is(excitation):
-    motions, pid = (excitation,) * 2, PID(**PID_TABLES, position_filter_hz=3, filter_hz=np.inf)
-    units = (
-        ArmInstance(spread=0),
-        ArmInstance(spread=0, backlash=(0, 0, 0), dead_zone=(0, 0, 0)),
-        ArmInstance(spread=0, noise=0),
-    )
-    plain, tight, quiet = (results.as_the_thesis(IR50P, unit, motions, pid, (30, 30)) for unit in units)
-    assert np.abs(tight - plain).max() < 2 and (quiet - plain).max() > 4
 
 
 def test_spoilt_data_can_be_repaired(records):

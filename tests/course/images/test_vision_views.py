@@ -16,8 +16,6 @@ from ir50p_lab.vision import (
     Balls,
     blur_diameter,
     canny_steps,
-    circle_votes,
-    image_distance,
     render_scene,
     rgb_to_hsv,
     to_grey,
@@ -79,26 +77,12 @@ def test_mask_panel_redraws(bench):
     assert panel.image.value != before and "% of the picture" in panel.status.value
 
 
-def test_kernel_in_numbers():
-    figure = views.numbers_figure(np.arange(9).reshape(3, 3), 0, 0, 3, title="weights", white=8, source="")
-    assert [t.get_text() for t in figure.axes[0].texts] == [str(k) for k in range(9)]
-    assert figure.axes[0].images[0].get_clim() == (0, 8) and STAMP not in texts(figure)
-
-
 def test_crests_in_classes():
     steps = canny_steps(np.repeat(np.repeat([[0, 20, 70, 70]], 9, axis=1), 20, axis=0).astype(np.uint8), 60, 160)
     shown = np.asarray(views.canny_figure(steps, 60, 160).axes[2].images[0].get_array())
     colours = {tuple(colour) for colour in shown.reshape(-1, 3).tolist()}
     assert (shown[steps.thin > 160] == 1).all() and not shown[steps.thin == 0].any()
     assert len(colours) == 3 and to_rgb("#56B4E9") in colours  # a step of 20 levels is weak
-
-
-def test_votes_are_counted():
-    points = [(12, 20), (28, 20), (20, 12)]
-    figure = views.votes_figure(points, circle_votes(points, (40, 50), 8, width=1.6), (20, 20))
-    figure.savefig(io.BytesIO(), format="png")
-    counted = {(round(t.xy[0]), round(t.xy[1])): t.get_text() for t in figure.axes[1].texts}
-    assert counted[20, 20] == "3" and set(counted.values()) == {"2", "3"}
 
 
 def test_lens():
@@ -112,14 +96,6 @@ def test_lens():
     drawn = panel._painter.backgrounds
     panel.set(focused_at=0.1, object_at=0.1)
     assert panel._painter.backgrounds == drawn  # no slider step draws ticks and grids anew
-
-
-def test_rays_of_the_lens_meet_at_the_image():
-    lens = views.ThinLensView(f=0.004, pixel=3e-6)
-    behind = 1000 * image_distance(0.3, 0.004)  # mm
-    x, y = lens._bundle(0.3, 0.002, (0.0, behind))
-    assert np.allclose(x[1::3], behind) and np.allclose(y[1::3], 0, atol=1e-12)
-    assert np.nanmax(y) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("x", [3.0, 150.0, 316.0])

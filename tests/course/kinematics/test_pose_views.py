@@ -14,12 +14,6 @@ def space_axes():
     return ax
 
 
-def test_space_has_equal_axes_and_three_names():
-    bare = space_axes()
-    assert bare.get_xlim() == bare.get_ylim() == bare.get_zlim() == (-1, 1)
-    assert [text.get_text() for text in bare.texts] == ["x", "y", "z"]
-
-
 def test_brick_turns_as_its_matrix():
     edges = (0.8, 0.4, 0.2)
     brick = Brick(space_axes(), edges=edges)
@@ -76,15 +70,3 @@ def test_at_the_lock_first_and_third_pivot_are_in_line_and_the_axis_is_lost():
     assert view._lost_label.get_text() == "hard" and len(drawn(view._lost)) == 2
     view.update("XYZ", np.radians([60, 10, 35]))
     assert view._lost_label.get_text() == "" and len(drawn(view._lost)) == 0
-
-
-def test_the_price_belongs_to_the_sequence():
-    view = GimbalView()
-    view.update("XYZ", np.zeros(3))
-    middle_deg, gain = view._curve.get_data()
-    assert gain[middle_deg == 90] > 1e3 and gain[middle_deg == 0] == pytest.approx(1)
-    view.update("ZYZ", np.radians([10, 40, 20]))
-    middle_deg, gain = view._curve.get_data()
-    assert gain[middle_deg == 0] > 1e3 and gain[middle_deg == 90] == pytest.approx(1)
-    assert view._title.get_text() == "ZYZ is singular at 0 and 180 deg"
-    assert view._dot.get_ydata()[0] == pytest.approx(gain[middle_deg == 40][0])

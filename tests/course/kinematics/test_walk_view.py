@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.course.kinematics.walk_view import arm_by_table, two_views, walk
+from ir50p_lab.course.kinematics.walk_view import arm_by_table, walk
 from ir50p_lab.modelling import IR50P, dh_matrix, frames
 
 
@@ -31,10 +31,3 @@ def test_the_walker_names_what_it_does_and_never_what_comes_next():
         asks = go(motions)
         assert figure.axes[0].get_title() == said
         assert bool(asks) == (motions == int(motions))
-
-
-def test_two_arms_are_seen_from_above_and_from_the_right(q):
-    T = np.array(frames(IR50P, q))
-    above, side = two_views({"one": T, "another": T[::-1]}).axes
-    np.testing.assert_allclose(above.lines[0].get_xydata(), T[:, [0, 1], 3])
-    np.testing.assert_allclose(side.lines[1].get_xydata(), T[::-1][:, [0, 2], 3])

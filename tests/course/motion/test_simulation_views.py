@@ -41,12 +41,6 @@ def test_order_is_the_slope():
     assert slopes == pytest.approx({"first": 1, "fourth": 4})
 
 
-def test_sinking_figure_says_where_it_ends():
-    on_table = np.array([[0.5, 0, 0.6], [0.5, 0, 0.0]])
-    assert "on the table" in sinking_figure(IR50P, RUN, on_table).axes[0].get_title()
-    assert "12.3 cm" in sinking_figure(IR50P, RUN, on_table + np.array([0, 0, 0.123])).axes[0].get_title()
-
-
 def test_turning_points_of_a_decaying_swing():
     t = np.linspace(0, 10, 100001)
     angle = np.exp(-0.1 * t) * np.cos(2 * t)

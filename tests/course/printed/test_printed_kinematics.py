@@ -73,16 +73,6 @@ def test_the_printed_step_does_not_fit_or_does_not_exist_at_the_start():
         printed.step_1_58(J[:3], dx)
 
 
-def test_the_printed_step_is_the_newton_step_where_the_arm_is_not_singular():
-    Jv, dx = jacobian(THESIS_A, Q)[:3], np.array([0.01, -0.02, 0.005])
-    np.testing.assert_allclose(Jv @ printed.step_1_58(Jv, dx), dx)
-
-
-@pytest.mark.parametrize("angle", [-2.0, -0.8, 0.3, 1.2])
-def test_1_61_is_no_sine(angle):
-    assert abs(printed.sin_q3_1_61(np.cos(angle)) - np.sin(angle)) > 0.1
-
-
 @pytest.mark.parametrize("arm", [IR50P, THESIS_A], ids=lambda arm: arm.name)
 def test_literal_inverse_kinematics_finds_front_down_and_no_other_branch(arm):
     rng = np.random.default_rng(0)
@@ -98,11 +88,3 @@ def test_literal_inverse_kinematics_finds_front_down_and_no_other_branch(arm):
     assert np.mean(np.linalg.norm(reached - behind, axis=1) > 1e-9) > 0.95
     elbow_up = forward_kinematics(arm, found * np.array([1, 1, -1]))
     assert np.all(printed.inverse_kinematics_1_60_to_1_73(arm.l, elbow_up)[:, 2] > 0)
-
-
-def test_the_height_may_be_read_in_another_way():
-    p = forward_kinematics(IR50P, (0.3, 0.4, 0.9))
-    literal = printed.inverse_kinematics_1_60_to_1_73(IR50P.l, p)
-    other = printed.inverse_kinematics_1_60_to_1_73(IR50P.l, p + np.array([0, 0, IR50P.l[0]]))  # z1 = z
-    np.testing.assert_allclose(forward_kinematics(IR50P, literal), p)
-    assert np.linalg.norm(forward_kinematics(IR50P, other) - p) > 0.1

@@ -4,15 +4,11 @@ import numpy as np
 import pytest
 
 from ir50p_lab.controllers import (
-    AdaptiveControl,
     ComputedTorque,
-    feedback_linearise,
-    gains_for_poles,
-    pendulum_with_motor_lag,
 )
 from ir50p_lab.course.printed import control as printed
 from ir50p_lab.course.torque import views
-from ir50p_lab.modelling import IR50P, THESIS_C, THESIS_RODS, inverse_dynamics
+from ir50p_lab.modelling import THESIS_C, THESIS_RODS
 from ir50p_lab.modelling.named_arms import thesis_theta
 from ir50p_lab.signals import quintic, sinusoid
 from ir50p_lab.simulation import simulate
@@ -62,23 +58,6 @@ def test_rms_and_lateness():
     np.testing.assert_allclose(views.rms(late, swing), 1e3 * np.sqrt(0.5) * 2 * 0.5 * np.sin(0.05), rtol=0.02)
 
 
-def test_pendulum_and_learning_figures():
-    f, g, h, x, numbers = pendulum_with_motor_lag()
-    t, angles = views.pendulum_responses(feedback_linearise(f, g, h, x), numbers, (gains_for_poles((-4, -5, -6)),))
-    assert angles.shape == (1, len(t)) and abs(angles[0, -1]) < 1e-5
-    assert len(views.pendulum_figure(t, angles, ("good",)).axes[0].lines) == 2
-    figure, belief = views.learning_figure(
-        lambda: AdaptiveControl(IR50P, 4, 60, 0.1, limit_pwm=255, lower=-np.inf),
-        {"arm": IR50P},
-        quintic((0, 0.3, -0.3), (0.3, 0.6, -0.6), duration=1),
-        1.0,
-        column=3,
-        joint=2,
-        truth={"arm": 5.0},
-    )
-    assert belief.shape == (1, 101) and belief[0, -1] != belief[0, 0] and len(figure.axes) == 2
-
-
 def test_printed_parameters_are_model_c():
     given = printed.PARAMETERS_2_1_2
     np.testing.assert_array_equal(thesis_theta(**given), THESIS_C)
@@ -96,14 +75,3 @@ def test_printed_equations_cost_more_than_parameters_20_per_cent_off():
         q, qd, _ = target(0.0)
         found = 1e3 * simulate(THESIS_C, law, target, q0=q, qd0=qd, duration=15).rms_error
         np.testing.assert_allclose(found, expected, rtol=0.02)
-
-
-def test_printed_errors_and_right_law_is_computed_torque():
-    q_ref, q = np.array([1.0, 2, 3]), np.array([1.0, 2, 3])
-    assert (printed.error_2_7(q_ref, q) == 2 * q).all() and (printed.error_2_4(q_ref, q) == 0).all()
-    law = printed.LawWithError(lambda *x: inverse_dynamics(THESIS_RODS, *x), 25, 10, printed.error_2_19, period=0.01)
-    same = ComputedTorque(THESIS_RODS, 25, 10, filter_hz=np.inf)
-    runs = [simulate(THESIS_RODS, c, MOVE, q0=(0.1, 0, 0), duration=1) for c in (law, same)]
-    np.testing.assert_allclose(runs[0].q, runs[1].q, atol=1e-3)  # they take the velocity in two ways
-    law.reset()
-    assert law.last is None
