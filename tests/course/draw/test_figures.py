@@ -26,15 +26,6 @@ def test_a_new_figure_leaves_matplotlib_as_it_was():
     assert figure_style()["axes.grid"] is True
 
 
-def test_shared_x_axes_move_together_and_only_the_lowest_is_labelled():
-    figure = new_figure(rows=3, sharex=True)
-    figure.axes[0].set_xlim(3, 4)
-    figure.canvas.draw()
-    assert all(ax.get_xlim() == (3, 4) for ax in figure.axes)
-    labels = [[t.get_visible() for t in ax.get_xticklabels()] for ax in figure.axes]
-    assert not any(labels[0] + labels[1]) and all(labels[2])
-
-
 def test_a_figure_shows_itself_sharp_and_at_its_own_size():
     figure = new_figure(3, 2)
     data, size = figure._repr_png_()

@@ -165,15 +165,6 @@ def test_what_moves_under_a_grid_stays_under_it(below):
         assert_same_pixels(painter)
 
 
-def test_a_failing_artist_leaves_the_figure_as_it_was():
-    figure = plane_figure()
-    painter = Painter(figure)
-    figure.axes[0].lines[0].set_transform("nonsense")
-    with pytest.raises(TypeError):
-        painter.rgba()
-    assert all(line.get_visible() for line in figure.axes[0].lines)
-
-
 @pytest.mark.parametrize("shape", [(1, 1, 3), (7, 5, 3), (64, 300, 3)])
 def test_png_holds_the_pixels(shape):
     rgb = np.random.default_rng(5).integers(0, 256, shape, dtype=np.uint8)

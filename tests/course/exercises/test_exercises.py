@@ -2,8 +2,6 @@
 
 import json
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import exercise_rules
@@ -22,7 +20,7 @@ from ir50p_lab.course.exercises import (
     progress,
     solution,
 )
-from ir50p_lab.course.exercises._catalogue import everything, prefixes
+from ir50p_lab.course.exercises._catalogue import everything
 from ir50p_lab.course.lab_book.progress import progress_path, read_progress
 from ir50p_lab.errors import InputError
 
@@ -182,15 +180,6 @@ def test_unknown_name(name, words, capsys):
 
 def test_the_name_is_read_kindly(capsys):
     assert said(capsys, " Start-1 ").startswith("start-1: not answered yet")
-
-
-def test_only_the_module_asked_for_is_imported():
-    code = (
-        "import sys; from ir50p_lab.course.exercises import check; check('start-1');"
-        f"print([m for m in sys.modules if m.rpartition('.')[2] in {prefixes()} and 'exercises' in m], 'sympy' in sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=_root())
-    assert done.stdout.splitlines()[1] == "['ir50p_lab.course.exercises.start'] False"
 
 
 def _root():
