@@ -4,6 +4,7 @@ import ast
 import ctypes
 import errno
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,7 @@ from pathlib import Path
 import pytest
 from mini_project import PROJECT, one_line
 
-from ir50p_lab.launcher import problems
+from ir50p_lab.launcher import commands, problems
 from ir50p_lab.launcher.environment import Environment
 from ir50p_lab.launcher.problems import SetUpError
 
@@ -188,3 +189,10 @@ def test_installer_ended_by_a_signal():
 )
 def test_errors_of_the_system(number, expected):
     assert expected in str(problems.from_error(OSError(number, os.strerror(number)), Path("lab")))
+
+
+def test_environment_that_cannot_be_emptied(project, monkeypatch, capsys):
+    (project.venv / "lib").mkdir(parents=True)
+    monkeypatch.setattr(shutil, "rmtree", lambda path: (_ for _ in ()).throw(PermissionError(13, "no")))
+    assert commands.main(["setup"], root=project.root) == 1
+    assert capsys.readouterr().err.startswith("No permission")
