@@ -1,267 +1,226 @@
-"""Calibrate a camera with pictures of a board: focal lengths, centre, lens distortion, and how sure they are."""
+"""Calibrate a camera with pictures of a checkerboard: OpenCV's fit, with standard errors and a reason for each refusal."""
 
 from collections import Counter
-from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 
-from ir50p_lab.errors import CalibrationError, InputError
-from ir50p_lab.inputs import choice, number
+from ir50p_lab.errors import CalibrationError, ImageError, InputError
 from ir50p_lab.vision.board_pose import transform
-from ir50p_lab.vision.calibration import checks
-from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
-from ir50p_lab.vision.calibration.charuco import find_charuco
-from ir50p_lab.vision.calibration.corners import BoardCorners, find_checkerboard
-from ir50p_lab.vision.calibration.fit import LENS, NAMES, CornerSets, Model, fit, start
-from ir50p_lab.vision.calibration.models import choose, in_percent, total_covariance
-from ir50p_lab.vision.calibration.pictures import common_size, pictures_of, with_bar
+from ir50p_lab.vision.calibration.board import Checkerboard
+from ir50p_lab.vision.calibration.corners import find_checkerboard
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
-from ir50p_lab.vision.calibration.result import Calibration, View
-from ir50p_lab.vision.checks import picture_size, point_list
+from ir50p_lab.vision.calibration.result import LENS, NAMES, Calibration, View
+from ir50p_lab.vision.image import list_images, load_image
 
 _FEWEST = 3
-_SAME = 1.0 / 800  # of the diagonal: a board that moved less is taken for the same view
-_COMMON = 0.8  # of the corners seen, at which two views of part of a board are compared
+_LENS = ("k1", "k2", "p1", "p2")  # k3 runs wild beyond the outermost corner: it must be asked for
 
 
-def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, aspect=None, bend=None, progress=None):
-    """Calibrate a camera from pictures of a checkerboard or ChArUco board.
+def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_LENS, aspect=None, progress=None):
+    """Calibrate a camera from pictures (h, w, 3) or their paths, or a folder: Calibration.
 
-    Corners are found by both of OpenCV's finders and refined to sub-pixel; pictures that are of no use are left out,
-    each with a Reason; the lens model is the simplest that the corners do not object to (k1, k2, p1, p2, k3, see
-    `calibration_models`); standard errors are the larger of two kinds. A bent board is recognised, and then estimated
-    with the camera.
-
-    On OpenCV's photographs left01.jpg to left14.jpg it finds fx = 533.2 +- 0.6 px where OpenCV's left_intrinsics.yml
-    says 535.9: there corners were refined in windows of 23 px, and the smallest squares in left02.jpg measure 22 px, so
-    that corners moved by up to 6 px (1.2 px rms are left in that file). With windows of 11 px OpenCV finds 532.8.
-
-    Args:
-        images: list of pictures (h, w, 3) uint8 RGB, grey ones (h, w), Frames or paths, mixed; or a folder.
-        pattern: (columns, rows) of inner corners; square: side of a square, m. A wrong square scales the distances of
-        the board, nothing else: K and distortion come out the same.
-        board: Checkerboard or Charuco in place of pattern and square.
-        lens: None to let the data choose, or coefficients to estimate, such as ("k1", "k2"); () for none.
-        aspect: None estimates fx and fy; a number prescribes fx/fy (1 for square pixels), and is checked.
-        bend: None tests whether the board is bent, and estimates its shape if so; False takes it for flat all the same.
-        progress: True or False to show a bar; None: from 8 pictures on.
-
-    Returns: Calibration.
-    Raises CalibrationError if fewer than 3 pictures are of use (the message says why), or they determine no camera;
-    InputError for arguments that make no sense; ImageError if `images` is an empty or missing folder.
+    pattern: (columns, rows) of inner corners; square: m, of a side; lens: coefficients to estimate out of k1, k2, p1,
+    p2, k3; aspect: fx/fy if it is known; progress: show a bar (None: from 8 pictures on).
+    Raises CalibrationError if fewer than 3 pictures are of use: the message says why.
     """
-    board = board if board is not None else Checkerboard(pattern, square)
-    if not isinstance(board, Checkerboard):
-        raise InputError(f"board = {board!r}: give a Checkerboard or a Charuco")
-    options = _options(lens, aspect, bend)
-    pictures = pictures_of(images, progress)
-    found, rejected, seen = [], [], Counter()
-    size = common_size(pictures)
-    for picture in with_bar(pictures, progress):
+    board = Checkerboard(pattern, square)
+    images = list_images(images) if isinstance(images, str | Path) else list(images)
+    pictures = [_picture(k, one) for k, one in enumerate(images)]
+    sizes = Counter(grey.shape[::-1] for _, grey in pictures if grey is not None)
+    if not sizes:
+        raise CalibrationError("no picture can be read: " + (str(pictures[0][0]) if pictures else "none was given"))
+    size, found, rejected, seen = sizes.most_common(1)[0][0], [], [], Counter()
+    for k, (name, grey) in enumerate(_with_bar(pictures, progress)):
         try:
-            other = max((one for one in seen if one and seen[one] > len(found)), key=seen.get, default=None)
-            found.append((picture.name, picture.index, _corners_in(picture, board, size, other)))
+            found.append((name, k, _corners(grey, size, board, found, name)))
         except NotUsable as why:
-            rejected.append(Rejected(picture.name, picture.index, why.reason, why.detail))
+            rejected.append(Rejected(name, k, why.reason, why.detail))
             seen[why.seen] += 1
-    found = _without_duplicates(found, size, board, rejected)
     if len(found) < _FEWEST:
         raise CalibrationError(_why_too_few(len(found), rejected, seen, board))
-    return _calibrate(found, size, board, board.points, options, rejected)
-
-
-def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=None, bend=None):
-    """Calibrate from corners that were found elsewhere.
-
-    Args:
-        object_points: for each view the points on the board (n, 3) m, z = 0; or one array for all of them.
-        image_points: for each view the pixels (n, 2); also (n, 1, 2) as OpenCV has them.
-        size: (width, height) of the picture, px. lens, aspect, bend: as for `calibrate`.
-
-    Returns: Calibration. Raises CalibrationError as `calibrate`, InputError for shapes that do not fit, or NaN.
-    """
-    options, size = _options(lens, aspect, bend), picture_size(size)
-    if not np.iterable(image_points) or not np.iterable(object_points) or len(object_points) == 0:
-        raise InputError("object_points and image_points: give lists with the points of each view, (n, 3) and (n, 2)")
-    pixels = [point_list("image_points", one, 2) for one in image_points]
-    if np.ndim(object_points[0]) < 2:
-        object_points = [object_points] * len(pixels)
-    points = [point_list("object_points", one, 3, "m") for one in object_points]
-    if [len(p) for p in points] != [len(xy) for xy in pixels] or min(map(len, points), default=4) < 4:
-        raise InputError("object_points and image_points must hold as many views, and each as many points, at least 4")
-    if len(pixels) < _FEWEST:
-        raise CalibrationError(f"{len(pixels)} views: at least {_FEWEST} are needed, 10 to 20 are good")
-    if any(np.ptp(p[:, 2]) > 0 for p in points):
-        raise InputError("object_points must lie in the plane z = 0 of the board")
-    outside = [xy for xy in np.concatenate(pixels) if (xy < -1.5).any() or (xy > np.array(size) + 0.5).any()]
-    if outside:
-        raise InputError(f"corner {outside[0].round()} lies outside pictures of size = {size}: give (width, height)")
-    everything, inverse = np.unique(np.concatenate(points), axis=0, return_inverse=True)
-    places = np.split(inverse.ravel(), np.cumsum([len(p) for p in points])[:-1])
-    found = [(f"view {i + 1}", i, BoardCorners(*one)) for i, one in enumerate(zip(pixels, places, strict=True))]
-    return _calibrate(found, size, _board_like(everything), everything, options, [])
-
-
-def _calibrate(found, size, board, points, options, rejected):
-    """From (name, index, BoardCorners) to a Calibration: outlier views out, lens chosen, bend of the board tested."""
-    wanted, aspect, bend = options
-    corners = CornerSets([points[one.index] for _, _, one in found], [one.xy for _, _, one in found], size)
-    full = fit(corners, Model(LENS, aspect), start(corners))
-    for _ in range(max(1, len(found) // 4)):
-        outlier = checks.outlier_view(corners, full)
-        if outlier is None:
+    corners = [xy for _, _, xy in found]
+    for _ in range(len(found) // 4):  # a view that fits no camera that fits the others
+        rms = calibrate_corners(board.points, corners, size, lens=lens, aspect=aspect).view_rms
+        worst, others = int(np.argmax(rms)), np.delete(rms, np.argmax(rms))
+        if len(rms) < 5 or rms[worst] < 3 * np.median(others) or rms[worst] < np.mean(others) + 8 * np.std(others):
             break
-        worst, rms, corners, full = outlier
         name, index, _ = found.pop(worst)
-        detail = f"its corners are {rms:.2g} px off the model, those of the others {np.median(full.view_rms):.2g} px"
+        corners.pop(worst)
+        detail = f"its corners are {rms[worst]:.2g} px off the model, those of the others {np.median(others):.2g} px"
         rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
-    best, evidence, tried, said = _best(corners, full, wanted, bend)
-    if not any("was prescribed" in text for text in said):  # else what is prescribed explains the residuals
-        said = checks.two_cameras(corners, best) + said
+    names = [(name, index) for name, index, _ in found]
+    rejected = tuple(sorted(rejected, key=lambda one: one.index))
+    return calibrate_corners(board.points, corners, size, lens=lens, aspect=aspect, names=names, rejected=rejected, board=board)
+
+
+def calibrate_corners(points, corners, size, *, lens=_LENS, aspect=None, names=(), rejected=(), board=None):
+    """The same from corners found before: points (n, 3) m on the board, or one such array a view; corners (n, 2) px."""
+    pixels = [np.asarray(xy, float).reshape(-1, 2) for xy in corners]
+    points = [np.asarray(p, float) for p in ([points] * len(pixels) if np.ndim(points[0]) < 2 else points)]
+    if [len(p) for p in points] != [len(xy) for xy in pixels]:
+        raise InputError("each view needs as many points as corners")
+    if any(name not in LENS for name in lens):
+        raise InputError(f"lens = {lens!r}: give coefficients out of {LENS}")
+    camera, poses, residuals = _fit(points, pixels, size, lens, aspect)
+    said, shape = [], None
+    if board is not None and not aspect:
+        shape = _shape(points, pixels, size, board, sum((e**2).sum() for e in residuals))
+    if shape is not None:
+        points = [shape] * len(points)
+        camera, poses, residuals = _fit(points, pixels, size, lens, aspect, _matrix(camera))
+        said.append(f"the board is bent by {1e3 * np.ptp(shape[:, 2]):.1f} mm: glue it to glass or a plate and repeat")
+    stderr, covariance, sigma, apart = _errors(points, residuals, camera, poses, lens, aspect)
+    T = [transform(*pose) for pose in poses]
+    names = names or [(f"view {k + 1}", k) for k in range(len(pixels))]
+    K, distortion = _matrix(camera), camera[4:]
     views = tuple(
-        View(
-            name=name,
-            index=index,
-            points=points[one.index],
-            corners=one.xy,
-            residuals=residuals,
-            T_cam_board=transform(pose[:3], pose[3:]),
-        )
-        for (name, index, one), residuals, pose in zip(found, best.residuals, best.poses, strict=True)
+        View(name=name, index=k, points=p, corners=xy, residuals=e, T_cam_board=pose)
+        for (name, k), p, xy, e, pose in zip(names, points, pixels, residuals, T, strict=True)
     )
-    total = total_covariance(best, tried, full if wanted is None else best)
-    result = Calibration(
-        K=np.array([[best.camera[0], 0, best.camera[2]], [0, best.camera[1], best.camera[3]], [0, 0, 1.0]]),
-        distortion=best.camera[4:9].copy(),
-        rms=best.rms,
-        stderr=_named(total, best),
-        covariance=total,
+    found = Calibration(
+        K=K,
+        distortion=distortion,
+        rms=float(np.sqrt(np.mean([(e**2).sum(axis=1).mean() for e in residuals]))),
+        stderr=stderr,
+        covariance=covariance,
         views=views,
-        rejected=tuple(sorted(rejected, key=lambda one: one.index)),
+        rejected=rejected,
         size=size,
-        board=board,
-        model=best.model.lens,
-        evidence=evidence,
-        sigma=best.sigma,
-        sag=best.camera[9:].copy() if best.model.bent else None,
-        stderr_corners=_named(best.by_corners, best),
-        stderr_views=_named(best.by_views if len(views) > 3 else best.by_corners, best),
+        board=board or Checkerboard(),
+        model=tuple(name for name in LENS if name in lens),
+        sigma=sigma,
     )
-    if len(rejected) > len(views):
-        said.append(f"{len(rejected)} of {len(rejected) + len(views)} pictures were of no use: see `rejected`")
-    odd = sum(one.reason == Reason.OUTLIER for one in rejected)
-    if odd > 1:
-        said.append(f"{odd} views fit no camera that fits the others: another camera, or zoomed? See `rejected`")
-    return replace(result, warnings=(*said, *checks.warnings_about(result)))
+    warnings = (*said, *_warnings(found))
+    if apart > 3:
+        warnings = ("the views contradict each other: two cameras, or was zoom, focus or the board changed?", *warnings)
+    if aspect:
+        free = _fit(points, pixels, size, lens, None)[0]
+        if abs(free[0] / free[1] / aspect - 1) > 0.0075:
+            warnings = (f"aspect = {aspect} was prescribed, but the corners say fx/fy = {free[0] / free[1]:.4f}", *warnings)
+    object.__setattr__(found, "warnings", warnings)
+    return found
 
 
-def _best(corners, full, wanted, bend):
-    """(CameraFit, evidence, models tried, warnings): lens as the data say or as asked for, board flat or bent, aspect.
+def _matrix(camera):
+    return np.array([[camera[0], 0, camera[2]], [0, camera[1], camera[3]], [0, 0, 1]])
 
-    Whether the board is bent is asked with all that the lens needs: what a prescribed lens lacks looks like a bend.
-    """
-    said = []
 
-    def estimate(full):
-        if wanted is None:
-            best, evidence, tried = choose(corners, full)
-            return best, best, None, evidence, tried
-        held = fit(corners, full.model.with_lens(wanted), full)
-        lacking, wide = checks.lacking_terms(corners, held, full)
-        return held, wide, lacking, (lacking,) if lacking else (), ((held.camera, 0.0),)
-
-    best, wide, lacking, evidence, tried = estimate(full)
+def _fit(points, pixels, size, lens, aspect, start=None):
+    """camera (9,), poses [(rvec, tvec)], residuals [(n, 2)]."""
+    flags = 0
+    for name, flag in zip(("k1", "k2", "k3"), (cv2.CALIB_FIX_K1, cv2.CALIB_FIX_K2, cv2.CALIB_FIX_K3), strict=True):
+        flags |= 0 if name in lens else flag
+    flags |= 0 if "p1" in lens else cv2.CALIB_ZERO_TANGENT_DIST
+    if start is not None:  # a bent board needs one
+        flags |= cv2.CALIB_USE_INTRINSIC_GUESS
+    if aspect:
+        start, flags = np.diag([aspect, 1.0, 1.0]), flags | cv2.CALIB_FIX_ASPECT_RATIO
+    many = [[np.float32(one) for one in each] for each in (points, pixels)]
     try:
-        shape, bent = checks.bent_board(corners, wide)
-        if shape.kept and bend is None:
-            best, wide, lacking, evidence, tried = estimate(fit(corners, bent.model.with_lens(LENS), bent))
-        evidence += (shape,)
-    except CalibrationError:
-        shape = None
-        said.append("the views are too few or too much alike to test whether the board is bent")
-    if best.model.bent:
-        size, error = checks.sag(corners, best)
-        said.append(
-            f"the board is bent by {1e3 * size:.2g} +- {1e3 * error:.1g} mm: its shape was estimated with the camera. "
-            "Glue it to glass or a plate and repeat"
-        )
-    prescribed = [("lens", best.model.lens, wide.model.lens, lacking)]
-    if bend is False:
-        prescribed.append(("bend", False, "that the board is bent", shape))
-    if full.model.aspect:
-        question, ratio = checks.free_aspect(corners, wide)
-        evidence += (question,)
-        prescribed.append(("aspect", full.model.aspect, f"fx/fy = {ratio:.4f}", question))
-    said += [
-        f"{name} = {value} was prescribed, but the corners say {says} (by chance: {in_percent(question.p_value)}): "
-        f"leave {name}=None"
-        for name, value, says, question in prescribed
-        if question is not None and question.kept
-    ]
-    return best, evidence, tried, said
+        _, K, d, *poses = cv2.calibrateCamera(*many, size, start, None, flags=flags, criteria=(3, 100, 1e-9))
+    except cv2.error:
+        remedy = "tilt the board in different directions by 20 to 45 degrees, and fill the picture"
+        raise CalibrationError(f"OpenCV finds no camera for these {len(points)} views: {remedy}") from None
+    camera = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *d.ravel()[:5]])
+    poses = list(zip(*poses, strict=True))
+    residuals = [xy - cv2.projectPoints(p, *pose, K, d)[0][:, 0] for p, xy, pose in zip(points, pixels, poses, strict=True)]
+    return camera, poses, residuals
 
 
-def _named(covariance, fitted):
-    used = fitted.model.columns.any(axis=1)
-    return {name: float(np.sqrt(covariance[i, i])) if used[i] else float("nan") for i, name in enumerate(NAMES)}
+def _shape(points, pixels, size, board, cost):
+    """The points (n, 3) of a board that is clearly bent, z from its plane; or None. OpenCV frees each (Strobl, Hirzinger)."""
+    many = [[np.float32(one) for one in each] for each in (points, pixels)]
+    flags = cv2.CALIB_FIX_K3
+    rms, *_, free = cv2.calibrateCameraRO(*many, size, board.pattern[0] - 1, None, None, flags=flags, criteria=(3, 60, 1e-9))
+    if rms**2 * sum(map(len, points)) > 0.25 * cost:
+        return None
+    free = np.float64(free).reshape(-1, 3)
+    plane = np.column_stack([free[:, :2], np.ones(len(free))])
+    free[:, 2] -= plane @ np.linalg.lstsq(plane, free[:, 2], rcond=None)[0]
+    return free
 
 
-def _options(lens, aspect, bend):
-    """(coefficients of the lens, aspect, bend), checked. Raises InputError."""
-    if aspect is not None:
-        aspect = number("aspect", aspect, "> 0", hint="fx/fy, 1 for square pixels, or None to estimate it")
-    if bend is not None and choice("bend", bend, (True, False)):
-        raise InputError("bend = True: give None to test for a bend and estimate it, or False for a flat board")
-    if lens is not None:
-        names = [lens] if isinstance(lens, str) or not np.iterable(lens) else list(lens)
-        if any(name not in LENS for name in names):
-            raise InputError(f"lens = {lens!r}: give coefficients out of {LENS}, or None to let the data choose")
-        lens = tuple(name for name in LENS if name in names)
-    return lens, aspect, bend
+def _errors(points, residuals, camera, poses, lens, aspect):
+    """Standard errors by name, covariance (9, 9), sigma: the larger of corners on their own, and views on their own."""
+    free = np.array([True, not aspect, True, True, *(name in lens for name in LENS)])
+    B = np.eye(9)[:, free]
+    if aspect:
+        B[1, 0] = 1 / aspect
+    total, pull = np.zeros((B.shape[1],) * 2), []
+    for p, e, pose in zip(points, residuals, poses, strict=True):
+        J = cv2.projectPoints(p, *pose, _matrix(camera), camera[4:])[1]
+        Q, _ = np.linalg.qr(J[:, :6])
+        A = J[:, 6:15] @ B
+        A = A - Q @ (Q.T @ A)  # the pose is free
+        total += A.T @ A
+        pull.append(A.T @ e.ravel())
+    count = sum(e.size for e in residuals)
+    sigma = np.sqrt(sum((e**2).sum() for e in residuals) / max(1, count - B.shape[1] - 6 * len(poses)))
+    scale = np.sqrt(np.diag(total))
+    inverse = np.linalg.inv(total / np.outer(scale, scale)) / np.outer(scale, scale)
+    by_corners = sigma**2 * inverse
+    n = len(poses)
+    by_views = inverse @ (np.transpose(pull) @ pull) @ inverse * n / max(n - 1, 1)
+    larger = np.sqrt(np.maximum(np.diag(by_views) / np.diag(by_corners), 1))
+    V = B @ (by_corners * np.outer(larger, larger)) @ B.T
+    used = B.any(axis=1)
+    return {n: float(np.sqrt(V[k, k])) if used[k] else np.nan for k, n in enumerate(NAMES)}, V, float(sigma), larger[0]
 
 
-def _board_like(points):
-    """The checkerboard that points (n, 3) seem to be of, for coverage and advice."""
-    columns, rows = (len(np.unique(points[:, k].round(9))) for k in (0, 1))
-    width = float(np.ptp(points[:, 0]))
-    return Checkerboard((max(columns, 3), max(rows, 3)), width / max(columns - 1, 1) if width else 0.025)
+def _warnings(found):
+    (w, h), K, views = found.size, found.K, found.views
+    if found.rms > 0.7 * max(1, w / 1280):
+        yield f"rms {found.rms:.2g} px is more than corners err: a fisheye, a bent board, or did focus or zoom change?"
+    ratio = K[0, 0] / K[1, 1]
+    if abs(ratio - 1) > 0.0075:
+        yield f"fx/fy = {ratio:.3f}: pixels are not square. Was the picture stretched, or is the board bent? Use a flat plate"
+    if (np.abs(K[:2, 2] - [(w - 1) / 2, (h - 1) / 2]) > (0.15 * w, 0.15 * h)).any():
+        yield f"the centre ({K[0, 2]:.0f}, {K[1, 2]:.0f}) is far from the middle: were the pictures cropped?"
+    relative = max(found.stderr["fx"] / K[0, 0], found.stderr["fy"] / K[1, 1])
+    if relative > 0.01:
+        yield f"the focal length is known to {100 * relative:.1f} % only: tilt the board more, take more views"
+    if len(views) < 8:
+        yield f"{len(views)} views are few: take 10 to 20"
+    tilted = sum(v.tilt > np.deg2rad(15) for v in views)
+    if tilted < 3:
+        yield f"too few tilts: {tilted} of {len(views)} views by more than 15 degrees; only they tell focal length"
+    x, y = (np.concatenate([v.corners for v in views]) * (8, 6) / found.size).astype(int).T
+    if (share := len(set(zip(x, y, strict=True))) / 48) < 0.5:
+        yield f"corners fill {100 * share:.0f} % of the picture only: hold the board into its corners, too"
 
 
-def _corners_in(picture, board, size, other):
-    if picture.problem is not None:
-        raise NotUsable(Reason.UNREADABLE, picture.problem)
-    if picture.size != size:
-        raise NotUsable(
-            Reason.OTHER_SIZE,
-            f"{picture.size[0]}x{picture.size[1]}, most are {size[0]}x{size[1]}: another size is another camera",
-        )
-    import cv2
-
-    try:
-        if isinstance(board, Charuco):
-            return find_charuco(picture.image, board)
-        return find_checkerboard(picture.image, board.pattern, other)
-    except cv2.error as error:  # one picture must not lose the others
-        raise NotUsable(Reason.NO_BOARD, f"OpenCV finds no corners in it: {' '.join(str(error).split())}") from error
+def _picture(index, one):
+    """(name or what is wrong, grey picture or None)."""
+    if isinstance(one, str | Path):
+        try:
+            one, name = load_image(one, allow_grey=True), Path(one).name
+        except ImageError:
+            return Path(one).name, None
+    else:
+        name, one = getattr(one, "source", f"picture {index + 1}"), getattr(one, "image", one)
+    return name, one if one.ndim == 2 else cv2.cvtColor(one, cv2.COLOR_RGB2GRAY)
 
 
-def _without_duplicates(found, size, board, rejected):
-    """The views in which the board is not where it was before; the others go to `rejected`."""
-    kept = []
-    places = np.full((len(found), len(board.points), 2), np.nan)
-    for k, (name, index, corners) in enumerate(found):
-        places[k, corners.index] = corners.xy
-        moved = np.linalg.norm(places[kept] - places[k], axis=2)
-        common, still = np.isfinite(moved).sum(axis=1), (moved < _SAME * np.hypot(*size)).sum(axis=1)
-        same = np.flatnonzero((common >= _COMMON * len(corners.index)) & (still > common / 2))
-        if len(same):
-            least, first = np.nanmedian(moved[same[0]]), found[kept[same[0]]][0]
-            detail = f"the board is where it was in {first}, {least:.2f} px away: move it between pictures"
-            rejected.append(Rejected(name, index, Reason.DUPLICATE, detail))
-        else:
-            kept.append(k)
-    return [found[k] for k in kept]
+def _with_bar(pictures, progress):
+    if progress is False or (progress is None and len(pictures) < 8):
+        return pictures
+    from tqdm.auto import tqdm
+
+    return tqdm(pictures, desc="finding corners", leave=False)
+
+
+def _corners(grey, size, board, found, name):
+    if grey is None:
+        raise NotUsable(Reason.UNREADABLE, f"{name} is no picture, or damaged")
+    if grey.shape[::-1] != size:
+        raise NotUsable(Reason.OTHER_SIZE, "{}x{}, most are {}x{}".format(*grey.shape[::-1], *size))
+    xy = find_checkerboard(grey, board.pattern).xy
+    for other, _, before in found:
+        if np.median(np.linalg.norm(xy - before, axis=1)) < np.hypot(*size) / 800:
+            raise NotUsable(Reason.DUPLICATE, f"the board is where it was in {other}: move it between pictures")
+    return xy
 
 
 def _why_too_few(count, rejected, seen, board):
@@ -269,9 +228,8 @@ def _why_too_few(count, rejected, seen, board):
     message = f"{count} usable pictures of a {board}, at least {_FEWEST} are needed, 10 to 20 are good"
     if rejected:
         message += "; the others: " + ", ".join(f"{n} {reason}" for reason, n in reasons.most_common())
-    likely, often = max(((parts, n) for parts, n in seen.items() if parts), key=lambda one: one[1], default=(None, 0))
-    if likely and (reasons.get(Reason.WRONG_BOARD) or often >= _FEWEST):
-        message += f". They seem to show a board with {likely[0]}x{likely[1]} inner corners: pattern={likely}"
-    elif rejected:
-        message += f". The first: {Path(rejected[0].name).name}: {rejected[0].detail}"
+        message += f". The first: {rejected[0].detail}"
+    seen.pop(None, None)
+    if seen:
+        message += ". They seem to show a board with {}x{} inner corners".format(*seen.most_common(1)[0][0])
     return message
