@@ -7,11 +7,13 @@ import cv2
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, ImageError, InputError
+from ir50p_lab.inputs import number
 from ir50p_lab.vision.board_pose import transform
 from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.calibration.corners import find_checkerboard
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
 from ir50p_lab.vision.calibration.result import LENS, NAMES, Calibration, View
+from ir50p_lab.vision.checks import picture_size, point_list
 from ir50p_lab.vision.image import list_images, load_image
 
 _FEWEST = 3
@@ -26,7 +28,12 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_LENS, aspect=None, 
     Raises CalibrationError if fewer than 3 pictures are of use: the message says why.
     """
     board = Checkerboard(pattern, square)
+    _options(lens, aspect)
+    if isinstance(images, np.ndarray) and images.ndim < 4 or not np.iterable(images) or hasattr(images, "image"):
+        raise InputError("images: give a list of pictures or paths, or a folder; one picture is not enough")
     images = list_images(images) if isinstance(images, str | Path) else list(images)
+    if not images:
+        raise InputError("no pictures were given: take 10 to 20 of the board, in different places and tilts")
     pictures = [_picture(k, one) for k, one in enumerate(images)]
     sizes = Counter(grey.shape[::-1] for _, grey in pictures if grey is not None)
     if not sizes:
@@ -57,12 +64,19 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_LENS, aspect=None, 
 
 def calibrate_corners(points, corners, size, *, lens=_LENS, aspect=None, names=(), rejected=(), board=None):
     """The same from corners found before: points (n, 3) m on the board, or one such array a view; corners (n, 2) px."""
-    pixels = [np.asarray(xy, float).reshape(-1, 2) for xy in corners]
-    points = [np.asarray(p, float) for p in ([points] * len(pixels) if np.ndim(points[0]) < 2 else points)]
-    if [len(p) for p in points] != [len(xy) for xy in pixels]:
-        raise InputError("each view needs as many points as corners")
-    if any(name not in LENS for name in lens):
-        raise InputError(f"lens = {lens!r}: give coefficients out of {LENS}")
+    size = picture_size(size)
+    if not np.iterable(corners) or not np.iterable(points) or len(points) == 0:
+        raise InputError("object_points and image_points: give lists with the points of each view, (n, 3) and (n, 2)")
+    pixels = [point_list("image_points", one, 2) for one in corners]
+    points = [points] * len(pixels) if np.ndim(points[0]) < 2 else points
+    points = [point_list("object_points", one, 3, "m") for one in points]
+    if [len(p) for p in points] != [len(xy) for xy in pixels] or min(map(len, points), default=4) < 4:
+        raise InputError("object_points and image_points must hold as many views, and each as many points, at least 4")
+    if len(pixels) < _FEWEST:
+        raise CalibrationError(f"{len(pixels)} views: at least {_FEWEST} are needed, 10 to 20 are good")
+    if any(np.ptp(p[:, 2]) > 0 for p in points):
+        raise InputError("object_points must lie in the plane z = 0 of the board")
+    lens, aspect = _options(lens, aspect)
     camera, poses, residuals = _fit(points, pixels, size, lens, aspect)
     said, shape = [], None
     if board is not None and not aspect:
@@ -101,6 +115,15 @@ def calibrate_corners(points, corners, size, *, lens=_LENS, aspect=None, names=(
             warnings = (f"aspect = {aspect} was prescribed, but the corners say fx/fy = {free[0] / free[1]:.4f}", *warnings)
     object.__setattr__(found, "warnings", warnings)
     return found
+
+
+def _options(lens, aspect):
+    if aspect is not None:
+        aspect = number("aspect", aspect, "> 0", hint="fx/fy, 1 for square pixels, or None to estimate it")
+    names = [lens] if isinstance(lens, str) or not np.iterable(lens) else list(lens)
+    if any(name not in LENS for name in names):
+        raise InputError(f"lens = {lens!r}: give coefficients out of {LENS}")
+    return tuple(names), aspect
 
 
 def _matrix(camera):
@@ -181,6 +204,8 @@ def _warnings(found):
     relative = max(found.stderr["fx"] / K[0, 0], found.stderr["fy"] / K[1, 1])
     if relative > 0.01:
         yield f"the focal length is known to {100 * relative:.1f} % only: tilt the board more, take more views"
+    if not 0.04 < (away := float(np.median([np.linalg.norm(v.T_cam_board[:3, 3]) for v in views]))) < 15:
+        yield f"the board seems {away:.3g} m away: is square in metres? K and distortion do not depend on it"
     if len(views) < 8:
         yield f"{len(views)} views are few: take 10 to 20"
     tilted = sum(v.tilt > np.deg2rad(15) for v in views)
