@@ -27,7 +27,6 @@ class Seen:
     """
 
     position: np.ndarray | None
-    stderr: np.ndarray | None
     ball: object
     image: np.ndarray = field(repr=False)
     simulated: bool
@@ -71,14 +70,13 @@ class BallLocator:
         """
         balls = find_balls(image, self.colour, camera=self.plane.pinhole)
         if not balls:
-            return Seen(None, None, None, image, simulated, balls.reason)
+            return Seen(None, None, image, simulated, balls.reason)
         xy = [balls[0].x, balls[0].y]
         try:
             place = self.plane.to_points(xy, self.radius)
         except VisionError as error:
-            return Seen(None, None, balls[0], image, simulated, str(error))
-        stderr = self.plane.standard_error(xy, self.radius, sigma_px=self.sigma_px)
-        return Seen(moved(self.T_base_table, place), stderr, balls[0], image, simulated)
+            return Seen(None, balls[0], image, simulated, str(error))
+        return Seen(moved(self.T_base_table, place), balls[0], image, simulated)
 
     def to_image(self, p):
         """Pixel (2,) of a point p (3,) m of the base frame."""
