@@ -11,8 +11,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submodules=["rendering"],
     submod_attrs={
-        "camera.interface": ["Frame"],
-        "camera.opening": ["open_camera"],
+        "camera": ["Camera", "Frame", "Webcam", "open_camera"],
         "image": ["check_image", "is_rendered", "list_images", "load_image", "save_image", "to_grey"],
         "calibration.calibrate": ["calibrate", "calibrate_corners"],
         "calibration.board": ["Checkerboard"],
@@ -25,9 +24,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "processing.hough": ["circle_hough", "circle_votes", "strongest"],
         "processing.hsv": ["hue_distance", "hue_in", "rgb_to_hsv", "threshold"],
         "lens": ["blur_diameter", "image_distance", "rays_on_sensor"],
-        "camera.picture_folder": ["PictureFolder"],
         "pinhole": ["Pinhole"],
-        "camera.rendered_camera": ["RenderedCamera"],
         "rendering": ["render_scene"],
         "reaching.plan": ["plan", "reach_pose", "work_area"],
         "reaching.reach": ["Reacher", "reach"],
@@ -35,6 +32,5 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "reaching.ball_locator": ["BallLocator", "Seen"],
         "processing.smoothing": ["KERNEL_3_2", "convolve", "gaussian_kernel"],
         "table_plane": ["TablePlane"],
-        "camera.webcam": ["Webcam"],
     },
 )
