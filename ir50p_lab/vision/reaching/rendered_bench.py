@@ -10,8 +10,7 @@ from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.board_pose import moved
 from ir50p_lab.vision.camera import Camera, Frame
 from ir50p_lab.vision.reaching.ball_locator import MARKER_AT
-from ir50p_lab.vision.rendering import SceneBall, bench_camera, bench_scene, render_scene
-from ir50p_lab.vision.rendering.arm_shape import arm_sticks
+from ir50p_lab.vision.rendering import SceneBall, arm_sticks, bench_camera, bench_scene, render_scene
 
 _RADIUS = 0.03  # m, of the balls
 _MARKER = 0.012  # m, radius of the green ball on the wrist: 10 px in the default camera (assumed)
