@@ -113,11 +113,8 @@ class BallLocator:
         Args: arm: Arm; q: (3,) rad; xy: (2,) px; sigma_q: (3,) rad.
         Returns: e (3,) rad. If the picture contradicts q by more than 5 sigma: VisionError.
         """
-        e, sigma_q = np.zeros(3), vector3("sigma_q", sigma_q)
-        for _ in range(4):  # Gauss-Newton; errors of 20 mrad are almost linear
-            A = np.vstack([self.marker_jacobian(arm, q + e) / self.sigma_px, np.diag(1 / sigma_q)])
-            off = (xy - self.marker_pixel(arm, q + e)) / self.sigma_px
-            e = e + np.linalg.lstsq(A, np.concatenate([off, -e / sigma_q]), rcond=None)[0]
+        H, P = self.marker_jacobian(arm, q), np.diag(np.square(sigma_q))
+        e = P @ H.T @ np.linalg.solve(H @ P @ H.T + self.sigma_px**2 * np.eye(2), xy - self.marker_pixel(arm, q))
         if (np.abs(e) > _SPIKE * sigma_q).any():
             off = np.linalg.norm(xy - self.marker_pixel(arm, q))
             raise VisionError(
