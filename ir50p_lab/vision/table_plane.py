@@ -63,7 +63,7 @@ class TablePlane:
         grey = to_grey(image)
         check_picture_size(camera, grey.shape[::-1])
         try:
-            corners = find_checkerboard(grey, pattern).xy
+            corners = find_checkerboard(grey, pattern)
         except NotUsable as why:
             raise CalibrationError(f"the board on the table is not found: {why}") from None
         return cls.from_board(camera, corners, board_points(pattern, square, T_table_board))

@@ -1,71 +1,163 @@
-"""Corners of a checkerboard in a picture, by OpenCV's sector-based finder, or the reason why there are none to use."""
-
-from dataclasses import dataclass
+"""Corners of a checkerboard in a picture, to a few hundredths of a pixel, or the reason why there are none to use."""
 
 import cv2
 import numpy as np
 
+from ir50p_lab.vision.calibration.board import check_pattern
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 
 _SEARCHED = 1280  # px; corners are searched in a picture reduced to this, and refined in the picture itself
-
-
-@dataclass(frozen=True, eq=False)
-class BoardCorners:
-    """Corners found in one picture: xy (n, 2) pixels; index (n,), places in `board.points`."""
-
-    xy: np.ndarray
-    index: np.ndarray
+_SMOOTH = 0.8  # px, blur of the copy for the second finder: in a dark picture it would follow every speck of noise
+_PARTS = (4, 4), (4, 3)  # corners: parts of a board that are looked for; smaller ones are not told from writing
+_SOFT = 0.55  # squares: if an edge rises from dark to light over more than this, neighbouring edges run together
+_UNKNOWN = 100  # px; OpenCV gives this or more where squares are too small for it to follow an edge
+_WINDOW = 0.36  # smallest squares, half the window of the refinement: if larger, the next edges come in
+_WINDOW_PX = (2, 12)  # at least and at most
+_CROSSING = (
+    0.3  # if squares outside the last corners differ by less than this part of those inside, the board ends there
+)
+_MARGIN = 1.3  # squares: if the picture ends nearer to the last corner than this, the next one would lie outside
 
 
 def find_checkerboard(grey, pattern):
-    """All inner corners, in the order of `Checkerboard`: BoardCorners. Raises NotUsable with the Reason."""
-    columns, rows = pattern
+    """All inner corners of a checkerboard, (n, 2) px in the order of `Checkerboard.points`.
+
+    `findChessboardCornersSB` looks for the board or a larger one; where it sees none, `findChessboardCorners` is asked,
+    which is better in poor light. `cornerSubPix` refines the corners in a window from the size of the smallest square.
+
+    Args: grey: (h, w) uint8; pattern: (columns, rows).
+    Raises NotUsable with the Reason, CalibrationError for a pattern that cannot be.
+    """
+    pattern = check_pattern(pattern)
+    try:
+        grid = _search(grey, pattern)
+        _refuse_soft(grid, grey)
+        _check_whole(grid, grey, pattern)
+        return _refine(_in_order(grid, grey, pattern), grey)
+    except cv2.error as error:  # one picture, such as one of a few pixels, must not lose the others
+        raise NotUsable(Reason.NO_BOARD, f"OpenCV finds no corners in it: {' '.join(str(error).split())}") from error
+
+
+def _search(grey, pattern):
+    """Rough corners (n, m, 2) px of the whole board, whatever its pattern, or of a part of it."""
     factor = max(1.0, max(grey.shape) / _SEARCHED)
     small = cv2.resize(grey, None, fx=1 / factor, fy=1 / factor, interpolation=cv2.INTER_AREA)
-    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_LARGER
-    ok, xy, meta = cv2.findChessboardCornersSBWithMeta(small, pattern, flags)
-    shape = meta.shape if ok else (rows, columns)
-    if not ok:
-        ok, xy = cv2.findChessboardCorners(cv2.GaussianBlur(small, (0, 0), 0.8), pattern)
-    if not ok:
-        ok, xy, meta = cv2.findChessboardCornersSBWithMeta(small, (3, 3), flags)
-        if not ok:
-            raise NotUsable(Reason.NO_BOARD, "nothing like a checkerboard: more light, less glare, the whole board in view")
-        shape = meta.shape
-    grid = (xy.reshape(*shape, 2).astype(float) + 0.5) * factor - 0.5
-    side = min(np.linalg.norm(np.diff(grid, axis=k), axis=2).min() for k in (0, 1))
-    sharp = max(cv2.estimateChessboardSharpness(grey, grid.shape[1::-1], np.float32(grid.reshape(-1, 1, 2)), vertical=v)[0][0] for v in (False, True))
-    if sharp < 100 and sharp > 0.55 * side:
-        raise NotUsable(Reason.BLURRED, f"edges are {sharp:.1f} px wide, squares only {side:.0f} px: focus, hold still")
-    if sorted(grid.shape[:2]) != sorted((rows, columns)):
-        n, m = sorted(grid.shape[:2])
-        seen = (m, n) if columns >= rows else (n, m)
-        low, high = grid.min(axis=(0, 1)), np.array(grey.shape[::-1]) - grid.max(axis=(0, 1))
-        if m <= max(pattern) and n <= min(pattern) and min(*low, *high) < 1.3 * side:
-            raise NotUsable(Reason.CROPPED, f"{seen[0]}x{seen[1]} of {columns}x{rows} corners, then the picture ends", seen)
-        raise NotUsable(Reason.WRONG_BOARD, f"it seems to have {seen[0]}x{seen[1]} inner corners, not {columns}x{rows}", seen)
-    if grid.shape[:2] != (rows, columns):
+    found = _search_larger(small, pattern)
+    if found is None:
+        seen, xy = cv2.findChessboardCorners(cv2.GaussianBlur(small, (0, 0), _SMOOTH), pattern)
+        found = xy.reshape(pattern[1], pattern[0], 2) if seen else None
+    elif sorted(found.shape[:2]) != sorted(pattern):
+        found = _without_rim(found, small)
+    for part in ((pattern[0], max(pattern[1] - 1, 3)), *_PARTS):
+        if found is None:
+            found = _without_rim(_search_larger(small, part), small)
+    if found is None:
+        raise NotUsable(Reason.NO_BOARD, "nothing like a checkerboard: more light, less glare, the whole board in view")
+    return (found.astype(float) + 0.5) * factor - 0.5  # edges of pixels scale, not their centres
+
+
+def _search_larger(grey, pattern):
+    """Corners (n, m, 2) px of the largest board with at least this pattern, or None."""
+    found, flags = None, cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_LARGER
+    while True:  # what is found may be a part: it is asked for until it grows no more
+        seen, xy, meta = cv2.findChessboardCornersSBWithMeta(grey, pattern, flags)
+        if not seen:
+            return found
+        found = xy.reshape(*meta.shape, 2)
+        if pattern == meta.shape[::-1]:
+            return found
+        pattern = meta.shape[::-1]
+
+
+def _without_rim(grid, grey):
+    """A grid without outer rows and columns where no four squares meet; None if less than 3x3 corners are left of it.
+
+    The finder continues a board along the rim of its paper, and finds grids in writing, too.
+    """
+    if grid is None:
+        return None
+    for _ in range(4):
+        while not _goes_on(grid, grey):
+            if len(grid) == 3:
+                return None
+            grid = grid[:-1]
         grid = np.rot90(grid)
-    half = int(np.clip(0.36 * side, 2, 12))  # or the next corner comes into the window
-    xy = np.ascontiguousarray(_in_order(grid, grey).reshape(-1, 1, 2), np.float32)
-    xy = cv2.cornerSubPix(grey, xy, (half, half), (-1, -1), (3, 30, 1e-3))
-    return BoardCorners(xy[:, 0].astype(float), np.arange(len(xy)))
+    return grid
 
 
-def _in_order(grid, grey):
-    """Not mirrored, and the square inside the first corner dark; where colours cannot tell, nearer to the top left."""
+def _goes_on(grid, grey):
+    """Whether squares outside the last row of corners are dark and light by turns, against those inside it."""
+    middles, inwards = (grid[-1, :-1] + grid[-1, 1:]) / 2, (grid[-2, :-1] + grid[-2, 1:]) / 2
+    step, turns = (middles - inwards) / 4, (-1) ** np.arange(len(middles))
+    outside, inside = (turns @ _levels(grey, middles + sign * step) for sign in (1, -1))
+    return -outside * np.sign(inside) > _CROSSING * abs(inside)
+
+
+def _levels(grey, xy):
+    """Grey levels at pixels (..., 2), those of the rim for places outside the picture."""
+    x, y = np.clip(np.round(xy).astype(int), 0, np.array(grey.shape[::-1]) - 1).T
+    return grey[y, x].T.astype(float)
+
+
+def _spacing(grid):
+    """Smallest distance of neighbouring corners, px."""
+    return min(float(np.linalg.norm(np.diff(grid, axis=axis), axis=2).min()) for axis in (0, 1))
+
+
+def _refuse_soft(grid, grey):
+    """Raise NotUsable if the edges, from 10 % to 90 % of their step, run into each other in either direction."""
+    side, corners = _spacing(grid), np.float32(grid.reshape(-1, 1, 2))
+    rises = [
+        cv2.estimateChessboardSharpness(grey, grid.shape[1::-1], corners, vertical=vertical)[0][0]
+        for vertical in (False, True)
+    ]
+    if _SOFT * side < max(rises) < _UNKNOWN:
+        detail = f"edges are {max(rises):.1f} px wide, squares only {side:.0f} px: focus, hold still, or come nearer"
+        raise NotUsable(Reason.BLURRED, detail)
+
+
+def _check_whole(grid, grey, pattern):
+    """Raise NotUsable if a grid is not all of the pattern: of another board, cut off by the picture, or covered."""
+    short, long = sorted(grid.shape[:2])
+    ways = [way for way in ((long, short), (short, long)) if way[0] <= pattern[0] and way[1] <= pattern[1]]
+    seen = max(ways, key=lambda way: (way[0] == pattern[0]) + (way[1] == pattern[1]), default=(long, short))
+    if seen == pattern:
+        return
+    shown = f"{seen[0]}x{seen[1]}"
+    room = min(*grid.min(axis=(0, 1)), *(np.array(grey.shape[::-1]) - 1 - grid.max(axis=(0, 1))))
+    cut = room < _MARGIN * _spacing(grid)
+    if ways and (cut or seen[0] == pattern[0] or seen[1] == pattern[1]):
+        cause = "then the picture ends" if cut else f"is the rest covered, or in glare, or is this all: pattern={seen}?"
+        detail = f"{shown} of {pattern[0]}x{pattern[1]} corners, {cause}: move the board into view"
+        raise NotUsable(Reason.CROPPED, detail, seen)
+    if pattern[0] < pattern[1]:
+        seen = seen[::-1]
+    detail = f"it seems to have {shown} inner corners, not {pattern[0]}x{pattern[1]}: give pattern={seen} if it has"
+    raise NotUsable(Reason.WRONG_BOARD, detail, seen)
+
+
+def _in_order(grid, grey, pattern):
+    """The grid (rows, columns, 2) as `Checkerboard` counts: not mirrored, and it begins at a dark square.
+
+    Where half a turn changes no colours it begins nearer to the top left.
+    """
+    if grid.shape[:2] != pattern[::-1]:
+        grid = np.rot90(grid)
     right, down = grid[0, -1] - grid[0, 0], grid[-1, 0] - grid[0, 0]
     if right[0] * down[1] - right[1] * down[0] < 0:
         grid = grid[:, ::-1]
-    middle = (grid[:-1, :-1] + grid[1:, 1:]) / 2
-    levels = grey[middle[..., 1].round().astype(int), middle[..., 0].round().astype(int)].astype(float)
+    levels = _levels(grey, (grid[:-1, :-1] + grid[1:, 1:]) / 2)
     even = np.indices(levels.shape).sum(axis=0) % 2 == 0
-    dark_first = levels[even].mean() < levels[~even].mean()
-    turned = grid[::-1, ::-1]
-    if sum(grid.shape[:2]) % 2:
-        return grid if dark_first else turned
-    if grid.shape[0] == grid.shape[1] and not dark_first:
+    light_first = levels[even].mean() > levels[~even].mean()
+    if sum(pattern) % 2:
+        return grid[::-1, ::-1] if light_first else grid
+    if pattern[0] == pattern[1] and light_first:
         grid = np.rot90(grid)
-        turned = grid[::-1, ::-1]
-    return turned if turned[0, 0].sum() < grid[0, 0].sum() else grid
+    return grid[::-1, ::-1] if grid[-1, -1].sum() < grid[0, 0].sum() else grid
+
+
+def _refine(grid, grey):
+    """Corners (n, 2) to sub-pixel."""
+    half = int(np.clip(_WINDOW * _spacing(grid), *_WINDOW_PX))
+    xy = np.ascontiguousarray(grid.reshape(-1, 1, 2), np.float32)
+    return cv2.cornerSubPix(grey, xy, (half, half), (-1, -1), (3, 30, 1e-3))[:, 0].astype(float)

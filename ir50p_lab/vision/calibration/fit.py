@@ -1,0 +1,151 @@
+"""The fit of a camera to corners on a board by OpenCV, and how far each of its numbers may be off."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from scipy.linalg import block_diag
+
+from ir50p_lab.errors import CalibrationError
+from ir50p_lab.vision.calibration.result import LENS
+
+_STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 50, 1e-9)
+_BENT = 0.75  # of sigma^2: if a board whose every corner is free leaves less than this part of it, it is bent
+_GAUGE = 7  # numbers of a free board that no picture tells: where it lies, how it is turned, how large it is
+_UNKNOWN = 1e-11  # if an eigenvalue of the scaled normal matrix is smaller, rounding decides what it should
+
+
+@dataclass(frozen=True, eq=False)
+class CameraFit:
+    """camera: (9,) fx, fy, cx, cy px, k1, k2, p1, p2, k3; points: (n, 3) m of each view; poses: (rvec, tvec) of each;
+    residuals: (n, 2) px of each, found minus model; bent: whether the points were estimated with the camera.
+    """
+
+    camera: np.ndarray
+    points: list
+    poses: list
+    residuals: list
+    bent: bool = False
+
+    @property
+    def K(self):
+        """Intrinsic matrix (3, 3) px."""
+        fx, fy, cx, cy = self.camera[:4]
+        return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]])
+
+    @property
+    def squares(self):
+        """Sum of squared residuals, px^2."""
+        return sum((e**2).sum() for e in self.residuals)
+
+    @property
+    def freedom(self):
+        """Degrees of freedom of the residuals: numbers measured less those that were estimated (all nine of the camera)."""
+        shape = 3 * len(self.points[0]) - _GAUGE if self.bent else 0
+        return max(1, sum(e.size for e in self.residuals) - 6 * len(self.poses) - len(self.camera) - shape)
+
+    @property
+    def view_rms(self):
+        """Root mean square length of the residuals of each view, px."""
+        return np.sqrt([(e**2).sum(axis=1).mean() for e in self.residuals])
+
+
+def fit(points, pixels, size, lens, aspect, start=None):
+    """CameraFit of points [(n, 3)] m seen at pixels [(n, 2)]: `cv2.calibrateCamera`.
+
+    lens: names of the coefficients to estimate; aspect: fx/fy if it is known; start: K, needed where points are not flat.
+    Raises CalibrationError if OpenCV finds none.
+    """
+    guess, flags = _options(lens, aspect, start)
+    try:
+        _, K, d, *poses = cv2.calibrateCamera(*_float32(points, pixels), size, guess, None, flags=flags, criteria=_STOP)
+    except cv2.error:
+        raise _too_much_alike(points) from None
+    camera, poses = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *d.ravel()[:5]]), list(zip(*poses, strict=True))
+    residuals = [
+        xy - cv2.projectPoints(p, *pose, K, d)[0][:, 0] for p, xy, pose in zip(points, pixels, poses, strict=True)
+    ]
+    return CameraFit(camera, points, poses, residuals)
+
+
+def fit_bent(flat, pixels, size, lens, aspect, columns):
+    """CameraFit with the shape of the board, every corner of it free, where that explains the residuals; else `flat`.
+
+    `cv2.calibrateCameraRO` (Strobl and Hirzinger 2011) frees the corners; the board's size stays that of its first row of
+    `columns` corners.
+    """
+    guess, flags = _options(lens, aspect, None)
+    many = _float32(flat.points, pixels)
+    try:
+        _, K, *_, free = cv2.calibrateCameraRO(*many, size, columns - 1, guess, None, flags=flags, criteria=_STOP)
+    except cv2.error:  # too few views for so many unknowns
+        return flat
+    shape = np.float64(free).reshape(-1, 3)
+    bent = CameraFit(**vars(fit([shape] * len(pixels), pixels, size, lens, aspect, K)) | {"bent": True})
+    return bent if bent.squares / bent.freedom < _BENT * flat.squares / flat.freedom else flat
+
+
+def height(points):
+    """How far points (n, 3) of a board lie apart, across the plane nearest to them, m."""
+    plane = np.column_stack([points[:, :2], np.ones(len(points))])
+    return float(np.ptp(points[:, 2] - plane @ np.linalg.lstsq(plane, points[:, 2], rcond=None)[0]))
+
+
+def errors(found, lens, aspect):
+    """(covariance (9, 9), sigma px, contradiction) of a CameraFit.
+
+    With J the derivative of all corners by camera, poses and, of a bent board, its points, and sigma^2 the mean squared
+    residual, V = sigma^2 (J^T J)^-1 takes the corners as independent; V' = (J^T J)^-1 (sum of g g^T) (J^T J)^-1,
+    g = J^T e of a view, takes only the views so (the sandwich of White 1980). Of each number the larger error counts.
+    contradiction: how many times the second is larger, for fx.
+    Raises CalibrationError if the views do not determine the camera.
+    """
+    free = np.array([True, not aspect, True, True, *(name in lens for name in LENS)])
+    basis = np.eye(9)[:, free]
+    basis[1, 0] = 1 / aspect if aspect else 0
+    used, normal, pulls = basis.shape[1], 0, []
+    for points, (turn, shift), e in zip(found.points, found.poses, found.residuals, strict=True):
+        J = cv2.projectPoints(points, turn, shift, found.K, found.camera[4:])[1]
+        A = J[:, 6:15] @ basis
+        if found.bent:  # a corner moves on the board as the whole board moves with it
+            A = np.hstack([A, block_diag(*(J[:, 3:6].reshape(-1, 2, 3) @ cv2.Rodrigues(turn)[0]))])
+        Q, _ = np.linalg.qr(J[:, :6])
+        A = A - Q @ (Q.T @ A)  # what the pose of the view can do as well tells nothing
+        normal = normal + A.T @ A
+        pulls.append(A.T @ e.ravel())
+    views, rank = len(pulls), len(normal) - _GAUGE * found.bent
+    sigma = np.sqrt(found.squares / found.freedom)
+    scale = np.sqrt(np.diag(normal))
+    values, vectors = np.linalg.eigh(normal / np.outer(scale, scale))
+    if values[-rank] < _UNKNOWN:
+        raise _too_much_alike(found.points)
+    vectors = vectors[:, -rank:] / scale[:, None]
+    inverse = vectors / values[-rank:] @ vectors.T
+    by_corners = sigma**2 * inverse[:used, :used]
+    by_views = views / (views - 1) * (inverse[:used] @ np.transpose(pulls) @ np.array(pulls) @ inverse[:, :used])
+    larger = np.sqrt(np.maximum(np.diag(by_views) / np.diag(by_corners), 1))
+    return basis @ (by_corners * np.outer(larger, larger)) @ basis.T, float(sigma), float(larger[0])
+
+
+def _options(lens, aspect, start):
+    """(first guess of K or None, flags) for OpenCV."""
+    flags = 0
+    for name, flag in zip(("k1", "k2", "k3"), (cv2.CALIB_FIX_K1, cv2.CALIB_FIX_K2, cv2.CALIB_FIX_K3), strict=True):
+        flags |= 0 if name in lens else flag
+    flags |= 0 if "p1" in lens else cv2.CALIB_ZERO_TANGENT_DIST
+    if start is not None:
+        flags |= cv2.CALIB_USE_INTRINSIC_GUESS
+    if aspect:
+        start, flags = np.diag([aspect, 1.0, 1.0]) if start is None else start, flags | cv2.CALIB_FIX_ASPECT_RATIO
+    return start, flags
+
+
+def _float32(*many):
+    return [[np.float32(one) for one in each] for each in many]
+
+
+def _too_much_alike(points):
+    return CalibrationError(
+        f"these {len(points)} views determine no camera: tilt the board in different directions by 20 to 45 degrees, and "
+        "fill the picture"
+    )
