@@ -1,4 +1,4 @@
-"""Where a flat board is, seen from the camera: pose from its corners, with how well it is known."""
+"""Where a flat board is, seen from the camera: its pose from its corners."""
 
 import numpy as np
 
@@ -41,9 +41,8 @@ def board_pose(camera, corners, points):
     _, rvecs, tvecs, _ = cv2.solvePnPGeneric(*known, flags=cv2.SOLVEPNP_IPPE)
     poses = [cv2.solvePnPRefineLM(*known, *guess) for guess in zip(rvecs, tvecs, strict=True)]
     errors = [corners - cv2.projectPoints(points, *pose, *known[2:])[0][:, 0] for pose in poses]
-    rms, pose = min(
-        ((np.sqrt((e**2).sum(axis=1).mean()), pose) for e, pose in zip(errors, poses)), key=lambda one: one[0]
-    )
+    best = min(range(len(poses)), key=lambda k: (errors[k] ** 2).sum())
+    rms, pose = np.sqrt((errors[best] ** 2).sum(axis=1).mean()), poses[best]
     if not rms <= _WORST_RMS:
         raise CalibrationError(
             f"the corners miss the board by {rms:.3g} px rms: is it a board of this pattern and square size, seen by "

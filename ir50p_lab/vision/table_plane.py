@@ -1,4 +1,4 @@
-"""From a pixel to a place on the table, or at a height above it (4.5.3 corrected), with its standard error."""
+"""From a pixel to a place on the table, or at a height above it (4.5.3 corrected)."""
 
 import numpy as np
 

@@ -1,6 +1,7 @@
 """Calibrate a camera with pictures of a checkerboard: focal lengths, centre, lens distortion, and how sure they are."""
 
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,8 @@ from ir50p_lab.vision.image import list_images, load_image, to_grey
 _FEWEST = 3  # views
 _BAR_FROM = 8  # pictures
 _SAME = 1 / 800  # of the diagonal: if a board moved less, it is the same view again
+_ASPECT = 0.003  # if fx/fy is farther from what was prescribed, fx is off by more than 10 good views leave it
+_CONTRADICT = 3  # times: if views err by more than their corners do, they are not of one camera and one board
 _USUAL = ("k1", "k2", "p1", "p2")  # k3 runs wild beyond the outermost corner: it must be asked for
 
 
@@ -106,30 +109,31 @@ def _calibrate(found, points, size, lens, aspect, rejected, board):
         bend = 1000 * height(fitted.points[0])
         said.append(f"the board is bent by {bend:.1f} mm: its shape was estimated, too. Glue it to a plate and repeat")
     covariance, sigma, contradiction = errors(fitted, lens, aspect)
-    said += checks.contradiction(contradiction)
-    if aspect:
-        said += checks.prescribed_aspect(aspect, fit(fitted.points, pixels, size, lens, None, fitted.K).camera)
+    free = fit(fitted.points, pixels, size, lens, None, fitted.K).camera if aspect else fitted.camera
+    if aspect and abs(free[0] / free[1] / aspect - 1) > _ASPECT:
+        said.append(f"aspect = {aspect} was prescribed, but the corners say {free[0] / free[1]:.4f}: leave aspect=None")
+    elif contradiction > _CONTRADICT:
+        said.append("the views contradict each other: two cameras, or was zoom, focus or the board changed?")
     parts = zip(found, fitted.points, fitted.residuals, fitted.poses, strict=True)
     views = tuple(
         View(name=name, index=index, points=p, corners=xy, residuals=e, T_cam_board=transform(*pose))
         for (name, index, xy), p, e, pose in parts
     )
     deviations = np.sqrt(np.diag(covariance))
-    estimate = {
-        "K": fitted.K,
-        "distortion": fitted.camera[4:],
-        "rms": float(np.sqrt((np.concatenate(fitted.residuals) ** 2).sum(axis=1).mean())),
-        "stderr": {name: float(one) if one > 0 else np.nan for name, one in zip(NAMES, deviations, strict=True)},
-        "covariance": covariance,
-        "views": views,
-        "rejected": tuple(sorted(rejected, key=lambda one: one.index)),
-        "size": size,
-        "board": board or Checkerboard(),
-        "model": lens,
-        "sigma": sigma,
-    }
-    said += checks.warnings_about(Calibration(**estimate))
-    return Calibration(**estimate, warnings=tuple(said))
+    result = Calibration(
+        K=fitted.K,
+        distortion=fitted.camera[4:],
+        rms=float(np.sqrt((np.concatenate(fitted.residuals) ** 2).sum(axis=1).mean())),
+        stderr={name: float(one) if one > 0 else np.nan for name, one in zip(NAMES, deviations, strict=True)},
+        covariance=covariance,
+        views=views,
+        rejected=tuple(sorted(rejected, key=lambda one: one.index)),
+        size=size,
+        board=board or Checkerboard(),
+        model=lens,
+        sigma=sigma,
+    )
+    return replace(result, warnings=(*said, *checks.warnings_about(result)))
 
 
 def _options(lens, aspect):
@@ -146,10 +150,8 @@ def _read(images):
     """[(name, grey picture (h, w) or the ImageError that says why there is none)]. Raises InputError, ImageError."""
     if isinstance(images, str | Path):
         images = list_images(images)
-    elif (isinstance(images, np.ndarray) and images.ndim < 4) or hasattr(images, "image"):
-        raise InputError("one picture is not enough: give a list of pictures, or a folder")
-    elif not np.iterable(images):
-        raise InputError(f"images = {images!r}: give a list of pictures or paths, or a folder")
+    if not np.iterable(images) or (isinstance(images, np.ndarray) and images.ndim < 4):
+        raise InputError("images: give a list of pictures or paths, or a folder; one picture is not enough")
     pictures = [_picture(index, one) for index, one in enumerate(images)]
     if not pictures:
         raise InputError("no pictures were given: take 10 to 20 of the board, in different places and tilts")
@@ -163,14 +165,10 @@ def _picture(index, one):
         except ImageError as error:
             return Path(one).name, error
     name, array = f"picture {index + 1}", np.asarray(getattr(one, "image", one))
-    if (
-        array.dtype != np.uint8
-        or not array.size
-        or not (array.ndim == 2 or array.ndim == 3 and array.shape[2] in (3, 4))
-    ):
+    if array.dtype != np.uint8 or not array.size or array.shape[2:] not in ((), (3,), (4,)):
         what = f"{array.dtype} array of shape {array.shape}: give uint8 of shape (h, w, 3), or (h, w)"
         return name, ImageError(what)
-    return name, np.ascontiguousarray(array) if array.ndim == 2 else to_grey(np.ascontiguousarray(array[..., :3]))
+    return name, array if array.ndim == 2 else to_grey(np.ascontiguousarray(array[..., :3]))
 
 
 def _with_bar(pictures, progress):

@@ -8,7 +8,6 @@ from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 
 _SEARCHED = 1280  # px; corners are searched in a picture reduced to this, and refined in the picture itself
 _SMOOTH = 0.8  # px, blur of the copy for the second finder: in a dark picture it would follow every speck of noise
-_PARTS = (4, 4), (4, 3)  # corners: parts of a board that are looked for; smaller ones are not told from writing
 _SOFT = 0.55  # squares: if an edge rises from dark to light over more than this, neighbouring edges run together
 _UNKNOWN = 100  # px; OpenCV gives this or more where squares are too small for it to follow an edge
 _WINDOW = 0.36  # smallest squares, half the window of the refinement: if larger, the next edges come in
@@ -48,12 +47,17 @@ def _search(grey, pattern):
         found = xy.reshape(pattern[1], pattern[0], 2) if seen else None
     elif sorted(found.shape[:2]) != sorted(pattern):
         found = _without_rim(found, small)
-    for part in ((pattern[0], max(pattern[1] - 1, 3)), *_PARTS):
+    for part in _parts(*pattern):  # of a board that is cut off, or of another one
         if found is None:
             found = _without_rim(_search_larger(small, part), small)
     if found is None:
         raise NotUsable(Reason.NO_BOARD, "nothing like a checkerboard: more light, less glare, the whole board in view")
     return (found.astype(float) + 0.5) * factor - 0.5  # edges of pixels scale, not their centres
+
+
+def _parts(columns, rows):
+    """Patterns to look for where the whole one is not seen; smaller ones are not told from writing and noise."""
+    return (columns, max(rows - 1, 3)), (max(2 * columns // 3, 3), rows), (4, 4), (4, 3)
 
 
 def _search_larger(grey, pattern):

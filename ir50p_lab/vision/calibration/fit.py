@@ -40,7 +40,7 @@ class CameraFit:
 
     @property
     def freedom(self):
-        """Degrees of freedom of the residuals: numbers measured less those that were estimated (all nine of the camera)."""
+        """Degrees of freedom of the residuals: numbers measured less those estimated (nine of the camera)."""
         shape = 3 * len(self.points[0]) - _GAUGE if self.bent else 0
         return max(1, sum(e.size for e in self.residuals) - 6 * len(self.poses) - len(self.camera) - shape)
 
@@ -53,7 +53,7 @@ class CameraFit:
 def fit(points, pixels, size, lens, aspect, start=None):
     """CameraFit of points [(n, 3)] m seen at pixels [(n, 2)]: `cv2.calibrateCamera`.
 
-    lens: names of the coefficients to estimate; aspect: fx/fy if it is known; start: K, needed where points are not flat.
+    lens: names of coefficients to estimate; aspect: fx/fy if it is known; start: K, needed where points are not flat.
     Raises CalibrationError if OpenCV finds none.
     """
     guess, flags = _options(lens, aspect, start)
@@ -71,7 +71,7 @@ def fit(points, pixels, size, lens, aspect, start=None):
 def fit_bent(flat, pixels, size, lens, aspect, columns):
     """CameraFit with the shape of the board, every corner of it free, where that explains the residuals; else `flat`.
 
-    `cv2.calibrateCameraRO` (Strobl and Hirzinger 2011) frees the corners; the board's size stays that of its first row of
+    `cv2.calibrateCameraRO` (Strobl and Hirzinger 2011) frees the corners; the board keeps the size of its first row of
     `columns` corners.
     """
     guess, flags = _options(lens, aspect, None)
@@ -129,14 +129,13 @@ def errors(found, lens, aspect):
 
 def _options(lens, aspect, start):
     """(first guess of K or None, flags) for OpenCV."""
-    flags = 0
-    for name, flag in zip(("k1", "k2", "k3"), (cv2.CALIB_FIX_K1, cv2.CALIB_FIX_K2, cv2.CALIB_FIX_K3), strict=True):
-        flags |= 0 if name in lens else flag
-    flags |= 0 if "p1" in lens else cv2.CALIB_ZERO_TANGENT_DIST
+    fixed = {"k1": cv2.CALIB_FIX_K1, "k2": cv2.CALIB_FIX_K2, "k3": cv2.CALIB_FIX_K3, "p1": cv2.CALIB_ZERO_TANGENT_DIST}
+    flags = sum(flag for name, flag in fixed.items() if name not in lens)
     if start is not None:
         flags |= cv2.CALIB_USE_INTRINSIC_GUESS
     if aspect:
-        start, flags = np.diag([aspect, 1.0, 1.0]) if start is None else start, flags | cv2.CALIB_FIX_ASPECT_RATIO
+        flags |= cv2.CALIB_FIX_ASPECT_RATIO
+        start = np.diag([aspect, 1.0, 1.0]) if start is None else start
     return start, flags
 
 
@@ -145,7 +144,5 @@ def _float32(*many):
 
 
 def _too_much_alike(points):
-    return CalibrationError(
-        f"these {len(points)} views determine no camera: tilt the board in different directions by 20 to 45 degrees, and "
-        "fill the picture"
-    )
+    remedy = "tilt the board in different directions by 20 to 45 degrees, and fill the picture"
+    return CalibrationError(f"these {len(points)} views determine no camera: {remedy}")
