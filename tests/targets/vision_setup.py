@@ -6,24 +6,23 @@ import numpy as np
 
 from ir50p_lab.bench import SimulatedBench, fit_calibration
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.vision import TablePlane, calibrate, render_scene
-from ir50p_lab.vision.rendering import bench_camera, bench_scene
-from tests.support.drawn_board import Board, board_pictures
+from ir50p_lab.vision import TablePlane, calibrate
+from ir50p_lab.vision.rendering import bench_camera
+from tests.support.board_pictures import paint, painted_set
 
 T_BASE_BOARD = np.array([[1, 0, 0, 0.28], [0, -1, 0, 0.065], [0, 0, -1, 0.0], [0, 0, 0, 1.0]])  # middle of the area
 
 
 @cache
 def own_calibration(count=15, seed=1):
-    """Calibration of the bench camera from `count` rendered pictures of the board."""
-    pinhole, _ = bench_camera()
-    images, _ = board_pictures(pinhole, count, seed)
-    return calibrate(images, progress=False)
+    """Calibration of the bench camera from `count` painted pictures of the board."""
+    return calibrate(painted_set(bench_camera()[0], count, seed), progress=False)
 
 
 def picture_of_the_board(seed=0):
-    """The bench with the board lying at its known place, rendered (RGB)."""
-    return render_scene(bench_scene(Board(T_world_board=T_BASE_BOARD)), seed=seed)[0]
+    """What the bench camera sees of the board at its known place, painted."""
+    camera, T_cam_base = bench_camera()
+    return paint(T_cam_base @ T_BASE_BOARD, seed=seed, intrinsic=camera.K, lens=camera.distortion)
 
 
 @cache

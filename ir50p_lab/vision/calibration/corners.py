@@ -57,7 +57,7 @@ def _search(grey, pattern):
 
 def _parts(columns, rows):
     """Patterns to look for where the whole one is not seen; smaller ones are not told from writing and noise."""
-    return (columns, max(rows - 1, 3)), (max(2 * columns // 3, 3), rows), (4, 4), (4, 3)
+    return (columns, max(rows - 1, 3)), (4, 4), (max(2 * columns // 3, 3), rows), (4, 3)
 
 
 def _search_larger(grey, pattern):
