@@ -135,7 +135,9 @@ def test_no_board_is_seen_where_there_is_none():
         assert reason_for(picture)[0] is Reason.NO_BOARD
 
 
-@pytest.mark.parametrize(("pattern", "told"), [((13, 9), (9, 6)), ((13, 9), (7, 5)), ((8, 5), (9, 6)), ((9, 6), (8, 6))])
+@pytest.mark.parametrize(
+    ("pattern", "told"), [((13, 9), (9, 6)), ((13, 9), (7, 5)), ((8, 5), (9, 6)), ((9, 6), (8, 6))]
+)
 def test_another_board_is_counted(pattern, told):
     """A finder is content with a part of a larger one; the calibration must not be."""
     reason, detail = reason_for(grey(look(0.7, 0.3, 1.0), pattern=pattern), told)

@@ -36,7 +36,7 @@ def test_saved_and_loaded_is_the_same_and_opencv_reads_it(calibration, tmp_path)
 
 def test_another_size_and_what_is_no_size_are_refused(calibration, tmp_path):
     path = calibration.save(tmp_path / "camera.yml")
-    with pytest.raises(CalibrationError, match="640x480, not 1280x720.*calibrate it at the new one"):
+    with pytest.raises(CalibrationError, match=r"640x480, not 1280x720.*calibrate it at the new one"):
         Calibration.load(path, size=(1280, 720))
     for size in (5, ["camera.yml"], "640x480"):
         with pytest.raises(InputError, match="size = "):
