@@ -32,7 +32,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "reaching.ball_locator": ["BallLocator", "Seen"],
         "processing.smoothing": ["KERNEL_3_2", "convolve", "gaussian_kernel"],
         "calibration.corners": ["find_checkerboard"],
-        "calibration.poses": ["board_poses"],
         "table_plane": ["TablePlane"],
     },
 )
