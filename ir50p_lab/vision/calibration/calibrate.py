@@ -30,10 +30,10 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_USUAL, aspect=None,
     """Calibrate a camera from pictures of a checkerboard.
 
     Corners are found and refined by OpenCV; pictures that are of no use are left out, each with a Reason; the camera is
-    the least-squares fit of `cv2.calibrateCamera`; its standard errors are the larger of two kinds (`fit.errors`). Where
-    that leaves much less over, every corner of the board may move: a bent board is said, and estimated with the camera.
-    A bend of 0.3 to 0.5 mm over 200 mm can pass for flat (12 views, corners to 0.1 px): fx was then off by 0.3 %, at most
-    1.2 %, two of its standard errors, at most five. A plate of glass has no bend.
+    the least-squares fit of `cv2.calibrateCamera`; its standard errors are the larger of two kinds (`fit.errors`).
+    Where that leaves much less over, every corner of the board may move: a bent board is said, and estimated with the
+    camera. A bend of 0.3 to 0.5 mm over 200 mm can pass for flat (12 views, corners to 0.1 px): fx was then off by
+    0.3 %, at most 1.2 %; that is two of its standard errors, at most five. A plate of glass has no bend.
 
     Args:
         images: list of pictures (h, w, 3) uint8 RGB, grey ones (h, w), Frames or paths, mixed; or a folder.

@@ -110,13 +110,10 @@ def _spacing(grid):
 
 def _refuse_soft(grid, grey):
     """Raise NotUsable if the edges, from 10 % to 90 % of their step, run into each other in either direction."""
-    side, corners = _spacing(grid), np.float32(grid.reshape(-1, 1, 2))
-    rises = [
-        cv2.estimateChessboardSharpness(grey, grid.shape[1::-1], corners, vertical=vertical)[0][0]
-        for vertical in (False, True)
-    ]
-    if _SOFT * side < max(rises) < _UNKNOWN:
-        detail = f"edges are {max(rises):.1f} px wide, squares only {side:.0f} px: focus, hold still, or come nearer"
+    side, board = _spacing(grid), (grid.shape[1::-1], np.float32(grid.reshape(-1, 1, 2)))
+    rise = max(cv2.estimateChessboardSharpness(grey, *board, vertical=vertical)[0][0] for vertical in (False, True))
+    if _SOFT * side < rise < _UNKNOWN:
+        detail = f"edges are {rise:.1f} px wide, squares only {side:.0f} px: focus, hold still, or come nearer"
         raise NotUsable(Reason.BLURRED, detail)
 
 

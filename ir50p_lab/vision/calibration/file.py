@@ -15,7 +15,7 @@ _LONGEST = 2000  # characters of one text in such a file: OpenCV takes 4096 byte
 
 
 def save(calibration, path):
-    """Write a Calibration (its evidence is not kept). Returns the Path. Raises CalibrationError if that fails."""
+    """Write a Calibration. Returns the Path. Raises CalibrationError if that fails."""
     path, details = Path(path), asdict(calibration)
     text = json.dumps(details, default=np.ndarray.tolist)
     content = {

@@ -16,8 +16,9 @@ LENS = NAMES[4:]
 class View:
     """One picture of the board that was used.
 
-    name, index: as in `Rejected`; points (n, 3) m on the board; corners (n, 2) px as found; residuals (n, 2) px, found
-    minus model; rms: of their lengths, px; T_cam_board (4, 4) takes board to camera coordinates.
+    name, index: as in `Rejected`; points (n, 3) m on the board, of a bent one as estimated; corners (n, 2) px as found;
+    residuals (n, 2) px, found minus model; rms: of their lengths, px; T_cam_board (4, 4) takes board to camera
+    coordinates.
     """
 
     name: str
@@ -47,10 +48,10 @@ class Calibration:
     ============== ======================================================================================== =========
     K              [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]: column form (OpenCV); pixel (0, 0) is the centre  (3, 3) px
                    of the top left one
-    distortion     k1, k2, p1, p2, k3 as in `Pinhole`; 0 where the data need no such term                   (5,)
+    distortion     k1, k2, p1, p2, k3 as in `Pinhole`; 0 where not estimated                                (5,)
     rms            root mean square distance between corners and model: sqrt(sum |e|^2 / N)                 px
-    stderr         standard error of "fx", "fy", "cx", "cy", "k1"...: the larger of two routes, and the     dict
-                   uncertainty of the model; nan where not estimated
+    stderr         standard error of "fx", "fy", "cx", "cy", "k1"...: the larger of two kinds               dict
+                   (`fit.errors`); nan where not estimated
     covariance     of fx, fy, cx, cy, k1, k2, p1, p2, k3 with those standard errors; 0 where not estimated  (9, 9)
     views          View of each picture used                                                                tuple
     rejected       Rejected: each picture not used, with a reason                                           tuple
