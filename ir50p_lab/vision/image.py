@@ -1,12 +1,15 @@
 """Pictures as arrays: read, check, write. Always uint8, (height, width, 3), in the order red, green, blue."""
 
+import io
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
+from PIL import Image, ImageOps
+from PIL.PngImagePlugin import PngInfo
 
 from ir50p_lab.errors import ImageError
-from ir50p_lab.vision.picture_file import decode
 
 MARK = "rendered by ir50p_lab: not a photograph"
 """What a rendered picture carries in its file (PNG: a tEXt chunk, JPEG: a comment)."""
@@ -50,16 +53,21 @@ def load_image(path, *, allow_grey=False):
     """
     if isinstance(path, str | Path) and Path(path).is_dir():
         raise ImageError(f"{path} is a folder: give one of its files, or open_camera('folder:{path}') for all of them")
-    image, problem = decode(_bytes(path))
-    if problem:
-        raise ImageError(f"{path} {problem}")
-    if image.dtype != np.uint8:
-        raise ImageError(f"{path} has {8 * image.itemsize} bits per colour: save it with 8, image // 257 of 16 bits")
-    if image.ndim == 2:
-        if not allow_grey:
-            raise ImageError(f"{path} has one channel, no colour to look for: give the colour picture")
-        return np.repeat(image[:, :, None], 3, axis=2)
-    return np.ascontiguousarray(image[..., ::-1])
+    data = _bytes(path)
+    try:
+        with warnings.catch_warnings(action="ignore"), Image.open(io.BytesIO(data)) as picture:
+            deep, grey = picture.mode[0] in "IF", picture.mode in ("1", "L", "LA")
+            image = np.array(ImageOps.exif_transpose(picture).convert("RGB"))
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        raise ImageError(
+            f"{path} is no picture that can be read, cut off or damaged ({error}): save it as JPEG or PNG (iPhone: "
+            "Settings, Camera, Formats, 'Most Compatible')"
+        ) from None
+    if deep:
+        raise ImageError(f"{path} has more than 8 bits per colour: save it with 8, image // 257 of 16 bits")
+    if grey and not allow_grey:
+        raise ImageError(f"{path} has one channel, no colour to look for: give the colour picture")
+    return image
 
 
 def _bytes(path):
@@ -78,9 +86,6 @@ def save_image(path, image, *, rendered=False, quality=95):
     rendered: put the mark into the file (PNG and JPEG only) that `is_rendered` finds. quality: of JPEG.
     Raises ImageError for what is no picture, a suffix that cannot be marked, or a place that cannot be written.
     """
-    from PIL import Image
-    from PIL.PngImagePlugin import PngInfo
-
     if rendered and Path(path).suffix.lower() not in (".png", ".jpg", ".jpeg"):
         raise ImageError("only PNG and JPEG files can say that they are rendered: choose .png or .jpg")
     picture, mark = Image.fromarray(check_image(image)), PngInfo()

@@ -1,14 +1,13 @@
-"""From a pixel to a place on the table, or at a height above it (4.5.3 corrected), with its standard error."""
+"""From a pixel to a place on the table, or at a height above it (4.5.3 corrected)."""
 
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError, VisionError
 from ir50p_lab.inputs import number
-from ir50p_lab.vision.board_pose import BoardPose, board_points, board_pose, inverse_transform, rvec_tvec, transform
+from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transform
 from ir50p_lab.vision.checks import check_picture_size, point_list, rigid
-from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
+from ir50p_lab.vision.pinhole import as_pinhole
 
-_SMALL = 1e-3  # standard deviations: steps of derivatives
 _SLANT = 0.02  # rad above the plane; a ray flatter than this meets it anywhere
 
 
@@ -23,20 +22,16 @@ class TablePlane:
     must go, and with it Z, which is known, not found. In its row notation H^T = [r1; r2; t + h r3].
 
     Args:
-        camera: Pinhole or Calibration, whose covariance counts (a Pinhole is exactly known).
+        camera: Pinhole or Calibration.
         T_cam_table: (4, 4), takes coordinates of the table (z up, 0 on its surface) to those of the camera (z forward,
-        y down), exactly known; or a BoardPose with its errors.
+        y down).
 
     Attributes: camera; T_cam_table; rms: px, of the board it was made from, or None; centre: (3,) m, of the lens.
     Raises InputError if T_cam_table is no rigid transform, a shape is wrong, or the camera lies below the table.
     """
 
-    def __init__(self, camera, T_cam_table):
-        self.camera, self.pinhole = camera, as_pinhole(camera)
-        pose = T_cam_table
-        if not isinstance(pose, BoardPose):
-            pose = BoardPose(rigid("T_cam_table", pose).copy(), np.zeros((6, 6)), np.zeros((6, 9)), rms=None)
-        self._pose, self.T_cam_table, self.rms = pose, pose.T_cam_board, pose.rms
+    def __init__(self, camera, T_cam_table, rms=None):
+        self.pinhole, self.T_cam_table, self.rms = as_pinhole(camera), rigid("T_cam_table", T_cam_table).copy(), rms
         self.centre = inverse_transform(self.T_cam_table)[:3, 3]
         if self.centre[2] <= 0:
             raise InputError(
@@ -50,11 +45,9 @@ class TablePlane:
 
         Args: camera: Pinhole or Calibration; corners: (n, 2) px, as found; points: (n, 3) m, the same corners in table
         coordinates (`board_points`).
-        The standard errors then hold the scatter of the corners, and that an error of the camera's own numbers
-        shifts this pose with it: most of it cancels near the board.
         Raises as `board_pose`.
         """
-        return cls(camera, board_pose(camera, corners, points))
+        return cls(camera, *board_pose(camera, corners, points))
 
     @classmethod
     def from_picture(cls, camera, image, pattern=(9, 6), square=0.025, T_table_board=None):
@@ -70,7 +63,7 @@ class TablePlane:
         grey = to_grey(image)
         check_picture_size(camera, grey.shape[::-1])
         try:
-            corners = find_checkerboard(grey, pattern).xy
+            corners = find_checkerboard(grey, pattern)
         except NotUsable as why:
             raise CalibrationError(f"the board on the table is not found: {why}") from None
         return cls.from_board(camera, corners, board_points(pattern, square, T_table_board))
@@ -114,41 +107,3 @@ class TablePlane:
     def to_image(self, points):
         """Where points (n, 3) or (3,) m of the table appear: (n, 2) or (2,) px."""
         return self.pinhole.project(self.T_cam_table, points)
-
-    def standard_error(self, xy, height=0.0, *, sigma_px=0.3):
-        """Standard errors of x and y, (n, 2) m ((2,) for one pixel), of pixel, camera and pose, to first order.
-
-        Args: sigma_px: standard error of each pixel coordinate.
-        """
-        points, changes = point_list("xy", xy, 2), []
-        for step in 1e-2 * np.eye(2):
-            forth, back = self.to_table(points + step, height), self.to_table(points - step, height)
-            changes.append(sigma_px * (forth - back) / 2e-2)
-        here = self.to_table(points, height)
-        changes += [(one.to_table(points, height) - here) / _SMALL for one in self.variations(_SMALL)]
-        found = np.sqrt(np.square(changes).sum(axis=0))
-        return found[0] if np.ndim(xy) == 1 else found
-
-    def variations(self, part=1.0):
-        """Planes wrong by (a part of) one standard deviation, in each independent direction of camera and pose errors.
-
-        Whatever is computed from the plane spreads by the root of the summed squares of its changes: a list of
-        TablePlane, empty if everything is exactly known.
-        """
-        known = getattr(self.camera, "covariance", None)  # (9, 9), of fx, fy, cx, cy, k1, k2, p1, p2, k3
-        camera = np.zeros((9, 9)) if known is None or not np.isfinite(known).all() else known
-        both = np.vstack([np.eye(9), self._pose.by_camera])
-        P = both @ camera @ both.T
-        P[9:, 9:] += self._pose.covariance
-        scale = np.sqrt(np.where(np.diag(P) > 0, np.diag(P), 1.0))  # px, 1, rad and m: alike before the eigenvectors
-        sizes, directions = np.linalg.eigh(P / np.outer(scale, scale))
-        found = []
-        for size, direction in zip(sizes, directions.T, strict=True):
-            if size < 1e-12:
-                continue
-            d = part * np.sqrt(size) * scale * direction
-            K, distortion = self.pinhole.K.copy(), self.pinhole.distortion + d[4:9]
-            K[[0, 1, 0, 1], [0, 1, 2, 2]] += d[:4]
-            pose = np.concatenate(rvec_tvec(self.T_cam_table)) + d[9:]
-            found.append(TablePlane(Pinhole(K, distortion), transform(pose[:3], pose[3:])))
-        return found

@@ -5,6 +5,8 @@ from functools import lru_cache
 import cv2
 import numpy as np
 
+from ir50p_lab.course.board_poses import board_poses
+
 K = np.array([[700.0, 0, 325], [0, 702, 236], [0, 0, 1]])
 LENS = np.array([-0.25, 0.08, 0.001, -0.0005, 0.0])
 SIZE = (640, 480)
@@ -21,12 +23,12 @@ def look(distance=0.6, tilt=0.0, about=0.0, spin=0.0, at=(0.0, 0.0), centre=(0.1
 
 
 @lru_cache(2)
-def rays(size, over, lens):
-    """Normalised coordinates (h over, w over, 2) of over x over rays in each pixel."""
+def rays(size, over, intrinsic, lens):
+    """Normalised coordinates (h over, w over, 2) of over x over rays in each pixel; intrinsic, lens: K and lens as tuples."""
     w, h = size
     x, y = np.meshgrid((np.arange(w * over) + 0.5) / over - 0.5, (np.arange(h * over) + 0.5) / over - 0.5)
-    distorted = np.stack([x.ravel(), y.ravel()], 1)
-    undistorted = cv2.undistortPointsIter(distorted, K, np.array(lens), None, None, (3, 15, 1e-8))
+    distorted, matrix = np.stack([x.ravel(), y.ravel()], 1), np.reshape(intrinsic, (3, 3))
+    undistorted = cv2.undistortPointsIter(distorted, matrix, np.array(lens), None, None, (3, 15, 1e-8))
     return np.float32(undistorted).reshape(h * over, w * over, 2)
 
 
@@ -41,20 +43,42 @@ def paint(
     seed=0,
     over=2,
     levels=(40, 210),
+    intrinsic=K,
     lens=LENS,
     rim=1.0,
+    bend=0.0,
+    jpeg=None,
 ):
-    """Picture (h, w, 3): every pixel the mean of over x over rays, undistorted and cut with the board's plane."""
-    to_squares = np.diag([1, 1, square]) @ np.linalg.inv(T[:3, [0, 1, 3]])
-    u, v = cv2.split(cv2.perspectiveTransform(rays(size, over, tuple(lens)), to_squares))
+    """Picture (h, w, 3): every pixel the mean of over x over rays, undistorted and cut with the board.
+
+    bend: 1/m, curvature along the rows, the middle towards the camera; jpeg: quality 0..100 of a compression.
+    """
     columns, rows = pattern
+    x, y = cv2.split(rays(size, over, tuple(np.ravel(intrinsic)), tuple(lens)))
+    R, eye = np.float32(T[:3, :3]), np.float32(-T[:3, :3].T @ T[:3, 3])
+    along = [x * R[0, k] + y * R[1, k] + R[2, k] for k in range(3)]
+    z = np.float32(0)
+    for _ in range(5 if bend else 1):
+        depth = (z - eye[2]) / along[2]
+        u, v = ((eye[k] + depth * along[k]) / square for k in (0, 1))
+        z = np.float32(0.5 * bend) * (square * (u - (columns - 1) / 2)) ** 2
     dark = (np.floor(u).astype(np.int32) + np.floor(v).astype(np.int32)) & 1 == 0
     board = (u > -rim) & (u < columns - 1 + rim) & (v > -rim) & (v < rows - 1 + rim)
     paper = (u > -1.6) & (u < columns + 0.6) & (v > -1.6) & (v < rows + 0.6)
     light = np.where(paper, np.where(board & dark, *np.float32(levels)), np.float32(120))
     light = cv2.resize(cv2.GaussianBlur(light, (0, 0), blur * over), size, interpolation=cv2.INTER_AREA)
     light = light + np.random.default_rng(seed).normal(0, noise, light.shape)
-    return np.dstack([np.clip(np.round(light), 0, 255).astype(np.uint8)] * 3)
+    picture = np.dstack([np.clip(np.round(light), 0, 255).astype(np.uint8)] * 3)
+    if jpeg is not None:
+        picture = cv2.imdecode(cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, jpeg])[1], cv2.IMREAD_COLOR)
+    return picture
+
+
+def painted_set(camera, count, seed=0, **how):
+    """`count` pictures of a 9x6 board in poses of `board_poses`, as the Pinhole `camera` sees them; how: as for `paint`."""
+    seen_by = {"size": camera.size, "intrinsic": camera.K, "lens": camera.distortion}
+    poses = board_poses(camera, count, seed)
+    return [paint(T, seed=1000 * seed + k, **(seen_by | how)) for k, T in enumerate(poses)]
 
 
 def project(T, points, lens=LENS):

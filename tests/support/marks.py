@@ -62,7 +62,6 @@ MARKS = {
         "modelling/test_kinematics.py",
         "vision/test_calibration_corners.py",
         "vision/test_camera_calibration.py",
-        "vision/test_hand_eye.py",
         "vision/test_pinhole.py",
         "vision/test_table_plane.py",
     ),

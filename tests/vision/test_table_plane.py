@@ -1,13 +1,11 @@
-"""From pixel to table: two routes, exact on exact input, errors as predicted, bad input refused by name."""
-
-from types import SimpleNamespace
+"""From pixel to table: two routes, exact on exact input, bad input refused by name."""
 
 import cv2
 import numpy as np
 import pytest
 
 from ir50p_lab.errors import CalibrationError, InputError, VisionError
-from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transform, rvec_tvec, transform
+from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transform, transform
 from ir50p_lab.vision.pinhole import Pinhole
 from ir50p_lab.vision.table_plane import TablePlane
 
@@ -27,11 +25,6 @@ def looking_at(target, eye, up=(0, 0, 1)):
 POSE = looking_at((0.38, 0.0, 0.0), (0.95, 0.25, 0.75))
 PLACES = np.array([[x, y] for x in (0.25, 0.35, 0.45) for y in (-0.2, 0.0, 0.2)])
 LYING = np.array([[1, 0, 0, 0.28], [0, -1, 0, 0.06], [0, 0, -1, 0], [0, 0, 0, 1.0]])
-
-
-def known_to(covariance):
-    """A calibration with this covariance (9, 9)."""
-    return SimpleNamespace(pinhole=CAMERA, covariance=covariance)
 
 
 def lifted(height):
@@ -87,90 +80,24 @@ def test_leaving_the_distortion_in_costs_millimetres():
     assert np.linalg.norm(without.to_table(xy) - PLACES, axis=1).max() > 0.003
 
 
-# ---- standard errors
-
-
-def test_standard_errors_are_those_of_random_trials():
-    rng = np.random.default_rng(2)
-    points = board_points(T_table_board=LYING)
-    corners = CAMERA.project(POSE, points)
-    spread = np.array([1.5, 1.5, 2.0, 2.0, 4e-3, 1e-2, 3e-4, 3e-4, 0.0])
-    at = CAMERA.project(POSE, lifted(0.03))
-    own = np.array([CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy, *CAMERA.distortion])
-    found = []
-    for _ in range(400):
-        fx, fy, cx, cy, *distortion = own + spread * rng.normal(size=9)
-        wrong = Pinhole([[fx, 0, cx], [0, fy, cy], [0, 0, 1]], distortion)
-        plane = TablePlane.from_board(wrong, corners + rng.normal(0, 0.2, corners.shape), points)
-        found.append(plane.to_table(at + rng.normal(0, 0.4, at.shape), 0.03))
-    noisy = corners + rng.normal(0, 0.2, corners.shape)
-    plane = TablePlane.from_board(known_to(np.diag(spread**2)), noisy, points)
-    predicted = plane.standard_error(at, 0.03, sigma_px=0.4)
-    assert np.allclose(np.std(found, axis=0) / predicted, 1.0, atol=0.2)
-
-
-@pytest.mark.parametrize("board", [(9,), ((9.5, 6),), ((9, 1),)])
-def test_a_board_that_cannot_be_is_refused(board):
-    with pytest.raises(CalibrationError, match="inner corners"):
-        board_points(*board)
-
-
-@pytest.mark.parametrize("square", [0, np.nan, "25 mm"])
-def test_a_square_that_cannot_be_is_refused(square):
-    with pytest.raises(InputError, match="positive length"):
-        board_points((9, 6), square)
-
-
-def test_variations_spread_as_the_covariance_says():
-    points = board_points(T_table_board=LYING)
-    corners = CAMERA.project(POSE, points) + np.random.default_rng(6).normal(0, 0.2, (54, 2))
-    spread = np.diag(np.array([2, 2, 3, 3, 4e-3, 1e-2, 3e-4, 3e-4, 0.0]) ** 2)
-    plane = TablePlane.from_board(known_to(spread), corners, points)
-    at = CAMERA.project(POSE, lifted(0.03))
-    off = np.array([one.to_table(at, 0.03) - plane.to_table(at, 0.03) for one in plane.variations()])
-    assert len(off) == 14  # k3 is taken as known
-    assert np.allclose(np.sqrt((off**2).sum(axis=0)), plane.standard_error(at, 0.03, sigma_px=0), rtol=0.05)
-    assert TablePlane(CAMERA, POSE).variations() == []
-
-
-def test_an_error_of_the_camera_mostly_cancels_when_the_pose_comes_from_the_board():
-    points = board_points(T_table_board=LYING)
-    corners = CAMERA.project(POSE, points)
-    spread = np.diag(np.array([3, 3, 3, 3, 0, 0, 0, 0, 0.0]) ** 2)
-    board = TablePlane.from_board(known_to(spread), corners, points)
-    apart = TablePlane(known_to(spread), POSE)
-    middle = CAMERA.project(POSE, points.mean(axis=0))
-    assert board.standard_error(middle, sigma_px=0).max() < 0.1 * apart.standard_error(middle, sigma_px=0).max()
-
-
-def test_a_calibration_brings_its_own_covariance():
-    calibration = known_to(np.diag([4.0, 4, 1, 1, 0, 0, 0, 0, 0]))
-    xy = CAMERA.project(POSE, lifted(0.0))
-    with_it, without = TablePlane(calibration, POSE), TablePlane(CAMERA, POSE)
-    assert (with_it.standard_error(xy) > without.standard_error(xy)).all()
-
-
 # ---- the pose of a board
 
 
-def test_the_board_gives_the_pose_back_and_its_scatter_is_as_predicted():
-    rng = np.random.default_rng(3)
+def test_the_board_gives_the_pose_back():
     points = board_points(T_table_board=LYING)
     corners = CAMERA.project(POSE, points)
-    exact = board_pose(CAMERA, corners, points)
-    assert np.allclose(exact.T_cam_board, POSE, atol=1e-7)
-    assert exact.rms < 1e-5
-    found = []
-    for _ in range(300):
-        pose = board_pose(CAMERA, corners + rng.normal(0, 0.3, corners.shape), points)
-        found.append(np.concatenate(rvec_tvec(pose.T_cam_board)))
-    assert np.allclose(np.std(found, axis=0) / np.sqrt(np.diag(pose.covariance)), 1.0, atol=0.25)
+    T, rms = board_pose(CAMERA, corners, points)
+    assert np.allclose(T, POSE, atol=1e-7)
+    assert rms < 1e-5
+    noisy = corners + np.random.default_rng(3).normal(0, 0.3, corners.shape)
+    T, rms = board_pose(CAMERA, noisy, points)
+    assert np.linalg.norm(inverse_transform(T)[:3, 3] - inverse_transform(POSE)[:3, 3]) < 0.005
+    assert 0.3 < rms < 0.5
 
 
 def test_transforms_invert():
     T = transform([0.3, -0.2, 0.5], [1, 2, 3])
     assert np.allclose(inverse_transform(T) @ T, np.eye(4))
-    assert np.allclose(np.concatenate(rvec_tvec(T)), [0.3, -0.2, 0.5, 1, 2, 3])
 
 
 # ---- bad input
@@ -185,8 +112,6 @@ def test_corners_of_another_board_are_refused():
         TablePlane.from_board(CAMERA, corners, points * [1, -1, 1])
     with pytest.raises(InputError, match="same number"):
         TablePlane.from_board(CAMERA, corners[:-1], points)
-    with pytest.raises(InputError, match="one line"):
-        TablePlane.from_board(CAMERA, corners[:9], points[:9])
 
 
 def test_pixels_that_look_past_the_table_are_refused():

@@ -2,7 +2,7 @@
 
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.patches import Circle, Polygon
+from matplotlib.patches import Circle
 
 from ir50p_lab.course.draw.pictures import STAMP, show_picture
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, new_figure, subplots
@@ -84,18 +84,6 @@ def radial_shape(k1, k2, radius):
     magnified = np.diff(k1 * radius**2 + k2 * radius**4)  # outwards less and less: a barrel
     names = ["barrel"] * bool((magnified < 0).any()) + ["pincushion"] * bool((magnified > 0).any())
     return " and further out ".join(names if magnified[0] < 0 else names[::-1])
-
-
-def covered_figure(whole, covered, view):
-    """A picture of a board beside the same with a part hidden, the corners found drawn in. Returns: LabFigure.
-
-    Args: whole, covered (h, w, 3); view: View of the covered picture.
-    """
-    figure = new_figure(9.0, 3.6, cols=2, note=STAMP)
-    bare_picture(figure.axes[0], whole, "The whole board: a marker in each white square")
-    bare_picture(figure.axes[1], covered, f"The right hidden: {len(view.corners)} corners found")
-    figure.axes[1].plot(*view.corners.T, "o", fillstyle="none", color=COLOURS["orange"], markersize=7)
-    return figure
 
 
 def contact_sheet(images, calibration):
@@ -180,33 +168,6 @@ def residual_figure(images, calibration, view):
     return figure
 
 
-def coverage_figure(calibration):
-    """Corners per cell of the picture, the uncertainty over it, and where to hold it next. Returns: LabFigure."""
-    from ir50p_lab.vision import direction_stderr
-
-    w, h = calibration.size
-    figure, left, right = subplots(9.4, 3.4, cols=2, note=STAMP)
-    cover, following = calibration.coverage, calibration.next_view()
-    counted = left.imshow(cover.counts, extent=(0, w, h, 0), cmap="Greens", vmin=0)
-    figure.colorbar(counted, ax=left, label="corners per cell [-]", shrink=0.75)
-    for view in calibration.views:
-        left.plot(*view.corners.T, ".", color=COLOURS["dark"], markersize=1)
-    left.set_title(f"Corners in {100 * cover.share:.0f} % of the cells")
-    x, y = np.meshgrid(np.linspace(0, w - 1, 33), np.linspace(0, h - 1, 25))
-    error = direction_stderr(calibration, np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
-    filled = right.contourf(x, y, error, 8, cmap="Blues")
-    figure.colorbar(filled, ax=right, label="uncertainty of a pixel's direction [px]", shrink=0.75)
-    right.set_title(f"The next view (orange) fills empty cells: {following.new}")
-    centre = calibration.K[:2, 2]
-    outermost = max(np.linalg.norm(view.corners - centre, axis=1).max() for view in calibration.views)
-    for ax in (left, right):
-        ax.add_patch(Polygon(following.outline, fill=False, edgecolor=COLOURS["orange"], linewidth=2, zorder=2))
-        ax.add_patch(Circle(centre, outermost, fill=False, edgecolor=COLOURS["dark"], linestyle=":", linewidth=1.2))
-        ax.set(xlim=(0, w), ylim=(h, 0), aspect="equal", xlabel="x [px]", ylabel="y [px]")
-        ax.grid(False)
-    return figure
-
-
 def board_residual_figure(picture, flat, bent):
     """One picture, and the residuals by place on the board, mean over the views, as depths: flat model beside bent.
 
@@ -215,7 +176,7 @@ def board_residual_figure(picture, flat, bent):
     """
     figure, first, *maps = subplots(10.5, 3.1, cols=3, width_ratios=(1.1, 1, 1), note=STAMP)
     bare_picture(first, picture, "One of the pictures")
-    for ax, one, name in zip(maps, (flat, bent), ("Board taken for flat", "Bend estimated"), strict=True):
+    for ax, one, name in zip(maps, (flat, bent), ("Board taken for flat", "Its shape free"), strict=True):
         deeper = np.mean([_depths(one, view) for view in one.views], axis=0)
         columns, rows = one.board.pattern
         place = 1000 * one.board.square * np.array([-0.5, columns - 0.5, rows - 0.5, -0.5])

@@ -73,7 +73,7 @@ def seen_figure(seen, arm, q, T_base_cam, marker=None):
         picture.set_title(f"Ball at ({x:.1f}, {y:.1f}) px, radius {r:.1f} px")
         space.plot(*seen.position[:, None], "X", color=COLOURS["purple"], ms=10, mec="white", zorder=25)
         space.plot(*np.column_stack([T_base_cam[:3, 3], seen.position]), color=COLOURS["grey"], lw=1, ls=":")
-        p, s = 1e3 * seen.position, 1e3 * seen.stderr
+        p, s = 1e3 * seen.position, np.full(2, np.nan)
         space.set_title(f"({p[0]:.0f}, {p[1]:.0f}, {p[2]:.0f}) mm, ± {s[0]:.1f}, {s[1]:.1f} mm")
     return figure
 

@@ -1,1 +1,1 @@
-"""Camera calibration: corners, views and why they are refused, the lens by evidence, errors, coverage, file."""
+"""Camera calibration: corners of a board, why a picture is refused, the fit with its errors, what to mind, the file."""

@@ -41,49 +41,6 @@ class Checkerboard:
         return f"checkerboard with {self.pattern[0]}x{self.pattern[1]} inner corners, {1000 * self.square:g} mm squares"
 
 
-@dataclass(frozen=True)
-class Charuco(Checkerboard):
-    """A checkerboard with markers in its white squares: every corner has a number, so part of the board is enough.
-
-    pattern: (columns, rows) of *inner corners*, as for a checkerboard (OpenCV counts squares: one more each way).
-    marker: side of a marker, m; dictionary: name in cv2.aruco, such as "DICT_5X5_100", or its number there; legacy:
-    boards printed with OpenCV before 4.6 whose number of rows is even begin with a white square.
-    The frame is OpenCV's for such boards, moved to the first inner corner.
-    """
-
-    marker: float = 0.018
-    dictionary: str = "DICT_5X5_100"
-    legacy: bool = False
-
-    def __post_init__(self):
-        super().__post_init__()
-        object.__setattr__(self, "marker", number("marker", self.marker, "> 0", unit="m", hint=_LENGTH))
-        if self.marker >= self.square:
-            raise CalibrationError(f"marker = {self.marker} m must be smaller than a square, {self.square} m")
-        import cv2
-
-        names = {getattr(cv2.aruco, name): name for name in dir(cv2.aruco) if name.startswith("DICT_")}
-        object.__setattr__(self, "dictionary", names.get(self.dictionary, self.dictionary))
-        if self.dictionary not in names.values():
-            raise CalibrationError(f"cv2.aruco has no dictionary {self.dictionary!r}; one is 'DICT_5X5_100'")
-
-    def opencv(self):
-        """The same board as OpenCV knows it, which also draws it (`generateImage`)."""
-        import cv2
-
-        columns, rows = self.pattern
-        dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, self.dictionary))
-        if (columns + 1) * (rows + 1) // 2 > len(dictionary.bytesList):
-            size = f"{columns + 1}x{rows + 1} squares"
-            raise CalibrationError(f"{self.dictionary} has too few markers for a board of {size}: name a larger one")
-        board = cv2.aruco.CharucoBoard((columns + 1, rows + 1), self.square, self.marker, dictionary)
-        board.setLegacyPattern(self.legacy)
-        return board
-
-    def __str__(self):
-        return f"ChArUco {super().__str__()}, {1000 * self.marker:g} mm markers of {self.dictionary}"
-
-
 def check_pattern(pattern):
     """(columns, rows) as ints. Raises CalibrationError for what cannot be a board."""
     try:

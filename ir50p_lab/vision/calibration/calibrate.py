@@ -1,4 +1,4 @@
-"""Calibrate a camera with pictures of a board: focal lengths, centre, lens distortion, and how sure they are."""
+"""Calibrate a camera with pictures of a checkerboard: focal lengths, centre, lens distortion, and how sure they are."""
 
 from collections import Counter
 from dataclasses import replace
@@ -6,82 +6,74 @@ from pathlib import Path
 
 import numpy as np
 
-from ir50p_lab.errors import CalibrationError, InputError
-from ir50p_lab.inputs import choice, number
+from ir50p_lab.errors import CalibrationError, ImageError, InputError
+from ir50p_lab.inputs import number
 from ir50p_lab.vision.board_pose import transform
 from ir50p_lab.vision.calibration import checks
-from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
-from ir50p_lab.vision.calibration.charuco import find_charuco
-from ir50p_lab.vision.calibration.corners import BoardCorners, find_checkerboard
-from ir50p_lab.vision.calibration.fit import LENS, NAMES, CornerSets, Model, fit, start
-from ir50p_lab.vision.calibration.models import choose, in_percent, total_covariance
-from ir50p_lab.vision.calibration.pictures import common_size, pictures_of, with_bar
+from ir50p_lab.vision.calibration.board import Checkerboard
+from ir50p_lab.vision.calibration.corners import find_checkerboard
+from ir50p_lab.vision.calibration.fit import errors, fit, fit_bent, height
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
-from ir50p_lab.vision.calibration.result import Calibration, View
+from ir50p_lab.vision.calibration.result import LENS, NAMES, Calibration, View
 from ir50p_lab.vision.checks import picture_size, point_list
+from ir50p_lab.vision.image import list_images, load_image, to_grey
 
-_FEWEST = 3
-_SAME = 1.0 / 800  # of the diagonal: a board that moved less is taken for the same view
-_COMMON = 0.8  # of the corners seen, at which two views of part of a board are compared
+_FEWEST = 3  # views
+_BAR_FROM = 8  # pictures
+_SAME = 1 / 800  # of the diagonal: if a board moved less, it is the same view again
+_ASPECT = 0.003  # if fx/fy is farther from what was prescribed, fx is off by more than 10 good views leave it
+_CONTRADICT = 3  # times: if views err by more than their corners do, they are not of one camera and one board
+_USUAL = ("k1", "k2", "p1", "p2")  # k3 runs wild beyond the outermost corner: it must be asked for
 
 
-def calibrate(images, pattern=(9, 6), square=0.025, *, board=None, lens=None, aspect=None, bend=None, progress=None):
-    """Calibrate a camera from pictures of a checkerboard or ChArUco board.
+def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_USUAL, aspect=None, progress=None):
+    """Calibrate a camera from pictures of a checkerboard.
 
-    Corners are found by both of OpenCV's finders and refined to sub-pixel; pictures that are of no use are left out,
-    each with a Reason; the lens model is the simplest that the corners do not object to (k1, k2, p1, p2, k3, see
-    `calibration_models`); standard errors are the larger of two kinds. A bent board is recognised, and then estimated
-    with the camera.
-
-    On OpenCV's photographs left01.jpg to left14.jpg it finds fx = 533.2 +- 0.6 px where OpenCV's left_intrinsics.yml
-    says 535.9: there corners were refined in windows of 23 px, and the smallest squares in left02.jpg measure 22 px, so
-    that corners moved by up to 6 px (1.2 px rms are left in that file). With windows of 11 px OpenCV finds 532.8.
+    Corners are found and refined by OpenCV; pictures that are of no use are left out, each with a Reason; the camera is
+    the least-squares fit of `cv2.calibrateCamera`; its standard errors are the larger of two kinds (`fit.errors`).
+    Where that leaves much less over, every corner of the board may move: a bent board is said, and estimated with the
+    camera. A bend of 0.3 to 0.5 mm over 200 mm can pass for flat (12 views, corners to 0.1 px): fx was then off by
+    0.3 %, at most 1.2 %; that is two of its standard errors, at most five. A plate of glass has no bend.
 
     Args:
         images: list of pictures (h, w, 3) uint8 RGB, grey ones (h, w), Frames or paths, mixed; or a folder.
         pattern: (columns, rows) of inner corners; square: side of a square, m. A wrong square scales the distances of
         the board, nothing else: K and distortion come out the same.
-        board: Checkerboard or Charuco in place of pattern and square.
-        lens: None to let the data choose, or coefficients to estimate, such as ("k1", "k2"); () for none.
+        lens: coefficients to estimate, out of k1, k2, p1, p2, k3; () for none.
         aspect: None estimates fx and fy; a number prescribes fx/fy (1 for square pixels), and is checked.
-        bend: None tests whether the board is bent, and estimates its shape if so; False takes it for flat all the same.
         progress: True or False to show a bar; None: from 8 pictures on.
 
     Returns: Calibration.
     Raises CalibrationError if fewer than 3 pictures are of use (the message says why), or they determine no camera;
     InputError for arguments that make no sense; ImageError if `images` is an empty or missing folder.
     """
-    board = board if board is not None else Checkerboard(pattern, square)
-    if not isinstance(board, Checkerboard):
-        raise InputError(f"board = {board!r}: give a Checkerboard or a Charuco")
-    options = _options(lens, aspect, bend)
-    pictures = pictures_of(images, progress)
+    board, (lens, aspect) = Checkerboard(pattern, square), _options(lens, aspect)
+    pictures = _read(images)
+    sizes = Counter(grey.shape[::-1] for _, grey in pictures if not isinstance(grey, ImageError))
+    size = max(sizes, key=sizes.get, default=None)
     found, rejected, seen = [], [], Counter()
-    size = common_size(pictures)
-    for picture in with_bar(pictures, progress):
+    for index, (name, grey) in enumerate(_with_bar(pictures, progress)):
         try:
-            other = max((one for one in seen if one and seen[one] > len(found)), key=seen.get, default=None)
-            found.append((picture.name, picture.index, _corners_in(picture, board, size, other)))
+            found.append((name, index, _corners(grey, size, board, found)))
         except NotUsable as why:
-            rejected.append(Rejected(picture.name, picture.index, why.reason, why.detail))
+            rejected.append(Rejected(name, index, why.reason, why.detail))
             seen[why.seen] += 1
-    found = _without_duplicates(found, size, board, rejected)
     if len(found) < _FEWEST:
         raise CalibrationError(_why_too_few(len(found), rejected, seen, board))
-    return _calibrate(found, size, board, board.points, options, rejected)
+    return _calibrate(found, [board.points] * len(found), size, lens, aspect, rejected, board)
 
 
-def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=None, bend=None):
-    """Calibrate from corners that were found elsewhere.
+def calibrate_corners(object_points, image_points, size, *, lens=_USUAL, aspect=None):
+    """Calibrate from corners that were found elsewhere, on a board that is flat.
 
     Args:
         object_points: for each view the points on the board (n, 3) m, z = 0; or one array for all of them.
         image_points: for each view the pixels (n, 2); also (n, 1, 2) as OpenCV has them.
-        size: (width, height) of the picture, px. lens, aspect, bend: as for `calibrate`.
+        size: (width, height) of the picture, px. lens, aspect: as for `calibrate`.
 
     Returns: Calibration. Raises CalibrationError as `calibrate`, InputError for shapes that do not fit, or NaN.
     """
-    options, size = _options(lens, aspect, bend), picture_size(size)
+    (lens, aspect), size = _options(lens, aspect), picture_size(size)
     if not np.iterable(image_points) or not np.iterable(object_points) or len(object_points) == 0:
         raise InputError("object_points and image_points: give lists with the points of each view, (n, 3) and (n, 2)")
     pixels = [point_list("image_points", one, 2) for one in image_points]
@@ -97,181 +89,126 @@ def calibrate_corners(object_points, image_points, size, *, lens=None, aspect=No
     outside = [xy for xy in np.concatenate(pixels) if (xy < -1.5).any() or (xy > np.array(size) + 0.5).any()]
     if outside:
         raise InputError(f"corner {outside[0].round()} lies outside pictures of size = {size}: give (width, height)")
-    everything, inverse = np.unique(np.concatenate(points), axis=0, return_inverse=True)
-    places = np.split(inverse.ravel(), np.cumsum([len(p) for p in points])[:-1])
-    found = [(f"view {i + 1}", i, BoardCorners(*one)) for i, one in enumerate(zip(pixels, places, strict=True))]
-    return _calibrate(found, size, _board_like(everything), everything, options, [])
+    found = [(f"view {k + 1}", k, xy) for k, xy in enumerate(pixels)]
+    return _calibrate(found, points, size, lens, aspect, [], None)
 
 
-def _calibrate(found, size, board, points, options, rejected):
-    """From (name, index, BoardCorners) to a Calibration: outlier views out, lens chosen, bend of the board tested."""
-    wanted, aspect, bend = options
-    corners = CornerSets([points[one.index] for _, _, one in found], [one.xy for _, _, one in found], size)
-    full = fit(corners, Model(LENS, aspect), start(corners))
-    for _ in range(max(1, len(found) // 4)):
-        outlier = checks.outlier_view(corners, full)
-        if outlier is None:
+def _calibrate(found, points, size, lens, aspect, rejected, board):
+    """Calibration of (name, index, corners) of each view; board: Checkerboard whose bend is looked for, or None."""
+    fitted = fit(points, [xy for *_, xy in found], size, lens, aspect)
+    for _ in range(len(found) // 4):
+        odd = checks.odd_view(fitted.view_rms)
+        if odd is None:
             break
-        worst, rms, corners, full = outlier
-        name, index, _ = found.pop(worst)
-        detail = f"its corners are {rms:.2g} px off the model, those of the others {np.median(full.view_rms):.2g} px"
+        (name, index, _), rms = found.pop(odd), fitted.view_rms
+        detail = f"its corners are {rms[odd]:.2g} px off the model, those of the others {np.median(rms):.2g} px"
         rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
-    best, evidence, tried, said = _best(corners, full, wanted, bend)
-    if not any("was prescribed" in text for text in said):  # else what is prescribed explains the residuals
-        said = checks.two_cameras(corners, best) + said
+        points = [*points[:odd], *points[odd + 1 :]]
+        fitted = fit(points, [xy for *_, xy in found], size, lens, aspect)
+    pixels, said = [xy for *_, xy in found], []
+    if board is not None:
+        fitted = fit_bent(fitted, pixels, size, lens, aspect, board.pattern[0])
+    if fitted.bent:
+        bend = 1000 * height(fitted.points[0])
+        said.append(f"the board is bent by {bend:.1f} mm: its shape was estimated, too. Glue it to a plate and repeat")
+    covariance, sigma, contradiction = errors(fitted, lens, aspect)
+    free = fit(fitted.points, pixels, size, lens, None, fitted.K).camera if aspect else fitted.camera
+    if aspect and abs(free[0] / free[1] / aspect - 1) > _ASPECT:
+        said.append(f"aspect = {aspect} was prescribed, but the corners say {free[0] / free[1]:.4f}: leave aspect=None")
+    elif contradiction > _CONTRADICT:
+        said.append("the views contradict each other: two cameras, or was zoom, focus or the board changed?")
+    parts = zip(found, fitted.points, fitted.residuals, fitted.poses, strict=True)
     views = tuple(
-        View(
-            name=name,
-            index=index,
-            points=points[one.index],
-            corners=one.xy,
-            residuals=residuals,
-            T_cam_board=transform(pose[:3], pose[3:]),
-        )
-        for (name, index, one), residuals, pose in zip(found, best.residuals, best.poses, strict=True)
+        View(name=name, index=index, points=p, corners=xy, residuals=e, T_cam_board=transform(*pose))
+        for (name, index, xy), p, e, pose in parts
     )
-    total = total_covariance(best, tried, full if wanted is None else best)
+    deviations = np.sqrt(np.diag(covariance))
     result = Calibration(
-        K=np.array([[best.camera[0], 0, best.camera[2]], [0, best.camera[1], best.camera[3]], [0, 0, 1.0]]),
-        distortion=best.camera[4:9].copy(),
-        rms=best.rms,
-        stderr=_named(total, best),
-        covariance=total,
+        K=fitted.K,
+        distortion=fitted.camera[4:],
+        rms=float(np.sqrt((np.concatenate(fitted.residuals) ** 2).sum(axis=1).mean())),
+        stderr={name: float(one) if one > 0 else np.nan for name, one in zip(NAMES, deviations, strict=True)},
+        covariance=covariance,
         views=views,
         rejected=tuple(sorted(rejected, key=lambda one: one.index)),
         size=size,
-        board=board,
-        model=best.model.lens,
-        evidence=evidence,
-        sigma=best.sigma,
-        sag=best.camera[9:].copy() if best.model.bent else None,
-        stderr_corners=_named(best.by_corners, best),
-        stderr_views=_named(best.by_views if len(views) > 3 else best.by_corners, best),
+        board=board or Checkerboard(),
+        model=lens,
+        sigma=sigma,
     )
-    if len(rejected) > len(views):
-        said.append(f"{len(rejected)} of {len(rejected) + len(views)} pictures were of no use: see `rejected`")
-    odd = sum(one.reason == Reason.OUTLIER for one in rejected)
-    if odd > 1:
-        said.append(f"{odd} views fit no camera that fits the others: another camera, or zoomed? See `rejected`")
     return replace(result, warnings=(*said, *checks.warnings_about(result)))
 
 
-def _best(corners, full, wanted, bend):
-    """(CameraFit, evidence, models tried, warnings): lens as the data say or as asked for, board flat or bent, aspect.
-
-    Whether the board is bent is asked with all that the lens needs: what a prescribed lens lacks looks like a bend.
-    """
-    said = []
-
-    def estimate(full):
-        if wanted is None:
-            best, evidence, tried = choose(corners, full)
-            return best, best, None, evidence, tried
-        held = fit(corners, full.model.with_lens(wanted), full)
-        lacking, wide = checks.lacking_terms(corners, held, full)
-        return held, wide, lacking, (lacking,) if lacking else (), ((held.camera, 0.0),)
-
-    best, wide, lacking, evidence, tried = estimate(full)
-    try:
-        shape, bent = checks.bent_board(corners, wide)
-        if shape.kept and bend is None:
-            best, wide, lacking, evidence, tried = estimate(fit(corners, bent.model.with_lens(LENS), bent))
-        evidence += (shape,)
-    except CalibrationError:
-        shape = None
-        said.append("the views are too few or too much alike to test whether the board is bent")
-    if best.model.bent:
-        size, error = checks.sag(corners, best)
-        said.append(
-            f"the board is bent by {1e3 * size:.2g} +- {1e3 * error:.1g} mm: its shape was estimated with the camera. "
-            "Glue it to glass or a plate and repeat"
-        )
-    prescribed = [("lens", best.model.lens, wide.model.lens, lacking)]
-    if bend is False:
-        prescribed.append(("bend", False, "that the board is bent", shape))
-    if full.model.aspect:
-        question, ratio = checks.free_aspect(corners, wide)
-        evidence += (question,)
-        prescribed.append(("aspect", full.model.aspect, f"fx/fy = {ratio:.4f}", question))
-    said += [
-        f"{name} = {value} was prescribed, but the corners say {says} (by chance: {in_percent(question.p_value)}): "
-        f"leave {name}=None"
-        for name, value, says, question in prescribed
-        if question is not None and question.kept
-    ]
-    return best, evidence, tried, said
-
-
-def _named(covariance, fitted):
-    used = fitted.model.columns.any(axis=1)
-    return {name: float(np.sqrt(covariance[i, i])) if used[i] else float("nan") for i, name in enumerate(NAMES)}
-
-
-def _options(lens, aspect, bend):
-    """(coefficients of the lens, aspect, bend), checked. Raises InputError."""
+def _options(lens, aspect):
+    """(coefficients of the lens in their order, aspect or None), checked. Raises InputError."""
     if aspect is not None:
         aspect = number("aspect", aspect, "> 0", hint="fx/fy, 1 for square pixels, or None to estimate it")
-    if bend is not None and choice("bend", bend, (True, False)):
-        raise InputError("bend = True: give None to test for a bend and estimate it, or False for a flat board")
-    if lens is not None:
-        names = [lens] if isinstance(lens, str) or not np.iterable(lens) else list(lens)
-        if any(name not in LENS for name in names):
-            raise InputError(f"lens = {lens!r}: give coefficients out of {LENS}, or None to let the data choose")
-        lens = tuple(name for name in LENS if name in names)
-    return lens, aspect, bend
+    names = [lens] if isinstance(lens, str) or not np.iterable(lens) else list(lens)
+    if any(name not in LENS for name in names) or ("p1" in names) != ("p2" in names):
+        raise InputError(f"lens = {lens!r}: give coefficients out of {LENS}, p1 and p2 together")
+    return tuple(name for name in LENS if name in names), aspect
 
 
-def _board_like(points):
-    """The checkerboard that points (n, 3) seem to be of, for coverage and advice."""
-    columns, rows = (len(np.unique(points[:, k].round(9))) for k in (0, 1))
-    width = float(np.ptp(points[:, 0]))
-    return Checkerboard((max(columns, 3), max(rows, 3)), width / max(columns - 1, 1) if width else 0.025)
+def _read(images):
+    """[(name, grey picture (h, w) or the ImageError that says why there is none)]. Raises InputError, ImageError."""
+    if isinstance(images, str | Path):
+        images = list_images(images)
+    if not np.iterable(images) or (isinstance(images, np.ndarray) and images.ndim < 4):
+        raise InputError("images: give a list of pictures or paths, or a folder; one picture is not enough")
+    pictures = [_picture(index, one) for index, one in enumerate(images)]
+    if not pictures:
+        raise InputError("no pictures were given: take 10 to 20 of the board, in different places and tilts")
+    return pictures
 
 
-def _corners_in(picture, board, size, other):
-    if picture.problem is not None:
-        raise NotUsable(Reason.UNREADABLE, picture.problem)
-    if picture.size != size:
-        raise NotUsable(
-            Reason.OTHER_SIZE,
-            f"{picture.size[0]}x{picture.size[1]}, most are {size[0]}x{size[1]}: another size is another camera",
-        )
-    import cv2
-
-    try:
-        if isinstance(board, Charuco):
-            return find_charuco(picture.image, board)
-        return find_checkerboard(picture.image, board.pattern, other)
-    except cv2.error as error:  # one picture must not lose the others
-        raise NotUsable(Reason.NO_BOARD, f"OpenCV finds no corners in it: {' '.join(str(error).split())}") from error
+def _picture(index, one):
+    if isinstance(one, str | Path):
+        try:
+            return Path(one).name, to_grey(load_image(one, allow_grey=True))
+        except ImageError as error:
+            return Path(one).name, error
+    name, array = f"picture {index + 1}", np.asarray(getattr(one, "image", one))
+    if array.dtype != np.uint8 or not array.size or array.shape[2:] not in ((), (3,), (4,)):
+        what = f"{array.dtype} array of shape {array.shape}: give uint8 of shape (h, w, 3), or (h, w)"
+        return name, ImageError(what)
+    return name, array if array.ndim == 2 else to_grey(np.ascontiguousarray(array[..., :3]))
 
 
-def _without_duplicates(found, size, board, rejected):
-    """The views in which the board is not where it was before; the others go to `rejected`."""
-    kept = []
-    places = np.full((len(found), len(board.points), 2), np.nan)
-    for k, (name, index, corners) in enumerate(found):
-        places[k, corners.index] = corners.xy
-        moved = np.linalg.norm(places[kept] - places[k], axis=2)
-        common, still = np.isfinite(moved).sum(axis=1), (moved < _SAME * np.hypot(*size)).sum(axis=1)
-        same = np.flatnonzero((common >= _COMMON * len(corners.index)) & (still > common / 2))
-        if len(same):
-            least, first = np.nanmedian(moved[same[0]]), found[kept[same[0]]][0]
-            detail = f"the board is where it was in {first}, {least:.2f} px away: move it between pictures"
-            rejected.append(Rejected(name, index, Reason.DUPLICATE, detail))
-        else:
-            kept.append(k)
-    return [found[k] for k in kept]
+def _with_bar(pictures, progress):
+    """The pictures, with a progress bar if asked for (None: if they are many)."""
+    if progress is False or (progress is None and len(pictures) < _BAR_FROM):
+        return pictures
+    from tqdm.auto import tqdm
+
+    return tqdm(pictures, desc="finding corners", leave=False)
+
+
+def _corners(grey, size, board, found):
+    """Corners (n, 2) px in a picture of the size of most. Raises NotUsable."""
+    if isinstance(grey, ImageError):
+        raise NotUsable(Reason.UNREADABLE, str(grey))
+    if grey.shape[::-1] != size:
+        sizes = "{}x{}, most are {}x{}".format(*grey.shape[::-1], *size)
+        raise NotUsable(Reason.OTHER_SIZE, f"{sizes}: another size, or upright in place of across, is another camera")
+    xy = find_checkerboard(grey, board.pattern)
+    for other, _, before in found:
+        moved = np.median(np.linalg.norm(xy - before, axis=1))
+        if moved < _SAME * np.hypot(*size):
+            detail = f"the board is where it was in {other}, {moved:.2f} px away: move it between pictures"
+            raise NotUsable(Reason.DUPLICATE, detail)
+    return xy
 
 
 def _why_too_few(count, rejected, seen, board):
+    """What to tell whose pictures are hardly of use; seen: how often a board of (columns, rows) was in their place."""
     reasons = Counter(str(one.reason) for one in rejected)
     message = f"{count} usable pictures of a {board}, at least {_FEWEST} are needed, 10 to 20 are good"
     if rejected:
         message += "; the others: " + ", ".join(f"{n} {reason}" for reason, n in reasons.most_common())
-    likely, often = max(((parts, n) for parts, n in seen.items() if parts), key=lambda one: one[1], default=(None, 0))
-    if likely and (reasons.get(Reason.WRONG_BOARD) or often >= _FEWEST):
+    seen.pop(None, None)
+    likely, often = seen.most_common(1)[0] if seen else (None, 0)
+    if often and (reasons[Reason.WRONG_BOARD] or often >= _FEWEST):
         message += f". They seem to show a board with {likely[0]}x{likely[1]} inner corners: pattern={likely}"
     elif rejected:
-        message += f". The first: {Path(rejected[0].name).name}: {rejected[0].detail}"
+        message += f". The first: {rejected[0].name}: {rejected[0].detail}"
     return message

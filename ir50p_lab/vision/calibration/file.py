@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.board import Charuco, Checkerboard
+from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.calibration.reasons import Reason, Rejected
 from ir50p_lab.vision.checks import check_picture_size, picture_size
 
@@ -15,9 +15,8 @@ _LONGEST = 2000  # characters of one text in such a file: OpenCV takes 4096 byte
 
 
 def save(calibration, path):
-    """Write a Calibration (its evidence is not kept). Returns the Path. Raises CalibrationError if that fails."""
+    """Write a Calibration. Returns the Path. Raises CalibrationError if that fails."""
     path, details = Path(path), asdict(calibration)
-    del details["evidence"]
     text = json.dumps(details, default=np.ndarray.tolist)
     content = {
         "image_width": calibration.size[0],
@@ -51,14 +50,14 @@ def load(calibration_class, view_class, path, size=None):
         found = json.loads("".join(json.loads(text)["details"]))
         board = found["board"] | {"pattern": tuple(found["board"]["pattern"])}
         changed = {
-            "board": Charuco(**board) if "marker" in board else Checkerboard(**board),
+            "board": Checkerboard(**board),
             "views": tuple(
                 view_class(**{name: _array(value) for name, value in one.items()}) for one in found["views"]
             ),
             "rejected": tuple(Rejected(**one | {"reason": Reason(one["reason"])}) for one in found["rejected"]),
         }
         tuples = {name: tuple(found[name]) for name in ("model", "warnings", "size")}
-        arrays = {name: _array(found[name]) for name in ("K", "distortion", "covariance", "sag")}
+        arrays = {name: _array(found[name]) for name in ("K", "distortion", "covariance")}
         calibration = calibration_class(**found | changed | tuples | arrays)
         calibration.pinhole  # noqa: B018 - refuses numbers that are no camera
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:

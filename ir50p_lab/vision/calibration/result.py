@@ -6,16 +6,19 @@ import numpy as np
 
 from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.calibration.file import load, save
-from ir50p_lab.vision.calibration.fit import NAMES
 from ir50p_lab.vision.pinhole import Pinhole
+
+NAMES = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
+LENS = NAMES[4:]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class View:
     """One picture of the board that was used.
 
-    name, index: as in `Rejected`; points (n, 3) m on the board; corners (n, 2) px as found; residuals (n, 2) px, found
-    minus model; rms: of their lengths, px; T_cam_board (4, 4) takes board to camera coordinates.
+    name, index: as in `Rejected`; points (n, 3) m on the board, of a bent one as estimated; corners (n, 2) px as found;
+    residuals (n, 2) px, found minus model; rms: of their lengths, px; T_cam_board (4, 4) takes board to camera
+    coordinates.
     """
 
     name: str
@@ -45,22 +48,18 @@ class Calibration:
     ============== ======================================================================================== =========
     K              [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]: column form (OpenCV); pixel (0, 0) is the centre  (3, 3) px
                    of the top left one
-    distortion     k1, k2, p1, p2, k3 as in `Pinhole`; 0 where the data need no such term                   (5,)
+    distortion     k1, k2, p1, p2, k3 as in `Pinhole`; 0 where not estimated                                (5,)
     rms            root mean square distance between corners and model: sqrt(sum |e|^2 / N)                 px
-    stderr         standard error of "fx", "fy", "cx", "cy", "k1"...: the larger of two routes, and the     dict
-                   uncertainty of the model; nan where not estimated
+    stderr         standard error of "fx", "fy", "cx", "cy", "k1"...: the larger of two kinds               dict
+                   (`fit.errors`); nan where not estimated
     covariance     of fx, fy, cx, cy, k1, k2, p1, p2, k3 with those standard errors; 0 where not estimated  (9, 9)
     views          View of each picture used                                                                tuple
     rejected       Rejected: each picture not used, with a reason                                           tuple
     warnings       what to mind, as sentences                                                               tuple
     size           (width, height) of the pictures                                                          px
-    board          Checkerboard or Charuco
+    board          Checkerboard
     model          lens coefficients that were estimated, such as ("k1", "k2")                              tuple
-    evidence       Evidence for each term asked about                                                       tuple
     sigma          standard deviation of a corner in x or y, from the residuals                             px
-    sag            height of the bent board's edge over its middle along x, as saddle, along y; None: flat  (3,) m
-    stderr_corners standard errors if each corner errs on its own, as OpenCV reports them                   dict
-    stderr_views   standard errors by leaving out one view after the other                                  dict
     ============== ======================================================================================== =========
     """
 
@@ -75,11 +74,7 @@ class Calibration:
     covariance: np.ndarray = field(default_factory=lambda: np.full((9, 9), np.nan), repr=False)
     board: Checkerboard = field(default_factory=Checkerboard)
     model: tuple = ()
-    evidence: tuple = ()
     sigma: float = np.nan
-    sag: np.ndarray | None = None
-    stderr_corners: dict = field(default_factory=dict, repr=False)
-    stderr_views: dict = field(default_factory=dict, repr=False)
 
     @property
     def pinhole(self):
@@ -92,23 +87,15 @@ class Calibration:
         K = self.K
         return dict(zip(NAMES, map(float, (K[0, 0], K[1, 1], K[0, 2], K[1, 2], *self.distortion)), strict=True))
 
+    @property
+    def view_rms(self):
+        """rms of each view, px, (v,)."""
+        return np.array([view.rms for view in self.views])
+
     def __getattr__(self, name):
         if name in NAMES:
             return self.values[name]
         raise AttributeError(f"Calibration has no {name!r}")
-
-    @property
-    def coverage(self):
-        """Where in the picture corners were seen: Coverage."""
-        from ir50p_lab.vision.calibration.coverage import coverage
-
-        return coverage(self)
-
-    def next_view(self):
-        """Where a further picture of the board would help most: NextView with a sentence."""
-        from ir50p_lab.vision.calibration.coverage import next_view
-
-        return next_view(self)
 
     def save(self, path):
         """Write a JSON file, in which cv2.FileStorage (and OpenCV's samples) find the camera. Returns the path."""

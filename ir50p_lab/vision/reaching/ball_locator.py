@@ -27,7 +27,6 @@ class Seen:
     """
 
     position: np.ndarray | None
-    stderr: np.ndarray | None
     ball: object
     image: np.ndarray = field(repr=False)
     simulated: bool
@@ -71,14 +70,13 @@ class BallLocator:
         """
         balls = find_balls(image, self.colour, camera=self.plane.pinhole)
         if not balls:
-            return Seen(None, None, None, image, simulated, balls.reason)
+            return Seen(None, None, image, simulated, balls.reason)
         xy = [balls[0].x, balls[0].y]
         try:
             place = self.plane.to_points(xy, self.radius)
         except VisionError as error:
-            return Seen(None, None, balls[0], image, simulated, str(error))
-        stderr = self.plane.standard_error(xy, self.radius, sigma_px=self.sigma_px)
-        return Seen(moved(self.T_base_table, place), stderr, balls[0], image, simulated)
+            return Seen(None, balls[0], image, simulated, str(error))
+        return Seen(moved(self.T_base_table, place), balls[0], image, simulated)
 
     def to_image(self, p):
         """Pixel (2,) of a point p (3,) m of the base frame."""
@@ -115,11 +113,8 @@ class BallLocator:
         Args: arm: Arm; q: (3,) rad; xy: (2,) px; sigma_q: (3,) rad.
         Returns: e (3,) rad. If the picture contradicts q by more than 5 sigma: VisionError.
         """
-        e, sigma_q = np.zeros(3), vector3("sigma_q", sigma_q)
-        for _ in range(4):  # Gauss-Newton; errors of 20 mrad are almost linear
-            A = np.vstack([self.marker_jacobian(arm, q + e) / self.sigma_px, np.diag(1 / sigma_q)])
-            off = (xy - self.marker_pixel(arm, q + e)) / self.sigma_px
-            e = e + np.linalg.lstsq(A, np.concatenate([off, -e / sigma_q]), rcond=None)[0]
+        H, P = self.marker_jacobian(arm, q), np.diag(np.square(sigma_q))
+        e = P @ H.T @ np.linalg.solve(H @ P @ H.T + self.sigma_px**2 * np.eye(2), xy - self.marker_pixel(arm, q))
         if (np.abs(e) > _SPIKE * sigma_q).any():
             off = np.linalg.norm(xy - self.marker_pixel(arm, q))
             raise VisionError(

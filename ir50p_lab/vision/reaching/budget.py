@@ -4,9 +4,7 @@ import numpy as np
 
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
-from ir50p_lab.vision.board_pose import inverse_transform, moved
 from ir50p_lab.vision.reaching.moving import ACCEPTED
-from ir50p_lab.vision.table_plane import TablePlane
 
 _READINGS = 100  # counts averaged at rest
 
@@ -33,23 +31,14 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
     G = np.linalg.solve(H @ P @ H.T + locator.sigma_px**2 * np.eye(2), H @ P).T
     left = np.eye(3) - G @ H
 
-    to_table = inverse_transform(locator.T_base_table)
-    ball = moved(to_table, np.array([*tip[:2], locator.radius]))
-    xy = locator.plane.to_image(ball)
-    exact = TablePlane(locator.plane.pinhole, locator.plane.T_cam_table)
-    pixel = float(np.linalg.norm(exact.standard_error(xy, ball[2], sigma_px=sigma_ball_px)))
-    shifts = [  # one standard deviation in each direction of what is wrong with the camera: ball m, hand px
-        (one.to_table(xy, ball[2]) - ball[:2], one.to_image(moved(to_table, hand)) - locator.to_image(hand))
-        for one in locator.plane.variations()
-    ]
-    ball_off = np.array([[*b, 0.0] for b, _ in shifts]).reshape(-1, 3).T
-    both_off = ball_off + J @ G @ np.array([h for _, h in shifts]).reshape(-1, 2).T
+    xy, height = locator.to_image([*tip[:2], locator.radius]), locator.radius
+    steps = [locator.plane.to_table(xy + d, height) - locator.plane.to_table(xy - d, height) for d in 0.5 * np.eye(2)]
+    pixel = sigma_ball_px * _rms(np.array(steps))
     reading = np.diag(np.sqrt(noise**2 + 1 / 12) / np.sqrt(_READINGS) / np.abs(slope))
     rest = ACCEPTED * np.sqrt(0.6)  # evenly spread over a ball of that radius
     noisy = _rms(J @ reading)
     causes = {
         "ball in the picture": (pixel, pixel / np.sqrt(2)),
-        "camera: its numbers, where it stands": (_rms(ball_off), _rms(both_off)),
         "marker in the picture": (0.0, _rms(sigma_marker_px * J @ G)),
         "potentiometers: bent, off, mis-scaled": (_rms(J * sigma_q), _rms(J @ left * sigma_q)),
         "potentiometers: noise, rounding": (noisy, np.hypot(noisy, _rms(J @ G @ H @ reading))),

@@ -115,10 +115,10 @@ class Mover:
             self._cycle((self._set, rows[k, 1], rows[k, 2]))
 
     def move_to(self, p, *, lift=LIFT):
-        """Move the tip to p (3,) m on a trajectory clear of the table, and settle. Returns the Plan."""
+        """Move the tip to p (3,) m on a trajectory clear of the table, and settle. Returns the trajectory."""
         trajectory = plan(self.arm, self.q, p, lift=lift)
         self.move_along(trajectory)
-        self.settle(trajectory.goal)
+        self.settle(np.array(trajectory.points[-1]))
         return trajectory
 
     def settle(self, goal):

@@ -10,7 +10,7 @@ from ir50p_lab.inputs import number, whole
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.vision.checks import coordinates
 from ir50p_lab.vision.reaching.moving import Mover
-from ir50p_lab.vision.reaching.plan import plan, reach_pose, within_reach
+from ir50p_lab.vision.reaching.plan import plan, reach_pose
 from ir50p_lab.vision.reaching.result import BallTracker, FollowLog, Look, Reached
 
 HEIGHT = 0.06  # m of the tip over the ball's centre: 30 mm over its top
@@ -82,15 +82,14 @@ class Reacher(Mover):
         """Put the tip over the ball, `height` m above its centre; look again from there and correct.
 
         looks: 1: one look, then potentiometers alone; 2: after arriving the camera sees where ball and hand really
-        are, and the hand is moved by the difference. A goal less than 1 mm out of reach counts as the nearest point
-        that is within it.
+        are, and the hand is moved by the difference.
         Returns: Reached. Raises UnreachableError (.distance, .nearest) before anything moves; VisionError if no ball
         is seen, with the reason.
         """
         looks, records = whole("looks", looks, 1, 3), []
         over = np.array([0.0, 0.0, number("height", height, unit="m")])
         ball = self._sure(self.look()).position
-        goal = within_reach(self.arm, ball + over)
+        goal = ball + over
         self.move_along(plan(self.arm, self.q, goal))
         for again in reversed(range(looks)):
             q = self.settle(reach_pose(self.arm, goal, self.q))
@@ -98,9 +97,10 @@ class Reacher(Mover):
             if again:
                 ball, marker, q = self._look_again(ball, q, notes)
                 try:
-                    goal = within_reach(self.arm, ball + over)
-                except UnreachableError as error:  # a ball that has rolled away must not let the arm fall
-                    notes.append(f"the ball is out of reach now, by {1e3 * error.distance:.0f} mm: the arm stays")
+                    reach_pose(self.arm, ball + over)
+                    goal = ball + over
+                except UnreachableError:  # a ball that has rolled away must not let the arm fall
+                    notes.append("the ball is out of reach now: the arm stays")
             records.append(Look(marker, self.errors.copy(), "; ".join(notes), stood))
         simulated = self.bench.simulated and hasattr(self.bench, "plant")
         return Reached(

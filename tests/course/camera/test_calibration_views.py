@@ -31,9 +31,7 @@ def test_every_figure_of_pictures_says_that_they_are_rendered(calibration, image
     drawn = {
         "residuals": views.residual_figure(images, calibration, 2),
         "standard errors of every number": views.estimate_figure(calibration, truth),
-        "The next view (orange) fills empty cells": views.coverage_figure(calibration),
         "Board taken for flat": views.board_residual_figure(images[0], calibration, calibration),
-        "54 corners found": views.covered_figure(images[0], images[1], calibration.views[1]),
         "Table 4.8": views.table_figure(images[0], np.ones((4, 2)), {"ours": np.zeros((4, 2))}),
     }
     for words, figure in drawn.items():
