@@ -1,9 +1,21 @@
-"""Pictures of notebook 00: a turn seen from above, the arm turned by the student's function, a speed."""
+"""Pictures of notebook 00: a turn seen from above, the arm turned by the student's function, a speed, the whole way."""
 
 import numpy as np
 
-from ir50p_lab.course.style import COLOURS, subplots
+from ir50p_lab.course import lab_book
+from ir50p_lab.course.style import COLOURS, SETPOINT, subplots
 from ir50p_lab.modelling.chain import frames
+
+#: How a notebook goes to the ball, and the name under which the lab book has it: `ball.miss.NAME`, `ball.seconds.NAME`.
+_WAYS = {
+    "00  your hand": "by_hand",
+    "00  one turn of the waist": "by_turn",
+    "00  one push of the waist": "by_push",
+    "01  three angles, guessed": "by_guess",
+    "02  your formula": "by_formula",
+    "08  your controller": "by_pid",
+    "18  a picture": "by_camera",
+}
 
 
 def from_above(angle):
@@ -53,4 +65,29 @@ def speed_over_time(run, joint, end=1.4):
     ax.set_xticks(np.arange(0, end + 0.01, 0.02), minor=True)
     ax.set_title("Simulated: a push from rest, and then nothing")
     ax.legend(loc="lower center")
+    return figure
+
+
+def so_far():
+    """How far each notebook misses the ball's place, and how long it took, from the student's lab book: LabFigure.
+
+    What is not done yet has an empty row; a miss below 0.01 mm stands at 0.01.
+    """
+    book = lab_book.read()["predictions"]
+    figure, ax = subplots(7.5, 3.4)
+    for row, name in enumerate(_WAYS.values()):
+        miss, seconds = (book.get(f"ball.{what}.{name}", {}).get("truth") for what in ("miss", "seconds"))
+        said, place = "not yet", 0.01
+        if miss is not None:
+            place = np.clip(miss, 0.01, 1000)
+            ax.plot(place, row, "o", ms=9, color=COLOURS["orange"])
+            said = f"{miss:.3g} mm" + (f", {seconds:.2g} s" if seconds else "")
+        where = {"xytext": (-9, 0), "ha": "right"} if place > 30 else {"xytext": (9, 0)}
+        colour = COLOURS["grey" if miss is None else "dark"]
+        ax.annotate(said, (place, row), va="center", textcoords="offset points", color=colour, **where)
+    ax.axvline(30, label="the ball's radius", **SETPOINT)
+    ax.set(xscale="log", xlim=(0.007, 1000), ylim=(len(_WAYS) - 0.5, -0.5), xlabel="miss [mm]")
+    ax.set_yticks(range(len(_WAYS)), _WAYS)
+    ax.set_title("The ball at (0.42, −0.15, 0.03) m: by how much is its place missed?")
+    ax.legend(loc="lower right")
     return figure

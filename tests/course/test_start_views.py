@@ -1,9 +1,10 @@
-"""What the student's functions draw in 00 and 01: right, wrong, and not written yet."""
+"""What the student's functions draw in 00 and 01: right, wrong, and not written yet; what the lab book has of the ball."""
 
 import numpy as np
 import pytest
 
-from ir50p_lab.course.start_views import turned_by
+from ir50p_lab.course import lab_book
+from ir50p_lab.course.start_views import so_far, turned_by
 from ir50p_lab.course.walk_view import arm_by_table, two_views, walk
 from ir50p_lab.modelling import IR50P, dh_matrix, forward_kinematics, frames, rot_z
 
@@ -47,3 +48,17 @@ def test_two_arms_are_seen_from_above_and_from_the_right(q):
     above, side = two_views({"one": T, "another": T[::-1]}).axes
     np.testing.assert_allclose(above.lines[0].get_xydata(), T[:, [0, 1], 3])
     np.testing.assert_allclose(side.lines[1].get_xydata(), T[::-1][:, [0, 2], 3])
+
+
+def test_the_way_to_the_ball_is_filled_from_the_lab_book(tmp_path, monkeypatch):
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+    assert [text.get_text() for text in so_far().axes[0].texts] == ["not yet"] * 7
+    lab_book.measured("ball.miss.by_hand", 34.2, "mm")
+    lab_book.measured("ball.seconds.by_hand", 41, "s")
+    lab_book.measured("ball.miss.by_formula", 1e-13, "mm")
+    ax = so_far().axes[0]
+    said = [text.get_text() for text in ax.texts]
+    assert said[0] == "34.2 mm, 41 s" and said[4] == "1e-13 mm" and said.count("not yet") == 5
+    by_hand, by_formula = ax.lines[:2]
+    np.testing.assert_allclose(by_hand.get_xydata(), [[34.2, 0]])
+    np.testing.assert_allclose(by_formula.get_xydata(), [[0.01, 4]])  # the edge of what is drawn
