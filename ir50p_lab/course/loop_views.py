@@ -1,4 +1,4 @@
-"""Pictures of notebook 08: block diagrams, a push against the weight, where pushes end; of 14: curves over time."""
+"""Pictures of notebook 08: block diagrams, a push against the weight, where pushes end, curves over time; trembling."""
 
 import numpy as np
 

@@ -77,16 +77,15 @@ def so_far():
     figure, ax = subplots(7.5, 3.4)
     for row, name in enumerate(_WAYS.values()):
         miss, seconds = (book.get(f"ball.{what}.{name}", {}).get("truth") for what in ("miss", "seconds"))
-        said, place = "not yet", 0.01
-        if miss is not None:
-            place = np.clip(miss, 0.01, 1000)
-            ax.plot(place, row, "o", ms=9, color=COLOURS["orange"])
-            said = f"{miss:.3g} mm" + (f", {seconds:.2g} s" if seconds else "")
-        where = {"xytext": (-9, 0), "ha": "right"} if place > 30 else {"xytext": (9, 0)}
-        colour = COLOURS["grey" if miss is None else "dark"]
-        ax.annotate(said, (place, row), va="center", textcoords="offset points", color=colour, **where)
+        if miss is None:
+            ax.annotate("not yet", (0.012, row), va="center", color=COLOURS["grey"])
+            continue
+        place = np.clip(miss, 0.01, 1000)
+        ax.plot(place, row, "o", ms=9, color=COLOURS["orange"])
+        said = f"{miss:.3g} mm" + (f", {seconds:.2g} s" if seconds else "")
+        ax.annotate(said, (place, row), (9, 0), textcoords="offset points", va="center")
     ax.axvline(30, label="the ball's radius", **SETPOINT)
-    ax.set(xscale="log", xlim=(0.007, 1000), ylim=(len(_WAYS) - 0.5, -0.5), xlabel="miss [mm]")
+    ax.set(xscale="log", xlim=(0.007, 6000), ylim=(len(_WAYS) - 0.5, -0.5), xlabel="miss [mm]")
     ax.set_yticks(range(len(_WAYS)), _WAYS)
     ax.set_title("The ball at (0.42, −0.15, 0.03) m: by how much is its place missed?")
     ax.legend(loc="lower right")

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.controllers import PID
-from ir50p_lab.course.painter import Painter
-from ir50p_lab.course.tuning_views import GainMap, JointPlots, LocusView, one_joint, rule_in_use, three_columns
+from ir50p_lab.course.tuning_views import JointPlots, LocusView, one_joint, rule_in_use, three_columns
 from ir50p_lab.course.widgets import live
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
@@ -47,29 +46,6 @@ def test_sliders_in_three_columns(run):
     assert panel.children[0].layout.grid_template_columns.count("max-content") == 3
     panel.set(k3=5)
     assert panel.controls["k3"].box.value == 5
-
-
-def test_gain_map_places_its_cells_at_the_gains(run):
-    kp, kd, values = np.linspace(10, 100, 10), np.linspace(0, 8, 5), np.arange(50.0).reshape(5, 10)
-    view = GainMap(kp, kd, values, title="t", label="s [s]", target=0.8, duration=2)
-    left, right, bottom, top = view.map.images[0].get_extent()
-    assert (left, right) == (5, 105) and (bottom, top) == (-1, 9)  # the centres of the cells are the gains
-    view.lay_over(np.tile(kp, (5, 1)), [35.0], "half", colour="purple")  # a line where kp is 35
-    places = np.concatenate([path.vertices for one in view.map.collections for path in one.get_paths()])
-    assert np.allclose(places[:, 0], 35)
-    assert "half" in [text.get_text() for text in view.figure.legends[0].get_texts()]
-    assert view.map.get_xlim() == (5, 105) and view.map.get_ylim() == (-1, 9)
-    painter = Painter(view.figure)
-    before = painter.png()
-    view.update(50, 4, (run.t, run.q[:, 0]))
-    assert painter.png() != before
-    first = painter.backgrounds
-    view.update(60, 4, (run.t, run.q[:, 1]))
-    painter.png()
-    assert painter.backgrounds == first
-    view.update(50, 4, (run.t, run.q[:, 0]))
-    assert any(np.array_equal(line.get_ydata(), run.q[:, 0]) for line in view.figure.axes[1].lines)
-    assert [50] in [list(line.get_xdata()) for line in view.map.lines]
 
 
 def test_locus_marks_the_poles_of_the_nearest_gain():
