@@ -26,7 +26,7 @@ LAYERS = {
 #: Rooms of `course` below all subjects, and what each builds on there.
 ROOMS = {
     "draw": set(),
-    "lab_book": set(),
+    "lab_book": {"draw"},
     "printed": set(),
     "robot": {"draw"},
     "checking": {"lab_book", "robot", "exercises"},

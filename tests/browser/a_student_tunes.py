@@ -37,7 +37,15 @@ WRONG = {
     "PID": [("self.last = None", "self.last = np.zeros(3)", "has come from zero")],
     "step_metrics": [("max(0.0, ", "float(", "no overshoot is 0")],
 }
-NAMES = {"A": "windup", "B": "kick", "C": "sampling", "D": "delay", "E": "friction", "F": "noise"}
+NAMES = {
+    "A": "windup",
+    "B": "kick",
+    "C": "sampling",
+    "D": "delay",
+    "E": "healthy",
+    "F": "friction",
+    "G": "noise",
+}
 THESIS = "kp, ki, kd = (289, 225, 270), (50, 10, 50), (40, 30, 30)"
 HIGHEST, TUNED = "kp, ki, kd = 2000, 3000, 60", "kp, ki, kd = (1000,) * 3, (800, 2800, 2400), (8, 1, 1)"
 

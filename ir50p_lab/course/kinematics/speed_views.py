@@ -96,12 +96,17 @@ def way_out(arm, distances, speeds, limit):
 
 
 def pace(q, direction, l, fastest):
-    """Stand-in for the student's function: greatest tip speed (m/s) along direction, no joint above fastest (rad/s)."""
+    """Stand-in for the student's function: greatest tip speed (m/s) along direction, no joint above fastest (rad/s).
+
+    At a singular pose: that of the joint speeds of least length, which is safe and not always the greatest; 0 where
+    the direction is shut.
+    """
     T = frames(q, l)
     Jv = velocity.jacobian(T, 3, T[3][:3, 3])[:3]
-    if abs(np.linalg.det(Jv)) < 1e-9:
+    qd = np.linalg.lstsq(Jv, direction, rcond=1e-9)[0]
+    if not np.allclose(Jv @ qd, direction, atol=1e-6):
         return 0.0
-    return fastest / np.max(np.abs(np.linalg.solve(Jv, direction)))
+    return fastest / np.max(np.abs(qd))
 
 
 def pace_along(paces, busiest):
@@ -142,7 +147,7 @@ def where_not(arm, tips, rates, limit):
     return figure
 
 
-def steps_panel(damped_step, arm, q_start, p, steps=25):
+def steps_panel(damped_step, arm, q_start, p, steps=40):
     """Miss and elbow after each step towards p (3,) m from q_start, for `live`.
 
     Returns: figure, f(damping, start) -> sentence; start: the elbow's, in degrees, in place of that of q_start.

@@ -1,6 +1,12 @@
 """The student's lab book: predictions, notes and figures; beside it results, claims and progress."""
 
-from ir50p_lab.course.lab_book.predictions import change, keep, measured, note, now, path, predict, read
-from ir50p_lab.course.lab_book.student_file import LabBookError
+import lazy_loader
 
-__all__ = ["LabBookError", "change", "keep", "measured", "note", "now", "path", "predict", "read"]
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "predictions": ["change", "keep", "measured", "note", "now", "path", "predict", "read"],
+        "student_file": ["LabBookError"],
+        "way_to_the_ball": ["so_far"],
+    },
+)

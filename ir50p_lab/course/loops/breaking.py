@@ -1,4 +1,4 @@
-"""Six loops that are broken, each in its own way: shown without a name, named by the student, then cured.
+"""Six loops that are broken, each in its own way, and a healthy one: without a name, named by the student, then cured.
 
     run = broken("A")
     name_it("A", "windup")
@@ -18,7 +18,7 @@ from ir50p_lab.modelling import THESIS_A, load_arm
 from ir50p_lab.signals import steps
 from ir50p_lab.simulation import simulate
 
-NAMES = ("delay", "friction", "kick", "noise", "sampling", "weak motor", "windup")  # one too many
+NAMES = ("delay", "friction", "healthy", "kick", "noise", "sampling", "weak motor", "windup")  # one too many
 THESIS_TARGET = (np.pi / 2, np.pi / 2, -np.pi / 3)
 THESIS_KP, THESIS_KD = (25, 200, 200), (10, 40, 40)
 FIRM_KP, FIRM_KI = (1500, 1500, 1500), (300, 2000, 2000)
@@ -50,12 +50,13 @@ def far_target(arm):
 
 
 def broken(letter, arm=None):
-    """The run of a case, "A" to "F"."""
+    """The run of a case, "A" to "G"."""
     _case(letter)
     arm = load_arm() if arm is None else arm
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnstableLoopWarning)  # to be named by the student, not by us
-        return {"A": windup, "B": kick, "C": sampling, "D": delay, "E": friction, "F": noise}[letter](arm)
+        kinds = {"A": windup, "B": kick, "C": sampling, "D": delay, "E": healthy, "F": friction, "G": noise}
+        return kinds[letter](arm)
 
 
 def windup(arm, *, cured=False):
@@ -80,6 +81,12 @@ def delay(arm, *, samples=15):
     """A loop that hears late, without friction; the step is so small that the motor keeps within its limit."""
     pid = PID((800, 1500, 1500), ki=(0, 2000, 2000), kd=10, limit_pwm=255)
     return simulate(arm.without_friction(), Late(pid, samples), 0.15 * far_target(arm), duration=6)
+
+
+def healthy(arm):
+    """The large step of a loop with nothing wrong: its motor is at its limit for a while, as any motor would be."""
+    pid = PID((1000, 1500, 1500), ki=(0, 2000, 2000), kd=(80, 10, 10), limit_pwm=255)
+    return simulate(arm.without_friction(), pid, far_target(arm), duration=6)
 
 
 def hears_late(arm, controller, samples):

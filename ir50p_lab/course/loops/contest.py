@@ -198,10 +198,11 @@ def contest(controller, name):
         found = Score(np.full((5, 3), np.inf), str(fault))
     _keep(entry | {"score": min(found.value, _LOST), "decides": found.decides})
     print(found)
-    if not before or found.value < min(before):
+    best = min(before, default=_LOST)  # where every drive was cut there is none
+    if found.value < best:
         print(f"attempt {len(before) + 1}: your best so far")
-    else:
-        print(f"attempt {len(before) + 1}: your best is {min(before):.2f}, attempt {int(np.argmin(before)) + 1}")
+    elif best < _LOST:
+        print(f"attempt {len(before) + 1}: your best is {best:.2f}, attempt {before.index(best) + 1}")
     return found
 
 

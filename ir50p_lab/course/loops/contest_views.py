@@ -10,6 +10,7 @@ from ir50p_lab.course.loops import contest
 from ir50p_lab.errors import LabError
 
 _SLIDERS = {"kp": (2000, 10), "ki": (3000, 10), "kd": (60, 0.5)}  # right end, step
+_TOP = 100.0  # a score above it stands there: that of a drive that was cut is infinite
 _MARKERS = dict(zip(contest.LIMITS, "osv^D", strict=True))
 
 
@@ -30,9 +31,8 @@ class Practice:
             above.plot(t, target, drawstyle="steps-post", label="target", **SETPOINT)
             above.axvspan(0, contest.TIMES[1], color=COLOURS["light"], label="not judged")
             room = 0.35 + 0.3 * np.ptp(target)
-            above.set(
-                xlim=(0, contest.END), ylim=(target.min() - room, target.max() + room), title=f"joint {joint + 1}"
-            )
+            above.set(xlim=(0, contest.END), ylim=(target.min() - room, target.max() + room))
+            above.set_title(f"joint {joint + 1}")
             below.set(ylim=(-275, 275), xlabel="time [s]")
             self._q += above.plot([], [], color=colour, label="true angle")
             self._u += below.plot([], [], color=colour, linewidth=0.6, antialiased=False)
@@ -102,17 +102,19 @@ def history(rules=None):
     figure, ax = subplots(9.0, 3.6)
     ax.axhspan(0.1, 1, color="#E5F3EC")
     ax.axhline(1.0, **SETPOINT, label="below: won")
-    values = np.minimum([one["score"] for one in attempts], 100)
+    values = np.minimum([one["score"] for one in attempts], _TOP)
     number = np.arange(1, len(values) + 1)
     if len(values):
         ax.step(number, np.minimum.accumulate(values), where="post", color=COLOURS["dark"], label="your best")
     for name, marker in _MARKERS.items():
-        mine = [k for k, one in enumerate(attempts) if one["decides"][0] == name]
+        mine = [k for k, one in enumerate(attempts) if one["decides"][0] == name and values[k] < _TOP]
         if mine:
             ax.plot(number[mine], values[mine], marker, ms=7, color=COLOURS["blue"], label=f"{name} decided")
+    if (values == _TOP).any():
+        ax.plot(number[values == _TOP], values[values == _TOP], "x", color=COLOURS["dark"], label="the drive was cut")
     for (name, found), colour in zip((rules or {}).items(), ("orange", "purple", "amber", "sky"), strict=False):
-        ax.axhline(min(found.value, 100), color=COLOURS[colour], linestyle="-.", label=name)
-    top = max([2.0, *values, *(min(found.value, 100) for found in (rules or {}).values())])
+        ax.axhline(min(found.value, _TOP), color=COLOURS[colour], linestyle="-.", label=name)
+    top = max([2.0, *values, *(min(found.value, _TOP) for found in (rules or {}).values())])
     ax.set(yscale="log", ylim=(0.4, 1.5 * top), xlim=(0.5, max(len(values), 5) + 0.5))
     ax.set(xlabel="attempt", ylabel="score", title="The worst term over its limit, attempt by attempt")
     ax.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))

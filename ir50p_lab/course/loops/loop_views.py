@@ -1,4 +1,4 @@
-"""Pictures of notebook 08: block diagrams, a push against the weight, where pushes end."""
+"""Pictures of notebook 08: block diagrams, a push against the weight, where pushes end; trembling."""
 
 import numpy as np
 
@@ -55,8 +55,15 @@ class Trembling:
     unit = "PWM"
 
     def __init__(self, controller):
-        self.controller, self.random = controller, np.random.default_rng(1)
+        self.controller = controller
         self.one = np.array([0.005, 0.008, 0.005])  # rad, a step of each converter
+        self.reset()
+
+    def reset(self):
+        """Begin anew: the controller without a memory, where it has one, and the same trembling."""
+        self.random = np.random.default_rng(1)
+        if hasattr(self.controller, "reset"):
+            self.controller.reset()
 
     def step(self, t, q, reference):
         """Hand on the angles, shaken."""

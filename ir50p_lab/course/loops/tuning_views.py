@@ -1,9 +1,8 @@
-"""Pictures for tuning: one joint over time, a map of gains with a response beside it, root loci."""
+"""Pictures for tuning: one joint over time, root loci."""
 
 from itertools import pairwise
 
 import numpy as np
-from matplotlib.colors import Normalize
 
 from ir50p_lab.controllers import simc_integrating
 from ir50p_lab.course.draw.drawings import drawing
@@ -21,51 +20,6 @@ def three_columns(panel):
         control.layout.width = "190px"
         control.box.layout.width = "64px"
     return panel
-
-
-class GainMap:
-    """A figure of merit over (kp, kd) as colours, and beside it the responses of one gain set.
-
-    Args: kp (n,), kd (m,): evenly spaced grid; values (m, n); title, label of the colours; duration s and target rad
-    of the responses. Which response is which belongs in the status line: text in a picture is slow to draw.
-
-    Attributes: figure; map, its left axes, where clicks make sense.
-    """
-
-    def __init__(self, kp, kd, values, *, title, label, target, duration):
-        self.figure, self.map, self._side = subplots(9.6, 4.0, cols=2, width_ratios=(1.25, 1))
-        self._grid = kp, kd
-        self._mark = colour_map(self.map, kp, kd, values, Normalize(np.nanmin(values), np.nanmax(values)), label)
-        self.map.set(xlabel="Kp [PWM/rad]", ylabel="Kd [PWM s/rad]", title=title)
-        self._side.axhline(target, **SETPOINT, label="target")
-        self._side.set(xlim=(0, duration), ylim=sorted((-0.1 * target, 1.3 * target)))
-        self._side.set(xlabel="time [s]", ylabel="angle [rad]")
-        self._lines = [
-            self._side.plot([], [], label=label, **style)[0]
-            for label, style in zip(("without friction", "with friction"), _RUNS[:2], strict=True)
-        ]
-        self._side.legend(fontsize=8, loc="lower right")
-
-    def lay_over(self, values, levels, label, *, colour, unit="", at=0.5):
-        """Lines of another figure (m, n) over the same grid, each with value and unit; label: in the legend below.
-
-        at: where along each line its value stands, 0 to 1 (so that those of two figures do not meet).
-        """
-        style = {"colors": COLOURS[colour], "linewidths": 1.4}
-        lines = self.map.contour(*self._grid, values, levels=levels, **style)
-        paths = [path.vertices for path in lines.get_paths() if len(path.vertices)]
-        places = [path[int(at * (len(path) - 1))] for path in paths]
-        for text in self.map.clabel(lines, fontsize=8, fmt=f"%g {unit}", manual=places):
-            text.set_bbox({"facecolor": "white", "linewidth": 0, "pad": 1})
-        self.map.plot([], [], color=COLOURS[colour], label=label)
-        self.figure.legends.clear()
-        self.figure.legend(handles=self.map.lines[1:], fontsize=8, loc="outside lower left", ncols=2)
-
-    def update(self, kp, kd, *responses):
-        """Mark the gain set and draw its responses, pairs (t, angle): the first blue, the second orange."""
-        self._mark.set_data([kp], [kd])
-        for line, (t, angle) in zip(self._lines, responses, strict=False):
-            line.set_data(t, angle)
 
 
 def one_joint(*runs, labels, joint, unit="PWM"):

@@ -103,7 +103,9 @@ def _guesses(image, colour, least_radius):
     if loose.any():  # the more saturated and the less orange part of it
         for plane, side in ((1, cv2.THRESH_BINARY), (0, cv2.THRESH_BINARY)):
             level, _ = cv2.threshold(hsv[..., plane][loose > 0], 0, 255, cv2.THRESH_OTSU)
-            masks.append(cv2.morphologyEx(cv2.threshold(hsv[..., plane], level, 255, side)[1] & loose, cv2.MORPH_OPEN, square))
+            masks.append(
+                cv2.morphologyEx(cv2.threshold(hsv[..., plane], level, 255, side)[1] & loose, cv2.MORPH_OPEN, square)
+            )
     for mask in masks:
         contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
         for contour in sorted(contours, key=len, reverse=True)[:10]:
@@ -194,9 +196,17 @@ def _measured(image, guess, colour, least_radius):
 
 
 _WEIGHTS = np.array([5.32, -2.3, 4.43, 2.23, 3.64, 2.84, 2.28, 1.16, -1.55, 2.51])  # of a logistic regression
-_SAID = ("it is small", "{:.0%} of the circle show no edge", "{:.0%} of the circle lie outside the picture",
-    "{:.0%} of the disc have another colour", "its outline is not round", "its hue is off by {:.2f} of the tolerance",
-    "the colour goes on beyond {:.0%} of the circle", "its edge is soft", "it hardly stands out from its surroundings")
+_SAID = (
+    "it is small",
+    "{:.0%} of the circle show no edge",
+    "{:.0%} of the circle lie outside the picture",
+    "{:.0%} of the disc have another colour",
+    "its outline is not round",
+    "its hue is off by {:.2f} of the tolerance",
+    "the colour goes on beyond {:.0%} of the circle",
+    "its edge is soft",
+    "it hardly stands out from its surroundings",
+)
 
 
 def _objection(numbers):
@@ -208,7 +218,9 @@ def _rays(image, x, y, r, half, count=41):
     """Distances (m,), colours (rays, m, 3) float, and whether they lie in the picture, along rays from r(1 -+ half)."""
     rho = r * np.linspace(1 - half, 1 + half, count)
     px, py = x + rho * _UNIT[0][:, None], y + rho * _UNIT[1][:, None]
-    rgb = cv2.remap(image, px.astype(np.float32), py.astype(np.float32), cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    rgb = cv2.remap(
+        image, px.astype(np.float32), py.astype(np.float32), cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
+    )
     h, w = image.shape[:2]
     return rho, rgb.astype(float), (px >= -0.5) & (px <= w - 0.5) & (py >= -0.5) & (py <= h - 0.5)
 
@@ -244,7 +256,9 @@ def _colours(image, x, y, r, colour):
     rim = 1.5 / r
     reach = r * (relative + np.where(relative > 1, rim, 0) - np.where(relative > 0.85, rim, 0) * (relative < 1))
     px, py = x + reach * _UNIT[0][:, None], y + reach * _UNIT[1][:, None]
-    rgb = cv2.remap(image, px.astype(np.float32), py.astype(np.float32), cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    rgb = cv2.remap(
+        image, px.astype(np.float32), py.astype(np.float32), cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
+    )
     hsv = colour.hsv_of(rgb)
     alike = cv2.inRange(hsv, *colour.bounds()) > 0
     disc, loose = hsv[:, :9], colour.loose_mask(hsv[:, :9]) > 0

@@ -28,4 +28,5 @@ def test_at_its_pace_the_fastest_joint_is_at_its_limit(arm):
     direction = np.array([0.6, 0.0, 0.8])
     rates = np.linalg.solve(jacobian(arm, Q)[:3], pace(Q, direction, arm.l, 1.3) * direction)
     assert np.abs(rates).max() == pytest.approx(1.3)
-    assert pace(np.zeros(3), direction, arm.l, 1.3) == 0
+    assert pace(np.zeros(3), direction, arm.l, 1.3) == 0  # stretched: nothing goes outwards
+    assert pace(np.zeros(3), [0, 1, 0], arm.l, 1.3) == pytest.approx(1.3 * arm.reach)  # the waist alone

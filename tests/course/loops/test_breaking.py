@@ -41,6 +41,15 @@ def test_a_late_loop_swings_and_the_same_in_time_does_not(arm):
     assert np.ptp(late.q[-200:, 0]) > 0.3 and np.ptp(prompt.q[-100:, 0]) < 0.02
 
 
+@pytest.mark.parametrize("arm", ARMS, ids=lambda arm: arm.name[:7])
+def test_nothing_is_wrong_with_the_healthy_one(arm):
+    run = breaking.healthy(arm)
+    target = breaking.far_target(arm)[0]
+    assert (np.abs(run.u[:, 0]) == 255).sum() > 30  # at its limit, like A
+    assert run.q[:, 0].max() < 1.03 * target
+    assert np.abs(run.error[-300:, 0]).max() < 0.005 * target
+
+
 def test_friction_waits_and_noise_chatters():
     waits = breaking.friction(IR50P)
     assert 0.01 * np.sum((np.abs(waits.qd[:, 0]) < 1e-4) & (np.abs(waits.error[:, 0]) > 0.005)) > 2

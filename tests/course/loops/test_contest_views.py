@@ -59,3 +59,13 @@ def test_history_shows_every_attempt_and_the_rules(tmp_path, monkeypatch):
     assert {"your best", "activity decided", "a rule", "below: won"} <= set(labels)
     best = next(line for line in figure.axes[0].lines if line.get_label() == "your best")
     assert best.get_ydata() == pytest.approx([8, 3, 3, 0.9])
+    cut = next(line for line in figure.axes[0].lines if line.get_label() == "the drive was cut")
+    assert cut.get_xydata().tolist() == [[3, 100]]  # and no figure decided it
+    decided = next(line for line in figure.axes[0].lines if line.get_label() == "activity decided")
+    assert decided.get_xdata().tolist() == [1, 2, 4]
+
+
+def test_sliders_begin_at_the_gains_and_stay_on_the_scale():
+    made = contest_views.gain_sliders(np.array([[528, 1074, 9000], [488, 1114, 942], [7.6, 5.3, 76]]))
+    assert list(made) == list(GAINS)
+    assert [made[name].start for name in ("kp1", "kp3", "ki2", "kd1", "kd3")] == [530, 2000, 1110, 7.5, 60]

@@ -10,8 +10,9 @@ from ir50p_lab.simulation import simulate
 
 def test_a_trembling_potentiometer_shakes_the_push_and_each_time_alike():
     target = np.array([0, 0.8, 0])
-    calm = simulate(IR50P, PID(400), target, duration=5)
-    shaken, again = (simulate(IR50P, Trembling(PID(400)), target, duration=5) for _ in range(2))
+    calm = simulate(IR50P, PID(400, ki=20), target, duration=5)
+    one = Trembling(PID(400, ki=20))
+    shaken, again = (simulate(IR50P, one, target, duration=5) for _ in range(2))  # no memory of the run before
     np.testing.assert_array_equal(shaken.u, again.u)
     steps = 400 * np.array([0.005, 0.008, 0.005])  # counts
     rest = (shaken.u - calm.u)[-100:]

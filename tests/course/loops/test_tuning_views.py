@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.controllers import PID
-from ir50p_lab.course.draw.painter import Painter
-from ir50p_lab.course.loops.tuning_views import GainMap, LocusView, one_joint, rule_in_use
+from ir50p_lab.course.loops.tuning_views import LocusView, one_joint, rule_in_use
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
 
@@ -17,29 +16,6 @@ TARGET = np.array([0.8, 0.5, -0.7])
 @pytest.fixture(scope="module")
 def run():
     return simulate(IR50P, PID((289, 225, 270), kd=(40, 30, 30), limit_pwm=255), TARGET, duration=2)
-
-
-def test_gain_map_places_its_cells_at_the_gains(run):
-    kp, kd, values = np.linspace(10, 100, 10), np.linspace(0, 8, 5), np.arange(50.0).reshape(5, 10)
-    view = GainMap(kp, kd, values, title="t", label="s [s]", target=0.8, duration=2)
-    left, right, bottom, top = view.map.images[0].get_extent()
-    assert (left, right) == (5, 105) and (bottom, top) == (-1, 9)  # the centres of the cells are the gains
-    view.lay_over(np.tile(kp, (5, 1)), [35.0], "half", colour="purple")  # a line where kp is 35
-    places = np.concatenate([path.vertices for one in view.map.collections for path in one.get_paths()])
-    assert np.allclose(places[:, 0], 35)
-    assert "half" in [text.get_text() for text in view.figure.legends[0].get_texts()]
-    assert view.map.get_xlim() == (5, 105) and view.map.get_ylim() == (-1, 9)
-    painter = Painter(view.figure)
-    before = painter.png()
-    view.update(50, 4, (run.t, run.q[:, 0]))
-    assert painter.png() != before
-    first = painter.backgrounds
-    view.update(60, 4, (run.t, run.q[:, 1]))
-    painter.png()
-    assert painter.backgrounds == first
-    view.update(50, 4, (run.t, run.q[:, 0]))
-    assert any(np.array_equal(line.get_ydata(), run.q[:, 0]) for line in view.figure.axes[1].lines)
-    assert [50] in [list(line.get_xdata()) for line in view.map.lines]
 
 
 def test_paths_that_meet_have_no_corner_and_zeros_are_marked():
