@@ -6,6 +6,7 @@ import numpy as np
 _LONGER_SIDE = 640  # px of the copy that is searched
 _STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
 _REGIONS = 10  # of a mask, longest outline first
+_ARCS = 3
 _INSCRIBED = 4  # circles drawn into a region that is not round
 _ROUND = (0.07, 0.7)  # shares of the radius, px: an outline within the larger of both (rms) is one circle
 _NEW = 0.25  # of a radius: a circle nearer than this to an earlier one, place and size together, is the same guess
@@ -65,10 +66,30 @@ def _circles(outline, mask):
             break
         found.append((*middle, r))
         cv2.circle(inside, middle, int(1.2 * r), 0, -1)
-    soft = cv2.GaussianBlur(region, (0, 0), 1)
-    votes = cv2.HoughCircles(soft, cv2.HOUGH_GRADIENT_ALT, 1.5, 6, None, 300, 0.5, 3, max(region.shape))
-    found += [] if votes is None else votes[0, :4].tolist()
-    return [(x + left - 9, y + top - 9, r) for x, y, r in found]
+    return by_arcs(points, max(mask.shape)) + [(x + left - 9, y + top - 9, r) for x, y, r in found]
+
+
+def by_arcs(points, largest):
+    """Circles [(x, y, r)] that most of an outline (n, 2) lies on, of those through three points of it; at most three."""
+    found = []
+    while len(points) >= 8 and len(found) < _ARCS:
+        first, step = (part.ravel() for part in np.meshgrid(np.arange(0, 1, 1 / 24), (0.06, 0.12, 0.2, 0.33)))
+        p, q, s = (points[((first + k * step) * len(points)).astype(int) % len(points)] for k in range(3))
+        a, b = q - p, s - p
+        area = 2 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+        aa, bb = (a * a).sum(axis=1), (b * b).sum(axis=1)
+        with np.errstate(all="ignore"):
+            middle = np.column_stack([b[:, 1] * aa - a[:, 1] * bb, a[:, 0] * bb - b[:, 0] * aa]) / area[:, None]
+        r = np.hypot(*middle.T)
+        usable = np.isfinite(r) & (r > 3) & (r < largest)
+        if not usable.any():
+            break
+        middle, r = (middle + p)[usable], r[usable]
+        near = np.abs(np.hypot(*(points[:, None] - middle).transpose(2, 0, 1)) - r) < np.maximum(0.04 * r, 1.0)
+        best = near.sum(axis=0).argmax()
+        found.append((*middle[best], r[best]))
+        points = points[~near[:, best]]
+    return found
 
 
 def circle_through(points):
