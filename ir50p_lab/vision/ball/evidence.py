@@ -7,7 +7,7 @@ that counts most against a ball is what the finder says of it.
 import cv2
 import numpy as np
 
-from ir50p_lab.vision.ball.outline import cast
+from ir50p_lab.vision.ball.outline import ANGLES, cast
 
 _BIAS = 5.32
 _AGAINST = (  # weight of a number, and what is said when it counts most
@@ -24,16 +24,17 @@ _AGAINST = (  # weight of a number, and what is said when it counts most
 _LEAST_SCORE = 0.65  # below it what is seen is no ball: fewer false alarms, more misses
 _DISC = np.arange(1, 10) / 10  # places of samples along a ray, of the radius
 _BEYOND = np.array([1.06, 1.14])
+_EXPLAINED, _CORNERS = 0.5, 0.01  # a wave that leaves less of the variance, and is higher (of the radius): a polygon
 _GLOSS = 0.35  # of the disc: highlights on more of it are another colour, white
 
 
 def judge(image, outline, colour):
     """(score 0..1, why it is no ball or "") of an Outline in an RGB picture (h, w, 3)."""
     r, on = outline.radius, outline.on
-    hsv, loose, fill, beyond = _colours(image, outline, colour)
+    hsv, loose, filled, fill, beyond = _colours(image, outline, colour)
     if not loose.any():
         return 0.0, "it has another colour"
-    why = _other_shape(outline, loose) or _other_paint(hsv[loose], colour)
+    why = _other_shape(outline, filled) or _other_paint(hsv[loose], colour)
     if why:
         return 0.0, why
     scatter = 1.48 * np.median(np.abs(outline.off[on])) if on.any() else np.inf  # px, as a standard deviation
@@ -55,7 +56,7 @@ def judge(image, outline, colour):
 
 
 def _colours(image, outline, colour):
-    """Of the disc: HSV (rays, 9, 3), where it is of the colour, the share of it; and where the colour goes on beyond."""
+    """HSV (rays, 9, 3) of the disc; where it has the colour, where colour or gloss; shares of disc and beyond it."""
     r, rim = outline.radius, 1.5  # px on both sides of the outline that are left out: colours mix there
     reach = np.concatenate([r * _DISC - rim * (_DISC > 0.85), r * _BEYOND + rim])
     hsv = colour.hsv_of(cast(image, outline.x, outline.y, reach)[0])
@@ -66,7 +67,7 @@ def _colours(image, outline, colour):
     shine = (gloss @ area).mean()
     fill = (loose @ area).mean() + shine * (shine < _GLOSS)
     goes_on = cv2.inRange(hsv[:, len(_DISC) :], *colour.bounds()) > 0
-    return disc, loose, fill, goes_on.all(axis=1).mean()
+    return disc, loose, loose | gloss, fill, goes_on.all(axis=1).mean()
 
 
 def _turned(hsv, colour):
@@ -75,7 +76,7 @@ def _turned(hsv, colour):
 
 
 def _hue_off(hsv, loose, colour):
-    """Median distance of the disc's hue from the middle of the colour, in units of its tolerance; not of what glares."""
+    """Median distance of the disc's hue from the middle of the colour, of its tolerance; not of what glares."""
     clear = loose & (hsv[..., 2] < 242)
     chosen = clear if clear.mean() > 0.1 else loose
     return float(np.median(np.abs(_turned(hsv[chosen], colour))) / colour.tolerance)
@@ -96,5 +97,17 @@ def _other_paint(hsv, colour):
     return ""
 
 
-def _other_shape(outline, loose):
+def _other_shape(outline, filled):
+    """Why a thing is a ring or a polygon (a nut); "" if it may be a ball. filled: (rays, 9), of colour or gloss.
+
+    A polygon of n corners has its edge farther out n times around: one wave of n explains nearly all of `off`.
+    """
+    if filled[:, 6:].mean() > 0.8 and filled[:, 2:5].mean() < 0.4:
+        return "a ring: its middle has another colour"
+    angle, off = ANGLES[outline.on], outline.off[outline.on]
+    for corners in range(5, 11):
+        A = np.column_stack([np.ones(len(off)), np.cos(corners * angle), np.sin(corners * angle)])
+        wave, rest, *_ = np.linalg.lstsq(A, off)
+        if rest.sum() < _EXPLAINED * off.var() * len(off) and np.hypot(*wave[1:]) > _CORNERS * outline.radius:
+            return f"a nut, or something else of {corners} corners"
     return ""

@@ -6,8 +6,8 @@ import numpy as np
 _LONGER_SIDE = 640  # px of the copy that is searched
 _STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
 _REGIONS = 10  # of a mask, longest outline first
-_ARCS = 3
-_INSCRIBED = 4  # circles drawn into a region that is not round
+_ARCS = 3  # circles through parts of an outline that is not round
+_INSCRIBED = 4  # circles drawn into its region
 _ROUND = (0.07, 0.7)  # shares of the radius, px: an outline within the larger of both (rms) is one circle
 _NEW = 0.25  # of a radius: a circle nearer than this to an earlier one, place and size together, is the same guess
 
@@ -49,9 +49,9 @@ def _masks(image, colour):
 
 
 def _circles(outline, mask):
-    """Circles [(x, y, r)] of one outline (n, 1, 2): through all of it, else inscribed ones and those that arcs vote for."""
+    """Circles [(x, y, r)] of one outline (n, 1, 2): through all of it, else through arcs of it, and inscribed ones."""
     points = outline[:, 0].astype(float)
-    x, y, r = circle_through(points)
+    x, y, r = _circle_through(points)
     off = np.hypot(points[:, 0] - x, points[:, 1] - y) - r
     if r < max(mask.shape) and np.sqrt(np.mean(off**2)) < max(_ROUND[0] * r, _ROUND[1]):
         return [(x, y, r)]
@@ -66,11 +66,11 @@ def _circles(outline, mask):
             break
         found.append((*middle, r))
         cv2.circle(inside, middle, int(1.2 * r), 0, -1)
-    return by_arcs(points, max(mask.shape)) + [(x + left - 9, y + top - 9, r) for x, y, r in found]
+    return _by_arcs(points, max(mask.shape)) + [(x + left - 9, y + top - 9, r) for x, y, r in found]
 
 
-def by_arcs(points, largest):
-    """Circles [(x, y, r)] that most of an outline (n, 2) lies on, of those through three points of it; at most three."""
+def _by_arcs(points, largest):
+    """Circles [(x, y, r)] through three points of an outline (n, 2), chosen for how much of it lies on them."""
     found = []
     while len(points) >= 8 and len(found) < _ARCS:
         first, step = (part.ravel() for part in np.meshgrid(np.arange(0, 1, 1 / 24), (0.06, 0.12, 0.2, 0.33)))
@@ -92,8 +92,8 @@ def by_arcs(points, largest):
     return found
 
 
-def circle_through(points):
-    """The circle (x, y, r) of least squares through points (n, 2), in the algebraic sense: x^2 + y^2 = a x + b y + c."""
+def _circle_through(points):
+    """The circle (x, y, r) through points (n, 2), by linear least squares: x^2 + y^2 = a x + b y + c."""
     A = np.column_stack([points, np.ones(len(points))])
     (a, b, c), *_ = np.linalg.lstsq(A, (points**2).sum(axis=1))
     return a / 2, b / 2, np.sqrt(max(c + (a * a + b * b) / 4, 0.0))

@@ -17,8 +17,8 @@ import numpy as np
 from ir50p_lab.vision.pinhole import undistort_xy
 
 RAYS = 64
-_ANGLES = np.arange(RAYS) * (2 * np.pi / RAYS)
-UNIT = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])  # (rays, 2)
+ANGLES = np.arange(RAYS) * (2 * np.pi / RAYS)
+UNIT = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])  # (rays, 2)
 _PASSES = ((0.6, 0.3), (0.45, 0.2), (0.3, 0.15))  # how far around a radius it looks, and where it looks first, of r
 _SAMPLES = 41  # along a ray
 _EDGE = 0.3  # of the contrast between ball and surroundings: a lower step is no edge
@@ -73,7 +73,7 @@ def measure(image, pinhole, circle):
 
 
 def cast(image, x, y, rho):
-    """Colours (rays, m, 3) float at the distances rho, (m,) or (rays, m), from (x, y) px, and which are in the picture."""
+    """Colours (rays, m, 3) at the distances rho (m,) px from (x, y) px; which lie in the picture (rays, m)."""
     px, py = x + rho * UNIT[:, :1], y + rho * UNIT[:, 1:]
     places = np.float32(px), np.float32(py)
     rgb = cv2.remap(image, *places, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
@@ -82,7 +82,7 @@ def cast(image, x, y, rho):
 
 
 def _contrast(rho, rgb, within, r):
-    """How far disc and surroundings differ, and colours as numbers (rays, m), 1 inside and 0 outside (Fisher's axis)."""
+    """How far disc and surroundings differ; colours as numbers (rays, m), 1 inside and 0 outside (Fisher's axis)."""
     inner, outer = rho < 0.85 * r, rho > 1.12 * r
     inside, outside = (rgb[:, part][within[:, part]].astype(float) for part in (inner, outer))
     if min(len(inside), len(outside)) < 20:
@@ -109,7 +109,7 @@ def _edges(rho, profile, within, r, width):
 
 
 def _fit(pinhole, points, at, strong, r):
-    """(x, y, radius, centre, off) of the cone through the strong ones of the edge points (rays, 2); None if there is none.
+    """(x, y, radius, centre, off) of the cone through the strong ones of the edge points (rays, 2), or None.
 
     Points far off count less and less (biweight), from a first circle on: the median distance `at` from the middle.
     """
