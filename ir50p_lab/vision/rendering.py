@@ -215,7 +215,9 @@ def _light(scene):
         shine = np.maximum((N * half / np.linalg.norm(half, axis=0)).sum(axis=0), 0) ** 40 * (sun > 0) * thing.gloss
         up = 0.5 * (1 + N[2])
         bounce = (1 - up)[:, None] * 0.5 * light_of(_WOOD)
-        light[near] = light_of(thing.colour) * (_SKY * (up[:, None] + bounce) + _SUN * sun[:, None]) + _SUN * shine[:, None]
+        light[near] = (
+            light_of(thing.colour) * (_SKY * (up[:, None] + bounce) + _SUN * sun[:, None]) + _SUN * shine[:, None]
+        )
     return light
 
 

@@ -118,7 +118,7 @@ def _fit(pinhole, points, at, strong, r):
     d = np.column_stack([np.nan_to_num(xy), np.ones(RAYS)])
     d /= np.linalg.norm(d, axis=1, keepdims=True)
     off, scale = np.where(strong, at - np.median(at[strong]), np.inf), max(0.2 * r, 2.0)
-    for _ in range(5):
+    for _ in range(8):
         weight = np.maximum(1 - (off / scale) ** 2, 0.0)
         m, _, rank, _ = np.linalg.lstsq(d * weight[:, None], weight)
         cosine = 1 / np.linalg.norm(m)

@@ -26,7 +26,7 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
     import pandas as pd
 
     J, P = jacobian(arm, q)[:3], np.diag(np.square(sigma_q))
-    hand, tip = locator.marker_place(arm, q), forward_kinematics(arm, q)
+    tip = forward_kinematics(arm, q)
     H = locator.marker_jacobian(arm, q)
     G = np.linalg.solve(H @ P @ H.T + locator.sigma_px**2 * np.eye(2), H @ P).T
     left = np.eye(3) - G @ H
