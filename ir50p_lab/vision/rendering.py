@@ -59,7 +59,7 @@ class SceneBall:
 
 @dataclass(frozen=True, kw_only=True)
 class Patch:
-    """Something flat on the table (tape, paper, a stain): middle (2,) m, size (2,) m, angle rad, colour; round or not."""
+    """Something flat on the table (tape, paper, a stain): middle (2,) m, size (2,) m, angle rad; round or not."""
 
     position: tuple = (0.40, 0.10)
     size: tuple = (0.10, 0.02)
@@ -82,8 +82,11 @@ class Scene:
 
 @dataclass(frozen=True, kw_only=True)
 class BallTruth:
-    """x, y: projected centre of the sphere, px; radius: of the circle as large as its image; outline_x, outline_y: its
-    middle, which lies elsewhere; position: (3,) m; colour."""
+    """Where a ball is seen: NaN for one that is not before the camera.
+
+    x, y: projected centre of the sphere, px; radius: of the circle as large as its image, px; outline_x, outline_y:
+    middle of that image, px, which lies elsewhere; position: (3,) m; colour.
+    """
 
     x: float
     y: float

@@ -22,8 +22,8 @@ _SPIKE = 5.0  # sigma
 class Seen:
     """What one look found.
 
-    position: (3,) m, ball's centre in the base frame, None if there was no ball (then `reason` says why); stderr: (2,)
-    m along x and y; ball: Ball in pixels; image: RGB; simulated: whether the picture was rendered.
+    position: (3,) m, ball's centre in the base frame, None if there was no ball (then `reason` says why); ball: Ball in
+    pixels; image: RGB; simulated: whether the picture was rendered.
     """
 
     position: np.ndarray | None
@@ -109,7 +109,9 @@ class BallLocator:
             minimise |xy - project(p(q + e))|^2 / sigma_px^2 + sum (e_i / sigma_q_i)^2
 
         One pixel is two equations for three joints; the third comes from how far each potentiometer is believed to be
-        off. The hand's distance to the camera stays as uncertain as they leave it.
+        off. The hand's distance to the camera stays as uncertain as they leave it. Errors of some hundredths of a rad
+        move the pixel linearly, so with H = d pixel / d q and P = diag(sigma_q^2) the minimum is
+        e = P H^T (H P H^T + sigma_px^2 I)^-1 (xy - project(p(q))).
         Args: arm: Arm; q: (3,) rad; xy: (2,) px; sigma_q: (3,) rad.
         Returns: e (3,) rad. If the picture contradicts q by more than 5 sigma: VisionError.
         """
