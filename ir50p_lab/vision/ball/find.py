@@ -33,7 +33,7 @@ class Ball:
 
 
 class Balls(list):
-    """The balls found, best first; reason: why there is none; rejected: ((x, y, radius), why) of what was no ball."""
+    """The balls found, best first; reason: why none; rejected: ((x, y, radius), why) of the rest, likeliest first."""
 
     def __init__(self, balls=(), *, reason="", rejected=()):
         super().__init__(balls)
@@ -71,14 +71,15 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         if outline.radius < least_radius:
             why = f"too small, radius {outline.radius:.1f} pixels"
         if why:
-            rejected.append(((outline.x, outline.y, outline.radius), why))
+            rejected.append((score, (outline.x, outline.y, outline.radius), why))
         else:
             balls.append(Ball(*map(float, (*outline.centre, outline.radius, score, outline.on.mean()))))
     kept = []
     for ball in sorted(balls, key=lambda one: -one.score):
         if all(_apart(ball, other) > 0.8 * max(ball.radius, other.radius) for other in kept):
             kept.append(ball)
-    rejected = [one for one in rejected if all(np.hypot(one[0][0] - b.x, one[0][1] - b.y) > b.radius for b in kept)]
+    likeliest = sorted(rejected, key=lambda one: -one[0])
+    rejected = [(c, why) for _, c, why in likeliest if all(np.hypot(c[0] - b.x, c[1] - b.y) > b.radius for b in kept)]
     return Balls(kept, reason="" if kept else _reason(rejected, colour, least_radius), rejected=rejected)
 
 
@@ -87,7 +88,7 @@ def _apart(one, other):
 
 
 def _reason(rejected, colour, least_radius):
-    """Why there is no ball: that of the largest region, or that there is none."""
+    """Why there is no ball: of what came nearest to one, or that there is nothing."""
     if not rejected:
         return f"nothing {colour.name} and round is seen, of {least_radius:g} pixels or more in radius"
     (x, y, r), why = rejected[0]

@@ -1,5 +1,7 @@
 """Where a ball might be: circles that fit the regions of its colour. Most are none; each is measured afterwards."""
 
+from itertools import chain
+
 import cv2
 import numpy as np
 
@@ -13,7 +15,7 @@ _NEW = 0.25  # of a radius: a circle nearer than this to an earlier one, place a
 
 
 def guess_circles(image, colour, least_radius):
-    """Circles [(x, y, r)] px that regions of a Colour in an RGB picture (h, w, 3) may be, the likeliest masks first."""
+    """Circles [(x, y, r)] px that regions of a Colour in an RGB picture (h, w, 3) may be: first the round regions."""
     scale = max(1, round(max(image.shape) / _LONGER_SIDE))
     small = image
     if scale > 1:
@@ -23,9 +25,9 @@ def guess_circles(image, colour, least_radius):
         outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
         for outline in sorted(outlines, key=len, reverse=True)[:_REGIONS]:
             if len(outline) >= max(8, 4 * least_radius / scale):
-                found += _circles(outline, mask)
+                found.append(_circles(outline, mask))
     different = []
-    for x, y, r in found:
+    for x, y, r in chain.from_iterable(sorted(found, key=lambda circles: len(circles) > 1)):
         x, y, r = (x + 0.5) * scale - 0.5, (y + 0.5) * scale - 0.5, (r + 0.5) * scale
         new = all(np.hypot(x - a, y - b) + abs(r - c) > _NEW * max(r, c) for a, b, c in different)
         if r > 0.7 * least_radius and new:
@@ -66,11 +68,14 @@ def _circles(outline, mask):
             break
         found.append((*middle, r))
         cv2.circle(inside, middle, int(1.2 * r), 0, -1)
-    return _by_arcs(points, max(mask.shape)) + [(x + left - 9, y + top - 9, r) for x, y, r in found]
+    return _by_arcs(points, max(width, height)) + [(x + left - 9, y + top - 9, r) for x, y, r in found]
 
 
 def _by_arcs(points, largest):
-    """Circles [(x, y, r)] through three points of an outline (n, 2), chosen for how much of it lies on them."""
+    """Circles [(x, y, r)] through three points of an outline (n, 2), chosen for how much of it lies on them.
+
+    largest: px, radius of which more than a quarter would be seen.
+    """
     found = []
     while len(points) >= 8 and len(found) < _ARCS:
         first, step = (part.ravel() for part in np.meshgrid(np.arange(0, 1, 1 / 24), (0.06, 0.12, 0.2, 0.33)))

@@ -120,11 +120,13 @@ def _fit(pinhole, points, at, strong, r):
     off, scale = np.where(strong, at - np.median(at[strong]), np.inf), max(0.2 * r, 2.0)
     for _ in range(8):
         weight = np.maximum(1 - (off / scale) ** 2, 0.0)
-        m, _, rank, _ = np.linalg.lstsq(d * weight[:, None], weight)
-        cosine = 1 / np.linalg.norm(m)
-        n = m * cosine
+        m, *_ = np.linalg.lstsq(d * weight[:, None], weight)
+        length = np.linalg.norm(m)
+        if (weight > 0).sum() < 8 or length <= 1:
+            return None
+        n, cosine = m / length, 1 / length
         apart = n[2] ** 2 - (1 - cosine**2)  # cos^2 of the centre's angle to the axis, less sin^2(alpha)
-        if (weight > 0).sum() < 8 or rank < 3 or cosine >= 1 or apart <= 0:
+        if apart <= 0:
             return None
         alpha = np.arccos(cosine)
         radius = pinhole.fx * np.sin(alpha) * np.sqrt(cosine) / apart**0.75
