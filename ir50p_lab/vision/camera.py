@@ -66,23 +66,6 @@ class Webcam(Camera):
 
     def read(self):
         """The next Frame, not one that was waiting. Raises CameraError if there is none, or it is busy or unplugged."""
-        import cv2
-
-        why = "no picture came"
-        try:
-            image = self._next_picture()
-        except (cv2.error, OSError) as error:
-            image, why = None, error
-        if image is None:
-            raise CameraError(
-                f"{self.name} gives no picture ({why}): is it plugged in, its shutter open, closed in every other "
-                "program, and not closed here (camera.close() before you open it again)?"
-            )
-        image = check_image(np.ascontiguousarray(image[..., 2::-1]), f"the picture of {self.name}")
-        return Frame(image=image, simulated=False, source=self.name)
-
-    def _next_picture(self):
-        """A picture as the driver has it, taken from now on; None if none comes for some seconds."""
         began = time.monotonic()
         for _ in range(5):  # one that waited comes at once; one that is being taken makes grab() wait for it
             asked = time.monotonic()
@@ -91,9 +74,13 @@ class Webcam(Camera):
         while time.monotonic() - began < _PATIENCE and self._capture.isOpened():
             ok, image = self._capture.read()
             if ok and image is not None and image.size:
-                return image
+                image = check_image(np.ascontiguousarray(image[..., 2::-1]), f"the picture of {self.name}")
+                return Frame(image=image, simulated=False, source=self.name)
             time.sleep(0.01)
-        return None
+        raise CameraError(
+            f"{self.name} gives no picture: is it plugged in, its shutter open, closed in every other program, and not "
+            "closed here (camera.close() before you open it again)?"
+        )
 
     def close(self):
         """Let go of the webcam, so that other programs can have it."""
