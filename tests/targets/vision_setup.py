@@ -5,31 +5,30 @@ from functools import cache
 import numpy as np
 
 from ir50p_lab.bench import SimulatedBench, fit_calibration
+from ir50p_lab.home import PROJECT
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.vision import TablePlane, calibrate, render_scene
-from ir50p_lab.vision.rendering import bench_camera, bench_scene
-from tests.support.drawn_board import Board, board_pictures
+from ir50p_lab.vision import TablePlane, calibrate, load_image
+from ir50p_lab.vision.rendering import pose
 
-T_BASE_BOARD = np.array([[1, 0, 0, 0.28], [0, -1, 0, 0.065], [0, 0, -1, 0.0], [0, 0, 0, 1.0]])  # middle of the area
+PICTURES = PROJECT / "data" / "calibration"  # rendered, of the default bench camera
+T_BASE_BOARD = pose((0.32, 0.08, 0.0)) @ np.diag([1.0, -1.0, -1.0, 1.0])
 
 
 @cache
-def own_calibration(count=15, seed=1):
-    """Calibration of the bench camera from `count` rendered pictures of the board."""
-    pinhole, _ = bench_camera()
-    images, _ = board_pictures(pinhole, count, seed)
-    return calibrate(images, progress=False)
+def own_calibration():
+    """Calibration of the bench camera from the fourteen good pictures of notebook 17."""
+    return calibrate(sorted((PICTURES / "flat").glob("board_*.jpg")), progress=False)
 
 
-def picture_of_the_board(seed=0):
+def picture_of_the_board():
     """The bench with the board lying at its known place, rendered (RGB)."""
-    return render_scene(bench_scene(Board(T_world_board=T_BASE_BOARD)), seed=seed)[0]
+    return load_image(PICTURES / "table" / "board.jpg")
 
 
 @cache
-def own_plane(seed=1):
+def own_plane():
     """TablePlane of our own calibration and one picture of the lying board."""
-    return TablePlane.from_picture(own_calibration(seed=seed), picture_of_the_board(seed), T_table_board=T_BASE_BOARD)
+    return TablePlane.from_picture(own_calibration(), picture_of_the_board(), T_table_board=T_BASE_BOARD)
 
 
 @cache

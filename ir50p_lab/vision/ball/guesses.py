@@ -13,7 +13,7 @@ _NEW = 0.25  # of a radius: a circle nearer than this to an earlier one, place a
 
 
 def guess_circles(image, colour, least_radius):
-    """Circles [(x, y, r)] px that regions of a Colour in an RGB picture (h, w, 3) may be, most outline on them first."""
+    """Circles [(x, y, r)] px that regions of a Colour in an RGB picture (h, w, 3) may be, longest arcs first."""
     scale = max(1, round(max(image.shape) / _LONGER_SIDE))
     small = image
     if scale > 1:
