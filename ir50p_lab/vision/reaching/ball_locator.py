@@ -115,7 +115,8 @@ class BallLocator:
         Args: arm: Arm; q: (3,) rad; xy: (2,) px; sigma_q: (3,) rad.
         Returns: e (3,) rad. If the picture contradicts q by more than 5 sigma: VisionError.
         """
-        H, P = self.marker_jacobian(arm, q), np.diag(np.square(sigma_q))
+        sigma_q = vector3("sigma_q", sigma_q)
+        H, P = self.marker_jacobian(arm, q), np.diag(sigma_q**2)
         e = P @ H.T @ np.linalg.solve(H @ P @ H.T + self.sigma_px**2 * np.eye(2), xy - self.marker_pixel(arm, q))
         if (np.abs(e) > _SPIKE * sigma_q).any():
             off = np.linalg.norm(xy - self.marker_pixel(arm, q))
