@@ -20,13 +20,12 @@ _F = 0.9  # focal length over the longer side of the picture, assumed where no c
 
 @dataclass(frozen=True)
 class Ball:
-    """A ball: x, y where the centre of the sphere is seen, px; radius px; score 0..1; support: outline with an edge."""
+    """A ball: x, y where the centre of the sphere is seen, px; radius px; score 0..1."""
 
     x: float
     y: float
     radius: float
     score: float
-    support: float = 1.0
 
     def __repr__(self):
         return f"Ball(x={self.x:.2f}, y={self.y:.2f}, radius={self.radius:.2f}, score={self.score:.2f})"
@@ -73,18 +72,14 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         if why:
             rejected.append((score, (outline.x, outline.y, outline.radius), why))
         else:
-            balls.append(Ball(*map(float, (*outline.centre, outline.radius, score, outline.on.mean()))))
+            balls.append(Ball(*map(float, (*outline.centre, outline.radius, score))))
     kept = []
     for ball in sorted(balls, key=lambda one: -one.score):
-        if all(_apart(ball, other) > 0.8 * max(ball.radius, other.radius) for other in kept):
+        if all(np.hypot(ball.x - b.x, ball.y - b.y) > 0.8 * max(ball.radius, b.radius) for b in kept):
             kept.append(ball)
     likeliest = sorted(rejected, key=lambda one: -one[0])
     rejected = [(c, why) for _, c, why in likeliest if all(np.hypot(c[0] - b.x, c[1] - b.y) > b.radius for b in kept)]
     return Balls(kept, reason="" if kept else _reason(rejected, colour, least_radius), rejected=rejected)
-
-
-def _apart(one, other):
-    return np.hypot(one.x - other.x, one.y - other.y)
 
 
 def _reason(rejected, colour, least_radius):
