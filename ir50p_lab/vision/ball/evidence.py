@@ -25,6 +25,7 @@ _LEAST_SCORE = 0.65  # below it what is seen is no ball: fewer false alarms, mor
 _DISC = np.arange(1, 10) / 10  # places of samples along a ray, of the radius
 _BEYOND = np.array([1.06, 1.14])
 _EXPLAINED, _CORNERS = 0.5, 0.01  # a wave that leaves less of the variance, and is higher (of the radius): a polygon
+_ENOUGH = 20  # rays with an edge, to count corners on
 _GLOSS = 0.35  # of the disc: highlights on more of it are another colour, white
 
 
@@ -105,6 +106,8 @@ def _other_shape(outline, filled):
     if filled[:, 6:].mean() > 0.8 and filled[:, 2:5].mean() < 0.4:
         return "a ring: its middle has another colour"
     angle, off = ANGLES[outline.on], outline.off[outline.on]
+    if len(off) < _ENOUGH:
+        return ""
     for corners in range(5, 11):
         A = np.column_stack([np.ones(len(off)), np.cos(corners * angle), np.sin(corners * angle)])
         wave, rest, *_ = np.linalg.lstsq(A, off)
