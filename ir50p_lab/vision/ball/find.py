@@ -70,7 +70,8 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         if outline.radius < least_radius:
             why = f"too small, radius {outline.radius:.1f} pixels"
         if why:
-            rejected.append((score, (outline.x, outline.y, outline.radius), why))
+            circle = tuple(map(float, (outline.x, outline.y, outline.radius)))
+            rejected.append((score, circle, why))
         else:
             balls.append(Ball(*map(float, (*outline.centre, outline.radius, score))))
     kept = []

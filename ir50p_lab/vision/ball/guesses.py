@@ -46,7 +46,7 @@ def _masks(image, colour):
 def _circles(points):
     """Circles (n points on it, x, y, r) through three points of an outline (n, 2), those with most of it on them."""
     first, step = (part.ravel() for part in np.meshgrid(np.arange(_STARTS) / _STARTS, _STEPS))
-    largest = np.ptp(points, axis=0).max()  # of a larger one less than a quarter would be seen
+    largest = 2 * min(cv2.minAreaRect(np.float32(points))[1])  # px; of a larger one hardly a quarter would be seen
     found = []
     while len(points) >= 8 and len(found) < _ARCS:
         p, q, s = (points[((first + k * step) * len(points)).astype(int) % len(points)] for k in range(3))
