@@ -89,5 +89,5 @@ def rows(quick=False):
         Row("the same two with the camera known", "-", known),
         Row("reports beside the ball, same pictures", "-", f"{wrong.sum() / n:.1%}"),
         Row(f"false alarms, no ball ({n} hard pictures)", "<= 2 %", f"{alarms:.2%}", "-", bool(alarms <= 0.02)),
-        Row("first call and each picture, 640x480", "< 50 ms", f"{first:.0f} ms, {ms:.0f} ms", "-", bool(ms < 50)),
+        Row("first call and each picture, 640x480", "< 30 ms", f"{first:.0f} ms, {ms:.0f} ms", "-", bool(ms < 30)),
     ]
