@@ -25,9 +25,9 @@ from ir50p_lab.vision import (
     work_area,
 )
 from ir50p_lab.vision.reaching.budget import error_budget
-from ir50p_lab.vision.reaching.plan import MARGIN
 from ir50p_lab.vision.reaching.result import BallTracker
 from tests.support.places import places_in
+from tests.targets.vision_reaching import oracle_reaches
 from tests.targets.vision_setup import calibrated
 
 cv2.setNumThreads(1)
@@ -47,36 +47,19 @@ def rig(ball=(0.40, 0.10, 0.03), seed=0, **options):
 # ---- where the arm can go
 
 
-def oracle_distance(p, n=30):
-    """Distance from p to the nearest tip by brute force: a grid over joints 2 and 3 within the limits, then finer."""
-    low, high = np.array(IR50P.q_min) + MARGIN, np.array(IR50P.q_max) - MARGIN
-    q1 = np.clip(np.arctan2(p[1], p[0]), low[0], high[0])
-    best, (lo, hi) = np.inf, (low[1:].copy(), high[1:].copy())
-    for _ in range(12):
-        grid = np.stack(np.meshgrid(np.linspace(lo[0], hi[0], n), np.linspace(lo[1], hi[1], n)), -1).reshape(-1, 2)
-        q = np.column_stack([np.full(len(grid), q1), grid])
-        distance = np.linalg.norm(forward_kinematics(IR50P, q) - p, axis=1)
-        k = distance.argmin()
-        best = min(best, distance[k])
-        half = 0.25 * (hi - lo)
-        lo, hi = np.maximum(low[1:], grid[k] - half), np.minimum(high[1:], grid[k] + half)
-    return best
-
-
 def test_refusals_are_those_of_an_independent_search():
-    balls = places_in(work_area(IR50P), np.random.default_rng(1), 60) + OVER
+    balls = places_in(work_area(IR50P), np.random.default_rng(1), 30) + OVER
     refused = 0
     for p in balls:
-        distance = oracle_distance(p)
         try:
             q = reach_pose(IR50P, p)
         except UnreachableError:
             refused += 1
-            assert distance > 1e-4
+            assert not oracle_reaches(p, 60)
         else:
-            assert distance < 5e-3  # the grid's resolution
+            assert oracle_reaches(p, 60)
             assert np.allclose(forward_kinematics(IR50P, q), p)
-    assert 3 <= refused <= 20
+    assert 1 <= refused <= 10
 
 
 @pytest.mark.parametrize(
@@ -131,7 +114,7 @@ def misses(looks):
     found = []
     for seed in range(5):
         ball = places_in(work_area(IR50P), np.random.default_rng([seed, 3]), 40)
-        ball = next(p for p in ball if oracle_distance(p + OVER) < 3e-3 and np.hypot(*p[:2]) < 0.5)
+        ball = next(p for p in ball if oracle_reaches(p + OVER, 60) and np.hypot(*p[:2]) < 0.5)
         bench, world, locator = rig(ball, seed)
         with bench:
             done = reach(bench, locator, looks=looks, rest=False)
@@ -255,10 +238,10 @@ def followed(seconds=8.0, age=0.0, **options):
     return log, np.sum((log.tip[late, :2] - ball) * velocity) / np.sum(velocity**2)
 
 
-@pytest.mark.parametrize("age", [0.0, 0.1])
-def test_a_rolling_ball_is_followed_without_lag_by_default(age):
-    log, early = followed(age=age)
-    assert log.lead == pytest.approx(0.04 + age)
+def test_a_rolling_ball_is_followed_without_lag_by_default():
+    """Pictures that are late: the lead allows for it. That rendered ones are not is the next test's."""
+    log, early = followed(age=0.1)
+    assert log.lead == pytest.approx(0.14)
     assert abs(early) < 0.03
     late = log.t > 2
     assert np.nanmax(np.linalg.norm(log.tip[late, :2] - log.ball[late], axis=1)) < 0.03
@@ -397,11 +380,11 @@ def test_the_loop_goes_on_while_the_eye_looks():
         bench.realtime = False
 
 
-@pytest.mark.parametrize("change", [{"radius": 0}, {"T_base_table": np.eye(3)}, {"marker_at": (1, 2)}])
-def test_a_locator_of_bad_numbers_is_refused(change):
+def test_a_locator_of_bad_numbers_is_refused():
     _, world, _ = rig()
-    with pytest.raises(InputError):
-        BallLocator(world, TablePlane(world.scene.pinhole, world.scene.T_cam_world), **change)
+    for change in ({"radius": 0}, {"T_base_table": np.eye(3)}, {"marker_at": (1, 2)}):
+        with pytest.raises(InputError, match=next(iter(change))):
+            BallLocator(world, TablePlane(world.scene.pinhole, world.scene.T_cam_world), **change)
 
 
 def test_bad_arguments_of_reaching_are_refused():
