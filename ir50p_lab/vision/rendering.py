@@ -100,11 +100,10 @@ class BallTruth:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SceneTruth:
-    """Of one rendered picture: balls in the order of the scene, camera, scene."""
+    """Of one rendered picture: balls in the order of the scene, camera."""
 
     balls: tuple
     pinhole: Pinhole
-    scene: object
 
     @property
     def red_balls(self):
@@ -176,7 +175,7 @@ def render_scene(scene, seed=0):
     _, data = cv2.imencode(".jpg", np.rint(255 * image[..., ::-1]).astype(np.uint8), [cv2.IMWRITE_JPEG_QUALITY, 92])
     image = np.ascontiguousarray(cv2.imdecode(data, cv2.IMREAD_COLOR)[..., ::-1])
     balls = tuple(_truth(scene, ball) for ball in scene.objects if isinstance(ball, SceneBall))
-    return image, SceneTruth(balls=balls, pinhole=scene.pinhole, scene=scene)
+    return image, SceneTruth(balls=balls, pinhole=scene.pinhole)
 
 
 @functools.lru_cache(maxsize=4)
