@@ -12,7 +12,6 @@ import ir50p_lab.modelling
 import ir50p_lab.signals
 import ir50p_lab.simulation
 import ir50p_lab.vision
-import ir50p_lab.vision.rendering
 
 
 def modules_after(statement):
@@ -39,7 +38,6 @@ PACKAGES = [
     ir50p_lab.signals,
     ir50p_lab.simulation,
     ir50p_lab.vision,
-    ir50p_lab.vision.rendering,
 ]
 
 

@@ -22,6 +22,7 @@ _AGAINST = (  # weight of a number, and what is said when it counts most
     (2.51, "it hardly stands out from its surroundings"),
 )
 _LEAST_SCORE = 0.65  # below it what is seen is no ball: fewer false alarms, more misses
+_LEAST_FILL = 0.55  # of the disc: with less of the colour it is a thing of another colour that has a part of it
 _DISC = np.arange(1, 10) / 10  # places of samples along a ray, of the radius
 _BEYOND = np.array([1.06, 1.14])
 _EXPLAINED, _CORNERS = 0.5, 0.01  # a wave that leaves less of the variance, and is higher (of the radius): a polygon
@@ -33,8 +34,8 @@ def judge(image, outline, colour):
     """(score 0..1, why it is no ball or "") of an Outline in an RGB picture (h, w, 3)."""
     r, on = outline.radius, outline.on
     hsv, loose, filled, fill, beyond = _colours(image, outline, colour)
-    if not loose.any():
-        return 0.0, "it has another colour"
+    if fill < _LEAST_FILL:
+        return 0.0, f"{1 - fill:.0%} of the disc have another colour"
     why = _other_shape(outline, filled) or _other_paint(hsv[loose], colour)
     if why:
         return 0.0, why
