@@ -22,7 +22,8 @@ _AGAINST = (  # weight of a number, and what is said when it counts most
     (2.51, "it hardly stands out from its surroundings"),
 )
 _LEAST_SCORE = 0.65  # below it what is seen is no ball: fewer false alarms, more misses
-_LEAST_FILL = 0.55  # of the disc: with less of the colour it is a thing of another colour that has a part of it
+_LEAST_FILL = 0.55  # of the disc: with less of the colour, or too light to tell, it is a thing of another colour
+_GLARING = 242  # value, of 255: of what is lighter the hue tells little
 _DISC = np.arange(1, 10) / 10  # places of samples along a ray, of the radius
 _BEYOND = np.array([1.06, 1.14])
 _EXPLAINED, _CORNERS = 0.5, 0.01  # a wave that leaves less of the variance, and is higher (of the radius): a polygon
@@ -34,9 +35,10 @@ def judge(image, outline, colour):
     """(score 0..1, why it is no ball or "") of an Outline in an RGB picture (h, w, 3)."""
     r, on = outline.radius, outline.on
     hsv, loose, filled, fill, beyond = _colours(image, outline, colour)
-    if fill < _LEAST_FILL:
-        return 0.0, f"{1 - fill:.0%} of the disc have another colour"
-    why = _other_shape(outline, filled) or _other_paint(hsv[loose], colour)
+    why = _other_shape(outline, filled)
+    if not loose.any() or (loose | (hsv[..., 2] > _GLARING)).mean() < _LEAST_FILL:
+        why = why or f"{1 - fill:.0%} of the disc have another colour"
+    why = why or _other_paint(hsv[loose], colour)
     if why:
         return 0.0, why
     scatter = 1.48 * np.median(np.abs(outline.off[on])) if on.any() else np.inf  # px, as a standard deviation
@@ -79,7 +81,7 @@ def _turned(hsv, colour):
 
 def _hue_off(hsv, loose, colour):
     """Median distance of the disc's hue from the middle of the colour, of its tolerance; not of what glares."""
-    clear = loose & (hsv[..., 2] < 242)
+    clear = loose & (hsv[..., 2] < _GLARING)
     chosen = clear if clear.mean() > 0.1 else loose
     return float(np.median(np.abs(_turned(hsv[chosen], colour))) / colour.tolerance)
 
