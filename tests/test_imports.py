@@ -10,7 +10,6 @@ import ir50p_lab.modelling
 import ir50p_lab.signals
 import ir50p_lab.simulation
 import ir50p_lab.vision
-import ir50p_lab.vision.rendering
 
 
 def modules_after(statement):
@@ -37,7 +36,6 @@ PACKAGES = [
     ir50p_lab.signals,
     ir50p_lab.simulation,
     ir50p_lab.vision,
-    ir50p_lab.vision.rendering,
 ]
 
 

@@ -9,9 +9,9 @@ import lazy_loader
 
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
-    submodules=["rendering"],
+    submodules=["camera", "rendering"],
     submod_attrs={
-        "camera": ["Camera", "Frame", "Webcam", "open_camera"],
+        "camera": ["Camera", "Frame", "PictureFolder", "Webcam", "open_camera"],
         "image": ["check_image", "is_rendered", "list_images", "load_image", "save_image", "to_grey"],
         "calibration.calibrate": ["calibrate", "calibrate_corners"],
         "calibration.board": ["Checkerboard"],

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import CameraError
-from ir50p_lab.vision.image import check_image, save_image
+from ir50p_lab.vision.image import check_image, is_rendered, list_images, load_image, save_image
 
-_PATIENCE = 3  # s without a picture: the webcam is unplugged
+_PATIENCE = 3.0  # s without a picture: the webcam is unplugged
+_AT_ONCE = 0.005  # s: a picture that comes sooner has waited in the driver, and is old
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -28,7 +29,7 @@ class Frame:
 
 
 class Camera:
-    """A source of pictures: `with open_camera(0) as camera: frame = camera.read()`. Attributes: name, simulated, size."""
+    """A source of pictures: `with open_camera() as camera: frame = camera.read()`. It has name, simulated, size."""
 
     name, simulated, size = "camera", False, (0, 0)
 
@@ -43,7 +44,10 @@ class Camera:
 
 
 class Webcam(Camera):
-    """A webcam by its number, 0 for the first; size: (width, height) asked for, the camera may give another."""
+    """A webcam by its number, 0 for the first; size: (width, height) asked for, the camera may give another.
+
+    Raises CameraError if there is none, ImageError if its pictures have no colour.
+    """
 
     def __init__(self, index=0, *, size=(640, 480)):
         import cv2
@@ -51,12 +55,12 @@ class Webcam(Camera):
         self.name = f"webcam {index}"
         with _quiet():
             self._capture = cv2.VideoCapture(index)
-        for what, value in ((cv2.CAP_PROP_FRAME_WIDTH, size[0]), (cv2.CAP_PROP_FRAME_HEIGHT, size[1])):
+        asked = (cv2.CAP_PROP_FRAME_WIDTH, size[0]), (cv2.CAP_PROP_FRAME_HEIGHT, size[1]), (cv2.CAP_PROP_BUFFERSIZE, 1)
+        for what, value in asked:
             self._capture.set(what, value)
-        self._capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
         try:
             self.size = self.read().image.shape[1::-1]
-        except CameraError:
+        except Exception:
             self.close()  # or the next attempt finds it busy
             raise
 
@@ -65,7 +69,7 @@ class Webcam(Camera):
         began = time.monotonic()
         for _ in range(5):  # one that waited comes at once; one that is being taken makes grab() wait for it
             asked = time.monotonic()
-            if not self._capture.grab() or time.monotonic() - asked > 0.005:
+            if not self._capture.grab() or time.monotonic() - asked > _AT_ONCE:
                 break
         while time.monotonic() - began < _PATIENCE and self._capture.isOpened():
             ok, image = self._capture.read()
@@ -83,10 +87,41 @@ class Webcam(Camera):
         self._capture.release()
 
 
-def open_camera(index=0, *, size=(640, 480)):
-    """Open a webcam and say in one line which: Webcam. Raises CameraError if there is none of that number."""
-    camera = Webcam(int(os.environ.get("IR50P_CAMERA", index)), size=size)
-    print("Camera: {}, {}x{}".format(camera.name, *camera.size))
+class PictureFolder(Camera):
+    """The pictures of a folder as a camera, in the order of their names; simulated: as the first of them says.
+
+    Raises ImageError for a folder without pictures, and by `read` for a file that cannot be read; CameraError by `read`
+    after the last one.
+    """
+
+    def __init__(self, folder):
+        self._paths = list_images(folder)
+        self.name, self.simulated = f"folder {folder}", is_rendered(self._paths[0])
+        self.size = load_image(self._paths[0]).shape[1::-1]
+
+    def read(self):
+        """The next picture: Frame."""
+        if not self._paths:
+            raise CameraError(f"{self.name} has no more pictures: open it again to begin with the first")
+        path = self._paths.pop(0)
+        return Frame(image=load_image(path), simulated=is_rendered(path), source=path.name)
+
+
+def open_camera(source=None, *, size=(640, 480)):
+    """Open a camera and say in one line which: a webcam by its number, or the pictures of a "folder:PATH".
+
+    source: default what IR50P_CAMERA says, else 0, the first webcam; size: (width, height) asked of a webcam.
+    Raises CameraError if there is no such webcam, ImageError for a folder without pictures.
+    """
+    source = str(os.environ.get("IR50P_CAMERA", 0) if source is None else source)
+    if source.startswith("folder:"):
+        camera = PictureFolder(source.removeprefix("folder:"))
+    elif source.isdecimal():
+        camera = Webcam(int(source), size=size)
+    else:
+        raise CameraError(f"no camera is called {source!r}: give the number of a webcam, or folder:PATH")
+    kind = "rendered" if camera.simulated else "photographs"
+    print("Camera: {}, {}x{}, {}".format(camera.name, *camera.size, kind))
     return camera
 
 

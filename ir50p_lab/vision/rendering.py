@@ -29,6 +29,7 @@ _WOOD, _ROOM, _EDGES = (176, 148, 112), (120, 118, 115), ((-0.6, 1.1), (-0.8, 0.
 _SKY, _SUN, _SOFT = 0.55, 0.65, 0.05  # light from everywhere, from one side, and half the width of that in rad
 _TOWARDS = np.float32([0.36, 0.36, 0.86])
 _SUB = 2  # rays along each side of a pixel
+_GRAIN, _GRID = 0.03, 0.008  # m: length of the grain of the wood; distance of the places where the sky is looked at
 # An ordinary VGA webcam (49 deg across, thesis intro 5.3) on a stand across the table from the arm, tilted by 45 deg
 _PINHOLE = Pinhole([[702.0, 0.0, 323.5], [0.0, 699.0, 236.0], [0.0, 0.0, 1.0]], (-0.12, 0.08, 0.0008, -0.0006, 0.0))
 CAMERA_BENCH, LOOKS_AT_BENCH = (1.0, 0.05, 0.62), (0.40, 0.0, 0.0)
@@ -59,7 +60,7 @@ class SceneBall:
 
 @dataclass(frozen=True, kw_only=True)
 class Patch:
-    """Something flat on the table (tape, paper, a stain): middle (2,) m, size (2,) m, angle rad, colour; round or not."""
+    """Something flat on the table (tape, paper, a stain): middle (2,) m, size (2,) m, angle rad; round or not."""
 
     position: tuple = (0.40, 0.10)
     size: tuple = (0.10, 0.02)
@@ -82,8 +83,11 @@ class Scene:
 
 @dataclass(frozen=True, kw_only=True)
 class BallTruth:
-    """x, y: projected centre of the sphere, px; radius: of the circle as large as its image; outline_x, outline_y: its
-    middle, which lies elsewhere; position: (3,) m; colour."""
+    """Where a ball is seen: NaN for one that is not before the camera.
+
+    x, y: projected centre of the sphere, px; radius: of the circle as large as its image, px; outline_x, outline_y:
+    middle of that image, px, which lies elsewhere; position: (3,) m; colour.
+    """
 
     x: float
     y: float
@@ -96,11 +100,10 @@ class BallTruth:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SceneTruth:
-    """Of one rendered picture: balls in the order of the scene, camera, scene."""
+    """Of one rendered picture: balls in the order of the scene, camera."""
 
     balls: tuple
     pinhole: Pinhole
-    scene: object
 
     @property
     def red_balls(self):
@@ -172,7 +175,7 @@ def render_scene(scene, seed=0):
     _, data = cv2.imencode(".jpg", np.rint(255 * image[..., ::-1]).astype(np.uint8), [cv2.IMWRITE_JPEG_QUALITY, 92])
     image = np.ascontiguousarray(cv2.imdecode(data, cv2.IMREAD_COLOR)[..., ::-1])
     balls = tuple(_truth(scene, ball) for ball in scene.objects if isinstance(ball, SceneBall))
-    return image, SceneTruth(balls=balls, pinhole=scene.pinhole, scene=scene)
+    return image, SceneTruth(balls=balls, pinhole=scene.pinhole)
 
 
 @functools.lru_cache(maxsize=4)
@@ -185,7 +188,7 @@ def _rays(pinhole):
 
 
 def _light(scene):
-    """Light (n, 3) float32 along all rays."""
+    """Light (n, 3) float32 along all rays: of the room, of the table, and of the things before them."""
     T = np.float32(scene.T_cam_world)
     rays, (R, t) = _rays(scene.pinhole), (T[:3, :3], T[:3, 3])
     eye, ways = -R.T @ t, R.T @ rays
@@ -195,30 +198,34 @@ def _light(scene):
     ground = np.where(np.isfinite(depth), depth, 0)
     X, Y = (eye[k] + ground * ways[k] for k in (0, 1))
     on = np.isfinite(depth) & (X > _EDGES[0][0]) & (X < _EDGES[0][1]) & (Y > _EDGES[1][0]) & (Y < _EDGES[1][1])
-    light[on], things = _table(scene, X[on], Y[on]), (*scene.objects, *scene.arm)
+    light[on] = _table(scene, X[on], Y[on])
     depth = np.where(on, depth, np.float32(np.inf))
-    length2 = (rays * rays).sum(axis=0)
-    for thing in things:
+    squared = (rays * rays).sum(axis=0)
+    for thing in (*scene.objects, *scene.arm):
         a, b = (R @ np.float32(end) + t for end in (thing.start, thing.end))
         middle, reach = (a + b) / 2, np.linalg.norm(b - a) / 2 + thing.radius
-        near = np.flatnonzero((middle @ rays) ** 2 >= (middle @ middle - reach**2) * length2)
+        near = np.flatnonzero((middle @ rays) ** 2 >= (middle @ middle - reach**2) * squared)
         d = _hit(rays[:, near], a, b, thing.radius)
         closer = d < depth[near] * 1.0001
         near, d = near[closer], d[closer]
         depth[near] = d
-        P = d * rays[:, near]
-        axis = (b - a)[:, None]
-        along = np.clip((axis * (P - a[:, None])).sum(axis=0) / max(float((axis**2).sum()), 1e-12), 0, 1)
-        N = R.T @ ((P - a[:, None] - along * axis) / thing.radius)
-        view = -ways[:, near] / np.linalg.norm(ways[:, near], axis=0)
-        sun, half = np.maximum(_TOWARDS @ N, 0), _TOWARDS[:, None] + view
-        shine = np.maximum((N * half / np.linalg.norm(half, axis=0)).sum(axis=0), 0) ** 40 * (sun > 0) * thing.gloss
-        up = 0.5 * (1 + N[2])
-        bounce = (1 - up)[:, None] * 0.5 * light_of(_WOOD)
-        light[near] = (
-            light_of(thing.colour) * (_SKY * (up[:, None] + bounce) + _SUN * sun[:, None]) + _SUN * shine[:, None]
-        )
+        from_a, axis = d * rays[:, near] - a[:, None], (b - a)[:, None]
+        along = np.clip((axis * from_a).sum(axis=0) / max(float((axis**2).sum()), 1e-12), 0, 1)
+        normal = R.T @ ((from_a - along * axis) / thing.radius)
+        light[near] = _shaded(thing, normal, -ways[:, near] / np.linalg.norm(ways[:, near], axis=0))
     return light
+
+
+def _shaded(thing, normal, view):
+    """Light (n, 3) of a surface with these normals (3, n), seen from the directions `view` (3, n).
+
+    Lambert's cosine for the sun, the share of sky above and half of the wood's light below, a highlight (Blinn).
+    """
+    sun, half = np.maximum(_TOWARDS @ normal, 0), _TOWARDS[:, None] + view
+    shine = np.maximum((normal * half / np.linalg.norm(half, axis=0)).sum(axis=0), 0) ** 40 * (sun > 0) * thing.gloss
+    up = 0.5 * (1 + normal[2])[:, None]
+    falls_on = _SKY * (up + (1 - up) * 0.5 * light_of(_WOOD)) + _SUN * sun[:, None]
+    return light_of(thing.colour) * falls_on + _SUN * shine[:, None]
 
 
 def _hit(rays, a, b, radius):
@@ -241,33 +248,54 @@ def _hit(rays, a, b, radius):
 
 def _table(scene, X, Y):
     """Light (n, 3) from places of the table: wood, what lies on it, and shadows."""
-    grain = 1 + np.float32(0.16) * (0.6 * _noise(X / 0.03, 12 * Y / 0.03) + 0.4 * _noise(1.5 * X / 0.03, 30 * Y / 0.03))
-    albedo = np.clip(grain, 0.1, 1.9)[:, None] * light_of(_WOOD)
+    along, across = X / _GRAIN, Y / _GRAIN
+    coarse, fine = (_interpolated(_tile(), k * along, m * across) for k, m in ((1, 12), (1.5, 30)))
+    albedo = np.clip(1 + np.float32(0.096) * coarse + np.float32(0.064) * fine, 0.1, 1.9)[:, None] * light_of(_WOOD)
     for patch in scene.patches:
         c, s = np.cos(patch.angle), np.sin(patch.angle)
         x, y = X - patch.position[0], Y - patch.position[1]
         u, v = (c * x + s * y) / (patch.size[0] / 2), (c * y - s * x) / (patch.size[1] / 2)
         albedo[np.hypot(u, v) <= 1 if patch.round else np.maximum(np.abs(u), np.abs(v)) <= 1] = light_of(patch.colour)
-    sky, sun = np.ones_like(X), np.ones_like(X)
+    sky = _interpolated(_open_sky(scene), (X - _EDGES[0][0]) / _GRID, (Y - _EDGES[1][0]) / _GRID)
+    sun = np.ones_like(X)
+    for thing in (*scene.objects, *scene.arm):
+        _hide_sun(sun, thing, X, Y)
+    return albedo * (np.float32(_SKY) * sky + np.float32(_SUN) * _TOWARDS[2] * sun)[:, None]
+
+
+def _open_sky(scene):
+    """Share of the sky's light (rows, columns) that reaches the table, on a grid from its corner of least x and y.
+
+    A ball at height h and distance D hides h r^2 / D^3 of it, a stick h r / D^2.
+    """
+    x, y = (np.arange(low, high + 2 * _GRID, _GRID, np.float32) for low, high in _EDGES)
+    P = np.stack([*np.meshgrid(x, y), np.zeros((len(y), len(x)), np.float32)], axis=-1)
+    sky = np.ones(P.shape[:2], np.float32)
     for thing in (*scene.objects, *scene.arm):
         a, b, r = np.float32(thing.start), np.float32(thing.end), thing.radius
-        reach = np.linalg.norm(b - a) + 2.5 * max(a[2], b[2]) + 6 * r
-        near = np.flatnonzero((np.abs(X - a[0]) < reach) & (np.abs(Y - a[1]) < reach))
-        P = np.stack([X[near], Y[near], np.zeros(len(near), np.float32)])
-        axis, v = (b - a)[:, None], P - a[:, None]
-        aa, L = float((axis**2).sum()), np.float32(_TOWARDS)[:, None]
-        w = np.clip((axis * v).sum(axis=0) / max(aa, 1e-12), 0, 1)  # of the sky a ball hides h r^2 / D^3, a stick more
-        D2 = np.maximum(((a[:, None] + w * axis - P) ** 2).sum(axis=0), r * r)
-        height = a[2] + w * (b - a)[2]
-        sky[near] *= 1 - np.clip(height * r / D2 * (1 if aa > 0 else r / np.sqrt(D2)), 0, 1)
-        al = float((axis * L).sum())  # closest approach of the line to the sun and the stick
-        w = np.clip(((axis * v).sum(axis=0) - al * (L * v).sum(axis=0)) / max(aa - al * al, 1e-12), 0, 1)
-        to = a[:, None] + w * axis - P
-        along = (L * to).sum(axis=0)
-        off = np.sqrt(np.maximum((to**2).sum(axis=0) - along**2, 0)) - r
-        part = np.clip(0.5 + off / (2 * np.maximum(_SOFT * np.abs(along), 1e-3)), 0, 1)
-        sun[near] *= np.where(along > 0, part * part * (3 - 2 * part), 1)
-    return albedo * (np.float32(_SKY) * sky + np.float32(_SUN) * _TOWARDS[2] * sun)[:, None]
+        axis, squared = b - a, float(((b - a) ** 2).sum())
+        along = np.clip((P - a) @ axis / max(squared, 1e-12), 0, 1)
+        D2 = np.maximum(((a + along[..., None] * axis - P) ** 2).sum(axis=-1), r * r)
+        sky *= 1 - np.clip((a[2] + along * axis[2]) * r / D2 * (1 if squared > 0 else r / np.sqrt(D2)), 0, 1)
+    return sky
+
+
+def _hide_sun(sun, thing, X, Y):
+    """Take from the light of the sun what a thing hides, with a soft rim: where the line to the sun passes near it."""
+    a, b, r = np.float32(thing.start), np.float32(thing.end), thing.radius
+    feet = [end - _TOWARDS * (end[2] / _TOWARDS[2]) for end in (a, b)]  # of the shadow
+    margin = (r + _SOFT * max(a[2], b[2]) / _TOWARDS[2] + 2e-3) / _TOWARDS[2]
+    low, high = np.min(feet, axis=0) - margin, np.max(feet, axis=0) + margin
+    near = np.flatnonzero((X > low[0]) & (X < high[0]) & (Y > low[1]) & (Y < high[1]))
+    P = np.stack([X[near], Y[near], np.zeros(len(near), np.float32)])
+    axis, squared, towards = (b - a)[:, None], float(((b - a) ** 2).sum()), _TOWARDS[:, None]
+    slant, v = float((axis * towards).sum()), P - a[:, None]
+    along = (axis * v).sum(axis=0) - slant * (towards * v).sum(axis=0)  # closest approach of that line and the stick
+    to = np.clip(along / max(squared - slant * slant, 1e-12), 0, 1) * axis - v
+    far = (towards * to).sum(axis=0)
+    off = np.sqrt(np.maximum((to**2).sum(axis=0) - far**2, 0)) - r
+    part = np.clip(0.5 + off / (2 * np.maximum(_SOFT * np.abs(far), 1e-3)), 0, 1)
+    sun[near] *= np.where(far > 0, part * part * (3 - 2 * part), 1)
 
 
 @functools.cache
@@ -279,11 +307,12 @@ def _tile():
     return np.float32(noise / noise.std())
 
 
-def _noise(u, v):
-    """The noise at u, v (n,), in its own pixels, interpolated."""
-    n, rows = len(u), -(-len(u) // 4096)  # OpenCV takes no long rows
-    u, v = (np.resize(np.float32(one - 512 * np.floor(one / 512)), (rows, 4096)) for one in (u, v))
-    return cv2.remap(_tile(), u, v, cv2.INTER_LINEAR, borderMode=cv2.BORDER_WRAP).ravel()[:n]
+def _interpolated(values, u, v):
+    """Values (rows, columns) at the columns u and rows v (n,), between pixels, too; beyond its rim it begins again."""
+    n, lines = len(u), -(-len(u) // 4096)  # OpenCV takes no long rows
+    places = ((one % size).astype(np.float32) for one, size in ((u, values.shape[1]), (v, values.shape[0])))
+    u, v = (np.resize(one, (lines, 4096)) for one in places)
+    return cv2.remap(values, u, v, cv2.INTER_LINEAR, borderMode=cv2.BORDER_WRAP).ravel()[:n]
 
 
 def _truth(scene, ball):

@@ -16,7 +16,7 @@ from ir50p_lab.course.torque.views import training_run
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import load_arm
 from ir50p_lab.vision import calibrate, camera_over, load_image
-from ir50p_lab.vision.camera import opening
+from ir50p_lab.vision import camera as cameras
 from tests.emulator.virtual import VirtualBoard
 
 PICTURES = "../data/calibration"
@@ -77,7 +77,7 @@ def plug_in(names):
     serial_bench.open_port, serial_bench.Clock = open_port, board
     SerialBench._arguments = lambda self: None  # loops run in this process: another one has another board
     SerialBench.realtime = True
-    opening.open_camera = lambda source=None, **options: Webcam(seen, names, **options)
+    cameras.open_camera = lambda source=None, **options: Webcam(seen, names, **options)
     return board
 
 

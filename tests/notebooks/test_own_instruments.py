@@ -13,8 +13,7 @@ from ir50p_lab.bench import SerialBench, fit_calibration, nominal_calibration
 from ir50p_lab.course import save_result
 from ir50p_lab.course.lab_book.results import newest_result
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.vision import Calibration, calibrate
-from ir50p_lab.vision.camera.picture_folder import PictureFolder
+from ir50p_lab.vision import Calibration, PictureFolder, calibrate
 
 PICTURES = Path(__file__).parents[2] / "data/calibration/flat"
 

@@ -47,36 +47,6 @@ def _arrow(ax, start, end, **style):
     ax.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0} | style)
 
 
-def two_ways_to_the_board():
-    """The two ways from the base to a board in the hand: what is measured, what is sought. Returns: LabFigure."""
-    figure, ax = subplots(7.5, 2.5)
-    ax.set(xlim=(0, 6), ylim=(-0.05, 1.9), title="Two ways from the base to the board, equal in every pose")
-    ax.axis("off")
-    places = {"base": (0.8, 1.35), "tool": (5.2, 1.35), "camera": (0.8, 0.35), "board": (5.2, 0.35)}
-    for name, (x, y) in places.items():
-        ax.text(x, y, name, ha="center", va="center", fontsize=10, bbox=_BOX)
-    known, sought = {"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linestyle": "--"}
-    for a, b, style in (
-        ("base", "tool", known),
-        ("tool", "board", sought),
-        ("base", "camera", sought),
-        ("camera", "board", known),
-    ):
-        (xa, ya), (xb, yb) = places[a], places[b]
-        dx, dy = (0.48, 0.0) if ya == yb else (0.0, -0.24)
-        _arrow(ax, (xa + dx, ya + dy), (xb - dx, yb - dy), lw=1.6, **style)
-    for x, y, text, colour in (
-        (3.0, 1.44, r"$T^{base}_{tool}(q_i)$: potentiometers, in every pose", "blue"),
-        (3.0, 0.44, r"$T^{cam}_{board,i}$: a picture of every pose", "blue"),
-        (0.95, 0.85, r"$T^{base}_{cam}$: sought, constant", "orange"),
-        (5.05, 0.85, r"$T^{tool}_{board}$: unknown, constant", "orange"),
-    ):
-        ha = {0.95: "left", 5.05: "right"}.get(x, "center")
-        va = "center" if y == 0.85 else "bottom"
-        ax.text(x, y, text, ha=ha, va=va, fontsize=10, color=COLOURS[colour])
-    return figure
-
-
 def _sheet(width, height):
     figure, ax = subplots(width, height)
     ax.set(xlim=(0, width), ylim=(0, height), aspect="equal")
@@ -244,7 +214,7 @@ def readme_picture():
     return figure
 
 
-DRAWINGS = {draw.__name__: draw for draw in (picture_to_motors, two_ways_to_the_board, one_loop, three_loops,
+DRAWINGS = {draw.__name__: draw for draw in (picture_to_motors, one_loop, three_loops,
                                              axis_and_lever, ruler, colour_solids)}  # fmt: skip
 
 

@@ -41,7 +41,6 @@ MARKS = {
         "simulation/test_sweep.py",
         "test_command.py",
         "vision/test_ball.py",
-        "vision/test_ball_classifier.py",
         "vision/test_calibration_corners.py",
         "vision/test_calibration_file.py",
         "vision/test_camera_calibration.py",

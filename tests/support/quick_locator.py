@@ -19,10 +19,10 @@ class QuickLocator(BallLocator):
 
     def look(self):
         if self.no_ball:
-            return Seen(None, None, None, None, True, self.no_ball)
+            return Seen(None, None, None, True, self.no_ball)
         xy = self._pixel(self.camera.balls_true[0])
         place = moved(self.T_base_table, self.plane.to_points(xy, self.radius))
-        return Seen(place, self.plane.standard_error(xy, self.radius), None, None, True)
+        return Seen(place, None, None, True)
 
     def find_marker(self, image, arm, q):
         return None if self.blind else self._pixel(self.marker_place(arm, self.camera.bench.plant.q_true))

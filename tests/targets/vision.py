@@ -1,7 +1,7 @@
 """All targets of the vision part as one table beside the thesis: `python -m tests.targets.vision [--quick]`.
 
-Each part is a module with `rows(quick)` -> list of Row: the ball (notebook 16), the calibration (10), the table
-plane (10) and reaching (11). `--quick` runs small samples of the same code. `--only ball` runs one part.
+Each part is a module with `rows(quick)` -> list of Row: the ball (notebook 16), the calibration and the
+table plane (17) and reaching (18). `--quick` runs small samples of the same code. `--only ball` runs one part.
 The exit code is 1 when a target is missed or a part fails.
 """
 

@@ -94,7 +94,7 @@ def rows(*, quick=False):
 
 def _predicted(budgets, part):
     """What the budgets say of one part, rms mm: the ball's place, where the hand is believed, standing still."""
-    words = {"ball": ("ball in", "camera"), "hand": ("marker", "potentiometers"), "standing": ("standing",)}[part]
+    words = {"ball": ("ball in",), "hand": ("marker", "potentiometers"), "standing": ("standing",)}[part]
     return _rms([np.linalg.norm(one["two looks"][one.index.str.startswith(words)]) for one in budgets])
 
 

@@ -20,7 +20,7 @@ def locator():
 
 def found(place, seed):
     """Position (2,) m of a rendered ball that lies at `place`, NaN if it is not found."""
-    image, _ = render_scene(bench_scene(SceneBall(position=(*place, 0.03)), texture_seed=seed), seed=seed)
+    image, _ = render_scene(bench_scene(SceneBall(position=(*place, 0.03))), seed=seed)
     seen = locator().seen_in(image, simulated=True)
     return seen.position[:2] if seen else np.full(2, np.nan)
 

@@ -1,11 +1,14 @@
-"""Pictures: what is refused and in which words; back and forth through files."""
+"""Pictures: what is refused and in which words; back and forth through files of all kinds that users have."""
 
+import struct
 import subprocess
 import sys
+from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
+from PIL import Image
 
 from ir50p_lab.errors import ImageError
 from ir50p_lab.vision import check_image, is_rendered, list_images, load_image, save_image, to_grey
@@ -64,11 +67,11 @@ def test_rendered_pictures_say_so_and_still_open(tmp_path, picture, suffix):
     save_image(path, picture, rendered=True, quality=100)
     assert is_rendered(path)
     assert load_image(path).shape == picture.shape
-    if suffix == ".png":
-        from PIL import Image
 
-        assert "not a photograph" in Image.open(path).text["Comment"]
-        assert (load_image(path) == picture).all()
+
+def test_the_pictures_of_the_course_say_that_they_are_rendered():
+    pictures = sorted((Path(__file__).parents[2] / "data").rglob("*.jpg"))
+    assert len(pictures) > 20 and all(map(is_rendered, pictures))
 
 
 def test_only_some_files_can_be_marked(tmp_path, picture):
@@ -79,31 +82,34 @@ def test_only_some_files_can_be_marked(tmp_path, picture):
 def test_refused_files(tmp_path, picture):
     with pytest.raises(ImageError, match="there is no file"):
         load_image(tmp_path / "no" / "a.png")
-    with pytest.raises(ImageError, match="is a folder"):
+    with pytest.raises(ImageError, match=r"is a folder.*folder:"):
         load_image(tmp_path)
-    with pytest.raises(ImageError, match=r"None cannot be read .*: give the path of a picture file"):
-        load_image(None)
-    (tmp_path / "empty.png").touch()
-    with pytest.raises(ImageError, match="0 bytes"):
-        load_image(tmp_path / "empty.png")
-    (tmp_path / "text.png").write_text("this is no picture at all")
-    with pytest.raises(ImageError, match="is no picture"):
-        load_image(tmp_path / "text.png")
-    cv2.imwrite(str(tmp_path / "grey.png"), picture[..., 0])
-    with pytest.raises(ImageError, match="one channel"):
-        load_image(tmp_path / "grey.png")
-    assert (load_image(tmp_path / "grey.png", allow_grey=True) == picture[..., :1]).all()
-    cv2.imwrite(str(tmp_path / "deep.png"), picture.astype(np.uint16))
-    with pytest.raises(ImageError, match="16 bits"):
-        load_image(tmp_path / "deep.png")
-    with pytest.raises(ImageError, match=r"xyz.* cannot be written"):
-        save_image(tmp_path / "a.xyz", picture)
-    with pytest.raises(ImageError, match="cannot be written"):
-        save_image(tmp_path / "no" / "a.png", picture)
+    for path in (None, "a\0b"):
+        with pytest.raises(ImageError, match=r"cannot be read .*: give the path of a picture file"):
+            load_image(path)
+    cv2.imwrite(str(tmp_path / "deep.png"), picture[..., 0].astype(np.uint16))
+    with pytest.raises(ImageError, match="more than 8 bits"):
+        load_image(tmp_path / "deep.png", allow_grey=True)
+    for bad in ("a.xyz", "no/a.png"):
+        with pytest.raises(ImageError, match="cannot be written"):
+            save_image(tmp_path / bad, picture)
+
+
+HEIC = struct.pack(">I", 24) + b"ftypheic" + bytes(4) + b"mif1heic" + bytes(500)
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"this is no picture at all", b"\x89PNG\r\n\x1a\n" + bytes(100) + b"IEND", b"%PDF-1.4 ", HEIC]
+)
+def test_what_is_no_picture(tmp_path, data, capfd):
+    (tmp_path / "a.jpg").write_bytes(data)
+    with pytest.raises(ImageError, match=r"is no picture that can be read.*JPEG or PNG.*Most Compatible"):
+        load_image(tmp_path / "a.jpg")
+    assert capfd.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize("suffix", [".png", ".jpg", ".bmp"])
-@pytest.mark.parametrize("part", [0.3, 0.7, 0.95])
+@pytest.mark.parametrize("part", [0.3, 0.95])
 def test_a_file_that_was_cut_off_is_noticed(tmp_path, picture, suffix, part):
     path = tmp_path / f"a{suffix}"
     save_image(path, picture)
@@ -113,15 +119,40 @@ def test_a_file_that_was_cut_off_is_noticed(tmp_path, picture, suffix, part):
         load_image(path)
 
 
-def test_transparency_is_dropped_and_exif_turns_the_picture(tmp_path, picture):
-    cv2.imwrite(str(tmp_path / "a.png"), np.dstack([picture[..., ::-1], picture[..., 0]]))
-    assert load_image(tmp_path / "a.png").shape == (40, 60, 3)
-    from PIL import Image
+@pytest.mark.parametrize("suffix", ["jpg", "png", "webp"])
+def test_a_phone_held_upright(tmp_path, picture, suffix):
+    smooth, exif = cv2.GaussianBlur(picture, (0, 0), 5), Image.Exif()
+    exif[0x0112] = 6
+    stored = Image.fromarray(smooth).transpose(Image.Transpose.ROTATE_90)
+    stored.save(tmp_path / f"a.{suffix}", exif=exif, quality=95)
+    assert np.abs(load_image(tmp_path / f"a.{suffix}").astype(int) - smooth).mean() < 2
 
-    exif = Image.Exif()
-    exif[0x0112] = 6  # a phone held upright
-    Image.fromarray(picture).save(tmp_path / "a.jpg", exif=exif)
-    assert load_image(tmp_path / "a.jpg").shape == (60, 40, 3)
+
+def test_colour_pictures_of_all_kinds_are_read(tmp_path, picture):
+    smooth = cv2.GaussianBlur(picture, (0, 0), 5)
+    image, hole = Image.fromarray(smooth), np.dstack([smooth, np.full(smooth.shape[:2], 255, np.uint8)])
+    hole[:10, :, 3] = 0
+    Image.fromarray(hole).save(tmp_path / "transparent.png")
+    image.quantize(256).save(tmp_path / "palette.png")
+    image.convert("CMYK").save(tmp_path / "cmyk.jpg", quality=95)
+    image.save(tmp_path / "progressive.jpg", progressive=True, quality=95)
+    image.save(tmp_path / "animated.gif", save_all=True, append_images=[image.transpose(Image.Transpose.ROTATE_180)])
+    image.save(tmp_path / "renamed.png")
+    (tmp_path / "renamed.png").rename(tmp_path / "renamed.jpg")
+    cv2.imwrite(str(tmp_path / "16_bits.png"), 257 * smooth[..., ::-1].astype(np.uint16))
+    for path in sorted(tmp_path.iterdir()):
+        found = load_image(path)
+        assert found.shape == picture.shape and found.dtype == np.uint8, path.name
+        assert np.abs(found.astype(int) - smooth).mean() < 5, path.name
+
+
+@pytest.mark.parametrize("mode", ["L", "1", "LA"])
+def test_grey_of_all_kinds_is_one_channel(tmp_path, picture, mode):
+    Image.fromarray(picture).convert(mode).save(tmp_path / "a.png")
+    with pytest.raises(ImageError, match=r"one channel.*colour picture"):
+        load_image(tmp_path / "a.png")
+    grey = load_image(tmp_path / "a.png", allow_grey=True)
+    assert grey.shape == picture.shape and (np.ptp(grey, axis=2) == 0).all()
 
 
 def test_folder_in_order_of_its_numbers(tmp_path, picture):
@@ -138,14 +169,6 @@ def test_folder_in_order_of_its_numbers(tmp_path, picture):
 
 
 def test_importing_the_package_costs_nothing():
-    code = "import ir50p_lab.vision, ir50p_lab.vision.rendering, sys; print(' '.join(sys.modules))"
+    code = "import ir50p_lab.vision, sys; print(' '.join(sys.modules))"
     loaded = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
     assert not {"cv2", "numpy", "scipy", "matplotlib"} & set(loaded)
-
-
-def test_a_path_with_a_null_byte_and_a_missing_file_are_refused():
-    for ask in (load_image, is_rendered):
-        with pytest.raises(ImageError, match="null byte"):
-            ask("a\0b")
-        with pytest.raises(ImageError, match="there is no file"):
-            ask("nowhere.png")

@@ -24,11 +24,10 @@ from ir50p_lab.vision import (
     reach_pose,
     work_area,
 )
-from ir50p_lab.vision.camera import webcam
 from ir50p_lab.vision.reaching.budget import error_budget
-from ir50p_lab.vision.reaching.plan import ALMOST, MARGIN, nearest_reachable, within_reach
 from ir50p_lab.vision.reaching.result import BallTracker
 from tests.support.places import places_in
+from tests.targets.vision_reaching import oracle_reaches
 from tests.targets.vision_setup import calibrated
 
 cv2.setNumThreads(1)
@@ -48,72 +47,33 @@ def rig(ball=(0.40, 0.10, 0.03), seed=0, **options):
 # ---- where the arm can go
 
 
-def oracle_distance(p, n=30):
-    """Distance from p to the nearest tip by brute force: a grid over joints 2 and 3 within the limits, then finer."""
-    low, high = np.array(IR50P.q_min) + MARGIN, np.array(IR50P.q_max) - MARGIN
-    q1 = np.clip(np.arctan2(p[1], p[0]), low[0], high[0])
-    best, (lo, hi) = np.inf, (low[1:].copy(), high[1:].copy())
-    for _ in range(12):
-        grid = np.stack(np.meshgrid(np.linspace(lo[0], hi[0], n), np.linspace(lo[1], hi[1], n)), -1).reshape(-1, 2)
-        q = np.column_stack([np.full(len(grid), q1), grid])
-        distance = np.linalg.norm(forward_kinematics(IR50P, q) - p, axis=1)
-        k = distance.argmin()
-        best = min(best, distance[k])
-        half = 0.25 * (hi - lo)
-        lo, hi = np.maximum(low[1:], grid[k] - half), np.minimum(high[1:], grid[k] + half)
-    return best
-
-
-def test_refusals_and_distances_are_those_of_an_independent_search():
-    balls = places_in(work_area(IR50P), np.random.default_rng(1), 60) + OVER
+def test_refusals_are_those_of_an_independent_search():
+    balls = places_in(work_area(IR50P), np.random.default_rng(1), 30) + OVER
     refused = 0
     for p in balls:
-        distance = oracle_distance(p)
         try:
             q = reach_pose(IR50P, p)
-        except UnreachableError as error:
+        except UnreachableError:
             refused += 1
-            assert distance > 1e-4
-            assert error.distance == pytest.approx(distance, abs=3e-4)
-            assert np.linalg.norm(error.nearest - p) == pytest.approx(error.distance)
+            assert not oracle_reaches(p, 60)
         else:
-            assert distance < 5e-3  # the grid's resolution
+            assert oracle_reaches(p, 60)
             assert np.allclose(forward_kinematics(IR50P, q), p)
-    assert 3 <= refused <= 20
+    assert 1 <= refused <= 10
 
 
 @pytest.mark.parametrize(
     ("p", "why"),
     [
-        ((0.70, 0.0, 0.09), "out of reach"),
+        ((0.70, 0.0, 0.09), "nearest point"),
         ((0.40, 0.0, -0.02), "under the table"),
         ((-0.40, 0.0, 0.09), "joint limit"),
         ((0.10, 0.0, 0.09), "joint limit"),
     ],
 )
-def test_a_refusal_says_why_and_how_far(p, why):
-    with pytest.raises(UnreachableError, match=why) as refused:
+def test_a_refusal_says_why(p, why):
+    with pytest.raises(UnreachableError, match=why):
         reach_pose(IR50P, p)
-    assert refused.value.distance > 0.01
-    assert "misses it by" in str(refused.value)
-    assert np.allclose(refused.value.nearest, nearest_reachable(IR50P, np.array(p)))
-
-
-def test_a_hair_out_of_reach_counts_as_the_nearest_point():
-    """Where the ball is seen is known to tenths of a millimetre."""
-    r = work_area(IR50P).r_max - 0.03 + np.linspace(-0.004, 0.012, 33)
-    taken = 0
-    for p in np.column_stack([r, np.zeros(33), np.full(33, 0.09)]):
-        distance = oracle_distance(p)
-        if distance > 1.1 * ALMOST:
-            with pytest.raises(UnreachableError):
-                within_reach(IR50P, p)
-        elif distance < 0.9 * ALMOST:
-            near = within_reach(IR50P, p)
-            assert np.linalg.norm(near - p) < ALMOST + 1e-5
-            assert np.allclose(forward_kinematics(IR50P, reach_pose(IR50P, near)), near)
-            taken += (near != p).any()
-    assert taken >= 1
 
 
 def test_plans_arrive_are_smooth_and_stay_clear():
@@ -130,11 +90,10 @@ def test_plans_arrive_are_smooth_and_stay_clear():
         assert np.allclose(rows[0, 0], q)
         heights = frames(IR50P, rows[:, 0])[:, 2:, 2, 3]
         assert heights.min() > p[2] - 1e-6
-        assert way.lowest == pytest.approx(heights.min(), abs=1e-3)
         assert np.abs(np.diff(rows[:, 0], axis=0)).max() < 0.7 * (t[1] - t[0])  # no jump: 0.5 rad/s, and the line
         tips = forward_kinematics(IR50P, rows[t > way.times[-2], 0])
         assert np.linalg.norm(tips[:, :2] - p[:2], axis=1).max() < 4e-3  # it comes from above
-        q = way.goal  # the next one from there, low over the table: it must go up first
+        q = np.array(way.points[-1])  # the next one from there, low over the table: it must go up first
 
 
 def test_the_work_area_of_another_arm_follows_its_reach():
@@ -153,9 +112,9 @@ def test_the_work_area_of_another_arm_follows_its_reach():
 @cache
 def misses(looks):
     found = []
-    for seed in range(6):
+    for seed in range(5):
         ball = places_in(work_area(IR50P), np.random.default_rng([seed, 3]), 40)
-        ball = next(p for p in ball if oracle_distance(p + OVER) < 3e-3 and np.hypot(*p[:2]) < 0.5)
+        ball = next(p for p in ball if oracle_reaches(p + OVER, 60) and np.hypot(*p[:2]) < 0.5)
         bench, world, locator = rig(ball, seed)
         with bench:
             done = reach(bench, locator, looks=looks, rest=False)
@@ -188,10 +147,9 @@ def test_no_ball_or_one_out_of_reach_moves_nothing():
     bench, _, locator = rig((0.60, 0.1, 0.03))
     with bench:
         before = bench.plant.q_true
-        with pytest.raises(UnreachableError, match="misses it by") as refused:
+        with pytest.raises(UnreachableError):
             reach(bench, locator, rest=False)
         assert np.abs(bench.plant.q_true - before).max() < 0.05
-    assert 0.05 < refused.value.distance < 0.12
 
 
 def test_a_ball_that_rolls_out_of_reach_between_two_looks_does_not_let_the_arm_fall():
@@ -217,7 +175,7 @@ def test_a_ball_that_cannot_be_gripped_is_not_reached_for():
     reach_pose(IR50P, np.array([0.525, 0.0, 0.09]))
     with bench, Reacher(bench, locator, rest=False) as reacher:
         before = bench.plant.q_true
-        with pytest.raises(UnreachableError, match="out of reach"):
+        with pytest.raises(UnreachableError):
             reacher.pick()
         assert np.abs(bench.plant.q_true - before).max() < 0.05
 
@@ -253,15 +211,6 @@ def test_a_ball_is_picked_seen_in_the_grip_and_put():
     assert np.abs(bench.plant.q_true - rest_pose(IR50P)).max() < 0.1
 
 
-def test_a_place_out_of_reach_is_refused_before_anything_moves():
-    bench, _, locator = rig()
-    with bench, Reacher(bench, locator, rest=False) as reacher:
-        with pytest.raises(UnreachableError):
-            reacher.put((0.9, 0.0))
-        with pytest.raises(InputError, match="place"):
-            reacher.put((0.3, 0.0, 0.1))
-
-
 def followed(seconds=8.0, age=0.0, **options):
     """(log, time by which the tip is before the true ball, s): by potentiometers, least squares, without the first 2 s."""
 
@@ -289,10 +238,10 @@ def followed(seconds=8.0, age=0.0, **options):
     return log, np.sum((log.tip[late, :2] - ball) * velocity) / np.sum(velocity**2)
 
 
-@pytest.mark.parametrize("age", [0.0, 0.1])
-def test_a_rolling_ball_is_followed_without_lag_by_default(age):
-    log, early = followed(age=age)
-    assert log.lead == pytest.approx(0.04 + age)
+def test_a_rolling_ball_is_followed_without_lag_by_default():
+    """Pictures that are late: the lead allows for it. That rendered ones are not is the next test's."""
+    log, early = followed(age=0.1)
+    assert log.lead == pytest.approx(0.14)
     assert abs(early) < 0.03
     late = log.t > 2
     assert np.nanmax(np.linalg.norm(log.tip[late, :2] - log.ball[late], axis=1)) < 0.03
@@ -328,13 +277,6 @@ def test_a_ball_that_is_lost_is_waited_for():
     early, late = (log.tip[(log.t > last - s) & (log.t <= last - s + 1)].mean(axis=0) for s in (2, 1))
     assert np.linalg.norm(late - early) < 0.002  # it would be 20 mm
     assert np.linalg.norm(log.tip[-1, :2] - log.ball[-1]) < 0.02  # there again
-
-
-@pytest.mark.parametrize("seconds", [0, -1, np.nan, "a"])
-def test_following_for_no_time_is_refused(seconds):
-    bench, _, locator = rig()
-    with bench, Reacher(bench, locator, rest=False) as reacher, pytest.raises(InputError, match="seconds"):
-        reacher.follow_ball(seconds)
 
 
 def test_the_tracker_knows_where_a_ball_will_be():
@@ -392,12 +334,18 @@ class Real:
     simulated, name = False, "arm on a bench"
 
 
-def test_a_real_arm_is_given_no_rendered_camera(monkeypatch, capsys):
-    monkeypatch.setattr(webcam, "webcam_present", lambda: False)
-    for source in ("", "rendered"):
-        monkeypatch.setenv("IR50P_CAMERA", source)
-        with pytest.raises(CameraError, match="plug a webcam in"):
-            camera_over(Real())
+def test_a_real_arm_is_given_no_rendered_camera(monkeypatch):
+    monkeypatch.setattr(cv2, "VideoCapture", lambda index: Nothing())
+    monkeypatch.delenv("IR50P_CAMERA", raising=False)
+    with pytest.raises(CameraError, match="webcam 0 gives no picture"):
+        camera_over(Real())
+
+
+class Nothing:
+    """A cv2.VideoCapture where none is plugged in."""
+
+    set = release = lambda *_: None
+    grab = isOpened = lambda self: False  # noqa: N815
 
 
 def test_a_real_arm_does_not_reach_for_a_rendered_ball():
@@ -432,11 +380,11 @@ def test_the_loop_goes_on_while_the_eye_looks():
         bench.realtime = False
 
 
-@pytest.mark.parametrize("change", [{"radius": 0}, {"T_base_table": np.eye(3)}, {"marker_at": (1, 2)}])
-def test_a_locator_of_bad_numbers_is_refused(change):
+def test_a_locator_of_bad_numbers_is_refused():
     _, world, _ = rig()
-    with pytest.raises(InputError):
-        BallLocator(world, TablePlane(world.scene.pinhole, world.scene.T_cam_world), **change)
+    for change in ({"radius": 0}, {"T_base_table": np.eye(3)}, {"marker_at": (1, 2)}):
+        with pytest.raises(InputError, match=next(iter(change))):
+            BallLocator(world, TablePlane(world.scene.pinhole, world.scene.T_cam_world), **change)
 
 
 def test_bad_arguments_of_reaching_are_refused():
@@ -449,8 +397,9 @@ def test_bad_arguments_of_reaching_are_refused():
         reacher.reach(looks=0)
     for task, name in (
         (lambda r: r.reach(height="a"), "height"),
-        (lambda r: r.put("ab"), "place"),
+        (lambda r: r.put((0.3, 0.0, 0.1)), "place"),
         (lambda r: r.follow_ball(1.0, lead=np.nan), "lead"),
+        (lambda r: r.follow_ball(0), "seconds"),
     ):
         with bench, Reacher(bench, locator, rest=False) as reacher, pytest.raises(InputError, match=name):
             task(reacher)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ir50p_lab.controllers import simc_integrating
 from ir50p_lab.course.draw.drawings import drawing
-from ir50p_lab.course.draw.style import COLOURS, SETPOINT, colour_map, subplots
+from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
 from ir50p_lab.identification import FOPDT
 
 _RUNS = ({"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linewidth": 1.2}, {"color": COLOURS["green"]})

@@ -73,8 +73,7 @@ def seen_figure(seen, arm, q, T_base_cam, marker=None):
         picture.set_title(f"Ball at ({x:.1f}, {y:.1f}) px, radius {r:.1f} px")
         space.plot(*seen.position[:, None], "X", color=COLOURS["purple"], ms=10, mec="white", zorder=25)
         space.plot(*np.column_stack([T_base_cam[:3, 3], seen.position]), color=COLOURS["grey"], lw=1, ls=":")
-        p, s = 1e3 * seen.position, np.full(2, np.nan)
-        space.set_title(f"({p[0]:.0f}, {p[1]:.0f}, {p[2]:.0f}) mm, ± {s[0]:.1f}, {s[1]:.1f} mm")
+        space.set_title("({:.0f}, {:.0f}, {:.0f}) mm".format(*(1e3 * seen.position)))
     return figure
 
 
@@ -108,15 +107,16 @@ def height_figure(plane, ball, xy):
     return figure, update
 
 
-def trajectory_figure(trajectory, ball):
-    """A Plan from the side: radius and height of the tip, a ball of 30 mm, clearance. Returns: LabFigure."""
+def trajectory_figure(arm, trajectory, ball):
+    """A planned path from the side: radius and height of the tip, a ball of 30 mm, clearance. Returns: LabFigure."""
     figure, side, over = subplots(9.0, 3.6, cols=2, width_ratios=(1.1, 1))
-    p = trajectory.tips
-    view = SideView(side, trajectory.arm, colour=COLOURS["blue"])
-    view.update(trajectory.goal)
-    side.plot(np.hypot(p[:, 0], p[:, 1]), p[:, 2], color=COLOURS["green"], linewidth=2)
+    T = frames(arm, trajectory.sample(np.linspace(0, trajectory.duration, 200))[:, 0])
+    tip, lowest = T[:, 3, :3, 3], T[:, 2:, 2, 3].min()  # of tip and elbow
+    view = SideView(side, arm, colour=COLOURS["blue"])
+    view.update(np.array(trajectory.points[-1]))
+    side.plot(np.hypot(tip[:, 0], tip[:, 1]), tip[:, 2], color=COLOURS["green"], linewidth=2)
     side.add_patch(Circle((np.hypot(*ball[:2]), ball[2]), 0.03, fc="#C8202D", ec="none"))
-    side.set_title(f"Never below {100 * trajectory.lowest:.0f} cm: over, then down")
+    side.set_title(f"Never below {100 * lowest:.0f} cm: over, then down")
     t = np.linspace(0, trajectory.duration, 300)
     for k, colour in enumerate(JOINTS):
         over.plot(t, trajectory.sample(t)[:, 1, k], color=colour, label=f"joint {k + 1}")
@@ -162,23 +162,6 @@ def budget_figure(budget, measured=()):
     return figure
 
 
-def hand_eye_figure():
-    """The two ways from the base to a board in the hand: what is measured, what is sought. Returns: SVG."""
-    return drawing("two_ways_to_the_board")
-
-
-def residual_figure(fit):
-    """Loop errors of a HandEye, pose by pose. Returns: LabFigure."""
-    figure = new_figure(9.0, 2.8, cols=2)
-    place, turn = 1e3 * fit.translation_error, 1e3 * fit.rotation_error
-    for ax, what, values, unit in zip(figure.axes, ("Place", "Turn"), (place, turn), ("mm", "mrad"), strict=True):
-        ax.bar(np.arange(len(values)), values, color=COLOURS["blue"])
-        rms = np.sqrt(np.mean(np.square(values)))
-        ax.set(xlabel="pose [number]", ylabel=f"left over [{unit}]")
-        ax.set_title(f"{what}: the loop stays open by {rms:.1f} {unit}")
-    return figure
-
-
 def follow_figure(logs, simulated):
     """Followed balls: the table from above for the first FollowLog, how far each tip is ahead. Returns: LabFigure."""
     import pandas as pd
@@ -204,24 +187,3 @@ def follow_figure(logs, simulated):
     low, high = time.get_ylim()
     time.set_ylim(low, high + 0.15 * (high - low))
     return figure
-
-
-def poses_before(arm, pinhole, T_cam_base, T_tool_board, board, n, rng):
-    """n joint poses (n, 3) rad that hold a board, its print to the camera, fully into the picture.
-
-    pinhole: Pinhole; T_tool_board: (4, 4); board: (m, 3) m; rng: numpy generator.
-    """
-    kept = []
-    low, high = (np.clip(limit, -np.pi, np.pi) for limit in (arm.q_min, arm.q_max))
-    for _ in range(20000):
-        q = rng.uniform(low, high)
-        T = T_cam_base @ frames(arm, q)[3] @ T_tool_board
-        X = board @ T[:3, :3].T + T[:3, 3]
-        if X[:, 2].min() < 0.25 or T[2, 2] < 0.3 or (np.abs(X[:, :2]) > X[:, 2:]).any():
-            continue
-        xy = pinhole.project(np.eye(4), X)
-        if (xy > 5).all() and (xy < np.array(pinhole.size) - 6).all():
-            kept.append(q)
-        if len(kept) == n:
-            break
-    return np.array(kept)

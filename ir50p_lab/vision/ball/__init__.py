@@ -1,1 +1,1 @@
-"""The ball in a picture: regions of its colour, edges, an outline, a classifier, and the reasons in words."""
+"""The ball in a picture: guesses from regions of its colour, a measured outline, the evidence for and against it."""

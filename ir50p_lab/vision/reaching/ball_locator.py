@@ -22,8 +22,8 @@ _SPIKE = 5.0  # sigma
 class Seen:
     """What one look found.
 
-    position: (3,) m, ball's centre in the base frame, None if there was no ball (then `reason` says why); stderr: (2,)
-    m along x and y; ball: Ball in pixels; image: RGB; simulated: whether the picture was rendered.
+    position: (3,) m, ball's centre in the base frame, None if there was no ball (then `reason` says why); ball: Ball in
+    pixels; image: RGB; simulated: whether the picture was rendered.
     """
 
     position: np.ndarray | None
@@ -109,11 +109,14 @@ class BallLocator:
             minimise |xy - project(p(q + e))|^2 / sigma_px^2 + sum (e_i / sigma_q_i)^2
 
         One pixel is two equations for three joints; the third comes from how far each potentiometer is believed to be
-        off. The hand's distance to the camera stays as uncertain as they leave it.
+        off. The hand's distance to the camera stays as uncertain as they leave it. Errors of some hundredths of a rad
+        move the pixel linearly, so with H = d pixel / d q and P = diag(sigma_q^2) the minimum is
+        e = P H^T (H P H^T + sigma_px^2 I)^-1 (xy - project(p(q))).
         Args: arm: Arm; q: (3,) rad; xy: (2,) px; sigma_q: (3,) rad.
         Returns: e (3,) rad. If the picture contradicts q by more than 5 sigma: VisionError.
         """
-        H, P = self.marker_jacobian(arm, q), np.diag(np.square(sigma_q))
+        sigma_q = vector3("sigma_q", sigma_q)
+        H, P = self.marker_jacobian(arm, q), np.diag(sigma_q**2)
         e = P @ H.T @ np.linalg.solve(H @ P @ H.T + self.sigma_px**2 * np.eye(2), xy - self.marker_pixel(arm, q))
         if (np.abs(e) > _SPIKE * sigma_q).any():
             off = np.linalg.norm(xy - self.marker_pixel(arm, q))

@@ -14,10 +14,10 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
 
     With J = dp/dq of the tip, H = dpixel/dq of the marker, and the gain G of the camera's correction
     (`BallLocator.joint_errors`), potentiometers that are off by e leave J e after the first look and J (I - G H) e
-    after the second. What is wrong with the camera, or where it stands, shifts ball and hand alike: after the second
-    look only the difference counts.
+    after the second. What is wrong with the camera, or where it stands, is left out: it shifts ball and hand
+    alike, so that little of it remains after the second look.
 
-    Args: arm: Arm; locator: BallLocator, its plane with covariances; q: (3,) rad, pose over the ball; sigma_q: (3,)
+    Args: arm: Arm; locator: BallLocator; q: (3,) rad, pose over the ball; sigma_q: (3,)
     rad, of the potentiometers' smooth errors; slope: (3,) counts/rad; sigma_ball_px, sigma_marker_px: px, of found
     centres; noise: counts rms of a reading before rounding.
     Returns: pandas.DataFrame of rms distances at the tip, m, one row a cause, columns "one look" and "two looks". The
@@ -26,7 +26,7 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
     import pandas as pd
 
     J, P = jacobian(arm, q)[:3], np.diag(np.square(sigma_q))
-    hand, tip = locator.marker_place(arm, q), forward_kinematics(arm, q)
+    tip = forward_kinematics(arm, q)
     H = locator.marker_jacobian(arm, q)
     G = np.linalg.solve(H @ P @ H.T + locator.sigma_px**2 * np.eye(2), H @ P).T
     left = np.eye(3) - G @ H

@@ -48,7 +48,8 @@ def work_area(arm):
 def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
     """Joint angles (3,) rad that put the tip on p (3,) m, of those within the limits (less 0.03 rad) nearest to `near`.
 
-    Raises UnreachableError if p is outside the workspace or the limits, under the table, or the elbow would be.
+    Raises UnreachableError if p is outside the workspace (with .distance m and .nearest (3,) m), if every pose is past
+    a joint limit, or if tip or elbow would be under the table.
     """
     p = vector3("p", p, unit="m")
     if p[2] < 0:
@@ -58,8 +59,8 @@ def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
     allowed &= arm.l[0] + arm.l[1] * np.sin(q[..., 1]) > 0  # the elbow's height
     if not allowed.any():
         raise UnreachableError(
-            f"the arm cannot go to {p.round(3).tolist()} m: every pose is past a joint limit, or within 2 deg of it: "
-            f"{np.degrees(q).round().tolist()} deg"
+            f"the arm cannot go to {p.round(3).tolist()} m: each of its poses there, {np.degrees(q).round().tolist()} "
+            "deg, is past a joint limit, nearer than 2 deg to one, or has its elbow under the table"
         )
     return q[np.where(allowed, np.abs(q - near).max(axis=-1), np.inf).argmin()]
 
@@ -67,8 +68,11 @@ def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
 def plan(arm, q, p, *, lift=LIFT):
     """The path of the tip from the pose q to the point p: over it, then down. Where that comes too low it rises first.
 
-    lift: m above p where the last piece begins; 0 goes there directly. Returns: Quintic, points its poses. Raises
-    UnreachableError as `reach_pose`.
+    All pieces are straight for the joints; the last one keeps the tip of the IR50P within 4 mm of a plumb line.
+
+    Args: arm: Arm; q: (3,) rad, where it stands; p: (3,) m; lift: m above p where the last piece begins; 0 goes there
+    directly.
+    Returns: Quintic, a Reference through its `points`. Raises UnreachableError as `reach_pose`.
     """
     goal = reach_pose(arm, p, q)
     poses = _clear(arm, q, goal, min(CLEAR, p[2]))

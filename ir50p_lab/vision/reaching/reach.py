@@ -83,7 +83,7 @@ class Reacher(Mover):
 
         looks: 1: one look, then potentiometers alone; 2: after arriving the camera sees where ball and hand really
         are, and the hand is moved by the difference.
-        Returns: Reached. Raises UnreachableError (.distance, .nearest) before anything moves; VisionError if no ball
+        Returns: Reached. Raises UnreachableError before anything moves; VisionError if no ball
         is seen, with the reason.
         """
         looks, records = whole("looks", looks, 1, 3), []

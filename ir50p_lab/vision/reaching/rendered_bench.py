@@ -105,4 +105,4 @@ def camera_over(bench, balls=(0.40, 0.0, 0.03), *, small=False):
         width, height = camera.size
         print(f"Camera: {camera.name}, {width}x{height}, rendered (a simulated arm is seen by no webcam)")
         return camera
-    return open_camera(size=(320, 240) if small else (640, 480))
+    return open_camera(size=(320, 240)) if small else open_camera()

@@ -15,7 +15,6 @@ from tests.support.make_drawings import DRAWINGS, main, readme_picture
 FOLDER = PROJECT / "data" / "drawings"
 SHOWN = {
     reaching_views.loop_figure: ("find_balls", "T_base_table", "u [PWM]", "look again"),
-    reaching_views.hand_eye_figure: ("base", "tool", "camera", "board", "sought"),
     loop_views.one_loop: ("speed, filtered", "limit", "arm"),
     loop_views.three_loops: ("controller 1", "controller 3", "one arm"),
     speed_views.axis_and_lever: ("axis", "lever", "velocity"),

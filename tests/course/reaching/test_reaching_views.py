@@ -9,10 +9,9 @@ from quick_locator import QuickLocator
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.course.reaching import views
-from ir50p_lab.modelling import IR50P
+from ir50p_lab.modelling import IR50P, frames
 from ir50p_lab.vision import RenderedBench, Seen, TablePlane, plan, reach
-from ir50p_lab.vision.board_pose import board_points, inverse_transform, transform
-from ir50p_lab.vision.hand_eye import HandEye, tool_poses
+from ir50p_lab.vision.board_pose import inverse_transform
 from ir50p_lab.vision.reaching.result import FollowLog
 from ir50p_lab.vision.rendering import bench_camera
 
@@ -38,11 +37,11 @@ def test_frames_name_their_parts():
 def test_what_is_seen_is_written_beside_it():
     ball = type("Ball", (), {"x": 300.0, "y": 200.0, "radius": 25.0})
     image = np.zeros((480, 640, 3), np.uint8)
-    seen = Seen(BALL, np.array([4e-4, 3e-4]), ball, image, True)
+    seen = Seen(BALL, ball, image, True)
     text = text_of(views.seen_figure(seen, IR50P, rest_pose(IR50P), T_BASE_CAM, (310.0, 150.0)))
-    assert "Ball at (300.0, 200.0) px" in text and "(400, 50, 30) mm" in text and "0.4, 0.3 mm" in text
+    assert "Ball at (300.0, 200.0) px" in text and "(400, 50, 30) mm" in text
     assert "Ball at" not in text_of(
-        views.seen_figure(Seen(None, None, None, image, True, "none"), IR50P, rest_pose(IR50P), T_BASE_CAM)
+        views.seen_figure(Seen(None, None, image, True, "none"), IR50P, rest_pose(IR50P), T_BASE_CAM)
     )
 
 
@@ -57,10 +56,12 @@ def test_the_height_moves_the_reading():
 
 def test_a_way_says_how_low_it_comes():
     trajectory = plan(IR50P, rest_pose(IR50P), BALL + np.array([0, 0, 0.06]))
-    assert f"Never below {100 * trajectory.lowest:.0f} cm" in text_of(views.trajectory_figure(trajectory, BALL))
+    poses = trajectory.sample(np.linspace(0, trajectory.duration, 500))[:, 0]
+    lowest = frames(IR50P, poses)[:, 2:, 2, 3].min()  # of elbow and tip
+    assert f"Never below {100 * lowest:.0f} cm" in text_of(views.trajectory_figure(IR50P, trajectory, BALL))
 
 
-def test_tip_and_budget_and_residuals_show_their_numbers():
+def test_tip_and_budget_show_their_numbers():
     bench = SimulatedBench(IR50P, q0=rest_pose(IR50P), record_to=False)
     world = RenderedBench(bench, BALL)
     with bench:
@@ -70,9 +71,6 @@ def test_tip_and_budget_and_residuals_show_their_numbers():
     assert "second look" in text
     budget = pd.DataFrame({"one look": [3e-3, 4e-3, 5e-3], "two looks": [1e-3, 0.0, 1e-3]}, ["marker", "camera", "all"])
     assert "takes 5.0 mm down to 1.0 mm" in text_of(views.budget_figure(budget, (5e-3, 1e-3)))
-    found = HandEye(T_BASE_CAM, np.eye(4), np.full(4, 2e-3), np.full(4, 1e-3))
-    text = text_of(views.residual_figure(found))
-    assert "open by 1.0 mm" in text and "open by 2.0 mrad" in text
 
 
 def test_following_shows_how_far_the_tip_is_ahead():
@@ -86,13 +84,3 @@ def test_following_shows_how_far_the_tip_is_ahead():
     assert "lead 0.25 s" in text and "lead 0 s" in text and "lead × speed" in text
     thick = [line.get_ydata() for line in figure.axes[1].lines if line.get_linewidth() == 2]
     assert np.allclose(thick[0], 5.0) and np.allclose(thick[1], -1.0)
-
-
-def test_poses_hold_the_board_into_the_picture():
-    grip, board = transform([2.1, 2.3, 0.1], [0.02, -0.05, 0.02]), board_points((9, 6), 0.012, np.eye(4))
-    q = views.poses_before(IR50P, CAMERA, T_CAM_BASE, grip, board, 5, np.random.default_rng(1))
-    assert q.shape == (5, 3)
-    for T in T_CAM_BASE @ tool_poses(IR50P, q) @ grip:
-        xy = CAMERA.project(T, board)
-        assert (xy > 0).all() and (xy < np.array(CAMERA.size)).all()
-        assert T[2, 2] >= 0.3  # the print faces the camera

@@ -1,0 +1,119 @@
+"""Is it a ball? Nine numbers of an outline and its colours, added up as a logistic regression has weighed them.
+
+The weights are from rendered scenes with red balls and with what is like them; no photograph was in it. The number
+that counts most against a ball is what the finder says of it.
+"""
+
+import cv2
+import numpy as np
+
+from ir50p_lab.vision.ball.outline import ANGLES, cast
+
+_BIAS = 5.32
+_AGAINST = (  # weight of a number, and what is said when it counts most
+    (-2.3, "it is small"),
+    (4.43, "{:.0%} of the circle show no edge"),
+    (2.23, "{:.0%} of the circle lie outside the picture"),
+    (3.64, "{:.0%} of the disc have another colour"),
+    (2.84, "its outline is not round"),
+    (2.28, "its hue is off by {:.2f} of the tolerance"),
+    (1.16, "the colour goes on beyond {:.0%} of the circle"),
+    (-1.55, "its rim differs from its middle"),
+    (2.51, "it hardly stands out from its surroundings"),
+)
+_LEAST_SCORE = 0.65  # below it what is seen is no ball: fewer false alarms, more misses
+_LEAST_FILL = 0.55  # of the disc: with less of the colour, or too light to tell, it is a thing of another colour
+_GLARING = 242  # value, of 255: of what is lighter the hue tells little
+_DISC = np.arange(1, 10) / 10  # places of samples along a ray, of the radius
+_BEYOND = np.array([1.06, 1.14])
+_EXPLAINED, _CORNERS = 0.5, 0.01  # a wave that leaves less of the variance, and is higher (of the radius): a polygon
+_ENOUGH = 20  # rays with an edge, to count corners on
+_GLOSS = 0.35  # of the disc: highlights on more of it are another colour, white
+
+
+def judge(image, outline, colour):
+    """(score 0..1, why it is no ball or "") of an Outline in an RGB picture (h, w, 3)."""
+    r, on = outline.radius, outline.on
+    hsv, loose, filled, fill, beyond = _colours(image, outline, colour)
+    why = _other_shape(outline, filled)
+    if not loose.any() or (loose | (hsv[..., 2] > _GLARING)).mean() < _LEAST_FILL:
+        why = why or f"{1 - fill:.0%} of the disc have another colour"
+    why = why or _other_paint(hsv[loose], colour)
+    if why:
+        return 0.0, why
+    scatter = 1.48 * np.median(np.abs(outline.off[on])) if on.any() else np.inf  # px, as a standard deviation
+    numbers = (
+        np.log(r / 20),
+        1 - on.mean(),
+        1 - outline.seen,
+        1 - fill,
+        scatter / (0.3 + 0.01 * r),
+        _hue_off(hsv, loose, colour),
+        beyond,
+        1 - min(np.median(outline.height[on]), 1.5) if on.any() else 1.0,
+        np.log(5.5 / outline.contrast),
+    )
+    counts = [weight * number for (weight, _), number in zip(_AGAINST, numbers, strict=True)]
+    score = float(1 / (1 + np.exp(sum(counts) - _BIAS)))
+    worst = int(np.argmax(counts))
+    return score, "" if score >= _LEAST_SCORE else _AGAINST[worst][1].format(numbers[worst])
+
+
+def _colours(image, outline, colour):
+    """HSV (rays, 9, 3) of the disc; where it has the colour, where colour or gloss; shares of disc and beyond it."""
+    r, rim = outline.radius, 1.5  # px on both sides of the outline that are left out: colours mix there
+    reach = np.concatenate([r * _DISC - rim * (_DISC > 0.85), r * _BEYOND + rim])
+    hsv = colour.hsv_of(cast(image, outline.x, outline.y, reach)[0])
+    disc = hsv[:, : len(_DISC)]
+    loose = colour.loose_mask(disc) > 0
+    gloss = (disc[..., 2] > 200) & (disc[..., 1] < 255 * colour.saturation)
+    area = _DISC / _DISC.sum()
+    shine = (gloss @ area).mean()
+    fill = (loose @ area).mean() + shine * (shine < _GLOSS)
+    goes_on = cv2.inRange(hsv[:, len(_DISC) :], *colour.bounds()) > 0
+    return disc, loose, loose | gloss, fill, goes_on.all(axis=1).mean()
+
+
+def _turned(hsv, colour):
+    """Hues less the middle of the colour, degrees -180..180."""
+    return (2.0 * hsv[..., 0] - colour.centre + 180) % 360 - 180
+
+
+def _hue_off(hsv, loose, colour):
+    """Median distance of the disc's hue from the middle of the colour, of its tolerance; not of what glares."""
+    clear = loose & (hsv[..., 2] < _GLARING)
+    chosen = clear if clear.mean() > 0.1 else loose
+    return float(np.median(np.abs(_turned(hsv[chosen], colour))) / colour.tolerance)
+
+
+def _other_paint(hsv, colour):
+    """Why a paint (n, 3) HSV is not of the colour sought: nearly black; for reds skin or brown; "" if it may be."""
+    saturation, value = np.percentile(hsv[:, 1], 80) / 255, np.percentile(hsv[:, 2], 90) / 255
+    if value < 0.2:
+        return f"nearly black: value {value:.2f}"
+    if min(colour.hue, 360 - colour.hue) > 20:
+        return ""
+    orange = float(np.median(_turned(hsv, colour))) * (-1 if colour.swaps else 1)  # degrees from the red towards yellow
+    if orange > 5 and saturation < 0.6 and value < 0.95:
+        return f"skin, or another pale orange: saturation {saturation:.2f}"
+    if (orange > 14 and value < 0.33) or (orange > 8 and saturation < 0.72 and value < 0.45):
+        return f"brown: saturation {saturation:.2f} and value {value:.2f}"
+    return ""
+
+
+def _other_shape(outline, filled):
+    """Why a thing is a ring or a polygon (a nut); "" if it may be a ball. filled: (rays, 9), of colour or gloss.
+
+    A polygon of n corners has its edge farther out n times around: one wave of n explains nearly all of `off`.
+    """
+    if filled[:, 6:].mean() > 0.8 and filled[:, 2:5].mean() < 0.4:
+        return "a ring: its middle has another colour"
+    angle, off = ANGLES[outline.on], outline.off[outline.on]
+    if len(off) < _ENOUGH:
+        return ""
+    for corners in range(5, 11):
+        A = np.column_stack([np.ones(len(off)), np.cos(corners * angle), np.sin(corners * angle)])
+        wave, rest, *_ = np.linalg.lstsq(A, off)
+        if rest.sum() < _EXPLAINED * off.var() * len(off) and np.hypot(*wave[1:]) > _CORNERS * outline.radius:
+            return f"a nut, or something else of {corners} corners"
+    return ""

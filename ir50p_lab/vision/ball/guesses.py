@@ -1,0 +1,68 @@
+"""Where a ball might be: circles that fit the regions of its colour. Most are none; each is measured afterwards."""
+
+import cv2
+import numpy as np
+
+_LONGER_SIDE = 640  # px of the copy that is searched
+_STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
+_REGIONS = 10  # of a mask, longest outline first
+_ARCS = 3  # circles through parts of one outline
+_STARTS, _STEPS = 24, (0.06, 0.12, 0.2, 0.33)  # triples of points tried; steps between them, in outlines
+_NEAR = (0.04, 1.0)  # shares of the radius, px: within the larger of both a point of the outline lies on the circle
+_NEW = 0.25  # of a radius: a circle nearer than this to an earlier one, place and size together, is the same guess
+
+
+def guess_circles(image, colour, least_radius):
+    """Circles [(x, y, r)] px that regions of a Colour in an RGB picture (h, w, 3) may be, longest arcs first."""
+    scale = max(1, round(max(image.shape) / _LONGER_SIDE))
+    small = image
+    if scale > 1:
+        small = cv2.resize(image, None, fx=1 / scale, fy=1 / scale, interpolation=cv2.INTER_AREA)
+    found = []
+    for mask in _masks(small, colour):
+        outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+        for outline in sorted(outlines, key=len, reverse=True)[:_REGIONS]:
+            if len(outline) >= max(8, 4 * least_radius / scale):
+                found += _circles(outline[:, 0].astype(float))
+    different = []
+    for _, *circle in sorted(found, reverse=True):
+        x, y, r = (np.array(circle) + 0.5) * scale - (0.5, 0.5, 0)
+        new = all(np.hypot(x - a, y - b) + abs(r - c) > _NEW * max(r, c) for a, b, c in different)
+        if r > 0.7 * least_radius and new:
+            different.append((x, y, r))
+    return different
+
+
+def _masks(image, colour):
+    """Masks (h, w) of the colour: strict, stricter, and as dim or glaring light shows it."""
+    hsv = colour.hsv_of(image)
+    three, five = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
+    for saturation in _STRICTNESS:
+        yield cv2.morphologyEx(cv2.inRange(hsv, *colour.bounds(saturation)), cv2.MORPH_OPEN, three)
+    loose = colour.loose_mask(colour.hsv_of(cv2.GaussianBlur(image, (0, 0), 1.5)))
+    yield cv2.morphologyEx(loose, cv2.MORPH_CLOSE, five)
+
+
+def _circles(points):
+    """Circles (n points on it, x, y, r) through three points of an outline (n, 2), those with most of it on them."""
+    first, step = (part.ravel() for part in np.meshgrid(np.arange(_STARTS) / _STARTS, _STEPS))
+    largest = 2 * min(cv2.minAreaRect(np.float32(points))[1])  # px; of a larger one hardly a quarter would be seen
+    found = []
+    while len(points) >= 8 and len(found) < _ARCS:
+        p, q, s = (points[((first + k * step) * len(points)).astype(int) % len(points)] for k in range(3))
+        a, b = q - p, s - p
+        twice = 2 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+        aa, bb = (a * a).sum(axis=1), (b * b).sum(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            middle = np.column_stack([b[:, 1] * aa - a[:, 1] * bb, a[:, 0] * bb - b[:, 0] * aa]) / twice[:, None]
+        r = np.hypot(*middle.T)
+        usable = (r > 2) & (r < largest)
+        if not usable.any():
+            break
+        middle, r = (p + middle)[usable], r[usable]
+        off = np.hypot(*(points[:, None] - middle).transpose(2, 0, 1)) - r
+        near = np.abs(off) < np.maximum(_NEAR[0] * r, _NEAR[1])  # (points, circles)
+        best = near.sum(axis=0).argmax()
+        found.append((near[:, best].sum(), *middle[best], r[best]))
+        points = points[~near[:, best]]
+    return found
