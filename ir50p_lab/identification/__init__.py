@@ -21,7 +21,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "payload": ["Scale", "payload_change", "scale_from_payload"],
         "processing": ["Motion", "causal_derivatives", "central_derivatives", "process"],
         "recipe": ["identify"],
-        "response_fit": ["FOPDT", "SecondOrderModel", "fit_fopdt", "fit_second_order"],
+        "response_fit": ["FOPDT", "fit_fopdt"],
         "regression": ["LeastSquares", "least_squares"],
         "rls": ["RLS"],
         "single_joint": ["JointFit", "fit_joint"],
