@@ -8,7 +8,6 @@ from scipy.optimize import lsq_linear
 
 from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification.parameters import FREE_OF_SIGN
-from ir50p_lab.identification.regression import r_factor
 
 _WEAK = 0.1  # smallest canonical correlation of instruments and regressors below which they are weak
 _NOTHING = 1e-8  # below it the estimate would be rounding
@@ -80,7 +79,7 @@ def instrumental_variables(problem, Z):
     Raises IdentificationError if Z says nothing about some combination of the columns.
     """
     Z = Z / np.maximum(np.linalg.norm(Z, axis=0), 1e-300)
-    R = r_factor(Z)
+    R = np.linalg.qr(Z, mode="r")
     own = np.abs(np.diag(R))
     if own.min() < _NOTHING:
         name = problem.names[int(own.argmin())]

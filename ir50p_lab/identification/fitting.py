@@ -7,7 +7,7 @@ from ir50p_lab.identification import estimators
 from ir50p_lab.identification.estimate import Estimate, impossible_values, indefinite_mass
 from ir50p_lab.identification.fit_input import checked_data, finite
 from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, NAMES, metres
-from ir50p_lab.identification.regression import Problem, product
+from ir50p_lab.identification.regression import Problem
 from ir50p_lab.inputs import choice, number, vectors3
 
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
@@ -71,7 +71,7 @@ def fit(
     for joints in [slice(0, 3)] if rows == "shared" else [slice(j, j + 1) for j in range(3)]:
         who = "" if rows == "shared" else f"joint {joints.stop}: "
         here, ties, names = _acting(joints, COLUMNS[columns], l2)
-        A, b = product(_equations(Phi, share, joints, here), ties), (y * share)[:, joints].ravel()
+        A, b = _equations(Phi, share, joints, here) @ ties, (y * share)[:, joints].ravel()
         problem = Problem(A, b, names, len(y), who=who)
         ties = ties[:, problem.kept]
         if method == "iv":
