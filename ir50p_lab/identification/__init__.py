@@ -16,7 +16,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "excitation_file": ["load_excitations"],
         "fitting": ["fit"],
         "output_error": ["OutputError", "output_error"],
-        "general_arm": ["general_regressor"],
         "processing": ["Motion", "causal_derivatives", "central_derivatives", "process"],
         "recipe": ["identify"],
         "response_fit": ["FOPDT", "fit_fopdt"],
