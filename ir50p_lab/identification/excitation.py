@@ -29,27 +29,35 @@ class Excitation:
     condition_after: np.ndarray
 
 
-def regressor_condition(motion, *, moving=0.0):
+def regressor_condition(motion):
     """Condition number of the regressor along one period of a Fourier motion, its columns scaled to length 1: (3,).
 
     One per joint. 1 is best: every parameter is seen apart from the others. 100: of some combination the data say 100
-    times less. Samples of a joint slower than `moving` rad/s do not count.
+    times less.
     """
+    return _conditions(*_one_period(motion))
+
+
+def _one_period(motion):
     t = motion.start + motion.period * (np.arange(_POINTS) + 0.5) / _POINTS
-    q, qd, qdd = np.swapaxes(motion.sample(t), 0, 1)
-    Phi, use = regressor(q, qd, qdd), np.abs(qd) >= moving
-    parts = [Phi[use[:, joint], joint][:, columns] for joint, columns in enumerate(RIGID_ON)]
+    return np.swapaxes(motion.sample(t), 0, 1)
+
+
+def _conditions(q, qd, qdd):
+    Phi = regressor(q, qd, qdd)
+    parts = [Phi[:, joint, columns] for joint, columns in enumerate(RIGID_ON)]
     return np.array([np.linalg.cond(A / np.maximum(np.linalg.norm(A, axis=0), 1e-300)) for A in parts])
 
 
 def optimise_excitation(
-    arm, *, period=10.0, harmonics=5, periods=11, max_joint_speed=None, table=0.0, margin=0.05, tries=1500, seed=0,
-    progress=True,
+    arm, *, period=10.0, harmonics=5, periods=11, max_joint_speed=None, table=0.0, margin=0.05, standing=4.0,
+    tries=2000, seed=0, progress=True,
 ):  # fmt: skip
     """Fourier motion with a small condition number of the regressor, inside the limits of the arm    (4.2).
 
     Climbs: changes coefficients and mean pose at random, keeps what the limits allow (`fourier(..., arm=arm)`) and what
-    makes the worst joint better. Samples of a joint that hardly moves do not count: there it may stick.
+    makes the mean logarithm of the joints' condition numbers smaller. standing: price of time spent near standstill,
+    where a joint may stick: the share of time, as 1/(1 + (qd/0.1 rad/s)^2), times this is added.
 
     Args: arm: Arm with finite joint limits. period: s; harmonics: 2..12; periods: length of the record; max_joint_speed,
     table, margin: as in `fourier`; tries; seed: the same seed gives the same motion; progress: show a bar.
@@ -71,6 +79,10 @@ def optimise_excitation(
         except LabError:
             return None
 
+    def cost(motion):
+        q, qd, qdd = _one_period(motion)
+        return np.log(_conditions(q, qd, qdd)).mean() + standing * np.mean(1 / (1 + (qd / _SLOW) ** 2))
+
     def change(size):
         return size * generator.normal(size=(3, 1 + 2 * harmonics)) * np.r_[1.0, weight]
 
@@ -84,13 +96,13 @@ def optimise_excitation(
         raise IdentificationError(f"no motion was found inside the limits: {remedy}")
     from tqdm.auto import trange
 
-    best, least, size = before, regressor_condition(before, moving=_SLOW).max(), _BOLD
+    best, least, size = before, cost(before), _BOLD
     for _ in trange(tries, disable=not progress, desc="excitation"):
         motion = motion_of(new := x + change(size))
-        worst = np.inf if motion is None else regressor_condition(motion, moving=_SLOW).max()
-        if worst < least:
-            x, best, least = new, motion, worst
-        size = size * 1.1 if worst <= least else max(0.01, 0.98 * size)
+        found = np.inf if motion is None else cost(motion)
+        if found < least:
+            x, best, least = new, motion, found
+        size = size * 1.1 if found <= least else max(0.01, 0.98 * size)
     return Excitation(
         reference=best,
         before=before,
