@@ -99,9 +99,11 @@ def _cutoff(motion):
 
     pieces = [motion.q[motion.segment == k, 0] for k in np.unique(motion.segment)]
     longest = max(pieces, key=len)
-    f, power = (x[1:] for x in welch(longest, motion.rate_hz, nperseg=max(256, len(longest) // 6), detrend="linear"))
+    f, power = (x[1:] for x in welch(longest, motion.rate_hz, nperseg=min(len(longest), max(256, len(longest) // 6)), detrend="linear"))
     floor = np.median(power[f > motion.rate_hz / 4]) / math.log(2)
     above = np.where(power > 3 * floor, power - floor, 0.0)
+    if np.sum(f**2 * above) < 0.1 * np.sum(f[: len(f) // 8] ** 2) * floor:
+        raise IdentificationError("not exciting: the motion drowns in the noise of the angle; move faster")
     speed, acceleration, noise = (np.cumsum(x) for x in (f**2 * above, f**4 * above, f**4 * floor))
     highest = int(np.searchsorted(f, 0.2 * motion.rate_hz))
     clean = np.flatnonzero(noise[:highest] <= _NOISE * acceleration[:highest])
@@ -126,7 +128,7 @@ def _compared(names, found, lower):
     known = np.isfinite(found.stderr + lower.stderr)
     moved = np.where(known, np.abs(found.x - lower.x), 0.0)
     beyond = np.clip(moved**2 - np.where(known, lower.stderr, 0.0) ** 2, 0.0, None)
-    far = moved > np.maximum(3 * found.stderr, 0.1 * np.abs(found.x))
+    far = moved > np.maximum(2 * np.hypot(found.stderr, np.where(known, lower.stderr, 0.0)), 0.1 * np.abs(found.x))
     notes = [f"{name} depends on the cut-off (flexibility, backlash?)" for name, bad in zip(names, far, strict=True) if bad]
     return np.sqrt(found.stderr**2 + beyond), notes
 
