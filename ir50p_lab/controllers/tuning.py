@@ -13,19 +13,10 @@ from ir50p_lab.inputs import choice, number
 
 @dataclass(frozen=True)
 class PIDGains:
-    """Gains of C(s) = kp + ki/s + kd s = kp (1 + 1/(Ti s) + Td s), and where they come from.
+    """Gains of C(s) = kp + ki/s + kd s = kp (1 + 1/(Ti s) + Td s).
 
-    ========= ================================================= ==========
-    field     meaning                                           unit
-    ========= ================================================= ==========
-    kp        proportional                                      u/y
-    ki        integral, kp/Ti                                   u/y per s
-    kd        derivative, kp Td                                 u/y s
-    rule      name of the rule and kind of controller
-    warnings  tuple of str: where the rule is used outside its range
-    ========= ================================================= ==========
-
-    With a negative gain K of the plant all gains are negative.
+    kp: u/y, proportional; ki = kp/Ti: u/y per s, integral; kd = kp Td: u/y s, derivative. With a negative gain K of the
+    plant all gains are negative.
     """
 
     kp: float
@@ -34,7 +25,7 @@ class PIDGains:
 
     @classmethod
     def of(cls, kp, Ti, Td, *, series=False):
-        """From times; series: of kp (1 + 1/(Ti s))(1 + Td s), multiplied out."""
+        """From kp, Ti (s, inf: no integral) and Td (s); series: of kp (1 + 1/(Ti s))(1 + Td s), multiplied out."""
         return cls(kp * (1 + Td / Ti) if series else kp, kp / Ti, kp * Td)
 
 
@@ -98,7 +89,7 @@ def amigo(model, *, kind="PID"):
     PID: kp = [0.2 + 0.45 T/L]/K,  Ti = L (0.4 L + 0.8 T)/(L + 0.1 T),  Td = 0.5 L T/(0.3 L + T)
 
     Fitted to 134 plants with smooth step responses, so it leaves room for what a FOPDT model misses. Where
-    L/(L + T) < 0.3 the model says too little for a PID controller: the rule is cautious there, and says so.
+    L/(L + T) < 0.3 the model says too little for a PID controller: the rule is cautious there.
 
     Source: Astrom and Hagglund, Revisiting the Ziegler-Nichols step response method for PID control, J. Process
     Control 14 (2004), 635-650; Advanced PID Control (ISA, 2006), chapter 7.

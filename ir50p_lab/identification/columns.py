@@ -91,5 +91,3 @@ def runs(t, max_gap):
     """[(first, last + 1), ...]: the stretches of t (n,) whose steps are at most max_gap s."""
     edges = np.flatnonzero(np.diff(t) > max_gap) + 1
     return list(zip(np.r_[0, edges].tolist(), np.r_[edges, len(t)].tolist(), strict=True))
-
-

@@ -4,23 +4,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.errors import IdentificationError, InputError, LabError
+from ir50p_lab.errors import IdentificationError, InputError, UnreachableError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.parameters import RIGID_ON
 from ir50p_lab.inputs import number, whole
+from ir50p_lab.modelling.chain import lengths
 from ir50p_lab.signals.fourier import Fourier, fourier
 
-_SLOW = 0.1  # rad/s: about where a dry joint may stick
-_POINTS = 300  # of a period
-_BOLD = 0.3  # rad, of the first steps of the search
+_SLOW = 0.1  # rad/s: if a joint is slower, it may stick
+_POINTS = 300  # of a period, at which the regressor is taken
+_FIRST, _LAST = 0.3, 0.01  # rad: size of the first changes, and the least
+_FEWER = 400  # random motions, each a little smaller than the one before, of which one must fit the limits
 
 
 @dataclass(frozen=True, kw_only=True)
 class Excitation:
     """What `optimise_excitation` found.
 
-    reference: Fourier, ready for a bench (`q_start` first); before: the random motion it began with; condition_before,
-    condition_after: (3,), one per joint, of the columns scaled to length 1.
+    reference: Fourier, ready for a bench (`q_start` first); before: the random motion that the search began with.
+    condition_before, condition_after: (3,), one per joint, of the columns scaled to length 1.
     """
 
     reference: Fourier
@@ -50,59 +52,84 @@ def _conditions(q, qd, qdd):
 
 
 def optimise_excitation(
-    arm, *, period=10.0, harmonics=5, periods=11, max_joint_speed=None, table=0.0, margin=0.05, standing=4.0,
-    tries=2000, seed=0, progress=True,
-):  # fmt: skip
+    arm,
+    *,
+    period=10.0,
+    harmonics=5,
+    periods=11,
+    max_joint_speed=None,
+    table=0.0,
+    margin=0.05,
+    standing=0.0,
+    tries=2000,
+    seed=0,
+    progress=True,
+):
     """Fourier motion with a small condition number of the regressor, inside the limits of the arm    (4.2).
 
-    Climbs: changes coefficients and mean pose at random, keeps what the limits allow (`fourier(..., arm=arm)`) and what
-    makes the mean logarithm of the joints' condition numbers smaller. standing: price of time spent near standstill,
-    where a joint may stick: the share of time, as 1/(1 + (qd/0.1 rad/s)^2), times this is added.
+    Climbs: changes the coefficients and the mean pose at random, and keeps a change if the motion stays inside the
+    limits and the mean logarithm of the joints' condition numbers (of the columns that act on the joint, each scaled to
+    length 1) becomes smaller. From rest to rest by construction. Of the arm only lengths, limits and no-load speeds are
+    used: what a drawing and a data sheet tell.
 
-    Args: arm: Arm with finite joint limits. period: s; harmonics: 2..12; periods: length of the record; max_joint_speed,
-    table, margin: as in `fourier`; tries; seed: the same seed gives the same motion; progress: show a bar.
+    Args:
+        arm: Arm with finite joint limits. period: s; harmonics: 2..12; periods: whole number, length of the record.
+        max_joint_speed, table, margin: as in `fourier`.
+        standing: price of time spent near standstill, where a joint may stick and no theta says what u does: with 4, a
+            share of 10 % (of 1/(1 + (qd/0.1 rad/s)^2)) counts as much as a condition number half as large again.
+        tries: number of changes; more take longer (default: some seconds) and find a little better.
+        seed: the same seed gives the same motion. progress: show a bar.
+
     Returns: Excitation. Raises: InputError on bad arguments; IdentificationError if no motion fits the limits.
     """
-    whole("harmonics", harmonics, 2, 12)
-    number("period", period, "> 0", unit="s")
+    lengths(arm)  # refuses what is no Arm
     low, high = np.array(arm.q_min), np.array(arm.q_max)
     if not np.isfinite([low, high]).all():
         raise InputError(f"{arm.name} has no joint limits: give q_min and q_max, dataclasses.replace(arm, q_min=...)")
-    options = {"period": period, "periods": periods, "arm": arm, "max_joint_speed": max_joint_speed}
-    options |= {"table": table, "margin": margin, "ends": "adjust"}
-    generator, weight = np.random.default_rng(seed), 1 / np.tile(np.arange(1.0, harmonics + 1), 2)
+    whole("harmonics", harmonics, 2, 12)
+    whole("tries", tries, 0, 10**9)
+    number("standing", standing, ">= 0", hint="the price of time near standstill")
+    limits = {"arm": arm, "max_joint_speed": max_joint_speed, "table": table, "margin": margin}
+    generator, size = np.random.default_rng(seed), _FIRST
+    decay = np.r_[1.0, np.tile(1 / np.arange(1.0, harmonics + 1), 2)]  # of the mean pose, of a and of b
 
     def motion_of(x):
+        """The motion of x (3, 1 + 2 N), rows (q0, a, b), or None if it leaves the limits."""
         a, b = np.split(x[:, 1:], 2, axis=1)
         try:
-            return fourier(a, b, q0=x[:, 0], **options)
-        except LabError:
+            return fourier(a, b, period=period, periods=periods, q0=x[:, 0], ends="adjust", **limits)
+        except UnreachableError:
             return None
+
+    def change():
+        return size * decay * generator.normal(size=(3, len(decay)))
 
     def cost(motion):
         q, qd, qdd = _one_period(motion)
-        return np.log(_conditions(q, qd, qdd)).mean() + standing * np.mean(1 / (1 + (qd / _SLOW) ** 2))
+        still = np.mean(1 / (1 + (qd / _SLOW) ** 2))
+        return np.log(_conditions(q, qd, qdd)).mean() + standing * still
 
-    def change(size):
-        return size * generator.normal(size=(3, 1 + 2 * harmonics)) * np.r_[1.0, weight]
-
-    for k in range(400):
-        x = change(_BOLD * 0.99**k)
+    before = None
+    for share in np.geomspace(1, 0.02, _FEWER):
+        x = share * change()
         x[:, 0] = low + (high - low) * generator.uniform(0.3, 0.7, 3)
-        if (before := motion_of(x)) is not None:
+        before = motion_of(x)
+        if before is not None:
             break
-    else:
+    if before is None:
         remedy = f"widen the joint limits, lower the table ({table}), take less margin ({margin} rad) or another seed"
         raise IdentificationError(f"no motion was found inside the limits: {remedy}")
     from tqdm.auto import trange
 
-    best, least, size = before, cost(before), _BOLD
+    best, least = before, cost(before)
     for _ in trange(tries, disable=not progress, desc="excitation"):
-        motion = motion_of(new := x + change(size))
+        new = x + change()
+        motion = motion_of(new)
         found = np.inf if motion is None else cost(motion)
         if found < least:
-            x, best, least = new, motion, found
-        size = size * 1.1 if found <= least else max(0.01, 0.98 * size)
+            x, best, least, size = new, motion, found, 1.1 * size
+        else:
+            size = max(_LAST, 0.98 * size)
     return Excitation(
         reference=best,
         before=before,

@@ -1,50 +1,87 @@
-"""`fit`: the 20 parameters from a regressor and measured torque or PWM, with or without physical bounds."""
+"""`fit`: the 20 parameters from a regressor and measured torque or PWM, by one of six estimators."""
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification import estimators
 from ir50p_lab.identification.estimate import Estimate, impossible_values, indefinite_mass
-from ir50p_lab.identification.fit_input import checked_data
-from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, FREE_OF_SIGN, NAMES, metres
+from ir50p_lab.identification.fit_input import checked_data, finite
+from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, NAMES, metres
 from ir50p_lab.identification.regression import Problem
-from ir50p_lab.inputs import choice
+from ir50p_lab.inputs import choice, number, vectors3
 
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 
 
-def fit(Phi, y, *, method="ls", rows="joint", columns="rigid", l2=None, use=None, unit="PWM"):
+def fit(
+    Phi,
+    y,
+    *,
+    method="ls",
+    rows="joint",
+    columns="rigid",
+    l2=None,
+    weights=None,
+    use=None,
+    strength=1e-3,
+    instruments=None,
+    unit="PWM",
+):
     """Parameters theta of y = Phi theta    (2.35), with standard errors and what the data cannot say.
 
-    Args:
-        Phi: (n, 3, 20) as of `regressor`; y: (n, 3) torque or command, time first.
-        method: "ls", or "bounded": inertial and friction terms >= 0 (a convex problem).
-        rows: "joint": a theta for each joint; "shared": one for all, as in the thesis (2.47).
-        columns: "rigid" leaves out theta7 and theta8, which no rigid body has; "thesis": all.
-        l2: m, keeps theta6 = l2 theta4. use: (n, 3) bool, which samples count, as `Motion.use`. unit: "PWM" or "N m".
+    ========== =====================================================================================================
+    method     minimises, or solves
+    ========== =====================================================================================================
+    "ls"       sum of squares, by QR
+    "weighted" sum of weighted squares: weights (n, 3) or (3,), 1/variance, as 1/sigma^2 of a first fit
+    "huber"    squares up to 1.345 standard deviations, absolute value beyond: outliers pull little
+    "ridge"    squares plus strength |theta|^2, on columns scaled to length 1: calmer and biased
+    "bounded"  squares with inertial and friction terms >= 0 and offsets free
+    "iv"       instruments^T (y - Phi theta) = 0: no bias from noise in Phi; instruments (n, 3, 20), for example the
+               regressor of the reference, of a simulation, or of a repeated run
+    ========== =====================================================================================================
 
-    Returns: Estimate. Raises: InputError on bad arguments; IdentificationError if there are too few samples or no motion.
+    Args:
+        Phi: (n, 3, 20) as `regressor` returns; y: (n, 3), in `unit`.
+        rows: "joint": each joint its own parameters, right for motors of unequal gain. "shared": one theta for all,
+            as the thesis: right for torque, or for equal motors (2.47 corrected).
+        columns: "rigid" (all but theta7 and theta8, which no rigid body has), "thesis" (all 20).
+        l2: length of the upper arm, m: ties theta6 = l2 theta4, as for every in-line arm.
+        use: (n, 3) bool: samples of a joint that count, as `Motion.use`; default all. unit: "PWM" or "N m".
+
+    Returns: Estimate. Columns that depend on others within the data are left out: 0 with stderr inf, and named. Its
+    standard errors hold for residuals that are correlated in time, too (after a filter they are). They assume that Phi
+    is free of noise; noise in it biases all methods but "iv".
+    Raises: InputError on bad arguments; IdentificationError if there are too few samples, no motion, or an estimator
+        cannot settle.
     """
     choice("unit", unit, ("PWM", "N m"))
-    choice("method", method, ("ls", "bounded"))
+    choice("method", method, ("ls", "weighted", "huber", "ridge", "bounded", "iv"))
     choice("rows", rows, ("joint", "shared"))
     choice("columns", columns, tuple(COLUMNS))
+    number("strength", strength, "> 0")
     if l2 is not None:
         metres("l2", l2)
     Phi, y = checked_data(Phi, y)
     used = np.ones(y.shape) if use is None else _checked_use(use, y)
+    share = used * np.sqrt(_checked_weights(weights, y)) if method == "weighted" else used
+    Z = _checked_instruments(instruments, Phi) if method == "iv" else None
     theta, stderr, covariance = np.zeros((3, 20)), np.full((3, 20), np.nan), np.zeros((3, 20, 20))
     condition, freedom, lost, notes = np.zeros(3), np.zeros(3), [], []
     for joints in [slice(0, 3)] if rows == "shared" else [slice(j, j + 1) for j in range(3)]:
         who = "" if rows == "shared" else f"joint {joints.stop}: "
         here, ties, names = _acting(joints, COLUMNS[columns], l2)
-        # rows of zeros (samples that do not count) say nothing, and leave the others at their place in time
-        A = (Phi[:, joints, here] * used[:, joints, None]).reshape(-1, len(here)) @ ties
-        problem = Problem(A, (y * used)[:, joints].ravel(), names, len(y), who=who)
+        A = _equations(Phi, share, joints, here) @ ties
+        problem = Problem(A, (y * share)[:, joints].ravel(), names, len(y), who=who)
         ties = ties[:, problem.kept]
-        x, spread = problem.estimate()
-        if method == "bounded":
-            x = _bounded(problem)
+        if method == "iv":
+            x, spread = estimators.instrumental_variables(problem, _equations(Z, share, joints, here) @ ties)
+        elif method == "ridge":
+            x, spread = estimators.ridge(problem, strength)
+        elif method in ("huber", "bounded"):
+            x, spread = getattr(estimators, method)(problem)
+        else:
+            x, spread = problem.estimate(problem.Qty)
         found = ties.any(axis=1)
         spread = ties @ spread @ ties.T
         count = used[:, joints].sum()
@@ -72,19 +109,6 @@ def fit(Phi, y, *, method="ls", rows="joint", columns="rigid", l2=None, use=None
     )
 
 
-def _bounded(problem):
-    """Inertial and friction terms >= 0: scipy's lsq_linear on R; y scaled to 1, for the solver's tolerances."""
-    low = [-np.inf if name in FREE_OF_SIGN else 0.0 for name in problem.names]
-    size = np.linalg.norm(problem.Qty) or 1.0
-    result = lsq_linear(problem.R, problem.Qty / size, (low, np.inf), method="bvls", tol=1e-14)
-    if not result.success:
-        raise IdentificationError(f"{problem.who}the bounded fit failed ({result.message}); use 'ls'")
-    at = [f"{name} = 0" for name, active in zip(problem.names, result.active_mask, strict=True) if active]
-    if at:
-        problem.notes.append(f"{problem.who}at a bound: {', '.join(at)}; the data alone would go beyond")
-    return result.x * size / problem.scale  # a bound exactly
-
-
 def _acting(joints, chosen, l2):
     """Columns that act on some joints; theta[columns] = ties beta, where l2 makes beta shorter; names of beta."""
     here = [k for k in chosen if any(k in acting for acting in ACTS_ON[joints])]
@@ -95,6 +119,22 @@ def _acting(joints, chosen, l2):
     return here, ties[:, kept], [NAMES[here[k]] for k in kept]
 
 
+def _equations(Phi, share, joints, here):
+    """Some columns of Phi (n, 3, 20) for some joints, sample by sample, times `share` (n, 3): (n k, p).
+
+    Rows of zeros (samples that do not count) say nothing, and leave the others at their place in time.
+    """
+    return (Phi[:, joints, here] * share[:, joints, None]).reshape(-1, len(here))
+
+
+def _checked_weights(weights, y):
+    weights = vectors3("weights", weights, unit="1/variance of each measurement")
+    if weights.shape not in ((3,), y.shape) or (weights < 0).any():
+        found = f"weights have shape {weights.shape} and least value {weights.min():g}"
+        raise InputError(f"{found}: give 1/variance of each measurement, (3,) or (n, 3), all >= 0")
+    return weights
+
+
 def _checked_use(use, y):
     use = np.asarray(use)
     if use.dtype != bool or use.shape != y.shape:
@@ -102,3 +142,10 @@ def _checked_use(use, y):
     if use.sum(axis=0).min() < 40:
         raise IdentificationError(f"only {use.sum(axis=0)} samples to be used, 40 are needed: record more motion")
     return use.astype(float)
+
+
+def _checked_instruments(instruments, Phi):
+    if np.shape(instruments) != Phi.shape:
+        shapes = f"instruments have shape {np.shape(instruments)}, Phi {Phi.shape}"
+        raise InputError(f"{shapes}: method='iv' needs the regressor of the reference, a simulation or a repeated run")
+    return finite("instruments", instruments)

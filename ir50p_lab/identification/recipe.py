@@ -48,8 +48,8 @@ def identify(
         anyway: go on where the data are refused.
 
     Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by some per
-    cent, at this length of record more than the standard errors, which do not know it: where the parameters themselves
-    matter, go on with `fit_with_instruments`; where Stribeck friction does, with `output_error`.
+    cent, at this length of record more than the standard errors, which do not know it. Where the parameters themselves
+    or Stribeck friction matter, go on with `output_error`.
 
     Returns: Estimate, whose `score` processes other recordings alike.
     Raises: InputError, IdentificationError as `process` and `fit` do, and if a joint is constant, its angle wrapped or

@@ -27,7 +27,7 @@ class LeastSquares:
     independent    number of independent samples that carry as much as the n there are
     condition      of A, its columns scaled to length 1
     dropped        names of the columns that the data cannot carry                                  tuple
-    warnings       tuple of str: columns left out, columns that are hardly told apart
+    warnings       tuple of str: columns left out, and what the others now stand for
     ============== ================================================================================ ==========
     """
 
@@ -71,7 +71,7 @@ def least_squares(A, y, *, names=None, tolerance=DEPENDENT):
     problem = Problem(A.reshape(-1, p), y.ravel(), names, len(y), tolerance=tolerance)
     kept = problem.kept
     x, covariance, stderr = np.zeros(p), np.zeros((p, p)), np.full(p, np.inf)
-    x[kept], covariance[np.ix_(kept, kept)] = problem.estimate()
+    x[kept], covariance[np.ix_(kept, kept)] = problem.estimate(problem.Qty)
     stderr[kept] = np.sqrt(np.diag(covariance))[kept]
     e = (y - A @ x).reshape(len(y), -1)
     power = np.maximum(np.sum(e**2, axis=0), 1e-300)
@@ -127,16 +127,23 @@ class Problem:
         stands = "; ".join(f"{name} stands for {name} {w:+.4g} {lost}" for name, w in parts)
         return f"{self.who}{lost} cannot be told apart from {', '.join(name for name, _ in parts)}: {stands}"
 
-    def estimate(self):
-        """Least squares: parameters of the columns kept, (k,), and their covariance (k, k)."""
-        residuals = self.y - self.Q @ self.Qty
-        N, k = self.Q.shape
-        scores = (self.Q * residuals[:, None]).reshape(self.n, -1, k).sum(axis=1)
+    def estimate(self, z, *, rows=None, residuals=None, derivative=None):
+        """Parameters of the columns kept, (k,), and their covariance (k, k), for z = R x with columns of length 1.
+
+        The estimate is that which solves rows^T residuals = 0, a sum over time with this derivative by z. Default:
+        least squares, Q^T (y - Q z) = 0.
+        """
+        rows = self.Q if rows is None else rows
+        residuals = self.y - self.Q @ z if residuals is None else residuals
+        N, k = rows.shape
+        scores = (rows * residuals[:, None]).reshape(self.n, -1, k).sum(axis=1)
         residuals = residuals.reshape(self.n, -1)
         spread = long_run_sum(scores, residuals)
         spread /= max(1 - k / (independent_samples(residuals) * N / self.n), 0.5)  # k of them were spent on the fit
+        if derivative is not None:
+            spread = np.linalg.solve(derivative, np.linalg.solve(derivative, spread).T)
         back = self.R_inverse / self.scale[:, None]
-        return back @ self.Qty, back @ spread @ back.T
+        return back @ z, back @ spread @ back.T
 
 
 def independent_columns(R, tolerance=DEPENDENT):

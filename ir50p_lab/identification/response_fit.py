@@ -7,23 +7,39 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.checks import Warnings, check_outliers
-from ir50p_lab.identification.columns import same_samples
+from ir50p_lab.identification.columns import quantum_of, same_samples
 from ir50p_lab.inputs import number
 from ir50p_lab.simulation.first_order_lag import respond
 
-_FEWEST = 8  # samples from the first change of u on: twice the number of parameters
-_FOLLOWS = 15.0  # least F value for "y follows u": a search over T and L in pure noise stays below it
-_SHAPE = 0.05  # share of the variance of y that may be left and be alike over time
-_SLOWEST = 10.0  # a time constant longer than this many records cannot be told from infinity
+_FEWEST = 8  # samples from the first change of u on: if there are fewer, four parameters cannot be judged
+_ENOUGH = 20  # samples of the response: if there are fewer, nobody sees whether the model is right
+_ROUNDING = 1e-7  # residual, of the range of y: if it is less, it is rounding and no noise
+_FOLLOWS = 15.0  # F value of the model: if it is less, y does not follow u (a search in pure noise stays below it)
+_SIGNIFICANT = 9.0  # F value of one more parameter: if it is more, the parameter is there (three standard errors)
+_MISSED = 0.05  # share of the variance of y: if more is left, and alike over time, the response has another shape
+_MEANINGFUL = 0.8  # share of the variance of y: if a response of another shape is explained less, K, T, L mean nothing
+_SLOWEST = 10.0  # records: if T is longer, it cannot be told from infinity
+_SEEN = 0.99  # sampling periods: if T or L is shorter, the record does not hold it
+_COARSE = 1 / 60  # of the range of y: if the steps of a sensor are larger, a warning says so
+_REFINED = 5  # rows of the grid whose best points are refined: the sum of squares has kinks and side valleys in L
 
 
 @dataclass(frozen=True, kw_only=True)
 class FOPDT:
     """First-order plus dead time, G(s) = K exp(-L s)/(T s + 1)    (2.21)
 
-    K y/u, T s, L s with standard errors ..._stderr (nan: not fitted); y0: output at rest; rms of the residual;
-    correlation of neighbouring residuals, 0 for white noise; warnings: tuple of str. By hand, FOPDT(K=, T=, L=).
-    Raises InputError if K is 0 or T is not > 0 or L is not >= 0.
+    ========================== ==================================================== ==========
+    field                      meaning                                              unit
+    ========================== ==================================================== ==========
+    K, T, L                    gain, time constant, dead time                       y/u, s, s
+    K_stderr ... L_stderr      standard errors (nan: not fitted)                    y/u, s, s
+    y0                         output at rest, before u changes                     y
+    rms                        residual, root mean square                           y
+    correlation                of neighbouring residuals: 0 for white noise, -1..1
+    warnings                   tuple of str: what to mind about this fit
+    ========================== ==================================================== ==========
+
+    By hand, FOPDT(K=, T=, L=) is enough. Raises InputError if K is 0 or T is not > 0 or L is not >= 0.
     """
 
     K: float
@@ -42,115 +58,249 @@ class FOPDT:
             raise InputError(f"K, T, L = {self.K}, {self.T}, {self.L}: give finite K != 0, T > 0 s and L >= 0 s")
 
     def response(self, t, u, *, u_before=None):
-        """Output (n,) for the input u[k] from t[k] to t[k + 1] s, exact; u_before: input at rest (default u[0])."""
+        """Output of the model for the input u(t), exact between the samples.
+
+        Args: t: (n,) s, increasing; u: (n,), u[k] acts from t[k] to t[k + 1]; u_before: input at rest (default u[0]).
+        Returns: (n,), in units of y. Raises InputError on wrong shapes or numbers that are not finite.
+        """
         t, u = same_samples({"t": t, "u": u}, most=1)
         out = np.empty(len(t))
-        respond(t, *_jumps(t, u, u_before), 1 / self.T, float(self.L), out)
+        respond(t, *_jumps_of(t, u, u_before), 1 / self.T, float(self.L), out)
         return self.y0 + self.K / self.T * out
 
 
 def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     """Fit K, T and L of a first-order plus dead time model to a recording    (2.21)
 
-    T dy/dt + y = y0 + K [u(t - L) - u_before], solved exactly for an input held between samples, with any number of
-    steps; y starts at rest. Least squares over all samples, from the best points of a grid. Standard errors from the
-    Jacobian and the residuals, widened where neighbouring residuals are alike.
+    T dy/dt + y = y0 + K [u(t - L) - u_before], solved exactly for an input held between samples (zero-order hold), with
+    any number of steps, sampled evenly or not; y starts at rest. After one step of height h this is
+    y = y0 + K h (1 - exp(-(t - t_step - L)/T)). Least squares over all samples, from the best points of a grid.
 
-    Args: t (n,) s; u (n,), u[k] acts from t[k] to t[k + 1]; y (n,); u_before: input at rest before t[0]; anyway: go on
-    where the data are refused. Returns: FOPDT. Raises: IdentificationError if u or y never changes, y does not follow
-    u, has another shape, or runs on like a ramp; InputError for NaN, shapes, times that do not increase.
+    Standard errors come from the Jacobian and the residuals. Neighbouring residuals that are alike (correlation r)
+    carry less information than their number: then the errors are widened by sqrt((1 + r)/(1 - r)). They are also
+    widened by what K, T and L move where y drifts in a line or was on its way to rest at first, by the jitter of an
+    uneven clock and by half a step of a coarse y. In white noise two standard errors hold the truth 95 times in 100. Of
+    other errors of the model they know nothing; one step cannot tell a small drift from a slow end of the response,
+    several steps to both sides can.
+
+    Args:
+        t: (n,) s, increasing. u: (n,), input; u[k] acts from t[k] to t[k + 1]. y: (n,), output, any unit.
+        u_before: input at rest before t[0]; give it if u has its new value already in the first sample.
+        anyway: go on where the data are refused and a model can be had; the reason is then in `warnings`.
+
+    Returns: FOPDT. K is negative where y answers a step up by going down. `warnings` tells of a response that is not
+    over when the record ends (T longer than it), of T or L below the sampling period (its error is then inf or a
+    period), of correlated residuals, drift, a start that was no rest, another shape, times that look like milliseconds,
+    and single outliers of u and y (of y they are left out).
+
+    Raises:
+        IdentificationError: u never changes; y does not change or does not follow u; fewer than 8 samples after the
+        change; the response has quite another shape (it swings, say); y runs on like a ramp (an integrating joint: K
+        and T have no value) or ever faster. Each says what to do next.
+        InputError: NaN, shapes or lengths that do not fit, time that does not increase.
     """
-    times, jumps = _jumps(*same_samples({"t": t, "u": u}, most=1), u_before)  # a masked y hides no step
-    t, u, y = same_samples({"t": t, "u": u, "y": y}, most=1)
-    warned, period = Warnings(anyway), float(np.median(np.diff(t)))
-    if period >= 1:
-        warned.add(f"one sample every {period:.4g} s: is t in milliseconds? Then T and L are too: give t/1000")
-    if not len(times):
-        raise IdentificationError("u never changes: record samples before the step too, or give u_before=")
-    if np.ptp(y) <= 1e-12 * np.abs(y).max():
-        raise IdentificationError(f"y stays at {y[0]:.6g}: check sensor and power; is the step above the friction?")
-    if (after := int((t >= times[0]).sum())) < _FEWEST:
-        raise IdentificationError(f"only {after} samples from the first change of u on: record {_FEWEST} or more")
-    places = check_outliers(warned, "y", t, y, "left out; look for their cause")
-    t, y = np.delete(t, places), np.delete(y, places)
-    record, size = float(t[-1] - times[0]), float(np.ptp(y))
-
-    def model(p):  # K in ranges of y, T and L in records
-        out = np.empty(len(t))
-        respond(t, times, jumps, math.exp(-p[0]) / record, p[1] * record, out)
-        return out * math.exp(-p[0]) / record
-
-    def solved(p):
-        A = np.column_stack([model(p), np.ones_like(t)])
-        c = np.linalg.lstsq(A, y / size, rcond=None)[0]
-        return c, A @ c - y / size
-
-    (log_T, L), (K, y0), e = _best(solved, period / record)
-    T, rss, n = math.exp(log_T), float(e @ e), len(e)
-    total, correlation = float(np.sum((y / size - np.mean(y / size)) ** 2)), float(e[1:] @ e[:-1] / max(e @ e, 1e-300))
-    exact = rss <= n * 1e-14
-    correlation = 0.0 if exact else correlation
-    alike = math.sqrt((1 + correlation) / (1 - correlation)) if correlation > 3 / math.sqrt(n) else 1.0
-    explained = 1 - rss / total
-    if (total - rss) / 3 / max(rss / (n - 4), 1e-300) < _FOLLOWS * alike**2 and explained < 0.5:
-        warned.refuse(f"y does not follow u ({explained:.1%} explained): make a larger step, or average recordings")
-    elif rss > _SHAPE * total and correlation > 0.5:
-        warned.refuse(f"the response has not the shape of the model ({explained:.0%} explained): swings, loads, limits?")
-    elif T > _SLOWEST:
-        slope = f"only K/T has a value, about {K * size / (T * record):.4g} y/u per s"
-        warned.refuse(f"the response runs on like a ramp: the plant integrates (as angles do) or is slow; {slope}")
-
-    def response(p):
-        return p[0] * model((math.log(p[1]), p[2]))
-
-    here = np.array([K, T, L])
-    moves = 1e-6 * np.maximum(np.abs(here), [0.0, 0.0, period / record])
-    J = np.column_stack([(response(here + move) - response(here)) / move.sum() for move in np.diag(moves)] + [e * 0 + 1])
-    drift = np.column_stack([J, (t - t[0]) / record])
-    left = e - drift @ np.linalg.lstsq(drift, e, rcond=None)[0]
-    if not exact and (rss - left @ left) / max(left @ left / n, 1e-300) > 9 * alike**2:
-        warned.add("y drifts: record longer rest before the step, or steps to both sides")
-    spread = math.sqrt(rss / (n - 4)) * alike
-    length = np.linalg.norm(J, axis=0)
-    errors = spread * np.linalg.norm(np.linalg.pinv(J / length), axis=1)[:3] / length[:3]
-    for name, value, error in (("time constant", T, errors[1]), ("dead time", L, errors[2])):
-        if value < 0.99 * period / record:
-            warned.add(f"the {name} is not identifiable, {value * record / period:.2f} of a sampling period")
-        elif value < 2 * error:
-            warned.add(f"{name} {value * record:.3g} s is less than two standard errors: it cannot be told from none")
-    if (seen := int((t >= times[0] + L * record).sum())) < 20:
-        warned.add(f"only {seen} samples of the response: too few to see whether the model is right; sample faster")
-    if T > 1 - L:
-        warned.add(f"not settled: T = {T * record:.4g} s, {(1 - L) * record:.4g} s of response recorded; record 3 T")
-    if alike > 1:
-        warned.add(f"residuals are not white (correlation {correlation:.2f}): errors were widened by {alike:.1f}")
-    units = np.array([size, record, record])
-    names = [*"KTL", *(f"{name}_stderr" for name in "KTL")]
-    values = (np.r_[here * units, errors * units]).tolist()
+    record = _StepRecord(t, u, y, u_before, Warnings(anyway))
+    (rate, L), slope, e = record.first_order()
+    _check_shape(record, rate, L, slope, e)
+    if rate <= 0:
+        raise IdentificationError("no first-order model is near this response, not even with anyway=True")
+    period, T = record.period, 1 / rate
+    found = np.array([slope * T, T, L])
+    J = record.jacobian(found)
+    errors = np.hypot(_standard_errors(J, e), _systematic_errors(record, T, J, e))
+    _warn(record, T, L, errors[2], e)
+    if T < _SEEN * period:
+        errors[1:] = math.inf
+    if L < _SEEN * period:
+        errors[2] = max(errors[2], period)
+    units = record.y_range / record.u_range, record.seconds, record.seconds
+    values, errors = (found * units).tolist(), (errors * units).tolist()
     return FOPDT(
-        **dict(zip(names, values, strict=True)),
-        y0=float(y0 * size),
-        rms=size * math.sqrt(rss / n),
-        correlation=correlation,
-        warnings=tuple(warned),
+        **dict(zip(("K", "T", "L"), values, strict=True)),
+        **dict(zip(("K_stderr", "T_stderr", "L_stderr"), errors, strict=True)),
+        y0=float(record.y_first + record.y_range * np.mean(record.y - slope * record.answer(rate, L))),
+        rms=record.y_range * float(np.sqrt(np.mean(e**2))),
+        correlation=_correlation(e)[0],
+        warnings=tuple(record.warned),
     )
 
 
-def _jumps(t, u, u_before):
+class _StepRecord:
+    """A checked record, scaled: u first changes at 0, the record ends at 1, y has range 1, the largest jump of u is 1.
+
+    t, y (n,); times, jumps (m,) of u; period of the samples; quantum: smallest step of y. seconds, y_range, u_range:
+    what 1 stands for; y_first: what 0 stands for. warned: doubts about the record.
+    """
+
+    def __init__(self, t, u, y, u_before, warned):
+        times, jumps = _jumps_of(*same_samples({"t": t, "u": u}, most=1), u_before)  # a masked y hides no step
+        t, u, y = same_samples({"t": t, "u": u, "y": y}, most=1)
+        steps = np.diff(t)
+        period, whole = float(np.median(steps)), np.abs(t - np.rint(t)).max() < 1e-6
+        if (period >= 1 and whole) or (period >= 5 and 1e-6 < np.ptp(steps) / period < 1):  # a clock's jitter
+            warned.add(f"one sample every {period:.4g} s: is t in milliseconds? Then T and L are too: give t/1000")
+        check_outliers(warned, "u", t, u)
+        if not len(times):
+            raise IdentificationError("u never changes: record samples before the step too, or give u_before=")
+        if np.ptp(y) <= 1e-12 * np.abs(y).max():
+            raise IdentificationError(f"y stays at {y[0]:.6g}: check sensor and power; is the step above the friction?")
+        if (after := int((t >= times[0]).sum())) < _FEWEST:
+            raise IdentificationError(f"only {after} samples from the first change of u on: record {_FEWEST} or more")
+        places = check_outliers(warned, "y", t, y, "left out; look for their cause")
+        t, y = np.delete(t, places), np.delete(y, places)
+        self.seconds, self.y_range, self.y_first = float(t[-1] - times[0]), float(np.ptp(y)), float(y[0])
+        self.u_range = float(np.abs(jumps).max())
+        self.t, self.times = (t - times[0]) / self.seconds, (times - times[0]) / self.seconds
+        self.y, self.jumps = (y - y[0]) / self.y_range, jumps / self.u_range
+        self.period, self.quantum = float(np.median(np.diff(self.t))), quantum_of(self.y)
+        self.warned = warned
+
+    def answer(self, rate, L):
+        """x (n,) of x' = u(t - L) - rate x."""
+        x = np.empty(len(self.t))
+        respond(self.t, self.times, self.jumps, rate, L, x)
+        return x
+
+    def first_order(self):
+        """(rate, L), slope, residuals of y = y0 + slope x, x' = u(t - L) - rate x: rate is 1/T, slope K/T.
+
+        The rate is fitted, not T, because 0 (the plant integrates) and below (it grows) are then points like any other.
+        """
+        latest = max(0.9 - 4 * self.period, 0.1)
+        dead_times = np.r_[np.geomspace(0.3 * self.period, latest, 24), np.linspace(0, latest, 50)]
+        rates = np.r_[-30.0, -10.0, -3.0, -1.0, -0.3, 0.0, np.geomspace(0.1, 3 / self.period, 24)]
+        starts = [[(rate, L) for L in dead_times] for rate in rates]
+        return self._best(self.answer, starts, ((-40.0, 0.0), (30 / self.period, latest + 0.05)))
+
+    def ramp(self):
+        """Residuals of the best ramp from some time on: what an integrating plant answers."""
+        return self._best(lambda L: self.answer(0.0, L), [[(k / 50,)] for k in range(45)], (0.0, 0.95))[2]
+
+    def _best(self, answer, starts, bounds):
+        """p, slope, residuals of the least squares y = y0 + slope answer(*p); starts: rows of p of a grid."""
+        from scipy.optimize import least_squares
+
+        y = self.y - self.y.mean()
+
+        def solved(p):
+            x = answer(*p)
+            x -= x.mean()
+            slope = x @ y / max(x @ x, 1e-300)
+            return slope, slope * x - y
+
+        costs = np.array([[np.linalg.norm(solved(p)[1]) for p in row] for row in starts])
+        options = {"bounds": bounds, "x_scale": "jac", "ftol": 1e-12, "xtol": 1e-11, "gtol": 1e-14}
+        likely = [starts[k][costs[k].argmin()] for k in costs.min(axis=1).argsort()[:_REFINED]]
+        fits = [least_squares(lambda p: solved(p)[1], np.clip(p, *bounds), **options) for p in likely]
+        best = min(fits, key=lambda fit: fit.cost)
+        return best.x, *solved(best.x)
+
+    def jacobian(self, found):
+        """(n, 4): slopes of the response by an offset, and by K, T, L = found, from differences."""
+
+        def response(p):
+            return p[0] / p[1] * self.answer(1 / p[1], p[2])
+
+        moves = np.diag(1e-6 * np.maximum(np.abs(found), 1e-3 * self.period))
+        slopes = [(response(found + move) - response(found)) / move.sum() for move in moves]
+        return np.column_stack([np.ones_like(self.t), *slopes])
+
+
+def _jumps_of(t, u, u_before):
     """Times (m,) and heights (m,) of the changes of u."""
     before = u[0] if u_before is None else number("u_before", u_before, hint="the input at rest before t[0]")
     heights = np.diff(u, prepend=before)
     return t[heights != 0], heights[heights != 0]
 
 
-def _best(solved, period):
-    """(log T, L), (K, y0) and residuals of the best fit: refined from the best points of a grid; 1 is the record."""
-    from scipy.optimize import least_squares
+def _correlation(e):
+    """Correlation of neighbouring residuals e (n,), and the factor by which errors are wider for it."""
+    if e @ e <= len(e) * _ROUNDING**2:
+        return 0.0, 1.0
+    correlation = float(e[1:] @ e[:-1] / (e @ e))
+    significant = correlation > 3 / math.sqrt(len(e))
+    return correlation, math.sqrt((1 + correlation) / (1 - correlation)) if significant else 1.0
 
-    grid = [(a, L) for a in np.log(np.geomspace(period / 3, 30, 30)) for L in np.r_[np.linspace(0, 0.9, 60), period]]
-    costs = [np.linalg.norm(solved(p)[1]) for p in grid]
-    bounds = (math.log(period / 30), 0.0), (math.log(100), 0.95)
-    options = {"bounds": bounds, "x_scale": "jac", "ftol": 1e-12, "xtol": 1e-11, "gtol": 1e-14}
-    fits = [least_squares(lambda p: solved(p)[1], grid[k], **options) for k in np.argsort(costs)[[0, 1, 2, 5, 10]]]
-    best = min(fits, key=lambda fit: fit.cost)
-    return best.x, *solved(best.x)
+
+def _check_shape(record, rate, L, slope, e):
+    """Refuse where y does not follow u at all, in a way that no FOPDT model has, or without end."""
+    warned, n, rss, total = record.warned, len(e), e @ e, np.sum((record.y - record.y.mean()) ** 2)
+    correlation, wider = _correlation(e)
+
+    def F(more, parameters):
+        """F value of the model against one with fewer parameters, which leaves `more`."""
+        return (more - rss) / parameters / (max(rss, n * _ROUNDING**2) / (n - 4))
+
+    follows, explained = F(total, 3), 1 - rss / total
+    not_white = rss - np.sum(np.diff(e, 2) ** 2) / 6 * n / (n - 2)  # second differences pass only the white noise
+    another_shape = f"the response has not the shape of the model ({explained:.0%} explained)"
+    if follows < _FOLLOWS or (follows / wider**2 < _FOLLOWS and explained < 0.5):
+        warned.refuse(f"y does not follow u ({explained:.1%} explained): make a larger step, or average recordings")
+    elif not_white > _MISSED * total and correlation > 0.5:
+        if explained < _MEANINGFUL:
+            remedy = "fit a model that swings to it, with scipy.optimize.least_squares on control.forced_response"
+            warned.refuse(f"{another_shape}: does y swing, or run into a limit? If it swings, {remedy}")
+        else:
+            warned.add(
+                f"{another_shape}: y swings, drifts or is disturbed, or a dead zone or limit acts: do not use it"
+            )
+    ramp = record.ramp()
+    if rate * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / wider**2 > _SIGNIFICANT:
+        return
+    value = f"only K/T has a value, {slope * record.y_range / record.u_range / record.seconds:.4g} y/u per s"
+    said = "the response runs on like a ramp, or ever faster: the plant integrates (as angles do), is unstable or slow"
+    warned.refuse(f"{said}; {value}: fit the velocity and tune with simc_integrating, or record longer")
+
+
+def _standard_errors(J, e):
+    """Errors (3,) of K, T, L from jacobian and residuals, widened for correlation; inf: nothing depends on it."""
+    length = np.linalg.norm(J, axis=0)
+    spread = math.sqrt(e @ e / (len(e) - J.shape[1])) * _correlation(e)[1]
+    seen, errors = length > 0, np.full(len(length), np.inf)
+    errors[seen] = spread * np.linalg.norm(np.linalg.pinv(J[:, seen] / length[seen]), axis=1) / length[seen]
+    return errors[1:]
+
+
+def _systematic_errors(record, T, J, e):
+    """How far K, T, L (3,) move when a linear drift, or a decaying start, is fitted as well; and what does not average.
+
+    A flaw that is not significant counts by its F value over a significant one, so that noise alone hardly widens the
+    errors. Half a step of a coarse y remains where noise does not mix the steps, and so does the jitter of the clock.
+    """
+    coarse = record.quantum / 2 if e @ e < len(e) * (record.quantum / 2) ** 2 else 0.0
+    if coarse > _COARSE / 2:
+        steps = 1 / record.quantum
+        record.warned.add(f"y takes about {steps:.0f} steps only: errors were widened; use a finer range")
+    late = coarse * T + np.median(np.abs(np.diff(record.t) - record.period))
+    moved = np.array([coarse, late, late])
+    flaws = {"y drifts by": record.t, "y was not at rest at first, but away by": np.exp((record.t[0] - record.t) / T)}
+    for said, column in flaws.items():
+        A = np.column_stack([J, column])
+        x = np.linalg.lstsq(A, -e)[0]
+        left = e + A @ x
+        spread = max(left @ left, len(e) * _ROUNDING**2) / (len(e) - A.shape[1]) * _correlation(left)[1] ** 2
+        sure = min((e @ e - left @ left) / (_SIGNIFICANT * spread), 1.0)
+        moved = np.hypot(moved, sure * x[1:4])
+        if sure == 1:
+            size = f"{100 * abs(x[-1]) * np.ptp(column):.2g} % of its range"
+            record.warned.add(f"{said} {size}: errors were widened; record longer rest before the step")
+    return moved
+
+
+def _warn(record, T, L, L_stderr, e):
+    """Warn of what is to be minded about a fit that is not refused."""
+    warned, period, seconds = record.warned, record.period, record.seconds
+    if T < _SEEN * period:
+        warned.add(f"the time constant is not identifiable, {T / period:.2f} of the sampling period: sample faster")
+    elif L < _SEEN * period:
+        warned.add(f"the dead time is not identifiable, {L / period:.2f} of a sampling period: use no rule with 1/L")
+    elif L < 2 * L_stderr:
+        warned.add(f"dead time {L * seconds:.3g} s is less than two standard errors: it cannot be told from none")
+    if (after := int((record.t >= L).sum())) < _ENOUGH:
+        warned.add(f"only {after} samples of the response: too few to see whether the model is right; sample faster")
+    if T > 1 - L:
+        recorded = f"{(1 - L) * seconds:.4g} s of response recorded"
+        warned.add(f"not settled: T = {T * seconds:.4g} s, but {recorded}; record 3 T")
+    correlation, wider = _correlation(e)
+    if wider > 1:
+        warned.add(f"residuals are not white (correlation {correlation:.2f}): errors were widened by {wider:.1f}")

@@ -1,7 +1,7 @@
 """Recursive least squares with forgetting    (2.36)-(2.46) corrected, kept as information: it cannot run away.
 
-With P^-1 = forgetting P^-1 + phi phi^T (2.36) and b = forgetting b + phi y, theta = P b: what (2.40)-(2.46) say, without
-the subtraction in (2.45), which loses digits.
+With P^-1 = forgetting P^-1 + phi phi^T (2.36) and b = forgetting b + phi y, theta = P b: what (2.40)-(2.46) say,
+without the subtraction in (2.45), which loses digits: P then is no longer symmetric, and the estimate can run away.
 """
 
 import numpy as np
@@ -15,9 +15,8 @@ from ir50p_lab.inputs import choice, number, numbers
 class RLS:
     """Parameters that follow the data, sample by sample    (2.46) corrected.
 
-    After n samples theta minimises sum over k of forgetting^(n - k) |y_k - Phi_k theta|^2, plus
-    forgetting^n |theta|^2/P0: with forgetting 1 and a large P0 it is the least-squares estimate. A step
-    costs the same at any n.
+    After n samples theta minimises sum over k of forgetting^(n - k) |y_k - Phi_k theta|^2, plus |theta|^2/P0: with
+    forgetting 1 and a large P0 it is the least-squares estimate. A step costs the same at any n.
 
     Args:
         rows: "joint": a filter and parameters for each joint; "shared": one theta for all, Phi a 3 x 20 block.
@@ -43,7 +42,7 @@ class RLS:
         self._use = np.array([[j in on and j in COLUMNS[columns] for j in range(20)] for on in acting], dtype=float)
         # columns left out get a 1 on the diagonal: their parameters stay 0
         self._least = np.array([np.diag(np.where(use > 0, 1 / P0, 1.0)) for use in self._use])
-        self._R, self._b = np.zeros((len(acting), 20, 20)), np.zeros((len(acting), 20))
+        self._information, self._b = np.zeros((len(acting), 20, 20)), np.zeros((len(acting), 20))
 
     def step(self, Phi, y):
         """Take one sample, Phi (3, 20) and y (3,); returns theta (3, 20). Raises InputError, state unchanged."""
@@ -55,24 +54,35 @@ class RLS:
         history=False returns only the last theta, (3, 20): for very long data. Raises InputError, state unchanged.
         """
         Phi, y = checked_data(Phi, y)
-        rows, y = Phi.reshape(len(y), len(self._b), -1, 20) * self._use[:, None], y.reshape(len(y), len(self._b), -1)
-        states = np.empty((len(y) if history else 0, *self._b.shape))
-        for k, (A, b) in enumerate(zip(rows, y, strict=True)):
-            At = A.swapaxes(1, 2)
-            self._R = self.forgetting * self._R + At @ A
-            self._b = self.forgetting * self._b + (At @ b[..., None])[..., 0]
-            if history:
-                states[k] = np.linalg.solve(self._R + self._least, self._b[..., None])[..., 0]
-        return np.tile(states, (1, 3 // len(self._b), 1)) if history else self.theta
+        n, filters = len(y), len(self._b)
+        A = np.swapaxes(Phi.reshape(n, filters, -1, 20), 0, 1) * self._use[:, None, None]  # (filters, n, rows, 20)
+        y = np.swapaxes(y.reshape(n, filters, -1), 0, 1)
+        if not history:
+            self._add(A, y)
+            return self.theta
+        states = np.empty((n, 3, 20))
+        for k in range(n):
+            self._add(A[:, k : k + 1], y[:, k : k + 1])
+            states[k] = self.theta
+        return states
+
+    def _add(self, A, y):
+        """Take n samples into P^-1 and b: A (filters, n, rows, 20), y (filters, n, rows)."""
+        n = A.shape[1]
+        weighted = A * (self.forgetting ** np.arange(n)[::-1])[:, None, None]
+        weighted = np.swapaxes(weighted.reshape(len(A), -1, 20), 1, 2)
+        faded = self.forgetting**n
+        self._information = faded * self._information + weighted @ A.reshape(len(A), -1, 20)
+        self._b = faded * self._b + (weighted @ y.reshape(len(A), -1, 1))[..., 0]
 
     @property
     def theta(self):
         """The parameters now, (3, 20)."""
-        found = np.linalg.solve(self._R + self._least, self._b[..., None])[..., 0]
+        found = np.linalg.solve(self._information + self._least, self._b[..., None])[..., 0]
         return np.tile(found, (3 // len(found), 1))
 
     @property
     def P(self):
         """(3, 20, 20), or (20, 20) if shared; 0 for columns left out."""
-        P = np.linalg.inv(self._R + self._least) * self._use[:, None] * self._use[:, :, None]
+        P = np.linalg.inv(self._information + self._least) * self._use[:, None] * self._use[:, :, None]
         return P[0] if len(P) == 1 else P

@@ -71,7 +71,12 @@ def fit_joint(t, q=None, u=None, *, terms=TERMS[:4], cutoff_hz=None, delay=0.0):
     fits = list(_at_halves(motions, cutoff, terms))
     names, found, y, table, cutoff = fits[0]
     error, notes_here = _compared(names, found, fits[1][1]) if len(fits) > 1 else (found.stderr, [])
-    if notes_here and cutoff_hz is None and len(fits) > 2 and not (later := _compared(names, fits[1][1], fits[2][1]))[1]:
+    if (
+        notes_here
+        and cutoff_hz is None
+        and len(fits) > 2
+        and not (later := _compared(names, fits[1][1], fits[2][1]))[1]
+    ):
         names, found, y, table, cutoff = fits[1]
         error, notes_here = later
     notes += notes_here
@@ -99,7 +104,12 @@ def _cutoff(motion):
 
     pieces = [motion.q[motion.segment == k, 0] for k in np.unique(motion.segment)]
     longest = max(pieces, key=len)
-    f, power = (x[1:] for x in welch(longest, motion.rate_hz, nperseg=min(len(longest), max(256, len(longest) // 6)), detrend="linear"))
+    f, power = (
+        x[1:]
+        for x in welch(
+            longest, motion.rate_hz, nperseg=min(len(longest), max(256, len(longest) // 6)), detrend="linear"
+        )
+    )
     floor = np.median(power[f > motion.rate_hz / 4]) / math.log(2)
     above = np.where(power > 3 * floor, power - floor, 0.0)
     if np.sum(f**2 * above) < 0.1 * np.sum(f[: len(f) // 8] ** 2) * floor:
@@ -129,7 +139,9 @@ def _compared(names, found, lower):
     moved = np.where(known, np.abs(found.x - lower.x), 0.0)
     beyond = np.clip(moved**2 - np.where(known, lower.stderr, 0.0) ** 2, 0.0, None)
     far = moved > np.maximum(2 * np.hypot(found.stderr, np.where(known, lower.stderr, 0.0)), 0.1 * np.abs(found.x))
-    notes = [f"{name} depends on the cut-off (flexibility, backlash?)" for name, bad in zip(names, far, strict=True) if bad]
+    notes = [
+        f"{name} depends on the cut-off (flexibility, backlash?)" for name, bad in zip(names, far, strict=True) if bad
+    ]
     return np.sqrt(found.stderr**2 + beyond), notes
 
 

@@ -1,5 +1,6 @@
 """Paths of the tip, a line and a circle, as references of the joints: inverse kinematics, one branch throughout."""
 
+import functools
 import math
 from dataclasses import dataclass, field
 
@@ -12,19 +13,20 @@ from ir50p_lab.modelling.ik import BRANCHES, inverse_kinematics, reachability
 from ir50p_lab.signals.fourier import limits_of, refuse_below_table
 from ir50p_lab.signals.reference import Reference
 
-_STEP = 1e-4  # s, of the differences
+_STEP = 1e-4  # s, of the differences that give speed and acceleration
+_SAMPLES = 400  # points of a path at which it is checked
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CartesianPath(Reference):
     """A path of the tip as joint reference, from rest to rest; made by `cartesian_line` and `cartesian_circle`.
 
-    point: function of the share of the way (n,) -> (n, 3) m; start, duration: s; branch: of the four solutions, kept
-    throughout; near: (3,) rad, the turn of each joint. Before and after the motion it rests.
+    point: function of the share of the way, (n,) -> (n, 3) m. start, duration: s; before and after the motion it rests.
+    branch: of the four solutions, kept throughout; near: (3,) rad, the middle of the motion, which tells whole turns.
     """
 
     arm: Arm
-    point: object = field(compare=False)
+    point: object
     start: float
     branch: str
     near: tuple
@@ -51,61 +53,87 @@ class CartesianPath(Reference):
 
 
 def cartesian_line(arm, start, end, **options):
-    """The tip on a straight line between two points (3,) m, from rest to rest; options as of `cartesian_circle`."""
+    """The tip on a straight line from `start` to `end`, from rest to rest.
+
+    Args: arm: Arm; start, end: (3,) m, base coordinates; options: see `cartesian_circle`.
+    Returns: CartesianPath, a Reference with `.tip(t)`, `.q_start`, `.branch`.
+    Raises: as `cartesian_circle`; InputError if start and end are the same point.
+    """
     start, end = vector3("start", start, unit="m"), vector3("end", end, unit="m")
-    if not (length := math.dist(start, end)) > 1e-6:
+    if (length := math.dist(start, end)) < 1e-6:
         raise InputError(f"start and end of the line are {length:.3g} m apart: give two different points (m)")
-    return _path(arm, lambda x: start + np.outer(x, end - start), length, **options)
+    return _path(arm, functools.partial(_on_line, start, end), length, **options)
+
+
+def _on_line(start, end, share):
+    return start + np.outer(share, end - start)
 
 
 def cartesian_circle(arm, centre, radius, *, normal=(0.0, 0.0, 1.0), **options):
-    """The tip once round a circle about `centre` (3,) m, from rest to rest.
+    """The tip once round a circle about `centre`, from rest to rest.
 
-    Args: radius: m; normal: (3,) axis of the circle; speed: m/s, mean (default 0.05); start_time: s, before it the arm
-    rests; near: (3,) rad, of the branches that can go all of it the one that begins nearest is taken; max_joint_speed,
-    table, margin: as in `fourier`.
+    It begins on the side of the x axis (of z if the normal is along x); seen against the normal it goes anticlockwise.
+
+    Args:
+        arm: Arm. centre: (3,) m; radius: m; normal: (3,) axis of the circle, of any length.
+        speed: m/s, mean of the tip (default 0.05; half way it is 1.9 times as fast).
+        start_time: s; before it the arm rests at the first point.
+        near: (3,) rad (default 0); of the branches that can go all of it ('front/up', 'front/down', 'back/up',
+            'back/down'), the one is taken that begins nearest to this pose.
+        max_joint_speed, table, margin: as in `fourier`.
 
     Returns: CartesianPath, a Reference with `.tip(t)`, `.q_start`, `.branch`.
-    Raises: UnreachableError out of reach, outside the joint limits on every branch, under the table, or where a joint
-    would have to be too fast: it says where. InputError on wrong shapes or numbers.
+    Raises: UnreachableError if a point is out of reach, outside the joint limits on every branch, or under the table;
+    if a joint would have to be faster than max_joint_speed: then the path passes near a singular pose, or the speed is
+    too high. It says where or by how much, and what to do. InputError on a wrong shape or a number that is not finite
+    or out of range.
     """
-    centre, normal = vector3("centre", centre, unit="m"), vector3("normal", normal)
-    radius = number("radius", radius, "> 0", unit="m")
-    first = np.cross([0, 1, 0] if abs(normal[0]) < 0.9 * np.linalg.norm(normal) else [0, 0, 1], normal)
-    if not np.linalg.norm(first) > 0:
-        first = np.cross([1, 0, 0], normal)
-    first = first / np.linalg.norm(first)
-    second = np.cross(normal / np.linalg.norm(normal), first)
-    arc = 2 * math.pi
-    return _path(
-        arm,
-        lambda x: centre + radius * (np.outer(np.cos(arc * x), first) + np.outer(np.sin(arc * x), second)),
-        arc * radius,
-        **options,
-    )
+    centre, normal = vector3("centre", centre, unit="m"), vector3("normal", normal, unit="1")
+    radius, size = number("radius", radius, "> 0", unit="m"), np.linalg.norm(normal)
+    if not size > 1e-9:
+        raise InputError(f"normal = {normal}: it has no direction; for a level circle give (0, 0, 1)")
+    beside = (1.0, 0.0, 0.0) if abs(normal[0]) < 0.9 * size else (0.0, 0.0, 1.0)
+    second = np.cross(normal, beside)
+    second *= radius / np.linalg.norm(second)
+    first = np.cross(second, normal / size)
+    return _path(arm, functools.partial(_on_circle, centre, first, second), 2 * math.pi * radius, **options)
+
+
+def _on_circle(centre, first, second, share):
+    angle = 2 * math.pi * share
+    return centre + np.outer(np.cos(angle), first) + np.outer(np.sin(angle), second)
 
 
 def _path(arm, point, length, *, speed=0.05, start_time=0.0, near=(0.0, 0.0, 0.0), **bounds):
     low, high, fastest, table = limits_of(arm, **bounds)
     near, speed = vector3("near", near), number("speed", speed, "> 0", unit="m/s")
-    p = point(np.linspace(0, 1, 400))
-    if (outside := reachability(arm, p)).any():
-        where = np.round(p[outside.argmax()], 3).tolist()
-        raise UnreachableError(f"{np.mean(outside > 0):.0%} of the path is out of reach, worst at {where} m")
-    solutions = np.unwrap(inverse_kinematics(arm, p).q, axis=0)  # (n, 4, 3)
-    solutions += 2 * np.pi * np.rint((near - solutions[:1]) / (2 * np.pi))
-    over = np.maximum(low - solutions, solutions - high).max(axis=(0, 2))
-    if not (over <= 0).any():
-        missing = ", ".join(f"{branch} {x:.2f}" for branch, x in zip(BRANCHES, over, strict=True))
-        raise UnreachableError(f"the path leaves the joint limits on every branch (rad: {missing}): move or shorten it")
-    branch = int(np.where(over <= 0, np.abs(solutions[0] - near).max(axis=1), np.inf).argmin())
-    refuse_below_table(arm.l, solutions[:, branch], table, lambda i: f"{i / 4:.0f} % of the way")
-    middle = tuple(solutions[:, branch].mean(axis=0).tolist())
     start = number("start_time", start_time, unit="s")
-    path = CartesianPath(arm, point, start, BRANCHES[branch], middle, duration=start + length / speed)
-    rates = np.abs(path.sample(np.linspace(start, path.duration, 400))[:, 1]).max(axis=0)
-    if (rates > fastest).any():
-        joint = int(np.argmax(rates / fastest))
-        said = f"joint {joint + 1} would have to turn at {rates[joint]:.3g} rad/s, its bound is {fastest[joint]:.3g}"
-        raise UnreachableError(f"{said}: give a lower speed, or lead the path away from the singular poses")
+    p = point(np.linspace(0, 1, _SAMPLES))
+
+    def place(i):
+        """Where sample i is, in words."""
+        return f"{100 * i / (_SAMPLES - 1):.0f} % of the way (tip at [{', '.join(f'{x:.3f}' for x in p[i])}] m)"
+
+    outside = reachability(arm, p) > 0
+    if outside.any():
+        first = place(int(outside.argmax()))
+        raise UnreachableError(f"{outside.mean():.0%} of the path is out of reach, first at {first}: move it nearer")
+    solutions = np.unwrap(inverse_kinematics(arm, p).q, axis=0)  # (n, 4, 3), each branch without jumps
+    solutions += 2 * np.pi * np.rint((near - solutions[0]) / (2 * np.pi))
+    over = np.maximum(low - solutions, solutions - high).max(axis=(0, 2))  # rad past the limits, of each branch
+    if (over > 0).all():
+        past = ", ".join(f"{branch} {x:.2f}" for branch, x in zip(BRANCHES, over, strict=True))
+        raise UnreachableError(f"the path leaves the joint limits on every branch (rad: {past}): move or shorten it")
+    branch = int(np.where(over <= 0, np.abs(solutions[0] - near).max(axis=1), np.inf).argmin())
+    q = solutions[:, branch]
+    refuse_below_table(arm.l, q, table, place)
+    path = CartesianPath(arm, point, start, BRANCHES[branch], tuple(q.mean(axis=0)), duration=start + length / speed)
+    t = np.linspace(start, path.duration, _SAMPLES)
+    rates = np.abs(path.sample(t)[:, 1])
+    k, joint = np.unravel_index((rates / fastest).argmax(), rates.shape)
+    if rates[k, joint] > fastest[joint]:
+        said = f"joint {joint + 1} would turn at {rates[k, joint]:.3g} rad/s at {t[k] - start:.3g} s"
+        most = f"{0.999 * speed * fastest[joint] / rates[k, joint]:.3g} m/s"
+        remedy = f"give a speed of at most {most}, or lead the path away from the singular pose"
+        raise UnreachableError(f"{said}, it may {fastest[joint]:.3g} (max_joint_speed): {remedy}")
     return path
