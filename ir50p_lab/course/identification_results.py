@@ -218,14 +218,17 @@ class ForgettingView:
     """
 
     def __init__(self, parts, levels):
-        self._Phi, self._y, every = [], [], 5
+        every, at_once = 5, 10  # one sample of five is used; ten of these are one point of the curve
+        Phi, y = [], []
         for part in parts:
             use = part.use[::every]
-            self._Phi.append(regressor(part.q[::every], part.qd[::every], part.qdd[::every]) * use[:, :, None])
-            self._y.append(part.u[::every] * use)
+            Phi.append(regressor(part.q[::every], part.qd[::every], part.qdd[::every]) * use[:, :, None])
+            y.append(part.u[::every] * use)
         self._rate = parts[0].rate_hz / every
-        first, second = (len(y) / self._rate for y in self._y)
-        self._t = (np.arange(sum(map(len, self._y))) + 1) / self._rate
+        first, second = (len(one) / self._rate for one in y)
+        ends = np.arange(at_once, sum(map(len, y)) + 1, at_once)
+        self._parts = list(zip(*(np.split(np.concatenate(x), ends)[: len(ends)] for x in (Phi, y)), strict=True))
+        self._t = ends / self._rate
         self.figure, ax = subplots(9.0, 3.4)
         ax.hlines(levels, [0, first], [first, first + second], color=COLOURS["dark"], ls="--", lw=1.2)
         (self._line,) = ax.plot([], [], color=JOINTS[2])
@@ -235,9 +238,9 @@ class ForgettingView:
         ax.set_title("Dashed: least squares before and after the payload")
 
     def run(self, memory):
-        """theta4 after each step, (n,), with a memory of so many seconds (inf: nothing is forgotten)."""
+        """theta4 at the times drawn, (n,), with a memory of so many seconds (inf: nothing is forgotten)."""
         filtered = RLS(forgetting=1 - 1 / (memory * self._rate))
-        return np.concatenate([filtered.run(*part)[:, 2, 3] for part in zip(self._Phi, self._y, strict=True)])
+        return np.array([filtered.run(*part, history=False)[2, 3] for part in self._parts])
 
     def update(self, memory):
         """Draw for this memory, s. Returns the forgetting factor in words."""

@@ -127,7 +127,7 @@ def kept_motion(arm, number=0):
     speed = 0.8 * arm.actuators.no_load_speed
     # room at the limits and over the table: the thesis' PID lags and sags
     room = {"margin": 0.2, "table": 0.1}
-    search = {"standing": 6, "starts": 4, "iterations": 30, "seed": number, "progress": False}
+    search = {"standing": 6, "tries": 1000, "seed": number, "progress": False}
     return optimise_excitation(arm, harmonics=3, max_joint_speed=speed, **room, **search).reference
 
 

@@ -60,7 +60,7 @@ def estimate_delay(recording, q=None, u=None, *, cutoff_hz=3.0, slow=0.1):
     per_joint = delays[rms.argmin(axis=0)]
     flat = max(np.ptp(np.flatnonzero(one <= _FLAT * one.min())) * step for one in rms.T)
     unsure, warnings = max(np.ptp(per_joint), flat), ()
-    if unsure > 3 * step:
+    if unsure > 3 * step or per_joint.max() >= delays[-1]:
         warnings = (f"this record tells the delay only within {unsure:.2g} s: record steps, where u jumps",)
     return DelayEstimate(
         delay=float(np.median(per_joint)),

@@ -109,14 +109,12 @@ def optimise_excitation(
         still = np.mean(1 / (1 + (qd / _SLOW) ** 2))
         return np.log(_conditions(q, qd, qdd)).mean() + standing * still
 
-    before = None
     for share in np.geomspace(1, 0.02, _FEWER):
         x = share * change()
         x[:, 0] = low + (high - low) * generator.uniform(0.3, 0.7, 3)
-        before = motion_of(x)
-        if before is not None:
+        if (before := motion_of(x)) is not None:
             break
-    if before is None:
+    else:
         remedy = f"widen the joint limits, lower the table ({table}), take less margin ({margin} rad) or another seed"
         raise IdentificationError(f"no motion was found inside the limits: {remedy}")
     from tqdm.auto import trange

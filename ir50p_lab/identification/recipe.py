@@ -61,20 +61,13 @@ def identify(
     steps = {"cutoff_hz": cutoff_hz, "delay": delay, "held": held}
     notes, parts = [], []
     for recording in recordings:
-        notes += _looked_at(recording, anyway)
+        t, q, u = columns_of(recording)
+        for joint in range(q.shape[1]):
+            warned = Warnings(anyway, f"joint {joint + 1}: ")
+            check_signals(warned, t, q[:, joint], u[:, joint])
+            notes += warned
         motion = process(recording, slow=slow, **steps)
         parts.append((regressor(motion.q, motion.qd, motion.qdd, sign=TURN), motion.u, motion.use))
     Phi, y, use = map(np.concatenate, zip(*parts, strict=True))
     found = fit(Phi, y, method=method, l2=l2, use=use, unit=unit)
     return replace(found, warnings=(*notes, *found.warnings), steps={**steps, "sign": TURN})
-
-
-def _looked_at(recording, anyway):
-    """Warnings about a recording as sentences; what cannot be right is refused, joint by joint."""
-    t, q, u = columns_of(recording)
-    notes = []
-    for joint in range(q.shape[1]):
-        warned = Warnings(anyway, f"joint {joint + 1}: ")
-        check_signals(warned, t, q[:, joint], u[:, joint])
-        notes += warned
-    return notes

@@ -20,7 +20,6 @@ _MISSED = 0.05  # share of the variance of y: if more is left, and alike over ti
 _MEANINGFUL = 0.8  # share of the variance of y: if a response of another shape is explained less, K, T, L mean nothing
 _SLOWEST = 10.0  # records: if T is longer, it cannot be told from infinity
 _SEEN = 0.99  # sampling periods: if T or L is shorter, the record does not hold it
-_COARSE = 1 / 60  # of the range of y: if the steps of a sensor are larger, a warning says so
 _REFINED = 5  # rows of the grid whose best points are refined: the sum of squares has kinks and side valleys in L
 
 
@@ -118,7 +117,7 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     return FOPDT(
         **dict(zip(("K", "T", "L"), values, strict=True)),
         **dict(zip(("K_stderr", "T_stderr", "L_stderr"), errors, strict=True)),
-        y0=float(record.y_first + record.y_range * np.mean(record.y - slope * record.answer(rate, L))),
+        y0=record.y_range * float(np.mean(record.y - slope * record.answer(rate, L))),
         rms=record.y_range * float(np.sqrt(np.mean(e**2))),
         correlation=_correlation(e)[0],
         warnings=tuple(record.warned),
@@ -129,15 +128,14 @@ class _StepRecord:
     """A checked record, scaled: u first changes at 0, the record ends at 1, y has range 1, the largest jump of u is 1.
 
     t, y (n,); times, jumps (m,) of u; period of the samples; quantum: smallest step of y. seconds, y_range, u_range:
-    what 1 stands for; y_first: what 0 stands for. warned: doubts about the record.
+    what 1 stands for. warned: doubts about the record.
     """
 
     def __init__(self, t, u, y, u_before, warned):
         times, jumps = _jumps_of(*same_samples({"t": t, "u": u}, most=1), u_before)  # a masked y hides no step
         t, u, y = same_samples({"t": t, "u": u, "y": y}, most=1)
-        steps = np.diff(t)
-        period, whole = float(np.median(steps)), np.abs(t - np.rint(t)).max() < 1e-6
-        if (period >= 1 and whole) or (period >= 5 and 1e-6 < np.ptp(steps) / period < 1):  # a clock's jitter
+        period = float(np.median(np.diff(t)))
+        if period >= 1 and np.abs(t - np.rint(t)).max() < 1e-6:
             warned.add(f"one sample every {period:.4g} s: is t in milliseconds? Then T and L are too: give t/1000")
         check_outliers(warned, "u", t, u)
         if not len(times):
@@ -148,10 +146,9 @@ class _StepRecord:
             raise IdentificationError(f"only {after} samples from the first change of u on: record {_FEWEST} or more")
         places = check_outliers(warned, "y", t, y, "left out; look for their cause")
         t, y = np.delete(t, places), np.delete(y, places)
-        self.seconds, self.y_range, self.y_first = float(t[-1] - times[0]), float(np.ptp(y)), float(y[0])
-        self.u_range = float(np.abs(jumps).max())
+        self.seconds, self.y_range, self.u_range = float(t[-1] - times[0]), float(np.ptp(y)), float(np.abs(jumps).max())
         self.t, self.times = (t - times[0]) / self.seconds, (times - times[0]) / self.seconds
-        self.y, self.jumps = (y - y[0]) / self.y_range, jumps / self.u_range
+        self.y, self.jumps = y / self.y_range, jumps / self.u_range
         self.period, self.quantum = float(np.median(np.diff(self.t))), quantum_of(self.y)
         self.warned = warned
 
@@ -233,17 +230,13 @@ def _check_shape(record, rate, L, slope, e):
 
     follows, explained = F(total, 3), 1 - rss / total
     not_white = rss - np.sum(np.diff(e, 2) ** 2) / 6 * n / (n - 2)  # second differences pass only the white noise
-    another_shape = f"the response has not the shape of the model ({explained:.0%} explained)"
+    said = f"the response has not the shape of the model ({explained:.0%} explained)"
     if follows < _FOLLOWS or (follows / wider**2 < _FOLLOWS and explained < 0.5):
         warned.refuse(f"y does not follow u ({explained:.1%} explained): make a larger step, or average recordings")
     elif not_white > _MISSED * total and correlation > 0.5:
         if explained < _MEANINGFUL:
-            remedy = "fit a model that swings to it, with scipy.optimize.least_squares on control.forced_response"
-            warned.refuse(f"{another_shape}: does y swing, or run into a limit? If it swings, {remedy}")
-        else:
-            warned.add(
-                f"{another_shape}: y swings, drifts or is disturbed, or a dead zone or limit acts: do not use it"
-            )
+            warned.refuse(f"{said}: it swings, or a limit acts; fit another one, to control.forced_response, say")
+        warned.add(f"{said}: y swings, drifts or is disturbed, or a dead zone or limit acts: do not use it yet")
     ramp = record.ramp()
     if rate * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / wider**2 > _SIGNIFICANT:
         return
@@ -268,9 +261,6 @@ def _systematic_errors(record, T, J, e):
     errors. Half a step of a coarse y remains where noise does not mix the steps, and so does the jitter of the clock.
     """
     coarse = record.quantum / 2 if e @ e < len(e) * (record.quantum / 2) ** 2 else 0.0
-    if coarse > _COARSE / 2:
-        steps = 1 / record.quantum
-        record.warned.add(f"y takes about {steps:.0f} steps only: errors were widened; use a finer range")
     late = coarse * T + np.median(np.abs(np.diff(record.t) - record.period))
     moved = np.array([coarse, late, late])
     flaws = {"y drifts by": record.t, "y was not at rest at first, but away by": np.exp((record.t[0] - record.t) / T)}
@@ -299,8 +289,7 @@ def _warn(record, T, L, L_stderr, e):
     if (after := int((record.t >= L).sum())) < _ENOUGH:
         warned.add(f"only {after} samples of the response: too few to see whether the model is right; sample faster")
     if T > 1 - L:
-        recorded = f"{(1 - L) * seconds:.4g} s of response recorded"
-        warned.add(f"not settled: T = {T * seconds:.4g} s, but {recorded}; record 3 T")
+        warned.add(f"not settled: T = {T * seconds:.4g} s, {(1 - L) * seconds:.4g} s of response recorded; record 3 T")
     correlation, wider = _correlation(e)
     if wider > 1:
         warned.add(f"residuals are not white (correlation {correlation:.2f}): errors were widened by {wider:.1f}")

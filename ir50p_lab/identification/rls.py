@@ -58,22 +58,17 @@ class RLS:
         A = np.swapaxes(Phi.reshape(n, filters, -1, 20), 0, 1) * self._use[:, None, None]  # (filters, n, rows, 20)
         y = np.swapaxes(y.reshape(n, filters, -1), 0, 1)
         if not history:
-            self._add(A, y)
-            return self.theta
-        states = np.empty((n, 3, 20))
-        for k in range(n):
-            self._add(A[:, k : k + 1], y[:, k : k + 1])
-            states[k] = self.theta
-        return states
+            return self._take(A, y)
+        return np.array([self._take(A[:, k : k + 1], y[:, k : k + 1]) for k in range(n)])
 
-    def _add(self, A, y):
-        """Take n samples into P^-1 and b: A (filters, n, rows, 20), y (filters, n, rows)."""
-        n = A.shape[1]
+    def _take(self, A, y):
+        """Add n samples to P^-1 and b, A (filters, n, rows, 20) and y (filters, n, rows); returns theta."""
+        filters, n = A.shape[:2]
         weighted = A * (self.forgetting ** np.arange(n)[::-1])[:, None, None]
-        weighted = np.swapaxes(weighted.reshape(len(A), -1, 20), 1, 2)
-        faded = self.forgetting**n
-        self._information = faded * self._information + weighted @ A.reshape(len(A), -1, 20)
-        self._b = faded * self._b + (weighted @ y.reshape(len(A), -1, 1))[..., 0]
+        weighted, faded = np.swapaxes(weighted.reshape(filters, -1, 20), 1, 2), self.forgetting**n
+        self._information = faded * self._information + weighted @ A.reshape(filters, -1, 20)
+        self._b = faded * self._b + (weighted @ y.reshape(filters, -1, 1))[..., 0]
+        return self.theta
 
     @property
     def theta(self):

@@ -22,14 +22,14 @@ class CartesianPath(Reference):
     """A path of the tip as joint reference, from rest to rest; made by `cartesian_line` and `cartesian_circle`.
 
     point: function of the share of the way, (n,) -> (n, 3) m. start, duration: s; before and after the motion it rests.
-    branch: of the four solutions, kept throughout; near: (3,) rad, the middle of the motion, which tells whole turns.
+    branch: of the four solutions, kept throughout; q_grid: (n, 3) rad at even shares of the way, without jumps of a turn.
     """
 
     arm: Arm
     point: object
     start: float
     branch: str
-    near: tuple
+    q_grid: np.ndarray
     duration: float = field(kw_only=True)
 
     def _rows(self, t):
@@ -37,19 +37,25 @@ class CartesianPath(Reference):
         return np.stack([q, (after - before) / (2 * _STEP), (after - 2 * q + before) / _STEP**2], axis=1)
 
     def _pose(self, t):
-        q = inverse_kinematics(self.arm, self.tip(t)).q[:, BRANCHES.index(self.branch)]
-        return q + 2 * np.pi * np.rint((np.array(self.near) - q) / (2 * np.pi))
+        share = self._share(t)
+        q = inverse_kinematics(self.arm, self.point(share)).q[:, BRANCHES.index(self.branch)]
+        near = self.q_grid[np.rint(share * (_SAMPLES - 1)).astype(int)]
+        return q + 2 * np.pi * np.rint((near - q) / (2 * np.pi))
+
+    def _share(self, t):
+        """Share of the way at times (n,) s: a quintic from rest to rest."""
+        x = np.clip((t - self.start) / (self.duration - self.start), 0.0, 1.0)
+        return x**3 * (10 - 15 * x + 6 * x**2)
 
     def tip(self, t):
         """Where the tip shall be at one time t (3,) or at times (n,), (n, 3), in s; m."""
-        x = np.clip((np.asarray(t, dtype=float) - self.start) / (self.duration - self.start), 0.0, 1.0)
-        p = self.point(np.atleast_1d(x**3 * (10 - 15 * x + 6 * x**2)))
+        p = self.point(self._share(np.atleast_1d(np.asarray(t, dtype=float))))
         return p if np.ndim(t) else p[0]
 
     @property
     def q_start(self):
         """Pose in which the path begins, (3,) rad: move there first, for instance with `quintic`."""
-        return self._pose(np.array([self.start]))[0]
+        return self.q_grid[0].copy()
 
 
 def cartesian_line(arm, start, end, **options):
@@ -114,10 +120,10 @@ def _path(arm, point, length, *, speed=0.05, start_time=0.0, near=(0.0, 0.0, 0.0
         """Where sample i is, in words."""
         return f"{100 * i / (_SAMPLES - 1):.0f} % of the way (tip at [{', '.join(f'{x:.3f}' for x in p[i])}] m)"
 
-    outside = reachability(arm, p) > 0
-    if outside.any():
-        first = place(int(outside.argmax()))
-        raise UnreachableError(f"{outside.mean():.0%} of the path is out of reach, first at {first}: move it nearer")
+    if (outside := reachability(arm, p) > 0).any():
+        raise UnreachableError(
+            f"the path leaves the reach of the arm, first at {place(outside.argmax())}: move it nearer"
+        )
     solutions = np.unwrap(inverse_kinematics(arm, p).q, axis=0)  # (n, 4, 3), each branch without jumps
     solutions += 2 * np.pi * np.rint((near - solutions[0]) / (2 * np.pi))
     over = np.maximum(low - solutions, solutions - high).max(axis=(0, 2))  # rad past the limits, of each branch
@@ -127,13 +133,11 @@ def _path(arm, point, length, *, speed=0.05, start_time=0.0, near=(0.0, 0.0, 0.0
     branch = int(np.where(over <= 0, np.abs(solutions[0] - near).max(axis=1), np.inf).argmin())
     q = solutions[:, branch]
     refuse_below_table(arm.l, q, table, place)
-    path = CartesianPath(arm, point, start, BRANCHES[branch], tuple(q.mean(axis=0)), duration=start + length / speed)
-    t = np.linspace(start, path.duration, _SAMPLES)
-    rates = np.abs(path.sample(t)[:, 1])
+    path = CartesianPath(arm, point, start, BRANCHES[branch], q, duration=start + length / speed)
+    rates = np.abs(path.sample(np.linspace(start, path.duration, _SAMPLES))[:, 1])
     k, joint = np.unravel_index((rates / fastest).argmax(), rates.shape)
     if rates[k, joint] > fastest[joint]:
-        said = f"joint {joint + 1} would turn at {rates[k, joint]:.3g} rad/s at {t[k] - start:.3g} s"
-        most = f"{0.999 * speed * fastest[joint] / rates[k, joint]:.3g} m/s"
-        remedy = f"give a speed of at most {most}, or lead the path away from the singular pose"
-        raise UnreachableError(f"{said}, it may {fastest[joint]:.3g} (max_joint_speed): {remedy}")
+        said = f"joint {joint + 1} would turn at {rates[k, joint]:.3g} rad/s, it may {fastest[joint]:.3g}"
+        remedy = f"give a speed of at most {0.999 * speed * fastest[joint] / rates[k, joint]:.3g} m/s"
+        raise UnreachableError(f"{said}: {remedy}, or lead the path away from the singular pose")
     return path

@@ -31,9 +31,7 @@ def records():
 def trained(record, *, rows="joint", columns="rigid", **steps):
     motion = process(record, **steps)
     Phi = regressor(motion.q, motion.qd, motion.qdd)
-    if motion.use.all():
-        return fit(Phi, motion.u, rows=rows, columns=columns)
-    return fit(Phi, motion.u, rows=rows, columns=columns, method="weighted", weights=motion.use.astype(float))
+    return fit(Phi, motion.u, rows=rows, columns=columns, use=motion.use)
 
 
 def test_each_step_of_the_way_from_the_thesis_to_the_full_method(records):

