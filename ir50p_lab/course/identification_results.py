@@ -218,17 +218,16 @@ class ForgettingView:
     """
 
     def __init__(self, parts, levels):
-        every, at_once = 5, 10  # one sample of five is used; ten of these are one point of the curve
-        Phi, y = [], []
+        Phi, y, every = [], [], 5
         for part in parts:
             use = part.use[::every]
             Phi.append(regressor(part.q[::every], part.qd[::every], part.qdd[::every]) * use[:, :, None])
             y.append(part.u[::every] * use)
         self._rate = parts[0].rate_hz / every
         first, second = (len(one) / self._rate for one in y)
-        ends = np.arange(at_once, sum(map(len, y)) + 1, at_once)
-        self._parts = list(zip(*(np.split(np.concatenate(x), ends)[: len(ends)] for x in (Phi, y)), strict=True))
-        self._t = ends / self._rate
+        self._Phi, self._y = np.concatenate(Phi), np.concatenate(y)
+        self._ends = np.arange(10, len(self._y), 10)  # a point of the curve for ten samples
+        self._t = self._ends / self._rate
         self.figure, ax = subplots(9.0, 3.4)
         ax.hlines(levels, [0, first], [first, first + second], color=COLOURS["dark"], ls="--", lw=1.2)
         (self._line,) = ax.plot([], [], color=JOINTS[2])
@@ -240,7 +239,8 @@ class ForgettingView:
     def run(self, memory):
         """theta4 at the times drawn, (n,), with a memory of so many seconds (inf: nothing is forgotten)."""
         filtered = RLS(forgetting=1 - 1 / (memory * self._rate))
-        return np.array([filtered.run(*part, history=False)[2, 3] for part in self._parts])
+        parts = ((self._Phi[k - 10 : k], self._y[k - 10 : k]) for k in self._ends)
+        return np.array([filtered.run(*part, history=False)[2, 3] for part in parts])
 
     def update(self, memory):
         """Draw for this memory, s. Returns the forgetting factor in words."""

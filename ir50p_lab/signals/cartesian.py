@@ -1,6 +1,5 @@
 """Paths of the tip, a line and a circle, as references of the joints: inverse kinematics, one branch throughout."""
 
-import functools
 import math
 from dataclasses import dataclass, field
 
@@ -22,7 +21,7 @@ class CartesianPath(Reference):
     """A path of the tip as joint reference, from rest to rest; made by `cartesian_line` and `cartesian_circle`.
 
     point: function of the share of the way, (n,) -> (n, 3) m. start, duration: s; before and after the motion it rests.
-    branch: of the four solutions, kept throughout; q_grid: (n, 3) rad at even shares of the way, without jumps of a turn.
+    branch: of the four solutions, kept throughout; q_grid: (n, 3) rad, at even shares of the way, without whole turns.
     """
 
     arm: Arm
@@ -68,11 +67,7 @@ def cartesian_line(arm, start, end, **options):
     start, end = vector3("start", start, unit="m"), vector3("end", end, unit="m")
     if (length := math.dist(start, end)) < 1e-6:
         raise InputError(f"start and end of the line are {length:.3g} m apart: give two different points (m)")
-    return _path(arm, functools.partial(_on_line, start, end), length, **options)
-
-
-def _on_line(start, end, share):
-    return start + np.outer(share, end - start)
+    return _path(arm, lambda share: start + np.outer(share, end - start), length, **options)
 
 
 def cartesian_circle(arm, centre, radius, *, normal=(0.0, 0.0, 1.0), **options):
@@ -102,12 +97,12 @@ def cartesian_circle(arm, centre, radius, *, normal=(0.0, 0.0, 1.0), **options):
     second = np.cross(normal, beside)
     second *= radius / np.linalg.norm(second)
     first = np.cross(second, normal / size)
-    return _path(arm, functools.partial(_on_circle, centre, first, second), 2 * math.pi * radius, **options)
 
+    def point(share):
+        angle = 2 * math.pi * share
+        return centre + np.outer(np.cos(angle), first) + np.outer(np.sin(angle), second)
 
-def _on_circle(centre, first, second, share):
-    angle = 2 * math.pi * share
-    return centre + np.outer(np.cos(angle), first) + np.outer(np.sin(angle), second)
+    return _path(arm, point, 2 * math.pi * radius, **options)
 
 
 def _path(arm, point, length, *, speed=0.05, start_time=0.0, near=(0.0, 0.0, 0.0), **bounds):
@@ -115,15 +110,8 @@ def _path(arm, point, length, *, speed=0.05, start_time=0.0, near=(0.0, 0.0, 0.0
     near, speed = vector3("near", near), number("speed", speed, "> 0", unit="m/s")
     start = number("start_time", start_time, unit="s")
     p = point(np.linspace(0, 1, _SAMPLES))
-
-    def place(i):
-        """Where sample i is, in words."""
-        return f"{100 * i / (_SAMPLES - 1):.0f} % of the way (tip at [{', '.join(f'{x:.3f}' for x in p[i])}] m)"
-
     if (outside := reachability(arm, p) > 0).any():
-        raise UnreachableError(
-            f"the path leaves the reach of the arm, first at {place(outside.argmax())}: move it nearer"
-        )
+        raise UnreachableError(f"the path is out of reach from {np.round(p[outside.argmax()], 3)} m on: move it nearer")
     solutions = np.unwrap(inverse_kinematics(arm, p).q, axis=0)  # (n, 4, 3), each branch without jumps
     solutions += 2 * np.pi * np.rint((near - solutions[0]) / (2 * np.pi))
     over = np.maximum(low - solutions, solutions - high).max(axis=(0, 2))  # rad past the limits, of each branch
@@ -132,12 +120,12 @@ def _path(arm, point, length, *, speed=0.05, start_time=0.0, near=(0.0, 0.0, 0.0
         raise UnreachableError(f"the path leaves the joint limits on every branch (rad: {past}): move or shorten it")
     branch = int(np.where(over <= 0, np.abs(solutions[0] - near).max(axis=1), np.inf).argmin())
     q = solutions[:, branch]
-    refuse_below_table(arm.l, q, table, place)
+    refuse_below_table(arm.l, q, table, lambda i: f"{i / (_SAMPLES - 1):.0%} of the way")
     path = CartesianPath(arm, point, start, BRANCHES[branch], q, duration=start + length / speed)
-    rates = np.abs(path.sample(np.linspace(start, path.duration, _SAMPLES))[:, 1])
-    k, joint = np.unravel_index((rates / fastest).argmax(), rates.shape)
-    if rates[k, joint] > fastest[joint]:
-        said = f"joint {joint + 1} would turn at {rates[k, joint]:.3g} rad/s, it may {fastest[joint]:.3g}"
-        remedy = f"give a speed of at most {0.999 * speed * fastest[joint] / rates[k, joint]:.3g} m/s"
+    rates = np.abs(path.sample(np.linspace(start, path.duration, _SAMPLES))[:, 1]).max(axis=0)
+    joint = int((rates / fastest).argmax())
+    if rates[joint] > fastest[joint]:
+        said = f"joint {joint + 1} would turn at {rates[joint]:.3g} rad/s, it may {fastest[joint]:.3g}"
+        remedy = f"give a speed of at most {0.999 * speed * fastest[joint] / rates[joint]:.3g} m/s"
         raise UnreachableError(f"{said}: {remedy}, or lead the path away from the singular pose")
     return path
