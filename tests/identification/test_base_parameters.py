@@ -58,35 +58,6 @@ def test_rows_have_ranks_9_11_9(Phi, row, rank, unseen):
     check_invariant(Phi[:, row], base)
 
 
-def test_in_line_arm_has_17_base_parameters(Phi):
-    # theta6 = l2 theta4 and theta7 = theta8 = 0
-    tied = Phi.copy()
-    tied[:, :, 3] += L2 * tied[:, :, 5]
-    keep = [k for k in range(20) if k not in (5, 6, 7)]
-    base = base_parameters(tied[:, :, keep], names=[NAMES[k] for k in keep])
-    assert base.rank == 17
-    inertial = [name for name in base.groups if name.startswith(("theta", "j"))]
-    assert (len(inertial), 17 - len(inertial)) == (8, 9)
-
-
-def test_physical_parameters_fall_into_groups(Phi):
-    # the thesis' model in 27 ungrouped parameters: rank 20 again, and these groups
-    columns = {
-        "m1 lc1^2": 0, "Izz1": 0, "Izz2": 0, "Izz3": 0, "j1": 0, "m2 lc2^2": 1, "m3 l2^2": 1, "m2 lc2": 2, "m3 l2": 2,
-        "m3 lc3": 3, "m3 lc3^2": 4, "m3 lc3 l2": 5, "Iyz2": 6, "Iyz3": 7, "Iyy2": 8, "j2": 8, "Iyy3": 9,
-        **{NAMES[k]: k for k in range(10, 20)},
-    }  # fmt: skip
-    assert len(columns) == 27
-    base = base_parameters(Phi[:, :, list(columns.values())], names=list(columns))
-    assert base.rank == 20
-    assert {group for group in base.groups if "+" in group} == {
-        "m1 lc1^2 + Izz1 + Izz2 + Izz3 + j1",
-        "m2 lc2^2 + m3 l2^2",
-        "m2 lc2 + m3 l2",
-        "Iyy2 + j2",
-    }
-
-
 def test_general_arm_has_25_base_parameters(general):
     base = base_parameters(general, names=GENERAL_NAMES, known={"l2": L2})
     assert general.shape == (500, 3, 42)
