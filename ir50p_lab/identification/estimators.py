@@ -68,7 +68,6 @@ def instrumental_variables(problem, Z):
     derivative = Z.T @ problem.Q
     smallest = np.linalg.svd(derivative, compute_uv=False)[-1]
     if smallest < _BLIND:
-        said = f"{problem.who}instruments and columns have a correlation of {smallest:.1g} only in some direction"
-        raise IdentificationError(f"{said}: take instruments that follow the same motion")
+        raise IdentificationError(f"{problem.who}the instruments say nothing: take some that follow the same motion")
     z = np.linalg.solve(derivative, Z.T @ problem.y)
     return problem.estimate(z, rows=Z, derivative=derivative)

@@ -37,18 +37,17 @@ def regressor_condition(motion):
     One per joint. 1 is best: every parameter is seen apart from the others. 100: of some combination the data say 100
     times less.
     """
-    return _conditions(*_one_period(motion))
+    return _judged(motion)[0]
 
 
-def _one_period(motion):
+def _judged(motion):
+    """Condition numbers (3,) along one period, and the share of it near standstill, 1/(1 + (qd/0.1 rad/s)^2)."""
     t = motion.start + motion.period * (np.arange(_POINTS) + 0.5) / _POINTS
-    return np.swapaxes(motion.sample(t), 0, 1)
-
-
-def _conditions(q, qd, qdd):
+    q, qd, qdd = np.swapaxes(motion.sample(t), 0, 1)
     Phi = regressor(q, qd, qdd)
     parts = [Phi[:, joint, columns] for joint, columns in enumerate(RIGID_ON)]
-    return np.array([np.linalg.cond(A / np.maximum(np.linalg.norm(A, axis=0), 1e-300)) for A in parts])
+    conditions = [np.linalg.cond(A / np.maximum(np.linalg.norm(A, axis=0), 1e-300)) for A in parts]
+    return np.array(conditions), np.mean(1 / (1 + (qd / _SLOW) ** 2))
 
 
 def optimise_excitation(
@@ -105,9 +104,8 @@ def optimise_excitation(
         return size * decay * generator.normal(size=(3, len(decay)))
 
     def cost(motion):
-        q, qd, qdd = _one_period(motion)
-        still = np.mean(1 / (1 + (qd / _SLOW) ** 2))
-        return np.log(_conditions(q, qd, qdd)).mean() + standing * still
+        conditions, still = _judged(motion)
+        return np.log(conditions).mean() + standing * still
 
     for share in np.geomspace(1, 0.02, _FEWER):
         x = share * change()

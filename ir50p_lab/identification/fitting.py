@@ -130,8 +130,7 @@ def _equations(Phi, share, joints, here):
 def _checked_weights(weights, y):
     weights = vectors3("weights", weights, unit="1/variance of each measurement")
     if weights.shape not in ((3,), y.shape) or (weights < 0).any():
-        found = f"weights have shape {weights.shape} and least value {weights.min():g}"
-        raise InputError(f"{found}: give 1/variance of each measurement, (3,) or (n, 3), all >= 0")
+        raise InputError(f"weights {weights.shape}, least {weights.min():g}: give 1/variance, (3,) or (n, 3), all >= 0")
     return weights
 
 
@@ -146,6 +145,6 @@ def _checked_use(use, y):
 
 def _checked_instruments(instruments, Phi):
     if np.shape(instruments) != Phi.shape:
-        shapes = f"instruments have shape {np.shape(instruments)}, Phi {Phi.shape}"
-        raise InputError(f"{shapes}: method='iv' needs the regressor of the reference, a simulation or a repeated run")
+        shape = np.shape(instruments)
+        raise InputError(f"instruments have shape {shape}: give {Phi.shape}, the regressor of the reference, say")
     return finite("instruments", instruments)

@@ -114,9 +114,7 @@ def output_error(
 
     run = ClosedLoopRun(recording, controller, reference, delay=delay, seconds=seconds)
     l2 = None if l2 is None else metres("l2", l2)
-    fitted = np.zeros((3, 20), dtype=bool)
-    for joint, columns in enumerate(RIGID_ON):
-        fitted[joint, columns] = True
+    fitted = np.array([np.isin(range(20), columns) for columns in RIGID_ON])
     fitted[1:, _THETA6] &= l2 is None
     start, size = theta[fitted], np.broadcast_to(np.abs(theta).max(axis=1)[:, None], theta.shape)[fitted]
     scale = np.maximum(0.3 * np.abs(start), 1e-3 * size)

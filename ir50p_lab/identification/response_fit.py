@@ -113,10 +113,9 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     if L < _SEEN * period:
         errors[2] = max(errors[2], period)
     units = record.y_range / record.u_range, record.seconds, record.seconds
-    values, errors = (found * units).tolist(), (errors * units).tolist()
+    values = [*(found * units).tolist(), *(errors * units).tolist()]
     return FOPDT(
-        **dict(zip(("K", "T", "L"), values, strict=True)),
-        **dict(zip(("K_stderr", "T_stderr", "L_stderr"), errors, strict=True)),
+        **dict(zip(("K", "T", "L", "K_stderr", "T_stderr", "L_stderr"), values, strict=True)),
         y0=record.y_range * float(np.mean(record.y - slope * record.answer(rate, L))),
         rms=record.y_range * float(np.sqrt(np.mean(e**2))),
         correlation=_correlation(e)[0],
@@ -167,13 +166,9 @@ class _StepRecord:
         dead_times = np.r_[np.geomspace(0.3 * self.period, latest, 24), np.linspace(0, latest, 50)]
         rates = np.r_[-30.0, -10.0, -3.0, -1.0, -0.3, 0.0, np.geomspace(0.1, 3 / self.period, 24)]
         starts = [[(rate, L) for L in dead_times] for rate in rates]
-        return self._best(self.answer, starts, ((-40.0, 0.0), (30 / self.period, latest + 0.05)))
+        return self.best(self.answer, starts, ((-40.0, 0.0), (30 / self.period, latest + 0.05)))
 
-    def ramp(self):
-        """Residuals of the best ramp from some time on: what an integrating plant answers."""
-        return self._best(lambda L: self.answer(0.0, L), [[(k / 50,)] for k in range(45)], (0.0, 0.95))[2]
-
-    def _best(self, answer, starts, bounds):
+    def best(self, answer, starts, bounds):
         """p, slope, residuals of the least squares y = y0 + slope answer(*p); starts: rows of p of a grid."""
         from scipy.optimize import least_squares
 
@@ -237,7 +232,8 @@ def _check_shape(record, rate, L, slope, e):
         if explained < _MEANINGFUL:
             warned.refuse(f"{said}: it swings, or a limit acts; fit another one, to control.forced_response, say")
         warned.add(f"{said}: y swings, drifts or is disturbed, or a dead zone or limit acts: do not use it yet")
-    ramp = record.ramp()
+    starts = [[(k / 50,)] for k in range(45)]
+    ramp = record.best(lambda L: record.answer(0.0, L), starts, (0.0, 0.95))[2]  # what an integrating plant answers
     if rate * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / wider**2 > _SIGNIFICANT:
         return
     value = f"only K/T has a value, {slope * record.y_range / record.u_range / record.seconds:.4g} y/u per s"
@@ -246,12 +242,10 @@ def _check_shape(record, rate, L, slope, e):
 
 
 def _standard_errors(J, e):
-    """Errors (3,) of K, T, L from jacobian and residuals, widened for correlation; inf: nothing depends on it."""
-    length = np.linalg.norm(J, axis=0)
+    """Standard errors (3,) of K, T, L from the jacobian and the residuals e (n,), widened for correlation."""
+    length = np.maximum(np.linalg.norm(J, axis=0), 1e-300)  # 0 for a T that is over between two samples
     spread = math.sqrt(e @ e / (len(e) - J.shape[1])) * _correlation(e)[1]
-    seen, errors = length > 0, np.full(len(length), np.inf)
-    errors[seen] = spread * np.linalg.norm(np.linalg.pinv(J[:, seen] / length[seen]), axis=1) / length[seen]
-    return errors[1:]
+    return (spread * np.linalg.norm(np.linalg.pinv(J / length), axis=1) / length)[1:]
 
 
 def _systematic_errors(record, T, J, e):
