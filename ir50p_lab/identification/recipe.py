@@ -65,6 +65,9 @@ def identify(
         for joint in range(q.shape[1]):
             warned = Warnings(anyway, f"joint {joint + 1}: ")
             check_signals(warned, t, q[:, joint], u[:, joint])
+            share = np.isin(u[:, joint], (u[:, joint].min(), u[:, joint].max())).mean()
+            if share > 0.05:
+                warned.add(f"u is at its largest or smallest value in {share:.0%}: if clipped, record a wider range")
             notes += warned
         motion = process(recording, slow=slow, **steps)
         parts.append((regressor(motion.q, motion.qd, motion.qdd, sign=TURN), motion.u, motion.use))

@@ -12,7 +12,6 @@ from ir50p_lab.inputs import number
 from ir50p_lab.simulation.first_order_lag import respond
 
 _FEWEST = 8  # samples from the first change of u on: if there are fewer, four parameters cannot be judged
-_ENOUGH = 20  # samples of the response: if there are fewer, nobody sees whether the model is right
 _ROUNDING = 1e-7  # residual, of the range of y: if it is less, it is rounding and no noise
 _FOLLOWS = 15.0  # F value of the model: if it is less, y does not follow u (a search in pure noise stays below it)
 _SIGNIFICANT = 9.0  # F value of one more parameter: if it is more, the parameter is there (three standard errors)
@@ -280,8 +279,6 @@ def _warn(record, T, L, L_stderr, e):
         warned.add(f"the dead time is not identifiable, {L / period:.2f} of a sampling period: use no rule with 1/L")
     elif L < 2 * L_stderr:
         warned.add(f"dead time {L * seconds:.3g} s is less than two standard errors: it cannot be told from none")
-    if (after := int((record.t >= L).sum())) < _ENOUGH:
-        warned.add(f"only {after} samples of the response: too few to see whether the model is right; sample faster")
     if T > 1 - L:
         warned.add(f"not settled: T = {T * seconds:.4g} s, {(1 - L) * seconds:.4g} s of response recorded; record 3 T")
     correlation, wider = _correlation(e)
