@@ -77,7 +77,7 @@ def cartesian_circle(arm, centre, radius, *, normal=(0.0, 0.0, 1.0), **options):
 
     Args:
         arm: Arm. centre: (3,) m; radius: m; normal: (3,) axis of the circle, of any length.
-        speed: m/s, mean of the tip (default 0.05; half way it is 1.9 times as fast).
+        speed: m/s, mean of the tip (default 0.05; half way it is nearly twice as fast).
         start_time: s; before it the arm rests at the first point.
         near: (3,) rad (default 0); of the branches that can go all of it ('front/up', 'front/down', 'back/up',
             'back/down'), the one is taken that begins nearest to this pose.
