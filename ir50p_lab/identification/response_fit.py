@@ -228,9 +228,8 @@ def _check_shape(record, rate, L, slope, e):
     if follows < _FOLLOWS or (follows / wider**2 < _FOLLOWS and explained < 0.5):
         warned.refuse(f"y does not follow u ({explained:.1%} explained): make a larger step, or average recordings")
     elif not_white > _MISSED * total and correlation > 0.5:
-        if explained < _MEANINGFUL:
-            warned.refuse(f"{said}: it swings, or a limit acts; fit another one, to control.forced_response, say")
-        warned.add(f"{said}: y swings, drifts or is disturbed, or a dead zone or limit acts: do not use it yet")
+        doubt = warned.refuse if explained < _MEANINGFUL else warned.add
+        doubt(f"{said}: drift, a limit, a swing? To a swing fit control.forced_response by scipy's least_squares")
     starts = [[(k / 50,)] for k in range(45)]
     ramp = record.best(lambda L: record.answer(0.0, L), starts, (0.0, 0.95))[2]  # what an integrating plant answers
     if rate * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / wider**2 > _SIGNIFICANT:
