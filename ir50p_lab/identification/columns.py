@@ -27,8 +27,10 @@ def columns_of(recording, q=None, u=None):
 def same_samples(given, most=2):
     """Float arrays of the columns `given` (name: values), the first (n,) and increasing, the others (n,) or (n, k).
 
-    Masked samples are left out. most: dimensions. Raises InputError.
+    Masked samples are left out. Dates and time differences become seconds. most: dimensions. Raises InputError.
     """
+    if (times := np.asarray(given["t"])).dtype.kind in "mM":
+        given = {**given, "t": (times - times[:1]) / np.timedelta64(1, "s")}
     arrays = {name: np.atleast_1d(numbers(name, np.ma.getdata(value))) for name, value in given.items()}
     n = len(arrays["t"])
     keep = np.ones(n, dtype=bool)
@@ -36,6 +38,8 @@ def same_samples(given, most=2):
         if array.ndim > (1 if name == "t" else most) or len(array) != n or n < 2:
             raise InputError(f"{name} has shape {array.shape} beside {n} times: give (n,){' or (n, k)' * (most > 1)}")
         keep &= ~np.ma.getmaskarray(np.ma.asarray(given[name])).reshape(n, -1).any(axis=1)
+    if keep.sum() < 2:
+        raise InputError(f"{keep.sum()} of {n} samples are not masked: give at least two")
     arrays = {name: array[keep] for name, array in arrays.items()}
     for name, array in arrays.items():
         if not np.isfinite(array).all():

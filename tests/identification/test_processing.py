@@ -108,6 +108,14 @@ def test_slow_samples_are_marked():
     np.testing.assert_array_equal(motion.use, np.abs(motion.qd) >= 0.2)
 
 
+def test_dates_are_times_and_masked_samples_are_left_out():
+    record = recorded(seconds=5)
+    dates = np.datetime64("2024-01-01") + np.round(1e6 * record.t).astype("timedelta64[us]")
+    np.testing.assert_allclose(process(dates, record.q, record.u).qdd, process(record).qdd, atol=1e-6)
+    with pytest.raises(InputError, match="0 of 9 samples are not masked"):
+        process(*[np.ma.masked_all(9)] * 3)
+
+
 def test_arrays_of_one_joint():
     record = recorded()
     one, all_ = process(record.t, record.q[:, 1], record.u[:, 1]), process(record)
