@@ -8,42 +8,25 @@ controller; a controller held for a period h delays by another h/2, which is to 
 import math
 from dataclasses import dataclass
 
-from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import choice, number
 
 
 @dataclass(frozen=True)
 class PIDGains:
-    """Gains of C(s) = kp + ki/s + kd s = kp (1 + 1/(Ti s) + Td s), and where they come from.
+    """Gains of C(s) = kp + ki/s + kd s = kp (1 + 1/(Ti s) + Td s).
 
-    ========= ================================================= ==========
-    field     meaning                                           unit
-    ========= ================================================= ==========
-    kp        proportional                                      u/y
-    ki        integral, kp/Ti                                   u/y per s
-    kd        derivative, kp Td                                 u/y s
-    rule      name of the rule and kind of controller
-    warnings  tuple of str: where the rule is used outside its range
-    ========= ================================================= ==========
-
-    With a negative gain K of the plant all gains are negative.
+    kp: u/y, proportional; ki = kp/Ti: u/y per s, integral; kd = kp Td: u/y s, derivative. With a negative gain K of the
+    plant all gains are negative.
     """
 
     kp: float
     ki: float
     kd: float
-    rule: str
-    warnings: tuple = ()
 
-    @property
-    def Ti(self):
-        """Integral time kp/ki, s; inf without integral action."""
-        return self.kp / self.ki if self.ki else math.inf
-
-    @property
-    def Td(self):
-        """Derivative time kd/kp, s."""
-        return self.kd / self.kp if self.kp else 0.0
+    @classmethod
+    def of(cls, kp, Ti, Td, *, series=False):
+        """From kp, Ti (s, inf: no integral) and Td (s); series: of kp (1 + 1/(Ti s))(1 + Td s), multiplied out."""
+        return cls(kp * (1 + Td / Ti) if series else kp, kp / Ti, kp * Td)
 
 
 def ziegler_nichols(model, *, kind="PID"):
@@ -58,12 +41,10 @@ def ziegler_nichols(model, *, kind="PID"):
     Args: model: FOPDT; kind: "P", "PI" or "PID". Returns: PIDGains.
     Raises: InputError if L is 0 (the gain would be infinite) or `kind` is unknown.
     """
-    K, T, L = _model(model, "Ziegler and Nichols' rule", dead_time=True)
-    factor, Ti, Td = _pick(kind, {"P": (1.0, math.inf, 0.0), "PI": (0.9, L / 0.3, 0.0), "PID": (1.2, 2 * L, L / 2)})
-    notes = _uncertain(model)
-    if not 0.1 <= L / T <= 1:
-        notes += (f"L/T = {L / T:.3g} is outside 0.1 to 1, for which the rule was made: prefer simc or amigo",)
-    return _standard(factor * T / (K * L), Ti, Td, f"Ziegler-Nichols step response, {kind}", notes)
+    K, T, L = model.K, model.T, number("L", model.L, "> 0", unit="s", hint="add half a sampling period, or take simc")
+    choice("kind", kind, ("P", "PI", "PID"))
+    factor, Ti, Td = {"P": (1.0, math.inf, 0.0), "PI": (0.9, L / 0.3, 0.0), "PID": (1.2, 2 * L, L / 2)}[kind]
+    return PIDGains.of(factor * T / (K * L), Ti, Td)
 
 
 def simc(model, *, tau_c=None, kind="PI"):
@@ -81,11 +62,9 @@ def simc(model, *, tau_c=None, kind="PI"):
     Args: model: FOPDT; tau_c: s, > 0, default L; kind: "PI" or "PID". Returns: PIDGains.
     Raises: InputError if tau_c is not > 0 (with L = 0 it must be given) or `kind` is unknown.
     """
-    K, T, L = _model(model, "SIMC")
-    tau_c = _tau_c(tau_c, L)
-    Td = _pick(kind, {"PI": 0.0, "PID": L / 3})
-    notes = _uncertain(model) if tau_c < 10 * L else ()
-    return _series(T / (K * (tau_c + L)), min(T, 4 * (tau_c + L)), Td, f"SIMC, {kind}, tau_c = {tau_c:.4g} s", notes)
+    K, T, L, tau_c = _with_tau_c(model, tau_c)
+    Td = {"PI": 0.0, "PID": L / 3}[choice("kind", kind, ("PI", "PID"))]
+    return PIDGains.of(T / (K * (tau_c + L)), min(T, 4 * (tau_c + L)), Td, series=True)
 
 
 def simc_integrating(velocity_model, *, tau_c=None, kind="PID"):
@@ -98,11 +77,9 @@ def simc_integrating(velocity_model, *, tau_c=None, kind="PID"):
     Args: velocity_model: FOPDT from u to velocity (rad/s); tau_c: s, > 0, default L; kind: "PD" or "PID".
     Returns: PIDGains for the position. Raises: InputError as `simc`.
     """
-    K, T, L = _model(velocity_model, "SIMC")
-    tau_c = _tau_c(tau_c, L)
-    Ti = _pick(kind, {"PD": math.inf, "PID": 4 * (tau_c + L)})
-    rule = f"SIMC for an integrating plant, {kind}, tau_c = {tau_c:.4g} s"
-    return _series(1 / (K * (tau_c + L)), Ti, T, rule, _uncertain(velocity_model) if tau_c < 10 * L else ())
+    K, T, L, tau_c = _with_tau_c(velocity_model, tau_c)
+    Ti = {"PD": math.inf, "PID": 4 * (tau_c + L)}[choice("kind", kind, ("PD", "PID"))]
+    return PIDGains.of(1 / (K * (tau_c + L)), Ti, T, series=True)
 
 
 def amigo(model, *, kind="PID"):
@@ -112,72 +89,20 @@ def amigo(model, *, kind="PID"):
     PID: kp = [0.2 + 0.45 T/L]/K,  Ti = L (0.4 L + 0.8 T)/(L + 0.1 T),  Td = 0.5 L T/(0.3 L + T)
 
     Fitted to 134 plants with smooth step responses, so it leaves room for what a FOPDT model misses. Where
-    L/(L + T) < 0.3 the model says too little for a PID controller: the rule is cautious there, and says so.
+    L/(L + T) < 0.3 the model says too little for a PID controller: the rule is cautious there.
 
     Source: Astrom and Hagglund, Revisiting the Ziegler-Nichols step response method for PID control, J. Process
     Control 14 (2004), 635-650; Advanced PID Control (ISA, 2006), chapter 7.
     Args: model: FOPDT; kind: "PI" or "PID". Returns: PIDGains.
     Raises: InputError if L is 0 (the gain would be infinite) or `kind` is unknown.
     """
-    K, T, L = _model(model, "AMIGO", dead_time=True)
-    kp, Ti, Td = _pick(
-        kind,
-        {
-            "PI": (
-                (0.15 + (0.35 - L * T / (L + T) ** 2) * T / L) / K,
-                0.35 * L + 13 * L * T**2 / (T**2 + 12 * L * T + 7 * L**2),
-                0.0,
-            ),
-            "PID": (
-                (0.2 + 0.45 * T / L) / K,
-                L * (0.4 * L + 0.8 * T) / (L + 0.1 * T),
-                0.5 * L * T / (0.3 * L + T),
-            ),
-        },
-    )
-    notes = _uncertain(model)
-    if kind == "PID" and L / (L + T) < 0.3:
-        notes += (f"L/(L + T) = {L / (L + T):.2g} is below 0.3: a model of second order would allow a quicker loop",)
-    return _standard(kp, Ti, Td, f"AMIGO, {kind}", notes)
+    K, T, L = model.K, model.T, number("L", model.L, "> 0", unit="s", hint="add half a sampling period, or take simc")
+    if choice("kind", kind, ("PI", "PID")) == "PI":
+        kp = (0.15 + (0.35 - L * T / (L + T) ** 2) * T / L) / K
+        return PIDGains.of(kp, 0.35 * L + 13 * L * T**2 / (T**2 + 12 * L * T + 7 * L**2), 0.0)
+    return PIDGains.of((0.2 + 0.45 * T / L) / K, L * (0.4 * L + 0.8 * T) / (L + 0.1 * T), 0.5 * L * T / (0.3 * L + T))
 
 
-def _standard(kp, Ti, Td, rule, warnings=()):
-    return PIDGains(kp=kp, ki=kp / Ti, kd=kp * Td, rule=rule, warnings=warnings)
-
-
-def _series(kp, Ti, Td, rule, warnings):
-    """kp (1 + 1/(Ti s))(1 + Td s), multiplied out."""
-    return PIDGains(kp=kp * (1 + Td / Ti), ki=kp / Ti, kd=kp * Td, rule=rule, warnings=warnings)
-
-
-def _model(model, rule, *, dead_time=False):
-    """(K, T, L) of a FOPDT, which has checked them; with `dead_time` L must be > 0."""
-    if not all(hasattr(model, name) for name in "KTL"):
-        raise InputError(f"expected a FOPDT model (fit_fopdt, or FOPDT(K=, T=, L=)), got {model!r:.80}")
-    K, T, L = model.K, model.T, model.L
-    if dead_time and L == 0:
-        raise InputError(
-            f"L = 0: {rule} lives on the dead time and would give an infinite gain. Use simc with the closed-loop time "
-            "constant you want (tau_c=), or add what the loop itself delays: half a sampling period at least"
-        )
-    return K, T, L
-
-
-def _tau_c(tau_c, L):
-    if tau_c is None and L == 0:
-        raise InputError(
-            "L = 0, so there is no natural tau_c: give the closed-loop time constant you want, tau_c= in s"
-        )
-    return L if tau_c is None else number("tau_c", tau_c, "> 0", unit="s")
-
-
-def _pick(kind, choices):
-    return choices[choice("kind", kind, tuple(choices))]
-
-
-def _uncertain(model):
-    """Say so where the dead time on which the gains rest is hardly known."""
-    stderr = getattr(model, "L_stderr", math.nan)
-    if stderr > 0.25 * model.L:
-        return (f"L = {model.L:.3g} s has a standard error of {stderr:.2g} s: gains that rest on it are as uncertain",)
-    return ()
+def _with_tau_c(model, tau_c):
+    tau_c = model.L if tau_c is None else tau_c
+    return model.K, model.T, model.L, number("tau_c", tau_c, "> 0", unit="s", hint="of the closed loop")

@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.fit_input import finite
 from ir50p_lab.identification.parameters import NAMES
-from ir50p_lab.identification.regression import DEPENDENT, independent_columns, r_factor
+from ir50p_lab.identification.regression import DEPENDENT, independent_columns
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,7 +60,7 @@ def base_parameters(Phi, *, names=None, known=None):
     A, names = _checked(Phi, names)
     length = np.linalg.norm(A, axis=0)
     seen = np.flatnonzero(length > 1e-14 * length.max())
-    R = r_factor(A[:, seen] / length[seen])
+    R = np.linalg.qr(A[:, seen] / length[seen], mode="r")
     kept, weights = independent_columns(R)
     s = np.linalg.svd(R, compute_uv=False)
     if (above := np.sum(s > DEPENDENT * s[0])) != len(kept):

@@ -6,54 +6,48 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import first_not_finite, numbers
 
 
-def columns_of(recording, q=None, u=None, qd=None, *, drop=False):
-    """Return t (n,), q (n, k) and u (n, k) as float arrays; t `without_rounding`. With qd (n, k) four arrays.
+def columns_of(recording, q=None, u=None):
+    """Return t (n,), q (n, k) and u (n, k) as float arrays; t `without_rounding`.
 
     recording: anything with t, q and u (a Recording, a pandas table), then q and u must be left out; or the times
-    themselves, with q and u as arrays, lists or pandas Series. Masked samples are left out, and with `drop` those that
-    are no numbers. Raises InputError on shapes that do not fit, NaN, or times that do not increase, naming the first.
+    themselves, with q and u as arrays, lists or pandas Series. Masked samples are left out. Raises InputError on shapes
+    that do not fit, NaN, or times that do not increase, naming the first.
     """
     if (q is None) != (u is None) or (q is not None and hasattr(recording, "q")):
         raise InputError("give a recording, or t, q and u as arrays: neither both nor a part")
     if q is None and hasattr(recording, "q"):
         recording, q, u = recording.t, recording.q, recording.u
-    given = {"t": recording, "q": q, "u": u} | ({} if qd is None else {"qd": qd})
-    t, *rest = same_samples(given, drop)
-    rest = [np.ascontiguousarray(x.reshape(len(t), -1)) for x in rest]
-    for name, array in zip(list(given)[2:], rest[1:], strict=True):
-        if array.shape != rest[0].shape:
-            raise InputError(f"q {rest[0].shape} and {name} {array.shape}: give one {name} per joint")
-    return without_rounding(t), *rest
+    t, q, u = same_samples({"t": recording, "q": q, "u": u})
+    q, u = (np.ascontiguousarray(x.reshape(len(t), -1)) for x in (q, u))
+    if q.shape != u.shape:
+        raise InputError(f"q {q.shape} and u {u.shape}: give one u per joint")
+    return without_rounding(t), q, u
 
 
-def same_samples(given, drop=False, most=2):
+def same_samples(given, most=2):
     """Float arrays of the columns `given` (name: values), the first (n,) and increasing, the others (n,) or (n, k).
 
-    Masked samples are left out, and with `drop` those that are no numbers. most: dimensions. Raises InputError.
+    Masked samples are left out. Dates and time differences become seconds. most: dimensions. Raises InputError.
     """
-    arrays = {name: _numbers(name, value) for name, value in given.items()}
+    if (times := np.asarray(given["t"])).dtype.kind in "mM":
+        given = {**given, "t": (times - times[:1]) / np.timedelta64(1, "s")}
+    arrays = {name: np.atleast_1d(numbers(name, np.ma.getdata(value))) for name, value in given.items()}
     n = len(arrays["t"])
-    if arrays["t"].ndim != 1 or n < 2:
-        raise InputError(f"t has shape {arrays['t'].shape}; give at least two times in s, shape (n,)")
     keep = np.ones(n, dtype=bool)
     for name, array in arrays.items():
-        if array.ndim > most or len(array) != n:
+        if array.ndim > (1 if name == "t" else most) or len(array) != n or n < 2:
             raise InputError(f"{name} has shape {array.shape} beside {n} times: give (n,){' or (n, k)' * (most > 1)}")
         keep &= ~np.ma.getmaskarray(np.ma.asarray(given[name])).reshape(n, -1).any(axis=1)
-        if drop:
-            keep &= np.isfinite(array.reshape(n, -1)).all(axis=1)
-    arrays = {name: array[keep] for name, array in arrays.items()}
     if keep.sum() < 2:
-        raise InputError(f"{keep.sum()} of {n} samples are neither masked nor without a number: give at least two")
+        raise InputError(f"{keep.sum()} of {n} samples are not masked: give at least two")
+    arrays = {name: array[keep] for name, array in arrays.items()}
     for name, array in arrays.items():
         if not np.isfinite(array).all():
             raise InputError(f"{name} holds {first_not_finite(array)}: remove such samples from every column")
-    t = arrays["t"]
-    back = np.flatnonzero(np.diff(t) <= 0) + 1
+    back = np.flatnonzero(np.diff(arrays["t"]) <= 0) + 1
     if len(back):
-        where = f"t[{back[0]}] = {t[back[0]]:.9g} s, {len(back)} such step(s)"
-        remedy = "sort the samples, and remove doubled ones; several recordings: give a list of them"
-        raise InputError(f"time runs backwards or stands still ({where}): {remedy}")
+        where = f"t[{back[0]}] = {arrays['t'][back[0]]:.9g} s, {len(back)} such step(s)"
+        raise InputError(f"time runs backwards or stands still ({where}): sort the samples, and remove doubled ones")
     return arrays.values()
 
 
@@ -101,15 +95,3 @@ def runs(t, max_gap):
     """[(first, last + 1), ...]: the stretches of t (n,) whose steps are at most max_gap s."""
     edges = np.flatnonzero(np.diff(t) > max_gap) + 1
     return list(zip(np.r_[0, edges].tolist(), np.r_[edges, len(t)].tolist(), strict=True))
-
-
-def _numbers(name, value):
-    array = np.ma.getdata(value) if np.ma.isMaskedArray(value) else value
-    kind = getattr(value, "dtype", np.dtype(float)).kind
-    if kind in "mM":  # dates, of pandas with a time zone too
-        array = np.asarray(array, dtype=f"{kind}8[ns]")
-        array = (array - array[0]) / np.timedelta64(1, "s")
-    array = numbers(name, array)
-    if array.ndim == 0:
-        raise InputError(f"{name} = {value!r:.60} is no array: give t, q and u as arrays, time first, or a recording")
-    return array

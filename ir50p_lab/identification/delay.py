@@ -13,16 +13,14 @@ from ir50p_lab.identification.processing import process
 _FLAT = 1.01  # a residual this near to the smallest does not speak against a delay
 _FEWEST = 200  # samples in motion, of each joint
 _LONGEST = 0.15  # s
-_BLOCKS = 6  # stretches of the record that are compared for the standard error
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DelayEstimate:
     """What `estimate_delay` found.
 
-    delay: s, median of the joints; stderr: s, the larger of what the joints and what stretches of the record differ by.
-    per_joint (k,) s. delays (m,) s: those tried; rms (m, k): residual of the best model with each.
-    warnings: tuple of str.
+    delay: s, median of the joints; stderr: s, by how the joints differ. per_joint (3,) s. delays (m,) s: those tried;
+    rms (m, 3): residual of the best model with each. warnings: tuple of str.
     """
 
     delay: float
@@ -36,68 +34,39 @@ class DelayEstimate:
 def estimate_delay(recording, q=None, u=None, *, cutoff_hz=3.0, slow=0.1):
     """Delay from a sample to the moment its u acts: the one with which the best model leaves the smallest residual.
 
-    For each delay that is tried, u is shifted, the model is fitted anew (three joints: the rigid arm with friction; one
-    joint: inertia, friction, offset), and what is left is compared; u, q and all columns pass the same filter.
+    For each delay from 0 to 0.15 s u is shifted, the rigid arm with friction is fitted anew, and what is left is
+    compared; u, q and all columns pass the same filter. Steps of the set point tell it within a period or two; a smooth
+    excitation is off by up to ten, for there a delay looks like a little more inertia and friction.
 
-    How well this can be done (simulated bench, delays of 0, 2 and 5 periods of 10 ms): from steps of the set point
-    within one or two periods, for there u jumps and the joint answers; from a Fourier excitation it is off by up to ten
-    periods, for there a delay looks like a little more inertia and friction. Backlash and a dead zone look like delay.
-
-    Args: recording, or t, q, u: as in `process`. cutoff_hz, slow: as in `process`; slow leaves out where a joint may
-    stick. Delays from 0 to 0.15 s are tried, by whole periods.
-
+    Args: recording, or t, q, u: of three joints. cutoff_hz, slow: as in `process`.
     Returns: DelayEstimate. Raises: InputError on bad arguments; IdentificationError if too little motion is left.
     """
     t, q, u = columns_of(recording, q, u)
-    joints = q.shape[1]
-    if joints not in (1, 3):
-        raise InputError(f"q has {joints} columns: give one joint, or all three")
+    if q.shape[1] != 3:
+        raise InputError(f"q has {q.shape[1]} columns: give all three joints")
     step = sampling_period(t)
     delays = step * np.arange(max(int(_LONGEST / step + 1e-9), 3) + 1)
     options = {"cutoff_hz": cutoff_hz, "slow": slow, "filter_u": True, "trim": max(delays[-1], 0.5)}
     motion = process(t, q, u, **options)
-    fewest = int(motion.use.sum(axis=0).min())
-    if fewest < _FEWEST:
+    if (fewest := int(motion.use.sum(axis=0).min())) < _FEWEST:
         raise IdentificationError(f"only {fewest} samples faster than slow = {slow} rad/s: record steps for a minute")
+    Phi = regressor(motion.q, motion.qd, motion.qdd)
     driven = [process(t, q, u, delay=float(delay), **options).u for delay in delays]
-    left = [_left(motion, driven, joint) ** 2 for joint in range(joints)]
-    per_joint = np.array([_least(delays, one.sum(axis=0)) for one in left])
-    parts = zip(*(np.array_split(one, _BLOCKS) for one in left), strict=True)
-    by_block = [np.median([_least(delays, one.sum(axis=0)) for one in part]) for part in parts]
-    stderr = max(np.std(by_block, ddof=1) / np.sqrt(_BLOCKS), np.std(per_joint) / np.sqrt(joints), 0.3 * step)
-    rms = np.sqrt(np.column_stack([one.mean(axis=0) for one in left]))
+    rms = np.empty((len(delays), 3))
+    for joint, use in enumerate(motion.use.T):
+        A = Phi[use, joint][:, RIGID_ON[joint]]
+        y = np.column_stack([one[use, joint] for one in driven])
+        rms[:, joint] = np.sqrt(np.mean((y - A @ np.linalg.lstsq(A, y, rcond=1e-9)[0]) ** 2, axis=0))
+    per_joint = delays[rms.argmin(axis=0)]
     flat = max(np.ptp(np.flatnonzero(one <= _FLAT * one.min())) * step for one in rms.T)
     unsure, warnings = max(np.ptp(per_joint), flat), ()
-    if unsure > 3 * step or (per_joint >= delays[-1]).any():
+    if unsure > 3 * step or per_joint.max() >= delays[-1]:
         warnings = (f"this record tells the delay only within {unsure:.2g} s: record steps, where u jumps",)
     return DelayEstimate(
         delay=float(np.median(per_joint)),
-        stderr=float(stderr),
+        stderr=float(max(np.std(per_joint) / np.sqrt(3), 0.3 * step)),
         per_joint=per_joint,
         delays=delays,
         rms=rms,
         warnings=warnings,
     )
-
-
-def _left(motion, driven, joint):
-    """What the model of one joint leaves of each u in `driven`, (m, len(driven)), of the samples to be used."""
-    use = motion.use[:, joint]
-    if motion.q.shape[1] == 3:
-        A = regressor(motion.q, motion.qd, motion.qdd)[use, joint][:, RIGID_ON[joint]]
-    else:
-        v = motion.qd[use, 0]
-        A = np.column_stack([motion.qdd[use, 0], v, np.sign(v), np.ones_like(v)])
-    y = np.column_stack([u[use, joint] for u in driven])
-    A = A / np.maximum(np.linalg.norm(A, axis=0), 1e-300)
-    return y - A @ np.linalg.lstsq(A, y, rcond=1e-9)[0]
-
-
-def _least(delays, power):
-    """Delay of the smallest power, between the points by a parabola."""
-    m = int(power.argmin())
-    if m in (0, len(power) - 1):
-        return float(delays[m])
-    before, here, after = power[m - 1 : m + 2]
-    bend = before - 2 * here + after
-    return float(delays[m] + (0.5 * (before - after) / bend if bend > 0 else 0.0) * (delays[1] - delays[0]))

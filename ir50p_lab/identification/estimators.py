@@ -1,4 +1,4 @@
-"""Estimators for `fit`: least squares, ridge, Huber, bounded, instrumental variables.
+"""Estimators for `fit`: ridge, Huber, bounded, instrumental variables.
 
 Each takes a Problem and returns its parameters and their covariance, as `Problem.estimate` does.
 """
@@ -8,18 +8,11 @@ from scipy.optimize import lsq_linear
 
 from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification.parameters import FREE_OF_SIGN
-from ir50p_lab.identification.regression import r_factor
 
-_WEAK = 0.1  # smallest canonical correlation of instruments and regressors below which they are weak
-_NOTHING = 1e-8  # below it the estimate would be rounding
-_MOST_STEPS = 200
+_BLIND = 1e-8  # smallest canonical correlation of instruments and columns: if it is less, the estimate is rounding
+_MOST_STEPS = 200  # of reweighting: if more are needed, the robust fit does not settle
 _NORMAL = 0.6744897501960817  # median of |x| of a standard normal
 _THRESHOLD = 1.345  # standard deviations: 95 % as efficient as least squares where there are no outliers
-
-
-def plain(problem):
-    """min |y - A x|^2 by QR    (2.35), without the squared condition number of A^T A."""
-    return problem.estimate(problem.Qty)
 
 
 def ridge(problem, strength):
@@ -31,13 +24,11 @@ def ridge(problem, strength):
 
 
 def huber(problem):
-    """min sum rho(e / s), rho quadratic up to 1.345 and linear beyond, by reweighted least squares.
+    """min sum rho(e/s), rho quadratic up to 1.345 and linear beyond, by reweighted least squares.
 
-    s: 1.4826 times the median of |residual|, of each joint by itself. The scores are psi(e), residuals cut at the
-    threshold: the standard errors follow from them.
+    s: 1.4826 times the median of |residual|, of each joint by itself.
     """
-    Q, y = problem.Q, problem.y
-    z = problem.Qty
+    Q, y, z = problem.Q, problem.y, problem.Qty
     counts = (Q.any(axis=1) | (y != 0)).reshape(problem.n, -1)  # rows of zeros are samples left out
     floor = 1e-12 * np.abs(y).max() + 1e-300  # a perfect fit has no scale
     for _ in range(_MOST_STEPS):
@@ -45,10 +36,8 @@ def huber(problem):
         scale = np.nanmedian(np.where(counts, np.abs(e), np.nan), axis=0) / _NORMAL
         limit = np.broadcast_to(np.maximum(_THRESHOLD * scale, floor), e.shape).ravel()
         weights = limit / np.maximum(np.abs(e.ravel()), limit)
-        new = np.linalg.solve(Q.T @ (weights[:, None] * Q), Q.T @ (weights * y))
-        moved = np.linalg.norm(new - z)
-        z = new
-        if moved <= 1e-10 * np.linalg.norm(z):
+        before, z = z, np.linalg.solve(Q.T @ (weights[:, None] * Q), Q.T @ (weights * y))
+        if np.linalg.norm(z - before) <= 1e-10 * np.linalg.norm(z):
             break
     else:
         raise IdentificationError(f"{problem.who}the robust fit has not settled: too few good samples; use 'ls'")
@@ -62,8 +51,7 @@ def bounded(problem):
     Standard errors are those without bounds: a bound can only make an estimate surer.
     """
     low = [-np.inf if name in FREE_OF_SIGN else 0.0 for name in problem.names]
-    # y may be of any size: scaled to 1, so that the solver's tolerances mean the same for every unit
-    size = np.linalg.norm(problem.Qty) or 1.0
+    size = np.linalg.norm(problem.Qty) or 1.0  # y is scaled to 1: the solver's tolerances then suit every unit
     result = lsq_linear(problem.R, problem.Qty / size, (low, np.inf), method="bvls", tol=1e-14)
     if not result.success:
         raise IdentificationError(f"{problem.who}the bounded fit failed ({result.message}); use 'ls'")
@@ -75,23 +63,11 @@ def bounded(problem):
 
 
 def instrumental_variables(problem, Z):
-    """Solve Z^T (y - A x) = 0: no bias from noise in A if Z, (N, p), moves as A does but with other noise.
-
-    Raises IdentificationError if Z says nothing about some combination of the columns.
-    """
-    Z = Z / np.maximum(np.linalg.norm(Z, axis=0), 1e-300)
-    R = r_factor(Z)
-    own = np.abs(np.diag(R))
-    if own.min() < _NOTHING:
-        name = problem.names[int(own.argmin())]
-        raise IdentificationError(f"{problem.who}the instrument of {name} is zero, or a combination of the others")
-    Qz = Z @ np.linalg.inv(R)
-    derivative = Qz.T @ problem.Q
+    """Solve Z^T (y - A x) = 0: no bias from noise in A if Z, (N, p), moves as A does but with other noise."""
+    Z = np.linalg.qr(Z / np.maximum(np.linalg.norm(Z, axis=0), 1e-300))[0]
+    derivative = Z.T @ problem.Q
     smallest = np.linalg.svd(derivative, compute_uv=False)[-1]
-    if smallest < _NOTHING:
-        said = f"{problem.who}instruments and regressors have a correlation of {smallest:.1g} only in some direction"
-        raise IdentificationError(f"{said}: take instruments that follow the same motion")
-    if smallest < _WEAK:
-        problem.notes.append(f"{problem.who}weak instruments (correlation {smallest:.2g}): large, optimistic errors")
-    z = np.linalg.solve(derivative, Qz.T @ problem.y)
-    return problem.estimate(z, rows=Qz, residuals=problem.y - problem.Q @ z, derivative=derivative)
+    if smallest < _BLIND:
+        raise IdentificationError(f"{problem.who}the instruments say nothing: take some that follow the same motion")
+    z = np.linalg.solve(derivative, Z.T @ problem.y)
+    return problem.estimate(z, rows=Z, derivative=derivative)

@@ -7,7 +7,7 @@ from ir50p_lab.identification import estimators
 from ir50p_lab.identification.estimate import Estimate, impossible_values, indefinite_mass
 from ir50p_lab.identification.fit_input import checked_data, finite
 from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, NAMES, metres
-from ir50p_lab.identification.regression import Problem, product
+from ir50p_lab.identification.regression import Problem
 from ir50p_lab.inputs import choice, number, vectors3
 
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
@@ -47,7 +47,7 @@ def fit(
             as the thesis: right for torque, or for equal motors (2.47 corrected).
         columns: "rigid" (all but theta7 and theta8, which no rigid body has), "thesis" (all 20).
         l2: length of the upper arm, m: ties theta6 = l2 theta4, as for every in-line arm.
-        use: (n, 3) bool: samples of a joint that count, as `Motion.use`; default all.
+        use: (n, 3) bool: samples of a joint that count, as `Motion.use`; default all. unit: "PWM" or "N m".
 
     Returns: Estimate. Columns that depend on others within the data are left out: 0 with stderr inf, and named. Its
     standard errors hold for residuals that are correlated in time, too (after a filter they are). They assume that Phi
@@ -71,16 +71,17 @@ def fit(
     for joints in [slice(0, 3)] if rows == "shared" else [slice(j, j + 1) for j in range(3)]:
         who = "" if rows == "shared" else f"joint {joints.stop}: "
         here, ties, names = _acting(joints, COLUMNS[columns], l2)
-        A, b = product(_equations(Phi, share, joints, here), ties), (y * share)[:, joints].ravel()
-        problem = Problem(A, b, names, len(y), who=who)
+        A = _equations(Phi, share, joints, here) @ ties
+        problem = Problem(A, (y * share)[:, joints].ravel(), names, len(y), who=who)
         ties = ties[:, problem.kept]
         if method == "iv":
             x, spread = estimators.instrumental_variables(problem, _equations(Z, share, joints, here) @ ties)
         elif method == "ridge":
             x, spread = estimators.ridge(problem, strength)
+        elif method in ("huber", "bounded"):
+            x, spread = getattr(estimators, method)(problem)
         else:
-            others = {"huber": estimators.huber, "bounded": estimators.bounded}
-            x, spread = others.get(method, estimators.plain)(problem)
+            x, spread = problem.estimate(problem.Qty)
         found = ties.any(axis=1)
         spread = ties @ spread @ ties.T
         count = used[:, joints].sum()
@@ -129,8 +130,7 @@ def _equations(Phi, share, joints, here):
 def _checked_weights(weights, y):
     weights = vectors3("weights", weights, unit="1/variance of each measurement")
     if weights.shape not in ((3,), y.shape) or (weights < 0).any():
-        found = f"weights have shape {weights.shape} and least value {weights.min():g}"
-        raise InputError(f"{found}: give 1/variance of each measurement, (3,) or (n, 3), all >= 0")
+        raise InputError(f"weights {weights.shape}, least {weights.min():g}: give 1/variance, (3,) or (n, 3), all >= 0")
     return weights
 
 
@@ -145,6 +145,6 @@ def _checked_use(use, y):
 
 def _checked_instruments(instruments, Phi):
     if np.shape(instruments) != Phi.shape:
-        shapes = f"instruments have shape {np.shape(instruments)}, Phi {Phi.shape}"
-        raise InputError(f"{shapes}: method='iv' needs the regressor of the reference, a simulation or a repeated run")
+        shape = np.shape(instruments)
+        raise InputError(f"instruments have shape {shape}: give {Phi.shape}, the regressor of the reference, say")
     return finite("instruments", instruments)

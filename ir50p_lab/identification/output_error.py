@@ -5,31 +5,29 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ir50p_lab.controllers.base import check_reference, is_compiled
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.closed_loop import ClosedLoopRun, runs_of
-from ir50p_lab.identification.parameters import ACTS_ON, FREE_OF_SIGN, NAMES, RIGID_ON, metres
+from ir50p_lab.identification.columns import columns_of, sampling_period
+from ir50p_lab.identification.parameters import FREE_OF_SIGN, NAMES, RIGID_ON, metres
 from ir50p_lab.identification.regression import least_squares
 from ir50p_lab.identification.validation import compared
-from ir50p_lab.modelling.dynamics import as_theta
+from ir50p_lab.inputs import number, vectors3
+from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta
+from ir50p_lab.simulation.loops import sampled_loop
+from ir50p_lab.simulation.plant import DRY, FS, LIMIT, QS, make_plant
+from ir50p_lab.simulation.simulate import sampled
 
 _STEP = 0.02  # of a parameter's scale, for differences: stiction makes the output jump on smaller ones
-_PERIOD = 0.002  # s, of the simulation
 _QS = (0.005, 0.5)  # rad/s, bounds of the Stribeck speed
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 _COULOMB = [0, 1, 2], [NAMES.index(name) for name in ("fc1", "fc2", "fc3")]
+_FREE = np.isin(NAMES, FREE_OF_SIGN)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class OutputError:
-    """What `output_error` found; theta may be used wherever an Estimate's may.
-
-    ============ ============================================================================== ===========
-    theta        parameters                                                                      (3, 20) PWM
-    stderr       standard errors; nan: not part of the fit                                       (3, 20) PWM
-    fs, qs       breakaway friction, Stribeck speed (1.117)                                      (3,) PWM, rad/s
-    fs_stderr, qs_stderr                                                                         (3,)
-    warnings     tuple of str
-    ============ ============================================================================== ===========
+    """What `output_error` found: theta (3, 20) PWM with stderr (nan: not part of the fit), breakaway friction fs (3,)
+    PWM and Stribeck speed qs (3,) rad/s (1.117) with theirs; delay s; warnings: tuple of str.
     """
 
     theta: np.ndarray
@@ -49,128 +47,134 @@ class OutputError:
         return compared(run.t, run.q, q, "q"), compared(run.t, run.u, u, "u")
 
 
+class ClosedLoopRun:
+    """A recording with what is needed to repeat it in simulation; arguments as in `output_error`.
+
+    Attributes: t (m,), q, u (m, 3), the reference r (m, 3, 3), the pose at the start (3,), period, s.
+    """
+
+    def __init__(self, recording, controller, reference=None, *, delay=0.0, seconds=np.inf):
+        t, q, u = columns_of(recording)
+        self.period, self.controller = sampling_period(t), controller
+        n = int(min(len(t), np.round(number("seconds", seconds, "> 0 or inf", unit="s") / self.period)))
+        if q.shape[1] != 3 or n < 50:
+            raise InputError(f"{n} samples of {q.shape[1]} joint(s): give 50 or more of all three joints")
+        if np.abs(np.diff(t) - self.period).max() > 0.1 * self.period:
+            raise InputError("the times are uneven or have gaps: a loop is compared without; cut with between(t0, t1)")
+        if not is_compiled(controller):
+            raise InputError(f"controller is a {type(controller).__name__}: give the PID (or other) of the run")
+        if reference is not None:
+            check_reference(reference, sampled=True)
+            rows = sampled(reference, t)
+        elif (angles := getattr(recording, "reference", None)) is None:
+            raise InputError("the recording holds no reference: give reference=, the motion that was asked for")
+        else:
+            angles = vectors3("reference of the recording", angles)
+            qd = np.gradient(angles, self.period, axis=0)
+            rows = np.stack([angles, qd, np.gradient(qd, self.period, axis=0)], axis=1)
+        self.t, self.q, self.u, self.r = (np.ascontiguousarray(x[:n]) for x in (t, q, u, rows))
+        self.start = q[:5].mean(axis=0)  # the arm has hardly moved by then
+        self.late = round(number("delay", delay, ">= 0", unit="s") / self.period)
+
+    def simulate(self, theta, fs=None, qs=None, *, step=0.001):
+        """q and u (PWM), (m, 3) each, of the loop with this model; fs, qs (3,): breakaway and Stribeck speed."""
+        plant = make_plant(theta, unit="PWM", g=STANDARD_GRAVITY)
+        plant.numbers[LIMIT : LIMIT + 3] = 255.0
+        if fs is not None:
+            plant.numbers[FS : FS + 3], plant.numbers[QS : QS + 3], plant.numbers[DRY] = fs, qs, 1.0
+        law = self.controller.kind, self.controller.parameters, np.zeros_like(self.controller.state)
+        x, (q, qd, u) = np.r_[self.start, 0.0, 0.0, 0.0], np.empty((3, *self.q.shape))
+        steps = max(1, round(self.period / step))
+        h = self.period / steps
+        sampled_loop(plant.theta, plant.numbers, *law, self.t, self.r, x, self.late, h, steps, q, qd, u)
+        return q, u
+
+
 def output_error(
-    estimate, recordings, controller, references=None, *, delay=0.02, l2=None, seconds=30, iterations=12, progress=True
+    estimate, recording, controller, reference=None, *, delay=0.02, l2=None, seconds=30, iterations=12, progress=True
 ):
     """Refine an estimate: least squares on the q and u of the simulated closed loop.
 
-    The regression compares torques, from angles that must be differentiated; here nothing is differentiated, and noise
-    in the angles does no harm. The model is driven by the same controller on the same reference from the same start.
-    It may stick, so that breakaway friction fs and the Stribeck speed qs can be found, which no linear theta holds
-    (the thesis' closing complaint). Residuals of q and of u are weighted by what their high frequencies show as noise
-    plus what the first simulation misses; inertial and friction terms stay >= 0, fs >= fc.
+    Nothing is differentiated, and noise in the angles does no harm: the model is driven by the same controller on the
+    same reference from the same start. It may stick, so that breakaway friction fs and the Stribeck speed qs can be
+    found, which no linear theta holds (the thesis' closing complaint). Inertial and friction terms stay >= 0, fs >= fc.
 
     Args:
-        estimate: Estimate or theta (3, 20) to start from: `identify`. Parameters not in it stay as they are.
-        recordings: a Recording or a list; references: the motion of all or of each (None: as recorded,
-        differentiated);
-        controller: of the runs, a compiled one such as PID, with its gains. delay: s, whole periods.
-        l2: m, keeps theta6 = l2 theta4. seconds: s of each recording that are used. iterations: at most.
-        progress: show a bar.
+        estimate: Estimate or theta (3, 20) to start from: `identify`. recording; reference: its motion (None: as
+        recorded, differentiated); controller: of the run, a compiled one such as PID. delay: s, whole periods.
+        l2: m, keeps theta6 = l2 theta4. seconds: s that are used. iterations: at most. progress: show a bar.
 
     Returns: OutputError. Raises InputError on bad arguments; IdentificationError if the first model's loop runs away.
     """
     theta, _ = as_theta(getattr(estimate, "theta", estimate))
     if getattr(estimate, "unit", "PWM") != "PWM":
         raise InputError(f"the estimate is in {estimate.unit}: the loop is simulated in PWM counts")
-    runs = runs_of(recordings, controller, references, delay=delay, seconds=seconds)
-    search = _Search(estimate, theta, l2)
     from scipy.optimize import least_squares as minimise
     from tqdm.auto import tqdm
 
-    measured = [np.hstack([run.q, run.u]) for run in runs]
+    run = ClosedLoopRun(recording, controller, reference, delay=delay, seconds=seconds)
+    l2 = None if l2 is None else metres("l2", l2)
+    fitted = np.array([np.isin(range(20), columns) for columns in RIGID_ON])
+    fitted[1:, _THETA6] &= l2 is None
+    start, size = theta[fitted], np.broadcast_to(np.abs(theta).max(axis=1)[:, None], theta.shape)[fitted]
+    scale = np.maximum(0.3 * np.abs(start), 1e-3 * size)
+    free = np.broadcast_to(_FREE, theta.shape)[fitted]
+    coulomb = np.maximum(theta[_COULOMB], 1e-9)
+    x0 = np.r_[np.where(free, start, np.maximum(start, 1e-6 * scale)), 0.3 * coulomb, np.full(3, 0.05)]
+    scale = np.r_[scale, 0.3 * coulomb, np.full(3, 0.02)]
+    low = np.r_[np.where(free, -np.inf, 0.0), np.zeros(3), np.full(3, _QS[0])]
+    high = np.r_[np.full(len(start) + 3, np.inf), np.full(3, _QS[1])]
+    names = [f"joint {j + 1}: {NAMES[k]}" for j, k in np.argwhere(fitted)]
+    names += [f"joint {j}: {what}" for what in ("fs - fc", "qs") for j in (1, 2, 3)]
 
-    def simulated(x):
-        return [np.hstack(run.simulate(*search.model(x), step=_PERIOD)) for run in runs]
+    def spread_out(base, x):
+        """A copy of base (3, 20) with the entries of x in it."""
+        base = base.copy()
+        base[fitted] = x[:-6]
+        if l2 is not None:
+            base[1:, _THETA6] = l2 * base[1:, _THETA4]
+        return base
 
-    first = simulated(search.x0)
-    if not all(np.isfinite(model).all() for model in first):
+    def model_of(x):
+        whole = spread_out(theta, x)
+        return whole, whole[_COULOMB] + x[-6:-3], x[-3:]
+
+    measured, first = np.hstack([run.q, run.u]), np.hstack(run.simulate(*model_of(x0), step=0.002))
+    if not np.isfinite(first).all():
         raise IdentificationError("the loop with the first estimate runs away: fit it with method='bounded' first")
-    weights = [_weights(*pair) for pair in zip(measured, first, strict=True)]
+    # noise, from third differences, which slow motion does not reach, and a tenth of what is missed at first
+    noise = np.sqrt(np.mean(np.diff(measured, 3, axis=0) ** 2, axis=0) / 20)
+    weights = 1 / np.maximum(np.hypot(noise, 0.1 * np.std(measured - first, axis=0)), 1e-6 * measured.std(axis=0))
 
     def residuals(x):
-        parts = [w * (y - model) for w, y, model in zip(weights, measured, simulated(x), strict=True)]
-        return np.nan_to_num(np.concatenate(parts), nan=1e3, posinf=1e3, neginf=-1e3).ravel()
+        left = weights * (measured - np.hstack(run.simulate(*model_of(x), step=0.002)))
+        return np.nan_to_num(left, nan=1e3, posinf=1e3, neginf=-1e3).ravel()
 
     bar = tqdm(total=iterations, disable=not progress, unit="step", desc="output error")
+
+    def slopes(x):
+        bar.update(1)
+        moves = np.diag(np.maximum(np.minimum(_STEP * scale, 0.5 * (x - low)), 1e-4 * _STEP * scale))
+        ahead, behind = np.split(np.array(list(pool.map(residuals, [*(x + moves), *(x - moves)]))), 2)
+        return (ahead - behind).T / (2 * moves.diagonal())
+
     with bar, ThreadPoolExecutor(2) as pool:
-
-        def slopes(x):
-            moves = np.diag(search.moves(x))
-            ahead, behind = np.split(np.array(list(pool.map(residuals, [*(x + moves), *(x - moves)]))), 2)
-            bar.update(1)
-            return (ahead - behind).T / (2 * moves.diagonal())
-
-        options = {"x_scale": search.scale, "max_nfev": iterations, "ftol": 1e-4}
-        found = minimise(residuals, search.x0, slopes, bounds=search.bounds, **options)
-    spread = least_squares(found.jac.reshape(-1, 6, len(found.x)), found.fun.reshape(-1, 6), names=search.names)
+        options = {"x_scale": scale, "max_nfev": iterations, "ftol": 1e-4}
+        found = minimise(residuals, x0, slopes, bounds=(low, high), **options)
+    spread = least_squares(found.jac.reshape(-1, 6, len(x0)), found.fun.reshape(-1, 6), names=names)
     notes = list(spread.warnings)
     if found.status == 0:
         notes.append(f"not settled after {iterations} steps: give more, or a better first estimate")
-    theta, fs, qs = search.model(found.x)
+    whole, fs, qs = model_of(found.x)
+    both = np.array([[name in (f"joint {j}: fc{j}", f"joint {j}: fs - fc") for name in names] for j in (1, 2, 3)])
+    fs_stderr = np.sqrt(np.einsum("ij,jk,ik->i", both, spread.covariance, both))
     return OutputError(
-        theta=theta,
-        stderr=search.spread_out(np.full((3, 20), np.nan), spread.stderr),
+        theta=whole,
+        stderr=spread_out(np.full((3, 20), np.nan), spread.stderr),
         fs=fs,
         qs=qs,
-        fs_stderr=search.breakaway_error(spread),
+        fs_stderr=np.where((both & np.isinf(spread.stderr)).any(axis=1), np.inf, fs_stderr),
         qs_stderr=spread.stderr[-3:],
         delay=float(delay),
         warnings=tuple(notes),
     )
-
-
-class _Search:
-    """Where the numbers x of the search stand: entries of theta, then fs - fc and qs of each joint."""
-
-    def __init__(self, estimate, theta, l2):
-        columns = getattr(estimate, "columns", [[NAMES[k] for k in rigid] for rigid in RIGID_ON])
-        tied = [] if l2 is None else [(1, _THETA6), (2, _THETA6)]  # the waist has no theta4
-        entries = [(j, k) for j in range(3) for k in ACTS_ON[j] if NAMES[k] in columns[j] and (j, k) not in tied]
-        self.theta, self.places = theta, tuple(np.transpose(entries))
-        self.l2 = None if l2 is None else metres("l2", l2)
-        self.names = [f"joint {j + 1}: {NAMES[k]}" for j, k in entries]
-        self.names += [f"joint {j}: {what}" for what in ("fs - fc", "qs") for j in (1, 2, 3)]
-        x0, stderr = theta[self.places], getattr(estimate, "stderr", np.zeros((3, 20)))[self.places]
-        known = np.where(np.isfinite(stderr), stderr, 0.0)
-        scale = np.maximum.reduce([0.3 * np.abs(x0), 3 * known, 1e-3 * np.abs(theta).max(axis=1)[self.places[0]]])
-        free = np.isin(np.array(NAMES)[self.places[1]], FREE_OF_SIGN)
-        fc = np.maximum(theta[_COULOMB], 1e-9)
-        self.x0 = np.r_[np.where(free, x0, np.maximum(x0, 1e-6 * scale)), 0.3 * fc, np.full(3, 0.05)]
-        self.scale = np.r_[scale, 0.3 * fc, np.full(3, 0.02)]
-        low = np.r_[np.where(free, -np.inf, 0.0), np.zeros(3), np.full(3, _QS[0])]
-        self.bounds = low, np.r_[np.full(len(low) - 3, np.inf), np.full(3, _QS[1])]
-
-    def model(self, x):
-        """(theta, fs, qs) of the numbers x."""
-        theta = self.spread_out(self.theta, x)
-        return theta, theta[_COULOMB] + x[-6:-3], x[-3:]
-
-    def spread_out(self, theta, x):
-        """A copy of theta (3, 20) with the entries of x in it."""
-        theta = theta.copy()
-        theta[self.places] = x[:-6]
-        if self.l2 is not None:
-            theta[1:, _THETA6] = self.l2 * theta[1:, _THETA4]
-        return theta
-
-    def moves(self, x):
-        """Steps for differences: small beside the scale, and inside the bounds on both sides."""
-        return np.maximum(np.minimum(_STEP * self.scale, 0.5 * (x - self.bounds[0])), 1e-4 * _STEP * self.scale)
-
-    def breakaway_error(self, spread):
-        """Standard errors of fs = fc + (fs - fc), (3,), from LeastSquares; inf where the data hold not both."""
-        parts = [[name in (f"joint {j}: fc{j}", f"joint {j}: fs - fc") for name in self.names] for j in (1, 2, 3)]
-        sums = np.array(parts, dtype=float)
-        unknown = sums @ np.isinf(spread.stderr) > 0
-        return np.where(unknown, np.inf, np.sqrt(np.diag(sums @ spread.covariance @ sums.T)))
-
-
-def _weights(measured, model):
-    """1/size of the residuals of q and u of each joint, (6,): their noise, and a tenth of what is missed at first.
-
-    Noise from third differences, which slow motion does not reach. measured, model: (m, 6).
-    """
-    noise = np.sqrt(np.mean(np.diff(measured, 3, axis=0) ** 2, axis=0) / 20)
-    missed = np.sqrt(np.mean((measured - model) ** 2, axis=0))
-    return 1 / np.maximum(np.hypot(noise, 0.1 * missed), 1e-9 + 1e-6 * measured.std(axis=0))

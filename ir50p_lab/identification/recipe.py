@@ -48,8 +48,8 @@ def identify(
         anyway: go on where the data are refused.
 
     Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by some per
-    cent, at this length of record more than the standard errors, which do not know it: where the parameters themselves
-    matter, go on with `fit_with_instruments`; where Stribeck friction does, with `output_error`.
+    cent, at this length of record more than the standard errors, which do not know it. Where the parameters themselves
+    or Stribeck friction matter, go on with `output_error`.
 
     Returns: Estimate, whose `score` processes other recordings alike.
     Raises: InputError, IdentificationError as `process` and `fit` do, and if a joint is constant, its angle wrapped or
@@ -61,23 +61,16 @@ def identify(
     steps = {"cutoff_hz": cutoff_hz, "delay": delay, "held": held}
     notes, parts = [], []
     for recording in recordings:
-        notes += _looked_at(recording, anyway)
+        t, q, u = columns_of(recording)
+        for joint in range(q.shape[1]):
+            warned = Warnings(anyway, f"joint {joint + 1}: ")
+            check_signals(warned, t, q[:, joint], u[:, joint])
+            share = np.isin(u[:, joint], (u[:, joint].min(), u[:, joint].max())).mean()
+            if share > 0.05:
+                warned.add(f"u is at its largest or smallest value in {share:.0%}: if clipped, record a wider range")
+            notes += warned
         motion = process(recording, slow=slow, **steps)
         parts.append((regressor(motion.q, motion.qd, motion.qdd, sign=TURN), motion.u, motion.use))
     Phi, y, use = map(np.concatenate, zip(*parts, strict=True))
     found = fit(Phi, y, method=method, l2=l2, use=use, unit=unit)
     return replace(found, warnings=(*notes, *found.warnings), steps={**steps, "sign": TURN})
-
-
-def _looked_at(recording, anyway):
-    """Warnings about a recording as sentences; what cannot be right is refused, joint by joint."""
-    t, q, u = columns_of(recording)
-    notes = []
-    for joint in range(q.shape[1]):
-        warned = Warnings(anyway, f"joint {joint + 1}: ")
-        check_signals(warned, t, q[:, joint], u[:, joint])
-        share = 100 * np.isin(u[:, joint], (u[:, joint].min(), u[:, joint].max())).mean()
-        if share > 5:
-            warned.add(f"u is at its largest or smallest value in {share:.0f} %: if clipped, record a wider range")
-        notes += warned
-    return notes

@@ -11,9 +11,6 @@ from ir50p_lab.identification.fit_input import finite
 from ir50p_lab.inputs import numbers
 
 DEPENDENT = 1e-8  # a column of which less than this sticks out of the others carries nothing but rounding
-_CLOSE = 30.0  # condition index from which columns are hardly told apart (Belsley, Kuh and Welsch 1980)
-_SHARE = 0.5  # share of a parameter's variance that must come from that direction
-_BLOCK = 190  # rows factored at once: fits in the fast cache with 20 columns
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -30,7 +27,7 @@ class LeastSquares:
     independent    number of independent samples that carry as much as the n there are
     condition      of A, its columns scaled to length 1
     dropped        names of the columns that the data cannot carry                                  tuple
-    warnings       tuple of str: columns left out, columns that are hardly told apart
+    warnings       tuple of str: columns left out, and what the others now stand for
     ============== ================================================================================ ==========
     """
 
@@ -109,20 +106,18 @@ class Problem:
         if not length.any():
             raise IdentificationError(f"{who}the data hold no motion: move the joint and record again")
         A = A / np.where(length > 1e-12 * length.max(), length, np.inf)
-        R = r_factor(np.column_stack([A, y]))
+        R = np.linalg.qr(np.column_stack([A, y]), mode="r")
         self.kept, weights = independent_columns(R[:, :-1], tolerance)
         lost = [k for k in range(len(names)) if k not in self.kept]
         R = np.linalg.qr(R[:, [*self.kept, -1]], mode="r")
         self.R, self.Qty, self.scale = R[:-1, :-1], R[:-1, -1], length[self.kept]
         self.R_inverse = np.linalg.inv(self.R)
-        self.Q = product(A[:, self.kept], self.R_inverse)
+        self.Q = A[:, self.kept] @ self.R_inverse
         self.who, self.y, self.n = who, y, n
         self.names, self.lost = [names[k] for k in self.kept], [names[k] for k in lost]
         in_its_unit = weights[:, lost] * length[lost] / self.scale[:, None]
         self.notes = [self._stands_for(*pair) for pair in zip(self.lost, in_its_unit.T, strict=True)]
-        _, s, directions = np.linalg.svd(self.R)
-        self.condition = float(s[0] / s[-1])
-        self.notes += self._nearly_dependent(s[0] / s, (directions / s[:, None]) ** 2)
+        self.condition = float(np.linalg.cond(self.R))
 
     def _stands_for(self, lost, weights):
         """A sentence about a column left out: what the kept ones now stand for."""
@@ -131,14 +126,6 @@ class Problem:
             return f"{self.who}{lost} cannot be found: nothing in the data excites it"
         stands = "; ".join(f"{name} stands for {name} {w:+.4g} {lost}" for name, w in parts)
         return f"{self.who}{lost} cannot be told apart from {', '.join(name for name, _ in parts)}: {stands}"
-
-    def _nearly_dependent(self, indices, variances):
-        """Sentences about columns that are nearly dependent: variance decomposition proportions (Belsley 1980)."""
-        for index, share in zip(indices, variances / variances.sum(axis=0), strict=True):
-            members = [name for name, part in zip(self.names, share, strict=True) if part > _SHARE]
-            if index > _CLOSE and len(members) > 1:
-                apart = f"{', '.join(members)} are hardly told apart (condition index {index:.0f})"
-                yield f"{self.who}{apart}: a combination of them is known, not each. Excite the joints more"
 
     def estimate(self, z, *, rows=None, residuals=None, derivative=None):
         """Parameters of the columns kept, (k,), and their covariance (k, k), for z = R x with columns of length 1.
@@ -157,25 +144,6 @@ class Problem:
             spread = np.linalg.solve(derivative, np.linalg.solve(derivative, spread).T)
         back = self.R_inverse / self.scale[:, None]
         return back @ z, back @ spread @ back.T
-
-
-def r_factor(A):
-    """R of A = Q R, (p, p) for A (m, p), m >= p: in blocks, then the blocks' R, as the rows of R are a sum of squares.
-
-    As exact as one Householder QR (each step is orthogonal), several times as fast for 10^4 rows and 20 columns.
-    """
-    while len(A) > 2 * _BLOCK > 4 * A.shape[1]:
-        whole = len(A) // _BLOCK * _BLOCK
-        R = np.linalg.qr(A[:whole].reshape(-1, _BLOCK, A.shape[1]), mode="r").reshape(-1, A.shape[1])
-        A = np.concatenate([R, A[whole:]])
-    return np.linalg.qr(A, mode="r")
-
-
-def product(A, B):
-    """A @ B for A (m, p), B (p, k), in blocks: for them the library takes one thread. On a busy laptop its second one
-    made the same fit several times as slow.
-    """
-    return np.concatenate([block @ B for block in np.array_split(A, len(A) // 600 + 1)])
 
 
 def independent_columns(R, tolerance=DEPENDENT):

@@ -4,14 +4,12 @@ import mujoco
 import numpy as np
 import pytest
 import scipy.linalg
-import sympy
 from arms import random_states
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification import base_parameters, fit, general_regressor, regressor
-from ir50p_lab.identification.general_arm import GENERAL_NAMES, unit_parameters
+from ir50p_lab.identification import base_parameters, general_regressor, regressor
+from ir50p_lab.identification.general_arm import GENERAL_NAMES
 from ir50p_lab.identification.parameters import NAMES
-from ir50p_lab.modelling.symbolic import derive, same_function
 
 L2 = 0.2
 
@@ -60,58 +58,14 @@ def test_rows_have_ranks_9_11_9(Phi, row, rank, unseen):
     check_invariant(Phi[:, row], base)
 
 
-def test_in_line_arm_has_17_base_parameters(Phi):
-    # theta6 = l2 theta4 and theta7 = theta8 = 0
-    tied = Phi.copy()
-    tied[:, :, 3] += L2 * tied[:, :, 5]
-    keep = [k for k in range(20) if k not in (5, 6, 7)]
-    base = base_parameters(tied[:, :, keep], names=[NAMES[k] for k in keep])
-    assert base.rank == 17
-    inertial = [name for name in base.groups if name.startswith(("theta", "j"))]
-    assert (len(inertial), 17 - len(inertial)) == (8, 9)
-
-
-def test_physical_parameters_fall_into_groups(Phi):
-    # the thesis' model in 27 ungrouped parameters: rank 20 again, and these groups
-    columns = {
-        "m1 lc1^2": 0, "Izz1": 0, "Izz2": 0, "Izz3": 0, "j1": 0, "m2 lc2^2": 1, "m3 l2^2": 1, "m2 lc2": 2, "m3 l2": 2,
-        "m3 lc3": 3, "m3 lc3^2": 4, "m3 lc3 l2": 5, "Iyz2": 6, "Iyz3": 7, "Iyy2": 8, "j2": 8, "Iyy3": 9,
-        **{NAMES[k]: k for k in range(10, 20)},
-    }  # fmt: skip
-    assert len(columns) == 27
-    base = base_parameters(Phi[:, :, list(columns.values())], names=list(columns))
-    assert base.rank == 20
-    assert {group for group in base.groups if "+" in group} == {
-        "m1 lc1^2 + Izz1 + Izz2 + Izz3 + j1",
-        "m2 lc2^2 + m3 l2^2",
-        "m2 lc2 + m3 l2",
-        "Iyy2 + j2",
-    }
-
-
 def test_general_arm_has_25_base_parameters(general):
     base = base_parameters(general, names=GENERAL_NAMES, known={"l2": L2})
     assert general.shape == (500, 3, 42)
     assert base.rank == 25
-    inertial = base.groups[:16]
-    assert inertial == (
-        "ZZ1 + YY2 + YY3 + l2^2 m3 + j1",
-        "XX2 - YY2 - l2^2 m3",
-        "XY2",
-        "XZ2 + l2 mz3",
-        "YZ2",
-        "ZZ2 + l2^2 m3 + j2",
-        "mx2 + l2 m3",
-        "my2",
-        "XX3 - YY3",
-        "XY3",
-        "XZ3",
-        "YZ3",
-        "ZZ3",
-        "mx3",
-        "my3",
-        "j3",
+    groups = (
+        "ZZ1 + YY2 + YY3 + l2^2 m3 + j1|XX2 - YY2 - l2^2 m3|XY2|XZ2 + l2 mz3|YZ2|ZZ2 + l2^2 m3 + j2|mx2 + l2 m3|my2"
     )
+    assert base.groups[:16] == (*groups.split("|"), *"XX3 - YY3|XY3|XZ3|YZ3|ZZ3|mx3|my3|j3".split("|"))
     assert set(base.unseen) == {"m2", "mz2", "m1", "mx1", "my1", "mz1", "XX1", "YY1", "XY1", "XZ1", "YZ1"}
     assert base.singular_values[24] > 1e-2 > 1e-12 > base.singular_values[25]
     check_invariant(general, base)
@@ -119,36 +73,6 @@ def test_general_arm_has_25_base_parameters(general):
     assert "25 base parameters of 42" in text
     assert "XZ2 + l2 mz3" in text
     assert "without effect: m2" in text
-
-
-def test_the_groups_of_the_general_arm_are_exact():
-    # the numbers above, proved as formulas with l2 a symbol
-    model = derive(general=True)
-    s = model.symbols
-    l2, tau = s["l2"], model.tau
-    body = {s[name]: sympy.S.Zero for name in s if name not in ("g", "l1", "l2", "l3")}
-
-    def column(name):
-        total = sympy.zeros(3, 1)
-        for sign, numbers in unit_parameters(name):
-            values = body | {s[key]: sympy.Integer(int(value)) for key, value in numbers.items()}
-            total += int(sign) * tau.xreplace(values)
-        return total
-
-    kept = {name: column(name) for name in ("ZZ1", "XX2", "XZ2", "ZZ2", "mx2", "XX3")}
-    groups = {
-        "YY2": kept["ZZ1"] - kept["XX2"],
-        "YY3": kept["ZZ1"] - kept["XX3"],
-        "mz3": l2 * kept["XZ2"],
-        "m3": l2**2 * (kept["ZZ1"] - kept["XX2"] + kept["ZZ2"]) + l2 * kept["mx2"],
-        "j1": kept["ZZ1"],
-        "j2": kept["ZZ2"],
-        "m2": sympy.zeros(3, 1),
-        "mz2": sympy.zeros(3, 1),
-        "XX1": sympy.zeros(3, 1),
-    }
-    for name, combination in groups.items():
-        assert same_function(column(name), combination), name
 
 
 def random_links(rng):
@@ -171,7 +95,7 @@ def general_parameters(links, rotors=(0.0, 0.0, 0.0)):
     return np.array([found[name] for name in GENERAL_NAMES[:33]])
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_general_regressor_is_the_inverse_dynamics_of_mujoco(seed):
     rng = np.random.default_rng(seed)
     links, rotors, l2 = random_links(rng), rng.uniform(0, 0.2, 3), rng.uniform(0.1, 0.6)
@@ -193,25 +117,7 @@ def test_general_regressor_is_the_inverse_dynamics_of_mujoco(seed):
         np.testing.assert_allclose(tau[k], data.qfrc_inverse, rtol=1e-8, atol=1e-8)
 
 
-def test_the_20_columns_cannot_carry_a_general_arm_but_the_25_can(states, general):
-    rng = np.random.default_rng(3)
-    pi = np.concatenate([general_parameters(random_links(rng)), rng.uniform(0, 1, 9)])
-    tau = general @ pi
-    base = base_parameters(general, names=GENERAL_NAMES)
-    A = general[:, :, base.columns].reshape(-1, 25)
-    found = np.linalg.lstsq(A, tau.ravel(), rcond=None)[0]
-    np.testing.assert_allclose(found, base.matrix @ pi, rtol=1e-8, atol=1e-8)
-    in_line = fit(regressor(*states), tau, columns="thesis", unit="N m")
-    assert (in_line.sigma > 1e-3 * tau.std(axis=0)).any()
-
-
-@pytest.mark.parametrize("factor", [1e-6, 1.0, 1e6])
-def test_rank_does_not_depend_on_units(Phi, factor):
-    scales = factor ** np.linspace(-1, 1, 20)
-    assert base_parameters(Phi[:, 1] * scales).rank == 11
-
-
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(3))
 def test_recovers_random_dependence(seed):
     rng = np.random.default_rng(seed)
     independent, dependent = rng.integers(2, 8), rng.integers(1, 5)
@@ -231,37 +137,24 @@ def test_coefficients_in_symbols():
     assert base.groups == ("a + l2 c + 3 e + 0.1235 g", "b + l2^2 d - 0.875 f + g h")
 
 
-@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
-def test_an_unclear_rank_is_said(size):
-    # each column sticks out of the others a little above the tolerance, all together far less
-    rng = np.random.default_rng(0)
-    A = rng.normal(size=(200, 3))
-    near = A @ [1, 1, 1] + 1.5e-8 * np.linalg.norm(A @ [1, 1, 1]) * rng.normal(size=200) / np.sqrt(200)
-    with pytest.raises(IdentificationError, match=r"the rank is not clear: 4 columns .* 3 singular values"):
-        base_parameters(size * np.column_stack([A, near]))
+RNG = np.random.default_rng(0)
+A = RNG.normal(size=(200, 3))
+NEAR = 1.5e-8 * np.linalg.norm(A.sum(axis=1)) * RNG.normal(size=200) / np.sqrt(200)
+UNCLEAR = np.column_stack([A, A.sum(axis=1) + NEAR])
 
 
 @pytest.mark.parametrize(
     ("Phi", "options", "error", "message"),
     [
         (np.zeros(5), {}, InputError, r"shape \(5,\)"),
-        (np.zeros((0, 3)), {}, InputError, r"shape \(0, 3\)"),
-        ("abc", {}, InputError, "must hold numbers"),
         (np.full((9, 2), np.nan), {}, InputError, "Phi holds nan"),
         (np.ones((3, 2)), {}, InputError, "2 p rows at least"),
         (np.ones((9, 2)), {"names": ["a"]}, InputError, "1 names for 2 columns"),
         (np.zeros((9, 2)), {}, IdentificationError, "no motion"),
+        # each column sticks out of the others a little above the tolerance, all together far less
+        (UNCLEAR, {}, IdentificationError, r"the rank is not clear: 4 columns .* 3 singular values"),
     ],
 )
 def test_bad_input(Phi, options, error, message):
     with pytest.raises(error, match=message):
         base_parameters(Phi, **options)
-
-
-def test_bad_input_of_the_general_arm():
-    z = np.zeros((4, 3))
-    with pytest.raises(InputError, match="give all"):
-        general_regressor(z, z, z[:2], l2=0.2)
-    for l2 in (0.0, -0.2, np.nan):
-        with pytest.raises(InputError, match="l2 ="):
-            general_regressor(z, z, z, l2=l2)

@@ -1,10 +1,9 @@
-"""Bounded estimates: within their limits, optimal by two other routes, and no worse than they must be."""
+"""Bounded estimates: within their limits, optimal by another route, and no worse than they must be."""
 
 import numpy as np
 import pytest
 from arms import random_arm, random_states
-from rounding_noise import NOISE
-from scipy.optimize import minimize, nnls
+from scipy.optimize import nnls
 
 from ir50p_lab.identification import fit, regressor
 from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, NAMES, OFFSETS, ONLY_THESIS
@@ -23,7 +22,7 @@ def poor_data(seed, noise=30.0, n=300, theta=None):
     return Phi, np.einsum("nij,ij->ni", Phi, theta) + rng.normal(0, noise, (n, 3))
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(5))
 def test_physically_consistent_where_least_squares_is_not(seed):
     Phi, y = poor_data(seed)
     plain, found = fit(Phi, y), fit(Phi, y, method="bounded", l2=IR50P.l[1])
@@ -37,7 +36,7 @@ def test_physically_consistent_where_least_squares_is_not(seed):
     assert all(f"{NAMES[k]} = 0" in told for j, k in at if k != 5)
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("rows", ["joint", "shared"])
 def test_equals_nonnegative_least_squares_of_lawson_and_hanson(seed, rows):
     # another algorithm: offsets as differences of two non-negative numbers
@@ -53,29 +52,7 @@ def test_equals_nonnegative_least_squares_of_lawson_and_hanson(seed, rows):
         np.testing.assert_allclose(found.theta[joints[0], here], expected, rtol=1e-6, atol=1e-8 * scale)
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_nothing_in_the_box_fits_better(seed):
-    # a general optimiser, from the estimate and from elsewhere, with the tie
-    Phi, y = poor_data(seed, n=60)
-    found = fit(Phi, y, method="bounded", l2=0.2)
-    here = [k for k in RIGID[1] if k != 5]
-    A = Phi[:, 1, here].copy()
-    A[:, here.index(3)] += 0.2 * Phi[:, 1, 5]
-    scale = np.linalg.norm(A, axis=0)
-    box = [(None, None) if NAMES[k] in OFFSETS else (0, None) for k in here]
-    A, b = A / scale, y[:, 1]
-
-    def cost(x):
-        e = A @ x - b
-        return e @ e, 2 * A.T @ e
-
-    x = found.theta[1, here] * scale
-    for start in (x, np.full(len(x), 1.0)):
-        best = minimize(cost, start, jac=True, bounds=box, method="L-BFGS-B", options={"ftol": 1e-15, "gtol": 1e-9})
-        assert cost(x)[0] <= best.fun * (1 + 1e-9)
-
-
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_good_data_are_left_alone(seed):
     arm = random_arm(np.random.default_rng(seed), coulomb=True)
     Phi = regressor(*random_states(np.random.default_rng(seed), 2000))
@@ -91,17 +68,7 @@ def test_good_data_are_left_alone(seed):
     assert not any("at a bound" in text for text in found.warnings)
 
 
-def test_bounds_bring_it_nearer_to_the_truth():
-    # a convex set that holds the truth: every projection on it (in the norm of the data) comes nearer
-    theta = IR50P.theta_pwm
-    for seed in range(20):
-        Phi, y = poor_data(seed, theta=theta)
-        plain, found = fit(Phi, y), fit(Phi, y, method="bounded")
-        true = np.einsum("nij,ij->ni", Phi, theta)
-        assert np.linalg.norm(found.predict(Phi) - true) <= np.linalg.norm(plain.predict(Phi) - true) + 1e-9
-
-
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(3))
 def test_its_mass_matrix_is_positive_definite(seed):
     Phi, y = poor_data(seed, noise=60.0)
     found = fit(Phi, y, method="bounded", rows="shared", l2=IR50P.l[1], columns="rigid")
@@ -110,10 +77,3 @@ def test_its_mass_matrix_is_positive_definite(seed):
     M = mass_matrix(found.theta, q)
     eigenvalues = np.linalg.eigvalsh(M)
     assert indefinite == (eigenvalues.min() <= 0), "what the fit says about M must be true"
-
-
-@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
-def test_units_do_not_matter(size):
-    Phi, y = poor_data(0)
-    a, b = (fit(Phi, k * y, method="bounded") for k in (1.0, size))
-    np.testing.assert_allclose(b.theta, size * a.theta, rtol=1e-9 + 1e5 * NOISE, atol=(1e-12 + 1e3 * NOISE) * size)

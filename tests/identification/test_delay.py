@@ -1,4 +1,4 @@
-"""The delay: found in exact data, within a period or two on the bench from steps, and Fourier motion cannot tell it."""
+"""The delay: found on the bench within a period or two from steps, while Fourier motion cannot tell it."""
 
 from types import SimpleNamespace
 
@@ -26,27 +26,12 @@ def bench(reference, delay, seed=1):
         return arm.follow(pid, reference, 60)
 
 
-@pytest.mark.parametrize("samples", [0, 1, 4, 9])
-def test_exact_data_of_one_joint(samples):
-    """A mass with viscous friction under a held random command, exactly integrated, then shifted."""
-    n, T = 4000, 0.01
-    u = np.repeat(np.random.default_rng(3).normal(size=n // 20), 20)
-    acting = np.r_[np.zeros(samples), u[: n - samples]]
-    q, v, decay = np.zeros(n), 0.0, np.exp(-2 * T)
-    for k in range(n - 1):
-        q[k + 1] = q[k] + acting[k] / 2 * T + (v - acting[k] / 2) * (1 - decay) / 2
-        v = acting[k] / 2 + (v - acting[k] / 2) * decay
-    found = estimate_delay(np.arange(n) * T, q, u, slow=0.0, cutoff_hz=8.0)
-    assert found.delay == pytest.approx(samples * T, abs=0.001)
-    assert found.warnings == () and found.rms.shape == (16, 1)
-
-
 @pytest.mark.parametrize("delay", [0, 2, 5, 8])
 def test_steps_on_the_bench_tell_it_within_two_periods(delay):
-    for seed in (1, 2):
-        found = estimate_delay(bench(STEPS, delay, seed))
-        assert abs(found.delay - 0.01 * delay) < 0.021
-        assert abs(found.delay - 0.01 * delay) < 3 * found.stderr
+    found = estimate_delay(bench(STEPS, delay))
+    assert abs(found.delay - 0.01 * delay) < 0.021
+    assert abs(found.delay - 0.01 * delay) < 3 * found.stderr
+    assert found.rms.shape == (16, 3)
 
 
 def test_fourier_motion_cannot_tell_it():
@@ -59,7 +44,7 @@ def test_bad_input():
     t = np.arange(3000) * 0.01
     q = np.sin(t)[:, None] * [1.0, 1.0, 1.0]
     good = SimpleNamespace(t=t, q=q, u=q)
-    with pytest.raises(InputError, match="one joint, or all three"):
+    with pytest.raises(InputError, match="all three joints"):
         estimate_delay(t, q[:, :2], q[:, :2])
     for slow in (2.0, 10.0):
         with pytest.raises(IdentificationError, match="record steps"):

@@ -7,8 +7,8 @@ import pytest
 
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification import fit, identify, regressor
-from ir50p_lab.modelling import IR50P, Arm
+from ir50p_lab.identification import identify
+from ir50p_lab.modelling import Arm
 from ir50p_lab.modelling.friction import Friction
 from ir50p_lab.signals import at_rest, fourier
 from ir50p_lab.simulation import simulate
@@ -76,25 +76,6 @@ def test_good_recordings_are_taken_and_explained(case):
     assert found.theta[0, 10] == pytest.approx(theta[0, 10], rel=0.25)
 
 
-@arms
-def test_gaps_uneven_times_and_coarse_angles(case):
-    record = recording(case)
-    rng = np.random.default_rng(0)
-    fit_of = {}
-    for name, kept in (
-        ("all", slice(None)),
-        ("gap", record.t % 7 < 6),
-        ("lost", rng.uniform(size=len(record.t)) < 0.9),
-    ):
-        part = SimpleNamespace(t=record.t[kept], q=record.q[kept], u=record.u[kept])
-        model = identify(part, l2=case[0].l[1], delay=0.0, cutoff_hz=case[3], unit="N m")
-        fit_of[name] = model.score(recording(case, 1)).fit
-    coarse = SimpleNamespace(t=record.t + 1.7e9, q=np.round(record.q / 1e-3) * 1e-3, u=record.u)
-    fit_of["coarse"] = identify(coarse, l2=case[0].l[1], delay=0.0, cutoff_hz=case[3], unit="N m").score(record).fit
-    for name, value in fit_of.items():
-        assert (value > fit_of["all"] - 6).all(), name
-
-
 @pytest.fixture(scope="module")
 def good():
     return recording(ARMS["direct drive, 250 Hz"])
@@ -104,37 +85,21 @@ def spoilt(record, **changes):
     return SimpleNamespace(**{**vars(record), **changes})
 
 
-@pytest.mark.parametrize("share", [0.001, 0.01, 0.3])
-def test_nan_is_refused(good, share):
-    q = good.q.copy()
-    q[np.random.default_rng(0).uniform(size=q.shape) < share] = np.nan
+def test_nan_and_time_going_backwards_are_refused(good):
     with pytest.raises(InputError, match="q holds nan"):
-        identify(spoilt(good, q=q))
-
-
-@pytest.mark.parametrize("back", [0.004, 0.1, 1e3])
-def test_time_going_backwards_is_refused(good, back):
-    t = good.t.copy()
-    t[500:] -= back
+        identify(spoilt(good, q=np.where(good.t[:, None] == good.t[77], np.nan, good.q)))
     with pytest.raises(InputError, match="backwards or stands still"):
-        identify(spoilt(good, t=t))
+        identify(spoilt(good, t=np.r_[good.t[:500], good.t[500:] - 0.004]))
 
 
-@pytest.mark.parametrize("samples", [5, 20, 39])
-def test_too_short_is_refused(good, samples):
-    with pytest.raises(IdentificationError, match="too short"):
-        identify(SimpleNamespace(t=good.t[:samples], q=good.q[:samples], u=good.u[:samples]))
-
-
-@pytest.mark.parametrize("value", [0.0, 1e-3, 2.0])
-def test_a_constant_joint_is_refused(good, value):
+def test_a_constant_joint_is_refused(good):
     q = good.q.copy()
-    q[:, 1] = value
+    q[:, 1] = 2.0
     with pytest.raises(IdentificationError, match="joint 2: q is constant"):
         identify(spoilt(good, q=q))
 
 
-@pytest.mark.parametrize("share", [0.5, 0.7, 0.9])
+@pytest.mark.parametrize("share", [0.5, 0.9])
 def test_a_clipped_angle_is_refused(good, share):
     q = good.q.copy()
     top = q[:, 2].min() + share * np.ptp(q[:, 2])
@@ -143,17 +108,15 @@ def test_a_clipped_angle_is_refused(good, share):
         identify(spoilt(good, q=q))
 
 
-@pytest.mark.parametrize("level", [40, 60, 80])
+@pytest.mark.parametrize("level", [40, 80])
 def test_a_clipped_drive_is_flagged(good, level):
     limit = np.percentile(np.abs(good.u), level, axis=0)
     found = identify(spoilt(good, u=np.clip(good.u, -limit, limit)), cutoff_hz=4.0, delay=0.0, unit="N m")
-    assert sum("largest or smallest" in text for text in found.warnings) == 3
+    assert all(f"joint {joint}: u is at its largest" in " ".join(found.warnings) for joint in (1, 2, 3))
 
 
-@pytest.mark.parametrize("scale", [0.3, 1.0, 2.0])
-def test_degrees_are_flagged(good, scale):
-    middle = good.q.mean(axis=0)
-    found = identify(spoilt(good, q=np.degrees(middle + scale * (good.q - middle))), cutoff_hz=4.0, delay=0.0)
+def test_degrees_are_flagged(good):
+    found = identify(spoilt(good, q=np.degrees(good.q)), cutoff_hz=4.0, delay=0.0)
     assert any("degrees" in text for text in found.warnings)
 
 
@@ -170,21 +133,3 @@ def test_a_frozen_sensor_is_refused_a_slow_one_and_outliers_are_flagged(good, se
     q = good.q.copy()
     q[777, 2] += seconds
     assert "joint 3: q has 1 outlier(s)" in " ".join(identify(spoilt(good, q=q), unit="N m").warnings)
-
-
-def test_unequal_gains_matter_little_where_friction_dominates():
-    """The same comparison as for the rich noise-free data, where the shared fit loses much: here it loses little."""
-    rng = np.random.default_rng(3)
-    q, qd, qdd = (
-        rng.uniform(-1, 1, (3000, 3)) * np.array(size) for size in ([1.5, 0.8, 0.8], [1.2, 0.5, 0.6], [1.0] * 3)
-    )
-    Phi = regressor(q, qd, qdd)
-    lost = {}
-    for name, theta in (
-        ("friction", IR50P.theta_pwm),
-        ("none", IR50P.without_friction().theta / np.array([[0.03], [0.05], [0.02]])),
-    ):
-        y = np.einsum("nij,ij->ni", Phi, theta)
-        left = [np.linalg.norm(fit(Phi, y, rows=rows).residuals, axis=0) for rows in ("shared", "joint")]
-        lost[name] = 100 * (left[0] - left[1]) / np.linalg.norm(y - y.mean(axis=0), axis=0)
-    assert (lost["friction"] < 15).all() and np.median(lost["friction"]) < 6 and lost["none"].max() > 15

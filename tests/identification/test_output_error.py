@@ -1,6 +1,4 @@
-"""Output error and instruments: both know only recordings, and find the truth of a loop made by the engine."""
-
-import dataclasses
+"""Output error knows only a recording, and finds the truth of a loop made by the engine."""
 
 import numpy as np
 import pytest
@@ -9,14 +7,8 @@ from ir50p_lab.bench import ArmInstance, SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.torque.views import thesis_pid
 from ir50p_lab.errors import InputError
-from ir50p_lab.identification import (
-    fit_with_instruments,
-    identify,
-    load_excitations,
-    nrmse_fit,
-    output_error,
-)
-from ir50p_lab.identification.closed_loop import ClosedLoopRun
+from ir50p_lab.identification import identify, load_excitations, nrmse_fit, output_error
+from ir50p_lab.identification.output_error import ClosedLoopRun
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
 
@@ -86,63 +78,22 @@ def test_predicts_another_run_better_than_the_regression(refined, record):
     assert q.rms.sum() < nrmse_fit(other.q, before)[0].sum()
 
 
-def test_the_recorded_reference_does_as_well(record):
-    first = identify(record, l2=0.2)
-    given, as_recorded = (
-        output_error(first, record, thesis_pid(), motion, seconds=10, iterations=3, progress=False).score(
-            record.between(0, 10), thesis_pid(), motion
-        )
-        for motion in (MOTION, None)
-    )
-    np.testing.assert_allclose(given[0].rms, as_recorded[0].rms, rtol=0.1)
-
-
-@pytest.mark.parametrize("breakaway", [1, 2, 3])
-def test_instruments_take_the_bias_of_noise_away(breakaway):
-    """Least squares on noisy angles is off by many standard errors; instruments from the simulated loop are not."""
-    fs = tuple(breakaway * f for f in IR50P.friction.fc)
-    arm = dataclasses.replace(IR50P, friction=dataclasses.replace(IR50P.friction, fs=fs))
-    by_instruments, by_squares = [], []
-    for seed in range(4):
-        with SimulatedBench(arm, seed=seed, unit=IDEAL, q0=MOTION.q_start, record_to=False) as bench:
-            known = bench.follow(thesis_pid(), MOTION, 60)
-        first = identify(known, method="ls")
-        found = fit_with_instruments(first, known, thesis_pid(), MOTION)
-        for estimate, z in ((found, by_instruments), (first, by_squares)):
-            seen = np.isfinite(estimate.stderr) & (estimate.stderr > 0)
-            z.append(((estimate.theta - arm.theta_pwm) / estimate.stderr)[seen])
-        assert found.method == "iv"
-    assert np.abs(np.mean(by_instruments, axis=0)).max() < 2  # no parameter is off on average
-    assert np.mean(np.abs(by_instruments) < 3) >= 0.97 and np.mean(np.abs(by_squares) < 3) < 0.85
-
-
 BAD = [
-    ({"recordings": []}, "0 recordings"),
-    ({"references": [MOTION, MOTION]}, "references"),
-    ({"references": 3.0}, "reference = 3.0"),
+    ({"reference": 3.0}, "reference = 3.0"),
+    ({"recording": []}, "."),
     ({"controller": None}, "controller is a"),
-    ({"delay": np.nan}, "delay"),
     ({"delay": -0.01}, "delay"),
     ({"estimate": TRUE[:2]}, "theta with shape"),
+    ({"seconds": 0.1}, "50 or more"),
+    ({"l2": -1}, "l2"),
 ]
 
 
-@pytest.mark.parametrize("options, words", [*BAD, ({"seconds": 0.1}, "50 or more"), ({"l2": -1}, "l2")])
+@pytest.mark.parametrize("options, words", BAD)
 def test_bad_arguments(record, options, words):
-    given = {"estimate": TRUE, "recordings": record, "controller": thesis_pid(), "references": MOTION, **options}
-    if isinstance(given["references"], list):
-        given["recordings"] = [given["recordings"]]
+    given = {"estimate": TRUE, "recording": record, "controller": thesis_pid(), "reference": MOTION, **options}
     with pytest.raises(InputError, match=words):
-        output_error(given.pop("estimate"), given.pop("recordings"), given.pop("controller"), progress=False, **given)
-
-
-@pytest.mark.parametrize("options, words", [*BAD, ({"cutoff_hz": 40.0}, "cutoff_hz = 80"), ({"slow": 0}, "slow")])
-def test_bad_arguments_of_instruments(record, options, words):
-    given = {"estimate": TRUE, "recordings": record, "controller": thesis_pid(), "references": MOTION, **options}
-    if isinstance(given["references"], list):
-        given["recordings"] = [given["recordings"]]
-    with pytest.raises(InputError, match=words):
-        fit_with_instruments(given.pop("estimate"), given.pop("recordings"), given.pop("controller"), **given)
+        output_error(**given, progress=False)
 
 
 def test_a_record_with_a_gap_is_refused(record):

@@ -4,10 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.errors import InputError
 from ir50p_lab.identification import causal_derivatives, central_derivatives, process
 from ir50p_lab.signals import LowPass, at_rest, fourier
 
@@ -48,7 +46,7 @@ def test_causal_comes_as_late_as_it_says():
             assert np.abs(x - expected)[1000:].max() < 0.01 * amplitude
 
 
-@pytest.mark.parametrize("rate", [50.0, 100.0, 1000.0])
+@pytest.mark.parametrize("rate", [50.0, 1000.0])
 @pytest.mark.parametrize("cutoff", [None, 3.0])
 def test_central_differences_find_the_motion(rate, cutoff):
     t = np.arange(int(30 * rate)) / rate
@@ -61,8 +59,7 @@ def test_central_differences_find_the_motion(rate, cutoff):
         assert error.max() < (2e-3 if rate > 60 else 5e-3)
 
 
-@settings(max_examples=30)
-@given(st.sampled_from([40.0, 100.0, 500.0]), st.sampled_from([None, 4.0]), st.booleans())
+@pytest.mark.parametrize("rate, cutoff, filter_u", [(40.0, None, True), (100.0, 4.0, False), (500.0, 4.0, True)])
 def test_a_linear_law_survives_processing(rate, cutoff, filter_u):
     """u = 3 qdd + 2 qd + q holds before, so it holds after: at any rate, with filtered u."""
     motion = process(recorded(rate), cutoff_hz=cutoff, filter_u=filter_u, held=False)
@@ -72,7 +69,7 @@ def test_a_linear_law_survives_processing(rate, cutoff, filter_u):
     np.testing.assert_allclose(np.diff(motion.t), 1 / rate, rtol=1e-6)
 
 
-@pytest.mark.parametrize("size", [0.005, 0.1, 0.4])
+@pytest.mark.parametrize("size", [0.005, 0.4])
 def test_uneven_times_are_interpolated(size):
     motion = process(recorded(jitter=size), cutoff_hz=3.0, held=False)
     rows = TARGET.sample(motion.t)
@@ -80,7 +77,7 @@ def test_uneven_times_are_interpolated(size):
     assert np.abs(motion.qdd - rows[:, 2]).max() < 0.01 * np.ptp(rows[:, 2])
 
 
-@pytest.mark.parametrize("gap", [0.1, 1.0, 10.0])
+@pytest.mark.parametrize("gap", [0.1, 10.0])
 def test_gaps_split_the_record(gap):
     record = recorded(keep=lambda t: (t < 9) | (t > 9 + gap))
     motion = process(record, cutoff_hz=3.0, held=False)
@@ -88,15 +85,6 @@ def test_gaps_split_the_record(gap):
     rows = TARGET.sample(motion.t)
     assert np.abs(motion.qd - rows[:, 1]).max() < 0.02 * np.ptp(rows[:, 1])
     assert not ((motion.t > 8.9) & (motion.t < 9 + gap + 0.1)).any()
-
-
-def test_short_runs_are_left_out():
-    record = recorded(keep=lambda t: (t < 9) | (t > 10) & (t < 10.05) | (t > 11))
-    motion = process(record, cutoff_hz=3.0)
-    assert set(motion.segment) == {0, 2}
-    for seconds in (0.02, 0.1, 0.3):
-        with pytest.raises(IdentificationError, match="nothing is left"):
-            process(recorded(seconds=seconds), cutoff_hz=1.5)
 
 
 @pytest.mark.parametrize("delay", [0, 2, 7])
@@ -120,6 +108,14 @@ def test_slow_samples_are_marked():
     np.testing.assert_array_equal(motion.use, np.abs(motion.qd) >= 0.2)
 
 
+def test_dates_are_times_and_masked_samples_are_left_out():
+    record = recorded(seconds=5)
+    dates = np.datetime64("2024-01-01") + np.round(1e6 * record.t).astype("timedelta64[us]")
+    np.testing.assert_allclose(process(dates, record.q, record.u).qdd, process(record).qdd, atol=1e-6)
+    with pytest.raises(InputError, match="0 of 9 samples are not masked"):
+        process(*[np.ma.masked_all(9)] * 3)
+
+
 def test_arrays_of_one_joint():
     record = recorded()
     one, all_ = process(record.t, record.q[:, 1], record.u[:, 1]), process(record)
@@ -128,26 +124,15 @@ def test_arrays_of_one_joint():
         np.testing.assert_allclose(getattr(one, name)[:, 0], getattr(all_, name)[:, 1], atol=1e-9)
     with pytest.raises(InputError, match="neither both nor a part"):
         process(record, record.q, record.u)
-    with pytest.raises(InputError, match="q = None is no array"):
-        process(record.t)
+    with pytest.raises(InputError, match="shape"):
+        process(record.t[1:], record.q, record.u)
 
 
-@pytest.mark.parametrize("place", [0, 500, 2999])
-@pytest.mark.parametrize("column", ["t", "q", "u"])
-def test_nan_is_refused_with_its_place(column, place):
+@pytest.mark.parametrize("column, index", [("t", "500"), ("q", r"\(500, 0\)"), ("u", r"\(500, 0\)")])
+def test_nan_is_refused_with_its_place(column, index):
     record = recorded()
-    getattr(record, column)[place] = np.nan
-    with pytest.raises(
-        InputError, match=f"{column} holds nan at index {place}" if column == "t" else f"{column} holds nan"
-    ):
-        process(record)
-
-
-@pytest.mark.parametrize("back", [0.0, 0.01, 5.0])
-def test_time_that_does_not_increase_is_refused(back):
-    record = recorded()
-    record.t[1000:] -= 0.01 + back
-    with pytest.raises(InputError, match="time runs backwards or stands still"):
+    getattr(record, column)[500] = np.nan
+    with pytest.raises(InputError, match=f"{column} holds nan at index {index}"):
         process(record)
 
 
@@ -168,14 +153,3 @@ def test_time_that_does_not_increase_is_refused(back):
 def test_bad_arguments(options, words):
     with pytest.raises(InputError, match=words.replace(".", r"\.")):
         process(recorded(seconds=5), **options)
-
-
-def test_shapes_are_checked():
-    record = recorded(seconds=5)
-    for t, q, u in ((record.t[1:], record.q, record.u), (record.t, record.q[:, 0], record.u), (record.t[:1], [0], [0])):
-        with pytest.raises(InputError, match=r"shape|one u per joint"):
-            process(t, q, u)
-    with pytest.raises(InputError, match="must hold numbers"):
-        process(record.t, "q", record.u)
-    with pytest.raises(InputError, match="three or more"):
-        central_derivatives(np.zeros((2, 3)), 100.0, cutoff_hz=None)

@@ -1,8 +1,6 @@
 """The recipe in one call, motions kept in a file, and the simulation that chose them."""
 
 import os
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -10,14 +8,7 @@ import pytest
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.course.torque.views import thesis_pid
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification import (
-    fit,
-    identify,
-    load_excitations,
-    process,
-    regressor,
-    validate,
-)
+from ir50p_lab.identification import fit, identify, load_excitations, process, regressor, validate
 from ir50p_lab.identification.excitation import regressor_condition
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals.fourier import heights
@@ -89,14 +80,14 @@ def test_the_motions_in_the_file():
     assert all(motion.duration == 110 for motion in MOTIONS.values())
 
 
-@pytest.mark.parametrize("name", MOTIONS)
-def test_the_motions_in_the_file_keep_the_limits_they_were_made_for(name):
-    motion, top = MOTIONS[name], 0.9 * np.array(IR50P.actuators.no_load_speed)
-    q, qd, _ = np.swapaxes(motion.sample(motion.start + np.linspace(0, motion.period, 5000)), 0, 1)
-    assert (q > np.add(IR50P.q_min, SETTINGS["margin"]) - 1e-3).all()
-    assert (q < np.subtract(IR50P.q_max, SETTINGS["margin"]) + 1e-3).all()
-    assert (np.abs(qd) < top + 1e-3).all()
-    assert np.min(heights(IR50P.l, q)) > SETTINGS["table"] - 1e-3
+def test_the_motions_in_the_file_keep_the_limits_they_were_made_for():
+    top = 0.9 * np.array(IR50P.actuators.no_load_speed)
+    for motion in MOTIONS.values():
+        q, qd, _ = np.swapaxes(motion.sample(motion.start + np.linspace(0, motion.period, 5000)), 0, 1)
+        assert (q > np.add(IR50P.q_min, SETTINGS["margin"]) - 1e-3).all()
+        assert (q < np.subtract(IR50P.q_max, SETTINGS["margin"]) + 1e-3).all()
+        assert (np.abs(qd) < top + 1e-3).all()
+        assert np.min(heights(IR50P.l, q)) > SETTINGS["table"] - 1e-3
 
 
 def test_motions_come_back_as_they_were(tmp_path):
@@ -107,12 +98,6 @@ def test_motions_come_back_as_they_were(tmp_path):
         load_excitations(tmp_path / "bad.json")
     with pytest.raises(InputError, match="no file of excitations"):
         load_excitations(tmp_path / "none.json")
-
-
-def test_loading_motions_starts_no_numba():
-    code = "import sys, ir50p_lab.identification as i; i.load_excitations; print('numba' in sys.modules)"
-    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert out.strip() == "False"
 
 
 def test_the_simulation_tells_what_the_run_will_be(records):
@@ -126,7 +111,7 @@ def test_the_simulation_tells_what_the_run_will_be(records):
 
 
 def test_the_same_seed_makes_the_same_motions():
-    options = {"candidates": 4, "kept": 1, "progress": False, "iterations": 10, "starts": 1, "harmonics": 3}
+    options = {"candidates": 4, "kept": 1, "progress": False, "tries": 100, "harmonics": 3}
     one, two = (make_excitations(seed=8, **options) for _ in range(2))
     assert one == two and [*one] == ["plain", "training"]
     with pytest.raises(IdentificationError, match="keep clear"):
@@ -151,12 +136,6 @@ def test_bad_arguments(options, words):
 def test_steps_that_a_score_could_not_repeat_are_refused(step):
     with pytest.raises(TypeError, match=step):
         identify(run("training", seconds=5), **{step: 2})
-
-
-@pytest.mark.parametrize("seconds", [0.25, 0.5, 1.0])
-def test_too_little(seconds):
-    with pytest.raises(IdentificationError, match=r"nothing is left|to be used|too short"):
-        identify(run("training", seconds=seconds))
 
 
 if os.environ.get("IR50P_SLOW"):  # a minute

@@ -18,7 +18,6 @@ PHI = np.random.default_rng(0).normal(size=(100, 3, 20))
 Y = np.random.default_rng(1).normal(size=(100, 3))
 MOTION = fourier(np.zeros((3, 2)), [[0.4, -0.1]] * 3, period=5.0, q0=(0, 0.8, -1))
 PD = PID(kp=(200,) * 3, kd=(20,) * 3, limit_pwm=255)
-ESTIMATE = package.fit(PHI, Y)
 NAN_Q = np.where(np.arange(600)[:, None] == 77, np.nan, Q)
 NAN_PHI = np.where(np.arange(100)[:, None, None] == 7, np.nan, PHI)
 TH = IR50P.theta_pwm
@@ -38,13 +37,9 @@ BAD = {
     "load_excitations": [("no_such_file.json",), ("/",)],
     "fit": [(NAN_PHI, Y), (PHI, Y[:5]), (PHI[:3], Y[:3]), (0 * PHI, Y), ("x", Y)],
     "least_squares": [(NAN_PHI, Y), (PHI, Y[:5]), (0 * PHI, Y), (PHI[0, :, :2], "x")],
-    "fit_second_order": [(T, NAN_Q[:, 0], Q[:, 0]), (T[::-1], U[:, 0], Q[:, 0]), (T, 0 * T, Q[:, 0])],
-    "fit_with_instruments": [(TH, Run(q=NAN_Q), PD, MOTION), (TH, Run(), None, MOTION), (TH[:1], Run(), PD, MOTION)],
     "output_error": [(TH, Run(q=NAN_Q), PD, MOTION), (TH, Run(), None, MOTION), (TH[:1], Run(), PD, MOTION)],
     "fit_fopdt": [(T, NAN_Q[:, 0], Q[:, 0]), (T[::-1], U[:, 0], Q[:, 0]), (T[:2], U[:2, 0], Q[:2, 0])],
     "general_regressor": [(NAN_Q, Q, Q), (Q, Q[:2], Q)],
-    "payload_change": [(np.nan,), (-1.0,), ("heavy",)],
-    "scale_from_payload": [(ESTIMATE, TH), (TH, ESTIMATE), (None, None)],
     "causal_derivatives": [(NAN_Q, 100.0), (Q, -1.0), (Q, 2.0), ("x", 100.0)],
     "central_derivatives": [(NAN_Q, 100.0), (Q, -1.0), (Q, 2.0), (Q[:2], 100.0)],
     "process": [(Run(q=NAN_Q),), (Run(t=T[::-1]),), (T,), (Run(q=Q[:5]),), (Run(T[:5], Q[:5], U[:5]),)],
@@ -57,8 +52,6 @@ BAD = {
 }
 KEYWORDS = {
     "general_regressor": {"l2": 0.2},
-    "payload_change": {"l2": 0.2, "at": 0.3},
-    "scale_from_payload": {"mass": 0.5, "l2": 0.2, "at": 0.3},
     "output_error": {"progress": False},
     "optimise_excitation": {"progress": False},
 }

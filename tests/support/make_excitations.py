@@ -81,7 +81,7 @@ def make_excitations(arm=IR50P, *, seed=0, candidates=CANDIDATES, kept=KEPT, pro
     Raises IdentificationError if too few keep clear of limits and table.
     """
     speed = 0.9 * arm.actuators.no_load_speed
-    options = {**SETTINGS, "max_joint_speed": speed, "starts": 2, "iterations": 50, "progress": False, **settings}
+    options = {**SETTINGS, "max_joint_speed": speed, "progress": False, **settings}
     found = []
     for number in tqdm(range(seed, seed + candidates), disable=not progress, unit="motion", desc="excitation"):
         made = optimise_excitation(arm, seed=number, **options)

@@ -217,14 +217,16 @@ class ForgettingView:
     """
 
     def __init__(self, parts, levels):
-        self._Phi, self._y, every = [], [], 5
+        Phi, y, every = [], [], 5
         for part in parts:
             use = part.use[::every]
-            self._Phi.append(regressor(part.q[::every], part.qd[::every], part.qdd[::every]) * use[:, :, None])
-            self._y.append(part.u[::every] * use)
+            Phi.append(regressor(part.q[::every], part.qd[::every], part.qdd[::every]) * use[:, :, None])
+            y.append(part.u[::every] * use)
         self._rate = parts[0].rate_hz / every
-        first, second = (len(y) / self._rate for y in self._y)
-        self._t = (np.arange(sum(map(len, self._y))) + 1) / self._rate
+        first, second = (len(one) / self._rate for one in y)
+        self._Phi, self._y = np.concatenate(Phi), np.concatenate(y)
+        self._ends = np.arange(10, len(self._y), 10)  # a point of the curve for ten samples
+        self._t = self._ends / self._rate
         self.figure, ax = subplots(9.0, 3.4)
         ax.hlines(levels, [0, first], [first, first + second], color=COLOURS["dark"], ls="--", lw=1.2)
         (self._line,) = ax.plot([], [], color=JOINTS[2])
@@ -234,9 +236,10 @@ class ForgettingView:
         ax.set_title("Dashed: least squares before and after the payload")
 
     def run(self, memory):
-        """theta4 after each step, (n,), with a memory of so many seconds (inf: nothing is forgotten)."""
+        """theta4 at the times drawn, (n,), with a memory of so many seconds (inf: nothing is forgotten)."""
         filtered = RLS(forgetting=1 - 1 / (memory * self._rate))
-        return np.concatenate([filtered.run(*part)[:, 2, 3] for part in zip(self._Phi, self._y, strict=True)])
+        parts = ((self._Phi[k - 10 : k], self._y[k - 10 : k]) for k in self._ends)
+        return np.array([filtered.run(*part, history=False)[2, 3] for part in parts])
 
     def update(self, memory):
         """Draw for this memory, s. Returns the forgetting factor in words."""

@@ -125,9 +125,8 @@ def kept_motion(arm, number=0):
         return load_excitations()[f"validation {number}" if number else "training"]
     speed = 0.8 * arm.actuators.no_load_speed
     # room at the limits and over the table: the thesis' PID lags and sags
-    room = {"margin": 0.2, "table": 0.1}
-    search = {"standing": 6, "starts": 4, "iterations": 30, "seed": number, "progress": False}
-    return optimise_excitation(arm, harmonics=3, max_joint_speed=speed, **room, **search).reference
+    options = {"margin": 0.2, "table": 0.1, "standing": 6, "tries": 1000, "seed": number, "progress": False}
+    return optimise_excitation(arm, harmonics=3, max_joint_speed=speed, **options).reference
 
 
 def excitation_figure(excitation):

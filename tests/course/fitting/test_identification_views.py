@@ -115,7 +115,7 @@ def test_relative_errors_are_those_of_a_covariance(excitation):
 def test_frequency_view(excitation):
     view = views.FrequencyView(IR50P, excitation)
     assert "within reach" in view.update(0.03) and "out of reach" in view.update(0.3)
-    made = optimise_excitation(IR50P, harmonics=2, starts=1, iterations=2, progress=False)
+    made = optimise_excitation(IR50P, harmonics=2, tries=5, progress=False)
     assert "condition numbers" in views.excitation_figure(made).axes[1].get_title()
 
 
