@@ -42,7 +42,9 @@ def check_signals(warned, t, q, u):
     step = np.abs(np.diff(q))
     for turn in (2 * math.pi, 360.0):
         if (jump := (np.abs(step - turn) < 0.1 * turn) & (step > 15 * np.median(step))).any():
-            warned.refuse(f"a whole turn was wrapped at t = {t[1:][jump][0]:.6g} s: use np.unwrap(q, period={turn:.6g})")
+            warned.refuse(
+                f"a whole turn was wrapped at t = {t[1:][jump][0]:.6g} s: use np.unwrap(q, period={turn:.6g})"
+            )
     share = 100 * np.isin(u, (u.min(), u.max())).mean()
     if share > 5 and len(np.unique(u)) > 16:  # fewer levels are switched, not clipped
         warned.add(f"u is at its largest or smallest value in {share:.0f} %: if clipped, record a wider range")

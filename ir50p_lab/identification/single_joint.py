@@ -14,6 +14,7 @@ from ir50p_lab.inputs import number
 from ir50p_lab.signals.low_pass import low_pass
 
 TERMS = ("inertia", "viscous", "coulomb", "offset", "gravity")
+_NAMES = (*TERMS[:4], "gravity_sin", "gravity_cos")
 _DEAD = 0.1  # of the rms speed, below which a joint may stick
 _NOISE = 1e-3  # of the power of the acceleration, that noise may have below the cut-off
 _MOTION = 0.99  # of the power of the speed, that the cut-off keeps whatever the noise
@@ -71,17 +72,25 @@ def fit_joint(t, q=None, u=None, *, terms=TERMS[:4], cutoff_hz=None, delay=0.0):
     fits = list(_at_halves(motions, cutoff, terms))
     names, found, y, table, cutoff = fits[0]
     error, notes_here = _compared(names, found, fits[1][1]) if len(fits) > 1 else (found.stderr, [])
-    if notes_here and cutoff_hz is None and len(fits) > 2 and not (later := _compared(names, fits[1][1], fits[2][1]))[1]:
+    if (
+        notes_here
+        and cutoff_hz is None
+        and len(fits) > 2
+        and not (later := _compared(names, fits[1][1], fits[2][1]))[1]
+    ):
         names, found, y, table, cutoff = fits[1]
         error, notes_here = later
     notes += notes_here
+    others = _others(table, [_NAMES.index(name) for name in names])
+    for other in others.values():
+        error = _widened(error, found, other)
     spread = float(np.std(y))
     if found.rms**2 > (1 - _EXPLAINED) * spread**2:
         raise IdentificationError("u does not belong to this motion, which explains nothing of it: another joint?")
     values = dict(zip(names, zip(found.x.tolist(), error.tolist(), strict=True), strict=True))
     if max(values.get(name, (0, 0))[0] + 3 * values.get(name, (0, 0))[1] for name in TERMS[1:3]) < 0:
         raise IdentificationError("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
-    notes += _doubts(values, found, y, table, terms)
+    notes += _doubts(values, found, y, others, 1 / rate)
     return JointFit(
         **{name: x for name, (x, _) in values.items()},
         **{f"{name}_stderr": sigma for name, (_, sigma) in values.items()},
@@ -99,9 +108,15 @@ def _cutoff(motion):
 
     pieces = [motion.q[motion.segment == k, 0] for k in np.unique(motion.segment)]
     longest = max(pieces, key=len)
-    f, power = (x[1:] for x in welch(longest, motion.rate_hz, nperseg=min(len(longest), max(256, len(longest) // 6)), detrend="linear"))
-    floor = np.median(power[f > motion.rate_hz / 4]) / math.log(2)
-    above = np.where(power > 3 * floor, power - floor, 0.0)
+    f, power = (
+        x[1:]
+        for x in welch(
+            longest, motion.rate_hz, nperseg=min(len(longest), max(256, len(longest) // 6)), detrend="linear"
+        )
+    )
+    rest = power[f > motion.rate_hz / 4]  # noise; its highest are the lines of a coarse encoder
+    floor = np.median(rest) / math.log(2)
+    above = np.where(power > max(3 * floor, rest.max()), power - floor, 0.0)
     if np.sum(f**2 * above) < 0.1 * np.sum(f[: len(f) // 8] ** 2) * floor:
         raise IdentificationError("not exciting: the motion drowns in the noise of the angle; move faster")
     speed, acceleration, noise = (np.cumsum(x) for x in (f**2 * above, f**4 * above, f**4 * floor))
@@ -127,10 +142,26 @@ def _compared(names, found, lower):
     """Errors widened by what the fit at a lower cut-off says, and a sentence for each parameter that differs."""
     known = np.isfinite(found.stderr + lower.stderr)
     moved = np.where(known, np.abs(found.x - lower.x), 0.0)
-    beyond = np.clip(moved**2 - np.where(known, lower.stderr, 0.0) ** 2, 0.0, None)
     far = moved > np.maximum(2 * np.hypot(found.stderr, np.where(known, lower.stderr, 0.0)), 0.1 * np.abs(found.x))
-    notes = [f"{name} depends on the cut-off (flexibility, backlash?)" for name, bad in zip(names, far, strict=True) if bad]
-    return np.sqrt(found.stderr**2 + beyond), notes
+    notes = [
+        f"{name} depends on the cut-off (flexibility, backlash?)" for name, bad in zip(names, far, strict=True) if bad
+    ]
+    return _widened(found.stderr, found, lower), notes
+
+
+def _widened(error, found, other):
+    """Errors widened by how much further another fit of the same data lies than its own error."""
+    n = len(found.x)
+    known = np.isfinite(error + other.stderr[:n])
+    beyond = (found.x - other.x[:n]) ** 2 - np.where(known, other.stderr[:n], 0.0) ** 2
+    return np.sqrt(error**2 + np.where(known, np.clip(beyond, 0.0, None), 0.0))
+
+
+def _others(table, use):
+    """Fits with one thing more: u late, a spring between motor and load, friction bent, a force of the position."""
+    more = {"late": table[:, 7], "spring": table[:, 8], "bent": table[:, 1] * np.abs(table[:, 1])}
+    more |= {} if 4 in use else {"gravity": table[:, 4:6]}
+    return {k: least_squares(np.column_stack([table[:, use], x]), table[:, 6], tolerance=1e-3) for k, x in more.items()}
 
 
 def _fitted(motion, cutoff_hz, terms):
@@ -145,18 +176,19 @@ def _fitted(motion, cutoff_hz, terms):
         slow = _DEAD * np.sqrt(np.mean(qd**2)) if slow is None else slow
         plain = np.column_stack([np.sign(qd), np.sin(q), np.cos(q), motion.u[here, 0], np.abs(qd) > slow])
         sign, sin, cos, u, moving = low_pass(plain, cutoff_hz, rate, order=3, kind="zero-phase").T
-        table = np.column_stack([qdd, qd, sign, np.ones_like(q), sin, cos, u, moving])[edge:-edge]
+        late = np.gradient(u) * rate
+        spring = np.gradient(late) * rate
+        table = np.column_stack([qdd, qd, sign, np.ones_like(q), sin, cos, u, late, spring, moving])[edge:-edge]
         parts.append(table[table[:, -1] > 0.9])
     if sum(map(len, parts)) < FEWEST:
         raise IdentificationError("too few samples in motion: move faster, or record longer")
     table = np.concatenate(parts)
-    names = ("inertia", "viscous", "coulomb", "offset", "gravity_sin", "gravity_cos")
-    use = [k for k, name in enumerate(names) if name.split("_")[0] in terms]
+    use = [k for k, name in enumerate(_NAMES) if name.split("_")[0] in terms]
     y = table[:, 6]
-    return [names[k] for k in use], least_squares(table[:, use], y, tolerance=1e-3), y, table
+    return [_NAMES[k] for k in use], least_squares(table[:, use], y, tolerance=1e-3), y, table
 
 
-def _doubts(values, found, y, table, terms):
+def _doubts(values, found, y, others, period):
     """Sentences about a fit that is not refused."""
     for name, (x, sigma) in values.items():
         if not math.isfinite(sigma):
@@ -168,10 +200,10 @@ def _doubts(values, found, y, table, terms):
         yield f"the model explains little of u (fit {1 - found.rms / np.std(y):.0%}): do not use it"
     if found.correlation > 0.9 and found.rms > 0.1 * np.std(y):
         yield f"residuals are far from white ({found.correlation:.2f}): something is missing (backlash, a spring)"
-    bent = least_squares(np.column_stack([table[:, :4], table[:, 1] * np.abs(table[:, 1])]), y, tolerance=1e-3)
+    late, bent, beside = others["late"], others["bent"], others.get("gravity", found)
+    if abs(late.x[-1]) > max(4 * late.stderr[-1], 0.25 * period) and late.rms < 0.95 * found.rms:
+        yield f"u seems to act {late.x[-1]:.2g} s later than delay= says: add it there (backlash looks alike)"
     if abs(bent.x[-1]) > 4 * bent.stderr[-1] and bent.rms < 0.95 * found.rms:
         yield "friction is no straight line in the speed (Stribeck?): fit slow and fast motion apart"
-    if "gravity" not in terms:
-        beside = least_squares(table[:, :6], y, tolerance=1e-3)
-        if beside.rms**2 < 0.5 * found.rms**2 and found.rms > 0.01 * np.std(y):
-            yield "much of the rest of u goes with sin q, cos q: add terms=(..., 'gravity')"
+    if beside.rms**2 < 0.5 * found.rms**2 and found.rms > 0.01 * np.std(y):
+        yield "much of the rest of u goes with sin q, cos q: add terms=(..., 'gravity')"
