@@ -160,7 +160,7 @@ def check_clipped_drive(warned, found):
     The model of the samples within the limits, u allowed to be late, is compared with those at a limit. A drive that
     really saturates, or a switched input, is fine: there the motion needs no more than what was recorded.
     """
-    limits, y = found.table.limits, found.y
+    limits, y = found.limits, found.y
     A = np.column_stack([found.A, found.slope])  # with a delay: of a late u the motion seems to need more, too
     A = A / np.linalg.norm(A, axis=0)
     inside = limits.max(axis=1) < 0.02

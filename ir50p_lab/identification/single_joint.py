@@ -8,7 +8,7 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import checks
-from ir50p_lab.identification.columns import columns_of
+from ir50p_lab.identification.columns import columns_of, quantum_of
 from ir50p_lab.identification.processing import process
 from ir50p_lab.identification.regression import least_squares
 from ir50p_lab.inputs import choice, number
@@ -17,26 +17,32 @@ from ir50p_lab.signals.low_pass import low_pass
 TERMS = ("inertia", "viscous", "coulomb", "offset", "gravity")
 _COLUMNS = ("offset", "gravity_sin", "gravity_cos", "viscous", "coulomb", "inertia")
 _PHYSICAL = ("inertia", "viscous", "coulomb")
-_OWN_SHARE = 1e-3  # share of a column's length: if less of it sticks out of the columns before, it is left out
-_MOTION = 0.99  # share of the power of the speed, which is below the frequency called that of the motion
-_ABOVE = 5.0  # times the frequency of the motion: the cut-off, if noise allows it
-_NOISE = 1e-3  # power of noise over power of the acceleration: if it exceeds this, the cut-off comes down
-_HIGHEST = 0.2  # cut-off over sampling rate: above, differences of samples are no derivatives any more
-_THIN = 4.0  # samples kept per period of the cut-off: more would say the same again
-_SLOW = 0.1  # of the rms speed: default of slow=
-_DROWNED = 3.0  # rms speed over its noise: below, the data are refused
-_UNSURE = 0.5  # sampling periods by which u may act earlier or later than assumed: less is no warning
-_EXACT = 2e-3  # of a parameter: least standard error, for differences and interpolation are no better
-_DEGREE = 6  # of the polynomial that stands for any force of the position
-_EXPLAINED = 0.02  # share of the variance of u: if the model explains less, u has nothing to do with the motion
-_F = 8.0  # F value of the model: if it stays below, chance may have made the fit
-_LATE = (0.9, 5.0), (0.99, 8.0)  # share of the residual left by a delay, and delay over its error, to be told
 _SAID = {"viscous": "viscous friction", "coulomb": "Coulomb friction"}
-_WIDENS = {  # a fit with this one thing more: the parameters whose errors it widens
+_OWN_SHARE = 1e-3  # share of a column's length: if less of it sticks out of the columns before, it is left out
+_MOTION = 0.99  # share of the power of the speed: the frequency below which this much lies is that of the motion
+_ABOVE = 5.0  # times the frequency of the motion: the cut-off, if noise allows; higher, flexibility makes itself felt
+_NOISE = 1e-3  # power of noise over power of the acceleration: if it exceeds this, the cut-off comes down
+_HIGHEST = 0.2  # cut-off over sampling rate: if higher, differences of samples are no derivatives any more
+_SAW = 0.06  # of quantum^2: a spectral line with less power than this may be the steps of a coarse angle
+_THIN = 4.0  # samples per period of the cut-off: if more are kept, they say the same again
+_SLOW = 0.1  # of the rms speed: default of slow=
+_DROWNED = 3.0  # rms speed over that of its noise: if less, the data are refused
+_UNSURE = (
+    0.5  # sampling periods: if u acts less than this earlier or later than assumed, it is in the errors, no warning
+)
+_EXACT = 2e-3  # of a parameter: its standard error is never less, for differences and interpolation are no better
+_EXPLAINED = 0.02  # share of the variance of u: if the model explains less, u has nothing to do with the motion
+_F = 8.0  # F value of the model: if less, chance may have made the fit
+_POOR = 0.5  # residual over spread of u: if more, standard errors hold for a model that does not
+_MISSING = 0.1  # residual over spread of u: if more of it is alike over time, a warning says so
+_DEPENDS = 2.0, 0.1  # standard errors and share of a parameter: if half the cut-off moves it by more, a warning says so
+_LATE = (0.9, 5.0), (0.99, 8.0)  # residual that a delay leaves, over the one before: if less, and the delay is so many
+# standard errors, it is told
+_BENT = 0.95, 4.0  # the same two for friction that bends
+_WIDENS = {  # a fit with one thing more that may be there: the parameters whose errors it widens
     "spring": ("inertia",),
     "bent": ("viscous", "coulomb"),
     "dead zone": ("inertia", "viscous"),
-    "position": _PHYSICAL,
     "gravity": (*_PHYSICAL, "offset"),
 }
 
@@ -72,54 +78,79 @@ class JointFit:
 
 
 def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, delay=0.0, slow=None, anyway=False):
-    """Inertia, viscous and Coulomb friction and offset of one joint from a recording of it    (2.48, one joint)"""
+    """Inertia, viscous and Coulomb friction and offset of one joint from a recording of it    (2.48, one joint)
+
+        u = inertia qdd + viscous qd + coulomb sgn(qd) + offset
+
+    q, u and sgn(qd) pass the same zero-phase low pass: the equation stays true, only noise is lost. Its cut-off is five
+    times the frequency of the motion, lower if noise of q asks for it: higher, flexibility and backlash make a rigid
+    model wrong. Samples of a joint that stands are left out (there u may be anything up to the breakaway friction).
+    Standard errors hold for residuals that are alike over time, and are widened by what other fits of the same data
+    say: half the cut-off, twice the least speed, u earlier or later by half a period, a flexible joint, friction that
+    bends, a force of the position, a dead zone of the amplifier.
+
+    Args:
+        t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings or
+            of tuples (t, q, u) or (t, q, u, qd): each is fitted and compared with the others, then all are together.
+        q: (n,) rad. u: (n,), torque, current or command, any unit. Arrays, masked arrays, pandas Series.
+        qd: (n,) rad/s, if it was measured too: then q is not differentiated.
+        terms: of "inertia", "viscous", "coulomb", "offset", "gravity".
+        cutoff_hz: of the low pass; inf: none, the plain least squares of a friction sweep (with qd, without inertia).
+        delay: s from a sample to the moment its u acts.
+        slow: rad/s; slower samples are left out, by default those below a tenth of the rms speed.
+        anyway: go on where the data are refused; the reason is then in `warnings`.
+
+    Returns: JointFit.
+    Raises: InputError for NaN, times that do not increase, shapes that do not fit. IdentificationError, saying what to
+    do next, if the record is too short or constant, the motion drowns in noise or has nothing to do with u, q or u were
+    clipped or surely hung, angles jump by whole turns, or all friction is negative. Other flaws are in `warnings`, each
+    with a number: what is without a warning is right within three standard errors.
+    """
     terms = (terms,) if isinstance(terms, str) else tuple(terms)
     if not terms or not set(terms) <= set(TERMS):
         raise InputError(f"terms = {terms!r}: give some of {', '.join(TERMS)}")
     names = [name for name in _COLUMNS if name.split("_")[0] in terms]
     warned = checks.Warnings(choice("anyway", anyway, (True, False)))
-    recordings = _recordings(t, q, u, qd)
-    if len(recordings) > 1:
-        options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "slow": slow, "anyway": anyway}
-        checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), _PHYSICAL)
-    runs = []
+    recordings, runs = _recordings(t, q, u, qd), []
     for k, one in enumerate(recordings, 1):
         warned.who = f"recording {k}: " if len(recordings) > 1 else ""
         runs += _runs(warned, one, delay)
-    warned.who, period = "", 1 / runs[0].rate
+    warned.who = ""
+    if len(recordings) > 1:
+        options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "slow": slow, "anyway": anyway}
+        checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), _PHYSICAL)
     band = _band(runs)
-    if cutoff_hz is not None and 0.5 / period <= number("cutoff_hz", cutoff_hz, "> 0 or inf", unit="Hz") < math.inf:
-        raise InputError(f"cutoff_hz = {cutoff_hz!r}: give a number between 0 and half the rate, {0.5 / period:.4g} Hz")
     if band.speed < _DROWNED * band.speed_noise or band.speed == 0:
-        noise = f"noise alone {band.speed_noise:.2g} rad/s"
-        warned.refuse(f"not exciting: the joint moves at {band.speed:.2g} rad/s, {noise}; move faster")
-    cutoff_hz = cutoff_hz or max(band.motion_hz, min(_ABOVE * band.motion_hz, band.clean_hz))
+        said = f"not exciting: the joint moves at {band.speed:.2g} rad/s, noise alone {band.speed_noise:.2g} rad/s"
+        warned.refuse(f"{said}; move faster")
+    if cutoff_hz is None:
+        cutoff_hz = min(_ABOVE * band.motion_hz, band.clean_hz)
+    number("cutoff_hz", cutoff_hz, "> 0 or inf", unit="Hz")
     slow = _SLOW * band.speed if slow is None else number("slow", slow, ">= 0", unit="rad/s")
-    table = _table(runs, cutoff_hz, band.clean_hz, slow)
-    if (m := len(table.q)) < checks.FEWEST // 2:
-        raise IdentificationError(f"only {m} of {checks.FEWEST // 2} independent samples are in motion: record more")
-    found = min((_fit(table, names, held) for held in (True, False)), key=lambda one: one.left.rms)
-    tables = {"lower": _table(runs, cutoff_hz / 2, band.clean_hz, slow)} if cutoff_hz < math.inf else {}
-    tables["faster"] = _table(runs, cutoff_hz, band.clean_hz, 2 * slow)
-    same = {
-        name: _fit(other, names, found.held)
-        for name, other in tables.items()
-        if len(other.q) >= max(checks.FEWEST // 2, 0.5 * m * (other.cutoff_hz / cutoff_hz if name == "lower" else 1))
-    }
-    others = _others(found, same.get("lower", found))
+    pair = _fits(runs, names, cutoff_hz, band.clean_hz, slow)
+    if not pair:
+        raise IdentificationError(f"not {checks.FEWEST // 2} independent samples are in motion: record more of it")
+    measured = pair[1].left.rms < pair[0].left.rms
+    found = pair[measured]
+    lower = (_fits(runs, names, cutoff_hz / 2, band.clean_hz, slow) or pair)[measured]
+    faster = (_fits(runs, names, cutoff_hz, band.clean_hz, 2 * slow) or pair)[measured]
     if max(run.levels for run in runs) > checks.LEVELS:
         checks.check_clipped_drive(warned, found)
-    stderr = _widened(found, same, others, period)
-    _check_model(warned, found, stderr, others, period)
-    _check_lower(warned, found, same)
+    others = _others(found, lower)
+    period = 1 / runs[0].rate
+    stderr = _widened(names, found, {"lower": lower.left, "faster": faster.left, **others}, period)
+    parameters = dict(zip(names, zip(found.left.x.tolist(), stderr.tolist(), strict=True), strict=True))
+    _check_fit(warned, found, others, "gravity" in terms)
+    _check_parameters(warned, parameters, found, lower)
+    _check_timing(warned, lower, others, period)
     return JointFit(
-        **{name: float(x) for name, x in zip(names, found.left.x, strict=True)},
-        **{f"{name}_stderr": float(sigma) for name, sigma in zip(names, stderr, strict=True)},
+        **{name: x for name, (x, _) in parameters.items()},
+        **{f"{name}_stderr": sigma for name, (_, sigma) in parameters.items()},
         rms=found.left.rms,
         fit=100 * (1 - found.misfit),
         cutoff_hz=float(cutoff_hz),
-        held=found.held,
-        samples=m,
+        held=not measured,
+        samples=len(found.y),
         warnings=tuple(warned),
     )
 
@@ -134,7 +165,7 @@ def _recordings(t, q, u, qd):
 
 
 def _runs(warned, recording, delay):
-    """Evenly sampled runs without a gap: rate Hz; angles (n, 1 or 2): q and qd if measured; u (n, 2): held, measured."""
+    """Evenly sampled runs without a gap: rate, Hz; angles (n, 1 or 2): q, qd if given; u (n, 2): held, measured."""
     t, q, u, qd = (*recording, None, None, None)[:4]
     if qd is not None:
         q, u = np.ma.column_stack([q, qd]), np.ma.column_stack([u, u])
@@ -171,7 +202,8 @@ def _band(runs):
     f = spectra[0][0][1:]
     rest = power[f >= longest.rate / 4]
     floor = np.median(rest) / math.log(2)  # a spectral line of noise is chi-squared with 2 degrees of freedom
-    above = np.where(power > max(3 * floor, rest.max()), power - floor, 0.0)
+    quantum = quantum_of(np.concatenate([x[:, -1] for x in pieces]))
+    above = np.where(power > max(3 * floor, rest.max(), _SAW * quantum**2 / f[0]), power - floor, 0.0)
     to_speed = (2 * np.pi * f) ** 2 if pieces[0].shape[1] == 1 else np.ones_like(f)
     speed, speed_noise = np.cumsum(to_speed * above), np.cumsum(to_speed * floor)
     noise = np.cumsum(f**2 * to_speed * floor) <= _NOISE * np.cumsum(f**2 * to_speed * above)
@@ -229,65 +261,46 @@ def _table(runs, cutoff_hz, sign_hz, slow):
     return SimpleNamespace(cutoff_hz=cutoff_hz, **dict(zip(names, joined, strict=True)))
 
 
-@dataclass(frozen=True, eq=False)
-class _Fit:
-    """`left` (LeastSquares) of y (m,) on A (m, p), the columns `names` of a table; held: whether u is."""
-
-    table: SimpleNamespace
-    names: list
-    held: bool
-    A: np.ndarray
-    y: np.ndarray
-    left: object
-
-    @property
-    def slope(self):
-        """du/dt (m,): what one second of delay adds to u."""
-        return self.table.slopes[:, 0 if self.held else 1]
-
-    @property
-    def misfit(self):
-        """Share of the amplitude of u that is left."""
-        return self.left.rms / float(np.std(self.y))
-
-    def beside(self, columns):
-        """LeastSquares with more columns behind those of A."""
-        return least_squares(np.column_stack([self.A, columns]), self.y, tolerance=_OWN_SHARE)
-
-
-def _fit(table, names, held):
-    A, y = table.columns[:, [_COLUMNS.index(name) for name in names]], table.u[:, 0 if held else 1]
-    return _Fit(table, names, held, A, y, least_squares(A, y, tolerance=_OWN_SHARE))
+def _fits(runs, names, cutoff_hz, sign_hz, slow):
+    """Fits of u held and of u measured: what `_table` tells, and y (m,), slope (m,): u and its rate of change;
+    A (m, p): the columns `names`; left: LeastSquares; misfit: residual over spread of u. [] if too few samples move.
+    """
+    table = _table(runs, cutoff_hz, sign_hz, slow)
+    if len(table.q) < checks.FEWEST // 2:
+        return []
+    A = table.columns[:, [_COLUMNS.index(name) for name in names]]
+    fits = []
+    for y, slope in zip(table.u.T, table.slopes.T, strict=True):
+        left = least_squares(A, y, tolerance=_OWN_SHARE)
+        misfit = left.rms / float(np.std(y))
+        fits.append(SimpleNamespace(**vars(table), A=A, y=y, slope=slope, left=left, misfit=misfit))
+    return fits
 
 
 def _others(found, lower):
-    """{name: LeastSquares} of fits with one thing more that may be there.
+    """{name: LeastSquares} of fits with one thing more that may be there, the last column.
 
     lower: the fit at a lower cut-off, where noise of the acceleration hides less of a delay or a spring.
     """
-    table, v = found.table, found.table.v
-    more = {"as it is": (lower, np.empty((len(lower.y), 0))), "late": (lower, lower.slope)}
-    if len(lower.y) >= 6 * (len(found.names) + _DEGREE):
-        place = 2 * (table.q - table.q.min()) / max(np.ptp(table.q), 1e-300) - 1
-        more |= {
-            "spring": (lower, lower.table.snap),
-            "bent": (found, v * np.abs(v)),
-            "dead zone": (found, np.sign(found.A @ found.left.x)),
-            "position": (found, np.polynomial.legendre.legvander(place, _DEGREE)[:, 1:]),
-            "gravity": (found, table.columns[:, 1:3]),
-        }
-    return {name: one.beside(columns) for name, (one, columns) in more.items()}
+    more = {"late": (lower, lower.slope)}
+    if len(lower.y) >= 6 * found.A.shape[1] + 12:
+        more["spring"] = lower, lower.snap
+        more["bent"] = found, found.v * np.abs(found.v)
+        more["dead zone"] = found, np.sign(found.A @ found.left.x)
+        more["gravity"] = found, found.columns[:, 1:3]
+    return {
+        name: least_squares(np.column_stack([one.A, columns]), one.y, tolerance=_OWN_SHARE)
+        for name, (one, columns) in more.items()
+    }
 
 
-def _widened(found, same, others, period):
+def _widened(names, found, others, period):
     """Standard errors (p,), widened by how much further other fits of the same data lie than their own error."""
     x, stderr = found.left.x, found.left.stderr
     moved = np.zeros(len(x))  # squared
-    pairs = [(one.left, found.names) for one in same.values()]
-    pairs += [(others[name], widens) for name, widens in _WIDENS.items() if name in others]
-    for other, widens in pairs:
+    for name, other in others.items():
         sigma = other.stderr[: len(x)]
-        known = np.isfinite(stderr + sigma) & np.isin(found.names, widens)
+        known = np.isfinite(stderr + sigma) & np.isin(names, _WIDENS.get(name, () if name == "late" else names))
         moved = np.maximum(moved, np.where(known, (x - other.x[: len(x)]) ** 2 - np.where(known, sigma, 0.0) ** 2, 0.0))
     late, unsure = others["late"], _UNSURE * period
     share = unsure**2 / (unsure**2 + late.stderr[-1] ** 2)  # of what is not known of the delay, the data tell this much
@@ -296,65 +309,57 @@ def _widened(found, same, others, period):
     return np.sqrt(stderr**2 + moved + (_EXACT * x) ** 2)
 
 
-def _check_lower(warned, found, same):
-    if "lower" not in same:
-        return
-    lower = same["lower"].left
-    for name, x, sigma, y, s2 in zip(found.names, found.left.x, found.left.stderr, lower.x, lower.stderr):
-        if (
-            name in _PHYSICAL
-            and math.isfinite(sigma + s2)
-            and abs(x - y) > max(2 * math.hypot(sigma, s2), 0.1 * abs(x))
-        ):
-            warned.add(
-                f"{name} depends on the cut-off: {x:.4g} +- {sigma:.2g} at {found.table.cutoff_hz:.3g} Hz, {y:.4g} +- {s2:.2g} at half of it (flexibility, backlash?)"
-            )
-
-
-def _check_model(warned, found, stderr, others, period):
-    """What the fit itself shows. noise: its share in the power of the acceleration; period: s, of sampling."""
-    left = found.left
-    with_gravity = min(others["gravity"].rms, left.rms) / left.rms if "gravity" in others else 1.0
-    explained = 1 - (found.misfit * with_gravity) ** 2
+def _check_fit(warned, found, others, with_gravity):
+    """What the residual shows."""
+    left, gravity = found.left, others.get("gravity", found.left).rms / found.left.rms
+    explained = 1 - (found.misfit * gravity) ** 2
     F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
     if explained < _EXPLAINED or (F < _F and explained < 0.5):
         share = f"{max(explained, 0):.1%} of it (F = {F:.1f}, needed {_F:.0f}; too few independent samples?)"
         warned.refuse(f"u does not belong to this motion, which explains {share}: another joint or clock? A spring?")
     elif F < _F:
         warned.add(f"only {left.independent:.0f} independent samples: record longer, with more reversals")
-    known = dict(zip(found.names, zip(left.x.tolist(), stderr.tolist(), strict=True), strict=True))
-    negative = [name for name in _PHYSICAL if name in known and known[name][0] < -3 * known[name][1]]
+    if found.misfit > _POOR:
+        warned.add(f"the model explains little of u (fit {1 - found.misfit:.0%}): do not use it; look at q, u and load")
+    if not with_gravity and gravity**2 < 0.5 and found.misfit > 0.01:
+        warned.add(f"{1 - gravity**2:.0%} of the rest of u go with sin q, cos q: add terms=(..., 'gravity')")
+    if left.correlation > 0.9 and found.misfit > _MISSING:
+        warned.add(f"residuals are far from white ({left.correlation:.2f}): something is missing (backlash, a spring)")
+    bent = others.get("bent", left)
+    if bent.rms < _BENT[0] * left.rms and abs(bent.x[-1]) > _BENT[1] * bent.stderr[-1]:
+        warned.add("friction is no straight line in the speed (Stribeck?): fit slow and fast motion apart")
+
+
+def _check_parameters(warned, parameters, found, lower):
+    """Parameters that are negative, drown in their error, or depend on the cut-off."""
+    negative = [name for name, (x, sigma) in parameters.items() if name in _PHYSICAL and x < -3 * sigma]
     if {"viscous", "coulomb"} <= set(negative):
         warned.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
-    for name, (x, sigma) in known.items():
-        said = _SAID.get(name, name)
+    moved = np.abs(found.left.x - lower.left.x) > _DEPENDS[0] * np.hypot(found.left.stderr, lower.left.stderr)
+    for (name, (x, sigma)), y, sure in zip(parameters.items(), lower.left.x, moved, strict=True):
+        said, value = _SAID.get(name, name), f"({x:.3g} +- {sigma:.2g})"
         if math.isinf(sigma):
             warned.add(f"{said} cannot be told from these data: record several speeds to both sides, faster reversals")
         elif name in negative:
-            warned.add(f"{said} is negative ({x:.3g} +- {sigma:.2g}): is u late or early (delay=), or its sign turned?")
+            warned.add(f"{said} is negative {value}: is u late or early (delay=), or its sign turned?")
         elif name in _PHYSICAL and sigma > 0.5 * abs(x):
-            warned.add(f"{said} drowns in its error ({x:.3g} +- {sigma:.2g}): record faster reversals, several speeds")
-    if {"inertia", "viscous"} <= set(known) and 0 < known["inertia"][0] < known["viscous"][0] * period:
-        warned.add(f"the time constant is below the sampling period of {period:.3g} s: sample faster")
-    if (delay := _delay(others)) and "spring" in others and others["spring"].rms < others["late"].rms:
+            warned.add(f"{said} drowns in its error {value}: record faster reversals, several speeds")
+        elif name in _PHYSICAL and sure and abs(x - y) > _DEPENDS[1] * abs(x):
+            at = f"{y:.3g} at {lower.cutoff_hz:.3g} Hz"
+            warned.add(
+                f"{said} depends on the cut-off: {value} at {found.cutoff_hz:.3g} Hz, {at} (flexibility, backlash?)"
+            )
+
+
+def _check_timing(warned, lower, others, period):
+    """A u that is late or early, or a spring between motor and load, which looks like it."""
+    late = others["late"]
+    delay, left = float(late.x[-1]), late.rms / lower.left.rms
+    if not any(left < share and abs(delay) > n * late.stderr[-1] for share, n in _LATE):
+        return
+    if others.get("spring", late).rms < late.rms:
         warned.add("inertia depends on the frequency, as in a flexible joint: try a lower cutoff_hz")
     elif delay > _UNSURE * period:
         warned.add(f"u seems to act about {delay:.2g} s later than delay= says: add it there (backlash looks alike)")
     elif delay < -_UNSURE * period:
         warned.add(f"q seems to be recorded {-delay:.2g} s before u, or u is filtered: inertia is too small; shift one")
-    if found.misfit > 0.5:
-        warned.add(f"the model explains little of u (fit {1 - found.misfit:.0%}): do not use it; look at q, u and load")
-    bent = others.get("bent")
-    if bent and abs(bent.x[-1]) > 4 * bent.stderr[-1] and bent.rms < 0.95 * left.rms:
-        warned.add("friction is no straight line in the speed (Stribeck?): fit slow and fast motion apart")
-    if with_gravity**2 < 0.5 and "gravity_sin" not in known and found.misfit > 0.01:
-        warned.add(f"{1 - with_gravity**2:.0%} of the rest of u go with sin q, cos q: add terms=(..., 'gravity')")
-    if left.correlation > 0.9 and found.misfit > 0.1:
-        warned.add(f"residuals are far from white ({left.correlation:.2f}): something is missing (backlash, a spring)")
-
-
-def _delay(others):
-    """How much later than assumed u acts, s, if that explains enough of what is left of u; else 0."""
-    late, sigma = others["late"].x[-1], others["late"].stderr[-1]
-    sure = any(others["late"].rms < share * others["as it is"].rms and abs(late) > n * sigma for share, n in _LATE)
-    return float(late) if sure else 0.0
