@@ -6,6 +6,7 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification.columns import quantum_of, runs, sampling_period
+from ir50p_lab.identification.regression import least_squares
 
 FEWEST = 40  # samples, ten for each of four parameters
 _TURNS = 6 * math.pi  # rad: further than joints go, and a third of a radian in degrees
@@ -16,10 +17,9 @@ _JUMP = 5.0  # times the largest usual step of q: if it jumps further after a st
 _ABRUPT = 0.2  # of the rms speed: if q runs faster into its largest value, and stays there, it was clipped
 _SPIKE = 0.05  # of the range, and 12 times the bends around it: one sample this far from both neighbours is an outlier
 _LEAST = 3  # quanta, of an outlier: fewer are the flicker of a coarse signal
-LEVELS = 16  # an input of so few levels is switched, not clipped
-# Measured on three machines, 3 seeds, limits at 30 to 90 %: clipped 0.02 of the range or more and 1.0 or more; a drive
-# that saturates, 0.67 at most. `reach`: how far these samples lie outside the ones the model was fitted to.
-_EXCESS, _BEYOND = 0.01, 0.85
+_EXCESS = 0.025  # of the range of u: if the motion needs this much more than the limits of u, it was clipped
+_SELDOM, _OFTEN = 0.01, 0.25  # share of the samples at a limit of u, between which that is looked at
+_MISSED = 0.07  # residual over spread of u: if this is left where u is at its limits more often, it was clipped, too
 _CONTRADICT = 4.0  # standard errors, and 5 %: two recordings that differ by more contradict each other
 
 
@@ -155,33 +155,21 @@ def check_measured_speed(warned, t, q, qd):
 
 
 def check_clipped_drive(warned, found):
-    """A u that was cut off in the recording only: the motion shows that more was there.
+    """A u that was cut off in the recording only, or of which only the direction was recorded.
 
-    The model of the samples within the limits, u allowed to be late, is compared with those at a limit. A drive that
-    really saturates, or a switched input, is fine: there the motion needs no more than what was recorded.
+    A drive that really saturates, or is switched, is fine: its motion needs no more than what was recorded. A delay is
+    allowed for. Beside it, a column for the samples at each limit tells what the motion needs more there; where u is
+    at its limits most of the time, they are u itself, and what the model does not explain tells.
     """
-    limits, y = found.limits, found.y
-    A = np.column_stack([found.A, found.slope])  # with a delay: of a late u the motion seems to need more, too
-    A = A / np.linalg.norm(A, axis=0)
-    inside = limits.max(axis=1) < 0.02
-    if inside.sum() < FEWEST // 2:
-        return
-    Q, R = np.linalg.qr(A[inside])
-    if np.linalg.cond(R) > 1e6:  # too little motion is left to tell
-        return
-    left = y - A @ np.linalg.solve(R, Q.T @ y[inside])
-    rms = math.sqrt(np.mean(left[inside] ** 2))
-    for name, sign, share in zip(("smallest", "largest"), (-1, 1), limits.T, strict=True):
-        cut = share > 0.5
-        if cut.sum() < 3:
-            continue
-        excess = -sign * float(np.mean(left[cut]))
-        reach = math.sqrt(inside.sum() * np.mean(np.sum(np.linalg.solve(R.T, A[cut].T) ** 2, axis=0)))
-        if excess > max(_EXCESS * np.ptp(y), _BEYOND * rms * reach):
-            needed = f"the motion needs {excess:.3g} more there"
-            warned.refuse(f"u was clipped at its {name} value ({needed}): record a wider range, or drive less")
-    if (share := np.mean(limits.max(axis=1) > 0.5)) > 0.1 and rms > 0.08 * np.std(y):
-        warned.add(f"u is at its limits in {share:.0%} of the record, not explained: clipped? Drive less")
+    late = np.column_stack([found.A, found.slope, np.gradient(found.slope)])
+    missed = least_squares(late, found.y, tolerance=1e-3).rms / np.std(found.y)
+    beside = least_squares(np.column_stack([late, found.limits]), found.y, tolerance=1e-3)
+    excess, sigma = beside.x[-2:] * (1, -1) / np.ptp(found.y), beside.stderr[-2:] / np.ptp(found.y)
+    share = np.mean(found.limits.max(axis=1) > 0.5)
+    needs_more = bool((excess > np.maximum(_EXCESS, 2.5 * sigma)).any()) and share > _SELDOM
+    if missed > _MISSED if share > _OFTEN else needs_more:
+        said = f"it is at its limits in {share:.0%} of the record, but the motion needs more or other values there"
+        warned.refuse(f"u was clipped: {said}; record a wider range, or drive less")
 
 
 def check_contradiction(warned, recordings, fit, names):

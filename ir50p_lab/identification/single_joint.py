@@ -134,13 +134,12 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     found = pair[measured]
     lower = (_fits(runs, names, cutoff_hz / 2, band.clean_hz, slow) or pair)[measured]
     faster = (_fits(runs, names, cutoff_hz, band.clean_hz, 2 * slow) or pair)[measured]
-    if max(run.levels for run in runs) > checks.LEVELS:
-        checks.check_clipped_drive(warned, found)
     others = _others(found, lower)
     period = 1 / runs[0].rate
     stderr = _widened(names, found, {"lower": lower.left, "faster": faster.left, **others}, period)
     parameters = dict(zip(names, zip(found.left.x.tolist(), stderr.tolist(), strict=True), strict=True))
     _check_fit(warned, found, others, "gravity" in terms)
+    checks.check_clipped_drive(warned, found)
     _check_parameters(warned, parameters, found, lower)
     _check_timing(warned, lower, others, period)
     return JointFit(
@@ -180,8 +179,7 @@ def _runs(warned, recording, delay):
     edges = np.flatnonzero(np.diff(held.segment)) + 1
     drives = np.column_stack([held.u[:, 0], measured.u[:, 0]])
     pairs = zip(np.split(held.q, edges), np.split(drives, edges), strict=True)
-    levels = len(np.unique(u[:, 0]))
-    return [SimpleNamespace(rate=held.rate_hz, angles=angles, u=drive, levels=levels) for angles, drive in pairs]
+    return [SimpleNamespace(rate=held.rate_hz, angles=angles, u=drive) for angles, drive in pairs]
 
 
 def _band(runs):
