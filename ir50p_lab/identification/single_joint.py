@@ -23,23 +23,24 @@ _MOTION = 0.99  # share of the power of the speed: the frequency below which thi
 _ABOVE = 5.0  # times the frequency of the motion: the cut-off, if noise allows; higher, flexibility makes itself felt
 _NOISE = 1e-3  # power of noise over power of the acceleration: if it exceeds this, the cut-off comes down
 _HIGHEST = 0.2  # cut-off over sampling rate: if higher, differences of samples are no derivatives any more
-_SAW = 0.06  # of quantum^2: a spectral line with less power than this may be the steps of a coarse angle
-_THIN = 4.0  # samples per period of the cut-off: if more are kept, they say the same again
+_SAW = 0.06  # of quantum^2: if a spectral line has less power than this, it may be the steps of a coarse angle
+_THIN = 4.0  # samples per period of the cut-off: if more were kept, they would say the same again
+_EDGE = 1.5  # periods of the cut-off left out at both ends of a run: if fewer, what the filter made up is fitted
 _SLOW = 0.1  # of the rms speed: default of slow=
 _DROWNED = 3.0  # rms speed over that of its noise: if less, the data are refused
-_UNSURE = (
-    0.5  # sampling periods: if u acts less than this earlier or later than assumed, it is in the errors, no warning
-)
+_UNSURE = 0.5  # sampling periods: how much earlier or later than assumed u may act, if the data do not tell
+_TOLD = 0.75  # sampling periods: if the data tell that u is later or earlier by more, a warning says so
+_LATE = (0.9, 5.0), (0.99, 8.0)  # ... if this share of the residual is left beside a delay of so many standard errors
 _EXACT = 2e-3  # of a parameter: its standard error is never less, for differences and interpolation are no better
 _EXPLAINED = 0.02  # share of the variance of u: if the model explains less, u has nothing to do with the motion
 _F = 8.0  # F value of the model: if less, chance may have made the fit
 _POOR = 0.5  # residual over spread of u: if more, standard errors hold for a model that does not
-_MISSING = 0.1  # residual over spread of u: if more of it is alike over time, a warning says so
-_DEPENDS = 2.0, 0.1  # standard errors and share of a parameter: if half the cut-off moves it by more, a warning says so
-_LATE = (0.9, 5.0), (0.99, 8.0)  # residual that a delay leaves, over the one before: if less, and the delay is so many
-# standard errors, it is told
-_BENT = 0.95, 4.0  # the same two for friction that bends
+_MISSING = 0.1, 0.9  # residual over spread of u and its correlation: if both are more, a warning says so
+_DEPENDS = 0.1, 2.0  # share of a parameter, standard errors: if half the cut-off moves it by more, a warning says so
+_BENT = 0.3, 4.0  # share of viscous friction, standard errors: if a bend moves it by more, a warning says so
+_GRAVITY = 0.5, 0.01  # share of the power of the rest, residual over spread of u: if sin q, cos q take more, likewise
 _WIDENS = {  # a fit with one thing more that may be there: the parameters whose errors it widens
+    "late": _PHYSICAL,
     "spring": ("inertia",),
     "bent": ("viscous", "coulomb"),
     "dead zone": ("inertia", "viscous"),
@@ -77,7 +78,9 @@ class JointFit:
     warnings: tuple
 
 
-def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, delay=0.0, slow=None, anyway=False):
+def fit_joint(
+    t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, delay=0.0, held=None, slow=None, anyway=False
+):
     """Inertia, viscous and Coulomb friction and offset of one joint from a recording of it    (2.48, one joint)
 
         u = inertia qdd + viscous qd + coulomb sgn(qd) + offset
@@ -97,6 +100,8 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
         terms: of "inertia", "viscous", "coulomb", "offset", "gravity".
         cutoff_hz: of the low pass; inf: none, the plain least squares of a friction sweep (with qd, without inertia).
         delay: s from a sample to the moment its u acts.
+        held: True: u is held from its sample to the next; False: it is a measurement at the instant; None: what
+            explains the data better.
         slow: rad/s; slower samples are left out, by default those below a tenth of the rms speed.
         anyway: go on where the data are refused; the reason is then in `warnings`.
 
@@ -117,8 +122,11 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
         runs += _runs(warned, one, delay)
     warned.who = ""
     if len(recordings) > 1:
-        options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "slow": slow, "anyway": anyway}
+        options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "held": held, "slow": slow, "anyway": anyway}
         checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), _PHYSICAL)
+    unit = float(np.std(np.concatenate([run.u for run in runs])))
+    for run in runs:
+        run.u = run.u / unit
     band = _band(runs)
     if band.speed < _DROWNED * band.speed_noise or band.speed == 0:
         said = f"not exciting: the joint moves at {band.speed:.2g} rad/s, noise alone {band.speed_noise:.2g} rad/s"
@@ -130,22 +138,22 @@ def fit_joint(t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, de
     pair = _fits(runs, names, cutoff_hz, band.clean_hz, slow)
     if not pair:
         raise IdentificationError(f"not {checks.FEWEST // 2} independent samples are in motion: record more of it")
-    measured = pair[1].left.rms < pair[0].left.rms
+    measured = pair[1].left.rms < pair[0].left.rms if held is None else not choice("held", held, (True, False))
     found = pair[measured]
     lower = (_fits(runs, names, cutoff_hz / 2, band.clean_hz, slow) or pair)[measured]
     faster = (_fits(runs, names, cutoff_hz, band.clean_hz, 2 * slow) or pair)[measured]
     others = _others(found, lower)
     period = 1 / runs[0].rate
     stderr = _widened(names, found, {"lower": lower.left, "faster": faster.left, **others}, period)
-    parameters = dict(zip(names, zip(found.left.x.tolist(), stderr.tolist(), strict=True), strict=True))
+    parameters = dict(zip(names, (unit * np.column_stack([found.left.x, stderr])).tolist(), strict=True))
     _check_fit(warned, found, others, "gravity" in terms)
     checks.check_clipped_drive(warned, found)
-    _check_parameters(warned, parameters, found, lower)
+    _check_parameters(warned, parameters, found, lower, others)
     _check_timing(warned, lower, others, period)
     return JointFit(
         **{name: x for name, (x, _) in parameters.items()},
         **{f"{name}_stderr": sigma for name, (_, sigma) in parameters.items()},
-        rms=found.left.rms,
+        rms=unit * found.left.rms,
         fit=100 * (1 - found.misfit),
         cutoff_hz=float(cutoff_hz),
         held=not measured,
@@ -195,7 +203,7 @@ def _band(runs):
     pieces = [run.angles for run in runs if abs(run.rate / longest.rate - 1) < 0.01]
     length = min(len(longest.u), max(256, sum(map(len, pieces)) // 6))
     pieces = [x for x in pieces if len(x) >= length]
-    spectra = [welch(x[:, -1], longest.rate, nperseg=length, detrend="linear") for x in pieces]
+    spectra = [welch(x[:, -1], longest.rate, nperseg=length) for x in pieces]
     power = np.average([density for _, density in spectra], axis=0, weights=[len(x) for x in pieces])[1:]
     f = spectra[0][0][1:]
     rest = power[f >= longest.rate / 4]
@@ -242,7 +250,7 @@ def _table(runs, cutoff_hz, sign_hz, slow):
     names = ("columns", "u", "slopes", "limits", "q", "v", "snap")
     parts = []
     for run in runs:
-        n, edge = len(run.u), math.ceil(run.rate / cutoff_hz / 2)
+        n, edge = len(run.u), math.ceil(_EDGE * run.rate / cutoff_hz)
         if n < 2 * edge + 20:  # too short for the filter
             continue
         v, a = _derivatives(run, cutoff_hz)
@@ -298,7 +306,7 @@ def _widened(names, found, others, period):
     moved = np.zeros(len(x))  # squared
     for name, other in others.items():
         sigma = other.stderr[: len(x)]
-        known = np.isfinite(stderr + sigma) & np.isin(names, _WIDENS.get(name, () if name == "late" else names))
+        known = np.isfinite(stderr + sigma) & np.isin(names, _WIDENS.get(name, names))
         moved = np.maximum(moved, np.where(known, (x - other.x[: len(x)]) ** 2 - np.where(known, sigma, 0.0) ** 2, 0.0))
     late, unsure = others["late"], _UNSURE * period
     share = unsure**2 / (unsure**2 + late.stderr[-1] ** 2)  # of what is not known of the delay, the data tell this much
@@ -319,22 +327,26 @@ def _check_fit(warned, found, others, with_gravity):
         warned.add(f"only {left.independent:.0f} independent samples: record longer, with more reversals")
     if found.misfit > _POOR:
         warned.add(f"the model explains little of u (fit {1 - found.misfit:.0%}): do not use it; look at q, u and load")
-    if not with_gravity and gravity**2 < 0.5 and found.misfit > 0.01:
+    if not with_gravity and 1 - gravity**2 > _GRAVITY[0] and found.misfit > _GRAVITY[1]:
         warned.add(f"{1 - gravity**2:.0%} of the rest of u go with sin q, cos q: add terms=(..., 'gravity')")
-    if left.correlation > 0.9 and found.misfit > _MISSING:
+    if found.misfit > _MISSING[0] and left.correlation > _MISSING[1]:
         warned.add(f"residuals are far from white ({left.correlation:.2f}): something is missing (backlash, a spring)")
-    bent = others.get("bent", left)
-    if bent.rms < _BENT[0] * left.rms and abs(bent.x[-1]) > _BENT[1] * bent.stderr[-1]:
-        warned.add("friction is no straight line in the speed (Stribeck?): fit slow and fast motion apart")
 
 
-def _check_parameters(warned, parameters, found, lower):
+def _check_parameters(warned, parameters, found, lower, others):
     """Parameters that are negative, drown in their error, or depend on the cut-off."""
     negative = [name for name, (x, sigma) in parameters.items() if name in _PHYSICAL and x < -3 * sigma]
     if {"viscous", "coulomb"} <= set(negative):
         warned.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
-    moved = np.abs(found.left.x - lower.left.x) > _DEPENDS[0] * np.hypot(found.left.stderr, lower.left.stderr)
-    for (name, (x, sigma)), y, sure in zip(parameters.items(), lower.left.x, moved, strict=True):
+    bent, k = others.get("bent", found.left), list(parameters).index("viscous") if "viscous" in parameters else 0
+    slope, at_rest = found.left.x[k], bent.x[k]
+    if abs(at_rest - slope) > _BENT[0] * abs(slope) and abs(bent.x[-1]) > _BENT[1] * bent.stderr[-1]:
+        warned.add("friction depends on the speed, not in a straight line (Stribeck?): fit slow and fast motion apart")
+    moved = np.abs(found.left.x - lower.left.x)
+    depends = moved > np.maximum(
+        _DEPENDS[1] * np.hypot(found.left.stderr, lower.left.stderr), _DEPENDS[0] * np.abs(found.left.x)
+    )
+    for k, (name, (x, sigma)) in enumerate(parameters.items()):
         said, value = _SAID.get(name, name), f"({x:.3g} +- {sigma:.2g})"
         if math.isinf(sigma):
             warned.add(f"{said} cannot be told from these data: record several speeds to both sides, faster reversals")
@@ -342,10 +354,10 @@ def _check_parameters(warned, parameters, found, lower):
             warned.add(f"{said} is negative {value}: is u late or early (delay=), or its sign turned?")
         elif name in _PHYSICAL and sigma > 0.5 * abs(x):
             warned.add(f"{said} drowns in its error {value}: record faster reversals, several speeds")
-        elif name in _PHYSICAL and sure and abs(x - y) > _DEPENDS[1] * abs(x):
-            at = f"{y:.3g} at {lower.cutoff_hz:.3g} Hz"
+        elif name in _PHYSICAL and depends[k]:
+            half = f"{x * lower.left.x[k] / found.left.x[k]:.3g} at half of it"
             warned.add(
-                f"{said} depends on the cut-off: {value} at {found.cutoff_hz:.3g} Hz, {at} (flexibility, backlash?)"
+                f"{said} depends on the cut-off: {value} at {found.cutoff_hz:.3g} Hz, {half} (flexibility, backlash?)"
             )
 
 
@@ -357,7 +369,7 @@ def _check_timing(warned, lower, others, period):
         return
     if others.get("spring", late).rms < late.rms:
         warned.add("inertia depends on the frequency, as in a flexible joint: try a lower cutoff_hz")
-    elif delay > _UNSURE * period:
+    elif delay > _TOLD * period:
         warned.add(f"u seems to act about {delay:.2g} s later than delay= says: add it there (backlash looks alike)")
-    elif delay < -_UNSURE * period:
+    elif delay < -_TOLD * period:
         warned.add(f"q seems to be recorded {-delay:.2g} s before u, or u is filtered: inertia is too small; shift one")
