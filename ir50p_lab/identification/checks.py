@@ -190,5 +190,7 @@ def check_contradiction(warned, recordings, fit, names):
         apart = np.where(apart > 0.05 * np.abs(x), apart, 0.0) / np.hypot(sigma[:, None], sigma)
         if apart.max(initial=0.0) > _CONTRADICT:
             odd = int(np.argmax(apart.sum(axis=0)))
-            others = f"{np.median(np.delete(x, odd)):.4g} in {'the other' if len(x) == 2 else 'the others'}"
-            warned.add(f"recording {known[odd]} contradicts: {name} {x[odd]:.4g} +- {sigma[odd]:.2g}, {others}")
+            who = (
+                f"recording {known[odd]} contradicts the others" if len(known) > 2 else "the two recordings contradict"
+            )
+            warned.add(f"{who}: {name} {x[odd]:.4g} +- {sigma[odd]:.2g} beside {np.median(np.delete(x, odd)):.4g}")

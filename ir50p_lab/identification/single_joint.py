@@ -128,7 +128,7 @@ def fit_joint(
     for run in runs:
         run.u = run.u / unit
     band = _band(runs)
-    if band.speed < _DROWNED * band.speed_noise or band.speed == 0:
+    if cutoff_hz != math.inf and (band.speed < _DROWNED * band.speed_noise or band.speed == 0):
         said = f"not exciting: the joint moves at {band.speed:.2g} rad/s, noise alone {band.speed_noise:.2g} rad/s"
         warned.refuse(f"{said}; move faster")
     if cutoff_hz is None:
