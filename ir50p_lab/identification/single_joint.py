@@ -124,7 +124,7 @@ def fit_joint(
     if len(recordings) > 1:
         options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "held": held, "slow": slow, "anyway": anyway}
         checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), _PHYSICAL)
-    unit = float(np.std(np.concatenate([run.u for run in runs])))
+    unit = float(np.std(np.concatenate([run.u for run in runs])))  # for columns of a size, whatever u counts in
     for run in runs:
         run.u = run.u / unit
     band = _band(runs)
@@ -268,8 +268,10 @@ def _table(runs, cutoff_hz, sign_hz, slow):
 
 
 def _fits(runs, names, cutoff_hz, sign_hz, slow):
-    """Fits of u held and of u measured: what `_table` tells, and y (m,), slope (m,): u and its rate of change;
-    A (m, p): the columns `names`; left: LeastSquares; misfit: residual over spread of u. [] if too few samples move.
+    """Fits of u held and of u measured, as namespaces; [] if too few samples move.
+
+    What `_table` tells, and y, slope (m,): u and its rate of change; A (m, p): the columns `names`; left: LeastSquares;
+    misfit: residual over spread of u.
     """
     table = _table(runs, cutoff_hz, sign_hz, slow)
     if len(table.q) < checks.FEWEST // 2:
@@ -278,7 +280,7 @@ def _fits(runs, names, cutoff_hz, sign_hz, slow):
     fits = []
     for y, slope in zip(table.u.T, table.slopes.T, strict=True):
         left = least_squares(A, y, tolerance=_OWN_SHARE)
-        misfit = left.rms / float(np.std(y))
+        misfit = left.rms / max(float(np.std(y)), 1e-300)
         fits.append(SimpleNamespace(**vars(table), A=A, y=y, slope=slope, left=left, misfit=misfit))
     return fits
 
@@ -338,14 +340,13 @@ def _check_parameters(warned, parameters, found, lower, others):
     negative = [name for name, (x, sigma) in parameters.items() if name in _PHYSICAL and x < -3 * sigma]
     if {"viscous", "coulomb"} <= set(negative):
         warned.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
-    bent, k = others.get("bent", found.left), list(parameters).index("viscous") if "viscous" in parameters else 0
-    slope, at_rest = found.left.x[k], bent.x[k]
-    if abs(at_rest - slope) > _BENT[0] * abs(slope) and abs(bent.x[-1]) > _BENT[1] * bent.stderr[-1]:
-        warned.add("friction depends on the speed, not in a straight line (Stribeck?): fit slow and fast motion apart")
-    moved = np.abs(found.left.x - lower.left.x)
-    depends = moved > np.maximum(
-        _DEPENDS[1] * np.hypot(found.left.stderr, lower.left.stderr), _DEPENDS[0] * np.abs(found.left.x)
-    )
+    if "viscous" in parameters and "bent" in others:
+        bent, k = others["bent"], list(parameters).index("viscous")
+        much = abs(bent.x[k] - found.left.x[k]) > _BENT[0] * abs(found.left.x[k])
+        if much and abs(bent.x[-1]) > _BENT[1] * bent.stderr[-1]:
+            warned.add("friction depends on the speed, in no straight line (Stribeck?): fit slow and fast motion apart")
+    x, sigma = found.left.x, np.hypot(found.left.stderr, lower.left.stderr)
+    depends = np.abs(x - lower.left.x) > np.maximum(_DEPENDS[0] * np.abs(x), _DEPENDS[1] * sigma)
     for k, (name, (x, sigma)) in enumerate(parameters.items()):
         said, value = _SAID.get(name, name), f"({x:.3g} +- {sigma:.2g})"
         if math.isinf(sigma):
@@ -355,10 +356,8 @@ def _check_parameters(warned, parameters, found, lower, others):
         elif name in _PHYSICAL and sigma > 0.5 * abs(x):
             warned.add(f"{said} drowns in its error {value}: record faster reversals, several speeds")
         elif name in _PHYSICAL and depends[k]:
-            half = f"{x * lower.left.x[k] / found.left.x[k]:.3g} at half of it"
-            warned.add(
-                f"{said} depends on the cut-off: {value} at {found.cutoff_hz:.3g} Hz, {half} (flexibility, backlash?)"
-            )
+            half = f"{x * lower.left.x[k] / found.left.x[k]:.3g} at half of {found.cutoff_hz:.3g} Hz"
+            warned.add(f"{said} depends on the cut-off: {value}, {half} (flexibility, backlash?)")
 
 
 def _check_timing(warned, lower, others, period):
