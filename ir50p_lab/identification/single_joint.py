@@ -121,6 +121,8 @@ def fit_joint(
         warned.who = f"recording {k}: " if len(recordings) > 1 else ""
         runs += _runs(warned, one, delay)
     warned.who = ""
+    if len({run.angles.shape[1] for run in runs}) > 1:
+        raise InputError("qd in some of the recordings only: give it in all, or in none")
     if len(recordings) > 1:
         options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "held": held, "slow": slow, "anyway": anyway}
         checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), _PHYSICAL)

@@ -151,15 +151,14 @@ def test_within_three_standard_errors_and_near(machine, seed):
 
 
 @machines
-def test_standard_errors_are_not_too_small(machine):
-    """Pooled over 20 seeds: within three standard errors, or 1 % (3 % with 2 mrad of noise at 50 Hz)."""
-    slack = 0.03 if machine[1] == 0.02 else 0.01
-    good = []
-    for seed in range(20):
+def test_standard_errors_hold(machine):
+    """Pooled over seeds that no threshold was chosen on: 99 % within three standard errors."""
+    off = []
+    for seed in range(100, 120):
         found = fit_joint(*recorded(machine, seed))
         for name, true in zip(NAMES, machine[0], strict=True):
-            good.append(abs(getattr(found, name) - true) <= 3 * getattr(found, f"{name}_stderr") + slack * abs(true))
-    assert np.mean(good) > 0.97
+            off.append(abs(getattr(found, name) - true) / getattr(found, f"{name}_stderr"))
+    assert np.mean(np.array(off) < 3) >= 0.99, np.sort(off)[-5:]
 
 
 @machines
@@ -352,6 +351,8 @@ def test_a_measured_speed_is_believed_at_few_samples_a_period_and_in_several_rec
     assert any("times qd" in text for text in fit_joint(t, q, u, qd=2 * qd, terms=terms).warnings)
     with pytest.raises(InputError, match=r"\(t, q, u, qd\)"):
         fit_joint([(t, q, u)], qd=qd)
+    with pytest.raises(InputError, match="qd in some of the recordings only"):
+        fit_joint([(t, q, u), (t, q, u, qd)])
 
 
 def test_measured_speed_is_used_and_its_unit_is_checked():
@@ -377,7 +378,7 @@ def test_recordings_are_pooled_and_one_that_contradicts_is_named():
     assert together.samples > 2.5 * fit_joint(*first).samples
     other = recorded(heavy, 7)
     assert "recording 2 contradicts the others: inertia" in " ".join(fit_joint([first, other, third]).warnings)
-    assert "the two recordings contradict: inertia" in " ".join(fit_joint([first, other]).warnings)
+    assert "contradicts the other: inertia" in " ".join(fit_joint([first, other]).warnings)
     t, q, u = second
     with pytest.raises(IdentificationError, match=r"recording 2 alone would be refused: .*sign of u"):
         fit_joint([first, (t, q, -u), third])
@@ -502,11 +503,11 @@ def test_not_exciting(machine, scale):
 
 
 @machines
-def test_constant(machine, value=300.0):
+def test_constant(machine):
     t, q, u = recorded(machine)
-    refused("q is constant", t, np.full_like(q, value), u)
-    refused("u is constant", t, q, np.full_like(u, value))
-    refused("only 2 values", t, np.where(q > 0, value, -1.0), u)
+    refused("q is constant", t, np.full_like(q, 300.0), u)
+    refused("u is constant", t, q, np.zeros_like(u))
+    refused("only 2 values", t, np.sign(q), u)
 
 
 @pytest.mark.parametrize("count", [1, 20, 400])
