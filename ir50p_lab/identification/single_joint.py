@@ -37,7 +37,7 @@ _F = 8.0  # F value of the model: if less, chance may have made the fit
 _POOR = 0.5  # residual over spread of u: if more, standard errors hold for a model that does not
 _MISSING = 0.1, 0.9  # residual over spread of u and its correlation: if both are more, a warning says so
 _DEPENDS = 0.1, 2.0  # share of a parameter, standard errors: if half the cut-off moves it by more, a warning says so
-_BENT = 0.3, 4.0  # share of viscous friction, standard errors: if a bend moves it by more, a warning says so
+_BENT = 0.3, 2.5  # share of viscous friction, standard errors: if a bend moves it by more, a warning says so
 _GRAVITY = 0.5, 0.01  # share of the power of the rest, residual over spread of u: if sin q, cos q take more, likewise
 _WIDENS = {  # a fit with one thing more that may be there: the parameters whose errors it widens
     "late": _PHYSICAL,
