@@ -5,13 +5,23 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError
-from ir50p_lab.identification.columns import quantum_of, sampling_period
+from ir50p_lab.identification.columns import quantum_of, runs, sampling_period
+from ir50p_lab.identification.regression import least_squares
 
 FEWEST = 40  # samples, ten for each of four parameters
 _TURNS = 6 * math.pi  # rad: further than joints go, and a third of a radian in degrees
 _SLOW_CLOCK = 0.15  # s: nobody samples a joint so slowly, many write milliseconds
+_STAYS = 5  # samples at one value: if an angle stays longer, and leaves too suddenly, the sensor hung or was clipped
+_BROKEN = 3.5  # samples: stays no further apart than this are one stay, broken by noise
+_JUMP = 5.0  # times the largest usual step of q: if it jumps further after a stay, the sensor hung
+_ABRUPT = 0.2  # of the rms speed: if q runs faster into its largest value, and stays there, it was clipped
 _SPIKE = 0.05  # of the range, and 12 times the bends around it: one sample this far from both neighbours is an outlier
 _LEAST = 3  # quanta, of an outlier: fewer are the flicker of a coarse signal
+_EXCESS = 0.025  # of the range of u: if the motion needs this much more at the limits of u, it was clipped. Measured
+# on three machines, limits at 60 to 90 %: clipped 0.036 or more; a drive that saturates, late or not, 0.019 at most
+_SELDOM, _OFTEN = 0.02, 0.25  # share of the samples at a limit of u: if it lies between, that need is looked at
+_MISSED = 0.07  # residual over spread of u: if more is left, and u is at its limits more often, it was clipped, too
+_CONTRADICT = 4.0  # standard errors, and 5 %: two recordings that differ by more contradict each other
 
 
 class Warnings(list):
@@ -32,26 +42,90 @@ class Warnings(list):
 
 
 def check_signals(warned, t, q, u):
-    """What is wrong with q (n,) and u (n,) at the times t (n,) before any model."""
+    """What is wrong with q (n,) and u (n,) at the times t (n,) before any model. Returns (n,) bool: where q is new."""
     if len(t) < FEWEST:
         warned.refuse(f"{len(t)} samples are too short a record; record {FEWEST} or more, over several reversals")
     for name, x in (("q", q), ("u", u)):
         if np.ptp(x) <= 1e-12 * np.abs(x).max():
             raise IdentificationError(f"{warned.who}{name} is constant at {x[0]:.6g}: check sensor, or drive harder")
-        check_outliers(warned, name, t, x)
+    places = check_outliers(warned, "q", t, q)
+    check_outliers(warned, "u", t, u)
+    if (values := len(np.unique(q))) < 3:
+        warned.refuse(f"q takes only {values} values: no motion can be seen; use a finer sensor")
     step = np.abs(np.diff(q))
     for turn in (2 * math.pi, 360.0):
         if (jump := (np.abs(step - turn) < 0.1 * turn) & (step > 15 * np.median(step))).any():
             warned.refuse(
                 f"a whole turn was wrapped at t = {t[1:][jump][0]:.6g} s: use np.unwrap(q, period={turn:.6g})"
             )
-    share = 100 * np.isin(u, (u.min(), u.max())).mean()
-    if share > 5 and len(np.unique(u)) > 16:  # fewer levels are switched, not clipped
-        warned.add(f"u is at its largest or smallest value in {share:.0f} %: if clipped, record a wider range")
+    _hung(warned, np.delete(t, places), np.delete(q, places))
+    _clipped(warned, np.delete(t, places), np.delete(q, places))
     if np.ptp(q) > _TURNS:
         warned.add(f"q spans {np.ptp(q):.4g} rad: is it in degrees? Use np.radians(q)")
     if (period := sampling_period(t)) > _SLOW_CLOCK:
         warned.add(f"one sample every {period:.4g} s: is t in ms or microseconds? Give seconds")
+    return _new(warned, q)
+
+
+def _new(warned, q):
+    """Where q (n,) is new, if a slow sensor renews it less often than rows are written; else all True."""
+    steps = np.abs(np.diff(q))
+    moved = np.flatnonzero(steps)
+    every = (len(q) - 1) / max(len(moved), 1)
+    regular = np.mean(np.abs(np.diff(moved) - every) < 0.6) >= 0.7  # or the joint stood still now and then
+    if every < 1.9 or not regular or np.median(steps[moved]) < 4 * quantum_of(q):  # small: steps of a coarse sensor
+        return np.ones(len(q), dtype=bool)
+    warned.add(f"q is new only in every {every:.3g}th row (a slow sensor): the others were left out")
+    return np.r_[True, steps > 0]
+
+
+def _hung(warned, t, q):
+    """A q that stands still for some samples and then jumps within one, as it does where a sensor or a link hangs."""
+    steps = np.where(np.diff(t) < 1.5 * sampling_period(t), np.abs(np.diff(q)), 0.0)  # a gap is no jump
+    usual = float(np.quantile(steps[steps > 0], 0.98)) if steps.any() else np.inf
+    moved = np.flatnonzero(np.diff(q))
+    stood = np.diff(moved, prepend=-1) - 1  # samples without change before each move
+    hung = moved[(stood >= _STAYS) & (steps[moved] > _JUMP * usual)]
+    if len(hung):
+        where = f"t = {t[hung[0] + 1]:.6g} s ({len(hung)} time(s))"
+        warned.refuse(f"q stands still and jumps at {where}: the sensor or link hung; leave these samples out")
+
+
+def _clipped(warned, t, q):
+    """A q that runs into its largest or smallest value, stays there, and comes out of it as suddenly."""
+    still = np.flatnonzero((np.diff(q) == 0) & (q[1:] > q.min()) & (q[1:] < q.max()))
+    rests = [(still[a], still[b - 1] + 2) for a, b in runs(still.astype(float), 1.5) if b - a >= _STAYS - 1]
+    for name, x in (("largest", q), ("smallest", -q)):
+        places = np.flatnonzero(x >= x.max() - 1e-9 * np.ptp(x))
+        stays = [(places[a], places[b - 1] + 1) for a, b in runs(places.astype(float), _BROKEN) if b - a >= _STAYS]
+        if any(_is_cut_off(t, x, *stay) for stay in stays):
+            said = f"q was clipped (or stops suddenly) at its {name} value, {q[places[0]]:.6g} rad"
+            elsewhere = any(_is_cut_off(t, sign * q, *rest) for rest in rests for sign in (1, -1))
+            tell = warned.add if elsewhere else warned.refuse  # a joint that stops so at any angle was not clipped
+            tell(f"{said}: record within the range, or cut these parts out")
+
+
+def _is_cut_off(t, x, begin, end):
+    """Whether x (n,) runs into the stay x[begin:end] at its largest value and out of it without slowing down.
+
+    A joint that comes to rest slows down: over the last m samples it is no faster than it lost over the m before, for
+    one m at least, as brakes are short. A stay that hides less than the sensor can tell is none.
+    """
+    step, period, quantum = np.diff(x), sampling_period(t), quantum_of(x)
+    noise = float(np.median(np.abs(np.diff(step)))) / 0.6745 / math.sqrt(6)
+    widest = max(3, (end - begin) // 8)
+    if begin < 2 * widest or end + 2 * widest > len(x):
+        return False
+    for m in (widest // k for k in (32, 16, 8, 4, 2, 1) if widest >= 3 * k):
+        places = [slice(first, first + m) for first in (begin - m, end, begin - 2 * m, end + m)]
+        before, after, *earlier = (np.polyfit(t[part] - t[begin], x[part], 1)[0] for part in places)
+        near, lost = before - after, earlier[0] - earlier[1] - (before - after)
+        unsure = (2 * quantum + 8 * noise / math.sqrt(m)) / ((m - 1) * period)
+        if near + unsure < 3 * lost:
+            return False
+    fast = min(before, -after) > _ABRUPT * math.sqrt(np.mean(step**2)) / period
+    hidden = near / 2 * (t[end - 1] - t[begin]) / 4  # rad; more than three ranges is a rest
+    return near > 3 * max(lost, 0.0) + unsure and fast and 2 * quantum + 1e-4 * np.ptp(x) < hidden < 3 * np.ptp(x)
 
 
 def check_outliers(warned, name, t, x, remedy="leave these samples out"):
@@ -70,3 +144,55 @@ def check_outliers(warned, name, t, x, remedy="leave these samples out"):
         k = places[0]
         warned.add(f"{name} has {len(places)} outlier(s), the first at t = {t[k]:.6g} s, {x[k]:.4g}: {remedy}")
     return places
+
+
+def check_measured_speed(warned, t, q, qd):
+    """A qd (n,) that is not the rate of q (n,): another unit, another joint."""
+    near = np.diff(t) < 1.5 * sampling_period(t)  # not across gaps
+    rate, speed = (np.diff(q) / np.diff(t))[near], ((qd[1:] + qd[:-1]) / 2)[near]
+    factor = float(rate @ speed / max(speed @ speed, 1e-300))
+    if not 0.9 < factor < 1.1:
+        warned.add(f"the angle changes at {factor:.3g} times qd: is qd in rad/s and q in rad, of the same joint?")
+
+
+def check_clipped_drive(warned, found):
+    """A u that was cut off in the recording only, or of which only the direction was recorded.
+
+    A drive that really saturates, or is switched, is fine: its motion needs no more than what was recorded. A delay is
+    allowed for. Beside it, a column for the samples at each limit tells what the motion needs more there; where u is
+    at its limits most of the time, they are u itself, and what the model does not explain tells.
+    """
+    late = np.column_stack([found.A, found.slope, np.gradient(found.slope)])
+    missed = least_squares(late, found.y, tolerance=1e-3).rms / np.std(found.y)
+    beside = least_squares(np.column_stack([late, found.limits]), found.y, tolerance=1e-3)
+    excess, sigma = beside.x[-2:] * (1, -1) / np.ptp(found.y), beside.stderr[-2:] / np.ptp(found.y)
+    share = np.mean(found.limits.max(axis=1) > 0.5)
+    needs_more = bool((excess > np.maximum(_EXCESS, 2.5 * sigma)).any()) and share > _SELDOM
+    if missed > _MISSED if share > _OFTEN else needs_more:
+        said = f"it is at its limits in {share:.0%} of the record, but the motion needs more or other values there"
+        warned.refuse(f"u was clipped: {said}; record a wider range, or drive less (if it is late, give delay=)")
+
+
+def check_contradiction(warned, recordings, fit, names):
+    """Recordings that do not agree. fit: of one of them; names: of the parameters compared.
+
+    Of three or more, the odd one is the one that differs most from all others, in standard errors.
+    """
+    found = {}
+    for k, one in enumerate(recordings, 1):
+        try:
+            found[k] = fit(one)
+        except IdentificationError as refusal:
+            warned.add(f"recording {k} alone would be refused: {refusal}")
+    for name in names:
+        known = [k for k, one in found.items() if math.isfinite(getattr(one, f"{name}_stderr"))]
+        x, sigma = (np.array([getattr(found[k], name + ending) for k in known]) for ending in ("", "_stderr"))
+        apart = np.abs(x[:, None] - x)
+        apart = np.where(apart > 0.05 * np.abs(x), apart, 0.0) / np.hypot(sigma[:, None], sigma)
+        if apart.max(initial=0.0) > _CONTRADICT:
+            odd = int(np.argmax(apart.sum(axis=0)))
+            others = "the others" if len(known) > 2 else "the other"
+            value = f"{x[odd]:.4g} +- {sigma[odd]:.2g}"
+            warned.add(
+                f"recording {known[odd]} contradicts {others}: {name} {value} beside {np.median(np.delete(x, odd)):.4g}"
+            )

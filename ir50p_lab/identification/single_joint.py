@@ -2,30 +2,60 @@
 
 import math
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.checks import FEWEST, Warnings, check_signals
-from ir50p_lab.identification.columns import columns_of
-from ir50p_lab.identification.processing import central_derivatives, process
+from ir50p_lab.identification import checks
+from ir50p_lab.identification.columns import columns_of, quantum_of
+from ir50p_lab.identification.processing import process
 from ir50p_lab.identification.regression import least_squares
-from ir50p_lab.inputs import number
+from ir50p_lab.inputs import choice, number
 from ir50p_lab.signals.low_pass import low_pass
 
 TERMS = ("inertia", "viscous", "coulomb", "offset", "gravity")
-_DEAD = 0.1  # of the rms speed, below which a joint may stick
-_NOISE = 1e-3  # of the power of the acceleration, that noise may have below the cut-off
-_MOTION = 0.99  # of the power of the speed, that the cut-off keeps whatever the noise
-_EXPLAINED = 0.05  # least share of the variance of u that the motion explains
+_COLUMNS = ("offset", "gravity_sin", "gravity_cos", "viscous", "coulomb", "inertia")
+_PHYSICAL = ("inertia", "viscous", "coulomb")
+_SAID = {"viscous": "viscous friction", "coulomb": "Coulomb friction"}
+_OWN_SHARE = 1e-3  # share of a column's length: if less of it sticks out of the columns before, it is left out
+_MOTION = 0.99  # share of the power of the speed: the frequency below which this much lies is that of the motion
+_ABOVE = 5.0  # times the frequency of the motion: the cut-off, if noise allows; higher, flexibility makes itself felt
+_NOISE = 1e-3  # power of noise over power of the acceleration: if it exceeds this, the cut-off comes down
+_HIGHEST = 0.2  # cut-off over sampling rate: if higher, differences of samples are no derivatives any more
+_SAW = 0.06  # of quantum^2: if a spectral line has less power than this, it may be the steps of a coarse angle
+_THIN = 4.0  # samples per period of the cut-off: if more were kept, they would say the same again
+_EDGE = 1.5  # periods of the cut-off left out at both ends of a run: if fewer, what the filter made up is fitted
+_SLOW = 0.1  # of the rms speed: default of slow=
+_DROWNED = 3.0  # rms speed over that of its noise: if less, the data are refused
+_UNSURE = 0.5  # sampling periods: how much earlier or later than assumed u may act, if the data do not tell
+_TOLD = 0.75  # sampling periods: if the data tell that u is later or earlier by more, a warning says so
+_LATE = (0.9, 5.0), (0.99, 8.0)  # ... if this share of the residual is left beside a delay of so many standard errors
+_EXACT = 2e-3  # of a parameter: its standard error is never less, for differences and interpolation are no better
+_EXPLAINED = 0.02  # share of the variance of u: if the model explains less, u has nothing to do with the motion
+_F = 8.0  # F value of the model: if less, chance may have made the fit
+_POOR = 0.5  # residual over spread of u: if more, standard errors hold for a model that does not
+_MISSING = 0.1, 0.9  # residual over spread of u and its correlation: if both are more, a warning says so
+_DEPENDS = 0.1, 2.0  # share of a parameter, standard errors: if half the cut-off moves it by more, a warning says so
+_BENT = 0.3, 2.5  # share of viscous friction, standard errors: if a bend moves it by more, a warning says so
+_GRAVITY = 0.5, 0.01  # share of the power of the rest, residual over spread of u: if sin q, cos q take more, likewise
+_WIDENS = {  # a fit with one thing more that may be there: the parameters whose errors it widens
+    "late": _PHYSICAL,
+    "spring": ("inertia",),
+    "bent": ("viscous", "coulomb"),
+    "dead zone": ("inertia", "viscous"),
+    "gravity": (*_PHYSICAL, "offset"),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
 class JointFit:
     """u = inertia qdd + viscous qd + coulomb sgn(qd) + offset [+ gravity_sin sin q + gravity_cos cos q].
 
-    Each in the unit of u and SI, with a standard error ..._stderr (inf: the data do not hold it; nan: not asked for);
-    rms of the residual; fit: 100 (1 - |u - u_model|/|u - mean u|) %; cutoff_hz of the low pass; samples; warnings.
+    u in its own unit (N m, A, PWM counts...). Each parameter has a standard error ..._stderr, inf where the data do not
+    hold it (the value is then 0), nan where it was not asked for. rms: of the residual, unit of u; fit:
+    100 (1 - |u - u_model|/|u - mean u|) %; cutoff_hz: of the low pass on q and u, inf for none; held: whether u was
+    taken as held from its sample to the next; samples: used in the regression; warnings: tuple of str.
     """
 
     inertia: float = 0.0
@@ -43,147 +73,304 @@ class JointFit:
     rms: float
     fit: float
     cutoff_hz: float
+    held: bool
     samples: int
     warnings: tuple
 
 
-def fit_joint(t, q=None, u=None, *, terms=TERMS[:4], cutoff_hz=None, delay=0.0):
+def fit_joint(
+    t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, delay=0.0, held=None, slow=None, anyway=False
+):
     """Inertia, viscous and Coulomb friction and offset of one joint from a recording of it    (2.48, one joint)
 
-    q, u and sgn(qd) pass the same zero-phase low pass: the equation stays true. Samples of a joint that stands are left
-    out. The cut-off keeps the motion and leaves the noise; a fit at half of it is compared and widens the errors.
+        u = inertia qdd + viscous qd + coulomb sgn(qd) + offset
 
-    Args: t (n,) s; q (n,) rad; u (n,) any unit; or a recording of one joint. terms: of TERMS. delay: s until u acts.
-    Returns: JointFit. Raises: InputError for NaN, times that do not increase, shapes; IdentificationError for a record
-    that is too short, constant, or a u that has nothing to do with the motion.
+    q, u and sgn(qd) pass the same zero-phase low pass: the equation stays true, only noise is lost. Its cut-off is five
+    times the frequency of the motion, lower if noise of q asks for it: higher, flexibility and backlash make a rigid
+    model wrong. Samples of a joint that stands are left out (there u may be anything up to the breakaway friction).
+    Standard errors hold for residuals that are alike over time, and are widened by what other fits of the same data
+    say: half the cut-off, twice the least speed, u earlier or later by half a period, a flexible joint, friction that
+    bends, a force of the position, a dead zone of the amplifier.
+
+    Args:
+        t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings or
+            of tuples (t, q, u) or (t, q, u, qd): each is fitted and compared with the others, then all are together.
+        q: (n,) rad. u: (n,), torque, current or command, any unit. Arrays, masked arrays, pandas Series.
+        qd: (n,) rad/s, if it was measured too: then q is not differentiated.
+        terms: of "inertia", "viscous", "coulomb", "offset", "gravity".
+        cutoff_hz: of the low pass; inf: none, the plain least squares of a friction sweep (with qd, without inertia).
+        delay: s from a sample to the moment its u acts.
+        held: True: u is held from its sample to the next; False: it is a measurement at the instant; None: what
+            explains the data better.
+        slow: rad/s; slower samples are left out, by default those below a tenth of the rms speed.
+        anyway: go on where the data are refused; the reason is then in `warnings`.
+
+    Returns: JointFit.
+    Raises: InputError for NaN, times that do not increase, shapes that do not fit. IdentificationError, saying what to
+    do next, if the record is too short or constant, the motion drowns in noise or has nothing to do with u, q or u were
+    clipped or surely hung, angles jump by whole turns, or all friction is negative. Other flaws are in `warnings`, each
+    with a number: what is without a warning is right within three standard errors.
     """
-    if not set(terms) <= set(TERMS):
+    terms = (terms,) if isinstance(terms, str) else tuple(terms)
+    if not terms or not set(terms) <= set(TERMS):
         raise InputError(f"terms = {terms!r}: give some of {', '.join(TERMS)}")
-    t, q, u = columns_of(t, q, u)
-    if q.shape[1] != 1:
-        raise InputError(f"q has {q.shape[1]} columns: fit_joint takes one joint; give q[:, i] and u[:, i]")
-    check_signals(notes := Warnings(), t, q[:, 0], u[:, 0])
-    motions = [process(t, q, u, cutoff_hz=None, trim=0.0, delay=delay, held=held) for held in (True, False)]
-    rate = motions[0].rate_hz
-    if cutoff_hz is not None and number("cutoff_hz", cutoff_hz, "> 0", unit="Hz") >= rate / 2:
-        raise InputError(f"cutoff_hz = {cutoff_hz!r}: give a number between 0 and half the rate, {rate / 2:.4g} Hz")
-    cutoff = cutoff_hz or _cutoff(motions[0])
-    fits = list(_at_halves(motions, cutoff, terms))
-    names, found, y, table, cutoff = fits[0]
-    error, notes_here = _compared(names, found, fits[1][1]) if len(fits) > 1 else (found.stderr, [])
-    if (
-        notes_here
-        and cutoff_hz is None
-        and len(fits) > 2
-        and not (later := _compared(names, fits[1][1], fits[2][1]))[1]
-    ):
-        names, found, y, table, cutoff = fits[1]
-        error, notes_here = later
-    notes += notes_here
-    spread = float(np.std(y))
-    if found.rms**2 > (1 - _EXPLAINED) * spread**2:
-        raise IdentificationError("u does not belong to this motion, which explains nothing of it: another joint?")
-    values = dict(zip(names, zip(found.x.tolist(), error.tolist(), strict=True), strict=True))
-    if max(values.get(name, (0, 0))[0] + 3 * values.get(name, (0, 0))[1] for name in TERMS[1:3]) < 0:
-        raise IdentificationError("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
-    notes += _doubts(values, found, y, table, terms)
+    names = [name for name in _COLUMNS if name.split("_")[0] in terms]
+    warned = checks.Warnings(choice("anyway", anyway, (True, False)))
+    recordings, runs = _recordings(t, q, u, qd), []
+    for k, one in enumerate(recordings, 1):
+        warned.who = f"recording {k}: " if len(recordings) > 1 else ""
+        runs += _runs(warned, one, delay)
+    warned.who = ""
+    if len({run.angles.shape[1] for run in runs}) > 1:
+        raise InputError("qd in some of the recordings only: give it in all, or in none")
+    if len(recordings) > 1:
+        options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "held": held, "slow": slow, "anyway": anyway}
+        checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), _PHYSICAL)
+    unit = float(np.std(np.concatenate([run.u for run in runs])))  # for columns of a size, whatever u counts in
+    for run in runs:
+        run.u = run.u / unit
+    band = _band(runs)
+    if cutoff_hz != math.inf and (band.speed < _DROWNED * band.speed_noise or band.speed == 0):
+        said = f"not exciting: the joint moves at {band.speed:.2g} rad/s, noise alone {band.speed_noise:.2g} rad/s"
+        warned.refuse(f"{said}; move faster")
+    if cutoff_hz is None:
+        cutoff_hz = min(_ABOVE * band.motion_hz, band.clean_hz)
+    number("cutoff_hz", cutoff_hz, "> 0 or inf", unit="Hz")
+    slow = _SLOW * band.speed if slow is None else number("slow", slow, ">= 0", unit="rad/s")
+    pair = _fits(runs, names, cutoff_hz, band.clean_hz, slow)
+    if not pair:
+        raise IdentificationError(f"not {checks.FEWEST // 2} independent samples are in motion: record more of it")
+    measured = pair[1].left.rms < pair[0].left.rms if held is None else not choice("held", held, (True, False))
+    found = pair[measured]
+    lower = (_fits(runs, names, cutoff_hz / 2, band.clean_hz, slow) or pair)[measured]
+    faster = (_fits(runs, names, cutoff_hz, band.clean_hz, 2 * slow) or pair)[measured]
+    others = _others(found, lower)
+    period = 1 / runs[0].rate
+    stderr = _widened(names, found, {"lower": lower.left, "faster": faster.left, **others}, period)
+    parameters = dict(zip(names, (unit * np.column_stack([found.left.x, stderr])).tolist(), strict=True))
+    _check_fit(warned, found, others, "gravity" in terms)
+    checks.check_clipped_drive(warned, found)
+    _check_parameters(warned, parameters, found, lower, others)
+    _check_timing(warned, lower, others, period)
     return JointFit(
-        **{name: x for name, (x, _) in values.items()},
-        **{f"{name}_stderr": sigma for name, (_, sigma) in values.items()},
-        rms=found.rms,
-        fit=100 * (1 - found.rms / spread),
-        cutoff_hz=float(cutoff),
-        samples=len(y),
-        warnings=tuple(notes),
+        **{name: x for name, (x, _) in parameters.items()},
+        **{f"{name}_stderr": sigma for name, (_, sigma) in parameters.items()},
+        rms=unit * found.left.rms,
+        fit=100 * (1 - found.misfit),
+        cutoff_hz=float(cutoff_hz),
+        held=not measured,
+        samples=len(found.y),
+        warnings=tuple(warned),
     )
 
 
-def _cutoff(motion):
-    """The highest cut-off, Hz, whose acceleration noise leaves, but at least the one that keeps the motion."""
+def _recordings(t, q, u, qd):
+    """What `fit_joint` was given as a list of tuples (t, q, u, qd) or shorter."""
+    if isinstance(t, (list, tuple)) and len(t) and q is None and u is None:
+        if qd is not None:
+            raise InputError("qd= beside several recordings: give each as (t, q, u, qd)")
+        return [one if isinstance(one, (list, tuple)) else (one,) for one in t]
+    return [(t, q, u, qd)]
+
+
+def _runs(warned, recording, delay):
+    """Evenly sampled runs without a gap: rate, Hz; angles (n, 1 or 2): q, qd if given; u (n, 2): held, measured."""
+    t, q, u, qd = (*recording, None, None, None)[:4]
+    if qd is not None:
+        q, u = np.ma.column_stack([q, qd]), np.ma.column_stack([u, u])
+    t, q, u = columns_of(t, q, u)
+    if q.shape[1] != 1 + (qd is not None):
+        raise InputError(f"q has {q.shape[1]} columns: fit_joint takes one joint; give q[:, i] and u[:, i]")
+    new = checks.check_signals(warned, t, q[:, 0], u[:, 0])
+    if qd is not None:
+        checks.check_measured_speed(warned, t, *q.T)
+    options = {"cutoff_hz": None, "trim": 0.0, "delay": delay}
+    held, measured = (process(t[new], q[new], u[new], held=held, **options) for held in (True, False))
+    edges = np.flatnonzero(np.diff(held.segment)) + 1
+    drives = np.column_stack([held.u[:, 0], measured.u[:, 0]])
+    pairs = zip(np.split(held.q, edges), np.split(drives, edges), strict=True)
+    return [SimpleNamespace(rate=held.rate_hz, angles=angles, u=drive) for angles, drive in pairs]
+
+
+def _band(runs):
+    """What the spectrum of the angle (of qd, if measured) holds: motion below some frequency, noise above another.
+
+    White noise is what it holds between a quarter and half of the rate; what nowhere rises above the highest line there
+    (steps of a coarse angle make such lines) is no motion. Returns a namespace: motion_hz; clean_hz, up to which noise
+    of the acceleration does no harm; speed, speed_noise: rms rad/s.
+    """
     from scipy.signal import welch
 
-    pieces = [motion.q[motion.segment == k, 0] for k in np.unique(motion.segment)]
-    longest = max(pieces, key=len)
-    f, power = (
-        x[1:]
-        for x in welch(
-            longest, motion.rate_hz, nperseg=min(len(longest), max(256, len(longest) // 6)), detrend="linear"
-        )
+    longest = max(runs, key=lambda run: len(run.u))
+    pieces = [run.angles for run in runs if abs(run.rate / longest.rate - 1) < 0.01]
+    length = min(len(longest.u), max(256, sum(map(len, pieces)) // 6))
+    pieces = [x for x in pieces if len(x) >= length]
+    spectra = [welch(x[:, -1], longest.rate, nperseg=length) for x in pieces]
+    power = np.average([density for _, density in spectra], axis=0, weights=[len(x) for x in pieces])[1:]
+    f = spectra[0][0][1:]
+    rest = power[f >= longest.rate / 4]
+    floor = np.median(rest) / math.log(2)  # a spectral line of noise is chi-squared with 2 degrees of freedom
+    quantum = quantum_of(np.concatenate([x[:, -1] for x in pieces]))
+    above = np.where(power > max(3 * floor, rest.max(), _SAW * quantum**2 / f[0]), power - floor, 0.0)
+    to_speed = (2 * np.pi * f) ** 2 if pieces[0].shape[1] == 1 else np.ones_like(f)
+    speed, speed_noise = np.cumsum(to_speed * above), np.cumsum(to_speed * floor)
+    noise = np.cumsum(f**2 * to_speed * floor) <= _NOISE * np.cumsum(f**2 * to_speed * above)
+    highest = int(np.searchsorted(f, _HIGHEST * longest.rate)) - 1
+    motion = min(int(np.searchsorted(speed, _MOTION * speed[-1])), highest)
+    clean = max(motion, int(np.flatnonzero(noise[: highest + 1]).max(initial=0)))
+    return SimpleNamespace(
+        motion_hz=float(f[motion]),
+        clean_hz=float(f[clean]),
+        speed=math.sqrt(speed[motion] * f[0]),
+        speed_noise=math.sqrt(speed_noise[motion] * f[0]),
     )
-    floor = np.median(power[f > motion.rate_hz / 4]) / math.log(2)
-    above = np.where(power > 3 * floor, power - floor, 0.0)
-    if np.sum(f**2 * above) < 0.1 * np.sum(f[: len(f) // 8] ** 2) * floor:
-        raise IdentificationError("not exciting: the motion drowns in the noise of the angle; move faster")
-    speed, acceleration, noise = (np.cumsum(x) for x in (f**2 * above, f**4 * above, f**4 * floor))
-    highest = int(np.searchsorted(f, 0.2 * motion.rate_hz))
-    clean = np.flatnonzero(noise[:highest] <= _NOISE * acceleration[:highest])
-    at = max(int(clean[-1]) if len(clean) else 0, int(np.searchsorted(speed, _MOTION * speed[-1])))
-    return float(f[min(at, highest - 1)])
 
 
-def _at_halves(motions, cutoff_hz, terms):
-    """The better of the fits of u held and u measured, at this cut-off, at half of it and a quarter, while data last."""
-    for part in (1, 2, 4):
-        try:
-            fits = [_fitted(one, cutoff_hz / part, terms) for one in motions]
-        except IdentificationError:
-            if part == 1:
-                raise
-            return
-        yield *min(fits, key=lambda one: one[1].rms), cutoff_hz / part
+def _smooth(x, cutoff_hz, rate):
+    return x if math.isinf(cutoff_hz) else low_pass(x, cutoff_hz, rate, order=3, kind="zero-phase")
 
 
-def _compared(names, found, lower):
-    """Errors widened by what the fit at a lower cut-off says, and a sentence for each parameter that differs."""
-    known = np.isfinite(found.stderr + lower.stderr)
-    moved = np.where(known, np.abs(found.x - lower.x), 0.0)
-    beyond = np.clip(moved**2 - np.where(known, lower.stderr, 0.0) ** 2, 0.0, None)
-    far = moved > np.maximum(2 * np.hypot(found.stderr, np.where(known, lower.stderr, 0.0)), 0.1 * np.abs(found.x))
-    notes = [
-        f"{name} depends on the cut-off (flexibility, backlash?)" for name, bad in zip(names, far, strict=True) if bad
-    ]
-    return np.sqrt(found.stderr**2 + beyond), notes
+def _derivatives(run, cutoff_hz):
+    """qd, qdd (n,) behind the low pass, from five points: at 20 samples a period three are 1 % wrong."""
+    x = _smooth(run.angles[:, -1], cutoff_hz, run.rate)
+    x = np.pad(x, 2, mode="reflect", reflect_type="odd")
+    first = np.convolve(x, (-1, 8, 0, -8, 1), "valid") * run.rate / 12
+    if run.angles.shape[1] == 2:
+        return x[2:-2], first
+    return first, np.convolve(x, (-1, 16, -30, 16, -1), "valid") * run.rate**2 / 12
 
 
-def _fitted(motion, cutoff_hz, terms):
-    """Names, LeastSquares, y (m,) and columns q, sin q, cos q (m, 3) of a fit behind this low pass."""
-    rate, parts = motion.rate_hz, []
-    edge, slow = math.ceil(rate / cutoff_hz / 2), None
-    for k in np.unique(motion.segment):
-        here = motion.segment == k
-        if here.sum() < 2 * edge + 20:
+def _table(runs, cutoff_hz, sign_hz, slow):
+    """What goes into the regression, all behind one low pass, of samples that move faster than slow (rad/s).
+
+    columns (m, 6), in the order of _COLUMNS; u, slopes (m, 2): u held and measured, and its rate of change; limits
+    (m, 2): share of a sample's surroundings in which u has its smallest, its largest value; q, v, snap (m,): angle,
+    speed, d2(qdd)/dt2. The sign of the speed is that behind sign_hz: a smoother speed turns too early or late.
+    """
+    every = np.concatenate([run.u[:, 0] for run in runs])
+    low, high = every.min() + 1e-3 * np.ptp(every), every.max() - 1e-3 * np.ptp(every)
+    names = ("columns", "u", "slopes", "limits", "q", "v", "snap")
+    parts = []
+    for run in runs:
+        n, edge = len(run.u), math.ceil(_EDGE * run.rate / cutoff_hz)
+        if n < 2 * edge + 20:  # too short for the filter
             continue
-        q, qd, qdd = (x[:, 0] for x in central_derivatives(motion.q[here], rate, cutoff_hz=cutoff_hz, order=3))
-        slow = _DEAD * np.sqrt(np.mean(qd**2)) if slow is None else slow
-        plain = np.column_stack([np.sign(qd), np.sin(q), np.cos(q), motion.u[here, 0], np.abs(qd) > slow])
-        sign, sin, cos, u, moving = low_pass(plain, cutoff_hz, rate, order=3, kind="zero-phase").T
-        table = np.column_stack([qdd, qd, sign, np.ones_like(q), sin, cos, u, moving])[edge:-edge]
-        parts.append(table[table[:, -1] > 0.9])
-    if sum(map(len, parts)) < FEWEST:
-        raise IdentificationError("too few samples in motion: move faster, or record longer")
-    table = np.concatenate(parts)
-    names = ("inertia", "viscous", "coulomb", "offset", "gravity_sin", "gravity_cos")
-    use = [k for k, name in enumerate(names) if name.split("_")[0] in terms]
-    y = table[:, 6]
-    return [names[k] for k in use], least_squares(table[:, use], y, tolerance=1e-3), y, table
+        v, a = _derivatives(run, cutoff_hz)
+        turn = np.sign(_derivatives(run, max(sign_hz, cutoff_hz))[0])
+        q, u = run.angles[:, 0], run.u[:, 0]
+        plain = np.column_stack([turn, np.sin(q), np.cos(q), np.abs(v) > slow, u < low, u > high, run.u])
+        plain = _smooth(plain, cutoff_hz, run.rate)
+        slopes, snap = np.gradient(plain[:, 6:], axis=0) * run.rate, np.gradient(np.gradient(a)) * run.rate**2
+        columns = np.column_stack([np.ones(n), plain[:, 1:3], v, plain[:, 0], a])
+        kept = np.arange(edge, n - edge, max(1, int(run.rate / cutoff_hz / _THIN)))
+        kept = kept[plain[kept, 3] > 0.9]
+        parts.append([x[kept] for x in (columns, plain[:, 6:], slopes, plain[:, 4:6], q, v, snap)])
+    joined = [np.concatenate(x) for x in zip(*parts, strict=True)] or [np.empty(0)] * len(names)
+    return SimpleNamespace(cutoff_hz=cutoff_hz, **dict(zip(names, joined, strict=True)))
 
 
-def _doubts(values, found, y, table, terms):
-    """Sentences about a fit that is not refused."""
-    for name, (x, sigma) in values.items():
-        if not math.isfinite(sigma):
-            yield f"{name} cannot be told from these data: record faster reversals, several speeds, both directions"
-        elif name in TERMS[:3] and x < 2 * sigma:
-            said = "is negative: is u late (delay=), or its sign turned round?" if x < -2 * sigma else "may be nothing"
-            yield f"{name.replace('coulomb', 'Coulomb')} ({x:.3g} +- {sigma:.2g}) {said}"
-    if found.rms > 0.5 * np.std(y):
-        yield f"the model explains little of u (fit {1 - found.rms / np.std(y):.0%}): do not use it"
-    if found.correlation > 0.9 and found.rms > 0.1 * np.std(y):
-        yield f"residuals are far from white ({found.correlation:.2f}): something is missing (backlash, a spring)"
-    bent = least_squares(np.column_stack([table[:, :4], table[:, 1] * np.abs(table[:, 1])]), y, tolerance=1e-3)
-    if abs(bent.x[-1]) > 4 * bent.stderr[-1] and bent.rms < 0.95 * found.rms:
-        yield "friction is no straight line in the speed (Stribeck?): fit slow and fast motion apart"
-    if "gravity" not in terms:
-        beside = least_squares(table[:, :6], y, tolerance=1e-3)
-        if beside.rms**2 < 0.5 * found.rms**2 and found.rms > 0.01 * np.std(y):
-            yield "much of the rest of u goes with sin q, cos q: add terms=(..., 'gravity')"
+def _fits(runs, names, cutoff_hz, sign_hz, slow):
+    """Fits of u held and of u measured, as namespaces; [] if too few samples move.
+
+    What `_table` tells, and y, slope (m,): u and its rate of change; A (m, p): the columns `names`; left: LeastSquares;
+    misfit: residual over spread of u.
+    """
+    table = _table(runs, cutoff_hz, sign_hz, slow)
+    if len(table.q) < checks.FEWEST // 2:
+        return []
+    A = table.columns[:, [_COLUMNS.index(name) for name in names]]
+    fits = []
+    for y, slope in zip(table.u.T, table.slopes.T, strict=True):
+        left = least_squares(A, y, tolerance=_OWN_SHARE)
+        misfit = left.rms / max(float(np.std(y)), 1e-300)
+        fits.append(SimpleNamespace(**vars(table), A=A, y=y, slope=slope, left=left, misfit=misfit))
+    return fits
+
+
+def _others(found, lower):
+    """{name: LeastSquares} of fits with one thing more that may be there, the last column.
+
+    lower: the fit at a lower cut-off, where noise of the acceleration hides less of a delay or a spring.
+    """
+    more = {"late": (lower, lower.slope)}
+    if len(lower.y) >= 6 * found.A.shape[1] + 12:
+        more["spring"] = lower, lower.snap
+        more["bent"] = found, found.v * np.abs(found.v)
+        more["dead zone"] = found, np.sign(found.A @ found.left.x)
+        more["gravity"] = found, found.columns[:, 1:3]
+    return {
+        name: least_squares(np.column_stack([one.A, columns]), one.y, tolerance=_OWN_SHARE)
+        for name, (one, columns) in more.items()
+    }
+
+
+def _widened(names, found, others, period):
+    """Standard errors (p,), widened by how much further other fits of the same data lie than their own error."""
+    x, stderr = found.left.x, found.left.stderr
+    moved = np.zeros(len(x))  # squared
+    for name, other in others.items():
+        sigma = other.stderr[: len(x)]
+        known = np.isfinite(stderr + sigma) & np.isin(names, _WIDENS.get(name, names))
+        moved = np.maximum(moved, np.where(known, (x - other.x[: len(x)]) ** 2 - np.where(known, sigma, 0.0) ** 2, 0.0))
+    late, unsure = others["late"], _UNSURE * period
+    share = unsure**2 / (unsure**2 + late.stderr[-1] ** 2)  # of what is not known of the delay, the data tell this much
+    delay = math.hypot(share * late.x[-1], unsure * math.sqrt(1 - share))
+    moved += (delay * least_squares(found.A, found.slope, tolerance=_OWN_SHARE).x) ** 2
+    return np.sqrt(stderr**2 + moved + (_EXACT * x) ** 2)
+
+
+def _check_fit(warned, found, others, with_gravity):
+    """What the residual shows."""
+    left, gravity = found.left, others.get("gravity", found.left).rms / found.left.rms
+    explained = 1 - (found.misfit * gravity) ** 2
+    F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
+    if explained < _EXPLAINED or (F < _F and explained < 0.5):
+        share = f"{max(explained, 0):.1%} of it (F = {F:.1f}, needed {_F:.0f}; too few independent samples?)"
+        warned.refuse(f"u does not belong to this motion, which explains {share}: another joint or clock? A spring?")
+    elif F < _F:
+        warned.add(f"only {left.independent:.0f} independent samples: record longer, with more reversals")
+    if found.misfit > _POOR:
+        warned.add(f"the model explains little of u (fit {1 - found.misfit:.0%}): do not use it; look at q, u and load")
+    if not with_gravity and 1 - gravity**2 > _GRAVITY[0] and found.misfit > _GRAVITY[1]:
+        warned.add(f"{1 - gravity**2:.0%} of the rest of u go with sin q, cos q: add terms=(..., 'gravity')")
+    if found.misfit > _MISSING[0] and left.correlation > _MISSING[1]:
+        warned.add(f"residuals are far from white ({left.correlation:.2f}): something is missing (backlash, a spring)")
+
+
+def _check_parameters(warned, parameters, found, lower, others):
+    """Parameters that are negative, drown in their error, or depend on the cut-off."""
+    negative = [name for name, (x, sigma) in parameters.items() if name in _PHYSICAL and x < -3 * sigma]
+    if {"viscous", "coulomb"} <= set(negative):
+        warned.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
+    if "viscous" in parameters and "bent" in others:
+        bent, k = others["bent"], list(parameters).index("viscous")
+        much = abs(bent.x[k] - found.left.x[k]) > _BENT[0] * abs(found.left.x[k])
+        if much and abs(bent.x[-1]) > _BENT[1] * bent.stderr[-1]:
+            warned.add("friction depends on the speed, in no straight line (Stribeck?): fit slow and fast motion apart")
+    x, sigma = found.left.x, np.hypot(found.left.stderr, lower.left.stderr)
+    depends = np.abs(x - lower.left.x) > np.maximum(_DEPENDS[0] * np.abs(x), _DEPENDS[1] * sigma)
+    for k, (name, (x, sigma)) in enumerate(parameters.items()):
+        said, value = _SAID.get(name, name), f"({x:.3g} +- {sigma:.2g})"
+        if math.isinf(sigma):
+            warned.add(f"{said} cannot be told from these data: record several speeds to both sides, faster reversals")
+        elif name in negative:
+            warned.add(f"{said} is negative {value}: is u late or early (delay=), or its sign turned?")
+        elif name in _PHYSICAL and sigma > 0.5 * abs(x):
+            warned.add(f"{said} drowns in its error {value}: record faster reversals, several speeds")
+        elif name in _PHYSICAL and depends[k]:
+            half = f"{x * lower.left.x[k] / found.left.x[k]:.3g} at half of {found.cutoff_hz:.3g} Hz"
+            warned.add(f"{said} depends on the cut-off: {value}, {half} (flexibility, backlash?)")
+
+
+def _check_timing(warned, lower, others, period):
+    """A u that is late or early, or a spring between motor and load, which looks like it."""
+    late = others["late"]
+    delay, left = float(late.x[-1]), late.rms / lower.left.rms
+    if not any(left < share and abs(delay) > n * late.stderr[-1] for share, n in _LATE):
+        return
+    if others.get("spring", late).rms < late.rms:
+        warned.add("inertia depends on the frequency, as in a flexible joint: try a lower cutoff_hz")
+    elif delay > _TOLD * period:
+        warned.add(f"u seems to act about {delay:.2g} s later than delay= says: add it there (backlash looks alike)")
+    elif delay < -_TOLD * period:
+        warned.add(f"q seems to be recorded {-delay:.2g} s before u, or u is filtered: inertia is too small; shift one")
