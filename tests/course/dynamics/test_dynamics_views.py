@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.course.dynamics.views import GovernorView, InertiaView
-from ir50p_lab.modelling import IR50P, THESIS_RODS, inverse_dynamics, mass_matrix
+from ir50p_lab.modelling import IR50P, THESIS_RODS, gravity, inverse_dynamics, jacobian, mass_matrix
 
 HANG = np.linspace([0, -np.pi / 2, 0], [0, 0, 0], 181)
 
@@ -45,3 +45,9 @@ def test_the_faster_it_spins_the_higher_it_settles(arm):
 def test_it_settles_where_the_torque_rises_through_zero():
     rest = GovernorView(IR50P, HANG).update(7.0, HANG[:, 1] + 1.0)
     assert rest[1] == pytest.approx(-1.0, abs=0.01)
+
+
+def test_the_makers_payload_adds_three_quarters_of_the_links():
+    """What notebook 04 says below the payload's slider, of the stretched and level arm."""
+    payload = jacobian(IR50P, np.zeros(3))[2, 1] * 0.5 * IR50P.g
+    assert payload / gravity(IR50P, np.zeros(3))[1] == pytest.approx(0.75, abs=0.03)
