@@ -77,7 +77,8 @@ def tip_velocity():
 
 def time_constant():
     """Inertia from the kinetic energy of the waist at 1 rad/s, over what brakes it."""
-    inertia = 2 * energy(IR50P, [0, 1.9, -2.44], [1, 0, 0]).kinetic
+    folded = [0, 1.9, -2.44]
+    inertia = 2 * energy(IR50P, folded, [1, 0, 0]).kinetic
     return inertia / (IR50P.actuators.back_emf_damping[0] + IR50P.friction.fv[0])
 
 

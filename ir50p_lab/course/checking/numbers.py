@@ -6,7 +6,7 @@ A subject's own are data in its `numbers.py`, found there by their names:
         Number("dyn-5", "04_dynamics", "the motor voltage for 2 N m", V, unit="V", tolerance=5e-3, why=..., slips=...),
     )
 
-Rules for authors (`tests/course/checking/test_numbers.py` tries every one):
+Rules for authors (`tests/course/test_numbers_of_rooms.py` tries every one, and asks for another route to it):
 - `right` comes from the package and from constants of the file (IR50P, not load_arm()): no variable of the student's,
   no other arm, may move it. The notebook states the same constants.
 - At least three slips, sign and unit included (those are known: `_COMMON`), none equal to another or to the right
@@ -65,7 +65,7 @@ class Number:
     why: str
     slips: dict
     unit: str = ""
-    because: str = "so many decimals are what you would type"
+    because: str = "it allows for rounding"
     angle: bool = False
     hint: str = ""
 
@@ -210,7 +210,9 @@ def _floats(entries):
 
 def _to_float(entry):
     try:
-        if not isinstance(entry, bool | np.bool_ | str):  # which Python reads as numbers: never the answer here
+        if not isinstance(
+            entry, bool | np.bool_ | str | complex
+        ):  # which Python reads as numbers: never the answer here
             return float(entry)
     except (TypeError, ValueError):
         pass
