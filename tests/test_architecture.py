@@ -29,8 +29,7 @@ ROOMS = {
     "lab_book": {"draw"},
     "printed": set(),
     "robot": {"draw"},
-    "checking": {"lab_book", "robot", "exercises"},
-    "exercises": {"lab_book", "checking"},  # a part of `checking`
+    "checking": {"lab_book", "robot"},
     "live_arm": {"draw", "robot", "checking"},
 }
 SUBJECTS_TOO = {"torque": {"fitting"}}  # what else a subject builds on: the motion that its model is fitted to

@@ -1,7 +1,7 @@
 """What the notebooks share, in rooms: a room is a subject, and what two subjects need lies below them.
 
-From below: `draw`, `lab_book`, `printed` (the thesis' equations), `robot` (what the student owns), `checking` with
-`exercises`, `live_arm`; on these stand the subjects, from `start` to `reaching`.
+From below: `draw`, `lab_book`, `printed` (the thesis' equations), `robot` (what the student owns), `checking`,
+`live_arm`; on these stand the subjects, from `start` to `reaching`.
 """
 
 import lazy_loader
@@ -10,6 +10,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
         "checking.check": ["check", "reset"],
+        "checking.numbers": ["progress", "solution"],
         "lab_book.claims": ["ClaimError", "claim"],
         "lab_book.predictions": ["keep", "measured", "note", "predict"],
         "lab_book.results": ["arm_that_answers", "load_result", "results", "save_result"],

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ir50p_lab.bench import result_files
 from ir50p_lab.course import lab_book, my_robot
-from ir50p_lab.course.exercises import exercises
+from ir50p_lab.course.checking import numbers
 from ir50p_lab.course.lab_book.progress import read_progress
 from ir50p_lab.course.robot import folder
 from ir50p_lab.course.robot.catalogue import ORDER, notebook_of
@@ -103,8 +103,8 @@ def _done(attempts):
         for name in ORDER
         if folder.is_there(name) or name in attempts
     ]
-    numbers = [f"{_text(name)} {done[name][:10]}" for name in exercises() if name in done]
-    listed = f"<p>Exercises done: {', '.join(numbers)}.</p>" if numbers else ""
+    names = [one.name for one in numbers.everything() if one.name in done]
+    listed = f"<p>Exercises done: {', '.join(f'{name} {done[name][:10]}' for name in names)}.</p>" if names else ""
     return _table(["notebook", "function", "whose", "answers that were wrong"], rows) + listed
 
 

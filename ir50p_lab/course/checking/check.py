@@ -13,6 +13,7 @@ from ir50p_lab.course import lab_book
 from ir50p_lab.course.checking.cell import CannotTake, has_dots, is_copy, take
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.note import Note, show
+from ir50p_lab.course.checking.numbers import check_number
 from ir50p_lab.course.checking.stops import ROOM, ended
 from ir50p_lab.course.lab_book.progress import record
 from ir50p_lab.course.robot import folder
@@ -25,14 +26,12 @@ _BEFORE_SCRAMBLE, _BEFORE_LOAN = 3, 6  # different failing sources
 def check(name, answer=...):
     """Say in a sentence what was found in an answer; a function that is right becomes part of `my_robot`.
 
-    name: of a function ("rot_z"), a stage of a class ("PID.p") or an exercise ("start-1"). answer: the function or
-    class itself, or the number.
+    name: of a function ("rot_z"), a stage of a class ("PID.p") or a number exercise ("start-1").
+    answer: the function or class itself, or the number.
     Shows a sentence and returns None; raises nothing, whatever the answer does.
     """
-    from ir50p_lab.course import exercises
-
     if not is_function(str(name)):
-        return exercises.check(name, answer)
+        return check_number(name, answer)
     try:
         wanted = task(name)
     except InputError as error:

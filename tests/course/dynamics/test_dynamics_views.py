@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.course.dynamics.views import GovernorView, InertiaView
-from ir50p_lab.modelling import IR50P, THESIS_RODS, inverse_dynamics, mass_matrix
+from ir50p_lab.modelling import IR50P, THESIS_RODS, gravity, inverse_dynamics, jacobian, mass_matrix
 
 HANG = np.linspace([0, -np.pi / 2, 0], [0, 0, 0], 181)
 
@@ -40,3 +40,9 @@ def test_the_faster_it_spins_the_higher_it_settles(arm):
             tip, [arm.reach * np.cos(rest[1]), arm.l[0] + arm.reach * np.sin(rest[1])], atol=1e-9
         )
     assert found[0] == -np.pi / 2 and found == sorted(found) and found[-1] > found[1]
+
+
+def test_the_makers_payload_adds_three_quarters_of_the_links():
+    """What notebook 04 says below the payload's slider, of the stretched and level arm."""
+    payload = jacobian(IR50P, np.zeros(3))[2, 1] * 0.5 * IR50P.g
+    assert payload / gravity(IR50P, np.zeros(3))[1] == pytest.approx(0.75, abs=0.03)

@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+from ir50p_lab.course.lab_book.progress import read_progress, record
 from ir50p_lab.course.lab_book.update import notebook_hash, take_over
 from ir50p_lab.errors import InputError
 from ir50p_lab.home import PROJECT
@@ -22,7 +23,9 @@ def old(tmp_path, monkeypatch):
         shutil.copy(path, notebooks)
     (notebooks / "my_robot").mkdir()
     (notebooks / "my_robot" / "_rot_z.py").write_text("def rot_z(angle): ...\n")
-    (tmp_path / "older" / "progress.json").write_text('{"done": {"pid-3": "2026-01-01T10:00"}}')
+    (tmp_path / "older" / "progress.json").write_text(
+        '{"done": {"pid-3": "2026-01-01T10:00", "dyn-3": "2026-01-01T11:00"}}'
+    )
     return tmp_path / "older"
 
 
@@ -36,7 +39,8 @@ def test_what_is_the_students_comes_along(old, tmp_path, capsys):
     assert f"You had changed: {edited.name}\n" in out
     assert (tmp_path / "home" / "old" / edited.name).read_bytes() == edited.read_bytes()
     assert (tmp_path / "home" / "my_robot" / "_rot_z.py").exists()
-    assert "pid-3" in (tmp_path / "home" / "progress.json").read_text()
+    record("start-1")
+    assert list(read_progress()) == ["dyn-3", "pid-3", "start-1"]  # dyn-3 is no exercise any more
 
 
 def test_what_is_there_already_stays(old, tmp_path, capsys):

@@ -1,9 +1,7 @@
-"""Exercises of notebook 14: an error that stays, a top speed."""
+"""Numbers of notebook 14: an error that stays, a top speed."""
 
-from ir50p_lab.course.exercises import Exercise, Number
+from ir50p_lab.course.checking.numbers import Number
 from ir50p_lab.modelling import IR50P
-
-NOTEBOOK = "14_computed_torque"
 
 # ct-3: one joint whose weight the model has wrong.
 _M, _KP, _KD, _BELIEVED, _TRUE = 0.6, 49.0, 14.0, 4.0, 5.5  # kg m^2, 1/s^2, 1/s, N m, N m
@@ -13,12 +11,15 @@ _SAG = (_BELIEVED - _TRUE) / (_M * _KP)
 _D, _FC, _TF = IR50P.theta_pwm[0, 10], IR50P.theta_pwm[0, 11], IR50P.theta_pwm[0, 16]
 _FULL = IR50P.actuators.limit_pwm
 
-EXERCISES = (
-    Exercise(
+NUMBERS = (
+    Number(
         "ct-3",
+        "14_computed_torque",
         "the error e = q - q_ref that stays when the model holds 4 N m of weight, the arm has 5.5 N m, "
         "M = 0.6 kg m^2, Kp = 49 1/s^2 and Kd = 14 1/s",
-        Number(_SAG, unit="rad", tolerance=5e-4),
+        _SAG,
+        unit="rad",
+        tolerance=5e-4,
         why="It sags: an error of the model is divided by M Kp, so that high gains hide it.",
         slips={
             "Kp is an acceleration per rad here; the torque per rad is M Kp.": (_BELIEVED - _TRUE) / _KP,
@@ -26,10 +27,13 @@ EXERCISES = (
             "At rest nothing moves, so Kd has no part in it.": (_BELIEVED - _TRUE) / (_M * _KD),
         },
     ),
-    Exercise(
+    Number(
         "ct-4",
+        "14_computed_torque",
         "the highest constant speed of joint 1 of the IR50P (row 1 of IR50P.theta_pwm) at 255 counts, level, no load",
-        Number((_FULL - _FC - _TF) / _D, unit="rad/s", tolerance=5e-3),
+        (_FULL - _FC - _TF) / _D,
+        unit="rad/s",
+        tolerance=5e-3,
         why="No controller passes it: what a motion needs beyond that, the forecast shows before the arm does.",
         slips={
             "That is the speed without friction; Coulomb friction and offset take their counts first.": _FULL / _D,

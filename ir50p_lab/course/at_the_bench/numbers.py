@@ -1,10 +1,8 @@
-"""Exercises of notebook 10: lag of a filter, error by stiction."""
+"""Numbers of notebook 10: the lag of a filter, what stiction leaves."""
 
-from ir50p_lab.course.exercises import Exercise, Number
+from ir50p_lab.course.checking.numbers import Number
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import low_pass_lag
-
-NOTEBOOK = "10_bench"
 
 # bench-4: a first-order low pass in a loop at 100 Hz, a joint in steady motion.
 _CUTOFF, _SPEED = 2.0, 0.5  # Hz, rad/s
@@ -14,11 +12,14 @@ _LAG = low_pass_lag(_CUTOFF, 100.0)  # s
 _KP = 289.0  # PWM counts per rad, Table 4.1
 _FS, _FC, _K = IR50P.friction.fs[0], IR50P.friction.fc[0], IR50P.actuators.gain[0]  # N m, N m, N m per count
 
-EXERCISES = (
-    Exercise(
+NUMBERS = (
+    Number(
         "bench-4",
+        "10_bench",
         "how far, in rad, a first-order low pass of 2 Hz is behind a joint that turns at a steady 0.5 rad/s",
-        Number(_SPEED * _LAG, unit="rad", tolerance=5e-4),
+        _SPEED * _LAG,
+        unit="rad",
+        tolerance=5e-4,
         why="A PID behind this filter steers by where the joint was: that is why it swings.",
         slips={
             "That is the lag in seconds: how far does the joint turn in that time?": _LAG,
@@ -26,10 +27,13 @@ EXERCISES = (
             "That is one sample late; this filter averages over many.": _SPEED * 0.01,
         },
     ),
-    Exercise(
+    Number(
         "bench-5",
+        "10_bench",
         "the largest error that breakaway can leave in joint 1 of the IR50P with Kp = 289 and no integral",
-        Number(_FS / (_K * _KP), unit="rad", tolerance=1e-3),
+        _FS / (_K * _KP),
+        unit="rad",
+        tolerance=1e-3,
         why="Seven degrees, by friction alone: this is why lowering Kp1 leaves a large error.",
         slips={
             "That divides N m by PWM counts per rad: bring both to one unit with K.": _FS / _KP,

@@ -1,21 +1,22 @@
-"""Exercises of notebook 00: what the course takes for granted."""
+"""Numbers of notebook 00: radians, a time constant."""
 
 import numpy as np
 
-from ir50p_lab.course.exercises import Exercise, Number
+from ir50p_lab.course.checking.numbers import Number
 from ir50p_lab.modelling import IR50P, mass_matrix
-
-NOTEBOOK = "00_start_here"
 
 # start-5: the waist of the IR50P pushed from rest, shoulder and elbow folded.
 _T = float(mass_matrix(IR50P, [0, 1.9, -2.44])[0, 0] / (IR50P.actuators.back_emf_damping[0] + IR50P.friction.fv[0]))
 
 
-EXERCISES = (
-    Exercise(
+NUMBERS = (
+    Number(
         "start-1",
+        "00_start_here",
         "the joint angles (90, -45, 30) degrees in radians",
-        Number(np.deg2rad([90, -45, 30]), unit="rad", tolerance=1e-3),
+        np.deg2rad([90, -45, 30]),
+        unit="rad",
+        tolerance=1e-3,
         why="Inside the package every angle is in radians; degrees appear only on sliders, named `_deg`.",
         slips={
             "These are still degrees: half a turn is 180 degrees, or pi radians.": [90, -45, 30],
@@ -23,10 +24,14 @@ EXERCISES = (
             "The sign of the second angle got lost: it turns the other way.": np.deg2rad([90, 45, 30]),
         },
     ),
-    Exercise(
+    Number(
         "start-5",
+        "00_start_here",
         "the time constant T of the speed drawn above",
-        Number(_T, unit="s", tolerance=0.02, because="a reading from the plot is good to a tick"),
+        _T,
+        unit="s",
+        tolerance=0.02,
+        because="a reading from the plot is good to a tick",
         why="T says how fast a system answers; each motor and each filter of the arm has one.",
         slips={
             "That is the top speed; the time constant is a time, read on the other axis.": 1.74,

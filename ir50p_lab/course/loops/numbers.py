@@ -1,12 +1,10 @@
-"""Exercises of notebook 08 and, about sampling, of A2: the error that remains, the longest period."""
+"""Numbers of notebooks 08 and A2: the error that remains, the longest period of a sampled damper."""
 
 import numpy as np
 from scipy.optimize import fsolve
 
-from ir50p_lab.course.exercises import Exercise, Number
+from ir50p_lab.course.checking.numbers import Number
 from ir50p_lab.modelling import THESIS_A, gravity
-
-NOTEBOOK = "08_pid_from_its_parts"
 
 # pid-1: what a spring of stiffness kp leaves under the weight of the thesis' arm.
 _SET_POINT = np.array([np.pi / 2, np.pi / 2, -np.pi / 3])
@@ -22,11 +20,15 @@ _ERROR = _remaining(_KP)
 # pid-3: a damper that acts with a held command: v[k + 1] = (1 - kd T/M) v[k].
 _M3, _KD3 = 0.25, 40.0  # kg m^2, N m s/rad
 
-EXERCISES = (
-    Exercise(
+NUMBERS = (
+    Number(
         "pid-1",
+        "08_pid_from_its_parts",
         "the three errors q_d - q that remain with Kp = (50, 100, 50) N m/rad on THESIS_A at the thesis' set point",
-        Number(_ERROR, unit="rad", tolerance=2e-4, because="the error bends the arm: solve, do not take g at q_d"),
+        _ERROR,
+        unit="rad",
+        tolerance=2e-4,
+        because="the error bends the arm: solve, do not take g at q_d",
         why="Half the Kp leaves more than twice the error: the arm that sags has other weights to carry.",
         slips={
             "That takes the weight at the set point; the arm rests lower, where its weight is another.": (
@@ -37,10 +39,14 @@ EXERCISES = (
             "Those are the angles reached; the error is set point minus angle.": _SET_POINT - _ERROR,
         },
     ),
-    Exercise(
+    Number(
         "pid-3",
+        "A2_further_on",
         "the longest stable period of M qdd = -Kd qd, held, for M = 0.25 kg m^2 and Kd = 40 N m s/rad",
-        Number(2 * _M3 / _KD3, unit="s", tolerance=2e-5, because="a tenth of a millisecond more would grow already"),
+        2 * _M3 / _KD3,
+        unit="s",
+        tolerance=2e-5,
+        because="a tenth of a millisecond more would grow already",
         why="A stiffer damper needs a faster computer: the product Kd T has a limit, set by the inertia.",
         slips={
             "At that period the speed is brought to zero in one sample: the best, not the longest.": _M3 / _KD3,

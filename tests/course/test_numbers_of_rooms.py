@@ -1,0 +1,225 @@
+"""Every number exercise of every room: the rules for authors hold, and each right answer comes by another route too."""
+
+import re
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.controllers import PID, ContinuousPID
+from ir50p_lab.course import solution
+from ir50p_lab.course.checking.numbers import everything, find, grade
+from ir50p_lab.identification import base_parameters
+from ir50p_lab.modelling import IR50P, THESIS_A, Friction, energy, forward_kinematics, inverse_dynamics
+from ir50p_lab.signals import hold, low_pass
+from ir50p_lab.simulation import simulate
+from ir50p_lab.vision import Pinhole
+
+ALL = everything()
+
+
+def secrets(number):
+    """Return texts that no message may contain: the answer, where it is long enough to be recognised."""
+    texts = {f"{abs(x):.{digits}g}" for x in np.ravel(number.right) for digits in (3, 4, 5)}
+    return {text for text in texts if len(text.replace(".", "").strip("0")) >= 3 and text not in number.task}
+
+
+def problems(number):
+    """Return what is wrong with an exercise, as a list of sentences (empty: all is well)."""
+    if not re.fullmatch(r"[a-z]+-[1-9]\d*", number.name):
+        yield "its name is not prefix-number"
+    if number.task.endswith((".", "?")) or any("\n" in text or len(text) > 220 for text in (number.task, number.why)):
+        yield "task and why are not one line each"
+    if len(number.every_slip) < 3:
+        yield "fewer than three slips are known"
+    for says, wrong in number.every_slip.items():
+        note = grade(number, wrong)
+        if not 15 <= len(says) <= 260 or says[-1] not in ".?:":
+            yield f"{says!r} is not one or two sentences"
+        if note.state != "slip" or (says in number.slips and not note.text.endswith(says)):
+            yield f"slip {says!r} is answered by {note.text!r}"  # an own one may say more than a common one
+    right, away = grade(number, number.right.tolist()), grade(number, number.right + 3.3 * (1 + np.abs(number.right)))
+    if right.state != "right":
+        yield f"the right answer is told {right.text!r}"
+    if away.state != "wrong":
+        yield f"any other answer is told {away.text!r}"
+    told = " ".join((number.task, number.hint, *number.every_slip, grade(number, ...).text, grade(number, "x").text))
+    if given := [secret for secret in secrets(number) if secret in told]:
+        yield f"the answer is given away: {given}"
+
+
+@pytest.mark.parametrize("number", ALL, ids=lambda number: number.name)
+def test_the_rules_hold(number):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert list(problems(number)) == []
+
+
+def test_names_are_unique():
+    assert len({number.name for number in ALL}) == len(ALL)
+
+
+# --- right answers by another route
+
+
+def tip_velocity():
+    """Chain rule for a 0.285, 0.200, 0.372 m arm at (30, 45, -60) degrees and (0.5, -0.2, 0.4) rad/s."""
+    q1, q2, q23 = np.radians([30, 45, -15])
+    radius = 0.2 * np.cos(q2) + 0.372 * np.cos(q23)
+    radius_rate = -0.2 * np.sin(q2) * -0.2 - 0.372 * np.sin(q23) * (-0.2 + 0.4)
+    height_rate = 0.2 * np.cos(q2) * -0.2 + 0.372 * np.cos(q23) * (-0.2 + 0.4)
+    x_rate = radius_rate * np.cos(q1) - radius * np.sin(q1) * 0.5
+    y_rate = radius_rate * np.sin(q1) + radius * np.cos(q1) * 0.5
+    return np.array([x_rate, y_rate, height_rate])
+
+
+def time_constant():
+    """Inertia from the kinetic energy of the waist at 1 rad/s, over what brakes it."""
+    folded = [0, 1.9, -2.44]
+    inertia = 2 * energy(IR50P, folded, [1, 0, 0]).kinetic
+    return inertia / (IR50P.actuators.back_emf_damping[0] + IR50P.friction.fv[0])
+
+
+def remaining_errors():
+    """Where a simulation ends."""
+    set_point = (np.pi / 2, np.pi / 2, -np.pi / 3)
+    return simulate(THESIS_A, ContinuousPID((50, 100, 50), kd=(20, 20, 20)), set_point).error[-1]
+
+
+def lag():
+    """A filtered ramp."""
+    ramp = 0.5 * np.arange(500) * 0.01
+    return ramp[-1] - low_pass(ramp, 2.0, 100)[-1]
+
+
+def step_of_least_squares():
+    """theta = 2 with P = 0.5 is a measurement of theta itself, of variance 0.5, beside y = 3 theta of variance 1."""
+    return np.linalg.lstsq(np.array([[np.sqrt(2)], [3.0]]), np.array([2 * np.sqrt(2), 9.0]))[0][0]
+
+
+def sag():
+    """Steps of 1 ms until nothing moves."""
+    e, rate = 0.0, 0.0
+    for _ in range(20000):
+        rate += 1e-3 * (0.6 * (-49 * e - 14 * rate) + 4.0 - 5.5) / 0.6
+        e += 1e-3 * rate
+    return e
+
+
+def radius_in_pixels():
+    """By projection."""
+    middle, rim = Pinhole.simple(700.0).project(np.eye(4), np.array([(0, 0, 0.80), (0.030, 0, 0.80)]))
+    return np.linalg.norm(rim - middle)
+
+
+def read_too_far():
+    """A line from the lens through the ball meets the table; (along the table, height)."""
+    lens, ball = np.array([0.0, 0.6]), np.array([0.5, 0.03])
+    return (lens + (ball - lens) * lens[1] / (lens[1] - ball[1]))[0] - 0.5
+
+
+def one_count():
+    """The arm moves by a hundredth of a count."""
+    q, step = np.array([0.0, 0.5, -1.4]), np.array([0, 0.01 / 122, 0])
+    return 1e5 * np.linalg.norm(forward_kinematics(IR50P, q + step) - forward_kinematics(IR50P, q))
+
+
+ROUTES = {
+    "start-1": lambda: np.array([90, -45, 30]) * np.pi / 180,
+    "start-5": time_constant,
+    "pose-3": lambda: [-0.1, 0.3, -0.2],
+    "pose-2": lambda: 55 * np.pi / 180,
+    "ik-1": tip_velocity,
+    "dyn-5": lambda: 1.6 * (2 + 0.2 * 3) + 2.5 * 0.5,
+    "pid-1": remaining_errors,
+    "bench-4": lag,
+    "ident-1": step_of_least_squares,
+    "ct-3": sag,
+    "image-4": radius_in_pixels,
+    "calib-4": read_too_far,
+    "reach-3": one_count,
+}
+BY_TESTS = {"sim-2", "pid-3", "bench-5", "ident-2", "ct-4"}  # below
+
+
+@pytest.mark.parametrize("name", ROUTES)
+def test_by_another_route(name):
+    np.testing.assert_allclose(solution(name), ROUTES[name](), rtol=1e-4, atol=1e-6)
+
+
+def test_no_exercise_is_without_another_route():
+    assert {*ROUTES, *BY_TESTS} == {number.name for number in ALL}
+
+
+@pytest.mark.parametrize("inertia", [0.02, 0.4])
+def test_a_joint_with_coulomb_friction_stops_there(inertia):
+    """sim-2; the question gives no inertia: the rest must not depend on it."""
+    held = 1e4  # N m: friction of the other joints
+    more = {"Ixx": (1, 0, 0), "Iyy": (1, 0.01, 0.01), "Izz": (inertia, 0.01, 0.01)}
+    arm = replace(IR50P, friction=Friction(fc=(0.1, held, held)), **more)
+    pid = PID(kp=(2, 0, 0), period=1e-4)
+    run = simulate(arm, pid, (0, 0, 0), q0=(0.37, 0, 0), duration=20, period=1e-4, step=1e-4)
+    assert (run.qd[-1] == 0).all()
+    assert run.q[-1, 0] == pytest.approx(solution("sim-2"), abs=5e-4)
+
+
+@pytest.mark.parametrize(("factor", "grows"), [(0.98, False), (1.02, True)])
+def test_longest_period_by_stepping(factor, grows):
+    v, T = 1.0, factor * solution("pid-3")
+    for _ in range(500):
+        v += T * (-40.0 * v) / 0.25
+    assert (abs(v) > 1) == grows
+
+
+@pytest.mark.parametrize(("share", "moves"), [(0.8, False), (1.3, True)])
+def test_friction_holds_up_to_that_error(share, moves):
+    """From a set point that is nearer joint 1 does not start; from one farther away it does (units differ by 5 %)."""
+    bench = SimulatedBench(IR50P, record_to=False).open()
+    bench.follow(PID((289, 0, 0), limit_pwm=255), hold([share * solution("bench-5"), 0, 0]), 3)
+    assert (np.ptp(bench.truth.q[:, 0]) > 0.01) == moves
+
+
+def test_what_a_clamped_joint_hides():
+    """By the package's count, and by the directions of theta that change any torque, from the inverse dynamics."""
+    q, qd, qdd = np.random.default_rng(3).uniform(-2, 2, (3, 60, 3))
+    qd[:, 0] = qdd[:, 0] = 0.0
+    columns = []
+    for k in sorted(set(range(20)) - {6, 7}):  # theta7 and theta8 belong to no rigid body
+        theta = np.zeros((3, 20))
+        theta[:, k] = 1.0
+        columns.append(inverse_dynamics(theta, q, qd, qdd))
+    assert np.linalg.matrix_rank(np.reshape(columns, (18, -1))) == solution("ident-2")
+    assert base_parameters(np.stack(columns, axis=-1), names=[str(k) for k in range(18)]).rank == solution("ident-2")
+
+
+def test_top_speed_needs_full_drive():
+    needed = inverse_dynamics(IR50P.theta_pwm, [0, 0, 0], [solution("ct-4"), 0, 0], [0, 0, 0])
+    assert needed[0] == pytest.approx(255)
+
+
+# --- what the remarks claim
+
+
+@pytest.mark.parametrize(
+    ("name", "answer", "words"),
+    [
+        ("ik-1", tip_velocity()[[0, 0, 2]], "printed"),
+        ("ik-1", [0.1, -0.1 * np.sqrt(3), 0.5], "turns"),
+        ("pose-3", [-0.3, -0.1, -0.2], "along the axes of"),
+        ("pose-3", [0.1, -0.3, 0.2], "seen from"),
+        ("pid-3", 0.0126, "close"),
+    ],
+)
+def test_wrong_answers_worked_out_by_hand(name, answer, words):
+    assert words in grade(find(name), answer).text
+
+
+def test_half_the_kp_leaves_more_than_twice_the_error():
+    softer, thesis = find("pid-1").right, list(find("pid-1").slips.values())[1]
+    assert 2 < softer[1] / thesis[1] < 2.5
+
+
+def test_the_reflected_rotor_outweighs_the_forearm():
+    assert 50**2 * 8e-5 > IR50P.Izz[2] + IR50P.m[2] * IR50P.lc[2] ** 2
