@@ -27,7 +27,7 @@ from ir50p_lab.controllers.base import check_controller, check_reference, gains,
 from ir50p_lab.errors import BenchError, InputError
 
 _TO_REST = 60.0  # s: if the motion to the rest pose takes longer, it has failed
-_OBEYED = 0.25  # s: a loop that takes longer to obey hangs: the drive is cut from outside, a process of its own is killed
+_OBEYED = 0.25  # s: a loop that takes longer to obey hangs: the drive is cut from outside, its process killed
 _BEGINS_WITHIN = 80.0  # s: if the first cycle comes later, the start has failed; importing and compiling take long
 _KEPT = 8192  # newest samples that the notebook can read: 82 s at 100 Hz
 _NAMES, _FORMATS = "t q u reference clock missed trips".split(), "f8 3f8 3f8 3f8 f8 i8 i8".split()

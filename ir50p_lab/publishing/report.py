@@ -135,7 +135,7 @@ def _listings():
 def main(arguments=None):
     """Write the report and say where it is."""
     parser = argparse.ArgumentParser(prog="python3 -m ir50p_lab report", description="Write your lab report.")
-    parser.add_argument("--name", default="", help="your name, for the first line")
+    parser.add_argument("--name", default="", help="your name, beside those of `partners`")
     parser.add_argument("--to", type=Path, help="file to write (default: results/report_DATE.html in your folder)")
     chosen = parser.parse_args(arguments)
     path = chosen.to or lab_book.path().parent / f"report_{date.today():%Y-%m-%d}.html"
