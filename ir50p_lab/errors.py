@@ -1,4 +1,18 @@
-"""Typed errors of the package: each names the value, the limit and what to do next."""
+"""Typed errors of the package: each names the value, the limit and what to do next.
+
+    LabError                       every error raised on purpose; those marked * are ValueErrors, too
+    ├─ InputError *                an argument
+    ├─ ArmError *                  parameters of an arm
+    ├─ UnreachableError *          a place
+    ├─ IdentificationError *       data that say too little
+    ├─ RecordingError *            a file of a run
+    ├─ BenchError                  PortError, BoardError, BoardLostError, NotMeasuredError, RunawayError, PauseError
+    └─ VisionError                 ImageError *, CameraError, CalibrationError *
+    UserWarning                    SuspiciousArmWarning, UnstableLoopWarning
+
+Beside what raises them stand LabBookError and RehearsalError, both LabErrors, ClaimError (an AssertionError) and
+RecordingWarning (a UserWarning).
+"""
 
 
 class LabError(Exception):
@@ -58,7 +72,7 @@ class PauseError(BenchError):
 
 
 class RecordingError(LabError, ValueError):
-    """A recording that cannot be written on, or a file that is none (the message names the line)."""
+    """A recording that cannot be continued, or a file that is no recording (the message names the line)."""
 
 
 class VisionError(LabError):

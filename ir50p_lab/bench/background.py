@@ -26,10 +26,10 @@ from ir50p_lab.bench.set_point import checked_pose, checked_reference
 from ir50p_lab.controllers.base import check_controller, check_reference, gains, gains_of
 from ir50p_lab.errors import BenchError, InputError
 
-_TO_REST = 60.0  # s: a way to the rest pose that takes longer has failed
-_OBEYED = 0.25  # s: a loop that has not taken the order to cut by then hangs
-_BEGINS_WITHIN = 80.0  # s: a cold start imports and compiles, and a board restarts when its port is opened
-_KEPT = 8192  # samples: 82 s at 100 Hz
+_TO_REST = 60.0  # s: if the motion to the rest pose takes longer, it has failed
+_OBEYED = 0.25  # s: a loop that takes longer to obey hangs: the drive is cut from outside, its process killed
+_BEGINS_WITHIN = 80.0  # s: if the first cycle comes later, the start has failed; importing and compiling take long
+_KEPT = 8192  # newest samples that the notebook can read: 82 s at 100 Hz
 _NAMES, _FORMATS = "t q u reference clock missed trips".split(), "f8 3f8 3f8 3f8 f8 i8 i8".split()
 
 

@@ -126,7 +126,7 @@ class Bench:
         return CountedPace()
 
     def _statistics(self, run):
-        """What a recording says at its end about how the run went: dict; nothing where time is a counter."""
+        """Timing of a run, for the end of its recording: dict; empty on a bench that simulates time."""
         if not isinstance(run.pace, Pace):
             return {}
         return {"late_cycles": run.pace.missed, "watchdog_trips": run.trips}

@@ -22,13 +22,13 @@ from ir50p_lab.modelling.named_arms import load_arm
 
 JOINTS = (1, 2, 3)
 STEP_PWM, STEP_CYCLES = 3, 5  # the drive rises by 3 counts every five samples
-STEPS = 50  # to 150 counts at most
-MOVED = 8.0  # counts a joint must move to have moved: 40 to 65 mrad
-STEADY = 3.0  # counts rms at rest
-TURN = 20.0  # s to turn a joint by hand from end to end
-JUMP = 40.0  # counts from one sample to the next: no hand turns so fast, only a gap in the track does
-TRAVEL = 100.0  # counts that a joint turned from end to end must change at least
-SILENCE = 0.3  # s without a command; the board cuts after 0.1 s, the run goes on until 0.5 s
+STEPS = 50  # number of steps of the command, up to 150 counts
+MOVED = 8.0  # counts: a change by more (40 to 65 mrad) is a motion of the joint
+STEADY = 3.0  # counts rms: a potentiometer at rest that scatters by more fails
+TURN = 20.0  # time for turning a joint by hand from end to end, s
+JUMP = 40.0  # counts: a larger change between two samples is a gap in the track, for no hand turns so fast
+TRAVEL = 100.0  # counts: a joint turned from end to end that changes by less is not coupled to its potentiometer
+SILENCE = 0.3  # pause in the commands, s: the board cuts the drive after 0.1 s, the run would end after 0.5 s
 UP = ("counter-clockwise seen from above", "up", "up")
 _LAY_DOWN = "Lay the arm down so that it stays by itself, something soft under it"
 

@@ -14,7 +14,7 @@ from ir50p_lab.modelling.chain import lengths
 _HEAD = "# counts = zero + slope q: counts of the 10-bit converter, slope in counts/rad, q in rad, joints 1 to 3\n"
 _JOINTS = ("joint1", "joint2", "joint3")
 _FULL = 1023.0
-_STEP_BACK = 300.0  # counts between two neighbouring angles: more than a misread angle, less than a wrap makes
+_STEP_BACK = 300.0  # counts: if they fall by more from one angle to the next, the potentiometer has wrapped round
 
 
 @dataclass(frozen=True)
@@ -210,7 +210,7 @@ def _remarks(q, counts, slope, zero):
 
 
 def _beyond_noise(columns, more, y, chance):
-    """What `more` columns explain of y beside `columns`, over what noise reaches with this chance (F test)."""
+    """F of adding the columns `more` to a linear fit of y, over the F that noise exceeds with this `chance`."""
     from scipy.special import fdtri
 
     both = np.column_stack([columns, more])

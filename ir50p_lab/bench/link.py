@@ -13,9 +13,9 @@ except ImportError:  # Windows
     _termios_error = OSError
 
 PORT_ERRORS = (OSError, _termios_error)
-STALL = 0.1  # s in one read: the program was stopped, not the board
-READ_TIMEOUT = 0.004  # s; an answer takes 1 ms on the wire and up to 3 ms more through USB
-REPEAT = 0.004  # s without an answer until the question is asked again
+STALL = 0.1  # s: if one read takes longer, the program was suspended, not the board
+READ_TIMEOUT = 0.004  # longest wait for an answer, s: 1 ms on the wire and up to 3 ms through USB
+REPEAT = 0.004  # s: a question without an answer for so long is asked again
 
 
 class Link:

@@ -7,9 +7,9 @@ import numpy as np
 from ir50p_lab.errors import InputError
 
 WATCHDOG = 0.1  # s without a command, after which the drive is cut: protocol.WATCHDOG_MS of the board
-LONGEST_PAUSE = 0.5  # s without a command that end a run: what would come after them was meant for another moment
-_AWAKE = 0.001  # s; a tenth of a processor at 100 Hz
-_LATE = 0.2  # of a period; a cycle that begins later than this is counted
+LONGEST_PAUSE = 0.5  # s: a longer time without a command ends the run, for later commands are out of date
+_AWAKE = 0.001  # last part of each wait, s, spent polling the clock: a tenth of a processor at 100 Hz
+_LATE = 0.2  # share of the period: a cycle that begins later than this counts as late
 # a clock that goes on while a laptop sleeps (Linux, macOS; on Windows perf_counter does)
 _SLEEPLESS = getattr(time, "CLOCK_BOOTTIME", getattr(time, "CLOCK_MONOTONIC", None))
 

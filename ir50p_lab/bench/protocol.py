@@ -102,7 +102,7 @@ def with_check(data):
 
 
 class FrameParser:
-    """Finds replies in a stream of bytes, in pieces of any size; drops and counts what is none.
+    """Finds replies in a stream of bytes, in pieces of any size; counts and drops bytes that are not part of one.
 
     After a bad frame it goes on one byte behind its sync byte, so no good frame is lost to the noise before it.
     Attribute `bad`: how often a sync byte was not the start of a valid frame.

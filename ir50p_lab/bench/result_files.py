@@ -34,7 +34,7 @@ def folder():
 
 
 def every():
-    """All Results, the one chosen last at the end. Raises InputError for a description that is none."""
+    """All Results, the one chosen last at the end. Raises InputError for a file that describes no result."""
     found = []
     for path in {*folder().glob("*-*.json")} - {*folder().glob("bench-test-*.json")}:  # reports of `bench_test`
         try:
@@ -68,7 +68,7 @@ def add(kind, suffix, write, **about):
 
 
 def change(name, *, withdrawn):
-    """Withdraw a result, or let it count from now on, whatever is newer. Raises InputError for a name that is none."""
+    """Withdraw a result, or let it count from now on, whatever is newer. Raises InputError for an unknown name."""
     known = {one.name: one for one in every()}
     if name not in known:
         raise InputError(f"there is no result {name!r}: {', '.join(known) or 'none at all'}")

@@ -31,17 +31,17 @@ from ir50p_lab.simulation.plant import FC, FORCE_SCALE, FS, FV, GRAVITY, LENGTHS
 AGAINST, STILL, FAST_ALARM = 10, 20, 30
 
 BLOCK = 0.05  # s
-WINDOW = 5  # blocks, 0.25 s: a hand or a swing that lasts longer and does not slow down is no brake
-DELAY = 2  # blocks before them with the same sign of the command: what was sent acts later
+WINDOW = 5  # blocks: a joint that moves against its command for 0.25 s and does not slow down raises the alarm
+DELAY = 2  # blocks before the window in which the command had the same sign, too: a motor answers late
 KEPT = WINDOW + 1 + DELAY
-GAP = 0.3  # s without a sample: what was before says nothing about what comes
-HAND = 1.2  # of the stall torque; 8 to 19 N at the tip of the IR50P
-PAYLOAD = 0.3  # kg at the tip
-BREAKAWAY = 1.5  # times the arm's own: greases age
+GAP = 0.3  # s: after a longer time without a sample the check begins anew
+HAND = 1.2  # largest push of a hand or payload, as a share of the stall torque: 8 to 19 N at the tip of the IR50P
+PAYLOAD = 0.3  # largest payload at the tip, kg
+BREAKAWAY = 1.5  # largest breakaway friction to expect, as a share of the arm's own: greases age
 FRESH, HELD = 0.1, 0.8  # rad
-FAST = 1.5
+FAST = 1.5  # largest speed, as a share of what supply, gravity and payload together can reach
 END, TABLE = 0.12, 0.04  # rad from an end of travel, m above the table: there a joint may be held
-NOISE = 3.0  # counts within which the mean of a block that stands still stays
+NOISE = 3.0  # counts: while the means of blocks differ by less, the joint stands still
 
 
 # What the check knows, arrays. Constants first: theta (3, 20) and numbers (33,) of the arm in PWM counts; lag (3,) s of

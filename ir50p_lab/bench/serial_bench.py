@@ -14,9 +14,9 @@ from ir50p_lab.bench.ports import open_port
 from ir50p_lab.bench.result_files import own_calibration
 from ir50p_lab.errors import BoardError, BoardLostError, InputError
 
-BOOT_LOADER = 2.0  # s; the Mega's own lasts 1 to 2 s, and 8 s if it hears anything meanwhile: so we keep silent
-HANDSHAKE = 2.0  # s; then nobody is there
-LOST_AFTER = 0.5  # s without answer; the board has cut the drive after 0.1 s, a busy computer may come back
+BOOT_LOADER = 2.0  # silence after opening the port, s: the boot loader takes 1 to 2 s, but 8 s if a byte arrives
+HANDSHAKE = 2.0  # s: if the board has not answered the hello by then, there is none
+LOST_AFTER = 0.5  # s: a board that is silent for longer is lost; a shorter pause may be a busy computer's
 _BROKEN = protocol.BROKEN_COUNTS
 _REMEDY = "put the sketch of ir50p_lab/bench/firmware on the board (its README shows how)"
 

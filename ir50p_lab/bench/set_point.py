@@ -1,4 +1,4 @@
-"""A set point that a hand moves; and what is asked of every reference and set point before the arm is driven there."""
+"""A set point moved by hand, and the checks of every reference and set point before the arm is driven there."""
 
 import math
 
@@ -8,11 +8,11 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vector3
 from ir50p_lab.modelling.chain import frames
 
-SPEED = 0.8  # rad/s: with the arm stretched the tip moves at 0.7 m/s
-ACCELERATION = 3.0  # rad/s^2: full speed after a quarter of a second
-FARTHEST = 2.0  # rad from the measured pose: no drive is asked to close such a gap at once
-_UNKNOWN = (math.nan,) * 3  # a pose from which nothing is far, and which widens no travel
-NOISE = 0.05  # rad; an arm that stands at an end of its travel may be measured so far beyond it
+SPEED = 0.8  # largest joint speed, rad/s: the tip of the stretched arm moves at 0.7 m/s
+ACCELERATION = 3.0  # largest joint acceleration, rad/s^2: full speed after a quarter of a second
+FARTHEST = 2.0  # rad: a reference farther from the measured pose is refused
+_UNKNOWN = (math.nan,) * 3  # an unmeasured pose: every comparison with it is false
+NOISE = 0.05  # rad: an arm at an end of its travel may be measured so far beyond it
 
 
 class SetPoint:

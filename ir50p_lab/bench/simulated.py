@@ -18,8 +18,8 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.jit import jit
 
 _BLOCK = 1000  # samples between two looks at the disk and at Ctrl-C in a compiled run
-_KEPT = 100_000  # cycles of truth: a live run may last for hours
-_SINK = 3.0  # s without drive after which an arm that was let go lies still
+_KEPT = 100_000  # newest cycles whose true states are kept: a live run may last for hours
+_SINK = 3.0  # time after which an arm without drive lies still, s
 
 
 @jit()

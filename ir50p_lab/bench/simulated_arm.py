@@ -17,7 +17,7 @@ from ir50p_lab.simulation.steps import dry_step
 
 STEP = 0.001  # s; Moreau's step is of first order, and 1 ms is far below the time constants of the drives
 HIGHEST_COUNT = 1023.0
-_SETTLE = 2e-4  # rad a link sinks within the play per step: 2 mrad take 10 ms
+_SETTLE = 2e-4  # largest motion of a link within the play in one step, rad: 2 mrad take 10 ms
 
 # rows of the array of the unit's numbers, (9, 3): a number for each joint
 GAIN, DEAD, PLAY, SLOPE, ZERO, BOW, LOW, SPAN, DRAG = range(9)

@@ -14,7 +14,7 @@ from ir50p_lab.modelling.arm_file import read_arm, write_arm
 from ir50p_lab.modelling.friction import Friction
 
 _VECTORS = {"l": "m", "m": "kg", "lc": "m", "Ixx": "kg m^2", "Iyy": "kg m^2", "Izz": "kg m^2"}
-_RELATIVE_SLACK = 1e-9  # a slender rod meets Ixx + Iyy = Izz exactly, up to rounding
+_RELATIVE_SLACK = 1e-9  # share of Ixx + Iyy + Izz allowed for rounding: a slender rod meets Ixx + Iyy = Izz exactly
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -25,7 +25,7 @@ def _jacobian(l, six, q, J):
         raise InputError(NOT_FINITE)
 
 
-_SIX = np.empty(6)  # its length is that of a column of J: NumPy's layouts hold no numbers
+_SIX = np.empty(6)  # gives a column of J its length: the signature of a ufunc may hold no numbers
 
 
 def jacobian(arm, q):

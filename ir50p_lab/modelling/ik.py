@@ -12,7 +12,7 @@ from ir50p_lab.modelling.chain import lengths
 from ir50p_lab.modelling.kernel import evaluate, kernel
 
 BRANCHES = ("front/up", "front/down", "back/up", "back/down")
-_EDGE = 1e-12  # relative to the reach: rounding may put a stretched arm's own tip this far outside
+_EDGE = 1e-12  # share of the reach by which rounding may put the tip of a stretched arm outside it
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def _branches(l, four, p, q):
         q[k, 0], q[k, 1], q[k, 2] = math.atan2(side * p[1], side * p[0]), q2, q3
 
 
-_FOUR = np.empty(4)  # its length is the number of branches: NumPy's layouts hold no numbers
+_FOUR = np.empty(4)  # gives the branches their number: the signature of a ufunc may hold no numbers
 
 
 def inverse_kinematics(arm, p):

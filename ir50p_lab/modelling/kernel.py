@@ -1,4 +1,4 @@
-"""One state or many: functions of one state as NumPy's generalised ufuncs, and the sentence for what they refuse."""
+"""One state or many: functions of one state as NumPy's generalised ufuncs, and the errors they raise."""
 
 import re
 from functools import cache

@@ -4,7 +4,7 @@ import re
 
 import sympy
 
-_ORDER = {"I": 1, "j": 2, "m": 3, "g": 4, "c": 6, "s": 6, "q": 7}  # in a product; lengths, all others, are 5
+_ORDER = {"I": 1, "j": 2, "m": 3, "g": 4, "c": 6, "s": 6, "q": 7}  # place in a product; of a length: 5
 _LINE = 105  # visible characters that fit on a line of a notebook, roughly
 
 

@@ -1,6 +1,6 @@
-"""The lab report: what a student predicted, measured, noted, kept and wrote, as one HTML file with everything inside.
+"""The lab report: what a student predicted, measured, explained, noted, kept and wrote, as one HTML file.
 
-`python3 -m ir50p_lab report` writes results/report_DATE.html in the student's folder.
+`python3 -m ir50p_lab report` writes results/report_DATE.html in the student's folder, pictures inside.
 """
 
 import argparse
@@ -30,7 +30,7 @@ def report(name="") -> str:
     """Return the report as the text of an HTML page. name: of the student."""
     book = lab_book.read()
     parts = [
-        f"<h1>Lab report: the IR50P</h1><p>{_text(name) or 'Name: ______________'}<br>{date.today():%d %B %Y}</p>",
+        f"<h1>Lab report: the IR50P</h1><p>{_names(name, book['partners'])}<br>{date.today():%d %B %Y}</p>",
         _origin(),
         _section("Predicted and measured", _predictions(book["predictions"])),
         _section("Notes", "".join(_note(one) for one in book["notes"])),
@@ -39,6 +39,12 @@ def report(name="") -> str:
         _section("My robot", _listings()),
     ]
     return f"<!doctype html><meta charset='utf-8'><title>Lab report</title><style>{_STYLE}</style>{''.join(parts)}"
+
+
+def _names(name, partners):
+    """The first line: the name given, then the partners of the lab book; a line to fill in where there are none."""
+    others = [one for one in partners if one != name]
+    return _text(" and ".join([name, *others] if name else others)) or "Name: ______________"
 
 
 def _note(one):
@@ -76,12 +82,16 @@ def _predictions(predictions):
     for name, entry in predictions.items():
         unit = entry.get("unit", "")
         guess = _number(entry.get("guess"), unit)
+        for before in entry.get("earlier", []):
+            if "guess" in before:
+                guess += f" <small>(at first {_number(before['guess'], unit)})</small>"
         if "changed" in entry:
             guess += f" <small>(later {_number(entry['changed'], unit)})</small>"
         if entry.get("late"):
             guess += " <small>(after the answer)</small>"
-        rows.append((_text(name), guess, _number(entry.get("truth"), unit), entry.get("guessed", "")[:16]))
-    return _table(["what", "my guess", "measured", "when"], rows)
+        truth = _number(entry.get("truth"), unit)
+        rows.append((_text(name), guess, truth, _text(entry.get("why", "")), entry.get("guessed", "")[:16]))
+    return _table(["what", "my guess", "measured", "why", "when"], rows)
 
 
 def _number(value, unit):
@@ -125,7 +135,7 @@ def _listings():
 def main(arguments=None):
     """Write the report and say where it is."""
     parser = argparse.ArgumentParser(prog="python3 -m ir50p_lab report", description="Write your lab report.")
-    parser.add_argument("--name", default="", help="your name, for the first line")
+    parser.add_argument("--name", default="", help="your name, beside those of `partners`")
     parser.add_argument("--to", type=Path, help="file to write (default: results/report_DATE.html in your folder)")
     chosen = parser.parse_args(arguments)
     path = chosen.to or lab_book.path().parent / f"report_{date.today():%Y-%m-%d}.html"

@@ -24,7 +24,7 @@ from ir50p_lab.course.draw.scope import Scope
 from ir50p_lab.errors import InputError, LabError
 
 _UNITS = {"kp": "PWM/rad", "ki": "PWM/(rad s)", "kd": "PWM s/rad"}
-_LEAST = {"kp": 400, "ki": 100, "kd": 100}  # a slider goes at least that far
+_LEAST = {"kp": 400, "ki": 100, "kd": 100}  # smallest right end of a slider
 _RED = "#c0392b"
 _FRAME, _WINDOW = 1 / 25, 10.0  # s, of the scope
 
@@ -256,7 +256,7 @@ class BenchPanel(widgets.VBox):
     # ---- one panel after the other
 
     def _take_over(self):
-        """Run a cell again: the new panel has the loop that still runs, the old one lets go of it."""
+        """When a cell is run again, the new panel takes over the running loop and the old one detaches."""
         for old in list(BenchPanel.panels):
             if old.bench is self.bench and not old._closed.is_set():
                 old._closed.set()

@@ -73,7 +73,7 @@ def _cell_text(thing):
 
 
 def _plain(thing):
-    """The function itself; of a class its first one, or None."""
+    """The function; for a class its first method; None if it has none."""
     if hasattr(thing, "__code__"):
         return thing
     return next((value for value in vars(thing).values() if hasattr(value, "__code__")), None)
@@ -140,7 +140,7 @@ def _refuse_imports(node):
 
 
 def _refuse_changes(node):
-    """Nothing outside is changed or looked into: `np.allclose = ...`, `np.__builtins__`; `self` may."""
+    """Refuse code that assigns to, or reads dunder names of, anything but `self`: `np.allclose = ...`."""
     for one in ast.walk(node):
         if not isinstance(one, ast.Attribute):
             continue
@@ -179,9 +179,9 @@ def written_wrong(function):
 
 
 def is_copy(text, other):
-    """Tell whether a text computes what another does: names, layout, `1 *` and what is added do not count.
+    """Tell whether a text is a copy of another: at most one expression in six differs.
 
-    One step in six may be another, so that it takes more than a new last line.
+    Names, layout and factors `1 *` are left out of the comparison first; added code is ignored.
     """
     steps = _steps(other)
     return (steps - _steps(text)).total() <= steps.total() // 6

@@ -5,7 +5,7 @@ import numpy as np
 from ir50p_lab.course.draw.chart import Chart
 from ir50p_lab.course.draw.style import COLOURS, JOINTS
 
-_MOST = 300  # samples in a picture: about one for every pixel column of a joint
+_MOST = 300  # largest number of samples drawn: about one for every pixel column of a joint
 
 
 class Scope(Chart):

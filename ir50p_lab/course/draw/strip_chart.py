@@ -10,7 +10,7 @@ import numpy as np
 from ir50p_lab.course.draw.chart import Chart
 from ir50p_lab.course.draw.style import COLOURS
 
-_MOST = 600  # points of a curve in a picture
+_MOST = 600  # largest number of points drawn of a curve
 
 
 class StripChart(Chart):

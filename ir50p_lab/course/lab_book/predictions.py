@@ -1,5 +1,6 @@
-"""The lab book itself: what the student predicted, measured, noted and kept, as readable JSON."""
+"""The lab book itself: what the student predicted, measured, explained, noted and kept, as readable JSON."""
 
+import math
 import re
 from datetime import datetime
 
@@ -13,8 +14,11 @@ def path():
 
 
 def read():
-    """Return {"predictions": {name: ...}, "notes", "figures", "contest": [...], "attempts": {function: [...]}}."""
-    empty = {"predictions": {}, "notes": [], "figures": [], "contest": [], "attempts": {}}
+    """Return {"predictions": {name: ...}, "notes", "figures", "contest", "partners": [...], "attempts": {name: [...]}}.
+
+    A prediction's `earlier` lists what stood in it before.
+    """
+    empty = {"predictions": {}, "notes": [], "figures": [], "contest": [], "attempts": {}, "partners": []}
     return read_json(
         path(), empty, lambda found: all(isinstance(found.get(key, one), type(one)) for key, one in empty.items())
     )
@@ -33,36 +37,39 @@ def now():
     return datetime.now().astimezone().isoformat(timespec="seconds")
 
 
-def predict(name, guess, unit=""):
+def predict(name, guess, unit="", *more, within=0.1, choices=()):
     """Write down a guess before the run that answers it: predict("fk.height", 0.3, "m").
 
-    With the dots it says that a guess is missing, and goes on. The first number counts; a later one is shown, too.
+    With the dots it says that a guess is missing, and goes on. What is no answer is refused with a sentence and does
+    not count. Until it is measured, a guess may be replaced once; one that comes later is shown, but does not count.
+
+    Args: guess: a number. within: how far it may be off before `measured` asks why, as a share of what is measured.
+    choices: numbers of which the guess has to be one. more: what a decimal comma leaves over.
     """
-    if guess is ...:
-        print(f"{name}: put your guess in place of the dots, in {unit or 'numbers'}. Then run the cell.")
+    if refusal := _refusal(guess, unit, more, choices):
+        print(f"{name}: {refusal}")
         return
-    guess = _number(name, guess)
-
-    def edit(book):
-        entry = book["predictions"].setdefault(name, {"guess": guess, "unit": unit, "guessed": now()})
-        if "guess" not in entry:
-            entry.update(guess=guess, unit=unit, guessed=now(), late="truth" in entry)
-        if entry["guess"] != guess:
-            entry["changed"] = guess
-        return entry
-
-    entry = change(edit)
-    changed = f" (changed to {_say(entry['changed'], unit)}; the first one counts)" if entry["guess"] != guess else ""
-    print(f"{name}: your guess is {_say(entry['guess'], unit)}{changed}")
-
-
-def measured(name, value, unit=""):
-    """Show what came out beside what was guessed, and write it down. unit: where nothing was predicted."""
-    value = _number(name, value)
 
     def edit(book):
         entry = book["predictions"].setdefault(name, {})
-        entry.update(truth=value, measured=now())
+        return _take_guess(entry, float(guess), unit, 0 if choices else within)
+
+    print(f"{name}: {change(edit)}")
+
+
+def measured(name, value, unit=""):
+    """Show what came out beside what was guessed, and write it down. unit: where nothing was predicted.
+
+    Where the guess is off by more than its prediction allows, and no reason is written down yet, it asks for one.
+    """
+    try:
+        value = float(value)
+    except (TypeError, ValueError):
+        raise LabBookError(f"{name}: what is measured is one number, got {value!r:.60}") from None
+
+    def edit(book):
+        entry = book["predictions"].setdefault(name, {})
+        _write(entry, "truth", value)
         entry.setdefault("unit", unit)
         return entry
 
@@ -70,9 +77,38 @@ def measured(name, value, unit=""):
     unit = entry["unit"]
     if "guess" not in entry:
         print(f"{name}: {_say(value, unit)}")
-    else:
-        off = f", {_say(entry['guess'] - value, unit, sign=True)} off"
-        print(f"{name}: you guessed {_say(entry['guess'], unit)}, it is {_say(value, unit)}{off}.")
+        return
+    off = entry["guess"] - value
+    print(f"{name}: you guessed {_say(entry['guess'], unit)}, it is {_say(value, unit)}, {_say(off, unit, '+')} off.")
+    within = entry.get("within", 0.1)  # a guess of an earlier version has none
+    if abs(off) > within * abs(value) and "why" not in entry:
+        print(f'Why? One sentence: why("{name}", "...")')
+
+
+def why(name, text):
+    """Write down, in a sentence, why something came out as it did: why("p.ends", "..."). The report shows it."""
+    text = str(text).strip()
+    if text in ("", "...", str(...)):
+        print(f"{name}: put your sentence in place of the dots. Then run the cell.")
+        return
+
+    def edit(book):
+        if entry := book["predictions"].get(name):
+            _write(entry, "why", text)
+        return entry
+
+    print(f"{name}: noted" if change(edit) else f"{name}: nothing of this name was predicted or measured")
+
+
+def partners(*names):
+    """Write down who works together, partners("A. Name", "B. Name"): the report names them. Without names: who does."""
+    names = [str(name).strip() for name in names if str(name).strip()]
+
+    def edit(book):
+        book["partners"] = names or book["partners"]
+        return book["partners"]
+
+    print("This lab book is of", " and ".join(change(edit)) or 'nobody yet: partners("A. Name", "B. Name")')
 
 
 def note(text):
@@ -102,12 +138,50 @@ def keep(figure, name):
     print(f"kept: {name}")
 
 
-def _number(name, value):
+def _refusal(guess, unit, more, choices):
+    """Say why this is no prediction; "" for one that is."""
+    if more or not isinstance(unit, str) or "," in str(guess):
+        return "a decimal comma? Python takes 0,35 for two numbers: write 0.35. Nothing was written down."
+    asked = f"one of {', '.join(map(str, choices))}" if choices else f"one number, in {unit}" if unit else "one number"
+    if guess is ...:
+        return f"put your guess in place of the dots, {asked}. Then run the cell."
     try:
-        return float(value)
+        number = float(guess)
     except (TypeError, ValueError):
-        raise LabBookError(f"{name}: a prediction is one number, got {value!r:.60}") from None
+        number = math.nan
+    if math.isfinite(number) and (not choices or number in choices):
+        return ""
+    return f"{guess!r:.40} is no answer, so it does not count: give {asked}."
 
 
-def _say(value, unit, sign=False):
-    return f"{value:{'+' if sign else ''}.4g} {unit}".strip()
+def _take_guess(entry, guess, unit, within):
+    """Let a guess count if it still may; return the sentence about it."""
+    said = f"your guess is {_say(guess, unit)}"
+    if "guess" not in entry:
+        entry["late"] = "truth" in entry
+    elif guess != entry["guess"]:
+        first = _say(entry["guess"], entry["unit"])
+        if "truth" in entry or any("guess" in one for one in entry.get("earlier", [])):
+            _write(entry, "changed", guess)
+            return f"your guess stays {first}: {_say(guess, unit)} comes too late to count"
+        said += f", in place of {first}"
+    _write(entry, "guess", guess)
+    entry.update(unit=unit, within=within)
+    return said
+
+
+_TIMES = {"guess": "guessed", "truth": "measured", "changed": "changed_at", "why": "explained"}
+
+
+def _write(entry, key, value):
+    """Write a value and its time into an entry; another value that stood there moves to `earlier`, a list."""
+    time = _TIMES[key]
+    if key in entry and entry[key] == value:
+        return
+    if key in entry:
+        entry.setdefault("earlier", []).append({key: entry[key], time: entry.get(time, "")})
+    entry.update({key: value, time: now()})
+
+
+def _say(value, unit, sign=""):
+    return f"{value:{sign}.4g} {unit}".strip()

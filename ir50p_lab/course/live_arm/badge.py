@@ -21,7 +21,7 @@ def badge_of(function):
 
 
 def _owners(thing, seen):
-    """Yield whose the functions and tables are that a function rests on."""
+    """Yield the owner ("yours", "on loan", ...) of every function and table that a function uses."""
     thing = getattr(thing, "__func__", thing)  # of a method
     if id(thing) in seen:
         return

@@ -26,7 +26,7 @@ from ir50p_lab.signals import steps
 UNIT = ArmInstance(delay=3, pot_bow=(0, 0, 0), slope_spread=0, shift_spread=0, bow_spread=0)
 TIMES, END = (0.0, 3.0, 7.0), 10.0  # s: hold, large step, small step
 LARGE, SMALL = 0.6, 0.15  # rad, each joint's step within 30 % of it, up or down
-PAYLOAD = 0.2  # of the forearm's mass, at most
+PAYLOAD = 0.2  # largest payload, as a share of the forearm's mass
 BAND = 0.03  # rad: about five counts of the potentiometers
 #: What is scored, and the most of it that wins.
 LIMITS = MappingProxyType({
@@ -38,9 +38,9 @@ LIMITS = MappingProxyType({
 })  # fmt: skip
 PRACTICE = (1, 2, 3)  # seeds that everybody may look at
 RUNS = 9  # arms of an attempt: on three, gains that fail one arm in five won every second time
-_LOST = 1e6  # as it is kept: a cut drive is infinite, which JSON does not know
+_LOST = 1e6  # score kept for a cut drive: it is infinite, which JSON cannot hold
 _PERIOD = 0.01
-_MOMENT = 10  # samples: a command held for some of them swings no less
+_MOMENT = 10  # samples over which the swing of the command is taken: holding a command does not make it smaller
 
 
 @dataclass(frozen=True)

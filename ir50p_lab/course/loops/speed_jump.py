@@ -6,8 +6,8 @@ from ir50p_lab.controllers import PID
 from ir50p_lab.simulation import simulate
 
 _START, _JUMP, _END = -1.6, 1.0, 2.0  # rad; s: the joint stays between its stops
-_SETTLED = 80  # samples after which the speed before the jump is reached
-_WIRE, _NOISE = 3, 0.01  # samples late; rad/s
+_SETTLED = 80  # samples after which the joint has reached its speed before the jump
+_WIRE, _NOISE = 3, 0.01  # delay of the measured speed, samples; its noise, rad/s
 
 
 class _OneJump:

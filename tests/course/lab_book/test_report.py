@@ -6,15 +6,18 @@ import solutions
 from cells import cell
 from matplotlib.figure import Figure
 
-from ir50p_lab.course import check, keep, measured, note, predict, solution
+from ir50p_lab.course import check, keep, measured, note, partners, predict, solution, why
 from ir50p_lab.publishing import report
 
 
 def test_a_report_of_everything(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("IR50P_HOME", str(tmp_path))
     monkeypatch.setenv("IR50P_UNIT", "2")
+    partners("Ada", "Blaise")
+    predict("fk.height", 0.2, "m")
     predict("fk.height", 0.1, "m")
     measured("fk.height", 0.33)
+    why("fk.height", "the elbow is <up>")
     note("it sank <slowly>")
     keep(Figure(), "my figure")
     check("rot_z", cell("def rot_z(angle):\n    return angle", "rot_z"))
@@ -24,7 +27,8 @@ def test_a_report_of_everything(tmp_path, monkeypatch, capsys):
     report.main(["--name", "Ada"])
     (path,) = (tmp_path / "results").glob("report_*.html")
     text = path.read_text(encoding="utf-8")
-    for words in ("Ada", "unit 2", "0.1 m", "0.33 m", "it sank &lt;slowly&gt;", "my figure", "def rot_z", "on loan"):
+    row = "<td>0.1 m <small>(at first 0.2 m)</small></td><td>0.33 m</td><td>the elbow is &lt;up&gt;</td>"
+    for words in ("Ada and Blaise", row, "unit 2", "it sank &lt;slowly&gt;", "my figure", "def rot_z", "on loan"):
         assert words in text, words
     assert re.search(r"Exercises done: pose-3 \d{4}-\d\d-\d\d\.", text)
     assert not re.search(r"https?://", text)
