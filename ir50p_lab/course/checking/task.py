@@ -59,7 +59,7 @@ def table(name, beside=__file__):
 
 def wrong_one(function, changes):
     """The function with these changes in its text."""
-    return changed(text_of(function), changes, function.__globals__)[function.__name__]
+    return changed(text_of(function), changes, {"np": np, **function.__globals__})[function.__name__]
 
 
 def mistakes(function):

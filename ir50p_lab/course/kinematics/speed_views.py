@@ -6,7 +6,7 @@ from ir50p_lab.course.draw.arm3d import ArmView, SideView
 from ir50p_lab.course.draw.drawings import drawing
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, new_figure, subplots
 from ir50p_lab.course.kinematics.functions import velocity
-from ir50p_lab.course.kinematics.functions.pose import frames
+from ir50p_lab.course.kinematics.functions.frames import frames
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.modelling.ik import inverse_kinematics

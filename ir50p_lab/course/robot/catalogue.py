@@ -2,6 +2,7 @@
 
 import importlib
 from functools import cache
+from pathlib import Path
 
 from ir50p_lab.errors import InputError
 
@@ -28,13 +29,17 @@ NOTEBOOKS = {
 }
 ORDER = tuple(name for names in NOTEBOOKS.values() for name in names)
 STAGES = {"PID": ("PID.p", "PID.pi", "PID.limits")}  # checked on the way; "PID" itself is the last
-_MODULES = {  # what is written
-    "00": "kinematics.functions.pose",
-    "01": "kinematics.functions.pose",
-    "02": "kinematics.functions.inverse",
-    "03": "kinematics.functions.velocity",
-    "08": "loops.functions.controller",
-    "09": "loops.functions.tuning",
+_SUBJECTS = {  # the room of each notebook, where its functions stand
+    "kinematics": ("00", "01", "02", "03"),
+    "dynamics": ("04", "05"),
+    "motion": ("06", "07"),
+    "loops": ("08", "09"),
+    "at_the_bench": ("10",),
+    "fitting": ("12", "13"),
+    "torque": ("14", "15"),
+    "images": ("16",),
+    "camera": ("17",),
+    "reaching": ("18",),
 }
 
 
@@ -53,16 +58,28 @@ def is_function(name):
     return name in ORDER or name in STAGES.get(function_of(name), ())
 
 
+def subject_of(name):
+    """Room of a function, "kinematics": its Task stands there in `functions/NAME.py`, its slips in `NAME.txt`."""
+    return next(room for room, notebooks in _SUBJECTS.items() if notebook_of(name) in notebooks)
+
+
+@cache
+def is_written(name):
+    """Tell whether a function can be checked today."""
+    course = Path(__file__).parents[1]
+    return (course / subject_of(name) / "functions" / f"{function_of(name)}.py").exists()
+
+
 def written():
     """Names of the functions that can be checked today."""
-    return tuple(name for name in ORDER if notebook_of(name) in _MODULES)
+    return tuple(filter(is_written, ORDER))
 
 
 @cache
 def task(name):
-    """The Task of a function of `my_robot`. Raises InputError where its notebook is still to come."""
-    number = notebook_of(name)
-    if number not in _MODULES:
-        raise InputError(f"{name} is asked for in notebook {number}, which is still to come")
-    module = importlib.import_module(f"ir50p_lab.course.{_MODULES[number]}")
-    return next(one for one in module.TASKS if one.name == name)
+    """The Task of a function of `my_robot`, or of a stage of one. Raises InputError where it is still to come."""
+    if not is_written(name):
+        raise InputError(f"{name} is asked for in notebook {notebook_of(name)}, which is still to come")
+    room = f"ir50p_lab.course.{subject_of(name)}.functions"
+    module = importlib.import_module(f"{room}.{function_of(name)}")
+    return module.STAGES[name] if "." in name else module.TASK

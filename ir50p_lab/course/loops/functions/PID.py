@@ -31,7 +31,7 @@ def _stage(name, loan, asks, hints, *parts):
     return Task(name, asks, right, loan, tried=trials.tried_by(*parts), test=_TEST, hints=hints)
 
 
-TASKS = (
+_ALL = (
     _stage("PID.p", loans.P, "a class whose `step` gives three pushes in PWM counts, kp times the error",
            ("How far away is each joint? One line gives three numbers.",
             "The arm is below the target. Should the push be positive or negative? Does yours agree?"),
@@ -54,3 +54,6 @@ TASKS = (
            *trials.SPEED, *trials.PUSH, *trials.MEMORY, *trials.LIMITS, *trials.DAMPING,
            trials.gains("kp", "ki", "kd")),
 )  # fmt: skip
+
+*_ON_THE_WAY, TASK = _ALL
+STAGES = {stage.name: stage for stage in _ON_THE_WAY}

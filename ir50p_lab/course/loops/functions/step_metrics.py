@@ -153,7 +153,7 @@ def _symptom(cases, returned, expected):
     return ""
 
 
-STEP_METRICS = Task(
+TASK = Task(
     name="step_metrics",
     asks="rise time, overshoot, settling time and rest error of a step of one joint: four numbers (s, rad, s, rad)",
     right=step_metrics,
@@ -171,5 +171,3 @@ STEP_METRICS = Task(
         "settled one sample after it was outside for the last time.",
     ),
 )  # fmt: skip
-
-TASKS = (STEP_METRICS,)

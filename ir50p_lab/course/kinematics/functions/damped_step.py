@@ -1,74 +1,14 @@
-"""The functions of 03: the Jacobian of any point of the arm, and one damped step towards a place."""
+"""damped_step: one damped step of the joints towards a place."""
 
 import numpy as np
 
 from ir50p_lab.course.checking.task import Task, mistakes, text_of
-from ir50p_lab.course.kinematics.functions.pose import _LENGTHS, forward_kinematics, frames
+from ir50p_lab.course.kinematics.functions import LENGTHS
+from ir50p_lab.course.kinematics.functions.forward_kinematics import forward_kinematics
+from ir50p_lab.course.kinematics.functions.frames import frames
+from ir50p_lab.course.kinematics.functions.jacobian import jacobian
 
 
-# -------------------------------------------------------------------------------------------------------- jacobian
-def jacobian(T, link, point):
-    """Velocity and turning of a point carried by a link, per joint speed, (6, 3)    (1.32)-(1.43 corrected)."""
-    J = np.zeros((6, 3))
-    for joint in range(link):
-        axis = T[joint][:3, 2]
-        origin = T[joint][:3, 3]
-        lever = point - origin
-        J[:3, joint] = np.cross(axis, lever)
-        J[3:, joint] = axis
-    return J
-
-
-def _points():
-    rng = np.random.default_rng(31)
-    cases = []
-    for k in range(9):
-        q, l = rng.uniform(-2, 2, 3), _LENGTHS[k % 3]
-        T = frames(q, l)
-        link = 3 - k % 3
-        tip = T[link][:3, 3]
-        cases.append((T, link, tip.copy() if k < 3 else tip + rng.uniform(-0.1, 0.1, 3)))
-    return cases
-
-
-def _jacobian_symptom(cases, returned, expected):
-    J, right = np.array(returned, dtype=float), np.array(expected)
-    if not J[:, 3:].any():
-        return "the lower three rows are still zero: about which axis does each joint turn the link?"
-    top, bottom = np.allclose(J[:, :3], right[:, :3]), np.allclose(J[:, 3:], right[:, 3:])
-    if bottom and not top:
-        return (
-            "the lower three rows (turning) are right, the upper three (velocity) are not: axis x lever, and the lever "
-            "goes from where to where?"
-        )
-    if top and not bottom:
-        return (
-            "the upper three rows (velocity) are right, the lower three (turning) are not: about which axis does each "
-            "joint turn the link?"
-        )
-    wrong = [str(c + 1) for c in range(3) if not np.allclose(J[:, :, c], right[:, :, c])]
-    return f"column {', '.join(wrong)} is wrong: one column a joint" if 0 < len(wrong) < 3 else ""
-
-
-JACOBIAN = Task(
-    name="jacobian",
-    tolerance=1e-5,  # as for damped_step
-    asks="the matrix (6, 3) of a point (base coordinates) carried by link 1, 2 or 3: velocity above, turning below, "
-    "one column a joint, from the four frames T",
-    right=jacobian,
-    cases=_points,
-    leans_on=("frames", "dh_matrix", "rot_z"),
-    loan=text_of(jacobian),
-    slips=mistakes(jacobian),
-    symptom=_jacobian_symptom,
-    hints=(
-        "Joint 1 alone turns: how fast does a point move that is 0.5 m from the axis, and where to? Axis x lever.",
-        "Joint k turns about the z axis of frame k - 1, and stands at its origin. Both are columns of T[k - 1].",
-    ),
-)  # fmt: skip
-
-
-# ----------------------------------------------------------------------------------------------------- damped_step
 def damped_step(q, p, l, damping):
     """One step of damped least squares towards p, the next q (3,)    (1.56)-(1.59 corrected)."""
     T = frames(q, l)
@@ -85,12 +25,12 @@ def _steps():
     rng = np.random.default_rng(41)
     cases = []
     for k in range(8):
-        l = _LENGTHS[k % 3].copy()
+        l = LENGTHS[k % 3].copy()
         q = rng.uniform([-2, -1, -1.5], [2, 1, 1.5])
         p = forward_kinematics(q, l) + rng.uniform(-0.1, 0.1, 3)
         cases.append((q, p, l, (0.02, 0.05, 0.2)[k % 3]))
-    cases.append((np.array([0.3, 0.4, 0.0]), np.array([0.3, 0.1, 0.4]), _LENGTHS[0].copy(), 0.02))  # stretched
-    cases.append((np.array([0.3, 0.4, -0.5]), np.array([1.5, 0.0, 0.4]), _LENGTHS[0].copy(), 0.05))  # out of reach
+    cases.append((np.array([0.3, 0.4, 0.0]), np.array([0.3, 0.1, 0.4]), LENGTHS[0].copy(), 0.02))  # stretched
+    cases.append((np.array([0.3, 0.4, -0.5]), np.array([1.5, 0.0, 0.4]), LENGTHS[0].copy(), 0.05))  # out of reach
     return cases
 
 
@@ -154,7 +94,7 @@ _BY_NORMAL_EQUATIONS = """def damped_step(q, p, l, damping):
     return q + dq"""
 
 
-DAMPED_STEP = Task(
+TASK = Task(
     name="damped_step",
     asks="the next q (3,) rad after one damped step towards p (m)",
     right=damped_step,
@@ -171,5 +111,3 @@ DAMPED_STEP = Task(
         "Solve (J J' + damping^2 1) y = what is missing, with np.linalg.solve. Then back to the joints with J'.",
     ),
 )  # fmt: skip
-
-TASKS = (JACOBIAN, DAMPED_STEP)

@@ -1,14 +1,14 @@
-"""The functions of 02: all poses that reach a place, and the one the arm may take."""
+"""inverse_kinematics: all poses that reach a place."""
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Mistake, Task, mistakes, shown, table, text_of, wrong_one
-from ir50p_lab.course.kinematics.functions.pose import _LENGTHS, forward_kinematics, frames
+from ir50p_lab.course.checking.task import Mistake, Task, table, text_of, wrong_one
+from ir50p_lab.course.kinematics.functions import LENGTHS
+from ir50p_lab.course.kinematics.functions.forward_kinematics import forward_kinematics
 
-_SAME = 1e-5  # rad: near the stretched arm rounding of the place leaves the elbow uncertain by 3e-8, 2e-6 degrees
+SAME = 1e-5  # rad: near the stretched arm rounding of the place leaves the elbow uncertain by 3e-8, 2e-6 degrees
 
 
-# ---------------------------------------------------------------------------------------------- inverse_kinematics
 def inverse_kinematics(p, l):
     """All poses that put the tip on p, (n, 3); n = 0 out of reach    (1.60)-(1.73 corrected)."""
     x, y, z = p
@@ -36,19 +36,19 @@ def _targets():
     rng = np.random.default_rng(7)
     cases = []
     for k, q in enumerate(rng.uniform([-3, -2, -2.8], [3, 2, 2.8], (14, 3))):
-        l = _LENGTHS[k % 2].copy()
+        l = LENGTHS[k % 2].copy()
         cases.append((forward_kinematics(q, l), l))
     for k, q in enumerate(rng.uniform([-3, -2, 0], [3, 2, 0], (12, 3))):  # stretched: on the edge, but for rounding
-        l = _LENGTHS[k % 2].copy()
+        l = LENGTHS[k % 2].copy()
         cases.append((forward_kinematics(q, l), l))
     for direction in rng.normal(size=(3, 3)):
-        for l in _LENGTHS[:2]:
+        for l in LENGTHS[:2]:
             for r in (l[1] + l[2], abs(l[1] - l[2])):
                 for step in (-1e-6, -0.5e-9, 0.5e-9, 1e-6):
                     p = np.array([0, 0, l[0]]) + (r + step) * direction / np.linalg.norm(direction)
                     cases.append((p, l.copy()))
     for far in ((0.6, 0.3, 0.5), (-0.5, 0.4, 0.6), (0.02, 0.01, 0.3)):
-        cases.append((np.array(far), _LENGTHS[0].copy()))
+        cases.append((np.array(far), LENGTHS[0].copy()))
     return cases
 
 
@@ -74,7 +74,7 @@ def same_poses(returned, expected):
         return len(a) == len(b)
     apart = _apart(a, b)
     number = len(a) <= len(b) if _straight(b) else len(a) == len(b)
-    return bool((apart.min(axis=0) < _SAME).all() and (apart.min(axis=1) < _SAME).all() and number)
+    return bool((apart.min(axis=0) < SAME).all() and (apart.min(axis=1) < SAME).all() and number)
 
 
 def _straight(poses):
@@ -168,7 +168,7 @@ def _missing_pose(rows, case, right):
             continue
         back = "its back to" if np.cos(q[0] - np.arctan2(p[1], p[0])) < 0 else "facing"
         says = f"pose {number + 1} of {len(rows)}, {back} the place, puts the tip {1000 * off:.0f} mm beside it"
-        wrong = np.abs(np.angle(np.exp(1j * (q - right)))) > _SAME
+        wrong = np.abs(np.angle(np.exp(1j * (q - right)))) > SAME
         most = wrong[np.argmin(wrong.sum(axis=1))]
         names = [f"the {name}" for name, is_wrong in zip(("waist", "shoulder", "elbow"), most, strict=True) if is_wrong]
         return f"{says}; what is wrong: {' and '.join(names)}"
@@ -225,7 +225,7 @@ _BY_THE_TRIANGLE = """def inverse_kinematics(p, l):
     return np.arctan2(np.sin(poses), np.cos(poses))"""
 
 
-INVERSE_KINEMATICS = Task(
+TASK = Task(
     name="inverse_kinematics",
     asks="all poses (n, 3) rad that put the tip on p (m), one a row; no row if p is out of reach",
     right=inverse_kinematics,
@@ -244,151 +244,3 @@ INVERSE_KINEMATICS = Task(
         "Both sides of that small triangle are easy, and arctan2 knows the quadrant.",
     ),
 )  # fmt: skip
-
-
-# ----------------------------------------------------------------------------------------------------------- reach
-def reach(p, l, q_now, limits):
-    """The allowed pose that puts the tip on p with the smallest largest turn from q_now, (3,) or None."""
-    best = None
-    smallest = np.inf
-    for pose in inverse_kinematics(p, l):
-        within_limits = np.all(pose >= limits[0]) and np.all(pose <= limits[1])
-        heights = frames(pose, l)[2:, 2, 3]
-        above_table = np.all(heights >= -1e-9)
-        turn = np.max(np.abs(pose - q_now))
-        if within_limits and above_table and turn < smallest:
-            best = pose
-            smallest = turn
-    return best
-
-
-def within(q, limits):
-    """Tell whether every joint keeps its limits."""
-    return bool((q >= limits[0]).all() and (q <= limits[1]).all())
-
-
-def above_table(q, l):
-    """Tell whether elbow and tip (frames 2 and 3) are not below the table."""
-    return bool((frames(q, l)[2:, 2, 3] >= -1e-9).all())
-
-
-def allowed(q, l, limits):
-    """Tell whether a pose keeps the limits and stays above the table."""
-    return within(q, limits) and above_table(q, l)
-
-
-def _reach_cases():
-    from ir50p_lab.modelling import IR50P
-
-    rng = np.random.default_rng(21)
-    limits = np.array([IR50P.q_min, IR50P.q_max])
-    wide = np.array([[-3.1, -3.1, -3.1], [3.1, 3.1, 3.1]])
-    l = _LENGTHS[0]
-    cases = [(np.array([0.42, -0.15, 0.09]), l.copy(), np.array([0, 0.3, -0.6]), limits.copy())]
-    while len(cases) < 40:
-        bounds = limits if len(cases) % 2 else wide
-        p = forward_kinematics(rng.uniform(*bounds), l)
-        if p[2] > 0:
-            cases.append((p, l.copy(), rng.uniform(*limits), bounds.copy()))
-    for joint in range(3):  # the nearest pose breaks one limit alone
-        for side, step in ((0, 0.05), (1, -0.05)):
-            for q in rng.uniform([-2, 0.2, -1.5], [2, 1, 1.5], (3, 3)):
-                bounds = wide.copy()
-                bounds[side, joint] = q[joint] + step
-                cases.append((forward_kinematics(q, l), l.copy(), q, bounds))
-    near = np.array([0.5, -0.5, 1.5])  # the elbow is below the table, the tip above
-    elbow_low = forward_kinematics(near, _LENGTHS[2])
-    narrow = np.array([near - 0.1, near + 0.1])
-    cases.append((elbow_low, _LENGTHS[2].copy(), near, narrow))
-    cases.append((np.array([0.3, 0.2, -0.05]), l.copy(), np.zeros(3), wide.copy()))
-    cases.append((np.array([0.9, 0, 0.2]), l.copy(), np.zeros(3), wide.copy()))
-    for q in rng.uniform([-1.5, 0.2, -1.5], [1.5, 1, -0.5], (3, 3)):  # the nearest pose breaks all limits
-        p = forward_kinematics(q, l)
-        farthest = max(inverse_kinematics(p, l), key=lambda pose, q=q: np.abs(pose - q).min())
-        cases.append((p, l.copy(), q, np.array([farthest - 0.1, farthest + 0.1])))
-    for q in rng.uniform([-1, 0.2, -2], [1, 1.2, -1], (8, 3)):  # on the table, but for rounding
-        p = forward_kinematics(q, l)
-        p[2] = 0.0
-        cases.append((p, l.copy(), q, limits.copy()))
-    ahead = np.array([[0, -3.1, -3.1], [3.1, 3.1, 3.1]])  # the waist stands exactly on its limit
-    cases.append((np.array([0.42, 0, 0.2]), l.copy(), np.array([0, 0.3, -0.6]), ahead))
-    return [case for case in cases if _has_one_best(*case)]
-
-
-def _has_one_best(p, l, q_now, limits):
-    """Tell whether no other allowed pose turns its busiest joint nearly as little, within 0.05 rad."""
-    turns = sorted(np.abs(q - q_now).max() for q in inverse_kinematics(p, l) if allowed(q, l, limits))
-    return len(turns) < 2 or turns[1] - turns[0] > 0.05
-
-
-def _same_pose(returned, expected):
-    if returned is None or expected is None:
-        return returned is None and expected is None
-    returned = np.asarray(returned, dtype=float)
-    return returned.shape == (3,) and bool(np.abs(returned - expected).max() < _SAME)
-
-
-def _reach_symptom(cases, returned, expected):
-    there = [k for k, right in enumerate(expected) if right is not None]
-    refused = [k for k in there if returned[k] is None]
-    if refused and all(cases[k][0][2] == 0 for k in refused):
-        return (
-            f"places exactly on the table, z = 0, are refused ({len(refused)} here): they are allowed, and rounding "
-            "may put the tip a hair below; allow it 1e-9 m"
-        )
-    if refused:
-        return (
-            f"it returns None for {len(refused)} of {len(there)} places that have an allowed pose: is too much struck "
-            "out (limits in rad, low ones first), or is the choice not returned?"
-        )
-    if all(_same_pose(returned[k], expected[k]) for k in there):
-        one = next(one for one, right in zip(returned, expected, strict=True) if one is not None and right is None)
-        return f"where no pose is allowed it returns {shown(one)}: None is asked for"
-    for (p, l, _, limits), one in zip(cases, returned, strict=True):
-        if one is None:
-            continue
-        q = np.asarray(one, dtype=float)
-        if q.shape != (3,):
-            return f"it returns {shown(one)}: the pose itself is asked for, three angles"
-        off = np.linalg.norm(forward_kinematics(q, l) - p)
-        if not off < 1e-5:
-            cut = ". It stands exactly on a limit: cut to the limits, a pose is another one"
-            return (
-                "it returns a pose that is none of those of your inverse_kinematics: its tip is "
-                f"{1000 * off:.0f} mm beside the place{cut if np.isclose(q, limits).any() else ''}"
-            )
-        if not within(q, limits):
-            joint = int(np.argmax((q < limits[0]) | (q > limits[1])))
-            return (
-                f"it takes a pose that the arm may not: joint {joint + 1} would stand at {q[joint]:.2f} rad, "
-                f"allowed are {limits[0][joint]:.2f} to {limits[1][joint]:.2f}"
-            )
-        if not above_table(q, l):
-            part = "elbow" if frames(q, l)[2][2, 3] < -1e-9 else "tip"
-            return f"it takes a pose whose {part} is below the table: elbow and tip have to stay above, z >= 0"
-    return (
-        "the poses are allowed, but another allowed one turns its busiest joint less: compare the largest turns, "
-        "and is the smallest so far kept up to date?"
-    )
-
-
-REACH = Task(
-    name="reach",
-    asks="the allowed pose (3,) for p whose largest joint turn from q_now is smallest, elbow and tip not below the "
-    "table; None if there is none",
-    right=reach,
-    cases=_reach_cases,
-    leans_on=("inverse_kinematics", "forward_kinematics", "frames", "dh_matrix", "rot_z"),
-    same=_same_pose,
-    loan=text_of(reach),
-    parts=("q1", "q2", "q3"),
-    slips=mistakes(reach),
-    symptom=_reach_symptom,
-    hints=(
-        "Go through the rows of your inverse_kinematics and strike out what is not allowed: limits, elbow, tip.",
-        "Of those that are left: how far has each joint to turn, which of the three turns most, and in which row is "
-        "that least?",
-    ),
-)  # fmt: skip
-
-TASKS = (INVERSE_KINEMATICS, REACH)
