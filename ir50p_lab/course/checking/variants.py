@@ -11,7 +11,7 @@ from functools import cache
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Mistake, table
+from ir50p_lab.course.checking.task import Mistake, picked, table
 
 _OPERATIONS = {ast.MatMult: "@", ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 _OWN_WORDS = ("condition", "loop", "what_it_returns", "half_a_turn", "the_identity", "T1", "T2", "T3")
@@ -34,7 +34,8 @@ def variants(task):
         for says, code in _spoilt(text):
             names = dict(room)
             exec(code, names)
-            yield Mistake(names[task.function], says, of_code=True)
+            wrong = names[task.function]
+            yield Mistake(wrong if task.result is None else picked(wrong, task.result), says, of_code=True)
 
 
 def in_words_of(function, says):
@@ -172,6 +173,8 @@ def _changes(node, local, last):
                     for other in {arg.value - 1, arg.value + 1}:
                         words = f"argument {k + 1} of `{ast.unparse(function)}` is {other}, one off"
                         yield words, ast.Call(function, [*args[:k], ast.Constant(other), *args[k + 1 :]], [])
+        case ast.Attribute(value=ast.Name(id="np"), attr="pi"):
+            yield from _of_table(node, "pi")
         case ast.Attribute(value=value, attr="T"):
             yield "a transpose is missing", value
         case ast.Subscript(value=value, slice=ast.Tuple(elts=[*places]), ctx=ast.Load()):

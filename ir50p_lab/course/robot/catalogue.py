@@ -41,6 +41,7 @@ _SUBJECTS = {  # the room of each notebook, where its functions stand
     "camera": ("17",),
     "reaching": ("18",),
 }
+_at = {}  # stage of each function that this session works on
 
 
 def function_of(name):
@@ -83,3 +84,23 @@ def task(name):
     room = f"ir50p_lab.course.{subject_of(name)}.functions"
     module = importlib.import_module(f"{room}.{function_of(name)}")
     return module.STAGES[name] if "." in name else module.TASK
+
+
+def work_on(name):
+    """Take up a function at a stage: this session uses that stage from now on, all others the whole. Returns its Task.
+
+    Raises InputError where it is still to come.
+    """
+    found = task(name)
+    _at[function_of(name)] = name
+    return found
+
+
+def at_work(name):
+    """The stage of a function that this session works on, or the function itself."""
+    return _at.get(name, name)
+
+
+def forget():
+    """Work on nothing, as in a session that has just begun."""
+    _at.clear()

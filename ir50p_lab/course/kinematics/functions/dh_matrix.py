@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Task, mistakes, text_of
+from ir50p_lab.course.checking.task import task_of
 from ir50p_lab.course.kinematics.functions.rot_z import rot_z
-from ir50p_lab.modelling.pose import homogeneous, rot_y
 
 
 def shift(x, y, z):
@@ -30,11 +29,6 @@ def turn_x(angle):
     return T
 
 
-def turn_y(angle):
-    """Turn about y as a transform (4, 4): the axis that no motion needs."""
-    return homogeneous(rot_y(angle), np.zeros(3))
-
-
 def dh_matrix(theta, d, a, alpha):
     """One joint and its link, (4, 4)    (1.29)."""
     joint = turn_z(theta) @ shift(0, 0, d)
@@ -43,36 +37,28 @@ def dh_matrix(theta, d, a, alpha):
 
 
 def _rows():
-    rng = np.random.default_rng(11)
-    rows = rng.uniform(-1.5, 1.5, (6, 4))
-    return [tuple(map(float, row)) for row in [(0.4, 0, 0, 0), (0, 0.3, 0, 0), (0, 0, 0.2, 0), (0, 0, 0, 0.6), *rows]]
+    rows = np.random.default_rng(11).uniform(-1.5, 1.5, (6, 4))
+    return [tuple(map(float, row)) for row in (*np.diag([0.4, 0.3, 0.2, 0.6]), *rows)]  # each motion alone, then all
 
 
-def _dh_symptom(cases, returned, expected):
-    T = [np.asarray(one, dtype=float) for one in returned]
-    if not all(np.allclose(one[3], [0, 0, 0, 1]) for one in T):
+def _symptom(case, returned, expected):
+    if not np.allclose(returned[3], [0, 0, 0, 1]):
         return "its last row is not (0, 0, 0, 1): a transform needs that row, whatever the motion"
-    for case, one, right in zip(cases, T, expected, strict=True):
-        moved = [name for name, value in zip(("theta", "d", "a", "alpha"), case, strict=True) if value]
-        if len(moved) == 1 and not np.allclose(one, right):
-            return f"with {moved[0]} alone it is wrong already (the others 0). Which motion does {moved[0]} stand for?"
-    return (
-        "each motion alone is right, together they are not: their order. Each one happens in the frame that the "
-        "motions before it have made"
-    )
+    moved = [name for name, value in zip(("theta", "d", "a", "alpha"), case, strict=True) if value]
+    if len(moved) > 1:
+        return ""
+    return f"with {moved[0]} alone it is wrong already (the others 0). Which motion does {moved[0]} stand for?"
 
 
-TASK = Task(
-    name="dh_matrix",
-    asks="the transform (4, 4) of one joint with its link: turn about z, shift along z, shift along x, turn about x",
-    right=dh_matrix,
+TASK = task_of(
+    dh_matrix,
+    "the transform (4, 4) of one joint with its link: turn about z, shift along z, shift along x, turn about x",
+    helpers=(shift, turn_z, turn_x),
     cases=_rows,
     leans_on=("rot_z",),
-    loan=text_of(shift, turn_z, turn_x, dh_matrix),
-    slips=mistakes(dh_matrix),
-    symptom=_dh_symptom,
+    symptom=_symptom,
     hints=(
         "Write four small matrices first, one a motion: your rot_z in a 4 x 4, two shifts, a turn about x.",
         "Motions in the moving frame are multiplied from the left to the right, in the order in which they happen.",
     ),
-)  # fmt: skip
+)

@@ -1,8 +1,8 @@
-"""reach: of all poses that reach a place the one that the arm may take and has nearest."""
+"""reach: of all poses that reach a place the allowed one that is nearest."""
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Task, mistakes, shown, text_of
+from ir50p_lab.course.checking.task import shown, task_of
 from ir50p_lab.course.kinematics.functions import LENGTHS
 from ir50p_lab.course.kinematics.functions.forward_kinematics import forward_kinematics
 from ir50p_lab.course.kinematics.functions.frames import frames
@@ -39,7 +39,7 @@ def allowed(q, l, limits):
     return within(q, limits) and above_table(q, l)
 
 
-def _reach_cases():
+def _cases():
     from ir50p_lab.modelling import IR50P
 
     rng = np.random.default_rng(21)
@@ -90,65 +90,40 @@ def _same_pose(returned, expected):
     return returned.shape == (3,) and bool(np.abs(returned - expected).max() < SAME)
 
 
-def _reach_symptom(cases, returned, expected):
-    there = [k for k, right in enumerate(expected) if right is not None]
-    refused = [k for k in there if returned[k] is None]
-    if refused and all(cases[k][0][2] == 0 for k in refused):
-        return (
-            f"places exactly on the table, z = 0, are refused ({len(refused)} here): they are allowed, and rounding "
-            "may put the tip a hair below; allow it 1e-9 m"
-        )
-    if refused:
-        return (
-            f"it returns None for {len(refused)} of {len(there)} places that have an allowed pose: is too much struck "
-            "out (limits in rad, low ones first), or is the choice not returned?"
-        )
-    if all(_same_pose(returned[k], expected[k]) for k in there):
-        one = next(one for one, right in zip(returned, expected, strict=True) if one is not None and right is None)
-        return f"where no pose is allowed it returns {shown(one)}: None is asked for"
-    for (p, l, _, limits), one in zip(cases, returned, strict=True):
-        if one is None:
-            continue
-        q = np.asarray(one, dtype=float)
-        if q.shape != (3,):
-            return f"it returns {shown(one)}: the pose itself is asked for, three angles"
-        off = np.linalg.norm(forward_kinematics(q, l) - p)
-        if not off < 1e-5:
-            cut = ". It stands exactly on a limit: cut to the limits, a pose is another one"
-            return (
-                "it returns a pose that is none of those of your inverse_kinematics: its tip is "
-                f"{1000 * off:.0f} mm beside the place{cut if np.isclose(q, limits).any() else ''}"
-            )
-        if not within(q, limits):
-            joint = int(np.argmax((q < limits[0]) | (q > limits[1])))
-            return (
-                f"it takes a pose that the arm may not: joint {joint + 1} would stand at {q[joint]:.2f} rad, "
-                f"allowed are {limits[0][joint]:.2f} to {limits[1][joint]:.2f}"
-            )
-        if not above_table(q, l):
-            part = "elbow" if frames(q, l)[2][2, 3] < -1e-9 else "tip"
-            return f"it takes a pose whose {part} is below the table: elbow and tip have to stay above, z >= 0"
-    return (
-        "the poses are allowed, but another allowed one turns its busiest joint less: compare the largest turns, "
-        "and is the smallest so far kept up to date?"
-    )
+def _symptom(case, returned, expected):
+    p, l, _, limits = case
+    if expected is None:
+        return f"where no pose is allowed it returns {shown(returned)}: None is asked for"
+    if returned is None:
+        edge = ": places exactly on the table, z = 0, are refused; rounding may put the tip a hair below, allow 1e-9 m"
+        struck = ": is too much struck out (limits in rad, low ones first), or is the choice not returned?"
+        return f"it returns None for a place that has an allowed pose{edge if p[2] == 0 else struck}"
+    if np.shape(returned) != (3,):
+        return f"it returns {shown(returned)}: the pose itself is asked for, three angles"
+    q = np.asarray(returned, dtype=float)
+    if not (off := np.linalg.norm(forward_kinematics(q, l) - p)) < 1e-5:
+        cut = ". It stands exactly on a limit: cut to the limits, a pose is another one"
+        return f"its pose puts the tip {1000 * off:.0f} mm beside the place{cut if np.isclose(q, limits).any() else ''}"
+    if not within(q, limits):
+        joint = int(np.argmax((q < limits[0]) | (q > limits[1])))
+        return f"it takes a pose that the arm may not: joint {joint + 1} would stand at {q[joint]:.2f} rad"
+    if not above_table(q, l):
+        return "it takes a pose whose elbow or tip is below the table: both have to stay above, z >= 0"
+    return "the pose is allowed, but another allowed one turns its busiest joint less: compare the largest turns"
 
 
-TASK = Task(
-    name="reach",
-    asks="the allowed pose (3,) for p whose largest joint turn from q_now is smallest, elbow and tip not below the "
-    "table; None if there is none",
-    right=reach,
-    cases=_reach_cases,
+TASK = task_of(
+    reach,
+    "the allowed pose (3,) for p whose largest joint turn from q_now is smallest, elbow and tip not below the table; "
+    "None if there is none",
+    cases=_cases,
     leans_on=("inverse_kinematics", "forward_kinematics", "frames", "dh_matrix", "rot_z"),
     same=_same_pose,
-    loan=text_of(reach),
     parts=("q1", "q2", "q3"),
-    slips=mistakes(reach),
-    symptom=_reach_symptom,
+    symptom=_symptom,
     hints=(
         "Go through the rows of your inverse_kinematics and strike out what is not allowed: limits, elbow, tip.",
         "Of those that are left: how far has each joint to turn, which of the three turns most, and in which row is "
         "that least?",
     ),
-)  # fmt: skip
+)

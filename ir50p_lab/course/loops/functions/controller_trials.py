@@ -5,7 +5,8 @@ from functools import cache
 
 import numpy as np
 
-from ir50p_lab.course.checking.grade import guarded, no_numbers
+from ir50p_lab.course.checking.forms import no_numbers
+from ir50p_lab.course.checking.grade import guarded
 from ir50p_lab.course.checking.task import Failed, changed, shown, table
 from ir50p_lab.course.loops.functions import controller_loans as loans
 

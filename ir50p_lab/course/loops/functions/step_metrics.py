@@ -1,13 +1,10 @@
-"""The function of 09: the figures of a step, taken from what was measured."""
-
-from functools import lru_cache
+"""step_metrics: the figures of a step, taken from what was measured."""
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Task, mistakes, text_of
+from ir50p_lab.course.checking.task import task_of
 
 _NAMES = ("rise time", "overshoot", "settling time", "rest error")
-_TOLERANCE = (1e-3, 1e-5, 0.0105, 3e-4)  # s, rad; with or without the sample on the edge of the last second
 
 
 def step_metrics(t, q, target):
@@ -38,131 +35,67 @@ def step_metrics(t, q, target):
     return rise, overshoot, settling, target - np.mean(last_second)
 
 
-def _second_order(t, start, target, *, speed, damping, noise=0.0, rng=None, short=0.0):
-    """A step of a mass, spring and damper, with noise; `short`: the part of the way that stays undone."""
+def _second_order(t, start, target, speed, damping, noise, short):
+    """A step of a mass, spring and damper that trembles by `noise`; `short`: the part of the way left undone."""
     s = t - t[0]
     end = start + (1 - short) * (target - start)
     root = speed * np.sqrt(1 - damping**2)
     wave = np.exp(-damping * speed * s) * (np.cos(root * s) + damping * speed / root * np.sin(root * s))
-    q = end + (start - end) * wave
-    q[0] = start
-    if noise:
-        q[1:] += rng.normal(0, noise, len(t) - 1)
-    return q
+    trembling = np.random.default_rng(91).normal(0, 1, len(t)) * noise
+    trembling[0] = 0
+    return end + (start - end) * wave + trembling
 
 
 def _cases():
-    rng = np.random.default_rng(91)
     t = np.arange(0, 6.005, 0.01)
-    cases = []
-    for start, target, speed, damping, noise, short in (
-        (0.0, 1.0, 4.0, 0.4, 0.0, 0.0),  # swings
-        (0.2, 0.8, 5.0, 0.9, 0.0, 0.0),  # hardly beyond
-        (0.9, -0.3, 4.0, 0.3, 0.0, 0.0),  # downwards
-        (0.4, 0.0, 5.0, 0.5, 0.0, 0.0),  # to zero
-        (-0.5, -1.3, 3.0, 0.6, 0.004, 0.0),  # noise
-        (0.0, 0.3, 6.0, 0.35, 0.011, 0.0),  # noise wider than 2 %
-        (0.1, 1.1, 4.0, 0.8, 0.0, 0.3),  # rests short of 90 %
-        (0.0, 0.8, 5.0, 0.7, 0.002, 0.06),  # rises, and rests outside its band
-        (0.0, 0.8, 6.0, 0.005, 0.0, 0.0),  # swings for ever
-        (0.0, 0.02, 6.0, 0.7, 0.012, 0.0),  # never outside its band: all of it is noise
-    ):
-        q = _second_order(t, start, target, speed=speed, damping=damping, noise=noise, rng=rng, short=short)
-        cases.append((t.copy(), q, target))
-    cases.append((t + 3.0, cases[0][1].copy(), 1.0))  # a clock that does not begin at 0
-    uneven = np.cumsum(rng.uniform(0.02, 0.06, 150))  # a slow computer that comes late now and then
-    cases.append((uneven, _second_order(uneven, 0.0, 0.7, speed=2.0, damping=0.4), 0.7))
-    return cases
-
-
-def _four(returned):
-    values = np.asarray(returned, dtype=float)
-    return values if values.shape == (4,) else None
-
-
-@lru_cache(maxsize=1)
-def _otherwise():
-    """{figures of a case: its rise time with crossings between two samples}: that is right as well."""
-    return {repr(step_metrics(*case)): [_between_samples(*case)] for case in _cases()}
+    late = np.cumsum(np.random.default_rng(92).uniform(0.02, 0.06, 150))  # a slow computer that comes late now and then
+    steps = (
+        (t, 0.0, 1.0, 4.0, 0.4, 0.0, 0.0),  # swings
+        (t, 0.2, 0.8, 5.0, 0.9, 0.0, 0.0),  # hardly beyond
+        (t, 0.9, -0.3, 4.0, 0.3, 0.0, 0.0),  # downwards
+        (t, 0.4, 0.0, 5.0, 0.5, 0.0, 0.0),  # to zero
+        (t, -0.5, -1.3, 3.0, 0.6, 0.004, 0.0),  # noise
+        (t, 0.0, 0.3, 6.0, 0.35, 0.011, 0.0),  # noise wider than 2 %
+        (t, 0.1, 1.1, 4.0, 0.8, 0.0, 0.3),  # rests short of 90 %
+        (t, 0.0, 0.8, 5.0, 0.7, 0.002, 0.06),  # rises, and rests outside its band
+        (t, 0.0, 0.8, 6.0, 0.005, 0.0, 0.0),  # swings for ever
+        (t, 0.0, 0.02, 6.0, 0.7, 0.012, 0.0),  # never outside its band: all of it is noise
+        (t + 3.0, 0.0, 1.0, 4.0, 0.4, 0.0, 0.0),  # a clock that does not begin at 0
+        (late, 0.0, 0.7, 2.0, 0.4, 0.0, 0.0),
+    )
+    return [(t.copy(), _second_order(t, start, target, *how), target) for t, start, target, *how in steps]
 
 
 def _between_samples(t, q, target):
-    """Rise time with both crossings interpolated."""
+    """The same with the rise from crossing to crossing, interpolated between two samples."""
     done = (q - q[0]) / (target - q[0])
-    times = []
-    for mark in (0.1, 0.9):
-        k = int(np.argmax(done >= mark))
-        if done[k] < mark:
-            return np.nan
-        times.append(t[k - 1] + (mark - done[k - 1]) / (done[k] - done[k - 1]) * (t[k] - t[k - 1]))
-    return times[1] - times[0]
+    rise, *others = step_metrics(t, q, target)
+    first, last = (int(np.argmax(done >= mark)) for mark in (0.1, 0.9))
+    if np.isfinite(rise):
+        rise = np.interp(0.9, done[last - 1 : last + 1], t[last - 1 : last + 1])
+        rise -= np.interp(0.1, done[first - 1 : first + 1], t[first - 1 : first + 1])
+    return rise, *others
 
 
-def _same(returned, expected):
-    """The same four numbers, as a tuple or an array; times to a thousandth of a second."""
-    values, right = _four(returned), _four(expected)
-    if values is None or right is None:
-        return False
-    readings = _readings(expected)
-    return all(
-        np.isclose(value, reading, atol=tolerance, rtol=0, equal_nan=True).any()
-        for value, reading, tolerance in zip(values, readings, _TOLERANCE, strict=True)
-    )
-
-
-def _readings(expected):
-    """What is right for each of the four numbers, the definition's own first."""
-    return [expected[0], *_otherwise().get(repr(expected), ())], *([one] for one in expected[1:])
-
-
-def _symptom(cases, returned, expected):
-    found = [_four(one) for one in returned]
-    if any(one is None for one in found):
-        shape = np.shape(next(back for back, one in zip(returned, found, strict=True) if one is None))
-        return f"four numbers are asked for, {', '.join(_NAMES)}, in this order; yours has the shape {shape}"
-    found = np.array(found)
-    right = np.array(expected)
-    for case, four in enumerate(expected):
-        for k, readings in enumerate(_readings(four)):
-            taken = np.isclose(readings, found[case, k], atol=_TOLERANCE[k], rtol=0, equal_nan=True)
-            right[case, k] = readings[int(np.argmax(taken))]  # the student's if it is one of them
-    for k, name in enumerate(_NAMES):
-        off = ~np.isclose(found[:, k], right[:, k], atol=_TOLERANCE[k], rtol=0, equal_nan=True)
-        if not off.any():
-            continue
-        case = int(np.argmax(off))
-        _, q, target = cases[case]
-        mine, theirs = found[case, k], right[case, k]
-        samples = (mine - theirs) / np.median(np.diff(cases[case][0]))
-        if k in (0, 2) and 0.5 < abs(samples) < 2.5:
-            off = f"{'1 sample' if abs(samples) < 1.5 else '2 samples'} too {'long' if samples > 0 else 'short'}"
-            return f"the {name} is {off}: with which sample does it begin, and with which does it end?"
-        step = f"a step from {q[0]:.2f} to {target:.2f} rad"
-        usual = mine / theirs if theirs else 1.0
-        if (
-            usual
-            and abs(np.log10(abs(usual))) > 1.3
-            and np.mean(np.isclose(found[:, k], usual * right[:, k], rtol=1e-3)) > 0.5
-        ):
-            return f"the {name} is {usual:.3g} times what it should be: in which unit is it?"
-        if k == 0 and np.isnan(theirs):
-            return f"the {name} of {step} that never reaches 90 % of the way is {mine:.3g}: it has none, so nan"
-        if np.isnan(theirs):
-            return f"the {name} of {step} that never gets there is {mine:.3g}: what never happens has no time, nan"
-        return f"the {name} is wrong, first at {step}: yours is {mine:.3g}, by the definition it is {theirs:.3g}"
+def _symptom(case, returned, expected):
+    for name, mine, right in zip(_NAMES, returned, expected, strict=True):
+        samples = np.subtract(mine, right) / np.median(np.diff(case[0]))
+        if name.endswith("time") and np.isnan(right) and not np.isnan(mine):
+            return f"the {name} of a step that never gets there is {mine:.3g}: what never happens has no time, nan"
+        if name.endswith("time") and 0.5 < abs(samples) < 1.5:
+            off = "long" if samples > 0 else "short"
+            return f"the {name} is 1 sample too {off}: with which sample does it begin, with which does it end?"
     return ""
 
 
-TASK = Task(
-    name="step_metrics",
-    asks="rise time, overshoot, settling time and rest error of a step of one joint: four numbers (s, rad, s, rad)",
-    right=step_metrics,
+TASK = task_of(
+    step_metrics,
+    "rise time, overshoot, settling time and rest error of a step of one joint: four numbers (s, rad, s, rad)",
     cases=_cases,
-    same=_same,
-    parts=_NAMES,
+    results=_NAMES,
+    tolerance=(1e-3, 1e-5, 0.0105, 3e-4),  # s, rad; with or without the sample on the edge of the last second
+    rights=(_between_samples,),
     unit="(s, rad, s, rad)",
-    loan=text_of(step_metrics),
-    slips=mistakes(step_metrics),
     symptom=_symptom,
     hints=(
         "Begin with done = how much of the way is behind the joint, 0 at the start and 1 at the target: rise time and "
@@ -170,4 +103,4 @@ TASK = Task(
         "np.argmax(condition) is the first place where it is true; np.flatnonzero(condition)[-1] the last. A joint has "
         "settled one sample after it was outside for the last time.",
     ),
-)  # fmt: skip
+)
