@@ -203,7 +203,9 @@ def _symptom(trial):
     if not counts:
         return ""
     most = counts.most_common(1)[0][0]
-    trial.example = next(k for k, says in said.items() if _without_numbers(says) == most)
+    alike = [k for k, says in said.items() if _without_numbers(says) == most]
+    seen = (k for k in alike if shown(trial.returned[k]) != shown(trial.expected[k]))  # in the digits that are shown
+    trial.example = next(seen, alike[0])
     says = said[trial.example]
     return f"{trial.guess}; {says}" if trial.guess else says
 

@@ -7,7 +7,7 @@ from cells import cell
 
 from ir50p_lab.course import check, my_robot
 from ir50p_lab.course.checking.grade import grade
-from ir50p_lab.course.loops.functions import controller_trials as trials
+from ir50p_lab.course.loops.functions import PID_trials as trials
 from ir50p_lab.course.robot import catalogue, folder
 from ir50p_lab.course.robot.catalogue import STAGES, task
 from ir50p_lab.modelling import IR50P
@@ -179,7 +179,7 @@ def test_other_right_ones_pass(stage, edits, remark):
         ("PID", f"{SPEED}\n        self.last = q\n        push = self.kp * error + self.kd * (qd_wanted - self.speed)",
          SPEED.replace("((q", "(qd_wanted - (q") + "\n        self.last = q\n        "
          "push = self.kp * error + self.kd * self.speed", "goes through the filter, too"),
-        ("PID", "1 - np.exp(-2 * np.pi * filter_hz * period)", "0.47", "takes 0.47 of each new speed"),
+        ("PID", "1 - np.exp(-2 * np.pi * filter_hz * period)", "0.47", "D is not kd times the filtered speed"),
         ("PID", " + self.kd * (qd_wanted - self.speed)\n        grown = self.integral + self.ki * error",
          "\n        grown = self.integral + self.ki * (error + self.kd * (qd_wanted - self.speed))", "only through ki"),
         ("PID", "(q - self.last)", "(q[1] - self.last[1])", "; joint 2 is right"),
@@ -220,7 +220,7 @@ def test_wrong_ones_are_told_apart(stage, old, new, words):
 @pytest.mark.parametrize("stage", ALL)
 def test_every_mistake_in_a_table_gets_its_own_sentence(stage):
     earlier = {"the integral has the gain kp: it has its own, ki"}  # told by what it adds to P where ki is 0
-    for wrong, says in trials._wrong_ones(stage):
+    for wrong, says in trials._made(stage, stage):
         verdict = grade(task(stage), wrong)
         assert verdict.state == "wrong" and (says in verdict.says or says in earlier), verdict.says
 

@@ -26,7 +26,7 @@ def _symptom(case, returned, expected):
     if not np.allclose(np.linalg.det(T[:, :3, :3]), 1):
         return "not every turn in it keeps right angles and lengths: are the links multiplied with `@`?"
     links, right = (np.linalg.solve(one[:3], one[1:]) for one in (T, expected))
-    bad = next(k for k in range(3) if not np.allclose(links[k], right[k]))
+    bad = int(np.argmax(np.abs(links - right).max(axis=(1, 2)) > 1e-9))
     return (
         f"the step from frame {bad} to frame {bad + 1} is wrong. Compare row {bad + 1} of the arm's table, and how "
         "this frame is chained to the one before"
