@@ -120,6 +120,7 @@ class Task:
     tried: Callable | None = None
     test: str = ""
     signature: tuple = ()
+    function: str = ""  # its name; that of a stage is longer
     result: int | None = None  # which of several results it is about, in a trial of one alone
 
     def __post_init__(self):
@@ -127,11 +128,7 @@ class Task:
         found = inspect.signature(self.right).parameters.values()
         names = tuple(one.name for one in found if one.kind != one.VAR_KEYWORD)
         object.__setattr__(self, "signature", self.signature or names)
-
-    @property
-    def function(self):
-        """Name of the function or class; a stage of it has a longer one."""
-        return self.name.partition(".")[0]
+        object.__setattr__(self, "function", self.name.partition(".")[0])
 
     def of(self, result):
         """The task of one of several results alone."""
