@@ -200,7 +200,8 @@ def shown(value):
     if isinstance(value, tuple):
         return "(" + ", ".join(map(shown, value)) + ")"
     if callable(value):
-        return f"the function {getattr(value, '__name__', '')}".strip()
+        meaning = (inspect.getdoc(value) or "").partition("\n")[0]
+        return f"the function {getattr(value, '__name__', '')}" + (f" ({meaning})" if meaning else "")
     try:
         array = np.asarray(value)
     except ValueError:  # rows of different lengths

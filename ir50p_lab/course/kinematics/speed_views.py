@@ -5,8 +5,8 @@ import numpy as np
 from ir50p_lab.course.draw.arm3d import ArmView, SideView
 from ir50p_lab.course.draw.drawings import drawing
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, new_figure, subplots
-from ir50p_lab.course.kinematics.functions import velocity
 from ir50p_lab.course.kinematics.functions.frames import frames
+from ir50p_lab.course.kinematics.functions.jacobian import jacobian as jacobian_of_frames
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.modelling.ik import inverse_kinematics
@@ -98,7 +98,7 @@ def way_out(arm, distances, speeds, limit):
 def pace(q, direction, l, fastest):
     """Stand-in for the student's function: greatest tip speed (m/s) along direction, no joint above fastest (rad/s)."""
     T = frames(q, l)
-    Jv = velocity.jacobian(T, 3, T[3][:3, 3])[:3]
+    Jv = jacobian_of_frames(T, 3, T[3][:3, 3])[:3]
     if abs(np.linalg.det(Jv)) < 1e-9:
         return 0.0
     return fastest / np.max(np.abs(np.linalg.solve(Jv, direction)))

@@ -6,41 +6,31 @@ from pathlib import Path
 
 from ir50p_lab.errors import InputError
 
-# DESIGN 6: every function, by the notebook that asks for it
-NOTEBOOKS = {
-    "00": ("rot_z",),
-    "01": ("dh_matrix", "frames", "forward_kinematics"),
-    "02": ("inverse_kinematics", "reach"),
-    "03": ("jacobian", "damped_step"),
-    "04": ("mass_matrix",),
-    "05": ("velocity_torque", "gravity_torque"),
-    "06": ("rk4_step", "integrate", "quintic"),
-    "07": ("friction_torque", "motor_torque"),
-    "08": ("PID",),
-    "09": ("step_metrics",),
-    "10": ("fit_line", "low_pass"),
-    "12": ("regressor", "least_squares", "rls_step"),
-    "13": ("fit_percent",),
-    "14": ("computed_torque",),
-    "15": ("adaptive_step",),
-    "16": ("hue_mask", "circle_votes"),
-    "17": ("homography", "pixel_to_plane"),
-    "18": ("find_and_reach",),
-}
-ORDER = tuple(name for names in NOTEBOOKS.values() for name in names)
+_TABLE = """
+00 kinematics    rot_z
+01 kinematics    dh_matrix frames forward_kinematics
+02 kinematics    inverse_kinematics reach
+03 kinematics    jacobian damped_step
+04 dynamics      mass_matrix
+05 dynamics      velocity_torque gravity_torque
+06 motion        rk4_step integrate quintic
+07 motion        friction_torque motor_torque
+08 loops         PID
+09 loops         step_metrics
+10 at_the_bench  fit_line low_pass
+12 fitting       regressor least_squares rls_step
+13 fitting       fit_percent
+14 torque        computed_torque
+15 torque        adaptive_step
+16 images        hue_mask circle_votes
+17 camera        homography pixel_to_plane
+18 reaching      find_and_reach
+"""  # every function: the notebook that asks for it, and the room in which it stands (DESIGN 6)
+_ROWS = [line.split() for line in _TABLE.strip().splitlines()]
+NOTEBOOKS = {number: tuple(names) for number, _, *names in _ROWS}
+_ROOMS = {name: room for _, room, *names in _ROWS for name in names}
+ORDER = tuple(_ROOMS)
 STAGES = {"PID": ("PID.p", "PID.pi", "PID.limits")}  # checked on the way; "PID" itself is the last
-_SUBJECTS = {  # the room of each notebook, where its functions stand
-    "kinematics": ("00", "01", "02", "03"),
-    "dynamics": ("04", "05"),
-    "motion": ("06", "07"),
-    "loops": ("08", "09"),
-    "at_the_bench": ("10",),
-    "fitting": ("12", "13"),
-    "torque": ("14", "15"),
-    "images": ("16",),
-    "camera": ("17",),
-    "reaching": ("18",),
-}
 _at = {}  # stage of each function that this session works on
 
 
@@ -59,16 +49,11 @@ def is_function(name):
     return name in ORDER or name in STAGES.get(function_of(name), ())
 
 
-def subject_of(name):
-    """Room of a function, "kinematics": its Task stands there in `functions/NAME.py`, its slips in `NAME.txt`."""
-    return next(room for room, notebooks in _SUBJECTS.items() if notebook_of(name) in notebooks)
-
-
 @cache
 def is_written(name):
-    """Tell whether a function can be checked today."""
-    course = Path(__file__).parents[1]
-    return (course / subject_of(name) / "functions" / f"{function_of(name)}.py").exists()
+    """Tell whether a function can be checked today: its Task is in ROOM/functions/NAME.py, its slips in NAME.txt."""
+    name = function_of(name)
+    return (Path(__file__).parents[1] / _ROOMS[name] / "functions" / f"{name}.py").exists()
 
 
 def written():
@@ -81,8 +66,8 @@ def task(name):
     """The Task of a function of `my_robot`, or of a stage of one. Raises InputError where it is still to come."""
     if not is_written(name):
         raise InputError(f"{name} is asked for in notebook {notebook_of(name)}, which is still to come")
-    room = f"ir50p_lab.course.{subject_of(name)}.functions"
-    module = importlib.import_module(f"{room}.{function_of(name)}")
+    function = function_of(name)
+    module = importlib.import_module(f"ir50p_lab.course.{_ROOMS[function]}.functions.{function}")
     return module.STAGES[name] if "." in name else module.TASK
 
 
@@ -99,8 +84,3 @@ def work_on(name):
 def at_work(name):
     """The stage of a function that this session works on, or the function itself."""
     return _at.get(name, name)
-
-
-def forget():
-    """Work on nothing, as in a session that has just begun."""
-    _at.clear()

@@ -17,7 +17,7 @@ _SEEN = f"{_LOAN}, after six tries"
 _STAGE = ", stage "
 _PACKAGE = "my_robot"
 _loaded = {"stamp": None}
-listeners = []  # functions that are called when one of the folder's functions has changed
+fresh = {}  # what `my_robot` has just looked up; empty when a function was kept or put aside
 
 
 def folder() -> Path:
@@ -76,7 +76,7 @@ def keep(source, task, *, loan=""):
         for path in texts:
             _put_back(path, before.get(path))
         raise
-    changed()
+    fresh.clear()
     return lent
 
 
@@ -94,13 +94,7 @@ def put_aside(name):
     path.unlink()
     (folder() / f"test_{name}.py").unlink(missing_ok=True)
     _write(folder() / "__init__.py", _exports())
-    changed()
-
-
-def changed():
-    """Call `listeners`: a function was written or put aside."""
-    for listener in listeners:
-        listener()
+    fresh.clear()
 
 
 def _lay_by(name, content):

@@ -17,12 +17,10 @@ from ir50p_lab.course.robot.catalogue import ORDER, at_work, is_function, task, 
 
 _FRESH = 0.1  # s: for so long a function that was looked up is used without looking at its file again
 _said = set()
-_found = {}  # by name: the function, until when it is fresh, its stage and the student's folder
-folder.listeners.append(_found.clear)  # what `check` has just kept is used at once
 
 
 def __getattr__(name):
-    function, until, *where = _found.get(name, (None, 0.0))
+    function, until, *where = folder.fresh.get(name, (None, 0.0))
     if monotonic() < until and where == [at_work(name), os.environ.get(home.VARIABLE)]:
         return function
     if not is_function(name):
@@ -30,7 +28,7 @@ def __getattr__(name):
     stage = at_work(name)
     function = folder.load(name) if folder.is_there(stage) else task(stage).right
     _say(name)
-    _found[name] = function, monotonic() + _FRESH, stage, os.environ.get(home.VARIABLE)
+    folder.fresh[name] = function, monotonic() + _FRESH, stage, os.environ.get(home.VARIABLE)
     return function
 
 

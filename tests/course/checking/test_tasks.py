@@ -79,7 +79,7 @@ INTEGRATE = Task(
 @pytest.fixture(autouse=True)
 def home(tmp_path, monkeypatch):
     monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    catalogue.forget()
+    catalogue._at.clear()
     my_robot._said.clear()
     return tmp_path
 

@@ -19,7 +19,7 @@ ALL = (*STAGES["PID"], "PID")
 @pytest.fixture(autouse=True)
 def home(tmp_path, monkeypatch):
     monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    catalogue.forget()
+    catalogue._at.clear()
     my_robot._said.clear()
     return tmp_path
 
@@ -266,7 +266,7 @@ def test_each_stage_takes_the_place_of_the_one_before(home, capsys):
         check(stage, cell(solutions.source(stage), "PID"))
         assert "right, and yours: from now on my_robot.PID is this class" in capsys.readouterr().out
         assert folder.is_there(stage) and my_robot.whose("PID") == "yours"
-        catalogue.forget()  # another notebook: a stage on the way is not used there
+        catalogue._at.clear()  # another notebook: a stage on the way is not used there
         assert my_robot.whose("PID") == ("yours" if stage == "PID" else "the course's")
         assert my_robot.PID(kp=1, ki=1, kd=1).unit == "PWM"
     assert len(list((home / "my_robot" / "old").glob("PID_*.py"))) == 3
@@ -299,7 +299,7 @@ def test_a_loan_of_a_stage_never_takes_the_place_of_the_whole(capsys):
     for k in range(7):
         check("PID.p", cell(edited("PID.p", ("self.kp * error", f"{k} * error")), "PID"))
     assert "lends you" not in capsys.readouterr().out
-    catalogue.forget()
+    catalogue._at.clear()
     assert my_robot.whose("PID") == "yours"
 
 

@@ -1,5 +1,7 @@
 """inverse_kinematics: all poses that reach a place."""
 
+from itertools import product
+
 import numpy as np
 
 from ir50p_lab.course.checking.task import Mistake, table, task_of, wrong_one
@@ -34,22 +36,16 @@ def inverse_kinematics(p, l):
 
 def _targets():
     rng = np.random.default_rng(7)
-    cases = []
-    for k, q in enumerate(rng.uniform([-3, -2, -2.8], [3, 2, 2.8], (14, 3))):
-        l = LENGTHS[k % 2].copy()
-        cases.append((forward_kinematics(q, l), l))
-    for k, q in enumerate(rng.uniform([-3, -2, 0], [3, 2, 0], (12, 3))):  # stretched: on the edge, but for rounding
-        l = LENGTHS[k % 2].copy()
-        cases.append((forward_kinematics(q, l), l))
-    for direction in rng.normal(size=(3, 3)):
-        for l in LENGTHS[:2]:
-            for r in (l[1] + l[2], abs(l[1] - l[2])):
-                for step in (-1e-6, -0.5e-9, 0.5e-9, 1e-6):
-                    p = np.array([0, 0, l[0]]) + (r + step) * direction / np.linalg.norm(direction)
-                    cases.append((p, l.copy()))
-    for far in ((0.6, 0.3, 0.5), (-0.5, 0.4, 0.6), (0.02, 0.01, 0.3)):
-        cases.append((np.array(far), LENGTHS[0].copy()))
-    return cases
+    poses = rng.uniform([-3, -2, -2.8], [3, 2, 2.8], (26, 3))
+    poses[14:, 2] = 0  # stretched: on the edge, but for rounding
+    lengths = [LENGTHS[k % 2] for k in range(len(poses))]
+    cases = [(forward_kinematics(q, l), l.copy()) for q, l in zip(poses, lengths, strict=True)]
+    steps = (-1e-6, -0.5e-9, 0.5e-9, 1e-6)  # m, on both sides of both edges
+    for direction, l, side, step in product(rng.normal(size=(3, 3)), LENGTHS[:2], (1, -1), steps):
+        r = abs(l[1] + side * l[2]) + step
+        cases.append((np.array([0, 0, l[0]]) + r * direction / np.linalg.norm(direction), l.copy()))
+    far = ((0.6, 0.3, 0.5), (-0.5, 0.4, 0.6), (0.02, 0.01, 0.3))
+    return cases + [(np.array(p), LENGTHS[0].copy()) for p in far]
 
 
 def as_poses(value):
