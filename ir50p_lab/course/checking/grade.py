@@ -11,11 +11,11 @@ from itertools import chain
 
 import numpy as np
 
+from ir50p_lab.course.checking.calling import call, check_signature, given
 from ir50p_lab.course.checking.cell import made, written_wrong
 from ir50p_lab.course.checking.distortions import distortions, entries
 from ir50p_lab.course.checking.forms import kind_of, no_numbers, number_of_results
-from ir50p_lab.course.checking.stops import why_it_stops
-from ir50p_lab.course.checking.task import Failed, is_run, shown
+from ir50p_lab.course.checking.task import Failed, shown
 from ir50p_lab.course.checking.variants import in_words_of, variants
 from ir50p_lab.course.robot.source import Source
 
@@ -68,8 +68,8 @@ def grade(task, answer):
         if task.tried is not None:
             return Grade("right", task.tried(function))
         cases, before = task.cases(), _beside(function)
-        _check_signature(task, function, cases[0])
-        returned = [_call(task, function, case) for case in cases]
+        check_signature(task, function, cases[0])
+        returned = [call(task, function, case) for case in cases]
     except Failed as failed:
         return Grade("wrong", *failed.args)
     expected = [task.expected(copy.deepcopy(case), one) for case, one in zip(cases, returned, strict=True)]
@@ -174,7 +174,8 @@ def _results(trial):
             named = len(name) > 2 and name in says  # `t` and `x` stand in every second word
             return says if named else f"{intro}{name}: {says}"
     says = _symptom(trial)
-    return says or (f"{intro}{_listed(wrong)} not yet: try the one below with pencil and paper" if intro else "")
+    are = "are" if len(wrong) > 1 else "is"
+    return says or (f"{intro}{_listed(wrong)} {are} not: try the one below with pencil and paper" if intro else "")
 
 
 def _listed(names):
@@ -222,53 +223,13 @@ READINGS = (  # of a wrong answer, in this order: the first that has something t
 )
 
 
-# -------------------------------------------------------------------------------------------------------- calling
+# ------------------------------------------------------------------------------------------------------ comparing
 def _beside(function):
     """The lists, dicts and arrays that stand beside a function in its cell, as text."""
     found = getattr(inspect.unwrap(function), "__globals__", {})
     return {
         name: repr(one) for name, one in found.items() if isinstance(one, list | dict | np.ndarray) and name[0] != "_"
     }
-
-
-def _check_signature(task, function, case):
-    try:
-        inspect.signature(function).bind(*case)
-    except TypeError:
-        found = ", ".join(inspect.signature(function).parameters)
-        wanted = ", ".join(task.signature)
-        raise Failed(f"it takes ({found}); it will be called with ({wanted}), in this order") from None
-
-
-def _call(task, function, case):
-    """What it returns; Failed, returned as well, where it stops."""
-    given = copy.deepcopy(case)
-    try:
-        result = guarded(lambda: function(*given), lambda: _given(task, case))
-    except Failed as stopped:
-        if isinstance(stopped.__cause__, KeyboardInterrupt):
-            raise
-        return stopped
-    for name, one, other in zip(task.signature, case, given, strict=True):
-        if not _untouched(one, other):
-            says = f"it changes what it was given, `{name}`: work on a copy (`np.array(x)` makes one)"
-            raise Failed(says, _given(task, case))
-    return result
-
-
-def guarded(do, given=str):
-    """What `do` gives; given: function that names the case, called only when it fails. Raises Failed from the error."""
-    try:
-        with np.errstate(all="ignore"):
-            return do()
-    except KeyboardInterrupt as stop:
-        raise Failed("it was stopped: does a loop in it never end?", given()) from stop
-    except Exception as error:
-        raise Failed(why_it_stops(error), given()) from error
-
-
-def _untouched(before, after):
-    return callable(before) or np.array_equal(np.asarray(before), np.asarray(after))
 
 
 def _agrees(task, returned, expected):
@@ -332,17 +293,12 @@ def _grade_use(task, cases, returned, expected):
     return Grade("right", "")
 
 
-def _given(task, case):
-    named = sorted(zip(task.signature, case, strict=True), key=lambda one: is_run(one[1]))  # long ones at the end
-    return "for " + ", ".join(f"{name} = {shown(value)}" for name, value in named)
-
-
 def _example(task, case, expected, returned):
     if isinstance(returned, Failed):
         return returned.args[1]
     unit = f" {task.unit}" if task.unit else ""
     both = _answer(task, expected), _answer(task, returned)
-    return f"{_given(task, case)}\nexpected{unit}: {both[0]}\nyours: {both[1]}" if both[0] != both[1] else ""
+    return f"{given(task, case)}\nexpected{unit}: {both[0]}\nyours: {both[1]}" if both[0] != both[1] else ""
 
 
 def _answer(task, value):

@@ -69,9 +69,9 @@ def mistakes(function):
 
 
 def solutions(name, beside):
-    """The solutions in NAME.txt beside a module, as text, one below the other with a line of dashes between."""
+    """The texts in NAME.txt beside a module, one below the other with a line of dashes between; () where none is."""
     path = Path(beside).with_name(f"{name}.txt")
-    return path.read_text(encoding="utf-8").strip().split("\n----\n") if path.exists() else []
+    return tuple(path.read_text(encoding="utf-8").strip().split("\n----\n")) if path.exists() else ()
 
 
 def picked(function, result):
@@ -172,12 +172,14 @@ class Task:
 
 
 def task_of(right, asks, *, helpers=(), **options):
-    """The Task of a function: its text is the loan, its slips stand in NAME.txt, other solutions in NAME.routes.txt.
+    """The Task of a function: its text is the loan; in NAME.txt stand its slips, in NAME.routes.txt other solutions.
 
-    helpers: functions that it calls and a student has to write along; options: what else a Task has.
+    NAME.test.txt is its small test where one of plain numbers will not do. helpers: functions that it calls and a
+    student has to write along; options: what else a Task has.
     """
     name, file = right.__name__, inspect.getfile(right)
-    options = {"slips": mistakes(right), "routes": tuple(solutions(f"{name}.routes", file))} | options
+    texts = {"routes": solutions(f"{name}.routes", file), "test": "\n".join((*solutions(f"{name}.test", file), ""))}
+    options = {"slips": mistakes(right)} | texts | options
     return Task(name=name, asks=asks, right=right, loan=text_of(*helpers, right), **options)
 
 

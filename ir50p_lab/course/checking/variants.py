@@ -176,9 +176,6 @@ def _changes(node, local, last):
                 yield f"{ast.unparse(value)} is read one place too {words}", ast.Subscript(value, moved, node.ctx)
             words = f"number 1 of {ast.unparse(value)} is taken each time"
             yield words, ast.Subscript(value, ast.Constant(0), node.ctx)
-        case ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.Lt() | ast.LtE() as op], comparators=[right]):
-            other = ast.LtE() if isinstance(op, ast.Gt | ast.GtE) else ast.GtE()
-            yield "a comparison is the wrong way round", ast.Compare(left, [other], [right])
         case ast.For(target=target, iter=rounds, body=body):
             yield "it returns inside the loop, after the first round", ast.For(target, rounds, [*body, last], [])
         case ast.Assign(targets=[ast.Subscript()]):

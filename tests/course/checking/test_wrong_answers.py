@@ -11,6 +11,7 @@ from cells import cell
 
 from ir50p_lab.course import check, my_robot, reset
 from ir50p_lab.course.checking import grade as grading
+from ir50p_lab.course.checking.calling import call, given
 from ir50p_lab.course.checking.task import Mistake
 from ir50p_lab.course.robot import folder
 from ir50p_lab.course.robot.catalogue import task, written
@@ -577,10 +578,10 @@ def test_the_example_shown_is_one_where_the_mistake_named_happens(name, monkeypa
     cases, shown = one.cases(), 0
     for mistake in known:
         verdict = grading.grade(one, mistake.wrong)
-        returned = [grading._call(one, mistake.wrong, case) for case in cases]
+        returned = [call(one, mistake.wrong, case) for case in cases]
         answers = {k: (case, returned[k], one.right(*case)) for k, case in enumerate(cases)}
         answers = {k: answer for k, answer in answers.items() if not grading._agrees(one, *answer[1:])}
-        there = [k for k, case in enumerate(cases) if verdict.example.startswith(grading._given(one, case) + "\n")]
+        there = [k for k, case in enumerate(cases) if verdict.example.startswith(given(one, case) + "\n")]
         shown += bool(there)
         assert not there or any(k in answers for k in there)
         if there and one.symptom and not verdict.says.startswith("it stops"):

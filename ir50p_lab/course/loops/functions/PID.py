@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 
 from ir50p_lab import controllers
-from ir50p_lab.course.checking.task import Task, changed
+from ir50p_lab.course.checking.task import Task, changed, solutions
 from ir50p_lab.course.loops.functions.PID_trials import LOANS, tried
 
 
@@ -16,17 +16,7 @@ class PID(controllers.PID):
         super().__init__(kp, ki=ki, kd=kd, limit_pwm=limit_pwm, period=period, filter_hz=filter_hz, **options)
 
 
-_TEST = """import numpy as np
-
-from my_robot import PID
-
-
-def test_PID():
-    reference = np.array([[0.1, 0.2, -0.3], [0, 0, 0], [0, 0, 0]])
-    np.testing.assert_allclose(PID(kp=100).step(0, np.zeros(3), reference), [10, 20, -30])
-"""
-
-
+_TEST = solutions("PID.test", __file__)[0] + "\n"
 _STAGES = {  # what each returns, and its two hints
     "PID.p": (
         "a class whose `step` gives three pushes in PWM counts, kp times the error",
@@ -55,7 +45,15 @@ _STAGES = {  # what each returns, and its two hints
 
 def _task(stage, asks, *hints):
     right = PID if stage == "PID" else changed(LOANS[stage], (), {"np": np})["PID"]
-    return Task(stage, asks, right, LOANS[stage], tried=partial(tried, stage), test=_TEST, hints=hints)
+    return Task(
+        stage,
+        asks,
+        right,
+        LOANS[stage],
+        tried=partial(tried, stage),
+        test=_TEST,
+        hints=hints,
+    )
 
 
 STAGES = {stage: _task(stage, *words) for stage, words in _STAGES.items()}
