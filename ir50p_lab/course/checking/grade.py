@@ -124,6 +124,8 @@ def _known(trial):
 def _mistakes(trial):
     """Those of the task, then the usual ones as long as patience lasts."""
     yield from trial.task.slips
+    if all(map(_is_zero, trial.returned)):  # too little to tell one from another
+        return
     spoilt = () if trial.task.results else variants(trial.task)  # tried for each result
     for mistake in chain(distortions(trial.task), spoilt):
         if time.thread_time() > trial.end:
@@ -167,20 +169,21 @@ def _results(trial):
     parts = {name: trial.of(k) for k, name in enumerate(trial.task.results)}
     wrong = {name: part for name, part in parts.items() if part.bad}
     right = [name for name in parts if name not in wrong]
-    intro = f"{_listed(right)} {'are' if len(right) > 1 else 'is'} right; " if right else ""
+    intro = f"{_listed(right)} right; " if right else ""
     for name, part in wrong.items():
         if says := _read(part) or part.guess:
             trial.example = part.bad[0] if part.example is None else part.example
             named = len(name) > 2 and name in says  # `t` and `x` stand in every second word
             return says if named else f"{intro}{name}: {says}"
     says = _symptom(trial)
-    are = "are" if len(wrong) > 1 else "is"
-    return says or (f"{intro}{_listed(wrong)} {are} not: try the one below with pencil and paper" if intro else "")
+    return says or (f"{intro}{_listed(list(wrong))} not: try the one below with pencil and paper" if intro else "")
 
 
 def _listed(names):
+    """Names with their verb: "slope and offset are"."""
     *first, last = names
-    return f"{', '.join(first)} and {last}" if first else last
+    many = first or last.endswith("s")
+    return f"{', '.join(first)}{' and ' if first else ''}{last} {'are' if many else 'is'}"
 
 
 def _numbers(trial):
@@ -188,6 +191,8 @@ def _numbers(trial):
     task, cases, returned, expected = trial.task, trial.cases, trial.returned, trial.expected
     if task.same is not None or task.results or any(one is None for one in (*returned, *expected)):
         return ""
+    if all(map(_is_zero, returned)):
+        return "it is 0 for every input: is what it computes put into what it returns?"
     if all(np.array_equal(one, returned[0]) for one in returned):
         return f"it returns the same for every input: {shown(returned[0])}"
     if all(map(_is_whole, returned)) and not all(map(_is_whole, expected)):
@@ -250,6 +255,13 @@ def _is_mistake(task, mistake, case, returned):
 
 
 # -------------------------------------------------------------------------------------------------------- numbers
+def _is_zero(value):
+    try:
+        return not np.any(np.asarray(value, dtype=float))
+    except (TypeError, ValueError):
+        return False
+
+
 def _is_whole(value):
     return np.array_equal(value, np.round(value))
 

@@ -165,10 +165,11 @@ def test_whole_numbers_are_no_mistake_where_the_right_ones_are_whole():
 
 
 def test_an_answer_that_nothing_explains_waits_a_second_at_most():
+    text = "def reach(p, l, q_now, limits):\n    return np.sin(p) + np.cos(q_now) ** {}"
+    check("reach", cell(text.format(2), "reach"))  # what is made once and kept is made here
     started = time.process_time()
-    text = "def reach(p, l, q_now, limits):\n    return np.sin(p) + np.cos(q_now) ** 3"
-    check("reach", cell(text, "reach"))
-    assert time.process_time() - started < 1.5  # the student's own time and the page's come on top
+    check("reach", cell(text.format(3), "reach"))
+    assert time.process_time() - started < 1.5  # the page's own time comes on top
 
 
 ROT_Z = "def rot_z(angle):\n    c, s = np.cos(angle), np.sin(angle)\n    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])"
