@@ -2,22 +2,17 @@
 
 import ast
 import hashlib
-import linecache
-import math
 import random
 import timeit
-
-import numpy as np
 
 from ir50p_lab.course import lab_book
 from ir50p_lab.course.checking.cell import CannotTake, has_dots, is_copy, take
 from ir50p_lab.course.checking.grade import grade
-from ir50p_lab.course.checking.note import Note, show
+from ir50p_lab.course.checking.note import Note, ended, show
 from ir50p_lab.course.checking.numbers import check_number
-from ir50p_lab.course.checking.stops import ROOM, ended
 from ir50p_lab.course.lab_book.progress import record
 from ir50p_lab.course.robot import folder
-from ir50p_lab.course.robot.catalogue import ORDER, is_function, task
+from ir50p_lab.course.robot.catalogue import ORDER, is_function, work_on
 from ir50p_lab.errors import InputError
 
 _BEFORE_SCRAMBLE, _BEFORE_LOAN = 3, 6  # different failing sources
@@ -33,10 +28,9 @@ def check(name, answer=...):
     if not is_function(str(name)):
         return check_number(name, answer)
     try:
-        wanted = task(name)
+        wanted = work_on(name)
     except InputError as error:
         return _show("open", name, str(error))
-    folder.work_on(name)
     if answer is ...:
         return _show("open", name, f"not written yet: {wanted.asks}")
     try:
@@ -46,7 +40,7 @@ def check(name, answer=...):
     if dots := has_dots(source.text):
         where = f": dots still stand in `{dots[0]}`" if dots[0].strip(".") else ""
         return _show("open", name, f"not written yet{where}. It returns {wanted.asks}.")
-    result = grade(wanted, _in_its_own_room(source, wanted))
+    result = grade(wanted, source)
     if result.state == "right" and folder.was_lent(name) and is_copy(source.text, wanted.loan):
         return _show("open", name, "right, but it is the course's, as it was lent: it stays a loan. Write it your way.")
     if result.state == "right":
@@ -61,17 +55,6 @@ def reset(name):
     folder.put_aside(name)
     lab_book.change(lambda book: book["attempts"].pop(name, None))
     print(f"{name}: begun again; what you had is in {folder.folder() / 'old'}")
-
-
-def _in_its_own_room(source, wanted):
-    """The function with NumPy, math and the earlier functions, and nothing of the notebook."""
-    room = {"np": np, "numpy": np, "math": math}
-    for name in source.calls:
-        room[name] = folder.load(name) if folder.is_there(name) else task(name).right
-    file = f"{ROOM} {wanted.name}>"
-    linecache.cache[file] = (len(source.text), None, source.text.splitlines(keepends=True), file)
-    exec(compile(source.text, file, "exec"), room)
-    return room[wanted.function]
 
 
 def _keep(source, wanted, remark):

@@ -1,13 +1,11 @@
 """Right answers spoilt in every usual way: a wrong answer is told by the numbers it shares with one of them."""
 
 import math
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
-from ir50p_lab.course.checking.stops import ended
-from ir50p_lab.course.checking.task import Mistake, table
+from ir50p_lab.course.checking.task import Mistake, picked, table
 
 _MANY = 6  # longer ones are runs: no part of them has a meaning of its own
 
@@ -21,18 +19,8 @@ def _changes(name):
 
 def distortions(task):
     """Yield Mistakes: results misplaced, arguments misread."""
-    yield from of_results(task)
+    yield from _of_results(task)
     yield from _of_arguments(task)
-
-
-def pairs(task):
-    """Yield Mistakes: two at once, one of the task's own or a result misplaced, and an argument misread."""
-    for first in (*task.slips, *of_results(task)):
-        for second in _of_arguments(replace(task, right=first.wrong)):
-            yield Mistake(
-                second.wrong,
-                f"two things at once: {ended(first.says.removesuffix(', the rest is right'))} And {second.says}",
-            )
 
 
 def _of_arguments(task):
@@ -46,7 +34,7 @@ def _of_arguments(task):
         yield Mistake(_reading(task, k, lambda _, value=value: value), f"{one} is built in, whatever comes in")
     for k in range(len(case)):
         for m in range(k):
-            if np.shape(case[k]) == np.shape(case[m]) and not callable(case[k]):
+            if np.shape(case[k]) == np.shape(case[m]) and not (callable(case[k]) or callable(case[m])):
                 says = f"{task.signature[m]} and {task.signature[k]} have changed places"
                 order = [k if one == m else m if one == k else one for one in range(len(case))]
                 yield Mistake(lambda *case, order=order: task.right(*(case[one] for one in order)), says)
@@ -69,33 +57,57 @@ def _readings(name, value):
     return found
 
 
-def of_results(task):
+def _of_results(task):
     """Yield Mistakes: what is right is returned in another form, place, sign or unit."""
+    if task.results:
+        yield from _of_order(task)
+        return
     for says, change in _changes("of_results"):
         yield Mistake(_result(task, change), says)
     shape = np.shape(next(one for one in (task.right(*case) for case in task.cases()) if one is not None))
     if not shape:
         return
-    for j in range(shape[-1]):
-        part = task.parts[j] if task.parts else f"column {j + 1}"
+    parts = task.parts or [f"{'column' if len(shape) > 1 else 'number'} {j + 1}" for j in range(shape[-1])]
+    for j, part in enumerate(parts[:_MANY]):
         for says, change in _changes("of_parts"):
             yield Mistake(_result(task, _on_part(j, change)), says.format(part))
         for i in range(j):
-            other = task.parts[i] if task.parts else f"column {i + 1}"
-            yield Mistake(_result(task, _swapped(i, j)), f"{other} and {part} have changed places")
+            yield Mistake(_result(task, _swapped(i, j)), f"{parts[i]} and {part} have changed places")
         yield Mistake(_result(task, lambda y, j=j: y[..., j]), f"it returns {part} alone")
         yield Mistake(_result(task, lambda y, j=j: np.delete(y, j, axis=-1)), f"{part} is missing")
     if len(shape) > 1 and task.same is None:
-        for i in range(shape[0]):
-            says = f"it returns the first {i} of {shape[0]} only: are the others left out, or does it return too early?"
-            yield Mistake(_result(task, lambda y, i=i: y[:i]), says)
-            yield Mistake(_result(task, lambda y, i=i: y[i]), f"it returns number {i + 1} of {shape[0]} alone")
-            yield Mistake(_result(task, lambda y, i=i: np.delete(y, i, 0)), f"number {i + 1} of {shape[0]} is missing")
-            for says, change in _changes("of_parts") if len(shape) == 2 else ():
-                yield Mistake(_result(task, _on_rows(_on_part(i, change))), says.format(f"row {i + 1}"))
-            for j in range(i):
-                change = _on_rows(_swapped(i, j))
-                yield Mistake(_result(task, change), f"rows {j + 1} and {i + 1} have changed places")
+        yield from _of_rows(task, shape)
+
+
+def _of_rows(task, shape):
+    for i in range(min(shape[0], _MANY)):
+        says = f"it returns the first {i} of {shape[0]} only: are the others left out, or does it return too early?"
+        yield Mistake(_result(task, lambda y, i=i: y[:i]), says)
+        yield Mistake(_result(task, lambda y, i=i: y[i]), f"it returns number {i + 1} of {shape[0]} alone")
+        yield Mistake(_result(task, lambda y, i=i: np.delete(y, i, 0)), f"number {i + 1} of {shape[0]} is missing")
+        for says, change in _changes("of_parts") if len(shape) == 2 else ():
+            yield Mistake(_result(task, _on_rows(_on_part(i, change))), says.format(f"row {i + 1}"))
+        for j in range(i):
+            change = _on_rows(_swapped(i, j))
+            yield Mistake(_result(task, change), f"rows {j + 1} and {i + 1} have changed places")
+
+
+def _of_order(task):
+    """Yield Mistakes: of several results two in each other's place, or one alone."""
+    names = task.results
+    for j, name in enumerate(names):
+        yield Mistake(picked(task.right, j), f"it returns {name} alone: {', '.join(names)} are asked for")
+        for i in range(j):
+            order = [j if one == i else i if one == j else one for one in range(len(names))]
+            yield Mistake(_in_order(task, order), f"{names[i]} and {name} have changed places")
+
+
+def _in_order(task, order):
+    def wrong(*case):
+        right = task.right(*case)
+        return tuple(right[k] for k in order)
+
+    return wrong
 
 
 def _reading(task, k, change):

@@ -5,18 +5,21 @@ import inspect
 import re
 import time
 import warnings
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, replace
 from itertools import chain
 
 import numpy as np
 
-from ir50p_lab.course.checking.cell import written_wrong
-from ir50p_lab.course.checking.distortions import distortions, entries, of_results, pairs
-from ir50p_lab.course.checking.stops import why_it_stops
-from ir50p_lab.course.checking.task import Failed, is_run, shown
+from ir50p_lab.course.checking.calling import call, check_signature, given
+from ir50p_lab.course.checking.cell import made, written_wrong
+from ir50p_lab.course.checking.distortions import distortions, entries
+from ir50p_lab.course.checking.forms import kind_of, no_numbers, number_of_results
+from ir50p_lab.course.checking.task import Failed, shown
 from ir50p_lab.course.checking.variants import in_words_of, variants
+from ir50p_lab.course.robot.source import Source
 
-_PATIENCE = 2.0  # s of computing: the search for a likely mistake ends then
+_PATIENCE = 0.75  # s of processor time since the answer came: beyond it no further mistake is tried
 
 
 @dataclass(frozen=True)
@@ -28,81 +31,205 @@ class Grade:
     example: str = ""
 
 
-def grade(task, function):
-    """Return the Grade on a function or class, whatever it does."""
-    if task.tried is not None:
-        try:
-            return Grade("right", task.tried(function))
-        except Failed as failed:
-            return Grade("wrong", *failed.args)
-    cases = task.cases()
-    outside = _outside(function)
+@dataclass
+class _Trial:
+    """What a function gave back: returned (Failed where it stopped) and expected, a list each; bad: the wrong cases.
+
+    result: which one of several results is looked at; before: lists and arrays beside the function, as they were;
+    end: when the search for a mistake ends; guess: words that say too little alone; example: the case to show.
+    """
+
+    task: object
+    function: object
+    cases: list
+    returned: list
+    expected: list
+    before: dict
+    end: float
+    result: int | None = None
+    guess: str = ""
+    example: int | None = None
+
+    def __post_init__(self):
+        good = [_agrees(self.task, *both) for both in zip(self.returned, self.expected, strict=True)]
+        self.bad = [k for k, fine in enumerate(good) if not fine]
+
+    def of(self, result):
+        """The trial of one of several results alone."""
+        returned, expected = ([one[result] for one in many] for many in (self.returned, self.expected))
+        return replace(self, task=self.task.of(result), returned=returned, expected=expected, result=result, guess="")
+
+
+def grade(task, answer):
+    """Return the Grade on a function or class, or on the Source of one, whatever it does."""
+    end = time.thread_time() + _PATIENCE
+    function = made(answer, task) if isinstance(answer, Source) else answer
     try:
-        _check_signature(task, function, cases[0])
-        returned = [_call(task, function, case) for case in cases]
+        if task.tried is not None:
+            return Grade("right", task.tried(function))
+        cases, before = task.cases(), _beside(function)
+        check_signature(task, function, cases[0])
+        returned = [call(task, function, case) for case in cases]
     except Failed as failed:
         return Grade("wrong", *failed.args)
-    expected = [task.right(*copy.deepcopy(case)) for case in cases]
-    good = [_agrees(task, one, other) for one, other in zip(returned, expected, strict=True)]
-    if all(good):
-        return _grade_form(task, cases, returned, expected)
-    bad = [k for k, fine in enumerate(good) if not fine]
-    says, guess = _known(task, function, cases, returned, expected, bad)
-    changed = [name for name, before in outside.items() if _outside(function)[name] != before]
-    if changed and not says:
-        return Grade(
-            "wrong", f"it changes `{changed[0]}`, made once outside it: the next call or helper finds it changed"
-        )
-    stopped = [one for one in returned if isinstance(one, Failed)]
-    if stopped and not says:
-        return Grade("wrong", *stopped[0].args)
-    readings = () if says else (_common, _usual, _mostly, _symptom)
-    for read in readings:
-        if says := read(task, cases, returned, expected):
-            if read in (_common, _symptom):
-                bad = _shown_by(read, says, task, cases, returned, expected, bad)
-            if read is _symptom and guess:
-                says = f"{guess}; {says}"
-            break
-    by_count = f"it is right for {sum(good)} of {len(good)} inputs: try the one below with pencil and paper"
-    visible = (_example(task, cases[k], expected[k], returned[k]) for k in bad)
-    return Grade("wrong", says or guess or by_count, next(filter(None, visible), ""))
+    expected = [task.expected(copy.deepcopy(case), one) for case, one in zip(cases, returned, strict=True)]
+    trial = _Trial(task, function, cases, returned, expected, before, end)
+    if not trial.bad:
+        return _grade_use(task, cases, returned, expected)
+    says = _read(trial) or trial.guess or _count(trial)
+    order = trial.bad if trial.example is None else [trial.example, *trial.bad]
+    visible = (_example(task, cases[k], expected[k], returned[k]) for k in order)
+    return Grade("wrong", says, next(filter(None, visible), ""))
 
 
-def _known(task, function, cases, returned, expected, bad):
-    """The sentence of the mistake that gives these answers, or ""; and one that says too little, or ""."""
-    if says := written_wrong(function):
-        return says, ""
+def _read(trial):
+    """The first sentence that a reading gives, or ""."""
+    return next(filter(None, (read(trial) for read in READINGS)), "")
+
+
+def _count(trial):
+    good = len(trial.cases) - len(trial.bad)
+    return f"it is right for {good} of {len(trial.cases)} inputs: try the one below with pencil and paper"
+
+
+# ------------------------------------------------------------------------------------------------------- readings
+def _written(trial):
+    return written_wrong(trial.function) if trial.result is None else ""
+
+
+def _known(trial):
+    task, returned, bad = trial.task, trial.returned, trial.bad
     stopped = sum(isinstance(one, Failed) for one in returned)
-    if stopped == len(bad) or 2 * stopped >= len(cases) or all(one is None for one in returned):  # nothing to compare
-        return "", ""
-    order = [*bad, *sorted(set(range(len(cases))) - set(bad))]
-    both = pairs(task) if any(map(_has_numbers, returned)) else ()
-    usual = _while_patient(chain(distortions(task), variants(task), both))
-    for slip in chain(task.slips, usual):
-        if not all(_is_slip(task, slip, cases[k], returned[k]) for k in order):
+    if stopped == len(bad) or 2 * stopped >= len(returned) or all(one is None for one in returned):
+        return ""  # nothing to compare
+    order = [*bad, *sorted(set(range(len(returned))) - set(bad))]
+    for mistake in _mistakes(trial):
+        if not all(_is_mistake(task, mistake, trial.cases[k], returned[k]) for k in order):
             continue
-        if not slip.of_code:
-            return slip.says, ""
-        words, complete = in_words_of(function, slip.says)
-        where = "" if stopped or task.same else entries(task, cases, returned, expected)
+        if not mistake.of_code:
+            return mistake.says
+        words, complete = in_words_of(trial.function, mistake.says)
+        where = "" if stopped or task.same or task.results else entries(task, trial.cases, returned, trial.expected)
         if where:
             words = words.partition(": look at")[0] if complete else ""
             if where.count("wrong sign") == 1 and words.endswith("wrong sign"):  # its use is wrong, not the number
                 words = ""
-            return f"{where}: {words}" if words else where, ""
-        return (words, "") if complete else ("", words)
-    return "", ""
+            return f"{where}: {words}" if words else where
+        if not complete:
+            trial.guess = words
+        return words if complete else ""
+    return ""
 
 
-def _has_numbers(result):
-    try:
-        return np.isfinite(np.asarray(result, dtype=float)).any()
-    except (TypeError, ValueError):
-        return False
+def _mistakes(trial):
+    """Those of the task, then the usual ones as long as patience lasts."""
+    yield from trial.task.slips
+    if all(map(_is_zero, trial.returned)):  # too little to tell one from another
+        return
+    spoilt = () if trial.task.results else variants(trial.task)  # tried for each result
+    for mistake in chain(distortions(trial.task), spoilt):
+        if time.thread_time() > trial.end:
+            return
+        yield mistake
 
 
-def _outside(function):
+def _outside(trial):
+    now = _beside(trial.function)
+    changed = [name for name, before in trial.before.items() if now[name] != before]
+    if changed:
+        return f"it changes `{changed[0]}`, made once outside it: the next call or helper finds it changed"
+    return ""
+
+
+def _stops(trial):
+    trial.example = next((k for k in trial.bad if isinstance(trial.returned[k], Failed)), None)
+    return "" if trial.example is None else trial.returned[trial.example].args[0]
+
+
+def _form(trial):
+    task, returned = trial.task, trial.returned
+    if all(one is None for one in returned) and not any(one is None for one in trial.expected):
+        return "it returns nothing: is there a `return`, and is it reached in every case?"
+    for k in trial.bad:
+        one, other = returned[k], trial.expected[k]
+        if task.results:
+            says = number_of_results(task.results, one, other)
+        elif task.same is None and other is not None:
+            says = no_numbers(one, other)
+        else:
+            says = "" if one is None else kind_of(one)
+        if says:
+            trial.example = k
+            return says
+    return ""
+
+
+def _results(trial):
+    """The sentence on the first wrong result that has one; else which of them are wrong."""
+    parts = {name: trial.of(k) for k, name in enumerate(trial.task.results)}
+    wrong = {name: part for name, part in parts.items() if part.bad}
+    right = [name for name in parts if name not in wrong]
+    intro = f"{_listed(right)} right; " if right else ""
+    for name, part in wrong.items():
+        if says := _read(part) or part.guess:
+            trial.example = part.bad[0] if part.example is None else part.example
+            named = len(name) > 2 and name in says  # `t` and `x` stand in every second word
+            return says if named else f"{intro}{name}: {says}"
+    says = _symptom(trial)
+    return says or (f"{intro}{_listed(list(wrong))} not: try the one below with pencil and paper" if intro else "")
+
+
+def _listed(names):
+    """Names with their verb: "slope and offset are"."""
+    *first, last = names
+    many = first or last.endswith("s")
+    return f"{', '.join(first)}{' and ' if first else ''}{last} {'are' if many else 'is'}"
+
+
+def _numbers(trial):
+    """What numbers alone tell, whatever the function: all the same, whole, off by a constant, few of them wrong."""
+    task, cases, returned, expected = trial.task, trial.cases, trial.returned, trial.expected
+    if task.same is not None or task.results or any(one is None for one in (*returned, *expected)):
+        return ""
+    if all(map(_is_zero, returned)):
+        return "it is 0 for every input: is what it computes put into what it returns?"
+    if all(np.array_equal(one, returned[0]) for one in returned):
+        return f"it returns the same for every input: {shown(returned[0])}"
+    if all(map(_is_whole, returned)) and not all(map(_is_whole, expected)):
+        return "it holds whole numbers only: what was put in was cut off (an array of integers?)"
+    return entries(task, cases, returned, expected) or _by_a_constant(returned, expected)
+
+
+def _symptom(trial):
+    """What the task itself sees; of several sentences the one that most wrong cases give."""
+    if trial.task.symptom is None:
+        return ""
+    said = {k: trial.task.symptom(trial.cases[k], trial.returned[k], trial.expected[k]) for k in trial.bad}
+    counts = Counter(_without_numbers(says) for says in said.values() if says)
+    if not counts:
+        return ""
+    most = counts.most_common(1)[0][0]
+    alike = [k for k, says in said.items() if _without_numbers(says) == most]
+    seen = (k for k in alike if shown(trial.returned[k]) != shown(trial.expected[k]))  # in the digits that are shown
+    trial.example = next(seen, alike[0])
+    says = said[trial.example]
+    return f"{trial.guess}; {says}" if trial.guess else says
+
+
+READINGS = (  # of a wrong answer, in this order: the first that has something to say is told
+    _written,  # its own lines: an argument overwritten, `==` for `=`, one array under two names
+    _known,  # mistakes of the task, results and arguments spoilt in usual ways, a solution with one step changed
+    _outside,  # a list or array beside it that each call changes
+    _stops,  # the line in which it stopped, and why
+    _form,  # nothing, another kind of thing, another number of results, another shape
+    lambda trial: _results(trial) if trial.task.results else "",  # these readings again, for each of several results
+    _numbers,  # the same for every input, whole numbers, few entries wrong, all off by a constant
+    _symptom,  # what the task itself sees in one wrong case
+)
+
+
+# ------------------------------------------------------------------------------------------------------ comparing
+def _beside(function):
     """The lists, dicts and arrays that stand beside a function in its cell, as text."""
     found = getattr(inspect.unwrap(function), "__globals__", {})
     return {
@@ -110,190 +237,83 @@ def _outside(function):
     }
 
 
-def _shown_by(read, says, task, cases, returned, expected, bad):
-    """The cases that show by themselves what is said of all, those with the very same numbers first."""
-    says_of = {k: read(task, *([many[k]] for many in (cases, returned, expected))) for k in bad}
-    return sorted(
-        (k for k in bad if _without_numbers(says_of[k]) == _without_numbers(says)), key=lambda k: says_of[k] != says
-    )
+def _agrees(task, returned, expected):
+    try:
+        return not isinstance(returned, Failed) and task.agrees(returned, expected)
+    except (TypeError, ValueError):
+        return False
+
+
+def _is_mistake(task, mistake, case, returned):
+    """Tell whether a mistake gives the same answer, or stops as this one does."""
+    try:
+        with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
+            wrong = mistake.wrong(*copy.deepcopy(case))
+    except Exception as error:
+        return isinstance(returned, Failed) and type(returned.__cause__) is type(error)
+    return _agrees(task, returned, wrong)
+
+
+# -------------------------------------------------------------------------------------------------------- numbers
+def _is_zero(value):
+    try:
+        return not np.any(np.asarray(value, dtype=float))
+    except (TypeError, ValueError):
+        return False
+
+
+def _is_whole(value):
+    return np.array_equal(value, np.round(value))
+
+
+def _by_a_constant(returned, expected):
+    """All numbers off by one factor, or by one summand: a constant is another one."""
+    one, other = (np.concatenate([np.ravel(value) for value in many]).astype(float) for many in (returned, expected))
+    if not np.isfinite([one, other]).all():
+        return ""
+    factor = one @ other / max(other @ other, 1e-300)
+    if np.allclose(one, factor * other, rtol=1e-6, atol=1e-9 * np.abs(other).max()):
+        if abs(factor - 1) < 0.01:
+            return (
+                f"it is nearly right, all is {factor:.6g} times what it should be: is a constant in it rounded, or "
+                "written by hand?"
+            )
+        return f"every number is {factor:.4g} times what it should be: is a factor too many or missing, a unit another?"
+    if np.ptp(one - other) < 1e-9 * np.abs(other).max():
+        return f"every number is off by the same {np.mean(one - other):.4g}"
+    return ""
 
 
 def _without_numbers(says):
     return re.sub(r"-?\d[\d.]*", "", says)
 
 
-def _while_patient(slips):
-    """The slips that can be tried in a given time; the processor's, not that of the clock, decides."""
-    end = time.thread_time() + _PATIENCE
-    for slip in slips:
-        yield slip
-        if time.thread_time() > end:
-            return
-
-
-def _check_signature(task, function, case):
-    try:
-        inspect.signature(function).bind(*case)
-    except TypeError:
-        found = ", ".join(inspect.signature(function).parameters)
-        wanted = ", ".join(task.signature)
-        raise Failed(f"it takes ({found}); it will be called with ({wanted}), in this order") from None
-
-
-def _call(task, function, case):
-    """What it returns; Failed, returned as well, where it stops."""
-    given = copy.deepcopy(case)
-    try:
-        result = guarded(lambda: function(*given), lambda: _given(task, case))
-    except Failed as stopped:
-        if isinstance(stopped.__cause__, KeyboardInterrupt):
-            raise
-        return stopped
-    for name, one, other in zip(task.signature, case, given, strict=True):
-        if not _untouched(one, other):
-            says = f"it changes what it was given, `{name}`: work on a copy (`np.array(x)` makes one)"
-            raise Failed(says, _given(task, case))
-    return result
-
-
-def guarded(do, given=str):
-    """What `do` gives; given: function that names the case, called only when it fails. Raises Failed from the error."""
-    try:
-        with np.errstate(all="ignore"):
-            return do()
-    except KeyboardInterrupt as stop:
-        raise Failed("it was stopped: does a loop in it never end?", given()) from stop
-    except Exception as error:
-        raise Failed(why_it_stops(error), given()) from error
-
-
-def _untouched(before, after):
-    return callable(before) or np.array_equal(np.asarray(before), np.asarray(after))
-
-
-def _agrees(task, returned, expected):
-    try:
-        return task.agrees(returned, expected)
-    except (TypeError, ValueError):
-        return False
-
-
-def _is_slip(task, slip, case, returned):
-    """Tell whether a slip gives the same answer, or stops as this one does."""
-    try:
-        with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
-            wrong = slip.wrong(*copy.deepcopy(case))
-    except Exception as error:
-        return isinstance(returned, Failed) and type(returned.__cause__) is type(error)
-    return _agrees(task, returned, wrong)
-
-
-def _grade_form(task, cases, returned, expected):
+# ------------------------------------------------------------------------------------------------- what is shown
+def _grade_use(task, cases, returned, expected):
     """The numbers are right; what the next functions need is an array, too."""
     for case, one, other in zip(cases, returned, expected, strict=True):
         if task.form is not None and (says := task.form(one)):
             return Grade("wrong", says, _example(task, case, other, one))
-        if np.size(one) and isinstance(other, np.ndarray) and not isinstance(one, np.ndarray):
-            kind = type(one).__name__
-            return Grade(
-                "wrong",
-                f"the numbers are right, but it returns a {kind}: later functions will slice it, so "
-                "return an array, `np.array(...)`",
-            )
+        for mine, right in zip(one, other, strict=True) if task.results else ((one, other),):
+            if isinstance(right, np.ndarray) and not isinstance(mine, np.ndarray) and np.size(mine):
+                kind = type(mine).__name__
+                return Grade(
+                    "wrong",
+                    f"the numbers are right, but it returns a {kind}: later functions will slice it, so "
+                    "return an array, `np.array(...)`",
+                )
     return Grade("right", "")
-
-
-def _usual(task, cases, returned, expected):
-    """What numbers alone tell, whatever the function."""
-    if task.same is not None:
-        return ""
-    return _alone(returned) or _nearly(returned, expected) or entries(task, cases, returned, expected)
-
-
-def _mostly(task, cases, returned, expected):
-    """A mistake, of the task's own or of the result's form, that explains many of the wrong answers."""
-    wrong = [k for k in range(len(cases)) if not _agrees(task, returned[k], expected[k])]
-    right = sorted(set(range(len(cases))) - set(wrong))
-    for slip in (*task.slips, *of_results(task)):
-        if not all(_is_slip(task, slip, cases[k], returned[k]) for k in right):
-            continue
-        share = sum(returned[k] is not None and _is_slip(task, slip, cases[k], returned[k]) for k in wrong)
-        if share >= max(3, len(wrong) / 2):
-            says = slip.says.removesuffix(", the rest is right")
-            return f"{says} (that explains {share} of {len(wrong)} wrong answers; something else is wrong, too)"
-    return ""
-
-
-def _symptom(task, cases, returned, expected):
-    return task.symptom(cases, returned, expected) if task.symptom else ""
-
-
-def _common(task, cases, returned, expected):
-    """Mistakes that look alike in every function: nothing returned, another kind of thing, another shape."""
-    if all(one is None for one in returned) and not any(one is None for one in expected):
-        return "it returns nothing: is there a `return`, and is it reached in every case?"
-    pairs = [(one, other) for one, other in zip(returned, expected, strict=True) if other is not None]
-    found = (no_numbers(one, other) for one, other in pairs if task.same is None)
-    return next(filter(None, chain(found, (_kind(one) for one in returned if one is not None))), "")
-
-
-def no_numbers(returned, expected):
-    """Why something is not what is expected before its numbers are looked at, or ""."""
-    if returned is None:
-        return "it returns nothing for some inputs: is its `return` reached in every case?"
-    if says := _kind(returned):
-        return says
-    array, wanted = np.asarray(returned, dtype=float), np.shape(expected)
-    if array.shape != wanted:
-        if array.size == np.size(expected) and np.allclose(array.ravel(), np.ravel(expected)):
-            return f"the numbers are right, their shape is not: {array.shape}, expected is {wanted}"
-        if array.shape[1:] == wanted and array.ndim > 1:
-            return f"it returns {len(array)} arrays where one is asked for"
-        return f"it returns an array of shape {array.shape}; expected is {wanted}"
-    if not np.isfinite(array).all() and np.isfinite(np.asarray(expected, dtype=float)).all():
-        return "it returns a number that is not finite (nan or inf): a division by zero, a root of less than nothing?"
-    return ""
-
-
-def _kind(returned):
-    """Why something cannot be read as numbers, or ""."""
-    if callable(returned):
-        return f"it returns the function {getattr(returned, '__name__', '')}, not what that gives: add its arguments"
-    try:
-        np.asarray(returned, dtype=float)
-    except (TypeError, ValueError):
-        kind = type(returned).__name__
-        if isinstance(returned, tuple | list):
-            return f"it returns a {kind} of {len(returned)} things that make no array: one array is asked for"
-        return f"it returns {kind} that cannot be read as an array of numbers: {str(returned)[:60]!r}"
-    return ""
-
-
-def _alone(returned):
-    """What no right answer is like: the same for every input, or whole numbers."""
-    if all(np.array_equal(one, returned[0]) for one in returned):
-        return f"it returns the same for every input: {shown(returned[0])}"
-    if all(np.array_equal(one, np.round(one)) for one in returned):
-        return "it holds whole numbers only: what was put in was cut off (an array of integers?)"
-    return ""
-
-
-def _nearly(returned, expected):
-    """Rounded, or made with a number written by hand."""
-    gap = max(np.abs(np.asarray(one) - other).max() for one, other in zip(returned, expected, strict=True))
-    if gap < 0.01 * max(np.abs(one).max() for one in expected):
-        return f"it is nearly right, the numbers are off by {gap:.1g}: is one rounded, or written by hand (3.14)?"
-    return ""
-
-
-def _given(task, case):
-    named = sorted(zip(task.signature, case, strict=True), key=lambda one: is_run(one[1]))  # long ones at the end
-    return "for " + ", ".join(f"{name} = {shown(value)}" for name, value in named)
 
 
 def _example(task, case, expected, returned):
     if isinstance(returned, Failed):
         return returned.args[1]
     unit = f" {task.unit}" if task.unit else ""
-    both = shown(expected), shown(returned)
-    return f"{_given(task, case)}\nexpected{unit}: {both[0]}\nyours: {both[1]}" if both[0] != both[1] else ""
+    both = _answer(task, expected), _answer(task, returned)
+    return f"{given(task, case)}\nexpected{unit}: {both[0]}\nyours: {both[1]}" if both[0] != both[1] else ""
+
+
+def _answer(task, value):
+    if not task.results or number_of_results(task.results, value, value):
+        return shown(value)
+    return ", ".join(f"{name} = {shown(one)}" for name, one in zip(task.results, value, strict=True))

@@ -42,3 +42,8 @@ def show(note: Note) -> None:
     from IPython.display import display
 
     display(note)
+
+
+def ended(says):
+    """A sentence with its full stop; a question has its mark already."""
+    return says if says.endswith(("?", ".")) else f"{says}."

@@ -7,6 +7,7 @@ import traceback
 
 import numpy as np
 
+from ir50p_lab.course.checking.note import ended
 from ir50p_lab.course.checking.task import table
 
 ROOM = "<my_robot"  # the file name of what is tried begins so
@@ -34,11 +35,6 @@ def _usual(error):
             if kind.rstrip(":") == type(error).__name__ and part in str(error):
                 return why
     return ""
-
-
-def ended(says):
-    """A sentence with its full stop; a question has its mark already."""
-    return says if says.endswith(("?", ".")) else f"{says}."
 
 
 def _where(error):

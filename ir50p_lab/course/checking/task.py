@@ -3,7 +3,7 @@
 import inspect
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -59,13 +59,24 @@ def table(name, beside=__file__):
 
 def wrong_one(function, changes):
     """The function with these changes in its text."""
-    return changed(text_of(function), changes, function.__globals__)[function.__name__]
+    return changed(text_of(function), changes, {"np": np, **function.__globals__})[function.__name__]
 
 
 def mistakes(function):
     """The mistakes in the table of a function."""
     rows = table(function.__name__, inspect.getfile(function))
-    return [Mistake(wrong_one(function, changes), says) for says, changes in rows]
+    return tuple(Mistake(wrong_one(function, changes), says) for says, changes in rows)
+
+
+def solutions(name, beside):
+    """The texts in NAME.txt beside a module, one below the other with a line of dashes between; () where none is."""
+    path = Path(beside).with_name(f"{name}.txt")
+    return tuple(path.read_text(encoding="utf-8").strip().split("\n----\n")) if path.exists() else ()
+
+
+def picked(function, result):
+    """A function that gives one of several results of another."""
+    return lambda *case: function(*case)[result]
 
 
 @dataclass(frozen=True)
@@ -76,14 +87,17 @@ class Task:
     arguments; signature: their names.
     cases: tuples of arguments, edge cases among them; leans_on: earlier functions it may call.
     slips: mistakes with a sentence of their own, most specific first; the usual ones need none (`distortions`);
-    routes: other solutions, as text; parts: names of what stands beside each other in the answer.
-    symptom: function of (cases, returned, expected), lists of equal length, that returns a sentence about a mistake no
-    slip covers, or ""; the example shown is a case that gives the same sentence alone.
+    routes: other solutions, as text; rights: functions whose answers are right as well;
+    parts: names of what stands beside each other in the answer.
+    results: names, where several things are returned: each is graded by itself; `tolerance` and `same` may be tuples
+    then, one for each.
+    symptom: function of (case, returned, expected) that returns a sentence about a mistake no slip covers, or "".
     form: function of one right answer; a sentence if later functions cannot use it as it is, or "".
     hints: two, opened on demand; loan: a plain solution, as text, whose names are words.
     same: compares what came back with what was expected; None: equal within tolerance. unit: of what comes back.
-    A class has no cases; tried: function of it, raises `Failed` or returns a remark on a right answer ("": none);
-    test: its small test, as text; right: the class that stands in.
+    test: its small test, as text; needed where an argument is a function.
+    A class, or a function of keywords alone, has no cases; tried: function of it, raises `Failed` or returns a remark
+    on a right answer ("": none); right: what stands in.
     """
 
     name: str
@@ -94,36 +108,86 @@ class Task:
     leans_on: tuple = ()
     slips: tuple = ()
     routes: tuple = ()
+    rights: tuple = ()
     parts: tuple = ()
+    results: tuple = ()
     symptom: Callable | None = None
     form: Callable | None = None
     hints: tuple = ("", "")
-    same: Callable | None = None
-    tolerance: float = 1e-9
+    same: Callable | tuple | None = None
+    tolerance: float | tuple = 1e-9
     unit: str = ""
     tried: Callable | None = None
     test: str = ""
     signature: tuple = ()
+    function: str = ""  # its name; that of a stage is longer
+    result: int | None = None  # which of several results it is about, in a trial of one alone
 
     def __post_init__(self):
         """Take the names of the arguments from the right answer; further options are the course's own affair."""
         found = inspect.signature(self.right).parameters.values()
         names = tuple(one.name for one in found if one.kind != one.VAR_KEYWORD)
         object.__setattr__(self, "signature", self.signature or names)
+        object.__setattr__(self, "function", self.name.partition(".")[0])
 
-    @property
-    def function(self):
-        """Name of the function or class; a stage of it has a longer one."""
-        return self.name.partition(".")[0]
+    def of(self, result):
+        """The task of one of several results alone."""
+        slips = tuple(replace(one, wrong=picked(one.wrong, result)) for one in self.slips)
+        return replace(
+            self,
+            right=picked(self.right, result),
+            slips=slips,
+            same=self._of_each(self.same)[result],
+            tolerance=self._of_each(self.tolerance)[result],
+            rights=(),
+            results=(),
+            symptom=None,
+            result=result,
+        )
 
     def agrees(self, returned, expected):
-        """Tell whether what came back is what was expected."""
-        if self.same is not None:
-            return self.same(returned, expected)
-        returned, expected = np.asarray(returned, dtype=float), np.asarray(expected, dtype=float)
-        return returned.shape == expected.shape and bool(
-            allclose(returned, expected, 0, self.tolerance, equal_nan=True)
-        )
+        """Tell whether what came back is what was expected. Raises TypeError, ValueError for what is no answer."""
+        if not self.results:
+            return _agrees(returned, expected, self.same, self.tolerance)
+        each = zip(returned, expected, self._of_each(self.same), self._of_each(self.tolerance), strict=True)
+        return all(_agrees(*one) for one in each)
+
+    def expected(self, case, returned):
+        """The right answer to a case: of several (`rights`) the one that came back, result by result."""
+        right = self.right(*case)
+        for other in self.rights:
+            also = other(*case)
+            try:
+                if self.results:
+                    each = zip(returned, right, also, self._of_each(self.tolerance), strict=True)
+                    right = tuple(b if _agrees(one, b, None, within) else a for one, a, b, within in each)
+                elif self.agrees(returned, also):
+                    right = also
+            except (TypeError, ValueError):  # what came back is no answer
+                return right
+        return right
+
+    def _of_each(self, option):
+        return option if isinstance(option, tuple) else (option,) * len(self.results)
+
+
+def task_of(right, asks, *, helpers=(), **options):
+    """The Task of a function: its text is the loan; in NAME.txt stand its slips, in NAME.routes.txt other solutions.
+
+    NAME.test.txt is its small test where one of plain numbers will not do. helpers: functions that it calls and a
+    student has to write along; options: what else a Task has.
+    """
+    name, file = right.__name__, inspect.getfile(right)
+    texts = {"routes": solutions(f"{name}.routes", file), "test": "\n".join((*solutions(f"{name}.test", file), ""))}
+    options = {"slips": mistakes(right)} | texts | options
+    return Task(name=name, asks=asks, right=right, loan=text_of(*helpers, right), **options)
+
+
+def _agrees(returned, expected, same, tolerance):
+    if same is not None:
+        return same(returned, expected)
+    returned, expected = np.asarray(returned, dtype=float), np.asarray(expected, dtype=float)
+    return returned.shape == expected.shape and bool(allclose(returned, expected, 0, tolerance, equal_nan=True))
 
 
 def is_run(value):
@@ -135,8 +199,11 @@ def shown(value):
     """A value as a student writes it, short."""
     if value is None:
         return "None"
+    if isinstance(value, tuple):
+        return "(" + ", ".join(map(shown, value)) + ")"
     if callable(value):
-        return getattr(value, "__name__", "a function")
+        meaning = (inspect.getdoc(value) or "").partition("\n")[0]
+        return f"the function {getattr(value, '__name__', '')}" + (f" ({meaning})" if meaning else "")
     try:
         array = np.asarray(value)
     except ValueError:  # rows of different lengths

@@ -5,8 +5,8 @@ import numpy as np
 from ir50p_lab.course.draw.arm3d import ArmView, SideView
 from ir50p_lab.course.draw.drawings import drawing
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, new_figure, subplots
-from ir50p_lab.course.kinematics.functions import velocity
-from ir50p_lab.course.kinematics.functions.pose import frames
+from ir50p_lab.course.kinematics.functions.frames import frames
+from ir50p_lab.course.kinematics.functions.jacobian import jacobian as jacobian_of_frames
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.modelling.ik import inverse_kinematics
@@ -102,7 +102,7 @@ def pace(q, direction, l, fastest):
     the direction is shut.
     """
     T = frames(q, l)
-    Jv = velocity.jacobian(T, 3, T[3][:3, 3])[:3]
+    Jv = jacobian_of_frames(T, 3, T[3][:3, 3])[:3]
     qd = np.linalg.lstsq(Jv, direction, rcond=1e-9)[0]
     if not np.allclose(Jv @ qd, direction, atol=1e-6):
         return 0.0

@@ -2,40 +2,36 @@
 
 import importlib
 from functools import cache
+from pathlib import Path
 
 from ir50p_lab.errors import InputError
 
-# DESIGN 6: every function, by the notebook that asks for it
-NOTEBOOKS = {
-    "00": ("rot_z",),
-    "01": ("dh_matrix", "frames", "forward_kinematics"),
-    "02": ("inverse_kinematics", "reach"),
-    "03": ("jacobian", "damped_step"),
-    "04": ("mass_matrix",),
-    "05": ("velocity_torque", "gravity_torque"),
-    "06": ("rk4_step", "integrate", "quintic"),
-    "07": ("friction_torque", "motor_torque"),
-    "08": ("PID",),
-    "09": ("step_metrics",),
-    "10": ("fit_line", "low_pass"),
-    "12": ("regressor", "least_squares", "rls_step"),
-    "13": ("fit_percent",),
-    "14": ("computed_torque",),
-    "15": ("adaptive_step",),
-    "16": ("hue_mask", "circle_votes"),
-    "17": ("homography", "pixel_to_plane"),
-    "18": ("find_and_reach",),
-}
-ORDER = tuple(name for names in NOTEBOOKS.values() for name in names)
+_TABLE = """
+00 kinematics    rot_z
+01 kinematics    dh_matrix frames forward_kinematics
+02 kinematics    inverse_kinematics reach
+03 kinematics    jacobian damped_step
+04 dynamics      mass_matrix
+05 dynamics      velocity_torque gravity_torque
+06 motion        rk4_step integrate quintic
+07 motion        friction_torque motor_torque
+08 loops         PID
+09 loops         step_metrics
+10 at_the_bench  fit_line low_pass
+12 fitting       regressor least_squares rls_step
+13 fitting       fit_percent
+14 torque        computed_torque
+15 torque        adaptive_step
+16 images        hue_mask circle_votes
+17 camera        homography pixel_to_plane
+18 reaching      find_and_reach
+"""  # every function: the notebook that asks for it, and the room in which it stands (DESIGN 6)
+_ROWS = [line.split() for line in _TABLE.strip().splitlines()]
+NOTEBOOKS = {number: tuple(names) for number, _, *names in _ROWS}
+_ROOMS = {name: room for _, room, *names in _ROWS for name in names}
+ORDER = tuple(_ROOMS)
 STAGES = {"PID": ("PID.p", "PID.pi", "PID.limits")}  # checked on the way; "PID" itself is the last
-_MODULES = {  # what is written
-    "00": "kinematics.functions.pose",
-    "01": "kinematics.functions.pose",
-    "02": "kinematics.functions.inverse",
-    "03": "kinematics.functions.velocity",
-    "08": "loops.functions.controller",
-    "09": "loops.functions.tuning",
-}
+_at = {}  # stage of each function that this session works on
 
 
 def function_of(name):
@@ -53,16 +49,38 @@ def is_function(name):
     return name in ORDER or name in STAGES.get(function_of(name), ())
 
 
+@cache
+def is_written(name):
+    """Tell whether a function can be checked today: its Task is in ROOM/functions/NAME.py, its slips in NAME.txt."""
+    name = function_of(name)
+    return (Path(__file__).parents[1] / _ROOMS[name] / "functions" / f"{name}.py").exists()
+
+
 def written():
     """Names of the functions that can be checked today."""
-    return tuple(name for name in ORDER if notebook_of(name) in _MODULES)
+    return tuple(filter(is_written, ORDER))
 
 
 @cache
 def task(name):
-    """The Task of a function of `my_robot`. Raises InputError where its notebook is still to come."""
-    number = notebook_of(name)
-    if number not in _MODULES:
-        raise InputError(f"{name} is asked for in notebook {number}, which is still to come")
-    module = importlib.import_module(f"ir50p_lab.course.{_MODULES[number]}")
-    return next(one for one in module.TASKS if one.name == name)
+    """The Task of a function of `my_robot`, or of a stage of one. Raises InputError where it is still to come."""
+    if not is_written(name):
+        raise InputError(f"{name} is asked for in notebook {notebook_of(name)}, which is still to come")
+    function = function_of(name)
+    module = importlib.import_module(f"ir50p_lab.course.{_ROOMS[function]}.functions.{function}")
+    return module.STAGES[name] if "." in name else module.TASK
+
+
+def work_on(name):
+    """Take up a function at a stage: this session uses that stage from now on, all others the whole. Returns its Task.
+
+    Raises InputError where it is still to come.
+    """
+    found = task(name)
+    _at[function_of(name)] = name
+    return found
+
+
+def at_work(name):
+    """The stage of a function that this session works on, or the function itself."""
+    return _at.get(name, name)

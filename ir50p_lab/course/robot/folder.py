@@ -1,7 +1,6 @@
 """The folder `my_robot`: a plain Python package of what the student has written, importable without this one."""
 
 import importlib.util
-import shutil
 import sys
 from datetime import datetime
 from pathlib import Path
@@ -18,7 +17,7 @@ _SEEN = f"{_LOAN}, after six tries"
 _STAGE = ", stage "
 _PACKAGE = "my_robot"
 _loaded = {"stamp": None}
-_at = {}  # stage of each function that this session works on
+fresh = {}  # what `my_robot` has just looked up; empty when a function was kept or put aside
 
 
 def folder() -> Path:
@@ -44,16 +43,6 @@ def on_loan(name):
     return is_there(name) and path_of(name).read_text(encoding="utf-8").startswith(_LOAN)
 
 
-def work_on(name):
-    """From now on this session uses a function at this stage; all others use it when it is whole."""
-    _at[function_of(name)] = name
-
-
-def at_work(name):
-    """The stage of a function that this session works on, or the function itself."""
-    return _at.get(name, name)
-
-
 def was_lent(name):
     """Tell whether the course lent a function because it would not come right: now, or before it was begun again."""
     files = [path_of(name), *(folder() / "old").glob(f"{name}_*.py")]
@@ -63,7 +52,8 @@ def was_lent(name):
 def keep(source, task, *, loan=""):
     """Write a function with its small test, and the list of what there is. What was there before goes to `old`.
 
-    Functions that it calls and that are not there yet come along on loan. Returns their names. Raises OSError.
+    Functions that it calls and that are not there yet come along on loan. Returns their names. Raises OSError: of a
+    function all files are written, or none.
     """
     from ir50p_lab.course.robot.catalogue import task as find
 
@@ -74,11 +64,19 @@ def keep(source, task, *, loan=""):
             lent += [name, *lend(find(name))]
     stage = f"{_STAGE}{task.name}" if "." in task.name else ""
     head = f"{loan or '# yours'}{stage}: the next you write takes its place\n" if loan or stage else ""
-    text = head + source.module
-    put_aside(source.name, unless=text)
-    _write(path_of(source.name), text)
-    _write(folder() / f"test_{source.name}.py", task.test or _small_test(task))
-    _write(folder() / "__init__.py", _exports())
+    module, test, package = path_of(source.name), folder() / f"test_{source.name}.py", folder() / "__init__.py"
+    texts = {module: head + source.module, test: task.test or _small_test(task), package: _exports(source.name)}
+    before = {path: path.read_text(encoding="utf-8") for path in texts if path.is_file()}
+    try:
+        for path, text in texts.items():
+            _write(path, text)
+        if module in before and before[module] != texts[module]:
+            _lay_by(source.name, before[module])
+    except OSError:
+        for path in texts:
+            _put_back(path, before.get(path))
+        raise
+    fresh.clear()
     return lent
 
 
@@ -87,16 +85,30 @@ def lend(task, *, after_tries=False):
     return keep(Source(task.function, task.loan, _calls(task)), task, loan=_SEEN if after_tries else _LOAN)
 
 
-def put_aside(name, unless=""):
+def put_aside(name):
     """Move a function's file to `old`, with the time in its name; nothing is lost. Raises OSError."""
     path, name = path_of(name), function_of(name)
-    if not path.exists() or path.read_text(encoding="utf-8") == unless:
+    if not path.exists():
         return
-    old = folder() / "old"
-    old.mkdir(exist_ok=True)
-    shutil.move(path, old / f"{name}_{datetime.now():%Y-%m-%d_%H%M%S_%f}.py")
+    _lay_by(name, path.read_text(encoding="utf-8"))
+    path.unlink()
     (folder() / f"test_{name}.py").unlink(missing_ok=True)
     _write(folder() / "__init__.py", _exports())
+    fresh.clear()
+
+
+def _lay_by(name, content):
+    old = folder() / "old"
+    old.mkdir(exist_ok=True)
+    (old / f"{name}_{datetime.now():%Y-%m-%d_%H%M%S_%f}.py").write_text(content, encoding="utf-8")
+
+
+def _put_back(path, content):
+    """Make a file again what it was, None: not there."""
+    if content is not None:
+        path.write_text(content, encoding="utf-8")
+    elif path.is_file():
+        path.unlink()
 
 
 def load(name):
@@ -123,8 +135,8 @@ def _calls(task):
     return tuple(sorted(one for one in task.leans_on if re.search(rf"\b{one}\(", task.loan)))
 
 
-def _exports():
-    names = [name for name in ORDER if path_of(name).exists()]
+def _exports(more=""):
+    names = [name for name in ORDER if name == more or path_of(name).exists()]
     return '"""My robot: the functions I wrote."""\n\n' + "".join(f"from ._{name} import {name}\n" for name in names)
 
 
@@ -133,19 +145,27 @@ def _small_test(task):
     cases = task.cases()
     case = cases[min(1, len(cases) - 1)]
     arguments = ", ".join(_plain(value) for value in case)
-    expected = task.right(*case)
-    return (
-        f"import numpy as np\nfrom numpy import array\n\nfrom my_robot import {task.name}\n\n\n"
-        f"def test_{task.name}():\n    found = {task.name}({arguments})\n"
-        f"    expected = {_plain(expected)}\n"
-        "    found, expected = sorted(np.atleast_2d(found).tolist()), sorted(np.atleast_2d(expected).tolist())\n"
+    compared = (
+        "    for one, other in zip(found, expected, strict=True):\n"
+        "        np.testing.assert_allclose(one, other, atol=1e-6)\n"
+        if task.results
+        else "    found, expected = sorted(np.atleast_2d(found).tolist()), sorted(np.atleast_2d(expected).tolist())\n"
         "    np.testing.assert_allclose(found, expected, atol=1e-6)\n"
+    )
+    return (
+        f"import numpy as np\nfrom numpy import array, inf, nan\n\nfrom my_robot import {task.name}\n\n\n"
+        f"def test_{task.name}():\n    found = {task.name}({arguments})\n"
+        f"    expected = {_plain(task.right(*case))}\n{compared}"
     )
 
 
 def _plain(value):
+    """A value as Python reads it."""
+    if isinstance(value, tuple):
+        return "(" + "".join(f"{_plain(one)}, " for one in value) + ")"
+    kind = f", dtype={str(value.dtype)!r}" if getattr(value, "dtype", float) not in (float, int, bool) else ""
     plain = repr(np.asarray(value).tolist())
-    return f"array({plain})" if isinstance(value, np.ndarray) else plain
+    return f"array({plain}{kind})" if isinstance(value, np.ndarray) else plain
 
 
 def _write(path, text):

@@ -7,8 +7,8 @@ from cells import cell
 
 from ir50p_lab.course import check, my_robot
 from ir50p_lab.course.checking.grade import grade
-from ir50p_lab.course.loops.functions import controller_trials as trials
-from ir50p_lab.course.robot import folder
+from ir50p_lab.course.loops.functions import PID_trials as trials
+from ir50p_lab.course.robot import catalogue, folder
 from ir50p_lab.course.robot.catalogue import STAGES, task
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
@@ -19,7 +19,7 @@ ALL = (*STAGES["PID"], "PID")
 @pytest.fixture(autouse=True)
 def home(tmp_path, monkeypatch):
     monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    monkeypatch.setattr(folder, "_at", {})
+    catalogue._at.clear()
     my_robot._said.clear()
     return tmp_path
 
@@ -179,7 +179,7 @@ def test_other_right_ones_pass(stage, edits, remark):
         ("PID", f"{SPEED}\n        self.last = q\n        push = self.kp * error + self.kd * (qd_wanted - self.speed)",
          SPEED.replace("((q", "(qd_wanted - (q") + "\n        self.last = q\n        "
          "push = self.kp * error + self.kd * self.speed", "goes through the filter, too"),
-        ("PID", "1 - np.exp(-2 * np.pi * filter_hz * period)", "0.47", "takes 0.47 of each new speed"),
+        ("PID", "1 - np.exp(-2 * np.pi * filter_hz * period)", "0.47", "D is not kd times the filtered speed"),
         ("PID", " + self.kd * (qd_wanted - self.speed)\n        grown = self.integral + self.ki * error",
          "\n        grown = self.integral + self.ki * (error + self.kd * (qd_wanted - self.speed))", "only through ki"),
         ("PID", "(q - self.last)", "(q[1] - self.last[1])", "; joint 2 is right"),
@@ -220,7 +220,7 @@ def test_wrong_ones_are_told_apart(stage, old, new, words):
 @pytest.mark.parametrize("stage", ALL)
 def test_every_mistake_in_a_table_gets_its_own_sentence(stage):
     earlier = {"the integral has the gain kp: it has its own, ki"}  # told by what it adds to P where ki is 0
-    for wrong, says in trials._wrong_ones(stage):
+    for wrong, says in trials._made(stage, stage):
         verdict = grade(task(stage), wrong)
         assert verdict.state == "wrong" and (says in verdict.says or says in earlier), verdict.says
 
@@ -266,7 +266,7 @@ def test_each_stage_takes_the_place_of_the_one_before(home, capsys):
         check(stage, cell(solutions.source(stage), "PID"))
         assert "right, and yours: from now on my_robot.PID is this class" in capsys.readouterr().out
         assert folder.is_there(stage) and my_robot.whose("PID") == "yours"
-        folder._at.clear()  # another notebook: a stage on the way is not used there
+        catalogue._at.clear()  # another notebook: a stage on the way is not used there
         assert my_robot.whose("PID") == ("yours" if stage == "PID" else "the course's")
         assert my_robot.PID(kp=1, ki=1, kd=1).unit == "PWM"
     assert len(list((home / "my_robot" / "old").glob("PID_*.py"))) == 3
@@ -299,7 +299,7 @@ def test_a_loan_of_a_stage_never_takes_the_place_of_the_whole(capsys):
     for k in range(7):
         check("PID.p", cell(edited("PID.p", ("self.kp * error", f"{k} * error")), "PID"))
     assert "lends you" not in capsys.readouterr().out
-    folder._at.clear()
+    catalogue._at.clear()
     assert my_robot.whose("PID") == "yours"
 
 

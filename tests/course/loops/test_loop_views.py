@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.loops.functions.controller import PID
+from ir50p_lab.course.loops.functions.PID import PID
 from ir50p_lab.course.loops.loop_views import Trembling
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate

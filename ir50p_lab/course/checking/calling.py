@@ -1,0 +1,56 @@
+"""A student's function is called: with copies, its errors made into sentences, and nothing of what it got changed."""
+
+import copy
+import inspect
+
+import numpy as np
+
+from ir50p_lab.course.checking.stops import why_it_stops
+from ir50p_lab.course.checking.task import Failed, is_run, shown
+
+
+def check_signature(task, function, case):
+    """Raise Failed where a function cannot be called with the arguments of a case."""
+    try:
+        inspect.signature(function).bind(*case)
+    except TypeError:
+        found = ", ".join(inspect.signature(function).parameters)
+        wanted = ", ".join(task.signature)
+        raise Failed(f"it takes ({found}); it will be called with ({wanted}), in this order") from None
+
+
+def call(task, function, case):
+    """What a function returns for a case; where it stops, the Failed that says why. Raises Failed for changed input."""
+    mine = copy.deepcopy(case)
+    try:
+        result = guarded(lambda: function(*mine), lambda: given(task, case))
+    except Failed as stopped:
+        if isinstance(stopped.__cause__, KeyboardInterrupt):
+            raise
+        return stopped
+    for name, one, other in zip(task.signature, case, mine, strict=True):
+        if not _untouched(one, other):
+            says = f"it changes what it was given, `{name}`: work on a copy (`np.array(x)` makes one)"
+            raise Failed(says, given(task, case))
+    return result
+
+
+def guarded(do, case=str):
+    """What `do` gives; case: function that names the case, called only when it fails. Raises Failed from the error."""
+    try:
+        with np.errstate(all="ignore"):
+            return do()
+    except KeyboardInterrupt as stop:
+        raise Failed("it was stopped: does a loop in it never end?", case()) from stop
+    except Exception as error:
+        raise Failed(why_it_stops(error), case()) from error
+
+
+def _untouched(before, after):
+    return callable(before) or np.array_equal(np.asarray(before), np.asarray(after))
+
+
+def given(task, case):
+    """The arguments of a case in words."""
+    named = sorted(zip(task.signature, case, strict=True), key=lambda one: is_run(one[1]))  # long ones at the end
+    return "for " + ", ".join(f"{name} = {shown(value)}" for name, value in named)

@@ -1,0 +1,25 @@
+"""forward_kinematics: the place of the tip."""
+
+from ir50p_lab.course.checking.task import task_of
+from ir50p_lab.course.kinematics.functions import some_arms
+from ir50p_lab.course.kinematics.functions.frames import frames
+
+
+def forward_kinematics(q, l):
+    """Place of the tip, (3,) m    (1.31 corrected)."""
+    T = frames(q, l)
+    tip = T[3]
+    return tip[:3, 3]
+
+
+TASK = task_of(
+    forward_kinematics,
+    "the place of the tip (3,), m",
+    cases=lambda: some_arms(8, 5),
+    leans_on=("frames", "dh_matrix", "rot_z"),
+    parts=("x", "y", "z"),
+    hints=(
+        "You have the tip's frame already. What stands where in a transform?",
+        "T[3] is 4 x 4; the place is a column.",
+    ),
+)

@@ -1,0 +1,154 @@
+"""inverse_kinematics: all poses that reach a place."""
+
+from itertools import product
+
+import numpy as np
+
+from ir50p_lab.course.checking.task import Mistake, table, task_of, wrong_one
+from ir50p_lab.course.kinematics.functions import LENGTHS
+from ir50p_lab.course.kinematics.functions.forward_kinematics import forward_kinematics
+
+SAME = 1e-5  # rad: near the stretched arm rounding of the place leaves the elbow uncertain by 3e-8, 2e-6 degrees
+
+
+def inverse_kinematics(p, l):
+    """All poses that put the tip on p, (n, 3); n = 0 out of reach    (1.60)-(1.73 corrected)."""
+    x, y, z = p
+    l1, l2, l3 = l
+    height = z - l1
+    r = np.sqrt(x**2 + y**2 + height**2)
+    if r > l2 + l3 + 1e-9 or r < abs(l2 - l3) - 1e-9:
+        return np.empty((0, 3))
+    cosine = (r**2 - l2**2 - l3**2) / (2 * l2 * l3)
+    bend = np.arccos(np.clip(cosine, -1, 1))
+    poses = []
+    for side in [1, -1]:
+        waist = np.arctan2(side * y, side * x)
+        distance_outwards = side * np.hypot(x, y)
+        for elbow in [-bend, bend]:
+            slope = np.arctan2(height, distance_outwards)
+            angle_between = np.arctan2(l3 * np.sin(elbow), l2 + l3 * np.cos(elbow))
+            turn = slope - angle_between
+            shoulder = np.arctan2(np.sin(turn), np.cos(turn))
+            poses.append([waist, shoulder, elbow])
+    return np.array(poses)
+
+
+def _targets():
+    rng = np.random.default_rng(7)
+    poses = rng.uniform([-3, -2, -2.8], [3, 2, 2.8], (26, 3))
+    poses[14:, 2] = 0  # stretched: on the edge, but for rounding
+    lengths = [LENGTHS[k % 2] for k in range(len(poses))]
+    cases = [(forward_kinematics(q, l), l.copy()) for q, l in zip(poses, lengths, strict=True)]
+    steps = (-1e-6, -0.5e-9, 0.5e-9, 1e-6)  # m, on both sides of both edges
+    for direction, l, side, step in product(rng.normal(size=(3, 3)), LENGTHS[:2], (1, -1), steps):
+        r = abs(l[1] + side * l[2]) + step
+        cases.append((np.array([0, 0, l[0]]) + r * direction / np.linalg.norm(direction), l.copy()))
+    far = ((0.6, 0.3, 0.5), (-0.5, 0.4, 0.6), (0.02, 0.01, 0.3))
+    return cases + [(np.array(p), LENGTHS[0].copy()) for p in far]
+
+
+def as_poses(value):
+    """Poses as rows (n, 3); an empty answer of any shape is (0, 3)."""
+    rows = np.asarray(value, dtype=float)
+    if rows.size == 0:
+        return np.empty((0, 3))
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise ValueError("not rows of three angles")
+    return rows
+
+
+def _apart(a, b):
+    """Largest joint difference of each pose of a to each of b, whole turns left out."""
+    return np.abs(np.angle(np.exp(1j * (a[:, None] - b[None])))).max(axis=2)
+
+
+def same_poses(returned, expected):
+    """Tell whether two lists hold the same poses, in any order; on the edge, where two coincide, one will do."""
+    a, b = as_poses(returned), as_poses(expected)
+    if len(a) == 0 or len(b) == 0:
+        return len(a) == len(b)
+    apart = _apart(a, b)
+    number = len(a) <= len(b) if _straight(b) else len(a) == len(b)
+    return bool((apart.min(axis=0) < SAME).all() and (apart.min(axis=1) < SAME).all() and number)
+
+
+def _straight(poses):
+    """Tell whether the arm is stretched or folded flat, where its two elbows are one."""
+    return np.abs(np.sin(poses[:, 2])).max() < 1e-2
+
+
+def _symptom(case, returned, expected):
+    p, l = case
+    if returned is None:
+        return "it returns None: no pose means no row, an empty array"
+    if np.size(returned) and (np.ndim(returned) != 2 or np.shape(returned)[1] != 3):
+        return f"one pose a *row*, three angles each, all poses of a place: yours has the shape {np.shape(returned)}"
+    rows = as_poses(returned)
+    if not np.isfinite(rows).all():
+        return "it returns nan out of reach or on its very edge: a root of less than nothing, an arccos of more than 1"
+    if not len(expected):
+        return "a place out of reach gets poses: no pose means no row, an empty array"
+    if not len(rows):
+        return _EDGE if _straight(expected) and np.cos(expected[0, 2]) > 0 else "a place within reach gets no pose"
+    for number, q in enumerate(rows):
+        if (off := np.linalg.norm(forward_kinematics(q, l) - p)) > 1e-5:
+            return f"pose {number + 1} of {len(rows)} puts the tip {1000 * off:.0f} mm beside the place"
+    return f"{len(np.unique(rows.round(6), axis=0))} different poses for a place that has {len(expected)}"
+
+
+_EDGE = (
+    "places on the very edge, where the arm is stretched, count as out of reach: there rounding makes r a hair too "
+    "large; allow r 1e-9 m"
+)
+
+
+def _whole_turns(poses):
+    """Which angle is a whole turn too far: right in the picture, but limits would strike it out."""
+    for number, q in enumerate(as_poses(poses)):
+        for angle, name in zip(q, ("waist", "shoulder", "elbow"), strict=True):
+            if abs(angle) > np.pi + 1e-9:
+                same = np.angle(np.exp(1j * angle))
+                turn = "a whole turn is 2 pi, and every angle belongs between -pi and pi, where the limits are"
+                return f"the {name} of pose {number + 1} is {angle:.1f} rad: the same pose is {same:.1f} rad; {turn}"
+    return ""
+
+
+_WHERE = (  # some of the poses: in words, and what tells them in the solution
+    ("", "True"),
+    (" in the poses with their back to the place", "side < 0"),
+    (" where x < 0", "x < 0"),
+    (" where y < 0", "y < 0"),
+    (" wherever it is beyond a quarter turn", "abs(waist) > np.pi / 2"),
+    (" with the elbow up", "elbow < 0"),
+    (" with the elbow down", "elbow > 0"),
+)
+
+
+def _mistakes():
+    """The mistakes of the table; where a sentence leaves room for it, made in some of the poses only, too."""
+    for says, changes in table("inverse_kinematics", __file__):
+        for words, where in _WHERE if "{}" in says else ():
+            pose, bent = changes[0].split("  ->  ")
+            some = f"{pose} -> {bent} if {where} else {pose}"
+            yield Mistake(wrong_one(inverse_kinematics, [some]), says.format(words))
+        if "{}" not in says:
+            yield Mistake(wrong_one(inverse_kinematics, changes), says)
+
+
+TASK = task_of(
+    inverse_kinematics,
+    "all poses (n, 3) rad that put the tip on p (m), one a row; no row if p is out of reach",
+    cases=_targets,
+    leans_on=("forward_kinematics", "frames", "dh_matrix", "rot_z"),
+    same=same_poses,
+    parts=("q1", "q2", "q3"),
+    slips=tuple(_mistakes()),
+    symptom=_symptom,
+    form=_whole_turns,
+    hints=(
+        "First the pose with the elbow up, facing the place. Does your forward_kinematics bring it back to p?",
+        "The angle between r and the upper arm: draw the perpendicular from the tip onto the line of the upper arm. "
+        "Both sides of that small triangle are easy, and arctan2 knows the quadrant.",
+    ),
+)

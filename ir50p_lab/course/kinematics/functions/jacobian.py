@@ -1,0 +1,45 @@
+"""jacobian: how fast a point of the arm moves and turns, per joint speed."""
+
+import numpy as np
+
+from ir50p_lab.course.checking.task import task_of
+from ir50p_lab.course.kinematics.functions import LENGTHS
+from ir50p_lab.course.kinematics.functions.frames import frames
+
+
+def jacobian(T, link, point):
+    """Velocity and turning of a point carried by a link, per joint speed, (6, 3)    (1.32)-(1.43 corrected)."""
+    J = np.zeros((6, 3))
+    for joint in range(link):
+        axis = T[joint][:3, 2]
+        origin = T[joint][:3, 3]
+        lever = point - origin
+        J[:3, joint] = np.cross(axis, lever)
+        J[3:, joint] = axis
+    return J
+
+
+def _points():
+    rng = np.random.default_rng(31)
+    cases = []
+    for k in range(9):
+        q, l = rng.uniform(-2, 2, 3), LENGTHS[k % 3]
+        T = frames(q, l)
+        link = 3 - k % 3
+        tip = T[link][:3, 3]
+        cases.append((T, link, tip.copy() if k < 3 else tip + rng.uniform(-0.1, 0.1, 3)))
+    return cases
+
+
+TASK = task_of(
+    jacobian,
+    "the matrix (6, 3) of a point (base coordinates) carried by link 1, 2 or 3: velocity above, turning below, one "
+    "column a joint, from the four frames T",
+    cases=_points,
+    leans_on=("frames", "dh_matrix", "rot_z"),
+    tolerance=1e-5,  # as for damped_step
+    hints=(
+        "Joint 1 alone turns: how fast does a point move that is 0.5 m from the axis, and where to? Axis x lever.",
+        "Joint k turns about the z axis of frame k - 1, and stands at its origin. Both are columns of T[k - 1].",
+    ),
+)
