@@ -1,4 +1,4 @@
-"""Which parameters can be told apart: ranks of ERRATA and of the symbolic derivation, by routes that must agree."""
+"""Which parameters can be told apart: ranks by routes that must agree."""
 
 import numpy as np
 import pytest

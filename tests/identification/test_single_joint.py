@@ -346,7 +346,7 @@ def test_recordings_are_pooled_and_one_that_contradicts_is_named():
     assert together.samples > 2.5 * fit_joint(*first).samples
     other = recorded(heavy, 7)
     assert "recording 2 contradicts the others: inertia" in " ".join(fit_joint([first, other, third]).warnings)
-    assert "contradicts the other: inertia" in " ".join(fit_joint([first, other]).warnings)
+    assert "contradicts the others: inertia" in " ".join(fit_joint([first, other]).warnings)
     t, q, u = second
     with pytest.raises(IdentificationError, match=r"recording 2 alone would be refused: .*sign of u"):
         fit_joint([first, (t, q, -u), third])
