@@ -66,4 +66,4 @@ def choice(name, value, choices):
 def first_not_finite(array):
     """Describe the first NaN or infinity of `array`, with its place."""
     place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-    return f"{array[place]} at index {place if len(place) > 1 else place[0]}"
+    return f"{array[place]} at index {place[0] if len(place) == 1 else place}"

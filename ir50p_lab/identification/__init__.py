@@ -15,7 +15,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "excitation": ["Excitation", "optimise_excitation"],
         "excitation_file": ["load_excitations"],
         "fitting": ["fit"],
-        "general_arm": ["general_regressor"],
         "output_error": ["OutputError", "output_error"],
         "processing": ["Motion", "causal_derivatives", "central_derivatives", "process"],
         "recipe": ["identify"],

@@ -57,8 +57,7 @@ def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
         q, qd, qdd: (3,) or (n, 3), rad, rad/s, rad/s^2.
         g: gravity, m/s^2, >= 0.
         sign: what stands for sgn(qd) in the Coulomb columns. None: sgn(qd), 0 at rest. A speed v > 0 in rad/s:
-            tanh(qd/v), which does not jump. An array in [-1, 1] of the shape of q: a direction known better than from
-            the noisy velocity, for example sgn of the reference.
+            tanh(qd/v), which does not jump.
 
     Returns: (3, 20) or (n, 3, 20). Raises InputError on wrong shapes, numbers that are not finite, a bad g or sign.
     """
@@ -66,18 +65,8 @@ def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
     if q.ndim > 2 or qd.shape != q.shape or qdd.shape != q.shape:
         raise InputError(f"q {q.shape}, qd {qd.shape}, qdd {qdd.shape}: give all (3,), or all (n, 3) with the same n")
     g = number("g", g, ">= 0", unit="m/s^2", hint="the base z axis points up")
-    rows = [np.ascontiguousarray(x).reshape(-1, 3) for x in (q, qd, qdd, _direction(sign, qd))]
+    direction = np.tanh(qd / number("sign", sign, "> 0", unit="rad/s")) if sign is not None else np.sign(qd)
+    rows = [np.ascontiguousarray(x).reshape(-1, 3) for x in (q, qd, qdd, direction)]
     out = np.zeros((len(rows[0]), 3, 20))
     _fill(g, *rows, out)
     return out[0] if q.ndim == 1 else out
-
-
-def _direction(sign, qd):
-    if sign is None:
-        return np.sign(qd)
-    if np.ndim(sign) == 0:
-        return np.tanh(qd / number("sign", sign, "> 0", unit="rad/s", hint="a speed for tanh(qd/speed), or an array"))
-    sign = vectors3("sign", sign, unit="-1 to 1")
-    if sign.shape != qd.shape or np.abs(sign).max(initial=0.0) > 1:
-        raise InputError(f"sign {sign.shape}: give the shape of q, {qd.shape}, and numbers from -1 to 1: np.sign(qd)")
-    return sign

@@ -42,7 +42,7 @@ class BaseParameters:
         return "\n".join([head, *(f"  {k + 1:2}  {group}" for k, group in enumerate(self.groups)), *unseen])
 
 
-def base_parameters(Phi, *, names=None, known=None):
+def base_parameters(Phi, *, names=None):
     """Which combinations of parameters the regressor Phi can tell apart, by QR and by SVD.
 
     Columns are scaled to length 1 and taken in order: one that is a combination of kept columns before it (less than
@@ -52,7 +52,6 @@ def base_parameters(Phi, *, names=None, known=None):
         Phi: (n, 3, p), (n, k, p) or (m, p), from exact motion rich enough to excite everything (random states do);
             not from noisy data, where nothing is exactly dependent.
         names: of the p columns; default the 20 parameters, or p1, p2, ...
-        known: numbers that may appear in the groups, {"l2": 0.2}: 0.04 is then written l2^2.
 
     Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if Phi is zero, or if QR and SVD
     disagree on the rank: the motion lies between excited and not excited.
@@ -76,7 +75,7 @@ def base_parameters(Phi, *, names=None, known=None):
         matrix=matrix,
         names=names,
         unseen=tuple(name for k, name in enumerate(names) if k not in seen),
-        groups=tuple(_in_symbols(row, k, names, known or {}) for k, row in zip(columns, matrix, strict=True)),
+        groups=tuple(_in_symbols(row, k, names) for k, row in zip(columns, matrix, strict=True)),
         singular_values=s,
     )
 
@@ -96,17 +95,11 @@ def _checked(Phi, names):
     return A, tuple(names)
 
 
-def _in_symbols(row, kept, names, known):
-    """A sum like 'XX2 - YY2 - l2^2 m3' from its coefficients, that of the kept column first."""
+def _in_symbols(row, kept, names):
+    """A sum like 'XX2 - YY2 - 0.04 m3' from its coefficients, that of the kept column first."""
     text = names[kept]
     for k in np.flatnonzero(row):
         if k != kept:
-            text += f" {'+' if row[k] > 0 else '-'} {_symbol(abs(row[k]), known)}{names[k]}"
+            size = "" if abs(abs(row[k]) - 1) < 1e-6 else f"{abs(row[k]):.4g} "
+            text += f" {'+' if row[k] > 0 else '-'} {size}{names[k]}"
     return text
-
-
-def _symbol(size, known):
-    """A positive coefficient as a known number or its square; else its digits."""
-    candidates = {"": 1.0} | {f"{name} ": x for name, x in known.items()} | {f"{n}^2 ": x**2 for n, x in known.items()}
-    found = [text for text, value in candidates.items() if abs(size - value) < 1e-6 * abs(value)]
-    return found[0] if found else f"{size:.4g} "

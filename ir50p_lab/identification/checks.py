@@ -55,9 +55,8 @@ def check_signals(warned, t, q, u):
     step = np.abs(np.diff(q))
     for turn in (2 * math.pi, 360.0):
         if (jump := (np.abs(step - turn) < 0.1 * turn) & (step > 15 * np.median(step))).any():
-            warned.refuse(
-                f"a whole turn was wrapped at t = {t[1:][jump][0]:.6g} s: use np.unwrap(q, period={turn:.6g})"
-            )
+            at = f"t = {t[1:][jump][0]:.6g} s"
+            warned.refuse(f"a whole turn was wrapped at {at}: use np.unwrap(q, period={turn:.6g})")
     _hung(warned, np.delete(t, places), np.delete(q, places))
     _clipped(warned, np.delete(t, places), np.delete(q, places))
     if np.ptp(q) > _TURNS:
@@ -185,14 +184,10 @@ def check_contradiction(warned, recordings, fit, names):
         except IdentificationError as refusal:
             warned.add(f"recording {k} alone would be refused: {refusal}")
     for name in names:
-        known = [k for k, one in found.items() if math.isfinite(getattr(one, f"{name}_stderr"))]
-        x, sigma = (np.array([getattr(found[k], name + ending) for k in known]) for ending in ("", "_stderr"))
+        x, sigma = (np.array([getattr(one, name + ending) for one in found.values()]) for ending in ("", "_stderr"))
         apart = np.abs(x[:, None] - x)
         apart = np.where(apart > 0.05 * np.abs(x), apart, 0.0) / np.hypot(sigma[:, None], sigma)
         if apart.max(initial=0.0) > _CONTRADICT:
             odd = int(np.argmax(apart.sum(axis=0)))
-            others = "the others" if len(known) > 2 else "the other"
-            value = f"{x[odd]:.4g} +- {sigma[odd]:.2g}"
-            warned.add(
-                f"recording {known[odd]} contradicts {others}: {name} {value} beside {np.median(np.delete(x, odd)):.4g}"
-            )
+            value = f"{x[odd]:.4g} +- {sigma[odd]:.2g} beside {np.median(np.delete(x, odd)):.4g}"
+            warned.add(f"recording {list(found)[odd]} contradicts the others: {name} {value}")

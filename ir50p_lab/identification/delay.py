@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.identification.parameters import RIGID_ON
@@ -42,8 +42,6 @@ def estimate_delay(recording, q=None, u=None, *, cutoff_hz=3.0, slow=0.1):
     Returns: DelayEstimate. Raises: InputError on bad arguments; IdentificationError if too little motion is left.
     """
     t, q, u = columns_of(recording, q, u)
-    if q.shape[1] != 3:
-        raise InputError(f"q has {q.shape[1]} columns: give all three joints")
     step = sampling_period(t)
     delays = step * np.arange(max(int(_LONGEST / step + 1e-9), 3) + 1)
     options = {"cutoff_hz": cutoff_hz, "slow": slow, "filter_u": True, "trim": max(delays[-1], 0.5)}

@@ -5,7 +5,7 @@ import numpy as np
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import estimators
 from ir50p_lab.identification.estimate import Estimate, impossible_values, indefinite_mass
-from ir50p_lab.identification.fit_input import checked_data, finite
+from ir50p_lab.identification.fit_input import checked_data
 from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, NAMES, metres
 from ir50p_lab.identification.regression import Problem
 from ir50p_lab.inputs import choice, number, vectors3
@@ -65,7 +65,7 @@ def fit(
     Phi, y = checked_data(Phi, y)
     used = np.ones(y.shape) if use is None else _checked_use(use, y)
     share = used * np.sqrt(_checked_weights(weights, y)) if method == "weighted" else used
-    Z = _checked_instruments(instruments, Phi) if method == "iv" else None
+    Z = checked_data(instruments, y, "instruments")[0] if method == "iv" else None
     theta, stderr, covariance = np.zeros((3, 20)), np.full((3, 20), np.nan), np.zeros((3, 20, 20))
     condition, freedom, lost, notes = np.zeros(3), np.zeros(3), [], []
     for joints in [slice(0, 3)] if rows == "shared" else [slice(j, j + 1) for j in range(3)]:
@@ -141,10 +141,3 @@ def _checked_use(use, y):
     if use.sum(axis=0).min() < 40:
         raise IdentificationError(f"only {use.sum(axis=0)} samples to be used, 40 are needed: record more motion")
     return use.astype(float)
-
-
-def _checked_instruments(instruments, Phi):
-    if np.shape(instruments) != Phi.shape:
-        shape = np.shape(instruments)
-        raise InputError(f"instruments have shape {shape}: give {Phi.shape}, the regressor of the reference, say")
-    return finite("instruments", instruments)

@@ -25,7 +25,6 @@ class LeastSquares:
     rms            of the residuals
     correlation    of neighbouring residuals: 0 for white noise
     independent    number of independent samples that carry as much as the n there are
-    condition      of A, its columns scaled to length 1
     dropped        names of the columns that the data cannot carry                                  tuple
     warnings       tuple of str: columns left out, and what the others now stand for
     ============== ================================================================================ ==========
@@ -38,7 +37,6 @@ class LeastSquares:
     rms: float
     correlation: float
     independent: float
-    condition: float
     dropped: tuple
     warnings: tuple
 
@@ -83,7 +81,6 @@ def least_squares(A, y, *, names=None, tolerance=DEPENDENT):
         rms=math.sqrt(np.mean(e**2)),
         correlation=float(np.mean(np.sum(e[1:] * e[:-1], axis=0) / power)),
         independent=float(independent_samples(e)),
-        condition=problem.condition,
         dropped=tuple(problem.lost),
         warnings=tuple(problem.notes),
     )

@@ -78,8 +78,7 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     carry less information than their number: then the errors are widened by sqrt((1 + r)/(1 - r)). They are also
     widened by what K, T and L move where y drifts in a line or was on its way to rest at first, by the jitter of an
     uneven clock and by half a step of a coarse y. In white noise two standard errors hold the truth 95 times in 100. Of
-    other errors of the model they know nothing; one step cannot tell a small drift from a slow end of the response,
-    several steps to both sides can.
+    other errors of the model they know nothing.
 
     Args:
         t: (n,) s, increasing. u: (n,), input; u[k] acts from t[k] to t[k + 1]. y: (n,), output, any unit.
@@ -88,8 +87,8 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
 
     Returns: FOPDT. K is negative where y answers a step up by going down. `warnings` tells of a response that is not
     over when the record ends (T longer than it), of T or L below the sampling period (its error is then inf or a
-    period), of correlated residuals, drift, a start that was no rest, another shape, times that look like milliseconds,
-    and single outliers of u and y (of y they are left out).
+    period), of correlated residuals, drift, another shape, times that look like milliseconds, and single outliers of u
+    and y (of y they are left out).
 
     Raises:
         IdentificationError: u never changes; y does not change or does not follow u; fewer than 8 samples after the
@@ -98,19 +97,13 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
         InputError: NaN, shapes or lengths that do not fit, time that does not increase.
     """
     record = _StepRecord(t, u, y, u_before, Warnings(anyway))
-    (rate, L), slope, e = record.first_order()
+    rate, L, slope, e = record.best()
     _check_shape(record, rate, L, slope, e)
     if rate <= 0:
         raise IdentificationError("no first-order model is near this response, not even with anyway=True")
-    period, T = record.period, 1 / rate
-    found = np.array([slope * T, T, L])
-    J = record.jacobian(found)
-    errors = np.hypot(_standard_errors(J, e), _systematic_errors(record, T, J, e))
-    _warn(record, T, L, errors[2], e)
-    if T < _SEEN * period:
-        errors[1:] = math.inf
-    if L < _SEEN * period:
-        errors[2] = max(errors[2], period)
+    found = np.array([slope / rate, 1 / rate, L])
+    errors = record.standard_errors(found, e)
+    _check_parameters(record, *found[1:], errors, e)
     units = record.y_range / record.u_range, record.seconds, record.seconds
     values = [*(found * units).tolist(), *(errors * units).tolist()]
     return FOPDT(
@@ -156,45 +149,58 @@ class _StepRecord:
         respond(self.t, self.times, self.jumps, rate, L, x)
         return x
 
-    def first_order(self):
-        """(rate, L), slope, residuals of y = y0 + slope x, x' = u(t - L) - rate x: rate is 1/T, slope K/T.
+    def best(self):
+        """rate, L, slope, residuals of the least squares y = y0 + slope x, x' = u(t - L) - rate x.
 
-        The rate is fitted, not T, because 0 (the plant integrates) and below (it grows) are then points like any other.
+        rate is 1/T, slope K/T: at rate 0 the plant integrates, below it grows, and these are points like any other.
         """
-        latest = max(0.9 - 4 * self.period, 0.1)
-        dead_times = np.r_[np.geomspace(0.3 * self.period, latest, 24), np.linspace(0, latest, 50)]
-        rates = np.r_[-30.0, -10.0, -3.0, -1.0, -0.3, 0.0, np.geomspace(0.1, 3 / self.period, 24)]
-        starts = [[(rate, L) for L in dead_times] for rate in rates]
-        return self.best(self.answer, starts, ((-40.0, 0.0), (30 / self.period, latest + 0.05)))
-
-    def best(self, answer, starts, bounds):
-        """p, slope, residuals of the least squares y = y0 + slope answer(*p); starts: rows of p of a grid."""
         from scipy.optimize import least_squares
 
         y = self.y - self.y.mean()
 
         def solved(p):
-            x = answer(*p)
+            x = self.answer(*p)
             x -= x.mean()
             slope = x @ y / max(x @ x, 1e-300)
             return slope, slope * x - y
 
-        costs = np.array([[np.linalg.norm(solved(p)[1]) for p in row] for row in starts])
+        latest = max(0.9 - 4 * self.period, 0.1)
+        dead_times = np.r_[np.geomspace(0.3 * self.period, latest, 24), np.linspace(0, latest, 50)]
+        rates = np.r_[-30.0, -10.0, -3.0, -1.0, -0.3, 0.0, np.geomspace(0.1, 3 / self.period, 24)]
+        costs = np.array([[np.linalg.norm(solved((rate, L))[1]) for L in dead_times] for rate in rates])
+        bounds = (-40.0, 0.0), (30 / self.period, latest + 0.05)
         options = {"bounds": bounds, "x_scale": "jac", "ftol": 1e-12, "xtol": 1e-11, "gtol": 1e-14}
-        likely = [starts[k][costs[k].argmin()] for k in costs.min(axis=1).argsort()[:_REFINED]]
-        fits = [least_squares(lambda p: solved(p)[1], np.clip(p, *bounds), **options) for p in likely]
-        best = min(fits, key=lambda fit: fit.cost)
-        return best.x, *solved(best.x)
+        likely = costs.min(axis=1).argsort()[:_REFINED]
+        starts = [(rates[k], dead_times[costs[k].argmin()]) for k in likely]
+        fits = [least_squares(lambda p: solved(p)[1], np.clip(start, *bounds), **options) for start in starts]
+        p = min(fits, key=lambda fit: fit.cost).x
+        return *p, *solved(p)
 
-    def jacobian(self, found):
-        """(n, 4): slopes of the response by an offset, and by K, T, L = found, from differences."""
+    def standard_errors(self, found, e):
+        """Of K, T, L = found (3,), from differences of the response and the residuals e (n,).
+
+        A drift, or a start that was no rest, is fitted too: what it moves counts by its F value over a significant one.
+        """
 
         def response(p):
             return p[0] / p[1] * self.answer(1 / p[1], p[2])
 
         moves = np.diag(1e-6 * np.maximum(np.abs(found), 1e-3 * self.period))
         slopes = [(response(found + move) - response(found)) / move.sum() for move in moves]
-        return np.column_stack([np.ones_like(self.t), *slopes])
+        J = np.column_stack([*slopes, np.ones_like(e)])
+        A = np.column_stack([J, self.t, np.exp((self.t[0] - self.t) / found[1])])
+        x = np.linalg.lstsq(A, -e)[0]
+        left = e + A @ x
+        spread = max(left @ left, len(e) * _ROUNDING**2) / len(e) * _correlation(left)[1] ** 2
+        sure = min((e @ e - left @ left) / (_SIGNIFICANT * spread), 1.0)
+        if sure == 1:
+            self.warned.add("y drifts, or was not at rest at first: errors were widened; record longer rest before")
+        length = np.maximum(np.linalg.norm(J, axis=0), 1e-300)  # 0 for a T that is over between two samples
+        spread = math.sqrt(e @ e / (len(e) - 4)) * _correlation(e)[1]
+        errors = spread * np.linalg.norm(np.linalg.pinv(J / length), axis=1) / length
+        coarse = self.quantum / 2 if e @ e < len(e) * (self.quantum / 2) ** 2 else 0.0  # no noise mixes the steps
+        late = coarse * found[1] + np.median(np.abs(np.diff(self.t) - self.period))
+        return np.hypot(np.hypot(errors[:3], sure * x[:3]), [coarse, late, late])
 
 
 def _jumps_of(t, u, u_before):
@@ -217,66 +223,31 @@ def _check_shape(record, rate, L, slope, e):
     """Refuse where y does not follow u at all, in a way that no FOPDT model has, or without end."""
     warned, n, rss, total = record.warned, len(e), e @ e, np.sum((record.y - record.y.mean()) ** 2)
     correlation, wider = _correlation(e)
-
-    def F(more, parameters):
-        """F value of the model against one with fewer parameters, which leaves `more`."""
-        return (more - rss) / parameters / (max(rss, n * _ROUNDING**2) / (n - 4))
-
-    follows, explained = F(total, 3), 1 - rss / total
+    F = (total - rss) / 3 / (max(rss, n * _ROUNDING**2) / (n - 4))
+    explained = 1 - rss / total
     not_white = rss - np.sum(np.diff(e, 2) ** 2) / 6 * n / (n - 2)  # second differences pass only the white noise
-    said = f"the response has not the shape of the model ({explained:.0%} explained)"
-    if follows < _FOLLOWS or (follows / wider**2 < _FOLLOWS and explained < 0.5):
+    if F < _FOLLOWS or (F / wider**2 < _FOLLOWS and explained < 0.5):
         warned.refuse(f"y does not follow u ({explained:.1%} explained): make a larger step, or average recordings")
     elif not_white > _MISSED * total and correlation > 0.5:
+        said = f"the response has not the shape of the model ({explained:.0%} explained)"
         doubt = warned.refuse if explained < _MEANINGFUL else warned.add
         doubt(f"{said}: drift, a limit, a swing? To a swing fit control.forced_response by scipy's least_squares")
-    starts = [[(k / 50,)] for k in range(45)]
-    ramp = record.best(lambda L: record.answer(0.0, L), starts, (0.0, 0.95))[2]  # what an integrating plant answers
-    if rate * (1 - L) > 1 / _SLOWEST and F(ramp @ ramp, 1) / wider**2 > _SIGNIFICANT:
-        return
-    value = f"only K/T has a value, {slope * record.y_range / record.u_range / record.seconds:.4g} y/u per s"
-    said = "the response runs on like a ramp, or ever faster: the plant integrates (as angles do), is unstable or slow"
-    warned.refuse(f"{said}; {value}: fit the velocity and tune with simc_integrating, or record longer")
+    if rate * (1 - L) < 1 / _SLOWEST:
+        value = f"only K/T has a value, {slope * record.y_range / record.u_range / record.seconds:.4g} y/u per s"
+        said = "the response runs on like a ramp, or faster: the plant integrates (as angles do), is unstable or slow"
+        warned.refuse(f"{said}; {value}: fit the velocity and tune with simc_integrating, or record longer")
 
 
-def _standard_errors(J, e):
-    """Standard errors (3,) of K, T, L from the jacobian and the residuals e (n,), widened for correlation."""
-    length = np.maximum(np.linalg.norm(J, axis=0), 1e-300)  # 0 for a T that is over between two samples
-    spread = math.sqrt(e @ e / (len(e) - J.shape[1])) * _correlation(e)[1]
-    return (spread * np.linalg.norm(np.linalg.pinv(J / length), axis=1) / length)[1:]
-
-
-def _systematic_errors(record, T, J, e):
-    """How far K, T, L (3,) move when a linear drift, or a decaying start, is fitted as well; and what does not average.
-
-    A flaw that is not significant counts by its F value over a significant one, so that noise alone hardly widens the
-    errors. Half a step of a coarse y remains where noise does not mix the steps, and so does the jitter of the clock.
-    """
-    coarse = record.quantum / 2 if e @ e < len(e) * (record.quantum / 2) ** 2 else 0.0
-    late = coarse * T + np.median(np.abs(np.diff(record.t) - record.period))
-    moved = np.array([coarse, late, late])
-    flaws = {"y drifts by": record.t, "y was not at rest at first, but away by": np.exp((record.t[0] - record.t) / T)}
-    for said, column in flaws.items():
-        A = np.column_stack([J, column])
-        x = np.linalg.lstsq(A, -e)[0]
-        left = e + A @ x
-        spread = max(left @ left, len(e) * _ROUNDING**2) / (len(e) - A.shape[1]) * _correlation(left)[1] ** 2
-        sure = min((e @ e - left @ left) / (_SIGNIFICANT * spread), 1.0)
-        moved = np.hypot(moved, sure * x[1:4])
-        if sure == 1:
-            size = f"{100 * abs(x[-1]) * np.ptp(column):.2g} % of its range"
-            record.warned.add(f"{said} {size}: errors were widened; record longer rest before the step")
-    return moved
-
-
-def _warn(record, T, L, L_stderr, e):
-    """Warn of what is to be minded about a fit that is not refused."""
+def _check_parameters(record, T, L, errors, e):
+    """Warn of what the record does not hold; errors (3,) of T and L below a period are then inf, or a period."""
     warned, period, seconds = record.warned, record.period, record.seconds
     if T < _SEEN * period:
         warned.add(f"the time constant is not identifiable, {T / period:.2f} of the sampling period: sample faster")
+        errors[1:] = math.inf
     elif L < _SEEN * period:
         warned.add(f"the dead time is not identifiable, {L / period:.2f} of a sampling period: use no rule with 1/L")
-    elif L < 2 * L_stderr:
+        errors[2] = max(errors[2], period)
+    elif L < 2 * errors[2]:
         warned.add(f"dead time {L * seconds:.3g} s is less than two standard errors: it cannot be told from none")
     if T > 1 - L:
         warned.add(f"not settled: T = {T * seconds:.4g} s, {(1 - L) * seconds:.4g} s of response recorded; record 3 T")

@@ -193,7 +193,7 @@ def _runs(warned, recording, delay):
 
 
 def _band(runs):
-    """What the spectrum of the angle (of qd, if measured) holds: motion below some frequency, noise above another.
+    """What the spectrum of the angle (of qd, if measured) of the longest run holds: motion below, noise above.
 
     White noise is what it holds between a quarter and half of the rate; what nowhere rises above the highest line there
     (steps of a coarse angle make such lines) is no motion. Returns a namespace: motion_hz; clean_hz, up to which noise
@@ -202,17 +202,12 @@ def _band(runs):
     from scipy.signal import welch
 
     longest = max(runs, key=lambda run: len(run.u))
-    pieces = [run.angles for run in runs if abs(run.rate / longest.rate - 1) < 0.01]
-    length = min(len(longest.u), max(256, sum(map(len, pieces)) // 6))
-    pieces = [x for x in pieces if len(x) >= length]
-    spectra = [welch(x[:, -1], longest.rate, nperseg=length) for x in pieces]
-    power = np.average([density for _, density in spectra], axis=0, weights=[len(x) for x in pieces])[1:]
-    f = spectra[0][0][1:]
+    x = longest.angles[:, -1]
+    f, power = (column[1:] for column in welch(x, longest.rate, nperseg=min(len(x), max(256, len(x) // 6))))
     rest = power[f >= longest.rate / 4]
     floor = np.median(rest) / math.log(2)  # a spectral line of noise is chi-squared with 2 degrees of freedom
-    quantum = quantum_of(np.concatenate([x[:, -1] for x in pieces]))
-    above = np.where(power > max(3 * floor, rest.max(), _SAW * quantum**2 / f[0]), power - floor, 0.0)
-    to_speed = (2 * np.pi * f) ** 2 if pieces[0].shape[1] == 1 else np.ones_like(f)
+    above = np.where(power > max(3 * floor, rest.max(), _SAW * quantum_of(x) ** 2 / f[0]), power - floor, 0.0)
+    to_speed = (2 * np.pi * f) ** 2 if longest.angles.shape[1] == 1 else np.ones_like(f)
     speed, speed_noise = np.cumsum(to_speed * above), np.cumsum(to_speed * floor)
     noise = np.cumsum(f**2 * to_speed * floor) <= _NOISE * np.cumsum(f**2 * to_speed * above)
     highest = int(np.searchsorted(f, _HIGHEST * longest.rate)) - 1
@@ -370,7 +365,6 @@ def _check_timing(warned, lower, others, period):
         return
     if others.get("spring", late).rms < late.rms:
         warned.add("inertia depends on the frequency, as in a flexible joint: try a lower cutoff_hz")
-    elif delay > _TOLD * period:
-        warned.add(f"u seems to act about {delay:.2g} s later than delay= says: add it there (backlash looks alike)")
-    elif delay < -_TOLD * period:
-        warned.add(f"q seems to be recorded {-delay:.2g} s before u, or u is filtered: inertia is too small; shift one")
+    elif abs(delay) > _TOLD * period:
+        said = f"{abs(delay):.2g} s {'later' if delay > 0 else 'earlier'} than delay= says"
+        warned.add(f"u seems to act about {said}: shift q or u by it (backlash, a filter look alike)")

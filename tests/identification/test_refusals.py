@@ -39,7 +39,6 @@ BAD = {
     "least_squares": [(NAN_PHI, Y), (PHI, Y[:5]), (0 * PHI, Y), (PHI[0, :, :2], "x")],
     "output_error": [(TH, Run(q=NAN_Q), PD, MOTION), (TH, Run(), None, MOTION), (TH[:1], Run(), PD, MOTION)],
     "fit_fopdt": [(T, NAN_Q[:, 0], Q[:, 0]), (T[::-1], U[:, 0], Q[:, 0]), (T[:2], U[:2, 0], Q[:2, 0])],
-    "general_regressor": [(NAN_Q, Q, Q), (Q, Q[:2], Q)],
     "causal_derivatives": [(NAN_Q, 100.0), (Q, -1.0), (Q, 2.0), ("x", 100.0)],
     "central_derivatives": [(NAN_Q, 100.0), (Q, -1.0), (Q, 2.0), (Q[:2], 100.0)],
     "process": [(Run(q=NAN_Q),), (Run(t=T[::-1]),), (T,), (Run(q=Q[:5]),), (Run(T[:5], Q[:5], U[:5]),)],
@@ -51,7 +50,6 @@ BAD = {
     "RLS": [],  # its steps below
 }
 KEYWORDS = {
-    "general_regressor": {"l2": 0.2},
     "output_error": {"progress": False},
     "optimise_excitation": {"progress": False},
 }

@@ -62,19 +62,14 @@ def test_at_rest_coulomb_friction_is_left_out():
     assert not Phi[:, 11:16:2].any()
 
 
-def test_sign_may_be_smooth_or_given():
+def test_sign_may_be_smooth():
     q, qd, qdd = random_states(np.random.default_rng(4), 200)
     coulomb = [(0, 11), (1, 13), (2, 15)]
-    smooth, given = regressor(q, qd, qdd, sign=0.05), regressor(q, qd, qdd, sign=-np.sign(qd))
-    plain = regressor(q, qd, qdd)
+    smooth, plain = regressor(q, qd, qdd, sign=0.05), regressor(q, qd, qdd)
     for row, column in coulomb:
         np.testing.assert_allclose(smooth[:, row, column], np.tanh(qd[:, row] / 0.05))
-        np.testing.assert_array_equal(given[:, row, column], -plain[:, row, column])
-    for other in (smooth, given):  # nothing else changes
-        other = other.copy()
-        for row, column in coulomb:
-            other[:, row, column] = plain[:, row, column]
-        np.testing.assert_array_equal(other, plain)
+        smooth[:, row, column] = plain[:, row, column]
+    np.testing.assert_array_equal(smooth, plain)  # nothing else changes
 
 
 def test_bad_input_is_refused():
@@ -91,12 +86,10 @@ def test_bad_input_is_refused():
         regressor(good, good, good, g=-1.0)
     with pytest.raises(InputError, match=r"sign = .*> 0"):
         regressor(good, good, good, sign=-1.0)
-    with pytest.raises(InputError, match="numbers from -1 to 1"):
-        regressor(good, good, good, sign=good + 1.0)
     assert regressor(good, good, good).shape == (4, 3, 20)
 
 
-@pytest.mark.parametrize("sign", [0.0, np.inf, np.nan, "tanh", True])
+@pytest.mark.parametrize("sign", [0.0, np.inf, np.nan, "tanh", True, [0.1] * 3])
 def test_bad_sign(sign):
     with pytest.raises(InputError, match="sign"):
         regressor(np.ones(3), np.ones(3), np.ones(3), sign=sign)
