@@ -159,8 +159,7 @@ def output_error(
         return (ahead - behind).T / (2 * moves.diagonal())
 
     with bar, ThreadPoolExecutor(2) as pool:
-        options = {"x_scale": scale, "max_nfev": iterations, "ftol": 1e-4}
-        found = minimise(residuals, x0, slopes, bounds=(low, high), **options)
+        found = minimise(residuals, x0, slopes, bounds=(low, high), x_scale=scale, max_nfev=iterations, ftol=1e-4)
     spread = least_squares(found.jac.reshape(-1, 6, len(x0)), found.fun.reshape(-1, 6), names=names)
     notes = list(spread.warnings)
     if found.status == 0:
