@@ -40,7 +40,6 @@ def test_a_wrong_pattern_is_refused_within_a_small_multiple_of_the_time_of_the_r
             calibrate(pictures, pattern=pattern, progress=False)
 
     wrong, right = processor_time(refused, lambda: calibrate(pictures, progress=False), rounds=2)
-    print(wrong / right)
     assert wrong < 16 * right
 
 
