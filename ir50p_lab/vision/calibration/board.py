@@ -26,7 +26,9 @@ class Checkerboard:
 
     def __post_init__(self):
         object.__setattr__(self, "pattern", check_pattern(self.pattern))
-        object.__setattr__(self, "square", number("square", self.square, "> 0", unit="m", hint="such as 0.025"))
+        object.__setattr__(
+            self, "square", number("square", self.square, "> 0", unit="m", hint="a positive length, such as 0.025")
+        )
 
     @property
     def points(self):
