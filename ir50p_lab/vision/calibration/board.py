@@ -26,9 +26,7 @@ class Checkerboard:
 
     def __post_init__(self):
         object.__setattr__(self, "pattern", check_pattern(self.pattern))
-        object.__setattr__(
-            self, "square", number("square", self.square, "> 0", unit="m", hint="a positive length, such as 0.025")
-        )
+        object.__setattr__(self, "square", number("square", self.square, "> 0", unit="m", hint="a positive length"))
 
     @property
     def points(self):
