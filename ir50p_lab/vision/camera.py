@@ -2,7 +2,6 @@
 
 import contextlib
 import os
-import tempfile
 import time
 from dataclasses import dataclass
 
@@ -28,16 +27,13 @@ class Frame:
         save_image(path, self.image, rendered=self.simulated)
 
 
-class Camera:
+class Camera(contextlib.AbstractContextManager):
     """A source of pictures: `with open_camera() as camera: frame = camera.read()`. It has name, simulated, size."""
 
     name, simulated, size = "camera", False, (0, 0)
 
     def close(self):
         """Let go of the camera: no more pictures; twice does no harm."""
-
-    def __enter__(self):
-        return self
 
     def __exit__(self, *_):
         self.close()
@@ -53,8 +49,9 @@ class Webcam(Camera):
         import cv2
 
         self.name = f"webcam {index}"
-        with _quiet():
-            self._capture = cv2.VideoCapture(index)
+        level = cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # drivers say much in the notebook
+        self._capture = cv2.VideoCapture(index)
+        cv2.utils.logging.setLogLevel(level)
         asked = (cv2.CAP_PROP_FRAME_WIDTH, size[0]), (cv2.CAP_PROP_FRAME_HEIGHT, size[1]), (cv2.CAP_PROP_BUFFERSIZE, 1)
         for what, value in asked:
             self._capture.set(what, value)
@@ -123,20 +120,3 @@ def open_camera(source=None, *, size=(640, 480)):
     kind = "rendered" if camera.simulated else "photographs"
     print("Camera: {}, {}x{}, {}".format(camera.name, *camera.size, kind))
     return camera
-
-
-@contextlib.contextmanager
-def _quiet():
-    """Keep what camera drivers write to the console out of the notebook."""
-    try:
-        kept = os.dup(2)
-    except OSError:  # a program without a console
-        yield
-        return
-    with tempfile.TemporaryFile() as file:
-        os.dup2(file.fileno(), 2)
-        try:
-            yield
-        finally:
-            os.dup2(kept, 2)
-            os.close(kept)

@@ -53,17 +53,6 @@ class Pinhole:
     cx = property(lambda self: float(self.K[0, 2]), doc="Column of the optical axis, pixels.")
     cy = property(lambda self: float(self.K[1, 2]), doc="Row of the optical axis, pixels.")
 
-    @property
-    def widest(self):
-        """Tangent of the largest angle to the axis at which the distortion still grows with it; inf if it always does.
-
-        Beyond it the polynomial runs backwards and would show what is outside the picture a second time.
-        """
-        k1, k2, _, _, k3 = self.distortion
-        roots = np.roots([7 * k3, 5 * k2, 3 * k1, 1])  # d/dr of r (1 + k1 r^2 + k2 r^4 + k3 r^6), in r^2
-        roots = roots[np.abs(roots.imag) < 1e-9 * np.abs(roots)].real
-        return float(np.sqrt(min(roots[roots > 0], default=np.inf)))
-
     def project(self, T_cam_world, X):
         """Pixels (n, 2) of the points X (n, 3) m in world coordinates; one point (3,) gives (2,).
 
@@ -84,7 +73,13 @@ class Pinhole:
     def distort(self, xy):
         """Distorted normalised coordinates (..., 2) of undistorted ones (..., 2)."""
         xy = coordinates("xy", xy, 2, "normalised coordinates")
-        return np.stack(distort_xy(self.distortion, xy[..., 0], xy[..., 1]), axis=-1)
+        k1, k2, p1, p2, k3 = self.distortion
+        x, y = xy[..., 0], xy[..., 1]
+        r2 = x * x + y * y
+        radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
+        xd = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)
+        yd = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y
+        return np.stack([xd, yd], axis=-1)
 
     def to_pixels(self, xy):
         """Pixels K (x, y, 1) of normalised coordinates (..., 2), without distortion."""
@@ -93,26 +88,39 @@ class Pinhole:
 
     def to_normalised(self, xy):
         """Normalised coordinates (..., 2) of pixels (..., 2); the distortion stays in."""
-        xy = coordinates("xy", xy, 2)
-        y = (xy[..., 1] - self.K[1, 2]) / self.K[1, 1]
-        x = (xy[..., 0] - self.K[0, 2] - self.K[0, 1] * y) / self.K[0, 0]
-        return np.stack([x, y], axis=-1)
+        return (coordinates("xy", xy, 2) - self.K[:2, 2]) @ np.linalg.inv(self.K[:2, :2]).T
 
     def undistort_points(self, xy):
         """Normalised coordinates (..., 2) without distortion of pixels (..., 2).
 
         Raises InputError where no point within the picture angle is distorted to that pixel.
         """
-        distorted = self.to_normalised(xy)
-        x, y = undistort_xy(self.distortion, distorted[..., 0], distorted[..., 1])
-        lost = ~(np.isfinite(x) & np.isfinite(y))
+        found = self.undistort_or_nan(xy)
+        lost = np.isnan(found).any(axis=-1)
         if lost.any():
-            first = np.reshape(np.asarray(xy, dtype=float), (-1, 2))[np.argmax(lost.ravel())]
+            first = np.asarray(xy, dtype=float)[lost][0]
             raise InputError(
                 f"the lens with distortion {self.distortion.tolist()} sends no ray to pixel {first.tolist()}: the "
                 f"pixel is too far outside the picture of {self.size[0]}x{self.size[1]}, or the coefficients are wrong"
             )
-        return np.stack([x, y], axis=-1)
+        return found
+
+    def undistort_or_nan(self, xy):
+        """As `undistort_points`, by OpenCV's iteration; NaN for a pixel to which the lens sends no ray."""
+        import cv2
+
+        distorted, k = self.to_normalised(xy), self.distortion
+        if not k.any() or not distorted.size:
+            return distorted
+        stop = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, _STEPS, 1e-13)
+        with np.errstate(all="ignore"):
+            found = cv2.undistortPointsIter(distorted.reshape(-1, 1, 2), np.eye(3), k, None, None, stop)
+            found = found.reshape(distorted.shape)
+            # beyond the fold of the polynomial a solution is a mirage: the lens never sends a ray there
+            r2 = (found**2).sum(axis=-1)
+            rising = 1 + r2 * (3 * k[0] + r2 * (5 * k[1] + r2 * 7 * k[4])) > 0
+            off = np.abs(self.distort(np.nan_to_num(found)) - distorted).sum(axis=-1)
+        return np.where((rising & (off < 1e-9))[..., None], found, np.nan)
 
     def rays(self, xy):
         """Directions (..., 3), of length 1 in camera coordinates, that the pixels (..., 2) look along."""
@@ -133,33 +141,6 @@ class Pinhole:
         K[0, 2] = (self.cx + 0.5) * s - 0.5
         K[1, 2] = (self.cy + 0.5 - self.size[1] / 2) * s + height / 2 - 0.5
         return Pinhole(K, self.distortion, (width, height))
-
-
-def distort_xy(k, x, y):
-    """Distorted (x, y) of normalised (x, y), arrays of any shape; k = k1, k2, p1, p2, k3."""
-    k1, k2, p1, p2, k3 = k
-    r2 = x * x + y * y
-    radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
-    return (x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x), y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y)
-
-
-def undistort_xy(k, xd, yd):
-    """Solve distort_xy(k, x, y) = (xd, yd) for x, y by OpenCV's iteration; NaN where there is no solution near."""
-    import cv2
-
-    xd, yd = np.asarray(xd, dtype=float), np.asarray(yd, dtype=float)
-    if not np.any(k) or not xd.size:
-        return xd.copy(), yd.copy()
-    distorted, stop = np.stack([xd.ravel(), yd.ravel()], axis=-1), (3, _STEPS, 1e-13)
-    with np.errstate(all="ignore"):
-        found = cv2.undistortPointsIter(distorted[:, None], np.eye(3), np.asarray(k), None, None, stop)
-        x, y = (part.reshape(xd.shape) for part in found[:, 0].T)
-        ex, ey = distort_xy(k, x, y)
-        r2, (k1, k2, _, _, k3) = x * x + y * y, k
-        # beyond the fold of the polynomial a solution is a mirage: the lens never sends a ray there
-        rising = 1 + r2 * (3 * k1 + r2 * (5 * k2 + r2 * 7 * k3)) > 0
-        good = (np.abs(ex - xd) + np.abs(ey - yd) < 1e-9) & rising
-    return np.where(good, x, np.nan), np.where(good, y, np.nan)
 
 
 def _frozen(array):

@@ -198,7 +198,8 @@ def _light(scene):
     ground = np.where(np.isfinite(depth), depth, 0)
     X, Y = (eye[k] + ground * ways[k] for k in (0, 1))
     on = np.isfinite(depth) & (X > _EDGES[0][0]) & (X < _EDGES[0][1]) & (Y > _EDGES[1][0]) & (Y < _EDGES[1][1])
-    light[on] = _table(scene, X[on], Y[on])
+    if on.any():
+        light[on] = _table(scene, X[on], Y[on])
     depth = np.where(on, depth, np.float32(np.inf))
     squared = (rays * rays).sum(axis=0)
     for thing in (*scene.objects, *scene.arm):
@@ -320,13 +321,16 @@ def _truth(scene, ball):
     T, r = np.asarray(scene.T_cam_world), ball.radius
     centre, numbers = T[:3, :3] @ ball.position + T[:3, 3], [np.nan] * 5
     D = np.linalg.norm(centre)
-    if centre[2] > r and (np.hypot(*centre[:2]) + r) / (centre[2] - r) < scene.pinhole.widest:
+    if centre[2] > r:
         side, up = np.linalg.svd(centre[None])[2][1:]
         a = np.arange(256)[:, None] * (2 * np.pi / 256)  # the circle where rays from the camera touch it
-        rim = centre * (1 - (r / D) ** 2) + r * np.sqrt(1 - (r / D) ** 2) * (np.cos(a) * side + np.sin(a) * up)
-        rim, (x, y) = scene.pinhole.project(np.eye(4), rim), scene.pinhole.project(np.eye(4), centre)
-        middle = rim.mean(axis=0)
-        m = cv2.moments(np.float32(rim - middle))
-        numbers = [x, y, np.sqrt(m["m00"] / np.pi), middle[0] + m["m10"] / m["m00"], middle[1] + m["m01"] / m["m00"]]
+        touched = centre * (1 - (r / D) ** 2) + r * np.sqrt(1 - (r / D) ** 2) * (np.cos(a) * side + np.sin(a) * up)
+        rim, xy = (scene.pinhole.project(np.eye(4), points) for points in (touched, centre))
+        seen = scene.pinhole.undistort_or_nan(rim)
+        if np.allclose(seen, touched[:, :2] / touched[:, 2:]):  # else it lies beyond the fold of the lens
+            middle = rim.mean(axis=0)
+            m = cv2.moments(np.float32(rim - middle))
+            shift = np.array([m["m10"], m["m01"]]) / m["m00"]
+            numbers = [*xy, np.sqrt(m["m00"] / np.pi), *(middle + shift)]
     names = ("x", "y", "radius", "outline_x", "outline_y")
     return BallTruth(**dict(zip(names, map(float, numbers), strict=True)), position=ball.position, colour=ball.colour)

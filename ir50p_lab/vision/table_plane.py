@@ -85,9 +85,9 @@ class TablePlane:
         Raises InputError on bad pixels; VisionError for a pixel whose line of sight does not meet the plane.
         """
         points, height = point_list("xy", xy, 2), number("height", height, unit="m")
-        rays = np.column_stack([self.pinhole.undistort_points(points), np.ones(len(points))])
+        rays = self.pinhole.rays(points)
         R, t = self.T_cam_table[:3, :3], self.T_cam_table[:3, 3]
-        down = -(rays @ R)[:, 2] / np.linalg.norm(rays, axis=1)  # of the line of sight, towards the table
+        down = -(rays @ R)[:, 2]  # of the line of sight, towards the table
         above = -R[:, 2] @ t - height  # of the lens, over the plane
         lost = (down * np.sign(above) < _SLANT) | (above == 0)
         if lost.any():

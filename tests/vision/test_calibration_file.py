@@ -60,7 +60,7 @@ def test_files_that_are_no_calibration(calibration, tmp_path):
         path.write_text(text)
         with pytest.raises(CalibrationError, match="damaged"):
             Calibration.load(path)
-    with pytest.raises(CalibrationError, match="no file"):
+    with pytest.raises(CalibrationError, match="calibrate the camera, and save"):
         Calibration.load(tmp_path / "none.yml")
     with pytest.raises(CalibrationError, match="cannot be written"):
         calibration.save(tmp_path / "no" / "folder.yml")

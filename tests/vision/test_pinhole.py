@@ -96,11 +96,3 @@ def test_refusals(make, words):
 def test_frozen():
     with pytest.raises(ValueError, match="read-only"):
         Pinhole(K).K[0, 0] = 1
-
-
-def test_widest_angle_is_where_the_lens_turns_back():
-    assert Pinhole(K).widest == np.inf and Pinhole(K, (0.1, 0.1)).widest == np.inf
-    camera = Pinhole(K, (-0.3, 0.05, 0, 0, -0.01))
-    r = np.linspace(0, 3, 300001)
-    out = camera.distort(np.stack([r, 0 * r], axis=-1))[:, 0]
-    assert camera.widest == pytest.approx(r[np.argmax(np.diff(out) < 0)], abs=2e-5)

@@ -64,6 +64,14 @@ def test_a_ball_behind_the_camera_has_no_place():
     assert np.isnan([truth.x, truth.y, truth.radius]).all()
 
 
+def test_a_ball_beyond_the_fold_of_the_lens_has_no_place():
+    """At 45 degrees to the axis the distortion of this lens no longer grows."""
+    camera = Pinhole.simple(700, distortion=(-1 / 3, 0))
+    for x, seen in ((0.8, True), (1.2, False)):
+        scene = bench_scene(SceneBall(position=(x, 0.0, 1.0)), pinhole=camera, T_cam_world=np.eye(4))
+        assert np.isfinite(render_scene(scene)[1].balls[0].x) == seen
+
+
 def test_the_nearer_ball_hides_the_farther():
     camera = np.linalg.inv(bench_camera()[1])[:3, 3]
     far = SceneBall(position=(0.4, 0.0, 0.03), colour="blue")

@@ -1,7 +1,6 @@
 """The colour of a thing as ranges of hue, saturation and value: the default red, or learnt from a picture."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import cv2
 import numpy as np
@@ -64,22 +63,17 @@ class Colour:
         return low, (min(179, round((self.centre + self.tolerance) / 2)), 255, 255)
 
     def loose_mask(self, hsv):
-        """255 where an HSV picture of `hsv_of` has the colour as dim or glaring light shows it: (h, w) uint8.
+        """255 where an HSV picture of `hsv_of` has the colour as dim or glaring light shows it: darker, paler; (h, w).
 
         Too much light makes a red pink: red is clipped, blue is not. A red with more green than blue (hue above 0)
         turns orange and yellow: that is left to what is not overexposed.
         """
-        low, high = self.looser.bounds()
+        low, high = replace(self, saturation=0.7 * self.saturation, value=0.4 * self.value).bounds()
         found = cv2.inRange(hsv, low, high)
         if self.swaps and self.hue > 180:
             pink = cv2.inRange(hsv, (high[0], low[1], _CLIPPED), (min(179, high[0] + _PINK // 2), 255, 255))
             found = cv2.bitwise_or(found, pink)
         return found
-
-    @cached_property
-    def looser(self):
-        """The colour as dim or glaring light shows it: darker and paler; for smoothed pictures."""
-        return replace(self, saturation=0.7 * self.saturation, value=0.4 * self.value)
 
     def hsv_of(self, image):
         """HSV of an RGB picture, in OpenCV's scale; with red and blue exchanged for a colour at the seam."""

@@ -14,8 +14,6 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from ir50p_lab.vision.pinhole import undistort_xy
-
 RAYS = 64
 ANGLES = np.arange(RAYS) * (2 * np.pi / RAYS)
 UNIT = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])  # (rays, 2)
@@ -113,7 +111,7 @@ def _fit(pinhole, points, at, strong, r):
 
     Points far off count less and less (biweight), from a first circle on: the median distance `at` from the middle.
     """
-    xy = np.column_stack(undistort_xy(pinhole.distortion, *pinhole.to_normalised(points).T))
+    xy = pinhole.undistort_or_nan(points)
     strong = strong & np.isfinite(xy).all(axis=1)
     d = np.column_stack([np.nan_to_num(xy), np.ones(RAYS)])
     d /= np.linalg.norm(d, axis=1, keepdims=True)

@@ -7,8 +7,6 @@ import numpy as np
 from ir50p_lab.errors import CalibrationError
 from ir50p_lab.inputs import number
 
-_LENGTH = "a positive length, such as 0.025"
-
 
 @dataclass(frozen=True)
 class Checkerboard:
@@ -28,7 +26,7 @@ class Checkerboard:
 
     def __post_init__(self):
         object.__setattr__(self, "pattern", check_pattern(self.pattern))
-        object.__setattr__(self, "square", number("square", self.square, "> 0", unit="m", hint=_LENGTH))
+        object.__setattr__(self, "square", number("square", self.square, "> 0", unit="m", hint="a positive length"))
 
     @property
     def points(self):

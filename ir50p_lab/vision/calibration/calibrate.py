@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, ImageError, InputError
-from ir50p_lab.inputs import number
 from ir50p_lab.vision.board_pose import transform
 from ir50p_lab.vision.calibration import checks
 from ir50p_lab.vision.calibration.board import Checkerboard
@@ -21,12 +20,11 @@ from ir50p_lab.vision.image import list_images, load_image, to_grey
 _FEWEST = 3  # views
 _BAR_FROM = 8  # pictures
 _SAME = 1 / 800  # of the diagonal: if a board moved less, it is the same view again
-_ASPECT = 0.003  # if fx/fy is farther from what was prescribed, fx is off by more than 10 good views leave it
 _CONTRADICT = 3  # times: if views err by more than their corners do, they are not of one camera and one board
 _USUAL = ("k1", "k2", "p1", "p2")  # k3 runs wild beyond the outermost corner: it must be asked for
 
 
-def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_USUAL, aspect=None, progress=None):
+def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_USUAL, progress=None):
     """Calibrate a camera from pictures of a checkerboard.
 
     Corners are found and refined by OpenCV; pictures that are of no use are left out, each with a Reason; the camera is
@@ -40,19 +38,21 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_USUAL, aspect=None,
         pattern: (columns, rows) of inner corners; square: side of a square, m. A wrong square scales the distances of
         the board, nothing else: K and distortion come out the same.
         lens: coefficients to estimate, out of k1, k2, p1, p2, k3; () for none.
-        aspect: None estimates fx and fy; a number prescribes fx/fy (1 for square pixels), and is checked.
         progress: True or False to show a bar; None: from 8 pictures on.
 
     Returns: Calibration.
     Raises CalibrationError if fewer than 3 pictures are of use (the message says why), or they determine no camera;
     InputError for arguments that make no sense; ImageError if `images` is an empty or missing folder.
     """
-    board, (lens, aspect) = Checkerboard(pattern, square), _options(lens, aspect)
+    from tqdm.auto import tqdm
+
+    board, lens = Checkerboard(pattern, square), _coefficients(lens)
     pictures = _read(images)
     sizes = Counter(grey.shape[::-1] for _, grey in pictures if not isinstance(grey, ImageError))
     size = max(sizes, key=sizes.get, default=None)
     found, rejected, seen = [], [], Counter()
-    for index, (name, grey) in enumerate(_with_bar(pictures, progress)):
+    bar = len(pictures) >= _BAR_FROM if progress is None else progress
+    for index, (name, grey) in enumerate(tqdm(pictures, desc="finding corners", leave=False, disable=not bar)):
         try:
             found.append((name, index, _corners(grey, size, board, found)))
         except NotUsable as why:
@@ -60,20 +60,20 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_USUAL, aspect=None,
             seen[why.seen] += 1
     if len(found) < _FEWEST:
         raise CalibrationError(_why_too_few(len(found), rejected, seen, board))
-    return _calibrate(found, [board.points] * len(found), size, lens, aspect, rejected, board)
+    return _calibrate(found, [board.points] * len(found), size, lens, rejected, board)
 
 
-def calibrate_corners(object_points, image_points, size, *, lens=_USUAL, aspect=None):
+def calibrate_corners(object_points, image_points, size, *, lens=_USUAL):
     """Calibrate from corners that were found elsewhere, on a board that is flat.
 
     Args:
         object_points: for each view the points on the board (n, 3) m, z = 0; or one array for all of them.
         image_points: for each view the pixels (n, 2); also (n, 1, 2) as OpenCV has them.
-        size: (width, height) of the picture, px. lens, aspect: as for `calibrate`.
+        size: (width, height) of the picture, px. lens: as for `calibrate`.
 
     Returns: Calibration. Raises CalibrationError as `calibrate`, InputError for shapes that do not fit, or NaN.
     """
-    (lens, aspect), size = _options(lens, aspect), picture_size(size)
+    lens, size = _coefficients(lens), picture_size(size)
     if not np.iterable(image_points) or not np.iterable(object_points) or len(object_points) == 0:
         raise InputError("object_points and image_points: give lists with the points of each view, (n, 3) and (n, 2)")
     pixels = [point_list("image_points", one, 2) for one in image_points]
@@ -90,12 +90,12 @@ def calibrate_corners(object_points, image_points, size, *, lens=_USUAL, aspect=
     if outside:
         raise InputError(f"corner {outside[0].round()} lies outside pictures of size = {size}: give (width, height)")
     found = [(f"view {k + 1}", k, xy) for k, xy in enumerate(pixels)]
-    return _calibrate(found, points, size, lens, aspect, [], None)
+    return _calibrate(found, points, size, lens, [], None)
 
 
-def _calibrate(found, points, size, lens, aspect, rejected, board):
+def _calibrate(found, points, size, lens, rejected, board):
     """Calibration of (name, index, corners) of each view; board: Checkerboard whose bend is looked for, or None."""
-    fitted = fit(points, [xy for *_, xy in found], size, lens, aspect)
+    fitted = fit(points, [xy for *_, xy in found], size, lens)
     for _ in range(len(found) // 4):
         odd = checks.odd_view(fitted.view_rms)
         if odd is None:
@@ -104,18 +104,15 @@ def _calibrate(found, points, size, lens, aspect, rejected, board):
         detail = f"its corners are {rms[odd]:.2g} px off the model, those of the others {np.median(rms):.2g} px"
         rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
         points = [*points[:odd], *points[odd + 1 :]]
-        fitted = fit(points, [xy for *_, xy in found], size, lens, aspect)
+        fitted = fit(points, [xy for *_, xy in found], size, lens)
     pixels, said = [xy for *_, xy in found], []
     if board is not None:
-        fitted = fit_bent(fitted, pixels, size, lens, aspect, board.pattern[0])
+        fitted = fit_bent(fitted, pixels, size, lens, board.pattern[0])
     if fitted.bent:
         bend = 1000 * height(fitted.points[0])
         said.append(f"the board is bent by {bend:.1f} mm: its shape was estimated, too. Glue it to a plate and repeat")
-    covariance, sigma, contradiction = errors(fitted, lens, aspect)
-    free = fit(fitted.points, pixels, size, lens, None, fitted.K).camera if aspect else fitted.camera
-    if aspect and abs(free[0] / free[1] / aspect - 1) > _ASPECT:
-        said.append(f"aspect = {aspect} was prescribed, but the corners say {free[0] / free[1]:.4f}: leave aspect=None")
-    elif contradiction > _CONTRADICT:
+    covariance, sigma, contradiction = errors(fitted, lens)
+    if contradiction > _CONTRADICT:
         said.append("the views contradict each other: two cameras, or was zoom, focus or the board changed?")
     parts = zip(found, fitted.points, fitted.residuals, fitted.poses, strict=True)
     views = tuple(
@@ -139,14 +136,12 @@ def _calibrate(found, points, size, lens, aspect, rejected, board):
     return replace(result, warnings=(*said, *checks.warnings_about(result)))
 
 
-def _options(lens, aspect):
-    """(coefficients of the lens in their order, aspect or None), checked. Raises InputError."""
-    if aspect is not None:
-        aspect = number("aspect", aspect, "> 0", hint="fx/fy, 1 for square pixels, or None to estimate it")
+def _coefficients(lens):
+    """The coefficients to estimate, checked, in the order of OpenCV. Raises InputError."""
     names = [lens] if isinstance(lens, str) or not np.iterable(lens) else list(lens)
     if any(name not in LENS for name in names) or ("p1" in names) != ("p2" in names):
         raise InputError(f"lens = {lens!r}: give coefficients out of {LENS}, p1 and p2 together")
-    return tuple(name for name in LENS if name in names), aspect
+    return tuple(name for name in LENS if name in names)
 
 
 def _read(images):
@@ -172,15 +167,6 @@ def _picture(index, one):
         what = f"{array.dtype} array of shape {array.shape}: give uint8 of shape (h, w, 3), or (h, w)"
         return name, ImageError(what)
     return name, array if array.ndim == 2 else to_grey(np.ascontiguousarray(array[..., :3]))
-
-
-def _with_bar(pictures, progress):
-    """The pictures, with a progress bar if asked for (None: if they are many)."""
-    if progress is False or (progress is None and len(pictures) < _BAR_FROM):
-        return pictures
-    from tqdm.auto import tqdm
-
-    return tqdm(pictures, desc="finding corners", leave=False)
 
 
 def _corners(grey, size, board, found):

@@ -12,9 +12,7 @@ _SOFT = 0.55  # squares: if an edge rises from dark to light over more than this
 _UNKNOWN = 100  # px; OpenCV gives this or more where squares are too small for it to follow an edge
 _WINDOW = 0.36  # smallest squares, half the window of the refinement: if larger, the next edges come in
 _WINDOW_PX = (2, 12)  # at least and at most
-_CROSSING = (
-    0.3  # if squares outside the last corners differ by less than this part of those inside, the board ends there
-)
+_CROSSING = 0.3  # if squares outside the last corners differ by less than this part of those inside, it ends there
 _MARGIN = 1.3  # squares: if the picture ends nearer to the last corner than this, the next one would lie outside
 
 

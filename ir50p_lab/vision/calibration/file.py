@@ -42,18 +42,14 @@ def load(calibration_class, view_class, path, size=None):
     path = Path(path)
     try:
         text = path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise CalibrationError(f"there is no file {path}: calibrate the camera first, and save") from None
     except (OSError, UnicodeDecodeError) as error:
-        raise CalibrationError(f"{path} cannot be read: {error}") from None
+        raise CalibrationError(f"{path} cannot be read ({error}): calibrate the camera, and save") from None
     try:
         found = json.loads("".join(json.loads(text)["details"]))
         board = found["board"] | {"pattern": tuple(found["board"]["pattern"])}
         changed = {
             "board": Checkerboard(**board),
-            "views": tuple(
-                view_class(**{name: _array(value) for name, value in one.items()}) for one in found["views"]
-            ),
+            "views": tuple(view_class(**{name: _array(one[name]) for name in one}) for one in found["views"]),
             "rejected": tuple(Rejected(**one | {"reason": Reason(one["reason"])}) for one in found["rejected"]),
         }
         tuples = {name: tuple(found[name]) for name in ("model", "warnings", "size")}

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.result import LENS
+from ir50p_lab.vision.calibration.result import NAMES
 
 _STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 50, 1e-9)
 _BENT = 0.75  # of sigma^2: if a board whose every corner is free leaves less than this part of it, it is bent
@@ -50,15 +50,15 @@ class CameraFit:
         return np.sqrt([(e**2).sum(axis=1).mean() for e in self.residuals])
 
 
-def fit(points, pixels, size, lens, aspect, start=None):
+def fit(points, pixels, size, lens, start=None):
     """CameraFit of points [(n, 3)] m seen at pixels [(n, 2)]: `cv2.calibrateCamera`.
 
-    lens: names of coefficients to estimate; aspect: fx/fy if it is known; start: K, needed where points are not flat.
+    lens: names of coefficients to estimate; start: K, needed where points are not flat.
     Raises CalibrationError if OpenCV finds none.
     """
-    guess, flags = _options(lens, aspect, start)
+    flags = _flags(lens) | (0 if start is None else cv2.CALIB_USE_INTRINSIC_GUESS)
     try:
-        _, K, d, *poses = cv2.calibrateCamera(*_float32(points, pixels), size, guess, None, flags=flags, criteria=_STOP)
+        _, K, d, *poses = cv2.calibrateCamera(*_float32(points, pixels), size, start, None, flags=flags, criteria=_STOP)
     except cv2.error:
         raise _too_much_alike(points) from None
     camera, poses = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *d.ravel()[:5]]), list(zip(*poses, strict=True))
@@ -68,20 +68,19 @@ def fit(points, pixels, size, lens, aspect, start=None):
     return CameraFit(camera, points, poses, residuals)
 
 
-def fit_bent(flat, pixels, size, lens, aspect, columns):
+def fit_bent(flat, pixels, size, lens, columns):
     """CameraFit with the shape of the board, every corner of it free, where that explains the residuals; else `flat`.
 
     `cv2.calibrateCameraRO` (Strobl and Hirzinger 2011) frees the corners; the board keeps the size of its first row of
     `columns` corners.
     """
-    guess, flags = _options(lens, aspect, None)
     many = _float32(flat.points, pixels)
     try:
-        _, K, *_, free = cv2.calibrateCameraRO(*many, size, columns - 1, guess, None, flags=flags, criteria=_STOP)
+        _, K, *_, free = cv2.calibrateCameraRO(*many, size, columns - 1, None, None, flags=_flags(lens), criteria=_STOP)
     except cv2.error:  # too few views for so many unknowns
         return flat
     shape = np.float64(free).reshape(-1, 3)
-    bent = CameraFit(**vars(fit([shape] * len(pixels), pixels, size, lens, aspect, K)) | {"bent": True})
+    bent = CameraFit(**vars(fit([shape] * len(pixels), pixels, size, lens, K)) | {"bent": True})
     return bent if bent.squares / bent.freedom < _BENT * flat.squares / flat.freedom else flat
 
 
@@ -91,7 +90,7 @@ def height(points):
     return float(np.ptp(points[:, 2] - plane @ np.linalg.lstsq(plane, points[:, 2], rcond=None)[0]))
 
 
-def errors(found, lens, aspect):
+def errors(found, lens):
     """(covariance (9, 9), sigma px, contradiction) of a CameraFit.
 
     With J the derivative of all corners by camera, poses and, of a bent board, its points, and sigma^2 the mean squared
@@ -100,9 +99,7 @@ def errors(found, lens, aspect):
     contradiction: how many times the second is larger, for fx.
     Raises CalibrationError if the views do not determine the camera.
     """
-    free = np.array([True, not aspect, True, True, *(name in lens for name in LENS)])
-    basis = np.eye(9)[:, free]
-    basis[1, 0] = 1 / aspect if aspect else 0
+    basis = np.eye(9)[:, [name in (*NAMES[:4], *lens) for name in NAMES]]
     used, normal, pulls = basis.shape[1], 0, []
     for points, (turn, shift), e in zip(found.points, found.poses, found.residuals, strict=True):
         J = cv2.projectPoints(points, turn, shift, found.K, found.camera[4:])[1]
@@ -127,16 +124,10 @@ def errors(found, lens, aspect):
     return basis @ (by_corners * np.outer(larger, larger)) @ basis.T, float(sigma), float(larger[0])
 
 
-def _options(lens, aspect, start):
-    """(first guess of K or None, flags) for OpenCV."""
+def _flags(lens):
+    """Of OpenCV: which coefficients stay 0."""
     fixed = {"k1": cv2.CALIB_FIX_K1, "k2": cv2.CALIB_FIX_K2, "k3": cv2.CALIB_FIX_K3, "p1": cv2.CALIB_ZERO_TANGENT_DIST}
-    flags = sum(flag for name, flag in fixed.items() if name not in lens)
-    if start is not None:
-        flags |= cv2.CALIB_USE_INTRINSIC_GUESS
-    if aspect:
-        flags |= cv2.CALIB_FIX_ASPECT_RATIO
-        start = np.diag([aspect, 1.0, 1.0]) if start is None else start
-    return start, flags
+    return sum(flag for name, flag in fixed.items() if name not in lens)
 
 
 def _float32(*many):
