@@ -57,6 +57,11 @@ def table(name, beside=__file__):
     return [(says.replace("\n", " "), lines) for says, *lines in rows]
 
 
+def sentences(function):
+    """What a task says where no mistake of the table fits: {key: sentence}, out of NAME.says.txt."""
+    return {key: says for says, (key,) in table(f"{function.__name__}.says", inspect.getfile(function))}
+
+
 def wrong_one(function, changes):
     """The function with these changes in its text."""
     return changed(text_of(function), changes, {"np": np, **function.__globals__})[function.__name__]
@@ -171,15 +176,16 @@ class Task:
         return option if isinstance(option, tuple) else (option,) * len(self.results)
 
 
-def task_of(right, asks, *, helpers=(), **options):
+def task_of(right, *, helpers=(), **options):
     """The Task of a function: its text is the loan; in NAME.txt stand its slips, in NAME.routes.txt other solutions.
 
-    NAME.test.txt is its small test where one of plain numbers will not do. helpers: functions that it calls and a
-    student has to write along; options: what else a Task has.
+    NAME.words.txt: what it returns, and its two hints. NAME.test.txt: its small test where one of plain numbers will
+    not do. helpers: functions that it calls and a student has to write along; options: what else a Task has.
     """
     name, file = right.__name__, inspect.getfile(right)
+    asks, *hints = (says for says, _ in table(f"{name}.words", file))
     texts = {"routes": solutions(f"{name}.routes", file), "test": "\n".join((*solutions(f"{name}.test", file), ""))}
-    options = {"slips": mistakes(right)} | texts | options
+    options = {"slips": mistakes(right), "hints": tuple(hints)} | texts | options
     return Task(name=name, asks=asks, right=right, loan=text_of(*helpers, right), **options)
 
 

@@ -114,7 +114,7 @@ def test_other_right_ones_pass(stage, edits, remark):
         ("PID.p", "step(self, t, q, reference)", "step(t, q, reference)", "its step takes (t, q, reference); begin"),
         ("PID.pi", " * self.period", "", "period is missing"),
         ("PID.pi", " * self.period", " / self.period", "divides by the period"),
-        ("PID.pi", " * self.period", " * t", "its last step takes in"),
+        ("PID.pi", " * self.period", " * t", "as wide as t"),
         ("PID.p", "q_wanted - q", "qd_wanted - q", "speed that is wanted is taken for the angle"),
         ("PID.limits", "= kp, ki, limit_pwm,", "= kp, ki, limit_pwm / 2,", "and limit_pwm 100, it sends [ 50., -50.,   4.]"),
         ("PID.pi", " * self.period", " * 0.01", "0.01 s is written"),

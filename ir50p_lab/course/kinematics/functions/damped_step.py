@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import task_of
+from ir50p_lab.course.checking.task import sentences, task_of
 from ir50p_lab.course.kinematics.functions import LENGTHS
 from ir50p_lab.course.kinematics.functions.forward_kinematics import forward_kinematics
 from ir50p_lab.course.kinematics.functions.frames import frames
@@ -34,33 +34,27 @@ def _steps():
     return cases
 
 
+_SAYS = sentences(damped_step)
+
+
 def _symptom(case, returned, expected):
     q, p, l, _ = case
     tip = forward_kinematics(q, l)
     J = jacobian(frames(q, l), 3, tip)[:3]
     if np.linalg.norm(forward_kinematics(returned, l) - p) < 3e-3:
-        return "it is at the place already: one step is asked for, the loop that repeats it stands outside"
-    for says, step in (
-        ("the direction of the step is right, its length is not: is it cut, scaled or divided?", expected - q),
-        ("it is the step without damping, made shorter or longer: the damping belongs into what is solved, where it "
-         "acts on the lost direction most", np.linalg.pinv(J) @ (p - tip)),
-        ("it follows the transpose alone: is an equation solved? The step is too short or too long", J.T @ (p - tip)),
-    ):  # fmt: skip
+        return _SAYS["at the place"]
+    steps = {"length": expected - q, "undamped": np.linalg.pinv(J) @ (p - tip), "transpose": J.T @ (p - tip)}
+    for key, step in steps.items():
         if np.allclose(np.cross(returned - q, step), 0, atol=1e-6) and (returned - q) @ step > 0:
-            return says
+            return _SAYS[key]
     return ""
 
 
 TASK = task_of(
     damped_step,
-    "the next q (3,) rad after one damped step towards p (m)",
     cases=_steps,
     leans_on=("jacobian", "forward_kinematics", "frames", "dh_matrix", "rot_z"),
     tolerance=1e-5,  # a Jacobian by differences over 1e-6 rad leaves 2e-6
     parts=("q1", "q2", "q3"),
     symptom=_symptom,
-    hints=(
-        "Of your jacobian only the three rows of velocity count here: a place has three numbers.",
-        "Solve (J J' + damping^2 1) y = what is missing, with np.linalg.solve. Then back to the joints with J'.",
-    ),
 )

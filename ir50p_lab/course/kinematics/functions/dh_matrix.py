@@ -52,13 +52,8 @@ def _symptom(case, returned, expected):
 
 TASK = task_of(
     dh_matrix,
-    "the transform (4, 4) of one joint with its link: turn about z, shift along z, shift along x, turn about x",
     helpers=(shift, turn_z, turn_x),
     cases=_rows,
     leans_on=("rot_z",),
     symptom=_symptom,
-    hints=(
-        "Write four small matrices first, one a motion: your rot_z in a 4 x 4, two shifts, a turn about x.",
-        "Motions in the moving frame are multiplied from the left to the right, in the order in which they happen.",
-    ),
 )

@@ -14,12 +14,7 @@ def forward_kinematics(q, l):
 
 TASK = task_of(
     forward_kinematics,
-    "the place of the tip (3,), m",
     cases=lambda: some_arms(8, 5),
     leans_on=("frames", "dh_matrix", "rot_z"),
     parts=("x", "y", "z"),
-    hints=(
-        "You have the tip's frame already. What stands where in a transform?",
-        "T[3] is 4 x 4; the place is a column.",
-    ),
 )

@@ -35,12 +35,7 @@ def _symptom(case, returned, expected):
 
 TASK = task_of(
     frames,
-    "the four transforms (4, 4, 4) of frames 0 (base) to 3 (tip), each as the base sees it",
     cases=lambda: some_arms(7, 3),
     leans_on=("dh_matrix", "rot_z"),
     symptom=_symptom,
-    hints=(
-        "One line a joint: dh_matrix with the row of the arm's table. Then chain them.",
-        "T1 = T0 @ A1, T2 = T1 @ A2 ...: each new frame is seen through the one before it.",
-    ),
 )

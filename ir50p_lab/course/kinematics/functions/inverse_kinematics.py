@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Mistake, table, task_of, wrong_one
+from ir50p_lab.course.checking.task import Mistake, sentences, table, task_of, wrong_one
 from ir50p_lab.course.kinematics.functions import LENGTHS
 from ir50p_lab.course.kinematics.functions.forward_kinematics import forward_kinematics
 
@@ -58,17 +58,12 @@ def as_poses(value):
     return rows
 
 
-def _apart(a, b):
-    """Largest joint difference of each pose of a to each of b, whole turns left out."""
-    return np.abs(np.angle(np.exp(1j * (a[:, None] - b[None])))).max(axis=2)
-
-
 def same_poses(returned, expected):
     """Tell whether two lists hold the same poses, in any order; on the edge, where two coincide, one will do."""
     a, b = as_poses(returned), as_poses(expected)
     if len(a) == 0 or len(b) == 0:
         return len(a) == len(b)
-    apart = _apart(a, b)
+    apart = np.abs(np.angle(np.exp(1j * (a[:, None] - b[None])))).max(axis=2)  # whole turns left out
     number = len(a) <= len(b) if _straight(b) else len(a) == len(b)
     return bool((apart.min(axis=0) < SAME).all() and (apart.min(axis=1) < SAME).all() and number)
 
@@ -78,67 +73,53 @@ def _straight(poses):
     return np.abs(np.sin(poses[:, 2])).max() < 1e-2
 
 
+_SAYS = sentences(inverse_kinematics)
+
+
 def _symptom(case, returned, expected):
     p, l = case
-    if returned is None:
-        return "it returns None: no pose means no row, an empty array"
-    if np.size(returned) and (np.ndim(returned) != 2 or np.shape(returned)[1] != 3):
-        return f"one pose a *row*, three angles each, all poses of a place: yours has the shape {np.shape(returned)}"
-    rows = as_poses(returned)
-    if not np.isfinite(rows).all():
-        return "it returns nan out of reach or on its very edge: a root of less than nothing, an arccos of more than 1"
+    if returned is not None and np.isnan(returned).any():
+        return _SAYS["nan"]
     if not len(expected):
-        return "a place out of reach gets poses: no pose means no row, an empty array"
+        return _SAYS["out of reach"]
+    if np.size(returned) and np.shape(returned)[1:] != (3,):
+        return _SAYS["rows"].format(np.shape(returned))
+    rows = as_poses(returned)
     if not len(rows):
-        return _EDGE if _straight(expected) and np.cos(expected[0, 2]) > 0 else "a place within reach gets no pose"
-    for number, q in enumerate(rows):
-        if (off := np.linalg.norm(forward_kinematics(q, l) - p)) > 1e-5:
-            return f"pose {number + 1} of {len(rows)} puts the tip {1000 * off:.0f} mm beside the place"
-    return f"{len(np.unique(rows.round(6), axis=0))} different poses for a place that has {len(expected)}"
-
-
-_EDGE = (
-    "places on the very edge, where the arm is stretched, count as out of reach: there rounding makes r a hair too "
-    "large; allow r 1e-9 m"
-)
+        return _SAYS["on the edge" if _straight(expected) and np.cos(expected[0, 2]) > 0 else "within reach"]
+    off = [np.linalg.norm(forward_kinematics(q, l) - p) for q in rows]
+    if max(off) > 1e-5:
+        return _SAYS["beside the place"].format(np.argmax(off) + 1, len(rows), 1000 * max(off))
+    return _SAYS["number"].format(len(np.unique(rows.round(6), axis=0)), len(expected))
 
 
 def _whole_turns(poses):
     """Which angle is a whole turn too far: right in the picture, but limits would strike it out."""
-    for number, q in enumerate(as_poses(poses)):
-        for angle, name in zip(q, ("waist", "shoulder", "elbow"), strict=True):
-            if abs(angle) > np.pi + 1e-9:
-                same = np.angle(np.exp(1j * angle))
-                turn = "a whole turn is 2 pi, and every angle belongs between -pi and pi, where the limits are"
-                return f"the {name} of pose {number + 1} is {angle:.1f} rad: the same pose is {same:.1f} rad; {turn}"
+    rows = as_poses(poses)
+    for number, joint in np.argwhere(np.abs(rows) > np.pi + 1e-9):
+        angle = rows[number, joint]
+        same = np.angle(np.exp(1j * angle))
+        return _SAYS["whole turn"].format(_JOINTS[joint], number + 1, angle, same)
     return ""
 
 
-_WHERE = (  # some of the poses: in words, and what tells them in the solution
-    ("", "True"),
-    (" in the poses with their back to the place", "side < 0"),
-    (" where x < 0", "x < 0"),
-    (" where y < 0", "y < 0"),
-    (" wherever it is beyond a quarter turn", "abs(waist) > np.pi / 2"),
-    (" with the elbow up", "elbow < 0"),
-    (" with the elbow down", "elbow > 0"),
-)
+_JOINTS = ("waist", "shoulder", "elbow")
+_WHERE = [("", ("True",)), *table("inverse_kinematics.where", __file__)]  # some of the poses: in words, and their test
 
 
 def _mistakes():
     """The mistakes of the table; where a sentence leaves room for it, made in some of the poses only, too."""
     for says, changes in table("inverse_kinematics", __file__):
-        for words, where in _WHERE if "{}" in says else ():
+        for words, (where,) in _WHERE if "{}" in says else ():
             pose, bent = changes[0].split("  ->  ")
             some = f"{pose} -> {bent} if {where} else {pose}"
-            yield Mistake(wrong_one(inverse_kinematics, [some]), says.format(words))
+            yield Mistake(wrong_one(inverse_kinematics, [some]), says.format(words and f" {words}"))
         if "{}" not in says:
             yield Mistake(wrong_one(inverse_kinematics, changes), says)
 
 
 TASK = task_of(
     inverse_kinematics,
-    "all poses (n, 3) rad that put the tip on p (m), one a row; no row if p is out of reach",
     cases=_targets,
     leans_on=("forward_kinematics", "frames", "dh_matrix", "rot_z"),
     same=same_poses,
@@ -146,9 +127,4 @@ TASK = task_of(
     slips=tuple(_mistakes()),
     symptom=_symptom,
     form=_whole_turns,
-    hints=(
-        "First the pose with the elbow up, facing the place. Does your forward_kinematics bring it back to p?",
-        "The angle between r and the upper arm: draw the perpendicular from the tip onto the line of the upper arm. "
-        "Both sides of that small triangle are easy, and arctan2 knows the quadrant.",
-    ),
 )

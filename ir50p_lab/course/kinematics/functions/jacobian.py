@@ -33,13 +33,7 @@ def _points():
 
 TASK = task_of(
     jacobian,
-    "the matrix (6, 3) of a point (base coordinates) carried by link 1, 2 or 3: velocity above, turning below, one "
-    "column a joint, from the four frames T",
     cases=_points,
     leans_on=("frames", "dh_matrix", "rot_z"),
     tolerance=1e-5,  # as for damped_step
-    hints=(
-        "Joint 1 alone turns: how fast does a point move that is 0.5 m from the axis, and where to? Axis x lever.",
-        "Joint k turns about the z axis of frame k - 1, and stands at its origin. Both are columns of T[k - 1].",
-    ),
 )

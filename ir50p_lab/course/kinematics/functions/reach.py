@@ -1,8 +1,10 @@
 """reach: of all poses that reach a place the allowed one that is nearest."""
 
+from itertools import product
+
 import numpy as np
 
-from ir50p_lab.course.checking.task import shown, task_of
+from ir50p_lab.course.checking.task import sentences, task_of
 from ir50p_lab.course.kinematics.functions import LENGTHS
 from ir50p_lab.course.kinematics.functions.forward_kinematics import forward_kinematics
 from ir50p_lab.course.kinematics.functions.frames import frames
@@ -43,37 +45,31 @@ def _cases():
     from ir50p_lab.modelling import IR50P
 
     rng = np.random.default_rng(21)
-    limits = np.array([IR50P.q_min, IR50P.q_max])
-    wide = np.array([[-3.1, -3.1, -3.1], [3.1, 3.1, 3.1]])
-    l = LENGTHS[0]
-    cases = [(np.array([0.42, -0.15, 0.09]), l.copy(), np.array([0, 0.3, -0.6]), limits.copy())]
-    while len(cases) < 40:
-        bounds = limits if len(cases) % 2 else wide
+    limits, wide = np.array([IR50P.q_min, IR50P.q_max]), np.array([[-3.1] * 3, [3.1] * 3])
+    ahead = np.array([[0, -3.1, -3.1], [3.1, 3.1, 3.1]])
+    l, start, near = LENGTHS[0], np.array([0, 0.3, -0.6]), np.array([0.5, -0.5, 1.5])
+    cases = [
+        (np.array([0.42, -0.15, 0.09]), l, start, limits),
+        (np.array([0.42, 0, 0.2]), l, start, ahead),  # the waist stands exactly on its limit
+        (np.array([0.3, 0.2, -0.05]), l, np.zeros(3), wide),  # below the table
+        (np.array([0.9, 0, 0.2]), l, np.zeros(3), wide),  # out of reach
+        (forward_kinematics(near, LENGTHS[2]), LENGTHS[2], near, np.array([near - 0.1, near + 0.1])),  # elbow too low
+    ]
+    for bounds in (limits, wide) * 40:
         p = forward_kinematics(rng.uniform(*bounds), l)
         if p[2] > 0:
-            cases.append((p, l.copy(), rng.uniform(*limits), bounds.copy()))
-    for joint in range(3):  # the nearest pose breaks one limit alone
-        for side, step in ((0, 0.05), (1, -0.05)):
-            for q in rng.uniform([-2, 0.2, -1.5], [2, 1, 1.5], (3, 3)):
-                bounds = wide.copy()
-                bounds[side, joint] = q[joint] + step
-                cases.append((forward_kinematics(q, l), l.copy(), q, bounds))
-    near = np.array([0.5, -0.5, 1.5])  # the elbow is below the table, the tip above
-    elbow_low = forward_kinematics(near, LENGTHS[2])
-    narrow = np.array([near - 0.1, near + 0.1])
-    cases.append((elbow_low, LENGTHS[2].copy(), near, narrow))
-    cases.append((np.array([0.3, 0.2, -0.05]), l.copy(), np.zeros(3), wide.copy()))
-    cases.append((np.array([0.9, 0, 0.2]), l.copy(), np.zeros(3), wide.copy()))
-    for q in rng.uniform([-1.5, 0.2, -1.5], [1.5, 1, -0.5], (3, 3)):  # the nearest pose breaks all limits
+            cases.append((p, l, rng.uniform(*limits), bounds))
+    poses = rng.uniform([-2, 0.2, -1.5], [2, 1, 1.5], (3, 3))
+    for side, joint, q in product((0, 1), range(3), poses):  # the nearest pose breaks one limit alone
+        bounds = wide.copy()
+        bounds[side, joint] = q[joint] + (0.05, -0.05)[side]
+        cases.append((forward_kinematics(q, l), l, q, bounds))
+    for q in poses:  # the nearest pose breaks all limits
         p = forward_kinematics(q, l)
         farthest = max(inverse_kinematics(p, l), key=lambda pose, q=q: np.abs(pose - q).min())
-        cases.append((p, l.copy(), q, np.array([farthest - 0.1, farthest + 0.1])))
+        cases.append((p, l, q, np.array([farthest - 0.1, farthest + 0.1])))
     for q in rng.uniform([-1, 0.2, -2], [1, 1.2, -1], (8, 3)):  # on the table, but for rounding
-        p = forward_kinematics(q, l)
-        p[2] = 0.0
-        cases.append((p, l.copy(), q, limits.copy()))
-    ahead = np.array([[0, -3.1, -3.1], [3.1, 3.1, 3.1]])  # the waist stands exactly on its limit
-    cases.append((np.array([0.42, 0, 0.2]), l.copy(), np.array([0, 0.3, -0.6]), ahead))
+        cases.append((forward_kinematics(q, l) * [1, 1, 0], l, q, limits))
     return [case for case in cases if _has_one_best(*case)]
 
 
@@ -90,40 +86,31 @@ def _same_pose(returned, expected):
     return returned.shape == (3,) and bool(np.abs(returned - expected).max() < SAME)
 
 
+_SAYS = sentences(reach)
+
+
 def _symptom(case, returned, expected):
     p, l, _, limits = case
     if expected is None:
-        return f"where no pose is allowed it returns {shown(returned)}: None is asked for"
+        return _SAYS["none is allowed"]
     if returned is None:
-        edge = ": places exactly on the table, z = 0, are refused; rounding may put the tip a hair below, allow 1e-9 m"
-        struck = ": is too much struck out (limits in rad, low ones first), or is the choice not returned?"
-        return f"it returns None for a place that has an allowed pose{edge if p[2] == 0 else struck}"
+        return _SAYS["on the table" if p[2] == 0 else "too much struck out"]
     if np.shape(returned) != (3,):
-        return f"it returns {shown(returned)}: the pose itself is asked for, three angles"
+        return _SAYS["no pose"]
     q = np.asarray(returned, dtype=float)
-    if not (off := np.linalg.norm(forward_kinematics(q, l) - p)) < 1e-5:
-        cut = ". It stands exactly on a limit: cut to the limits, a pose is another one"
-        return f"its pose puts the tip {1000 * off:.0f} mm beside the place{cut if np.isclose(q, limits).any() else ''}"
+    if not np.allclose(forward_kinematics(q, l), p, atol=1e-5):
+        return _SAYS["cut to its limits" if np.isclose(q, limits).any() else "beside the place"]
     if not within(q, limits):
         joint = int(np.argmax((q < limits[0]) | (q > limits[1])))
-        return f"it takes a pose that the arm may not: joint {joint + 1} would stand at {q[joint]:.2f} rad"
-    if not above_table(q, l):
-        return "it takes a pose whose elbow or tip is below the table: both have to stay above, z >= 0"
-    return "the pose is allowed, but another allowed one turns its busiest joint less: compare the largest turns"
+        return _SAYS["limits"].format(joint + 1, q[joint])
+    return _SAYS["another turns less" if above_table(q, l) else "table"]
 
 
 TASK = task_of(
     reach,
-    "the allowed pose (3,) for p whose largest joint turn from q_now is smallest, elbow and tip not below the table; "
-    "None if there is none",
     cases=_cases,
     leans_on=("inverse_kinematics", "forward_kinematics", "frames", "dh_matrix", "rot_z"),
     same=_same_pose,
     parts=("q1", "q2", "q3"),
     symptom=_symptom,
-    hints=(
-        "Go through the rows of your inverse_kinematics and strike out what is not allowed: limits, elbow, tip.",
-        "Of those that are left: how far has each joint to turn, which of the three turns most, and in which row is "
-        "that least?",
-    ),
 )

@@ -90,17 +90,10 @@ def _symptom(case, returned, expected):
 
 TASK = task_of(
     step_metrics,
-    "rise time, overshoot, settling time and rest error of a step of one joint: four numbers (s, rad, s, rad)",
     cases=_cases,
     results=_NAMES,
     tolerance=(1e-3, 1e-5, 0.0105, 3e-4),  # s, rad; with or without the sample on the edge of the last second
     rights=(_between_samples,),
     unit="(s, rad, s, rad)",
     symptom=_symptom,
-    hints=(
-        "Begin with done = how much of the way is behind the joint, 0 at the start and 1 at the target: rise time and "
-        "direction are easy in it, upwards and downwards alike.",
-        "np.argmax(condition) is the first place where it is true; np.flatnonzero(condition)[-1] the last. A joint has "
-        "settled one sample after it was outside for the last time.",
-    ),
 )
