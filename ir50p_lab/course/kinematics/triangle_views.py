@@ -35,7 +35,7 @@ def _triangle(ax, arm, q, colour):
     line(ax, [elbow, elbow + 0.4 * (elbow - shoulder)], ":", colour, linewidth=2)
     name(ax, 0.3 * shoulder + 0.7 * tip, "$r$")
     arc(ax, elbow, q[1], q[1] + q[2], 0.06, colour, "$q_3$", 1.5)
-    ax.set(xlim=tip[0] / 2 + arm.reach * np.array([-0.8, 0.8]), ylim=arm.l[0] + arm.reach * np.array([-0.55, 0.4]))
+    ax.set(xlim=tip[0] / 2 + arm.reach * np.array([-0.8, 0.8]), ylim=arm.l[0] + arm.reach * np.array([-0.55, 0.55]))
     return points
 
 
@@ -153,6 +153,6 @@ def allowed_map(arm, allowed, free=None):
     colours = ("light", "sky", "blue", "orange")
     labels = ("no pose", "one pose", "two or more", "only through the column")
     for number in np.unique(kind):
-        line(ax, places[kind == number, :2], "s", colours[number], ms=4.5, label=labels[number], zorder=1.9)
+        line(ax, places[kind == number, :2], "s", colours[number], ms=5, label=labels[number], zorder=1.9)
     figure.legend(loc="outside upper center", ncols=len(labels), markerscale=2, fontsize=9)
     return figure
