@@ -22,15 +22,15 @@ BUDGETS = {
     "controllers": 660,
     "simulation": 620,
     "bench": 2200,
-    "identification": 1550,
-    "vision": 2180,
-    "course": 8260,
+    "identification": 1600,  # 50 moved here from course
+    "vision": 2200,  # 20 moved here from course
+    "course": 7730,
     "launcher": 500,
     "grading": 0,
     "publishing": 300,
-    "root": 120,
+    "root": 140,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_160, 21_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS = 17_720, 21_000
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,

@@ -1,12 +1,11 @@
 """Pictures of notebook 03: arrows of the joints, axis and lever, the way out, where not, steps to a place."""
 
 import numpy as np
+from matplotlib.patches import Circle
 
 from ir50p_lab.course.draw.arm3d import ArmView, SideView
 from ir50p_lab.course.draw.drawings import drawing
-from ir50p_lab.course.draw.style import COLOURS, SETPOINT, new_figure, subplots
-from ir50p_lab.course.kinematics.functions.frames import frames
-from ir50p_lab.course.kinematics.functions.jacobian import jacobian as jacobian_of_frames
+from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.modelling.ik import inverse_kinematics
@@ -59,15 +58,14 @@ def arrows(arm, q, J):
 
 def arrows_panel(arm):
     """The same for any shoulder and elbow, for `live`: figure, f(q2, q3) in degrees -> sentence."""
-    figure = new_figure(7.5, 5.2, projection="3d")
-    figure.axes[0].set_title("One arrow a joint: its share of the tip's velocity")
-    columns = ColumnsView(figure.axes[0], arm)
+    figure, ax = subplots(7.5, 5.2, projection="3d")
+    ax.set_title("One arrow a joint: its share of the tip's velocity")
+    columns = ColumnsView(ax, arm)
 
     def turn(q2, q3):
         J = columns.update(np.radians([-30.0, q2, q3]))
-        lengths = np.linalg.norm(J[:, 1:], axis=0)
-        cosine = J[:, 1] @ J[:, 2] / max(np.prod(lengths), 1e-12)
-        return f"arrows 2 and 3 are {np.degrees(np.arccos(np.clip(cosine, -1, 1))):.0f} degrees apart"
+        across, along = np.linalg.norm(np.cross(J[:, 1], J[:, 2])), J[:, 1] @ J[:, 2]
+        return f"arrows 2 and 3 are {np.degrees(np.arctan2(across, along)):.0f} degrees apart"
 
     return figure, turn
 
@@ -80,39 +78,23 @@ def axis_and_lever():
 def way_out(arm, distances, speeds, limit):
     """The arm from the side near its full reach, and the elbow's speed on the way there: LabFigure."""
     figure, plane, ax = subplots(9.5, 4.0, cols=2)
-    halfway, k = distances[len(distances) // 2], np.argmax(speeds > limit)
+    halfway = distances[len(distances) // 2]
     SideView(plane, arm, inverse_kinematics(arm, [halfway, 0, arm.l[0]])["front/up"])
     plane.annotate("", (halfway + 0.13, arm.l[0]), (halfway + 0.02, arm.l[0]), arrowprops={"color": COLOURS["orange"]})
-    plane.set_title("Outwards at 0.1 m/s")
-    plane.set_xlabel("outwards from the column [m]")
-    ax.plot(1000 * (arm.reach - distances), speeds, linewidth=2.5, label="elbow")
-    ax.plot(1000 * (arm.reach - distances[k]), limit, "o", ms=10, color=COLOURS["orange"], label="it gives up")
+    plane.set(xlabel="outwards from the column [m]", title="Outwards at 0.1 m/s")
+    still_to_go = 1000 * (arm.reach - distances)
+    ax.plot(still_to_go, speeds, linewidth=2.5, label="elbow")
     ax.axhline(limit, **SETPOINT, label=f"its motor: {limit} rad/s")
-    ax.invert_xaxis()
-    ax.set(ylim=(0, None), xlabel="still to go to the full reach [mm]", ylabel="speed [rad/s]")
-    ax.set_title("The tip keeps its pace, the elbow runs away")
+    ax.set(xlim=(still_to_go[0], 0), xlabel="still to go to the full reach [mm]")
+    ax.set(ylim=(0, None), ylabel="speed [rad/s]", title="The tip keeps its pace, the elbow runs away")
     ax.legend(loc="upper left")
     return figure
 
 
-def pace(q, direction, l, fastest):
-    """Stand-in for the student's function: greatest tip speed (m/s) along direction, no joint above fastest (rad/s).
-
-    At a singular pose: that of the joint speeds of least length, which is safe and not always the greatest; 0 where
-    the direction is shut.
-    """
-    T = frames(q, l)
-    Jv = jacobian_of_frames(T, 3, T[3][:3, 3])[:3]
-    qd = np.linalg.lstsq(Jv, direction, rcond=1e-9)[0]
-    if not np.allclose(Jv @ qd, direction, atol=1e-6):
-        return 0.0
-    return fastest / np.max(np.abs(qd))
-
-
 def pace_along(paces, busiest):
     """The pace (n,) m/s along a way, in the colour of the joint (n,), 0 to 2, that sets it: LabFigure."""
-    figure = new_figure(7.5, 3.2)
-    ax, share = figure.axes[0], np.linspace(0, 100, len(paces))
+    figure, ax = subplots(7.5, 3.2)
+    share = np.linspace(0, 100, len(paces))
     for joint, (name, colour) in enumerate(zip(_NAMES, _JOINTS, strict=True)):
         part = np.where(np.array(busiest) == joint, paces, np.nan)
         if np.isfinite(part).any():
@@ -138,11 +120,9 @@ def where_not(arm, tips, rates, limit):
     stop = np.abs([arm.q_min[2], arm.q_max[2]]).max()
     if stop < np.pi:
         nearest = np.hypot(arm.l[1] + arm.l[2] * np.cos(stop), arm.l[2] * np.sin(stop))
-        turn = np.linspace(0, 2 * np.pi, 181)
-        ax.plot(nearest * np.cos(turn), arm.l[0] + nearest * np.sin(turn), **SETPOINT, label="elbow at its stop")
+        ax.add_patch(Circle((0, arm.l[0]), nearest, fill=False, label="elbow at its stop", **SETPOINT))
     ax.plot([0, 0], [0, arm.l[0]], color=COLOURS["dark"], linewidth=8, solid_capstyle="butt", label="column")
-    ax.set(aspect="equal", xlabel="outwards from the column [m]", ylabel="height [m]")
-    ax.set_title("The joint that gives up, where some direction is too fast at 0.1 m/s")
+    ax.set(aspect="equal", xlabel="outwards [m]", ylabel="height [m]", title="The joint that is too slow for 0.1 m/s")
     figure.legend(loc="outside lower center", ncols=3)
     return figure
 
@@ -153,15 +133,12 @@ def steps_panel(damped_step, arm, q_start, p, steps=40):
     Returns: figure, f(damping, start) -> sentence; start: the elbow's, in degrees, in place of that of q_start.
     """
     figure, misses, elbows = subplots(9.4, 3.8, cols=2)
-    number = np.arange(steps + 1)
-    (miss,) = misses.semilogy(number, np.ones(steps + 1), "o-", ms=4, label="distance of the tip")
-    (elbow,) = elbows.plot(number, np.zeros(steps + 1), "o-", ms=4, color=COLOURS["orange"], label="elbow")
-    misses.axhline(1e-3, **SETPOINT, label="1 mm")
-    elbows.axhline(-90, **SETPOINT, label="the cable")
-    misses.set(xlabel="step", ylabel="distance to the place [m]", ylim=(1e-5, 10))
-    elbows.set(xlabel="step", ylabel="elbow [deg]", ylim=(-200, 40))
-    for ax in figure.axes:
-        ax.legend(loc="upper right")
+    (miss,) = misses.semilogy(np.ones(steps + 1), "o-", ms=4)
+    (elbow,) = elbows.plot(np.zeros(steps + 1), "o-", ms=4, color=COLOURS["orange"])
+    misses.axhline(1e-3, **SETPOINT)
+    elbows.axhline(-90, **SETPOINT)
+    misses.set(xlabel="step", ylabel="distance to the place [m]", ylim=(1e-5, 10), title="The tip (dashed: 1 mm)")
+    elbows.set(xlabel="step", ylabel="elbow [deg]", ylim=(-200, 40), title="The elbow (dashed: the cable)")
 
     def search(damping, start):
         q, path = np.array([*q_start[:2], np.radians(start)]), []
@@ -174,9 +151,7 @@ def steps_panel(damped_step, arm, q_start, p, steps=40):
         elbow.set_ydata(np.degrees(path[:, 2]))
         arrived = np.flatnonzero(left < 1e-3)
         lowest, highest = np.degrees([path[:, 2].min(), path[:, 2].max()])
-        when = f"{1000 * left[-1]:.3g} mm left after {steps} steps"
-        if len(arrived):
-            when = f"within 1 mm after {arrived[0]} steps"
-        return f"{when}; the elbow was between {lowest:.0f} and {highest:.0f} degrees"
+        end = f"within 1 mm after {arrived[0]} steps" if len(arrived) else f"in the end {1000 * left[-1]:.3g} mm away"
+        return f"{end}; the elbow was between {lowest:.0f} and {highest:.0f} degrees"
 
     return figure, search

@@ -2,28 +2,26 @@
 
 import numpy as np
 
+from ir50p_lab.course.draw import sketch
 from ir50p_lab.course.draw.style import COLOURS, subplots
 from ir50p_lab.modelling.chain import frames
 
 
 def from_above(angle):
     """Two points at distance 1 and where a turn by `angle` (rad) takes them: LabFigure."""
-    figure, ax = subplots(5.2, 5.0)
+    figure, ax = sketch.from_above(5.2, title="From above: the waist turns counter-clockwise")
     circle = np.linspace(0, 2 * np.pi, 181)
     ax.plot(np.cos(circle), np.sin(circle), color=COLOURS["light"], zorder=1)
     for start, colour, name in ((0.0, "orange", "ahead"), (np.pi / 2, "blue", "to the left")):
         end = start + angle
-        arc = np.linspace(start, end, 40)
-        ax.plot(0.35 * np.cos(arc), 0.35 * np.sin(arc), color=COLOURS[colour])
+        sketch.arc(ax, (0, 0), start, end, 0.35, colour)
         ax.plot([0, np.cos(start)], [0, np.sin(start)], "--", color=COLOURS[colour], alpha=0.6)
         ax.plot([0, np.cos(end)], [0, np.sin(end)], color=COLOURS[colour], linewidth=2.5)
         ax.plot(np.cos(start), np.sin(start), "o", mfc="white", color=COLOURS[colour], ms=9)
         ax.plot(np.cos(end), np.sin(end), "o", color=COLOURS[colour], ms=11)
         ax.annotate(name, (np.cos(start), np.sin(start)), (8, 8), textcoords="offset points", color=COLOURS[colour])
-    ax.plot(0, 0, "s", color=COLOURS["dark"], ms=9)
     ax.annotate("column", (0, 0), (-52, -16), textcoords="offset points")
-    ax.set(xlim=(-1.25, 1.45), ylim=(-1.25, 1.35), aspect="equal", xlabel="x, ahead [m]", ylabel="y, to the left [m]")
-    ax.set_title("From above: the waist turns counter-clockwise")
+    ax.set(adjustable="box", xlim=(-1.25, 1.45), ylim=(-1.25, 1.35))
     return figure
 
 

@@ -1,9 +1,9 @@
-"""The forearm through the column: what the pictures of 02 mark."""
+"""The forearm through the column: what the maps of 02 mark."""
 
 import numpy as np
 import pytest
 
-from ir50p_lab.course.kinematics.triangle_views import through_column
+from ir50p_lab.course.kinematics.column import through_column
 from ir50p_lab.modelling import IR50P, inverse_kinematics
 
 
