@@ -279,7 +279,7 @@ def test_a_usual_mistake_has_its_sentence(name, old, new, words, capsys):
             "inverse_kinematics",
             "poses.append([waist + np.pi, np.arctan2(up, -out) - beta, q3])\n    p",
             "if abs(cosine) > 1 + 1e-9:\n            return []\n    p",
-            "2 different poses for a place that has 4",
+            "two poses a place, all on one side",
         ),
         (
             "inverse_kinematics",
