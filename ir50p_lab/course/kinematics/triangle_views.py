@@ -3,10 +3,9 @@
 import numpy as np
 from matplotlib.patches import Circle
 
-from ir50p_lab.course.draw.arm3d import ArmView, SideView
+from ir50p_lab.course.draw.arm3d import SideView
 from ir50p_lab.course.draw.sketch import arc, from_above, line, name
 from ir50p_lab.course.draw.style import COLOURS, subplots
-from ir50p_lab.course.draw.widgets import live, slider
 from ir50p_lab.modelling.chain import forward_kinematics, frames
 from ir50p_lab.modelling.ik import inverse_kinematics, reachability
 
@@ -111,14 +110,6 @@ def circles(arm):
         return "two crossings, two elbows"
 
     return figure, show
-
-
-def step_through(arm, poses, badge):
-    """The arm in one of several poses (n, 3) rad, chosen by a slider; badge: whose they are. Returns: LivePanel."""
-    figure, ax = subplots(7.2, 4.6, projection="3d")
-    view = ArmView(ax, arm)
-    ax.set_title(f"inverse_kinematics: {badge}")
-    return live(figure, lambda pose: view.update(poses[pose - 1]), pose=slider(1, len(poses), 1, 1))
 
 
 def straight_line(arm, places, q_start, q_end, poses=()):

@@ -2,6 +2,7 @@
 
 import cv2
 import numpy as np
+from scipy.spatial.distance import cdist
 
 _LONGER_SIDE = 640  # px of the copy that is searched
 _STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
@@ -15,9 +16,7 @@ _NEW = 0.25  # of a radius: a circle nearer than this to an earlier one, place a
 def guess_circles(image, colour, least_radius):
     """Circles [(x, y, r)] px that regions of a Colour in an RGB picture (h, w, 3) may be, longest arcs first."""
     scale = max(1, round(max(image.shape) / _LONGER_SIDE))
-    small = image
-    if scale > 1:
-        small = cv2.resize(image, None, fx=1 / scale, fy=1 / scale, interpolation=cv2.INTER_AREA)
+    small = cv2.resize(image, None, fx=1 / scale, fy=1 / scale, interpolation=cv2.INTER_AREA)
     found = []
     for mask in _masks(small, colour):
         outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
@@ -60,7 +59,7 @@ def _circles(points):
         if not usable.any():
             break
         middle, r = (p + middle)[usable], r[usable]
-        off = np.hypot(*(points[:, None] - middle).transpose(2, 0, 1)) - r
+        off = cdist(points, middle) - r
         near = np.abs(off) < np.maximum(_NEAR[0] * r, _NEAR[1])  # (points, circles)
         best = near.sum(axis=0).argmax()
         found.append((near[:, best].sum(), *middle[best], r[best]))
