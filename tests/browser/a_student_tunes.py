@@ -35,7 +35,7 @@ WRONG = {
     "PID.pi": [(RESET, "", "no `reset`")],
     "PID.limits": [("np.where(winds_up, self.integral, grown)", "grown", "it winds up")],
     "PID": [("self.last = None", "self.last = np.zeros(3)", "has come from zero")],
-    "step_metrics": [("max(0.0, ", "float(", "no overshoot is 0")],
+    "step_metrics": [("max(0.0, ", "float(", "it should be 0")],
 }
 NAMES = {
     "A": "windup",
