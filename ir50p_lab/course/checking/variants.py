@@ -13,7 +13,7 @@ import numpy as np
 from ir50p_lab.course.checking.task import Mistake, picked, table
 
 _OPERATIONS = {ast.MatMult: "@", ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
-_OWN_WORDS = ("condition", "loop", "what_it_returns", "half_a_turn", "the_identity", "T1", "T2", "T3")
+_OWN_WORDS = ("condition", "loop", "what_it_returns", "half_a_turn", "the_identity", "frame_1", "frame_2", "frame_3")
 _NAMED = re.compile(
     r" \((?:that on )?(?P<named>[\w ]+)\)|: look at (?:the )?(?P<place>[\w ]+)$"
     r"|`(?P<quoted>[\w ]+)`(?= (?:is|has|counts|stands))"
@@ -123,7 +123,7 @@ def _place(statement):
     match statement:
         case ast.Assign(targets=[target]):
             name = next(one.id for one in ast.walk(target) if isinstance(one, ast.Name))
-            place = re.sub(r"^(?!out$)(?=.*_|[a-z]{3})", "the ", name).replace("_", " ")
+            place = re.sub(r"^(?!out$)(?=.*_|[a-z]{3})", "the ", re.sub(r"^T(?=\d)", "frame ", name)).replace("_", " ")
         case ast.If():
             place = "the condition"
         case ast.For():

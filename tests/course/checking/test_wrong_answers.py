@@ -53,7 +53,7 @@ REACH_LIMITS = "np.all(q >= limits[0]) and np.all(q <= limits[1])"
             "sticks out",
         ),
         ("dh_matrix", "shift(a, 0, 0)", "shift(0, a, 0)", "a shifts along y"),
-        ("frames", "[0, l[2], -np.pi / 2", "[l[1], l[2], 1", "look at T3|frame 2 to frame 3"),
+        ("frames", "[0, l[2], -np.pi / 2", "[l[1], l[2], 1", "look at frame 3|frame 2 to frame 3"),
         ("frames", "np.pi / 2]", "3.14 / 2]", "nearly right"),
         ("forward_kinematics", "[:3, 3]", "[:3, 2]", "another row or column"),
         ("inverse_kinematics", "np.array(poses)", "np.degrees(poses)", "degrees"),
