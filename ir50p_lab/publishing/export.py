@@ -29,7 +29,10 @@ img { max-width: 100%; height: auto; }
 table { border-collapse: collapse; margin: 1em 0; } td, th { border: 1px solid #d5dbe2; padding: 4px 10px; }
 blockquote { border-left: 3px solid #ccc; margin-left: 0; padding-left: 1em; }
 math[display=block] { margin: 0.8em 0; } .anchor-link { display: none; }
-@media print { body { max-width: none; margin: 0; font-size: 12px; } .output, .input { break-inside: avoid; } }
+@media print {
+  body { max-width: none; margin: 0; font-size: 12px; } img, svg, tr { break-inside: avoid; }
+  img, svg[role=img] { max-height: 9cm; width: auto; } h1, h2, h3 { break-after: avoid; }
+}
 """
 
 

@@ -1,5 +1,6 @@
 """What a page shows in the place of widgets: the pictures they hold, or the 3-D arm without a kernel."""
 
+import html
 import json
 import re
 
@@ -19,13 +20,15 @@ def plain_outputs(outputs, widgets, *, live):
         view = data.pop(_VIEW, None)
         if view is None:
             if "image/png" in data:  # a picture goes before other forms of the same thing
-                output["data"] = {"image/png": data["image/png"]}
+                about = output["metadata"].get("image/png", {})
+                words = about.get("alt", data.get("text/plain", ""))
+                output["data"] = {"text/html": _image(data["image/png"], words, about.get("width"))}
             plain.append(output)
             continue
         still = data.get("image/png")
         parts = list(_parts(view["model_id"], widgets, still, live))
-        if not any("<div" in part for part in parts) and still:
-            parts = [_image(still)]
+        if not parts and still:
+            parts = [_image(still, data.get("text/plain", ""))]
         if parts:
             plain.append(nbformat.v4.new_output("display_data", {"text/html": "\n".join(parts)}))
     return plain
@@ -38,24 +41,27 @@ def _parts(model_id, widgets, still, live):
         return
     state, buffers = model["state"], {tuple(one["path"]): one["data"] for one in model.get("buffers", ())}
     if "poses" in state and "shape" in state:
-        yield _arm(state, buffers, still) if live else _image(still)
+        yield _arm(state, buffers, still) if live else _image(still, state.get("description", ""))
     elif str(state.get("value")).startswith("<svg"):  # a chart
         yield state["value"]
     elif buffers.get(("value",)):
-        yield _image(buffers["value",].replace("\n", ""))
+        yield _image(buffers["value",], state["description"])
     for child in state.get("children", ()):
         yield from _parts(child.removeprefix("IPY_MODEL_"), widgets, still, live)
 
 
-def _image(png):
-    return f'<img src="data:image/png;base64,{png.strip()}">' if png else ""
+def _image(png, words, width=None):
+    size = f' width="{width}"' if width else ""
+    data = "".join((png or "").split())
+    return f'<img src="data:image/png;base64,{data}" alt="{html.escape(words)}"{size}>' if png else ""
 
 
 def _arm(state, buffers, still):
     """A view of the arm: its picture, which the script at the end of the page replaces."""
     shown = {name: state[name] for name in _SHOWN} | {"track": buffers.get(("track",), "").replace("\n", "")}
     text = json.dumps(shown).replace("</", "<\\/")
-    return f'<div data-live-arm>{_image(still)}<script type="application/json">{text}</script></div>'
+    image = _image(still, state.get("description", ""))
+    return f'<div data-live-arm>{image}<script type="application/json">{text}</script></div>'
 
 
 def live_arm_script():

@@ -7,7 +7,8 @@ import argparse
 import base64
 import html
 import os
-from datetime import date
+import textwrap
+from datetime import date, datetime
 from pathlib import Path
 
 from ir50p_lab.bench import result_files
@@ -17,11 +18,14 @@ from ir50p_lab.course.lab_book.progress import read_progress
 from ir50p_lab.course.robot import folder
 from ir50p_lab.course.robot.catalogue import ORDER, notebook_of
 
+_NAMES = dict(
+    line.split(": ", 1) for line in Path(lab_book.__file__).with_name("names.txt").read_text("utf-8").splitlines()
+)
 _STYLE = """
 body { font: 16px/1.5 sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; color: #222 }
 table { border-collapse: collapse; margin: 1rem 0 } td, th { padding: 3px 14px 3px 0; text-align: left }
 th { border-bottom: 2px solid #999 } td { border-bottom: 1px solid #ddd; vertical-align: top }
-pre { background: #f4f4f4; padding: 10px; overflow-x: auto } figure { margin: 1rem 0 } img { max-width: 100% }
+pre { background: #f4f4f4; padding: 10px; overflow-x: auto } figure { margin: 1rem 0 } img { width: 100% }
 .loan { color: #B35900; font-weight: bold } h1, h2 { font-weight: 600 }
 """
 
@@ -48,7 +52,18 @@ def _names(name, partners):
 
 
 def _note(one):
-    return f"<p>{_text(one['text'])} <small>{one['at'][:16]}</small></p>"
+    return f"<p>{_text(one['text'])} <small>{_when(one['at'])}</small></p>"
+
+
+def _named(key):
+    """What a number or a figure of the lab book is; the student's own have their names already."""
+    return _text(_NAMES.get(key, key.replace(".", ", ").replace("_", " ")))
+
+
+def _when(text):
+    """A time of the lab book, to the minute, as people write it."""
+    when = datetime.fromisoformat(text) if text else None
+    return f"{when.day} {when:%B %Y, %H:%M}" if when else ""
 
 
 def _section(title, content):
@@ -90,7 +105,7 @@ def _predictions(predictions):
         if entry.get("late"):
             guess += " <small>(after the answer)</small>"
         truth = _number(entry.get("truth"), unit)
-        rows.append((_text(name), guess, truth, _text(entry.get("why", "")), entry.get("guessed", "")[:16]))
+        rows.append((_named(name), guess, truth, _text(entry.get("why", "")), _when(entry.get("guessed", ""))))
     return _table(["what", "my guess", "measured", "why", "when"], rows)
 
 
@@ -101,9 +116,11 @@ def _number(value, unit):
 def _figure(one):
     path = lab_book.path().parent / "figures" / one["file"]
     if not path.exists():
-        return f"<p>{_text(one['name'])}: the picture {_text(path.name)} is gone.</p>"
+        return f"<p>{_named(one['name'])}: the picture {_text(path.name)} is gone.</p>"
     picture = base64.b64encode(path.read_bytes()).decode("ascii")
-    return f"<figure><img src='data:image/png;base64,{picture}'><figcaption>{_text(one['name'])}</figcaption></figure>"
+    name = _named(one["name"])
+    words = html.escape(one.get("words", name))
+    return f'<figure><img src="data:image/png;base64,{picture}" alt="{words}"><figcaption>{name}</figcaption></figure>'
 
 
 def _done(attempts):
@@ -113,9 +130,13 @@ def _done(attempts):
         for name in ORDER
         if folder.is_there(name) or name in attempts
     ]
-    names = [one.name for one in numbers.everything() if one.name in done]
-    listed = f"<p>Exercises done: {', '.join(f'{name} {done[name][:10]}' for name in names)}.</p>" if names else ""
-    return _table(["notebook", "function", "whose", "answers that were wrong"], rows) + listed
+    solved = [
+        (one.notebook, _text(textwrap.shorten(one.task, 80, placeholder=" ...")), _when(done[one.name]))
+        for one in numbers.everything()
+        if one.name in done
+    ]
+    functions = _table(["notebook", "function", "whose", "answers that were wrong"], rows)
+    return functions + _table(["notebook", "exercise", "done"], solved)
 
 
 def _whose(name):

@@ -37,6 +37,7 @@ def test_a_page_has_as_many_pictures_as_the_notebook_has_figures(pages):
     assert len(re.findall(r'<img[^>]*src="data:image/png;base64,[A-Za-z0-9+/]{500,}', page)) == PICTURES
     assert len(re.findall(r'<svg [^>]*aria-label="t: a over 1 s".*?<polyline [^>]*points="[0-9 ]{40,}"', page)) == 1
     assert len(re.findall("<div data-live-arm", page)) == 1 and page.count("<math") == 3
+    assert not re.search(r'<img (?![^>]*alt="[^"]+")|No description', page)
     assert "cost: $5 and $6" in page and "widget-view" not in page
     assert not re.search(r"""(?:src|href)=["']https?:""", page)
 

@@ -227,7 +227,8 @@ def main(arguments=None):
     given.data.mkdir(exist_ok=True)
     for name, draw in DRAWINGS.items():
         with matplotlib.rc_context({"svg.hashsalt": name}):  # the same file each time
-            draw().savefig(given.data / f"{name}.svg", metadata={"Date": None})
+            figure = draw()
+            figure.savefig(given.data / f"{name}.svg", metadata={"Date": None, "Title": figure.describe()})
     readme_picture().savefig(given.picture, dpi=150)
 
 

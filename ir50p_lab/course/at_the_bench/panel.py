@@ -21,11 +21,11 @@ import numpy as np
 from ir50p_lab.controllers.base import GAINS, gains_of, set_gains
 from ir50p_lab.course.draw.controls import close_all, make_control, on_scale, slider
 from ir50p_lab.course.draw.scope import Scope
+from ir50p_lab.course.draw.style import alarm
 from ir50p_lab.errors import InputError, LabError
 
 _UNITS = {"kp": "PWM/rad", "ki": "PWM/(rad s)", "kd": "PWM s/rad"}
 _LEAST = {"kp": 400, "ki": 100, "kd": 100}  # smallest right end of a slider
-_RED = "#c0392b"
 _FRAME, _WINDOW = 1 / 25, 10.0  # s, of the scope
 
 
@@ -224,7 +224,7 @@ class BenchPanel(widgets.VBox):
 
     def _complain(self, error):
         self.error = error
-        self.status.value = f'<span style="color:{_RED}">{html.escape(f"{type(error).__name__}: {error}")}</span>'
+        self.status.value = alarm(f"{type(error).__name__}: {error}")
 
     # ---- the scope's thread
 

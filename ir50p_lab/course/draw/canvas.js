@@ -8,8 +8,11 @@ function dataUrl({ buffer, byteOffset, byteLength }) {
 }
 
 function render({ model, el }) {
-  const img = Object.assign(document.createElement("img"), { alt: model.get("description"), decoding: "sync", draggable: false });
-  const show = () => { img.src = dataUrl(model.get("value")); };
+  const img = Object.assign(document.createElement("img"), { decoding: "sync", draggable: false });
+  const show = () => {
+    img.alt = model.get("description");
+    img.src = dataUrl(model.get("value"));
+  };
   img.style.cssText = `width:100%;cursor:${model.get("clickable") ? "crosshair" : "default"}`;
   img.addEventListener("click", (event) => {
     const box = img.getBoundingClientRect();

@@ -9,6 +9,7 @@ import time
 
 import ipywidgets
 import numpy as np
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.ticker import MaxNLocator
 
 from ir50p_lab.course.draw.style import COLOURS
@@ -29,7 +30,7 @@ class Chart(ipywidgets.HTML):
         columns = [column for panel in panels for column, *_ in panel["lines"]]
         self._head = (
             f'<svg viewBox="0 0 1000 {height}" role="img" aria-label="{html.escape(description)}" fill="none" '
-            'style="display: block; min-width: 600px; font: 12px sans-serif">'
+            'style="display: block; min-width: 600px; font: 12px sans-serif; background: white">'
         )
         super().__init__(layout={"width": "100%", "max_width": "1060px"})
         self.draw(np.empty((0, 1 + max(columns))))
@@ -94,8 +95,9 @@ def _line(path, colour, style=""):
 
 
 def _text(x, y, anchor, *words):
-    """Words in their colours, (text, colour) each, one after the other."""
-    spans = "\N{EM SPACE}".join(f'<tspan fill="{colour}">{html.escape(text)}</tspan>' for text, colour in words)
+    """Words in their colours, (text, colour) each, one after the other, dark enough to read on white."""
+    inks = [(html.escape(text), to_hex(0.65 * np.array(to_rgb(colour)))) for text, colour in words]
+    spans = "\N{EM SPACE}".join(f'<tspan fill="{ink}">{text}</tspan>' for text, ink in inks)
     return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{spans}</text>'
 
 

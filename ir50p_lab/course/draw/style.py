@@ -1,5 +1,7 @@
 """Figures of the book: their axes, and how they are shown."""
 
+import html
+
 import matplotlib
 from matplotlib.cm import ScalarMappable
 
@@ -85,6 +87,11 @@ def subplots(*size, **options):
     """Figure and axes of `new_figure`, for unpacking: `figure, left, right = subplots(cols=2)`."""
     figure = new_figure(*size, **options)
     return figure, *figure.axes
+
+
+def alarm(text):
+    """A sentence in red as HTML, on a ground of its own: it can be read in a dark notebook, too."""
+    return f'<span style="color: #8E1B0E; background: #FDECEA; padding: 0 4px">{html.escape(text)}</span>'
 
 
 def origin(recording):

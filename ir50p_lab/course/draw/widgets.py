@@ -25,6 +25,7 @@ import ipywidgets as widgets
 from ir50p_lab.course.draw.canvas import Canvas
 from ir50p_lab.course.draw.controls import Slider, close_all, make_control, refuse_bad_value, slider, value_of
 from ir50p_lab.course.draw.painter import DRAWING, Painter
+from ir50p_lab.course.draw.style import alarm
 from ir50p_lab.errors import InputError, UnstableLoopWarning
 
 __all__ = ["LivePanel", "Slider", "live", "slider"]
@@ -144,7 +145,7 @@ class LivePanel(widgets.VBox):
             print(text, file=said)
         text = html.escape(said.getvalue().rstrip()).replace("\n", "<br>")
         if self.error is not None:
-            text += f'<span style="color:#c0392b">{html.escape(_explain(self.error))}</span>'
+            text += alarm(_explain(self.error))
         self.status.value = text
         self.updates += 1
 
@@ -156,6 +157,7 @@ class LivePanel(widgets.VBox):
                 for frame in filter(None, (ax.get_legend(), *ax.spines.values())):
                     frame.set_zorder(min(frame.get_zorder(), 1.8))  # below a title that changes
             self._painter = Painter(self.figure)
+        self.image.description = self.figure.describe()
         self.image.value = self._painter.png()
         time.sleep(0.001)  # the thread that sends it takes its turn now, not after Python's usual 5 ms
 

@@ -10,7 +10,7 @@ from ir50p_lab.course.draw.canvas import Canvas
 from ir50p_lab.course.draw.drawings import drawing
 from ir50p_lab.course.draw.painter import encode_png
 from ir50p_lab.course.draw.pictures import STAMP, pictures_figure, show_picture
-from ir50p_lab.course.draw.style import COLOURS, new_figure, subplots
+from ir50p_lab.course.draw.style import COLOURS, alarm, new_figure, subplots
 from ir50p_lab.errors import LabError
 from ir50p_lab.vision import (
     RED,
@@ -273,7 +273,7 @@ class ClickColour(widgets.VBox):
         try:
             self._use(learn_colour(self._image, (x, y)))
         except LabError as error:
-            self.status.value = f'<span style="color:#c0392b">{html.escape(str(error))}</span>'
+            self.status.value = alarm(str(error))
 
     def _clicked(self, right, up):
         height, width = self._image.shape[:2]

@@ -128,11 +128,12 @@ def keep(figure, name):
     file = f"{re.sub(r'[^a-zA-Z0-9]+', '_', name).strip('_') or 'figure'}.png"
     place = path().parent / "figures" / file
     with writing(place, place.parent):
-        figure.savefig(place, dpi=120, bbox_inches="tight")
+        figure.savefig(place, dpi=200, bbox_inches="tight")
 
     def edit(book):
         book["figures"] = [one for one in book["figures"] if one["file"] != file]
-        book["figures"].append({"name": name, "file": file, "at": now()})
+        words = figure.describe() if hasattr(figure, "describe") else name
+        book["figures"].append({"name": name, "file": file, "at": now(), "words": words})
 
     change(edit)
     print(f"kept: {name}")

@@ -61,6 +61,7 @@ class LiveArm(anywidget.AnyWidget):
     poses = traitlets.List().tag(sync=True)
     track = traitlets.Bytes(b"").tag(sync=True)
     shape = traitlets.Dict().tag(sync=True)
+    description = traitlets.Unicode().tag(sync=True)
 
     def __init__(self, arm, q=(0.0, 0.0, 0.0), *, on_drag=None, frames=None, badge=None,
                  layers=("table", "shadow", "ghost", "trail"), ball=None,
@@ -154,8 +155,19 @@ class LiveArm(anywidget.AnyWidget):
 
     def _repr_mimebundle_(self, **kwargs):
         """The widget, and the picture of this moment for viewers without one."""
+        self.description = self._words()
         data, metadata = super()._repr_mimebundle_(**kwargs)
-        return {"image/png": base64.b64encode(still_png(self)).decode("ascii"), **data}, metadata
+        picture = base64.b64encode(still_png(self)).decode("ascii")
+        return {"image/png": picture, **data}, metadata | {"image/png": {"alt": self.description}}
+
+    def _words(self):
+        """What the picture shows, for those who do not see it."""
+        angles = ", ".join(f"{angle:.0f}" for angle in np.degrees(self.q))
+        tip = np.array(self.poses, dtype=float)[3, :3, 3] if self.poses else forward_kinematics(self.arm, self.q)
+        x, y, z = tip
+        plays = f"; it plays a motion of {np.ptp(self._shown.t):.1f} s" if self.track else ""
+        badge = self.options["badge"]
+        return f"The arm in 3-D, {badge}: joints at {angles} degrees, tip at x {x:.3f}, y {y:.3f}, z {z:.3f} m{plays}"
 
 
 def pack(runs, labels):

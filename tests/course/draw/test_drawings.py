@@ -32,6 +32,7 @@ def words(svg):
 def test_a_drawing_has_its_words(show):
     said = " ".join(words(show().data))
     assert all(name in said for name in SHOWN[show])
+    assert re.search(r'<img [^>]*alt="[^"]{30,}"', show()._repr_html_())
 
 
 def test_the_files_are_what_the_recipe_draws(tmp_path):

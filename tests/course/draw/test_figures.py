@@ -1,5 +1,6 @@
 """Figures: the style is local, figures show themselves, and what is drawn is where the kinematics says."""
 
+import html
 import io
 
 import matplotlib
@@ -8,7 +9,7 @@ import pytest
 from PIL import Image
 
 from ir50p_lab.course.draw.arm3d import ArmView, SideView
-from ir50p_lab.course.draw.style import figure_style, new_figure
+from ir50p_lab.course.draw.style import figure_style, new_figure, subplots
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import IR50P, Arm, forward_kinematics, frames
 
@@ -30,7 +31,18 @@ def test_a_figure_shows_itself_sharp_and_at_its_own_size():
     figure = new_figure(3, 2)
     data, size = figure._repr_png_()
     assert Image.open(io.BytesIO(data)).size == (600, 400)
-    assert size == {"width": 300, "height": 200}
+    assert (size["width"], size["height"]) == (300, 200)
+
+
+def test_a_figure_says_what_it_shows():
+    figure, ax = subplots(3, 2)
+    ax.plot([0, 1], [0, 1], label="joint <2>")
+    ax.set(title="It rises at $t$", xlabel="time [s]", ylabel="angle [rad]")
+    ax.legend()
+    words = "It rises at t. angle [rad] against time [s]. joint <2>"
+    data, about = figure._repr_mimebundle_()
+    assert about["image/png"]["alt"] == words
+    assert f'alt="{html.escape(words)}"' in data["text/html"] and data["image/png"] in data["text/html"]
 
 
 @pytest.mark.parametrize("arm", ARMS, ids=lambda arm: arm.name)

@@ -30,7 +30,9 @@ def test_a_report_of_everything(tmp_path, monkeypatch, capsys):
     row = "<td>0.1 m <small>(at first 0.2 m)</small></td><td>0.33 m</td><td>the elbow is &lt;up&gt;</td>"
     for words in ("Ada and Blaise", row, "unit 2", "it sank &lt;slowly&gt;", "my figure", "def rot_z", "on loan"):
         assert words in text, words
-    assert re.search(r"Exercises done: pose-3 \d{4}-\d\d-\d\d\.", text)
+    assert re.search(r"<td>01_[^<]*</td><td>[^<]{30,}</td><td>\d+ \w+ \d{4}, \d\d:\d\d</td>", text)
+    assert "height of the tip, by pencil" in text and "fk.height" not in text
+    assert not re.search(r"<img(?![^>]*alt=\"[^\"]+\")", text)
     assert not re.search(r"https?://", text)
 
 

@@ -2,7 +2,9 @@
 import { contacts } from "./track.js";
 
 const JOINT = ["#0072B2", "#D55E00", "#009E73"], RUN = ["#0072B2", "#009E73"], INK = "#333333";
-const LEFT = 46, RIGHT = 10, TOP = 22, GAP = 13, BOTTOM = 34;
+const LEFT = 46, RIGHT = 14, TOP = 20, GAP = 24, BOTTOM = 34, APART = 11;
+const SET_POINT = "set point", STOP = "at its stop", TABLE = "on the table";
+const BANDS = { [STOP]: "#E69F0055", [TABLE]: "#56B4E955" };
 
 const niceStep = (span, most) => {
   const scale = 10 ** Math.floor(Math.log10(span / most));
@@ -33,7 +35,7 @@ export class Curves {
     this.t0 = track.start;
     this.t1 = Math.max(track.end, track.start + 1e-3);
     const angles = [0, 1, 2].map((joint) => ({
-      title: `joint ${joint + 1} [deg]` + (joint === 0 && track.runs[0].reference !== null ? ", set point dashed" : ""), least: 4,
+      title: `joint ${joint + 1} [deg]`, least: 4,
       lines: track.runs.flatMap((run, k) => [
         ...(run.reference === null ? [] : [{ column: run.reference + joint, colour: INK, dash: [5, 4], scale: 180 / Math.PI }]),
         { column: run.q + joint, colour: track.runs.length > 1 ? RUN[k] : JOINT[joint], scale: 180 / Math.PI },
@@ -45,8 +47,14 @@ export class Curves {
       lines: [0, 1, 2].map((joint) => ({ column: run.u + joint, colour: JOINT[joint], scale: 1, stairs: true, name: `${joint + 1}` })),
     }));
     this.plots = [...angles, ...commands].map((plot) => ({ ...plot, range: this.range(plot) }));
-    const said = track.runs.map((run) => run.label).join(" and ");
-    this.canvas.setAttribute("aria-label", `angles of the three joints over time, ${said}; set point dashed`);
+    this.touched = track.times.map((_, row) => contacts(this.lengths, this.limits, [0, 1, 2].map((i) => track.value(row, track.runs[0].q + i))));
+    this.key = [
+      ...(track.runs.some((run) => run.reference !== null) ? [SET_POINT] : []),
+      ...(this.touched.some(({ stops }) => stops.includes(true)) ? [STOP] : []),
+      ...(this.touched.some(({ table }) => table) ? [TABLE] : []),
+    ];
+    const said = track.runs.map((run) => run.label).filter(Boolean).join(" and ");
+    this.canvas.setAttribute("aria-label", ["angles of the three joints over time", said, ...this.key].filter(Boolean).join(", "));
     this.drawn = null;
   }
 
@@ -100,7 +108,7 @@ export class Curves {
     this.plots.forEach((plot, k) => {
       const y0 = TOP + k * (h + GAP), [low, high] = plot.range;
       plot.Y = (value) => y0 + h - ((value - low) / (high - low)) * h;
-      this.shadeContacts(pen, k, X, y0, h);
+      if (k < 3) this.shadeContacts(pen, k, X, y0, h);
       Object.assign(pen, { lineWidth: 1, strokeStyle: "#E6E6E6", fillStyle: "#555555", font: "11px sans-serif", textBaseline: "middle" });
       pen.setLineDash([]);
       const rule = (x1, y1, x2, y2) => { pen.beginPath(); pen.moveTo(x1, y1); pen.lineTo(x2, y2); pen.stroke(); };
@@ -118,17 +126,38 @@ export class Curves {
       pen.strokeStyle = "#666666";
       rule(LEFT, y0, LEFT, y0 + h);
       rule(LEFT, y0 + h, LEFT + w, y0 + h);
-      for (const line of plot.lines) this.stroke(pen, line, X, plot.Y);
+      const ends = plot.lines.map((line) => ({ ...line, y: this.stroke(pen, line, X, plot.Y) }));
       pen.setLineDash([]);
-      Object.assign(pen, { fillStyle: INK, textAlign: "left", font: "600 11px sans-serif", lineWidth: 4, strokeStyle: "#ffffffee" });
-      pen.strokeText(plot.title, LEFT + 6, y0 + 3);
-      pen.fillText(plot.title, LEFT + 6, y0 + 3);
+      Object.assign(pen, { fillStyle: INK, textAlign: "left", font: "600 11px sans-serif" });
+      pen.fillText(plot.title, LEFT, y0 - 9);
+      let below = y0; // names at the ends of curves, none over another
+      for (const { name, colour, y } of ends.filter((line) => line.name).sort((a, b) => a.y - b.y)) {
+        below = Math.max(y, below + APART);
+        pen.fillStyle = colour;
+        pen.fillText(name, X(this.t1) + 3, below);
+      }
     });
-    Object.assign(pen, { textAlign: "center", fillStyle: INK, font: "12px sans-serif" });
-    pen.fillText("time [s]", LEFT + w / 2, height - 9);
+    this.drawKey(pen, height - 9);
+    Object.assign(pen, { textAlign: "right", fillStyle: INK, font: "12px sans-serif" });
+    pen.fillText("time [s]", LEFT + w, height - 9);
   }
 
-  stroke(pen, { column, colour, dash = [], scale, stairs, name }, X, Y) {
+  // What dashes and bands mean, in a line.
+  drawKey(pen, y) {
+    Object.assign(pen, { textAlign: "left", font: "11px sans-serif", strokeStyle: INK });
+    let x = LEFT;
+    for (const name of this.key) {
+      pen.fillStyle = BANDS[name];
+      if (name === SET_POINT) for (const dash of [0, 9]) pen.strokeRect(x + dash, y, 5, 0);
+      else pen.fillRect(x, y - 6, 14, 12);
+      pen.fillStyle = INK;
+      pen.fillText(name, x + 18, y);
+      x += 30 + pen.measureText(name).width;
+    }
+  }
+
+  // Returns where the curve ends.
+  stroke(pen, { column, colour, dash = [], scale, stairs }, X, Y) {
     Object.assign(pen, { strokeStyle: colour, lineWidth: dash.length ? 1.3 : 1.8, lineJoin: "round" });
     pen.setLineDash(dash);
     pen.beginPath();
@@ -140,20 +169,17 @@ export class Curves {
       last = y;
     }
     pen.stroke();
-    if (!name) return;
-    Object.assign(pen, { fillStyle: colour, font: "600 11px sans-serif", textAlign: "left" });
-    pen.fillText(name, X(this.t1) + 3, last);
+    return last;
   }
 
-  // Amber where a joint is at its stop, and under all joints where the arm touches the table.
+  // Bands where a joint is at its stop, and under all joints where the arm touches the table.
   shadeContacts(pen, joint, X, y0, h) {
-    if (joint > 2) return;
-    pen.fillStyle = "#E69F0033";
-    for (let row = 0; row + 1 < this.track.rows; row++) {
-      const q = [0, 1, 2].map((i) => this.track.value(row, this.track.runs[0].q + i));
-      const { stops, table } = contacts(this.lengths, this.limits, q);
+    this.touched.slice(0, -1).forEach(({ stops, table }, row) => {
       const from = X(this.track.times[row]);
-      if (stops[joint] || table) pen.fillRect(from, y0, X(this.track.times[row + 1]) - from + 0.5, h);
-    }
+      for (const name of [...(stops[joint] ? [STOP] : []), ...(table ? [TABLE] : [])]) {
+        pen.fillStyle = BANDS[name];
+        pen.fillRect(from, y0, X(this.track.times[row + 1]) - from, h);
+      }
+    });
   }
 }

@@ -57,13 +57,48 @@ class View {
     this.controls = new OrbitControls(this.camera, this.parts.canvas);
     this.controls.enableZoom = false; // the wheel scrolls the page until the view is clicked
     this.controls.addEventListener("change", () => this.soon());
-    this.lookFromStart();
+    this.controls.addEventListener("start", () => { this.turned = true; });
   }
 
   lookFromStart() {
-    this.camera.position.set(1.55 * this.size, -2.6 * this.size, this.l[0] + 1.1 * this.size);
-    this.controls.target.set(0, 0, this.l[0] + 0.06 * this.size);
+    this.turned = false;
+    this.camera.position.set(1.55, -2.6, 1.3);
+    this.camera.lookAt(0, 0, 0);
+    this.framed = `${this.width} ${this.height}`;
+    this.frame();
+  }
+
+  // Places of the arm, of the motion that it plays, of the ball and of the table's edge, m.
+  seenPoints() {
+    const { track, layers, l } = this, edge = 1.05 * this.size;
+    const columns = track?.runs.flatMap((run) => [run.q, ...(run.reference === null ? [] : [run.reference])]) ?? [];
+    const runs = columns.flatMap((first) => [...track.path(l, first), ...track.path([l[0], l[1], 0], first)]); // tip, elbow
+    const rim = Array.from({ length: 24 }, (_, k) => [edge * Math.cos((k * Math.PI) / 12), edge * Math.sin((k * Math.PI) / 12), 0]);
+    const points = [...this.joints, ...runs, ...(this.on.has("table") ? rim : [[0, 0, 0]])].map((p) => new Vector3(...p));
+    const known = points.filter((p) => Number.isFinite(p.x + p.y + p.z));
+    return layers.all.ball?.visible ? [...known, layers.all.ball.position.clone()] : known;
+  }
+
+  // Moves the camera, without turning it, until all of it is just seen: each edge of the picture touches a point.
+  frame() {
+    const { camera } = this, points = this.seenPoints().map((p) => p.applyQuaternion(camera.quaternion.clone().invert()));
+    const half = Math.tan((camera.fov * Math.PI) / 360), high = 0.85 * half, wide = 0.95 * camera.aspect * half;
+    const most = (of) => Math.max(...points.map(of));
+    const right = most((p) => p.x + wide * p.z), left = most((p) => wide * p.z - p.x);
+    const up = most((p) => p.y + high * p.z), down = most((p) => high * p.z - p.y);
+    const back = Math.max((right + left) / (2 * wide), (up + down) / (2 * high));
+    const depth = (most((p) => p.z) + Math.min(...points.map((p) => p.z))) / 2;
+    const middle = (up - down) / 2 + 0.05 * half * (back - depth); // the words of the view stand above
+    const at = (z) => new Vector3((right - left) / 2, middle, z).applyQuaternion(camera.quaternion);
+    camera.position.copy(at(back));
+    this.controls.target.copy(at(depth));
     this.controls.update();
+    this.soon();
+  }
+
+  // Whether an end of a link has left the picture.
+  hidden() {
+    return this.joints.some((p) => { const { x, y } = new Vector3(...p).project(this.camera); return Math.max(Math.abs(x), Math.abs(y)) > 1; });
   }
 
   // Draw when something changed, at most once a frame; finely when all has come to rest.
@@ -157,7 +192,10 @@ class View {
     showLegend(this.parts.keys, [...this.on].flatMap((name) => KEYS[name] ?? []));
     this.shade.root.visible = this.on.has("shadow");
     this.trails.forEach((trail) => { trail.line.visible = this.on.has("trail"); });
-    this.tipAt = new Vector3().setFromMatrixPosition(transforms[3]).toArray();
+    const along = (T, x) => new Vector3(x, 0, 0).applyMatrix4(T).toArray(); // of a link, whose frame is at its far end
+    this.joints = [...transforms.map((T) => along(T, 0)), along(transforms[2], -this.l[1]), along(transforms[3], -this.l[2])];
+    this.tipAt = this.joints[3];
+    if (this.width && !this.dragging && this.hidden()) this.frame();
     const { stops, table } = contacts(this.l, this.limits, this.q);
     this.robot.alarm(this.track ? stops : [false, false, false]);
     if (!this.dragging && !this.error) {
@@ -249,8 +287,9 @@ class View {
     this.sideWidth = Math.max(this.parts.side.clientWidth, 240);
     this.canvas.style.height = this.height + "px";
     this.camera.aspect = this.width / this.height;
-    this.camera.fov = 30 * Math.max(1, 1.25 / this.camera.aspect); // a narrow view shows the whole arm too
     this.camera.updateProjectionMatrix();
+    const size = `${this.width} ${this.height}`;
+    if (size !== this.framed && this.joints && !this.turned) this.lookFromStart();
     this.soon();
   }
 
@@ -341,6 +380,7 @@ class View {
     this.rate = this.model.get("options").speed;
     this.again = this.model.get("options").loop;
     this.seek(this.track.start);
+    if (this.width && !this.turned) this.lookFromStart();
   }
 
   take(track) {
@@ -353,7 +393,7 @@ class View {
     this.trails[0].material.color.set(runs.length > 1 ? COLOURS.upper : COLOURS.trail);
     const chips = runs.length > 1 ? [["#0072B2", runs[0].label], [COLOURS.second, runs[1].label]] : runs.map((run) => [null, run.label]);
     const words = this.track?.source ? [[null, this.track.source]] : [];
-    const ghost = runs.some((run) => run.reference !== null) ? [["#8a8f9888", "set point"]] : [];
+    const ghost = runs[0]?.reference != null ? [["#8a8f9888", "set point"]] : [];
     showLegend(this.parts.legend, [...chips, ...ghost, ...words]);
     this.resize();
   }
@@ -438,7 +478,7 @@ class View {
 
 // Without WebGL the kernel draws: a picture of the same view.
 function picture({ model, el }) {
-  const image = make("img", { alt: "the arm" }, { style: "max-width: 100%" });
+  const image = make("img", { alt: model.get("description") }, { style: "max-width: 100%" });
   const show = (message, buffers) => {
     if ("picture" in message) image.src = URL.createObjectURL(new Blob([buffers[0]], { type: "image/png" }));
   };

@@ -32,9 +32,10 @@ export function layout() {
   const menu = make("details", { className: "la-layers" }, {}, make("summary", { textContent: "Layers" }), parts.layers);
   const top = make("div", { className: "la-top" }, {}, parts.badge, parts.legend, parts.keys, parts.tip, menu);
   parts.stage = make("div", { className: "la-stage" }, {}, parts.canvas, top, parts.note);
+  const view = make("div", { className: "la-view" }, {}, parts.stage, parts.player, parts.joints);
   // JupyterLab takes keys for itself, unless told; here they belong to sliders and view
   parts.box = make("div", { className: "la" }, { "data-lm-suppress-shortcuts": "true" },
-    make("style", { textContent: CSS }), make("div", { className: "la-main" }, {}, parts.stage, parts.side), parts.player, parts.joints);
+    make("style", { textContent: CSS }), make("div", { className: "la-main" }, {}, view, parts.side));
   parts.box.addEventListener("keydown", (event) => event.stopPropagation());
   return parts;
 }
