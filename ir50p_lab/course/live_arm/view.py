@@ -23,9 +23,10 @@ BUNDLE = Path(__file__).parent / "static" / "live_arm.js"  # the script that dra
 _MOST = 600  # rows of a motion: 40 kB in a saved notebook, 20 a second for half a minute; the view interpolates
 
 
-class Bundle(ipywidgets.Widget):
+class Bundle(anywidget.AnyWidget):  # whose bytes, unlike those of an ipywidgets.Widget, JupyterLab saves
     """Holds the script for all views of a notebook, so that a saved notebook has it once."""
 
+    _esm = "export default {}"
     packed = traitlets.Bytes().tag(sync=True)
     shared = None
 
