@@ -8,6 +8,7 @@
   python3 -m ir50p_lab setup          only set up (--rebuild: from nothing; --tests: with the test tools)
   python3 -m ir50p_lab bench-test     first power-on of the arm, joint by joint (rehearse: bench-test simulated)
   python3 -m ir50p_lab report         your lab report: predictions, figures, functions (--name "Your Name")
+  python3 -m ir50p_lab try-page       write docs/try/index.html again, README's page to try; then animation: its picture
   python3 -m ir50p_lab update FOLDER  take over what is yours from an older copy of the course
   python3 -m ir50p_lab doctor         what is installed, what is missing, serial ports, verdict
 
@@ -43,6 +44,8 @@ _MODULES = {
     "bench-test": "ir50p_lab.bench.bench_test",
     "export": "ir50p_lab.publishing",
     "report": "ir50p_lab.publishing.report",
+    "try-page": "ir50p_lab.publishing.try_page",
+    "animation": "ir50p_lab.publishing.animation",
     "update": "ir50p_lab.course.lab_book.update",
 }
 #: What asks the launcher to end: `kill`, and a terminal that is closed (not on Windows).
@@ -95,7 +98,7 @@ def _run(arguments, root):
         _ready(environment, options.here, tests="--tests" in arguments, rebuild="--rebuild" in arguments)
         print("Everything is in place." if options.here else f"Ready: {environment.folder}")
         return 0
-    tests = command in ("test", "targets")
+    tests = command in ("test", "targets", "animation")
     python, variables = _ready(environment, options.here, tests=tests)
     if options.arm is not None:
         if not Path(options.arm).is_file():

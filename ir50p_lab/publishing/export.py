@@ -17,7 +17,7 @@ from ir50p_lab.errors import InputError, LabError
 from ir50p_lab.publishing.formulas import mathml, mathml_in
 from ir50p_lab.publishing.pictures import live_arm_script, plain_outputs
 
-_BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge", "microsoft-edge")
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge", "microsoft-edge")
 _CSS = """
 body { font: 16px/1.55 system-ui, sans-serif; color: #222; max-width: 1080px; margin: 2em auto; padding: 0 1.5em; }
 h1, h2, h3 { line-height: 1.25; margin-top: 1.6em; }
@@ -26,6 +26,7 @@ code { font: 0.88em ui-monospace, monospace; background: #f2f4f7; padding: 1px 4
 .input .highlight { background: #f6f8fa; border-left: 3px solid #0072B2; padding: 8px 12px; margin: 1em 0 0.4em; }
 .output { margin: 0.4em 0 1em; } .output pre { padding: 4px 14px; } .prompt { display: none; }
 img { max-width: 100%; height: auto; }
+.row { display: flex; flex-wrap: wrap; gap: 12px; } .row > * { flex: 1 1 300px; min-width: 0; }
 table { border-collapse: collapse; margin: 1em 0; } td, th { border: 1px solid #d5dbe2; padding: 4px 10px; }
 blockquote { border-left: 3px solid #ccc; margin-left: 0; padding-left: 1em; }
 math[display=block] { margin: 0.8em 0; } .anchor-link { display: none; }
@@ -62,10 +63,11 @@ class _Exporter(HTMLExporter):
         yield "markdown2html", self.markdown2html
 
 
-def export(notebook, folder=".", *, run=True, pdf=True):
+def export(notebook, folder=".", *, run=True, pdf=True, code=True, title=None):
     """Write a notebook as `folder`/NAME.html, and NAME.pdf where a browser (Chromium, Chrome, Edge) is found.
 
-    Args: notebook: path of an .ipynb; run: run it first, in its own folder; else its stored outputs are taken.
+    Args: notebook: path of an .ipynb; run: run it first, in its own folder; else its stored outputs are taken;
+    code: with the cells' code; title: of the page, else the notebook's name.
     Returns: the paths written. Raises InputError if there is no such notebook, LabError if a cell fails.
     """
     notebook, folder = Path(notebook), Path(folder)
@@ -75,12 +77,12 @@ def export(notebook, folder=".", *, run=True, pdf=True):
     if run:
         _run(nb, notebook)
     folder.mkdir(parents=True, exist_ok=True)
-    title = notebook.stem
-    written = [folder / f"{title}.html"]
-    written[0].write_text(_page(nb, title, live=True), encoding="utf-8")
-    browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
+    written = [folder / f"{notebook.stem}.html"]
+    title = title or notebook.stem
+    written[0].write_text(_page(nb, title, live=True, code=code), encoding="utf-8")
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if pdf and browser:
-        written.append(_print(browser, _page(nb, title, live=False), folder / f"{title}.pdf"))
+        written.append(_print(browser, _page(nb, title, live=False, code=code), folder / f"{notebook.stem}.pdf"))
     return written
 
 
@@ -91,14 +93,14 @@ def _run(nb, notebook):
         raise LabError(f"{notebook} does not run: {error}") from None
 
 
-def _page(nb, title, *, live):
+def _page(nb, title, *, live, code):
     """The whole page. live: with the 3-D arm in motion; else its pictures."""
     nb = nbformat.from_dict(nb)
     state = nb.metadata.get("widgets", {}).get("application/vnd.jupyter.widget-state+json", {}).get("state", {})
     for cell in nb.cells:
         if cell.cell_type == "code":
             cell.outputs = [mathml_in(output) for output in plain_outputs(cell.outputs, state, live=live)]
-    body, _ = _Exporter().from_notebook_node(nb)
+    body, _ = _Exporter(exclude_input=not code).from_notebook_node(nb)
     script = live_arm_script() if "data-live-arm" in body else ""
     style = _CSS + HtmlFormatter().get_style_defs(".highlight")
     head = (

@@ -46,8 +46,12 @@ def _parts(model_id, widgets, still, live):
         yield state["value"]
     elif buffers.get(("value",)):
         yield _image(buffers["value",], state["description"])
-    for child in state.get("children", ()):
-        yield from _parts(child.removeprefix("IPY_MODEL_"), widgets, still, live)
+    inner = [_parts(child.removeprefix("IPY_MODEL_"), widgets, still, live) for child in state.get("children", ())]
+    beside = state.get("_model_name") == "HBoxModel"
+    yield from ['<div class="row">'] * beside
+    for parts in inner:
+        yield from parts
+    yield from ["</div>"] * beside
 
 
 def _image(png, words, width=None):

@@ -47,7 +47,7 @@ def test_lock_files_hold_what_pyproject_asks_for(system, python):
     for requirement in map(Requirement, project["optional-dependencies"]["test"]):
         assert tests[canonicalize_name(requirement.name)] in requirement.specifier
         assert canonicalize_name(requirement.name) not in student, "a test tool in the student's lock"
-    assert student.items() <= tests.items(), "the two lock files disagree: refresh both (README.md)"
+    assert student.items() <= tests.items(), "the two lock files disagree: refresh both (docs/developing.md)"
 
 
 def test_lock_files_name_no_address():
@@ -57,18 +57,41 @@ def test_lock_files_name_no_address():
 
 def test_readme_lists_the_notebooks_that_exist():
     text = (PROJECT / "README.md").read_text("utf-8")
-    listed = re.findall(r"^\| `([\dA]\d_\w+)` \|.*\| (\d+) \| no \|$", text, flags=re.M)
+    listed = re.findall(r"^\| \[`([\dA]\d_\w+)`\].*\| (\d+) \| no \|$", text, flags=re.M)
     notebooks = sorted(path.stem for path in (PROJECT / "notebooks").glob("*.ipynb"))
     assert [name for name, _ in listed] == notebooks
     for name, minutes in listed:
         assert f"about {minutes} minutes" in (PROJECT / "notebooks" / f"{name}.ipynb").read_text("utf-8")
 
 
-def test_readme_names_only_what_exists():
-    text = (PROJECT / "README.md").read_text("utf-8")
-    for path in re.findall(r"\]\((?!http)([^)]+)\)", text):
-        assert (PROJECT / path).exists(), path
-    table = text[text.index("## From MATLAB") : text.index("## The lock files")]
+PAGES = [PROJECT / "README.md", *sorted((PROJECT / "docs").glob("*.md"))]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page):
+    for path in re.findall(r"\]\((?!http)([^)#]+)", page.read_text("utf-8")):
+        assert (page.parent / path).exists(), path
+
+
+def test_a_visitor_finds_every_page_from_the_readme_and_reads_nothing_twice():
+    texts = [page.read_text("utf-8") for page in PAGES if page.name != "index_of_equations.md"]
+    assert texts[0].count("\n") <= 120
+    assert all(f"docs/{page.name}" in texts[0] for page in PAGES[1:])
+    prose = [re.sub(r"\s+", " ", re.sub(r"^(?:    |\|).*$", "", text, flags=re.M)) for text in texts]
+    sentences = [one for text in prose for one in re.split(r"(?<=[.:]) ", text) if len(one) > 40]
+    assert len(sentences) == len(set(sentences)), {one for one in sentences if sentences.count(one) > 1}
+
+
+def test_the_published_address_is_the_same_everywhere():
+    address = tomllib.loads((PROJECT / "pyproject.toml").read_text("utf-8"))["project"]["urls"]["Homepage"]
+    host = address.split("/")[2]
+    for name in ("README.md", "CITATION.cff"):
+        text = (PROJECT / name).read_text("utf-8")
+        assert address in text and not re.search(rf"https://(?!{re.escape(host)})\S*ir50p", text)
+
+
+def test_what_the_pages_name_exists():
+    table = (PROJECT / "docs" / "from_matlab.md").read_text("utf-8")
     names = [
         *((f"ir50p_lab.{m}", n) for m, n in re.findall(r"`ir50p_lab\.(\w+)\.(\w+)", table)),
         *(("ir50p_lab.modelling", n) for n in re.findall(r"`(\w+)\((?:arm, (?:q|p)[^`]*)?\)`", table)),
@@ -81,6 +104,6 @@ def test_readme_names_only_what_exists():
     assert len(names) > 12, "the patterns above no longer find what the table names"
     for module, name in names:
         assert hasattr(import_module(module), name), f"{module}.{name}"
-    layout = text[text.index("## Layout") :]
+    layout = (PROJECT / "docs" / "developing.md").read_text("utf-8")
     for folder in re.findall(r"^      (\w+)/ ", layout, flags=re.M):
         assert (PROJECT / "ir50p_lab" / folder).is_dir(), folder

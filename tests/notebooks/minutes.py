@@ -49,7 +49,7 @@ def rewritten():
 def filled(text):
     """The text of README with the minutes of its table as counted."""
     for path in rewritten():
-        text = re.sub(rf"(\| `{path.stem}` \|.*\| )\d+( \| \w+ \|)$", rf"\g<1>{minutes(path)}\2", text, flags=re.M)
+        text = re.sub(rf"(\| \[`{path.stem}`\].*\| )\d+( \| \w+ \|)$", rf"\g<1>{minutes(path)}\2", text, flags=re.M)
     return text
 
 

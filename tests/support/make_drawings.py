@@ -1,6 +1,6 @@
-"""Drawings in `data/drawings/` that never change, and the README's picture of the arm: block diagrams, a ruler, a lever.
+"""Drawings in `data/drawings/` that never change: block diagrams, a ruler, a lever.
 
-`python -m tests.support.make_drawings` writes the SVG files again, and docs/arm.png.
+`python -m tests.support.make_drawings` writes the SVG files again.
 """
 
 import argparse
@@ -10,9 +10,7 @@ import matplotlib
 import numpy as np
 from matplotlib.patches import FancyBboxPatch
 
-from ir50p_lab.course.draw.arm3d import ArmView
-from ir50p_lab.course.draw.style import COLOURS, SETPOINT, new_figure, subplots
-from ir50p_lab.modelling import IR50P, forward_kinematics
+from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
 from ir50p_lab.vision import rgb_to_hsv
 
 _BOX = {"boxstyle": "round,pad=0.8", "fc": "#EDF3F8", "ec": "#0072B2"}
@@ -201,35 +199,20 @@ def colour_solids():
     return figure
 
 
-def readme_picture():
-    """The arm of the book in a working pose, with the frames of its joints: LabFigure."""
-    figure, arm = new_figure(8.0, 5.4, projection="3d"), IR50P
-    view = ArmView(figure.axes[0], arm, frames=True)
-    s = np.linspace(0.0, 1.0, 200)
-    path = np.column_stack([-1.5 + 1.3 * s, 1.25 + 0.25 * np.sin(9 * s), -1.5 + 0.35 * np.cos(6 * s)])
-    view.trail(forward_kinematics(arm, path))
-    view.update(path[-1])
-    lengths = ", ".join(f"{1000 * length:.0f}" for length in arm.l)
-    figure.axes[0].set_title(f"The {arm.name} arm: drawing of the model, links {lengths} mm, path of the tip")
-    return figure
-
-
 DRAWINGS = {draw.__name__: draw for draw in (picture_to_motors, one_loop, three_loops,
                                              axis_and_lever, ruler, colour_solids)}  # fmt: skip
 
 
 def main(arguments=None):
-    """Write the drawings, and the picture of the README beside them."""
+    """Write the drawings."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--data", type=Path, default=Path("data/drawings"), help="folder of the drawings")
-    parser.add_argument("--picture", type=Path, default=Path("docs/arm.png"), help="file of the README's picture")
     given = parser.parse_args(arguments)
     given.data.mkdir(exist_ok=True)
     for name, draw in DRAWINGS.items():
         with matplotlib.rc_context({"svg.hashsalt": name}):  # the same file each time
             figure = draw()
             figure.savefig(given.data / f"{name}.svg", metadata={"Date": None, "Title": figure.describe()})
-    readme_picture().savefig(given.picture, dpi=150)
 
 
 if __name__ == "__main__":

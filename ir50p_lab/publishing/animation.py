@@ -1,0 +1,65 @@
+"""README's moving picture, of the page to try: `python3 -m ir50p_lab animation` writes docs/arm.gif.
+
+A browser without a screen plays the first view of the page, and each frame is taken from it.
+"""
+
+import base64
+import io
+import shutil
+
+from PIL import Image
+from tqdm import tqdm
+
+from ir50p_lab.errors import LabError
+from ir50p_lab.home import PROJECT
+from ir50p_lab.publishing.export import BROWSERS
+from ir50p_lab.publishing.try_page import PAGE
+
+PICTURE = PROJECT / "docs" / "arm.gif"
+_FRAMES, _SECONDS, _SIZE, _COLOURS = 60, 5.0, (720, 420), 96
+_VIEW = "document.querySelector('.la').liveArm"
+_TAKE = f"""(part) => {{
+  const view = {_VIEW};
+  view.seek(part * view.track.end);
+  view.controls.rotateLeft(0.004);
+  view.controls.update();
+  view.draw(false);
+  return view.canvas.toDataURL('image/png');
+}}"""
+
+
+def main():
+    """Take the frames, turning the view a little, and write them as one GIF."""
+    from playwright.sync_api import sync_playwright  # a test tool
+
+    path = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if path is None:
+        raise LabError(f"no browser found: install one of {', '.join(BROWSERS)}")
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        page = browser.new_page(viewport={"width": 1200, "height": 900})
+        page.goto(PAGE.as_uri())
+        page.wait_for_function(f"() => {_VIEW}?.width > 0", timeout=60_000)
+        page.evaluate(f"() => {{ {_VIEW}.parts.side.hidden = true; {_VIEW}.soon(); }}")
+        frames = [_frame(page, k / (_FRAMES - 1)) for k in tqdm(range(_FRAMES), desc="frames")]
+        browser.close()
+    last = [int(1000 * _SECONDS / _FRAMES)] * (_FRAMES - 1) + [2000]  # ms; it rests at its end
+    frames[0].save(PICTURE, save_all=True, append_images=frames[1:], duration=last, loop=0, optimize=True)
+    print(f"{PICTURE}: {PICTURE.stat().st_size / 1e6:.1f} MB")
+
+
+def _frame(page, part):
+    data = page.evaluate(
+        "(part) => { const view = VIEW; view.seek(part * view.track.end); view.controls.rotateLeft(0.004);"
+        " view.controls.update(); view.draw(false); return view.canvas.toDataURL('image/png'); }".replace(
+            "VIEW", _VIEW
+        ),
+        part,
+    )
+    picture = Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB")
+    picture.thumbnail(_SIZE)
+    return picture.quantize(_COLOURS, dither=Image.Dither.NONE)
+
+
+if __name__ == "__main__":
+    main()

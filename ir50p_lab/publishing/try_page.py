@@ -1,0 +1,34 @@
+"""The page to try: what a visitor sees move before anything is installed.
+
+`python3 -m ir50p_lab try-page` runs docs/try/try.ipynb and writes docs/try/index.html; nothing else does.
+"""
+
+import hashlib
+from pathlib import Path
+
+from ir50p_lab.course.live_arm.view import BUNDLE
+from ir50p_lab.home import PROJECT
+from ir50p_lab.publishing import export as pages
+from ir50p_lab.publishing import pictures
+
+FOLDER = PROJECT / "docs" / "try"
+NOTEBOOK, PAGE, MADE_FROM = FOLDER / "try.ipynb", FOLDER / "index.html", FOLDER / "made_from.txt"
+_SOURCES = (NOTEBOOK, BUNDLE, Path(pages.__file__), Path(pictures.__file__))
+
+
+def fingerprint():
+    """A number of what the page is made from: its notebook, the view of the arm, and how pages are written."""
+    texts = (path.read_text(encoding="utf-8") for path in _SOURCES)  # without the line ends of the system
+    return hashlib.sha256("\0".join(texts).encode()).hexdigest()
+
+
+def main():
+    """Run the notebook, write the page and what it was made from."""
+    (made,) = pages.export(NOTEBOOK, FOLDER, pdf=False, code=False, title="The IR50P lab book: a page to try")
+    made.replace(PAGE)
+    MADE_FROM.write_text(fingerprint() + "\n", encoding="utf-8")
+    print(f"{PAGE}: {PAGE.stat().st_size / 1e6:.1f} MB")
+
+
+if __name__ == "__main__":
+    main()

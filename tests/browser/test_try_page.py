@@ -1,0 +1,46 @@
+"""The page to try: made from what is here now, and alive without a network."""
+
+import pytest
+from PIL import Image
+
+from ir50p_lab.publishing.animation import PICTURE
+from ir50p_lab.publishing.try_page import MADE_FROM, PAGE, fingerprint
+
+
+def test_it_was_made_from_what_is_here():
+    command = "python3 -m ir50p_lab try-page, then python3 -m ir50p_lab animation"
+    assert MADE_FROM.read_text(encoding="utf-8").strip() == fingerprint(), command
+    assert PAGE.stat().st_size < 2.5e6
+
+
+def test_the_moving_picture_moves_and_is_small():
+    with Image.open(PICTURE) as picture:
+        assert picture.n_frames > 20 and min(picture.size) > 300
+        first = picture.convert("RGB").tobytes()
+        picture.seek(picture.n_frames - 1)
+        assert picture.convert("RGB").tobytes() != first
+    assert PICTURE.stat().st_size < 2e6
+
+
+def test_it_turns_drags_and_plays_with_the_network_off_and_nothing_plays_by_itself(page):
+    asked = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.context.set_offline(True)
+    page.emulate_media(reduced_motion="reduce")
+    page.goto(PAGE.as_uri())
+    page.wait_for_function("() => document.querySelectorAll('.la').length === 5", timeout=60_000)
+    views = "[...document.querySelectorAll('.la')].map((box) => box.liveArm)"
+    assert not any(page.evaluate(f"() => {views}.map((view) => Boolean(view.playing))"))
+    page.get_by_label("play or pause").nth(2).click()
+    page.wait_for_function(f"() => {views}[3].time > 0.2 || {views}[2].time > 0.2")
+    second = page.locator(".la").nth(1)
+    second.scroll_into_view_if_needed()
+    page.wait_for_function(f"() => {views}[1].width > 0 && {views}[1].seen")
+    at, before = page.evaluate(f"() => {views}[1].onPage({views}[1].tipAt)"), page.evaluate(f"() => {views}[1].q")
+    page.mouse.move(*at)
+    page.mouse.down()
+    for k in range(1, 6):
+        page.mouse.move(at[0] - 10 * k, at[1] + 12 * k)
+    page.mouse.up()
+    assert page.evaluate(f"() => {views}[1].q") != pytest.approx(before, abs=0.02)
+    assert [url for url in asked if not url.startswith(("data:", "blob:"))] == [PAGE.as_uri()]
