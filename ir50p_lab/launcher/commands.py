@@ -89,6 +89,8 @@ def _run(arguments, root):
     file = command == "lab" and bool(arguments) and not arguments[0].startswith("-")
     if file and not Path(arguments[0]).exists():
         raise SetUpError(f"There is neither a command nor a file '{arguments[0]}'. Try '{COMMAND} --help'.")
+    if command in ("test", "targets") and not (root / "tests").is_dir():
+        raise SetUpError(f"{root} came without tests: '{command}' needs the repository, cloned or unpacked.")
     environment = Environment(root)
     if command == "doctor":
         return doctor.report(environment, here=options.here)

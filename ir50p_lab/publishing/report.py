@@ -38,6 +38,7 @@ def report(name="") -> str:
         _origin(),
         _section("Predicted and measured", _predictions(book["predictions"])),
         _section("Notes", "".join(_note(one) for one in book["notes"])),
+        _section("What helped", "".join(_note(one) for one in book["helped"])),
         _section("Figures kept", "".join(_figure(one) for one in book["figures"])),
         _section("Exercises and functions", _done(book["attempts"])),
         _section("My robot", _listings()),

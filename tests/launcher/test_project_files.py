@@ -1,15 +1,22 @@
 """The project's own files agree with each other: bounds and lock files, README and what it names."""
 
+import json
 import re
+import subprocess
 import tomllib
 from importlib import import_module
 
+import nbformat
 import pytest
+import yaml
 from mini_project import PROJECT
 from packaging.markers import default_environment
 from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
 from packaging.version import Version
+
+from ir50p_lab.publishing import colab
 
 SYSTEMS = [
     {"sys_platform": "linux", "os_name": "posix", "platform_system": "Linux", "platform_machine": "x86_64"},
@@ -62,6 +69,35 @@ def test_readme_lists_the_notebooks_that_exist():
     assert [name for name, _ in listed] == notebooks
     for name, minutes in listed:
         assert f"about {minutes} minutes" in (PROJECT / "notebooks" / f"{name}.ipynb").read_text("utf-8")
+
+
+def test_other_places_install_from_the_lock_and_take_the_pythons_of_the_project():
+    python = tomllib.loads((PROJECT / "pyproject.toml").read_text("utf-8"))["project"]["requires-python"]
+    for path in sorted((PROJECT / ".github" / "workflows").glob("*.yml")):
+        jobs = yaml.safe_load(path.read_text("utf-8"))["jobs"]
+        for job in jobs.values():
+            matrix = job.get("strategy", {}).get("matrix", {})
+            versions = [*matrix.get("python", []), *(one["python"] for one in matrix.get("include", []))]
+            assert all(version in SpecifierSet(python) for version in versions)
+            commands = " ".join(step.get("run", "") for step in job["steps"])
+            assert "-m ir50p_lab" in commands and not re.search(
+                r"pip install (?!.*(-r environment|--no-deps))", commands
+            )
+    container = json.loads((PROJECT / ".devcontainer" / "devcontainer.json").read_text("utf-8"))
+    assert container["postCreateCommand"].endswith("-m ir50p_lab setup")
+    assert (PROJECT / ".binder" / "requirements.txt").read_text("utf-8").strip() == "-r ../environment.txt"
+    assert (PROJECT / ".binder" / "runtime.txt").read_text("utf-8").strip().removeprefix("python-") in SpecifierSet(
+        python
+    )
+    subprocess.run(["bash", "-n", str(PROJECT / ".binder" / "postBuild")], check=True)
+
+
+def test_copies_for_colab_are_the_notebooks_behind_a_first_cell(tmp_path):
+    for path in colab.write(tmp_path):
+        first, *rest = nbformat.read(path, as_version=4).cells
+        assert "git clone" in first.source and "ir50p-lab.git" in first.source
+        assert rest == nbformat.read(PROJECT / "notebooks" / path.name, as_version=4).cells
+    assert len(list(tmp_path.iterdir())) == len(list((PROJECT / "notebooks").glob("*.ipynb")))
 
 
 PAGES = [PROJECT / "README.md", *sorted((PROJECT / "docs").glob("*.md"))]

@@ -14,11 +14,11 @@ def path():
 
 
 def read():
-    """Return {"predictions": {name: ...}, "notes", "figures", "contest", "partners": [...], "attempts": {name: [...]}}.
+    """Return {"predictions": {name: ...}, "notes", "figures", "contest", "helped", "partners", "attempts"}.
 
     A prediction's `earlier` lists what stood in it before.
     """
-    empty = {"predictions": {}, "notes": [], "figures": [], "contest": [], "attempts": {}, "partners": []}
+    empty = {"predictions": {}, "notes": [], "figures": [], "contest": [], "helped": [], "attempts": {}, "partners": []}
     return read_json(
         path(), empty, lambda found: all(isinstance(found.get(key, one), type(one)) for key, one in empty.items())
     )
@@ -113,13 +113,23 @@ def partners(*names):
 
 def note(text):
     """Write a remark into the lab book; the report shows it with its time. The same remark is kept once."""
+    _keep_text("notes", text, "note: write what you saw")
+
+
+def helped_by(text):
+    """Write down who or what helped, and with what: helped_by("an assistant explained the half angle"). It is reported.
+
+    The same sentence is kept once.
+    """
+    _keep_text("helped", text, "helped_by: write who or what helped, and with what,")
+
+
+def _keep_text(where, text, asked):
     text = str(text).strip()
     if text in ("", "..."):
-        print("note: write what you saw between the quotation marks, then run the cell.")
+        print(f"{asked} between the quotation marks, then run the cell.")
         return
-    change(
-        lambda book: text in (one["text"] for one in book["notes"]) or book["notes"].append({"text": text, "at": now()})
-    )
+    change(lambda book: text in (one["text"] for one in book[where]) or book[where].append({"text": text, "at": now()}))
     print("noted")
 
 

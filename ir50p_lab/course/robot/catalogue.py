@@ -25,7 +25,7 @@ _TABLE = """
 16 images        hue_mask circle_votes
 17 camera        homography pixel_to_plane
 18 reaching      find_and_reach
-"""  # every function: the notebook that asks for it, and the room in which it stands (DESIGN 6)
+"""  # every function: the notebook that asks for it, and the room in which it stands
 _ROWS = [line.split() for line in _TABLE.strip().splitlines()]
 NOTEBOOKS = {number: tuple(names) for number, _, *names in _ROWS}
 _ROOMS = {name: room for _, room, *names in _ROWS for name in names}

@@ -6,7 +6,7 @@ import solutions
 from cells import cell
 from matplotlib.figure import Figure
 
-from ir50p_lab.course import check, keep, measured, note, partners, predict, solution, why
+from ir50p_lab.course import check, helped_by, keep, measured, note, partners, predict, solution, why
 from ir50p_lab.publishing import report
 
 
@@ -19,6 +19,10 @@ def test_a_report_of_everything(tmp_path, monkeypatch, capsys):
     measured("fk.height", 0.33)
     why("fk.height", "the elbow is <up>")
     note("it sank <slowly>")
+    helped_by("...")
+    assert "who or what helped" in capsys.readouterr().out
+    helped_by("an assistant explained atan2")
+    helped_by("an assistant explained atan2")
     keep(Figure(), "my figure")
     check("rot_z", cell("def rot_z(angle):\n    return angle", "rot_z"))
     check("rot_z", cell(solutions.source("rot_z"), "rot_z"))
@@ -34,6 +38,7 @@ def test_a_report_of_everything(tmp_path, monkeypatch, capsys):
     assert "height of the tip, by pencil" in text and "fk.height" not in text
     assert not re.search(r"<img(?![^>]*alt=\"[^\"]+\")", text)
     assert not re.search(r"https?://", text)
+    assert text.count("an assistant explained atan2") == 1
 
 
 def test_an_empty_report_says_so(tmp_path, monkeypatch):
