@@ -13,8 +13,10 @@ class Port(namedtuple("Port", "device board")):
 
 def list_ports():
     """All serial ports of this computer, those of a Mega 2560 first, then chips of its clones, then the others."""
-    from serial.tools import list_ports
-
+    try:
+        from serial.tools import list_ports
+    except ImportError:  # a browser tab has no ports
+        return []
     ports = [Port(port.device, board_name(port.vid, port.pid)) for port in sorted(list_ports.comports())]
     return sorted(ports, key=lambda port: (port.board is None, "chip" in str(port.board)))
 

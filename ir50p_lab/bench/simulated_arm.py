@@ -9,7 +9,7 @@ from ir50p_lab.bench.calibration import nominal_calibration
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.bench.set_point import checked_pose
 from ir50p_lab.errors import ArmError, InputError
-from ir50p_lab.jit import jit
+from ir50p_lab.jit import jit, on_floats
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.chain import forward_kinematics, lengths
 from ir50p_lab.simulation.plant import FC, FS, GRAVITY, LIMIT, make_plant
@@ -39,6 +39,7 @@ def _in_play(joint, drive, half, side):
     return min(max(joint, drive - half), drive + half)
 
 
+@on_floats
 @jit()
 def advance_unit(theta, n, w, x, joint, pwm, steps):
     """Advance drive side x = (q, qd) (6,) and links joint (3,) by `steps` steps with pwm (3,) held."""

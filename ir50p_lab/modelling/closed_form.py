@@ -7,9 +7,11 @@ not symmetric. The loops of simulation and identification call these functions; 
 Index in a row (thesis number minus 1): 0-9 and 19 inertia, 10-15 viscous and Coulomb friction, 16-18 offsets.
 """
 
+import math
+
 import numpy as np
 
-from ir50p_lab.jit import jit
+from ir50p_lab.jit import jit, numba
 
 
 @jit()
@@ -32,6 +34,13 @@ def sincos(x):
     odd = (quadrant & 1) != 0
     s, c = (c if odd else s), (s if odd else c)
     return (-s if quadrant & 2 else s), (-c if (quadrant + 1) & 2 else c)
+
+
+if numba is None:
+
+    def sincos(x):
+        """The same in plain Python, where the library's are quicker."""
+        return (math.sin(x), math.cos(x)) if math.isfinite(x) else (math.nan, math.nan)
 
 
 @jit()

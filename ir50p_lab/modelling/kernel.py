@@ -26,10 +26,10 @@ def kernel(layout):
 
 
 def _compiled(function, layout):
-    import numba  # takes a while: not at import
+    from ir50p_lab.jit import cache_folder, numba, with_cache  # takes a while: not at import
 
-    from ir50p_lab.jit import cache_folder, with_cache
-
+    if numba is None:
+        return _interpreted(function, layout)
     operands = [dims.split(",") if dims else [] for dims in re.findall(r"\((.*?)\)", layout)]
     types = [f"f8[{','.join(':' * len(dims))}]" if dims else "f8" for dims in operands]
     decorator = numba.guvectorize([f"void({', '.join(types)})"], layout, nopython=True, cache=True)
@@ -38,6 +38,22 @@ def _compiled(function, layout):
         # numba keeps the two halves in two files that must come from one process; of a mixture it calls a null pointer
         take_lock(file)
         return with_cache(decorator, function).ufunc  # NumPy's own: without numba's look at the arguments
+
+
+def _interpreted(function, layout):
+    """The same without numba: a loop over the states in Python."""
+    ins, out = (re.findall(r"\((.*?)\)", side) for side in layout.split("->"))
+
+    def one(*arguments):
+        arguments = [np.asarray(one, dtype=float) for one in arguments]
+        sizes = {}
+        for names, argument in zip(ins, arguments, strict=True):
+            sizes.update(zip(names.split(","), argument.shape, strict=False))
+        result = np.empty([sizes[name] for name in out[0].split(",")])
+        function(*arguments, result)
+        return result
+
+    return np.vectorize(one, signature=layout, otypes=[float])
 
 
 def evaluate(kernel, constants, check=None, /, **vectors):

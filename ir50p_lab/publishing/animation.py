@@ -49,13 +49,7 @@ def main():
 
 
 def _frame(page, part):
-    data = page.evaluate(
-        "(part) => { const view = VIEW; view.seek(part * view.track.end); view.controls.rotateLeft(0.004);"
-        " view.controls.update(); view.draw(false); return view.canvas.toDataURL('image/png'); }".replace(
-            "VIEW", _VIEW
-        ),
-        part,
-    )
+    data = page.evaluate(_TAKE, part)
     picture = Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB")
     picture.thumbnail(_SIZE)
     return picture.quantize(_COLOURS, dither=Image.Dither.NONE)

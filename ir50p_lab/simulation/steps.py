@@ -5,7 +5,7 @@ theta (3, 20) and n (33,) are the two arrays of a `Plant`.
 
 import math
 
-from ir50p_lab.jit import jit
+from ir50p_lab.jit import jit, on_floats
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.simulation.plant import DRY, FC, FORCE_SCALE, FS, FV, GRAVITY, LENGTHS, Q_MAX, Q_MIN, QS, TABLE, TF
 
@@ -57,7 +57,7 @@ def _slide(x, dry, A, lowest, highest):
         v = (x - dry) / A
     elif x < -dry:
         v = (x + dry) / A
-    return min(max(v, lowest), highest)
+    return lowest if v < lowest else highest if v > highest else v
 
 
 @jit()
@@ -104,6 +104,7 @@ def dry_step(theta, n, q1, q2, q3, a, b, c, u1, u2, u3, h):
     return q1 + h * a, q2 + h * b, q3 + h * c, a, b, c
 
 
+@on_floats
 @jit()
 def advance(theta, n, x, u, h, steps):
     """Advance the state x = (q, qd) (6,) by `steps` steps of h seconds with u (3,) held, which the drive can give."""

@@ -1,5 +1,6 @@
 """Fast redrawing of a LabFigure: what stands still is drawn once, what moves each time (blitting)."""
 
+import io
 import threading
 
 import numpy as np
@@ -7,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.spines import Spine
 from matplotlib.text import Text
+from PIL import Image
 
 # Widget callbacks may run in threads beside the cell's; matplotlib is shared by all of them.
 DRAWING = threading.RLock()
@@ -65,8 +67,12 @@ class Painter:
 
 def encode_png(image):
     """PNG file of an image (height, width, 3 or 4) uint8, without its opacity; some times as fast as by Pillow."""
-    import cv2
-
+    try:
+        import cv2
+    except ImportError:  # in a browser tab
+        file = io.BytesIO()
+        Image.fromarray(np.ascontiguousarray(image[..., :3])).save(file, "PNG", compress_level=1)
+        return file.getvalue()
     to_bgr = cv2.COLOR_RGBA2BGR if image.shape[2] == 4 else cv2.COLOR_RGB2BGR
     options = (cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_DEFAULT)
     options += (cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_NONE)
