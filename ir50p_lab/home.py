@@ -1,16 +1,18 @@
-"""Where everything of the student's lies: progress, results, recordings."""
+"""Where everything of the student's lies: progress, results, recordings; and what the settings say, for any folder."""
 
 import os
 import tempfile
 from pathlib import Path
 
+from ir50p_lab.launcher.settings import PROJECT, path_setting, setting
+
+__all__ = ["PROJECT", "VARIABLE", "home", "path_setting", "replace_text", "setting"]
 VARIABLE = "IR50P_HOME"
-PROJECT = Path(__file__).parents[1]
 
 
 def home():
     """The student's folder: $IR50P_HOME, else notebooks/ of the project. It may not exist yet."""
-    return Path(os.environ.get(VARIABLE) or PROJECT / "notebooks").expanduser().absolute()
+    return path_setting(VARIABLE) or PROJECT / "notebooks"
 
 
 def replace_text(path, text):

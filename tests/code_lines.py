@@ -25,10 +25,10 @@ BUDGETS = {
     "identification": 1600,  # 50 moved here from course
     "vision": 2200,  # 20 moved here from course
     "course": 7730,
-    "launcher": 500,
+    "launcher": 520,
     "grading": 0,
     "publishing": 300,
-    "root": 140,
+    "root": 160,
 }
 BUDGET_OF_ALL, BUDGET_OF_TESTS = 17_720, 21_000
 _NO_CODE = {

@@ -6,7 +6,6 @@
 import argparse
 import base64
 import html
-import os
 from datetime import date
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from ir50p_lab.course.checking import numbers
 from ir50p_lab.course.lab_book.progress import read_progress
 from ir50p_lab.course.robot import folder
 from ir50p_lab.course.robot.catalogue import ORDER, notebook_of
+from ir50p_lab.home import setting
 
 _STYLE = """
 body { font: 16px/1.5 sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; color: #222 }
@@ -67,8 +67,8 @@ def _table(head, rows):
 
 def _origin():
     """On which bench: simulated or real, unit and seed, as the results say."""
-    unit = os.environ.get("IR50P_UNIT", "")
-    seed = os.environ.get("IR50P_SEED", "")
+    unit = setting("IR50P_UNIT")
+    seed = setting("IR50P_SEED")
     rows = [
         (_text(one), "simulated" if one.simulated else "real", "withdrawn" if one.withdrawn else "")
         for one in result_files.every()
