@@ -27,7 +27,7 @@ def path_setting(name):
 
 
 def _bare(text):
-    return text.strip().strip("\"'").strip()
+    return text.strip(" \t\r\n\u00a0\"'")
 
 
 def _in_project(path):
