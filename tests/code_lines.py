@@ -30,7 +30,7 @@ BUDGETS = {
     "publishing": 300,
     "root": 160,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS = 17_720, 21_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS = 17_760, 21_000
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,

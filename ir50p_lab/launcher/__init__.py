@@ -7,7 +7,6 @@ file_lock    one set-up at a time; so that compiled code comes from one process,
 inventory    what is installed beside what the lock asks for, what can be imported; serial ports (runs inside .venv)
 boards       USB ids of the boards that fit the bench (boards.toml); who may open a port
 doctor       a report on the machine and a verdict
-settings     the environment variables IR50P_*, read in one way by the whole package
 problems     every error as one line that says what to do next (problems.toml)
 labconfig/   JupyterLab's settings, put into .venv
 """

@@ -32,7 +32,6 @@ from pathlib import Path
 from ir50p_lab.launcher import doctor, inventory
 from ir50p_lab.launcher.environment import LOCK, TEST_LOCK, Environment
 from ir50p_lab.launcher.problems import COMMAND, SetUpError, from_error
-from ir50p_lab.launcher.settings import path_setting
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -118,10 +117,13 @@ def _run(arguments, root):
 
 def _first_page(root):
     """What makes JupyterLab open 00 while nothing is the student's yet; later it opens what was open last."""
-    home = path_setting("IR50P_HOME") or root / "notebooks"
-    if any((home / name).exists() for name in ("progress.json", "results", "my_robot", "recordings")):
-        return []
-    return [f"--LabApp.default_url=/lab/tree/{path.name}" for path in (root / "notebooks").glob("00_*.ipynb")]
+    pages = [path.name for path in (root / "notebooks").glob("00_*.ipynb")]
+    if pages:
+        from ir50p_lab.home import home  # beside the launcher, but of the standard library, too
+
+        if any((home() / name).exists() for name in ("progress.json", "results", "my_robot", "recordings")):
+            return []
+    return [f"--LabApp.default_url=/lab/tree/{page}" for page in pages]
 
 
 def _ready(environment, here, *, tests, rebuild=False):

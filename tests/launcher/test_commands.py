@@ -173,6 +173,6 @@ def test_without_streams_as_under_pythonw(monkeypatch):
 
 def test_the_launcher_imports_the_standard_library_only():
     # -S leaves site-packages out, -I what a variable or the folder could add
-    code = "import sys; sys.path.insert(0, sys.argv[1]); import ir50p_lab.launcher.commands"
+    code = "import sys; sys.path.insert(0, sys.argv[1]); import ir50p_lab.launcher.commands, ir50p_lab.home"
     done = commands.subprocess.run([sys.executable, "-I", "-S", "-c", code, str(PROJECT)], capture_output=True)
     assert done.returncode == 0, done.stderr

@@ -27,7 +27,7 @@ def stored():
 
 def test_what_was_stored_is_left_out_and_said(stored):
     assert stripped.strip(stored) == stripped.read(NOTEBOOKS[0])
-    said = "2 outputs, 1 execution count, 1 cell's metadata, 1 empty cell, 1 entry of metadata, 1 other kernel"
+    said = "outputs: 2, execution counts: 1, cells with metadata: 1, empty cells: 1, entries of metadata: 1, other kernels: 1"
     assert stripped.left_out(stored) == said
 
 
@@ -50,7 +50,7 @@ def test_each_notebook_with_something_has_its_sentence(stored, tmp_path, monkeyp
     assert list(stripped.sentences()) == [] and stripped.is_shipped(tmp_path / "01.ipynb")
     nbformat.write(stored, tmp_path / "00.ipynb")
     (sentence,) = stripped.sentences()
-    assert sentence.startswith("00.ipynb was read without what JupyterLab has stored in it: 2 outputs, ")
+    assert sentence.startswith("00.ipynb was read without what JupyterLab has stored in it: outputs: 2, ")
     assert not stripped.is_shipped(tmp_path / "00.ipynb")
 
 

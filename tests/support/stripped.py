@@ -42,17 +42,17 @@ def strip(notebook):
 
 
 def left_out(notebook):
-    """What `strip` leaves out, in words: '3 outputs, 1 empty cell'; "" if it is nothing."""
+    """What `strip` leaves out, in words: 'outputs: 3, empty cells: 1'; "" if it is nothing."""
     found = Counter()
     for cell in notebook.cells:
-        found["output"] += len(cell.get("outputs", []))
-        found["execution count"] += cell.get("execution_count") is not None
-        found["cell's metadata"] += bool(cell.metadata)
-        found["empty cell"] += not cell.source.strip()
+        found["outputs"] += len(cell.get("outputs", []))
+        found["execution counts"] += cell.get("execution_count") is not None
+        found["cells with metadata"] += bool(cell.metadata)
+        found["empty cells"] += not cell.source.strip()
     named = {key: value for key, value in notebook.metadata.items() if key != "language_info"}  # of another Python
-    found["entry of metadata"] += len({**named, "kernelspec": METADATA["kernelspec"]}) - 1
-    found["other kernel"] += named.get("kernelspec") != METADATA["kernelspec"]
-    return ", ".join(f"{count} {what}{'s' * (count > 1)}" for what, count in found.items() if count)
+    found["entries of metadata"] += len({**named, "kernelspec": METADATA["kernelspec"]}) - 1
+    found["other kernels"] += named.get("kernelspec") != METADATA["kernelspec"]
+    return ", ".join(f"{what}: {count}" for what, count in found.items() if count)
 
 
 def sentences():

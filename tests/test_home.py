@@ -11,9 +11,8 @@ from ir50p_lab.bench.recorder import Recorder
 from ir50p_lab.course.lab_book import claims
 from ir50p_lab.course.lab_book.progress import progress_path, record
 from ir50p_lab.course.robot import folder
-from ir50p_lab.home import PROJECT, home
+from ir50p_lab.home import PROJECT, home, path_setting, setting
 from ir50p_lab.launcher.commands import _first_page
-from ir50p_lab.launcher.settings import path_setting, setting
 from ir50p_lab.modelling import IR50P, Arm, load_arm
 from ir50p_lab.publishing import report
 from ir50p_lab.vision import open_camera
@@ -57,7 +56,7 @@ def test_blanks_and_quotes_do_not_count(dress, elsewhere, tmp_path, monkeypatch)
 
 def test_one_folder_for_all_that_is_the_students(elsewhere, tmp_path, monkeypatch, capsys):
     """A relative folder: notebooks, records, claims, the report and the launcher mean the same one."""
-    monkeypatch.setattr("ir50p_lab.launcher.settings.PROJECT", tmp_path)
+    monkeypatch.setattr("ir50p_lab.home.PROJECT", tmp_path)
     monkeypatch.setenv("IR50P_HOME", '"mylab"')
     monkeypatch.setenv("IR50P_CLAIMS", "said.jsonl")
     assert home() == progress_path().parent == tmp_path / "mylab"
@@ -86,17 +85,6 @@ def test_files_to_read_count_from_the_project(elsewhere, monkeypatch, capsys):
         assert camera.simulated
 
 
-def test_the_doctor_finds_the_arm(tested, tmp_path):
-    (tested.root / "other.toml").write_text("")
-    try:
-        done = tested.run(
-            "doctor", cwd=tmp_path, variables={"IR50P_ARM": '"other.toml"', "PYTHONPATH": str(tested.root)}
-        )
-        assert done.returncode == 0, done.stdout
-    finally:
-        (tested.root / "other.toml").unlink()
-
-
 def test_a_port_or_a_drive_is_no_path(monkeypatch):
     for text in ("COM3", "/dev/ttyACM0", r"C:\lab\my.toml", "replay:"):
         monkeypatch.setenv("IR50P_BENCH", text)
@@ -108,7 +96,7 @@ def test_nothing_else_reads_the_variables():
     for path in (PROJECT / "ir50p_lab").rglob("*.py"):
         read = re.findall(r"(?:environ(?:\.get\(|\[)|getenv\()([^)\]]+)", path.read_text(encoding="utf-8"))
         others = [name for name in read if not re.match(r"[\"'](?!IR50P_)", name)]
-        assert others == [] or path.name == "settings.py", f"{path}: {others}"
+        assert others == [] or path.name == "home.py", f"{path}: {others}"
 
 
 def test_a_user_without_a_home_directory(monkeypatch):
