@@ -10,8 +10,8 @@
     └─ VisionError                 ImageError *, CameraError, CalibrationError *
     UserWarning                    SuspiciousArmWarning, UnstableLoopWarning
 
-Beside what raises them stand LabBookError and RehearsalError, both LabErrors, ClaimError (an AssertionError) and
-RecordingWarning (a UserWarning).
+Beside what raises them stand LabBookError, RehearsalError and NotInABrowserError, all LabErrors, ClaimError (an
+AssertionError) and RecordingWarning (a UserWarning).
 """
 
 

@@ -1,16 +1,40 @@
-"""Where everything of the student's lies: progress, results, recordings."""
+"""Where everything of the student's lies, and what the environment variables IR50P_* say. Standard library only.
+
+All variables are read here, in one way. Blanks and quotes around a value do not count (`set X="..."` of the Windows
+prompt keeps them); an empty one is unset. In a path, '~' is the home folder, and a relative one counts from the
+project's folder, wherever a notebook runs.
+"""
 
 import os
 import tempfile
 from pathlib import Path
 
+from ir50p_lab.browser_tab import IN_BROWSER, quick_home
+
 VARIABLE = "IR50P_HOME"
-PROJECT = Path(__file__).parents[1]
+PROJECT = Path.cwd().parent if IN_BROWSER else Path(__file__).parents[1]  # in a browser the package is a wheel
 
 
 def home():
     """The student's folder: $IR50P_HOME, else notebooks/ of the project. It may not exist yet."""
-    return Path(os.environ.get(VARIABLE) or PROJECT / "notebooks").expanduser().absolute()
+    kept = PROJECT / "notebooks"
+    return path_setting(VARIABLE) or (quick_home(kept) if IN_BROWSER else kept)
+
+
+def setting(name):
+    """Text of an environment variable, "" where it is unset.
+
+    The paths in 'replay:FILE' (IR50P_BENCH) and 'folder:PATH' (IR50P_CAMERA) are those of `path_setting`.
+    """
+    text = _bare(os.environ.get(name, ""))
+    kind, _, path = text.partition(":")
+    return f"{kind}:{_in_project(path)}" if path and kind.lower() in ("replay", "folder") else text
+
+
+def path_setting(name):
+    """Path that an environment variable names, None where it is unset."""
+    text = setting(name)
+    return _in_project(text) if text else None
 
 
 def replace_text(path, text):
@@ -19,3 +43,15 @@ def replace_text(path, text):
         scratch = Path(folder, path.name)
         scratch.write_text(text, encoding="utf-8")
         os.replace(scratch, path)
+    if IN_BROWSER and path.is_relative_to(quick := quick_home(PROJECT / "notebooks")):
+        kept = PROJECT / "notebooks" / path.relative_to(quick)
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        replace_text(kept, text)
+
+
+def _bare(text):
+    return text.strip(" \t\r\n\u00a0\"'")
+
+
+def _in_project(path):
+    return PROJECT / os.path.expanduser(_bare(path))

@@ -7,10 +7,12 @@ of those whose names they import.
 Without numba, in a browser tab, `jit` is the identity: everything runs in plain Python, some fifty times slower.
 """
 
+import contextlib
 import functools
 import hashlib
 import os
 import re
+import tempfile
 from pathlib import Path
 
 try:
@@ -18,22 +20,48 @@ try:
 except ImportError:
     numba = None
 
+from ir50p_lab.home import home
+
 _PACKAGE = Path(__file__).parent
 
 
 @functools.cache
 def cache_folder():
-    """Where the machine code of these sources lies: in the package, or in the user's cache if that is read-only.
+    """Where the machine code of these sources lies: the first of `_places` that takes files.
 
-    $NUMBA_CACHE_DIR goes before both.
+    None where there is none: each process compiles for itself then.
     """
     sources = {path: path.read_bytes() for path in sorted(_PACKAGE.rglob("*.py"))}
     compiled = b"".join(text for text in sources.values() if b"@jit(" in text or b"@kernel(" in text)
     names = set(re.findall(r"^from ir50p_lab\.(\S+) import", compiled.decode(), re.MULTILINE))
     compiled += b"".join(sources.get(_PACKAGE / f"{name.replace('.', '/')}.py", b"") for name in sorted(names))
-    own = _PACKAGE / "__pycache__"
-    base = own if os.access(own, os.W_OK) else Path.home() / ".cache"
-    return Path(numba.config.CACHE_DIR or base, f"ir50p_lab-{hashlib.sha1(compiled).hexdigest()[:16]}")
+    name = f"ir50p_lab-{hashlib.sha1(compiled).hexdigest()[:16]}"
+    return next((place / name for place in _places() if _takes_files(place / name)), None)
+
+
+def _places():
+    """$NUMBA_CACHE_DIR, the package, the user's cache, the student's folder, a temporary folder of the user's own."""
+    if numba.config.CACHE_DIR:
+        yield Path(numba.config.CACHE_DIR)
+    yield _PACKAGE / "__pycache__"
+    with contextlib.suppress(RuntimeError):  # a user without a home directory
+        yield Path.home() / ".cache"
+    yield home() / ".cache"
+    with contextlib.suppress(OSError):
+        user = getattr(os, "getuid", int)()
+        own = Path(tempfile.gettempdir(), f"ir50p_lab-{user}")
+        own.mkdir(mode=0o700, exist_ok=True)
+        if own.stat().st_uid == user:  # not made by somebody else, whose machine code would run
+            yield own
+
+
+def _takes_files(folder):
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return False
+    return True
 
 
 def jit(*, fastmath=("contract",), **options):
@@ -44,14 +72,15 @@ def jit(*, fastmath=("contract",), **options):
     """
     if numba is None:
         return lambda function: function
-    return functools.partial(with_cache, numba.njit(cache=True, error_model="numpy", fastmath=set(fastmath), **options))
+    return functools.partial(with_cache, numba.njit, error_model="numpy", fastmath=set(fastmath), **options)
 
 
-def with_cache(decorator, function):
+def with_cache(decorator, function, *signature, **options):
     """Decorate a function by a decorator of numba's that shall keep its machine code in `cache_folder()`."""
-    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())
+    folder = cache_folder()
+    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder or "")
     try:
-        return decorator(function)
+        return decorator(*signature, cache=folder is not None, **options)(function)
     finally:
         numba.config.CACHE_DIR = before
 

@@ -1,4 +1,7 @@
-"""In CI a skipped test is a failure: a run must not pass by leaving things out. Marks and what they leave out."""
+"""In CI a skipped test is a failure: a run must not pass by leaving things out. Marks and what they leave out.
+
+What JupyterLab has stored in a notebook is left out too, and said.
+"""
 
 import os
 from functools import cache
@@ -67,6 +70,15 @@ def pytest_terminal_summary(terminalreporter, config):
         terminalreporter.section("skipped tests fail in CI", red=True)
         for report in skipped:
             terminalreporter.line(f"{report.nodeid}: {report.longrepr[2] if report.longrepr else ''}")
+    if any(report.nodeid.startswith("tests/notebooks/") for report in _reports(terminalreporter)):
+        import stripped  # nbformat takes a while
+
+        for sentence in stripped.sentences():
+            terminalreporter.line(sentence)
+
+
+def _reports(terminalreporter):
+    return [report for outcome in ("passed", "failed") for report in terminalreporter.stats.get(outcome, [])]
 
 
 def _skipped(config):

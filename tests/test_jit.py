@@ -6,7 +6,11 @@ import re
 import subprocess
 import sys
 
+import numpy as np
+import pytest
+
 from ir50p_lab import jit
+from ir50p_lab.modelling.kernel import kernel
 
 
 def test_another_compiled_source_another_folder(tmp_path, monkeypatch):
@@ -84,3 +88,59 @@ forward_kinematics(load_arm(), [0.1, 0.2, 0.3])
     at_once = [subprocess.Popen(command, env=environment) for command in start[1:]]
     assert [process.wait() for process in at_once] == [0, 0, 0]
     subprocess.run(start[0], env=environment, check=True)
+
+
+@pytest.fixture
+def nowhere(tmp_path, monkeypatch):
+    """A read-only installation of a user without a home: folders that cannot be made, whoever asks (root, too)."""
+    blocked = tmp_path / "a file"
+    blocked.write_text("")
+    monkeypatch.setattr(jit, "_PACKAGE", blocked)
+    monkeypatch.setattr(jit.numba.config, "CACHE_DIR", "")
+    monkeypatch.setattr(jit.tempfile, "gettempdir", lambda: str(tmp_path))
+    for name in ("HOME", "USERPROFILE", "IR50P_HOME"):
+        monkeypatch.setenv(name, str(blocked))
+    yield blocked
+    jit.cache_folder.cache_clear()
+
+
+def place():
+    jit.cache_folder.cache_clear()
+    return jit.cache_folder() and jit.cache_folder().parent
+
+
+def test_the_first_place_that_takes_files(nowhere, tmp_path, monkeypatch):
+    own = place()
+    assert own.parent == tmp_path and own.stat().st_mode & 0o077 in (0, 0o77)  # on POSIX the user's alone
+    monkeypatch.setattr(jit.os, "getuid", lambda: -1, raising=False)
+    (tmp_path / "ir50p_lab--1").mkdir()
+    assert place() is None  # a folder that somebody else has made there
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path / "mine"))
+    assert place() == tmp_path / "mine" / ".cache"
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("USERPROFILE", str(tmp_path / "home"))
+    assert place() == tmp_path / "home" / ".cache"
+    monkeypatch.setattr(jit, "_PACKAGE", tmp_path / "package")
+    assert place() == tmp_path / "package" / "__pycache__"
+    monkeypatch.setattr(jit.numba.config, "CACHE_DIR", str(tmp_path / "numba"))
+    assert place() == tmp_path / "numba"
+    monkeypatch.setattr(jit.numba.config, "CACHE_DIR", str(nowhere))
+    assert place() == tmp_path / "package" / "__pycache__"
+
+
+def test_without_any_place_everything_runs(nowhere, monkeypatch):
+    def no_folder():
+        raise FileNotFoundError("No usable temporary directory found")
+
+    def no_home():
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.setattr(jit.tempfile, "gettempdir", no_folder)
+    monkeypatch.setattr(jit.Path, "home", no_home)
+    assert place() is None
+    assert jit.jit()(lambda x: 2 * x)(1.5) == 3.0
+    assert kernel("(n)->(n)")(twice)()(np.array([1.5])) == [3.0]
+
+
+def twice(x, result):
+    result[:] = 2 * x

@@ -1,11 +1,11 @@
 """What is not ideal about an arm on the bench: one table, each number with its reason. Nothing here was measured."""
 
-import os
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.home import setting
 from ir50p_lab.inputs import number, vector3, whole
 
 
@@ -89,7 +89,7 @@ def chosen_copy(seed):
 
 
 def _whole(variable):
-    text = os.environ.get(variable, "").strip()
+    text = setting(variable)
     if text and not text.isdecimal():
         raise InputError(f"{variable} = {text!r}: give a whole number from 0, or leave it unset")
     return int(text) if text else None

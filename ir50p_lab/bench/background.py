@@ -23,6 +23,7 @@ from ir50p_lab.bench import loop_process
 from ir50p_lab.bench.live_loop import ENDED, STARTING, live_loop
 from ir50p_lab.bench.recording import Recording
 from ir50p_lab.bench.set_point import checked_pose, checked_reference
+from ir50p_lab.browser_tab import IN_BROWSER, needs_more
 from ir50p_lab.controllers.base import check_controller, check_reference, gains, gains_of
 from ir50p_lab.errors import BenchError, InputError
 
@@ -48,6 +49,8 @@ def start(bench, controller, reference=None):
     Returns: LiveRun. Raises BenchError if the bench is closed or busy, InputError for bad arguments, and what opening
     the port raises.
     """
+    if IN_BROWSER:
+        needs_more("a loop in the background needs threads")
     check_controller(controller)
     if reference is not None:
         check_reference(reference)

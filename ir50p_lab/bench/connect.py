@@ -5,6 +5,7 @@ import os
 from ir50p_lab.bench.ports import list_ports
 from ir50p_lab.bench.result_files import own_calibration
 from ir50p_lab.errors import BoardError, InputError, PortError
+from ir50p_lab.home import setting
 
 VARIABLE = "IR50P_BENCH"
 _TO_BOARD = f"for a board: connect('PORT') or {VARIABLE}=PORT"
@@ -31,12 +32,10 @@ def connect(port=None, *, arm=None, calibration=None, period=0.01, record_to=Non
     board that was only looked for never raises: the line says why it was not taken.
     """
     common = {"arm": arm, "calibration": calibration, "period": period, "record_to": record_to}
-    wish, reason = port, f"asked for by connect({port!r})"
-    if port is None:
-        wish = os.environ.get(VARIABLE, "").strip()
-        reason = f"asked for by {VARIABLE}={wish}"
-        if not wish:
-            return _look_for_a_board(common, simulated)
+    if port is None and not setting(VARIABLE):
+        return _look_for_a_board(common, simulated)
+    wish = setting(VARIABLE) if port is None else port
+    reason = f"asked for by {VARIABLE}={wish}" if port is None else f"asked for by connect({port!r})"
     if not isinstance(wish, str | os.PathLike) or not str(wish):
         raise InputError(f"port = {wish!r}: give 'simulated', 'replay:FILE' or the name of a serial port")
     wish = os.fspath(wish)

@@ -12,7 +12,7 @@ from ir50p_lab.bench.recording import Recording
 from ir50p_lab.bench.recording_file import event_text, head_text, lines_of, lines_text, rows_text, table_of
 from ir50p_lab.controllers.base import gains_of
 from ir50p_lab.errors import RecordingError
-from ir50p_lab.home import home
+from ir50p_lab.home import home, path_setting
 from ir50p_lab.inputs import vector3
 
 _FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINARY", 0)
@@ -35,7 +35,7 @@ class Recorder:
         head = {"date": datetime.now().astimezone().isoformat(timespec="seconds"), **head}
         self._rows, self._file, self.path = array("d"), None, None
         if folder is not False:
-            self._create(Path(folder or os.environ.get("IR50P_RECORDINGS") or home() / "recordings"), head)
+            self._create(Path(folder or path_setting("IR50P_RECORDINGS") or home() / "recordings"), head)
         self.recording = Recording(self._rows, head, path=self.path)
 
     def _create(self, folder, head):

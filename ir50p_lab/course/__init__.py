@@ -12,6 +12,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "checking.check": ["check", "reset"],
         "checking.numbers": ["progress", "solution"],
         "lab_book.claims": ["ClaimError", "claim"],
+        "lab_book.data_file": ["data_file"],
         "lab_book.predictions": ["helped_by", "keep", "measured", "note", "partners", "predict", "why"],
         "lab_book.results": ["arm_that_answers", "load_result", "results", "save_result"],
         "live_arm": ["LiveArm"],

@@ -111,13 +111,24 @@ def _run(arguments, root):
             start = [python, "-m", _MODULES[command], *arguments]
             return _attend(start, variables | {"IR50P_HOME": home}, environment.root)
     if command == "lab":
-        notebooks = [] if file else [str(environment.root / "notebooks")]
+        notebooks = [] if file else [str(environment.root / "notebooks"), *_first_page(environment.root)]
         arguments = [*notebooks, *arguments, "--allow-root"]  # containers run as root; JupyterLab would only refuse
         print(
             "Opening JupyterLab. If no browser opens, copy the address http://... below into one; Ctrl-C here ends it."
         )
     code = _attend([python, "-P", "-m", _MODULES[command], *arguments], variables)
     return 0 if command == "lab" and code == 128 + signal.SIGINT else code  # Ctrl-C is how one ends JupyterLab
+
+
+def _first_page(root):
+    """What makes JupyterLab open 00 while nothing is the student's yet; later it opens what was open last."""
+    pages = [path.name for path in (root / "notebooks").glob("00_*.ipynb")]
+    if pages:
+        from ir50p_lab.home import home  # beside the launcher, but of the standard library, too
+
+        if any((home() / name).exists() for name in ("progress.json", "results", "my_robot", "recordings")):
+            return []
+    return [f"--LabApp.default_url=/lab/tree/{page}" for page in pages]
 
 
 def _ready(environment, here, *, tests, rebuild=False):

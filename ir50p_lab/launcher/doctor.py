@@ -4,7 +4,6 @@ import os
 import platform
 import shutil
 import sys
-from pathlib import Path
 
 from ir50p_lab.launcher.boards import board_name, permission_remedy
 from ir50p_lab.launcher.environment import LOCK
@@ -27,11 +26,13 @@ def report(environment, *, here=False):
         found, error = environment.look_inside(sys.executable if here else None)
         faults = _packages(found, here) if found else [f"the environment does not answer ({error})"]
     _line("Free disk", f"{shutil.disk_usage(root).free / 1e9:.1f} GB (the set-up needs 2)")
-    arm = os.environ.get("IR50P_ARM")
-    if arm:
-        _line("Arm", f"{arm} (from IR50P_ARM)")
-        if not Path(arm).is_file():
-            faults.append(f"IR50P_ARM names a file that does not exist ({arm})")
+    if "IR50P_ARM" in os.environ:
+        from ir50p_lab.home import path_setting, setting  # beside the launcher, but of the standard library, too
+
+        if arm := setting("IR50P_ARM"):
+            _line("Arm", f"{arm} (from IR50P_ARM)")
+            if not path_setting("IR50P_ARM").is_file():
+                faults.append(f"IR50P_ARM names a file that does not exist ({arm})")
     _ports(found["ports"] if found else None)
     verdict = f"not ready: {'; '.join(faults)}. {cure}." if faults else f"ready. Open the lab book with '{COMMAND}'."
     print(f"Verdict: {verdict}")

@@ -1,6 +1,7 @@
 """One state or many: functions of one state as NumPy's generalised ufuncs, and the errors they raise."""
 
 import re
+from contextlib import nullcontext
 from functools import cache
 
 import numpy as np
@@ -32,12 +33,13 @@ def _compiled(function, layout):
         return _interpreted(function, layout)
     operands = [dims.split(",") if dims else [] for dims in re.findall(r"\((.*?)\)", layout)]
     types = [f"f8[{','.join(':' * len(dims))}]" if dims else "f8" for dims in operands]
-    decorator = numba.guvectorize([f"void({', '.join(types)})"], layout, nopython=True, cache=True)
-    cache_folder().mkdir(parents=True, exist_ok=True)
-    with open(cache_folder() / "lock", "a") as file:
-        # numba keeps the two halves in two files that must come from one process; of a mixture it calls a null pointer
-        take_lock(file)
-        return with_cache(decorator, function).ufunc  # NumPy's own: without numba's look at the arguments
+    signature, folder = [f"void({', '.join(types)})"], cache_folder()
+    with open(folder / "lock", "a") if folder else nullcontext() as file:
+        if file:
+            # numba keeps two halves in two files that must come from one process; of a mixture it calls a null pointer
+            take_lock(file)
+        compiled = with_cache(numba.guvectorize, function, signature, layout, nopython=True)
+    return compiled.ufunc  # NumPy's own: without numba's look at the arguments
 
 
 def _interpreted(function, layout):

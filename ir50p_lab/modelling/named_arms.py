@@ -1,10 +1,10 @@
 """The arms of the course: the real one (with its assumptions) and the thesis' models."""
 
 import dataclasses
-import os
 
 import numpy as np
 
+from ir50p_lab.home import path_setting
 from ir50p_lab.modelling.actuators import Actuators
 from ir50p_lab.modelling.arm import Arm, read_only
 from ir50p_lab.modelling.friction import Friction
@@ -125,5 +125,5 @@ THESIS_C = thesis_theta(
 
 def load_arm(path=None):
     """The arm of the course: from `path`, else from the file that $IR50P_ARM names, else the IR50P."""
-    path = path or os.environ.get("IR50P_ARM")
+    path = path or path_setting("IR50P_ARM")
     return Arm.load(path) if path else IR50P

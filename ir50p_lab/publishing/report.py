@@ -6,7 +6,6 @@
 import argparse
 import base64
 import html
-import os
 import textwrap
 from datetime import date, datetime
 from pathlib import Path
@@ -17,6 +16,7 @@ from ir50p_lab.course.checking import numbers
 from ir50p_lab.course.lab_book.progress import read_progress
 from ir50p_lab.course.robot import folder
 from ir50p_lab.course.robot.catalogue import ORDER, notebook_of
+from ir50p_lab.home import setting
 
 _NAMES = dict(
     line.split(": ", 1) for line in Path(lab_book.__file__).with_name("names.txt").read_text("utf-8").splitlines()
@@ -83,8 +83,8 @@ def _table(head, rows):
 
 def _origin():
     """On which bench: simulated or real, unit and seed, as the results say."""
-    unit = os.environ.get("IR50P_UNIT", "")
-    seed = os.environ.get("IR50P_SEED", "")
+    unit = setting("IR50P_UNIT")
+    seed = setting("IR50P_SEED")
     rows = [
         (_text(one), "simulated" if one.simulated else "real", "withdrawn" if one.withdrawn else "")
         for one in result_files.every()

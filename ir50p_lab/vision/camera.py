@@ -1,13 +1,13 @@
 """Cameras: a source of frames. A webcam is opened quietly, gives fresh pictures, and says when it is unplugged."""
 
 import contextlib
-import os
 import time
 from dataclasses import dataclass
 
 import numpy as np
 
 from ir50p_lab.errors import CameraError
+from ir50p_lab.home import setting
 from ir50p_lab.vision.image import check_image, is_rendered, list_images, load_image, save_image
 
 _PATIENCE = 3.0  # s without a picture: the webcam is unplugged
@@ -110,7 +110,7 @@ def open_camera(source=None, *, size=(640, 480)):
     source: default what IR50P_CAMERA says, else 0, the first webcam; size: (width, height) asked of a webcam.
     Raises CameraError if there is no such webcam, ImageError for a folder without pictures.
     """
-    source = str(os.environ.get("IR50P_CAMERA", 0) if source is None else source)
+    source = str((setting("IR50P_CAMERA") or 0) if source is None else source)
     if source.startswith("folder:"):
         camera = PictureFolder(source.removeprefix("folder:"))
     elif source.isdecimal():

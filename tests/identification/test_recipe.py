@@ -1,13 +1,12 @@
 """The recipe in one call, motions kept in a file, and the simulation that chose them."""
 
-import os
-
 import numpy as np
 import pytest
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.course.torque.views import thesis_pid
 from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.home import setting
 from ir50p_lab.identification import fit, identify, load_excitations, process, regressor, validate
 from ir50p_lab.identification.excitation import regressor_condition
 from ir50p_lab.modelling import IR50P
@@ -138,7 +137,7 @@ def test_steps_that_a_score_could_not_repeat_are_refused(step):
         identify(run("training", seconds=5), **{step: 2})
 
 
-if os.environ.get("IR50P_SLOW"):  # a minute
+if setting("IR50P_SLOW"):  # a minute
 
     def test_the_search_of_today_finds_no_better_training_motion():
         """Of 16 such searches the best was worth 1.4 % over the floor; the motion in the file, best of 200, 2.3 %."""

@@ -29,6 +29,26 @@ def test_lab_opens_the_notebooks_with_the_python_of_the_environment(made):
     assert start["IR50P_ARM"] is None
 
 
+def test_lab_opens_on_00_until_something_is_the_students(made, tmp_path):
+    page = made.root / "notebooks" / "00_start_here.ipynb"
+    page.write_text("{}")
+    home = tmp_path / "mine"
+
+    def arguments(*more):
+        return told(made.run(*more, variables={"IR50P_HOME": f'"{home}"'}))["argv"]
+
+    try:
+        on_00 = [str(page.parent), "--LabApp.default_url=/lab/tree/00_start_here.ipynb", "--allow-root"]
+        assert arguments() == on_00
+        home.mkdir()
+        assert arguments() == on_00
+        assert arguments("notebooks") == ["notebooks", "--allow-root"]  # one's own choice
+        (home / "results").mkdir()
+        assert arguments() == [str(page.parent), "--allow-root"]
+    finally:
+        page.unlink()
+
+
 def test_further_arguments_go_to_jupyter(made):
     start = told(made.run("--no-browser", "--port", "9999"))
     assert start["argv"] == [str(made.root / "notebooks"), "--no-browser", "--port", "9999", "--allow-root"]
@@ -153,6 +173,6 @@ def test_without_streams_as_under_pythonw(monkeypatch):
 
 def test_the_launcher_imports_the_standard_library_only():
     # -S leaves site-packages out, -I what a variable or the folder could add
-    code = "import sys; sys.path.insert(0, sys.argv[1]); import ir50p_lab.launcher.commands"
+    code = "import sys; sys.path.insert(0, sys.argv[1]); import ir50p_lab.launcher.commands, ir50p_lab.home"
     done = commands.subprocess.run([sys.executable, "-I", "-S", "-c", code, str(PROJECT)], capture_output=True)
     assert done.returncode == 0, done.stderr

@@ -114,6 +114,13 @@ def test_arm_file_that_is_not_there(made, monkeypatch):
     assert "IR50P_ARM names a file that does not exist (nowhere.toml)" in last
 
 
+def test_arm_file_counts_from_the_project(made, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("IR50P_ARM", ' "data/arm_example.toml" ')
+    code, text, _ = report(made)
+    assert code == 0 and "Arm           data/arm_example.toml (from IR50P_ARM)" in text
+
+
 # -- the inventory ---------------------------------------------------------------------------------------------------------
 
 

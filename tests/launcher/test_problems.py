@@ -162,6 +162,29 @@ PRINTED = [
         "require basalt==2.0, we can conclude that your requirements are unsatisfiable.",
         "no ready-made package basalt==2.0",
     ),
+    # uv 0.4 to 0.13, without a package for this system, this Python, of this version, or at all
+    *[
+        (
+            text.format(f"Because {why} and you require basalt==2.0, we can\n      conclude that they are not."),
+            "basalt==2.0",
+        )
+        for text in ("  × No solution found when resolving dependencies:\n  ╰─▶ {}", "error: No solution\n  cause: {}")
+        for why in (
+            "basalt==2.0 has no usable wheels and building from source\n      is disabled",
+            "basalt==2.0 has no usable wheels",
+            "basalt==2.0 has no wheels with a matching Python ABI tag (e.g., `cp311`)",
+            "there is no version of basalt==2.0",
+            "only basalt==1.0 is available",
+            "basalt was not found in the package registry",
+            "basalt==2.0 is for other machines in words nobody has read yet",
+        )
+    ],
+    (
+        "error: Distribution `basalt==2.0 @ registry+https://a` can't be installed here",
+        "package basalt==2.0 for Python",
+    ),
+    ("error: nothing that fits\n  cause: basalt==2.0: no file for `win_arm64`", "package basalt==2.0 for Python"),
+    ("ERROR: nobody has thought of it\nCollecting six==1.17.0", "The set-up failed: nobody has thought of it"),
     ("error: Failed to fetch: http://a/\n cause: tcp connect error\n cause: Connection refused", "no connection to"),
     ("error: Failed to fetch: https://a/\n cause: tunnel error: failed to create", "the proxy refused"),
     ("cause: Because six==1.17.0 has an invalid package format and you require six", "A downloaded package is damaged"),
@@ -177,6 +200,33 @@ def test_what_pip_prints_becomes_one_line(output, expected):
     assert expected in text
     assert "\n" not in text
     assert problems.COMMAND in text or "https://" in text or "README.md" in text  # what to do next
+
+
+def test_another_end_of_uv_is_no_missing_package():
+    """Only code 1 is uv's for 'no such package'."""
+    said = "error: Failed to install: basalt-2.0-py3-none-any.whl (basalt==2.0)\n  cause: something new"
+    error = problems.from_output(said, 2, Path("lab"), Path("log"))
+    assert not isinstance(error, problems.NoWheelError) and "The set-up failed" in str(error)
+
+
+def test_windows_on_arm_is_told_which_python(monkeypatch):
+    monkeypatch.setattr(problems.platform, "system", lambda: "Windows")
+    monkeypatch.setattr(problems.platform, "machine", lambda: "ARM64")
+    said = "cause: Because opencv==5 has no usable wheels and you require opencv==5, we can conclude"
+    text = str(problems.from_output(said, 1, Path("lab"), Path("log")))
+    assert "on Windows ARM64" in text and "x86-64 installer" in text
+
+
+def test_uv_of_this_set_up_on_a_package_for_another_machine(tmp_path):
+    """What it says today: a wheel of another system, of another Python, a source without wheels, none at all."""
+    for name in ("basalt-2.0-py3-none-win_arm64.whl", "slate-2.0-cp39-cp39-any.whl", "gneiss-2.0.tar.gz"):
+        (tmp_path / name).write_bytes(b"")
+    command = [sys.executable, "-m", "uv", "pip", "install", "--python", sys.executable, "--no-index", "--dry-run"]
+    for name in ("basalt", "slate", "gneiss", "granite"):
+        more = ["--find-links", str(tmp_path), "--only-binary", ":all:", f"{name}==2.0"]
+        done = subprocess.run([*command, *more], capture_output=True, encoding="utf-8")
+        error = problems.from_output(done.stdout + done.stderr, done.returncode, Path("lab"), Path("log"))
+        assert isinstance(error, problems.NoWheelError) and f" {name}==2.0 for Python" in str(error)
 
 
 def test_installer_ended_by_a_signal():

@@ -1,7 +1,7 @@
 """Notebooks as parameters."""
 
-import nbformat
 import pytest
+import stripped
 from notebook_runner import CHAIN, NOTEBOOKS
 
 
@@ -13,8 +13,8 @@ def path(request):
 
 @pytest.fixture
 def notebook(path):
-    """The notebook as nbformat reads it."""
-    return nbformat.read(path, as_version=4)
+    """The notebook as it is shipped, without what JupyterLab has stored in it."""
+    return stripped.read(path)
 
 
 @pytest.hookimpl(trylast=True)

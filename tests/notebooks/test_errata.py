@@ -10,7 +10,7 @@ import re
 from collections import Counter
 from pathlib import Path
 
-import nbformat
+import stripped
 from notebook_runner import NOTEBOOKS, REWRITTEN
 
 WIDEST_RANGE = 10  # "(1.101-1.110)" names ten equations; a wider range names none of them
@@ -19,7 +19,7 @@ WIDEST_RANGE = 10  # "(1.101-1.110)" names ten equations; a wider range names no
 def thesis_checks(path):
     """Return (text from 'Thesis check' on, code below) of a notebook."""
     found = []
-    cells = nbformat.read(path, as_version=4).cells
+    cells = stripped.read(path).cells
     for text, code in itertools.pairwise(cells):
         if text.cell_type == "markdown" and "**Thesis check (" in text.source:
             found.append((text.source[text.source.index("**Thesis check (") :], code))

@@ -5,6 +5,7 @@ import re
 import nbformat
 import pytest
 import solutions
+import stripped
 from notebook_runner import CHAIN, NOTEBOOKS, REWRITTEN, run_notebook
 
 from ir50p_lab.course.robot.catalogue import function_of, is_function
@@ -35,7 +36,7 @@ def assert_runs(path, notebook, home):
 def test_notebooks_in_a_chain(tmp_path):
     """In order, with one home: what a notebook keeps there is what later ones load. In a home of their own: conftest.py."""
     for path in CHAIN:
-        assert_runs(path, nbformat.read(path, as_version=4), tmp_path)
+        assert_runs(path, stripped.read(path), tmp_path)
 
 
 @pytest.mark.notebook
@@ -48,7 +49,7 @@ def test_notebook_with_solutions(number, tmp_path):
 def assert_solved(number, tmp_path, source, first=()):
     """Run a notebook by source(name) of each function; `first`: functions of earlier notebooks, written before."""
     (found,) = [one for one in NOTEBOOKS if one.name.startswith(number)]
-    notebook = nbformat.read(found, as_version=4)
+    notebook = stripped.read(found)
     notebook.cells[2:2] = [nbformat.v4.new_code_cell(f'check("{name}", {name})') for name in first]
     asked = []
     for cell in notebook.cells:

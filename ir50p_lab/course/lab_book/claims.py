@@ -1,12 +1,11 @@
 """What a notebook claims, as a sentence that runs: printed with value and limit, or raised with the same words."""
 
 import json
-import os
-from pathlib import Path
 
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.home import path_setting
 
 _VARIABLE = "IR50P_CLAIMS"
 
@@ -53,6 +52,6 @@ def _words(number):
 
 
 def _log(text, room):
-    if path := os.environ.get(_VARIABLE):
-        with Path(path).open("a", encoding="utf-8") as file:
+    if path := path_setting(_VARIABLE):
+        with path.open("a", encoding="utf-8") as file:
             file.write(json.dumps({"claim": text, "room": room.ravel().tolist()}) + "\n")

@@ -1,6 +1,5 @@
 """The progress file: which exercises are done, as readable JSON."""
 
-import os
 from datetime import datetime
 from pathlib import Path
 
@@ -12,14 +11,13 @@ _VARIABLE = "IR50P_PROGRESS"
 
 def progress_path() -> Path:
     """Return where the progress file lies: $IR50P_PROGRESS, else progress.json in the student's folder."""
-    chosen = os.environ.get(_VARIABLE)
-    return Path(chosen).expanduser() if chosen else home.home() / "progress.json"
+    return home.path_setting(_VARIABLE) or home.home() / "progress.json"
 
 
 def _to_read() -> Path:
     """The progress file; where there is none yet, that of earlier versions in the project's root."""
     path, old = progress_path(), home.PROJECT / "progress.json"
-    moved = os.environ.get(_VARIABLE) or os.environ.get(home.VARIABLE)
+    moved = home.setting(_VARIABLE) or home.setting(home.VARIABLE)
     return path if moved or path.exists() or not old.exists() else old
 
 

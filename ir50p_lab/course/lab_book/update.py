@@ -41,7 +41,8 @@ def notebook_hash(path):
     """What a notebook's cells say, as 16 hexadecimal digits; '' for a file that is no notebook."""
     try:
         cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
-        text = json.dumps([[cell["cell_type"], "".join(cell["source"])] for cell in cells])
+        said = [[cell["cell_type"], "".join(cell["source"])] for cell in cells]
+        text = json.dumps([cell for cell in said if cell[1].strip()])  # JupyterLab adds empty ones
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return ""
     return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -11,6 +11,7 @@ import ipywidgets
 import numpy as np
 import traitlets
 
+from ir50p_lab.browser_tab import IN_BROWSER, needs_more
 from ir50p_lab.course.draw.arm3d import ArmView
 from ir50p_lab.course.draw.painter import DRAWING, Painter
 from ir50p_lab.course.draw.style import COLOURS, new_figure
@@ -101,6 +102,8 @@ class LiveArm(anywidget.AnyWidget):
         self._stop.set()
         self.options = self.options | {"speed": speed, "loop": loop}
         if hasattr(runs[0], "is_open") or hasattr(runs[0], "alive"):
+            if IN_BROWSER:
+                needs_more("to follow an open bench needs threads")
             self._stop = threading.Event()
             threading.Thread(target=self._follow, args=(runs[0], self._stop), daemon=True).start()
         else:

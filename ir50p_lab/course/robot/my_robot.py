@@ -8,7 +8,6 @@ A class that is written in stages serves at its stage in the notebook that works
 `my_robot.whose("rot_z")` says whose it is: "yours", "on loan" or "the course's".
 """
 
-import os
 from time import monotonic
 
 from ir50p_lab import home
@@ -21,14 +20,14 @@ _said = set()
 
 def __getattr__(name):
     function, until, *where = folder.fresh.get(name, (None, 0.0))
-    if monotonic() < until and where == [at_work(name), os.environ.get(home.VARIABLE)]:
+    if monotonic() < until and where == [at_work(name), home.setting(home.VARIABLE)]:
         return function
     if not is_function(name):
         raise AttributeError(f"my_robot has no {name}; its functions are {', '.join(ORDER)}")
     stage = at_work(name)
     function = folder.load(name) if folder.is_there(stage) else task(stage).right
     _say(name)
-    folder.fresh[name] = function, monotonic() + _FRESH, stage, os.environ.get(home.VARIABLE)
+    folder.fresh[name] = function, monotonic() + _FRESH, stage, home.setting(home.VARIABLE)
     return function
 
 

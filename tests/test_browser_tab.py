@@ -1,0 +1,66 @@
+"""What a browser tab cannot do is said in a sentence by what meets it; the student's folder is kept on the page's drive."""
+
+import subprocess
+import sys
+
+import pytest
+
+from ir50p_lab.browser_tab import Lacking, NotInABrowserError
+from ir50p_lab.home import PROJECT
+
+IN_A_TAB = """
+import importlib, sys, pathlib, os
+for name in ("numba", "cv2", "serial", "loky"):
+    sys.modules.pop(name, None)
+import numpy, matplotlib.figure, anywidget, lazy_loader, cloudpickle, tomlkit, PIL.Image
+class Gone:
+    def find_spec(name, path=None, target=None):
+        if name in ("numba", "cv2", "serial", "loky"):
+            import ir50p_lab.browser_tab as tab
+            return tab.Lacking.find_spec(name)
+sys.meta_path.insert(0, Gone)
+sys.platform = "emscripten"
+os.chdir(sys.argv[1])
+"""
+
+
+@pytest.mark.parametrize("name", ["cv2", "serial", "loky", "numba"])
+def test_what_is_not_loaded_is_named_with_its_use(name):
+    with pytest.raises(NotInABrowserError, match=f"{name}, which .* On your machine"):
+        Lacking.find_spec(name)
+    assert Lacking.find_spec("pandas") is None and issubclass(NotInABrowserError, ImportError)
+
+
+def run(code, folder, tmp_path):
+    script = IN_A_TAB + code
+    environment = {
+        "HOME": str(tmp_path / "memory"),
+        "PYTHONPATH": str(PROJECT),
+        "PATH": "",
+        "MPLCONFIGDIR": str(tmp_path),
+    }
+    (tmp_path / "memory").mkdir(exist_ok=True)
+    return subprocess.run([sys.executable, "-c", script, str(folder)], env=environment, capture_output=True, text=True)
+
+
+def test_what_is_written_survives_a_reload_and_the_rest_says_what_it_needs(tmp_path):
+    (tmp_path / "notebooks").mkdir()
+    write = "from ir50p_lab.course import predict\npredict('fk.height', 0.3, 'm')\n"
+    first = run(write, tmp_path / "notebooks", tmp_path)
+    assert "your guess is 0.3 m" in first.stdout, first.stderr
+    assert (tmp_path / "notebooks" / "results" / "lab_book.json").exists()
+    for old in (tmp_path / "memory").rglob("*.json"):
+        old.unlink()  # the memory of a tab is gone with it
+    again = run("from ir50p_lab.course import measured\nmeasured('fk.height', 0.5)\n", tmp_path / "notebooks", tmp_path)
+    assert "you guessed 0.3 m" in again.stdout, again.stderr
+    refused = run(
+        "from ir50p_lab.bench import SimulatedBench\nfrom ir50p_lab.controllers import PID\nfrom ir50p_lab.modelling import IR50P\n"
+        "with SimulatedBench(IR50P) as bench: bench.start(PID(kp=100))\n",
+        tmp_path / "notebooks",
+        tmp_path,
+    )
+    assert "A browser tab cannot do this: a loop in the background needs threads" in refused.stderr, refused.stderr
+    vision = run("from ir50p_lab.vision import find_balls", tmp_path / "notebooks", tmp_path)
+    assert "cv2, which measures pictures, is not loaded" in vision.stderr, vision.stderr
+    sweep = run("from ir50p_lab.simulation import sweep_gains", tmp_path / "notebooks", tmp_path)
+    assert "A browser tab cannot do this: numba" in sweep.stderr or sweep.returncode == 0, sweep.stderr
