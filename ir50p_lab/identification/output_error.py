@@ -60,7 +60,7 @@ class ClosedLoopRun:
         if q.shape[1] != 3 or n < 50:
             raise InputError(f"{n} samples of {q.shape[1]} joint(s): give 50 or more of all three joints")
         if np.abs(np.diff(t) - self.period).max() > 0.1 * self.period:
-            raise InputError("the times are uneven or have gaps, the simulated loop's not: cut with between(t0, t1)")
+            raise InputError("the times are uneven or have gaps, which no simulated loop has: cut with between(t0, t1)")
         if not is_compiled(controller):
             raise InputError(f"controller is a {type(controller).__name__}: give the PID (or other) of the run")
         if reference is not None:
