@@ -11,7 +11,7 @@ from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
 
 @jit()
 def _fill(gravity, q, qd, qdd, direction, out):
-    """Rows of states (n, 3) into out (n, 3, 20), which must hold zeros: only what can differ from zero is written."""
+    """Write the rows for states (n, 3) into out (n, 3, 20), given as zeros; entries that are always 0 are skipped."""
     for k in range(q.shape[0]):
         a, b, c = qd[k, 0], qd[k, 1], qd[k, 2]
         A, B, C = qdd[k, 0], qdd[k, 1], qdd[k, 2]
@@ -56,8 +56,8 @@ def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
     Args:
         q, qd, qdd: (3,) or (n, 3), rad, rad/s, rad/s^2.
         g: gravity, m/s^2, >= 0.
-        sign: what stands for sgn(qd) in the Coulomb columns. None: sgn(qd), 0 at rest. A speed v > 0 in rad/s:
-            tanh(qd/v), which does not jump.
+        sign: how the sign of qd enters the Coulomb columns. None: sgn(qd), 0 at rest. A speed v > 0, rad/s: tanh(qd/v),
+            a soft sign that does not jump.
 
     Returns: (3, 20) or (n, 3, 20). Raises InputError on wrong shapes, numbers that are not finite, a bad g or sign.
     """

@@ -1,4 +1,4 @@
-"""Base parameters: what can be told apart at all, and which groups of parameters act as one."""
+"""Base parameters: which parameters a motion can tell apart, and which act on the torque only as a group."""
 
 from dataclasses import dataclass
 
@@ -17,11 +17,11 @@ class BaseParameters:
     =============== ============================================================================== =========
     field           meaning                                                                        shape
     =============== ============================================================================== =========
-    rank            how many combinations of parameters the motion can tell                        int
-    columns         indices of the columns kept: independent                                       (rank,)
+    rank            number of independent combinations of parameters that Phi determines           int
+    columns         indices of the columns kept, which are independent                             (rank,)
     matrix          base = matrix theta: the groups                                                (rank, p)
     names           of all columns                                                                 p
-    unseen          names of columns that are zero: without any effect                             tuple
+    unseen          names of columns that are zero: parameters without effect                      tuple
     groups          the base parameters in symbols, one string each                                rank
     singular_values of Phi with columns scaled to length 1, largest first: the drop after `rank`   (p,)
                     shows how clear the rank is
@@ -45,8 +45,8 @@ class BaseParameters:
 def base_parameters(Phi, *, names=None):
     """Which combinations of parameters the regressor Phi can tell apart, by QR and by SVD.
 
-    Columns are scaled to length 1 and taken in order: one that is a combination of kept columns before it (less than
-    1e-8 sticks out) joins their groups. The singular values must give the same rank.
+    Columns are scaled to length 1 and taken in order. A column that is a combination of those kept before it, but for
+    less than 1e-8 of its length, joins their groups. The singular values must give the same rank.
 
     Args:
         Phi: (n, 3, p), (n, k, p) or (m, p), from exact motion rich enough to excite everything (random states do);
@@ -54,7 +54,7 @@ def base_parameters(Phi, *, names=None):
         names: of the p columns; default the 20 parameters, or p1, p2, ...
 
     Returns: BaseParameters. Raises InputError on bad arguments, IdentificationError if Phi is zero, or if QR and SVD
-    disagree on the rank: the motion lies between excited and not excited.
+    disagree on the rank: some combination of parameters is excited, but hardly.
     """
     A, names = _checked(Phi, names)
     length = np.linalg.norm(A, axis=0)
@@ -63,7 +63,7 @@ def base_parameters(Phi, *, names=None):
     kept, weights = independent_columns(R)
     s = np.linalg.svd(R, compute_uv=False)
     if (above := np.sum(s > DEPENDENT * s[0])) != len(kept):
-        said = f"{len(kept)} columns stick out of the others by {DEPENDENT:g}, {above} singular values are above that"
+        said = f"{len(kept)} columns are independent to {DEPENDENT:g}, but {above} singular values are larger than that"
         raise IdentificationError(f"the rank is not clear: {said}: use richer or exact motion")
     columns = seen[kept]
     matrix = np.zeros((len(kept), len(names)))
@@ -96,7 +96,7 @@ def _checked(Phi, names):
 
 
 def _in_symbols(row, kept, names):
-    """A sum like 'XX2 - YY2 - 0.04 m3' from its coefficients, that of the kept column first."""
+    """A sum like 'XX2 - YY2 - 0.04 m3' from the coefficients `row` (p,); the name of the kept column comes first."""
     text = names[kept]
     for k in np.flatnonzero(row):
         if k != kept:

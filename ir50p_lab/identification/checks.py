@@ -1,4 +1,4 @@
-"""Whether a recording of a joint can be believed: what is meaningless is refused, all else is a warning."""
+"""Whether a recording of a joint can be believed: meaningless data are refused, lesser flaws are warned of."""
 
 import math
 
@@ -8,24 +8,29 @@ from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification.columns import quantum_of, runs, sampling_period
 from ir50p_lab.identification.regression import least_squares
 
-FEWEST = 40  # samples, ten for each of four parameters
-_TURNS = 6 * math.pi  # rad: further than joints go, and a third of a radian in degrees
-_SLOW_CLOCK = 0.15  # s: nobody samples a joint so slowly, many write milliseconds
-_STAYS = 5  # samples at one value: if an angle stays longer, and leaves too suddenly, the sensor hung or was clipped
-_BROKEN = 3.5  # samples: stays no further apart than this are one stay, broken by noise
-_JUMP = 5.0  # times the largest usual step of q: if it jumps further after a stay, the sensor hung
-_ABRUPT = 0.2  # of the rms speed: if q runs faster into its largest value, and stays there, it was clipped
-_SPIKE = 0.05  # of the range, and 12 times the bends around it: one sample this far from both neighbours is an outlier
-_LEAST = 3  # quanta, of an outlier: fewer are the flicker of a coarse signal
-_EXCESS = 0.025  # of the range of u: if the motion needs this much more at the limits of u, it was clipped. Measured
-# on three machines, limits at 60 to 90 %: clipped 0.036 or more; a drive that saturates, late or not, 0.019 at most
-_SELDOM, _OFTEN = 0.02, 0.25  # share of the samples at a limit of u: if it lies between, that need is looked at
-_MISSED = 0.07  # residual over spread of u: if more is left, and u is at its limits more often, it was clipped, too
-_CONTRADICT = 4.0  # standard errors, and 5 %: two recordings that differ by more contradict each other
+FEWEST = 40  # samples: a shorter record is refused; ten for each of four parameters
+_TURNS = 6 * math.pi  # rad: if q spans more, it may be in degrees: joints seldom turn three times, often by 19 degrees
+_SLOW_CLOCK = 0.15  # s: if the sampling period is longer, t may be in milliseconds; nobody samples a joint so slowly
+# A stay is an angle that keeps one value for so many samples: its sensor may have hung, or come to its limit.
+_STAYS = 5
+_BROKEN = 3.5  # samples: if two stays are nearer to each other, they are one that noise interrupts
+_JUMP = 5.0  # if the step after a stay is more than so many times the largest usual step (98 %), the sensor hung
+_ABRUPT = 0.2  # share of the rms speed: if q enters and leaves its stay at the largest value faster, it was clipped
+# A sample is an outlier if it is off its neighbours' mean by more than this share of the signal's range (2 to 98 %), by
+# 12 times what is usual around it, and by so many quanta: a coarse signal flickers by one or two.
+_SPIKE = 0.05
+_LEAST = 3
+# u was clipped if the motion needs more than it had at its limits, by this share of its range. Measured on three
+# machines, limits at 60 to 90 %: 0.036 or more if clipped, at most 0.019 for a drive that saturates, late or not.
+_EXCESS = 0.025
+# Share of samples at a limit of u: up to the first nothing is tested, then _EXCESS, beyond the second _MISSED.
+_SELDOM, _OFTEN = 0.02, 0.25
+_MISSED = 0.07  # residual over spread of u: if more is left where u is at its limits often, it was clipped
+_CONTRADICT = 4.0  # standard errors: if two recordings differ by more, and by 5 %, they contradict each other
 
 
 class Warnings(list):
-    """Sentences; `refuse` raises IdentificationError, with them, unless `anyway`: then it adds its sentence too."""
+    """A list of sentences. `refuse` raises IdentificationError with all of them; if `anyway`, it only adds its own."""
 
     def __init__(self, anyway=False, who=""):
         self.anyway, self.who = anyway, who
@@ -35,14 +40,14 @@ class Warnings(list):
         self.append(self.who + sentence)
 
     def refuse(self, sentence):
-        """What makes the numbers meaningless."""
+        """Refuse data that make the numbers meaningless."""
         if not self.anyway:
             raise IdentificationError(" Also: ".join([f"{self.who}{sentence} (anyway=True goes on)", *self]))
         self.add(f"gone on anyway: {sentence}")
 
 
 def check_signals(warned, t, q, u):
-    """What is wrong with q (n,) and u (n,) at the times t (n,) before any model. Returns (n,) bool: where q is new."""
+    """Check q (n,) and u (n,) at the times t (n,) before any model is fitted. Returns (n,) bool: where q is new."""
     if len(t) < FEWEST:
         warned.refuse(f"{len(t)} samples are too short a record; record {FEWEST} or more, over several reversals")
     for name, x in (("q", q), ("u", u)):
@@ -67,19 +72,19 @@ def check_signals(warned, t, q, u):
 
 
 def _new(warned, q):
-    """Where q (n,) is new, if a slow sensor renews it less often than rows are written; else all True."""
+    """Which samples of q (n,) are new, where a slow sensor repeats its value over several rows; else all True."""
     steps = np.abs(np.diff(q))
     moved = np.flatnonzero(steps)
     every = (len(q) - 1) / max(len(moved), 1)
-    regular = np.mean(np.abs(np.diff(moved) - every) < 0.6) >= 0.7  # or the joint stood still now and then
-    if every < 1.9 or not regular or np.median(steps[moved]) < 4 * quantum_of(q):  # small: steps of a coarse sensor
+    regular = np.mean(np.abs(np.diff(moved) - every) < 0.6) >= 0.7  # irregular: the joint stood still now and then
+    if every < 1.9 or not regular or np.median(steps[moved]) < 4 * quantum_of(q):  # small steps: a coarse sensor
         return np.ones(len(q), dtype=bool)
     warned.add(f"q is new only in every {every:.3g}th row (a slow sensor): the others were left out")
     return np.r_[True, steps > 0]
 
 
 def _hung(warned, t, q):
-    """A q that stands still for some samples and then jumps within one, as it does where a sensor or a link hangs."""
+    """Refuse a q that stands still for some samples and then jumps within one: its sensor or the link hung."""
     steps = np.where(np.diff(t) < 1.5 * sampling_period(t), np.abs(np.diff(q)), 0.0)  # a gap is no jump
     usual = float(np.quantile(steps[steps > 0], 0.98)) if steps.any() else np.inf
     moved = np.flatnonzero(np.diff(q))
@@ -91,7 +96,7 @@ def _hung(warned, t, q):
 
 
 def _clipped(warned, t, q):
-    """A q that runs into its largest or smallest value, stays there, and comes out of it as suddenly."""
+    """Refuse a q that runs into its largest or smallest value, stays there, and leaves it as suddenly (clipped)."""
     still = np.flatnonzero((np.diff(q) == 0) & (q[1:] > q.min()) & (q[1:] < q.max()))
     rests = [(still[a], still[b - 1] + 2) for a, b in runs(still.astype(float), 1.5) if b - a >= _STAYS - 1]
     for name, x in (("largest", q), ("smallest", -q)):
@@ -100,15 +105,17 @@ def _clipped(warned, t, q):
         if any(_is_cut_off(t, x, *stay) for stay in stays):
             said = f"q was clipped (or stops suddenly) at its {name} value, {q[places[0]]:.6g} rad"
             elsewhere = any(_is_cut_off(t, sign * q, *rest) for rest in rests for sign in (1, -1))
-            tell = warned.add if elsewhere else warned.refuse  # a joint that stops so at any angle was not clipped
+            tell = warned.add if elsewhere else warned.refuse  # if q stops so elsewhere too, it is the joint
             tell(f"{said}: record within the range, or cut these parts out")
 
 
 def _is_cut_off(t, x, begin, end):
-    """Whether x (n,) runs into the stay x[begin:end] at its largest value and out of it without slowing down.
+    """Whether x (n,) runs into the stay x[begin:end] at its largest value, and out of it, without slowing down.
 
-    A joint that comes to rest slows down: over the last m samples it is no faster than it lost over the m before, for
-    one m at least, as brakes are short. A stay that hides less than the sensor can tell is none.
+    A joint that comes to rest brakes: for some m, its speed over the m samples beside the stay (`near`) is less than
+    three times what it lost since the m samples before (`lost`). `hidden` is the angle that a parabola with the speed
+    `near` would have risen above the stay: it must be more than the sensor's resolution, and less than three ranges, or
+    the joint rested there.
     """
     step, period, quantum = np.diff(x), sampling_period(t), quantum_of(x)
     noise = float(np.median(np.abs(np.diff(step)))) / 0.6745 / math.sqrt(6)
@@ -123,14 +130,14 @@ def _is_cut_off(t, x, begin, end):
         if near + unsure < 3 * lost:
             return False
     fast = min(before, -after) > _ABRUPT * math.sqrt(np.mean(step**2)) / period
-    hidden = near / 2 * (t[end - 1] - t[begin]) / 4  # rad; more than three ranges is a rest
+    hidden = near / 2 * (t[end - 1] - t[begin]) / 4  # rad
     return near > 3 * max(lost, 0.0) + unsure and fast and 2 * quantum + 1e-4 * np.ptp(x) < hidden < 3 * np.ptp(x)
 
 
 def check_outliers(warned, name, t, x, remedy="leave these samples out"):
-    """A warning of samples of x (n,) that are far from both neighbours, which agree. Returns their indices.
+    """Warn of samples of x (n,) that are far from both neighbours, which agree. Returns their indices.
 
-    Lost counts, bad bytes; not torque ripple, where all neighbours are far from each other.
+    Such are lost counts and bad bytes. Torque ripple is not: there all neighbours are far from each other.
     """
     from scipy.ndimage import median_filter
 
@@ -146,7 +153,7 @@ def check_outliers(warned, name, t, x, remedy="leave these samples out"):
 
 
 def check_measured_speed(warned, t, q, qd):
-    """A qd (n,) that is not the rate of q (n,): another unit, another joint."""
+    """Warn of a qd (n,) that is not the rate of change of q (n,): another unit, or another joint."""
     near = np.diff(t) < 1.5 * sampling_period(t)  # not across gaps
     rate, speed = (np.diff(q) / np.diff(t))[near], ((qd[1:] + qd[:-1]) / 2)[near]
     factor = float(rate @ speed / max(speed @ speed, 1e-300))
@@ -155,11 +162,12 @@ def check_measured_speed(warned, t, q, qd):
 
 
 def check_clipped_drive(warned, found):
-    """A u that was cut off in the recording only, or of which only the direction was recorded.
+    """Refuse a u that was cut off in the recording only, or of which only the direction was recorded.
 
-    A drive that really saturates, or is switched, is fine: its motion needs no more than what was recorded. A delay is
-    allowed for. Beside it, a column for the samples at each limit tells what the motion needs more there; where u is
-    at its limits most of the time, they are u itself, and what the model does not explain tells.
+    A drive that really saturates, or is switched, is fine: its motion needs no more than what was recorded. The model
+    is fitted again with a delay of u, and then with a column for the samples at each limit too: its parameter is what
+    the motion needs beyond that limit (`excess`). Where u is at its limits very often, these columns are nearly u
+    itself; there the residual of the first fit decides (`missed`).
     """
     late = np.column_stack([found.A, found.slope, np.gradient(found.slope)])
     missed = least_squares(late, found.y, tolerance=1e-3).rms / np.std(found.y)
@@ -173,7 +181,7 @@ def check_clipped_drive(warned, found):
 
 
 def check_contradiction(warned, recordings, fit, names):
-    """Recordings that do not agree. fit: of one of them; names: of the parameters compared.
+    """Warn of recordings that disagree. fit: gives the fit of one recording; names: of the parameters compared.
 
     Of three or more, the odd one is the one that differs most from all others, in standard errors.
     """

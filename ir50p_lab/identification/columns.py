@@ -1,4 +1,4 @@
-"""Columns t, q, u of a recording, checked: what identification takes from a file, whoever wrote it."""
+"""The columns t, q, u of a recording, checked, whatever program wrote it."""
 
 import numpy as np
 
@@ -52,7 +52,7 @@ def same_samples(given, most=2):
 
 
 def sampling_period(t):
-    """Sampling period of times (n,) with gaps and jitter, s: near the median step, the one that counts whole steps."""
+    """Sampling period of times (n,) with gaps and jitter, s: mean of the steps, each as 1, 2 or 3 periods; no gaps."""
     dt = np.diff(t)
     steps = np.rint(dt / np.median(dt))
     near = steps <= 3
@@ -62,8 +62,8 @@ def sampling_period(t):
 def without_rounding(t):
     """Times (n,) s of an even clock that were rounded to a coarse tick (1 ms, say), put back onto even steps.
 
-    Only where every time lies within 3/4 of its tick of the grid (gaps are whole steps): the grid then says nothing
-    that the times deny. Else they are returned as they are.
+    Only where every time lies within 3/4 of a tick of the even steps (a gap is a whole number of them): then these do
+    not contradict what was recorded. Otherwise the times are returned as they are.
     """
     dt = np.diff(t)
     period = sampling_period(t)
@@ -78,13 +78,13 @@ def without_rounding(t):
 
 
 def quantum_of(x):
-    """Step of a coarse sensor or converter: the least difference between values of x (n,), rad; 0 if there is none.
+    """Step of a coarse sensor or converter: the least difference between values of x (n,); 0 if there is none.
 
     There is one if values repeat, or if all differences are whole steps.
     """
     values = np.unique(x)
     steps = np.diff(values)
-    steps = steps[steps > 1e-9 * np.ptp(x)]  # rounding of what was meant to be the same
+    steps = steps[steps > 1e-9 * np.ptp(x)]  # smaller ones are rounding of equal values
     if not len(steps):
         return 0.0
     step = float(steps.min())

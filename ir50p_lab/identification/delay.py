@@ -1,4 +1,4 @@
-"""The delay between a command and its effect, from a recording; and how well a recording can tell it."""
+"""The delay between a command and its effect, from a recording, and how well the recording determines it."""
 
 from dataclasses import dataclass
 
@@ -10,16 +10,16 @@ from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.identification.parameters import RIGID_ON
 from ir50p_lab.identification.processing import process
 
-_FLAT = 1.01  # a residual this near to the smallest does not speak against a delay
-_FEWEST = 200  # samples in motion, of each joint
-_LONGEST = 0.15  # s
+_FLAT = 1.01  # times the smallest residual: a delay that leaves less fits as well as the best one
+_FEWEST = 200  # samples: if a joint moves in fewer, the recording is refused
+_LONGEST = 0.15  # s: the longest delay tried
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DelayEstimate:
     """What `estimate_delay` found.
 
-    delay: s, median of the joints; stderr: s, by how the joints differ. per_joint (3,) s. delays (m,) s: those tried;
+    delay: s, median of the joints; stderr: s, from their scatter. per_joint (3,) s. delays (m,) s: those tried;
     rms (m, 3): residual of the best model with each. warnings: tuple of str.
     """
 
@@ -34,9 +34,10 @@ class DelayEstimate:
 def estimate_delay(recording, q=None, u=None, *, cutoff_hz=3.0, slow=0.1):
     """Delay from a sample to the moment its u acts: the one with which the best model leaves the smallest residual.
 
-    For each delay from 0 to 0.15 s u is shifted, the rigid arm with friction is fitted anew, and what is left is
-    compared; u, q and all columns pass the same filter. Steps of the set point tell it within a period or two; a smooth
-    excitation is off by up to ten, for there a delay looks like a little more inertia and friction.
+    For each delay from 0 to 0.15 s u is shifted, the rigid arm with friction is fitted anew, and the residuals are
+    compared; u, q and all columns pass the same filter. With steps of the set point the delay is right within a period
+    or two; with a smooth excitation it is off by up to ten, for there a delay looks like a little more inertia and
+    friction.
 
     Args: recording, or t, q, u: of three joints. cutoff_hz, slow: as in `process`.
     Returns: DelayEstimate. Raises: InputError on bad arguments; IdentificationError if too little motion is left.

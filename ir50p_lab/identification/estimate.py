@@ -1,4 +1,4 @@
-"""What a fit found: the 20 parameters per joint, how sure they are, and what the data cannot say."""
+"""What a fit found: the 20 parameters per joint, their errors, and which of them the data do not determine."""
 
 from dataclasses import dataclass, field
 
@@ -18,17 +18,17 @@ class Estimate:
     field          meaning                                                                          shape
     ============== ================================================================================ ==============
     theta          the parameters; 0 where a column was not fitted                                  (3, 20) unit
-    stderr         standard errors; inf: the data cannot carry it; nan: not part of the fit         (3, 20) unit
+    stderr         standard errors; inf: not determined by the data; nan: not part of the fit       (3, 20) unit
     covariance     of each joint's parameters; 0 where not fitted                                   (3, 20, 20)
-    condition      of the joint's columns, each scaled to length 1                                  (3,)
+    condition      condition number of the joint's columns, each scaled to length 1                 (3,)
     residuals      y - Phi theta                                                                    (n, 3) unit
-    sigma          root mean square of the residuals, for the degrees of freedom left               (3,) unit
+    sigma          standard deviation of the residuals: rms, over the degrees of freedom            (3,) unit
     columns        names of the parameters that were fitted, one tuple per joint                    3 tuples
-    unidentifiable what the data cannot carry, as "joint 2: theta8"                                 tuple of str
-    warnings       what to mind about this fit, as sentences                                        tuple of str
+    unidentifiable parameters that the data do not determine, as "joint 2: theta8"                  tuple of str
+    warnings       doubts about this fit, as sentences                                              tuple of str
     unit           of y: "PWM" or "N m"
     method, rows   how it was fitted; rows: "joint" or "shared"
-    steps          how the signals were processed, for `validate`: known to `identify`                 dict
+    steps          options of `process` that `score` repeats; set by `identify`, else empty         dict
     ============== ================================================================================ ==============
     """
 
@@ -56,7 +56,7 @@ class Estimate:
 
     @property
     def summary(self):
-        """What the data say and what they do not, as a tuple of sentences: the warnings last."""
+        """What was found, which parameters may be zero, and the warnings, as a tuple of sentences."""
         sentences = []
         for row, who in _rows(self.rows).items():
             counts = f"{len(self.columns[row])} parameters from {len(self.residuals)} samples"
@@ -77,14 +77,14 @@ class Estimate:
 
 
 def _rows(rows):
-    """Which rows of theta differ, and words for them."""
+    """{row of theta: its name in a sentence}, only the first row if all joints share theta."""
     return {0: "all joints"} if rows == "shared" else {row: f"joint {row + 1}" for row in range(3)}
 
 
 def impossible_values(theta, stderr, rows):
     """Sentences about inertial and friction parameters below zero by more than two standard errors."""
     return [
-        f"{who}: {name} = {x:.3g} +- {error:.2g} is hardly possible: noise, a delay? Or use method='bounded'"
+        f"{who}: {name} = {x:.3g} +- {error:.2g} is hardly possible below 0: noise, a delay? Or use method='bounded'"
         for row, who in _rows(rows).items()
         for name, x, error in zip(NAMES, theta[row], stderr[row], strict=True)
         if name not in FREE_OF_SIGN and x < -2 * error
@@ -101,7 +101,7 @@ def indefinite_mass(theta):
     q2, q3 = (x.ravel() for x in np.meshgrid(angles, angles))
     M = mass_matrix(theta, np.column_stack([0 * q2, q2, q3]))
     wrong = np.any([np.linalg.det(M[:, :k, :k]) <= 0 for k in (1, 2, 3)], axis=0)
-    without_inertia = not M[:, range(3), range(3)].any(axis=0).all()  # of a joint: then there is nothing to say
+    without_inertia = not M[:, range(3), range(3)].any(axis=0).all()  # it was not fitted for some joint: no check
     if without_inertia or not wrong.any():
         return []
     k = int(np.argmax(wrong))

@@ -9,16 +9,16 @@ from scipy.optimize import lsq_linear
 from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification.parameters import FREE_OF_SIGN
 
-_BLIND = 1e-8  # smallest canonical correlation of instruments and columns: if it is less, the estimate is rounding
-_MOST_STEPS = 200  # of reweighting: if more are needed, the robust fit does not settle
-_NORMAL = 0.6744897501960817  # median of |x| of a standard normal
-_THRESHOLD = 1.345  # standard deviations: 95 % as efficient as least squares where there are no outliers
+_BLIND = 1e-8  # if the least canonical correlation of instruments and columns is smaller, the estimate is rounding
+_MOST_STEPS = 200  # if the robust fit needs more steps of reweighting, it does not settle
+_NORMAL = 0.6744897501960817  # median of |x| of a standard normal x: turns a median of residuals into a deviation
+_THRESHOLD = 1.345  # standard deviations from which on a residual pulls less: without outliers 95 % as efficient
 
 
 def ridge(problem, strength):
-    """min |y - A x|^2 + strength |x|^2, columns of A of length 1: biased towards 0, and calmer."""
+    """min |y - A x|^2 + strength |x|^2, columns of A of length 1: biased towards 0, with less scatter."""
     R, one = problem.R, np.eye(len(problem.R))
-    problem.notes.append(f"{problem.who}ridge {strength:g} pulls towards 0; standard errors do not hold that bias")
+    problem.notes.append(f"{problem.who}ridge {strength:g} pulls towards 0; standard errors leave out that bias")
     x = np.linalg.solve(R.T @ R + strength * one, R.T @ problem.Qty)
     return problem.estimate(R @ x, derivative=one + strength * problem.R_inverse.T @ problem.R_inverse)
 
@@ -29,8 +29,8 @@ def huber(problem):
     s: 1.4826 times the median of |residual|, of each joint by itself.
     """
     Q, y, z = problem.Q, problem.y, problem.Qty
-    counts = (Q.any(axis=1) | (y != 0)).reshape(problem.n, -1)  # rows of zeros are samples left out
-    floor = 1e-12 * np.abs(y).max() + 1e-300  # a perfect fit has no scale
+    counts = (Q.any(axis=1) | (y != 0)).reshape(problem.n, -1)  # rows of zeros are samples that are not used
+    floor = 1e-12 * np.abs(y).max() + 1e-300  # a perfect fit leaves no residuals to take a scale from
     for _ in range(_MOST_STEPS):
         e = (y - Q @ z).reshape(counts.shape)
         scale = np.nanmedian(np.where(counts, np.abs(e), np.nan), axis=0) / _NORMAL
@@ -59,7 +59,7 @@ def bounded(problem):
     if at:
         problem.notes.append(f"{problem.who}at a bound: {', '.join(at)}; the data alone would go beyond")
     _, covariance = problem.estimate(problem.R @ result.x * size)
-    return result.x * size / problem.scale, covariance  # a bound exactly
+    return result.x * size / problem.scale, covariance  # not from `estimate`: a parameter at its bound is exactly 0
 
 
 def instrumental_variables(problem, Z):
@@ -68,6 +68,6 @@ def instrumental_variables(problem, Z):
     derivative = Z.T @ problem.Q
     smallest = np.linalg.svd(derivative, compute_uv=False)[-1]
     if smallest < _BLIND:
-        raise IdentificationError(f"{problem.who}the instruments say nothing: take some that follow the same motion")
+        raise IdentificationError(f"{problem.who}the instruments are unlike Phi: take some that follow the same motion")
     z = np.linalg.solve(derivative, Z.T @ problem.y)
     return problem.estimate(z, rows=Z, derivative=derivative)

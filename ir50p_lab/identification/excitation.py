@@ -1,4 +1,4 @@
-"""Motions from which the parameters can be told apart: Fourier series with the condition number made small."""
+"""Motions that tell the parameters apart: Fourier series for which the regressor's condition number is small."""
 
 from dataclasses import dataclass
 
@@ -12,9 +12,9 @@ from ir50p_lab.modelling.chain import lengths
 from ir50p_lab.signals.fourier import Fourier, fourier
 
 _SLOW = 0.1  # rad/s: if a joint is slower, it may stick
-_POINTS = 300  # of a period, at which the regressor is taken
-_FIRST, _LAST = 0.3, 0.01  # rad: size of the first changes, and the least
-_FEWER = 400  # random motions, each a little smaller than the one before, of which one must fit the limits
+_POINTS = 300  # points of a period at which the regressor is computed
+_FIRST, _LAST = 0.3, 0.01  # rad: standard deviation of the first random changes, and of the smallest
+_STARTS = 400  # random motions tried at first, from full size down to 2 %, until one stays inside the limits
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,8 +34,8 @@ class Excitation:
 def regressor_condition(motion):
     """Condition number of the regressor along one period of a Fourier motion, its columns scaled to length 1: (3,).
 
-    One per joint. 1 is best: every parameter is seen apart from the others. 100: of some combination the data say 100
-    times less.
+    One per joint. 1 is best: every parameter acts on the torque in its own way. 100: some combination of parameters
+    acts on it 100 times less than another, and is found with 100 times the error.
     """
     return _judged(motion)[0]
 
@@ -66,22 +66,22 @@ def optimise_excitation(
 ):
     """Fourier motion with a small condition number of the regressor, inside the limits of the arm    (4.2).
 
-    Climbs: changes the coefficients and the mean pose at random, and keeps a change if the motion stays inside the
-    limits and the mean logarithm of the joints' condition numbers (of the columns that act on the joint, each scaled to
-    length 1) becomes smaller. From rest to rest by construction. Of the arm only lengths, limits and no-load speeds are
-    used: what a drawing and a data sheet tell.
+    Random search: the coefficients and the mean pose are changed at random, and a change is kept if the motion stays
+    inside the limits and the mean logarithm of the joints' condition numbers (of the columns that act on the joint,
+    each scaled to length 1) becomes smaller. From rest to rest by construction. Of the arm only lengths, limits and
+    no-load speeds are used: what a drawing and a data sheet tell.
 
     Args:
         arm: Arm with finite joint limits. period: s; harmonics: 2..12; periods: whole number, length of the record.
         max_joint_speed, table, margin: as in `fourier`.
-        standing: price of time spent near standstill, where a joint may stick and no theta says what u does: with 4, a
-            share of 10 % (of 1/(1 + (qd/0.1 rad/s)^2)) counts as much as a condition number half as large again.
+        standing: price of time near standstill, where a joint may stick and the model does not hold. With 4, a tenth of
+            the time there (mean of 1/(1 + (qd/0.1 rad/s)^2)) costs as much as a condition number 1.5 times as large.
         tries: number of changes; more take longer (default: some seconds) and find a little better.
         seed: the same seed gives the same motion. progress: show a bar.
 
     Returns: Excitation. Raises: InputError on bad arguments; IdentificationError if no motion fits the limits.
     """
-    lengths(arm)  # refuses what is no Arm
+    lengths(arm)  # raises for anything but an Arm
     low, high = np.array(arm.q_min), np.array(arm.q_max)
     if not np.isfinite([low, high]).all():
         raise InputError(f"{arm.name} has no joint limits: give q_min and q_max, dataclasses.replace(arm, q_min=...)")
@@ -90,7 +90,7 @@ def optimise_excitation(
     number("standing", standing, ">= 0", hint="the price of time near standstill")
     limits = {"arm": arm, "max_joint_speed": max_joint_speed, "table": table, "margin": margin}
     generator, size = np.random.default_rng(seed), _FIRST
-    decay = np.r_[1.0, np.tile(1 / np.arange(1.0, harmonics + 1), 2)]  # of the mean pose, of a and of b
+    decay = np.r_[1.0, np.tile(1 / np.arange(1.0, harmonics + 1), 2)]  # mean pose, a, b: fast harmonics change less
 
     def motion_of(x):
         """The motion of x (3, 1 + 2 N), rows (q0, a, b), or None if it leaves the limits."""
@@ -107,7 +107,7 @@ def optimise_excitation(
         conditions, still = _judged(motion)
         return np.log(conditions).mean() + standing * still
 
-    for share in np.geomspace(1, 0.02, _FEWER):
+    for share in np.geomspace(1, 0.02, _STARTS):
         x = share * change()
         x[:, 0] = low + (high - low) * generator.uniform(0.3, 0.7, 3)
         if (before := motion_of(x)) is not None:

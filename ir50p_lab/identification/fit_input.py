@@ -25,7 +25,7 @@ def blocks(name, value):
 def finite(name, value):
     """`value` as a float array of any shape, all finite. Raises InputError naming `name` and the first that is not."""
     array = numbers(name, value)
-    # a sum is finite unless a number is not (or huge): much faster than looking at each
+    # the sum first, which is much faster: it is finite unless some number is not, or is huge
     if not np.isfinite(array.sum()) and not np.isfinite(array).all():
         raise InputError(f"{name} holds {first_not_finite(array)}: remove or repair that sample")
     return array

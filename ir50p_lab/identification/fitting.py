@@ -27,7 +27,7 @@ def fit(
     instruments=None,
     unit="PWM",
 ):
-    """Parameters theta of y = Phi theta    (2.35), with standard errors and what the data cannot say.
+    """Parameters theta of y = Phi theta    (2.35), their standard errors, and which of them the data do not determine.
 
     ========== =====================================================================================================
     method     minimises, or solves
@@ -35,7 +35,7 @@ def fit(
     "ls"       sum of squares, by QR
     "weighted" sum of weighted squares: weights (n, 3) or (3,), 1/variance, as 1/sigma^2 of a first fit
     "huber"    squares up to 1.345 standard deviations, absolute value beyond: outliers pull little
-    "ridge"    squares plus strength |theta|^2, on columns scaled to length 1: calmer and biased
+    "ridge"    squares plus strength |theta|^2, on columns scaled to length 1: less scatter, but biased towards 0
     "bounded"  squares with inertial and friction terms >= 0 and offsets free
     "iv"       instruments^T (y - Phi theta) = 0: no bias from noise in Phi; instruments (n, 3, 20), for example the
                regressor of the reference, of a simulation, or of a repeated run
@@ -49,9 +49,9 @@ def fit(
         l2: length of the upper arm, m: ties theta6 = l2 theta4, as for every in-line arm.
         use: (n, 3) bool: samples of a joint that count, as `Motion.use`; default all. unit: "PWM" or "N m".
 
-    Returns: Estimate. Columns that depend on others within the data are left out: 0 with stderr inf, and named. Its
-    standard errors hold for residuals that are correlated in time, too (after a filter they are). They assume that Phi
-    is free of noise; noise in it biases all methods but "iv".
+    Returns: Estimate. A column that is a combination of others in these data is left out, and named: its parameter is
+    0 with stderr inf. Standard errors also hold for residuals that are correlated in time, as they are after a filter.
+    They assume that Phi is free of noise; noise in it biases all methods but "iv".
     Raises: InputError on bad arguments; IdentificationError if there are too few samples, no motion, or an estimator
         cannot settle.
     """
@@ -110,7 +110,7 @@ def fit(
 
 
 def _acting(joints, chosen, l2):
-    """Columns that act on some joints; theta[columns] = ties beta, where l2 makes beta shorter; names of beta."""
+    """(columns that act on some joints, ties, names of beta): theta[columns] = ties beta; l2 takes theta6 out."""
     here = [k for k in chosen if any(k in acting for acting in ACTS_ON[joints])]
     ties, kept = np.eye(len(here)), list(range(len(here)))
     if l2 is not None and _THETA4 in here:
@@ -120,9 +120,9 @@ def _acting(joints, chosen, l2):
 
 
 def _equations(Phi, share, joints, here):
-    """Some columns of Phi (n, 3, 20) for some joints, sample by sample, times `share` (n, 3): (n k, p).
+    """The columns `here` of Phi (n, 3, 20) for k joints, sample by sample, times `share` (n, 3): (n k, p).
 
-    Rows of zeros (samples that do not count) say nothing, and leave the others at their place in time.
+    Samples that are not used become rows of zeros: these tell nothing, and the others keep their place in time.
     """
     return (Phi[:, joints, here] * share[:, joints, None]).reshape(-1, len(here))
 

@@ -1,4 +1,4 @@
-"""Output error: the model whose simulated closed loop is most like the recorded one; it can tell Stribeck friction."""
+"""Output error: the model whose simulated closed loop is most like the recorded one; it finds Stribeck friction too."""
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from ir50p_lab.simulation.loops import sampled_loop
 from ir50p_lab.simulation.plant import DRY, FS, LIMIT, QS, make_plant
 from ir50p_lab.simulation.simulate import sampled
 
-_STEP = 0.02  # of a parameter's scale, for differences: stiction makes the output jump on smaller ones
+_STEP = 0.02  # share of a parameter's scale, step of numerical derivatives: with less, stiction makes the output jump
 _QS = (0.005, 0.5)  # rad/s, bounds of the Stribeck speed
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 _COULOMB = [0, 1, 2], [NAMES.index(name) for name in ("fc1", "fc2", "fc3")]
@@ -48,7 +48,7 @@ class OutputError:
 
 
 class ClosedLoopRun:
-    """A recording with what is needed to repeat it in simulation; arguments as in `output_error`.
+    """A recording, and all that is needed to repeat it in simulation; arguments as in `output_error`.
 
     Attributes: t (m,), q, u (m, 3), the reference r (m, 3, 3), the pose at the start (3,), period, s.
     """
@@ -60,7 +60,7 @@ class ClosedLoopRun:
         if q.shape[1] != 3 or n < 50:
             raise InputError(f"{n} samples of {q.shape[1]} joint(s): give 50 or more of all three joints")
         if np.abs(np.diff(t) - self.period).max() > 0.1 * self.period:
-            raise InputError("the times are uneven or have gaps: a loop is compared without; cut with between(t0, t1)")
+            raise InputError("the times are uneven or have gaps, which no simulated loop has: cut with between(t0, t1)")
         if not is_compiled(controller):
             raise InputError(f"controller is a {type(controller).__name__}: give the PID (or other) of the run")
         if reference is not None:
@@ -97,11 +97,11 @@ def output_error(
 
     Nothing is differentiated, and noise in the angles does no harm: the model is driven by the same controller on the
     same reference from the same start. It may stick, so that breakaway friction fs and the Stribeck speed qs can be
-    found, which no linear theta holds (the thesis' closing complaint). Inertial and friction terms stay >= 0, fs >= fc.
+    found, which no linear theta has (the thesis' closing complaint). Inertial and friction terms stay >= 0, fs >= fc.
 
     Args:
         estimate: Estimate or theta (3, 20) to start from: `identify`. recording; reference: its motion (None: as
-        recorded, differentiated); controller: of the run, a compiled one such as PID. delay: s, whole periods.
+        recorded, differentiated); controller: of the run, a compiled one such as PID. delay: s, to whole periods.
         l2: m, keeps theta6 = l2 theta4. seconds: s that are used. iterations: at most. progress: show a bar.
 
     Returns: OutputError. Raises InputError on bad arguments; IdentificationError if the first model's loop runs away.
@@ -142,7 +142,7 @@ def output_error(
     measured, first = np.hstack([run.q, run.u]), np.hstack(run.simulate(*model_of(x0), step=0.002))
     if not np.isfinite(first).all():
         raise IdentificationError("the loop with the first estimate runs away: fit it with method='bounded' first")
-    # noise, from third differences, which slow motion does not reach, and a tenth of what is missed at first
+    # noise, from third differences (variance 20 sigma^2; slow motion has none), and a tenth of the first misfit
     noise = np.sqrt(np.mean(np.diff(measured, 3, axis=0) ** 2, axis=0) / 20)
     weights = 1 / np.maximum(np.hypot(noise, 0.1 * np.std(measured - first, axis=0)), 1e-6 * measured.std(axis=0))
 

@@ -1,4 +1,4 @@
-"""From a recording (t, q, u) to (q, qd, qdd, u) for a regression: every step is an argument, an ablation is a loop."""
+"""From a recording (t, q, u) to (q, qd, qdd, u) for a regression; every step is an argument, to compare variants."""
 
 import math
 from dataclasses import dataclass
@@ -11,9 +11,9 @@ from ir50p_lab.inputs import choice, number
 from ir50p_lab.signals.low_pass import low_pass
 
 BACKWARD = "zero-phase"
-_ORDER = 4  # of the zero-phase filter; it counts twice
-_SHORTEST = 16  # samples of a run: it needs as many to run backward
-_LATE = 2.0  # a filter of this many time constants (1/(2 pi cutoff)) on either side is cut off by default
+_ORDER = 4  # order of the zero-phase filter; running forward and backward doubles it
+_SHORTEST = 16  # samples: a shorter run without a gap is left out, for the filter cannot run backward over it
+_TRIM = 2.0  # time constants 1/(2 pi cutoff) of the filter: cut off by default at both ends of a run
 
 
 @dataclass(frozen=True)
@@ -44,12 +44,12 @@ class Motion:
 
 
 def causal_derivatives(q, rate_hz, *, cutoff_hz=3.0):
-    """What the thesis does, as a loop can: a first-order low pass, then the backward difference twice.
+    """Derivatives as a running loop can take them (thesis): a first-order low pass, then two backward differences.
 
         q_f[k] = filter of q,    qd[k] = (q_f[k] - q_f[k-1]) rate,    qdd[k] = (qd[k] - qd[k-1]) rate
 
     The angle comes 1/(2 pi cutoff) late (53 ms at 3 Hz), the velocity half a period more, the acceleration a whole
-    one; beside a u that is not late they belong to another instant. The filter starts settled on the first sample.
+    one; a u that is not late belongs to another instant. The filter starts settled on the first sample.
 
     Args: q: (n,) or (n, k) rad, evenly sampled; rate_hz: samples per s; cutoff_hz: Hz, below rate_hz/2.
     Returns: q, qd, qdd like q; the first qd and the first two qdd are 0. Raises InputError as `low_pass` does.
@@ -65,7 +65,7 @@ def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=_ORDER):
         qd[k] = (q[k+1] - q[k-1]) rate/2,    qdd[k] = (q[k+1] - 2 q[k] + q[k-1]) rate^2
 
     Args: q: (n,) or (n, k) rad, evenly sampled; rate_hz: samples per s; cutoff_hz: Hz, below rate_hz/2, or None for
-    no filter; order: 1..8 (it counts twice). Returns: q, qd, qdd like q; at the two ends the neighbour's derivatives.
+    no filter; order: 1..8 (twice applied). Returns: q, qd, qdd like q; at the two ends the neighbour's derivatives.
     Raises InputError as `low_pass` does.
     """
     q = np.array(q, dtype=float) if cutoff_hz is None else low_pass(q, cutoff_hz, rate_hz, order=order, kind=BACKWARD)
@@ -121,7 +121,7 @@ def process(
     number("slow", slow, ">= 0", unit="rad/s")
     derive = causal_derivatives if causal else central_derivatives
     if trim is None and (causal or cutoff_hz is not None):
-        trim = _LATE / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
+        trim = _TRIM / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
     trim = number("trim", trim or 0.0, ">= 0", unit="s")
     acts = acting_times(t, delay, choice("held", held, (True, False)) and not causal)
     pieces = []
@@ -134,7 +134,7 @@ def process(
         even_u = derive(even_u, 1 / period, cutoff_hz=cutoff_hz)[0] if filter_u else even_u
         piece = [grid, *derive(even_q, 1 / period, cutoff_hz=cutoff_hz), even_u]
         keep = (grid >= grid[0] + max(trim, delay) - 1e-9) & (grid <= grid[-1] - trim + 1e-9)
-        keep[[0, -1]] = False  # their derivatives are the neighbours'
+        keep[[0, -1]] = False  # their derivatives were copied from the neighbours
         pieces.append([x[keep] for x in piece] + [np.full(keep.sum(), k)])
     if sum(len(piece[0]) for piece in pieces) < 2:
         raise IdentificationError(f"nothing is left: no run of {shortest} samples; record longer, or raise cutoff_hz")
@@ -143,9 +143,7 @@ def process(
 
 
 def acting_times(t, delay, held):
-    """When each u acts, (n,) s: `delay` after its sample, and where it is held, in the middle of the time until the
-    next.
-    """
+    """When each u acts, (n,) s: `delay` after its sample; if held, later by half of the time until the next sample."""
     return t + delay + 0.5 * held * np.diff(t, append=t[-1] + sampling_period(t))
 
 

@@ -1,4 +1,4 @@
-"""From recordings to a model in one function: process, fit with physical bounds, say how sure."""
+"""From recordings to a model in one function: process, fit with physical bounds, give the errors."""
 
 from dataclasses import replace
 
@@ -11,10 +11,8 @@ from ir50p_lab.identification.columns import columns_of
 from ir50p_lab.identification.fitting import fit
 from ir50p_lab.identification.processing import process
 
-# The cut-off is low because this arm moves below 1 Hz and one count of its potentiometers is 5 to 8 mrad; a joint turns
-# over within +-0.05 rad/s, where sgn(qd) would jump at the wrong moment.
-CUTOFF_HZ = 1.2
-TURN = 0.05  # rad/s
+CUTOFF_HZ = 1.2  # of the low pass: this arm moves below 1 Hz, and one count of its potentiometers is 5 to 8 mrad
+TURN = 0.05  # rad/s: tanh(qd/TURN) stands for sgn(qd), which noise would let jump too early or late at a reversal
 
 
 def identify(
@@ -44,14 +42,14 @@ def identify(
         recordings: a Recording (t, q, u), or a list of them: other motions, or another load of work for the same arm.
         l2: upper arm, m, or None. delay: s from a sample to the moment its u acts. slow: rad/s.
         method: "bounded", or another of `fit` that needs neither weights nor instruments.
-        cutoff_hz: Hz, above what the joints move at; held: as in `process`; unit: of u.
+        cutoff_hz: Hz, above the frequencies of the motion; held: as in `process`; unit: of u.
         anyway: go on where the data are refused.
 
     Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by some per
-    cent, at this length of record more than the standard errors, which do not know it. Where the parameters themselves
-    or Stribeck friction matter, go on with `output_error`.
+    cent. In a record of this length that is more than the standard errors, which leave it out. Where the parameters
+    themselves or Stribeck friction matter, go on with `output_error`.
 
-    Returns: Estimate, whose `score` processes other recordings alike.
+    Returns: Estimate, whose `score` processes other recordings in the same way.
     Raises: InputError, IdentificationError as `process` and `fit` do, and if a joint is constant, its angle wrapped or
     clipped. Angles that look like degrees, and a u that is often at its limit, are in `warnings`.
     """

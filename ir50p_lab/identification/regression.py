@@ -1,4 +1,4 @@
-"""Least squares for any regressor matrix, with standard errors that stay honest when residuals are alike (HAC)."""
+"""Least squares for any regressor matrix, with standard errors that hold for correlated residuals (HAC)."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.fit_input import finite
 from ir50p_lab.inputs import numbers
 
-DEPENDENT = 1e-8  # a column of which less than this sticks out of the others carries nothing but rounding
+DEPENDENT = 1e-8  # share of a column's length: if less of it is no combination of the others, that is rounding
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -19,13 +19,13 @@ class LeastSquares:
 
     ============== ================================================================================ ==========
     x              parameters; 0 where a column was left out                                        (p,)
-    stderr         standard errors; inf: the data cannot carry it                                   (p,)
+    stderr         standard errors; inf: not determined by the data                                 (p,)
     covariance     of x; 0 where a column was left out                                              (p, p)
     residuals      y - A x, of the samples used                                                     like y
     rms            of the residuals
     correlation    of neighbouring residuals: 0 for white noise
-    independent    number of independent samples that carry as much as the n there are
-    dropped        names of the columns that the data cannot carry                                  tuple
+    independent    number of independent samples that would tell as much as the n correlated ones
+    dropped        names of the columns left out                                                    tuple
     warnings       tuple of str: columns left out, and what the others now stand for
     ============== ================================================================================ ==========
     """
@@ -49,10 +49,10 @@ def least_squares(A, y, *, names=None, tolerance=DEPENDENT):
     Args:
         A: (n, p), or (n, k, p) for k equations a sample; y: (n,) or (n, k). Time first. Masked samples are left out.
         names: of the p columns.
-        tolerance: a column of which less than this sticks out of those before it is left out.
+        tolerance: share of its length; a column that is a combination of those before it but for less is left out.
 
-    Returns: LeastSquares. Its errors hold for residuals that are alike over time and of unequal size
-    (heteroscedasticity and autocorrelation consistent, `long_run_sum`). Noise in A is not in them: it biases.
+    Returns: LeastSquares. Its errors hold for residuals that are correlated in time and of unequal size
+    (heteroscedasticity and autocorrelation consistent, `long_run_sum`). They leave out noise in A, which biases x.
     Raises: InputError on shapes and numbers that are not finite; IdentificationError if A is zero, or has fewer than
     twice as many rows as columns.
     """
@@ -87,7 +87,7 @@ def least_squares(A, y, *, names=None, tolerance=DEPENDENT):
 
 
 class Problem:
-    """Equations y = A x + noise made ready: columns of length 1, those left out that depend on others, A = Q R.
+    """Equations y = A x + noise made ready: columns scaled to length 1, dependent ones left out, A = Q R.
 
     Args: A (N, p), y (N,), names of the columns; n: number of samples, N/n equations each, time first; who: for
     sentences, "joint 2: " or "". Raises IdentificationError for too few equations, and if A is zero.
@@ -127,8 +127,8 @@ class Problem:
     def estimate(self, z, *, rows=None, residuals=None, derivative=None):
         """Parameters of the columns kept, (k,), and their covariance (k, k), for z = R x with columns of length 1.
 
-        The estimate is that which solves rows^T residuals = 0, a sum over time with this derivative by z. Default:
-        least squares, Q^T (y - Q z) = 0.
+        The estimate solves rows^T residuals = 0; `derivative` (k, k) is that of this sum by z. Default: least squares,
+        Q^T (y - Q z) = 0.
         """
         rows = self.Q if rows is None else rows
         residuals = self.y - self.Q @ z if residuals is None else residuals
@@ -136,7 +136,7 @@ class Problem:
         scores = (rows * residuals[:, None]).reshape(self.n, -1, k).sum(axis=1)
         residuals = residuals.reshape(self.n, -1)
         spread = long_run_sum(scores, residuals)
-        spread /= max(1 - k / (independent_samples(residuals) * N / self.n), 0.5)  # k of them were spent on the fit
+        spread /= max(1 - k / (independent_samples(residuals) * N / self.n), 0.5)  # the fit uses k degrees of freedom
         if derivative is not None:
             spread = np.linalg.solve(derivative, np.linalg.solve(derivative, spread).T)
         back = self.R_inverse / self.scale[:, None]
@@ -144,10 +144,10 @@ class Problem:
 
 
 def independent_columns(R, tolerance=DEPENDENT):
-    """Columns of R, of length 1 or zero, that are no combination of those before them; and how the others are.
+    """Columns of R, of length 1 or 0, that are no combination of those before them; and weights that give the others.
 
-    A column is one if less than `tolerance` of it sticks out of the space of the others. Returns: indices of the k
-    columns kept; weights (k, p): R = R[:, kept] @ weights.
+    A column is a combination if its distance from the space of the others is at most `tolerance`. Returns: indices of
+    the k columns kept; weights (k, p): R = R[:, kept] @ weights.
     """
     kept = list(range(R.shape[1]))
     while (own := np.abs(np.diag(np.linalg.qr(R[:, kept], mode="r")))).min() <= tolerance:
@@ -157,21 +157,21 @@ def independent_columns(R, tolerance=DEPENDENT):
 
 
 def long_run_sum(scores, residuals):
-    """Covariance (p, p) of the sum over time of correlated `scores` (n, p), which go with `residuals` (n, k).
+    """Covariance (p, p) of the sum over time of correlated `scores` (n, p), columns of A times `residuals` (n, k).
 
     Mean of the first B squared cosine coefficients ('equal-weighted cosine', Lazarus, Lewis, Stock and Watson 2018):
-    what matters for an estimate is the noise at the frequencies next to zero. B = 0.4 n^(2/3), but no more than where
-    the residuals' spectrum is still flat, taken as half of the band that holds half of their power (a quarter of the
-    cut-off for noise that was low-passed). Few coefficients make the errors themselves uncertain: they are widened as
-    Student's t with B degrees of freedom asks.
+    the error of an estimate comes from noise at the frequencies next to zero. B = 0.4 n^(2/3), but so few that the
+    spectrum of the residuals is flat among them: no more than half of those that hold half of their power (a quarter of
+    the cut-off for noise that was low-passed). Few coefficients make the errors themselves uncertain: they are widened
+    by Student's t with B degrees of freedom.
     """
     B = int(np.clip(independent_samples(residuals) // 4, 4, max(4, 0.4 * len(scores) ** (2 / 3))))
     coefficients = fft.dct(scores, axis=0)[1 : B + 1]
-    wider = special.stdtrit(B, 0.99865) / 3.0  # three standard errors then hold the truth 997 times in 1000
+    wider = special.stdtrit(B, 0.99865) / 3.0  # three standard errors then enclose the truth 997 times in 1000
     return wider**2 * coefficients.T @ coefficients / (2 * B)
 
 
 def independent_samples(residuals):
-    """Independent samples in residuals (n, k): twice the cosine coefficients that hold half of their power."""
+    """Independent samples in residuals (n, k): twice the number of cosine coefficients with half of their power."""
     power = np.cumsum(np.sum(fft.dct(residuals, axis=0) ** 2, axis=1))
     return max(2 * np.searchsorted(power, power[-1] / 2), 1)

@@ -1,4 +1,4 @@
-"""A first-order model with dead time from a plant's recorded answer to steps    (2.21)."""
+"""A first-order model with dead time from the recorded response of a plant to steps    (2.21)."""
 
 import math
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ from ir50p_lab.inputs import number
 from ir50p_lab.simulation.first_order_lag import respond
 
 _FEWEST = 8  # samples from the first change of u on: if there are fewer, four parameters cannot be judged
-_ROUNDING = 1e-7  # residual, of the range of y: if it is less, it is rounding and no noise
-_FOLLOWS = 15.0  # F value of the model: if it is less, y does not follow u (a search in pure noise stays below it)
-_SIGNIFICANT = 9.0  # F value of one more parameter: if it is more, the parameter is there (three standard errors)
-_MISSED = 0.05  # share of the variance of y: if more is left, and alike over time, the response has another shape
-_MEANINGFUL = 0.8  # share of the variance of y: if a response of another shape is explained less, K, T, L mean nothing
-_SLOWEST = 10.0  # records: if T is longer, it cannot be told from infinity
-_SEEN = 0.99  # sampling periods: if T or L is shorter, the record does not hold it
-_REFINED = 5  # rows of the grid whose best points are refined: the sum of squares has kinks and side valleys in L
+_ROUNDING = 1e-7  # share of the range of y: if the residual is less, it is rounding, not noise
+_FOLLOWS = 15.0  # F value of the model: if it is less, y does not follow u (fits to pure noise stay below it)
+_SIGNIFICANT = 9.0  # F value of one more parameter: from here on it is significant (three standard errors)
+_MISSED = 0.05  # share of the variance of y: if more is left that is not white noise, the response has another shape
+_MEANINGFUL = 0.8  # share of the variance of y: if the model explains less of another shape, K, T, L mean nothing
+_SLOWEST = 10.0  # T over the length of the record: if it is more, T cannot be told from infinity
+_SEEN = 0.99  # sampling periods: if T or L is shorter, the record does not show it
+_REFINED = 5  # values of 1/T, each with its best L, that the search starts from: in L there are kinks and many minima
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +34,7 @@ class FOPDT:
     y0                         output at rest, before u changes                     y
     rms                        residual, root mean square                           y
     correlation                of neighbouring residuals: 0 for white noise, -1..1
-    warnings                   tuple of str: what to mind about this fit
+    warnings                   tuple of str: doubts about this fit
     ========================== ==================================================== ==========
 
     By hand, FOPDT(K=, T=, L=) is enough. Raises InputError if K is 0 or T is not > 0 or L is not >= 0.
@@ -74,21 +74,21 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     any number of steps, sampled evenly or not; y starts at rest. After one step of height h this is
     y = y0 + K h (1 - exp(-(t - t_step - L)/T)). Least squares over all samples, from the best points of a grid.
 
-    Standard errors come from the Jacobian and the residuals. Neighbouring residuals that are alike (correlation r)
+    Standard errors come from the Jacobian and the residuals. Neighbouring residuals that are correlated (r > 0)
     carry less information than their number: then the errors are widened by sqrt((1 + r)/(1 - r)). They are also
-    widened by what K, T and L move where y drifts in a line or was on its way to rest at first, by the jitter of an
-    uneven clock and by half a step of a coarse y. In white noise two standard errors hold the truth 95 times in 100. Of
-    other errors of the model they know nothing.
+    widened by how far K, T and L move if a linear drift of y, or a y that was not yet at rest, is fitted as well, by
+    the jitter of an uneven clock and by half a step of a coarse y. In white noise two standard errors enclose the
+    truth 95 times in 100. Other errors of the model are not in them.
 
     Args:
         t: (n,) s, increasing. u: (n,), input; u[k] acts from t[k] to t[k + 1]. y: (n,), output, any unit.
         u_before: input at rest before t[0]; give it if u has its new value already in the first sample.
         anyway: go on where the data are refused and a model can be had; the reason is then in `warnings`.
 
-    Returns: FOPDT. K is negative where y answers a step up by going down. `warnings` tells of a response that is not
-    over when the record ends (T longer than it), of T or L below the sampling period (its error is then inf or a
-    period), of correlated residuals, drift, another shape, times that look like milliseconds, and single outliers of u
-    and y (of y they are left out).
+    Returns: FOPDT. K is negative where y goes down after a step up. `warnings` tells of a response that is not over
+    when the record ends (T is longer), of T or L below the sampling period (its error is then inf or a period), of
+    correlated residuals, drift, another shape, times that look like milliseconds, and single outliers of u and y (those
+    of y are left out).
 
     Raises:
         IdentificationError: u never changes; y does not change or does not follow u; fewer than 8 samples after the
@@ -119,7 +119,7 @@ class _StepRecord:
     """A checked record, scaled: u first changes at 0, the record ends at 1, y has range 1, the largest jump of u is 1.
 
     t, y (n,); times, jumps (m,) of u; period of the samples; quantum: smallest step of y. seconds, y_range, u_range:
-    what 1 stands for. warned: doubts about the record.
+    the units in which t, y and u are scaled. warned: the Warnings so far.
     """
 
     def __init__(self, t, u, y, u_before, warned):
@@ -177,9 +177,10 @@ class _StepRecord:
         return *p, *solved(p)
 
     def standard_errors(self, found, e):
-        """Of K, T, L = found (3,), from differences of the response and the residuals e (n,).
+        """Standard errors (3,) of K, T, L = found (3,), from numerical derivatives and the residuals e (n,).
 
-        A drift, or a start that was no rest, is fitted too: what it moves counts by its F value over a significant one.
+        A linear drift and a decaying start are fitted as well. How far they move K, T and L is added: in full if they
+        are significant, else in proportion to their F value.
         """
 
         def response(p):
@@ -195,10 +196,11 @@ class _StepRecord:
         sure = min((e @ e - left @ left) / (_SIGNIFICANT * spread), 1.0)
         if sure == 1:
             self.warned.add("y drifts, or was not at rest at first: errors were widened; record longer rest before")
-        length = np.maximum(np.linalg.norm(J, axis=0), 1e-300)  # 0 for a T that is over between two samples
+        length = np.maximum(np.linalg.norm(J, axis=0), 1e-300)  # 0 in T for a response over between two samples
         spread = math.sqrt(e @ e / (len(e) - 4)) * _correlation(e)[1]
         errors = spread * np.linalg.norm(np.linalg.pinv(J / length), axis=1) / length
-        coarse = self.quantum / 2 if e @ e < len(e) * (self.quantum / 2) ** 2 else 0.0  # no noise mixes the steps
+        # a coarse y with less noise than half its step is always rounded the same way: no averaging
+        coarse = self.quantum / 2 if e @ e < len(e) * (self.quantum / 2) ** 2 else 0.0
         late = coarse * found[1] + np.median(np.abs(np.diff(self.t) - self.period))
         return np.hypot(np.hypot(errors[:3], sure * x[:3]), [coarse, late, late])
 
@@ -211,7 +213,7 @@ def _jumps_of(t, u, u_before):
 
 
 def _correlation(e):
-    """Correlation of neighbouring residuals e (n,), and the factor by which errors are wider for it."""
+    """Correlation of neighbouring residuals e (n,), and the factor by which it widens standard errors."""
     if e @ e <= len(e) * _ROUNDING**2:
         return 0.0, 1.0
     correlation = float(e[1:] @ e[:-1] / (e @ e))
@@ -220,18 +222,18 @@ def _correlation(e):
 
 
 def _check_shape(record, rate, L, slope, e):
-    """Refuse where y does not follow u at all, in a way that no FOPDT model has, or without end."""
+    """Refuse, or warn, where y does not follow u, has another shape than the model, or rises without end."""
     warned, n, rss, total = record.warned, len(e), e @ e, np.sum((record.y - record.y.mean()) ** 2)
     correlation, wider = _correlation(e)
     F = (total - rss) / 3 / (max(rss, n * _ROUNDING**2) / (n - 4))
     explained = 1 - rss / total
-    not_white = rss - np.sum(np.diff(e, 2) ** 2) / 6 * n / (n - 2)  # second differences pass only the white noise
+    not_white = rss - np.sum(np.diff(e, 2) ** 2) / 6 * n / (n - 2)  # sum: 6 rss for white noise, 0 for slow e
     if F < _FOLLOWS or (F / wider**2 < _FOLLOWS and explained < 0.5):
         warned.refuse(f"y does not follow u ({explained:.1%} explained): make a larger step, or average recordings")
     elif not_white > _MISSED * total and correlation > 0.5:
         said = f"the response has not the shape of the model ({explained:.0%} explained)"
         doubt = warned.refuse if explained < _MEANINGFUL else warned.add
-        doubt(f"{said}: drift, a limit, a swing? To a swing fit control.forced_response by scipy's least_squares")
+        doubt(f"{said}: drift, a limit, a swing? Fit a swing by scipy's least_squares with control.forced_response")
     if rate * (1 - L) < 1 / _SLOWEST:
         value = f"only K/T has a value, {slope * record.y_range / record.u_range / record.seconds:.4g} y/u per s"
         said = "the response runs on like a ramp, or faster: the plant integrates (as angles do), is unstable or slow"
@@ -239,7 +241,7 @@ def _check_shape(record, rate, L, slope, e):
 
 
 def _check_parameters(record, T, L, errors, e):
-    """Warn of what the record does not hold; errors (3,) of T and L below a period are then inf, or a period."""
+    """Warn of T or L that the record does not show; below a period, their errors (3,) become inf, or a period."""
     warned, period, seconds = record.warned, record.period, record.seconds
     if T < _SEEN * period:
         warned.add(f"the time constant is not identifiable, {T / period:.2f} of the sampling period: sample faster")

@@ -1,7 +1,7 @@
-"""Recursive least squares with forgetting    (2.36)-(2.46) corrected, kept as information: it cannot run away.
+"""Recursive least squares with forgetting    (2.36)-(2.46) corrected, by P^-1 in place of P: it cannot diverge.
 
-With P^-1 = forgetting P^-1 + phi phi^T (2.36) and b = forgetting b + phi y, theta = P b: what (2.40)-(2.46) say,
-without the subtraction in (2.45), which loses digits: P then is no longer symmetric, and the estimate can run away.
+P^-1 = forgetting P^-1 + phi phi^T (2.36) and b = forgetting b + phi y give theta = P b, the same as (2.40)-(2.46). The
+subtraction in (2.45) loses digits: P is then no longer symmetric, and the estimate can diverge.
 """
 
 import numpy as np

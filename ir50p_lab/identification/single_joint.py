@@ -18,28 +18,38 @@ TERMS = ("inertia", "viscous", "coulomb", "offset", "gravity")
 _COLUMNS = ("offset", "gravity_sin", "gravity_cos", "viscous", "coulomb", "inertia")
 _PHYSICAL = ("inertia", "viscous", "coulomb")
 _SAID = {"viscous": "viscous friction", "coulomb": "Coulomb friction"}
-_OWN_SHARE = 1e-3  # share of a column's length: if less of it sticks out of the columns before, it is left out
-_MOTION = 0.99  # share of the power of the speed: the frequency below which this much lies is that of the motion
-_ABOVE = 5.0  # times the frequency of the motion: the cut-off, if noise allows; higher, flexibility makes itself felt
-_NOISE = 1e-3  # power of noise over power of the acceleration: if it exceeds this, the cut-off comes down
-_HIGHEST = 0.2  # cut-off over sampling rate: if higher, differences of samples are no derivatives any more
-_SAW = 0.06  # of quantum^2: if a spectral line has less power than this, it may be the steps of a coarse angle
-_THIN = 4.0  # samples per period of the cut-off: if more were kept, they would say the same again
-_EDGE = 1.5  # periods of the cut-off left out at both ends of a run: if fewer, what the filter made up is fitted
-_SLOW = 0.1  # of the rms speed: default of slow=
-_DROWNED = 3.0  # rms speed over that of its noise: if less, the data are refused
-_UNSURE = 0.5  # sampling periods: how much earlier or later than assumed u may act, if the data do not tell
-_TOLD = 0.75  # sampling periods: if the data tell that u is later or earlier by more, a warning says so
-_LATE = (0.9, 5.0), (0.99, 8.0)  # ... if this share of the residual is left beside a delay of so many standard errors
-_EXACT = 2e-3  # of a parameter: its standard error is never less, for differences and interpolation are no better
-_EXPLAINED = 0.02  # share of the variance of u: if the model explains less, u has nothing to do with the motion
-_F = 8.0  # F value of the model: if less, chance may have made the fit
-_POOR = 0.5  # residual over spread of u: if more, standard errors hold for a model that does not
-_MISSING = 0.1, 0.9  # residual over spread of u and its correlation: if both are more, a warning says so
-_DEPENDS = 0.1, 2.0  # share of a parameter, standard errors: if half the cut-off moves it by more, a warning says so
-_BENT = 0.3, 2.5  # share of viscous friction, standard errors: if a bend moves it by more, a warning says so
-_GRAVITY = 0.5, 0.01  # share of the power of the rest, residual over spread of u: if sin q, cos q take more, likewise
-_WIDENS = {  # a fit with one thing more that may be there: the parameters whose errors it widens
+_OWN_SHARE = 1e-3  # share of a column's length: if all but this is a combination of other columns, it is left out
+
+# How the low pass is chosen, and which samples are used
+_MOTION = 0.99  # share of the power of the speed: the frequency of the motion is that below which so much of it lies
+_ABOVE = 5.0  # cut-off over the frequency of the motion, if noise allows it; a higher one shows a joint's flexibility
+_NOISE = 1e-3  # power of noise over power of the acceleration: the cut-off is lowered until it is no more than this
+_HIGHEST = 0.2  # largest cut-off over the sampling rate: beyond it, differences of samples are poor derivatives
+# Power of a spectral line over quantum^2: if it is less, the steps of a coarse angle may have made the line. The
+# strongest line of a saw-tooth as high as one quantum has 1/(2 pi^2) = 0.051.
+_SAW = 0.06
+_THIN = 4.0  # samples kept per period of the cut-off: more would only repeat them
+_EDGE = 1.5  # periods of the cut-off left out at both ends of a run, where the filter has data on one side only
+_SLOW = 0.1  # share of the rms speed: slower samples are left out unless slow= says otherwise
+_DROWNED = 3.0  # rms speed over that of its noise: if it is less, the data are refused
+
+# How far the errors are widened
+_UNSURE = 0.5  # sampling periods: standard deviation of the delay of u beyond delay=, before the data say more
+_EXACT = 2e-3  # share of a parameter: its standard error is no less, for derivatives and interpolation are no better
+
+# When the fit is refused (_EXPLAINED, _F), or a warning is given
+_EXPLAINED = 0.02  # share of the variance of u: if the model explains less, u does not belong to this motion
+_F = 8.0  # F value of the model: if it is less, the fit may be chance
+_POOR = 0.5  # residual over spread of u: if it is more, the model does not hold, nor do its standard errors
+_MISSING = 0.1, 0.9  # residual over spread of u, its correlation: if both are more, the model lacks something
+_DEPENDS = 0.1, 2.0  # share of a parameter, standard errors: if half the cut-off moves it by more than both
+_BENT = 0.3, 2.5  # share by which a term v |v| moves viscous friction, standard errors of that term: if both are more
+_GRAVITY = 0.5, 0.01  # share of the residual that sin q, cos q explain, residual over spread of u: if both are more
+# A delay of u is believed if it is more than so many standard errors from 0, and the fit with it leaves less than this
+# share of the residual: (share, standard errors), either pair. A warning is given if it is longer than so many periods.
+_LATE = (0.9, 5.0), (0.99, 8.0)
+_TOLD = 0.75
+_WIDENS = {  # fit with one effect more that may be there: the parameters whose errors it widens
     "late": _PHYSICAL,
     "spring": ("inertia",),
     "bent": ("viscous", "coulomb"),
@@ -52,8 +62,8 @@ _WIDENS = {  # a fit with one thing more that may be there: the parameters whose
 class JointFit:
     """u = inertia qdd + viscous qd + coulomb sgn(qd) + offset [+ gravity_sin sin q + gravity_cos cos q].
 
-    u in its own unit (N m, A, PWM counts...). Each parameter has a standard error ..._stderr, inf where the data do not
-    hold it (the value is then 0), nan where it was not asked for. rms: of the residual, unit of u; fit:
+    u in its own unit (N m, A, PWM counts...). Each parameter has a standard error ..._stderr: inf if the data do not
+    determine it (the value is then 0), nan if it was not asked for. rms: of the residual, unit of u; fit:
     100 (1 - |u - u_model|/|u - mean u|) %; cutoff_hz: of the low pass on q and u, inf for none; held: whether u was
     taken as held from its sample to the next; samples: used in the regression; warnings: tuple of str.
     """
@@ -86,15 +96,16 @@ def fit_joint(
         u = inertia qdd + viscous qd + coulomb sgn(qd) + offset
 
     q, u and sgn(qd) pass the same zero-phase low pass: the equation stays true, only noise is lost. Its cut-off is five
-    times the frequency of the motion, lower if noise of q asks for it: higher, flexibility and backlash make a rigid
-    model wrong. Samples of a joint that stands are left out (there u may be anything up to the breakaway friction).
-    Standard errors hold for residuals that are alike over time, and are widened by what other fits of the same data
-    say: half the cut-off, twice the least speed, u earlier or later by half a period, a flexible joint, friction that
-    bends, a force of the position, a dead zone of the amplifier.
+    times the frequency of the motion, or lower where q is noisy; above it flexibility and backlash make a rigid model
+    wrong. Samples of a joint at rest are left out (there u may be anything up to the breakaway friction). Standard
+    errors hold for residuals that are correlated in time. They are widened by how far other fits of the same data move
+    a parameter: with half the cut-off, twice the least speed, a u that acts half a period earlier or later, a flexible
+    joint, friction that is not linear in the speed, a force that depends on q, a dead zone of the amplifier.
 
     Args:
         t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings or
-            of tuples (t, q, u) or (t, q, u, qd): each is fitted and compared with the others, then all are together.
+            of tuples (t, q, u) or (t, q, u, qd): each is fitted and compared with the others, then all are fitted
+            together.
         q: (n,) rad. u: (n,), torque, current or command, any unit. Arrays, masked arrays, pandas Series.
         qd: (n,) rad/s, if it was measured too: then q is not differentiated.
         terms: of "inertia", "viscous", "coulomb", "offset", "gravity".
@@ -107,9 +118,9 @@ def fit_joint(
 
     Returns: JointFit.
     Raises: InputError for NaN, times that do not increase, shapes that do not fit. IdentificationError, saying what to
-    do next, if the record is too short or constant, the motion drowns in noise or has nothing to do with u, q or u were
-    clipped or surely hung, angles jump by whole turns, or all friction is negative. Other flaws are in `warnings`, each
-    with a number: what is without a warning is right within three standard errors.
+    do next, if the record is too short or constant, the motion is lost in noise or has nothing to do with u, q or u
+    were clipped or surely hung, angles jump by whole turns, or all friction is negative. Other flaws are in `warnings`,
+    each with a number: a result without a warning is right within three standard errors.
     """
     terms = (terms,) if isinstance(terms, str) else tuple(terms)
     if not terms or not set(terms) <= set(TERMS):
@@ -126,7 +137,7 @@ def fit_joint(
     if len(recordings) > 1:
         options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "held": held, "slow": slow, "anyway": anyway}
         checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), _PHYSICAL)
-    unit = float(np.std(np.concatenate([run.u for run in runs])))  # for columns of a size, whatever u counts in
+    unit = float(np.std(np.concatenate([run.u for run in runs])))  # makes u about 1, in any unit
     for run in runs:
         run.u = run.u / unit
     band = _band(runs)
@@ -139,7 +150,7 @@ def fit_joint(
     slow = _SLOW * band.speed if slow is None else number("slow", slow, ">= 0", unit="rad/s")
     pair = _fits(runs, names, cutoff_hz, band.clean_hz, slow)
     if not pair:
-        raise IdentificationError(f"not {checks.FEWEST // 2} independent samples are in motion: record more of it")
+        raise IdentificationError(f"fewer than {checks.FEWEST // 2} independent samples are in motion: record more")
     measured = pair[1].left.rms < pair[0].left.rms if held is None else not choice("held", held, (True, False))
     found = pair[measured]
     lower = (_fits(runs, names, cutoff_hz / 2, band.clean_hz, slow) or pair)[measured]
@@ -165,7 +176,7 @@ def fit_joint(
 
 
 def _recordings(t, q, u, qd):
-    """What `fit_joint` was given as a list of tuples (t, q, u, qd) or shorter."""
+    """The arguments of `fit_joint` as a list of tuples (t, q, u, qd) or shorter."""
     if isinstance(t, (list, tuple)) and len(t) and q is None and u is None:
         if qd is not None:
             raise InputError("qd= beside several recordings: give each as (t, q, u, qd)")
@@ -193,11 +204,11 @@ def _runs(warned, recording, delay):
 
 
 def _band(runs):
-    """What the spectrum of the angle (of qd, if measured) of the longest run holds: motion below, noise above.
+    """Tell motion from noise in the spectrum of the angle (of qd, if measured) of the longest run.
 
-    White noise is what it holds between a quarter and half of the rate; what nowhere rises above the highest line there
-    (steps of a coarse angle make such lines) is no motion. Returns a namespace: motion_hz; clean_hz, up to which noise
-    of the acceleration does no harm; speed, speed_noise: rms rad/s.
+    Noise is taken as white, as strong as it is between a quarter and half of the sampling rate. A line no higher than
+    the highest one there is not motion: the steps of a coarse angle make such lines. Returns a namespace: motion_hz;
+    clean_hz, the highest cut-off at which noise of the acceleration does no harm; speed, speed_noise: rms rad/s.
     """
     from scipy.signal import welch
 
@@ -226,7 +237,7 @@ def _smooth(x, cutoff_hz, rate):
 
 
 def _derivatives(run, cutoff_hz):
-    """qd, qdd (n,) behind the low pass, from five points: at 20 samples a period three are 1 % wrong."""
+    """qd, qdd (n,) after the low pass, from five points: three would err by 1 % at 20 samples a period."""
     x = _smooth(run.angles[:, -1], cutoff_hz, run.rate)
     x = np.pad(x, 2, mode="reflect", reflect_type="odd")
     first = np.convolve(x, (-1, 8, 0, -8, 1), "valid") * run.rate / 12
@@ -236,11 +247,12 @@ def _derivatives(run, cutoff_hz):
 
 
 def _table(runs, cutoff_hz, sign_hz, slow):
-    """What goes into the regression, all behind one low pass, of samples that move faster than slow (rad/s).
+    """The signals of the regression, all after one low pass, at samples faster than slow (rad/s), as a namespace.
 
     columns (m, 6), in the order of _COLUMNS; u, slopes (m, 2): u held and measured, and its rate of change; limits
-    (m, 2): share of a sample's surroundings in which u has its smallest, its largest value; q, v, snap (m,): angle,
-    speed, d2(qdd)/dt2. The sign of the speed is that behind sign_hz: a smoother speed turns too early or late.
+    (m, 2): low-passed, 1 where u is at its smallest, at its largest value, else 0; q, v (m,): angle, speed; snap (m,):
+    d2(qdd)/dt2, which a flexible joint adds. The sign of the speed is taken after a low pass at sign_hz: a smoother
+    speed changes its sign too early or too late.
     """
     every = np.concatenate([run.u[:, 0] for run in runs])
     low, high = every.min() + 1e-3 * np.ptp(every), every.max() - 1e-3 * np.ptp(every)
@@ -267,8 +279,8 @@ def _table(runs, cutoff_hz, sign_hz, slow):
 def _fits(runs, names, cutoff_hz, sign_hz, slow):
     """Fits of u held and of u measured, as namespaces; [] if too few samples move.
 
-    What `_table` tells, and y, slope (m,): u and its rate of change; A (m, p): the columns `names`; left: LeastSquares;
-    misfit: residual over spread of u.
+    Each has the fields of `_table`, and y, slope (m,): u and its rate of change; A (m, p): the columns `names`; left:
+    LeastSquares; misfit: residual over spread of u.
     """
     table = _table(runs, cutoff_hz, sign_hz, slow)
     if len(table.q) < checks.FEWEST // 2:
@@ -283,9 +295,9 @@ def _fits(runs, names, cutoff_hz, sign_hz, slow):
 
 
 def _others(found, lower):
-    """{name: LeastSquares} of fits with one thing more that may be there, the last column.
+    """{name: LeastSquares} of fits with one effect more that may be there, as last columns.
 
-    lower: the fit at a lower cut-off, where noise of the acceleration hides less of a delay or a spring.
+    lower: the fit at a lower cut-off, where noise of the acceleration hides a delay or a spring less.
     """
     more = {"late": (lower, lower.slope)}
     if len(lower.y) >= 6 * found.A.shape[1] + 12:
@@ -300,7 +312,7 @@ def _others(found, lower):
 
 
 def _widened(names, found, others, period):
-    """Standard errors (p,), widened by how much further other fits of the same data lie than their own error."""
+    """Standard errors (p,), widened by how far other fits of the same data lie away, beyond their own error."""
     x, stderr = found.left.x, found.left.stderr
     moved = np.zeros(len(x))  # squared
     for name, other in others.items():
@@ -308,14 +320,14 @@ def _widened(names, found, others, period):
         known = np.isfinite(stderr + sigma) & np.isin(names, _WIDENS.get(name, names))
         moved = np.maximum(moved, np.where(known, (x - other.x[: len(x)]) ** 2 - np.where(known, sigma, 0.0) ** 2, 0.0))
     late, unsure = others["late"], _UNSURE * period
-    share = unsure**2 / (unsure**2 + late.stderr[-1] ** 2)  # of what is not known of the delay, the data tell this much
+    share = unsure**2 / (unsure**2 + late.stderr[-1] ** 2)  # how much of the delay the data tell, 0..1
     delay = math.hypot(share * late.x[-1], unsure * math.sqrt(1 - share))
     moved += (delay * least_squares(found.A, found.slope, tolerance=_OWN_SHARE).x) ** 2
     return np.sqrt(stderr**2 + moved + (_EXACT * x) ** 2)
 
 
 def _check_fit(warned, found, others, with_gravity):
-    """What the residual shows."""
+    """Refuse, or warn of, what the residual shows."""
     left, gravity = found.left, others.get("gravity", found.left).rms / found.left.rms
     explained = 1 - (found.misfit * gravity) ** 2
     F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
@@ -327,13 +339,13 @@ def _check_fit(warned, found, others, with_gravity):
     if found.misfit > _POOR:
         warned.add(f"the model explains little of u (fit {1 - found.misfit:.0%}): do not use it; look at q, u and load")
     if not with_gravity and 1 - gravity**2 > _GRAVITY[0] and found.misfit > _GRAVITY[1]:
-        warned.add(f"{1 - gravity**2:.0%} of the rest of u go with sin q, cos q: add terms=(..., 'gravity')")
+        warned.add(f"sin q, cos q explain {1 - gravity**2:.0%} of the residual: add terms=(..., 'gravity')")
     if found.misfit > _MISSING[0] and left.correlation > _MISSING[1]:
         warned.add(f"residuals are far from white ({left.correlation:.2f}): something is missing (backlash, a spring)")
 
 
 def _check_parameters(warned, parameters, found, lower, others):
-    """Parameters that are negative, drown in their error, or depend on the cut-off."""
+    """Warn of parameters that are negative, smaller than twice their error, or depend on the cut-off."""
     negative = [name for name, (x, sigma) in parameters.items() if name in _PHYSICAL and x < -3 * sigma]
     if {"viscous", "coulomb"} <= set(negative):
         warned.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
@@ -341,7 +353,7 @@ def _check_parameters(warned, parameters, found, lower, others):
         bent, k = others["bent"], list(parameters).index("viscous")
         much = abs(bent.x[k] - found.left.x[k]) > _BENT[0] * abs(found.left.x[k])
         if much and abs(bent.x[-1]) > _BENT[1] * bent.stderr[-1]:
-            warned.add("friction depends on the speed, in no straight line (Stribeck?): fit slow and fast motion apart")
+            warned.add("friction depends on the speed, not in proportion (Stribeck?): fit slow and fast motion apart")
     x, sigma = found.left.x, np.hypot(found.left.stderr, lower.left.stderr)
     depends = np.abs(x - lower.left.x) > np.maximum(_DEPENDS[0] * np.abs(x), _DEPENDS[1] * sigma)
     for k, (name, (x, sigma)) in enumerate(parameters.items()):
@@ -351,14 +363,14 @@ def _check_parameters(warned, parameters, found, lower, others):
         elif name in negative:
             warned.add(f"{said} is negative {value}: is u late or early (delay=), or its sign turned?")
         elif name in _PHYSICAL and sigma > 0.5 * abs(x):
-            warned.add(f"{said} drowns in its error {value}: record faster reversals, several speeds")
+            warned.add(f"{said} is lost in its error {value}: record faster reversals, several speeds")
         elif name in _PHYSICAL and depends[k]:
             half = f"{x * lower.left.x[k] / found.left.x[k]:.3g} at half of {found.cutoff_hz:.3g} Hz"
             warned.add(f"{said} depends on the cut-off: {value}, {half} (flexibility, backlash?)")
 
 
 def _check_timing(warned, lower, others, period):
-    """A u that is late or early, or a spring between motor and load, which looks like it."""
+    """Warn of a u that is late or early, or of a spring between motor and load, which looks the same."""
     late = others["late"]
     delay, left = float(late.x[-1]), late.rms / lower.left.rms
     if not any(left < share and abs(delay) > n * late.stderr[-1] for share, n in _LATE):
@@ -367,4 +379,4 @@ def _check_timing(warned, lower, others, period):
         warned.add("inertia depends on the frequency, as in a flexible joint: try a lower cutoff_hz")
     elif abs(delay) > _TOLD * period:
         said = f"{abs(delay):.2g} s {'later' if delay > 0 else 'earlier'} than delay= says"
-        warned.add(f"u seems to act about {said}: shift q or u by it (backlash, a filter look alike)")
+        warned.add(f"u seems to act about {said}: shift q or u by it (backlash or a filter looks the same)")

@@ -1,4 +1,4 @@
-"""How good a model is on data it has not seen, as Table 4.4 on raw PWM; and whether what it leaves is white."""
+"""How good a model is on data it has not seen, as Table 4.4 on raw PWM; and whether its residuals are white."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ from ir50p_lab.modelling.dynamics import as_theta
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Validation:
-    """Measured against predicted, joint by joint.
+    """Measured and predicted values compared, joint by joint.
 
     ========== ================================================================================== ======
     rms        of measured - predicted; unit of u, or rad for q                                   (3,)
@@ -94,7 +94,7 @@ class Whiteness:
     """Autocorrelation of residuals, column by column.
 
     lags (m,) samples; correlation (m, k), of samples that far apart; bound: 2.58/sqrt(n), within which 99 in 100 lie
-    if the residuals are white: what a good model leaves is noise that no past sample could have predicted.
+    if the residuals are white: what a good model leaves is noise, which no earlier sample predicts.
     """
 
     lags: np.ndarray

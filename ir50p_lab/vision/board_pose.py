@@ -7,7 +7,7 @@ from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.checks import point_list, rigid
 from ir50p_lab.vision.pinhole import as_pinhole
 
-_WORST_RMS = 5.0  # px; a board of another size, or corners in another order, miss by far more
+_WORST_RMS = 5.0  # px: if corners miss the board by more, it has another size, or they are in another order
 
 
 def board_points(pattern=(9, 6), square=0.025, T_table_board=None):

@@ -10,8 +10,8 @@ from ir50p_lab.errors import CameraError
 from ir50p_lab.home import setting
 from ir50p_lab.vision.image import check_image, is_rendered, list_images, load_image, save_image
 
-_PATIENCE = 3.0  # s without a picture: the webcam is unplugged
-_AT_ONCE = 0.005  # s: a picture that comes sooner has waited in the driver, and is old
+_PATIENCE = 3.0  # s: if no picture comes for so long, the webcam counts as unplugged
+_AT_ONCE = 0.005  # s: if a picture comes sooner, it has waited in the driver, and is old
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -33,7 +33,7 @@ class Camera(contextlib.AbstractContextManager):
     name, simulated, size = "camera", False, (0, 0)
 
     def close(self):
-        """Let go of the camera: no more pictures; twice does no harm."""
+        """Release the camera; it gives no more pictures. To close it twice does no harm."""
 
     def __exit__(self, *_):
         self.close()
@@ -49,7 +49,7 @@ class Webcam(Camera):
         import cv2
 
         self.name = f"webcam {index}"
-        level = cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # drivers say much in the notebook
+        level = cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # or drivers print into the notebook
         self._capture = cv2.VideoCapture(index)
         cv2.utils.logging.setLogLevel(level)
         asked = (cv2.CAP_PROP_FRAME_WIDTH, size[0]), (cv2.CAP_PROP_FRAME_HEIGHT, size[1]), (cv2.CAP_PROP_BUFFERSIZE, 1)
@@ -64,7 +64,7 @@ class Webcam(Camera):
     def read(self):
         """The next Frame, not one that was waiting. Raises CameraError if there is none, or it is busy or unplugged."""
         began = time.monotonic()
-        for _ in range(5):  # one that waited comes at once; one that is being taken makes grab() wait for it
+        for _ in range(5):  # drop old pictures: those come at once, for a new one grab() waits
             asked = time.monotonic()
             if not self._capture.grab() or time.monotonic() - asked > _AT_ONCE:
                 break
@@ -80,7 +80,7 @@ class Webcam(Camera):
         )
 
     def close(self):
-        """Let go of the webcam, so that other programs can have it."""
+        """Release the webcam, so that other programs can use it."""
         self._capture.release()
 
 

@@ -1,4 +1,4 @@
-"""Checks of arguments at the public edge of this folder; behind it, code trusts its callers."""
+"""Checks of arguments of the public functions of this folder; private code trusts its callers."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ def coordinates(name, value, n, unit="px"):
 
 
 def point_list(name, value, n, unit="px"):
-    """The same as a list of points (m, n); one point (n,) counts as a list, and (m, 1, n) as OpenCV has them."""
+    """`value` as a list of points (m, n), from one point (n,), from (m, n), or (m, 1, n) as OpenCV has them."""
     array = coordinates(name, value, n, unit)
     if array.ndim > 2 and array.shape[1:] != (1, n):
         raise InputError(f"{name} has shape {array.shape}: give (n, {n}) ({unit})")

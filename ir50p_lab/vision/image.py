@@ -12,7 +12,7 @@ from PIL.PngImagePlugin import PngInfo
 from ir50p_lab.errors import ImageError
 
 MARK = "rendered by ir50p_lab: not a photograph"
-"""What a rendered picture carries in its file (PNG: a tEXt chunk, JPEG: a comment)."""
+"""The mark in the file of a rendered picture (PNG: a tEXt chunk, JPEG: a comment)."""
 
 _READ = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp", ".ppm", ".pgm", ".gif")
 
@@ -48,8 +48,8 @@ def load_image(path, *, allow_grey=False):
 
     Of an animation the first picture is taken. allow_grey: a picture of one channel is taken too, its value three
     times (a checkerboard needs no colour).
-    Raises ImageError for a path that is missing or a folder, an empty file, one that is no picture, damaged or cut
-    off, and one of one channel or more than 8 bits.
+    Raises ImageError for a path that is missing or a folder; for a file that is empty, no picture, damaged or cut off;
+    for a picture of one channel, or of more than 8 bits.
     """
     if isinstance(path, str | Path) and Path(path).is_dir():
         raise ImageError(f"{path} is a folder: give one of its files, or open_camera('folder:{path}') for all of them")
@@ -71,12 +71,12 @@ def load_image(path, *, allow_grey=False):
 
 
 def _bytes(path):
-    """What is in the file; ImageError if it cannot be read."""
+    """The bytes of the file. Raises ImageError if it cannot be read."""
     try:
         return Path(path).read_bytes()
     except FileNotFoundError:
         raise ImageError(f"there is no file {path}: check the name and the folder (here is {Path.cwd()})") from None
-    except (OSError, ValueError, TypeError) as error:  # no right to, a null byte in the name, no path at all
+    except (OSError, ValueError, TypeError) as error:  # no permission, a null byte in the name, not a path
         raise ImageError(f"{path!s:.200} cannot be read ({error}): give the path of a picture file") from None
 
 

@@ -8,7 +8,7 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import numbers
 from ir50p_lab.vision.checks import coordinates, picture_size, rigid
 
-_STEPS = 200  # of a fixed-point iteration: near the fold of a lens it is slow
+_STEPS = 200  # most iterations that take out distortion: they converge slowly near the radius where it folds back
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +87,7 @@ class Pinhole:
         return xy @ self.K[:2, :2].T + self.K[:2, 2]
 
     def to_normalised(self, xy):
-        """Normalised coordinates (..., 2) of pixels (..., 2); the distortion stays in."""
+        """Normalised coordinates (..., 2) of pixels (..., 2); distortion is not taken out."""
         return (coordinates("xy", xy, 2) - self.K[:2, 2]) @ np.linalg.inv(self.K[:2, :2]).T
 
     def undistort_points(self, xy):
@@ -116,7 +116,7 @@ class Pinhole:
         with np.errstate(all="ignore"):
             found = cv2.undistortPointsIter(distorted.reshape(-1, 1, 2), np.eye(3), k, None, None, stop)
             found = found.reshape(distorted.shape)
-            # beyond the fold of the polynomial a solution is a mirage: the lens never sends a ray there
+            # where the distorted radius falls again (folds back), a solution of the polynomial is no ray of the lens
             r2 = (found**2).sum(axis=-1)
             rising = 1 + r2 * (3 * k[0] + r2 * (5 * k[1] + r2 * 7 * k[4])) > 0
             off = np.abs(self.distort(np.nan_to_num(found)) - distorted).sum(axis=-1)

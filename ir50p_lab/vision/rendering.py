@@ -25,11 +25,12 @@ COLOURS = {
     "skin": (215, 160, 130),
     "grey": (128, 128, 128),
 }
+# Colours of the table and of the room behind it; the table's range in x and in y, m
 _WOOD, _ROOM, _EDGES = (176, 148, 112), (120, 118, 115), ((-0.6, 1.1), (-0.8, 0.8))
-_SKY, _SUN, _SOFT = 0.55, 0.65, 0.05  # light from everywhere, from one side, and half the width of that in rad
-_TOWARDS = np.float32([0.36, 0.36, 0.86])
+_SKY, _SUN, _SOFT = 0.55, 0.65, 0.05  # light from all sides, light of one lamp (the sun), half its width in rad
+_TOWARDS = np.float32([0.36, 0.36, 0.86])  # direction to the sun
 _SUB = 2  # rays along each side of a pixel
-_GRAIN, _GRID = 0.03, 0.008  # m: length of the grain of the wood; distance of the places where the sky is looked at
+_GRAIN, _GRID = 0.03, 0.008  # m: length of the grain of the wood; grid on which the light of the sky is computed
 # An ordinary VGA webcam (49 deg across, thesis intro 5.3) on a stand across the table from the arm, tilted by 45 deg
 _PINHOLE = Pinhole([[702.0, 0.0, 323.5], [0.0, 699.0, 236.0], [0.0, 0.0, 1.0]], (-0.12, 0.08, 0.0008, -0.0006, 0.0))
 CAMERA_BENCH, LOOKS_AT_BENCH = (1.0, 0.05, 0.62), (0.40, 0.0, 0.0)
@@ -83,7 +84,7 @@ class Scene:
 
 @dataclass(frozen=True, kw_only=True)
 class BallTruth:
-    """Where a ball is seen: NaN for one that is not before the camera.
+    """Where a ball is seen; NaN if it is not in front of the camera.
 
     x, y: projected centre of the sphere, px; radius: of the circle as large as its image, px; outline_x, outline_y:
     middle of that image, px, which lies elsewhere; position: (3,) m; colour.
@@ -100,7 +101,7 @@ class BallTruth:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SceneTruth:
-    """Of one rendered picture: balls in the order of the scene, camera."""
+    """The truth of one rendered picture: its balls, in the order of the scene, and the camera."""
 
     balls: tuple
     pinhole: Pinhole
@@ -188,7 +189,7 @@ def _rays(pinhole):
 
 
 def _light(scene):
-    """Light (n, 3) float32 along all rays: of the room, of the table, and of the things before them."""
+    """Light (n, 3) float32 along all rays: of the room, of the table, and of the things in front of them."""
     T = np.float32(scene.T_cam_world)
     rays, (R, t) = _rays(scene.pinhole), (T[:3, :3], T[:3, 3])
     eye, ways = -R.T @ t, R.T @ rays
@@ -282,9 +283,9 @@ def _open_sky(scene):
 
 
 def _hide_sun(sun, thing, X, Y):
-    """Take from the light of the sun what a thing hides, with a soft rim: where the line to the sun passes near it."""
+    """Reduce the sun's light (n,) in place at places X, Y (n,) m of the table where a thing throws its soft shadow."""
     a, b, r = np.float32(thing.start), np.float32(thing.end), thing.radius
-    feet = [end - _TOWARDS * (end[2] / _TOWARDS[2]) for end in (a, b)]  # of the shadow
+    feet = [end - _TOWARDS * (end[2] / _TOWARDS[2]) for end in (a, b)]  # shadows of both ends
     margin = (r + _SOFT * max(a[2], b[2]) / _TOWARDS[2] + 2e-3) / _TOWARDS[2]
     low, high = np.min(feet, axis=0) - margin, np.max(feet, axis=0) + margin
     near = np.flatnonzero((X > low[0]) & (X < high[0]) & (Y > low[1]) & (Y < high[1]))
@@ -309,15 +310,15 @@ def _tile():
 
 
 def _interpolated(values, u, v):
-    """Values (rows, columns) at the columns u and rows v (n,), between pixels, too; beyond its rim it begins again."""
-    n, lines = len(u), -(-len(u) // 4096)  # OpenCV takes no long rows
+    """`values` (rows, columns) interpolated at columns u and rows v (n,); beyond its edges the array repeats."""
+    n, lines = len(u), -(-len(u) // 4096)  # rows of 4096: OpenCV refuses very long ones
     places = ((one % size).astype(np.float32) for one, size in ((u, values.shape[1]), (v, values.shape[0])))
     u, v = (np.resize(one, (lines, 4096)) for one in places)
     return cv2.remap(values, u, v, cv2.INTER_LINEAR, borderMode=cv2.BORDER_WRAP).ravel()[:n]
 
 
 def _truth(scene, ball):
-    """BallTruth of a SceneBall: NaN for one that is not before the camera."""
+    """BallTruth of a SceneBall; NaN if it is not in front of the camera."""
     T, r = np.asarray(scene.T_cam_world), ball.radius
     centre, numbers = T[:3, :3] @ ball.position + T[:3, 3], [np.nan] * 5
     D = np.linalg.norm(centre)

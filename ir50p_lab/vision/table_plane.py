@@ -8,7 +8,7 @@ from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transf
 from ir50p_lab.vision.checks import check_picture_size, point_list, rigid
 from ir50p_lab.vision.pinhole import as_pinhole
 
-_SLANT = 0.02  # rad above the plane; a ray flatter than this meets it anywhere
+_SLANT = 0.02  # rad: if a line of sight meets the plane at a smaller angle, where it does is unknown
 
 
 class TablePlane:
@@ -77,8 +77,8 @@ class TablePlane:
         """Places (n, 2) m on the plane at `height` m for pixels (n, 2); a single pixel (2,) gives (2,).
 
         Args:
-            xy: px, centre of the top-left pixel (0, 0); distorted, as in the picture. Of a ball, where its centre is
-            seen, as `find_balls` gives it: the middle of its outline lies a little farther from that of the picture.
+            xy: px, centre of the top-left pixel (0, 0); distorted, as in the picture. For a ball give the place where
+            its centre is seen, as `find_balls` does; the middle of its outline lies a little farther out.
             height: m above the table; a ball of radius r on the table has its centre at height r. Read at height 0
             it seems farther away, by r times the tangent of the camera's angle from the vertical.
 
@@ -100,7 +100,7 @@ class TablePlane:
         return found[0] if np.ndim(xy) == 1 else found
 
     def to_points(self, xy, height=0.0):
-        """The same with the height as third coordinate: (n, 3) or (3,) m, table coordinates."""
+        """As `to_table`, with the height as third coordinate: (n, 3) or (3,) m, table coordinates."""
         place = self.to_table(xy, height)
         return np.concatenate([place, np.full((*place.shape[:-1], 1), float(height))], axis=-1)
 

@@ -96,6 +96,15 @@ def test_plans_arrive_are_smooth_and_stay_clear():
         q = np.array(way.points[-1])  # the next one from there, low over the table: it must go up first
 
 
+def test_a_plan_takes_the_speed_that_it_is_given():
+    q, p = rest_pose(IR50P), np.array([0.40, 0.1, 0.09])
+    for speed in (0.25, 0.5):
+        way = plan(IR50P, q, p, speed=speed)
+        assert np.abs(way.sample(np.linspace(0, way.duration, 2000))[:, 1]).max() == pytest.approx(speed, rel=0.01)
+    with pytest.raises(InputError, match="speed"):
+        plan(IR50P, q, p, speed=0)
+
+
 def test_the_work_area_of_another_arm_follows_its_reach():
     area = work_area(IR50P)
     assert 0.1 < area.r_min < 0.25

@@ -10,10 +10,11 @@ from ir50p_lab.vision.checks import coordinates
 from ir50p_lab.vision.image import check_image
 
 HALF_CIRCLE = 90  # OpenCV's hue is degrees/2: 0..179
-_PINK, _CLIPPED = 24, 245  # degrees beyond the range of a red that is overexposed; value from which on it is
-_PALE = 0.7  # of the saturation where the click was: what has less is something else of the same hue
-_LEAST_TOLERANCE = 26.0  # degrees; with 14 every fifth ball is lost, and false alarms are no fewer
-_LEAST_SATURATION, _MOST_SATURATION = 0.18, 0.55  # that a colour learnt asks for: parts of a ball are paler
+# Overexposed red looks pink: from this value on (0..255), hues up to so many degrees beyond its range count as red.
+_PINK, _CLIPPED = 24, 245
+_PALE = 0.7  # times the saturation at the click: paler pixels of the same hue are another thing
+_LEAST_TOLERANCE = 26.0  # degrees, for a colour learnt: with 14 every fifth ball is lost, and false alarms are no fewer
+_LEAST_SATURATION, _MOST_SATURATION = 0.18, 0.55  # limits of the least saturation of a colour learnt
 
 
 @dataclass(frozen=True)
@@ -21,12 +22,12 @@ class Colour:
     """A range of hues, and how strong the colour must be; light and shade change value, hardly hue.
 
     Args:
-        hue: middle of the range, degrees 0..360; it may lie at the seam.
+        hue: middle of the range, degrees 0..360; the range may cross the seam of the scale, 360 = 0.
         tolerance: half width of the range, degrees, 1..60.
         saturation: least saturation, 0..1: below it lie grey, white, and highlights. There is no upper bound: the
             most saturated pixels are the surest (4.5.1 throws away those above 0.8).
         value: least value, 0..1: in darker pixels the hue is noise.
-        name: how messages call it.
+        name: its name in messages.
 
     Raises InputError for a number out of range.
     """
@@ -45,7 +46,7 @@ class Colour:
 
     @property
     def swaps(self):
-        """True if red and blue are exchanged before the hue is taken: then the range does not cross the seam."""
+        """True if red and blue are exchanged before the hue is taken, so that the range does not cross the seam."""
         return min(self.hue, 360 - self.hue) < self.tolerance + 1
 
     @property
@@ -66,7 +67,7 @@ class Colour:
         """255 where an HSV picture of `hsv_of` has the colour as dim or glaring light shows it: darker, paler; (h, w).
 
         Too much light makes a red pink: red is clipped, blue is not. A red with more green than blue (hue above 0)
-        turns orange and yellow: that is left to what is not overexposed.
+        turns orange and yellow: of such a red only what is not overexposed is found.
         """
         low, high = replace(self, saturation=0.7 * self.saturation, value=0.4 * self.value).bounds()
         found = cv2.inRange(hsv, low, high)
@@ -90,10 +91,9 @@ RED = Colour(hue=355.0, tolerance=20.0, name="red")  # 335 to 15 degrees: both e
 def learn_colour(image, xy):
     """Learn a Colour from a click: the pixels around it that are like it.
 
-    A small disc around the pixel gives a first hue and saturation; then every pixel within a twelfth of the picture's
-    height counts whose hue is near and which is hardly paler, so that shade and light of the same thing are in. If a
-    twentieth of what lies around it has the hue but is paler (an orange ball on wood), the least saturation is half
-    way between.
+    A small disc around the pixel gives a first hue and saturation. Then all pixels within a twelfth of the picture's
+    height are used whose hue is near and which are hardly paler: lit and shaded parts of the same thing. If a twentieth
+    of its surroundings has the hue but is paler (an orange ball on wood), the least saturation is half way between.
 
     Args: image: RGB uint8 (h, w, 3); xy: (x, y) pixel of the click.
     Returns: Colour. Raises InputError for a place outside the picture, ImageError where the thing is grey, white or
@@ -134,7 +134,7 @@ def _colour_of(pixels):
     if np.median(saturation) < 40 or np.median(value) < 25:
         raise ImageError(
             f"the place is nearly grey, white or black (median saturation {np.median(saturation) / 255:.2f}, value "
-            f"{np.median(value) / 255:.2f}): its colour tells it from nothing. Click a coloured place"
+            f"{np.median(value) / 255:.2f}): it has no hue to look for. Click a coloured place"
         )
     turn = np.sum(chroma * np.exp(1j * np.pi * hue / HALF_CIRCLE))
     mean = float(np.degrees(np.angle(turn)) % 360.0)

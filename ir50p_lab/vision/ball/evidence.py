@@ -1,7 +1,7 @@
-"""Is it a ball? Nine numbers of an outline and its colours, added up as a logistic regression has weighed them.
+"""Is it a ball? Nine numbers about an outline and its colours, weighed by a logistic regression.
 
-The weights are from rendered scenes with red balls and with what is like them; no photograph was in it. The number
-that counts most against a ball is what the finder says of it.
+Its weights were fitted to rendered scenes with red balls and things like them; no photograph was among them. The number
+that speaks most against a ball is given as the reason.
 """
 
 import cv2
@@ -9,8 +9,8 @@ import numpy as np
 
 from ir50p_lab.vision.ball.outline import ANGLES, cast
 
-_BIAS = 5.32
-_AGAINST = (  # weight of a number, and what is said when it counts most
+_BIAS = 5.32  # log odds of a ball if all numbers are 0
+_AGAINST = (  # how much log odds 1 of each number takes away, and the reason given if it takes most
     (-2.3, "it is small"),
     (4.43, "{:.0%} of the circle show no edge"),
     (2.23, "{:.0%} of the circle lie outside the picture"),
@@ -21,14 +21,15 @@ _AGAINST = (  # weight of a number, and what is said when it counts most
     (-1.55, "its rim differs from its middle"),
     (2.51, "it hardly stands out from its surroundings"),
 )
-_LEAST_SCORE = 0.65  # below it what is seen is no ball: fewer false alarms, more misses
-_LEAST_FILL = 0.55  # of the disc: with less of the colour, or too light to tell, it is a thing of another colour
-_GLARING = 242  # value, of 255: of what is lighter the hue tells little
-_DISC = np.arange(1, 10) / 10  # places of samples along a ray, of the radius
-_BEYOND = np.array([1.06, 1.14])
-_EXPLAINED, _CORNERS = 0.5, 0.01  # a wave that leaves less of the variance, and is higher (of the radius): a polygon
-_ENOUGH = 20  # rays with an edge, to count corners on
-_GLOSS = 0.35  # of the disc: highlights on more of it are another colour, white
+_LEAST_SCORE = 0.65  # probability: if it is less, it is no ball. Higher: fewer false alarms, more balls missed
+_LEAST_FILL = 0.55  # share of the disc: if less has the colour, or is too light to tell, it has another colour
+_GLARING = 242  # value, 0..255: of lighter pixels the hue tells little
+_DISC = np.arange(1, 10) / 10  # radii: where samples along a ray are taken inside the outline
+_BEYOND = np.array([1.06, 1.14])  # radii: and outside it
+# It is a polygon if a wave around the outline leaves less than this share of its variance, and is higher, in radii.
+_EXPLAINED, _CORNERS = 0.5, 0.01
+_ENOUGH = 20  # rays: if fewer have an edge, corners are not counted
+_GLOSS = 0.35  # share of the disc: if highlights cover more, they are another colour, white
 
 
 def judge(image, outline, colour):
@@ -60,7 +61,7 @@ def judge(image, outline, colour):
 
 
 def _colours(image, outline, colour):
-    """HSV (rays, 9, 3) of the disc; where it has the colour, where colour or gloss; shares of disc and beyond it."""
+    """HSV (rays, 9, 3) of the disc; where it has the colour, where colour or gloss; shares of disc and surroundings."""
     r, rim = outline.radius, 1.5  # px on both sides of the outline that are left out: colours mix there
     reach = np.concatenate([r * _DISC - rim * (_DISC > 0.85), r * _BEYOND + rim])
     hsv = colour.hsv_of(cast(image, outline.x, outline.y, reach)[0])
@@ -75,12 +76,12 @@ def _colours(image, outline, colour):
 
 
 def _turned(hsv, colour):
-    """Hues less the middle of the colour, degrees -180..180."""
+    """Hues minus the middle hue of the colour, degrees -180..180."""
     return (2.0 * hsv[..., 0] - colour.centre + 180) % 360 - 180
 
 
 def _hue_off(hsv, loose, colour):
-    """Median distance of the disc's hue from the middle of the colour, of its tolerance; not of what glares."""
+    """Median distance of the disc's hue from the colour's, over its tolerance; glaring pixels are left out."""
     clear = loose & (hsv[..., 2] < _GLARING)
     chosen = clear if clear.mean() > 0.1 else loose
     return float(np.median(np.abs(_turned(hsv[chosen], colour))) / colour.tolerance)

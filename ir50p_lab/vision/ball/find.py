@@ -14,8 +14,8 @@ from ir50p_lab.vision.checks import check_picture_size
 from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
 
-_MOST = 40  # guesses that are measured
-_F = 0.9  # focal length over the longer side of the picture, assumed where no camera is given: 58 deg across
+_MOST = 40  # guesses measured at most, those with the longest arcs
+_F = 0.9  # focal length over the longer side of the picture if no camera is given: webcams see some 58 deg across
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Ball:
 
 
 class Balls(list):
-    """The balls found, best first; reason: why none; rejected: ((x, y, radius), why) of the rest, likeliest first."""
+    """The balls found, best first; reason: if none, why; rejected: ((x, y, radius), why) of others, likeliest first."""
 
     def __init__(self, balls=(), *, reason="", rejected=()):
         super().__init__(balls)
@@ -45,13 +45,13 @@ class Balls(list):
 def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     """Find the balls of a colour in an RGB picture (h, w, 3) uint8, best first: Balls.
 
-    Regions of the colour give circles; around each the edge is measured along rays and the cone of sight through it
-    fitted, so that a ball is where the centre of the sphere is seen, not the middle of its outline; nine numbers of
-    outline and colours decide, and what is refused says why.
+    Regions of the colour give circles. Around each the edge is measured along rays, and the cone of sight through it
+    fitted: x, y is where the centre of the sphere is seen, not the middle of its outline. Nine numbers about outline
+    and colours decide whether it is a ball; each circle that is refused has its reason.
 
     Args:
-        colour: Colour, RED if nothing is said; camera: Pinhole or Calibration if known, else one without distortion is
-        assumed that sees 58 degrees across; least_radius: px, of what is looked for.
+        colour: Colour, default RED; camera: Pinhole or Calibration if known, else one without distortion is assumed
+        that sees 58 degrees across; least_radius: px, smaller balls are refused.
 
     Raises ImageError for what is no colour picture, InputError for a bad argument, CalibrationError for a picture of
     another size than the camera's.
@@ -84,7 +84,7 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
 
 
 def _reason(rejected, colour, least_radius):
-    """Why there is no ball: of what came nearest to one, or that there is nothing."""
+    """Why there is no ball: the reason of the likeliest circle refused, or that nothing has the colour."""
     if not rejected:
         return f"nothing {colour.name} and round is seen, of {least_radius:g} pixels or more in radius"
     (x, y, r), why = rejected[0]

@@ -4,13 +4,14 @@ import cv2
 import numpy as np
 from scipy.spatial.distance import cdist
 
-_LONGER_SIDE = 640  # px of the copy that is searched
+_LONGER_SIDE = 640  # px: the picture is searched in a copy reduced to about this
 _STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
-_REGIONS = 10  # of a mask, longest outline first
-_ARCS = 3  # circles through parts of one outline
-_STARTS, _STEPS = 24, (0.06, 0.12, 0.2, 0.33)  # triples of points tried; steps between them, in outlines
-_NEAR = (0.04, 1.0)  # shares of the radius, px: within the larger of both a point of the outline lies on the circle
-_NEW = 0.25  # of a radius: a circle nearer than this to an earlier one, place and size together, is the same guess
+_REGIONS = 10  # regions of a mask looked at, longest outline first
+_ARCS = 3  # circles sought on one outline: balls that touch share one
+# Circles go through three points of an outline: so many first points, and steps to the others as shares of its length.
+_STARTS, _STEPS = 24, (0.06, 0.12, 0.2, 0.33)
+_NEAR = (0.04, 1.0)  # radii, px: a point of the outline is on the circle if it is nearer than the larger of both
+_NEW = 0.25  # radii: if a circle differs less from an earlier one, place and size added, it is the same guess
 
 
 def guess_circles(image, colour, least_radius):
@@ -33,7 +34,7 @@ def guess_circles(image, colour, least_radius):
 
 
 def _masks(image, colour):
-    """Masks (h, w) of the colour: strict, stricter, and as dim or glaring light shows it."""
+    """Masks (h, w) of the colour: for three least saturations, and a loose one for dim or glaring light."""
     hsv = colour.hsv_of(image)
     three, five = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
     for saturation in _STRICTNESS:
@@ -43,9 +44,9 @@ def _masks(image, colour):
 
 
 def _circles(points):
-    """Circles (n points on it, x, y, r) through three points of an outline (n, 2), those with most of it on them."""
+    """Circles [(number of points on it, x, y, r)] through three points of an outline (n, 2), by most points on them."""
     first, step = (part.ravel() for part in np.meshgrid(np.arange(_STARTS) / _STARTS, _STEPS))
-    largest = 2 * min(cv2.minAreaRect(np.float32(points))[1])  # px; of a larger one hardly a quarter would be seen
+    largest = 2 * min(cv2.minAreaRect(np.float32(points))[1])  # px: of a larger circle the region has hardly a quarter
     found = []
     while len(points) >= 8 and len(found) < _ARCS:
         p, q, s = (points[((first + k * step) * len(points)).astype(int) % len(points)] for k in range(3))

@@ -17,11 +17,12 @@ import numpy as np
 RAYS = 64
 ANGLES = np.arange(RAYS) * (2 * np.pi / RAYS)
 UNIT = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])  # (rays, 2)
-_PASSES = ((0.6, 0.3), (0.45, 0.2), (0.3, 0.15))  # how far around a radius it looks, and where it looks first, of r
-_SAMPLES = 41  # along a ray
-_EDGE = 0.3  # of the contrast between ball and surroundings: a lower step is no edge
-_NOISE = 64.0  # grey levels squared: variance of a picture that is quite even
-_LEAST_CONTRAST = 1.0  # standard deviations squared by which disc and surroundings differ at least
+# Of each pass, in radii: how far inside and outside the circle edges are sought, and how near to it they are preferred.
+_PASSES = ((0.6, 0.3), (0.45, 0.2), (0.3, 0.15))
+_SAMPLES = 41  # samples along a ray
+_EDGE = 0.3  # share of the contrast between ball and surroundings: a lower step is no edge
+_NOISE = 64.0  # grey levels squared, added to the variances of colours: an even surface has no endless contrast
+_LEAST_CONTRAST = 1.0  # if disc and surroundings differ by less (squared, in variances), no outline can be measured
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Outline:
     x, y: middle, px; radius: of the circle of the same area, px; centre: (2,) px, where the sphere's centre is seen;
     off: (rays,) px that the edge lies outside, inf where there is none; height: (rays,) of the edges, in units of the
     contrast; seen: share of the outline in the picture; contrast: of the disc against its surroundings, in standard
-    deviations; why: it is no outline, "" if it is one.
+    deviations; why: the reason why there is none, else "".
     """
 
     x: float
@@ -80,7 +81,10 @@ def cast(image, x, y, rho):
 
 
 def _contrast(rho, rgb, within, r):
-    """How far disc and surroundings differ; colours as numbers (rays, m), 1 inside and 0 outside (Fisher's axis)."""
+    """(contrast of disc and surroundings in standard deviations, the colours as numbers (rays, m) or None).
+
+    The numbers are the colours along Fisher's axis, on which both differ most; inside they are larger by 1 on average.
+    """
     inner, outer = rho < 0.85 * r, rho > 1.12 * r
     inside, outside = (rgb[:, part][within[:, part]].astype(float) for part in (inner, outer))
     if min(len(inside), len(outside)) < 20:
@@ -92,24 +96,25 @@ def _contrast(rho, rgb, within, r):
 
 
 def _edges(rho, profile, within, r, width):
-    """Distance (rays,) px and height (rays,) of the steepest fall of each profile (rays, m), those near r preferred."""
+    """Distance (rays,) px and height (rays,) of the steepest fall of each profile (rays, m), near r by preference."""
     pace = rho[1] - rho[0]
-    sigma = max(1.2, 0.025 * r) / pace  # samples
+    sigma = max(1.2, 0.025 * r) / pace  # samples; smoothing before the slope is taken
     kernel = cv2.getGaussianKernel(2 * int(3 * sigma) + 3, sigma).T
     slope = -np.gradient(cv2.filter2D(profile, -1, kernel, borderType=cv2.BORDER_REPLICATE), axis=1)
     peak = 1 + (slope / (1 + ((rho - r) / width) ** 2))[:, 1:-1].argmax(axis=1)
     rows = np.arange(RAYS)
     before, top, after = (slope[rows, peak + k] for k in (-1, 0, 1))
     bend = np.minimum(before - 2 * top + after, -1e-9)
-    shift = np.clip((before - after) / (2 * bend), -0.5, 0.5)  # of a parabola through the three
+    shift = np.clip((before - after) / (2 * bend), -0.5, 0.5)  # vertex of the parabola through the three
     height = top * np.sqrt(2 * np.pi) * sigma * within[rows, peak + 1]
     return rho[0] + (peak + shift) * pace, height
 
 
 def _fit(pinhole, points, at, strong, r):
-    """(x, y, radius, centre, off) of the cone through the strong ones of the edge points (rays, 2), or None.
+    """(x, y, radius, centre, off) of the cone through those edge points (rays, 2) that are `strong`, or None.
 
-    Points far off count less and less (biweight), from a first circle on: the median distance `at` from the middle.
+    The farther a point is off the last fit, the less it weighs (biweight). The first fit is a circle whose radius is
+    the median of the distances `at` (rays,) px.
     """
     xy = pinhole.undistort_or_nan(points)
     strong = strong & np.isfinite(xy).all(axis=1)

@@ -17,11 +17,13 @@ from ir50p_lab.vision.calibration.result import LENS, NAMES, Calibration, View
 from ir50p_lab.vision.checks import picture_size, point_list
 from ir50p_lab.vision.image import list_images, load_image, to_grey
 
-_FEWEST = 3  # views
-_BAR_FROM = 8  # pictures
-_SAME = 1 / 800  # of the diagonal: if a board moved less, it is the same view again
-_CONTRADICT = 3  # times: if views err by more than their corners do, they are not of one camera and one board
-_USUAL = ("k1", "k2", "p1", "p2")  # k3 runs wild beyond the outermost corner: it must be asked for
+_FEWEST = 3  # views: with fewer there is no calibration
+_BAR_FROM = 8  # pictures: from here on a bar is shown
+_SAME = 1 / 800  # share of the picture's diagonal: if the board moved less, it is the same view again
+# If the error of fx by the scatter of views is so many times that by the scatter of corners, views contradict each
+# other: they are not of one camera and one board.
+_CONTRADICT = 3
+_USUAL = ("k1", "k2", "p1", "p2")  # k3 must be asked for: outside the outermost corner it may become huge
 
 
 def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_USUAL, progress=None):
@@ -29,9 +31,10 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_USUAL, progress=Non
 
     Corners are found and refined by OpenCV; pictures that are of no use are left out, each with a Reason; the camera is
     the least-squares fit of `cv2.calibrateCamera`; its standard errors are the larger of two kinds (`fit.errors`).
-    Where that leaves much less over, every corner of the board may move: a bent board is said, and estimated with the
-    camera. A bend of 0.3 to 0.5 mm over 200 mm can pass for flat (12 views, corners to 0.1 px): fx was then off by
-    0.3 %, at most 1.2 %; that is two of its standard errors, at most five. A plate of glass has no bend.
+    If residuals become much smaller when every corner of the board may move, the board is bent: a warning says so, and
+    its shape is estimated with the camera. A bend of 0.3 to 0.5 mm over 200 mm may pass for flat (12 views, corners to
+    0.1 px): fx was then off by 0.3 %, at most 1.2 %, that is two of its standard errors, at most five. A plate of glass
+    has no bend.
 
     Args:
         images: list of pictures (h, w, 3) uint8 RGB, grey ones (h, w), Frames or paths, mixed; or a folder.
@@ -94,7 +97,7 @@ def calibrate_corners(object_points, image_points, size, *, lens=_USUAL):
 
 
 def _calibrate(found, points, size, lens, rejected, board):
-    """Calibration of (name, index, corners) of each view; board: Checkerboard whose bend is looked for, or None."""
+    """Calibration from (name, index, corners) of each view; board: Checkerboard that may be bent, or None."""
     fitted = fit(points, [xy for *_, xy in found], size, lens)
     for _ in range(len(found) // 4):
         odd = checks.odd_view(fitted.view_rms)
@@ -170,7 +173,7 @@ def _picture(index, one):
 
 
 def _corners(grey, size, board, found):
-    """Corners (n, 2) px in a picture of the size of most. Raises NotUsable."""
+    """Corners (n, 2) px in a picture, which must have the size of most. Raises NotUsable."""
     if isinstance(grey, ImageError):
         raise NotUsable(Reason.UNREADABLE, str(grey))
     if grey.shape[::-1] != size:
@@ -186,7 +189,7 @@ def _corners(grey, size, board, found):
 
 
 def _why_too_few(count, rejected, seen, board):
-    """What to tell whose pictures are hardly of use; seen: how often a board of (columns, rows) was in their place."""
+    """The message if too few pictures are usable; seen: how often a board of other (columns, rows) was found."""
     reasons = Counter(str(one.reason) for one in rejected)
     message = f"{count} usable pictures of a {board}, at least {_FEWEST} are needed, 10 to 20 are good"
     if rejected:

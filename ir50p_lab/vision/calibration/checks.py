@@ -1,8 +1,8 @@
-"""What may be wrong with a calibration although it fits: a view that does not belong, and sentences of warning."""
+"""What may be wrong with a calibration although it fits: a view that does not fit the others, and warnings."""
 
 import numpy as np
 
-_SQUARE = 0.0075  # if fx/fy is farther from 1, it is no sensor's
+_SQUARE = 0.0075  # if fx/fy is farther from 1, something is stretched: pixels of sensors are square to better than this
 _TILTED = np.deg2rad(15)  # rad: if a board is tilted by less, it hardly tells the focal length
 
 
@@ -16,9 +16,9 @@ def odd_view(view_rms):
 
 
 def warnings_about(found):
-    """What to mind about a Calibration, sentence by sentence.
+    """Doubts about a Calibration, sentence by sentence.
 
-    Each limit is where a webcam of square pixels and 10 to 20 good pictures never is.
+    A webcam with square pixels and 10 to 20 good pictures stays within every limit.
     """
     K, views = found.K, found.views
     if found.rms > 0.7 * max(1, found.size[0] / 1280):
@@ -39,7 +39,7 @@ def warnings_about(found):
     tilts = np.array([view.T_cam_board[:2, 2] for view in views if view.tilt > _TILTED])
     if len(tilts) < 3:
         yield f"too few tilts: {len(tilts)} of {len(views)} views by more than 15 degrees; only they tell focal length"
-    # Directions of tilt that scatter across less than 0.3 of what they do along are one direction.
+    # If directions of tilt scatter less than 0.3 times as much one way as the other, they are all one direction.
     elif np.linalg.cond(tilts / np.linalg.norm(tilts, axis=1, keepdims=True)) > 1 / 0.3:
         yield "all tilts are about one axis: tilt the board up or down as well as left or right"
     x, y = (np.concatenate([view.corners for view in views]) * (8, 6) / found.size).astype(int).T

@@ -9,11 +9,11 @@ from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
 _SEARCHED = 1280  # px; corners are searched in a picture reduced to this, and refined in the picture itself
 _SMOOTH = 0.8  # px, blur of the copy for the second finder: in a dark picture it would follow every speck of noise
 _SOFT = 0.55  # squares: if an edge rises from dark to light over more than this, neighbouring edges run together
-_UNKNOWN = 100  # px; OpenCV gives this or more where squares are too small for it to follow an edge
-_WINDOW = 0.36  # smallest squares, half the window of the refinement: if larger, the next edges come in
-_WINDOW_PX = (2, 12)  # at least and at most
-_CROSSING = 0.3  # if squares outside the last corners differ by less than this part of those inside, it ends there
-_MARGIN = 1.3  # squares: if the picture ends nearer to the last corner than this, the next one would lie outside
+_UNKNOWN = 100  # px: OpenCV gives this width or more if squares are too small for it to follow an edge
+_WINDOW = 0.36  # half the window of the refinement over the smallest square: a larger one reaches the next edges
+_WINDOW_PX = (2, 12)  # px, half that window at least and at most
+_CROSSING = 0.3  # contrast of squares outside the last corners over that inside: if it is less, the board ends there
+_MARGIN = 1.3  # squares: if the picture ends nearer to the last corner, the next one would lie outside
 
 
 def find_checkerboard(grey, pattern):
@@ -31,7 +31,7 @@ def find_checkerboard(grey, pattern):
         _refuse_soft(grid, grey)
         _check_whole(grid, grey, pattern)
         return _refine(_in_order(grid, grey, pattern), grey)
-    except cv2.error as error:  # one picture, such as one of a few pixels, must not lose the others
+    except cv2.error as error:  # a picture of a few pixels, say, must not stop the others
         raise NotUsable(Reason.NO_BOARD, f"OpenCV finds no corners in it: {' '.join(str(error).split())}") from error
 
 
@@ -54,14 +54,14 @@ def _search(grey, pattern):
 
 
 def _parts(columns, rows):
-    """Patterns to look for where the whole one is not seen; smaller ones are not told from writing and noise."""
+    """Patterns to look for if the whole is not seen; smaller ones are too easily found in writing and noise."""
     return (columns, max(rows - 1, 3)), (4, 4), (max(2 * columns // 3, 3), rows), (4, 3)
 
 
 def _search_larger(grey, pattern):
     """Corners (n, m, 2) px of the largest board with at least this pattern, or None."""
     found, flags = None, cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_LARGER
-    while True:  # what is found may be a part: it is asked for until it grows no more
+    while True:  # it may be a part of the board: repeat until it grows no more
         seen, xy, meta = cv2.findChessboardCornersSBWithMeta(grey, pattern, flags)
         if not seen:
             return found
@@ -88,7 +88,7 @@ def _without_rim(grid, grey):
 
 
 def _goes_on(grid, grey):
-    """Whether squares outside the last row of corners are dark and light by turns, against those inside it."""
+    """Whether squares outside the last row of corners are dark and light by turns, opposite to those inside it."""
     middles, inwards = (grid[-1, :-1] + grid[-1, 1:]) / 2, (grid[-2, :-1] + grid[-2, 1:]) / 2
     step, turns = (middles - inwards) / 4, (-1) ** np.arange(len(middles))
     outside, inside = (turns @ _levels(grey, middles + sign * step) for sign in (1, -1))
@@ -136,9 +136,9 @@ def _check_whole(grid, grey, pattern):
 
 
 def _in_order(grid, grey, pattern):
-    """The grid (rows, columns, 2) as `Checkerboard` counts: not mirrored, and it begins at a dark square.
+    """The grid (rows, columns, 2) in the order of `Checkerboard`: not mirrored, and beginning at a dark square.
 
-    Where half a turn changes no colours it begins nearer to the top left.
+    A board that looks the same after half a turn begins nearer to the top left.
     """
     if grid.shape[:2] != pattern[::-1]:
         grid = np.rot90(grid)
@@ -156,7 +156,7 @@ def _in_order(grid, grey, pattern):
 
 
 def _refine(grid, grey):
-    """Corners (n, 2) to sub-pixel."""
+    """Corners (n, 2) px, refined to parts of a pixel."""
     half = int(np.clip(_WINDOW * _spacing(grid), *_WINDOW_PX))
     xy = np.ascontiguousarray(grid.reshape(-1, 1, 2), np.float32)
     return cv2.cornerSubPix(grey, xy, (half, half), (-1, -1), (3, 30, 1e-3))[:, 0].astype(float)

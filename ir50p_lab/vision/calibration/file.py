@@ -11,7 +11,7 @@ from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.calibration.reasons import Reason, Rejected
 from ir50p_lab.vision.checks import check_picture_size, picture_size
 
-_LONGEST = 2000  # characters of one text in such a file: OpenCV takes 4096 bytes
+_LONGEST = 2000  # characters: longer texts are split, for OpenCV reads no more than 4096 bytes of one
 
 
 def save(calibration, path):

@@ -10,9 +10,9 @@ from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision.calibration.result import NAMES
 
 _STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 50, 1e-9)
-_BENT = 0.75  # of sigma^2: if a board whose every corner is free leaves less than this part of it, it is bent
+_BENT = 0.75  # variance of residuals with every corner free over that with a flat board: if less, the board is bent
 _GAUGE = 7  # numbers of a free board that no picture tells: where it lies, how it is turned, how large it is
-_UNKNOWN = 1e-11  # if an eigenvalue of the scaled normal matrix is smaller, rounding decides what it should
+_UNKNOWN = 1e-11  # if an eigenvalue of the scaled normal matrix is smaller, it is rounding: something is undetermined
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ def fit(points, pixels, size, lens, start=None):
 
 
 def fit_bent(flat, pixels, size, lens, columns):
-    """CameraFit with the shape of the board, every corner of it free, where that explains the residuals; else `flat`.
+    """CameraFit with every corner of the board free, if that makes the residuals much smaller; else `flat`.
 
     `cv2.calibrateCameraRO` (Strobl and Hirzinger 2011) frees the corners; the board keeps the size of its first row of
     `columns` corners.
@@ -85,7 +85,7 @@ def fit_bent(flat, pixels, size, lens, columns):
 
 
 def height(points):
-    """How far points (n, 3) of a board lie apart, across the plane nearest to them, m."""
+    """Bend of a board, m: between its points (n, 3) farthest above and below the plane nearest to them all."""
     plane = np.column_stack([points[:, :2], np.ones(len(points))])
     return float(np.ptp(points[:, 2] - plane @ np.linalg.lstsq(plane, points[:, 2], rcond=None)[0]))
 
@@ -95,8 +95,8 @@ def errors(found, lens):
 
     With J the derivative of all corners by camera, poses and, of a bent board, its points, and sigma^2 the mean squared
     residual, V = sigma^2 (J^T J)^-1 takes the corners as independent; V' = (J^T J)^-1 (sum of g g^T) (J^T J)^-1,
-    g = J^T e of a view, takes only the views so (the sandwich of White 1980). Of each number the larger error counts.
-    contradiction: how many times the second is larger, for fx.
+    g = J^T e of a view, takes only the views as independent (the sandwich of White 1980). The larger error of each
+    number is given. contradiction: error of fx by V' over that by V, at least 1.
     Raises CalibrationError if the views do not determine the camera.
     """
     basis = np.eye(9)[:, [name in (*NAMES[:4], *lens) for name in NAMES]]
@@ -107,7 +107,7 @@ def errors(found, lens):
         if found.bent:  # a corner moves on the board as the whole board moves with it
             A = np.hstack([A, block_diag(*(J[:, 3:6].reshape(-1, 2, 3) @ cv2.Rodrigues(turn)[0]))])
         Q, _ = np.linalg.qr(J[:, :6])
-        A = A - Q @ (Q.T @ A)  # what the pose of the view can do as well tells nothing
+        A = A - Q @ (Q.T @ A)  # what the pose of the view explains as well, tells nothing of the camera
         normal = normal + A.T @ A
         pulls.append(A.T @ e.ravel())
     views, rank = len(pulls), len(normal) - _GAUGE * found.bent
@@ -125,7 +125,7 @@ def errors(found, lens):
 
 
 def _flags(lens):
-    """Of OpenCV: which coefficients stay 0."""
+    """OpenCV's flags for the coefficients that stay 0."""
     fixed = {"k1": cv2.CALIB_FIX_K1, "k2": cv2.CALIB_FIX_K2, "k3": cv2.CALIB_FIX_K3, "p1": cv2.CALIB_ZERO_TANGENT_DIST}
     return sum(flag for name, flag in fixed.items() if name not in lens)
 

@@ -7,7 +7,7 @@ from enum import StrEnum
 class Reason(StrEnum):
     """Why a picture is left out; each value is the wording.
 
-    The order is that of the tests: a picture carries the first reason that holds.
+    In the order in which they are tested: a picture gets the first that applies.
     """
 
     UNREADABLE = "unreadable"  # missing, empty, or no picture
@@ -24,8 +24,8 @@ class Reason(StrEnum):
 class Rejected:
     """A picture that was not used.
 
-    name: file name or "picture 3"; index: its place in what was given; reason: Reason; detail: what was found, with
-    numbers, and what to do.
+    name: file name or "picture 3"; index: its place among the pictures given; reason: Reason; detail: what was found,
+    with numbers, and what to do.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Rejected:
 class NotUsable(Exception):  # noqa: N818 - inside the package: becomes a Rejected
     """Raised where a picture turns out not to be usable, with Reason and detail.
 
-    seen: (columns, rows) of the board in it, if it is another one or a part.
+    seen: (columns, rows) of the board that was found, if it is another one, or a part of it.
     """
 
     def __init__(self, reason, detail, seen=None):

@@ -1,4 +1,4 @@
-"""What a calibration found: the camera, how sure it is, what each picture said, and which were not used."""
+"""What a calibration found: the camera, its errors, the residuals of each picture, and which were not used."""
 
 from dataclasses import dataclass, field
 
@@ -41,7 +41,7 @@ class View:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Calibration:
-    """A calibrated camera; what takes a camera takes it in place of a Pinhole (`pinhole.as_pinhole`).
+    """A calibrated camera; functions that take a Pinhole take it as well (`pinhole.as_pinhole`).
 
     ============== ======================================================================================== =========
     field          meaning                                                                                  shape
@@ -55,7 +55,7 @@ class Calibration:
     covariance     of fx, fy, cx, cy, k1, k2, p1, p2, k3 with those standard errors; 0 where not estimated  (9, 9)
     views          View of each picture used                                                                tuple
     rejected       Rejected: each picture not used, with a reason                                           tuple
-    warnings       what to mind, as sentences                                                               tuple
+    warnings       doubts about it, as sentences                                                            tuple
     size           (width, height) of the pictures                                                          px
     board          Checkerboard
     model          lens coefficients that were estimated, such as ("k1", "k2")                              tuple

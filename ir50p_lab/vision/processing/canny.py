@@ -10,10 +10,10 @@ from ir50p_lab.vision.processing.smoothing import convolve
 
 @dataclass(frozen=True)
 class CannySteps:
-    """What each step leaves, all (h, w).
+    """The result of each step, all (h, w).
 
-    smoothed: 1; strength = |gx| + |gy|: 2; thin: strength where it is a crest across the edge, else 0: 3;
-    edges: bool, what is strong, or hangs on something strong: 4.
+    1 smoothed; 2 strength = |gx| + |gy|; 3 thin: strength where no neighbour across the edge is stronger, else 0;
+    4 edges: bool, pixels that are strong, or connected to a strong one.
     """
 
     smoothed: np.ndarray
@@ -28,8 +28,8 @@ def canny_steps(grey, low, high, *, kernel=None):
     Args: low, high: thresholds of the strength |gx| + |gy| with Sobel's kernels; kernel: of the smoothing, such as
     KERNEL_3_2, or None for a picture that is smooth already.
     Non-maximum suppression keeps strength where no neighbour across the edge is stronger, the gradient's direction
-    rounded to one of four; hysteresis what is above `high`, and what is above `low` and hangs on that in a chain. Both
-    are those of cv2.Canny. Raises InputError for low > high.
+    rounded to one of four. Hysteresis keeps pixels above `high`, and those above `low` that a chain of such pixels
+    connects to them. Both are those of cv2.Canny. Raises InputError for low > high.
     """
     import cv2
 

@@ -32,7 +32,7 @@ def circle_hough(points, shape, radii, *, width=1.0):
 
 
 def strongest(accumulator, radii):
-    """The circle with most votes: x, y, radius, px, and the share of it that votes.
+    """The circle with most votes: x, y, radius, px, and the share of its outline that has edge points.
 
     accumulator: (n_radii, h, w) of `circle_hough`, for the same radii (n_radii,) px.
     """

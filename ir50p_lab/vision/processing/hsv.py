@@ -7,7 +7,7 @@ from ir50p_lab.inputs import choice
 from ir50p_lab.vision.checks import coordinates
 
 HUE_SCALES = {"degrees": 360.0, "OpenCV": 180.0, "8 bit": 255.0, "MATLAB": 1.0}
-"""What a full turn of hue is called: OpenCV halves degrees to fit a byte, MATLAB has 0..1, 3.1.3 'scaled to 8 bit'."""
+"""A full turn of hue in each scale: OpenCV halves degrees to fit a byte, MATLAB has 0..1, 3.1.3 'scaled to 8 bit'."""
 
 
 def rgb_to_hsv(rgb):

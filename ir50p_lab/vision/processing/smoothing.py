@@ -21,7 +21,7 @@ def gaussian_kernel(size, sigma):
 def convolve(grey, kernel):
     """Convolution of a grey picture (h, w) with a kernel (odd, odd): (h, w) float; the border is mirrored.
 
-    The kernel is turned by half a turn, as the definition has it; a symmetric one does not mind.
+    The kernel is turned by half a turn, as in the definition; for a symmetric one this makes no difference.
     """
     from scipy import ndimage
 

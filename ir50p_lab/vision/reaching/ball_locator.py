@@ -1,4 +1,4 @@
-"""From the camera to the base frame of the arm: where the ball is, and what the camera says of the hand."""
+"""From the picture to the base frame of the arm: where the ball is, and where the camera sees the hand."""
 
 from dataclasses import dataclass, field
 
@@ -14,8 +14,8 @@ from ir50p_lab.vision.checks import rigid
 
 GREEN = Colour(hue=135.0, tolerance=35.0, name="green")  # of the marker on the hand
 MARKER_AT = (-0.042, 0.0, 0.0)  # m, tool coordinates: between the fingers, before the end of the forearm
-_MARKER_NEAR = 80.0  # px between where the hand is seen and where the potentiometers say; about 90 mm
-_SPIKE = 5.0  # sigma
+_MARKER_NEAR = 80.0  # px, some 90 mm: if a green ball is farther from where q puts the marker, it is not the marker
+_SPIKE = 5.0  # standard errors: if the picture asks a potentiometer to be off by more, one of both is wrong
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,12 +59,12 @@ class BallLocator:
         self.marker_at = vector3("marker_at", marker_at, unit="m")
 
     def look(self):
-        """Take a picture; where is the best ball? Returns Seen, false if none is seen."""
+        """Take a picture and find the best ball in it. Returns Seen, which is false if none is seen."""
         frame = self.camera.read()
         return self.seen_in(frame.image, frame.simulated)
 
     def seen_in(self, image, simulated=False):
-        """The same for a picture that is there already (RGB).
+        """As `look`, in a picture (RGB) that was already taken.
 
         Raises CalibrationError if the picture is of another size than the calibration.
         """
@@ -87,7 +87,7 @@ class BallLocator:
         return moved(frames(arm, q)[3], self.marker_at)
 
     def marker_pixel(self, arm, q):
-        """Pixel (2,) where it should then be seen."""
+        """Pixel (2,) where the marker should be seen with the arm at q (3,) rad."""
         return self.to_image(self.marker_place(arm, q))
 
     def marker_jacobian(self, arm, q, step=1e-5):
@@ -104,13 +104,13 @@ class BallLocator:
         return None
 
     def joint_errors(self, arm, q, xy, sigma_q):
-        """What the picture says of the potentiometers' errors: marker seen at xy, though q puts it elsewhere.
+        """The potentiometers' errors according to the picture: the marker is seen at xy, though q puts it elsewhere.
 
             minimise |xy - project(p(q + e))|^2 / sigma_px^2 + sum (e_i / sigma_q_i)^2
 
-        One pixel is two equations for three joints; the third comes from how far each potentiometer is believed to be
-        off. The hand's distance to the camera stays as uncertain as they leave it. Errors of some hundredths of a rad
-        move the pixel linearly, so with H = d pixel / d q and P = diag(sigma_q^2) the minimum is
+        One pixel is two equations for three joints; what is missing comes from sigma_q, how far each potentiometer is
+        believed to be off. The hand's distance to the camera is found no better than from them. Errors of some
+        hundredths of a rad move the pixel linearly, so with H = d pixel / d q and P = diag(sigma_q^2) the minimum is
         e = P H^T (H P H^T + sigma_px^2 I)^-1 (xy - project(p(q))).
         Args: arm: Arm; q: (3,) rad; xy: (2,) px; sigma_q: (3,) rad.
         Returns: e (3,) rad. If the picture contradicts q by more than 5 sigma: VisionError.

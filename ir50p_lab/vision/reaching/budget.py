@@ -6,7 +6,7 @@ from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.vision.reaching.moving import ACCEPTED
 
-_READINGS = 100  # counts averaged at rest
+_READINGS = 100  # readings averaged at rest: a second at 100 Hz
 
 
 def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_marker_px=0.15, noise=1.0):
@@ -14,12 +14,12 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
 
     With J = dp/dq of the tip, H = dpixel/dq of the marker, and the gain G of the camera's correction
     (`BallLocator.joint_errors`), potentiometers that are off by e leave J e after the first look and J (I - G H) e
-    after the second. What is wrong with the camera, or where it stands, is left out: it shifts ball and hand
-    alike, so that little of it remains after the second look.
+    after the second. Errors of the camera's calibration or place are left out: they shift ball and hand alike, so that
+    little of them remains after the second look.
 
-    Args: arm: Arm; locator: BallLocator; q: (3,) rad, pose over the ball; sigma_q: (3,)
-    rad, of the potentiometers' smooth errors; slope: (3,) counts/rad; sigma_ball_px, sigma_marker_px: px, of found
-    centres; noise: counts rms of a reading before rounding.
+    Args: arm: Arm; locator: BallLocator; q: (3,) rad, pose over the ball; sigma_q: (3,) rad, standard deviation of the
+    potentiometers' smooth errors; slope: (3,) counts/rad; sigma_ball_px, sigma_marker_px: px, of found centres; noise:
+    counts rms of a reading before rounding.
     Returns: pandas.DataFrame of rms distances at the tip, m, one row a cause, columns "one look" and "two looks". The
     causes are independent, so squares add; the last row is "all together".
     """
@@ -35,7 +35,7 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
     steps = [locator.plane.to_table(xy + d, height) - locator.plane.to_table(xy - d, height) for d in 0.5 * np.eye(2)]
     pixel = sigma_ball_px * _rms(np.array(steps))
     reading = np.diag(np.sqrt(noise**2 + 1 / 12) / np.sqrt(_READINGS) / np.abs(slope))
-    rest = ACCEPTED * np.sqrt(0.6)  # evenly spread over a ball of that radius
+    rest = ACCEPTED * np.sqrt(0.6)  # rms distance of points spread evenly over a ball of that radius
     noisy = _rms(J @ reading)
     causes = {
         "ball in the picture": (pixel, pixel / np.sqrt(2)),

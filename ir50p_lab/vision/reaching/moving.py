@@ -7,17 +7,18 @@ from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.dynamics import gravity
 from ir50p_lab.vision.reaching.plan import LIFT, plan
 
-_DAY = 86400.0  # s: the longest session
-_SETTLE, _WINDOW, _WINDOWS = 0.6, 0.4, 15  # s until the arm stands, s of counts to average, how often
-SETTLED, _RESTING = 1e-3, 2e-3  # m at the tip, by averaged counts: near enough; no longer moving
-ACCEPTED = 1.5e-3  # m at the tip, by a second of counts with the command frozen: there it stays
+_DAY = 86400.0  # s: the longest run
+_SETTLE, _WINDOW, _WINDOWS = 0.6, 0.4, 15  # s: wait for the arm to stand, average readings for, at most so many times
+# m at the tip, by averaged readings: the arm has arrived if it is nearer to its goal; it rests if it moved by less.
+SETTLED, _RESTING = 1e-3, 2e-3
+ACCEPTED = 1.5e-3  # m at the tip, by a second of readings with the command frozen: if it is nearer, it stays there
 
 
 def reaching_controller(model, period=0.01):
     """The controller that reaching uses: computed torque with a slow integral; without motor data the PIDs of 4.1-4.3.
 
     Gains tried out on simulated arms: stiff (12 rad/s), so that a joint that breaks loose does not jump far, and with
-    the two periods of delay led ahead; those of Tables 4.5-4.7 (5, 3, 7 rad/s) leave centimetres at the tip.
+    two periods of delay compensated; those of Tables 4.5-4.7 (5, 3, 7 rad/s) leave centimetres at the tip.
     model: Arm, or what `identify` returns; None: the PIDs.
     """
     from ir50p_lab.controllers import PID, ComputedTorque
@@ -34,8 +35,8 @@ class Mover:
     between two runs a board would cut it, and the arm would sink.
 
     Args:
-        bench: an open bench. controller: default `reaching_controller(arm)`; the PIDs on a
-        real arm, of which a model must have been measured first.
+        bench: an open bench. controller: default `reaching_controller(arm)`; on a real arm the PIDs, for a
+        model of it must be measured first.
         rest: go to the rest pose at the end.
 
     Attributes: q: (3,) rad, best estimate of its set point; errors: (3,) rad, what the potentiometers are off by here:
@@ -57,7 +58,7 @@ class Mover:
             self.controller.reset()
         self._samples = self.bench.run(_DAY)
         self._last = next(self._samples)
-        self._set = np.array(self._last.q)  # where the potentiometers shall be
+        self._set = np.array(self._last.q)  # what the potentiometers shall show
         self._drive((self._set, np.zeros(3), np.zeros(3)))
         self.hold(0.3)
         return self
@@ -77,7 +78,7 @@ class Mover:
     def _cycle(self, rows):
         self._last = next(self._samples, None)
         if self._last is None:
-            raise BenchError("the run of this bench is over (a replay ends, and so does a day): begin a new one")
+            raise BenchError("the run of this bench is over (a replay has ended, or a day is over): begin a new one")
         self._drive(rows)
         return self._last
 
@@ -106,7 +107,7 @@ class Mover:
         t = np.arange(0.0, seconds + period, period)
         rows = reference.sample(t)
         shown = rows[:, 0] - self.errors
-        # the set point may be off the start by trims of the last stand: fade them out
+        # the set point may still have corrections of the last stop, which the start has not: fade them out
         shown += np.maximum(0.0, 1.0 - t / max(0.3, 0.5 * seconds))[:, None] * (self._set - shown[0])
         k = 0
         while k < len(t) - 1:
@@ -122,11 +123,11 @@ class Mover:
         return trajectory
 
     def settle(self, goal):
-        """Stand at the joint angles `goal` (3,) rad: averaged counts say what is missing, and the set point is moved.
+        """Stand at the joint angles `goal` (3,) rad: averaged readings show the error, and the set point is corrected.
 
-        A joint that sticks waits until the integral has built up; pushing the set point by what is missing shortens
-        that. Once there, the command is frozen: friction holds the arm, nothing hunts, and a second of counts can be
-        averaged, which takes noise and rounding of one reading down to a tenth.
+        A joint that sticks waits until the integral has built up; moving the set point by the error shortens that. Once
+        there, the command is frozen: friction holds the arm, nothing oscillates, and a second of readings is averaged,
+        which has a tenth of the noise and rounding of a single one.
         Returns: the measured angles (3,) rad, averaged, corrected.
         """
         wanted = goal - self.errors
@@ -145,11 +146,11 @@ class Mover:
             last = self.hold(1.0)
             if self._tip_size(goal, wanted - last) < ACCEPTED:
                 break
-            self._frozen = None  # it slid on, or the window had flattered it
+            self._frozen = None  # it slid on, or the shorter average was near by chance
         return last + self.errors
 
     def _holding(self, q):
-        """A command under which a resting arm stays at rest, (3,): what it was lately, near what the weight needs.
+        """A command under which a resting arm stays at rest, (3,): the recent mean, kept near what the weight needs.
 
         A joint in motion would slide on under a command that Coulomb friction does not hold; so at most half of that
         friction is left beside the weight.

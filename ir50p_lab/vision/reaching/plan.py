@@ -7,17 +7,16 @@ from itertools import pairwise
 import numpy as np
 
 from ir50p_lab.errors import UnreachableError
-from ir50p_lab.inputs import vector3
+from ir50p_lab.inputs import number, vector3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.modelling.ik import inverse_kinematics
 from ir50p_lab.signals.quintic import through
 
-MARGIN = 0.03  # rad kept from the joint limits: at a limit the drive is cut
-CLEAR = 0.08  # m that the tip keeps above the table on its path: over a ball of 60 mm
-LIFT = 0.08  # m above the goal from which the last piece leads down
-_HEIGHT = 0.09  # m of the tip over a ball on the table
-_ANGLE = 0.52  # rad to both sides of x that the work area spans at most
-_SPEED = 0.5  # rad/s of the fastest joint: joint 2 follows that against gravity
+MARGIN = 0.03  # rad: poses stay so far from the joint limits, for at a limit the drive is cut
+CLEAR = 0.08  # m: height over the table that the tip keeps on its path, to pass over a ball of 60 mm
+LIFT = 0.08  # m: the last piece of the path begins so far above the goal
+_HEIGHT = 0.09  # m: height of the tip for which the work area holds, 30 mm over the top of a ball of 60 mm
+_ANGLE = 0.52  # rad: the work area spans no more than this to each side of x
 _PEAK = 1.875  # a quintic's largest speed over its mean
 
 
@@ -65,15 +64,17 @@ def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
     return q[np.where(allowed, np.abs(q - near).max(axis=-1), np.inf).argmin()]
 
 
-def plan(arm, q, p, *, lift=LIFT):
+def plan(arm, q, p, *, lift=LIFT, speed=0.5):
     """The path of the tip from the pose q to the point p: over it, then down. Where that comes too low it rises first.
 
-    All pieces are straight for the joints; the last one keeps the tip of the IR50P within 4 mm of a plumb line.
+    All pieces are straight lines in joint angles; on the last the tip of the IR50P stays within 4 mm of a plumb line.
 
     Args: arm: Arm; q: (3,) rad, where it stands; p: (3,) m; lift: m above p where the last piece begins; 0 goes there
-    directly.
-    Returns: Quintic, a Reference through its `points`. Raises UnreachableError as `reach_pose`.
+    directly; speed: rad/s, > 0, of the fastest joint. Joint 2 of the IR50P follows 0.5 rad/s against gravity.
+    Returns: Quintic, a Reference through its `points`. Raises InputError on a bad speed, UnreachableError as
+    `reach_pose`.
     """
+    speed = number("speed", speed, "> 0", unit="rad/s")
     goal = reach_pose(arm, p, q)
     poses = _clear(arm, q, goal, min(CLEAR, p[2]))
     for share in (1.0, 0.5, 0.25) if lift > 0 else ():
@@ -81,7 +82,7 @@ def plan(arm, q, p, *, lift=LIFT):
             above = reach_pose(arm, p + np.array([0.0, 0.0, share * lift]), goal)
             poses = [*_clear(arm, q, above, CLEAR), goal]
             break
-    return through(poses, durations=[max(0.3, _PEAK * float(np.abs(b - a).max()) / _SPEED) for a, b in pairwise(poses)])
+    return through(poses, durations=[max(0.3, _PEAK * float(np.abs(b - a).max()) / speed) for a, b in pairwise(poses)])
 
 
 def _clear(arm, q, goal, clear):

@@ -13,12 +13,13 @@ from ir50p_lab.vision.reaching.moving import Mover
 from ir50p_lab.vision.reaching.plan import plan, reach_pose
 from ir50p_lab.vision.reaching.result import BallTracker, FollowLog, Look, Reached
 
-HEIGHT = 0.06  # m of the tip over the ball's centre: 30 mm over its top
-_COUNTS, _COUNTS_NOMINAL = 0.7, 2.5  # what potentiometers are off by, counts (assumed: a good wire-wound one)
-_MOVED = 0.008  # m between two looks: then the ball has moved, and only the second counts
-_LOST = 0.5  # s without a look that shows the ball: from then on nobody knows where it rolls
-_ARM_LAG = 0.04  # s that the tip follows its moving aim behind (simulated arms: 0.03 to 0.06 s)
-_CAMERA_LAG = 0.1  # s that the picture of a webcam is old (assumed: exposure, transfer, a picture that waits)
+HEIGHT = 0.06  # m: height of the tip over the ball's centre, 30 mm over its top
+# Counts: standard deviation of a potentiometer's errors, calibrated and nominal (assumed: a good wire-wound one)
+_COUNTS, _COUNTS_NOMINAL = 0.7, 2.5
+_MOVED = 0.008  # m: if two looks see the ball farther apart, it has moved, and only the second counts
+_LOST = 0.5  # s: if no look has shown the ball for longer, it is not known where it rolls
+_ARM_LAG = 0.04  # s: delay of the tip behind its moving aim (simulated arms: 0.03 to 0.06 s)
+_CAMERA_LAG = 0.1  # s: age of a webcam's picture (assumed: exposure, transfer, a picture that waits)
 
 
 class Reacher(Mover):
@@ -29,17 +30,17 @@ class Reacher(Mover):
 
     The drive goes on from the first command to the end of the `with` block, where the arm moves to its rest pose:
     between two runs a board would cut it, and the arm would sink onto the ball. While a real camera takes its picture
-    and the picture is worked on, the loop goes on in this thread and the eye works in another.
+    and the picture is worked on, the loop goes on in this thread and the camera works in another.
 
     Args:
         bench: an open bench. locator: BallLocator; one of rendered pictures raises CameraError for a real arm.
         controller: default `reaching_controller(arm)`. rest: go to the rest pose at the end.
 
-    How far the potentiometers are believed to be off, after the calibration of the bench: 0.7 counts if that was
-    measured (what a straight line leaves of a bent characteristic), 2.5 if it is a nominal one.
+    The potentiometers' standard deviation is taken as 0.7 counts if the bench's calibration was measured (a
+    characteristic is not quite the straight line that is fitted), and as 2.5 if it is a nominal one.
 
     Methods: reach, pick, put, follow_ball, look, move_to, move_along, hold. Attributes: q: (3,) rad, best estimate;
-    sigma_q: (3,) rad, that belief.
+    sigma_q: (3,) rad, that deviation.
     """
 
     def __init__(self, bench, locator, *, controller=None, rest=True):
@@ -52,14 +53,14 @@ class Reacher(Mover):
     # ---- looking
 
     def look(self):
-        """Let the eye look while the loop goes on. Returns Seen."""
+        """Look with the camera while the loop goes on. Returns Seen."""
         job = self._look()
         while not job.done():
             self.hold(self.bench.period)
         return job.result()
 
     def _look(self):
-        """A Future of Seen: by another thread where the clock runs on meanwhile, else done at once."""
+        """A Future of Seen: from another thread if the clock runs meanwhile, else it is done on return."""
         job = self._pool.submit(self._see)
         if self.bench.simulated and not getattr(self.bench, "realtime", False):
             wait([job])
@@ -71,7 +72,7 @@ class Reacher(Mover):
         return seen
 
     def _refuse_drawn(self, drawn):
-        """A real arm would move among real things to where a ball was drawn."""
+        """Refuse a rendered picture for a real arm: it would move among real things to where a ball was drawn."""
         if drawn and not self.bench.simulated:
             remedy = "open a webcam with open_camera(0), or take the simulated arm, connect('simulated')"
             raise CameraError(f"{self.bench.name} is a real arm, but the picture is rendered: {remedy}")
@@ -118,10 +119,10 @@ class Reacher(Mover):
         return seen
 
     def _look_again(self, ball, q, notes):
-        """Ball and hand once more: (ball, marker or None, corrected q); what went otherwise is added to the notes."""
+        """See ball and hand again: (ball, marker or None, corrected q); adds to `notes` what did not go as planned."""
         seen = self.look()
         if not seen:
-            notes.append(f"the ball is not seen from here ({seen.reason}): its first place counts")
+            notes.append(f"the ball is not seen from here ({seen.reason}): its first place is kept")
         elif np.linalg.norm(seen.position - ball) > _MOVED:
             notes.append(f"the ball has moved by {1e3 * np.linalg.norm(seen.position - ball):.0f} mm")
             ball = seen.position
@@ -129,7 +130,7 @@ class Reacher(Mover):
             ball = 0.5 * (ball + seen.position)
         marker = self.locator.find_marker(seen.image, self.arm, q)
         if marker is None:
-            notes.append("the marker on the hand is not seen: potentiometers alone")
+            notes.append("the marker on the hand is not seen: the potentiometers are not corrected")
             return ball, None, q
         try:
             e = self.locator.joint_errors(self.arm, q, marker, self.sigma_q)
@@ -143,7 +144,7 @@ class Reacher(Mover):
         """Reach, go down, close the gripper about the ball's middle, go up again.
 
         That the arm reaches down there is tested before anything moves.
-        Returns: Reached, of the reach. Raises as `reach`. Whether the ball came along only another look can tell.
+        Returns: Reached, of the reach. Raises as `reach`. Only another look tells whether the ball came along.
         """
         reach_pose(self.arm, self._sure(self.look()).position)
         self.grip(False, 0.1)
@@ -156,7 +157,7 @@ class Reacher(Mover):
     def put(self, place):
         """Carry what the gripper holds to `place` (2,) m on the table, open, go up.
 
-        Raises InputError for a place that is none, UnreachableError before anything moves.
+        Raises InputError for a bad place, UnreachableError before anything moves.
         """
         down = np.array([*coordinates("place", place, 2, "m"), self.locator.radius])
         up = down + np.array([0.0, 0.0, HEIGHT])
@@ -166,13 +167,12 @@ class Reacher(Mover):
         self.move_to(up, lift=0.0)
 
     def follow_ball(self, seconds, *, height=0.10, every=0.1, lead=None):
-        """Keep the tip over a moving ball: a look every `every` s, position and velocity filtered, aimed ahead.
+        """Keep the tip over a moving ball: look every `every` s, filter position and velocity, aim ahead.
 
         First a planned trajectory to where the ball is seen, clear of the table; `seconds` count from there.
-        lead: s that the aim lies ahead: as much as camera and arm together are late. More puts the tip before the
-        ball, less behind it, by the difference times its speed. Default 0.04 s, for the arm, with rendered pictures,
-        which show this moment; 0.1 s more with any other camera (assumed of a webcam: if you have measured yours, give
-        the sum).
+        lead: s that the aim lies ahead: the delay of camera and arm together. More puts the tip ahead of the ball, less
+        behind it, by the difference times its speed. Default 0.04 s, for the arm, with rendered pictures, which show
+        this moment; 0.1 s more with any other camera (assumed of a webcam: if you have measured yours, give the sum).
         Where the ball cannot be followed (out of reach, or not seen for 0.5 s) the arm waits at the last place.
         Returns: FollowLog.
         """

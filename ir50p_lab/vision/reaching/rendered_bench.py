@@ -14,7 +14,7 @@ from ir50p_lab.vision.rendering import SceneBall, arm_sticks, bench_camera, benc
 
 _RADIUS = 0.03  # m, of the balls
 _MARKER = 0.012  # m, radius of the green ball on the wrist: 10 px in the default camera (assumed)
-_GRIP = 0.012  # m that the tip may miss the ball's centre by when the fingers close, and they hold it (assumed)
+_GRIP = 0.012  # m: fingers that close hold the ball if the tip is no farther from its centre (assumed)
 
 
 class RenderedBench(Camera):
@@ -44,7 +44,7 @@ class RenderedBench(Camera):
         self._send, bench._send = bench._send, self._watched
 
     def _watched(self, pwm, gripper):
-        """What the bench sends passes here: time goes on, and the gripper takes or leaves a ball."""
+        """Called with all that the bench sends: counts the time, and lets the gripper take or leave a ball."""
         self.t += self.bench.period
         if gripper != self._closed:
             self._closed = gripper
@@ -87,7 +87,7 @@ class RenderedBench(Camera):
         return Frame(image=image, simulated=True, source=self.name)
 
     def close(self):
-        """Give the bench its own voice back."""
+        """Stop watching what the bench sends."""
         self.bench._send = self._send
 
 

@@ -7,10 +7,10 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """One stand of a reach; at all but the last the camera has looked again.
+    """One stop of a reach; at all but the last the camera has looked again.
 
     marker: (2,) px on the hand, None if it was not seen; joint_errors: (3,) rad, what the potentiometers are off by;
-    note: what went otherwise than planned; t: s, when the arm stood there, of the clock of the run.
+    note: what did not go as planned; t: s, when the arm stood there, by the clock of the run.
     """
 
     marker: np.ndarray | None
@@ -26,7 +26,7 @@ class Reached:
     ========== ==================================================================================== ============
     ball       its centre, as seen                                                                  (3,) m
     goal       where the tip was to go: over the ball                                               (3,) m
-    tip        where it is: potentiometers, averaged, with the camera's correction                  (3,) m
+    tip        where it is, by averaged potentiometers and the camera's correction                  (3,) m
     q          the joint angles of that                                                             (3,) rad
     looks      the looks, a tuple of Look
     tip_true   where the tip really is: of a simulated arm only, else None. Nothing here uses it.   (3,) m
@@ -66,7 +66,7 @@ class FollowLog:
 
     @property
     def ahead(self):
-        """How far the tip is before the ball along its path, (n,) m: negative behind it, NaN where it stands."""
+        """How far the tip is ahead of the ball along its path, (n,) m: negative behind it, NaN while the ball rests."""
         along = np.sum((self.tip[:, :2] - self.ball) * self.velocity, axis=1)
         return np.divide(along, self.speed, out=np.full(len(along), np.nan), where=self.speed > 0)
 
@@ -74,7 +74,7 @@ class FollowLog:
 class BallTracker:
     """Position and velocity of a rolling ball from looks at irregular times: an alpha-beta filter."""
 
-    alpha, beta = 0.7, 0.25  # shares of the surprise that go into position and velocity
+    alpha, beta = 0.7, 0.25  # shares of (seen minus expected) that correct position and velocity
 
     def __init__(self):
         self.position, self.velocity, self._t = None, np.zeros(2), 0.0
