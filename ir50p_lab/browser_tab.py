@@ -4,6 +4,7 @@ The page's own drive keeps files, but a look at it takes 5 ms: the student's fol
 """
 
 import functools
+import logging
 import shutil
 import sys
 from pathlib import Path
@@ -36,6 +37,8 @@ class Lacking:
         """None for a module that is merely not there."""
         if name in _LACKING:
             needs_more(f"{name}, which {_LACKING[name]}, is not loaded")
+        if name in ("pandas", "sympy"):
+            raise NotInABrowserError(f"Write 'import {name}' at the top of this cell and run it again: it loads {name}.")
 
 
 @functools.cache
@@ -51,3 +54,4 @@ def quick_home(drive):
 
 if IN_BROWSER:
     sys.meta_path.append(Lacking)
+    logging.getLogger("matplotlib.font_manager").setLevel("ERROR")  # it lists its fonts each time, in red

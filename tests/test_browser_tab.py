@@ -28,7 +28,9 @@ os.chdir(sys.argv[1])
 def test_what_is_not_loaded_is_named_with_its_use(name):
     with pytest.raises(NotInABrowserError, match=f"{name}, which .* On your machine"):
         Lacking.find_spec(name)
-    assert Lacking.find_spec("pandas") is None and issubclass(NotInABrowserError, ImportError)
+    with pytest.raises(NotInABrowserError, match="'import sympy' at the top"):
+        Lacking.find_spec("sympy")
+    assert Lacking.find_spec("textwrap") is None and issubclass(NotInABrowserError, ImportError)
 
 
 def run(code, folder, tmp_path):
