@@ -140,15 +140,15 @@ def _alarm(w):
     if w.now[2] >= LOW:
         return UNDER_ALARM
     for i in range(3):
-        u, mean = w.past[-1, 4 + i], w.block[:, 4 + i].mean()
-        s = cf.sign(mean)
-        supported = height < ABOVE and mean * rise[i] < 0
+        u = w.block[:, 4 + i].mean()  # not the smallest: the noise of a derivative is no rest
+        s = cf.sign(u)
+        supported = height < ABOVE and u * rise[i] < 0
         held = supported or (s < 0 and q[i] < n[Q_MIN + i] + END) or (s > 0 and q[i] > n[Q_MAX + i] - END)
         load = max(0.0, s * gravity[i]) + w.load[i] * max(0.0, s * rise[i])
         load = max(load, largest[i] if i == 2 else 0.0) + BREAKAWAY * n[FS + i]
         if _still(w, i, q[i], u, load, held):
             return STILL + i
-        if _beyond(w, i, q[i], mean, max(load, largest[i] + n[FS + i]), held):
+        if _beyond(w, i, q[i], u, max(load, largest[i] + n[FS + i]), held):
             return BEYOND + i
         if _fast(w, i):
             return FAST_ALARM + i
@@ -231,11 +231,10 @@ class RunawayGuard:
 
     def _joint_found(self, alarm):
         joint, past = alarm % 10, self.watch.past
-        angle, drive = past[-1, 1 + joint], past[-1, 4 + joint]
+        angle, drive = past[-1, 1 + joint], self.watch.block[:, 4 + joint].mean()
         back = past[-3 if alarm >= FAST_ALARM else DELAY]
         speed = (angle - back[1 + joint]) / (past[-1, 0] - back[0])
         if alarm >= BEYOND:
-            drive = self.watch.block[:, 4 + joint].mean()
             found = f"did not go where {drive:+.0f} PWM counts, more than gravity, drive it: it is at {angle:.3f} rad"
             question = "Are the two ends of its potentiometer swapped, has it come loose, or does something block it?"
         elif alarm >= FAST_ALARM:
