@@ -179,7 +179,7 @@ def collecting():
 
 
 def test_a_run_on_a_clock_does_not_wait_for_what_the_notebook_holds(tmp_path):
-    """Several million objects take a full collection longer than the watchdog allows; in a run it passes them over."""
+    """Half a million objects take a full collection longer than the watchdog allows; in a run it passes them over."""
     bench, heap = CLOCKED["board in Python"](tmp_path, REST).bench().open(), [[] for _ in range(500_000)]
     before = collecting()
     for end in ("over", "break", "error"):
