@@ -44,7 +44,7 @@ class UnstableLoopWarning(UserWarning):
 
 
 class BenchError(LabError):
-    """Something between the computer and the arm; the drive is off when it is raised."""
+    """Something between the computer and the arm; when it is raised the drive is off, or the board about to brake."""
 
 
 class PortError(BenchError):

@@ -7,7 +7,7 @@ from collections import namedtuple
 import numpy as np
 
 from ir50p_lab.bench.calibration import nominal_calibration
-from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, CountedPace, Pace
+from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, CountedPace, Pace, cut_said, undisturbed
 from ir50p_lab.bench.protocol import JOINTS, LIMIT_PWM
 from ir50p_lab.bench.recorder import Recorder, header_of
 from ir50p_lab.bench.rest import trajectory_to_rest
@@ -70,6 +70,7 @@ class Bench:
     answers = True  # whether drive moves the arm
     bench_id = None
     guarded = True  # whether a runaway is cut; off only while the motors have no supply
+    table = 0.0  # its height, m: a tip far below cannot be; -inf where that is not asked
 
     def __init__(self, arm=None, calibration=None, *, period=0.01, record_to=None, name=None):
         """arm: default `load_arm()`; calibration: default the nominal one.
@@ -108,7 +109,8 @@ class Bench:
         """Send the command: pwm (3,) whole numbers within the limit, gripper bool."""
 
     def _cut(self):
-        """Drive off at once; must work in any state and never raise."""
+        """Drive off at once; must work in any state and never raise. Returns whether it is known to be off."""
+        return True
 
     def _close(self):
         """Give everything free; must work in any state."""
@@ -140,7 +142,7 @@ class Bench:
         """
         if not self.guarded or self.arm.actuators is None:
             return None
-        return RunawayGuard(self.arm, self.calibration, self.period)
+        return RunawayGuard(self.arm, self.calibration, self.period, table=self.table, cut=self.cut)
 
     def _arguments(self):
         """Keywords with which a process of its own makes this bench for its loops in the background; None: a thread."""
@@ -187,11 +189,14 @@ class Bench:
         self._close()
 
     def cut(self):
-        """Drive off at once; a run in a cell goes on without it until the next `drive`, one in the background ends."""
+        """Drive off at once; a run in a cell goes on without it until the next `drive`, one in the background ends.
+
+        Returns: whether that is known; else the board has not answered, and brakes by itself within 0.1 s.
+        """
         if self.live_run is not None:
             self.live_run.cut()
         self._pwm = np.zeros(JOINTS)
-        self._cut()
+        return self._cut()
 
     def run(self, seconds, reference=None, *, record=True, **header):
         """Yield one Sample every period for `seconds`; drive the arm in the loop's body.
@@ -241,7 +246,8 @@ class Bench:
             self._begin()
             run.guard = self._make_guard()
             run.pace = self._make_pace()
-            yield run
+            with undisturbed() if isinstance(run.pace, Pace) else contextlib.nullcontext():
+                yield run
         except GeneratorExit:  # the loop was left by break
             raise
         except BaseException as error:
@@ -362,6 +368,8 @@ class Bench:
         if (silence := run.pace.silence()) >= WATCHDOG:
             self._resume(run, silence)
             return np.zeros(JOINTS)
+        if run.guard is not None:
+            run.guard.admit(command)
         run.pace.armed = True
         if gripper is not None:
             self._gripper = bool(gripper)
@@ -378,8 +386,7 @@ class Bench:
             if given.dtype.kind not in "iufO" or len(given) != JOINTS or not all(map(math.isfinite, given.tolist())):
                 raise TypeError
         except Exception:  # whatever the conversion of a stranger raises
-            self.cut()
-            said = f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts; the drive has been cut"
+            said = f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts; {cut_said(self.cut())}"
             raise InputError(said) from None
         limited = []  # scalars: for three numbers arrays take longer than the arm
         for u, q, (low, high) in zip(given.tolist(), self._last.q.tolist(), self._travel, strict=True):

@@ -150,6 +150,7 @@ def _push(bench, joint, sign):
     before = _rest(bench, 0.6)[-10:].mean(axis=0)
     recent, pwm = [], None
     travel, bench._travel = bench._travel, ((-np.inf, np.inf),) * 3
+    table, bench.table = bench.table, -np.inf  # the potentiometers of the others may be wrong yet
     try:
         for k, sample in enumerate(bench.run((STEPS + 1) * STEP_CYCLES * bench.period, record=False)):
             recent = [*recent[-4:], sample.counts]
@@ -161,7 +162,7 @@ def _push(bench, joint, sign):
     except RunawayError:  # what moves is seen here before the guard sees it: this joint stood still
         pass
     finally:
-        bench._travel = travel
+        bench._travel, bench.table = travel, table
         bench.cut()
     return None, None
 

@@ -5,7 +5,6 @@ ever waits for the other.
 """
 
 import contextlib
-import gc
 import os
 import pickle
 import signal
@@ -15,6 +14,7 @@ import traceback
 from pathlib import Path
 from queue import SimpleQueue
 
+from ir50p_lab.bench.pace import cut_said
 from ir50p_lab.errors import BenchError, LabError
 
 _PACKAGE_ROOT = str(Path(__file__).resolve().parents[2])
@@ -66,14 +66,12 @@ def _serve(pipe, news, bench, cargo):
 
     def tell(*word):
         if not reader.is_alive() or os.getppid() != parent:  # the pipe has ended; a fork of the parent may hold it open
-            raise BenchError("the process that started this loop is gone: the drive has been cut")
+            raise BenchError(f"the process that started this loop is gone: {cut_said(bench.cut())}")
         news.put(word)
 
     bench = kind(**arguments)
     bench.open()
     try:
-        gc.collect()
-        gc.freeze()  # what the imports made is never looked through again
         live_loop(bench, controller, reference, orders, tell)
     finally:
         bench.abort()

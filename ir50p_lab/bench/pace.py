@@ -1,5 +1,7 @@
 """The clock of a run: when each cycle is due, and how long the arm has heard nothing from the program."""
 
+import contextlib
+import gc
 import time
 
 import numpy as np
@@ -108,3 +110,19 @@ def load_controllers():
     from ir50p_lab.controllers import PID
 
     PID(kp=(0, 0, 0), limit_pwm=255).step(0.0, np.zeros(3), np.zeros((3, 3)))
+
+
+def cut_said(confirmed):
+    """What is known after the drive was cut; confirmed: whether the board has answered."""
+    brakes = f"the board has not confirmed the cut: it brakes by itself within {WATCHDOG:g} s"
+    return "the drive has been cut" if confirmed else brakes
+
+
+@contextlib.contextmanager
+def undisturbed():
+    """Until the end no garbage collection looks through what there is now: a notebook's takes longer than WATCHDOG."""
+    gc.freeze()
+    try:
+        yield
+    finally:
+        gc.unfreeze()

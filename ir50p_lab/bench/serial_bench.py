@@ -9,7 +9,7 @@ import numpy as np
 from ir50p_lab.bench import protocol
 from ir50p_lab.bench.base import Bench
 from ir50p_lab.bench.link import PORT_ERRORS, Link
-from ir50p_lab.bench.pace import Clock, Pace, load_controllers
+from ir50p_lab.bench.pace import Clock, Pace, cut_said, load_controllers
 from ir50p_lab.bench.ports import open_port
 from ir50p_lab.bench.result_files import own_calibration
 from ir50p_lab.errors import BoardError, BoardLostError, InputError
@@ -100,8 +100,8 @@ class SerialBench(Bench):
         for joint, counts in enumerate(state.counts):
             if not _BROKEN <= counts <= protocol.MAX_COUNTS - _BROKEN:
                 said = f"the potentiometer of joint {joint + 1} reads {counts / protocol.SUBCOUNTS:g} of 0..1023 counts"
-                remedy = "only a broken or shorted wire does so; the drive is off. Look at its plug and its 5 V"
-                raise BoardError(f"{said}: {remedy}")
+                off = "the drive is off" if self.cut() else cut_said(False)
+                raise BoardError(f"{said}: only a broken or shorted wire does so; {off}. Look at its plug and its 5 V")
         pace, tripped = self._run.pace, drive and bool(state.status & protocol.WATCHDOG_TRIPPED)
         pace.heard = sent
         return sent - pace.start, np.array(state.counts) / protocol.SUBCOUNTS, tripped
@@ -118,6 +118,8 @@ class SerialBench(Bench):
             # whatever happens: the board cuts by itself 0.1 s after the last command. BaseException: a second Ctrl-C
             with contextlib.suppress(BaseException):
                 self._link.stop(self._gripper)
+                return True
+        return False
 
     def _close(self):
         link, self._link = self._link, None

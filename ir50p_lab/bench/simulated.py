@@ -9,7 +9,7 @@ from ir50p_lab.bench.base import Bench, Sample
 from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
 from ir50p_lab.bench.protocol import JOINTS, LIMIT_PWM
 from ir50p_lab.bench.recorder import header_of
-from ir50p_lab.bench.runaway import push, watch_step
+from ir50p_lab.bench.runaway import UNDER, UNDER_ALARM, push, tip_height, watch_step
 from ir50p_lab.bench.set_point import FARTHEST, NOISE, checked_reference
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, read_pots
 from ir50p_lab.controllers.base import check_reference, is_compiled
@@ -56,6 +56,8 @@ def _compiled_cycles(
             if (q[i] <= low[i] and u < 0.0) or (q[i] >= high[i] and u > 0.0):
                 u = 0.0
             pwm[i] = out[k, 6 + i] = u
+        if t[k] == 0.0 and pwm.any() and tip_height(watch.numbers, q) < -UNDER:  # as `RunawayGuard.admit`
+            return k, UNDER_ALARM
     return t.size, 0
 
 
@@ -82,7 +84,7 @@ class SimulatedBench(Bench):
 
     def __init__(self, arm=None, *, unit=UNIT, seed=0, q0=None, realtime=False, name=None, **options):
         super().__init__(arm, **options)
-        self.plant = SimulatedArm(self.arm, unit, seed, q0=q0)
+        self.plant, self.table = SimulatedArm(self.arm, unit, seed, q0=q0), unit.table
         noise = "" if self.plant.noise_seed is None else f", noise {self.plant.noise_seed}"
         self.name = name or f"simulated {self.arm.name}, unit {self.plant.seed}{noise}"
         self._steps = round(self.period / STEP)
@@ -122,6 +124,7 @@ class SimulatedBench(Bench):
 
     def _cut(self):
         self._queue[:], self._pwm = 0.0, np.zeros(JOINTS)
+        return True
 
     def _close(self):
         self.plant.advance(np.zeros(JOINTS), _SINK)

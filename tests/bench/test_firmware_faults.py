@@ -9,7 +9,7 @@ import pytest
 from ir50p_lab.bench import SerialBench, protocol
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.bench.simulated_arm import SimulatedArm
-from ir50p_lab.errors import BoardLostError
+from ir50p_lab.errors import BoardLostError, InputError
 from ir50p_lab.modelling import IR50P
 from tests.emulator.virtual import VirtualBoard
 
@@ -58,6 +58,25 @@ def test_cable_pulled(board):
     board.sleep(0.2)
     assert 0.9 * WATCHDOG < off_since(board) - when < 1.1 * WATCHDOG
     assert board.pins().enable == (1, 1, 1)  # the bridges brake
+
+
+@pytest.mark.parametrize("dead", [False, True])
+def test_a_cut_is_said_only_when_the_board_has_confirmed_it(board, dead):
+    bench = bench_of(board).open()
+    for k, _ in enumerate(bench.run(1.0)):
+        if k < 20:
+            bench.drive(DRIVE)
+            continue
+        if dead:
+            board.to_board = lambda data: b""
+        with pytest.raises(InputError) as caught:
+            bench.drive((np.nan, 0, 0))
+        break
+    said = "the board has not confirmed the cut: it brakes by itself within 0.1 s" if dead else "the drive has been cut"
+    assert said in str(caught.value)
+    assert any(board.pins().pwm) == dead
+    board.sleep(0.1)
+    assert board.pins().pwm == (0, 0, 0)
 
 
 def test_board_reset_in_the_run(board):
