@@ -15,7 +15,7 @@ IN_BROWSER = sys.platform == "emscripten"
 _LACKING = {
     "cv2": "measures pictures",
     "serial": "speaks to a board",
-    "loky": "spreads sweeps over processors",
+    "loky": "spreads sweeps",
     "numba": "compiles sweeps",
 }
 
@@ -38,7 +38,7 @@ class Lacking:
         if name in _LACKING:
             needs_more(f"{name}, which {_LACKING[name]}, is not loaded")
         if name in ("pandas", "sympy"):
-            raise NotInABrowserError(f"Write 'import {name}' at the top of this cell and run it again: it loads {name}.")
+            raise NotInABrowserError(f"Write 'import {name}' at the top of this cell and run it again.")
 
 
 @functools.cache

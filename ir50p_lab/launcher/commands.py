@@ -9,6 +9,7 @@
   python3 -m ir50p_lab bench-test     first power-on of the arm, joint by joint (rehearse: bench-test simulated)
   python3 -m ir50p_lab report         your lab report: predictions, figures, functions (--name "Your Name")
   python3 -m ir50p_lab try-page       write docs/try/index.html again, README's page to try; then animation: its picture
+  python3 -m ir50p_lab site [...]     the course as a site that runs in a browser tab (--pyodide FOLDER|URL)
   python3 -m ir50p_lab update FOLDER  take over what is yours from an older copy of the course
   python3 -m ir50p_lab doctor         what is installed, what is missing, serial ports, verdict
 
@@ -46,6 +47,7 @@ _MODULES = {
     "report": "ir50p_lab.publishing.report",
     "try-page": "ir50p_lab.publishing.try_page",
     "animation": "ir50p_lab.publishing.animation",
+    "site": "ir50p_lab.publishing.site",
     "update": "ir50p_lab.course.lab_book.update",
 }
 #: What asks the launcher to end: `kill`, and a terminal that is closed (not on Windows).

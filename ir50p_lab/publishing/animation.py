@@ -3,40 +3,28 @@
 A browser without a screen plays the first view of the page, and each frame is taken from it.
 """
 
-import base64
 import io
-import shutil
 
 from PIL import Image
 from tqdm import tqdm
 
-from ir50p_lab.errors import LabError
 from ir50p_lab.home import PROJECT
-from ir50p_lab.publishing.export import BROWSERS
+from ir50p_lab.publishing.export import find_browser
 from ir50p_lab.publishing.try_page import PAGE
 
 PICTURE = PROJECT / "docs" / "arm.gif"
 _FRAMES, _SECONDS, _SIZE, _COLOURS = 60, 5.0, (720, 420), 96
 _VIEW = "document.querySelector('.la').liveArm"
-_TAKE = f"""(part) => {{
-  const view = {_VIEW};
-  view.seek(part * view.track.end);
-  view.controls.rotateLeft(0.004);
-  view.controls.update();
-  view.draw(false);
-  return view.canvas.toDataURL('image/png');
-}}"""
+_SHOW = f"(part) => {{ const view = {_VIEW}; view.seek(part * view.track.end); view.controls.rotateLeft(0.004);"
+_SHOW += " view.controls.update(); view.draw(false); }"
 
 
 def main():
     """Take the frames, turning the view a little, and write them as one GIF."""
     from playwright.sync_api import sync_playwright  # a test tool
 
-    path = next(filter(None, map(shutil.which, BROWSERS)), None)
-    if path is None:
-        raise LabError(f"no browser found: install one of {', '.join(BROWSERS)}")
     with sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        browser = driver.chromium.launch(executable_path=find_browser(), args=["--no-sandbox"])
         page = browser.new_page(viewport={"width": 1200, "height": 900})
         page.goto(PAGE.as_uri())
         page.wait_for_function(f"() => {_VIEW}?.width > 0", timeout=60_000)
@@ -49,8 +37,8 @@ def main():
 
 
 def _frame(page, part):
-    data = page.evaluate(_TAKE, part)
-    picture = Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB")
+    page.evaluate(_SHOW, part)
+    picture = Image.open(io.BytesIO(page.locator("canvas").first.screenshot())).convert("RGB")
     picture.thumbnail(_SIZE)
     return picture.quantize(_COLOURS, dither=Image.Dither.NONE)
 

@@ -17,7 +17,7 @@ from ir50p_lab.errors import InputError, LabError
 from ir50p_lab.publishing.formulas import mathml, mathml_in
 from ir50p_lab.publishing.pictures import live_arm_script, plain_outputs
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge", "microsoft-edge")
+_BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge", "microsoft-edge")
 _CSS = """
 body { font: 16px/1.55 system-ui, sans-serif; color: #222; max-width: 1080px; margin: 2em auto; padding: 0 1.5em; }
 h1, h2, h3 { line-height: 1.25; margin-top: 1.6em; }
@@ -80,10 +80,15 @@ def export(notebook, folder=".", *, run=True, pdf=True, code=True, title=None):
     written = [folder / f"{notebook.stem}.html"]
     title = title or notebook.stem
     written[0].write_text(_page(nb, title, live=True, code=code), encoding="utf-8")
-    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
+    browser = find_browser()
     if pdf and browser:
         written.append(_print(browser, _page(nb, title, live=False, code=code), folder / f"{notebook.stem}.pdf"))
     return written
+
+
+def find_browser():
+    """Path of a browser that prints and is driven without a screen, or None."""
+    return next(filter(None, map(shutil.which, _BROWSERS)), None)
 
 
 def _run(nb, notebook):

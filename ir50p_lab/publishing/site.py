@@ -1,6 +1,6 @@
 """The course as a site that runs in a browser tab (JupyterLite): `python3 -m ir50p_lab site --pyodide FOLDER|URL`.
 
-Needs `jupyterlite-core`, `jupyterlite-pyodide-kernel`, `jupyter-server` and `pyodide-lock[wheel]`, and a Pyodide with its
+Needs `jupyterlite-core`, `jupyterlite-pyodide-kernel`, `jupyter-server`, `pyodide-lock[wheel]`, and a Pyodide with its
 packages. The course's wheel and the pure packages that Pyodide has not go into its lock: `import ir50p_lab` in a cell
 then loads all it needs.
 """
@@ -15,6 +15,7 @@ import tempfile
 import urllib.request
 from pathlib import Path
 
+from ir50p_lab.errors import LabError
 from ir50p_lab.home import PROJECT
 
 NOTEBOOKS = ("00", "01", "02", "03", "08")  # which run in a tab, and in CI without numba, OpenCV, pyserial and loky
@@ -26,9 +27,12 @@ _AT_ONCE = ["ir50p-lab", "ipython", "jedi", "sqlite3", "comm"]  # fetched while 
 
 def build(pyodide, target):
     """Write the site into a folder. pyodide: folder or address, with pyodide.js and pyodide-lock.json."""
-    from pyodide_lock import PyodideLockSpec
-    from pyodide_lock.utils import add_wheels_to_spec
-
+    try:
+        from pyodide_lock import PyodideLockSpec
+        from pyodide_lock.utils import add_wheels_to_spec
+    except ImportError:
+        remedy = "pip install jupyterlite-core jupyterlite-pyodide-kernel 'pyodide-lock[wheel]'"
+        raise LabError(f"what builds the site is not in the course's environment: {remedy}") from None
     remote = pyodide.startswith("http")
     with tempfile.TemporaryDirectory() as room:
         here = Path(room)
@@ -48,11 +52,10 @@ def build(pyodide, target):
             "loadPyodideOptions": {"packages": _AT_ONCE, "lockFileURL": "./static/pyodide/pyodide-lock.json"},
             "disablePyPIFallback": True,
         }
-        plugin = {"@jupyterlite/pyodide-kernel-extension:kernel": kernel}
-        data = {"appName": "IR50P lab book", "litePluginSettings": plugin, "exposeAppInBrowser": True}
-        text = json.dumps({"jupyter-lite-schema-version": 0, "jupyter-config-data": data})
-        (here / "jupyter-lite.json").write_text(text, encoding="utf-8")
-        contents(here / "files")
+        data = {"litePluginSettings": {"@jupyterlite/pyodide-kernel-extension:kernel": kernel}}
+        settings = {"jupyter-lite-schema-version": 0, "jupyter-config-data": data | {"exposeAppInBrowser": True}}
+        (here / "jupyter-lite.json").write_text(json.dumps(settings), encoding="utf-8")
+        _contents(here / "files")
         lite = [sys.executable, "-m", "jupyterlite_core", "build", "--contents", "files", "--no-sourcemaps"]
         subprocess.run([*lite, "--output-dir", str(Path(target).resolve())], cwd=here, check=True)
 
@@ -66,22 +69,18 @@ def _wheels(folder, known):
     shutil.rmtree("build/wheel/share", ignore_errors=True)
     own = folder / buildapi.build_wheel(str(folder))
     missing = [name for name in _PURE if name.replace("_", "-") not in known]
-    pure = ["--no-deps", "--only-binary", ":all:", "--platform", "any", "--implementation", "py", "--abi", "none"]
-    pip = [sys.executable, "-m", "pip", "download", "--quiet", *pure, "-d", str(folder)]
-    subprocess.run([*pip, *missing], check=True)
+    pure = "--no-deps --only-binary :all: --platform any --implementation py --abi none".split()
+    subprocess.run([sys.executable, "-m", "pip", "download", *pure, "-d", str(folder), *missing], check=True)
     return [own, *(next(folder.glob(f"{name}-*-none-any.whl")) for name in missing)]
 
 
-def contents(folder):
-    """Write notebooks and the data that they need, side by side as in the project."""
-    for name in ("notebooks", "data"):
-        (folder / name).mkdir(parents=True)
-    for path in (PROJECT / "notebooks").glob("[0-9]*.ipynb"):
-        if path.name[:2] in NOTEBOOKS:
-            shutil.copy(path, folder / "notebooks")
-    for name in _DATA:
-        source = PROJECT / "data" / name
-        (shutil.copytree if source.is_dir() else shutil.copy)(source, folder / "data" / name)
+def _contents(folder):
+    """Notebooks and the data that they need, side by side as in the project."""
+    pages = [path for path in (PROJECT / "notebooks").glob("[0-9]*.ipynb") if path.name[:2] in NOTEBOOKS]
+    for source in (*pages, *(PROJECT / "data" / name for name in _DATA)):
+        target = folder / source.relative_to(PROJECT)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        (shutil.copytree if source.is_dir() else shutil.copy)(source, target)
 
 
 def main():

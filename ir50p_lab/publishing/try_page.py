@@ -18,8 +18,7 @@ _SOURCES = (NOTEBOOK, BUNDLE, Path(pages.__file__), Path(pictures.__file__))
 
 def fingerprint():
     """A number of what the page is made from: its notebook, the view of the arm, and how pages are written."""
-    texts = (path.read_text(encoding="utf-8") for path in _SOURCES)  # without the line ends of the system
-    return hashlib.sha256("\0".join(texts).encode()).hexdigest()
+    return hashlib.sha256("".join(path.read_text("utf-8") for path in _SOURCES).encode()).hexdigest()
 
 
 def main():

@@ -37,7 +37,7 @@ class MiniProject:
         self.stamp = self.venv / "ir50p_lab-setup.json"
         (root / "ir50p_lab").mkdir(parents=True)
         package = PROJECT / "ir50p_lab"
-        for name in ("__init__.py", "__main__.py", "home.py"):
+        for name in ("__init__.py", "__main__.py", "home.py", "browser_tab.py", "errors.py"):
             shutil.copy(package / name, root / "ir50p_lab")
         shutil.copytree(package / "launcher", root / "ir50p_lab" / "launcher", ignore=shutil.ignore_patterns("*.pyc"))
         tools = "".join(f"{name}=={importlib.metadata.version(name)}\n" for name in ("flit-core", "uv"))

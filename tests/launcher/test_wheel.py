@@ -31,7 +31,7 @@ def program(tmp_path_factory):
         shutil.copytree(one, source / name, ignore=leave) if one.is_dir() else shutil.copy(one, source)
     (source / "notebooks" / "my_robot").mkdir(exist_ok=True)
     (source / "notebooks" / "my_robot" / "_rot_z.py").write_text("mine = True")
-    path = {"PYTHONPATH": str(source / "ir50p_lab" / "publishing")}
+    path = {"PYTHONPATH": str(source / "ir50p_lab" / "launcher")}
     built = subprocess.run(
         [sys.executable, "-c", BUILD, str(room)], cwd=source, env=os.environ | path, capture_output=True, text=True
     )

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from notebook_runner import NOTEBOOKS, ROOT, run_notebook
 
-HERE = ("00", "01", "02", "03", "08")  # notebooks that run in a tab
+from ir50p_lab.publishing.site import NOTEBOOKS as NOTEBOOKS_OF_THE_TAB
+
 LACKING = {"PYTHONPATH": f"{ROOT / 'tests' / 'browser_tab'}{os.pathsep}{ROOT}"}
 NUMBERS = """
 import numpy as np
@@ -34,7 +35,9 @@ np.save({!r}, np.concatenate([np.ravel(one) for one in kept]))
 
 
 @pytest.mark.notebook
-@pytest.mark.parametrize("path", [path for path in NOTEBOOKS if path.name[:2] in HERE], ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", [path for path in NOTEBOOKS if path.name[:2] in NOTEBOOKS_OF_THE_TAB], ids=lambda path: path.stem
+)
 def test_a_notebook_runs_without_what_a_browser_lacks(path, tmp_path):
     notebook = nbformat.read(path, as_version=4)
     run = run_notebook(notebook, timeout=120, variables=LACKING | {"IR50P_HOME": str(tmp_path)}, push=False)
