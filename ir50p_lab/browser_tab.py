@@ -15,8 +15,7 @@ IN_BROWSER = sys.platform == "emscripten"
 _LACKING = {
     "cv2": "measures pictures",
     "serial": "speaks to a board",
-    "loky": "spreads sweeps",
-    "numba": "compiles sweeps",
+    **dict.fromkeys(("loky", "numba"), "makes sweeps quick"),
 }
 
 

@@ -25,10 +25,10 @@ def main():
 
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=find_browser(), args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 1200, "height": 900})
+        page = browser.new_page(viewport={"width": 768, "height": 900})
         page.goto(PAGE.as_uri())
         page.wait_for_function(f"() => {_VIEW}?.width > 0", timeout=60_000)
-        page.evaluate(f"() => {{ {_VIEW}.parts.side.hidden = true; {_VIEW}.soon(); }}")
+        page.evaluate(f"() => {{ {_VIEW}.soon = () => {{}}; }}")  # no coarse pictures between
         frames = [_frame(page, k / (_FRAMES - 1)) for k in tqdm(range(_FRAMES), desc="frames")]
         browser.close()
     last = [int(1000 * _SECONDS / _FRAMES)] * (_FRAMES - 1) + [2000]  # ms; it rests at its end

@@ -24,18 +24,15 @@ output.enable_custom_widget_manager()"""
 
 
 def write(folder):
-    """Write a copy of each notebook into a folder; return their paths."""
+    """Write a copy of each notebook into a folder."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     address = tomllib.loads((PROJECT / "pyproject.toml").read_text("utf-8"))["project"]["urls"]["Repository"]
-    written = []
-    for path in sorted((PROJECT / "notebooks").glob("[0-9A][0-9]_*.ipynb")):
+    for path in (PROJECT / "notebooks").glob("[0-9A][0-9]_*.ipynb"):
         notebook = nbformat.read(path, as_version=4)
         notebook.cells.insert(0, nbformat.v4.new_code_cell(_FIRST.format(address=address), id="colab-00"))
-        written.append(folder / path.name)
-        nbformat.write(notebook, written[-1])
-    return written
+        nbformat.write(notebook, folder / path.name)
 
 
 if __name__ == "__main__":
-    print(*write(sys.argv[1]), sep="\n")
+    write(sys.argv[1])

@@ -93,7 +93,8 @@ def test_other_places_install_from_the_lock_and_take_the_pythons_of_the_project(
 
 
 def test_copies_for_colab_are_the_notebooks_behind_a_first_cell(tmp_path):
-    for path in colab.write(tmp_path):
+    colab.write(tmp_path)
+    for path in tmp_path.iterdir():
         first, *rest = nbformat.read(path, as_version=4).cells
         assert "git clone" in first.source and "ir50p-lab.git" in first.source
         assert rest == nbformat.read(PROJECT / "notebooks" / path.name, as_version=4).cells

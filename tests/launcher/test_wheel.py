@@ -13,6 +13,7 @@ from ir50p_lab.home import PROJECT
 
 CARRIED = [
     "ir50p_lab",
+    "wheel_build",
     "notebooks",
     "data",
     "docs",
@@ -31,7 +32,7 @@ def program(tmp_path_factory):
         shutil.copytree(one, source / name, ignore=leave) if one.is_dir() else shutil.copy(one, source)
     (source / "notebooks" / "my_robot").mkdir(exist_ok=True)
     (source / "notebooks" / "my_robot" / "_rot_z.py").write_text("mine = True")
-    path = {"PYTHONPATH": str(source / "ir50p_lab" / "launcher")}
+    path = {"PYTHONPATH": str(source / "wheel_build")}
     built = subprocess.run(
         [sys.executable, "-c", BUILD, str(room)], cwd=source, env=os.environ | path, capture_output=True, text=True
     )
