@@ -1,10 +1,11 @@
 """The file of a recording: lines `# key: value`, a line of column names, one line per sample; a spreadsheet opens it.
 
 t in s; q and r (the reference) in rad; counts of the 10-bit converter; u in PWM counts; gripper 1 closed, 0 open;
-missed: cycles late so far. An empty cell is a value that is not known. Tables of other programs are read by pandas, and
-made a recording by `Recording.from_arrays`.
+missed: cycles late so far. An empty cell is a value that is not known. A spreadsheet may save it with semicolons or
+tabs, and decimal commas. Tables of other programs are read by pandas, and made a recording by `Recording.from_arrays`.
 """
 
+import contextlib
 import math
 import re
 from operator import itemgetter
@@ -18,7 +19,8 @@ FORMAT = "ir50p_lab recording"
 COLUMNS = tuple("t q1 q2 q3 counts1 counts2 counts3 u1 u2 u3 r1 r2 r3 gripper missed".split())
 T, Q, COUNTS, U, R, GRIPPER, MISSED = 0, slice(1, 4), slice(4, 7), slice(7, 10), slice(10, 13), 13, 14
 _ROW = ",".join(4 * ("%.6f",) + 6 * ("%g",) + 3 * ("%.6f",) + 2 * ("%.0f",)) + "\n"
-_FOREIGN = "a spreadsheet has to save it with commas and decimal points; for others: pandas, Recording.from_arrays"
+_FOREIGN = "for tables of other programs: pandas, Recording.from_arrays"
+_PADDING = ',; "\t'  # what spreadsheets pad and quote lines with
 _EVENT = re.compile(r"[ \"]*#\W*event: (-?[\d.]+) s: (.*)")
 _UNITS = "t s; q rad; counts of the 10-bit converter; u PWM counts; r (reference) rad; gripper 1 closed; missed cycles"
 
@@ -80,40 +82,60 @@ def read(path):
     Raises RecordingError that names the file, the line, what is wrong there, and the remedy.
     """
     try:
-        data = Path(path).read_bytes().rstrip(b"\0")  # a power cut can leave zeros at the end
+        data = Path(path).read_bytes()
     except OSError as error:
         raise RecordingError(f"cannot read the recording {path}: {error.strerror}; check the path") from None
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")
-    lines, header, rows, places, events, cut, named = text.splitlines(), {}, [], [], [], None, False
+    text = _decoded(data).rstrip("\0")  # a power cut can leave zeros at the end
+    lines, header, rows, places, events, cut, separator = text.splitlines(), {}, [], [], [], None, ""
     for number, line in enumerate(lines, 1):
         place = f"{path}, line {number}"
-        bare = line.strip(', "\t')  # without what spreadsheets pad and quote it with
+        bare = line.strip(_PADDING)
         if number == len(lines) and not text.endswith(("\n", "\r")):
             cut = number
         elif found := _EVENT.match(line):
-            events.append((_number(found[1], place), _as_written(found[2].rstrip(', "\t'))))
+            events.append((_number(found[1], place), _as_written(found[2].rstrip(_PADDING))))
         elif bare.startswith("#"):  # at the end stand statistics
             key, colon, value = bare.lstrip("# ").partition(":")
             header |= {key.strip(): _as_written(value)} if colon else {}
-        elif bare and not named:
-            named = bare == ",".join(COLUMNS)
-            if not named:
+        elif bare and not separator:
+            names = bare.replace('"', "")
+            separator = names[1:2]
+            if separator not in (",", ";", "\t") or names != separator.join(COLUMNS):
                 raise RecordingError(f"{place}: {bare[:60]!r} where the columns of a recording stand; {_FOREIGN}")
         elif bare:  # else an empty line of a spreadsheet
-            rows.append(_read_row(line, place))
+            rows.append(_read_row(line, separator, place))
             places.append(place)
-    if not named:
+    if not separator:
         raise RecordingError(f"{path} ends before its first sample: the run was stopped as it began; record again")
     table = np.array(rows).reshape(-1, len(COLUMNS))
     check(table, places)
+    _check_unit_of_time(path, header, table[:, T])
     return {key: value for key, value in header.items() if key not in (FORMAT, "units")}, table, tuple(events), cut
 
 
-def _read_row(line, place):
-    cells = line.split(",")
+def _decoded(data):
+    for encoding in ("utf-16",) if data.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "latin-1"):
+        with contextlib.suppress(UnicodeDecodeError):
+            return data.decode(encoding)
+    return ""
+
+
+def _check_unit_of_time(path, header, t):
+    """Refuse times that are far from the period in the head: milliseconds, minutes."""
+    try:
+        step = np.median(np.diff(t)) if len(t) > 1 else math.nan
+        ratio = step / float(header["period_s"])
+    except (KeyError, ValueError, ZeroDivisionError):
+        return
+    if ratio > 30 or 0 < ratio < 1 / 30:  # no loop is late all the time by so much
+        said = f"{path}: t goes up by {step:g} a line, but period_s: {header['period_s']} in its head"
+        raise RecordingError(f"{said}: t is in s (were they milliseconds? Divide by 1000), or correct the head")
+
+
+def _read_row(line, separator, place):
+    cells = line.split(separator)
+    if separator != ",":
+        cells = [cell.replace(",", ".") for cell in cells]  # decimal commas
     if len(cells) < len(COLUMNS) or "".join(cells[len(COLUMNS) :]).strip():  # a spreadsheet may add empty ones
         said = f"{place}: {len(cells)} values for {len(COLUMNS)} columns"
         raise RecordingError(f"{said} (cut off, or decimal commas?); repair or delete that line")
@@ -123,7 +145,7 @@ def _read_row(line, place):
 def _number(cell, place):
     """A cell as a number; NaN for an empty one."""
     try:
-        return float(cell.strip() or "nan")
+        return float(cell.strip(' "') or "nan")
     except ValueError:
         raise RecordingError(f"{place}: {cell.strip()!r} is no number; repair or delete that line") from None
 

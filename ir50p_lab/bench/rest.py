@@ -12,15 +12,20 @@ _MARGIN = 0.03  # rad kept from the end stops: the host and the board cut drive 
 _SPEED = 0.5  # rad/s on the trajectory to the rest pose: joint 2 follows it against gravity at 12 V; at 0.8 it lags
 
 
-@cache
 def rest_pose(arm):
     """The lowest pose in which stiction and end stops hold the arm against gravity, (3,) rad.
 
     Of the poses within the joint limits that keep elbow and tip off the table (height 0): joint 1 in the middle of its
     travel, joints 2 and 3 by search over a grid. Gravity may use 70 % of the breakaway torque; an end stop holds where
-    gravity presses the joint against it. If no pose is held, the one that is nearest to it.
+    gravity presses the joint against it. If no pose is held, the one that is nearest to it. A
+    payload changes nothing: it is taken up there.
     Args: arm: Arm. Returns: read-only array (3,).
     """
+    return _rest_pose(arm.bare or arm)
+
+
+@cache
+def _rest_pose(arm):
     low, high = (np.clip(limit, -np.pi, np.pi) for limit in (arm.q_min, arm.q_max))
     low, high = low + _MARGIN, high - _MARGIN
     q2, q3 = np.meshgrid(np.linspace(low[1], high[1], 81), np.linspace(low[2], high[2], 81), indexing="ij")

@@ -48,6 +48,7 @@ def passive_regressor(gravity, q2, q3, qd, qd_r, qdd_r, signs, out):
 def adaptive_step(p, s, t, q, r, u):
     """One sample: reads parameters p, state s, time t, measured q (3,), reference r (3, 3); writes s and u (3,)."""
     dt = law.elapsed(p, s, t)
+    learning = min(dt, 10 * p[law.PERIOD])
     if s[law.STARTED] == 0.0:
         s[THETA:Y] = p[law.THETA : law.N_PARAMETERS]
     law.measure_error(p, s, q, r, dt)
@@ -71,6 +72,6 @@ def adaptive_step(p, s, t, q, r, u):
         # small: noise, nothing to learn from; limited: the arm does not get what the law asked for
         if abs(slide) > p[DEAD_BAND + i] and abs(command) <= p[law.LIMIT + i]:
             for k in range(20 * i, 20 * i + 20):
-                learnt = s[THETA + k] - dt * p[GAMMA + k] * s[Y + k] * slide
+                learnt = s[THETA + k] - learning * p[GAMMA + k] * s[Y + k] * slide
                 s[THETA + k] = min(max(learnt, p[LOWER + k]), p[UPPER + k])
     s[law.TIME], s[law.STARTED] = t, 1.0

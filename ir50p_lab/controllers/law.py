@@ -21,10 +21,10 @@ BUMP, GROWTH, N_STATES = 20, 23, 26
 
 @jit()
 def elapsed(p, s, t):
-    """s since the last sample: the period, unless the cycle was late or early (then its true length, within limits)."""
+    """s since the last sample: the period, unless the cycle was late or early (then its true length)."""
     dt = p[PERIOD]
     if s[STARTED] > 0.0 and abs(t - s[TIME] - dt) > 1e-6 * dt:
-        dt = min(max(t - s[TIME], 0.0), 10 * p[PERIOD])
+        dt = max(t - s[TIME], 0.0)
     return dt
 
 
@@ -114,7 +114,7 @@ def law_step(p, s, t, q, r, u):
     dt = elapsed(p, s, t)
     measure_error(p, s, q, r, dt)
     for i in range(3):
-        s[GROWTH + i] = p[KI + i] * s[ERROR + i] * dt
+        s[GROWTH + i] = p[KI + i] * s[ERROR + i] * min(dt, 10 * p[PERIOD])  # what happened in a pause is not known
     if p[MODE] != PID:
         fade = math.exp(-p[FADE_RATE] * dt)
         for i in range(3):

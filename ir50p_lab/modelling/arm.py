@@ -61,6 +61,8 @@ class Arm:
     q_max: tuple = field(default=(np.inf, np.inf, np.inf), metadata={"comment": "rad"})
     g: float = field(default=9.81, metadata={"comment": "m/s^2"})
 
+    bare = None  # of an arm with a payload: the arm without it
+
     def __post_init__(self):
         if not isinstance(self.name, str) or "$" in self.name:
             raise ArmError(f"name = {self.name!r}: give a text without $, which figures take for mathematics")
@@ -200,13 +202,15 @@ class Arm:
         total = m3 + mass
         centre = (m3 * lc3 + mass * l3) / total
         more = m3 * lc3**2 + mass * l3**2 - total * centre**2  # Steiner, both parts
-        return dataclasses.replace(
+        loaded = dataclasses.replace(
             self,
             m=(*self.m[:2], total),
             lc=(*self.lc[:2], centre),
             Iyy=(*self.Iyy[:2], self.Iyy[2] + more),
             Izz=(*self.Izz[:2], self.Izz[2] + more),
         )
+        object.__setattr__(loaded, "bare", self.bare or self)
+        return loaded
 
     def save(self, path):
         """Write the arm to `path` as TOML, with units in comments. Read it back with Arm.load."""

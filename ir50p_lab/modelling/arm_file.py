@@ -40,7 +40,7 @@ def read_arm(cls, path):
     known (with the known ones), or describes an impossible arm.
     """
     try:
-        data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        data = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise ArmError(f"cannot read the arm file {path}: {error.strerror}; check the path or IR50P_ARM") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:

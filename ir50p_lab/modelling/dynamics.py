@@ -147,7 +147,7 @@ def inverse_dynamics(arm, q, qd, qdd, *, g=None):
 def _forward(theta, gravity, q, qd, tau, qdd):
     a, b, c = qd
     qdd[0], qdd[1], qdd[2], det = cf.forward(theta, gravity, q[1], q[2], a, b, c, tau[0], tau[1], tau[2])
-    if not abs(det) > 0.0:
+    if det == 0.0:
         raise InputError(
             "the mass matrix is singular: a joint moves no inertia. Give the links inertia, or the motors rotor inertia"
         )

@@ -69,9 +69,10 @@ def evaluate(kernel, constants, check=None, /, **vectors):
         result = kernel()(*constants, *vectors.values())
         if type(result) is np.ndarray:
             return result
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, SystemError, FloatingPointError, RuntimeWarning):  # as NumPy is told to warn
         pass
-    return kernel()(*(check() if check else constants), *same_shape(**vectors))
+    with np.errstate(all="ignore"):
+        return kernel()(*(check() if check else constants), *same_shape(**vectors))
 
 
 def same_shape(**vectors):

@@ -208,6 +208,47 @@ def test_what_a_spreadsheet_saved_again(tmp_path):
     assert loaded.header == {"note": "a, b"} and loaded.events == [(0.015, "kp = 2, ki = 3")]
 
 
+def saved_again(text, separator, encoding, quote=""):
+    """The file as a spreadsheet with decimal commas saves it: lines of the head padded, another separator."""
+    lines = []
+    for line in text.splitlines():
+        cells = (
+            [line] if line.startswith("#") else [f"{quote}{cell.replace('.', ',')}{quote}" for cell in line.split(",")]
+        )
+        lines.append(separator.join(cells + [""] * (len(COLUMNS) - len(cells))))
+    return ("\r\n".join(lines) + "\r\n").encode(encoding)
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+@pytest.mark.parametrize("quote", ["", '"'])
+def test_what_a_spreadsheet_with_decimal_commas_saved_again(tmp_path, separator, encoding, quote):
+    run = fill(Recorder(HEAD, tmp_path), 30)
+    text = (lambda path: path.read_text(encoding="utf-8"))(run.save(tmp_path / "run.csv"))
+    loaded = Recording.load(file_of(tmp_path, saved_again(text, separator, encoding, quote)))
+    same(run, loaded)
+    assert loaded.simulated and loaded.period == run.period
+
+
+@pytest.mark.parametrize(
+    ("was", "became"), [("0,500000", "1.500.000"), ("0,500000", "01. Mai"), ("0,500000", "0,5 0,2")]
+)
+def test_what_a_spreadsheet_spoilt_is_named(tmp_path, was, became):
+    text = ours(*(f"{k / 100:.2f},0.500000,{ROW.split(',', 1)[1]}" for k in range(5)))
+    spoilt = saved_again(text, ";", "utf-8").decode().replace(was, became, 1)
+    with pytest.raises(RecordingError, match=r"line 4: .* is no number; repair"):
+        Recording.load(file_of(tmp_path, spoilt))
+
+
+@pytest.mark.parametrize("unit", [1e3, 1e6, 1 / 60])
+def test_times_in_another_unit_than_the_head_says_are_refused(tmp_path, unit):
+    for begin in (0.0, 7.0):
+        rows = [f"{unit * (begin + k / 100):.7f},{ROW}" for k in range(20)]
+        head = "# period_s: 0.01\n" + ",".join(COLUMNS) + "\n"
+        with pytest.raises(RecordingError, match=r"period_s: 0.01 in its head: t is in s"):
+            Recording.load(file_of(tmp_path, head + "\n".join(rows) + "\n"))
+
+
 def test_what_is_not_known_is_an_empty_cell(tmp_path):
     loaded = Recording.load(file_of(tmp_path, f"{','.join(COLUMNS)}\n0,1,1,1{',' * 11}\n1,1,1,1{',' * 11}\n"))
     assert np.isnan(loaded.u).all() and np.isnan(loaded.counts).all() and np.isnan(loaded.missed).all()

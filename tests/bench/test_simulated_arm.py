@@ -1,5 +1,7 @@
 """The simulated arm: each thing that hurts on a real one, by itself, against a value known from elsewhere."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -151,3 +153,11 @@ def test_an_arm_that_cannot_stand_at_zero_starts_at_rest():
 
     arm = dataclasses.replace(IR50P, q_min=(-1, 0.2, -2), q_max=(1, 1.5, -0.1))
     np.testing.assert_array_equal(SimulatedArm(arm).q_true, rest_pose(arm))
+
+
+@pytest.mark.parametrize("mass", [0.1, 0.3, 0.5])
+def test_a_payload_is_taken_up_in_the_rest_pose_of_the_bare_arm(mass):
+    loaded = IR50P.with_payload(mass)
+    np.testing.assert_array_equal(rest_pose(loaded), rest_pose(IR50P))
+    np.testing.assert_array_equal(rest_pose(loaded.with_payload(0.1)), rest_pose(IR50P))
+    assert pickle.loads(pickle.dumps(loaded)).bare == IR50P

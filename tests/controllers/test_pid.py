@@ -138,6 +138,14 @@ def test_reset_forgets():
     assert (run(pid, np.ones((20, 3))) == first).all()
 
 
+@pytest.mark.parametrize("pause", [0.005, 0.02, 0.15, 0.45, 2.0])
+def test_after_a_pause_the_speed_is_taken_over_its_true_length(pause):
+    pid = PID(kp=0, kd=1, ki=1, filter_hz=np.inf)
+    pid.step(0.0, ZERO, hold(0, 0, 0))
+    u = pid.step(pause, np.full(3, 0.3), hold(0, 0, 0))
+    np.testing.assert_allclose(u, -0.3 / pause - 0.3 * min(pause, 0.1), rtol=1e-9)  # the integral counts ten periods
+
+
 def test_a_late_cycle_is_integrated_over_its_true_length():
     pid = PID(kp=(0, 0, 0), ki=(1, 1, 1))
     pid.step(0.0, ZERO, hold(1, 1, 1))

@@ -206,3 +206,10 @@ def test_impossible_motors_are_refused(field):
     bad = -value if np.ndim(value) == 0 else (value[0], -value[1], value[2])
     with pytest.raises(ArmError, match=field):
         replace(IR50P.actuators, **{field: bad})
+
+
+def test_a_file_saved_by_an_editor_of_windows_is_read(tmp_path):
+    IR50P.save(tmp_path / "arm.toml")
+    text = (tmp_path / "arm.toml").read_text(encoding="utf-8")
+    (tmp_path / "arm.toml").write_bytes(text.replace("\n", "\r\n").encode("utf-8-sig"))
+    assert Arm.load(tmp_path / "arm.toml") == IR50P

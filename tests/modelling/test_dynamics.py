@@ -1,5 +1,7 @@
 """The equations of motion: against MuJoCo, against the corrected thesis' numbers, and by their own invariants."""
 
+import warnings
+
 import mujoco
 import numpy as np
 import pandas as pd
@@ -185,3 +187,14 @@ def test_our_sine_and_cosine_are_right_to_the_last_bits():
     x = np.concatenate([np.random.default_rng(0).uniform(-50, 50, 2000), np.arange(-40, 41) * np.pi / 4, [0.0, 1e6]])
     found = np.array([closed_form.sincos(value) for value in x])
     np.testing.assert_allclose(found, np.stack([np.sin(x), np.cos(x)], axis=1), rtol=0, atol=3e-16)
+
+
+@pytest.mark.parametrize("seen", ["ignore", "warn", "raise"])
+def test_a_run_that_diverges_ends_in_a_sentence_whatever_numpy_warns_of(seen):
+    for filtered in ("ignore", "error"):
+        warnings.simplefilter(filtered)
+        for huge in (1e160, 1e300):
+            with np.errstate(all=seen), pytest.raises(InputError, match="not finite"):
+                forward_dynamics(IR50P, (0, 0.3, 1), (huge, huge, 0), (0, 0, 0))
+            with np.errstate(all=seen), pytest.raises(InputError, match="not finite"):
+                inverse_dynamics(IR50P, np.ones((4, 3)), np.full((4, 3), huge), np.zeros((4, 3)))
