@@ -5,6 +5,7 @@ import inspect
 
 import numpy as np
 
+from ir50p_lab.course.checking.forms import no_numbers
 from ir50p_lab.course.checking.stops import why_it_stops
 from ir50p_lab.course.checking.task import Failed, is_run, shown
 
@@ -40,10 +41,22 @@ def guarded(do, case=str):
     try:
         with np.errstate(all="ignore"):
             return do()
+    except Failed:
+        raise
     except KeyboardInterrupt as stop:
         raise Failed("it was stopped: does a loop in it never end?", case()) from stop
     except Exception as error:
         raise Failed(why_it_stops(error), case()) from error
+
+
+def array_like(expected, function, *arguments):
+    """What a function in a view gives, as an array like the one expected; dots count as 0. Raises Failed."""
+    returned = guarded(lambda: function(*arguments), lambda: f"for {', '.join(map(shown, arguments))}")
+    if isinstance(returned, np.ndarray) and returned.dtype == object:
+        returned = np.where(returned == ..., 0, returned)
+    if says := no_numbers(returned, expected):
+        raise Failed(f"{function.__name__}: {says}")
+    return np.array(returned, dtype=float)
 
 
 def _untouched(before, after):

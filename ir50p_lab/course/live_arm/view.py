@@ -12,6 +12,10 @@ import numpy as np
 import traitlets
 
 from ir50p_lab.browser_tab import IN_BROWSER, needs_more
+from ir50p_lab.course.checking.calling import guarded
+from ir50p_lab.course.checking.forms import no_numbers
+from ir50p_lab.course.checking.note import Note, show
+from ir50p_lab.course.checking.task import Failed
 from ir50p_lab.course.draw.arm3d import ArmView
 from ir50p_lab.course.draw.painter import DRAWING, Painter
 from ir50p_lab.course.draw.style import COLOURS, new_figure
@@ -52,7 +56,7 @@ class LiveArm(anywidget.AnyWidget):
         height: CSS pixels; sliders: of the joints; readout: where the tip is, in numbers (the menu has a switch too).
 
     Attributes: q, list of rad, in both directions; layers.
-    `play(run)` shows a motion. Raises InputError for what cannot be drawn, and what `frames` raises at first.
+    `play(run)` shows a motion. Raises InputError for what cannot be drawn, ; frames that are none are said.
     """
 
     _esm = BUNDLE.parents[1] / "loader.js"
@@ -88,7 +92,7 @@ class LiveArm(anywidget.AnyWidget):
             layers=[*layers, *(["ball"] if ball else [])],
         )
         if frames is not None:
-            self._pose(self.q)
+            self._begin()
         self.on_msg(self._heard)
 
     def play(self, *runs, labels=None, speed=1.0, loop=False):
@@ -116,10 +120,18 @@ class LiveArm(anywidget.AnyWidget):
         self.q = [float(v) for v in runs[0].q[0]]
         self.track = rows
 
+    def _begin(self):
+        """Draw the arm by its own frames; if they are none, say so as `check` does, and draw it by the course's."""
+        try:
+            self._pose(self.q)
+        except Failed as stopped:
+            self._frames, self.options = None, self.options | {"badge": "the course's"}
+            show(Note("slip", "the arm below is the course's", stopped.args[0]))
+
     def _pose(self, q):
-        T = np.asarray(self._frames(np.array(q)), dtype=float)
-        if T.shape != (4, 4, 4):
-            raise InputError(f"frames of shape {T.shape}: give (4, 4, 4), the transforms of frames 0 to 3")
+        T = guarded(lambda: self._frames(np.array(q)))
+        if says := no_numbers(np.nan_to_num(T) if np.shape(T) == (4, 4, 4) else T, np.zeros((4, 4, 4))):
+            raise Failed(f"of frames 0 to 3: {says}")
         self.poses = np.where(np.isfinite(T), T, None).tolist()
 
     def _follow(self, source, stop):

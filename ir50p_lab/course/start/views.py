@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ir50p_lab.course.checking.calling import array_like
 from ir50p_lab.course.draw import sketch
 from ir50p_lab.course.draw.style import COLOURS, subplots
 from ir50p_lab.modelling.chain import frames
@@ -32,8 +33,8 @@ def turned_by(arm, rot_z):
     """
 
     def with_own_waist(q):
-        waist, R = np.eye(4), np.asarray(rot_z(q[0]))
-        waist[:3, :3] = np.where(R == ..., 0, R)
+        waist = np.eye(4)
+        waist[:3, :3] = array_like(np.eye(3), rot_z, q[0])
         level = frames(arm, [0.0, q[1], q[2]])
         return np.array([np.eye(4), *(waist @ T for T in level[1:])])
 

@@ -19,7 +19,7 @@ from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course import live_arm
 from ir50p_lab.course.live_arm import LiveArm
-from ir50p_lab.course.live_arm.view import pack
+from ir50p_lab.course.live_arm.view import pack, still_png
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import IR50P, forward_kinematics, frames
 from ir50p_lab.signals import hold, quintic
@@ -209,6 +209,17 @@ def until(true, seconds=10):
 
 
 @pytest.mark.parametrize("wrong", [None, np.zeros((3, 4, 4)), np.zeros((4, 16))])
-def test_frames_of_another_shape_are_named_at_once(wrong):
-    with pytest.raises(InputError, match=r"give \(4, 4, 4\)"):
-        LiveArm(IR50P, frames=lambda q: wrong)
+def test_frames_of_another_shape_are_said_and_the_course_draws(wrong, capsys):
+    view = LiveArm(IR50P, frames=lambda q: wrong)
+    said = capsys.readouterr().out
+    assert "of frames 0 to 3: " in said and "the arm below is the course's" in said
+    assert view.poses == [] and view.options["badge"] == "the course's"
+    still_png(view)
+
+
+def test_a_function_that_stops_is_said_in_a_sentence(capsys):
+    def stops(q):
+        return q["no"]
+
+    LiveArm(IR50P, frames=stops)
+    assert "the arm below is the course's" in capsys.readouterr().out
