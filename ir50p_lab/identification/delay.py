@@ -41,7 +41,8 @@ def estimate_delay(recording, q=None, u=None, *, cutoff_hz=3.0, slow=0.1):
     friction.
 
     Args: recording, or t, q, u: of three joints. cutoff_hz, slow: as in `process`.
-    Returns: DelayEstimate. Raises: InputError on bad arguments; IdentificationError if too little motion is left.
+    Returns: DelayEstimate; a delay at a bound, 0 or 0.15 s, is named, its error is inf. Raises: InputError on bad
+    arguments; IdentificationError if too little motion is left.
     """
     t, q, u = columns_of(recording, q, u)
     step = sampling_period(t)

@@ -106,7 +106,8 @@ def output_error(
         recorded, differentiated); controller: of the run, a compiled one such as PID. delay: s, to whole periods.
         l2: m, keeps theta6 = l2 theta4. seconds: s that are used. iterations: at most. progress: show a bar.
 
-    Returns: OutputError. Raises InputError on bad arguments; IdentificationError if the first model's loop runs away.
+    Returns: OutputError. What is left at a bound (0; qs 0.005 and 0.5 rad/s) is named, its error is inf. Raises
+    InputError on bad arguments; IdentificationError if the first model's loop runs away.
     """
     theta, _ = as_theta(getattr(estimate, "theta", estimate))
     if getattr(estimate, "unit", "PWM") != "PWM":

@@ -31,7 +31,8 @@ def identify(
     4. `fit` joint by joint, inertial and friction terms >= 0, and theta6 = l2 theta4 if l2 is given.
 
     Args:
-        recordings: a Recording (t, q, u), or a list of them: other motions, or another load of work for the same arm.
+        recordings: a Recording (t, q, u), or a list of them: other motions of the same arm under the same load. One
+            that contradicts the others is named, and the errors reach to what each says.
         l2: upper arm, m, or None. delay: s from a sample to the moment its u acts. slow: rad/s.
         method: "bounded", or another of `fit` that needs neither weights nor instruments.
         cutoff_hz: Hz, above the frequencies of the motion; held: as in `process`; unit: of u.
@@ -42,8 +43,8 @@ def identify(
     themselves or Stribeck friction matter, go on with `output_error`.
 
     Returns: Estimate, whose `score` processes other recordings in the same way.
-    Raises: InputError, IdentificationError as `process` and `fit` do, and if a joint is constant, its angle wrapped or
-    clipped. Angles that look like degrees, and a u that is often at its limit, are in `warnings`.
+    Raises: InputError, IdentificationError as `process` and `fit` do, and if a joint is constant, its angle clipped,
+    or its angle or u wrapped. Angles that look like degrees, and a u that is often at its limit, are in `warnings`.
     """
     recordings = list(recordings) if isinstance(recordings, (list, tuple)) else [recordings]
     if not recordings:

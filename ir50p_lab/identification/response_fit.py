@@ -87,6 +87,7 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
 
     Returns: FOPDT. K is negative where y goes down after a step up. `warnings` tells of a response that is not over
     when the record ends (T is longer), of T or L below the sampling period (its error is then inf or a period), of
+    an L at a bound of the search, 0 or nearly the whole record (its error is then inf), of
     correlated residuals, drift, another shape, times that look like milliseconds, and single outliers of u and y (those
     of y are left out).
 

@@ -107,8 +107,9 @@ def fit_joint(
     Args:
         t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings or
             of tuples (t, q, u) or (t, q, u, qd): each is fitted and compared with the others, then all are fitted
-            together.
-        q: (n,) rad. u: (n,), torque, current or command, any unit. Arrays, masked arrays, pandas Series.
+            together. One that contradicts the others is named, and the errors reach to what each says.
+        q: (n,) rad; None for a wheel of which only qd was measured: its integral is taken. u: (n,), torque, current or
+            command, any unit. Arrays, masked arrays, pandas Series.
         qd: (n,) rad/s, if it was measured too: then q is not differentiated.
         terms: of "inertia", "viscous", "coulomb", "offset", "gravity".
         cutoff_hz: of the low pass; inf: none, the plain least squares of a friction sweep (with qd, without inertia).
@@ -121,8 +122,8 @@ def fit_joint(
     Returns: JointFit.
     Raises: InputError for NaN, times that do not increase, shapes that do not fit. IdentificationError, saying what to
     do next, if the record is too short or constant, the motion is lost in noise or has nothing to do with u, q or u
-    were clipped or surely hung, angles jump by whole turns, or all friction is negative. Other flaws are in `warnings`,
-    each with a number: a result without a warning is right within three standard errors.
+    were clipped or surely hung, all large jumps of q or u have one size, or all friction is negative. Other flaws are
+    in `warnings`, each with a number: a result without a warning is right within three standard errors.
     """
     terms = (terms,) if isinstance(terms, str) else tuple(terms)
     if not terms or not set(terms) <= set(TERMS):
