@@ -314,9 +314,8 @@ def _others(found, lower):
         more["dead zone"] = found, np.sign(found.A @ found.left.x)
         more["gravity"] = found, found.columns[:, 1:3]
         for k in np.unique(found.of) if np.ptp(found.of) else ():
-            inside = (found.of == k)[:, None]
-            more[f"recording {k}"] = found, inside * (found.A @ found.left.x)[:, None]  # u of another size
-            more[f"without {k}"] = found, inside * found.A
+            more[f"recording {k}"] = found, (found.of == k) * (found.A @ found.left.x)  # u of another size
+            more[f"alone {k}"] = found, (found.of != k)[:, None] * found.A
     return {
         name: least_squares(np.column_stack([one.A, columns]), one.y, tolerance=_OWN_SHARE)
         for name, (one, columns) in more.items()

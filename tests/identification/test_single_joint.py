@@ -386,7 +386,7 @@ def test_a_slow_uneven_loop_is_taken_as_it_is(clock, seed):
 def test_a_recording_that_contradicts_is_named_and_the_error_reaches_to_each(machine, kind):
     """Each alone is without a warning; one of three was driven by a fresher battery, carries a load, is cold, is tilted."""
     J, b, c, o = machine[0]
-    other = {"load": (1.4 * J, b, c, o), "grease": (J, 1.3 * b, c, o), "tilt": (J, b, c, o + 0.1 * machine[3])}.get(
+    other = {"load": (2.5 * J, b, c, o), "grease": (J, 1.3 * b, c, o), "tilt": (J, b, c, o + 0.1 * machine[3])}.get(
         kind
     )
     scale = {"battery": 1 / 1.15, "motor": 1.2}.get(kind, 1.0)
