@@ -9,7 +9,7 @@ from ir50p_lab.identification.columns import quantum_of, runs, sampling_period
 from ir50p_lab.identification.regression import least_squares
 
 FEWEST = 40  # samples: a shorter record is refused; ten for each of four parameters
-_TURNS = 6 * math.pi  # rad: if q spans more, it may be in degrees: joints seldom turn three times, often by 19 degrees
+TURNS = 6 * math.pi  # rad: if q spans more, it may be in degrees: joints seldom turn three times, often by 19 degrees
 _SLOW_CLOCK = 0.15  # s: if the sampling period is longer, t may be in milliseconds; nobody samples a joint so slowly
 # A stay is an angle that keeps one value for so many samples: its sensor may have hung, or come to its limit.
 _STAYS = 5
@@ -26,7 +26,14 @@ _EXCESS = 0.025
 # Share of samples at a limit of u: up to the first nothing is tested, then _EXCESS, beyond the second _MISSED.
 _SELDOM, _OFTEN = 0.02, 0.25
 _MISSED = 0.07  # residual over spread of u: if more is left where u is at its limits often, it was clipped
-_CONTRADICT = 4.0  # standard errors: if two recordings differ by more, and by 5 %, they contradict each other
+_NEAR = (
+    5.0  # sampling periods from one neighbour to the other: if they are further apart, motion may look like an outlier
+)
+_ONE_SIZE = 0.3  # jumps of x by more than half its range are of one size if they differ by less than this share of it
+_END = (
+    30  # per cent of the values on one side of a jump: so few lie between where the jump ends and the end of the range
+)
+_CONTRADICT = 3.0  # standard errors: if two recordings differ by more, and by 5 %, they contradict each other
 
 
 class Warnings(list):
@@ -46,29 +53,71 @@ class Warnings(list):
         self.add(f"gone on anyway: {sentence}")
 
 
-def check_signals(warned, t, q, u):
-    """Check q (n,) and u (n,) at the times t (n,) before any model is fitted. Returns (n,) bool: where q is new."""
+def at_bounds(names, x, low, high, room=0.0):
+    """Tell which values stand at a bound of their search: they are no measurement, their error is infinite.
+
+    Args: names (p); x (p,); low, high: numbers or (p,); room: what is nearer to a bound than this stands at it.
+    Returns: sentences, none or one, and (p,) bool: where it is so.
+    """
+    bounds = np.where(x - low < high - x, low, high)
+    at = np.abs(x - bounds) <= room
+    found = [f"{names[k]} = {x[k]:.4g} (bound {bounds[k]:.4g})" for k in np.flatnonzero(at)]
+    beyond = "the data may ask for what lies beyond, the error is infinite"
+    return [f"at a bound: {', '.join(found)}; {beyond}"] if found else [], at
+
+
+def check_signals(warned, t, q, u, turns=TURNS):
+    """Check q (n,) and u (n,) at the times t (n,) before any model is fitted. Returns (n,) bool: where q is new.
+
+    turns: rad; a q that spans more may be in degrees.
+    """
     if len(t) < FEWEST:
         warned.refuse(f"{len(t)} samples are too short a record; record {FEWEST} or more, over several reversals")
     for name, x in (("q", q), ("u", u)):
         if np.ptp(x) <= 1e-12 * np.abs(x).max():
             raise IdentificationError(f"{warned.who}{name} is constant at {x[0]:.6g}: check sensor, or drive harder")
     places = check_outliers(warned, "q", t, q)
-    check_outliers(warned, "u", t, u)
+    for name, x, out in (("q", q, places), ("u", u, check_outliers(warned, "u", t, u))):
+        _check_jumps(warned, name, np.delete(t, out), np.delete(x, out))
     if (values := len(np.unique(q))) < 3:
         warned.refuse(f"q takes only {values} values: no motion can be seen; use a finer sensor")
-    step = np.abs(np.diff(q))
-    for turn in (2 * math.pi, 360.0):
-        if (jump := (np.abs(step - turn) < 0.1 * turn) & (step > 15 * np.median(step))).any():
-            at = f"t = {t[1:][jump][0]:.6g} s"
-            warned.refuse(f"a whole turn was wrapped at {at}: use np.unwrap(q, period={turn:.6g})")
     _hung(warned, np.delete(t, places), np.delete(q, places))
     _clipped(warned, np.delete(t, places), np.delete(q, places))
-    if np.ptp(q) > _TURNS:
+    if np.ptp(q) > turns:
         warned.add(f"q spans {np.ptp(q):.4g} rad: is it in degrees? Use np.radians(q)")
-    if (period := sampling_period(t)) > _SLOW_CLOCK:
-        warned.add(f"one sample every {period:.4g} s: is t in ms or microseconds? Give seconds")
+    if np.diff(t).min() > _SLOW_CLOCK:
+        warned.add(f"one sample every {sampling_period(t):.4g} s: is t in ms or microseconds? Give seconds")
     return _new(warned, q)
+
+
+def _check_jumps(warned, name, t, x):
+    """Refuse an x (n,) whose large jumps all have one size: an encoder or a counter that turns over, or a sign bit.
+
+    What turns over jumps from one end of its range to the other; behind a sign bit the values begin at the least again.
+    Switched levels do neither.
+    """
+    step = np.diff(x)
+    far = np.flatnonzero(np.abs(step) > 0.5 * np.ptp(x))
+    sizes = np.abs(step[far])
+    if not len(far) or np.ptp(sizes) > _ONE_SIZE * sizes.max() or sizes.min() < 15 * np.median(np.abs(step)):
+        return
+    from scipy.stats import percentileofscore
+
+    upper = x > (x.min() + x.max()) / 2
+    low, high = np.sort([x[far], x[far + 1]], axis=0)
+    low, high = (percentileofscore(*pair, kind="mean").mean() for pair in ((x[~upper], low), (x[upper], high)))
+    powers = quantum_of(x) * 2.0 ** np.arange(4, 33)
+    known = np.r_[[whole / k for k in range(1, 13) for whole in (2 * np.pi, 360.0)], powers]
+    turn = np.median(np.abs(step - np.convolve(step, (0.5, 0.0, 0.5), "same"))[far])  # without the motion
+    near = known[np.argmin(np.abs(known - turn))]
+    turn = near if abs(near - turn) < 0.01 * turn else turn
+    said = f"{name} jumps by {turn:.6g} {len(far)} time(s), first at t = {t[far[0] + 1]:.6g} s"
+    if low < _END and high > 100 - _END and (name == "q" or np.ptp(np.unwrap(x, period=turn)) < 0.9 * np.ptp(x)):
+        why = "a whole turn was wrapped (an encoder before its gear? A register without sign?)"
+        warned.refuse(f"{why}: {said}; use np.unwrap({name}, period={turn:.6g})")
+    elif low < _END and high < _END and turn in powers:
+        mend = f"np.where({name} < {turn:.6g}, {name}, {turn:.6g} - {name})"
+        warned.refuse(f"{name} has a sign bit: {said}; use {mend}")
 
 
 def _new(warned, q):
@@ -145,6 +194,7 @@ def check_outliers(warned, name, t, x, remedy="leave these samples out"):
     off = np.abs(x[1:-1] - (x[:-2] + x[2:]) / 2)
     around = np.maximum(median_filter(off, 41, mode="nearest"), np.median(off)) if len(off) else off
     far = off > np.maximum(max(_SPIKE * (high - low), _LEAST * quantum_of(x)), 12 * around)
+    far &= t[2:] - t[:-2] < _NEAR * np.median(np.diff(t))
     places = np.flatnonzero(far & (np.abs(x[2:] - x[:-2]) < 0.4 * off)) + 1
     if len(places):
         k = places[0]
@@ -180,8 +230,8 @@ def check_clipped_drive(warned, found):
         warned.refuse(f"u was clipped: {said}; record a wider range, or drive less (if it is late, give delay=)")
 
 
-def check_contradiction(warned, recordings, fit, names):
-    """Warn of recordings that disagree. fit: gives the fit of one recording; names: of the parameters compared.
+def check_contradiction(warned, recordings, fit, least):
+    """Warn of recordings that disagree. fit: gives the fit of one recording; least: {parameter: difference to ignore}.
 
     Of three or more, the odd one is the one that differs most from all others, in standard errors.
     """
@@ -191,10 +241,10 @@ def check_contradiction(warned, recordings, fit, names):
             found[k] = fit(one)
         except IdentificationError as refusal:
             warned.add(f"recording {k} alone would be refused: {refusal}")
-    for name in names:
+    for name, small in least.items():
         x, sigma = (np.array([getattr(one, name + ending) for one in found.values()]) for ending in ("", "_stderr"))
         apart = np.abs(x[:, None] - x)
-        apart = np.where(apart > 0.05 * np.abs(x), apart, 0.0) / np.hypot(sigma[:, None], sigma)
+        apart = np.where(apart > np.maximum(0.05 * np.abs(x), small), apart, 0.0) / np.hypot(sigma[:, None], sigma)
         if apart.max(initial=0.0) > _CONTRADICT:
             odd = int(np.argmax(apart.sum(axis=0)))
             value = f"{x[odd]:.4g} +- {sigma[odd]:.2g} beside {np.median(np.delete(x, odd)):.4g}"

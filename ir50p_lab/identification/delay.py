@@ -6,6 +6,7 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification.arm_regressor import regressor
+from ir50p_lab.identification.checks import at_bounds
 from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.identification.parameters import RIGID_ON
 from ir50p_lab.identification.processing import process
@@ -19,8 +20,8 @@ _LONGEST = 0.15  # s: the longest delay tried
 class DelayEstimate:
     """What `estimate_delay` found.
 
-    delay: s, median of the joints; stderr: s, from their scatter. per_joint (3,) s. delays (m,) s: those tried;
-    rms (m, 3): residual of the best model with each. warnings: tuple of str.
+    delay: s, median of the joints; stderr: s, from their scatter, inf at a bound of the search. per_joint (3,) s.
+    delays (m,) s: those tried; rms (m, 3): residual of the best model with each. warnings: tuple of str.
     """
 
     delay: float
@@ -40,7 +41,8 @@ def estimate_delay(recording, q=None, u=None, *, cutoff_hz=3.0, slow=0.1):
     friction.
 
     Args: recording, or t, q, u: of three joints. cutoff_hz, slow: as in `process`.
-    Returns: DelayEstimate. Raises: InputError on bad arguments; IdentificationError if too little motion is left.
+    Returns: DelayEstimate; a delay at a bound, 0 or 0.15 s, is named, its error is inf. Raises: InputError on bad
+    arguments; IdentificationError if too little motion is left.
     """
     t, q, u = columns_of(recording, q, u)
     step = sampling_period(t)
@@ -58,14 +60,10 @@ def estimate_delay(recording, q=None, u=None, *, cutoff_hz=3.0, slow=0.1):
         rms[:, joint] = np.sqrt(np.mean((y - A @ np.linalg.lstsq(A, y, rcond=1e-9)[0]) ** 2, axis=0))
     per_joint = delays[rms.argmin(axis=0)]
     flat = max(np.ptp(np.flatnonzero(one <= _FLAT * one.min())) * step for one in rms.T)
-    unsure, warnings = max(np.ptp(per_joint), flat), ()
-    if unsure > 3 * step or per_joint.max() >= delays[-1]:
-        warnings = (f"this record tells the delay only within {unsure:.2g} s: record steps, where u jumps",)
-    return DelayEstimate(
-        delay=float(np.median(per_joint)),
-        stderr=float(max(np.std(per_joint) / np.sqrt(3), 0.3 * step)),
-        per_joint=per_joint,
-        delays=delays,
-        rms=rms,
-        warnings=warnings,
-    )
+    unsure, delay = max(np.ptp(per_joint), flat), np.median(per_joint)
+    warnings, at = at_bounds([f"delay of joint {joint}" for joint in (1, 2, 3)], per_joint, 0.0, delays[-1])
+    if unsure > 3 * step:
+        warnings.append(f"this record tells the delay only within {unsure:.2g} s: record steps, where u jumps")
+    stderr = np.inf if at[per_joint == delay].any() else max(np.std(per_joint) / np.sqrt(3), 0.3 * step)
+    numbers = {"delay": float(delay), "stderr": float(stderr), "per_joint": per_joint, "delays": delays, "rms": rms}
+    return DelayEstimate(**numbers, warnings=tuple(warnings))

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from ir50p_lab.errors import IdentificationError
+from ir50p_lab.identification.checks import at_bounds
 from ir50p_lab.identification.parameters import FREE_OF_SIGN
 
 _BLIND = 1e-8  # if the least canonical correlation of instruments and columns is smaller, the estimate is rounding
@@ -48,16 +49,16 @@ def huber(problem):
 def bounded(problem):
     """min |y - A x|^2 with inertial and friction terms >= 0, a convex problem, by scipy.optimize.lsq_linear on R.
 
-    Standard errors are those without bounds: a bound can only make an estimate surer.
+    Standard errors are those without bounds; of what is left at its bound the error is infinite.
     """
-    low = [-np.inf if name in FREE_OF_SIGN else 0.0 for name in problem.names]
+    low = np.where(np.isin(problem.names, FREE_OF_SIGN), -np.inf, 0.0)
     size = np.linalg.norm(problem.Qty) or 1.0  # y is scaled to 1: the solver's tolerances then suit every unit
     result = lsq_linear(problem.R, problem.Qty / size, (low, np.inf), method="bvls", tol=1e-14)
     if not result.success:
         raise IdentificationError(f"{problem.who}the bounded fit failed ({result.message}); use 'ls'")
-    at = [f"{name} = 0" for name, active in zip(problem.names, result.active_mask, strict=True) if active]
-    if at:
-        problem.notes.append(f"{problem.who}at a bound: {', '.join(at)}; the data alone would go beyond")
+    said, at = at_bounds(problem.names, result.x, low, np.inf)
+    problem.notes += [problem.who + sentence for sentence in said]
+    problem.at_bound = np.flatnonzero(at)
     _, covariance = problem.estimate(problem.R @ result.x * size)
     return result.x * size / problem.scale, covariance  # not from `estimate`: a parameter at its bound is exactly 0
 

@@ -126,9 +126,5 @@ def optimise_excitation(
             x, best, least, size = new, motion, found, 1.1 * size
         else:
             size = max(_LAST, 0.98 * size)
-    return Excitation(
-        reference=best,
-        before=before,
-        condition_before=regressor_condition(before),
-        condition_after=regressor_condition(best),
-    )
+    conditions = {"condition_before": regressor_condition(before), "condition_after": regressor_condition(best)}
+    return Excitation(reference=best, before=before, **conditions)

@@ -50,8 +50,9 @@ def fit(
         use: (n, 3) bool: samples of a joint that count, as `Motion.use`; default all. unit: "PWM" or "N m".
 
     Returns: Estimate. A column that is a combination of others in these data is left out, and named: its parameter is
-    0 with stderr inf. Standard errors also hold for residuals that are correlated in time, as they are after a filter.
-    They assume that Phi is free of noise; noise in it biases all methods but "iv".
+    0 with stderr inf. What "bounded" leaves at a bound is named, its stderr is inf. Standard errors also hold for
+    residuals that are correlated in time, as they are after a filter. They assume that Phi is free of noise; noise in
+    it biases all methods but "iv".
     Raises: InputError on bad arguments; IdentificationError if there are too few samples, no motion, or an estimator
         cannot settle.
     """
@@ -68,6 +69,7 @@ def fit(
     Z = checked_data(instruments, y, "instruments")[0] if method == "iv" else None
     theta, stderr, covariance = np.zeros((3, 20)), np.full((3, 20), np.nan), np.zeros((3, 20, 20))
     condition, freedom, lost, notes = np.zeros(3), np.zeros(3), [], []
+    fitted = np.zeros((3, 20), dtype=bool)
     for joints in [slice(0, 3)] if rows == "shared" else [slice(j, j + 1) for j in range(3)]:
         who = "" if rows == "shared" else f"joint {joints.stop}: "
         here, ties, names = _acting(joints, COLUMNS[columns], l2)
@@ -86,11 +88,13 @@ def fit(
         spread = ties @ spread @ ties.T
         count = used[:, joints].sum()
         theta[joints, here] = ties @ x
-        stderr[joints, here] = np.where(found, np.sqrt(np.maximum(np.diag(spread), 0.0)), np.inf)
+        known = found & ~ties[:, problem.at_bound].any(axis=1)
+        fitted[joints, here] = found
+        stderr[joints, here] = np.where(known, np.sqrt(np.maximum(np.diag(spread), 0.0)), np.inf)
         covariance[joints, np.array(here)[:, None], here] = spread
         condition[joints] = problem.condition
         freedom[joints] = count / max(count - len(x), 1.0)
-        lost += [who + NAMES[k] for k, known in zip(here, found, strict=True) if not known]
+        lost += [who + NAMES[k] for k in np.array(here)[~found]]
         notes += problem.notes
     residuals = y - np.einsum("nij,ij->ni", Phi, theta)
     return Estimate(
@@ -100,7 +104,7 @@ def fit(
         condition=condition,
         residuals=residuals,
         sigma=np.sqrt(np.sum(used * residuals**2, axis=0) / used.sum(axis=0) * freedom),
-        columns=tuple(tuple(NAMES[k] for k in np.flatnonzero(np.isfinite(row))) for row in stderr),
+        columns=tuple(tuple(NAMES[k] for k in np.flatnonzero(row)) for row in fitted),
         unidentifiable=tuple(lost),
         warnings=(*notes, *impossible_values(theta, stderr, rows), *indefinite_mass(theta)),
         unit=unit,

@@ -7,6 +7,7 @@ import numpy as np
 
 from ir50p_lab.controllers.base import check_reference, is_compiled
 from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.identification.checks import at_bounds
 from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.identification.parameters import FREE_OF_SIGN, NAMES, RIGID_ON, metres
 from ir50p_lab.identification.regression import least_squares
@@ -18,6 +19,7 @@ from ir50p_lab.simulation.plant import DRY, FS, LIMIT, QS, make_plant
 from ir50p_lab.simulation.simulate import sampled
 
 _STEP = 0.02  # share of a parameter's scale, step of numerical derivatives: with less, stiction makes the output jump
+_AT = 0.02  # share of a parameter's scale: what is nearer to its bound stands at it; the search never quite reaches it
 _QS = (0.005, 0.5)  # rad/s, bounds of the Stribeck speed
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 _COULOMB = [0, 1, 2], [NAMES.index(name) for name in ("fc1", "fc2", "fc3")]
@@ -104,7 +106,8 @@ def output_error(
         recorded, differentiated); controller: of the run, a compiled one such as PID. delay: s, to whole periods.
         l2: m, keeps theta6 = l2 theta4. seconds: s that are used. iterations: at most. progress: show a bar.
 
-    Returns: OutputError. Raises InputError on bad arguments; IdentificationError if the first model's loop runs away.
+    Returns: OutputError. What is left at a bound (0; qs 0.005 and 0.5 rad/s) is named, its error is inf. Raises
+    InputError on bad arguments; IdentificationError if the first model's loop runs away.
     """
     theta, _ = as_theta(getattr(estimate, "theta", estimate))
     if getattr(estimate, "unit", "PWM") != "PWM":
@@ -160,8 +163,10 @@ def output_error(
 
     with bar, ThreadPoolExecutor(2) as pool:
         found = minimise(residuals, x0, slopes, bounds=(low, high), x_scale=scale, max_nfev=iterations, ftol=1e-4)
+        bar.update(iterations - bar.n)  # it may have settled before
     spread = least_squares(found.jac.reshape(-1, 6, len(x0)), found.fun.reshape(-1, 6), names=names)
-    notes = list(spread.warnings)
+    said, at = at_bounds(names, found.x, low, high, _AT * scale)
+    notes, stderr = [*spread.warnings, *said], np.where(at, np.inf, spread.stderr)
     if found.status == 0:
         notes.append(f"not settled after {iterations} steps: give more, or a better first estimate")
     whole, fs, qs = model_of(found.x)
@@ -169,11 +174,11 @@ def output_error(
     fs_stderr = np.sqrt(np.einsum("ij,jk,ik->i", both, spread.covariance, both))
     return OutputError(
         theta=whole,
-        stderr=spread_out(np.full((3, 20), np.nan), spread.stderr),
+        stderr=spread_out(np.full((3, 20), np.nan), stderr),
         fs=fs,
         qs=qs,
-        fs_stderr=np.where((both & np.isinf(spread.stderr)).any(axis=1), np.inf, fs_stderr),
-        qs_stderr=spread.stderr[-3:],
+        fs_stderr=np.where((both & np.isinf(stderr)).any(axis=1), np.inf, fs_stderr),
+        qs_stderr=stderr[-3:],
         delay=float(delay),
         warnings=tuple(notes),
     )

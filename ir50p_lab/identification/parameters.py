@@ -33,11 +33,7 @@ ONLY_THESIS = ("theta7", "theta8")  # constant products of inertia: left out of 
 FREE_OF_SIGN = (*OFFSETS, *ONLY_THESIS)  # all others are >= 0 for a body and its friction
 
 # columns that can differ from zero in each joint's row: 9, 12 and 9 of the 20
-ACTS_ON = (
-    (0, 1, 4, 5, 6, 7, 10, 11, 16),
-    (1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 13, 17),
-    (3, 4, 5, 7, 9, 14, 15, 18, 19),
-)
+ACTS_ON = ((0, 1, 4, 5, 6, 7, 10, 11, 16), (1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 13, 17), (3, 4, 5, 7, 9, 14, 15, 18, 19))
 RIGID_ON = tuple([k for k in acting if NAMES[k] not in ONLY_THESIS] for acting in ACTS_ON)  # without theta7, theta8
 COLUMNS = {"rigid": [k for k in range(20) if NAMES[k] not in ONLY_THESIS], "thesis": list(range(20))}
 

@@ -10,7 +10,7 @@ from ir50p_lab.identification.columns import columns_of, runs, sampling_period
 from ir50p_lab.inputs import choice, number
 from ir50p_lab.signals.low_pass import low_pass
 
-BACKWARD = "zero-phase"
+BOTH = "zero-phase"  # the filter runs in both directions
 _ORDER = 4  # order of the zero-phase filter; running forward and backward doubles it
 _SHORTEST = 16  # samples: a shorter run without a gap is left out, for the filter cannot run backward over it
 _TRIM = 2.0  # time constants 1/(2 pi cutoff) of the filter: cut off by default at both ends of a run
@@ -68,7 +68,7 @@ def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=_ORDER):
     no filter; order: 1..8 (twice applied). Returns: q, qd, qdd like q; at the two ends the neighbour's derivatives.
     Raises InputError as `low_pass` does.
     """
-    q = np.array(q, dtype=float) if cutoff_hz is None else low_pass(q, cutoff_hz, rate_hz, order=order, kind=BACKWARD)
+    q = np.array(q, dtype=float) if cutoff_hz is None else low_pass(q, cutoff_hz, rate_hz, order=order, kind=BOTH)
     if len(q) < 3:
         raise InputError(f"q has {len(q)} samples: central differences need three or more")
     inner = np.arange(len(q)).clip(1, len(q) - 2)
@@ -77,26 +77,17 @@ def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=_ORDER):
 
 
 def process(
-    recording,
-    q=None,
-    u=None,
-    *,
-    derivatives=BACKWARD,
-    cutoff_hz=1.5,
-    filter_u=False,
-    delay=0.0,
-    held=True,
-    slow=0.0,
-    trim=None,
+    recording, q=None, u=None, *, derivatives=BOTH, cutoff_hz=1.5, filter_u=False, delay=0, held=True, slow=0, trim=None
 ):
     """Make a recording ready for a regression.
 
         for name, options in {"thesis": {"derivatives": "causal", "cutoff_hz": 3}, "zero-phase": {}}.items():
             motion = process(recording, **options)
 
-    What happens, in this order: the record is split where a step of time is above 3.5 times the median; uneven samples
-    are put on an even grid of the median period (cubic spline for q); q is filtered and differentiated; u is taken at
-    the instant it acted; the ends, where a filter has only one side, are cut off; samples near zero speed are marked.
+    What happens, in this order: the record is split where a step of time is above 3.5 times the usual ones (nine in ten
+    of them); uneven samples are put on an even grid of the median period (cubic spline for q); q is filtered and
+    differentiated; u is taken at the instant it acted; the ends, where a filter has only one side, are cut off; samples
+    near zero speed are marked.
 
     Args:
         recording: anything with t (n,), q (n, k) and u (n, k), as `Recording`; or t itself, then q and u as arrays,
@@ -116,21 +107,22 @@ def process(
     """
     t, q, u = columns_of(recording, q, u)
     period = sampling_period(t)
-    causal = choice("derivatives", derivatives, (BACKWARD, "causal")) == "causal"
+    causal = choice("derivatives", derivatives, (BOTH, "causal")) == "causal"
     number("delay", delay, ">= 0", unit="s")
     number("slow", slow, ">= 0", unit="rad/s")
     derive = causal_derivatives if causal else central_derivatives
     if trim is None and (causal or cutoff_hz is not None):
         trim = _TRIM / (2 * math.pi * number("cutoff_hz", cutoff_hz, "> 0", unit="Hz"))
     trim = number("trim", trim or 0.0, ">= 0", unit="s")
-    acts = acting_times(t, delay, choice("held", held, (True, False)) and not causal)
+    acting = _held_around if choice("held", held, (True, False)) and not causal else _measured_at
     pieces = []
     shortest = max(_SHORTEST, math.ceil(2 * trim / period) + 4)
-    for k, (first, last) in enumerate(runs(t, 3.5 * period)):
+    for k, (first, last) in enumerate(runs(t, 3.5 * np.quantile(np.diff(t), 0.9))):
         if last - first < shortest:
             continue
         here = slice(first, last)
-        grid, even_q, even_u = _on_even_steps(t[here], q[here], u[here], acts[here], period)
+        grid, even_q = _on_even_steps(t[here], q[here], period)
+        even_u = acting(grid, t[here] + delay, u[here])
         even_u = derive(even_u, 1 / period, cutoff_hz=cutoff_hz)[0] if filter_u else even_u
         piece = [grid, *derive(even_q, 1 / period, cutoff_hz=cutoff_hz), even_u]
         keep = (grid >= grid[0] + max(trim, delay) - 1e-9) & (grid <= grid[-1] - trim + 1e-9)
@@ -142,20 +134,29 @@ def process(
     return Motion(t, q, qd, qdd, u, np.abs(qd) >= slow, segment, 1 / period)
 
 
-def acting_times(t, delay, held):
-    """When each u acts, (n,) s: `delay` after its sample; if held, later by half of the time until the next sample."""
-    return t + delay + 0.5 * held * np.diff(t, append=t[-1] + sampling_period(t))
-
-
-def _on_even_steps(t, q, u, acts, period):
-    """One run without gaps on an even grid of time: grid, q, u."""
+def _on_even_steps(t, q, period):
+    """One run without gaps on an even grid of time: grid, q."""
     grid = t[0] + period * np.arange(math.floor((t[-1] - t[0]) / period + 1e-6) + 1)
     if len(grid) == len(t) and np.abs(t - grid).max() <= 0.02 * period:
-        grid = t
-    else:
-        from scipy.interpolate import make_interp_spline
+        return t, q
+    from scipy.interpolate import make_interp_spline
 
-        q = make_interp_spline(t, q, k=3, axis=0)(np.minimum(grid, t[-1]))
-    if not np.array_equal(acts, grid):
-        u = np.column_stack([np.interp(grid, acts, column) for column in u.T])
-    return grid, q, u
+    return grid, make_interp_spline(t, q, k=3, axis=0)(np.minimum(grid, t[-1]))
+
+
+def _measured_at(grid, t, u):
+    """u (n, k), measured at the times t (n,), at the instants `grid`."""
+    return np.column_stack([np.interp(grid, t, column) for column in u.T])
+
+
+def _held_around(grid, t, u):
+    """Mean of a u (n, k) that is held from its t (n,) to the next, from halfway to halfway between the instants `grid`.
+
+    Before and after it is taken to be the same.
+    """
+    around = np.pad(grid, 1, mode="reflect", reflect_type="odd")
+    ends = (around[1:] + around[:-1]) / 2
+    edges = np.r_[min(ends[0], t[0] - 1.0), t, max(ends[-1], t[-1] + 1.0)]
+    held = np.vstack([u[:1], u])
+    area = np.cumsum(np.vstack([0 * u[:1], held * np.diff(edges)[:, None]]), axis=0)
+    return np.diff(_measured_at(ends, edges, area), axis=0) / np.diff(ends)[:, None]

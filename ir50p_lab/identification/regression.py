@@ -93,7 +93,8 @@ class Problem:
     sentences, "joint 2: " or "". Raises IdentificationError for too few equations, and if A is zero.
 
     Attributes: Q (N, k), R, R_inverse (k, k), Qty (k,); names and `scale` (lengths) of the columns `kept` (indices);
-    the names `lost`; condition of A, its columns of length 1; notes: sentences about what the data cannot tell.
+    the names `lost`; indices of those left `at_bound`; condition of A, its columns of length 1; notes: sentences
+    about what the data cannot tell.
     """
 
     def __init__(self, A, y, names, n, *, who="", tolerance=DEPENDENT):
@@ -110,7 +111,7 @@ class Problem:
         self.R, self.Qty, self.scale = R[:-1, :-1], R[:-1, -1], length[self.kept]
         self.R_inverse = np.linalg.inv(self.R)
         self.Q = A[:, self.kept] @ self.R_inverse
-        self.who, self.y, self.n = who, y, n
+        self.who, self.y, self.n, self.at_bound = who, y, n, []
         self.names, self.lost = [names[k] for k in self.kept], [names[k] for k in lost]
         in_its_unit = weights[:, lost] * length[lost] / self.scale[:, None]
         self.notes = [self._stands_for(*pair) for pair in zip(self.lost, in_its_unit.T, strict=True)]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.checks import Warnings, check_outliers
+from ir50p_lab.identification.checks import Warnings, at_bounds, check_outliers
 from ir50p_lab.identification.columns import quantum_of, same_samples
 from ir50p_lab.inputs import number
 from ir50p_lab.simulation.first_order_lag import respond
@@ -87,6 +87,7 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
 
     Returns: FOPDT. K is negative where y goes down after a step up. `warnings` tells of a response that is not over
     when the record ends (T is longer), of T or L below the sampling period (its error is then inf or a period), of
+    an L at a bound of the search, 0 or nearly the whole record (its error is then inf), of
     correlated residuals, drift, another shape, times that look like milliseconds, and single outliers of u and y (those
     of y are left out).
 
@@ -118,8 +119,9 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
 class _StepRecord:
     """A checked record, scaled: u first changes at 0, the record ends at 1, y has range 1, the largest jump of u is 1.
 
-    t, y (n,); times, jumps (m,) of u; period of the samples; quantum: smallest step of y. seconds, y_range, u_range:
-    the units in which t, y and u are scaled. warned: the Warnings so far.
+    t, y (n,); times, jumps (m,) of u; period of the samples; quantum: smallest step of y; latest: the
+    longest L that is searched. seconds, y_range, u_range: the units in which t, y and u are scaled. warned: the
+    Warnings so far.
     """
 
     def __init__(self, t, u, y, u_before, warned):
@@ -141,6 +143,7 @@ class _StepRecord:
         self.t, self.times = (t - times[0]) / self.seconds, (times - times[0]) / self.seconds
         self.y, self.jumps = y / self.y_range, jumps / self.u_range
         self.period, self.quantum = float(np.median(np.diff(self.t))), quantum_of(self.y)
+        self.latest = max(0.95 - 4 * self.period, 0.15)
         self.warned = warned
 
     def answer(self, rate, L):
@@ -164,11 +167,11 @@ class _StepRecord:
             slope = x @ y / max(x @ x, 1e-300)
             return slope, slope * x - y
 
-        latest = max(0.9 - 4 * self.period, 0.1)
+        latest = self.latest - 0.05
         dead_times = np.r_[np.geomspace(0.3 * self.period, latest, 24), np.linspace(0, latest, 50)]
         rates = np.r_[-30.0, -10.0, -3.0, -1.0, -0.3, 0.0, np.geomspace(0.1, 3 / self.period, 24)]
         costs = np.array([[np.linalg.norm(solved((rate, L))[1]) for L in dead_times] for rate in rates])
-        bounds = (-40.0, 0.0), (30 / self.period, latest + 0.05)
+        bounds = (-40.0, 0.0), (30 / self.period, self.latest)
         options = {"bounds": bounds, "x_scale": "jac", "ftol": 1e-12, "xtol": 1e-11, "gtol": 1e-14}
         likely = costs.min(axis=1).argsort()[:_REFINED]
         starts = [(rates[k], dead_times[costs[k].argmin()]) for k in likely]
@@ -251,6 +254,9 @@ def _check_parameters(record, T, L, errors, e):
         errors[2] = max(errors[2], period)
     elif L < 2 * errors[2]:
         warned.add(f"dead time {L * seconds:.3g} s is less than two standard errors: it cannot be told from none")
+    said, at = at_bounds(["L"], np.array([L * seconds]), 0.0, record.latest * seconds, 1e-3 * period * seconds)
+    warned.extend(said)
+    errors[2] = math.inf if at else errors[2]
     if T > 1 - L:
         warned.add(f"not settled: T = {T * seconds:.4g} s, {(1 - L) * seconds:.4g} s of response recorded; record 3 T")
     correlation, wider = _correlation(e)

@@ -49,6 +49,8 @@ _GRAVITY = 0.5, 0.01  # share of the residual that sin q, cos q explain, residua
 # share of the residual: (share, standard errors), either pair. A warning is given if it is longer than so many periods.
 _LATE = (0.9, 5.0), (0.99, 8.0)
 _TOLD = 0.75
+_SCALE = 0.05, 4.0  # share, standard errors: if u of a recording is larger or smaller than in the others by both
+
 _WIDENS = {  # fit with one effect more that may be there: the parameters whose errors it widens
     "late": _PHYSICAL,
     "spring": ("inertia",),
@@ -105,8 +107,9 @@ def fit_joint(
     Args:
         t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings or
             of tuples (t, q, u) or (t, q, u, qd): each is fitted and compared with the others, then all are fitted
-            together.
-        q: (n,) rad. u: (n,), torque, current or command, any unit. Arrays, masked arrays, pandas Series.
+            together. One that contradicts the others is named, and the errors reach to what each says.
+        q: (n,) rad; None for a wheel of which only qd was measured: its integral is taken. u: (n,), torque, current or
+            command, any unit. Arrays, masked arrays, pandas Series.
         qd: (n,) rad/s, if it was measured too: then q is not differentiated.
         terms: of "inertia", "viscous", "coulomb", "offset", "gravity".
         cutoff_hz: of the low pass; inf: none, the plain least squares of a friction sweep (with qd, without inertia).
@@ -119,8 +122,8 @@ def fit_joint(
     Returns: JointFit.
     Raises: InputError for NaN, times that do not increase, shapes that do not fit. IdentificationError, saying what to
     do next, if the record is too short or constant, the motion is lost in noise or has nothing to do with u, q or u
-    were clipped or surely hung, angles jump by whole turns, or all friction is negative. Other flaws are in `warnings`,
-    each with a number: a result without a warning is right within three standard errors.
+    were clipped or surely hung, all large jumps of q or u have one size, or all friction is negative. Other flaws are
+    in `warnings`, each with a number: a result without a warning is right within three standard errors.
     """
     terms = (terms,) if isinstance(terms, str) else tuple(terms)
     if not terms or not set(terms) <= set(TERMS):
@@ -130,14 +133,15 @@ def fit_joint(
     recordings, runs = _recordings(t, q, u, qd), []
     for k, one in enumerate(recordings, 1):
         warned.who = f"recording {k}: " if len(recordings) > 1 else ""
-        runs += _runs(warned, one, delay)
+        runs += _runs(warned, one, delay, k)
     warned.who = ""
     if len({run.angles.shape[1] for run in runs}) > 1:
         raise InputError("qd in some of the recordings only: give it in all, or in none")
+    unit = float(np.std(np.concatenate([run.u for run in runs])))  # for columns of a size, whatever u counts in
     if len(recordings) > 1:
         options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "held": held, "slow": slow, "anyway": anyway}
-        checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), _PHYSICAL)
-    unit = float(np.std(np.concatenate([run.u for run in runs])))  # makes u about 1, in any unit
+        least = {name: 0.0 if name in _PHYSICAL else 0.05 * unit for name in names}
+        checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), least)
     for run in runs:
         run.u = run.u / unit
     band = _band(runs)
@@ -160,6 +164,7 @@ def fit_joint(
     stderr = _widened(names, found, {"lower": lower.left, "faster": faster.left, **others}, period)
     parameters = dict(zip(names, (unit * np.column_stack([found.left.x, stderr])).tolist(), strict=True))
     _check_fit(warned, found, others, "gravity" in terms)
+    _check_scales(warned, others)
     checks.check_clipped_drive(warned, found)
     _check_parameters(warned, parameters, found, lower, others)
     _check_timing(warned, lower, others, period)
@@ -184,27 +189,34 @@ def _recordings(t, q, u, qd):
     return [(t, q, u, qd)]
 
 
-def _runs(warned, recording, delay):
-    """Evenly sampled runs without a gap: rate, Hz; angles (n, 1 or 2): q, qd if given; u (n, 2): held, measured."""
+def _runs(warned, recording, delay, number):
+    """Evenly sampled runs without a gap: rate, Hz; angles (n, 1 or 2): q, qd if given; u (n, 2): held, measured; of:
+    the number of the recording.
+    """
     t, q, u, qd = (*recording, None, None, None)[:4]
+    wheel = q is None and qd is not None  # of which only the speed was measured: its integral will do
+    if wheel:
+        t, qd, u = columns_of(t, qd, u)
+        q = np.cumsum(qd * np.gradient(t)[:, None], axis=0)
     if qd is not None:
         q, u = np.ma.column_stack([q, qd]), np.ma.column_stack([u, u])
     t, q, u = columns_of(t, q, u)
     if q.shape[1] != 1 + (qd is not None):
         raise InputError(f"q has {q.shape[1]} columns: fit_joint takes one joint; give q[:, i] and u[:, i]")
-    new = checks.check_signals(warned, t, q[:, 0], u[:, 0])
+    new = checks.check_signals(warned, t, q[:, 0], u[:, 0], math.inf if wheel else checks.TURNS)
     if qd is not None:
+        checks.check_outliers(warned, "qd", t, q[:, 1])
         checks.check_measured_speed(warned, t, *q.T)
     options = {"cutoff_hz": None, "trim": 0.0, "delay": delay}
     held, measured = (process(t[new], q[new], u[new], held=held, **options) for held in (True, False))
     edges = np.flatnonzero(np.diff(held.segment)) + 1
     drives = np.column_stack([held.u[:, 0], measured.u[:, 0]])
     pairs = zip(np.split(held.q, edges), np.split(drives, edges), strict=True)
-    return [SimpleNamespace(rate=held.rate_hz, angles=angles, u=drive) for angles, drive in pairs]
+    return [SimpleNamespace(rate=held.rate_hz, angles=angles, u=drive, of=number) for angles, drive in pairs]
 
 
 def _band(runs):
-    """Tell motion from noise in the spectrum of the angle (of qd, if measured) of the longest run.
+    """Tell motion from noise in the spectrum of the angle (of qd, if measured) of the run that moves most.
 
     Noise is taken as white, as strong as it is between a quarter and half of the sampling rate. A line no higher than
     the highest one there is not motion: the steps of a coarse angle make such lines. Returns a namespace: motion_hz;
@@ -212,7 +224,7 @@ def _band(runs):
     """
     from scipy.signal import welch
 
-    longest = max(runs, key=lambda run: len(run.u))
+    longest = max(runs, key=lambda run: len(run.u) * np.var(run.angles[:, -1]))
     x = longest.angles[:, -1]
     f, power = (column[1:] for column in welch(x, longest.rate, nperseg=min(len(x), max(256, len(x) // 6))))
     rest = power[f >= longest.rate / 4]
@@ -224,12 +236,8 @@ def _band(runs):
     highest = int(np.searchsorted(f, _HIGHEST * longest.rate)) - 1
     motion = min(int(np.searchsorted(speed, _MOTION * speed[-1])), highest)
     clean = max(motion, int(np.flatnonzero(noise[: highest + 1]).max(initial=0)))
-    return SimpleNamespace(
-        motion_hz=float(f[motion]),
-        clean_hz=float(f[clean]),
-        speed=math.sqrt(speed[motion] * f[0]),
-        speed_noise=math.sqrt(speed_noise[motion] * f[0]),
-    )
+    speed, speed_noise = np.sqrt(np.array([speed[motion], speed_noise[motion]]) * f[0])
+    return SimpleNamespace(motion_hz=f[motion], clean_hz=f[clean], speed=speed, speed_noise=speed_noise)
 
 
 def _smooth(x, cutoff_hz, rate):
@@ -251,12 +259,12 @@ def _table(runs, cutoff_hz, sign_hz, slow):
 
     columns (m, 6), in the order of _COLUMNS; u, slopes (m, 2): u held and measured, and its rate of change; limits
     (m, 2): low-passed, 1 where u is at its smallest, at its largest value, else 0; q, v (m,): angle, speed; snap (m,):
-    d2(qdd)/dt2, which a flexible joint adds. The sign of the speed is taken after a low pass at sign_hz: a smoother
-    speed changes its sign too early or too late.
+    d2(qdd)/dt2, which a flexible joint adds; of (m,): number of the recording. The sign of the speed is taken after a
+    low pass at sign_hz: a smoother speed changes its sign too early or too late.
     """
     every = np.concatenate([run.u[:, 0] for run in runs])
     low, high = every.min() + 1e-3 * np.ptp(every), every.max() - 1e-3 * np.ptp(every)
-    names = ("columns", "u", "slopes", "limits", "q", "v", "snap")
+    names = ("columns", "u", "slopes", "limits", "q", "v", "snap", "of")
     parts = []
     for run in runs:
         n, edge = len(run.u), math.ceil(_EDGE * run.rate / cutoff_hz)
@@ -271,7 +279,7 @@ def _table(runs, cutoff_hz, sign_hz, slow):
         columns = np.column_stack([np.ones(n), plain[:, 1:3], v, plain[:, 0], a])
         kept = np.arange(edge, n - edge, max(1, int(run.rate / cutoff_hz / _THIN)))
         kept = kept[plain[kept, 3] > 0.9]
-        parts.append([x[kept] for x in (columns, plain[:, 6:], slopes, plain[:, 4:6], q, v, snap)])
+        parts.append([x[kept] for x in (columns, plain[:, 6:], slopes, plain[:, 4:6], q, v, snap, np.full(n, run.of))])
     joined = [np.concatenate(x) for x in zip(*parts, strict=True)] or [np.empty(0)] * len(names)
     return SimpleNamespace(cutoff_hz=cutoff_hz, **dict(zip(names, joined, strict=True)))
 
@@ -305,6 +313,9 @@ def _others(found, lower):
         more["bent"] = found, found.v * np.abs(found.v)
         more["dead zone"] = found, np.sign(found.A @ found.left.x)
         more["gravity"] = found, found.columns[:, 1:3]
+        for k in np.unique(found.of) if np.ptp(found.of) else ():
+            more[f"recording {k}"] = found, (found.of == k) * (found.A @ found.left.x)  # u of another size
+            more[f"alone {k}"] = found, (found.of != k)[:, None] * found.A
     return {
         name: least_squares(np.column_stack([one.A, columns]), one.y, tolerance=_OWN_SHARE)
         for name, (one, columns) in more.items()
@@ -367,6 +378,15 @@ def _check_parameters(warned, parameters, found, lower, others):
         elif name in _PHYSICAL and depends[k]:
             half = f"{x * lower.left.x[k] / found.left.x[k]:.3g} at half of {found.cutoff_hz:.3g} Hz"
             warned.add(f"{said} depends on the cut-off: {value}, {half} (flexibility, backlash?)")
+
+
+def _check_scales(warned, others):
+    """A recording whose u is larger or smaller than the motion and the other recordings ask for."""
+    scales = {name: (one.x[-1], one.stderr[-1]) for name, one in others.items() if name.startswith("recording")}
+    odd = max(scales, key=lambda name: abs(scales[name][0]) / scales[name][1], default=None)
+    if odd and abs(scales[odd][0]) > max(_SCALE[0], _SCALE[1] * scales[odd][1]):
+        said = f"its u is {1 + scales[odd][0]:.3g} +- {scales[odd][1]:.2g} times what the others ask for"
+        warned.add(f"{odd} contradicts the others: {said} (a fresher battery, another gain?)")
 
 
 def _check_timing(warned, lower, others, period):

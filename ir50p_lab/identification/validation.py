@@ -6,9 +6,9 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.arm_regressor import regressor
-from ir50p_lab.identification.columns import columns_of
+from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.identification.fit_input import finite
-from ir50p_lab.identification.processing import BACKWARD, acting_times, process
+from ir50p_lab.identification.processing import BOTH, process
 from ir50p_lab.inputs import number
 from ir50p_lab.modelling.dynamics import as_theta
 
@@ -59,9 +59,7 @@ def nrmse_fit(measured, predicted):
     return rms, 100 * (1 - rms / spread)
 
 
-def validate(
-    estimate, recording, q=None, u=None, *, derivatives=BACKWARD, cutoff_hz=1.5, delay=0.0, held=True, sign=None
-):
+def validate(estimate, recording, q=None, u=None, *, derivatives=BOTH, cutoff_hz=1.5, delay=0.0, held=True, sign=None):
     """Predict the u of another recording from its angles, one sample at a time    (4.5), Table 4.4.
 
     The u of the recording is taken raw, as it was sent. The prediction is made from q, qd and qdd as `process` finds
@@ -75,7 +73,8 @@ def validate(
     t, q, u = columns_of(recording, q, u)
     motion = process(t, q, u, derivatives=derivatives, cutoff_hz=cutoff_hz, held=False)
     predicted = np.einsum("nij,ij->ni", regressor(motion.q, motion.qd, motion.qdd, sign=sign), theta)
-    acts = acting_times(t, number("delay", delay, ">= 0", unit="s"), held and derivatives == BACKWARD)
+    still = 0.5 * np.diff(t, append=t[-1] + sampling_period(t)) if held and derivatives == BOTH else 0.0
+    acts = t + number("delay", delay, ">= 0", unit="s") + still
     after = np.searchsorted(motion.t, acts).clip(1, len(motion) - 1)
     inside = (acts >= motion.t[after - 1]) & (acts <= motion.t[after])
     inside &= motion.segment[after] == motion.segment[after - 1]

@@ -33,7 +33,10 @@ def test_physically_consistent_where_least_squares_is_not(seed):
     assert (found.sigma < 1.05 * plain.sigma).all()  # at next to no loss of fit
     at = [(j, k) for j in range(3) for k in BOUNDED if NAMES[k] in found.columns[j] and found.theta[j, k] == 0]
     told = " ".join(text for text in found.warnings if "at a bound" in text)
-    assert all(f"{NAMES[k]} = 0" in told for j, k in at if k != 5)
+    assert at and all(f"{NAMES[k]} = 0 (bound 0)" in told for j, k in at if k != 5)
+    assert all(np.isinf(found.stderr[j, k]) for j, k in at)
+    inside = [(j, k) for j in range(3) for k in BOUNDED if found.theta[j, k] > 0]
+    assert all(np.isfinite(found.stderr[j, k]) for j, k in inside)
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -34,6 +34,19 @@ def test_steps_on_the_bench_tell_it_within_two_periods(delay):
     assert found.rms.shape == (16, 3)
 
 
+@pytest.mark.parametrize("late", [-4, 17])
+def test_a_delay_at_the_edge_of_the_search_is_no_measurement(late):
+    """u 0.02 s before its time, or 0.19 s after it: 0 and 0.15 s were reported with an error of some milliseconds."""
+    record = bench(STEPS, 2)
+    n = len(record.t) - abs(late)
+    if late < 0:
+        q, u = record.q[-late:], record.u[:n]
+    else:
+        q, u = record.q[:n], record.u[late:]
+    found = estimate_delay(record.t[:n], q, u)
+    assert np.isinf(found.stderr) and "at a bound: delay of joint" in " ".join(found.warnings)
+
+
 def test_fourier_motion_cannot_tell_it():
     """The claim of the docstring: the estimate is off by far more, and it says so."""
     found = estimate_delay(bench(FOURIER, 2))

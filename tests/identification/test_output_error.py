@@ -1,5 +1,7 @@
 """Output error knows only a recording, and finds the truth of a loop made by the engine."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -76,6 +78,22 @@ def test_predicts_another_run_better_than_the_regression(refined, record):
     run = ClosedLoopRun(other, thesis_pid(), motion, delay=0.02)
     before, _ = run.simulate(identify(record, l2=0.2).theta)
     assert q.rms.sum() < nrmse_fit(other.q, before)[0].sum()
+
+
+@pytest.mark.parametrize("friction", [{"fs": IR50P.friction.fc}, {"qs": (3.0,) * 3}])
+def test_what_is_left_at_a_bound_is_no_measurement(friction, capsys):
+    """Friction that does not fall, or falls at a speed beyond the search: fs - fc or qs stands at its bound.
+
+    The search settles before its last step: its bar is full all the same.
+    """
+    arm = replace(IR50P, friction=replace(IR50P.friction, **friction))
+    with SimulatedBench(arm, seed=0, unit=IDEAL, q0=MOTION.q_start, record_to=False) as bench:
+        record = bench.follow(thesis_pid(), MOTION, 12.0)
+    found = output_error(arm.theta_pwm, record, thesis_pid(), MOTION, l2=0.2)
+    assert "100%" in capsys.readouterr().err.splitlines()[-1]
+    errors = np.r_[found.fs_stderr, found.qs_stderr]
+    assert np.isinf(errors).any() and "at a bound: " in " ".join(found.warnings)
+    assert np.isinf(found.qs_stderr[(found.qs < 0.0051) | (found.qs > 0.4999)]).all()
 
 
 BAD = [

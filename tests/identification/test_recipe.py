@@ -1,5 +1,7 @@
 """The recipe in one call, motions kept in a file, and the simulation that chose them."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -22,9 +24,9 @@ from tests.support.make_excitations import (
 MOTIONS = load_excitations()
 
 
-def run(name, seed=5, seconds=40, **options):
+def run(name, seed=5, seconds=40, arm=IR50P, **options):
     motion = MOTIONS[name]
-    with SimulatedBench(IR50P, seed=seed, q0=motion.q_start, record_to=False, **options) as bench:
+    with SimulatedBench(arm, seed=seed, q0=motion.q_start, record_to=False, **options) as bench:
         return bench.follow(thesis_pid(), motion, seconds)
 
 
@@ -56,6 +58,21 @@ def test_two_recordings_are_better_than_one(records):
     np.testing.assert_allclose(twice.theta, one.theta, atol=1e-6)
     assert np.median(twice.stderr[seen] / one.stderr[seen]) == pytest.approx(np.sqrt(0.5), abs=0.05)
     assert len(identify([train, valid], l2=0.2).residuals) > 1.9 * len(one.residuals)
+
+
+def test_a_run_that_contradicts_the_others_is_named(records):
+    """A fresher battery in one, an unlike load; three that agree say nothing."""
+    train, valid = records
+    third, loaded = run("validation 2", seed=5), run("validation 1", arm=IR50P.with_payload(0.1))
+    fresher = SimpleNamespace(t=valid.t, q=valid.q, u=valid.u / 1.15)
+    agreed = identify([train, valid, third], l2=0.2)
+    assert not any("contradicts" in text for text in agreed.warnings)
+    for odd in (fresher, loaded):
+        found = identify([train, odd, third], l2=0.2)
+        assert any("recording 2 contradicts the others" in text for text in found.warnings)
+        seen = np.isfinite(found.stderr) & np.isfinite(agreed.stderr) & (agreed.stderr > 0)
+        assert np.median(found.stderr[seen] / agreed.stderr[seen]) > 2
+    assert "contradicts the others" in " ".join(identify([fresher, train], l2=0.2).warnings)
 
 
 def test_samples_that_do_not_count_do_not_matter(records):

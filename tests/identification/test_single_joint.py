@@ -333,7 +333,72 @@ def test_measured_speed_is_used_and_its_unit_is_checked():
     assert "times qd" in " ".join(fit_joint(t, q, u, qd=v * 9.549).warnings)  # rev/min
 
 
+def test_a_wheel_of_which_only_the_speed_was_measured():
+    rng = np.random.default_rng(1)
+    t, _, v, a = sines(rng, 100, 20, 6.0)
+    u = 0.02 * a + 0.01 * v + 0.05 * np.sign(v) + rng.normal(0, 0.002, len(t))
+    for found in (fit_joint(t, u=u, qd=v), fit_joint([(t, None, u, v)])):
+        assert (found.inertia, found.viscous, found.coulomb) == pytest.approx((0.02, 0.01, 0.05), rel=0.02)
+        assert found.warnings == ()
+    lost = np.where(np.arange(len(t)) == 700, 300.0, v)
+    assert "qd has 1 outlier" in " ".join(fit_joint(t, u=u, qd=lost).warnings)
+
+
+def at_uneven_times(clock, seed):
+    """A joint that stands for 4 s and then moves slowly; each u is held until the next sample. t, q, u, true values."""
+    rng = np.random.default_rng([seed, 5])
+    steps = {
+        "uniform": rng.integers(15, 270, 3000),
+        "mostly short": np.clip(rng.lognormal(np.log(50), 0.9, 3000), 15, 270).astype(int),
+        "short or long": np.where(
+            rng.uniform(size=3000) < 0.7, rng.integers(15, 30, 3000), rng.integers(100, 270, 3000)
+        ),
+    }[clock]  # ms
+    sampled = np.cumsum(steps)
+    sampled = sampled[sampled < 40_000]
+    t, phase = 0.001 * sampled, rng.uniform(0, 6, 3)
+    u = np.where(
+        t < 4, 0.0, 2.5 * sum(np.sin(2 * np.pi * f * t + p) for f, p in zip((0.07, 0.16, 0.3), phase, strict=True))
+    )
+    held = np.repeat(np.r_[0.0, u], np.diff(np.r_[0, sampled, 40_000]))
+    truth = tuple(rng.uniform((0.3, 2, 0.3), (1, 5, 0.8)))
+    q = angle(((*truth, 0.1), 0.001, 40.0, 2.5, 0.0), held)[sampled]
+    return t, q + rng.normal(0, 5e-4, len(t)), u, truth
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("clock", ["uniform", "mostly short", "short or long"])
+def test_a_slow_uneven_loop_is_taken_as_it_is(clock, seed):
+    *record, truth = at_uneven_times(clock, seed)
+    found = fit_joint(*record)
+    for name, true in zip(NAMES[:3], truth, strict=True):
+        x, stderr = getattr(found, name), getattr(found, f"{name}_stderr")
+        assert abs(x - true) < 3 * stderr + 0.01 * true, name
+    assert found.viscous == pytest.approx(truth[1], rel=0.03)
+    assert not any("outlier" in one or "milliseconds" in one for one in found.warnings)
+
+
 # --- several recordings
+
+
+@pytest.mark.parametrize("kind", ["battery", "motor", "load", "grease", "tilt"])
+@machines
+def test_a_recording_that_contradicts_is_named_and_the_error_reaches_to_each(machine, kind):
+    """Each alone is without a warning; one of three was driven by a fresher battery, carries a load, is cold, is tilted."""
+    J, b, c, o = machine[0]
+    other = {"load": (2.5 * J, b, c, o), "grease": (J, 1.3 * b, c, o), "tilt": (J, b, c, o + 0.1 * machine[3])}.get(
+        kind
+    )
+    scale = {"battery": 1 / 1.15, "motor": 1.2}.get(kind, 1.0)
+    t, q, u = recorded((other or machine[0], *machine[1:]), 2)
+    odd = t, q, scale * u
+    healthy = fit_joint([recorded(machine, seed) for seed in (0, 1, 2)])
+    found = fit_joint([recorded(machine, 0), odd, recorded(machine, 1)])
+    said = " ".join(found.warnings)
+    assert healthy.warnings == () and "recording 2 contradicts" in said and "recording 1 contradicts" not in said
+    values = other or [scale * x for x in machine[0]]
+    for name, x in zip(NAMES, values, strict=True):
+        assert abs(getattr(found, name) - x) <= 3 * getattr(found, f"{name}_stderr") + 0.01 * abs(x), name
 
 
 def test_recordings_are_pooled_and_one_that_contradicts_is_named():
@@ -505,6 +570,47 @@ def test_wrapped_angles(turns):
     q = 2 * np.pi * turns / 10 * t
     for full in (2 * np.pi, 360.0):
         refused("a whole turn was wrapped", t, (q / (2 * np.pi) * full) % full, np.sin(t))
+
+
+TURNED = {  # what a register or an encoder makes of a signed number, and what is said
+    "sixteen bits without sign": (lambda u: u % 65536, "use np.unwrap(u, period=65536)"),
+    "eleven bits without sign": (lambda u: u % 2048, "use np.unwrap(u, period=2048)"),
+    "of hundredths": (lambda u: u % 65536 / 100, "use np.unwrap(u, period=655.36)"),
+    "sign in bit 10": (lambda u: np.where(u < 0, 1024 - u, u), "use np.where(u < 1024, u, 1024 - u)"),
+    "sign in bit 15": (lambda u: np.where(u < 0, 32768 - u, u), "use np.where(u < 32768, u, 32768 - u)"),
+}
+
+
+@pytest.mark.parametrize("size", [10, 60, 900])
+@pytest.mark.parametrize("register, words", TURNED.values(), ids=TURNED)
+def test_a_register_without_sign_is_named(register, words, size):
+    t, q, u = recorded(ARM)
+    refused(words, t, q, register(np.round(size * u / np.abs(u).max())))
+
+
+@pytest.mark.parametrize("turn, said", [(2 * np.pi / 3, 2.0944), (2 * np.pi / 7, 0.897598), (1.234, 1.23), (120, 120)])
+def test_an_encoder_that_wraps_before_its_gear_is_named(turn, said):
+    t, q, u = recorded((*ARM[:4], 1e-4))
+    size = 57.2958 if turn > 7 else 1.0
+    for begin in (0.0, turn / 2):
+        refused(f"use np.unwrap(q, period={said}", t, np.mod(size * q + begin, turn) - begin, u)
+
+
+SWITCHED = {
+    "square": lambda t, rng: np.sign(np.sin(2.5 * t)),
+    "square with noise": lambda t, rng: np.sign(np.sin(2.5 * t)) + rng.normal(0, 0.07, len(t)),
+    "three levels": lambda t, rng: np.repeat(rng.choice([-1.0, 0.0, 1.0], 200), 40)[: len(t)],
+    "saw-tooth": lambda t, rng: 2 * ((0.4 * t) % 1) - 1,
+    "friction compensated": lambda t, rng: 0.6 * np.sign(np.sin(2.5 * t)) + 0.8 * np.sin(2.5 * t),
+    "answers to steps": lambda t, rng: np.where(t % 4 < 2, 1, -1) * 1.4 * np.exp(-(t % 2) / 0.3),
+}
+
+
+@pytest.mark.parametrize("drive", SWITCHED.values(), ids=SWITCHED)
+def test_switched_drives_jump_by_one_size_and_are_taken(drive):
+    t = np.arange(3000) * 0.01
+    u = 1.5 * drive(t, np.random.default_rng(2))
+    check(fit_joint(t, angle((*ARM[:4], 1e-4), u), u), ARM, 0.1)
 
 
 @machines

@@ -7,24 +7,37 @@ import numpy as np
 
 from ir50p_lab.bench import result_files
 from ir50p_lab.bench.connect import connect
+from ir50p_lab.bench.simulated import SimulatedBench
 from ir50p_lab.errors import InputError, NotMeasuredError
+from ir50p_lab.inputs import numbers
 
 NOTEBOOKS = {"calibration": "10_bench", "model": "12_identification", "camera": "17_camera_calibration"}
 _ENDINGS = {"calibration": ".toml", "model": ".model", "camera": ".yml"}
 _RENDERED = {"bench": "rendered pictures", "bench_id": "rendered", "arm": "", "simulated": "true"}
 
 
-def save_result(kind, value, measured_on=None):
+def save_result(kind, value, errors=None, measured_on=None):
     """Keep a result with its origin; later notebooks take the newest. One line says what was kept.
 
-    Args:
-        kind: 'calibration' (of potentiometers), 'model' (what `identify` returns) or 'camera' (what `calibrate`
-        returns). measured_on: the open bench, or the Recording, that it is from; None: rendered pictures of a camera.
+        save_result("model", identify(recording), recording)
+        save_result("model", theta, errors, recording)    # your own
 
-    From a board without an id nothing is kept; the line says so. Raises InputError for another kind, and if it cannot
-    be written.
+    Args:
+        kind: 'calibration' (of potentiometers), 'model' (what `identify` or `output_error` returns, or your own theta
+        (3, 20) in PWM counts) or 'camera' (what `calibrate` returns). errors: standard errors of your own theta
+        (3, 20): inf where the data do not tell, nan where it was not fitted. measured_on: the open bench, or the
+        Recording, that it is from, the third argument where there are no errors; None: rendered pictures of a camera,
+        the simulated arm of your own theta.
+
+    From a board without an id nothing is kept; the line says so. Raises InputError for another kind, a theta or errors
+    of another shape, and if it cannot be written.
     """
     _check(kind)
+    if hasattr(errors, "header") or hasattr(errors, "bench_id"):
+        errors, measured_on = measured_on, errors
+    if kind == "model" and not hasattr(value, "residuals"):
+        measured_on = measured_on or SimulatedBench(record_to=False)
+        value = _own_model(*((value.theta, value.stderr) if hasattr(value, "stderr") else (value, errors)))
     head = _origin(measured_on, kind)
     if head.get("bench_id", "none") == "none":
         print("Not kept: nobody knows which bench this is from. python3 -m ir50p_lab bench-test gives a board its id")
@@ -119,6 +132,21 @@ def _origin(measured_on, kind):
     if not hasattr(measured_on, "bench_id"):
         raise InputError(f"measured_on = {measured_on!r:.60}: give the open bench or the Recording that it is from")
     return measured_on.head()
+
+
+def _own_model(theta, errors):
+    """An Estimate of a theta (3, 20) in PWM counts and its standard errors (3, 20), None: not known."""
+    from ir50p_lab.identification import Estimate
+    from ir50p_lab.identification.parameters import NAMES
+
+    theta, stderr = numbers("theta", theta), numbers("errors", np.full((3, 20), np.nan) if errors is None else errors)
+    if not theta.shape == stderr.shape == (3, 20) or not np.isfinite(theta).all() or (stderr < 0).any():
+        raise InputError(f"theta {theta.shape}, errors {stderr.shape}: give both (3, 20), theta finite, errors >= 0")
+    spread = np.where(np.isfinite(stderr), stderr, 0.0)[:, :, None] ** 2 * np.eye(20)
+    columns = tuple(tuple(np.array(NAMES)[np.isfinite(row)].tolist()) for row in stderr)
+    unknown = {"condition": np.full(3, np.nan), "sigma": np.full(3, np.nan), "residuals": np.zeros((0, 3))}
+    said = {"columns": columns, "unidentifiable": (), "warnings": (), "method": "your own"}
+    return Estimate(theta=theta, stderr=stderr, covariance=spread, **unknown, **said)
 
 
 def _write_model(model, path):

@@ -53,6 +53,33 @@ def test_what_is_kept_comes_back(model, recording, capsys):
     assert (row.state, row.bench_id, row.unit) == ("counts", f"simulated-unit-{unit}", str(unit))
 
 
+@pytest.mark.parametrize("named", [True, False])
+def test_a_model_of_ones_own_comes_back_with_its_errors(named, recording, capsys):
+    theta, errors = np.array(IR50P.theta_pwm), np.full((3, 20), np.nan)
+    errors[:, :6], errors[1, 7] = 0.5, np.inf
+    if named:
+        save_result("model", theta, errors, recording)
+        back = load_result("model", simulated(int(recording.header["seed"])))
+    else:  # no bench: the simulated arm
+        save_result("model", theta, errors)
+        back = load_result("model", simulated())
+    assert "measured on simulated" in capsys.readouterr().out
+    np.testing.assert_array_equal(back.theta, theta)
+    np.testing.assert_array_equal(back.stderr, errors)
+    assert back.unit == "PWM" and back.columns[0][:2] == ("theta1", "theta2") and "theta6" in str(back)
+    assert (back.score(recording).fit > 70).all()
+
+
+@pytest.mark.parametrize(
+    "theta, errors",
+    [(np.zeros((3, 19)), None), (IR50P, None), (np.full((3, 20), np.nan), None), (np.ones((3, 20)), -1)],
+)
+def test_what_is_no_model_is_not_kept(theta, errors):
+    with pytest.raises(InputError, match="theta"):
+        save_result("model", theta, errors)
+    assert results().empty
+
+
 def test_the_newest_counts_until_it_is_withdrawn_or_another_chosen(model):
     bench = simulated()
     for k in (1, 2, 3):
