@@ -80,7 +80,8 @@ def _still(w, i, q, u, load, held):
         return False
     still[0] += min(1.0, dt / w.lag[i]) * (excess / n[FV + i] - still[0])
     still[1] += still[0] * dt
-    return still[1] > (HELD if still[3] > 0 else FRESH)
+    answered = still[1] - DELAY * dt * still[0]  # a motor answers late
+    return answered > (HELD if still[3] > 0 else FRESH)
 
 
 @jit()
