@@ -22,6 +22,12 @@ from ir50p_lab.launcher.problems import COMMAND
 LOCK = "environment.txt"
 TEST_LOCK = "environment-test.txt"
 
+_FIRST_RUN = """import ir50p_lab
+try:
+    from ir50p_lab import controllers, modelling, simulation
+    simulation.simulate(modelling.IR50P, controllers.PID(kp=1, limit_pwm=255), (0, 1, -1), duration=0.1, period=0.01)
+except ImportError:  # what cannot be used is named by the check
+    pass"""
 _BUSY = "ir50p_lab-setup.lock"
 _NOT_MADE = "not made yet"
 _UNWANTED = set(
@@ -118,8 +124,8 @@ class Environment:
         print("[3/4] the lab book itself")
         # Editable, so that notebooks anywhere import the package as it is here; the build tool is in the lock.
         installer.install("--no-deps", "--no-build-isolation", "--editable", str(self.root))
-        print("[4/4] check: everything is imported once")
-        installer.run([str(self.python), "-P", "-c", "import ir50p_lab"])  # from anywhere
+        print("[4/4] check: everything is imported, and the simulation compiled, once")
+        installer.run([str(self.python), "-P", "-c", _FIRST_RUN])  # from anywhere
         found, error = self.look_inside()
         for name, why in (found["broken"] if found else {"the set-up's last step": error}).items():
             print(f"Careful: {name} cannot be used ({why}). '{COMMAND} doctor' says more.")
