@@ -22,7 +22,9 @@ def test_the_arm_is_turned_by_the_function_right_or_wrong(q):
 
 
 @pytest.mark.parametrize(
-    "wrong", [None, "text", np.eye(2), np.full((3, 3), np.nan), 1.0, [[1, 2], [3]], lambda: 1, np.eye(4)], ids=str
+    "wrong",
+    [None, "text", np.eye(2), np.full((3, 3), np.nan), 1.0, [[1, 2], [3]], print, np.eye(4)],
+    ids=["nothing", "text", "2 x 2", "nan", "a number", "ragged", "a function", "4 x 4"],
 )
 def test_a_function_that_gives_no_matrix_is_answered_as_by_check(wrong, capsys):
     def rot_z(angle):
