@@ -38,10 +38,7 @@ def rigid(name, T):
 
 def picture_size(size):
     """(width, height) as whole numbers of pixels. Raises InputError."""
-    try:
-        array = np.asarray(size, dtype=float)
-    except (TypeError, ValueError):
-        array = np.empty(0)
+    array = numbers("size = (width, height)", size, unit="whole pixels")
     if array.shape != (2,) or not (array >= 1).all() or (array != np.round(array)).any():
         raise InputError(f"size = {size!r}: give (width, height) of the picture as whole pixels, at least 1")
     return int(array[0]), int(array[1])

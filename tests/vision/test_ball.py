@@ -1,5 +1,7 @@
 """Balls drawn by another route than the renderer: found, measured, and not seen where there are none."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -7,7 +9,8 @@ from drawn_balls import add_ball, add_polygon, circle_corners, empty, photograph
 
 from ir50p_lab.errors import CalibrationError, ImageError, InputError
 from ir50p_lab.vision import RED, Ball, Colour, Pinhole, find_balls, learn_colour, render_scene
-from ir50p_lab.vision.rendering import SceneBall, bench_scene
+from ir50p_lab.vision.ball import find
+from ir50p_lab.vision.rendering import Patch, SceneBall, bench_scene
 from tests.support.random_picture import random_picture
 
 F = 700.0
@@ -69,6 +72,33 @@ def test_lists_are_ranked_and_say_why_they_are_empty():
     assert [b.score for b in balls] == sorted((b.score for b in balls), reverse=True)
     nothing = find_balls(photograph(empty()))
     assert nothing == [] and "red" in nothing.reason
+
+
+@pytest.mark.parametrize("radius", [12, 40])
+def test_red_and_blue_exchanged_are_said_with_the_remedy(radius):
+    balls = find_balls(drawn((420, 150), radius)[..., ::-1])
+    assert balls == [] and "at (420, 150)" in balls.reason
+    assert "BGR" in balls.reason and "image[..., ::-1]" in balls.reason and "cv2.cvtColor" in balls.reason
+    assert "BGR" not in find_balls(photograph(empty())).reason + find_balls(no_ball(6)).reason
+
+
+def test_channels_are_turned_round_only_where_nothing_is_found(monkeypatch):
+    searched = []
+    guess = find.guess_circles
+    monkeypatch.setattr(find, "guess_circles", lambda *arguments: searched.append(1) or guess(*arguments))
+    assert find_balls(drawn()) and len(searched) == 1
+    assert not find_balls(photograph(empty())) and len(searched) == 3
+
+
+@pytest.mark.parametrize("paint", [(153, 82, 57), (130, 60, 45), (165, 75, 60), (150, 50, 50)])
+def test_a_red_ball_on_a_table_of_reddish_wood(paint):
+    """Most of the picture has the colour; the ball is what differs from most of it."""
+    table = Patch(position=(0.25, 0.0), size=(1.7, 1.6), colour=paint)
+    picture, truth = render_scene(bench_scene(SceneBall(position=(0.5, 0.1, 0.03)), patches=(table,)), seed=1)
+    balls = find_balls(picture)
+    assert len(balls) == 1 and offset(balls, (truth.balls[0].x, truth.balls[0].y)) < 2
+    bare = replace(bench_scene(patches=(table,)), objects=())
+    assert find_balls(render_scene(bare, seed=1)[0]) == []
 
 
 def test_shown_in_a_notebook():

@@ -114,7 +114,7 @@ def test_a_board_partly_covered_is_cropped_not_another_board(window, shown):
 
 @pytest.mark.parametrize(
     ("tilt", "about", "window"),
-    [(0.7, 5.0, np.s_[:, :377]), (0.5, 0.5, np.s_[:290]), (0.7, 5.0, np.s_[:, 181:])],
+    [(0.7, 5.0, np.s_[:, :377]), (0.5, 0.5, np.s_[:290]), (0.7, 5.0, np.s_[:, 181:]), (0.9, 0.5, np.s_[:274])],
 )
 def test_a_board_partly_out_of_the_picture(tilt, about, window):
     """Cut obliquely; in one of them the finder sees a grid across the squares."""

@@ -1,10 +1,13 @@
 """Calibration from corners with known noise: against the truth, and what it must see and refuse."""
 
+import sys
+
 import cv2
 import numpy as np
 import pytest
 from board_pictures import LENS, SIZE, K, corner_sets, look, painted_set, project
 
+from ir50p_lab.course.board_poses import board_poses
 from ir50p_lab.errors import CalibrationError, ImageError, InputError
 from ir50p_lab.vision import Checkerboard, Pinhole, Reason, calibrate, calibrate_corners
 from ir50p_lab.vision.calibration.fit import errors, fit, fit_bent, height
@@ -146,19 +149,72 @@ def test_two_cameras_in_one_call_are_noticed(other):
         assert "two cameras" in calibrate_corners(POINTS, both, SIZE).warnings[0]
 
 
-def fisheye():
-    """Equidistant, 160 degrees across the diagonal: the polynomial in r is left behind by a pixel."""
-    matrix, rng, views = np.array([[280, 0, 322.0], [0, 280, 238], [0, 0, 1]]), np.random.default_rng(0), []
+def fisheye(focal=280, bends=(0, 0, 0, 0), noise=0.1, seed=0):
+    """(15 views by OpenCV, angle of the outermost corner in degrees) of a fisheye: f (theta + k1 theta^3 + ...)."""
+    matrix, rng, views, angles = (
+        np.array([[focal, 0, 322.0], [0, focal, 238], [0, 0, 1]]),
+        np.random.default_rng(seed),
+        [],
+        [],
+    )
     while len(views) < 15:
         turn, (aside, about) = rng.normal(0, 0.35, 3), rng.uniform((0, 0), (1.1, 6.28))
         away = np.array([np.sin(aside) * np.cos(about), np.sin(aside) * np.sin(about), np.cos(aside)])
         R = cv2.Rodrigues(turn)[0]
         shift = rng.uniform(0.12, 0.3) * away - R @ POINTS.mean(axis=0)
-        if (POINTS @ R.T + shift)[:, 2].min() > 0.02:
-            xy = cv2.fisheye.projectPoints(POINTS[None], turn, shift, matrix, np.zeros(4))[0][0]
-            if (xy > 3).all() and (xy < (636, 476)).all():
-                views.append(xy)
-    return views
+        X, Y, Z = (POINTS @ R.T + shift).T
+        xy = cv2.fisheye.projectPoints(POINTS[None], turn, shift, matrix, np.float64(bends))[0][0]
+        if Z.min() > 0.02 and (xy > 3).all() and (xy < (636, 476)).all():
+            views.append(xy + rng.normal(0, noise, xy.shape))
+            angles.append(np.rad2deg(np.arctan2(np.hypot(X, Y), Z).max()))
+    return views, max(angles)
+
+
+# The first coefficients of the models r = f theta, 2 f sin(theta/2), 2 f tan(theta/2), f sin(theta), and of a real lens
+BENDS = [(0,), (-1 / 24, 1 / 1920), (1 / 12, 1 / 120), (-1 / 6, 1 / 120), (-0.05, 0.01)]
+
+
+@pytest.mark.parametrize("focal", [220, 300, 360])
+@pytest.mark.parametrize("bends", BENDS)
+def test_a_fisheye_is_called_one_with_its_angle_and_no_other_cause(bends, focal):
+    views, angle = fisheye(focal, [*bends, 0, 0, 0][:4], seed=focal)
+    (said,) = calibrate_corners(POINTS, views, SIZE).warnings
+    assert said.startswith("a fisheye") and "cv2.fisheye" in said
+    assert abs(float(said.split("corners lie ")[1].split()[0]) - angle) < 3
+
+
+def test_a_fisheye_is_no_bent_board(monkeypatch):
+    views, _ = fisheye()
+    calibrate_module = sys.modules["ir50p_lab.vision.calibration.calibrate"]
+    monkeypatch.setattr(calibrate_module, "_corners", lambda *_: views[len(_[-1])])
+    found = calibrate([np.zeros(SIZE[::-1], np.uint8)] * len(views), progress=False)
+    assert len(found.views) == 15 and [text[:9] for text in found.warnings] == ["a fisheye"]
+
+
+def wide(lens, across_deg, seed=0):
+    """(focal length, views) of a lens that sees so much across: its polynomial holds all over the picture."""
+    x = np.tan(np.deg2rad(across_deg) / 2)
+    f = 320 / (x * (1 + lens[0] * x**2 + lens[1] * x**4 + lens[4] * x**6))
+    camera = Pinhole.simple(f, SIZE, lens)
+    rng = np.random.default_rng(seed)
+    return f, [camera.project(T, POINTS) + rng.normal(0, 0.1, (54, 2)) for T in board_poses(camera, 12, seed)]
+
+
+@pytest.mark.parametrize("across_deg", [70, 85, 100])
+@pytest.mark.parametrize("lens", [(-0.3, 0.1, 0, 0, 0), (-0.35, 0.15, 0, 0, 0), (-0.4, 0.15, 0, 0, 0)])
+def test_a_wide_lens_that_the_model_describes_is_no_fisheye(lens, across_deg):
+    f, seen = wide(lens, across_deg)
+    found = calibrate_corners(POINTS, seen, SIZE)
+    assert abs(found.fx / f - 1) < 0.02
+    assert not any("fisheye" in text or "contradict" in text or "needs more" in text for text in found.warnings)
+
+
+@pytest.mark.parametrize(("lens", "given"), [((-0.4, 0.25, 0, 0, -0.08), FULL), (LENS, ()), (LENS, ("p1", "p2"))])
+def test_a_lens_that_needs_more_coefficients_is_told_which(lens, given):
+    _, seen = wide(lens, 95 if lens[4] else 60)
+    (said,) = calibrate_corners(POINTS, seen, SIZE, lens=given).warnings
+    assert "needs more" in said and "fisheye" not in said
+    assert not any("needs more" in text for text in calibrate_corners(POINTS, seen, SIZE, lens=NAMES[4:]).warnings)
 
 
 def tilted(tilts, about):
@@ -168,7 +224,7 @@ def tilted(tilts, about):
 
 
 SAID = {
-    "fisheye": lambda views: (fisheye(), SIZE),
+    "fisheye": lambda views: (fisheye(noise=0)[0], SIZE),
     "pixels are not square": lambda views: ([xy * [4 / 3, 1] for xy in views], (853, 480)),
     "far from the middle": lambda views: ([xy + np.array([300, 0]) for xy in views], (940, 480)),
     "4 views are few": lambda views: (views[:4], SIZE),

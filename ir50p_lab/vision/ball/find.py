@@ -47,7 +47,8 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
 
     Regions of the colour give circles. Around each the edge is measured along rays, and the cone of sight through it
     fitted: x, y is where the centre of the sphere is seen, not the middle of its outline. Nine numbers about outline
-    and colours decide whether it is a ball; each circle that is refused has its reason.
+    and colours decide whether it is a ball; each circle that is refused has its reason. If there is none, red and blue
+    are exchanged once: a ball that is seen then is no result, but the reason says that the picture may be BGR.
 
     Args:
         colour: Colour, default RED; camera: Pinhole or Calibration if known, else one without distortion is assumed
@@ -63,6 +64,15 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     size = image.shape[1::-1]
     pinhole = Pinhole.simple(_F * max(size), size) if camera is None else as_pinhole(camera)
     check_picture_size(pinhole, size)
+    found = _find(image, colour, pinhole, least_radius)
+    if not found and (seen := _find(np.ascontiguousarray(image[..., ::-1]), colour, pinhole, least_radius)):
+        said = ". With red and blue exchanged a ball is at ({:.0f}, {:.0f}): is it BGR, from cv2.imread? Then give "
+        found.reason += said.format(seen[0].x, seen[0].y) + "image[..., ::-1] or cv2.cvtColor(image, cv2.COLOR_BGR2RGB)"
+    return found
+
+
+def _find(image, colour, pinhole, least_radius):
+    """The Balls of a Colour in an RGB picture (h, w, 3) of a camera."""
     balls, rejected = [], []
     for guess in guess_circles(image, colour, least_radius)[:_MOST]:
         outline = measure(image, pinhole, guess)

@@ -6,6 +6,7 @@ from scipy.spatial.distance import cdist
 
 _LONGER_SIDE = 640  # px: the picture is searched in a copy reduced to about this
 _STRICTNESS = (0.0, 0.45, 0.62)  # least saturations tried: a saturated ball stands out from wood under warm light
+_COVERED = 0.2  # share of the picture: if more has the colour, the table has it; what differs from that is looked for
 _REGIONS = 10  # regions of a mask looked at, longest outline first
 _ARCS = 3  # circles sought on one outline: balls that touch share one
 # Circles go through three points of an outline: so many first points, and steps to the others as shares of its length.
@@ -34,13 +35,30 @@ def guess_circles(image, colour, least_radius):
 
 
 def _masks(image, colour):
-    """Masks (h, w) of the colour: for three least saturations, and a loose one for dim or glaring light."""
+    """Masks (h, w) of the colour: for three least saturations, a loose one for dim or glaring light, and if the table
+    has the colour, too, what is left of that without the table.
+    """
     hsv = colour.hsv_of(image)
     three, five = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
     for saturation in _STRICTNESS:
         yield cv2.morphologyEx(cv2.inRange(hsv, *colour.bounds(saturation)), cv2.MORPH_OPEN, three)
-    loose = colour.loose_mask(colour.hsv_of(cv2.GaussianBlur(image, (0, 0), 1.5)))
+    smooth = cv2.GaussianBlur(image, (0, 0), 1.5)
+    loose = colour.loose_mask(colour.hsv_of(smooth))
     yield cv2.morphologyEx(loose, cv2.MORPH_CLOSE, five)
+    if (loose > 0).mean() > _COVERED:
+        yield cv2.morphologyEx(_other_than_most(smooth, loose), cv2.MORPH_OPEN, five)
+
+
+def _other_than_most(image, mask):
+    """255 where the hue of a mask's pixels (h, w) is far from that of most of them: a ball on a table of its colour.
+
+    How far is far, Otsu's threshold tells.
+    """
+    lab = cv2.cvtColor(image, cv2.COLOR_RGB2LAB)[..., 1:]
+    off = np.linalg.norm(lab - np.median(lab[mask > 0], axis=0), axis=2)
+    levels = np.uint8(np.minimum(4 * off, 255))  # quarters of a grey level: it needs whole numbers
+    far, _ = cv2.threshold(levels[mask > 0], 0, 255, cv2.THRESH_OTSU)
+    return np.uint8(255 * ((mask > 0) & (levels > far)))
 
 
 def _circles(points):

@@ -11,7 +11,7 @@ from ir50p_lab.vision.board_pose import transform
 from ir50p_lab.vision.calibration import checks
 from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.calibration.corners import find_checkerboard
-from ir50p_lab.vision.calibration.fit import errors, fit, fit_bent, height
+from ir50p_lab.vision.calibration.fit import errors, fit, fit_bent, fit_lens, height
 from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
 from ir50p_lab.vision.calibration.result import LENS, NAMES, Calibration, View
 from ir50p_lab.vision.checks import picture_size, point_list
@@ -98,8 +98,8 @@ def calibrate_corners(object_points, image_points, size, *, lens=_USUAL):
 
 def _calibrate(found, points, size, lens, rejected, board):
     """Calibration from (name, index, corners) of each view; board: Checkerboard that may be bent, or None."""
-    fitted = fit(points, [xy for *_, xy in found], size, lens)
-    for _ in range(len(found) // 4):
+    fitted, doubt = fit_lens(points, [xy for *_, xy in found], size, lens)
+    for _ in range(0 if doubt else len(found) // 4):
         odd = checks.odd_view(fitted.view_rms)
         if odd is None:
             break
@@ -107,9 +107,9 @@ def _calibrate(found, points, size, lens, rejected, board):
         detail = f"its corners are {rms[odd]:.2g} px off the model, those of the others {np.median(rms):.2g} px"
         rejected.append(Rejected(name, index, Reason.OUTLIER, detail))
         points = [*points[:odd], *points[odd + 1 :]]
-        fitted = fit(points, [xy for *_, xy in found], size, lens)
+        fitted = fit(points, [xy for *_, xy in found], size, lens, fitted.K)
     pixels, said = [xy for *_, xy in found], []
-    if board is not None:
+    if board is not None and not doubt:
         fitted = fit_bent(fitted, pixels, size, lens, board.pattern[0])
     if fitted.bent:
         bend = 1000 * height(fitted.points[0])
@@ -136,7 +136,8 @@ def _calibrate(found, points, size, lens, rejected, board):
         model=lens,
         sigma=sigma,
     )
-    return replace(result, warnings=(*said, *checks.warnings_about(result)))
+    # of a lens outside the model the other doubts would name causes that are none
+    return replace(result, warnings=(doubt,) if doubt else (*said, *checks.warnings_about(result)))
 
 
 def _coefficients(lens):
@@ -167,8 +168,7 @@ def _picture(index, one):
             return Path(one).name, error
     name, array = f"picture {index + 1}", np.asarray(getattr(one, "image", one))
     if array.dtype != np.uint8 or not array.size or array.shape[2:] not in ((), (3,), (4,)):
-        what = f"{array.dtype} array of shape {array.shape}: give uint8 of shape (h, w, 3), or (h, w)"
-        return name, ImageError(what)
+        return name, ImageError(f"{array.dtype} array of shape {array.shape}: give uint8 of shape (h, w, 3) or (h, w)")
     return name, array if array.ndim == 2 else to_grey(np.ascontiguousarray(array[..., :3]))
 
 

@@ -26,6 +26,7 @@ def find_checkerboard(grey, pattern):
     Raises NotUsable with the Reason, CalibrationError for a pattern that cannot be.
     """
     pattern = check_pattern(pattern)
+    cv2.setRNGSeed(0)  # the finders draw at random: a steep board at the border was seen in 19 of 20 calls
     try:
         grid = _search(grey, pattern)
         _refuse_soft(grid, grey)

@@ -7,12 +7,21 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.calibration.result import NAMES
+from ir50p_lab.vision.board_pose import moved, transform
+from ir50p_lab.vision.calibration.result import LENS, NAMES
 
 _STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 50, 1e-9)
 _BENT = 0.75  # variance of residuals with every corner free over that with a flat board: if less, the board is bent
 _GAUGE = 7  # numbers of a free board that no picture tells: where it lies, how it is turned, how large it is
+_ANOTHER = 0.75  # median residual of a view with another lens over that with the one asked for: if less, it is another
+_ROUNDING = 0.001  # px: smaller differences of residuals are rounding, in corners without noise
+_WIDE = np.deg2rad(40)  # if no corner lies farther off the axis, a fisheye hardly differs from the lens of the model
 _UNKNOWN = 1e-11  # if an eigenvalue of the scaled normal matrix is smaller, it is rounding: something is undetermined
+_FISHEYE = (
+    "a fisheye: its outermost corners lie {:.0f} degrees off the axis, and are {:.2g} px off this model, {:.2g} px off "
+    "a fisheye's. K and distortion do not hold: a lens of less than 100 degrees, or undistort with cv2.fisheye first"
+)
+_FEW = "the lens needs more than {}, with which corners are {:.2g} px off, with all {:.2g} px: give lens={}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +75,44 @@ def fit(points, pixels, size, lens, start=None):
         xy - cv2.projectPoints(p, *pose, K, d)[0][:, 0] for p, xy, pose in zip(points, pixels, poses, strict=True)
     ]
     return CameraFit(camera, points, poses, residuals)
+
+
+def fit_lens(points, pixels, size, lens):
+    """(CameraFit as of `fit`, doubt): doubt says in a sentence that the lens is outside the model, or is "".
+
+    A fisheye is fitted, too, and from its K the camera once more (from its own start OpenCV may end far from the best
+    fit of a wide lens), also with all coefficients. If not even these leave residuals as small, it is a fisheye.
+    """
+    fitted = fit(points, pixels, size, lens)
+    try:
+        angle, fisheye = _fit_fisheye(points, pixels, size)
+        again, full = (fit(points, pixels, size, names, fisheye.K) for names in (lens, LENS))
+    except (cv2.error, CalibrationError):  # it is no fisheye
+        return fitted, ""
+    fitted = min(fitted, again, key=lambda one: one.squares)
+    ours, best, theirs = (np.median(one.view_rms) for one in (fitted, full, fisheye))
+    much_less = _ANOTHER * ours - _ROUNDING
+    if theirs < min(much_less, best) and angle > _WIDE:
+        return fitted, _FISHEYE.format(np.rad2deg(angle), ours, theirs)
+    return fitted, _FEW.format(lens, ours, best, LENS) if best < much_less else ""
+
+
+def _fit_fisheye(points, pixels, size):
+    """(angle of the outermost corner, rad, CameraFit) of a fisheye: `cv2.fisheye.calibrate`. Raises cv2.error.
+
+    A point at an angle theta off the axis is seen at f (theta + k1 theta^3 + k2 theta^5) from the centre (Kannala and
+    Brandt 2006); more coefficients are often not found.
+    """
+    views = [[np.float64(one)[None] for one in many] for many in (points, pixels)]
+    flags = cv2.fisheye.CALIB_RECOMPUTE_EXTRINSIC | cv2.fisheye.CALIB_FIX_SKEW
+    flags |= cv2.fisheye.CALIB_FIX_K3 | cv2.fisheye.CALIB_FIX_K4
+    _, K, d, *poses = cv2.fisheye.calibrate(*views, size, None, None, flags=flags, criteria=_STOP)
+    poses = list(zip(*poses, strict=True))
+    models = [cv2.fisheye.projectPoints(p, *pose, K, d)[0][0] for p, pose in zip(views[0], poses, strict=True)]
+    residuals = [xy - model for xy, model in zip(pixels, models, strict=True)]
+    X, Y, Z = np.concatenate([moved(transform(*pose), p) for p, pose in zip(points, poses, strict=True)]).T
+    camera = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *d.ravel()])
+    return np.arctan2(np.hypot(X, Y), Z).max(), CameraFit(camera, points, poses, residuals)
 
 
 def fit_bent(flat, pixels, size, lens, columns):
