@@ -204,6 +204,7 @@ class RunawayGuard:
         self.watch = Watch(plant.theta, plant.numbers, inertia / damping, top, noise, load, *memory)
         self._driven, self._cut = False, cut
         watch_step(self.watch, -math.inf, np.zeros(3), np.zeros(3))  # compiles; forgotten at the first sample
+        tip_height(self.watch.numbers, np.zeros(3))
 
     def check(self, sample, pwm):
         """Take the next Sample and the command (3,) PWM counts that acted before it. Raises RunawayError."""

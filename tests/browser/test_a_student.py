@@ -14,6 +14,8 @@ import solutions
 from conftest import running_lab
 from test_live_arm_in_lab import KERNEL_IDLE, VIEW, drag_tip, show
 
+from ir50p_lab.publishing.report import _NAMES, _named
+
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "notebooks").glob("0[0-3]_*.ipynb"))
 WRITTEN = [
     "rot_z",
@@ -128,6 +130,7 @@ def test_nothing_of_a_student_is_lost(browser, tmp_path):
     subprocess.run(command, env=os.environ | home, check=True, cwd=Path(__file__).parents[2])
     (report,) = (tmp_path / "mine" / "results").glob("report_*.html")
     text = report.read_text(encoding="utf-8")
-    for words in ("Ada", "1.25", "as it had to come", *predicted, *(f"def {name}" for name in WRITTEN)):
+    assert set(predicted) <= set(_NAMES), "names.txt"
+    for words in ("Ada", "1.25", "as it had to come", *map(_named, predicted), *(f"def {name}" for name in WRITTEN)):
         assert words in text, words
     assert "on loan" not in text
