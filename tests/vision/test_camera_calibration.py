@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from board_pictures import LENS, SIZE, K, corner_sets, look, painted_set, project
 
-from ir50p_lab.course.board_poses import board_poses
 from ir50p_lab.errors import CalibrationError, ImageError, InputError
 from ir50p_lab.vision import Checkerboard, Pinhole, Reason, calibrate, calibrate_corners
 from ir50p_lab.vision.calibration.fit import errors, fit, fit_bent, height
@@ -174,7 +173,7 @@ def fisheye(focal=280, bends=(0, 0, 0, 0), noise=0.1, seed=0):
 BENDS = [(0,), (-1 / 24, 1 / 1920), (1 / 12, 1 / 120), (-1 / 6, 1 / 120), (-0.05, 0.01)]
 
 
-@pytest.mark.parametrize("focal", [220, 300, 360])
+@pytest.mark.parametrize("focal", [150, 220, 300])
 @pytest.mark.parametrize("bends", BENDS)
 def test_a_fisheye_is_called_one_with_its_angle_and_no_other_cause(bends, focal):
     views, angle = fisheye(focal, [*bends, 0, 0, 0][:4], seed=focal)
@@ -192,12 +191,18 @@ def test_a_fisheye_is_no_bent_board(monkeypatch):
 
 
 def wide(lens, across_deg, seed=0):
-    """(focal length, views) of a lens that sees so much across: its polynomial holds all over the picture."""
+    """(focal length, views) of a lens that sees so much across, with boards where its polynomial rises."""
     x = np.tan(np.deg2rad(across_deg) / 2)
     f = 320 / (x * (1 + lens[0] * x**2 + lens[1] * x**4 + lens[4] * x**6))
-    camera = Pinhole.simple(f, SIZE, lens)
-    rng = np.random.default_rng(seed)
-    return f, [camera.project(T, POINTS) + rng.normal(0, 0.1, (54, 2)) for T in board_poses(camera, 12, seed)]
+    camera, rng, views = Pinhole.simple(f, SIZE, lens), np.random.default_rng(seed), []
+    while len(views) < 15:
+        T = look(rng.uniform(0.15, 0.5), rng.uniform(0.1, 0.7), *rng.uniform(0, 6.28, 2), rng.uniform(-0.9, 0.9, 2))
+        deep = POINTS @ T[2, :3] + T[2, 3]
+        if deep.min() > 0.05 and np.hypot(*(POINTS @ T[:2, :3].T + T[:2, 3]).T / deep).max() < 1.2 * x:
+            xy = camera.project(T, POINTS)
+            if (xy > 3).all() and (xy < (636, 476)).all():
+                views.append(xy + rng.normal(0, 0.1, xy.shape))
+    return f, views
 
 
 @pytest.mark.parametrize("across_deg", [70, 85, 100])
@@ -205,7 +210,7 @@ def wide(lens, across_deg, seed=0):
 def test_a_wide_lens_that_the_model_describes_is_no_fisheye(lens, across_deg):
     f, seen = wide(lens, across_deg)
     found = calibrate_corners(POINTS, seen, SIZE)
-    assert abs(found.fx / f - 1) < 0.02
+    assert abs(found.fx / f - 1) < 0.01
     assert not any("fisheye" in text or "contradict" in text or "needs more" in text for text in found.warnings)
 
 

@@ -14,7 +14,6 @@ _STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 50, 1e-9)
 _BENT = 0.75  # variance of residuals with every corner free over that with a flat board: if less, the board is bent
 _GAUGE = 7  # numbers of a free board that no picture tells: where it lies, how it is turned, how large it is
 _ANOTHER = 0.75  # median residual of a view with another lens over that with the one asked for: if less, it is another
-_ROUNDING = 0.001  # px: smaller differences of residuals are rounding, in corners without noise
 _WIDE = np.deg2rad(40)  # if no corner lies farther off the axis, a fisheye hardly differs from the lens of the model
 _UNKNOWN = 1e-11  # if an eigenvalue of the scaled normal matrix is smaller, it is rounding: something is undetermined
 _FISHEYE = (
@@ -67,14 +66,19 @@ def fit(points, pixels, size, lens, start=None):
     """
     flags = _flags(lens) | (0 if start is None else cv2.CALIB_USE_INTRINSIC_GUESS)
     try:
-        _, K, d, *poses = cv2.calibrateCamera(*_float32(points, pixels), size, start, None, flags=flags, criteria=_STOP)
+        found = cv2.calibrateCamera(*_float32(points, pixels), size, start, None, flags=flags, criteria=_STOP)
     except cv2.error:
         raise _too_much_alike(points) from None
-    camera, poses = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *d.ravel()[:5]]), list(zip(*poses, strict=True))
-    residuals = [
-        xy - cv2.projectPoints(p, *pose, K, d)[0][:, 0] for p, xy, pose in zip(points, pixels, poses, strict=True)
-    ]
-    return CameraFit(camera, points, poses, residuals)
+    return _camera_fit(found, cv2.projectPoints, points, pixels)
+
+
+def _camera_fit(found, project, points, pixels):
+    """CameraFit of what OpenCV found: (rms, K, distortion, rvecs, tvecs); project: its function for that lens."""
+    _, K, d, *poses = found
+    poses = list(zip(*poses, strict=True))
+    models = [project(p[None], *pose, K, d)[0].reshape(-1, 2) for p, pose in zip(points, poses, strict=True)]
+    residuals = [xy - model for xy, model in zip(pixels, models, strict=True)]
+    return CameraFit(np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *d.ravel()[:5]]), points, poses, residuals)
 
 
 def fit_lens(points, pixels, size, lens):
@@ -91,7 +95,7 @@ def fit_lens(points, pixels, size, lens):
         return fitted, ""
     fitted = min(fitted, again, key=lambda one: one.squares)
     ours, best, theirs = (np.median(one.view_rms) for one in (fitted, full, fisheye))
-    much_less = _ANOTHER * ours - _ROUNDING
+    much_less = _ANOTHER * ours - 0.001  # px: of corners without noise only rounding is left
     if theirs < min(much_less, best) and angle > _WIDE:
         return fitted, _FISHEYE.format(np.rad2deg(angle), ours, theirs)
     return fitted, _FEW.format(lens, ours, best, LENS) if best < much_less else ""
@@ -101,18 +105,18 @@ def _fit_fisheye(points, pixels, size):
     """(angle of the outermost corner, rad, CameraFit) of a fisheye: `cv2.fisheye.calibrate`. Raises cv2.error.
 
     A point at an angle theta off the axis is seen at f (theta + k1 theta^3 + k2 theta^5) from the centre (Kannala and
-    Brandt 2006); more coefficients are often not found.
+    Brandt 2006); more coefficients are often not found. f begins as if the corner farthest from the middle of the
+    picture lay 75 degrees off the axis.
     """
-    views = [[np.float64(one)[None] for one in many] for many in (points, pixels)]
-    flags = cv2.fisheye.CALIB_RECOMPUTE_EXTRINSIC | cv2.fisheye.CALIB_FIX_SKEW
-    flags |= cv2.fisheye.CALIB_FIX_K3 | cv2.fisheye.CALIB_FIX_K4
-    _, K, d, *poses = cv2.fisheye.calibrate(*views, size, None, None, flags=flags, criteria=_STOP)
-    poses = list(zip(*poses, strict=True))
-    models = [cv2.fisheye.projectPoints(p, *pose, K, d)[0][0] for p, pose in zip(views[0], poses, strict=True)]
-    residuals = [xy - model for xy, model in zip(pixels, models, strict=True)]
-    X, Y, Z = np.concatenate([moved(transform(*pose), p) for p, pose in zip(points, poses, strict=True)]).T
-    camera = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *d.ravel()])
-    return np.arctan2(np.hypot(X, Y), Z).max(), CameraFit(camera, points, poses, residuals)
+    views, middle = [[np.float64(one)[None] for one in many] for many in (points, pixels)], np.array(size) / 2
+    f = np.linalg.norm(np.concatenate(pixels) - middle, axis=1).max() / 1.3
+    start = np.array([[f, 0, middle[0]], [0, f, middle[1]], [0, 0, 1]])
+    flags = cv2.fisheye.CALIB_USE_INTRINSIC_GUESS | cv2.fisheye.CALIB_RECOMPUTE_EXTRINSIC
+    flags |= cv2.fisheye.CALIB_FIX_SKEW | cv2.fisheye.CALIB_FIX_K3 | cv2.fisheye.CALIB_FIX_K4
+    found = cv2.fisheye.calibrate(*views, size, start, np.zeros(4), flags=flags, criteria=_STOP)
+    fitted = _camera_fit(found, cv2.fisheye.projectPoints, points, pixels)
+    X, Y, Z = np.concatenate([moved(transform(*pose), p) for p, pose in zip(points, fitted.poses, strict=True)]).T
+    return np.arctan2(np.hypot(X, Y), Z).max(), fitted
 
 
 def fit_bent(flat, pixels, size, lens, columns):
