@@ -17,14 +17,14 @@ NOT_OURS = {"node_modules", "__pycache__"}
 ROOT = Path(__file__).parents[1]
 PACKAGE, TESTS = ROOT / "ir50p_lab", ROOT / "tests"
 BUDGETS = {
-    "modelling": 1240,
+    "modelling": 1228,
     "signals": 570,
     "controllers": 660,
     "simulation": 629,
-    "bench": 2291,  # 16 moved here from simulation
+    "bench": 2296,  # 16 moved here from simulation, 5 from modelling
     "identification": 1650,  # 50 moved here from course
     "vision": 2245,  # 45 moved here from course
-    "course": 7725,
+    "course": 7732,  # 7 moved here from modelling
     "launcher": 550,
     "grading": 0,
     "publishing": 470,  # 50 moved here from course

@@ -94,7 +94,7 @@ class JointCalibration:
     def load(cls, path):
         """Read a file that `save` wrote (or a person). Raises InputError that names the file and what is wrong."""
         try:
-            data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+            data = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
             points = tuple(_pairs(**data.pop(name)) for name in _JOINTS if name in data)
             return cls(points=points, remarks=tuple(data.pop("remarks", ())), **data)
         except (OSError, ValueError, TypeError, RecursionError) as error:

@@ -5,7 +5,7 @@ missed: cycles late so far. An empty cell is a value that is not known. A spread
 tabs, and decimal commas. Tables of other programs are read by pandas, and made a recording by `Recording.from_arrays`.
 """
 
-import contextlib
+import csv
 import math
 import re
 from operator import itemgetter
@@ -94,7 +94,7 @@ def read(path):
             cut = number
         elif found := _EVENT.match(line):
             events.append((_number(found[1], place), _as_written(found[2].rstrip(_PADDING))))
-        elif bare.startswith("#"):  # at the end stand statistics
+        elif bare.startswith("#") and not bare.startswith("###"):  # at the end stand statistics; ###: a narrow column
             key, colon, value = bare.lstrip("# ").partition(":")
             header |= {key.strip(): _as_written(value)} if colon else {}
         elif bare and not separator:
@@ -114,28 +114,33 @@ def read(path):
 
 
 def _decoded(data):
-    for encoding in ("utf-16",) if data.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "latin-1"):
-        with contextlib.suppress(UnicodeDecodeError):
-            return data.decode(encoding)
-    return ""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return data.decode("utf-16", "replace")  # of a file that was cut off half a letter may be left
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
 
 
 def _check_unit_of_time(path, header, t):
     """Refuse times that are far from the period in the head: milliseconds, minutes."""
     try:
-        step = np.median(np.diff(t)) if len(t) > 1 else math.nan
-        ratio = step / float(header["period_s"])
-    except (KeyError, ValueError, ZeroDivisionError):
+        stated = float(header["period_s"])
+    except (KeyError, ValueError):
         return
-    if ratio > 30 or 0 < ratio < 1 / 30:  # no loop is late all the time by so much
-        said = f"{path}: t goes up by {step:g} a line, but period_s: {header['period_s']} in its head"
-        raise RecordingError(f"{said}: t is in s (were they milliseconds? Divide by 1000), or correct the head")
+    step = np.median(np.diff(t)) if len(t) > 1 else stated
+    if stated > 0 and not stated / 30 < step < 30 * stated:  # no loop is late all the time by so much
+        said = f"{path}: t goes up by {step:g} a line, but period_s: {stated:g} in its head"
+        raise RecordingError(f"{said}: t is in s; divide it by {step / stated:.4g}, or correct the head")
 
 
 def _read_row(line, separator, place):
-    cells = line.split(separator)
-    if separator != ",":
-        cells = [cell.replace(",", ".") for cell in cells]  # decimal commas
+    quoted = '"' in line[1:-1]  # cell by cell
+    cells = next(csv.reader([line], delimiter=separator)) if quoted else line.split(separator)
+    if "," in "".join(cells):
+        if pointed := next((cell for cell in cells if "." in cell), ""):  # of thousands, or a date
+            raise RecordingError(f"{place}: {pointed!r} beside decimal commas is no number; repair or delete that line")
+        cells = [cell.replace(",", ".") for cell in cells]
     if len(cells) < len(COLUMNS) or "".join(cells[len(COLUMNS) :]).strip():  # a spreadsheet may add empty ones
         said = f"{place}: {len(cells)} values for {len(COLUMNS)} columns"
         raise RecordingError(f"{said} (cut off, or decimal commas?); repair or delete that line")

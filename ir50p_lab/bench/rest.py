@@ -17,11 +17,11 @@ def rest_pose(arm):
 
     Of the poses within the joint limits that keep elbow and tip off the table (height 0): joint 1 in the middle of its
     travel, joints 2 and 3 by search over a grid. Gravity may use 70 % of the breakaway torque; an end stop holds where
-    gravity presses the joint against it. If no pose is held, the one that is nearest to it. A
-    payload changes nothing: it is taken up there.
+    gravity presses the joint against it. If no pose is held, the one that is nearest to it. A payload
+    changes nothing: it is taken up there.
     Args: arm: Arm. Returns: read-only array (3,).
     """
-    return _rest_pose(arm.bare or arm)
+    return _rest_pose(arm.bare)
 
 
 @cache

@@ -35,6 +35,7 @@ class Arm:
     actuators Actuators, or None for an arm driven by torque                     SI
     q_min/max joint limits                                                       (3,) rad
     g         gravity                                                            m/s^2
+    payload   mass at the tip, counted in link 3 (`with_payload`)                kg
     ========= ================================================================== ============
 
     Link frames: link 1 has z along the column; links 2 and 3 have x along the link and z along the joint axis.
@@ -60,8 +61,7 @@ class Arm:
     q_min: tuple = field(default=(-np.inf, -np.inf, -np.inf), metadata={"comment": "rad"})
     q_max: tuple = field(default=(np.inf, np.inf, np.inf), metadata={"comment": "rad"})
     g: float = field(default=9.81, metadata={"comment": "m/s^2"})
-
-    bare = None  # of an arm with a payload: the arm without it
+    payload: float = field(default=0.0, metadata={"comment": "kg at the tip, counted in m, lc, Iyy and Izz of link 3"})
 
     def __post_init__(self):
         if not isinstance(self.name, str) or "$" in self.name:
@@ -74,6 +74,7 @@ class Arm:
                 raise ArmError(f"{name} = {getattr(self, name)!r}: give three angles in rad (inf for no limit)")
             object.__setattr__(self, name, tuple(values.tolist()))
         object.__setattr__(self, "g", number("g", self.g, ">= 0", unit="m/s^2", hint="the base z axis points up"))
+        object.__setattr__(self, "payload", number("payload", self.payload, unit="kg"))
         self._refuse_impossible()
         for text in self.suspicions:
             warnings.warn(f"{self.name}: {text}", SuspiciousArmWarning, stacklevel=3)
@@ -202,15 +203,19 @@ class Arm:
         total = m3 + mass
         centre = (m3 * lc3 + mass * l3) / total
         more = m3 * lc3**2 + mass * l3**2 - total * centre**2  # Steiner, both parts
-        loaded = dataclasses.replace(
+        return dataclasses.replace(
             self,
             m=(*self.m[:2], total),
             lc=(*self.lc[:2], centre),
             Iyy=(*self.Iyy[:2], self.Iyy[2] + more),
             Izz=(*self.Izz[:2], self.Izz[2] + more),
+            payload=self.payload + mass,
         )
-        object.__setattr__(loaded, "bare", self.bare or self)
-        return loaded
+
+    @cached_property
+    def bare(self):
+        """The arm without its payload."""
+        return self.with_payload(-self.payload) if self.payload else self
 
     def save(self, path):
         """Write the arm to `path` as TOML, with units in comments. Read it back with Arm.load."""

@@ -3,6 +3,7 @@
 import errno
 import io
 import os
+import re
 import threading
 
 import matplotlib.image
@@ -240,12 +241,37 @@ def test_what_a_spreadsheet_spoilt_is_named(tmp_path, was, became):
         Recording.load(file_of(tmp_path, spoilt))
 
 
+def test_decimal_commas_beside_commas_stand_in_quotes(tmp_path):
+    run = fill(Recorder(HEAD, tmp_path), 30)
+    text = run.save(tmp_path / "run.csv").read_text(encoding="utf-8")
+    same(run, Recording.load(file_of(tmp_path, saved_again(text, ",", "utf-8", '"'))))
+
+
+def test_a_cell_too_narrow_to_be_shown_is_no_line_of_the_head(tmp_path):
+    with pytest.raises(RecordingError, match="'########' is no number; repair"):
+        Recording.load(file_of(tmp_path, ours(f"0,0.5,{ROW.split(',', 1)[1]}", f"########,{ROW}")))
+
+
+def test_a_point_beside_decimal_commas_is_one_of_thousands(tmp_path):
+    spoilt = saved_again(ours(f"0,{ROW}", f"0.01,{ROW}"), ";", "utf-8").decode().replace("0,5;", "1.234;", 1)
+    with pytest.raises(RecordingError, match=r"'1.234' beside decimal commas is no number; repair"):
+        Recording.load(file_of(tmp_path, spoilt))
+
+
+def test_a_file_of_utf_16_that_was_cut_within_a_letter_is_read_as_far_as_it_goes(tmp_path):
+    text = saved_again(ours(f"0,{ROW}", f"0.01,{ROW}"), "\t", "utf-16")
+    with pytest.warns(RecordingWarning, match="cut off"):
+        assert len(Recording.load(file_of(tmp_path, text[:-41])).t) == 1
+
+
 @pytest.mark.parametrize("unit", [1e3, 1e6, 1 / 60])
 def test_times_in_another_unit_than_the_head_says_are_refused(tmp_path, unit):
     for begin in (0.0, 7.0):
         rows = [f"{unit * (begin + k / 100):.7f},{ROW}" for k in range(20)]
         head = "# period_s: 0.01\n" + ",".join(COLUMNS) + "\n"
-        with pytest.raises(RecordingError, match=r"period_s: 0.01 in its head: t is in s"):
+        with pytest.raises(
+            RecordingError, match=rf"period_s: 0.01 in its head: .* divide it by {re.escape(f'{unit:.4g}')},"
+        ):
             Recording.load(file_of(tmp_path, head + "\n".join(rows) + "\n"))
 
 

@@ -49,13 +49,13 @@ def guarded(do, case=str):
         raise Failed(why_it_stops(error), case()) from error
 
 
-def array_like(expected, function, *arguments):
+def array_like(expected, function, *arguments, **named):
     """What a function in a view gives, as an array like the one expected; dots count as 0. Raises Failed."""
-    returned = guarded(lambda: function(*arguments), lambda: f"for {', '.join(map(shown, arguments))}")
+    returned = guarded(lambda: function(*arguments, **named))
     if isinstance(returned, np.ndarray) and returned.dtype == object:
         returned = np.where(returned == ..., 0, returned)
     if says := no_numbers(returned, expected):
-        raise Failed(f"{function.__name__}: {says}")
+        raise Failed(f"{getattr(function, '__name__', 'your function')}: {says}")
     return np.array(returned, dtype=float)
 
 

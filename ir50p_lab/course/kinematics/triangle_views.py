@@ -3,6 +3,8 @@
 import numpy as np
 from matplotlib.patches import Circle
 
+from ir50p_lab.course.checking.calling import Failed, guarded
+from ir50p_lab.course.checking.note import Note, show
 from ir50p_lab.course.draw.arm3d import SideView
 from ir50p_lab.course.draw.sketch import arc, from_above, line, name
 from ir50p_lab.course.draw.style import COLOURS, subplots
@@ -134,12 +136,20 @@ def allowed_map(arm, allowed, free=None):
     """How many poses allowed(p) lists at the places 0.03 m above the table, from above: LabFigure.
 
     free(p): the poses among them that are really free; places that have only others are marked.
+    Where one of them stops, there is no map, and a sentence says why.
     """
     figure, ax = from_above(title="3 cm over the table")
     side = np.linspace(-arm.reach, arm.reach, 61)
     places = np.array([[x, y, 0.03] for y in side for x in side])
     places = places[reachability(arm, places) == 0]
-    count, left = (np.array([min(len(poses(p)), 2) for p in places]) for poses in (allowed, free or allowed))
+
+    def counted(poses):
+        return np.array([min(len(poses(p)), 2) for p in places])
+
+    try:
+        count, left = guarded(lambda: (counted(allowed), counted(free or allowed)))
+    except Failed as failed:
+        return show(Note("slip", "no map", failed.args[0]))
     kind = np.where((count > 0) & (left == 0), 3, left)
     colours = ("light", "sky", "blue", "orange")
     labels = ("no pose", "one pose", "two or more", "only through the column")

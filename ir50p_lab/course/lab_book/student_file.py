@@ -18,7 +18,7 @@ def read_json(path, empty, is_right):
     """
     why = "it holds something else"
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(path.read_text(encoding="utf-8-sig"))
         if is_right(content):
             return {**empty, **content}
     except FileNotFoundError:

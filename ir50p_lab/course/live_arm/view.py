@@ -56,7 +56,8 @@ class LiveArm(anywidget.AnyWidget):
         height: CSS pixels; sliders: of the joints; readout: where the tip is, in numbers (the menu has a switch too).
 
     Attributes: q, list of rad, in both directions; layers.
-    `play(run)` shows a motion. Raises InputError for what cannot be drawn, ; frames that are none are said.
+    `play(run)` shows a motion. Raises InputError for what cannot be drawn. Where `frames` gives none, a
+    sentence says so, and the arm is drawn by the course's.
     """
 
     _esm = BUNDLE.parents[1] / "loader.js"
@@ -130,8 +131,9 @@ class LiveArm(anywidget.AnyWidget):
 
     def _pose(self, q):
         T = guarded(lambda: self._frames(np.array(q)))
-        if says := no_numbers(np.nan_to_num(T) if np.shape(T) == (4, 4, 4) else T, np.zeros((4, 4, 4))):
+        if says := no_numbers(T, np.full((4, 4, 4), np.nan)):  # numbers that are not finite are left out
             raise Failed(f"of frames 0 to 3: {says}")
+        T = np.array(T, dtype=float)
         self.poses = np.where(np.isfinite(T), T, None).tolist()
 
     def _follow(self, source, stop):
@@ -162,11 +164,11 @@ class LiveArm(anywidget.AnyWidget):
             elif "picture" in message:
                 buffers = [still_png(self)]
             else:
-                q = self._on_drag(np.array(message["drag"]), np.array(message["q"]))
+                q = guarded(lambda: self._on_drag(np.array(message["drag"]), np.array(message["q"])))
                 if q is not None:
                     self.q = answer["drag"] = vectors3("q", q).tolist()
         except Exception as error:
-            answer["error"] = f"{type(error).__name__}: {error}"
+            answer["error"] = error.args[0] if isinstance(error, Failed) else f"{type(error).__name__}: {error}"
         self.send(answer, buffers=buffers)
 
     def _repr_mimebundle_(self, **kwargs):

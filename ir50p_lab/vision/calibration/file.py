@@ -41,7 +41,7 @@ def load(calibration_class, view_class, path, size=None):
     """Read what `save` wrote; see Calibration.load."""
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise CalibrationError(f"{path} cannot be read ({error}): calibrate the camera, and save") from None
     try:

@@ -208,7 +208,7 @@ def until(true, seconds=10):
         time.sleep(0.02)
 
 
-@pytest.mark.parametrize("wrong", [None, np.zeros((3, 4, 4)), np.zeros((4, 16))])
+@pytest.mark.parametrize("wrong", [None, np.zeros((3, 4, 4)), np.zeros((4, 16)), [[1, 2], [3]]])
 def test_frames_of_another_shape_are_said_and_the_course_draws(wrong, capsys):
     view = LiveArm(IR50P, frames=lambda q: wrong)
     said = capsys.readouterr().out
@@ -223,3 +223,14 @@ def test_a_function_that_stops_is_said_in_a_sentence(capsys):
 
     LiveArm(IR50P, frames=stops)
     assert "the arm below is the course's" in capsys.readouterr().out
+
+
+def test_a_function_that_stops_later_is_said_in_the_same_sentence(heard):
+    def stops(*_):
+        raise ValueError("too late")
+
+    view = LiveArm(IR50P, frames=lambda q: frames(IR50P, q), on_drag=stops)
+    view._frames = stops
+    for message in ({"frames": [0, 0, 0]}, {"drag": [0.4, 0, 0.1], "q": [0, 0, 0]}):
+        view._heard(None, message, [])
+        assert heard[-1][0]["error"] == "it stops. Python says ValueError: too late"

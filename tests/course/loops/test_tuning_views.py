@@ -52,7 +52,18 @@ def test_a_rule_that_is_right_is_used_and_any_other_is_not(capsys):
         gain, Ti = ..., ...
         return gain * (1 + T / Ti), gain / Ti, gain * T
 
+    def stops(K, T, L, tau_c):
+        return 1 / (tau_c - 0.1), K, T
+
+    others = {
+        unwritten: "until yours is written",
+        stops: "ZeroDivisionError",
+        lambda **o: rule(**o, factor=5): "yours gives",
+        lambda **o: "text": "cannot be read as an array",
+        lambda **o: None: "returns nothing",
+        lambda **o: np.eye(2): "shape (2, 2)",
+    }
     assert rule_in_use(rule) is rule and "yours, and right" in capsys.readouterr().out
-    for other, words in ((unwritten, "until yours is written"), (lambda **o: rule(**o, factor=5), "yours gives")):
+    for other, words in others.items():
         assert rule_in_use(other)(0.01, 0.2, 0.03, 0.1) == pytest.approx(rule(0.01, 0.2, 0.03, 0.1))
         assert words in capsys.readouterr().out
