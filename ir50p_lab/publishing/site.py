@@ -36,7 +36,8 @@ def build(pyodide, target):
     remote = pyodide.startswith("http")
     with tempfile.TemporaryDirectory() as room:
         here = Path(room)
-        runtime = here / "static" / "pyodide"
+        place = "static/course" if remote else "static/pyodide"  # what lies in the second, JupyterLite copies
+        runtime = here / place
         runtime.mkdir(parents=True)
         if remote:
             urllib.request.urlretrieve(f"{pyodide}/pyodide-lock.json", runtime / "pyodide-lock.json")
@@ -49,7 +50,7 @@ def build(pyodide, target):
         lock.to_json(runtime / "pyodide-lock.json")
         kernel = {
             "pyodideUrl": f"{pyodide}/pyodide.js" if remote else "./static/pyodide/pyodide.js",
-            "loadPyodideOptions": {"packages": _AT_ONCE, "lockFileURL": "./static/pyodide/pyodide-lock.json"},
+            "loadPyodideOptions": {"packages": _AT_ONCE, "lockFileURL": f"./{place}/pyodide-lock.json"},
             "disablePyPIFallback": True,
         }
         data = {"litePluginSettings": {"@jupyterlite/pyodide-kernel-extension:kernel": kernel}}
@@ -58,6 +59,7 @@ def build(pyodide, target):
         _contents(here / "files")
         lite = [sys.executable, "-m", "jupyterlite_core", "build", "--contents", "files", "--no-sourcemaps"]
         subprocess.run([*lite, "--output-dir", str(Path(target).resolve())], cwd=here, check=True)
+        shutil.copytree(runtime, Path(target) / place, dirs_exist_ok=True)
 
 
 def _wheels(folder, known):

@@ -195,7 +195,7 @@ class View {
     const along = (T, x) => new Vector3(x, 0, 0).applyMatrix4(T).toArray(); // of a link, whose frame is at its far end
     this.joints = [...transforms.map((T) => along(T, 0)), along(transforms[2], -this.l[1]), along(transforms[3], -this.l[2])];
     this.tipAt = this.joints[3];
-    if (this.width && !this.dragging && this.hidden()) this.frame();
+    if (this.width && !this.turned && !this.dragging && this.hidden()) this.frame();
     const { stops, table } = contacts(this.l, this.limits, this.q);
     this.robot.alarm(this.track ? stops : [false, false, false]);
     if (!this.dragging && !this.error) {
@@ -366,6 +366,7 @@ class View {
     else if (event.key === "Home") this.lookFromStart();
     else if (event.key === " " && this.track) this.toggle();
     else return;
+    this.turned ||= Boolean(turn || tilt || zoom);
     event.preventDefault();
   }
 
