@@ -17,7 +17,7 @@ CARRIED = [
     "notebooks",
     "data",
     "docs",
-    *"environment.txt pyproject.toml README.md LICENSE CITATION.cff AGENTS.md".split(),
+    *"environment.txt environment-test.txt pyproject.toml README.md LICENSE CITATION.cff AGENTS.md".split(),
 ]
 BUILD = "import sys, course_wheel; print(course_wheel.build_wheel(sys.argv[1]))"
 
@@ -63,6 +63,7 @@ def test_a_folder_is_made_once_and_the_launcher_there_takes_over(program, tmp_pa
     assert "setup does not know '--nonsense'" in again.stderr and "Copying" not in again.stdout
     assert kept.read_text() == "the student's"
     assert "came without tests" in run(program, tmp_path, "test").stderr
+    assert ".venv: not there" in run(program, tmp_path, "doctor").stdout
 
 
 def test_a_folder_of_something_else_is_left_alone(program, tmp_path):
