@@ -63,7 +63,6 @@ def test_a_folder_is_made_once_and_the_launcher_there_takes_over(program, tmp_pa
     assert "setup does not know '--nonsense'" in again.stderr and "Copying" not in again.stdout
     assert kept.read_text() == "the student's"
     assert "came without tests" in run(program, tmp_path, "test").stderr
-    assert ".venv: not there" in run(program, tmp_path, "doctor").stdout
 
 
 def test_a_folder_of_something_else_is_left_alone(program, tmp_path):
