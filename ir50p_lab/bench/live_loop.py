@@ -38,7 +38,7 @@ def live_loop(bench, controller, reference, orders, tell):
         header = {"controller": type(controller).__name__, "loop": "in the background; gains and set point may change"}
         with contextlib.closing(bench.run(_DAY, loop.target, **header | header_of(controller))) as samples:
             if loop.follow(samples, controller) == "stop" and bench.answers:
-                bench._end_recording(bench._run)
+                bench._run.end_recording()
                 controller, trajectory = trajectory_to_rest(bench.arm, bench._last.q, bench.period)
                 loop.target.take(trajectory, bench._last.t)
                 end = bench._last.t + trajectory.duration + 0.5
