@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from ir50p_lab.bench.calibration import nominal_calibration
+from ir50p_lab.bench.caps import Caps
 from ir50p_lab.bench.pace import Clock, CountedPace, Pace, cut_said, undisturbed
 from ir50p_lab.bench.protocol import JOINTS, LIMIT_PWM
 from ir50p_lab.bench.recorder import Recorder, header_of
@@ -50,6 +51,7 @@ class Bench:
     answers = True  # whether drive moves the arm
     bench_id = recording = live_run = _last = _run = None
     guarded = True  # whether a runaway is cut; off only while the motors have no supply
+    caps = Caps()
     table = 0.0  # its height, m: a tip far below cannot be; -inf where that is not asked
 
     def __init__(self, arm=None, calibration=None, *, period=0.01, record_to=None, name=None):
@@ -183,9 +185,10 @@ class Bench:
         On a bench that follows the clock the drive is cut when the program sends no command for 0.1 s. That becomes an
         event of the recording, and the next exchange only measures. A pause of more than 0.5 s ends the run.
 
-        Raises InputError for a bad duration, and for a reference that is not finite, leaves the joint limits or is
-        farther than 2 rad from the measured pose; BenchError if the bench is not open or already runs; PauseError
-        after a pause; BoardLostError if the board stops answering. On any error the drive is cut first.
+        Raises InputError for a bad duration, for a reference that is not finite, leaves the joint limits or is farther
+        than 2 rad from the measured pose, and for what the lab's own file does not allow (`caps`); BenchError if the
+        bench is not open or already runs; PauseError after a pause; BoardLostError if the board stops answering. On
+        any error the drive is cut first.
         """
         if reference is not None:
             check_reference(reference)
@@ -260,8 +263,8 @@ class Bench:
             gripper: True closes, False opens, None leaves it. reference: q (3,) rad, only to be recorded beside.
 
         Returns: what was really sent, (3,) PWM counts; zeros after a pause in which the drive was cut.
-        Raises InputError if pwm is no three finite numbers (the drive is cut first), BenchError outside a run,
-        PauseError if the program has paused for longer than 0.5 s.
+        Raises InputError if pwm is no three finite numbers, or more than the lab's own file allows (the drive is cut
+        first), BenchError outside a run, PauseError if the program has paused for longer than 0.5 s.
         """
         run = self._run
         if run is None:
@@ -269,7 +272,11 @@ class Bench:
             raise BenchError("drive() works only inside `for sample in bench.run(...)`: outside nothing keeps watch")
         if run.fault is not None:
             raise run.fault
-        command = self._command_of(pwm)
+        try:
+            command = self._command_of(pwm)
+            self.caps.check("the command", "limit_pwm", command)
+        except InputError as error:
+            raise InputError(f"{error}; {cut_said(self.cut())}") from None
         if run.pace.begins_anew() or run.paused(run.pace.silence()):
             return np.zeros(JOINTS)
         if run.guard is not None:
@@ -284,14 +291,13 @@ class Bench:
         return command.copy()
 
     def _command_of(self, pwm):
-        """`pwm` in whole counts, within the limit and not beyond the ends of the travel; else cut and raise."""
+        """`pwm` in whole counts, within the limit and not beyond the ends of the travel; or InputError."""
         try:
             given = np.asarray(pwm)
             if given.dtype.kind not in "iufO" or len(given) != JOINTS or not all(map(math.isfinite, given.tolist())):
                 raise TypeError
         except Exception:  # whatever the conversion of a stranger raises
-            said = f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts; {cut_said(self.cut())}"
-            raise InputError(said) from None
+            raise InputError(f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts") from None
         limited = []  # scalars: for three numbers arrays take longer than the arm
         for u, q, (low, high) in zip(given.tolist(), self._last.q.tolist(), self._travel, strict=True):
             out = (q <= low and u < 0) or (q >= high and u > 0)
@@ -323,7 +329,8 @@ class Bench:
 
     def go_to_rest(self):
         """Move to the rest pose, where the arm stays when let go; not recorded."""
-        controller, reference = trajectory_to_rest(self.arm, self._last.q, self.period)
+        controller, reference = trajectory_to_rest(self.arm, self._last.q, self.period, *self.caps[:2])
         for sample in self.run(reference.duration + 0.5, record=False):
+            self._run.capped = False
             self.drive(controller.step(sample.t, sample.q, reference(sample.t)))
         self.cut()

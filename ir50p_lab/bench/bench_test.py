@@ -157,7 +157,7 @@ def _push(bench, joint, sign):
             moved = np.mean(recent, axis=0) - before
             if np.abs(moved).max() > MOVED:
                 return pwm, moved
-            pwm = min(k // STEP_CYCLES + 1, STEPS) * STEP_PWM * sign
+            pwm = min(min(k // STEP_CYCLES + 1, STEPS) * STEP_PWM, bench.caps.limit_pwm[joint]) * sign
             bench.drive([pwm if j == joint else 0 for j in range(3)])
     except RunawayError:  # what moves is seen here before the guard sees it: this joint stood still
         pass

@@ -25,12 +25,12 @@ class Run:
 
     Args: bench: the Bench that it measures and drives; reference: target(t) or None.
     Attributes: recorder: Recorder or None; pace: Pace or CountedPace; guard: see `Bench._make_guard`; row: the Sample
-    whose command may still come, before its row is written; aim: its reference (3,); fault: what has ended it; trips:
-    of the watchdog.
+    whose command may still come, before its row is written; aim: its reference (3,); fault: what has ended it; capped:
+    whether the lab's caps hold, all but that of PWM; trips: of the watchdog.
     """
 
     recorder = pace = guard = row = aim = fault = None
-    trips = 0
+    capped, trips = True, 0
 
     def __init__(self, bench, reference):
         self.bench, self.reference = bench, reference
@@ -58,6 +58,8 @@ class Run:
             if self.reference is not None:
                 rows = checked_reference(bench.arm, t, self.reference(t), sample.q if bench.answers else None)
                 self.aim = rows[0].copy()
+            if self.capped and bench.caps.source:
+                bench.caps.check_cycle(self, sample.q, rows)
             return Sample(t, sample.q.copy(), counts.copy(), pace.missed, rows)  # may be written into
 
     def paused(self, silence):
