@@ -5,7 +5,7 @@ from collections import namedtuple
 
 import numpy as np
 
-from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG
+from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, cut_said
 from ir50p_lab.bench.protocol import JOINTS
 from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.errors import BenchError, PauseError
@@ -80,8 +80,7 @@ class Run:
         if ended:
             paused = f"the program sent no command for {silence:.1f} s, from t = {when - WATCHDOG:.2f} s on"
             remedy = "start a new run, without plots or input in its loop, or use bench.start(...)"
-            bench.cut()
-            self.fault = PauseError(f"{paused}: the drive was cut after {WATCHDOG:g} s and stays off; {remedy}")
+            self.fault = PauseError(f"{paused}: {cut_said(bench.cut())}; {remedy}")
             raise self.fault
         if self.trips == 1:
             print(f"At t = {when:.2f} s {said}; the run goes on. Further cuts: bench.recording.events.")

@@ -46,8 +46,7 @@ class Mover:
     def __init__(self, bench, *, controller=None, rest=True):
         self.bench, self.arm, self.rest = bench, bench.arm, rest
         known = bench.arm if bench.simulated else None
-        given = controller is not None
-        self.controller = controller if given else reaching_controller(known, bench.period, bench.caps.limit_pwm)
+        self.controller = controller or reaching_controller(known, bench.period, bench.caps.limit_pwm)
         self.errors = np.zeros(3)
         self._samples = self._last = self._gripper = self._frozen = None
         self._u = self._mean_u = np.zeros(3)
