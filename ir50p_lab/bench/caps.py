@@ -75,7 +75,7 @@ def caps_of(bench_id):
                 raise InputError(f"{name!r:.60} is no table of a board: write [board-0a1b2c], as connect() says it")
         known = {key: _checked(key, value) for key, value in tables.get(bench_id, {}).items()}
     except (OSError, ValueError, TypeError, RecursionError) as error:
-        raise InputError(f"the lab's own file {path}, for {bench_id}: {error}. Mend it: docs/on_the_wall.md") from None
+        raise InputError(f"the lab's own file {path}, for {bench_id}: {error}. Mend it: docs/with_the_arm.md") from None
     return Caps(**known, source=f"[{bench_id}] of {path}" * (bench_id in tables))
 
 

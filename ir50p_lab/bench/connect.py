@@ -74,8 +74,9 @@ def _board(device, common, reason):
 
     bench = SerialBench(device, **common).open()
     known = bench.bench_id or "without an id: python3 -m ir50p_lab bench-test gives it one"
-    caps = f"; caps: {bench.caps.source}" if bench.caps.source else ""
-    return _say(bench, f"{reason}, version {bench.firmware}; {known}{caps}", _TO_SIMULATED)
+    return _say(
+        bench, f"{reason}, version {bench.firmware}; {known}; caps: {bench.caps.source or 'none'}", _TO_SIMULATED
+    )
 
 
 def _say(bench, reason, other):

@@ -30,8 +30,7 @@ def live_loop(bench, controller, reference, orders, tell):
     """
     load_controllers()
     trajectory_to_rest(bench.arm, np.zeros(3), bench.period)[1](0.0)  # compiled now: at the end there is no time
-    loop = _Loop(bench, _Target(bench, reference), orders, tell)
-    loop.target.speed = min(SPEED, *bench.caps.speed)
+    loop = _Loop(bench, _Target(bench, reference, min(SPEED, *bench.caps.speed)), orders, tell)
     loop.say(STARTING)
     try:
         if hasattr(controller, "reset"):
@@ -101,17 +100,14 @@ class _Target:
     leading: whether it still follows the first of these; speed: rad/s, of set points.
     """
 
-    speed = SPEED
-
-    def __init__(self, bench, reference):
-        self.bench, self.reference, self.leading = bench, reference, reference is not None
+    def __init__(self, bench, reference, speed=SPEED):
+        self.bench, self.reference, self.speed, self.leading = bench, reference, speed, reference is not None
         self._point, self._begin = None, 0.0
 
     def __call__(self, t):
         if self._point is None:  # the arm has just been measured for the first time
             arm = self.bench.arm
-            here = np.clip(self.bench._last.q, arm.q_min, arm.q_max)
-            self._point = SetPoint(here, speed=self.speed)
+            self._point = SetPoint(np.clip(self.bench._last.q, arm.q_min, arm.q_max), speed=self.speed)
             if self.leading:
                 self._point.move_to(self.reference(0.0)[0])
         if self.leading and (self._point.q == self._point.goal).all():
