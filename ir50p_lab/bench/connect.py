@@ -74,9 +74,8 @@ def _board(device, common, reason):
 
     bench = SerialBench(device, **common).open()
     known = bench.bench_id or "without an id: python3 -m ir50p_lab bench-test gives it one"
-    return _say(
-        bench, f"{reason}, version {bench.firmware}; {known}; caps: {bench.caps.source or 'none'}", _TO_SIMULATED
-    )
+    said = f"{reason}, version {bench.firmware}; {known}; caps: {bench.caps.source or 'none'}"
+    return _say(bench, said, _TO_SIMULATED)
 
 
 def _say(bench, reason, other):
