@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-
 from ir50p_lab.course.dynamics.views import GovernorView, InertiaView
+
 from ir50p_lab.modelling import IR50P, THESIS_RODS, gravity, inverse_dynamics, jacobian, mass_matrix
 
 HANG = np.linspace([0, -np.pi / 2, 0], [0, 0, 0], 181)
