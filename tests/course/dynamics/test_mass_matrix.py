@@ -52,7 +52,7 @@ def test_an_arm_without_motors_has_no_rotors_and_no_gain():
         ("return M", "return M / 2", "belongs to the energy"),
         ("M = M + m", "M = m", "begin anew"),
         ("R = T[i + 1]", "R = T[3]", "with the inertia of link 1 alone"),
-        ("m[i] *", "np.sqrt(m[i]) *", "with the mass of link 1 alone"),
+        ("m[i] *", "np.sqrt(m[i]) *", "with the mass of link [12] alone"),
         (ROTORS, "np.diag(rotor[::-1])", "have changed places"),
     ],
 )
