@@ -13,8 +13,8 @@ _PER_TORQUE, _BACK_EMF = 4.0 / (0.05 * 50), 0.05 * 50 * _QD
 
 # weight-1: what the shoulder's motor can still hold at the tip.
 _POSE, _STALL = np.radians([0, 30, -60]), 7.0  # rad, N m
-_LEFT = _STALL - gravity(IR50P, _POSE)[1]
-_PER_KG = IR50P.g * jacobian(IR50P, _POSE)[2]  # N m/kg, a joint
+_PER_KG, _STRETCHED = IR50P.g * jacobian(IR50P, _POSE)[2, 1], IR50P.g * IR50P.reach  # N m/kg
+_LOAD = (_STALL - gravity(IR50P, _POSE)[1]) / _PER_KG
 
 NUMBERS = (
     Number(
@@ -39,21 +39,14 @@ NUMBERS = (
         "weight-1",
         "05_equation_of_motion",
         "the heaviest load at the tip of the IR50P that 7.0 N m at its shoulder hold at (0, 30, -60) degrees",
-        _LEFT / _PER_KG[1],
+        _LOAD,
         unit="kg",
         tolerance=2e-3,
-        why="Bending the elbow brings the load in: stretched and level it is a third less.",
+        why="Bending the elbow brings the load in: stretched and level it is a quarter less.",
         slips={
-            "The arm itself weighs on the shoulder, too: the load gets what is left of the 7.0 N m.": _STALL
-            / _PER_KG[1],
-            "That is a force in N; a kilogram weighs 9.81 N.": IR50P.g * _LEFT / _PER_KG[1],
-            "That is the lever of the stretched arm: how far outwards is the tip in this pose?": (
-                _LEFT / (IR50P.g * IR50P.reach)
-            ),
-            "The load hangs at the tip, and the shoulder's lever is asked; this is the elbow's.": _LEFT / _PER_KG[2],
-            "That is the load of the stretched and level arm.": (
-                (_STALL - gravity(IR50P, np.zeros(3))[1]) / (IR50P.g * IR50P.reach)
-            ),
+            "The arm itself weighs on the shoulder, too: the load gets what it leaves of the torque.": _STALL / _PER_KG,
+            "That is a force in N; a kilogram weighs 9.81 N.": IR50P.g * _LOAD,
+            "That is the lever of the stretched arm: how far outwards is the tip here?": _LOAD * _PER_KG / _STRETCHED,
         },
     ),
 )

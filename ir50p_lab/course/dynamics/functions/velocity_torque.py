@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import task_of
+from ir50p_lab.course.checking.task import sentences, task_of
+from ir50p_lab.course.dynamics.functions import TORQUES
 from ir50p_lab.modelling import IR50P, mass_matrix
 
 
@@ -41,4 +42,10 @@ def _motions():
     return [(rng.uniform(-1.5, 1.5, 3), qd, masses[k % 2 if k < 2 else k % 3 > 0]) for k, qd in enumerate(speeds)]
 
 
-TASK = task_of(velocity_torque, cases=_motions, tolerance=1e-4, unit="N m")
+def _symptom(case, returned, expected):
+    off, given, gained = np.max(np.abs(returned - expected)), case[1] @ returned, case[1] @ expected
+    key = "near" if off < 0.05 else "energy" if abs(given - gained) > 1e-3 else "torques"
+    return sentences(velocity_torque)[key].format(off=off, given=given, gained=gained)
+
+
+TASK = task_of(velocity_torque, cases=_motions, tolerance=1e-4, parts=TORQUES, symptom=_symptom, unit="N m")
