@@ -1,4 +1,4 @@
-"""The spinning arm as a governor: a moving picture of notebook 05."""
+"""The spinning arm as a governor, a picture of notebook 05 that moves."""
 
 import numpy as np
 

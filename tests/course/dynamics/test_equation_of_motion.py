@@ -11,13 +11,11 @@ from ir50p_lab.course import check, my_robot
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.dynamics import lump_view, stand_ins
 from ir50p_lab.course.dynamics.functions.velocity_torque import made_up_mass
-from ir50p_lab.course.dynamics.governor_view import GovernorView
 from ir50p_lab.course.kinematics.functions.frames import frames
 from ir50p_lab.course.robot.catalogue import task
 from ir50p_lab.course.robot.parts import parts
-from ir50p_lab.modelling import IR50P, THESIS_RODS, Arm, coriolis_matrix, gravity, inverse_dynamics, mass_matrix
+from ir50p_lab.modelling import IR50P, Arm, coriolis_matrix, gravity, mass_matrix
 
-HANG = np.linspace([0, -np.pi / 2, 0], [0, 0, 0], 181)
 OTHER = Arm.load("data/arm_example.toml")
 ARMS = pytest.mark.parametrize("arm", [IR50P, OTHER], ids=lambda arm: arm.name)
 
@@ -66,7 +64,7 @@ def test_the_made_up_mass_is_that_of_some_arm():
         M = made_up_mass(q)
         assert np.array_equal(M, M.T) and np.linalg.eigvalsh(M)[0] > 0.05
     slope = made_up_mass(np.array([0.1, 0.2, 0.3])) - made_up_mass(np.array([0.2, 0.2, 0.3]))
-    assert np.abs(slope).max() > 0.01
+    assert np.abs(slope).max() > 0.005
 
 
 STEP = "h = 1e-5"
@@ -119,22 +117,6 @@ def test_other_routes_are_right(name):
 def test_any_sensible_step_is_right(capsys, step):
     check("velocity_torque", cell(solutions.source("velocity_torque").replace("1e-5", step), "velocity_torque"))
     assert "right, and yours" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize("arm", [IR50P, THESIS_RODS], ids=lambda arm: arm.name)
-def test_the_faster_it_spins_the_higher_it_settles(arm):
-    bare, view, found = arm.without_friction(), GovernorView(arm, HANG), []
-    for spin in (0.0, 5.0, 9.0, 15.0):
-        torque = inverse_dynamics(bare, HANG, np.tile([spin, 0, 0], (181, 1)), np.zeros((181, 3)))[:, 1]
-        rest = view.update(spin, torque)
-        found.append(rest[1])
-        np.testing.assert_allclose(view.curve.get_data(), [np.degrees(HANG[:, 1]), torque])
-        assert f"{spin:.1f} rad/s" in view.figure.axes[1].get_title()
-        tip = view.side.points[2]
-        np.testing.assert_allclose(
-            tip, [arm.reach * np.cos(rest[1]), arm.l[0] + arm.reach * np.sin(rest[1])], atol=1e-9
-        )
-    assert found[0] == -np.pi / 2 and found == sorted(found) and found[-1] > found[1]
 
 
 @ARMS
