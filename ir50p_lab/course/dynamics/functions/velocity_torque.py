@@ -42,7 +42,8 @@ def _motions():
 
 
 def _symptom(case, returned, expected):
-    off, given, gained = np.max(np.abs(returned - expected)), case[1] @ returned, case[1] @ expected
+    off = np.max(np.abs(returned - expected))
+    given, gained = np.sum(case[1] * returned), case[1] @ expected
     key = "near" if off < 0.05 else "energy" if abs(given - gained) > 1e-3 else "torques"
     return sentences(velocity_torque)[key].format(off=off, given=given, gained=gained)
 
