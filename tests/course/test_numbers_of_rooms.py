@@ -132,6 +132,13 @@ def quickest_gear():
     return gears[np.argmax(gears / (0.098 + gears**2 * 2e-5))]
 
 
+def load_by_levers():
+    """Kilograms at the tip, from levers drawn by hand: upper arm at 30 degrees, forearm at -30."""
+    out = np.cos(np.pi / 6)
+    links = IR50P.m[1] * IR50P.lc[1] * out + IR50P.m[2] * (IR50P.l[1] + IR50P.lc[2]) * out
+    return (7.0 / 9.81 - links) / ((IR50P.l[1] + IR50P.l[2]) * out)
+
+
 ROUTES = {
     "start-1": lambda: np.array([90, -45, 30]) * np.pi / 180,
     "start-5": time_constant,
@@ -139,6 +146,7 @@ ROUTES = {
     "pose-2": lambda: 55 * np.pi / 180,
     "ik-1": tip_velocity,
     "dyn-6": quickest_gear,
+    "weight-1": load_by_levers,
     "pid-1": remaining_errors,
     "bench-4": lag,
     "ident-1": step_of_least_squares,
