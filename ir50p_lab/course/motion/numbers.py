@@ -1,8 +1,13 @@
-"""Numbers of notebook 06: where a joint sticks."""
+"""Numbers of notebooks 06 and 07: the shortest time of a way, and where a joint sticks."""
 
 import numpy as np
 
 from ir50p_lab.course.checking.numbers import Number
+
+# traj-1: the shortest quintic that keeps each joint below a speed.
+_WAY = np.array([-0.343, -1.523, 1.247])  # rad
+_FASTEST = np.array([2.5, 1.1, 1.3])  # rad/s
+_TIMES = 15 / 8 * np.abs(_WAY) / _FASTEST
 
 # sim-2: one joint on a P controller with Coulomb friction, let go away from its set point.
 _KP, _FC, _START = 2.0, 0.1, 0.37  # N m/rad, N m, rad
@@ -20,8 +25,26 @@ _RIGHT_REST = _rest(_START, 2 * _FC / _KP, _FC / _KP)
 
 NUMBERS = (
     Number(
+        "traj-1",
+        "06_simulation_and_trajectories",
+        "the shortest duration of a quintic over -0.343, -1.523 and 1.247 rad with at most 2.5, 1.1 and 1.3 rad/s",
+        np.max(_TIMES),
+        unit="s",
+        tolerance=0.01,
+        why="One joint decides, here the shoulder; the others have time to spare. 07 will ask for just this.",
+        slips={
+            "That is way over speed: it would do for an even speed, but half way a quintic is faster.": (
+                np.max(_TIMES) * 8 / 15
+            ),
+            "That is the fastest joint's time; all three have to keep their speed.": np.min(_TIMES),
+            "That joint could do so; another needs longer.": _TIMES[2],
+            "The factor 15/8 belongs to the time, not under it.": np.max(_TIMES) * (8 / 15) ** 2,
+            "The joints move at the same time: their times are not added.": np.sum(_TIMES),
+        },
+    ),
+    Number(
         "sim-2",
-        "06_simulation_and_friction",
+        "07_friction_and_motors",
         "where a joint with kp = 2 N m/rad and Coulomb friction 0.1 N m stops, let go at +0.37 rad from its set point",
         _RIGHT_REST,
         unit="rad",
