@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, JOINTS, SETPOINT, subplots
+from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, JOINTS, subplots
 from ir50p_lab.course.draw.traces import STAMP
 
 
@@ -37,18 +37,6 @@ def orders(steps, errors):
     ax.minorticks_off()
     ax.set(xlabel="step [ms]", ylabel="error of the tip [mm]", title="Half the step: how much less error?")
     ax.legend()
-    return figure
-
-
-def over_time(t, lines, labels, ylabel, title, levels=()):
-    """Curves (k, n) over t (n,) s; three of them in the joints' colours; levels: dashed, one a curve. LabFigure."""
-    figure, ax = subplots(8.6, 3.3, note=STAMP)
-    for values, label, colour in zip(lines, labels, JOINTS, strict=False):
-        ax.plot(t, values, color=colour, label=label)
-    for level, colour in zip(levels, JOINTS, strict=False):
-        ax.axhline(level, **SETPOINT | {"color": colour})
-    ax.set(xlabel="time [s]", ylabel=ylabel, title=title)
-    ax.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     return figure
 
 
