@@ -21,7 +21,7 @@ def integrate(f, x0, duration, dt):
 def _runs():
     return [
         (rates.swinging, np.array([0.5, -0.3]), 0.3, 0.1),
-        (rates.growing, np.array([0.8, -1.5]), 0.7, 0.1),
+        (rates.growing, np.array([0.8, 1.5]), 0.7, 0.1),
         (rates.by_the_clock, np.array([0.2, 0.1]), 0.4, 0.05),
         (rates.swinging, np.array([1, 2]), 2.0, 0.25),
         (rates.cooling, np.array([1.5]), 0.5, 0.5),
