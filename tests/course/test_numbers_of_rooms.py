@@ -13,7 +13,7 @@ from ir50p_lab.course import solution
 from ir50p_lab.course.checking.numbers import everything, find, grade
 from ir50p_lab.identification import base_parameters
 from ir50p_lab.modelling import IR50P, THESIS_A, Friction, energy, forward_kinematics, inverse_dynamics
-from ir50p_lab.signals import hold, low_pass
+from ir50p_lab.signals import hold, low_pass, quintic
 from ir50p_lab.simulation import simulate
 from ir50p_lab.vision import Pinhole
 
@@ -75,6 +75,12 @@ def tip_velocity():
     return np.array([x_rate, y_rate, height_rate])
 
 
+def shortest_way(ways, speeds):
+    """The fastest moment of a quintic of 1 rad in 1 s, by the package; times go with way over speed."""
+    top = np.max(quintic(np.zeros(3), np.ones(3), duration=1).sample(np.linspace(0, 1, 1001))[:, 1])
+    return max(top * way / speed for way, speed in zip(ways, speeds, strict=True))
+
+
 def time_constant():
     """Inertia from the kinetic energy of the waist at 1 rad/s, over what brakes it."""
     folded = [0, 1.9, -2.44]
@@ -132,6 +138,7 @@ ROUTES = {
     "pose-3": lambda: [-0.1, 0.3, -0.2],
     "pose-2": lambda: 55 * np.pi / 180,
     "ik-1": tip_velocity,
+    "traj-1": lambda: shortest_way((0.343, 1.523, 1.247), (2.5, 1.1, 1.3)),
     "dyn-5": lambda: 1.6 * (2 + 0.2 * 3) + 2.5 * 0.5,
     "pid-1": remaining_errors,
     "bench-4": lag,

@@ -5,9 +5,7 @@ import numpy as np
 from ir50p_lab.course.checking.numbers import Number
 
 # traj-1: the shortest quintic that keeps each joint below a speed.
-_WAY = np.array([-0.343, -1.523, 1.247])  # rad
-_FASTEST = np.array([2.5, 1.1, 1.3])  # rad/s
-_TIMES = 15 / 8 * np.abs(_WAY) / _FASTEST
+_TIMES = 15 / 8 * np.array([0.343 / 2.5, 1.523 / 1.1, 1.247 / 1.3])  # s, of each joint: rad, rad/s
 
 # sim-2: one joint on a P controller with Coulomb friction, let go away from its set point.
 _KP, _FC, _START = 2.0, 0.1, 0.37  # N m/rad, N m, rad
@@ -33,12 +31,9 @@ NUMBERS = (
         tolerance=0.01,
         why="One joint decides, here the shoulder; the others have time to spare. 07 will ask for just this.",
         slips={
-            "That is way over speed: it would do for an even speed, but half way a quintic is faster.": (
-                np.max(_TIMES) * 8 / 15
-            ),
-            "That is the fastest joint's time; all three have to keep their speed.": np.min(_TIMES),
-            "That joint could do so; another needs longer.": _TIMES[2],
-            "The factor 15/8 belongs to the time, not under it.": np.max(_TIMES) * (8 / 15) ** 2,
+            "That is for an even speed: half way a quintic is faster.": np.max(_TIMES) * 8 / 15,
+            "That is the waist's time; all three have to keep their speed.": _TIMES[0],
+            "That is the elbow's time; another joint needs longer.": _TIMES[2],
             "The joints move at the same time: their times are not added.": np.sum(_TIMES),
         },
     ),

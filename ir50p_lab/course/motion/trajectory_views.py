@@ -8,9 +8,9 @@ from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, JOINTS, subplots
 from ir50p_lab.course.draw.traces import STAMP
 
 
-def motion(t, x):
-    """A run of `integrate`, x (n, 6) or angles (n, 3) over t (n,), as `LiveArm` plays it."""
-    return SimpleNamespace(t=t, q=x[:, :3], simulated=True)
+def motion(t, x, last=None):
+    """A run of `integrate`, x (n, 6) over t (n,), up to a row, as `LiveArm` plays it."""
+    return SimpleNamespace(t=t[:last], q=x[:last, :3], simulated=True)
 
 
 def one_step():

@@ -126,4 +126,4 @@ def test_figures_name_their_axes():
     for figure in (views.one_step(), orders, views.two_ways(t, {"straight": (tips, q), "by angles": (tips, q)})):
         assert all("[" in ax.get_xlabel() and "[" in ax.get_ylabel() for ax in figure.axes)
     assert orders.axes[0].get_legend_handles_labels()[1] == ["A: slope 1.00"]
-    assert views.motion(t, np.hstack([q, q])).q.shape == (5, 3)
+    assert views.motion(t, np.hstack([q, q]), 4).q.shape == (4, 3)
