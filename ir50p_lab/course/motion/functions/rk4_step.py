@@ -21,7 +21,6 @@ def _steps():
         (rates.swinging, 1.5, np.array([1, 2]), 0.1),
         (rates.by_the_clock, 0.7, np.array([0.2, 0.1]), 0.4),
         (rates.growing, 0.5, np.array([0.8, -1.5]), 0.3),
-        (rates.growing, 2.0, np.array([1.2]), 0.25),
         (rates.cooling, 0.0, np.array([1.5]), 0.3),
         (rates.three_joints, 0.4, rates.SIX.copy(), 0.25),
         (rates.three_joints, 0.0, -rates.SIX, 0.05),
