@@ -19,7 +19,6 @@ def one_step():
     t = np.linspace(-0.15, 1.25, 100)
     ax.plot(t, np.exp(t), color=COLOURS["grey"], label="the curve, which nobody knows")
     ax.plot([0, 1], [1, 2], "o-", label="by the rate at the start: too low")
-    ax.plot([0, 0.5], [1, 1.5], "o", color=COLOURS["dark"])
     ax.plot([0.25, 0.75], [1.125, 1.875], color=COLOURS["dark"], linewidth=3, label="the rate half way, asked there")
     ax.plot([0, 1], [1, 2.5], "o-", color=COLOURS["orange"], label="by the rate half way")
     ax.set(xlabel="time, in steps [1]", ylabel="x [1]", title="One step: which rate?")

@@ -54,7 +54,7 @@ def told(name, *changes, text=None):
         ("rk4_step", f"dt / 6 * {SUM}", "dt / 6 * k1 + 2 * k2 + 2 * k3 + k4", "look at the brackets"),
         ("rk4_step", f"dt / 6 * {SUM}", "dt / 2 * (k1 + f(t + dt, x + dt * k1))", "Heun's step"),
         ("rk4_step", f"x + dt / 6 * {SUM}", f"{SUM} / 6", "the mean rate alone"),
-        ("rk4_step", "x + dt / 6", "x + dt / 3", "by one factor"),
+        ("rk4_step", "x + dt / 6", "x + dt / 3", "count 2, 4, 4, 2 sixths"),
         ("rk4_step", "t + dt / 2", "t", "the clock stood still"),
         ("rk4_step", f"return x + dt / 6 * {SUM}", "x += dt * k1\n    return x", "it changes what it was given, `x`"),
         ("integrate", "round(", "int(", "`int` cuts"),

@@ -17,9 +17,8 @@ def quintic(q0, q1, duration, t):
 
 def _ways():
     here, there = np.array([0.3, -0.4, 1.2]), np.array([-0.5, 0.9, 1.5])
-    at_once = [(here.copy(), there.copy(), 2.0, t) for t in (0.6, 1.7, -0.5, 0.0, 2.0, 3.1)]
     return [
-        *at_once,
+        *((here.copy(), there.copy(), 2.0, t) for t in (0.6, 1.7, -0.5, 0.0, 2.0, 3.1)),
         (np.array([0, 1, 2]), np.array([2, -1, 0]), 0.8, 0.3),
         (0.4, -0.9, 1.5, np.linspace(-0.5, 2.0, 11)),
         (0, 1, 4, np.arange(6)),
