@@ -35,7 +35,7 @@ def _symptom(case, returned, expected):
     counts = np.linalg.lstsq(table, mean)[0]
     if len(x) < 6 or not np.allclose(table @ counts, mean, rtol=0, atol=1e-9):
         return ""
-    return f"the four rates count {', '.join(f'{round(6 * one, 4) + 0.0:g}' for one in counts)} sixths in it: look at the weights"
+    return f"the rates count {', '.join(f'{round(6 * one, 4) + 0.0:g}' for one in counts)} sixths: look at the weights"
 
 
 TASK = task_of(rk4_step, cases=_steps, symptom=_symptom)
