@@ -13,7 +13,7 @@ from ir50p_lab.course import solution
 from ir50p_lab.course.checking.numbers import everything, find, grade
 from ir50p_lab.identification import base_parameters
 from ir50p_lab.modelling import IR50P, THESIS_A, Friction, energy, forward_kinematics, inverse_dynamics
-from ir50p_lab.signals import hold, low_pass
+from ir50p_lab.signals import hold, low_pass, quintic
 from ir50p_lab.simulation import simulate
 from ir50p_lab.vision import Pinhole
 
@@ -73,6 +73,12 @@ def tip_velocity():
     x_rate = radius_rate * np.cos(q1) - radius * np.sin(q1) * 0.5
     y_rate = radius_rate * np.sin(q1) + radius * np.cos(q1) * 0.5
     return np.array([x_rate, y_rate, height_rate])
+
+
+def shortest_way(ways, speeds):
+    """The fastest moment of a quintic of 1 rad in 1 s, by the package; times go with way over speed."""
+    top = np.max(quintic(np.zeros(3), np.ones(3), duration=1).sample(np.linspace(0, 1, 1001))[:, 1])
+    return max(top * way / speed for way, speed in zip(ways, speeds, strict=True))
 
 
 def time_constant():
@@ -147,6 +153,7 @@ ROUTES = {
     "ik-1": tip_velocity,
     "dyn-6": quickest_gear,
     "weight-1": load_by_levers,
+    "traj-1": lambda: shortest_way((0.343, 1.523, 1.247), (2.5, 1.1, 1.3)),
     "pid-1": remaining_errors,
     "bench-4": lag,
     "ident-1": step_of_least_squares,

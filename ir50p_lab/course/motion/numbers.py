@@ -1,8 +1,11 @@
-"""Numbers of notebook 06: where a joint sticks."""
+"""Numbers of notebooks 06 and 07: the shortest time of a way, and where a joint sticks."""
 
 import numpy as np
 
 from ir50p_lab.course.checking.numbers import Number
+
+# traj-1: the shortest quintic that keeps each joint below a speed.
+_TIMES = 15 / 8 * np.array([0.343 / 2.5, 1.523 / 1.1, 1.247 / 1.3])  # s, of each joint: rad, rad/s
 
 # sim-2: one joint on a P controller with Coulomb friction, let go away from its set point.
 _KP, _FC, _START = 2.0, 0.1, 0.37  # N m/rad, N m, rad
@@ -20,8 +23,23 @@ _RIGHT_REST = _rest(_START, 2 * _FC / _KP, _FC / _KP)
 
 NUMBERS = (
     Number(
+        "traj-1",
+        "06_simulation_and_trajectories",
+        "the shortest duration of a quintic over -0.343, -1.523 and 1.247 rad with at most 2.5, 1.1 and 1.3 rad/s",
+        np.max(_TIMES),
+        unit="s",
+        tolerance=0.01,
+        why="One joint decides, here the shoulder; the others have time to spare. 07 will ask for just this.",
+        slips={
+            "That is for an even speed: half way a quintic is faster.": np.max(_TIMES) * 8 / 15,
+            "That is the waist's time; all three have to keep their speed.": _TIMES[0],
+            "That is the elbow's time; another joint needs longer.": _TIMES[2],
+            "The joints move at the same time: their times are not added.": np.sum(_TIMES),
+        },
+    ),
+    Number(
         "sim-2",
-        "06_simulation_and_friction",
+        "07_friction_and_motors",
         "where a joint with kp = 2 N m/rad and Coulomb friction 0.1 N m stops, let go at +0.37 rad from its set point",
         _RIGHT_REST,
         unit="rad",
