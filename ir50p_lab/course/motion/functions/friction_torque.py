@@ -14,8 +14,8 @@ def friction_torque(qd, fv, fc, fs, qs, offset):
 
 def _speeds():
     rng = np.random.default_rng(71)
-    at_rest = [0.0, 0.5, -0.03], [0.04, -0.06, 0.0], [-1.0, 0.0, 0.1], [0.0, 0.0, 0.0]
-    speeds = [*rng.choice([1, -1], (6, 3)) * rng.permuted(np.tile([1.0, 0.1, 0.02], (6, 1)), axis=1), *at_rest]
+    at_rest = [0.0, 0.5, -0.03], [0.04, -0.06, 0.0], [-0.8, 0.0, 0.1], [0.0, 0.0, 0.0]
+    speeds = [*rng.choice([1, -1], (6, 3)) * rng.permuted(np.tile([1.3, 0.1, 0.02], (6, 1)), axis=1), *at_rest]
     cases = []
     for qd in (*np.array(speeds), np.array([1, -1, 2])):
         fv, fc, more, qs, offset = rng.uniform([0.2, 0.2, 0.2, 0.03, -0.3], [1, 0.6, 0.6, 0.08, 0.3], (3, 5)).T

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import task_of
+from ir50p_lab.course.checking.task import sentences, task_of
 
 
 def motor_torque(u_pwm, qd, gain, damping):
@@ -30,4 +30,13 @@ def _drives():
     return [(u, np.array(qd), *both.T) for u, qd, both in zip(counts, speeds, strong, strict=True)]
 
 
-TASK = task_of(motor_torque, cases=_drives, parts=("joint 1", "joint 2", "joint 3"), unit="N m")
+_SAYS = sentences(motor_torque)
+
+
+def _symptom(case, returned, expected):
+    counts, speed = case[:2]
+    off = np.abs(returned - expected) > 1e-9
+    return _SAYS["push"] if off[speed == 0].any() else _SAYS["brake"] if off[counts == 0].any() else ""
+
+
+TASK = task_of(motor_torque, cases=_drives, parts=("joint 1", "joint 2", "joint 3"), unit="N m", symptom=_symptom)
