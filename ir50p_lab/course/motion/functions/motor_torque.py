@@ -14,20 +14,12 @@ def motor_torque(u_pwm, qd, gain, damping):
 
 def _drives():
     rng = np.random.default_rng(73)
-    counts = np.array(
-        [[200, -90, 60], [0, 0, 0], [255, -255, 255], [-150, 20, -255], [120, 0, -30], [0, 255, 0], [40, -30, 10]]
-    )
-    speeds = [
-        [0.5, 0.2, -0.4],
-        [1.0, -0.3, 0.6],
-        [0, 0, 0],
-        [-0.4, -0.7, 0.2],
-        [-0.2, 0.9, 0.6],
-        [0.7, 0.3, -1.1],
-        [1.0, -0.9, 0.8],
-    ]
-    strong = rng.uniform([0.01, 0.5], [0.04, 3.0], (7, 3, 2))
-    return [(u, np.array(qd), *both.T) for u, qd, both in zip(counts, speeds, strong, strict=True)]
+    counts, speeds = rng.integers(-255, 256, (6, 3)), rng.uniform(-1.2, 1.2, (6, 3))
+    counts[1], speeds[2] = 0, 0  # turned at no counts; at rest
+    counts[3:5] = [255, 0, -255], [40, -30, 10]
+    speeds[4] = 1.0, -0.9, 0.8  # faster than these counts drive it
+    numbers = rng.uniform([0.01, 0.5], [0.04, 3.0], (6, 3, 2))
+    return [(u, qd, *both.T) for u, qd, both in zip(counts, speeds, numbers, strict=True)]
 
 
 _SAYS = sentences(motor_torque)
