@@ -152,6 +152,7 @@ ROUTES = {
     "pose-2": lambda: 55 * np.pi / 180,
     "ik-1": tip_velocity,
     "dyn-6": quickest_gear,
+    "dyn-5": lambda: 1.6 * (2 + 0.2 * 3) + 2.5 * 0.5,
     "weight-1": load_by_levers,
     "traj-1": lambda: shortest_way((0.343, 1.523, 1.247), (2.5, 1.1, 1.3)),
     "pid-1": remaining_errors,
