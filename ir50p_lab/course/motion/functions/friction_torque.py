@@ -29,7 +29,7 @@ _SAYS = sentences(friction_torque)
 
 def _symptom(case, returned, expected):
     fast, off = np.abs(case[0] / case[4]) > 6, np.abs(returned - expected)
-    if (off[case[0] >= 0] < 1e-9).all():
+    if (off[fast & (case[0] < 0)] > 1e-9).any() and (off[case[0] >= 0] < 1e-9).all():
         return _SAYS["back"]
     slow_alone = fast.sum() > 1 and off[fast].max() < 0.05 * off.max()
     return _SAYS["slow"] if slow_alone and (off[case[0] == 0] < 1e-9).all() else ""

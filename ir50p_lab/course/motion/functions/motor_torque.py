@@ -17,7 +17,6 @@ def _drives():
     counts, speeds = rng.integers(-255, 256, (6, 3)), rng.uniform(-1.2, 1.2, (6, 3))
     counts[1], speeds[2] = 0, 0  # turned at no counts; at rest
     counts[3:5] = [255, 0, -255], [40, -30, 10]
-    counts[5] = 400, -300, 20  # no limit here
     speeds[4] = 1.0, -0.9, 0.8  # faster than these counts drive it
     numbers = rng.uniform([0.01, 0.5], [0.04, 3.0], (6, 3, 2))
     return [(u, qd, *both.T) for u, qd, both in zip(counts, speeds, numbers, strict=True)]
@@ -29,8 +28,6 @@ _SAYS = sentences(motor_torque)
 def _symptom(case, returned, expected):
     counts, speed = case[:2]
     off = np.abs(returned - expected) > 1e-9
-    if off.any() and (np.abs(counts[off]) > 255).all():
-        return _SAYS["limit"]
     return _SAYS["push"] if off[speed == 0].any() else _SAYS["brake"] if off[counts == 0].any() else ""
 
 
