@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ir50p_lab.bench import UNIT, SimulatedArm
+from ir50p_lab.bench import UNIT, SimulatedArm, connect
 from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, SETPOINT, subplots
 
 
@@ -20,6 +20,14 @@ def by_hand(arm, poses):
         angles.append(np.radians(np.rint(2 * np.degrees(q)) / 2))
         counts.append(np.mean([held.counts() for _ in range(50)], axis=0))
     return np.array(angles), np.array(counts)
+
+
+def counts_by_hand():
+    """Counts (3,), the mean of half a second in which nobody drives: your hand carries the arm."""
+    bench = connect(record_to=False)
+    rows = [sample.counts for sample in bench.run(seconds=0.5, record=False)]
+    bench.abort()  # a `with` would end in the rest pose: the arm would move under your hand
+    return np.mean(rows, axis=0)
 
 
 def pencils(x, fit, at):
