@@ -31,7 +31,7 @@ def counts_by_hand():
 
 
 def pencils(x, fit, at):
-    """Lines as sure as a fit (slope, offset, covariance): by the whole covariance, and by its diagonal alone. LabFigure.
+    """Lines as sure as a fit (slope, offset, covariance), by its diagonal alone and by the whole: LabFigure.
 
     Args: x: (n,) counts, of the readings; at: counts at which the lines are used.
     """
@@ -47,7 +47,7 @@ def pencils(x, fit, at):
 
 
 def leftovers(angles, left):
-    """What lines leave, (n, 3) mrad over angles (n, 3) rad, a picture a joint; a parabola shows whether it bows. LabFigure."""
+    """What lines leave, (n, 3) mrad over angles (n, 3) rad; a parabola shows whether it bows: LabFigure."""
     figure, *axes = subplots(9.0, 2.9, cols=3)
     for ax, q, rest, label in zip(axes, angles.T, left.T, JOINT_LABELS, strict=True):
         ax.axhline(0, **SETPOINT)

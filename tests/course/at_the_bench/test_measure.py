@@ -50,7 +50,7 @@ WRONG = [
     ("fit_line", VARIANCE, "variance = np.sum(rest**2) / 8", "its size is not"),
     ("fit_line", END, "return slope, offset - 1, covariance", "offset: .*off by the same"),
     ("fit_line", VARIANCE, "variance = np.sum(rest**2) / (len(x) - 1)", "divide by n - 1"),
-    ("fit_line", VARIANCE, "variance = np.mean(rest**2)", "divide by n$"),
+    ("fit_line", VARIANCE, "variance = np.mean(rest**2)", "divide by n\\.$"),
     ("fit_line", VARIANCE, "variance = np.std(rest, ddof=2)", "halves, and should be a quarter"),
     ("fit_line", VARIANCE, "variance = np.sum((y - np.mean(y))**2) / (len(x) - 2)", "exactly on a line"),
     ("fit_line", SPREAD, "covariance = variance * N", "more points would make you less sure"),
@@ -67,7 +67,7 @@ WRONG = [
     ("low_pass", STEP, "y[k] = np.mean(x[max(0, k - 4) : k + 1])", "forgets a jump completely"),
     ("low_pass", "y = np.zeros(len(x))", "y = np.zeros_like(x)", "whole numbers"),
     ("low_pass", "y = np.zeros(len(x))", "y = x", "changes what it was given"),
-    ("low_pass", "return y", LAST, "asked for an answer there"),
+    ("low_pass", "return y", LAST, "it stops in `if cutoff_hz"),
     ("low_pass", "return y", BACK, "runs back and forth"),
     ("low_pass", "return y", "return x - y", "takes the motion"),
 ]
