@@ -20,9 +20,9 @@ import cloudpickle
 import numpy as np
 
 from ir50p_lab.bench import loop_process
-from ir50p_lab.bench.live_loop import ENDED, STARTING, live_loop
+from ir50p_lab.bench.live_loop import ENDED, LEADING, RUNNING, STARTING, live_loop
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.set_point import checked_pose, checked_reference
+from ir50p_lab.bench.set_point import MOST_PUSH, checked_pose, checked_push, checked_reference
 from ir50p_lab.browser_tab import IN_BROWSER, needs_more
 from ir50p_lab.controllers.base import check_controller, check_reference, gains, gains_of
 from ir50p_lab.errors import BenchError, InputError
@@ -89,10 +89,12 @@ class LiveRun:
     cut()                            drive off within a cycle, and the loop ends; the arm sinks
     set_gains(kp=, ki=, kd=)         from the next cycle on, without a bump; what is left out stays
     set_point([q1, q2, q3])          go there from where the reference is, at limited speed; rad
+    push(link, point, force)         a hand at a simulated arm, for half a second; m in the link's frame, N
     recent(10)                       the last 10 s: .t .q .u .reference
     statistics()                     cycles, late ones, periods
     join(timeout)                    wait for the end; raises what ended it early
     alive, phase, error, recording   whether it runs; what it does; what went wrong or None; the file
+    most_push                        N that are felt of a push now; 0 where nobody can push from here
     gains                            {'kp': (3,), 'ki': (3,), 'kd': (3,)} as ordered last; empty without any to set
     ================================ ==========================================================================
 
@@ -234,6 +236,17 @@ class LiveRun:
         Raises InputError if q is outside the joint limits or below the table.
         """
         self._orders.put(("set point", checked_pose("set point", self._bench.arm, q)))
+
+    @property
+    def most_push(self):
+        """The most of a push that is felt now, N; 0 on an arm that is not simulated, and on the way to rest."""
+        return MOST_PUSH if hasattr(self._bench, "push") and self.phase in (LEADING, RUNNING) else 0.0
+
+    def push(self, link, point, force):
+        """A hand pushes a simulated arm, see `SimulatedBench.push`. Raises InputError, on any other arm too."""
+        if not hasattr(self._bench, "push"):
+            raise InputError("only a simulated arm can be pushed from here; push a real one with your hand, gently")
+        self._orders.put(("push", checked_push(link, point, force)))
 
     def stop(self, *, wait=True):
         """End in order: the arm moves to its rest pose and is let go. wait: until that is over."""

@@ -22,8 +22,9 @@ def live_loop(bench, controller, reference, orders, tell):
     Args:
         bench: open Bench; controller: anything with step(t, measured, reference); reference: target(t) or None, which
         holds the measured pose. orders: queue of (name, content): "stop", "cut" (None), "gains" (dict of (3,)),
-        "set point" (3,) rad. tell: takes a name and its content: "phase", "recording" (path or None) and "sample":
-        (t, q, u, reference, begin of the cycle in s of a true clock, late cycles, trips of the watchdog), once in each.
+        "set point" (3,) rad, "push" (link, point, force). tell: takes a name and its content: "phase", "recording"
+        (path or None) and "sample": (t, q, u, reference, begin of the cycle in s of a true clock, late cycles, trips of
+        the watchdog), once in each.
 
     After the order to cut or an error the drive is off at once; else the arm moves to its rest pose first, which is
     not recorded. Raises what controller, reference, bench or `tell` raise.
@@ -85,9 +86,11 @@ class _Loop:
         return "over"
 
     def change(self, controller, order, content, t):
-        """Take new gains or a new set point."""
+        """Take new gains, a new set point or a push."""
         if order == "set point":
             return self.target.move_to(content, t)
+        if order == "push":
+            return self.bench.push(*content)
         set_gains(controller, **content)
         gains = (f"{name} = {' '.join(f'{x:g}' for x in three)}" for name, three in gains_of(controller).items())
         self.bench.note("; ".join(gains))

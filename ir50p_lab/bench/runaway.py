@@ -210,6 +210,10 @@ class RunawayGuard:
         """Take the next Sample and the command (3,) PWM counts that acted before it. Raises RunawayError."""
         self.refuse(watch_step(self.watch, sample.t, sample.q, pwm), sample.t)
 
+    def begin_anew(self):
+        """A hand is on the arm: what it does is no runaway. Look at the joints anew from the next block on."""
+        self.watch.now[1] = 0
+
     def admit(self, pwm):
         """Before pwm (3,) is sent: raise RunawayError if it is the first drive and the tip lies under the table."""
         if not self._driven and pwm.any():

@@ -5,12 +5,14 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vector3
+from ir50p_lab.inputs import vector3, whole
 from ir50p_lab.modelling.chain import frames
 
 SPEED = 0.8  # largest joint speed, rad/s: the tip of the stretched arm moves at 0.7 m/s
 ACCELERATION = 3.0  # largest joint acceleration, rad/s^2: full speed after a quarter of a second
 FARTHEST = 2.0  # rad: a reference farther from the measured pose is refused
+MOST_PUSH = 10.0  # N: a hand that tests an arm pushes no harder
+NOBODY = 3, np.zeros(3), np.zeros(3)  # the push of a hand that lets go
 _UNKNOWN = (math.nan,) * 3  # an unmeasured pose: every comparison with it is false
 NOISE = 0.05  # rad: an arm at an end of its travel may be measured so far beyond it
 
@@ -95,3 +97,9 @@ def checked_pose(name, arm, q, table=0.0):
         place = f"{name} {np.degrees(q).round().tolist()} deg"
         raise InputError(f"{place} lies {-100 * height:.0f} cm below the table: raise joint 2 or joint 3")
     return q
+
+
+def checked_push(link, point, force):
+    """What `SimulatedArm.push` takes: link 1, 2 or 3, point (3,) m, force (3,) N, cut to MOST_PUSH. Else InputError."""
+    point, force = vector3("point", point, unit="m"), vector3("force", force, unit="N")
+    return whole("link", link, 1, 3), point, force * min(1.0, MOST_PUSH / max(np.linalg.norm(force), MOST_PUSH))

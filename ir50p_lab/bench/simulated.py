@@ -10,15 +10,16 @@ from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
 from ir50p_lab.bench.protocol import JOINTS, LIMIT_PWM
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.runaway import UNDER, UNDER_ALARM, push, tip_height, watch_step
-from ir50p_lab.bench.set_point import FARTHEST, NOISE, checked_reference
+from ir50p_lab.bench.set_point import FARTHEST, NOBODY, NOISE, checked_push, checked_reference
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, read_pots
 from ir50p_lab.controllers.base import check_reference, is_compiled
 from ir50p_lab.controllers.dispatch import control_step
-from ir50p_lab.errors import InputError
+from ir50p_lab.errors import BenchError, InputError
 from ir50p_lab.jit import jit
 
 _BLOCK = 1000  # samples between two looks at the disk and at Ctrl-C in a compiled run
 _KEPT = 100_000  # newest cycles whose true states are kept: a live run may last for hours
+_HOLDS = 0.5  # s: a push that is not repeated ends by then (a closed browser, a busy kernel)
 _SINK = 3.0  # time after which an arm without drive lies still, s
 
 
@@ -100,6 +101,8 @@ class SimulatedBench(Bench):
     def _begin(self):
         self._queue[:], self._cycle = 0.0, 0
         self._truth.clear()
+        self.plant.push(*NOBODY)  # a hand of the run before has let go
+        self._told = None
         if self.realtime:
             load_controllers()
             push(self._queue, self._pwm)
@@ -119,6 +122,10 @@ class SimulatedBench(Bench):
         if not drive:
             self._cut()
         t = cycle * self.period
+        if self.plant.pushed and t > self._push_ends:
+            self.push(*NOBODY)
+        if self.plant.pushed and self._run.guard is not None:
+            self._run.guard.begin_anew()
         self._truth.append((t, self.plant.q_true, self.plant.qd_true))
         return t, self.plant.counts(), False
 
@@ -134,6 +141,25 @@ class SimulatedBench(Bench):
         return {"seed": str(self.plant.seed), **noise, "delay_periods": str(self.plant.unit.delay)}
 
     # ---- and what only a simulation can
+
+    def push(self, link, point, force):
+        """In a run: a hand pushes at `link` until the next push, for half a second at most; zeros: it lets go.
+
+        The runaway guard is told, and the recording: in its events, when a component of the force changes by 1 N.
+
+        Args: link: 1, 2 or 3; point: (3,) m in frame `link`, zeros are the far end of the link; force: (3,) N in base
+        coordinates, more than 10 N are 10 N. Raises InputError for anything else, BenchError outside a run.
+        """
+        link, point, force = checked_push(link, point, force)
+        if self._run is None:
+            raise BenchError("push() works only inside a run: outside nobody holds the arm")
+        self.plant.push(link, point, force)
+        self._push_ends = self._cycle * self.period + _HOLDS
+        told = (link, *force.round()) if self.plant.pushed else None
+        if told != self._told:
+            self._told, parts = told, " ".join(f"{x:.1f}" for x in force)
+            pushes = f"a hand pushes at link {link} with {np.linalg.norm(force):.1f} N (x y z: {parts})"
+            self.note(pushes if self.plant.pushed else "the hand has let go")
 
     def follow(self, controller, reference, seconds, *, record=True, **header):
         """Run `controller` on `reference` for `seconds`; compiled as a whole when the controller is.

@@ -11,8 +11,8 @@ from ir50p_lab.bench.set_point import checked_pose
 from ir50p_lab.errors import ArmError, InputError
 from ir50p_lab.jit import jit, on_floats
 from ir50p_lab.modelling import closed_form as cf
-from ir50p_lab.modelling.chain import forward_kinematics, lengths
-from ir50p_lab.simulation.plant import FC, FS, GRAVITY, LIMIT, make_plant
+from ir50p_lab.modelling.chain import forward_kinematics, frames, lengths
+from ir50p_lab.simulation.plant import FC, FORCE_SCALE, FS, GRAVITY, LIMIT, TF, make_plant
 from ir50p_lab.simulation.steps import dry_step
 
 STEP = 0.001  # s; Moreau's step is of first order, and 1 ms is far below the time constants of the drives
@@ -79,8 +79,8 @@ class SimulatedArm:
         counted from IR50P_UNIT (`chosen_copy`).
         q0: (3,) rad, where it stands; default the zero pose, or the rest pose where zero is not possible.
 
-    Attributes: arm; unit: the drawn ArmInstance; seed: its number; noise_seed: None, or what IR50P_SEED says; nominal:
-    JointCalibration a maker would state (the unit differs from it).
+    Attributes: arm; unit: the drawn ArmInstance; pushed: whether a hand pushes; seed: its number; noise_seed: None, or
+    what IR50P_SEED says; nominal: JointCalibration a maker would state (the unit differs from it).
     `q_true`, `qd_true`, `tip_true` are for tests and for plots that say 'truth of the simulation'.
     Raises: ArmError if the arm has no actuators, InputError if q0 is not possible.
     """
@@ -97,6 +97,7 @@ class SimulatedArm:
         self._numbers, self._w = plant.numbers, self._unit_numbers()
         for place, factor in ((FC, self.unit.friction), (FS, self.unit.friction), (LIMIT, self.unit.motor_gain)):
             self._numbers[place : place + 3] *= factor
+        self._offset, self._hand, self.pushed = self._numbers[TF : TF + 3].copy(), None, False
         noise = [self.seed, 1] if self.noise_seed is None else [self.seed, 1, self.noise_seed]
         self._rng = np.random.default_rng(noise)
         self._x, self._joint, self._late = np.zeros(6), np.zeros(3), 0.0
@@ -122,8 +123,24 @@ class SimulatedArm:
         q = checked_pose("q0", self.arm, q, self.unit.table)
         self._x[:3], self._x[3:], self._joint[:] = q, 0.0, q
 
+    def push(self, link, point, force):
+        """A hand pushes from now on: force (3,) N in base coordinates, at point (3,) m of frame `link`; zeros: none."""
+        self._hand, self.pushed = (link, point, force), bool(np.any(force))
+        self._lean()
+
+    def _lean(self):
+        """The hand's torque J(point)^T F acts as a lopsided friction does, with the other sign."""
+        link, point, force = self._hand
+        T = frames(self.arm, self._joint)
+        levers = T[link, :3, :3] @ point + T[link, :3, 3] - T[:3, :3, 3]
+        torque = (np.cross(levers, force) * T[:3, :3, 2]).sum(axis=1)
+        torque[link:] = 0.0  # the joints behind the link feel nothing
+        self._numbers[TF : TF + 3] = self._offset - torque * self._numbers[FORCE_SCALE : FORCE_SCALE + 3]
+
     def advance(self, pwm, seconds):
         """Let `seconds` pass with pwm (3,) counts at the bridges; remainders of the 1 ms steps are kept for later."""
+        if self.pushed:
+            self._lean()
         self._late += seconds
         steps = int(self._late / STEP + 1e-6)
         self._late -= steps * STEP

@@ -147,13 +147,15 @@ class LiveArm(anywidget.AnyWidget):
             if samples is not None and len(samples.t) > 1 and samples.t[-1] != sent:
                 sent, fresh = samples.t[-1], True
                 rows, shape = pack([samples], [""])
-                self.send({"live": shape | {"source": words}}, buffers=[rows])
+                shape |= {"source": words, "push": getattr(run, "most_push", 0.0)}
+                self._live = run
+                self.send({"live": shape}, buffers=[rows])
             if fresh and not getattr(run, "alive", alive):
                 fresh = False
                 self._show([getattr(run, "recording", run)], [""])
 
     def _heard(self, _, message, __):
-        """What the browser asks for: frames, a drag or a picture. The answer bears the names of the question.
+        """What the browser asks for: frames, a drag, a push or a picture. The answer bears the names of the question.
 
         Errors of the student's function are shown under the arm.
         """
@@ -161,6 +163,8 @@ class LiveArm(anywidget.AnyWidget):
         try:
             if "frames" in message:
                 self._pose(message["frames"])
+            elif "push" in message:
+                self._live.push(*message["push"])
             elif "picture" in message:
                 buffers = [still_png(self)]
             else:
