@@ -1,6 +1,6 @@
 // LiveArm in the browser: an anywidget's render, and mount() for a page without a kernel.
 // State (see view.py): options, q, layers, poses, track, shape.
-import { Matrix4, Mesh, MeshBasicMaterial, PerspectiveCamera, Plane, Raycaster, Group, SphereGeometry, Vector2, Vector3 } from "three";
+import { ConeGeometry, Matrix4, Mesh, MeshBasicMaterial, PerspectiveCamera, Plane, Raycaster, Group, SphereGeometry, Vector2, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Curves } from "./curves.js";
 import { frames, jacobian, reach, tip } from "./kinematics.js";
@@ -10,6 +10,7 @@ import { COLOURS, Robot } from "./robot.js";
 import { KEYS, Layers, makeScene, Trail } from "./stage.js";
 import { contacts, Track } from "./track.js";
 
+const FELT = 600; // ms without an answer until a push is said not to be felt
 const REST = 160; // ms without motion until the fine picture is drawn
 
 class View {
@@ -47,11 +48,14 @@ class View {
     this.shadow.position.z = 0.0012;
     this.trails = [new Trail(COLOURS.trail), new Trail(COLOURS.second)];
     this.lost = new Trail(COLOURS.target, 2);
+    this.shaft = new Trail(COLOURS.target, 6); // of the arrow of a push, with its head
+    this.head = new Mesh(new ConeGeometry(0.03 * this.size, 0.08 * this.size, 20), new MeshBasicMaterial({ color: COLOURS.target }));
+    this.head.visible = false;
     this.target = new Mesh(new SphereGeometry(0.014 * this.size, 20, 14), new MeshBasicMaterial({ color: COLOURS.target }));
     this.nearest = new Mesh(new SphereGeometry(0.01 * this.size, 20, 14), new MeshBasicMaterial({ color: COLOURS.dark }));
     this.target.visible = this.nearest.visible = this.ghost.root.visible = this.second.root.visible = false;
     this.scene.add(this.robot.root, this.ghost.root, this.second.root, this.shadow, this.target, this.nearest);
-    this.scene.add(...this.trails.map((trail) => trail.line), this.lost.line);
+    this.scene.add(...this.trails.map((trail) => trail.line), this.lost.line, this.shaft.line, this.head);
     this.camera = new PerspectiveCamera(30, 16 / 9, 0.01, 60);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.parts.canvas);
@@ -116,7 +120,7 @@ class View {
   draw(moving) {
     if (this.closed || !this.seen || !this.width) return;
     this.shadow.visible = !(moving && renderer.isSlow());
-    for (const { material } of [...this.trails, this.lost]) material.resolution.set(this.width, this.height);
+    for (const { material } of [...this.trails, this.lost, this.shaft]) material.resolution.set(this.width, this.height);
     renderer.paint(this, moving);
     if (this.track) this.curves.draw(this.time, this.sideWidth, this.height);
   }
@@ -195,18 +199,20 @@ class View {
     const along = (T, x) => new Vector3(x, 0, 0).applyMatrix4(T).toArray(); // of a link, whose frame is at its far end
     this.joints = [...transforms.map((T) => along(T, 0)), along(transforms[2], -this.l[1]), along(transforms[3], -this.l[2])];
     this.tipAt = this.joints[3];
-    if (this.width && !this.turned && !this.dragging && this.hidden()) this.frame();
+    if (this.width && !this.turned && !this.dragging && !this.hand && this.hidden()) this.frame();
+    this.showPush();
     const { stops, table } = contacts(this.l, this.limits, this.q);
     this.robot.alarm(this.track ? stops : [false, false, false]);
-    if (!this.dragging && !this.error) {
+    if (!this.dragging && !this.hand && !this.error) {
       const touched = this.track ? [...stops.flatMap((at, i) => (at ? [`joint ${i + 1} at its stop`] : [])), ...(table ? ["touches the table"] : [])] : [];
+      if (this.mostPush) touched.push("press on a link and drag to push it, or press Shift and arrows");
       this.say(touched.join(", "));
     }
     const [x, y, z] = this.tipAt.map((v) => v.toFixed(3).replace("-", "\u2212"));
     const { readout } = this.options, place = readout ? `, tip at x ${x} m, y ${y} m, z ${z} m` : "";
     this.parts.tip.hidden = !readout;
     this.parts.tip.textContent = `tip ${x}, ${y}, ${z} m`;
-    this.canvas.setAttribute("aria-label", `the arm in 3-D${place}; arrow keys turn the view`);
+    this.canvas.setAttribute("aria-label", `the arm in 3-D${place}; arrow keys turn the view${this.mostPush ? ", with Shift they push the arm" : ""}`);
     this.showJoints(this.q);
     this.soon();
   }
@@ -271,9 +277,10 @@ class View {
   }
 
   message(message, buffers) {
-    if (message.live) return this.live(new Track(buffers[0], message.live));
+    if (message.live) return this.live(new Track(buffers[0], message.live), message.live.push);
     this.error = message.error ?? null;
-    for (const kind of ["frames", "drag"]) if (kind in message) this.answered(kind);
+    for (const kind of ["frames", "drag", "push"]) if (kind in message) this.answered(kind);
+    if ("push" in message && this.hand) this.hand.felt = performance.now();
     if (message.error) this.say(message.error);
     else if ("drag" in message) this.followed(message.drag, "kernel");
   }
@@ -304,23 +311,30 @@ class View {
     const overTip = () => ray.ray.distanceToPoint(new Vector3(...this.tipAt)) < 0.06 * this.size;
     canvas.addEventListener("pointerdown", (event) => { // in the capture phase: before OrbitControls
       aim(event);
-      if (!overTip() || this.isLive) return;
+      const near = overTip(), grip = this.mostPush ? this.robot.hit(ray) ?? (near ? this.tipGrip() : null) : null;
+      if (!grip && (!near || this.isLive)) return;
       event.stopImmediatePropagation();
       this.pause();
-      this.dragging = true;
+      this.dragging = !grip;
+      this.hand = grip;
       canvas.focus({ preventScroll: true });
       canvas.setPointerCapture(event.pointerId);
-      plane.setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(eye), new Vector3(...this.tipAt));
+      plane.setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(eye), grip?.at ?? new Vector3(...this.tipAt));
     }, true);
     canvas.addEventListener("pointermove", (event) => {
       aim(event);
+      if (this.hand?.at) {
+        if (ray.ray.intersectPlane(plane, hit)) this.push(hit.clone().sub(this.hand.at).multiplyScalar(this.newtons()));
+        return;
+      }
       if (!this.dragging) {
-        canvas.style.cursor = overTip() ? "grab" : "default";
+        canvas.style.cursor = overTip() || (this.mostPush && this.robot.hit(ray)) ? "grab" : "default";
         return;
       }
       if (ray.ray.intersectPlane(plane, hit)) this.drag([hit.x, hit.y, Math.max(hit.z, 0)]);
     });
     const release = () => {
+      this.letGo();
       if (!this.dragging) return;
       this.dragging = this.target.visible = this.nearest.visible = false;
       this.lost.set([]);
@@ -328,6 +342,49 @@ class View {
     };
     canvas.addEventListener("pointerup", release);
     canvas.addEventListener("pointercancel", release);
+    canvas.addEventListener("blur", () => this.letGo());
+    canvas.addEventListener("keyup", (event) => { if (event.key === "Shift") this.letGo(); });
+  }
+
+  // A hand at the tip, as `Robot.hit` gives it.
+  tipGrip() {
+    return { link: 3, point: new Vector3(), at: new Vector3(...this.tipAt) };
+  }
+
+  // N a metre of the arrow, and of the way that the hand goes.
+  newtons() {
+    return this.mostPush / (0.3 * this.size);
+  }
+
+  // The hand pushes with `force`, N in the base. The kernel forgets it after half a second: live() repeats it.
+  push(force) {
+    const { hand } = this;
+    hand.force = force.clampLength(0, this.mostPush);
+    hand.felt ??= performance.now();
+    const felt = performance.now() - hand.felt < FELT;
+    this.say(felt ? `you push with ${force.length().toFixed(1)} N at link ${hand.link}` : "a cell is running: until it ends the arm does not feel your hand");
+    this.ask({ push: [hand.link, hand.point.toArray(), force.toArray()] });
+    this.showPush();
+    this.soon();
+  }
+
+  letGo() {
+    if (!this.hand) return;
+    if (this.hand.force) this.push(new Vector3());
+    this.hand = null;
+    this.moved();
+  }
+
+  // The arrow of the push, from where the hand is.
+  showPush() {
+    const { hand, head } = this, force = hand?.force;
+    head.visible = Boolean(force?.length());
+    this.shaft.set([]);
+    if (!head.visible) return;
+    const from = hand.point.clone().applyMatrix4(this.robot.links[hand.link].matrix);
+    head.position.copy(from).addScaledVector(force, 1 / this.newtons());
+    this.shaft.set([from.toArray(), head.position.toArray()]);
+    head.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), force.clone().normalize());
   }
 
   // The hand wants the tip at p.
@@ -358,6 +415,14 @@ class View {
 
   key(event) {
     const { controls } = this;
+    const side = { ArrowLeft: -1, ArrowRight: 1 }[event.key] ?? 0, up = { ArrowUp: 1, ArrowDown: -1 }[event.key] ?? 0;
+    if (event.shiftKey && this.mostPush && (side || up)) { // 1 N more
+      this.hand ??= this.tipGrip();
+      this.hand.at = null; // the mouse has it no longer
+      const right = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
+      this.push((this.hand.force ?? new Vector3()).clone().addScaledVector(right, side).add(new Vector3(0, 0, up)));
+      return event.preventDefault();
+    }
     const turn = { ArrowLeft: 0.06, ArrowRight: -0.06 }[event.key], tilt = { ArrowUp: 0.06, ArrowDown: -0.06 }[event.key];
     const zoom = { "+": 0.92, "=": 0.92, "-": 1.08 }[event.key];
     if (turn) controls.rotateLeft(turn);
@@ -375,6 +440,8 @@ class View {
   loadTrack() {
     const bytes = this.model.get("track"), shape = this.model.get("shape");
     this.isLive = false;
+    this.mostPush = 0; // N; more only while a simulated arm is followed live
+    this.hand = null;
     this.pause();
     this.take(bytes?.byteLength ? new Track(bytes, shape) : null);
     if (!this.track) return;
@@ -399,14 +466,16 @@ class View {
     this.resize();
   }
 
-  // A window of samples that has just come: show the last.
-  live(track) {
+  // A window of samples that has just come: show the last. mostPush: N that a hand may push.
+  live(track, mostPush) {
     const first = !this.isLive;
     this.isLive = true;
     this.playing = false;
+    this.mostPush = mostPush;
     if (first) this.on.add("trail");
     this.take(track);
     if (this.track) this.seek(this.track.end);
+    if (this.hand?.force) mostPush ? this.push(this.hand.force) : this.letGo();
   }
 
   seek(t) {

@@ -77,6 +77,14 @@ export class Robot {
     });
   }
 
+  // Where a ray first meets a link that moves: {link, point: in its frame, at: the same place in the base}, or null.
+  hit(ray) {
+    const [found] = ray.intersectObjects(this.links.slice(1));
+    if (!found) return null;
+    const frame = found.object.parent;
+    return { link: this.links.indexOf(frame), point: frame.worldToLocal(found.point.clone()), at: found.point };
+  }
+
   // joints: three booleans, whether each is at a stop: its hub lights up.
   alarm(joints) {
     this.hubs.forEach((mesh, i) => { mesh.material.emissive.set(joints[i] ? COLOURS.alarm : "#000000"); });

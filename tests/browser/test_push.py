@@ -1,0 +1,102 @@
+"""A hand in the browser pushes an arm that a controller of the student's own holds: mouse, keys and touch."""
+
+import re
+
+import numpy as np
+import pytest
+from test_a_student import run
+from test_live_arm_in_lab import KERNEL_IDLE, RUN_ALL, VIEW, show
+
+THE_VIEW = VIEW.format(0)
+EVENTS = 3  # number of the cell that prints those of the recording
+
+
+@pytest.fixture(scope="module")
+def pushed(browser, lab):
+    """The page with the arm, followed live."""
+    context = browser.new_context(viewport={"width": 1300, "height": 1000}, has_touch=True)
+    page = context.new_page()
+    page.goto(lab.replace("live_arm.ipynb", "push.ipynb"), wait_until="commit")
+    page.wait_for_function(KERNEL_IDLE, timeout=90_000)
+    page.evaluate(RUN_ALL)
+    page.wait_for_function(f"() => document.querySelector('.la')?.liveArm && {THE_VIEW}.mostPush", timeout=120_000)
+    show(page, 0)
+    yield page
+    context.close()
+
+
+def tip(page):
+    return np.array(page.evaluate(f"() => {THE_VIEW}.tipAt"))
+
+
+def place(page, point):
+    """Where a point is on the page; the tip, or the middle of link 2."""
+    points = {"tip": "view.tipAt", "link 2": "view.joints[1].map((v, i) => (v + view.joints[2][i]) / 2)"}
+    return page.evaluate(f"() => {{ const view = {THE_VIEW}; return view.onPage({points[point]}); }}")
+
+
+def arrow(page):
+    """Length of the arrow that is drawn, m; None without one."""
+    return page.evaluate(
+        f"() => {{ const {{ head, hand, robot }} = {THE_VIEW}; return head.visible ? head.position.distanceTo("
+        "hand.point.clone().applyMatrix4(robot.links[hand.link].matrix)) : null; }"
+    )
+
+
+def words(page, link):
+    """The newtons that stand in words under the arm."""
+    text = page.locator(".la-note").first.text_content()
+    return float(re.fullmatch(rf"you push with ([\d.]+) N at link {link}", text)[1])
+
+
+def rises(page, before, metres):
+    page.wait_for_function(f"(z) => {THE_VIEW}.tipAt[2] > z", arg=before[2] + metres, timeout=15_000)
+
+
+def has_let_go(page):
+    assert arrow(page) is None and "you push" not in page.locator(".la-note").first.text_content()
+
+
+def test_the_mouse_pushes_the_tip_with_ten_newtons_at_most(pushed):
+    before, (x, y) = tip(pushed), place(pushed, "tip")
+    pushed.mouse.move(x, y)
+    pushed.mouse.down()
+    pushed.mouse.move(x, y - 20, steps=4)
+    some, short = words(pushed, 3), arrow(pushed)
+    assert 0.5 < some < 10
+    pushed.mouse.move(x, y - 400, steps=4)
+    assert words(pushed, 3) == 10 and arrow(pushed) == pytest.approx(short * 10 / some, rel=0.1)
+    rises(pushed, before, 0.1)  # P leaves 266 mm; held still for longer than a push lasts
+    pushed.mouse.up()
+    has_let_go(pushed)
+    pushed.wait_for_function(f"(z) => {THE_VIEW}.tipAt[2] < z", arg=before[2] + 0.05, timeout=15_000)
+
+
+def test_shift_and_arrows_push_the_tip_newton_by_newton(pushed):
+    before = tip(pushed)
+    pushed.locator(".la-stage > canvas").first.focus()
+    pushed.keyboard.down("Shift")
+    for newtons in range(1, 13):
+        pushed.keyboard.press("ArrowUp")
+        assert words(pushed, 3) == min(newtons, 10)
+    rises(pushed, before, 0.1)
+    pushed.keyboard.up("Shift")
+    has_let_go(pushed)
+    assert "with Shift they push the arm" in pushed.locator(".la canvas").first.get_attribute("aria-label")
+
+
+def test_a_finger_pushes_the_upper_arm(pushed):
+    touch, (x, y) = pushed.context.new_cdp_session(pushed), place(pushed, "link 2")
+    for kind, lift in [("touchStart", 0), *(("touchMove", 20 * k) for k in range(1, 5))]:
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y - lift}]})
+    assert words(pushed, 2) > 1 and arrow(pushed) > 0
+    touch.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    has_let_go(pushed)
+
+
+def test_the_recording_says_it(pushed):
+    said = run(pushed, EVENTS)
+    assert "a hand pushes at link 3 with 10.0 N" in said and "a hand pushes at link 2" in said
+    assert "the hand has let go" in said
+    run(pushed, EVENTS, "run.stop()")
+    pushed.wait_for_function(f"() => !{THE_VIEW}.mostPush && !{THE_VIEW}.isLive", timeout=30_000)  # played from now on
