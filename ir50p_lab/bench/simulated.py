@@ -101,8 +101,9 @@ class SimulatedBench(Bench):
     def _begin(self):
         self._queue[:], self._cycle = 0.0, 0
         self._truth.clear()
-        self.plant.push(*NOBODY)  # a hand of the run before has let go
-        self._told = None
+        if self.plant.pushed:
+            self.plant.push(*NOBODY)  # the hand of the run before has let go
+        self._told, self._strongest = None, 0.0  # link and newtons of the hand that the recording knows of
         if self.realtime:
             load_controllers()
             push(self._queue, self._pwm)
@@ -145,7 +146,7 @@ class SimulatedBench(Bench):
     def push(self, link, point, force):
         """In a run: a hand pushes at `link` until the next push, for half a second at most; zeros: it lets go.
 
-        The runaway guard is told, and the recording: in its events, when a component of the force changes by 1 N.
+        The runaway guard is told, and the recording: in its events, at each whole newton of the components.
 
         Args: link: 1, 2 or 3; point: (3,) m in frame `link`, zeros are the far end of the link; force: (3,) N in base
         coordinates, more than 10 N are 10 N. Raises InputError for anything else, BenchError outside a run.
@@ -155,11 +156,12 @@ class SimulatedBench(Bench):
             raise BenchError("push() works only inside a run: outside nobody holds the arm")
         self.plant.push(link, point, force)
         self._push_ends = self._cycle * self.period + _HOLDS
-        told = (link, *force.round()) if self.plant.pushed else None
+        told, newtons = (link, *force.round()) if self.plant.pushed else None, np.linalg.norm(force)
+        self._strongest = max(newtons, self._strongest if self._told else 0.0)
         if told != self._told:
             self._told, parts = told, " ".join(f"{x:.1f}" for x in force)
-            pushes = f"a hand pushes at link {link} with {np.linalg.norm(force):.1f} N (x y z: {parts})"
-            self.note(pushes if self.plant.pushed else "the hand has let go")
+            pushes = f"a hand pushes at link {link} with {newtons:.1f} N (x y z: {parts})"
+            self.note(pushes if told else f"the hand has let go; it pushed with {self._strongest:.1f} N at most")
 
     def follow(self, controller, reference, seconds, *, record=True, **header):
         """Run `controller` on `reference` for `seconds`; compiled as a whole when the controller is.

@@ -10,6 +10,7 @@ import { COLOURS, Robot } from "./robot.js";
 import { KEYS, Layers, makeScene, Trail } from "./stage.js";
 import { contacts, Track } from "./track.js";
 
+const REPEAT = 150; // ms until a push that has not changed is sent again
 const FELT = 600; // ms without an answer until a push is said not to be felt
 const REST = 160; // ms without motion until the fine picture is drawn
 
@@ -311,8 +312,8 @@ class View {
     const overTip = () => ray.ray.distanceToPoint(new Vector3(...this.tipAt)) < 0.06 * this.size;
     canvas.addEventListener("pointerdown", (event) => { // in the capture phase: before OrbitControls
       aim(event);
-      const near = overTip(), grip = this.mostPush ? this.robot.hit(ray) ?? (near ? this.tipGrip() : null) : null;
-      if (!grip && (!near || this.isLive)) return;
+      const grip = this.mostPush ? this.robot.hit(ray) ?? (overTip() ? this.tipGrip() : null) : null;
+      if (!grip && (!overTip() || this.isLive)) return;
       event.stopImmediatePropagation();
       this.pause();
       this.dragging = !grip;
@@ -324,7 +325,7 @@ class View {
     canvas.addEventListener("pointermove", (event) => {
       aim(event);
       if (this.hand?.at) {
-        if (ray.ray.intersectPlane(plane, hit)) this.push(hit.clone().sub(this.hand.at).multiplyScalar(this.newtons()));
+        if (ray.ray.intersectPlane(plane, hit)) this.push(hit.clone().sub(this.hand.at).multiplyScalar(this.stiff));
         return;
       }
       if (!this.dragging) {
@@ -340,9 +341,7 @@ class View {
       this.lost.set([]);
       this.moved();
     };
-    canvas.addEventListener("pointerup", release);
-    canvas.addEventListener("pointercancel", release);
-    canvas.addEventListener("blur", () => this.letGo());
+    for (const event of ["pointerup", "pointercancel", "blur"]) canvas.addEventListener(event, release);
     canvas.addEventListener("keyup", (event) => { if (event.key === "Shift") this.letGo(); });
   }
 
@@ -351,17 +350,13 @@ class View {
     return { link: 3, point: new Vector3(), at: new Vector3(...this.tipAt) };
   }
 
-  // N a metre of the arrow, and of the way that the hand goes.
-  newtons() {
-    return this.mostPush / (0.3 * this.size);
-  }
-
-  // The hand pushes with `force`, N in the base. The kernel forgets it after half a second: live() repeats it.
+  // The hand pushes with `force`, N in the base. The kernel forgets it after half a second: live() sends it again.
   push(force) {
     const { hand } = this;
     hand.force = force.clampLength(0, this.mostPush);
-    hand.felt ??= performance.now();
-    const felt = performance.now() - hand.felt < FELT;
+    hand.sent = performance.now();
+    hand.felt ??= hand.sent;
+    const felt = hand.sent - hand.felt < FELT;
     this.say(felt ? `you push with ${force.length().toFixed(1)} N at link ${hand.link}` : "a cell is running: until it ends the arm does not feel your hand");
     this.ask({ push: [hand.link, hand.point.toArray(), force.toArray()] });
     this.showPush();
@@ -382,7 +377,7 @@ class View {
     this.shaft.set([]);
     if (!head.visible) return;
     const from = hand.point.clone().applyMatrix4(this.robot.links[hand.link].matrix);
-    head.position.copy(from).addScaledVector(force, 1 / this.newtons());
+    head.position.copy(from).addScaledVector(force, 1 / this.stiff);
     this.shaft.set([from.toArray(), head.position.toArray()]);
     head.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), force.clone().normalize());
   }
@@ -472,10 +467,12 @@ class View {
     this.isLive = true;
     this.playing = false;
     this.mostPush = mostPush;
+    this.stiff = mostPush / (0.2 * this.size); // N a metre of the arrow, and of the way that the hand goes
     if (first) this.on.add("trail");
     this.take(track);
     if (this.track) this.seek(this.track.end);
-    if (this.hand?.force) mostPush ? this.push(this.hand.force) : this.letGo();
+    if (!mostPush) this.letGo();
+    else if (performance.now() - this.hand?.sent > REPEAT) this.push(this.hand.force);
   }
 
   seek(t) {

@@ -79,10 +79,8 @@ export class Robot {
 
   // Where a ray first meets a link that moves: {link, point: in its frame, at: the same place in the base}, or null.
   hit(ray) {
-    const [found] = ray.intersectObjects(this.links.slice(1));
-    if (!found) return null;
-    const frame = found.object.parent;
-    return { link: this.links.indexOf(frame), point: frame.worldToLocal(found.point.clone()), at: found.point };
+    const [found] = ray.intersectObjects(this.links.slice(1)), frame = found?.object.parent;
+    return found ? { link: this.links.indexOf(frame), point: frame.worldToLocal(found.point.clone()), at: found.point } : null;
   }
 
   // joints: three booleans, whether each is at a stop: its hub lights up.
