@@ -103,7 +103,7 @@ class SimulatedBench(Bench):
         self._truth.clear()
         if self.plant.pushed:
             self.plant.push(*NOBODY)  # the hand of the run before has let go
-        self._told, self._strongest = None, 0.0  # link and newtons of the hand that the recording knows of
+        self._push_ends, self._told, self._strongest = 0.0, None, 0.0  # what the recording knows of a hand
         if self.realtime:
             load_controllers()
             push(self._queue, self._pwm)

@@ -183,6 +183,20 @@ def test_a_loop_in_the_background_feeds_the_view_and_can_be_played_afterwards(he
     assert view.shape["source"] == "simulated"
 
 
+def test_the_browser_is_told_how_hard_it_may_push_and_a_push_reaches_the_arm(heard):
+    with SimulatedBench(IR50P, q0=[0, 0.8, -1.2], realtime=True, record_to=False) as bench:
+        view = LiveArm(IR50P).play(bench)
+        live = bench.start(PID(**PID_OF_TABLES))
+        until(lambda: "live" in heard[-1][0] if heard else False)
+        assert heard[-1][0]["live"]["push"] == 10
+        view._handle_custom_msg({"push": [2, [0.0, 0.0, 0.0], [0.0, 4.0, 0.0]]}, [])
+        until(lambda: bench.recording.events)
+        view._handle_custom_msg({"push": [4, [0.0, 0.0, 0.0], [0.0, 4.0, 0.0]]}, [])
+        live.cut()
+    assert "at link 2 with 4.0 N" in bench.recording.events[0][1]
+    assert any("link = 4" in message.get("error", "") for message, _ in heard)
+
+
 def test_the_loop_of_nine_lines_feeds_the_view(heard, tmp_path):
     pid, target = PID(**PID_OF_TABLES), hold([0.4, 0.8, -1.2])
     with SimulatedBench(IR50P, q0=[0, 0.8, -1.2], realtime=True, record_to=tmp_path) as bench:

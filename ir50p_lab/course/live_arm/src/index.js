@@ -12,6 +12,8 @@ import { contacts, Track } from "./track.js";
 
 const REPEAT = 150; // ms until a push that has not changed is sent again
 const FELT = 600; // ms without an answer until a push is said not to be felt
+const TIP = { link: 3, point: new Vector3() }; // as `Robot.hit` gives it
+const LIVE_TRAIL = 4; // rows between two points of the trail of a live view, which takes half of the drawing otherwise
 const REST = 160; // ms without motion until the fine picture is drawn
 
 class View {
@@ -51,7 +53,6 @@ class View {
     this.lost = new Trail(COLOURS.target, 2);
     this.shaft = new Trail(COLOURS.target, 6); // of the arrow of a push, with its head
     this.head = new Mesh(new ConeGeometry(0.03 * this.size, 0.08 * this.size, 20), new MeshBasicMaterial({ color: COLOURS.target }));
-    this.head.visible = false;
     this.target = new Mesh(new SphereGeometry(0.014 * this.size, 20, 14), new MeshBasicMaterial({ color: COLOURS.target }));
     this.nearest = new Mesh(new SphereGeometry(0.01 * this.size, 20, 14), new MeshBasicMaterial({ color: COLOURS.dark }));
     this.target.visible = this.nearest.visible = this.ghost.root.visible = this.second.root.visible = false;
@@ -312,27 +313,23 @@ class View {
     const overTip = () => ray.ray.distanceToPoint(new Vector3(...this.tipAt)) < 0.06 * this.size;
     canvas.addEventListener("pointerdown", (event) => { // in the capture phase: before OrbitControls
       aim(event);
-      const grip = this.mostPush ? this.robot.hit(ray) ?? (overTip() ? this.tipGrip() : null) : null;
-      if (!grip && (!overTip() || this.isLive)) return;
+      const at = new Vector3(...this.tipAt), atTip = overTip() ? { ...TIP, at } : null;
+      const grip = this.mostPush ? this.robot.hit(ray) ?? atTip : null;
+      if (!grip && (!atTip || this.isLive)) return;
       event.stopImmediatePropagation();
       this.pause();
       this.dragging = !grip;
       this.hand = grip;
       canvas.focus({ preventScroll: true });
       canvas.setPointerCapture(event.pointerId);
-      plane.setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(eye), grip?.at ?? new Vector3(...this.tipAt));
+      plane.setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(eye), grip?.at ?? at);
     }, true);
     canvas.addEventListener("pointermove", (event) => {
       aim(event);
-      if (this.hand?.at) {
-        if (ray.ray.intersectPlane(plane, hit)) this.push(hit.clone().sub(this.hand.at).multiplyScalar(this.stiff));
-        return;
-      }
-      if (!this.dragging) {
-        canvas.style.cursor = overTip() || (this.mostPush && this.robot.hit(ray)) ? "grab" : "default";
-        return;
-      }
-      if (ray.ray.intersectPlane(plane, hit)) this.drag([hit.x, hit.y, Math.max(hit.z, 0)]);
+      const there = ray.ray.intersectPlane(plane, hit);
+      if (there && this.hand?.at) this.push(hit.clone().sub(this.hand.at).multiplyScalar(this.stiff));
+      else if (there && this.dragging) this.drag([hit.x, hit.y, Math.max(hit.z, 0)]);
+      else canvas.style.cursor = overTip() || (this.mostPush && this.robot.hit(ray)) ? "grab" : "default";
     });
     const release = () => {
       this.letGo();
@@ -343,11 +340,6 @@ class View {
     };
     for (const event of ["pointerup", "pointercancel", "blur"]) canvas.addEventListener(event, release);
     canvas.addEventListener("keyup", (event) => { if (event.key === "Shift") this.letGo(); });
-  }
-
-  // A hand at the tip, as `Robot.hit` gives it.
-  tipGrip() {
-    return { link: 3, point: new Vector3(), at: new Vector3(...this.tipAt) };
   }
 
   // The hand pushes with `force`, N in the base. The kernel forgets it after half a second: live() sends it again.
@@ -372,13 +364,12 @@ class View {
 
   // The arrow of the push, from where the hand is.
   showPush() {
-    const { hand, head } = this, force = hand?.force;
-    head.visible = Boolean(force?.length());
-    this.shaft.set([]);
+    const { hand, head, shaft } = this, force = hand?.force;
+    head.visible = shaft.line.visible = Boolean(force?.length());
     if (!head.visible) return;
     const from = hand.point.clone().applyMatrix4(this.robot.links[hand.link].matrix);
     head.position.copy(from).addScaledVector(force, 1 / this.stiff);
-    this.shaft.set([from.toArray(), head.position.toArray()]);
+    shaft.set([from.toArray(), head.position.toArray()]);
     head.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), force.clone().normalize());
   }
 
@@ -412,8 +403,7 @@ class View {
     const { controls } = this;
     const side = { ArrowLeft: -1, ArrowRight: 1 }[event.key] ?? 0, up = { ArrowUp: 1, ArrowDown: -1 }[event.key] ?? 0;
     if (event.shiftKey && this.mostPush && (side || up)) { // 1 N more
-      this.hand ??= this.tipGrip();
-      this.hand.at = null; // the mouse has it no longer
+      this.hand ??= { ...TIP };
       const right = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
       this.push((this.hand.force ?? new Vector3()).clone().addScaledVector(right, side).add(new Vector3(0, 0, up)));
       return event.preventDefault();
@@ -451,7 +441,7 @@ class View {
     this.parts.player.hidden = this.parts.side.hidden = !this.track;
     const runs = this.track?.runs ?? [];
     this.ghost.root.visible = this.second.root.visible = false;
-    this.trails.forEach((trail, k) => trail.set(runs[k] ? this.track.path(this.l, runs[k].q) : k ? [] : this.written));
+    this.trails.forEach((trail, k) => trail.set(runs[k] ? this.track.path(this.l, runs[k].q, this.isLive ? LIVE_TRAIL : 1) : k ? [] : this.written));
     if (this.track) this.curves.load(this.track);
     this.trails[0].material.color.set(runs.length > 1 ? COLOURS.upper : COLOURS.trail);
     const chips = runs.length > 1 ? [["#0072B2", runs[0].label], [COLOURS.second, runs[1].label]] : runs.map((run) => [null, run.label]);

@@ -28,8 +28,10 @@ export class Track {
     return this.data[row * this.columns + column];
   }
 
-  path(lengths, first) {
-    return Array.from({ length: this.rows }, (_, k) => tip(lengths, [0, 1, 2].map((i) => this.value(k, first + i))));
+  // Where the tip has been, m: at every so many rows, and at the last.
+  path(lengths, first, every = 1) {
+    const rows = Array.from({ length: Math.ceil(this.rows / every) }, (_, k) => this.rows - 1 - every * k).reverse();
+    return rows.map((row) => tip(lengths, [0, 1, 2].map((i) => this.value(row, first + i))));
   }
 }
 

@@ -8,6 +8,7 @@ from test_a_student import run
 from test_live_arm_in_lab import KERNEL_IDLE, RUN_ALL, VIEW, show
 
 THE_VIEW = VIEW.format(0)
+MIDDLE_OF_LINK_2 = "view.joints[1].map((v, i) => (v + view.joints[2][i]) / 2)"
 EVENTS = 3  # number of the cell that prints those of the recording
 
 
@@ -30,9 +31,8 @@ def tip(page):
 
 
 def place(page, point):
-    """Where a point is on the page; the tip, or the middle of link 2."""
-    points = {"tip": "view.tipAt", "link 2": "view.joints[1].map((v, i) => (v + view.joints[2][i]) / 2)"}
-    return page.evaluate(f"() => {{ const view = {THE_VIEW}; return view.onPage({points[point]}); }}")
+    """Where a point of the base is on the page."""
+    return page.evaluate(f"() => {{ const view = {THE_VIEW}; return view.onPage({point}); }}")
 
 
 def arrow(page):
@@ -58,7 +58,7 @@ def has_let_go(page):
 
 
 def test_the_mouse_pushes_the_tip_with_ten_newtons_at_most(pushed):
-    before, (x, y) = tip(pushed), place(pushed, "tip")
+    before, (x, y) = tip(pushed), place(pushed, "view.tipAt")
     pushed.mouse.move(x, y)
     pushed.mouse.down()
     pushed.mouse.move(x, y - 20, steps=4)
@@ -86,7 +86,7 @@ def test_shift_and_arrows_push_the_tip_newton_by_newton(pushed):
 
 
 def test_a_finger_pushes_the_upper_arm(pushed):
-    touch, (x, y) = pushed.context.new_cdp_session(pushed), place(pushed, "link 2")
+    touch, (x, y) = pushed.context.new_cdp_session(pushed), place(pushed, MIDDLE_OF_LINK_2)
     for kind, lift in [("touchStart", 0), *(("touchMove", 20 * k) for k in range(1, 5))]:
         touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y - lift}]})
     assert words(pushed, 2) > 1 and arrow(pushed) > 0
