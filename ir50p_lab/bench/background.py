@@ -89,7 +89,7 @@ class LiveRun:
     cut()                            drive off within a cycle, and the loop ends; the arm sinks
     set_gains(kp=, ki=, kd=)         from the next cycle on, without a bump; what is left out stays
     set_point([q1, q2, q3])          go there from where the reference is, at limited speed; rad
-    push(link, point, force)         a hand at a simulated arm, for half a second; m in the link's frame, N
+    push(link, point, force)         a hand at a simulated arm, for a second; m in the link's frame, N
     recent(10)                       the last 10 s: .t .q .u .reference
     statistics()                     cycles, late ones, periods
     join(timeout)                    wait for the end; raises what ended it early

@@ -19,7 +19,7 @@ from ir50p_lab.jit import jit
 
 _BLOCK = 1000  # samples between two looks at the disk and at Ctrl-C in a compiled run
 _KEPT = 100_000  # newest cycles whose true states are kept: a live run may last for hours
-_HOLDS = 0.5  # s: a push that is not repeated ends by then (a closed browser, a busy kernel)
+_HOLDS = 1.0  # s: a push that is not repeated ends by then (a closed browser, a busy kernel)
 _SINK = 3.0  # time after which an arm without drive lies still, s
 
 
@@ -144,7 +144,7 @@ class SimulatedBench(Bench):
     # ---- and what only a simulation can
 
     def push(self, link, point, force):
-        """In a run: a hand pushes at `link` until the next push, for half a second at most; zeros: it lets go.
+        """In a run: a hand pushes at `link` until the next push, for a second at most; zeros: it lets go.
 
         The runaway guard is told, and the recording: in its events, at each whole newton of the components.
 

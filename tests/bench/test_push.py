@@ -101,13 +101,13 @@ def test_stops_and_table_hold(force):
         assert forward_kinematics(IR50P, q)[:, 2].min() > -0.005
 
 
-def test_a_push_is_told_as_it_grows_and_ends_half_a_second_after_it_was_repeated_last():
+def test_a_push_is_told_as_it_grows_and_ends_a_second_after_it_was_repeated_last():
     bench = SimulatedBench(IR50P, q0=POSE, record_to=False).open()
-    for sample in bench.run(2.0):
+    for sample in bench.run(2.5):
         if 0.5 <= sample.t <= 1.0:
             bench.push(*TIP, (0, 0, 8.2 * (sample.t - 0.5)))
     *grows, (ended, text) = bench.recording.events
-    assert 1.45 < ended < 1.55
+    assert 1.95 < ended < 2.05
     assert text == "the hand has let go; it pushed with 4.1 N at most"
     assert 4 <= len(grows) <= 6  # newton by newton
 

@@ -10,10 +10,7 @@ import { COLOURS, Robot } from "./robot.js";
 import { KEYS, Layers, makeScene, Trail } from "./stage.js";
 import { contacts, Track } from "./track.js";
 
-const REPEAT = 150; // ms until a push that has not changed is sent again
-const FELT = 600; // ms without an answer until a push is said not to be felt
-const TIP = { link: 3, point: new Vector3() }; // as `Robot.hit` gives it
-const LIVE_TRAIL = 4; // rows between two points of the trail of a live view, which takes half of the drawing otherwise
+const FELT = 1200; // ms without an answer until a push is said not to be felt
 const REST = 160; // ms without motion until the fine picture is drawn
 
 class View {
@@ -313,7 +310,7 @@ class View {
     const overTip = () => ray.ray.distanceToPoint(new Vector3(...this.tipAt)) < 0.06 * this.size;
     canvas.addEventListener("pointerdown", (event) => { // in the capture phase: before OrbitControls
       aim(event);
-      const at = new Vector3(...this.tipAt), atTip = overTip() ? { ...TIP, at } : null;
+      const at = new Vector3(...this.tipAt), atTip = overTip() ? { link: 3, point: new Vector3(), at } : null;
       const grip = this.mostPush ? this.robot.hit(ray) ?? atTip : null;
       if (!grip && (!atTip || this.isLive)) return;
       event.stopImmediatePropagation();
@@ -342,15 +339,17 @@ class View {
     canvas.addEventListener("keyup", (event) => { if (event.key === "Shift") this.letGo(); });
   }
 
-  // The hand pushes with `force`, N in the base. The kernel forgets it after half a second: live() sends it again.
+  // The hand pushes with `force`, N in the base. Each message costs as much as a picture, and the kernel forgets a push
+  // after a second: live() sends it again.
   push(force) {
-    const { hand } = this;
+    const { hand } = this, now = performance.now();
     hand.force = force.clampLength(0, this.mostPush);
-    hand.sent = performance.now();
-    hand.felt ??= hand.sent;
-    const felt = hand.sent - hand.felt < FELT;
-    this.say(felt ? `you push with ${force.length().toFixed(1)} N at link ${hand.link}` : "a cell is running: until it ends the arm does not feel your hand");
-    this.ask({ push: [hand.link, hand.point.toArray(), force.toArray()] });
+    hand.felt ??= now;
+    this.say(now - hand.felt < FELT ? `you push with ${force.length().toFixed(1)} N at link ${hand.link}` : "a cell is running: until it ends the arm does not feel your hand");
+    if (!force.length() || now - (hand.sent ?? 0) > (hand.told === force ? 400 : 80)) {
+      Object.assign(hand, { sent: now, told: force });
+      this.ask({ push: [hand.link, hand.point.toArray(), force.toArray()] });
+    }
     this.showPush();
     this.soon();
   }
@@ -403,7 +402,7 @@ class View {
     const { controls } = this;
     const side = { ArrowLeft: -1, ArrowRight: 1 }[event.key] ?? 0, up = { ArrowUp: 1, ArrowDown: -1 }[event.key] ?? 0;
     if (event.shiftKey && this.mostPush && (side || up)) { // 1 N more
-      this.hand ??= { ...TIP };
+      this.hand ??= { link: 3, point: new Vector3() };
       const right = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
       this.push((this.hand.force ?? new Vector3()).clone().addScaledVector(right, side).add(new Vector3(0, 0, up)));
       return event.preventDefault();
@@ -441,7 +440,8 @@ class View {
     this.parts.player.hidden = this.parts.side.hidden = !this.track;
     const runs = this.track?.runs ?? [];
     this.ghost.root.visible = this.second.root.visible = false;
-    this.trails.forEach((trail, k) => trail.set(runs[k] ? this.track.path(this.l, runs[k].q, this.isLive ? LIVE_TRAIL : 1) : k ? [] : this.written));
+    const every = this.isLive ? 4 : 1; // a full trail, new in each picture, takes half of the drawing
+    this.trails.forEach((trail, k) => trail.set(runs[k] ? this.track.path(this.l, runs[k].q, every) : k ? [] : this.written));
     if (this.track) this.curves.load(this.track);
     this.trails[0].material.color.set(runs.length > 1 ? COLOURS.upper : COLOURS.trail);
     const chips = runs.length > 1 ? [["#0072B2", runs[0].label], [COLOURS.second, runs[1].label]] : runs.map((run) => [null, run.label]);
@@ -462,7 +462,7 @@ class View {
     this.take(track);
     if (this.track) this.seek(this.track.end);
     if (!mostPush) this.letGo();
-    else if (performance.now() - this.hand?.sent > REPEAT) this.push(this.hand.force);
+    else if (this.hand?.force) this.push(this.hand.force);
   }
 
   seek(t) {
