@@ -26,6 +26,7 @@ from ir50p_lab.bench.set_point import MOST_PUSH, checked_pose, checked_push, che
 from ir50p_lab.browser_tab import IN_BROWSER, needs_more
 from ir50p_lab.controllers.base import check_controller, check_reference, gains, gains_of
 from ir50p_lab.errors import BenchError, InputError
+from ir50p_lab.modelling.chain import forward_kinematics
 
 _TO_REST = 60.0  # s: if the motion to the rest pose takes longer, it has failed
 _OBEYED = 0.25  # s: a loop that takes longer to obey hangs: the drive is cut from outside, its process killed
@@ -233,9 +234,11 @@ class LiveRun:
     def set_point(self, q):
         """Go to q (3,) rad at limited speed, from where the reference is.
 
-        Raises InputError if q is outside the joint limits or below the table.
+        Raises InputError if q is outside the joint limits or the lab's workspace, or below the table.
         """
-        self._orders.put(("set point", checked_pose("set point", self._bench.arm, q)))
+        q = checked_pose("set point", self._bench.arm, q)
+        self._bench.caps.check("the tip of the set point, m,", "workspace", forward_kinematics(self._bench.arm, q))
+        self._orders.put(("set point", q))
 
     @property
     def most_push(self):

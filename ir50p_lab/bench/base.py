@@ -2,43 +2,24 @@
 
 import contextlib
 import math
-from collections import namedtuple
 
 import numpy as np
 
 from ir50p_lab.bench.calibration import nominal_calibration
-from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, Clock, CountedPace, Pace, cut_said, undisturbed
+from ir50p_lab.bench.caps import Caps
+from ir50p_lab.bench.pace import Clock, CountedPace, Pace, cut_said, undisturbed
 from ir50p_lab.bench.protocol import JOINTS, LIMIT_PWM
 from ir50p_lab.bench.recorder import Recorder, header_of
 from ir50p_lab.bench.rest import trajectory_to_rest
+from ir50p_lab.bench.run import Run, Sample
 from ir50p_lab.bench.runaway import RunawayGuard
-from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.controllers.base import check_controller, check_reference
-from ir50p_lab.errors import BenchError, InputError, LabError, PauseError
+from ir50p_lab.errors import BenchError, InputError, LabError
 from ir50p_lab.inputs import number
 from ir50p_lab.modelling.chain import lengths
 from ir50p_lab.modelling.named_arms import load_arm
 
-
-class Sample(namedtuple("Sample", "t q counts missed reference", defaults=(None,))):
-    """What the bench says once per period.
-
-    t: s since the run began, when it was measured; q: (3,) rad, through the calibration; counts: (3,) counts of the
-    10-bit converter (quarters where the board averages); missed: cycles that came late so far in this run; reference:
-    (3, 3), what the run's reference asks for at t, rows q, qd, qdd in rad, rad/s, rad/s^2 (None without one).
-    """
-
-
-class Run:
-    """What belongs to one run.
-
-    reference: target(t) or None; recorder: Recorder or None; pace: Pace or CountedPace; guard: see `Bench._make_guard`;
-    row: the Sample whose command may still come, before its row is written; aim: its reference (3,); fault: what has
-    ended it; trips: of the watchdog.
-    """
-
-    reference = recorder = pace = guard = row = aim = fault = None
-    trips = 0
+__all__ = ["Bench", "Sample"]
 
 
 class Bench:
@@ -68,8 +49,9 @@ class Bench:
     kind = "bench"
     simulated = False
     answers = True  # whether drive moves the arm
-    bench_id = None
+    bench_id = recording = live_run = _last = _run = None
     guarded = True  # whether a runaway is cut; off only while the motors have no supply
+    caps = Caps()
     table = 0.0  # its height, m: a tip far below cannot be; -inf where that is not asked
 
     def __init__(self, arm=None, calibration=None, *, period=0.01, record_to=None, name=None):
@@ -83,12 +65,9 @@ class Bench:
             raise InputError(f"period = {period!r} s: give 0.001 to 1 s (the thesis samples every 0.01 s)")
         self.arm, self.calibration, self.period = arm, calibration or nominal_calibration(arm), float(period)
         self.name = name or f"{self.kind} {arm.name}"
-        self.recording = None
         self.record_to = record_to
         self.is_open, self._clock = False, Clock
         self._pwm, self._gripper = np.zeros(JOINTS), False
-        self._last = self._run = None
-        self.live_run = None
         self._travel = tuple(zip(arm.q_min, arm.q_max, strict=True))
 
     # ---- what a subclass supplies
@@ -157,8 +136,7 @@ class Bench:
             self.is_open = True
         return self
 
-    def __enter__(self):
-        return self.open()
+    __enter__ = open
 
     def __exit__(self, kind, error, traceback):
         if error is None:
@@ -207,9 +185,10 @@ class Bench:
         On a bench that follows the clock the drive is cut when the program sends no command for 0.1 s. That becomes an
         event of the recording, and the next exchange only measures. A pause of more than 0.5 s ends the run.
 
-        Raises InputError for a bad duration, and for a reference that is not finite, leaves the joint limits or is
-        farther than 2 rad from the measured pose; BenchError if the bench is not open or already runs; PauseError
-        after a pause; BoardLostError if the board stops answering. On any error the drive is cut first.
+        Raises InputError for a bad duration, for a reference that is not finite, leaves the joint limits or is farther
+        than 2 rad from the measured pose, and for what the lab's own file does not allow (`caps`); BenchError if the
+        bench is not open or already runs; PauseError after a pause; BoardLostError if the board stops answering. On
+        any error the drive is cut first.
         """
         if reference is not None:
             check_reference(reference)
@@ -226,7 +205,7 @@ class Bench:
 
     def _cycles(self, cycles, reference, record, header):
         with self._running(reference, record, header) as run:
-            while (sample := self._next_sample(run, cycles)) is not None:
+            while (sample := run.next_sample(cycles)) is not None:
                 yield sample
                 if run.fault is not None:  # drive() has raised it, and the loop's body caught it
                     raise run.fault
@@ -235,17 +214,15 @@ class Bench:
     def _running(self, reference, record, header):
         """A Run from its beginning to its end; an error cuts the drive first."""
         self._end_run()  # of a loop that was left by break
-        run = self._run = Run()
-        run.reference = reference
-        if record:
-            head = self.head() | {name: str(value) for name, value in header.items()}
-            run.recorder = Recorder(head, folder=self.record_to)
-            self.recording = run.recorder.recording
+        run = self._run = Run(self, reference)
         self._pwm = np.zeros(JOINTS)
         try:
+            if record:
+                head = self.head() | {name: str(value) for name, value in header.items()}
+                run.recorder = Recorder(head, folder=self.record_to)
+                self.recording = run.recorder.recording
             self._begin()
-            run.guard = self._make_guard()
-            run.pace = self._make_pace()
+            run.guard, run.pace = self._make_guard(), self._make_pace()
             with undisturbed() if isinstance(run.pace, Pace) else contextlib.nullcontext():
                 yield run
         except GeneratorExit:  # the loop was left by break
@@ -258,60 +235,6 @@ class Bench:
         finally:
             if self._run is run:
                 self._end_run()
-
-    def _next_sample(self, run, cycles):
-        """Wait for the next cycle and measure. Returns the Sample, or None when the run is over."""
-        pace = run.pace
-        while True:
-            self._write_row(run)  # of the sample before
-            if pace.cycle + 1 >= cycles:
-                return None
-            cycle, silence = pace.next_cycle(), pace.silence()
-            if silence >= WATCHDOG:
-                self._resume(run, silence)
-                continue
-            if cycle >= cycles:
-                return None
-            t, counts, tripped = self._measure(cycle, drive=pace.armed)
-            pace.armed = pace.armed or cycle > 0
-            if tripped:  # commands were lost on the wire
-                self._resume(run, WATCHDOG)
-                continue
-            sample = run.row = self._last = Sample(t, self._radians(counts), counts, pace.missed)
-            if run.guard is not None:
-                run.guard.check(sample, self._pwm)
-            rows = None
-            if run.reference is not None:
-                rows = checked_reference(self.arm, t, run.reference(t), sample.q if self.answers else None)
-                run.aim = rows[0].copy()
-            return Sample(t, sample.q.copy(), counts.copy(), pace.missed, rows)  # may be written into
-
-    def _resume(self, run, silence):
-        """The drive was cut in this silence, s: say so and measure, driving nothing; too long a one ends the run."""
-        self._write_row(run)
-        pace, when = run.pace, run.pace.heard - silence + WATCHDOG - run.pace.start
-        pace.catch_up()
-        run.trips += 1
-        said, ended = f"the drive was cut: no command for {silence:.2f} s", silence > LONGEST_PAUSE
-        self.note(said + "; the run was ended" * ended, when)
-        self._pwm = np.zeros(JOINTS)
-        with contextlib.suppress(BenchError) if ended else contextlib.nullcontext():
-            t, counts, _ = self._measure(pace.cycle, drive=False)
-            self._last = run.row = Sample(t, self._radians(counts), counts, pace.missed)
-        if ended:
-            self.cut()
-            paused = f"the program sent no command for {silence:.1f} s, from t = {when - WATCHDOG:.2f} s on"
-            remedy = "start a new run, without plots or input in its loop, or use bench.start(...)"
-            run.fault = PauseError(f"{paused}: the drive was cut after {WATCHDOG:g} s and stays off; {remedy}")
-            raise run.fault
-        if run.trips == 1:
-            print(f"At t = {when:.2f} s {said}; the run goes on. Further cuts: bench.recording.events.")
-
-    def _write_row(self, run):
-        """Record the last sample with the command that has followed it."""
-        sample, aim, run.row, run.aim = run.row, run.aim, None, None
-        if sample is not None and run.recorder is not None:
-            run.recorder.write(sample, self._pwm, aim, self._gripper)
 
     def head(self):
         """What the head of a recording says of this bench: dict of str."""
@@ -328,21 +251,8 @@ class Bench:
 
     def _end_run(self):
         run, self._run = self._run, None
-        try:
-            if run is not None:
-                self._end_recording(run)
-        except BaseException:  # a full disk; nobody may hear of it while a generator is closed
-            self.cut()
-            raise
-
-    def _end_recording(self, run):
-        """What comes in this run from now on is not recorded."""
-        try:
-            self._write_row(run)
-        finally:
-            recorder, run.recorder = run.recorder, None
-            if recorder is not None:
-                recorder.close(self._statistics(run))
+        if run is not None:
+            run.end_recording()
 
     def drive(self, pwm, *, gripper=None, reference=None):
         """Send PWM counts to the three joints; they hold until the next call.
@@ -353,8 +263,8 @@ class Bench:
             gripper: True closes, False opens, None leaves it. reference: q (3,) rad, only to be recorded beside.
 
         Returns: what was really sent, (3,) PWM counts; zeros after a pause in which the drive was cut.
-        Raises InputError if pwm is no three finite numbers (the drive is cut first), BenchError outside a run,
-        PauseError if the program has paused for longer than 0.5 s.
+        Raises InputError if pwm is no three finite numbers, or more than the lab's own file allows (the drive is cut
+        first), BenchError outside a run, PauseError if the program has paused for longer than 0.5 s.
         """
         run = self._run
         if run is None:
@@ -362,11 +272,12 @@ class Bench:
             raise BenchError("drive() works only inside `for sample in bench.run(...)`: outside nothing keeps watch")
         if run.fault is not None:
             raise run.fault
-        command = self._command_of(pwm)
-        if run.pace.begins_anew():
-            return np.zeros(JOINTS)
-        if (silence := run.pace.silence()) >= WATCHDOG:
-            self._resume(run, silence)
+        try:
+            command = self._command_of(pwm)
+            self.caps.check("the command", "limit_pwm", command)
+        except InputError as error:
+            raise InputError(f"{error}; {cut_said(self.cut())}") from None
+        if run.pace.begins_anew() or run.paused(run.pace.silence()):
             return np.zeros(JOINTS)
         if run.guard is not None:
             run.guard.admit(command)
@@ -380,14 +291,13 @@ class Bench:
         return command.copy()
 
     def _command_of(self, pwm):
-        """`pwm` in whole counts, within the limit and not beyond the ends of the travel; else cut and raise."""
+        """`pwm` in whole counts, within the limit and not beyond the ends of the travel; or InputError."""
         try:
             given = np.asarray(pwm)
             if given.dtype.kind not in "iufO" or len(given) != JOINTS or not all(map(math.isfinite, given.tolist())):
                 raise TypeError
         except Exception:  # whatever the conversion of a stranger raises
-            said = f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts; {cut_said(self.cut())}"
-            raise InputError(said) from None
+            raise InputError(f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts") from None
         limited = []  # scalars: for three numbers arrays take longer than the arm
         for u, q, (low, high) in zip(given.tolist(), self._last.q.tolist(), self._travel, strict=True):
             out = (q <= low and u < 0) or (q >= high and u > 0)
@@ -419,7 +329,8 @@ class Bench:
 
     def go_to_rest(self):
         """Move to the rest pose, where the arm stays when let go; not recorded."""
-        controller, reference = trajectory_to_rest(self.arm, self._last.q, self.period)
+        controller, reference = trajectory_to_rest(self.arm, self._last.q, self.period, *self.caps[:2])
         for sample in self.run(reference.duration + 0.5, record=False):
+            self._run.capped = False
             self.drive(controller.step(sample.t, sample.q, reference(sample.t)))
         self.cut()

@@ -157,7 +157,7 @@ def _push(bench, joint, sign):
             moved = np.mean(recent, axis=0) - before
             if np.abs(moved).max() > MOVED:
                 return pwm, moved
-            pwm = min(k // STEP_CYCLES + 1, STEPS) * STEP_PWM * sign
+            pwm = min(min(k // STEP_CYCLES + 1, STEPS) * STEP_PWM, bench.caps.limit_pwm[joint]) * sign
             bench.drive([pwm if j == joint else 0 for j in range(3)])
     except RunawayError:  # what moves is seen here before the guard sees it: this joint stood still
         pass
@@ -169,7 +169,8 @@ def _push(bench, joint, sign):
 
 def _watchdog(bench, breakaway):
     """Keep joint 1 moving, then say nothing: the board must brake by itself."""
-    pwm = max(breakaway) + 20 if max(breakaway) > 0 else min(breakaway) - 20
+    most = bench.caps.limit_pwm[0]
+    pwm = np.clip(max(breakaway) + 20 if max(breakaway) > 0 else min(breakaway) - 20, -most, most)
     trips, places = bench.statistics.watchdog_trips, []
     for sample in bench.run(1.2, record=False):
         places.append((sample.t, sample.counts[0]))
@@ -202,6 +203,7 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(prog="python3 -m ir50p_lab bench-test", description=__doc__.splitlines()[0])
     parser.add_argument("port", nargs="?", help="port of the board, or 'simulated' (default: look for a board)")
     bench = connect(parser.parse_args(arguments).port, record_to=False, q0=rest_pose(load_arm()))
+    bench.caps = bench.caps._replace(workspace=((-9, -9, -9), (9, 9, 9)))  # it lies anywhere yet
     try:
         if bench.kind == "replay":
             raise InputError("a recording has no motors to test: give the port of a board, or 'simulated'")

@@ -28,8 +28,9 @@ def connect(port=None, *, arm=None, calibration=None, period=0.01, record_to=Non
 
     Returns: an open bench, for `with connect() as bench:`.
     Raises: PortError or BoardError if the port asked for does not open or no board of ours answers there, with the
-    remedy; RecordingError for a file that is no recording; InputError for a `port` that is none of the above. A
-    board that was only looked for never raises: the line says why it was not taken.
+    remedy; RecordingError for a file that is no recording; InputError for a `port` that is none of the above, and for a
+    lab's own file that is wrong (`caps`). A board that was only looked for never raises otherwise: the line says why it
+    was not taken.
     """
     common = {"arm": arm, "calibration": calibration, "period": period, "record_to": record_to}
     if port is None and not setting(VARIABLE):
@@ -73,7 +74,8 @@ def _board(device, common, reason):
 
     bench = SerialBench(device, **common).open()
     known = bench.bench_id or "without an id: python3 -m ir50p_lab bench-test gives it one"
-    return _say(bench, f"{reason}, version {bench.firmware}; {known}", _TO_SIMULATED)
+    said = f"{reason}, version {bench.firmware}; {known}; caps: {bench.caps.source or 'none'}"
+    return _say(bench, said, _TO_SIMULATED)
 
 
 def _say(bench, reason, other):

@@ -86,7 +86,7 @@ class Link:
     def forget(self):
         """Drop all that has come so far and was not read."""
         self._transport.reset_input_buffer()
-        self._parser.reset()
+        self._parser = protocol.FrameParser()
 
     def close(self):
         """Give the port free."""

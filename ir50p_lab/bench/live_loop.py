@@ -8,7 +8,7 @@ import numpy as np
 from ir50p_lab.bench.pace import load_controllers
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.rest import trajectory_to_rest
-from ir50p_lab.bench.set_point import SetPoint
+from ir50p_lab.bench.set_point import SPEED, SetPoint
 from ir50p_lab.controllers.base import gains_of, set_gains
 
 STARTING, LEADING, RUNNING = "starting", "leading in", "running"
@@ -31,7 +31,7 @@ def live_loop(bench, controller, reference, orders, tell):
     """
     load_controllers()
     trajectory_to_rest(bench.arm, np.zeros(3), bench.period)[1](0.0)  # compiled now: at the end there is no time
-    loop = _Loop(bench, _Target(bench, reference), orders, tell)
+    loop = _Loop(bench, _Target(bench, reference, min(SPEED, *bench.caps.speed)), orders, tell)
     loop.say(STARTING)
     try:
         if hasattr(controller, "reset"):
@@ -39,8 +39,9 @@ def live_loop(bench, controller, reference, orders, tell):
         header = {"controller": type(controller).__name__, "loop": "in the background; gains and set point may change"}
         with contextlib.closing(bench.run(_DAY, loop.target, **header | header_of(controller))) as samples:
             if loop.follow(samples, controller) == "stop" and bench.answers:
-                bench._end_recording(bench._run)
-                controller, trajectory = trajectory_to_rest(bench.arm, bench._last.q, bench.period)
+                bench._run.end_recording()
+                controller, trajectory = trajectory_to_rest(bench.arm, bench._last.q, bench.period, *bench.caps[:2])
+                bench._run.capped = False
                 loop.target.take(trajectory, bench._last.t)
                 end = bench._last.t + trajectory.duration + 0.5
                 loop.follow(takewhile(lambda sample: sample.t < end, samples), controller, returning=True)
@@ -99,17 +100,17 @@ class _Loop:
 class _Target:
     """What the arm is to follow: a trajectory to the reference from where it stands, the reference, then any set point.
 
-    leading: whether it still follows the first of these.
+    leading: whether it still follows the first of these; speed: rad/s, of set points.
     """
 
-    def __init__(self, bench, reference):
-        self.bench, self.reference, self.leading = bench, reference, reference is not None
+    def __init__(self, bench, reference, speed=SPEED):
+        self.bench, self.reference, self.speed, self.leading = bench, reference, speed, reference is not None
         self._point, self._begin = None, 0.0
 
     def __call__(self, t):
         if self._point is None:  # the arm has just been measured for the first time
             arm = self.bench.arm
-            self._point = SetPoint(np.clip(self.bench._last.q, arm.q_min, arm.q_max))
+            self._point = SetPoint(np.clip(self.bench._last.q, arm.q_min, arm.q_max), speed=self.speed)
             if self.leading:
                 self._point.move_to(self.reference(0.0)[0])
         if self.leading and (self._point.q == self._point.goal).all():
@@ -126,7 +127,7 @@ class _Target:
         """A set point takes over from where the target is, moving as it moves."""
         if self.reference is not None and not self.leading:
             here, speed, _ = self(t)
-            self._point = SetPoint(here, qd=speed)
+            self._point = SetPoint(here, qd=speed, speed=self.speed)
             self._point(t)  # its time begins now
         self.reference, self.leading = None, False
         self._point.move_to(q)

@@ -128,7 +128,3 @@ class FrameParser:
             start = buffer.find(self.sync, start)
         self._buffer = buffer[start:] if start >= 0 else b""
         return frames
-
-    def reset(self):
-        """Forget what has come of an unfinished frame."""
-        self._buffer = b""

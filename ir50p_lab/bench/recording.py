@@ -114,10 +114,7 @@ class Recording:
 
         Where most cycles came late or were left out their times say nothing of it.
         """
-        try:
-            stated = float(self.header["period_s"])
-        except (KeyError, ValueError):
-            stated = math.nan
+        stated = recording_file.stated_period(self.header)
         if len(self) < 2 or (stated > 0 and self.missed[-1] > 0.5 * len(self)):
             return stated
         step = float(np.median(np.diff(self.t)))

@@ -5,6 +5,7 @@ missed: cycles late so far. An empty cell is a value that is not known. A spread
 tabs, and decimal commas. Tables of other programs are read by pandas, and made a recording by `Recording.from_arrays`.
 """
 
+import contextlib
 import csv
 import math
 import re
@@ -122,12 +123,16 @@ def _decoded(data):
         return data.decode("latin-1")
 
 
+def stated_period(header):
+    """The period in a head, s; NaN where it says none."""
+    with contextlib.suppress(ValueError):
+        return float(header.get("period_s", "nan"))
+    return math.nan
+
+
 def _check_unit_of_time(path, header, t):
     """Refuse times that are far from the period in the head: milliseconds, minutes."""
-    try:
-        stated = float(header["period_s"])
-    except (KeyError, ValueError):
-        return
+    stated = stated_period(header)
     step = np.median(np.diff(t)) if len(t) > 1 else stated
     if stated > 0 and not stated / 30 < step < 30 * stated:  # no loop is late all the time by so much
         said = f"{path}: t goes up by {step:g} a line, but period_s: {stated:g} in its head"

@@ -41,11 +41,12 @@ def _rest_pose(arm):
     return pose
 
 
-def trajectory_to_rest(arm, q, period):
+def trajectory_to_rest(arm, q, period, limit_pwm=255, speed=np.inf):
     """Controller and reference that bring the arm from q (3,) rad to its rest pose: first joint 2, then the others.
 
     Joint 2 lifts the arm off the table before joint 3 folds. The gains are those of Tables 4.1-4.3, but for the
-    integral of joint 2: with 10 it stops up to 0.3 rad short, and then sinks.
+    integral of joint 2: with 10 it stops up to 0.3 rad short, and then sinks. limit_pwm, speed: what is allowed, PWM
+    counts and rad/s, a number or one of each joint.
     Returns: PID, reference.
     """
     from ir50p_lab.controllers import PID
@@ -55,6 +56,8 @@ def trajectory_to_rest(arm, q, period):
     lifted = np.array([q[0], goal[1], q[2]])
     poses = [np.array(q), lifted, goal]
     # the peak of a quintic's speed is 15/8 of its mean
-    durations = [max(0.3, 1.875 * np.abs(end - start).max() / _SPEED) for start, end in pairwise(poses)]
-    pid = PID(kp=(289, 225, 270), ki=(50, 150, 50), kd=(40, 30, 30), limit_pwm=255, period=period)
+    durations = [
+        max(0.3, 1.875 * np.abs(end - start).max() / np.minimum(_SPEED, speed).min()) for start, end in pairwise(poses)
+    ]
+    pid = PID(kp=(289, 225, 270), ki=(50, 150, 50), kd=(40, 30, 30), limit_pwm=limit_pwm, period=period)
     return pid, through(poses, durations=durations)

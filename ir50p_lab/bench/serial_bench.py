@@ -8,6 +8,7 @@ import numpy as np
 
 from ir50p_lab.bench import protocol
 from ir50p_lab.bench.base import Bench
+from ir50p_lab.bench.caps import caps_of
 from ir50p_lab.bench.link import PORT_ERRORS, Link
 from ir50p_lab.bench.pace import Clock, Pace, cut_said, load_controllers
 from ir50p_lab.bench.ports import open_port
@@ -33,7 +34,8 @@ class SerialBench(Bench):
     Time is the true time of a measurement. A cycle that begins late is counted in `Sample.missed`, never raised; see
     `Pace`.
 
-    Raises, when opened: PortError (missing, busy, not permitted), BoardError (not our board or another firmware).
+    Raises, when opened: PortError (missing, busy, not permitted), BoardError (not our board or another firmware),
+    InputError (a wrong file of the lab, see `caps`).
     In a run: BoardLostError if the cable is pulled or the board resets; it brakes 0.1 s after the last command.
     BoardError if a potentiometer has lost its wire.
 
@@ -68,6 +70,7 @@ class SerialBench(Bench):
             load_controllers()
             self._clock.sleep(max(0.0, ready - self._clock.now()))
             self.identity = self._shake_hands(HANDSHAKE)
+            self.caps = caps_of(self.bench_id)
             if not self._calibrated:
                 self.calibration = own_calibration(self) or self.calibration
         except BaseException:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ir50p_lab.bench.arm_instance import UNIT
 from ir50p_lab.bench.base import Bench, Sample
+from ir50p_lab.bench.caps import FAULTS, Caps
 from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
 from ir50p_lab.bench.protocol import JOINTS, LIMIT_PWM
 from ir50p_lab.bench.recorder import header_of
@@ -82,6 +83,7 @@ class SimulatedBench(Bench):
 
     kind = "simulated"
     simulated = True
+    caps = Caps(faults=FAULTS)
 
     def __init__(self, arm=None, *, unit=UNIT, seed=0, q0=None, realtime=False, name=None, **options):
         super().__init__(arm, **options)

@@ -23,6 +23,8 @@ _DATA = ("first_reach.csv", "first_reach.jpg", "drawings", "arm_example.toml")
 _PURE = "anywidget ipywidgets comm psygnal typing_extensions jupyterlab_widgets widgetsnbextension lazy_loader".split()
 _PURE += "cloudpickle tomlkit tqdm sympy mpmath".split()
 _AT_ONCE = ["ir50p-lab", "ipython", "jedi", "sqlite3", "comm"]  # fetched while the page opens
+_AT_WILL = ["pandas", "sympy", "micropip", "ssl"]
+_RUNTIME = "pyodide.js pyodide.mjs pyodide.asm.wasm python_stdlib.zip".split()
 
 
 def build(pyodide, target):
@@ -33,24 +35,25 @@ def build(pyodide, target):
     except ImportError:
         remedy = "pip install jupyterlite-core jupyterlite-pyodide-kernel 'pyodide-lock[wheel]'"
         raise LabError(f"what builds the site is not in the course's environment: {remedy}") from None
-    remote = pyodide.startswith("http")
     with tempfile.TemporaryDirectory() as room:
         here = Path(room)
-        place = "static/course" if remote else "static/pyodide"  # what lies in the second, JupyterLite copies
-        runtime = here / place
+        runtime = here / "static" / "pyodide"
         runtime.mkdir(parents=True)
+        remote = pyodide.startswith("http")
         if remote:
-            urllib.request.urlretrieve(f"{pyodide}/pyodide-lock.json", runtime / "pyodide-lock.json")
+            _fetch(pyodide, "pyodide-lock.json", runtime)
         else:
             shutil.copytree(pyodide, runtime, dirs_exist_ok=True)
         lock = PyodideLockSpec.from_json(runtime / "pyodide-lock.json")
-        for package in lock.packages.values() if remote else ():
-            package.file_name = f"{pyodide}/{package.file_name}"
-        lock = add_wheels_to_spec(lock, _wheels(runtime, set(lock.packages)), base_path=runtime)
+        theirs = set(lock.packages)
+        lock = add_wheels_to_spec(lock, _wheels(runtime, theirs), base_path=runtime)
+        code = "pyodide.asm.js" if lock.info.version.startswith("0.") else "pyodide.asm.mjs"
+        for file in (code, *_RUNTIME, *_files(lock, theirs)) if remote else ():
+            _fetch(pyodide, file, runtime)
         lock.to_json(runtime / "pyodide-lock.json")
         kernel = {
-            "pyodideUrl": f"{pyodide}/pyodide.js" if remote else "./static/pyodide/pyodide.js",
-            "loadPyodideOptions": {"packages": _AT_ONCE, "lockFileURL": f"./{place}/pyodide-lock.json"},
+            "pyodideUrl": "./static/pyodide/pyodide.js",
+            "loadPyodideOptions": {"packages": _AT_ONCE, "lockFileURL": "./static/pyodide/pyodide-lock.json"},
             "disablePyPIFallback": True,
         }
         data = {"litePluginSettings": {"@jupyterlite/pyodide-kernel-extension:kernel": kernel}}
@@ -59,7 +62,25 @@ def build(pyodide, target):
         _contents(here / "files")
         lite = [sys.executable, "-m", "jupyterlite_core", "build", "--contents", "files", "--no-sourcemaps"]
         subprocess.run([*lite, "--output-dir", str(Path(target).resolve())], cwd=here, check=True)
-        shutil.copytree(runtime, Path(target) / place, dirs_exist_ok=True)
+
+
+def _fetch(address, file, folder):
+    """Fetch one file of a Pyodide. Raises LabError where it is not there."""
+    try:
+        urllib.request.urlretrieve(f"{address}/{file}", folder / file)
+    except OSError as error:
+        raise LabError(f"{address}/{file}: {error}. Is this the address of a Pyodide's folder `full`?") from None
+
+
+def _files(lock, theirs):
+    """The files of Pyodide's own packages that the course needs, found from package to package."""
+    wanted, found = [*_AT_ONCE, *_AT_WILL], set()
+    while wanted:
+        name = wanted.pop().replace("_", "-")
+        if name in lock.packages and name not in found:
+            found.add(name)
+            wanted += lock.packages[name].depends
+    return [lock.packages[name].file_name for name in sorted(found & theirs)]
 
 
 def _wheels(folder, known):

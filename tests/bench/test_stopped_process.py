@@ -1,5 +1,6 @@
 """A loop whose process is really stopped for 2 s, as by a debugger or a sleeping laptop, drives the emulated board."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.bench import Recording, SerialBench
-from ir50p_lab.errors import PauseError
+from ir50p_lab.errors import PauseError, PortError
 from ir50p_lab.modelling import IR50P
 
 pytest.importorskip("termios", reason="Windows has no pseudo-terminals")
@@ -77,20 +78,47 @@ def assert_recorded(recording):
     assert "the drive was cut: no command for 2." in said and "the run was ended" in said
 
 
-def test_a_stopped_cell_drives_nothing_when_it_goes_on(board, tmp_path):
-    code = textwrap.dedent(NINE_LINES.format(port=board.port, folder=str(tmp_path), push=PUSH))
+@contextlib.contextmanager
+def cell_that_drives(board, folder):
+    """The process of a notebook whose cell drives."""
+    code = textwrap.dedent(NINE_LINES.format(port=board.port, folder=str(folder), push=PUSH))
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
     with subprocess.Popen([sys.executable, "-c", code], env=environment, **pipes) as cell:
         try:
-            path = said(cell, "drives: ")
-            woken = stop_for_two_seconds(cell.pid)
-            assert said(cell, "ended: ") == "PauseError"
-            time.sleep(0.2)
-            assert_off_since(board, woken)
+            yield cell
         finally:
             cell.kill()
+
+
+def test_a_stopped_cell_drives_nothing_when_it_goes_on(board, tmp_path):
+    with cell_that_drives(board, tmp_path) as cell:
+        path = said(cell, "drives: ")
+        woken = stop_for_two_seconds(cell.pid)
+        assert said(cell, "ended: ") == "PauseError"
+        time.sleep(0.2)
+        assert_off_since(board, woken)
+        assert board.cut_after_last_command() < 0.110
     assert_recorded(Recording.load(path))
+
+
+def test_a_kernel_killed_in_the_cell_leaves_the_drive_on_for_no_more_than_110_ms(board, tmp_path):
+    with cell_that_drives(board, tmp_path) as cell:
+        said(cell, "drives: ")
+        cell.kill()
+        assert board.cut_after_last_command() < 0.110
+
+
+def test_a_second_client_is_refused_and_changes_nothing(board, tmp_path):
+    with cell_that_drives(board, tmp_path) as cell:
+        said(cell, "drives: ")
+        before = board.changes()
+        with pytest.raises(PortError, match="busy"):
+            SerialBench(board.port, arm=IR50P, record_to=False).open()
+        time.sleep(0.3)
+        assert board.changes() == before and any(before[-1].pins.pwm)
+        cell.send_signal(signal.SIGINT)
+        assert board.cut_after_last_command() < 0.110
 
 
 def test_a_stopped_loop_in_the_background_drives_nothing_when_it_goes_on(board, tmp_path):
@@ -103,6 +131,7 @@ def test_a_stopped_loop_in_the_background_drives_nothing_when_it_goes_on(board, 
         with pytest.raises(PauseError, match=r"no command for 2\.\d s.*new run"):
             run.join(20)
         assert_off_since(board, woken)
+        assert board.cut_after_last_command() < 0.110
         assert_recorded(run.recording)
     finally:
         bench.abort()

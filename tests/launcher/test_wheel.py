@@ -17,7 +17,7 @@ CARRIED = [
     "notebooks",
     "data",
     "docs",
-    *"environment.txt pyproject.toml README.md LICENSE CITATION.cff AGENTS.md".split(),
+    *"environment.txt environment-test.txt pyproject.toml README.md LICENSE CITATION.cff AGENTS.md".split(),
 ]
 BUILD = "import sys, course_wheel; print(course_wheel.build_wheel(sys.argv[1]))"
 

@@ -1,6 +1,8 @@
 """How long a notebook takes: ``PYTHONPATH=. python tests/notebooks/minutes.py`` prints it and fills
 README's table and the openings.
 
+Sections are marked: who does the core alone needs less.
+
 words/150 + 3 a prediction + 2 a panel + 6, 15 or 40 a function by its size + code lines/2, in steps of five minutes.
 """
 
@@ -19,7 +21,28 @@ PANEL = re.compile(r"^(?:live|LiveArm|\w*(?:panel|slider)\w*)\(", re.M)
 
 def minutes(path):
     """Minutes of a notebook, a multiple of five."""
-    cells = nbformat.read(path, as_version=4).cells
+    return _counted(nbformat.read(path, as_version=4).cells)
+
+
+def core(path):
+    """Minutes of the core of a notebook: of all but the sections marked more."""
+    return _counted(core_of(nbformat.read(path, as_version=4).cells))
+
+
+def core_of(cells):
+    """The cells of the core: a mark holds until the next heading that has one; opening and closing belong to it."""
+    mark, kept = "core", []
+    for cell in cells:
+        if cell.source.startswith("## What you know now"):
+            mark = "core"
+        for tag in ("core", "more"):
+            mark = tag if tag in cell.metadata.get("tags", []) else mark
+        if mark == "core":
+            kept.append(cell)
+    return kept
+
+
+def _counted(cells):
     text = "\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
     code = "\n".join(cell.source for cell in cells if cell.cell_type == "code")
     functions = [name for name in re.findall(r'^check\("([\w.]+)"', code, re.M) if is_function(name)]
@@ -46,20 +69,29 @@ def rewritten():
     return [path for path in sorted(FOLDER.glob("[0-9A][0-9]_*.ipynb")) if path.name[:2] in REWRITTEN]
 
 
+def _said(path):
+    return f"{minutes(path)}, core {core(path)}"
+
+
 def filled(text):
     """The text of README with the minutes of its table as counted."""
     for path in rewritten():
-        text = re.sub(rf"(\| \[`{path.stem}`\].*\| )\d+( \| \w+ \|)$", rf"\g<1>{minutes(path)}\2", text, flags=re.M)
+        text = re.sub(
+            rf"(\| \[`{path.stem}`\].*\| )[\d, core]+( \| \w+ \|)$", rf"\g<1>{_said(path)}\2", text, flags=re.M
+        )
     return text
 
 
 def opening(path):
     """The text of a notebook's file with its minutes as counted."""
-    return re.sub(r"about \d+ minutes", f"about {minutes(path)} minutes", path.read_text(encoding="utf-8"), count=1)
+    text = path.read_text(encoding="utf-8")
+    return re.sub(
+        r"about \d+ minutes(, the core \d+)?", f"about {minutes(path)} minutes, the core {core(path)}", text, count=1
+    )
 
 
 if __name__ == "__main__":
     for one in rewritten():
-        print(f"{one.stem}: {minutes(one)} min")
+        print(f"{one.stem}: {_said(one)} min")
         one.write_text(opening(one), encoding="utf-8", newline="\n")
     README.write_text(filled(README.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")

@@ -3,6 +3,7 @@
 import ast
 import re
 
+from minutes import core_of
 from notebook_runner import FOLDER, NOTEBOOKS, REWRITTEN
 
 from ir50p_lab.course.checking.numbers import everything
@@ -93,6 +94,33 @@ def test_no_text_names_a_notebook_that_is_not_there():
     for path in NOTEBOOKS:
         for target in re.findall(r"\]\(([^)#]+\.ipynb)\)", path.read_text(encoding="utf-8")):
             assert (FOLDER / target).exists(), f"{path.name} links to {target}"
+
+
+def sections_are_marked(path, notebook):
+    for cell in cells(notebook, "markdown"):
+        for mark in re.findall(r"^#{2,3} .*$", cell.source, re.M):
+            if (mark.startswith("## ") and "What you know now" not in mark) or "*(" in mark:
+                (word,) = re.findall(r" \*\((core|more)\)\*$", mark)
+                assert word in cell.metadata.get("tags", []) and cell.source.startswith(mark), mark
+
+
+def core_meets_no_gap(path, notebook):
+    """No cell of the core reads a name that only a section marked more has made."""
+    core, bound, skipped = {cell.id for cell in core_of(notebook.cells)}, set(), set()
+    for cell in cells(notebook, "code"):
+        made = top_level_names(cell.source) | imported_names(cell.source)
+        if cell.id in core:
+            read = {node.id for node in ast.walk(ast.parse(cell.source)) if isinstance(node, ast.Name)}
+            assert not read & skipped - bound - made, f"{cell.id} reads what more makes"
+            bound |= made
+        else:
+            skipped |= made
+
+
+def imported_names(source):
+    """Return the names that a cell imports."""
+    found = [node.names for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Import | ast.ImportFrom)]
+    return {(one.asname or one.name).partition(".")[0] for names in found for one in names}
 
 
 def ids(path, notebook):
@@ -232,7 +260,13 @@ RULES = (
     figures_have_units,
     panels_keep_their_names,
 )
-RULES_OF_THE_LAB_BOOK = (predictions, code_cells_show_something, functions_are_asked_for_in_their_notebook)
+RULES_OF_THE_LAB_BOOK = (
+    predictions,
+    code_cells_show_something,
+    functions_are_asked_for_in_their_notebook,
+    sections_are_marked,
+    core_meets_no_gap,
+)
 
 
 def test_a_notebook_keeps_the_rules(path, notebook):

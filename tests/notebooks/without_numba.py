@@ -4,6 +4,7 @@ CI runs this file by its name. That the numbers are the same as with numba is a 
 """
 
 import os
+import re
 import subprocess
 import sys
 
@@ -12,7 +13,7 @@ import numpy as np
 import pytest
 from notebook_runner import NOTEBOOKS, ROOT, run_notebook
 
-from ir50p_lab.publishing.site import NOTEBOOKS as NOTEBOOKS_OF_THE_TAB
+from ir50p_lab.publishing import site
 
 LACKING = {"PYTHONPATH": f"{ROOT / 'tests' / 'browser_tab'}{os.pathsep}{ROOT}"}
 NUMBERS = """
@@ -33,10 +34,23 @@ kept = [mass_matrix(IR50P, q), forward_dynamics(IR50P, q, q, q), run.q, free.q, 
 np.save({!r}, np.concatenate([np.ravel(one) for one in kept]))
 """
 
+CHECKS = """
+import numpy as np
+from ir50p_lab.course.checking.grade import grade
+from ir50p_lab.course.robot.catalogue import NOTEBOOKS, task
+from ir50p_lab.publishing.site import NOTEBOOKS as tab
+import solutions
+written = solutions.load()
+for name in (name for number in tab for name in NOTEBOOKS[number]):
+    assert grade(task(name), getattr(written, name)).state == "right", name
+told = grade(task("rot_z"), lambda angle: written.rot_z(-angle))
+assert "it turns the wrong way round" in told.says, told
+"""
+
 
 @pytest.mark.notebook
 @pytest.mark.parametrize(
-    "path", [path for path in NOTEBOOKS if path.name[:2] in NOTEBOOKS_OF_THE_TAB], ids=lambda path: path.stem
+    "path", [path for path in NOTEBOOKS if path.name[:2] in site.NOTEBOOKS], ids=lambda path: path.stem
 )
 def test_a_notebook_runs_without_what_a_browser_lacks(path, tmp_path):
     notebook = nbformat.read(path, as_version=4)
@@ -52,3 +66,16 @@ def test_the_numbers_are_those_of_the_compiled_code(tmp_path):
         subprocess.run([sys.executable, "-c", NUMBERS.format(place)], env=os.environ | variables, check=True, cwd=ROOT)
         found.append(np.load(place))
     np.testing.assert_allclose(*found, rtol=1e-9, atol=1e-9)
+
+
+def test_functions_are_checked():
+    """Right ones are taken, and a wrong one is told why."""
+    paths = os.pathsep.join([LACKING["PYTHONPATH"], str(ROOT / "tests" / "support")])
+    subprocess.run([sys.executable, "-c", CHECKS], env=os.environ | {"PYTHONPATH": paths}, check=True, cwd=ROOT)
+
+
+def test_the_site_holds_what_its_notebooks_read(tmp_path):
+    site._contents(tmp_path)
+    pages = "".join(page.read_text(encoding="utf-8") for page in (tmp_path / "notebooks").glob("*.ipynb"))
+    read = re.findall(r'data_file\(\\?"(.+?)\\?"\)', pages)
+    assert read and all((tmp_path / "data" / name).exists() for name in read), read

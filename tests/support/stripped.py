@@ -10,6 +10,7 @@ from pathlib import Path
 import nbformat
 
 FOLDER = Path(__file__).parents[2] / "notebooks"
+MARKS = ({"tags": ["core"]}, {"tags": ["more"]})  # of sections
 #: As JupyterLab writes it when a notebook is opened, but for the version, which is that of its Python.
 METADATA = {
     "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
@@ -35,7 +36,8 @@ def strip(notebook):
     notebook = nbformat.from_dict(notebook | {"metadata": METADATA})
     notebook.cells = [cell for cell in notebook.cells if cell.source.strip()]
     for cell in notebook.cells:
-        cell.metadata.clear()
+        if cell.metadata not in MARKS:
+            cell.metadata.clear()
         if cell.cell_type == "code":
             cell.outputs, cell.execution_count = [], None
     return notebook
@@ -47,7 +49,7 @@ def left_out(notebook):
     for cell in notebook.cells:
         found["outputs"] += len(cell.get("outputs", []))
         found["execution counts"] += cell.get("execution_count") is not None
-        found["cells with metadata"] += bool(cell.metadata)
+        found["cells with metadata"] += bool(cell.metadata) and cell.metadata not in MARKS
         found["empty cells"] += not cell.source.strip()
     named = {key: value for key, value in notebook.metadata.items() if key != "language_info"}  # of another Python
     found["entries of metadata"] += len({**named, "kernelspec": METADATA["kernelspec"]}) - 1

@@ -19,6 +19,7 @@ from ir50p_lab.course.checking.task import Failed, shown
 from ir50p_lab.course.checking.variants import in_words_of, variants
 from ir50p_lab.course.robot.source import Source
 
+_clock = getattr(time, "thread_time", time.process_time)  # a browser tab has one thread, and no clock of it
 _PATIENCE = 0.75  # s of processor time since the answer came: beyond it no further mistake is tried
 
 
@@ -62,7 +63,7 @@ class _Trial:
 
 def grade(task, answer):
     """Return the Grade on a function or class, or on the Source of one, whatever it does."""
-    end = time.thread_time() + _PATIENCE
+    end = _clock() + _PATIENCE
     function = made(answer, task) if isinstance(answer, Source) else answer
     try:
         if task.tried is not None:
@@ -128,7 +129,7 @@ def _mistakes(trial):
         return
     spoilt = () if trial.task.results else variants(trial.task)  # tried for each result
     for mistake in chain(distortions(trial.task), spoilt):
-        if time.thread_time() > trial.end:
+        if _clock() > trial.end:
             return
         yield mistake
 

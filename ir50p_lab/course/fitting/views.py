@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.bench import SimulatedBench
-from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, JOINTS, SETPOINT, new_figure, subplots
+from ir50p_lab.course.draw.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.identification import load_excitations, optimise_excitation, regressor
 from ir50p_lab.identification.parameters import ACTS_ON, NAMES, ONLY_THESIS
 from ir50p_lab.modelling import IR50P
@@ -127,21 +127,6 @@ def kept_motion(arm, number=0):
     # room at the limits and over the table: the thesis' PID lags and sags
     options = {"margin": 0.2, "table": 0.1, "standing": 6, "tries": 1000, "seed": number, "progress": False}
     return optimise_excitation(arm, harmonics=3, max_joint_speed=speed, **options).reference
-
-
-def excitation_figure(excitation):
-    """One period of a motion before and after optimisation, with the condition numbers. Returns: LabFigure."""
-    figure = new_figure(9.6, 3.4, cols=2)
-    found = (excitation.before, excitation.condition_before), (excitation.reference, excitation.condition_after)
-    for ax, (motion, condition), name in zip(figure.axes, found, ("Random", "Optimised"), strict=True):
-        t = np.linspace(0, motion.period, 400)
-        rows = motion.sample(motion.start + t)
-        ax.plot(t, rows[:, 0], label=JOINT_LABELS)
-        numbers = ", ".join(f"{x:.3g}" for x in condition)
-        ax.set(xlabel="time [s]", title=f"{name}: condition numbers {numbers}")
-    figure.axes[0].set_ylabel("angle [rad]")
-    figure.axes[0].legend(fontsize=8)
-    return figure
 
 
 def relative_errors(arm, motion, frequency_hz, samples=300):

@@ -14,11 +14,8 @@ from ir50p_lab.course.draw.style import COLOURS, alarm, new_figure, subplots
 from ir50p_lab.errors import LabError
 from ir50p_lab.vision import (
     RED,
-    blur_diameter,
     find_balls,
-    image_distance,
     learn_colour,
-    rays_on_sensor,
     rgb_to_hsv,
 )
 
@@ -128,79 +125,6 @@ def _meetings(votes, apart=10):
         if all(np.hypot(x - a, y - b) > apart for a, b, _ in found):
             found.append((x, y, int(votes[y, x])))
     return found
-
-
-class ThinLensView:
-    """Rays of an object through a thin lens onto the sensor (Figure 3.8), and blur over distance; for sliders.
-
-    Three panels: lens and sensor to scale; the place where the rays meet, much larger; the blur over the distance. In
-    orange the object, in blue a point that is in focus.
-
-    f: m; pixel: size of a pixel, m. Attribute figure; `update(focused_at, object_at, aperture_mm)`.
-    """
-
-    def __init__(self, *, f, pixel):
-        self._f, self._pixel = f, pixel
-        self._alpha = np.geomspace(0.1, 4.0, 300)
-        self.figure, self._whole, self._close, curve = subplots(10.2, 3.5, cols=3, width_ratios=(1.2, 1, 1.3))
-        far, near = 1000 * f, 1000 * float(image_distance(0.1, f))  # mm behind the lens: the pictures' range
-        self._whole.set(xlim=(-2.5, 1.2 * far), ylim=(-2.1, 2.1), aspect="equal", title="Lens and sensor, to scale")
-        self._whole.set(xlabel="behind the lens [mm]", ylabel="height [mm]")
-        (self._stop,) = self._whole.plot([], [], color=COLOURS["dark"], linewidth=4, solid_capstyle="butt")
-        self._close.set(xlim=(far - 0.03, near + 0.07), ylim=(-30, 30), title="Where they meet; bar: the disc")
-        self._close.set(xlabel="behind the lens [mm]", ylabel="height [µm]")
-        self._rays, self._sensors = [], []
-        for ax in (self._whole, self._close):
-            self._sensors += ax.plot([], [], color=COLOURS["grey"], linewidth=3)
-            in_focus = ax.plot([], [], color=COLOURS["blue"], linewidth=1.6)
-            self._rays.append(in_focus + ax.plot([], [], color=COLOURS["orange"], linewidth=1))
-        (self._disc,) = self._close.plot([], [], color=COLOURS["orange"], linewidth=5, solid_capstyle="butt")
-        self._whole.text(0, -1.98, "lens", ha="center", fontsize=8, color=COLOURS["dark"])
-        self._whole.text(far, -1.98, "sensor", ha="center", fontsize=8, color=COLOURS["dark"])
-        self._whole.text(-2.4, 1.72, "point in focus", fontsize=8, color=COLOURS["blue"])
-        self._whole.text(0.5, 1.72, "object", fontsize=8, color=COLOURS["orange"])
-        (self._curve,) = curve.loglog([], [], color=COLOURS["dark"])
-        (self._sharp,) = curve.loglog([], [], "o", color=COLOURS["blue"], clip_on=False)
-        (self._mark,) = curve.loglog([], [], "o", color=COLOURS["orange"], clip_on=False)
-        curve.axhline(1, color=COLOURS["dark"], linestyle="--", linewidth=1)
-        curve.set(xlim=(0.1, 4), ylim=(0.05, 100), xlabel="distance of the object [m]")
-        curve.set_ylabel(f"blur [pixels of {1e6 * pixel:g} µm]")
-        curve.set_xticks([0.1, 0.2, 0.5, 1, 2, 4], ["0.1", "0.2", "0.5", "1", "2", "4"])
-        curve.set_yticks([0.1, 1, 10, 100], ["0.1", "1", "10", "100"])
-        curve.minorticks_off()
-        curve.set_title("Sharp at one distance, nearly so around it")
-        for ax in self.figure.axes:
-            ax.title.set_fontsize(10)
-
-    def update(self, focused_at, object_at, aperture_mm):
-        """Draw focus and object (m) and aperture (mm). Returns the blur, and where it stays below a pixel, in words."""
-        aperture = aperture_mm / 1000
-        sensor = 1000 * float(image_distance(focused_at, self._f))
-        for line, reach in zip(self._sensors, (1.65, 40), strict=True):
-            line.set_data([sensor, sensor], [-reach, reach])
-        half = 500 * aperture
-        self._stop.set_data([0, 0, np.nan, 0, 0], [-1.65, -half, np.nan, half, 1.65])
-        for k, alpha in enumerate((focused_at, object_at)):
-            self._rays[0][k].set_data(*self._bundle(alpha, aperture, (-2.5, 0.0, sensor)))
-            x, y = self._bundle(alpha, aperture, self._close.get_xlim())
-            self._rays[1][k].set_data(x, 1000 * y)
-        disc = 1e6 * rays_on_sensor(object_at, focused_at, self._f, aperture)
-        self._disc.set_data([sensor, sensor], [disc.min(), disc.max()])
-        blur = blur_diameter(self._alpha, focused_at, self._f, aperture) / self._pixel
-        self._curve.set_data(self._alpha, np.maximum(blur, 1e-3))
-        own = float(blur_diameter(object_at, focused_at, self._f, aperture)) / self._pixel
-        self._mark.set_data([object_at], [max(own, 0.05)])
-        self._sharp.set_data([focused_at], [0.05])
-        sharp = self._alpha[blur < 1]
-        where = f"from {sharp.min():.2f} to {sharp.max():.2f} m" if len(sharp) else "nowhere"
-        return f"blur of the object {own:.1f} px; below one pixel {where}"
-
-    def _bundle(self, alpha, aperture, places):
-        """Five rays of a point at alpha m, at `places` (mm behind the lens): one line with gaps, x and y in mm."""
-        h = np.linspace(-500 * aperture, 500 * aperture, 5)[:, None]
-        x = np.array([*places, np.nan])
-        slope = np.where(x <= 0, h / (1000 * alpha), h / (1000 * alpha) - h / (1000 * self._f))
-        return np.tile(x, 5), (h + slope * x).ravel()
 
 
 def balls_figure(image, balls, title):

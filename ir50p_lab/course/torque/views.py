@@ -6,7 +6,6 @@ from matplotlib.colors import LogNorm
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.draw.style import JOINTS, SETPOINT, colour_map, joint_columns, subplots
-from ir50p_lab.course.draw.traces import curves
 from ir50p_lab.course.fitting.views import kept_motion
 from ir50p_lab.identification import fit, process, regressor
 from ir50p_lab.simulation import simulate
@@ -51,53 +50,6 @@ def lateness(t, angle, reference, *, joint):
     later, here = np.arange(-0.2, 0.2, 0.002), (t > 3) & (t < t[-1] - 0.5)
     misses = [np.mean((angle[here] - reference.sample(t[here] - d)[:, 0, joint]) ** 2) for d in later]
     return later[np.argmin(misses)]
-
-
-def pendulum_responses(found, parameters, gain_sets):
-    """Angle of the example pendulum, let go at 0.5 rad, for each gain set: t (n,) s, angles (m, n). Oracle: SciPy."""
-    from scipy.integrate import solve_ivp
-
-    a, b, T = parameters.values()
-    t, angles = np.linspace(0, 6, 400), []
-    for gains in gain_sets:
-        u = found.controller(gains, parameters)
-
-        def rate(_, x, u=u):
-            return x[1], -a * np.sin(x[0]) - b * x[1] + x[2], (u(x) - x[2]) / T
-
-        angles.append(solve_ivp(rate, (0, 6), (0.5, 0.0, 0.0), t_eval=t, rtol=1e-8).y[0])
-    return t, np.array(angles)
-
-
-def pendulum_figure(t, angles, labels):
-    """Responses of the pendulum with motor lag. t (n,) s; angles (m, n) rad; labels: m texts. Returns: LabFigure."""
-    figure = curves(t, angles, labels, "angle [rad]", targets=(0,))
-    title = "All gains positive, and still the second one grows"
-    figure.axes[0].set(ylim=(-2, 2), xlabel="time [s]  -  simulated", title=title)
-    return figure
-
-
-class ErrorView:
-    """Errors of three joints after a start beside the reference: predicted (dots) and simulated (lines).
-
-    Args: size: rad, of the largest start error; duration: s. Attributes: figure.
-    """
-
-    def __init__(self, size, duration):
-        self.figure, ax = subplots(9.0, 3.2)
-        ax.axhline(0, **SETPOINT)
-        self._lines = [ax.plot([], [], color=c)[0] for c in JOINTS]
-        self._dots = [ax.plot([], [], "o", ms=4, color=c, mfc="none")[0] for c in JOINTS]
-        ax.set(xlim=(0, duration), ylim=(-1.15 * size, 1.15 * size))
-        ax.set(xlabel="time [s]  -  simulated", ylabel="error e = q - q_ref [rad]")
-        # a legend would be drawn anew at every step of a slider
-        ax.set_title("Joints 1, 2, 3: blue, orange, green. Circles: (2.20), solved beforehand")
-
-    def update(self, run, t, predicted):
-        """Draw the errors of a run, and those predicted (m, 3) rad for the times t (m,) s."""
-        for j in range(3):
-            self._lines[j].set_data(run.t, -run.error[:, j])
-            self._dots[j].set_data(t, predicted[:, j])
 
 
 class RobustnessView:

@@ -14,18 +14,18 @@ SETTLED, _RESTING = 1e-3, 2e-3
 ACCEPTED = 1.5e-3  # m at the tip, by a second of readings with the command frozen: if it is nearer, it stays there
 
 
-def reaching_controller(model, period=0.01):
+def reaching_controller(model, period=0.01, limit_pwm=255):
     """The controller that reaching uses: computed torque with a slow integral; without motor data the PIDs of 4.1-4.3.
 
     Gains tried out on simulated arms: stiff (12 rad/s), so that a joint that breaks loose does not jump far, and with
     two periods of delay compensated; those of Tables 4.5-4.7 (5, 3, 7 rad/s) leave centimetres at the tip.
-    model: Arm, or what `identify` returns; None: the PIDs.
+    model: Arm, or what `identify` returns; None: the PIDs. limit_pwm: what the lab allows, a number or (3,).
     """
     from ir50p_lab.controllers import PID, ComputedTorque
 
     if model is None or getattr(model, "actuators", model) is None:
-        return PID(kp=(289, 225, 270), ki=(50, 150, 50), kd=(40, 30, 30), limit_pwm=255, period=period)
-    return ComputedTorque(model, kp=150, kd=24, ki=30, limit_pwm=255, period=period, delay=2 * period)
+        return PID(kp=(289, 225, 270), ki=(50, 150, 50), kd=(40, 30, 30), limit_pwm=limit_pwm, period=period)
+    return ComputedTorque(model, kp=150, kd=24, ki=30, limit_pwm=limit_pwm, period=period, delay=2 * period)
 
 
 class Mover:
@@ -46,7 +46,7 @@ class Mover:
     def __init__(self, bench, *, controller=None, rest=True):
         self.bench, self.arm, self.rest = bench, bench.arm, rest
         known = bench.arm if bench.simulated else None
-        self.controller = reaching_controller(known, bench.period) if controller is None else controller
+        self.controller = controller or reaching_controller(known, bench.period, bench.caps.limit_pwm)
         self.errors = np.zeros(3)
         self._samples = self._last = self._gripper = self._frozen = None
         self._u = self._mean_u = np.zeros(3)

@@ -11,7 +11,7 @@ from ir50p_lab.controllers import PID
 from ir50p_lab.course.draw.painter import Painter
 from ir50p_lab.course.fitting import results, views
 from ir50p_lab.errors import InputError
-from ir50p_lab.identification import RLS, fit_joint, load_excitations, optimise_excitation, process, regressor, validate
+from ir50p_lab.identification import RLS, fit_joint, load_excitations, process, regressor, validate
 from ir50p_lab.modelling import IR50P, gravity, mass_matrix
 from ir50p_lab.signals import quintic
 
@@ -115,8 +115,6 @@ def test_relative_errors_are_those_of_a_covariance(excitation):
 def test_frequency_view(excitation):
     view = views.FrequencyView(IR50P, excitation)
     assert "within reach" in view.update(0.03) and "out of reach" in view.update(0.3)
-    made = optimise_excitation(IR50P, harmonics=2, tries=5, progress=False)
-    assert "condition numbers" in views.excitation_figure(made).axes[1].get_title()
 
 
 # ---- results

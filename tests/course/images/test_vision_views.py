@@ -14,7 +14,6 @@ from ir50p_lab.vision import (
     RED,
     Ball,
     Balls,
-    blur_diameter,
     canny_steps,
     render_scene,
     rgb_to_hsv,
@@ -83,19 +82,6 @@ def test_crests_in_classes():
     colours = {tuple(colour) for colour in shown.reshape(-1, 3).tolist()}
     assert (shown[steps.thin > 160] == 1).all() and not shown[steps.thin == 0].any()
     assert len(colours) == 3 and to_rgb("#56B4E9") in colours  # a step of 20 levels is weak
-
-
-def test_lens():
-    lens = views.ThinLensView(f=0.004, pixel=3e-6)
-    panel = live(lens.figure, lens.update, focused_at=(0.1, 4, 0.1, 0.7), object_at=(0.1, 4, 0.1, 0.3), aperture_mm=[2])
-    wanted = blur_diameter(0.3, 0.7, 0.004, 0.002) / 3e-6
-    assert f"{wanted:.1f} px; below one pixel from 0.56 to 0.94 m" in panel.status.value
-    before = panel.image.value
-    panel.set(focused_at=0.3)
-    assert panel.image.value != before and "object 0.0 px" in panel.status.value
-    drawn = panel._painter.backgrounds
-    panel.set(focused_at=0.1, object_at=0.1)
-    assert panel._painter.backgrounds == drawn  # no slider step draws ticks and grids anew
 
 
 @pytest.mark.parametrize("x", [3.0, 150.0, 316.0])

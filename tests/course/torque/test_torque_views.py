@@ -31,11 +31,7 @@ def test_tracking_view_draws_angles_and_errors(run):
         assert "[rad]" in view.figure.axes[0].get_ylabel() and "simulated" in below.get_xlabel()
 
 
-def test_error_view_and_robustness_view(run):
-    view = views.ErrorView(0.2, 1)
-    view.update(run, run.t, -run.error)
-    np.testing.assert_allclose(view._lines[0].get_ydata(), -run.error[:, 0])
-
+def test_robustness_view():
     def of(scale, speed):
         return simulate(THESIS_RODS, ComputedTorque(scale * THESIS_RODS.theta, speed**2, 2 * speed), MOVE, duration=1)
 
