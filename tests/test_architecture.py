@@ -32,7 +32,8 @@ ROOMS = {
     "checking": {"lab_book", "robot"},
     "live_arm": {"draw", "robot", "checking"},
 }
-SUBJECTS_TOO = {"torque": {"fitting"}}  # what else a subject builds on: the motion that its model is fitted to
+#: What else a subject builds on: the motion that its model is fitted to; frames and Jacobian of the arm's links.
+SUBJECTS_TOO = {"torque": {"fitting"}, "dynamics": {"kinematics"}}
 
 
 def modules():

@@ -9,7 +9,8 @@ from pathlib import Path
 from flit_core.buildapi import *  # noqa: F403
 from flit_core.buildapi import build_wheel as _build
 
-_CARRIED = "notebooks data docs wheel_build environment.txt environment-test.txt pyproject.toml README.md LICENSE CITATION.cff AGENTS.md".split()
+_CARRIED = "notebooks data docs wheel_build environment.txt environment-test.txt pyproject.toml".split()
+_CARRIED += "README.md LICENSE CITATION.cff AGENTS.md".split()
 _STUDENTS = "my_robot results recordings old progress.json .ipynb_checkpoints __pycache__".split()
 _STAGE = Path("build/wheel")
 _STAGE.mkdir(parents=True, exist_ok=True)  # flit asks for it whatever it builds

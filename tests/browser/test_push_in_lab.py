@@ -1,9 +1,12 @@
 """A hand in the browser pushes an arm that a controller of the student's own holds: mouse, keys and touch."""
 
 import re
+import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import running_lab
 from test_a_student import run
 from test_live_arm_in_lab import KERNEL_IDLE, RUN_ALL, VIEW, show
 
@@ -13,17 +16,20 @@ EVENTS = 3  # number of the cell that prints those of the recording
 
 
 @pytest.fixture(scope="module")
-def pushed(browser, lab):
+def pushed(browser, tmp_path_factory):
     """The page with the arm, followed live."""
-    context = browser.new_context(viewport={"width": 1300, "height": 1000}, has_touch=True)
-    page = context.new_page()
-    page.goto(lab.replace("live_arm.ipynb", "push.ipynb"), wait_until="commit")
-    page.wait_for_function(KERNEL_IDLE, timeout=90_000)
-    page.evaluate(RUN_ALL)
-    page.wait_for_function(f"() => document.querySelector('.la')?.liveArm && {THE_VIEW}.mostPush", timeout=120_000)
-    show(page, 0)
-    yield page
-    context.close()
+    home = tmp_path_factory.mktemp("push")
+    shutil.copy(Path(__file__).parent / "push.ipynb", home)
+    with running_lab(home) as (address, _):
+        context = browser.new_context(viewport={"width": 1300, "height": 1000}, has_touch=True)
+        page = context.new_page()
+        page.goto(address.format("push.ipynb"), wait_until="commit")
+        page.wait_for_function(KERNEL_IDLE, timeout=90_000)
+        page.evaluate(RUN_ALL)
+        page.wait_for_function(f"() => document.querySelector('.la')?.liveArm && {THE_VIEW}.mostPush", timeout=120_000)
+        show(page, 0)
+        yield page
+        context.close()
 
 
 def tip(page):

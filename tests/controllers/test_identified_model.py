@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from ir50p_lab.bench import SimulatedBench
-from ir50p_lab.controllers import ComputedTorque, FeedForward, check_saturation
+from ir50p_lab.controllers import ComputedTorque, FeedForward
 from ir50p_lab.course.torque.views import follow, naive_model, rms, thesis_pid, training_run
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import IR50P, mass_matrix
-from ir50p_lab.signals import quintic, sinusoid
+from ir50p_lab.signals import sinusoid
 
 TABLES_4_5 = {"kp": (25, 9, 49), "kd": (10, 6, 14)}
 SWING = sinusoid((0.8, 0.4, 0.3), (0.5, 0.8, 1.0), offset=(0.0, 0.8, -0.8))
@@ -53,19 +53,6 @@ def test_the_naive_model_fails_because_its_inertia_is_negative(unit):
     mended[:, inertial] = model.theta[:, inertial]
     law = ComputedTorque(mended, **TABLES_4_5, limit_pwm=255)
     assert rms(follow(IR50P, law, SWING, 15, seed=seed), SWING).max() < 0.5 * error
-
-
-def test_saturation_is_computed_from_the_identified_model(unit):
-    seed, _, model = unit
-    goal = (np.pi / 2, np.pi / 2, -np.pi / 3)
-    limit = check_saturation(model, quintic((0, 0, 0), goal, duration=1.0)).stretch
-    law = ComputedTorque(model, **TABLES_4_5, model_velocity="reference")
-    for share, fits in ((1.4, True), (0.6, False)):
-        motion = quintic((0, 0, 0), goal, duration=share * limit)
-        assert check_saturation(model, motion).saturates != fits
-        run = follow(IR50P, law, motion, share * limit, seed=seed)
-        assert (rms(run, motion).max() < 100) == fits
-        assert (run.u.max() == 255) or fits
 
 
 def test_gains_and_model_stand_in_the_recording(unit, tmp_path):

@@ -13,7 +13,7 @@ from ir50p_lab.course import solution
 from ir50p_lab.course.checking.numbers import everything, find, grade
 from ir50p_lab.identification import base_parameters
 from ir50p_lab.modelling import IR50P, THESIS_A, Friction, energy, forward_kinematics, inverse_dynamics
-from ir50p_lab.signals import hold, low_pass
+from ir50p_lab.signals import hold, low_pass, quintic
 from ir50p_lab.simulation import simulate
 from ir50p_lab.vision import Pinhole
 
@@ -75,6 +75,12 @@ def tip_velocity():
     return np.array([x_rate, y_rate, height_rate])
 
 
+def shortest_way(ways, speeds):
+    """The fastest moment of a quintic of 1 rad in 1 s, by the package; times go with way over speed."""
+    top = np.max(quintic(np.zeros(3), np.ones(3), duration=1).sample(np.linspace(0, 1, 1001))[:, 1])
+    return max(top * way / speed for way, speed in zip(ways, speeds, strict=True))
+
+
 def time_constant():
     """Inertia from the kinetic energy of the waist at 1 rad/s, over what brakes it."""
     folded = [0, 1.9, -2.44]
@@ -126,13 +132,29 @@ def one_count():
     return 1e5 * np.linalg.norm(forward_kinematics(IR50P, q + step) - forward_kinematics(IR50P, q))
 
 
+def quickest_gear():
+    """Every gear is tried."""
+    gears = np.linspace(1, 300, 299_001)
+    return gears[np.argmax(gears / (0.098 + gears**2 * 2e-5))]
+
+
+def load_by_levers():
+    """Kilograms at the tip, from levers drawn by hand: upper arm at 30 degrees, forearm at -30."""
+    out = np.cos(np.pi / 6)
+    links = IR50P.m[1] * IR50P.lc[1] * out + IR50P.m[2] * (IR50P.l[1] + IR50P.lc[2]) * out
+    return (7.0 / 9.81 - links) / ((IR50P.l[1] + IR50P.l[2]) * out)
+
+
 ROUTES = {
     "start-1": lambda: np.array([90, -45, 30]) * np.pi / 180,
     "start-5": time_constant,
     "pose-3": lambda: [-0.1, 0.3, -0.2],
     "pose-2": lambda: 55 * np.pi / 180,
     "ik-1": tip_velocity,
+    "dyn-6": quickest_gear,
     "dyn-5": lambda: 1.6 * (2 + 0.2 * 3) + 2.5 * 0.5,
+    "weight-1": load_by_levers,
+    "traj-1": lambda: shortest_way((0.343, 1.523, 1.247), (2.5, 1.1, 1.3)),
     "pid-1": remaining_errors,
     "bench-4": lag,
     "ident-1": step_of_least_squares,
@@ -219,7 +241,3 @@ def test_wrong_answers_worked_out_by_hand(name, answer, words):
 def test_half_the_kp_leaves_more_than_twice_the_error():
     softer, thesis = find("pid-1").right, list(find("pid-1").slips.values())[1]
     assert 2 < softer[1] / thesis[1] < 2.5
-
-
-def test_the_reflected_rotor_outweighs_the_forearm():
-    assert 50**2 * 8e-5 > IR50P.Izz[2] + IR50P.m[2] * IR50P.lc[2] ** 2

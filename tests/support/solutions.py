@@ -11,7 +11,7 @@ from ir50p_lab.course.robot.catalogue import task
 FOLDER = Path(__file__).parents[1] / "solutions"
 ORDER = (
     "rot_z dh_matrix frames forward_kinematics inverse_kinematics reach jacobian damped_step mass_matrix "
-    "velocity_torque gravity_torque rk4_step integrate quintic friction_torque motor_torque PID step_metrics fit_line "
+    "gravity_torque velocity_torque rk4_step integrate quintic friction_torque motor_torque PID step_metrics fit_line "
     "low_pass regressor least_squares rls_step fit_percent computed_torque adaptive_step hue_mask circle_votes "
     "homography pixel_to_plane find_and_reach"
 ).split()

@@ -3,7 +3,7 @@
 A subject's own are data in its `numbers.py`, found there by their names:
 
     NUMBERS = (
-        Number("dyn-5", "04_dynamics", "the motor voltage for 2 N m", V, unit="V", tolerance=5e-3, why=..., slips=...),
+        Number("dyn-6", "04_inertia", "the gear ratio N with which ...", N, tolerance=0.5, why=..., slips=...),
     )
 
 Rules for authors (`tests/course/test_numbers_of_rooms.py` tries every one, and asks for another route to it):

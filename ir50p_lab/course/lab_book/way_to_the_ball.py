@@ -12,6 +12,7 @@ _WAYS = {
     "00  one push of the waist": "by_push",
     "01  three angles, guessed": "by_guess",
     "02  your formula": "by_formula",
+    "07  your plan": "by_plan",
     "08  your controller": "by_pid",
     "18  a picture": "by_camera",
 }

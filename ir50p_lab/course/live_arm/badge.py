@@ -45,10 +45,9 @@ def _of_function(function, seen):
     if package != "ir50p_lab":
         yield "not written yet" if _has_dots(function) else "yours"
         names = _names(function.__code__)
-        if "my_robot" in names:
-            yield from (my_robot.whose(name) for name in names if name in ORDER)
-        else:
-            reached += [function.__globals__.get(name) for name in names]
+        robots = names.intersection(ORDER) if "my_robot" in names else set()
+        yield from map(my_robot.whose, robots)
+        reached += [function.__globals__.get(name) for name in names - robots]
     for one in reached:
         yield from _owners(one, seen)
 

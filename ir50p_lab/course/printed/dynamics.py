@@ -1,6 +1,6 @@
 """What the thesis prints in 1.5, equation by equation, as SymPy objects: mistakes included.
 
-Only for the 'Thesis check' cells of notebook 04 and their tests. For calculations use `ir50p_lab.modelling`.
+Only for the 'Thesis check' cells of A1 and their tests. For calculations use `ir50p_lab.modelling`.
 The remark after 'wrong:' says what is wrong; an equation without one is right as printed. Symbols are those of
 `derive(links="thesis")`, so that printed and derived formulas can be compared at once.
 """

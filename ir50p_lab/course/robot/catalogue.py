@@ -12,7 +12,7 @@ _TABLE = """
 02 kinematics    inverse_kinematics reach
 03 kinematics    jacobian damped_step
 04 dynamics      mass_matrix
-05 dynamics      velocity_torque gravity_torque
+05 dynamics      gravity_torque velocity_torque
 06 motion        rk4_step integrate quintic
 07 motion        friction_torque motor_torque
 08 loops         PID

@@ -4,7 +4,6 @@ from collections import namedtuple
 
 import numpy as np
 
-from ir50p_lab.errors import ArmError
 from ir50p_lab.modelling.arm import Arm
 
 
@@ -37,10 +36,12 @@ def parts(arm: Arm) -> Parts:
     `Arm` measures link 1 with z along the column and link 3 with z along its joint; the DH frames at the ends of these
     links have y there (alpha = +90 and -90 deg), so that Iyy and Izz of links 1 and 3 change places.
 
-    Raises ArmError for an arm without motors: it has no gain.
+    An arm without motors has no rotors and no back-EMF, 0, and no gain, nan.
     """
-    if arm.actuators is None:
-        raise ArmError(f"{arm.name} has no actuators: give the arm `actuators`, its torque per PWM count is needed")
+    motors = arm.actuators
+    rotor, gain, damping = np.zeros(3), np.full(3, np.nan), np.zeros(3)
+    if motors is not None:
+        rotor, gain, damping = map(np.array, (motors.reflected_inertia, motors.gain, motors.back_emf_damping))
     diagonals = np.column_stack([arm.Ixx, arm.Iyy, arm.Izz])
     diagonals[[0, 2]] = diagonals[[0, 2]][:, [0, 2, 1]]
     friction = arm.friction
@@ -49,14 +50,14 @@ def parts(arm: Arm) -> Parts:
         m=np.array(arm.m),
         lc=np.array(arm.lc),
         inertia=np.array([np.diag(row) for row in diagonals]),
-        rotor=np.array(arm.actuators.reflected_inertia),
+        rotor=rotor,
         fv=np.array(friction.fv),
         fc=np.array(friction.fc),
         fs=np.array(friction.fs),
         qs=np.array(friction.qs),
         offset=np.array(friction.Tf),
-        gain=np.array(arm.actuators.gain),
-        damping=np.array(arm.actuators.back_emf_damping),
+        gain=gain,
+        damping=damping,
         g=arm.g,
         limits=np.array([arm.q_min, arm.q_max]),
     )

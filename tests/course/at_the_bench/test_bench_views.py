@@ -1,14 +1,14 @@
-"""Figures of notebook 10: they draw what was recorded, and say where it is from."""
+"""Figures of notebooks 10 and 11: they draw what was recorded, and say where it is from."""
 
 import numpy as np
 import pytest
 
-from ir50p_lab.bench import Recording, SimulatedBench, fit_calibration
+from ir50p_lab.bench import Recording, SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.at_the_bench import views
 from ir50p_lab.course.draw.painter import Painter
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.signals import cartesian_circle, low_pass, path_error, through
+from ir50p_lab.signals import low_pass, through
 
 TABLES = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30), "limit_pwm": 255}
 

@@ -141,7 +141,7 @@ def test_a_student_cannot_change_the_question(capsys):
         ("start-11", "Nearest names: start-1"),
         ("rot_y", "rot_z"),
         ("zzzzzz", "There is no exercise 'zzzzzz'. Nearest names: start-1"),
-        ("dyn-3", "There is no exercise 'dyn-3'. Nearest names: dyn-5"),  # of an older copy's notebook
+        ("dyn-3", "There is no exercise 'dyn-3'. Nearest names: dyn-"),  # of an older copy's notebook
         ("", "no exercise"),
         ([1, 2], "name of the exercise comes first"),
     ],

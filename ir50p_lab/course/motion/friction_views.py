@@ -1,0 +1,68 @@
+"""Notebook 07: a spring balance, the picture of what it found, and what serves until the student's own lines do."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ir50p_lab.controllers import PID
+from ir50p_lab.course.draw.style import COLOURS, subplots
+from ir50p_lab.course.draw.traces import STAMP
+from ir50p_lab.modelling.dynamics import inverse_dynamics, mass_matrix
+from ir50p_lab.modelling.friction import Friction, friction_torque
+from ir50p_lab.signals import trapezoid
+from ir50p_lab.simulation import simulate
+
+_BRAKE = 1e4  # N m: a friction that nothing overcomes
+
+
+def dragged(arm, speed, *, wires):
+    """Torque that drags the waist at a steady speed, as a spring balance shows it: N m.
+
+    Simulated: a stiff controller pulls, shoulder and elbow are held; the mean of the third second.
+
+    Args: arm: Arm; speed: rad/s, not 0; wires: of its motor, "cut", or "joined" as at 0 counts.
+    """
+    rub, brake = arm.friction, arm.actuators.back_emf_damping[0] * (wires == "joined")
+    held = Friction(
+        fv=(rub.fv[0] + brake, 0, 0),
+        fc=(rub.fc[0], _BRAKE, _BRAKE),
+        fs=(rub.fs[0], _BRAKE, _BRAKE),
+        qs=rub.qs,
+        Tf=(rub.Tf[0], 0, 0),
+    )
+    waist = mass_matrix(arm, np.zeros(3))[0, 0]
+    stiff = PID(kp=(100 + 100 * waist, 0, 0), kd=(10 + 20 * waist, 0, 0), period=0.001, filter_hz=200)
+    way = trapezoid(np.zeros(3), (4 * speed, 0, 0), v_max=abs(speed), a_max=50)
+    return simulate(replace(arm, friction=held), stiff, way, duration=3, period=0.001).u[2000:, 0].mean()
+
+
+def friction_figure(speeds, torques, law=None):
+    """Torques that drag a joint over its speed (dots), and a law of friction through them: Figure 1.9. LabFigure.
+
+    Args: speeds, torques (n,): what was found, rad/s, N m; law: function of one speed, N m; None: dots alone.
+    """
+    figure, ax = subplots(8.0, 3.6, note=STAMP)
+    ax.plot(speeds, torques, "o", color=COLOURS["orange"], label="torque that drags the waist")
+    for side in (-1, 1) if law else ():
+        fine = side * np.linspace(1e-4, 1.05 * np.max(speeds), 300)
+        ax.plot(fine, [law(one) for one in fine], color=COLOURS["blue"], label="your law" if side > 0 else None)
+    ax.axhline(0, color=COLOURS["grey"], linewidth=1)
+    ax.set(xlabel="speed of the waist [rad/s]", ylabel="torque [N m]")
+    ax.legend(loc="upper left")
+    return figure
+
+
+def slide(speed, taken):
+    """Speed (rad/s) that dry friction leaves, which can take `taken` of it, and never more than there is."""
+    return np.sign(speed) * max(abs(speed) - taken, 0.0)
+
+
+def counts_for(arm):
+    """Function of q, qd, qdd, (3,) each: the counts (3,) that such a motion takes."""
+    motor = arm.actuators
+
+    def counts(q, qd, qdd):
+        torque = inverse_dynamics(arm.without_friction(), q, qd, qdd) + friction_torque(arm, qd)
+        return (torque + motor.back_emf_damping * qd) / motor.gain
+
+    return counts

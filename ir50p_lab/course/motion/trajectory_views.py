@@ -1,0 +1,64 @@
+"""Figures of notebook 06: a step and its rates, energies, errors, a way and its bill."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, JOINTS, subplots
+from ir50p_lab.course.draw.traces import STAMP
+
+
+def motion(t, x, last=None):
+    """A run of `integrate`, x (n, 6) over t (n,), up to a row, as `LiveArm` plays it."""
+    return SimpleNamespace(t=t[:last], q=x[:last, :3], simulated=True)
+
+
+def one_step():
+    """One step along a curve: by the rate at its start, and by the rate half way: LabFigure."""
+    figure, ax = subplots(7.5, 3.6)
+    t = np.linspace(-0.15, 1.25, 100)
+    ax.plot(t, np.exp(t), color=COLOURS["grey"], label="the curve, which nobody knows")
+    ax.plot([0, 1], [1, 2], "o-", label="by the rate at the start: too low")
+    ax.plot([0.25, 0.75], [1.125, 1.875], color=COLOURS["dark"], linewidth=3, label="the rate half way, asked there")
+    ax.plot([0, 1], [1, 2.5], "o-", color=COLOURS["orange"], label="by the rate half way")
+    ax.set(xlabel="time, in steps [1]", ylabel="x [1]", title="One step: which rate?")
+    ax.legend(fontsize=9)
+    return figure
+
+
+def orders(steps, errors):
+    """Errors (n,) of each method against the steps (n,) s on logarithmic axes, {method: mm}: LabFigure."""
+    figure, ax = subplots(7.5, 3.6, note=STAMP)
+    for name, error in errors.items():
+        slope = np.polyfit(np.log(steps), np.log(error), 1)[0]
+        ax.loglog(1000 * steps, error, "o-", label=f"{name}: slope {slope:.2f}")
+    ax.set_xticks(1000 * steps, [f"{1000 * step:g}" for step in steps])
+    ax.minorticks_off()
+    ax.set(xlabel="step [ms]", ylabel="error of the tip [mm]", title="Half the step: how much less error?")
+    ax.legend()
+    return figure
+
+
+def honey(M):
+    """Four brakes, N m s/rad, each twice the one before: steps of 10 ms are too long for the last.
+
+    M: (3, 3) kg m^2. The rates are the eigenvalues of M^-1 b; a step of dt is stable below 2.785 / rate.
+    """
+    limit = 2.785 / 0.01 / np.max(np.linalg.eigvals(np.linalg.solve(M, np.eye(3))).real)
+    digit = 10.0 ** np.floor(np.log10(limit))
+    return np.ceil(limit / digit) * digit * np.array([0.125, 0.25, 0.5, 1])
+
+
+def two_ways(t, ways):
+    """Two ways of the arm over t (n,) s, {name: tips (n, 3) m and angles (n, 3) rad}: their heights and speeds."""
+    figure, plane, ax = subplots(9.6, 3.9, cols=2, note=STAMP)
+    for (name, (tips, q)), style in zip(ways.items(), ("-", ":"), strict=True):
+        plane.plot(np.hypot(tips[:, 0], tips[:, 1]), 1000 * tips[:, 2], style, color=COLOURS["dark"], label=name)
+        for joint, label in enumerate(JOINT_LABELS):
+            ax.plot(t, np.gradient(q[:, joint], t), style, color=JOINTS[joint], label=label if style == "-" else "")
+    plane.axhspan(-10, 0, color=COLOURS["light"])
+    plane.set(xlabel="distance from the column [m]", ylabel="height of the tip [mm]", title="Grey: the table")
+    ax.set(xlabel="time [s]", ylabel="speed [rad/s]", title="What each asks of the joints")
+    plane.legend()
+    ax.legend(fontsize=9)
+    return figure

@@ -1,0 +1,136 @@
+"""Notebook 06: what check says of steps, runs and ways; its views."""
+
+import numpy as np
+import pytest
+import solutions
+from cells import cell
+
+from ir50p_lab.course import my_robot
+from ir50p_lab.course.checking.cell import take
+from ir50p_lab.course.checking.grade import grade
+from ir50p_lab.course.live_arm.badge import badge_of
+from ir50p_lab.course.motion import trajectory_views as views
+from ir50p_lab.course.robot import folder
+from ir50p_lab.course.robot.catalogue import task
+from ir50p_lab.course.robot.source import Source
+from ir50p_lab.modelling import IR50P, THESIS_A, mass_matrix
+
+SUM = "(k1 + 2 * k2 + 2 * k3 + k4)"
+STEP = "rk4_step(f, t[k], x[k], dt)"
+SHARE = "np.clip(np.asarray(t, dtype=float) / duration, 0, 1)"
+WHILE = """def integrate(f, x0, duration, dt):
+    t, x = [0.0], [np.array(x0, dtype=float)]
+    while t[-1] < duration:
+        x.append(rk4_step(f, t[-1], x[-1], dt))
+        t.append(t[-1] + dt)
+    return np.array(t), np.array(x)
+"""
+SAME_ROWS = """def integrate(f, x0, duration, dt):
+    x = np.array(x0, dtype=float)
+    rows = [x]
+    for k in range(round(duration / dt)):
+        x[:] = rk4_step(f, k * dt, x, dt)
+        rows.append(x)
+    return dt * np.arange(len(rows)), np.array(rows)
+"""
+
+
+def told(name, *changes, text=None):
+    """What is said of the reference solution with some words replaced: state and sentence."""
+    text = solutions.source(name) if text is None else text
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new)
+    wanted = task(name)
+    found = grade(wanted, take(cell(text, name), wanted.function, wanted.leans_on))
+    return f"{found.state}: {found.says}"
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "words"),
+    [
+        ("rk4_step", f"dt / 6 * {SUM}", "dt / 4 * (k1 + k2 + k3 + k4)", "count alike"),
+        ("rk4_step", f"dt / 6 * {SUM}", "dt * k2", "the midpoint's step"),
+        ("rk4_step", f"dt / 6 * {SUM}", "dt / 6 * k1 + 2 * k2 + 2 * k3 + k4", "look at the brackets"),
+        ("rk4_step", f"dt / 6 * {SUM}", "dt / 2 * (k1 + f(t + dt, x + dt * k1))", "Heun's step"),
+        ("rk4_step", f"x + dt / 6 * {SUM}", f"{SUM} / 6", "the mean rate alone"),
+        ("rk4_step", "x + dt / 6", "x + dt / 3", "count 2, 4, 4, 2 sixths"),
+        ("rk4_step", "t + dt / 2", "t", "the clock stood still"),
+        ("rk4_step", f"return x + dt / 6 * {SUM}", "x += dt * k1\n    return x", "it changes what it was given, `x`"),
+        ("integrate", "round(", "int(", "`int` cuts"),
+        ("integrate", STEP, "x[k] + dt * f(t[k], x[k])", "drift off like Euler's"),
+        ("integrate", "t[k], x[k]", "0, x[k]", "the clock stands at 0"),
+        ("integrate", "x[k + 1] = ", "x[k + 1] = x[k] + ", "the next x, not the change"),
+        ("integrate", "return t, x", "return x, t", "t and x have changed places"),
+        ("integrate", "return t, x", "return x", "2 results are asked for"),
+        ("integrate", "return t, x", "return list(t), list(x)", "return an array"),
+        ("quintic", SHARE, "np.asarray(t) / duration", "it runs on: there it shall rest"),
+        ("quintic", "/ duration * (30", "* (30", "missing in the speed: s changes"),
+        ("quintic", "duration**2", "duration", "how often was it differentiated"),
+        ("quintic", "return q, qd, qdd", "return q, qdd, qd", "qd and qdd have changed places"),
+        ("quintic", SHARE, "t / duration\n    if t < 0:\n        s = 0", "here are several numbers"),
+    ],
+)
+def test_a_slip_is_named(name, old, new, words):
+    assert words in told(name, (old, new))
+
+
+def test_runs_that_end_wrongly_are_named():
+    assert "a step too many" in told("integrate", text=WHILE)
+    assert "all rows of x are equal" in told("integrate", text=SAME_ROWS)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("integrate", "dt * np.arange(steps + 1)", "np.linspace(0, duration, steps + 1)"),
+        ("quintic", "return q, qd, qdd", "return np.array([q, qd, qdd])"),
+        ("quintic", "(10 * s**3 - 15 * s**4 + 6 * s**5)", "s**3 * (10 - 15 * s + 6 * s**2)"),
+    ],
+)
+def test_other_right_answers_are_taken(name, old, new):
+    assert told(name, (old, new)) == "right: "
+
+
+@pytest.mark.parametrize("name", ["rk4_step", "integrate"])
+def test_the_small_test_of_a_function_of_functions_runs(name, tmp_path, monkeypatch):
+    """What is written beside the student's function is Python, and holds."""
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+    calls = ("rk4_step",) if name == "integrate" else ()
+    folder.keep(Source(name, solutions.source(name), calls), task(name))
+    text = (tmp_path / "my_robot" / f"test_{name}.py").read_text(encoding="utf-8")
+    names = {name: folder.load(name)}
+    exec(text, names)  # folder.load has made `my_robot` a module
+    names[f"test_{name}"]()
+
+
+def test_the_last_honey_is_too_thick_for_the_step():
+    """A step of 10 ms multiplies the fastest speed by more than 1 in the last, by less in the others."""
+    M = mass_matrix(IR50P, [0, 0.8, -0.8])
+    z = 0.01 * views.honey(M) * np.max(np.linalg.eigvals(np.linalg.solve(M, np.eye(3))).real)
+    growth = 1 - z + z**2 / 2 - z**3 / 6 + z**4 / 24
+    assert (growth[:3] < 1).all() and growth[3] > 1
+
+
+def test_the_longest_step_of_the_thesis_arm():
+    """Runge and Kutta's step is stable below 2.785 over the fastest rate: with the thesis' own gains 1.6 ms."""
+    rates = np.linalg.eigvals(np.linalg.solve(mass_matrix(THESIS_A, np.zeros(3)), np.diag([10, 40, 40])))
+    assert abs(np.polyval([1 / 24, -1 / 6, 1 / 2, -1, 1], 2.785) - 1) < 1e-3
+    assert round(np.max(rates.real)) == 1745 and abs(2.785 / np.max(rates.real) - 1.6e-3) < 1e-5
+
+
+def test_a_badge_follows_what_a_function_calls_beside_my_robot(tmp_path, monkeypatch):
+    """A function that uses my_robot and another that is not written: the weaker of both is said."""
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+    text = "def unwritten(q):\n    ...\n\n\ndef moves(q):\n    return my_robot.rot_z(unwritten(q))\n"
+    assert badge_of(cell(text, "moves", {"my_robot": my_robot})) == "not written yet"
+
+
+def test_figures_name_their_axes():
+    t, q = np.linspace(0, 1, 5), np.zeros((5, 3))
+    tips = np.column_stack([t, 0 * t, 0 * t + 0.01])
+    orders = views.orders(np.array([0.02, 0.01]), {"A": [2.0, 1.0]})
+    for figure in (views.one_step(), orders, views.two_ways(t, {"straight": (tips, q), "by angles": (tips, q)})):
+        assert all("[" in ax.get_xlabel() and "[" in ax.get_ylabel() for ax in figure.axes)
+    assert orders.axes[0].get_legend_handles_labels()[1] == ["A: slope 1.00"]
+    assert views.motion(t, np.hstack([q, q]), 4).q.shape == (4, 3)
