@@ -55,10 +55,9 @@ def page(browser):
 
 @pytest.fixture(scope="session")
 def lab(tmp_path_factory):
-    """Address of a JupyterLab on the demo page, beside which lie the others: its own settings, port and token."""
+    """Address of a JupyterLab on the demo page: its own settings, port and token."""
     home = tmp_path_factory.mktemp("lab")
-    for page in Path(__file__).parent.glob("*.ipynb"):
-        shutil.copy(page, home)
+    shutil.copy(Path(__file__).parent / "live_arm.ipynb", home)
     with running_lab(home) as (address, _):
         yield address.format("live_arm.ipynb")
 

@@ -4,7 +4,8 @@ import time
 
 import numpy as np
 
-from ir50p_lab.bench import connect
+from ir50p_lab.bench import SimulatedBench, connect
+from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.course.checking.calling import Failed, array_like
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, origin, subplots
 from ir50p_lab.course.lab_book.results import arm_that_answers
@@ -74,20 +75,32 @@ def circle_figure(centre, radius, recording, **tips):
     return figure
 
 
+def simulated(arm, controller, reference, seconds, **options):
+    """The loop of the lesson on a simulated arm, as fast as it can, not kept on disk. options: of SimulatedBench.
+
+    Returns: the SimulatedBench, with recording and truth; it starts from the rest pose.
+    """
+    bench = SimulatedBench(arm, **{"q0": rest_pose(arm), "record_to": False} | options).open()
+    controller.reset()
+    for sample in bench.run(seconds, reference):
+        bench.drive(controller.step(sample.t, sample.q, sample.reference))
+    return bench
+
+
 def arm_to_break(fault, **options):
-    """An open bench on which `fault` may be made: the simulated arm, unless the lab's own file allows it on this one."""
+    """An open bench on which `fault` may be made: the simulated arm, unless the lab's own file allows it here."""
     bench = arm_that_answers(**options)
     try:
         bench.caps.check_fault(fault)
     except BenchError as error:
         bench.abort()
-        print(f"The simulated arm instead: {error}")
+        print(f"Broken on the simulated arm: {error}")
         bench = connect("simulated", **options)
     return bench
 
 
 def make(fault, bench):
-    """Make a fault at joint 1 of a simulated arm, or stop this process for 0.7 s; on a real arm a hand makes the others."""
+    """Make a fault at joint 1 of a simulated arm, or stop this process for 0.7 s; a real arm needs a hand."""
     plant = getattr(bench, "plant", None)
     if fault == "process":
         time.sleep(0.7)
@@ -106,11 +119,13 @@ def make(fault, bench):
 def _gone(bench):
     """A pulled cable: the board hears nothing more, and cuts the drive by itself after 0.1 s."""
     bench.plant.advance(bench._pwm, 0.1)
-    raise BoardLostError("the board is gone: it brakes by itself 0.1 s after the last command, then gravity has the arm")
+    raise BoardLostError(
+        "the board is gone: it brakes by itself 0.1 s after the last command, then gravity has the arm"
+    )
 
 
 def aftermath(bench, fault_at=1.0):
-    """What a fault has done: s until the run ended, degrees by which the waist turned in them, mm the tip has sunk since.
+    """What a fault has done: s until the run ended, degrees the waist turned in them, mm the tip has sunk since.
 
     Of a simulated arm the truth; of a real one what was measured, and nobody knows (nan) how far it sank.
     """
