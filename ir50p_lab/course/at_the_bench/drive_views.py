@@ -1,10 +1,11 @@
 """What notebook 11 draws and breaks: the circle of the tip, and faults that are made on purpose."""
 
 import time
+from dataclasses import replace
 
 import numpy as np
 
-from ir50p_lab.bench import SimulatedBench, connect
+from ir50p_lab.bench import UNIT, SimulatedBench, connect
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.course.checking.calling import Failed, array_like
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, origin, subplots
@@ -75,12 +76,16 @@ def circle_figure(centre, radius, recording, **tips):
     return figure
 
 
-def simulated(arm, controller, reference, seconds, **options):
-    """The loop of the lesson on a simulated arm, as fast as it can, not kept on disk. options: of SimulatedBench.
+def simulated(arm, controller, reference, seconds, *, late=0.02, **options):
+    """The loop of the lesson on a simulated arm, as fast as it can, not kept on disk.
 
+    late: s from sample to action, in whole samples; options: of SimulatedBench.
     Returns: the SimulatedBench, with recording and truth; it starts from the rest pose.
     """
-    bench = SimulatedBench(arm, **{"q0": rest_pose(arm), "record_to": False} | options).open()
+    # no guard: of an arm that is calculated one may ask for too much
+    unit = replace(UNIT, delay=int(late / 0.01))
+    bench = SimulatedBench(arm, **{"unit": unit, "q0": rest_pose(arm), "record_to": False} | options).open()
+    bench.guarded = False
     controller.reset()
     for sample in bench.run(seconds, reference):
         bench.drive(controller.step(sample.t, sample.q, sample.reference))
