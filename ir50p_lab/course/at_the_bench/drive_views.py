@@ -34,12 +34,10 @@ def circle_in_use(circle, arm, centre, radius, first, seconds):
         return np.array([q, np.linalg.solve(J, radius * rate * along), np.zeros(3)])
 
     try:
-        wrong = _wrong_with(lambda t: array_like(np.zeros((3, 3)), circle, t=t), arm, centre, radius, first, seconds)
+        wrong = _wrong_with(lambda t: array_like(np.zeros((3, 3)), circle, t), arm, centre, radius, first, seconds)
     except Failed as failed:
-        wrong = "" if "ellipsis" in failed.args[0] or "None" in failed.args[0] else failed.args[0]
-        print("circle: the course's", f"until yours gives angles. {wrong}")
-        return course
-    print(f"circle: the course's, for of yours this is to be said: {wrong}" if wrong else "circle: yours")
+        wrong = "it gives no angles yet" if "ellipsis" in failed.args[0] else failed.args[0]
+    print(f"circle: the course's. Of yours: {wrong}" if wrong else "circle: yours")
     return course if wrong else circle
 
 
