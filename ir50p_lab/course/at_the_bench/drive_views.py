@@ -54,6 +54,9 @@ def _wrong_with(circle, arm, centre, radius, first, seconds):
             return f"asked for t = {t:.2f} s twice, it gives two answers: it remembers"
         if np.abs((circle(t + 1e-3)[0] - circle(t - 1e-3)[0]) / 2e-3 - qd).max() > _LATE:
             return f"at t = {t:.2f} s its speeds are not the change of its angles"
+    for t in (0.0, seconds):
+        if (speed := np.abs(circle(t)[1]).max()) > _LATE:
+            return f"at t = {t:g} s it asks for {speed:.2f} rad/s of an arm that stands"
     if np.abs(circle(seconds)[0] - first).max() > _MOVED:
         return f"after {seconds:g} s it is not back"
     return ""

@@ -28,6 +28,15 @@ def circle(t, *, phase=1.0, way=1.0, speed=1.0, radius=RADIUS, start=0.0, at=Non
     return np.array([unit * q, np.linalg.solve(J, v), np.zeros(3)])
 
 
+def no_quintic(t):
+    turned = 2 * np.pi * t / SECONDS
+    place = CENTRE + RADIUS * np.array([np.cos(turned), np.sin(turned), 0])
+    q = my_robot.reach(place, L, FIRST, LIMITS)
+    J = my_robot.jacobian(my_robot.frames(q, L), 3, place)[:3]
+    v = 2 * np.pi / SECONDS * RADIUS * np.array([-np.sin(turned), np.cos(turned), 0])
+    return np.array([q, np.linalg.solve(J, v), np.zeros(3)])
+
+
 def remembers(t):
     global last
     last = 0.999 * circle(t)[0] + 0.001 * last
@@ -51,6 +60,7 @@ WRONG = {
     "rate forgotten": (rate_forgotten, "not the change of its angles"),
     "twice as fast": (lambda t: circle(t, speed=2), "not the change of its angles"),
     "minus": (lambda t: circle(t, speed=-1), "not the change of its angles"),
+    "no quintic": (no_quintic, "of an arm that stands"),
     "old pose": (lambda t: circle(t, at=FIRST), "not the change of its angles"),
     "six rows": (lambda t: circle(t, rows=6), "LinAlgError"),
     "no zeros": (lambda t: circle(t)[:2], r"\(2, 3\)"),
