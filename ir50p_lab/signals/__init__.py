@@ -10,11 +10,9 @@ import lazy_loader
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
-        "cartesian": ["CartesianPath", "cartesian_circle", "cartesian_line"],
         "fourier": ["Fourier", "at_rest", "fourier"],
         "low_pass": ["LowPass", "alias", "low_pass", "low_pass_lag", "low_pass_response"],
         "noise_and_lag": ["NoiseAndLag", "measured_lag", "noise_and_lag"],
-        "path_error": ["PathError", "path_error"],
         "quintic": ["quintic", "through"],
         "reference": ["Reference"],
         "sinusoid": ["sinusoid"],

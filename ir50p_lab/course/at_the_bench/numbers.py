@@ -29,7 +29,7 @@ NUMBERS = (
     ),
     Number(
         "bench-5",
-        "10_bench",
+        "11_bench_drive",
         "the largest error that breakaway can leave in joint 1 of the IR50P with Kp = 289 and no integral",
         _FS / (_K * _KP),
         unit="rad",

@@ -1,0 +1,143 @@
+"""What notebook 11 draws and breaks: the circle of the tip, and faults that are made on purpose."""
+
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from ir50p_lab.bench import UNIT, SimulatedBench, connect
+from ir50p_lab.bench.rest import rest_pose
+from ir50p_lab.course.checking.calling import Failed, array_like
+from ir50p_lab.course.draw.style import COLOURS, SETPOINT, origin, subplots
+from ir50p_lab.course.lab_book.results import arm_that_answers
+from ir50p_lab.course.robot import my_robot
+from ir50p_lab.course.robot.parts import parts
+from ir50p_lab.errors import BenchError, BoardLostError
+
+_COLOURS = COLOURS["blue"], COLOURS["orange"], COLOURS["green"]
+_MOVED, _LATE = 1e-3, 0.02  # m the tip may be beside its circle; rad/s the speed from the change of its angles
+
+
+def circle_in_use(circle, arm, centre, radius, first, seconds):
+    """The student's circle(t), or the course's while it is none; a line says which, and what is wrong with it.
+
+    Args: circle: f(t) -> (3, 3), rows q, qd, qdd; centre: (3,) m; radius: m; first: (3,) rad, where it has to begin;
+    seconds: of the round.
+    """
+
+    def course(t):
+        turned, rate, _ = my_robot.quintic(0.0, 2 * np.pi, seconds, t)
+        out, along = np.array([[np.cos(turned), np.sin(turned), 0], [-np.sin(turned), np.cos(turned), 0]])
+        p = centre + radius * out
+        q = my_robot.reach(p, arm.l, first, parts(arm).limits)
+        J = my_robot.jacobian(my_robot.frames(q, arm.l), 3, p)[:3]
+        return np.array([q, np.linalg.solve(J, radius * rate * along), np.zeros(3)])
+
+    try:
+        wrong = _wrong_with(lambda t: array_like(np.zeros((3, 3)), circle, t), arm, centre, radius, first, seconds)
+    except Failed as failed:
+        wrong = "it gives no angles yet" if "ellipsis" in failed.args[0] else failed.args[0]
+    print(f"circle: the course's. Of yours: {wrong}" if wrong else "circle: yours")
+    return course if wrong else circle
+
+
+def _wrong_with(circle, arm, centre, radius, first, seconds):
+    """What is wrong with circle(t), in a sentence; "" if nothing is."""
+    if (off := np.abs(circle(0.0)[0] - first).max()) > _MOVED:
+        return f"at t = 0 a joint stands {off:.3f} rad from where the way ends"
+    for t in np.linspace(0.05, 0.95, 7) * seconds:
+        q, qd, _ = circle(t)
+        away = my_robot.forward_kinematics(q, arm.l) - centre
+        if abs(np.hypot(*away[:2]) - radius) > _MOVED or abs(away[2]) > _MOVED:
+            return f"at t = {t:.2f} s the tip is {np.round(1000 * away)} mm (x, y, z) from the centre"
+        if np.abs(circle(t)[0] - q).max() > 0 or np.abs(circle(0.0)[0] - first).max() > _MOVED:
+            return f"asked for t = {t:.2f} s twice, it gives two answers: it remembers"
+        if np.abs((circle(t + 1e-3)[0] - circle(t - 1e-3)[0]) / 2e-3 - qd).max() > _LATE:
+            return f"at t = {t:.2f} s its speeds are not the change of its angles"
+    for t in (0.0, seconds):
+        if (speed := np.abs(circle(t)[1]).max()) > _LATE:
+            return f"at t = {t:g} s it asks for {speed:.2f} rad/s of an arm that stands"
+    if np.abs(circle(seconds)[0] - first).max() > _MOVED:
+        return f"after {seconds:g} s it is not back"
+    return ""
+
+
+def circle_figure(centre, radius, recording, **tips):
+    """The way of the tip from above, and its height over time: LabFigure. tips: label -> (n, 3) m, at the end of t."""
+    figure, above, height = subplots(9.6, 4.0, cols=2, width_ratios=(1, 1.3), note=origin(recording))
+    turned = np.linspace(0, 2 * np.pi, 200)
+    above.plot(centre[0] + radius * np.cos(turned), centre[1] + radius * np.sin(turned), label="wanted", **SETPOINT)
+    height.axhline(centre[2], **SETPOINT)
+    for (label, tip), colour in zip(tips.items(), _COLOURS, strict=False):
+        above.plot(*tip[:, :2].T, color=colour, lw=1.2, label=label)
+        height.plot(recording.t[-len(tip) :], tip[:, 2], color=colour, lw=1.2)
+    above.set(xlabel="x [m]", ylabel="y [m]", aspect="equal", title="From above")
+    height.set(xlabel="time [s]", ylabel="height of the tip [m]")
+    above.legend(fontsize=8)
+    return figure
+
+
+def simulated(arm, controller, reference, seconds, *, late=0.02, **options):
+    """The loop of the lesson on a simulated arm, as fast as it can, not kept on disk.
+
+    late: s from sample to action, in whole samples; options: of SimulatedBench.
+    Returns: the SimulatedBench, with recording and truth; it starts from the rest pose.
+    """
+    # no guard: of an arm that is calculated one may ask for too much
+    unit = replace(UNIT, delay=int(late / 0.01))
+    bench = SimulatedBench(arm, **{"unit": unit, "q0": rest_pose(arm), "record_to": False} | options).open()
+    bench.guarded = False
+    controller.reset()
+    for sample in bench.run(seconds, reference):
+        bench.drive(controller.step(sample.t, sample.q, sample.reference))
+    return bench
+
+
+def arm_to_break(fault, **options):
+    """An open bench on which `fault` may be made: the simulated arm, unless the lab's own file allows it here."""
+    bench = arm_that_answers(**options)
+    try:
+        bench.caps.check_fault(fault)
+    except BenchError as error:
+        bench.abort()
+        print(f"Broken on the simulated arm: {error}")
+        bench = connect("simulated", **options)
+    return bench
+
+
+def make(fault, bench):
+    """Make a fault at joint 1 of a simulated arm, or stop this process for 0.7 s; a real arm needs a hand."""
+    plant = getattr(bench, "plant", None)
+    if fault == "process":
+        time.sleep(0.7)
+    elif plant is None:
+        print(f"Now, by hand: {fault}")
+    elif fault == "motor":
+        advance = plant.advance
+        plant.advance = lambda pwm, seconds: advance(np.array([-1, 1, 1]) * pwm, seconds)
+    elif fault == "potentiometer":
+        counts = plant.counts
+        plant.counts = lambda: np.array([1023.0, *counts()[1:]])
+    else:
+        bench._measure = lambda cycle, drive: _gone(bench)
+
+
+def _gone(bench):
+    """A pulled cable: the board hears nothing more, and cuts the drive by itself after 0.1 s."""
+    bench.plant.advance(bench._pwm, 0.1)
+    raise BoardLostError(
+        "the board is gone: it brakes by itself 0.1 s after the last command, then gravity has the arm"
+    )
+
+
+def aftermath(bench, fault_at=1.0):
+    """What a fault has done: s until the run ended, degrees the waist turned in them, mm the tip has sunk since.
+
+    Of a simulated arm the truth; of a real one what was measured, and nobody knows (nan) how far it sank.
+    """
+    known = getattr(bench, "truth", bench.recording)
+    waist = known.q[known.t >= fault_at - 1e-9, 0]
+    fallen = np.nan
+    if hasattr(bench, "plant"):
+        fallen = 1000 * (my_robot.forward_kinematics(known.q[-1], bench.arm.l) - bench.plant.tip_true)[2]
+    return known.t[-1] - fault_at, float(np.degrees(np.abs(waist - waist[0]).max())), fallen
