@@ -18,19 +18,19 @@ ROOT = Path(__file__).parents[1]
 PACKAGE, TESTS = ROOT / "ir50p_lab", ROOT / "tests"
 BUDGETS = {
     "modelling": 1228,
-    "signals": 570,
-    "controllers": 660,
+    "signals": 470,
+    "controllers": 505,
     "simulation": 629,
-    "bench": 2296,  # 16 moved here from simulation, 5 from modelling
-    "identification": 1650,  # 50 moved here from course
-    "vision": 2245,  # 45 moved here from course
-    "course": 7732,  # 7 moved here from modelling
+    "bench": 2420,  # the lab's own file, the hand that pushes
+    "identification": 1650,
+    "vision": 2245,
+    "course": 8195,  # ten more functions of the student's
     "launcher": 550,
     "grading": 0,
-    "publishing": 470,  # 50 moved here from course
-    "root": 230,  # 10 moved here from launcher
+    "publishing": 495,
+    "root": 230,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_260, 21_500
+BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_580, 22_500
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,
