@@ -59,7 +59,14 @@ def test_on_a_replay(name, tmp_path):
 @pytest.mark.emulator
 @pytest.mark.parametrize(
     "name",
-    ["08_pid_from_its_parts", "11_bench_drive", "12_identification", "14_computed_torque", "18_vision_guided_reaching"],
+    [
+        "08_pid_from_its_parts",
+        "10_bench_measure",
+        "11_bench_drive",
+        "12_identification",
+        "14_computed_torque",
+        "18_vision_guided_reaching",
+    ],
 )
 def test_on_the_board(name, tmp_path):
     """Found, driven, and never left for the simulated arm."""

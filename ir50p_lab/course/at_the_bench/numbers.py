@@ -1,4 +1,4 @@
-"""Numbers of notebook 10: the lag of a filter, what stiction leaves."""
+"""Numbers of notebooks 10 and 11: the lag of a filter, what stiction leaves."""
 
 from ir50p_lab.course.checking.numbers import Number
 from ir50p_lab.modelling import IR50P
@@ -15,7 +15,7 @@ _FS, _FC, _K = IR50P.friction.fs[0], IR50P.friction.fc[0], IR50P.actuators.gain[
 NUMBERS = (
     Number(
         "bench-4",
-        "10_bench",
+        "10_bench_measure",
         "how far, in rad, a first-order low pass of 2 Hz is behind a joint that turns at a steady 0.5 rad/s",
         _SPEED * _LAG,
         unit="rad",

@@ -11,6 +11,7 @@ from ir50p_lab.course.checking.note import ended
 from ir50p_lab.course.checking.task import table
 
 ROOM = "<my_robot"  # the file name of what is tried begins so
+_INSIDE = "inside a function that this line calls. Does it get the right things, in the right order?"
 
 
 def why_it_stops(error):
@@ -39,11 +40,15 @@ def _usual(error):
 
 def _where(error):
     """The student's line, the two operands that do not go together, and what is wrong with its memory."""
+    deeper = ""
     for frame, number in reversed(list(traceback.walk_tb(error.__traceback__))):
         file = frame.f_code.co_filename
         if file.startswith(ROOM):
             line = linecache.getline(file, number).strip()
+            if deeper and "numpy" not in deeper:
+                return line, "", _INSIDE
             return line, _operands(line, frame), _memory(error, line, frame)
+        deeper = file
     return "", "", ""
 
 

@@ -23,7 +23,7 @@ class InertiaView:
 
     def __init__(self, arm):
         self.arm = arm
-        self.figure, self._side, waist, joints = subplots(10.0, 3.6, cols=3)
+        self.figure, self._side, waist, joints = subplots(11.0, 3.6, cols=3)
         self._view = SideView(self._side, arm)
         (self._curve,) = waist.plot([], [])
         (self._dot,) = waist.plot([], [], "o", color=COLOURS["orange"], ms=8)

@@ -11,7 +11,7 @@ from ir50p_lab.bench.simulated import SimulatedBench
 from ir50p_lab.errors import InputError, NotMeasuredError
 from ir50p_lab.inputs import numbers
 
-NOTEBOOKS = {"calibration": "10_bench", "model": "12_identification", "camera": "17_camera_calibration"}
+NOTEBOOKS = {"calibration": "10_bench_measure", "model": "12_identification", "camera": "17_camera_calibration"}
 _ENDINGS = {"calibration": ".toml", "model": ".model", "camera": ".yml"}
 _RENDERED = {"bench": "rendered pictures", "bench_id": "rendered", "arm": "", "simulated": "true"}
 

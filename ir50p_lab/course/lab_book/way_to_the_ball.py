@@ -14,6 +14,7 @@ _WAYS = {
     "02  your formula": "by_formula",
     "07  your plan": "by_plan",
     "08  your controller": "by_pid",
+    "10  your calibration": "by_ruler",
     "18  a picture": "by_camera",
 }
 

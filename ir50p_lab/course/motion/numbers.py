@@ -47,18 +47,20 @@ NUMBERS = (
     Number(
         "sim-2",
         "07_friction_and_motors",
-        "where a joint with kp = 2 N m/rad and Coulomb friction 0.1 N m stops, let go at +0.37 rad from its set point",
+        "where a joint on a spring of 2 N m/rad, with Coulomb friction of 0.1 N m, stops when let go 0.37 rad beyond"
+        " its target",
         _RIGHT_REST,
         unit="rad",
         tolerance=1e-3,
-        why="Anywhere within fc/kp of the set point it may rest: dry friction leaves an error if nothing integrates.",
+        why="Within 0.05 rad of the target, friction over spring, it may rest anywhere: dry friction leaves an error.",
         slips={
-            "Within fc/kp of the set point the controller is too weak to move it: it need not get there.": 0.0,
-            "Each half swing costs 2 fc/kp: friction moves the centre of the swing by fc/kp.": (
+            "Within 0.05 rad of its target the spring is too weak to move it: it need not get there.": 0.0,
+            "That is the first turning point; the spring pulls it back from there.": 2 * _FC / _KP - _START,
+            "Each half swing costs 0.1 rad: friction moves its centre by 0.05 rad, and a swing has two sides.": (
                 _rest(_START, _FC / _KP, _FC / _KP)
             ),
-            "That is the edge of the dead band; follow the turning points until one is inside.": _FC / _KP,
-            "There the controller still pushes harder than friction: it swings once more.": (
+            "That is how far out it may rest; follow the turning points until one is inside.": _FC / _KP,
+            "There the spring still pulls harder than friction: it swings once more.": (
                 _rest(_START, 2 * _FC / _KP, 2 * _FC / _KP)
             ),
         },
@@ -73,6 +75,7 @@ NUMBERS = (
         tolerance=5e-3,
         why="The gear multiplies the rotor's inertia by N^2: 0.2 kg m^2 here, more than the forearm has.",
         slips={
+            "The motor turns N times as fast as the joint: its back-EMF is ke N qd.": _VOLTS - _BACK_EMF * 49 / 50,
             "The back-EMF ke N qd is missing: a turning motor works against its supply.": _VOLTS - _BACK_EMF,
             "The rotor's inertia is taken N times, as in the thesis; at the joint it counts N^2 times.": (
                 _PER_TORQUE * (_TAU + 50 * 8e-5 * _QDD) + _BACK_EMF

@@ -77,7 +77,7 @@ RATE = "change @ qd - pull / 2"
     [
         ("gravity_torque", "(T, i + 1, centre)[2]", "(T, i + 1, centre)[:3, 2]", "how fast the point rises"),
         ("gravity_torque", "(T, i + 1, centre)[2]", "(T, i + 1, centre)[5]", "a row of turning"),
-        ("gravity_torque", "T[i][:3, 3] + lc", "T[i + 1][:3, 3] + lc", "from the far end of each link"),
+        ("gravity_torque", "T[i][:3, 3] + lc", "T[i + 1][:3, 3] + lc", "from the far end of"),
         ("gravity_torque", "T[i][:3, 3] + lc", "T[i + 1][:3, 3] - lc", "back from the far end"),
         ("gravity_torque", "T, i + 1", "T, 3", "does the elbow carry the upper arm"),
         ("gravity_torque", "T[2][:3, 0], T[3]", "T[1][:3, 0], T[2]", "which frame turns with the link"),

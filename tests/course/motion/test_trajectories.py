@@ -57,7 +57,7 @@ def told(name, *changes, text=None):
         ("rk4_step", "x + dt / 6", "x + dt / 3", "count 2, 4, 4, 2 sixths"),
         ("rk4_step", "t + dt / 2", "t", "the clock stood still"),
         ("rk4_step", f"return x + dt / 6 * {SUM}", "x += dt * k1\n    return x", "it changes what it was given, `x`"),
-        ("integrate", "round(", "int(", "`int` cuts"),
+        ("integrate", "round(", "int(", "`int` or `//` cuts"),
         ("integrate", STEP, "x[k] + dt * f(t[k], x[k])", "drift off like Euler's"),
         ("integrate", "t[k], x[k]", "0, x[k]", "the clock stands at 0"),
         ("integrate", "x[k + 1] = ", "x[k + 1] = x[k] + ", "the next x, not the change"),

@@ -26,6 +26,8 @@ def _runs():
         (rates.swinging, np.array([1, 2]), 2.0, 0.25),
         (rates.cooling, np.array([1.5]), 0.5, 0.5),
         (rates.three_joints, rates.SIX.copy(), 0.6, 0.2),
+        (rates.cooling, np.array([0.7]), 0.2, 0.1),
+        (rates.swinging, np.array([0.3, 0.1]), 0.33, 0.03),
     ]
 
 

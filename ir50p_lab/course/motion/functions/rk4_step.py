@@ -23,6 +23,7 @@ def _steps():
         (rates.growing, 0.5, np.array([0.8, -1.5]), 0.3),
         (rates.cooling, 0.0, np.array([1.5]), 0.3),
         (rates.three_joints, 0.4, rates.SIX.copy(), 0.25),
+        (rates.growing, 0.2, np.linspace(-0.6, 0.6, 7), 0.3),
     ]
 
 

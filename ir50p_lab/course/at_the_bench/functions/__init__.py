@@ -1,0 +1,1 @@
+"""The functions of notebook 10, one file each."""
