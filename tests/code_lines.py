@@ -17,20 +17,20 @@ NOT_OURS = {"node_modules", "__pycache__"}
 ROOT = Path(__file__).parents[1]
 PACKAGE, TESTS = ROOT / "ir50p_lab", ROOT / "tests"
 BUDGETS = {
-    "modelling": 1228,
-    "signals": 470,
-    "controllers": 505,
-    "simulation": 629,
+    "modelling": 1221,
+    "signals": 462,
+    "controllers": 501,
+    "simulation": 621,
     "bench": 2420,  # the lab's own file, the hand that pushes
-    "identification": 1650,
+    "identification": 1649,
     "vision": 2245,
     "course": 8195,  # ten more functions of the student's
-    "launcher": 550,
+    "launcher": 540,
     "grading": 0,
     "publishing": 495,
     "root": 230,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_580, 22_500
+BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_579, 22_500
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,
