@@ -9,8 +9,9 @@ from fake_board import FakeBoard
 from notebook_runner import FOLDER
 
 import ir50p_lab.vision
-from ir50p_lab.bench import SerialBench, fit_calibration, nominal_calibration
-from ir50p_lab.course import save_result
+from ir50p_lab.bench import JointCalibration, SerialBench, nominal_calibration
+from ir50p_lab.course import my_robot, save_result
+from ir50p_lab.course.at_the_bench import measure_views
 from ir50p_lab.course.lab_book.results import newest_result
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.vision import Calibration, PictureFolder, calibrate
@@ -38,23 +39,25 @@ def opened(board):
     return SerialBench(board, clock=board, arm=IR50P, record_to=False).open()
 
 
-def test_calibration_of_a_real_arm(board):
-    """Poses in degrees and the counts that the cell reads: the line of this board, and nothing has moved."""
+def test_calibration_of_a_real_arm(board, monkeypatch):
+    """Poses in degrees and the counts that the hand reads: the line of this board, and nothing has moved."""
+    monkeypatch.setattr(measure_views, "connect", lambda **_: opened(board))
     truth = nominal_calibration(IR50P)
-    names = {"np": np, "arm": IR50P, "fit_calibration": fit_calibration, "save_result": save_result}
-    names["connect"] = lambda **_: opened(board)
-    exec(cell("10", "bench-yours-hand"), names)
-    source = cell("10", "bench-yours")
-    exec(source, names)
-    assert newest_result("calibration", opened(board)) is None
     degrees = np.random.default_rng(0).uniform(-60, 60, (12, 3)).round()
     counts = []
     for pose in degrees:
         board.q = np.radians(pose)
-        counts.append(names["counts_by_hand"]().tolist())
+        counts.append(measure_views.counts_by_hand().tolist())
         assert np.array_equal(board.q, np.radians(pose))
-    source = source.replace("my_degrees = []", f"my_degrees = {degrees.tolist()}")
-    exec(source.replace("my_counts = []", f"my_counts = {counts}"), names)
+    lists = f"my_degrees, my_counts = {degrees.tolist()}, {counts}"
+    names = {"np": np, "arm": IR50P, "views": measure_views, "visit": opened(board), "my_robot": my_robot}
+    exec(cell("10", "measure-15").replace("my_degrees, my_counts = [], []", lists), names)
+    angles, read = names["readings"]
+    lines = [my_robot.fit_line(read[:, k], angles[:, k])[:2] for k in range(3)]
+    names["slopes"], names["offsets"] = np.transpose(lines)
+    names |= {"JointCalibration": JointCalibration, "save_result": save_result}
+    assert newest_result("calibration", opened(board)) is None
+    exec(cell("10", "measure-40"), names)
     bench = opened(board)
     assert bench.calibration.source.startswith("yours, calibration-1")
     assert np.allclose(bench.calibration.slope, truth.slope, rtol=0.01)

@@ -83,12 +83,20 @@ def _compiled(tree, changes):
     for node, other in changes.items():
         node.__class__, node.__dict__ = other.__class__, dict(other.__dict__)
     try:
+        if any(map(_endless, ast.walk(tree))):
+            return None
         return compile(ast.fix_missing_locations(tree), "<variant>", "exec")
     except (SyntaxError, ValueError):
         return None
     finally:
         for node, (kind, parts) in before.items():
             node.__class__, node.__dict__ = kind, parts
+
+
+def _endless(node):
+    """Tell whether a loop goes through a list that it makes longer."""
+    grown = (one.value for one in ast.walk(node) if isinstance(one, ast.Attribute) and one.attr == "append")
+    return isinstance(node, ast.For) and ast.dump(node.iter) in map(ast.dump, grown)
 
 
 def _all_changes(function):
