@@ -248,7 +248,7 @@ class LiveRun:
     def push(self, link, point, force):
         """A hand pushes a simulated arm, see `SimulatedBench.push`. Raises InputError, on any other arm too."""
         if not hasattr(self._bench, "push"):
-            raise InputError("only a simulated arm can be pushed from here; push a real one with your hand, gently")
+            raise InputError("only a simulated arm can be pushed from here; no hand at a real arm under drive")
         self._orders.put(("push", checked_push(link, point, force)))
 
     def stop(self, *, wait=True):

@@ -18,17 +18,7 @@ from pathlib import Path
 from ir50p_lab.errors import LabError
 from ir50p_lab.home import PROJECT
 
-NOTEBOOKS = (
-    "00",
-    "01",
-    "02",
-    "03",
-    "04",
-    "05",
-    "06",
-    "07",
-    "08",
-)  # which run in a tab, and in CI without numba, OpenCV, pyserial and loky
+NOTEBOOKS = "00 01 02 03 04 05 06 07 08".split()  # in a tab; in CI without numba, OpenCV, pyserial and loky
 _DATA = ("first_reach.csv", "first_reach.jpg", "drawings", "arm_example.toml")
 _PURE = "anywidget ipywidgets comm psygnal typing_extensions jupyterlab_widgets widgetsnbextension lazy_loader".split()
 _PURE += "cloudpickle tomlkit tqdm sympy mpmath".split()

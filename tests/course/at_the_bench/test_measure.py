@@ -4,12 +4,12 @@ import re
 
 import numpy as np
 import pytest
-import solutions
 from cells import cell
 from scipy.signal import lfilter
+from told import told
 
 from ir50p_lab.bench import SimulatedBench, fit_calibration
-from ir50p_lab.course import check, my_robot
+from ir50p_lab.course import my_robot
 from ir50p_lab.course.at_the_bench import measure_views as views
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.robot.catalogue import task
@@ -29,14 +29,6 @@ MINE = "slope, offset = np.linalg.solve(N, A.T @ y)"
 def home(tmp_path, monkeypatch):
     monkeypatch.setenv("IR50P_HOME", str(tmp_path))
     my_robot._said.clear()
-
-
-def told(capsys, name, old="", new=""):
-    """What check says of the reference solution with some words replaced."""
-    text = solutions.source(name)
-    assert old in text
-    check(name, cell(text.replace(old, new), name))
-    return capsys.readouterr().out.split("one input that fails")[0]
 
 
 WRONG = [
