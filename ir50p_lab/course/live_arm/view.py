@@ -143,6 +143,7 @@ class LiveArm(anywidget.AnyWidget):
         while alive and not stop.wait(0.04) and self.comm is not None:
             alive = getattr(source, "is_open", None) or getattr(source, "alive", False)
             run = getattr(source, "live_run", source) or source.recording
+            runs = getattr(run, "alive", alive)  # asked before its samples: after the whole no window follows
             samples = run.recent(10.0) if run is not None else None
             if samples is not None and len(samples.t) > 1 and samples.t[-1] != sent:
                 sent, fresh = samples.t[-1], True
@@ -150,7 +151,7 @@ class LiveArm(anywidget.AnyWidget):
                 shape |= {"source": words, "push": getattr(run, "most_push", 0.0)}
                 self._live = run
                 self.send({"live": shape}, buffers=[rows])
-            if fresh and not getattr(run, "alive", alive):
+            if fresh and not runs:
                 fresh = False
                 self._show([getattr(run, "recording", run)], [""])
 

@@ -183,6 +183,26 @@ def test_a_loop_in_the_background_feeds_the_view_and_can_be_played_afterwards(he
     assert view.shape["source"] == "simulated"
 
 
+def test_after_the_whole_of_a_run_no_window_follows(heard, run):
+    """The run ends while a window of it is put together; a window after the whole would stay for good."""
+
+    class EndsMeanwhile:
+        alive, recording, calls = True, run, 0
+
+        def recent(self, seconds):
+            self.alive, self.calls = False, self.calls + 1
+            rows = slice(0, 100 if self.calls == 1 else 200)  # the last samples come after the first window
+            return SimpleNamespace(t=run.t[rows], q=run.q[rows])
+
+    bench = SimpleNamespace(is_open=True, live_run=EndsMeanwhile())
+    view = LiveArm(IR50P)
+    view.observe(lambda _: heard.append(({"whole": None}, None)), "track")
+    view.play(bench)
+    until(lambda: view.track and bench.live_run.calls > 4)
+    bench.is_open = False
+    assert "whole" in heard[-1][0]
+
+
 def test_the_browser_is_told_how_hard_it_may_push_and_a_push_reaches_the_arm(heard):
     with SimulatedBench(IR50P, q0=[0, 0.8, -1.2], realtime=True, record_to=False) as bench:
         view = LiveArm(IR50P).play(bench)
