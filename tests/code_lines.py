@@ -24,13 +24,13 @@ BUDGETS = {
     "bench": 2420,  # the lab's own file, the hand that pushes
     "identification": 1649,
     "vision": 2245,
-    "course": 8200,  # ten more functions of the student's
+    "course": 8201,  # ten more functions of the student's
     "launcher": 540,
     "grading": 0,
     "publishing": 485,
     "root": 230,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_574, 22_500
+BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_575, 22_500
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,
