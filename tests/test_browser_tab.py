@@ -1,5 +1,6 @@
 """What a browser tab cannot do is said in a sentence by what meets it; the student's folder is kept on the page's drive."""
 
+import json
 import subprocess
 import sys
 
@@ -66,3 +67,13 @@ def test_what_is_written_survives_a_reload_and_the_rest_says_what_it_needs(tmp_p
     assert "cv2, which measures pictures, is not loaded" in vision.stderr, vision.stderr
     sweep = run("from ir50p_lab.simulation import sweep_gains", tmp_path / "notebooks", tmp_path)
     assert "A browser tab cannot do this: numba" in sweep.stderr or sweep.returncode == 0, sweep.stderr
+
+
+def test_a_push_by_hand_is_a_run_that_is_played(tmp_path):
+    """Without threads no loop can be followed: the view of 08 plays the run in which the push was written down."""
+    (notebook,) = (PROJECT / "notebooks").glob("08_*.ipynb")
+    cells = {cell["id"]: "".join(cell["source"]) for cell in json.loads(notebook.read_text(encoding="utf-8"))["cells"]}
+    hand = "\n".join(cells[f"parts-35{one}"] for one in "qst")
+    code = f"{cells['parts-02']}\nmy_pi = my_robot.PID\n{hand}\nprint(type(shown).__name__, by_hand.is_open)"
+    played = run(code, tmp_path, tmp_path)
+    assert "Recording False" in played.stdout and "it dives by" in played.stdout, played.stderr
